@@ -1,0 +1,14 @@
+/** libdvi: discrete variational mechanics. This header includes all the others. */
+#ifndef DVI_DVI_H
+#define DVI_DVI_H
+#include <dvi/basis.h>
+#include <dvi/diagnostics.h>
+#include <dvi/integrator.h>
+#include <dvi/method.h>
+#include <dvi/quadrature.h>
+#include <dvi/reference.h>
+#include <dvi/run.h>
+#include <dvi/status.h>
+#include <dvi/system.h>
+#include <dvi/version.h>
+#endif

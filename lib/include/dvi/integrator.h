@@ -1,0 +1,121 @@
+/** An integrator: one method on one system, with the state that it advances. */
+#ifndef DVI_INTEGRATOR_H
+#define DVI_INTEGRATOR_H
+#include <stddef.h>
+#include <dvi/status.h>
+#include <dvi/system.h>
+
+typedef struct dvi_integrator dvi_integrator;
+
+/** What an integrator has done since its creation. Counters, unlike clocks, say the same on every machine. */
+typedef struct dvi_counters {
+  long steps;           /**< accepted steps */
+  long failed_steps;    /**< steps that returned a positive status */
+  long values;          /**< points at which values were evaluated */
+  long gradients;       /**< points at which gradients were evaluated */
+  long hessians;        /**< points at which Hessians were evaluated */
+  long residuals;       /**< residuals of the step's equations (fixed-point iterations count as one each) */
+  long jacobians;       /**< Jacobians of the step's equations */
+  long factorizations;  /**< numeric factorisations */
+  long symbolic;        /**< symbolic analyses */
+  long solves;          /**< triangular solves */
+  long fixed_points;    /**< steps solved by fixed point iteration */
+  long newtons;         /**< steps solved by Newton's method */
+  long kinsols;         /**< steps handed to KINSOL */
+  long halvings;        /**< starting paths that were built from two half steps */
+  long allocations;     /**< blocks of memory that the library allocated for this integrator since it was created */
+} dvi_counters;
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Make an integrator.
+ *
+ *  @param      system      must outlive the integrator
+ *  @param      method      a specification, see dvi/method.h
+ *  @param[out] integrator  owned by the caller; NULL on failure
+ *  @retval DVI_BAD_OPTION   unknown method, key or value, or values that do not go together (nodes < degree, say); the error
+ *                           sentence gives the reason
+ *  @retval DVI_UNSUPPORTED  the method cannot use a term of the system (verlet with a general Lagrangian, say)
+ *  @retval DVI_NO_MEMORY */
+dvi_status dvi_integrator_create(const dvi_system *system, const char *method, dvi_integrator **integrator);
+
+/** Free an integrator and set the pointer to NULL; NULL is allowed. */
+void dvi_integrator_destroy(dvi_integrator **integrator);
+
+/** Put the integrator at time t in state q [nq], p [nv]. May be called again for a new run.
+ *
+ *  @retval DVI_NOT_FINITE  an argument, the energy or the forces are not finite there; the old state stays
+ *  @retval DVI_SINGULAR    the velocity Hessian is singular there and the method needs a regular Lagrangian */
+dvi_status dvi_integrator_start(dvi_integrator *integrator, double t, const double *q, const double *p);
+
+/** Take one step of length h (negative: backward).
+ *
+ *  On any failure the state, and all that the next step depends on, is as before the call.
+ *  @retval DVI_BAD_ARGUMENT    h is zero or not finite, or so small that t + h = t
+ *  @retval DVI_BAD_STATE       before dvi_integrator_start
+ *  @retval DVI_NOT_CONVERGED   the step's equations were not solved, even by KINSOL with line search; the error sentence names
+ *                              step, time, iterations and residual
+ *  @retval DVI_NOT_FINITE      NaN or Inf came out of a callback or the step
+ *  @retval DVI_CALLBACK_RETRY  a callback returned a positive number
+ *  @retval DVI_CALLBACK_FAILED a callback returned a negative number */
+dvi_status dvi_integrator_step(dvi_integrator *integrator, double h);
+
+/** Current time. */
+double dvi_integrator_time(const dvi_integrator *integrator);
+
+/** Current coordinates [nq], owned by the integrator, valid until its next call. */
+const double *dvi_integrator_q(const dvi_integrator *integrator);
+
+/** Current momenta [nv], owned by the integrator, valid until its next call. */
+const double *dvi_integrator_p(const dvi_integrator *integrator);
+
+/** The system that it integrates. */
+const dvi_system *dvi_integrator_system(const dvi_integrator *integrator);
+
+/** The order that theory claims for this method with its options. */
+int dvi_integrator_order(const dvi_integrator *integrator);
+
+/** The method's full specification, every key spelled out; owned by the integrator. */
+const char *dvi_integrator_method(const dvi_integrator *integrator);
+
+/** All invariants at the current state, as dvi_system_invariants, without an allocation.
+ *
+ *  @param[out] value  [dvi_system_invariant_count] */
+dvi_status dvi_integrator_invariants(dvi_integrator *integrator, double *value);
+
+/** Dense output: the trajectory inside the last step.
+ *
+ *  Galerkin methods evaluate the step's polynomial (error O(h^(degree+1)) inside, the full order at the ends); the others use
+ *  Hermite's cubic through the ends (O(h^4)).
+ *  @param      t  a time in the last step, ends included
+ *  @param[out] q  [nq], or NULL
+ *  @param[out] v  [nv], or NULL
+ *  @retval DVI_BAD_STATE     no step was taken yet
+ *  @retval DVI_BAD_ARGUMENT  t is outside of the last step */
+dvi_status dvi_integrator_interpolate(dvi_integrator *integrator, double t, double *q, double *v);
+
+/** What was done so far. */
+void dvi_integrator_counters(const dvi_integrator *integrator, dvi_counters *counters);
+
+/** Say in words which kernel, solver and sparsity the integrator chose, and why: several lines, each ended by a newline.
+ *
+ *  @return the length of the whole text (without the 0 at its end); text holds as much of it as fits, always ended by 0. */
+size_t dvi_integrator_explain(const dvi_integrator *integrator, char *text, size_t size);
+
+/** Write the state to a file: the file is whole or, on failure, as before.
+ *
+ *  @retval DVI_IO_ERROR  the file cannot be written (disk full, no permission); the error sentence has the system's reason */
+dvi_status dvi_integrator_save(const dvi_integrator *integrator, const char *path);
+
+/** Read a state that dvi_integrator_save wrote; a run then continues bit for bit.
+ *
+ *  @retval DVI_IO_ERROR  the file cannot be read
+ *  @retval DVI_BAD_FILE  it is cut short, damaged, or from another method or dimension; the state stays */
+dvi_status dvi_integrator_restore(dvi_integrator *integrator, const char *path);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

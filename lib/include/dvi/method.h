@@ -1,0 +1,36 @@
+/** The table of methods, and what each method's specification may say.
+ *
+ *  A specification is `name[:key=value,...]`, for example "galerkin:degree=4,quadrature=lobatto,nodes=5". Keys that every method
+ *  takes: `solver` (auto, fixed-point, newton, kinsol) for the implicit ones. A composition hands the keys that are not its own to its
+ *  base method: "composition:order=6,base=galerkin,degree=1". */
+#ifndef DVI_METHOD_H
+#define DVI_METHOD_H
+#include <dvi/status.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** How many methods there are. */
+int dvi_method_count(void);
+
+/** Name of method i, 0 <= i < dvi_method_count(); NULL if out of range. */
+const char *dvi_method_name(int i);
+
+/** One line on what the method is; NULL if out of range. */
+const char *dvi_method_summary(int i);
+
+/** Key of the method's source in docs/references.bib; NULL if out of range. */
+const char *dvi_method_citation(int i);
+
+/** How many keys method i takes in its specification; 0 if out of range. */
+int dvi_method_key_count(int i);
+
+/** Key k of method i: its name, and in one line its values, its default and its meaning; NULL if out of range. */
+const char *dvi_method_key_name(int i, int k);
+const char *dvi_method_key_help(int i, int k);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,57 @@
+/** Independent integrators by SUNDIALS: IDA judges the methods, CVODE and ARKODE are run beside them. */
+#ifndef DVI_REFERENCE_H
+#define DVI_REFERENCE_H
+#include <dvi/system.h>
+
+/** The codes. */
+typedef enum dvi_reference_code {
+  DVI_IDA,         /**< variable-order BDF on the implicit Euler-Lagrange equations: qdot = v, pdot = L_q, 0 = p - L_v (index 1) */
+  DVI_CVODE_ADAMS, /**< on qdot = v(q,p), pdot = L_q */
+  DVI_CVODE_BDF,
+  DVI_ARKODE       /**< explicit Runge-Kutta, order 8 (Fehlberg 13-7-8) */
+} dvi_reference_code;
+
+/** Options; zero means default. */
+typedef struct dvi_reference_options {
+  dvi_reference_code code;
+  double relative_tolerance; /**< 0: 1e-12 */
+  double absolute_tolerance; /**< in units of q and p alike; 0: the relative one */
+  long max_steps;            /**< 0: 50 million */
+} dvi_reference_options;
+
+/** What a reference run did. */
+typedef struct dvi_reference_report {
+  double error;       /**< dvi_reference_judge: max-norm of the difference of q between the two runs; dvi_reference_solve: NaN */
+  long steps;         /**< of the (tighter) run */
+  long evaluations;   /**< points at which gradients were evaluated */
+  double cpu_seconds; /**< process time */
+} dvi_reference_report;
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Integrate from (t, q, p) to t_end with one code at one tolerance.
+ *
+ *  @param[in,out] q, p    [nq], [nv]: initial state, then the state at t_end; unchanged on failure
+ *  @param         options NULL: IDA at its defaults
+ *  @param[out]    report  may be NULL
+ *  @retval DVI_REFERENCE_FAILED  the code stopped early; the error sentence has its reason and time */
+dvi_status dvi_reference_solve(const dvi_system *system, double t, double t_end, double *q, double *p,
+                               const dvi_reference_options *options, dvi_reference_report *report);
+
+/** The same, run twice, at the tolerance and at a tenth of it: gives the second result and its distance from the first, which is
+ *  taken as the judge's own error. */
+dvi_status dvi_reference_judge(const dvi_system *system, double t, double t_end, double *q, double *p,
+                               const dvi_reference_options *options, dvi_reference_report *report);
+
+/** Name of a code ("ida", "cvode-adams", "cvode-bdf", "arkode"); NULL if out of range. */
+const char *dvi_reference_name(dvi_reference_code code);
+
+/** The SUNDIALS version that is linked, for example "6.4.1". */
+const char *dvi_reference_version(void);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

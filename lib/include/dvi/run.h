@@ -1,0 +1,67 @@
+/** The driver: many steps, with observers, events, stop conditions and checkpoints. */
+#ifndef DVI_RUN_H
+#define DVI_RUN_H
+#include <dvi/integrator.h>
+
+/** A function g(t,q,v) whose zeros along the trajectory are wanted. */
+typedef struct dvi_event {
+  const char *name;
+  int (*value)(double t, const double *q, const double *v, double *g, void *user);
+  int direction; /**< +1: g rises through zero, -1: falls, 0: both; in the direction of the run */
+  int terminal;  /**< not 0: the run ends with the step that holds the event */
+  /** Called at each event, at the time where the step's polynomial has g = 0, right to 1e-12 max(1,|t|); may be NULL.
+   *  Return 0 to go on, >0 to end the run, <0 to fail. */
+  int (*occurred)(double t, const double *q, const double *v, void *user);
+  void *user;
+} dvi_event;
+
+/** Options of a run; zero means default. */
+typedef struct dvi_run_options {
+  double h;     /**< the step; its sign must lead from the current time to t_end */
+  double t_end; /**< a last, shorter step ends the run here if h does not divide the way */
+  long every;   /**< call the observer after every so many steps; 0: 1 */
+  /** Called at the start, after every `every` steps, and at the end. Return 0 to go on, >0 to end the run, <0 to fail. */
+  int (*observe)(dvi_integrator *integrator, void *user);
+  void *user;
+  const dvi_event *events;
+  int event_count;
+  const char *checkpoint;     /**< file that is written when the run ends, however it ends; NULL: none */
+  long checkpoint_every;      /**< and after every so many steps; 0: only at the end */
+  const volatile int *cancel; /**< a run ends after the step in which this becomes not 0; NULL: never */
+} dvi_run_options;
+
+/** Why a run ended. */
+typedef enum dvi_run_end {
+  DVI_RUN_COMPLETE,  /**< t_end was reached */
+  DVI_RUN_STOPPED,   /**< the observer or an event's callback said so */
+  DVI_RUN_EVENT,     /**< a terminal event */
+  DVI_RUN_CANCELLED, /**< `cancel` was set */
+  DVI_RUN_FAILED     /**< a step failed; the status says how */
+} dvi_run_end;
+
+/** How a run went. */
+typedef struct dvi_run_report {
+  dvi_run_end end;
+  long steps;        /**< accepted steps of this run */
+  long events;       /**< events found */
+  double event_time; /**< of the last event found; NaN if there was none */
+  int event;         /**< its index; -1 if there was none */
+} dvi_run_report;
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Advance the integrator from its current time to t_end.
+ *
+ *  An event is seen if g has different signs at two neighbouring points of the step (ends and quarters), or if a step ends on a zero.
+ *  @param[out] report  filled on success and on failure; may be NULL
+ *  @retval DVI_OK            the run ended as `report->end` says (not DVI_RUN_FAILED)
+ *  @retval DVI_BAD_ARGUMENT  h is zero, not finite or leads away from t_end; a count is negative
+ *  @retval (others)          as dvi_integrator_step, for the step that failed; the state is the last good one */
+dvi_status dvi_run(dvi_integrator *integrator, const dvi_run_options *options, dvi_run_report *report);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

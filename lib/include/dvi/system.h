@@ -1,0 +1,164 @@
+/** The mechanical system: a Lagrangian, declared as terms.
+ *
+ *      L(t,q,v) = v.M v/2  or  a general Lagrangian,  minus the sum of the potentials V_k(t,q),      q, v in R^n.
+ *
+ *  Callbacks return 0 for success, a positive number if a smaller step might help (the step fails, the state stays) and a
+ *  negative one for a failure for good. They get the `user` pointer of the term that declares them. They must depend on
+ *  their arguments alone: the library may call them at any point, in any order.
+ *
+ *  Each callback comes in two shapes; declare one of them. The one-point shape is the plain one. The batch shape gets
+ *  `count` points stored component by component: coordinate i of point k is q[i*count + k], entry e of a Hessian of point k is
+ *  values[e*count + k], and t[k] is the time of point k. One loop over k then serves all quadrature points of a step. */
+#ifndef DVI_SYSTEM_H
+#define DVI_SYSTEM_H
+#include <dvi/status.h>
+
+/** The nonzero pattern of a matrix by compressed columns. All zero means: every entry may be nonzero, column by column.
+ *
+ *  Column j holds rows row[start[j]] .. row[start[j+1]-1], ascending. Symmetric matrices store both triangles. */
+typedef struct dvi_pattern {
+  const int *start; /**< [columns+1], start[0] = 0, not descending */
+  const int *row;   /**< [start[columns]] */
+} dvi_pattern;
+
+/** A general Lagrangian L(t,q,v): kinetic part, and any force that a potential cannot say. */
+typedef struct dvi_lagrangian {
+  /** The value L. Needed (or value_batch). */
+  int (*value)(double t, const double *q, const double *v, double *L, void *user);
+  int (*value_batch)(int count, const double *t, const double *q, const double *v, double *L, void *user);
+  /** dL/dq [n] and dL/dv [n]. Left out: the value is differenced, 12 n calls a point, about three digits lost. */
+  int (*gradient)(double t, const double *q, const double *v, double *L_q, double *L_v, void *user);
+  int (*gradient_batch)(int count, const double *t, const double *q, const double *v, double *L_q, double *L_v, void *user);
+  /** Second derivatives in the order of the patterns qq, qv (row q, column v) and vv. Left out: the gradient is differenced. */
+  int (*hessian)(double t, const double *q, const double *v, double *L_qq, double *L_qv, double *L_vv, void *user);
+  int (*hessian_batch)(int count, const double *t, const double *q, const double *v, double *L_qq, double *L_qv, double *L_vv,
+                       void *user);
+  dvi_pattern qq, qv, vv;
+  void *user;
+} dvi_lagrangian;
+
+/** A potential V(t,q); the Lagrangian holds -V. */
+typedef struct dvi_potential {
+  const char *name; /**< for messages; copied; NULL: "potential" */
+  /** The value V. Needed (or value_batch). */
+  int (*value)(double t, const double *q, double *V, void *user);
+  int (*value_batch)(int count, const double *t, const double *q, double *V, void *user);
+  /** dV/dq [n]. Left out: the value is differenced, 6 n calls a point, about three digits lost. */
+  int (*gradient)(double t, const double *q, double *V_q, void *user);
+  int (*gradient_batch)(int count, const double *t, const double *q, double *V_q, void *user);
+  /** d2V/dq2 in the order of the pattern. Left out: the gradient is differenced by column groups. */
+  int (*hessian)(double t, const double *q, double *V_qq, void *user);
+  int (*hessian_batch)(int count, const double *t, const double *q, double *V_qq, void *user);
+  dvi_pattern qq;
+  void *user;
+} dvi_potential;
+
+/** A constant mass matrix: exactly one of the three forms. */
+typedef struct dvi_mass {
+  double scalar;          /**< M = scalar times the identity; 0 if another form is used */
+  const double *diagonal; /**< [n] */
+  const double *values;   /**< a sparse symmetric matrix in the order of the pattern */
+  dvi_pattern pattern;
+} dvi_mass;
+
+/** A one-parameter symmetry q -> q + epsilon xi(q); its momentum map is J = p.xi(q). */
+typedef struct dvi_symmetry {
+  const char *name; /**< the momentum's name in tables; copied */
+  int (*generator)(const double *q, double *xi, void *user);
+  void *user;
+} dvi_symmetry;
+
+/** Any other function I(t,q,p) to be watched along a run. */
+typedef struct dvi_invariant {
+  const char *name; /**< copied */
+  int (*value)(double t, const double *q, const double *p, double *I, void *user);
+  void *user;
+} dvi_invariant;
+
+/** What a system is made of. Only what is declared exists; all of it is copied (but what `user` points to). */
+typedef struct dvi_system_terms {
+  int dimension;                    /**< n, the number of coordinates, at least 1 */
+  dvi_mass mass;                    /**< or: */
+  const dvi_lagrangian *lagrangian; /**< exactly one of mass and lagrangian */
+  const dvi_potential *potentials;
+  int potential_count;
+  const dvi_symmetry *symmetries;
+  int symmetry_count;
+  const dvi_invariant *invariants;
+  int invariant_count;
+} dvi_system_terms;
+
+/** A system; it never changes after its creation, so integrators on several threads may share it. */
+typedef struct dvi_system dvi_system;
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Make a system from its terms.
+ *
+ *  @param[out] system  owned by the caller; NULL on failure. It must outlive every integrator made from it.
+ *  @retval DVI_BAD_SIZE      dimension or a count is out of range
+ *  @retval DVI_BAD_ARGUMENT  a term is missing, given twice, or without its value callback; a pattern is not sorted
+ *  @retval DVI_SINGULAR      the constant mass is singular or not finite
+ *  @retval DVI_NO_MEMORY */
+dvi_status dvi_system_create(const dvi_system_terms *terms, dvi_system **system);
+
+/** Free a system and set the pointer to NULL; NULL is allowed. */
+void dvi_system_destroy(dvi_system **system);
+
+/** Number of stored coordinates. */
+int dvi_system_nq(const dvi_system *system);
+
+/** Number of degrees of freedom: the size of v and p. */
+int dvi_system_nv(const dvi_system *system);
+
+/** The Lagrangian's value at (t, q [nq], v [nv]). Allocates; fails as the callbacks do. */
+dvi_status dvi_system_lagrangian(const dvi_system *system, double t, const double *q, const double *v, double *L);
+
+/** The Legendre map p = L_v(t,q,v) [nv] (Marsden and West 2001, sec. 1.2.5). Allocates. */
+dvi_status dvi_system_momentum(const dvi_system *system, double t, const double *q, const double *v, double *p);
+
+/** The inverse Legendre map: the v [nv] with L_v(t,q,v) = p, by Newton's method from v as given.
+ *
+ *  @param[in,out] v  [nv]; a starting guess (read for general Lagrangians only), then the velocity; unchanged on failure
+ *  @retval DVI_SINGULAR       L_vv is singular there
+ *  @retval DVI_NOT_CONVERGED  Newton's method did not settle from this guess */
+dvi_status dvi_system_velocity(const dvi_system *system, double t, const double *q, const double *p, double *v);
+
+/** How many invariants are watched: the energy, one momentum for each symmetry, and the declared ones, in this order. */
+int dvi_system_invariant_count(const dvi_system *system);
+
+/** Name of invariant i; invariant 0 is "energy"; NULL if i is out of range. */
+const char *dvi_system_invariant_name(const dvi_system *system, int i);
+
+/** All invariants at (t, q [nq], p [nv]). Allocates; dvi_integrator_invariants does not.
+ *
+ *  The energy is p.v - L with v from the inverse Legendre map.
+ *  @param[out] value  [dvi_system_invariant_count] */
+dvi_status dvi_system_invariants(const dvi_system *system, double t, const double *q, const double *p, double *value);
+
+/** What the derivative check found for one callback. */
+typedef struct dvi_derivative_check {
+  double gradient_error; /**< largest difference of given and differenced gradient, relative to the largest entry */
+  double hessian_error;  /**< the same of the Hessian on the pattern */
+  double outside;        /**< largest differenced entry outside the pattern, relative; more than roundoff: the pattern lies */
+  int row, column;       /**< where `outside` is, or the worst Hessian entry if nothing is outside */
+  char where[96];        /**< the worst offender in words, for example "potential 'gravity': d2V/dq2 (3,1) is not in the pattern" */
+} dvi_derivative_check;
+
+/** Compare every gradient, Hessian and pattern of the system with differences of the values at one point.
+ *
+ *  Uses 6th order central differences; n^2 gradient calls: meant for tests and for moderate n.
+ *  @param      q, v       [nq], [nv]: a point in general position
+ *  @param      tolerance  largest relative difference to accept; 0: 1e-6
+ *  @param[out] check      the findings; may be NULL
+ *  @retval DVI_OK            everything agrees
+ *  @retval DVI_BAD_ARGUMENT  something does not; the error sentence names it */
+dvi_status dvi_system_check(const dvi_system *system, double t, const double *q, const double *v, double tolerance,
+                            dvi_derivative_check *check);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,58 @@
+#include "core/status.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { SENTENCE_SIZE = 1024 };
+
+static _Thread_local char sentence[SENTENCE_SIZE];
+
+const char *dvi_status_name(dvi_status status)
+{
+  switch (status) {
+#define NAME_CASE(name, number, meaning) \
+  case name: return #name;
+    DVI_STATUS_LIST(NAME_CASE)
+#undef NAME_CASE
+  }
+  return "unknown status";
+}
+
+const char *dvi_status_meaning(dvi_status status)
+{
+  switch (status) {
+#define MEANING_CASE(name, number, meaning) \
+  case name: return meaning;
+    DVI_STATUS_LIST(MEANING_CASE)
+#undef MEANING_CASE
+  }
+  return "unknown status";
+}
+
+const char *dvi_last_error(void)
+{
+  return sentence;
+}
+
+dvi_status dvi__fail(dvi_status status, const char *format, ...)
+{
+  va_list arguments;
+  va_start(arguments, format);
+  (void)vsnprintf(sentence, sizeof sentence, format, arguments);
+  va_end(arguments);
+  return status;
+}
+
+dvi_status dvi__fail_in(dvi_status status, const char *format, ...)
+{
+  char cause[SENTENCE_SIZE];
+  memcpy(cause, sentence, sizeof cause);
+  va_list arguments;
+  va_start(arguments, format);
+  const int length = vsnprintf(sentence, sizeof sentence, format, arguments);
+  va_end(arguments);
+  if (length >= 0 && length < SENTENCE_SIZE)
+    (void)snprintf(sentence + length, sizeof sentence - (size_t)length, ": %s", cause);
+  return status;
+}

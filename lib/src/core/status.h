@@ -1,0 +1,25 @@
+/* Failing with a sentence. */
+#ifndef DVI_CORE_STATUS_H
+#define DVI_CORE_STATUS_H
+#include <dvi/status.h>
+
+#if defined(__GNUC__)
+#define DVI_PRINTF(format, first) __attribute__((format(printf, format, first)))
+#else
+#define DVI_PRINTF(format, first)
+#endif
+
+/* Leave through the caller's caller on failure. Only where nothing is owned. */
+#define DVI_TRY(call)                            \
+  do {                                           \
+    const dvi_status try_status_ = (call);       \
+    if (try_status_ != DVI_OK) return try_status_; \
+  } while (0)
+
+/* Set this thread's error sentence and return the status. */
+dvi_status dvi__fail(dvi_status status, const char *format, ...) DVI_PRINTF(2, 3);
+
+/* Put "context: " in front of this thread's error sentence and return the status. */
+dvi_status dvi__fail_in(dvi_status status, const char *format, ...) DVI_PRINTF(2, 3);
+
+#endif

@@ -1,0 +1,27 @@
+/* Linear systems A x = b with a pattern that is fixed at create: dense LU (LAPACK) or sparse LU (KLU). */
+#ifndef DVI_NUM_LINEAR_H
+#define DVI_NUM_LINEAR_H
+#include <dvi/integrator.h>
+
+#include "num/pattern.h"
+
+typedef struct dvi__linear dvi__linear;
+
+typedef enum dvi__linear_kind { DVI__LINEAR_AUTO, DVI__LINEAR_DENSE, DVI__LINEAR_SPARSE } dvi__linear_kind;
+
+/* The pattern must outlive the solver. counters (symbolic, factorizations, solves) may be NULL. AUTO is dense for small or full
+ * matrices. The symbolic analysis happens here, once. */
+dvi_status dvi__linear_create(const dvi__pattern *pattern, dvi__linear_kind kind, dvi_counters *counters, dvi__linear **linear);
+void dvi__linear_destroy(dvi__linear **linear);
+
+/* DVI__LINEAR_DENSE or DVI__LINEAR_SPARSE. */
+dvi__linear_kind dvi__linear_kind_of(const dvi__linear *linear);
+
+/* Factor the matrix with these values, in the order of the pattern. DVI_SINGULAR if it is singular to working precision; the old
+ * factor is lost then. */
+dvi_status dvi__linear_factor(dvi__linear *linear, const double *values);
+
+/* Overwrite b [rows] by the solution. Needs a factor. */
+void dvi__linear_solve(dvi__linear *linear, double *b);
+
+#endif

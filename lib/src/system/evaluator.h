@@ -1,0 +1,38 @@
+/* Evaluates a system's Lagrangian and its derivatives at batches of points.
+ *
+ * A system is shared and constant; an evaluator belongs to one user, owns the scratch memory and counts. Nothing here allocates
+ * after create. Batches are component-major: coordinate i of point k is q[i*count + k]. */
+#ifndef DVI_SYSTEM_EVALUATOR_H
+#define DVI_SYSTEM_EVALUATOR_H
+#include <dvi/integrator.h>
+
+#include "system/system.h"
+
+typedef struct dvi__evaluator dvi__evaluator;
+
+/* For batches of up to `capacity` points. counters may be NULL; else values, gradients and hessians are counted there, and the
+ * factorisations of the mass. It must outlive the evaluator. */
+dvi_status dvi__evaluator_create(const dvi_system *system, int capacity, dvi_counters *counters, dvi__evaluator **evaluator);
+void dvi__evaluator_destroy(dvi__evaluator **evaluator);
+
+/* L [count] at t [count], q and v [n*count]. Every result is finite, or the status is DVI_NOT_FINITE. */
+dvi_status dvi__lagrangian_value(dvi__evaluator *e, int count, const double *t, const double *q, const double *v, double *L);
+
+/* L_q and L_v [n*count]; either may be NULL. For a separable system L_v is M v and costs no callback. */
+dvi_status dvi__lagrangian_gradient(dvi__evaluator *e, int count, const double *t, const double *q, const double *v, double *L_q,
+                                    double *L_v);
+
+/* L_qq, L_qv, L_vv: [entries*count] in the order of the system's patterns, entry-major; any may be NULL. */
+dvi_status dvi__lagrangian_hessian(dvi__evaluator *e, int count, const double *t, const double *q, const double *v, double *L_qq,
+                                   double *L_qv, double *L_vv);
+
+/* One point: v with L_v(t,q,v) = p. v holds a guess for general Lagrangians; unchanged on failure. */
+dvi_status dvi__legendre_inverse(dvi__evaluator *e, double t, const double *q, const double *p, double *v);
+
+/* x [n*count, component-major] = M^{-1} y for the constant mass; x may be y. Only for systems with DVI__CONSTANT_MASS. */
+void dvi__mass_solve(dvi__evaluator *e, int count, const double *y, double *x);
+
+/* One point: all invariants; v is the velocity that belongs to p. */
+dvi_status dvi__invariants(dvi__evaluator *e, double t, const double *q, const double *v, const double *p, double *value);
+
+#endif

@@ -1,0 +1,54 @@
+/* The inside of a system: its terms, copied, with the unions of their patterns. */
+#ifndef DVI_SYSTEM_SYSTEM_H
+#define DVI_SYSTEM_SYSTEM_H
+#include <dvi/system.h>
+
+#include "num/linear.h"
+#include "num/pattern.h"
+
+/* What a system declares, and what a method can use: a set of bits. */
+typedef enum dvi__term {
+  DVI__CONSTANT_MASS = 1,
+  DVI__LAGRANGIAN = 2,
+  DVI__POTENTIAL = 4
+} dvi__term;
+
+/* How to difference a missing Hessian block: columns of a group are moved together. */
+typedef struct dvi__groups {
+  int count;
+  int *of_column; /* [n] */
+} dvi__groups;
+
+typedef struct dvi__potential_term {
+  dvi_potential callbacks;
+  char *name;
+  dvi__pattern qq;
+  int *in_qq; /* [entries of qq]: where they stand in the system's qq */
+  dvi__groups groups;
+} dvi__potential_term;
+
+typedef struct dvi__lagrangian_term {
+  dvi_lagrangian callbacks;
+  dvi__pattern qq, qv, vv;
+  int *in_qq; /* [entries of qq] */
+  dvi__groups q_groups, v_groups; /* q columns of qq and of the transpose of qv; v columns of qv and vv */
+} dvi__lagrangian_term;
+
+struct dvi_system {
+  int n;
+  unsigned terms; /* dvi__term bits */
+  double mass_scalar;
+  double *mass_diagonal;
+  double *mass_values; /* in the order of vv */
+  dvi__lagrangian_term *lagrangian;
+  dvi__potential_term *potentials;
+  int potential_count;
+  dvi_symmetry *symmetries;
+  int symmetry_count;
+  dvi_invariant *invariants;
+  int invariant_count;
+  char **invariant_names; /* energy, symmetries, invariants */
+  dvi__pattern qq, qv, vv; /* of L's Hessian: unions over the terms; vv is diagonal for scalar and diagonal masses */
+};
+
+#endif
