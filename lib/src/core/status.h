@@ -4,9 +4,9 @@
 #include <dvi/status.h>
 
 #if defined(__GNUC__)
-#define DVI_PRINTF(format, first) __attribute__((format(printf, format, first)))
+#define DVI_PRINTF(text, first) __attribute__((format(printf, text, first)))
 #else
-#define DVI_PRINTF(format, first)
+#define DVI_PRINTF(text, first)
 #endif
 
 /* Leave through the caller's caller on failure. Only where nothing is owned. */

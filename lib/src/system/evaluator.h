@@ -18,11 +18,12 @@ void dvi__evaluator_destroy(dvi__evaluator **evaluator);
 /* L [count] at t [count], q and v [n*count]. Every result is finite, or the status is DVI_NOT_FINITE. */
 dvi_status dvi__lagrangian_value(dvi__evaluator *e, int count, const double *t, const double *q, const double *v, double *L);
 
-/* L_q and L_v [n*count]; either may be NULL. For a separable system L_v is M v and costs no callback. */
+/* L_q and L_v [n*count]; either may be NULL. For a constant mass L_v is M v and costs no callback. */
 dvi_status dvi__lagrangian_gradient(dvi__evaluator *e, int count, const double *t, const double *q, const double *v, double *L_q,
                                     double *L_v);
 
-/* L_qq, L_qv, L_vv: [entries*count] in the order of the system's patterns, entry-major; any may be NULL. */
+/* L_qq, L_qv, L_vv: [entries*count] in the order of the system's patterns, entry-major. For a constant mass L_qv is empty, and L_qv and
+ * L_vv may be NULL. */
 dvi_status dvi__lagrangian_hessian(dvi__evaluator *e, int count, const double *t, const double *q, const double *v, double *L_qq,
                                    double *L_qv, double *L_vv);
 

@@ -1,0 +1,17 @@
+/* The two kinds of factorisation behind num/linear.h. */
+#ifndef DVI_NUM_FACTOR_H
+#define DVI_NUM_FACTOR_H
+#include "num/linear.h"
+
+typedef struct dvi__factor_operations {
+  dvi_status (*create)(const dvi__pattern *pattern, void **factor);
+  /* Returns DVI_SINGULAR with a sentence if the reciprocal condition is below the unit roundoff. */
+  dvi_status (*refactor)(void *factor, const dvi__pattern *pattern, const double *values);
+  void (*solve)(void *factor, const dvi__pattern *pattern, double *b);
+  void (*destroy)(void *factor);
+} dvi__factor_operations;
+
+extern const dvi__factor_operations dvi__dense_factor;  /* dense.c */
+extern const dvi__factor_operations dvi__sparse_factor; /* klu.c */
+
+#endif

@@ -1,0 +1,171 @@
+#include "num/pattern.h"
+
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+
+int dvi__pattern_entries(const dvi__pattern *pattern)
+{
+  return pattern->start[pattern->columns];
+}
+
+void dvi__pattern_clear(dvi__pattern *pattern)
+{
+  dvi__release(pattern->start);
+  dvi__release(pattern->row);
+  *pattern = (dvi__pattern){0};
+}
+
+static dvi_status allocate(int rows, int columns, size_t entries, dvi__pattern *pattern)
+{
+  if (entries > 0x7fffffff) return dvi__fail(DVI_BAD_SIZE, "pattern: %zu entries are too many; declare a sparse pattern", entries);
+  *pattern = (dvi__pattern){rows, columns, DVI_NEW(int, (size_t)columns + 1), DVI_NEW(int, entries)};
+  if (pattern->start != NULL && pattern->row != NULL) return DVI_OK;
+  dvi__pattern_clear(pattern);
+  return dvi__fail(DVI_NO_MEMORY, "pattern: no memory for %zu entries", entries);
+}
+
+dvi_status dvi__pattern_empty(int n, dvi__pattern *pattern)
+{
+  return allocate(n, n, 0, pattern);
+}
+
+dvi_status dvi__pattern_diagonal(int n, dvi__pattern *pattern)
+{
+  DVI_TRY(allocate(n, n, (size_t)n, pattern));
+  for (int j = 0; j < n; j++) pattern->start[j] = pattern->row[j] = j;
+  pattern->start[n] = n;
+  return DVI_OK;
+}
+
+static dvi_status full(int n, dvi__pattern *pattern)
+{
+  DVI_TRY(allocate(n, n, (size_t)n * (size_t)n, pattern));
+  for (int j = 0; j < n; j++) {
+    pattern->start[j] = j * n;
+    for (int i = 0; i < n; i++) pattern->row[j * n + i] = i;
+  }
+  pattern->start[n] = n * n;
+  return DVI_OK;
+}
+
+static dvi_status validate_column(const dvi_pattern *declared, int n, int j, const char *name)
+{
+  if (declared->start[j + 1] < declared->start[j])
+    return dvi__fail(DVI_BAD_ARGUMENT, "%s: the pattern's column %d ends before it starts", name, j);
+  for (int e = declared->start[j]; e < declared->start[j + 1]; e++) {
+    const int row = declared->row[e];
+    if (row < 0 || row >= n) return dvi__fail(DVI_BAD_ARGUMENT, "%s: row %d in column %d of the pattern is outside 0..%d", name, row, j, n - 1);
+    if (e > declared->start[j] && row <= declared->row[e - 1])
+      return dvi__fail(DVI_BAD_ARGUMENT, "%s: the rows in column %d of the pattern are not ascending", name, j);
+  }
+  return DVI_OK;
+}
+
+dvi_status dvi__pattern_copy(const dvi_pattern *declared, int n, const char *name, dvi__pattern *copy)
+{
+  *copy = (dvi__pattern){0};
+  if (declared->start == NULL && declared->row == NULL) return full(n, copy);
+  if (declared->start == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "%s: the pattern has rows but no column starts", name);
+  if (declared->start[0] != 0) return dvi__fail(DVI_BAD_ARGUMENT, "%s: the pattern's first column starts at %d, not 0", name, declared->start[0]);
+  if (declared->start[n] > 0 && declared->row == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "%s: the pattern has no rows", name);
+  for (int j = 0; j < n; j++) DVI_TRY(validate_column(declared, n, j, name));
+  DVI_TRY(allocate(n, n, (size_t)declared->start[n], copy));
+  memcpy(copy->start, declared->start, ((size_t)n + 1) * sizeof(int));
+  if (declared->start[n] > 0) memcpy(copy->row, declared->row, (size_t)declared->start[n] * sizeof(int));
+  return DVI_OK;
+}
+
+/* Merge two ascending columns; the rows are written if out is not NULL. Returns their number. */
+static int merge_column(const dvi__pattern *a, const dvi__pattern *b, int j, int *out)
+{
+  int i = a->start[j], k = b->start[j], count = 0;
+  while (i < a->start[j + 1] || k < b->start[j + 1]) {
+    const int from_a = i < a->start[j + 1] ? a->row[i] : a->rows;
+    const int from_b = k < b->start[j + 1] ? b->row[k] : b->rows;
+    const int row = from_a < from_b ? from_a : from_b;
+    i += from_a == row;
+    k += from_b == row;
+    if (out != NULL) out[count] = row;
+    count++;
+  }
+  return count;
+}
+
+dvi_status dvi__pattern_union(const dvi__pattern *a, const dvi__pattern *b, dvi__pattern *sum)
+{
+  size_t entries = 0;
+  for (int j = 0; j < a->columns; j++) entries += (size_t)merge_column(a, b, j, NULL);
+  DVI_TRY(allocate(a->rows, a->columns, entries, sum));
+  for (int j = 0; j < a->columns; j++) sum->start[j + 1] = sum->start[j] + merge_column(a, b, j, sum->row + sum->start[j]);
+  return DVI_OK;
+}
+
+dvi_status dvi__pattern_transpose(const dvi__pattern *pattern, dvi__pattern *transpose)
+{
+  DVI_TRY(allocate(pattern->columns, pattern->rows, (size_t)dvi__pattern_entries(pattern), transpose));
+  for (int e = 0; e < dvi__pattern_entries(pattern); e++) transpose->start[pattern->row[e] + 1]++;
+  for (int i = 0; i < pattern->rows; i++) transpose->start[i + 1] += transpose->start[i];
+  for (int j = 0; j < pattern->columns; j++)
+    for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++) transpose->row[transpose->start[pattern->row[e]]++] = j;
+  /* The starts have moved to the ends: move them back. */
+  for (int i = pattern->rows; i > 0; i--) transpose->start[i] = transpose->start[i - 1];
+  transpose->start[0] = 0;
+  return DVI_OK;
+}
+
+int dvi__pattern_find(const dvi__pattern *pattern, int row, int column)
+{
+  int low = pattern->start[column], high = pattern->start[column + 1] - 1;
+  while (low <= high) {
+    const int middle = low + (high - low) / 2;
+    if (pattern->row[middle] == row) return middle;
+    if (pattern->row[middle] < row)
+      low = middle + 1;
+    else
+      high = middle - 1;
+  }
+  return -1;
+}
+
+void dvi__pattern_embed(const dvi__pattern *part, const dvi__pattern *whole, int *where)
+{
+  for (int j = 0; j < part->columns; j++)
+    for (int e = part->start[j]; e < part->start[j + 1]; e++) where[e] = dvi__pattern_find(whole, part->row[e], j);
+}
+
+/* The smallest group none of whose columns meets column j; taken[g] == j marks the groups that do. */
+static int free_group(const dvi__pattern *pattern, const dvi__pattern *transpose, const int *group, int j, int *taken)
+{
+  for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++) {
+    const int row = pattern->row[e];
+    for (int f = transpose->start[row]; f < transpose->start[row + 1]; f++) {
+      const int neighbour = transpose->row[f];
+      if (neighbour < j) taken[group[neighbour]] = j;
+    }
+  }
+  int g = 0;
+  while (taken[g] == j) g++;
+  return g;
+}
+
+dvi_status dvi__pattern_groups(const dvi__pattern *pattern, int *group, int *groups)
+{
+  dvi__pattern transpose;
+  DVI_TRY(dvi__pattern_transpose(pattern, &transpose));
+  int *taken = DVI_NEW(int, pattern->columns + 1);
+  if (taken == NULL) {
+    dvi__pattern_clear(&transpose);
+    return dvi__fail(DVI_NO_MEMORY, "pattern: no memory to group %d columns", pattern->columns);
+  }
+  *groups = 0;
+  for (int j = 0; j <= pattern->columns; j++) taken[j] = -1;
+  for (int j = 0; j < pattern->columns; j++) {
+    group[j] = free_group(pattern, &transpose, group, j, taken);
+    if (group[j] >= *groups) *groups = group[j] + 1;
+  }
+  dvi__release(taken);
+  dvi__pattern_clear(&transpose);
+  return DVI_OK;
+}

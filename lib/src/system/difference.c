@@ -1,0 +1,80 @@
+#include "system/difference.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "core/status.h"
+
+/* Steps near relative * (size of the coordinate), rounded to a power of two: x + step - x is then exact for all but huge x. A coordinate
+ * near zero is measured by the largest one of its point. */
+static void choose_steps(int n, int count, const double *x, double relative, double *step)
+{
+  for (size_t k = 0, points = (size_t)count; k < points; k++) {
+    double whole = 0;
+    for (size_t i = 0; i < (size_t)n; i++) whole = fmax(whole, fabs(x[i * points + k]));
+    if (!(whole > 0)) whole = 1;
+    for (size_t i = 0; i < (size_t)n; i++)
+      step[i * points + k] = ldexp(1.0, ilogb(relative * fmax(fabs(x[i * points + k]), 0.1 * whole)));
+  }
+}
+
+dvi_status dvi__difference_gradient(dvi__batch_value value, const void *function, dvi__differences *d, int n, int count, const double *x,
+                                    double *gradient)
+{
+  static const double coefficient[3] = {45.0 / 60.0, -9.0 / 60.0, 1.0 / 60.0};
+  const size_t points = (size_t)count;
+  choose_steps(n, count, x, pow(DBL_EPSILON, 1.0 / 7.0), d->step);
+  memcpy(d->moved, x, (size_t)n * points * sizeof(double));
+  memset(gradient, 0, (size_t)n * points * sizeof(double));
+  for (size_t row = 0; row < (size_t)n * points; row += points) {
+    for (int m = 1; m <= 3; m++) {
+      for (size_t k = row; k < row + points; k++) d->moved[k] = x[k] + m * d->step[k];
+      DVI_TRY(value(function, count, d->moved, d->plus));
+      for (size_t k = row; k < row + points; k++) d->moved[k] = x[k] - m * d->step[k];
+      DVI_TRY(value(function, count, d->moved, d->minus));
+      for (size_t k = 0; k < points; k++) gradient[row + k] += coefficient[m - 1] * ((d->plus[k] - d->minus[k]) / d->step[row + k]);
+    }
+    memcpy(d->moved + row, x + row, points * sizeof(double));
+  }
+  return DVI_OK;
+}
+
+static void move_group(const dvi__differences *d, const dvi__groups *groups, int g, int n, int count, double sign, const double *x)
+{
+  const size_t points = (size_t)count;
+  for (int j = 0; j < n; j++)
+    for (size_t at = (size_t)j * points; at < ((size_t)j + 1) * points; at++)
+      d->moved[at] = groups->of_column[j] == g ? x[at] + sign * d->step[at] : x[at];
+}
+
+static void fill_columns(const dvi__pattern *pattern, const dvi__groups *groups, int g, int count, const double *plus, const double *minus,
+                         const double *step, double *values)
+{
+  const size_t points = (size_t)count;
+  for (int j = 0; j < pattern->columns; j++) {
+    if (groups->of_column[j] != g) continue;
+    for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++)
+      for (size_t k = 0; k < points; k++) {
+        const size_t at = (size_t)pattern->row[e] * points + k;
+        values[(size_t)e * points + k] = (plus[at] - minus[at]) / (2 * step[(size_t)j * points + k]);
+      }
+  }
+}
+
+dvi_status dvi__difference_hessian(dvi__batch_gradient gradient, const void *function, dvi__differences *d, const dvi__groups *groups,
+                                   int noisy, int count, const double *x, const dvi__pattern *first, double *first_values,
+                                   const dvi__pattern *second, double *second_values)
+{
+  const int n = first != NULL ? first->columns : second->columns;
+  choose_steps(n, count, x, noisy ? 1e-3 : cbrt(DBL_EPSILON), d->step);
+  for (int g = 0; g < groups->count; g++) {
+    move_group(d, groups, g, n, count, 1, x);
+    DVI_TRY(gradient(function, count, d->moved, d->plus, d->plus_v));
+    move_group(d, groups, g, n, count, -1, x);
+    DVI_TRY(gradient(function, count, d->moved, d->minus, d->minus_v));
+    if (first != NULL) fill_columns(first, groups, g, count, d->plus, d->minus, d->step, first_values);
+    if (second != NULL) fill_columns(second, groups, g, count, d->plus_v, d->minus_v, d->step, second_values);
+  }
+  return DVI_OK;
+}

@@ -1,0 +1,20 @@
+/* The inside of an evaluator, for evaluator.c, legendre.c and invariants.c. */
+#ifndef DVI_SYSTEM_EVALUATOR_STRUCT_H
+#define DVI_SYSTEM_EVALUATOR_STRUCT_H
+#include "system/evaluator.h"
+#include "system/term.h"
+
+struct dvi__evaluator {
+  const dvi_system *system;
+  int capacity;
+  dvi_counters *counters;
+  dvi_counters own; /* counts if nobody else wants them */
+  dvi__scratch scratch;
+  double *term;          /* one term's gradient or Hessian, before it is added to the others */
+  double *point[3];      /* [n] for work at one point */
+  dvi__linear *velocity; /* factors L_vv, or the constant sparse mass; NULL for diagonal masses */
+  double *unwanted;      /* general Lagrangians: takes the half of a gradient that nobody asked for */
+  double *hessian[3];    /* general Lagrangians: L_qq, L_qv, L_vv at one point, for the inverse Legendre map */
+};
+
+#endif

@@ -1,0 +1,38 @@
+/* Energy, momentum maps of the declared symmetries, and declared invariants. */
+#include "core/status.h"
+#include "num/finite.h"
+#include "system/evaluator_struct.h"
+
+static dvi_status callback(int returned, const char *name)
+{
+  if (returned == 0) return DVI_OK;
+  return dvi__fail(returned < 0 ? DVI_CALLBACK_FAILED : DVI_CALLBACK_RETRY, "invariant '%s': the callback returned %d", name, returned);
+}
+
+/* J = p.xi(q)  (Marsden and West 2001, eq. 1.2.6). */
+static dvi_status momentum_map(dvi__evaluator *e, const dvi_symmetry *symmetry, const double *q, const double *p, double *J)
+{
+  double *xi = e->point[2];
+  *J = 0;
+  DVI_TRY(callback(symmetry->generator(q, xi, symmetry->user), symmetry->name != NULL ? symmetry->name : "unnamed"));
+  for (int i = 0; i < e->system->n; i++) *J += p[i] * xi[i];
+  return DVI_OK;
+}
+
+dvi_status dvi__invariants(dvi__evaluator *e, double t, const double *q, const double *v, const double *p, double *value)
+{
+  const dvi_system *s = e->system;
+  double L, pv = 0;
+  DVI_TRY(dvi__lagrangian_value(e, 1, &t, q, v, &L));
+  for (int i = 0; i < s->n; i++) pv += p[i] * v[i];
+  value[0] = pv - L;
+  for (int i = 0; i < s->symmetry_count; i++) DVI_TRY(momentum_map(e, &s->symmetries[i], q, p, value + 1 + i));
+  for (int i = 0; i < s->invariant_count; i++) {
+    const dvi_invariant *invariant = &s->invariants[i];
+    double *I = value + 1 + s->symmetry_count + i;
+    DVI_TRY(callback(invariant->value(t, q, p, I, invariant->user), s->invariant_names[1 + s->symmetry_count + i]));
+  }
+  const ptrdiff_t bad = dvi__first_not_finite((size_t)dvi_system_invariant_count(s), value);
+  if (bad < 0) return DVI_OK;
+  return dvi__fail(DVI_NOT_FINITE, "invariant '%s' is %g at t = %.6g", s->invariant_names[bad], value[bad], t);
+}

@@ -1,0 +1,65 @@
+/* The public functions of a system at one point: each makes an evaluator for the call. */
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "num/finite.h"
+#include "system/evaluator.h"
+
+static dvi_status check_point(const dvi_system *system, double t, const double *q, const double *second, const void *result)
+{
+  if (system == NULL || q == NULL || second == NULL || result == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "system: an argument is NULL");
+  const size_t n = (size_t)system->n;
+  if (!isfinite(t) || dvi__first_not_finite(n, q) >= 0 || dvi__first_not_finite(n, second) >= 0)
+    return dvi__fail(DVI_NOT_FINITE, "system: the point (t = %g) is not finite", t);
+  return DVI_OK;
+}
+
+dvi_status dvi_system_lagrangian(const dvi_system *system, double t, const double *q, const double *v, double *L)
+{
+  dvi__evaluator *e;
+  double value = 0;
+  DVI_TRY(check_point(system, t, q, v, L));
+  DVI_TRY(dvi__evaluator_create(system, 1, NULL, &e));
+  const dvi_status status = dvi__lagrangian_value(e, 1, &t, q, v, &value);
+  dvi__evaluator_destroy(&e);
+  if (status == DVI_OK) *L = value;
+  return status;
+}
+
+dvi_status dvi_system_momentum(const dvi_system *system, double t, const double *q, const double *v, double *p)
+{
+  dvi__evaluator *e;
+  DVI_TRY(check_point(system, t, q, v, p));
+  DVI_TRY(dvi__evaluator_create(system, 1, NULL, &e));
+  const dvi_status status = dvi__lagrangian_gradient(e, 1, &t, q, v, NULL, p);
+  dvi__evaluator_destroy(&e);
+  return status;
+}
+
+dvi_status dvi_system_velocity(const dvi_system *system, double t, const double *q, const double *p, double *v)
+{
+  dvi__evaluator *e;
+  DVI_TRY(check_point(system, t, q, p, v));
+  if (system->lagrangian != NULL && dvi__first_not_finite((size_t)system->n, v) >= 0)
+    return dvi__fail(DVI_NOT_FINITE, "system: the starting velocity is not finite");
+  DVI_TRY(dvi__evaluator_create(system, 1, NULL, &e));
+  const dvi_status status = dvi__legendre_inverse(e, t, q, p, v);
+  dvi__evaluator_destroy(&e);
+  return status;
+}
+
+dvi_status dvi_system_invariants(const dvi_system *system, double t, const double *q, const double *p, double *value)
+{
+  dvi__evaluator *e;
+  DVI_TRY(check_point(system, t, q, p, value));
+  double *v = DVI_NEW(double, system->n);
+  if (v == NULL) return dvi__fail(DVI_NO_MEMORY, "system: no memory for a velocity");
+  dvi_status status = dvi__evaluator_create(system, 1, NULL, &e);
+  if (status == DVI_OK) status = dvi__legendre_inverse(e, t, q, p, v);
+  if (status == DVI_OK) status = dvi__invariants(e, t, q, v, p, value);
+  dvi__evaluator_destroy(&e);
+  dvi__release(v);
+  return status;
+}

@@ -1,0 +1,79 @@
+/* Memory for one-point callbacks and differences: only what the system's missing callbacks need. */
+#include "core/memory.h"
+#include "core/status.h"
+#include "system/term.h"
+
+static int larger(int a, int b)
+{
+  return a > b ? a : b;
+}
+
+static int longest_hessian(const dvi_system *system)
+{
+  int longest = system->n;
+  for (int k = 0; k < system->potential_count; k++) longest = larger(longest, dvi__pattern_entries(&system->potentials[k].qq));
+  if (system->lagrangian == NULL) return longest;
+  longest = larger(longest, dvi__pattern_entries(&system->lagrangian->qq));
+  longest = larger(longest, dvi__pattern_entries(&system->lagrangian->qv));
+  return larger(longest, dvi__pattern_entries(&system->lagrangian->vv));
+}
+
+static int lacks_gradient(const dvi_system *system)
+{
+  int lacks = system->lagrangian != NULL && !dvi__general_has_gradient(system->lagrangian);
+  for (int k = 0; k < system->potential_count; k++) lacks |= !dvi__potential_has_gradient(&system->potentials[k]);
+  return lacks;
+}
+
+static int lacks_hessian(const dvi_system *system)
+{
+  int lacks = system->lagrangian != NULL && !dvi__general_has_hessian(system->lagrangian);
+  for (int k = 0; k < system->potential_count; k++) lacks |= !dvi__potential_has_hessian(&system->potentials[k]);
+  return lacks;
+}
+
+static int allocate_differences(size_t numbers, dvi__differences *d)
+{
+  *d = (dvi__differences){DVI_NEW(double, numbers), DVI_NEW(double, numbers), DVI_NEW(double, numbers),
+                          DVI_NEW(double, numbers), DVI_NEW(double, numbers), DVI_NEW(double, numbers)};
+  return d->moved && d->step && d->plus && d->minus && d->plus_v && d->minus_v;
+}
+
+static void clear_differences(dvi__differences *d)
+{
+  dvi__release(d->moved);
+  dvi__release(d->step);
+  dvi__release(d->plus);
+  dvi__release(d->minus);
+  dvi__release(d->plus_v);
+  dvi__release(d->minus_v);
+}
+
+static int allocate(const dvi_system *system, int capacity, dvi__scratch *s)
+{
+  const size_t numbers = (size_t)system->n * (size_t)capacity;
+  s->point_q = DVI_NEW(double, system->n);
+  s->point_v = DVI_NEW(double, system->n);
+  for (int k = 0; k < 3; k++) s->result[k] = DVI_NEW(double, longest_hessian(system));
+  if (!s->point_q || !s->point_v || !s->result[0] || !s->result[1] || !s->result[2]) return 0;
+  if (lacks_gradient(system) && !allocate_differences(numbers, &s->of_value)) return 0;
+  return !lacks_hessian(system) || allocate_differences(numbers, &s->of_gradient);
+}
+
+dvi_status dvi__scratch_create(const dvi_system *system, int capacity, dvi__scratch *scratch)
+{
+  *scratch = (dvi__scratch){.n = system->n, .capacity = capacity};
+  if (allocate(system, capacity, scratch)) return DVI_OK;
+  dvi__scratch_clear(scratch);
+  return dvi__fail(DVI_NO_MEMORY, "evaluator: no memory for %d points in %d dimensions", capacity, system->n);
+}
+
+void dvi__scratch_clear(dvi__scratch *scratch)
+{
+  dvi__release(scratch->point_q);
+  dvi__release(scratch->point_v);
+  for (int k = 0; k < 3; k++) dvi__release(scratch->result[k]);
+  clear_differences(&scratch->of_value);
+  clear_differences(&scratch->of_gradient);
+  *scratch = (dvi__scratch){0};
+}

@@ -1,0 +1,300 @@
+/* Making a system: every term is checked, copied, and its patterns joined to those of the whole Lagrangian. */
+#include "system/system.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "num/finite.h"
+
+static char *copy_text(const char *text)
+{
+  return dvi__duplicate(text, strlen(text) + 1, 1);
+}
+
+static dvi_status no_memory(void)
+{
+  return dvi__fail(DVI_NO_MEMORY, "system: no memory for its terms");
+}
+
+/* ---- mass ---- */
+
+static dvi_status check_symmetric(const dvi__pattern *pattern, const double *values)
+{
+  for (int j = 0; j < pattern->columns; j++)
+    for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++) {
+      const int mirror = dvi__pattern_find(pattern, j, pattern->row[e]);
+      if (mirror < 0 || values[mirror] != values[e])
+        return dvi__fail(DVI_BAD_ARGUMENT, "system: the mass matrix is not symmetric at (%d,%d)", pattern->row[e], j);
+    }
+  return DVI_OK;
+}
+
+static dvi_status check_regular(const dvi__pattern *pattern, const double *values)
+{
+  dvi__linear *linear;
+  dvi_status status = dvi__linear_create(pattern, DVI__LINEAR_SPARSE, NULL, &linear);
+  if (status == DVI_OK) status = dvi__linear_factor(linear, values);
+  dvi__linear_destroy(&linear);
+  return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "system: mass matrix");
+}
+
+static dvi_status copy_sparse_mass(dvi_system *s, const dvi_mass *mass)
+{
+  DVI_TRY(dvi__pattern_copy(&mass->pattern, s->n, "system: mass matrix", &s->vv));
+  const size_t entries = (size_t)dvi__pattern_entries(&s->vv);
+  if (dvi__first_not_finite(entries, mass->values) >= 0) return dvi__fail(DVI_SINGULAR, "system: the mass matrix is not finite");
+  DVI_TRY(check_symmetric(&s->vv, mass->values));
+  DVI_TRY(check_regular(&s->vv, mass->values));
+  s->mass_values = dvi__duplicate(mass->values, entries, sizeof(double));
+  return s->mass_values != NULL ? DVI_OK : no_memory();
+}
+
+static dvi_status copy_diagonal_mass(dvi_system *s, const dvi_mass *mass)
+{
+  for (int i = 0; i < s->n; i++) {
+    const double m = mass->diagonal != NULL ? mass->diagonal[i] : mass->scalar;
+    if (!isfinite(m) || m == 0 || !isfinite(1 / m))
+      return dvi__fail(DVI_SINGULAR, "system: mass %g of coordinate %d; a finite number other than 0 is needed", m, i);
+  }
+  s->mass_scalar = mass->scalar;
+  DVI_TRY(dvi__pattern_diagonal(s->n, &s->vv));
+  s->mass_diagonal = DVI_NEW(double, s->n);
+  if (s->mass_diagonal == NULL) return no_memory();
+  for (int i = 0; i < s->n; i++) s->mass_diagonal[i] = mass->diagonal != NULL ? mass->diagonal[i] : mass->scalar;
+  return DVI_OK;
+}
+
+static dvi_status copy_mass(dvi_system *s, const dvi_mass *mass)
+{
+  const int forms = (mass->scalar != 0) + (mass->diagonal != NULL) + (mass->values != NULL);
+  if (forms > 1) return dvi__fail(DVI_BAD_ARGUMENT, "system: the mass is given in %d forms; one is possible", forms);
+  s->terms |= DVI__CONSTANT_MASS;
+  DVI_TRY(dvi__pattern_empty(s->n, &s->qv));
+  return mass->values != NULL ? copy_sparse_mass(s, mass) : copy_diagonal_mass(s, mass);
+}
+
+/* ---- general Lagrangian ---- */
+
+static dvi_status make_groups(const dvi__pattern *pattern, dvi__groups *groups)
+{
+  groups->of_column = DVI_NEW(int, pattern->columns);
+  if (groups->of_column == NULL) return no_memory();
+  return dvi__pattern_groups(pattern, groups->of_column, &groups->count);
+}
+
+static dvi_status group_lagrangian(dvi__lagrangian_term *term)
+{
+  dvi__pattern v_columns;
+  DVI_TRY(make_groups(&term->qq, &term->q_groups));
+  DVI_TRY(dvi__pattern_union(&term->qv, &term->vv, &v_columns));
+  const dvi_status status = make_groups(&v_columns, &term->v_groups);
+  dvi__pattern_clear(&v_columns);
+  return status;
+}
+
+static dvi_status copy_lagrangian(dvi_system *s, const dvi_lagrangian *given)
+{
+  if (given->value == NULL && given->value_batch == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "system: the Lagrangian has no value callback");
+  s->terms |= DVI__LAGRANGIAN;
+  dvi__lagrangian_term *term = s->lagrangian = DVI_NEW(dvi__lagrangian_term, 1);
+  if (term == NULL) return no_memory();
+  term->callbacks = *given;
+  DVI_TRY(dvi__pattern_copy(&given->qq, s->n, "Lagrangian: d2L/dq2", &term->qq));
+  DVI_TRY(dvi__pattern_copy(&given->qv, s->n, "Lagrangian: d2L/dqdv", &term->qv));
+  DVI_TRY(dvi__pattern_copy(&given->vv, s->n, "Lagrangian: d2L/dv2", &term->vv));
+  DVI_TRY(dvi__pattern_union(&term->qv, &term->qv, &s->qv));
+  DVI_TRY(dvi__pattern_union(&term->vv, &term->vv, &s->vv));
+  const int differenced = given->hessian == NULL && given->hessian_batch == NULL;
+  return differenced ? group_lagrangian(term) : DVI_OK;
+}
+
+/* ---- potentials ---- */
+
+static dvi_status copy_potential(dvi_system *s, const dvi_potential *given, dvi__potential_term *term)
+{
+  const char *name = given->name != NULL ? given->name : "potential";
+  if (given->value == NULL && given->value_batch == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "system: potential '%s' has no value callback", name);
+  term->callbacks = *given;
+  term->name = copy_text(name);
+  if (term->name == NULL) return no_memory();
+  DVI_TRY(dvi__pattern_copy(&given->qq, s->n, name, &term->qq));
+  const int differenced = given->hessian == NULL && given->hessian_batch == NULL;
+  return differenced ? make_groups(&term->qq, &term->groups) : DVI_OK;
+}
+
+static dvi_status copy_potentials(dvi_system *s, const dvi_system_terms *terms)
+{
+  if (terms->potential_count > 0) s->terms |= DVI__POTENTIAL;
+  s->potentials = DVI_NEW(dvi__potential_term, terms->potential_count);
+  if (s->potentials == NULL) return no_memory();
+  for (int k = 0; k < terms->potential_count; k++) {
+    s->potential_count = k + 1;
+    DVI_TRY(copy_potential(s, &terms->potentials[k], &s->potentials[k]));
+  }
+  return DVI_OK;
+}
+
+/* ---- the whole ---- */
+
+static dvi_status widen(dvi__pattern *whole, const dvi__pattern *part)
+{
+  dvi__pattern sum;
+  DVI_TRY(dvi__pattern_union(whole, part, &sum));
+  dvi__pattern_clear(whole);
+  *whole = sum;
+  return DVI_OK;
+}
+
+static dvi_status embed(const dvi__pattern *part, const dvi__pattern *whole, int **where)
+{
+  *where = DVI_NEW(int, dvi__pattern_entries(part));
+  if (*where == NULL) return no_memory();
+  dvi__pattern_embed(part, whole, *where);
+  return DVI_OK;
+}
+
+static dvi_status join_patterns(dvi_system *s)
+{
+  DVI_TRY(dvi__pattern_empty(s->n, &s->qq));
+  if (s->lagrangian != NULL) DVI_TRY(widen(&s->qq, &s->lagrangian->qq));
+  for (int k = 0; k < s->potential_count; k++) DVI_TRY(widen(&s->qq, &s->potentials[k].qq));
+  if (s->lagrangian != NULL) DVI_TRY(embed(&s->lagrangian->qq, &s->qq, &s->lagrangian->in_qq));
+  for (int k = 0; k < s->potential_count; k++) DVI_TRY(embed(&s->potentials[k].qq, &s->qq, &s->potentials[k].in_qq));
+  return DVI_OK;
+}
+
+static dvi_status copy_invariants(dvi_system *s, const dvi_system_terms *terms)
+{
+  s->symmetries = dvi__duplicate(terms->symmetries, (size_t)terms->symmetry_count, sizeof(dvi_symmetry));
+  s->invariants = dvi__duplicate(terms->invariants, (size_t)terms->invariant_count, sizeof(dvi_invariant));
+  s->invariant_names = DVI_NEW(char *, 1 + (size_t)terms->symmetry_count + (size_t)terms->invariant_count);
+  if (s->symmetries == NULL || s->invariants == NULL || s->invariant_names == NULL) return no_memory();
+  s->symmetry_count = terms->symmetry_count;
+  s->invariant_count = terms->invariant_count;
+  for (int i = 0; i < dvi_system_invariant_count(s); i++) {
+    const char *name = i == 0                    ? "energy"
+                       : i <= s->symmetry_count ? s->symmetries[i - 1].name
+                                                : s->invariants[i - 1 - s->symmetry_count].name;
+    s->invariant_names[i] = copy_text(name != NULL ? name : "unnamed");
+    if (s->invariant_names[i] == NULL) return no_memory();
+  }
+  return DVI_OK;
+}
+
+static dvi_status check_watched(const dvi_system_terms *terms)
+{
+  for (int i = 0; i < terms->symmetry_count; i++)
+    if (terms->symmetries[i].generator == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "system: symmetry %d has no generator", i);
+  for (int i = 0; i < terms->invariant_count; i++)
+    if (terms->invariants[i].value == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "system: invariant %d has no value callback", i);
+  return DVI_OK;
+}
+
+static dvi_status check_list(const char *what, int count, const void *list)
+{
+  if (count < 0) return dvi__fail(DVI_BAD_SIZE, "system: %d %s; 0 or more are possible", count, what);
+  if (count > 0 && list == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "system: %d %s declared, but their list is NULL", count, what);
+  return DVI_OK;
+}
+
+static dvi_status check_terms(const dvi_system_terms *terms)
+{
+  const dvi_mass *mass = &terms->mass;
+  const int has_mass = mass->scalar != 0 || mass->diagonal != NULL || mass->values != NULL;
+  if (terms->dimension < 1) return dvi__fail(DVI_BAD_SIZE, "system: dimension %d; at least 1 is needed", terms->dimension);
+  DVI_TRY(check_list("potentials", terms->potential_count, terms->potentials));
+  DVI_TRY(check_list("symmetries", terms->symmetry_count, terms->symmetries));
+  DVI_TRY(check_list("invariants", terms->invariant_count, terms->invariants));
+  if (has_mass && terms->lagrangian != NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "system: both a mass and a general Lagrangian are declared; one of them is possible");
+  if (!has_mass && terms->lagrangian == NULL)
+    return dvi__fail(DVI_SINGULAR, "system: neither a mass (other than 0) nor a general Lagrangian is declared");
+  return check_watched(terms);
+}
+
+static dvi_status fill(dvi_system *s, const dvi_system_terms *terms)
+{
+  s->n = terms->dimension;
+  DVI_TRY(terms->lagrangian != NULL ? copy_lagrangian(s, terms->lagrangian) : copy_mass(s, &terms->mass));
+  DVI_TRY(copy_potentials(s, terms));
+  DVI_TRY(join_patterns(s));
+  return copy_invariants(s, terms);
+}
+
+dvi_status dvi_system_create(const dvi_system_terms *terms, dvi_system **system)
+{
+  if (system == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "system: no place for the result");
+  *system = NULL;
+  if (terms == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "system: no terms");
+  DVI_TRY(check_terms(terms));
+  dvi_system *made = DVI_NEW(dvi_system, 1);
+  if (made == NULL) return no_memory();
+  const dvi_status status = fill(made, terms);
+  if (status != DVI_OK)
+    dvi_system_destroy(&made);
+  *system = made;
+  return status;
+}
+
+static void clear_lagrangian(dvi__lagrangian_term *term)
+{
+  if (term == NULL) return;
+  dvi__pattern_clear(&term->qq);
+  dvi__pattern_clear(&term->qv);
+  dvi__pattern_clear(&term->vv);
+  dvi__release(term->in_qq);
+  dvi__release(term->q_groups.of_column);
+  dvi__release(term->v_groups.of_column);
+  dvi__release(term);
+}
+
+static void clear_potential(dvi__potential_term *term)
+{
+  dvi__pattern_clear(&term->qq);
+  dvi__release(term->name);
+  dvi__release(term->in_qq);
+  dvi__release(term->groups.of_column);
+}
+
+void dvi_system_destroy(dvi_system **system)
+{
+  if (system == NULL || *system == NULL) return;
+  dvi_system *s = *system;
+  for (int k = 0; k < s->potential_count; k++) clear_potential(&s->potentials[k]);
+  for (int i = 0; s->invariant_names != NULL && i < dvi_system_invariant_count(s); i++) dvi__release(s->invariant_names[i]);
+  clear_lagrangian(s->lagrangian);
+  dvi__pattern_clear(&s->qq);
+  dvi__pattern_clear(&s->qv);
+  dvi__pattern_clear(&s->vv);
+  dvi__release(s->mass_diagonal);
+  dvi__release(s->mass_values);
+  dvi__release(s->potentials);
+  dvi__release(s->symmetries);
+  dvi__release(s->invariants);
+  dvi__release(s->invariant_names);
+  dvi__release(s);
+  *system = NULL;
+}
+
+int dvi_system_nq(const dvi_system *system)
+{
+  return system->n;
+}
+
+int dvi_system_nv(const dvi_system *system)
+{
+  return system->n;
+}
+
+int dvi_system_invariant_count(const dvi_system *system)
+{
+  return 1 + system->symmetry_count + system->invariant_count;
+}
+
+const char *dvi_system_invariant_name(const dvi_system *system, int i)
+{
+  return i >= 0 && i < dvi_system_invariant_count(system) ? system->invariant_names[i] : NULL;
+}

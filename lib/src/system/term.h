@@ -1,0 +1,42 @@
+/* One term at a batch of points: its callback in the shape that was declared, or differences where it is missing.
+ *
+ * Used by the evaluator and the derivative check alone. */
+#ifndef DVI_SYSTEM_TERM_H
+#define DVI_SYSTEM_TERM_H
+#include "system/system.h"
+
+/* Memory of one level of differencing: moved points and the function on both sides. [n*capacity] each; NULL if nothing is
+ * differenced at this level. */
+typedef struct dvi__differences {
+  double *moved, *step, *plus, *minus, *plus_v, *minus_v;
+} dvi__differences;
+
+typedef struct dvi__scratch {
+  int n, capacity;
+  double *point_q, *point_v;                /* [n] one point, for one-point callbacks */
+  double *result[3];                        /* its results, each as long as the longest Hessian */
+  dvi__differences of_value, of_gradient;   /* the two levels: a missing gradient under a missing Hessian uses both */
+} dvi__scratch;
+
+dvi_status dvi__scratch_create(const dvi_system *system, int capacity, dvi__scratch *scratch);
+void dvi__scratch_clear(dvi__scratch *scratch);
+
+/* All of these check the callback's return and that every number is finite. Shapes as in evaluator.h. */
+dvi_status dvi__potential_value(const dvi__potential_term *p, dvi__scratch *s, int count, const double *t, const double *q, double *V);
+dvi_status dvi__potential_gradient(const dvi__potential_term *p, dvi__scratch *s, int count, const double *t, const double *q,
+                                   double *V_q);
+dvi_status dvi__potential_hessian(const dvi__potential_term *p, dvi__scratch *s, int count, const double *t, const double *q,
+                                  double *V_qq);
+dvi_status dvi__general_value(const dvi__lagrangian_term *l, dvi__scratch *s, int count, const double *t, const double *q,
+                              const double *v, double *L);
+dvi_status dvi__general_gradient(const dvi__lagrangian_term *l, dvi__scratch *s, int count, const double *t, const double *q,
+                                 const double *v, double *L_q, double *L_v);
+dvi_status dvi__general_hessian(const dvi__lagrangian_term *l, dvi__scratch *s, int count, const double *t, const double *q,
+                                const double *v, double *L_qq, double *L_qv, double *L_vv);
+
+int dvi__potential_has_gradient(const dvi__potential_term *p);
+int dvi__potential_has_hessian(const dvi__potential_term *p);
+int dvi__general_has_gradient(const dvi__lagrangian_term *l);
+int dvi__general_has_hessian(const dvi__lagrangian_term *l);
+
+#endif
