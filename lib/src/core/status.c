@@ -35,24 +35,27 @@ const char *dvi_last_error(void)
   return sentence;
 }
 
+/* Both functions write aside first: an argument may be the last sentence itself. */
 dvi_status dvi__fail(dvi_status status, const char *format, ...)
 {
+  char text[SENTENCE_SIZE];
   va_list arguments;
   va_start(arguments, format);
-  (void)vsnprintf(sentence, sizeof sentence, format, arguments);
+  (void)vsnprintf(text, sizeof text, format, arguments);
   va_end(arguments);
+  memcpy(sentence, text, sizeof text);
   return status;
 }
 
 dvi_status dvi__fail_in(dvi_status status, const char *format, ...)
 {
-  char cause[SENTENCE_SIZE];
-  memcpy(cause, sentence, sizeof cause);
+  char text[SENTENCE_SIZE] = "";
   va_list arguments;
   va_start(arguments, format);
-  const int length = vsnprintf(sentence, sizeof sentence, format, arguments);
+  const int length = vsnprintf(text, sizeof text, format, arguments);
   va_end(arguments);
-  if (length >= 0 && length < SENTENCE_SIZE)
-    (void)snprintf(sentence + length, sizeof sentence - (size_t)length, ": %s", cause);
+  if (length >= 0 && length < SENTENCE_SIZE - 3 && sentence[0] != '\0')
+    (void)snprintf(text + length, sizeof text - (size_t)length, ": %.*s", SENTENCE_SIZE - 3 - length, sentence);
+  memcpy(sentence, text, sizeof text);
   return status;
 }

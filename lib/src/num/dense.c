@@ -1,4 +1,4 @@
-/* Dense LU by LAPACK, with rows and columns equilibrated by powers of two and a condition estimate. */
+/* Dense LU by LAPACK, with a condition estimate. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -15,9 +15,8 @@ extern void dgecon_(const char *norm, const int *n, const double *a, const int *
                     int *iwork, int *info, size_t norm_length);
 
 typedef struct dense {
-  double *lu;    /* [n*n], columns */
-  double *scale; /* [n] of rows: powers of two, so that scaling rounds nothing */
-  double *work;  /* [4 n] */
+  double *lu;   /* [n*n], columns */
+  double *work; /* [4 n] */
   int *pivot, *iwork;
 } dense;
 
@@ -26,7 +25,6 @@ static void destroy(void *factor)
   dense *d = factor;
   if (d == NULL) return;
   dvi__release(d->lu);
-  dvi__release(d->scale);
   dvi__release(d->work);
   dvi__release(d->pivot);
   dvi__release(d->iwork);
@@ -38,21 +36,14 @@ static dvi_status create(const dvi__pattern *pattern, void **factor)
   const size_t n = (size_t)pattern->columns;
   dense *d = *factor = DVI_NEW(dense, 1);
   if (d == NULL) return dvi__fail(DVI_NO_MEMORY, "dense LU: no memory");
-  *d = (dense){DVI_NEW(double, n * n), DVI_NEW(double, n), DVI_NEW(double, 4 * n), DVI_NEW(int, n), DVI_NEW(int, n)};
-  if (d->lu != NULL && d->scale != NULL && d->work != NULL && d->pivot != NULL && d->iwork != NULL) return DVI_OK;
+  *d = (dense){DVI_NEW(double, n * n), DVI_NEW(double, 4 * n), DVI_NEW(int, n), DVI_NEW(int, n)};
+  if (d->lu != NULL && d->work != NULL && d->pivot != NULL && d->iwork != NULL) return DVI_OK;
   destroy(d);
   *factor = NULL;
   return dvi__fail(DVI_NO_MEMORY, "dense LU: no memory for %zu x %zu numbers", n, n);
 }
 
-/* Row scales: rows of a stage system differ by the ratio of the masses, which says nothing about its condition. */
-static void scale_rows(dense *d, const dvi__pattern *pattern, const double *values)
-{
-  memset(d->scale, 0, (size_t)pattern->rows * sizeof(double));
-  for (int e = 0; e < dvi__pattern_entries(pattern); e++) d->scale[pattern->row[e]] = fmax(d->scale[pattern->row[e]], fabs(values[e]));
-  for (int i = 0; i < pattern->rows; i++) d->scale[i] = d->scale[i] > 0 ? ldexp(1.0, -ilogb(d->scale[i])) : 1.0;
-}
-
+/* Fills the square and returns its 1-norm. */
 static double scatter(dense *d, const dvi__pattern *pattern, const double *values)
 {
   const size_t n = (size_t)pattern->rows;
@@ -61,9 +52,8 @@ static double scatter(dense *d, const dvi__pattern *pattern, const double *value
   for (int j = 0; j < pattern->columns; j++) {
     double column = 0;
     for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++) {
-      const double entry = d->scale[pattern->row[e]] * values[e];
-      d->lu[(size_t)j * n + (size_t)pattern->row[e]] = entry;
-      column += fabs(entry);
+      d->lu[(size_t)j * n + (size_t)pattern->row[e]] = values[e];
+      column += fabs(values[e]);
     }
     norm = fmax(norm, column);
   }
@@ -76,7 +66,6 @@ static dvi_status refactor(void *factor, const dvi__pattern *pattern, const doub
   const int n = pattern->rows;
   int status = 0;
   double reciprocal_condition = 0;
-  scale_rows(d, pattern, values);
   const double norm = scatter(d, pattern, values);
   dgetrf_(&n, &n, d->lu, &n, d->pivot, &status);
   if (status == 0) dgecon_("1", &n, d->lu, &n, &norm, &reciprocal_condition, d->work, d->iwork, &status, 1);
@@ -90,7 +79,6 @@ static void solve(void *factor, const dvi__pattern *pattern, double *b)
   const dense *d = factor;
   const int n = pattern->rows, one = 1;
   int status;
-  for (int i = 0; i < n; i++) b[i] *= d->scale[i];
   dgetrs_("N", &n, &one, d->lu, &n, d->pivot, b, &n, &status, 1);
 }
 

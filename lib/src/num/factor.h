@@ -1,4 +1,4 @@
-/* The two kinds of factorisation behind num/linear.h. */
+/* The two kinds of factorisation behind num/linear.h. They see finite, equilibrated values. */
 #ifndef DVI_NUM_FACTOR_H
 #define DVI_NUM_FACTOR_H
 #include "num/linear.h"

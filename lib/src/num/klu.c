@@ -7,6 +7,9 @@
 #include "core/status.h"
 #include "num/factor.h"
 
+/* Smallest reciprocal pivot growth with which kept pivots are trusted: six digits lost, which Newton's iteration mends. */
+#define LEAST_GROWTH 1e-6
+
 typedef struct sparse {
   klu_common common;
   klu_symbolic *symbolic;
@@ -22,18 +25,25 @@ static void destroy(void *factor)
   dvi__release(s);
 }
 
+/* More fill-in than an int can count is a lack of memory too. */
+static int lacks_memory(int status)
+{
+  return status == KLU_OUT_OF_MEMORY || status == KLU_TOO_LARGE;
+}
+
 static dvi_status create(const dvi__pattern *pattern, void **factor)
 {
   sparse *s = *factor = DVI_NEW(sparse, 1);
   if (s == NULL) return dvi__fail(DVI_NO_MEMORY, "KLU: no memory");
   klu_defaults(&s->common);
+  s->common.scale = 0; /* the values come equilibrated */
   s->symbolic = klu_analyze(pattern->columns, pattern->start, pattern->row, &s->common);
   if (s->symbolic != NULL) return DVI_OK;
-  const int memory = s->common.status == KLU_OUT_OF_MEMORY;
+  const int reason = s->common.status;
   destroy(s);
   *factor = NULL;
-  if (memory) return dvi__fail(DVI_NO_MEMORY, "KLU: no memory to analyse %d columns", pattern->columns);
-  return dvi__fail(DVI_SINGULAR, "KLU: the pattern of the %d x %d matrix is structurally singular", pattern->rows, pattern->columns);
+  if (lacks_memory(reason)) return dvi__fail(DVI_NO_MEMORY, "KLU: no memory to analyse %d columns", pattern->columns);
+  return dvi__fail(DVI_SOLVER_FAILED, "KLU: the analysis of %d columns failed (status %d)", pattern->columns, reason);
 }
 
 static int well_conditioned(sparse *s)
@@ -41,21 +51,27 @@ static int well_conditioned(sparse *s)
   return klu_rcond(s->symbolic, s->numeric, &s->common) && s->common.rcond >= DBL_EPSILON;
 }
 
-/* klu_refactor keeps the pivots and allocates nothing; pivots grown bad show in the cheap condition estimate (the smallest over the
- * largest pivot), and then a full factorisation chooses new ones. */
+/* klu_refactor keeps the order of the pivots and allocates nothing. An order that has grown bad shows in the reciprocal pivot growth,
+ * and then a full factorisation, which lets entries grow 1/0.001 times at a pivot, chooses another one. */
+static int refactor_in_order(sparse *s, const dvi__pattern *pattern, double *entries)
+{
+  return s->numeric != NULL && klu_refactor(pattern->start, pattern->row, entries, s->symbolic, s->numeric, &s->common) &&
+         klu_rgrowth(pattern->start, pattern->row, entries, s->symbolic, s->numeric, &s->common) && s->common.rgrowth >= LEAST_GROWTH &&
+         well_conditioned(s);
+}
+
 static dvi_status refactor(void *factor, const dvi__pattern *pattern, const double *values)
 {
   sparse *s = factor;
-  int *start = pattern->start, *row = pattern->row;
   double *entries = (double *)(uintptr_t)values; /* KLU's interface lacks const; it only reads */
-  if (s->numeric != NULL && klu_refactor(start, row, entries, s->symbolic, s->numeric, &s->common) && well_conditioned(s)) return DVI_OK;
+  if (refactor_in_order(s, pattern, entries)) return DVI_OK;
   klu_free_numeric(&s->numeric, &s->common);
-  s->numeric = klu_factor(start, row, entries, s->symbolic, &s->common);
+  s->numeric = klu_factor(pattern->start, pattern->row, entries, s->symbolic, &s->common);
   if (s->numeric != NULL && well_conditioned(s)) return DVI_OK;
-  if (s->common.status == KLU_OUT_OF_MEMORY) return dvi__fail(DVI_NO_MEMORY, "KLU: no memory to factor %d columns", pattern->columns);
+  const int reason = s->common.status;
   klu_free_numeric(&s->numeric, &s->common);
-  return dvi__fail(DVI_SINGULAR, "KLU: the %d x %d matrix is singular to working precision (column %d)", pattern->rows, pattern->columns,
-                   (int)s->common.singular_col);
+  if (lacks_memory(reason)) return dvi__fail(DVI_NO_MEMORY, "KLU: no memory to factor %d columns", pattern->columns);
+  return dvi__fail(DVI_SINGULAR, "KLU: the %d x %d matrix is singular to working precision", pattern->rows, pattern->columns);
 }
 
 static void solve(void *factor, const dvi__pattern *pattern, double *b)

@@ -1,11 +1,13 @@
 #include "num/linear.h"
 
+#include <math.h>
+#include <string.h>
+
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/factor.h"
+#include "num/finite.h"
 
-/* Measured on the stage systems of chains (tests/num/bench in docs/theory.md): below this many unknowns LAPACK's dense LU is at least as fast as KLU
- * even for banded matrices, above it only nearly full ones are better off dense. */
 enum { ALWAYS_DENSE = 24, NEVER_DENSE = 2000 };
 
 struct dvi__linear {
@@ -13,6 +15,8 @@ struct dvi__linear {
   const dvi__pattern *pattern;
   dvi_counters *counters;
   void *factor;
+  double *row_scale, *column_scale; /* [n], powers of two */
+  double *scaled;                   /* [entries], what is factored */
 };
 
 static int dense_is_better(const dvi__pattern *pattern)
@@ -22,27 +26,43 @@ static int dense_is_better(const dvi__pattern *pattern)
   return pattern->columns <= NEVER_DENSE && entries > 0.3 * n * n;
 }
 
+static dvi_status fill(dvi__linear *linear, dvi__linear_kind kind)
+{
+  const dvi__pattern *pattern = linear->pattern;
+  const int dense = kind == DVI__LINEAR_DENSE || (kind == DVI__LINEAR_AUTO && dense_is_better(pattern));
+  linear->operations = dense ? &dvi__dense_factor : &dvi__sparse_factor;
+  linear->row_scale = DVI_NEW(double, pattern->rows);
+  linear->column_scale = DVI_NEW(double, pattern->columns);
+  linear->scaled = DVI_NEW(double, dvi__pattern_entries(pattern));
+  if (linear->row_scale == NULL || linear->column_scale == NULL || linear->scaled == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "linear solver: no memory for %d entries", dvi__pattern_entries(pattern));
+  DVI_TRY(linear->operations->create(pattern, &linear->factor));
+  if (linear->counters != NULL && !dense) linear->counters->symbolic++;
+  return DVI_OK;
+}
+
 dvi_status dvi__linear_create(const dvi__pattern *pattern, dvi__linear_kind kind, dvi_counters *counters, dvi__linear **linear)
 {
   *linear = NULL;
+  if (pattern->columns < 1 || pattern->rows != pattern->columns)
+    return dvi__fail(DVI_BAD_SIZE, "linear solver: the matrix is %d x %d; a square one is needed", pattern->rows, pattern->columns);
   dvi__linear *made = DVI_NEW(dvi__linear, 1);
   if (made == NULL) return dvi__fail(DVI_NO_MEMORY, "linear solver: no memory");
-  const int dense = kind == DVI__LINEAR_DENSE || (kind == DVI__LINEAR_AUTO && dense_is_better(pattern));
-  *made = (dvi__linear){dense ? &dvi__dense_factor : &dvi__sparse_factor, pattern, counters, NULL};
-  const dvi_status status = made->operations->create(pattern, &made->factor);
-  if (status != DVI_OK) {
-    dvi__release(made);
-    return status;
-  }
-  if (counters != NULL && !dense) counters->symbolic++;
+  made->pattern = pattern;
+  made->counters = counters;
+  const dvi_status status = fill(made, kind);
+  if (status != DVI_OK) dvi__linear_destroy(&made);
   *linear = made;
-  return DVI_OK;
+  return status;
 }
 
 void dvi__linear_destroy(dvi__linear **linear)
 {
   if (*linear == NULL) return;
   (*linear)->operations->destroy((*linear)->factor);
+  dvi__release((*linear)->row_scale);
+  dvi__release((*linear)->column_scale);
+  dvi__release((*linear)->scaled);
   dvi__release(*linear);
   *linear = NULL;
 }
@@ -52,14 +72,47 @@ dvi__linear_kind dvi__linear_kind_of(const dvi__linear *linear)
   return linear->operations == &dvi__dense_factor ? DVI__LINEAR_DENSE : DVI__LINEAR_SPARSE;
 }
 
+/* The power of two that brings each largest magnitude into [1,2); 1 where there is none. */
+static void invert_scales(int n, double *scale)
+{
+  for (int i = 0; i < n; i++) scale[i] = scale[i] > 0 ? ldexp(1.0, ilogb(scale[i]) < -1023 ? 1023 : -ilogb(scale[i])) : 1.0;
+}
+
+/* Rows of a stage system differ by the ratio of the masses, columns by the units of coordinates and momenta; neither says anything
+ * about its condition. Powers of two round nothing. */
+static void equilibrate(dvi__linear *linear, const double *values)
+{
+  const dvi__pattern *pattern = linear->pattern;
+  const int n = pattern->columns;
+  double *rows = linear->row_scale, *columns = linear->column_scale;
+  memset(rows, 0, (size_t)n * sizeof(double));
+  memset(columns, 0, (size_t)n * sizeof(double));
+  for (int e = 0; e < dvi__pattern_entries(pattern); e++) rows[pattern->row[e]] = fmax(rows[pattern->row[e]], fabs(values[e]));
+  invert_scales(n, rows);
+  for (int j = 0; j < n; j++)
+    for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++) {
+      linear->scaled[e] = rows[pattern->row[e]] * values[e];
+      columns[j] = fmax(columns[j], fabs(linear->scaled[e]));
+    }
+  invert_scales(n, columns);
+  for (int j = 0; j < n; j++)
+    for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++) linear->scaled[e] *= columns[j];
+}
+
 dvi_status dvi__linear_factor(dvi__linear *linear, const double *values)
 {
+  const ptrdiff_t bad = dvi__first_not_finite((size_t)dvi__pattern_entries(linear->pattern), values);
+  if (bad >= 0) return dvi__fail(DVI_NOT_FINITE, "linear solver: the matrix holds %g (entry %td)", values[bad], bad);
   if (linear->counters != NULL) linear->counters->factorizations++;
-  return linear->operations->refactor(linear->factor, linear->pattern, values);
+  equilibrate(linear, values);
+  return linear->operations->refactor(linear->factor, linear->pattern, linear->scaled);
 }
 
 void dvi__linear_solve(dvi__linear *linear, double *b)
 {
+  const int n = linear->pattern->columns;
   if (linear->counters != NULL) linear->counters->solves++;
+  for (int i = 0; i < n; i++) b[i] *= linear->row_scale[i];
   linear->operations->solve(linear->factor, linear->pattern, b);
+  for (int j = 0; j < n; j++) b[j] *= linear->column_scale[j];
 }

@@ -17,8 +17,8 @@ void dvi__linear_destroy(dvi__linear **linear);
 /* DVI__LINEAR_DENSE or DVI__LINEAR_SPARSE. */
 dvi__linear_kind dvi__linear_kind_of(const dvi__linear *linear);
 
-/* Factor the matrix with these values, in the order of the pattern. DVI_SINGULAR if it is singular to working precision; the old
- * factor is lost then. */
+/* Factor the matrix with these values, in the order of the pattern; rows and columns are equilibrated first. DVI_SINGULAR if it is
+ * singular to working precision, DVI_NOT_FINITE, DVI_NO_MEMORY (KLU's own); the old factor is lost then. */
 dvi_status dvi__linear_factor(dvi__linear *linear, const double *values);
 
 /* Overwrite b [rows] by the solution. Needs a factor. */

@@ -50,13 +50,26 @@ static dvi_status full(int n, dvi__pattern *pattern)
   return DVI_OK;
 }
 
+/* All the starts are checked before any row is read: start[n] is then how many rows the caller has. */
+static dvi_status validate_starts(const dvi_pattern *declared, int n, const char *name)
+{
+  if (declared->start == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "%s: the pattern has rows but no column starts", name);
+  if (declared->start[0] != 0)
+    return dvi__fail(DVI_BAD_ARGUMENT, "%s: the pattern's first column starts at %d, not 0", name, declared->start[0]);
+  for (int j = 0; j < n; j++)
+    if (declared->start[j + 1] < declared->start[j])
+      return dvi__fail(DVI_BAD_ARGUMENT, "%s: the pattern's column %d ends before it starts", name, j);
+  if (declared->start[n] > 0 && declared->row == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "%s: the pattern has column starts but no rows", name);
+  return DVI_OK;
+}
+
 static dvi_status validate_column(const dvi_pattern *declared, int n, int j, const char *name)
 {
-  if (declared->start[j + 1] < declared->start[j])
-    return dvi__fail(DVI_BAD_ARGUMENT, "%s: the pattern's column %d ends before it starts", name, j);
   for (int e = declared->start[j]; e < declared->start[j + 1]; e++) {
     const int row = declared->row[e];
-    if (row < 0 || row >= n) return dvi__fail(DVI_BAD_ARGUMENT, "%s: row %d in column %d of the pattern is outside 0..%d", name, row, j, n - 1);
+    if (row < 0 || row >= n)
+      return dvi__fail(DVI_BAD_ARGUMENT, "%s: row %d in column %d of the pattern is outside 0..%d", name, row, j, n - 1);
     if (e > declared->start[j] && row <= declared->row[e - 1])
       return dvi__fail(DVI_BAD_ARGUMENT, "%s: the rows in column %d of the pattern are not ascending", name, j);
   }
@@ -67,9 +80,7 @@ dvi_status dvi__pattern_copy(const dvi_pattern *declared, int n, const char *nam
 {
   *copy = (dvi__pattern){0};
   if (declared->start == NULL && declared->row == NULL) return full(n, copy);
-  if (declared->start == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "%s: the pattern has rows but no column starts", name);
-  if (declared->start[0] != 0) return dvi__fail(DVI_BAD_ARGUMENT, "%s: the pattern's first column starts at %d, not 0", name, declared->start[0]);
-  if (declared->start[n] > 0 && declared->row == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "%s: the pattern has no rows", name);
+  DVI_TRY(validate_starts(declared, n, name));
   for (int j = 0; j < n; j++) DVI_TRY(validate_column(declared, n, j, name));
   DVI_TRY(allocate(n, n, (size_t)declared->start[n], copy));
   memcpy(copy->start, declared->start, ((size_t)n + 1) * sizeof(int));
@@ -135,7 +146,7 @@ void dvi__pattern_embed(const dvi__pattern *part, const dvi__pattern *whole, int
     for (int e = part->start[j]; e < part->start[j + 1]; e++) where[e] = dvi__pattern_find(whole, part->row[e], j);
 }
 
-/* The smallest group none of whose columns meets column j; taken[g] == j marks the groups that do. */
+/* The smallest group none of whose columns meets column j; taken[g] == j marks the groups that do. There are at most j of them. */
 static int free_group(const dvi__pattern *pattern, const dvi__pattern *transpose, const int *group, int j, int *taken)
 {
   for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++) {
@@ -154,13 +165,13 @@ dvi_status dvi__pattern_groups(const dvi__pattern *pattern, int *group, int *gro
 {
   dvi__pattern transpose;
   DVI_TRY(dvi__pattern_transpose(pattern, &transpose));
-  int *taken = DVI_NEW(int, pattern->columns + 1);
+  int *taken = DVI_NEW(int, pattern->columns);
   if (taken == NULL) {
     dvi__pattern_clear(&transpose);
     return dvi__fail(DVI_NO_MEMORY, "pattern: no memory to group %d columns", pattern->columns);
   }
   *groups = 0;
-  for (int j = 0; j <= pattern->columns; j++) taken[j] = -1;
+  for (int j = 0; j < pattern->columns; j++) taken[j] = -1;
   for (int j = 0; j < pattern->columns; j++) {
     group[j] = free_group(pattern, &transpose, group, j, taken);
     if (group[j] >= *groups) *groups = group[j] + 1;

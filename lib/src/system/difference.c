@@ -6,14 +6,22 @@
 
 #include "core/status.h"
 
-/* Steps near relative * (size of the coordinate), rounded to a power of two: x + step - x is then exact for all but huge x. A coordinate
- * near zero is measured by the largest one of its point. */
+/* 6th order central differences: the weights of (f(x + m step) - f(x - m step)) / step, and the step where truncation meets roundoff. */
+static const double weight[3] = {45.0 / 60.0, -9.0 / 60.0, 1.0 / 60.0};
+
+static double sixth_order_step(void)
+{
+  return pow(DBL_EPSILON, 1.0 / 7.0);
+}
+
+/* Steps near relative * (size of the coordinate), rounded to powers of two so that multiples and quotients are exact. A coordinate near
+ * zero is measured by the largest one of its point, a point at the origin (or so near to it that steps would underflow) by 1. */
 static void choose_steps(int n, int count, const double *x, double relative, double *step)
 {
   for (size_t k = 0, points = (size_t)count; k < points; k++) {
     double whole = 0;
     for (size_t i = 0; i < (size_t)n; i++) whole = fmax(whole, fabs(x[i * points + k]));
-    if (!(whole > 0)) whole = 1;
+    if (!(whole > DBL_MIN / DBL_EPSILON)) whole = 1;
     for (size_t i = 0; i < (size_t)n; i++)
       step[i * points + k] = ldexp(1.0, ilogb(relative * fmax(fabs(x[i * points + k]), 0.1 * whole)));
   }
@@ -22,9 +30,8 @@ static void choose_steps(int n, int count, const double *x, double relative, dou
 dvi_status dvi__difference_gradient(dvi__batch_value value, const void *function, dvi__differences *d, int n, int count, const double *x,
                                     double *gradient)
 {
-  static const double coefficient[3] = {45.0 / 60.0, -9.0 / 60.0, 1.0 / 60.0};
   const size_t points = (size_t)count;
-  choose_steps(n, count, x, pow(DBL_EPSILON, 1.0 / 7.0), d->step);
+  choose_steps(n, count, x, sixth_order_step(), d->step);
   memcpy(d->moved, x, (size_t)n * points * sizeof(double));
   memset(gradient, 0, (size_t)n * points * sizeof(double));
   for (size_t row = 0; row < (size_t)n * points; row += points) {
@@ -33,7 +40,7 @@ dvi_status dvi__difference_gradient(dvi__batch_value value, const void *function
       DVI_TRY(value(function, count, d->moved, d->plus));
       for (size_t k = row; k < row + points; k++) d->moved[k] = x[k] - m * d->step[k];
       DVI_TRY(value(function, count, d->moved, d->minus));
-      for (size_t k = 0; k < points; k++) gradient[row + k] += coefficient[m - 1] * ((d->plus[k] - d->minus[k]) / d->step[row + k]);
+      for (size_t k = 0; k < points; k++) gradient[row + k] += weight[m - 1] * ((d->plus[k] - d->minus[k]) / d->step[row + k]);
     }
     memcpy(d->moved + row, x + row, points * sizeof(double));
   }
@@ -75,6 +82,30 @@ dvi_status dvi__difference_hessian(dvi__batch_gradient gradient, const void *fun
     DVI_TRY(gradient(function, count, d->moved, d->minus, d->minus_v));
     if (first != NULL) fill_columns(first, groups, g, count, d->plus, d->minus, d->step, first_values);
     if (second != NULL) fill_columns(second, groups, g, count, d->plus_v, d->minus_v, d->step, second_values);
+  }
+  return DVI_OK;
+}
+
+static void add_difference(int n, double factor, const double *plus, const double *minus, double *sum)
+{
+  for (int i = 0; i < n; i++) sum[i] += factor * (plus[i] - minus[i]);
+}
+
+dvi_status dvi__difference_column(dvi__batch_gradient gradient, const void *function, dvi__differences *d, int n, int j, const double *x,
+                                  double *first, double *second)
+{
+  const size_t size = (size_t)n * sizeof(double);
+  choose_steps(n, 1, x, sixth_order_step(), d->step);
+  memcpy(d->moved, x, size);
+  memset(first, 0, size);
+  memset(second, 0, size);
+  for (int m = 1; m <= 3; m++) {
+    d->moved[j] = x[j] + m * d->step[j];
+    DVI_TRY(gradient(function, 1, d->moved, d->plus, d->plus_v));
+    d->moved[j] = x[j] - m * d->step[j];
+    DVI_TRY(gradient(function, 1, d->moved, d->minus, d->minus_v));
+    add_difference(n, weight[m - 1] / d->step[j], d->plus, d->minus, first);
+    add_difference(n, weight[m - 1] / d->step[j], d->plus_v, d->minus_v, second);
   }
   return DVI_OK;
 }

@@ -5,7 +5,6 @@
 #include "num/finite.h"
 #include "system/evaluator_struct.h"
 
-
 static size_t numbers(const dvi__evaluator *e, int count)
 {
   return (size_t)e->system->n * (size_t)count;

@@ -14,7 +14,7 @@ static dvi_status momentum_map(dvi__evaluator *e, const dvi_symmetry *symmetry, 
 {
   double *xi = e->point[2];
   *J = 0;
-  DVI_TRY(callback(symmetry->generator(q, xi, symmetry->user), symmetry->name != NULL ? symmetry->name : "unnamed"));
+  DVI_TRY(callback(symmetry->generator(q, xi, symmetry->user), symmetry->name));
   for (int i = 0; i < e->system->n; i++) *J += p[i] * xi[i];
   return DVI_OK;
 }

@@ -35,6 +35,8 @@ dvi_status dvi_system_momentum(const dvi_system *system, double t, const double 
   DVI_TRY(dvi__evaluator_create(system, 1, NULL, &e));
   const dvi_status status = dvi__lagrangian_gradient(e, 1, &t, q, v, NULL, p);
   dvi__evaluator_destroy(&e);
+  if (status == DVI_OK && dvi__first_not_finite((size_t)system->n, p) >= 0)
+    return dvi__fail(DVI_NOT_FINITE, "system: the momentum at t = %g is not finite", t);
   return status;
 }
 

@@ -32,14 +32,14 @@ static int lacks_hessian(const dvi_system *system)
   return lacks;
 }
 
-static int allocate_differences(size_t numbers, dvi__differences *d)
+int dvi__differences_allocate(size_t numbers, dvi__differences *d)
 {
   *d = (dvi__differences){DVI_NEW(double, numbers), DVI_NEW(double, numbers), DVI_NEW(double, numbers),
                           DVI_NEW(double, numbers), DVI_NEW(double, numbers), DVI_NEW(double, numbers)};
   return d->moved && d->step && d->plus && d->minus && d->plus_v && d->minus_v;
 }
 
-static void clear_differences(dvi__differences *d)
+void dvi__differences_clear(dvi__differences *d)
 {
   dvi__release(d->moved);
   dvi__release(d->step);
@@ -56,8 +56,8 @@ static int allocate(const dvi_system *system, int capacity, dvi__scratch *s)
   s->point_v = DVI_NEW(double, system->n);
   for (int k = 0; k < 3; k++) s->result[k] = DVI_NEW(double, longest_hessian(system));
   if (!s->point_q || !s->point_v || !s->result[0] || !s->result[1] || !s->result[2]) return 0;
-  if (lacks_gradient(system) && !allocate_differences(numbers, &s->of_value)) return 0;
-  return !lacks_hessian(system) || allocate_differences(numbers, &s->of_gradient);
+  if (lacks_gradient(system) && !dvi__differences_allocate(numbers, &s->of_value)) return 0;
+  return !lacks_hessian(system) || dvi__differences_allocate(numbers, &s->of_gradient);
 }
 
 dvi_status dvi__scratch_create(const dvi_system *system, int capacity, dvi__scratch *scratch)
@@ -73,7 +73,7 @@ void dvi__scratch_clear(dvi__scratch *scratch)
   dvi__release(scratch->point_q);
   dvi__release(scratch->point_v);
   for (int k = 0; k < 3; k++) dvi__release(scratch->result[k]);
-  clear_differences(&scratch->of_value);
-  clear_differences(&scratch->of_gradient);
+  dvi__differences_clear(&scratch->of_value);
+  dvi__differences_clear(&scratch->of_gradient);
   *scratch = (dvi__scratch){0};
 }

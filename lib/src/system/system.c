@@ -31,10 +31,23 @@ static dvi_status check_symmetric(const dvi__pattern *pattern, const double *val
   return DVI_OK;
 }
 
+/* A Hessian's pattern: one triangle alone would leave out half of the entries of the step's Jacobian. */
+static dvi_status copy_symmetric(const dvi_pattern *declared, int n, const char *name, dvi__pattern *copy)
+{
+  DVI_TRY(dvi__pattern_copy(declared, n, name, copy));
+  for (int j = 0; j < n; j++)
+    for (int e = copy->start[j]; e < copy->start[j + 1]; e++)
+      if (dvi__pattern_find(copy, j, copy->row[e]) < 0)
+        return dvi__fail(DVI_BAD_ARGUMENT, "%s: the pattern holds (%d,%d) but not (%d,%d); both triangles are needed", name, copy->row[e], j,
+                         j, copy->row[e]);
+  return DVI_OK;
+}
+
+/* The kind that an evaluator will use, so that both judge alike. */
 static dvi_status check_regular(const dvi__pattern *pattern, const double *values)
 {
   dvi__linear *linear;
-  dvi_status status = dvi__linear_create(pattern, DVI__LINEAR_SPARSE, NULL, &linear);
+  dvi_status status = dvi__linear_create(pattern, DVI__LINEAR_AUTO, NULL, &linear);
   if (status == DVI_OK) status = dvi__linear_factor(linear, values);
   dvi__linear_destroy(&linear);
   return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "system: mass matrix");
@@ -96,14 +109,15 @@ static dvi_status group_lagrangian(dvi__lagrangian_term *term)
 
 static dvi_status copy_lagrangian(dvi_system *s, const dvi_lagrangian *given)
 {
-  if (given->value == NULL && given->value_batch == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "system: the Lagrangian has no value callback");
+  if (given->value == NULL && given->value_batch == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "system: the Lagrangian has no value callback");
   s->terms |= DVI__LAGRANGIAN;
   dvi__lagrangian_term *term = s->lagrangian = DVI_NEW(dvi__lagrangian_term, 1);
   if (term == NULL) return no_memory();
   term->callbacks = *given;
-  DVI_TRY(dvi__pattern_copy(&given->qq, s->n, "Lagrangian: d2L/dq2", &term->qq));
+  DVI_TRY(copy_symmetric(&given->qq, s->n, "Lagrangian: d2L/dq2", &term->qq));
   DVI_TRY(dvi__pattern_copy(&given->qv, s->n, "Lagrangian: d2L/dqdv", &term->qv));
-  DVI_TRY(dvi__pattern_copy(&given->vv, s->n, "Lagrangian: d2L/dv2", &term->vv));
+  DVI_TRY(copy_symmetric(&given->vv, s->n, "Lagrangian: d2L/dv2", &term->vv));
   DVI_TRY(dvi__pattern_union(&term->qv, &term->qv, &s->qv));
   DVI_TRY(dvi__pattern_union(&term->vv, &term->vv, &s->vv));
   const int differenced = given->hessian == NULL && given->hessian_batch == NULL;
@@ -120,7 +134,8 @@ static dvi_status copy_potential(dvi_system *s, const dvi_potential *given, dvi_
   term->callbacks = *given;
   term->name = copy_text(name);
   if (term->name == NULL) return no_memory();
-  DVI_TRY(dvi__pattern_copy(&given->qq, s->n, name, &term->qq));
+  term->callbacks.name = term->name;
+  DVI_TRY(copy_symmetric(&given->qq, s->n, name, &term->qq));
   const int differenced = given->hessian == NULL && given->hessian_batch == NULL;
   return differenced ? make_groups(&term->qq, &term->groups) : DVI_OK;
 }
@@ -181,6 +196,8 @@ static dvi_status copy_invariants(dvi_system *s, const dvi_system_terms *terms)
     s->invariant_names[i] = copy_text(name != NULL ? name : "unnamed");
     if (s->invariant_names[i] == NULL) return no_memory();
   }
+  for (int i = 0; i < s->symmetry_count; i++) s->symmetries[i].name = s->invariant_names[1 + i];
+  for (int i = 0; i < s->invariant_count; i++) s->invariants[i].name = s->invariant_names[1 + s->symmetry_count + i];
   return DVI_OK;
 }
 
@@ -203,6 +220,7 @@ static dvi_status check_list(const char *what, int count, const void *list)
 static dvi_status check_terms(const dvi_system_terms *terms)
 {
   const dvi_mass *mass = &terms->mass;
+  const int has_pattern = mass->pattern.start != NULL || mass->pattern.row != NULL;
   const int has_mass = mass->scalar != 0 || mass->diagonal != NULL || mass->values != NULL;
   if (terms->dimension < 1) return dvi__fail(DVI_BAD_SIZE, "system: dimension %d; at least 1 is needed", terms->dimension);
   DVI_TRY(check_list("potentials", terms->potential_count, terms->potentials));
@@ -211,7 +229,8 @@ static dvi_status check_terms(const dvi_system_terms *terms)
   if (has_mass && terms->lagrangian != NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "system: both a mass and a general Lagrangian are declared; one of them is possible");
   if (!has_mass && terms->lagrangian == NULL)
-    return dvi__fail(DVI_SINGULAR, "system: neither a mass (other than 0) nor a general Lagrangian is declared");
+    return dvi__fail(DVI_BAD_ARGUMENT, "system: neither a mass (other than 0) nor a general Lagrangian is declared");
+  if (has_pattern && mass->values == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "system: the mass has a pattern but no values");
   return check_watched(terms);
 }
 
@@ -233,8 +252,7 @@ dvi_status dvi_system_create(const dvi_system_terms *terms, dvi_system **system)
   dvi_system *made = DVI_NEW(dvi_system, 1);
   if (made == NULL) return no_memory();
   const dvi_status status = fill(made, terms);
-  if (status != DVI_OK)
-    dvi_system_destroy(&made);
+  if (status != DVI_OK) dvi_system_destroy(&made);
   *system = made;
   return status;
 }

@@ -31,7 +31,7 @@ typedef struct dvi__lagrangian_term {
   dvi_lagrangian callbacks;
   dvi__pattern qq, qv, vv;
   int *in_qq; /* [entries of qq] */
-  dvi__groups q_groups, v_groups; /* q columns of qq and of the transpose of qv; v columns of qv and vv */
+  dvi__groups q_groups, v_groups; /* q columns of qq; v columns of qv and vv together */
 } dvi__lagrangian_term;
 
 struct dvi_system {

@@ -5,14 +5,15 @@
 #include "num/finite.h"
 #include "system/difference.h"
 
-/* The status that a callback's return and its results amount to. */
-static dvi_status verdict(int returned, size_t count, const double *result, const char *name, const char *what)
+/* The status that a callback's return and its results, `entries` at each of `count` points, amount to. */
+static dvi_status verdict(int returned, int entries, int count, const double *result, const char *name, const char *what)
 {
   if (returned < 0) return dvi__fail(DVI_CALLBACK_FAILED, "%s: the %s callback failed with %d", name, what, returned);
   if (returned > 0) return dvi__fail(DVI_CALLBACK_RETRY, "%s: the %s callback asked for a smaller step (%d)", name, what, returned);
-  const ptrdiff_t bad = dvi__first_not_finite(count, result);
+  const ptrdiff_t bad = dvi__first_not_finite((size_t)entries * (size_t)count, result);
   if (bad < 0) return DVI_OK;
-  return dvi__fail(DVI_NOT_FINITE, "%s: the %s callback gave %g (entry %td)", name, what, result[bad], bad);
+  return dvi__fail(DVI_NOT_FINITE, "%s: the %s callback gave %g (entry %td, point %td of %d)", name, what, result[bad], bad / count,
+                   bad % count, count);
 }
 
 static void gather(int n, int count, int k, const double *batch, double *point)
@@ -46,25 +47,18 @@ dvi_status dvi__potential_value(const dvi__potential_term *p, dvi__scratch *s, i
     gather(s->n, count, k, q, s->point_q);
     returned = c->value(t[k], s->point_q, V + k, c->user);
   }
-  return verdict(returned, (size_t)count, V, p->name, "value");
+  return verdict(returned, 1, count, V, p->name, "value");
 }
 
-/* A potential as a function of q alone. */
-typedef struct potential_at {
-  const dvi__potential_term *term;
-  dvi__scratch *scratch;
-  const double *t;
-} potential_at;
-
-static dvi_status value_of_q(const void *function, int count, const double *q, double *V)
+dvi_status dvi__potential_value_of_q(const void *function, int count, const double *q, double *V)
 {
-  const potential_at *f = function;
+  const dvi__potential_at *f = function;
   return dvi__potential_value(f->term, f->scratch, count, f->t, q, V);
 }
 
-static dvi_status gradient_of_q(const void *function, int count, const double *q, double *V_q, double *none)
+dvi_status dvi__potential_gradient_of_q(const void *function, int count, const double *q, double *V_q, double *none)
 {
-  const potential_at *f = function;
+  const dvi__potential_at *f = function;
   (void)none;
   return dvi__potential_gradient(f->term, f->scratch, count, f->t, q, V_q);
 }
@@ -74,14 +68,14 @@ dvi_status dvi__potential_gradient(const dvi__potential_term *p, dvi__scratch *s
   const dvi_potential *c = &p->callbacks;
   int returned = 0;
   if (!dvi__potential_has_gradient(p))
-    return dvi__difference_gradient(value_of_q, &(potential_at){p, s, t}, &s->of_value, s->n, count, q, V_q);
+    return dvi__difference_gradient(dvi__potential_value_of_q, &(dvi__potential_at){p, s, t}, &s->of_value, s->n, count, q, V_q);
   if (c->gradient_batch != NULL) returned = c->gradient_batch(count, t, q, V_q, c->user);
   for (int k = 0; c->gradient_batch == NULL && k < count && returned == 0; k++) {
     gather(s->n, count, k, q, s->point_q);
     returned = c->gradient(t[k], s->point_q, s->result[0], c->user);
     scatter(s->n, count, k, s->result[0], V_q);
   }
-  return verdict(returned, (size_t)s->n * (size_t)count, V_q, p->name, "gradient");
+  return verdict(returned, s->n, count, V_q, p->name, "gradient");
 }
 
 dvi_status dvi__potential_hessian(const dvi__potential_term *p, dvi__scratch *s, int count, const double *t, const double *q, double *V_qq)
@@ -90,7 +84,7 @@ dvi_status dvi__potential_hessian(const dvi__potential_term *p, dvi__scratch *s,
   const int entries = dvi__pattern_entries(&p->qq);
   int returned = 0;
   if (!dvi__potential_has_hessian(p))
-    return dvi__difference_hessian(gradient_of_q, &(potential_at){p, s, t}, &s->of_gradient, &p->groups, !dvi__potential_has_gradient(p),
+    return dvi__difference_hessian(dvi__potential_gradient_of_q, &(dvi__potential_at){p, s, t}, &s->of_gradient, &p->groups, !dvi__potential_has_gradient(p),
                                    count, q, &p->qq, V_qq, NULL, NULL);
   if (c->hessian_batch != NULL) returned = c->hessian_batch(count, t, q, V_qq, c->user);
   for (int k = 0; c->hessian_batch == NULL && k < count && returned == 0; k++) {
@@ -98,7 +92,7 @@ dvi_status dvi__potential_hessian(const dvi__potential_term *p, dvi__scratch *s,
     returned = c->hessian(t[k], s->point_q, s->result[0], c->user);
     scatter(entries, count, k, s->result[0], V_qq);
   }
-  return verdict(returned, (size_t)entries * (size_t)count, V_qq, p->name, "Hessian");
+  return verdict(returned, entries, count, V_qq, p->name, "Hessian");
 }
 
 /* ---- general Lagrangian ---- */
@@ -126,37 +120,30 @@ dvi_status dvi__general_value(const dvi__lagrangian_term *l, dvi__scratch *s, in
     gather(s->n, count, k, v, s->point_v);
     returned = c->value(t[k], s->point_q, s->point_v, L + k, c->user);
   }
-  return verdict(returned, (size_t)count, L, general, "value");
+  return verdict(returned, 1, count, L, general, "value");
 }
 
-/* A Lagrangian as a function of q alone (v is fixed) or of v alone. */
-typedef struct general_at {
-  const dvi__lagrangian_term *term;
-  dvi__scratch *scratch;
-  const double *t, *q, *v;
-} general_at;
-
-static dvi_status general_value_of_q(const void *function, int count, const double *q, double *L)
+dvi_status dvi__general_value_of_q(const void *function, int count, const double *q, double *L)
 {
-  const general_at *f = function;
+  const dvi__general_at *f = function;
   return dvi__general_value(f->term, f->scratch, count, f->t, q, f->v, L);
 }
 
-static dvi_status general_value_of_v(const void *function, int count, const double *v, double *L)
+dvi_status dvi__general_value_of_v(const void *function, int count, const double *v, double *L)
 {
-  const general_at *f = function;
+  const dvi__general_at *f = function;
   return dvi__general_value(f->term, f->scratch, count, f->t, f->q, v, L);
 }
 
-static dvi_status general_gradient_of_q(const void *function, int count, const double *q, double *L_q, double *L_v)
+dvi_status dvi__general_gradient_of_q(const void *function, int count, const double *q, double *L_q, double *L_v)
 {
-  const general_at *f = function;
+  const dvi__general_at *f = function;
   return dvi__general_gradient(f->term, f->scratch, count, f->t, q, f->v, L_q, L_v);
 }
 
-static dvi_status general_gradient_of_v(const void *function, int count, const double *v, double *L_q, double *L_v)
+dvi_status dvi__general_gradient_of_v(const void *function, int count, const double *v, double *L_q, double *L_v)
 {
-  const general_at *f = function;
+  const dvi__general_at *f = function;
   return dvi__general_gradient(f->term, f->scratch, count, f->t, f->q, v, L_q, L_v);
 }
 
@@ -164,12 +151,11 @@ dvi_status dvi__general_gradient(const dvi__lagrangian_term *l, dvi__scratch *s,
                                  const double *v, double *L_q, double *L_v)
 {
   const dvi_lagrangian *c = &l->callbacks;
-  const size_t numbers = (size_t)s->n * (size_t)count;
   int returned = 0;
   if (!dvi__general_has_gradient(l)) {
-    const general_at at = {l, s, t, q, v};
-    DVI_TRY(dvi__difference_gradient(general_value_of_q, &at, &s->of_value, s->n, count, q, L_q));
-    return dvi__difference_gradient(general_value_of_v, &at, &s->of_value, s->n, count, v, L_v);
+    const dvi__general_at at = {l, s, t, q, v};
+    DVI_TRY(dvi__difference_gradient(dvi__general_value_of_q, &at, &s->of_value, s->n, count, q, L_q));
+    return dvi__difference_gradient(dvi__general_value_of_v, &at, &s->of_value, s->n, count, v, L_v);
   }
   if (c->gradient_batch != NULL) returned = c->gradient_batch(count, t, q, v, L_q, L_v, c->user);
   for (int k = 0; c->gradient_batch == NULL && k < count && returned == 0; k++) {
@@ -179,17 +165,17 @@ dvi_status dvi__general_gradient(const dvi__lagrangian_term *l, dvi__scratch *s,
     scatter(s->n, count, k, s->result[0], L_q);
     scatter(s->n, count, k, s->result[1], L_v);
   }
-  DVI_TRY(verdict(returned, numbers, L_q, general, "gradient (L_q)"));
-  return verdict(returned, numbers, L_v, general, "gradient (L_v)");
+  DVI_TRY(verdict(returned, s->n, count, L_q, general, "gradient (L_q)"));
+  return verdict(returned, s->n, count, L_v, general, "gradient (L_v)");
 }
 
-static dvi_status difference_general_hessian(const general_at *at, int count, double *L_qq, double *L_qv, double *L_vv)
+static dvi_status difference_general_hessian(const dvi__general_at *at, int count, double *L_qq, double *L_qv, double *L_vv)
 {
   const dvi__lagrangian_term *l = at->term;
   dvi__differences *d = &at->scratch->of_gradient;
   const int noisy = !dvi__general_has_gradient(l);
-  DVI_TRY(dvi__difference_hessian(general_gradient_of_q, at, d, &l->q_groups, noisy, count, at->q, &l->qq, L_qq, NULL, NULL));
-  return dvi__difference_hessian(general_gradient_of_v, at, d, &l->v_groups, noisy, count, at->v, &l->qv, L_qv, &l->vv, L_vv);
+  DVI_TRY(dvi__difference_hessian(dvi__general_gradient_of_q, at, d, &l->q_groups, noisy, count, at->q, &l->qq, L_qq, NULL, NULL));
+  return dvi__difference_hessian(dvi__general_gradient_of_v, at, d, &l->v_groups, noisy, count, at->v, &l->qv, L_qv, &l->vv, L_vv);
 }
 
 dvi_status dvi__general_hessian(const dvi__lagrangian_term *l, dvi__scratch *s, int count, const double *t, const double *q,
@@ -198,7 +184,7 @@ dvi_status dvi__general_hessian(const dvi__lagrangian_term *l, dvi__scratch *s, 
   const dvi_lagrangian *c = &l->callbacks;
   const int qq = dvi__pattern_entries(&l->qq), qv = dvi__pattern_entries(&l->qv), vv = dvi__pattern_entries(&l->vv);
   int returned = 0;
-  if (!dvi__general_has_hessian(l)) return difference_general_hessian(&(general_at){l, s, t, q, v}, count, L_qq, L_qv, L_vv);
+  if (!dvi__general_has_hessian(l)) return difference_general_hessian(&(dvi__general_at){l, s, t, q, v}, count, L_qq, L_qv, L_vv);
   if (c->hessian_batch != NULL) returned = c->hessian_batch(count, t, q, v, L_qq, L_qv, L_vv, c->user);
   for (int k = 0; c->hessian_batch == NULL && k < count && returned == 0; k++) {
     gather(s->n, count, k, q, s->point_q);
@@ -208,7 +194,7 @@ dvi_status dvi__general_hessian(const dvi__lagrangian_term *l, dvi__scratch *s, 
     scatter(qv, count, k, s->result[1], L_qv);
     scatter(vv, count, k, s->result[2], L_vv);
   }
-  DVI_TRY(verdict(returned, (size_t)qq * (size_t)count, L_qq, general, "Hessian (L_qq)"));
-  DVI_TRY(verdict(returned, (size_t)qv * (size_t)count, L_qv, general, "Hessian (L_qv)"));
-  return verdict(returned, (size_t)vv * (size_t)count, L_vv, general, "Hessian (L_vv)");
+  DVI_TRY(verdict(returned, qq, count, L_qq, general, "Hessian (L_qq)"));
+  DVI_TRY(verdict(returned, qv, count, L_qv, general, "Hessian (L_qv)"));
+  return verdict(returned, vv, count, L_vv, general, "Hessian (L_vv)");
 }

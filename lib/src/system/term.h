@@ -18,6 +18,10 @@ typedef struct dvi__scratch {
   dvi__differences of_value, of_gradient;   /* the two levels: a missing gradient under a missing Hessian uses both */
 } dvi__scratch;
 
+/* Memory for n*capacity numbers in each array; 0 if there is none left (clear frees what there is). */
+int dvi__differences_allocate(size_t numbers, dvi__differences *d);
+void dvi__differences_clear(dvi__differences *d);
+
 dvi_status dvi__scratch_create(const dvi_system *system, int capacity, dvi__scratch *scratch);
 void dvi__scratch_clear(dvi__scratch *scratch);
 
@@ -33,6 +37,28 @@ dvi_status dvi__general_gradient(const dvi__lagrangian_term *l, dvi__scratch *s,
                                  const double *v, double *L_q, double *L_v);
 dvi_status dvi__general_hessian(const dvi__lagrangian_term *l, dvi__scratch *s, int count, const double *t, const double *q,
                                 const double *v, double *L_qq, double *L_qv, double *L_vv);
+
+/* A potential as a function of q alone, in the shapes that system/difference.h wants; `function` is a dvi__potential_at. */
+typedef struct dvi__potential_at {
+  const dvi__potential_term *term;
+  dvi__scratch *scratch;
+  const double *t;
+} dvi__potential_at;
+
+dvi_status dvi__potential_value_of_q(const void *function, int count, const double *q, double *V);
+dvi_status dvi__potential_gradient_of_q(const void *function, int count, const double *q, double *V_q, double *none);
+
+/* A Lagrangian as a function of q alone (v is fixed) or of v alone; `function` is a dvi__general_at. */
+typedef struct dvi__general_at {
+  const dvi__lagrangian_term *term;
+  dvi__scratch *scratch;
+  const double *t, *q, *v;
+} dvi__general_at;
+
+dvi_status dvi__general_value_of_q(const void *function, int count, const double *q, double *L);
+dvi_status dvi__general_value_of_v(const void *function, int count, const double *v, double *L);
+dvi_status dvi__general_gradient_of_q(const void *function, int count, const double *q, double *L_q, double *L_v);
+dvi_status dvi__general_gradient_of_v(const void *function, int count, const double *v, double *L_q, double *L_v);
 
 int dvi__potential_has_gradient(const dvi__potential_term *p);
 int dvi__potential_has_hessian(const dvi__potential_term *p);

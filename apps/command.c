@@ -1,0 +1,45 @@
+#include "command.h"
+
+#include <errno.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+static void speak(const char *format, va_list arguments)
+{
+  (void)fputs("dvi: ", stderr);
+  (void)vfprintf(stderr, format, arguments);
+  (void)fputc('\n', stderr);
+}
+
+void complain(const char *format, ...)
+{
+  va_list arguments;
+  va_start(arguments, format);
+  speak(format, arguments);
+  va_end(arguments);
+}
+
+int usage_error(const char *format, ...)
+{
+  va_list arguments;
+  va_start(arguments, format);
+  speak(format, arguments);
+  va_end(arguments);
+  return USAGE;
+}
+
+int library_error(dvi_status status)
+{
+  const char *sentence = dvi_last_error();
+  complain("%s", sentence[0] != '\0' ? sentence : dvi_status_meaning(status));
+  return status == DVI_BAD_OPTION || status == DVI_UNSUPPORTED ? USAGE : FAILED;
+}
+
+bool output_flushed(void)
+{
+  errno = 0;
+  if (fflush(stdout) == 0 && !ferror(stdout)) return true;
+  if (errno != EPIPE) complain("cannot write to standard output: %s", errno != 0 ? strerror(errno) : "an earlier write failed");
+  return false;
+}

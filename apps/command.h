@@ -1,0 +1,32 @@
+/** The subcommands of dvi, their exit codes, and how they speak to the user. */
+#ifndef COMMAND_H
+#define COMMAND_H
+#include <dvi/dvi.h>
+#include <stdbool.h>
+
+/** What the shell sees. A run that a signal ended returns 128 and the signal's number, as shells do. */
+enum {
+  DONE = 0,
+  FAILED = 1,      /**< a numerical failure, or a file that cannot be read or written */
+  USAGE = 2,       /**< the command line makes no sense */
+  CHECK_FAILED = 3 /**< everything ran, but a check did not hold */
+};
+
+int list_command(int argc, char **argv);
+int explain_command(int argc, char **argv);
+int run_command(int argc, char **argv);
+int order_command(int argc, char **argv);
+int bench_command(int argc, char **argv);
+
+/** Print "dvi: <sentence>" to standard error. */
+void complain(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+/** Complain, and return USAGE. */
+int usage_error(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+/** Complain with the library's last sentence; the exit code that fits the status. */
+int library_error(dvi_status status);
+
+/** Flush standard output. False, with a complaint unless the reader has merely gone away, if any of it was lost. */
+bool output_flushed(void);
+#endif

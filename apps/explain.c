@@ -1,0 +1,96 @@
+/* dvi explain: what a method makes of a problem before a single step is taken. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "command.h"
+#include "open.h"
+#include "options.h"
+
+enum { NAMES_SHOWN = 12 };
+
+/* The value that a parameter has: the last setting of its name, else the default. */
+static void print_parameter(const problem_parameter *parameter, const words *settings)
+{
+  const size_t length = strlen(parameter->name);
+  for (int i = settings->count - 1; i >= 0; i--)
+    if (strncmp(settings->word[i], parameter->name, length) == 0 && settings->word[i][length] == '=') {
+      (void)printf("  parameter    %s   %s\n", settings->word[i], parameter->help);
+      return;
+    }
+  (void)printf("  parameter    %s=%g   %s (default)\n", parameter->name, parameter->value, parameter->help);
+}
+
+static void print_problem(const problem *scene, const words *settings)
+{
+  const int index = problem_find(scene->name);
+  (void)printf("problem %s: %s\n", scene->name, problem_summary(index));
+  for (const problem_parameter *k = problem_parameters(index); k->name != NULL; k++) print_parameter(k, settings);
+  (void)printf("  coordinates  %d:", scene->n);
+  for (int i = 0; i < scene->n && i < NAMES_SHOWN; i++) (void)printf(" %s", scene->coordinate[i]);
+  (void)printf("%s\n  watched      ", scene->n > NAMES_SHOWN ? " ..." : "");
+  for (int i = 0; i < dvi_system_invariant_count(scene->system); i++)
+    (void)printf("%s%s", i > 0 ? ", " : "", dvi_system_invariant_name(scene->system, i));
+  (void)printf("\n  first run    --h %g --t-end %g\n", scene->h, scene->t_end);
+  (void)printf("  judged by    %s\n", scene->exact != NULL      ? "its exact solution"
+                                      : scene->digits_q != NULL ? "its stored quadruple-precision result, or IDA"
+                                                                : "IDA");
+}
+
+static int print_method(const dvi_integrator *integrator)
+{
+  const size_t size = dvi_integrator_explain(integrator, NULL, 0) + 1;
+  char *text = malloc(size);
+  if (text == NULL) {
+    complain("out of memory");
+    return FAILED;
+  }
+  (void)dvi_integrator_explain(integrator, text, size);
+  (void)printf("method %s: order %d\n%s", dvi_integrator_method(integrator), dvi_integrator_order(integrator), text);
+  free(text);
+  return DONE;
+}
+
+static int explain(const problem *scene, const char *method)
+{
+  dvi_integrator *integrator = NULL;
+  int code = open_integrator(scene, method, &integrator);
+  if (code != DONE) return code;
+  const dvi_status status = dvi_integrator_start(integrator, 0.0, scene->q, scene->p);
+  code = status == DVI_OK ? print_method(integrator) : library_error(status);
+  dvi_integrator_destroy(&integrator);
+  return code;
+}
+
+int explain_command(int argc, char **argv)
+{
+  const char *method = NULL;
+  words settings = {0};
+  const option options[] = {
+      {.name = "method", .word = &method, .value = "SPEC", .help = "the method: name[:key=value,...], see dvi list methods"},
+      {.name = "set", .words = &settings, .value = "NAME=VALUE", .help = "set a parameter of the problem; may be repeated"},
+      {.name = NULL},
+  };
+  const command_line command = {
+      .name = "explain",
+      .synopsis = "PROBLEM --method SPEC [--set NAME=VALUE ...]",
+      .operand = "PROBLEM",
+      .summary = "Say which terms a problem has, and which kernel, solver and sparsity a method chooses for it, and why.\n",
+      .options = options,
+      .details = "\nExamples:\n"
+                 "  dvi explain kepler --method galerkin:degree=4\n"
+                 "  dvi explain fpu --method midpoint --set ell=1000\n",
+  };
+  const char *name;
+  int code;
+  if (!options_parse(&command, argc, argv, &name, &code)) return code;
+  if (method == NULL)
+    return usage_error("explain: --method is missing, for example --method galerkin:degree=4; see dvi list methods");
+  problem *scene;
+  code = open_problem(name, &settings, &scene);
+  if (code != DONE) return code;
+  print_problem(scene, &settings);
+  code = explain(scene, method);
+  problem_destroy(&scene);
+  return code;
+}

@@ -1,0 +1,159 @@
+#define _XOPEN_SOURCE 700
+#include "file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "command.h"
+
+static bool refuse(const char *path)
+{
+  complain("cannot write '%s': %s", path, strerror(errno));
+  return false;
+}
+
+static char *join(const char *head, size_t head_length, const char *tail)
+{
+  const size_t tail_length = strlen(tail);
+  char *text = malloc(head_length + tail_length + 1);
+  if (text != NULL) {
+    memcpy(text, head, head_length);
+    memcpy(text + head_length, tail, tail_length + 1);
+  }
+  return text;
+}
+
+/* The file that a path leads to: a rename must replace the file, not a link to it. */
+static char *resolve(const char *path)
+{
+  char *real = realpath(path, NULL);
+  return real != NULL ? real : join(path, strlen(path), "");
+}
+
+static char *folder_of(const char *path)
+{
+  const char *slash = strrchr(path, '/');
+  if (slash == NULL) return join(".", 1, "");
+  return join(path, slash == path ? 1 : (size_t)(slash - path), "");
+}
+
+/* Create a new file beside path, with the rights that the old file has or a new one would get. */
+static bool open_temporary(whole_file *file, const struct stat *old)
+{
+  char tail[48];
+  (void)snprintf(tail, sizeof tail, ".part-%ld", (long)getpid());
+  file->temporary = join(file->path, strlen(file->path), tail);
+  if (file->temporary == NULL) return false;
+  (void)unlink(file->temporary); /* left over from a killed process of the same number */
+  const int descriptor = open(file->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (descriptor < 0) return false;
+  if (old != NULL) (void)fchmod(descriptor, old->st_mode & 07777);
+  file->stream = fdopen(descriptor, "w");
+  if (file->stream == NULL) (void)close(descriptor);
+  return file->stream != NULL;
+}
+
+static bool open_path(whole_file *file)
+{
+  struct stat old;
+  const bool exists = stat(file->path, &old) == 0;
+  if (!exists && errno != ENOENT) return false;
+  if (!exists || S_ISREG(old.st_mode)) {
+    if (exists && access(file->path, W_OK) != 0) return false;
+    return open_temporary(file, exists ? &old : NULL);
+  }
+  file->stream = fopen(file->path, "w");
+  return file->stream != NULL;
+}
+
+bool file_open(whole_file *file, const char *path)
+{
+  memset(file, 0, sizeof *file);
+  if (strcmp(path, "-") == 0) {
+    file->stream = stdout;
+    return true;
+  }
+  errno = 0;
+  file->path = resolve(path);
+  if (file->path != NULL && open_path(file)) return true;
+  (void)refuse(path);
+  file_discard(file);
+  return false;
+}
+
+/* A rename is on disk only when its folder is. Some file systems cannot sync folders; the content is safe all the same. */
+static void sync_folder(const char *path)
+{
+  char *folder = folder_of(path);
+  if (folder == NULL) return;
+  const int descriptor = open(folder, O_RDONLY | O_CLOEXEC);
+  if (descriptor >= 0) {
+    (void)fsync(descriptor);
+    (void)close(descriptor);
+  }
+  free(folder);
+}
+
+static bool close_stream(whole_file *file)
+{
+  errno = 0;
+  bool good = fflush(file->stream) == 0 && !ferror(file->stream);
+  if (good && file->temporary != NULL) good = fsync(fileno(file->stream)) == 0;
+  const int reason = errno;
+  if (fclose(file->stream) != 0 && good)
+    good = false;
+  else if (reason != 0)
+    errno = reason;
+  file->stream = NULL;
+  return good;
+}
+
+bool file_keep(whole_file *file)
+{
+  if (file->path == NULL) {
+    file->stream = NULL;
+    return output_flushed();
+  }
+  bool good = close_stream(file);
+  if (good && file->temporary != NULL) {
+    good = rename(file->temporary, file->path) == 0;
+    if (good) {
+      free(file->temporary);
+      file->temporary = NULL;
+      sync_folder(file->path);
+    }
+  }
+  if (!good) (void)refuse(file->path);
+  file_discard(file);
+  return good;
+}
+
+void file_discard(whole_file *file)
+{
+  if (file->stream != NULL && file->path != NULL) (void)fclose(file->stream);
+  if (file->temporary != NULL) (void)unlink(file->temporary);
+  free(file->temporary);
+  free(file->path);
+  memset(file, 0, sizeof *file);
+}
+
+bool file_writable(const char *path)
+{
+  if (strcmp(path, "-") == 0) return true;
+  struct stat old;
+  const bool exists = stat(path, &old) == 0;
+  errno = exists && S_ISDIR(old.st_mode) ? EISDIR : 0;
+  bool good = errno == 0 && (!exists || access(path, W_OK) == 0);
+  if (good && (!exists || S_ISREG(old.st_mode))) {
+    char *real = resolve(path);
+    char *folder = real != NULL ? folder_of(real) : NULL;
+    good = folder != NULL && access(folder, W_OK | X_OK) == 0;
+    free(folder);
+    free(real);
+  }
+  return good || refuse(path);
+}

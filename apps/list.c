@@ -1,0 +1,112 @@
+/* dvi list: what there is to choose from. */
+#include <stdio.h>
+#include <string.h>
+
+#include "command.h"
+#include "file.h"
+#include "options.h"
+#include "problem.h"
+#include "table.h"
+
+enum { NAMES_SIZE = 1024, NAME_COLUMN = 18, KEY_COLUMN = 12 };
+
+static const table_column method_columns[] = {{"method", NULL}, {"summary", NULL}, {"source", NULL}, {"keys", NULL}, {NULL, NULL}};
+static const table_column problem_columns[] = {{"problem", NULL}, {"summary", NULL}, {"parameters", NULL}, {NULL, NULL}};
+
+/* Append a word to a list of words; one that does not fit is left out. */
+static void append(char *text, const char *word)
+{
+  const size_t length = strlen(text);
+  if (length + strlen(word) + 2 <= NAMES_SIZE)
+    (void)snprintf(text + length, NAMES_SIZE - length, "%s%s", length > 0 ? " " : "", word);
+}
+
+static void print_methods(void)
+{
+  for (int i = 0; i < dvi_method_count(); i++) {
+    (void)printf("%-*s%s [%s]\n", NAME_COLUMN, dvi_method_name(i), dvi_method_summary(i), dvi_method_citation(i));
+    for (int k = 0; k < dvi_method_key_count(i); k++)
+      (void)printf("    %-*s  %s\n", KEY_COLUMN, dvi_method_key_name(i, k), dvi_method_key_help(i, k));
+  }
+  (void)printf("\nA method is named as name[:key=value,...], for example galerkin:degree=4,quadrature=lobatto,nodes=5\n");
+}
+
+static result_table *methods_table(void)
+{
+  result_table *t = table_create(method_columns);
+  for (int i = 0; i < dvi_method_count(); i++) {
+    char keys[NAMES_SIZE] = "";
+    for (int k = 0; k < dvi_method_key_count(i); k++) append(keys, dvi_method_key_name(i, k));
+    table_text(t, dvi_method_name(i));
+    table_text(t, dvi_method_summary(i));
+    table_text(t, dvi_method_citation(i));
+    table_text(t, keys);
+  }
+  return t;
+}
+
+static void print_problems(void)
+{
+  for (int i = 0; i < problem_count(); i++) {
+    (void)printf("%-*s%s\n", NAME_COLUMN, problem_name(i), problem_summary(i));
+    for (const problem_parameter *k = problem_parameters(i); k->name != NULL; k++)
+      (void)printf("    %-*s  %s (default %g)\n", KEY_COLUMN, k->name, k->help, k->value);
+  }
+  (void)printf("\nParameters are set with --set name=value, for example dvi run kepler --method verlet --set e=0.9\n");
+}
+
+static result_table *problems_table(void)
+{
+  result_table *t = table_create(problem_columns);
+  for (int i = 0; i < problem_count(); i++) {
+    char parameters[NAMES_SIZE] = "";
+    for (const problem_parameter *k = problem_parameters(i); k->name != NULL; k++) {
+      char pair[128];
+      (void)snprintf(pair, sizeof pair, "%s=%.17g", k->name, k->value);
+      append(parameters, pair);
+    }
+    table_text(t, problem_name(i));
+    table_text(t, problem_summary(i));
+    table_text(t, parameters);
+  }
+  return t;
+}
+
+static int write_csv(const result_table *table, const char *path)
+{
+  whole_file csv;
+  if (!table_good(table) || !file_open(&csv, path)) return FAILED;
+  table_csv(table, csv.stream);
+  return file_keep(&csv) ? DONE : FAILED;
+}
+
+int list_command(int argc, char **argv)
+{
+  const char *csv = NULL;
+  const option options[] = {{.name = "csv", .word = &csv, .value = "-|FILE", .help = "write the list as CSV"}, {.name = NULL}};
+  const command_line command = {
+      .name = "list",
+      .synopsis = "methods|problems [--csv -|FILE]",
+      .operand = "methods or problems",
+      .summary = "List the methods with the keys of their specifications, or the problems with their parameters.\n",
+      .options = options,
+      .details = "\nCSV columns: method,summary,source,keys or problem,summary,parameters; keys and parameters are\n"
+                 "separated by blanks, parameters stand with their defaults.\n\n"
+                 "Examples:\n"
+                 "  dvi list methods\n"
+                 "  dvi list problems --csv -\n",
+  };
+  const char *what;
+  int code;
+  if (!options_parse(&command, argc, argv, &what, &code)) return code;
+  const bool methods = strcmp(what, "methods") == 0;
+  if (!methods && strcmp(what, "problems") != 0) return usage_error("list: there are methods and problems to list, not '%s'", what);
+  if (csv == NULL) {
+    (methods ? print_methods : print_problems)();
+    return DONE;
+  }
+  result_table *t = methods ? methods_table() : problems_table();
+  code = write_csv(t, csv);
+  table_destroy(&t);
+  return code;
+}

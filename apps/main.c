@@ -1,0 +1,77 @@
+/* dvi: the command. Each subcommand has a file of its own; this one finds it. */
+#define _POSIX_C_SOURCE 200809L
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "command.h"
+#include "spelling.h"
+
+typedef struct subcommand {
+  const char *name;
+  int (*run)(int argc, char **argv);
+} subcommand;
+
+static const subcommand subcommands[] = {
+    {"list", list_command},   {"explain", explain_command}, {"run", run_command},
+    {"order", order_command}, {"bench", bench_command},     {NULL, NULL},
+};
+
+static const char help[] =
+    "Usage: dvi COMMAND [ARGUMENTS]\n"
+    "\n"
+    "Discrete variational mechanics: integrate mechanical systems by making a discrete action stationary.\n"
+    "\n"
+    "Commands:\n"
+    "  list methods|problems   what there is to choose from\n"
+    "  explain PROBLEM ...     which kernel, solver and sparsity a method chooses for a problem, and why\n"
+    "  run PROBLEM ...         compute a trajectory and its invariants as CSV\n"
+    "  order PROBLEM ...       measure the order of methods against an independent judge\n"
+    "  bench PROBLEM ...       measure speed against error, also beside SUNDIALS' integrators\n"
+    "\n"
+    "  dvi COMMAND --help      options, columns and examples of a command\n"
+    "  dvi --version           versions of dvi and of SUNDIALS\n"
+    "\n"
+    "A first session:\n"
+    "  dvi list problems\n"
+    "  dvi run kepler --method galerkin:degree=4 --h 0.1 --t-end 10 --out orbit.csv\n"
+    "  dvi order kepler --method galerkin:degree=2 --method verlet --plot order.svg\n"
+    "  dvi bench kepler --against cvode,ida --plot bench.svg\n"
+    "\n"
+    "Exit codes: 0 done; 1 a numerical failure, or a file that cannot be read or written; 2 a wrong command line;\n"
+    "3 a check failed; 130 or 143 a run that Ctrl-C or SIGTERM ended.\n";
+
+static const char *subcommand_at(int k, const void *list)
+{
+  return ((const subcommand *)list)[k].name;
+}
+
+static int dispatch(int argc, char **argv)
+{
+  if (argc < 2) {
+    (void)fputs(help, stderr);
+    return USAGE;
+  }
+  if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "help") == 0) {
+    (void)fputs(help, stdout);
+    return DONE;
+  }
+  if (strcmp(argv[1], "--version") == 0) {
+    (void)printf("dvi %s (SUNDIALS %s)\n", dvi_version(), dvi_reference_version());
+    return DONE;
+  }
+  for (const subcommand *s = subcommands; s->name != NULL; s++)
+    if (strcmp(argv[1], s->name) == 0) return s->run(argc - 2, argv + 2);
+  char near[128];
+  return usage_error("unknown command '%s'%s; see dvi --help", argv[1],
+                     suggestion(argv[1], subcommand_at, subcommands, near, sizeof near));
+}
+
+int main(int argc, char **argv)
+{
+  /* A reader that goes away and a file that outgrows its limit shall be write errors, with their messages and clean-up. */
+  (void)signal(SIGPIPE, SIG_IGN);
+  (void)signal(SIGXFSZ, SIG_IGN);
+  const int code = dispatch(argc, argv);
+  return output_flushed() || code != DONE ? code : FAILED;
+}

@@ -1,0 +1,114 @@
+#include "open.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "command.h"
+#include "spelling.h"
+
+enum { MESSAGE_SIZE = 1024, WORD_SIZE = 64, HINT_SIZE = 128 };
+
+static const char *problem_at(int k, const void *list)
+{
+  (void)list;
+  return k < problem_count() ? problem_name(k) : NULL;
+}
+
+static const char *parameter_at(int k, const void *list)
+{
+  return ((const problem_parameter *)list)[k].name;
+}
+
+static const char *method_at(int k, const void *list)
+{
+  (void)list;
+  return dvi_method_name(k);
+}
+
+/* Keys of the method whose index *list is; a composition hands keys on to its base, so those of all methods follow. */
+static const char *key_at(int k, const void *list)
+{
+  const int method = *(const int *)list;
+  if (k < dvi_method_key_count(method)) return dvi_method_key_name(method, k);
+  k -= dvi_method_key_count(method);
+  for (int i = 0; i < dvi_method_count(); i++) {
+    if (k < dvi_method_key_count(i)) return dvi_method_key_name(i, k);
+    k -= dvi_method_key_count(i);
+  }
+  return NULL;
+}
+
+static bool is_known(const char *word, word_at known, const void *list)
+{
+  const char *candidate;
+  for (int k = 0; (candidate = known(k, list)) != NULL; k++)
+    if (strcmp(candidate, word) == 0) return true;
+  return false;
+}
+
+/* Copy what stands before any of the stop characters. Returns what follows that character, or NULL at the end of the text. */
+static const char *take_word(const char *text, const char *stops, char *word)
+{
+  const size_t length = strcspn(text, stops);
+  (void)snprintf(word, WORD_SIZE, "%.*s", (int)length, text);
+  return text[length] != '\0' ? text + length + 1 : NULL;
+}
+
+static void hint_at_setting(const words *settings, const problem_parameter *parameters, char *hint)
+{
+  char word[WORD_SIZE];
+  hint[0] = '\0';
+  for (int i = 0; i < settings->count && hint[0] == '\0'; i++) {
+    (void)take_word(settings->word[i], "=", word);
+    if (!is_known(word, parameter_at, parameters)) (void)suggestion(word, parameter_at, parameters, hint, HINT_SIZE);
+  }
+}
+
+int open_problem(const char *name, const words *settings, problem **scene)
+{
+  char message[MESSAGE_SIZE] = "";
+  char hint[HINT_SIZE];
+  *scene = NULL;
+  const int index = problem_find(name);
+  if (index < 0)
+    return usage_error("unknown problem '%s'%s; see dvi list problems", name,
+                       suggestion(name, problem_at, NULL, hint, sizeof hint));
+  const dvi_status status = problem_create(name, settings->count, settings->word, scene, message, sizeof message);
+  if (status == DVI_OK) return DONE;
+  if (status != DVI_BAD_OPTION && message[0] == '\0') return library_error(status);
+  hint_at_setting(settings, problem_parameters(index), hint);
+  complain("%s%s", message, hint);
+  return status == DVI_BAD_OPTION ? USAGE : FAILED;
+}
+
+static int method_index(const char *name)
+{
+  for (int i = 0; i < dvi_method_count(); i++)
+    if (strcmp(dvi_method_name(i), name) == 0) return i;
+  return -1;
+}
+
+static void hint_at_method(const char *method, char *hint)
+{
+  char word[WORD_SIZE];
+  const char *rest = take_word(method, ":", word);
+  const int index = method_index(word);
+  hint[0] = '\0';
+  if (index < 0) (void)suggestion(word, method_at, NULL, hint, HINT_SIZE);
+  while (index >= 0 && rest != NULL && hint[0] == '\0') {
+    char pair[WORD_SIZE];
+    rest = take_word(rest, ",", pair);
+    (void)take_word(pair, "=", word);
+    if (!is_known(word, key_at, &index)) (void)suggestion(word, key_at, &index, hint, HINT_SIZE);
+  }
+}
+
+int open_integrator(const problem *scene, const char *method, dvi_integrator **integrator)
+{
+  const dvi_status status = dvi_integrator_create(scene->system, method, integrator);
+  if (status != DVI_BAD_OPTION) return status == DVI_OK ? DONE : library_error(status);
+  char hint[HINT_SIZE];
+  hint_at_method(method, hint);
+  const bool said = strstr(dvi_last_error(), "did you mean") != NULL;
+  return usage_error("--method %s: %s%s", method, dvi_last_error(), said ? "" : hint);
+}

@@ -1,0 +1,13 @@
+/** Problems and integrators as the command line names them. */
+#ifndef OPEN_H
+#define OPEN_H
+#include "options.h"
+#include "problem.h"
+
+/** Make the problem, with its "name=value" settings. Returns DONE, or complains (with the nearest known name) and returns the
+ *  exit code. */
+int open_problem(const char *name, const words *settings, problem **scene);
+
+/** Make an integrator for it from a method's specification, in the same manner. */
+int open_integrator(const problem *scene, const char *method, dvi_integrator **integrator);
+#endif

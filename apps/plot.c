@@ -1,0 +1,176 @@
+#define _POSIX_C_SOURCE 200809L
+#include "plot.h"
+
+#include <errno.h>
+#include <math.h>
+#include <spawn.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "command.h"
+#include "file.h"
+
+extern char **environ;
+
+enum { WIDTH = 860, PANEL_HEIGHT = 430, COLOURS = 8 };
+
+/* Okabe and Ito's colours, which the colour-blind can tell apart; their yellow is too pale for lines. */
+static const char *const colour[COLOURS] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000", "#7F3C8D"};
+
+/* A gnuplot string: in double quotes, with what is special there escaped. */
+static void quoted(FILE *script, const char *text)
+{
+  (void)fputc('"', script);
+  for (; *text != '\0'; text++) {
+    if (*text == '"' || *text == '\\') (void)fputc('\\', script);
+    (void)fputc(*text == '\n' ? ' ' : *text, script);
+  }
+  (void)fputc('"', script);
+}
+
+static void setting(FILE *script, const char *what, const char *text)
+{
+  (void)fprintf(script, "set %s ", what);
+  quoted(script, text);
+  (void)fputs(" noenhanced\n", script);
+}
+
+static bool drawable(const plot_panel *panel, const plot_curve *curve, int i)
+{
+  const double x = curve->x[i];
+  const double y = curve->y[i];
+  return isfinite(x) && isfinite(y) && (!panel->logarithmic || (x > 0.0 && y > 0.0));
+}
+
+static int points(const plot_panel *panel, const plot_curve *curve)
+{
+  int count = 0;
+  for (int i = 0; i < curve->count; i++) count += drawable(panel, curve, i);
+  return count;
+}
+
+/* Each curve's points as a block of numbers, named by panel and curve. */
+static void write_blocks(FILE *script, int index, const plot_panel *panel)
+{
+  for (int k = 0; k < panel->curves; k++) {
+    const plot_curve *curve = &panel->curve[k];
+    (void)fprintf(script, "$panel%d_curve%d << END\n", index, k);
+    for (int i = 0; i < curve->count; i++)
+      if (drawable(panel, curve, i)) (void)fprintf(script, "%.9g %.9g\n", curve->x[i], curve->y[i]);
+    (void)fputs("END\n", script);
+  }
+}
+
+static void write_curve(FILE *script, int index, const plot_panel *panel, int k, int style)
+{
+  const plot_curve *curve = &panel->curve[k];
+  (void)fprintf(script, "$panel%d_curve%d using 1:2 title ", index, k);
+  quoted(script, curve->label);
+  (void)fputs(" noenhanced with ", script);
+  if (curve->guide)
+    (void)fputs("lines lw 1 dt 2 lc rgb '#808080'", script);
+  else if (panel->smooth)
+    (void)fprintf(script, "lines lw 1.2 lc rgb '%s'", colour[style % COLOURS]);
+  else
+    (void)fprintf(script, "linespoints lw 1.6 ps 0.7 pt %d lc rgb '%s'", 4 + style, colour[style % COLOURS]);
+}
+
+static void write_panel(FILE *script, int index, const plot_panel *panel)
+{
+  setting(script, "title", panel->title);
+  setting(script, "xlabel", panel->x_label);
+  setting(script, "ylabel", panel->y_label);
+  (void)fputs(panel->logarithmic ? "set logscale xy 10\nset format x '10^{%L}'\nset format y '10^{%L}'\n"
+                                 : "unset logscale\nset format '%g'\n",
+              script);
+  const char *joint = "plot ";
+  for (int k = 0, style = 0; k < panel->curves; k++) {
+    if (points(panel, &panel->curve[k]) == 0) continue;
+    (void)fputs(joint, script);
+    write_curve(script, index, panel, k, style);
+    joint = ", \\\n     ";
+    style += !panel->curve[k].guide;
+  }
+  (void)fputc('\n', script);
+}
+
+static void write_script(FILE *script, int panels, const plot_panel *panel)
+{
+  (void)fprintf(script, "set terminal svg size %d,%d enhanced background rgb 'white' font 'Helvetica,13'\n", WIDTH,
+                panels * PANEL_HEIGHT);
+  (void)fputs("set grid lc rgb '#d0d0d0'\nset border lc rgb '#404040'\nset key outside right top spacing 1.2\n", script);
+  for (int i = 0; i < panels; i++) write_blocks(script, i, &panel[i]);
+  if (panels > 1) (void)fprintf(script, "set multiplot layout %d,1\n", panels);
+  for (int i = 0; i < panels; i++) write_panel(script, i, &panel[i]);
+  if (panels > 1) (void)fputs("unset multiplot\n", script);
+}
+
+/* Start gnuplot with the script as its input and the picture as its output. Returns 0 or an error number. */
+static int start_gnuplot(FILE *script, FILE *picture, pid_t *process)
+{
+  char name[] = "gnuplot";
+  char *arguments[] = {name, NULL};
+  posix_spawn_file_actions_t actions;
+  int failure = posix_spawn_file_actions_init(&actions);
+  if (failure != 0) return failure;
+  failure = posix_spawn_file_actions_adddup2(&actions, fileno(script), STDIN_FILENO);
+  if (failure == 0) failure = posix_spawn_file_actions_adddup2(&actions, fileno(picture), STDOUT_FILENO);
+  if (failure == 0) failure = posix_spawnp(process, name, &actions, NULL, arguments, environ);
+  (void)posix_spawn_file_actions_destroy(&actions);
+  return failure;
+}
+
+/* True if gnuplot drew the picture. */
+static bool draw(FILE *script, FILE *picture, const char *path)
+{
+  pid_t process;
+  const int failure = start_gnuplot(script, picture, &process);
+  if (failure != 0) {
+    complain("no plot in '%s': gnuplot cannot be started (%s); install the package gnuplot-nox", path, strerror(failure));
+    return false;
+  }
+  int result = 0;
+  while (waitpid(process, &result, 0) < 0 && errno == EINTR) continue;
+  if (WIFEXITED(result) && WEXITSTATUS(result) == 127) {
+    complain("no plot in '%s': gnuplot is not installed (package gnuplot-nox)", path);
+    return false;
+  }
+  if (!WIFEXITED(result) || WEXITSTATUS(result) != 0) complain("no plot in '%s': gnuplot failed", path);
+  return WIFEXITED(result) && WEXITSTATUS(result) == 0;
+}
+
+static bool anything_to_draw(int panels, const plot_panel *panel)
+{
+  for (int i = 0; i < panels; i++) {
+    int count = 0;
+    for (int k = 0; k < panel[i].curves; k++) count += points(&panel[i], &panel[i].curve[k]);
+    if (count == 0) return false;
+  }
+  return true;
+}
+
+bool plot_write(const char *path, int panels, const plot_panel *panel)
+{
+  if (!anything_to_draw(panels, panel)) {
+    complain("no plot in '%s': there is no point that its axes can show", path);
+    return true;
+  }
+  FILE *script = tmpfile();
+  if (script == NULL) {
+    complain("no plot in '%s': no temporary file for gnuplot: %s", path, strerror(errno));
+    return true;
+  }
+  write_script(script, panels, panel);
+  whole_file picture;
+  bool good = fflush(script) == 0 && fseek(script, 0, SEEK_SET) == 0 && file_open(&picture, path);
+  if (good) {
+    if (draw(script, picture.stream, path))
+      good = file_keep(&picture);
+    else
+      file_discard(&picture);
+  }
+  (void)fclose(script);
+  return good;
+}

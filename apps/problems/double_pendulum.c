@@ -1,0 +1,108 @@
+/* Two point masses on two rods in a plane, angles from straight down: a general Lagrangian whose mass depends on q.
+ *
+ *     L = A v1^2/2 + B v2^2/2 + C cos(q1 - q2) v1 v2 + G1 cos q1 + G2 cos q2,
+ *     A = (m1+m2) l1^2,  B = m2 l2^2,  C = m2 l1 l2,  G1 = (m1+m2) g l1,  G2 = m2 g l2. */
+#include <math.h>
+
+#include "entry.h"
+
+typedef struct coefficients {
+  double A, B, C, G1, G2;
+} coefficients;
+
+static int value(int count, const double *t, const double *q, const double *v, double *L, void *user)
+{
+  const coefficients *own = user;
+  const double *restrict q1 = q, *restrict q2 = q + count, *restrict v1 = v, *restrict v2 = v + count;
+  (void)t;
+  for (int k = 0; k < count; k++)
+    L[k] = 0.5 * own->A * v1[k] * v1[k] + 0.5 * own->B * v2[k] * v2[k] + own->C * cos(q1[k] - q2[k]) * v1[k] * v2[k] +
+           own->G1 * cos(q1[k]) + own->G2 * cos(q2[k]);
+  return 0;
+}
+
+static int gradient(int count, const double *t, const double *q, const double *v, double *L_q, double *L_v, void *user)
+{
+  const coefficients own = *(const coefficients *)user;
+  const double *restrict q1 = q, *restrict q2 = q + count, *restrict v1 = v, *restrict v2 = v + count;
+  double *restrict L_q1 = L_q, *restrict L_q2 = L_q + count, *restrict L_v1 = L_v, *restrict L_v2 = L_v + count;
+  (void)t;
+  for (int k = 0; k < count; k++) {
+    const double c = own.C * cos(q1[k] - q2[k]), s = own.C * sin(q1[k] - q2[k]) * v1[k] * v2[k];
+    L_q1[k] = -s - own.G1 * sin(q1[k]);
+    L_q2[k] = s - own.G2 * sin(q2[k]);
+    L_v1[k] = own.A * v1[k] + c * v2[k];
+    L_v2[k] = own.B * v2[k] + c * v1[k];
+  }
+  return 0;
+}
+
+static int hessian(int count, const double *t, const double *q, const double *v, double *L_qq, double *L_qv, double *L_vv,
+                   void *user)
+{
+  const coefficients own = *(const coefficients *)user;
+  const double *restrict q1 = q, *restrict q2 = q + count, *restrict v1 = v, *restrict v2 = v + count;
+  (void)t;
+  for (int k = 0; k < count; k++) {
+    const double c = own.C * cos(q1[k] - q2[k]), s = own.C * sin(q1[k] - q2[k]);
+    const double c_v1_v2 = c * v1[k] * v2[k];
+    L_qq[k] = -c_v1_v2 - own.G1 * cos(q1[k]);
+    L_qq[count + k] = c_v1_v2;
+    L_qq[2 * count + k] = c_v1_v2;
+    L_qq[3 * count + k] = -c_v1_v2 - own.G2 * cos(q2[k]);
+    L_qv[k] = -s * v2[k];
+    L_qv[count + k] = s * v2[k];
+    L_qv[2 * count + k] = -s * v1[k];
+    L_qv[3 * count + k] = s * v1[k];
+    L_vv[k] = own.A;
+    L_vv[count + k] = c;
+    L_vv[2 * count + k] = c;
+    L_vv[3 * count + k] = own.B;
+  }
+  return 0;
+}
+
+static dvi_status make(const double *setting, problem *made)
+{
+  const dvi_status status = problem_room(made, 2, sizeof(coefficients));
+  if (status != DVI_OK) return status;
+  const double pi = 3.14159265358979323846;
+  const double l1 = setting[0], l2 = setting[1], m1 = setting[2], m2 = setting[3], g = setting[4];
+  coefficients *own = made->parameters;
+  *own = (coefficients){(m1 + m2) * l1 * l1, m2 * l2 * l2, m2 * l1 * l2, (m1 + m2) * g * l1, m2 * g * l2};
+  problem_label(made, 0, "theta_1");
+  problem_label(made, 1, "theta_2");
+  made->q[0] = pi / 4.0;
+  made->q[1] = pi / 2.0;
+  made->v[1] = pi / 8.0;
+
+  const dvi_lagrangian lagrangian = {.value_batch = value, .gradient_batch = gradient, .hessian_batch = hessian, .user = own};
+  const dvi_system_terms terms = {.dimension = 2, .lagrangian = &lagrangian};
+  return dvi_system_create(&terms, &made->system);
+}
+
+static const problem_parameter parameters[] = {
+    {.name = "l1", .value = 2.0, .least = 1e-50, .most = 1e50, .help = "the length of the upper rod, positive"},
+    {.name = "l2", .value = 3.0, .least = 1e-50, .most = 1e50, .help = "the length of the lower rod, positive"},
+    {.name = "m1", .value = 1.0, .least = 1e-50, .most = 1e50, .help = "the upper mass, positive"},
+    {.name = "m2", .value = 2.0, .least = 1e-50, .most = 1e50, .help = "the lower mass, positive"},
+    {.name = "g", .value = 9.80665, .least = -1e50, .most = 1e50, .help = "the acceleration of gravity, any number"},
+    {.name = NULL},
+};
+
+/* Quadruple-precision results, recomputed by tests/reference/test_digits. */
+static const double digits_q[] = {0.61490406957921587, 0.37981894693941085};
+static const double digits_p[] = {-29.792570769056137, -47.393198976598959};
+
+const problem_entry problem_entry_double_pendulum = {
+    .name = "double-pendulum",
+    .summary = "two masses on two rods; a Lagrangian that is not separable",
+    .parameters = parameters,
+    .make = make,
+    .h = 0.02,
+    .t_end = 20.0,
+    .order_h = 0.1,
+    .order_t_end = 1.0,
+    .digits_q = digits_q,
+    .digits_p = digits_p,
+};

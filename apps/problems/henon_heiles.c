@@ -1,0 +1,80 @@
+/* The Henon-Heiles system, V = (x^2+y^2)/2 + lambda (x^2 y - y^3/3): a star in the meridian plane of a galaxy. */
+#include <float.h>
+
+#include "entry.h"
+
+static int value(int count, const double *t, const double *q, double *V, void *user)
+{
+  const double lambda = *(const double *)user;
+  const double *restrict x = q, *restrict y = q + count;
+  (void)t;
+  for (int k = 0; k < count; k++) V[k] = 0.5 * (x[k] * x[k] + y[k] * y[k]) + lambda * y[k] * (x[k] * x[k] - y[k] * y[k] / 3.0);
+  return 0;
+}
+
+static int gradient(int count, const double *t, const double *q, double *V_q, void *user)
+{
+  const double lambda = *(const double *)user;
+  const double *restrict x = q, *restrict y = q + count;
+  double *restrict V_x = V_q, *restrict V_y = V_q + count;
+  (void)t;
+  for (int k = 0; k < count; k++) {
+    V_x[k] = x[k] + 2.0 * lambda * x[k] * y[k];
+    V_y[k] = y[k] + lambda * (x[k] * x[k] - y[k] * y[k]);
+  }
+  return 0;
+}
+
+static int hessian(int count, const double *t, const double *q, double *V_qq, void *user)
+{
+  const double lambda = *(const double *)user;
+  const double *restrict x = q, *restrict y = q + count;
+  double *restrict V_xx = V_qq, *restrict V_yx = V_qq + count, *restrict V_xy = V_qq + 2 * count, *restrict V_yy = V_qq + 3 * count;
+  (void)t;
+  for (int k = 0; k < count; k++) {
+    V_xx[k] = 1.0 + 2.0 * lambda * y[k];
+    V_yx[k] = 2.0 * lambda * x[k];
+    V_xy[k] = V_yx[k];
+    V_yy[k] = 1.0 - 2.0 * lambda * y[k];
+  }
+  return 0;
+}
+
+static dvi_status make(const double *setting, problem *made)
+{
+  const dvi_status status = problem_room(made, 2, sizeof(double));
+  if (status != DVI_OK) return status;
+  double *lambda = made->parameters;
+  *lambda = setting[0];
+  problem_label(made, 0, "x");
+  problem_label(made, 1, "y");
+  made->q[0] = made->q[1] = 0.2;
+  made->v[0] = made->v[1] = 0.3;
+
+  const dvi_potential well = {
+      .name = "well", .value_batch = value, .gradient_batch = gradient, .hessian_batch = hessian, .user = lambda};
+  const dvi_system_terms terms = {.dimension = 2, .mass = {.scalar = 1.0}, .potentials = &well, .potential_count = 1};
+  return dvi_system_create(&terms, &made->system);
+}
+
+static const problem_parameter parameters[] = {
+    {.name = "lambda", .value = 1.0, .least = -1e100, .most = 1e100, .help = "the strength of the cubic terms, any number"},
+    {.name = NULL},
+};
+
+/* Quadruple-precision results, recomputed by tests/reference/test_digits. */
+static const double digits_q[] = {0.28899949332959411, 0.36374391032805752};
+static const double digits_p[] = {-0.16154778575548224, 0.0079304226255191460};
+
+const problem_entry problem_entry_henon_heiles = {
+    .name = "henon-heiles",
+    .summary = "a star in a galaxy's meridian plane; regular and chaotic orbits",
+    .parameters = parameters,
+    .make = make,
+    .h = 0.1,
+    .t_end = 100.0,
+    .order_h = 0.25,
+    .order_t_end = 1.0,
+    .digits_q = digits_q,
+    .digits_p = digits_p,
+};

@@ -1,0 +1,162 @@
+/* The planar Kepler problem, L = |v|^2/2 + 1/|q|, from the pericentre of an orbit with semi-major axis 1. */
+#include <float.h>
+#include <math.h>
+
+#include "entry.h"
+
+static int value(int count, const double *t, const double *q, double *V, void *user)
+{
+  const double *restrict x = q, *restrict y = q + count;
+  (void)t, (void)user;
+  for (int k = 0; k < count; k++) V[k] = -1.0 / sqrt(x[k] * x[k] + y[k] * y[k]);
+  return 0;
+}
+
+static int gradient(int count, const double *t, const double *q, double *V_q, void *user)
+{
+  const double *restrict x = q, *restrict y = q + count;
+  double *restrict V_x = V_q, *restrict V_y = V_q + count;
+  (void)t, (void)user;
+  for (int k = 0; k < count; k++) {
+    const double r2 = x[k] * x[k] + y[k] * y[k];
+    const double inverse = 1.0 / (r2 * sqrt(r2));
+    V_x[k] = x[k] * inverse;
+    V_y[k] = y[k] * inverse;
+  }
+  return 0;
+}
+
+static int hessian(int count, const double *t, const double *q, double *V_qq, void *user)
+{
+  const double *restrict x = q, *restrict y = q + count;
+  double *restrict V_xx = V_qq, *restrict V_yx = V_qq + count, *restrict V_xy = V_qq + 2 * count, *restrict V_yy = V_qq + 3 * count;
+  (void)t, (void)user;
+  for (int k = 0; k < count; k++) {
+    const double r2 = x[k] * x[k] + y[k] * y[k];
+    const double inverse = 1.0 / (r2 * sqrt(r2)), curvature = 3.0 * inverse / r2;
+    V_xx[k] = inverse - curvature * x[k] * x[k];
+    V_yx[k] = -curvature * x[k] * y[k];
+    V_xy[k] = V_yx[k];
+    V_yy[k] = inverse - curvature * y[k] * y[k];
+  }
+  return 0;
+}
+
+static int rotation(const double *q, double *xi, void *user)
+{
+  (void)user;
+  xi[0] = -q[1];
+  xi[1] = q[0];
+  return 0;
+}
+
+/* The Laplace-Runge-Lenz vector p x (q x p) - q/|q| points to the pericentre and has length e. */
+static int laplace_x(double t, const double *q, const double *p, double *I, void *user)
+{
+  (void)t, (void)user;
+  *I = p[1] * (q[0] * p[1] - q[1] * p[0]) - q[0] / hypot(q[0], q[1]);
+  return 0;
+}
+
+static int laplace_y(double t, const double *q, const double *p, double *I, void *user)
+{
+  (void)t, (void)user;
+  *I = -p[0] * (q[0] * p[1] - q[1] * p[0]) - q[1] / hypot(q[0], q[1]);
+  return 0;
+}
+
+/* E - sin E without cancellation. */
+static double minus_sine(double E)
+{
+  if (fabs(E) > 1.0) return E - sin(E);
+  double term = E, sum = 0.0;
+  for (int k = 3; k <= 21; k += 2) {
+    term *= -E * E / (k * (k - 1));
+    sum -= term;
+  }
+  return sum;
+}
+
+/* The mean anomaly t mod 2 pi, in [-pi, pi]. 2 pi is subtracted in two parts, the first one exactly: t may be millions of periods. */
+static double mean_anomaly(double t)
+{
+  const double period = 6.2831853071795865, period_rest = 2.4492935982947064e-16;
+  const double turns = nearbyint(t / period);
+  return fma(-turns, period, t) - turns * period_rest;
+}
+
+/* Kepler's equation E - e sin E = M. On [0, pi] the left side rises and is convex, so Newton's method comes down to the root from
+ * any point to the right of it, such as M + e or pi; it has arrived when it no longer comes down. */
+static double eccentric_anomaly(double e, double M)
+{
+  const double target = fabs(M);
+  double E, next = fmin(target + e, 3.14159265358979324);
+  do {
+    E = next;
+    const double sine = sin(0.5 * E), slope = (1.0 - e) + 2.0 * e * sine * sine;
+    next = E - ((1.0 - e) * E + e * minus_sine(E) - target) / slope;
+  } while (next < E);
+  return copysign(E, M);
+}
+
+static int exact(const problem *made, double t, double *q, double *p)
+{
+  const double e = *(const double *)made->parameters;
+  if (!isfinite(t)) return -1;
+  const double E = eccentric_anomaly(e, mean_anomaly(t));
+  const double s = sin(0.5 * E), b = sqrt((1.0 - e) * (1.0 + e));
+  const double r = (1.0 - e) + 2.0 * e * s * s;
+  q[0] = (1.0 - e) - 2.0 * s * s;
+  q[1] = b * sin(E);
+  p[0] = -sin(E) / r;
+  p[1] = b * cos(E) / r;
+  return 0;
+}
+
+static dvi_status make(const double *setting, problem *made)
+{
+  const dvi_status status = problem_room(made, 2, sizeof(double));
+  if (status != DVI_OK) return status;
+  double *e = made->parameters;
+  *e = setting[0];
+  problem_label(made, 0, "x");
+  problem_label(made, 1, "y");
+  made->q[0] = 1.0 - *e;
+  made->v[1] = sqrt((1.0 + *e) / (1.0 - *e));
+
+  const dvi_potential gravity = {.name = "gravity", .value_batch = value, .gradient_batch = gradient, .hessian_batch = hessian};
+  const dvi_symmetry symmetry = {.name = "angular_momentum", .generator = rotation};
+  const dvi_invariant laplace[2] = {{.name = "laplace_x", .value = laplace_x}, {.name = "laplace_y", .value = laplace_y}};
+  const dvi_system_terms terms = {.dimension = 2,
+                                  .mass = {.scalar = 1.0},
+                                  .potentials = &gravity,
+                                  .potential_count = 1,
+                                  .symmetries = &symmetry,
+                                  .symmetry_count = 1,
+                                  .invariants = laplace,
+                                  .invariant_count = 2};
+  return dvi_system_create(&terms, &made->system);
+}
+
+static const problem_parameter parameters[] = {
+    {.name = "e", .value = 0.6, .least = 0.0, .most = 1.0 - 0.5 * DBL_EPSILON, .help = "the eccentricity, 0 <= e < 1"},
+    {.name = NULL},
+};
+
+/* Quadruple-precision results, recomputed by tests/reference/test_digits. */
+static const double digits_q[] = {-1.5350235919098137, -0.28366840649978086};
+static const double digits_p[] = {0.22715073207749834, -0.47918775820321957};
+
+const problem_entry problem_entry_kepler = {
+    .name = "kepler",
+    .summary = "two bodies in a plane, period 2 pi, eccentricity e; exact solution known",
+    .parameters = parameters,
+    .make = make,
+    .exact = exact,
+    .h = 0.05,
+    .t_end = 100.0,
+    .order_h = 0.02,
+    .order_t_end = 10.0,
+    .digits_q = digits_q,
+    .digits_p = digits_p,
+};

@@ -1,0 +1,195 @@
+#include "nbody.h"
+
+#include <math.h>
+
+#include "entry.h"
+
+#define SYMMETRIES_MAX 6
+
+/* A translation along an axis, or a rotation about it. */
+typedef struct motion {
+  const nbody *bodies;
+  int axis;
+} motion;
+
+/* What the callbacks and generators point to. */
+typedef struct gravity {
+  nbody bodies;
+  double masses[3 * NBODY_MAX];
+  motion motions[SYMMETRIES_MAX];
+} gravity;
+
+/* The kernels below take the dimension as a constant at each of their callers, so that the loops over the axes are unrolled and
+ * the loop over the points is the one that is vectorised. */
+
+static inline int value(const int dimension, int count, const double *q, double *V, const nbody *own)
+{
+  for (int k = 0; k < count; k++) V[k] = 0.0;
+  for (int a = 0; a < own->bodies; a++)
+    for (int b = a + 1; b < own->bodies; b++) {
+      const double *restrict x_a = q + a * dimension * count, *restrict x_b = q + b * dimension * count;
+      const double weight = own->G * own->mass[a] * own->mass[b];
+      for (int k = 0; k < count; k++) {
+        double r2 = 0.0;
+        for (int i = 0; i < dimension; i++) {
+          const double d = x_a[i * count + k] - x_b[i * count + k];
+          r2 += d * d;
+        }
+        V[k] -= weight / sqrt(r2);
+      }
+    }
+  return 0;
+}
+
+/* The pull of one pair, added to one gradient row and subtracted from the other. */
+static inline void pull(const int dimension, int count, double weight, const double *restrict x_a, const double *restrict x_b,
+                        double *restrict V_a, double *restrict V_b)
+{
+  for (int k = 0; k < count; k++) {
+    double d[3], r2 = 0.0;
+    for (int i = 0; i < dimension; i++) {
+      d[i] = x_a[i * count + k] - x_b[i * count + k];
+      r2 += d[i] * d[i];
+    }
+    const double force = weight / (r2 * sqrt(r2));
+    for (int i = 0; i < dimension; i++) {
+      V_a[i * count + k] += force * d[i];
+      V_b[i * count + k] -= force * d[i];
+    }
+  }
+}
+
+static inline int gradient(const int dimension, int count, const double *q, double *V_q, const nbody *own)
+{
+  const int row = dimension * count;
+  for (int j = 0; j < own->bodies * row; j++) V_q[j] = 0.0;
+  for (int a = 0; a < own->bodies; a++)
+    for (int b = a + 1; b < own->bodies; b++)
+      pull(dimension, count, own->G * own->mass[a] * own->mass[b], q + a * row, q + b * row, V_q + a * row, V_q + b * row);
+  return 0;
+}
+
+/* The block weight (1/r^3 - 3 d d^T/r^5) of a pair: added to both diagonal blocks, subtracted off the diagonal. */
+static inline int hessian(const int dimension, int count, const double *q, double *V_qq, const nbody *own)
+{
+  const int n = own->bodies * dimension;
+  for (int j = 0; j < n * n * count; j++) V_qq[j] = 0.0;
+  for (int a = 0; a < own->bodies; a++)
+    for (int b = a + 1; b < own->bodies; b++) {
+      const double weight = own->G * own->mass[a] * own->mass[b];
+      for (int k = 0; k < count; k++) {
+        double d[3], r2 = 0.0;
+        for (int i = 0; i < dimension; i++) {
+          d[i] = q[(a * dimension + i) * count + k] - q[(b * dimension + i) * count + k];
+          r2 += d[i] * d[i];
+        }
+        const double inverse = weight / (r2 * sqrt(r2)), curvature = 3.0 * inverse / r2;
+        for (int j = 0; j < dimension; j++)
+          for (int i = 0; i < dimension; i++) {
+            const double entry = (i == j ? inverse : 0.0) - curvature * d[i] * d[j];
+            const int a_i = a * dimension + i, b_i = b * dimension + i;
+            double *a_column = V_qq + (a * dimension + j) * n * count + k, *b_column = V_qq + (b * dimension + j) * n * count + k;
+            a_column[a_i * count] += entry;
+            b_column[b_i * count] += entry;
+            a_column[b_i * count] = -entry;
+            b_column[a_i * count] = -entry;
+          }
+      }
+    }
+  return 0;
+}
+
+/* The callbacks of one dimension. */
+#define CALLBACKS(dimension)                                                                            \
+  static int value_##dimension(int count, const double *t, const double *q, double *V, void *user)      \
+  {                                                                                                     \
+    (void)t;                                                                                            \
+    return value(dimension, count, q, V, user);                                                         \
+  }                                                                                                     \
+  static int gradient_##dimension(int count, const double *t, const double *q, double *V_q, void *user) \
+  {                                                                                                     \
+    (void)t;                                                                                            \
+    return gradient(dimension, count, q, V_q, user);                                                    \
+  }                                                                                                     \
+  static int hessian_##dimension(int count, const double *t, const double *q, double *V_qq, void *user) \
+  {                                                                                                     \
+    (void)t;                                                                                            \
+    return hessian(dimension, count, q, V_qq, user);                                                    \
+  }
+CALLBACKS(2)
+CALLBACKS(3)
+
+static int translation(const double *q, double *xi, void *user)
+{
+  const motion *own = user;
+  (void)q;
+  for (int i = 0; i < own->bodies->bodies * own->bodies->dimension; i++) xi[i] = i % own->bodies->dimension == own->axis;
+  return 0;
+}
+
+/* xi = e_axis x x for each body; in the plane the axis is the third. */
+static int rotation(const double *q, double *xi, void *user)
+{
+  const motion *own = user;
+  const int dimension = own->bodies->dimension, first = (own->axis + 1) % 3, second = (own->axis + 2) % 3;
+  for (int i = 0; i < own->bodies->bodies * dimension; i++) xi[i] = 0.0;
+  for (int a = 0; a < own->bodies->bodies; a++) {
+    xi[a * dimension + first] = -q[a * dimension + second];
+    xi[a * dimension + second] = q[a * dimension + first];
+  }
+  return 0;
+}
+
+static int make_symmetries(gravity *own, dvi_symmetry *symmetries)
+{
+  static const char *const momentum[3] = {"momentum_x", "momentum_y", "momentum_z"};
+  static const char *const angular[3] = {"angular_momentum_x", "angular_momentum_y", "angular_momentum_z"};
+  const int planar = own->bodies.dimension == 2;
+  int count = 0;
+  for (int axis = 0; axis < own->bodies.dimension; axis++, count++)
+    symmetries[count] = (dvi_symmetry){.name = momentum[axis], .generator = translation};
+  for (int axis = planar ? 2 : 0; axis < 3; axis++, count++)
+    symmetries[count] = (dvi_symmetry){.name = planar ? "angular_momentum" : angular[axis], .generator = rotation};
+  for (int i = 0; i < count; i++) {
+    own->motions[i] = (motion){&own->bodies, i < own->bodies.dimension ? i : planar ? 2 : i - 3};
+    symmetries[i].user = &own->motions[i];
+  }
+  return count;
+}
+
+static dvi_status make_system(gravity *own, problem *made)
+{
+  const int planar = own->bodies.dimension == 2;
+  const dvi_potential attraction = {.name = "gravity",
+                                    .value_batch = planar ? value_2 : value_3,
+                                    .gradient_batch = planar ? gradient_2 : gradient_3,
+                                    .hessian_batch = planar ? hessian_2 : hessian_3,
+                                    .user = &own->bodies};
+  dvi_symmetry symmetries[SYMMETRIES_MAX];
+  const int symmetry_count = make_symmetries(own, symmetries);
+  const dvi_system_terms terms = {.dimension = made->n,
+                                  .mass = {.diagonal = own->masses},
+                                  .potentials = &attraction,
+                                  .potential_count = 1,
+                                  .symmetries = symmetries,
+                                  .symmetry_count = symmetry_count};
+  return dvi_system_create(&terms, &made->system);
+}
+
+dvi_status nbody_make(const nbody *bodies, problem *made)
+{
+  const int dimension = bodies->dimension;
+  const dvi_status status = problem_room(made, bodies->bodies * dimension, sizeof(gravity));
+  if (status != DVI_OK) return status;
+  gravity *own = made->parameters;
+  own->bodies = *bodies;
+  for (int a = 0; a < bodies->bodies; a++)
+    for (int i = 0; i < dimension; i++) {
+      const int j = a * dimension + i;
+      problem_label(made, j, "%c_%s", "xyz"[i], bodies -> name[a]);
+      made->q[j] = bodies->position[a][i];
+      made->v[j] = bodies->velocity[a][i];
+      own->masses[j] = bodies->mass[a];
+    }
+  return make_system(own, made);
+}

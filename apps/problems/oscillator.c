@@ -1,0 +1,76 @@
+/* One harmonic oscillator, L = v^2/2 - k q^2/2, with one-point callbacks. */
+#include <float.h>
+#include <math.h>
+
+#include "entry.h"
+
+static int value(double t, const double *q, double *V, void *user)
+{
+  const double k = *(const double *)user;
+  (void)t;
+  *V = 0.5 * k * q[0] * q[0];
+  return 0;
+}
+
+static int gradient(double t, const double *q, double *V_q, void *user)
+{
+  const double k = *(const double *)user;
+  (void)t;
+  V_q[0] = k * q[0];
+  return 0;
+}
+
+static int hessian(double t, const double *q, double *V_qq, void *user)
+{
+  (void)t, (void)q;
+  V_qq[0] = *(const double *)user;
+  return 0;
+}
+
+/* q = q0 cos(w t), p = -w q0 sin(w t), w^2 = k. */
+static int exact(const problem *made, double t, double *q, double *p)
+{
+  const double k = *(const double *)made->parameters;
+  double c, s;
+  problem_oscillation(k, t, &c, &s);
+  q[0] = made->q[0] * c;
+  p[0] = -sqrt(k) * made->q[0] * s;
+  return 0;
+}
+
+static dvi_status make(const double *setting, problem *made)
+{
+  const dvi_status status = problem_room(made, 1, sizeof(double));
+  if (status != DVI_OK) return status;
+  double *k = made->parameters;
+  *k = setting[0];
+  problem_label(made, 0, "q");
+  made->q[0] = 0.5;
+
+  const dvi_potential spring = {.name = "spring", .value = value, .gradient = gradient, .hessian = hessian, .user = k};
+  const dvi_system_terms terms = {.dimension = 1, .mass = {.scalar = 1.0}, .potentials = &spring, .potential_count = 1};
+  return dvi_system_create(&terms, &made->system);
+}
+
+static const problem_parameter parameters[] = {
+    {.name = "k", .value = 0.5, .least = DBL_MIN, .most = DBL_MAX, .help = "the stiffness of the spring, positive"},
+    {.name = NULL},
+};
+
+/* Quadruple-precision results, recomputed by tests/reference/test_digits. */
+static const double digits_q[] = {0.38012229853781508};
+static const double digits_p[] = {-0.22968134246639211};
+
+const problem_entry problem_entry_oscillator = {
+    .name = "oscillator",
+    .summary = "a harmonic oscillator; exact solution known",
+    .parameters = parameters,
+    .make = make,
+    .exact = exact,
+    .h = 0.1,
+    .t_end = 20.0,
+    .order_h = 0.25,
+    .order_t_end = 1.0,
+    .digits_q = digits_q,
+    .digits_p = digits_p,
+};

@@ -1,0 +1,65 @@
+/* A pendulum in a plane, L = v^2/2 - cos q: the angle is measured from the top, so that a start near q = 0 stays near the
+ * separatrix. */
+#include <float.h>
+#include <math.h>
+
+#include "entry.h"
+
+static int value(int count, const double *t, const double *q, double *V, void *user)
+{
+  (void)t, (void)user;
+  for (int k = 0; k < count; k++) V[k] = cos(q[k]);
+  return 0;
+}
+
+static int gradient(int count, const double *t, const double *q, double *V_q, void *user)
+{
+  (void)t, (void)user;
+  for (int k = 0; k < count; k++) V_q[k] = -sin(q[k]);
+  return 0;
+}
+
+static int hessian(int count, const double *t, const double *q, double *V_qq, void *user)
+{
+  (void)t, (void)user;
+  for (int k = 0; k < count; k++) V_qq[k] = -cos(q[k]);
+  return 0;
+}
+
+static dvi_status make(const double *setting, problem *made)
+{
+  const dvi_status status = problem_room(made, 1, 1);
+  if (status != DVI_OK) return status;
+  problem_label(made, 0, "q");
+  made->q[0] = setting[0];
+
+  const dvi_potential gravity = {.name = "gravity", .value_batch = value, .gradient_batch = gradient, .hessian_batch = hessian};
+  const dvi_system_terms terms = {.dimension = 1, .mass = {.scalar = 1.0}, .potentials = &gravity, .potential_count = 1};
+  return dvi_system_create(&terms, &made->system);
+}
+
+static const problem_parameter parameters[] = {
+    {.name = "q0",
+     .value = 1.1592794807274085998, /* acos 0.4 */
+     .least = -DBL_MAX,
+     .most = DBL_MAX,
+     .help = "the angle from the top at which it starts at rest, any number; 1e-3 is hard"},
+    {.name = NULL},
+};
+
+/* Quadruple-precision results, recomputed by tests/reference/test_digits. */
+static const double digits_q[] = {1.6295848805115743};
+static const double digits_p[] = {0.95786710606374954};
+
+const problem_entry problem_entry_pendulum = {
+    .name = "pendulum",
+    .summary = "a plane pendulum, angle from the top",
+    .parameters = parameters,
+    .make = make,
+    .h = 0.1,
+    .t_end = 20.0,
+    .order_h = 0.2,
+    .order_t_end = 1.0,
+    .digits_q = digits_q,
+    .digits_p = digits_p,
+};

@@ -1,0 +1,226 @@
+/* The table of problems: finding one, reading its settings, making it. */
+#include <math.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "entry.h"
+
+/* Room for one coordinate's name. */
+#define LABEL_SIZE 24
+
+#define PROBLEM_ENTRY(name) &problem_entry_##name,
+static const problem_entry *const table[] = {
+#include "problems.def"
+};
+#undef PROBLEM_ENTRY
+
+static const problem_parameter no_parameters[1];
+
+/* Where a refusal is written. */
+typedef struct report {
+  char *message;
+  size_t size;
+} report;
+
+int problem_count(void)
+{
+  return (int)(sizeof table / sizeof *table);
+}
+
+static const problem_entry *entry_of(int i)
+{
+  return i >= 0 && i < problem_count() ? table[i] : NULL;
+}
+
+static const problem_parameter *parameters_of(const problem_entry *entry)
+{
+  return entry->parameters ? entry->parameters : no_parameters;
+}
+
+const char *problem_name(int i)
+{
+  const problem_entry *entry = entry_of(i);
+  return entry ? entry->name : NULL;
+}
+
+const char *problem_summary(int i)
+{
+  const problem_entry *entry = entry_of(i);
+  return entry ? entry->summary : NULL;
+}
+
+const problem_parameter *problem_parameters(int i)
+{
+  const problem_entry *entry = entry_of(i);
+  return entry ? parameters_of(entry) : NULL;
+}
+
+int problem_find(const char *name)
+{
+  for (int i = 0; name && i < problem_count(); i++)
+    if (strcmp(table[i]->name, name) == 0) return i;
+  return -1;
+}
+
+#if defined(__GNUC__)
+__attribute__((format(printf, 3, 4)))
+#endif
+static dvi_status
+refuse(const report *r, dvi_status status, const char *format, ...)
+{
+  va_list arguments;
+  va_start(arguments, format);
+  if (r->message && r->size > 0) vsnprintf(r->message, r->size, format, arguments);
+  va_end(arguments);
+  return status;
+}
+
+/* Refuse a parameter's name, and list those that there are. */
+static dvi_status refuse_name(const report *r, const problem_entry *entry, const char *setting, size_t length)
+{
+  char names[256] = "none";
+  size_t used = 0;
+  for (const problem_parameter *p = parameters_of(entry); p->name && used < sizeof names; p++)
+    used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "", p->name);
+  return refuse(r, DVI_BAD_OPTION, "%s has no parameter '%.*s'; it has: %s", entry->name, (int)length, setting, names);
+}
+
+/* Read one "name=value". */
+static dvi_status read_setting(const report *r, const problem_entry *entry, const char *setting, double *value)
+{
+  const char *equals = setting ? strchr(setting, '=') : NULL;
+  if (!equals)
+    return refuse(r, DVI_BAD_OPTION, "%s: the setting '%s' is not of the form name=value", entry->name, setting ? setting : "");
+  const size_t length = (size_t)(equals - setting);
+  const problem_parameter *parameters = parameters_of(entry);
+  int i = 0;
+  while (parameters[i].name && (strncmp(parameters[i].name, setting, length) != 0 || parameters[i].name[length])) i++;
+  if (!parameters[i].name) return refuse_name(r, entry, setting, length);
+
+  char *end = NULL;
+  const double x = strtod(equals + 1, &end);
+  const int number = end != equals + 1 && *end == '\0' && isfinite(x);
+  if (!number || x < parameters[i].least || x > parameters[i].most || (parameters[i].whole && floor(x) != x))
+    return refuse(r, DVI_BAD_OPTION, "%s: %s is refused; %s is %s", entry->name, setting, parameters[i].name, parameters[i].help);
+  value[i] = x;
+  return DVI_OK;
+}
+
+static int all_default(const problem_entry *entry, const double *value)
+{
+  for (int i = 0; parameters_of(entry)[i].name; i++)
+    if (value[i] < parameters_of(entry)[i].value || value[i] > parameters_of(entry)[i].value) return 0;
+  return 1;
+}
+
+static dvi_status make(const report *r, const problem_entry *entry, const double *value, problem *made)
+{
+  made->name = entry->name;
+  made->h = entry->h;
+  made->t_end = entry->t_end;
+  made->order_h = entry->order_h;
+  made->order_t_end = entry->order_t_end;
+  made->exact = entry->exact;
+  if (all_default(entry, value)) {
+    made->digits_q = entry->digits_q;
+    made->digits_p = entry->digits_p;
+  }
+  dvi_status status = entry->make(value, made);
+  if (status == DVI_OK) status = dvi_system_momentum(made->system, 0.0, made->q, made->v, made->p);
+  if (status == DVI_OK) return DVI_OK;
+  const char *reason = status == DVI_NO_MEMORY ? dvi_status_meaning(status) : dvi_last_error();
+  return refuse(r, status, "%s: %s", entry->name, reason);
+}
+
+dvi_status problem_create(const char *name, int setting_count, const char *const *settings, problem **out, char *message,
+                          size_t size)
+{
+  const report r = {message, size};
+  if (!out) return refuse(&r, DVI_BAD_ARGUMENT, "there is no place for the problem");
+  *out = NULL;
+  const problem_entry *entry = entry_of(problem_find(name));
+  if (!entry) return refuse(&r, DVI_BAD_OPTION, "there is no problem '%s'; see dvi list problems", name ? name : "");
+
+  double value[PROBLEM_PARAMETERS_MAX] = {0.0};
+  for (int i = 0; parameters_of(entry)[i].name; i++) value[i] = parameters_of(entry)[i].value;
+  for (int i = 0; i < setting_count; i++) {
+    const dvi_status status = read_setting(&r, entry, settings[i], value);
+    if (status != DVI_OK) return status;
+  }
+
+  problem *made = calloc(1, sizeof *made);
+  if (!made) return refuse(&r, DVI_NO_MEMORY, "%s: %s", entry->name, dvi_status_meaning(DVI_NO_MEMORY));
+  const dvi_status status = make(&r, entry, value, made);
+  if (status == DVI_OK)
+    *out = made;
+  else
+    problem_destroy(&made);
+  return status;
+}
+
+/* A block starts with the address of the next one; the union keeps what follows aligned for every type. */
+typedef union block {
+  union block *next;
+  max_align_t alignment;
+} block;
+
+void problem_destroy(problem **made)
+{
+  if (!made || !*made) return;
+  dvi_system_destroy(&(*made)->system);
+  for (block *b = (*made)->blocks; b;) {
+    block *next = b->next;
+    free(b);
+    b = next;
+  }
+  free(*made);
+  *made = NULL;
+}
+
+void *problem_allocate(problem *made, size_t count, size_t size)
+{
+  if (size > 0 && count > (SIZE_MAX - sizeof(block)) / size) return NULL;
+  block *b = calloc(1, sizeof *b + count * size);
+  if (!b) return NULL;
+  b->next = made->blocks;
+  made->blocks = b;
+  return b + 1;
+}
+
+dvi_status problem_room(problem *made, int n, size_t parameters_size)
+{
+  const size_t count = (size_t)n;
+  double *numbers = problem_allocate(made, 3 * count, sizeof *numbers);
+  char *labels = problem_allocate(made, count, LABEL_SIZE);
+  made->coordinate = problem_allocate(made, count, sizeof *made->coordinate);
+  made->parameters = problem_allocate(made, 1, parameters_size);
+  if (!numbers || !labels || !made->coordinate || !made->parameters) return DVI_NO_MEMORY;
+  made->n = n;
+  made->q = numbers;
+  made->v = numbers + n;
+  made->p = numbers + 2 * n;
+  for (int i = 0; i < n; i++) made->coordinate[i] = labels + (size_t)i * LABEL_SIZE;
+  return DVI_OK;
+}
+
+void problem_label(problem *made, int i, const char *format, ...)
+{
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(made->coordinate[i], LABEL_SIZE, format, arguments);
+  va_end(arguments);
+}
+
+void problem_oscillation(double square, double t, double *cosine, double *sine)
+{
+  const double w = sqrt(square), phase = w * t;
+  const double w_rest = fma(-w, w, square) / (2.0 * w);
+  const double rest = fma(w, t, -phase) + w_rest * t;
+  const double c = cos(phase), s = sin(phase);
+  const double c_rest = cos(rest), s_rest = sin(rest);
+  *cosine = c * c_rest - s * s_rest;
+  *sine = s * c_rest + c * s_rest;
+}

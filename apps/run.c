@@ -1,0 +1,307 @@
+/* dvi run: one trajectory with its invariants, as CSV. */
+#define _POSIX_C_SOURCE 200809L
+#include <errno.h>
+#include <math.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "command.h"
+#include "file.h"
+#include "open.h"
+#include "options.h"
+#include "progress.h"
+#include "table.h"
+#include "trace.h"
+
+/* What the command line asks for. */
+typedef struct run_request {
+  const char *method, *out, *checkpoint, *resume, *plot;
+  double h, t_end;
+  long every, checkpoint_every;
+  bool final;
+  words settings;
+} run_request;
+
+/* A run under way. */
+typedef struct recorder {
+  const run_request *request;
+  const problem *scene;
+  whole_file out;
+  run_trace trace;
+  progress_line progress;
+  double *invariant;
+  double t_start, t; /* where the run began; where the last observed step ended */
+  long step;         /* counted from t = 0, so that a resumed run writes the rows of an uninterrupted one */
+  bool begun, row_written, stop_silently;
+} recorder;
+
+/* Set by the signal, read by the driver after each step. */
+static volatile sig_atomic_t caught;
+
+static void on_signal(int number)
+{
+  caught = number;
+}
+
+/* The second signal of a kind ends the process at once. */
+static void catch_signals(void)
+{
+  struct sigaction action;
+  memset(&action, 0, sizeof action);
+  action.sa_handler = on_signal;
+  action.sa_flags = (int)SA_RESETHAND;
+  (void)sigaction(SIGINT, &action, NULL);
+  (void)sigaction(SIGTERM, &action, NULL);
+}
+
+static void write_header(recorder *r)
+{
+  FILE *stream = r->out.stream;
+  const problem *scene = r->scene;
+  (void)fputs("t", stream);
+  for (int i = 0; i < scene->n; i++) {
+    (void)fputc(',', stream);
+    csv_text(stream, scene->coordinate[i]);
+  }
+  for (int i = 0; i < scene->n; i++) (void)fprintf(stream, ",p_%s", scene->coordinate[i]);
+  for (int i = 0; i < dvi_system_invariant_count(scene->system); i++) {
+    (void)fputc(',', stream);
+    csv_text(stream, dvi_system_invariant_name(scene->system, i));
+  }
+  (void)fputc('\n', stream);
+}
+
+static bool finite_numbers(int count, const double *number)
+{
+  for (int i = 0; i < count; i++)
+    if (!isfinite(number[i])) return false;
+  return true;
+}
+
+static void write_numbers(FILE *stream, int count, const double *number)
+{
+  for (int i = 0; i < count; i++) (void)fprintf(stream, ",%.17g", number[i]);
+}
+
+/* Fetch the invariants of the current state. False, with a complaint, if they are no numbers. */
+static bool measure(recorder *r, dvi_integrator *integrator)
+{
+  const dvi_status status = dvi_integrator_invariants(integrator, r->invariant);
+  if (status != DVI_OK) {
+    (void)library_error(status);
+    return false;
+  }
+  if (finite_numbers(dvi_system_invariant_count(r->scene->system), r->invariant)) return true;
+  complain("an invariant is not a finite number at t = %.17g; try a smaller --h", r->t);
+  return false;
+}
+
+static bool write_row(recorder *r, dvi_integrator *integrator)
+{
+  FILE *stream = r->out.stream;
+  (void)fprintf(stream, "%.17g", r->t);
+  write_numbers(stream, r->scene->n, dvi_integrator_q(integrator));
+  write_numbers(stream, r->scene->n, dvi_integrator_p(integrator));
+  write_numbers(stream, dvi_system_invariant_count(r->scene->system), r->invariant);
+  (void)fputc('\n', stream);
+  r->row_written = true;
+  if (!ferror(stream)) return true;
+  if (r->out.path != NULL) complain("cannot write '%s': %s", r->out.path, strerror(errno));
+  return false; /* main complains about standard output */
+}
+
+static bool row_is_due(const recorder *r)
+{
+  return !r->request->final && (!r->begun || r->step % r->request->every == 0);
+}
+
+/* The driver calls this at the start, after each step, and once more at the end. */
+static int observe(dvi_integrator *integrator, void *user)
+{
+  recorder *r = user;
+  const double t = dvi_integrator_time(integrator);
+  if (r->begun && t == r->t) return 0;
+  r->t = t;
+  r->step += r->begun;
+  r->row_written = false;
+  const bool row = row_is_due(r);
+  r->begun = true;
+  bool good = true;
+  if (row || r->trace.t != NULL) good = measure(r, integrator);
+  if (good && row) good = write_row(r, integrator);
+  if (good && r->trace.t != NULL) trace_add(&r->trace, t, dvi_integrator_q(integrator), r->invariant[0]);
+  if (r->progress.shown) progress_show(&r->progress, (t - r->t_start) / (r->request->t_end - r->t_start), "dvi run");
+  r->stop_silently = !good;
+  return good ? 0 : -1;
+}
+
+/* The last state is always a row, whatever --every says. */
+static bool write_last_row(recorder *r, dvi_integrator *integrator)
+{
+  return r->row_written || (measure(r, integrator) && write_row(r, integrator));
+}
+
+/* The number of the step that ends at t on the grid 0, h, 2h, ...; 0 if t is not on it. */
+static long step_number(double t, double h)
+{
+  const double steps = t / h;
+  return steps > 0.0 && steps < 1e15 && fabs(steps - round(steps)) < 1e-6 ? lround(steps) : 0;
+}
+
+static void say_interrupted(const recorder *r)
+{
+  complain("run: signal %d ended the run at t = %.17g of %g; the output is complete up to there", (int)caught, r->t,
+           r->request->t_end);
+  if (r->request->checkpoint != NULL) complain("run: continue with --resume %s", r->request->checkpoint);
+}
+
+/* Drive the integrator to the end and write all rows. */
+static int advance(recorder *r, dvi_integrator *integrator)
+{
+  const run_request *request = r->request;
+  const dvi_run_options options = {.h = request->h,
+                                   .t_end = request->t_end,
+                                   .observe = observe,
+                                   .user = r,
+                                   .checkpoint = request->checkpoint,
+                                   .checkpoint_every = request->checkpoint_every,
+                                   .cancel = &caught};
+  r->t_start = dvi_integrator_time(integrator);
+  r->step = step_number(r->t_start, request->h);
+  write_header(r);
+  progress_start(&r->progress, request->final || r->out.path != NULL);
+  const dvi_status status = dvi_run(integrator, &options, NULL);
+  progress_end(&r->progress);
+  if (r->stop_silently) return FAILED;
+  const bool written = (status != DVI_OK && request->final) || write_last_row(r, integrator);
+  if (status != DVI_OK) return library_error(status) == USAGE ? USAGE : FAILED;
+  if (caught != 0) say_interrupted(r);
+  return !written ? FAILED : caught != 0 ? 128 + (int)caught : DONE;
+}
+
+static bool place(const run_request *request, const problem *scene, dvi_integrator *integrator)
+{
+  const dvi_status status = request->resume != NULL ? dvi_integrator_restore(integrator, request->resume)
+                                                    : dvi_integrator_start(integrator, 0.0, scene->q, scene->p);
+  if (status == DVI_OK) return true;
+  (void)library_error(status);
+  return false;
+}
+
+/* Fill in what was left out, and refuse a step that cannot lead to the end. */
+static int complete(run_request *request, const problem *scene, double t)
+{
+  if (isnan(request->t_end)) request->t_end = scene->t_end;
+  const double way = request->t_end - t;
+  if (isnan(request->h)) request->h = way < 0.0 ? -scene->h : scene->h;
+  if (request->h == 0.0) return usage_error("run: --h 0 leads nowhere");
+  if (request->resume != NULL && way * scene->h < 0.0 && request->h > 0.0)
+    return usage_error("run: '%s' stands at t = %.17g, past --t-end %g", request->resume, t, request->t_end);
+  if (way * request->h < 0.0)
+    return usage_error("run: --h %g leads away from --t-end %g; change the sign of one", request->h, request->t_end);
+  return DONE;
+}
+
+static int record(run_request *request, const problem *scene, dvi_integrator *integrator)
+{
+  recorder r = {.request = request, .scene = scene};
+  r.invariant = calloc((size_t)dvi_system_invariant_count(scene->system), sizeof *r.invariant);
+  int code = FAILED;
+  if (r.invariant == NULL)
+    complain("out of memory");
+  else if ((request->plot == NULL || trace_init(&r.trace, scene->n)) && file_open(&r.out, request->out))
+    code = advance(&r, integrator);
+  if ((code == DONE || code > CHECK_FAILED) && !file_keep(&r.out)) code = FAILED;
+  if ((code == DONE || code > CHECK_FAILED) && request->plot != NULL &&
+      !trace_plot(&r.trace, scene->name, scene->coordinate, request->plot))
+    code = FAILED;
+  file_discard(&r.out);
+  trace_clear(&r.trace);
+  free(r.invariant);
+  return code;
+}
+
+static int run(run_request *request, const problem *scene)
+{
+  dvi_integrator *integrator = NULL;
+  int code = open_integrator(scene, request->method, &integrator);
+  if (code == DONE && !place(request, scene, integrator)) code = FAILED;
+  if (code == DONE) code = complete(request, scene, dvi_integrator_time(integrator));
+  if (code == DONE) code = record(request, scene, integrator);
+  dvi_integrator_destroy(&integrator);
+  return code;
+}
+
+static int check_request(const run_request *request)
+{
+  if (request->method == NULL)
+    return usage_error("run: --method is missing, for example --method galerkin:degree=4; see dvi list methods");
+  if (request->checkpoint_every > 0 && request->checkpoint == NULL)
+    return usage_error("run: --checkpoint-every needs --checkpoint FILE");
+  if (request->checkpoint != NULL && !file_writable(request->checkpoint)) return FAILED;
+  return request->plot == NULL || file_writable(request->plot) ? DONE : FAILED;
+}
+
+static const char details[] =
+    "\n"
+    "Columns: t, the coordinates, their momenta (p_ and the coordinate's name), energy, the other invariants;\n"
+    "17 digits, so that every number is read back as it was. The first row is the start (with --resume: the\n"
+    "checkpoint), the last one is the end, wherever --every puts the rows between.\n"
+    "\n"
+    "FILEs are written whole or not at all: a run that fails leaves what was there. Rows on standard output come\n"
+    "as they are computed. Ctrl-C and SIGTERM end a run after the current step, with the output complete, the\n"
+    "checkpoint written, and exit code 130 or 143.\n"
+    "\n"
+    "A checkpoint holds the state of the method, not the command line: resume with the same problem, method and\n"
+    "step, and the run continues bit for bit.\n"
+    "\n"
+    "Examples:\n"
+    "  dvi run kepler --method galerkin:degree=4 --h 0.1 --t-end 100 --out orbit.csv --plot orbit.svg\n"
+    "  dvi run kepler --method verlet --h 0.001 --t-end 10 --set e=0.9 --every 100\n"
+    "  dvi run outer-solar --method galerkin:degree=8 --h 200 --t-end 500000 --final\n"
+    "  dvi run fpu --method midpoint --h 0.01 --t-end 100 --checkpoint fpu.state --out part1.csv\n"
+    "  dvi run fpu --method midpoint --h 0.01 --t-end 200 --resume fpu.state --out part2.csv\n";
+
+int run_command(int argc, char **argv)
+{
+  run_request r = {.out = "-", .h = (double)NAN, .t_end = (double)NAN, .every = 1};
+  const option options[] = {
+      {.name = "method", .word = &r.method, .value = "SPEC", .help = "the method: name[:key=value,...], see dvi list methods"},
+      {.name = "h", .number = &r.h, .value = "H", .help = "the step; left out: the problem's"},
+      {.name = "t-end", .number = &r.t_end, .value = "T", .help = "the end, from t = 0 (T < 0: backward); left out: the problem's"},
+      {.name = "every", .count = &r.every, .value = "K", .help = "a row after every K steps; left out: 1"},
+      {.name = "final", .flag = &r.final, .help = "the header and the last row only"},
+      {.name = "set", .words = &r.settings, .value = "NAME=VALUE", .help = "set a parameter of the problem; may be repeated"},
+      {.name = "out", .word = &r.out, .value = "FILE", .help = "where the rows go; left out, or -: standard output"},
+      {.name = "checkpoint",
+       .word = &r.checkpoint,
+       .value = "FILE",
+       .help = "save the state there when the run ends, however it ends"},
+      {.name = "checkpoint-every", .count = &r.checkpoint_every, .value = "K", .help = "and after every K steps"},
+      {.name = "resume", .word = &r.resume, .value = "FILE", .help = "start from a checkpoint of the same problem and method"},
+      {.name = "plot", .word = &r.plot, .value = "FILE.svg", .help = "draw coordinates and energy error over time"},
+      {.name = NULL},
+  };
+  const command_line command = {
+      .name = "run",
+      .synopsis = "PROBLEM --method SPEC [--h H] [--t-end T] [OPTIONS]",
+      .operand = "PROBLEM",
+      .summary = "Compute a trajectory with fixed steps; write it and its invariants as CSV.\n",
+      .options = options,
+      .details = details,
+  };
+  const char *name;
+  int code;
+  if (!options_parse(&command, argc, argv, &name, &code)) return code;
+  code = check_request(&r);
+  if (code != DONE) return code;
+  problem *scene;
+  code = open_problem(name, &r.settings, &scene);
+  if (code != DONE) return code;
+  catch_signals();
+  code = run(&r, scene);
+  problem_destroy(&scene);
+  return code;
+}

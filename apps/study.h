@@ -1,0 +1,54 @@
+/** One method on one problem at one step size after another, up to the same time. */
+#ifndef STUDY_H
+#define STUDY_H
+#include "judge.h"
+#include "problem.h"
+
+/** What is studied. */
+typedef struct order_study {
+  const problem *scene;
+  const judgement *judge;
+  const char *method;
+  double t_end;
+  dvi_integrator *integrator; /**< owned */
+  int order;                  /**< that the method claims */
+  double ceiling;             /**< errors above this are too large to tell an order */
+  double floor;               /**< errors up to this belong to roundoff or to the judge */
+} order_study;
+
+/** What came out at one step size. */
+typedef struct level_trial {
+  long steps;
+  double h;            /**< t_end / steps */
+  double error;        /**< of q at t_end, in the maximum norm */
+  double energy_error; /**< largest |energy - energy at the start| over the run */
+  double cpu_seconds;  /**< of one run without diagnostics */
+  dvi_counters spent;  /**< by one run without diagnostics */
+} level_trial;
+
+/** Begin a study. Returns DONE, or complains and returns the exit code. */
+int study_init(order_study *study, const problem *scene, const judgement *judge, const char *method, double t_end);
+void study_clear(order_study *study);
+
+/** Run once with so many equal steps: fills steps, h, error and spent. */
+dvi_status study_run(order_study *study, long steps, level_trial *trial);
+
+/** Run again, to watch the energy: fills energy_error. */
+dvi_status study_watch_energy(order_study *study, level_trial *trial);
+
+/** Run as often as a clock needs: fills cpu_seconds. */
+dvi_status study_time(order_study *study, level_trial *trial);
+
+/** Choose how many steps each level takes: the first error below the ceiling, the last above the floor, at most halving h from
+ *  level to level.
+ *
+ *  @param      h       the first step; 0: one whose error is a little below the ceiling is searched
+ *  @param      ratio   of neighbouring steps; 0: chosen
+ *  @param      levels  how many
+ *  @param[out] steps   [levels], ascending
+ *  Sets study->floor as well. */
+dvi_status study_levels(order_study *study, double h, double ratio, int levels, long *steps);
+
+/** Process time in seconds. */
+double cpu_now(void);
+#endif

@@ -1,0 +1,36 @@
+/** Tables: written for people, with aligned columns, or as CSV with all 17 digits. */
+#ifndef TABLE_H
+#define TABLE_H
+#include <stdbool.h>
+#include <stdio.h>
+
+/** One column. */
+typedef struct table_column {
+  const char *title;
+  const char *format; /**< how people read its numbers: "%.3e"; NULL: a column of text */
+} table_column;
+
+typedef struct result_table result_table;
+
+/** A table without rows. The columns, ended by one without a title, must outlive it. NULL without memory. */
+result_table *table_create(const table_column *columns);
+void table_destroy(result_table **table);
+
+/** Fill the next cell, row by row. A NaN makes an empty cell. Without memory the table remembers and table_good is false. */
+void table_number(result_table *table, double number);
+void table_text(result_table *table, const char *text);
+
+/** Whether no cell was lost for want of memory; complains if so. */
+bool table_good(const result_table *table);
+
+int table_rows(const result_table *table);
+
+/** Write all of it as CSV (RFC 4180, lines ended by a plain newline). */
+void table_csv(const result_table *table, FILE *stream);
+
+/** Print rows first to last-1 from column `skip` on, aligned, under their titles. */
+void table_print(const result_table *table, int skip, int first, int last);
+
+/** Write one CSV field: quoted if it must be. */
+void csv_text(FILE *stream, const char *text);
+#endif

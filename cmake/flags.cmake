@@ -1,0 +1,19 @@
+# dvi_flags(TARGET): how every source of this project is compiled.
+#
+# Results must not depend on the machine: no -march=native, no -ffast-math, and no fused multiply-adds that the compiler chooses.
+# Warnings are errors only on request (DVI_WERROR, set in continuous integration), so that a newer compiler does not stop a user.
+
+set(CMAKE_C_FLAGS_RELEASE "-O3 -DNDEBUG" CACHE STRING "Flags of a Release build")
+
+function(dvi_flags target)
+  set_target_properties(${target} PROPERTIES C_STANDARD 11 C_STANDARD_REQUIRED ON C_EXTENSIONS OFF)
+  target_compile_options(${target} PRIVATE -ffp-contract=off -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes
+                                           -Wmissing-prototypes -Wvla -Wdouble-promotion)
+  if(DVI_WERROR)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+  if(DVI_SANITIZE)
+    target_compile_options(${target} PRIVATE -fsanitize=${DVI_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    target_link_options(${target} PRIVATE -fsanitize=${DVI_SANITIZE})
+  endif()
+endfunction()

@@ -1,0 +1,42 @@
+# Installation: headers, both libraries, the command, its manual page, and what find_package and pkg-config read.
+
+include(CMakePackageConfigHelpers)
+set(package_directory "${CMAKE_INSTALL_LIBDIR}/cmake/dvi")
+
+install(DIRECTORY lib/include/dvi DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+install(TARGETS dvi EXPORT dviTargets)
+install(TARGETS dvi_static EXPORT dviStaticTargets)
+if(TARGET dvi_command)
+  file(RELATIVE_PATH to_libraries "${CMAKE_INSTALL_FULL_BINDIR}" "${CMAKE_INSTALL_FULL_LIBDIR}")
+  set_target_properties(dvi_command PROPERTIES INSTALL_RPATH "$ORIGIN/${to_libraries}")
+  install(TARGETS dvi_command)
+endif()
+if(EXISTS "${PROJECT_SOURCE_DIR}/docs/dvi.1")
+  install(FILES docs/dvi.1 DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
+endif()
+
+# The static library needs what it is made of, the shared one brings it along: two export sets, and only who asks for the component
+# `static` must have SUNDIALS and SuiteSparse in place.
+install(EXPORT dviTargets NAMESPACE dvi:: DESTINATION "${package_directory}")
+install(EXPORT dviStaticTargets NAMESPACE dvi:: DESTINATION "${package_directory}")
+install(FILES cmake/FindSUNDIALS.cmake cmake/FindKLU.cmake DESTINATION "${package_directory}")
+configure_package_config_file(cmake/dviConfig.cmake.in dviConfig.cmake INSTALL_DESTINATION "${package_directory}"
+                              NO_SET_AND_CHECK_MACRO)
+# Before version 1.0 a new minor version may change the interface.
+write_basic_package_version_file(dviConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES "${PROJECT_BINARY_DIR}/dviConfig.cmake" "${PROJECT_BINARY_DIR}/dviConfigVersion.cmake"
+        DESTINATION "${package_directory}")
+
+# pkg-config names libraries as the linker does.
+set(pc_private "")
+foreach(library ${SUNDIALS_LIBRARIES} ${KLU_LIBRARIES} ${LAPACK_LIBRARIES} ${MPI_C_LIBRARIES} m)
+  get_filename_component(name "${library}" NAME_WE)
+  string(REGEX REPLACE "^(lib|-l)" "" name "${name}")
+  list(APPEND pc_private "-l${name}")
+endforeach()
+list(REMOVE_DUPLICATES pc_private)
+list(JOIN pc_private " " pc_private)
+file(RELATIVE_PATH pc_prefix "${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig" "${CMAKE_INSTALL_PREFIX}")
+string(REGEX REPLACE "/$" "" pc_prefix "${pc_prefix}")
+configure_file(cmake/dvi.pc.in dvi.pc @ONLY)
+install(FILES "${PROJECT_BINARY_DIR}/dvi.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")

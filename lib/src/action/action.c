@@ -1,0 +1,96 @@
+#include "action/action.h"
+
+#include <string.h>
+
+#include "action/action_struct.h"
+#include "action/table.h"
+#include "core/memory.h"
+#include "core/status.h"
+
+static int allocate_batches(dvi__action *a)
+{
+  const size_t batch = (size_t)a->n * (size_t)a->r;
+  a->t = DVI_NEW(double, a->r);
+  a->Q = DVI_NEW(double, batch);
+  a->V = DVI_NEW(double, batch);
+  a->L_q = DVI_NEW(double, batch);
+  a->L_v = DVI_NEW(double, batch);
+  a->line = DVI_NEW(double, 2 * (size_t)a->s + 2 * (size_t)a->r);
+  return a->t && a->Q && a->V && a->L_q && a->L_v && a->line;
+}
+
+static dvi_status allocate_chord(dvi__action *a)
+{
+  const dvi_system *system = a->system;
+  if (system->lagrangian == NULL) return DVI_OK;
+  a->middle[0] = DVI_NEW(double, a->n);
+  a->middle[1] = DVI_NEW(double, a->n);
+  a->middle[2] = DVI_NEW(double, dvi__pattern_entries(&system->qq));
+  a->middle[3] = DVI_NEW(double, dvi__pattern_entries(&system->qv));
+  a->middle_vv = DVI_NEW(double, dvi__pattern_entries(&system->vv));
+  if (!a->middle[0] || !a->middle[1] || !a->middle[2] || !a->middle[3] || !a->middle_vv)
+    return dvi__fail(DVI_NO_MEMORY, "action: no memory for the velocity Hessian");
+  return dvi__linear_create(&system->vv, DVI__LINEAR_AUTO, NULL, &a->chord);
+}
+
+static dvi_status fill(dvi__action *a, dvi_counters *counters)
+{
+  DVI_TRY(dvi__action_fill_tables(a));
+  const int capacity = a->r > a->s ? a->r : a->s; /* a batch of s is solved for at once in the chord */
+  DVI_TRY(dvi__evaluator_create(a->system, capacity, counters, &a->evaluator));
+  if (!allocate_batches(a)) return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d nodes in %d dimensions", a->r, a->n);
+  return allocate_chord(a);
+}
+
+dvi_status dvi__action_create(const dvi_system *system, const dvi__action_space *space, dvi_counters *counters, dvi__action **action)
+{
+  *action = NULL;
+  dvi__action *a = DVI_NEW(dvi__action, 1);
+  if (a == NULL) return dvi__fail(DVI_NO_MEMORY, "action: no memory");
+  a->system = system;
+  a->space = *space;
+  a->n = system->n;
+  a->s = space->degree;
+  a->r = space->nodes;
+  const dvi_status status = fill(a, counters);
+  if (status != DVI_OK) dvi__action_destroy(&a);
+  *action = a;
+  return status;
+}
+
+void dvi__action_destroy(dvi__action **action)
+{
+  dvi__action *a = *action;
+  if (a == NULL) return;
+  double *const owned[] = {a->psi,      a->dpsi,     a->weighted_bar, a->weighted_dpsi, a->node,      a->weight,    a->end,
+                           a->stiffness, a->stiffness_inverse, a->fit_point, a->fit,    a->straight,  a->shift,     a->t,
+                           a->Q,        a->V,        a->L_q,          a->L_v,           a->line,      a->middle_vv, a->middle[0],
+                           a->middle[1], a->middle[2], a->middle[3],  a->H_qq,          a->H_qv,      a->H_vv};
+  for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) dvi__release(owned[i]);
+  dvi__linear_destroy(&a->chord);
+  dvi__evaluator_destroy(&a->evaluator);
+  dvi__pattern_clear(&a->joint);
+  dvi__pattern_clear(&a->pattern);
+  dvi__release(a->block);
+  dvi__release(a);
+  *action = NULL;
+}
+
+int dvi__action_unknowns(const dvi__action *action)
+{
+  return action->n * action->s;
+}
+
+dvi__evaluator *dvi__action_evaluator(const dvi__action *action)
+{
+  return action->evaluator;
+}
+
+void dvi__action_place(dvi__action *action, double t0, double h, const double *q0, const double *p0)
+{
+  action->t0 = t0;
+  action->h = h;
+  action->q0 = q0;
+  action->p0 = p0;
+  for (int j = 0; j < action->r; j++) action->t[j] = t0 + action->node[j] * h;
+}

@@ -1,0 +1,44 @@
+/* The inside of an action element, for the files of this room. */
+#ifndef DVI_ACTION_ACTION_STRUCT_H
+#define DVI_ACTION_ACTION_STRUCT_H
+#include "action/action.h"
+
+/* Where one entry (i,j) of the joint pattern stands in the Hessian's blocks; -1: nowhere. */
+typedef struct dvi__block {
+  int qq, qv, vq, vv;
+} dvi__block;
+
+struct dvi__action {
+  const dvi_system *system;
+  dvi__evaluator *evaluator;
+  dvi__action_space space;
+  int n, s, r; /* coordinates, degree, quadrature nodes */
+  /* Tables over (k, j), stored [k*r + j]. */
+  double *psi, *dpsi, *weighted_bar, *weighted_dpsi; /* psi_k(c_j), psi_k'(c_j), b_j (psi_k(c_j) - psi_k(1)), b_j psi_k'(c_j) */
+  double *node, *weight;                             /* [r] */
+  double *end;                                       /* [s] psi_k(1) */
+  double *stiffness, *stiffness_inverse;             /* [s*s] K_kl = sum_j b_j psi_k' psi_l' */
+  double *fit_point, *fit, *straight;                /* [s], [s*s] rows, [s] */
+  double *shift, shift_ratio;                        /* [s*s] rows, and the ratio that it was made for (0: none) */
+  int keep;                                          /* degree up to which a path is continued */
+  /* The element's place. */
+  double t0, h;
+  const double *q0, *p0;
+  /* Batches over the nodes, [n*r]. */
+  double *t, *Q, *V, *L_q, *L_v;
+  double *line; /* [2 s + 2 r] one coordinate's worth of anything */
+  /* Chord. */
+  double *middle_vv;       /* L_vv at one point (general Lagrangians) */
+  double *middle[4];       /* q, v at that point; L_qq, L_qv */
+  dvi__linear *chord;      /* factors middle_vv */
+  /* Jacobian; NULL until prepared. */
+  dvi__pattern joint;      /* n x n: union of qq, qv, vq, vv */
+  dvi__pattern pattern;    /* ns x ns */
+  dvi__block *block;       /* [entries of joint] */
+  double *H_qq, *H_qv, *H_vv; /* [entries*r] */
+};
+
+/* Fill the batches Q and V with the path's points at the nodes. */
+void dvi__action_stages(const dvi__action *action, const double *Y);
+
+#endif

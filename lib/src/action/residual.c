@@ -1,0 +1,144 @@
+/* The stationarity rows of the element, and the path that its unknowns describe. */
+#include <math.h>
+#include <string.h>
+
+#include "action/action_struct.h"
+#include "core/status.h"
+#include "space/trial.h"
+
+/* out[j] = start + factor * sum_k table_k(c_j) y_k, for the r nodes. */
+static void expand(const dvi__action *a, const double *table, const double *y, double start, double factor, double *out)
+{
+  const int r = a->r;
+  for (int j = 0; j < r; j++) out[j] = 0;
+  for (int k = 0; k < a->s; k++)
+    for (int j = 0; j < r; j++) out[j] += table[k * r + j] * y[k];
+  for (int j = 0; j < r; j++) out[j] = start + factor * out[j];
+}
+
+void dvi__action_stages(const dvi__action *a, const double *Y)
+{
+  for (size_t i = 0, s = (size_t)a->s, r = (size_t)a->r; i < (size_t)a->n; i++) {
+    expand(a, a->psi, Y + i * s, a->q0[i], 1.0, a->Q + i * r);
+    expand(a, a->dpsi, Y + i * s, 0.0, 1.0 / a->h, a->V + i * r);
+  }
+}
+
+static double dot(int count, const double *x, const double *y)
+{
+  double sum = 0;
+  for (int j = 0; j < count; j++) sum += x[j] * y[j];
+  return sum;
+}
+
+dvi_status dvi__action_residual(dvi__action *a, const double *Y, double *R)
+{
+  const int s = a->s, r = a->r;
+  dvi__action_stages(a, Y);
+  DVI_TRY(dvi__lagrangian_gradient(a->evaluator, r, a->t, a->Q, a->V, a->L_q, a->L_v));
+  for (size_t i = 0; i < (size_t)a->n; i++) {
+    const double *L_q = a->L_q + i * (size_t)r, *L_v = a->L_v + i * (size_t)r;
+    for (int k = 0; k < s; k++)
+      R[i * (size_t)s + (size_t)k] =
+          a->h * dot(r, a->weighted_bar + k * r, L_q) + (dot(r, a->weighted_dpsi + k * r, L_v) - a->end[k] * a->p0[i]);
+  }
+  return DVI_OK;
+}
+
+void dvi__action_ends(const dvi__action *a, const double *Y, double *dq, double *dp)
+{
+  for (size_t i = 0; i < (size_t)a->n; i++) {
+    dq[i] = dot(a->s, a->end, Y + i * (size_t)a->s);
+    dp[i] = a->h * dot(a->r, a->weight, a->L_q + i * (size_t)a->r);
+  }
+}
+
+/* ---- chord: the kinetic part of the Jacobian ---- */
+
+dvi_status dvi__action_prepare_chord(dvi__action *a, const double *Y)
+{
+  if (a->system->lagrangian == NULL) return DVI_OK;
+  const double middle = a->t0 + 0.5 * a->h;
+  dvi__action_path(a, Y, a->h, 0.5, a->middle[0], a->middle[1]);
+  for (int i = 0; i < a->n; i++) a->middle[0][i] += a->q0[i];
+  DVI_TRY(dvi__lagrangian_hessian(a->evaluator, 1, &middle, a->middle[0], a->middle[1], a->middle[2], a->middle[3], a->middle_vv));
+  return dvi__linear_factor(a->chord, a->middle_vv);
+}
+
+static void solve_velocity_hessian(dvi__action *a, double *R)
+{
+  const size_t s = (size_t)a->s;
+  for (size_t k = 0; k < s; k++) {
+    for (size_t i = 0; i < (size_t)a->n; i++) a->middle[0][i] = R[i * s + k];
+    dvi__linear_solve(a->chord, a->middle[0]);
+    for (size_t i = 0; i < (size_t)a->n; i++) R[i * s + k] = a->middle[0][i];
+  }
+}
+
+void dvi__action_chord(dvi__action *a, double *R)
+{
+  const int s = a->s;
+  if (a->chord != NULL)
+    solve_velocity_hessian(a, R);
+  else
+    dvi__mass_solve(a->evaluator, s, R, R);
+  for (size_t i = 0; i < (size_t)a->n; i++) {
+    double *row = R + i * (size_t)s;
+    memcpy(a->line, row, (size_t)s * sizeof(double));
+    for (int k = 0; k < s; k++) row[k] = a->h * dot(s, a->stiffness_inverse + k * s, a->line);
+  }
+}
+
+void dvi__action_row_scale(const dvi__action *a, double *scale)
+{
+  const dvi__pattern *vv = &a->system->vv;
+  const double *values = a->chord != NULL                 ? a->middle_vv
+                         : a->system->mass_diagonal != NULL ? a->system->mass_diagonal
+                                                            : a->system->mass_values;
+  for (int i = 0; i < a->n; i++) {
+    double size = 0;
+    for (int e = vv->start[i]; e < vv->start[i + 1]; e++) size = fmax(size, fabs(values[e]));
+    for (int k = 0; k < a->s; k++) scale[i * a->s + k] = (size > 0 ? size : 1.0) / fabs(a->h);
+  }
+}
+
+/* ---- paths ---- */
+
+void dvi__action_path(const dvi__action *a, const double *Y, double h, double tau, double *offset, double *v)
+{
+  double *psi = a->line, *dpsi = a->line + a->s;
+  dvi__trial_at(a->space.basis, a->s, tau, psi, NULL, dpsi);
+  for (size_t i = 0, s = (size_t)a->s; i < (size_t)a->n; i++) {
+    if (offset != NULL) offset[i] = dot(a->s, psi, Y + i * s);
+    if (v != NULL) v[i] = dot(a->s, dpsi, Y + i * s) / h;
+  }
+}
+
+void dvi__action_straight(const dvi__action *a, const double *dq, double *Y)
+{
+  for (size_t i = 0, s = (size_t)a->s; i < (size_t)a->n; i++)
+    for (size_t k = 0; k < s; k++) Y[i * s + k] = a->straight[k] * dq[i];
+}
+
+void dvi__action_continue(dvi__action *a, double ratio, const double *last, double *Y)
+{
+  const int s = a->s;
+  if (ratio != a->shift_ratio) dvi__trial_shift(a->space.basis, s, a->keep, ratio, a->shift);
+  a->shift_ratio = ratio;
+  for (size_t i = 0; i < (size_t)a->n; i++)
+    for (int k = 0; k < s; k++) Y[i * (size_t)s + (size_t)k] = dot(s, a->shift + k * s, last + i * (size_t)s);
+}
+
+const double *dvi__action_fit_points(const dvi__action *a)
+{
+  return a->fit_point;
+}
+
+void dvi__action_fit(const dvi__action *a, const double *offset, double *Y)
+{
+  const size_t s = (size_t)a->s;
+  for (size_t i = 0; i < (size_t)a->n; i++) {
+    memcpy(a->line, offset + i * s, s * sizeof(double));
+    for (size_t k = 0; k < s; k++) Y[i * s + k] = dot(a->s, a->fit + k * s, a->line);
+  }
+}

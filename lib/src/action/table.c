@@ -1,0 +1,95 @@
+#include "action/table.h"
+
+#include "action/action_struct.h"
+#include "core/memory.h"
+#include "core/status.h"
+#include "space/quadrature.h"
+#include "space/trial.h"
+
+/* Continuing a polynomial of degree d one step further multiplies rounding errors by about 6^d and gains little beyond this degree. */
+enum { CONTINUED_DEGREE = 10 };
+
+static int allocate(dvi__action *a)
+{
+  const size_t s = (size_t)a->s, r = (size_t)a->r;
+  a->psi = DVI_NEW(double, s * r);
+  a->dpsi = DVI_NEW(double, s * r);
+  a->weighted_bar = DVI_NEW(double, s * r);
+  a->weighted_dpsi = DVI_NEW(double, s * r);
+  a->node = DVI_NEW(double, r);
+  a->weight = DVI_NEW(double, r);
+  a->end = DVI_NEW(double, s);
+  a->stiffness = DVI_NEW(double, s * s);
+  a->stiffness_inverse = DVI_NEW(double, s * s);
+  a->fit_point = DVI_NEW(double, s);
+  a->fit = DVI_NEW(double, s * s);
+  a->straight = DVI_NEW(double, s);
+  a->shift = DVI_NEW(double, s * s);
+  return a->psi && a->dpsi && a->weighted_bar && a->weighted_dpsi && a->node && a->weight && a->end && a->stiffness &&
+         a->stiffness_inverse && a->fit_point && a->fit && a->straight && a->shift;
+}
+
+static dvi_status fill_nodes(dvi__action *a)
+{
+  long double node[DVI_QUADRATURE_MAX], weight[DVI_QUADRATURE_MAX];
+  double psi[DVI_DEGREE_MAX], bar[DVI_DEGREE_MAX], dpsi[DVI_DEGREE_MAX];
+  DVI_TRY(dvi__quadrature_long(a->space.rule, a->r, node, weight));
+  for (int j = 0; j < a->r; j++) {
+    a->node[j] = (double)node[j];
+    a->weight[j] = (double)weight[j];
+    dvi__trial_at_long(a->space.basis, a->s, node[j], psi, bar, dpsi);
+    for (int k = 0; k < a->s; k++) {
+      a->psi[k * a->r + j] = psi[k];
+      a->dpsi[k * a->r + j] = dpsi[k];
+      a->weighted_bar[k * a->r + j] = a->weight[j] * bar[k];
+      a->weighted_dpsi[k * a->r + j] = a->weight[j] * dpsi[k];
+    }
+  }
+  dvi__trial_at(a->space.basis, a->s, 1.0, a->end, NULL, NULL);
+  return DVI_OK;
+}
+
+/* Invert the positive definite stiffness by Gauss-Jordan elimination; an iteration's matrix needs no pivoting and no last digit. */
+static void invert(int s, const double *matrix, double *inverse)
+{
+  double m[DVI_DEGREE_MAX][DVI_DEGREE_MAX];
+  for (int k = 0; k < s; k++)
+    for (int l = 0; l < s; l++) m[k][l] = matrix[k * s + l], inverse[k * s + l] = k == l;
+  for (int c = 0; c < s; c++) {
+    const double pivot = m[c][c];
+    for (int l = 0; l < s; l++) m[c][l] /= pivot, inverse[c * s + l] /= pivot;
+    for (int k = 0; k < s; k++) {
+      const double factor = m[k][c];
+      if (k == c) continue;
+      for (int l = 0; l < s; l++) m[k][l] -= factor * m[c][l], inverse[k * s + l] -= factor * inverse[c * s + l];
+    }
+  }
+}
+
+static void fill_stiffness(dvi__action *a)
+{
+  for (int k = 0; k < a->s; k++)
+    for (int l = 0; l < a->s; l++)
+      for (int j = 0; j < a->r; j++) a->stiffness[k * a->s + l] += a->weighted_dpsi[k * a->r + j] * a->dpsi[l * a->r + j];
+  invert(a->s, a->stiffness, a->stiffness_inverse);
+}
+
+/* Paths are fitted at the right Radau nodes: well spread, and the end is one of them. */
+static dvi_status fill_fit(dvi__action *a)
+{
+  double weight[DVI_QUADRATURE_MAX];
+  DVI_TRY(dvi_quadrature(DVI_RADAU_RIGHT, a->s, a->fit_point, weight));
+  dvi__trial_fit(a->space.basis, a->s, a->s, a->fit_point, a->fit);
+  for (int k = 0; k < a->s; k++)
+    for (int m = 0; m < a->s; m++) a->straight[k] += a->fit[k * a->s + m] * a->fit_point[m];
+  return DVI_OK;
+}
+
+dvi_status dvi__action_fill_tables(dvi__action *a)
+{
+  if (!allocate(a)) return dvi__fail(DVI_NO_MEMORY, "action: no memory for tables of degree %d", a->s);
+  a->keep = a->s < CONTINUED_DEGREE ? a->s : CONTINUED_DEGREE;
+  DVI_TRY(fill_nodes(a));
+  fill_stiffness(a);
+  return fill_fit(a);
+}

@@ -1,0 +1,157 @@
+/* Checkpoints: everything that the next step depends on, in one file with a checksum.
+ *
+ * Layout, in the machine's own byte order (a mark tells a foreign one): the header, the specification, then numbers: the state and the one before it
+ * with their carries, velocities, the method's memory. The checksum is FNV-1a over all that precedes it. */
+#define _POSIX_C_SOURCE 200809L /* fsync, fileno */
+#include <errno.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "method/integrator_struct.h"
+#include "num/finite.h"
+
+typedef struct header {
+  char magic[8];
+  uint32_t order_mark, version;
+  int64_t n, memory_count, steps;
+  double t, t_carry, last_t, last_t_carry, last_h;
+  char specification[DVI__SPECIFICATION_SIZE];
+} header;
+
+static const char magic[8] = {'d', 'v', 'i', 's', 't', 'a', 't', 'e'};
+enum { ORDER_MARK = 0x01020304, VERSION = 1 };
+
+static size_t file_size(const dvi_integrator *I)
+{
+  const size_t numbers = 10 * (size_t)I->system->n + I->stepper.memory_count;
+  return sizeof(header) + numbers * sizeof(double) + sizeof(uint64_t);
+}
+
+static uint64_t checksum(const unsigned char *bytes, size_t count)
+{
+  uint64_t hash = UINT64_C(14695981039346656037);
+  for (size_t i = 0; i < count; i++) hash = (hash ^ bytes[i]) * UINT64_C(1099511628211);
+  return hash;
+}
+
+/* ---- save ---- */
+
+static void pack(const dvi_integrator *I, unsigned char *file)
+{
+  const size_t n = (size_t)I->system->n, size = file_size(I) - sizeof(uint64_t);
+  header head = {.order_mark = ORDER_MARK, .version = VERSION, .n = I->system->n, .memory_count = (int64_t)I->stepper.memory_count,
+                 .steps = I->counters.steps, .t = I->now.t, .t_carry = I->now.t_carry, .last_t = I->last.t,
+                 .last_t_carry = I->last.t_carry, .last_h = I->last_h};
+  memcpy(head.magic, magic, sizeof magic);
+  memcpy(head.specification, I->stepper.specification, sizeof head.specification);
+  memcpy(file, &head, sizeof head);
+  unsigned char *at = file + sizeof head;
+  memcpy(at, I->now.q, 4 * n * sizeof(double));
+  memcpy(at += 4 * n * sizeof(double), I->last.q, 4 * n * sizeof(double));
+  memcpy(at += 4 * n * sizeof(double), I->v, n * sizeof(double));
+  memcpy(at += n * sizeof(double), I->last_v, n * sizeof(double));
+  memcpy(at += n * sizeof(double), I->stepper.memory, I->stepper.memory_count * sizeof(double));
+  const uint64_t sum = checksum(file, size);
+  memcpy(file + size, &sum, sizeof sum);
+}
+
+/* The file is written beside its place and then moved there: a full disk leaves the old one alone. */
+static dvi_status write_whole(const char *path, const unsigned char *file, size_t size)
+{
+  char beside[4096];
+  const int length = snprintf(beside, sizeof beside, "%s.part", path);
+  if (length < 0 || (size_t)length >= sizeof beside) return dvi__fail(DVI_IO_ERROR, "checkpoint: the path is too long");
+  FILE *stream = fopen(beside, "wb");
+  if (stream == NULL) return dvi__fail(DVI_IO_ERROR, "checkpoint: cannot write %s: %s", beside, strerror(errno));
+  int failed = fwrite(file, 1, size, stream) != size || fflush(stream) != 0 || fsync(fileno(stream)) != 0;
+  int reason = failed ? errno : 0;
+  if (fclose(stream) != 0 && !failed) failed = 1, reason = errno;
+  if (!failed && rename(beside, path) != 0) failed = 1, reason = errno;
+  if (!failed) return DVI_OK;
+  (void)remove(beside);
+  return dvi__fail(DVI_IO_ERROR, "checkpoint: cannot write %s: %s", path, strerror(reason));
+}
+
+dvi_status dvi_integrator_save(const dvi_integrator *I, const char *path)
+{
+  if (I == NULL || path == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "checkpoint: an argument is NULL");
+  if (!I->started) return dvi__fail(DVI_BAD_STATE, "checkpoint: the integrator has no state yet; call dvi_integrator_start first");
+  const size_t size = file_size(I);
+  unsigned char *file = DVI_NEW(unsigned char, size);
+  if (file == NULL) return dvi__fail(DVI_NO_MEMORY, "checkpoint: no memory for %zu bytes", size);
+  pack(I, file);
+  const dvi_status status = write_whole(path, file, size);
+  dvi__release(file);
+  return status;
+}
+
+/* ---- restore ---- */
+
+static dvi_status check(const dvi_integrator *I, const char *path, const unsigned char *file, size_t got)
+{
+  header head;
+  uint64_t sum;
+  const size_t size = file_size(I);
+  if (got < sizeof head) return dvi__fail(DVI_BAD_FILE, "checkpoint %s: cut short, %zu bytes", path, got);
+  memcpy(&head, file, sizeof head);
+  head.specification[DVI__SPECIFICATION_SIZE - 1] = 0;
+  if (memcmp(head.magic, magic, sizeof magic) != 0) return dvi__fail(DVI_BAD_FILE, "%s is not a checkpoint", path);
+  if (head.order_mark != ORDER_MARK || head.version != VERSION)
+    return dvi__fail(DVI_BAD_FILE, "checkpoint %s: written on another kind of machine or by another version", path);
+  if (strcmp(head.specification, I->stepper.specification) != 0)
+    return dvi__fail(DVI_BAD_FILE, "checkpoint %s: written by %s, not by %s", path, head.specification, I->stepper.specification);
+  if (head.n != I->system->n) return dvi__fail(DVI_BAD_FILE, "checkpoint %s: %lld coordinates, not %d", path, (long long)head.n, I->system->n);
+  if (got != size) return dvi__fail(DVI_BAD_FILE, "checkpoint %s: cut short or too long, %zu bytes instead of %zu", path, got, size);
+  memcpy(&sum, file + size - sizeof sum, sizeof sum);
+  if (sum != checksum(file, size - sizeof sum)) return dvi__fail(DVI_BAD_FILE, "checkpoint %s: damaged (its checksum is wrong)", path);
+  return DVI_OK;
+}
+
+static void unpack(dvi_integrator *I, const unsigned char *file)
+{
+  const size_t n = (size_t)I->system->n;
+  header head;
+  memcpy(&head, file, sizeof head);
+  I->now.t = head.t;
+  I->now.t_carry = head.t_carry;
+  I->last.t = head.last_t;
+  I->last.t_carry = head.last_t_carry;
+  I->last_h = head.last_h;
+  I->counters.steps = (long)head.steps;
+  const unsigned char *at = file + sizeof head;
+  memcpy(I->now.q, at, 4 * n * sizeof(double));
+  memcpy(I->last.q, at += 4 * n * sizeof(double), 4 * n * sizeof(double));
+  memcpy(I->v, at += 4 * n * sizeof(double), n * sizeof(double));
+  memcpy(I->last_v, at += n * sizeof(double), n * sizeof(double));
+  memcpy(I->stepper.memory, at += n * sizeof(double), I->stepper.memory_count * sizeof(double));
+  I->started = 1;
+}
+
+static dvi_status read_into(const char *path, unsigned char *file, size_t most, size_t *got)
+{
+  FILE *stream = fopen(path, "rb");
+  if (stream == NULL) return dvi__fail(DVI_IO_ERROR, "checkpoint: cannot read %s: %s", path, strerror(errno));
+  *got = fread(file, 1, most, stream);
+  const int failed = ferror(stream), reason = errno;
+  (void)fclose(stream);
+  return failed ? dvi__fail(DVI_IO_ERROR, "checkpoint: cannot read %s: %s", path, strerror(reason)) : DVI_OK;
+}
+
+dvi_status dvi_integrator_restore(dvi_integrator *I, const char *path)
+{
+  if (I == NULL || path == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "checkpoint: an argument is NULL");
+  const size_t room = file_size(I) + 1; /* one more byte shows a file that is too long */
+  size_t got = 0;
+  unsigned char *file = DVI_NEW(unsigned char, room);
+  if (file == NULL) return dvi__fail(DVI_NO_MEMORY, "checkpoint: no memory for %zu bytes", room);
+  dvi_status status = read_into(path, file, room, &got);
+  if (status == DVI_OK) status = check(I, path, file, got);
+  if (status == DVI_OK) unpack(I, file);
+  dvi__release(file);
+  return status;
+}

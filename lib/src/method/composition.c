@@ -1,0 +1,101 @@
+/* Symmetric compositions of a symmetric method Phi.
+ *
+ *     Psi_h = Phi_{g_m h} o ... o Phi_{g_2 h} o Phi_{g_1 h},    g_i = g_{m+1-i},   sum g_i = 1
+ * The discrete Lagrangian is the sum of those of the substeps, stationary in the points between them (Marsden and West 2001, sec. 2.5.1).
+ * Order 4: Suzuki 1990, 5 substeps. Order 6: Kahan and Li 1997, 9 substeps. Order 8: Kahan and Li 1997, 17 substeps.
+ * All three as collected by Hairer, Lubich and Wanner 2006, eqs. II.4.5, V.3.12 and V.3.14. */
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "method/method.h"
+
+enum { ORDER, BASE };
+
+static const char *const orders[] = {"4", "6", "8", NULL};
+static const char *const bases[] = {"verlet", "midpoint", "trapezoidal", "galerkin", NULL};
+
+static const dvi__key keys[] = {
+    {"order", orders, 0, 0, 0, "4, 6 or 8; left out: 4"},
+    {"base", bases, 0, 0, 0, "the symmetric method that is composed: verlet, midpoint, trapezoidal or galerkin; all other keys are its own; "
+                             "left out: verlet"},
+    {0},
+};
+
+/* The first half of the weights and the middle one; the rest mirrors them. */
+typedef struct scheme {
+  int substeps;
+  double weight[9];
+} scheme;
+
+static const scheme schemes[] = {
+    {5, {0.41449077179437573714, 0.41449077179437573714, -0.65796308717750294857}},
+    {9, {0.39216144400731413928, 0.33259913678935943860, -0.70624617255763935981, 0.08221359629355080023, 0.79854399093482996340}},
+    {17,
+     {0.13020248308889008088, 0.56116298177510838456, -0.38947496264484728641, 0.15884190655515560090, -0.39590389413323757734,
+      0.18453964097831570709, 0.25837438768632204729, 0.29501172360931029887, -0.60550853383003451170}},
+};
+
+static dvi_status create(dvi__stepper *self)
+{
+  char specification[2 * DVI__SPECIFICATION_SIZE] = "";
+  const char *rest = self->settings.rest;
+  dvi__text text = {specification, sizeof specification, 0};
+  dvi__text_add(&text, "%s%s%s", bases[self->settings.value[BASE]], rest[0] != 0 ? ":" : "", rest);
+  dvi__stepper *base = self->own = DVI_NEW(dvi__stepper, 1);
+  if (base == NULL) return dvi__fail(DVI_NO_MEMORY, "composition: no memory");
+  const dvi_status status = dvi__stepper_create(self->system, specification, self->counters, base);
+  if (status != DVI_OK) return dvi__fail_in(status, "composition");
+  if (!base->symmetric)
+    return dvi__fail(DVI_BAD_OPTION, "composition: %s is not symmetric; choose a symmetric quadrature", base->specification);
+  self->order = 4 + 2 * self->settings.value[ORDER];
+  self->order = base->order > self->order ? base->order : self->order;
+  self->symmetric = 1;
+  self->memory = base->memory;
+  self->memory_count = base->memory_count;
+  return DVI_OK;
+}
+
+static void destroy(dvi__stepper *self)
+{
+  if (self->own == NULL) return;
+  dvi__stepper_destroy(self->own);
+  dvi__release(self->own);
+}
+
+static void start(dvi__stepper *self)
+{
+  dvi__stepper *base = self->own;
+  base->method->start(base);
+}
+
+static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
+{
+  dvi__stepper *base = self->own;
+  const scheme *s = &schemes[self->settings.value[ORDER]];
+  for (int i = 0; i < s->substeps; i++) {
+    const int mirrored = i < s->substeps - 1 - i ? i : s->substeps - 1 - i;
+    DVI_TRY(base->method->step(base, state, s->weight[mirrored] * h));
+  }
+  return DVI_OK;
+}
+
+static void explain(const dvi__stepper *self, dvi__text *text)
+{
+  const dvi__stepper *base = self->own;
+  dvi__text_add(text, "composition: %d substeps a step, each by %s\n", schemes[self->settings.value[ORDER]].substeps, base->specification);
+  base->method->explain(base, text);
+}
+
+const dvi__method dvi__composition = {
+    .name = "composition",
+    .summary = "symmetric composition of a symmetric method to order 4, 6 or 8",
+    .cite = "KahanLi1997",
+    .keys = keys,
+    .takes_rest = 1,
+    .uses = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL,
+    .create = create,
+    .destroy = destroy,
+    .start = start,
+    .step = step,
+    .explain = explain,
+};

@@ -1,0 +1,283 @@
+/* Solving one element: a guess, the ladder of solvers, a better guess if that fails, and the new state. */
+#include "method/element_step.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "num/compensated.h"
+#include "num/finite.h"
+#include "solve/nonlinear.h"
+
+const char *const dvi__solver_choices[] = {"auto", "fixed-point", "newton", "kinsol", NULL};
+
+/* Memory: length of the last step (0: none), steps for which fixed point iteration is not tried again, the last step's unknowns. */
+enum { LAST_H, NEWTON_STEPS, LAST_Y };
+
+/* After fixed point iteration failed once, Newton's method takes over for this many steps. */
+static const double newton_steps = 64;
+
+/* A guess is made from at most 2^5 shorter steps. */
+enum { MOST_HALVINGS = 5 };
+
+typedef struct element {
+  dvi__action *action;
+  dvi__solver *solver;
+  int choice; /* of the solver */
+  double *Y;  /* the unknowns */
+  double *dq, *dp;
+  /* Shorter steps that build a guess. */
+  double *part_q, *part_p, *part_Y, *offset;
+} element;
+
+/* ---- making it ---- */
+
+static dvi_status residual_of(void *action, const double *Y, double *R)
+{
+  return dvi__action_residual(action, Y, R);
+}
+
+static dvi_status jacobian_of(void *action, const double *Y, double *values)
+{
+  return dvi__action_jacobian(action, Y, values);
+}
+
+static dvi_status prepare_chord_of(void *action, const double *Y)
+{
+  return dvi__action_prepare_chord(action, Y);
+}
+
+static void chord_of(void *action, double *R)
+{
+  dvi__action_chord(action, R);
+}
+
+static void row_scale_of(void *action, double *scale)
+{
+  dvi__action_row_scale(action, scale);
+}
+
+static int allocate(dvi__stepper *self, element *own)
+{
+  const size_t n = (size_t)self->system->n, unknowns = (size_t)dvi__action_unknowns(own->action);
+  self->memory_count = LAST_Y + unknowns;
+  self->memory = DVI_NEW(double, self->memory_count);
+  own->Y = DVI_NEW(double, unknowns);
+  own->dq = DVI_NEW(double, n);
+  own->dp = DVI_NEW(double, n);
+  own->part_q = DVI_NEW(double, n);
+  own->part_p = DVI_NEW(double, n);
+  own->part_Y = DVI_NEW(double, unknowns);
+  own->offset = DVI_NEW(double, unknowns);
+  return self->memory && own->Y && own->dq && own->dp && own->part_q && own->part_p && own->part_Y && own->offset;
+}
+
+static int symmetric_rule(dvi_rule rule)
+{
+  return rule != DVI_RADAU_LEFT && rule != DVI_RADAU_RIGHT;
+}
+
+dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *space, int solver)
+{
+  const int quadrature_order = dvi_quadrature_order(space->rule, space->nodes);
+  element *own = self->own = DVI_NEW(element, 1);
+  if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
+  self->order = 2 * space->degree < quadrature_order ? 2 * space->degree : quadrature_order;
+  self->symmetric = symmetric_rule(space->rule);
+  own->choice = solver;
+  DVI_TRY(dvi__action_create(self->system, space, self->counters, &own->action));
+  DVI_TRY(dvi__action_prepare_jacobian(own->action));
+  if (!allocate(self, own)) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
+  const dvi__equations equations = {dvi__action_unknowns(own->action), dvi__action_pattern(own->action), own->action, residual_of,
+                                    jacobian_of, prepare_chord_of, chord_of, row_scale_of};
+  return dvi__solver_create(&equations, self->counters, &own->solver);
+}
+
+void dvi__element_destroy(dvi__stepper *self)
+{
+  element *own = self->own;
+  dvi__release(self->memory);
+  if (own == NULL) return;
+  dvi__solver_destroy(&own->solver);
+  dvi__action_destroy(&own->action);
+  dvi__release(own->Y);
+  dvi__release(own->dq);
+  dvi__release(own->dp);
+  dvi__release(own->part_q);
+  dvi__release(own->part_p);
+  dvi__release(own->part_Y);
+  dvi__release(own->offset);
+  dvi__release(own);
+}
+
+void dvi__element_start(dvi__stepper *self)
+{
+  self->memory[LAST_H] = 0;
+  self->memory[NEWTON_STEPS] = 0;
+}
+
+/* ---- guesses ---- */
+
+/* One step's worth of arguments: where it starts and what is known of the step before. */
+typedef struct place {
+  double t, h;
+  const double *q, *p;
+  double last_h; /* 0: nothing is known */
+  const double *last_Y;
+} place;
+
+static double largest(int n, const double *x)
+{
+  double size = 0;
+  for (int i = 0; i < n; i++) size = fmax(size, fabs(x[i]));
+  return size;
+}
+
+/* The last path continued; without one, a straight line along the starting velocity. */
+static dvi_status guess(dvi__stepper *self, const place *at, double *Y)
+{
+  element *own = self->own;
+  if (at->last_h != 0) {
+    dvi__action_continue(own->action, at->h / at->last_h, at->last_Y, Y);
+    return DVI_OK;
+  }
+  memset(own->dq, 0, (size_t)self->system->n * sizeof(double));
+  DVI_TRY(dvi__legendre_inverse(dvi__action_evaluator(own->action), at->t, at->q, at->p, own->dq));
+  for (int i = 0; i < self->system->n; i++) own->dq[i] *= at->h;
+  dvi__action_straight(own->action, own->dq, Y);
+  return DVI_OK;
+}
+
+/* Solve the element at its place, from a first guess, by the rung that the user or the measured contraction chooses. */
+static dvi_status solve_at(dvi__stepper *self, const place *at, double *Y, dvi__solve_report *report)
+{
+  element *own = self->own;
+  const double size = largest(self->system->n, at->q);
+  const int fixed_point = own->choice == DVI__SOLVER_FIXED_POINT || (own->choice == DVI__SOLVER_AUTO && self->memory[NEWTON_STEPS] == 0);
+  dvi__action_place(own->action, at->t, at->h, at->q, at->p);
+  DVI_TRY(guess(self, at, Y));
+  if (fixed_point) {
+    const int patient = own->choice == DVI__SOLVER_FIXED_POINT;
+    const dvi_status status = dvi__solve(own->solver, DVI__FIXED_POINT, size, 0, patient, Y, report);
+    if (status == DVI_OK) self->counters->fixed_points++;
+    if (status <= 0) return status;
+    self->memory[NEWTON_STEPS] = newton_steps;
+    DVI_TRY(guess(self, at, Y));
+  } else if (self->memory[NEWTON_STEPS] > 0) {
+    self->memory[NEWTON_STEPS]--;
+  }
+  const dvi__rung rung = own->choice == DVI__SOLVER_KINSOL ? DVI__KINSOL : DVI__NEWTON;
+  const dvi_status status = dvi__solve(own->solver, rung, size, 1, 0, Y, report);
+  if (status == DVI_OK && rung == DVI__NEWTON) self->counters->newtons++;
+  return status;
+}
+
+/* Offsets from `start` of the path of one part, at the fitting points of the whole that lie in it. */
+static void sample(const dvi__stepper *self, const double *start, int part, int parts, double part_h)
+{
+  const element *own = self->own;
+  const double *tau = dvi__action_fit_points(own->action);
+  const size_t n = (size_t)self->system->n, s = (size_t)dvi__action_unknowns(own->action) / n;
+  for (size_t m = 0; m < s; m++) {
+    const double inside = tau[m] * parts - part;
+    if (inside <= 0 || inside > 1) continue;
+    dvi__action_path(own->action, own->part_Y, part_h, inside, own->dq, NULL);
+    for (size_t i = 0; i < n; i++) own->offset[i * s + m] = (own->part_q[i] - start[i]) + own->dq[i];
+  }
+}
+
+/* A guess from `parts` shorter steps by the same method: right to the method's own accuracy at that step. */
+static dvi_status guess_by_parts(dvi__stepper *self, const place *whole, int parts, double *Y, dvi__solve_report *report)
+{
+  element *own = self->own;
+  const size_t bytes = (size_t)self->system->n * sizeof(double);
+  place at = {whole->t, whole->h / parts, own->part_q, own->part_p, 0, Y};
+  memcpy(own->part_q, whole->q, bytes);
+  memcpy(own->part_p, whole->p, bytes);
+  for (int part = 0; part < parts; part++) {
+    DVI_TRY(solve_at(self, &at, own->part_Y, report));
+    sample(self, whole->q, part, parts, at.h);
+    dvi__action_ends(own->action, own->part_Y, own->dq, own->dp);
+    for (int i = 0; i < self->system->n; i++) own->part_q[i] += own->dq[i], own->part_p[i] += own->dp[i];
+    memcpy(Y, own->part_Y, (size_t)dvi__action_unknowns(own->action) * sizeof(double));
+    at.t += at.h;
+    at.last_h = at.h;
+  }
+  dvi__action_fit(own->action, own->offset, Y);
+  dvi__action_place(own->action, whole->t, whole->h, whole->q, whole->p);
+  return DVI_OK;
+}
+
+/* The cheap guess was not good enough: better and better ones, and at last KINSOL's line search. */
+static dvi_status rescue(dvi__stepper *self, const place *at, double *Y, dvi__solve_report *report)
+{
+  element *own = self->own;
+  const double size = largest(self->system->n, at->q);
+  dvi_status guessed = DVI_NOT_CONVERGED;
+  for (int halvings = 1; halvings <= MOST_HALVINGS; halvings++) {
+    guessed = guess_by_parts(self, at, 1 << halvings, Y, report);
+    if (guessed < 0) return guessed;
+    if (guessed != DVI_OK) continue;
+    self->counters->halvings++;
+    const dvi_status status = dvi__solve(own->solver, DVI__NEWTON, size, 0, 0, Y, report);
+    if (status == DVI_OK) self->counters->newtons++;
+    if (status <= 0) return status;
+  }
+  dvi__action_place(own->action, at->t, at->h, at->q, at->p);
+  DVI_TRY(guessed == DVI_OK ? guess_by_parts(self, at, 1 << MOST_HALVINGS, Y, report) : guess(self, at, Y));
+  const dvi_status status = dvi__solve(own->solver, DVI__KINSOL, size, 0, 0, Y, report);
+  if (status <= 0) return status;
+  return dvi__fail_in(status, "not solved, neither by Newton's method nor by KINSOL with line search (%d iterations, residual %.1e)",
+                      report->iterations, report->residual);
+}
+
+/* ---- the step ---- */
+
+static dvi_status advance(dvi__stepper *self, dvi__state *state, double h)
+{
+  element *own = self->own;
+  const int n = self->system->n;
+  dvi__action_ends(own->action, own->Y, own->dq, own->dp);
+  if (dvi__first_not_finite((size_t)n, own->dq) >= 0 || dvi__first_not_finite((size_t)n, own->dp) >= 0)
+    return dvi__fail(DVI_NOT_FINITE, "the step's end is not finite");
+  dvi__add_compensated_all(n, state->q, state->q_carry, own->dq);
+  dvi__add_compensated_all(n, state->p, state->p_carry, own->dp);
+  dvi__add_compensated(&state->t, &state->t_carry, h);
+  self->memory[LAST_H] = h;
+  memcpy(self->memory + LAST_Y, own->Y, (size_t)dvi__action_unknowns(own->action) * sizeof(double));
+  return DVI_OK;
+}
+
+dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h)
+{
+  element *own = self->own;
+  dvi__solve_report report = {0};
+  const place at = {state->t, h, state->q, state->p, self->memory[LAST_H], self->memory + LAST_Y};
+  dvi_status status = solve_at(self, &at, own->Y, &report);
+  if (status > 0) status = rescue(self, &at, own->Y, &report);
+  return status == DVI_OK ? advance(self, state, h) : status;
+}
+
+void dvi__element_path(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v)
+{
+  const element *own = self->own;
+  dvi__action_path(own->action, self->memory + LAST_Y, h, tau, q, v);
+  for (int i = 0; q != NULL && i < self->system->n; i++) q[i] += q0[i];
+}
+
+void dvi__element_explain(const dvi__stepper *self, dvi__text *text)
+{
+  const element *own = self->own;
+  const dvi__pattern *pattern = dvi__action_pattern(own->action);
+  const int general = (self->system->terms & DVI__LAGRANGIAN) != 0, dense = dvi__solver_linear_kind(own->solver) == DVI__LINEAR_DENSE;
+  dvi__text_add(text, "kernel: implicit; %d unknowns a step, Jacobian with %d entries (%.3g %% of a full one)\n", pattern->columns,
+                dvi__pattern_entries(pattern), 100.0 * dvi__pattern_entries(pattern) / pattern->columns / pattern->columns);
+  dvi__text_add(text, "kinetic part: %s\n", general ? "general Lagrangian; its velocity Hessian is evaluated once a step" : "constant mass");
+  if (own->choice == DVI__SOLVER_AUTO)
+    dvi__text_add(text, "solver: auto: fixed point while it contracts by 0.35 or better, else Newton's method, last KINSOL with line search\n");
+  else
+    dvi__text_add(text, "solver: %s, as asked; what it cannot solve goes on to KINSOL with line search\n", dvi__solver_choices[own->choice]);
+  dvi__text_add(text, "linear solver: %s\n", dense ? "dense LU (LAPACK)" : "sparse LU (KLU), analysed once, refactored after");
+}

@@ -1,0 +1,27 @@
+/* A step by the stationarity of one element of the discrete action: what galerkin, midpoint and trapezoidal share. */
+#ifndef DVI_METHOD_ELEMENT_STEP_H
+#define DVI_METHOD_ELEMENT_STEP_H
+#include "action/action.h"
+#include "method/method.h"
+
+/* The `solver` key of every implicit method; its index in the method's own table goes to dvi__element_create. */
+#define DVI__SOLVER_KEY                                        \
+  {                                                            \
+    "solver", dvi__solver_choices, 0, 0, DVI__SOLVER_AUTO,     \
+        "auto, fixed-point, newton or kinsol; left out: auto"  \
+  }
+
+enum { DVI__SOLVER_AUTO, DVI__SOLVER_FIXED_POINT, DVI__SOLVER_NEWTON, DVI__SOLVER_KINSOL };
+extern const char *const dvi__solver_choices[];
+
+/* Fill a stepper's order, symmetric, memory and own for this space; `solver` is one of the choices above. */
+dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *space, int solver);
+
+/* The other operations of dvi__method. */
+void dvi__element_destroy(dvi__stepper *self);
+void dvi__element_start(dvi__stepper *self);
+dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h);
+void dvi__element_path(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v);
+void dvi__element_explain(const dvi__stepper *self, dvi__text *text);
+
+#endif

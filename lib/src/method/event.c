@@ -1,0 +1,131 @@
+#include "method/event.h"
+
+#include <math.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+
+/* Each step is looked at in this many parts: a function may cross zero and come back within one. */
+enum { PARTS = 4, MOST_ITERATIONS = 200 };
+
+/* A bracket on one step: times, and g at both. */
+typedef struct bracket {
+  double a, b, ga, gb;
+} bracket;
+
+static dvi_status evaluate(dvi__watch *w, dvi_integrator *I, const dvi_event *event, double t, double *g)
+{
+  DVI_TRY(dvi_integrator_interpolate(I, t, w->q, w->v));
+  const int returned = event->value(t, w->q, w->v, g, event->user);
+  const char *name = event->name != NULL ? event->name : "unnamed";
+  if (returned != 0)
+    return dvi__fail(returned < 0 ? DVI_CALLBACK_FAILED : DVI_CALLBACK_RETRY, "event '%s': the callback returned %d", name, returned);
+  return isfinite(*g) ? DVI_OK : dvi__fail(DVI_NOT_FINITE, "event '%s' is %g at t = %.9g", name, *g, t);
+}
+
+/* The start's value comes from the state itself: there is no step yet to interpolate on. */
+static dvi_status first_value(dvi__watch *w, dvi_integrator *I, const dvi_event *event, double *g)
+{
+  const double t = dvi_integrator_time(I), *q = dvi_integrator_q(I);
+  const size_t n = (size_t)dvi_system_nv(dvi_integrator_system(I));
+  for (size_t i = 0; i < n; i++) w->v[i] = 0;
+  DVI_TRY(dvi_system_velocity(dvi_integrator_system(I), t, q, dvi_integrator_p(I), w->v));
+  const int returned = event->value(t, q, w->v, g, event->user);
+  if (returned == 0 && isfinite(*g)) return DVI_OK;
+  return dvi__fail(returned < 0 ? DVI_CALLBACK_FAILED : DVI_NOT_FINITE, "event '%s': the callback returned %d with g = %g at the start",
+                   event->name != NULL ? event->name : "unnamed", returned, *g);
+}
+
+dvi_status dvi__watch_create(dvi_integrator *I, const dvi_run_options *options, dvi__watch *w)
+{
+  const size_t n = (size_t)dvi_system_nq(dvi_integrator_system(I));
+  dvi_status status = DVI_OK;
+  *w = (dvi__watch){0};
+  if (options->event_count == 0) return DVI_OK;
+  *w = (dvi__watch){DVI_NEW(double, n), DVI_NEW(double, n), DVI_NEW(double, options->event_count)};
+  if (!w->q || !w->v || !w->before) status = dvi__fail(DVI_NO_MEMORY, "run: no memory for %d events", options->event_count);
+  for (int k = 0; k < options->event_count && status == DVI_OK; k++) status = first_value(w, I, &options->events[k], &w->before[k]);
+  if (status != DVI_OK) dvi__watch_destroy(w);
+  return status;
+}
+
+void dvi__watch_destroy(dvi__watch *w)
+{
+  dvi__release(w->q);
+  dvi__release(w->v);
+  dvi__release(w->before);
+  *w = (dvi__watch){0};
+}
+
+/* A zero exactly at the left end belongs to the part before. */
+static int crosses(const dvi_event *event, const bracket *at)
+{
+  if (at->ga == 0 || at->ga * at->gb > 0) return 0;
+  if (at->gb == 0 && at->ga == 0) return 0;
+  const int rises = at->gb > at->ga;
+  return event->direction == 0 || (event->direction > 0) == rises;
+}
+
+/* Illinois' variant of regula falsi, to the last digits of t (Dowell and Jarratt 1971), with bisection where it lingers. */
+static dvi_status locate(dvi__watch *w, dvi_integrator *I, const dvi_event *event, bracket at, double *zero)
+{
+  int side = 0;
+  *zero = at.b;
+  for (int i = 0; i < MOST_ITERATIONS && at.gb != 0; i++) {
+    const double width = fabs(at.b - at.a), tolerance = 1e-13 * fmax(1, fabs(at.b));
+    double g, middle = i % 8 == 7 ? 0.5 * (at.a + at.b) : (at.a * at.gb - at.b * at.ga) / (at.gb - at.ga);
+    if (width <= tolerance || middle == at.a || middle == at.b) break;
+    DVI_TRY(evaluate(w, I, event, middle, &g));
+    *zero = middle;
+    if (g == 0) break;
+    if ((g > 0) == (at.gb > 0)) {
+      at.b = middle, at.gb = g;
+      if (side == -1) at.ga *= 0.5;
+      side = -1;
+    } else {
+      at.a = middle, at.ga = g;
+      if (side == 1) at.gb *= 0.5;
+      side = 1;
+    }
+  }
+  return DVI_OK;
+}
+
+static dvi_status report_event(dvi__watch *w, dvi_integrator *I, const dvi_event *event, int index, double zero, dvi_run_report *report,
+                               int *stop)
+{
+  report->events++;
+  report->event = index;
+  report->event_time = zero;
+  if (event->terminal) {
+    report->end = DVI_RUN_EVENT;
+    *stop = 1;
+  }
+  if (event->occurred == NULL) return DVI_OK;
+  DVI_TRY(dvi_integrator_interpolate(I, zero, w->q, w->v));
+  const int returned = event->occurred(zero, w->q, w->v, event->user);
+  if (returned < 0) return dvi__fail(DVI_CALLBACK_FAILED, "event: the callback at t = %.9g failed with %d", zero, returned);
+  if (returned > 0) {
+    report->end = DVI_RUN_STOPPED;
+    *stop = 1;
+  }
+  return DVI_OK;
+}
+
+dvi_status dvi__watch_step(dvi__watch *w, dvi_integrator *I, const dvi_run_options *options, double from, dvi_run_report *report, int *stop)
+{
+  const double to = dvi_integrator_time(I);
+  for (int k = 0; k < options->event_count; k++) {
+    const dvi_event *event = &options->events[k];
+    for (int part = 1; part <= PARTS; part++) {
+      bracket at = {from + (part - 1) * (to - from) / PARTS, part == PARTS ? to : from + part * (to - from) / PARTS, w->before[k], 0};
+      double zero;
+      DVI_TRY(evaluate(w, I, event, at.b, &at.gb));
+      w->before[k] = at.gb;
+      if (!crosses(event, &at)) continue;
+      DVI_TRY(locate(w, I, event, at, &zero));
+      DVI_TRY(report_event(w, I, event, k, zero, report, stop));
+    }
+  }
+  return DVI_OK;
+}

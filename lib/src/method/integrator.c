@@ -1,0 +1,228 @@
+/* The driver of one step: it owns the states, so that a failed step leaves everything as it was, for every method, in one place. */
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "method/integrator_struct.h"
+#include "num/finite.h"
+
+/* ---- create, destroy ---- */
+
+static void lay_out(dvi__state *state, double **at, size_t n)
+{
+  double **const part[] = {&state->q, &state->p, &state->q_carry, &state->p_carry};
+  for (int i = 0; i < 4; i++, *at += n) *part[i] = *at;
+}
+
+static dvi_status allocate(dvi_integrator *I)
+{
+  const size_t n = (size_t)I->system->n;
+  double *at = I->numbers = DVI_NEW(double, 14 * n);
+  I->memory_before = DVI_NEW(double, I->stepper.memory_count);
+  if (I->numbers == NULL || I->memory_before == NULL) return dvi__fail(DVI_NO_MEMORY, "integrator: no memory for %zu coordinates", n);
+  lay_out(&I->now, &at, n);
+  lay_out(&I->last, &at, n);
+  lay_out(&I->next, &at, n);
+  I->v = at;
+  I->last_v = at + n;
+  return dvi__evaluator_create(I->system, 1, &I->counters, &I->evaluator);
+}
+
+dvi_status dvi_integrator_create(const dvi_system *system, const char *method, dvi_integrator **integrator)
+{
+  if (integrator == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "integrator: no place for the result");
+  *integrator = NULL;
+  if (system == NULL || method == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "integrator: the system or the method is NULL");
+  const long before = dvi__allocation_count();
+  dvi_integrator *I = DVI_NEW(dvi_integrator, 1);
+  if (I == NULL) return dvi__fail(DVI_NO_MEMORY, "integrator: no memory");
+  I->system = system;
+  I->allocations_before = before;
+  dvi_status status = dvi__stepper_create(system, method, &I->counters, &I->stepper);
+  if (status == DVI_OK) status = allocate(I);
+  if (status != DVI_OK) dvi_integrator_destroy(&I);
+  *integrator = I;
+  return status;
+}
+
+void dvi_integrator_destroy(dvi_integrator **integrator)
+{
+  if (integrator == NULL || *integrator == NULL) return;
+  dvi_integrator *I = *integrator;
+  dvi__stepper_destroy(&I->stepper);
+  dvi__evaluator_destroy(&I->evaluator);
+  dvi__release(I->numbers);
+  dvi__release(I->memory_before);
+  dvi__release(I);
+  *integrator = NULL;
+}
+
+/* ---- start ---- */
+
+static dvi_status check_start(dvi_integrator *I, double t, const double *q, const double *p)
+{
+  const size_t n = (size_t)I->system->n;
+  double L;
+  if (!isfinite(t)) return dvi__fail(DVI_NOT_FINITE, "start: the time is %g", t);
+  for (size_t i = 0; i < n; i++)
+    if (!isfinite(q[i]) || !isfinite(p[i])) return dvi__fail(DVI_NOT_FINITE, "start: coordinate %zu is q = %g, p = %g", i, q[i], p[i]);
+  memset(I->next.q_carry, 0, n * sizeof(double));
+  DVI_TRY(dvi__legendre_inverse(I->evaluator, t, q, p, I->next.q_carry)); /* a free array takes the velocity */
+  DVI_TRY(dvi__lagrangian_value(I->evaluator, 1, &t, q, I->next.q_carry, &L));
+  return dvi__lagrangian_gradient(I->evaluator, 1, &t, q, I->next.q_carry, I->next.p_carry, NULL);
+}
+
+dvi_status dvi_integrator_start(dvi_integrator *I, double t, const double *q, const double *p)
+{
+  if (I == NULL || q == NULL || p == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "start: an argument is NULL");
+  const size_t bytes = (size_t)I->system->n * sizeof(double);
+  const dvi_status status = check_start(I, t, q, p);
+  if (status != DVI_OK) return dvi__fail_in(status, "%s: cannot start at t = %.6g", I->stepper.method->name, t);
+  memcpy(I->v, I->next.q_carry, bytes);
+  memmove(I->now.q, q, bytes);
+  memmove(I->now.p, p, bytes);
+  memset(I->now.q_carry, 0, bytes);
+  memset(I->now.p_carry, 0, bytes);
+  I->now.t = t;
+  I->now.t_carry = 0;
+  I->last_h = 0;
+  I->started = 1;
+  I->stepper.method->start(&I->stepper);
+  return DVI_OK;
+}
+
+/* ---- step ---- */
+
+static void copy_state(size_t n, const dvi__state *from, dvi__state *to)
+{
+  to->t = from->t;
+  to->t_carry = from->t_carry;
+  memcpy(to->q, from->q, 4 * n * sizeof(double)); /* q, p and both carries lie in a row */
+}
+
+static dvi_status check_state(const dvi_integrator *I)
+{
+  const size_t n = (size_t)I->system->n;
+  if (isfinite(I->next.t) && dvi__first_not_finite(2 * n, I->next.q) < 0) return DVI_OK;
+  return dvi__fail(DVI_NOT_FINITE, "the new state is not finite");
+}
+
+static void accept(dvi_integrator *I, double h)
+{
+  const dvi__state oldest = I->last;
+  I->last = I->now;
+  I->now = I->next;
+  I->next = oldest;
+  I->last_h = h;
+  I->counters.steps++;
+}
+
+static dvi_status refuse(dvi_integrator *I, double h, dvi_status status)
+{
+  memcpy(I->stepper.memory, I->memory_before, I->stepper.memory_count * sizeof(double));
+  I->counters.failed_steps++;
+  return dvi__fail_in(status, "%s: step %ld from t = %.9g with h = %.3g failed%s", I->stepper.method->name, I->counters.steps + 1, I->now.t,
+                      h, status > 0 ? "; the state is unchanged, try a smaller step" : "; the state is unchanged");
+}
+
+dvi_status dvi_integrator_step(dvi_integrator *I, double h)
+{
+  if (I == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "step: the integrator is NULL");
+  if (!I->started) return dvi__fail(DVI_BAD_STATE, "step: the integrator has no state yet; call dvi_integrator_start first");
+  if (!isfinite(h) || h == 0 || I->now.t + h == I->now.t)
+    return dvi__fail(DVI_BAD_ARGUMENT, "step: h = %g does not move the time from t = %.17g; a finite step other than 0 is needed", h, I->now.t);
+  copy_state((size_t)I->system->n, &I->now, &I->next);
+  memcpy(I->memory_before, I->stepper.memory, I->stepper.memory_count * sizeof(double));
+  dvi_status status = I->stepper.method->step(&I->stepper, &I->next, h);
+  if (status == DVI_OK) status = check_state(I);
+  if (status != DVI_OK) return refuse(I, h, status);
+  accept(I, h);
+  return DVI_OK;
+}
+
+/* ---- queries ---- */
+
+double dvi_integrator_time(const dvi_integrator *integrator)
+{
+  return integrator->now.t;
+}
+
+const double *dvi_integrator_q(const dvi_integrator *integrator)
+{
+  return integrator->now.q;
+}
+
+const double *dvi_integrator_p(const dvi_integrator *integrator)
+{
+  return integrator->now.p;
+}
+
+const dvi_system *dvi_integrator_system(const dvi_integrator *integrator)
+{
+  return integrator->system;
+}
+
+int dvi_integrator_order(const dvi_integrator *integrator)
+{
+  return integrator->stepper.order;
+}
+
+const char *dvi_integrator_method(const dvi_integrator *integrator)
+{
+  return integrator->stepper.specification;
+}
+
+void dvi_integrator_counters(const dvi_integrator *integrator, dvi_counters *counters)
+{
+  *counters = integrator->counters;
+  counters->allocations = dvi__allocation_count() - integrator->allocations_before;
+}
+
+dvi_status dvi_integrator_invariants(dvi_integrator *I, double *value)
+{
+  if (I == NULL || value == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "invariants: an argument is NULL");
+  if (!I->started) return dvi__fail(DVI_BAD_STATE, "invariants: the integrator has no state yet; call dvi_integrator_start first");
+  DVI_TRY(dvi__legendre_inverse(I->evaluator, I->now.t, I->now.q, I->now.p, I->v));
+  return dvi__invariants(I->evaluator, I->now.t, I->now.q, I->v, I->now.p, value);
+}
+
+size_t dvi_integrator_explain(const dvi_integrator *integrator, char *text, size_t size)
+{
+  dvi__text out = {text, size, 0};
+  if (size > 0) text[0] = 0;
+  dvi__text_add(&out, "method: %s, order %d%s\n", integrator->stepper.specification, integrator->stepper.order,
+                integrator->stepper.symmetric ? ", symmetric" : "");
+  integrator->stepper.method->explain(&integrator->stepper, &out);
+  return out.length;
+}
+
+/* ---- dense output ---- */
+
+/* Hermite's cubic through both ends of the last step. */
+static dvi_status hermite(dvi_integrator *I, double tau, double *q, double *v)
+{
+  const double h = I->last_h, a = (1 + 2 * tau) * (1 - tau) * (1 - tau), b = tau * (1 - tau) * (1 - tau);
+  const double c = tau * tau * (3 - 2 * tau), d = tau * tau * (tau - 1);
+  const double a1 = 6 * tau * (tau - 1), b1 = (1 - tau) * (1 - 3 * tau), d1 = tau * (3 * tau - 2);
+  DVI_TRY(dvi__legendre_inverse(I->evaluator, I->last.t, I->last.q, I->last.p, I->last_v));
+  DVI_TRY(dvi__legendre_inverse(I->evaluator, I->now.t, I->now.q, I->now.p, I->v));
+  for (int i = 0; i < I->system->n; i++) {
+    const double q0 = I->last.q[i], q1 = I->now.q[i], v0 = I->last_v[i], v1 = I->v[i];
+    if (q != NULL) q[i] = a * q0 + h * b * v0 + c * q1 + h * d * v1;
+    if (v != NULL) v[i] = a1 * (q0 - q1) / h + b1 * v0 + d1 * v1;
+  }
+  return DVI_OK;
+}
+
+dvi_status dvi_integrator_interpolate(dvi_integrator *I, double t, double *q, double *v)
+{
+  if (I == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "interpolate: the integrator is NULL");
+  if (I->last_h == 0) return dvi__fail(DVI_BAD_STATE, "interpolate: no step was taken yet");
+  const double tau = (t - I->last.t) / I->last_h, rounding = 1e-12;
+  if (!(tau >= -rounding && tau <= 1 + rounding))
+    return dvi__fail(DVI_BAD_ARGUMENT, "interpolate: t = %.17g is outside of the last step, %.17g to %.17g", t, I->last.t, I->now.t);
+  if (I->stepper.method->path == NULL) return hermite(I, tau, q, v);
+  I->stepper.method->path(&I->stepper, I->last.q, I->last_h, tau, q, v);
+  return DVI_OK;
+}

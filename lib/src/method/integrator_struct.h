@@ -1,0 +1,21 @@
+/* The inside of an integrator, for integrator.c and checkpoint.c. */
+#ifndef DVI_METHOD_INTEGRATOR_STRUCT_H
+#define DVI_METHOD_INTEGRATOR_STRUCT_H
+#include "method/method.h"
+
+struct dvi_integrator {
+  const dvi_system *system;
+  dvi__stepper stepper;
+  dvi_counters counters;
+  long allocations_before;    /* of this thread, when create began */
+  dvi__evaluator *evaluator;  /* for diagnostics at one point */
+  /* The present state, the one before the last step, and the one that a step works on: a step that fails spoils only `next`. */
+  dvi__state now, last, next;
+  double *numbers;            /* the memory of all three */
+  double *memory_before;      /* the stepper's memory before a step */
+  double *v, *last_v;         /* [n] */
+  int started;
+  double last_h;              /* 0: no step was taken yet */
+};
+
+#endif

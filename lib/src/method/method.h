@@ -1,0 +1,90 @@
+/* What a method is: one const struct. The driver (integrator.c) owns the states, failures and counters.
+ *
+ * To add a method foo: foo.c defines `const dvi__method dvi__foo`, methods.def gets the line METHOD(foo). */
+#ifndef DVI_METHOD_METHOD_H
+#define DVI_METHOD_METHOD_H
+#include "system/evaluator.h"
+
+/* The state that a step advances. Sums are compensated: what a carry holds, its number is too large by. */
+typedef struct dvi__state {
+  double t, t_carry;
+  double *q, *p, *q_carry, *p_carry; /* [n] */
+} dvi__state;
+
+/* A key of a method's specification: a whole number, or one of a list of names. */
+typedef struct dvi__key {
+  const char *name;
+  const char *const *choices; /* ended by NULL; NULL: a whole number */
+  int least, most;            /* of a whole number */
+  int left_out;               /* the value of a key that is not given: a number, or the index of a choice */
+  const char *help;
+} dvi__key;
+
+enum { DVI__KEYS_MOST = 8, DVI__SPECIFICATION_SIZE = 256, DVI__LEFT_OUT = -1 };
+
+/* Values of the keys, in the order of the method's table. A method may replace DVI__LEFT_OUT by what it chose. */
+typedef struct dvi__settings {
+  int value[DVI__KEYS_MOST];
+  char rest[DVI__SPECIFICATION_SIZE]; /* "key=value,..." that are not the method's own; only for methods that take them */
+} dvi__settings;
+
+typedef struct dvi__method dvi__method;
+
+/* A method on a system. */
+typedef struct dvi__stepper {
+  const dvi__method *method;
+  const dvi_system *system;
+  dvi_counters *counters;
+  dvi__settings settings;
+  char specification[DVI__SPECIFICATION_SIZE]; /* every key spelled out */
+  int order;                                   /* what theory claims */
+  int symmetric;                               /* a step of -h undoes a step of h */
+  /* What the method carries from step to step beside the state: saved in checkpoints, restored when a step fails. */
+  double *memory;
+  size_t memory_count;
+  void *own; /* the method's struct */
+} dvi__stepper;
+
+/* A growing text in memory of fixed size. */
+typedef struct dvi__text {
+  char *text;
+  size_t size, length; /* length may exceed size: it counts what did not fit, too */
+} dvi__text;
+
+void dvi__text_add(dvi__text *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+struct dvi__method {
+  const char *name, *summary, *cite;
+  const dvi__key *keys; /* ended by a key without a name; NULL: none */
+  int takes_rest;       /* keys of others are collected in settings.rest */
+  unsigned needs;       /* dvi__term bits that the system must declare */
+  unsigned uses;        /* bits that it may declare */
+  /* Set order, symmetric, memory, own. On failure destroy is called. */
+  dvi_status (*create)(dvi__stepper *self);
+  void (*destroy)(dvi__stepper *self);
+  /* Forget earlier steps: the state is new. */
+  void (*start)(dvi__stepper *self);
+  /* Advance the state. On failure the driver throws state and memory away. */
+  dvi_status (*step)(dvi__stepper *self, dvi__state *state, double h);
+  /* q [n] and v [n] at tau in [0,1] of the last step, which started at q0 [n] with length h. NULL: Hermite's cubic. */
+  void (*path)(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v);
+  void (*explain)(const dvi__stepper *self, dvi__text *text);
+};
+
+/* Make a stepper from a specification; it owns all that destroy frees. */
+dvi_status dvi__stepper_create(const dvi_system *system, const char *specification, dvi_counters *counters, dvi__stepper *stepper);
+void dvi__stepper_destroy(dvi__stepper *stepper);
+
+/* Parse a specification (settings.c). */
+dvi_status dvi__parse(const char *specification, const dvi__method **method, dvi__settings *settings);
+
+/* Write it with every key spelled out. */
+void dvi__spell_out(const dvi__method *method, const dvi__settings *settings, dvi__text *text);
+
+/* The method of a name, or NULL (table.c). */
+const dvi__method *dvi__find_method(const char *name, size_t length);
+
+/* Number of keys in a method's table. */
+int dvi__key_count(const dvi__method *method);
+
+#endif

@@ -1,0 +1,98 @@
+/* The driver of a run. */
+#include <dvi/run.h>
+#include <math.h>
+
+#include "core/status.h"
+#include "method/event.h"
+
+/* Steps within this part of h of the end land on it. */
+static const double rounding = 1e-9;
+
+static dvi_status check_events(const dvi_run_options *options)
+{
+  if (options->event_count < 0) return dvi__fail(DVI_BAD_ARGUMENT, "run: %d events; 0 or more are possible", options->event_count);
+  if (options->event_count > 0 && options->events == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "run: %d events declared, but their list is NULL", options->event_count);
+  for (int k = 0; k < options->event_count; k++)
+    if (options->events[k].value == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "run: event %d has no value callback", k);
+  return DVI_OK;
+}
+
+static dvi_status check(const dvi_integrator *I, const dvi_run_options *options)
+{
+  if (I == NULL || options == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "run: an argument is NULL");
+  const double way = options->t_end - dvi_integrator_time(I);
+  if (!isfinite(options->h) || options->h == 0)
+    return dvi__fail(DVI_BAD_ARGUMENT, "run: h = %g; a finite step other than 0 is needed", options->h);
+  if (!isfinite(options->t_end)) return dvi__fail(DVI_BAD_ARGUMENT, "run: t_end = %g is not finite", options->t_end);
+  if (way * options->h < 0)
+    return dvi__fail(DVI_BAD_ARGUMENT, "run: h = %g leads away from t_end = %g; the time is %g", options->h, options->t_end,
+                     dvi_integrator_time(I));
+  if (options->every < 0 || options->checkpoint_every < 0)
+    return dvi__fail(DVI_BAD_ARGUMENT, "run: every = %ld, checkpoint_every = %ld; 0 or more are possible", options->every,
+                     options->checkpoint_every);
+  return check_events(options);
+}
+
+static dvi_status observe(dvi_integrator *I, const dvi_run_options *options, dvi_run_report *report, int *stop)
+{
+  if (options->observe == NULL) return DVI_OK;
+  const int returned = options->observe(I, options->user);
+  if (returned < 0) return dvi__fail(DVI_CALLBACK_FAILED, "run: the observer failed with %d at t = %.9g", returned, dvi_integrator_time(I));
+  if (returned > 0) {
+    report->end = DVI_RUN_STOPPED;
+    *stop = 1;
+  }
+  return DVI_OK;
+}
+
+/* The next step's length: h, or what is left of the way; 0 at its end. */
+static double next_step(const dvi_integrator *I, const dvi_run_options *options)
+{
+  const double left = options->t_end - dvi_integrator_time(I), h = options->h;
+  if (left / h <= rounding) return 0;
+  return left / h < 1 - rounding ? left : h;
+}
+
+static dvi_status one_step(dvi_integrator *I, const dvi_run_options *options, double h, dvi__watch *watch, dvi_run_report *report, int *stop)
+{
+  const double from = dvi_integrator_time(I);
+  const long every = options->every > 0 ? options->every : 1;
+  DVI_TRY(dvi_integrator_step(I, h));
+  report->steps++;
+  DVI_TRY(dvi__watch_step(watch, I, options, from, report, stop));
+  if (options->cancel != NULL && *options->cancel && !*stop) {
+    report->end = DVI_RUN_CANCELLED;
+    *stop = 1;
+  }
+  if (*stop || report->steps % every == 0 || next_step(I, options) == 0) DVI_TRY(observe(I, options, report, stop));
+  if (options->checkpoint != NULL && options->checkpoint_every > 0 && report->steps % options->checkpoint_every == 0)
+    return dvi_integrator_save(I, options->checkpoint);
+  return DVI_OK;
+}
+
+static dvi_status loop(dvi_integrator *I, const dvi_run_options *options, dvi__watch *watch, dvi_run_report *report)
+{
+  int stop = 0;
+  DVI_TRY(observe(I, options, report, &stop));
+  for (double h = next_step(I, options); h != 0 && !stop; h = next_step(I, options))
+    DVI_TRY(one_step(I, options, h, watch, report, &stop));
+  return DVI_OK;
+}
+
+dvi_status dvi_run(dvi_integrator *I, const dvi_run_options *options, dvi_run_report *report)
+{
+  dvi_run_report own, *out = report != NULL ? report : &own;
+  dvi__watch watch = {0};
+  *out = (dvi_run_report){.end = DVI_RUN_FAILED, .event_time = (double)NAN, .event = -1};
+  DVI_TRY(check(I, options));
+  DVI_TRY(dvi__watch_create(I, options, &watch));
+  out->end = DVI_RUN_COMPLETE;
+  dvi_status status = loop(I, options, &watch, out);
+  if (status != DVI_OK) out->end = DVI_RUN_FAILED;
+  dvi__watch_destroy(&watch);
+  /* The last good state is saved even if the run failed; the failure's sentence is the one that counts. */
+  if (options->checkpoint != NULL && status == DVI_OK) status = dvi_integrator_save(I, options->checkpoint);
+  else if (options->checkpoint != NULL) (void)dvi_integrator_save(I, options->checkpoint);
+  return status;
+}

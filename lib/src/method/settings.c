@@ -1,0 +1,133 @@
+/* Specifications: name[:key=value,...]. */
+#include <dvi/method.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/status.h"
+#include "method/method.h"
+
+void dvi__text_add(dvi__text *text, const char *format, ...)
+{
+  va_list arguments;
+  va_start(arguments, format);
+  const size_t room = text->length < text->size ? text->size - text->length : 0;
+  const int length = vsnprintf(room > 0 ? text->text + text->length : NULL, room, format, arguments);
+  va_end(arguments);
+  if (length > 0) text->length += (size_t)length;
+}
+
+/* A piece of a specification, not ended by 0. */
+typedef struct piece {
+  const char *text;
+  int length;
+} piece;
+
+static int same(piece given, const char *word)
+{
+  return (int)strlen(word) == given.length && strncmp(word, given.text, (size_t)given.length) == 0;
+}
+
+static const char *end_of(const char *text, const char *stops)
+{
+  return text + strcspn(text, stops);
+}
+
+static dvi_status unknown_key(const dvi__method *method, piece name)
+{
+  char known[DVI__SPECIFICATION_SIZE] = "";
+  dvi__text text = {known, sizeof known, 0};
+  for (int k = 0; k < dvi__key_count(method); k++) dvi__text_add(&text, "%s%s", k > 0 ? ", " : "", method->keys[k].name);
+  return dvi__fail(DVI_BAD_OPTION, "%s: unknown key '%.*s'; %s%s", method->name, name.length, name.text,
+                   text.length > 0 ? "it takes " : "it takes none", known);
+}
+
+static dvi_status parse_number(const dvi__method *method, const dvi__key *key, piece value, int *number)
+{
+  char *end;
+  const long parsed = strtol(value.text, &end, 10);
+  if (value.length == 0 || end != value.text + value.length)
+    return dvi__fail(DVI_BAD_OPTION, "%s: %s=%.*s is not a whole number", method->name, key->name, value.length, value.text);
+  if (parsed < key->least || parsed > key->most)
+    return dvi__fail(DVI_BAD_OPTION, "%s: %s=%ld; %d to %d are possible", method->name, key->name, parsed, key->least, key->most);
+  *number = (int)parsed;
+  return DVI_OK;
+}
+
+static dvi_status parse_choice(const dvi__method *method, const dvi__key *key, piece value, int *choice)
+{
+  char known[DVI__SPECIFICATION_SIZE] = "";
+  dvi__text text = {known, sizeof known, 0};
+  for (int c = 0; key->choices[c] != NULL; c++) {
+    if (same(value, key->choices[c])) {
+      *choice = c;
+      return DVI_OK;
+    }
+    dvi__text_add(&text, "%s%s", c > 0 ? ", " : "", key->choices[c]);
+  }
+  return dvi__fail(DVI_BAD_OPTION, "%s: %s=%.*s; possible are %s", method->name, key->name, value.length, value.text, known);
+}
+
+static dvi_status keep_for_others(const dvi__method *method, piece name, piece value, dvi__settings *settings)
+{
+  dvi__text rest = {settings->rest, sizeof settings->rest, strlen(settings->rest)};
+  dvi__text_add(&rest, "%s%.*s=%.*s", rest.length > 0 ? "," : "", name.length, name.text, value.length, value.text);
+  if (rest.length < rest.size) return DVI_OK;
+  return dvi__fail(DVI_BAD_OPTION, "%s: the specification is too long", method->name);
+}
+
+static dvi_status assign(const dvi__method *method, piece name, piece value, dvi__settings *settings, unsigned *given)
+{
+  for (int k = 0; k < dvi__key_count(method); k++) {
+    const dvi__key *key = &method->keys[k];
+    if (!same(name, key->name)) continue;
+    if (*given & 1U << k) return dvi__fail(DVI_BAD_OPTION, "%s: %s is given twice", method->name, key->name);
+    *given |= 1U << k;
+    return key->choices == NULL ? parse_number(method, key, value, &settings->value[k])
+                                : parse_choice(method, key, value, &settings->value[k]);
+  }
+  return method->takes_rest ? keep_for_others(method, name, value, settings) : unknown_key(method, name);
+}
+
+static dvi_status unknown_method(piece name)
+{
+  char known[DVI__SPECIFICATION_SIZE] = "";
+  dvi__text text = {known, sizeof known, 0};
+  for (int i = 0; i < dvi_method_count(); i++) dvi__text_add(&text, "%s%s", i > 0 ? ", " : "", dvi_method_name(i));
+  return dvi__fail(DVI_BAD_OPTION, "unknown method '%.*s'; there are %s", name.length, name.text, known);
+}
+
+dvi_status dvi__parse(const char *specification, const dvi__method **method, dvi__settings *settings)
+{
+  unsigned given = 0;
+  const char *at = end_of(specification, ":");
+  const piece method_name = {specification, (int)(at - specification)};
+  *method = dvi__find_method(specification, (size_t)(at - specification));
+  if (*method == NULL) return unknown_method(method_name);
+  *settings = (dvi__settings){0};
+  for (int k = 0; k < dvi__key_count(*method); k++) settings->value[k] = (*method)->keys[k].left_out;
+  while (*at != 0) {
+    const char *name = at + 1, *equals = end_of(name, "=,"), *end = end_of(equals, ",");
+    if (*equals != '=' || equals == name)
+      return dvi__fail(DVI_BAD_OPTION, "%s: '%.*s' is not key=value", (*method)->name, (int)(end - name), name);
+    const piece key_name = {name, (int)(equals - name)}, value = {equals + 1, (int)(end - equals - 1)};
+    DVI_TRY(assign(*method, key_name, value, settings, &given));
+    at = end;
+  }
+  return DVI_OK;
+}
+
+void dvi__spell_out(const dvi__method *method, const dvi__settings *settings, dvi__text *text)
+{
+  dvi__text_add(text, "%s", method->name);
+  for (int k = 0; k < dvi__key_count(method); k++) {
+    const dvi__key *key = &method->keys[k];
+    dvi__text_add(text, "%c%s=", k == 0 ? ':' : ',', key->name);
+    if (key->choices != NULL)
+      dvi__text_add(text, "%s", key->choices[settings->value[k]]);
+    else
+      dvi__text_add(text, "%d", settings->value[k]);
+  }
+  if (settings->rest[0] != 0) dvi__text_add(text, ",%s", settings->rest);
+}

@@ -1,0 +1,50 @@
+/* Making a stepper: the specification is parsed, the method must be able to use every term that the system declares. */
+#include "core/status.h"
+#include "method/method.h"
+
+static const char *term_name(unsigned term)
+{
+  switch (term) {
+  case DVI__CONSTANT_MASS: return "a constant mass";
+  case DVI__LAGRANGIAN: return "a general Lagrangian";
+  default: return "potentials";
+  }
+}
+
+static dvi_status check_terms(const dvi__method *method, const dvi_system *system)
+{
+  for (unsigned term = 1; term <= DVI__POTENTIAL; term <<= 1) {
+    if (system->terms & term & ~method->uses)
+      return dvi__fail(DVI_UNSUPPORTED, "%s: the system declares %s, which this method cannot use; galerkin, midpoint and trapezoidal can",
+                       method->name, term_name(term));
+    if (method->needs & term & ~system->terms)
+      return dvi__fail(DVI_UNSUPPORTED, "%s: the method needs %s, which the system does not declare; galerkin, midpoint and trapezoidal do not",
+                       method->name, term_name(term));
+  }
+  return DVI_OK;
+}
+
+dvi_status dvi__stepper_create(const dvi_system *system, const char *specification, dvi_counters *counters, dvi__stepper *stepper)
+{
+  *stepper = (dvi__stepper){.system = system, .counters = counters};
+  dvi_status status = dvi__parse(specification, &stepper->method, &stepper->settings);
+  if (status == DVI_OK) status = check_terms(stepper->method, system);
+  if (status != DVI_OK) {
+    stepper->method = NULL;
+    return status;
+  }
+  status = stepper->method->create(stepper);
+  if (status != DVI_OK) {
+    dvi__stepper_destroy(stepper);
+    return status;
+  }
+  dvi__spell_out(stepper->method, &stepper->settings, &(dvi__text){stepper->specification, sizeof stepper->specification, 0});
+  stepper->method->start(stepper);
+  return DVI_OK;
+}
+
+void dvi__stepper_destroy(dvi__stepper *stepper)
+{
+  if (stepper->method != NULL) stepper->method->destroy(stepper);
+  *stepper = (dvi__stepper){0};
+}

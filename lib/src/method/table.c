@@ -1,0 +1,74 @@
+/* The table of methods, made from methods.def. */
+#include <dvi/method.h>
+#include <string.h>
+
+#include "method/method.h"
+
+#define METHOD(name) extern const dvi__method dvi__##name;
+#include "method/methods.def"
+#undef METHOD
+
+static const dvi__method *const table[] = {
+#define METHOD(name) &dvi__##name,
+#include "method/methods.def"
+#undef METHOD
+};
+
+int dvi_method_count(void)
+{
+  return (int)(sizeof table / sizeof *table);
+}
+
+static const dvi__method *entry(int i)
+{
+  return i >= 0 && i < dvi_method_count() ? table[i] : NULL;
+}
+
+const char *dvi_method_name(int i)
+{
+  return entry(i) != NULL ? table[i]->name : NULL;
+}
+
+const char *dvi_method_summary(int i)
+{
+  return entry(i) != NULL ? table[i]->summary : NULL;
+}
+
+const char *dvi_method_citation(int i)
+{
+  return entry(i) != NULL ? table[i]->cite : NULL;
+}
+
+int dvi__key_count(const dvi__method *method)
+{
+  int count = 0;
+  while (method->keys != NULL && method->keys[count].name != NULL) count++;
+  return count;
+}
+
+int dvi_method_key_count(int i)
+{
+  return entry(i) != NULL ? dvi__key_count(table[i]) : 0;
+}
+
+static const dvi__key *key(int i, int k)
+{
+  return k >= 0 && k < dvi_method_key_count(i) ? &table[i]->keys[k] : NULL;
+}
+
+const char *dvi_method_key_name(int i, int k)
+{
+  return key(i, k) != NULL ? key(i, k)->name : NULL;
+}
+
+const char *dvi_method_key_help(int i, int k)
+{
+  return key(i, k) != NULL ? key(i, k)->help : NULL;
+}
+
+const dvi__method *dvi__find_method(const char *name, size_t length)
+{
+  for (int i = 0; i < dvi_method_count(); i++)
+    if (strlen(table[i]->name) == length && strncmp(table[i]->name, name, length) == 0) return table[i];
+  return NULL;
+}

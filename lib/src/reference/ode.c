@@ -1,0 +1,196 @@
+/* CVODE and ARKODE on Hamilton's equations, with the velocity from the inverse Legendre map:
+ *     y = (q, p),   qdot = v(t,q,p),   pdot = L_q(t,q,v(t,q,p)).
+ * Sources: Hindmarsh et al. 2005, ACM TOMS 31:363, sec. 2.1 (CVODE); Reynolds et al. 2023, ACM TOMS 49:19 (ARKODE). */
+#include <arkode/arkode_arkstep.h>
+#include <cvode/cvode.h>
+#include <string.h>
+#include <sunlinsol/sunlinsol_spgmr.h>
+#include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
+
+#include "core/status.h"
+#include "reference/run.h"
+
+typedef struct flow {
+  dvi__reference_run *run;
+  N_Vector y, tolerance;
+  SUNMatrix matrix;               /* NULL without a matrix */
+  SUNLinearSolver linear;         /* NULL for Adams */
+  SUNNonlinearSolver fixed_point; /* NULL for BDF */
+  void *memory;                   /* CVODE's or ARKODE's */
+} flow;
+
+static int right_side(double t, N_Vector y, N_Vector ydot, void *user)
+{
+  dvi__reference_run *run = ((flow *)user)->run;
+  const int n = run->n;
+  const double *q = N_VGetArrayPointer(y), *p = q + n;
+  double *qdot = N_VGetArrayPointer(ydot), *pdot = qdot + n;
+  dvi_status status = dvi__legendre_inverse(run->evaluator, t, q, p, run->v);
+  if (status == DVI_OK) status = dvi__lagrangian_gradient(run->evaluator, 1, &t, q, run->v, pdot, NULL);
+  if (status == DVI_OK) memcpy(qdot, run->v, (size_t)n * sizeof *qdot);
+  return dvi__reference_callback(run, status);
+}
+
+/* Only then is M^-1 as sparse as M, and the Jacobian written down at once. */
+static int mass_is_diagonal(const dvi_system *system)
+{
+  return (system->terms & DVI__CONSTANT_MASS) && system->mass_values == NULL;
+}
+
+/* d(qdot, pdot)/d(q, p) = [ 0, M^-1; L_qq, 0 ], with its diagonal, to which CVODE adds the identity in place. */
+static int jacobian(double t, N_Vector y, N_Vector ydot, SUNMatrix matrix, void *user, N_Vector work1, N_Vector work2,
+                    N_Vector work3)
+{
+  (void)ydot, (void)work1, (void)work2, (void)work3;
+  dvi__reference_run *run = ((flow *)user)->run;
+  const dvi_system *system = run->system;
+  const int n = run->n;
+  const dvi_status status = dvi__lagrangian_hessian(run->evaluator, 1, &t, N_VGetArrayPointer(y), run->v, run->L_qq, NULL, NULL);
+  if (status != DVI_OK) return dvi__reference_callback(run, status);
+  dvi__columns columns;
+  dvi__columns_start(&columns, matrix);
+  for (int j = 0; j < n; j++) {
+    dvi__columns_next(&columns);
+    dvi__columns_put(&columns, j, 0.0);
+    for (int e = system->qq.start[j]; e < system->qq.start[j + 1]; e++)
+      dvi__columns_put(&columns, n + system->qq.row[e], run->L_qq[e]);
+  }
+  for (int j = 0; j < n; j++) {
+    dvi__columns_next(&columns);
+    dvi__columns_put(&columns, j, 1.0 / (system->mass_diagonal != NULL ? system->mass_diagonal[j] : system->mass_scalar));
+    dvi__columns_put(&columns, n + j, 0.0);
+  }
+  return dvi__reference_callback(run, DVI_OK);
+}
+
+static dvi_status start(flow *self)
+{
+  const dvi__reference_run *run = self->run;
+  const size_t n = (size_t)run->n;
+  self->y = N_VNew_Serial(2 * run->n, run->context);
+  self->tolerance = N_VNew_Serial(2 * run->n, run->context);
+  if (self->y == NULL || self->tolerance == NULL) return dvi__reference_no_setup(run);
+  double *y = N_VGetArrayPointer(self->y), *tolerance = N_VGetArrayPointer(self->tolerance);
+  memcpy(y, run->q, n * sizeof *y);
+  memcpy(y + n, run->p, n * sizeof *y);
+  for (size_t i = 0; i < n; i++) {
+    tolerance[i] = run->options.absolute_tolerance;
+    tolerance[n + i] = run->options.absolute_tolerance * run->weight[i];
+  }
+  return DVI_OK;
+}
+
+static void finish(const flow *self)
+{
+  const double *y = N_VGetArrayPointer(self->y);
+  const size_t n = (size_t)self->run->n;
+  memcpy(self->run->q, y, n * sizeof *y);
+  memcpy(self->run->p, y + n, n * sizeof *y);
+}
+
+static void clear(flow *self)
+{
+  if (self->fixed_point != NULL) (void)SUNNonlinSolFree(self->fixed_point);
+  if (self->linear != NULL) (void)SUNLinSolFree(self->linear);
+  if (self->matrix != NULL) SUNMatDestroy(self->matrix);
+  if (self->tolerance != NULL) N_VDestroy(self->tolerance);
+  if (self->y != NULL) N_VDestroy(self->y);
+}
+
+/* Direct where the Jacobian is known or small enough to be differenced, else Krylov without a matrix. */
+static dvi_status make_linear(flow *self)
+{
+  const dvi__reference_run *run = self->run;
+  const int n = run->n, entries = dvi__pattern_entries(&run->system->qq), known = mass_is_diagonal(run->system);
+  if (known || dvi__reference_is_dense(2 * n)) {
+    self->matrix = dvi__reference_matrix(run, 2 * n, entries + 3 * n);
+    if (self->matrix == NULL) return dvi__reference_no_setup(run);
+    self->linear = dvi__reference_linear(run, self->y, self->matrix);
+  } else {
+    self->linear = SUNLinSol_SPGMR(self->y, SUN_PREC_NONE, 0, run->context);
+  }
+  return self->linear == NULL ? dvi__reference_no_setup(run) : DVI_OK;
+}
+
+static dvi_status make_solver(flow *self)
+{
+  if (self->run->options.code == DVI_CVODE_BDF) return make_linear(self);
+  self->fixed_point = SUNNonlinSol_FixedPoint(self->y, 0, self->run->context);
+  return self->fixed_point == NULL ? dvi__reference_no_setup(self->run) : DVI_OK;
+}
+
+static int configure_cvode(flow *self)
+{
+  const dvi__reference_run *run = self->run;
+  void *cvode = self->memory;
+  if (DVI__SUNDIALS_SILENCE(CVodeSetErrHandlerFn, cvode) || CVodeInit(cvode, right_side, run->t, self->y) ||
+      CVodeSVtolerances(cvode, run->options.relative_tolerance, self->tolerance) || CVodeSetUserData(cvode, self) ||
+      CVodeSetMaxNumSteps(cvode, run->options.max_steps) || CVodeSetStopTime(cvode, run->t_end) ||
+      CVodeSetMinStep(cvode, dvi__reference_least_step(run)))
+    return -1;
+  if (self->fixed_point != NULL) return CVodeSetNonlinearSolver(cvode, self->fixed_point);
+  if (CVodeSetLinearSolver(cvode, self->linear, self->matrix)) return -1;
+  return mass_is_diagonal(run->system) ? CVodeSetJacFn(cvode, jacobian) : 0;
+}
+
+static dvi_status integrate_cvode(flow *self)
+{
+  dvi__reference_run *run = self->run;
+  if (configure_cvode(self) != 0) return dvi__reference_no_setup(run);
+  const int flag = CVode(self->memory, run->t_end, self->y, &run->reached, CV_NORMAL);
+  (void)CVodeGetNumSteps(self->memory, &run->steps);
+  (void)CVodeGetCurrentTime(self->memory, &run->reached);
+  if (flag < 0) return dvi__reference_stopped(run, flag, CVodeGetReturnFlagName(flag));
+  finish(self);
+  return DVI_OK;
+}
+
+dvi_status dvi__reference_cvode(dvi__reference_run *run)
+{
+  flow self = {.run = run};
+  dvi_status status = start(&self);
+  if (status == DVI_OK) status = make_solver(&self);
+  if (status == DVI_OK) {
+    self.memory = CVodeCreate(run->options.code == DVI_CVODE_BDF ? CV_BDF : CV_ADAMS, run->context);
+    status = self.memory == NULL ? dvi__reference_no_setup(run) : integrate_cvode(&self);
+    if (self.memory != NULL) CVodeFree(&self.memory);
+  }
+  clear(&self);
+  return status;
+}
+
+static int configure_arkode(flow *self)
+{
+  const dvi__reference_run *run = self->run;
+  void *arkode = self->memory;
+  return DVI__SUNDIALS_SILENCE(ARKStepSetErrHandlerFn, arkode) ||
+         ARKodeSVtolerances(arkode, run->options.relative_tolerance, self->tolerance) || ARKodeSetUserData(arkode, self) ||
+         ARKStepSetTableNum(arkode, ARKODE_DIRK_NONE, ARKODE_FEHLBERG_13_7_8) ||
+         ARKodeSetMaxNumSteps(arkode, run->options.max_steps) || ARKodeSetStopTime(arkode, run->t_end) ||
+         ARKodeSetMinStep(arkode, dvi__reference_least_step(run));
+}
+
+static dvi_status integrate_arkode(flow *self)
+{
+  dvi__reference_run *run = self->run;
+  if (configure_arkode(self) != 0) return dvi__reference_no_setup(run);
+  const int flag = ARKodeEvolve(self->memory, run->t_end, self->y, &run->reached, ARK_NORMAL);
+  (void)ARKodeGetNumSteps(self->memory, &run->steps);
+  (void)ARKodeGetCurrentTime(self->memory, &run->reached);
+  if (flag < 0) return dvi__reference_stopped(run, flag, ARKodeGetReturnFlagName(flag));
+  finish(self);
+  return DVI_OK;
+}
+
+dvi_status dvi__reference_arkode(dvi__reference_run *run)
+{
+  flow self = {.run = run};
+  dvi_status status = start(&self);
+  if (status == DVI_OK) {
+    self.memory = ARKStepCreate(right_side, NULL, run->t, self.y, run->context);
+    status = self.memory == NULL ? dvi__reference_no_setup(run) : integrate_arkode(&self);
+    if (self.memory != NULL) ARKodeFree(&self.memory);
+  }
+  clear(&self);
+  return status;
+}

@@ -1,0 +1,68 @@
+/* One run of one SUNDIALS code from a start to an end. */
+#ifndef DVI_REFERENCE_RUN_H
+#define DVI_REFERENCE_RUN_H
+#include <dvi/reference.h>
+#include <nvector/nvector_serial.h>
+#include <sundials/sundials_linearsolver.h>
+#include <sundials/sundials_matrix.h>
+
+#include "solve/sundials_compat.h"
+#include "system/evaluator.h"
+
+typedef struct dvi__reference_run {
+  const dvi_system *system;
+  dvi_reference_options options; /* complete: no zeros */
+  double t, t_end;
+  int n;
+  double *q, *v, *p; /* [n] each: the start; the end after success. v is also the guess for the next inverse Legendre map */
+  double *weight;    /* [n] absolute tolerance of p over that of q */
+  double *L_qq, *L_qv, *L_vv; /* in the order of the system's patterns */
+  dvi__evaluator *evaluator;
+  dvi_counters counters;
+  SUNContext context;
+  dvi_status callback; /* status of the last callback */
+  double reached;      /* time */
+  long steps;
+} dvi__reference_run;
+
+/* The codes. They leave the end in run->q and run->p, and what they did in run->reached and run->steps. */
+dvi_status dvi__reference_ida(dvi__reference_run *run);
+dvi_status dvi__reference_cvode(dvi__reference_run *run);
+dvi_status dvi__reference_arkode(dvi__reference_run *run);
+
+/* Check the options (NULL: all defaults) and fill in what is left out. */
+dvi_status dvi__reference_complete(const dvi_reference_options *given, dvi_reference_options *options);
+
+/* The codes would go on with steps that no longer move t; below this they give up. */
+double dvi__reference_least_step(const dvi__reference_run *run);
+
+/* Remember a callback's status and say it in SUNDIALS' way: 0 success, 1 try a smaller step, -1 stop. */
+int dvi__reference_callback(dvi__reference_run *run, dvi_status status);
+
+/* Turn a code's negative flag, by its number and its name (from malloc, freed here), into a status and a sentence. */
+dvi_status dvi__reference_stopped(const dvi__reference_run *run, int flag, char *flag_name);
+
+/* The status for a code that could not be set up. */
+dvi_status dvi__reference_no_setup(const dvi__reference_run *run);
+
+/* A square matrix: dense if it is small, compressed columns with room for `entries` if not; NULL if there is no memory. */
+SUNMatrix dvi__reference_matrix(const dvi__reference_run *run, int size, int entries);
+
+/* The direct solver for such a matrix; NULL if there is no memory. */
+SUNLinearSolver dvi__reference_linear(const dvi__reference_run *run, N_Vector y, SUNMatrix matrix);
+
+/* Whether dvi__reference_matrix makes a dense matrix of this size. */
+int dvi__reference_is_dense(int size);
+
+/* Writes a matrix column by column, rows ascending, dense or compressed. */
+typedef struct dvi__columns {
+  SUNMatrix matrix;
+  int column;
+  sunindextype entry;
+} dvi__columns;
+
+void dvi__columns_start(dvi__columns *columns, SUNMatrix matrix);
+void dvi__columns_next(dvi__columns *columns);
+void dvi__columns_put(dvi__columns *columns, int row, double value);
+
+#endif

@@ -1,0 +1,199 @@
+/* The frame around every code: arguments, the consistent start, counters, failures. */
+#define _POSIX_C_SOURCE 199309L /* clock_gettime */
+#include <dvi/reference.h>
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sundials/sundials_version.h>
+#include <time.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "num/finite.h"
+#include "reference/run.h"
+
+static const struct {
+  const char *name;
+  dvi_status (*integrate)(dvi__reference_run *run);
+} codes[] = {
+    [DVI_IDA] = {"ida", dvi__reference_ida},
+    [DVI_CVODE_ADAMS] = {"cvode-adams", dvi__reference_cvode},
+    [DVI_CVODE_BDF] = {"cvode-bdf", dvi__reference_cvode},
+    [DVI_ARKODE] = {"arkode", dvi__reference_arkode},
+};
+
+enum { CODE_COUNT = sizeof codes / sizeof codes[0] };
+
+static const double default_tolerance = 1e-12;
+static const long default_max_steps = 50000000;
+
+const char *dvi_reference_name(dvi_reference_code code)
+{
+  return (unsigned)code < CODE_COUNT ? codes[code].name : NULL;
+}
+
+const char *dvi_reference_version(void)
+{
+  static _Thread_local char version[32];
+  if (SUNDIALSGetVersion(version, (int)sizeof version) != 0) return "unknown";
+  return version;
+}
+
+int dvi__reference_callback(dvi__reference_run *run, dvi_status status)
+{
+  run->callback = status;
+  return (status > 0) - (status < 0);
+}
+
+double dvi__reference_least_step(const dvi__reference_run *run)
+{
+  return 4 * DBL_EPSILON * fmax(fabs(run->t), fabs(run->t_end));
+}
+
+dvi_status dvi__reference_no_setup(const dvi__reference_run *run)
+{
+  return dvi__fail(DVI_NO_MEMORY, "%s: could not be set up for %d coordinates", codes[run->options.code].name, run->n);
+}
+
+/* IDA, CVODE and ARKODE number these flags alike. */
+static const char *remedy(int flag)
+{
+  switch (flag) {
+  case -1: return "allow more steps";
+  case -2: return "loosen the tolerances";
+  case -3:
+  case -4: return "loosen the tolerances, unless the solution is singular there";
+  default: return "see the code's manual";
+  }
+}
+
+dvi_status dvi__reference_stopped(const dvi__reference_run *run, int flag, char *flag_name)
+{
+  const char *code = codes[run->options.code].name, *reason = flag_name != NULL ? flag_name : "no memory";
+  dvi_status status;
+  if (run->callback != DVI_OK)
+    status = dvi__fail_in(run->callback < 0 ? run->callback : DVI_REFERENCE_FAILED, "%s: stopped at t = %.9g after %ld steps (%s)",
+                          code, run->reached, run->steps, reason);
+  else
+    status = dvi__fail(DVI_REFERENCE_FAILED, "%s: stopped at t = %.9g, before %.9g, after %ld steps (%s); %s", code, run->reached,
+                       run->t_end, run->steps, reason, remedy(flag));
+  free(flag_name);
+  return status;
+}
+
+dvi_status dvi__reference_complete(const dvi_reference_options *given, dvi_reference_options *options)
+{
+  *options = given != NULL ? *given : (dvi_reference_options){.code = DVI_IDA};
+  if (dvi_reference_name(options->code) == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "reference: there is no code number %d", (int)options->code);
+  if (!(options->relative_tolerance >= 0) || !(options->relative_tolerance < 1))
+    return dvi__fail(DVI_BAD_ARGUMENT, "reference: relative_tolerance is %g, must be in [0,1)", options->relative_tolerance);
+  if (!(options->absolute_tolerance >= 0) || isinf(options->absolute_tolerance))
+    return dvi__fail(DVI_BAD_ARGUMENT, "reference: absolute_tolerance is %g, must not be negative", options->absolute_tolerance);
+  if (options->max_steps < 0)
+    return dvi__fail(DVI_BAD_ARGUMENT, "reference: max_steps is %ld, must not be negative", options->max_steps);
+  if (options->relative_tolerance == 0) options->relative_tolerance = default_tolerance;
+  if (options->absolute_tolerance == 0) options->absolute_tolerance = options->relative_tolerance;
+  if (options->max_steps == 0) options->max_steps = default_max_steps;
+  return DVI_OK;
+}
+
+static dvi_status check_start(const dvi_system *system, double t, double t_end, const double *q, const double *p)
+{
+  if (system == NULL || q == NULL || p == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "reference: system, q and p are needed");
+  if (!isfinite(t) || !isfinite(t_end))
+    return dvi__fail(DVI_NOT_FINITE, "reference: the span from t = %g to %g is not finite", t, t_end);
+  const ptrdiff_t bad_q = dvi__first_not_finite((size_t)dvi_system_nq(system), q);
+  if (bad_q >= 0) return dvi__fail(DVI_NOT_FINITE, "reference: q[%td] is %g", bad_q, q[bad_q]);
+  const ptrdiff_t bad_p = dvi__first_not_finite((size_t)dvi_system_nv(system), p);
+  if (bad_p >= 0) return dvi__fail(DVI_NOT_FINITE, "reference: p[%td] is %g", bad_p, p[bad_p]);
+  return DVI_OK;
+}
+
+/* With small masses the momenta are small too (planets: 1e-9), and an absolute tolerance that suits q would not see them: it is
+ * scaled down by the mass. L_vv's diagonal at the start stands for the mass. */
+static dvi_status weigh(dvi__reference_run *run)
+{
+  DVI_TRY(dvi__lagrangian_hessian(run->evaluator, 1, &run->t, run->q, run->v, run->L_qq, run->L_qv, run->L_vv));
+  for (int j = 0; j < run->n; j++) {
+    const int e = dvi__pattern_find(&run->system->vv, j, j);
+    const double mass = e < 0 ? 0.0 : fabs(run->L_vv[e]);
+    run->weight[j] = mass > 0 && mass < 1 ? mass : 1.0;
+  }
+  return DVI_OK;
+}
+
+static dvi_status reserve(dvi__reference_run *run, const double *q, const double *p)
+{
+  const size_t n = (size_t)run->n;
+  run->q = dvi__duplicate(q, n, sizeof *q);
+  run->p = dvi__duplicate(p, n, sizeof *p);
+  run->v = DVI_NEW(double, n);
+  run->weight = DVI_NEW(double, n);
+  run->L_qq = DVI_NEW(double, dvi__pattern_entries(&run->system->qq));
+  run->L_qv = DVI_NEW(double, dvi__pattern_entries(&run->system->qv));
+  run->L_vv = DVI_NEW(double, dvi__pattern_entries(&run->system->vv));
+  if (run->q == NULL || run->p == NULL || run->v == NULL || run->weight == NULL || run->L_qq == NULL || run->L_qv == NULL ||
+      run->L_vv == NULL || dvi__sundials_context(&run->context) != 0)
+    return dvi__reference_no_setup(run);
+  return DVI_OK;
+}
+
+static dvi_status prepare(dvi__reference_run *run, const double *q, const double *p)
+{
+  DVI_TRY(reserve(run, q, p));
+  dvi_status status = dvi__evaluator_create(run->system, 1, &run->counters, &run->evaluator);
+  if (status == DVI_OK) status = dvi__legendre_inverse(run->evaluator, run->t, run->q, run->p, run->v);
+  if (status == DVI_OK) status = weigh(run);
+  if (status == DVI_OK) return DVI_OK;
+  return dvi__fail_in(status, "%s: no start at t = %.9g", codes[run->options.code].name, run->t);
+}
+
+static void clear(dvi__reference_run *run)
+{
+  dvi__evaluator_destroy(&run->evaluator);
+  if (run->context != NULL) (void)SUNContext_Free(&run->context);
+  dvi__release(run->L_vv);
+  dvi__release(run->L_qv);
+  dvi__release(run->L_qq);
+  dvi__release(run->weight);
+  dvi__release(run->v);
+  dvi__release(run->p);
+  dvi__release(run->q);
+}
+
+static double cpu_time(void)
+{
+  struct timespec now;
+  if (clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now) != 0) return (double)NAN;
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static dvi_status integrate(dvi__reference_run *run, double *q, double *p)
+{
+  const size_t n = (size_t)run->n;
+  dvi_status status = prepare(run, q, p);
+  if (status == DVI_OK) status = codes[run->options.code].integrate(run);
+  if (status == DVI_OK) {
+    memcpy(q, run->q, n * sizeof *q);
+    memcpy(p, run->p, n * sizeof *p);
+  }
+  clear(run);
+  return status;
+}
+
+dvi_status dvi_reference_solve(const dvi_system *system, double t, double t_end, double *q, double *p,
+                               const dvi_reference_options *options, dvi_reference_report *report)
+{
+  dvi__reference_run run = {.system = system, .t = t, .t_end = t_end, .reached = t};
+  DVI_TRY(dvi__reference_complete(options, &run.options));
+  DVI_TRY(check_start(system, t, t_end, q, p));
+  run.n = dvi_system_nv(system);
+  const double began = cpu_time();
+  const dvi_status status = t == t_end ? DVI_OK : integrate(&run, q, p);
+  if (report != NULL)
+    *report = (dvi_reference_report){
+        .error = (double)NAN, .steps = run.steps, .evaluations = run.counters.gradients, .cpu_seconds = cpu_time() - began};
+  return status;
+}

@@ -1,0 +1,174 @@
+/* KINSOL with line search, on our own matrix and linear solver.
+ *
+ * SUNDIALS' wrapper of KLU analyses and factors anew at the first setup of each call; here the one analysis of num/linear.h serves
+ * Newton's method and KINSOL alike. KINSOL's defaults are loose and reuse old Jacobians, which shows as energy drift over long runs
+ * (tests/method/test_drift.c): every tolerance is set here. */
+#include <kinsol/kinsol.h>
+#include <math.h>
+#include <nvector/nvector_serial.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "solve/solver_struct.h"
+#include "solve/sundials_compat.h"
+
+struct dvi__kinsol {
+  dvi__solver *solver;
+  SUNContext context;
+  void *memory;
+  N_Vector x, x_scale, r_scale;
+  SUNMatrix matrix; /* content: this struct */
+  SUNLinearSolver linear;
+  dvi_status fatal; /* of a callback; 0: none */
+};
+
+/* ---- what KINSOL calls ---- */
+
+static int callback_return(dvi__kinsol *k, dvi_status status)
+{
+  if (status < 0) k->fatal = status;
+  return status == DVI_OK ? 0 : status > 0 ? 1 : -1;
+}
+
+static int residual(N_Vector x, N_Vector r, void *user)
+{
+  dvi__kinsol *k = user;
+  return callback_return(k, dvi__solver_residual(k->solver, N_VGetArrayPointer(x), N_VGetArrayPointer(r)));
+}
+
+static int jacobian(N_Vector x, N_Vector r, SUNMatrix matrix, void *user, N_Vector work1, N_Vector work2)
+{
+  dvi__kinsol *k = user;
+  (void)r, (void)matrix, (void)work1, (void)work2;
+  return callback_return(k, dvi__solver_factor(k->solver, N_VGetArrayPointer(x)));
+}
+
+static SUNMatrix_ID matrix_id(SUNMatrix matrix)
+{
+  (void)matrix;
+  return SUNMATRIX_CUSTOM;
+}
+
+static int matrix_zero(SUNMatrix matrix)
+{
+  (void)matrix; /* the Jacobian callback writes every value */
+  return 0;
+}
+
+static SUNLinearSolver_Type linear_type(SUNLinearSolver linear)
+{
+  (void)linear;
+  return SUNLINEARSOLVER_DIRECT;
+}
+
+static int linear_setup(SUNLinearSolver linear, SUNMatrix matrix)
+{
+  (void)linear, (void)matrix; /* the Jacobian callback has factored already */
+  return 0;
+}
+
+static int linear_solve(SUNLinearSolver linear, SUNMatrix matrix, N_Vector x, N_Vector b, sunrealtype tolerance)
+{
+  const dvi__kinsol *k = linear->content;
+  (void)matrix, (void)tolerance;
+  N_VScale(1.0, b, x);
+  dvi__linear_solve(k->solver->linear, N_VGetArrayPointer(x));
+  return 0;
+}
+
+/* ---- making it ---- */
+
+static int create_matrix(dvi__kinsol *k)
+{
+  k->matrix = SUNMatNewEmpty(k->context);
+  k->linear = SUNLinSolNewEmpty(k->context);
+  if (k->matrix == NULL || k->linear == NULL) return 0;
+  k->matrix->content = k;
+  k->matrix->ops->getid = matrix_id;
+  k->matrix->ops->zero = matrix_zero;
+  k->linear->content = k;
+  k->linear->ops->gettype = linear_type;
+  k->linear->ops->setup = linear_setup;
+  k->linear->ops->solve = linear_solve;
+  return 1;
+}
+
+static int create_vectors(dvi__kinsol *k)
+{
+  const int n = k->solver->equations.unknowns;
+  k->x = N_VNew_Serial(n, k->context);
+  k->x_scale = N_VNew_Serial(n, k->context);
+  k->r_scale = N_VNew_Serial(n, k->context);
+  return k->x != NULL && k->x_scale != NULL && k->r_scale != NULL;
+}
+
+static int configure(dvi__kinsol *k)
+{
+  void *m = k->memory = KINCreate(k->context);
+  return m != NULL && DVI__SUNDIALS_SILENCE(KINSetErrHandlerFn, m) == 0 && KINInit(m, residual, k->x) == 0 &&
+         KINSetUserData(m, k) == 0 && KINSetLinearSolver(m, k->linear, k->matrix) == 0 && KINSetJacFn(m, jacobian) == 0 &&
+         KINSetFuncNormTol(m, 1e-13) == 0 && KINSetScaledStepTol(m, 1e-15) == 0 && KINSetMaxSetupCalls(m, 1) == 0 &&
+         KINSetMaxNewtonStep(m, 1e3) == 0 && KINSetNumMaxIters(m, 100) == 0;
+}
+
+dvi_status dvi__kinsol_create(dvi__solver *solver, dvi__kinsol **kinsol)
+{
+  dvi__kinsol *k = *kinsol = DVI_NEW(dvi__kinsol, 1);
+  if (k == NULL) return dvi__fail(DVI_NO_MEMORY, "KINSOL: no memory");
+  k->solver = solver;
+  if (dvi__sundials_context(&k->context) == 0 && create_vectors(k) && create_matrix(k) && configure(k)) return DVI_OK;
+  dvi__kinsol_destroy(kinsol);
+  return dvi__fail(DVI_SOLVER_FAILED, "KINSOL cannot be set up for %d unknowns", solver->equations.unknowns);
+}
+
+void dvi__kinsol_destroy(dvi__kinsol **kinsol)
+{
+  dvi__kinsol *k = *kinsol;
+  if (k == NULL) return;
+  KINFree(&k->memory);
+  if (k->linear != NULL) SUNLinSolFreeEmpty(k->linear);
+  if (k->matrix != NULL) SUNMatFreeEmpty(k->matrix);
+  if (k->x != NULL) N_VDestroy(k->x);
+  if (k->x_scale != NULL) N_VDestroy(k->x_scale);
+  if (k->r_scale != NULL) N_VDestroy(k->r_scale);
+  if (k->context != NULL) SUNContext_Free(&k->context);
+  dvi__release(k);
+  *kinsol = NULL;
+}
+
+/* ---- using it ---- */
+
+/* Both norms in units of the unknowns' size: a residual row over row_scale is a change of an unknown. */
+static void set_scales(dvi__kinsol *k, double size, const double *x)
+{
+  const int n = k->solver->equations.unknowns;
+  double *x_scale = N_VGetArrayPointer(k->x_scale), *r_scale = N_VGetArrayPointer(k->r_scale);
+  double whole = 0;
+  for (int i = 0; i < n; i++) whole = fmax(whole, fabs(x[i]));
+  if (whole == 0) whole = size > 0 ? size : 1;
+  k->solver->equations.row_scale(k->solver->equations.of, r_scale);
+  for (int i = 0; i < n; i++) {
+    x_scale[i] = 1 / whole;
+    r_scale[i] = 1 / (r_scale[i] * whole);
+  }
+}
+
+dvi_status dvi__kinsol_solve(dvi__kinsol *k, double size, double *x, dvi__solve_report *report)
+{
+  const size_t bytes = (size_t)k->solver->equations.unknowns * sizeof(double);
+  long iterations = 0;
+  set_scales(k, size, x);
+  memcpy(N_VGetArrayPointer(k->x), x, bytes);
+  k->fatal = DVI_OK;
+  const int flag = KINSol(k->memory, k->x, KIN_LINESEARCH, k->x_scale, k->r_scale);
+  (void)KINGetNumNonlinSolvIters(k->memory, &iterations);
+  (void)KINGetFuncNorm(k->memory, &report->residual);
+  report->iterations = (int)iterations;
+  if (k->fatal < 0) return k->fatal;
+  memcpy(x, N_VGetArrayPointer(k->x), bytes);
+  if (flag == KIN_SUCCESS || flag == KIN_INITIAL_GUESS_OK) return DVI_OK;
+  if (flag == KIN_MEM_NULL || flag == KIN_ILL_INPUT || flag == KIN_NO_MALLOC || flag == KIN_MEM_FAIL)
+    return dvi__fail(DVI_SOLVER_FAILED, "KINSOL refused the step's equations (flag %d)", flag);
+  return dvi__fail(DVI_NOT_CONVERGED, "KINSOL with line search found no solution (flag %d, scaled residual %.1e)", flag, report->residual);
+}

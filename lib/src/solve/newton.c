@@ -1,0 +1,35 @@
+/* Newton's method with a Jacobian that is kept while the corrections shrink fast (simplified Newton: Hairer and Wanner 1996, sec. IV.8). */
+#include "core/status.h"
+#include "solve/solver_struct.h"
+
+enum { MOST_ITERATIONS = 40 };
+
+/* Beyond this ratio of two corrections a new Jacobian costs less than the iterations that it saves. */
+static const double keep_below = 0.05;
+
+/* A guess whose first correction is this large a part of the unknowns and does not shrink by this ratio is as likely to lead to another
+ * solution as to the wanted one. */
+static int misleading(double first, double second, double whole)
+{
+  return first > 0.5 * whole && second > 0.25 * first;
+}
+
+dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__solve_report *report)
+{
+  double last = 0, whole;
+  int fresh = 0, growing = 0;
+  for (report->iterations = 1; report->iterations <= MOST_ITERATIONS; report->iterations++) {
+    if (!fresh) DVI_TRY(dvi__solver_factor(s, x));
+    DVI_TRY(dvi__solver_residual(s, x, s->residual));
+    dvi__linear_solve(s->linear, s->residual);
+    dvi__correct(s->equations.unknowns, s->residual, x, &report->correction, &whole);
+    const dvi__progress progress = dvi__judge(report->correction, last, 2.0, whole, size);
+    if (progress == DVI__CONVERGED) return DVI_OK;
+    growing = progress == DVI__STALLED ? growing + 1 : 0;
+    if (growing == 2 || report->correction > 1e300) break;
+    if (wary && report->iterations == 2 && misleading(last, report->correction, whole)) break;
+    fresh = last == 0 || report->correction < keep_below * last;
+    last = report->correction;
+  }
+  return dvi__fail(DVI_NOT_CONVERGED, "Newton's method does not settle (change %.1e after %.1e)", report->correction, last);
+}

@@ -1,0 +1,106 @@
+#include "solve/nonlinear.h"
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "solve/solver_struct.h"
+
+enum { MOST_FIXED_POINT_ITERATIONS = 60, MOST_PATIENT_ITERATIONS = 1000 };
+
+dvi_status dvi__solver_residual(dvi__solver *solver, const double *x, double *r)
+{
+  solver->counters->residuals++;
+  return solver->equations.residual(solver->equations.of, x, r);
+}
+
+dvi_status dvi__solver_factor(dvi__solver *solver, const double *x)
+{
+  solver->counters->jacobians++;
+  DVI_TRY(solver->equations.jacobian(solver->equations.of, x, solver->values));
+  /* A singular Jacobian at one point of one step: a smaller step may avoid it. */
+  if (dvi__linear_factor(solver->linear, solver->values) == DVI_OK) return DVI_OK;
+  return dvi__fail_in(DVI_NOT_CONVERGED, "the Jacobian of the step's equations cannot be factored");
+}
+
+static dvi_status fill(dvi__solver *solver)
+{
+  const dvi__pattern *pattern = solver->equations.pattern;
+  solver->residual = DVI_NEW(double, solver->equations.unknowns);
+  solver->values = DVI_NEW(double, dvi__pattern_entries(pattern));
+  if (solver->residual == NULL || solver->values == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "solver: no memory for %d unknowns", solver->equations.unknowns);
+  DVI_TRY(dvi__linear_create(pattern, DVI__LINEAR_AUTO, solver->counters, &solver->linear));
+  return dvi__kinsol_create(solver, &solver->kinsol);
+}
+
+dvi_status dvi__solver_create(const dvi__equations *equations, dvi_counters *counters, dvi__solver **solver)
+{
+  *solver = NULL;
+  dvi__solver *made = DVI_NEW(dvi__solver, 1);
+  if (made == NULL) return dvi__fail(DVI_NO_MEMORY, "solver: no memory");
+  made->equations = *equations;
+  made->counters = counters;
+  const dvi_status status = fill(made);
+  if (status != DVI_OK) dvi__solver_destroy(&made);
+  *solver = made;
+  return status;
+}
+
+void dvi__solver_destroy(dvi__solver **solver)
+{
+  dvi__solver *s = *solver;
+  if (s == NULL) return;
+  dvi__kinsol_destroy(&s->kinsol);
+  dvi__linear_destroy(&s->linear);
+  dvi__release(s->residual);
+  dvi__release(s->values);
+  dvi__release(s);
+  *solver = NULL;
+}
+
+dvi__linear_kind dvi__solver_linear_kind(const dvi__solver *solver)
+{
+  return dvi__linear_kind_of(solver->linear);
+}
+
+/* Fixed point: it pays only while each iteration gains a good part of a digit. */
+static dvi_status fixed_point(dvi__solver *s, double size, int patient, double *x, dvi__solve_report *report)
+{
+  const int most = patient ? MOST_PATIENT_ITERATIONS : MOST_FIXED_POINT_ITERATIONS;
+  const double slowest = patient ? 0.97 : 0.35;
+  double last = 0, whole;
+  DVI_TRY(s->equations.prepare_chord(s->equations.of, x));
+  for (report->iterations = 1; report->iterations <= most; report->iterations++) {
+    DVI_TRY(dvi__solver_residual(s, x, s->residual));
+    s->equations.chord(s->equations.of, s->residual);
+    dvi__correct(s->equations.unknowns, s->residual, x, &report->correction, &whole);
+    const dvi__progress progress = dvi__judge(report->correction, last, slowest, whole, size);
+    if (progress == DVI__CONVERGED) return DVI_OK;
+    if (progress == DVI__STALLED) break;
+    last = report->correction;
+  }
+  return dvi__fail(DVI_NOT_CONVERGED, "fixed point iteration contracts too slowly (change %.1e after %.1e)", report->correction, last);
+}
+
+static dvi_status kinsol(dvi__solver *s, double size, double *x, dvi__solve_report *report)
+{
+  s->counters->kinsols++;
+  DVI_TRY(s->equations.prepare_chord(s->equations.of, x));
+  /* KINSOL's verdict is not asked for: Newton's method from its last point is the stricter test. */
+  const dvi_status searched = dvi__kinsol_solve(s->kinsol, size, x, report);
+  if (searched < 0) return searched;
+  const int iterations = report->iterations;
+  const dvi_status polished = dvi__newton(s, size, 0, x, report);
+  report->iterations += iterations;
+  return polished;
+}
+
+dvi_status dvi__solve(dvi__solver *solver, dvi__rung rung, double size, int wary, int patient, double *x, dvi__solve_report *report)
+{
+  *report = (dvi__solve_report){0};
+  switch (rung) {
+  case DVI__FIXED_POINT: return fixed_point(solver, size, patient, x, report);
+  case DVI__NEWTON: return dvi__newton(solver, size, wary, x, report);
+  case DVI__KINSOL: return kinsol(solver, size, x, report);
+  }
+  return dvi__fail(DVI_BAD_ARGUMENT, "solver: unknown rung %d", (int)rung);
+}

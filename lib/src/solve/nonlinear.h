@@ -1,0 +1,47 @@
+/* Systems of nonlinear equations R(x) = 0, and the ladder of solvers behind one door. Nothing here knows mechanics.
+ *
+ * The rungs, cheap to robust:
+ *   fixed point  x <- x - C^{-1} R(x) with a constant matrix C that the equations supply (the chord);
+ *   Newton       with the LU factor of the Jacobian kept while the corrections shrink fast;
+ *   KINSOL       Newton with line search, then Newton's method to the floor.
+ * All end at the roundoff floor: a tolerance of a few roundings of the unknowns, or corrections that no longer shrink. */
+#ifndef DVI_SOLVE_NONLINEAR_H
+#define DVI_SOLVE_NONLINEAR_H
+#include "num/linear.h"
+
+typedef struct dvi__equations {
+  int unknowns;
+  const dvi__pattern *pattern; /* of the Jacobian; outlives the solver */
+  void *of;                    /* first argument of the callbacks */
+  dvi_status (*residual)(void *of, const double *x, double *r);
+  dvi_status (*jacobian)(void *of, const double *x, double *values);
+  dvi_status (*prepare_chord)(void *of, const double *x);
+  void (*chord)(void *of, double *r);         /* r <- C^{-1} r */
+  void (*row_scale)(void *of, double *scale); /* [unknowns] > 0: size of a row per unit of an unknown; after prepare_chord */
+} dvi__equations;
+
+typedef enum dvi__rung { DVI__FIXED_POINT, DVI__NEWTON, DVI__KINSOL } dvi__rung;
+
+/* How a solve went; on failure, for the sentence. */
+typedef struct dvi__solve_report {
+  int iterations;
+  double correction; /* largest change of an unknown in the last iteration */
+  double residual;   /* largest |R_i| / row_scale_i at the last point */
+} dvi__solve_report;
+
+typedef struct dvi__solver dvi__solver;
+
+dvi_status dvi__solver_create(const dvi__equations *equations, dvi_counters *counters, dvi__solver **solver);
+void dvi__solver_destroy(dvi__solver **solver);
+
+/* One rung, from the guess in x to the solution in x.
+ *
+ * `size` is the size of the quantities to which x is an increment: rounding noise of size * epsilon is expected. With `wary`, Newton's
+ * method gives up on a guess so far off that it might lead to another solution. With `patient`, slow fixed point iterations go on.
+ * A positive status: not solved, x is spoilt; a negative one: fatal. */
+dvi_status dvi__solve(dvi__solver *solver, dvi__rung rung, double size, int wary, int patient, double *x, dvi__solve_report *report);
+
+/* Which linear solver the Newton rungs use. */
+dvi__linear_kind dvi__solver_linear_kind(const dvi__solver *solver);
+
+#endif

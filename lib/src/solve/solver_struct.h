@@ -1,0 +1,41 @@
+/* The inside of a solver, for the files of this room. */
+#ifndef DVI_SOLVE_SOLVER_STRUCT_H
+#define DVI_SOLVE_SOLVER_STRUCT_H
+#include "solve/nonlinear.h"
+
+typedef struct dvi__kinsol dvi__kinsol;
+
+struct dvi__solver {
+  dvi__equations equations;
+  dvi_counters *counters;
+  double *residual; /* [unknowns]; then the correction */
+  double *values;   /* of the Jacobian */
+  dvi__linear *linear;
+  dvi__kinsol *kinsol;
+};
+
+/* Evaluate, and count. */
+dvi_status dvi__solver_residual(dvi__solver *solver, const double *x, double *r);
+
+/* The Jacobian at x into values, and its factor. */
+dvi_status dvi__solver_factor(dvi__solver *solver, const double *x);
+
+/* Newton's method alone (newton.c). */
+dvi_status dvi__newton(dvi__solver *solver, double size, int wary, double *x, dvi__solve_report *report);
+
+/* KINSOL (kinsol.c). solve: a positive status if it ended without a solution; x then holds its last point. */
+dvi_status dvi__kinsol_create(dvi__solver *solver, dvi__kinsol **kinsol);
+void dvi__kinsol_destroy(dvi__kinsol **kinsol);
+dvi_status dvi__kinsol_solve(dvi__kinsol *kinsol, double size, double *x, dvi__solve_report *report);
+
+/* How far an iteration has come (progress.c). */
+typedef enum dvi__progress { DVI__GO_ON, DVI__CONVERGED, DVI__STALLED } dvi__progress;
+
+/* Judge one correction of size `correction` after one of size `last` (0 before the first): converged at the roundoff floor, or
+ * stalled above it. `slowest` is the largest acceptable ratio of the two. */
+dvi__progress dvi__judge(double correction, double last, double slowest, double unknown, double size);
+
+/* x <- x - correction; gives the largest correction and the largest x. */
+void dvi__correct(int count, const double *correction, double *x, double *largest_correction, double *largest_x);
+
+#endif

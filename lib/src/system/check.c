@@ -1,0 +1,249 @@
+/* The derivative check: every gradient against differences of the values, every Hessian and pattern against differences of the
+ * gradients, one column at a time. */
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "num/finite.h"
+#include "system/difference.h"
+
+/* One entry at which callback and difference disagree. */
+typedef struct disagreement {
+  double error; /* beyond the differences' own noise; while a block is compared absolute, then relative to its largest entry */
+  double given, differenced;
+  int row, column;
+} disagreement;
+
+/* The worst of one kind over all blocks, and whose it is. */
+typedef struct finding {
+  disagreement worst;
+  const char *term, *block;
+} finding;
+
+/* One block of one term while it is compared. */
+typedef struct block {
+  const char *term, *name;
+  const dvi__pattern *pattern; /* NULL: a gradient */
+  const double *given;         /* NULL: no callback, only the pattern is checked */
+  double largest;              /* magnitude of its entries, given or differenced */
+  disagreement on_pattern, outside;
+} block;
+
+typedef struct check {
+  dvi__scratch scratch;
+  dvi__differences differences;
+  int n;
+  double t;
+  const double *q, *v;
+  double *gradient[2], *column[2]; /* [n] */
+  double *hessian[3];              /* as long as the longest pattern */
+  finding of_gradient, of_hessian, of_pattern;
+} check;
+
+static void compare(block *b, int row, int column, double given, double differenced, double noise, disagreement *worst)
+{
+  const double error = fabs(given - differenced) - noise;
+  b->largest = fmax(b->largest, fmax(fabs(given), fabs(differenced)));
+  if (error > worst->error) *worst = (disagreement){error, given, differenced, row, column};
+}
+
+static void keep_worst(const block *b, const disagreement *found, finding *kept)
+{
+  const double error = found->error > 0 ? found->error / b->largest : 0;
+  if (error <= kept->worst.error) return;
+  kept->worst = *found;
+  kept->worst.error = error;
+  kept->term = b->term;
+  kept->block = b->name;
+}
+
+/* What roundoff in values as large as `magnitude` does to a difference over the step; more if they are differenced themselves. */
+static double noise_of(double magnitude, double step, int differenced)
+{
+  return (differenced ? 1e-12 : 64 * DBL_EPSILON) * magnitude / step;
+}
+
+static double max_norm(int n, const double *x)
+{
+  double norm = 0;
+  for (int i = 0; i < n; i++) norm = fmax(norm, fabs(x[i]));
+  return norm;
+}
+
+/* ---- gradients ---- */
+
+static dvi_status check_gradient(check *c, dvi__batch_value value, const void *function, const double *x, const double *given,
+                                 const char *term, const char *name)
+{
+  block b = {.term = term, .name = name};
+  const dvi__differences *d = &c->differences;
+  DVI_TRY(dvi__difference_gradient(value, function, &c->differences, c->n, 1, x, c->column[0]));
+  const double magnitude = fmax(fabs(d->plus[0]), fabs(d->minus[0]));
+  for (int i = 0; i < c->n; i++) compare(&b, i, -1, given[i], c->column[0][i], noise_of(magnitude, d->step[i], 0), &b.on_pattern);
+  keep_worst(&b, &b.on_pattern, &c->of_gradient);
+  return DVI_OK;
+}
+
+/* ---- Hessians and patterns ---- */
+
+static void compare_column(block *b, int n, int j, const double *differenced, double noise)
+{
+  int e = b->pattern->start[j];
+  for (int i = 0; i < n; i++) {
+    const int declared = e < b->pattern->start[j + 1] && b->pattern->row[e] == i;
+    if (!declared)
+      compare(b, i, j, 0, differenced[i], noise, &b->outside);
+    else if (b->given != NULL)
+      compare(b, i, j, b->given[e], differenced[i], noise, &b->on_pattern);
+    else
+      b->largest = fmax(b->largest, fabs(differenced[i]));
+    e += declared;
+  }
+}
+
+/* One or two blocks whose columns belong to the same variable x; the second may be NULL. */
+static dvi_status check_blocks(check *c, dvi__batch_gradient gradient, const void *function, const double *x, int noisy, block *first,
+                               block *second)
+{
+  const dvi__differences *d = &c->differences;
+  for (int j = 0; j < c->n; j++) {
+    DVI_TRY(dvi__difference_column(gradient, function, &c->differences, c->n, j, x, c->column[0], c->column[1]));
+    compare_column(first, c->n, j, c->column[0], noise_of(max_norm(c->n, d->plus), d->step[j], noisy));
+    if (second != NULL) compare_column(second, c->n, j, c->column[1], noise_of(max_norm(c->n, d->plus_v), d->step[j], noisy));
+  }
+  for (block *b = first; b != NULL; b = b == first ? second : NULL) {
+    keep_worst(b, &b->on_pattern, &c->of_hessian);
+    keep_worst(b, &b->outside, &c->of_pattern);
+  }
+  return DVI_OK;
+}
+
+/* ---- terms ---- */
+
+static dvi_status check_potential(check *c, const dvi__potential_term *p)
+{
+  const dvi__potential_at at = {p, &c->scratch, &c->t};
+  const int has_gradient = dvi__potential_has_gradient(p), has_hessian = dvi__potential_has_hessian(p);
+  block qq = {.term = p->name, .name = "d2V/dq2", .pattern = &p->qq, .given = has_hessian ? c->hessian[0] : NULL};
+  if (has_gradient) {
+    DVI_TRY(dvi__potential_gradient(p, &c->scratch, 1, &c->t, c->q, c->gradient[0]));
+    DVI_TRY(check_gradient(c, dvi__potential_value_of_q, &at, c->q, c->gradient[0], p->name, "dV/dq"));
+  }
+  if (has_hessian) DVI_TRY(dvi__potential_hessian(p, &c->scratch, 1, &c->t, c->q, c->hessian[0]));
+  return check_blocks(c, dvi__potential_gradient_of_q, &at, c->q, !has_gradient, &qq, NULL);
+}
+
+static dvi_status check_lagrangian(check *c, const dvi__lagrangian_term *l)
+{
+  const dvi__general_at at = {l, &c->scratch, &c->t, c->q, c->v};
+  const int noisy = !dvi__general_has_gradient(l), has_hessian = dvi__general_has_hessian(l);
+  block qq = {.name = "d2L/dq2", .pattern = &l->qq, .given = has_hessian ? c->hessian[0] : NULL};
+  block qv = {.name = "d2L/dqdv", .pattern = &l->qv, .given = has_hessian ? c->hessian[1] : NULL};
+  block vv = {.name = "d2L/dv2", .pattern = &l->vv, .given = has_hessian ? c->hessian[2] : NULL};
+  if (!noisy) {
+    DVI_TRY(dvi__general_gradient(l, &c->scratch, 1, &c->t, c->q, c->v, c->gradient[0], c->gradient[1]));
+    DVI_TRY(check_gradient(c, dvi__general_value_of_q, &at, c->q, c->gradient[0], NULL, "dL/dq"));
+    DVI_TRY(check_gradient(c, dvi__general_value_of_v, &at, c->v, c->gradient[1], NULL, "dL/dv"));
+  }
+  if (has_hessian) DVI_TRY(dvi__general_hessian(l, &c->scratch, 1, &c->t, c->q, c->v, c->hessian[0], c->hessian[1], c->hessian[2]));
+  DVI_TRY(check_blocks(c, dvi__general_gradient_of_q, &at, c->q, noisy, &qq, NULL));
+  return check_blocks(c, dvi__general_gradient_of_v, &at, c->v, noisy, &qv, &vv);
+}
+
+static dvi_status check_terms(check *c, const dvi_system *system)
+{
+  if (system->lagrangian != NULL) DVI_TRY(check_lagrangian(c, system->lagrangian));
+  for (int k = 0; k < system->potential_count; k++) DVI_TRY(check_potential(c, &system->potentials[k]));
+  return DVI_OK;
+}
+
+/* ---- the report ---- */
+
+static void name_entry(const finding *f, size_t size, char *text)
+{
+  char place[32], owner[64] = "Lagrangian";
+  if (f->term != NULL) (void)snprintf(owner, sizeof owner, "potential '%.40s'", f->term);
+  if (f->worst.column < 0)
+    (void)snprintf(place, sizeof place, "(%d)", f->worst.row);
+  else
+    (void)snprintf(place, sizeof place, "(%d,%d)", f->worst.row, f->worst.column);
+  (void)snprintf(text, size, "%s: %s %s", owner, f->block, place);
+}
+
+/* A wrong gradient makes its Hessian look wrong too, so it is named first; then what a pattern misses. */
+static dvi_status report(const check *c, double tolerance, dvi_derivative_check *result)
+{
+  const finding *const hessian = c->of_pattern.worst.error > tolerance ? &c->of_pattern : &c->of_hessian;
+  const finding *const worst = c->of_gradient.worst.error > tolerance ? &c->of_gradient : hessian;
+  const int missing = worst == &c->of_pattern;
+  char entry[96] = "";
+  if (worst->block != NULL) name_entry(worst, sizeof entry, entry);
+  *result = (dvi_derivative_check){.gradient_error = c->of_gradient.worst.error,
+                                   .hessian_error = c->of_hessian.worst.error,
+                                   .outside = c->of_pattern.worst.error,
+                                   .row = hessian->block != NULL ? hessian->worst.row : -1,
+                                   .column = hessian->block != NULL ? hessian->worst.column : -1};
+  if (worst->worst.error <= tolerance) return DVI_OK;
+  (void)snprintf(result->where, sizeof result->where, "%s %s", entry, missing ? "is not in the pattern" : "is wrong");
+  if (missing)
+    return dvi__fail(DVI_BAD_ARGUMENT, "system check: %s is not in the pattern, but differences give %.15g", entry,
+                     worst->worst.differenced);
+  return dvi__fail(DVI_BAD_ARGUMENT, "system check: %s is %.15g from the callback, %.15g from differences", entry, worst->worst.given,
+                   worst->worst.differenced);
+}
+
+/* ---- memory ---- */
+
+static int longest_pattern(const dvi_system *system)
+{
+  const int vv = dvi__pattern_entries(&system->vv), qv = dvi__pattern_entries(&system->qv), qq = dvi__pattern_entries(&system->qq);
+  const int longest = vv > qv ? vv : qv;
+  return qq > longest ? qq : longest;
+}
+
+static dvi_status allocate(check *c, const dvi_system *system)
+{
+  DVI_TRY(dvi__scratch_create(system, 1, &c->scratch));
+  int complete = dvi__differences_allocate((size_t)c->n, &c->differences);
+  for (int i = 0; i < 2; i++) {
+    c->gradient[i] = DVI_NEW(double, c->n);
+    c->column[i] = DVI_NEW(double, c->n);
+    complete = complete && c->gradient[i] != NULL && c->column[i] != NULL;
+  }
+  for (int i = 0; i < 3; i++) {
+    c->hessian[i] = DVI_NEW(double, longest_pattern(system));
+    complete = complete && c->hessian[i] != NULL;
+  }
+  return complete ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "system check: no memory for %d dimensions", c->n);
+}
+
+static void clear(check *c)
+{
+  dvi__scratch_clear(&c->scratch);
+  dvi__differences_clear(&c->differences);
+  for (int i = 0; i < 2; i++) {
+    dvi__release(c->gradient[i]);
+    dvi__release(c->column[i]);
+  }
+  for (int i = 0; i < 3; i++) dvi__release(c->hessian[i]);
+}
+
+dvi_status dvi_system_check(const dvi_system *system, double t, const double *q, const double *v, double tolerance,
+                            dvi_derivative_check *result)
+{
+  dvi_derivative_check unwanted, *const kept = result != NULL ? result : &unwanted;
+  *kept = (dvi_derivative_check){.row = -1, .column = -1};
+  if (system == NULL || q == NULL || v == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "system check: an argument is NULL");
+  if (!(tolerance >= 0)) return dvi__fail(DVI_BAD_ARGUMENT, "system check: tolerance %g; 0 or more is possible", tolerance);
+  const size_t n = (size_t)system->n;
+  if (!isfinite(t) || dvi__first_not_finite(n, q) >= 0 || dvi__first_not_finite(n, v) >= 0)
+    return dvi__fail(DVI_NOT_FINITE, "system check: the point (t = %g) is not finite", t);
+  check c = {.n = system->n, .t = t, .q = q, .v = v};
+  dvi_status status = allocate(&c, system);
+  if (status == DVI_OK) status = check_terms(&c, system);
+  if (status == DVI_OK) status = report(&c, tolerance > 0 ? tolerance : 1e-6, kept);
+  clear(&c);
+  return status;
+}

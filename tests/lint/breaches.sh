@@ -1,0 +1,86 @@
+#!/bin/sh
+# A gate that cannot fail is no gate: every breach planted here must be seen by its gate, and the clean tree before it must pass.
+# Usage: breaches.sh LINT_FOLDER C_COMPILER
+set -u
+lint=$1 compiler=$2
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+rc=0
+
+clean() {
+  rm -rf "${work:?}"/*
+  cd "$work" || exit 1
+  for room in core num space system solve action method diagnostics reference; do mkdir -p lib/src/$room; done
+  mkdir -p lib/include/dvi apps/problems apps/examples tests/method docs/methods
+  printf '/** One. */\nint dvi_one(int a);\n' >lib/include/dvi/one.h
+  printf '#include <dvi/one.h>\n\nint dvi_one(int a)\n{\n  return a;\n}\n' >lib/src/core/one.c
+  printf '#include <dvi/one.h>\n' >lib/src/method/leap.c
+  printf '/* .cite = "Euler1744" */\n' >>lib/src/method/leap.c
+  printf '#include <dvi/one.h>\n' >apps/main.c
+  touch tests/method/test_leap.c docs/methods/leap.md
+  printf '@book{Euler1744,\n}\n' >docs/references.bib
+}
+
+# The gates, called by name.
+# shellcheck disable=SC2317
+layers() { sh "$lint/sources.sh" "$work" "$lint/layers.awk" leap; }
+text() { sh "$lint/sources.sh" "$work" "$lint/text.awk"; }
+documented() { awk -f "$lint/documented.awk" lib/include/dvi/*.h; }
+methods() { sh "$lint/methods.sh" "$work" leap; }
+headers() { sh "$lint/headers.sh" "$work/lib/include" c "$compiler" -std=c11; }
+symbols() {
+  "$compiler" -shared -fPIC -I lib/include lib/src/core/*.c -o libone.so && "$compiler" -c -I lib/include lib/src/core/one.c -o one.o &&
+    rm -f libone.a && ar rc libone.a one.o && sh "$lint/symbols.sh" libone.so libone.a lib/include
+}
+
+passes() { "$1" >log 2>&1 || { echo "$1: the clean tree does not pass"; cat log; rc=1; }; }
+
+# sees GATE FILE TEXT: with TEXT appended to FILE of the clean tree, GATE fails.
+sees() {
+  clean
+  printf '%b\n' "$3" >>"$2"
+  if "$1" >log 2>&1; then echo "$1 does not see: $3 in $2"; rc=1; fi
+}
+
+clean
+for gate in layers text documented methods headers symbols; do passes $gate; done
+
+sees layers lib/src/core/one.c '#include "num/linear.h"'
+sees layers lib/src/num/one.c '#include "system/system.h"'
+sees layers lib/src/solve/one.c '#include "system/system.h"'
+sees layers lib/src/solve/one.c '#include "action/element.h"'
+sees layers lib/src/method/two.c '#include "method/leap.h"'
+sees layers lib/src/reference/one.c '#include "solve/nonlinear.h"'
+sees layers lib/src/diagnostics/one.c '#include "method/method.h"'
+sees layers lib/src/core/one.c '#include "local.h"'
+sees layers lib/src/method/leap.c '#include <kinsol/kinsol.h>'
+sees layers lib/src/solve/one.c '#include <klu.h>'
+sees layers lib/src/num/one.c '#include <sundials/sundials_types.h>'
+sees layers lib/src/num/one.c 'printf("x");'
+sees layers lib/src/num/one.c 'x = malloc(3);'
+sees layers lib/src/num/one.c 'free(x);'
+sees layers lib/include/dvi/one.h '#include <stdio.h>'
+sees layers lib/include/dvi/one.h '#include "core/status.h"'
+sees layers lib/include/dvi/one.h 'int dvi__two(int a);'
+sees layers apps/main.c '#include "core/status.h"'
+sees layers apps/examples/one.c '#include <kinsol/kinsol.h>'
+sees layers apps/problems/one.c 'dvi__release(x);'
+sees text lib/src/core/one.c 'int\ta;'
+sees text lib/src/core/one.c 'int a; '
+sees text lib/src/core/one.c '/* TO''DO: finish */'
+sees text lib/src/core/one.c '/* caf\0303\0251 */'
+sees text lib/src/core/long.c "int f(void)\n{\n$(awk 'BEGIN { for (i = 0; i < 60; i++) printf "  g();\\n" }')}"
+sees text lib/src/core/long.c "$(awk 'BEGIN { for (i = 0; i < 501; i++) printf "int a%d;\\n", i }')"
+sees documented lib/include/dvi/one.h '\nint dvi_two(int a);'
+sees documented lib/include/dvi/one.h '\ntypedef struct dvi_two { int a; } dvi_two;'
+sees methods docs/methods/other.md 'a page without a method'
+sees headers lib/include/dvi/one.h 'size_t dvi_size(void);'
+sees symbols lib/src/core/one.c 'int dvi_two;'
+sees symbols lib/src/core/one.c 'int stray;'
+sees symbols lib/include/dvi/one.h 'int dvi_promised(int a);'
+for file in lib/src/method/leap.c tests/method/test_leap.c docs/methods/leap.md docs/references.bib; do
+  clean
+  rm $file
+  if methods >log 2>&1; then echo "methods does not see that $file is missing"; rc=1; fi
+done
+exit $rc

@@ -1,0 +1,25 @@
+#!/bin/sh
+# A method is complete: source, test, page, and a source in the bibliography; and no file of a method is left without its line.
+# Usage: methods.sh TOP NAME...
+set -u
+cd "$1" || exit 1
+shift
+rc=0
+need() { [ -e "$1" ] || { echo "missing: $1 (its method is in lib/src/method/methods.def)"; rc=1; }; }
+[ $# -gt 0 ] || { echo "no METHOD(name) line in lib/src/method/methods.def"; exit 1; }
+for name; do
+  need "lib/src/method/$name.c"
+  need "tests/method/test_$name.c"
+  need "docs/methods/$name.md"
+  cite=$(sed -n 's/.*\.cite = "\([^"]*\)".*/\1/p' "lib/src/method/$name.c" 2>/dev/null)
+  if [ -z "$cite" ]; then
+    echo "lib/src/method/$name.c: no .cite"; rc=1
+  elif ! grep -q "^@[a-z]*{$cite," docs/references.bib 2>/dev/null; then
+    echo "docs/references.bib: no entry $cite (cited by $name)"; rc=1
+  fi
+done
+for page in docs/methods/*.md; do
+  page=$(basename "$page" .md)
+  case " README index * $* " in *" $page "*) ;; *) echo "docs/methods/$page.md: no METHOD($page) in methods.def"; rc=1 ;; esac
+done
+exit $rc

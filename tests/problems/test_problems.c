@@ -1,0 +1,333 @@
+/* The catalogue: every derivative and pattern against differences, every start, every refusal. */
+#include <check.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "problem.h"
+
+/* Differences of the value are good to about 1e-10 at these points; a wrong term shows at 1. */
+#define TOLERANCE 1e-7
+
+static problem *create(const char *name, int setting_count, const char *const *settings)
+{
+  problem *made = NULL;
+  char message[256] = "";
+  ck_assert_msg(problem_create(name, setting_count, settings, &made, message, sizeof message) == DVI_OK, "%s: %s", name, message);
+  return made;
+}
+
+/* A reproducible number in [-1, 1]. */
+static double noise(unsigned *state)
+{
+  *state = *state * 1664525u + 1013904223u;
+  return (double)(*state >> 8) / 8388608.0 - 1.0;
+}
+
+static double size_of(int n, const double *x)
+{
+  double most = 0.0;
+  for (int i = 0; i < n; i++) most = fmax(most, fabs(x[i]));
+  return most > 0.0 ? most : 1.0;
+}
+
+/* Check the derivatives at the start moved by `distance`, relative to the size of q and v. */
+static void check_near_start(const problem *made, double distance, unsigned seed)
+{
+  const int n = made->n;
+  double *q = calloc((size_t)n, sizeof *q), *v = calloc((size_t)n, sizeof *v);
+  ck_assert(q && v);
+  unsigned state = seed;
+  for (int i = 0; i < n; i++) {
+    q[i] = made->q[i] + distance * size_of(n, made->q) * noise(&state);
+    v[i] = made->v[i] + distance * size_of(n, made->v) * noise(&state);
+  }
+  dvi_derivative_check found;
+  const dvi_status status = dvi_system_check(made->system, 0.0, q, v, TOLERANCE, &found);
+  ck_assert_msg(status == DVI_OK, "%s: %s (gradient %g, hessian %g, outside %g)", made->name, dvi_last_error(),
+                found.gradient_error, found.hessian_error, found.outside);
+  free(q);
+  free(v);
+}
+
+static void check_derivatives(const char *name, int setting_count, const char *const *settings)
+{
+  problem *made = create(name, setting_count, settings);
+  check_near_start(made, 0.0, 1);
+  for (unsigned seed = 1; seed <= 4; seed++) check_near_start(made, 0.2, seed);
+  problem_destroy(&made);
+}
+
+START_TEST(derivatives_and_patterns_agree_with_differences)
+{
+  check_derivatives(problem_name(_i), 0, NULL);
+}
+END_TEST
+
+START_TEST(derivatives_agree_for_other_parameters)
+{
+  static const char *const cases[][2] = {
+      {"oscillator", "k=3"},
+      {"pendulum", "q0=1e-3"},
+      {"kepler", "e=0.9"},
+      {"henon-heiles", "lambda=-0.7"},
+      {"double-pendulum", "l1=.7"},
+      {"double-pendulum", "m2=3"},
+      {"stiff-pendulum", "k=7"},
+      {"stiff-pendulum", "l=2.5"},
+      {"oscillators", "omega=3"},
+      {"toda", "N=2"},
+      {"toda", "N=3"},
+      {"toda", "N=4"},
+      {"toda", "N=7"},
+      {"fpu", "ell=1"},
+      {"fpu", "ell=2"},
+      {"fpu", "ell=9"},
+  };
+  check_derivatives(cases[_i][0], 1, &cases[_i][1]);
+}
+END_TEST
+
+START_TEST(momenta_are_the_legendre_transform_of_the_velocities)
+{
+  problem *made = create(problem_name(_i), 0, NULL);
+  const size_t n = (size_t)made->n;
+  double *v = calloc(n, sizeof *v);
+  ck_assert_ptr_nonnull(v);
+  memcpy(v, made->v, n * sizeof *v);
+  for (size_t i = 0; i < n; i++) v[i] += 1e-3 * size_of(made->n, made->v);
+  ck_assert_int_eq(dvi_system_velocity(made->system, 0.0, made->q, made->p, v), DVI_OK);
+  /* M is well conditioned in all of them: roundoff of one solve */
+  for (size_t i = 0; i < n; i++) ck_assert_double_eq_tol(v[i], made->v[i], 1e-13 * size_of(made->n, made->v));
+  free(v);
+  problem_destroy(&made);
+}
+END_TEST
+
+START_TEST(every_problem_is_found_by_its_name_and_complete)
+{
+  const char *name = problem_name(_i);
+  ck_assert_int_eq(problem_find(name), _i);
+  ck_assert_ptr_nonnull(problem_summary(_i));
+  for (const problem_parameter *p = problem_parameters(_i); p->name; p++) {
+    ck_assert_ptr_nonnull(p->help);
+    ck_assert(p->least <= p->value && p->value <= p->most);
+  }
+  problem *made = create(name, 0, NULL);
+  ck_assert_str_eq(made->name, name);
+  ck_assert_int_eq(made->n, dvi_system_nq(made->system));
+  ck_assert(made->h > 0.0 && made->h < made->t_end && made->order_h > 0.0 && made->order_h < made->order_t_end);
+  ck_assert(made->digits_q && made->digits_p);
+  for (int i = 0; i < made->n; i++) {
+    ck_assert_int_gt((int)strlen(made->coordinate[i]), 0);
+    for (int j = 0; j < i; j++) ck_assert_str_ne(made->coordinate[i], made->coordinate[j]);
+  }
+  problem_destroy(&made);
+  ck_assert_ptr_null(made);
+}
+END_TEST
+
+START_TEST(digits_belong_to_the_default_parameters_only)
+{
+  const problem_parameter *p = problem_parameters(_i);
+  if (!p->name) return;
+  char same[64], other[64];
+  snprintf(same, sizeof same, "%s=%.17g", p->name, p->value);
+  snprintf(other, sizeof other, "%s=%.17g", p->name, p->whole ? p->value + 1.0 : 0.75 * p->value);
+  const char *setting = same;
+  problem *made = create(problem_name(_i), 1, &setting);
+  ck_assert_ptr_nonnull(made->digits_q);
+  problem_destroy(&made);
+  setting = other;
+  made = create(problem_name(_i), 1, &setting);
+  ck_assert_ptr_null(made->digits_q);
+  ck_assert_ptr_null(made->digits_p);
+  problem_destroy(&made);
+}
+END_TEST
+
+START_TEST(bad_settings_are_refused_with_a_sentence)
+{
+  static const char *const cases[][3] = {
+      {"nonsense", NULL, "no problem 'nonsense'"},
+      {"kepler", "e=1", "eccentricity"},
+      {"kepler", "e=-0.1", "eccentricity"},
+      {"kepler", "e=nan", "eccentricity"},
+      {"kepler", "e=0.5x", "eccentricity"},
+      {"kepler", "e=", "eccentricity"},
+      {"kepler", "e", "name=value"},
+      {"kepler", "ecc=0.5", "it has: e"},
+      {"kepler", "=0.5", "it has: e"},
+      {"toda", "N=1", "whole number"},
+      {"toda", "N=2.5", "whole number"},
+      {"fpu", "ell=0", "whole number"},
+      {"fpu", "ell=1e9", "whole number"},
+      {"fpu", "omega=0", "positive"},
+      {"fpu", "omega=inf", "positive"},
+      {"oscillator", "k=0", "positive"},
+      {"double-pendulum", "m1=-1", "positive"},
+      {"double-pendulum", "m3=1", "l1, l2, m1, m2, g"},
+      {"outer-solar", "G=1", "it has: none"},
+  };
+  problem *made = NULL;
+  char message[256] = "";
+  const char *setting = cases[_i][1];
+  ck_assert_int_eq(problem_create(cases[_i][0], setting ? 1 : 0, &setting, &made, message, sizeof message), DVI_BAD_OPTION);
+  ck_assert_ptr_null(made);
+  ck_assert_msg(strstr(message, cases[_i][2]) != NULL, "%s", message);
+}
+END_TEST
+
+START_TEST(a_chain_of_any_length_starts_as_it_should)
+{
+  const char *setting = "ell=1000";
+  problem *made = create("fpu", 1, &setting);
+  ck_assert_int_eq(made->n, 2000);
+  ck_assert_str_eq(made->coordinate[999], "x0_1000");
+  ck_assert_str_eq(made->coordinate[1000], "x1_1");
+  ck_assert(made->q[0] == 1.0 && made->p[0] == 1.0 && made->q[1000] == 1.0 / 50.0 && made->p[1000] == 1.0);
+  problem_destroy(&made);
+}
+END_TEST
+
+/* Exact solutions start where the problem starts, and meet the digits at order_t_end. */
+START_TEST(exact_solutions_meet_start_and_digits)
+{
+  static const char *const names[] = {"oscillator", "oscillators", "kepler"};
+  problem *made = create(names[_i], 0, NULL);
+  double q[2], p[2];
+  ck_assert_int_eq(made->exact(made, 0.0, q, p), 0);
+  for (int i = 0; i < made->n; i++) {
+    ck_assert_double_eq_tol(q[i], made->q[i], 1e-16);
+    ck_assert_double_eq_tol(p[i], made->p[i], 1e-15);
+  }
+  ck_assert_int_eq(made->exact(made, made->order_t_end, q, p), 0);
+  /* a few ulp; the parameter itself is rounded (e = 0.6) */
+  for (int i = 0; i < made->n; i++) {
+    ck_assert_double_eq_tol(q[i], made->digits_q[i], 1e-15 * size_of(made->n, made->digits_q) * made->order_t_end);
+    ck_assert_double_eq_tol(p[i], made->digits_p[i], 1e-15 * size_of(made->n, made->digits_p) * made->order_t_end);
+  }
+  problem_destroy(&made);
+}
+END_TEST
+
+/* The state is on the orbit, it is there at the right time, and the state at -t mirrors that at t. */
+START_TEST(keplers_equation_is_solved_for_any_eccentricity_and_time)
+{
+  static const char *const settings[] = {"e=0", "e=0.3", "e=0.6", "e=0.9", "e=0.99", "e=0.999", "e=0.999999"};
+  static const double times[] = {
+      1e-12, 1e-4, 0.1, 1.0, 3.14159265358979, 3.2, 6.28, 100.0, 1256.637061435917, 1e6, 6.28318530717958648e6};
+  problem *made = create("kepler", 1, &settings[_i]);
+  const double e = atof(settings[_i] + 2), b2 = (1.0 - e) * (1.0 + e);
+  for (size_t j = 0; j < sizeof times / sizeof *times; j++) {
+    double q[2], p[2], mirror_q[2], mirror_p[2];
+    ck_assert_int_eq(made->exact(made, times[j], q, p), 0);
+    ck_assert_int_eq(made->exact(made, -times[j], mirror_q, mirror_p), 0);
+    ck_assert(mirror_q[0] == q[0] && mirror_q[1] == -q[1] && mirror_p[0] == -p[0] && mirror_p[1] == p[1]);
+    const double r = hypot(q[0], q[1]), kinetic = 0.5 * (p[0] * p[0] + p[1] * p[1]);
+    const double E = atan2(q[1] / sqrt(b2), q[0] + e), period = 0x1.921fb54442d18p2;
+    /* a few ulp of the reduced time, and of E where dt/dE is 1 + e; beyond 1e4 the period's own rounding counts */
+    if (times[j] < 1e4) ck_assert_double_eq_tol(E - e * sin(E), remainder(times[j], period), 2e-15 + 2e-16 * times[j]);
+    /* terms as large as 1/r cancel to -1/2 */
+    ck_assert_double_eq_tol(kinetic - 1.0 / r, -0.5, 1e-15 * (1.0 + kinetic) / (1.0 - e));
+    ck_assert_double_eq_tol((q[0] * p[1] - q[1] * p[0]) / sqrt(b2), 1.0, 1e-14 + 1e-15 / (1.0 - e));
+  }
+  problem_destroy(&made);
+}
+END_TEST
+
+/* One period is 2 pi: 6.283185307179586 is 2 pi minus 4.77e-16, so k of them end 4.77e-16 k before the pericentre. */
+START_TEST(many_periods_are_reduced_without_loss)
+{
+  const char *setting = "e=0.9";
+  problem *made = create("kepler", 1, &setting);
+  const double period = 0x1.921fb54442d18p2, period_rest = 2.4492935982947064e-16;
+  const double turns = 0x1p20; /* turns * period is exact */
+  double q[2], p[2], near_q[2], near_p[2];
+  ck_assert_int_eq(made->exact(made, turns * period, q, p), 0);
+  ck_assert_int_eq(made->exact(made, -turns * period_rest, near_q, near_p), 0);
+  /* relative: y is 1e-9 there */
+  ck_assert_double_eq_tol(q[1] / near_q[1], 1.0, 1e-13);
+  ck_assert_double_eq_tol(q[0], near_q[0], 1e-15);
+  problem_destroy(&made);
+}
+END_TEST
+
+START_TEST(kepler_in_the_singularity_gives_no_finite_number)
+{
+  problem *made = create("kepler", 0, NULL);
+  const double q[2] = {0.0, 0.0}, v[2] = {0.0, 1.0};
+  double L = 0.0;
+  ck_assert_int_eq(dvi_system_lagrangian(made->system, 0.0, q, v, &L), DVI_NOT_FINITE);
+  problem_destroy(&made);
+}
+END_TEST
+
+START_TEST(symmetries_and_invariants_have_their_names)
+{
+  static const struct {
+    const char *problem;
+    const char *names[8];
+  } cases[] = {
+      {"oscillator", {"energy"}},
+      {"kepler", {"energy", "angular_momentum", "laplace_x", "laplace_y"}},
+      {"toda", {"energy", "momentum"}},
+      {"fpu", {"energy", "I_1", "I_2", "I_3"}},
+      {"figure-eight", {"energy", "momentum_x", "momentum_y", "angular_momentum"}},
+      {"outer-solar",
+       {"energy", "momentum_x", "momentum_y", "momentum_z", "angular_momentum_x", "angular_momentum_y", "angular_momentum_z"}},
+  };
+  problem *made = create(cases[_i].problem, 0, NULL);
+  int count = 0;
+  for (; cases[_i].names[count]; count++) ck_assert_str_eq(dvi_system_invariant_name(made->system, count), cases[_i].names[count]);
+  ck_assert_int_eq(dvi_system_invariant_count(made->system), count);
+  problem_destroy(&made);
+}
+END_TEST
+
+/* Every invariant but the stiff energies of fpu has the same value at the start and at the stored digits. */
+START_TEST(invariants_hold_between_start_and_digits)
+{
+  problem *made = create(problem_name(_i), 0, NULL);
+  const int count = dvi_system_invariant_count(made->system);
+  double start[16], end[16];
+  ck_assert_int_le(count, 16);
+  ck_assert_int_eq(dvi_system_invariants(made->system, 0.0, made->q, made->p, start), DVI_OK);
+  ck_assert_int_eq(dvi_system_invariants(made->system, made->order_t_end, made->digits_q, made->digits_p, end), DVI_OK);
+  for (int i = 0; i < count; i++) {
+    const char *name = dvi_system_invariant_name(made->system, i);
+    /* roundoff of the digits, times the largest force or speed: 1e3 in stiff-pendulum, q p ~ 1e-4 in outer-solar */
+    if (strncmp(name, "I_", 2) != 0)
+      ck_assert_msg(fabs(end[i] - start[i]) <= 4e-15 * fmax(size_of(count, start), 1e-7), "%s: %s changes by %g of %g", made->name,
+                    name, end[i] - start[i], start[i]);
+  }
+  problem_destroy(&made);
+}
+END_TEST
+
+int main(void)
+{
+  Suite *suite = suite_create("problems");
+  TCase *tests = tcase_create("catalogue");
+  const int count = problem_count();
+  tcase_add_loop_test(tests, derivatives_and_patterns_agree_with_differences, 0, count);
+  tcase_add_loop_test(tests, derivatives_agree_for_other_parameters, 0, 16);
+  tcase_add_loop_test(tests, momenta_are_the_legendre_transform_of_the_velocities, 0, count);
+  tcase_add_loop_test(tests, every_problem_is_found_by_its_name_and_complete, 0, count);
+  tcase_add_loop_test(tests, digits_belong_to_the_default_parameters_only, 0, count);
+  tcase_add_loop_test(tests, bad_settings_are_refused_with_a_sentence, 0, 19);
+  tcase_add_test(tests, a_chain_of_any_length_starts_as_it_should);
+  tcase_add_loop_test(tests, exact_solutions_meet_start_and_digits, 0, 3);
+  tcase_add_loop_test(tests, keplers_equation_is_solved_for_any_eccentricity_and_time, 0, 7);
+  tcase_add_test(tests, many_periods_are_reduced_without_loss);
+  tcase_add_test(tests, kepler_in_the_singularity_gives_no_finite_number);
+  tcase_add_loop_test(tests, symmetries_and_invariants_have_their_names, 0, 6);
+  tcase_add_loop_test(tests, invariants_hold_between_start_and_digits, 0, count);
+  suite_add_tcase(suite, tests);
+  SRunner *runner = srunner_create(suite);
+  srunner_run_all(runner, CK_NORMAL);
+  const int failed = srunner_ntests_failed(runner);
+  srunner_free(runner);
+  return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}

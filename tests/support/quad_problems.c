@@ -1,0 +1,344 @@
+/* The catalogue's problems in quadruple precision, from their definitions. */
+#include <string.h>
+
+#include "quad_system.h"
+
+/* The number at *text, which moves behind it. */
+static quad next_number(const char **text)
+{
+  char *end;
+  quad number = quad_parse(*text, &end);
+  if (*end == '/') number /= quad_parse(end + 1, &end);
+  *text = end;
+  return number;
+}
+
+quad quad_number(const char *text)
+{
+  return next_number(&text);
+}
+
+static quad cube(quad x)
+{
+  return x * x * x;
+}
+
+/* q'' = -k q. */
+static void oscillator_prepare(quad_system *system)
+{
+  system->n = 1;
+  system->q[0] = quad_number("0.5");
+}
+
+static void oscillator_acceleration(const quad_system *system, const quad *q, const quad *v, quad *a)
+{
+  (void)v;
+  a[0] = -system->value[0] * q[0];
+}
+
+/* q'' = -(1 + omega^2) q. */
+static void oscillators_prepare(quad_system *system)
+{
+  system->n = 1;
+  system->q[0] = 1;
+}
+
+static void oscillators_acceleration(const quad_system *system, const quad *q, const quad *v, quad *a)
+{
+  (void)v;
+  a[0] = -(1 + system->value[0] * system->value[0]) * q[0];
+}
+
+/* H = p^2/2 + cos q. */
+static void pendulum_prepare(quad_system *system)
+{
+  system->n = 1;
+  system->q[0] = system->value[0];
+}
+
+static void pendulum_acceleration(const quad_system *system, const quad *q, const quad *v, quad *a)
+{
+  (void)system, (void)v;
+  a[0] = quad_sin(q[0]);
+}
+
+static void kepler_prepare(quad_system *system)
+{
+  const quad e = system->value[0];
+  system->n = 2;
+  system->q[0] = 1 - e;
+  system->v[1] = quad_sqrt((1 + e) / (1 - e));
+}
+
+static void kepler_acceleration(const quad_system *system, const quad *q, const quad *v, quad *a)
+{
+  const quad r3 = cube(quad_sqrt(q[0] * q[0] + q[1] * q[1]));
+  (void)system, (void)v;
+  a[0] = -q[0] / r3;
+  a[1] = -q[1] / r3;
+}
+
+/* V = (x^2+y^2)/2 + lambda (x^2 y - y^3/3). */
+static void henon_heiles_prepare(quad_system *system)
+{
+  system->n = 2;
+  system->q[0] = system->q[1] = quad_number("0.2");
+  system->v[0] = system->v[1] = quad_number("0.3");
+}
+
+static void henon_heiles_acceleration(const quad_system *system, const quad *q, const quad *v, quad *a)
+{
+  const quad lambda = system->value[0], x = q[0], y = q[1];
+  (void)v;
+  a[0] = -x - 2 * lambda * x * y;
+  a[1] = -y - lambda * (x * x - y * y);
+}
+
+/* Two point masses m1, m2 at (l1 sin t1, -l1 cos t1) and there + (l2 sin t2, -l2 cos t2): M(theta) omega = p. */
+typedef struct mass_matrix {
+  quad upper, coupling, lower;
+} mass_matrix;
+
+static mass_matrix double_pendulum_mass(const quad_system *system, const quad *q)
+{
+  const quad l1 = system->value[0], l2 = system->value[1], m1 = system->value[2], m2 = system->value[3];
+  return (mass_matrix){(m1 + m2) * l1 * l1, m2 * l1 * l2 * quad_cos(q[0] - q[1]), m2 * l2 * l2};
+}
+
+static void mass_solve(mass_matrix M, const quad *p, quad *v)
+{
+  const quad determinant = M.upper * M.lower - M.coupling * M.coupling;
+  v[0] = (M.lower * p[0] - M.coupling * p[1]) / determinant;
+  v[1] = (M.upper * p[1] - M.coupling * p[0]) / determinant;
+}
+
+static void double_pendulum_prepare(quad_system *system)
+{
+  const quad pi = quad_acos(-1);
+  system->n = 2;
+  system->q[0] = pi / 4;
+  system->q[1] = pi / 2;
+  system->v[1] = pi / 8;
+}
+
+static void double_pendulum_acceleration(const quad_system *system, const quad *q, const quad *v, quad *a)
+{
+  const quad l1 = system->value[0], l2 = system->value[1], m1 = system->value[2], m2 = system->value[3], g = system->value[4];
+  const quad sine = m2 * l1 * l2 * quad_sin(q[0] - q[1]);
+  const quad force[2] = {-sine * v[1] * v[1] - (m1 + m2) * g * l1 * quad_sin(q[0]),
+                         sine * v[0] * v[0] - m2 * g * l2 * quad_sin(q[1])};
+  mass_solve(double_pendulum_mass(system, q), force, a);
+}
+
+static void double_pendulum_momentum(const quad_system *system, const quad *q, const quad *v, quad *p)
+{
+  const mass_matrix M = double_pendulum_mass(system, q);
+  p[0] = M.upper * v[0] + M.coupling * v[1];
+  p[1] = M.coupling * v[0] + M.lower * v[1];
+}
+
+static void double_pendulum_velocity(const quad_system *system, const quad *q, const quad *p, quad *v)
+{
+  mass_solve(double_pendulum_mass(system, q), p, v);
+}
+
+/* L = m/2 (a'^2 + (l+a)^2 th'^2) + m g (l+a) cos th - k a^2/2. */
+static void stiff_pendulum_prepare(quad_system *system)
+{
+  system->n = 2;
+  system->q[0] = quad_number("0.05");
+  system->q[1] = 1;
+}
+
+static void stiff_pendulum_acceleration(const quad_system *system, const quad *q, const quad *v, quad *a)
+{
+  const quad k = system->value[0], m = system->value[2], g = system->value[3], length = system->value[1] + q[0];
+  a[0] = length * v[1] * v[1] + g * quad_cos(q[1]) - k / m * q[0];
+  a[1] = -(g * quad_sin(q[1]) + 2 * v[0] * v[1]) / length;
+}
+
+static void stiff_pendulum_momentum(const quad_system *system, const quad *q, const quad *v, quad *p)
+{
+  const quad length = system->value[1] + q[0], m = system->value[2];
+  p[0] = m * v[0];
+  p[1] = m * length * length * v[1];
+}
+
+static void stiff_pendulum_velocity(const quad_system *system, const quad *q, const quad *p, quad *v)
+{
+  const quad length = system->value[1] + q[0], m = system->value[2];
+  v[0] = p[0] / m;
+  v[1] = p[1] / (m * length * length);
+}
+
+/* V = omega^2/2 sum x1_i^2 + 1/4 [ (x0_1-x1_1)^4 + sum (x0_{i+1}-x1_{i+1}-x0_i-x1_i)^4 + (x0_ell+x1_ell)^4 ]. */
+static void fpu_prepare(quad_system *system)
+{
+  const int ell = (int)system->value[0];
+  if (ell < 1 || 2 * ell > QUAD_N_MAX) return;
+  system->n = 2 * ell;
+  system->q[0] = system->v[0] = system->v[ell] = 1;
+  system->q[ell] = 1 / system->value[1];
+}
+
+static void fpu_acceleration(const quad_system *system, const quad *q, const quad *v, quad *a)
+{
+  const int ell = system->n / 2;
+  const quad square = system->value[1] * system->value[1];
+  const quad *x0 = q, *x1 = q + ell;
+  quad *a0 = a, *a1 = a + ell;
+  (void)v;
+  for (int i = 0; i < ell; i++) {
+    a0[i] = 0;
+    a1[i] = -square * x1[i];
+  }
+  const quad first = cube(x0[0] - x1[0]), last = cube(x0[ell - 1] + x1[ell - 1]);
+  a0[0] -= first;
+  a1[0] += first;
+  a0[ell - 1] -= last;
+  a1[ell - 1] -= last;
+  for (int i = 0; i + 1 < ell; i++) {
+    const quad force = cube(x0[i + 1] - x1[i + 1] - x0[i] - x1[i]);
+    a0[i] += force;
+    a1[i] += force;
+    a0[i + 1] -= force;
+    a1[i + 1] += force;
+  }
+}
+
+/* V = 0.64 sum exp(q_i - q_{i+1}), periodic. */
+static void toda_prepare(quad_system *system)
+{
+  const int N = (int)system->value[0];
+  if (N < 2 || N > QUAD_N_MAX) return;
+  system->n = N;
+  for (int i = 0; i < system->n; i++) {
+    const quad xi = quad_number("-0.5") + (quad)i / (N - 1);
+    const quad s = 6 * quad_abs(xi + quad_number("0.15"));
+    if (s <= 1)
+      system->q[i] = 1 - 3 * s * s / 2 + 3 * cube(s) / 4;
+    else if (s <= 2)
+      system->q[i] = cube(2 - s) / 4;
+  }
+}
+
+static void toda_acceleration(const quad_system *system, const quad *q, const quad *v, quad *a)
+{
+  const quad strength = (quad)64 / 100;
+  (void)v;
+  for (int i = 0; i < system->n; i++) a[i] = 0;
+  for (int i = 0; i < system->n; i++) {
+    const int next = i + 1 < system->n ? i + 1 : 0;
+    const quad force = strength * quad_exp(q[i] - q[next]);
+    a[i] -= force;
+    a[next] += force;
+  }
+}
+
+/* Newton's gravity between point masses; q holds body after body. */
+static void gravity_acceleration(const quad_system *system, const quad *q, const quad *v, quad *a)
+{
+  const int d = system->dimension;
+  (void)v;
+  for (int j = 0; j < system->n; j++) a[j] = 0;
+  for (int body = 0; body < system->bodies; body++)
+    for (int other = 0; other < system->bodies; other++) {
+      if (other == body) continue;
+      quad r2 = 0;
+      for (int i = 0; i < d; i++) r2 += (q[other * d + i] - q[body * d + i]) * (q[other * d + i] - q[body * d + i]);
+      const quad pull = system->G * system->mass[other] / (r2 * quad_sqrt(r2));
+      for (int i = 0; i < d; i++) a[body * d + i] += pull * (q[other * d + i] - q[body * d + i]);
+    }
+}
+
+static void gravity_momentum(const quad_system *system, const quad *q, const quad *v, quad *p)
+{
+  (void)q;
+  for (int j = 0; j < system->n; j++) p[j] = system->mass[j / system->dimension] * v[j];
+}
+
+static void gravity_velocity(const quad_system *system, const quad *q, const quad *p, quad *v)
+{
+  (void)q;
+  for (int j = 0; j < system->n; j++) v[j] = p[j] / system->mass[j / system->dimension];
+}
+
+/* G, then each body's mass, position and velocity. */
+static void gravity_prepare(quad_system *system, int bodies, int dimension, const char *numbers)
+{
+  system->bodies = bodies;
+  system->dimension = dimension;
+  system->n = bodies * dimension;
+  system->G = next_number(&numbers);
+  for (int body = 0; body < bodies; body++) {
+    system->mass[body] = next_number(&numbers);
+    for (int i = 0; i < dimension; i++) system->q[body * dimension + i] = next_number(&numbers);
+    for (int i = 0; i < dimension; i++) system->v[body * dimension + i] = next_number(&numbers);
+  }
+}
+
+static void outer_solar_prepare(quad_system *system)
+{
+  gravity_prepare(system, 6, 3,
+                  "2.95912208286e-4 "
+                  "0.000954786104043  -3.5023653 -3.8169847 -1.5507963  0.00565429 -0.00412490 -0.00190589 "
+                  "0.000285583733151  9.0755314 -3.0458353 -1.6483708  0.00168318 0.00483525 0.00192462 "
+                  "0.0000437273164546  8.3101420 -16.2901086 -7.2521278  0.00354178 0.00137102 0.00055029 "
+                  "0.0000517759138449  11.4707666 -25.7294829 -10.8169456  0.00288930 0.00114527 0.00039677 "
+                  "1/1.3e8  -15.5387357 -25.2225594 -3.1902382  0.00276725 -0.00170702 -0.00136504 "
+                  "1.00000597682  0 0 0  0 0 0");
+}
+
+static void figure_eight_prepare(quad_system *system)
+{
+  gravity_prepare(system, 3, 2,
+                  "1 "
+                  "1  0.97000436 -0.24308753  0.93240737/2 0.86473146/2 "
+                  "1  -0.97000436 0.24308753  0.93240737/2 0.86473146/2 "
+                  "1  0 0  -0.93240737 -0.86473146");
+}
+
+static void pythagorean_prepare(quad_system *system)
+{
+  gravity_prepare(system, 3, 2,
+                  "1 "
+                  "3  1 3  0 0 "
+                  "4  -2 -1  0 0 "
+                  "5  1 -1  0 0");
+}
+
+#define GRAVITY .acceleration = gravity_acceleration, .momentum = gravity_momentum, .velocity = gravity_velocity
+
+static const quad_problem problems[] = {
+    {"oscillator", {"k"}, {"0.5"}, oscillator_prepare, oscillator_acceleration, NULL, NULL},
+    {"oscillators", {"omega"}, {"50"}, oscillators_prepare, oscillators_acceleration, NULL, NULL},
+    {"pendulum", {"q0"}, {"1.1592794807274085998465837940224"}, pendulum_prepare, pendulum_acceleration, NULL, NULL},
+    {"kepler", {"e"}, {"0.6"}, kepler_prepare, kepler_acceleration, NULL, NULL},
+    {"henon-heiles", {"lambda"}, {"1"}, henon_heiles_prepare, henon_heiles_acceleration, NULL, NULL},
+    {"double-pendulum",
+     {"l1", "l2", "m1", "m2", "g"},
+     {"2", "3", "1", "2", "9.80665"},
+     double_pendulum_prepare,
+     double_pendulum_acceleration,
+     double_pendulum_momentum,
+     double_pendulum_velocity},
+    {"stiff-pendulum",
+     {"k", "l", "m", "g"},
+     {"1e4", "1", "1", "9.81"},
+     stiff_pendulum_prepare,
+     stiff_pendulum_acceleration,
+     stiff_pendulum_momentum,
+     stiff_pendulum_velocity},
+    {"fpu", {"ell", "omega"}, {"3", "50"}, fpu_prepare, fpu_acceleration, NULL, NULL},
+    {"toda", {"N"}, {"20"}, toda_prepare, toda_acceleration, NULL, NULL},
+    {.name = "outer-solar", .prepare = outer_solar_prepare, GRAVITY},
+    {.name = "figure-eight", .prepare = figure_eight_prepare, GRAVITY},
+    {.name = "pythagorean", .prepare = pythagorean_prepare, GRAVITY},
+};
+
+const quad_problem *quad_problem_find(const char *name)
+{
+  for (size_t i = 0; i < sizeof problems / sizeof *problems; i++)
+    if (strcmp(problems[i].name, name) == 0) return &problems[i];
+  return NULL;
+}

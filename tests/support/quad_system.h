@@ -1,0 +1,34 @@
+/* A problem in quadruple precision: between the judge's scheme (quad.c) and the definitions (quad_problems.c). */
+#ifndef SUPPORT_QUAD_SYSTEM_H
+#define SUPPORT_QUAD_SYSTEM_H
+#include "quad.h"
+#include "quad_real.h"
+
+#define QUAD_PARAMETERS_MAX 8
+#define QUAD_BODIES_MAX 6
+
+typedef struct quad_system {
+  int n;
+  quad value[QUAD_PARAMETERS_MAX];
+  int bodies, dimension; /* the point masses, where there are any */
+  quad G, mass[QUAD_BODIES_MAX];
+  quad q[QUAD_N_MAX], v[QUAD_N_MAX]; /* the start */
+} quad_system;
+
+typedef struct quad_problem {
+  const char *name;
+  const char *parameter[QUAD_PARAMETERS_MAX + 1]; /* names, ended by NULL */
+  const char *standard[QUAD_PARAMETERS_MAX];      /* default values */
+  void (*prepare)(quad_system *system);           /* value -> the other members; n stays 0 if there is no room */
+  void (*acceleration)(const quad_system *system, const quad *q, const quad *v, quad *a);
+  void (*momentum)(const quad_system *system, const quad *q, const quad *v, quad *p); /* NULL: p = v */
+  void (*velocity)(const quad_system *system, const quad *q, const quad *p, quad *v);
+} quad_problem;
+
+/* NULL if there is none. */
+const quad_problem *quad_problem_find(const char *name);
+
+/* A decimal number or a quotient of two, "1/1.3e8". */
+quad quad_number(const char *text);
+
+#endif
