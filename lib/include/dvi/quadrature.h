@@ -4,7 +4,7 @@
 #include <dvi/status.h>
 
 /** Most points that a rule can have. */
-#define DVI_QUADRATURE_MAX 64
+#define DVI_QUADRATURE_MAX 80
 
 /** The families of rules. Midpoint, trapezoid and Simpson have one size: 1, 2 and 3 points. */
 typedef enum dvi_rule {

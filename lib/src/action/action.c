@@ -62,7 +62,7 @@ void dvi__action_destroy(dvi__action **action)
 {
   dvi__action *a = *action;
   if (a == NULL) return;
-  double *const owned[] = {a->psi,      a->dpsi,     a->weighted_bar, a->weighted_dpsi, a->node,      a->weight,    a->end,
+  double *const owned[] = {a->psi,      a->dpsi,     a->bar, a->node,      a->weight,    a->end,
                            a->stiffness, a->stiffness_inverse, a->fit_point, a->fit,    a->straight,  a->shift,     a->t,
                            a->Q,        a->V,        a->L_q,          a->L_v,           a->line,      a->middle_vv, a->middle[0],
                            a->middle[1], a->middle[2], a->middle[3],  a->H_qq,          a->H_qv,      a->H_vv};

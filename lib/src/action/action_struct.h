@@ -14,7 +14,7 @@ struct dvi__action {
   dvi__action_space space;
   int n, s, r; /* coordinates, degree, quadrature nodes */
   /* Tables over (k, j), stored [k*r + j]. */
-  double *psi, *dpsi, *weighted_bar, *weighted_dpsi; /* psi_k(c_j), psi_k'(c_j), b_j (psi_k(c_j) - psi_k(1)), b_j psi_k'(c_j) */
+  double *psi, *bar, *dpsi;                          /* psi_k(c_j), psi_k(c_j) - psi_k(1), psi_k'(c_j) */
   double *node, *weight;                             /* [r] */
   double *end;                                       /* [s] psi_k(1) */
   double *stiffness, *stiffness_inverse;             /* [s*s] K_kl = sum_j b_j psi_k' psi_l' */
@@ -25,7 +25,7 @@ struct dvi__action {
   double t0, h;
   const double *q0, *p0;
   /* Batches over the nodes, [n*r]. */
-  double *t, *Q, *V, *L_q, *L_v;
+  double *t, *Q, *V, *L_q, *L_v; /* the gradients times the weights b_j */
   double *line; /* [2 s + 2 r] one coordinate's worth of anything */
   /* Chord. */
   double *middle_vv;       /* L_vv at one point (general Lagrangians) */

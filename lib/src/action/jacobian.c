@@ -88,9 +88,10 @@ static void block_column(const dvi__action *a, const dvi__block *block, int l, d
   accumulate(r, a->H_qv, block->qv, 1.0, dpsi, in_q);
   accumulate(r, a->H_qv, block->vq, 1.0, psi, in_v);
   accumulate(r, a->H_vv, block->vv, 1.0 / a->h, dpsi, in_v);
+  for (int j = 0; j < r; j++) in_q[j] *= a->weight[j], in_v[j] *= a->weight[j];
   for (int k = 0; k < a->s; k++) {
     double sum = 0;
-    for (int j = 0; j < r; j++) sum += a->weighted_bar[k * r + j] * in_q[j] + a->weighted_dpsi[k * r + j] * in_v[j];
+    for (int j = 0; j < r; j++) sum += a->bar[k * r + j] * in_q[j] + a->dpsi[k * r + j] * in_v[j];
     column[k] = sum;
   }
 }

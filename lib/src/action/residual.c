@@ -31,25 +31,41 @@ static double dot(int count, const double *x, const double *y)
   return sum;
 }
 
+/* The forces enter every row, and p1, with the same rounded product b_j L_q: that keeps the rows consistent to the last bit. */
+static void weigh(const dvi__action *a, double *batch)
+{
+  for (size_t i = 0, r = (size_t)a->r; i < (size_t)a->n; i++)
+    for (size_t j = 0; j < r; j++) batch[i * r + j] *= a->weight[j];
+}
+
 dvi_status dvi__action_residual(dvi__action *a, const double *Y, double *R)
 {
   const int s = a->s, r = a->r;
   dvi__action_stages(a, Y);
   DVI_TRY(dvi__lagrangian_gradient(a->evaluator, r, a->t, a->Q, a->V, a->L_q, a->L_v));
+  weigh(a, a->L_q);
+  weigh(a, a->L_v);
   for (size_t i = 0; i < (size_t)a->n; i++) {
     const double *L_q = a->L_q + i * (size_t)r, *L_v = a->L_v + i * (size_t)r;
     for (int k = 0; k < s; k++)
       R[i * (size_t)s + (size_t)k] =
-          a->h * dot(r, a->weighted_bar + k * r, L_q) + (dot(r, a->weighted_dpsi + k * r, L_v) - a->end[k] * a->p0[i]);
+          a->h * dot(r, a->bar + k * r, L_q) + (dot(r, a->dpsi + k * r, L_v) - a->end[k] * a->p0[i]);
   }
   return DVI_OK;
+}
+
+static double sum(int count, const double *x)
+{
+  double total = 0;
+  for (int j = 0; j < count; j++) total += x[j];
+  return total;
 }
 
 void dvi__action_ends(const dvi__action *a, const double *Y, double *dq, double *dp)
 {
   for (size_t i = 0; i < (size_t)a->n; i++) {
     dq[i] = dot(a->s, a->end, Y + i * (size_t)a->s);
-    dp[i] = a->h * dot(a->r, a->weight, a->L_q + i * (size_t)a->r);
+    dp[i] = a->h * sum(a->r, a->L_q + i * (size_t)a->r);
   }
 }
 

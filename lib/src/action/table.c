@@ -1,5 +1,8 @@
 #include "action/table.h"
 
+#include <float.h>
+#include <math.h>
+
 #include "action/action_struct.h"
 #include "core/memory.h"
 #include "core/status.h"
@@ -14,8 +17,7 @@ static int allocate(dvi__action *a)
   const size_t s = (size_t)a->s, r = (size_t)a->r;
   a->psi = DVI_NEW(double, s * r);
   a->dpsi = DVI_NEW(double, s * r);
-  a->weighted_bar = DVI_NEW(double, s * r);
-  a->weighted_dpsi = DVI_NEW(double, s * r);
+  a->bar = DVI_NEW(double, s * r);
   a->node = DVI_NEW(double, r);
   a->weight = DVI_NEW(double, r);
   a->end = DVI_NEW(double, s);
@@ -25,8 +27,28 @@ static int allocate(dvi__action *a)
   a->fit = DVI_NEW(double, s * s);
   a->straight = DVI_NEW(double, s);
   a->shift = DVI_NEW(double, s * s);
-  return a->psi && a->dpsi && a->weighted_bar && a->weighted_dpsi && a->node && a->weight && a->end && a->stiffness &&
+  return a->psi && a->dpsi && a->bar && a->node && a->weight && a->end && a->stiffness &&
          a->stiffness_inverse && a->fit_point && a->fit && a->straight && a->shift;
+}
+
+static double largest(int count, const double *x, double size)
+{
+  for (int i = 0; i < count; i++) size = fmax(size, fabs(x[i]));
+  return size;
+}
+
+/* Round psi and psi(1) to one grid on which their difference is exact. The rows of the stationarity conditions are then the derivatives of
+ * one discrete action to the last bit, whatever the rounding of the tables; else momenta and energy drift by a part of an epsilon in every
+ * step (measured on outer-solar: angular momentum by 2e-18 of itself a step). */
+static void make_differences_exact(dvi__action *a)
+{
+  const int last = a->r * a->s;
+  const double grid = ldexp(1.0, ilogb(largest(a->s, a->end, largest(last, a->bar, largest(last, a->psi, 1.0)))) + 1 - DBL_MANT_DIG);
+  for (int k = 0; k < a->s; k++) a->end[k] = grid * nearbyint(a->end[k] / grid);
+  for (int i = 0; i < last; i++) {
+    a->psi[i] = grid * nearbyint(a->psi[i] / grid);
+    a->bar[i] = a->psi[i] - a->end[i / a->r];
+  }
 }
 
 static dvi_status fill_nodes(dvi__action *a)
@@ -40,12 +62,12 @@ static dvi_status fill_nodes(dvi__action *a)
     dvi__trial_at_long(a->space.basis, a->s, node[j], psi, bar, dpsi);
     for (int k = 0; k < a->s; k++) {
       a->psi[k * a->r + j] = psi[k];
+      a->bar[k * a->r + j] = bar[k];
       a->dpsi[k * a->r + j] = dpsi[k];
-      a->weighted_bar[k * a->r + j] = a->weight[j] * bar[k];
-      a->weighted_dpsi[k * a->r + j] = a->weight[j] * dpsi[k];
     }
   }
   dvi__trial_at(a->space.basis, a->s, 1.0, a->end, NULL, NULL);
+  make_differences_exact(a);
   return DVI_OK;
 }
 
@@ -70,7 +92,7 @@ static void fill_stiffness(dvi__action *a)
 {
   for (int k = 0; k < a->s; k++)
     for (int l = 0; l < a->s; l++)
-      for (int j = 0; j < a->r; j++) a->stiffness[k * a->s + l] += a->weighted_dpsi[k * a->r + j] * a->dpsi[l * a->r + j];
+      for (int j = 0; j < a->r; j++) a->stiffness[k * a->s + l] += a->weight[j] * a->dpsi[k * a->r + j] * a->dpsi[l * a->r + j];
   invert(a->s, a->stiffness, a->stiffness_inverse);
 }
 

@@ -21,7 +21,7 @@ static const dvi__key keys[] = {
     {"quadrature", rules, 0, 0, DVI_GAUSS,
      "gauss, lobatto, radau-left, radau-right, clenshaw-curtis, midpoint, trapezoid, simpson; left out: gauss"},
     {"nodes", NULL, 1, DVI_QUADRATURE_MAX, DVI__LEFT_OUT,
-     "quadrature points, at least the degree, at most 64; left out: the fewest of order 2 degree (Gauss: the degree)"},
+     "quadrature points, at least the degree, at most 80; left out: the fewest of order 2 degree (Gauss: the degree)"},
     DVI__SOLVER_KEY,
     {0},
 };

@@ -1,5 +1,4 @@
 /* Dense LU by LAPACK, with a condition estimate. */
-#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -69,7 +68,7 @@ static dvi_status refactor(void *factor, const dvi__pattern *pattern, const doub
   const double norm = scatter(d, pattern, values);
   dgetrf_(&n, &n, d->lu, &n, d->pivot, &status);
   if (status == 0) dgecon_("1", &n, d->lu, &n, &norm, &reciprocal_condition, d->work, d->iwork, &status, 1);
-  if (status == 0 && reciprocal_condition >= DBL_EPSILON) return DVI_OK;
+  if (status == 0 && reciprocal_condition >= DVI__LEAST_RCOND) return DVI_OK;
   return dvi__fail(DVI_SINGULAR, "dense LU: the %d x %d matrix is singular to working precision (reciprocal condition %.1e)", n, n,
                    reciprocal_condition);
 }

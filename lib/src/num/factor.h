@@ -1,11 +1,16 @@
 /* The two kinds of factorisation behind num/linear.h. They see finite, equilibrated values. */
 #ifndef DVI_NUM_FACTOR_H
 #define DVI_NUM_FACTOR_H
+#include <float.h>
+
 #include "num/linear.h"
+
+/* Smallest reciprocal condition of an equilibrated matrix that is not called singular: its solutions have no right digit left. */
+#define DVI__LEAST_RCOND (16 * DBL_EPSILON)
 
 typedef struct dvi__factor_operations {
   dvi_status (*create)(const dvi__pattern *pattern, void **factor);
-  /* Returns DVI_SINGULAR with a sentence if the reciprocal condition is below the unit roundoff. */
+  /* Returns DVI_SINGULAR with a sentence if the reciprocal condition is below DVI__LEAST_RCOND. */
   dvi_status (*refactor)(void *factor, const dvi__pattern *pattern, const double *values);
   void (*solve)(void *factor, const dvi__pattern *pattern, double *b);
   void (*destroy)(void *factor);

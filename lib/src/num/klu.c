@@ -1,5 +1,4 @@
 /* Sparse LU by KLU: one symbolic analysis, then numeric refactorisations with the pivots of the last full one. */
-#include <float.h>
 #include <klu.h>
 #include <stdint.h>
 
@@ -46,9 +45,10 @@ static dvi_status create(const dvi__pattern *pattern, void **factor)
   return dvi__fail(DVI_SOLVER_FAILED, "KLU: the analysis of %d columns failed (status %d)", pattern->columns, reason);
 }
 
+/* By the smallest and largest pivot: coarser than LAPACK's estimate, but nearly free. */
 static int well_conditioned(sparse *s)
 {
-  return klu_rcond(s->symbolic, s->numeric, &s->common) && s->common.rcond >= DBL_EPSILON;
+  return klu_rcond(s->symbolic, s->numeric, &s->common) && s->common.rcond >= DVI__LEAST_RCOND;
 }
 
 /* klu_refactor keeps the order of the pivots and allocates nothing. An order that has grown bad shows in the reciprocal pivot growth,

@@ -8,7 +8,12 @@
 #include "num/factor.h"
 #include "num/finite.h"
 
-enum { ALWAYS_DENSE = 24, NEVER_DENSE = 2000 };
+/* Measured with Debian's reference LAPACK and KLU 5.12 on one x86-64 core, one factorisation and one to five solves: chains of dense
+ * blocks of 1 to 8 unknowns are 1.5 to 6 times faster in KLU at every size from 2 unknowns (LAPACK's condition estimate alone costs a
+ * microsecond), full matrices are faster in KLU up to 48 unknowns and 1.25 to 1.65 times faster in LAPACK from 64. At half density
+ * the two meet between 64 and 96 unknowns; below that a band, which KLU exploits, cannot be told from scattered entries. */
+enum { LEAST_DENSE = 64 };
+#define LEAST_DENSITY 0.6
 
 struct dvi__linear {
   const dvi__factor_operations *operations;
@@ -21,9 +26,8 @@ struct dvi__linear {
 
 static int dense_is_better(const dvi__pattern *pattern)
 {
-  const double n = pattern->columns, entries = dvi__pattern_entries(pattern);
-  if (pattern->columns <= ALWAYS_DENSE) return 1;
-  return pattern->columns <= NEVER_DENSE && entries > 0.3 * n * n;
+  const double n = pattern->columns;
+  return pattern->columns >= LEAST_DENSE && dvi__pattern_entries(pattern) >= LEAST_DENSITY * n * n;
 }
 
 static dvi_status fill(dvi__linear *linear, dvi__linear_kind kind)

@@ -9,8 +9,8 @@ typedef struct dvi__linear dvi__linear;
 
 typedef enum dvi__linear_kind { DVI__LINEAR_AUTO, DVI__LINEAR_DENSE, DVI__LINEAR_SPARSE } dvi__linear_kind;
 
-/* The pattern must outlive the solver. counters (symbolic, factorizations, solves) may be NULL. AUTO is dense for small or full
- * matrices. The symbolic analysis happens here, once. */
+/* The pattern must outlive the solver. counters (symbolic, factorizations, solves) may be NULL. AUTO is dense for nearly
+ * full matrices that are not small. The symbolic analysis happens here, once. */
 dvi_status dvi__linear_create(const dvi__pattern *pattern, dvi__linear_kind kind, dvi_counters *counters, dvi__linear **linear);
 void dvi__linear_destroy(dvi__linear **linear);
 

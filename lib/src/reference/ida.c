@@ -31,12 +31,12 @@ typedef struct judge {
 static int residual(double t, N_Vector y, N_Vector ydot, N_Vector F, void *user)
 {
   dvi__reference_run *run = ((judge *)user)->run;
-  const int n = run->n;
+  const ptrdiff_t n = run->n;
   const double *q = N_VGetArrayPointer(y), *v = q + n, *p = v + n;
   const double *qdot = N_VGetArrayPointer(ydot), *pdot = qdot + 2 * n;
   double *Fq = N_VGetArrayPointer(F), *Fp = Fq + n, *Fv = Fp + n;
   const dvi_status status = dvi__lagrangian_gradient(run->evaluator, 1, &t, q, v, Fp, Fv);
-  for (int i = 0; status == DVI_OK && i < n; i++) {
+  for (ptrdiff_t i = 0; status == DVI_OK && i < n; i++) {
     Fq[i] = qdot[i] - v[i];
     Fp[i] = pdot[i] - Fp[i];
     Fv[i] = p[i] - Fv[i];
@@ -145,14 +145,14 @@ static int configure(judge *self)
 static dvi_status integrate(const judge *self)
 {
   dvi__reference_run *run = self->run;
-  const int n = run->n;
+  const size_t n = (size_t)run->n;
   const int flag = IDASolve(self->ida, run->t_end, &run->reached, self->y, self->ydot, IDA_NORMAL);
   (void)IDAGetNumSteps(self->ida, &run->steps);
   (void)IDAGetCurrentTime(self->ida, &run->reached);
   if (flag < 0) return dvi__reference_stopped(run, flag, IDAGetReturnFlagName(flag));
   const double *y = N_VGetArrayPointer(self->y);
-  memcpy(run->q, y, (size_t)n * sizeof *y);
-  memcpy(run->p, y + 2 * n, (size_t)n * sizeof *y);
+  memcpy(run->q, y, n * sizeof *y);
+  memcpy(run->p, y + 2 * n, n * sizeof *y);
   return DVI_OK;
 }
 

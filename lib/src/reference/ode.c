@@ -67,8 +67,9 @@ static dvi_status start(flow *self)
 {
   const dvi__reference_run *run = self->run;
   const size_t n = (size_t)run->n;
-  self->y = N_VNew_Serial(2 * run->n, run->context);
-  self->tolerance = N_VNew_Serial(2 * run->n, run->context);
+  const sunindextype size = 2 * (sunindextype)run->n;
+  self->y = N_VNew_Serial(size, run->context);
+  self->tolerance = N_VNew_Serial(size, run->context);
   if (self->y == NULL || self->tolerance == NULL) return dvi__reference_no_setup(run);
   double *y = N_VGetArrayPointer(self->y), *tolerance = N_VGetArrayPointer(self->tolerance);
   memcpy(y, run->q, n * sizeof *y);

@@ -7,6 +7,9 @@ enum { MOST_ITERATIONS = 40 };
 /* Beyond this ratio of two corrections a new Jacobian costs less than the iterations that it saves. */
 static const double keep_below = 0.05;
 
+/* Newton's corrections shrink fast until they are noise; one that doubles is a bad sign, two are the end. */
+static const dvi__pace pace = {0.5, 2.0};
+
 /* A guess whose first correction is this large a part of the unknowns and does not shrink by this ratio is as likely to lead to another
  * solution as to the wanted one. */
 static int misleading(double first, double second, double whole)
@@ -23,7 +26,7 @@ dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__so
     DVI_TRY(dvi__solver_residual(s, x, s->residual));
     dvi__linear_solve(s->linear, s->residual);
     dvi__correct(s->equations.unknowns, s->residual, x, &report->correction, &whole);
-    const dvi__progress progress = dvi__judge(report->correction, last, 2.0, whole, size);
+    const dvi__progress progress = dvi__judge(report->correction, last, &pace, whole, size);
     if (progress == DVI__CONVERGED) return DVI_OK;
     growing = progress == DVI__STALLED ? growing + 1 : 0;
     if (growing == 2 || report->correction > 1e300) break;

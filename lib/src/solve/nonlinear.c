@@ -62,18 +62,20 @@ dvi__linear_kind dvi__solver_linear_kind(const dvi__solver *solver)
   return dvi__linear_kind_of(solver->linear);
 }
 
-/* Fixed point: it pays only while each iteration gains a good part of a digit. */
+/* Fixed point iteration pays while each iteration gains a good part of a digit; a patient user takes any gain. */
+static const dvi__pace paying = {0.35, 0.35}, any_gain = {1.0, 1.0};
+
 static dvi_status fixed_point(dvi__solver *s, double size, int patient, double *x, dvi__solve_report *report)
 {
   const int most = patient ? MOST_PATIENT_ITERATIONS : MOST_FIXED_POINT_ITERATIONS;
-  const double slowest = patient ? 0.97 : 0.35;
+  const dvi__pace *pace = patient ? &any_gain : &paying;
   double last = 0, whole;
   DVI_TRY(s->equations.prepare_chord(s->equations.of, x));
   for (report->iterations = 1; report->iterations <= most; report->iterations++) {
     DVI_TRY(dvi__solver_residual(s, x, s->residual));
     s->equations.chord(s->equations.of, s->residual);
     dvi__correct(s->equations.unknowns, s->residual, x, &report->correction, &whole);
-    const dvi__progress progress = dvi__judge(report->correction, last, slowest, whole, size);
+    const dvi__progress progress = dvi__judge(report->correction, last, pace, whole, size);
     if (progress == DVI__CONVERGED) return DVI_OK;
     if (progress == DVI__STALLED) break;
     last = report->correction;

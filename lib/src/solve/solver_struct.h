@@ -31,9 +31,15 @@ dvi_status dvi__kinsol_solve(dvi__kinsol *kinsol, double size, double *x, dvi__s
 /* How far an iteration has come (progress.c). */
 typedef enum dvi__progress { DVI__GO_ON, DVI__CONVERGED, DVI__STALLED } dvi__progress;
 
-/* Judge one correction of size `correction` after one of size `last` (0 before the first): converged at the roundoff floor, or
- * stalled above it. `slowest` is the largest acceptable ratio of the two. */
-dvi__progress dvi__judge(double correction, double last, double slowest, double unknown, double size);
+/* Ratios of a correction to the last one: above `stagnant` it is rounding noise if it is small enough, above `slowest` the iteration is given
+ * up. */
+typedef struct dvi__pace {
+  double stagnant, slowest;
+} dvi__pace;
+
+/* Judge one correction after one of size `last` (0 before the first): converged at the roundoff floor, or stalled above it. `unknown` and
+ * `size` are the sizes of the unknowns and of what they are added to. */
+dvi__progress dvi__judge(double correction, double last, const dvi__pace *pace, double unknown, double size);
 
 /* x <- x - correction; gives the largest correction and the largest x. */
 void dvi__correct(int count, const double *correction, double *x, double *largest_correction, double *largest_x);

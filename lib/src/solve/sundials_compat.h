@@ -37,6 +37,7 @@ static inline int dvi__sundials_silence_context(SUNContext context)
 
 #define DVI__SUNDIALS_NO_COMMUNICATOR NULL
 
+/* NOLINTNEXTLINE(readability-non-const-parameter): the type is SUNDIALS' */
 static inline void dvi__sundials_discard(int code, const char *module, const char *function, char *message, void *user)
 {
   (void)code, (void)module, (void)function, (void)message, (void)user;

@@ -163,8 +163,8 @@ static dvi_status check_terms(check *c, const dvi_system *system)
 
 static void name_entry(const finding *f, size_t size, char *text)
 {
-  char place[32], owner[64] = "Lagrangian";
-  if (f->term != NULL) (void)snprintf(owner, sizeof owner, "potential '%.40s'", f->term);
+  char place[32], owner[48] = "Lagrangian";
+  if (f->term != NULL) (void)snprintf(owner, sizeof owner, "potential '%.24s'", f->term);
   if (f->worst.column < 0)
     (void)snprintf(place, sizeof place, "(%d)", f->worst.row);
   else
@@ -178,7 +178,7 @@ static dvi_status report(const check *c, double tolerance, dvi_derivative_check 
   const finding *const hessian = c->of_pattern.worst.error > tolerance ? &c->of_pattern : &c->of_hessian;
   const finding *const worst = c->of_gradient.worst.error > tolerance ? &c->of_gradient : hessian;
   const int missing = worst == &c->of_pattern;
-  char entry[96] = "";
+  char entry[128] = "";
   if (worst->block != NULL) name_entry(worst, sizeof entry, entry);
   *result = (dvi_derivative_check){.gradient_error = c->of_gradient.worst.error,
                                    .hessian_error = c->of_hessian.worst.error,
@@ -186,7 +186,7 @@ static dvi_status report(const check *c, double tolerance, dvi_derivative_check 
                                    .row = hessian->block != NULL ? hessian->worst.row : -1,
                                    .column = hessian->block != NULL ? hessian->worst.column : -1};
   if (worst->worst.error <= tolerance) return DVI_OK;
-  (void)snprintf(result->where, sizeof result->where, "%s %s", entry, missing ? "is not in the pattern" : "is wrong");
+  (void)snprintf(result->where, sizeof result->where, "%.70s %s", entry, missing ? "is not in the pattern" : "is wrong");
   if (missing)
     return dvi__fail(DVI_BAD_ARGUMENT, "system check: %s is not in the pattern, but differences give %.15g", entry,
                      worst->worst.differenced);
