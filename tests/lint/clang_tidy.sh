@@ -3,6 +3,14 @@
 # Usage: clang_tidy.sh TOP BUILD CLANG_TIDY
 set -u
 cd "$1" || exit 1
-find lib apps -name '*.c' -print0 | xargs -0 -n 4 -P 2 "$3" -p "$2" --quiet --warnings-as-errors='*' 2>&1 |
-  grep -v ' warnings\? generated\.$\|^Suppressed \|^Use -header-filter' >"$2/clang-tidy.log"
-if grep -q 'error:\|warning:' "$2/clang-tidy.log"; then cat "$2/clang-tidy.log"; exit 1; fi
+build=$2 tool=$3 log=$2/clang-tidy.log
+
+# tidy OPTION... <FILES: one file a run, because the analyzer of version 14 carries va_lists over from one file to the next.
+tidy() { xargs -n 1 -P 2 "$tool" -p "$build" --quiet --warnings-as-errors='*' "$@" 2>&1; }
+
+{
+  find lib/src/core apps -name '*.c' | tidy
+  find lib/src -name '*.c' ! -path 'lib/src/core/*' |
+    tidy --extra-arg=-include --extra-arg="$1/tests/lint/analyzer.h" --extra-arg=-Wno-unused-value
+} | grep -v ' warnings\? .*generated\.$\|^Suppressed \|^Use -header-filter' >"$log"
+if grep -q 'error:\|warning:' "$log"; then cat "$log"; exit 1; fi

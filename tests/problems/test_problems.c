@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "problem.h"
+#include "system/evaluator.h"
 
 /* Differences of the value are good to about 1e-10 at these points; a wrong term shows at 1. */
 #define TOLERANCE 1e-7
@@ -86,6 +87,64 @@ START_TEST(derivatives_agree_for_other_parameters)
       {"fpu", "ell=9"},
   };
   check_derivatives(cases[_i][0], 1, &cases[_i][1]);
+}
+END_TEST
+
+/* Points of a batch: more than one vector register holds, and not a multiple of it. */
+#define POINTS 5
+
+/* Entry e of point k of a batch is entry e of that point alone, bit for bit: no callback mixes points. */
+static void check_same(const char *name, const char *what, int entries, const double *batch, int k, const double *alone)
+{
+  for (int e = 0; e < entries; e++)
+    ck_assert_msg(!(batch[e * POINTS + k] < alone[e] || batch[e * POINTS + k] > alone[e]), "%s: %s %d of point %d", name, what, e,
+                  k);
+}
+
+static void check_batches(const char *name, int setting_count, const char *const *settings)
+{
+  problem *made = create(name, setting_count, settings);
+  const int n = made->n, most = n * n > n ? n * n : n;
+  double *numbers = calloc((size_t)(4 * n + 3 * most) * (POINTS + 1), sizeof *numbers), t[POINTS] = {0.0}, L[POINTS], one;
+  ck_assert_ptr_nonnull(numbers);
+  double *q = numbers, *v = q + n * POINTS, *rows = v + n * POINTS, *blocks = rows + 2 * n * POINTS;
+  double *q1 = blocks + 3 * most * POINTS, *v1 = q1 + n, *rows1 = v1 + n, *blocks1 = rows1 + 2 * n;
+  unsigned state = 7;
+  for (int j = 0; j < n * POINTS; j++) {
+    q[j] = made->q[j / POINTS] + 0.2 * size_of(n, made->q) * noise(&state);
+    v[j] = made->v[j / POINTS] + 0.2 * size_of(n, made->v) * noise(&state);
+  }
+  dvi__evaluator *e = NULL;
+  ck_assert_int_eq(dvi__evaluator_create(made->system, POINTS, NULL, &e), DVI_OK);
+  const dvi__pattern *patterns[3] = {&made->system->qq, &made->system->qv, &made->system->vv};
+  double *hessians = blocks, *hessians1 = blocks1;
+  ck_assert_int_eq(dvi__lagrangian_value(e, POINTS, t, q, v, L), DVI_OK);
+  ck_assert_int_eq(dvi__lagrangian_gradient(e, POINTS, t, q, v, rows, rows + n * POINTS), DVI_OK);
+  ck_assert_int_eq(dvi__lagrangian_hessian(e, POINTS, t, q, v, hessians, hessians + most * POINTS, hessians + 2 * most * POINTS),
+                   DVI_OK);
+  for (int k = 0; k < POINTS; k++) {
+    for (int i = 0; i < n; i++) {
+      q1[i] = q[i * POINTS + k];
+      v1[i] = v[i * POINTS + k];
+    }
+    ck_assert_int_eq(dvi__lagrangian_value(e, 1, t, q1, v1, &one), DVI_OK);
+    ck_assert_int_eq(dvi__lagrangian_gradient(e, 1, t, q1, v1, rows1, rows1 + n), DVI_OK);
+    ck_assert_int_eq(dvi__lagrangian_hessian(e, 1, t, q1, v1, hessians1, hessians1 + most, hessians1 + 2 * most), DVI_OK);
+    check_same(name, "value", 1, L, k, &one);
+    check_same(name, "gradient", 2 * n, rows, k, rows1);
+    for (int b = 0; b < 3; b++)
+      check_same(name, "hessian", dvi__pattern_entries(patterns[b]), hessians + b * most * POINTS, k, hessians1 + b * most);
+  }
+  dvi__evaluator_destroy(&e);
+  free(numbers);
+  problem_destroy(&made);
+}
+
+START_TEST(a_batch_gives_each_point_what_it_gets_alone)
+{
+  static const char *const one_spring = "ell=1";
+  check_batches(problem_name(_i), 0, NULL);
+  check_batches("fpu", 1, &one_spring);
 }
 END_TEST
 
@@ -313,6 +372,7 @@ int main(void)
   const int count = problem_count();
   tcase_add_loop_test(tests, derivatives_and_patterns_agree_with_differences, 0, count);
   tcase_add_loop_test(tests, derivatives_agree_for_other_parameters, 0, 16);
+  tcase_add_loop_test(tests, a_batch_gives_each_point_what_it_gets_alone, 0, count);
   tcase_add_loop_test(tests, momenta_are_the_legendre_transform_of_the_velocities, 0, count);
   tcase_add_loop_test(tests, every_problem_is_found_by_its_name_and_complete, 0, count);
   tcase_add_loop_test(tests, digits_belong_to_the_default_parameters_only, 0, count);

@@ -95,7 +95,7 @@ static int springs_hessian(double t, const double *q, double *V_qq, void *user)
   return springs_hessians(1, &t, q, V_qq, user);
 }
 
-dvi_potential springs(behaviour *user, shape shape)
+dvi_potential springs(behaviour *user, callback_shape shape)
 {
   dvi_potential p = {.name = "springs", .qq = tridiagonal, .user = user};
   if (shape == ONE_POINT) {
@@ -159,7 +159,7 @@ static int wells_hessian(double t, const double *q, double *V_qq, void *user)
   return wells_hessians(1, &t, q, V_qq, user);
 }
 
-dvi_potential wells(behaviour *user, shape shape)
+dvi_potential wells(behaviour *user, callback_shape shape)
 {
   dvi_potential p = {.name = "wells", .qq = diagonal, .user = user};
   if (shape == ONE_POINT) {
@@ -242,7 +242,7 @@ static int rotors_hessian(double t, const double *q, const double *v, double *L_
   return rotors_hessians(1, &t, q, v, L_qq, L_qv, L_vv, user);
 }
 
-dvi_lagrangian rotors(behaviour *user, shape shape)
+dvi_lagrangian rotors(behaviour *user, callback_shape shape)
 {
   dvi_lagrangian l = {.qq = diagonal, .qv = bidiagonal, .vv = tridiagonal, .user = user};
   if (shape == ONE_POINT) {

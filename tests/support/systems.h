@@ -5,7 +5,7 @@
 
 enum { SITES = 6 };
 
-typedef enum shape { ONE_POINT, BATCH } shape;
+typedef enum callback_shape { ONE_POINT, BATCH } callback_shape;
 
 /* What a term's callbacks did and shall do; its `user`. Gradients and Hessians get `lie` added to their entry `at`; for the
  * rotors' two gradients and three Hessian blocks `block` chooses which. */
@@ -17,14 +17,14 @@ typedef struct behaviour {
 } behaviour;
 
 /* V = sum over neighbours of d^2/2 + d^4/4, d = q_(i+1) - q_i; tridiagonal. */
-dvi_potential springs(behaviour *user, shape shape);
+dvi_potential springs(behaviour *user, callback_shape shape);
 
 /* V = sum of (1 + i) q_i^4/4 + t q_i; diagonal. */
-dvi_potential wells(behaviour *user, shape shape);
+dvi_potential wells(behaviour *user, callback_shape shape);
 
 /* L = sum of (2 + cos q_i) v_i^2/2 - (1 + t) q_i^2/2, and over neighbours v_i v_(i+1)/4 + sin(q_i) v_(i+1):
  * a mass that depends on q and a magnetic term. qq is diagonal, qv upper bidiagonal, vv tridiagonal. */
-dvi_lagrangian rotors(behaviour *user, shape shape);
+dvi_lagrangian rotors(behaviour *user, callback_shape shape);
 
 /* The tridiagonal pattern of SITES columns, and a regular symmetric matrix on it: 2 + i on the diagonal, -1/2 beside it. */
 extern const dvi_pattern tridiagonal;

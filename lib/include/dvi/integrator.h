@@ -23,7 +23,7 @@ typedef struct dvi_counters {
   long newtons;         /**< steps solved by Newton's method */
   long kinsols;         /**< steps handed to KINSOL */
   long halvings;        /**< starting paths that were built from two half steps */
-  long allocations;     /**< blocks of memory that the library allocated for this integrator since it was created */
+  long allocations;     /**< blocks of memory that its creation and its steps took; a step takes none */
 } dvi_counters;
 
 #ifdef __cplusplus

@@ -79,15 +79,21 @@ static dvi_status choose_scales(const step_map *map)
   return status;
 }
 
-/* Add factor times the step from start + shift e_j to column j. */
+/* One step from start + shift e_j. */
+static dvi_status step_from(const step_map *map, int j, double shift)
+{
+  for (int i = 0; i < 2 * map->n; i++) map->z[i] = map->start[i];
+  map->z[j] += shift;
+  DVI_TRY(dvi_integrator_start(map->probe, map->t, map->z, map->z + map->n));
+  return dvi_integrator_step(map->probe, map->h);
+}
+
+/* Add factor times it to column j. */
 static dvi_status add_step(const step_map *map, int j, double shift, double factor)
 {
   const int n = map->n;
   double *column = map->M + (size_t)j * 2 * (size_t)n;
-  for (int i = 0; i < 2 * n; i++) map->z[i] = map->start[i];
-  map->z[j] += shift;
-  DVI_TRY(dvi_integrator_start(map->probe, map->t, map->z, map->z + n));
-  DVI_TRY(dvi_integrator_step(map->probe, map->h));
+  DVI_TRY(step_from(map, j, shift));
   const double *q = dvi_integrator_q(map->probe), *p = dvi_integrator_p(map->probe);
   for (int i = 0; i < n; i++) {
     column[i] += factor * (q[i] - map->start[i]); /* the weights of a difference cancel the start; subtracted it rounds less */
@@ -140,9 +146,11 @@ static dvi_status difference_map(const step_map *map, double d, double *defect)
   return DVI_OK;
 }
 
-/* The smallest defect over the difference steps. One that leads outside of the map's domain is left out, unless all do. */
+/* The smallest defect over the difference steps. One that leads outside of the map's domain is left out, unless all do. The step
+ * itself comes first: the differences around a singularity need not touch it. */
 static dvi_status search(const step_map *map, double *defect)
 {
+  DVI_TRY(step_from(map, 0, 0));
   static const double d[] = {0x1p-6, 0x1p-7, 0x1p-5, 0x1p-8, 0x1p-4, 0x1p-9, 0x1p-10, 0x1p-12};
   dvi_status last = DVI_OK;
   double smallest = (double)INFINITY;

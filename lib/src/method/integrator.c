@@ -38,9 +38,9 @@ dvi_status dvi_integrator_create(const dvi_system *system, const char *method, d
   dvi_integrator *I = DVI_NEW(dvi_integrator, 1);
   if (I == NULL) return dvi__fail(DVI_NO_MEMORY, "integrator: no memory");
   I->system = system;
-  I->allocations_before = before;
   dvi_status status = dvi__stepper_create(system, method, &I->counters, &I->stepper);
   if (status == DVI_OK) status = allocate(I);
+  I->counters.allocations = dvi__allocation_count() - before;
   if (status != DVI_OK) dvi_integrator_destroy(&I);
   *integrator = I;
   return status;
@@ -134,7 +134,9 @@ dvi_status dvi_integrator_step(dvi_integrator *I, double h)
     return dvi__fail(DVI_BAD_ARGUMENT, "step: h = %g does not move the time from t = %.17g; a finite step other than 0 is needed", h, I->now.t);
   copy_state((size_t)I->system->n, &I->now, &I->next);
   memcpy(I->memory_before, I->stepper.memory, I->stepper.memory_count * sizeof(double));
+  const long before = dvi__allocation_count();
   dvi_status status = I->stepper.method->step(&I->stepper, &I->next, h);
+  I->counters.allocations += dvi__allocation_count() - before;
   if (status == DVI_OK) status = check_state(I);
   if (status != DVI_OK) return refuse(I, h, status);
   accept(I, h);
@@ -176,7 +178,6 @@ const char *dvi_integrator_method(const dvi_integrator *integrator)
 void dvi_integrator_counters(const dvi_integrator *integrator, dvi_counters *counters)
 {
   *counters = integrator->counters;
-  counters->allocations = dvi__allocation_count() - integrator->allocations_before;
 }
 
 dvi_status dvi_integrator_invariants(dvi_integrator *I, double *value)

@@ -7,7 +7,6 @@ struct dvi_integrator {
   const dvi_system *system;
   dvi__stepper stepper;
   dvi_counters counters;
-  long allocations_before;    /* of this thread, when create began */
   dvi__evaluator *evaluator;  /* for diagnostics at one point */
   /* The present state, the one before the last step, and the one that a step works on: a step that fails spoils only `next`. */
   dvi__state now, last, next;

@@ -22,7 +22,7 @@ typedef struct judge {
   dvi__reference_run *run;
   dvi__pattern vq; /* the transpose of the system's qv */
   int *in_qv;      /* [entries of vq]: the same entry of qv */
-  N_Vector y, ydot, tolerance;
+  N_Vector y, ydot;
   SUNMatrix matrix;
   SUNLinearSolver linear;
   void *ida;
@@ -91,11 +91,11 @@ static int jacobian(double t, double c, N_Vector y, N_Vector ydot, N_Vector F, S
 
 /* vdot is in no equation, but IDA's first predictor and first error test use it: exact for a constant mass, and a difference along
  * the flow otherwise. */
-static dvi_status acceleration(dvi__reference_run *run, const double *L_q, double *vdot)
+static dvi_status acceleration(dvi__reference_run *run, double *vdot)
 {
   const int n = run->n;
   if (run->system->terms & DVI__CONSTANT_MASS) {
-    dvi__mass_solve(run->evaluator, 1, L_q, vdot);
+    dvi__mass_solve(run->evaluator, 1, run->force, vdot);
     return DVI_OK;
   }
   const double span = run->t_end - run->t, e = copysign(fmax(1e-8 * fabs(span), 16 * DBL_EPSILON * fabs(run->t)), span);
@@ -104,7 +104,7 @@ static dvi_status acceleration(dvi__reference_run *run, const double *L_q, doubl
   double *q = moved, *p = q + n, *v = p + n;
   for (int i = 0; i < n; i++) {
     q[i] = run->q[i] + e * run->v[i];
-    p[i] = run->p[i] + e * L_q[i];
+    p[i] = run->p[i] + e * run->force[i];
     v[i] = run->v[i];
   }
   const dvi_status status = dvi__legendre_inverse(run->evaluator, run->t + e, q, p, v);
@@ -118,17 +118,12 @@ static dvi_status start(const judge *self)
   dvi__reference_run *run = self->run;
   const size_t n = (size_t)run->n, size = n * sizeof(double);
   double *y = N_VGetArrayPointer(self->y), *ydot = N_VGetArrayPointer(self->ydot);
-  double *tolerance = N_VGetArrayPointer(self->tolerance);
   memcpy(y, run->q, size);
   memcpy(y + n, run->v, size);
   memcpy(y + 2 * n, run->p, size);
-  for (size_t i = 0; i < n; i++) {
-    tolerance[i] = tolerance[n + i] = run->options.absolute_tolerance;
-    tolerance[2 * n + i] = run->options.absolute_tolerance * run->weight[i];
-  }
   memcpy(ydot, run->v, size);
-  DVI_TRY(dvi__lagrangian_gradient(run->evaluator, 1, &run->t, run->q, run->v, ydot + 2 * n, NULL));
-  return acceleration(run, ydot + 2 * n, ydot + n);
+  memcpy(ydot + 2 * n, run->force, size);
+  return acceleration(run, ydot + n);
 }
 
 static int configure(judge *self)
@@ -136,7 +131,7 @@ static int configure(judge *self)
   const dvi__reference_run *run = self->run;
   void *ida = self->ida;
   return DVI__SUNDIALS_SILENCE(IDASetErrHandlerFn, ida) || IDAInit(ida, residual, run->t, self->y, self->ydot) ||
-         IDASVtolerances(ida, run->options.relative_tolerance, self->tolerance) || IDASetUserData(ida, self) ||
+         IDASStolerances(ida, run->options.relative_tolerance, run->options.absolute_tolerance) || IDASetUserData(ida, self) ||
          IDASetMaxNumSteps(ida, run->options.max_steps) || IDASetStopTime(ida, run->t_end) ||
          IDASetMinStep(ida, dvi__reference_least_step(run)) || IDASetLinearSolver(ida, self->linear, self->matrix) ||
          IDASetJacFn(ida, jacobian);
@@ -175,11 +170,9 @@ static dvi_status reserve(judge *self)
   DVI_TRY(transpose(self));
   self->y = N_VNew_Serial(size, run->context);
   self->ydot = N_VNew_Serial(size, run->context);
-  self->tolerance = N_VNew_Serial(size, run->context);
   self->matrix = dvi__reference_matrix(run, size, 4 * n + qq + 2 * qv + vv);
   self->ida = IDACreate(run->context);
-  if (self->y == NULL || self->ydot == NULL || self->tolerance == NULL || self->matrix == NULL || self->ida == NULL)
-    return dvi__reference_no_setup(run);
+  if (self->y == NULL || self->ydot == NULL || self->matrix == NULL || self->ida == NULL) return dvi__reference_no_setup(run);
   self->linear = dvi__reference_linear(run, self->y, self->matrix);
   return self->linear == NULL ? dvi__reference_no_setup(run) : DVI_OK;
 }
@@ -189,7 +182,6 @@ static void clear(judge *self)
   if (self->ida != NULL) IDAFree(&self->ida);
   if (self->linear != NULL) (void)SUNLinSolFree(self->linear);
   if (self->matrix != NULL) SUNMatDestroy(self->matrix);
-  if (self->tolerance != NULL) N_VDestroy(self->tolerance);
   if (self->ydot != NULL) N_VDestroy(self->ydot);
   if (self->y != NULL) N_VDestroy(self->y);
   dvi__release(self->in_qv);

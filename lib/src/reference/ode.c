@@ -12,7 +12,7 @@
 
 typedef struct flow {
   dvi__reference_run *run;
-  N_Vector y, tolerance;
+  N_Vector y;
   SUNMatrix matrix;               /* NULL without a matrix */
   SUNLinearSolver linear;         /* NULL for Adams */
   SUNNonlinearSolver fixed_point; /* NULL for BDF */
@@ -67,17 +67,11 @@ static dvi_status start(flow *self)
 {
   const dvi__reference_run *run = self->run;
   const size_t n = (size_t)run->n;
-  const sunindextype size = 2 * (sunindextype)run->n;
-  self->y = N_VNew_Serial(size, run->context);
-  self->tolerance = N_VNew_Serial(size, run->context);
-  if (self->y == NULL || self->tolerance == NULL) return dvi__reference_no_setup(run);
-  double *y = N_VGetArrayPointer(self->y), *tolerance = N_VGetArrayPointer(self->tolerance);
+  self->y = N_VNew_Serial(2 * (sunindextype)run->n, run->context);
+  if (self->y == NULL) return dvi__reference_no_setup(run);
+  double *y = N_VGetArrayPointer(self->y);
   memcpy(y, run->q, n * sizeof *y);
   memcpy(y + n, run->p, n * sizeof *y);
-  for (size_t i = 0; i < n; i++) {
-    tolerance[i] = run->options.absolute_tolerance;
-    tolerance[n + i] = run->options.absolute_tolerance * run->weight[i];
-  }
   return DVI_OK;
 }
 
@@ -94,7 +88,6 @@ static void clear(flow *self)
   if (self->fixed_point != NULL) (void)SUNNonlinSolFree(self->fixed_point);
   if (self->linear != NULL) (void)SUNLinSolFree(self->linear);
   if (self->matrix != NULL) SUNMatDestroy(self->matrix);
-  if (self->tolerance != NULL) N_VDestroy(self->tolerance);
   if (self->y != NULL) N_VDestroy(self->y);
 }
 
@@ -125,7 +118,7 @@ static int configure_cvode(flow *self)
   const dvi__reference_run *run = self->run;
   void *cvode = self->memory;
   if (DVI__SUNDIALS_SILENCE(CVodeSetErrHandlerFn, cvode) || CVodeInit(cvode, right_side, run->t, self->y) ||
-      CVodeSVtolerances(cvode, run->options.relative_tolerance, self->tolerance) || CVodeSetUserData(cvode, self) ||
+      CVodeSStolerances(cvode, run->options.relative_tolerance, run->options.absolute_tolerance) || CVodeSetUserData(cvode, self) ||
       CVodeSetMaxNumSteps(cvode, run->options.max_steps) || CVodeSetStopTime(cvode, run->t_end) ||
       CVodeSetMinStep(cvode, dvi__reference_least_step(run)))
     return -1;
@@ -165,8 +158,8 @@ static int configure_arkode(flow *self)
   const dvi__reference_run *run = self->run;
   void *arkode = self->memory;
   return DVI__SUNDIALS_SILENCE(ARKStepSetErrHandlerFn, arkode) ||
-         ARKodeSVtolerances(arkode, run->options.relative_tolerance, self->tolerance) || ARKodeSetUserData(arkode, self) ||
-         ARKStepSetTableNum(arkode, ARKODE_DIRK_NONE, ARKODE_FEHLBERG_13_7_8) ||
+         ARKodeSStolerances(arkode, run->options.relative_tolerance, run->options.absolute_tolerance) ||
+         ARKodeSetUserData(arkode, self) || ARKStepSetTableNum(arkode, ARKODE_DIRK_NONE, ARKODE_FEHLBERG_13_7_8) ||
          ARKodeSetMaxNumSteps(arkode, run->options.max_steps) || ARKodeSetStopTime(arkode, run->t_end) ||
          ARKodeSetMinStep(arkode, dvi__reference_least_step(run));
 }

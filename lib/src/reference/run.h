@@ -15,7 +15,7 @@ typedef struct dvi__reference_run {
   double t, t_end;
   int n;
   double *q, *v, *p; /* [n] each: the start; the end after success. v is also the guess for the next inverse Legendre map */
-  double *weight;    /* [n] absolute tolerance of p over that of q */
+  double *force;     /* [n] L_q at the start */
   double *L_qq, *L_qv, *L_vv; /* in the order of the system's patterns */
   dvi__evaluator *evaluator;
   dvi_counters counters;

@@ -111,30 +111,17 @@ static dvi_status check_start(const dvi_system *system, double t, double t_end, 
   return DVI_OK;
 }
 
-/* With small masses the momenta are small too (planets: 1e-9), and an absolute tolerance that suits q would not see them: it is
- * scaled down by the mass. L_vv's diagonal at the start stands for the mass. */
-static dvi_status weigh(dvi__reference_run *run)
-{
-  DVI_TRY(dvi__lagrangian_hessian(run->evaluator, 1, &run->t, run->q, run->v, run->L_qq, run->L_qv, run->L_vv));
-  for (int j = 0; j < run->n; j++) {
-    const int e = dvi__pattern_find(&run->system->vv, j, j);
-    const double mass = e < 0 ? 0.0 : fabs(run->L_vv[e]);
-    run->weight[j] = mass > 0 && mass < 1 ? mass : 1.0;
-  }
-  return DVI_OK;
-}
-
 static dvi_status reserve(dvi__reference_run *run, const double *q, const double *p)
 {
   const size_t n = (size_t)run->n;
   run->q = dvi__duplicate(q, n, sizeof *q);
   run->p = dvi__duplicate(p, n, sizeof *p);
   run->v = DVI_NEW(double, n);
-  run->weight = DVI_NEW(double, n);
+  run->force = DVI_NEW(double, n);
   run->L_qq = DVI_NEW(double, dvi__pattern_entries(&run->system->qq));
   run->L_qv = DVI_NEW(double, dvi__pattern_entries(&run->system->qv));
   run->L_vv = DVI_NEW(double, dvi__pattern_entries(&run->system->vv));
-  if (run->q == NULL || run->p == NULL || run->v == NULL || run->weight == NULL || run->L_qq == NULL || run->L_qv == NULL ||
+  if (run->q == NULL || run->p == NULL || run->v == NULL || run->force == NULL || run->L_qq == NULL || run->L_qv == NULL ||
       run->L_vv == NULL || dvi__sundials_context(&run->context) != 0)
     return dvi__reference_no_setup(run);
   return DVI_OK;
@@ -145,7 +132,7 @@ static dvi_status prepare(dvi__reference_run *run, const double *q, const double
   DVI_TRY(reserve(run, q, p));
   dvi_status status = dvi__evaluator_create(run->system, 1, &run->counters, &run->evaluator);
   if (status == DVI_OK) status = dvi__legendre_inverse(run->evaluator, run->t, run->q, run->p, run->v);
-  if (status == DVI_OK) status = weigh(run);
+  if (status == DVI_OK) status = dvi__lagrangian_gradient(run->evaluator, 1, &run->t, run->q, run->v, run->force, NULL);
   if (status == DVI_OK) return DVI_OK;
   return dvi__fail_in(status, "%s: no start at t = %.9g", codes[run->options.code].name, run->t);
 }
@@ -157,7 +144,7 @@ static void clear(dvi__reference_run *run)
   dvi__release(run->L_vv);
   dvi__release(run->L_qv);
   dvi__release(run->L_qq);
-  dvi__release(run->weight);
+  dvi__release(run->force);
   dvi__release(run->v);
   dvi__release(run->p);
   dvi__release(run->q);

@@ -68,7 +68,7 @@ static inline int dvi__sundials_context(SUNContext *context)
 
 /* The names of 7.1 for ARKODE's functions; <arkode/arkode_arkstep.h> declares them. */
 #if !DVI__SUNDIALS_AT_LEAST(7, 1)
-#define ARKodeSVtolerances ARKStepSVtolerances
+#define ARKodeSStolerances ARKStepSStolerances
 #define ARKodeSetUserData ARKStepSetUserData
 #define ARKodeSetMaxNumSteps ARKStepSetMaxNumSteps
 #define ARKodeSetStopTime ARKStepSetStopTime

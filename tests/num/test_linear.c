@@ -1,0 +1,299 @@
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "num/linear.h"
+#include "support/suite.h"
+
+enum { LARGEST = 60 };
+
+static const dvi__linear_kind kinds[] = {DVI__LINEAR_DENSE, DVI__LINEAR_SPARSE};
+
+/* A matrix whose columns and rows are stored as the library wants them. */
+typedef struct matrix {
+  dvi__pattern pattern;
+  double values[LARGEST * LARGEST];
+} matrix;
+
+/* Keeps the entries of a [n*n], by rows, that are not zero. */
+static void compress(int n, const double *a, matrix *m)
+{
+  int start[LARGEST + 1] = {0}, row[LARGEST * LARGEST], count = 0;
+  for (int j = 0; j < n; j++) {
+    for (int i = 0; i < n; i++) {
+      if (a[i * n + j] == 0) continue;
+      row[count] = i;
+      m->values[count++] = a[i * n + j];
+    }
+    start[j + 1] = count;
+  }
+  ck_assert_int_eq(dvi__pattern_copy(&(dvi_pattern){start, row}, n, "matrix", &m->pattern), DVI_OK);
+}
+
+static dvi__linear *make(const matrix *m, dvi__linear_kind kind, dvi_counters *counters)
+{
+  dvi__linear *linear;
+  ck_assert_msg(dvi__linear_create(&m->pattern, kind, counters, &linear) == DVI_OK, "%s", dvi_last_error());
+  return linear;
+}
+
+static dvi_status factor_of(int n, const double *a, dvi__linear_kind kind)
+{
+  matrix m;
+  compress(n, a, &m);
+  dvi__linear *linear = make(&m, kind, NULL);
+  const dvi_status status = dvi__linear_factor(linear, m.values);
+  dvi__linear_destroy(&linear);
+  dvi__pattern_clear(&m.pattern);
+  return status;
+}
+
+/* Solves A x = b, b overwritten. */
+static void solve(int n, const double *a, dvi__linear_kind kind, double *b)
+{
+  matrix m;
+  compress(n, a, &m);
+  dvi__linear *linear = make(&m, kind, NULL);
+  ck_assert_msg(dvi__linear_factor(linear, m.values) == DVI_OK, "%s", dvi_last_error());
+  dvi__linear_solve(linear, b);
+  dvi__linear_destroy(&linear);
+  dvi__pattern_clear(&m.pattern);
+}
+
+START_TEST(a_known_system_has_its_known_solution)
+{
+  const double a[9] = {0, 2, 1, 1, 0, 0, 3, 0, 1};
+  double b[3] = {7, 1, 6};
+  solve(3, a, kinds[_i], b);
+  ck_assert_double_eq_tol(b[0], 1, 1e-15); /* integers: a few roundings at most */
+  ck_assert_double_eq_tol(b[1], 2, 1e-15);
+  ck_assert_double_eq_tol(b[2], 3, 2e-15);
+}
+END_TEST
+
+START_TEST(one_unknown_is_a_division)
+{
+  double b = 3;
+  solve(1, (double[]){-4}, kinds[_i], &b);
+  ck_assert_double_eq(b, -0.75);
+}
+END_TEST
+
+/* A band with a random part; diagonally dominant, so that its condition is about 10. */
+static void random_band(int n, int width, unsigned seed, double *a)
+{
+  srand(seed);
+  memset(a, 0, (size_t)n * (size_t)n * sizeof *a);
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < n; j++)
+      if (abs(i - j) <= width) a[i * n + j] = rand() / (double)RAND_MAX - 0.5 + (i == j ? 1 + width : 0);
+}
+
+START_TEST(dense_and_sparse_agree_with_the_solution_that_made_the_right_side)
+{
+  static double a[LARGEST * LARGEST];
+  const int n = LARGEST, widths[] = {1, 4, LARGEST};
+  random_band(n, widths[_i], 7, a);
+  double x[LARGEST], b[2][LARGEST] = {{0}};
+  for (int i = 0; i < n; i++) x[i] = cos(i);
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < n; j++) b[0][i] += a[i * n + j] * x[j];
+  memcpy(b[1], b[0], sizeof b[0]);
+  for (int k = 0; k < 2; k++) solve(n, a, kinds[k], b[k]);
+  for (int i = 0; i < n; i++) {
+    ck_assert_double_eq_tol(b[0][i], x[i], 1e-13); /* condition 10 times n roundings */
+    ck_assert_double_eq_tol(b[1][i], x[i], 1e-13);
+  }
+}
+END_TEST
+
+START_TEST(a_factor_follows_new_values_and_the_analysis_is_done_once)
+{
+  const double first[9] = {4, 1, 0, 1, 5, 2, 0, 2, 6}, second[9] = {-3, 2, 0, 1, 8, 1, 0, -1, 2};
+  dvi_counters counters = {0};
+  matrix m, other;
+  compress(3, first, &m);
+  compress(3, second, &other);
+  dvi__linear *linear = make(&m, kinds[_i], &counters);
+  for (int round = 0; round < 3; round++) {
+    double b[3] = {5, 8, 8}, c[3] = {-1, 10, 1};
+    ck_assert_int_eq(dvi__linear_factor(linear, m.values), DVI_OK);
+    dvi__linear_solve(linear, b);
+    ck_assert_int_eq(dvi__linear_factor(linear, other.values), DVI_OK);
+    dvi__linear_solve(linear, c);
+    for (int i = 0; i < 3; i++) {
+      ck_assert_double_eq_tol(b[i], 1, 1e-15);
+      ck_assert_double_eq_tol(c[i], 1, 1e-15);
+    }
+  }
+  ck_assert_int_eq(counters.symbolic, kinds[_i] == DVI__LINEAR_SPARSE);
+  ck_assert_int_eq(counters.factorizations, 6);
+  ck_assert_int_eq(counters.solves, 6);
+  dvi__linear_destroy(&linear);
+  dvi__pattern_clear(&m.pattern);
+  dvi__pattern_clear(&other.pattern);
+}
+END_TEST
+
+/* With the pivots of the first matrix the second one would lose 12 digits. */
+START_TEST(pivots_that_grow_bad_are_chosen_anew)
+{
+  const double good[4] = {1, 0.5, 0.5, 1}, bad[4] = {1e-12, 1, 1, 1};
+  matrix m, other;
+  compress(2, good, &m);
+  compress(2, bad, &other);
+  dvi__linear *linear = make(&m, kinds[_i], NULL);
+  double b[2] = {1 + 2e-12, 3};
+  ck_assert_int_eq(dvi__linear_factor(linear, m.values), DVI_OK);
+  ck_assert_int_eq(dvi__linear_factor(linear, other.values), DVI_OK);
+  dvi__linear_solve(linear, b);
+  ck_assert_double_eq_tol(b[0], 2, 4e-15);
+  ck_assert_double_eq_tol(b[1], 1, 4e-15);
+  dvi__linear_destroy(&linear);
+  dvi__pattern_clear(&m.pattern);
+  dvi__pattern_clear(&other.pattern);
+}
+END_TEST
+
+START_TEST(singular_matrices_are_named_singular)
+{
+  const double equal[9] = {1, 2, 3, 2, 4, 6, 1, 0, 1}, rounded[9] = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9};
+  ck_assert_int_eq(factor_of(3, equal, kinds[_i]), DVI_SINGULAR);
+  ck_assert_ptr_nonnull(strstr(dvi_last_error(), "3 x 3 matrix is singular to working precision"));
+  ck_assert_int_eq(factor_of(3, rounded, kinds[_i]), DVI_SINGULAR);
+}
+END_TEST
+
+START_TEST(a_zero_value_on_the_pattern_can_make_it_singular)
+{
+  const double regular[4] = {1, 2, 3, 4};
+  matrix m;
+  compress(2, regular, &m);
+  dvi__linear *linear = make(&m, kinds[_i], NULL);
+  ck_assert_int_eq(dvi__linear_factor(linear, (double[]){0, 0, 0, 0}), DVI_SINGULAR);
+  ck_assert_int_eq(dvi__linear_factor(linear, (double[]){1, 0, 1, 0}), DVI_SINGULAR);
+  double b[2] = {3, 7};
+  ck_assert_int_eq(dvi__linear_factor(linear, m.values), DVI_OK); /* and the solver is usable again */
+  dvi__linear_solve(linear, b);
+  ck_assert_double_eq_tol(b[0], 1, 4e-15);
+  ck_assert_double_eq_tol(b[1], 1, 4e-15);
+  dvi__linear_destroy(&linear);
+  dvi__pattern_clear(&m.pattern);
+}
+END_TEST
+
+START_TEST(a_column_without_entries_is_singular_at_the_factorisation)
+{
+  ck_assert_int_eq(factor_of(2, (double[]){1, 0, 1, 0}, kinds[_i]), DVI_SINGULAR);
+  ck_assert_int_eq(factor_of(30, (double[900]){0}, kinds[_i]), DVI_SINGULAR);
+}
+END_TEST
+
+/* Units must not matter: rows and columns that differ by 1e200 leave the answer as exact as it was. */
+START_TEST(badly_scaled_rows_and_columns_are_solved_as_well_as_good_ones)
+{
+  const double a[9] = {4, 1, 2, 1, 5, 2, 1, 2, 6}, row[3] = {0x1p-400, 1, 0x1p330}, column[3] = {0x1p40, 0x1p-200, 0x1p10};
+  double scaled[9], good[3] = {7, 8, 9}, bad[3];
+  for (int i = 0; i < 9; i++) scaled[i] = row[i / 3] * a[i] * column[i % 3];
+  for (int i = 0; i < 3; i++) bad[i] = row[i] * good[i];
+  solve(3, a, kinds[_i], good);
+  solve(3, scaled, kinds[_i], bad);
+  for (int i = 0; i < 3; i++) ck_assert_double_eq_tol(bad[i] * column[i] / good[i], 1, 1e-15);
+}
+END_TEST
+
+/* A multiplier's column beside masses of 1e30: no row scaling alone sees that this is harmless. */
+START_TEST(a_column_of_small_numbers_is_not_taken_for_singular)
+{
+  const double a[4] = {1e30, 1, -1e30, 1};
+  double b[2] = {1e30 + 1, 1 - 1e30};
+  solve(2, a, kinds[_i], b);
+  ck_assert_double_eq_tol(b[0], 1, 1e-15);
+  ck_assert_int_eq(factor_of(2, a, kinds[_i]), DVI_OK);
+}
+END_TEST
+
+START_TEST(the_smallest_and_the_largest_numbers_do_not_overflow_the_scales)
+{
+  double b[2] = {DBL_TRUE_MIN * 8, DBL_MAX / 4};
+  solve(2, (double[]){DBL_TRUE_MIN * 4, 0, 0, DBL_MAX / 2}, kinds[_i], b);
+  ck_assert_double_eq(b[0], 2);
+  ck_assert_double_eq(b[1], 0.5);
+}
+END_TEST
+
+START_TEST(values_that_are_not_finite_are_refused)
+{
+  const double bad[] = {NAN, INFINITY, -INFINITY};
+  for (int k = 0; k < 3; k++) {
+    const double a[4] = {1, 2, bad[k], 4};
+    ck_assert_int_eq(factor_of(2, a, kinds[_i]), DVI_NOT_FINITE);
+  }
+}
+END_TEST
+
+START_TEST(the_kind_is_what_was_asked_and_auto_prefers_klu_for_sparse_matrices)
+{
+  static double a[LARGEST * LARGEST];
+  matrix m;
+  random_band(LARGEST, 1, 3, a);
+  compress(LARGEST, a, &m);
+  for (int k = 0; k < 2; k++) {
+    dvi__linear *linear = make(&m, kinds[k], NULL);
+    ck_assert_int_eq(dvi__linear_kind_of(linear), kinds[k]);
+    dvi__linear_destroy(&linear);
+    ck_assert_ptr_null(linear);
+    dvi__linear_destroy(&linear);
+  }
+  dvi__linear *linear = make(&m, DVI__LINEAR_AUTO, NULL);
+  ck_assert_int_eq(dvi__linear_kind_of(linear), DVI__LINEAR_SPARSE);
+  dvi__linear_destroy(&linear);
+  dvi__pattern_clear(&m.pattern);
+}
+END_TEST
+
+START_TEST(auto_prefers_lapack_for_large_full_matrices)
+{
+  dvi__pattern full;
+  dvi__linear *linear;
+  ck_assert_int_eq(dvi__pattern_copy(&(dvi_pattern){0}, 100, "full", &full), DVI_OK);
+  ck_assert_int_eq(dvi__linear_create(&full, DVI__LINEAR_AUTO, NULL, &linear), DVI_OK);
+  ck_assert_int_eq(dvi__linear_kind_of(linear), DVI__LINEAR_DENSE);
+  dvi__linear_destroy(&linear);
+  dvi__pattern_clear(&full);
+}
+END_TEST
+
+START_TEST(what_is_not_square_is_refused)
+{
+  int start[2] = {0, 0};
+  const dvi__pattern none = {0, 0, start, start}, wide = {1, 2, start, start};
+  dvi__linear *linear;
+  ck_assert_int_eq(dvi__linear_create(&none, kinds[_i], NULL, &linear), DVI_BAD_SIZE);
+  ck_assert_ptr_null(linear);
+  ck_assert_int_eq(dvi__linear_create(&wide, kinds[_i], NULL, &linear), DVI_BAD_SIZE);
+  ck_assert_ptr_null(linear);
+}
+END_TEST
+
+int main(void)
+{
+  TCase *tests = tcase_create("linear");
+  tcase_add_loop_test(tests, a_known_system_has_its_known_solution, 0, 2);
+  tcase_add_loop_test(tests, one_unknown_is_a_division, 0, 2);
+  tcase_add_loop_test(tests, dense_and_sparse_agree_with_the_solution_that_made_the_right_side, 0, 3);
+  tcase_add_loop_test(tests, a_factor_follows_new_values_and_the_analysis_is_done_once, 0, 2);
+  tcase_add_loop_test(tests, pivots_that_grow_bad_are_chosen_anew, 0, 2);
+  tcase_add_loop_test(tests, singular_matrices_are_named_singular, 0, 2);
+  tcase_add_loop_test(tests, a_zero_value_on_the_pattern_can_make_it_singular, 0, 2);
+  tcase_add_loop_test(tests, a_column_without_entries_is_singular_at_the_factorisation, 0, 2);
+  tcase_add_loop_test(tests, badly_scaled_rows_and_columns_are_solved_as_well_as_good_ones, 0, 2);
+  tcase_add_loop_test(tests, a_column_of_small_numbers_is_not_taken_for_singular, 0, 2);
+  tcase_add_loop_test(tests, the_smallest_and_the_largest_numbers_do_not_overflow_the_scales, 0, 2);
+  tcase_add_loop_test(tests, values_that_are_not_finite_are_refused, 0, 2);
+  tcase_add_test(tests, the_kind_is_what_was_asked_and_auto_prefers_klu_for_sparse_matrices);
+  tcase_add_test(tests, auto_prefers_lapack_for_large_full_matrices);
+  tcase_add_loop_test(tests, what_is_not_square_is_refused, 0, 2);
+  return run_tests("num/linear", tests);
+}

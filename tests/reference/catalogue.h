@@ -1,0 +1,32 @@
+/* Problems of the catalogue for the tests of the reference codes. */
+#ifndef REFERENCE_CATALOGUE_H
+#define REFERENCE_CATALOGUE_H
+#include <check.h>
+#include <dvi/dvi.h>
+#include <string.h>
+
+#include "problem.h"
+
+enum { CODES = 4, MOST = 40 };
+
+static inline problem *make(const char *name, const char *setting)
+{
+  problem *made = NULL;
+  char message[256] = "";
+  ck_assert_msg(problem_create(name, setting != NULL, &setting, &made, message, sizeof message) == DVI_OK, "%s", message);
+  ck_assert_int_le(made->n, MOST);
+  return made;
+}
+
+static inline dvi_reference_options option(int code, double tolerance)
+{
+  return (dvi_reference_options){.code = (dvi_reference_code)code, .relative_tolerance = tolerance};
+}
+
+static inline void start(const problem *of, double *q, double *p)
+{
+  memcpy(q, of->q, (size_t)of->n * sizeof *q);
+  memcpy(p, of->p, (size_t)of->n * sizeof *p);
+}
+
+#endif
