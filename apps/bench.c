@@ -7,6 +7,7 @@
 #include "bench_job.h"
 #include "command.h"
 #include "file.h"
+#include "levels.h"
 #include "open.h"
 #include "options.h"
 #include "plot.h"
@@ -19,6 +20,8 @@ enum { LEVELS_DEFAULT = 6, LEVELS_MAX = 20, ROUNDS_DEFAULT = 5, JOBS_MAX = 1024,
 /* What runs if no --method is given; those that the problem's structure excludes are left out. */
 static const char *const selection[] = {
     "verlet", "composition:order=8,base=verlet", "midpoint", "galerkin:degree=2", "galerkin:degree=4", "galerkin:degree=8", NULL};
+
+static const double first_error = 1e-2; /* of each method, relative to the solution */
 
 static const double tolerances[] = {1e-4, 1e-6, 1e-8, 1e-10, 1e-12};
 enum { TOLERANCES = sizeof tolerances / sizeof *tolerances };
@@ -57,7 +60,9 @@ static int add_method(bench *b, const char *method)
   int code = study_init(&study, b->scene, &b->judge, method, b->request->t_end);
   if (code != DONE) return code;
   const int levels = (int)b->request->levels;
-  dvi_status status = study_levels(&study, 0.0, 0.0, levels, steps);
+  bool room;
+  study.first_error = first_error;
+  dvi_status status = choose_levels(&study, 0.0, 0.0, levels, steps, &room);
   for (int k = 0; k < levels && status == DVI_OK && b->jobs < JOBS_MAX; k++) {
     bench_job *job = &b->job[b->jobs];
     level_trial trial = {.steps = steps[k]};

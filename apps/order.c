@@ -6,15 +6,16 @@
 
 #include "command.h"
 #include "file.h"
+#include "levels.h"
 #include "open.h"
 #include "options.h"
-#include "plot.h"
+#include "order_report.h"
 #include "progress.h"
 #include "study.h"
 #include "table.h"
 
-enum { LEVELS_DEFAULT = 6, LEVELS_MAX = 40, FIT_LEVELS = 4, LABEL_SIZE = 160 };
-static const double order_tolerance = 0.2;
+enum { LEVELS_DEFAULT = 6, LENGTHENINGS = 3 };
+static const double lengthening = 4.0;
 
 /* What the command line asks for. */
 typedef struct order_request {
@@ -23,24 +24,6 @@ typedef struct order_request {
   long levels;
   words methods, settings;
 } order_request;
-
-/* What was found for one method. */
-typedef struct order_result {
-  const char *method;
-  int claimed;
-  int levels;
-  double h[LEVELS_MAX], error[LEVELS_MAX]; /* step sizes without sign */
-  double floor, ceiling;
-  dvi_order_fit fit;
-  char label[LABEL_SIZE];
-} order_result;
-
-static const table_column columns[] = {
-    {"method", NULL},         {"problem", NULL},          {"h", "%.6g"},
-    {"steps", "%.0f"},        {"error", "%.3e"},          {"slope", "%.2f"},
-    {"energy_error", "%.3e"}, {"cpu_seconds", "%.3e"},    {"residuals", "%.0f"},
-    {"jacobians", "%.0f"},    {"factorizations", "%.0f"}, {NULL, NULL},
-};
 
 /* The order that two neighbouring levels show; NaN if there is none. */
 static double local_slope(const order_result *result, int k)
@@ -72,108 +55,87 @@ static dvi_status run_level(order_study *study, long steps, level_trial *trial)
   return status;
 }
 
-/* Run all levels of one method and fit its order. */
-static dvi_status measure(order_study *study, const order_request *request, progress_line *progress, result_table *rows,
-                          order_result *result)
+/* A study of one method, and who judges it. */
+typedef struct hearing {
+  const order_request *request;
+  const problem *scene;
+  judgement judge;
+  double judged_at; /* the time that the judge was asked for; NaN: not yet */
+  progress_line progress;
+  result_table *rows;
+} hearing;
+
+/* Have the judge's answer for this time. */
+static dvi_status ask_judge(hearing *ask, double t_end)
 {
-  long steps[LEVELS_MAX];
-  dvi_status status = study_levels(study, isnan(request->h) ? 0.0 : request->h, isnan(request->ratio) ? 0.0 : request->ratio,
-                                   (int)request->levels, steps);
+  if (t_end == ask->judged_at) return DVI_OK;
+  judge_clear(&ask->judge);
+  ask->judged_at = (double)NAN;
+  progress_show(&ask->progress, -1.0, "judge");
+  const dvi_status status = judge_init(&ask->judge, ask->scene, t_end);
+  if (status == DVI_OK) ask->judged_at = t_end;
+  return status;
+}
+
+/* Run all levels of one method and fit its order. */
+static dvi_status measure(hearing *ask, order_study *study, const long *steps, order_result *result)
+{
+  dvi_status status = DVI_OK;
   result->method = study->method;
   result->claimed = study->order;
+  result->t_end = study->t_end;
+  result->judge = ask->judge.kind;
+  result->judge_error = ask->judge.error;
   result->floor = study->floor;
   result->ceiling = study->ceiling;
-  for (int k = 0; k < request->levels && status == DVI_OK; k++) {
+  for (int k = 0; k < ask->request->levels && status == DVI_OK; k++) {
     level_trial trial;
-    progress_show(progress, -1.0, study->method);
+    progress_show(&ask->progress, -1.0, study->method);
     status = run_level(study, steps[k], &trial);
     if (status != DVI_OK) break;
     result->h[k] = fabs(trial.h);
     result->error[k] = trial.error;
     result->levels = k + 1;
-    add_row(rows, study, result, k, &trial);
+    add_row(ask->rows, study, result, k, &trial);
   }
   if (status == DVI_OK) (void)dvi_order(result->levels, result->h, result->error, result->floor, result->ceiling, &result->fit);
   return status;
 }
 
-static int fitted_levels(const order_result *result)
+/* Study up to t_end. If the levels do not fit above the floor there, and that matters, *room becomes false instead. */
+static int study_until(hearing *ask, const char *method, double t_end, bool *room, order_result *result)
 {
-  return result->fit.first < 0 ? 0 : result->fit.last - result->fit.first + 1;
+  const order_request *request = ask->request;
+  order_study study;
+  long steps[LEVELS_MAX];
+  const bool must_fit = *room;
+  dvi_status status = ask_judge(ask, t_end);
+  if (status != DVI_OK) return library_error(status);
+  const int code = study_init(&study, ask->scene, &ask->judge, method, t_end);
+  if (code != DONE) return code;
+  status = choose_levels(&study, isnan(request->h) ? 0.0 : request->h, isnan(request->ratio) ? 0.0 : request->ratio,
+                         (int)request->levels, steps, room);
+  if (status == DVI_OK && (*room || !must_fit)) status = measure(ask, &study, steps, result);
+  study_clear(&study);
+  if (status == DVI_OK) return DONE;
+  (void)library_error(status);
+  complain("order: %s failed on %s; try a smaller --h", method, ask->scene->name);
+  return FAILED;
 }
 
-static bool holds(const order_result *result)
+/* One method. If the problem's own span is so short that a few steps meet the floor, it is lengthened. */
+static int study_method(hearing *ask, const char *method, order_result *result)
 {
-  return fitted_levels(result) >= FIT_LEVELS && fabs(result->fit.slope - result->claimed) <= order_tolerance;
-}
-
-static void print_verdict(FILE *stream, const order_result *result)
-{
-  const int levels = fitted_levels(result);
-  if (levels < FIT_LEVELS)
-    (void)fprintf(stream,
-                  "%s: NOT DECIDED, claimed order %d: only %d of %d levels have errors between %.1e and %.1e, %d are needed; "
-                  "change --h, --ratio or --t-end, or ask for more --levels\n",
-                  result->method, result->claimed, levels, result->levels, result->floor, result->ceiling, (int)FIT_LEVELS);
-  else
-    (void)fprintf(stream, "%s: order %.2f fitted to levels %d to %d, claimed %d: %s (errors up to %.1e are not fitted)\n",
-                  result->method, result->fit.slope, result->fit.first + 1, result->fit.last + 1, result->claimed,
-                  holds(result) ? "ok" : "MISSED", result->floor);
-}
-
-static void print_judge(FILE *stream, const judgement *judge, double t_end)
-{
-  (void)fprintf(stream, "judge at t = %g: %s, error %.1e\n", t_end, judge->kind, judge->error);
-}
-
-static void print_for_people(const problem *scene, const judgement *judge, double t_end, const result_table *rows, int results,
-                             const order_result *result)
-{
-  (void)printf("Order on %s\n", scene->name);
-  print_judge(stdout, judge, t_end);
-  int first = 0;
-  for (int i = 0; i < results; i++) {
-    (void)printf("\n%s\n", result[i].method);
-    table_print(rows, 2, first, first + result[i].levels);
-    first += result[i].levels;
+  const order_request *request = ask->request;
+  const bool given = !isnan(request->t_end) || !isnan(request->h);
+  double t_end = isnan(request->t_end) ? ask->scene->order_t_end : request->t_end;
+  for (int i = 0;; i++) {
+    bool room = !given && i < LENGTHENINGS;
+    const bool must_fit = room;
+    const int code = study_until(ask, method, t_end, &room, result);
+    if (code != DONE || room || !must_fit) return code;
+    t_end *= lengthening;
   }
-  (void)putchar('\n');
-}
-
-/* A line of the fitted order's slope, a little below the method's errors, over its window. */
-static int guide(const order_result *result, double *x, double *y)
-{
-  if (fitted_levels(result) < 2) return 0;
-  const int ends[2] = {result->fit.first, result->fit.last};
-  for (int i = 0; i < 2; i++) {
-    x[i] = result->h[ends[i]];
-    y[i] = 0.4 * result->error[ends[0]] * pow(x[i] / result->h[ends[0]], result->claimed);
-  }
-  return 2;
-}
-
-static bool plot_results(const problem *scene, int results, order_result *result, const char *path)
-{
-  plot_curve curve[2 * WORDS_MAX];
-  double x[WORDS_MAX][2];
-  double y[WORDS_MAX][2];
-  char title[LABEL_SIZE];
-  int curves = 0;
-  for (int i = 0; i < results; i++)
-    curve[curves++] = (plot_curve){.label = result[i].method, .count = result[i].levels, .x = result[i].h, .y = result[i].error};
-  for (int i = 0; i < results; i++) {
-    const int count = guide(&result[i], x[i], y[i]);
-    (void)snprintf(result[i].label, sizeof result[i].label, "slope %d", result[i].claimed);
-    curve[curves++] = (plot_curve){.label = result[i].label, .count = count, .x = x[i], .y = y[i], .guide = true};
-  }
-  (void)snprintf(title, sizeof title, "Error against step size: %s", scene->name);
-  const plot_panel panel = {.title = title,
-                            .x_label = "step h",
-                            .y_label = "largest error of q at the end",
-                            .logarithmic = true,
-                            .curves = curves,
-                            .curve = curve};
-  return plot_write(path, 1, &panel);
 }
 
 static bool write_csv(const result_table *rows, const char *path)
@@ -185,54 +147,34 @@ static bool write_csv(const result_table *rows, const char *path)
 }
 
 /* Tables, verdicts, files; the exit code. */
-static int report(const order_request *request, const problem *scene, const judgement *judge, const result_table *rows,
-                  order_result *result)
+static int report(const hearing *ask, order_result *result)
 {
+  const order_request *request = ask->request;
   const int results = request->methods.count;
   const bool csv_only = request->csv != NULL && strcmp(request->csv, "-") == 0;
-  FILE *words_to = csv_only ? stderr : stdout;
-  if (csv_only)
-    print_judge(stderr, judge, request->t_end);
-  else
-    print_for_people(scene, judge, request->t_end, rows, results, result);
   bool all_hold = true;
+  if (!csv_only) order_print_tables(ask->scene->name, ask->rows, results, result);
   for (int i = 0; i < results; i++) {
-    print_verdict(words_to, &result[i]);
-    all_hold = all_hold && holds(&result[i]);
+    order_print_verdict(csv_only ? stderr : stdout, &result[i]);
+    all_hold = all_hold && order_holds(&result[i]);
   }
-  if (request->csv != NULL && !write_csv(rows, request->csv)) return FAILED;
-  if (request->plot != NULL && !plot_results(scene, results, result, request->plot)) return FAILED;
+  if (request->csv != NULL && !write_csv(ask->rows, request->csv)) return FAILED;
+  if (request->plot != NULL && !order_plot(ask->scene->name, results, result, request->plot)) return FAILED;
   return all_hold ? DONE : CHECK_FAILED;
 }
 
-/* One method: its own complaint and exit code. */
-static int study_method(const order_request *request, const problem *scene, const judgement *judge, const char *method,
-                        result_table *rows, order_result *result)
+static int study_all(const order_request *request, const problem *scene)
 {
-  order_study study;
-  progress_line progress;
-  const int code = study_init(&study, scene, judge, method, request->t_end);
-  if (code != DONE) return code;
-  progress_start(&progress, true);
-  const dvi_status status = measure(&study, request, &progress, rows, result);
-  progress_end(&progress);
-  study_clear(&study);
-  if (status == DVI_OK) return DONE;
-  (void)library_error(status);
-  complain("order: %s failed on %s; try a smaller --h", method, scene->name);
-  return FAILED;
-}
-
-static int study_all(const order_request *request, const problem *scene, const judgement *judge)
-{
-  result_table *rows = table_create(columns);
+  hearing ask = {.request = request, .scene = scene, .judged_at = (double)NAN, .rows = table_create(order_columns)};
   order_result *result = calloc((size_t)request->methods.count, sizeof *result);
-  int code = table_good(rows) && result != NULL ? DONE : FAILED;
-  for (int i = 0; i < request->methods.count && code == DONE; i++)
-    code = study_method(request, scene, judge, request->methods.word[i], rows, &result[i]);
-  if (code == DONE) code = table_good(rows) ? report(request, scene, judge, rows, result) : FAILED;
+  int code = result != NULL && table_good(ask.rows) ? DONE : FAILED;
+  progress_start(&ask.progress, true);
+  for (int i = 0; i < request->methods.count && code == DONE; i++) code = study_method(&ask, request->methods.word[i], &result[i]);
+  progress_end(&ask.progress);
+  if (code == DONE) code = table_good(ask.rows) ? report(&ask, result) : FAILED;
   free(result);
-  table_destroy(&rows);
+  table_destroy(&ask.rows);
+  judge_clear(&ask.judge);
   return code;
 }
 
@@ -245,18 +187,6 @@ static int check_methods(const order_request *request, const problem *scene)
     code = open_integrator(scene, request->methods.word[i], &integrator);
     dvi_integrator_destroy(&integrator);
   }
-  return code;
-}
-
-static int order(order_request *request, const problem *scene)
-{
-  if (isnan(request->t_end)) request->t_end = scene->order_t_end;
-  int code = check_methods(request, scene);
-  if (code != DONE) return code;
-  judgement judge;
-  const dvi_status status = judge_init(&judge, scene, request->t_end);
-  code = status == DVI_OK ? study_all(request, scene, &judge) : library_error(status);
-  judge_clear(&judge);
   return code;
 }
 
@@ -289,7 +219,7 @@ static const char details[] =
     "counts if it is above the floor: ten times the judge's own error, and ten times what a change of the start in\n"
     "its last digit does to the end. It must also be below 1 % of the solution. The order is fitted to the longest\n"
     "run of such levels; the exit code is 3 if it misses the claimed order by more than 0.2, or if there are fewer\n"
-    "than 4 such levels.\n"
+    "than 4 such levels. If the problem's span is too short for the levels of a high order, it is lengthened.\n"
     "\n"
     "Examples:\n"
     "  dvi order kepler --method galerkin:degree=2\n"
@@ -326,7 +256,8 @@ int order_command(int argc, char **argv)
   problem *scene;
   code = open_problem(name, &r.settings, &scene);
   if (code != DONE) return code;
-  code = order(&r, scene);
+  code = check_methods(&r, scene);
+  if (code == DONE) code = study_all(&r, scene);
   problem_destroy(&scene);
   return code;
 }

@@ -14,7 +14,7 @@
 
 extern char **environ;
 
-enum { WIDTH = 860, PANEL_HEIGHT = 430, COLOURS = 8 };
+enum { WIDTH = 860, PANEL_HEIGHT = 560, COLOURS = 8 };
 
 /* Okabe and Ito's colours, which the colour-blind can tell apart; their yellow is too pale for lines. */
 static const char *const colour[COLOURS] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000", "#7F3C8D"};
@@ -66,9 +66,14 @@ static void write_blocks(FILE *script, int index, const plot_panel *panel)
 static void write_curve(FILE *script, int index, const plot_panel *panel, int k, int style)
 {
   const plot_curve *curve = &panel->curve[k];
-  (void)fprintf(script, "$panel%d_curve%d using 1:2 title ", index, k);
-  quoted(script, curve->label);
-  (void)fputs(" noenhanced with ", script);
+  (void)fprintf(script, "$panel%d_curve%d using 1:2 ", index, k);
+  if (curve->label != NULL) {
+    (void)fputs("title ", script);
+    quoted(script, curve->label);
+    (void)fputs(" noenhanced with ", script);
+  } else {
+    (void)fputs("notitle with ", script);
+  }
   if (curve->guide)
     (void)fputs("lines lw 1 dt 2 lc rgb '#808080'", script);
   else if (panel->smooth)
@@ -81,6 +86,7 @@ static void write_panel(FILE *script, int index, const plot_panel *panel)
 {
   setting(script, "title", panel->title);
   setting(script, "xlabel", panel->x_label);
+  (void)fputs("set xlabel offset 0,0.6\n", script);
   setting(script, "ylabel", panel->y_label);
   (void)fputs(panel->logarithmic ? "set logscale xy 10\nset format x '10^{%L}'\nset format y '10^{%L}'\n"
                                  : "unset logscale\nset format '%g'\n",
@@ -100,7 +106,9 @@ static void write_script(FILE *script, int panels, const plot_panel *panel)
 {
   (void)fprintf(script, "set terminal svg size %d,%d enhanced background rgb 'white' font 'Helvetica,13'\n", WIDTH,
                 panels * PANEL_HEIGHT);
-  (void)fputs("set grid lc rgb '#d0d0d0'\nset border lc rgb '#404040'\nset key outside right top spacing 1.2\n", script);
+  (void)fputs("set grid lt 1 lw 0.5 lc rgb '#d8d8d8'\nset border lc rgb '#404040'\nset key outside below center horizontal maxcols "
+              "2 Left reverse samplen 3\n",
+              script);
   for (int i = 0; i < panels; i++) write_blocks(script, i, &panel[i]);
   if (panels > 1) (void)fprintf(script, "set multiplot layout %d,1\n", panels);
   for (int i = 0; i < panels; i++) write_panel(script, i, &panel[i]);

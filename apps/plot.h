@@ -5,7 +5,7 @@
 
 /** One curve. Points with a NaN, or on a logarithmic axis with a number that is not positive, are left out. */
 typedef struct plot_curve {
-  const char *label;
+  const char *label; /**< NULL: not in the legend */
   int count;
   const double *x, *y;
   bool guide; /**< a thin dashed line without points, for comparison with the others */

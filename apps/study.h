@@ -4,6 +4,9 @@
 #include "judge.h"
 #include "problem.h"
 
+/** An error must exceed what blurs it by this factor to count. */
+enum { STUDY_FLOOR_MARGIN = 10 };
+
 /** What is studied. */
 typedef struct order_study {
   const problem *scene;
@@ -12,6 +15,7 @@ typedef struct order_study {
   double t_end;
   dvi_integrator *integrator; /**< owned */
   int order;                  /**< that the method claims */
+  double first_error;         /**< where the first level's error should lie, relative to study_size; 0: chosen by the order */
   double ceiling;             /**< errors above this are too large to tell an order */
   double floor;               /**< errors up to this belong to roundoff or to the judge */
 } order_study;
@@ -39,15 +43,11 @@ dvi_status study_watch_energy(order_study *study, level_trial *trial);
 /** Run as often as a clock needs: fills cpu_seconds. */
 dvi_status study_time(order_study *study, level_trial *trial);
 
-/** Choose how many steps each level takes: the first error below the ceiling, the last above the floor, at most halving h from
- *  level to level.
- *
- *  @param      h       the first step; 0: one whose error is a little below the ceiling is searched
- *  @param      ratio   of neighbouring steps; 0: chosen
- *  @param      levels  how many
- *  @param[out] steps   [levels], ascending
- *  Sets study->floor as well. */
-dvi_status study_levels(order_study *study, double h, double ratio, int levels, long *steps);
+/** Integrate from q [n] and the problem's momenta with so many equal steps. */
+dvi_status study_integrate(order_study *study, const double *q, long steps);
+
+/** Size of the solution at the end, in the maximum norm; 1 if it is 0. */
+double study_size(const order_study *study);
 
 /** Process time in seconds. */
 double cpu_now(void);

@@ -69,7 +69,7 @@ bool trace_plot(const run_trace *trace, const char *title, char *const *coordina
     return false;
   }
   for (int k = 0; k < trace->count; k++) error[k] = trace->energy[k] - trace->energy[0];
-  const plot_curve energy = {.label = "energy", .count = trace->count, .x = trace->t, .y = error};
+  const plot_curve energy = {.count = trace->count, .x = trace->t, .y = error};
   const plot_panel panels[] = {
       {.title = title, .x_label = "t", .y_label = "coordinates", .smooth = true, .curves = trace->coordinates, .curve = curves},
       {.title = "energy - energy at the start", .x_label = "t", .y_label = "error", .smooth = true, .curves = 1, .curve = &energy},

@@ -48,8 +48,8 @@ static const problem_parameter parameters[] = {
 };
 
 /* Quadruple-precision results, recomputed by tests/reference/test_digits. */
-static const double digits_q[] = {1.6295848805115743};
-static const double digits_p[] = {0.95786710606374954};
+static const double digits_q[] = {4.8592812392772634};
+static const double digits_p[] = {0.71222949776755343};
 
 const problem_entry problem_entry_pendulum = {
     .name = "pendulum",
@@ -58,8 +58,8 @@ const problem_entry problem_entry_pendulum = {
     .make = make,
     .h = 0.1,
     .t_end = 20.0,
-    .order_h = 0.2,
-    .order_t_end = 1.0,
+    .order_h = 0.1,
+    .order_t_end = 20.0,
     .digits_q = digits_q,
     .digits_p = digits_p,
 };

@@ -13,14 +13,17 @@ static double noise(unsigned *state)
   return (double)(*state >> 8) / 8388608.0 - 1;
 }
 
-/* The record of value(t) at count times 0, dt, 2 dt, ... */
+/* The record of value(t) at count times 10, 10 + dt, 10 + 2 dt, ... */
 static dvi_drift_fit record(long count, double dt, double (*value)(double t, double T, unsigned *state), unsigned seed)
 {
   dvi_drift drift;
   dvi_drift_fit fit;
   unsigned state = seed;
   dvi_drift_init(&drift);
-  for (long i = 0; i < count; i++) dvi_drift_add(&drift, (double)i * dt, value((double)i * dt, (double)count * dt, &state));
+  for (long i = 0; i < count; i++) {
+    const double t = 10 + (double)i * dt;
+    dvi_drift_add(&drift, t, value(t, (double)count * dt, &state));
+  }
   dvi_drift_result(&drift, &fit);
   return fit;
 }
@@ -82,7 +85,7 @@ END_TEST
 
 START_TEST(change_is_the_slope_times_the_length)
 {
-  /* 64 samples at 0 .. 6.3 stand for a length of 6.4 */
+  /* 64 samples at 10 .. 16.3 stand for a length of 6.4 */
   const dvi_drift_fit fit = record(64, 0.1, line, 1);
   ck_assert_double_eq_tol(fit.change, -3e-7 * 6.4, 1e-14);
 }

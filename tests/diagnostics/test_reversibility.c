@@ -43,8 +43,8 @@ START_TEST(the_start_may_be_the_integrators_own_state)
   double defect = -1;
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, p->q, p->p), DVI_OK);
   ck_assert_int_eq(dvi_integrator_step(integrator, p->h), DVI_OK);
-  ck_assert_int_eq(dvi_reversibility(integrator, p->h, dvi_integrator_q(integrator), dvi_integrator_p(integrator), p->h, 10, &defect),
-                   DVI_OK);
+  ck_assert_int_eq(
+      dvi_reversibility(integrator, p->h, dvi_integrator_q(integrator), dvi_integrator_p(integrator), p->h, 10, &defect), DVI_OK);
   ck_assert_double_le(defect, 1e-13);
   ck_assert_double_eq_tol(dvi_integrator_time(integrator), p->h, 1e-13); /* left at the end of the way back */
   dvi_integrator_destroy(&integrator);

@@ -39,8 +39,8 @@ static double defect_of(const char *name, const char *method, double step_factor
 
 /* outer-solar holds masses of 1 and of 1e-8, pythagorean and figure-eight start with zeros among coordinates and momenta, and the
  * chains have momenta that are nearly all zero. */
-static const char *const problems[] = {"oscillator",    "pendulum",     "kepler",      "henon-heiles", "double-pendulum",
-                                       "outer-solar",   "fpu",          "figure-eight", "pythagorean",  "stiff-pendulum"};
+static const char *const problems[] = {"oscillator",  "pendulum", "kepler",       "henon-heiles", "double-pendulum",
+                                       "outer-solar", "fpu",      "figure-eight", "pythagorean",  "stiff-pendulum"};
 enum { PROBLEMS = sizeof problems / sizeof *problems };
 
 START_TEST(verlet_is_symplectic_to_the_floor_of_the_differences)
@@ -122,8 +122,9 @@ START_TEST(the_integrator_goes_on_as_if_nothing_had_happened)
   for (int i = 0; i < 20; i++) {
     dvi_integrator_counters(probed, &before);
     if (i % 5 == 3) /* from its own state */
-      ck_assert_int_eq(dvi_symplecticity(probed, dvi_integrator_time(probed), dvi_integrator_q(probed), dvi_integrator_p(probed), p->h,
-                                         &defect), DVI_OK);
+      ck_assert_int_eq(
+          dvi_symplecticity(probed, dvi_integrator_time(probed), dvi_integrator_q(probed), dvi_integrator_p(probed), p->h, &defect),
+          DVI_OK);
     dvi_integrator_counters(probed, &after);
     ck_assert_mem_eq(&before, &after, sizeof before);
     ck_assert_int_eq(dvi_integrator_step(probed, p->h), DVI_OK);

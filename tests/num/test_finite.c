@@ -14,9 +14,9 @@ END_TEST
 
 START_TEST(the_first_of_several_is_named)
 {
-  const double bad[] = {NAN, -NAN, INFINITY, -INFINITY};
+  const double bad[] = {(double)NAN, -(double)NAN, HUGE_VAL, -HUGE_VAL};
   double x[9] = {0};
-  x[8] = NAN;
+  x[8] = (double)NAN;
   for (int at = 8; at >= 0; at--) {
     x[at] = bad[at % 4];
     ck_assert_int_eq(dvi__first_not_finite(9, x), at);
@@ -26,7 +26,7 @@ END_TEST
 
 START_TEST(numbers_behind_the_count_do_not_matter)
 {
-  const double x[] = {1, 2, NAN};
+  const double x[] = {1, 2, (double)NAN};
   ck_assert_int_eq(dvi__first_not_finite(2, x), -1);
 }
 END_TEST

@@ -278,7 +278,7 @@ START_TEST(keplers_equation_is_solved_for_any_eccentricity_and_time)
   static const double times[] = {
       1e-12, 1e-4, 0.1, 1.0, 3.14159265358979, 3.2, 6.28, 100.0, 1256.637061435917, 1e6, 6.28318530717958648e6};
   problem *made = create("kepler", 1, &settings[_i]);
-  const double e = atof(settings[_i] + 2), b2 = (1.0 - e) * (1.0 + e);
+  const double e = strtod(settings[_i] + 2, NULL), b2 = (1.0 - e) * (1.0 + e);
   for (size_t j = 0; j < sizeof times / sizeof *times; j++) {
     double q[2], p[2], mirror_q[2], mirror_p[2];
     ck_assert_int_eq(made->exact(made, times[j], q, p), 0);

@@ -167,7 +167,7 @@ START_TEST(each_code_meets_the_exact_motion_in_a_magnetic_field)
 END_TEST
 
 /* A strong field is stiff: the other root, about -B, is far beyond the steps that the slow circle needs, so Newton's method converges
- * in one or two iterations with the right Jacobian only. Every block of it counts here. */
+ * with the right Jacobian only: about 100 residuals; a wrong block makes it 10^5. */
 START_TEST(ida_has_the_right_jacobian)
 {
   for (int n = 4; n <= MOST; n *= 10) {
@@ -178,13 +178,13 @@ START_TEST(ida_has_the_right_jacobian)
     const dvi_reference_options options = option(DVI_IDA, 1e-5);
     dvi_reference_report report;
     ck_assert_msg(dvi_reference_solve(system, 0, 3, q, p, &options, &report) == DVI_OK, "%s", dvi_last_error());
-    ck_assert_double_lt((double)report.evaluations, 2 * (double)report.steps);
+    ck_assert_int_lt(report.evaluations, 1000);
     dvi_system_destroy(&system);
   }
 }
 END_TEST
 
-/* The same for BDF: stiff springs at rest, pushed by the slow ones only. */
+/* The same for BDF: stiff springs at rest, pushed by the slow ones only. The right Jacobian takes about 120 evaluations. */
 START_TEST(bdf_has_the_right_jacobian)
 {
   problem *fpu = make("fpu", "omega=1e4");
@@ -194,7 +194,7 @@ START_TEST(bdf_has_the_right_jacobian)
   const dvi_reference_options options = option(DVI_CVODE_BDF, 1e-5);
   dvi_reference_report report;
   ck_assert_msg(dvi_reference_solve(fpu->system, 0, 3, q, p, &options, &report) == DVI_OK, "%s", dvi_last_error());
-  ck_assert_double_lt((double)report.evaluations, 2 * (double)report.steps);
+  ck_assert_int_lt(report.evaluations, 1000);
   problem_destroy(&fpu);
 }
 END_TEST

@@ -77,7 +77,8 @@ static inline void quad_gaussian_nodes(dvi_rule rule, int n, quad *x)
   if (left) x[found++] = -1;
   for (int i = 1; i < cells - 1 && found < n - right; i++) {
     const quad low = -cosq(i * quad_pi() / cells), high = -cosq((i + 1) * quad_pi() / cells);
-    if ((quad_node_function(rule, n, low) < 0) != (quad_node_function(rule, n, high) < 0)) x[found++] = quad_zero(rule, n, low, high);
+    if ((quad_node_function(rule, n, low) < 0) != (quad_node_function(rule, n, high) < 0))
+      x[found++] = quad_zero(rule, n, low, high);
   }
   if (right) x[found++] = 1;
 }

@@ -47,15 +47,17 @@ static void midpoint(const field *f, const quad *y, const quad *rate, quad h, in
 static quad largest(int count, const quad *x)
 {
   quad most = 0;
-  for (int i = 0; i < count && most <= most; i++) /* a NaN stays */
+  for (int i = 0; i < count; i++) {
     if (!(quad_abs(x[i]) <= most)) most = quad_abs(x[i]);
+    if (!(most >= 0)) break; /* a NaN stays */
+  }
   return most;
 }
 
 /* |x - y| relative to |x| in the first half (q) and in the second (v or p): the larger one. */
 static quad distance(int n, const quad *x, const quad *y)
 {
-  quad difference[STATE_MAX];
+  quad difference[STATE_MAX] = {0};
   for (int i = 0; i < 2 * n; i++) difference[i] = x[i] - y[i];
   const quad q = largest(n, x), v = largest(n, x + n);
   const quad in_q = largest(n, difference) / (q > 0 ? q : 1), in_v = largest(n, difference + n) / (v > 0 ? v : 1);

@@ -105,11 +105,11 @@ static mass_matrix double_pendulum_mass(const quad_system *system, const quad *q
   return (mass_matrix){(m1 + m2) * l1 * l1, m2 * l1 * l2 * quad_cos(q[0] - q[1]), m2 * l2 * l2};
 }
 
-static void mass_solve(mass_matrix M, const quad *p, quad *v)
+static void mass_solve(mass_matrix M, quad upper, quad lower, quad *v)
 {
   const quad determinant = M.upper * M.lower - M.coupling * M.coupling;
-  v[0] = (M.lower * p[0] - M.coupling * p[1]) / determinant;
-  v[1] = (M.upper * p[1] - M.coupling * p[0]) / determinant;
+  v[0] = (M.lower * upper - M.coupling * lower) / determinant;
+  v[1] = (M.upper * lower - M.coupling * upper) / determinant;
 }
 
 static void double_pendulum_prepare(quad_system *system)
@@ -125,9 +125,9 @@ static void double_pendulum_acceleration(const quad_system *system, const quad *
 {
   const quad l1 = system->value[0], l2 = system->value[1], m1 = system->value[2], m2 = system->value[3], g = system->value[4];
   const quad sine = m2 * l1 * l2 * quad_sin(q[0] - q[1]);
-  const quad force[2] = {-sine * v[1] * v[1] - (m1 + m2) * g * l1 * quad_sin(q[0]),
-                         sine * v[0] * v[0] - m2 * g * l2 * quad_sin(q[1])};
-  mass_solve(double_pendulum_mass(system, q), force, a);
+  const quad upper = -sine * v[1] * v[1] - (m1 + m2) * g * l1 * quad_sin(q[0]);
+  const quad lower = sine * v[0] * v[0] - m2 * g * l2 * quad_sin(q[1]);
+  mass_solve(double_pendulum_mass(system, q), upper, lower, a);
 }
 
 static void double_pendulum_momentum(const quad_system *system, const quad *q, const quad *v, quad *p)
@@ -139,7 +139,7 @@ static void double_pendulum_momentum(const quad_system *system, const quad *q, c
 
 static void double_pendulum_velocity(const quad_system *system, const quad *q, const quad *p, quad *v)
 {
-  mass_solve(double_pendulum_mass(system, q), p, v);
+  mass_solve(double_pendulum_mass(system, q), p[0], p[1], v);
 }
 
 /* L = m/2 (a'^2 + (l+a)^2 th'^2) + m g (l+a) cos th - k a^2/2. */

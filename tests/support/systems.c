@@ -200,7 +200,8 @@ static int rotors_gradients(int count, const double *t, const double *q, const d
       const double x = q[i * count + k], w = v[i * count + k], lie = i == b->at ? b->gradient_lie : 0;
       const double before = i > 0 ? v[(i - 1) * count + k] : 0, after = i + 1 < SITES ? v[(i + 1) * count + k] : 0;
       L_q[i * count + k] = -sin(x) * w * w / 2 + cos(x) * after - (1 + t[k]) * x + (b->block == 0 ? lie : 0);
-      L_v[i * count + k] = (2 + cos(x)) * w + (before + after) / 4 + (i > 0 ? sin(q[(i - 1) * count + k]) : 0) + (b->block == 1 ? lie : 0);
+      L_v[i * count + k] = (2 + cos(x)) * w + (before + after) / 4 + (i > 0 ? sin(q[(i - 1) * count + k]) : 0) +
+                           (b->block == 1 ? lie : 0);
     }
   return b->answer;
 }

@@ -43,12 +43,29 @@ START_TEST(a_body_at_rest_is_found_in_spite_of_a_magnetic_momentum)
 }
 END_TEST
 
+/* Momenta a few roundings beside that of rest have velocities that are all roundoff. */
+START_TEST(velocities_at_the_roundoff_of_the_momentum_are_found)
+{
+  dvi_system *s = rotor_system();
+  for (int k = 0; k < 1000; k++) {
+    double p[SITES], q[SITES], v[SITES] = {0};
+    for (int i = 0; i < SITES; i++) q[i] = sin(1 + i + SITES * k);
+    ck_assert_int_eq(dvi_system_momentum(s, 0.5, q, v, p), DVI_OK);
+    for (int i = 0; i < SITES; i++) p[i] += (i * k % 5 - 2) * 1e-16;
+    memcpy(v, generic_v, sizeof v);
+    ck_assert_msg(dvi_system_velocity(s, 0.5, q, p, v) == DVI_OK, "%d: %s", k, dvi_last_error());
+    for (int i = 0; i < SITES; i++) ck_assert_double_eq_tol(v[i], 0, ROUNDING);
+  }
+  dvi_system_destroy(&s);
+}
+END_TEST
+
 START_TEST(constant_masses_are_inverted_in_every_form)
 {
   const double diagonal[SITES] = {1, 2, 3, 4, 5, -6};
   const dvi_mass masses[] = {{.scalar = 3}, {.diagonal = diagonal}, {.values = tridiagonal_mass, .pattern = tridiagonal}};
   dvi_system *s = make_system(&(dvi_system_terms){.dimension = SITES, .mass = masses[_i]});
-  double p[SITES], v[SITES] = {NAN}; /* the guess is not read */
+  double p[SITES], v[SITES] = {(double)NAN}; /* the guess is not read */
   ck_assert_int_eq(dvi_system_momentum(s, 0, generic_q, generic_v, p), DVI_OK);
   for (int i = 0; i < SITES; i++) {
     const double beside = (i > 0 ? generic_v[i - 1] : 0) + (i + 1 < SITES ? generic_v[i + 1] : 0);
@@ -164,17 +181,17 @@ END_TEST
 
 START_TEST(missing_and_not_finite_arguments_are_refused)
 {
-  const double bad[SITES] = {0, 0, NAN};
+  const double bad[SITES] = {0, 0, (double)NAN};
   dvi_system *s = rotor_system();
   double v[SITES] = {0}, L = 3;
   ck_assert_int_eq(dvi_system_velocity(NULL, 0, generic_q, generic_v, v), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_system_velocity(s, 0, generic_q, NULL, v), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_system_momentum(s, 0, generic_q, generic_v, NULL), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_system_lagrangian(s, 0, NULL, generic_v, &L), DVI_BAD_ARGUMENT);
-  ck_assert_int_eq(dvi_system_lagrangian(s, INFINITY, generic_q, generic_v, &L), DVI_NOT_FINITE);
+  ck_assert_int_eq(dvi_system_lagrangian(s, HUGE_VAL, generic_q, generic_v, &L), DVI_NOT_FINITE);
   ck_assert_int_eq(dvi_system_lagrangian(s, 0, bad, generic_v, &L), DVI_NOT_FINITE);
   ck_assert_int_eq(dvi_system_velocity(s, 0, generic_q, bad, v), DVI_NOT_FINITE);
-  v[3] = INFINITY;
+  v[3] = HUGE_VAL;
   ck_assert_int_eq(dvi_system_velocity(s, 0, generic_q, generic_v, v), DVI_NOT_FINITE);
   ck_assert_double_eq(L, 3);
   dvi_system_destroy(&s);
@@ -186,6 +203,7 @@ int main(void)
   TCase *tests = tcase_create("legendre");
   tcase_add_loop_test(tests, a_mass_that_depends_on_q_is_inverted_from_any_guess, 0, 3);
   tcase_add_test(tests, a_body_at_rest_is_found_in_spite_of_a_magnetic_momentum);
+  tcase_add_test(tests, velocities_at_the_roundoff_of_the_momentum_are_found);
   tcase_add_loop_test(tests, constant_masses_are_inverted_in_every_form, 0, 3);
   tcase_add_test(tests, a_degenerate_lagrangian_has_a_momentum_but_no_velocity);
   tcase_add_test(tests, a_momentum_that_no_velocity_has_is_reported_and_the_guess_stays);

@@ -39,9 +39,12 @@ END_TEST
 
 START_TEST(lists_that_are_missing_are_refused)
 {
-  refused(&(dvi_system_terms){.dimension = 1, .mass.scalar = 1, .potential_count = 2}, DVI_BAD_ARGUMENT, "2 potentials declared, but");
-  refused(&(dvi_system_terms){.dimension = 1, .mass.scalar = 1, .symmetry_count = 2}, DVI_BAD_ARGUMENT, "2 symmetries declared, but");
-  refused(&(dvi_system_terms){.dimension = 1, .mass.scalar = 1, .invariant_count = 2}, DVI_BAD_ARGUMENT, "2 invariants declared, but");
+  refused(&(dvi_system_terms){.dimension = 1, .mass.scalar = 1, .potential_count = 2}, DVI_BAD_ARGUMENT,
+          "2 potentials declared, but");
+  refused(&(dvi_system_terms){.dimension = 1, .mass.scalar = 1, .symmetry_count = 2}, DVI_BAD_ARGUMENT,
+          "2 symmetries declared, but");
+  refused(&(dvi_system_terms){.dimension = 1, .mass.scalar = 1, .invariant_count = 2}, DVI_BAD_ARGUMENT,
+          "2 invariants declared, but");
 }
 END_TEST
 
@@ -68,7 +71,8 @@ END_TEST
 START_TEST(two_forms_of_the_mass_are_refused)
 {
   const double ones[SITES] = {1, 1, 1, 1, 1, 1};
-  refused(&(dvi_system_terms){.dimension = SITES, .mass = {.scalar = 1, .diagonal = ones}}, DVI_BAD_ARGUMENT, "2 forms; one is possible");
+  refused(&(dvi_system_terms){.dimension = SITES, .mass = {.scalar = 1, .diagonal = ones}}, DVI_BAD_ARGUMENT,
+          "2 forms; one is possible");
   refused(&(dvi_system_terms){.dimension = SITES, .mass = {.diagonal = ones, .values = tridiagonal_mass, .pattern = tridiagonal}},
           DVI_BAD_ARGUMENT, "2 forms; one is possible");
 }
@@ -83,10 +87,11 @@ END_TEST
 
 START_TEST(masses_that_vanish_or_are_not_finite_are_singular)
 {
-  const double bad[] = {0, NAN, INFINITY, -INFINITY, 1e-320};
+  const double bad[] = {0, (double)NAN, HUGE_VAL, -HUGE_VAL, 1e-320};
   for (int k = 0; k < 5; k++) {
     const double masses[2] = {1, bad[k]};
-    refused(&(dvi_system_terms){.dimension = 2, .mass.diagonal = masses}, DVI_SINGULAR, "of coordinate 1; a finite number other than 0");
+    refused(&(dvi_system_terms){.dimension = 2, .mass.diagonal = masses}, DVI_SINGULAR,
+            "of coordinate 1; a finite number other than 0");
     if (k > 0) refused(&(dvi_system_terms){.dimension = 2, .mass.scalar = bad[k]}, DVI_SINGULAR, "of coordinate 0");
   }
 }
@@ -94,7 +99,7 @@ END_TEST
 
 START_TEST(a_singular_sparse_mass_is_refused)
 {
-  const double zero[4] = {1, 1, 1, 1}, bad[4] = {1, NAN, NAN, 1};
+  const double zero[4] = {1, 1, 1, 1}, bad[4] = {1, (double)NAN, (double)NAN, 1};
   refused(&(dvi_system_terms){.dimension = 2, .mass.values = zero}, DVI_SINGULAR, "system: mass matrix: ");
   refused(&(dvi_system_terms){.dimension = 2, .mass.values = bad}, DVI_SINGULAR, "the mass matrix is not finite");
 }

@@ -10,9 +10,9 @@
 #endif
 
 /* Leave through the caller's caller on failure. Only where nothing is owned. */
-#define DVI_TRY(call)                            \
-  do {                                           \
-    const dvi_status try_status_ = (call);       \
+#define DVI_TRY(call)                              \
+  do {                                             \
+    const dvi_status try_status_ = (call);         \
     if (try_status_ != DVI_OK) return try_status_; \
   } while (0)
 

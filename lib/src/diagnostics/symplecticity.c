@@ -146,11 +146,9 @@ static dvi_status difference_map(const step_map *map, double d, double *defect)
   return DVI_OK;
 }
 
-/* The smallest defect over the difference steps. One that leads outside of the map's domain is left out, unless all do. The step
- * itself comes first: the differences around a singularity need not touch it. */
+/* The smallest defect over the difference steps. One that leads outside of the map's domain is left out, unless all do. */
 static dvi_status search(const step_map *map, double *defect)
 {
-  DVI_TRY(step_from(map, 0, 0));
   static const double d[] = {0x1p-6, 0x1p-7, 0x1p-5, 0x1p-8, 0x1p-4, 0x1p-9, 0x1p-10, 0x1p-12};
   dvi_status last = DVI_OK;
   double smallest = (double)INFINITY;
@@ -158,8 +156,10 @@ static dvi_status search(const step_map *map, double *defect)
     double found;
     const dvi_status status = difference_map(map, d[i], &found);
     if (status < 0) return status;
-    if (status == DVI_OK) smallest = fmin(smallest, found);
-    else last = status;
+    if (status == DVI_OK)
+      smallest = fmin(smallest, found);
+    else
+      last = status;
   }
   if (!(smallest < (double)INFINITY)) return last;
   *defect = smallest;

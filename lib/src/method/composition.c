@@ -4,6 +4,7 @@
  * The discrete Lagrangian is the sum of those of the substeps, stationary in the points between them (Marsden and West 2001, sec. 2.5.1).
  * Order 4: Suzuki 1990, 5 substeps. Order 6: Kahan and Li 1997, 9 substeps. Order 8: Kahan and Li 1997, 17 substeps.
  * All three as collected by Hairer, Lubich and Wanner 2006, eqs. II.4.5, V.3.12 and V.3.14. */
+#include <string.h>
 
 #include "core/memory.h"
 #include "core/status.h"
@@ -35,6 +36,14 @@ static const scheme schemes[] = {
       0.18453964097831570709, 0.25837438768632204729, 0.29501172360931029887, -0.60550853383003451170}},
 };
 
+/* The rest of the specification becomes the base's own, with every key: one method, one spelling. */
+static void spell_out_base(dvi__stepper *self, const dvi__stepper *base)
+{
+  const char *keys_of_base = strchr(base->specification, ':');
+  dvi__text rest = {self->settings.rest, sizeof self->settings.rest, 0};
+  if (keys_of_base != NULL) dvi__text_add(&rest, "%s", keys_of_base + 1);
+}
+
 static dvi_status create(dvi__stepper *self)
 {
   char specification[2 * DVI__SPECIFICATION_SIZE] = "";
@@ -47,6 +56,7 @@ static dvi_status create(dvi__stepper *self)
   if (status != DVI_OK) return dvi__fail_in(status, "composition");
   if (!base->symmetric)
     return dvi__fail(DVI_BAD_OPTION, "composition: %s is not symmetric; choose a symmetric quadrature", base->specification);
+  spell_out_base(self, base);
   self->order = 4 + 2 * self->settings.value[ORDER];
   self->order = base->order > self->order ? base->order : self->order;
   self->symmetric = 1;

@@ -72,11 +72,11 @@ static dvi_status locate(dvi__watch *w, dvi_integrator *I, const dvi_event *even
   int side = 0;
   *zero = at.b;
   for (int i = 0; i < MOST_ITERATIONS && at.gb != 0; i++) {
-    const double width = fabs(at.b - at.a), tolerance = 1e-13 * fmax(1, fabs(at.b));
-    double g, middle = i % 8 == 7 ? 0.5 * (at.a + at.b) : (at.a * at.gb - at.b * at.ga) / (at.gb - at.ga);
-    if (width <= tolerance || middle == at.a || middle == at.b) break;
-    DVI_TRY(evaluate(w, I, event, middle, &g));
+    const double width = at.b - at.a, tolerance = 1e-13 * fmax(1, fabs(at.b));
+    double g, middle = at.a + width * (i % 8 == 7 ? 0.5 : at.ga / (at.ga - at.gb));
     *zero = middle;
+    if (fabs(width) <= tolerance || middle == at.a || middle == at.b) break;
+    DVI_TRY(evaluate(w, I, event, middle, &g));
     if (g == 0) break;
     if ((g > 0) == (at.gb > 0)) {
       at.b = middle, at.gb = g;

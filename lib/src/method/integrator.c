@@ -220,7 +220,8 @@ dvi_status dvi_integrator_interpolate(dvi_integrator *I, double t, double *q, do
 {
   if (I == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "interpolate: the integrator is NULL");
   if (I->last_h == 0) return dvi__fail(DVI_BAD_STATE, "interpolate: no step was taken yet");
-  const double tau = (t - I->last.t) / I->last_h, rounding = 1e-12;
+  /* By the rounded ends: late in a run t0 + h is rounded by much more than a part of h. */
+  const double tau = (t - I->last.t) / (I->now.t - I->last.t), rounding = 1e-12;
   if (!(tau >= -rounding && tau <= 1 + rounding))
     return dvi__fail(DVI_BAD_ARGUMENT, "interpolate: t = %.17g is outside of the last step, %.17g to %.17g", t, I->last.t, I->now.t);
   if (I->stepper.method->path == NULL) return hermite(I, tau, q, v);

@@ -1,4 +1,4 @@
-/* The inside of an integrator, for integrator.c and checkpoint.c. */
+/* The inside of an integrator, for integrator.c, checkpoint.c and run.c. */
 #ifndef DVI_METHOD_INTEGRATOR_STRUCT_H
 #define DVI_METHOD_INTEGRATOR_STRUCT_H
 #include "method/method.h"

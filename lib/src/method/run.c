@@ -4,6 +4,7 @@
 
 #include "core/status.h"
 #include "method/event.h"
+#include "method/integrator_struct.h"
 
 /* Steps within this part of h of the end land on it. */
 static const double rounding = 1e-9;
@@ -21,6 +22,7 @@ static dvi_status check_events(const dvi_run_options *options)
 static dvi_status check(const dvi_integrator *I, const dvi_run_options *options)
 {
   if (I == NULL || options == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "run: an argument is NULL");
+  if (!I->started) return dvi__fail(DVI_BAD_STATE, "run: the integrator has no state yet; call dvi_integrator_start first");
   const double way = options->t_end - dvi_integrator_time(I);
   if (!isfinite(options->h) || options->h == 0)
     return dvi__fail(DVI_BAD_ARGUMENT, "run: h = %g; a finite step other than 0 is needed", options->h);

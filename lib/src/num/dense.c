@@ -10,8 +10,8 @@
 extern void dgetrf_(const int *m, const int *n, double *a, const int *lda, int *ipiv, int *info);
 extern void dgetrs_(const char *trans, const int *n, const int *nrhs, const double *a, const int *lda, const int *ipiv, double *b,
                     const int *ldb, int *info, size_t trans_length);
-extern void dgecon_(const char *norm, const int *n, const double *a, const int *lda, const double *anorm, double *rcond, double *work,
-                    int *iwork, int *info, size_t norm_length);
+extern void dgecon_(const char *norm, const int *n, const double *a, const int *lda, const double *anorm, double *rcond,
+                    double *work, int *iwork, int *info, size_t norm_length);
 
 typedef struct dense {
   double *lu;   /* [n*n], columns */
@@ -35,7 +35,7 @@ static dvi_status create(const dvi__pattern *pattern, void **factor)
   const size_t n = (size_t)pattern->columns;
   dense *d = *factor = DVI_NEW(dense, 1);
   if (d == NULL) return dvi__fail(DVI_NO_MEMORY, "dense LU: no memory");
-  *d = (dense){DVI_NEW(double, n * n), DVI_NEW(double, 4 * n), DVI_NEW(int, n), DVI_NEW(int, n)};
+  *d = (dense){DVI_NEW(double, n *n), DVI_NEW(double, 4 * n), DVI_NEW(int, n), DVI_NEW(int, n)};
   if (d->lu != NULL && d->work != NULL && d->pivot != NULL && d->iwork != NULL) return DVI_OK;
   destroy(d);
   *factor = NULL;

@@ -56,8 +56,8 @@ static int well_conditioned(sparse *s)
 static int refactor_in_order(sparse *s, const dvi__pattern *pattern, double *entries)
 {
   return s->numeric != NULL && klu_refactor(pattern->start, pattern->row, entries, s->symbolic, s->numeric, &s->common) &&
-         klu_rgrowth(pattern->start, pattern->row, entries, s->symbolic, s->numeric, &s->common) && s->common.rgrowth >= LEAST_GROWTH &&
-         well_conditioned(s);
+         klu_rgrowth(pattern->start, pattern->row, entries, s->symbolic, s->numeric, &s->common) &&
+         s->common.rgrowth >= LEAST_GROWTH && well_conditioned(s);
 }
 
 static dvi_status refactor(void *factor, const dvi__pattern *pattern, const double *values)

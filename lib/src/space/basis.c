@@ -80,8 +80,7 @@ static void lagrange(const dvi__space *space, long double tau, long double *valu
   }
   for (int k = last; k >= 0; k--) {
     if (value) value[k] = space->weight[k] * (before[k] * behind);
-    if (derivative)
-      derivative[k] = space->scale * space->weight[k] * (before_slope[k] * behind + before[k] * behind_slope);
+    if (derivative) derivative[k] = space->scale * space->weight[k] * (before_slope[k] * behind + before[k] * behind_slope);
     behind_slope = behind_slope * (x - space->mark[k]) + behind;
     behind *= x - space->mark[k];
   }

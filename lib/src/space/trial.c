@@ -67,7 +67,8 @@ static void read_modal(const dvi__space *space, reading *to)
     }
     dvi__space_evaluate(space, to->point[j], value, NULL);
     for (int k = 1; k < points; k++)
-      to->matrix[k - 1][j] = value[k] * (space->basis == DVI_CHEBYSHEV ? 2 / (long double)points : (long double)(2 * k + 1) * weight[j]);
+      to->matrix[k - 1][j] = value[k] *
+                             (space->basis == DVI_CHEBYSHEV ? 2 / (long double)points : (long double)(2 * k + 1) * weight[j]);
   }
 }
 

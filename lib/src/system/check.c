@@ -39,6 +39,7 @@ typedef struct check {
   const double *q, *v;
   double *gradient[2], *column[2]; /* [n] */
   double *hessian[3];              /* as long as the longest pattern */
+  double gradient_noise;           /* of the term at hand, if its gradient is itself differenced; else 0 */
   finding of_gradient, of_hessian, of_pattern;
 } check;
 
@@ -59,10 +60,10 @@ static void keep_worst(const block *b, const disagreement *found, finding *kept)
   kept->block = b->name;
 }
 
-/* What roundoff in values as large as `magnitude` does to a difference over the step; more if they are differenced themselves. */
-static double noise_of(double magnitude, double step, int differenced)
+/* What roundoff in values as large as `magnitude` does to a difference over the step. */
+static double noise_of(double magnitude, double step)
 {
-  return (differenced ? 1e-12 : 64 * DBL_EPSILON) * magnitude / step;
+  return 64 * DBL_EPSILON * magnitude / step;
 }
 
 static double max_norm(int n, const double *x)
@@ -81,8 +82,18 @@ static dvi_status check_gradient(check *c, dvi__batch_value value, const void *f
   const dvi__differences *d = &c->differences;
   DVI_TRY(dvi__difference_gradient(value, function, &c->differences, c->n, 1, x, c->column[0]));
   const double magnitude = fmax(fabs(d->plus[0]), fabs(d->minus[0]));
-  for (int i = 0; i < c->n; i++) compare(&b, i, -1, given[i], c->column[0][i], noise_of(magnitude, d->step[i], 0), &b.on_pattern);
+  for (int i = 0; i < c->n; i++) compare(&b, i, -1, given[i], c->column[0][i], noise_of(magnitude, d->step[i]), &b.on_pattern);
   keep_worst(&b, &b.on_pattern, &c->of_gradient);
+  return DVI_OK;
+}
+
+/* For a term without a gradient callback. */
+static dvi_status measure_noise(check *c, dvi__batch_value value, const void *function, const double *x)
+{
+  const dvi__differences *d = &c->differences;
+  DVI_TRY(dvi__difference_gradient(value, function, &c->differences, c->n, 1, x, c->column[0]));
+  const double magnitude = fmax(fabs(d->plus[0]), fabs(d->minus[0]));
+  for (int i = 0; i < c->n; i++) c->gradient_noise = fmax(c->gradient_noise, noise_of(magnitude, d->step[i]));
   return DVI_OK;
 }
 
@@ -104,14 +115,15 @@ static void compare_column(block *b, int n, int j, const double *differenced, do
 }
 
 /* One or two blocks whose columns belong to the same variable x; the second may be NULL. */
-static dvi_status check_blocks(check *c, dvi__batch_gradient gradient, const void *function, const double *x, int noisy, block *first,
+static dvi_status check_blocks(check *c, dvi__batch_gradient gradient, const void *function, const double *x, block *first,
                                block *second)
 {
   const dvi__differences *d = &c->differences;
   for (int j = 0; j < c->n; j++) {
     DVI_TRY(dvi__difference_column(gradient, function, &c->differences, c->n, j, x, c->column[0], c->column[1]));
-    compare_column(first, c->n, j, c->column[0], noise_of(max_norm(c->n, d->plus), d->step[j], noisy));
-    if (second != NULL) compare_column(second, c->n, j, c->column[1], noise_of(max_norm(c->n, d->plus_v), d->step[j], noisy));
+    compare_column(first, c->n, j, c->column[0], (noise_of(max_norm(c->n, d->plus), 1) + c->gradient_noise) / d->step[j]);
+    if (second == NULL) continue;
+    compare_column(second, c->n, j, c->column[1], (noise_of(max_norm(c->n, d->plus_v), 1) + c->gradient_noise) / d->step[j]);
   }
   for (block *b = first; b != NULL; b = b == first ? second : NULL) {
     keep_worst(b, &b->on_pattern, &c->of_hessian);
@@ -127,29 +139,36 @@ static dvi_status check_potential(check *c, const dvi__potential_term *p)
   const dvi__potential_at at = {p, &c->scratch, &c->t};
   const int has_gradient = dvi__potential_has_gradient(p), has_hessian = dvi__potential_has_hessian(p);
   block qq = {.term = p->name, .name = "d2V/dq2", .pattern = &p->qq, .given = has_hessian ? c->hessian[0] : NULL};
+  c->gradient_noise = 0;
   if (has_gradient) {
     DVI_TRY(dvi__potential_gradient(p, &c->scratch, 1, &c->t, c->q, c->gradient[0]));
     DVI_TRY(check_gradient(c, dvi__potential_value_of_q, &at, c->q, c->gradient[0], p->name, "dV/dq"));
+  } else {
+    DVI_TRY(measure_noise(c, dvi__potential_value_of_q, &at, c->q));
   }
   if (has_hessian) DVI_TRY(dvi__potential_hessian(p, &c->scratch, 1, &c->t, c->q, c->hessian[0]));
-  return check_blocks(c, dvi__potential_gradient_of_q, &at, c->q, !has_gradient, &qq, NULL);
+  return check_blocks(c, dvi__potential_gradient_of_q, &at, c->q, &qq, NULL);
 }
 
 static dvi_status check_lagrangian(check *c, const dvi__lagrangian_term *l)
 {
   const dvi__general_at at = {l, &c->scratch, &c->t, c->q, c->v};
-  const int noisy = !dvi__general_has_gradient(l), has_hessian = dvi__general_has_hessian(l);
+  const int has_hessian = dvi__general_has_hessian(l);
   block qq = {.name = "d2L/dq2", .pattern = &l->qq, .given = has_hessian ? c->hessian[0] : NULL};
   block qv = {.name = "d2L/dqdv", .pattern = &l->qv, .given = has_hessian ? c->hessian[1] : NULL};
   block vv = {.name = "d2L/dv2", .pattern = &l->vv, .given = has_hessian ? c->hessian[2] : NULL};
-  if (!noisy) {
+  c->gradient_noise = 0;
+  if (dvi__general_has_gradient(l)) {
     DVI_TRY(dvi__general_gradient(l, &c->scratch, 1, &c->t, c->q, c->v, c->gradient[0], c->gradient[1]));
     DVI_TRY(check_gradient(c, dvi__general_value_of_q, &at, c->q, c->gradient[0], NULL, "dL/dq"));
     DVI_TRY(check_gradient(c, dvi__general_value_of_v, &at, c->v, c->gradient[1], NULL, "dL/dv"));
+  } else {
+    DVI_TRY(measure_noise(c, dvi__general_value_of_q, &at, c->q));
+    DVI_TRY(measure_noise(c, dvi__general_value_of_v, &at, c->v));
   }
   if (has_hessian) DVI_TRY(dvi__general_hessian(l, &c->scratch, 1, &c->t, c->q, c->v, c->hessian[0], c->hessian[1], c->hessian[2]));
-  DVI_TRY(check_blocks(c, dvi__general_gradient_of_q, &at, c->q, noisy, &qq, NULL));
-  return check_blocks(c, dvi__general_gradient_of_v, &at, c->v, noisy, &qv, &vv);
+  DVI_TRY(check_blocks(c, dvi__general_gradient_of_q, &at, c->q, &qq, NULL));
+  return check_blocks(c, dvi__general_gradient_of_v, &at, c->v, &qv, &vv);
 }
 
 static dvi_status check_terms(check *c, const dvi_system *system)
@@ -190,8 +209,8 @@ static dvi_status report(const check *c, double tolerance, dvi_derivative_check 
   if (missing)
     return dvi__fail(DVI_BAD_ARGUMENT, "system check: %s is not in the pattern, but differences give %.15g", entry,
                      worst->worst.differenced);
-  return dvi__fail(DVI_BAD_ARGUMENT, "system check: %s is %.15g from the callback, %.15g from differences", entry, worst->worst.given,
-                   worst->worst.differenced);
+  return dvi__fail(DVI_BAD_ARGUMENT, "system check: %s is %.15g from the callback, %.15g from differences", entry,
+                   worst->worst.given, worst->worst.differenced);
 }
 
 /* ---- memory ---- */

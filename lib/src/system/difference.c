@@ -27,8 +27,8 @@ static void choose_steps(int n, int count, const double *x, double relative, dou
   }
 }
 
-dvi_status dvi__difference_gradient(dvi__batch_value value, const void *function, dvi__differences *d, int n, int count, const double *x,
-                                    double *gradient)
+dvi_status dvi__difference_gradient(dvi__batch_value value, const void *function, dvi__differences *d, int n, int count,
+                                    const double *x, double *gradient)
 {
   const size_t points = (size_t)count;
   choose_steps(n, count, x, sixth_order_step(), d->step);
@@ -55,8 +55,8 @@ static void move_group(const dvi__differences *d, const dvi__groups *groups, int
       d->moved[at] = groups->of_column[j] == g ? x[at] + sign * d->step[at] : x[at];
 }
 
-static void fill_columns(const dvi__pattern *pattern, const dvi__groups *groups, int g, int count, const double *plus, const double *minus,
-                         const double *step, double *values)
+static void fill_columns(const dvi__pattern *pattern, const dvi__groups *groups, int g, int count, const double *plus,
+                         const double *minus, const double *step, double *values)
 {
   const size_t points = (size_t)count;
   for (int j = 0; j < pattern->columns; j++) {
@@ -69,9 +69,9 @@ static void fill_columns(const dvi__pattern *pattern, const dvi__groups *groups,
   }
 }
 
-dvi_status dvi__difference_hessian(dvi__batch_gradient gradient, const void *function, dvi__differences *d, const dvi__groups *groups,
-                                   int noisy, int count, const double *x, const dvi__pattern *first, double *first_values,
-                                   const dvi__pattern *second, double *second_values)
+dvi_status dvi__difference_hessian(dvi__batch_gradient gradient, const void *function, dvi__differences *d,
+                                   const dvi__groups *groups, int noisy, int count, const double *x, const dvi__pattern *first,
+                                   double *first_values, const dvi__pattern *second, double *second_values)
 {
   const int n = first != NULL ? first->columns : second->columns;
   choose_steps(n, count, x, noisy ? 1e-3 : cbrt(DBL_EPSILON), d->step);
@@ -91,8 +91,8 @@ static void add_difference(int n, double factor, const double *plus, const doubl
   for (int i = 0; i < n; i++) sum[i] += factor * (plus[i] - minus[i]);
 }
 
-dvi_status dvi__difference_column(dvi__batch_gradient gradient, const void *function, dvi__differences *d, int n, int j, const double *x,
-                                  double *first, double *second)
+dvi_status dvi__difference_column(dvi__batch_gradient gradient, const void *function, dvi__differences *d, int n, int j,
+                                  const double *x, double *first, double *second)
 {
   const size_t size = (size_t)n * sizeof(double);
   choose_steps(n, 1, x, sixth_order_step(), d->step);

@@ -29,7 +29,7 @@ static dvi_status allocate(dvi__evaluator *e)
     longest = entries > longest ? entries : longest;
   }
   DVI_TRY(dvi__scratch_create(system, e->capacity, &e->scratch));
-  e->term = DVI_NEW(double, longest * (size_t)e->capacity);
+  e->term = DVI_NEW(double, longest *(size_t)e->capacity);
   for (int i = 0; i < 3; i++) e->point[i] = DVI_NEW(double, system->n);
   if (e->term && e->point[0] && e->point[1] && e->point[2] && (system->lagrangian == NULL || allocate_general(e))) return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "evaluator: no memory for %d points in %d dimensions", e->capacity, system->n);

@@ -6,7 +6,8 @@
 static dvi_status callback(int returned, const char *name)
 {
   if (returned == 0) return DVI_OK;
-  return dvi__fail(returned < 0 ? DVI_CALLBACK_FAILED : DVI_CALLBACK_RETRY, "invariant '%s': the callback returned %d", name, returned);
+  return dvi__fail(returned < 0 ? DVI_CALLBACK_FAILED : DVI_CALLBACK_RETRY, "invariant '%s': the callback returned %d", name,
+                   returned);
 }
 
 /* J = p.xi(q)  (Marsden and West 2001, eq. 1.2.6). */

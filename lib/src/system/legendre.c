@@ -17,7 +17,8 @@ static double max_norm(int n, const double *x)
 }
 
 /* One Newton step: v += L_vv^{-1} (p - L_v). The sizes of the step and of the residual before it go to *size and *residual. */
-static dvi_status newton_step(dvi__evaluator *e, double t, const double *q, const double *p, double *v, double *size, double *residual)
+static dvi_status newton_step(dvi__evaluator *e, double t, const double *q, const double *p, double *v, double *size,
+                              double *residual)
 {
   const int n = e->system->n;
   double *change = e->point[0];
@@ -26,7 +27,8 @@ static dvi_status newton_step(dvi__evaluator *e, double t, const double *q, cons
   *residual = max_norm(n, change);
   DVI_TRY(dvi__lagrangian_hessian(e, 1, &t, q, v, e->hessian[0], e->hessian[1], e->hessian[2]));
   const dvi_status status = dvi__linear_factor(e->velocity, e->hessian[2]);
-  if (status == DVI_SINGULAR) return dvi__fail_in(status, "the Lagrangian is degenerate at t = %.6g: d2L/dv2 cannot be inverted", t);
+  if (status == DVI_SINGULAR)
+    return dvi__fail_in(status, "the Lagrangian is degenerate at t = %.6g: d2L/dv2 cannot be inverted", t);
   if (status != DVI_OK) return status;
   dvi__linear_solve(e->velocity, change);
   for (int i = 0; i < n; i++) v[i] += change[i];
@@ -46,8 +48,8 @@ static dvi_status newton(dvi__evaluator *e, double t, const double *q, const dou
     if (size <= 2 * DBL_EPSILON * scale) return DVI_OK;
     if (size >= last && (size <= 1e-10 * scale || residual <= 1e-10 * max_norm(e->system->n, p))) return DVI_OK;
   }
-  return dvi__fail(DVI_NOT_CONVERGED, "no velocity found for the momentum at t = %.6g: Newton's method did not settle (last change %.1e)", t,
-                   size);
+  return dvi__fail(DVI_NOT_CONVERGED,
+                   "no velocity found for the momentum at t = %.6g: Newton's method did not settle (last change %.1e)", t, size);
 }
 
 dvi_status dvi__legendre_inverse(dvi__evaluator *e, double t, const double *q, const double *p, double *v)

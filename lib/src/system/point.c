@@ -9,7 +9,8 @@
 
 static dvi_status check_point(const dvi_system *system, double t, const double *q, const double *second, const void *result)
 {
-  if (system == NULL || q == NULL || second == NULL || result == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "system: an argument is NULL");
+  if (system == NULL || q == NULL || second == NULL || result == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "system: an argument is NULL");
   const size_t n = (size_t)system->n;
   if (!isfinite(t) || dvi__first_not_finite(n, q) >= 0 || dvi__first_not_finite(n, second) >= 0)
     return dvi__fail(DVI_NOT_FINITE, "system: the point (t = %g) is not finite", t);

@@ -38,8 +38,8 @@ static dvi_status copy_symmetric(const dvi_pattern *declared, int n, const char 
   for (int j = 0; j < n; j++)
     for (int e = copy->start[j]; e < copy->start[j + 1]; e++)
       if (dvi__pattern_find(copy, j, copy->row[e]) < 0)
-        return dvi__fail(DVI_BAD_ARGUMENT, "%s: the pattern holds (%d,%d) but not (%d,%d); both triangles are needed", name, copy->row[e], j,
-                         j, copy->row[e]);
+        return dvi__fail(DVI_BAD_ARGUMENT, "%s: the pattern holds (%d,%d) but not (%d,%d); both triangles are needed", name,
+                         copy->row[e], j, j, copy->row[e]);
   return DVI_OK;
 }
 
@@ -190,7 +190,7 @@ static dvi_status copy_invariants(dvi_system *s, const dvi_system_terms *terms)
   s->symmetry_count = terms->symmetry_count;
   s->invariant_count = terms->invariant_count;
   for (int i = 0; i < dvi_system_invariant_count(s); i++) {
-    const char *name = i == 0                    ? "energy"
+    const char *name = i == 0                   ? "energy"
                        : i <= s->symmetry_count ? s->symmetries[i - 1].name
                                                 : s->invariants[i - 1 - s->symmetry_count].name;
     s->invariant_names[i] = copy_text(name != NULL ? name : "unnamed");

@@ -7,11 +7,7 @@
 #include "num/pattern.h"
 
 /* What a system declares, and what a method can use: a set of bits. */
-typedef enum dvi__term {
-  DVI__CONSTANT_MASS = 1,
-  DVI__LAGRANGIAN = 2,
-  DVI__POTENTIAL = 4
-} dvi__term;
+typedef enum dvi__term { DVI__CONSTANT_MASS = 1, DVI__LAGRANGIAN = 2, DVI__POTENTIAL = 4 } dvi__term;
 
 /* How to difference a missing Hessian block: columns of a group are moved together. */
 typedef struct dvi__groups {
@@ -30,7 +26,7 @@ typedef struct dvi__potential_term {
 typedef struct dvi__lagrangian_term {
   dvi_lagrangian callbacks;
   dvi__pattern qq, qv, vv;
-  int *in_qq; /* [entries of qq] */
+  int *in_qq;                     /* [entries of qq] */
   dvi__groups q_groups, v_groups; /* q columns of qq; v columns of qv and vv together */
 } dvi__lagrangian_term;
 
@@ -47,7 +43,7 @@ struct dvi_system {
   int symmetry_count;
   dvi_invariant *invariants;
   int invariant_count;
-  char **invariant_names; /* energy, symmetries, invariants */
+  char **invariant_names;  /* energy, symmetries, invariants */
   dvi__pattern qq, qv, vv; /* of L's Hessian: unions over the terms; vv is diagonal for scalar and diagonal masses */
 };
 

@@ -5,15 +5,16 @@
 #include "num/finite.h"
 #include "system/difference.h"
 
-/* The status that a callback's return and its results, `entries` at each of `count` points, amount to. */
-static dvi_status verdict(int returned, int entries, int count, const double *result, const char *name, const char *what)
+/* The status that a callback's return and its results, `entries` at each of `count` points, amount to; `in` says which result. */
+static dvi_status verdict(int returned, int entries, int count, const double *result, const char *name, const char *what,
+                          const char *in)
 {
   if (returned < 0) return dvi__fail(DVI_CALLBACK_FAILED, "%s: the %s callback failed with %d", name, what, returned);
   if (returned > 0) return dvi__fail(DVI_CALLBACK_RETRY, "%s: the %s callback asked for a smaller step (%d)", name, what, returned);
   const ptrdiff_t bad = dvi__first_not_finite((size_t)entries * (size_t)count, result);
   if (bad < 0) return DVI_OK;
-  return dvi__fail(DVI_NOT_FINITE, "%s: the %s callback gave %g (entry %td, point %td of %d)", name, what, result[bad], bad / count,
-                   bad % count, count);
+  return dvi__fail(DVI_NOT_FINITE, "%s: the %s callback gave %g%s (entry %td, point %td of %d)", name, what, result[bad], in,
+                   bad / count, bad % count, count);
 }
 
 static void gather(int n, int count, int k, const double *batch, double *point)
@@ -38,7 +39,8 @@ int dvi__potential_has_hessian(const dvi__potential_term *p)
   return p->callbacks.hessian != NULL || p->callbacks.hessian_batch != NULL;
 }
 
-dvi_status dvi__potential_value(const dvi__potential_term *p, dvi__scratch *s, int count, const double *t, const double *q, double *V)
+dvi_status dvi__potential_value(const dvi__potential_term *p, dvi__scratch *s, int count, const double *t, const double *q,
+                                double *V)
 {
   const dvi_potential *c = &p->callbacks;
   int returned = 0;
@@ -47,7 +49,7 @@ dvi_status dvi__potential_value(const dvi__potential_term *p, dvi__scratch *s, i
     gather(s->n, count, k, q, s->point_q);
     returned = c->value(t[k], s->point_q, V + k, c->user);
   }
-  return verdict(returned, 1, count, V, p->name, "value");
+  return verdict(returned, 1, count, V, p->name, "value", "");
 }
 
 dvi_status dvi__potential_value_of_q(const void *function, int count, const double *q, double *V)
@@ -63,7 +65,8 @@ dvi_status dvi__potential_gradient_of_q(const void *function, int count, const d
   return dvi__potential_gradient(f->term, f->scratch, count, f->t, q, V_q);
 }
 
-dvi_status dvi__potential_gradient(const dvi__potential_term *p, dvi__scratch *s, int count, const double *t, const double *q, double *V_q)
+dvi_status dvi__potential_gradient(const dvi__potential_term *p, dvi__scratch *s, int count, const double *t, const double *q,
+                                   double *V_q)
 {
   const dvi_potential *c = &p->callbacks;
   int returned = 0;
@@ -75,24 +78,25 @@ dvi_status dvi__potential_gradient(const dvi__potential_term *p, dvi__scratch *s
     returned = c->gradient(t[k], s->point_q, s->result[0], c->user);
     scatter(s->n, count, k, s->result[0], V_q);
   }
-  return verdict(returned, s->n, count, V_q, p->name, "gradient");
+  return verdict(returned, s->n, count, V_q, p->name, "gradient", "");
 }
 
-dvi_status dvi__potential_hessian(const dvi__potential_term *p, dvi__scratch *s, int count, const double *t, const double *q, double *V_qq)
+dvi_status dvi__potential_hessian(const dvi__potential_term *p, dvi__scratch *s, int count, const double *t, const double *q,
+                                  double *V_qq)
 {
   const dvi_potential *c = &p->callbacks;
   const int entries = dvi__pattern_entries(&p->qq);
   int returned = 0;
   if (!dvi__potential_has_hessian(p))
-    return dvi__difference_hessian(dvi__potential_gradient_of_q, &(dvi__potential_at){p, s, t}, &s->of_gradient, &p->groups, !dvi__potential_has_gradient(p),
-                                   count, q, &p->qq, V_qq, NULL, NULL);
+    return dvi__difference_hessian(dvi__potential_gradient_of_q, &(dvi__potential_at){p, s, t}, &s->of_gradient, &p->groups,
+                                   !dvi__potential_has_gradient(p), count, q, &p->qq, V_qq, NULL, NULL);
   if (c->hessian_batch != NULL) returned = c->hessian_batch(count, t, q, V_qq, c->user);
   for (int k = 0; c->hessian_batch == NULL && k < count && returned == 0; k++) {
     gather(s->n, count, k, q, s->point_q);
     returned = c->hessian(t[k], s->point_q, s->result[0], c->user);
     scatter(entries, count, k, s->result[0], V_qq);
   }
-  return verdict(returned, entries, count, V_qq, p->name, "Hessian");
+  return verdict(returned, entries, count, V_qq, p->name, "Hessian", "");
 }
 
 /* ---- general Lagrangian ---- */
@@ -109,8 +113,8 @@ int dvi__general_has_hessian(const dvi__lagrangian_term *l)
   return l->callbacks.hessian != NULL || l->callbacks.hessian_batch != NULL;
 }
 
-dvi_status dvi__general_value(const dvi__lagrangian_term *l, dvi__scratch *s, int count, const double *t, const double *q, const double *v,
-                              double *L)
+dvi_status dvi__general_value(const dvi__lagrangian_term *l, dvi__scratch *s, int count, const double *t, const double *q,
+                              const double *v, double *L)
 {
   const dvi_lagrangian *c = &l->callbacks;
   int returned = 0;
@@ -120,7 +124,7 @@ dvi_status dvi__general_value(const dvi__lagrangian_term *l, dvi__scratch *s, in
     gather(s->n, count, k, v, s->point_v);
     returned = c->value(t[k], s->point_q, s->point_v, L + k, c->user);
   }
-  return verdict(returned, 1, count, L, general, "value");
+  return verdict(returned, 1, count, L, general, "value", "");
 }
 
 dvi_status dvi__general_value_of_q(const void *function, int count, const double *q, double *L)
@@ -165,8 +169,8 @@ dvi_status dvi__general_gradient(const dvi__lagrangian_term *l, dvi__scratch *s,
     scatter(s->n, count, k, s->result[0], L_q);
     scatter(s->n, count, k, s->result[1], L_v);
   }
-  DVI_TRY(verdict(returned, s->n, count, L_q, general, "gradient (L_q)"));
-  return verdict(returned, s->n, count, L_v, general, "gradient (L_v)");
+  DVI_TRY(verdict(returned, s->n, count, L_q, general, "gradient", " in L_q"));
+  return verdict(returned, s->n, count, L_v, general, "gradient", " in L_v");
 }
 
 static dvi_status difference_general_hessian(const dvi__general_at *at, int count, double *L_qq, double *L_qv, double *L_vv)
@@ -194,7 +198,7 @@ dvi_status dvi__general_hessian(const dvi__lagrangian_term *l, dvi__scratch *s, 
     scatter(qv, count, k, s->result[1], L_qv);
     scatter(vv, count, k, s->result[2], L_vv);
   }
-  DVI_TRY(verdict(returned, qq, count, L_qq, general, "Hessian (L_qq)"));
-  DVI_TRY(verdict(returned, qv, count, L_qv, general, "Hessian (L_qv)"));
-  return verdict(returned, vv, count, L_vv, general, "Hessian (L_vv)");
+  DVI_TRY(verdict(returned, qq, count, L_qq, general, "Hessian", " in L_qq"));
+  DVI_TRY(verdict(returned, qv, count, L_qv, general, "Hessian", " in L_qv"));
+  return verdict(returned, vv, count, L_vv, general, "Hessian", " in L_vv");
 }

@@ -13,9 +13,9 @@ typedef struct dvi__differences {
 
 typedef struct dvi__scratch {
   int n, capacity;
-  double *point_q, *point_v;                /* [n] one point, for one-point callbacks */
-  double *result[3];                        /* its results, each as long as the longest Hessian */
-  dvi__differences of_value, of_gradient;   /* the two levels: a missing gradient under a missing Hessian uses both */
+  double *point_q, *point_v;              /* [n] one point, for one-point callbacks */
+  double *result[3];                      /* its results, each as long as the longest Hessian */
+  dvi__differences of_value, of_gradient; /* the two levels: a missing gradient under a missing Hessian uses both */
 } dvi__scratch;
 
 /* Memory for n*capacity numbers in each array; 0 if there is none left (clear frees what there is). */
@@ -26,7 +26,8 @@ dvi_status dvi__scratch_create(const dvi_system *system, int capacity, dvi__scra
 void dvi__scratch_clear(dvi__scratch *scratch);
 
 /* All of these check the callback's return and that every number is finite. Shapes as in evaluator.h. */
-dvi_status dvi__potential_value(const dvi__potential_term *p, dvi__scratch *s, int count, const double *t, const double *q, double *V);
+dvi_status dvi__potential_value(const dvi__potential_term *p, dvi__scratch *s, int count, const double *t, const double *q,
+                                double *V);
 dvi_status dvi__potential_gradient(const dvi__potential_term *p, dvi__scratch *s, int count, const double *t, const double *q,
                                    double *V_q);
 dvi_status dvi__potential_hessian(const dvi__potential_term *p, dvi__scratch *s, int count, const double *t, const double *q,

@@ -1,0 +1,118 @@
+#include "levels.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SEARCH_TRIES = 40 };
+static const long steps_max = 1L << 24;
+static const double level_room = 1e5; /* first error over the floor, at least: six levels a decade apart */
+
+static double within(double x, double low, double high)
+{
+  return fmin(fmax(x, low), high);
+}
+
+/* Where the first level's error should lie. A high order shows late, when the terms beyond the leading one have died out, but
+ * passes its few levels in many digits; a low order needs steps without number to come near the floor. */
+static double first_target(const order_study *s)
+{
+  if (s->first_error > 0.0) return s->first_error * study_size(s);
+  const double digits = fmax(3.0 + 0.5 * s->order, fmin(1.0 + s->order, 15.0));
+  return within(level_room * s->floor, pow(10.0, -digits) * study_size(s), 0.1 * s->ceiling);
+}
+
+/* The number of steps, strictly between too few and enough (0: not known), that the order foretells from one error. */
+static long next_guess(const order_study *s, long steps, double error, double target, long too_few, long enough)
+{
+  const double factor = isfinite(error) ? within(pow(error / target, 1.0 / s->order), 0.25, 4.0) : 2.0;
+  const double high = enough > 0 ? (double)enough - 1.0 : (double)steps_max;
+  return lround(within(ceil((double)steps * factor), (double)too_few + 1.0, high));
+}
+
+/* Search for the first level: the error nearest below three times the target. A step too large to solve is too rough. */
+static dvi_status find_first(order_study *s, level_trial *first)
+{
+  const double target = first_target(s);
+  long too_few = 0;
+  long enough = 0;
+  long steps = lround(within(ceil(fabs(s->t_end) / s->scene->order_h), 1.0, 1e6));
+  for (int i = 0; i < SEARCH_TRIES; i++) {
+    const dvi_status status = study_run(s, steps, first);
+    if (status < 0) return status;
+    const double error = status == DVI_OK ? first->error : (double)NAN;
+    const bool fine = error <= 3.0 * target;
+    if (fine && error >= 0.1 * target) return DVI_OK;
+    if (fine)
+      enough = steps;
+    else
+      too_few = steps;
+    if (too_few + 1 == enough || too_few >= steps_max) break;
+    steps = next_guess(s, steps, error, target, too_few, enough);
+  }
+  return study_run(s, enough > 0 ? enough : too_few, first);
+}
+
+/* A start that differs from the problem's in the last place. */
+static void disturb(const order_study *s, double *q)
+{
+  const double size = study_size(s);
+  for (int i = 0; i < s->scene->n; i++) {
+    const double place = DBL_EPSILON * fmax(fabs(s->scene->q[i]), 0.1 * size);
+    q[i] = s->scene->q[i] + (i % 2 == 0 ? place : -place);
+  }
+}
+
+/* What roundoff does to the end: how far a change of the start in its last place moves it. */
+static dvi_status find_floor(order_study *s, long steps)
+{
+  const int n = s->scene->n;
+  double *q = calloc(2 * (size_t)n, sizeof *q);
+  if (q == NULL) return DVI_NO_MEMORY;
+  double *end = q + n;
+  disturb(s, q);
+  dvi_status status = study_integrate(s, q, steps);
+  if (status == DVI_OK) {
+    memcpy(end, dvi_integrator_q(s->integrator), (size_t)n * sizeof *end);
+    status = study_integrate(s, s->scene->q, steps);
+  }
+  double moved = DBL_EPSILON * study_size(s);
+  for (int i = 0; i < n && status == DVI_OK; i++) moved = fmax(moved, fabs(end[i] - dvi_integrator_q(s->integrator)[i]));
+  free(q);
+  s->floor = STUDY_FLOOR_MARGIN * fmax(s->judge->error, moved);
+  return status;
+}
+
+/* The ratio that leads from the first error to a little above the floor. */
+static double choose_ratio(const order_study *s, const level_trial *first, int levels)
+{
+  const double span = first->error / (3.0 * s->floor);
+  const double ratio = span > 1.0 && levels > 1 ? pow(span, 1.0 / (s->order * (levels - 1.0))) : 1.0;
+  return within(ratio, 1.05, 2.0);
+}
+
+/* Whether so many levels, each with one step more than the one before, stay above the floor. */
+static bool has_room(const order_study *s, const level_trial *first, int levels)
+{
+  const double finest = (double)(first->steps + levels - 1);
+  return first->error * pow((double)first->steps / finest, s->order) > s->floor;
+}
+
+dvi_status choose_levels(order_study *study, double h, double ratio, int levels, long *steps, bool *room)
+{
+  level_trial first;
+  const double wanted = h > 0.0 ? within(fabs(study->t_end) / h, 1.0, (double)steps_max) : 0.0;
+  dvi_status status = wanted > 0.0 ? study_run(study, lround(wanted), &first) : find_first(study, &first);
+  if (status == DVI_OK) status = find_floor(study, first.steps);
+  if (status == DVI_OK && !(wanted > 0.0)) status = find_first(study, &first); /* now that the floor is known */
+  if (status != DVI_OK) return status;
+  *room = has_room(study, &first, levels);
+  const double factor = ratio > 0.0 ? ratio : choose_ratio(study, &first, levels);
+  steps[0] = first.steps;
+  for (int k = 1; k < levels; k++) {
+    steps[k] = lround((double)first.steps * pow(factor, k));
+    if (steps[k] <= steps[k - 1]) steps[k] = steps[k - 1] + 1;
+  }
+  return DVI_OK;
+}

@@ -1,0 +1,17 @@
+/** The step sizes of a study. */
+#ifndef LEVELS_H
+#define LEVELS_H
+#include <stdbool.h>
+
+#include "study.h"
+
+/** Choose how many steps each level takes, so that the errors lie above the floor: each level at most halves h, and less for high
+ *  orders, of which a halving would cross the floor at once. Sets study->floor.
+ *
+ *  @param      h       the first step; 0: searched, the rougher the lower the order
+ *  @param      ratio   of neighbouring steps; 0: chosen
+ *  @param      levels  how many
+ *  @param[out] steps   [levels], ascending
+ *  @param[out] room    false if the time is too short: so few steps meet the floor that the levels do not fit above it */
+dvi_status choose_levels(order_study *study, double h, double ratio, int levels, long *steps, bool *room);
+#endif

@@ -1,0 +1,96 @@
+#include "order_report.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "options.h"
+#include "plot.h"
+
+enum { FIT_LEVELS = 4 };
+static const double order_tolerance = 0.2;
+
+const table_column order_columns[] = {
+    {"method", NULL},         {"problem", NULL},          {"h", "%.6g"},
+    {"steps", "%.0f"},        {"error", "%.3e"},          {"slope", "%.2f"},
+    {"energy_error", "%.3e"}, {"cpu_seconds", "%.3e"},    {"residuals", "%.0f"},
+    {"jacobians", "%.0f"},    {"factorizations", "%.0f"}, {NULL, NULL},
+};
+
+static int fitted_levels(const order_result *result)
+{
+  return result->fit.first < 0 ? 0 : result->fit.last - result->fit.first + 1;
+}
+
+bool order_holds(const order_result *result)
+{
+  return fitted_levels(result) >= FIT_LEVELS && fabs(result->fit.slope - result->claimed) <= order_tolerance;
+}
+
+void order_print_tables(const char *name, const result_table *rows, int results, const order_result *result)
+{
+  (void)printf("Order on %s\n", name);
+  int first = 0;
+  for (int i = 0; i < results; i++) {
+    (void)printf("\n%s, to t = %g\n", result[i].method, result[i].t_end);
+    table_print(rows, 2, first, first + result[i].levels);
+    first += result[i].levels;
+  }
+  (void)putchar('\n');
+}
+
+static void print_missing(FILE *stream, const order_result *result)
+{
+  (void)fprintf(stream, "not decided: %d of %d levels have errors between %.1e and %.1e, and %d are needed; ",
+                fitted_levels(result), result->levels, result->floor, result->ceiling, (int)FIT_LEVELS);
+  (void)fprintf(stream, "set a first step by --h, a longer --t-end, or more --levels\n");
+}
+
+void order_print_verdict(FILE *stream, const order_result *result)
+{
+  (void)fprintf(stream, "%s: claimed order %d, ", result->method, result->claimed);
+  if (fitted_levels(result) < FIT_LEVELS)
+    print_missing(stream, result);
+  else
+    (void)fprintf(stream, "fitted %.2f to levels %d to %d: %s\n", result->fit.slope, result->fit.first + 1, result->fit.last + 1,
+                  order_holds(result) ? "ok" : "MISSED");
+  (void)fprintf(stream, "  judge at t = %g: %s, error %.1e; errors up to %.1e are not fitted\n", result->t_end, result->judge,
+                result->judge_error, result->floor);
+}
+
+/* A line of the fitted order's slope, a little below the method's errors, over its window. */
+static int guide(const order_result *result, double *x, double *y)
+{
+  if (fitted_levels(result) < 2) return 0;
+  const int ends[2] = {result->fit.first, result->fit.last};
+  for (int i = 0; i < 2; i++) {
+    x[i] = result->h[ends[i]];
+    y[i] = 0.4 * result->error[ends[0]] * pow(x[i] / result->h[ends[0]], result->claimed);
+  }
+  return 2;
+}
+
+bool order_plot(const char *name, int results, order_result *result, const char *path)
+{
+  plot_curve curve[2 * WORDS_MAX];
+  double x[WORDS_MAX][2];
+  double y[WORDS_MAX][2];
+  char title[LABEL_SIZE];
+  int curves = 0;
+  for (int i = 0; i < results; i++) {
+    (void)snprintf(result[i].label, sizeof result[i].label, "%s (order %d)", result[i].method, result[i].claimed);
+    curve[curves++] = (plot_curve){.label = result[i].label, .count = result[i].levels, .x = result[i].h, .y = result[i].error};
+  }
+  for (int i = 0; i < results; i++) {
+    const int count = guide(&result[i], x[i], y[i]);
+    curve[curves++] = (plot_curve){
+        .label = i == 0 ? "slopes of the claimed orders" : NULL, .count = count, .x = x[i], .y = y[i], .guide = true};
+  }
+  (void)snprintf(title, sizeof title, "Error against step size: %s", name);
+  const plot_panel panel = {.title = title,
+                            .x_label = "step h",
+                            .y_label = "largest error of q at the end",
+                            .logarithmic = true,
+                            .curves = curves,
+                            .curve = curve};
+  return plot_write(path, 1, &panel);
+}

@@ -1,0 +1,41 @@
+/** What an order study found: as tables, verdicts and a plot. */
+#ifndef ORDER_REPORT_H
+#define ORDER_REPORT_H
+#include <stdbool.h>
+#include <stdio.h>
+
+#include "problem.h"
+#include "table.h"
+
+enum { LEVELS_MAX = 40, LABEL_SIZE = 160 };
+
+/** What was found for one method. */
+typedef struct order_result {
+  const char *method;
+  int claimed;       /**< its order */
+  double t_end;      /**< where it was judged */
+  const char *judge; /**< by whom, in words */
+  double judge_error;
+  int levels;
+  double h[LEVELS_MAX]; /**< step sizes without sign */
+  double error[LEVELS_MAX];
+  double floor, ceiling; /**< errors outside are not fitted */
+  dvi_order_fit fit;
+  char label[LABEL_SIZE]; /**< in the legend of its plot */
+} order_result;
+
+/** The columns of the table. */
+extern const table_column order_columns[];
+
+/** Whether the fitted order is the claimed one, from levels enough. */
+bool order_holds(const order_result *result);
+
+/** Each method's levels, aligned. */
+void order_print_tables(const char *name, const result_table *rows, int results, const order_result *result);
+
+/** Who judged a method, and whether it has its order. */
+void order_print_verdict(FILE *stream, const order_result *result);
+
+/** Error against step, with the claimed slopes, as an SVG file. False, with a complaint, if it cannot be written. */
+bool order_plot(const char *name, int results, order_result *result, const char *path);
+#endif

@@ -1,0 +1,174 @@
+/* Every create must survive the failure of each of its allocations: status, no object, nothing leaked (the sanitizer and valgrind
+ * runs of this test see the leaks). */
+#include <string.h>
+
+#include "core/memory.h"
+#include "support/suite.h"
+#include "support/systems.h"
+#include "system/evaluator.h"
+
+enum { MOST = 500 };
+
+static behaviour quiet;
+
+static int generator(const double *q, double *xi, void *user)
+{
+  (void)user;
+  memcpy(xi, q, SITES * sizeof *xi);
+  return 0;
+}
+
+/* All kinds of terms, all derivatives to be differenced. */
+typedef struct scene {
+  dvi_lagrangian lagrangian;
+  dvi_potential potentials[2];
+  dvi_symmetry symmetry;
+  dvi_system_terms terms;
+} scene;
+
+enum { SPARSE_MASS, GENERAL, SCALAR_MASS, KINDS };
+
+static void build(scene *c, int kind)
+{
+  c->lagrangian = rotors(&quiet, BATCH);
+  c->lagrangian.hessian_batch = NULL;
+  c->lagrangian.gradient_batch = NULL;
+  c->potentials[0] = springs(&quiet, BATCH);
+  c->potentials[0].hessian_batch = NULL;
+  c->potentials[1] = wells(&quiet, ONE_POINT);
+  c->symmetry = (dvi_symmetry){"dilation", generator, NULL};
+  c->terms = (dvi_system_terms){
+      .dimension = SITES, .potentials = c->potentials, .potential_count = 2, .symmetries = &c->symmetry, .symmetry_count = 1};
+  if (kind == GENERAL)
+    c->terms.lagrangian = &c->lagrangian;
+  else if (kind == SCALAR_MASS)
+    c->terms.mass.scalar = 2;
+  else
+    c->terms.mass = (dvi_mass){.values = tridiagonal_mass, .pattern = tridiagonal};
+}
+
+static void out_of_memory(dvi_status status, const void *made)
+{
+  dvi__fail_allocations_after(-1);
+  ck_assert_msg(status == DVI_NO_MEMORY, "%s: %s", dvi_status_name(status), dvi_last_error());
+  ck_assert_ptr_null(made);
+  ck_assert_msg(strstr(dvi_last_error(), "no memory") != NULL, "%s", dvi_last_error());
+}
+
+START_TEST(a_system_survives_every_failure)
+{
+  scene c;
+  build(&c, _i);
+  const long before = dvi__allocation_count();
+  dvi_system *s = make_system(&c.terms);
+  const long needed = dvi__allocation_count() - before;
+  dvi_system_destroy(&s);
+  ck_assert(needed > 20 && needed < MOST);
+  for (long successes = 0; successes < needed; successes++) {
+    dvi__fail_allocations_after(successes);
+    const dvi_status status = dvi_system_create(&c.terms, &s);
+    out_of_memory(status, s);
+  }
+}
+END_TEST
+
+START_TEST(an_evaluator_survives_every_failure)
+{
+  scene c;
+  build(&c, _i);
+  dvi_system *s = make_system(&c.terms);
+  dvi__evaluator *e;
+  const long before = dvi__allocation_count();
+  ck_assert_int_eq(dvi__evaluator_create(s, 3, NULL, &e), DVI_OK);
+  const long needed = dvi__allocation_count() - before;
+  dvi__evaluator_destroy(&e);
+  ck_assert(needed > 10 && needed < MOST);
+  for (long successes = 0; successes < needed; successes++) {
+    dvi__fail_allocations_after(successes);
+    const dvi_status status = dvi__evaluator_create(s, 3, NULL, &e);
+    out_of_memory(status, e);
+  }
+  dvi_system_destroy(&s);
+}
+END_TEST
+
+START_TEST(a_linear_solver_survives_every_failure)
+{
+  const dvi__linear_kind kinds[] = {DVI__LINEAR_DENSE, DVI__LINEAR_SPARSE};
+  dvi__pattern pattern;
+  dvi__linear *linear;
+  dvi_counters counters = {0};
+  ck_assert_int_eq(dvi__pattern_copy(&tridiagonal, SITES, "matrix", &pattern), DVI_OK);
+  const long before = dvi__allocation_count();
+  ck_assert_int_eq(dvi__linear_create(&pattern, kinds[_i], NULL, &linear), DVI_OK);
+  const long needed = dvi__allocation_count() - before;
+  dvi__linear_destroy(&linear);
+  ck_assert(needed >= 5 && needed < MOST);
+  for (long successes = 0; successes < needed; successes++) {
+    dvi__fail_allocations_after(successes);
+    const dvi_status status = dvi__linear_create(&pattern, kinds[_i], &counters, &linear);
+    out_of_memory(status, linear);
+  }
+  ck_assert_int_eq(counters.symbolic, 0);
+  dvi__pattern_clear(&pattern);
+}
+END_TEST
+
+typedef dvi_status (*one_point_call)(const dvi_system *s);
+
+static dvi_status call_lagrangian(const dvi_system *s)
+{
+  double L;
+  return dvi_system_lagrangian(s, 0, generic_q, generic_v, &L);
+}
+
+static dvi_status call_momentum(const dvi_system *s)
+{
+  double p[SITES];
+  return dvi_system_momentum(s, 0, generic_q, generic_v, p);
+}
+
+static dvi_status call_velocity(const dvi_system *s)
+{
+  double v[SITES] = {0};
+  return dvi_system_velocity(s, 0, generic_q, generic_v, v);
+}
+
+static dvi_status call_invariants(const dvi_system *s)
+{
+  double value[2];
+  return dvi_system_invariants(s, 0, generic_q, generic_v, value);
+}
+
+static dvi_status call_check(const dvi_system *s)
+{
+  return dvi_system_check(s, 0, generic_q, generic_v, 0, NULL);
+}
+
+START_TEST(every_call_at_one_point_survives_every_failure)
+{
+  const one_point_call calls[] = {call_lagrangian, call_momentum, call_velocity, call_invariants, call_check};
+  scene c;
+  build(&c, _i % KINDS);
+  dvi_system *s = make_system(&c.terms);
+  const long before = dvi__allocation_count();
+  ck_assert_msg(calls[_i / KINDS](s) == DVI_OK, "%s", dvi_last_error());
+  const long needed = dvi__allocation_count() - before;
+  for (long successes = 0; successes < needed; successes++) {
+    dvi__fail_allocations_after(successes);
+    const dvi_status status = calls[_i / KINDS](s);
+    out_of_memory(status, NULL);
+  }
+  dvi_system_destroy(&s);
+}
+END_TEST
+
+int main(void)
+{
+  TCase *tests = tcase_create("allocation");
+  tcase_add_loop_test(tests, a_system_survives_every_failure, 0, KINDS);
+  tcase_add_loop_test(tests, an_evaluator_survives_every_failure, 0, KINDS);
+  tcase_add_loop_test(tests, a_linear_solver_survives_every_failure, 0, 2);
+  tcase_add_loop_test(tests, every_call_at_one_point_survives_every_failure, 0, 5 * KINDS);
+  return run_tests("system/allocation", tests);
+}
