@@ -5,27 +5,31 @@
 #include <stdio.h>
 #include <string.h>
 
-static void speak(const char *format, va_list arguments)
+enum { SENTENCE_SIZE = 2048 };
+
+static void speak(const char *sentence)
 {
-  (void)fputs("dvi: ", stderr);
-  (void)vfprintf(stderr, format, arguments);
-  (void)fputc('\n', stderr);
+  (void)fprintf(stderr, "dvi: %s\n", sentence);
 }
 
 void complain(const char *format, ...)
 {
+  char sentence[SENTENCE_SIZE];
   va_list arguments;
   va_start(arguments, format);
-  speak(format, arguments);
+  (void)vsnprintf(sentence, sizeof sentence, format, arguments);
   va_end(arguments);
+  speak(sentence);
 }
 
 int usage_error(const char *format, ...)
 {
+  char sentence[SENTENCE_SIZE];
   va_list arguments;
   va_start(arguments, format);
-  speak(format, arguments);
+  (void)vsnprintf(sentence, sizeof sentence, format, arguments);
   va_end(arguments);
+  speak(sentence);
   return USAGE;
 }
 

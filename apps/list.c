@@ -1,5 +1,6 @@
 /* dvi list: what there is to choose from. */
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "command.h"
@@ -55,6 +56,19 @@ static void print_problems(void)
   (void)printf("\nParameters are set with --set name=value, for example dvi run kepler --method verlet --set e=0.9\n");
 }
 
+/* The fewest digits that give the number back: 0.6, not 0.59999999999999998. */
+static int digits_of(double number)
+{
+  char text[32];
+  int digits = 1;
+  for (; digits < 17; digits++) {
+    (void)snprintf(text, sizeof text, "%.*g", digits, number);
+    const double back = strtod(text, NULL);
+    if (!(back < number) && !(back > number)) break;
+  }
+  return digits;
+}
+
 static result_table *problems_table(void)
 {
   result_table *t = table_create(problem_columns);
@@ -62,7 +76,7 @@ static result_table *problems_table(void)
     char parameters[NAMES_SIZE] = "";
     for (const problem_parameter *k = problem_parameters(i); k->name != NULL; k++) {
       char pair[128];
-      (void)snprintf(pair, sizeof pair, "%s=%.17g", k->name, k->value);
+      (void)snprintf(pair, sizeof pair, "%s=%.*g", k->name, digits_of(k->value), k->value);
       append(parameters, pair);
     }
     table_text(t, problem_name(i));

@@ -9,7 +9,7 @@
 #include "command.h"
 #include "spelling.h"
 
-enum { MESSAGE_SIZE = 128, OPTIONS_MAX = 32, HELP_COLUMN = 26 };
+enum { OPTIONS_MAX = 32, HELP_COLUMN = 26 };
 
 bool parse_number(const char *text, double *number)
 {
@@ -47,9 +47,11 @@ static void print_help(const command_line *command)
 
 static int unknown_option(const command_line *command, const char *name)
 {
-  char near[MESSAGE_SIZE];
-  return usage_error("%s: unknown option '--%s'%s; see dvi %s --help", command->name, name,
-                     suggestion(name, option_name, command->options, near, sizeof near), command->name);
+  const char *near = nearest_word(name, option_name, command->options);
+  if (near != NULL)
+    return usage_error("%s: unknown option '--%s' (did you mean '--%s'?); see dvi %s --help", command->name, name, near,
+                       command->name);
+  return usage_error("%s: unknown option '--%s'; see dvi %s --help", command->name, name, command->name);
 }
 
 static int missing_value(const command_line *command, const option *o)

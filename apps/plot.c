@@ -118,14 +118,16 @@ static void write_script(FILE *script, int panels, const plot_panel *panel)
 /* Start gnuplot with the script as its input and the picture as its output. Returns 0 or an error number. */
 static int start_gnuplot(FILE *script, FILE *picture, pid_t *process)
 {
-  char name[] = "gnuplot";
-  char *arguments[] = {name, NULL};
   posix_spawn_file_actions_t actions;
   int failure = posix_spawn_file_actions_init(&actions);
   if (failure != 0) return failure;
   failure = posix_spawn_file_actions_adddup2(&actions, fileno(script), STDIN_FILENO);
   if (failure == 0) failure = posix_spawn_file_actions_adddup2(&actions, fileno(picture), STDOUT_FILENO);
-  if (failure == 0) failure = posix_spawnp(process, name, &actions, NULL, arguments, environ);
+  if (failure == 0) {
+    char name[] = "gnuplot";
+    char *arguments[] = {name, NULL};
+    failure = posix_spawnp(process, name, &actions, NULL, arguments, environ);
+  }
   (void)posix_spawn_file_actions_destroy(&actions);
   return failure;
 }
@@ -140,7 +142,9 @@ static bool draw(FILE *script, FILE *picture, const char *path)
     return false;
   }
   int result = 0;
-  while (waitpid(process, &result, 0) < 0 && errno == EINTR) continue;
+  pid_t ended;
+  do ended = waitpid(process, &result, 0);
+  while (ended < 0 && errno == EINTR);
   if (WIFEXITED(result) && WEXITSTATUS(result) == 127) {
     complain("no plot in '%s': gnuplot is not installed (package gnuplot-nox)", path);
     return false;

@@ -45,8 +45,10 @@ static cell *next_cell(result_table *t)
   if (t->cells == t->capacity) {
     const int capacity = t->capacity > 0 ? 2 * t->capacity : 128;
     cell *grown = realloc(t->cell, (size_t)capacity * sizeof *grown);
-    t->lost = grown == NULL;
-    if (t->lost) return NULL;
+    if (grown == NULL) {
+      t->lost = true;
+      return NULL;
+    }
     t->cell = grown;
     t->capacity = capacity;
   }

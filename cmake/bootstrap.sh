@@ -7,7 +7,7 @@
 set -eu
 
 packages="gcc libc6-dev make cmake pkg-config libsundials-dev libsuitesparse-dev liblapack-dev check gnuplot-nox"
-lint_packages="clang clang-tidy clang-format cppcheck doxygen valgrind g++ libclang-rt-dev"
+lint_packages="clang clang-tidy clang-format cppcheck doxygen valgrind libc6-dbg g++ libclang-rt-dev"
 
 usage() {
   cat >&2 <<'END'

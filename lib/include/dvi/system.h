@@ -6,6 +6,9 @@
  *  negative one for a failure for good. They get the `user` pointer of the term that declares them. They must depend on
  *  their arguments alone: the library may call them at any point, in any order.
  *
+ *  Missing derivatives are differenced with steps made for coordinates and velocities of size 0.01 and more: choose units in which they
+ *  are, or give the derivatives.
+ *
  *  Each callback comes in two shapes; declare one of them. The one-point shape is the plain one. The batch shape gets
  *  `count` points stored component by component: coordinate i of point k is q[i*count + k], entry e of a Hessian of point k is
  *  values[e*count + k], and t[k] is the time of point k. One loop over k then serves all quadrature points of a step. */

@@ -42,7 +42,8 @@ static dvi_status fill(dvi__action *a, dvi_counters *counters)
   return allocate_chord(a);
 }
 
-dvi_status dvi__action_create(const dvi_system *system, const dvi__action_space *space, dvi_counters *counters, dvi__action **action)
+dvi_status dvi__action_create(const dvi_system *system, const dvi__action_space *space, dvi_counters *counters,
+                              dvi__action **action)
 {
   *action = NULL;
   dvi__action *a = DVI_NEW(dvi__action, 1);
@@ -62,10 +63,11 @@ void dvi__action_destroy(dvi__action **action)
 {
   dvi__action *a = *action;
   if (a == NULL) return;
-  double *const owned[] = {a->psi,      a->dpsi,     a->bar, a->node,      a->weight,    a->end,
-                           a->stiffness, a->stiffness_inverse, a->fit_point, a->fit,    a->straight,  a->shift,     a->t,
-                           a->Q,        a->V,        a->L_q,          a->L_v,           a->line,      a->middle_vv, a->middle[0],
-                           a->middle[1], a->middle[2], a->middle[3],  a->H_qq,          a->H_qv,      a->H_vv};
+  double *const owned[] = {
+      a->psi,       a->dpsi, a->bar,       a->node,      a->weight,    a->end,       a->stiffness, a->stiffness_inverse,
+      a->fit_point, a->fit,  a->straight,  a->shift,     a->t,         a->Q,         a->V,         a->L_q,
+      a->L_v,       a->line, a->middle_vv, a->middle[0], a->middle[1], a->middle[2], a->middle[3], a->H_qq,
+      a->H_qv,      a->H_vv};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) dvi__release(owned[i]);
   dvi__linear_destroy(&a->chord);
   dvi__evaluator_destroy(&a->evaluator);

@@ -29,7 +29,8 @@ typedef struct dvi__action_space {
 } dvi__action_space;
 
 /* The space's numbers must be valid (nodes >= degree). */
-dvi_status dvi__action_create(const dvi_system *system, const dvi__action_space *space, dvi_counters *counters, dvi__action **action);
+dvi_status dvi__action_create(const dvi_system *system, const dvi__action_space *space, dvi_counters *counters,
+                              dvi__action **action);
 void dvi__action_destroy(dvi__action **action);
 
 /* Prepare the Jacobian's pattern and memory; without it residuals and chords work, Jacobians do not. Once. */

@@ -2,6 +2,7 @@
 #ifndef DVI_ACTION_ACTION_STRUCT_H
 #define DVI_ACTION_ACTION_STRUCT_H
 #include "action/action.h"
+#include "space/basis.h"
 
 /* Where one entry (i,j) of the joint pattern stands in the Hessian's blocks; -1: nowhere. */
 typedef struct dvi__block {
@@ -12,29 +13,30 @@ struct dvi__action {
   const dvi_system *system;
   dvi__evaluator *evaluator;
   dvi__action_space space;
-  int n, s, r; /* coordinates, degree, quadrature nodes */
+  int n, s, r;      /* coordinates, degree, quadrature nodes */
+  dvi__space trial; /* the basis, ready for evaluation anywhere */
   /* Tables over (k, j), stored [k*r + j]. */
-  double *psi, *bar, *dpsi;                          /* psi_k(c_j), psi_k(c_j) - psi_k(1), psi_k'(c_j) */
-  double *node, *weight;                             /* [r] */
-  double *end;                                       /* [s] psi_k(1) */
-  double *stiffness, *stiffness_inverse;             /* [s*s] K_kl = sum_j b_j psi_k' psi_l' */
-  double *fit_point, *fit, *straight;                /* [s], [s*s] rows, [s] */
-  double *shift, shift_ratio;                        /* [s*s] rows, and the ratio that it was made for (0: none) */
-  int keep;                                          /* degree up to which a path is continued */
+  double *psi, *bar, *dpsi;              /* psi_k(c_j), psi_k(c_j) - psi_k(1), psi_k'(c_j) */
+  double *node, *weight;                 /* [r] */
+  double *end;                           /* [s] psi_k(1) */
+  double *stiffness, *stiffness_inverse; /* [s*s] K_kl = sum_j b_j psi_k' psi_l' */
+  double *fit_point, *fit, *straight;    /* [s], [s*s] rows, [s] */
+  double *shift, shift_ratio;            /* [s*s] rows, and the ratio that it was made for (0: none) */
+  int keep;                              /* degree up to which a path is continued */
   /* The element's place. */
   double t0, h;
   const double *q0, *p0;
   /* Batches over the nodes, [n*r]. */
   double *t, *Q, *V, *L_q, *L_v; /* the gradients times the weights b_j */
-  double *line; /* [2 s + 2 r] one coordinate's worth of anything */
+  double *line;                  /* [2 s + 2 r] one coordinate's worth of anything */
   /* Chord. */
-  double *middle_vv;       /* L_vv at one point (general Lagrangians) */
-  double *middle[4];       /* q, v at that point; L_qq, L_qv */
-  dvi__linear *chord;      /* factors middle_vv */
+  double *middle_vv;  /* L_vv at one point (general Lagrangians) */
+  double *middle[4];  /* q, v at that point; L_qq, L_qv */
+  dvi__linear *chord; /* factors middle_vv */
   /* Jacobian; NULL until prepared. */
-  dvi__pattern joint;      /* n x n: union of qq, qv, vq, vv */
-  dvi__pattern pattern;    /* ns x ns */
-  dvi__block *block;       /* [entries of joint] */
+  dvi__pattern joint;         /* n x n: union of qq, qv, vq, vv */
+  dvi__pattern pattern;       /* ns x ns */
+  dvi__block *block;          /* [entries of joint] */
   double *H_qq, *H_qv, *H_vv; /* [entries*r] */
 };
 

@@ -41,7 +41,8 @@ static dvi_status expand_pattern(dvi__action *a)
 {
   const int s = a->s, columns = a->n * s;
   const size_t entries = (size_t)dvi__pattern_entries(&a->joint) * (size_t)s * (size_t)s;
-  if (entries > 0x7fffffff) return dvi__fail(DVI_BAD_SIZE, "action: the Jacobian would have %zu entries; declare sparse Hessians", entries);
+  if (entries > 0x7fffffff)
+    return dvi__fail(DVI_BAD_SIZE, "action: the Jacobian would have %zu entries; declare sparse Hessians", entries);
   a->pattern = (dvi__pattern){columns, columns, DVI_NEW(int, columns + 1), DVI_NEW(int, entries)};
   if (a->pattern.start == NULL || a->pattern.row == NULL)
     return dvi__fail(DVI_NO_MEMORY, "action: no memory for a Jacobian of %zu entries", entries);

@@ -48,8 +48,7 @@ dvi_status dvi__action_residual(dvi__action *a, const double *Y, double *R)
   for (size_t i = 0; i < (size_t)a->n; i++) {
     const double *L_q = a->L_q + i * (size_t)r, *L_v = a->L_v + i * (size_t)r;
     for (int k = 0; k < s; k++)
-      R[i * (size_t)s + (size_t)k] =
-          a->h * dot(r, a->bar + k * r, L_q) + (dot(r, a->dpsi + k * r, L_v) - a->end[k] * a->p0[i]);
+      R[i * (size_t)s + (size_t)k] = a->h * dot(r, a->bar + k * r, L_q) + (dot(r, a->dpsi + k * r, L_v) - a->end[k] * a->p0[i]);
   }
   return DVI_OK;
 }
@@ -108,7 +107,7 @@ void dvi__action_chord(dvi__action *a, double *R)
 void dvi__action_row_scale(const dvi__action *a, double *scale)
 {
   const dvi__pattern *vv = &a->system->vv;
-  const double *values = a->chord != NULL                 ? a->middle_vv
+  const double *values = a->chord != NULL                   ? a->middle_vv
                          : a->system->mass_diagonal != NULL ? a->system->mass_diagonal
                                                             : a->system->mass_values;
   for (int i = 0; i < a->n; i++) {
@@ -123,7 +122,7 @@ void dvi__action_row_scale(const dvi__action *a, double *scale)
 void dvi__action_path(const dvi__action *a, const double *Y, double h, double tau, double *offset, double *v)
 {
   double *psi = a->line, *dpsi = a->line + a->s;
-  dvi__trial_at(a->space.basis, a->s, tau, psi, NULL, dpsi);
+  dvi__trial_in(&a->trial, tau, psi, NULL, dpsi);
   for (size_t i = 0, s = (size_t)a->s; i < (size_t)a->n; i++) {
     if (offset != NULL) offset[i] = dot(a->s, psi, Y + i * s);
     if (v != NULL) v[i] = dot(a->s, dpsi, Y + i * s) / h;

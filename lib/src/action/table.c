@@ -15,20 +15,20 @@ enum { CONTINUED_DEGREE = 10 };
 static int allocate(dvi__action *a)
 {
   const size_t s = (size_t)a->s, r = (size_t)a->r;
-  a->psi = DVI_NEW(double, s * r);
-  a->dpsi = DVI_NEW(double, s * r);
-  a->bar = DVI_NEW(double, s * r);
+  a->psi = DVI_NEW(double, s *r);
+  a->dpsi = DVI_NEW(double, s *r);
+  a->bar = DVI_NEW(double, s *r);
   a->node = DVI_NEW(double, r);
   a->weight = DVI_NEW(double, r);
   a->end = DVI_NEW(double, s);
-  a->stiffness = DVI_NEW(double, s * s);
-  a->stiffness_inverse = DVI_NEW(double, s * s);
+  a->stiffness = DVI_NEW(double, s *s);
+  a->stiffness_inverse = DVI_NEW(double, s *s);
   a->fit_point = DVI_NEW(double, s);
-  a->fit = DVI_NEW(double, s * s);
+  a->fit = DVI_NEW(double, s *s);
   a->straight = DVI_NEW(double, s);
-  a->shift = DVI_NEW(double, s * s);
-  return a->psi && a->dpsi && a->bar && a->node && a->weight && a->end && a->stiffness &&
-         a->stiffness_inverse && a->fit_point && a->fit && a->straight && a->shift;
+  a->shift = DVI_NEW(double, s *s);
+  return a->psi && a->dpsi && a->bar && a->node && a->weight && a->end && a->stiffness && a->stiffness_inverse && a->fit_point &&
+         a->fit && a->straight && a->shift;
 }
 
 static double largest(int count, const double *x, double size)
@@ -43,7 +43,8 @@ static double largest(int count, const double *x, double size)
 static void make_differences_exact(dvi__action *a)
 {
   const int last = a->r * a->s;
-  const double grid = ldexp(1.0, ilogb(largest(a->s, a->end, largest(last, a->bar, largest(last, a->psi, 1.0)))) + 1 - DBL_MANT_DIG);
+  const double grid = ldexp(1.0,
+                            ilogb(largest(a->s, a->end, largest(last, a->bar, largest(last, a->psi, 1.0)))) + 1 - DBL_MANT_DIG);
   for (int k = 0; k < a->s; k++) a->end[k] = grid * nearbyint(a->end[k] / grid);
   for (int i = 0; i < last; i++) {
     a->psi[i] = grid * nearbyint(a->psi[i] / grid);
@@ -59,14 +60,14 @@ static dvi_status fill_nodes(dvi__action *a)
   for (int j = 0; j < a->r; j++) {
     a->node[j] = (double)node[j];
     a->weight[j] = (double)weight[j];
-    dvi__trial_at_long(a->space.basis, a->s, node[j], psi, bar, dpsi);
+    dvi__trial_in(&a->trial, node[j], psi, bar, dpsi);
     for (int k = 0; k < a->s; k++) {
       a->psi[k * a->r + j] = psi[k];
       a->bar[k * a->r + j] = bar[k];
       a->dpsi[k * a->r + j] = dpsi[k];
     }
   }
-  dvi__trial_at(a->space.basis, a->s, 1.0, a->end, NULL, NULL);
+  dvi__trial_in(&a->trial, 1.0L, a->end, NULL, NULL);
   make_differences_exact(a);
   return DVI_OK;
 }
@@ -111,6 +112,7 @@ dvi_status dvi__action_fill_tables(dvi__action *a)
 {
   if (!allocate(a)) return dvi__fail(DVI_NO_MEMORY, "action: no memory for tables of degree %d", a->s);
   a->keep = a->s < CONTINUED_DEGREE ? a->s : CONTINUED_DEGREE;
+  dvi__space_init(&a->trial, a->space.basis, a->s);
   DVI_TRY(fill_nodes(a));
   fill_stiffness(a);
   return fill_fit(a);

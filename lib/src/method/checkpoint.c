@@ -44,9 +44,16 @@ static uint64_t checksum(const unsigned char *bytes, size_t count)
 static void pack(const dvi_integrator *I, unsigned char *file)
 {
   const size_t n = (size_t)I->system->n, size = file_size(I) - sizeof(uint64_t);
-  header head = {.order_mark = ORDER_MARK, .version = VERSION, .n = I->system->n, .memory_count = (int64_t)I->stepper.memory_count,
-                 .steps = I->counters.steps, .t = I->now.t, .t_carry = I->now.t_carry, .last_t = I->last.t,
-                 .last_t_carry = I->last.t_carry, .last_h = I->last_h};
+  header head = {.order_mark = ORDER_MARK,
+                 .version = VERSION,
+                 .n = I->system->n,
+                 .memory_count = (int64_t)I->stepper.memory_count,
+                 .steps = I->counters.steps,
+                 .t = I->now.t,
+                 .t_carry = I->now.t_carry,
+                 .last_t = I->last.t,
+                 .last_t_carry = I->last.t_carry,
+                 .last_h = I->last_h};
   memcpy(head.magic, magic, sizeof magic);
   memcpy(head.specification, I->stepper.specification, sizeof head.specification);
   memcpy(file, &head, sizeof head);
@@ -105,10 +112,13 @@ static dvi_status check(const dvi_integrator *I, const char *path, const unsigne
     return dvi__fail(DVI_BAD_FILE, "checkpoint %s: written on another kind of machine or by another version", path);
   if (strcmp(head.specification, I->stepper.specification) != 0)
     return dvi__fail(DVI_BAD_FILE, "checkpoint %s: written by %s, not by %s", path, head.specification, I->stepper.specification);
-  if (head.n != I->system->n) return dvi__fail(DVI_BAD_FILE, "checkpoint %s: %lld coordinates, not %d", path, (long long)head.n, I->system->n);
-  if (got != size) return dvi__fail(DVI_BAD_FILE, "checkpoint %s: cut short or too long, %zu bytes instead of %zu", path, got, size);
+  if (head.n != I->system->n)
+    return dvi__fail(DVI_BAD_FILE, "checkpoint %s: %lld coordinates, not %d", path, (long long)head.n, I->system->n);
+  if (got != size)
+    return dvi__fail(DVI_BAD_FILE, "checkpoint %s: cut short or too long, %zu bytes instead of %zu", path, got, size);
   memcpy(&sum, file + size - sizeof sum, sizeof sum);
-  if (sum != checksum(file, size - sizeof sum)) return dvi__fail(DVI_BAD_FILE, "checkpoint %s: damaged (its checksum is wrong)", path);
+  if (sum != checksum(file, size - sizeof sum))
+    return dvi__fail(DVI_BAD_FILE, "checkpoint %s: damaged (its checksum is wrong)", path);
   return DVI_OK;
 }
 

@@ -12,13 +12,23 @@
 
 enum { ORDER, BASE };
 
-static const char *const orders[] = {"4", "6", "8", NULL};
-static const char *const bases[] = {"verlet", "midpoint", "trapezoidal", "galerkin", NULL};
+static const char *order_name(int index)
+{
+  static const char *const name[] = {"4", "6", "8"};
+  return index >= 0 && index < 3 ? name[index] : NULL;
+}
+
+static const char *base_name(int index)
+{
+  static const char *const name[] = {"verlet", "midpoint", "trapezoidal", "galerkin"};
+  return index >= 0 && index < 4 ? name[index] : NULL;
+}
 
 static const dvi__key keys[] = {
-    {"order", orders, 0, 0, 0, "4, 6 or 8; left out: 4"},
-    {"base", bases, 0, 0, 0, "the symmetric method that is composed: verlet, midpoint, trapezoidal or galerkin; all other keys are its own; "
-                             "left out: verlet"},
+    {"order", order_name, 0, 0, 0, "4, 6 or 8; left out: 4"},
+    {"base", base_name, 0, 0, 0,
+     "the symmetric method that is composed: verlet, midpoint, trapezoidal or galerkin; all other keys are its own; "
+     "left out: verlet"},
     {0},
 };
 
@@ -49,7 +59,7 @@ static dvi_status create(dvi__stepper *self)
   char specification[2 * DVI__SPECIFICATION_SIZE] = "";
   const char *rest = self->settings.rest;
   dvi__text text = {specification, sizeof specification, 0};
-  dvi__text_add(&text, "%s%s%s", bases[self->settings.value[BASE]], rest[0] != 0 ? ":" : "", rest);
+  dvi__text_add(&text, "%s%s%s", base_name(self->settings.value[BASE]), rest[0] != 0 ? ":" : "", rest);
   dvi__stepper *base = self->own = DVI_NEW(dvi__stepper, 1);
   if (base == NULL) return dvi__fail(DVI_NO_MEMORY, "composition: no memory");
   const dvi_status status = dvi__stepper_create(self->system, specification, self->counters, base);
@@ -92,7 +102,8 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
 static void explain(const dvi__stepper *self, dvi__text *text)
 {
   const dvi__stepper *base = self->own;
-  dvi__text_add(text, "composition: %d substeps a step, each by %s\n", schemes[self->settings.value[ORDER]].substeps, base->specification);
+  dvi__text_add(text, "composition: %d substeps a step, each by %s\n", schemes[self->settings.value[ORDER]].substeps,
+                base->specification);
   base->method->explain(base, text);
 }
 

@@ -11,7 +11,11 @@
 #include "num/finite.h"
 #include "solve/nonlinear.h"
 
-const char *const dvi__solver_choices[] = {"auto", "fixed-point", "newton", "kinsol", NULL};
+const char *dvi__solver_choice(int index)
+{
+  static const char *const name[] = {"auto", "fixed-point", "newton", "kinsol"};
+  return index >= 0 && index < 4 ? name[index] : NULL;
+}
 
 /* Memory: length of the last step (0: none), steps for which fixed point iteration is not tried again, the last step's unknowns. */
 enum { LAST_H, NEWTON_STEPS, LAST_Y };
@@ -90,8 +94,14 @@ dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *spac
   DVI_TRY(dvi__action_create(self->system, space, self->counters, &own->action));
   DVI_TRY(dvi__action_prepare_jacobian(own->action));
   if (!allocate(self, own)) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
-  const dvi__equations equations = {dvi__action_unknowns(own->action), dvi__action_pattern(own->action), own->action, residual_of,
-                                    jacobian_of, prepare_chord_of, chord_of, row_scale_of};
+  const dvi__equations equations = {dvi__action_unknowns(own->action),
+                                    dvi__action_pattern(own->action),
+                                    own->action,
+                                    residual_of,
+                                    jacobian_of,
+                                    prepare_chord_of,
+                                    chord_of,
+                                    row_scale_of};
   return dvi__solver_create(&equations, self->counters, &own->solver);
 }
 
@@ -155,7 +165,8 @@ static dvi_status solve_at(dvi__stepper *self, const place *at, double *Y, dvi__
 {
   element *own = self->own;
   const double size = largest(self->system->n, at->q);
-  const int fixed_point = own->choice == DVI__SOLVER_FIXED_POINT || (own->choice == DVI__SOLVER_AUTO && self->memory[NEWTON_STEPS] == 0);
+  const int fixed_point = own->choice == DVI__SOLVER_FIXED_POINT ||
+                          (own->choice == DVI__SOLVER_AUTO && self->memory[NEWTON_STEPS] == 0);
   dvi__action_place(own->action, at->t, at->h, at->q, at->p);
   DVI_TRY(guess(self, at, Y));
   if (fixed_point) {
@@ -229,7 +240,8 @@ static dvi_status rescue(dvi__stepper *self, const place *at, double *Y, dvi__so
   DVI_TRY(guessed == DVI_OK ? guess_by_parts(self, at, 1 << MOST_HALVINGS, Y, report) : guess(self, at, Y));
   const dvi_status status = dvi__solve(own->solver, DVI__KINSOL, size, 0, 0, Y, report);
   if (status <= 0) return status;
-  return dvi__fail_in(status, "not solved, neither by Newton's method nor by KINSOL with line search (%d iterations, residual %.1e)",
+  return dvi__fail_in(status,
+                      "not solved, neither by Newton's method nor by KINSOL with line search (%d iterations, residual %.1e)",
                       report->iterations, report->residual);
 }
 
@@ -271,13 +283,18 @@ void dvi__element_explain(const dvi__stepper *self, dvi__text *text)
 {
   const element *own = self->own;
   const dvi__pattern *pattern = dvi__action_pattern(own->action);
-  const int general = (self->system->terms & DVI__LAGRANGIAN) != 0, dense = dvi__solver_linear_kind(own->solver) == DVI__LINEAR_DENSE;
+  const int general = (self->system->terms & DVI__LAGRANGIAN) != 0,
+            dense = dvi__solver_linear_kind(own->solver) == DVI__LINEAR_DENSE;
   dvi__text_add(text, "kernel: implicit; %d unknowns a step, Jacobian with %d entries (%.3g %% of a full one)\n", pattern->columns,
                 dvi__pattern_entries(pattern), 100.0 * dvi__pattern_entries(pattern) / pattern->columns / pattern->columns);
-  dvi__text_add(text, "kinetic part: %s\n", general ? "general Lagrangian; its velocity Hessian is evaluated once a step" : "constant mass");
+  dvi__text_add(text, "kinetic part: %s\n",
+                general ? "general Lagrangian; its velocity Hessian is evaluated once a step" : "constant mass");
   if (own->choice == DVI__SOLVER_AUTO)
-    dvi__text_add(text, "solver: auto: fixed point while it contracts by 0.35 or better, else Newton's method, last KINSOL with line search\n");
+    dvi__text_add(
+        text,
+        "solver: auto: fixed point while it contracts by 0.35 or better, else Newton's method, last KINSOL with line search\n");
   else
-    dvi__text_add(text, "solver: %s, as asked; what it cannot solve goes on to KINSOL with line search\n", dvi__solver_choices[own->choice]);
+    dvi__text_add(text, "solver: %s, as asked; what it cannot solve goes on to KINSOL with line search\n",
+                  dvi__solver_choice(own->choice));
   dvi__text_add(text, "linear solver: %s\n", dense ? "dense LU (LAPACK)" : "sparse LU (KLU), analysed once, refactored after");
 }

@@ -19,7 +19,8 @@ static dvi_status evaluate(dvi__watch *w, dvi_integrator *I, const dvi_event *ev
   const int returned = event->value(t, w->q, w->v, g, event->user);
   const char *name = event->name != NULL ? event->name : "unnamed";
   if (returned != 0)
-    return dvi__fail(returned < 0 ? DVI_CALLBACK_FAILED : DVI_CALLBACK_RETRY, "event '%s': the callback returned %d", name, returned);
+    return dvi__fail(returned < 0 ? DVI_CALLBACK_FAILED : DVI_CALLBACK_RETRY, "event '%s': the callback returned %d", name,
+                     returned);
   return isfinite(*g) ? DVI_OK : dvi__fail(DVI_NOT_FINITE, "event '%s' is %g at t = %.9g", name, *g, t);
 }
 
@@ -32,8 +33,9 @@ static dvi_status first_value(dvi__watch *w, dvi_integrator *I, const dvi_event 
   DVI_TRY(dvi_system_velocity(dvi_integrator_system(I), t, q, dvi_integrator_p(I), w->v));
   const int returned = event->value(t, q, w->v, g, event->user);
   if (returned == 0 && isfinite(*g)) return DVI_OK;
-  return dvi__fail(returned < 0 ? DVI_CALLBACK_FAILED : DVI_NOT_FINITE, "event '%s': the callback returned %d with g = %g at the start",
-                   event->name != NULL ? event->name : "unnamed", returned, *g);
+  return dvi__fail(returned < 0 ? DVI_CALLBACK_FAILED : DVI_NOT_FINITE,
+                   "event '%s': the callback returned %d with g = %g at the start", event->name != NULL ? event->name : "unnamed",
+                   returned, *g);
 }
 
 dvi_status dvi__watch_create(dvi_integrator *I, const dvi_run_options *options, dvi__watch *w)
@@ -91,8 +93,8 @@ static dvi_status locate(dvi__watch *w, dvi_integrator *I, const dvi_event *even
   return DVI_OK;
 }
 
-static dvi_status report_event(dvi__watch *w, dvi_integrator *I, const dvi_event *event, int index, double zero, dvi_run_report *report,
-                               int *stop)
+static dvi_status report_event(dvi__watch *w, dvi_integrator *I, const dvi_event *event, int index, double zero,
+                               dvi_run_report *report, int *stop)
 {
   report->events++;
   report->event = index;
@@ -112,13 +114,15 @@ static dvi_status report_event(dvi__watch *w, dvi_integrator *I, const dvi_event
   return DVI_OK;
 }
 
-dvi_status dvi__watch_step(dvi__watch *w, dvi_integrator *I, const dvi_run_options *options, double from, dvi_run_report *report, int *stop)
+dvi_status dvi__watch_step(dvi__watch *w, dvi_integrator *I, const dvi_run_options *options, double from, dvi_run_report *report,
+                           int *stop)
 {
   const double to = dvi_integrator_time(I);
   for (int k = 0; k < options->event_count; k++) {
     const dvi_event *event = &options->events[k];
     for (int part = 1; part <= PARTS; part++) {
-      bracket at = {from + (part - 1) * (to - from) / PARTS, part == PARTS ? to : from + part * (to - from) / PARTS, w->before[k], 0};
+      bracket at = {from + (part - 1) * (to - from) / PARTS, part == PARTS ? to : from + part * (to - from) / PARTS, w->before[k],
+                    0};
       double zero;
       DVI_TRY(evaluate(w, I, event, at.b, &at.gb));
       w->before[k] = at.gb;

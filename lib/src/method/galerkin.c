@@ -10,15 +10,21 @@
 
 enum { DEGREE, BASIS, QUADRATURE, NODES, SOLVER };
 
-static const char *const bases[] = {"lobatto", "gauss", "chebyshev-nodes", "equispaced", "legendre", "chebyshev", NULL};
-static const char *const rules[] = {"gauss",   "lobatto", "radau-left", "radau-right", "clenshaw-curtis", "midpoint", "trapezoid",
-                                    "simpson", NULL};
+static const char *basis_name(int index)
+{
+  return dvi_basis_name((dvi_basis)index);
+}
+
+static const char *rule_name(int index)
+{
+  return dvi_rule_name((dvi_rule)index);
+}
 
 static const dvi__key keys[] = {
     {"degree", NULL, 1, DVI_DEGREE_MAX, 2, "degree of the path, 1 to 40; left out: 2"},
-    {"basis", bases, 0, 0, DVI_LAGRANGE_LOBATTO,
-     "trial functions: lobatto, gauss, chebyshev-nodes, equispaced (Lagrange), legendre, chebyshev (modal); left out: lobatto"},
-    {"quadrature", rules, 0, 0, DVI_GAUSS,
+    {"basis", basis_name, 0, 0, DVI_LAGRANGE_LOBATTO,
+     "trial functions: lobatto, gauss, chebyshev-lobatto, equispaced (Lagrange), legendre, chebyshev (modal); left out: lobatto"},
+    {"quadrature", rule_name, 0, 0, DVI_GAUSS,
      "gauss, lobatto, radau-left, radau-right, clenshaw-curtis, midpoint, trapezoid, simpson; left out: gauss"},
     {"nodes", NULL, 1, DVI_QUADRATURE_MAX, DVI__LEFT_OUT,
      "quadrature points, at least the degree, at most 80; left out: the fewest of order 2 degree (Gauss: the degree)"},
@@ -49,11 +55,14 @@ static dvi_status create(dvi__stepper *self)
   const dvi_rule rule = (dvi_rule)value[QUADRATURE];
   if (value[NODES] == DVI__LEFT_OUT) value[NODES] = choose_nodes(rule, value[DEGREE]);
   if (dvi_quadrature_order(rule, value[NODES]) == 0)
-    return dvi__fail(DVI_BAD_OPTION, "galerkin: quadrature %s has no rule with %d point%s%s", rules[rule], value[NODES],
+    return dvi__fail(DVI_BAD_OPTION, "galerkin: quadrature %s has no rule with %d point%s%s", dvi_rule_name(rule), value[NODES],
                      value[NODES] == 1 ? "" : "s", fixed_size(rule) ? "; leave nodes out" : "; at least 2 are needed");
   if (value[NODES] < value[DEGREE])
-    return dvi__fail(DVI_BAD_OPTION, "galerkin: %d quadrature points see at most %d of the %d velocity modes of degree %d, the step's equations would "
-                     "be singular; nodes must be at least degree", value[NODES], value[NODES], value[DEGREE], value[DEGREE]);
+    return dvi__fail(
+        DVI_BAD_OPTION,
+        "galerkin: %d quadrature points see at most %d of the %d velocity modes of degree %d, the step's equations would "
+        "be singular; nodes must be at least degree",
+        value[NODES], value[NODES], value[DEGREE], value[DEGREE]);
   const dvi__action_space space = {(dvi_basis)value[BASIS], value[DEGREE], rule, value[NODES]};
   return dvi__element_create(self, &space, value[SOLVER]);
 }

@@ -20,7 +20,8 @@ static dvi_status allocate(dvi_integrator *I)
   const size_t n = (size_t)I->system->n;
   double *at = I->numbers = DVI_NEW(double, 14 * n);
   I->memory_before = DVI_NEW(double, I->stepper.memory_count);
-  if (I->numbers == NULL || I->memory_before == NULL) return dvi__fail(DVI_NO_MEMORY, "integrator: no memory for %zu coordinates", n);
+  if (I->numbers == NULL || I->memory_before == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "integrator: no memory for %zu coordinates", n);
   lay_out(&I->now, &at, n);
   lay_out(&I->last, &at, n);
   lay_out(&I->next, &at, n);
@@ -66,7 +67,8 @@ static dvi_status check_start(dvi_integrator *I, double t, const double *q, cons
   double L;
   if (!isfinite(t)) return dvi__fail(DVI_NOT_FINITE, "start: the time is %g", t);
   for (size_t i = 0; i < n; i++)
-    if (!isfinite(q[i]) || !isfinite(p[i])) return dvi__fail(DVI_NOT_FINITE, "start: coordinate %zu is q = %g, p = %g", i, q[i], p[i]);
+    if (!isfinite(q[i]) || !isfinite(p[i]))
+      return dvi__fail(DVI_NOT_FINITE, "start: coordinate %zu is q = %g, p = %g", i, q[i], p[i]);
   memset(I->next.q_carry, 0, n * sizeof(double));
   DVI_TRY(dvi__legendre_inverse(I->evaluator, t, q, p, I->next.q_carry)); /* a free array takes the velocity */
   DVI_TRY(dvi__lagrangian_value(I->evaluator, 1, &t, q, I->next.q_carry, &L));
@@ -122,8 +124,8 @@ static dvi_status refuse(dvi_integrator *I, double h, dvi_status status)
 {
   memcpy(I->stepper.memory, I->memory_before, I->stepper.memory_count * sizeof(double));
   I->counters.failed_steps++;
-  return dvi__fail_in(status, "%s: step %ld from t = %.9g with h = %.3g failed%s", I->stepper.method->name, I->counters.steps + 1, I->now.t,
-                      h, status > 0 ? "; the state is unchanged, try a smaller step" : "; the state is unchanged");
+  return dvi__fail_in(status, "%s: step %ld from t = %.9g with h = %.3g failed%s", I->stepper.method->name, I->counters.steps + 1,
+                      I->now.t, h, status > 0 ? "; the state is unchanged, try a smaller step" : "; the state is unchanged");
 }
 
 dvi_status dvi_integrator_step(dvi_integrator *I, double h)
@@ -131,7 +133,8 @@ dvi_status dvi_integrator_step(dvi_integrator *I, double h)
   if (I == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "step: the integrator is NULL");
   if (!I->started) return dvi__fail(DVI_BAD_STATE, "step: the integrator has no state yet; call dvi_integrator_start first");
   if (!isfinite(h) || h == 0 || I->now.t + h == I->now.t)
-    return dvi__fail(DVI_BAD_ARGUMENT, "step: h = %g does not move the time from t = %.17g; a finite step other than 0 is needed", h, I->now.t);
+    return dvi__fail(DVI_BAD_ARGUMENT, "step: h = %g does not move the time from t = %.17g; a finite step other than 0 is needed",
+                     h, I->now.t);
   copy_state((size_t)I->system->n, &I->now, &I->next);
   memcpy(I->memory_before, I->stepper.memory, I->stepper.memory_count * sizeof(double));
   const long before = dvi__allocation_count();
@@ -223,7 +226,8 @@ dvi_status dvi_integrator_interpolate(dvi_integrator *I, double t, double *q, do
   /* By the rounded ends: late in a run t0 + h is rounded by much more than a part of h. */
   const double tau = (t - I->last.t) / (I->now.t - I->last.t), rounding = 1e-12;
   if (!(tau >= -rounding && tau <= 1 + rounding))
-    return dvi__fail(DVI_BAD_ARGUMENT, "interpolate: t = %.17g is outside of the last step, %.17g to %.17g", t, I->last.t, I->now.t);
+    return dvi__fail(DVI_BAD_ARGUMENT, "interpolate: t = %.17g is outside of the last step, %.17g to %.17g", t, I->last.t,
+                     I->now.t);
   if (I->stepper.method->path == NULL) return hermite(I, tau, q, v);
   I->stepper.method->path(&I->stepper, I->last.q, I->last_h, tau, q, v);
   return DVI_OK;

@@ -7,14 +7,14 @@ struct dvi_integrator {
   const dvi_system *system;
   dvi__stepper stepper;
   dvi_counters counters;
-  dvi__evaluator *evaluator;  /* for diagnostics at one point */
+  dvi__evaluator *evaluator; /* for diagnostics at one point */
   /* The present state, the one before the last step, and the one that a step works on: a step that fails spoils only `next`. */
   dvi__state now, last, next;
-  double *numbers;            /* the memory of all three */
-  double *memory_before;      /* the stepper's memory before a step */
-  double *v, *last_v;         /* [n] */
+  double *numbers;       /* the memory of all three */
+  double *memory_before; /* the stepper's memory before a step */
+  double *v, *last_v;    /* [n] */
   int started;
-  double last_h;              /* 0: no step was taken yet */
+  double last_h; /* 0: no step was taken yet */
 };
 
 #endif

@@ -14,9 +14,9 @@ typedef struct dvi__state {
 /* A key of a method's specification: a whole number, or one of a list of names. */
 typedef struct dvi__key {
   const char *name;
-  const char *const *choices; /* ended by NULL; NULL: a whole number */
-  int least, most;            /* of a whole number */
-  int left_out;               /* the value of a key that is not given: a number, or the index of a choice */
+  const char *(*choice)(int index); /* name of a choice, NULL past the last one; NULL: a whole number */
+  int least, most;                  /* of a whole number */
+  int left_out;                     /* the value of a key that is not given: a number, or the index of a choice */
   const char *help;
 } dvi__key;
 

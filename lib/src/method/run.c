@@ -40,7 +40,8 @@ static dvi_status observe(dvi_integrator *I, const dvi_run_options *options, dvi
 {
   if (options->observe == NULL) return DVI_OK;
   const int returned = options->observe(I, options->user);
-  if (returned < 0) return dvi__fail(DVI_CALLBACK_FAILED, "run: the observer failed with %d at t = %.9g", returned, dvi_integrator_time(I));
+  if (returned < 0)
+    return dvi__fail(DVI_CALLBACK_FAILED, "run: the observer failed with %d at t = %.9g", returned, dvi_integrator_time(I));
   if (returned > 0) {
     report->end = DVI_RUN_STOPPED;
     *stop = 1;
@@ -56,7 +57,8 @@ static double next_step(const dvi_integrator *I, const dvi_run_options *options)
   return left / h < 1 - rounding ? left : h;
 }
 
-static dvi_status one_step(dvi_integrator *I, const dvi_run_options *options, double h, dvi__watch *watch, dvi_run_report *report, int *stop)
+static dvi_status one_step(dvi_integrator *I, const dvi_run_options *options, double h, dvi__watch *watch, dvi_run_report *report,
+                           int *stop)
 {
   const double from = dvi_integrator_time(I);
   const long every = options->every > 0 ? options->every : 1;
@@ -94,7 +96,9 @@ dvi_status dvi_run(dvi_integrator *I, const dvi_run_options *options, dvi_run_re
   if (status != DVI_OK) out->end = DVI_RUN_FAILED;
   dvi__watch_destroy(&watch);
   /* The last good state is saved even if the run failed; the failure's sentence is the one that counts. */
-  if (options->checkpoint != NULL && status == DVI_OK) status = dvi_integrator_save(I, options->checkpoint);
-  else if (options->checkpoint != NULL) (void)dvi_integrator_save(I, options->checkpoint);
+  if (options->checkpoint != NULL && status == DVI_OK)
+    status = dvi_integrator_save(I, options->checkpoint);
+  else if (options->checkpoint != NULL)
+    (void)dvi_integrator_save(I, options->checkpoint);
   return status;
 }

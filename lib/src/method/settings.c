@@ -59,12 +59,12 @@ static dvi_status parse_choice(const dvi__method *method, const dvi__key *key, p
 {
   char known[DVI__SPECIFICATION_SIZE] = "";
   dvi__text text = {known, sizeof known, 0};
-  for (int c = 0; key->choices[c] != NULL; c++) {
-    if (same(value, key->choices[c])) {
+  for (int c = 0; key->choice(c) != NULL; c++) {
+    if (same(value, key->choice(c))) {
       *choice = c;
       return DVI_OK;
     }
-    dvi__text_add(&text, "%s%s", c > 0 ? ", " : "", key->choices[c]);
+    dvi__text_add(&text, "%s%s", c > 0 ? ", " : "", key->choice(c));
   }
   return dvi__fail(DVI_BAD_OPTION, "%s: %s=%.*s; possible are %s", method->name, key->name, value.length, value.text, known);
 }
@@ -84,8 +84,8 @@ static dvi_status assign(const dvi__method *method, piece name, piece value, dvi
     if (!same(name, key->name)) continue;
     if (*given & 1U << k) return dvi__fail(DVI_BAD_OPTION, "%s: %s is given twice", method->name, key->name);
     *given |= 1U << k;
-    return key->choices == NULL ? parse_number(method, key, value, &settings->value[k])
-                                : parse_choice(method, key, value, &settings->value[k]);
+    return key->choice == NULL ? parse_number(method, key, value, &settings->value[k])
+                               : parse_choice(method, key, value, &settings->value[k]);
   }
   return method->takes_rest ? keep_for_others(method, name, value, settings) : unknown_key(method, name);
 }
@@ -124,8 +124,8 @@ void dvi__spell_out(const dvi__method *method, const dvi__settings *settings, dv
   for (int k = 0; k < dvi__key_count(method); k++) {
     const dvi__key *key = &method->keys[k];
     dvi__text_add(text, "%c%s=", k == 0 ? ':' : ',', key->name);
-    if (key->choices != NULL)
-      dvi__text_add(text, "%s", key->choices[settings->value[k]]);
+    if (key->choice != NULL)
+      dvi__text_add(text, "%s", key->choice(settings->value[k]));
     else
       dvi__text_add(text, "%d", settings->value[k]);
   }

@@ -15,10 +15,12 @@ static dvi_status check_terms(const dvi__method *method, const dvi_system *syste
 {
   for (unsigned term = 1; term <= DVI__POTENTIAL; term <<= 1) {
     if (system->terms & term & ~method->uses)
-      return dvi__fail(DVI_UNSUPPORTED, "%s: the system declares %s, which this method cannot use; galerkin, midpoint and trapezoidal can",
+      return dvi__fail(DVI_UNSUPPORTED,
+                       "%s: the system declares %s, which this method cannot use; galerkin, midpoint and trapezoidal can",
                        method->name, term_name(term));
     if (method->needs & term & ~system->terms)
-      return dvi__fail(DVI_UNSUPPORTED, "%s: the method needs %s, which the system does not declare; galerkin, midpoint and trapezoidal do not",
+      return dvi__fail(DVI_UNSUPPORTED,
+                       "%s: the method needs %s, which the system does not declare; galerkin, midpoint and trapezoidal do not",
                        method->name, term_name(term));
   }
   return DVI_OK;

@@ -51,8 +51,8 @@ static int well_conditioned(sparse *s)
   return klu_rcond(s->symbolic, s->numeric, &s->common) && s->common.rcond >= DVI__LEAST_RCOND;
 }
 
-/* klu_refactor keeps the order of the pivots and allocates nothing. An order that has grown bad shows in the reciprocal pivot growth,
- * and then a full factorisation, which lets entries grow 1/0.001 times at a pivot, chooses another one. */
+/* klu_refactor keeps the order of the pivots and allocates nothing. An order that has grown bad shows in the reciprocal pivot
+ * growth, and then a full factorisation, which lets entries grow 1/0.001 times at a pivot, chooses another one. */
 static int refactor_in_order(sparse *s, const dvi__pattern *pattern, double *entries)
 {
   return s->numeric != NULL && klu_refactor(pattern->start, pattern->row, entries, s->symbolic, s->numeric, &s->common) &&

@@ -8,10 +8,11 @@
 #include "num/factor.h"
 #include "num/finite.h"
 
-/* Measured with Debian's reference LAPACK and KLU 5.12 on one x86-64 core, one factorisation and one to five solves: chains of dense
- * blocks of 1 to 8 unknowns are 1.5 to 6 times faster in KLU at every size from 2 unknowns (LAPACK's condition estimate alone costs a
- * microsecond), full matrices are faster in KLU up to 48 unknowns and 1.25 to 1.65 times faster in LAPACK from 64. At half density
- * the two meet between 64 and 96 unknowns; below that a band, which KLU exploits, cannot be told from scattered entries. */
+/* Measured with Debian's reference LAPACK and KLU 5.12 on one x86-64 core, medians, one factorisation with one or five solves:
+ * chains of dense blocks of 1 to 8 unknowns are faster in KLU at every size (1.5 to 6 times below 48 unknowns, 30 to 180 times
+ * at 400), full matrices up to 32 unknowns too (LAPACK's condition estimate alone costs a microsecond). Full matrices meet at 48
+ * and are 1.25 to 1.65 times faster in LAPACK from 64; half full ones meet between 64 and 96. Scattered entries would gain up to
+ * 1.35 times at densities of 0.2 to 0.5 beyond 100 unknowns, but a band of that density, which KLU exploits, would lose more. */
 enum { LEAST_DENSE = 64 };
 #define LEAST_DENSITY 0.6
 

@@ -170,5 +170,6 @@ dvi_status dvi__kinsol_solve(dvi__kinsol *k, double size, double *x, dvi__solve_
   if (flag == KIN_SUCCESS || flag == KIN_INITIAL_GUESS_OK) return DVI_OK;
   if (flag == KIN_MEM_NULL || flag == KIN_ILL_INPUT || flag == KIN_NO_MALLOC || flag == KIN_MEM_FAIL)
     return dvi__fail(DVI_SOLVER_FAILED, "KINSOL refused the step's equations (flag %d)", flag);
-  return dvi__fail(DVI_NOT_CONVERGED, "KINSOL with line search found no solution (flag %d, scaled residual %.1e)", flag, report->residual);
+  return dvi__fail(DVI_NOT_CONVERGED, "KINSOL with line search found no solution (flag %d, scaled residual %.1e)", flag,
+                   report->residual);
 }

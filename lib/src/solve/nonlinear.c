@@ -80,7 +80,8 @@ static dvi_status fixed_point(dvi__solver *s, double size, int patient, double *
     if (progress == DVI__STALLED) break;
     last = report->correction;
   }
-  return dvi__fail(DVI_NOT_CONVERGED, "fixed point iteration contracts too slowly (change %.1e after %.1e)", report->correction, last);
+  return dvi__fail(DVI_NOT_CONVERGED, "fixed point iteration contracts too slowly (change %.1e after %.1e)", report->correction,
+                   last);
 }
 
 static dvi_status kinsol(dvi__solver *s, double size, double *x, dvi__solve_report *report)

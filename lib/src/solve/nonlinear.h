@@ -39,7 +39,8 @@ void dvi__solver_destroy(dvi__solver **solver);
  * `size` is the size of the quantities to which x is an increment: rounding noise of size * epsilon is expected. With `wary`, Newton's
  * method gives up on a guess so far off that it might lead to another solution. With `patient`, slow fixed point iterations go on.
  * A positive status: not solved, x is spoilt; a negative one: fatal. */
-dvi_status dvi__solve(dvi__solver *solver, dvi__rung rung, double size, int wary, int patient, double *x, dvi__solve_report *report);
+dvi_status dvi__solve(dvi__solver *solver, dvi__rung rung, double size, int wary, int patient, double *x,
+                      dvi__solve_report *report);
 
 /* Which linear solver the Newton rungs use. */
 dvi__linear_kind dvi__solver_linear_kind(const dvi__solver *solver);

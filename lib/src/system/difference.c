@@ -6,7 +6,8 @@
 
 #include "core/status.h"
 
-/* 6th order central differences: the weights of (f(x + m step) - f(x - m step)) / step, and the step where truncation meets roundoff. */
+/* 6th order central differences: the weights of (f(x + m step) - f(x - m step)) / step, and the step where truncation meets
+ * roundoff. */
 static const double weight[3] = {45.0 / 60.0, -9.0 / 60.0, 1.0 / 60.0};
 
 static double sixth_order_step(void)
@@ -14,16 +15,18 @@ static double sixth_order_step(void)
   return pow(DBL_EPSILON, 1.0 / 7.0);
 }
 
+/* A point nearer to the origin than this is taken to pass it: steps that shrink with it would drown in the rounding of the values. */
+static const double smallest_size = 1e-2;
+
 /* Steps near relative * (size of the coordinate), rounded to powers of two so that multiples and quotients are exact. A coordinate near
- * zero is measured by the largest one of its point, a point at the origin (or so near to it that steps would underflow) by 1. */
+ * zero is measured by the largest one of its point. */
 static void choose_steps(int n, int count, const double *x, double relative, double *step)
 {
   for (size_t k = 0, points = (size_t)count; k < points; k++) {
-    double whole = 0;
-    for (size_t i = 0; i < (size_t)n; i++) whole = fmax(whole, fabs(x[i * points + k]));
-    if (!(whole > DBL_MIN / DBL_EPSILON)) whole = 1;
+    double whole = smallest_size;
+    for (size_t i = 0; i < (size_t)n; i++) whole = fmax(whole, 0.1 * fabs(x[i * points + k]));
     for (size_t i = 0; i < (size_t)n; i++)
-      step[i * points + k] = ldexp(1.0, ilogb(relative * fmax(fabs(x[i * points + k]), 0.1 * whole)));
+      step[i * points + k] = ldexp(1.0, ilogb(relative * fmax(fabs(x[i * points + k]), whole)));
   }
 }
 

@@ -11,8 +11,8 @@ typedef dvi_status (*dvi__batch_gradient)(const void *function, int count, const
 dvi_status dvi__difference_gradient(dvi__batch_value value, const void *function, dvi__differences *d, int n, int count,
                                     const double *x, double *gradient);
 
-/* One point: first[i] = d first_i / d x_j and second[i] = d second_i / d x_j, all rows, 6th order: 6 evaluations. Afterwards d->step[j]
- * is the step and d->plus, d->plus_v hold the gradients at its outermost point. */
+/* One point: first[i] = d first_i / d x_j and second[i] = d second_i / d x_j, all rows, 6th order: 6 evaluations. Afterwards
+ * d->step[j] is the step and d->plus, d->plus_v hold the gradients at its outermost point. */
 dvi_status dvi__difference_column(dvi__batch_gradient gradient, const void *function, dvi__differences *d, int n, int j,
                                   const double *x, double *first, double *second);
 

@@ -36,8 +36,8 @@ static dvi_status newton_step(dvi__evaluator *e, double t, const double *q, cons
   return DVI_OK;
 }
 
-/* Newton's method to the roundoff floor: it ends when the steps no longer shrink. A velocity that vanishes (p = A(q), with a magnetic
- * term A) has no size of its own to measure the steps by; then the residual is measured by the momentum. */
+/* Newton's method to the roundoff floor: it ends when the steps no longer shrink. A velocity that vanishes (p = A(q), with a
+ * magnetic term A) has no size of its own to measure the steps by; then the residual is measured by the momentum. */
 static dvi_status newton(dvi__evaluator *e, double t, const double *q, const double *p, double *v)
 {
   double size = HUGE_VAL, residual = HUGE_VAL;

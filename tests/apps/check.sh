@@ -1,0 +1,28 @@
+# Sourced by the tests of the command: counts what does not hold.  $1 of the test is the dvi binary.
+dvi=$1
+failures=0
+folder=$(mktemp -d) || exit 1
+trap 'rm -rf "$folder"' EXIT
+cd "$folder" || exit 1
+
+fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
+
+# expect CODE NAME ARGUMENTS...: run dvi; its output stands in files out and err.
+expect() {
+  wanted=$1 name=$2
+  shift 2
+  code=0
+  "$dvi" "$@" >out 2>err || code=$?
+  [ "$code" -eq "$wanted" ] || { fail "$name: exit code $code instead of $wanted: dvi $*"; sed 's/^/    /' err; }
+}
+
+# says FILE PATTERN NAME: the file has a line that matches.
+says() { grep -q -e "$2" "$1" || { fail "$3: no line with '$2' in $1:"; sed 's/^/    /' "$1" | head -n 5; }; }
+
+# same FILE FILE NAME
+same() { cmp -s "$1" "$2" || fail "$3: $1 and $2 differ"; }
+
+# no_trace NAME: no temporary file was left behind.
+no_trace() { for left in *.part-*; do [ ! -e "$left" ] || fail "$1: $left was left behind"; done; }
+
+finish() { [ "$failures" -eq 0 ] && echo "all hold" || exit 1; }

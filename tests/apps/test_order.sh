@@ -1,0 +1,53 @@
+#!/bin/sh
+# dvi order: columns, judges, levels, verdicts.  Usage: test_order.sh DVI
+. "$(dirname "$0")/check.sh"
+header='method,problem,h,steps,error,slope,energy_error,cpu_seconds,residuals,jacobians,factorizations'
+
+expect 0 'two methods' order kepler --method galerkin:degree=2 --method verlet --csv - --plot order.svg
+[ "$(head -n 1 out)" = "$header" ] || fail 'header'
+says err 'judge at t = 10: exact solution, error' 'the exact judge and its error'
+says err 'claimed order 4, fitted [34]\.[0-9]* .*ok' 'verdict on degree 2'
+says err 'claimed order 2, fitted [12]\.[0-9]* .*ok' 'verdict on verlet'
+for method in galerkin:degree=2 verlet; do
+  [ "$(grep -c "^$method,kepler," out)" -ge 5 ] || fail "five levels of $method"
+done
+awk -F, 'NF != 11' out | grep -q . && fail 'every row has 11 fields'
+grep -qi 'nan\|inf' out && fail 'every field is a number or empty'
+# Slopes from the table, not from the verdict: the last two levels of degree 2 show order 4.
+awk -F, '$1 == "galerkin:degree=2" { if (e) s = log(e / $5) / log(h / $3); e = $5; h = $3 } END { exit !(s > 3.8 && s < 4.2) }' out ||
+  fail 'the table shows order 4'
+if command -v gnuplot >/dev/null; then says order.svg '</svg>' 'the plot is whole'; fi
+
+expect 0 'for people' order pendulum --method midpoint --csv order.csv
+says out 'judge at t' 'the judge is named'
+says out 'ok$' 'the verdict is printed'
+says order.csv '^midpoint,pendulum,' 'the file has the rows'
+expect 0 'commas are quoted' order kepler --method galerkin:degree=2,quadrature=lobatto --csv -
+says out '^"galerkin:degree=2,quadrature=lobatto",kepler,' 'quoted specification'
+
+# With another span the stored digits are not for it, and IDA judges; its own error is said.
+expect 0 'IDA judges' order henon-heiles --method verlet --t-end 3
+says out 'judge at t = 3: IDA.*error [0-9.]*e-' 'IDA and its error'
+
+# Too few levels decide nothing, and that is not success.
+expect 3 'three levels' order kepler --method verlet --levels 3
+says out 'not decided' 'three levels do not decide'
+says out 'levels' 'the remedy is named'
+# Steps much too large are not asymptotic: the order is missed or not decided, never confirmed.
+expect 3 'coarse steps' order kepler --method verlet --h 0.3 --ratio 1.1 --levels 6 --csv order.csv
+says order.csv '^verlet,kepler,' 'the table is written although the check failed'
+# All levels below the floor.
+expect 3 'below the floor' order oscillator --method galerkin:degree=8 --h 0.1 --levels 5
+
+echo old >old.csv
+expect 2 'bad method among good ones' order kepler --method verlet --method nothing --csv old.csv
+[ "$(cat old.csv)" = old ] || fail 'a refused study leaves the old file'
+expect 1 'no folder' order kepler --method verlet --csv nowhere/a.csv
+if [ -w /dev/full ]; then
+  expect 1 'full device' order kepler --method verlet --csv /dev/full
+  code=0
+  "$dvi" order kepler --method verlet --csv - >/dev/full 2>err || code=$?
+  [ "$code" -eq 1 ] || fail "full device: exit code $code"
+fi
+no_trace 'order'
+finish

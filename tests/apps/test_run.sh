@@ -1,0 +1,117 @@
+#!/bin/sh
+# dvi run: rows, files, checkpoints, signals, failures.  Usage: test_run.sh DVI
+. "$(dirname "$0")/check.sh"
+kepler='run kepler --method galerkin:degree=3 --h 0.125'
+
+# shellcheck disable=SC2086
+{
+expect 0 'plain run' $kepler --t-end 4
+cp out all.csv
+says out '^t,x,y,p_x,p_y,energy,' 'header'
+[ "$(wc -l <out)" -eq 34 ] || fail 'a header, the start and 32 steps are 34 lines'
+awk -F, 'NF != 9' out | grep -q . && fail 'every row has 9 fields'
+grep -qi 'nan\|inf' out && fail 'every field is a number'
+says out '^4,' 'the end is the last row'
+expect 0 'every' $kepler --t-end 4 --every 5
+[ "$(cut -d, -f1 out | tr '\n' ' ')" = 't 0 0.625 1.25 1.875 2.5 3.125 3.75 4 ' ] || fail 'every 5 steps, and the end'
+expect 0 'final' $kepler --t-end 4 --final
+{ head -n 1 all.csv; tail -n 1 all.csv; } >final.csv
+same out final.csv 'final is the header and the last row'
+expect 0 'out' $kepler --t-end 4 --out whole.csv
+same whole.csv all.csv 'the file has what standard output has'
+[ -s out ] && fail 'with --out, standard output is empty'
+expect 0 'set' run kepler --method verlet --set e=0 --t-end 1 --final
+says out '^1,0.540' 'with e = 0 the orbit is a circle'
+expect 0 'backward' run kepler --method verlet --h -0.125 --t-end -4 --final
+says out '^-4,' 'backward to -4'
+expect 0 'a last, shorter step' $kepler --t-end 0.3 --final
+says out '^0.29999999999999999,' 'the end is met'
+expect 0 'no way to go' $kepler --t-end 0 --final
+
+# A run in two halves gives the same bits, for one method of each kind and for a general Lagrangian.
+for pair in 'kepler verlet' 'kepler galerkin:degree=4' 'kepler composition:order=6,base=midpoint' 'double-pendulum galerkin:degree=2' \
+  'fpu midpoint' 'toda trapezoidal'; do
+  problem=${pair% *} method=${pair#* }
+  expect 0 "one piece: $pair" run "$problem" --method "$method" --h 0.015625 --t-end 2 --every 3
+  cp out one.csv
+  expect 0 "first half: $pair" run "$problem" --method "$method" --h 0.015625 --t-end 1 --every 3 --checkpoint half.state
+  expect 0 "second half: $pair" run "$problem" --method "$method" --h 0.015625 --t-end 2 --every 3 --resume half.state
+  awk -F, 'NR > 2 && $1 > 1' one.csv >tail1.csv
+  awk -F, 'NR > 2 && $1 > 1' out >tail2.csv
+  [ "$(wc -l <tail1.csv)" -eq 22 ] || fail "rows of the second half: $pair"
+  same tail1.csv tail2.csv "two halves are one piece: $pair"
+done
+
+# Checkpoints that are no good are refused, and nothing else happens.
+expect 0 'checkpoint' $kepler --t-end 1 --checkpoint good.state --checkpoint-every 2 --final
+echo old >old.csv
+head -c 20 good.state >short.state
+expect 1 'truncated checkpoint' $kepler --resume short.state --out old.csv
+expect 1 'missing checkpoint' $kepler --resume missing.state --out old.csv
+expect 1 'checkpoint of another problem' run toda --method galerkin:degree=3 --resume good.state --out old.csv
+expect 1 'checkpoint of another method' run kepler --method verlet --resume good.state --out old.csv
+says err '.' 'a reason is given'
+expect 2 'checkpoint past the end' $kepler --resume good.state --t-end 0.5 --out old.csv
+[ "$(cat old.csv)" = old ] || fail 'a refused run leaves the old file'
+
+# A step too large to solve: the message names the step, and the file stays.
+expect 1 'numerical failure' run henon-heiles --method midpoint --h 10 --t-end 1000 --out old.csv
+for word in 'step [0-9]' 't = [0-9]' 'residual [0-9]' 'try '; do says err "$word" 'failure names step, time, residual and remedy'; done
+[ "$(cat old.csv)" = old ] || fail 'a failed run leaves the old file'
+
+# What cannot be written is said, and nothing half-written stays.
+expect 1 'no folder' $kepler --out nowhere/a.csv
+expect 1 'a folder as file' $kepler --out .
+expect 1 'no folder for the checkpoint' $kepler --checkpoint nowhere/a
+expect 1 'no folder for the plot' $kepler --plot nowhere/a.svg
+( ulimit -f 8; "$dvi" $kepler --t-end 200 --out old.csv 2>err ) && fail 'a file that outgrows its limit is a failure'
+[ "$(cat old.csv)" = old ] || fail 'a file that outgrows its limit leaves the old one'
+no_trace 'failures'
+ln -s old.csv link.csv
+expect 0 'through a link' $kepler --t-end 1 --out link.csv
+[ -L link.csv ] && says old.csv '^1,' 'a link stays a link'
+if [ -w /dev/full ]; then
+  expect 1 'full device as file' $kepler --t-end 4 --out /dev/full
+  [ -c /dev/full ] || fail 'a device stays a device'
+  code=0
+  "$dvi" $kepler --t-end 1000 >/dev/full 2>err || code=$?
+  [ "$code" -eq 1 ] || fail "full device: exit code $code"
+  says err 'standard output' 'full device is named'
+fi
+# The reader goes away: quiet, and soon.
+{ "$dvi" $kepler --t-end 1e7 2>err; echo $? >code; } | head -n 2 >/dev/null
+[ "$(cat code)" -eq 1 ] || fail "closed pipe: exit code $(cat code)"
+[ -s err ] && fail 'a closed pipe is no news'
+
+# Signals end a run after its step: output complete, checkpoint written, and the run can go on to the same bits.
+for signal in INT:130 TERM:143; do
+  # A background job of a script ignores SIGINT unless it takes it back, which dvi does.
+  "$dvi" run kepler --method verlet --h 0.0078125 --t-end 1e6 --every 1000 --out cut.csv --checkpoint cut.state 2>err &
+  sleep 1
+  kill -"${signal%:*}" $!
+  code=0
+  wait $! || code=$?
+  [ "$code" -eq "${signal#*:}" ] || fail "$signal: exit code $code"
+  says err 'resume' "$signal: the way on is named"
+  [ "$(awk -F, 'END { print NF }' cut.csv)" -eq 9 ] || fail "$signal: the last row is whole"
+  reached=$(tail -n 1 cut.csv | cut -d, -f1)
+  until=$(awk "BEGIN { printf \"%.17g\", $reached + 16 }")
+  expect 0 "$signal: resume" run kepler --method verlet --h 0.0078125 --t-end "$until" --resume cut.state --final
+  cp out resumed.csv
+  expect 0 "$signal: in one piece" run kepler --method verlet --h 0.0078125 --t-end "$until" --final
+  same out resumed.csv "$signal: same bits"
+done
+no_trace 'signals'
+}
+
+# A plot is drawn if gnuplot is there; without it the run says so and is done.
+expect 0 'plot' run kepler --method verlet --t-end 5 --final --plot orbit.svg
+if command -v gnuplot >/dev/null; then says orbit.svg '</svg>' 'the plot is whole'; else says err gnuplot 'gnuplot is missed'; fi
+rm -f orbit.svg
+code=0
+PATH=/nowhere "$dvi" run kepler --method verlet --t-end 5 --final --plot orbit.svg >out 2>err || code=$?
+[ "$code" -eq 0 ] || fail "without gnuplot: exit code $code"
+says err 'gnuplot' 'without gnuplot it says so'
+[ -e orbit.svg ] && fail 'without gnuplot there is no plot'
+no_trace 'plots'
+finish

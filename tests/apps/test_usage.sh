@@ -1,0 +1,72 @@
+#!/bin/sh
+# Wrong command lines end with 2 and a message that helps; help and lists end with 0.  Usage: test_usage.sh DVI
+. "$(dirname "$0")/check.sh"
+
+expect 2 'no command'
+expect 0 'help' --help
+says out 'dvi run kepler' 'help has examples'
+expect 0 'version' --version
+says out 'SUNDIALS [0-9]' 'version names SUNDIALS'
+for command in list explain run order bench; do
+  expect 0 "help of $command" "$command" --help
+  says out "  dvi $command " "help of $command has examples"
+  expect 2 "$command without operand" "$command"
+done
+
+expect 2 'unknown command' rnu
+says err "did you mean 'run'" 'nearest command'
+expect 2 'unknown option' run kepler --method verlet --tend 5
+says err "did you mean '--t-end'" 'nearest option'
+expect 2 'short option' run kepler -m verlet
+expect 2 'unknown problem' run keppler --method verlet
+says err "did you mean 'kepler'" 'nearest problem'
+expect 2 'unknown method' run kepler --method verlett
+says err "verlet" 'nearest method'
+expect 2 'unknown key' run kepler --method galerkin:degre=4
+says err "degree" 'nearest key'
+expect 2 'unknown parameter' run kepler --method verlet --set ee=0.5
+expect 2 'parameter out of range' run kepler --method verlet --set e=1.5
+expect 2 'setting that is no pair' run kepler --method verlet --set e
+expect 2 'no method' run kepler --h 0.1
+expect 2 'two operands' run kepler toda --method verlet
+expect 2 'option twice' run kepler --method verlet --h 0.1 --h 0.2
+expect 2 'option without value' run kepler --method verlet --h
+expect 2 'option as value' run kepler --h --method verlet
+expect 2 'flag with value' run kepler --method verlet --final=yes
+for bad in 0.1x '' nan inf 1e999 abc; do expect 2 "h is '$bad'" run kepler --method verlet --h "$bad"; done
+for bad in 0 -1 1.5 99999999999999999999 x; do expect 2 "every is '$bad'" run kepler --method verlet --every "$bad"; done
+expect 2 'h zero' run kepler --method verlet --h 0
+expect 2 'h against t-end' run kepler --method verlet --h -0.1 --t-end 5
+expect 2 'nodes below degree' run kepler --method galerkin:degree=4,nodes=2
+expect 2 'verlet on a general Lagrangian' run double-pendulum --method verlet
+expect 2 'checkpoint-every alone' run kepler --method verlet --checkpoint-every 5
+expect 2 'order without method' order kepler
+expect 2 'too many levels' order kepler --method verlet --levels 1000
+expect 2 'ratio one' order kepler --method verlet --ratio 1
+expect 2 'unknown peer' bench kepler --against cvodes
+expect 2 'list what' list integrators
+
+expect 0 'methods' list methods
+says out '^galerkin ' 'methods has galerkin'
+says out ' degree ' 'methods has keys'
+expect 0 'methods as csv' list methods --csv -
+says out '^method,summary,source,keys$' 'header of methods'
+expect 0 'problems as csv' list problems --csv problems.csv
+says problems.csv '^kepler,' 'problems has kepler'
+says problems.csv 'e=0.6' 'problems has defaults'
+expect 0 'explain' explain kepler --method galerkin:degree=4
+says out 'order 8' 'explain says the order'
+says out 'e=0.6' 'explain says the parameters'
+expect 0 'explain with setting' explain kepler --method verlet --set e=0.25
+says out 'e=0.25' 'explain says what was set'
+
+if [ -w /dev/full ]; then
+  for line in '--help' '--version' 'list methods' 'explain kepler --method verlet'; do
+    code=0
+    # shellcheck disable=SC2086
+    "$dvi" $line >/dev/full 2>err || code=$?
+    [ "$code" -eq 1 ] || fail "full device: dvi $line ends with $code"
+    says err 'standard output' 'full device is named'
+  done
+fi
+finish
