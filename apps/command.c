@@ -35,7 +35,7 @@ int usage_error(const char *format, ...)
 
 int library_error(dvi_status status)
 {
-  const char *sentence = dvi_last_error();
+  const char *sentence = status == DVI_NO_MEMORY ? "" : dvi_last_error(); /* the command's own shortage left none */
   complain("%s", sentence[0] != '\0' ? sentence : dvi_status_meaning(status));
   return status == DVI_BAD_OPTION || status == DVI_UNSUPPORTED ? USAGE : FAILED;
 }

@@ -8,12 +8,12 @@
 
 /** The bases. A nodal basis is Lagrange's on the named nodes; a modal one holds orthogonal polynomials. */
 typedef enum dvi_basis {
-  DVI_LAGRANGE_LOBATTO,     /**< nodal, both ends are nodes */
-  DVI_LAGRANGE_GAUSS,       /**< nodal, no end is a node */
-  DVI_LAGRANGE_CHEBYSHEV,   /**< nodal, Chebyshev points of the second kind, both ends are nodes */
-  DVI_LAGRANGE_EQUISPACED,  /**< nodal; its Lebesgue constant grows like 2^degree */
-  DVI_LEGENDRE,             /**< modal, P_k(2 tau - 1) */
-  DVI_CHEBYSHEV             /**< modal, T_k(2 tau - 1) */
+  DVI_LAGRANGE_LOBATTO,    /**< nodal, both ends are nodes */
+  DVI_LAGRANGE_GAUSS,      /**< nodal, no end is a node */
+  DVI_LAGRANGE_CHEBYSHEV,  /**< nodal, Chebyshev points of the second kind, both ends are nodes */
+  DVI_LAGRANGE_EQUISPACED, /**< nodal; its Lebesgue constant grows like 2^degree */
+  DVI_LEGENDRE,            /**< modal, P_k(2 tau - 1) */
+  DVI_CHEBYSHEV            /**< modal, T_k(2 tau - 1) */
 } dvi_basis;
 
 #ifdef __cplusplus

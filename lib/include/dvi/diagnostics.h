@@ -9,11 +9,11 @@
 /** A running record of one quantity along a run: constant memory for any number of samples. Visible so that it can live on the
  *  stack; read it through dvi_drift_result. */
 typedef struct dvi_drift {
-  double first;                     /**< the first sample; errors are measured from it */
-  double largest;                   /**< largest |error| */
-  double time[DVI_DRIFT_BLOCKS];    /**< sums over each block */
+  double first;                  /**< the first sample; errors are measured from it */
+  double largest;                /**< largest |error| */
+  double time[DVI_DRIFT_BLOCKS]; /**< sums over each block */
   double error[DVI_DRIFT_BLOCKS];
-  long per_block, filled, count;    /**< samples a full block holds; in the last block; in all */
+  long per_block, filled, count; /**< samples a full block holds; in the last block; in all */
   int blocks;
 } dvi_drift;
 

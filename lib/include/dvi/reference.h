@@ -8,7 +8,7 @@ typedef enum dvi_reference_code {
   DVI_IDA,         /**< variable-order BDF on the implicit Euler-Lagrange equations: qdot = v, pdot = L_q, 0 = p - L_v (index 1) */
   DVI_CVODE_ADAMS, /**< on qdot = v(q,p), pdot = L_q */
   DVI_CVODE_BDF,
-  DVI_ARKODE       /**< explicit Runge-Kutta, order 8 (Fehlberg 13-7-8) */
+  DVI_ARKODE /**< explicit Runge-Kutta, order 8 (Fehlberg 13-7-8) */
 } dvi_reference_code;
 
 /** Options; zero means default. */

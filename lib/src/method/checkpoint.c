@@ -1,7 +1,7 @@
 /* Checkpoints: everything that the next step depends on, in one file with a checksum.
  *
  * Layout, in the machine's own byte order (a mark tells a foreign one): the header, the specification, then numbers: the state and the one before it
- * with their carries, velocities, the method's memory. The checksum is FNV-1a over all that precedes it. */
+ * with their carries, the method's memory. The checksum is FNV-1a over all that precedes it. */
 #define _POSIX_C_SOURCE 200809L /* fsync, fileno */
 #include <errno.h>
 #include <stdint.h>
@@ -28,7 +28,7 @@ enum { ORDER_MARK = 0x01020304, VERSION = 1 };
 
 static size_t file_size(const dvi_integrator *I)
 {
-  const size_t numbers = 10 * (size_t)I->system->n + I->stepper.memory_count;
+  const size_t numbers = 8 * (size_t)I->system->n + I->stepper.memory_count;
   return sizeof(header) + numbers * sizeof(double) + sizeof(uint64_t);
 }
 
@@ -60,9 +60,7 @@ static void pack(const dvi_integrator *I, unsigned char *file)
   unsigned char *at = file + sizeof head;
   memcpy(at, I->now.q, 4 * n * sizeof(double));
   memcpy(at += 4 * n * sizeof(double), I->last.q, 4 * n * sizeof(double));
-  memcpy(at += 4 * n * sizeof(double), I->v, n * sizeof(double));
-  memcpy(at += n * sizeof(double), I->last_v, n * sizeof(double));
-  memcpy(at += n * sizeof(double), I->stepper.memory, I->stepper.memory_count * sizeof(double));
+  memcpy(at += 4 * n * sizeof(double), I->stepper.memory, I->stepper.memory_count * sizeof(double));
   const uint64_t sum = checksum(file, size);
   memcpy(file + size, &sum, sizeof sum);
 }
@@ -136,9 +134,7 @@ static void unpack(dvi_integrator *I, const unsigned char *file)
   const unsigned char *at = file + sizeof head;
   memcpy(I->now.q, at, 4 * n * sizeof(double));
   memcpy(I->last.q, at += 4 * n * sizeof(double), 4 * n * sizeof(double));
-  memcpy(I->v, at += 4 * n * sizeof(double), n * sizeof(double));
-  memcpy(I->last_v, at += n * sizeof(double), n * sizeof(double));
-  memcpy(I->stepper.memory, at += n * sizeof(double), I->stepper.memory_count * sizeof(double));
+  memcpy(I->stepper.memory, at += 4 * n * sizeof(double), I->stepper.memory_count * sizeof(double));
   I->started = 1;
 }
 

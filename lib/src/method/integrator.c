@@ -81,7 +81,6 @@ dvi_status dvi_integrator_start(dvi_integrator *I, double t, const double *q, co
   const size_t bytes = (size_t)I->system->n * sizeof(double);
   const dvi_status status = check_start(I, t, q, p);
   if (status != DVI_OK) return dvi__fail_in(status, "%s: cannot start at t = %.6g", I->stepper.method->name, t);
-  memcpy(I->v, I->next.q_carry, bytes);
   memmove(I->now.q, q, bytes);
   memmove(I->now.p, p, bytes);
   memset(I->now.q_carry, 0, bytes);
@@ -183,11 +182,19 @@ void dvi_integrator_counters(const dvi_integrator *integrator, dvi_counters *cou
   *counters = integrator->counters;
 }
 
+/* The velocity of one of the two states. The guess, for general Lagrangians, is the last step's mean velocity: it depends on nothing that a
+ * checkpoint does not hold, so that a restored run gives the same digits. */
+static dvi_status velocity(dvi_integrator *I, const dvi__state *state, double *v)
+{
+  for (int i = 0; i < I->system->n; i++) v[i] = I->last_h != 0 ? (I->now.q[i] - I->last.q[i]) / I->last_h : 0.0;
+  return dvi__legendre_inverse(I->evaluator, state->t, state->q, state->p, v);
+}
+
 dvi_status dvi_integrator_invariants(dvi_integrator *I, double *value)
 {
   if (I == NULL || value == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "invariants: an argument is NULL");
   if (!I->started) return dvi__fail(DVI_BAD_STATE, "invariants: the integrator has no state yet; call dvi_integrator_start first");
-  DVI_TRY(dvi__legendre_inverse(I->evaluator, I->now.t, I->now.q, I->now.p, I->v));
+  DVI_TRY(velocity(I, &I->now, I->v));
   return dvi__invariants(I->evaluator, I->now.t, I->now.q, I->v, I->now.p, value);
 }
 
@@ -209,8 +216,8 @@ static dvi_status hermite(dvi_integrator *I, double tau, double *q, double *v)
   const double h = I->last_h, a = (1 + 2 * tau) * (1 - tau) * (1 - tau), b = tau * (1 - tau) * (1 - tau);
   const double c = tau * tau * (3 - 2 * tau), d = tau * tau * (tau - 1);
   const double a1 = 6 * tau * (tau - 1), b1 = (1 - tau) * (1 - 3 * tau), d1 = tau * (3 * tau - 2);
-  DVI_TRY(dvi__legendre_inverse(I->evaluator, I->last.t, I->last.q, I->last.p, I->last_v));
-  DVI_TRY(dvi__legendre_inverse(I->evaluator, I->now.t, I->now.q, I->now.p, I->v));
+  DVI_TRY(velocity(I, &I->last, I->last_v));
+  DVI_TRY(velocity(I, &I->now, I->v));
   for (int i = 0; i < I->system->n; i++) {
     const double q0 = I->last.q[i], q1 = I->now.q[i], v0 = I->last_v[i], v1 = I->v[i];
     if (q != NULL) q[i] = a * q0 + h * b * v0 + c * q1 + h * d * v1;
