@@ -10,7 +10,7 @@ function(dvi_flags target)
   target_compile_options(${target} PRIVATE -ffp-contract=off -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes
                                            -Wmissing-prototypes -Wvla)
   # Left to gcc: for clang 19 NAN and INFINITY, which are constants of type float, are promotions.
-  if(CMAKE_C_COMPILER_ID STREQUAL GNU)
+  if(NOT CMAKE_C_COMPILER_ID MATCHES Clang)
     target_compile_options(${target} PRIVATE -Wdouble-promotion)
   endif()
   if(DVI_WERROR)

@@ -61,10 +61,12 @@ dvi_status dvi_order(int count, const double *h, const double *error, double flo
 /** How far the map of one step is from symplectic: |M^T J M - J| for its differenced derivative M, in the maximum norm, in
  *  coordinates scaled to unit size.
  *
- *  @param      integrator  its state is kept
+ *  Differences of 10th order take 20 n steps; up to eight difference sizes are tried, and the smallest defect counts: what differences can
+ *  not resolve, about 1e-12, is the floor. A second integrator of the same method takes the steps. Memory (2n)^2 numbers.
+ *  @param      integrator  its method and system are used; it is left alone
  *  @param      t, q, p     where
  *  @param      h           the step
- *  @param[out] defect      the defect; the differences (10th order, 20 n steps) limit it to about 1e-12
+ *  @param[out] defect      the defect
  *  @retval (others)  as dvi_integrator_step */
 dvi_status dvi_symplecticity(dvi_integrator *integrator, double t, const double *q, const double *p, double h, double *defect);
 

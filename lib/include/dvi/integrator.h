@@ -10,7 +10,7 @@ typedef struct dvi_integrator dvi_integrator;
 /** What an integrator has done since its creation. Counters, unlike clocks, say the same on every machine. */
 typedef struct dvi_counters {
   long steps;          /**< accepted steps */
-  long failed_steps;   /**< steps that returned a positive status */
+  long failed_steps;   /**< steps that failed */
   long values;         /**< points at which values were evaluated */
   long gradients;      /**< points at which gradients were evaluated */
   long hessians;       /**< points at which Hessians were evaluated */
@@ -22,7 +22,7 @@ typedef struct dvi_counters {
   long fixed_points;   /**< steps solved by fixed point iteration */
   long newtons;        /**< steps solved by Newton's method */
   long kinsols;        /**< steps handed to KINSOL */
-  long halvings;       /**< starting paths that were built from two half steps */
+  long halvings;       /**< starting paths that were built from shorter steps */
   long allocations;    /**< blocks of memory that its creation and its steps took; a step takes none */
 } dvi_counters;
 

@@ -28,7 +28,8 @@ extern "C" {
  *  @param      n       number of points, 1 to DVI_QUADRATURE_MAX (Lobatto and Clenshaw-Curtis from 2)
  *  @param[out] node    [n], ascending, in [0,1]
  *  @param[out] weight  [n], positive, sum 1
- *  @retval DVI_OK            node and weight hold the rule, each number right to 2 ulp
+ *  @retval DVI_OK            node and weight hold the rule, each number right to 2 ulp (where long double is longer
+ *                            than double; a few ulp elsewhere)
  *  @retval DVI_BAD_SIZE      n is outside the rule's range; nothing is written
  *  @retval DVI_BAD_ARGUMENT  unknown rule or NULL array; nothing is written
  *

@@ -44,8 +44,9 @@ dvi_status dvi__watch_create(dvi_integrator *I, const dvi_run_options *options, 
   dvi_status status = DVI_OK;
   *w = (dvi__watch){0};
   if (options->event_count == 0) return DVI_OK;
-  *w = (dvi__watch){DVI_NEW(double, n), DVI_NEW(double, n), DVI_NEW(double, options->event_count)};
-  if (!w->q || !w->v || !w->before) status = dvi__fail(DVI_NO_MEMORY, "run: no memory for %d events", options->event_count);
+  *w = (dvi__watch){DVI_NEW(double, n), DVI_NEW(double, n), DVI_NEW(double, options->event_count),
+                    DVI_NEW(double, options->event_count)};
+  if (!w->q || !w->v || !w->before || !w->zero) status = dvi__fail(DVI_NO_MEMORY, "run: no memory for %d events", options->event_count);
   for (int k = 0; k < options->event_count && status == DVI_OK; k++) status = first_value(w, I, &options->events[k], &w->before[k]);
   if (status != DVI_OK) dvi__watch_destroy(w);
   return status;
@@ -56,14 +57,15 @@ void dvi__watch_destroy(dvi__watch *w)
   dvi__release(w->q);
   dvi__release(w->v);
   dvi__release(w->before);
+  dvi__release(w->zero);
   *w = (dvi__watch){0};
 }
 
 /* A zero exactly at the left end belongs to the part before. */
 static int crosses(const dvi_event *event, const bracket *at)
 {
-  if (at->ga == 0 || at->ga * at->gb > 0) return 0;
-  if (at->gb == 0 && at->ga == 0) return 0;
+  if (at->ga == 0) return 0;
+  if (at->gb != 0 && (at->gb > 0) == (at->ga > 0)) return 0; /* the product of two small values may vanish */
   const int rises = at->gb > at->ga;
   return event->direction == 0 || (event->direction > 0) == rises;
 }
@@ -114,21 +116,44 @@ static dvi_status report_event(dvi__watch *w, dvi_integrator *I, const dvi_event
   return DVI_OK;
 }
 
+/* Look at all events between a and b: each has at most one zero there. */
+static dvi_status find_zeros(dvi__watch *w, dvi_integrator *I, const dvi_run_options *options, double a, double b)
+{
+  for (int k = 0; k < options->event_count; k++) {
+    const dvi_event *event = &options->events[k];
+    bracket at = {a, b, w->before[k], 0};
+    w->zero[k] = (double)NAN;
+    DVI_TRY(evaluate(w, I, event, b, &at.gb));
+    w->before[k] = at.gb;
+    if (crosses(event, &at)) DVI_TRY(locate(w, I, event, at, &w->zero[k]));
+  }
+  return DVI_OK;
+}
+
+/* The event whose zero the run meets first, of two at one time the first of the list; -1 if there is none. */
+static int earliest(const dvi__watch *w, int count, int forward)
+{
+  int first = -1;
+  for (int k = 0; k < count; k++) {
+    if (isnan(w->zero[k])) continue;
+    if (first < 0 || (forward ? w->zero[k] < w->zero[first] : w->zero[k] > w->zero[first])) first = k;
+  }
+  return first;
+}
+
 dvi_status dvi__watch_step(dvi__watch *w, dvi_integrator *I, const dvi_run_options *options, double from, dvi_run_report *report,
                            int *stop)
 {
   const double to = dvi_integrator_time(I);
-  for (int k = 0; k < options->event_count; k++) {
-    const dvi_event *event = &options->events[k];
-    for (int part = 1; part <= PARTS; part++) {
-      bracket at = {from + (part - 1) * (to - from) / PARTS, part == PARTS ? to : from + part * (to - from) / PARTS, w->before[k],
-                    0};
-      double zero;
-      DVI_TRY(evaluate(w, I, event, at.b, &at.gb));
-      w->before[k] = at.gb;
-      if (!crosses(event, &at)) continue;
-      DVI_TRY(locate(w, I, event, at, &zero));
-      DVI_TRY(report_event(w, I, event, k, zero, report, stop));
+  const int count = options->event_count;
+  for (int part = 1; part <= PARTS && count > 0; part++) {
+    const double a = from + (part - 1) * (to - from) / PARTS, b = part == PARTS ? to : from + part * (to - from) / PARTS;
+    DVI_TRY(find_zeros(w, I, options, a, b));
+    for (int k = earliest(w, count, to > from); k >= 0; k = earliest(w, count, to > from)) {
+      const double zero = w->zero[k];
+      w->zero[k] = (double)NAN;
+      DVI_TRY(report_event(w, I, &options->events[k], k, zero, report, stop));
+      if (*stop) return DVI_OK;
     }
   }
   return DVI_OK;

@@ -13,16 +13,15 @@ static const char *term_name(unsigned term)
 
 static dvi_status check_terms(const dvi__method *method, const dvi_system *system)
 {
-  for (unsigned term = 1; term <= DVI__POTENTIAL; term <<= 1) {
+  const char *others = "galerkin, midpoint and trapezoidal";
+  for (unsigned term = 1; term <= DVI__POTENTIAL; term <<= 1)
     if (system->terms & term & ~method->uses)
-      return dvi__fail(DVI_UNSUPPORTED,
-                       "%s: the system declares %s, which this method cannot use; galerkin, midpoint and trapezoidal can",
-                       method->name, term_name(term));
+      return dvi__fail(DVI_UNSUPPORTED, "%s: the system declares %s, which this method cannot use; %s can", method->name,
+                       term_name(term), others);
+  for (unsigned term = 1; term <= DVI__POTENTIAL; term <<= 1)
     if (method->needs & term & ~system->terms)
-      return dvi__fail(DVI_UNSUPPORTED,
-                       "%s: the method needs %s, which the system does not declare; galerkin, midpoint and trapezoidal do not",
-                       method->name, term_name(term));
-  }
+      return dvi__fail(DVI_UNSUPPORTED, "%s: the method needs %s, which the system does not declare; %s do not", method->name,
+                       term_name(term), others);
   return DVI_OK;
 }
 

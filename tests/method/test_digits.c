@@ -1,0 +1,56 @@
+/* labels: order reference */
+/* The catalogue's digits were made in quadruple precision (tests/reference/test_digits.c makes them again). */
+#include <check.h>
+#include <math.h>
+
+#include "support/runs.h"
+#include "support/suite.h"
+
+static const double close_enough = 1e-12;
+
+static problem *with_digits(int index)
+{
+  problem *of = made_problem(problem_name(index), NULL);
+  ck_assert_msg(of->digits_q != NULL, "%s has no digits", problem_name(index));
+  return of;
+}
+
+/* Small enough that the method's own error is far below: a tenth of the step that an order study of order 2 starts with. */
+START_TEST(degree_8_meets_the_digits)
+{
+  problem *of = with_digits(_i);
+  dvi_integrator *integrator = started(of, "galerkin:degree=8");
+  const long steps = lround(ceil(of->order_t_end / of->order_h)) * 2;
+  advance(integrator, of->order_t_end / (double)steps, steps);
+  const double apart = distance(of->n, dvi_integrator_q(integrator), of->digits_q);
+  ck_assert_msg(apart <= close_enough * fmax(1, magnitude(of->n, of->digits_q)), "%s: %g from the digits", of->name, apart);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&of);
+}
+END_TEST
+
+/* IDA meets them to ten times the error that its second, tighter run makes it state, and states less than 1e-6 of the solution. */
+START_TEST(ida_meets_the_digits_to_its_own_error)
+{
+  problem *of = with_digits(_i);
+  double q[64], p[64];
+  ck_assert_int_le(of->n, 64);
+  for (int i = 0; i < of->n; i++) q[i] = of->q[i], p[i] = of->p[i];
+  dvi_reference_report report;
+  const dvi_status status = dvi_reference_judge(of->system, 0, of->order_t_end, q, p, NULL, &report);
+  ck_assert_msg(status == DVI_OK, "%s: %s", of->name, dvi_last_error());
+  const double apart = distance(of->n, q, of->digits_q), size = fmax(1, magnitude(of->n, of->digits_q));
+  ck_assert_msg(apart <= 10 * report.error + 1e-13 * size, "%s: %g from the digits, states %g", of->name, apart, report.error);
+  ck_assert_msg(report.error <= 1e-6 * size, "%s: states %g", of->name, report.error);
+  problem_destroy(&of);
+}
+END_TEST
+
+int main(void)
+{
+  TCase *tests = tcase_create("digits");
+  tcase_set_timeout(tests, 60);
+  tcase_add_loop_test(tests, degree_8_meets_the_digits, 0, problem_count());
+  tcase_add_loop_test(tests, ida_meets_the_digits_to_its_own_error, 0, problem_count());
+  return run_tests("digits", tests);
+}

@@ -1,0 +1,163 @@
+/* A step takes no memory from the heap and gives none back: not the library's own, nor that of SUNDIALS, KLU and LAPACK. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "support/heap.h"
+#include "support/runs.h"
+#include "support/suite.h"
+
+enum { STEPS = 60, COORDINATES_MOST = 600, INVARIANTS_MOST = 16 };
+
+/* With fpu's stiff springs (omega h = 5) and the oscillators' fixed point iteration gives up in mid-run, outer-solar's 72 unknowns of
+ * degree 4 go to LAPACK, the double pendulum's mass depends on its angles. */
+typedef struct place {
+  const char *name, *setting;
+  double h;
+} place;
+
+static const place places[] = {
+    {"pendulum", NULL, 0.1}, {"fpu", "ell=3", 0.1},        {"fpu", "ell=200", 0.1},      {"toda", "N=5", 0.1},
+    {"toda", "N=300", 0.1},  {"outer-solar", NULL, 100.0}, {"double-pendulum", NULL, 0.1}, {"kepler", "e=0.6", 0.3},
+};
+
+static const char *const methods[] = {
+    "midpoint",
+    "trapezoidal",
+    "galerkin:degree=2",
+    "galerkin:degree=2,solver=newton",
+    "galerkin:degree=2,solver=kinsol",
+    "galerkin:degree=2,solver=fixed-point",
+    "galerkin:degree=4,basis=legendre,quadrature=lobatto,nodes=5",
+    "galerkin:degree=4,solver=newton",
+    "galerkin:degree=4,solver=kinsol",
+    "composition:order=4,base=midpoint",
+    "composition:order=6,base=galerkin,degree=2,solver=newton",
+    "verlet",
+    "composition:order=8,base=verlet",
+};
+enum { PLACES = sizeof places / sizeof *places, METHODS = sizeof methods / sizeof *methods };
+
+/* An integrator that has not taken its first step. NULL: the method cannot use the problem's terms. */
+static dvi_integrator *ready(const problem *of, const char *method)
+{
+  dvi_integrator *made = NULL;
+  const dvi_status status = dvi_integrator_create(of->system, method, &made);
+  if (status == DVI_UNSUPPORTED) return NULL;
+  ck_assert_msg(status == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi_integrator_start(made, 0, of->q, of->p) == DVI_OK, "%s", dvi_last_error());
+  return made;
+}
+
+static long allocations_of(const dvi_integrator *integrator)
+{
+  dvi_counters counters;
+  dvi_integrator_counters(integrator, &counters);
+  return counters.allocations;
+}
+
+/* Heap calls of `steps` steps, which must succeed; their length changes, and with it the tables of the continued path. */
+static long calls_of_steps(dvi_integrator *integrator, double h, int steps)
+{
+  const long before = heap_calls();
+  for (int i = 0; i < steps; i++)
+    if (dvi_integrator_step(integrator, i % 3 == 2 ? 0.9 * h : h) != DVI_OK) ck_abort_msg("%s", dvi_last_error());
+  return heap_calls() - before;
+}
+
+START_TEST(no_step_allocates_not_even_the_first)
+{
+  const place *at = &places[_i / METHODS];
+  problem *of = made_problem(at->name, at->setting);
+  dvi_integrator *integrator = ready(of, methods[_i % METHODS]);
+  if (integrator != NULL) {
+    const long created = allocations_of(integrator);
+    ck_assert_int_gt(created, 0);
+    const long first = calls_of_steps(integrator, at->h, 1);
+    const long later = calls_of_steps(integrator, at->h, STEPS);
+    const long back = calls_of_steps(integrator, -at->h, 2);
+    ck_assert_msg(first + later + back == 0, "%s, %s: %ld, %ld and %ld heap calls", at->name, methods[_i % METHODS], first, later,
+                  back);
+    ck_assert_int_eq(allocations_of(integrator), created);
+  }
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&of);
+}
+END_TEST
+
+START_TEST(invariants_and_dense_output_do_not_allocate)
+{
+  const place *at = &places[_i / METHODS];
+  double value[INVARIANTS_MOST], q[COORDINATES_MOST], v[COORDINATES_MOST];
+  problem *of = made_problem(at->name, at->setting);
+  ck_assert_int_le(of->n, COORDINATES_MOST);
+  ck_assert_int_le(dvi_system_invariant_count(of->system), INVARIANTS_MOST);
+  dvi_integrator *integrator = ready(of, methods[_i % METHODS]);
+  if (integrator != NULL) {
+    (void)calls_of_steps(integrator, at->h, 2);
+    const double t = dvi_integrator_time(integrator) - 0.3 * at->h;
+    const long before = heap_calls();
+    ck_assert_int_eq(dvi_integrator_invariants(integrator, value), DVI_OK);
+    ck_assert_int_eq(dvi_integrator_interpolate(integrator, t, q, v), DVI_OK);
+    const long calls = heap_calls() - before;
+    ck_assert_msg(calls == 0, "%s, %s: %ld heap calls", at->name, methods[_i % METHODS], calls);
+  }
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&of);
+}
+END_TEST
+
+/* The way through all guesses and KINSOL's line search, with its sentence at the end. */
+START_TEST(a_step_that_fails_does_not_allocate)
+{
+  problem *of = made_problem("kepler", "e=0.9");
+  dvi_integrator *integrator = ready(of, "galerkin:degree=4");
+  dvi_counters counters;
+  const long before = heap_calls();
+  const dvi_status status = dvi_integrator_step(integrator, 1e6);
+  const long calls = heap_calls() - before;
+  ck_assert_int_gt(status, 0);
+  ck_assert_int_eq(calls, 0);
+  dvi_integrator_counters(integrator, &counters);
+  ck_assert_int_eq(counters.failed_steps, 1);
+  ck_assert_int_eq(counters.kinsols, 1);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&of);
+}
+END_TEST
+
+/* Else the zeros above would say nothing about the solvers. */
+START_TEST(the_places_reach_every_solver)
+{
+  problem *of = made_problem("fpu", "ell=200");
+  dvi_integrator *integrator = ready(of, "galerkin:degree=2");
+  dvi_counters counters;
+  (void)calls_of_steps(integrator, 0.1, STEPS);
+  dvi_integrator_counters(integrator, &counters);
+  ck_assert_int_gt(counters.newtons, 0);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&of);
+  of = made_problem("outer-solar", NULL);
+  integrator = ready(of, "galerkin:degree=4,solver=kinsol");
+  (void)calls_of_steps(integrator, 100.0, 3);
+  dvi_integrator_counters(integrator, &counters);
+  ck_assert_int_eq(counters.kinsols, 3);
+  ck_assert_int_eq(counters.symbolic, 0); /* dense LU */
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&of);
+}
+END_TEST
+
+int main(void)
+{
+  if (!heap_is_counted()) {
+    (void)puts("heap calls cannot be counted here: skipped");
+    return 77;
+  }
+  TCase *tests = tcase_create("no_allocation");
+  tcase_add_loop_test(tests, no_step_allocates_not_even_the_first, 0, PLACES * METHODS);
+  tcase_add_loop_test(tests, invariants_and_dense_output_do_not_allocate, 0, PLACES * METHODS);
+  tcase_add_test(tests, a_step_that_fails_does_not_allocate);
+  tcase_add_test(tests, the_places_reach_every_solver);
+  return run_tests("method/no_allocation", tests);
+}

@@ -1,0 +1,69 @@
+/* labels: unit */
+#include <check.h>
+#include <string.h>
+
+#include "support/runs.h"
+#include "support/suite.h"
+
+START_TEST(a_step_is_kick_drift_kick)
+{
+  problem *oscillator = made_problem("oscillator", NULL);
+  dvi_integrator *integrator = started(oscillator, "verlet");
+  const double h = 0.25, k = 0.5, q0 = oscillator->q[0], p0 = oscillator->p[0];
+  const double p_half = p0 - h / 2 * k * q0, q1 = q0 + h * p_half, p1 = p_half - h / 2 * k * q1;
+  advance(integrator, h, 1);
+  ck_assert_double_eq_tol(dvi_integrator_q(integrator)[0], q1, 1e-16); /* the same operations: a rounding apart at most */
+  ck_assert_double_eq_tol(dvi_integrator_p(integrator)[0], p1, 1e-16);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&oscillator);
+}
+END_TEST
+
+START_TEST(a_step_costs_one_gradient_and_nothing_else)
+{
+  problem *solar = made_problem("outer-solar", NULL);
+  dvi_integrator *integrator = started(solar, "verlet");
+  dvi_counters before, after;
+  dvi_integrator_counters(integrator, &before);
+  advance(integrator, 10, 1);
+  dvi_integrator_counters(integrator, &after);
+  ck_assert_int_eq(after.gradients - before.gradients, 2); /* the first step needs the start's forces, too */
+  advance(integrator, 10, 100);
+  dvi_integrator_counters(integrator, &after);
+  ck_assert_int_eq(after.gradients - before.gradients, 102);
+  ck_assert_int_eq(after.hessians + after.jacobians + after.factorizations + after.residuals, 0);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&solar);
+}
+END_TEST
+
+START_TEST(a_general_lagrangian_is_refused_by_name)
+{
+  problem *pendula = made_problem("double-pendulum", NULL);
+  dvi_integrator *integrator = NULL;
+  ck_assert_int_eq(dvi_integrator_create(pendula->system, "verlet", &integrator), DVI_UNSUPPORTED);
+  ck_assert_ptr_null(integrator);
+  ck_assert_ptr_nonnull(strstr(dvi_last_error(), "general Lagrangian"));
+  problem_destroy(&pendula);
+}
+END_TEST
+
+START_TEST(it_takes_no_keys)
+{
+  problem *oscillator = made_problem("oscillator", NULL);
+  dvi_integrator *integrator = NULL;
+  ck_assert_int_eq(dvi_integrator_create(oscillator->system, "verlet:degree=2", &integrator), DVI_BAD_OPTION);
+  ck_assert_ptr_nonnull(strstr(dvi_last_error(), "degree"));
+  problem_destroy(&oscillator);
+}
+END_TEST
+
+int main(void)
+{
+  TCase *tests = tcase_create("verlet");
+  tcase_add_test(tests, a_step_is_kick_drift_kick);
+  tcase_add_test(tests, a_step_costs_one_gradient_and_nothing_else);
+  tcase_add_test(tests, a_general_lagrangian_is_refused_by_name);
+  tcase_add_test(tests, it_takes_no_keys);
+  return run_tests("verlet", tests);
+}

@@ -1,0 +1,98 @@
+#include "support/heap.h"
+
+#include <errno.h>
+#include <malloc.h>
+#include <stdatomic.h>
+#include <stddef.h>
+#include <stdlib.h>
+
+#if defined(__SANITIZE_ADDRESS__)
+#define REPLACED_ALREADY
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define REPLACED_ALREADY
+#endif
+#endif
+
+static atomic_long calls, bytes;
+
+long heap_calls(void)
+{
+  return calls;
+}
+
+long heap_bytes(void)
+{
+  return bytes;
+}
+
+int heap_is_counted(void)
+{
+  const long before = calls;
+  void *volatile probe = malloc(1); /* volatile: a pair of calls without a use may be left out */
+  free(probe);
+  return calls == before + 2;
+}
+
+#if defined(__GLIBC__) && !defined(REPLACED_ALREADY)
+/* NOLINTBEGIN(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp): the doors that glibc leaves open for replacements */
+extern void *__libc_malloc(size_t size);
+extern void *__libc_calloc(size_t count, size_t size);
+extern void *__libc_realloc(void *memory, size_t size);
+extern void *__libc_memalign(size_t alignment, size_t size);
+extern void __libc_free(void *memory);
+/* NOLINTEND(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp) */
+
+int posix_memalign(void **memory, size_t alignment, size_t size);
+
+static void *taken(void *memory)
+{
+  calls++;
+  bytes += (long)malloc_usable_size(memory);
+  return memory;
+}
+
+void *malloc(size_t size)
+{
+  return taken(__libc_malloc(size));
+}
+
+void *calloc(size_t count, size_t size)
+{
+  return taken(__libc_calloc(count, size));
+}
+
+void *realloc(void *memory, size_t size)
+{
+  const long before = (long)malloc_usable_size(memory);
+  void *moved = __libc_realloc(memory, size);
+  if (moved != NULL || size == 0) bytes -= before;
+  return taken(moved);
+}
+
+void *memalign(size_t alignment, size_t size)
+{
+  return taken(__libc_memalign(alignment, size));
+}
+
+void *aligned_alloc(size_t alignment, size_t size)
+{
+  return memalign(alignment, size);
+}
+
+int posix_memalign(void **memory, size_t alignment, size_t size)
+{
+  void *made = memalign(alignment, size);
+  if (made == NULL) return ENOMEM;
+  *memory = made;
+  return 0;
+}
+
+void free(void *memory)
+{
+  if (memory == NULL) return;
+  calls++;
+  bytes -= (long)malloc_usable_size(memory);
+  __libc_free(memory);
+}
+#endif
