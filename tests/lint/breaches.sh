@@ -19,6 +19,9 @@ clean() {
   printf '#include <dvi/one.h>\n' >apps/main.c
   touch tests/method/test_leap.c docs/methods/leap.md
   printf '@book{Euler1744,\n}\n' >docs/references.bib
+  printf 'int main(void)\n{\n  return 0;\n}\n' >apps/examples/pendulum.c
+  { echo '# One'; echo '```c'; cat apps/examples/pendulum.c; echo '```'; echo 'See [the guide](docs/guide.md#two-words), Euler1744.'; } >README.md
+  { echo '# Two words'; echo '```c'; echo '#include <dvi/one.h>'; echo 'int two(void);'; echo '```'; } >docs/guide.md
 }
 
 # The gates, called by name.
@@ -26,6 +29,7 @@ clean() {
 layers() { sh "$lint/sources.sh" "$work" "$lint/layers.awk" leap; }
 text() { sh "$lint/sources.sh" "$work" "$lint/text.awk"; }
 documented() { awk -f "$lint/documented.awk" lib/include/dvi/*.h; }
+docs() { sh "$lint/docs.sh" "$work" "$compiler"; }
 methods() { sh "$lint/methods.sh" "$work" leap; }
 headers() { sh "$lint/headers.sh" "$work/lib/include" c "$compiler" -std=c11; }
 symbols() {
@@ -43,7 +47,7 @@ sees() {
 }
 
 clean
-for gate in layers text documented methods headers symbols; do passes $gate; done
+for gate in layers text documented methods docs headers symbols; do passes $gate; done
 
 sees layers lib/src/core/one.c '#include "num/linear.h"'
 sees layers lib/src/num/one.c '#include "system/system.h"'
@@ -74,6 +78,11 @@ sees text lib/src/core/long.c "$(awk 'BEGIN { for (i = 0; i < 501; i++) printf "
 sees documented lib/include/dvi/one.h '\nint dvi_two(int a);'
 sees documented lib/include/dvi/one.h '\ntypedef struct dvi_two { int a; } dvi_two;'
 sees methods docs/methods/other.md 'a page without a method'
+sees docs README.md '[nowhere](docs/nowhere.md)'
+sees docs README.md '[no heading](docs/guide.md#three-words)'
+sees docs README.md 'Nobody1900 says so.'
+sees docs apps/examples/pendulum.c 'int other;'
+sees docs docs/guide.md '```c\nint unfinished\n```'
 sees headers lib/include/dvi/one.h 'size_t dvi_size(void);'
 sees symbols lib/src/core/one.c 'int dvi_two;'
 sees symbols lib/src/core/one.c 'int stray;'

@@ -18,7 +18,7 @@ typedef struct place {
 
 static const place places[] = {
     {"pendulum", NULL, 0.1}, {"fpu", "ell=3", 0.1},        {"fpu", "ell=200", 0.1},      {"toda", "N=5", 0.1},
-    {"toda", "N=300", 0.1},  {"outer-solar", NULL, 100.0}, {"double-pendulum", NULL, 0.1}, {"kepler", "e=0.6", 0.3},
+    {"toda", "N=300", 0.1},  {"outer-solar", NULL, 100.0}, {"double-pendulum", NULL, 0.1}, {"kepler", "e=0.6", 0.1},
 };
 
 static const char *const methods[] = {
@@ -97,9 +97,9 @@ START_TEST(invariants_and_dense_output_do_not_allocate)
     (void)calls_of_steps(integrator, at->h, 2);
     const double t = dvi_integrator_time(integrator) - 0.3 * at->h;
     const long before = heap_calls();
-    ck_assert_int_eq(dvi_integrator_invariants(integrator, value), DVI_OK);
-    ck_assert_int_eq(dvi_integrator_interpolate(integrator, t, q, v), DVI_OK);
-    const long calls = heap_calls() - before;
+    const int failed = dvi_integrator_invariants(integrator, value) || dvi_integrator_interpolate(integrator, t, q, v);
+    const long calls = heap_calls() - before; /* Check's own assertions allocate */
+    ck_assert_msg(!failed, "%s", dvi_last_error());
     ck_assert_msg(calls == 0, "%s, %s: %ld heap calls", at->name, methods[_i % METHODS], calls);
   }
   dvi_integrator_destroy(&integrator);
@@ -107,14 +107,14 @@ START_TEST(invariants_and_dense_output_do_not_allocate)
 }
 END_TEST
 
-/* The way through all guesses and KINSOL's line search, with its sentence at the end. */
+/* The midpoint rule has no solution here, at pericentre: the way leads through all guesses to KINSOL's line search and a sentence. */
 START_TEST(a_step_that_fails_does_not_allocate)
 {
-  problem *of = made_problem("kepler", "e=0.9");
-  dvi_integrator *integrator = ready(of, "galerkin:degree=4");
+  problem *of = made_problem("kepler", "e=0.6");
+  dvi_integrator *integrator = ready(of, "midpoint");
   dvi_counters counters;
   const long before = heap_calls();
-  const dvi_status status = dvi_integrator_step(integrator, 1e6);
+  const dvi_status status = dvi_integrator_step(integrator, 0.3);
   const long calls = heap_calls() - before;
   ck_assert_int_gt(status, 0);
   ck_assert_int_eq(calls, 0);

@@ -9,7 +9,7 @@
 #include "support/quad.h"
 #include "support/runs.h"
 
-enum { N = QUAD_N_MAX, LEVELS_MOST = 64 };
+enum { N = QUAD_N_MAX };
 
 typedef struct state {
   double q[N], p[N];
@@ -121,56 +121,70 @@ void check_global_order(const span *of, const char *method, int first, int order
  *   - it is averaged over points t along the solution, so that a zero of C does no harm;
  *   - c is fitted together with the slope. */
 
-enum { CENTRES = 8 };
+enum { CENTRES = 6, LEVELS_MOST = 64 };
 
-static double centred_error(dvi_integrator *integrator, const problem *of, const char *setting, const state *centre, double h)
+/* A method on a problem, and what its errors are measured at. */
+typedef struct local_study {
+  problem *of;
+  const char *setting;
+  dvi_integrator *integrator;
+  state centre[CENTRES];
+} local_study;
+
+/* Sum of squares over the components; infinite if the step is too long to be solved or to be judged. */
+static double centred_error(const local_study *study, const state *centre, double h)
 {
-  const double least = 1e-16;
-  state exact = *centre, end = {{0}, {0}};
-  double sum = 0;
-  judge(of, setting, -h / 2, least, &exact); /* rounded: the step and the judge start from the same numbers */
-  ck_assert_msg(dvi_integrator_start(integrator, 0, exact.q, exact.p) == DVI_OK, "%s", dvi_last_error());
-  advance(integrator, h, 1);
-  memcpy(end.q, dvi_integrator_q(integrator), (size_t)of->n * sizeof(double));
-  memcpy(end.p, dvi_integrator_p(integrator), (size_t)of->n * sizeof(double));
-  judge(of, setting, h / 2, least, &exact);
-  judge(of, setting, -h / 2, least, &end);
-  const double size_q = magnitude(of->n, exact.q), size_p = magnitude(of->n, exact.p);
-  for (int i = 0; i < of->n; i++) sum += pow((end.q[i] - exact.q[i]) / size_q, 2) + pow((end.p[i] - exact.p[i]) / size_p, 2);
-  return sum;
+  const int n = study->of->n;
+  const double size_q = magnitude(n, centre->q), size_p = magnitude(n, centre->p);
+  state z = *centre;
+  double sum = 0, error = 0;
+  error = quad_solve(study->of->name, study->setting != NULL, &study->setting, -h / 2, z.q, z.p);
+  if (dvi_integrator_start(study->integrator, 0, z.q, z.p) != DVI_OK || dvi_integrator_step(study->integrator, h) != DVI_OK)
+    return HUGE_VAL;
+  memcpy(z.q, dvi_integrator_q(study->integrator), (size_t)n * sizeof(double));
+  memcpy(z.p, dvi_integrator_p(study->integrator), (size_t)n * sizeof(double));
+  error += quad_solve(study->of->name, study->setting != NULL, &study->setting, -h / 2, z.q, z.p);
+  for (int i = 0; i < n; i++) sum += pow((z.q[i] - centre->q[i]) / size_q, 2) + pow((z.p[i] - centre->p[i]) / size_p, 2);
+  return error * error < 1e-4 * sum + 1e-36 ? sum : HUGE_VAL;
 }
 
-static double mean_error(dvi_integrator *integrator, const problem *of, const char *setting, const state *centres, double h)
+static double mean_error(const local_study *study, double h)
 {
   double sum = 0;
-  for (int k = 0; k < CENTRES; k++) sum += centred_error(integrator, of, setting, &centres[k], h);
+  for (int k = 0; k < CENTRES && sum < HUGE_VAL; k++) sum += centred_error(study, &study->centre[k], h);
   return sqrt(sum / CENTRES);
+}
+
+/* Errors below the ceiling and above the floor, from coarse to fine; returns how many there are. */
+static int follow(const local_study *study, double largest_h, double ratio, double *h, double *error)
+{
+  const double floor = 1e-14;  /* thirty times the roundoff of one step: 3 % there, 0.05 in the slope */
+  const double ceiling = 1e-9; /* errors above belong to steps too long for one correction term */
+  int count = 0;
+  for (int level = 0; level < LEVELS_MOST; level++, largest_h /= ratio) {
+    h[count] = largest_h;
+    error[count] = mean_error(study, largest_h);
+    if (show()) printf("%s %s h = %.4g error %.2e\n", study->of->name, dvi_integrator_method(study->integrator), h[count], error[count]);
+    if (error[count] <= floor) break;
+    if (error[count] > 1e4 * ceiling) largest_h /= ratio;
+    if (error[count] <= ceiling) count++;
+  }
+  return count;
 }
 
 void check_local_order(const span *of, const char *method, double largest_h, int order)
 {
-  enum { FITTED = 8, LEAST = 6 };
-  const double floor = 1e-14;  /* thirty times the roundoff of one step: 3 % there, 0.05 in the slope */
-  const double ceiling = 1e-9; /* errors above belong to steps too long for one correction term */
-  const double ratio = pow(4, 1.0 / (order + 1)); /* errors fall by 4 */
-  double h[LEVELS_MOST], error[LEVELS_MOST], now = largest_h;
-  int count = 0;
-  problem *made = made_problem(of->problem, of->setting);
-  dvi_integrator *integrator = made_integrator(made->system, method);
-  state centres[CENTRES];
+  enum { FITTED = 7, LEAST = 6 };
+  double h[LEVELS_MOST], error[LEVELS_MOST];
+  local_study study = {.of = made_problem(of->problem, of->setting), .setting = of->setting};
+  study.integrator = made_integrator(study.of->system, method);
   for (int k = 0; k < CENTRES; k++) {
-    centres[k] = start_of(made);
-    judge(made, of->setting, (k + 0.5) * of->length / CENTRES, 1e-10, &centres[k]); /* any point will do */
+    study.centre[k] = start_of(study.of);
+    judge(study.of, of->setting, (k + 0.5) * of->length / CENTRES, 1e-10, &study.centre[k]); /* any point near the solution will do */
   }
-  for (int level = 0; level < LEVELS_MOST; level++, now /= ratio) {
-    h[count] = now;
-    error[count] = mean_error(integrator, made, of->setting, centres, now);
-    if (show()) printf("%s %s h = %.4g error %.2e\n", of->problem, method, now, error[count]);
-    if (error[count] <= floor) break;
-    if (error[count] <= ceiling) count++;
-  }
-  dvi_integrator_destroy(&integrator);
-  problem_destroy(&made);
+  const int count = follow(&study, largest_h, pow(5, 1.0 / (order + 1)), h, error); /* errors fall by 5 */
+  dvi_integrator_destroy(&study.integrator);
+  problem_destroy(&study.of);
   ck_assert_msg(count >= LEAST, "%s, %s: %d errors above the floor", of->problem, method, count);
   const int fitted = count < FITTED ? count : FITTED;
   check_slope(of->problem, method, slope_of(fitted, h + count - fitted, error + count - fitted, 3) - 1, order);

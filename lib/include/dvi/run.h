@@ -55,6 +55,7 @@ extern "C" {
 /** Advance the integrator from its current time to t_end.
  *
  *  An event is seen if g has different signs at two neighbouring points of the step (ends and quarters), or if a step ends on a zero.
+ *  Events are reported in the order of the run, up to the first one that ends it.
  *  @param[out] report  filled on success and on failure; may be NULL
  *  @retval DVI_OK            the run ended as `report->end` says (not DVI_RUN_FAILED)
  *  @retval DVI_BAD_ARGUMENT  h is zero, not finite or leads away from t_end; a count is negative

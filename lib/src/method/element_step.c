@@ -240,6 +240,8 @@ static dvi_status rescue(dvi__stepper *self, const place *at, double *Y, dvi__so
   DVI_TRY(guessed == DVI_OK ? guess_by_parts(self, at, 1 << MOST_HALVINGS, Y, report) : guess(self, at, Y));
   const dvi_status status = dvi__solve(own->solver, DVI__KINSOL, size, 0, 0, Y, report);
   if (status <= 0) return status;
+  /* A callback's failure speaks for itself; there may be no residual to tell of. */
+  if (status != DVI_NOT_CONVERGED) return dvi__fail_in(status, "not solved, even by KINSOL with line search");
   return dvi__fail_in(status,
                       "not solved, neither by Newton's method nor by KINSOL with line search (%d iterations, residual %.1e)",
                       report->iterations, report->residual);

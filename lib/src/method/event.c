@@ -13,15 +13,21 @@ typedef struct bracket {
   double a, b, ga, gb;
 } bracket;
 
+static dvi_status ask(const dvi_event *event, double t, const double *q, const double *v, double *g)
+{
+  const int returned = event->value(t, q, v, g, event->user);
+  const char *name = event->name != NULL ? event->name : "unnamed";
+  if (returned != 0)
+    return dvi__fail(returned < 0 ? DVI_CALLBACK_FAILED : DVI_CALLBACK_RETRY, "event '%s': the callback returned %d at t = %.9g",
+                     name, returned, t);
+  return isfinite(*g) ? DVI_OK : dvi__fail(DVI_NOT_FINITE, "event '%s' is %g at t = %.9g", name, *g, t);
+}
+
+/* On the last step's path. */
 static dvi_status evaluate(dvi__watch *w, dvi_integrator *I, const dvi_event *event, double t, double *g)
 {
   DVI_TRY(dvi_integrator_interpolate(I, t, w->q, w->v));
-  const int returned = event->value(t, w->q, w->v, g, event->user);
-  const char *name = event->name != NULL ? event->name : "unnamed";
-  if (returned != 0)
-    return dvi__fail(returned < 0 ? DVI_CALLBACK_FAILED : DVI_CALLBACK_RETRY, "event '%s': the callback returned %d", name,
-                     returned);
-  return isfinite(*g) ? DVI_OK : dvi__fail(DVI_NOT_FINITE, "event '%s' is %g at t = %.9g", name, *g, t);
+  return ask(event, t, w->q, w->v, g);
 }
 
 /* The start's value comes from the state itself: there is no step yet to interpolate on. */
@@ -31,11 +37,7 @@ static dvi_status first_value(dvi__watch *w, dvi_integrator *I, const dvi_event 
   const size_t n = (size_t)dvi_system_nv(dvi_integrator_system(I));
   for (size_t i = 0; i < n; i++) w->v[i] = 0;
   DVI_TRY(dvi_system_velocity(dvi_integrator_system(I), t, q, dvi_integrator_p(I), w->v));
-  const int returned = event->value(t, q, w->v, g, event->user);
-  if (returned == 0 && isfinite(*g)) return DVI_OK;
-  return dvi__fail(returned < 0 ? DVI_CALLBACK_FAILED : DVI_NOT_FINITE,
-                   "event '%s': the callback returned %d with g = %g at the start", event->name != NULL ? event->name : "unnamed",
-                   returned, *g);
+  return ask(event, t, q, w->v, g);
 }
 
 dvi_status dvi__watch_create(dvi_integrator *I, const dvi_run_options *options, dvi__watch *w)
@@ -46,7 +48,8 @@ dvi_status dvi__watch_create(dvi_integrator *I, const dvi_run_options *options, 
   if (options->event_count == 0) return DVI_OK;
   *w = (dvi__watch){DVI_NEW(double, n), DVI_NEW(double, n), DVI_NEW(double, options->event_count),
                     DVI_NEW(double, options->event_count)};
-  if (!w->q || !w->v || !w->before || !w->zero) status = dvi__fail(DVI_NO_MEMORY, "run: no memory for %d events", options->event_count);
+  if (!w->q || !w->v || !w->before || !w->zero)
+    status = dvi__fail(DVI_NO_MEMORY, "run: no memory for %d events", options->event_count);
   for (int k = 0; k < options->event_count && status == DVI_OK; k++) status = first_value(w, I, &options->events[k], &w->before[k]);
   if (status != DVI_OK) dvi__watch_destroy(w);
   return status;

@@ -1,6 +1,7 @@
 /* The driver of a run. */
 #include <dvi/run.h>
 #include <math.h>
+#include <stdio.h>
 
 #include "core/status.h"
 #include "method/event.h"
@@ -27,7 +28,7 @@ static dvi_status check(const dvi_integrator *I, const dvi_run_options *options)
   if (!isfinite(options->h) || options->h == 0)
     return dvi__fail(DVI_BAD_ARGUMENT, "run: h = %g; a finite step other than 0 is needed", options->h);
   if (!isfinite(options->t_end)) return dvi__fail(DVI_BAD_ARGUMENT, "run: t_end = %g is not finite", options->t_end);
-  if (way * options->h < 0)
+  if (way != 0 && (way > 0) != (options->h > 0))
     return dvi__fail(DVI_BAD_ARGUMENT, "run: h = %g leads away from t_end = %g; the time is %g", options->h, options->t_end,
                      dvi_integrator_time(I));
   if (options->every < 0 || options->checkpoint_every < 0)
@@ -84,6 +85,16 @@ static dvi_status loop(dvi_integrator *I, const dvi_run_options *options, dvi__w
   return DVI_OK;
 }
 
+/* The last good state is saved even if the run failed; the run's failure and its sentence are the ones that count. */
+static dvi_status save_at_end(const dvi_integrator *I, const char *path, dvi_status status)
+{
+  char sentence[1024];
+  (void)snprintf(sentence, sizeof sentence, "%s", dvi_last_error());
+  const dvi_status saved = dvi_integrator_save(I, path);
+  if (status == DVI_OK) return saved;
+  return saved == DVI_OK ? status : dvi__fail(status, "%s", sentence);
+}
+
 dvi_status dvi_run(dvi_integrator *I, const dvi_run_options *options, dvi_run_report *report)
 {
   dvi_run_report own, *out = report != NULL ? report : &own;
@@ -93,12 +104,8 @@ dvi_status dvi_run(dvi_integrator *I, const dvi_run_options *options, dvi_run_re
   DVI_TRY(dvi__watch_create(I, options, &watch));
   out->end = DVI_RUN_COMPLETE;
   dvi_status status = loop(I, options, &watch, out);
-  if (status != DVI_OK) out->end = DVI_RUN_FAILED;
   dvi__watch_destroy(&watch);
-  /* The last good state is saved even if the run failed; the failure's sentence is the one that counts. */
-  if (options->checkpoint != NULL && status == DVI_OK)
-    status = dvi_integrator_save(I, options->checkpoint);
-  else if (options->checkpoint != NULL)
-    (void)dvi_integrator_save(I, options->checkpoint);
+  if (options->checkpoint != NULL) status = save_at_end(I, options->checkpoint, status);
+  if (status != DVI_OK) out->end = DVI_RUN_FAILED;
   return status;
 }

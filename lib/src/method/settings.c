@@ -50,7 +50,8 @@ static dvi_status parse_number(const dvi__method *method, const dvi__key *key, p
   if (value.length == 0 || end != value.text + value.length)
     return dvi__fail(DVI_BAD_OPTION, "%s: %s=%.*s is not a whole number", method->name, key->name, value.length, value.text);
   if (parsed < key->least || parsed > key->most)
-    return dvi__fail(DVI_BAD_OPTION, "%s: %s=%ld; %d to %d are possible", method->name, key->name, parsed, key->least, key->most);
+    return dvi__fail(DVI_BAD_OPTION, "%s: %s=%.*s; %d to %d are possible", method->name, key->name, value.length, value.text,
+                     key->least, key->most);
   *number = (int)parsed;
   return DVI_OK;
 }

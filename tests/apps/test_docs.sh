@@ -1,0 +1,36 @@
+#!/bin/sh
+# The commands in the pages run, and print what the pages show; numbers are left aside, for they may differ in the last digits and
+# times do.  Usage: test_docs.sh DVI
+here=$(cd "$(dirname "$0")" && pwd)
+. "$here/check.sh"
+top=$here/../..
+PATH=$(dirname "$dvi"):$PATH
+export PATH
+
+# split PAGE: the commands of its console fences into command.N, what follows each into shown.N.
+split() {
+  rm -f command.* shown.*
+  awk '$0 == "```console" { inside = 1; next }
+       /^```$/ { inside = 0 }
+       inside && /^\$ / { n++; print substr($0, 3) > ("command." n); printf "" > ("shown." n); next }
+       inside { print > ("shown." n) }' "$1"
+}
+
+words() { sed 's/-\{0,1\}[0-9][0-9.]*\(e[-+]\{0,1\}[0-9][0-9]*\)\{0,1\}/N/g; s/  */ /g; s/ $//' "$1"; }
+
+commands=0
+for page in README.md docs/guide.md docs/theory.md docs/problems.md docs/methods/galerkin.md docs/methods/verlet.md docs/methods/midpoint.md \
+  docs/methods/trapezoidal.md docs/methods/composition.md; do
+  split "$top/$page"
+  n=1
+  while [ -e command.$n ]; do
+    commands=$((commands + 1))
+    sh command.$n >printed 2>&1
+    words printed >printed.words
+    words shown.$n >shown.words
+    cmp -s printed.words shown.words || { fail "$page: $(cat command.$n)"; diff shown.words printed.words | sed 's/^/    /'; }
+    n=$((n + 1))
+  done
+done
+[ "$commands" -ge 20 ] || fail "only $commands commands were found in the pages"
+finish

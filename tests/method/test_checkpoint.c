@@ -1,0 +1,314 @@
+/* labels: unit */
+/* A checkpoint holds all that the next step depends on, and one that is not whole is refused. */
+#define _POSIX_C_SOURCE 200809L /* geteuid, RLIMIT_FSIZE */
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "support/files.h"
+#include "support/runs.h"
+#include "support/suite.h"
+
+static void check_words(const char *words)
+{
+  ck_assert_msg(strstr(dvi_last_error(), words) != NULL, "\"%s\" is not in \"%s\"", words, dvi_last_error());
+}
+
+/* ---- going on bit for bit ---- */
+
+/* In the first run fixed point iteration gives up near the pericentre, and Newton's method takes over for 64 steps. */
+static const struct {
+  const char *problem, *setting, *method;
+  double h;
+  int steps;
+} runs[] = {
+    {"kepler", NULL, "galerkin", 0.4, 180},
+    {"fpu", "omega=50", "galerkin", 0.05, 30},
+    {"fpu", "omega=50", "galerkin:degree=3,basis=chebyshev,quadrature=lobatto,nodes=5", 0.05, 30},
+    {"fpu", "omega=50", "galerkin:degree=2,solver=kinsol", 0.05, 30},
+    {"fpu", "omega=50", "composition:order=6,base=galerkin,degree=2", 0.05, 30},
+    {"fpu", "omega=50", "composition:order=4,base=midpoint,solver=newton", 0.05, 30},
+    {"kepler", NULL, "galerkin:degree=8,solver=fixed-point", 0.05, 30},
+    {"kepler", NULL, "midpoint", 0.05, 30},
+    {"kepler", NULL, "trapezoidal", 0.05, 30},
+    {"kepler", NULL, "verlet", 0.05, 30},
+    {"kepler", NULL, "composition:order=8,base=verlet", 0.05, 30},
+    {"double-pendulum", NULL, "galerkin:degree=3", 0.02, 30},
+    {"double-pendulum", NULL, "trapezoidal:solver=newton", 0.02, 30},
+};
+enum { RUNS = sizeof runs / sizeof *runs, COORDINATES_MOST = 8, INVARIANTS_MOST = 16 };
+
+/* What both can be asked between two steps. */
+static void check_same_answers(dvi_integrator *a, dvi_integrator *b, double t)
+{
+  double qv[2][2][COORDINATES_MOST] = {0}, invariants[2][INVARIANTS_MOST] = {0};
+  ck_assert_int_eq(dvi_integrator_interpolate(a, t, qv[0][0], qv[0][1]), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_interpolate(b, t, qv[1][0], qv[1][1]), DVI_OK);
+  ck_assert_mem_eq(qv[0], qv[1], sizeof qv[0]);
+  ck_assert_int_eq(dvi_integrator_invariants(a, invariants[0]), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_invariants(b, invariants[1]), DVI_OK);
+  ck_assert_mem_eq(invariants[0], invariants[1], sizeof invariants[0]);
+}
+
+/* Restore the first one's checkpoint into an integrator with another past, and take the same step with both. */
+static void check_step_after_restoring(const problem *of, const char *method, dvi_integrator *first, double h, int asked)
+{
+  dvi_integrator *second = started(of, method);
+  advance(second, 0.6 * h, 2);
+  ck_assert_int_eq(dvi_integrator_save(first, in_folder("checkpoint")), DVI_OK);
+  ck_assert_msg(dvi_integrator_restore(second, in_folder("checkpoint")) == DVI_OK, "%s", dvi_last_error());
+  if (asked) check_same_answers(first, second, dvi_integrator_time(first) - 0.3 * h);
+  advance(first, h, 1);
+  advance(second, h, 1);
+  check_same_state(first, second);
+  dvi_integrator_destroy(&second);
+}
+
+START_TEST(a_restored_run_continues_bit_for_bit_from_any_step)
+{
+  problem *of = made_problem(runs[_i].problem, runs[_i].setting);
+  dvi_integrator *integrator = started(of, runs[_i].method);
+  for (int step = 0; step < runs[_i].steps; step++)
+    check_step_after_restoring(of, runs[_i].method, integrator, runs[_i].h * (step % 10 == 9 ? 0.7 : 1), step > 0);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&of);
+}
+END_TEST
+
+/* Else the test above would not see a checkpoint that forgets which of the two is in charge. */
+START_TEST(the_first_run_changes_its_solver_on_the_way)
+{
+  problem *of = made_problem(runs[0].problem, runs[0].setting);
+  dvi_integrator *integrator = started(of, runs[0].method);
+  dvi_counters counters;
+  advance(integrator, runs[0].h, runs[0].steps);
+  dvi_integrator_counters(integrator, &counters);
+  ck_assert_int_gt(counters.newtons, 0);
+  ck_assert_int_gt(counters.fixed_points, 0);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&of);
+}
+END_TEST
+
+START_TEST(time_and_number_of_steps_are_restored)
+{
+  problem *of = made_problem("pendulum", NULL);
+  dvi_integrator *first = started(of, "midpoint"), *second = made_integrator(of->system, "midpoint");
+  dvi_counters counters;
+  advance(first, 0.1, 7);
+  ck_assert_int_eq(dvi_integrator_save(first, in_folder("checkpoint")), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_restore(second, in_folder("checkpoint")), DVI_OK);
+  ck_assert_double_eq(dvi_integrator_time(second), dvi_integrator_time(first));
+  ck_assert_double_eq(dvi_integrator_q(second)[0], dvi_integrator_q(first)[0]);
+  ck_assert_double_eq(dvi_integrator_p(second)[0], dvi_integrator_p(first)[0]);
+  dvi_integrator_counters(second, &counters);
+  ck_assert_int_eq(counters.steps, 7);
+  ck_assert_int_eq(files_in_folder(), 1);
+  dvi_integrator_destroy(&first);
+  dvi_integrator_destroy(&second);
+  problem_destroy(&of);
+}
+END_TEST
+
+/* ---- files that are not whole ---- */
+
+/* An integrator in mid-run, and the bytes of a checkpoint of its past. */
+typedef struct scene {
+  problem *of;
+  dvi_integrator *integrator;
+  bytes past;
+} scene;
+
+static scene made_scene(void)
+{
+  scene s = {.of = made_problem("kepler", NULL)};
+  s.integrator = started(s.of, "galerkin:degree=2");
+  advance(s.integrator, 0.05, 2);
+  s.past = state_of(s.integrator);
+  advance(s.integrator, 0.05, 2);
+  return s;
+}
+
+static void clear_scene(scene *s)
+{
+  dvi_integrator_destroy(&s->integrator);
+  problem_destroy(&s->of);
+  free(s->past.at);
+}
+
+static void refused(const scene *s, size_t count)
+{
+  const char *file = in_folder("bad");
+  write_bytes(file, s->past.at, count);
+  ck_assert_int_eq(dvi_integrator_restore(s->integrator, file), DVI_BAD_FILE);
+  check_words(file);
+}
+
+START_TEST(a_checkpoint_cut_anywhere_is_refused)
+{
+  scene s = made_scene();
+  const bytes before = state_of(s.integrator);
+  for (size_t count = 0; count < s.past.count; count++) {
+    refused(&s, count);
+    check_words("cut short");
+  }
+  check_state(s.integrator, before);
+  clear_scene(&s);
+}
+END_TEST
+
+START_TEST(a_checkpoint_that_is_too_long_is_refused)
+{
+  scene s = made_scene();
+  const bytes before = state_of(s.integrator);
+  s.past.at = realloc(s.past.at, s.past.count + 1);
+  ck_assert_ptr_nonnull(s.past.at);
+  s.past.at[s.past.count] = 0;
+  refused(&s, s.past.count + 1);
+  check_words("too long");
+  check_state(s.integrator, before);
+  clear_scene(&s);
+}
+END_TEST
+
+START_TEST(a_checkpoint_damaged_at_any_byte_is_refused)
+{
+  const unsigned char damages[] = {0x01, 0x80, 0xff};
+  scene s = made_scene();
+  const bytes before = state_of(s.integrator);
+  for (size_t at = 0; at < s.past.count; at++) {
+    s.past.at[at] ^= damages[at % 3];
+    refused(&s, s.past.count);
+    s.past.at[at] ^= damages[at % 3];
+  }
+  check_state(s.integrator, before);
+  write_bytes(in_folder("good"), s.past.at, s.past.count);
+  ck_assert_int_eq(dvi_integrator_restore(s.integrator, in_folder("good")), DVI_OK);
+  clear_scene(&s);
+}
+END_TEST
+
+/* ---- files of others ---- */
+
+static void refused_by(const char *of, const char *setting, const char *method, const char *words)
+{
+  problem *other = made_problem(of, setting);
+  dvi_integrator *integrator = started(other, method);
+  const bytes before = state_of(integrator);
+  ck_assert_int_eq(dvi_integrator_restore(integrator, in_folder("other")), DVI_BAD_FILE);
+  check_words(words);
+  check_state(integrator, before);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&other);
+}
+
+START_TEST(a_checkpoint_of_another_method_or_dimension_is_refused)
+{
+  scene s = made_scene();
+  ck_assert_int_eq(dvi_integrator_save(s.integrator, in_folder("other")), DVI_OK);
+  refused_by("kepler", NULL, "verlet", "written by galerkin:degree=2");
+  refused_by("kepler", NULL, "galerkin:degree=3", "not by galerkin:degree=3");
+  refused_by("kepler", NULL, "galerkin:degree=2,solver=newton", "written by");
+  refused_by("kepler", NULL, "composition:base=galerkin,degree=2", "written by");
+  refused_by("oscillator", NULL, "galerkin:degree=2", "2 coordinates, not 1");
+  refused_by("fpu", "ell=3", "galerkin:degree=2", "2 coordinates, not 6");
+  clear_scene(&s);
+}
+END_TEST
+
+START_TEST(a_file_that_is_none_or_a_folder_cannot_be_read)
+{
+  scene s = made_scene();
+  const bytes before = state_of(s.integrator);
+  ck_assert_int_eq(dvi_integrator_restore(s.integrator, in_folder("missing")), DVI_IO_ERROR);
+  check_words("No such file");
+  ck_assert_int_eq(dvi_integrator_restore(s.integrator, in_folder(".")), DVI_IO_ERROR);
+  check_words("directory");
+  ck_assert_int_eq(dvi_integrator_restore(s.integrator, ""), DVI_IO_ERROR);
+  write_bytes(in_folder("text"), (const unsigned char *)"t,x,y,p_x,p_y\n", 14);
+  ck_assert_int_eq(dvi_integrator_restore(s.integrator, in_folder("text")), DVI_BAD_FILE);
+  check_state(s.integrator, before);
+  clear_scene(&s);
+}
+END_TEST
+
+/* ---- files that cannot be written ---- */
+
+static void not_written(const dvi_integrator *integrator, const char *path, const char *words)
+{
+  ck_assert_int_eq(dvi_integrator_save(integrator, path), DVI_IO_ERROR);
+  check_words(words);
+}
+
+START_TEST(a_place_that_cannot_be_written_is_reported)
+{
+  enum { TOO_LONG = 10000 };
+  static char endless[TOO_LONG];
+  scene s = made_scene();
+  const char *full = in_folder("full");
+  memset(endless, 'x', TOO_LONG - 1);
+  not_written(s.integrator, in_folder("missing/file"), "No such file");
+  not_written(s.integrator, endless, "too long");
+  not_written(s.integrator, "", "cannot write");
+  write_bytes(in_folder("file"), s.past.at, 1);
+  not_written(s.integrator, in_folder("file/inside"), "Not a directory");
+  ck_assert_int_eq(mkdir(full, 0700), 0);
+  not_written(s.integrator, full, "directory"); /* written beside, but not moved there */
+  ck_assert_int_eq(files_in_folder(), 2);
+  if (geteuid() != 0) { /* root may write anywhere */
+    ck_assert_int_eq(chmod(full, 0500), 0);
+    not_written(s.integrator, in_folder("full/file"), "Permission denied");
+  }
+  clear_scene(&s);
+}
+END_TEST
+
+/* A limit on the size of files stands for the full disk: writing stops in mid-file. */
+START_TEST(a_full_disk_leaves_the_old_checkpoint)
+{
+  scene s = made_scene();
+  const char *file = in_folder("checkpoint"); /* few other paths are asked for below */
+  struct rlimit unlimited, limited;
+  write_bytes(file, s.past.at, s.past.count);
+  ck_assert_int_eq(getrlimit(RLIMIT_FSIZE, &unlimited), 0);
+  limited = unlimited;
+  ck_assert(signal(SIGXFSZ, SIG_IGN) != SIG_ERR);
+  for (rlim_t room = 0; room < s.past.count; room += 40) {
+    limited.rlim_cur = room;
+    ck_assert_int_eq(setrlimit(RLIMIT_FSIZE, &limited), 0);
+    const dvi_status status = dvi_integrator_save(s.integrator, file);
+    ck_assert_int_eq(setrlimit(RLIMIT_FSIZE, &unlimited), 0);
+    ck_assert_int_eq(status, DVI_IO_ERROR);
+    check_words("File too large");
+    ck_assert_int_eq(files_in_folder(), 1); /* and no half of the new one */
+    const bytes old = read_bytes(file);
+    ck_assert_uint_eq(old.count, s.past.count);
+    ck_assert_mem_eq(old.at, s.past.at, old.count);
+    free(old.at);
+  }
+  ck_assert_int_eq(dvi_integrator_save(s.integrator, file), DVI_OK);
+  clear_scene(&s);
+}
+END_TEST
+
+int main(void)
+{
+  TCase *tests = tcase_create("checkpoint");
+  tcase_set_timeout(tests, 120); /* every file is flushed to the disk, which may be busy */
+  tcase_add_checked_fixture(tests, make_folder, remove_folder);
+  tcase_add_loop_test(tests, a_restored_run_continues_bit_for_bit_from_any_step, 0, RUNS);
+  tcase_add_test(tests, the_first_run_changes_its_solver_on_the_way);
+  tcase_add_test(tests, time_and_number_of_steps_are_restored);
+  tcase_add_test(tests, a_checkpoint_cut_anywhere_is_refused);
+  tcase_add_test(tests, a_checkpoint_that_is_too_long_is_refused);
+  tcase_add_test(tests, a_checkpoint_damaged_at_any_byte_is_refused);
+  tcase_add_test(tests, a_checkpoint_of_another_method_or_dimension_is_refused);
+  tcase_add_test(tests, a_file_that_is_none_or_a_folder_cannot_be_read);
+  tcase_add_test(tests, a_place_that_cannot_be_written_is_reported);
+  tcase_add_test(tests, a_full_disk_leaves_the_old_checkpoint);
+  return run_tests("method/checkpoint", tests);
+}
