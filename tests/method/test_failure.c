@@ -96,6 +96,14 @@ static dvi_integrator *launched(const dvi_system *system, const char *method)
   return made;
 }
 
+static void check_same_path(dvi_integrator *a, dvi_integrator *b, double t)
+{
+  double found[2][4];
+  ck_assert_int_eq(dvi_integrator_interpolate(a, t, found[0], found[0] + 2), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_interpolate(b, t, found[1], found[1] + 2), DVI_OK);
+  ck_assert_mem_eq(found[0], found[1], sizeof found[0]);
+}
+
 /* Three good steps, one that the trap spoils, and three good ones again: the state after the failure, and after each later step, is that
  * of an integrator that never failed, bit for bit. */
 static void survives(dvi_system *(*make)(trap *), const char *method, int hessian_only, ailment with, const char *culprit)
@@ -111,6 +119,7 @@ static void survives(dvi_system *(*make)(trap *), const char *method, int hessia
   check_words(culprit);
   set.after = HUGE_VAL;
   check_same_state(tried, spared);
+  check_same_path(tried, spared, 0.27);
   for (int step = 0; step < 3; step++) {
     advance(tried, 0.1, 1);
     advance(spared, 0.1, 1);
@@ -173,6 +182,24 @@ START_TEST(steps_that_do_not_move_the_time_are_refused)
   check_state(integrator, before);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&of);
+}
+END_TEST
+
+/* At rest and free the coordinates stay 0; it is the time that overflows. A step later the coordinate does. */
+START_TEST(a_step_beyond_the_largest_number_fails)
+{
+  static const char *const some[] = {"verlet", "midpoint"};
+  dvi_system *system = make_system(&(dvi_system_terms){.dimension = 1, .mass.scalar = 1});
+  dvi_integrator *integrator = made_integrator(system, some[_i]);
+  ck_assert_int_eq(dvi_integrator_start(integrator, 1e308, &(double){0}, &(double){0}), DVI_OK);
+  const bytes before = state_of(integrator);
+  ck_assert_int_eq(dvi_integrator_step(integrator, 1.7e308), DVI_NOT_FINITE);
+  check_state(integrator, before);
+  ck_assert_int_eq(dvi_integrator_start(integrator, 0, &(double){1e308}, &(double){1e150}), DVI_OK);
+  ck_assert_int_gt(dvi_integrator_step(integrator, 1e200), 0);
+  ck_assert_double_eq(dvi_integrator_q(integrator)[0], 1e308);
+  dvi_integrator_destroy(&integrator);
+  dvi_system_destroy(&system);
 }
 END_TEST
 
@@ -448,6 +475,7 @@ int main(void)
   tcase_add_loop_test(tests, lagrangians_that_fail_in_mid_run_leave_the_state_alone, 0, GENERAL_METHODS * AILMENTS);
   tcase_add_loop_test(tests, hessians_that_fail_in_mid_run_leave_the_state_alone, 0, AILMENTS);
   tcase_add_loop_test(tests, steps_that_do_not_move_the_time_are_refused, 0, METHODS);
+  tcase_add_loop_test(tests, a_step_beyond_the_largest_number_fails, 0, 2);
   tcase_add_loop_test(tests, nothing_works_before_the_start, 0, METHODS);
   tcase_add_loop_test(tests, equations_without_a_solution_are_reported_and_a_smaller_step_goes_on, 0, 4);
   tcase_add_test(tests, a_step_through_a_close_encounter_is_reported_and_smaller_ones_go_on);

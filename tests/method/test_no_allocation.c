@@ -1,7 +1,5 @@
 /* A step takes no memory from the heap and gives none back: not the library's own, nor that of SUNDIALS, KLU and LAPACK. */
-#include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 #include "support/heap.h"
 #include "support/runs.h"
@@ -9,15 +7,15 @@
 
 enum { STEPS = 60, COORDINATES_MOST = 600, INVARIANTS_MOST = 16 };
 
-/* With fpu's stiff springs (omega h = 5) and the oscillators' fixed point iteration gives up in mid-run, outer-solar's 72 unknowns of
- * degree 4 go to LAPACK, the double pendulum's mass depends on its angles. */
+/* On fpu's stiff springs (omega h = 5) fixed point iteration gives up, on the double pendulum it does in mid-run, outer-solar's 72 unknowns
+ * of degree 4 go to LAPACK. */
 typedef struct place {
   const char *name, *setting;
   double h;
 } place;
 
 static const place places[] = {
-    {"pendulum", NULL, 0.1}, {"fpu", "ell=3", 0.1},        {"fpu", "ell=200", 0.1},      {"toda", "N=5", 0.1},
+    {"pendulum", NULL, 0.1}, {"fpu", "ell=3", 0.1},        {"fpu", "ell=200", 0.1},        {"toda", "N=5", 0.1},
     {"toda", "N=300", 0.1},  {"outer-solar", NULL, 100.0}, {"double-pendulum", NULL, 0.1}, {"kepler", "e=0.6", 0.1},
 };
 
@@ -56,12 +54,13 @@ static long allocations_of(const dvi_integrator *integrator)
   return counters.allocations;
 }
 
-/* Heap calls of `steps` steps, which must succeed; their length changes, and with it the tables of the continued path. */
+/* Heap calls of some steps. Their length changes, and with it the tables of the continued path. The first one must succeed; verlet and the
+ * trapezoidal rule soon blow up on the stiff springs, but a step that fails shall take no memory either. */
 static long calls_of_steps(dvi_integrator *integrator, double h, int steps)
 {
   const long before = heap_calls();
   for (int i = 0; i < steps; i++)
-    if (dvi_integrator_step(integrator, i % 3 == 2 ? 0.9 * h : h) != DVI_OK) ck_abort_msg("%s", dvi_last_error());
+    if (dvi_integrator_step(integrator, i % 3 == 2 ? 0.9 * h : h) != DVI_OK && steps == 1) ck_abort_msg("%s", dvi_last_error());
   return heap_calls() - before;
 }
 

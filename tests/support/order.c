@@ -9,7 +9,26 @@
 #include "support/quad.h"
 #include "support/runs.h"
 
-enum { N = QUAD_N_MAX };
+enum { N = QUAD_N_MAX, MOST_GLOBAL_ORDER = 6 };
+
+/* A problem of the catalogue with at most one setting, and a span. */
+typedef struct span {
+  const char *problem, *setting;
+  double length;
+} span;
+
+/* Where a problem's orders show: the span, its steps in the coarsest run of a global study, and the longest step that a local one tries, a
+ * little more than the distance of the nearest singularity in complex time. */
+typedef struct place {
+  span over;
+  int first;
+  double h;
+} place;
+
+static const place places[] = {
+    {{"kepler", "e=0.3", 6.0}, 40, 0.8},         {{"pendulum", NULL, 8.0}, 10, 1.6}, {{"henon-heiles", NULL, 12.0}, 20, 2.4},
+    {{"double-pendulum", NULL, 1.0}, 10, 0.2}, {{"toda", "N=5", 5.0}, 10, 2.5},
+};
 
 typedef struct state {
   double q[N], p[N];
@@ -31,7 +50,7 @@ static state start_of(const problem *of)
   return z;
 }
 
-/* The whole table is shown if this is set: to choose spans and steps. */
+/* To choose spans and steps. */
 static int show(void)
 {
   return getenv("DVI_SHOW_ORDERS") != NULL;
@@ -44,7 +63,9 @@ static void check_slope(const char *problem_name, const char *method, double slo
 }
 
 /* Solve the small normal equations a x = b in place by elimination; they are scaled well enough. */
-static void solve(int count, double a[3][3], double *b)
+enum { TERMS_MOST = 4 };
+
+static void solve(int count, double a[TERMS_MOST][TERMS_MOST], double *b)
 {
   for (int c = 0; c < count; c++)
     for (int i = c + 1; i < count; i++) {
@@ -58,15 +79,17 @@ static void solve(int count, double a[3][3], double *b)
   }
 }
 
-/* Least squares of log error = x0 + x1 log h, and with three terms + x2 h^2: x1. h is taken in units of the largest one. */
+/* Least squares of log error = x0 + x1 log h + x2 h^2 + x3 h^4, cut after `terms`: gives x1. h is taken in units of the largest one. Each
+ * error counts by how well it is known: to a hundredth, and to the roundoff of one step. */
 static double slope_of(int count, const double *h, const double *error, int terms)
 {
-  double a[3][3] = {{0}}, b[3] = {0};
+  const double roundoff = 5e-16;
+  double a[TERMS_MOST][TERMS_MOST] = {{0}}, b[TERMS_MOST] = {0};
   for (int i = 0; i < count; i++) {
-    const double x = h[i] / h[0], f[3] = {1, log(x), x * x};
+    const double x = h[i] / h[0], f[TERMS_MOST] = {1, log(x), x * x, x * x * x * x}, weight = pow(0.01 + roundoff / error[i], -2);
     for (int j = 0; j < terms; j++) {
-      b[j] += f[j] * log(error[i]);
-      for (int k = 0; k < terms; k++) a[j][k] += f[j] * f[k];
+      b[j] += weight * f[j] * log(error[i]);
+      for (int k = 0; k < terms; k++) a[j][k] += weight * f[j] * f[k];
     }
   }
   solve(terms, a, b);
@@ -89,10 +112,11 @@ static double global_error(const problem *of, const span *over, const char *meth
   return error;
 }
 
-void check_global_order(const span *of, const char *method, int first, int order)
+/* The slope over the finest four of the step sizes span/first, span/(2 first), ... whose errors are above roundoff. */
+static void check_global_order(const span *of, const char *method, int first, int order)
 {
-  enum { LEVELS = 10, FITTED = 5, LEAST = 4 };
-  const double floor = 1e-12; /* a hundred times the roundoff of a thousand steps */
+  enum { LEVELS = 10, FITTED = 4 };
+  const double floor = 1e-13; /* ten times the roundoff of a thousand steps */
   double h[LEVELS], error[LEVELS];
   int count = 0;
   problem *made = made_problem(of->problem, of->setting);
@@ -106,9 +130,8 @@ void check_global_order(const span *of, const char *method, int first, int order
     if (error[count] <= floor) break;
   }
   problem_destroy(&made);
-  ck_assert_msg(count >= LEAST, "%s, %s: %d errors above the floor", of->problem, method, count);
-  const int fitted = count < FITTED ? count : FITTED;
-  check_slope(of->problem, method, slope_of(fitted, h + count - fitted, error + count - fitted, 2), order);
+  ck_assert_msg(count >= FITTED, "%s, %s: %d errors above the floor", of->problem, method, count);
+  check_slope(of->problem, method, slope_of(FITTED, h + count - FITTED, error + count - FITTED, 2), order);
 }
 
 /* ---- of one step ----
@@ -119,7 +142,7 @@ void check_global_order(const span *of, const char *method, int first, int order
  *   - the step is centred: it starts from the judge's point at t - h/2, and its end is carried back to t by the judge. For a symmetric
  *     method this error is C h^(order+1) (1 + c h^2 + ...), without odd terms;
  *   - it is averaged over points t along the solution, so that a zero of C does no harm;
- *   - c is fitted together with the slope. */
+ *   - c and the next coefficient are fitted together with the slope. */
 
 enum { CENTRES = 6, LEVELS_MOST = 64 };
 
@@ -131,21 +154,28 @@ typedef struct local_study {
   state centre[CENTRES];
 } local_study;
 
-/* Sum of squares over the components; infinite if the step is too long to be solved or to be judged. */
+static double carry(const local_study *study, double t, state *z)
+{
+  return quad_solve(study->of->name, study->setting != NULL, &study->setting, t, z->q, z->p);
+}
+
+/* Sum of squares over the components; infinite if the step is too long to be solved or to be judged. The start is rounded: the exact
+ * centre belongs to the rounded one. */
 static double centred_error(const local_study *study, const state *centre, double h)
 {
-  const int n = study->of->n;
-  const double size_q = magnitude(n, centre->q), size_p = magnitude(n, centre->p);
-  state z = *centre;
-  double sum = 0, error = 0;
-  error = quad_solve(study->of->name, study->setting != NULL, &study->setting, -h / 2, z.q, z.p);
-  if (dvi_integrator_start(study->integrator, 0, z.q, z.p) != DVI_OK || dvi_integrator_step(study->integrator, h) != DVI_OK)
+  const problem *of = study->of;
+  const size_t bytes = (size_t)of->n * sizeof(double);
+  state exact = *centre, end;
+  (void)carry(study, -h / 2, &exact);
+  if (dvi_integrator_start(study->integrator, 0, exact.q, exact.p) != DVI_OK || dvi_integrator_step(study->integrator, h) != DVI_OK)
     return HUGE_VAL;
-  memcpy(z.q, dvi_integrator_q(study->integrator), (size_t)n * sizeof(double));
-  memcpy(z.p, dvi_integrator_p(study->integrator), (size_t)n * sizeof(double));
-  error += quad_solve(study->of->name, study->setting != NULL, &study->setting, -h / 2, z.q, z.p);
-  for (int i = 0; i < n; i++) sum += pow((z.q[i] - centre->q[i]) / size_q, 2) + pow((z.p[i] - centre->p[i]) / size_p, 2);
-  return error * error < 1e-4 * sum + 1e-36 ? sum : HUGE_VAL;
+  memcpy(end.q, dvi_integrator_q(study->integrator), bytes);
+  memcpy(end.p, dvi_integrator_p(study->integrator), bytes);
+  const double judged = carry(study, h / 2, &exact) + carry(study, -h / 2, &end);
+  const double q = magnitude(of->n, exact.q), p = magnitude(of->n, exact.p);
+  double sum = 0;
+  for (int i = 0; i < of->n; i++) sum += pow((end.q[i] - exact.q[i]) / q, 2) + pow((end.p[i] - exact.p[i]) / p, 2);
+  return judged * judged < 1e-4 * sum + 1e-36 ? sum : HUGE_VAL;
 }
 
 static double mean_error(const local_study *study, double h)
@@ -158,13 +188,13 @@ static double mean_error(const local_study *study, double h)
 /* Errors below the ceiling and above the floor, from coarse to fine; returns how many there are. */
 static int follow(const local_study *study, double largest_h, double ratio, double *h, double *error)
 {
-  const double floor = 1e-14;  /* thirty times the roundoff of one step: 3 % there, 0.05 in the slope */
-  const double ceiling = 1e-9; /* errors above belong to steps too long for one correction term */
+  const double floor = 1e-14;  /* twenty times the roundoff of one step */
+  const double ceiling = 1e-9; /* errors above belong to steps too long for two correction terms */
   int count = 0;
   for (int level = 0; level < LEVELS_MOST; level++, largest_h /= ratio) {
     h[count] = largest_h;
     error[count] = mean_error(study, largest_h);
-    if (show()) printf("%s %s h = %.4g error %.2e\n", study->of->name, dvi_integrator_method(study->integrator), h[count], error[count]);
+    if (show()) printf("%s %s h = %.8g error %.4e\n", study->of->name, dvi_integrator_method(study->integrator), h[count], error[count]);
     if (error[count] <= floor) break;
     if (error[count] > 1e4 * ceiling) largest_h /= ratio;
     if (error[count] <= ceiling) count++;
@@ -172,9 +202,9 @@ static int follow(const local_study *study, double largest_h, double ratio, doub
   return count;
 }
 
-void check_local_order(const span *of, const char *method, double largest_h, int order)
+static void check_local_order(const span *of, const char *method, double largest_h, int order)
 {
-  enum { FITTED = 7, LEAST = 6 };
+  enum { LEAST = 5, ERRORS_FALL_BY = 4 };
   double h[LEVELS_MOST], error[LEVELS_MOST];
   local_study study = {.of = made_problem(of->problem, of->setting), .setting = of->setting};
   study.integrator = made_integrator(study.of->system, method);
@@ -182,10 +212,18 @@ void check_local_order(const span *of, const char *method, double largest_h, int
     study.centre[k] = start_of(study.of);
     judge(study.of, of->setting, (k + 0.5) * of->length / CENTRES, 1e-10, &study.centre[k]); /* any point near the solution will do */
   }
-  const int count = follow(&study, largest_h, pow(5, 1.0 / (order + 1)), h, error); /* errors fall by 5 */
+  const int count = follow(&study, largest_h, pow(ERRORS_FALL_BY, 1.0 / (order + 1)), h, error);
   dvi_integrator_destroy(&study.integrator);
   problem_destroy(&study.of);
   ck_assert_msg(count >= LEAST, "%s, %s: %d errors above the floor", of->problem, method, count);
-  const int fitted = count < FITTED ? count : FITTED;
-  check_slope(of->problem, method, slope_of(fitted, h + count - fitted, error + count - fitted, 3) - 1, order);
+  check_slope(of->problem, method, slope_of(count, h, error, TERMS_MOST) - 1, order);
+}
+
+void check_order(int index, const char *method, int order)
+{
+  const place *at = &places[index];
+  if (order <= MOST_GLOBAL_ORDER)
+    check_global_order(&at->over, method, at->first, order);
+  else
+    check_local_order(&at->over, method, at->h, order);
 }

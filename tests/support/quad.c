@@ -10,13 +10,8 @@
 #define COLUMNS 12
 #define STATE_MAX (2 * QUAD_N_MAX)
 
-typedef struct field {
-  const quad_problem *problem;
-  quad_system system;
-} field;
-
 /* y = (q, v), rate = (v, a). */
-static void evaluate(const field *f, const quad *y, quad *rate)
+static void evaluate(const quad_field *f, const quad *y, quad *rate)
 {
   const int n = f->system.n;
   for (int i = 0; i < n; i++) rate[i] = y[n + i];
@@ -24,7 +19,7 @@ static void evaluate(const field *f, const quad *y, quad *rate)
 }
 
 /* The midpoint rule over a step of h in `count` (even) substeps. */
-static void midpoint(const field *f, const quad *y, const quad *rate, quad h, int count, quad *end)
+static void midpoint(const quad_field *f, const quad *y, const quad *rate, quad h, int count, quad *end)
 {
   const int size = 2 * f->system.n;
   const quad substep = h / count;
@@ -65,7 +60,7 @@ static quad distance(int n, const quad *x, const quad *y)
 }
 
 /* One step of h; returns the difference of the last two columns of the extrapolation table. */
-static quad extrapolate(const field *f, const quad *y, quad h, quad *end)
+static quad extrapolate(const quad_field *f, const quad *y, quad h, quad *end)
 {
   const int n = f->system.n, size = 2 * n;
   quad rate[STATE_MAX], row[COLUMNS][STATE_MAX], last[STATE_MAX];
@@ -84,12 +79,12 @@ static quad extrapolate(const field *f, const quad *y, quad h, quad *end)
 
 /* Advance y by time t: along `coarse` with the steps that the tolerance asks for, along `fine` with half of them. Returns their
  * distance. */
-static quad march(const field *f, quad t, quad *y)
+quad quad_march(const quad_field *f, quad t, quad *y)
 {
-  const quad tolerance = quad_parse("1e-27", NULL);
+  const quad tolerance = quad_parse("1e-30", NULL);
   const int n = f->system.n;
   const size_t bytes = 2 * (size_t)n * sizeof *y;
-  quad coarse[STATE_MAX], fine[STATE_MAX], next[STATE_MAX], left = t, h = t / 64;
+  quad coarse[STATE_MAX], fine[STATE_MAX], next[STATE_MAX], left = t, h = t;
   memcpy(coarse, y, bytes);
   memcpy(fine, y, bytes);
   while (left < 0 || left > 0) {
@@ -109,8 +104,7 @@ static quad march(const field *f, quad t, quad *y)
   return distance(n, fine, coarse);
 }
 
-/* 1 if there is such a problem, with such settings, and room for it. */
-static int prepare(field *f, const char *problem, int setting_count, const char *const *settings)
+int quad_prepare(quad_field *f, const char *problem, int setting_count, const char *const *settings)
 {
   memset(f, 0, sizeof *f);
   f->problem = quad_problem_find(problem);
@@ -129,7 +123,7 @@ static int prepare(field *f, const char *problem, int setting_count, const char 
   return f->system.n > 0;
 }
 
-static void momentum(const field *f, const quad *y, quad *p)
+void quad_momentum(const quad_field *f, const quad *y, quad *p)
 {
   const int n = f->system.n;
   if (f->problem->momentum)
@@ -140,17 +134,17 @@ static void momentum(const field *f, const quad *y, quad *p)
 
 double quad_solve(const char *problem, int setting_count, const char *const *settings, double t, double *q, double *p)
 {
-  field f;
+  quad_field f;
   quad y[STATE_MAX], momenta[QUAD_N_MAX];
-  if (!prepare(&f, problem, setting_count, settings)) return nan("");
+  if (!quad_prepare(&f, problem, setting_count, settings)) return nan("");
   const int n = f.system.n;
   for (int i = 0; i < n; i++) {
     y[i] = (quad)q[i];
     momenta[i] = y[n + i] = (quad)p[i];
   }
   if (f.problem->velocity) f.problem->velocity(&f.system, y, momenta, y + n);
-  const double error = (double)march(&f, (quad)t, y);
-  momentum(&f, y, momenta);
+  const double error = (double)quad_march(&f, (quad)t, y);
+  quad_momentum(&f, y, momenta);
   for (int i = 0; i < n; i++) {
     q[i] = (double)y[i];
     p[i] = (double)momenta[i];
@@ -161,14 +155,14 @@ double quad_solve(const char *problem, int setting_count, const char *const *set
 double quad_digits(const char *problem, int setting_count, const char *const *settings, double t, int *n, char (*q)[QUAD_TEXT],
                    char (*p)[QUAD_TEXT])
 {
-  field f;
+  quad_field f;
   quad y[STATE_MAX], momenta[QUAD_N_MAX];
-  if (!prepare(&f, problem, setting_count, settings)) return nan("");
+  if (!quad_prepare(&f, problem, setting_count, settings)) return nan("");
   *n = f.system.n;
   memcpy(y, f.system.q, (size_t)*n * sizeof *y);
   memcpy(y + *n, f.system.v, (size_t)*n * sizeof *y);
-  const double error = (double)march(&f, (quad)t, y);
-  momentum(&f, y, momenta);
+  const double error = (double)quad_march(&f, (quad)t, y);
+  quad_momentum(&f, y, momenta);
   for (int i = 0; i < *n; i++) {
     quad_print(q[i], QUAD_TEXT, QUAD_FORMAT, y[i]);
     quad_print(p[i], QUAD_TEXT, QUAD_FORMAT, momenta[i]);

@@ -25,8 +25,23 @@ typedef struct quad_problem {
   void (*velocity)(const quad_system *system, const quad *q, const quad *p, quad *v);
 } quad_problem;
 
+/* A problem with its parameters set. */
+typedef struct quad_field {
+  const quad_problem *problem;
+  quad_system system;
+} quad_field;
+
 /* NULL if there is none. */
 const quad_problem *quad_problem_find(const char *name);
+
+/* 1 if there is such a problem, with such settings, and room for it. */
+int quad_prepare(quad_field *field, const char *problem, int setting_count, const char *const *settings);
+
+/* Advance y = (q, v) by time t. Returns the judge's own error as quad_solve does. */
+quad quad_march(const quad_field *field, quad t, quad *y);
+
+/* p [n] at y = (q, v). */
+void quad_momentum(const quad_field *field, const quad *y, quad *p);
 
 /* A decimal number or a quotient of two, "1/1.3e8". */
 quad quad_number(const char *text);

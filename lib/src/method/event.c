@@ -13,14 +13,18 @@ typedef struct bracket {
   double a, b, ga, gb;
 } bracket;
 
+static const char *name_of(const dvi_event *event)
+{
+  return event->name != NULL ? event->name : "unnamed";
+}
+
 static dvi_status ask(const dvi_event *event, double t, const double *q, const double *v, double *g)
 {
   const int returned = event->value(t, q, v, g, event->user);
-  const char *name = event->name != NULL ? event->name : "unnamed";
   if (returned != 0)
     return dvi__fail(returned < 0 ? DVI_CALLBACK_FAILED : DVI_CALLBACK_RETRY, "event '%s': the callback returned %d at t = %.9g",
-                     name, returned, t);
-  return isfinite(*g) ? DVI_OK : dvi__fail(DVI_NOT_FINITE, "event '%s' is %g at t = %.9g", name, *g, t);
+                     name_of(event), returned, t);
+  return isfinite(*g) ? DVI_OK : dvi__fail(DVI_NOT_FINITE, "event '%s' is %g at t = %.9g", name_of(event), *g, t);
 }
 
 /* On the last step's path. */
@@ -73,16 +77,21 @@ static int crosses(const dvi_event *event, const bracket *at)
   return event->direction == 0 || (event->direction > 0) == rises;
 }
 
-/* Illinois' variant of regula falsi, to the last digits of t (Dowell and Jarratt 1971), with bisection where it lingers. */
+/* Illinois' variant of regula falsi, to the last digits of t (Dowell and Jarratt 1971). Where three of its iterations do not halve the
+ * bracket, as at a multiple zero, one of bisection follows. */
 static dvi_status locate(dvi__watch *w, dvi_integrator *I, const dvi_event *event, bracket at, double *zero)
 {
   int side = 0;
+  double looked_at = HUGE_VAL; /* the width when the bracket was looked at last */
   *zero = at.b;
   for (int i = 0; i < MOST_ITERATIONS && at.gb != 0; i++) {
     const double width = at.b - at.a, tolerance = 1e-13 * fmax(1, fabs(at.b));
-    double g, middle = at.a + width * (i % 8 == 7 ? 0.5 : at.ga / (at.ga - at.gb));
+    const int lingers = i % 3 == 0 && fabs(width) > 0.5 * looked_at;
+    double g, middle = at.a + width * (at.ga / (at.ga - at.gb));
+    if (lingers || middle == at.a || middle == at.b) middle = at.a + 0.5 * width; /* g's values may be of very different size */
+    if (i % 3 == 0) looked_at = fabs(width);
     *zero = middle;
-    if (fabs(width) <= tolerance || middle == at.a || middle == at.b) break;
+    if (fabs(width) <= tolerance) break;
     DVI_TRY(evaluate(w, I, event, middle, &g));
     if (g == 0) break;
     if ((g > 0) == (at.gb > 0)) {
@@ -111,7 +120,8 @@ static dvi_status report_event(dvi__watch *w, dvi_integrator *I, const dvi_event
   if (event->occurred == NULL) return DVI_OK;
   DVI_TRY(dvi_integrator_interpolate(I, zero, w->q, w->v));
   const int returned = event->occurred(zero, w->q, w->v, event->user);
-  if (returned < 0) return dvi__fail(DVI_CALLBACK_FAILED, "event: the callback at t = %.9g failed with %d", zero, returned);
+  if (returned < 0)
+    return dvi__fail(DVI_CALLBACK_FAILED, "event '%s': the callback at t = %.9g failed with %d", name_of(event), zero, returned);
   if (returned > 0) {
     report->end = DVI_RUN_STOPPED;
     *stop = 1;

@@ -9,6 +9,9 @@
 /* Smallest reciprocal pivot growth with which kept pivots are trusted: six digits lost, which Newton's iteration mends. */
 #define LEAST_GROWTH 1e-6
 
+/* Small enough beside ones for the diagonal to be preferred as pivots. */
+#define OFF_DIAGONAL 1e-6
+
 typedef struct sparse {
   klu_common common;
   klu_symbolic *symbolic;
@@ -30,19 +33,39 @@ static int lacks_memory(int status)
   return status == KLU_OUT_OF_MEMORY || status == KLU_TOO_LARGE;
 }
 
+/* A factor of a made-up matrix, so that later ones find their memory and no step allocates. It puts the pivots on the diagonal, where they
+ * are good for the Jacobians of short steps. A pattern without one may leave no factor; the first real matrix then makes it. */
+static dvi_status make_room(sparse *s, const dvi__pattern *pattern)
+{
+  double *entries = DVI_NEW(double, dvi__pattern_entries(pattern));
+  if (entries == NULL) return dvi__fail(DVI_NO_MEMORY, "KLU: no memory for %d entries", dvi__pattern_entries(pattern));
+  for (int j = 0; j < pattern->columns; j++)
+    for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++) entries[e] = pattern->row[e] == j ? 1.0 : OFF_DIAGONAL;
+  s->numeric = klu_factor(pattern->start, pattern->row, entries, s->symbolic, &s->common);
+  dvi__release(entries);
+  if (s->numeric != NULL || !lacks_memory(s->common.status)) return DVI_OK;
+  return dvi__fail(DVI_NO_MEMORY, "KLU: no memory to factor %d columns", pattern->columns);
+}
+
+static dvi_status analyse(sparse *s, const dvi__pattern *pattern)
+{
+  klu_defaults(&s->common);
+  s->common.scale = 0; /* the values come equilibrated */
+  s->symbolic = klu_analyze(pattern->columns, pattern->start, pattern->row, &s->common);
+  if (s->symbolic != NULL) return make_room(s, pattern);
+  if (lacks_memory(s->common.status)) return dvi__fail(DVI_NO_MEMORY, "KLU: no memory to analyse %d columns", pattern->columns);
+  return dvi__fail(DVI_SOLVER_FAILED, "KLU: the analysis of %d columns failed (status %d)", pattern->columns, s->common.status);
+}
+
 static dvi_status create(const dvi__pattern *pattern, void **factor)
 {
   sparse *s = *factor = DVI_NEW(sparse, 1);
   if (s == NULL) return dvi__fail(DVI_NO_MEMORY, "KLU: no memory");
-  klu_defaults(&s->common);
-  s->common.scale = 0; /* the values come equilibrated */
-  s->symbolic = klu_analyze(pattern->columns, pattern->start, pattern->row, &s->common);
-  if (s->symbolic != NULL) return DVI_OK;
-  const int reason = s->common.status;
+  const dvi_status status = analyse(s, pattern);
+  if (status == DVI_OK) return DVI_OK;
   destroy(s);
   *factor = NULL;
-  if (lacks_memory(reason)) return dvi__fail(DVI_NO_MEMORY, "KLU: no memory to analyse %d columns", pattern->columns);
-  return dvi__fail(DVI_SOLVER_FAILED, "KLU: the analysis of %d columns failed (status %d)", pattern->columns, reason);
+  return status;
 }
 
 /* By the smallest and largest pivot: coarser than LAPACK's estimate, but nearly free. */

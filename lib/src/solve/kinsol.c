@@ -10,6 +10,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "num/finite.h"
 #include "solve/solver_struct.h"
 #include "solve/sundials_compat.h"
 
@@ -31,10 +32,17 @@ static int callback_return(dvi__kinsol *k, dvi_status status)
   return status == DVI_OK ? 0 : status > 0 ? 1 : -1;
 }
 
+/* KINSOL's line search halves its step for ever once a NaN is among its numbers: none may get there. */
+static int not_finite(const dvi__kinsol *k, N_Vector x)
+{
+  return dvi__first_not_finite((size_t)k->solver->equations.unknowns, N_VGetArrayPointer(x)) >= 0;
+}
+
 static int residual(N_Vector x, N_Vector r, void *user)
 {
   dvi__kinsol *k = user;
-  return callback_return(k, dvi__solver_residual(k->solver, N_VGetArrayPointer(x), N_VGetArrayPointer(r)));
+  const int failed = callback_return(k, dvi__solver_residual(k->solver, N_VGetArrayPointer(x), N_VGetArrayPointer(r)));
+  return failed != 0 ? failed : not_finite(k, r);
 }
 
 static int jacobian(N_Vector x, N_Vector r, SUNMatrix matrix, void *user, N_Vector work1, N_Vector work2)
@@ -74,7 +82,7 @@ static int linear_solve(SUNLinearSolver linear, SUNMatrix matrix, N_Vector x, N_
   (void)matrix, (void)tolerance;
   N_VScale(1.0, b, x);
   dvi__linear_solve(k->solver->linear, N_VGetArrayPointer(x));
-  return 0;
+  return not_finite(k, x);
 }
 
 /* ---- making it ---- */
@@ -119,7 +127,8 @@ dvi_status dvi__kinsol_create(dvi__solver *solver, dvi__kinsol **kinsol)
   k->solver = solver;
   if (dvi__sundials_context(&k->context) == 0 && create_vectors(k) && create_matrix(k) && configure(k)) return DVI_OK;
   dvi__kinsol_destroy(kinsol);
-  return dvi__fail(DVI_SOLVER_FAILED, "KINSOL cannot be set up for %d unknowns", solver->equations.unknowns);
+  /* All that it was given is valid. */
+  return dvi__fail(DVI_NO_MEMORY, "KINSOL: no memory for %d unknowns", solver->equations.unknowns);
 }
 
 void dvi__kinsol_destroy(dvi__kinsol **kinsol)
@@ -140,25 +149,30 @@ void dvi__kinsol_destroy(dvi__kinsol **kinsol)
 /* ---- using it ---- */
 
 /* Both norms in units of the unknowns' size: a residual row over row_scale is a change of an unknown. */
-static void set_scales(dvi__kinsol *k, double size, const double *x)
+static dvi_status set_scales(dvi__kinsol *k, double size, const double *x)
 {
   const int n = k->solver->equations.unknowns;
   double *x_scale = N_VGetArrayPointer(k->x_scale), *r_scale = N_VGetArrayPointer(k->r_scale);
   double whole = 0;
+  int usable = 1;
   for (int i = 0; i < n; i++) whole = fmax(whole, fabs(x[i]));
   if (whole == 0) whole = size > 0 ? size : 1;
   k->solver->equations.row_scale(k->solver->equations.of, r_scale);
   for (int i = 0; i < n; i++) {
     x_scale[i] = 1 / whole;
     r_scale[i] = 1 / (r_scale[i] * whole);
+    usable &= x_scale[i] > 0 && r_scale[i] > 0 && isfinite(x_scale[i]) && isfinite(r_scale[i]);
   }
+  /* KINSOL would take it for a fault of its caller, but a smaller step may have a finite path. */
+  return usable ? DVI_OK
+                : dvi__fail(DVI_NOT_FINITE, "the guess of the path is too large or too small to be scaled (size %g)", whole);
 }
 
 dvi_status dvi__kinsol_solve(dvi__kinsol *k, double size, double *x, dvi__solve_report *report)
 {
   const size_t bytes = (size_t)k->solver->equations.unknowns * sizeof(double);
   long iterations = 0;
-  set_scales(k, size, x);
+  DVI_TRY(set_scales(k, size, x));
   memcpy(N_VGetArrayPointer(k->x), x, bytes);
   k->fatal = DVI_OK;
   const int flag = KINSol(k->memory, k->x, KIN_LINESEARCH, k->x_scale, k->r_scale);

@@ -1,4 +1,6 @@
 /* Newton's method with a Jacobian that is kept while the corrections shrink fast (simplified Newton: Hairer and Wanner 1996, sec. IV.8). */
+#include <float.h>
+
 #include "core/status.h"
 #include "solve/solver_struct.h"
 
@@ -7,8 +9,9 @@ enum { MOST_ITERATIONS = 40 };
 /* Beyond this ratio of two corrections a new Jacobian costs less than the iterations that it saves. */
 static const double keep_below = 0.05;
 
-/* Newton's corrections shrink fast until they are noise; one that doubles is a bad sign, two are the end. */
-static const dvi__pace pace = {0.5, 2.0};
+/* Newton's corrections shrink fast until rounding noise of the residual, amplified by a stiff Jacobian, keeps them; one that doubles is a bad
+ * sign, two are the end. */
+static const dvi__pace pace = {0.5, 1e4 * DBL_EPSILON, 2.0};
 
 /* A guess whose first correction is this large a part of the unknowns and does not shrink by this ratio is as likely to lead to another
  * solution as to the wanted one. */

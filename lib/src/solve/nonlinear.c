@@ -1,5 +1,7 @@
 #include "solve/nonlinear.h"
 
+#include <float.h>
+
 #include "core/memory.h"
 #include "core/status.h"
 #include "solve/solver_struct.h"
@@ -62,8 +64,9 @@ dvi__linear_kind dvi__solver_linear_kind(const dvi__solver *solver)
   return dvi__linear_kind_of(solver->linear);
 }
 
-/* Fixed point iteration pays while each iteration gains a good part of a digit; a patient user takes any gain. */
-static const dvi__pace paying = {0.35, 0.35}, any_gain = {1.0, 1.0};
+/* Fixed point iteration pays while each iteration gains a good part of a digit. A ratio above that may just be slow contraction: only at a few
+ * roundings is it taken for noise. A patient user takes any gain; what no longer shrinks at all is noise. */
+static const dvi__pace paying = {0.35, 32 * DBL_EPSILON, 0.35}, any_gain = {1.0, 1e4 * DBL_EPSILON, 1.0};
 
 static dvi_status fixed_point(dvi__solver *s, double size, int patient, double *x, dvi__solve_report *report)
 {

@@ -3,17 +3,15 @@
 
 #include "solve/solver_struct.h"
 
-/* Corrections of a few roundings are at the floor; so are those that stopped shrinking below the second figure, where rounding noise of
- * the residual, amplified by a stiff Jacobian, keeps them. */
+/* Corrections of a few roundings are at the floor. */
 static const double settled = 4 * DBL_EPSILON;
-static const double noise = 1e4 * DBL_EPSILON;
 
 dvi__progress dvi__judge(double correction, double last, const dvi__pace *pace, double unknown, double size)
 {
   if (!isfinite(correction)) return DVI__STALLED;
   if (correction <= settled * unknown) return DVI__CONVERGED;
   if (last == 0) return DVI__GO_ON;
-  if (correction > pace->stagnant * last && correction <= noise * (unknown + size)) return DVI__CONVERGED;
+  if (correction > pace->stagnant * last && correction <= pace->noise * (unknown + size)) return DVI__CONVERGED;
   return correction > pace->slowest * last ? DVI__STALLED : DVI__GO_ON;
 }
 

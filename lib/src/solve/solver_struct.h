@@ -31,10 +31,10 @@ dvi_status dvi__kinsol_solve(dvi__kinsol *kinsol, double size, double *x, dvi__s
 /* How far an iteration has come (progress.c). */
 typedef enum dvi__progress { DVI__GO_ON, DVI__CONVERGED, DVI__STALLED } dvi__progress;
 
-/* Ratios of a correction to the last one: above `stagnant` it is rounding noise if it is small enough, above `slowest` the iteration is given
- * up. */
+/* Ratios of a correction to the last one: above `stagnant` it is rounding noise if it is also below `noise` (relative to the numbers that are
+ * added), above `slowest` the iteration is given up. */
 typedef struct dvi__pace {
-  double stagnant, slowest;
+  double stagnant, noise, slowest;
 } dvi__pace;
 
 /* Judge one correction after one of size `last` (0 before the first): converged at the roundoff floor, or stalled above it. `unknown` and

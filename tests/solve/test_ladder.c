@@ -1,0 +1,194 @@
+/* What each rung of the ladder solves, on small equations made up here, and when it gives up. */
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "support/equations.h"
+#include "support/suite.h"
+
+START_TEST(every_rung_finds_the_solution_to_roundoff)
+{
+  chain c;
+  bench b;
+  double x[SIZE] = {0};
+  make_chain(0.2, &c);
+  for_chain(&c, &b);
+  ck_assert_msg(run_rung(&b, rungs[_i], x) == DVI_OK, "%s", dvi_last_error());
+  for (int i = 0; i < SIZE; i++) ck_assert_double_eq_tol(x[i], c.solution[i], 8 * DBL_EPSILON); /* numbers up to 2 */
+  ck_assert_int_ge(b.report.iterations, 2);
+  free_bench(&b, &c);
+}
+END_TEST
+
+START_TEST(counters_count_what_was_called)
+{
+  chain c;
+  bench b;
+  double x[SIZE] = {0};
+  make_chain(0.2, &c);
+  for_chain(&c, &b);
+  ck_assert_int_eq(b.counters.symbolic, 1);
+  ck_assert_int_eq(run_rung(&b, rungs[_i], x), DVI_OK);
+  ck_assert_int_eq(b.counters.residuals, c.residuals);
+  ck_assert_int_eq(b.counters.jacobians, c.jacobians);
+  ck_assert_int_eq(b.counters.factorizations, c.jacobians);
+  ck_assert_int_eq(b.counters.symbolic, 1);
+  ck_assert_int_eq(b.counters.kinsols, rungs[_i] == DVI__KINSOL);
+  if (rungs[_i] == DVI__FIXED_POINT) {
+    ck_assert_int_eq(c.jacobians, 0);
+    ck_assert_int_eq(b.report.iterations, c.residuals);
+    ck_assert_int_eq(c.chords, c.residuals);
+  } else {
+    ck_assert_int_ge(c.jacobians, 1);
+    ck_assert_int_eq(c.chords, 0);
+    ck_assert_int_ge(b.counters.solves, 2);
+  }
+  free_bench(&b, &c);
+}
+END_TEST
+
+/* Equations of which the Jacobian hardly changes: the factor of the first iteration serves the others. */
+START_TEST(newton_keeps_a_factor_that_works)
+{
+  chain c;
+  bench b;
+  double x[SIZE];
+  make_chain(0.2, &c);
+  for (int i = 0; i < SIZE; i++) x[i] = c.solution[i] + 1e-3 * (1 + i % 2);
+  for_chain(&c, &b);
+  ck_assert_int_eq(run_rung(&b, DVI__NEWTON, x), DVI_OK);
+  ck_assert_int_ge(c.residuals, 4);
+  ck_assert_int_le(c.jacobians, 2);
+  free_bench(&b, &c);
+}
+END_TEST
+
+/* From |x| > 1.39 on Newton's iteration for atan x = 0 jumps from side to side, farther each time. */
+START_TEST(line_search_finds_what_newton_overshoots)
+{
+  single s = {arctangent, arctangent_slope, 1, -HUGE_VAL, 0};
+  bench b;
+  double x = 3;
+  for_single(&s, &b);
+  failed_with(run_rung(&b, DVI__NEWTON, &x), DVI_NOT_CONVERGED);
+  ck_assert_int_eq(b.counters.kinsols, 0);
+  x = 3;
+  ck_assert_msg(run_rung(&b, DVI__KINSOL, &x) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_double_eq_tol(x, 0, 1e-15);
+  ck_assert_int_eq(b.counters.kinsols, 1);
+  free_bench(&b, NULL);
+}
+END_TEST
+
+/* A start from which Newton's method might end at another solution: for R = x^2 - 1 from 0.3 it jumps to 1.8, and then farther. */
+START_TEST(a_wary_newton_refuses_a_misleading_guess)
+{
+  single s = {parabola, parabola_slope, 1, -HUGE_VAL, 0};
+  bench b;
+  double x = 0.3;
+  for_single(&s, &b);
+  failed_with(dvi__solve(b.solver, DVI__NEWTON, 1.0, 1, 0, &x, &b.report), DVI_NOT_CONVERGED);
+  ck_assert_int_le(s.residuals, 3);
+  x = 0.3;
+  ck_assert_int_eq(dvi__solve(b.solver, DVI__NEWTON, 1.0, 0, 0, &x, &b.report), DVI_OK);
+  ck_assert_double_eq_tol(x, -1, 2 * DBL_EPSILON); /* the farther one of the two */
+  free_bench(&b, NULL);
+}
+END_TEST
+
+/* ---- slow contraction ---- */
+
+/* With chord 10 the contraction is 1 - 1.77/10, for the slope at the solution 0.28 is 1.77. */
+static double slow(double x)
+{
+  return x + 0.8 * sin(x) - 0.5;
+}
+
+static double slow_slope(double x)
+{
+  return 1 + 0.8 * cos(x);
+}
+
+START_TEST(slow_contraction_is_given_up_unless_patient)
+{
+  single s = {slow, slow_slope, 10, -HUGE_VAL, 0};
+  bench b;
+  double x = 0, judge = 0;
+  for_single(&s, &b);
+  failed_with(dvi__solve(b.solver, DVI__FIXED_POINT, 1.0, 0, 0, &x, &b.report), DVI_NOT_CONVERGED);
+  ck_assert_int_le(s.residuals, 5); /* the first ratio of two corrections tells */
+  x = 0;
+  ck_assert_msg(dvi__solve(b.solver, DVI__FIXED_POINT, 1.0, 0, 1, &x, &b.report) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_int_gt(b.report.iterations, 60);
+  ck_assert_int_eq(run_rung(&b, DVI__NEWTON, &judge), DVI_OK);
+  /* The last correction, 4 epsilons of x or less, is 0.177 of the distance that is left. */
+  ck_assert_double_eq_tol(x, judge, 4 / 0.177 * DBL_EPSILON);
+  free_bench(&b, NULL);
+}
+END_TEST
+
+START_TEST(divergence_ends_even_patience)
+{
+  single s = {slow, slow_slope, 0.5, -HUGE_VAL, 0}; /* 1 - 1.77/0.5: grows 2.5 times an iteration */
+  bench b;
+  double x = 0;
+  for_single(&s, &b);
+  failed_with(dvi__solve(b.solver, DVI__FIXED_POINT, 1.0, 0, 1, &x, &b.report), DVI_NOT_CONVERGED);
+  ck_assert_int_le(s.residuals, 1000);
+  free_bench(&b, NULL);
+}
+END_TEST
+
+/* ---- no solution ---- */
+
+START_TEST(no_solution_is_a_failure_after_a_bounded_number_of_iterations)
+{
+  single s = {never_zero, parabola_slope, 2, -HUGE_VAL, 0};
+  bench b;
+  double x = 0.7;
+  for_single(&s, &b);
+  failed_with(run_rung(&b, rungs[_i], &x), DVI_NOT_CONVERGED);
+  ck_assert_int_le(s.residuals, 2000); /* KINSOL: 100 iterations with up to a dozen points on each line, then 40 by Newton */
+  free_bench(&b, NULL);
+}
+END_TEST
+
+START_TEST(a_singular_jacobian_is_a_step_s_failure)
+{
+  single s = {never_zero, flat_slope, 1, -HUGE_VAL, 0};
+  bench b;
+  double x = 0.7;
+  for_single(&s, &b);
+  failed_with(run_rung(&b, rungs[1 + _i], &x), DVI_NOT_CONVERGED);
+  ck_assert_msg(strstr(dvi_last_error(), "singular") != NULL, "%s", dvi_last_error());
+  free_bench(&b, NULL);
+}
+END_TEST
+
+/* The slope vanishes at the start alone: KINSOL cannot begin there either, and no rung may claim a solution. */
+START_TEST(a_start_on_a_critical_point_is_a_failure)
+{
+  single s = {parabola, parabola_slope, 1, -HUGE_VAL, 0};
+  bench b;
+  double x = 0;
+  for_single(&s, &b);
+  failed_with(run_rung(&b, rungs[1 + _i], &x), DVI_NOT_CONVERGED);
+  free_bench(&b, NULL);
+}
+END_TEST
+
+int main(void)
+{
+  TCase *tests = tcase_create("ladder");
+  tcase_add_loop_test(tests, every_rung_finds_the_solution_to_roundoff, 0, 3);
+  tcase_add_loop_test(tests, counters_count_what_was_called, 0, 3);
+  tcase_add_test(tests, newton_keeps_a_factor_that_works);
+  tcase_add_test(tests, line_search_finds_what_newton_overshoots);
+  tcase_add_test(tests, a_wary_newton_refuses_a_misleading_guess);
+  tcase_add_test(tests, slow_contraction_is_given_up_unless_patient);
+  tcase_add_test(tests, divergence_ends_even_patience);
+  tcase_add_loop_test(tests, no_solution_is_a_failure_after_a_bounded_number_of_iterations, 0, 3);
+  tcase_add_loop_test(tests, a_singular_jacobian_is_a_step_s_failure, 0, 2);
+  tcase_add_loop_test(tests, a_start_on_a_critical_point_is_a_failure, 0, 2);
+  return run_tests("solve/ladder", tests);
+}
