@@ -1,4 +1,4 @@
-/* labels: order */
+/* labels: unit order */
 /* The trajectory inside the last step: right at the ends, of the promised order between them, and only there. */
 #include <float.h>
 #include <math.h>

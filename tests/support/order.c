@@ -185,26 +185,30 @@ static double mean_error(const local_study *study, double h)
   return sqrt(sum / CENTRES);
 }
 
-/* Errors below the ceiling and above the floor, from coarse to fine; returns how many there are. */
-static int follow(const local_study *study, double largest_h, double ratio, double *h, double *error)
+/* Errors below the ceiling and above the floor, from coarse to fine; returns how many there are. The claimed order is used to choose steps
+ * only: to go down to the ceiling fast, then to let errors fall by 4. */
+static int follow(const local_study *study, double largest_h, int order, double *h, double *error)
 {
   const double floor = 1e-14;  /* twenty times the roundoff of one step */
   const double ceiling = 1e-9; /* errors above belong to steps too long for two correction terms */
+  double now = largest_h;
   int count = 0;
-  for (int level = 0; level < LEVELS_MOST; level++, largest_h /= ratio) {
-    h[count] = largest_h;
-    error[count] = mean_error(study, largest_h);
-    if (show()) printf("%s %s h = %.8g error %.4e\n", study->of->name, dvi_integrator_method(study->integrator), h[count], error[count]);
-    if (error[count] <= floor) break;
-    if (error[count] > 1e4 * ceiling) largest_h /= ratio;
-    if (error[count] <= ceiling) count++;
+  for (int level = 0; level < LEVELS_MOST; level++) {
+    const double found = mean_error(study, now);
+    if (show()) printf("%s %s h = %.8g error %.4e\n", study->of->name, dvi_integrator_method(study->integrator), now, found);
+    if (found <= floor) break;
+    if (found <= ceiling) {
+      h[count] = now;
+      error[count++] = found;
+    }
+    now *= found <= ceiling ? pow(0.25, 1.0 / (order + 1)) : fmax(0.5, pow(ceiling / found, 1.0 / (order + 1)));
   }
   return count;
 }
 
 static void check_local_order(const span *of, const char *method, double largest_h, int order)
 {
-  enum { LEAST = 5, ERRORS_FALL_BY = 4 };
+  enum { LEAST = 6 };
   double h[LEVELS_MOST], error[LEVELS_MOST];
   local_study study = {.of = made_problem(of->problem, of->setting), .setting = of->setting};
   study.integrator = made_integrator(study.of->system, method);
@@ -212,7 +216,7 @@ static void check_local_order(const span *of, const char *method, double largest
     study.centre[k] = start_of(study.of);
     judge(study.of, of->setting, (k + 0.5) * of->length / CENTRES, 1e-10, &study.centre[k]); /* any point near the solution will do */
   }
-  const int count = follow(&study, largest_h, pow(ERRORS_FALL_BY, 1.0 / (order + 1)), h, error);
+  const int count = follow(&study, largest_h, order, h, error);
   dvi_integrator_destroy(&study.integrator);
   problem_destroy(&study.of);
   ck_assert_msg(count >= LEAST, "%s, %s: %d errors above the floor", of->problem, method, count);
