@@ -46,7 +46,7 @@ static int print_method(const dvi_integrator *integrator)
     return FAILED;
   }
   (void)dvi_integrator_explain(integrator, text, size);
-  (void)printf("method %s: order %d\n%s", dvi_integrator_method(integrator), dvi_integrator_order(integrator), text);
+  (void)fputs(text, stdout);
   free(text);
   return DONE;
 }

@@ -19,9 +19,9 @@ typedef struct dvi_counters {
   long factorizations; /**< numeric factorisations */
   long symbolic;       /**< symbolic analyses */
   long solves;         /**< triangular solves */
-  long fixed_points;   /**< steps solved by fixed point iteration */
-  long newtons;        /**< steps solved by Newton's method */
-  long kinsols;        /**< steps handed to KINSOL */
+  long fixed_points;   /**< solves by fixed point iteration: steps, and parts of steps that build a starting path */
+  long newtons;        /**< the same by Newton's method */
+  long kinsols;        /**< solves handed to KINSOL */
   long halvings;       /**< starting paths that were built from shorter steps */
   long allocations;    /**< blocks of memory that its creation and its steps took; a step takes none */
 } dvi_counters;

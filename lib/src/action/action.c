@@ -19,7 +19,7 @@ static int allocate_batches(dvi__action *a)
   return a->t && a->Q && a->V && a->L_q && a->L_v && a->line;
 }
 
-static dvi_status allocate_chord(dvi__action *a)
+static dvi_status allocate_chord(dvi__action *a, dvi_counters *counters)
 {
   const dvi_system *system = a->system;
   if (system->lagrangian == NULL) return DVI_OK;
@@ -30,7 +30,7 @@ static dvi_status allocate_chord(dvi__action *a)
   a->middle_vv = DVI_NEW(double, dvi__pattern_entries(&system->vv));
   if (!a->middle[0] || !a->middle[1] || !a->middle[2] || !a->middle[3] || !a->middle_vv)
     return dvi__fail(DVI_NO_MEMORY, "action: no memory for the velocity Hessian");
-  return dvi__linear_create(&system->vv, DVI__LINEAR_AUTO, NULL, &a->chord);
+  return dvi__linear_create(&system->vv, DVI__LINEAR_AUTO, counters, &a->chord);
 }
 
 static dvi_status fill(dvi__action *a, dvi_counters *counters)
@@ -39,7 +39,7 @@ static dvi_status fill(dvi__action *a, dvi_counters *counters)
   const int capacity = a->r > a->s ? a->r : a->s; /* a batch of s is solved for at once in the chord */
   DVI_TRY(dvi__evaluator_create(a->system, capacity, counters, &a->evaluator));
   if (!allocate_batches(a)) return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d nodes in %d dimensions", a->r, a->n);
-  return allocate_chord(a);
+  return allocate_chord(a, counters);
 }
 
 dvi_status dvi__action_create(const dvi_system *system, const dvi__action_space *space, dvi_counters *counters,
