@@ -1,4 +1,4 @@
-/* labels: unit jacobian */
+/* labels: jacobian */
 /* One element against its definition: the discrete action is summed here from the public quadrature, basis and Lagrangian, and the
  * stationarity rows must be its derivatives. */
 #include <float.h>

@@ -1,4 +1,4 @@
-/* labels: order */
+/* labels: order slow */
 /* The orders of Lobatto quadrature, measured as in test_order.c. */
 #include <check.h>
 

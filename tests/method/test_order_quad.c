@@ -1,4 +1,4 @@
-/* labels: order */
+/* labels: order slow */
 /* Orders up to 16, over four and more step sizes, at the catalogue's own starts.
  *
  * The leading term of a high order's error rules only where the error is far below the roundoff of a double. So the proof has two halves:

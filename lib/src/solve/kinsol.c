@@ -2,7 +2,7 @@
  *
  * SUNDIALS' wrapper of KLU analyses and factors anew at the first setup of each call; here the one analysis of num/linear.h serves
  * Newton's method and KINSOL alike. KINSOL's defaults are loose and reuse old Jacobians, which shows as energy drift over long runs
- * (tests/method/test_drift.c): every tolerance is set here. */
+ * (tests/solve/test_kinsol_drift.c): every tolerance is set here. */
 #include <kinsol/kinsol.h>
 #include <math.h>
 #include <nvector/nvector_serial.h>
