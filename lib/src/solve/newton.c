@@ -13,11 +13,11 @@ static const double keep_below = 0.05;
  * sign, two are the end. */
 static const dvi__pace pace = {0.5, 1e4 * DBL_EPSILON, 2.0};
 
-/* A guess whose first correction is this large a part of the unknowns and does not shrink by this ratio is as likely to lead to another
- * solution as to the wanted one. */
+/* A guess is as likely to lead to another solution as to the wanted one if the second correction is larger than the first, or if the first one is a
+ * large part of the unknowns and does not shrink fast. */
 static int misleading(double first, double second, double whole)
 {
-  return first > 0.5 * whole && second > 0.25 * first;
+  return second > first || (first > 0.5 * whole && second > 0.25 * first);
 }
 
 dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__solve_report *report)
