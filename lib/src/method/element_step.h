@@ -16,11 +16,15 @@ const char *dvi__solver_choice(int index);
 /* Fill a stepper's order, symmetric, memory and own for this space; `solver` is one of the numbers above. */
 dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *space, int solver);
 
-/* The other operations of dvi__method. */
+/* The other operations of dvi__method, and what goes into its initialiser for them. */
 void dvi__element_destroy(dvi__stepper *self);
 void dvi__element_start(dvi__stepper *self);
 dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h);
 void dvi__element_path(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v);
 void dvi__element_explain(const dvi__stepper *self, dvi__text *text);
+
+#define DVI__ELEMENT_OPERATIONS                                                                                                \
+  .uses = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL, .destroy = dvi__element_destroy, .start = dvi__element_start, \
+  .step = dvi__element_step, .path = dvi__element_path, .explain = dvi__element_explain
 
 #endif

@@ -72,11 +72,6 @@ const dvi__method dvi__galerkin = {
     .summary = "polynomials of any degree, any quadrature; order min(2 degree, order of the quadrature)",
     .cite = "LeokShingel2012",
     .keys = keys,
-    .uses = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL,
     .create = create,
-    .destroy = dvi__element_destroy,
-    .start = dvi__element_start,
-    .step = dvi__element_step,
-    .path = dvi__element_path,
-    .explain = dvi__element_explain,
+    DVI__ELEMENT_OPERATIONS,
 };

@@ -20,11 +20,6 @@ const dvi__method dvi__midpoint = {
     .summary = "implicit midpoint rule: straight line, midpoint; order 2; any Lagrangian",
     .cite = "MarsdenWest2001",
     .keys = keys,
-    .uses = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL,
     .create = create,
-    .destroy = dvi__element_destroy,
-    .start = dvi__element_start,
-    .step = dvi__element_step,
-    .path = dvi__element_path,
-    .explain = dvi__element_explain,
+    DVI__ELEMENT_OPERATIONS,
 };

@@ -21,11 +21,6 @@ const dvi__method dvi__trapezoidal = {
     .summary = "Stoermer-Verlet for any Lagrangian: straight line, trapezoid; order 2; implicit",
     .cite = "MarsdenWest2001",
     .keys = keys,
-    .uses = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL,
     .create = create,
-    .destroy = dvi__element_destroy,
-    .start = dvi__element_start,
-    .step = dvi__element_step,
-    .path = dvi__element_path,
-    .explain = dvi__element_explain,
+    DVI__ELEMENT_OPERATIONS,
 };
