@@ -17,8 +17,8 @@ typedef struct span {
   double length;
 } span;
 
-/* Where a problem's orders show: the span, its steps in the coarsest run of a global study, and the longest step that a local one tries, a
- * little more than the distance of the nearest singularity in complex time. */
+/* Where a problem's orders show: the span, its steps in the coarsest run of a global study, and the longest step that a local one
+ * tries, a little more than the distance of the nearest singularity in complex time. */
 typedef struct place {
   span over;
   int first;
@@ -26,7 +26,7 @@ typedef struct place {
 } place;
 
 static const place places[] = {
-    {{"kepler", "e=0.3", 6.0}, 40, 0.8},         {{"pendulum", NULL, 8.0}, 10, 1.6}, {{"henon-heiles", NULL, 12.0}, 20, 2.4},
+    {{"kepler", "e=0.3", 6.0}, 40, 0.8},       {{"pendulum", NULL, 8.0}, 10, 1.6}, {{"henon-heiles", NULL, 12.0}, 20, 2.4},
     {{"double-pendulum", NULL, 1.0}, 10, 0.2}, {{"toda", "N=5", 5.0}, 10, 1.8},
 };
 
@@ -79,8 +79,8 @@ static void solve(int count, double a[TERMS_MOST][TERMS_MOST], double *b)
   }
 }
 
-/* Least squares of log error = x0 + x1 log h + x2 h^2 + x3 h^4, cut after `terms`: gives x1. h is taken in units of the largest one. Each
- * error counts by how well it is known: to a hundredth, and to the roundoff of one step. */
+/* Least squares of log error = x0 + x1 log h + x2 h^2 + x3 h^4, cut after `terms`: gives x1. h is taken in units of the largest
+ * one. Each error counts by how well it is known: to a hundredth, and to the roundoff of one step. */
 static double slope_of(int count, const double *h, const double *error, int terms)
 {
   const double roundoff = 5e-16;
@@ -112,35 +112,55 @@ static double global_error(const problem *of, const span *over, const char *meth
   return error;
 }
 
-/* The slope over the finest four of the step sizes span/first, span/(2 first), ... whose errors are above roundoff. */
-static void check_global_order(const span *of, const char *method, int first, int order)
+/* The slope over the finest four steps whose errors are above the floor; each is `ratio` times shorter than the one before. */
+static void check_global_order(const place *at, const char *method, int order, problem *of, const state *exact, double ratio,
+                               double floor)
 {
   enum { LEVELS = 10, FITTED = 4 };
-  const double floor = 1e-13; /* ten times the roundoff of a thousand steps */
   double h[LEVELS], error[LEVELS];
   int count = 0;
-  problem *made = made_problem(of->problem, of->setting);
-  state exact = start_of(made);
-  judge(made, of->setting, of->length, floor, &exact);
   for (; count < LEVELS; count++) {
-    const long steps = (long)first << count;
-    h[count] = of->length / (double)steps;
-    error[count] = global_error(made, of, method, steps, &exact);
-    if (show()) printf("%s %s h = %.4g error %.2e\n", of->problem, method, h[count], error[count]);
+    const long steps = lround(at->first * pow(ratio, count));
+    h[count] = at->over.length / (double)steps;
+    error[count] = global_error(of, &at->over, method, steps, exact);
+    if (show()) printf("%s %s h = %.4g error %.2e\n", of->name, method, h[count], error[count]);
     if (error[count] <= floor) break;
   }
-  problem_destroy(&made);
-  ck_assert_msg(count >= FITTED, "%s, %s: %d errors above the floor", of->problem, method, count);
-  check_slope(of->problem, method, slope_of(FITTED, h + count - FITTED, error + count - FITTED, 2), order);
+  ck_assert_msg(count >= FITTED, "%s, %s: %d errors above the floor", of->name, method, count);
+  check_slope(of->name, method, slope_of(FITTED, h + count - FITTED, error + count - FITTED, 2), order);
+}
+
+static void check_global_order_by_quad(const place *at, const char *method, int order)
+{
+  const double floor = 1e-13; /* ten times the roundoff of a thousand steps */
+  problem *of = made_problem(at->over.problem, at->over.setting);
+  state exact = start_of(of);
+  judge(of, at->over.setting, at->over.length, floor, &exact);
+  check_global_order(at, method, order, of, &exact, 2, floor);
+  problem_destroy(&of);
+}
+
+void check_order_by_ida(int index, const char *method, int order)
+{
+  const place *at = &places[index];
+  problem *of = made_problem(at->over.problem, at->over.setting);
+  state exact = start_of(of);
+  dvi_reference_report report;
+  const dvi_status status = dvi_reference_judge(of->system, 0, at->over.length, exact.q, exact.p, NULL, &report);
+  ck_assert_msg(status == DVI_OK, "%s", dvi_last_error());
+  /* its stated error is the distance of two runs: ten times that, for the momenta and for luck, must not show */
+  const double floor = 100 * report.error / magnitude(of->n, exact.q);
+  check_global_order(at, method, order, of, &exact, 1.4, floor);
+  problem_destroy(&of);
 }
 
 /* ---- of one step ----
  *
- * Global errors of high orders are of little use in double precision: with the superconvergence constants of degree 8 the error is at
- * roundoff while h is still half the distance of the nearest singularity, where the slope is not yet the order. The error of one step is
- * smooth enough to be followed there. It is made even smoother:
- *   - the step is centred: it starts from the judge's point at t - h/2, and its end is carried back to t by the judge. For a symmetric
- *     method this error is C h^(order+1) (1 + c h^2 + ...), without odd terms;
+ * Global errors of high orders are of little use in double precision: with the superconvergence constants of degree 8 the
+ * error is at roundoff while h is still half the distance of the nearest singularity, where the slope is not yet the order. The
+ * error of one step is smooth enough to be followed there. It is made even smoother:
+ *   - the step is centred: it starts from the judge's point at t - h/2, and its end is carried back to t by the judge. For a
+ *     symmetric method this error is C h^(order+1) (1 + c h^2 + ...), without odd terms;
  *   - it is averaged over points t along the solution, so that a zero of C does no harm;
  *   - c and the next coefficient are fitted together with the slope. */
 
@@ -162,8 +182,8 @@ static double carry(const local_study *study, double t, state *z)
   return quad_solve(study->of->name, study->setting != NULL, &study->setting, t, z->q, z->p);
 }
 
-/* Sum of squares over the components; infinite if the step is too long to be solved or to be judged. The start is rounded: the exact
- * centre belongs to the rounded one. */
+/* Sum of squares over the components; infinite if the step is too long to be solved or to be judged. The start is rounded: the
+ * exact centre belongs to the rounded one. */
 static double centred_error(const local_study *study, const state *centre, double h)
 {
   const problem *of = study->of;
@@ -189,8 +209,8 @@ static double mean_error(const local_study *study, double h)
   return sqrt(sum / CENTRES);
 }
 
-/* Errors below the ceiling and above the floor, from coarse to fine; returns how many there are. The claimed order is used to choose steps
- * only: to go down to the ceiling fast, then to let errors fall by 4. */
+/* Errors below the ceiling and above the floor, from coarse to fine; returns how many there are. The claimed order is used to
+ * choose steps only: to go down to the ceiling fast, then to let errors fall by 4. */
 static int follow(const local_study *study, double largest_h, int order, double *h, double *error)
 {
   double now = largest_h;
@@ -216,7 +236,8 @@ static void check_local_order(const span *of, const char *method, double largest
   study.integrator = made_integrator(study.of->system, method);
   for (int k = 0; k < CENTRES; k++) {
     study.centre[k] = start_of(study.of);
-    judge(study.of, of->setting, (k + 0.5) * of->length / CENTRES, 1e-10, &study.centre[k]); /* any point near the solution will do */
+    judge(study.of, of->setting, (k + 0.5) * of->length / CENTRES, 1e-10,
+          &study.centre[k]); /* any point near the solution will do */
   }
   const int count = follow(&study, largest_h, order, h, error);
   dvi_integrator_destroy(&study.integrator);
@@ -229,7 +250,7 @@ void check_order(int index, const char *method, int order)
 {
   const place *at = &places[index];
   if (order <= MOST_GLOBAL_ORDER)
-    check_global_order(&at->over, method, at->first, order);
+    check_global_order_by_quad(at, method, order);
   else
     check_local_order(&at->over, method, at->h, order);
 }

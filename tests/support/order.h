@@ -8,4 +8,7 @@ enum { ORDER_PLACES = 5, DOUBLE_PENDULUM = 3 };
  * by the error of one step (see order.c). With DVI_SHOW_ORDERS in the environment the errors are printed. */
 void check_order(int place, const char *method, int order);
 
+/* The same for orders that IDA's own error of about 1e-10 allows to be seen: 2 and 4. */
+void check_order_by_ida(int place, const char *method, int order);
+
 #endif

@@ -58,9 +58,10 @@ static void pack(const dvi_integrator *I, unsigned char *file)
   memcpy(head.specification, I->stepper.specification, sizeof head.specification);
   memcpy(file, &head, sizeof head);
   unsigned char *at = file + sizeof head;
-  memcpy(at, I->now.q, 4 * n * sizeof(double));
-  memcpy(at += 4 * n * sizeof(double), I->last.q, 4 * n * sizeof(double));
-  memcpy(at += 4 * n * sizeof(double), I->stepper.memory, I->stepper.memory_count * sizeof(double));
+  const size_t state = 4 * n * sizeof(double);
+  memcpy(at, I->now.q, state);
+  memcpy(at + state, I->last.q, state);
+  memcpy(at + 2 * state, I->stepper.memory, I->stepper.memory_count * sizeof(double));
   const uint64_t sum = checksum(file, size);
   memcpy(file + size, &sum, sizeof sum);
 }
@@ -132,9 +133,10 @@ static void unpack(dvi_integrator *I, const unsigned char *file)
   I->last_h = head.last_h;
   I->counters.steps = (long)head.steps;
   const unsigned char *at = file + sizeof head;
-  memcpy(I->now.q, at, 4 * n * sizeof(double));
-  memcpy(I->last.q, at += 4 * n * sizeof(double), 4 * n * sizeof(double));
-  memcpy(I->stepper.memory, at += 4 * n * sizeof(double), I->stepper.memory_count * sizeof(double));
+  const size_t state = 4 * n * sizeof(double);
+  memcpy(I->now.q, at, state);
+  memcpy(I->last.q, at + state, state);
+  memcpy(I->stepper.memory, at + 2 * state, I->stepper.memory_count * sizeof(double));
   I->started = 1;
 }
 

@@ -49,8 +49,7 @@ static void place_marks(dvi_basis basis, int degree, long double *mark)
 
 void dvi__space_init(dvi__space *space, dvi_basis basis, int degree)
 {
-  space->basis = basis;
-  space->degree = degree;
+  *space = (dvi__space){.basis = basis, .degree = degree};
   if (!dvi__basis_is_nodal(basis)) return;
   space->scale = basis == DVI_LAGRANGE_EQUISPACED ? (long double)degree : 1;
   place_marks(basis, degree, space->mark);
@@ -142,7 +141,7 @@ dvi_status dvi_basis_evaluate(dvi_basis basis, int degree, double tau, double *v
   DVI_TRY(check(basis, degree));
   if (!isfinite(tau)) return dvi__fail(DVI_BAD_ARGUMENT, "basis: tau = %g is not finite", tau);
   dvi__space space;
-  long double value_long[DVI__TRIAL_MAX], derivative_long[DVI__TRIAL_MAX];
+  long double value_long[DVI__TRIAL_MAX] = {0}, derivative_long[DVI__TRIAL_MAX] = {0};
   dvi__space_init(&space, basis, degree);
   dvi__space_evaluate(&space, (long double)tau, value_long, derivative_long);
   for (int k = 0; k <= degree; k++) {

@@ -89,8 +89,9 @@ static void gaussian(ends left, int n, long double *node, long double *weight)
   const ends right = {left.there, left.here};
   for (int i = 0; i < n; i++) {
     if (from_here(left, n, i, &node[i], &weight[i])) continue;
-    from_here(right, n, n - 1 - i, &node[i], &weight[i]);
-    node[i] = 1 - node[i];
+    long double from_the_end = 0;
+    from_here(right, n, n - 1 - i, &from_the_end, &weight[i]);
+    node[i] = 1 - from_the_end;
   }
 }
 
@@ -167,7 +168,7 @@ dvi_status dvi__quadrature_long(dvi_rule rule, int n, long double *node, long do
 
 dvi_status dvi_quadrature(dvi_rule rule, int n, double *node, double *weight)
 {
-  long double node_long[DVI_QUADRATURE_MAX], weight_long[DVI_QUADRATURE_MAX];
+  long double node_long[DVI_QUADRATURE_MAX] = {0}, weight_long[DVI_QUADRATURE_MAX] = {0};
   DVI_TRY(check(rule, n, node && weight));
   DVI_TRY(dvi__quadrature_long(rule, n, node_long, weight_long));
   for (int i = 0; i < n; i++) {

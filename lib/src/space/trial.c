@@ -199,7 +199,7 @@ void dvi__trial_fit(dvi_basis basis, int degree, int points, const double *tau, 
 {
   dvi__space space;
   columns c = {.count = degree, .points = points};
-  long double C[DVI_DEGREE_MAX][DVI_DEGREE_MAX];
+  long double C[DVI_DEGREE_MAX][DVI_DEGREE_MAX] = {{0}};
   dvi__space_init(&space, basis, degree);
   for (int i = 0; i < points; i++) sample_primitive(degree, i, (long double)tau[i], c.column);
   orthogonalize(&c);
