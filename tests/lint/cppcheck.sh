@@ -9,5 +9,5 @@ mkdir -p "$2/cppcheck"
 exec "$3" -j 2 --quiet --std=c11 --language=c --enable=warning,style,performance,portability --inline-suppr --error-exitcode=1 \
   --cppcheck-build-dir="$2/cppcheck" --suppress=missingIncludeSystem --suppress=unusedFunction --suppress=constParameter \
   --suppress=constParameterCallback --suppress=constParameterPointer --suppress=constVariablePointer --suppress=unusedStructMember \
-  --suppress=uninitvar --suppress=redundantContinue --suppress=shadowFunction \
+  --suppress=uninitvar --suppress=redundantContinue --suppress=shadowFunction --suppress=duplicateCondition \
   --suppress=normalCheckLevelMaxBranches --suppress=checkersReport -I lib/include -I lib/src -I apps/problems lib/src apps
