@@ -1,4 +1,6 @@
-/* Sparse LU by KLU: one symbolic analysis, then numeric refactorisations with the pivots of the last full one. */
+/* Sparse LU by KLU: one symbolic analysis, then numeric refactorisations with one order of the pivots, chosen at create. A matrix for which that
+ * order is bad gets a full factorisation of its own. So a factor depends on its matrix alone, not on earlier ones: a restarted run gives the
+ * same bits. */
 #include <klu.h>
 #include <stdint.h>
 
@@ -15,14 +17,17 @@
 typedef struct sparse {
   klu_common common;
   klu_symbolic *symbolic;
-  klu_numeric *numeric;
+  klu_numeric *standing; /* in the order chosen at create; NULL if the pattern has no such order */
+  klu_numeric *own;      /* of one matrix that needed an order of its own */
+  klu_numeric *current;  /* one of the two */
 } sparse;
 
 static void destroy(void *factor)
 {
   sparse *s = factor;
   if (s == NULL) return;
-  klu_free_numeric(&s->numeric, &s->common);
+  klu_free_numeric(&s->standing, &s->common);
+  klu_free_numeric(&s->own, &s->common);
   klu_free_symbolic(&s->symbolic, &s->common);
   dvi__release(s);
 }
@@ -34,16 +39,16 @@ static int lacks_memory(int status)
 }
 
 /* A factor of a made-up matrix, so that later ones find their memory and no step allocates. It puts the pivots on the diagonal, where they
- * are good for the Jacobians of short steps. A pattern without one may leave no factor; the first real matrix then makes it. */
+ * are good for the Jacobians of short steps. A pattern without one may leave no factor; each real matrix then makes its own. */
 static dvi_status make_room(sparse *s, const dvi__pattern *pattern)
 {
   double *entries = DVI_NEW(double, dvi__pattern_entries(pattern));
   if (entries == NULL) return dvi__fail(DVI_NO_MEMORY, "KLU: no memory for %d entries", dvi__pattern_entries(pattern));
   for (int j = 0; j < pattern->columns; j++)
     for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++) entries[e] = pattern->row[e] == j ? 1.0 : OFF_DIAGONAL;
-  s->numeric = klu_factor(pattern->start, pattern->row, entries, s->symbolic, &s->common);
+  s->standing = klu_factor(pattern->start, pattern->row, entries, s->symbolic, &s->common);
   dvi__release(entries);
-  if (s->numeric != NULL || !lacks_memory(s->common.status)) return DVI_OK;
+  if (s->standing != NULL || !lacks_memory(s->common.status)) return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "KLU: no memory to factor %d columns", pattern->columns);
 }
 
@@ -71,36 +76,37 @@ static dvi_status create(const dvi__pattern *pattern, void **factor)
 /* By the smallest and largest pivot: coarser than LAPACK's estimate, but nearly free. */
 static int well_conditioned(sparse *s)
 {
-  return klu_rcond(s->symbolic, s->numeric, &s->common) && s->common.rcond >= DVI__LEAST_RCOND;
+  return klu_rcond(s->symbolic, s->current, &s->common) && s->common.rcond >= DVI__LEAST_RCOND;
 }
 
-/* klu_refactor keeps the order of the pivots and allocates nothing. An order that has grown bad shows in the reciprocal pivot
- * growth, and then a full factorisation, which lets entries grow 1/0.001 times at a pivot, chooses another one. */
+/* klu_refactor keeps the order of the pivots and allocates nothing. A matrix for which the order is bad shows in the reciprocal pivot
+ * growth. */
 static int refactor_in_order(sparse *s, const dvi__pattern *pattern, double *entries)
 {
-  return s->numeric != NULL && klu_refactor(pattern->start, pattern->row, entries, s->symbolic, s->numeric, &s->common) &&
-         klu_rgrowth(pattern->start, pattern->row, entries, s->symbolic, s->numeric, &s->common) &&
+  s->current = s->standing;
+  return s->standing != NULL && klu_refactor(pattern->start, pattern->row, entries, s->symbolic, s->standing, &s->common) &&
+         klu_rgrowth(pattern->start, pattern->row, entries, s->symbolic, s->standing, &s->common) &&
          s->common.rgrowth >= LEAST_GROWTH && well_conditioned(s);
 }
 
+/* A full factorisation lets entries grow 1/0.001 times at a pivot before it chooses another one. */
 static dvi_status refactor(void *factor, const dvi__pattern *pattern, const double *values)
 {
   sparse *s = factor;
   double *entries = (double *)(uintptr_t)values; /* KLU's interface lacks const; it only reads */
+  klu_free_numeric(&s->own, &s->common);
   if (refactor_in_order(s, pattern, entries)) return DVI_OK;
-  klu_free_numeric(&s->numeric, &s->common);
-  s->numeric = klu_factor(pattern->start, pattern->row, entries, s->symbolic, &s->common);
-  if (s->numeric != NULL && well_conditioned(s)) return DVI_OK;
-  const int reason = s->common.status;
-  klu_free_numeric(&s->numeric, &s->common);
-  if (lacks_memory(reason)) return dvi__fail(DVI_NO_MEMORY, "KLU: no memory to factor %d columns", pattern->columns);
+  s->current = s->own = klu_factor(pattern->start, pattern->row, entries, s->symbolic, &s->common);
+  if (s->own != NULL && well_conditioned(s)) return DVI_OK;
+  if (s->own == NULL && lacks_memory(s->common.status))
+    return dvi__fail(DVI_NO_MEMORY, "KLU: no memory to factor %d columns", pattern->columns);
   return dvi__fail(DVI_SINGULAR, "KLU: the %d x %d matrix is singular to working precision", pattern->rows, pattern->columns);
 }
 
 static void solve(void *factor, const dvi__pattern *pattern, double *b)
 {
   sparse *s = factor;
-  klu_solve(s->symbolic, s->numeric, pattern->rows, 1, b, &s->common);
+  klu_solve(s->symbolic, s->current, pattern->rows, 1, b, &s->common);
 }
 
 const dvi__factor_operations dvi__sparse_factor = {create, refactor, solve, destroy};
