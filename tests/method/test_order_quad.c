@@ -22,7 +22,7 @@ typedef struct place {
 } place;
 
 static const place places[] = {
-    {"kepler", NULL, 2.0, 20, 1e-28},         {"pendulum", NULL, 2.0, 5, 2e-28}, {"henon-heiles", NULL, 1.5, 2, 1e-27},
+    {"kepler", NULL, 2.0, 20, 1e-27},         {"pendulum", NULL, 2.0, 5, 2e-28}, {"henon-heiles", NULL, 1.5, 2, 1e-27},
     {"double-pendulum", NULL, 0.5, 4, 1e-28}, {"toda", "N=5", 2.0, 4, 2e-28},
 };
 enum { PLACES = sizeof places / sizeof *places, LEVELS = 16, FITTED = 5, DEGREES = 8 };
