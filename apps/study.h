@@ -5,7 +5,7 @@
 #include "problem.h"
 
 /** An error must exceed what blurs it by this factor to count. */
-enum { STUDY_FLOOR_MARGIN = 10 };
+#define STUDY_FLOOR_MARGIN 10.0
 
 /** What is studied. */
 typedef struct order_study {

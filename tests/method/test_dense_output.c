@@ -99,7 +99,7 @@ static void errors_inside(const problem *of, dvi_integrator *integrator, double 
   advance(integrator, h, 1);
   *q_error = *v_error = 0;
   for (int k = 1; k < INSIDE; k++) {
-    const double t = from + h * k / INSIDE;
+    const double t = from + h * k / (double)INSIDE;
     ck_assert_int_eq(of->exact(of, t, q, p), 0);
     ck_assert_int_eq(dvi_integrator_interpolate(integrator, t, found_q, found_v), DVI_OK);
     *q_error = fmax(*q_error, distance(of->n, found_q, q));

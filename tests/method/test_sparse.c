@@ -52,7 +52,7 @@ static void take_steps(dvi_integrator *integrator, measured *m)
   const clock_t start = clock();
   int failed = 0;
   for (int i = 0; i < STEPS && !failed; i++) failed = dvi_integrator_step(integrator, h);
-  m->seconds = (double)(clock() - start) / CLOCKS_PER_SEC / STEPS;
+  m->seconds = (double)(clock() - start) / CLOCKS_PER_SEC / (double)STEPS;
   const long taken = heap_calls() - calls;
   ck_assert_msg(!failed, "%s", dvi_last_error());
   dvi_integrator_counters(integrator, &after);

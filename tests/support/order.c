@@ -206,7 +206,7 @@ static double mean_error(const local_study *study, double h)
 {
   double sum = 0;
   for (int k = 0; k < CENTRES && sum < 100 * error_ceiling * error_ceiling; k++) sum += centred_error(study, &study->centre[k], h);
-  return sqrt(sum / CENTRES);
+  return sqrt(sum / (double)CENTRES);
 }
 
 /* Errors below the ceiling and above the floor, from coarse to fine; returns how many there are. The claimed order is used to
@@ -236,7 +236,7 @@ static void check_local_order(const span *of, const char *method, double largest
   study.integrator = made_integrator(study.of->system, method);
   for (int k = 0; k < CENTRES; k++) {
     study.centre[k] = start_of(study.of);
-    judge(study.of, of->setting, (k + 0.5) * of->length / CENTRES, 1e-10,
+    judge(study.of, of->setting, (k + 0.5) * of->length / (double)CENTRES, 1e-10,
           &study.centre[k]); /* any point near the solution will do */
   }
   const int count = follow(&study, largest_h, order, h, error);

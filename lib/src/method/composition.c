@@ -9,6 +9,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "method/method.h"
+#include "num/compensated.h"
 
 enum { ORDER, BASE };
 
@@ -92,10 +93,15 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
 {
   dvi__stepper *base = self->own;
   const scheme *s = &schemes[self->settings.value[ORDER]];
+  const double t = state->t, t_carry = state->t_carry;
   for (int i = 0; i < s->substeps; i++) {
     const int mirrored = i < s->substeps - 1 - i ? i : s->substeps - 1 - i;
     DVI_TRY(base->method->step(base, state, s->weight[mirrored] * h));
   }
+  /* The rounded weights sum to 1 but for a rounding, which would add up over many steps: the clock moves by h. */
+  state->t = t;
+  state->t_carry = t_carry;
+  dvi__add_compensated(&state->t, &state->t_carry, h);
   return DVI_OK;
 }
 

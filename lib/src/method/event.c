@@ -160,7 +160,7 @@ dvi_status dvi__watch_step(dvi__watch *w, dvi_integrator *I, const dvi_run_optio
   const double to = dvi_integrator_time(I);
   const int count = options->event_count;
   for (int part = 1; part <= PARTS && count > 0; part++) {
-    const double a = from + (part - 1) * (to - from) / PARTS, b = part == PARTS ? to : from + part * (to - from) / PARTS;
+    const double width = (to - from) / (double)PARTS, a = from + (part - 1) * width, b = part == PARTS ? to : from + part * width;
     DVI_TRY(find_zeros(w, I, options, a, b));
     for (int k = earliest(w, count, to > from); k >= 0; k = earliest(w, count, to > from)) {
       const double zero = w->zero[k];

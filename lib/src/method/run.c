@@ -1,5 +1,6 @@
 /* The driver of a run. */
 #include <dvi/run.h>
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -7,8 +8,8 @@
 #include "method/event.h"
 #include "method/integrator_struct.h"
 
-/* Steps within this part of h of the end land on it. */
-static const double rounding = 1e-9;
+/* The last step may be longer than h by this part of it. */
+static const double stretch = 1e-9;
 
 static dvi_status check_events(const dvi_run_options *options)
 {
@@ -20,6 +21,12 @@ static dvi_status check_events(const dvi_run_options *options)
   return DVI_OK;
 }
 
+/* What sums of steps may miss the end by: a few roundings of the times. */
+static double clock_error(const dvi_integrator *I, const dvi_run_options *options)
+{
+  return 16 * DBL_EPSILON * fmax(fabs(options->t_end), fabs(dvi_integrator_time(I)));
+}
+
 static dvi_status check(const dvi_integrator *I, const dvi_run_options *options)
 {
   if (I == NULL || options == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "run: an argument is NULL");
@@ -28,7 +35,7 @@ static dvi_status check(const dvi_integrator *I, const dvi_run_options *options)
   if (!isfinite(options->h) || options->h == 0)
     return dvi__fail(DVI_BAD_ARGUMENT, "run: h = %g; a finite step other than 0 is needed", options->h);
   if (!isfinite(options->t_end)) return dvi__fail(DVI_BAD_ARGUMENT, "run: t_end = %g is not finite", options->t_end);
-  if (way != 0 && (way > 0) != (options->h > 0))
+  if (fabs(way) > clock_error(I, options) && (way > 0) != (options->h > 0))
     return dvi__fail(DVI_BAD_ARGUMENT, "run: h = %g leads away from t_end = %g; the time is %g", options->h, options->t_end,
                      dvi_integrator_time(I));
   if (options->every < 0 || options->checkpoint_every < 0)
@@ -50,12 +57,14 @@ static dvi_status observe(dvi_integrator *I, const dvi_run_options *options, dvi
   return DVI_OK;
 }
 
-/* The next step's length: h, or what is left of the way; 0 at its end. */
+/* The next step's length: h, or what is left of the way, or 0 at its end. An h that divides the way but for the digits that it was given
+ * with is stretched in the last step. */
 static double next_step(const dvi_integrator *I, const dvi_run_options *options)
 {
-  const double left = options->t_end - dvi_integrator_time(I), h = options->h;
-  if (left / h <= rounding) return 0;
-  return left / h < 1 - rounding ? left : h;
+  const double left = options->t_end - dvi_integrator_time(I), h = options->h, missed = clock_error(I, options);
+  if (fabs(left) <= missed) return 0;
+  if (fabs(left - h) <= missed) return h;
+  return left / h <= 1 + stretch ? left : h;
 }
 
 static dvi_status one_step(dvi_integrator *I, const dvi_run_options *options, double h, dvi__watch *watch, dvi_run_report *report,

@@ -161,8 +161,19 @@ static int free_group(const dvi__pattern *pattern, const dvi__pattern *transpose
   return g;
 }
 
+/* A full pattern needs no search: every column meets every other. */
+static int is_full(const dvi__pattern *pattern)
+{
+  return (size_t)dvi__pattern_entries(pattern) == (size_t)pattern->rows * (size_t)pattern->columns;
+}
+
 dvi_status dvi__pattern_groups(const dvi__pattern *pattern, int *group, int *groups)
 {
+  if (is_full(pattern)) {
+    for (int j = 0; j < pattern->columns; j++) group[j] = j;
+    *groups = pattern->columns;
+    return DVI_OK;
+  }
   dvi__pattern transpose;
   DVI_TRY(dvi__pattern_transpose(pattern, &transpose));
   int *taken = DVI_NEW(int, pattern->columns);
