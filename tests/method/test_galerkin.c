@@ -139,6 +139,43 @@ START_TEST(all_solvers_find_the_same_step)
 }
 END_TEST
 
+/* Two oscillators, the second in a unit a billion times longer: V = (w x)^2/2 + (w y/unit)^2/2 with masses 1 and 1/unit^2. */
+static const double unit = 1e-9, stiffness = 1e4;
+
+static int two_springs(double t, const double *q, double *V, void *user)
+{
+  (void)t, (void)user;
+  *V = 0.5 * stiffness * (q[0] * q[0] + q[1] * q[1] / (unit * unit));
+  return 0;
+}
+
+static int two_forces(double t, const double *q, double *V_q, void *user)
+{
+  (void)t, (void)user;
+  V_q[0] = stiffness * q[0];
+  V_q[1] = stiffness * q[1] / (unit * unit);
+  return 0;
+}
+
+/* Newton's method must not stop when the large coordinate alone is at roundoff: both are one oscillator, and must stay so. */
+START_TEST(a_small_coordinate_is_solved_to_its_own_roundoff)
+{
+  const double masses[] = {1, 1 / (unit * unit)}, q[] = {1, unit}, p[] = {0, 0};
+  const dvi_potential springs = {.value = two_springs, .gradient = two_forces}; /* the Hessian is differenced: not quite right */
+  const dvi_system_terms terms = {.dimension = 2, .mass.diagonal = masses, .potentials = &springs, .potential_count = 1};
+  dvi_system *system = NULL;
+  dvi_integrator *integrator = NULL;
+  ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_create(system, "galerkin:degree=3,solver=newton", &integrator), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_start(integrator, 0, q, p), DVI_OK);
+  advance(integrator, 0.05, 200);
+  const double *end = dvi_integrator_q(integrator);
+  ck_assert_double_eq_tol(end[1] / unit, end[0], 1e-12); /* 200 steps of a few roundings each, on an oscillator that keeps them */
+  dvi_integrator_destroy(&integrator);
+  dvi_system_destroy(&system);
+}
+END_TEST
+
 int main(void)
 {
   TCase *tests = tcase_create("galerkin");
@@ -148,5 +185,6 @@ int main(void)
   tcase_add_loop_test(tests, a_wrong_specification_is_refused_with_its_reason, 0, REFUSED);
   tcase_add_test(tests, the_contraction_chooses_the_solver);
   tcase_add_loop_test(tests, all_solvers_find_the_same_step, 0, 3);
+  tcase_add_test(tests, a_small_coordinate_is_solved_to_its_own_roundoff);
   return run_tests("galerkin", tests);
 }

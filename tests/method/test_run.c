@@ -361,6 +361,34 @@ START_TEST(a_step_that_time_does_not_feel_fails_the_run)
 }
 END_TEST
 
+/* However long h is, the run ends at t_end; and once there, it has nothing to do. */
+START_TEST(a_step_longer_than_the_way_is_cut_to_it)
+{
+  const double lengths[] = {1e300, 1e10, 1.0000001};
+  dvi_run_report report;
+  const dvi_run_options options = {.h = lengths[_i], .t_end = 1};
+  ck_assert_int_eq(dvi_run(integrator, &options, &report), DVI_OK);
+  ck_assert_int_eq(report.steps, 1);
+  ck_assert_double_eq(dvi_integrator_time(integrator), 1);
+}
+END_TEST
+
+/* The rounded weights of a composition do not sum to 1; a thousand steps must not show it. */
+START_TEST(a_composition_ends_at_t_end_and_may_be_asked_again)
+{
+  const char *const order[] = {"4", "6", "8"};
+  dvi_integrator *composed = started(of, spec("composition:order=%s", order[_i]));
+  dvi_run_report report;
+  const dvi_run_options options = {.h = 0.01, .t_end = 10};
+  ck_assert_int_eq(dvi_run(composed, &options, &report), DVI_OK);
+  ck_assert_int_eq(report.steps, 1000);
+  ck_assert_double_eq(dvi_integrator_time(composed), 10);
+  ck_assert_int_eq(dvi_run(composed, &options, &report), DVI_OK);
+  ck_assert_int_eq(report.steps, 0);
+  dvi_integrator_destroy(&composed);
+}
+END_TEST
+
 int main(void)
 {
   TCase *tests = tcase_create("run");
@@ -383,5 +411,7 @@ int main(void)
   tcase_add_loop_test(tests, a_step_that_fails_ends_the_run_at_the_last_good_state, 0, 2 * METHODS);
   tcase_add_loop_test(tests, bad_options_are_refused_with_their_reason, 0, REFUSED);
   tcase_add_test(tests, a_step_that_time_does_not_feel_fails_the_run);
+  tcase_add_loop_test(tests, a_step_longer_than_the_way_is_cut_to_it, 0, 3);
+  tcase_add_loop_test(tests, a_composition_ends_at_t_end_and_may_be_asked_again, 0, 3);
   return run_tests("method/run", tests);
 }

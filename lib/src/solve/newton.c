@@ -1,5 +1,6 @@
 /* Newton's method with a Jacobian that is kept while the corrections shrink fast (simplified Newton: Hairer and Wanner 1996, sec. IV.8). */
 #include <float.h>
+#include <math.h>
 
 #include "core/status.h"
 #include "solve/solver_struct.h"
@@ -20,22 +21,43 @@ static int misleading(double first, double second, double whole)
   return second > first || (first > 0.5 * whole && second > 0.25 * first);
 }
 
+/* Largest change of an unknown relative to that unknown itself. */
+static double relative_change(int count, const double *correction, const double *x)
+{
+  double largest = 0;
+  for (int i = 0; i < count; i++)
+    if (fabs(correction[i]) > largest * fabs(x[i]) && x[i] != 0) largest = fabs(correction[i] / x[i]);
+  return largest;
+}
+
+/* When the largest unknowns are at roundoff, much smaller ones may not be: Newton's method goes on until each has lost its own error, or
+ * none gets better. */
+static int small_ones_settled(dvi__solver *s, const double *x, double *last)
+{
+  const double change = relative_change(s->equations.unknowns, s->residual, x);
+  const int settled = change <= 64 * DBL_EPSILON || change >= 0.5 * *last;
+  *last = change;
+  return settled;
+}
+
 dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__solve_report *report)
 {
-  double last = 0, whole;
-  int fresh = 0, growing = 0;
+  double last = 0, whole, last_relative = HUGE_VAL;
+  int fresh = 0, growing = 0, converged = 0;
   for (report->iterations = 1; report->iterations <= MOST_ITERATIONS; report->iterations++) {
     if (!fresh) DVI_TRY(dvi__solver_factor(s, x));
     DVI_TRY(dvi__solver_residual(s, x, s->residual));
     dvi__linear_solve(s->linear, s->residual);
     dvi__correct(s->equations.unknowns, s->residual, x, &report->correction, &whole);
     const dvi__progress progress = dvi__judge(report->correction, last, &pace, whole, size);
-    if (progress == DVI__CONVERGED) return DVI_OK;
+    converged |= progress == DVI__CONVERGED;
+    if (converged && small_ones_settled(s, x, &last_relative)) return DVI_OK;
     growing = progress == DVI__STALLED ? growing + 1 : 0;
     if (growing == 2 || report->correction > 1e300) break;
-    if (wary && report->iterations == 2 && misleading(last, report->correction, whole)) break;
-    fresh = last == 0 || report->correction < keep_below * last;
+    if (wary && report->iterations == 2 && !converged && misleading(last, report->correction, whole)) break;
+    fresh = converged || last == 0 || report->correction < keep_below * last;
     last = report->correction;
   }
+  if (converged) return DVI_OK;
   return dvi__fail(DVI_NOT_CONVERGED, "Newton's method does not settle (change %.1e after %.1e)", report->correction, last);
 }
