@@ -8,17 +8,19 @@
 #include <string.h>
 #include <unistd.h>
 
-static char folder[64];
+static char folder[256];
 
 void make_folder(void)
 {
-  (void)snprintf(folder, sizeof folder, "/tmp/dvi-test-XXXXXX");
+  const char *temporary = getenv("TMPDIR");
+  const int length = snprintf(folder, sizeof folder, "%s/dvi-test-XXXXXX", temporary != NULL ? temporary : P_tmpdir);
+  ck_assert_msg(length > 0 && (size_t)length < sizeof folder, "TMPDIR is too long a path for the tests");
   ck_assert_ptr_nonnull(mkdtemp(folder));
 }
 
 const char *in_folder(const char *name)
 {
-  static char paths[8][128];
+  static char paths[8][320];
   static int next;
   char *path = paths[next++ % 8];
   (void)snprintf(path, sizeof paths[0], "%s/%.60s", folder, name);

@@ -26,8 +26,10 @@ const char *dvi_method_citation(int i);
 /** How many keys method i takes in its specification; 0 if out of range. */
 int dvi_method_key_count(int i);
 
-/** Key k of method i: its name, and in one line its values, its default and its meaning; NULL if out of range. */
+/** Name of key k of method i, 0 <= k < dvi_method_key_count(i); NULL if out of range. */
 const char *dvi_method_key_name(int i, int k);
+
+/** The key's values, its default and its meaning, in one line; NULL if out of range. */
 const char *dvi_method_key_help(int i, int k);
 
 #ifdef __cplusplus
