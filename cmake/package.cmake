@@ -29,7 +29,7 @@ install(FILES "${PROJECT_BINARY_DIR}/dviConfig.cmake" "${PROJECT_BINARY_DIR}/dvi
 
 # pkg-config names libraries as the linker does.
 set(pc_private "")
-foreach(library ${SUNDIALS_LIBRARIES} ${KLU_LIBRARIES} ${LAPACK_LIBRARIES} ${MPI_C_LIBRARIES} m)
+foreach(library ${SUNDIALS_LIBRARIES} ${KLU_LIBRARIES} ${LAPACK_LIBRARIES} ${MPI_C_LIBRARIES} ${CMAKE_THREAD_LIBS_INIT} m)
   get_filename_component(name "${library}" NAME_WE)
   string(REGEX REPLACE "^(lib|-l)" "" name "${name}")
   list(APPEND pc_private "-l${name}")

@@ -211,7 +211,7 @@ static dvi_status make_system(problem *made, chain *own)
                                   .mass = {.scalar = 1.0},
                                   .potentials = springs,
                                   .potential_count = 2,
-                                  .invariants = energies,
+                                  .invariants = watched > 0 ? energies : NULL,
                                   .invariant_count = watched};
   return dvi_system_create(&terms, &made->system);
 }

@@ -28,7 +28,7 @@ static dvi_system *system_of(int kind)
   dvi_system_terms terms = {.dimension = SITES, .potentials = potentials, .potential_count = 2};
   if (kind == DENSE_POTENTIAL) potentials[0].hessian = NULL, potentials[0].qq = (dvi_pattern){0};
   if (kind == DENSE_GENERAL) lagrangian.hessian_batch = NULL, lagrangian.qq = lagrangian.qv = lagrangian.vv = (dvi_pattern){0};
-  if (kind == GENERAL || kind == DENSE_GENERAL) terms.potential_count = 0;
+  if (kind == GENERAL || kind == DENSE_GENERAL) terms.potentials = NULL, terms.potential_count = 0;
   if (kind == GENERAL || kind == MIXED || kind == DENSE_GENERAL)
     terms.lagrangian = &lagrangian;
   else if (kind == DIAGONAL_MASS)

@@ -1,32 +1,17 @@
 /* labels: unit invariant */
 #include <check.h>
 #include <math.h>
-#include <stdlib.h>
 
 #include <dvi/diagnostics.h>
-#include <problem.h>
 
 #include "core/memory.h"
-
-static problem *find(const char *name)
-{
-  char message[256];
-  problem *found = NULL;
-  ck_assert_msg(problem_create(name, 0, NULL, &found, message, sizeof message) == DVI_OK, "%s", message);
-  return found;
-}
-
-static dvi_integrator *make(const dvi_system *system, const char *method)
-{
-  dvi_integrator *integrator = NULL;
-  ck_assert_msg(dvi_integrator_create(system, method, &integrator) == DVI_OK, "%s", dvi_last_error());
-  return integrator;
-}
+#include "support/runs.h"
+#include "support/suite.h"
 
 START_TEST(verlet_returns_to_its_start)
 {
-  problem *p = find("henon-heiles");
-  dvi_integrator *integrator = make(p->system, "verlet");
+  problem *p = made_problem("henon-heiles", NULL);
+  dvi_integrator *integrator = made_integrator(p->system, "verlet");
   double defect = -1;
   ck_assert_int_eq(dvi_reversibility(integrator, 0, p->q, p->p, p->h, 100, &defect), DVI_OK);
   ck_assert_double_ge(defect, 0);
@@ -38,8 +23,8 @@ END_TEST
 
 START_TEST(the_start_may_be_the_integrators_own_state)
 {
-  problem *p = find("kepler");
-  dvi_integrator *integrator = make(p->system, "verlet");
+  problem *p = made_problem("kepler", NULL);
+  dvi_integrator *integrator = made_integrator(p->system, "verlet");
   double defect = -1;
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, p->q, p->p), DVI_OK);
   ck_assert_int_eq(dvi_integrator_step(integrator, p->h), DVI_OK);
@@ -77,7 +62,7 @@ START_TEST(a_force_that_changes_between_the_ways_is_found)
   dvi_system *system = NULL;
   double defect = 0;
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
-  dvi_integrator *integrator = make(system, "verlet");
+  dvi_integrator *integrator = made_integrator(system, "verlet");
   ck_assert_int_eq(dvi_reversibility(integrator, 0, &q, &p, 0.1, 20, &defect), DVI_OK);
   ck_assert_double_gt(defect, 1e-3); /* the force grew by about 20 per mille over a time of 2 */
   dvi_integrator_destroy(&integrator);
@@ -87,8 +72,8 @@ END_TEST
 
 START_TEST(bad_arguments_are_refused_and_nothing_is_written)
 {
-  problem *p = find("pendulum");
-  dvi_integrator *integrator = make(p->system, "verlet");
+  problem *p = made_problem("pendulum", NULL);
+  dvi_integrator *integrator = made_integrator(p->system, "verlet");
   double defect = 7;
   ck_assert_int_eq(dvi_reversibility(NULL, 0, p->q, p->p, p->h, 1, &defect), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_reversibility(integrator, 0, NULL, p->p, p->h, 1, &defect), DVI_BAD_ARGUMENT);
@@ -107,17 +92,11 @@ END_TEST
 
 int main(void)
 {
-  Suite *suite = suite_create("diagnostics/reversibility");
   TCase *tests = tcase_create("reversibility");
   tcase_set_timeout(tests, 60);
   tcase_add_test(tests, verlet_returns_to_its_start);
   tcase_add_test(tests, the_start_may_be_the_integrators_own_state);
   tcase_add_test(tests, a_force_that_changes_between_the_ways_is_found);
   tcase_add_test(tests, bad_arguments_are_refused_and_nothing_is_written);
-  suite_add_tcase(suite, tests);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+  return run_tests("diagnostics/reversibility", tests);
 }

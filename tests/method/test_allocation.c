@@ -55,8 +55,10 @@ END_TEST
 START_TEST(an_integrator_survives_every_failure)
 {
   problem *of = made_problem(places[_i].problem, places[_i].setting);
+  dvi_integrator *integrator = made_integrator(of->system, places[_i].method); /* the first one completes the system */
+  dvi_integrator_destroy(&integrator);
   const long before = dvi__allocation_count();
-  dvi_integrator *integrator = made_integrator(of->system, places[_i].method);
+  integrator = made_integrator(of->system, places[_i].method);
   const long needed = dvi__allocation_count() - before;
   dvi_integrator_destroy(&integrator);
   ck_assert(needed > 5 && needed < MOST);

@@ -220,6 +220,44 @@ START_TEST(a_checkpoint_of_another_method_or_dimension_is_refused)
 }
 END_TEST
 
+/* A system of the same size is another one if it declares other terms, or if its Lagrangian has another value or other forces. */
+START_TEST(a_checkpoint_of_another_system_or_other_parameters_is_refused)
+{
+  scene s = made_scene();
+  ck_assert_int_eq(dvi_integrator_save(s.integrator, in_folder("other")), DVI_OK);
+  refused_by("henon-heiles", NULL, "galerkin:degree=2", "declares other terms, masses, patterns or names");
+  problem *stiff = made_problem("fpu", "omega=50"), *softer = made_problem("fpu", "omega=49.9999");
+  dvi_integrator *first = started(stiff, "verlet"), *second = started(softer, "verlet");
+  for (int steps = 0; steps < 2; steps++) { /* at the start the velocity is the start's, later the step's */
+    ck_assert_int_eq(dvi_integrator_save(first, in_folder("other")), DVI_OK);
+    ck_assert_int_eq(dvi_integrator_restore(second, in_folder("other")), DVI_BAD_FILE);
+    check_words("other parameters");
+    ck_assert_int_eq(dvi_integrator_restore(first, in_folder("other")), DVI_OK);
+    advance(first, 0.01, 1);
+  }
+  dvi_integrator_destroy(&first);
+  dvi_integrator_destroy(&second);
+  problem_destroy(&stiff);
+  problem_destroy(&softer);
+  clear_scene(&s);
+}
+END_TEST
+
+/* The start is no parameter of a system: kepler's e only says where it begins. */
+START_TEST(a_checkpoint_of_another_start_is_taken)
+{
+  problem *one = made_problem("kepler", "e=0.6"), *two = made_problem("kepler", "e=0.2");
+  dvi_integrator *first = started(one, "midpoint"), *second = started(two, "midpoint");
+  ck_assert_int_eq(dvi_integrator_save(first, in_folder("other")), DVI_OK);
+  ck_assert_msg(dvi_integrator_restore(second, in_folder("other")) == DVI_OK, "%s", dvi_last_error());
+  check_same_state(first, second);
+  dvi_integrator_destroy(&first);
+  dvi_integrator_destroy(&second);
+  problem_destroy(&one);
+  problem_destroy(&two);
+}
+END_TEST
+
 START_TEST(a_file_that_is_none_or_a_folder_cannot_be_read)
 {
   scene s = made_scene();
@@ -307,6 +345,8 @@ int main(void)
   tcase_add_test(tests, a_checkpoint_that_is_too_long_is_refused);
   tcase_add_test(tests, a_checkpoint_damaged_at_any_byte_is_refused);
   tcase_add_test(tests, a_checkpoint_of_another_method_or_dimension_is_refused);
+  tcase_add_test(tests, a_checkpoint_of_another_system_or_other_parameters_is_refused);
+  tcase_add_test(tests, a_checkpoint_of_another_start_is_taken);
   tcase_add_test(tests, a_file_that_is_none_or_a_folder_cannot_be_read);
   tcase_add_test(tests, a_place_that_cannot_be_written_is_reported);
   tcase_add_test(tests, a_full_disk_leaves_the_old_checkpoint);

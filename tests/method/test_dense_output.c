@@ -108,7 +108,8 @@ static void errors_inside(const problem *of, dvi_integrator *integrator, double 
 }
 
 /* First steps for errors between 1e-3 and the floor of 1e-14, at which roundoff takes over. A path of degree s is right to h^(s+1), its
- * velocity to h^s. The composition's own error, h^5, lies below that of the cubic, h^4, whose velocity is right to h^3. */
+ * velocity to h^s, if the quadrature is of order 2s-1 or more; one of a lower order u leaves h^(u-s+2). The composition's own error,
+ * h^5, lies below that of the cubic, h^4, whose velocity is right to h^3; verlet's own, h^3 and h^2, lies above. */
 static const struct {
   const char *method;
   int order;
@@ -121,6 +122,13 @@ static const struct {
     {"galerkin:degree=4,basis=chebyshev", 5, 0.4},
     {"galerkin:degree=5", 6, 0.35},
     {"galerkin:degree=6,basis=legendre", 7, 0.4},
+    {"galerkin:degree=3,quadrature=radau-left,nodes=3", 4, 0.3},
+    {"galerkin:degree=3,quadrature=lobatto,nodes=3", 3, 0.2},
+    {"galerkin:degree=4,quadrature=lobatto,nodes=4", 4, 0.3},
+    {"galerkin:degree=3,quadrature=simpson", 3, 0.2},
+    {"galerkin:degree=4,quadrature=clenshaw-curtis,nodes=4", 2, 0.05},
+    {"trapezoidal", 2, 0.1},
+    {"verlet", 3, 0.1},
     {"composition:order=4,base=verlet", 4, 0.1},
     {"composition:order=8,base=midpoint", 4, 0.1},
 };

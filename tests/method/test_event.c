@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "support/files.h"
 #include "support/runs.h"
 #include "support/suite.h"
 
@@ -393,15 +394,48 @@ static const struct {
 };
 enum { AILMENTS = sizeof ailments / sizeof *ailments };
 
-/* The step before it is taken: the state is the one after it. */
+/* Its step is taken back, so that a smaller one may be tried: what follows goes as if it had not been. */
 START_TEST(a_function_that_fails_in_mid_run_fails_the_run)
 {
   mark m = {.value_after = 0.45, .value_answer = ailments[_i].answer, .value = ailments[_i].value};
   const dvi_event event = at_times(&m);
   const dvi_run_report report = failing(ailments[_i].status, &event);
   check_words(ailments[_i].words);
-  ck_assert_int_eq(report.steps, 4);
-  ck_assert_double_eq(dvi_integrator_time(integrator), 0.5);
+  ck_assert_int_eq(report.steps, 3);
+  ck_assert_int_eq(report.events, 0);
+  ck_assert_double_eq(dvi_integrator_time(integrator), 0.375);
+  dvi_integrator *other = started(of, dvi_integrator_method(integrator));
+  advance(other, 0.125, 3);
+  check_same_state(integrator, other);
+  advance(integrator, 0.1, 4);
+  advance(other, 0.1, 4);
+  check_same_state(integrator, other);
+  dvi_integrator_destroy(&other);
+}
+END_TEST
+
+/* Nothing of a step that is taken back is reported. */
+START_TEST(a_failing_function_keeps_earlier_events_of_its_step_unreported)
+{
+  mark ill = {.value_after = 0.45, .value_answer = 1}, well = {.count = 1, .time = {0.4}};
+  const dvi_event events[] = {at_times(&well), at_times(&ill)};
+  const dvi_run_options options = {.h = 0.125, .t_end = 5, .events = events, .event_count = 2};
+  dvi_run_report report;
+  ck_assert_int_eq(dvi_run(integrator, &options, &report), DVI_CALLBACK_RETRY);
+  check_words("the step from t = 0.375 is taken back");
+  ck_assert_int_eq(report.events, 0);
+  ck_assert_int_eq(record.count, 0);
+}
+END_TEST
+
+START_TEST(a_direction_that_is_none_is_refused)
+{
+  mark m = {.count = 1, .time = {0.4}};
+  dvi_event event = at_times(&m);
+  event.direction = _i == 0 ? 7 : -2;
+  const dvi_run_options options = {.h = 0.125, .t_end = 5, .events = &event, .event_count = 1};
+  ck_assert_int_eq(dvi_run(integrator, &options, NULL), DVI_BAD_ARGUMENT);
+  check_words("-1, 0 or 1 are possible");
 }
 END_TEST
 
@@ -445,6 +479,8 @@ int main(void)
   tcase_add_test(tests, a_callback_may_end_the_run);
   tcase_add_test(tests, a_run_may_be_cancelled_in_an_event);
   tcase_add_loop_test(tests, a_function_that_fails_in_mid_run_fails_the_run, 0, AILMENTS);
+  tcase_add_test(tests, a_failing_function_keeps_earlier_events_of_its_step_unreported);
+  tcase_add_loop_test(tests, a_direction_that_is_none_is_refused, 0, 2);
   tcase_add_loop_test(tests, a_function_that_fails_at_the_start_fails_the_run, 0, AILMENTS);
   tcase_add_test(tests, a_callback_that_fails_fails_the_run);
   return run_tests("method/event", tests);

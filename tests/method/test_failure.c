@@ -180,6 +180,9 @@ START_TEST(steps_that_do_not_move_the_time_are_refused)
     check_words("does not move the time");
   }
   check_state(integrator, before);
+  ck_assert_int_eq(dvi_integrator_start(integrator, 0, of->q, of->p), DVI_OK); /* here even the smallest number moves the time */
+  ck_assert_int_eq(dvi_integrator_step(integrator, 1e-320), DVI_BAD_ARGUMENT);
+  check_words("so small that 1/h cannot be computed");
   dvi_integrator_destroy(&integrator);
   problem_destroy(&of);
 }
@@ -382,7 +385,15 @@ static const struct {
     {"galerkin:=3", "'=3' is not key=value"},
     {"galerkin:degree=3:nodes=4", "galerkin: degree=3:nodes=4 is not a whole number"},
     {"galerkin:degree=0x3", "galerkin: degree=0x3 is not a whole number"},
-    {"galerkin:degree=-1", "galerkin: degree=-1; 1 to 40 are possible"},
+    {"galerkin:degree=-1", "galerkin: degree=-1 is not a whole number in plain digits"},
+    {"galerkin:degree=+2", "galerkin: degree=+2 is not a whole number in plain digits"},
+    {"galerkin:degree= 2", "galerkin: degree= 2 is not a whole number in plain digits"},
+    {"galerkin:degree=2 ", "galerkin: degree=2  is not a whole number in plain digits"},
+    {"galerkin:degree=02", "galerkin: degree=02 is not a whole number in plain digits"},
+    {"galerkin:degree=", "galerkin: degree= is not a whole number in plain digits"},
+    {"galerkin:degree=,nodes=4", "galerkin: degree= is not a whole number in plain digits"},
+    {"galerkin:degree=0", "galerkin: degree=0; 1 to 40 are possible"},
+    {"galerkin:degree=41", "galerkin: degree=41; 1 to 40 are possible"},
     {"galerkin:nodes=123456789012345678901234567890", "nodes=123456789012345678901234567890; 1 to 80 are possible"},
     {"galerkin:degree=5,nodes=4", "see at most 4 of the 5 velocity modes of degree 5"},
     {"composition:base=galerkin,degree=5,nodes=4", "composition: galerkin: 4 quadrature points"},

@@ -278,8 +278,8 @@ static int wall_gradient(double t, const double *q, double *V_q, void *user)
   return 0;
 }
 
-/* The step from 0.5 fails; the report, the state and the checkpoint are those of 0.5, and so is the sentence, even if there is no place
- * for the checkpoint. */
+/* The step from 0.5 fails; the report, the state and the checkpoint are those of 0.5, and so is the sentence; if there is no place for the
+ * checkpoint, it says that too. */
 START_TEST(a_step_that_fails_ends_the_run_at_the_last_good_state)
 {
   const dvi_potential potential = {.name = "wall", .value = wall_value, .gradient = wall_gradient};
@@ -295,6 +295,7 @@ START_TEST(a_step_that_fails_ends_the_run_at_the_last_good_state)
   ck_assert_int_eq(dvi_run(runner, &options, &report), DVI_NOT_FINITE);
   check_words("step 5 from t = 0.5");
   check_words("wall: the gradient callback gave nan");
+  if (_i % 2 == 1) check_words("; and then: checkpoint: cannot write");
   ck_assert_int_eq(report.end, DVI_RUN_FAILED);
   ck_assert_int_eq(report.steps, 4);
   ck_assert_int_eq(d.visits, 5);
@@ -327,6 +328,7 @@ static const struct {
     {{.h = 0.1, .t_end = 1, .every = -1}, "every = -1"},
     {{.h = 0.1, .t_end = 1, .checkpoint_every = -5}, "checkpoint_every = -5"},
     {{.h = 0.1, .t_end = 1, .event_count = -2}, "-2 events"},
+    {{.h = 0.1, .t_end = 1, .events = &(const dvi_event){.name = "none"}}, "a list of events is given, but their count is 0"},
     {{.h = 0.1, .t_end = 1, .event_count = 2}, "2 events declared, but their list is NULL"},
     {{.h = 0.1, .t_end = 1, .event_count = 1, .events = &(const dvi_event){.name = "none"}}, "event 0 has no value callback"},
 };
@@ -348,6 +350,27 @@ START_TEST(bad_options_are_refused_with_their_reason)
   ck_assert_int_eq(d.visits, 0);
   ck_assert_int_eq(files_in_folder(), 0);
   check_state(integrator, before);
+}
+END_TEST
+
+START_TEST(checkpoints_on_the_way_need_a_file)
+{
+  const dvi_run_options options = {.h = 0.1, .t_end = 1, .checkpoint_every = 3};
+  ck_assert_int_eq(dvi_run(integrator, &options, NULL), DVI_BAD_ARGUMENT);
+  check_words("checkpoint_every = 3, but no checkpoint file is named");
+}
+END_TEST
+
+/* Julian days: the rounded time misses t by up to 2e-10, a shorter last step must not. q = cos(t - t0)/2 at the end. */
+START_TEST(a_last_shorter_step_is_right_at_large_times)
+{
+  const double t0 = 2451545, way = 1.0625;
+  ck_assert_int_eq(dvi_integrator_start(integrator, t0, of->q, of->p), DVI_OK);
+  dvi_integrator *beside = started(of, "galerkin:degree=4");
+  ck_assert_int_eq(dvi_run(integrator, &(dvi_run_options){.h = 0.01, .t_end = t0 + way}, NULL), DVI_OK);
+  ck_assert_int_eq(dvi_run(beside, &(dvi_run_options){.h = 0.01, .t_end = way}, NULL), DVI_OK);
+  ck_assert_double_eq_tol(dvi_integrator_q(integrator)[0], dvi_integrator_q(beside)[0], 1e-14);
+  dvi_integrator_destroy(&beside);
 }
 END_TEST
 
@@ -410,6 +433,8 @@ int main(void)
   tcase_add_loop_test(tests, a_checkpoint_that_cannot_be_written_fails_the_run, 0, 3);
   tcase_add_loop_test(tests, a_step_that_fails_ends_the_run_at_the_last_good_state, 0, 2 * METHODS);
   tcase_add_loop_test(tests, bad_options_are_refused_with_their_reason, 0, REFUSED);
+  tcase_add_test(tests, checkpoints_on_the_way_need_a_file);
+  tcase_add_test(tests, a_last_shorter_step_is_right_at_large_times);
   tcase_add_test(tests, a_step_that_time_does_not_feel_fails_the_run);
   tcase_add_loop_test(tests, a_step_longer_than_the_way_is_cut_to_it, 0, 3);
   tcase_add_loop_test(tests, a_composition_ends_at_t_end_and_may_be_asked_again, 0, 3);

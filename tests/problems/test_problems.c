@@ -115,7 +115,7 @@ static void check_batches(const char *name, int setting_count, const char *const
     v[j] = made->v[j / POINTS] + 0.2 * size_of(n, made->v) * noise(&state);
   }
   dvi__evaluator *e = NULL;
-  ck_assert_int_eq(dvi__evaluator_create(made->system, POINTS, NULL, &e), DVI_OK);
+  ck_assert_int_eq(dvi__evaluator_create(made->system, POINTS, DVI__HESSIANS, NULL, &e), DVI_OK);
   const dvi__pattern *patterns[3] = {&made->system->qq, &made->system->qv, &made->system->vv};
   double *hessians = blocks, *hessians1 = blocks1;
   ck_assert_int_eq(dvi__lagrangian_value(e, POINTS, t, q, v, L), DVI_OK);

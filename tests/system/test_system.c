@@ -1,6 +1,8 @@
 #include <math.h>
+#include <pthread.h>
 #include <string.h>
 
+#include "core/memory.h"
 #include "support/suite.h"
 #include "support/systems.h"
 #include "system/system.h"
@@ -45,6 +47,40 @@ START_TEST(lists_that_are_missing_are_refused)
           "2 symmetries declared, but");
   refused(&(dvi_system_terms){.dimension = 1, .mass.scalar = 1, .invariant_count = 2}, DVI_BAD_ARGUMENT,
           "2 invariants declared, but");
+}
+END_TEST
+
+/* A forgotten count would leave the forces out without a word. */
+START_TEST(lists_without_a_count_are_refused)
+{
+  const dvi_potential p = springs(&quiet, ONE_POINT);
+  const dvi_symmetry symmetry = {"a", unused_generator, NULL};
+  const dvi_invariant invariant = {0};
+  refused(&(dvi_system_terms){.dimension = SITES, .mass.scalar = 1, .potentials = &p}, DVI_BAD_ARGUMENT,
+          "a list of potentials is given, but their count is 0");
+  refused(&(dvi_system_terms){.dimension = SITES, .mass.scalar = 1, .symmetries = &symmetry}, DVI_BAD_ARGUMENT,
+          "a list of symmetries is given");
+  refused(&(dvi_system_terms){.dimension = SITES, .mass.scalar = 1, .invariants = &invariant}, DVI_BAD_ARGUMENT,
+          "a list of invariants is given");
+}
+END_TEST
+
+START_TEST(a_callback_in_two_shapes_is_refused)
+{
+  const dvi_potential p1 = springs(&quiet, ONE_POINT), pb = springs(&quiet, BATCH);
+  const dvi_lagrangian l1 = rotors(&quiet, ONE_POINT), lb = rotors(&quiet, BATCH);
+  for (int kind = 0; kind < 3; kind++) {
+    static const char *const words[] = {"its value callback in two shapes", "its gradient callback in two",
+                                        "its Hessian callback in"};
+    dvi_potential p = p1;
+    dvi_lagrangian l = l1;
+    if (kind == 0) p.value_batch = pb.value_batch, l.value_batch = lb.value_batch;
+    if (kind == 1) p.gradient_batch = pb.gradient_batch, l.gradient_batch = lb.gradient_batch;
+    if (kind == 2) p.hessian_batch = pb.hessian_batch, l.hessian_batch = lb.hessian_batch;
+    refused(&(dvi_system_terms){.dimension = SITES, .mass.scalar = 1, .potentials = &p, .potential_count = 1}, DVI_BAD_ARGUMENT,
+            words[kind]);
+    refused(&(dvi_system_terms){.dimension = SITES, .lagrangian = &l}, DVI_BAD_ARGUMENT, words[kind]);
+  }
 }
 END_TEST
 
@@ -188,12 +224,42 @@ START_TEST(symmetries_and_invariants_need_their_callbacks)
 }
 END_TEST
 
-START_TEST(a_full_pattern_that_no_int_can_count_is_refused)
+/* Who needs no Hessian can have the system; who does is refused, each time anew. */
+START_TEST(a_full_pattern_that_no_int_can_count_is_refused_where_it_is_needed)
 {
   dvi_potential p = springs(&quiet, ONE_POINT);
   p.qq = (dvi_pattern){0};
-  refused(&(dvi_system_terms){.dimension = 50000, .mass.scalar = 1, .potentials = &p, .potential_count = 1}, DVI_BAD_SIZE,
-          "declare a sparse pattern");
+  const long before = dvi__allocation_count();
+  dvi_system *s = make_system(&(dvi_system_terms){.dimension = 50000, .mass.scalar = 1, .potentials = &p, .potential_count = 1});
+  ck_assert_int_lt(dvi__allocation_count() - before, 20);
+  for (int k = 0; k < 2; k++) {
+    ck_assert_int_eq(dvi__system_prepare_hessian(s), DVI_BAD_SIZE);
+    ck_assert_msg(strstr(dvi_last_error(), "declare a sparse pattern") != NULL, "%s", dvi_last_error());
+  }
+  dvi_system_destroy(&s);
+}
+END_TEST
+
+static void *prepare(void *system)
+{
+  return dvi__system_prepare_hessian(system) == DVI_OK ? system : NULL;
+}
+
+START_TEST(threads_may_prepare_one_system_together)
+{
+  enum { THREADS = 8 };
+  dvi_potential p = springs(&quiet, ONE_POINT);
+  p.qq = (dvi_pattern){0};
+  dvi_system *s = make_system(&(dvi_system_terms){.dimension = 500, .mass.scalar = 1, .potentials = &p, .potential_count = 1});
+  pthread_t thread[THREADS];
+  for (int k = 0; k < THREADS; k++) ck_assert_int_eq(pthread_create(&thread[k], NULL, prepare, s), 0);
+  for (int k = 0; k < THREADS; k++) {
+    void *result = NULL;
+    ck_assert_int_eq(pthread_join(thread[k], &result), 0);
+    ck_assert_ptr_eq(result, s);
+  }
+  ck_assert_int_eq(dvi__pattern_entries(&s->qq), 500 * 500);
+  dvi_system_destroy(&s);
 }
 END_TEST
 
@@ -206,6 +272,7 @@ START_TEST(the_patterns_are_the_unions_over_the_terms)
   ck_assert_int_eq(dvi_system_nq(s), SITES);
   ck_assert_int_eq(dvi_system_nv(s), SITES);
   ck_assert_int_eq(s->terms, DVI__LAGRANGIAN | DVI__POTENTIAL);
+  ck_assert_int_eq(dvi__system_prepare_hessian(s), DVI_OK);
   ck_assert_int_eq(dvi__pattern_entries(&s->qq), 3 * SITES - 2);
   ck_assert_mem_eq(s->qq.row, tridiagonal.row, (3 * SITES - 2) * sizeof(int));
   ck_assert_int_eq(dvi__pattern_entries(&s->qv), 2 * SITES - 1);
@@ -221,6 +288,7 @@ END_TEST
 START_TEST(a_constant_mass_has_an_empty_mixed_block)
 {
   dvi_system *s = make_system(&(dvi_system_terms){.dimension = 3, .mass.scalar = 2});
+  ck_assert_int_eq(dvi__system_prepare_hessian(s), DVI_OK);
   ck_assert_int_eq(s->terms, DVI__CONSTANT_MASS);
   ck_assert_int_eq(dvi__pattern_entries(&s->qq), 0);
   ck_assert_int_eq(dvi__pattern_entries(&s->qv), 0);
@@ -283,7 +351,10 @@ int main(void)
   tcase_add_test(tests, one_triangle_of_a_hessian_pattern_is_not_enough);
   tcase_add_test(tests, a_lagrangian_without_a_value_or_with_bad_patterns_is_refused);
   tcase_add_test(tests, symmetries_and_invariants_need_their_callbacks);
-  tcase_add_test(tests, a_full_pattern_that_no_int_can_count_is_refused);
+  tcase_add_test(tests, lists_without_a_count_are_refused);
+  tcase_add_test(tests, a_callback_in_two_shapes_is_refused);
+  tcase_add_test(tests, a_full_pattern_that_no_int_can_count_is_refused_where_it_is_needed);
+  tcase_add_test(tests, threads_may_prepare_one_system_together);
   tcase_add_test(tests, the_patterns_are_the_unions_over_the_terms);
   tcase_add_test(tests, a_constant_mass_has_an_empty_mixed_block);
   tcase_add_test(tests, everything_declared_is_copied);

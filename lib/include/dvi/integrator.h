@@ -11,8 +11,8 @@ typedef struct dvi_integrator dvi_integrator;
 typedef struct dvi_counters {
   long steps;          /**< accepted steps */
   long failed_steps;   /**< steps that failed */
-  long values;         /**< points at which values were evaluated */
-  long gradients;      /**< points at which gradients were evaluated */
+  long values;         /**< points at which values were evaluated, those of differences included */
+  long gradients;      /**< points at which gradients were evaluated, those of differences included */
   long hessians;       /**< points at which Hessians were evaluated */
   long residuals;      /**< residuals of the step's equations (fixed-point iterations count as one each) */
   long jacobians;      /**< Jacobians of the step's equations */
@@ -46,14 +46,25 @@ void dvi_integrator_destroy(dvi_integrator **integrator);
 
 /** Put the integrator at time t in state q [nq], p [nv]. May be called again for a new run.
  *
- *  @retval DVI_NOT_FINITE  an argument, the energy or the forces are not finite there; the old state stays
- *  @retval DVI_SINGULAR    the velocity Hessian is singular there and the method needs a regular Lagrangian */
+ *  A general Lagrangian's velocity is sought by Newton's method from v = 0 and from velocities along p. Where several velocities have one
+ *  momentum, say which one is meant: dvi_integrator_start_velocity.
+ *  On any failure the old state stays.
+ *  @retval DVI_NOT_FINITE     an argument, the energy or the forces are not finite there
+ *  @retval DVI_SINGULAR       the velocity Hessian is singular wherever it was tried: a degenerate Lagrangian
+ *  @retval DVI_NOT_CONVERGED  no velocity was found for p
+ *  @retval DVI_CALLBACK_RETRY, DVI_CALLBACK_FAILED  a callback failed there */
 dvi_status dvi_integrator_start(dvi_integrator *integrator, double t, const double *q, const double *p);
+
+/** The same in state q [nq], v [nv], with p = L_v(t,q,v).
+ *
+ *  @retval DVI_SINGULAR  the velocity Hessian is singular at this velocity
+ *  @retval (others)      as dvi_integrator_start */
+dvi_status dvi_integrator_start_velocity(dvi_integrator *integrator, double t, const double *q, const double *v);
 
 /** Take one step of length h (negative: backward).
  *
  *  On any failure the state, and all that the next step depends on, is as before the call.
- *  @retval DVI_BAD_ARGUMENT    h is zero or not finite, or so small that t + h = t
+ *  @retval DVI_BAD_ARGUMENT    h is zero or not finite, or so small that t + h = t or 1/h = Inf
  *  @retval DVI_BAD_STATE       before dvi_integrator_start
  *  @retval DVI_NOT_CONVERGED   the step's equations were not solved, even by KINSOL with line search; the error sentence names
  *                              step, time, iterations and residual
@@ -62,7 +73,7 @@ dvi_status dvi_integrator_start(dvi_integrator *integrator, double t, const doub
  *  @retval DVI_CALLBACK_FAILED a callback returned a negative number */
 dvi_status dvi_integrator_step(dvi_integrator *integrator, double h);
 
-/** Current time. */
+/** Current time; NaN for NULL. The queries up to dvi_integrator_method give NULL or 0 for NULL. */
 double dvi_integrator_time(const dvi_integrator *integrator);
 
 /** Current coordinates [nq], owned by the integrator, valid until its next call. */
@@ -87,8 +98,13 @@ dvi_status dvi_integrator_invariants(dvi_integrator *integrator, double *value);
 
 /** Dense output: the trajectory inside the last step.
  *
- *  Galerkin methods evaluate the step's polynomial (error O(h^(degree+1)) inside, the full order at the ends); the others use
- *  Hermite's cubic through the ends (O(h^4)).
+ *  Galerkin methods (midpoint and trapezoidal among them) evaluate the step's polynomial of degree s; the others use Hermite's
+ *  cubic through the ends. Inside a step from a point of the solution, q has an error of
+ *    - O(h^(s+1)), if the quadrature is of order 2s-1 or more: Gauss, Radau, Lobatto with s+1 points, midpoint, trapezoidal,
+ *    - O(h^(u-s+2)), if it is of a lower order u: O(h^s) for Lobatto with s points,
+ *    - O(h^4) for compositions, O(h^3) for verlet, whose step itself is no better,
+ *
+ *  and v is one order less accurate. After many steps the error of the state at the ends, O(h^order), is added to both.
  *  @param      t  a time in the last step, ends included
  *  @param[out] q  [nq], or NULL
  *  @param[out] v  [nv], or NULL
@@ -96,7 +112,7 @@ dvi_status dvi_integrator_invariants(dvi_integrator *integrator, double *value);
  *  @retval DVI_BAD_ARGUMENT  t is outside of the last step */
 dvi_status dvi_integrator_interpolate(dvi_integrator *integrator, double t, double *q, double *v);
 
-/** What was done so far. */
+/** What was done so far; all 0 for NULL. */
 void dvi_integrator_counters(const dvi_integrator *integrator, dvi_counters *counters);
 
 /** Say in words which kernel, solver and sparsity the integrator chose, and why: several lines, each ended by a newline.
@@ -111,8 +127,10 @@ dvi_status dvi_integrator_save(const dvi_integrator *integrator, const char *pat
 
 /** Read a state that dvi_integrator_save wrote; a run then continues bit for bit.
  *
+ *  On any failure the state stays. Callbacks are not in the file; the system is known again by what it declares and by the Lagrangian's value
+ *  and forces at the saved state, which must agree to nine digits.
  *  @retval DVI_IO_ERROR  the file cannot be read
- *  @retval DVI_BAD_FILE  it is cut short, damaged, or from another method or dimension; the state stays */
+ *  @retval DVI_BAD_FILE  it is cut short, damaged, or from another method, system or set of parameters */
 dvi_status dvi_integrator_restore(dvi_integrator *integrator, const char *path);
 
 #ifdef __cplusplus

@@ -54,11 +54,14 @@ extern "C" {
 
 /** Advance the integrator from its current time to t_end.
  *
- *  An event is seen if g has different signs at two neighbouring points of the step (ends and quarters), or if a step ends on a zero.
+ *  An event is seen if g has different signs at two neighbouring points of the step (ends and quarters), or if g is zero at the later one
+ *  of two and was not at the earlier one: a touch from above counts as falling, one from below as rising. A g that stays zero gives none.
  *  Events are reported in the order of the run, up to the first one that ends it.
+ *  If an event's function fails in a step, the step is taken back before any event of it is reported.
  *  @param[out] report  filled on success and on failure; may be NULL
  *  @retval DVI_OK            the run ended as `report->end` says (not DVI_RUN_FAILED)
- *  @retval DVI_BAD_ARGUMENT  h is zero, not finite or leads away from t_end; a count is negative
+ *  @retval DVI_BAD_ARGUMENT  h is zero, not finite or leads away from t_end; a count is negative; a direction is none;
+ *                            checkpoint_every without a file
  *  @retval (others)          as dvi_integrator_step, for the step that failed; the state is the last good one */
 dvi_status dvi_run(dvi_integrator *integrator, const dvi_run_options *options, dvi_run_report *report);
 

@@ -9,7 +9,7 @@
  *  Missing derivatives are differenced with steps made for coordinates and velocities of size 0.01 and more: choose units in which they
  *  are, or give the derivatives.
  *
- *  Each callback comes in two shapes; declare one of them. The one-point shape is the plain one. The batch shape gets
+ *  Each callback comes in two shapes; declare one of them (both are refused). The one-point shape is the plain one. The batch shape gets
  *  `count` points stored component by component: coordinate i of point k is q[i*count + k], entry e of a Hessian of point k is
  *  values[e*count + k], and t[k] is the time of point k. One loop over k then serves all quadrature points of a step. */
 #ifndef DVI_SYSTEM_H
@@ -29,7 +29,8 @@ typedef struct dvi_lagrangian {
   /** The value L. Needed (or value_batch). */
   int (*value)(double t, const double *q, const double *v, double *L, void *user);
   int (*value_batch)(int count, const double *t, const double *q, const double *v, double *L, void *user);
-  /** dL/dq [n] and dL/dv [n]. Left out: the value is differenced, 12 n calls a point, about three digits lost. */
+  /** dL/dq [n] and dL/dv [n]. Left out: the value is differenced, 12 n calls a point (near a singularity up to four times as many),
+   *  about three digits lost. */
   int (*gradient)(double t, const double *q, const double *v, double *L_q, double *L_v, void *user);
   int (*gradient_batch)(int count, const double *t, const double *q, const double *v, double *L_q, double *L_v, void *user);
   /** Second derivatives in the order of the patterns qq, qv (row q, column v) and vv. Left out: the gradient is differenced. */
@@ -46,10 +47,12 @@ typedef struct dvi_potential {
   /** The value V. Needed (or value_batch). */
   int (*value)(double t, const double *q, double *V, void *user);
   int (*value_batch)(int count, const double *t, const double *q, double *V, void *user);
-  /** dV/dq [n]. Left out: the value is differenced, 6 n calls a point, about three digits lost. */
+  /** dV/dq [n]. Left out: the value is differenced, 6 n calls a point (near a singularity up to four times as many), about three
+   *  digits lost. */
   int (*gradient)(double t, const double *q, double *V_q, void *user);
   int (*gradient_batch)(int count, const double *t, const double *q, double *V_q, void *user);
-  /** d2V/dq2 in the order of the pattern. Left out: the gradient is differenced by column groups. */
+  /** d2V/dq2 in the order of the pattern. Left out: the gradient is differenced by column groups. A method without Hessians costs
+   *  neither memory nor time for them, whether they are given or not. */
   int (*hessian)(double t, const double *q, double *V_qq, void *user);
   int (*hessian_batch)(int count, const double *t, const double *q, double *V_qq, void *user);
   dvi_pattern qq;
@@ -124,9 +127,10 @@ dvi_status dvi_system_momentum(const dvi_system *system, double t, const double 
 
 /** The inverse Legendre map: the v [nv] with L_v(t,q,v) = p, by Newton's method from v as given.
  *
+ *  If that does not settle, velocities along p are tried as guesses.
  *  @param[in,out] v  [nv]; a starting guess (read for general Lagrangians only), then the velocity; unchanged on failure
- *  @retval DVI_SINGULAR       L_vv is singular there
- *  @retval DVI_NOT_CONVERGED  Newton's method did not settle from this guess */
+ *  @retval DVI_SINGULAR       L_vv is singular at every guess
+ *  @retval DVI_NOT_CONVERGED  Newton's method did not settle from any guess */
 dvi_status dvi_system_velocity(const dvi_system *system, double t, const double *q, const double *p, double *v);
 
 /** How many invariants are watched: the energy, one momentum for each symmetry, and the declared ones, in this order. */

@@ -25,10 +25,8 @@ static dvi_status allocate_chord(dvi__action *a, dvi_counters *counters)
   if (system->lagrangian == NULL) return DVI_OK;
   a->middle[0] = DVI_NEW(double, a->n);
   a->middle[1] = DVI_NEW(double, a->n);
-  a->middle[2] = DVI_NEW(double, dvi__pattern_entries(&system->qq));
-  a->middle[3] = DVI_NEW(double, dvi__pattern_entries(&system->qv));
   a->middle_vv = DVI_NEW(double, dvi__pattern_entries(&system->vv));
-  if (!a->middle[0] || !a->middle[1] || !a->middle[2] || !a->middle[3] || !a->middle_vv)
+  if (!a->middle[0] || !a->middle[1] || !a->middle_vv)
     return dvi__fail(DVI_NO_MEMORY, "action: no memory for the velocity Hessian");
   return dvi__linear_create(&system->vv, DVI__LINEAR_AUTO, counters, &a->chord);
 }
@@ -37,7 +35,7 @@ static dvi_status fill(dvi__action *a, dvi_counters *counters)
 {
   DVI_TRY(dvi__action_fill_tables(a));
   const int capacity = a->r > a->s ? a->r : a->s; /* a batch of s is solved for at once in the chord */
-  DVI_TRY(dvi__evaluator_create(a->system, capacity, counters, &a->evaluator));
+  DVI_TRY(dvi__evaluator_create(a->system, capacity, DVI__HESSIANS, counters, &a->evaluator));
   if (!allocate_batches(a)) return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d nodes in %d dimensions", a->r, a->n);
   return allocate_chord(a, counters);
 }
@@ -64,10 +62,9 @@ void dvi__action_destroy(dvi__action **action)
   dvi__action *a = *action;
   if (a == NULL) return;
   double *const owned[] = {
-      a->psi,       a->dpsi, a->bar,       a->node,      a->weight,    a->end,       a->stiffness, a->stiffness_inverse,
-      a->fit_point, a->fit,  a->straight,  a->shift,     a->t,         a->Q,         a->V,         a->L_q,
-      a->L_v,       a->line, a->middle_vv, a->middle[0], a->middle[1], a->middle[2], a->middle[3], a->H_qq,
-      a->H_qv,      a->H_vv};
+      a->psi,       a->dpsi, a->bar,       a->node,      a->weight,    a->end,  a->stiffness, a->stiffness_inverse,
+      a->fit_point, a->fit,  a->straight,  a->shift,     a->t,         a->Q,    a->V,         a->L_q,
+      a->L_v,       a->line, a->middle_vv, a->middle[0], a->middle[1], a->H_qq, a->H_qv,      a->H_vv};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) dvi__release(owned[i]);
   dvi__linear_destroy(&a->chord);
   dvi__evaluator_destroy(&a->evaluator);

@@ -31,7 +31,7 @@ struct dvi__action {
   double *line;                  /* [2 s + 2 r] one coordinate's worth of anything */
   /* Chord. */
   double *middle_vv;  /* L_vv at one point (general Lagrangians) */
-  double *middle[4];  /* q, v at that point; L_qq, L_qv */
+  double *middle[2];  /* q, v at that point */
   dvi__linear *chord; /* factors middle_vv */
   /* Jacobian; NULL until prepared. */
   dvi__pattern joint;         /* n x n: union of qq, qv, vq, vv */

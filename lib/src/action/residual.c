@@ -73,10 +73,11 @@ void dvi__action_ends(const dvi__action *a, const double *Y, double *dq, double 
 dvi_status dvi__action_prepare_chord(dvi__action *a, const double *Y)
 {
   if (a->system->lagrangian == NULL) return DVI_OK;
-  const double middle = a->t0 + 0.5 * a->h;
+  const double middle = a->t0 + 0.5 * a->h, *L_vv;
   dvi__action_path(a, Y, a->h, 0.5, a->middle[0], a->middle[1]);
   for (int i = 0; i < a->n; i++) a->middle[0][i] += a->q0[i];
-  DVI_TRY(dvi__lagrangian_hessian(a->evaluator, 1, &middle, a->middle[0], a->middle[1], a->middle[2], a->middle[3], a->middle_vv));
+  DVI_TRY(dvi__velocity_hessian(a->evaluator, middle, a->middle[0], a->middle[1], &L_vv));
+  memcpy(a->middle_vv, L_vv, (size_t)dvi__pattern_entries(&a->system->vv) * sizeof(double));
   return dvi__linear_factor(a->chord, a->middle_vv);
 }
 

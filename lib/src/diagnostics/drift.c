@@ -38,7 +38,11 @@ static void open_block(dvi_drift *drift)
 
 void dvi_drift_add(dvi_drift *drift, double t, double value)
 {
-  if (drift->count++ == 0) drift->first = value;
+  if (drift->count++ == 0) {
+    drift->first = value;
+    drift->start = t;
+  }
+  drift->end = t;
   const double error = value - drift->first;
   if (isnan(error) || fabs(error) > drift->largest) drift->largest = fabs(error); /* a NaN stays */
   if (drift->blocks == 0 || drift->filled == drift->per_block) open_block(drift);
@@ -106,9 +110,7 @@ void dvi_drift_result(const dvi_drift *drift, dvi_drift_fit *fit)
   fit->largest = drift->largest;
   fit->slope = fit_line(blocks, time, error, &spread);
   fit->deviation = standard_error(blocks, error, spread);
-  fit->change = 0;
-  if (blocks > 1) /* block means lie half a block inside of the ends */
-    fit->change = fit->slope * (time[blocks - 1] - time[0]) * blocks / (blocks - 1);
+  fit->change = fit->slope * (drift->end - drift->start);
   fit->significance = (double)NAN;
   if (blocks >= FEWEST_BLOCKS) fit->significance = fit->slope == 0 ? 0 : fabs(fit->slope) / fit->deviation;
 }

@@ -1,29 +1,42 @@
 /* The symplecticity defect |M^T J M - J| of the map of one step, from its differenced derivative M.
  *
- * Scales. A mass of 1 beside one of 1e-8 makes momenta differ as much, so each coordinate gets a length a_i of its own and each
- * momentum the size b_i = m_i a_i / |h|, the momentum that crosses this length in one step; m_i is differenced from the Legendre
- * map. In units of a_i and |h| a step is a map of a unit of time between numbers of unit size, and its differences are as
- * well conditioned in momenta as in coordinates. The defect is measured in the coordinates
+ * Units. A mass of 1 beside one of 1e-8 makes momenta differ as much, so each coordinate gets a length a_i of its own and each
+ * momentum a size b_i = m_i w_i, where m_i is the slope of the Legendre map at the point and w_i the velocity that crosses a_i in
+ * one step, halved until the Legendre map is nearly linear over it: momenta that turn it over would leave the part of the phase
+ * space that a derivative at the point speaks of. The defect is measured in the coordinates
  *
  *     q_i sqrt(b_i / a_i),   p_i sqrt(a_i / b_i),
  *
  * a change of units that leaves J as it is.
  *
- * Differences. The central difference of 10th order over +-1 .. +-5 steps of length d a_i or d b_i errs by about 1e4 (d/R)^10 if
- * the map is analytic within R, and by about 2e-16 / d from roundoff. R is not known (close to a collision it is small), so
- * several d are tried; the smallest defect is the answer, for both errors add to it. The search ends early below the floor of
- * 1e-12: nothing smaller can be told from roundoff.
+ * Differences. How far the map is smooth differs from column to column, and close to a collision the reach is small. Each column
+ * of M is therefore extrapolated on its own (Richardson; the choice of an entry is Ridders' 1982): central differences over lengths
+ * d_k = r^k d_0 have errors in even powers of d_k, and
+ *
+ *     T_k0 = (z(d_k) - z(-d_k)) / (2 d_k),    T_km = T_k,m-1 + (T_k,m-1 - T_k-1,m-1) / (r^-2m - 1)
+ *
+ * removes m of them. The error of T_km is judged by its distance to both of the entries it comes from, and the entry with the
+ * smallest judged error is the column. This choice never looks at the defect, so it can not favour a small one. Several lengths
+ * may be multiples of the period of a force, and would agree on a wrong slope. That is why an entry counts only if four lengths
+ * went into it, and why the ratio r is neither a power of two nor a simple fraction.
  *
  * The steps are taken by a second integrator of the same method: that is how the given one keeps its state, on every path. */
 #include <dvi/diagnostics.h>
+#include <float.h>
 #include <math.h>
+#include <string.h>
 
 #include "core/memory.h"
 #include "core/status.h"
 
-enum { REACH = 5 };
+enum {
+  ORDERS = 6, /* entries of a row of the extrapolation: even powers of the length up to the 10th are removed */
+  FEWEST = 3, /* powers that an entry must have removed to count: fewer lengths could agree by chance */
+  HALVINGS = 50
+};
 
-static const double defect_floor = 1e-12;
+static const double ratio = 0.59, longest = 0x1p-3, shortest = 1e-14; /* of the lengths, in units */
+static const double rounding = 10 * DBL_EPSILON;                      /* of a step's end, relative to its size */
 
 /* Coordinates and momenta stand in one array z [2n] = (q, p). M is stored by columns: column j = derivative by z_j. */
 typedef struct step_map {
@@ -33,6 +46,7 @@ typedef struct step_map {
   const double *start; /* [2n] */
   double *z;           /* [2n] a point to start from */
   double *scale;       /* [2n] a and b */
+  double *row;         /* [(ORDERS + 1) * 2n] of the column at work, in the scaled coordinates: the last row T_k, the next T_k0 */
   double *M;           /* [2n * 2n] in the scaled coordinates */
 } step_map;
 
@@ -48,19 +62,45 @@ static void coordinate_scales(int n, const double *q, const double *v, double h,
   for (int i = 0; i < n; i++) a[i] = fmax(fabs(q[i]), largest / 16);
 }
 
-/* b_i = |p(v + w e_i) - p(v)|_i with w = a_i / |h|. */
-static dvi_status momentum_scales(const dvi_system *system, int n, double t, double h, const double *q, double *v, const double *a,
-                                  double *moved, double *b)
+/* (p(v + w e_i) - p(v))_i / w; v is as before afterwards. */
+static dvi_status legendre_slope(const step_map *map, double *v, int i, double w, double *slope)
 {
-  for (int i = 0; i < n; i++) {
-    const double velocity = v[i];
-    DVI_TRY(dvi_system_momentum(system, t, q, v, moved));
-    const double before = moved[i];
-    v[i] = velocity + a[i] / fabs(h);
-    DVI_TRY(dvi_system_momentum(system, t, q, v, moved));
-    v[i] = velocity;
-    b[i] = fabs(moved[i] - before);
-    if (!(b[i] > 0)) b[i] = fmax(fabs(before), 1);
+  const double *q = map->start, *p = map->start + map->n, velocity = v[i];
+  v[i] = velocity + w;
+  const double moved = v[i] - velocity;
+  const dvi_status status = dvi_system_momentum(dvi_integrator_system(map->probe), map->t, q, v, map->z);
+  v[i] = velocity;
+  if (status == DVI_OK) *slope = (map->z[i] - p[i]) / moved;
+  return status;
+}
+
+/* Whether the Legendre map's slopes over w, -w and w/2 are within a quarter of each other; a positive status says that it is not
+ * defined so far out. */
+static dvi_status nearly_linear(const step_map *map, double *v, int i, double w, double *slope, int *linear)
+{
+  double forward, backward;
+  DVI_TRY(legendre_slope(map, v, i, w, &forward));
+  DVI_TRY(legendre_slope(map, v, i, -w, &backward));
+  DVI_TRY(legendre_slope(map, v, i, w / 2, slope));
+  const double least = fmin(fmin(forward, backward), *slope), most = fmax(fmax(forward, backward), *slope);
+  *linear = *slope != 0 && most - least <= fabs(*slope) / 4;
+  return DVI_OK;
+}
+
+/* b_i = m_i w_i, and the size of the momentum itself where the Legendre map has no slope. */
+static dvi_status momentum_scale(const step_map *map, double *v, int i, double *b)
+{
+  double w = map->scale[i] / fabs(map->h);
+  *b = fmax(fabs(map->start[map->n + i]), 1);
+  for (int halving = 0; halving < HALVINGS; halving++, w /= 2) {
+    double slope;
+    int linear = 0;
+    const dvi_status status = nearly_linear(map, v, i, w, &slope, &linear);
+    if (status < 0) return status;
+    if (status == DVI_OK && linear) {
+      *b = fabs(slope) * w;
+      return DVI_OK;
+    }
   }
   return DVI_OK;
 }
@@ -68,38 +108,31 @@ static dvi_status momentum_scales(const dvi_system *system, int n, double t, dou
 static dvi_status choose_scales(const step_map *map)
 {
   const int n = map->n;
-  const dvi_system *system = dvi_integrator_system(map->probe);
   const double *q = map->start, *p = map->start + n;
   double *v = DVI_NEW(double, n);
   dvi_status status = v ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "symplecticity: no memory for %d velocities", n);
-  if (status == DVI_OK) status = dvi_system_velocity(system, map->t, q, p, v);
+  if (status == DVI_OK) status = dvi_system_velocity(dvi_integrator_system(map->probe), map->t, q, p, v);
   if (status == DVI_OK) coordinate_scales(n, q, v, map->h, map->scale);
-  if (status == DVI_OK) status = momentum_scales(system, n, map->t, map->h, q, v, map->scale, map->z, map->scale + n);
+  for (int i = 0; status == DVI_OK && i < n; i++) status = momentum_scale(map, v, i, &map->scale[n + i]);
   dvi__release(v);
   return status;
 }
 
-/* One step from start + shift e_j. */
-static dvi_status step_from(const step_map *map, int j, double shift)
+/* One step from start + shift e_j; `shift` becomes what is left of it after rounding. */
+static dvi_status step_from(const step_map *map, int j, double *shift)
 {
   for (int i = 0; i < 2 * map->n; i++) map->z[i] = map->start[i];
-  map->z[j] += shift;
+  map->z[j] += *shift;
+  *shift = map->z[j] - map->start[j];
   DVI_TRY(dvi_integrator_start(map->probe, map->t, map->z, map->z + map->n));
   return dvi_integrator_step(map->probe, map->h);
 }
 
-/* Add factor times it to column j. */
-static dvi_status add_step(const step_map *map, int j, double shift, double factor)
+/* The step's end less the start, which in a difference cancels and leaves less to round. */
+static double way(const step_map *map, int i)
 {
   const int n = map->n;
-  double *column = map->M + (size_t)j * 2 * (size_t)n;
-  DVI_TRY(step_from(map, j, shift));
-  const double *q = dvi_integrator_q(map->probe), *p = dvi_integrator_p(map->probe);
-  for (int i = 0; i < n; i++) {
-    column[i] += factor * (q[i] - map->start[i]); /* the weights of a difference cancel the start; subtracted it rounds less */
-    column[n + i] += factor * (p[i] - map->start[n + i]);
-  }
-  return DVI_OK;
+  return (i < n ? dvi_integrator_q(map->probe)[i] : dvi_integrator_p(map->probe)[i - n]) - map->start[i];
 }
 
 /* The factor that turns z_i into scaled coordinates. */
@@ -109,19 +142,87 @@ static double unit(const step_map *map, int i)
   return i < n ? sqrt(map->scale[n + i] / map->scale[i]) : sqrt(map->scale[i - n] / map->scale[i]);
 }
 
-static dvi_status difference_column(const step_map *map, int j, double d)
+/* T_k0 of column j for the length d: the mean slope between the two points that rounding left. */
+static dvi_status difference(const step_map *map, int j, double d, double *slope)
 {
-  static const double weight[REACH] = {5.0 / 6, -5.0 / 21, 5.0 / 84, -5.0 / 504, 1.0 / 1260};
-  const int size = 2 * map->n;
-  double *column = map->M + (size_t)j * (size_t)size;
-  const double step = d * map->scale[j];
-  for (int i = 0; i < size; i++) column[i] = 0;
-  for (int k = REACH; k >= 1; k--) {
-    DVI_TRY(add_step(map, j, k * step, weight[k - 1] / step));
-    DVI_TRY(add_step(map, j, -k * step, -weight[k - 1] / step));
-  }
-  for (int i = 0; i < size; i++) column[i] *= unit(map, i) / unit(map, j);
+  double ahead = d * map->scale[j], behind = -ahead;
+  DVI_TRY(step_from(map, j, &ahead));
+  for (int i = 0; i < 2 * map->n; i++) slope[i] = way(map, i);
+  DVI_TRY(step_from(map, j, &behind));
+  for (int i = 0; i < 2 * map->n; i++) slope[i] = (slope[i] - way(map, i)) / (ahead - behind) * unit(map, i) / unit(map, j);
   return DVI_OK;
+}
+
+static double largest_entry(size_t size, const double *x)
+{
+  double largest = 0;
+  for (size_t i = 0; i < size; i++) largest = fmax(largest, fabs(x[i]));
+  return largest;
+}
+
+/* Put T_k, whose first entry is `slope`, in the place of T_k-1. `rows` rows led up to it, this one included. Gives the entry with
+ * the smallest judged error of those that count; the error is infinite if none does yet. */
+static const double *extrapolate(const step_map *map, const double *slope, int rows, double *error)
+{
+  const size_t size = 2 * (size_t)map->n;
+  const int entries = rows < ORDERS ? rows : ORDERS;
+  double judged[ORDERS] = {(double)INFINITY}; /* of entry 0, which has nothing to be judged by */
+  int best = 0;
+  for (size_t i = 0; i < size; i++) {
+    double above = map->row[i], power = 1;
+    map->row[i] = slope[i];
+    for (int m = 1; m < entries; m++) {
+      double *entry = map->row + (size_t)m * size + i;
+      const double left = map->row[(size_t)(m - 1) * size + i], gap = left - above;
+      above = *entry;
+      power /= ratio * ratio;
+      *entry = left + gap / (power - 1);
+      const double apart = fabs(gap) * power / (power - 1); /* from the entry above and left; the left one is nearer */
+      if (!(apart <= judged[m])) judged[m] = apart;
+    }
+  }
+  for (int m = FEWEST; m < entries; m++)
+    if (judged[m] < judged[best]) best = m;
+  *error = judged[best] / fmax(1, largest_entry(size, map->row + (size_t)best * size));
+  return map->row + (size_t)best * size;
+}
+
+/* A shorter difference may stay where the map is defined, or regular. */
+static int may_be_shortened(dvi_status status)
+{
+  return status > 0 || status == DVI_SINGULAR;
+}
+
+/* What a step rounds, in units of what column j is differenced over. */
+static double rounding_of(const step_map *map, int j)
+{
+  double largest = unit(map, j) * map->scale[j];
+  for (int i = 0; i < 2 * map->n; i++) largest = fmax(largest, fabs(map->start[i]) * unit(map, i));
+  return rounding * largest / (unit(map, j) * map->scale[j]);
+}
+
+/* Column j of M from the lengths whose steps succeed; if too few do, the last failure. Ends when shorter ones could not do
+ * better. */
+static dvi_status difference_column(const step_map *map, int j)
+{
+  const size_t size = 2 * (size_t)map->n;
+  const double rounded = rounding_of(map, j), last = fmax(shortest, 4 * DBL_EPSILON * fabs(map->start[j]) / map->scale[j]);
+  double *column = map->M + (size_t)j * size, *slope = map->row + ORDERS * size, least = (double)INFINITY;
+  dvi_status failure = DVI_OK;
+  int rows = 0;
+  for (double d = longest; d >= last && least > rounded / d; d *= ratio) {
+    const dvi_status status = difference(map, j, d, slope);
+    if (status != DVI_OK && !may_be_shortened(status)) return status;
+    if (status != DVI_OK) failure = status;
+    rows = status == DVI_OK ? rows + 1 : 0;
+    double error = (double)INFINITY;
+    const double *entry = rows > 0 ? extrapolate(map, slope, rows, &error) : slope;
+    if (error < least) memcpy(column, entry, size * sizeof *column);
+    least = fmin(least, error);
+  }
+  if (least < (double)INFINITY) return DVI_OK;
+  if (failure != DVI_OK) return failure;
+  return dvi__fail(DVI_NOT_FINITE, "symplecticity: differences of variable %d are lost in rounding", j);
 }
 
 /* Largest entry of M^T J M - J, which is antisymmetric. */
@@ -134,35 +235,18 @@ static double largest_defect(const step_map *map)
       const double *x = map->M + (size_t)i * 2 * (size_t)n, *y = map->M + (size_t)j * 2 * (size_t)n;
       long double form = j == i + n ? -1 : 0;
       for (int k = 0; k < n; k++) form += (long double)x[k] * (long double)y[n + k] - (long double)x[n + k] * (long double)y[k];
-      largest = fmax(largest, fabs((double)form));
+      if (!(fabs((double)form) <= largest)) largest = fabs((double)form); /* a NaN stays */
     }
   return largest;
 }
 
-static dvi_status difference_map(const step_map *map, double d, double *defect)
+static dvi_status measure(const step_map *map, double *defect)
 {
-  for (int j = 0; j < 2 * map->n; j++) DVI_TRY(difference_column(map, j, d));
+  double none = 0;
+  DVI_TRY(step_from(map, 0, &none)); /* where the step itself fails it has no derivative */
+  DVI_TRY(choose_scales(map));
+  for (int j = 0; j < 2 * map->n; j++) DVI_TRY(difference_column(map, j));
   *defect = largest_defect(map);
-  return DVI_OK;
-}
-
-/* The smallest defect over the difference steps. One that leads outside of the map's domain is left out, unless all do. */
-static dvi_status search(const step_map *map, double *defect)
-{
-  static const double d[] = {0x1p-6, 0x1p-7, 0x1p-5, 0x1p-8, 0x1p-4, 0x1p-9, 0x1p-10, 0x1p-12};
-  dvi_status last = DVI_OK;
-  double smallest = (double)INFINITY;
-  for (size_t i = 0; i < sizeof d / sizeof *d && smallest > defect_floor; i++) {
-    double found;
-    const dvi_status status = difference_map(map, d[i], &found);
-    if (status < 0) return status;
-    if (status == DVI_OK)
-      smallest = fmin(smallest, found);
-    else
-      last = status;
-  }
-  if (!(smallest < (double)INFINITY)) return last;
-  *defect = smallest;
   return DVI_OK;
 }
 
@@ -172,6 +256,7 @@ static void release(step_map *map, double *start)
   dvi__release(start);
   dvi__release(map->z);
   dvi__release(map->scale);
+  dvi__release(map->row);
   dvi__release(map->M);
 }
 
@@ -193,16 +278,16 @@ dvi_status dvi_symplecticity(dvi_integrator *integrator, double t, const double 
   const size_t size = 2 * (size_t)n;
   double *start = DVI_NEW(double, size);
   step_map map = {.n = n, .t = t, .h = h, .start = start, .z = DVI_NEW(double, size), .scale = DVI_NEW(double, size)};
+  map.row = DVI_NEW(double, (ORDERS + 1) * size);
   map.M = (double *)dvi__allocate(size, size * sizeof *map.M);
   dvi_status status = dvi_integrator_create(dvi_integrator_system(integrator), dvi_integrator_method(integrator), &map.probe);
-  if (status == DVI_OK && (!start || !map.z || !map.scale || !map.M))
+  if (status == DVI_OK && (!start || !map.z || !map.scale || !map.row || !map.M))
     status = dvi__fail(DVI_NO_MEMORY, "symplecticity: no memory for a derivative of %zu by %zu", size, size);
   for (int i = 0; status == DVI_OK && i < n; i++) {
     start[i] = q[i];
     start[n + i] = p[i];
   }
-  if (status == DVI_OK) status = choose_scales(&map);
-  if (status == DVI_OK) status = search(&map, defect);
+  if (status == DVI_OK) status = measure(&map, defect);
   release(&map, start);
   return status;
 }

@@ -1,30 +1,46 @@
 /* Checkpoints: everything that the next step depends on, in one file with a checksum.
  *
+ * Callbacks cannot be saved, but the system can be known again: by what it declares (a hash), and by the Lagrangian's value and forces at the
+ * saved state, which other parameters would change.
+ *
  * Layout, in the machine's own byte order (a mark tells a foreign one): the header, the specification, then numbers: the state and the one before it
  * with their carries, the method's memory. The checksum is FNV-1a over all that precedes it. */
 #define _POSIX_C_SOURCE 200809L /* fsync, fileno */
 #include <errno.h>
+#include <math.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
+#include "core/hash.h"
 #include "core/memory.h"
 #include "core/status.h"
 #include "method/integrator_struct.h"
 #include "num/finite.h"
 
+/* The Lagrangian at a state: its value, and one sum over its forces; the sizes of the summands tell rounding from difference. NaN if a
+ * callback fails there. */
+typedef struct portrait {
+  double value, value_size, force, force_size;
+} portrait;
+
 typedef struct header {
   char magic[8];
   uint32_t order_mark, version;
+  uint64_t declared; /* hash of the system's terms */
+  portrait lagrangian;
   int64_t n, memory_count, steps;
   double t, t_carry, last_t, last_t_carry, last_h;
   char specification[DVI__SPECIFICATION_SIZE];
 } header;
 
 static const char magic[8] = {'d', 'v', 'i', 's', 't', 'a', 't', 'e'};
-enum { ORDER_MARK = 0x01020304, VERSION = 1 };
+enum { ORDER_MARK = 0x01020304, VERSION = 2 };
+
+/* Another machine's mathematical functions differ by a few roundings; other parameters by more than this. */
+static const double same_number = 1e-9;
 
 static size_t file_size(const dvi_integrator *I)
 {
@@ -32,11 +48,33 @@ static size_t file_size(const dvi_integrator *I)
   return sizeof(header) + numbers * sizeof(double) + sizeof(uint64_t);
 }
 
-static uint64_t checksum(const unsigned char *bytes, size_t count)
+/* ---- the system ---- */
+
+static portrait portray(const dvi_integrator *I, double t, const double *now, const double *last, double last_h)
 {
-  uint64_t hash = UINT64_C(14695981039346656037);
-  for (size_t i = 0; i < count; i++) hash = (hash ^ bytes[i]) * UINT64_C(1099511628211);
-  return hash;
+  const int n = I->system->n;
+  const double *q = now, *p_now = now + n;
+  double *v = I->v, *forces = I->last_v;
+  portrait p = {0};
+  for (int i = 0; i < n; i++) v[i] = last_h != 0 ? (q[i] - last[i]) / last_h : last[n + i];
+  if (dvi__legendre_inverse(I->evaluator, t, q, p_now, v) != DVI_OK ||
+      dvi__lagrangian_value(I->evaluator, 1, &t, q, v, &p.value) != DVI_OK ||
+      dvi__lagrangian_gradient(I->evaluator, 1, &t, q, v, forces, NULL) != DVI_OK)
+    return (portrait){(double)NAN, (double)NAN, (double)NAN, (double)NAN};
+  p.value_size = fabs(p.value);
+  for (int i = 0; i < n; i++) {
+    p.value_size += fabs(p_now[i] * v[i]);
+    p.force += (1 + i % 7) * forces[i];
+    p.force_size += (1 + i % 7) * fabs(forces[i]);
+  }
+  return p;
+}
+
+/* What cannot be computed on one side does not speak against the other. */
+static int same_lagrangian(const portrait *a, const portrait *b)
+{
+  return !(fabs(a->value - b->value) > same_number * (a->value_size + b->value_size)) &&
+         !(fabs(a->force - b->force) > same_number * (a->force_size + b->force_size));
 }
 
 /* ---- save ---- */
@@ -46,6 +84,8 @@ static void pack(const dvi_integrator *I, unsigned char *file)
   const size_t n = (size_t)I->system->n, size = file_size(I) - sizeof(uint64_t);
   header head = {.order_mark = ORDER_MARK,
                  .version = VERSION,
+                 .declared = I->system->hash,
+                 .lagrangian = portray(I, I->now.t, I->now.q, I->last.q, I->last_h),
                  .n = I->system->n,
                  .memory_count = (int64_t)I->stepper.memory_count,
                  .steps = I->counters.steps,
@@ -62,7 +102,7 @@ static void pack(const dvi_integrator *I, unsigned char *file)
   memcpy(at, I->now.q, state);
   memcpy(at + state, I->last.q, state);
   memcpy(at + 2 * state, I->stepper.memory, I->stepper.memory_count * sizeof(double));
-  const uint64_t sum = checksum(file, size);
+  const uint64_t sum = dvi__hash(DVI__HASH_START, size, file);
   memcpy(file + size, &sum, sizeof sum);
 }
 
@@ -98,6 +138,20 @@ dvi_status dvi_integrator_save(const dvi_integrator *I, const char *path)
 
 /* ---- restore ---- */
 
+static dvi_status check_system(const dvi_integrator *I, const char *path, const unsigned char *file)
+{
+  const double *numbers = (const double *)(const void *)(file + sizeof(header));
+  header head;
+  memcpy(&head, file, sizeof head);
+  if (head.declared != I->system->hash)
+    return dvi__fail(DVI_BAD_FILE, "checkpoint %s: of a system that declares other terms, masses, patterns or names", path);
+  const portrait here = portray(I, head.t, numbers, numbers + 4 * (size_t)I->system->n, head.last_h);
+  if (same_lagrangian(&here, &head.lagrangian)) return DVI_OK;
+  return dvi__fail(DVI_BAD_FILE,
+                   "checkpoint %s: of another system or other parameters; at its state the Lagrangian was %.9g, here it is %.9g",
+                   path, head.lagrangian.value, here.value);
+}
+
 static dvi_status check(const dvi_integrator *I, const char *path, const unsigned char *file, size_t got)
 {
   header head;
@@ -116,9 +170,9 @@ static dvi_status check(const dvi_integrator *I, const char *path, const unsigne
   if (got != size)
     return dvi__fail(DVI_BAD_FILE, "checkpoint %s: cut short or too long, %zu bytes instead of %zu", path, got, size);
   memcpy(&sum, file + size - sizeof sum, sizeof sum);
-  if (sum != checksum(file, size - sizeof sum))
+  if (sum != dvi__hash(DVI__HASH_START, size - sizeof sum, file))
     return dvi__fail(DVI_BAD_FILE, "checkpoint %s: damaged (its checksum is wrong)", path);
-  return DVI_OK;
+  return check_system(I, path, file);
 }
 
 static void unpack(dvi_integrator *I, const unsigned char *file)

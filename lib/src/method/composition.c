@@ -83,10 +83,10 @@ static void destroy(dvi__stepper *self)
   dvi__release(self->own);
 }
 
-static void start(dvi__stepper *self)
+static void start(dvi__stepper *self, const double *v)
 {
   dvi__stepper *base = self->own;
-  base->method->start(base);
+  base->method->start(base, v);
 }
 
 static dvi_status step(dvi__stepper *self, dvi__state *state, double h)

@@ -17,7 +17,8 @@ const char *dvi__solver_choice(int index)
   return index >= 0 && index < 4 ? name[index] : NULL;
 }
 
-/* Memory: length of the last step (0: none), steps for which fixed point iteration is not tried again, the last step's unknowns. */
+/* Memory: length of the last step (0: none), steps for which fixed point iteration is not tried again, the last step's unknowns; before the
+ * first step, the start's velocity in their place. */
 enum { LAST_H, NEWTON_STEPS, LAST_Y };
 
 /* After fixed point iteration failed once, Newton's method takes over for this many steps. */
@@ -33,7 +34,7 @@ typedef struct element {
   double *Y;  /* the unknowns */
   double *dq, *dp;
   /* Shorter steps that build a guess. */
-  double *part_q, *part_p, *part_Y, *offset;
+  double *part_q, *part_p, *part_v, *part_Y, *offset;
 } element;
 
 /* ---- making it ---- */
@@ -73,9 +74,10 @@ static int allocate(dvi__stepper *self, element *own)
   own->dp = DVI_NEW(double, n);
   own->part_q = DVI_NEW(double, n);
   own->part_p = DVI_NEW(double, n);
+  own->part_v = DVI_NEW(double, n);
   own->part_Y = DVI_NEW(double, unknowns);
   own->offset = DVI_NEW(double, unknowns);
-  return self->memory && own->Y && own->dq && own->dp && own->part_q && own->part_p && own->part_Y && own->offset;
+  return self->memory && own->Y && own->dq && own->dp && own->part_q && own->part_p && own->part_v && own->part_Y && own->offset;
 }
 
 static int symmetric_rule(dvi_rule rule)
@@ -117,15 +119,17 @@ void dvi__element_destroy(dvi__stepper *self)
   dvi__release(own->dp);
   dvi__release(own->part_q);
   dvi__release(own->part_p);
+  dvi__release(own->part_v);
   dvi__release(own->part_Y);
   dvi__release(own->offset);
   dvi__release(own);
 }
 
-void dvi__element_start(dvi__stepper *self)
+void dvi__element_start(dvi__stepper *self, const double *v)
 {
   self->memory[LAST_H] = 0;
   self->memory[NEWTON_STEPS] = 0;
+  memcpy(self->memory + LAST_Y, v, (size_t)self->system->n * sizeof(double));
 }
 
 /* ---- guesses ---- */
@@ -134,8 +138,8 @@ void dvi__element_start(dvi__stepper *self)
 typedef struct place {
   double t, h;
   const double *q, *p;
-  double last_h; /* 0: nothing is known */
-  const double *last_Y;
+  double last_h;        /* 0: there was none */
+  const double *last_Y; /* its unknowns; without a step before, a guess of the velocity [n] */
 } place;
 
 static double largest(int n, const double *x)
@@ -153,7 +157,7 @@ static dvi_status guess(dvi__stepper *self, const place *at, double *Y)
     dvi__action_continue(own->action, at->h / at->last_h, at->last_Y, Y);
     return DVI_OK;
   }
-  memset(own->dq, 0, (size_t)self->system->n * sizeof(double));
+  memcpy(own->dq, at->last_Y, (size_t)self->system->n * sizeof(double));
   DVI_TRY(dvi__legendre_inverse(dvi__action_evaluator(own->action), at->t, at->q, at->p, own->dq));
   for (int i = 0; i < self->system->n; i++) own->dq[i] *= at->h;
   dvi__action_straight(own->action, own->dq, Y);
@@ -204,7 +208,11 @@ static dvi_status guess_by_parts(dvi__stepper *self, const place *whole, int par
 {
   element *own = self->own;
   const size_t bytes = (size_t)self->system->n * sizeof(double);
-  place at = {whole->t, whole->h / parts, own->part_q, own->part_p, 0, Y};
+  place at = {whole->t, whole->h / parts, own->part_q, own->part_p, 0, own->part_v};
+  if (whole->last_h != 0)
+    dvi__action_path(own->action, whole->last_Y, whole->last_h, 1.0, NULL, own->part_v);
+  else
+    memcpy(own->part_v, whole->last_Y, bytes);
   memcpy(own->part_q, whole->q, bytes);
   memcpy(own->part_p, whole->p, bytes);
   for (int part = 0; part < parts; part++) {
@@ -215,6 +223,7 @@ static dvi_status guess_by_parts(dvi__stepper *self, const place *whole, int par
     memcpy(Y, own->part_Y, (size_t)dvi__action_unknowns(own->action) * sizeof(double));
     at.t += at.h;
     at.last_h = at.h;
+    at.last_Y = Y;
   }
   dvi__action_fit(own->action, own->offset, Y);
   dvi__action_place(own->action, whole->t, whole->h, whole->q, whole->p);

@@ -18,7 +18,7 @@ dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *spac
 
 /* The other operations of dvi__method, and what goes into its initialiser for them. */
 void dvi__element_destroy(dvi__stepper *self);
-void dvi__element_start(dvi__stepper *self);
+void dvi__element_start(dvi__stepper *self, const double *v);
 dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h);
 void dvi__element_path(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v);
 void dvi__element_explain(const dvi__stepper *self, dvi__text *text);

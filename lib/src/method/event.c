@@ -51,7 +51,7 @@ dvi_status dvi__watch_create(dvi_integrator *I, const dvi_run_options *options, 
   *w = (dvi__watch){0};
   if (options->event_count == 0) return DVI_OK;
   *w = (dvi__watch){DVI_NEW(double, n), DVI_NEW(double, n), DVI_NEW(double, options->event_count),
-                    DVI_NEW(double, options->event_count)};
+                    DVI_NEW(double, (size_t)options->event_count *PARTS)};
   if (!w->q || !w->v || !w->before || !w->zero)
     status = dvi__fail(DVI_NO_MEMORY, "run: no memory for %d events", options->event_count);
   for (int k = 0; k < options->event_count && status == DVI_OK; k++) status = first_value(w, I, &options->events[k], &w->before[k]);
@@ -129,21 +129,29 @@ static dvi_status report_event(dvi__watch *w, dvi_integrator *I, const dvi_event
   return DVI_OK;
 }
 
-/* Look at all events between a and b: each has at most one zero there. */
-static dvi_status find_zeros(dvi__watch *w, dvi_integrator *I, const dvi_run_options *options, double a, double b)
+/* Look at one event between a and b: it has at most one zero there. */
+static dvi_status find_zero(dvi__watch *w, dvi_integrator *I, const dvi_event *event, double a, double b, double *before,
+                            double *zero)
 {
-  for (int k = 0; k < options->event_count; k++) {
-    const dvi_event *event = &options->events[k];
-    bracket at = {a, b, w->before[k], 0};
-    w->zero[k] = (double)NAN;
-    DVI_TRY(evaluate(w, I, event, b, &at.gb));
-    w->before[k] = at.gb;
-    if (crosses(event, &at)) DVI_TRY(locate(w, I, event, at, &w->zero[k]));
-  }
+  bracket at = {a, b, *before, 0};
+  *zero = (double)NAN;
+  DVI_TRY(evaluate(w, I, event, b, &at.gb));
+  *before = at.gb;
+  return crosses(event, &at) ? locate(w, I, event, at, zero) : DVI_OK;
+}
+
+dvi_status dvi__watch_find(dvi__watch *w, dvi_integrator *I, const dvi_run_options *options, double from)
+{
+  const double to = dvi_integrator_time(I), width = (to - from) / (double)PARTS;
+  for (int k = 0; k < options->event_count; k++)
+    for (int part = 0; part < PARTS; part++) {
+      const double a = from + part * width, b = part == PARTS - 1 ? to : from + (part + 1) * width;
+      DVI_TRY(find_zero(w, I, &options->events[k], a, b, &w->before[k], &w->zero[k * PARTS + part]));
+    }
   return DVI_OK;
 }
 
-/* The event whose zero the run meets first, of two at one time the first of the list; -1 if there is none. */
+/* The zero that the run meets first, of two at one time the first of the list; -1 if there is none. */
 static int earliest(const dvi__watch *w, int count, int forward)
 {
   int first = -1;
@@ -154,20 +162,13 @@ static int earliest(const dvi__watch *w, int count, int forward)
   return first;
 }
 
-dvi_status dvi__watch_step(dvi__watch *w, dvi_integrator *I, const dvi_run_options *options, double from, dvi_run_report *report,
-                           int *stop)
+dvi_status dvi__watch_report(dvi__watch *w, dvi_integrator *I, const dvi_run_options *options, dvi_run_report *report, int *stop)
 {
-  const double to = dvi_integrator_time(I);
-  const int count = options->event_count;
-  for (int part = 1; part <= PARTS && count > 0; part++) {
-    const double width = (to - from) / (double)PARTS, a = from + (part - 1) * width, b = part == PARTS ? to : from + part * width;
-    DVI_TRY(find_zeros(w, I, options, a, b));
-    for (int k = earliest(w, count, to > from); k >= 0; k = earliest(w, count, to > from)) {
-      const double zero = w->zero[k];
-      w->zero[k] = (double)NAN;
-      DVI_TRY(report_event(w, I, &options->events[k], k, zero, report, stop));
-      if (*stop) return DVI_OK;
-    }
+  const int count = options->event_count * PARTS, forward = options->h > 0;
+  for (int k = earliest(w, count, forward); k >= 0 && !*stop; k = earliest(w, count, forward)) {
+    const double zero = w->zero[k];
+    w->zero[k] = (double)NAN;
+    DVI_TRY(report_event(w, I, &options->events[k / PARTS], k / PARTS, zero, report, stop));
   }
   return DVI_OK;
 }

@@ -27,7 +27,7 @@ static dvi_status allocate(dvi_integrator *I)
   lay_out(&I->next, &at, n);
   I->v = at;
   I->last_v = at + n;
-  return dvi__evaluator_create(I->system, 1, &I->counters, &I->evaluator);
+  return dvi__evaluator_create(I->system, 1, DVI__GRADIENTS, &I->counters, &I->evaluator);
 }
 
 dvi_status dvi_integrator_create(const dvi_system *system, const char *method, dvi_integrator **integrator)
@@ -61,36 +61,62 @@ void dvi_integrator_destroy(dvi_integrator **integrator)
 
 /* ---- start ---- */
 
-static dvi_status check_start(dvi_integrator *I, double t, const double *q, const double *p)
+static dvi_status check_start(const dvi_integrator *I, double t, const double *q, const double *second, char name)
 {
-  const size_t n = (size_t)I->system->n;
+  if (!isfinite(t)) return dvi__fail(DVI_NOT_FINITE, "the time is %g", t);
+  for (int i = 0; i < I->system->n; i++)
+    if (!isfinite(q[i]) || !isfinite(second[i]))
+      return dvi__fail(DVI_NOT_FINITE, "coordinate %d is q = %g, %c = %g", i, q[i], name, second[i]);
+  return DVI_OK;
+}
+
+/* The arguments may be the integrator's own. Until all is known to be good only `next` is written. */
+static dvi_status start(dvi_integrator *I, double t, const double *q, const double *v, const double *p)
+{
+  const size_t bytes = (size_t)I->system->n * sizeof(double);
   double L;
-  if (!isfinite(t)) return dvi__fail(DVI_NOT_FINITE, "start: the time is %g", t);
-  for (size_t i = 0; i < n; i++)
-    if (!isfinite(q[i]) || !isfinite(p[i]))
-      return dvi__fail(DVI_NOT_FINITE, "start: coordinate %zu is q = %g, p = %g", i, q[i], p[i]);
-  memset(I->next.q_carry, 0, n * sizeof(double));
-  DVI_TRY(dvi__legendre_inverse(I->evaluator, t, q, p, I->next.q_carry)); /* a free array takes the velocity */
-  DVI_TRY(dvi__lagrangian_value(I->evaluator, 1, &t, q, I->next.q_carry, &L));
-  return dvi__lagrangian_gradient(I->evaluator, 1, &t, q, I->next.q_carry, I->next.p_carry, NULL);
+  DVI_TRY(dvi__lagrangian_value(I->evaluator, 1, &t, q, v, &L));
+  DVI_TRY(dvi__lagrangian_gradient(I->evaluator, 1, &t, q, v, I->next.p_carry, NULL));
+  memmove(I->now.q, q, bytes);
+  memmove(I->now.p, p, bytes);
+  memset(I->now.q_carry, 0, bytes);
+  memset(I->now.p_carry, 0, bytes);
+  memcpy(I->last.p, v, bytes);
+  I->now.t = t;
+  I->now.t_carry = 0;
+  I->last_h = 0;
+  I->started = 1;
+  I->stepper.method->start(&I->stepper, v);
+  return DVI_OK;
+}
+
+static dvi_status verdict(const dvi_integrator *I, double t, dvi_status status)
+{
+  return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "%s: cannot start at t = %.6g", I->stepper.method->name, t);
 }
 
 dvi_status dvi_integrator_start(dvi_integrator *I, double t, const double *q, const double *p)
 {
   if (I == NULL || q == NULL || p == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "start: an argument is NULL");
-  const size_t bytes = (size_t)I->system->n * sizeof(double);
-  const dvi_status status = check_start(I, t, q, p);
-  if (status != DVI_OK) return dvi__fail_in(status, "%s: cannot start at t = %.6g", I->stepper.method->name, t);
-  memmove(I->now.q, q, bytes);
-  memmove(I->now.p, p, bytes);
-  memset(I->now.q_carry, 0, bytes);
-  memset(I->now.p_carry, 0, bytes);
-  I->now.t = t;
-  I->now.t_carry = 0;
-  I->last_h = 0;
-  I->started = 1;
-  I->stepper.method->start(&I->stepper);
-  return DVI_OK;
+  double *v = I->next.q_carry;
+  memset(v, 0, (size_t)I->system->n * sizeof(double));
+  dvi_status status = check_start(I, t, q, p, 'p');
+  if (status == DVI_OK) status = dvi__legendre_inverse(I->evaluator, t, q, p, v);
+  if (status == DVI_OK) status = start(I, t, q, v, p);
+  return verdict(I, t, status);
+}
+
+dvi_status dvi_integrator_start_velocity(dvi_integrator *I, double t, const double *q, const double *v)
+{
+  if (I == NULL || q == NULL || v == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "start: an argument is NULL");
+  double *p = I->next.p;
+  dvi_status status = check_start(I, t, q, v, 'v');
+  if (status == DVI_OK) status = dvi__lagrangian_gradient(I->evaluator, 1, &t, q, v, NULL, p);
+  if (status == DVI_OK && dvi__first_not_finite((size_t)I->system->n, p) >= 0)
+    status = dvi__fail(DVI_NOT_FINITE, "the momentum is not finite");
+  if (status == DVI_OK) status = dvi__legendre_regular(I->evaluator, t, q, v);
+  if (status == DVI_OK) status = start(I, t, q, v, p);
+  return verdict(I, t, status);
 }
 
 /* ---- step ---- */
@@ -115,8 +141,23 @@ static void accept(dvi_integrator *I, double h)
   I->last = I->now;
   I->now = I->next;
   I->next = oldest;
+  I->last_h_before = I->last_h;
   I->last_h = h;
   I->counters.steps++;
+}
+
+/* `next` still holds what `last` was. */
+dvi_status dvi__integrator_undo(dvi_integrator *I, dvi_status status)
+{
+  const dvi__state oldest = I->next;
+  I->next = I->now;
+  I->now = I->last;
+  I->last = oldest;
+  I->last_h = I->last_h_before;
+  I->counters.steps--;
+  memcpy(I->stepper.memory, I->memory_before, I->stepper.memory_count * sizeof(double));
+  I->counters.failed_steps++;
+  return dvi__fail_in(status, "the step from t = %.9g is taken back", I->now.t);
 }
 
 static dvi_status refuse(dvi_integrator *I, double h, dvi_status status)
@@ -134,6 +175,7 @@ dvi_status dvi_integrator_step(dvi_integrator *I, double h)
   if (!isfinite(h) || h == 0 || I->now.t + h == I->now.t)
     return dvi__fail(DVI_BAD_ARGUMENT, "step: h = %g does not move the time from t = %.17g; a finite step other than 0 is needed",
                      h, I->now.t);
+  if (!isnormal(h)) return dvi__fail(DVI_BAD_ARGUMENT, "step: h = %g is so small that 1/h cannot be computed", h);
   copy_state((size_t)I->system->n, &I->now, &I->next);
   memcpy(I->memory_before, I->stepper.memory, I->stepper.memory_count * sizeof(double));
   const long before = dvi__allocation_count();
@@ -149,44 +191,44 @@ dvi_status dvi_integrator_step(dvi_integrator *I, double h)
 
 double dvi_integrator_time(const dvi_integrator *integrator)
 {
-  return integrator->now.t;
+  return integrator != NULL ? integrator->now.t : (double)NAN;
 }
 
 const double *dvi_integrator_q(const dvi_integrator *integrator)
 {
-  return integrator->now.q;
+  return integrator != NULL ? integrator->now.q : NULL;
 }
 
 const double *dvi_integrator_p(const dvi_integrator *integrator)
 {
-  return integrator->now.p;
+  return integrator != NULL ? integrator->now.p : NULL;
 }
 
 const dvi_system *dvi_integrator_system(const dvi_integrator *integrator)
 {
-  return integrator->system;
+  return integrator != NULL ? integrator->system : NULL;
 }
 
 int dvi_integrator_order(const dvi_integrator *integrator)
 {
-  return integrator->stepper.order;
+  return integrator != NULL ? integrator->stepper.order : 0;
 }
 
 const char *dvi_integrator_method(const dvi_integrator *integrator)
 {
-  return integrator->stepper.specification;
+  return integrator != NULL ? integrator->stepper.specification : NULL;
 }
 
 void dvi_integrator_counters(const dvi_integrator *integrator, dvi_counters *counters)
 {
-  *counters = integrator->counters;
+  if (counters != NULL) *counters = integrator != NULL ? integrator->counters : (dvi_counters){0};
 }
 
-/* The velocity of one of the two states. The guess, for general Lagrangians, is the last step's mean velocity: it depends on nothing that a
- * checkpoint does not hold, so that a restored run gives the same digits. */
+/* The velocity of one of the two states. The guess, for general Lagrangians, is the last step's mean velocity, or the start's: it depends on
+ * nothing that a checkpoint does not hold, so that a restored run gives the same digits. */
 static dvi_status velocity(dvi_integrator *I, const dvi__state *state, double *v)
 {
-  for (int i = 0; i < I->system->n; i++) v[i] = I->last_h != 0 ? (I->now.q[i] - I->last.q[i]) / I->last_h : 0.0;
+  for (int i = 0; i < I->system->n; i++) v[i] = I->last_h != 0 ? (I->now.q[i] - I->last.q[i]) / I->last_h : I->last.p[i];
   return dvi__legendre_inverse(I->evaluator, state->t, state->q, state->p, v);
 }
 
@@ -202,6 +244,7 @@ size_t dvi_integrator_explain(const dvi_integrator *integrator, char *text, size
 {
   dvi__text out = {text, size, 0};
   if (size > 0) text[0] = 0;
+  if (integrator == NULL) return 0;
   dvi__text_add(&out, "method: %s, order %d%s\n", integrator->stepper.specification, integrator->stepper.order,
                 integrator->stepper.symmetric ? ", symmetric" : "");
   integrator->stepper.method->explain(&integrator->stepper, &out);

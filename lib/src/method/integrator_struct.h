@@ -8,13 +8,18 @@ struct dvi_integrator {
   dvi__stepper stepper;
   dvi_counters counters;
   dvi__evaluator *evaluator; /* for diagnostics at one point */
-  /* The present state, the one before the last step, and the one that a step works on: a step that fails spoils only `next`. */
+  /* The present state, the one before the last step, and the one that a step works on: a step that fails spoils only `next`. Before the first
+   * step `last.p` holds the start's velocity. */
   dvi__state now, last, next;
   double *numbers;       /* the memory of all three */
   double *memory_before; /* the stepper's memory before a step */
   double *v, *last_v;    /* [n] */
   int started;
-  double last_h; /* 0: no step was taken yet */
+  double last_h;        /* 0: no step was taken yet */
+  double last_h_before; /* before the last step */
 };
+
+/* Take the last step back, once: it succeeded, but what followed did not. The status is passed on, the sentence named. */
+dvi_status dvi__integrator_undo(dvi_integrator *integrator, dvi_status status);
 
 #endif

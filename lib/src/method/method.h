@@ -62,8 +62,8 @@ struct dvi__method {
   /* Set order, symmetric, memory, own. On failure destroy is called. */
   dvi_status (*create)(dvi__stepper *self);
   void (*destroy)(dvi__stepper *self);
-  /* Forget earlier steps: the state is new. */
-  void (*start)(dvi__stepper *self);
+  /* Forget earlier steps: the state is new, and its velocity is v [n]. */
+  void (*start)(dvi__stepper *self, const double *v);
   /* Advance the state. On failure the driver throws state and memory away. */
   dvi_status (*step)(dvi__stepper *self, dvi__state *state, double h);
   /* q [n] and v [n] at tau in [0,1] of the last step, which started at q0 [n] with length h. NULL: Hermite's cubic. */

@@ -16,8 +16,14 @@ static dvi_status check_events(const dvi_run_options *options)
   if (options->event_count < 0) return dvi__fail(DVI_BAD_ARGUMENT, "run: %d events; 0 or more are possible", options->event_count);
   if (options->event_count > 0 && options->events == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "run: %d events declared, but their list is NULL", options->event_count);
-  for (int k = 0; k < options->event_count; k++)
-    if (options->events[k].value == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "run: event %d has no value callback", k);
+  if (options->event_count == 0 && options->events != NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "run: a list of events is given, but their count is 0");
+  for (int k = 0; k < options->event_count; k++) {
+    const dvi_event *event = &options->events[k];
+    if (event->value == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "run: event %d has no value callback", k);
+    if (event->direction < -1 || event->direction > 1)
+      return dvi__fail(DVI_BAD_ARGUMENT, "run: event %d has direction %d; -1, 0 or 1 are possible", k, event->direction);
+  }
   return DVI_OK;
 }
 
@@ -41,6 +47,8 @@ static dvi_status check(const dvi_integrator *I, const dvi_run_options *options)
   if (options->every < 0 || options->checkpoint_every < 0)
     return dvi__fail(DVI_BAD_ARGUMENT, "run: every = %ld, checkpoint_every = %ld; 0 or more are possible", options->every,
                      options->checkpoint_every);
+  if (options->checkpoint_every > 0 && options->checkpoint == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "run: checkpoint_every = %ld, but no checkpoint file is named", options->checkpoint_every);
   return check_events(options);
 }
 
@@ -58,10 +66,10 @@ static dvi_status observe(dvi_integrator *I, const dvi_run_options *options, dvi
 }
 
 /* The next step's length: h, or what is left of the way, or 0 at its end. An h that divides the way but for the digits that it was given
- * with is stretched in the last step. */
+ * with is stretched in the last step. The clock's carry matters where the time is large: rounded it may miss much of a step. */
 static double next_step(const dvi_integrator *I, const dvi_run_options *options)
 {
-  const double left = options->t_end - dvi_integrator_time(I), h = options->h, missed = clock_error(I, options);
+  const double left = (options->t_end - I->now.t) + I->now.t_carry, h = options->h, missed = clock_error(I, options);
   if (fabs(left) <= missed) return 0;
   if (fabs(left - h) <= missed) return h;
   return left / h <= 1 + stretch ? left : h;
@@ -73,8 +81,10 @@ static dvi_status one_step(dvi_integrator *I, const dvi_run_options *options, do
   const double from = dvi_integrator_time(I);
   const long every = options->every > 0 ? options->every : 1;
   DVI_TRY(dvi_integrator_step(I, h));
+  const dvi_status found = dvi__watch_find(watch, I, options, from);
+  if (found != DVI_OK) return dvi__integrator_undo(I, found);
   report->steps++;
-  DVI_TRY(dvi__watch_step(watch, I, options, from, report, stop));
+  DVI_TRY(dvi__watch_report(watch, I, options, report, stop));
   if (options->cancel != NULL && *options->cancel && !*stop) {
     report->end = DVI_RUN_CANCELLED;
     *stop = 1;
@@ -94,14 +104,14 @@ static dvi_status loop(dvi_integrator *I, const dvi_run_options *options, dvi__w
   return DVI_OK;
 }
 
-/* The last good state is saved even if the run failed; the run's failure and its sentence are the ones that count. */
+/* The last good state is saved even if the run failed; the run's failure is the one that counts. */
 static dvi_status save_at_end(const dvi_integrator *I, const char *path, dvi_status status)
 {
   char sentence[1024];
   (void)snprintf(sentence, sizeof sentence, "%s", dvi_last_error());
   const dvi_status saved = dvi_integrator_save(I, path);
   if (status == DVI_OK) return saved;
-  return saved == DVI_OK ? status : dvi__fail(status, "%s", sentence);
+  return saved == DVI_OK ? dvi__fail(status, "%s", sentence) : dvi__fail_in(status, "%s; and then", sentence);
 }
 
 dvi_status dvi_run(dvi_integrator *I, const dvi_run_options *options, dvi_run_report *report)

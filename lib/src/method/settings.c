@@ -43,12 +43,19 @@ static dvi_status unknown_key(const dvi__method *method, piece name)
                    text.length > 0 ? "it takes " : "it takes none", known);
 }
 
+/* One spelling of each number: no sign, no blank, no leading zero, all of which strtol would take. */
+static int plain_digits(piece value)
+{
+  const int digits = (int)strspn(value.text, "0123456789");
+  return value.length > 0 && digits == value.length && (value.text[0] != '0' || value.length == 1);
+}
+
 static dvi_status parse_number(const dvi__method *method, const dvi__key *key, piece value, int *number)
 {
-  char *end;
-  const long parsed = strtol(value.text, &end, 10);
-  if (value.length == 0 || end != value.text + value.length)
-    return dvi__fail(DVI_BAD_OPTION, "%s: %s=%.*s is not a whole number", method->name, key->name, value.length, value.text);
+  if (!plain_digits(value))
+    return dvi__fail(DVI_BAD_OPTION, "%s: %s=%.*s is not a whole number in plain digits", method->name, key->name, value.length,
+                     value.text);
+  const long parsed = strtol(value.text, NULL, 10); /* LONG_MAX if it is beyond */
   if (parsed < key->least || parsed > key->most)
     return dvi__fail(DVI_BAD_OPTION, "%s: %s=%.*s; %d to %d are possible", method->name, key->name, value.length, value.text,
                      key->least, key->most);

@@ -40,7 +40,6 @@ dvi_status dvi__stepper_create(const dvi_system *system, const char *specificati
     return status;
   }
   dvi__spell_out(stepper->method, &stepper->settings, &(dvi__text){stepper->specification, sizeof stepper->specification, 0});
-  stepper->method->start(stepper);
   return DVI_OK;
 }
 

@@ -28,7 +28,7 @@ static dvi_status create(dvi__stepper *self)
   if (own == NULL || self->memory == NULL) return dvi__fail(DVI_NO_MEMORY, "verlet: no memory");
   own->change = DVI_NEW(double, self->system->n);
   if (own->change == NULL) return dvi__fail(DVI_NO_MEMORY, "verlet: no memory");
-  return dvi__evaluator_create(self->system, 1, self->counters, &own->evaluator);
+  return dvi__evaluator_create(self->system, 1, DVI__GRADIENTS, self->counters, &own->evaluator);
 }
 
 static void destroy(dvi__stepper *self)
@@ -41,8 +41,9 @@ static void destroy(dvi__stepper *self)
   dvi__release(own);
 }
 
-static void start(dvi__stepper *self)
+static void start(dvi__stepper *self, const double *v)
 {
+  (void)v;
   self->memory[FORCES_KNOWN] = 0;
 }
 

@@ -129,8 +129,8 @@ static dvi_status reserve(dvi__reference_run *run, const double *q, const double
 
 static dvi_status prepare(dvi__reference_run *run, const double *q, const double *p)
 {
-  DVI_TRY(reserve(run, q, p));
-  dvi_status status = dvi__evaluator_create(run->system, 1, &run->counters, &run->evaluator);
+  dvi_status status = dvi__evaluator_create(run->system, 1, DVI__HESSIANS, &run->counters, &run->evaluator);
+  if (status == DVI_OK) status = reserve(run, q, p);
   if (status == DVI_OK) status = dvi__legendre_inverse(run->evaluator, run->t, run->q, run->p, run->v);
   if (status == DVI_OK) status = dvi__lagrangian_gradient(run->evaluator, 1, &run->t, run->q, run->v, run->force, NULL);
   if (status == DVI_OK) return DVI_OK;

@@ -224,7 +224,8 @@ static int longest_pattern(const dvi_system *system)
 
 static dvi_status allocate(check *c, const dvi_system *system)
 {
-  DVI_TRY(dvi__scratch_create(system, 1, &c->scratch));
+  DVI_TRY(dvi__system_prepare_hessian(system));
+  DVI_TRY(dvi__scratch_create(system, 1, 1, &c->scratch));
   int complete = dvi__differences_allocate((size_t)c->n, &c->differences);
   for (int i = 0; i < 2; i++) {
     c->gradient[i] = DVI_NEW(double, c->n);

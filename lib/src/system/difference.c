@@ -30,22 +30,60 @@ static void choose_steps(int n, int count, const double *x, double relative, dou
   }
 }
 
+/* Both estimates of a row of the gradient at all points, from the same six evaluations at each: 6th order to d->plus_v, 4th to d->minus_v. */
+static dvi_status difference_row(dvi__batch_value value, const void *function, dvi__differences *d, size_t row, int count,
+                                 const double *x)
+{
+  static const double fourth_weight[3] = {8.0 / 12.0, -1.0 / 12.0, 0};
+  const size_t points = (size_t)count;
+  double *sixth = d->plus_v, *fourth = d->minus_v;
+  for (size_t k = 0; k < points; k++) sixth[k] = fourth[k] = 0;
+  for (int m = 1; m <= 3; m++) {
+    for (size_t k = 0; k < points; k++) d->moved[row + k] = x[row + k] + m * d->step[row + k];
+    DVI_TRY(value(function, count, d->moved, d->plus));
+    for (size_t k = 0; k < points; k++) d->moved[row + k] = x[row + k] - m * d->step[row + k];
+    DVI_TRY(value(function, count, d->moved, d->minus));
+    d->points += 2L * count;
+    for (size_t k = 0; k < points; k++) {
+      const double quotient = (d->plus[k] - d->minus[k]) / d->step[row + k];
+      sixth[k] += weight[m - 1] * quotient;
+      fourth[k] += fourth_weight[m - 1] * quotient;
+    }
+  }
+  memcpy(d->moved + row, x + row, points * sizeof(double));
+  return DVI_OK;
+}
+
+/* Where the two estimates differ by more than this, a singularity is so near that the better one errs by more than 1e-11 (for a pole at R the
+ * errors are about 4 (step/R)^4 and 36 (step/R)^6), unless roundoff explains it. */
+static const double estimates_agree = 1e-8;
+
+/* Shorten the steps of the points at which they are too long; how many there are. */
+static int shorten_steps(dvi__differences *d, size_t row, int count)
+{
+  int shortened = 0;
+  for (int k = 0; k < count; k++) {
+    double *step = d->step + row + k;
+    const double noise = 16 * DBL_EPSILON * fmax(fabs(d->plus[k]), fabs(d->minus[k])) / *step;
+    if (fabs(d->plus_v[k] - d->minus_v[k]) <= estimates_agree * fabs(d->plus_v[k]) + noise) continue;
+    *step *= 0.25;
+    shortened++;
+  }
+  return shortened;
+}
+
 dvi_status dvi__difference_gradient(dvi__batch_value value, const void *function, dvi__differences *d, int n, int count,
                                     const double *x, double *gradient)
 {
+  enum { MOST_TRIES = 4 };
   const size_t points = (size_t)count;
   choose_steps(n, count, x, sixth_order_step(), d->step);
   memcpy(d->moved, x, (size_t)n * points * sizeof(double));
-  memset(gradient, 0, (size_t)n * points * sizeof(double));
   for (size_t row = 0; row < (size_t)n * points; row += points) {
-    for (int m = 1; m <= 3; m++) {
-      for (size_t k = row; k < row + points; k++) d->moved[k] = x[k] + m * d->step[k];
-      DVI_TRY(value(function, count, d->moved, d->plus));
-      for (size_t k = row; k < row + points; k++) d->moved[k] = x[k] - m * d->step[k];
-      DVI_TRY(value(function, count, d->moved, d->minus));
-      for (size_t k = 0; k < points; k++) gradient[row + k] += weight[m - 1] * ((d->plus[k] - d->minus[k]) / d->step[row + k]);
-    }
-    memcpy(d->moved + row, x + row, points * sizeof(double));
+    DVI_TRY(difference_row(value, function, d, row, count, x));
+    for (int tries = 1; tries < MOST_TRIES && shorten_steps(d, row, count) > 0; tries++)
+      DVI_TRY(difference_row(value, function, d, row, count, x));
+    memcpy(gradient + row, d->plus_v, points * sizeof(double));
   }
   return DVI_OK;
 }
@@ -83,6 +121,7 @@ dvi_status dvi__difference_hessian(dvi__batch_gradient gradient, const void *fun
     DVI_TRY(gradient(function, count, d->moved, d->plus, d->plus_v));
     move_group(d, groups, g, n, count, -1, x);
     DVI_TRY(gradient(function, count, d->moved, d->minus, d->minus_v));
+    d->points += 2L * count;
     if (first != NULL) fill_columns(first, groups, g, count, d->plus, d->minus, d->step, first_values);
     if (second != NULL) fill_columns(second, groups, g, count, d->plus_v, d->minus_v, d->step, second_values);
   }
@@ -107,6 +146,7 @@ dvi_status dvi__difference_column(dvi__batch_gradient gradient, const void *func
     DVI_TRY(gradient(function, 1, d->moved, d->plus, d->plus_v));
     d->moved[j] = x[j] - m * d->step[j];
     DVI_TRY(gradient(function, 1, d->moved, d->minus, d->minus_v));
+    d->points += 2;
     add_difference(n, weight[m - 1] / d->step[j], d->plus, d->minus, first);
     add_difference(n, weight[m - 1] / d->step[j], d->plus_v, d->minus_v, second);
   }

@@ -14,22 +14,18 @@ static int allocate_general(dvi__evaluator *e)
 {
   const dvi_system *system = e->system;
   e->unwanted = DVI_NEW(double, numbers(e, e->capacity));
-  e->hessian[0] = DVI_NEW(double, dvi__pattern_entries(&system->qq));
+  e->velocity_search = DVI_NEW(double, 6 * numbers(e, 1));
+  e->hessian[0] = DVI_NEW(double, dvi__pattern_entries(&system->lagrangian->qq));
   e->hessian[1] = DVI_NEW(double, dvi__pattern_entries(&system->qv));
   e->hessian[2] = DVI_NEW(double, dvi__pattern_entries(&system->vv));
-  return e->unwanted && e->hessian[0] && e->hessian[1] && e->hessian[2];
+  return e->unwanted && e->velocity_search && e->hessian[0] && e->hessian[1] && e->hessian[2];
 }
 
-static dvi_status allocate(dvi__evaluator *e)
+static dvi_status allocate(dvi__evaluator *e, int hessians)
 {
   const dvi_system *system = e->system;
-  size_t longest = (size_t)system->n;
-  for (int k = 0; k < system->potential_count; k++) {
-    const size_t entries = (size_t)dvi__pattern_entries(&system->potentials[k].qq);
-    longest = entries > longest ? entries : longest;
-  }
-  DVI_TRY(dvi__scratch_create(system, e->capacity, &e->scratch));
-  e->term = DVI_NEW(double, longest *(size_t)e->capacity);
+  DVI_TRY(dvi__scratch_create(system, e->capacity, hessians, &e->scratch));
+  e->term = DVI_NEW(double, (size_t)dvi__longest_hessian(system, hessians) * (size_t)e->capacity);
   for (int i = 0; i < 3; i++) e->point[i] = DVI_NEW(double, system->n);
   if (e->term && e->point[0] && e->point[1] && e->point[2] && (system->lagrangian == NULL || allocate_general(e))) return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "evaluator: no memory for %d points in %d dimensions", e->capacity, system->n);
@@ -43,15 +39,18 @@ static dvi_status prepare_velocity(dvi__evaluator *e)
   return system->mass_values != NULL ? dvi__linear_factor(e->velocity, system->mass_values) : DVI_OK;
 }
 
-dvi_status dvi__evaluator_create(const dvi_system *system, int capacity, dvi_counters *counters, dvi__evaluator **evaluator)
+dvi_status dvi__evaluator_create(const dvi_system *system, int capacity, dvi__derivatives most, dvi_counters *counters,
+                                 dvi__evaluator **evaluator)
 {
+  const int hessians = most == DVI__HESSIANS;
   *evaluator = NULL;
+  if (hessians) DVI_TRY(dvi__system_prepare_hessian(system));
   dvi__evaluator *e = DVI_NEW(dvi__evaluator, 1);
   if (e == NULL) return dvi__fail(DVI_NO_MEMORY, "evaluator: no memory");
   e->system = system;
   e->capacity = capacity;
   e->counters = counters != NULL ? counters : &e->own;
-  dvi_status status = allocate(e);
+  dvi_status status = allocate(e, hessians);
   if (status == DVI_OK) status = prepare_velocity(e);
   if (status != DVI_OK) dvi__evaluator_destroy(&e);
   *evaluator = e;
@@ -67,6 +66,7 @@ void dvi__evaluator_destroy(dvi__evaluator **evaluator)
   dvi__release(e->term);
   for (int i = 0; i < 3; i++) dvi__release(e->point[i]);
   dvi__release(e->unwanted);
+  dvi__release(e->velocity_search);
   for (int i = 0; i < 3; i++) dvi__release(e->hessian[i]);
   dvi__release(e);
   *evaluator = NULL;
@@ -103,6 +103,14 @@ void dvi__mass_solve(dvi__evaluator *e, int count, const double *y, double *x)
     dvi__linear_solve(e->velocity, e->point[0]);
     for (size_t i = 0; i < (size_t)s->n; i++) x[i * points + k] = e->point[0][i];
   }
+}
+
+/* Move the points that differences asked for to the counters. */
+static void count_differences(dvi__evaluator *e)
+{
+  e->counters->values += e->scratch.of_value.points;
+  e->counters->gradients += e->scratch.of_gradient.points;
+  e->scratch.of_value.points = e->scratch.of_gradient.points = 0;
 }
 
 /* ---- value ---- */
@@ -167,14 +175,14 @@ dvi_status dvi__lagrangian_gradient(dvi__evaluator *e, int count, const double *
                                     double *L_v)
 {
   const dvi_system *s = e->system;
-  if (s->lagrangian != NULL) {
-    e->counters->gradients += count;
-    return general_gradient(e, count, t, q, v, L_q != NULL ? L_q : e->unwanted, L_v != NULL ? L_v : e->unwanted);
-  }
-  if (L_v != NULL) mass_times(s, count, v, L_v);
-  if (L_q == NULL) return DVI_OK;
+  if (s->lagrangian == NULL && L_v != NULL) mass_times(s, count, v, L_v);
+  if (s->lagrangian == NULL && L_q == NULL) return DVI_OK;
   e->counters->gradients += count;
-  return potential_forces(e, count, t, q, L_q);
+  const dvi_status status = s->lagrangian == NULL
+                                ? potential_forces(e, count, t, q, L_q)
+                                : general_gradient(e, count, t, q, v, L_q ? L_q : e->unwanted, L_v ? L_v : e->unwanted);
+  count_differences(e);
+  return status;
 }
 
 /* ---- Hessian ---- */
@@ -215,12 +223,11 @@ static void spread(const dvi_system *s, size_t points, double *L_qq)
   }
 }
 
-dvi_status dvi__lagrangian_hessian(dvi__evaluator *e, int count, const double *t, const double *q, const double *v, double *L_qq,
-                                   double *L_qv, double *L_vv)
+static dvi_status hessian(dvi__evaluator *e, int count, const double *t, const double *q, const double *v, double *L_qq,
+                          double *L_qv, double *L_vv)
 {
   const dvi_system *s = e->system;
   const size_t points = (size_t)count;
-  e->counters->hessians += count;
   if (s->lagrangian != NULL) {
     DVI_TRY(dvi__general_hessian(s->lagrangian, &e->scratch, count, t, q, v, L_qq, L_qv, L_vv));
     spread(s, points, L_qq);
@@ -230,4 +237,23 @@ dvi_status dvi__lagrangian_hessian(dvi__evaluator *e, int count, const double *t
   if (L_qq == NULL) return DVI_OK;
   memset(L_qq, 0, (size_t)dvi__pattern_entries(&s->qq) * points * sizeof(double));
   return potential_hessians(e, count, t, q, L_qq);
+}
+
+dvi_status dvi__lagrangian_hessian(dvi__evaluator *e, int count, const double *t, const double *q, const double *v, double *L_qq,
+                                   double *L_qv, double *L_vv)
+{
+  e->counters->hessians += count;
+  const dvi_status status = hessian(e, count, t, q, v, L_qq, L_qv, L_vv);
+  count_differences(e);
+  return status;
+}
+
+dvi_status dvi__velocity_hessian(dvi__evaluator *e, double t, const double *q, const double *v, const double **L_vv)
+{
+  e->counters->hessians++;
+  *L_vv = e->hessian[2];
+  const dvi_status status = dvi__general_hessian(e->system->lagrangian, &e->scratch, 1, &t, q, v, e->hessian[0], e->hessian[1],
+                                                 e->hessian[2]);
+  count_differences(e);
+  return status;
 }

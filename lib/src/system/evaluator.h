@@ -10,9 +10,13 @@
 
 typedef struct dvi__evaluator dvi__evaluator;
 
+/* What a user of an evaluator will ask for. */
+typedef enum dvi__derivatives { DVI__GRADIENTS, DVI__HESSIANS } dvi__derivatives;
+
 /* For batches of up to `capacity` points. counters may be NULL; else values, gradients and hessians are counted there, and the
  * factorisations of the mass. It must outlive the evaluator. */
-dvi_status dvi__evaluator_create(const dvi_system *system, int capacity, dvi_counters *counters, dvi__evaluator **evaluator);
+dvi_status dvi__evaluator_create(const dvi_system *system, int capacity, dvi__derivatives most, dvi_counters *counters,
+                                 dvi__evaluator **evaluator);
 void dvi__evaluator_destroy(dvi__evaluator **evaluator);
 
 /* L [count] at t [count], q and v [n*count]. Every result is finite, or the status is DVI_NOT_FINITE. */
@@ -22,13 +26,19 @@ dvi_status dvi__lagrangian_value(dvi__evaluator *e, int count, const double *t, 
 dvi_status dvi__lagrangian_gradient(dvi__evaluator *e, int count, const double *t, const double *q, const double *v, double *L_q,
                                     double *L_v);
 
-/* L_qq, L_qv, L_vv: [entries*count] in the order of the system's patterns, entry-major. For a constant mass L_qv is empty, and
+/* Only with DVI__HESSIANS. L_qq, L_qv, L_vv: [entries*count] in the order of the system's patterns, entry-major. For a constant mass L_qv is empty, and
  * L_qv and L_vv may be NULL. */
 dvi_status dvi__lagrangian_hessian(dvi__evaluator *e, int count, const double *t, const double *q, const double *v, double *L_qq,
                                    double *L_qv, double *L_vv);
 
+/* One point of a general Lagrangian: *L_vv is owned by the evaluator, valid until its next call. Potentials do not matter for it. */
+dvi_status dvi__velocity_hessian(dvi__evaluator *e, double t, const double *q, const double *v, const double **L_vv);
+
 /* One point: v with L_v(t,q,v) = p. v holds a guess for general Lagrangians; unchanged on failure. */
 dvi_status dvi__legendre_inverse(dvi__evaluator *e, double t, const double *q, const double *p, double *v);
+
+/* One point: DVI_SINGULAR if L_vv cannot be inverted there. */
+dvi_status dvi__legendre_regular(dvi__evaluator *e, double t, const double *q, const double *v);
 
 /* x [n*count, component-major] = M^{-1} y for the constant mass; x may be y. Only for systems with DVI__CONSTANT_MASS. */
 void dvi__mass_solve(dvi__evaluator *e, int count, const double *y, double *x);

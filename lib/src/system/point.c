@@ -22,7 +22,7 @@ dvi_status dvi_system_lagrangian(const dvi_system *system, double t, const doubl
   dvi__evaluator *e;
   double value = 0;
   DVI_TRY(check_point(system, t, q, v, L));
-  DVI_TRY(dvi__evaluator_create(system, 1, NULL, &e));
+  DVI_TRY(dvi__evaluator_create(system, 1, DVI__GRADIENTS, NULL, &e));
   const dvi_status status = dvi__lagrangian_value(e, 1, &t, q, v, &value);
   dvi__evaluator_destroy(&e);
   if (status == DVI_OK) *L = value;
@@ -33,7 +33,7 @@ dvi_status dvi_system_momentum(const dvi_system *system, double t, const double 
 {
   dvi__evaluator *e;
   DVI_TRY(check_point(system, t, q, v, p));
-  DVI_TRY(dvi__evaluator_create(system, 1, NULL, &e));
+  DVI_TRY(dvi__evaluator_create(system, 1, DVI__GRADIENTS, NULL, &e));
   const dvi_status status = dvi__lagrangian_gradient(e, 1, &t, q, v, NULL, p);
   dvi__evaluator_destroy(&e);
   if (status == DVI_OK && dvi__first_not_finite((size_t)system->n, p) >= 0)
@@ -47,7 +47,7 @@ dvi_status dvi_system_velocity(const dvi_system *system, double t, const double 
   DVI_TRY(check_point(system, t, q, p, v));
   if (system->lagrangian != NULL && dvi__first_not_finite((size_t)system->n, v) >= 0)
     return dvi__fail(DVI_NOT_FINITE, "system: the starting velocity is not finite");
-  DVI_TRY(dvi__evaluator_create(system, 1, NULL, &e));
+  DVI_TRY(dvi__evaluator_create(system, 1, DVI__GRADIENTS, NULL, &e));
   const dvi_status status = dvi__legendre_inverse(e, t, q, p, v);
   dvi__evaluator_destroy(&e);
   return status;
@@ -59,7 +59,7 @@ dvi_status dvi_system_invariants(const dvi_system *system, double t, const doubl
   DVI_TRY(check_point(system, t, q, p, value));
   double *v = DVI_NEW(double, system->n);
   if (v == NULL) return dvi__fail(DVI_NO_MEMORY, "system: no memory for a velocity");
-  dvi_status status = dvi__evaluator_create(system, 1, NULL, &e);
+  dvi_status status = dvi__evaluator_create(system, 1, DVI__GRADIENTS, NULL, &e);
   if (status == DVI_OK) status = dvi__legendre_inverse(e, t, q, p, v);
   if (status == DVI_OK) status = dvi__invariants(e, t, q, v, p, value);
   dvi__evaluator_destroy(&e);

@@ -8,10 +8,11 @@ static int larger(int a, int b)
   return a > b ? a : b;
 }
 
-static int longest_hessian(const dvi_system *system)
+int dvi__longest_hessian(const dvi_system *system, int hessians)
 {
   int longest = system->n;
-  for (int k = 0; k < system->potential_count; k++) longest = larger(longest, dvi__pattern_entries(&system->potentials[k].qq));
+  for (int k = 0; k < system->potential_count && hessians; k++)
+    longest = larger(longest, dvi__pattern_entries(&system->potentials[k].qq));
   if (system->lagrangian == NULL) return longest;
   longest = larger(longest, dvi__pattern_entries(&system->lagrangian->qq));
   longest = larger(longest, dvi__pattern_entries(&system->lagrangian->qv));
@@ -25,17 +26,23 @@ static int lacks_gradient(const dvi_system *system)
   return lacks;
 }
 
-static int lacks_hessian(const dvi_system *system)
+/* A general Lagrangian's Hessian is always asked for: by the inverse Legendre map. */
+static int lacks_hessian(const dvi_system *system, int hessians)
 {
   int lacks = system->lagrangian != NULL && !dvi__general_has_hessian(system->lagrangian);
-  for (int k = 0; k < system->potential_count; k++) lacks |= !dvi__potential_has_hessian(&system->potentials[k]);
+  for (int k = 0; k < system->potential_count && hessians; k++) lacks |= !dvi__potential_has_hessian(&system->potentials[k]);
   return lacks;
 }
 
 int dvi__differences_allocate(size_t numbers, dvi__differences *d)
 {
-  *d = (dvi__differences){DVI_NEW(double, numbers), DVI_NEW(double, numbers), DVI_NEW(double, numbers),
-                          DVI_NEW(double, numbers), DVI_NEW(double, numbers), DVI_NEW(double, numbers)};
+  *d = (dvi__differences){DVI_NEW(double, numbers),
+                          DVI_NEW(double, numbers),
+                          DVI_NEW(double, numbers),
+                          DVI_NEW(double, numbers),
+                          DVI_NEW(double, numbers),
+                          DVI_NEW(double, numbers),
+                          0};
   return d->moved && d->step && d->plus && d->minus && d->plus_v && d->minus_v;
 }
 
@@ -49,21 +56,21 @@ void dvi__differences_clear(dvi__differences *d)
   dvi__release(d->minus_v);
 }
 
-static int allocate(const dvi_system *system, int capacity, dvi__scratch *s)
+static int allocate(const dvi_system *system, int capacity, int hessians, dvi__scratch *s)
 {
   const size_t numbers = (size_t)system->n * (size_t)capacity;
   s->point_q = DVI_NEW(double, system->n);
   s->point_v = DVI_NEW(double, system->n);
-  for (int k = 0; k < 3; k++) s->result[k] = DVI_NEW(double, longest_hessian(system));
+  for (int k = 0; k < 3; k++) s->result[k] = DVI_NEW(double, dvi__longest_hessian(system, hessians));
   if (!s->point_q || !s->point_v || !s->result[0] || !s->result[1] || !s->result[2]) return 0;
   if (lacks_gradient(system) && !dvi__differences_allocate(numbers, &s->of_value)) return 0;
-  return !lacks_hessian(system) || dvi__differences_allocate(numbers, &s->of_gradient);
+  return !lacks_hessian(system, hessians) || dvi__differences_allocate(numbers, &s->of_gradient);
 }
 
-dvi_status dvi__scratch_create(const dvi_system *system, int capacity, dvi__scratch *scratch)
+dvi_status dvi__scratch_create(const dvi_system *system, int capacity, int hessians, dvi__scratch *scratch)
 {
   *scratch = (dvi__scratch){.n = system->n, .capacity = capacity};
-  if (allocate(system, capacity, scratch)) return DVI_OK;
+  if (allocate(system, capacity, hessians, scratch)) return DVI_OK;
   dvi__scratch_clear(scratch);
   return dvi__fail(DVI_NO_MEMORY, "evaluator: no memory for %d points in %d dimensions", capacity, system->n);
 }

@@ -2,8 +2,10 @@
 #include "system/system.h"
 
 #include <math.h>
+#include <pthread.h>
 #include <string.h>
 
+#include "core/hash.h"
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/finite.h"
@@ -92,6 +94,7 @@ static dvi_status copy_mass(dvi_system *s, const dvi_mass *mass)
 
 static dvi_status make_groups(const dvi__pattern *pattern, dvi__groups *groups)
 {
+  dvi__release(groups->of_column);
   groups->of_column = DVI_NEW(int, pattern->columns);
   if (groups->of_column == NULL) return no_memory();
   return dvi__pattern_groups(pattern, groups->of_column, &groups->count);
@@ -107,10 +110,22 @@ static dvi_status group_lagrangian(dvi__lagrangian_term *term)
   return status;
 }
 
+/* Only one of two shapes would ever be called. */
+static dvi_status check_shapes(const char *owner, int values, int gradients, int hessians)
+{
+  if (!values && !gradients && !hessians) return DVI_OK;
+  return dvi__fail(DVI_BAD_ARGUMENT, "system: %s has its %s callback in two shapes, one-point and batch; declare one", owner,
+                   values      ? "value"
+                   : gradients ? "gradient"
+                               : "Hessian");
+}
+
 static dvi_status copy_lagrangian(dvi_system *s, const dvi_lagrangian *given)
 {
   if (given->value == NULL && given->value_batch == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "system: the Lagrangian has no value callback");
+  DVI_TRY(check_shapes("the Lagrangian", given->value && given->value_batch, given->gradient && given->gradient_batch,
+                       given->hessian && given->hessian_batch));
   s->terms |= DVI__LAGRANGIAN;
   dvi__lagrangian_term *term = s->lagrangian = DVI_NEW(dvi__lagrangian_term, 1);
   if (term == NULL) return no_memory();
@@ -131,13 +146,14 @@ static dvi_status copy_potential(dvi_system *s, const dvi_potential *given, dvi_
   const char *name = given->name != NULL ? given->name : "potential";
   if (given->value == NULL && given->value_batch == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "system: potential '%s' has no value callback", name);
+  DVI_TRY(check_shapes(name, given->value && given->value_batch, given->gradient && given->gradient_batch,
+                       given->hessian && given->hessian_batch));
   term->callbacks = *given;
   term->name = copy_text(name);
   if (term->name == NULL) return no_memory();
   term->callbacks.name = term->name;
-  DVI_TRY(copy_symmetric(&given->qq, s->n, name, &term->qq));
-  const int differenced = given->hessian == NULL && given->hessian_batch == NULL;
-  return differenced ? make_groups(&term->qq, &term->groups) : DVI_OK;
+  const int left_out = given->qq.start == NULL && given->qq.row == NULL;
+  return left_out ? DVI_OK : copy_symmetric(&given->qq, s->n, name, &term->qq);
 }
 
 static dvi_status copy_potentials(dvi_system *s, const dvi_system_terms *terms)
@@ -165,20 +181,49 @@ static dvi_status widen(dvi__pattern *whole, const dvi__pattern *part)
 
 static dvi_status embed(const dvi__pattern *part, const dvi__pattern *whole, int **where)
 {
+  dvi__release(*where);
   *where = DVI_NEW(int, dvi__pattern_entries(part));
   if (*where == NULL) return no_memory();
   dvi__pattern_embed(part, whole, *where);
   return DVI_OK;
 }
 
-static dvi_status join_patterns(dvi_system *s)
+static dvi_status complete_potential(const dvi_system *s, dvi__potential_term *term)
 {
-  DVI_TRY(dvi__pattern_empty(s->n, &s->qq));
-  if (s->lagrangian != NULL) DVI_TRY(widen(&s->qq, &s->lagrangian->qq));
-  for (int k = 0; k < s->potential_count; k++) DVI_TRY(widen(&s->qq, &s->potentials[k].qq));
-  if (s->lagrangian != NULL) DVI_TRY(embed(&s->lagrangian->qq, &s->qq, &s->lagrangian->in_qq));
-  for (int k = 0; k < s->potential_count; k++) DVI_TRY(embed(&s->potentials[k].qq, &s->qq, &s->potentials[k].in_qq));
+  const int differenced = term->callbacks.hessian == NULL && term->callbacks.hessian_batch == NULL;
+  if (term->qq.start == NULL) DVI_TRY(dvi__pattern_copy(&(dvi_pattern){0}, s->n, term->name, &term->qq));
+  return differenced ? make_groups(&term->qq, &term->groups) : DVI_OK;
+}
+
+static dvi_status join_patterns(dvi_system *s, dvi__pattern *qq)
+{
+  for (int k = 0; k < s->potential_count; k++) DVI_TRY(complete_potential(s, &s->potentials[k]));
+  DVI_TRY(dvi__pattern_empty(s->n, qq));
+  if (s->lagrangian != NULL) DVI_TRY(widen(qq, &s->lagrangian->qq));
+  for (int k = 0; k < s->potential_count; k++) DVI_TRY(widen(qq, &s->potentials[k].qq));
+  if (s->lagrangian != NULL) DVI_TRY(embed(&s->lagrangian->qq, qq, &s->lagrangian->in_qq));
+  for (int k = 0; k < s->potential_count; k++) DVI_TRY(embed(&s->potentials[k].qq, qq, &s->potentials[k].in_qq));
   return DVI_OK;
+}
+
+/* Nothing that a user of the system sees changes, so the system is const to him; the lock is for users on other threads. What a failure leaves
+ * is made anew by the next call, or freed with the system. */
+dvi_status dvi__system_prepare_hessian(const dvi_system *system)
+{
+  static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+  dvi_system *s = (dvi_system *)(uintptr_t)system;
+  dvi_status status = DVI_OK;
+  (void)pthread_mutex_lock(&lock);
+  if (s->qq.start == NULL) {
+    dvi__pattern qq = {0};
+    status = join_patterns(s, &qq);
+    if (status == DVI_OK)
+      s->qq = qq;
+    else
+      dvi__pattern_clear(&qq);
+  }
+  (void)pthread_mutex_unlock(&lock);
+  return status;
 }
 
 static dvi_status copy_invariants(dvi_system *s, const dvi_system_terms *terms)
@@ -214,6 +259,7 @@ static dvi_status check_list(const char *what, int count, const void *list)
 {
   if (count < 0) return dvi__fail(DVI_BAD_SIZE, "system: %d %s; 0 or more are possible", count, what);
   if (count > 0 && list == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "system: %d %s declared, but their list is NULL", count, what);
+  if (count == 0 && list != NULL) return dvi__fail(DVI_BAD_ARGUMENT, "system: a list of %s is given, but their count is 0", what);
   return DVI_OK;
 }
 
@@ -234,13 +280,38 @@ static dvi_status check_terms(const dvi_system_terms *terms)
   return check_watched(terms);
 }
 
+/* ---- knowing it again ---- */
+
+static uint64_t add_pattern(uint64_t hash, const dvi__pattern *pattern)
+{
+  if (pattern->start == NULL) return dvi__hash(hash, 1, "");
+  hash = dvi__hash(hash, ((size_t)pattern->columns + 1) * sizeof(int), pattern->start);
+  return dvi__hash(hash, (size_t)dvi__pattern_entries(pattern) * sizeof(int), pattern->row);
+}
+
+static uint64_t hash_of(const dvi_system *s)
+{
+  uint64_t hash = dvi__hash(DVI__HASH_START, sizeof s->n, &s->n);
+  hash = dvi__hash(hash, sizeof s->terms, &s->terms);
+  hash = add_pattern(add_pattern(hash, &s->qv), &s->vv);
+  if (s->mass_diagonal != NULL) hash = dvi__hash(hash, (size_t)s->n * sizeof(double), s->mass_diagonal);
+  if (s->mass_values != NULL) hash = dvi__hash(hash, (size_t)dvi__pattern_entries(&s->vv) * sizeof(double), s->mass_values);
+  if (s->lagrangian != NULL) hash = add_pattern(hash, &s->lagrangian->qq);
+  for (int k = 0; k < s->potential_count; k++)
+    hash = dvi__hash(add_pattern(hash, &s->potentials[k].qq), strlen(s->potentials[k].name) + 1, s->potentials[k].name);
+  for (int i = 0; i < dvi_system_invariant_count(s); i++)
+    hash = dvi__hash(hash, strlen(s->invariant_names[i]) + 1, s->invariant_names[i]);
+  return hash;
+}
+
 static dvi_status fill(dvi_system *s, const dvi_system_terms *terms)
 {
   s->n = terms->dimension;
   DVI_TRY(terms->lagrangian != NULL ? copy_lagrangian(s, terms->lagrangian) : copy_mass(s, &terms->mass));
   DVI_TRY(copy_potentials(s, terms));
-  DVI_TRY(join_patterns(s));
-  return copy_invariants(s, terms);
+  DVI_TRY(copy_invariants(s, terms));
+  s->hash = hash_of(s);
+  return DVI_OK;
 }
 
 dvi_status dvi_system_create(const dvi_system_terms *terms, dvi_system **system)

@@ -2,6 +2,7 @@
 #ifndef DVI_SYSTEM_SYSTEM_H
 #define DVI_SYSTEM_SYSTEM_H
 #include <dvi/system.h>
+#include <stdint.h>
 
 #include "num/linear.h"
 #include "num/pattern.h"
@@ -18,8 +19,8 @@ typedef struct dvi__groups {
 typedef struct dvi__potential_term {
   dvi_potential callbacks;
   char *name;
-  dvi__pattern qq;
-  int *in_qq; /* [entries of qq]: where they stand in the system's qq */
+  dvi__pattern qq; /* empty until dvi__system_prepare_hessian if it was left out */
+  int *in_qq;      /* [entries of qq]: where they stand in the system's qq */
   dvi__groups groups;
 } dvi__potential_term;
 
@@ -32,6 +33,7 @@ typedef struct dvi__lagrangian_term {
 
 struct dvi_system {
   int n;
+  uint64_t hash;  /* of all that is declared, but for what callbacks compute */
   unsigned terms; /* dvi__term bits */
   double mass_scalar;
   double *mass_diagonal;
@@ -43,8 +45,13 @@ struct dvi_system {
   int symmetry_count;
   dvi_invariant *invariants;
   int invariant_count;
-  char **invariant_names;  /* energy, symmetries, invariants */
-  dvi__pattern qq, qv, vv; /* of L's Hessian: unions over the terms; vv is diagonal for scalar and diagonal masses */
+  char **invariant_names; /* energy, symmetries, invariants */
+  dvi__pattern qv, vv;    /* of L's Hessian; vv is diagonal for scalar and diagonal masses */
+  dvi__pattern qq;        /* the union over the terms; empty until dvi__system_prepare_hessian */
 };
+
+/* Complete the patterns of L_qq, once: left-out ones are full, n^2 entries that only a method with Hessians should pay for. Integrators on
+ * several threads may call it at one time. DVI_BAD_SIZE if an int cannot count the entries. */
+dvi_status dvi__system_prepare_hessian(const dvi_system *system);
 
 #endif

@@ -9,6 +9,7 @@
  * differenced at this level. */
 typedef struct dvi__differences {
   double *moved, *step, *plus, *minus, *plus_v, *minus_v;
+  long points; /* at which the function was asked for */
 } dvi__differences;
 
 typedef struct dvi__scratch {
@@ -22,7 +23,8 @@ typedef struct dvi__scratch {
 int dvi__differences_allocate(size_t numbers, dvi__differences *d);
 void dvi__differences_clear(dvi__differences *d);
 
-dvi_status dvi__scratch_create(const dvi_system *system, int capacity, dvi__scratch *scratch);
+/* `hessians` says whether potentials' Hessians will be asked for; the system must be prepared for them then. */
+dvi_status dvi__scratch_create(const dvi_system *system, int capacity, int hessians, dvi__scratch *scratch);
 void dvi__scratch_clear(dvi__scratch *scratch);
 
 /* All of these check the callback's return and that every number is finite. Shapes as in evaluator.h. */
@@ -60,6 +62,9 @@ dvi_status dvi__general_value_of_q(const void *function, int count, const double
 dvi_status dvi__general_value_of_v(const void *function, int count, const double *v, double *L);
 dvi_status dvi__general_gradient_of_q(const void *function, int count, const double *q, double *L_q, double *L_v);
 dvi_status dvi__general_gradient_of_v(const void *function, int count, const double *v, double *L_q, double *L_v);
+
+/* Length of the longest Hessian block that the scratch above serves, at least n. */
+int dvi__longest_hessian(const dvi_system *system, int hessians);
 
 int dvi__potential_has_gradient(const dvi__potential_term *p);
 int dvi__potential_has_hessian(const dvi__potential_term *p);
