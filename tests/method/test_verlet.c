@@ -1,5 +1,6 @@
 /* labels: unit */
 #include <check.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "support/runs.h"
@@ -48,6 +49,42 @@ START_TEST(a_general_lagrangian_is_refused_by_name)
 }
 END_TEST
 
+static int spring_value(double t, const double *q, double *V, void *user)
+{
+  (void)t, (void)user;
+  *V = q[0] * q[0] / 2;
+  return 0;
+}
+
+static int spring_gradient(double t, const double *q, double *V_q, void *user)
+{
+  (void)t;
+  for (int i = 0; i < *(const int *)user; i++) V_q[i] = i == 0 ? q[0] : 0;
+  return 0;
+}
+
+/* The Hessian that nobody gave would have 2.5e9 entries; who needs it is told. */
+START_TEST(no_hessian_is_made_for_it)
+{
+  int n = 50000;
+  const dvi_potential potential = {.value = spring_value, .gradient = spring_gradient, .user = &n};
+  const dvi_system_terms terms = {.dimension = n, .mass.scalar = 1, .potentials = &potential, .potential_count = 1};
+  dvi_system *system = NULL;
+  double *zeros = calloc((size_t)n, sizeof *zeros);
+  ck_assert_ptr_nonnull(zeros);
+  ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
+  dvi_integrator *integrator = made_integrator(system, "verlet"), *implicit = integrator;
+  ck_assert_int_eq(dvi_integrator_start(integrator, 0, zeros, zeros), DVI_OK);
+  advance(integrator, 0.1, 3);
+  ck_assert_int_eq(dvi_integrator_create(system, "midpoint", &implicit), DVI_BAD_SIZE);
+  ck_assert_ptr_null(implicit);
+  ck_assert_ptr_nonnull(strstr(dvi_last_error(), "declare a sparse pattern"));
+  dvi_integrator_destroy(&integrator);
+  dvi_system_destroy(&system);
+  free(zeros);
+}
+END_TEST
+
 START_TEST(it_takes_no_keys)
 {
   problem *oscillator = made_problem("oscillator", NULL);
@@ -65,5 +102,6 @@ int main(void)
   tcase_add_test(tests, a_step_costs_one_gradient_and_nothing_else);
   tcase_add_test(tests, a_general_lagrangian_is_refused_by_name);
   tcase_add_test(tests, it_takes_no_keys);
+  tcase_add_test(tests, no_hessian_is_made_for_it);
   return run_tests("verlet", tests);
 }

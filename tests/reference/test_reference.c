@@ -238,6 +238,21 @@ START_TEST(each_code_takes_a_lagrangian_with_time_and_without_derivatives)
 }
 END_TEST
 
+START_TEST(the_judge_at_its_defaults_takes_a_lagrangian_without_derivatives)
+{
+  const dvi_lagrangian lagrangian = {.value = damped_value};
+  dvi_system *system = NULL;
+  dvi_reference_report report;
+  ck_assert_int_eq(dvi_system_create(&(dvi_system_terms){.dimension = 1, .lagrangian = &lagrangian}, &system), DVI_OK);
+  double q = 1, p = 1;
+  ck_assert_msg(dvi_reference_judge(system, 0, 0.5, &q, &p, NULL, &report) == DVI_OK, "%s", dvi_last_error());
+  const double rate = sqrt(1.75), exact = exp(-0.25) * (cos(0.5 * rate) + 1.5 / rate * sin(0.5 * rate));
+  ck_assert_double_lt(fabs(q - exact), 5 * report.error + 1e-10); /* the factor of the test below, and the differences' own noise */
+  ck_assert_double_lt(report.error, 1e-6);
+  dvi_system_destroy(&system);
+}
+END_TEST
+
 /* ---- the judge ---- */
 
 /* The claim is the distance of the two runs: an upper estimate of the second run's error where the error falls with the tolerance.
@@ -370,6 +385,7 @@ static Suite *reference(void)
   tcase_add_test(answers, bdf_has_the_right_jacobian);
   tcase_add_loop_test(answers, sparse_systems_agree_with_the_explicit_code, 0, CODES);
   tcase_add_loop_test(answers, each_code_takes_a_lagrangian_with_time_and_without_derivatives, 0, CODES);
+  tcase_add_test(answers, the_judge_at_its_defaults_takes_a_lagrangian_without_derivatives);
   tcase_add_test(answers, ida_bounds_its_own_error);
   tcase_add_loop_test(answers, the_judge_is_two_runs, 0, CODES);
   tcase_add_loop_test(edges, no_time_leaves_the_state, 0, CODES);

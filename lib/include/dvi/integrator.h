@@ -38,6 +38,7 @@ extern "C" {
  *  @retval DVI_BAD_OPTION   unknown method, key or value, or values that do not go together (nodes < degree, say); the error
  *                           sentence gives the reason
  *  @retval DVI_UNSUPPORTED  the method cannot use a term of the system (verlet with a general Lagrangian, say)
+ *  @retval DVI_BAD_SIZE     the Jacobian has more entries than an int can count: a pattern was left out, or the degree is too high
  *  @retval DVI_NO_MEMORY */
 dvi_status dvi_integrator_create(const dvi_system *system, const char *method, dvi_integrator **integrator);
 

@@ -9,6 +9,9 @@ typedef struct dvi__block {
   int qq, qv, vq, vv;
 } dvi__block;
 
+/* Continuations that are kept: a composition of 17 substeps asks for as many ratios in turn. */
+enum { DVI__SHIFTS = 20 };
+
 struct dvi__action {
   const dvi_system *system;
   dvi__evaluator *evaluator;
@@ -21,7 +24,9 @@ struct dvi__action {
   double *end;                           /* [s] psi_k(1) */
   double *stiffness, *stiffness_inverse; /* [s*s] K_kl = sum_j b_j psi_k' psi_l' */
   double *fit_point, *fit, *straight;    /* [s], [s*s] rows, [s] */
-  double *shift, shift_ratio;            /* [s*s] rows, and the ratio that it was made for (0: none) */
+  double *shift;                         /* [DVI__SHIFTS] tables of [s*s] rows */
+  double shift_ratio[DVI__SHIFTS];       /* the ratio of steps that each was made for; 0: none */
+  int oldest_shift;                      /* the one to be replaced next */
   int keep;                              /* degree up to which a path is continued */
   /* The element's place. */
   double t0, h;

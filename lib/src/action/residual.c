@@ -136,13 +136,25 @@ void dvi__action_straight(const dvi__action *a, const double *dq, double *Y)
     for (size_t k = 0; k < s; k++) Y[i * s + k] = a->straight[k] * dq[i];
 }
 
+/* The table for this ratio: one that is kept, or a new one in the place of the oldest. */
+static const double *shift_for(dvi__action *a, double ratio)
+{
+  const size_t size = (size_t)a->s * (size_t)a->s;
+  for (size_t k = 0; k < DVI__SHIFTS; k++)
+    if (a->shift_ratio[k] == ratio) return a->shift + k * size;
+  const int place = a->oldest_shift;
+  dvi__trial_shift(a->space.basis, a->s, a->keep, ratio, a->shift + (size_t)place * size);
+  a->shift_ratio[place] = ratio;
+  a->oldest_shift = (place + 1) % DVI__SHIFTS;
+  return a->shift + (size_t)place * size;
+}
+
 void dvi__action_continue(dvi__action *a, double ratio, const double *last, double *Y)
 {
   const int s = a->s;
-  if (ratio != a->shift_ratio) dvi__trial_shift(a->space.basis, s, a->keep, ratio, a->shift);
-  a->shift_ratio = ratio;
+  const double *shift = shift_for(a, ratio);
   for (size_t i = 0; i < (size_t)a->n; i++)
-    for (int k = 0; k < s; k++) Y[i * (size_t)s + (size_t)k] = dot(s, a->shift + k * s, last + i * (size_t)s);
+    for (int k = 0; k < s; k++) Y[i * (size_t)s + (size_t)k] = dot(s, shift + k * s, last + i * (size_t)s);
 }
 
 const double *dvi__action_fit_points(const dvi__action *a)

@@ -26,7 +26,7 @@ static int allocate(dvi__action *a)
   a->fit_point = DVI_NEW(double, s);
   a->fit = DVI_NEW(double, s *s);
   a->straight = DVI_NEW(double, s);
-  a->shift = DVI_NEW(double, s *s);
+  a->shift = DVI_NEW(double, DVI__SHIFTS *s *s);
   return a->psi && a->dpsi && a->bar && a->node && a->weight && a->end && a->stiffness && a->stiffness_inverse && a->fit_point &&
          a->fit && a->straight && a->shift;
 }

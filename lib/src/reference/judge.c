@@ -38,8 +38,8 @@ dvi_status dvi_reference_judge(const dvi_system *system, double t, double t_end,
                                const dvi_reference_options *options, dvi_reference_report *report)
 {
   dvi_reference_options complete;
-  DVI_TRY(dvi__reference_complete(options, &complete));
   if (system == NULL || q == NULL || p == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "judge: system, q and p are needed");
+  DVI_TRY(dvi__reference_complete(system, options, &complete));
   const size_t nq = (size_t)dvi_system_nq(system), nv = (size_t)dvi_system_nv(system);
   double *copies = DVI_NEW(double, 2 * (nq + nv));
   if (copies == NULL) return dvi__fail(DVI_NO_MEMORY, "judge: no memory for %zu numbers", 2 * (nq + nv));

@@ -31,7 +31,7 @@ dvi_status dvi__reference_cvode(dvi__reference_run *run);
 dvi_status dvi__reference_arkode(dvi__reference_run *run);
 
 /* Check the options (NULL: all defaults) and fill in what is left out. */
-dvi_status dvi__reference_complete(const dvi_reference_options *given, dvi_reference_options *options);
+dvi_status dvi__reference_complete(const dvi_system *system, const dvi_reference_options *given, dvi_reference_options *options);
 
 /* The codes would go on with steps that no longer move t; below this they give up. */
 double dvi__reference_least_step(const dvi__reference_run *run);

@@ -25,7 +25,8 @@ static const struct {
 
 enum { CODE_COUNT = sizeof codes / sizeof codes[0] };
 
-static const double default_tolerance = 1e-12;
+/* Without a gradient the momenta L_v are differenced values: below about 1e-11 their noise stops the codes (measured on IDA). */
+static const double default_tolerance = 1e-12, default_without_gradient = 1e-9;
 static const long default_max_steps = 50000000;
 
 const char *dvi_reference_name(dvi_reference_code code)
@@ -82,7 +83,14 @@ dvi_status dvi__reference_stopped(const dvi__reference_run *run, int flag, char 
   return status;
 }
 
-dvi_status dvi__reference_complete(const dvi_reference_options *given, dvi_reference_options *options)
+static double default_of(const dvi_system *system)
+{
+  const dvi__lagrangian_term *l = system->lagrangian;
+  const int differenced = l != NULL && l->callbacks.gradient == NULL && l->callbacks.gradient_batch == NULL;
+  return differenced ? default_without_gradient : default_tolerance;
+}
+
+dvi_status dvi__reference_complete(const dvi_system *system, const dvi_reference_options *given, dvi_reference_options *options)
 {
   *options = given != NULL ? *given : (dvi_reference_options){.code = DVI_IDA};
   if (dvi_reference_name(options->code) == NULL)
@@ -93,7 +101,7 @@ dvi_status dvi__reference_complete(const dvi_reference_options *given, dvi_refer
     return dvi__fail(DVI_BAD_ARGUMENT, "reference: absolute_tolerance is %g, must not be negative", options->absolute_tolerance);
   if (options->max_steps < 0)
     return dvi__fail(DVI_BAD_ARGUMENT, "reference: max_steps is %ld, must not be negative", options->max_steps);
-  if (options->relative_tolerance == 0) options->relative_tolerance = default_tolerance;
+  if (options->relative_tolerance == 0) options->relative_tolerance = default_of(system);
   if (options->absolute_tolerance == 0) options->absolute_tolerance = options->relative_tolerance;
   if (options->max_steps == 0) options->max_steps = default_max_steps;
   return DVI_OK;
@@ -174,8 +182,8 @@ dvi_status dvi_reference_solve(const dvi_system *system, double t, double t_end,
                                const dvi_reference_options *options, dvi_reference_report *report)
 {
   dvi__reference_run run = {.system = system, .t = t, .t_end = t_end, .reached = t};
-  DVI_TRY(dvi__reference_complete(options, &run.options));
   DVI_TRY(check_start(system, t, t_end, q, p));
+  DVI_TRY(dvi__reference_complete(system, options, &run.options));
   run.n = dvi_system_nv(system);
   const double began = cpu_time();
   const dvi_status status = t == t_end ? DVI_OK : integrate(&run, q, p);
