@@ -10,6 +10,7 @@
 #include "levels.h"
 #include "open.h"
 #include "options.h"
+#include "outputs.h"
 #include "plot.h"
 #include "progress.h"
 #include "study.h"
@@ -62,11 +63,11 @@ static int add_method(bench *b, const char *method)
   const int levels = (int)b->request->levels;
   bool room;
   study.first_error = first_error;
+  study.progress = &b->progress;
   dvi_status status = choose_levels(&study, 0.0, 0.0, levels, steps, &room);
   for (int k = 0; k < levels && status == DVI_OK && b->jobs < JOBS_MAX; k++) {
     bench_job *job = &b->job[b->jobs];
     level_trial trial = {.steps = steps[k]};
-    progress_show(&b->progress, -1.0, method);
     job->integrator = method;
     job->steps = steps[k];
     (void)snprintf(job->setting, sizeof job->setting, "h=%.6g", b->request->t_end / (double)steps[k]);
@@ -293,6 +294,10 @@ static int check_request(bench_request *request)
   if (request->rounds > ROUNDS_MAX)
     return usage_error("bench: --rounds %ld is too many, %d are possible", request->rounds, (int)ROUNDS_MAX);
   if (request->t_end == 0.0) return usage_error("bench: --t-end 0 leaves nothing to do");
+  const named_file files[] = {{"csv", request->csv}, {"plot", request->plot}};
+  int code = outputs_plot("bench", request->plot);
+  if (code == DONE) code = outputs_distinct("bench", 2, files);
+  if (code != DONE) return code;
   if (request->csv != NULL && !file_writable(request->csv)) return FAILED;
   if (request->plot != NULL && !file_writable(request->plot)) return FAILED;
   return read_codes(request);

@@ -10,6 +10,8 @@
 
 #include "command.h"
 
+enum { LINK_SIZE = 4096, LINKS_MAX = 40 };
+
 static bool refuse(const char *path)
 {
   complain("cannot write '%s': %s", path, strerror(errno));
@@ -27,18 +29,39 @@ static char *join(const char *head, size_t head_length, const char *tail)
   return text;
 }
 
-/* The file that a path leads to: a rename must replace the file, not a link to it. */
-static char *resolve(const char *path)
-{
-  char *real = realpath(path, NULL);
-  return real != NULL ? real : join(path, strlen(path), "");
-}
-
 static char *folder_of(const char *path)
 {
   const char *slash = strrchr(path, '/');
   if (slash == NULL) return join(".", 1, "");
   return join(path, slash == path ? 1 : (size_t)(slash - path), "");
+}
+
+/* What the link at a path says, as a path from here. NULL, and errno EINVAL or ENOENT, if there is no link. */
+static char *follow(const char *path)
+{
+  char target[LINK_SIZE];
+  const ssize_t length = readlink(path, target, sizeof target - 1);
+  if (length < 0) return NULL;
+  target[length] = '\0';
+  const char *slash = strrchr(path, '/');
+  return target[0] == '/' || slash == NULL ? join("", 0, target) : join(path, (size_t)(slash - path) + 1, target);
+}
+
+/* The file that a path leads to, whether it is there or not: a rename must replace the file, not a link to it. */
+static char *resolve(const char *path)
+{
+  char *at = realpath(path, NULL);
+  if (at != NULL) return at;
+  at = join("", 0, path);
+  for (int i = 0; i < LINKS_MAX && at != NULL; i++) {
+    char *next = follow(at);
+    if (next == NULL) return at;
+    free(at);
+    at = next;
+  }
+  free(at);
+  errno = ELOOP;
+  return NULL;
 }
 
 /* Create a new file beside path, with the rights that the old file has or a new one would get. */
@@ -83,6 +106,44 @@ bool file_open(whole_file *file, const char *path)
   (void)refuse(path);
   file_discard(file);
   return false;
+}
+
+static bool same_inode(const struct stat *a, const struct stat *b)
+{
+  return a->st_dev == b->st_dev && a->st_ino == b->st_ino;
+}
+
+static const char *name_in_folder(const char *path)
+{
+  const char *slash = strrchr(path, '/');
+  return slash != NULL ? slash + 1 : path;
+}
+
+/* Files that are not there yet are the same if their folders are, and their names. */
+static bool same_place(const char *path, const char *other)
+{
+  struct stat a;
+  struct stat b;
+  char *folders[] = {folder_of(path), folder_of(other)};
+  const bool same = folders[0] != NULL && folders[1] != NULL && stat(folders[0], &a) == 0 && stat(folders[1], &b) == 0 &&
+                    same_inode(&a, &b) && strcmp(name_in_folder(path), name_in_folder(other)) == 0;
+  free(folders[0]);
+  free(folders[1]);
+  return same;
+}
+
+bool file_same(const char *path, const char *other)
+{
+  struct stat a;
+  struct stat b;
+  const bool there = stat(path, &a) == 0;
+  if (there != (stat(other, &b) == 0)) return false;
+  if (there) return same_inode(&a, &b);
+  char *real[] = {resolve(path), resolve(other)};
+  const bool same = real[0] != NULL && real[1] != NULL && same_place(real[0], real[1]);
+  free(real[0]);
+  free(real[1]);
+  return same;
 }
 
 /* A rename is on disk only when its folder is. Some file systems cannot sync folders; the content is safe all the same. */

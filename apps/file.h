@@ -17,6 +17,9 @@ bool file_open(whole_file *file, const char *path);
 /** Put the content in place: flush, sync, rename. False, with a complaint, if any of it was lost; then all is as before. */
 bool file_keep(whole_file *file);
 
+/** Whether two paths lead to the same file, or would if there were one: links and other spellings are seen through. */
+bool file_same(const char *path, const char *other);
+
 /** Forget the content; what was at the path stays. Allowed after file_keep, and on a file that is all zero. */
 void file_discard(whole_file *file);
 

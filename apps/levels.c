@@ -5,9 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SEARCH_TRIES = 40 };
-static const long steps_max = 1L << 24;
-static const double level_room = 1e5; /* first error over the floor, at least: six levels a decade apart */
+enum { SEARCH_TRIES = 40, ROOM_LEVELS = 6 };
+static const long steps_max = 1L << 24;  /* of a first level that the user asked for */
+static const long search_max = 1L << 17; /* of one that is searched: the search shall end within seconds */
+static const long finest_max = 1L << 22; /* of the last level after that one */
+static const double level_room = 1e5;    /* first error over the floor, at least: five decades for the levels */
 
 static double within(double x, double low, double high)
 {
@@ -27,7 +29,7 @@ static double first_target(const order_study *s)
 static long next_guess(const order_study *s, long steps, double error, double target, long too_few, long enough)
 {
   const double factor = isfinite(error) ? within(pow(error / target, 1.0 / s->order), 0.25, 4.0) : 2.0;
-  const double high = enough > 0 ? (double)enough - 1.0 : (double)steps_max;
+  const double high = enough > 0 ? (double)enough - 1.0 : (double)search_max;
   return lround(within(ceil((double)steps * factor), (double)too_few + 1.0, high));
 }
 
@@ -37,7 +39,7 @@ static dvi_status find_first(order_study *s, level_trial *first)
   const double target = first_target(s);
   long too_few = 0;
   long enough = 0;
-  long steps = lround(within(ceil(fabs(s->t_end) / s->scene->order_h), 1.0, 1e6));
+  long steps = lround(within(ceil(fabs(s->t_end) / s->scene->order_h), 1.0, (double)search_max));
   for (int i = 0; i < SEARCH_TRIES; i++) {
     const dvi_status status = study_run(s, steps, first);
     if (status < 0) return status;
@@ -48,7 +50,7 @@ static dvi_status find_first(order_study *s, level_trial *first)
       enough = steps;
     else
       too_few = steps;
-    if (too_few + 1 == enough || too_few >= steps_max) break;
+    if (too_few + 1 == enough || too_few >= search_max) break;
     steps = next_guess(s, steps, error, target, too_few, enough);
   }
   return study_run(s, enough > 0 ? enough : too_few, first);
@@ -84,12 +86,13 @@ static dvi_status find_floor(order_study *s, long steps)
   return status;
 }
 
-/* The ratio that leads from the first error to a little above the floor. */
-static double choose_ratio(const order_study *s, const level_trial *first, int levels)
+/* The ratio that leads from the first error to a little above the floor, with at most so many steps if it can be. */
+static double choose_ratio(const order_study *s, const level_trial *first, int levels, double finest)
 {
   const double span = first->error / (3.0 * s->floor);
   const double ratio = span > 1.0 && levels > 1 ? pow(span, 1.0 / (s->order * (levels - 1.0))) : 1.0;
-  return within(ratio, 1.05, 2.0);
+  const double most = levels > 1 ? pow(finest / (double)first->steps, 1.0 / (levels - 1.0)) : 2.0;
+  return within(ratio, 1.05, within(most, 1.05, 2.0));
 }
 
 /* Whether so many levels, each with one step more than the one before, stay above the floor. */
@@ -107,8 +110,8 @@ dvi_status choose_levels(order_study *study, double h, double ratio, int levels,
   if (status == DVI_OK) status = find_floor(study, first.steps);
   if (status == DVI_OK && !(wanted > 0.0)) status = find_first(study, &first); /* now that the floor is known */
   if (status != DVI_OK) return status;
-  *room = has_room(study, &first, levels);
-  const double factor = ratio > 0.0 ? ratio : choose_ratio(study, &first, levels);
+  *room = has_room(study, &first, levels < ROOM_LEVELS ? levels : ROOM_LEVELS);
+  const double factor = ratio > 0.0 ? ratio : choose_ratio(study, &first, levels, wanted > 0.0 ? HUGE_VAL : (double)finest_max);
   steps[0] = first.steps;
   for (int k = 1; k < levels; k++) {
     steps[k] = lround((double)first.steps * pow(factor, k));

@@ -22,10 +22,10 @@ bool parse_number(const char *text, double *number)
 
 static bool parse_count(const char *text, long *count)
 {
-  char *end;
+  if (strspn(text, "0123456789") != strlen(text) || text[0] == '0') return false; /* strtol would take blanks and signs */
   errno = 0;
-  const long value = strtol(text, &end, 10);
-  if (end == text || *end != '\0' || errno != 0 || value < 1) return false;
+  const long value = strtol(text, NULL, 10);
+  if (errno != 0 || value < 1) return false;
   *count = value;
   return true;
 }
@@ -64,7 +64,7 @@ static int store(const command_line *command, const option *o, const char *text)
   if (o->number != NULL && !parse_number(text, o->number))
     return usage_error("%s: --%s wants a finite number, not '%s'", command->name, o->name, text);
   if (o->count != NULL && !parse_count(text, o->count))
-    return usage_error("%s: --%s wants a whole number from 1, not '%s'", command->name, o->name, text);
+    return usage_error("%s: --%s wants a whole number from 1, in plain digits, not '%s'", command->name, o->name, text);
   if ((o->word != NULL || o->words != NULL) && text[0] == '\0') return missing_value(command, o);
   if (o->word != NULL) *o->word = text;
   if (o->words != NULL) {

@@ -5,8 +5,8 @@
 
 #include "options.h"
 #include "plot.h"
+#include "window.h"
 
-enum { FIT_LEVELS = 4 };
 static const double order_tolerance = 0.2;
 
 const table_column order_columns[] = {
@@ -21,9 +21,15 @@ static int fitted_levels(const order_result *result)
   return result->fit.first < 0 ? 0 : result->fit.last - result->fit.first + 1;
 }
 
+double order_local_slope(const order_result *result, int k)
+{
+  if (k == 0 || !(result->error[k - 1] > 0.0) || !(result->error[k] > 0.0)) return (double)NAN;
+  return log(result->error[k - 1] / result->error[k]) / log(result->h[k - 1] / result->h[k]);
+}
+
 bool order_holds(const order_result *result)
 {
-  return fitted_levels(result) >= FIT_LEVELS && fabs(result->fit.slope - result->claimed) <= order_tolerance;
+  return result->settled && fabs(result->fit.slope - result->claimed) <= order_tolerance;
 }
 
 void order_print_tables(const char *name, const result_table *rows, int results, const order_result *result)
@@ -41,15 +47,30 @@ void order_print_tables(const char *name, const result_table *rows, int results,
 static void print_missing(FILE *stream, const order_result *result)
 {
   (void)fprintf(stream, "not decided: %d of %d levels have errors between %.1e and %.1e, and %d are needed; ",
-                fitted_levels(result), result->levels, result->floor, result->ceiling, (int)FIT_LEVELS);
+                fitted_levels(result), result->levels, result->floor, result->ceiling, (int)WINDOW_LEVELS);
   (void)fprintf(stream, "set a first step by --h, a longer --t-end, or more --levels\n");
+}
+
+static void print_unsettled(FILE *stream, const order_result *result)
+{
+  double least = (double)INFINITY;
+  double most = (double)-INFINITY;
+  for (int k = result->fit.first + 1; k <= result->fit.last; k++) {
+    least = fmin(least, order_local_slope(result, k));
+    most = fmax(most, order_local_slope(result, k));
+  }
+  (void)fprintf(stream, "not decided: the slope does not settle (%.2f over levels %d to %d, %.2f to %.2f between neighbours); ",
+                result->fit.slope, result->fit.first + 1, result->fit.last + 1, least, most);
+  (void)fprintf(stream, "between steps that are too large and roundoff there is no range that shows an order\n");
 }
 
 void order_print_verdict(FILE *stream, const order_result *result)
 {
   (void)fprintf(stream, "%s: claimed order %d, ", result->method, result->claimed);
-  if (fitted_levels(result) < FIT_LEVELS)
+  if (fitted_levels(result) < WINDOW_LEVELS)
     print_missing(stream, result);
+  else if (!result->settled)
+    print_unsettled(stream, result);
   else
     (void)fprintf(stream, "fitted %.2f to levels %d to %d: %s\n", result->fit.slope, result->fit.first + 1, result->fit.last + 1,
                   order_holds(result) ? "ok" : "MISSED");

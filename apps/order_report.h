@@ -21,13 +21,17 @@ typedef struct order_result {
   double error[LEVELS_MAX];
   double floor, ceiling; /**< errors outside are not fitted */
   dvi_order_fit fit;
+  bool settled;           /**< the slope is the same all over the fitted levels */
   char label[LABEL_SIZE]; /**< in the legend of its plot */
 } order_result;
+
+/** The order that level k and the one before it show; NaN if there is none. */
+double order_local_slope(const order_result *result, int k);
 
 /** The columns of the table. */
 extern const table_column order_columns[];
 
-/** Whether the fitted order is the claimed one, from levels enough. */
+/** Whether a settled slope is the claimed order. */
 bool order_holds(const order_result *result);
 
 /** Each method's levels, aligned. */

@@ -6,11 +6,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "command.h"
 #include "file.h"
 #include "open.h"
 #include "options.h"
+#include "outputs.h"
 #include "progress.h"
 #include "table.h"
 #include "trace.h"
@@ -19,7 +21,7 @@
 typedef struct run_request {
   const char *method, *out, *checkpoint, *resume, *plot;
   double h, t_end;
-  long every, checkpoint_every;
+  long every, checkpoint_every; /* 0: not given */
   bool final;
   words settings;
 } run_request;
@@ -40,9 +42,19 @@ typedef struct recorder {
 /* Set by the signal, read by the driver after each step. */
 static volatile sig_atomic_t caught;
 
+/* Before that, while the problem is built, no file is open: the signal can end the process at once. */
+static volatile sig_atomic_t files_open;
+
 static void on_signal(int number)
 {
-  caught = number;
+  static const char sentence[] = "dvi: run: a signal ended the run before its first step; nothing was written\n";
+  if (files_open) {
+    caught = number;
+    return;
+  }
+  const ssize_t written = write(STDERR_FILENO, sentence, sizeof sentence - 1);
+  (void)written;
+  _exit(128 + number);
 }
 
 /* The second signal of a kind ends the process at once. */
@@ -193,6 +205,7 @@ static bool place(const run_request *request, const problem *scene, dvi_integrat
 /* Fill in what was left out, and refuse a step that cannot lead to the end. */
 static int complete(run_request *request, const problem *scene, double t)
 {
+  if (request->every == 0) request->every = 1;
   if (isnan(request->t_end)) request->t_end = scene->t_end;
   const double way = request->t_end - t;
   if (isnan(request->h)) request->h = way < 0.0 ? -scene->h : scene->h;
@@ -209,6 +222,7 @@ static int record(run_request *request, const problem *scene, dvi_integrator *in
   recorder r = {.request = request, .scene = scene};
   r.invariant = calloc((size_t)dvi_system_invariant_count(scene->system), sizeof *r.invariant);
   int code = FAILED;
+  files_open = 1;
   if (r.invariant == NULL)
     complain("out of memory");
   else if ((request->plot == NULL || trace_init(&r.trace, scene->n)) && file_open(&r.out, request->out))
@@ -234,12 +248,28 @@ static int run(run_request *request, const problem *scene)
   return code;
 }
 
+/* A run may go on in its own checkpoint; no two other files may be the same. */
+static int check_files(const run_request *request)
+{
+  const named_file written[] = {{"out", request->out}, {"checkpoint", request->checkpoint}, {"plot", request->plot}};
+  const named_file kept[] = {{"resume", request->resume}, {"out", request->out}, {"plot", request->plot}};
+  if (request->checkpoint != NULL && strcmp(request->checkpoint, "-") == 0)
+    return usage_error("run: --checkpoint -: a checkpoint goes to a file, not to standard output");
+  int code = outputs_plot("run", request->plot);
+  if (code == DONE) code = outputs_distinct("run", 3, written);
+  return code == DONE ? outputs_distinct("run", 3, kept) : code;
+}
+
 static int check_request(const run_request *request)
 {
   if (request->method == NULL)
     return usage_error("run: --method is missing, for example --method galerkin:degree=4; see dvi list methods");
   if (request->checkpoint_every > 0 && request->checkpoint == NULL)
     return usage_error("run: --checkpoint-every needs --checkpoint FILE");
+  if (request->every > 0 && request->final)
+    return usage_error("run: --every %ld places rows that --final leaves out; give one of them", request->every);
+  const int code = check_files(request);
+  if (code != DONE) return code;
   if (request->checkpoint != NULL && !file_writable(request->checkpoint)) return FAILED;
   return request->plot == NULL || file_writable(request->plot) ? DONE : FAILED;
 }
@@ -252,7 +282,7 @@ static const char details[] =
     "\n"
     "FILEs are written whole or not at all: a run that fails leaves what was there. Rows on standard output come\n"
     "as they are computed. Ctrl-C and SIGTERM end a run after the current step, with the output complete, the\n"
-    "checkpoint written, and exit code 130 or 143.\n"
+    "checkpoint written, and exit code 130 or 143; before the first step they end it at once, and nothing is written.\n"
     "\n"
     "A checkpoint holds the state of the method, not the command line: resume with the same problem, method and\n"
     "step, and the run continues bit for bit.\n"
@@ -266,12 +296,16 @@ static const char details[] =
 
 int run_command(int argc, char **argv)
 {
-  run_request r = {.out = "-", .h = (double)NAN, .t_end = (double)NAN, .every = 1};
+  run_request r = {
+      .out = "-",
+      .h = (double)NAN,
+      .t_end = (double)NAN,
+  };
   const option options[] = {
       {.name = "method", .word = &r.method, .value = "SPEC", .help = "the method: name[:key=value,...], see dvi list methods"},
       {.name = "h", .number = &r.h, .value = "H", .help = "the step; left out: the problem's"},
       {.name = "t-end", .number = &r.t_end, .value = "T", .help = "the end, from t = 0 (T < 0: backward); left out: the problem's"},
-      {.name = "every", .count = &r.every, .value = "K", .help = "a row after every K steps; left out: 1"},
+      {.name = "every", .count = &r.every, .value = "K", .help = "a row after every K steps; left out: 1; not with --final"},
       {.name = "final", .flag = &r.final, .help = "the header and the last row only"},
       {.name = "set", .words = &r.settings, .value = "NAME=VALUE", .help = "set a parameter of the problem; may be repeated"},
       {.name = "out", .word = &r.out, .value = "FILE", .help = "where the rows go; left out, or -: standard output"},
@@ -280,7 +314,10 @@ int run_command(int argc, char **argv)
        .value = "FILE",
        .help = "save the state there when the run ends, however it ends"},
       {.name = "checkpoint-every", .count = &r.checkpoint_every, .value = "K", .help = "and after every K steps"},
-      {.name = "resume", .word = &r.resume, .value = "FILE", .help = "start from a checkpoint of the same problem and method"},
+      {.name = "resume",
+       .word = &r.resume,
+       .value = "FILE",
+       .help = "start from a checkpoint of the same problem and method; may be the file of --checkpoint"},
       {.name = "plot", .word = &r.plot, .value = "FILE.svg", .help = "draw coordinates and energy error over time"},
       {.name = NULL},
   };
@@ -298,9 +335,9 @@ int run_command(int argc, char **argv)
   code = check_request(&r);
   if (code != DONE) return code;
   problem *scene;
+  catch_signals();
   code = open_problem(name, &r.settings, &scene);
   if (code != DONE) return code;
-  catch_signals();
   code = run(&r, scene);
   problem_destroy(&scene);
   return code;

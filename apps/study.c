@@ -9,6 +9,7 @@
 #include "command.h"
 #include "open.h"
 
+enum { PROGRESS_STEPS = 256 };
 static const double ceiling_digits = 1e-2; /* an error of 1 % of the solution's size is no longer asymptotic */
 static const double clock_seconds = 0.02;  /* process time that one measurement takes at least */
 
@@ -50,7 +51,10 @@ dvi_status study_integrate(order_study *s, const double *q, long steps)
 {
   const double h = s->t_end / (double)steps;
   dvi_status status = dvi_integrator_start(s->integrator, 0.0, q, s->scene->p);
-  for (long i = 0; i < steps && status == DVI_OK; i++) status = dvi_integrator_step(s->integrator, h);
+  for (long i = 0; i < steps && status == DVI_OK; i++) {
+    if (s->progress != NULL && i % PROGRESS_STEPS == 0) progress_show(s->progress, -1.0, s->method);
+    status = dvi_integrator_step(s->integrator, h);
+  }
   return status;
 }
 

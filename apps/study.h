@@ -3,6 +3,7 @@
 #define STUDY_H
 #include "judge.h"
 #include "problem.h"
+#include "progress.h"
 
 /** An error must exceed what blurs it by this factor to count. */
 #define STUDY_FLOOR_MARGIN 10.0
@@ -14,6 +15,7 @@ typedef struct order_study {
   const char *method;
   double t_end;
   dvi_integrator *integrator; /**< owned */
+  progress_line *progress;    /**< shown while it runs; NULL: none */
   int order;                  /**< that the method claims */
   double first_error;         /**< where the first level's error should lie, relative to study_size; 0: chosen by the order */
   double ceiling;             /**< errors above this are too large to tell an order */

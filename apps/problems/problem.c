@@ -1,4 +1,5 @@
 /* The table of problems: finding one, reading its settings, making it. */
+#include <float.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdint.h>
@@ -88,6 +89,27 @@ static dvi_status refuse_name(const report *r, const problem_entry *entry, const
   return refuse(r, DVI_BAD_OPTION, "%s has no parameter '%.*s'; it has: %s", entry->name, (int)length, setting, names);
 }
 
+/* The shortest spelling that is read back as x. */
+static void spell(double x, char *text, size_t size)
+{
+  for (int digits = 1; digits <= DBL_DECIMAL_DIG; digits++) {
+    (void)snprintf(text, size, "%.*g", digits, x);
+    const double read = strtod(text, NULL);
+    if (!(read < x) && !(read > x)) return;
+  }
+}
+
+/* Refuse a number outside of a parameter's range, and say where that ends. */
+static dvi_status refuse_value(const report *r, const problem_entry *entry, const char *setting, const problem_parameter *parameter,
+                               double x)
+{
+  char limit[32];
+  spell(x < parameter->least ? parameter->least : parameter->most, limit, sizeof limit);
+  return refuse(r, DVI_BAD_OPTION, "%s: %s is %s %s, the %s that is taken; %s is %s", entry->name, setting,
+                x < parameter->least ? "below" : "above", limit, x < parameter->least ? "least" : "most", parameter->name,
+                parameter->help);
+}
+
 /* Read one "name=value". */
 static dvi_status read_setting(const report *r, const problem_entry *entry, const char *setting, double *value)
 {
@@ -103,8 +125,10 @@ static dvi_status read_setting(const report *r, const problem_entry *entry, cons
   char *end = NULL;
   const double x = strtod(equals + 1, &end);
   const int number = end != equals + 1 && *end == '\0' && isfinite(x);
-  if (!number || x < parameters[i].least || x > parameters[i].most || (parameters[i].whole && floor(x) != x))
-    return refuse(r, DVI_BAD_OPTION, "%s: %s is refused; %s is %s", entry->name, setting, parameters[i].name, parameters[i].help);
+  if (!number || (parameters[i].whole && floor(x) != x))
+    return refuse(r, DVI_BAD_OPTION, "%s: %s is no %s; %s is %s", entry->name, setting,
+                  parameters[i].whole ? "whole number" : "finite number", parameters[i].name, parameters[i].help);
+  if (x < parameters[i].least || x > parameters[i].most) return refuse_value(r, entry, setting, &parameters[i], x);
   value[i] = x;
   return DVI_OK;
 }

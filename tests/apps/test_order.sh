@@ -36,6 +36,22 @@ says out 'levels' 'the remedy is named'
 # Steps much too large are not asymptotic: the order is missed or not decided, never confirmed.
 expect 3 'coarse steps' order kepler --method verlet --h 0.3 --ratio 1.1 --levels 6 --csv order.csv
 says order.csv '^verlet,kepler,' 'the table is written although the check failed'
+# Lobatto's error approaches its order from above: the coarse levels are left out of the fit, by their slopes alone.
+expect 0 'a slope that settles late' order kepler --method galerkin:degree=4,quadrature=lobatto --csv settle.csv
+says out 'fitted 8.[01]' 'the settled part is fitted'
+[ "$(wc -l <settle.csv)" -eq 13 ] || fail 'twelve levels of a high order'
+expect 0 'a window at the fine end' order pendulum --method galerkin:degree=5
+grep -q 'to levels 1 to' out && fail 'the coarse levels of pendulum are left out'
+# Between steps that are too large and roundoff a high order has no room: that is said, and no number is given as the order.
+expect 3 'order 16' order kepler --method galerkin:degree=8
+says out 'not decided: the slope does not settle' 'why order 16 is not decided'
+# A slope that is settled, but not at the claimed order, is a miss: here higher terms count down to the floor.
+expect 3 'a miss' order pythagorean --method galerkin:degree=5
+says out 'fitted 9\.[4-6].*MISSED' 'the miss is said'
+# The search for levels ends.
+expect 3 'steps without number' order kepler --method verlet --set e=0.999
+says out ' 131072 ' 'the search ends at 2^17 steps'
+says out ' 4194304 ' 'the levels end at 2^22 steps'
 # All levels below the floor.
 expect 3 'below the floor' order oscillator --method galerkin:degree=8 --h 0.1 --levels 5
 

@@ -70,6 +70,20 @@ no_trace 'failures'
 ln -s old.csv link.csv
 expect 0 'through a link' $kepler --t-end 1 --out link.csv
 [ -L link.csv ] && says old.csv '^1,' 'a link stays a link'
+ln -s made.csv dangling.csv
+expect 0 'through a link to nothing' $kepler --t-end 1 --out dangling.csv
+[ -L dangling.csv ] || fail 'a dangling link stays a link'
+[ ! -L made.csv ] && says made.csv '^1,' 'and what it names is made'
+mkdir folder
+ln -s ../made2.csv folder/up.csv
+expect 0 'through a link from another folder' $kepler --t-end 1 --out folder/up.csv
+[ -L folder/up.csv ] && says made2.csv '^1,' 'a link is read from its own folder'
+ln -s nowhere/made.csv astray.csv
+ln -s circle.csv circle.csv
+expect 1 'a link into no folder' $kepler --t-end 1 --out astray.csv
+expect 1 'a link to itself' $kepler --t-end 1 --out circle.csv
+[ -L astray.csv ] && [ -L circle.csv ] || fail 'links that lead nowhere stay'
+no_trace 'links'
 if [ -w /dev/full ]; then
   expect 1 'full device as file' $kepler --t-end 4 --out /dev/full
   [ -c /dev/full ] || fail 'a device stays a device'
@@ -102,6 +116,27 @@ for signal in INT:130 TERM:143; do
   same out resumed.csv "$signal: same bits"
 done
 no_trace 'signals'
+
+# A run may go on in its own checkpoint.
+expect 0 'its own checkpoint' $kepler --t-end 1 --checkpoint own.state --final
+expect 0 'in place' $kepler --t-end 2 --resume own.state --checkpoint ./own.state --final
+expect 0 'and again' $kepler --t-end 3 --resume own.state --final
+cp out again.csv
+expect 0 'in one piece' $kepler --t-end 3 --final
+same again.csv out 'three parts are one run'
+
+# A signal while the problem is built ends the run at once; no file was opened.
+"$dvi" run fpu --method midpoint --set ell=4000000 --t-end 1 --out big.csv --checkpoint big.state 2>err &
+for _ in 1 2 3 4 5; do
+  sleep 0.3
+  kill -INT $! 2>kill.err || break # it has ended; a signal that comes before the program has begun is lost
+done
+code=0
+wait $! || code=$?
+[ "$code" -eq 130 ] || fail "signal during the set-up: exit code $code"
+says err 'before its first step' 'signal during the set-up: it is said'
+for name in big.csv big.state; do [ ! -e "$name" ] || fail "signal during the set-up: $name was written"; done
+no_trace 'signal during the set-up'
 }
 
 # A plot is drawn if gnuplot is there; without it the run says so and is done.

@@ -34,13 +34,51 @@ expect 2 'option without value' run kepler --method verlet --h
 expect 2 'option as value' run kepler --h --method verlet
 expect 2 'flag with value' run kepler --method verlet --final=yes
 for bad in 0.1x '' nan inf 1e999 abc; do expect 2 "h is '$bad'" run kepler --method verlet --h "$bad"; done
-for bad in 0 -1 1.5 99999999999999999999 x; do expect 2 "every is '$bad'" run kepler --method verlet --every "$bad"; done
+for bad in 0 -1 1.5 99999999999999999999 x '' +2 ' 2' '2 ' 02; do
+  expect 2 "every is '$bad'" run kepler --method verlet --every "$bad"
+  expect 2 "levels are '$bad'" order kepler --method verlet --levels "$bad"
+  expect 2 "degree is '$bad'" run kepler --method "galerkin:degree=$bad" --t-end 1
+done
+expect 2 'every and final' run kepler --method verlet --every 2 --final
+says err '--final leaves out' 'why every and final do not go together'
+expect 2 'parameter beyond its range' run fpu --method verlet --set omega=1e300
+says err 'above 1e+50, the most that is taken' 'the true reason'
+expect 2 'parameter below its range' run kepler --method verlet --set e=-0.5
+says err 'below 0, the least that is taken' 'the end of the range'
+expect 2 'parameter that is no number' run kepler --method verlet --set e=nan
+says err 'no finite number' 'no number'
+
+# Files that would overwrite each other, and plots that would not be what their name says.
+ln -s a.svg link.svg
+expect 2 'out and checkpoint' run kepler --method verlet --out a --checkpoint ./a
+says err '--out a and --checkpoint ./a are the same file' 'both are named'
+echo old >there.csv
+ln -s there.csv another.csv
+expect 2 'files that are there' run kepler --method verlet --out there.csv --checkpoint another.csv
+[ "$(cat there.csv)" = old ] || fail 'a refused command leaves the old file'
+expect 2 'out and plot' run kepler --method verlet --out a.svg --plot "$PWD/a.svg"
+expect 2 'checkpoint and plot, by a link' run kepler --method verlet --checkpoint a.svg --plot link.svg
+expect 2 'resume and out' run kepler --method verlet --resume a --out a
+expect 2 'resume and plot' run kepler --method verlet --resume a.svg --plot a.svg
+expect 2 'checkpoint on standard output' run kepler --method verlet --checkpoint -
+for command in order bench; do
+  expect 2 "$command: csv and plot" "$command" kepler --method verlet --csv a.svg --plot ./a.svg
+  says err 'the same file' "$command: both are named"
+done
+for command in run order bench; do
+  for name in - x.png svg x.svg.gz; do
+    expect 2 "$command: plot $name" "$command" kepler --method verlet --plot "$name"
+    says err "ends in .svg" "$command: what a plot is"
+  done
+done
+for name in a a.svg x.png ./-; do [ ! -e "$name" ] || fail "$name was written by a refused command"; done
 expect 2 'h zero' run kepler --method verlet --h 0
 expect 2 'h against t-end' run kepler --method verlet --h -0.1 --t-end 5
 expect 2 'nodes below degree' run kepler --method galerkin:degree=4,nodes=2
 expect 2 'verlet on a general Lagrangian' run double-pendulum --method verlet
 expect 2 'checkpoint-every alone' run kepler --method verlet --checkpoint-every 5
 expect 2 'order without method' order kepler
+expect 2 'checkpoint-every without a number' run kepler --method verlet --checkpoint a --checkpoint-every +5
 expect 2 'too many levels' order kepler --method verlet --levels 1000
 expect 2 'ratio one' order kepler --method verlet --ratio 1
 expect 2 'unknown peer' bench kepler --against cvodes

@@ -305,6 +305,20 @@ START_TEST(a_place_that_cannot_be_written_is_reported)
 }
 END_TEST
 
+START_TEST(a_link_is_followed_and_stays)
+{
+  scene s = made_scene();
+  struct stat about;
+  write_bytes(in_folder("target"), s.past.at, 1);
+  ck_assert_int_eq(symlink("target", in_folder("link")), 0);
+  ck_assert_int_eq(dvi_integrator_save(s.integrator, in_folder("link")), DVI_OK);
+  ck_assert_int_eq(lstat(in_folder("link"), &about), 0);
+  ck_assert(S_ISLNK(about.st_mode));
+  ck_assert_int_eq(dvi_integrator_restore(s.integrator, in_folder("target")), DVI_OK);
+  clear_scene(&s);
+}
+END_TEST
+
 /* A limit on the size of files stands for the full disk: writing stops in mid-file. */
 START_TEST(a_full_disk_leaves_the_old_checkpoint)
 {
@@ -349,6 +363,7 @@ int main(void)
   tcase_add_test(tests, a_checkpoint_of_another_start_is_taken);
   tcase_add_test(tests, a_file_that_is_none_or_a_folder_cannot_be_read);
   tcase_add_test(tests, a_place_that_cannot_be_written_is_reported);
+  tcase_add_test(tests, a_link_is_followed_and_stays);
   tcase_add_test(tests, a_full_disk_leaves_the_old_checkpoint);
   return run_tests("method/checkpoint", tests);
 }

@@ -5,8 +5,9 @@
  *
  * Layout, in the machine's own byte order (a mark tells a foreign one): the header, the specification, then numbers: the state and the one before it
  * with their carries, the method's memory. The checksum is FNV-1a over all that precedes it. */
-#define _POSIX_C_SOURCE 200809L /* fsync, fileno */
+#define _XOPEN_SOURCE 700 /* fsync, fileno, realpath */
 #include <errno.h>
+#include <limits.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -106,10 +107,11 @@ static void pack(const dvi_integrator *I, unsigned char *file)
   memcpy(file + size, &sum, sizeof sum);
 }
 
-/* The file is written beside its place and then moved there: a full disk leaves the old one alone. */
-static dvi_status write_whole(const char *path, const unsigned char *file, size_t size)
+/* The file is written beside its place and then moved there: a full disk leaves the old one alone. A link is followed, not replaced. */
+static dvi_status write_whole(const char *link, const unsigned char *file, size_t size)
 {
-  char beside[4096];
+  char beside[PATH_MAX + 8], real[PATH_MAX];
+  const char *path = realpath(link, real) != NULL ? real : link;
   const int length = snprintf(beside, sizeof beside, "%s.part", path);
   if (length < 0 || (size_t)length >= sizeof beside) return dvi__fail(DVI_IO_ERROR, "checkpoint: the path is too long");
   FILE *stream = fopen(beside, "wb");
