@@ -11,7 +11,7 @@
 #include "num/finite.h"
 #include "system/evaluator_struct.h"
 
-enum { MOST_ITERATIONS = 100 };
+enum { MOST_ITERATIONS = 100, MOST_HALVINGS = 30 };
 
 /* Where Newton's method stands: v, and the arrays of one iteration, all [n]. */
 typedef struct search {
@@ -51,11 +51,12 @@ static double solve(const search *s, const double *residual, double *step)
 static dvi_status advance(search *s, double *size, int *settled)
 {
   const int n = s->e->system->n;
-  const double scale = max_norm(n, s->v), least = 0x1p-30;
+  const double scale = max_norm(n, s->v);
   const int small = *size <= 1e-10 * scale || max_norm(n, s->residual) <= 1e-10 * max_norm(n, s->p);
   dvi_status status = DVI_OK;
   *settled = 0;
-  for (double part = 1; part >= least; part *= 0.5) {
+  for (int halvings = 0; halvings <= MOST_HALVINGS; halvings++) {
+    const double part = ldexp(1.0, -halvings);
     for (int i = 0; i < n; i++) s->trial[i] = s->v[i] + part * s->step[i];
     status = find_residual(s, s->trial, s->trial_residual);
     if (status < 0) return status;
