@@ -16,7 +16,7 @@
 #include "study.h"
 #include "table.h"
 
-enum { LEVELS_DEFAULT = 6, LEVELS_MAX = 20, ROUNDS_DEFAULT = 5, JOBS_MAX = 1024, CODES_MAX = 16, TITLE_SIZE = 160 };
+enum { LEVELS_DEFAULT = 6, LEVELS_MAX = 20, ROUNDS_DEFAULT = 5, CODES_MAX = 16, TITLE_SIZE = 160 };
 
 /* What runs if no --method is given; those that the problem's structure excludes are left out. */
 static const char *const selection[] = {
@@ -25,7 +25,7 @@ static const char *const selection[] = {
 static const double first_error = 1e-2; /* of each method, relative to the solution */
 
 static const double tolerances[] = {1e-4, 1e-6, 1e-8, 1e-10, 1e-12};
-enum { TOLERANCES = sizeof tolerances / sizeof *tolerances };
+enum { TOLERANCES = sizeof tolerances / sizeof *tolerances, JOBS_MAX = WORDS_MAX * LEVELS_MAX + CODES_MAX * TOLERANCES };
 
 /* What the command line asks for. */
 typedef struct bench_request {
@@ -65,7 +65,7 @@ static int add_method(bench *b, const char *method)
   study.first_error = first_error;
   study.progress = &b->progress;
   dvi_status status = choose_levels(&study, 0.0, 0.0, levels, steps, &room);
-  for (int k = 0; k < levels && status == DVI_OK && b->jobs < JOBS_MAX; k++) {
+  for (int k = 0; k < levels && status == DVI_OK; k++) {
     bench_job *job = &b->job[b->jobs];
     level_trial trial = {.steps = steps[k]};
     job->integrator = method;
@@ -83,7 +83,7 @@ static int add_method(bench *b, const char *method)
 /* Add a SUNDIALS code at all tolerances. One that it cannot keep is left out, and said. */
 static void add_code(bench *b, dvi_reference_code code)
 {
-  for (int k = 0; k < TOLERANCES && b->jobs < JOBS_MAX; k++) {
+  for (int k = 0; k < TOLERANCES; k++) {
     bench_job *job = &b->job[b->jobs];
     progress_show(&b->progress, -1.0, dvi_reference_name(code));
     job->integrator = dvi_reference_name(code);
@@ -266,25 +266,32 @@ static int bench_problem(bench_request *request, const problem *scene)
   return code;
 }
 
-/* Read "cvode,ida" into codes. "cvode" alone is its Adams formula, the better one where nothing is stiff. */
+/* Read one name. "cvode" alone is its Adams formula, the better one where nothing is stiff. */
+static int read_code(bench_request *request, const char *text, size_t length)
+{
+  int code = 0;
+  const char *name;
+  while ((name = dvi_reference_name((dvi_reference_code)code)) != NULL && strncmp(name, text, length) != 0) code++;
+  const bool whole = name != NULL && (name[length] == '\0' || (length == strlen("cvode") && name[length] == '-'));
+  if (!whole || length == 0)
+    return usage_error("bench: --against knows cvode (cvode-adams, cvode-bdf), arkode and ida, not '%.*s'", (int)length, text);
+  for (int i = 0; i < request->codes; i++)
+    if (request->code[i] == (dvi_reference_code)code) return usage_error("bench: --against names %s twice", name);
+  request->code[request->codes++] = (dvi_reference_code)code; /* each once: there are fewer than CODES_MAX */
+  return DONE;
+}
+
+/* Read "cvode,ida" into codes. */
 static int read_codes(bench_request *request)
 {
+  int result = DONE;
   for (int i = 0; i < request->against.count; i++)
-    for (const char *text = request->against.word[i]; *text != '\0'; text += *text == ',') {
+    for (const char *text = request->against.word[i]; text != NULL && result == DONE;) {
       const size_t length = strcspn(text, ",");
-      int code = 0;
-      while (dvi_reference_name((dvi_reference_code)code) != NULL &&
-             strncmp(dvi_reference_name((dvi_reference_code)code), text, length) != 0)
-        code++;
-      const char *name = dvi_reference_name((dvi_reference_code)code);
-      const bool whole = name != NULL && (name[length] == '\0' || (length == strlen("cvode") && name[length] == '-'));
-      if (!whole || length == 0)
-        return usage_error("bench: --against knows cvode (cvode-adams, cvode-bdf), arkode and ida, not '%.*s'", (int)length, text);
-      if (request->codes == CODES_MAX) return usage_error("bench: --against names more than %d codes", (int)CODES_MAX);
-      request->code[request->codes++] = (dvi_reference_code)code;
-      text += length;
+      result = read_code(request, text, length);
+      text = text[length] == ',' ? text + length + 1 : NULL;
     }
-  return DONE;
+  return result;
 }
 
 static int check_request(bench_request *request)

@@ -9,11 +9,11 @@
 
 enum { NAMES_SHOWN = 12 };
 
-/* The value that a parameter has: the last setting of its name, else the default. */
+/* The value that a parameter has: its setting, else the default. */
 static void print_parameter(const problem_parameter *parameter, const words *settings)
 {
   const size_t length = strlen(parameter->name);
-  for (int i = settings->count - 1; i >= 0; i--)
+  for (int i = 0; i < settings->count; i++)
     if (strncmp(settings->word[i], parameter->name, length) == 0 && settings->word[i][length] == '=') {
       (void)printf("  parameter    %s   %s\n", settings->word[i], parameter->help);
       return;

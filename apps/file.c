@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -11,6 +12,10 @@
 #include "command.h"
 
 enum { LINK_SIZE = 4096, LINKS_MAX = 40 };
+
+/* The temporary file that there is, for a signal handler to remove: the command writes one file at a time. Its name stands here
+ * from before it is made until after it is gone. */
+static _Atomic(const char *) unfinished;
 
 static bool refuse(const char *path)
 {
@@ -71,6 +76,7 @@ static bool open_temporary(whole_file *file, const struct stat *old)
   (void)snprintf(tail, sizeof tail, ".part-%ld", (long)getpid());
   file->temporary = join(file->path, strlen(file->path), tail);
   if (file->temporary == NULL) return false;
+  unfinished = file->temporary;
   (void)unlink(file->temporary); /* left over from a killed process of the same number */
   const int descriptor = open(file->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor < 0) return false;
@@ -183,6 +189,7 @@ bool file_keep(whole_file *file)
   if (good && file->temporary != NULL) {
     good = rename(file->temporary, file->path) == 0;
     if (good) {
+      unfinished = NULL;
       free(file->temporary);
       file->temporary = NULL;
       sync_folder(file->path);
@@ -196,10 +203,19 @@ bool file_keep(whole_file *file)
 void file_discard(whole_file *file)
 {
   if (file->stream != NULL && file->path != NULL) (void)fclose(file->stream);
-  if (file->temporary != NULL) (void)unlink(file->temporary);
+  if (file->temporary != NULL) {
+    (void)unlink(file->temporary);
+    unfinished = NULL;
+  }
   free(file->temporary);
   free(file->path);
   memset(file, 0, sizeof *file);
+}
+
+void file_remove_unfinished(void)
+{
+  const char *temporary = unfinished;
+  if (temporary != NULL) (void)unlink(temporary);
 }
 
 bool file_writable(const char *path)

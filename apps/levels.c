@@ -6,7 +6,6 @@
 #include <string.h>
 
 enum { SEARCH_TRIES = 40, ROOM_LEVELS = 6 };
-static const long steps_max = 1L << 24;  /* of a first level that the user asked for */
 static const long search_max = 1L << 17; /* of one that is searched: the search shall end within seconds */
 static const long finest_max = 1L << 22; /* of the last level after that one */
 static const double level_room = 1e5;    /* first error over the floor, at least: five decades for the levels */
@@ -105,7 +104,7 @@ static bool has_room(const order_study *s, const level_trial *first, int levels)
 dvi_status choose_levels(order_study *study, double h, double ratio, int levels, long *steps, bool *room)
 {
   level_trial first;
-  const double wanted = h > 0.0 ? within(fabs(study->t_end) / h, 1.0, (double)steps_max) : 0.0;
+  const double wanted = h > 0.0 ? within(fabs(study->t_end) / h, 1.0, (double)FIRST_STEPS_MAX) : 0.0;
   dvi_status status = wanted > 0.0 ? study_run(study, lround(wanted), &first) : find_first(study, &first);
   if (status == DVI_OK) status = find_floor(study, first.steps);
   if (status == DVI_OK && !(wanted > 0.0)) status = find_first(study, &first); /* now that the floor is known */

@@ -5,10 +5,13 @@
 
 #include "study.h"
 
+/** The most steps of a first level that is asked for. */
+enum { FIRST_STEPS_MAX = 1 << 24 };
+
 /** Choose how many steps each level takes, so that the errors lie above the floor: each level at most halves h, and less for high
  *  orders, of which a halving would cross the floor at once. Sets study->floor.
  *
- *  @param      h       the first step; 0: searched, the rougher the lower the order
+ *  @param      h       the first step, of which at most FIRST_STEPS_MAX reach the end; 0: searched, the rougher the lower the order
  *  @param      ratio   of neighbouring steps; 0: chosen
  *  @param      levels  how many
  *  @param[out] steps   [levels], ascending

@@ -51,7 +51,8 @@ static void print_problems(void)
   for (int i = 0; i < problem_count(); i++) {
     (void)printf("%-*s%s\n", NAME_COLUMN, problem_name(i), problem_summary(i));
     for (const problem_parameter *k = problem_parameters(i); k->name != NULL; k++)
-      (void)printf("    %-*s  %s (default %g)\n", KEY_COLUMN, k->name, k->help, k->value);
+      (void)printf("    %-*s  %s (default %g%s)\n", KEY_COLUMN, k->name, k->help, k->value,
+                   k->start_only ? "; only places the start" : "");
   }
   (void)printf("\nParameters are set with --set name=value, for example dvi run kepler --method verlet --set e=0.9\n");
 }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "command.h"
+#include "signals.h"
 #include "spelling.h"
 
 typedef struct subcommand {
@@ -39,7 +40,7 @@ static const char help[] =
     "  dvi bench kepler --against cvode,ida --plot bench.svg\n"
     "\n"
     "Exit codes: 0 done; 1 a numerical failure, or a file that cannot be read or written; 2 a wrong command line;\n"
-    "3 a check failed; 130 or 143 a run that Ctrl-C or SIGTERM ended.\n";
+    "3 a check failed; 129, 130 or 143: SIGHUP, Ctrl-C or SIGTERM ended it.\n";
 
 static const char *subcommand_at(int k, const void *list)
 {
@@ -52,11 +53,15 @@ static int dispatch(int argc, char **argv)
     (void)fputs(help, stderr);
     return USAGE;
   }
-  if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "help") == 0) {
+  const bool asks_version = strcmp(argv[1], "--version") == 0;
+  const bool asks_help = strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "help") == 0;
+  if (argc > 2 && (asks_version || asks_help))
+    return usage_error("'%s' stands alone, '%s' is too many; dvi COMMAND --help explains a command", argv[1], argv[2]);
+  if (asks_help) {
     (void)fputs(help, stdout);
     return DONE;
   }
-  if (strcmp(argv[1], "--version") == 0) {
+  if (asks_version) {
     (void)printf("dvi %s (SUNDIALS %s)\n", dvi_version(), dvi_reference_version());
     return DONE;
   }
@@ -72,6 +77,7 @@ int main(int argc, char **argv)
   /* A reader that goes away and a file that outgrows its limit shall be write errors, with their messages and clean-up. */
   (void)signal(SIGPIPE, SIG_IGN);
   (void)signal(SIGXFSZ, SIG_IGN);
+  signals_end(false, NULL);
   const int code = dispatch(argc, argv);
   return output_flushed() || code != DONE ? code : FAILED;
 }

@@ -54,6 +54,13 @@ static const char *take_word(const char *text, const char *stops, char *word)
   return text[length] != '\0' ? text + length + 1 : NULL;
 }
 
+/* Whether a setting is of the form name=value for that name. */
+static bool is_value_of(const char *setting, const char *name)
+{
+  const size_t length = strlen(name);
+  return strncmp(setting, name, length) == 0 && setting[length] == '=';
+}
+
 static void hint_at_setting(const words *settings, const problem_parameter *parameters, char *hint)
 {
   char word[WORD_SIZE];
@@ -79,6 +86,15 @@ int open_problem(const char *name, const words *settings, problem **scene)
   hint_at_setting(settings, problem_parameters(index), hint);
   complain("%s%s", message, hint);
   return status == DVI_BAD_OPTION ? USAGE : FAILED;
+}
+
+const char *start_setting(const char *name, const words *settings)
+{
+  const int index = problem_find(name);
+  for (int i = 0; i < settings->count && index >= 0; i++)
+    for (const problem_parameter *k = problem_parameters(index); k->name != NULL; k++)
+      if (k->start_only && is_value_of(settings->word[i], k->name)) return settings->word[i];
+  return NULL;
 }
 
 static int method_index(const char *name)

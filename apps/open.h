@@ -8,6 +8,9 @@
  *  exit code. */
 int open_problem(const char *name, const words *settings, problem **scene);
 
+/** The first setting of a parameter that only places the start; NULL if there is none, or no such problem. */
+const char *start_setting(const char *name, const words *settings);
+
 /** Make an integrator for it from a method's specification, in the same manner. */
 int open_integrator(const problem *scene, const char *method, dvi_integrator **integrator);
 #endif

@@ -104,6 +104,10 @@ static int take_option(const command_line *command, int argc, char **argv, int *
 
 static int take_operand(const command_line *command, const char *text, const char **operand)
 {
+  /* Not help: whoever writes -h 0.1 means the step. */
+  if (strcmp(text, "-h") == 0)
+    return usage_error("%s: unknown option '-h'; %sdvi %s --help explains all options", command->name,
+                       find_option(command, "h", 1) >= 0 ? "--h sets the step, " : "", command->name);
   if (text[0] == '-' && text[1] != '\0')
     return usage_error("%s: unknown option '%s'; options begin with two dashes, see dvi %s --help", command->name, text,
                        command->name);
@@ -117,7 +121,7 @@ bool options_parse(const command_line *command, int argc, char **argv, const cha
   bool given[OPTIONS_MAX] = {false};
   *operand = NULL;
   for (int i = 0; i < argc; i++) {
-    if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) {
+    if (strcmp(argv[i], "--help") == 0) {
       print_help(command);
       *exit_code = DONE;
       return false;

@@ -127,13 +127,19 @@ static int study_until(hearing *ask, const char *method, double t_end, bool *roo
   return FAILED;
 }
 
+/* The end of the study, unless it is lengthened. */
+static double study_end(const order_request *request, const problem *scene)
+{
+  return isnan(request->t_end) ? scene->order_t_end : request->t_end;
+}
+
 /* One method. If the problem's own span is so short that a few steps meet the floor, it is lengthened; unless that would exchange
  * the stored result, which is for this span, for IDA, whose error would leave less room than the longer span gains. */
 static int study_method(hearing *ask, const char *method, order_result *result)
 {
   const order_request *request = ask->request;
   const bool fixed = !isnan(request->t_end) || !isnan(request->h) || (ask->scene->exact == NULL && ask->scene->digits_q != NULL);
-  double t_end = isnan(request->t_end) ? ask->scene->order_t_end : request->t_end;
+  double t_end = study_end(request, ask->scene);
   for (int i = 0;; i++) {
     bool room = !fixed && i < LENGTHENINGS;
     const bool must_fit = room;
@@ -141,6 +147,15 @@ static int study_method(hearing *ask, const char *method, order_result *result)
     if (code != DONE || room || !must_fit) return code;
     t_end *= lengthening;
   }
+}
+
+/* Refuse a first step that would not be taken as it is. */
+static int check_step(const order_request *request, const problem *scene)
+{
+  const double t_end = study_end(request, scene);
+  if (!(fabs(t_end) / request->h > FIRST_STEPS_MAX)) return DONE;
+  return usage_error("order: --h %g is too small: %g steps to t = %g, %d are possible at the first level", request->h,
+                     fabs(t_end) / request->h, t_end, (int)FIRST_STEPS_MAX);
 }
 
 static bool write_csv(const result_table *rows, const char *path)
@@ -271,7 +286,8 @@ int order_command(int argc, char **argv)
   problem *scene;
   code = open_problem(name, &r.settings, &scene);
   if (code != DONE) return code;
-  code = check_methods(&r, scene);
+  code = check_step(&r, scene);
+  if (code == DONE) code = check_methods(&r, scene);
   if (code == DONE) code = study_all(&r, scene);
   problem_destroy(&scene);
   return code;

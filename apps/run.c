@@ -1,12 +1,9 @@
 /* dvi run: one trajectory with its invariants, as CSV. */
-#define _POSIX_C_SOURCE 200809L
 #include <errno.h>
 #include <math.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "command.h"
 #include "file.h"
@@ -14,6 +11,7 @@
 #include "options.h"
 #include "outputs.h"
 #include "progress.h"
+#include "signals.h"
 #include "table.h"
 #include "trace.h"
 
@@ -37,36 +35,12 @@ typedef struct recorder {
   double t_start, t; /* where the run began; where the last observed step ended */
   long step;         /* counted from t = 0, so that a resumed run writes the rows of an uninterrupted one */
   bool begun, row_written, stop_silently;
+  const volatile sig_atomic_t *caught; /* the signal that ends the run after its step; 0: none yet */
 } recorder;
 
-/* Set by the signal, read by the driver after each step. */
-static volatile sig_atomic_t caught;
-
-/* Before that, while the problem is built, no file is open: the signal can end the process at once. */
-static volatile sig_atomic_t files_open;
-
-static void on_signal(int number)
-{
-  static const char sentence[] = "dvi: run: a signal ended the run before its first step; nothing was written\n";
-  if (files_open) {
-    caught = number;
-    return;
-  }
-  const ssize_t written = write(STDERR_FILENO, sentence, sizeof sentence - 1);
-  (void)written;
-  _exit(128 + number);
-}
-
-/* The second signal of a kind ends the process at once. */
-static void catch_signals(void)
-{
-  struct sigaction action;
-  memset(&action, 0, sizeof action);
-  action.sa_handler = on_signal;
-  action.sa_flags = (int)SA_RESETHAND;
-  (void)sigaction(SIGINT, &action, NULL);
-  (void)sigaction(SIGTERM, &action, NULL);
-}
+/* Before the first step no file is open: a signal ends the process at once. */
+static const char ended_before[] = "dvi: run: a signal ended the run before its first step; nothing was written\n";
+static const char ended_again[] = "dvi: run: a second Ctrl-C ended the run at once; FILEs not yet complete stay as they were\n";
 
 static void write_header(recorder *r)
 {
@@ -164,7 +138,7 @@ static long step_number(double t, double h)
 
 static void say_interrupted(const recorder *r)
 {
-  complain("run: signal %d ended the run at t = %.17g of %g; the output is complete up to there", (int)caught, r->t,
+  complain("run: signal %d ended the run at t = %.17g of %g; the output is complete up to there", (int)*r->caught, r->t,
            r->request->t_end);
   if (r->request->checkpoint != NULL) complain("run: continue with --resume %s", r->request->checkpoint);
 }
@@ -179,7 +153,7 @@ static int advance(recorder *r, dvi_integrator *integrator)
                                    .user = r,
                                    .checkpoint = request->checkpoint,
                                    .checkpoint_every = request->checkpoint_every,
-                                   .cancel = &caught};
+                                   .cancel = r->caught};
   r->t_start = dvi_integrator_time(integrator);
   r->step = step_number(r->t_start, request->h);
   write_header(r);
@@ -189,8 +163,8 @@ static int advance(recorder *r, dvi_integrator *integrator)
   if (r->stop_silently) return FAILED;
   const bool written = (status != DVI_OK && request->final) || write_last_row(r, integrator);
   if (status != DVI_OK) return library_error(status) == USAGE ? USAGE : FAILED;
-  if (caught != 0) say_interrupted(r);
-  return !written ? FAILED : caught != 0 ? 128 + (int)caught : DONE;
+  if (*r->caught != 0) say_interrupted(r);
+  return !written ? FAILED : *r->caught != 0 ? 128 + (int)*r->caught : DONE;
 }
 
 static bool place(const run_request *request, const problem *scene, dvi_integrator *integrator)
@@ -222,7 +196,7 @@ static int record(run_request *request, const problem *scene, dvi_integrator *in
   recorder r = {.request = request, .scene = scene};
   r.invariant = calloc((size_t)dvi_system_invariant_count(scene->system), sizeof *r.invariant);
   int code = FAILED;
-  files_open = 1;
+  r.caught = signals_note(ended_again);
   if (r.invariant == NULL)
     complain("out of memory");
   else if ((request->plot == NULL || trace_init(&r.trace, scene->n)) && file_open(&r.out, request->out))
@@ -274,6 +248,14 @@ static int check_request(const run_request *request)
   return request->plot == NULL || file_writable(request->plot) ? DONE : FAILED;
 }
 
+/* A setting that a resumed run would not heed. */
+static int check_settings(const char *name, const words *settings)
+{
+  const char *setting = start_setting(name, settings);
+  if (setting == NULL) return DONE;
+  return usage_error("run: --set %s places the start, which --resume replaces; leave out one of them", setting);
+}
+
 static const char details[] =
     "\n"
     "Columns: t, the coordinates, their momenta (p_ and the coordinate's name), energy, the other invariants;\n"
@@ -281,11 +263,12 @@ static const char details[] =
     "checkpoint), the last one is the end, wherever --every puts the rows between.\n"
     "\n"
     "FILEs are written whole or not at all: a run that fails leaves what was there. Rows on standard output come\n"
-    "as they are computed. Ctrl-C and SIGTERM end a run after the current step, with the output complete, the\n"
-    "checkpoint written, and exit code 130 or 143; before the first step they end it at once, and nothing is written.\n"
+    "as they are computed. Ctrl-C, SIGTERM and SIGHUP end a run after the current step, with the output complete, the\n"
+    "checkpoint written, and exit code 130, 143 or 129; before the first step they end it at once, and nothing is\n"
+    "written. A second Ctrl-C ends it at once.\n"
     "\n"
     "A checkpoint holds the state of the method, not the command line: resume with the same problem, method and\n"
-    "step, and the run continues bit for bit.\n"
+    "step, and the run continues bit for bit. Parameters that only place the start cannot be set then.\n"
     "\n"
     "Examples:\n"
     "  dvi run kepler --method galerkin:degree=4 --h 0.1 --t-end 100 --out orbit.csv --plot orbit.svg\n"
@@ -333,9 +316,10 @@ int run_command(int argc, char **argv)
   int code;
   if (!options_parse(&command, argc, argv, &name, &code)) return code;
   code = check_request(&r);
+  if (code == DONE && r.resume != NULL) code = check_settings(name, &r.settings);
   if (code != DONE) return code;
   problem *scene;
-  catch_signals();
+  signals_end(true, ended_before);
   code = open_problem(name, &r.settings, &scene);
   if (code != DONE) return code;
   code = run(&r, scene);

@@ -139,7 +139,12 @@ static dvi_status make(const double *setting, problem *made)
 }
 
 static const problem_parameter parameters[] = {
-    {.name = "e", .value = 0.6, .least = 0.0, .most = 1.0 - 0.5 * DBL_EPSILON, .help = "the eccentricity, 0 <= e < 1"},
+    {.name = "e",
+     .value = 0.6,
+     .least = 0.0,
+     .most = 1.0 - 0.5 * DBL_EPSILON,
+     .start_only = 1,
+     .help = "the eccentricity, 0 <= e < 1"},
     {.name = NULL},
 };
 

@@ -43,6 +43,7 @@ static const problem_parameter parameters[] = {
      .value = 1.1592794807274085998, /* acos 0.4 */
      .least = -DBL_MAX,
      .most = DBL_MAX,
+     .start_only = 1,
      .help = "the angle from the top at which it starts at rest, any number; 1e-3 is hard"},
     {.name = NULL},
 };

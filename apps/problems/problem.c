@@ -110,8 +110,8 @@ static dvi_status refuse_value(const report *r, const problem_entry *entry, cons
                 parameter->help);
 }
 
-/* Read one "name=value". */
-static dvi_status read_setting(const report *r, const problem_entry *entry, const char *setting, double *value)
+/* Read one "name=value"; given: which parameters were read before. */
+static dvi_status read_setting(const report *r, const problem_entry *entry, const char *setting, double *value, int *given)
 {
   const char *equals = setting ? strchr(setting, '=') : NULL;
   if (!equals)
@@ -121,6 +121,8 @@ static dvi_status read_setting(const report *r, const problem_entry *entry, cons
   int i = 0;
   while (parameters[i].name && (strncmp(parameters[i].name, setting, length) != 0 || parameters[i].name[length])) i++;
   if (!parameters[i].name) return refuse_name(r, entry, setting, length);
+  if (given[i]) return refuse(r, DVI_BAD_OPTION, "%s: %s is set twice", entry->name, parameters[i].name);
+  given[i] = 1;
 
   char *end = NULL;
   const double x = strtod(equals + 1, &end);
@@ -169,9 +171,10 @@ dvi_status problem_create(const char *name, int setting_count, const char *const
   if (!entry) return refuse(&r, DVI_BAD_OPTION, "there is no problem '%s'; see dvi list problems", name ? name : "");
 
   double value[PROBLEM_PARAMETERS_MAX] = {0.0};
+  int given[PROBLEM_PARAMETERS_MAX] = {0};
   for (int i = 0; parameters_of(entry)[i].name; i++) value[i] = parameters_of(entry)[i].value;
   for (int i = 0; i < setting_count; i++) {
-    const dvi_status status = read_setting(&r, entry, settings[i], value);
+    const dvi_status status = read_setting(&r, entry, settings[i], value, given);
     if (status != DVI_OK) return status;
   }
 

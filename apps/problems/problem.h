@@ -11,6 +11,7 @@ typedef struct problem_parameter {
   double value;       /**< the default */
   double least, most; /**< the values that make sense, both included */
   int whole;          /**< not 0: whole numbers only */
+  int start_only;     /**< not 0: it places the start and leaves the system as it is */
   const char *help;   /**< what it is, and its range in words */
 } problem_parameter;
 
@@ -53,10 +54,10 @@ int problem_find(const char *name);
 /** Make a problem.
  *
  *  @param      name      of the catalogue
- *  @param      settings  [setting_count] texts "name=value"; the last one counts if a name stands twice
+ *  @param      settings  [setting_count] texts "name=value", one for a name
  *  @param[out] out       owned by the caller; NULL on failure
  *  @param[out] message   [size] on failure, a sentence: which name or value is refused, and what is possible
- *  @retval DVI_BAD_OPTION  an unknown name, or a value that makes no sense (e >= 1, N < 2, NaN)
+ *  @retval DVI_BAD_OPTION  an unknown name, or a value that makes no sense (e >= 1, N < 2, NaN), or a name set twice
  *  @retval DVI_NO_MEMORY
  *  @retval (others)        as dvi_system_create and dvi_system_momentum */
 dvi_status problem_create(const char *name, int setting_count, const char *const *settings, problem **out, char *message,

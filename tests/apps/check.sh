@@ -25,4 +25,23 @@ same() { cmp -s "$1" "$2" || fail "$3: $1 and $2 differ"; }
 # no_trace NAME: no temporary file was left behind.
 no_trace() { for left in *.part-*; do [ ! -e "$left" ] || fail "$1: $left was left behind"; done; }
 
+# part_of FILE: its temporary file is there.
+part_of() { ls "$1".part-* >/dev/null 2>&1; }
+
+# wait_for_part FILE: until its temporary file is there, some seconds at most.
+wait_for_part() {
+  for _ in $(seq 100); do
+    part_of "$1" && return
+    sleep 0.1
+  done
+  fail "no temporary file of $1"
+}
+
+# ends CODE NAME: the background process ends with that exit code.
+ends() {
+  code=0
+  wait $! || code=$?
+  [ "$code" -eq "$1" ] || fail "$2: exit code $code instead of $1"
+}
+
 finish() { [ "$failures" -eq 0 ] && echo "all hold" || exit 1; }

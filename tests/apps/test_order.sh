@@ -55,6 +55,22 @@ says out ' 4194304 ' 'the levels end at 2^22 steps'
 # All levels below the floor.
 expect 3 'below the floor' order oscillator --method galerkin:degree=8 --h 0.1 --levels 5
 
+# More steps than there can be are refused, not cut down to what can be.
+expect 2 'a tiny step' order kepler --method verlet --h 1e-9
+says err '16777216 are possible' 'how many steps can be'
+
+# A signal while the plot is drawn, here by a program that takes long, leaves no temporary file.
+mkdir slow
+printf '#!/bin/sh\nexec sleep 3\n' >slow/gnuplot
+chmod +x slow/gnuplot
+for signal in TERM:143 HUP:129; do
+  PATH=$PWD/slow:$PATH "$dvi" order kepler --method verlet --levels 4 --plot drawn.svg >out 2>err &
+  wait_for_part drawn.svg
+  kill -"${signal%:*}" $!
+  ends "${signal#*:}" "$signal"
+  no_trace "$signal"
+done
+
 echo old >old.csv
 expect 2 'bad method among good ones' order kepler --method verlet --method nothing --csv old.csv
 [ "$(cat old.csv)" = old ] || fail 'a refused study leaves the old file'

@@ -98,14 +98,12 @@ fi
 [ -s err ] && fail 'a closed pipe is no news'
 
 # Signals end a run after its step: output complete, checkpoint written, and the run can go on to the same bits.
-for signal in INT:130 TERM:143; do
+for signal in INT:130 TERM:143 HUP:129; do
   # A background job of a script ignores SIGINT unless it takes it back, which dvi does.
   "$dvi" run kepler --method verlet --h 0.0078125 --t-end 1e6 --every 1000 --out cut.csv --checkpoint cut.state 2>err &
   sleep 1
   kill -"${signal%:*}" $!
-  code=0
-  wait $! || code=$?
-  [ "$code" -eq "${signal#*:}" ] || fail "$signal: exit code $code"
+  ends "${signal#*:}" "$signal"
   says err 'resume' "$signal: the way on is named"
   [ "$(awk -F, 'END { print NF }' cut.csv)" -eq 9 ] || fail "$signal: the last row is whole"
   reached=$(tail -n 1 cut.csv | cut -d, -f1)
@@ -116,6 +114,41 @@ for signal in INT:130 TERM:143; do
   same out resumed.csv "$signal: same bits"
 done
 no_trace 'signals'
+# What is started to ignore SIGHUP, as by nohup, goes on after one.
+(trap '' HUP; exec "$dvi" run kepler --method verlet --h 0.0078125 --t-end 1e6 --final --out kept.csv 2>err) &
+wait_for_part kept.csv
+kill -HUP $!
+sleep 0.3
+kill -TERM $!
+ends 143 'SIGHUP under nohup'
+no_trace 'SIGHUP under nohup'
+# While the plot is drawn, here by a program that takes long, the first Ctrl-C is noted and the second ends the run at once.
+# Of SIGTERM one cause may send two.
+mkdir slow
+printf '#!/bin/sh\nexec sleep 3\n' >slow/gnuplot
+chmod +x slow/gnuplot
+PATH=$PWD/slow:$PATH "$dvi" run kepler --method verlet --t-end 5 --final --out drawn.csv --plot drawn.svg 2>err &
+wait_for_part drawn.svg
+for signal in TERM TERM INT; do
+  part_of drawn.svg || fail "the run had ended before $signal"
+  kill -"$signal" $!
+  sleep 0.2
+done
+ends 130 'a second signal'
+says err 'second Ctrl-C' 'a second signal: it is said'
+[ -e drawn.svg ] && fail 'a second signal: there is no plot'
+no_trace 'a second signal'
+
+# What only places the start cannot be set when a checkpoint places it; what belongs to the system can, if it is the same.
+for setting in 'kepler e=0.5' 'kepler e=0.6' 'pendulum q0=1'; do
+  problem=${setting% *} parameter=${setting#* }
+  expect 0 "a checkpoint of $problem" run "$problem" --method verlet --t-end 1 --checkpoint start.state --final
+  expect 2 "$setting and a checkpoint" run "$problem" --method verlet --t-end 2 --resume start.state --set "$parameter"
+  says err "$parameter places the start, which --resume replaces" "why $setting and a checkpoint do not go together"
+done
+expect 0 'a checkpoint of henon-heiles' run henon-heiles --method verlet --set lambda=0.5 --t-end 1 --checkpoint well.state --final
+expect 0 'the same system' run henon-heiles --method verlet --set lambda=0.5 --t-end 2 --resume well.state
+expect 1 'another system' run henon-heiles --method verlet --set lambda=0.25 --t-end 2 --resume well.state
 
 # A run may go on in its own checkpoint.
 expect 0 'its own checkpoint' $kepler --t-end 1 --checkpoint own.state --final
@@ -131,9 +164,7 @@ for _ in 1 2 3 4 5; do
   sleep 0.3
   kill -INT $! 2>kill.err || break # it has ended; a signal that comes before the program has begun is lost
 done
-code=0
-wait $! || code=$?
-[ "$code" -eq 130 ] || fail "signal during the set-up: exit code $code"
+ends 130 'signal during the set-up'
 says err 'before its first step' 'signal during the set-up: it is said'
 for name in big.csv big.state; do [ ! -e "$name" ] || fail "signal during the set-up: $name was written"; done
 no_trace 'signal during the set-up'

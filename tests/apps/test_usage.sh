@@ -13,6 +13,17 @@ for command in list explain run order bench; do
   expect 2 "$command without operand" "$command"
 done
 
+for word in --version --help -h help; do expect 2 "$word and more" "$word" x; done
+expect 0 'short help' -h
+for command in 'list methods' 'explain kepler' 'run kepler --method verlet' 'order kepler --method verlet' 'bench kepler'; do
+  # shellcheck disable=SC2086
+  expect 2 "-h after $command" $command -h 0.1
+  says err '\-\-help explains' "-h after $command: where help is"
+  [ -s out ] && fail "-h after $command prints no help"
+done
+expect 2 '-h of run' run -h 0.1
+says err '\-\-h sets the step' '-h of run: what was meant'
+
 expect 2 'unknown command' rnu
 says err "did you mean 'run'" 'nearest command'
 expect 2 'unknown option' run kepler --method verlet --tend 5
@@ -27,6 +38,10 @@ says err "degree" 'nearest key'
 expect 2 'unknown parameter' run kepler --method verlet --set ee=0.5
 expect 2 'parameter out of range' run kepler --method verlet --set e=1.5
 expect 2 'setting that is no pair' run kepler --method verlet --set e
+expect 2 'parameter twice' run kepler --method verlet --set e=0.5 --set e=0.6
+says err 'e is set twice' 'which parameter is set twice'
+expect 0 'two parameters' explain fpu --method verlet --set ell=4 --set omega=10
+says out 'omega=10' 'both parameters are set'
 expect 2 'no method' run kepler --h 0.1
 expect 2 'two operands' run kepler toda --method verlet
 expect 2 'option twice' run kepler --method verlet --h 0.1 --h 0.2
@@ -81,7 +96,8 @@ expect 2 'order without method' order kepler
 expect 2 'checkpoint-every without a number' run kepler --method verlet --checkpoint a --checkpoint-every +5
 expect 2 'too many levels' order kepler --method verlet --levels 1000
 expect 2 'ratio one' order kepler --method verlet --ratio 1
-expect 2 'unknown peer' bench kepler --against cvodes
+for peers in cvodes ida, ,ida ida,,arkode , cvode,cvode-adams ida,ida; do expect 2 "peers $peers" bench kepler --against "$peers"; done
+says err 'ida twice' 'which peer is named twice'
 expect 2 'list what' list integrators
 
 expect 0 'methods' list methods
@@ -92,6 +108,9 @@ says out '^method,summary,source,keys$' 'header of methods'
 expect 0 'problems as csv' list problems --csv problems.csv
 says problems.csv '^kepler,' 'problems has kepler'
 says problems.csv 'e=0.6' 'problems has defaults'
+expect 0 'problems' list problems
+says out '^ *e .*only places the start' 'what only places the start'
+grep -q '^ *omega .*only places the start' out && fail 'what belongs to the system'
 expect 0 'explain' explain kepler --method galerkin:degree=4
 says out 'order 8' 'explain says the order'
 says out 'e=0.6' 'explain says the parameters'

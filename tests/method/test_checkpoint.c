@@ -295,7 +295,7 @@ START_TEST(a_place_that_cannot_be_written_is_reported)
   write_bytes(in_folder("file"), s.past.at, 1);
   not_written(s.integrator, in_folder("file/inside"), "Not a directory");
   ck_assert_int_eq(mkdir(full, 0700), 0);
-  not_written(s.integrator, full, "directory"); /* written beside, but not moved there */
+  not_written(s.integrator, full, "not a regular file");
   ck_assert_int_eq(files_in_folder(), 2);
   if (geteuid() != 0) { /* root may write anywhere */
     ck_assert_int_eq(chmod(full, 0500), 0);
@@ -315,6 +315,35 @@ START_TEST(a_link_is_followed_and_stays)
   ck_assert_int_eq(lstat(in_folder("link"), &about), 0);
   ck_assert(S_ISLNK(about.st_mode));
   ck_assert_int_eq(dvi_integrator_restore(s.integrator, in_folder("target")), DVI_OK);
+  clear_scene(&s);
+}
+END_TEST
+
+START_TEST(a_pipe_is_no_place_for_a_checkpoint)
+{
+  scene s = made_scene();
+  struct stat about;
+  ck_assert_int_eq(mkfifo(in_folder("pipe"), 0600), 0);
+  not_written(s.integrator, in_folder("pipe"), "not a regular file");
+  ck_assert_int_eq(stat(in_folder("pipe"), &about), 0);
+  ck_assert(S_ISFIFO(about.st_mode));
+  clear_scene(&s);
+}
+END_TEST
+
+START_TEST(neither_neighbours_nor_the_file_s_rights_change)
+{
+  scene s = made_scene();
+  struct stat about;
+  write_bytes(in_folder("w.part"), s.past.at, 3);
+  write_bytes(in_folder("w"), s.past.at, 3);
+  ck_assert_int_eq(chmod(in_folder("w"), 0600), 0);
+  ck_assert_int_eq(dvi_integrator_save(s.integrator, in_folder("w")), DVI_OK);
+  ck_assert_int_eq(stat(in_folder("w"), &about), 0);
+  ck_assert_int_eq(about.st_mode & 0777, 0600);
+  ck_assert_int_eq(stat(in_folder("w.part"), &about), 0);
+  ck_assert_int_eq(about.st_size, 3);
+  ck_assert_int_eq(files_in_folder(), 2);
   clear_scene(&s);
 }
 END_TEST
@@ -364,6 +393,8 @@ int main(void)
   tcase_add_test(tests, a_file_that_is_none_or_a_folder_cannot_be_read);
   tcase_add_test(tests, a_place_that_cannot_be_written_is_reported);
   tcase_add_test(tests, a_link_is_followed_and_stays);
+  tcase_add_test(tests, a_pipe_is_no_place_for_a_checkpoint);
+  tcase_add_test(tests, neither_neighbours_nor_the_file_s_rights_change);
   tcase_add_test(tests, a_full_disk_leaves_the_old_checkpoint);
   return run_tests("method/checkpoint", tests);
 }

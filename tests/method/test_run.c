@@ -177,6 +177,22 @@ END_TEST
 
 /* ---- cancelling ---- */
 
+static int step_on(dvi_integrator *moved, void *user)
+{
+  (void)user;
+  return dvi_integrator_step(moved, 0.125) == DVI_OK ? 0 : -1;
+}
+
+/* Else a run whose observer steps past t_end would never end. */
+START_TEST(an_observer_that_steps_is_refused)
+{
+  dvi_run_report report;
+  const dvi_run_options options = {.h = 0.125, .t_end = 1, .observe = step_on};
+  ck_assert_int_eq(dvi_run(integrator, &options, &report), DVI_BAD_STATE);
+  check_words("the observer has moved the integrator from t = 0");
+}
+END_TEST
+
 START_TEST(a_flag_set_before_the_run_ends_it_after_one_step)
 {
   diary d = {.cancel = 1};
@@ -434,6 +450,7 @@ int main(void)
   tcase_add_loop_test(tests, a_step_that_fails_ends_the_run_at_the_last_good_state, 0, 2 * METHODS);
   tcase_add_loop_test(tests, bad_options_are_refused_with_their_reason, 0, REFUSED);
   tcase_add_test(tests, checkpoints_on_the_way_need_a_file);
+  tcase_add_test(tests, an_observer_that_steps_is_refused);
   tcase_add_test(tests, a_last_shorter_step_is_right_at_large_times);
   tcase_add_test(tests, a_step_that_time_does_not_feel_fails_the_run);
   tcase_add_loop_test(tests, a_step_longer_than_the_way_is_cut_to_it, 0, 3);

@@ -282,6 +282,8 @@ START_TEST(the_patterns_are_the_unions_over_the_terms)
   ck_assert_ptr_null(s);
   dvi_system_destroy(&s);
   dvi_system_destroy(NULL);
+  ck_assert_int_eq(dvi_system_nq(NULL) + dvi_system_nv(NULL) + dvi_system_invariant_count(NULL), 0);
+  ck_assert_ptr_null(dvi_system_invariant_name(NULL, 0));
 }
 END_TEST
 

@@ -129,9 +129,10 @@ dvi_status dvi_integrator_save(const dvi_integrator *integrator, const char *pat
 /** Read a state that dvi_integrator_save wrote; a run then continues bit for bit.
  *
  *  On any failure the state stays. Callbacks are not in the file; the system is known again by what it declares and by the Lagrangian's value
- *  and forces at the saved state, which must agree to nine digits.
+ *  and forces at the saved state, which must agree to nine digits. Other parameters that show in neither (a drive's frequency at t = 0) are
+ *  not noticed.
  *  @retval DVI_IO_ERROR  the file cannot be read
- *  @retval DVI_BAD_FILE  it is cut short, damaged, or from another method, system or set of parameters */
+ *  @retval DVI_BAD_FILE  it is cut short, damaged, or from another method or system */
 dvi_status dvi_integrator_restore(dvi_integrator *integrator, const char *path);
 
 #ifdef __cplusplus

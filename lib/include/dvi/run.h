@@ -20,7 +20,8 @@ typedef struct dvi_run_options {
   double h;     /**< the step; its sign must lead from the current time to t_end */
   double t_end; /**< a last, shorter step ends the run here if h does not divide the way */
   long every;   /**< call the observer after every so many steps; 0: 1 */
-  /** Called at the start, after every `every` steps, and at the end. Return 0 to go on, >0 to end the run, <0 to fail. */
+  /** Called at the start, after every `every` steps, and at the end. Return 0 to go on, >0 to end the run, <0 to fail. It may ask the
+   *  integrator anything, but not step, start or restore it. */
   int (*observe)(dvi_integrator *integrator, void *user);
   void *user;
   const dvi_event *events;
@@ -62,6 +63,7 @@ extern "C" {
  *  @retval DVI_OK            the run ended as `report->end` says (not DVI_RUN_FAILED)
  *  @retval DVI_BAD_ARGUMENT  h is zero, not finite or leads away from t_end; a count is negative; a direction is none;
  *                            checkpoint_every without a file
+ *  @retval DVI_BAD_STATE     before dvi_integrator_start, or the observer has moved the integrator
  *  @retval (others)          as dvi_integrator_step, for the step that failed; the state is the last good one */
 dvi_status dvi_run(dvi_integrator *integrator, const dvi_run_options *options, dvi_run_report *report);
 

@@ -2,8 +2,8 @@
  *
  *      L(t,q,v) = v.M v/2  or  a general Lagrangian,  minus the sum of the potentials V_k(t,q),      q, v in R^n.
  *
- *  Callbacks return 0 for success, a positive number if a smaller step might help (the step fails, the state stays) and a
- *  negative one for a failure for good. They get the `user` pointer of the term that declares them. They must depend on
+ *  Callbacks return 0 for success, a positive number if a smaller step might help (the step fails, the state stays, unless it can be taken
+ *  without that point: iterations look for other ways first) and a negative one for a failure for good. They get the `user` pointer of the term that declares them. They must depend on
  *  their arguments alone: the library may call them at any point, in any order.
  *
  *  Missing derivatives are differenced with steps made for coordinates and velocities of size 0.01 and more: choose units in which they
@@ -113,10 +113,10 @@ dvi_status dvi_system_create(const dvi_system_terms *terms, dvi_system **system)
 /** Free a system and set the pointer to NULL; NULL is allowed. */
 void dvi_system_destroy(dvi_system **system);
 
-/** Number of stored coordinates. */
+/** Number of stored coordinates; 0 for NULL. */
 int dvi_system_nq(const dvi_system *system);
 
-/** Number of degrees of freedom: the size of v and p. */
+/** Number of degrees of freedom: the size of v and p; 0 for NULL. */
 int dvi_system_nv(const dvi_system *system);
 
 /** The Lagrangian's value at (t, q [nq], v [nv]). Allocates; fails as the callbacks do. */
@@ -133,7 +133,7 @@ dvi_status dvi_system_momentum(const dvi_system *system, double t, const double 
  *  @retval DVI_NOT_CONVERGED  Newton's method did not settle from any guess */
 dvi_status dvi_system_velocity(const dvi_system *system, double t, const double *q, const double *p, double *v);
 
-/** How many invariants are watched: the energy, one momentum for each symmetry, and the declared ones, in this order. */
+/** How many invariants are watched: the energy, one momentum for each symmetry, and the declared ones, in this order; 0 for NULL. */
 int dvi_system_invariant_count(const dvi_system *system);
 
 /** Name of invariant i; invariant 0 is "energy"; NULL if i is out of range. */

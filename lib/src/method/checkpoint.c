@@ -7,12 +7,15 @@
  * with their carries, the method's memory. The checksum is FNV-1a over all that precedes it. */
 #define _XOPEN_SOURCE 700 /* fsync, fileno, realpath */
 #include <errno.h>
+#include <fcntl.h>
 #include <limits.h>
 #include <math.h>
+#include <stdatomic.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "core/hash.h"
@@ -107,22 +110,46 @@ static void pack(const dvi_integrator *I, unsigned char *file)
   memcpy(file + size, &sum, sizeof sum);
 }
 
+/* A new file beside path, of a name that nobody else takes: other processes by its number, other threads by the count. */
+static FILE *open_beside(const char *path, size_t size, char *beside)
+{
+  static atomic_ulong count;
+  const int length = snprintf(beside, size, "%s.part-%ld-%lu", path, (long)getpid(), atomic_fetch_add(&count, 1));
+  if (length < 0 || (size_t)length >= size) {
+    errno = ENAMETOOLONG;
+    return NULL;
+  }
+  const int descriptor = open(beside, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (descriptor < 0) return NULL;
+  struct stat old;
+  if (stat(path, &old) == 0) (void)fchmod(descriptor, old.st_mode & 07777);
+  FILE *stream = fdopen(descriptor, "wb");
+  if (stream == NULL) (void)close(descriptor);
+  return stream;
+}
+
+/* A device or a pipe would be replaced by a file of its name. */
+static int is_no_file(const char *path)
+{
+  struct stat old;
+  return stat(path, &old) == 0 && !S_ISREG(old.st_mode);
+}
+
 /* The file is written beside its place and then moved there: a full disk leaves the old one alone. A link is followed, not replaced. */
 static dvi_status write_whole(const char *link, const unsigned char *file, size_t size)
 {
-  char beside[PATH_MAX + 8], real[PATH_MAX];
+  char beside[PATH_MAX + 64], real[PATH_MAX];
   const char *path = realpath(link, real) != NULL ? real : link;
-  const int length = snprintf(beside, sizeof beside, "%s.part", path);
-  if (length < 0 || (size_t)length >= sizeof beside) return dvi__fail(DVI_IO_ERROR, "checkpoint: the path is too long");
-  FILE *stream = fopen(beside, "wb");
-  if (stream == NULL) return dvi__fail(DVI_IO_ERROR, "checkpoint: cannot write %s: %s", beside, strerror(errno));
+  if (is_no_file(path)) return dvi__fail(DVI_IO_ERROR, "checkpoint: cannot write %s: it is not a regular file", link);
+  FILE *stream = open_beside(path, sizeof beside, beside);
+  if (stream == NULL) return dvi__fail(DVI_IO_ERROR, "checkpoint: cannot write a file beside %.256s: %s", link, strerror(errno));
   int failed = fwrite(file, 1, size, stream) != size || fflush(stream) != 0 || fsync(fileno(stream)) != 0;
   int reason = failed ? errno : 0;
   if (fclose(stream) != 0 && !failed) failed = 1, reason = errno;
   if (!failed && rename(beside, path) != 0) failed = 1, reason = errno;
   if (!failed) return DVI_OK;
   (void)remove(beside);
-  return dvi__fail(DVI_IO_ERROR, "checkpoint: cannot write %s: %s", path, strerror(reason));
+  return dvi__fail(DVI_IO_ERROR, "checkpoint: cannot write %s: %s", link, strerror(reason));
 }
 
 dvi_status dvi_integrator_save(const dvi_integrator *I, const char *path)

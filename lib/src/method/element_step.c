@@ -85,12 +85,24 @@ static int symmetric_rule(dvi_rule rule)
   return rule != DVI_RADAU_LEFT && rule != DVI_RADAU_RIGHT;
 }
 
+static int smaller(int a, int b)
+{
+  return a < b ? a : b;
+}
+
+/* For degree s and a quadrature of order u. The action errs by the quadrature's error, h^u of itself, and by the square of the path's: the path is
+ * stationary, and its velocity errs by h^s, or by h^(u-s+1) if the quadrature does not see all of it. */
+static int order_of(int s, int u)
+{
+  return smaller(smaller(2 * s, u), 2 * (u - s + 1));
+}
+
 dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *space, int solver)
 {
   const int quadrature_order = dvi_quadrature_order(space->rule, space->nodes);
   element *own = self->own = DVI_NEW(element, 1);
   if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
-  self->order = 2 * space->degree < quadrature_order ? 2 * space->degree : quadrature_order;
+  self->order = order_of(space->degree, quadrature_order);
   self->symmetric = symmetric_rule(space->rule);
   own->choice = solver;
   DVI_TRY(dvi__action_create(self->system, space, self->counters, &own->action));

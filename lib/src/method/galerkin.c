@@ -2,7 +2,7 @@
  *
  * Space: polynomials of degree s.  Quadrature: any rule with r >= s points c_j, weights b_j.
  *     Ld(q0,q1) = ext over paths q of degree s from q0 to q1 of  h sum_j b_j L(t0 + c_j h, q(c_j h), q'(c_j h))
- * and p0 = -D1 Ld, p1 = D2 Ld. The rows are those of action/action.h. Order min(2s, order of the quadrature): Gauss r = s is Gauss
+ * and p0 = -D1 Ld, p1 = D2 Ld. The rows are those of action/action.h. Order min(2s, u, 2(u-s+1)) for a quadrature of order u: Gauss r = s is Gauss
  * collocation, order 2s; Lobatto r = s+1 has 2s, r = s has 2s-2. r < s leaves velocities that no node sees: refused.
  * Source: Marsden and West 2001, sec. 2.2.6; Leok and Shingel 2012; Hall and Leok 2015 (order). */
 #include "core/status.h"
@@ -69,7 +69,7 @@ static dvi_status create(dvi__stepper *self)
 
 const dvi__method dvi__galerkin = {
     .name = "galerkin",
-    .summary = "polynomials of any degree, any quadrature; order min(2 degree, order of the quadrature)",
+    .summary = "polynomials of any degree s, any quadrature; order 2s if the quadrature's order is 2s or more",
     .cite = "LeokShingel2012",
     .keys = keys,
     .create = create,

@@ -55,7 +55,11 @@ static dvi_status check(const dvi_integrator *I, const dvi_run_options *options)
 static dvi_status observe(dvi_integrator *I, const dvi_run_options *options, dvi_run_report *report, int *stop)
 {
   if (options->observe == NULL) return DVI_OK;
+  const long steps = I->counters.steps;
+  const double t = I->now.t;
   const int returned = options->observe(I, options->user);
+  if (I->counters.steps != steps || I->now.t != t)
+    return dvi__fail(DVI_BAD_STATE, "run: the observer has moved the integrator from t = %.9g; it may only look at it", t);
   if (returned < 0)
     return dvi__fail(DVI_CALLBACK_FAILED, "run: the observer failed with %d at t = %.9g", returned, dvi_integrator_time(I));
   if (returned > 0) {

@@ -23,7 +23,7 @@ static dvi_status allocate(int rows, int columns, size_t entries, dvi__pattern *
   *pattern = (dvi__pattern){rows, columns, DVI_NEW(int, (size_t)columns + 1), DVI_NEW(int, entries)};
   if (pattern->start != NULL && pattern->row != NULL) return DVI_OK;
   dvi__pattern_clear(pattern);
-  return dvi__fail(DVI_NO_MEMORY, "pattern: no memory for %zu entries", entries);
+  return dvi__fail(DVI_NO_MEMORY, "pattern: no memory for %d columns with %zu entries", columns, entries);
 }
 
 dvi_status dvi__pattern_empty(int n, dvi__pattern *pattern)

@@ -42,22 +42,22 @@ static int small_ones_settled(dvi__solver *s, const double *x, double *last)
 
 dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__solve_report *report)
 {
-  double last = 0, whole, last_relative = HUGE_VAL;
+  dvi__trail trail = {0, 0};
+  double whole, last_relative = HUGE_VAL;
   int fresh = 0, growing = 0, converged = 0;
   for (report->iterations = 1; report->iterations <= MOST_ITERATIONS; report->iterations++) {
     if (!fresh) DVI_TRY(dvi__solver_factor(s, x));
     DVI_TRY(dvi__solver_residual(s, x, s->residual));
     dvi__linear_solve(s->linear, s->residual);
     dvi__correct(s->equations.unknowns, s->residual, x, &report->correction, &whole);
-    const dvi__progress progress = dvi__judge(report->correction, last, &pace, whole, size);
+    const dvi__progress progress = dvi__judge(report->correction, &trail, &pace, whole, size);
     converged |= progress == DVI__CONVERGED;
     if (converged && small_ones_settled(s, x, &last_relative)) return DVI_OK;
     growing = progress == DVI__STALLED ? growing + 1 : 0;
     if (growing == 2 || report->correction > 1e300) break;
-    if (wary && report->iterations == 2 && !converged && misleading(last, report->correction, whole)) break;
-    fresh = converged || last == 0 || report->correction < keep_below * last;
-    last = report->correction;
+    if (wary && report->iterations == 2 && !converged && misleading(trail.before, trail.last, whole)) break;
+    fresh = converged || trail.before == 0 || trail.last < keep_below * trail.before;
   }
   if (converged) return DVI_OK;
-  return dvi__fail(DVI_NOT_CONVERGED, "Newton's method does not settle (change %.1e after %.1e)", report->correction, last);
+  return dvi__fail(DVI_NOT_CONVERGED, "Newton's method does not settle (change %.1e after %.1e)", trail.last, trail.before);
 }

@@ -72,19 +72,19 @@ static dvi_status fixed_point(dvi__solver *s, double size, int patient, double *
 {
   const int most = patient ? MOST_PATIENT_ITERATIONS : MOST_FIXED_POINT_ITERATIONS;
   const dvi__pace *pace = patient ? &any_gain : &paying;
-  double last = 0, whole;
+  dvi__trail trail = {0, 0};
+  double whole;
   DVI_TRY(s->equations.prepare_chord(s->equations.of, x));
   for (report->iterations = 1; report->iterations <= most; report->iterations++) {
     DVI_TRY(dvi__solver_residual(s, x, s->residual));
     s->equations.chord(s->equations.of, s->residual);
     dvi__correct(s->equations.unknowns, s->residual, x, &report->correction, &whole);
-    const dvi__progress progress = dvi__judge(report->correction, last, pace, whole, size);
+    const dvi__progress progress = dvi__judge(report->correction, &trail, pace, whole, size);
     if (progress == DVI__CONVERGED) return DVI_OK;
     if (progress == DVI__STALLED) break;
-    last = report->correction;
   }
-  return dvi__fail(DVI_NOT_CONVERGED, "fixed point iteration contracts too slowly (change %.1e after %.1e)", report->correction,
-                   last);
+  return dvi__fail(DVI_NOT_CONVERGED, "fixed point iteration contracts too slowly (change %.1e after %.1e)", trail.last,
+                   trail.before);
 }
 
 static dvi_status kinsol(dvi__solver *s, double size, double *x, dvi__solve_report *report)

@@ -3,15 +3,26 @@
 
 #include "solve/solver_struct.h"
 
-/* Corrections of a few roundings are at the floor. */
-static const double settled = 4 * DBL_EPSILON;
+/* Corrections of a few roundings are at the floor, if the iteration's own part of them is well below a rounding. That part counts although the
+ * unknowns are then right: the last residual was that of the point before, and what a step takes from it would err by this part in the same
+ * direction in every step (a charge in a magnetic field: energy drift of 1e-17 a step). */
+static const double rounding = 4 * DBL_EPSILON, settled = 0.125 * DBL_EPSILON;
 
-dvi__progress dvi__judge(double correction, double last, const dvi__pace *pace, double unknown, double size)
+/* What is left of the iteration's error in a correction, by the contraction seen before. */
+static double expected(double correction, const dvi__trail *trail)
 {
+  if (trail->before == 0) return correction;
+  return fmin(correction, trail->last * fmin(trail->last / trail->before, 1));
+}
+
+dvi__progress dvi__judge(double correction, dvi__trail *trail, const dvi__pace *pace, double unknown, double size)
+{
+  const double last = trail->last, own = expected(correction, trail);
+  *trail = (dvi__trail){correction, last};
   if (!isfinite(correction)) return DVI__STALLED;
-  if (correction <= settled * unknown) return DVI__CONVERGED;
+  if (correction <= rounding * unknown && own <= settled * unknown) return DVI__CONVERGED;
   if (last == 0) return DVI__GO_ON;
-  if (correction > pace->stagnant * last && correction <= pace->noise * (unknown + size)) return DVI__CONVERGED;
+  if (correction >= pace->stagnant * last && correction <= pace->noise * (unknown + size)) return DVI__CONVERGED;
   return correction > pace->slowest * last ? DVI__STALLED : DVI__GO_ON;
 }
 

@@ -37,9 +37,14 @@ typedef struct dvi__pace {
   double stagnant, noise, slowest;
 } dvi__pace;
 
-/* Judge one correction after one of size `last` (0 before the first): converged at the roundoff floor, or stalled above it. `unknown` and
- * `size` are the sizes of the unknowns and of what they are added to. */
-dvi__progress dvi__judge(double correction, double last, const dvi__pace *pace, double unknown, double size);
+/* The corrections before the one at hand; 0: there was none. */
+typedef struct dvi__trail {
+  double last, before;
+} dvi__trail;
+
+/* Judge one correction and add it to the trail: converged at the roundoff floor, or stalled above it. `unknown` and `size` are the sizes of
+ * the unknowns and of what they are added to. */
+dvi__progress dvi__judge(double correction, dvi__trail *trail, const dvi__pace *pace, double unknown, double size);
 
 /* x <- x - correction; gives the largest correction and the largest x. */
 void dvi__correct(int count, const double *correction, double *x, double *largest_correction, double *largest_x);

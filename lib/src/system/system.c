@@ -370,17 +370,17 @@ void dvi_system_destroy(dvi_system **system)
 
 int dvi_system_nq(const dvi_system *system)
 {
-  return system->n;
+  return system != NULL ? system->n : 0;
 }
 
 int dvi_system_nv(const dvi_system *system)
 {
-  return system->n;
+  return system != NULL ? system->n : 0;
 }
 
 int dvi_system_invariant_count(const dvi_system *system)
 {
-  return 1 + system->symmetry_count + system->invariant_count;
+  return system != NULL ? 1 + system->symmetry_count + system->invariant_count : 0;
 }
 
 const char *dvi_system_invariant_name(const dvi_system *system, int i)
