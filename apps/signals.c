@@ -26,10 +26,18 @@ static void on_signal(int number)
   _exit(128 + number);
 }
 
+/* UCX, which SUNDIALS brings along on Debian 13, takes SIGHUP when it is loaded, and hides whether nohup had it ignored. What nohup starts has
+ * no terminal. */
+static bool may_be_ignored(const struct sigaction *found)
+{
+  if (found->sa_handler == SIG_DFL) return false;
+  return found->sa_handler == SIG_IGN || !(isatty(STDIN_FILENO) || isatty(STDOUT_FILENO) || isatty(STDERR_FILENO));
+}
+
 static void take(int number, bool even_ignored)
 {
   struct sigaction action;
-  if (sigaction(number, NULL, &action) != 0 || (action.sa_handler == SIG_IGN && !even_ignored)) return;
+  if (sigaction(number, NULL, &action) != 0 || (!even_ignored && may_be_ignored(&action))) return;
   memset(&action, 0, sizeof action);
   action.sa_handler = on_signal;
   action.sa_flags = (int)SA_RESTART; /* a row that waits for a slow reader shall not be lost */
