@@ -1,7 +1,40 @@
 /* What a problem's file gives to the table in problem.c, and what the files share. */
 #ifndef PROBLEMS_ENTRY_H
 #define PROBLEMS_ENTRY_H
+#include <stdint.h>
+#include <string.h>
+
 #include "problem.h"
+
+/* A callback with loops over a batch's points is compiled for several instruction sets, and the processor chooses when the program starts. All give
+ * the same bits: no sums are reordered, and -ffp-contract=off keeps products and sums apart. */
+#if defined(__x86_64__) && defined(__gnu_linux__) && (!defined(__clang__) || __clang_major__ >= 14)
+#define PROBLEM_LANES __attribute__((target_clones("arch=x86-64-v4", "avx2", "default")))
+#else
+#define PROBLEM_LANES
+#endif
+
+/* Numbers that are worked on together. */
+#define PROBLEM_TILE 32
+
+/* x <- x^(-3/2), right to three ulp, for positive normal numbers; not finite for 0 and NaN. A square root and a division take longer: the exponent's
+ * bits halved and negated are right to 3.5 % (Lomont 2003), then e = 1 - x y^2 shrinks by the series of (1 - e)^(-1/2). Each line is a loop, for
+ * one number after the other the chain of operations would wait for itself. */
+static inline __attribute__((always_inline)) void problem_inverse_cubes(const int count, double *restrict x)
+{
+  double y[PROBLEM_TILE], e[PROBLEM_TILE];
+  for (int k = 0; k < count; k++) {
+    uint64_t bits;
+    memcpy(&bits, x + k, sizeof bits);
+    bits = UINT64_C(0x5fe6eb50c7b537a9) - (bits >> 1);
+    memcpy(y + k, &bits, sizeof bits);
+  }
+  for (int k = 0; k < count; k++) e[k] = 1.0 - x[k] * (y[k] * y[k]);
+  for (int k = 0; k < count; k++) y[k] += y[k] * (e[k] * (0.5 + e[k] * (0.375 + e[k] * 0.3125)));
+  for (int k = 0; k < count; k++) e[k] = 1.0 - x[k] * (y[k] * y[k]);
+  for (int k = 0; k < count; k++) y[k] += y[k] * (e[k] * (0.5 + e[k] * 0.375));
+  for (int k = 0; k < count; k++) x[k] = y[k] * y[k] * y[k];
+}
 
 /* Most parameters that a problem may have. */
 #define PROBLEM_PARAMETERS_MAX 8

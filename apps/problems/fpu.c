@@ -59,7 +59,7 @@ static void slow_forces(double left, double x0, double x1, double right, double 
   *V_x1 = -before - after;
 }
 
-static int slow_gradient(int count, const double *t, const double *q, double *V_q, void *user)
+PROBLEM_LANES static int slow_gradient(int count, const double *t, const double *q, double *V_q, void *user)
 {
   const int ell = ((const chain *)user)->ell, last = (ell - 1) * count;
   const double *restrict x0 = q, *restrict x1 = q + last + count;
@@ -116,7 +116,7 @@ static int fast_value(int count, const double *t, const double *q, double *V, vo
   return 0;
 }
 
-static int fast_gradient(int count, const double *t, const double *q, double *V_q, void *user)
+PROBLEM_LANES static int fast_gradient(int count, const double *t, const double *q, double *V_q, void *user)
 {
   const chain *own = user;
   const int half = own->ell * count;

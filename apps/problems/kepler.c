@@ -12,17 +12,25 @@ static int value(int count, const double *t, const double *q, double *V, void *u
   return 0;
 }
 
-static int gradient(int count, const double *t, const double *q, double *V_q, void *user)
+/* At most as many points as a tile has. */
+static inline __attribute__((always_inline)) void gradient_at(const int points, const double *restrict x, const double *restrict y,
+                                                              double *restrict V_x, double *restrict V_y)
 {
-  const double *restrict x = q, *restrict y = q + count;
-  double *restrict V_x = V_q, *restrict V_y = V_q + count;
-  (void)t, (void)user;
-  for (int k = 0; k < count; k++) {
-    const double r2 = x[k] * x[k] + y[k] * y[k];
-    const double inverse = 1.0 / (r2 * sqrt(r2));
-    V_x[k] = x[k] * inverse;
-    V_y[k] = y[k] * inverse;
+  double r[PROBLEM_TILE];
+  for (int k = 0; k < points; k++) r[k] = x[k] * x[k] + y[k] * y[k];
+  problem_inverse_cubes(points, r);
+  for (int k = 0; k < points; k++) {
+    V_x[k] = x[k] * r[k];
+    V_y[k] = y[k] * r[k];
   }
+}
+
+PROBLEM_LANES static int gradient(int count, const double *t, const double *q, double *V_q, void *user)
+{
+  int k = 0;
+  (void)t, (void)user;
+  for (; k + 8 <= count; k += 8) gradient_at(8, q + k, q + count + k, V_q + k, V_q + count + k);
+  for (; k < count; k++) gradient_at(1, q + k, q + count + k, V_q + k, V_q + count + k);
   return 0;
 }
 

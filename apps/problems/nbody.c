@@ -41,31 +41,61 @@ static inline int value(const int dimension, int count, const double *q, double 
   return 0;
 }
 
-/* The pull of one pair, added to one gradient row and subtracted from the other. */
-static inline void pull(const int dimension, int count, double weight, const double *restrict x_a, const double *restrict x_b,
-                        double *restrict V_a, double *restrict V_b)
+#define ALWAYS_INLINE static inline __attribute__((always_inline))
+
+/* Squared distances of all pairs at `lanes` points, [pairs*lanes]; rows of q are `stride` apart. Returns their number. */
+ALWAYS_INLINE int squared_distances(const int dimension, const int lanes, int stride, const double *restrict q, const nbody *own,
+                                    double *restrict r2)
 {
-  for (int k = 0; k < count; k++) {
-    double d[3], r2 = 0.0;
-    for (int i = 0; i < dimension; i++) {
-      d[i] = x_a[i * count + k] - x_b[i * count + k];
-      r2 += d[i] * d[i];
-    }
-    const double force = weight / (r2 * sqrt(r2));
-    for (int i = 0; i < dimension; i++) {
-      V_a[i * count + k] += force * d[i];
-      V_b[i * count + k] -= force * d[i];
-    }
-  }
+  const int row = dimension * stride;
+  int at = 0;
+  for (int a = 0; a < own->bodies; a++)
+    for (int b = a + 1; b < own->bodies; b++, at += lanes)
+      for (int k = 0; k < lanes; k++) {
+        double sum = 0.0;
+        for (int i = 0; i < dimension; i++) {
+          const double d = q[a * row + i * stride + k] - q[b * row + i * stride + k];
+          sum += d * d;
+        }
+        r2[at + k] = sum;
+      }
+  return at;
 }
 
-static inline int gradient(const int dimension, int count, const double *q, double *V_q, const nbody *own)
+/* The pulls of all pairs, added to one gradient row and subtracted from the other. */
+ALWAYS_INLINE void pull(const int dimension, const int lanes, int stride, const double *restrict q, const nbody *own,
+                        const double *restrict inverse_cube, double *restrict V_q)
 {
-  const int row = dimension * count;
-  for (int j = 0; j < own->bodies * row; j++) V_q[j] = 0.0;
+  const int row = dimension * stride;
   for (int a = 0; a < own->bodies; a++)
-    for (int b = a + 1; b < own->bodies; b++)
-      pull(dimension, count, own->G * own->mass[a] * own->mass[b], q + a * row, q + b * row, V_q + a * row, V_q + b * row);
+    for (int b = a + 1; b < own->bodies; b++, inverse_cube += lanes) {
+      const double weight = own->G * own->mass[a] * own->mass[b];
+      for (int i = 0; i < dimension; i++)
+        for (int k = 0; k < lanes; k++) {
+          const int at_a = a * row + i * stride + k, at_b = b * row + i * stride + k;
+          const double force = weight * inverse_cube[k] * (q[at_a] - q[at_b]);
+          V_q[at_a] += force;
+          V_q[at_b] -= force;
+        }
+    }
+}
+
+ALWAYS_INLINE void gradient_at(const int dimension, const int lanes, int stride, const double *q, double *V_q, const nbody *own)
+{
+  double r[NBODY_PAIRS_MAX * 8 + PROBLEM_TILE];
+  const int numbers = squared_distances(dimension, lanes, stride, q, own, r);
+  for (int k = numbers; k < numbers + PROBLEM_TILE; k++) r[k] = 1.0; /* the last tile is computed in full */
+  for (int k = 0; k < numbers; k += PROBLEM_TILE) problem_inverse_cubes(PROBLEM_TILE, r + k);
+  pull(dimension, lanes, stride, q, own, r, V_q);
+}
+
+/* Eight points at once, then the rest one by one: loops of known length need no preparation, which would cost more than their work. */
+ALWAYS_INLINE int gradient(const int dimension, int count, const double *q, double *V_q, const nbody *own)
+{
+  int k = 0;
+  for (int j = 0; j < own->bodies * dimension * count; j++) V_q[j] = 0.0;
+  for (; k + 8 <= count; k += 8) gradient_at(dimension, 8, count, q + k, V_q + k, own);
+  for (; k < count; k++) gradient_at(dimension, 1, count, q + k, V_q + k, own);
   return 0;
 }
 
@@ -100,21 +130,21 @@ static inline int hessian(const int dimension, int count, const double *q, doubl
 }
 
 /* The callbacks of one dimension. */
-#define CALLBACKS(dimension)                                                                            \
-  static int value_##dimension(int count, const double *t, const double *q, double *V, void *user)      \
-  {                                                                                                     \
-    (void)t;                                                                                            \
-    return value(dimension, count, q, V, user);                                                         \
-  }                                                                                                     \
-  static int gradient_##dimension(int count, const double *t, const double *q, double *V_q, void *user) \
-  {                                                                                                     \
-    (void)t;                                                                                            \
-    return gradient(dimension, count, q, V_q, user);                                                    \
-  }                                                                                                     \
-  static int hessian_##dimension(int count, const double *t, const double *q, double *V_qq, void *user) \
-  {                                                                                                     \
-    (void)t;                                                                                            \
-    return hessian(dimension, count, q, V_qq, user);                                                    \
+#define CALLBACKS(dimension)                                                                                          \
+  static int value_##dimension(int count, const double *t, const double *q, double *V, void *user)                    \
+  {                                                                                                                   \
+    (void)t;                                                                                                          \
+    return value(dimension, count, q, V, user);                                                                       \
+  }                                                                                                                   \
+  PROBLEM_LANES static int gradient_##dimension(int count, const double *t, const double *q, double *V_q, void *user) \
+  {                                                                                                                   \
+    (void)t;                                                                                                          \
+    return gradient(dimension, count, q, V_q, user);                                                                  \
+  }                                                                                                                   \
+  static int hessian_##dimension(int count, const double *t, const double *q, double *V_qq, void *user)               \
+  {                                                                                                                   \
+    (void)t;                                                                                                          \
+    return hessian(dimension, count, q, V_qq, user);                                                                  \
   }
 CALLBACKS(2)
 CALLBACKS(3)

@@ -4,6 +4,7 @@
 #include "problem.h"
 
 #define NBODY_MAX 6
+#define NBODY_PAIRS_MAX (NBODY_MAX * (NBODY_MAX - 1) / 2)
 
 /* Masses and start. q holds body after body. */
 typedef struct nbody {

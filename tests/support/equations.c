@@ -97,14 +97,18 @@ static void make_solver(const dvi__equations *equations, bench *b)
 
 void for_chain(chain *c, bench *b)
 {
-  make_solver(&(dvi__equations){SIZE, &c->pattern, c, chain_residual, chain_jacobian, chain_prepare, chain_chord, chain_scale}, b);
+  make_solver(&(dvi__equations){SIZE, &c->pattern, c, chain_residual, chain_jacobian, chain_prepare, chain_chord, chain_scale, NULL,
+                                NULL, NULL},
+              b);
 }
 
 void for_single(single *s, bench *b)
 {
   static int start[2] = {0, 1}, row[1] = {0};
   static const dvi__pattern one = {1, 1, start, row};
-  make_solver(&(dvi__equations){1, &one, s, single_residual, single_jacobian, chain_prepare, single_chord, single_scale}, b);
+  make_solver(
+      &(dvi__equations){1, &one, s, single_residual, single_jacobian, chain_prepare, single_chord, single_scale, NULL, NULL, NULL},
+      b);
 }
 
 dvi_status run_rung(bench *b, dvi__rung rung, double *x)

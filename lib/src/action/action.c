@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "action/action_struct.h"
+#include "action/sweep.h"
 #include "action/table.h"
 #include "core/memory.h"
 #include "core/status.h"
@@ -37,6 +38,7 @@ static dvi_status fill(dvi__action *a, dvi_counters *counters)
   const int capacity = a->r > a->s ? a->r : a->s; /* a batch of s is solved for at once in the chord */
   DVI_TRY(dvi__evaluator_create(a->system, capacity, DVI__HESSIANS, counters, &a->evaluator));
   if (!allocate_batches(a)) return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d nodes in %d dimensions", a->r, a->n);
+  DVI_TRY(dvi__action_prepare_sweep(a));
   return allocate_chord(a, counters);
 }
 
@@ -61,10 +63,39 @@ void dvi__action_destroy(dvi__action **action)
 {
   dvi__action *a = *action;
   if (a == NULL) return;
-  double *const owned[] = {
-      a->psi,       a->dpsi, a->bar,       a->node,      a->weight,    a->end,  a->stiffness, a->stiffness_inverse,
-      a->fit_point, a->fit,  a->straight,  a->shift,     a->t,         a->Q,    a->V,         a->L_q,
-      a->L_v,       a->line, a->middle_vv, a->middle[0], a->middle[1], a->H_qq, a->H_qv,      a->H_vv};
+  double *const owned[] = {a->psi,
+                           a->dpsi,
+                           a->bar,
+                           a->node,
+                           a->weight,
+                           a->end,
+                           a->stiffness,
+                           a->stiffness_inverse,
+                           a->fit_point,
+                           a->fit,
+                           a->straight,
+                           a->shift,
+                           a->shift_rows,
+                           a->t,
+                           a->Q,
+                           a->V,
+                           a->L_q,
+                           a->L_v,
+                           a->line,
+                           a->middle_vv,
+                           a->middle[0],
+                           a->middle[1],
+                           a->H_qq,
+                           a->H_qv,
+                           a->H_vv,
+                           a->sweep_matrix,
+                           a->sweep_node,
+                           a->sweep_rest,
+                           a->sweep_path,
+                           a->sweep_psi,
+                           a->sweep_start,
+                           a->sweep_factor,
+                           a->Z};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) dvi__release(owned[i]);
   dvi__linear_destroy(&a->chord);
   dvi__evaluator_destroy(&a->evaluator);

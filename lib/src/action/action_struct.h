@@ -24,7 +24,8 @@ struct dvi__action {
   double *end;                           /* [s] psi_k(1) */
   double *stiffness, *stiffness_inverse; /* [s*s] K_kl = sum_j b_j psi_k' psi_l' */
   double *fit_point, *fit, *straight;    /* [s], [s*s] rows, [s] */
-  double *shift;                         /* [DVI__SHIFTS] tables of [s*s] rows */
+  double *shift;                         /* [DVI__SHIFTS] tables of [s*lanes], by columns */
+  double *shift_rows;                    /* [s*s] work */
   double shift_ratio[DVI__SHIFTS];       /* the ratio of steps that each was made for; 0: none */
   int oldest_shift;                      /* the one to be replaced next */
   int keep;                              /* degree up to which a path is continued */
@@ -34,6 +35,13 @@ struct dvi__action {
   /* Batches over the nodes, [n*r]. */
   double *t, *Q, *V, *L_q, *L_v; /* the gradients times the weights b_j */
   double *line;                  /* [2 s + 2 r] one coordinate's worth of anything */
+  /* Sweeps (sweep.h); NULL if the mass couples coordinates. */
+  int lanes;                                      /* length of a padded row over the nodes */
+  double *sweep_matrix, *sweep_node, *sweep_rest; /* [r*lanes] c_i - P_ij by columns, [lanes] c, [r] 1 - c */
+  double *sweep_path, *sweep_psi;                 /* paths from forces, nodes from paths */
+  double *sweep_start, *sweep_factor;             /* [n] h v0, h^2/m */
+  double *Z;                                      /* [n*lanes] offsets of the nodes from q0 */
+  int swept;                                      /* the forces are a sweep's */
   /* Chord. */
   double *middle_vv;  /* L_vv at one point (general Lagrangians) */
   double *middle[2];  /* q, v at that point */

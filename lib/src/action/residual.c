@@ -4,6 +4,7 @@
 
 #include "action/action_struct.h"
 #include "core/status.h"
+#include "num/lanes.h"
 #include "space/trial.h"
 
 /* out[j] = start + factor * sum_k table_k(c_j) y_k, for the r nodes. */
@@ -41,6 +42,7 @@ static void weigh(const dvi__action *a, double *batch)
 dvi_status dvi__action_residual(dvi__action *a, const double *Y, double *R)
 {
   const int s = a->s, r = a->r;
+  a->swept = 0;
   dvi__action_stages(a, Y);
   DVI_TRY(dvi__lagrangian_gradient(a->evaluator, r, a->t, a->Q, a->V, a->L_q, a->L_v));
   weigh(a, a->L_q);
@@ -63,8 +65,10 @@ static double sum(int count, const double *x)
 void dvi__action_ends(const dvi__action *a, const double *Y, double *dq, double *dp)
 {
   for (size_t i = 0; i < (size_t)a->n; i++) {
-    dq[i] = dot(a->s, a->end, Y + i * (size_t)a->s);
-    dp[i] = a->h * sum(a->r, a->L_q + i * (size_t)a->r);
+    const double *g = a->L_q + i * (size_t)a->r;
+    dq[i] = a->swept ? a->sweep_start[i] + a->sweep_factor[i] * dot(a->r, a->sweep_rest, g)
+                     : dot(a->s, a->end, Y + i * (size_t)a->s);
+    dp[i] = a->h * sum(a->r, g);
   }
 }
 
@@ -139,22 +143,22 @@ void dvi__action_straight(const dvi__action *a, const double *dq, double *Y)
 /* The table for this ratio: one that is kept, or a new one in the place of the oldest. */
 static const double *shift_for(dvi__action *a, double ratio)
 {
-  const size_t size = (size_t)a->s * (size_t)a->s;
+  const size_t s = (size_t)a->s, lanes = (size_t)dvi__lanes_for(a->s), size = s * lanes;
   for (size_t k = 0; k < DVI__SHIFTS; k++)
     if (a->shift_ratio[k] == ratio) return a->shift + k * size;
   const int place = a->oldest_shift;
-  dvi__trial_shift(a->space.basis, a->s, a->keep, ratio, a->shift + (size_t)place * size);
+  double *shift = a->shift + (size_t)place * size;
+  dvi__trial_shift(a->space.basis, a->s, a->keep, ratio, a->shift_rows);
+  for (size_t k = 0; k < s; k++)
+    for (size_t l = 0; l < s; l++) shift[l * lanes + k] = a->shift_rows[k * s + l];
   a->shift_ratio[place] = ratio;
   a->oldest_shift = (place + 1) % DVI__SHIFTS;
-  return a->shift + (size_t)place * size;
+  return shift;
 }
 
 void dvi__action_continue(dvi__action *a, double ratio, const double *last, double *Y)
 {
-  const int s = a->s;
-  const double *shift = shift_for(a, ratio);
-  for (size_t i = 0; i < (size_t)a->n; i++)
-    for (int k = 0; k < s; k++) Y[i * (size_t)s + (size_t)k] = dot(s, shift + k * s, last + i * (size_t)s);
+  dvi__lanes_product(a->n, a->s, dvi__lanes_for(a->s), a->s, shift_for(a, ratio), last, Y);
 }
 
 const double *dvi__action_fit_points(const dvi__action *a)

@@ -6,6 +6,7 @@
 #include "action/action_struct.h"
 #include "core/memory.h"
 #include "core/status.h"
+#include "num/lanes.h"
 #include "space/quadrature.h"
 #include "space/trial.h"
 
@@ -26,9 +27,10 @@ static int allocate(dvi__action *a)
   a->fit_point = DVI_NEW(double, s);
   a->fit = DVI_NEW(double, s *s);
   a->straight = DVI_NEW(double, s);
-  a->shift = DVI_NEW(double, DVI__SHIFTS *s *s);
+  a->shift = DVI_NEW(double, DVI__SHIFTS *s *(size_t)dvi__lanes_for(a->s));
+  a->shift_rows = DVI_NEW(double, s *s);
   return a->psi && a->dpsi && a->bar && a->node && a->weight && a->end && a->stiffness && a->stiffness_inverse && a->fit_point &&
-         a->fit && a->straight && a->shift;
+         a->fit && a->straight && a->shift && a->shift_rows;
 }
 
 static double largest(int count, const double *x, double size)

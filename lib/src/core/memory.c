@@ -1,5 +1,6 @@
 #include "core/memory.h"
 
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,12 +14,17 @@ static int may_succeed(void)
   return 1;
 }
 
+/* Rows of eight numbers shall not straddle cache lines: a fixed point iteration takes a third longer if they do. */
+enum { LINE = 64 };
+
 void *dvi__allocate(size_t count, size_t size)
 {
-  if (!may_succeed()) return NULL;
-  void *memory = count == 0 ? calloc(1, 1) : calloc(count, size);
-  if (memory != NULL) allocated++;
-  return memory;
+  if (!may_succeed() || (size > 0 && count > (SIZE_MAX - LINE) / size)) return NULL;
+  const size_t bytes = count * size, whole = bytes > 0 ? (bytes + LINE - 1) / LINE * LINE : LINE;
+  void *memory = aligned_alloc(LINE, whole);
+  if (memory == NULL) return NULL;
+  allocated++;
+  return memset(memory, 0, whole);
 }
 
 void *dvi__duplicate(const void *original, size_t count, size_t size)

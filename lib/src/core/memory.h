@@ -3,7 +3,8 @@
 #define DVI_CORE_MEMORY_H
 #include <stddef.h>
 
-/* Zeroed memory for count objects; NULL if there is none left, or if count * size overflows. A count of 0 gives one byte. */
+/* Zeroed memory for count objects, on its own cache lines; NULL if there is none left, or if count * size overflows. A count of 0 gives some,
+ * too. */
 void *dvi__allocate(size_t count, size_t size);
 
 /* A copy of count objects; NULL as above. */

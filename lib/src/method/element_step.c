@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "action/sweep.h"
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/compensated.h"
@@ -64,6 +65,21 @@ static void row_scale_of(void *action, double *scale)
   dvi__action_row_scale(action, scale);
 }
 
+static void sweep_from_of(void *action, const double *Y)
+{
+  dvi__action_sweep_from(action, Y);
+}
+
+static dvi_status sweep_of(void *action, double *change, double *largest)
+{
+  return dvi__action_sweep(action, change, largest);
+}
+
+static void sweep_to_of(void *action, double *Y)
+{
+  dvi__action_sweep_to(action, Y);
+}
+
 static int allocate(dvi__stepper *self, element *own)
 {
   const size_t n = (size_t)self->system->n, unknowns = (size_t)dvi__action_unknowns(own->action);
@@ -108,6 +124,7 @@ dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *spac
   DVI_TRY(dvi__action_create(self->system, space, self->counters, &own->action));
   DVI_TRY(dvi__action_prepare_jacobian(own->action));
   if (!allocate(self, own)) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
+  const int sweeps = dvi__action_can_sweep(own->action);
   const dvi__equations equations = {dvi__action_unknowns(own->action),
                                     dvi__action_pattern(own->action),
                                     own->action,
@@ -115,7 +132,10 @@ dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *spac
                                     jacobian_of,
                                     prepare_chord_of,
                                     chord_of,
-                                    row_scale_of};
+                                    row_scale_of,
+                                    sweeps ? sweep_from_of : NULL,
+                                    sweeps ? sweep_of : NULL,
+                                    sweeps ? sweep_to_of : NULL};
   return dvi__solver_create(&equations, self->counters, &own->solver);
 }
 

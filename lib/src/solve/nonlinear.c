@@ -66,21 +66,44 @@ dvi__linear_kind dvi__solver_linear_kind(const dvi__solver *solver)
 
 /* Fixed point iteration pays while each iteration gains a good part of a digit. A ratio above that may just be slow contraction: only at a few
  * roundings is it taken for noise. A patient user takes any gain; what no longer shrinks at all is noise. */
-static const dvi__pace paying = {0.35, 32 * DBL_EPSILON, 0.35}, any_gain = {1.0, 1e4 * DBL_EPSILON, 1.0};
+static const dvi__pace paying = {0.35, 32 * DBL_EPSILON, 0.35, 0}, any_gain = {1.0, 1e4 * DBL_EPSILON, 1.0, 0};
+
+/* One iteration: the largest correction, and the largest unknown. */
+static dvi_status iterate(dvi__solver *s, double *x, double *correction, double *whole)
+{
+  const dvi__equations *equations = &s->equations;
+  if (equations->sweep != NULL) {
+    s->counters->residuals++;
+    return equations->sweep(equations->of, correction, whole);
+  }
+  DVI_TRY(dvi__solver_residual(s, x, s->residual));
+  equations->chord(equations->of, s->residual);
+  dvi__correct(equations->unknowns, s->residual, x, correction, whole);
+  return DVI_OK;
+}
+
+static dvi_status prepare(dvi__solver *s, const double *x)
+{
+  if (s->equations.sweep == NULL) return s->equations.prepare_chord(s->equations.of, x);
+  s->equations.sweep_from(s->equations.of, x);
+  return DVI_OK;
+}
 
 static dvi_status fixed_point(dvi__solver *s, double size, int patient, double *x, dvi__solve_report *report)
 {
   const int most = patient ? MOST_PATIENT_ITERATIONS : MOST_FIXED_POINT_ITERATIONS;
-  const dvi__pace *pace = patient ? &any_gain : &paying;
+  dvi__pace pace = patient ? any_gain : paying;
+  pace.ahead = s->equations.sweep != NULL;
   dvi__trail trail = {0, 0};
   double whole;
-  DVI_TRY(s->equations.prepare_chord(s->equations.of, x));
+  DVI_TRY(prepare(s, x));
   for (report->iterations = 1; report->iterations <= most; report->iterations++) {
-    DVI_TRY(dvi__solver_residual(s, x, s->residual));
-    s->equations.chord(s->equations.of, s->residual);
-    dvi__correct(s->equations.unknowns, s->residual, x, &report->correction, &whole);
-    const dvi__progress progress = dvi__judge(report->correction, &trail, pace, whole, size);
-    if (progress == DVI__CONVERGED) return DVI_OK;
+    DVI_TRY(iterate(s, x, &report->correction, &whole));
+    const dvi__progress progress = dvi__judge(report->correction, &trail, &pace, whole, size);
+    if (progress == DVI__CONVERGED) {
+      if (s->equations.sweep != NULL) s->equations.sweep_to(s->equations.of, x);
+      return DVI_OK;
+    }
     if (progress == DVI__STALLED) break;
   }
   return dvi__fail(DVI_NOT_CONVERGED, "fixed point iteration contracts too slowly (change %.1e after %.1e)", trail.last,

@@ -18,6 +18,10 @@ typedef struct dvi__equations {
   dvi_status (*prepare_chord)(void *of, const double *x);
   void (*chord)(void *of, double *r);         /* r <- C^{-1} r */
   void (*row_scale)(void *of, double *scale); /* [unknowns] > 0: size of a row per unit of an unknown; after prepare_chord */
+  /* The same fixed point iteration in variables of the equations' own, where that is cheaper; NULL: residual and chord do it. */
+  void (*sweep_from)(void *of, const double *x);
+  dvi_status (*sweep)(void *of, double *change, double *largest);
+  void (*sweep_to)(void *of, double *x);
 } dvi__equations;
 
 typedef enum dvi__rung { DVI__FIXED_POINT, DVI__NEWTON, DVI__KINSOL } dvi__rung;

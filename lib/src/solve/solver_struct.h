@@ -35,6 +35,7 @@ typedef enum dvi__progress { DVI__GO_ON, DVI__CONVERGED, DVI__STALLED } dvi__pro
  * added), above `slowest` the iteration is given up. */
 typedef struct dvi__pace {
   double stagnant, noise, slowest;
+  int ahead; /* what counts is the next correction's own part: the step takes nothing from the point before the last */
 } dvi__pace;
 
 /* The corrections before the one at hand; 0: there was none. */

@@ -1,0 +1,182 @@
+#include "action/sweep.h"
+
+#include <math.h>
+
+#include "action/action_struct.h"
+#include "core/memory.h"
+#include "core/status.h"
+#include "num/lanes.h"
+#include "space/legendre.h"
+#include "space/quadrature.h"
+
+/* ---- tables ---- */
+
+/* Any basis gives the same P. This one is orthogonal in the integral, and nearly so in the sums: psi_k' = P_k(1 - 2 tau), k = 0..s-1. */
+static void legendre_trial(int s, long double tau, long double *psi, long double *dpsi)
+{
+  long double value[DVI_DEGREE_MAX + 2], difference[DVI_DEGREE_MAX + 2];
+  dvi__legendre(s, tau, value, difference);
+  for (int k = 0; k < s; k++) {
+    dpsi[k] = value[k];
+    psi[k] = k == 0 ? tau : -(difference[k + 1] + difference[k]) / (2 * (2 * k + 1));
+  }
+}
+
+typedef struct tables {
+  long double psi[DVI_QUADRATURE_MAX][DVI_DEGREE_MAX];    /* at node j */
+  long double solved[DVI_QUADRATURE_MAX][DVI_DEGREE_MAX]; /* K^{-1} psi at node j */
+  long double K[DVI_DEGREE_MAX][DVI_DEGREE_MAX];          /* then its factor */
+} tables;
+
+/* K = C C^T by Cholesky; C takes the place of the lower triangle. */
+static void factor(int s, tables *t)
+{
+  for (int k = 0; k < s; k++)
+    for (int l = k; l < s; l++) {
+      long double sum = t->K[l][k];
+      for (int m = 0; m < k; m++) sum -= t->K[l][m] * t->K[k][m];
+      t->K[l][k] = l == k ? sqrtl(sum) : sum / t->K[k][k];
+    }
+}
+
+/* x = C^{-1} psi, so that P_ij = x_i . x_j, symmetric by its form. */
+static void solve(int s, const tables *t, const long double *psi, long double *x)
+{
+  for (int k = 0; k < s; k++) {
+    x[k] = psi[k];
+    for (int m = 0; m < k; m++) x[k] -= t->K[k][m] * x[m];
+    x[k] /= t->K[k][k];
+  }
+}
+
+static void fill(int s, int r, const long double *node, const long double *weight, tables *t)
+{
+  long double dpsi[DVI_DEGREE_MAX];
+  for (int j = 0; j < r; j++) {
+    legendre_trial(s, node[j], t->psi[j], dpsi);
+    for (int k = 0; k < s; k++)
+      for (int l = 0; l <= k; l++) t->K[k][l] += weight[j] * dpsi[k] * dpsi[l];
+  }
+  factor(s, t);
+  for (int j = 0; j < r; j++) solve(s, t, t->psi[j], t->solved[j]);
+}
+
+/* To multiples of 2^-53, on which differences of numbers up to 1 are exact. */
+static double to_grid(long double x)
+{
+  return (double)ldexpl(nearbyintl(ldexpl(x, 53)), -53);
+}
+
+/* c_i - P_ij by columns, c, and 1 - c. */
+static void store(dvi__action *a, const long double *node, const tables *t)
+{
+  const int lanes = a->lanes;
+  for (int i = 0; i < a->r; i++) {
+    a->sweep_node[i] = to_grid(node[i]);
+    a->sweep_rest[i] = 1.0 - a->sweep_node[i];
+  }
+  for (int i = 0; i < a->r; i++)
+    for (int j = 0; j < a->r; j++) {
+      long double P = 0;
+      for (int k = 0; k < a->s; k++) P += t->solved[i][k] * t->solved[j][k];
+      a->sweep_matrix[j * lanes + i] = a->sweep_node[i] - to_grid(P);
+    }
+}
+
+/* The path by the forces, Y = h v0 straight - h^2/m K^{-1} bar g: the last factor by columns, in the space's own basis. And psi at the nodes by
+ * columns, for the way back. */
+static void store_path(dvi__action *a)
+{
+  const int s = a->s, r = a->r, path_lanes = dvi__lanes_for(s);
+  for (int j = 0; j < r; j++)
+    for (int k = 0; k < s; k++) {
+      double sum = 0;
+      for (int l = 0; l < s; l++) sum += a->stiffness_inverse[k * s + l] * a->bar[l * r + j];
+      a->sweep_path[j * path_lanes + k] = -sum;
+    }
+  for (int k = 0; k < s; k++)
+    for (int i = 0; i < r; i++) a->sweep_psi[k * a->lanes + i] = a->psi[k * r + i];
+}
+
+static dvi_status allocate(dvi__action *a)
+{
+  const size_t n = (size_t)a->n, r = (size_t)a->r, s = (size_t)a->s, path_lanes = (size_t)dvi__lanes_for(a->s);
+  a->lanes = dvi__lanes_for(a->r);
+  const size_t lanes = (size_t)a->lanes;
+  a->sweep_matrix = DVI_NEW(double, r *lanes);
+  a->sweep_node = DVI_NEW(double, lanes);
+  a->sweep_rest = DVI_NEW(double, r);
+  a->sweep_path = DVI_NEW(double, r *path_lanes);
+  a->sweep_psi = DVI_NEW(double, s *lanes);
+  a->sweep_start = DVI_NEW(double, n);
+  a->sweep_factor = DVI_NEW(double, n);
+  a->Z = DVI_NEW(double, n *lanes);
+  if (a->sweep_matrix && a->sweep_node && a->sweep_rest && a->sweep_path && a->sweep_psi && a->sweep_start && a->sweep_factor &&
+      a->Z)
+    return DVI_OK;
+  return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d nodes in %d dimensions", a->r, a->n);
+}
+
+int dvi__action_can_sweep(const dvi__action *a)
+{
+  return a->system->mass_diagonal != NULL;
+}
+
+dvi_status dvi__action_prepare_sweep(dvi__action *a)
+{
+  long double node[DVI_QUADRATURE_MAX], weight[DVI_QUADRATURE_MAX];
+  if (!dvi__action_can_sweep(a)) return DVI_OK;
+  DVI_TRY(allocate(a));
+  DVI_TRY(dvi__quadrature_long(a->space.rule, a->r, node, weight));
+  tables *t = DVI_NEW(tables, 1);
+  if (t == NULL) return dvi__fail(DVI_NO_MEMORY, "action: no memory for tables of degree %d", a->s);
+  fill(a->s, a->r, node, weight, t);
+  store(a, node, t);
+  store_path(a);
+  dvi__release(t);
+  return DVI_OK;
+}
+
+/* ---- iterations ---- */
+
+void dvi__action_sweep_from(dvi__action *a, const double *Y)
+{
+  const double *mass = a->system->mass_diagonal;
+  const size_t r = (size_t)a->r, lanes = (size_t)a->lanes;
+  dvi__lanes_product(a->n, a->s, a->lanes, a->lanes, a->sweep_psi, Y, a->Z);
+  for (size_t i = 0; i < (size_t)a->n; i++) {
+    a->sweep_start[i] = a->h * (a->p0[i] / mass[i]);
+    a->sweep_factor[i] = a->h * a->h / mass[i];
+    for (size_t j = 0; j < r; j++) a->Q[i * r + j] = a->q0[i] + a->Z[i * lanes + j];
+  }
+}
+
+dvi_status dvi__action_sweep(dvi__action *a, double *change, double *largest)
+{
+  DVI_TRY(dvi__lagrangian_gradient(a->evaluator, a->r, a->t, a->Q, NULL, a->L_q, NULL));
+  dvi__sweep sweep = {.n = a->n,
+                      .stages = a->r,
+                      .lanes = a->lanes,
+                      .matrix = a->sweep_matrix,
+                      .node = a->sweep_node,
+                      .weight = a->weight,
+                      .start = a->sweep_start,
+                      .factor = a->sweep_factor,
+                      .origin = a->q0,
+                      .force = a->L_q,
+                      .Z = a->Z,
+                      .Q = a->Q};
+  dvi__lanes_sweep(&sweep);
+  a->swept = 1;
+  *change = sweep.change;
+  *largest = sweep.largest;
+  return DVI_OK;
+}
+
+void dvi__action_sweep_to(dvi__action *a, double *Y)
+{
+  const size_t s = (size_t)a->s;
+  dvi__lanes_product(a->n, a->r, dvi__lanes_for(a->s), a->s, a->sweep_path, a->L_q, Y);
+  for (size_t i = 0; i < (size_t)a->n; i++)
+    for (size_t k = 0; k < s; k++) Y[i * s + k] = a->sweep_start[i] * a->straight[k] + a->sweep_factor[i] * Y[i * s + k];
+}

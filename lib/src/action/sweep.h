@@ -1,0 +1,27 @@
+/* Fixed point iteration on the positions at the nodes: for a constant mass without coupling (scalar, diagonal) the rows of action.h are
+ * linear but for the forces, and solve themselves:
+ *
+ *     q(c_i) = q0 + h c_i v0 + h^2/m sum_j (c_i - P_ij) g_j,   g_j = b_j L_q(q(c_j)),   v0 = p0/m,
+ *     q1 = q0 + h v0 + h^2/m sum_j (1 - c_j) g_j,   p1 = p0 + h sum_j g_j,
+ *
+ * with P_ij = psi(c_i)^T K^{-1} psi(c_j). One iteration is one product with an r x r matrix. The step is symplectic because P is symmetric (Suris
+ * 1989; Hairer, Lubich and Wanner 2006, sec. VI.4.2), and it is so to the last bit of c and P. */
+#ifndef DVI_ACTION_SWEEP_H
+#define DVI_ACTION_SWEEP_H
+#include "action/action.h"
+
+/* Tables and memory, if the system is of this kind; else nothing. */
+dvi_status dvi__action_prepare_sweep(dvi__action *action);
+
+int dvi__action_can_sweep(const dvi__action *action);
+
+/* Put the nodes on the path Y. */
+void dvi__action_sweep_from(dvi__action *action, const double *Y);
+
+/* One iteration: the largest change of a node's offset from q0, and the largest offset. */
+dvi_status dvi__action_sweep(dvi__action *action, double *change, double *largest);
+
+/* The path Y that the last iteration's forces make. dvi__action_ends then gives the ends by these forces. */
+void dvi__action_sweep_to(dvi__action *action, double *Y);
+
+#endif

@@ -1,0 +1,178 @@
+/* labels: unit */
+/* Every instruction set gives the bits of the plain loops. On an older processor fewer sets are tested; the baseline always is. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "num/lanes.h"
+#include "support/runs.h"
+#include "support/suite.h"
+
+enum { N = 5, STAGES_MOST = 80, LANES_MOST = 80 };
+
+static void best_again(void)
+{
+  dvi__lanes_choose(-1);
+}
+
+/* Numbers of several sizes and both signs, never twice the same. */
+static double number(int seed)
+{
+  return sin(1.0 + seed) * ldexp(1.0, seed % 7 - 3);
+}
+
+static void fill(int count, double *x, int seed)
+{
+  for (int i = 0; i < count; i++) x[i] = number(seed + 3 * i);
+}
+
+static double sweep_matrix[STAGES_MOST * LANES_MOST], node[LANES_MOST], weight[STAGES_MOST], start[N], factor[N], origin[N];
+static double force[2][N * STAGES_MOST], Z[2][N * LANES_MOST], Q[2][N * STAGES_MOST];
+
+/* What lanes.h says, one number after the other. */
+static void plain_sweep(dvi__sweep *s)
+{
+  s->change = s->largest = 0;
+  for (int i = 0; i < s->n; i++) {
+    double *g = s->force + i * s->stages;
+    for (int j = 0; j < s->stages; j++) g[j] *= s->weight[j];
+    for (int l = 0; l < s->lanes; l++) {
+      double sum = 0, *z = &s->Z[i * s->lanes + l];
+      for (int j = 0; j < s->stages; j++) sum += s->matrix[j * s->lanes + l] * g[j];
+      const double next = s->start[i] * s->node[l] + s->factor[i] * sum;
+      s->change = fmax(s->change, fabs(*z - next));
+      s->largest = fmax(s->largest, fabs(next));
+      if (l < s->stages) s->Q[i * s->stages + l] = s->origin[i] + next;
+      *z = next;
+    }
+  }
+}
+
+static dvi__sweep made_sweep(int stages, int which)
+{
+  const int lanes = dvi__lanes_for(stages);
+  fill(N * stages, force[which], 1);
+  fill(N * lanes, Z[which], 2);
+  fill(N * stages, Q[which], 3);
+  return (dvi__sweep){.n = N,
+                      .stages = stages,
+                      .lanes = lanes,
+                      .matrix = sweep_matrix,
+                      .node = node,
+                      .weight = weight,
+                      .start = start,
+                      .factor = factor,
+                      .origin = origin,
+                      .force = force[which],
+                      .Z = Z[which],
+                      .Q = Q[which]};
+}
+
+START_TEST(a_sweep_has_the_bits_of_plain_loops)
+{
+  const int stages = 1 + _i % STAGES_MOST, lanes = dvi__lanes_for(stages);
+  if (_i / STAGES_MOST >= dvi__lanes_levels()) return;
+  dvi__lanes_choose(_i / STAGES_MOST);
+  fill(stages * lanes, sweep_matrix, 4), fill(lanes, node, 5), fill(stages, weight, 6);
+  fill(N, start, 7), fill(N, factor, 8), fill(N, origin, 9);
+  dvi__sweep fast = made_sweep(stages, 0), plain = made_sweep(stages, 1);
+  for (int again = 0; again < 2; again++) {
+    dvi__lanes_sweep(&fast);
+    plain_sweep(&plain);
+    ck_assert_mem_eq(force[0], force[1], (size_t)(N * stages) * sizeof(double));
+    ck_assert_mem_eq(Z[0], Z[1], (size_t)(N * lanes) * sizeof(double));
+    ck_assert_mem_eq(Q[0], Q[1], (size_t)(N * stages) * sizeof(double));
+    ck_assert_double_eq(fast.change, plain.change);
+    ck_assert_double_eq(fast.largest, plain.largest);
+  }
+}
+END_TEST
+
+START_TEST(a_product_has_the_bits_of_plain_loops)
+{
+  static double x[N * STAGES_MOST], out[N * LANES_MOST + 1];
+  const int width = 1 + _i % STAGES_MOST, lanes = dvi__lanes_for(width), terms = 1 + (7 * width) % 23;
+  if (_i / STAGES_MOST >= dvi__lanes_levels()) return;
+  dvi__lanes_choose(_i / STAGES_MOST);
+  fill(terms * lanes, sweep_matrix, 1), fill(N * terms, x, 2);
+  out[N * width] = 42;
+  dvi__lanes_product(N, terms, lanes, width, sweep_matrix, x, out);
+  for (int i = 0; i < N; i++)
+    for (int l = 0; l < width; l++) {
+      double sum = 0;
+      for (int k = 0; k < terms; k++) sum += sweep_matrix[k * lanes + l] * x[i * terms + k];
+      ck_assert_double_eq(out[i * width + l], sum);
+    }
+  ck_assert_double_eq(out[N * width], 42); /* nothing is written behind */
+}
+END_TEST
+
+START_TEST(one_number_that_is_not_finite_is_seen_anywhere)
+{
+  enum { MOST = 100 };
+  double x[MOST];
+  const double bad[] = {(double)NAN, HUGE_VAL, -HUGE_VAL},
+               good[] = {1.7976931348623157e308, -1.7976931348623157e308, 0, -0.0, 5e-324};
+  if (_i >= dvi__lanes_levels()) return;
+  dvi__lanes_choose(_i);
+  for (int count = 0; count <= MOST; count++) {
+    for (int i = 0; i < count; i++) x[i] = good[i % 5];
+    ck_assert_int_eq(dvi__lanes_all_finite((size_t)count, x), 1);
+    for (int at = 0; at < count; at++) {
+      x[at] = bad[at % 3];
+      ck_assert_int_eq(dvi__lanes_all_finite((size_t)count, x), 0);
+      x[at] = good[at % 5];
+    }
+  }
+}
+END_TEST
+
+/* Problems with loops of their own for each instruction set, and degrees on both sides of a row's length. */
+START_TEST(steps_have_the_same_bits_at_every_level)
+{
+  static const struct {
+    const char *problem, *method;
+    double h;
+  } runs[] = {{"kepler", "midpoint", 0.05},
+              {"kepler", "galerkin:degree=2", 0.05},
+              {"outer-solar", "galerkin:degree=3", 50},
+              {"outer-solar", "galerkin:degree=8", 300},
+              {"fpu", "galerkin:degree=5,quadrature=lobatto", 0.01},
+              {"double-pendulum", "galerkin:degree=9", 0.05},
+              {"kepler", "composition:order=8,base=galerkin,degree=4", 0.1}};
+  double q[64];
+  problem *of = made_problem(runs[_i].problem, NULL);
+  for (int level = 0; level < dvi__lanes_levels(); level++) {
+    dvi__lanes_choose(level);
+    dvi_integrator *integrator = started(of, runs[_i].method);
+    advance(integrator, runs[_i].h, 50);
+    if (level > 0) ck_assert_mem_eq(q, dvi_integrator_q(integrator), (size_t)of->n * sizeof(double));
+    memcpy(q, dvi_integrator_q(integrator), (size_t)of->n * sizeof(double));
+    dvi_integrator_destroy(&integrator);
+  }
+  problem_destroy(&of);
+}
+END_TEST
+
+START_TEST(levels_have_names)
+{
+  ck_assert_int_ge(dvi__lanes_levels(), 1);
+  ck_assert_str_eq(dvi__lanes_level_name(0), "baseline");
+  ck_assert_ptr_null(dvi__lanes_level_name(-1));
+  ck_assert_ptr_null(dvi__lanes_level_name(100));
+  ck_assert_int_eq(dvi__lanes_for(1) + dvi__lanes_for(2) + dvi__lanes_for(3) + dvi__lanes_for(5) + dvi__lanes_for(9),
+                   1 + 2 + 4 + 8 + 16);
+}
+END_TEST
+
+int main(void)
+{
+  TCase *tests = tcase_create("lanes");
+  tcase_add_checked_fixture(tests, NULL, best_again);
+  tcase_add_loop_test(tests, a_sweep_has_the_bits_of_plain_loops, 0, 3 * STAGES_MOST);
+  tcase_add_loop_test(tests, a_product_has_the_bits_of_plain_loops, 0, 3 * STAGES_MOST);
+  tcase_add_loop_test(tests, one_number_that_is_not_finite_is_seen_anywhere, 0, 3);
+  tcase_add_loop_test(tests, steps_have_the_same_bits_at_every_level, 0, 7);
+  tcase_add_test(tests, levels_have_names);
+  return run_tests("num/lanes", tests);
+}
