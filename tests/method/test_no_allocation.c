@@ -29,6 +29,7 @@ static const char *const methods[] = {
     "galerkin:degree=2,solver=fixed-point",
     "galerkin:degree=4,basis=legendre,quadrature=lobatto,nodes=5",
     "galerkin:degree=4,solver=newton",
+    "galerkin:degree=5,solver=simplified",
     "galerkin:degree=4,solver=kinsol",
     "composition:order=4,base=midpoint",
     "composition:order=6,base=galerkin,degree=2,solver=newton",
@@ -140,6 +141,11 @@ START_TEST(the_places_reach_every_solver)
   problem *of = made_problem("fpu", "ell=200");
   dvi_integrator *integrator = ready(of, "galerkin:degree=2");
   dvi_counters counters;
+  (void)calls_of_steps(integrator, 0.1, STEPS);
+  dvi_integrator_counters(integrator, &counters);
+  ck_assert_int_gt(counters.simplified, 0);
+  dvi_integrator_destroy(&integrator);
+  integrator = ready(of, "galerkin:degree=4,solver=newton");
   (void)calls_of_steps(integrator, 0.1, STEPS);
   dvi_integrator_counters(integrator, &counters);
   ck_assert_int_gt(counters.newtons, 0);

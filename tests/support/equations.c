@@ -97,8 +97,14 @@ static void make_solver(const dvi__equations *equations, bench *b)
 
 void for_chain(chain *c, bench *b)
 {
-  make_solver(&(dvi__equations){SIZE, &c->pattern, c, chain_residual, chain_jacobian, chain_prepare, chain_chord, chain_scale, NULL,
-                                NULL, NULL},
+  make_solver(&(dvi__equations){.unknowns = SIZE,
+                                .pattern = &c->pattern,
+                                .of = c,
+                                .residual = chain_residual,
+                                .jacobian = chain_jacobian,
+                                .prepare_chord = chain_prepare,
+                                .chord = chain_chord,
+                                .row_scale = chain_scale},
               b);
 }
 
@@ -106,9 +112,15 @@ void for_single(single *s, bench *b)
 {
   static int start[2] = {0, 1}, row[1] = {0};
   static const dvi__pattern one = {1, 1, start, row};
-  make_solver(
-      &(dvi__equations){1, &one, s, single_residual, single_jacobian, chain_prepare, single_chord, single_scale, NULL, NULL, NULL},
-      b);
+  make_solver(&(dvi__equations){.unknowns = 1,
+                                .pattern = &one,
+                                .of = s,
+                                .residual = single_residual,
+                                .jacobian = single_jacobian,
+                                .prepare_chord = chain_prepare,
+                                .chord = single_chord,
+                                .row_scale = single_scale},
+              b);
 }
 
 dvi_status run_rung(bench *b, dvi__rung rung, double *x)

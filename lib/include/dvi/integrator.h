@@ -24,6 +24,7 @@ typedef struct dvi_counters {
   long kinsols;        /**< solves handed to KINSOL */
   long halvings;       /**< starting paths that were built from shorter steps */
   long allocations;    /**< blocks of memory that its creation and its steps took; a step takes none */
+  long simplified;     /**< solves by simplified Newton's method: the Jacobian of one point, decoupled into systems of n unknowns */
 } dvi_counters;
 
 #ifdef __cplusplus

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "action/decoupled.h"
 #include "action/sweep.h"
 #include "core/memory.h"
 #include "core/status.h"
@@ -14,15 +15,15 @@
 
 const char *dvi__solver_choice(int index)
 {
-  static const char *const name[] = {"auto", "fixed-point", "newton", "kinsol"};
-  return index >= 0 && index < 4 ? name[index] : NULL;
+  static const char *const name[] = {"auto", "fixed-point", "simplified", "newton", "kinsol"};
+  return index >= 0 && index < 5 ? name[index] : NULL;
 }
 
-/* Memory: length of the last step (0: none), steps for which fixed point iteration is not tried again, the last step's unknowns; before the
- * first step, the start's velocity in their place. */
-enum { LAST_H, NEWTON_STEPS, LAST_Y };
+/* Memory: length of the last step (0: none), steps for which fixed point iteration and simplified Newton's method are not tried again, the last step's
+ * unknowns; before the first step, the start's velocity in their place. */
+enum { LAST_H, NEWTON_STEPS, FULL_STEPS, LAST_Y };
 
-/* After fixed point iteration failed once, Newton's method takes over for this many steps. */
+/* After an iteration failed once, the next better one takes over for this many steps. */
 static const double newton_steps = 64;
 
 /* A guess is made from at most 2^5 shorter steps. */
@@ -30,6 +31,7 @@ enum { MOST_HALVINGS = 5 };
 
 typedef struct element {
   dvi__action *action;
+  dvi__decoupled *decoupled; /* NULL: no simplified Newton's method */
   dvi__solver *solver;
   int choice; /* of the solver */
   double *Y;  /* the unknowns */
@@ -40,44 +42,54 @@ typedef struct element {
 
 /* ---- making it ---- */
 
-static dvi_status residual_of(void *action, const double *Y, double *R)
+static dvi_status residual_of(void *of, const double *Y, double *R)
 {
-  return dvi__action_residual(action, Y, R);
+  return dvi__action_residual(((const element *)of)->action, Y, R);
 }
 
-static dvi_status jacobian_of(void *action, const double *Y, double *values)
+static dvi_status jacobian_of(void *of, const double *Y, double *values)
 {
-  return dvi__action_jacobian(action, Y, values);
+  return dvi__action_jacobian(((const element *)of)->action, Y, values);
 }
 
-static dvi_status prepare_chord_of(void *action, const double *Y)
+static dvi_status prepare_chord_of(void *of, const double *Y)
 {
-  return dvi__action_prepare_chord(action, Y);
+  return dvi__action_prepare_chord(((const element *)of)->action, Y);
 }
 
-static void chord_of(void *action, double *R)
+static void chord_of(void *of, double *R)
 {
-  dvi__action_chord(action, R);
+  dvi__action_chord(((const element *)of)->action, R);
 }
 
-static void row_scale_of(void *action, double *scale)
+static void row_scale_of(void *of, double *scale)
 {
-  dvi__action_row_scale(action, scale);
+  dvi__action_row_scale(((const element *)of)->action, scale);
 }
 
-static void sweep_from_of(void *action, const double *Y)
+static void sweep_from_of(void *of, const double *Y)
 {
-  dvi__action_sweep_from(action, Y);
+  dvi__action_sweep_from(((const element *)of)->action, Y);
 }
 
-static dvi_status sweep_of(void *action, double *change, double *largest)
+static dvi_status sweep_of(void *of, double *change, double *largest)
 {
-  return dvi__action_sweep(action, change, largest);
+  return dvi__action_sweep(((const element *)of)->action, change, largest);
 }
 
-static void sweep_to_of(void *action, double *Y)
+static void sweep_to_of(void *of, double *Y)
 {
-  dvi__action_sweep_to(action, Y);
+  dvi__action_sweep_to(((const element *)of)->action, Y);
+}
+
+static dvi_status freeze_of(void *of, const double *Y)
+{
+  return dvi__decoupled_freeze(((const element *)of)->decoupled, Y);
+}
+
+static void frozen_of(void *of, double *R)
+{
+  dvi__decoupled_solve(((const element *)of)->decoupled, R);
 }
 
 static int allocate(dvi__stepper *self, element *own)
@@ -113,6 +125,33 @@ static int order_of(int s, int u)
   return smaller(smaller(2 * s, u), 2 * (u - s + 1));
 }
 
+/* Simplified Newton's method is for those who may use it; a space without a full set of eigenvectors goes without it. */
+static dvi_status make_decoupled(dvi__stepper *self, element *own)
+{
+  if (own->choice != DVI__SOLVER_AUTO && own->choice != DVI__SOLVER_SIMPLIFIED) return DVI_OK;
+  const dvi_status status = dvi__decoupled_create(own->action, self->counters, &own->decoupled);
+  return status == DVI_SINGULAR ? DVI_OK : status;
+}
+
+static dvi_status make_solver(dvi__stepper *self, element *own)
+{
+  const int sweeps = dvi__action_can_sweep(own->action);
+  const dvi__equations equations = {.unknowns = dvi__action_unknowns(own->action),
+                                    .pattern = dvi__action_pattern(own->action),
+                                    .of = own,
+                                    .residual = residual_of,
+                                    .jacobian = jacobian_of,
+                                    .prepare_chord = prepare_chord_of,
+                                    .chord = chord_of,
+                                    .row_scale = row_scale_of,
+                                    .sweep_from = sweeps ? sweep_from_of : NULL,
+                                    .sweep = sweeps ? sweep_of : NULL,
+                                    .sweep_to = sweeps ? sweep_to_of : NULL,
+                                    .freeze = own->decoupled != NULL ? freeze_of : NULL,
+                                    .frozen = own->decoupled != NULL ? frozen_of : NULL};
+  return dvi__solver_create(&equations, self->counters, &own->solver);
+}
+
 dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *space, int solver)
 {
   const int quadrature_order = dvi_quadrature_order(space->rule, space->nodes);
@@ -123,20 +162,9 @@ dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *spac
   own->choice = solver;
   DVI_TRY(dvi__action_create(self->system, space, self->counters, &own->action));
   DVI_TRY(dvi__action_prepare_jacobian(own->action));
+  DVI_TRY(make_decoupled(self, own));
   if (!allocate(self, own)) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
-  const int sweeps = dvi__action_can_sweep(own->action);
-  const dvi__equations equations = {dvi__action_unknowns(own->action),
-                                    dvi__action_pattern(own->action),
-                                    own->action,
-                                    residual_of,
-                                    jacobian_of,
-                                    prepare_chord_of,
-                                    chord_of,
-                                    row_scale_of,
-                                    sweeps ? sweep_from_of : NULL,
-                                    sweeps ? sweep_of : NULL,
-                                    sweeps ? sweep_to_of : NULL};
-  return dvi__solver_create(&equations, self->counters, &own->solver);
+  return make_solver(self, own);
 }
 
 void dvi__element_destroy(dvi__stepper *self)
@@ -145,6 +173,7 @@ void dvi__element_destroy(dvi__stepper *self)
   dvi__release(self->memory);
   if (own == NULL) return;
   dvi__solver_destroy(&own->solver);
+  dvi__decoupled_destroy(&own->decoupled);
   dvi__action_destroy(&own->action);
   dvi__release(own->Y);
   dvi__release(own->dq);
@@ -161,6 +190,7 @@ void dvi__element_start(dvi__stepper *self, const double *v)
 {
   self->memory[LAST_H] = 0;
   self->memory[NEWTON_STEPS] = 0;
+  self->memory[FULL_STEPS] = 0;
   memcpy(self->memory + LAST_Y, v, (size_t)self->system->n * sizeof(double));
 }
 
@@ -196,29 +226,45 @@ static dvi_status guess(dvi__stepper *self, const place *at, double *Y)
   return DVI_OK;
 }
 
+/* One rung from the guess. Whether it counts is for its own counter. */
+static dvi_status solve_by(dvi__stepper *self, const place *at, dvi__rung rung, double *Y, dvi__solve_report *report)
+{
+  element *own = self->own;
+  const double size = largest(self->system->n, at->q);
+  const int patient = own->choice == DVI__SOLVER_FIXED_POINT;
+  DVI_TRY(guess(self, at, Y));
+  const dvi_status status = dvi__solve(own->solver, rung, size, 1, patient, Y, report);
+  if (status == DVI_OK && rung == DVI__FIXED_POINT) self->counters->fixed_points++;
+  if (status == DVI_OK && rung == DVI__SIMPLIFIED) self->counters->simplified++;
+  if (status == DVI_OK && rung == DVI__NEWTON) self->counters->newtons++;
+  return status;
+}
+
+/* Whether the user, or the steps before, want this iteration; a step that does without it is counted down. */
+static int is_due(const element *own, int choice, double *steps_without)
+{
+  if (own->choice != choice && own->choice != DVI__SOLVER_AUTO) return 0;
+  if (*steps_without == 0 || own->choice == choice) return 1;
+  --*steps_without;
+  return 0;
+}
+
 /* Solve the element at its place, from a first guess, by the rung that the user or the measured contraction chooses. */
 static dvi_status solve_at(dvi__stepper *self, const place *at, double *Y, dvi__solve_report *report)
 {
   element *own = self->own;
-  const double size = largest(self->system->n, at->q);
-  const int fixed_point = own->choice == DVI__SOLVER_FIXED_POINT ||
-                          (own->choice == DVI__SOLVER_AUTO && self->memory[NEWTON_STEPS] == 0);
   dvi__action_place(own->action, at->t, at->h, at->q, at->p);
-  DVI_TRY(guess(self, at, Y));
-  if (fixed_point) {
-    const int patient = own->choice == DVI__SOLVER_FIXED_POINT;
-    const dvi_status status = dvi__solve(own->solver, DVI__FIXED_POINT, size, 0, patient, Y, report);
-    if (status == DVI_OK) self->counters->fixed_points++;
+  if (is_due(own, DVI__SOLVER_FIXED_POINT, &self->memory[NEWTON_STEPS])) {
+    const dvi_status status = solve_by(self, at, DVI__FIXED_POINT, Y, report);
     if (status <= 0) return status;
     self->memory[NEWTON_STEPS] = newton_steps;
-    DVI_TRY(guess(self, at, Y));
-  } else if (self->memory[NEWTON_STEPS] > 0) {
-    self->memory[NEWTON_STEPS]--;
   }
-  const dvi__rung rung = own->choice == DVI__SOLVER_KINSOL ? DVI__KINSOL : DVI__NEWTON;
-  const dvi_status status = dvi__solve(own->solver, rung, size, 1, 0, Y, report);
-  if (status == DVI_OK && rung == DVI__NEWTON) self->counters->newtons++;
-  return status;
+  if (own->decoupled != NULL && is_due(own, DVI__SOLVER_SIMPLIFIED, &self->memory[FULL_STEPS])) {
+    const dvi_status status = solve_by(self, at, DVI__SIMPLIFIED, Y, report);
+    if (status <= 0) return status;
+    self->memory[FULL_STEPS] = newton_steps;
+  }
+  return solve_by(self, at, own->choice == DVI__SOLVER_KINSOL ? DVI__KINSOL : DVI__NEWTON, Y, report);
 }
 
 /* Offsets from `start` of the path of one part, at the fitting points of the whole that lie in it. */
@@ -333,9 +379,10 @@ void dvi__element_explain(const dvi__stepper *self, dvi__text *text)
   dvi__text_add(text, "kinetic part: %s\n",
                 general ? "general Lagrangian; its velocity Hessian is evaluated once a step" : "constant mass");
   if (own->choice == DVI__SOLVER_AUTO)
-    dvi__text_add(
-        text,
-        "solver: auto: fixed point while it contracts by 0.35 or better, else Newton's method, last KINSOL with line search\n");
+    dvi__text_add(text,
+                  "solver: auto: fixed point while it contracts by 0.35 or better, else simplified Newton's method (%s), Newton's "
+                  "method, last KINSOL with line search\n",
+                  own->decoupled != NULL ? "decoupled systems of n unknowns" : "not in this space");
   else
     dvi__text_add(text, "solver: %s, as asked; what it cannot solve goes on to KINSOL with line search\n",
                   dvi__solver_choice(own->choice));

@@ -30,8 +30,9 @@ static void destroy(void *factor)
   dvi__release(d);
 }
 
-static dvi_status create(const dvi__pattern *pattern, void **factor)
+static dvi_status create(const dvi__pattern *pattern, const void *like, void **factor)
 {
+  (void)like;
   const size_t n = (size_t)pattern->columns;
   dense *d = *factor = DVI_NEW(dense, 1);
   if (d == NULL) return dvi__fail(DVI_NO_MEMORY, "dense LU: no memory");

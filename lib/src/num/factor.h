@@ -9,14 +9,16 @@
 #define DVI__LEAST_RCOND (16 * DBL_EPSILON)
 
 typedef struct dvi__factor_operations {
-  dvi_status (*create)(const dvi__pattern *pattern, void **factor);
+  /* `like`: a sparse factor of the same pattern, which outlives this one and whose analysis serves it, too; or NULL. */
+  dvi_status (*create)(const dvi__pattern *pattern, const void *like, void **factor);
   /* Returns DVI_SINGULAR with a sentence if the reciprocal condition is below DVI__LEAST_RCOND. */
   dvi_status (*refactor)(void *factor, const dvi__pattern *pattern, const double *values);
   void (*solve)(void *factor, const dvi__pattern *pattern, double *b);
   void (*destroy)(void *factor);
 } dvi__factor_operations;
 
-extern const dvi__factor_operations dvi__dense_factor;  /* dense.c */
-extern const dvi__factor_operations dvi__sparse_factor; /* klu.c */
+extern const dvi__factor_operations dvi__dense_factor;   /* dense.c */
+extern const dvi__factor_operations dvi__sparse_factor;  /* klu.c */
+extern const dvi__factor_operations dvi__complex_factor; /* klu.c; values and b in pairs of numbers */
 
 #endif

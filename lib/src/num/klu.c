@@ -14,9 +14,25 @@
 /* Small enough beside ones for the diagonal to be preferred as pivots. */
 #define OFF_DIAGONAL 1e-6
 
+/* KLU's functions for real numbers, and for complex ones as pairs of real ones. */
+typedef struct arithmetic {
+  int parts; /* numbers in an entry */
+  klu_numeric *(*factor)(int *start, int *row, double *values, klu_symbolic *symbolic, klu_common *common);
+  int (*refactor)(int *start, int *row, double *values, klu_symbolic *symbolic, klu_numeric *numeric, klu_common *common);
+  int (*growth)(int *start, int *row, double *values, klu_symbolic *symbolic, klu_numeric *numeric, klu_common *common);
+  int (*condition)(klu_symbolic *symbolic, klu_numeric *numeric, klu_common *common);
+  int (*solve)(klu_symbolic *symbolic, klu_numeric *numeric, int rows, int sides, double *b, klu_common *common);
+  int (*forget)(klu_numeric **numeric, klu_common *common);
+} arithmetic;
+
+static const arithmetic real = {1, klu_factor, klu_refactor, klu_rgrowth, klu_rcond, klu_solve, klu_free_numeric};
+static const arithmetic complex = {2, klu_z_factor, klu_z_refactor, klu_z_rgrowth, klu_z_rcond, klu_z_solve, klu_z_free_numeric};
+
 typedef struct sparse {
+  const arithmetic *of;
   klu_common common;
   klu_symbolic *symbolic;
+  int owns_symbolic;     /* else it is another one's, of the same pattern */
   klu_numeric *standing; /* in the order chosen at create; NULL if the pattern has no such order */
   klu_numeric *own;      /* of one matrix that needed an order of its own */
   klu_numeric *current;  /* one of the two */
@@ -26,9 +42,9 @@ static void destroy(void *factor)
 {
   sparse *s = factor;
   if (s == NULL) return;
-  klu_free_numeric(&s->standing, &s->common);
-  klu_free_numeric(&s->own, &s->common);
-  klu_free_symbolic(&s->symbolic, &s->common);
+  s->of->forget(&s->standing, &s->common);
+  s->of->forget(&s->own, &s->common);
+  if (s->owns_symbolic) klu_free_symbolic(&s->symbolic, &s->common);
   dvi__release(s);
 }
 
@@ -42,41 +58,55 @@ static int lacks_memory(int status)
  * are good for the Jacobians of short steps. A pattern without one may leave no factor; each real matrix then makes its own. */
 static dvi_status make_room(sparse *s, const dvi__pattern *pattern)
 {
-  double *entries = DVI_NEW(double, dvi__pattern_entries(pattern));
+  const int parts = s->of->parts;
+  double *entries = DVI_NEW(double, (size_t)parts *(size_t)dvi__pattern_entries(pattern));
   if (entries == NULL) return dvi__fail(DVI_NO_MEMORY, "KLU: no memory for %d entries", dvi__pattern_entries(pattern));
   for (int j = 0; j < pattern->columns; j++)
-    for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++) entries[e] = pattern->row[e] == j ? 1.0 : OFF_DIAGONAL;
-  s->standing = klu_factor(pattern->start, pattern->row, entries, s->symbolic, &s->common);
+    for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++)
+      entries[(ptrdiff_t)parts * e] = pattern->row[e] == j ? 1.0 : OFF_DIAGONAL;
+  s->standing = s->of->factor(pattern->start, pattern->row, entries, s->symbolic, &s->common);
   dvi__release(entries);
   if (s->standing != NULL || !lacks_memory(s->common.status)) return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "KLU: no memory to factor %d columns", pattern->columns);
 }
 
-static dvi_status analyse(sparse *s, const dvi__pattern *pattern)
+static dvi_status analyse(sparse *s, const dvi__pattern *pattern, const sparse *like)
 {
   klu_defaults(&s->common);
   s->common.scale = 0; /* the values come equilibrated */
-  s->symbolic = klu_analyze(pattern->columns, pattern->start, pattern->row, &s->common);
+  s->owns_symbolic = like == NULL;
+  s->symbolic = like != NULL ? like->symbolic : klu_analyze(pattern->columns, pattern->start, pattern->row, &s->common);
   if (s->symbolic != NULL) return make_room(s, pattern);
   if (lacks_memory(s->common.status)) return dvi__fail(DVI_NO_MEMORY, "KLU: no memory to analyse %d columns", pattern->columns);
   return dvi__fail(DVI_SOLVER_FAILED, "KLU: the analysis of %d columns failed (status %d)", pattern->columns, s->common.status);
 }
 
-static dvi_status create(const dvi__pattern *pattern, void **factor)
+static dvi_status create(const dvi__pattern *pattern, const arithmetic *of, const sparse *like, void **factor)
 {
   sparse *s = *factor = DVI_NEW(sparse, 1);
   if (s == NULL) return dvi__fail(DVI_NO_MEMORY, "KLU: no memory");
-  const dvi_status status = analyse(s, pattern);
+  s->of = of;
+  const dvi_status status = analyse(s, pattern, like);
   if (status == DVI_OK) return DVI_OK;
   destroy(s);
   *factor = NULL;
   return status;
 }
 
+static dvi_status create_real(const dvi__pattern *pattern, const void *like, void **factor)
+{
+  return create(pattern, &real, like, factor);
+}
+
+static dvi_status create_complex(const dvi__pattern *pattern, const void *like, void **factor)
+{
+  return create(pattern, &complex, like, factor);
+}
+
 /* By the smallest and largest pivot: coarser than LAPACK's estimate, but nearly free. */
 static int well_conditioned(sparse *s)
 {
-  return klu_rcond(s->symbolic, s->current, &s->common) && s->common.rcond >= DVI__LEAST_RCOND;
+  return s->of->condition(s->symbolic, s->current, &s->common) && s->common.rcond >= DVI__LEAST_RCOND;
 }
 
 /* klu_refactor keeps the order of the pivots and allocates nothing. A matrix for which the order is bad shows in the reciprocal pivot
@@ -84,8 +114,8 @@ static int well_conditioned(sparse *s)
 static int refactor_in_order(sparse *s, const dvi__pattern *pattern, double *entries)
 {
   s->current = s->standing;
-  return s->standing != NULL && klu_refactor(pattern->start, pattern->row, entries, s->symbolic, s->standing, &s->common) &&
-         klu_rgrowth(pattern->start, pattern->row, entries, s->symbolic, s->standing, &s->common) &&
+  return s->standing != NULL && s->of->refactor(pattern->start, pattern->row, entries, s->symbolic, s->standing, &s->common) &&
+         s->of->growth(pattern->start, pattern->row, entries, s->symbolic, s->standing, &s->common) &&
          s->common.rgrowth >= LEAST_GROWTH && well_conditioned(s);
 }
 
@@ -94,9 +124,9 @@ static dvi_status refactor(void *factor, const dvi__pattern *pattern, const doub
 {
   sparse *s = factor;
   double *entries = (double *)(uintptr_t)values; /* KLU's interface lacks const; it only reads */
-  klu_free_numeric(&s->own, &s->common);
+  s->of->forget(&s->own, &s->common);
   if (refactor_in_order(s, pattern, entries)) return DVI_OK;
-  s->current = s->own = klu_factor(pattern->start, pattern->row, entries, s->symbolic, &s->common);
+  s->current = s->own = s->of->factor(pattern->start, pattern->row, entries, s->symbolic, &s->common);
   if (s->own != NULL && well_conditioned(s)) return DVI_OK;
   if (s->own == NULL && lacks_memory(s->common.status))
     return dvi__fail(DVI_NO_MEMORY, "KLU: no memory to factor %d columns", pattern->columns);
@@ -106,7 +136,8 @@ static dvi_status refactor(void *factor, const dvi__pattern *pattern, const doub
 static void solve(void *factor, const dvi__pattern *pattern, double *b)
 {
   sparse *s = factor;
-  klu_solve(s->symbolic, s->current, pattern->rows, 1, b, &s->common);
+  s->of->solve(s->symbolic, s->current, pattern->rows, 1, b, &s->common);
 }
 
-const dvi__factor_operations dvi__sparse_factor = {create, refactor, solve, destroy};
+const dvi__factor_operations dvi__sparse_factor = {create_real, refactor, solve, destroy};
+const dvi__factor_operations dvi__complex_factor = {create_complex, refactor, solve, destroy};

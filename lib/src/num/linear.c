@@ -18,11 +18,12 @@ enum { LEAST_DENSE = 64 };
 
 struct dvi__linear {
   const dvi__factor_operations *operations;
+  int parts; /* numbers in an entry: 2 for complex ones */
   const dvi__pattern *pattern;
   dvi_counters *counters;
   void *factor;
   double *row_scale, *column_scale; /* [n], powers of two */
-  double *scaled;                   /* [entries], what is factored */
+  double *scaled;                   /* [entries*parts], what is factored */
 };
 
 static int dense_is_better(const dvi__pattern *pattern)
@@ -31,22 +32,24 @@ static int dense_is_better(const dvi__pattern *pattern)
   return pattern->columns >= LEAST_DENSE && dvi__pattern_entries(pattern) >= LEAST_DENSITY * n * n;
 }
 
-static dvi_status fill(dvi__linear *linear, dvi__linear_kind kind)
+static dvi_status fill(dvi__linear *linear, dvi__linear_kind kind, const dvi__linear *like)
 {
   const dvi__pattern *pattern = linear->pattern;
   const int dense = kind == DVI__LINEAR_DENSE || (kind == DVI__LINEAR_AUTO && dense_is_better(pattern));
-  linear->operations = dense ? &dvi__dense_factor : &dvi__sparse_factor;
+  linear->operations = dense ? &dvi__dense_factor : kind == DVI__LINEAR_COMPLEX ? &dvi__complex_factor : &dvi__sparse_factor;
+  linear->parts = kind == DVI__LINEAR_COMPLEX ? 2 : 1;
   linear->row_scale = DVI_NEW(double, pattern->rows);
   linear->column_scale = DVI_NEW(double, pattern->columns);
-  linear->scaled = DVI_NEW(double, dvi__pattern_entries(pattern));
+  linear->scaled = DVI_NEW(double, (size_t)linear->parts *(size_t)dvi__pattern_entries(pattern));
   if (linear->row_scale == NULL || linear->column_scale == NULL || linear->scaled == NULL)
     return dvi__fail(DVI_NO_MEMORY, "linear solver: no memory for %d entries", dvi__pattern_entries(pattern));
-  DVI_TRY(linear->operations->create(pattern, &linear->factor));
-  if (linear->counters != NULL && !dense) linear->counters->symbolic++;
+  DVI_TRY(linear->operations->create(pattern, like != NULL ? like->factor : NULL, &linear->factor));
+  if (linear->counters != NULL && !dense && like == NULL) linear->counters->symbolic++;
   return DVI_OK;
 }
 
-dvi_status dvi__linear_create(const dvi__pattern *pattern, dvi__linear_kind kind, dvi_counters *counters, dvi__linear **linear)
+static dvi_status create(const dvi__pattern *pattern, dvi__linear_kind kind, const dvi__linear *like, dvi_counters *counters,
+                         dvi__linear **linear)
 {
   *linear = NULL;
   if (pattern->columns < 1 || pattern->rows != pattern->columns)
@@ -55,10 +58,20 @@ dvi_status dvi__linear_create(const dvi__pattern *pattern, dvi__linear_kind kind
   if (made == NULL) return dvi__fail(DVI_NO_MEMORY, "linear solver: no memory");
   made->pattern = pattern;
   made->counters = counters;
-  const dvi_status status = fill(made, kind);
+  const dvi_status status = fill(made, kind, like);
   if (status != DVI_OK) dvi__linear_destroy(&made);
   *linear = made;
   return status;
+}
+
+dvi_status dvi__linear_create(const dvi__pattern *pattern, dvi__linear_kind kind, dvi_counters *counters, dvi__linear **linear)
+{
+  return create(pattern, kind, NULL, counters, linear);
+}
+
+dvi_status dvi__linear_create_like(const dvi__linear *like, dvi__linear_kind kind, dvi_counters *counters, dvi__linear **linear)
+{
+  return create(like->pattern, kind, like, counters, linear);
 }
 
 void dvi__linear_destroy(dvi__linear **linear)
@@ -74,6 +87,7 @@ void dvi__linear_destroy(dvi__linear **linear)
 
 dvi__linear_kind dvi__linear_kind_of(const dvi__linear *linear)
 {
+  if (linear->parts == 2) return DVI__LINEAR_COMPLEX;
   return linear->operations == &dvi__dense_factor ? DVI__LINEAR_DENSE : DVI__LINEAR_SPARSE;
 }
 
@@ -89,24 +103,28 @@ static void equilibrate(dvi__linear *linear, const double *values)
 {
   const dvi__pattern *pattern = linear->pattern;
   const int n = pattern->columns;
+  const ptrdiff_t parts = linear->parts;
   double *rows = linear->row_scale, *columns = linear->column_scale;
   memset(rows, 0, (size_t)n * sizeof(double));
   memset(columns, 0, (size_t)n * sizeof(double));
-  for (int e = 0; e < dvi__pattern_entries(pattern); e++) rows[pattern->row[e]] = fmax(rows[pattern->row[e]], fabs(values[e]));
+  for (ptrdiff_t e = 0; e < parts * dvi__pattern_entries(pattern); e++) {
+    double *row = rows + pattern->row[e / parts];
+    *row = fmax(*row, fabs(values[e]));
+  }
   invert_scales(n, rows);
   for (int j = 0; j < n; j++)
-    for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++) {
-      linear->scaled[e] = rows[pattern->row[e]] * values[e];
+    for (ptrdiff_t e = parts * pattern->start[j]; e < parts * pattern->start[j + 1]; e++) {
+      linear->scaled[e] = rows[pattern->row[e / parts]] * values[e];
       columns[j] = fmax(columns[j], fabs(linear->scaled[e]));
     }
   invert_scales(n, columns);
   for (int j = 0; j < n; j++)
-    for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++) linear->scaled[e] *= columns[j];
+    for (ptrdiff_t e = parts * pattern->start[j]; e < parts * pattern->start[j + 1]; e++) linear->scaled[e] *= columns[j];
 }
 
 dvi_status dvi__linear_factor(dvi__linear *linear, const double *values)
 {
-  const ptrdiff_t bad = dvi__first_not_finite((size_t)dvi__pattern_entries(linear->pattern), values);
+  const ptrdiff_t bad = dvi__first_not_finite((size_t)linear->parts * (size_t)dvi__pattern_entries(linear->pattern), values);
   if (bad >= 0) return dvi__fail(DVI_NOT_FINITE, "linear solver: the matrix holds %g (entry %td)", values[bad], bad);
   if (linear->counters != NULL) linear->counters->factorizations++;
   equilibrate(linear, values);
@@ -115,9 +133,9 @@ dvi_status dvi__linear_factor(dvi__linear *linear, const double *values)
 
 void dvi__linear_solve(dvi__linear *linear, double *b)
 {
-  const int n = linear->pattern->columns;
+  const ptrdiff_t parts = linear->parts, numbers = parts * linear->pattern->columns;
   if (linear->counters != NULL) linear->counters->solves++;
-  for (int i = 0; i < n; i++) b[i] *= linear->row_scale[i];
+  for (ptrdiff_t i = 0; i < numbers; i++) b[i] *= linear->row_scale[i / parts];
   linear->operations->solve(linear->factor, linear->pattern, b);
-  for (int j = 0; j < n; j++) b[j] *= linear->column_scale[j];
+  for (ptrdiff_t j = 0; j < numbers; j++) b[j] *= linear->column_scale[j / parts];
 }

@@ -7,21 +7,30 @@
 
 typedef struct dvi__linear dvi__linear;
 
-typedef enum dvi__linear_kind { DVI__LINEAR_AUTO, DVI__LINEAR_DENSE, DVI__LINEAR_SPARSE } dvi__linear_kind;
+typedef enum dvi__linear_kind {
+  DVI__LINEAR_AUTO,
+  DVI__LINEAR_DENSE,
+  DVI__LINEAR_SPARSE,
+  DVI__LINEAR_COMPLEX /* sparse; an entry, and a number of b, is a pair: real part, imaginary part */
+} dvi__linear_kind;
 
 /* The pattern must outlive the solver. counters (symbolic, factorizations, solves) may be NULL. AUTO is dense for nearly
  * full matrices that are not small. The symbolic analysis happens here, once. */
 dvi_status dvi__linear_create(const dvi__pattern *pattern, dvi__linear_kind kind, dvi_counters *counters, dvi__linear **linear);
+
+/* The same for the pattern of another solver, sparse or complex, which must outlive this one: its analysis serves both. Not AUTO or DENSE. */
+dvi_status dvi__linear_create_like(const dvi__linear *like, dvi__linear_kind kind, dvi_counters *counters, dvi__linear **linear);
+
 void dvi__linear_destroy(dvi__linear **linear);
 
-/* DVI__LINEAR_DENSE or DVI__LINEAR_SPARSE. */
+/* Not DVI__LINEAR_AUTO. */
 dvi__linear_kind dvi__linear_kind_of(const dvi__linear *linear);
 
 /* Factor the matrix with these values, in the order of the pattern; rows and columns are equilibrated first. DVI_SINGULAR if it is
  * singular to working precision, DVI_NOT_FINITE, DVI_NO_MEMORY (KLU's own); the old factor is lost then. */
 dvi_status dvi__linear_factor(dvi__linear *linear, const double *values);
 
-/* Overwrite b [rows] by the solution. Needs a factor. */
+/* Overwrite b [rows, or pairs of them] by the solution. Needs a factor. */
 void dvi__linear_solve(dvi__linear *linear, double *b);
 
 #endif

@@ -16,9 +16,9 @@ static const dvi__pace pace = {0.5, 1e4 * DBL_EPSILON, 2.0, 0};
 
 /* A guess is as likely to lead to another solution as to the wanted one if the second correction is larger than the first, or if the first one is a
  * large part of the unknowns and does not shrink fast. */
-static int misleading(double first, double second, double whole)
+int dvi__misleading(const dvi__trail *trail, double whole)
 {
-  return second > first || (first > 0.5 * whole && second > 0.25 * first);
+  return trail->last > trail->before || (trail->before > 0.5 * whole && trail->last > 0.25 * trail->before);
 }
 
 /* Largest change of an unknown relative to that unknown itself. */
@@ -55,7 +55,7 @@ dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__so
     if (converged && small_ones_settled(s, x, &last_relative)) return DVI_OK;
     growing = progress == DVI__STALLED ? growing + 1 : 0;
     if (growing == 2 || report->correction > 1e300) break;
-    if (wary && report->iterations == 2 && !converged && misleading(trail.before, trail.last, whole)) break;
+    if (wary && report->iterations == 2 && !converged && dvi__misleading(&trail, whole)) break;
     fresh = converged || trail.before == 0 || trail.last < keep_below * trail.before;
   }
   if (converged) return DVI_OK;

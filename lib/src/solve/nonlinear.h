@@ -2,6 +2,7 @@
  *
  * The rungs, cheap to robust:
  *   fixed point  x <- x - C^{-1} R(x) with a constant matrix C that the equations supply (the chord);
+ *   simplified   the same with a matrix near the Jacobian that the equations freeze at the guess and solve in their own way;
  *   Newton       with the LU factor of the Jacobian kept while the corrections shrink fast;
  *   KINSOL       Newton with line search, then Newton's method to the floor.
  * All end at the roundoff floor: a tolerance of a few roundings of the unknowns, or corrections that no longer shrink. */
@@ -22,9 +23,12 @@ typedef struct dvi__equations {
   void (*sweep_from)(void *of, const double *x);
   dvi_status (*sweep)(void *of, double *change, double *largest);
   void (*sweep_to)(void *of, double *x);
+  /* Simplified Newton's method; NULL: there is none. */
+  dvi_status (*freeze)(void *of, const double *x);
+  void (*frozen)(void *of, double *r); /* r <- correction */
 } dvi__equations;
 
-typedef enum dvi__rung { DVI__FIXED_POINT, DVI__NEWTON, DVI__KINSOL } dvi__rung;
+typedef enum dvi__rung { DVI__FIXED_POINT, DVI__SIMPLIFIED, DVI__NEWTON, DVI__KINSOL } dvi__rung;
 
 /* How a solve went; on failure, for the sentence. */
 typedef struct dvi__solve_report {
@@ -41,7 +45,7 @@ void dvi__solver_destroy(dvi__solver **solver);
 /* One rung, from the guess in x to the solution in x.
  *
  * `size` is the size of the quantities to which x is an increment: rounding noise of size * epsilon is expected. With `wary`, Newton's
- * method gives up on a guess so far off that it might lead to another solution. With `patient`, slow fixed point iterations go on.
+ * methods give up on a guess so far off that it might lead to another solution. With `patient`, slow fixed point iterations go on.
  * A positive status: not solved, x is spoilt; a negative one: fatal. */
 dvi_status dvi__solve(dvi__solver *solver, dvi__rung rung, double size, int wary, int patient, double *x,
                       dvi__solve_report *report);

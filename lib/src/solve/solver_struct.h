@@ -47,6 +47,9 @@ typedef struct dvi__trail {
  * the unknowns and of what they are added to. */
 dvi__progress dvi__judge(double correction, dvi__trail *trail, const dvi__pace *pace, double unknown, double size);
 
+/* After two corrections: is the guess so far off that another solution might be found? */
+int dvi__misleading(const dvi__trail *trail, double whole);
+
 /* x <- x - correction; gives the largest correction and the largest x. */
 void dvi__correct(int count, const double *correction, double *x, double *largest_correction, double *largest_x);
 

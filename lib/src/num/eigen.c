@@ -1,0 +1,45 @@
+#include "num/eigen.h"
+
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+
+/* LAPACK's Fortran interface; character arguments carry a hidden length that gfortran passes last. */
+extern void dgeev_(const char *left, const char *right, const int *n, double *a, const int *lda, double *wr, double *wi, double *vl,
+                   const int *ldvl, double *vr, const int *ldvr, double *work, const int *lwork, int *info, size_t left_length,
+                   size_t right_length);
+extern void dgesv_(const int *n, const int *sides, double *a, const int *lda, int *pivot, double *b, const int *ldb, int *info);
+
+/* LAPACK keeps Re and Im of a pair's vector in two columns: T (x + iy) = (a + ib)(x + iy), so that T x = a x - b y, T y = b x + a y. */
+static int vectors(int n, double *copy, double *real_part, double *imaginary_part, double *X, double *work)
+{
+  const int length = 8 * n, one = 1;
+  int info = 0;
+  dgeev_("N", "V", &n, copy, &n, real_part, imaginary_part, NULL, &one, X, &n, work, &length, &info, 1, 1);
+  return info;
+}
+
+static int invert(int n, const double *X, double *copy, int *pivot, double *inverse)
+{
+  int info = 0;
+  memcpy(copy, X, (size_t)n * (size_t)n * sizeof(double));
+  for (int k = 0; k < n * n; k++) inverse[k] = k % (n + 1) == 0;
+  dgesv_(&n, &n, copy, &n, pivot, inverse, &n, &info);
+  return info;
+}
+
+dvi_status dvi__eigen(int n, const double *T, double *real_part, double *imaginary_part, double *X, double *inverse)
+{
+  double *copy = dvi__duplicate(T, (size_t)n * (size_t)n, sizeof(double)), *work = DVI_NEW(double, 8 * (size_t)n);
+  int *pivot = DVI_NEW(int, n);
+  dvi_status status = DVI_OK;
+  if (copy == NULL || work == NULL || pivot == NULL)
+    status = dvi__fail(DVI_NO_MEMORY, "eigenvalues: no memory for a matrix of %d columns", n);
+  else if (vectors(n, copy, real_part, imaginary_part, X, work) != 0 || invert(n, X, copy, pivot, inverse) != 0)
+    status = dvi__fail(DVI_SINGULAR, "eigenvalues: a matrix of %d columns has no full set of eigenvectors", n);
+  dvi__release(copy);
+  dvi__release(work);
+  dvi__release(pivot);
+  return status;
+}

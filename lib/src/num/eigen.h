@@ -1,0 +1,12 @@
+/* The real eigen-structure of a small matrix. */
+#ifndef DVI_NUM_EIGEN_H
+#define DVI_NUM_EIGEN_H
+#include <dvi/status.h>
+
+/* T = X D X^{-1} with real X: D is diagonal but for 2 x 2 blocks [[a, b], [-b, a]] of the pairs a +- ib, b > 0.
+ *
+ * T, X and inverse are [n*n] by columns, real_part and imaginary_part [n]; of a pair the one with b > 0 stands first. DVI_SINGULAR if T has no full set
+ * of eigenvectors, DVI_NO_MEMORY. */
+dvi_status dvi__eigen(int n, const double *T, double *real_part, double *imaginary_part, double *X, double *inverse);
+
+#endif

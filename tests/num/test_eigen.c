@@ -1,0 +1,74 @@
+/* labels: unit */
+#include <float.h>
+#include <math.h>
+
+#include "core/memory.h"
+#include "num/eigen.h"
+#include "support/suite.h"
+
+enum { MOST = 6 };
+
+static double at(int n, const double *A, int i, int j)
+{
+  return A[j * n + i];
+}
+
+/* X D X^{-1}, entry by entry. */
+static double rebuilt(int n, const double *a, const double *b, const double *X, const double *inverse, int i, int j)
+{
+  double sum = 0;
+  for (int k = 0; k < n; k++) {
+    double row = a[k] * at(n, inverse, k, j);
+    if (b[k] > 0) row += b[k] * at(n, inverse, k + 1, j);
+    if (b[k] < 0) row += b[k] * at(n, inverse, k - 1, j);
+    sum += at(n, X, i, k) * row;
+  }
+  return sum;
+}
+
+/* Rotations have pairs, symmetric matrices real eigenvalues, and a general one of odd size has both. */
+START_TEST(a_matrix_is_made_again_from_its_eigen_structure)
+{
+  const int n = 1 + _i;
+  double T[MOST * MOST], a[MOST], b[MOST], X[MOST * MOST], inverse[MOST * MOST];
+  for (int k = 0; k < n * n; k++) T[k] = sin(1 + 3.7 * k) + (k % (n + 1) == 0 ? 0.3 * k : 0);
+  ck_assert_int_eq(dvi__eigen(n, T, a, b, X, inverse), DVI_OK);
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < n; j++) ck_assert_double_eq_tol(rebuilt(n, a, b, X, inverse, i, j), at(n, T, i, j), 1e-13);
+}
+END_TEST
+
+START_TEST(of_a_pair_the_one_above_the_real_axis_stands_first)
+{
+  const double turn[4] = {0, 1, -1, 0}; /* by columns */
+  double a[2], b[2], X[4], inverse[4];
+  ck_assert_int_eq(dvi__eigen(2, turn, a, b, X, inverse), DVI_OK);
+  ck_assert_double_eq_tol(a[0], 0, DBL_EPSILON);
+  ck_assert_double_eq_tol(b[0], 1, DBL_EPSILON);
+  ck_assert_double_eq_tol(b[1], -1, DBL_EPSILON);
+}
+END_TEST
+
+START_TEST(lacking_memory_is_a_status)
+{
+  const double one[1] = {2};
+  double a[1], b[1], X[1], inverse[1];
+  for (long successes = 0; successes < 3; successes++) {
+    dvi__fail_allocations_after(successes);
+    const dvi_status status = dvi__eigen(1, one, a, b, X, inverse);
+    dvi__fail_allocations_after(-1);
+    ck_assert_int_eq(status, DVI_NO_MEMORY);
+  }
+  ck_assert_int_eq(dvi__eigen(1, one, a, b, X, inverse), DVI_OK);
+  ck_assert_double_eq(a[0], 2);
+}
+END_TEST
+
+int main(void)
+{
+  TCase *tests = tcase_create("eigen");
+  tcase_add_loop_test(tests, a_matrix_is_made_again_from_its_eigen_structure, 0, MOST);
+  tcase_add_test(tests, of_a_pair_the_one_above_the_real_axis_stands_first);
+  tcase_add_test(tests, lacking_memory_is_a_status);
+  return run_tests("num/eigen", tests);
+}
