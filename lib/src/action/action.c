@@ -17,7 +17,8 @@ static int allocate_batches(dvi__action *a)
   a->L_q = DVI_NEW(double, batch);
   a->L_v = DVI_NEW(double, batch);
   a->line = DVI_NEW(double, 2 * (size_t)a->s + 2 * (size_t)a->r);
-  return a->t && a->Q && a->V && a->L_q && a->L_v && a->line;
+  a->rows = DVI_NEW(double, (size_t)a->n *(size_t)a->s);
+  return a->t && a->Q && a->V && a->L_q && a->L_v && a->line && a->rows;
 }
 
 static dvi_status allocate_chord(dvi__action *a, dvi_counters *counters)
@@ -76,6 +77,12 @@ void dvi__action_destroy(dvi__action **action)
                            a->straight,
                            a->shift,
                            a->shift_rows,
+                           a->rows,
+                           a->at_nodes,
+                           a->slope_at_nodes,
+                           a->bar_row,
+                           a->slope_row,
+                           a->stiffness_row,
                            a->t,
                            a->Q,
                            a->V,
@@ -92,7 +99,7 @@ void dvi__action_destroy(dvi__action **action)
                            a->sweep_node,
                            a->sweep_rest,
                            a->sweep_path,
-                           a->sweep_psi,
+
                            a->sweep_start,
                            a->sweep_factor,
                            a->Z};

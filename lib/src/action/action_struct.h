@@ -35,10 +35,15 @@ struct dvi__action {
   /* Batches over the nodes, [n*r]. */
   double *t, *Q, *V, *L_q, *L_v; /* the gradients times the weights b_j */
   double *line;                  /* [2 s + 2 r] one coordinate's worth of anything */
+  double *rows;                  /* [n*s] work */
+  /* The tables again, for products in lanes (num/lanes.h): rows over the nodes are padded to `lanes`, over the functions to `path_lanes`. */
+  int lanes, path_lanes;
+  double *at_nodes, *slope_at_nodes; /* [s*lanes] psi_k(c_j) and psi_k'(c_j), a column for each k */
+  double *bar_row, *slope_row;       /* [r*path_lanes] psi_k(c_j) - psi_k(1) and psi_k'(c_j), a column for each j */
+  double *stiffness_row;             /* [s*path_lanes] K^{-1} */
   /* Sweeps (sweep.h); NULL if the mass couples coordinates. */
-  int lanes;                                      /* length of a padded row over the nodes */
   double *sweep_matrix, *sweep_node, *sweep_rest; /* [r*lanes] c_i - P_ij by columns, [lanes] c, [r] 1 - c */
-  double *sweep_path, *sweep_psi;                 /* paths from forces, nodes from paths */
+  double *sweep_path;                             /* paths from forces */
   double *sweep_start, *sweep_factor;             /* [n] h v0, h^2/m */
   double *Z;                                      /* [n*lanes] offsets of the nodes from q0 */
   int swept;                                      /* the forces are a sweep's */

@@ -7,22 +7,16 @@
 #include "num/lanes.h"
 #include "space/trial.h"
 
-/* out[j] = start + factor * sum_k table_k(c_j) y_k, for the r nodes. */
-static void expand(const dvi__action *a, const double *table, const double *y, double start, double factor, double *out)
-{
-  const int r = a->r;
-  for (int j = 0; j < r; j++) out[j] = 0;
-  for (int k = 0; k < a->s; k++)
-    for (int j = 0; j < r; j++) out[j] += table[k * r + j] * y[k];
-  for (int j = 0; j < r; j++) out[j] = start + factor * out[j];
-}
-
 void dvi__action_stages(const dvi__action *a, const double *Y)
 {
-  for (size_t i = 0, s = (size_t)a->s, r = (size_t)a->r; i < (size_t)a->n; i++) {
-    expand(a, a->psi, Y + i * s, a->q0[i], 1.0, a->Q + i * r);
-    expand(a, a->dpsi, Y + i * s, 0.0, 1.0 / a->h, a->V + i * r);
-  }
+  const double inverse_h = 1.0 / a->h;
+  dvi__lanes_product(a->n, a->s, a->lanes, a->r, a->at_nodes, Y, a->Q);
+  dvi__lanes_product(a->n, a->s, a->lanes, a->r, a->slope_at_nodes, Y, a->V);
+  for (size_t i = 0, r = (size_t)a->r; i < (size_t)a->n; i++)
+    for (size_t j = i * r; j < (i + 1) * r; j++) {
+      a->Q[j] = a->q0[i] + a->Q[j];
+      a->V[j] = inverse_h * a->V[j];
+    }
 }
 
 static double dot(int count, const double *x, const double *y)
@@ -41,17 +35,15 @@ static void weigh(const dvi__action *a, double *batch)
 
 dvi_status dvi__action_residual(dvi__action *a, const double *Y, double *R)
 {
-  const int s = a->s, r = a->r;
   a->swept = 0;
   dvi__action_stages(a, Y);
-  DVI_TRY(dvi__lagrangian_gradient(a->evaluator, r, a->t, a->Q, a->V, a->L_q, a->L_v));
+  DVI_TRY(dvi__lagrangian_gradient(a->evaluator, a->r, a->t, a->Q, a->V, a->L_q, a->L_v));
   weigh(a, a->L_q);
   weigh(a, a->L_v);
-  for (size_t i = 0; i < (size_t)a->n; i++) {
-    const double *L_q = a->L_q + i * (size_t)r, *L_v = a->L_v + i * (size_t)r;
-    for (int k = 0; k < s; k++)
-      R[i * (size_t)s + (size_t)k] = a->h * dot(r, a->bar + k * r, L_q) + (dot(r, a->dpsi + k * r, L_v) - a->end[k] * a->p0[i]);
-  }
+  dvi__lanes_product(a->n, a->r, a->path_lanes, a->s, a->bar_row, a->L_q, R);
+  dvi__lanes_product(a->n, a->r, a->path_lanes, a->s, a->slope_row, a->L_v, a->rows);
+  for (size_t i = 0, s = (size_t)a->s; i < (size_t)a->n; i++)
+    for (size_t k = 0; k < s; k++) R[i * s + k] = a->h * R[i * s + k] + (a->rows[i * s + k] - a->end[k] * a->p0[i]);
   return DVI_OK;
 }
 
@@ -102,11 +94,8 @@ void dvi__action_chord(dvi__action *a, double *R)
     solve_velocity_hessian(a, R);
   else
     dvi__mass_solve(a->evaluator, s, R, R);
-  for (size_t i = 0; i < (size_t)a->n; i++) {
-    double *row = R + i * (size_t)s;
-    memcpy(a->line, row, (size_t)s * sizeof(double));
-    for (int k = 0; k < s; k++) row[k] = a->h * dot(s, a->stiffness_inverse + k * s, a->line);
-  }
+  dvi__lanes_product(a->n, s, a->path_lanes, s, a->stiffness_row, R, a->rows);
+  for (size_t i = 0; i < (size_t)a->n * (size_t)s; i++) R[i] = a->h * a->rows[i];
 }
 
 void dvi__action_row_scale(const dvi__action *a, double *scale)
@@ -143,7 +132,7 @@ void dvi__action_straight(const dvi__action *a, const double *dq, double *Y)
 /* The table for this ratio: one that is kept, or a new one in the place of the oldest. */
 static const double *shift_for(dvi__action *a, double ratio)
 {
-  const size_t s = (size_t)a->s, lanes = (size_t)dvi__lanes_for(a->s), size = s * lanes;
+  const size_t s = (size_t)a->s, lanes = (size_t)a->path_lanes, size = s * lanes;
   for (size_t k = 0; k < DVI__SHIFTS; k++)
     if (a->shift_ratio[k] == ratio) return a->shift + k * size;
   const int place = a->oldest_shift;
@@ -158,7 +147,7 @@ static const double *shift_for(dvi__action *a, double ratio)
 
 void dvi__action_continue(dvi__action *a, double ratio, const double *last, double *Y)
 {
-  dvi__lanes_product(a->n, a->s, dvi__lanes_for(a->s), a->s, shift_for(a, ratio), last, Y);
+  dvi__lanes_product(a->n, a->s, a->path_lanes, a->s, shift_for(a, ratio), last, Y);
 }
 
 const double *dvi__action_fit_points(const dvi__action *a)

@@ -83,36 +83,29 @@ static void store(dvi__action *a, const long double *node, const tables *t)
     }
 }
 
-/* The path by the forces, Y = h v0 straight - h^2/m K^{-1} bar g: the last factor by columns, in the space's own basis. And psi at the nodes by
- * columns, for the way back. */
+/* The path by the forces, Y = h v0 straight - h^2/m K^{-1} bar g: the last factor by columns, in the space's own basis. */
 static void store_path(dvi__action *a)
 {
-  const int s = a->s, r = a->r, path_lanes = dvi__lanes_for(s);
+  const int s = a->s, r = a->r;
   for (int j = 0; j < r; j++)
     for (int k = 0; k < s; k++) {
       double sum = 0;
       for (int l = 0; l < s; l++) sum += a->stiffness_inverse[k * s + l] * a->bar[l * r + j];
-      a->sweep_path[j * path_lanes + k] = -sum;
+      a->sweep_path[j * a->path_lanes + k] = -sum;
     }
-  for (int k = 0; k < s; k++)
-    for (int i = 0; i < r; i++) a->sweep_psi[k * a->lanes + i] = a->psi[k * r + i];
 }
 
 static dvi_status allocate(dvi__action *a)
 {
-  const size_t n = (size_t)a->n, r = (size_t)a->r, s = (size_t)a->s, path_lanes = (size_t)dvi__lanes_for(a->s);
-  a->lanes = dvi__lanes_for(a->r);
-  const size_t lanes = (size_t)a->lanes;
+  const size_t n = (size_t)a->n, r = (size_t)a->r, lanes = (size_t)a->lanes;
   a->sweep_matrix = DVI_NEW(double, r *lanes);
   a->sweep_node = DVI_NEW(double, lanes);
   a->sweep_rest = DVI_NEW(double, r);
-  a->sweep_path = DVI_NEW(double, r *path_lanes);
-  a->sweep_psi = DVI_NEW(double, s *lanes);
+  a->sweep_path = DVI_NEW(double, r *(size_t)a->path_lanes);
   a->sweep_start = DVI_NEW(double, n);
   a->sweep_factor = DVI_NEW(double, n);
   a->Z = DVI_NEW(double, n *lanes);
-  if (a->sweep_matrix && a->sweep_node && a->sweep_rest && a->sweep_path && a->sweep_psi && a->sweep_start && a->sweep_factor &&
-      a->Z)
+  if (a->sweep_matrix && a->sweep_node && a->sweep_rest && a->sweep_path && a->sweep_start && a->sweep_factor && a->Z)
     return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d nodes in %d dimensions", a->r, a->n);
 }
@@ -143,7 +136,7 @@ void dvi__action_sweep_from(dvi__action *a, const double *Y)
 {
   const double *mass = a->system->mass_diagonal;
   const size_t r = (size_t)a->r, lanes = (size_t)a->lanes;
-  dvi__lanes_product(a->n, a->s, a->lanes, a->lanes, a->sweep_psi, Y, a->Z);
+  dvi__lanes_product(a->n, a->s, a->lanes, a->lanes, a->at_nodes, Y, a->Z);
   for (size_t i = 0; i < (size_t)a->n; i++) {
     a->sweep_start[i] = a->h * (a->p0[i] / mass[i]);
     a->sweep_factor[i] = a->h * a->h / mass[i];
@@ -176,7 +169,7 @@ dvi_status dvi__action_sweep(dvi__action *a, double *change, double *largest)
 void dvi__action_sweep_to(dvi__action *a, double *Y)
 {
   const size_t s = (size_t)a->s;
-  dvi__lanes_product(a->n, a->r, dvi__lanes_for(a->s), a->s, a->sweep_path, a->L_q, Y);
+  dvi__lanes_product(a->n, a->r, a->path_lanes, a->s, a->sweep_path, a->L_q, Y);
   for (size_t i = 0; i < (size_t)a->n; i++)
     for (size_t k = 0; k < s; k++) Y[i * s + k] = a->sweep_start[i] * a->straight[k] + a->sweep_factor[i] * Y[i * s + k];
 }

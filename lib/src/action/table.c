@@ -15,7 +15,9 @@ enum { CONTINUED_DEGREE = 10 };
 
 static int allocate(dvi__action *a)
 {
-  const size_t s = (size_t)a->s, r = (size_t)a->r;
+  a->lanes = dvi__lanes_for(a->r);
+  a->path_lanes = dvi__lanes_for(a->s);
+  const size_t s = (size_t)a->s, r = (size_t)a->r, lanes = (size_t)a->lanes, path_lanes = (size_t)a->path_lanes;
   a->psi = DVI_NEW(double, s *r);
   a->dpsi = DVI_NEW(double, s *r);
   a->bar = DVI_NEW(double, s *r);
@@ -27,10 +29,16 @@ static int allocate(dvi__action *a)
   a->fit_point = DVI_NEW(double, s);
   a->fit = DVI_NEW(double, s *s);
   a->straight = DVI_NEW(double, s);
-  a->shift = DVI_NEW(double, DVI__SHIFTS *s *(size_t)dvi__lanes_for(a->s));
+  a->shift = DVI_NEW(double, DVI__SHIFTS *s *path_lanes);
   a->shift_rows = DVI_NEW(double, s *s);
+  a->at_nodes = DVI_NEW(double, s *lanes);
+  a->slope_at_nodes = DVI_NEW(double, s *lanes);
+  a->bar_row = DVI_NEW(double, r *path_lanes);
+  a->slope_row = DVI_NEW(double, r *path_lanes);
+  a->stiffness_row = DVI_NEW(double, s *path_lanes);
   return a->psi && a->dpsi && a->bar && a->node && a->weight && a->end && a->stiffness && a->stiffness_inverse && a->fit_point &&
-         a->fit && a->straight && a->shift && a->shift_rows;
+         a->fit && a->straight && a->shift && a->shift_rows && a->at_nodes && a->slope_at_nodes && a->bar_row && a->slope_row &&
+         a->stiffness_row;
 }
 
 static double largest(int count, const double *x, double size)
@@ -110,6 +118,20 @@ static dvi_status fill_fit(dvi__action *a)
   return DVI_OK;
 }
 
+static void fill_lanes(dvi__action *a)
+{
+  for (int k = 0; k < a->s; k++) {
+    for (int j = 0; j < a->r; j++) {
+      const double psi = a->psi[k * a->r + j], slope = a->dpsi[k * a->r + j];
+      a->at_nodes[k * a->lanes + j] = psi;
+      a->slope_at_nodes[k * a->lanes + j] = slope;
+      a->bar_row[j * a->path_lanes + k] = a->bar[k * a->r + j];
+      a->slope_row[j * a->path_lanes + k] = slope;
+    }
+    for (int l = 0; l < a->s; l++) a->stiffness_row[l * a->path_lanes + k] = a->stiffness_inverse[k * a->s + l];
+  }
+}
+
 dvi_status dvi__action_fill_tables(dvi__action *a)
 {
   if (!allocate(a)) return dvi__fail(DVI_NO_MEMORY, "action: no memory for tables of degree %d", a->s);
@@ -117,5 +139,6 @@ dvi_status dvi__action_fill_tables(dvi__action *a)
   dvi__space_init(&a->trial, a->space.basis, a->s);
   DVI_TRY(fill_nodes(a));
   fill_stiffness(a);
+  fill_lanes(a);
   return fill_fit(a);
 }
