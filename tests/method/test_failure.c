@@ -380,7 +380,7 @@ static const struct {
     {"verlet:", "'' is not key=value"},
     {"verlet:solver=auto", "verlet: unknown key 'solver'; it takes none"},
     {"midpoint:degree=2", "midpoint: unknown key 'degree'; it takes solver"},
-    {"trapezoidal:solver=", "trapezoidal: solver=; possible are auto, fixed-point, simplified, newton, kinsol"},
+    {"trapezoidal:solver=", "trapezoidal: solver=; possible are auto, certified, fixed-point, simplified, newton, kinsol"},
     {"midpoint:solver=newton,solver=newton", "midpoint: solver is given twice"},
     {"galerkin:=3", "'=3' is not key=value"},
     {"galerkin:degree=3:nodes=4", "galerkin: degree=3:nodes=4 is not a whole number"},

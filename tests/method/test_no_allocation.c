@@ -30,6 +30,7 @@ static const char *const methods[] = {
     "galerkin:degree=4,basis=legendre,quadrature=lobatto,nodes=5",
     "galerkin:degree=4,solver=newton",
     "galerkin:degree=5,solver=simplified",
+    "galerkin:degree=8,solver=certified",
     "galerkin:degree=4,solver=kinsol",
     "composition:order=4,base=midpoint",
     "composition:order=6,base=galerkin,degree=2,solver=newton",

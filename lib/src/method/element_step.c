@@ -15,8 +15,8 @@
 
 const char *dvi__solver_choice(int index)
 {
-  static const char *const name[] = {"auto", "fixed-point", "simplified", "newton", "kinsol"};
-  return index >= 0 && index < 5 ? name[index] : NULL;
+  static const char *const name[] = {"auto", "certified", "fixed-point", "simplified", "newton", "kinsol"};
+  return index >= 0 && index < 6 ? name[index] : NULL;
 }
 
 /* Memory: length of the last step (0: none), steps for which fixed point iteration and simplified Newton's method are not tried again, the last step's
@@ -39,6 +39,12 @@ typedef struct element {
   /* Shorter steps that build a guess. */
   double *part_q, *part_p, *part_v, *part_Y, *offset;
 } element;
+
+/* Whether the rungs follow one after the other. */
+static int is_ladder(const element *own)
+{
+  return own->choice == DVI__SOLVER_AUTO || own->choice == DVI__SOLVER_CERTIFIED;
+}
 
 /* ---- making it ---- */
 
@@ -128,7 +134,7 @@ static int order_of(int s, int u)
 /* Simplified Newton's method is for those who may use it; a space without a full set of eigenvectors goes without it. */
 static dvi_status make_decoupled(dvi__stepper *self, element *own)
 {
-  if (own->choice != DVI__SOLVER_AUTO && own->choice != DVI__SOLVER_SIMPLIFIED) return DVI_OK;
+  if (!is_ladder(own) && own->choice != DVI__SOLVER_SIMPLIFIED) return DVI_OK;
   const dvi_status status = dvi__decoupled_create(own->action, self->counters, &own->decoupled);
   return status == DVI_SINGULAR ? DVI_OK : status;
 }
@@ -243,7 +249,7 @@ static dvi_status solve_by(dvi__stepper *self, const place *at, dvi__rung rung, 
 /* Whether the user, or the steps before, want this iteration; a step that does without it is counted down. */
 static int is_due(const element *own, int choice, double *steps_without)
 {
-  if (own->choice != choice && own->choice != DVI__SOLVER_AUTO) return 0;
+  if (own->choice != choice && !is_ladder(own)) return 0;
   if (*steps_without == 0 || own->choice == choice) return 1;
   --*steps_without;
   return 0;
@@ -340,7 +346,6 @@ static dvi_status advance(dvi__stepper *self, dvi__state *state, double h)
 {
   element *own = self->own;
   const int n = self->system->n;
-  dvi__action_ends(own->action, own->Y, own->dq, own->dp);
   if (dvi__first_not_finite((size_t)n, own->dq) >= 0 || dvi__first_not_finite((size_t)n, own->dp) >= 0)
     return dvi__fail(DVI_NOT_FINITE, "the step's end is not finite");
   dvi__add_compensated_all(n, state->q, state->q_carry, own->dq);
@@ -351,6 +356,18 @@ static dvi_status advance(dvi__stepper *self, dvi__state *state, double h)
   return DVI_OK;
 }
 
+/* KINSOL judges, but what the step takes stays what the iteration found; what does not pass is solved by KINSOL itself. */
+static dvi_status certify(dvi__stepper *self, const place *at, double *Y, dvi__solve_report *report)
+{
+  element *own = self->own;
+  const double size = largest(self->system->n, at->q);
+  const dvi_status status = dvi__certify(own->solver, size, Y, report);
+  if (status != DVI_NOT_CONVERGED) return status;
+  DVI_TRY(dvi__solve(own->solver, DVI__KINSOL, size, 0, 0, Y, report));
+  dvi__action_ends(own->action, Y, own->dq, own->dp);
+  return DVI_OK;
+}
+
 dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h)
 {
   element *own = self->own;
@@ -358,6 +375,8 @@ dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h)
   const place at = {state->t, h, state->q, state->p, self->memory[LAST_H], self->memory + LAST_Y};
   dvi_status status = solve_at(self, &at, own->Y, &report);
   if (status > 0) status = rescue(self, &at, own->Y, &report);
+  if (status == DVI_OK) dvi__action_ends(own->action, own->Y, own->dq, own->dp);
+  if (status == DVI_OK && own->choice == DVI__SOLVER_CERTIFIED) status = certify(self, &at, own->Y, &report);
   return status == DVI_OK ? advance(self, state, h) : status;
 }
 
@@ -366,6 +385,19 @@ void dvi__element_path(const dvi__stepper *self, const double *q0, double h, dou
   const element *own = self->own;
   dvi__action_path(own->action, self->memory + LAST_Y, h, tau, q, v);
   for (int i = 0; q != NULL && i < self->system->n; i++) q[i] += q0[i];
+}
+
+static void explain_solver(const element *own, dvi__text *text)
+{
+  const char *name = dvi__solver_choice(own->choice);
+  if (!is_ladder(own)) {
+    dvi__text_add(text, "solver: %s, as asked; what it cannot solve goes on to KINSOL with line search\n", name);
+    return;
+  }
+  dvi__text_add(text, "solver: %s: fixed point while it contracts by 0.35 or better, else simplified Newton's method (%s), ", name,
+                own->decoupled != NULL ? "decoupled systems of n unknowns" : "not in this space");
+  dvi__text_add(text, "Newton's method, last KINSOL with line search%s\n",
+                own->choice == DVI__SOLVER_CERTIFIED ? "; KINSOL certifies each solution" : "");
 }
 
 void dvi__element_explain(const dvi__stepper *self, dvi__text *text)
@@ -377,14 +409,10 @@ void dvi__element_explain(const dvi__stepper *self, dvi__text *text)
   dvi__text_add(text, "kernel: implicit; %d unknowns a step, Jacobian with %d entries (%.3g %% of a full one)\n", pattern->columns,
                 dvi__pattern_entries(pattern), 100.0 * dvi__pattern_entries(pattern) / pattern->columns / pattern->columns);
   dvi__text_add(text, "kinetic part: %s\n",
-                general ? "general Lagrangian; its velocity Hessian is evaluated once a step" : "constant mass");
-  if (own->choice == DVI__SOLVER_AUTO)
-    dvi__text_add(text,
-                  "solver: auto: fixed point while it contracts by 0.35 or better, else simplified Newton's method (%s), Newton's "
-                  "method, last KINSOL with line search\n",
-                  own->decoupled != NULL ? "decoupled systems of n unknowns" : "not in this space");
-  else
-    dvi__text_add(text, "solver: %s, as asked; what it cannot solve goes on to KINSOL with line search\n",
-                  dvi__solver_choice(own->choice));
+                general ? "general Lagrangian; its velocity Hessian is evaluated once a step"
+                : dvi__action_can_sweep(own->action)
+                    ? "constant mass without coupling: fixed point iteration on the positions at the nodes"
+                    : "constant mass");
+  explain_solver(own, text);
   dvi__text_add(text, "linear solver: %s\n", dense ? "dense LU (LAPACK)" : "sparse LU (KLU), analysed once, refactored after");
 }

@@ -5,12 +5,20 @@
 #include "method/method.h"
 
 /* The `solver` key of every implicit method; its index in the method's own table goes to dvi__element_create. */
-#define DVI__SOLVER_KEY                                                                                                     \
-  {                                                                                                                         \
-    "solver", dvi__solver_choice, 0, 0, DVI__SOLVER_AUTO, "auto, fixed-point, simplified, newton or kinsol; left out: auto" \
+#define DVI__SOLVER_KEY                                                              \
+  {                                                                                  \
+    "solver", dvi__solver_choice, 0, 0, DVI__SOLVER_AUTO,                            \
+        "auto, certified, fixed-point, simplified, newton or kinsol; left out: auto" \
   }
 
-enum { DVI__SOLVER_AUTO, DVI__SOLVER_FIXED_POINT, DVI__SOLVER_SIMPLIFIED, DVI__SOLVER_NEWTON, DVI__SOLVER_KINSOL };
+enum {
+  DVI__SOLVER_AUTO,
+  DVI__SOLVER_CERTIFIED,
+  DVI__SOLVER_FIXED_POINT,
+  DVI__SOLVER_SIMPLIFIED,
+  DVI__SOLVER_NEWTON,
+  DVI__SOLVER_KINSOL
+};
 const char *dvi__solver_choice(int index);
 
 /* Fill a stepper's order, symmetric, memory and own for this space; `solver` is one of the numbers above. */

@@ -3,6 +3,7 @@
  * SUNDIALS' wrapper of KLU analyses and factors anew at the first setup of each call; here the one analysis of num/linear.h serves
  * Newton's method and KINSOL alike. KINSOL's defaults are loose and reuse old Jacobians, which shows as energy drift over long runs
  * (tests/solve/test_kinsol_drift.c): every tolerance is set here. */
+#include <float.h>
 #include <kinsol/kinsol.h>
 #include <math.h>
 #include <nvector/nvector_serial.h>
@@ -13,6 +14,7 @@
 #include "num/finite.h"
 #include "solve/solver_struct.h"
 #include "solve/sundials_compat.h"
+#include "solve/vector.h"
 
 struct dvi__kinsol {
   dvi__solver *solver;
@@ -105,18 +107,25 @@ static int create_matrix(dvi__kinsol *k)
 static int create_vectors(dvi__kinsol *k)
 {
   const int n = k->solver->equations.unknowns;
-  k->x = N_VNew_Serial(n, k->context);
-  k->x_scale = N_VNew_Serial(n, k->context);
-  k->r_scale = N_VNew_Serial(n, k->context);
-  return k->x != NULL && k->x_scale != NULL && k->r_scale != NULL;
+  N_Vector *const vector[] = {&k->x, &k->x_scale, &k->r_scale};
+  for (int i = 0; i < 3; i++) {
+    *vector[i] = N_VNew_Serial(n, k->context);
+    if (*vector[i] == NULL) return 0;
+    dvi__vector_use_own_operations(*vector[i]);
+  }
+  return 1;
 }
+
+/* KINSOL accepts a guess whose scaled norm is a hundredth of its tolerance. Roundings of the rows make 1e-15 to 1e-13 of the unknowns, the more the
+ * higher the degree. */
+static const double tolerance = 1e-13, tolerance_of_guess = 1e-10;
 
 static int configure(dvi__kinsol *k)
 {
   void *m = k->memory = KINCreate(k->context);
   return m != NULL && DVI__SUNDIALS_SILENCE(KINSetErrHandlerFn, m) == 0 && KINInit(m, residual, k->x) == 0 &&
          KINSetUserData(m, k) == 0 && KINSetLinearSolver(m, k->linear, k->matrix) == 0 && KINSetJacFn(m, jacobian) == 0 &&
-         KINSetFuncNormTol(m, 1e-13) == 0 && KINSetScaledStepTol(m, 1e-15) == 0 && KINSetMaxSetupCalls(m, 1) == 0 &&
+         KINSetFuncNormTol(m, tolerance) == 0 && KINSetScaledStepTol(m, 1e-15) == 0 && KINSetMaxSetupCalls(m, 1) == 0 &&
          KINSetMaxNewtonStep(m, 1e3) == 0 && KINSetNumMaxIters(m, 100) == 0;
 }
 
@@ -155,17 +164,31 @@ static dvi_status set_scales(dvi__kinsol *k, double size, const double *x)
   double *x_scale = N_VGetArrayPointer(k->x_scale), *r_scale = N_VGetArrayPointer(k->r_scale);
   double whole = 0;
   int usable = 1;
-  for (int i = 0; i < n; i++) whole = fmax(whole, fabs(x[i]));
+  for (int i = 0; i < n; i++) whole = fabs(x[i]) > whole ? fabs(x[i]) : whole;
   if (whole == 0) whole = size > 0 ? size : 1;
   k->solver->equations.row_scale(k->solver->equations.of, r_scale);
   for (int i = 0; i < n; i++) {
     x_scale[i] = 1 / whole;
     r_scale[i] = 1 / (r_scale[i] * whole);
-    usable &= x_scale[i] > 0 && r_scale[i] > 0 && isfinite(x_scale[i]) && isfinite(r_scale[i]);
+    usable &= r_scale[i] > 0 && r_scale[i] <= DBL_MAX;
   }
+  usable &= 1 / whole > 0 && 1 / whole <= DBL_MAX;
   /* KINSOL would take it for a fault of its caller, but a smaller step may have a finite path. */
   return usable ? DVI_OK
                 : dvi__fail(DVI_NOT_FINITE, "the guess of the path is too large or too small to be scaled (size %g)", whole);
+}
+
+dvi_status dvi__kinsol_certify(dvi__kinsol *k, double size, const double *x, int *certified, dvi__solve_report *report)
+{
+  const size_t bytes = (size_t)k->solver->equations.unknowns * sizeof(double);
+  DVI_TRY(set_scales(k, size, x));
+  memcpy(N_VGetArrayPointer(k->x), x, bytes);
+  k->fatal = DVI_OK;
+  (void)KINSetFuncNormTol(k->memory, tolerance_of_guess);
+  *certified = KINSol(k->memory, k->x, KIN_LINESEARCH, k->x_scale, k->r_scale) == KIN_INITIAL_GUESS_OK;
+  (void)KINSetFuncNormTol(k->memory, tolerance);
+  (void)KINGetFuncNorm(k->memory, &report->residual);
+  return k->fatal;
 }
 
 dvi_status dvi__kinsol_solve(dvi__kinsol *k, double size, double *x, dvi__solve_report *report)

@@ -156,3 +156,14 @@ dvi_status dvi__solve(dvi__solver *solver, dvi__rung rung, double size, int wary
   }
   return dvi__fail(DVI_BAD_ARGUMENT, "solver: unknown rung %d", (int)rung);
 }
+
+dvi_status dvi__certify(dvi__solver *solver, double size, const double *x, dvi__solve_report *report)
+{
+  int certified = 0;
+  DVI_TRY(solver->equations.prepare_chord(solver->equations.of, x));
+  DVI_TRY(dvi__kinsol_certify(solver->kinsol, size, x, &certified, report));
+  if (!certified)
+    return dvi__fail(DVI_NOT_CONVERGED, "KINSOL does not certify the solution (scaled residual %.1e)", report->residual);
+  solver->counters->certified++;
+  return DVI_OK;
+}

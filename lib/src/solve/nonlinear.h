@@ -50,6 +50,9 @@ void dvi__solver_destroy(dvi__solver **solver);
 dvi_status dvi__solve(dvi__solver *solver, dvi__rung rung, double size, int wary, int patient, double *x,
                       dvi__solve_report *report);
 
+/* Let KINSOL judge a solution that another rung found; x stays. DVI_NOT_CONVERGED: it does not pass, and the KINSOL rung should take over. */
+dvi_status dvi__certify(dvi__solver *solver, double size, const double *x, dvi__solve_report *report);
+
 /* Which linear solver the Newton rungs use. */
 dvi__linear_kind dvi__solver_linear_kind(const dvi__solver *solver);
 

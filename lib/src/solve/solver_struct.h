@@ -26,6 +26,8 @@ dvi_status dvi__newton(dvi__solver *solver, double size, int wary, double *x, dv
 /* KINSOL (kinsol.c). solve: a positive status if it ended without a solution; x then holds its last point. */
 dvi_status dvi__kinsol_create(dvi__solver *solver, dvi__kinsol **kinsol);
 void dvi__kinsol_destroy(dvi__kinsol **kinsol);
+/* Is x a solution by KINSOL's own test of its residual? */
+dvi_status dvi__kinsol_certify(dvi__kinsol *kinsol, double size, const double *x, int *certified, dvi__solve_report *report);
 dvi_status dvi__kinsol_solve(dvi__kinsol *kinsol, double size, double *x, dvi__solve_report *report);
 
 /* How far an iteration has come (progress.c). */
