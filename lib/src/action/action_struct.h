@@ -44,7 +44,8 @@ struct dvi__action {
   /* Sweeps (sweep.h); NULL if the mass couples coordinates. */
   double *sweep_matrix, *sweep_node, *sweep_rest; /* [r*lanes] c_i - P_ij by columns, [lanes] c, [r] 1 - c */
   double *sweep_path;                             /* paths from forces */
-  double *sweep_start, *sweep_factor;             /* [n] h v0, h^2/m */
+  double *sweep_start, *sweep_factor;             /* [n] h/m p0, h/m */
+  double *sweep_weight;                           /* [r] h b_j */
   double *Z;                                      /* [n*lanes] offsets of the nodes from q0 */
   int swept;                                      /* the forces are a sweep's */
   /* Chord. */

@@ -60,7 +60,7 @@ void dvi__action_ends(const dvi__action *a, const double *Y, double *dq, double 
     const double *g = a->L_q + i * (size_t)a->r;
     dq[i] = a->swept ? a->sweep_start[i] + a->sweep_factor[i] * dot(a->r, a->sweep_rest, g)
                      : dot(a->s, a->end, Y + i * (size_t)a->s);
-    dp[i] = a->h * sum(a->r, g);
+    dp[i] = a->swept ? sum(a->r, g) : a->h * sum(a->r, g);
   }
 }
 

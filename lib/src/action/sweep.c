@@ -83,7 +83,7 @@ static void store(dvi__action *a, const long double *node, const tables *t)
     }
 }
 
-/* The path by the forces, Y = h v0 straight - h^2/m K^{-1} bar g: the last factor by columns, in the space's own basis. */
+/* The path by the forces, Y = h/m (p0 straight - K^{-1} bar g): the last factor by columns, in the space's own basis. */
 static void store_path(dvi__action *a)
 {
   const int s = a->s, r = a->r;
@@ -104,8 +104,10 @@ static dvi_status allocate(dvi__action *a)
   a->sweep_path = DVI_NEW(double, r *(size_t)a->path_lanes);
   a->sweep_start = DVI_NEW(double, n);
   a->sweep_factor = DVI_NEW(double, n);
+  a->sweep_weight = DVI_NEW(double, r);
   a->Z = DVI_NEW(double, n *lanes);
-  if (a->sweep_matrix && a->sweep_node && a->sweep_rest && a->sweep_path && a->sweep_start && a->sweep_factor && a->Z)
+  if (a->sweep_matrix && a->sweep_node && a->sweep_rest && a->sweep_path && a->sweep_start && a->sweep_factor && a->sweep_weight &&
+      a->Z)
     return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d nodes in %d dimensions", a->r, a->n);
 }
@@ -137,9 +139,10 @@ void dvi__action_sweep_from(dvi__action *a, const double *Y)
   const double *mass = a->system->mass_diagonal;
   const size_t r = (size_t)a->r, lanes = (size_t)a->lanes;
   dvi__lanes_product(a->n, a->s, a->lanes, a->lanes, a->at_nodes, Y, a->Z);
+  for (size_t j = 0; j < r; j++) a->sweep_weight[j] = a->h * a->weight[j];
   for (size_t i = 0; i < (size_t)a->n; i++) {
-    a->sweep_start[i] = a->h * (a->p0[i] / mass[i]);
-    a->sweep_factor[i] = a->h * a->h / mass[i];
+    a->sweep_factor[i] = a->h / mass[i];
+    a->sweep_start[i] = a->sweep_factor[i] * a->p0[i];
     for (size_t j = 0; j < r; j++) a->Q[i * r + j] = a->q0[i] + a->Z[i * lanes + j];
   }
 }
@@ -152,7 +155,7 @@ dvi_status dvi__action_sweep(dvi__action *a, double *change, double *largest)
                       .lanes = a->lanes,
                       .matrix = a->sweep_matrix,
                       .node = a->sweep_node,
-                      .weight = a->weight,
+                      .weight = a->sweep_weight,
                       .start = a->sweep_start,
                       .factor = a->sweep_factor,
                       .origin = a->q0,

@@ -9,8 +9,8 @@
 static const double rounding = 4 * DBL_EPSILON, settled = 0.125 * DBL_EPSILON;
 
 /* Where the step takes all from one point, it is the next correction that must not show; over 5000 steps of outer-solar one of an eighth of a
- * rounding does (5e-11), one of this part of it does not (4e-12, which is the roundings' own). The contraction is known only near the floor. */
-static const double unseen = DBL_EPSILON / 2048, near = 64 * DBL_EPSILON;
+ * rounding does (5e-11), one of this part of it does not (2e-12, which is the roundings' own). The contraction is known only near the floor. */
+static const double unseen = DBL_EPSILON / 16384, near = 64 * DBL_EPSILON;
 
 /* What is left of the iteration's error in a correction, by the contraction seen before. */
 static double expected(double correction, const dvi__trail *trail)
