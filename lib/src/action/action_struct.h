@@ -45,7 +45,7 @@ struct dvi__action {
   double *sweep_matrix, *sweep_node, *sweep_rest; /* [r*lanes] c_i - P_ij by columns, [lanes] c, [r] 1 - c */
   double *sweep_path;                             /* paths from forces */
   double *sweep_start, *sweep_factor;             /* [n] h/m p0, h/m */
-  double *sweep_weight;                           /* [r] h b_j */
+  double *sweep_weight;                           /* [r] -h b_j */
   double *Z;                                      /* [n*lanes] offsets of the nodes from q0 */
   int swept;                                      /* the forces are a sweep's */
   /* Chord. */

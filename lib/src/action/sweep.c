@@ -139,7 +139,7 @@ void dvi__action_sweep_from(dvi__action *a, const double *Y)
   const double *mass = a->system->mass_diagonal;
   const size_t r = (size_t)a->r, lanes = (size_t)a->lanes;
   dvi__lanes_product(a->n, a->s, a->lanes, a->lanes, a->at_nodes, Y, a->Z);
-  for (size_t j = 0; j < r; j++) a->sweep_weight[j] = a->h * a->weight[j];
+  for (size_t j = 0; j < r; j++) a->sweep_weight[j] = -a->h * a->weight[j]; /* of V_q */
   for (size_t i = 0; i < (size_t)a->n; i++) {
     a->sweep_factor[i] = a->h / mass[i];
     a->sweep_start[i] = a->sweep_factor[i] * a->p0[i];
@@ -149,7 +149,7 @@ void dvi__action_sweep_from(dvi__action *a, const double *Y)
 
 dvi_status dvi__action_sweep(dvi__action *a, double *change, double *largest)
 {
-  DVI_TRY(dvi__lagrangian_gradient(a->evaluator, a->r, a->t, a->Q, NULL, a->L_q, NULL));
+  DVI_TRY(dvi__potentials_gradient(a->evaluator, a->r, a->t, a->Q, a->L_q));
   dvi__sweep sweep = {.n = a->n,
                       .stages = a->r,
                       .lanes = a->lanes,

@@ -213,7 +213,7 @@ typedef struct place {
 static double largest(int n, const double *x)
 {
   double size = 0;
-  for (int i = 0; i < n; i++) size = fmax(size, fabs(x[i]));
+  for (int i = 0; i < n; i++) size = fabs(x[i]) > size ? fabs(x[i]) : size;
   return size;
 }
 

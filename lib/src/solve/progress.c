@@ -12,11 +12,16 @@ static const double rounding = 4 * DBL_EPSILON, settled = 0.125 * DBL_EPSILON;
  * rounding does (5e-11), one of this part of it does not (2e-12, which is the roundings' own). The contraction is known only near the floor. */
 static const double unseen = DBL_EPSILON / 16384, near = 64 * DBL_EPSILON;
 
+static double smaller(double a, double b)
+{
+  return a < b ? a : b;
+}
+
 /* What is left of the iteration's error in a correction, by the contraction seen before. */
 static double expected(double correction, const dvi__trail *trail)
 {
   if (trail->before == 0) return correction;
-  return fmin(correction, trail->last * fmin(trail->last / trail->before, 1));
+  return smaller(correction, trail->last * smaller(trail->last / trail->before, 1));
 }
 
 dvi__progress dvi__judge(double correction, dvi__trail *trail, const dvi__pace *pace, double unknown, double size)
@@ -38,8 +43,8 @@ void dvi__correct(int count, const double *correction, double *x, double *larges
   int nan = 0;
   for (int i = 0; i < count; i++) {
     x[i] -= correction[i];
-    change = fmax(change, fabs(correction[i]));
-    whole = fmax(whole, fabs(x[i]));
+    change = fabs(correction[i]) > change ? fabs(correction[i]) : change;
+    whole = fabs(x[i]) > whole ? fabs(x[i]) : whole;
     nan |= isnan(x[i]);
   }
   *largest_correction = nan ? HUGE_VAL : change;

@@ -142,20 +142,31 @@ dvi_status dvi__lagrangian_value(dvi__evaluator *e, int count, const double *t, 
 
 /* ---- gradient ---- */
 
-/* L_q = - sum of the potentials' gradients; one potential is evaluated in place. */
-static dvi_status potential_forces(dvi__evaluator *e, int count, const double *t, const double *q, double *L_q)
+/* The sum of the potentials' gradients; the first one is evaluated in place. */
+static dvi_status sum_gradients(dvi__evaluator *e, int count, const double *t, const double *q, double *V_q)
 {
   const dvi_system *s = e->system;
   const size_t length = numbers(e, count);
-  if (s->potential_count == 0) memset(L_q, 0, length * sizeof(double));
+  if (s->potential_count == 0) memset(V_q, 0, length * sizeof(double));
   for (int p = 0; p < s->potential_count; p++) {
-    double *V_q = p == 0 ? L_q : e->term;
-    DVI_TRY(dvi__potential_gradient(&s->potentials[p], &e->scratch, count, t, q, V_q));
-    if (p == 0)
-      for (size_t i = 0; i < length; i++) L_q[i] = -L_q[i];
-    else
-      for (size_t i = 0; i < length; i++) L_q[i] -= V_q[i];
+    DVI_TRY(dvi__potential_gradient(&s->potentials[p], &e->scratch, count, t, q, p == 0 ? V_q : e->term));
+    for (size_t i = 0; i < length && p > 0; i++) V_q[i] += e->term[i];
   }
+  return DVI_OK;
+}
+
+dvi_status dvi__potentials_gradient(dvi__evaluator *e, int count, const double *t, const double *q, double *V_q)
+{
+  e->counters->gradients += count;
+  const dvi_status status = sum_gradients(e, count, t, q, V_q);
+  count_differences(e);
+  return status;
+}
+
+static dvi_status potential_forces(dvi__evaluator *e, int count, const double *t, const double *q, double *L_q)
+{
+  DVI_TRY(sum_gradients(e, count, t, q, L_q));
+  for (size_t i = 0; i < numbers(e, count); i++) L_q[i] = -L_q[i];
   return DVI_OK;
 }
 

@@ -26,6 +26,9 @@ dvi_status dvi__lagrangian_value(dvi__evaluator *e, int count, const double *t, 
 dvi_status dvi__lagrangian_gradient(dvi__evaluator *e, int count, const double *t, const double *q, const double *v, double *L_q,
                                     double *L_v);
 
+/* V_q [n*count], the sum of the potentials' gradients: what a constant mass has for -L_q. */
+dvi_status dvi__potentials_gradient(dvi__evaluator *e, int count, const double *t, const double *q, double *V_q);
+
 /* Only with DVI__HESSIANS. L_qq, L_qv, L_vv: [entries*count] in the order of the system's patterns, entry-major. For a constant mass L_qv is empty, and
  * L_qv and L_vv may be NULL. */
 dvi_status dvi__lagrangian_hessian(dvi__evaluator *e, int count, const double *t, const double *q, const double *v, double *L_qq,
