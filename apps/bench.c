@@ -1,22 +1,24 @@
-/* dvi bench: speed against error, all in one run. */
+/* dvi bench: speed against error, all in one run; and the cost of a step against size. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "bench_job.h"
+#include "bench_report.h"
 #include "command.h"
 #include "file.h"
 #include "levels.h"
+#include "machine.h"
 #include "open.h"
 #include "options.h"
 #include "outputs.h"
-#include "plot.h"
 #include "progress.h"
+#include "samples.h"
+#include "scale.h"
 #include "study.h"
-#include "table.h"
 
-enum { LEVELS_DEFAULT = 6, LEVELS_MAX = 20, ROUNDS_DEFAULT = 5, CODES_MAX = 16, TITLE_SIZE = 160 };
+enum { LEVELS_DEFAULT = 6, LEVELS_MAX = 20, ROUNDS_DEFAULT = 5, CODES_MAX = 16 };
 
 /* What runs if no --method is given; those that the problem's structure excludes are left out. */
 static const char *const selection[] = {
@@ -29,11 +31,13 @@ enum { TOLERANCES = sizeof tolerances / sizeof *tolerances, JOBS_MAX = WORDS_MAX
 
 /* What the command line asks for. */
 typedef struct bench_request {
-  const char *csv, *plot;
-  double t_end;
+  bench_outputs outputs;
+  const char *at, *scale;
+  double t_end, h;
   long levels, rounds;
   words methods, settings, against;
   bool selected; /* the methods are those of the selection */
+  bool extend;   /* the number of levels is free: more may follow */
   int codes;
   dvi_reference_code code[CODES_MAX];
 } bench_request;
@@ -46,12 +50,47 @@ typedef struct bench {
   progress_line progress;
   int jobs;
   bench_job *job; /* [JOBS_MAX] */
+  double calibration[ROUNDS_MAX];
 } bench;
 
-static const table_column columns[] = {
-    {"integrator", NULL},     {"problem", NULL},       {"setting", NULL},       {"error", "%.3e"},
-    {"energy_error", "%.3e"}, {"cpu_seconds", "%.3e"}, {"evaluations", "%.0f"}, {NULL, NULL},
-};
+/* Add one level of the study's method. */
+static dvi_status add_level(bench *b, order_study *study, long steps)
+{
+  bench_job *job = &b->job[b->jobs];
+  level_trial trial = {.steps = steps};
+  job->integrator = study->method;
+  job->steps = steps;
+  (void)snprintf(job->setting, sizeof job->setting, "h=%.6g", b->request->t_end / (double)steps);
+  dvi_status status = study_watch_energy(study, &trial);
+  job->energy_error = trial.energy_error;
+  if (status == DVI_OK) status = bench_job_try(job, b->scene, &b->judge, b->request->t_end);
+  b->jobs += status == DVI_OK;
+  return status;
+}
+
+/* The smallest error that was asked for; infinite without --at. */
+static double smallest_asked(const numbers *asked)
+{
+  double smallest = HUGE_VAL;
+  for (int i = 0; i < asked->count; i++) smallest = fmin(smallest, asked->number[i]);
+  return smallest;
+}
+
+/* Go on with smaller steps to the smallest asked error, as long as they make the error smaller. */
+static dvi_status extend_levels(bench *b, order_study *study)
+{
+  static const double ratio = 1.5;
+  static const double steps_max = 1L << 20; /* of one job: some seconds at most for a small problem */
+  const double wanted = smallest_asked(&b->request->outputs.asked);
+  dvi_status status = DVI_OK;
+  for (int k = (int)b->request->levels; k < LEVELS_MAX && status == DVI_OK; k++) {
+    const bench_job *last = &b->job[b->jobs - 1];
+    const double steps = ceil(ratio * (double)last->steps);
+    if (last->error <= wanted || steps > steps_max || !(last->error < (last - 1)->error)) break;
+    status = add_level(b, study, lround(steps));
+  }
+  return status;
+}
 
 /* Add a method's levels. */
 static int add_method(bench *b, const char *method)
@@ -65,17 +104,8 @@ static int add_method(bench *b, const char *method)
   study.first_error = first_error;
   study.progress = &b->progress;
   dvi_status status = choose_levels(&study, 0.0, 0.0, levels, steps, &room);
-  for (int k = 0; k < levels && status == DVI_OK; k++) {
-    bench_job *job = &b->job[b->jobs];
-    level_trial trial = {.steps = steps[k]};
-    job->integrator = method;
-    job->steps = steps[k];
-    (void)snprintf(job->setting, sizeof job->setting, "h=%.6g", b->request->t_end / (double)steps[k]);
-    status = study_watch_energy(&study, &trial);
-    job->energy_error = trial.energy_error;
-    if (status == DVI_OK) status = bench_job_try(job, b->scene, &b->judge, b->request->t_end);
-    b->jobs += status == DVI_OK;
-  }
+  for (int k = 0; k < levels && status == DVI_OK; k++) status = add_level(b, &study, steps[k]);
+  if (status == DVI_OK && b->request->extend) status = extend_levels(b, &study);
   study_clear(&study);
   return status == DVI_OK ? DONE : library_error(status);
 }
@@ -87,6 +117,7 @@ static void add_code(bench *b, dvi_reference_code code)
     bench_job *job = &b->job[b->jobs];
     progress_show(&b->progress, -1.0, dvi_reference_name(code));
     job->integrator = dvi_reference_name(code);
+    job->peer = true;
     job->code = code;
     job->tolerance = tolerances[k];
     (void)snprintf(job->setting, sizeof job->setting, "tol=%.0e", tolerances[k]);
@@ -108,111 +139,29 @@ static int add_jobs(bench *b)
 /* Every round runs every job once, so that whatever slows the machine for a while slows all of them. */
 static int run_rounds(bench *b)
 {
-  for (int round = 0; round < b->request->rounds; round++)
+  for (int round = 0; round < b->request->rounds; round++) {
+    b->calibration[round] = machine_multiplications();
     for (int i = 0; i < b->jobs; i++) {
       const double done = (double)(round * b->jobs + i) / (double)(b->request->rounds * b->jobs);
       progress_show(&b->progress, done, "dvi bench");
       const dvi_status status = bench_job_time(&b->job[i], b->scene, b->request->t_end, round);
       if (status != DVI_OK) return library_error(status);
     }
+  }
+  for (int i = 0; i < b->jobs; i++) b->job[i].seconds = samples_spread((int)b->request->rounds, b->job[i].cpu);
   return DONE;
-}
-
-static result_table *make_table(bench *b)
-{
-  result_table *rows = table_create(columns);
-  for (int i = 0; i < b->jobs; i++) {
-    bench_job *job = &b->job[i];
-    table_text(rows, job->integrator);
-    table_text(rows, b->scene->name);
-    table_text(rows, job->setting);
-    table_number(rows, job->error);
-    table_number(rows, job->energy_error);
-    table_number(rows, bench_job_median(job, (int)b->request->rounds));
-    table_number(rows, (double)job->evaluations);
-  }
-  return rows;
-}
-
-static void print_notes(FILE *stream, const bench *b)
-{
-  (void)fprintf(stream, "judge at t = %g: %s, error %.1e\n", b->request->t_end, b->judge.kind, b->judge.error);
-  (void)fprintf(stream, "cpu_seconds: process time of a whole job, median of %ld interleaved rounds\n", b->request->rounds);
-  (void)fprintf(stream, "energy_error: methods: largest over the run; codes of SUNDIALS: at the end\n");
-  if (b->request->codes == 0) return;
-  (void)fprintf(stream, "SUNDIALS %s. Caution: Debian's packages of SUNDIALS are built without optimisation; its codes linked\n",
-                dvi_reference_version());
-  (void)fprintf(stream, "from them are several times slower than they can be. Say which build a ratio was measured against.\n");
-}
-
-/* One past the last job of the integrator that job `first` belongs to. */
-static int group_end(const bench *b, int first)
-{
-  int end = first;
-  while (end < b->jobs && strcmp(b->job[end].integrator, b->job[first].integrator) == 0) end++;
-  return end;
-}
-
-static void print_for_people(const bench *b, const result_table *rows)
-{
-  (void)printf("Speed against error on %s\n", b->scene->name);
-  for (int first = 0; first < b->jobs; first = group_end(b, first)) {
-    (void)printf("\n%s\n", b->job[first].integrator);
-    table_print(rows, 2, first, group_end(b, first));
-  }
-  (void)putchar('\n');
-}
-
-static bool write_csv(const result_table *rows, const char *path)
-{
-  whole_file csv;
-  if (!file_open(&csv, path)) return false;
-  table_csv(rows, csv.stream);
-  return file_keep(&csv);
-}
-
-static bool plot_jobs(bench *b)
-{
-  plot_curve curve[WORDS_MAX + CODES_MAX];
-  char title[TITLE_SIZE];
-  int curves = 0;
-  double *x = calloc(2 * (size_t)b->jobs, sizeof *x);
-  if (x == NULL) {
-    complain("out of memory for the plot");
-    return false;
-  }
-  double *y = x + b->jobs;
-  for (int i = 0; i < b->jobs; i++) {
-    x[i] = b->job[i].error;
-    y[i] = bench_job_median(&b->job[i], (int)b->request->rounds);
-  }
-  for (int first = 0; first < b->jobs && curves < WORDS_MAX + CODES_MAX; first = group_end(b, first))
-    curve[curves++] = (plot_curve){
-        .label = b->job[first].integrator, .count = group_end(b, first) - first, .x = x + first, .y = y + first};
-  (void)snprintf(title, sizeof title, "CPU time against error: %s to t = %g", b->scene->name, b->request->t_end);
-  const plot_panel panel = {.title = title,
-                            .x_label = "largest error of q at the end",
-                            .y_label = "CPU seconds",
-                            .logarithmic = true,
-                            .curves = curves,
-                            .curve = curve};
-  const bool good = plot_write(b->request->plot, 1, &panel);
-  free(x);
-  return good;
 }
 
 static int report(bench *b)
 {
-  const bench_request *request = b->request;
-  const bool csv_only = request->csv != NULL && strcmp(request->csv, "-") == 0;
-  result_table *rows = make_table(b);
-  bool good = table_good(rows);
-  if (good && !csv_only) print_for_people(b, rows);
-  print_notes(csv_only ? stderr : stdout, b);
-  if (good && request->csv != NULL) good = write_csv(rows, request->csv);
-  if (good && request->plot != NULL) good = plot_jobs(b);
-  table_destroy(&rows);
-  return good ? DONE : FAILED;
+  const bench_results results = {.scene = b->scene,
+                                 .judge = &b->judge,
+                                 .t_end = b->request->t_end,
+                                 .rounds = b->request->rounds,
+                                 .jobs = b->jobs,
+                                 .job = b->job,
+                                 .calibration = samples_spread((int)b->request->rounds, b->calibration)};
+  return bench_report(&results, &b->request->outputs);
 }
 
 static int measure(bench *b)
@@ -294,6 +243,44 @@ static int read_codes(bench_request *request)
   return result;
 }
 
+static int check_outputs(const bench_outputs *outputs)
+{
+  const char *const paths[] = {outputs->csv, outputs->plot, outputs->at_csv};
+  const named_file files[] = {{"csv", outputs->csv}, {"plot", outputs->plot}, {"at-csv", outputs->at_csv}};
+  enum { FILES = sizeof files / sizeof *files };
+  int code = outputs_plot("bench", outputs->plot);
+  if (code == DONE) code = outputs_distinct("bench", FILES, files);
+  if (code != DONE) return code;
+  if (outputs->csv != NULL && outputs->at_csv != NULL && strcmp(outputs->csv, "-") == 0 && strcmp(outputs->at_csv, "-") == 0)
+    return usage_error("bench: --csv - and --at-csv - would mix two tables on standard output");
+  for (int i = 0; i < FILES; i++)
+    if (paths[i] != NULL && !file_writable(paths[i])) return FAILED;
+  return DONE;
+}
+
+/* With --scale every method takes the same few steps, and nothing has an error. */
+static int check_modes(const bench_request *r)
+{
+  static const char reason[] = "--scale measures single steps";
+  if (r->scale == NULL && !isnan(r->h)) return usage_error("bench: --h goes with --scale; else the steps are chosen by the error");
+  if (r->outputs.at_csv != NULL && r->at == NULL) return usage_error("bench: --at-csv needs the errors: --at 1e-6,1e-9");
+  if (r->scale == NULL) return DONE;
+  if (r->at != NULL) return usage_error("bench: %s: --at has no meaning there", reason);
+  if (r->against.count > 0) return usage_error("bench: %s: the codes of --against choose their own", reason);
+  if (r->levels > 0) return usage_error("bench: %s: --levels has no meaning there", reason);
+  if (!isnan(r->t_end)) return usage_error("bench: %s: --t-end has no meaning there", reason);
+  return r->h == 0.0 ? usage_error("bench: --h 0 leads nowhere") : DONE;
+}
+
+/* The settings of a method that is named twice could not be told apart. */
+static int check_methods(const words *methods)
+{
+  for (int i = 0; i < methods->count; i++)
+    for (int j = 0; j < i; j++)
+      if (strcmp(methods->word[i], methods->word[j]) == 0) return usage_error("bench: --method names %s twice", methods->word[i]);
+  return DONE;
+}
+
 static int check_request(bench_request *request)
 {
   if (request->levels > LEVELS_MAX)
@@ -301,51 +288,104 @@ static int check_request(bench_request *request)
   if (request->rounds > ROUNDS_MAX)
     return usage_error("bench: --rounds %ld is too many, %d are possible", request->rounds, (int)ROUNDS_MAX);
   if (request->t_end == 0.0) return usage_error("bench: --t-end 0 leaves nothing to do");
-  const named_file files[] = {{"csv", request->csv}, {"plot", request->plot}};
-  int code = outputs_plot("bench", request->plot);
-  if (code == DONE) code = outputs_distinct("bench", 2, files);
+  int code = check_modes(request);
+  if (code == DONE) code = check_methods(&request->methods);
+  if (code == DONE && request->at != NULL) code = numbers_read("bench: --at", request->at, &request->outputs.asked);
+  if (code == DONE) code = read_codes(request);
+  return code == DONE ? check_outputs(&request->outputs) : code;
+}
+
+static int scale_problem(const bench_request *r, const char *name)
+{
+  const scale_request request = {.problem = name,
+                                 .sizes = r->scale,
+                                 .methods = &r->methods,
+                                 .settings = &r->settings,
+                                 .h = r->h,
+                                 .rounds = r->rounds,
+                                 .csv = r->outputs.csv,
+                                 .plot = r->outputs.plot};
+  return scale_run(&request);
+}
+
+static int bench_named(bench_request *r, const char *name)
+{
+  problem *scene;
+  if (r->scale != NULL) return scale_problem(r, name);
+  r->extend = r->levels == 0;
+  if (r->extend) r->levels = LEVELS_DEFAULT;
+  int code = open_problem(name, &r->settings, &scene);
   if (code != DONE) return code;
-  if (request->csv != NULL && !file_writable(request->csv)) return FAILED;
-  if (request->plot != NULL && !file_writable(request->plot)) return FAILED;
-  return read_codes(request);
+  code = bench_problem(r, scene);
+  problem_destroy(&scene);
+  return code;
 }
 
 static const char details[] =
     "\n"
-    "Columns: integrator,problem,setting,error,energy_error,cpu_seconds,evaluations.\n"
+    "Columns: integrator,problem,setting,error,energy_error,cpu_seconds,evaluations,cpu_lower,cpu_upper,steps.\n"
     "  setting       h=STEP of a method, tol=TOLERANCE of a SUNDIALS code\n"
     "  error         largest error of a coordinate at the end, against the judge (see dvi order --help)\n"
-    "  energy_error  methods: largest |energy - energy at the start| over the run; SUNDIALS codes: at the end\n"
+    "  energy_error  largest |energy - energy at the start|: of methods over all steps, of SUNDIALS codes at 8 evenly\n"
+    "                spaced times, the end included\n"
     "  cpu_seconds   process time of one whole job, creation included and diagnostics excluded: the median over the\n"
     "                rounds; every round runs every setting, repeated until 0.02 s have passed\n"
     "  evaluations   points at which the gradient was evaluated\n"
+    "  cpu_lower, cpu_upper   quartiles over the rounds\n"
+    "  steps         of a code those that it chose\n"
     "\n"
-    "Every integrator gets the same callbacks. Debian's packages of SUNDIALS are built without optimisation: its codes\n"
-    "are several times slower in them than they can be. The version that ran is printed.\n"
+    "--at: for each integrator, seconds and evaluations at these errors. Of its settings those count that no other one\n"
+    "beats in both error and cost; between two neighbours the logarithms are interpolated, beyond the ends nothing is.\n"
+    "Unless --levels is given, smaller steps follow until the smallest of these errors is met, 20 levels at most.\n"
+    "Columns of --at-csv: asked_error,problem,judged,integrator,cpu_seconds,ratio,evaluations,answer.\n"
+    "  judged        yes; no if the judge's own error is above a tenth of the asked one\n"
+    "  ratio         seconds over those of the fastest integrator at this error\n"
+    "  answer        interpolated; at most (the cheapest setting is already better); not reached\n"
+    "\n"
+    "--scale: a problem's parameter and the values at which a step is measured, with the exponents of cost against the\n"
+    "number of coordinates n. The first 32 steps from the start are run again and again. Repeat --method to compare\n"
+    "degrees. Columns: method,problem,parameter,value,n,h,step_seconds,step_lower,step_upper,bytes,step_evaluations;\n"
+    "bytes is what the integrator holds of the heap (mallinfo2; empty where there is no such function).\n"
+    "\n"
+    "Processor, compiler and flags are printed, and the time of 1e8 dependent multiplications, measured once a round:\n"
+    "it tells times of two machines or two hours apart. Every integrator gets the same callbacks. Debian's packages of\n"
+    "SUNDIALS are built without optimisation: its codes are several times slower in them than they can be.\n"
     "\n"
     "Examples:\n"
-    "  dvi bench kepler --against cvode,arkode,ida --plot bench.svg\n"
-    "  dvi bench outer-solar --method galerkin:degree=8 --method verlet --csv bench.csv\n";
+    "  dvi bench kepler --against cvode,arkode,ida --at 1e-6,1e-9 --plot bench.svg\n"
+    "  dvi bench outer-solar --method galerkin:degree=8 --method verlet --csv bench.csv\n"
+    "  dvi bench fpu --method galerkin:degree=2 --method galerkin:degree=4 --scale ell=100,1000,10000\n";
 
 int bench_command(int argc, char **argv)
 {
-  bench_request r = {.t_end = (double)NAN, .levels = LEVELS_DEFAULT, .rounds = ROUNDS_DEFAULT};
+  bench_request r = {.t_end = (double)NAN, .h = (double)NAN, .rounds = ROUNDS_DEFAULT};
   const option options[] = {
       {.name = "method", .words = &r.methods, .value = "SPEC", .help = "a method; may be repeated; left out: a selection"},
       {.name = "against", .words = &r.against, .value = "CODES", .help = "SUNDIALS codes beside them: of cvode,arkode,ida"},
-      {.name = "levels", .count = &r.levels, .value = "N", .help = "how many step sizes of each method; left out: 6"},
+      {.name = "at", .word = &r.at, .value = "ERRORS", .help = "compare at these errors, for example 1e-6,1e-9"},
+      {.name = "at-csv", .word = &r.outputs.at_csv, .value = "-|FILE", .help = "write that comparison as CSV"},
+      {.name = "scale", .word = &r.scale, .value = "NAME=V,V...", .help = "measure steps instead, as this parameter grows"},
+      {.name = "h", .number = &r.h, .value = "H", .help = "the step of --scale; left out: the problem's"},
+      {.name = "levels",
+       .count = &r.levels,
+       .value = "N",
+       .help = "how many step sizes of each method; left out: 6, or more for --at"},
       {.name = "rounds", .count = &r.rounds, .value = "N", .help = "how often everything is measured; left out: 5"},
       {.name = "t-end", .number = &r.t_end, .value = "T", .help = "the end; left out: the problem's for order studies"},
       {.name = "set", .words = &r.settings, .value = "NAME=VALUE", .help = "set a parameter of the problem; may be repeated"},
-      {.name = "csv", .word = &r.csv, .value = "-|FILE", .help = "write the table as CSV; -: to standard output, words to stderr"},
-      {.name = "plot", .word = &r.plot, .value = "FILE.svg", .help = "draw CPU time against error"},
+      {.name = "csv",
+       .word = &r.outputs.csv,
+       .value = "-|FILE",
+       .help = "write the table as CSV; -: to standard output, words to stderr"},
+      {.name = "plot", .word = &r.outputs.plot, .value = "FILE.svg", .help = "draw CPU time against error, or against size"},
       {.name = NULL},
   };
   const command_line command = {
       .name = "bench",
       .synopsis = "PROBLEM [--method SPEC ...] [--against cvode,arkode,ida] [OPTIONS]",
       .operand = "PROBLEM",
-      .summary = "Measure speed against error, of methods and of SUNDIALS' codes, all in one run.\n",
+      .summary =
+          "Measure speed against error, of methods and of SUNDIALS' codes, all in one run; or the cost of a step against size.\n",
       .options = options,
       .details = details,
   };
@@ -353,11 +393,5 @@ int bench_command(int argc, char **argv)
   int code;
   if (!options_parse(&command, argc, argv, &name, &code)) return code;
   code = check_request(&r);
-  if (code != DONE) return code;
-  problem *scene;
-  code = open_problem(name, &r.settings, &scene);
-  if (code != DONE) return code;
-  code = bench_problem(&r, scene);
-  problem_destroy(&scene);
-  return code;
+  return code == DONE ? bench_named(&r, name) : code;
 }

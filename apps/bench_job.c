@@ -6,9 +6,6 @@
 
 #include "study.h"
 
-static const double clock_seconds = 0.02; /* process time that one measurement takes at least */
-static const long repeats_max = 1000000;
-
 static dvi_status run_method(const bench_job *job, const problem *scene, double t_end, double *q, long *evaluations)
 {
   dvi_integrator *integrator = NULL;
@@ -27,26 +24,52 @@ static dvi_status run_method(const bench_job *job, const problem *scene, double 
 }
 
 /* q and p are room for the state: [n] each. */
-static dvi_status run_code(const bench_job *job, const problem *scene, double t_end, double *q, double *p, long *evaluations)
+static dvi_status run_code(const bench_job *job, const problem *scene, double t_end, double *q, double *p,
+                           dvi_reference_report *report)
 {
   const dvi_reference_options options = {.code = job->code, .relative_tolerance = job->tolerance};
-  dvi_reference_report report = {0};
   memcpy(q, scene->q, (size_t)scene->n * sizeof *q);
   memcpy(p, scene->p, (size_t)scene->n * sizeof *p);
-  const dvi_status status = dvi_reference_solve(scene->system, 0.0, t_end, q, p, &options, &report);
-  if (evaluations != NULL) *evaluations = report.evaluations;
-  return status;
+  return dvi_reference_solve(scene->system, 0.0, t_end, q, p, &options, report);
 }
 
-static dvi_status energy_change(const problem *scene, double t_end, const double *q, const double *p, double *change)
+static dvi_status energy_change(const problem *scene, double t, const double *q, const double *p, double *change)
 {
   double *value = calloc(2 * (size_t)dvi_system_invariant_count(scene->system), sizeof *value);
   if (value == NULL) return DVI_NO_MEMORY;
-  double *end = value + dvi_system_invariant_count(scene->system);
+  double *then = value + dvi_system_invariant_count(scene->system);
   dvi_status status = dvi_system_invariants(scene->system, 0.0, scene->q, scene->p, value);
-  if (status == DVI_OK) status = dvi_system_invariants(scene->system, t_end, q, p, end);
-  *change = fabs(end[0] - value[0]);
+  if (status == DVI_OK) status = dvi_system_invariants(scene->system, t, q, p, then);
+  *change = fabs(then[0] - value[0]);
   free(value);
+  return status;
+}
+
+/* Watch the energy along the way, and leave the end in q and p. */
+static dvi_status try_code(bench_job *job, const problem *scene, double t_end, double *q, double *p, double *spent)
+{
+  dvi_reference_report report = {0};
+  dvi_status status = DVI_OK;
+  job->energy_error = 0.0;
+  for (int k = 1; k <= ENERGY_TIMES && status == DVI_OK; k++) {
+    const double t = k == ENERGY_TIMES ? t_end : t_end * k / ENERGY_TIMES;
+    double change = 0.0;
+    const double began = cpu_now();
+    status = run_code(job, scene, t, q, p, &report);
+    *spent = cpu_now() - began;
+    if (status == DVI_OK) status = energy_change(scene, t, q, p, &change);
+    job->energy_error = fmax(job->energy_error, change);
+  }
+  job->evaluations = report.evaluations;
+  job->steps = report.steps;
+  return status;
+}
+
+static dvi_status try_method(bench_job *job, const problem *scene, double t_end, double *q, double *spent)
+{
+  const double began = cpu_now();
+  const dvi_status status = run_method(job, scene, t_end, q, &job->evaluations);
+  *spent = cpu_now() - began;
   return status;
 }
 
@@ -54,14 +77,11 @@ dvi_status bench_job_try(bench_job *job, const problem *scene, const judgement *
 {
   double *q = calloc(2 * (size_t)scene->n, sizeof *q);
   if (q == NULL) return DVI_NO_MEMORY;
-  double *p = q + scene->n;
-  const double began = cpu_now();
-  dvi_status status = job->steps > 0 ? run_method(job, scene, t_end, q, &job->evaluations)
-                                     : run_code(job, scene, t_end, q, p, &job->evaluations);
-  const double spent = cpu_now() - began;
-  if (status == DVI_OK && job->steps == 0) status = energy_change(scene, t_end, q, p, &job->energy_error);
+  double spent = 0.0;
+  const dvi_status status = job->peer ? try_code(job, scene, t_end, q, q + scene->n, &spent)
+                                      : try_method(job, scene, t_end, q, &spent);
   job->error = judge_error(judge, scene, q);
-  job->repeats = spent >= clock_seconds ? 1 : lround(fmin(ceil(clock_seconds / fmax(spent, 1e-9)), (double)repeats_max));
+  job->repeats = study_repeats(spent);
   free(q);
   return status;
 }
@@ -73,21 +93,8 @@ dvi_status bench_job_time(bench_job *job, const problem *scene, double t_end, in
   dvi_status status = DVI_OK;
   const double began = cpu_now();
   for (long i = 0; i < job->repeats && status == DVI_OK; i++)
-    status = job->steps > 0 ? run_method(job, scene, t_end, NULL, NULL) : run_code(job, scene, t_end, q, q + scene->n, NULL);
+    status = job->peer ? run_code(job, scene, t_end, q, q + scene->n, NULL) : run_method(job, scene, t_end, NULL, NULL);
   job->cpu[round] = (cpu_now() - began) / (double)job->repeats;
   free(q);
   return status;
-}
-
-static int by_size(const void *left, const void *right)
-{
-  const double a = *(const double *)left;
-  const double b = *(const double *)right;
-  return (a > b) - (a < b);
-}
-
-double bench_job_median(bench_job *job, int rounds)
-{
-  qsort(job->cpu, (size_t)rounds, sizeof *job->cpu, by_size);
-  return rounds % 2 == 1 ? job->cpu[rounds / 2] : 0.5 * (job->cpu[rounds / 2 - 1] + job->cpu[rounds / 2]);
 }

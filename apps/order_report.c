@@ -38,7 +38,7 @@ void order_print_tables(const char *name, const result_table *rows, int results,
   int first = 0;
   for (int i = 0; i < results; i++) {
     (void)printf("\n%s, to t = %g\n", result[i].method, result[i].t_end);
-    table_print(rows, 2, first, first + result[i].levels);
+    table_print(rows, stdout, 2, first, first + result[i].levels);
     first += result[i].levels;
   }
   (void)putchar('\n');

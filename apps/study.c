@@ -12,12 +12,18 @@
 enum { PROGRESS_STEPS = 256 };
 static const double ceiling_digits = 1e-2; /* an error of 1 % of the solution's size is no longer asymptotic */
 static const double clock_seconds = 0.02;  /* process time that one measurement takes at least */
+static const double repeats_max = 1e6;
 
 double cpu_now(void)
 {
   struct timespec t;
   (void)clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+long study_repeats(double seconds)
+{
+  return seconds >= clock_seconds ? 1 : lround(fmin(ceil(clock_seconds / fmax(seconds, 1e-9)), repeats_max));
 }
 
 double study_size(const order_study *s)

@@ -51,6 +51,9 @@ dvi_status study_integrate(order_study *study, const double *q, long steps);
 /** Size of the solution at the end, in the maximum norm; 1 if it is 0. */
 double study_size(const order_study *study);
 
+/** How often something that takes so many seconds is to be run in one measurement, so that the clock can tell. */
+long study_repeats(double seconds);
+
 /** Process time in seconds. */
 double cpu_now(void);
 #endif

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "command.h"
+#include "file.h"
 
 enum { CELL_TEXT = 32 };
 
@@ -116,6 +117,14 @@ void table_csv(const result_table *table, FILE *stream)
   (void)fputc('\n', stream);
 }
 
+bool table_write(const result_table *table, const char *path)
+{
+  whole_file csv;
+  if (!file_open(&csv, path)) return false;
+  table_csv(table, csv.stream);
+  return file_keep(&csv);
+}
+
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wformat-nonliteral" /* the formats come from the tables of this program's own columns */
 static const char *for_people(const result_table *table, int row, int column, char *text)
@@ -141,21 +150,21 @@ static int column_width(const result_table *table, int column, int first, int la
 }
 
 /* Text to the left, numbers to the right; no blanks at the end of a line. */
-static void print_cell(const result_table *table, int column, int width, const char *text)
+static void print_cell(const result_table *table, FILE *stream, int column, int width, const char *text)
 {
   if (table->column[column].format != NULL)
-    (void)printf("  %*s", width, text);
+    (void)fprintf(stream, "  %*s", width, text);
   else
-    (void)printf("  %-*s", column + 1 < table->columns ? width : 0, text);
+    (void)fprintf(stream, "  %-*s", column + 1 < table->columns ? width : 0, text);
 }
 
-void table_print(const result_table *table, int skip, int first, int last)
+void table_print(const result_table *table, FILE *stream, int skip, int first, int last)
 {
   char text[CELL_TEXT];
   for (int row = first - 1; row < last; row++) {
     for (int j = skip; j < table->columns; j++)
-      print_cell(table, j, column_width(table, j, first, last),
+      print_cell(table, stream, j, column_width(table, j, first, last),
                  row < first ? table->column[j].title : for_people(table, row, j, text));
-    (void)putchar('\n');
+    (void)fputc('\n', stream);
   }
 }

@@ -28,8 +28,11 @@ int table_rows(const result_table *table);
 /** Write all of it as CSV (RFC 4180, lines ended by a plain newline). */
 void table_csv(const result_table *table, FILE *stream);
 
-/** Print rows first to last-1 from column `skip` on, aligned, under their titles. */
-void table_print(const result_table *table, int skip, int first, int last);
+/** Write that into a file, whole or not at all; "-" is standard output. False, with a complaint, if it cannot be. */
+bool table_write(const result_table *table, const char *path);
+
+/** Print to a stream rows first to last-1 from column `skip` on, aligned, under their titles. */
+void table_print(const result_table *table, FILE *stream, int skip, int first, int last);
 
 /** Write one CSV field: quoted if it must be. */
 void csv_text(FILE *stream, const char *text);

@@ -82,13 +82,15 @@ START_TEST(a_roundoff_floor_that_gets_worse_with_cost_is_left_out)
 }
 END_TEST
 
-START_TEST(of_equal_settings_one_stays)
+START_TEST(a_setting_that_stands_twice_counts_once)
 {
-  const double errors[] = {1e-3, 1e-3, 1e-5};
-  const double costs[] = {1.0, 1.0, 4.0};
+  const double errors[] = {1e-2, 1e-2, 1e-4, 1e-4};
+  const double costs[] = {1.0, 1.0, 100.0, 100.0};
   double least;
-  ck_assert_int_eq(frontier_cost(3, errors, costs, 1e-3, &least), FRONTIER_BETWEEN);
+  ck_assert_int_eq(frontier_cost(4, errors, costs, 1e-2, &least), FRONTIER_BETWEEN);
   ck_assert_double_eq(least, 1.0);
+  ck_assert_int_eq(frontier_cost(4, errors, costs, 1e-3, &least), FRONTIER_BETWEEN);
+  ck_assert_double_le(fabs(least / 10.0 - 1.0), roundoff);
 }
 END_TEST
 
@@ -113,7 +115,7 @@ int main(void)
   tcase_add_test(tests, above_the_largest_error_the_cheapest_setting_is_a_bound);
   tcase_add_test(tests, a_setting_that_another_one_beats_is_left_out);
   tcase_add_test(tests, a_roundoff_floor_that_gets_worse_with_cost_is_left_out);
-  tcase_add_test(tests, of_equal_settings_one_stays);
+  tcase_add_test(tests, a_setting_that_stands_twice_counts_once);
   tcase_add_test(tests, points_without_a_logarithm_are_left_out);
   return run_tests("frontier", tests);
 }

@@ -1,0 +1,150 @@
+#include "bench_report.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "asked.h"
+#include "command.h"
+#include "machine.h"
+#include "plot.h"
+#include "table.h"
+
+enum { CURVES_MAX = 128, TITLE_SIZE = 160 };
+
+static const table_column columns[] = {
+    {"integrator", NULL},
+    {"problem", NULL},
+    {"setting", NULL},
+    {"error", "%.3e"},
+    {"energy_error", "%.3e"},
+    {"cpu_seconds", "%.3e"},
+    {"evaluations", "%.0f"},
+    {"cpu_lower", "%.3e"},
+    {"cpu_upper", "%.3e"},
+    {"steps", "%.0f"},
+    {NULL, NULL},
+};
+
+int bench_group_end(const bench_results *results, int first)
+{
+  int end = first;
+  while (end < results->jobs && strcmp(results->job[end].integrator, results->job[first].integrator) == 0) end++;
+  return end;
+}
+
+static result_table *make_table(const bench_results *results)
+{
+  result_table *rows = table_create(columns);
+  for (int i = 0; i < results->jobs; i++) {
+    const bench_job *job = &results->job[i];
+    table_text(rows, job->integrator);
+    table_text(rows, results->scene->name);
+    table_text(rows, job->setting);
+    table_number(rows, job->error);
+    table_number(rows, job->energy_error);
+    table_number(rows, job->seconds.median);
+    table_number(rows, (double)job->evaluations);
+    table_number(rows, job->seconds.lower);
+    table_number(rows, job->seconds.upper);
+    table_number(rows, (double)job->steps);
+  }
+  return rows;
+}
+
+static bool has_peers(const bench_results *results)
+{
+  for (int i = 0; i < results->jobs; i++)
+    if (results->job[i].peer) return true;
+  return false;
+}
+
+static void print_head(FILE *stream, const bench_results *results)
+{
+  (void)fprintf(stream, "Speed against error on %s\n", results->scene->name);
+  machine_print(stream);
+  machine_print_calibration(stream, &results->calibration);
+}
+
+static void print_notes(FILE *stream, const bench_results *results)
+{
+  (void)fprintf(stream, "judge at t = %g: %s, error %.1e\n", results->t_end, results->judge->kind, results->judge->error);
+  (void)fprintf(stream,
+                "cpu_seconds: process time of a whole job, median of %ld interleaved rounds; cpu_lower, cpu_upper: quartiles\n",
+                results->rounds);
+  (void)fprintf(stream, "energy_error: methods: largest over the run; codes of SUNDIALS: largest of %d times\n", (int)ENERGY_TIMES);
+  if (!has_peers(results)) return;
+  (void)fprintf(stream, "SUNDIALS %s. Caution: Debian's packages of SUNDIALS are built without optimisation; its codes linked\n",
+                dvi_reference_version());
+  (void)fprintf(stream, "from them are several times slower than they can be. Say which build a ratio was measured against.\n");
+}
+
+static void print_table(FILE *stream, const bench_results *results, const result_table *rows)
+{
+  for (int first = 0; first < results->jobs; first = bench_group_end(results, first)) {
+    (void)fprintf(stream, "\n%s\n", results->job[first].integrator);
+    table_print(rows, stream, 2, first, bench_group_end(results, first));
+  }
+  (void)fputc('\n', stream);
+}
+
+static bool plot_jobs(const bench_results *results, const char *path)
+{
+  plot_curve curve[CURVES_MAX];
+  char title[TITLE_SIZE];
+  int curves = 0;
+  double *x = calloc(2 * (size_t)results->jobs, sizeof *x);
+  if (x == NULL) {
+    complain("out of memory for the plot");
+    return false;
+  }
+  double *y = x + results->jobs;
+  for (int i = 0; i < results->jobs; i++) {
+    x[i] = results->job[i].error;
+    y[i] = results->job[i].seconds.median;
+  }
+  for (int first = 0; first < results->jobs && curves < CURVES_MAX; first = bench_group_end(results, first))
+    curve[curves++] = (plot_curve){
+        .label = results->job[first].integrator, .count = bench_group_end(results, first) - first, .x = x + first, .y = y + first};
+  (void)snprintf(title, sizeof title, "CPU time against error: %s to t = %g", results->scene->name, results->t_end);
+  const plot_panel panel = {.title = title,
+                            .x_label = "largest error of q at the end",
+                            .y_label = "CPU seconds",
+                            .logarithmic = true,
+                            .curves = curves,
+                            .curve = curve};
+  const bool good = plot_write(path, 1, &panel);
+  free(x);
+  return good;
+}
+
+static bool on_standard_output(const char *path)
+{
+  return path != NULL && strcmp(path, "-") == 0;
+}
+
+static bool report_asked(FILE *stream, const bench_results *results, const bench_outputs *outputs)
+{
+  if (outputs->asked.count == 0) return true;
+  result_table *rows = asked_table(results, &outputs->asked);
+  bool good = table_good(rows);
+  if (good && !on_standard_output(outputs->at_csv)) asked_print(results, &outputs->asked, rows, stream);
+  if (good && outputs->at_csv != NULL) good = table_write(rows, outputs->at_csv);
+  table_destroy(&rows);
+  return good;
+}
+
+int bench_report(const bench_results *results, const bench_outputs *outputs)
+{
+  FILE *words = on_standard_output(outputs->csv) || on_standard_output(outputs->at_csv) ? stderr : stdout;
+  result_table *rows = make_table(results);
+  bool good = table_good(rows);
+  print_head(words, results);
+  if (good && !on_standard_output(outputs->csv)) print_table(words, results, rows);
+  good = good && report_asked(words, results, outputs);
+  print_notes(words, results);
+  if (good && outputs->csv != NULL) good = table_write(rows, outputs->csv);
+  if (good && outputs->plot != NULL) good = plot_jobs(results, outputs->plot);
+  table_destroy(&rows);
+  return good ? DONE : FAILED;
+}
