@@ -46,7 +46,7 @@ START_TEST(the_coefficients_are_symplectic_to_the_last_bit)
 END_TEST
 
 /* The fixed point solves R(Y) = 0 in every basis: to the roundoff of the rows: p0 and psi of size 1 to 3, summed over up to 25 nodes, more where the basis
- * itself is ill-conditioned. */
+ * itself is ill-conditioned. Where long double is no longer than double, as under valgrind, the tables of the two differ by some roundings too: 8e-14. */
 START_TEST(the_fixed_point_solves_the_rows)
 {
   static const struct {
@@ -70,7 +70,7 @@ START_TEST(the_fixed_point_solves_the_rows)
   dvi__action_sweep_to(a, Y);
   dvi__action_ends(a, Y, dq, dp);
   ck_assert_int_eq(dvi__action_residual(a, Y, R), DVI_OK);
-  for (int k = 0; k < SITES * spaces[_i].degree; k++) ck_assert_double_eq_tol(R[k], 0, 5e-14);
+  for (int k = 0; k < SITES * spaces[_i].degree; k++) ck_assert_double_eq_tol(R[k], 0, 2e-13);
   dvi__action_ends(a, Y, by_rows_q, by_rows_p);
   for (int i = 0; i < SITES; i++) {
     ck_assert_double_eq_tol(dq[i], by_rows_q[i], 1e-15);

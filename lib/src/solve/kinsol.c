@@ -107,11 +107,11 @@ static int create_matrix(dvi__kinsol *k)
 static int create_vectors(dvi__kinsol *k)
 {
   const int n = k->solver->equations.unknowns;
-  N_Vector *const vector[] = {&k->x, &k->x_scale, &k->r_scale};
+  N_Vector *const places[] = {&k->x, &k->x_scale, &k->r_scale};
   for (int i = 0; i < 3; i++) {
-    *vector[i] = N_VNew_Serial(n, k->context);
-    if (*vector[i] == NULL) return 0;
-    dvi__vector_use_own_operations(*vector[i]);
+    *places[i] = N_VNew_Serial(n, k->context);
+    if (*places[i] == NULL) return 0;
+    dvi__vector_use_own_operations(*places[i]);
   }
   return 1;
 }
