@@ -104,16 +104,19 @@ static int create_matrix(dvi__kinsol *k)
   return 1;
 }
 
+static N_Vector made_vector(const dvi__kinsol *k)
+{
+  N_Vector made = N_VNew_Serial(k->solver->equations.unknowns, k->context);
+  if (made != NULL) dvi__vector_use_own_operations(made);
+  return made;
+}
+
 static int create_vectors(dvi__kinsol *k)
 {
-  const int n = k->solver->equations.unknowns;
-  N_Vector *const places[] = {&k->x, &k->x_scale, &k->r_scale};
-  for (int i = 0; i < 3; i++) {
-    *places[i] = N_VNew_Serial(n, k->context);
-    if (*places[i] == NULL) return 0;
-    dvi__vector_use_own_operations(*places[i]);
-  }
-  return 1;
+  k->x = made_vector(k);
+  k->x_scale = made_vector(k);
+  k->r_scale = made_vector(k);
+  return k->x != NULL && k->x_scale != NULL && k->r_scale != NULL;
 }
 
 /* KINSOL accepts a guess whose scaled norm is a hundredth of its tolerance. Roundings of the rows make 1e-15 to 1e-13 of the unknowns, the more the
