@@ -53,7 +53,12 @@ typedef struct bench {
   double calibration[ROUNDS_MAX];
 } bench;
 
-/* Add one level of the study's method. */
+static void leave_out(const bench_job *job)
+{
+  complain("bench: left out %s at %s: %s", job->integrator, job->setting, dvi_last_error());
+}
+
+/* Add one level of the study's method; one whose steps cannot be solved is left out. */
 static dvi_status add_level(bench *b, order_study *study, long steps)
 {
   bench_job *job = &b->job[b->jobs];
@@ -65,7 +70,9 @@ static dvi_status add_level(bench *b, order_study *study, long steps)
   job->energy_error = trial.energy_error;
   if (status == DVI_OK) status = bench_job_try(job, b->scene, &b->judge, b->request->t_end);
   b->jobs += status == DVI_OK;
-  return status;
+  if (status <= 0) return status;
+  leave_out(job);
+  return DVI_OK;
 }
 
 /* The smallest error that was asked for; infinite without --at. */
@@ -77,16 +84,18 @@ static double smallest_asked(const numbers *asked)
 }
 
 /* Go on with smaller steps to the smallest asked error, as long as they make the error smaller. */
-static dvi_status extend_levels(bench *b, order_study *study)
+static dvi_status extend_levels(bench *b, order_study *study, int first_job)
 {
   static const double ratio = 1.5;
   static const double steps_max = 1L << 20; /* of one job: some seconds at most for a small problem */
   const double wanted = smallest_asked(&b->request->outputs.asked);
   dvi_status status = DVI_OK;
+  double steps = b->jobs > first_job ? (double)b->job[b->jobs - 1].steps : HUGE_VAL;
   for (int k = (int)b->request->levels; k < LEVELS_MAX && status == DVI_OK; k++) {
     const bench_job *last = &b->job[b->jobs - 1];
-    const double steps = ceil(ratio * (double)last->steps);
-    if (last->error <= wanted || steps > steps_max || !(last->error < (last - 1)->error)) break;
+    steps = ceil(ratio * steps);
+    if (steps > steps_max || last->error <= wanted) break;
+    if (b->jobs > first_job + 1 && !(last->error < (last - 1)->error)) break;
     status = add_level(b, study, lround(steps));
   }
   return status;
@@ -99,13 +108,13 @@ static int add_method(bench *b, const char *method)
   long steps[LEVELS_MAX];
   int code = study_init(&study, b->scene, &b->judge, method, b->request->t_end);
   if (code != DONE) return code;
-  const int levels = (int)b->request->levels;
+  const int levels = (int)b->request->levels, first_job = b->jobs;
   bool room;
   study.first_error = first_error;
   study.progress = &b->progress;
   dvi_status status = choose_levels(&study, 0.0, 0.0, levels, steps, &room);
   for (int k = 0; k < levels && status == DVI_OK; k++) status = add_level(b, &study, steps[k]);
-  if (status == DVI_OK && b->request->extend) status = extend_levels(b, &study);
+  if (status == DVI_OK && b->request->extend) status = extend_levels(b, &study, first_job);
   study_clear(&study);
   return status == DVI_OK ? DONE : library_error(status);
 }
@@ -124,7 +133,7 @@ static void add_code(bench *b, dvi_reference_code code)
     if (bench_job_try(job, b->scene, &b->judge, b->request->t_end) == DVI_OK)
       b->jobs++;
     else
-      complain("bench: left out %s at %s: %s", job->integrator, job->setting, dvi_last_error());
+      leave_out(job);
   }
 }
 

@@ -14,13 +14,16 @@
 #define PROBLEM_LANES
 #endif
 
+/* Compiled into its callers, once for each of their instruction sets. */
+#define PROBLEM_INLINE static inline __attribute__((always_inline))
+
 /* Numbers that are worked on together. */
 #define PROBLEM_TILE 32
 
 /* x <- x^(-3/2), right to three ulp, for positive normal numbers; not finite for 0 and NaN. A square root and a division take longer: the exponent's
  * bits halved and negated are right to 3.5 % (Lomont 2003), then e = 1 - x y^2 shrinks by the series of (1 - e)^(-1/2). Each line is a loop, for
  * one number after the other the chain of operations would wait for itself. */
-static inline __attribute__((always_inline)) void problem_inverse_cubes(const int count, double *restrict x)
+PROBLEM_INLINE void problem_inverse_cubes(const int count, double *restrict x)
 {
   double y[PROBLEM_TILE], e[PROBLEM_TILE];
   for (int k = 0; k < count; k++) {

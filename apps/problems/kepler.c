@@ -13,8 +13,8 @@ static int value(int count, const double *t, const double *q, double *V, void *u
 }
 
 /* At most as many points as a tile has. */
-static inline __attribute__((always_inline)) void gradient_at(const int points, const double *restrict x, const double *restrict y,
-                                                              double *restrict V_x, double *restrict V_y)
+PROBLEM_INLINE void gradient_at(const int points, const double *restrict x, const double *restrict y, double *restrict V_x,
+                                double *restrict V_y)
 {
   double r[PROBLEM_TILE];
   for (int k = 0; k < points; k++) r[k] = x[k] * x[k] + y[k] * y[k];

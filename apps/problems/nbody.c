@@ -41,11 +41,9 @@ static inline int value(const int dimension, int count, const double *q, double 
   return 0;
 }
 
-#define ALWAYS_INLINE static inline __attribute__((always_inline))
-
 /* Squared distances of all pairs at `lanes` points, [pairs*lanes]; rows of q are `stride` apart. Returns their number. */
-ALWAYS_INLINE int squared_distances(const int dimension, const int lanes, int stride, const double *restrict q, const nbody *own,
-                                    double *restrict r2)
+PROBLEM_INLINE int squared_distances(const int dimension, const int lanes, int stride, const double *restrict q, const nbody *own,
+                                     double *restrict r2)
 {
   const int row = dimension * stride;
   int at = 0;
@@ -63,8 +61,8 @@ ALWAYS_INLINE int squared_distances(const int dimension, const int lanes, int st
 }
 
 /* The pulls of all pairs, added to one gradient row and subtracted from the other. */
-ALWAYS_INLINE void pull(const int dimension, const int lanes, int stride, const double *restrict q, const nbody *own,
-                        const double *restrict inverse_cube, double *restrict V_q)
+PROBLEM_INLINE void pull(const int dimension, const int lanes, int stride, const double *restrict q, const nbody *own,
+                         const double *restrict inverse_cube, double *restrict V_q)
 {
   const int row = dimension * stride;
   for (int a = 0; a < own->bodies; a++)
@@ -80,7 +78,7 @@ ALWAYS_INLINE void pull(const int dimension, const int lanes, int stride, const 
     }
 }
 
-ALWAYS_INLINE void gradient_at(const int dimension, const int lanes, int stride, const double *q, double *V_q, const nbody *own)
+PROBLEM_INLINE void gradient_at(const int dimension, const int lanes, int stride, const double *q, double *V_q, const nbody *own)
 {
   double r[NBODY_PAIRS_MAX * 8 + PROBLEM_TILE];
   const int numbers = squared_distances(dimension, lanes, stride, q, own, r);
@@ -90,7 +88,7 @@ ALWAYS_INLINE void gradient_at(const int dimension, const int lanes, int stride,
 }
 
 /* Eight points at once, then the rest one by one: loops of known length need no preparation, which would cost more than their work. */
-ALWAYS_INLINE int gradient(const int dimension, int count, const double *q, double *V_q, const nbody *own)
+PROBLEM_INLINE int gradient(const int dimension, int count, const double *q, double *V_q, const nbody *own)
 {
   int k = 0;
   for (int j = 0; j < own->bodies * dimension * count; j++) V_q[j] = 0.0;

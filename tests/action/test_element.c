@@ -263,7 +263,7 @@ START_TEST(tables_are_consistent_to_the_last_bit)
                    DVI_OK);
   for (int k = 0; k < size[0]; k++)
     for (int j = 0; j < size[1]; j++) {
-      const double psi = a->psi[k * size[1] + j], bar = a->bar[k * size[1] + j];
+      const double psi = a->psi[k * a->lanes + j], bar = a->bar[k * a->lanes + j];
       ck_assert_double_eq(psi - a->end[k], bar);
       ck_assert_double_eq(bar + a->end[k], psi);
     }
@@ -284,8 +284,8 @@ static void check_tables(int kind, dvi__action_space space)
     trial(&e.space, node[j], psi, dpsi);
     ck_assert_double_eq(a->weight[j], weight[j]);
     for (int k = 0; k < e.space.degree; k++) {
-      ck_assert_double_eq_tol(a->psi[k * r + j], psi[k], 1e-14); /* functions up to 2, and their slopes, at rounded nodes */
-      ck_assert_double_eq_tol(a->dpsi[k * r + j], dpsi[k], 1e-14 * 200);
+      ck_assert_double_eq_tol(a->psi[k * a->lanes + j], psi[k], 1e-14); /* functions up to 2, and their slopes, at rounded nodes */
+      ck_assert_double_eq_tol(a->dpsi[k * a->lanes + j], dpsi[k], 1e-14 * 200);
     }
   }
   trial(&e.space, 1, psi, dpsi);

@@ -100,6 +100,9 @@ for other in '--at 1e-3' '--against ida' '--levels 3' '--t-end 1' '--h 0'; do
   # shellcheck disable=SC2086
   expect 2 "sizes with $other" bench fpu --method verlet --scale ell=5,6 $other
 done
+# Degree 8 finds no solution at the first steps of this span: the levels that can be solved are shown.
+expect 0 'a level that cannot be solved' bench double-pendulum --t-end 20 --method galerkin:degree=8 --rounds 1
+says err 'left out galerkin' 'which level'
 expect 2 'h without sizes' bench kepler --method verlet --h 0.1
 no_trace 'bench'
 finish

@@ -13,11 +13,6 @@
 #include "support/runs.h"
 #include "support/suite.h"
 
-static void check_words(const char *words)
-{
-  ck_assert_msg(strstr(dvi_last_error(), words) != NULL, "\"%s\" is not in \"%s\"", words, dvi_last_error());
-}
-
 /* ---- going on bit for bit ---- */
 
 /* In the first run fixed point iteration gives up near the pericentre, and Newton's method takes over for 64 steps. */

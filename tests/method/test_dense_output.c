@@ -9,11 +9,6 @@
 #include "support/runs.h"
 #include "support/suite.h"
 
-static void check_words(const char *words)
-{
-  ck_assert_msg(strstr(dvi_last_error(), words) != NULL, "\"%s\" is not in \"%s\"", words, dvi_last_error());
-}
-
 /* ---- the ends ---- */
 
 static const char *const methods[] = {

@@ -3,7 +3,6 @@
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "support/files.h"
 #include "support/runs.h"
@@ -51,11 +50,6 @@ static int take_down(double t, const double *q, const double *v, void *user)
   record.t[record.count] = t;
   record.q[record.count++] = q[0];
   return m->answer;
-}
-
-static void check_words(const char *words)
-{
-  ck_assert_msg(strstr(dvi_last_error(), words) != NULL, "\"%s\" is not in \"%s\"", words, dvi_last_error());
 }
 
 static dvi_event at_times(mark *m)

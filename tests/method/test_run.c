@@ -4,7 +4,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "support/files.h"
 #include "support/runs.h"
@@ -28,11 +27,6 @@ static int write_down(dvi_integrator *integrator, void *user)
   d->t[d->visits++] = dvi_integrator_time(integrator);
   if (d->visits == d->cancel_at) d->cancel = 1;
   return d->visits == d->answer_at ? d->answer : 0;
-}
-
-static void check_words(const char *words)
-{
-  ck_assert_msg(strstr(dvi_last_error(), words) != NULL, "\"%s\" is not in \"%s\"", words, dvi_last_error());
 }
 
 static problem *of;

@@ -2,16 +2,10 @@
 /* Starting from a momentum or from a velocity, where the Legendre map is not linear. */
 #include <float.h>
 #include <math.h>
-#include <string.h>
 
 #include "support/runs.h"
 #include "support/suite.h"
 #include "support/systems.h"
-
-static void check_words(const char *words)
-{
-  ck_assert_msg(strstr(dvi_last_error(), words) != NULL, "\"%s\" is not in \"%s\"", words, dvi_last_error());
-}
 
 /* Lagrangians of one coordinate, T(v) - q^2/2, by T, T' and T''. */
 typedef struct kinetic {

@@ -161,7 +161,7 @@ START_TEST(singular_matrices_are_named_singular)
 {
   const double equal[9] = {1, 2, 3, 2, 4, 6, 1, 0, 1}, rounded[9] = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9};
   ck_assert_int_eq(factor_of(3, equal, kinds[_i]), DVI_SINGULAR);
-  ck_assert_ptr_nonnull(strstr(dvi_last_error(), "3 x 3 matrix is singular to working precision"));
+  check_words("3 x 3 matrix is singular to working precision");
   ck_assert_int_eq(factor_of(3, rounded, kinds[_i]), DVI_SINGULAR);
 }
 END_TEST

@@ -1,7 +1,6 @@
 /* What each rung of the ladder solves, on small equations made up here, and when it gives up. */
 #include <float.h>
 #include <math.h>
-#include <string.h>
 
 #include "support/equations.h"
 #include "support/suite.h"
@@ -160,7 +159,7 @@ START_TEST(a_singular_jacobian_is_a_step_s_failure)
   double x = 0.7;
   for_single(&s, &b);
   failed_with(run_rung(&b, rungs[1 + _i], &x), DVI_NOT_CONVERGED);
-  ck_assert_msg(strstr(dvi_last_error(), "singular") != NULL, "%s", dvi_last_error());
+  check_words("singular");
   free_bench(&b, NULL);
 }
 END_TEST

@@ -1,6 +1,8 @@
 #include "support/suite.h"
 
+#include <dvi/status.h>
 #include <stdlib.h>
+#include <string.h>
 
 int run_tests(const char *name, TCase *tests)
 {
@@ -11,4 +13,9 @@ int run_tests(const char *name, TCase *tests)
   const int failed = srunner_ntests_failed(runner);
   srunner_free(runner);
   return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+}
+
+void check_words(const char *words)
+{
+  ck_assert_msg(strstr(dvi_last_error(), words) != NULL, "\"%s\" is not in \"%s\"", words, dvi_last_error());
 }

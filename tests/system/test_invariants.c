@@ -115,7 +115,7 @@ START_TEST(a_generator_that_fails_is_named)
   dvi_system *s = watched(NULL, &answer, &again);
   double value[5];
   ck_assert_int_eq(dvi_system_invariants(s, 0, generic_q, generic_v, value), _i == 0 ? DVI_CALLBACK_RETRY : DVI_CALLBACK_FAILED);
-  ck_assert_msg(strstr(dvi_last_error(), "invariant 'momentum': the callback returned") != NULL, "%s", dvi_last_error());
+  check_words("invariant 'momentum': the callback returned");
   dvi_system_destroy(&s);
 }
 END_TEST
@@ -126,7 +126,7 @@ START_TEST(an_invariant_that_is_not_finite_is_named)
   dvi_system *s = watched(NULL, &answer, &(dvi_invariant){"helicity", infinite, NULL});
   double value[5];
   ck_assert_int_eq(dvi_system_invariants(s, 0, generic_q, generic_v, value), DVI_NOT_FINITE);
-  ck_assert_msg(strstr(dvi_last_error(), "invariant 'helicity' is inf at t = 0") != NULL, "%s", dvi_last_error());
+  check_words("invariant 'helicity' is inf at t = 0");
   dvi_system_destroy(&s);
 }
 END_TEST

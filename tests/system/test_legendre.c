@@ -113,8 +113,7 @@ START_TEST(a_degenerate_lagrangian_has_a_momentum_but_no_velocity)
   ck_assert_int_eq(dvi_system_momentum(s, 0, generic_q, v, p), DVI_OK);
   ck_assert_double_eq(p[0], -1);
   ck_assert_int_eq(dvi_system_velocity(s, 0, generic_q, p, v), DVI_SINGULAR);
-  ck_assert_msg(strstr(dvi_last_error(), "the Lagrangian is degenerate at t = 0: d2L/dv2 cannot be inverted") != NULL, "%s",
-                dvi_last_error());
+  check_words("the Lagrangian is degenerate at t = 0: d2L/dv2 cannot be inverted");
   ck_assert(v[0] == 3 && v[1] == 4);
   dvi_system_destroy(&s);
 }
@@ -181,7 +180,7 @@ START_TEST(a_guess_from_which_newton_does_not_settle_is_reported)
   double p = 0, v = 0;
   ck_assert_int_eq(dvi_system_velocity(s, 0, generic_q, &p, &v), DVI_NOT_CONVERGED);
   ck_assert_double_eq(v, 0);
-  ck_assert_msg(strstr(dvi_last_error(), "Newton's method did not settle") != NULL, "%s", dvi_last_error());
+  check_words("Newton's method did not settle");
   v = -2;
   ck_assert_int_eq(dvi_system_velocity(s, 0, generic_q, &p, &v), DVI_OK);
   ck_assert_double_eq_tol(v * v * v - 2 * v + 2, 0, 1e-14);

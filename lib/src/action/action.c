@@ -64,14 +64,43 @@ void dvi__action_destroy(dvi__action **action)
 {
   dvi__action *a = *action;
   if (a == NULL) return;
-  double *const owned[] = {
-      a->psi,         a->dpsi,         a->bar,           a->node,      a->weight,     a->end,  a->stiffness, a->stiffness_inverse,
-      a->fit_point,   a->fit,          a->straight,      a->shift,     a->shift_rows, a->rows, a->at_nodes,  a->slope_at_nodes,
-      a->bar_row,     a->slope_row,    a->stiffness_row, a->t,         a->Q,          a->V,    a->L_q,       a->L_v,
-      a->line,        a->middle_vv,    a->middle[0],     a->middle[1], a->H_qq,       a->H_qv, a->H_vv,      a->sweep_matrix,
-      a->sweep_node,  a->sweep_rest,   a->sweep_path,
-
-      a->sweep_start, a->sweep_factor, a->sweep_weight,  a->Z};
+  double *const owned[] = {a->psi,
+                           a->dpsi,
+                           a->bar,
+                           a->node,
+                           a->weight,
+                           a->end,
+                           a->stiffness,
+                           a->stiffness_inverse,
+                           a->fit_point,
+                           a->fit,
+                           a->straight,
+                           a->shift,
+                           a->shift_rows,
+                           a->rows,
+                           a->bar_row,
+                           a->slope_row,
+                           a->stiffness_row,
+                           a->t,
+                           a->Q,
+                           a->V,
+                           a->L_q,
+                           a->L_v,
+                           a->line,
+                           a->middle_vv,
+                           a->middle[0],
+                           a->middle[1],
+                           a->H_qq,
+                           a->H_qv,
+                           a->H_vv,
+                           a->sweep_matrix,
+                           a->sweep_node,
+                           a->sweep_rest,
+                           a->sweep_path,
+                           a->sweep_start,
+                           a->sweep_factor,
+                           a->sweep_weight,
+                           a->Z};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) dvi__release(owned[i]);
   dvi__linear_destroy(&a->chord);
   dvi__evaluator_destroy(&a->evaluator);

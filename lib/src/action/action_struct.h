@@ -18,7 +18,9 @@ struct dvi__action {
   dvi__action_space space;
   int n, s, r;      /* coordinates, degree, quadrature nodes */
   dvi__space trial; /* the basis, ready for evaluation anywhere */
-  /* Tables over (k, j), stored [k*r + j]. */
+  /* Length of a row over the nodes and over the functions, padded for products in lanes (num/lanes.h). */
+  int lanes, path_lanes;
+  /* Tables over (k, j), stored [k*lanes + j]. */
   double *psi, *bar, *dpsi;              /* psi_k(c_j), psi_k(c_j) - psi_k(1), psi_k'(c_j) */
   double *node, *weight;                 /* [r] */
   double *end;                           /* [s] psi_k(1) */
@@ -36,15 +38,14 @@ struct dvi__action {
   double *t, *Q, *V, *L_q, *L_v; /* the gradients times the weights b_j */
   double *line;                  /* [2 s + 2 r] one coordinate's worth of anything */
   double *rows;                  /* [n*s] work */
-  /* The tables again, for products in lanes (num/lanes.h): rows over the nodes are padded to `lanes`, over the functions to `path_lanes`. */
-  int lanes, path_lanes;
-  double *at_nodes, *slope_at_nodes; /* [s*lanes] psi_k(c_j) and psi_k'(c_j), a column for each k */
-  double *bar_row, *slope_row;       /* [r*path_lanes] psi_k(c_j) - psi_k(1) and psi_k'(c_j), a column for each j */
-  double *stiffness_row;             /* [s*path_lanes] K^{-1} */
+  /* The tables transposed, for the rows: [j*path_lanes + k]. */
+  double *bar_row, *slope_row; /* psi_k(c_j) - psi_k(1), psi_k'(c_j) */
+  double *stiffness_row;       /* [s*path_lanes] K^{-1} */
   /* Sweeps (sweep.h); NULL if the mass couples coordinates. */
   double *sweep_matrix, *sweep_node, *sweep_rest; /* [r*lanes] c_i - P_ij by columns, [lanes] c, [r] 1 - c */
   double *sweep_path;                             /* paths from forces */
   double *sweep_start, *sweep_factor;             /* [n] h/m p0, h/m */
+  double sweep_h;                                 /* the h of sweep_factor and sweep_weight */
   double *sweep_weight;                           /* [r] -h b_j */
   double *Z;                                      /* [n*lanes] offsets of the nodes from q0 */
   int swept;                                      /* the forces are a sweep's */

@@ -30,7 +30,7 @@ static void gram(const dvi__action *a, const double *left, const double *right, 
   for (int l = 0; l < a->s; l++)
     for (int k = 0; k < a->s; k++) {
       sum[l * a->s + k] = 0;
-      for (int j = 0; j < a->r; j++) sum[l * a->s + k] += a->weight[j] * left[k * a->r + j] * right[l * a->r + j];
+      for (int j = 0; j < a->r; j++) sum[l * a->s + k] += a->weight[j] * left[k * a->lanes + j] * right[l * a->lanes + j];
     }
 }
 

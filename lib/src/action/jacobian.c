@@ -83,7 +83,7 @@ static void block_column(const dvi__action *a, const dvi__block *block, int l, d
 {
   const int r = a->r;
   double *in_q = a->line, *in_v = a->line + r;
-  const double *psi = a->psi + l * r, *dpsi = a->dpsi + l * r;
+  const double *psi = a->psi + l * a->lanes, *dpsi = a->dpsi + l * a->lanes;
   for (int j = 0; j < 2 * r; j++) a->line[j] = 0;
   accumulate(r, a->H_qq, block->qq, a->h, psi, in_q);
   accumulate(r, a->H_qv, block->qv, 1.0, dpsi, in_q);
@@ -91,8 +91,9 @@ static void block_column(const dvi__action *a, const dvi__block *block, int l, d
   accumulate(r, a->H_vv, block->vv, 1.0 / a->h, dpsi, in_v);
   for (int j = 0; j < r; j++) in_q[j] *= a->weight[j], in_v[j] *= a->weight[j];
   for (int k = 0; k < a->s; k++) {
+    const double *bar = a->bar + k * a->lanes, *slope = a->dpsi + k * a->lanes;
     double sum = 0;
-    for (int j = 0; j < r; j++) sum += a->bar[k * r + j] * in_q[j] + a->dpsi[k * r + j] * in_v[j];
+    for (int j = 0; j < r; j++) sum += bar[j] * in_q[j] + slope[j] * in_v[j];
     column[k] = sum;
   }
 }

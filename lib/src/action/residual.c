@@ -10,8 +10,8 @@
 void dvi__action_stages(const dvi__action *a, const double *Y)
 {
   const double inverse_h = 1.0 / a->h;
-  dvi__lanes_product(a->n, a->s, a->lanes, a->r, a->at_nodes, Y, a->Q);
-  dvi__lanes_product(a->n, a->s, a->lanes, a->r, a->slope_at_nodes, Y, a->V);
+  dvi__lanes_product(a->n, a->s, a->lanes, a->r, a->psi, Y, a->Q);
+  dvi__lanes_product(a->n, a->s, a->lanes, a->r, a->dpsi, Y, a->V);
   for (size_t i = 0, r = (size_t)a->r; i < (size_t)a->n; i++)
     for (size_t j = i * r; j < (i + 1) * r; j++) {
       a->Q[j] = a->q0[i] + a->Q[j];

@@ -23,9 +23,8 @@ static void legendre_trial(int s, long double tau, long double *psi, long double
 }
 
 typedef struct tables {
-  long double psi[DVI_QUADRATURE_MAX][DVI_DEGREE_MAX];    /* at node j */
-  long double solved[DVI_QUADRATURE_MAX][DVI_DEGREE_MAX]; /* K^{-1} psi at node j */
-  long double K[DVI_DEGREE_MAX][DVI_DEGREE_MAX];          /* then its factor */
+  long double psi[DVI_QUADRATURE_MAX][DVI_DEGREE_MAX]; /* at node j; then C^{-1} psi */
+  long double K[DVI_DEGREE_MAX][DVI_DEGREE_MAX];       /* then its factor C */
 } tables;
 
 /* K = C C^T by Cholesky; C takes the place of the lower triangle. */
@@ -39,11 +38,10 @@ static void factor(int s, tables *t)
     }
 }
 
-/* x = C^{-1} psi, so that P_ij = x_i . x_j, symmetric by its form. */
-static void solve(int s, const tables *t, const long double *psi, long double *x)
+/* x <- C^{-1} x. */
+static void solve(int s, const tables *t, long double *x)
 {
   for (int k = 0; k < s; k++) {
-    x[k] = psi[k];
     for (int m = 0; m < k; m++) x[k] -= t->K[k][m] * x[m];
     x[k] /= t->K[k][k];
   }
@@ -58,7 +56,7 @@ static void fill(int s, int r, const long double *node, const long double *weigh
       for (int l = 0; l <= k; l++) t->K[k][l] += weight[j] * dpsi[k] * dpsi[l];
   }
   factor(s, t);
-  for (int j = 0; j < r; j++) solve(s, t, t->psi[j], t->solved[j]);
+  for (int j = 0; j < r; j++) solve(s, t, t->psi[j]);
 }
 
 /* To multiples of 2^-53, on which differences of numbers up to 1 are exact. */
@@ -67,7 +65,7 @@ static double to_grid(long double x)
   return (double)ldexpl(nearbyintl(ldexpl(x, 53)), -53);
 }
 
-/* c_i - P_ij by columns, c, and 1 - c. */
+/* c_i - P_ij by columns, c, and 1 - c. P_ij = (C^{-1} psi_i) . (C^{-1} psi_j) is symmetric by its form. */
 static void store(dvi__action *a, const long double *node, const tables *t)
 {
   const int lanes = a->lanes;
@@ -78,7 +76,7 @@ static void store(dvi__action *a, const long double *node, const tables *t)
   for (int i = 0; i < a->r; i++)
     for (int j = 0; j < a->r; j++) {
       long double P = 0;
-      for (int k = 0; k < a->s; k++) P += t->solved[i][k] * t->solved[j][k];
+      for (int k = 0; k < a->s; k++) P += t->psi[i][k] * t->psi[j][k];
       a->sweep_matrix[j * lanes + i] = a->sweep_node[i] - to_grid(P);
     }
 }
@@ -90,7 +88,7 @@ static void store_path(dvi__action *a)
   for (int j = 0; j < r; j++)
     for (int k = 0; k < s; k++) {
       double sum = 0;
-      for (int l = 0; l < s; l++) sum += a->stiffness_inverse[k * s + l] * a->bar[l * r + j];
+      for (int l = 0; l < s; l++) sum += a->stiffness_inverse[k * s + l] * a->bar[l * a->lanes + j];
       a->sweep_path[j * a->path_lanes + k] = -sum;
     }
 }
@@ -134,14 +132,21 @@ dvi_status dvi__action_prepare_sweep(dvi__action *a)
 
 /* ---- iterations ---- */
 
+/* What depends on h alone. */
+static void set_step(dvi__action *a)
+{
+  if (a->sweep_h == a->h) return;
+  a->sweep_h = a->h;
+  for (int j = 0; j < a->r; j++) a->sweep_weight[j] = -a->h * a->weight[j]; /* of V_q */
+  for (int i = 0; i < a->n; i++) a->sweep_factor[i] = a->h / a->system->mass_diagonal[i];
+}
+
 void dvi__action_sweep_from(dvi__action *a, const double *Y)
 {
-  const double *mass = a->system->mass_diagonal;
   const size_t r = (size_t)a->r, lanes = (size_t)a->lanes;
-  dvi__lanes_product(a->n, a->s, a->lanes, a->lanes, a->at_nodes, Y, a->Z);
-  for (size_t j = 0; j < r; j++) a->sweep_weight[j] = -a->h * a->weight[j]; /* of V_q */
+  set_step(a);
+  dvi__lanes_product(a->n, a->s, a->lanes, a->lanes, a->psi, Y, a->Z);
   for (size_t i = 0; i < (size_t)a->n; i++) {
-    a->sweep_factor[i] = a->h / mass[i];
     a->sweep_start[i] = a->sweep_factor[i] * a->p0[i];
     for (size_t j = 0; j < r; j++) a->Q[i * r + j] = a->q0[i] + a->Z[i * lanes + j];
   }

@@ -18,9 +18,9 @@ static int allocate(dvi__action *a)
   a->lanes = dvi__lanes_for(a->r);
   a->path_lanes = dvi__lanes_for(a->s);
   const size_t s = (size_t)a->s, r = (size_t)a->r, lanes = (size_t)a->lanes, path_lanes = (size_t)a->path_lanes;
-  a->psi = DVI_NEW(double, s *r);
-  a->dpsi = DVI_NEW(double, s *r);
-  a->bar = DVI_NEW(double, s *r);
+  a->psi = DVI_NEW(double, s *lanes);
+  a->dpsi = DVI_NEW(double, s *lanes);
+  a->bar = DVI_NEW(double, s *lanes);
   a->node = DVI_NEW(double, r);
   a->weight = DVI_NEW(double, r);
   a->end = DVI_NEW(double, s);
@@ -31,14 +31,11 @@ static int allocate(dvi__action *a)
   a->straight = DVI_NEW(double, s);
   a->shift = DVI_NEW(double, DVI__SHIFTS *s *path_lanes);
   a->shift_rows = DVI_NEW(double, s *s);
-  a->at_nodes = DVI_NEW(double, s *lanes);
-  a->slope_at_nodes = DVI_NEW(double, s *lanes);
   a->bar_row = DVI_NEW(double, r *path_lanes);
   a->slope_row = DVI_NEW(double, r *path_lanes);
   a->stiffness_row = DVI_NEW(double, s *path_lanes);
   return a->psi && a->dpsi && a->bar && a->node && a->weight && a->end && a->stiffness && a->stiffness_inverse && a->fit_point &&
-         a->fit && a->straight && a->shift && a->shift_rows && a->at_nodes && a->slope_at_nodes && a->bar_row && a->slope_row &&
-         a->stiffness_row;
+         a->fit && a->straight && a->shift && a->shift_rows && a->bar_row && a->slope_row && a->stiffness_row;
 }
 
 static double largest(int count, const double *x, double size)
@@ -52,14 +49,15 @@ static double largest(int count, const double *x, double size)
  * step (measured on outer-solar: angular momentum by 2e-18 of itself a step). */
 static void make_differences_exact(dvi__action *a)
 {
-  const int last = a->r * a->s;
+  const int last = a->s * a->lanes;
   const double grid = ldexp(1.0,
                             ilogb(largest(a->s, a->end, largest(last, a->bar, largest(last, a->psi, 1.0)))) + 1 - DBL_MANT_DIG);
   for (int k = 0; k < a->s; k++) a->end[k] = grid * nearbyint(a->end[k] / grid);
-  for (int i = 0; i < last; i++) {
-    a->psi[i] = grid * nearbyint(a->psi[i] / grid);
-    a->bar[i] = a->psi[i] - a->end[i / a->r];
-  }
+  for (int k = 0; k < a->s; k++)
+    for (int j = k * a->lanes; j < k * a->lanes + a->r; j++) {
+      a->psi[j] = grid * nearbyint(a->psi[j] / grid);
+      a->bar[j] = a->psi[j] - a->end[k];
+    }
 }
 
 static dvi_status fill_nodes(dvi__action *a)
@@ -72,9 +70,9 @@ static dvi_status fill_nodes(dvi__action *a)
     a->weight[j] = (double)weight[j];
     dvi__trial_in(&a->trial, node[j], psi, bar, dpsi);
     for (int k = 0; k < a->s; k++) {
-      a->psi[k * a->r + j] = psi[k];
-      a->bar[k * a->r + j] = bar[k];
-      a->dpsi[k * a->r + j] = dpsi[k];
+      a->psi[k * a->lanes + j] = psi[k];
+      a->bar[k * a->lanes + j] = bar[k];
+      a->dpsi[k * a->lanes + j] = dpsi[k];
     }
   }
   dvi__trial_in(&a->trial, 1.0L, a->end, NULL, NULL);
@@ -103,7 +101,8 @@ static void fill_stiffness(dvi__action *a)
 {
   for (int k = 0; k < a->s; k++)
     for (int l = 0; l < a->s; l++)
-      for (int j = 0; j < a->r; j++) a->stiffness[k * a->s + l] += a->weight[j] * a->dpsi[k * a->r + j] * a->dpsi[l * a->r + j];
+      for (int j = 0; j < a->r; j++)
+        a->stiffness[k * a->s + l] += a->weight[j] * a->dpsi[k * a->lanes + j] * a->dpsi[l * a->lanes + j];
   invert(a->s, a->stiffness, a->stiffness_inverse);
 }
 
@@ -118,15 +117,12 @@ static dvi_status fill_fit(dvi__action *a)
   return DVI_OK;
 }
 
-static void fill_lanes(dvi__action *a)
+static void fill_rows(dvi__action *a)
 {
   for (int k = 0; k < a->s; k++) {
     for (int j = 0; j < a->r; j++) {
-      const double psi = a->psi[k * a->r + j], slope = a->dpsi[k * a->r + j];
-      a->at_nodes[k * a->lanes + j] = psi;
-      a->slope_at_nodes[k * a->lanes + j] = slope;
-      a->bar_row[j * a->path_lanes + k] = a->bar[k * a->r + j];
-      a->slope_row[j * a->path_lanes + k] = slope;
+      a->bar_row[j * a->path_lanes + k] = a->bar[k * a->lanes + j];
+      a->slope_row[j * a->path_lanes + k] = a->dpsi[k * a->lanes + j];
     }
     for (int l = 0; l < a->s; l++) a->stiffness_row[l * a->path_lanes + k] = a->stiffness_inverse[k * a->s + l];
   }
@@ -139,6 +135,6 @@ dvi_status dvi__action_fill_tables(dvi__action *a)
   dvi__space_init(&a->trial, a->space.basis, a->s);
   DVI_TRY(fill_nodes(a));
   fill_stiffness(a);
-  fill_lanes(a);
+  fill_rows(a);
   return fill_fit(a);
 }

@@ -60,7 +60,7 @@ static portrait portray(const dvi_integrator *I, double t, const double *now, co
   const double *q = now, *p_now = now + n;
   double *v = I->v, *forces = I->last_v;
   portrait p = {0};
-  for (int i = 0; i < n; i++) v[i] = last_h != 0 ? (q[i] - last[i]) / last_h : last[n + i];
+  dvi__guess_velocity(n, q, last, last + n, last_h, v);
   if (dvi__legendre_inverse(I->evaluator, t, q, p_now, v) != DVI_OK ||
       dvi__lagrangian_value(I->evaluator, 1, &t, q, v, &p.value) != DVI_OK ||
       dvi__lagrangian_gradient(I->evaluator, 1, &t, q, v, forces, NULL) != DVI_OK)

@@ -131,12 +131,13 @@ static int order_of(int s, int u)
   return smaller(smaller(2 * s, u), 2 * (u - s + 1));
 }
 
-/* Simplified Newton's method is for those who may use it; a space without a full set of eigenvectors goes without it. */
+/* Simplified Newton's method is for those who may use it; in a space without a full set of eigenvectors the ladder goes without it. */
 static dvi_status make_decoupled(dvi__stepper *self, element *own)
 {
   if (!is_ladder(own) && own->choice != DVI__SOLVER_SIMPLIFIED) return DVI_OK;
   const dvi_status status = dvi__decoupled_create(own->action, self->counters, &own->decoupled);
-  return status == DVI_SINGULAR ? DVI_OK : status;
+  if (status != DVI_SINGULAR) return status;
+  return is_ladder(own) ? DVI_OK : dvi__fail_in(DVI_BAD_OPTION, "%s: solver=simplified", self->method->name);
 }
 
 static dvi_status make_solver(dvi__stepper *self, element *own)

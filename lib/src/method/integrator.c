@@ -224,11 +224,15 @@ void dvi_integrator_counters(const dvi_integrator *integrator, dvi_counters *cou
   if (counters != NULL) *counters = integrator != NULL ? integrator->counters : (dvi_counters){0};
 }
 
-/* The velocity of one of the two states. The guess, for general Lagrangians, is the last step's mean velocity, or the start's: it depends on
- * nothing that a checkpoint does not hold, so that a restored run gives the same digits. */
+void dvi__guess_velocity(int n, const double *q, const double *last_q, const double *last_p, double last_h, double *v)
+{
+  for (int i = 0; i < n; i++) v[i] = last_h != 0 ? (q[i] - last_q[i]) / last_h : last_p[i];
+}
+
+/* The velocity of one of the two states. */
 static dvi_status velocity(dvi_integrator *I, const dvi__state *state, double *v)
 {
-  for (int i = 0; i < I->system->n; i++) v[i] = I->last_h != 0 ? (I->now.q[i] - I->last.q[i]) / I->last_h : I->last.p[i];
+  dvi__guess_velocity(I->system->n, I->now.q, I->last.q, I->last.p, I->last_h, v);
   return dvi__legendre_inverse(I->evaluator, state->t, state->q, state->p, v);
 }
 

@@ -19,6 +19,10 @@ struct dvi_integrator {
   double last_h_before; /* before the last step */
 };
 
+/* A guess of the velocity, for general Lagrangians: the last step's mean velocity, or the start's. It depends on nothing that a checkpoint does not
+ * hold, so that a restored run gives the same digits. last_q [n], last_p [n]. */
+void dvi__guess_velocity(int n, const double *q, const double *last_q, const double *last_p, double last_h, double *v);
+
 /* Take the last step back, once: it succeeded, but what followed did not. The status is passed on, the sentence named. */
 dvi_status dvi__integrator_undo(dvi_integrator *integrator, dvi_status status);
 

@@ -119,7 +119,9 @@ static dvi_status simplified(dvi__solver *s, double size, int wary, double *x, d
   dvi__trail trail = {0, 0};
   double whole;
   s->counters->jacobians++;
-  if (equations->freeze(equations->of, x) != DVI_OK) return dvi__fail_in(DVI_NOT_CONVERGED, "no Jacobian to freeze");
+  const dvi_status frozen_at = equations->freeze(equations->of, x);
+  if (frozen_at == DVI_SINGULAR) return dvi__fail_in(DVI_NOT_CONVERGED, "the frozen Jacobian cannot be factored");
+  if (frozen_at != DVI_OK) return frozen_at;
   for (report->iterations = 1; report->iterations <= MOST_FIXED_POINT_ITERATIONS; report->iterations++) {
     DVI_TRY(dvi__solver_residual(s, x, s->residual));
     equations->frozen(equations->of, s->residual);
