@@ -49,13 +49,32 @@ INLINE void sweep(int widest, dvi__sweep *s)
 {
   const int W = s->lanes < widest ? s->lanes : widest, eight = s->lanes == 8 && s->stages == 8;
   if (W == 1)
-    sweep1(s, 1, 1);
+    sweep1(s);
   else if (W == 2)
-    eight ? sweep2(s, 8, 8) : sweep2(s, s->stages, s->lanes);
+    eight ? sweep_eight2(s) : sweep2(s);
   else if (W == 4)
-    eight ? sweep4(s, 8, 8) : sweep4(s, s->stages, s->lanes);
+    eight ? sweep_eight4(s) : sweep4(s);
   else
-    eight ? sweep8(s, 8, 8) : sweep8(s, s->stages, s->lanes);
+    eight ? sweep_eight8(s) : sweep8(s);
+}
+
+/* A fused product tells what rounding takes from one; where the processor has none, the library function gives the same bits. The error of p0 + half is
+ * Knuth's (1969), sec. 4.2.2. */
+INLINE void ends(const dvi__ends *e, const int stages)
+{
+  const double *g = e->g;
+  for (int i = 0; i < e->n; i++, g += stages) {
+    double sum = 0, slanted = 0;
+    for (int j = 0; j < stages; j++) {
+      sum += g[j];
+      slanted += e->slant[j] * g[j];
+    }
+    const double half = 0.5 * sum, middle = e->p0[i] + half, back = middle - e->p0[i];
+    const double rest = (e->p0[i] - (middle - back)) + (half - back);
+    e->sum[i] = sum;
+    e->moved[i] = e->factor[i] * middle;
+    e->low[i] = __builtin_fma(e->factor[i], middle, -e->moved[i]) + e->factor[i] * (rest + slanted);
+  }
 }
 
 /* The exponent bits are all set in NaN and Inf alone; one more in the last of them then runs over into the sign's place. */
@@ -76,6 +95,7 @@ INLINE int all_finite(size_t count, const double *x)
 typedef struct level {
   const char *name;
   void (*sweep)(dvi__sweep *s);
+  void (*ends)(const dvi__ends *e);
   void (*product)(int n, int terms, int lanes, int width, const double *matrix, const double *x, double *out);
   int (*all_finite)(size_t count, const double *x);
 } level;
@@ -84,6 +104,10 @@ typedef struct level {
   target static void sweep_##suffix(dvi__sweep *s)                                                                                \
   {                                                                                                                               \
     sweep(widest, s);                                                                                                             \
+  }                                                                                                                               \
+  target static void ends_##suffix(const dvi__ends *e)                                                                            \
+  {                                                                                                                               \
+    e->stages == 8 ? ends(e, 8) : ends(e, e->stages);                                                                             \
   }                                                                                                                               \
   target static void product_##suffix(int n, int terms, int lanes, int width, const double *matrix, const double *x, double *out) \
   {                                                                                                                               \
@@ -96,22 +120,22 @@ typedef struct level {
 
 LEVEL(baseline, , 2)
 #ifdef __x86_64__
-LEVEL(avx2, __attribute__((target("avx2"))), 4)
-LEVEL(avx512, __attribute__((target("avx512f,avx512dq,avx512vl"))), 8)
+LEVEL(avx2, __attribute__((target("avx2,fma"))), 4)
+LEVEL(avx512, __attribute__((target("fma,avx512f,avx512dq,avx512vl"))), 8)
 #endif
 
 static const level levels[] = {
-    {"baseline", sweep_baseline, product_baseline, all_finite_baseline},
+    {"baseline", sweep_baseline, ends_baseline, product_baseline, all_finite_baseline},
 #ifdef __x86_64__
-    {"avx2", sweep_avx2, product_avx2, all_finite_avx2},
-    {"avx512", sweep_avx512, product_avx512, all_finite_avx512},
+    {"avx2", sweep_avx2, ends_avx2, product_avx2, all_finite_avx2},
+    {"avx512", sweep_avx512, ends_avx512, product_avx512, all_finite_avx512},
 #endif
 };
 
 int dvi__lanes_levels(void)
 {
 #ifdef __x86_64__
-  if (!__builtin_cpu_supports("avx2")) return 1;
+  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) return 1;
   return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") ? 3 : 2;
 #else
   return 1;
@@ -142,6 +166,11 @@ static const level *best(void)
 void dvi__lanes_sweep(dvi__sweep *s)
 {
   best()->sweep(s);
+}
+
+void dvi__lanes_ends(const dvi__ends *ends)
+{
+  best()->ends(ends);
 }
 
 void dvi__lanes_product(int n, int terms, int lanes, int width, const double *matrix, const double *x, double *out)

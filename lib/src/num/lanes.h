@@ -28,6 +28,20 @@ typedef struct dvi__sweep {
 
 void dvi__lanes_sweep(dvi__sweep *sweep);
 
+/* The ends of a step by the g of its last sweep:
+ *     sum = sum_j g_ij,   moved + low = factor (p0 + sum/2 + sum_j slant_j g_ij),
+ * where moved is the rounded factor (p0 + sum/2), and low holds what rounding takes from it. */
+typedef struct dvi__ends {
+  int n, stages;
+  const double *g;           /* [n*stages] */
+  const double *slant;       /* [stages] */
+  const double *factor;      /* [n] */
+  const double *p0;          /* [n] */
+  double *moved, *low, *sum; /* [n] results */
+} dvi__ends;
+
+void dvi__lanes_ends(const dvi__ends *ends);
+
 /* out_i = sum_k matrix_k x_ik for n rows: x [n*terms], matrix [terms*lanes] by columns, out [n*width], width <= lanes; it may not be x. */
 void dvi__lanes_product(int n, int terms, int lanes, int width, const double *matrix, const double *x, double *out);
 

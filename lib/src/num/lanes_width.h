@@ -25,25 +25,39 @@ INLINE void NAME(load)(const double *x, NAME(vector) * loaded)
   memcpy(loaded, x, sizeof *loaded);
 }
 
-/* The first `count` lanes. */
+/* The first `count` lanes: of fewer than WIDTH in pieces of known size, for a call of memcpy costs more than all of them. */
 INLINE void NAME(store)(double *out, const NAME(vector) * x, int count)
 {
   if (count >= WIDTH) {
     memcpy(out, x, sizeof *x);
     return;
   }
-  for (int i = 0; i < count; i++) out[i] = (*x)[i];
+  const double *from = (const double *)x;
+  for (int piece = WIDTH / 2; piece > 0; piece /= 2)
+    if (count & piece) {
+      memcpy(out, from, (size_t)piece * sizeof(double));
+      out += piece;
+      from += piece;
+    }
 }
 
-/* WIDTH lanes of one row of a product. */
+/* sum <- sum + matrix_k x_k in WIDTH lanes. */
+INLINE void NAME(add)(int lanes, const double *matrix, const double *x, int k, NAME(vector) * sum)
+{
+  NAME(vector) column;
+  NAME(load)(matrix + (size_t)k * (size_t)lanes, &column);
+  *sum += column * x[k];
+}
+
+/* WIDTH lanes of one row of a product; long ones as four sums, which do not wait for each other. */
 INLINE void NAME(row)(int terms, int lanes, const double *matrix, const double *x, NAME(vector) * out)
 {
-  NAME(vector) sum = {0}, column;
-  for (int k = 0; k < terms; k++) {
-    NAME(load)(matrix + (size_t)k * (size_t)lanes, &column);
-    sum += column * x[k];
-  }
-  *out = sum;
+  NAME(vector) sum[4] = {{0}, {0}, {0}, {0}};
+  int k = 0;
+  for (; terms >= 8 && k + 4 <= terms; k += 4)
+    for (int j = 0; j < 4; j++) NAME(add)(lanes, matrix, x, k + j, &sum[j]);
+  for (; k < terms; k++) NAME(add)(lanes, matrix, x, k, &sum[0]);
+  *out = (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
 INLINE void NAME(product)(int n, int terms, int lanes, int width, const double *restrict matrix, const double *restrict x,
@@ -64,25 +78,53 @@ INLINE void NAME(weigh)(int n, const int stages, const double *restrict weight, 
     for (int j = 0; j < stages; j++) force[j] *= weight[j];
 }
 
-INLINE void NAME(sweep)(dvi__sweep *s, const int stages, const int lanes)
+/* One row of a sweep: from its sums of forces to its new offsets and places. */
+INLINE void NAME(place)(const dvi__sweep *s, size_t i, int b, const NAME(vector) * c, const NAME(vector) * sum, double *Z,
+                        double *Q, NAME(vector) * change, NAME(vector) * largest)
 {
-  const double *restrict matrix = s->matrix, *restrict node = s->node, *restrict start = s->start, *restrict factor = s->factor;
-  const double *restrict origin = s->origin, *restrict g = s->force;
-  double *restrict Z = s->Z, *restrict Q = s->Q;
+  NAME(vector) before;
+  NAME(load)(Z, &before);
+  const NAME(vector) next = s->start[i] * *c + s->factor[i] * *sum, moved = before - next, at = s->origin[i] + next;
+  NAME(larger)(change, &moved);
+  NAME(larger)(largest, &next);
+  NAME(store)(Z, &next, WIDTH);
+  NAME(store)(Q, &at, s->stages - b);
+}
+
+INLINE void NAME(sweep)(dvi__sweep *s)
+{
+  const size_t stages = (size_t)s->stages, lanes = (size_t)s->lanes;
   NAME(vector) change = {0}, largest = {0};
-  NAME(weigh)(s->n, stages, s->weight, s->force);
-  for (size_t i = 0, n = (size_t)s->n; i < n; i++, g += stages, Z += lanes, Q += stages)
-    for (int b = 0; b < lanes; b += WIDTH) {
-      NAME(vector) sum, c, before;
-      NAME(row)(stages, lanes, matrix + b, g, &sum);
-      NAME(load)(node + b, &c);
-      NAME(load)(Z + b, &before);
-      const NAME(vector) next = start[i] * c + factor[i] * sum, moved = before - next, place = origin[i] + next;
-      NAME(larger)(&change, &moved);
-      NAME(larger)(&largest, &next);
-      NAME(store)(Z + b, &next, WIDTH);
-      NAME(store)(Q + b, &place, stages - b);
+  NAME(weigh)(s->n, s->stages, s->weight, s->force);
+  for (size_t i = 0; i < (size_t)s->n; i++)
+    for (int b = 0; b < s->lanes; b += WIDTH) {
+      NAME(vector) sum, c;
+      NAME(row)(s->stages, s->lanes, s->matrix + b, s->force + i * stages, &sum);
+      NAME(load)(s->node + b, &c);
+      NAME(place)(s, i, b, &c, &sum, s->Z + i * lanes + (size_t)b, s->Q + i * stages + (size_t)b, &change, &largest);
     }
   s->change = NAME(largest_of)(&change);
   s->largest = NAME(largest_of)(&largest);
+}
+
+/* The same for eight stages: the matrix' columns stay in registers while the coordinates pass by. */
+INLINE void NAME(sweep_eight)(dvi__sweep *sweep)
+{
+  const dvi__sweep own = *sweep, *s = &own; /* nobody else writes here */
+  NAME(vector) change = {0}, largest = {0};
+  NAME(weigh)(s->n, 8, s->weight, s->force);
+  for (int b = 0; b < 8; b += WIDTH) {
+    NAME(vector) column[8], c;
+    for (int j = 0; j < 8; j++) NAME(load)(s->matrix + 8 * j + b, &column[j]);
+    NAME(load)(s->node + b, &c);
+    for (size_t i = 0; i < (size_t)s->n; i++) {
+      const double *g = s->force + 8 * i;
+      NAME(vector) four[4];
+      for (int j = 0; j < 4; j++) four[j] = column[j] * g[j] + column[j + 4] * g[j + 4];
+      const NAME(vector) sum = (four[0] + four[1]) + (four[2] + four[3]);
+      NAME(place)(s, i, b, &c, &sum, s->Z + 8 * i + b, s->Q + 8 * i + b, &change, &largest);
+    }
+  }
+  sweep->change = NAME(largest_of)(&change);
+  sweep->largest = NAME(largest_of)(&largest);
 }
