@@ -115,7 +115,8 @@ void dvi__action_row_scale(const dvi__action *a, double *scale)
   for (int i = 0; i < a->n; i++) {
     double size = 0;
     for (int e = vv->start[i]; e < vv->start[i + 1]; e++) size = fmax(size, fabs(values[e]));
-    for (int k = 0; k < a->s; k++) scale[i * a->s + k] = (size > 0 ? size : 1.0) / fabs(a->h);
+    const double row = (size > 0 ? size : 1.0) / fabs(a->h);
+    for (int k = 0; k < a->s; k++) scale[i * a->s + k] = row;
   }
 }
 

@@ -232,13 +232,6 @@ void dvi__element_start(dvi__stepper *self, const double *v)
 
 /* ---- guesses ---- */
 
-static double largest(int n, const double *x)
-{
-  double size = 0;
-  for (int i = 0; i < n; i++) size = fabs(x[i]) > size ? fabs(x[i]) : size;
-  return size;
-}
-
 /* The last path continued; without one, a straight line along the starting velocity. */
 static dvi_status guess(dvi__stepper *self, const place *at, double *Y)
 {
@@ -258,7 +251,7 @@ static dvi_status guess(dvi__stepper *self, const place *at, double *Y)
 static dvi_status solve_by(dvi__stepper *self, const place *at, dvi__rung rung, double *Y, dvi__solve_report *report)
 {
   element *own = self->own;
-  const double size = largest(self->system->n, at->q);
+  const double size = dvi__largest((size_t)self->system->n, at->q);
   const int patient = own->choice == DVI__SOLVER_FIXED_POINT;
   own->forces_of = rung == DVI__FIXED_POINT && at->last_g != NULL ? at : NULL;
   if (own->forces_of == NULL) DVI_TRY(guess(self, at, Y));
@@ -367,7 +360,7 @@ static dvi_status guess_by_parts(dvi__stepper *self, const place *whole, int par
 static dvi_status rescue(dvi__stepper *self, const place *at, double *Y, dvi__solve_report *report)
 {
   element *own = self->own;
-  const double size = largest(self->system->n, at->q);
+  const double size = dvi__largest((size_t)self->system->n, at->q);
   dvi_status guessed = DVI_NOT_CONVERGED;
   for (int halvings = 1; halvings <= MOST_HALVINGS; halvings++) {
     guessed = guess_by_parts(self, at, 1 << halvings, Y, report);
@@ -415,7 +408,7 @@ static dvi_status advance(dvi__stepper *self, dvi__state *state, double h)
 static dvi_status certify(dvi__stepper *self, const place *at, double *Y, dvi__solve_report *report)
 {
   element *own = self->own;
-  const double size = largest(self->system->n, at->q);
+  const double size = dvi__largest((size_t)self->system->n, at->q);
   const dvi_status status = dvi__certify(own->solver, size, Y, report);
   if (status != DVI_NOT_CONVERGED) return status;
   DVI_TRY(dvi__solve(own->solver, DVI__KINSOL, size, 0, 0, Y, report));

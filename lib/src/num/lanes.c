@@ -90,6 +90,21 @@ INLINE int all_finite(size_t count, const double *x)
   return overflow >> 63 == 0;
 }
 
+/* Magnitudes are ordered as their bits are, with Inf above all numbers and NaN above Inf. */
+INLINE double largest(size_t count, const double *x)
+{
+  uint64_t most = 0;
+  for (size_t i = 0; i < count; i++) {
+    uint64_t bits;
+    memcpy(&bits, x + i, sizeof bits);
+    bits &= INT64_MAX;
+    most = bits > most ? bits : most;
+  }
+  double magnitude;
+  memcpy(&magnitude, &most, sizeof magnitude);
+  return magnitude;
+}
+
 /* ---- instruction sets ---- */
 
 typedef struct level {
@@ -98,6 +113,7 @@ typedef struct level {
   void (*ends)(const dvi__ends *e);
   void (*product)(int n, int terms, int lanes, int width, const double *matrix, const double *x, double *out);
   int (*all_finite)(size_t count, const double *x);
+  double (*largest)(size_t count, const double *x);
 } level;
 
 #define LEVEL(suffix, target, widest)                                                                                             \
@@ -116,6 +132,10 @@ typedef struct level {
   target static int all_finite_##suffix(size_t count, const double *x)                                                            \
   {                                                                                                                               \
     return all_finite(count, x);                                                                                                  \
+  }                                                                                                                               \
+  target static double largest_##suffix(size_t count, const double *x)                                                            \
+  {                                                                                                                               \
+    return largest(count, x);                                                                                                     \
   }
 
 LEVEL(baseline, , 2)
@@ -125,10 +145,10 @@ LEVEL(avx512, __attribute__((target("fma,avx512f,avx512dq,avx512vl"))), 8)
 #endif
 
 static const level levels[] = {
-    {"baseline", sweep_baseline, ends_baseline, product_baseline, all_finite_baseline},
+    {"baseline", sweep_baseline, ends_baseline, product_baseline, all_finite_baseline, largest_baseline},
 #ifdef __x86_64__
-    {"avx2", sweep_avx2, ends_avx2, product_avx2, all_finite_avx2},
-    {"avx512", sweep_avx512, ends_avx512, product_avx512, all_finite_avx512},
+    {"avx2", sweep_avx2, ends_avx2, product_avx2, all_finite_avx2, largest_avx2},
+    {"avx512", sweep_avx512, ends_avx512, product_avx512, all_finite_avx512, largest_avx512},
 #endif
 };
 
@@ -181,4 +201,9 @@ void dvi__lanes_product(int n, int terms, int lanes, int width, const double *ma
 int dvi__lanes_all_finite(size_t count, const double *x)
 {
   return best()->all_finite(count, x);
+}
+
+double dvi__lanes_largest(size_t count, const double *x)
+{
+  return best()->largest(count, x);
 }

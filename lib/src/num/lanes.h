@@ -48,6 +48,9 @@ void dvi__lanes_product(int n, int terms, int lanes, int width, const double *ma
 /* Whether there is no NaN or Inf among them. */
 int dvi__lanes_all_finite(size_t count, const double *x);
 
+/* See num/finite.h. */
+double dvi__lanes_largest(size_t count, const double *x);
+
 /* The instruction sets, from the baseline (0) up; their count includes only those that this processor has. */
 int dvi__lanes_levels(void);
 const char *dvi__lanes_level_name(int level);
