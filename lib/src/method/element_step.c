@@ -447,7 +447,7 @@ static void explain_solver(const element *own, dvi__text *text)
     dvi__text_add(text, "solver: %s, as asked; what it cannot solve goes on to KINSOL with line search\n", name);
     return;
   }
-  dvi__text_add(text, "solver: %s: fixed point while it contracts by 0.35 or better, else simplified Newton's method (%s), ", name,
+  dvi__text_add(text, "solver: %s: fixed point while it contracts by 0.45 or better, else simplified Newton's method (%s), ", name,
                 own->decoupled != NULL ? "decoupled systems of n unknowns" : "not in this space");
   dvi__text_add(text, "Newton's method, last KINSOL with line search%s\n",
                 own->choice == DVI__SOLVER_CERTIFIED ? "; KINSOL certifies each solution" : "");
