@@ -26,7 +26,8 @@ static void fill(int count, double *x, int seed)
   for (int i = 0; i < count; i++) x[i] = number(seed + 3 * i);
 }
 
-static double sweep_matrix[STAGES_MOST * LANES_MOST], node[LANES_MOST], weight[STAGES_MOST], start[N], factor[N], origin[N];
+static double sweep_matrix[STAGES_MOST * LANES_MOST], node[LANES_MOST], weight[STAGES_MOST], p0[N], start[N], low[N], factor[N],
+    origin[N];
 static double force[2][N * STAGES_MOST], Z[2][N * LANES_MOST], Q[2][N * STAGES_MOST];
 
 /* One lane of a product: long ones as four sums. */
@@ -47,7 +48,7 @@ static void plain_sweep(dvi__sweep *s)
     for (int l = 0; l < s->lanes; l++) {
       double *z = &s->Z[i * s->lanes + l];
       const double sum = lane(s->stages, s->lanes, s->matrix + l, g);
-      const double next = s->start[i] * s->node[l] + s->factor[i] * sum;
+      const double next = s->start[i] * s->node[l] + (s->factor[i] * sum + s->low[i] * s->node[l]);
       s->change = fmax(s->change, fabs(*z - next));
       s->largest = fmax(s->largest, fabs(next));
       if (l < s->stages) s->Q[i * s->stages + l] = s->origin[i] + next;
@@ -68,7 +69,9 @@ static dvi__sweep made_sweep(int stages, int which)
                       .matrix = sweep_matrix,
                       .node = node,
                       .weight = weight,
+                      .p0 = p0,
                       .start = start,
+                      .low = low,
                       .factor = factor,
                       .origin = origin,
                       .force = force[which],
@@ -82,8 +85,13 @@ START_TEST(a_sweep_has_the_bits_of_plain_loops)
   if (_i / STAGES_MOST >= dvi__lanes_levels()) return;
   dvi__lanes_choose(_i / STAGES_MOST);
   fill(stages * lanes, sweep_matrix, 4), fill(lanes, node, 5), fill(stages, weight, 6);
-  fill(N, start, 7), fill(N, factor, 8), fill(N, origin, 9);
+  fill(N, p0, 7), fill(N, factor, 8), fill(N, origin, 9);
   dvi__sweep fast = made_sweep(stages, 0), plain = made_sweep(stages, 1);
+  dvi__lanes_split(&fast);
+  for (int i = 0; i < N; i++) {
+    ck_assert_double_eq(start[i], factor[i] * p0[i]);
+    ck_assert_double_eq(low[i], fma(factor[i], p0[i], -start[i]));
+  }
   for (int again = 0; again < 2; again++) {
     dvi__lanes_sweep(&fast);
     plain_sweep(&plain);

@@ -98,6 +98,7 @@ void dvi__action_destroy(dvi__action **action)
                            a->sweep_slant,
                            a->sweep_path,
                            a->sweep_start,
+                           a->sweep_low,
                            a->sweep_factor,
                            a->sweep_weight,
                            a->Z,

@@ -48,7 +48,7 @@ struct dvi__action {
   /* Sweeps (sweep.h); NULL if the mass couples coordinates. */
   double *sweep_matrix, *sweep_node, *sweep_slant; /* [r*lanes] c_i - P_ij by columns, [lanes] c, [r] 1/2 - c */
   double *sweep_path;                              /* paths from forces */
-  double *sweep_start, *sweep_factor;              /* [n] h/m p0, h/m */
+  double *sweep_start, *sweep_low, *sweep_factor;  /* [n] h/m p0 and what it is rounded by, h/m */
   double sweep_h;                                  /* the h of sweep_factor and sweep_weight */
   double *sweep_weight;                            /* [r] -h b_j */
   double *Z;                                       /* [n*lanes] offsets of the nodes from q0 */

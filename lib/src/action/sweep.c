@@ -82,12 +82,13 @@ static dvi_status allocate(dvi__action *a)
   a->sweep_slant = DVI_NEW(double, r);
   a->sweep_path = DVI_NEW(double, r *(size_t)a->path_lanes);
   a->sweep_start = DVI_NEW(double, n);
+  a->sweep_low = DVI_NEW(double, n);
   a->sweep_factor = DVI_NEW(double, n);
   a->sweep_weight = DVI_NEW(double, r);
   a->Z = DVI_NEW(double, n *lanes);
   a->sweep_shift.table = DVI_NEW(double, DVI__SHIFTS *r *lanes);
-  if (a->sweep_matrix && a->sweep_node && a->sweep_slant && a->sweep_path && a->sweep_start && a->sweep_factor && a->sweep_weight &&
-      a->Z && a->sweep_shift.table)
+  if (a->sweep_matrix && a->sweep_node && a->sweep_slant && a->sweep_path && a->sweep_start && a->sweep_low && a->sweep_factor &&
+      a->sweep_weight && a->Z && a->sweep_shift.table)
     return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d nodes in %d dimensions", a->r, a->n);
 }
@@ -123,44 +124,47 @@ static void set_step(dvi__action *a)
   for (int i = 0; i < a->n; i++) a->sweep_factor[i] = a->h / a->system->mass_diagonal[i];
 }
 
-void dvi__action_sweep_from(dvi__action *a, const double *Y)
+static dvi__sweep sweep_of(const dvi__action *a)
 {
-  const size_t r = (size_t)a->r, lanes = (size_t)a->lanes;
-  set_step(a);
-  dvi__lanes_product(a->n, a->s, a->lanes, a->lanes, a->psi, Y, a->Z);
-  for (size_t i = 0; i < (size_t)a->n; i++) {
-    a->sweep_start[i] = a->sweep_factor[i] * a->p0[i];
-    for (size_t j = 0; j < r; j++) a->Q[i * r + j] = a->q0[i] + a->Z[i * lanes + j];
-  }
-}
-
-void dvi__action_sweep_begin(dvi__action *a)
-{
-  const size_t r = (size_t)a->r, lanes = (size_t)a->lanes;
-  set_step(a);
-  for (size_t i = 0; i < (size_t)a->n; i++) {
-    double *Z = a->Z + i * lanes;
-    a->sweep_start[i] = a->sweep_factor[i] * a->p0[i];
-    for (size_t j = 0; j < lanes; j++) Z[j] = a->sweep_start[i] * a->sweep_node[j] + a->sweep_factor[i] * Z[j];
-    for (size_t j = 0; j < r; j++) a->Q[i * r + j] = a->q0[i] + Z[j];
-  }
-}
-
-dvi_status dvi__action_sweep(dvi__action *a, double *change, double *largest)
-{
-  DVI_TRY(dvi__potentials_gradient(a->evaluator, a->r, a->t, a->Q, a->L_q));
-  dvi__sweep sweep = {.n = a->n,
+  return (dvi__sweep){.n = a->n,
                       .stages = a->r,
                       .lanes = a->lanes,
                       .matrix = a->sweep_matrix,
                       .node = a->sweep_node,
                       .weight = a->sweep_weight,
-                      .start = a->sweep_start,
                       .factor = a->sweep_factor,
+                      .p0 = a->p0,
+                      .start = a->sweep_start,
+                      .low = a->sweep_low,
                       .origin = a->q0,
                       .force = a->L_q,
                       .Z = a->Z,
                       .Q = a->Q};
+}
+
+void dvi__action_sweep_from(dvi__action *a, const double *Y)
+{
+  const size_t r = (size_t)a->r, lanes = (size_t)a->lanes;
+  set_step(a);
+  const dvi__sweep sweep = sweep_of(a);
+  dvi__lanes_split(&sweep);
+  dvi__lanes_product(a->n, a->s, a->lanes, a->lanes, a->psi, Y, a->Z);
+  for (size_t i = 0; i < (size_t)a->n; i++)
+    for (size_t j = 0; j < r; j++) a->Q[i * r + j] = a->q0[i] + a->Z[i * lanes + j];
+}
+
+void dvi__action_sweep_begin(dvi__action *a)
+{
+  set_step(a);
+  const dvi__sweep sweep = sweep_of(a);
+  dvi__lanes_split(&sweep);
+  dvi__lanes_begin(&sweep);
+}
+
+dvi_status dvi__action_sweep(dvi__action *a, double *change, double *largest)
+{
+  DVI_TRY(dvi__potentials_gradient(a->evaluator, a->r, a->t, a->Q, a->L_q));
+  dvi__sweep sweep = sweep_of(a);
   dvi__lanes_sweep(&sweep);
   a->swept = 1;
   *change = sweep.change;

@@ -58,8 +58,29 @@ INLINE void sweep(int widest, dvi__sweep *s)
     eight ? sweep_eight8(s) : sweep8(s);
 }
 
-/* A fused product tells what rounding takes from one; where the processor has none, the library function gives the same bits. The error of p0 + half is
- * Knuth's (1969), sec. 4.2.2. */
+INLINE void begin(int widest, const dvi__sweep *s)
+{
+  const int W = s->lanes < widest ? s->lanes : widest;
+  if (W == 1)
+    begin1(s);
+  else if (W == 2)
+    begin2(s);
+  else if (W == 4)
+    begin4(s);
+  else
+    begin8(s);
+}
+
+/* A fused product tells what rounding takes from one; where the processor has none, the library function gives the same bits. */
+INLINE void split(const dvi__sweep *s)
+{
+  for (int i = 0; i < s->n; i++) {
+    s->start[i] = s->factor[i] * s->p0[i];
+    s->low[i] = __builtin_fma(s->factor[i], s->p0[i], -s->start[i]);
+  }
+}
+
+/* The error of p0 + half is Knuth's (1969), sec. 4.2.2. */
 INLINE void ends(const dvi__ends *e, const int stages)
 {
   const double *g = e->g;
@@ -110,6 +131,8 @@ INLINE double largest(size_t count, const double *x)
 typedef struct level {
   const char *name;
   void (*sweep)(dvi__sweep *s);
+  void (*split)(const dvi__sweep *s);
+  void (*begin)(const dvi__sweep *s);
   void (*ends)(const dvi__ends *e);
   void (*product)(int n, int terms, int lanes, int width, const double *matrix, const double *x, double *out);
   int (*all_finite)(size_t count, const double *x);
@@ -120,6 +143,14 @@ typedef struct level {
   target static void sweep_##suffix(dvi__sweep *s)                                                                                \
   {                                                                                                                               \
     sweep(widest, s);                                                                                                             \
+  }                                                                                                                               \
+  target static void split_##suffix(const dvi__sweep *s)                                                                          \
+  {                                                                                                                               \
+    split(s);                                                                                                                     \
+  }                                                                                                                               \
+  target static void begin_##suffix(const dvi__sweep *s)                                                                          \
+  {                                                                                                                               \
+    begin(widest, s);                                                                                                             \
   }                                                                                                                               \
   target static void ends_##suffix(const dvi__ends *e)                                                                            \
   {                                                                                                                               \
@@ -145,10 +176,11 @@ LEVEL(avx512, __attribute__((target("fma,avx512f,avx512dq,avx512vl"))), 8)
 #endif
 
 static const level levels[] = {
-    {"baseline", sweep_baseline, ends_baseline, product_baseline, all_finite_baseline, largest_baseline},
+    {"baseline", sweep_baseline, split_baseline, begin_baseline, ends_baseline, product_baseline, all_finite_baseline,
+     largest_baseline},
 #ifdef __x86_64__
-    {"avx2", sweep_avx2, ends_avx2, product_avx2, all_finite_avx2, largest_avx2},
-    {"avx512", sweep_avx512, ends_avx512, product_avx512, all_finite_avx512, largest_avx512},
+    {"avx2", sweep_avx2, split_avx2, begin_avx2, ends_avx2, product_avx2, all_finite_avx2, largest_avx2},
+    {"avx512", sweep_avx512, split_avx512, begin_avx512, ends_avx512, product_avx512, all_finite_avx512, largest_avx512},
 #endif
 };
 
@@ -186,6 +218,16 @@ static const level *best(void)
 void dvi__lanes_sweep(dvi__sweep *s)
 {
   best()->sweep(s);
+}
+
+void dvi__lanes_split(const dvi__sweep *s)
+{
+  best()->split(s);
+}
+
+void dvi__lanes_begin(const dvi__sweep *s)
+{
+  best()->begin(s);
 }
 
 void dvi__lanes_ends(const dvi__ends *ends)

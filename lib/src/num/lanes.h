@@ -11,14 +11,16 @@
 int dvi__lanes_for(int stages);
 
 /* One iteration for the stages of all coordinates, from the forces at the stages before:
- *     g_ij = weight_j force_ij,   Z_i = start_i node + factor_i sum_j matrix_j g_ij,   Q_ij = origin_i + Z_ij. */
+ *     g_ij = weight_j force_ij,   Z_i = factor_i (p0_i node + sum_j matrix_j g_ij),   Q_ij = origin_i + Z_ij.
+ * The product factor_i p0_i is start_i + low_i, exactly: rounded in each step by the same momentum, it would add up. */
 typedef struct dvi__sweep {
   int n, stages, lanes;
   const double *matrix;   /* [stages*lanes], column j at matrix + j*lanes */
   const double *node;     /* [lanes] */
   const double *weight;   /* [stages] */
-  const double *start;    /* [n] */
   const double *factor;   /* [n] */
+  const double *p0;       /* [n] */
+  double *start, *low;    /* [n] */
   const double *origin;   /* [n] */
   double *force;          /* [n*stages], replaced by g */
   double *Z;              /* [n*lanes], old and new */
@@ -27,6 +29,12 @@ typedef struct dvi__sweep {
 } dvi__sweep;
 
 void dvi__lanes_sweep(dvi__sweep *sweep);
+
+/* Before the first one: set start and low. */
+void dvi__lanes_split(const dvi__sweep *sweep);
+
+/* Then, if Z holds sums of forces, replace them by Z_i = factor_i (p0_i node + Z_i), and set Q. */
+void dvi__lanes_begin(const dvi__sweep *sweep);
 
 /* The ends of a step by the g of its last sweep:
  *     sum = sum_j g_ij,   moved + low = factor (p0 + sum/2 + sum_j slant_j g_ij),

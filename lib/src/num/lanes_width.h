@@ -84,11 +84,26 @@ INLINE void NAME(place)(const dvi__sweep *s, size_t i, int b, const NAME(vector)
 {
   NAME(vector) before;
   NAME(load)(Z, &before);
-  const NAME(vector) next = s->start[i] * *c + s->factor[i] * *sum, moved = before - next, at = s->origin[i] + next;
+  const NAME(vector) next = s->start[i] * *c + (s->factor[i] * *sum + s->low[i] * *c);
+  const NAME(vector) moved = before - next, at = s->origin[i] + next;
   NAME(larger)(change, &moved);
   NAME(larger)(largest, &next);
   NAME(store)(Z, &next, WIDTH);
   NAME(store)(Q, &at, s->stages - b);
+}
+
+/* Z holds the sums of forces. */
+INLINE void NAME(begin)(const dvi__sweep *s)
+{
+  NAME(vector) change = {0}, largest = {0};
+  for (size_t i = 0; i < (size_t)s->n; i++)
+    for (int b = 0; b < s->lanes; b += WIDTH) {
+      double *Z = s->Z + i * (size_t)s->lanes + b;
+      NAME(vector) sum, c;
+      NAME(load)(Z, &sum);
+      NAME(load)(s->node + b, &c);
+      NAME(place)(s, i, b, &c, &sum, Z, s->Q + i * (size_t)s->stages + b, &change, &largest);
+    }
 }
 
 INLINE void NAME(sweep)(dvi__sweep *s)
