@@ -307,7 +307,7 @@ static int check_request(bench_request *request)
 static int scale_problem(const bench_request *r, const char *name)
 {
   const scale_request request = {.problem = name,
-                                 .sizes = r->scale,
+                                 .scaled = r->scale,
                                  .methods = &r->methods,
                                  .settings = &r->settings,
                                  .h = r->h,

@@ -73,8 +73,9 @@ expect 1 'asked errors, no folder' bench kepler --method verlet --at 1e-3 --at-c
 
 # Sizes.
 expect 0 'sizes' bench fpu --method verlet --method galerkin:degree=2 --scale ell=5,50,10 --rounds 1 --csv - --plot scale.svg
-[ "$(head -n 1 out)" = method,problem,parameter,value,n,h,step_seconds,step_lower,step_upper,bytes,step_evaluations ] || fail 'header of sizes'
-[ "$(awk -F, 'NF == 11' out | wc -l)" -eq 7 ] || fail 'two methods at three sizes'
+[ "$(head -n 1 out)" = method,problem,parameter,value,n,h,step_seconds,step_lower,step_upper,bytes,step_evaluations,step_residuals,step_factorizations ] ||
+  fail 'header of sizes'
+[ "$(awk -F, 'NF == 13' out | wc -l)" -eq 7 ] || fail 'two methods at three sizes'
 awk -F, 'NR > 1 && !($5 == 2 * $4 && $7 > 0 && $8 <= $7 && $7 <= $9 && $11 > 0)' out | grep -q . && fail 'two coordinates to a spring, times, counts'
 awk -F, 'NR > 1 && $6 != 0.005' out | grep -q . && fail "the problem's own step"
 # verlet evaluates once a step, and once at the start; 32 steps are counted.
@@ -100,6 +101,22 @@ for other in '--at 1e-3' '--against ida' '--levels 3' '--t-end 1' '--h 0'; do
   # shellcheck disable=SC2086
   expect 2 "sizes with $other" bench fpu --method verlet --scale ell=5,6 $other
 done
+
+# Degrees: a key of every method. A residual of degree s with Gauss' quadrature evaluates at s points.
+expect 0 'degrees' bench kepler --method galerkin --method composition:order=4,base=galerkin --scale degree=1,4,2 --rounds 1 --csv - --plot scale.svg
+[ "$(grep -c '^galerkin,kepler,degree,[142],2,' out)" -eq 3 ] || fail 'three degrees'
+[ "$(grep -c '^"composition:order=4,base=galerkin",kepler,degree,' out)" -eq 3 ] || fail 'three degrees of the base'
+awk -F, '$1 == "galerkin" && !($12 > 0 && $11 == $4 * $12 && $13 == 0)' out | grep -q . && fail 'evaluations and residuals of fixed point iteration'
+says err '  step_seconds ~ degree^[-0-9.]*  bytes ~ .*  step_evaluations ~ degree^0' 'exponents of the degree'
+if command -v gnuplot >/dev/null; then says scale.svg '</svg>' 'the plot of degrees is whole'; fi
+expect 0 'factorisations' bench fpu --method galerkin:solver=newton --scale degree=1,2 --rounds 1 --csv -
+awk -F, '$1 ~ /^galerkin/ && !($13 > 0)' out | grep -q . && fail "factorisations of Newton's method"
+for bad in degree=2,2.5 degree=1,200 degree=2 degree=2,2; do expect 2 "scale $bad" bench kepler --method galerkin --scale "$bad"; done
+expect 2 'a degree that is given' bench kepler --method galerkin:degree=3 --scale degree=1,2
+says err 'degree is given twice' 'why it is refused'
+expect 2 'a method without degrees' bench kepler --method verlet --scale degree=1,2
+expect 2 'a specification too long for a key' bench kepler --method "galerkin:$(printf '%0600d' 0)" --scale degree=1,2
+
 # Degree 8 finds no solution at the first steps of this span: the levels that can be solved are shown.
 expect 0 'a level that cannot be solved' bench double-pendulum --t-end 20 --method galerkin:degree=8 --rounds 1
 says err 'left out galerkin' 'which level'
