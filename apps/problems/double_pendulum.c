@@ -78,7 +78,7 @@ static dvi_status make(const double *setting, problem *made)
 
   const dvi_lagrangian lagrangian = {.value_batch = value, .gradient_batch = gradient, .hessian_batch = hessian, .user = own};
   const dvi_system_terms terms = {.dimension = 2, .lagrangian = &lagrangian};
-  return dvi_system_create(&terms, &made->system);
+  return problem_system(made, &terms);
 }
 
 static const problem_parameter parameters[] = {

@@ -213,7 +213,7 @@ static dvi_status make_system(problem *made, chain *own)
                                   .potential_count = 2,
                                   .invariants = watched > 0 ? energies : NULL,
                                   .invariant_count = watched};
-  return dvi_system_create(&terms, &made->system);
+  return problem_system(made, &terms);
 }
 
 static dvi_status make(const double *setting, problem *made)
