@@ -36,7 +36,7 @@ int axis_read(const char *text, scale_axis *axis)
   return code;
 }
 
-int axis_problem(const scale_axis *axis, int k, const char *name, const words *settings, problem **scene)
+int axis_problem(const scale_axis *axis, int k, const char *name, const words *settings, bool one_point, problem **scene)
 {
   char setting[AXIS_NAME_SIZE + NUMBER_SIZE];
   words all = *settings;
@@ -44,7 +44,7 @@ int axis_problem(const scale_axis *axis, int k, const char *name, const words *s
     (void)snprintf(setting, sizeof setting, "%s=%s", axis->name, axis->values.text[k]);
     all.word[all.count++] = setting;
   }
-  return open_problem(name, &all, scene);
+  return open_shaped(name, &all, one_point, scene);
 }
 
 int axis_method(const scale_axis *axis, int k, const char *method, char specification[SPECIFICATION_SIZE])

@@ -25,8 +25,8 @@ typedef struct scale_axis {
 /** Read "ell=100,1000" or "degree=2,4,8". Returns DONE, or complains and returns USAGE. */
 int axis_read(const char *text, scale_axis *axis);
 
-/** Make the problem at value k; `settings` has room for one more. Returns DONE, or complains and returns the exit code. */
-int axis_problem(const scale_axis *axis, int k, const char *name, const words *settings, problem **scene);
+/** Make the problem at value k; `settings` has room for one more; `one_point` as open_shaped has it. Returns DONE, or complains and returns the exit code. */
+int axis_problem(const scale_axis *axis, int k, const char *name, const words *settings, bool one_point, problem **scene);
 
 /** Write the method's specification at value k. Returns DONE, or complains and returns USAGE if it does not fit. */
 int axis_method(const scale_axis *axis, int k, const char *method, char specification[SPECIFICATION_SIZE]);

@@ -114,7 +114,7 @@ static int measure_methods(scaling *s, const problem *scene, int k, int round)
 static int measure_value(scaling *s, int k, int round)
 {
   problem *scene;
-  int code = axis_problem(&s->axis, k, s->request->problem, s->request->settings, &scene);
+  int code = axis_problem(&s->axis, k, s->request->problem, s->request->settings, s->request->one_point, &scene);
   if (code != DONE) return code;
   code = measure_methods(s, scene, k, round);
   problem_destroy(&scene);
@@ -159,6 +159,8 @@ static result_table *make_table(const scaling *s)
       table_number(rows, (double)c->counted.gradients / STEPS);
       table_number(rows, (double)c->counted.residuals / STEPS);
       table_number(rows, (double)c->counted.factorizations / STEPS);
+      table_number(rows, s->calibration.median);
+      table_number(rows, s->calibration.least);
     }
   return rows;
 }
@@ -196,6 +198,7 @@ static void print_all(FILE *stream, const scaling *s, const result_table *rows)
   (void)fprintf(stream, "Cost of a step on %s\n", s->request->problem);
   machine_print(stream);
   machine_print_calibration(stream, &s->calibration);
+  if (s->request->one_point) (void)fprintf(stream, "callbacks: one point a call\n");
   for (int i = 0; i < s->request->methods->count; i++) {
     (void)fprintf(stream, "\n%s\n", s->request->methods->word[i]);
     table_print(rows, stream, 2, i * s->axis.values.count, (i + 1) * s->axis.values.count);
@@ -285,7 +288,7 @@ static int check_values(const scaling *s)
   int code = DONE;
   for (int k = 0; k < s->axis.values.count && code == DONE; k++) {
     problem *scene;
-    code = axis_problem(&s->axis, k, s->request->problem, s->request->settings, &scene);
+    code = axis_problem(&s->axis, k, s->request->problem, s->request->settings, s->request->one_point, &scene);
     if (code != DONE) return code;
     n[k] = scene->n;
     if (k == 0 || s->axis.kind != AXIS_PARAMETER) code = check_methods(s, scene, k);

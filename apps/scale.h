@@ -8,7 +8,8 @@ typedef struct scale_request {
   const char *problem;
   const char *scaled; /**< "ell=100,1000": what is varied, and its values */
   const words *methods, *settings;
-  double h; /**< NaN: the problem's */
+  bool one_point; /**< callbacks of the one-point shape */
+  double h;       /**< NaN: the problem's */
   long rounds;
   const char *csv, *plot;
 } scale_request;

@@ -149,20 +149,35 @@ static int column_width(const result_table *table, int column, int first, int la
   return (int)width;
 }
 
+static bool for_csv_alone(const table_column *column)
+{
+  return column->format != NULL && column->format[0] == '\0';
+}
+
+/* Columns that people see end here. */
+static int shown_end(const result_table *table)
+{
+  int end = table->columns;
+  while (end > 0 && for_csv_alone(&table->column[end - 1])) end--;
+  return end;
+}
+
 /* Text to the left, numbers to the right; no blanks at the end of a line. */
 static void print_cell(const result_table *table, FILE *stream, int column, int width, const char *text)
 {
+  const bool last = column + 1 == shown_end(table);
+  if (last && text[0] == '\0') return;
   if (table->column[column].format != NULL)
     (void)fprintf(stream, "  %*s", width, text);
   else
-    (void)fprintf(stream, "  %-*s", column + 1 < table->columns ? width : 0, text);
+    (void)fprintf(stream, "  %-*s", last ? 0 : width, text);
 }
 
 void table_print(const result_table *table, FILE *stream, int skip, int first, int last)
 {
   char text[CELL_TEXT];
   for (int row = first - 1; row < last; row++) {
-    for (int j = skip; j < table->columns; j++)
+    for (int j = skip; j < shown_end(table); j++)
       print_cell(table, stream, j, column_width(table, j, first, last),
                  row < first ? table->column[j].title : for_people(table, row, j, text));
     (void)fputc('\n', stream);
