@@ -23,6 +23,8 @@ static const char *const selection[] = {
     "verlet", "composition:order=8,base=verlet", "midpoint", "galerkin:degree=2", "galerkin:degree=4", "galerkin:degree=8", NULL};
 
 static const double first_error = 1e-2; /* of each method, relative to the solution */
+static const double above_asked = 1e3;  /* the first error over the largest asked one, at most, as far as that takes */
+static const double more_steps = 4.0;   /* times as many at most */
 
 /* Of peers; from FREE_TOLERANCES on only as far as a smaller error is asked for. */
 static const double tolerances[] = {1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-13, 1e-14};
@@ -76,6 +78,16 @@ static double smallest_asked(const numbers *asked)
   return smallest;
 }
 
+/* Where a method of this order begins: levels far above the errors that are asked for would tell nothing, and of a high order take long. */
+static double first_error_of(const bench *b, const order_study *study)
+{
+  double asked = 0.0;
+  for (int i = 0; i < b->request->outputs.asked.count; i++) asked = fmax(asked, b->request->outputs.asked.number[i]);
+  if (asked == 0.0) return first_error;
+  const double near = fmin(first_error, above_asked * asked / study_size(study));
+  return fmax(near, first_error * pow(more_steps, -study->order));
+}
+
 /* Go on with smaller steps to the smallest asked error, as long as they make the error smaller. */
 static dvi_status extend_levels(bench *b, order_study *study, int first_job)
 {
@@ -105,7 +117,7 @@ static int add_method(bench *b, const char *method)
   const int levels = extend ? LEVELS_DEFAULT : (int)b->request->levels;
   const int first_job = b->jobs;
   bool room;
-  study.first_error = first_error;
+  study.first_error = first_error_of(b, &study);
   study.progress = &b->progress;
   dvi_status status = choose_levels(&study, 0.0, 0.0, levels, steps, &room);
   for (int k = 0; k < levels && status == DVI_OK; k++) status = add_level(b, &study, steps[k]);

@@ -11,7 +11,7 @@
 #include "judge_runs.h"
 #include "spelling.h"
 
-/* A judge that is off by this factor of its own error is wrong about it. */
+/* A judge that is off by this many times its own error is wrong about it. */
 static const double contradiction = 10.0;
 
 static const char *const kinds[] = {
@@ -66,10 +66,12 @@ static bool ask_exact(judgement *judge, const problem *scene, double t_end, doub
 
 static bool ask_digits(judgement *judge, const problem *scene, double t_end)
 {
-  if (scene->digits_q == NULL || scene->digits_p == NULL || t_end != scene->order_t_end) return false;
-  memcpy(judge->q, scene->digits_q, (size_t)scene->n * sizeof *judge->q);
+  const bool far = scene->far_q != NULL && t_end == scene->far_t_end;
+  const double *digits = far ? scene->far_q : t_end == scene->order_t_end ? scene->digits_q : NULL;
+  if (digits == NULL) return false;
+  memcpy(judge->q, digits, (size_t)scene->n * sizeof *judge->q);
   set_words(judge, "stored quadruple-precision result");
-  judge->error = DBL_EPSILON * largest(scene->n, judge->q); /* rounded to double */
+  judge->error = fmax(DBL_EPSILON * largest(scene->n, judge->q), far ? scene->far_error : 0.0); /* rounded to double */
   return true;
 }
 

@@ -3,7 +3,7 @@
 #define JUDGE_RUNS_H
 #include "judge.h"
 
-/** Run degree 16, and degree 12 with other steps, with ever smaller steps until their ends come no closer: fills other, which it allocates, and q,
+/** Run degree 16, and degree 12 with other steps, with ever smaller steps until the ends of two levels come no closer: fills other, which it allocates, and q,
  *  error and words.
  *
  *  @retval DVI_NO_MEMORY

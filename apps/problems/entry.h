@@ -52,6 +52,8 @@ typedef struct problem_entry {
   int (*exact)(const problem *made, double t, double *q, double *p);
   double h, t_end, order_h, order_t_end;
   const double *digits_q, *digits_p; /* for the default parameters; recomputed by tests/reference/test_digits */
+  double far_t_end, far_error;       /* as in problem.h; 0 without far_q */
+  const double *far_q;               /* recomputed by tests/reference/test_far_digits */
 } problem_entry;
 
 #define PROBLEM_ENTRY(name) extern const problem_entry problem_entry_##name;

@@ -29,6 +29,10 @@ typedef struct problem {
   double order_t_end;                /**< span of an order study; digits, if there are any, are for this time */
   const double *digits_q, *digits_p; /**< [n] quadruple-precision result at order_t_end; NULL unless all parameters are the
                                           defaults */
+  double far_t_end;                  /**< the end of a long span, for which there are digits too; 0 unless far_q is there */
+  const double
+      *far_q;       /**< [n] quadruple-precision result there; NULL unless all parameters are the defaults, and for most problems */
+  double far_error; /**< what rounding the start and the parameters to double does to it */
   /** The exact solution; NULL if none is known. 0 if found. */
   int (*exact)(const struct problem *problem, double t, double *q, double *p);
   void *parameters; /**< the callbacks' user pointer */
