@@ -88,18 +88,28 @@ static double first_error_of(const bench *b, const order_study *study)
   return fmax(near, first_error * pow(more_steps, -study->order));
 }
 
-/* Go on with smaller steps to the smallest asked error, as long as they make the error smaller. */
+/* Whether the last level took clearly less time than the one before: smaller steps are cheaper where they let a simpler solver work. */
+static bool became_cheaper(const bench *b, int first_job)
+{
+  static const double clearly = 0.9;
+  const bench_job *last = &b->job[b->jobs - 1];
+  return b->jobs > first_job + 1 && last->tried < clearly * (last - 1)->tried;
+}
+
+/* Go on with smaller steps to the smallest asked error, as long as they make the error smaller; and beyond it as long as they make the job
+ * cheaper. */
 static dvi_status extend_levels(bench *b, order_study *study, int first_job)
 {
   static const double ratio = 1.5;
   static const double steps_max = 1L << 20; /* of one job: some seconds at most for a small problem */
   const double wanted = smallest_asked(&b->request->outputs.asked);
   dvi_status status = DVI_OK;
-  double steps = b->jobs > first_job ? (double)b->job[b->jobs - 1].steps : HUGE_VAL;
+  if (b->jobs == first_job) return DVI_OK;
+  double steps = (double)b->job[b->jobs - 1].steps;
   for (int k = LEVELS_DEFAULT; k < LEVELS_MAX && status == DVI_OK; k++) {
     const bench_job *last = &b->job[b->jobs - 1];
     steps = ceil(ratio * steps);
-    if (steps > steps_max || last->error <= wanted) break;
+    if (steps > steps_max || (last->error <= wanted && !became_cheaper(b, first_job))) break;
     if (b->jobs > first_job + 1 && !(last->error < (last - 1)->error)) break;
     status = add_level(b, study, lround(steps));
   }

@@ -41,7 +41,7 @@ static dvi_status energy_change(const problem *scene, double t, const double *q,
 }
 
 /* Watch the energy along the way, and leave the end in q and p. */
-static dvi_status try_peer(bench_job *job, const problem *scene, double t_end, double *q, double *p, double *spent)
+static dvi_status try_peer(bench_job *job, const problem *scene, double t_end, double *q, double *p)
 {
   dvi_reference_report report = {0};
   dvi_status status = DVI_OK;
@@ -51,7 +51,7 @@ static dvi_status try_peer(bench_job *job, const problem *scene, double t_end, d
     double change = 0.0;
     const double began = cpu_now();
     status = peer_solve(job->peer, scene, t, job->tolerance, q, p, &report);
-    *spent = cpu_now() - began;
+    job->tried = cpu_now() - began;
     if (status == DVI_OK) status = energy_change(scene, t, q, p, &change);
     job->energy_error = fmax(job->energy_error, change);
   }
@@ -60,12 +60,12 @@ static dvi_status try_peer(bench_job *job, const problem *scene, double t_end, d
   return status;
 }
 
-static dvi_status try_method(bench_job *job, const problem *scene, double t_end, double *q, double *spent)
+static dvi_status try_method(bench_job *job, const problem *scene, double t_end, double *q)
 {
   double creation = 0.0;
   const double began = cpu_now();
   const dvi_status status = run_method(job, scene, t_end, &creation, q, &job->evaluations);
-  *spent = cpu_now() - began;
+  job->tried = cpu_now() - began;
   return status;
 }
 
@@ -73,11 +73,9 @@ dvi_status bench_job_try(bench_job *job, const problem *scene, const judgement *
 {
   double *q = calloc(2 * (size_t)scene->n, sizeof *q);
   if (q == NULL) return DVI_NO_MEMORY;
-  double spent = 0.0;
-  const dvi_status status = job->peer >= 0 ? try_peer(job, scene, t_end, q, q + scene->n, &spent)
-                                           : try_method(job, scene, t_end, q, &spent);
+  const dvi_status status = job->peer >= 0 ? try_peer(job, scene, t_end, q, q + scene->n) : try_method(job, scene, t_end, q);
   job->error = judge_error(judge, scene, q);
-  job->repeats = study_repeats(spent);
+  job->repeats = study_repeats(job->tried);
   free(q);
   return status;
 }

@@ -16,6 +16,7 @@ typedef struct bench_job {
   double tolerance;           /**< of a peer */
   double error, energy_error;
   long evaluations;
+  double tried;                /**< seconds of the first run */
   long repeats;                /**< jobs in one measurement */
   double cpu[ROUNDS_MAX];      /**< seconds of one job, in each round */
   spread seconds;              /**< of all rounds; set when they are over */
@@ -26,7 +27,7 @@ typedef struct bench_job {
 /** The times at which the energy of a peer's run is looked at: so many, evenly spaced, the last one the end. */
 enum { ENERGY_TIMES = 8 };
 
-/** Run the job once: fills error, evaluations, for peers energy_error and steps, and repeats. A peer is run from the start to each of
+/** Run the job once: fills error, evaluations, tried, for peers energy_error and steps, and repeats. A peer is run from the start to each of
  *  the ENERGY_TIMES, because it shows its state at the end only. */
 dvi_status bench_job_try(bench_job *job, const problem *scene, const judgement *judge, double t_end);
 

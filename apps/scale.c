@@ -49,6 +49,8 @@ static const table_column columns[] = {
     {"step_evaluations", "%.2f"},
     {"step_residuals", "%.2f"},
     {"step_factorizations", "%.2f"},
+    {"calibration_seconds", ""},
+    {"calibration_least", ""},
     {NULL, NULL},
 };
 
