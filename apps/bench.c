@@ -84,7 +84,8 @@ static double first_error_of(const bench *b, const order_study *study)
   double asked = 0.0;
   for (int i = 0; i < b->request->outputs.asked.count; i++) asked = fmax(asked, b->request->outputs.asked.number[i]);
   if (asked == 0.0) return first_error;
-  const double near = fmin(first_error, above_asked * asked / study_size(study));
+  const double judged = STUDY_FLOOR_MARGIN * STUDY_FLOOR_MARGIN * b->judge.error; /* else no level would lie above the floor */
+  const double near = fmin(first_error, fmax(above_asked * asked, judged) / study_size(study));
   return fmax(near, first_error * pow(more_steps, -study->order));
 }
 
