@@ -138,7 +138,9 @@ static int ask(judgement *judge, const problem *scene, double t_end, const judge
     status = ask_ida(judge, scene, t_end, p);
   else
     status = ask_ida_then_runs(judge, scene, t_end, request, p, ida);
-  return status == DVI_OK ? DONE : library_error(status);
+  if (status == DVI_OK) return DONE;
+  complain("the judge, --judge %s, failed on %s to t = %g:", kinds[kind], scene->name, t_end);
+  return library_error(status);
 }
 
 int judge_init(judgement *judge, const problem *scene, double t_end, const judge_request *request)

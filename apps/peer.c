@@ -12,18 +12,22 @@ static const char gsl_name[] = "gsl-rk8pd";
 
 static char reason[512];
 
+#ifdef DVI_GSL
 /* SUNDIALS' codes have the library's numbers; GSL's follows them. */
-static int sundials_count(void)
+static int gsl_number(void)
 {
   int count = 0;
   while (dvi_reference_name((dvi_reference_code)count) != NULL) count++;
   return count;
 }
+#endif
 
 const char *peer_name(int peer)
 {
-  const int count = sundials_count();
-  return peer == count ? gsl_name : peer >= 0 && peer < count ? dvi_reference_name((dvi_reference_code)peer) : NULL;
+#ifdef DVI_GSL
+  if (peer == gsl_number()) return gsl_name;
+#endif
+  return dvi_reference_name((dvi_reference_code)peer);
 }
 
 const char *peer_gsl_version(void)
@@ -46,12 +50,12 @@ static int read_peer(const char *text, size_t length, peer_list *list)
   int peer = 0;
   while (peer_name(peer) != NULL && !is_named(peer_name(peer), text, length)) peer++;
   const char *name = peer_name(peer);
-  if (name == NULL)
-    return usage_error("bench: --against knows cvode (cvode-adams, cvode-bdf), arkode, ida and gsl, not '%.*s'", (int)length, text);
-  if (name == gsl_name && peer_gsl_version() == NULL)
+  if (name == NULL && is_named(gsl_name, text, length))
     return usage_error(
-        "bench: --against gsl: this dvi was built without GSL; configure with -DDVI_GSL=ON (Debian's package: libgsl-dev), "
-        "for your own use or under the GPL, which GSL is under");
+        "bench: --against gsl: this dvi was built without GSL; configure with -DDVI_GSL=ON (Debian's package: libgsl-dev); "
+        "a binary built so is under the GPL");
+  if (name == NULL)
+    return usage_error("bench: --against knows cvode (cvode-adams), cvode-bdf, arkode, ida and gsl, not '%.*s'", (int)length, text);
   for (int i = 0; i < list->count; i++)
     if (list->peer[i] == peer) return usage_error("bench: --against names %s twice", name);
   list->peer[list->count++] = peer; /* each once: there are fewer than PEERS_MAX */
@@ -80,7 +84,7 @@ dvi_status peer_solve(int peer, const problem *scene, double t_end, double toler
   memcpy(p, scene->p, (size_t)scene->n * sizeof *p);
   if (report == NULL) report = &unread;
 #ifdef DVI_GSL
-  if (peer == sundials_count()) return rk8pd_solve(scene, t_end, tolerance, q, p, report, reason, sizeof reason);
+  if (peer == gsl_number()) return rk8pd_solve(scene, t_end, tolerance, q, p, report, reason, sizeof reason);
 #endif
   const dvi_status status = dvi_reference_solve(scene->system, 0.0, t_end, q, p, &options, report);
   if (status != DVI_OK) (void)snprintf(reason, sizeof reason, "%s", dvi_last_error());

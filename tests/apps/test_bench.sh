@@ -104,6 +104,8 @@ expect 2 'no exact solution' bench fpu --method verlet --judge exact
 says err 'no known exact solution' 'no exact solution'
 expect 2 'no digits at this end' bench fpu --method verlet --judge stored --t-end 3
 expect 2 'no digits for these parameters' bench fpu --method verlet --judge stored --t-end 200 --set ell=4
+expect 1 'a judge that fails' bench pythagorean --t-end 60 --method verlet --levels 1 --rounds 1 --judge runs
+says err 'the judge, --judge runs, failed on pythagorean to t = 60:' 'who failed'
 expect 2 'nobody' bench fpu --method verlet --judge run
 says err "did you mean 'runs'" 'nobody'
 
@@ -129,6 +131,8 @@ if "$dvi" --version | grep -q GSL; then
   awk -F, '$3 == "tol=1e-06" { a = $4 } $3 == "tol=1e-10" { b = $4 } END { exit !(b < a / 100) }' out || fail 'GSL obeys its tolerance'
   expect 0 'GSL backward' bench kepler --t-end -3 --method verlet --levels 1 --rounds 1 --against gsl --csv -
   awk -F, '$1 == "gsl-rk8pd" && $4 < 1e-9 { good++ } END { exit good < 1 }' out || fail 'GSL backward'
+  expect 0 'GSL gives up' bench kepler --set e=0.9999999999 --method verlet --levels 1 --rounds 1 --against gsl
+  says err 'left out gsl-rk8pd at tol=1e-04: gsl-rk8pd: stopped at t = .* before 1.25' 'where GSL gives up'
 else
   expect 2 'no GSL' bench kepler --method verlet --against gsl
   says err 'built without GSL; configure with -DDVI_GSL=ON (Debian.s package: libgsl-dev)' 'no GSL'
