@@ -42,7 +42,7 @@ const char *peer_gsl_version(void)
 /* "cvode" alone is its Adams formula, the better one where nothing is stiff: it comes first. */
 static bool is_named(const char *name, const char *text, size_t length)
 {
-  return length > 0 && strncmp(name, text, length) == 0 && (name[length] == '\0' || name[length] == '-');
+  return (length == strlen(name) || length == strcspn(name, "-")) && strncmp(name, text, length) == 0;
 }
 
 static int read_peer(const char *text, size_t length, peer_list *list)
