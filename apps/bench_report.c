@@ -51,10 +51,10 @@ static result_table *make_table(const bench_results *results)
   return rows;
 }
 
-static bool has_peers(const bench_results *results)
+static bool has_sundials(const bench_results *results)
 {
   for (int i = 0; i < results->jobs; i++)
-    if (results->job[i].peer >= 0) return true;
+    if (results->job[i].peer >= 0 && dvi_reference_name((dvi_reference_code)results->job[i].peer) != NULL) return true;
   return false;
 }
 
@@ -74,7 +74,7 @@ static void print_notes(FILE *stream, const bench_results *results)
                 results->rounds);
   (void)fprintf(stream, "create_seconds: its part that creates the integrator; of peers not known\n");
   (void)fprintf(stream, "energy_error: methods: largest over the run; peers: largest of %d times\n", (int)ENERGY_TIMES);
-  if (!has_peers(results)) return;
+  if (!has_sundials(results)) return;
   (void)fprintf(stream, "SUNDIALS %s. Caution: Debian's packages of SUNDIALS are built without optimisation; its codes linked\n",
                 dvi_reference_version());
   (void)fprintf(stream, "from them are several times slower than they can be. Say which build a ratio was measured against.\n");
