@@ -154,7 +154,7 @@ static bool for_csv_alone(const table_column *column)
   return column->format != NULL && column->format[0] == '\0';
 }
 
-/* Columns that people see end here. */
+/* Where the columns that people see end. */
 static int shown_end(const result_table *table)
 {
   int end = table->columns;
@@ -162,11 +162,18 @@ static int shown_end(const result_table *table)
   return end;
 }
 
-/* Text to the left, numbers to the right; no blanks at the end of a line. */
-static void print_cell(const result_table *table, FILE *stream, int column, int width, const char *text)
+/* And those of one row that hold anything; the titles stand in row first-1. */
+static int row_end(const result_table *table, int first, int row)
 {
-  const bool last = column + 1 == shown_end(table);
-  if (last && text[0] == '\0') return;
+  char text[CELL_TEXT];
+  int end = shown_end(table);
+  while (row >= first && end > 0 && for_people(table, row, end - 1, text)[0] == '\0') end--;
+  return end;
+}
+
+/* Text to the left, numbers to the right; no blanks at the end of a line. */
+static void print_cell(const result_table *table, FILE *stream, int column, int width, bool last, const char *text)
+{
   if (table->column[column].format != NULL)
     (void)fprintf(stream, "  %*s", width, text);
   else
@@ -177,8 +184,9 @@ void table_print(const result_table *table, FILE *stream, int skip, int first, i
 {
   char text[CELL_TEXT];
   for (int row = first - 1; row < last; row++) {
-    for (int j = skip; j < shown_end(table); j++)
-      print_cell(table, stream, j, column_width(table, j, first, last),
+    const int end = row_end(table, first, row);
+    for (int j = skip; j < end; j++)
+      print_cell(table, stream, j, column_width(table, j, first, last), j + 1 == end,
                  row < first ? table->column[j].title : for_people(table, row, j, text));
     (void)fputc('\n', stream);
   }

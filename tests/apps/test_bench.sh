@@ -8,6 +8,7 @@ expect 0 'methods and peers' bench kepler --method verlet --method galerkin:degr
 [ "$(head -n 1 out)" = integrator,problem,setting,error,energy_error,cpu_seconds,evaluations,cpu_lower,cpu_upper,steps,create_seconds,calibration_seconds,calibration_least ] ||
   fail 'header'
 awk -F, 'NF != 13' out | grep -q . && fail 'every row has 13 fields'
+grep -q ' $' err && fail 'no blanks at the end of a line'
 grep -qi 'nan\|inf' out && fail 'every field is a number'
 [ "$(grep -c '^verlet,kepler,h=' out)" -eq 3 ] || fail 'three steps of verlet'
 for peer in cvode-adams arkode ida; do
@@ -59,6 +60,7 @@ awk -F, 'FNR == NR { if ($1 ~ /^galerkin/) { e[++n] = $4; c[n] = $7 } next }
              if ($7 < 0.999999 * wanted || $7 > 1.000001 * wanted) print "evaluations", $7, wanted } }
          END { if (!seen) print "no neighbours" }' all.csv at.csv | grep . && fail 'evaluations at 1e-5'
 says out '^At an error of 1e-5$' 'for people'
+grep -q ' $' out && fail 'no blanks at the end of a line'
 says out "^At an error of 1e-20: .* not to be trusted" 'what the judge cannot tell'
 # verlet, of order 2, needs more levels for 1e-5 than the six that it gets at first: they end at 2.6e-5.
 expect 0 'asked errors without levels' bench kepler --method verlet --rounds 1 --csv - --at 1e-4,1e-5 --at-csv at.csv
