@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "peer.h"
 #include "study.h"
 
 /* A sanitizer brings a malloc of its own, of which the C library knows nothing. */
@@ -58,7 +59,9 @@ void machine_print(FILE *stream)
   processor(name);
   (void)fprintf(stream, "processor: %s\n", name);
   (void)fprintf(stream, "compiler: %s, %s\n", DVI_BUILD_COMPILER, DVI_BUILD_FLAGS);
-  (void)fprintf(stream, "libraries: dvi %s, SUNDIALS %s\n", dvi_version(), dvi_reference_version());
+  (void)fprintf(stream, "libraries: dvi %s, SUNDIALS %s", dvi_version(), dvi_reference_version());
+  if (peer_gsl_version() != NULL) (void)fprintf(stream, ", GSL %s", peer_gsl_version());
+  (void)fputc('\n', stream);
 }
 
 double machine_multiplications(void)
@@ -76,8 +79,8 @@ double machine_multiplications(void)
 
 void machine_print_calibration(FILE *stream, const spread *seconds)
 {
-  (void)fprintf(stream, "calibration: 1e8 dependent multiplications in %.3f s (quartiles %.3f, %.3f)\n", seconds->median,
-                seconds->lower, seconds->upper);
+  (void)fprintf(stream, "calibration: 1e8 dependent multiplications in %.3f s (least %.3f, quartiles %.3f, %.3f)\n",
+                seconds->median, seconds->least, seconds->lower, seconds->upper);
 }
 
 double machine_heap(void)

@@ -5,7 +5,7 @@
 
 #include "samples.h"
 
-/** Print processor, compiler with its flags, and the versions of dvi and SUNDIALS, a line each. */
+/** Print processor, compiler with its flags, and the versions of dvi, SUNDIALS and, if it is there, GSL, a line each. */
 void machine_print(FILE *stream);
 
 /** Process time of 1e8 multiplications of which each waits for the one before, in seconds; a tenth of them are run. It says how fast the

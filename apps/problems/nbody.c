@@ -215,7 +215,7 @@ static dvi_status make_system(gravity *own, problem *made)
                                   .potential_count = 1,
                                   .symmetries = symmetries,
                                   .symmetry_count = symmetry_count};
-  return dvi_system_create(&terms, &made->system);
+  return problem_system(made, &terms);
 }
 
 dvi_status nbody_make(const nbody *bodies, problem *made)
