@@ -137,7 +137,8 @@ static void leap(const part *own, int k, range r)
                           .mass = w->by == DVI__BY_ARRAY ? w->system->mass_diagonal + r.first : NULL,
                           .force = gradient + r.first,
                           .from = phase_at(k == 0 ? &s->from : &s->to, r.first),
-                          .to = phase_at(&s->to, r.first)};
+                          .to = phase_at(&s->to, r.first),
+                          .far = k == 0};
   dvi__lanes_leap(&leap);
 }
 

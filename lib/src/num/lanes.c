@@ -15,6 +15,8 @@ int dvi__lanes_for(int stages)
 #define JOIN_EXPANDED(a, b) JOIN(a, b)
 #define NAME(name) JOIN_EXPANDED(name, WIDTH)
 
+enum { FETCH_AHEAD = 1024 }; /* bytes: half of it is as good, twice as much is worse */
+
 #define WIDTH 1
 #include "num/lanes_width.h"
 #include "num/leap_width.h"

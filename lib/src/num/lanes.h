@@ -54,6 +54,7 @@ typedef struct dvi__leap {
   const double *mass;  /* [count], for DVI__BY_ARRAY */
   const double *force; /* [count] */
   dvi__phase from, to; /* [count] each, the same or apart */
+  int far;             /* whether all of these come from memory, not from a cache */
 } dvi__leap;
 
 void dvi__lanes_leap(const dvi__leap *leap);

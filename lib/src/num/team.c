@@ -10,7 +10,7 @@
 #include "core/status.h"
 
 /* Between two steps that follow each other a thread shall not fall asleep: waking it takes longer than this many looks. */
-enum { LOOKS = 4000, LOOKS_BEFORE_YIELDING = 200 };
+enum { LOOKS = 1000, LOOKS_BEFORE_YIELDING = 200 };
 
 typedef struct member {
   dvi__team *team;
@@ -42,7 +42,7 @@ void dvi__team_pause(int waited)
 
 static void await_turn(dvi__team *team, unsigned long seen)
 {
-  for (int i = 0; i < LOOKS && atomic_load(&team->turn) == seen; i++) dvi__team_pause(0);
+  for (int i = 0; i < LOOKS && atomic_load(&team->turn) == seen; i++) dvi__team_pause(i);
   (void)pthread_mutex_lock(&team->lock);
   while (atomic_load(&team->turn) == seen) (void)pthread_cond_wait(&team->begin, &team->lock);
   (void)pthread_mutex_unlock(&team->lock);
@@ -86,7 +86,7 @@ void dvi__team_run(dvi__team *team, int count, void (*work)(void *user, int memb
 {
   begin_turn(team, count, work, user);
   work(user, 0);
-  for (int i = 0; i < LOOKS && atomic_load(&team->busy) > 0; i++) dvi__team_pause(0);
+  for (int i = 0; i < LOOKS && atomic_load(&team->busy) > 0; i++) dvi__team_pause(i);
   (void)pthread_mutex_lock(&team->lock);
   while (atomic_load(&team->busy) > 0) (void)pthread_cond_wait(&team->end, &team->lock);
   (void)pthread_mutex_unlock(&team->lock);
