@@ -33,11 +33,10 @@ struct dvi__team {
 
 void dvi__team_pause(int waited)
 {
-  if (waited > LOOKS_BEFORE_YIELDING) (void)sched_yield();
 #if defined(__x86_64__)
-  else
-    __builtin_ia32_pause();
+  __builtin_ia32_pause();
 #endif
+  if (waited > LOOKS_BEFORE_YIELDING) (void)sched_yield();
 }
 
 static void await_turn(dvi__team *team, unsigned long seen)
