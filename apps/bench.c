@@ -34,7 +34,7 @@ typedef struct bench_request {
   bench_outputs outputs;
   const char *at, *scale;
   double t_end, h;
-  long levels, rounds;
+  long levels, rounds, steps;
   words methods, settings, against;
   bool selected; /* the methods are those of the selection */
   bool extend;   /* the number of levels is free: more may follow */
@@ -272,6 +272,8 @@ static int check_modes(const bench_request *r)
 {
   static const char reason[] = "--scale measures single steps";
   if (r->scale == NULL && !isnan(r->h)) return usage_error("bench: --h goes with --scale; else the steps are chosen by the error");
+  if (r->scale == NULL && r->steps > 0)
+    return usage_error("bench: --steps goes with --scale; else their number follows from the error");
   if (r->outputs.at_csv != NULL && r->at == NULL) return usage_error("bench: --at-csv needs the errors: --at 1e-6,1e-9");
   if (r->scale == NULL) return DONE;
   if (r->at != NULL) return usage_error("bench: %s: --at has no meaning there", reason);
@@ -312,6 +314,7 @@ static int scale_problem(const bench_request *r, const char *name)
                                  .settings = &r->settings,
                                  .h = r->h,
                                  .rounds = r->rounds,
+                                 .steps = r->steps,
                                  .csv = r->outputs.csv,
                                  .plot = r->outputs.plot};
   return scale_run(&request);
@@ -352,9 +355,11 @@ static const char details[] =
     "  answer        interpolated; at most (the cheapest setting is already better); not reached\n"
     "\n"
     "--scale: a problem's parameter and the values at which a step is measured, with the exponents of cost against the\n"
-    "number of coordinates n. The first 32 steps from the start are run again and again. Repeat --method to compare\n"
-    "degrees. Columns: method,problem,parameter,value,n,h,step_seconds,step_lower,step_upper,bytes,step_evaluations;\n"
-    "bytes is what the integrator holds of the heap (mallinfo2; empty where there is no such function).\n"
+    "number of coordinates n. The first 32 (--steps) steps from the start are run again and again. Repeat --method to\n"
+    "compare degrees. Columns: method,problem,parameter,value,n,h,step_seconds,step_lower,step_upper,bytes,step_evaluations;\n"
+    "bytes is what the integrator holds of the heap (mallinfo2; empty where there is no such function). Of methods that\n"
+    "know how many bytes a step moves, those of a second are printed beside what an in-place axpy, y <- y + a x, of as\n"
+    "many numbers moves in the same round. --scale threads=1,2 gives that key to every method, and measures elapsed time.\n"
     "\n"
     "Processor, compiler and flags are printed, and the time of 1e8 dependent multiplications, measured once a round:\n"
     "it tells times of two machines or two hours apart. Every integrator gets the same callbacks. Debian's packages of\n"
@@ -363,7 +368,8 @@ static const char details[] =
     "Examples:\n"
     "  dvi bench kepler --against cvode,arkode,ida --at 1e-6,1e-9 --plot bench.svg\n"
     "  dvi bench outer-solar --method galerkin:degree=8 --method verlet --csv bench.csv\n"
-    "  dvi bench fpu --method galerkin:degree=2 --method galerkin:degree=4 --scale ell=100,1000,10000\n";
+    "  dvi bench fpu --method galerkin:degree=2 --method galerkin:degree=4 --scale ell=100,1000,10000\n"
+    "  dvi bench chain --set n=1e6 --method verlet --method composition:order=8 --scale threads=1,2\n";
 
 int bench_command(int argc, char **argv)
 {
@@ -375,6 +381,7 @@ int bench_command(int argc, char **argv)
       {.name = "at-csv", .word = &r.outputs.at_csv, .value = "-|FILE", .help = "write that comparison as CSV"},
       {.name = "scale", .word = &r.scale, .value = "NAME=V,V...", .help = "measure steps instead, as this parameter grows"},
       {.name = "h", .number = &r.h, .value = "H", .help = "the step of --scale; left out: the problem's"},
+      {.name = "steps", .count = &r.steps, .value = "N", .help = "how many steps --scale times at once; left out: 32"},
       {.name = "levels",
        .count = &r.levels,
        .value = "N",

@@ -6,10 +6,11 @@
 /** What is asked for. */
 typedef struct scale_request {
   const char *problem;
-  const char *sizes; /**< "ell=100,1000": a parameter and its values */
+  const char *sizes; /**< "ell=100,1000": a parameter of the problem and its values; or "threads=1,2": a key of the methods */
   const words *methods, *settings;
   double h; /**< NaN: the problem's */
   long rounds;
+  long steps; /**< timed from the start; 0: 32 */
   const char *csv, *plot;
 } scale_request;
 
