@@ -195,7 +195,7 @@ START_TEST(every_instruction_set_and_thread_count_has_the_same_bits)
         char text[2048];
         make_pair(&p, LENGTH, 2, 2, threads, methods[method], threads, 0);
         dvi_integrator_explain(p.wave, text, sizeof text);
-        ck_assert_msg(strstr(text, spec("%d of %d thread", threads, threads)) != NULL, "%s", text);
+        ck_assert_msg(strstr(text, spec("threads: %d of %d\n", threads, threads)) != NULL, "%s", text);
         dvi__lanes_choose(level);
         for (int i = 0; i < 3; i++) advance(p.wave, 0.04, 1);
         dvi__lanes_choose(0);
@@ -221,9 +221,9 @@ START_TEST(a_long_reach_takes_several_passes_with_the_same_bits)
     p.wave = made_integrator(p.system, "composition:order=6,sweep=wave,threads=2");
     p.plain = made_integrator(p.system, "composition:order=6,sweep=plain");
     dvi_integrator_explain(p.wave, text, sizeof text);
-    ck_assert_msg(strstr(text, k == 0   ? "up to 13 substeps"
-                               : k == 1 ? "up to 2 substeps"
-                                        : "up to 1 substeps") != NULL,
+    ck_assert_msg(strstr(text, k == 0   ? "at most 13 substeps"
+                               : k == 1 ? "at most 2 substeps"
+                                        : "at most 1 substeps") != NULL,
                   "%s", text);
     start_alike(&p);
     for (int i = 0; i < 2; i++) step_both(&p, 0.04);

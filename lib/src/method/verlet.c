@@ -161,8 +161,8 @@ static void explain(const dvi__stepper *self, dvi__text *text)
   dvi__text_add(text, "kernel: explicit; one gradient a step (the last one of a step is the first of the next)\n");
   dvi__text_add(text, "solver: none; no Hessian, no Jacobian, no factorisation of a step's equations\n");
   if (own->wave != NULL)
-    dvi__text_add(text, "sweep: wave; up to %d substeps in one pass through memory, %d of %d threads\n", dvi__wave_depth(own->wave),
-                  dvi__wave_threads(own->wave, 1), self->settings.value[THREADS]);
+    dvi__text_add(text, "sweep: wave; at most %d substeps in one pass through memory; threads: %d of %d\n",
+                  dvi__wave_depth(own->wave), dvi__wave_threads(own->wave, 1), self->settings.value[THREADS]);
   else
     dvi__text_add(text, "sweep: plain; %s\n",
                   self->settings.value[SWEEP] == SWEEP_PLAIN ? "it is asked for" : dvi__wave_obstacle(self->system));
