@@ -134,6 +134,33 @@ START_TEST(a_range_alone_serves_every_method)
 }
 END_TEST
 
+START_TEST(where_waves_are_not_possible_auto_sweeps_plainly_and_says_why)
+{
+  static const char *const words[] = {"there is no potential", "a potential has no gradient_range", "the mass is not diagonal"};
+  line own = {0};
+  int start[LENGTH + 1], row[LENGTH];
+  double values[LENGTH];
+  char text[1024];
+  dvi_potential potential = line_potential(&own);
+  dvi_system_terms terms = {.dimension = LENGTH, .mass.scalar = 1, .potentials = &potential, .potential_count = 1};
+  dvi_system *system = NULL;
+  for (int i = 0; i < LENGTH; i++) row[i] = start[i] = i, values[i] = 1 + i;
+  start[LENGTH] = LENGTH;
+  if (_i == 0) terms.potentials = NULL, terms.potential_count = 0;
+  if (_i == 1) potential.gradient = line_gradient, potential.gradient_range = NULL, potential.reach = 0;
+  if (_i == 2) terms.mass = (dvi_mass){.values = values, .pattern = {start, row}};
+  ck_assert_msg(dvi_system_create(&terms, &system) == DVI_OK, "%s", dvi_last_error());
+  dvi_integrator *integrator = made_integrator(system, "verlet"), *wave = integrator;
+  (void)dvi_integrator_explain(integrator, text, sizeof text);
+  ck_assert_msg(strstr(text, spec("sweep: plain; %s", words[_i])) != NULL, "%s", text);
+  ck_assert_int_eq(dvi_integrator_create(system, "verlet:sweep=wave", &wave), DVI_UNSUPPORTED);
+  ck_assert_ptr_null(wave);
+  check_words(words[_i]);
+  dvi_integrator_destroy(&integrator);
+  dvi_system_destroy(&system);
+}
+END_TEST
+
 /* ---- the check ---- */
 
 static dvi_status checked(const dvi_potential *potential, dvi_derivative_check *found)
@@ -233,6 +260,7 @@ int main(void)
   TCase *tests = tcase_create("range");
   tcase_add_test(tests, a_bad_reach_is_refused_by_name);
   tcase_add_loop_test(tests, a_range_alone_serves_every_method, 0, 5);
+  tcase_add_loop_test(tests, where_waves_are_not_possible_auto_sweeps_plainly_and_says_why, 0, 3);
   tcase_add_test(tests, a_true_range_passes);
   tcase_add_test(tests, a_range_that_looks_beyond_its_reach_is_found);
   tcase_add_test(tests, a_range_with_other_bits_than_the_whole_is_found);

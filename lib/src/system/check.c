@@ -2,6 +2,7 @@
  * gradients, one column at a time; every gradient by ranges against the whole one. */
 #include <float.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -115,6 +116,15 @@ static void expose(const check *c, int reach, int first, int last, const double 
   for (int i = begin; i < end; i++) to[i] = from != NULL ? from[i] : (double)NAN;
 }
 
+/* Zeros of two signs differ here, too. */
+static int same_bits(double a, double b)
+{
+  uint64_t bits_of_a, bits_of_b;
+  memcpy(&bits_of_a, &a, sizeof a);
+  memcpy(&bits_of_b, &b, sizeof b);
+  return bits_of_a == bits_of_b;
+}
+
 /* One range, asked for with NaN beyond its reach and behind its end, against the whole gradient. `hidden` holds NaN before and after. */
 static dvi_status compare_range(check *c, const dvi__potential_term *p, int first, int last, const double *whole, double *hidden)
 {
@@ -130,7 +140,7 @@ static dvi_status compare_range(check *c, const dvi__potential_term *p, int firs
                      "system check: %s: the gradient_range callback returned %d for coordinates %d to %d", p->name, returned, first,
                      last - 1);
   for (int i = 0; i <= count && c->range.row < 0; i++)
-    if (i < count ? memcmp(whole + first + i, part + i, sizeof *part) != 0 : !isnan(part[i]))
+    if (i < count ? !same_bits(whole[first + i], part[i]) : !isnan(part[i]))
       c->range = (broken_range){p, first + i, first, last, i < count ? whole[first + i] : (double)NAN, part[i]};
   return DVI_OK;
 }
