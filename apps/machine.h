@@ -15,6 +15,10 @@ double machine_multiplications(void);
 /** Print a line about repeated calls of that. */
 void machine_print_calibration(FILE *stream, const spread *seconds);
 
+/** Bytes a second that y <- y + a x moves in process time, in place, for n numbers in x and in y: 24 of them for each, two numbers read and
+ *  one written. What a loop gets from the machine's memory if it does hardly anything else. NaN if there is no memory. */
+double machine_axpy(int n);
+
 /** Bytes that malloc has handed out and not got back; NaN where the C library does not tell. */
 double machine_heap(void);
 #endif

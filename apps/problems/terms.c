@@ -32,7 +32,7 @@ dvi_status problem_system(problem *made, const dvi_system_terms *terms)
   return made->terms ? dvi_system_create(made->terms, &made->system) : DVI_NO_MEMORY;
 }
 
-/* One-point callbacks whose `user` is the declared term, and which hand it their point as a batch of one. */
+/* One-point callbacks (and ranges, which are of one point anyway) whose `user` is the declared term, and which hand it their point as a batch of one. */
 
 static int value(double t, const double *q, double *V, void *user)
 {
@@ -44,6 +44,12 @@ static int gradient(double t, const double *q, double *V_q, void *user)
 {
   const dvi_potential *own = user;
   return own->gradient_batch ? own->gradient_batch(1, &t, q, V_q, own->user) : own->gradient(t, q, V_q, own->user);
+}
+
+static int gradient_range(double t, const double *q, int first, int last, double *V_q, void *user)
+{
+  const dvi_potential *own = user;
+  return own->gradient_range(t, q, first, last, V_q, own->user);
 }
 
 static int hessian(double t, const double *q, double *V_qq, void *user)
@@ -78,6 +84,8 @@ static dvi_potential one_point_potential(const dvi_potential *declared)
                          .gradient = declared->gradient || declared->gradient_batch ? gradient : NULL,
                          .hessian = declared->hessian || declared->hessian_batch ? hessian : NULL,
                          .qq = declared->qq,
+                         .gradient_range = declared->gradient_range ? gradient_range : NULL,
+                         .reach = declared->reach,
                          .user = (void *)declared};
 }
 

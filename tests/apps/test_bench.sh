@@ -196,5 +196,23 @@ expect 2 'a specification too long for a key' bench kepler --method "galerkin:$(
 expect 0 'a level that cannot be solved' bench double-pendulum --t-end 20 --method galerkin:degree=8 --rounds 1 --judge ida
 says err 'left out galerkin' 'which level'
 expect 2 'h without sizes' bench kepler --method verlet --h 0.1
+
+# Threads, steps, and what waves move through memory: 120 bytes a coordinate.
+expect 0 'threads' bench chain --set n=20000 --method verlet --method composition:order=4 --scale threads=1,2 --steps 3 --rounds 2 --csv - --plot threads.svg
+awk -F, 'NR > 1 && !($3 == "threads" && $5 == 20000 && $7 > 0 && $8 <= $7 && $7 <= $9)' out | grep -q . && fail 'threads: rows'
+[ "$(awk -F, '$1 == "verlet" { print $4, $11 * 3 }' out | tr '\n' ' ')" = '1 4 2 4 ' ] || fail 'one gradient a step, one at the start, on any number of threads'
+says err '^  speed-up against threads=1:  [0-9.]*$' 'the speed-up'
+says err '^  threads=2: a step moves 2.4e+06 bytes, [0-9.]* GB/s: [0-9.]* of the [0-9.]* GB/s of an in-place axpy' 'the traffic'
+says err '^step_seconds: elapsed time of a step, mean of the first 3' 'which time'
+expect 0 'the traffic of waves alone' bench chain --method verlet --method verlet:sweep=plain --scale n=5,50 --steps 2 --rounds 1
+[ "$(grep -c 'a step moves' out)" -eq 2 ] || fail 'a plain sweep does not know its traffic'
+says out '^step_seconds: process time of a step, mean of the first 2' 'sizes: which time'
+expect 2 'threads where there is no wave' bench fpu --method verlet --scale threads=1,2
+says err 'no gradient_range' 'why there is none'
+expect 2 'threads of a method without' bench chain --method midpoint --scale threads=1,2
+expect 2 'half a thread' bench chain --method verlet --scale threads=1,1.5
+expect 2 'threads twice' bench chain --method verlet:threads=2 --scale threads=1,2
+expect 2 'steps without sizes' bench chain --method verlet --steps 3
+expect 2 'no steps' bench chain --method verlet --scale n=5,50 --steps 0
 no_trace 'bench'
 finish

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "num/compensated.h"
 #include "num/lanes.h"
 #include "support/runs.h"
 #include "support/suite.h"
@@ -119,6 +120,83 @@ START_TEST(a_product_has_the_bits_of_plain_loops)
 }
 END_TEST
 
+/* ---- kicks and drifts ---- */
+
+enum { LONGEST = 37 };
+
+typedef struct coordinates {
+  double q[LONGEST + 1], p[LONGEST + 1], q_carry[LONGEST + 1], p_carry[LONGEST + 1];
+} coordinates;
+
+static dvi__phase phase_of(coordinates *c)
+{
+  return (dvi__phase){c->q, c->p, c->q_carry, c->p_carry};
+}
+
+static coordinates made_coordinates(void)
+{
+  coordinates c;
+  fill(LONGEST + 1, c.q, 1), fill(LONGEST + 1, c.p, 2), fill(LONGEST + 1, c.q_carry, 3), fill(LONGEST + 1, c.p_carry, 4);
+  for (int i = 0; i <= LONGEST; i++) c.q_carry[i] *= 1e-17, c.p_carry[i] *= 1e-17;
+  return c;
+}
+
+/* What lanes.h says, one number after the other. */
+static void plain_leap(const dvi__leap *l)
+{
+  for (size_t i = 0; i < l->count; i++) {
+    double p = l->from.p[i], q = l->from.q[i], p_carry = l->from.p_carry[i], q_carry = l->from.q_carry[i];
+    for (int k = 0; k < l->kicks; k++) dvi__add_compensated(&p, &p_carry, l->kick[k] * l->force[i]);
+    const double v = l->by == DVI__BY_ARRAY ? p / l->mass[i] : l->by == DVI__BY_SCALAR ? p / l->scalar : p * l->scalar;
+    dvi__add_compensated(&q, &q_carry, v * l->drift);
+    l->to.p[i] = p, l->to.q[i] = q, l->to.p_carry[i] = p_carry, l->to.q_carry[i] = q_carry;
+  }
+}
+
+START_TEST(a_leap_has_the_bits_of_plain_loops)
+{
+  double forces[LONGEST], masses[LONGEST];
+  const int count = _i % (LONGEST + 1);
+  if (_i / (LONGEST + 1) >= dvi__lanes_levels()) return;
+  dvi__lanes_choose(_i / (LONGEST + 1));
+  fill(LONGEST, forces, 5), fill(LONGEST, masses, 6);
+  for (int variant = 0; variant < 12; variant++) {
+    coordinates from = made_coordinates(), fast = from, plain = from;
+    const int in_place = variant >= 6;
+    dvi__leap leap = {.count = (size_t)count,
+                      .kicks = 1 + variant % 2,
+                      .kick = {-0.3, 0.7},
+                      .drift = 0.1,
+                      .by = (dvi__division)(variant % 3),
+                      .scalar = 3,
+                      .mass = masses,
+                      .force = forces,
+                      .from = phase_of(in_place ? &fast : &from),
+                      .to = phase_of(&fast),
+                      .far = variant % 2};
+    dvi__lanes_leap(&leap);
+    leap.from = phase_of(in_place ? &plain : &from);
+    leap.to = phase_of(&plain);
+    plain_leap(&leap);
+    ck_assert_mem_eq(&fast, &plain, sizeof fast); /* nothing is written behind, either */
+  }
+}
+END_TEST
+
+START_TEST(a_kick_has_the_bits_of_plain_loops)
+{
+  double forces[LONGEST];
+  const int count = _i % (LONGEST + 1);
+  if (_i / (LONGEST + 1) >= dvi__lanes_levels()) return;
+  dvi__lanes_choose(_i / (LONGEST + 1));
+  fill(LONGEST, forces, 5);
+  coordinates fast = made_coordinates(), plain = fast;
+  dvi__lanes_kick((size_t)count, -0.3, forces, fast.p, fast.p_carry);
+  for (int i = 0; i < count; i++) dvi__add_compensated(&plain.p[i], &plain.p_carry[i], -0.3 * forces[i]);
+  ck_assert_mem_eq(&fast, &plain, sizeof fast);
+}
+END_TEST
+
 START_TEST(one_number_that_is_not_finite_is_seen_anywhere)
 {
   enum { MOST = 100 };
@@ -183,6 +261,8 @@ int main(void)
   tcase_add_checked_fixture(tests, NULL, best_again);
   tcase_add_loop_test(tests, a_sweep_has_the_bits_of_plain_loops, 0, 3 * STAGES_MOST);
   tcase_add_loop_test(tests, a_product_has_the_bits_of_plain_loops, 0, 3 * STAGES_MOST);
+  tcase_add_loop_test(tests, a_leap_has_the_bits_of_plain_loops, 0, 3 * (LONGEST + 1));
+  tcase_add_loop_test(tests, a_kick_has_the_bits_of_plain_loops, 0, 3 * (LONGEST + 1));
   tcase_add_loop_test(tests, one_number_that_is_not_finite_is_seen_anywhere, 0, 3);
   tcase_add_loop_test(tests, steps_have_the_same_bits_at_every_level, 0, 7);
   tcase_add_test(tests, levels_have_names);

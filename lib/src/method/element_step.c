@@ -129,7 +129,6 @@ static int allocate(dvi__stepper *self, element *own)
   const size_t n = (size_t)self->system->n, unknowns = (size_t)dvi__action_unknowns(own->action);
   self->memory_count = LAST_Y + unknowns + (size_t)dvi__action_forces_count(own->action);
   if (own->decoupled != NULL) self->memory_count += FROZEN_POINT + (size_t)dvi__decoupled_point_size(own->decoupled);
-  self->memory = DVI_NEW(double, self->memory_count);
   own->Y = DVI_NEW(double, unknowns);
   own->dq = DVI_NEW(double, n);
   own->dq_low = DVI_NEW(double, n);
@@ -139,8 +138,7 @@ static int allocate(dvi__stepper *self, element *own)
   own->part_v = DVI_NEW(double, n);
   own->part_Y = DVI_NEW(double, unknowns);
   own->offset = DVI_NEW(double, unknowns);
-  return self->memory && own->Y && own->dq && own->dq_low && own->dp && own->part_q && own->part_p && own->part_v && own->part_Y &&
-         own->offset;
+  return own->Y && own->dq && own->dq_low && own->dp && own->part_q && own->part_p && own->part_v && own->part_Y && own->offset;
 }
 
 static int symmetric_rule(dvi_rule rule)
@@ -206,7 +204,6 @@ dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *spac
 void dvi__element_destroy(dvi__stepper *self)
 {
   element *own = self->own;
-  dvi__release(self->memory);
   if (own == NULL) return;
   dvi__solver_destroy(&own->solver);
   dvi__decoupled_destroy(&own->decoupled);

@@ -15,17 +15,23 @@ int dvi__lanes_for(int stages)
 #define JOIN_EXPANDED(a, b) JOIN(a, b)
 #define NAME(name) JOIN_EXPANDED(name, WIDTH)
 
+enum { FETCH_AHEAD = 1024 }; /* bytes: half of it is as good, twice as much is worse */
+
 #define WIDTH 1
 #include "num/lanes_width.h"
+#include "num/leap_width.h"
 #undef WIDTH
 #define WIDTH 2
 #include "num/lanes_width.h"
+#include "num/leap_width.h"
 #undef WIDTH
 #define WIDTH 4
 #include "num/lanes_width.h"
+#include "num/leap_width.h"
 #undef WIDTH
 #define WIDTH 8
 #include "num/lanes_width.h"
+#include "num/leap_width.h"
 #undef WIDTH
 
 /* Vectors as wide as the target has them, at most as wide as a row. Eight stages are so common, and so small, that their loops are worth knowing at
@@ -126,6 +132,45 @@ INLINE double largest(size_t count, const double *x)
   return magnitude;
 }
 
+INLINE void leap_as(int widest, const dvi__leap *l, const int kicks, const dvi__division by)
+{
+  size_t i = 0;
+  if (widest == 8)
+    i = leap8(l, i, kicks, by);
+  else if (widest == 4)
+    i = leap4(l, i, kicks, by);
+  else
+    i = leap2(l, i, kicks, by);
+  (void)leap1(l, i, kicks, by);
+}
+
+INLINE void leap_by(int widest, const dvi__leap *l, const dvi__division by)
+{
+  l->kicks == 2 ? leap_as(widest, l, 2, by) : leap_as(widest, l, 1, by);
+}
+
+INLINE void leap(int widest, const dvi__leap *l)
+{
+  if (l->by == DVI__TIMES_SCALAR)
+    leap_by(widest, l, DVI__TIMES_SCALAR);
+  else if (l->by == DVI__BY_SCALAR)
+    leap_by(widest, l, DVI__BY_SCALAR);
+  else
+    leap_by(widest, l, DVI__BY_ARRAY);
+}
+
+INLINE void kick(int widest, size_t count, double factor, const double *force, double *p, double *p_carry)
+{
+  size_t i = 0;
+  if (widest == 8)
+    i = kick8(i, count, factor, force, p, p_carry);
+  else if (widest == 4)
+    i = kick4(i, count, factor, force, p, p_carry);
+  else
+    i = kick2(i, count, factor, force, p, p_carry);
+  (void)kick1(i, count, factor, force, p, p_carry);
+}
+
 /* ---- instruction sets ---- */
 
 typedef struct level {
@@ -137,6 +182,8 @@ typedef struct level {
   void (*product)(int n, int terms, int lanes, int width, const double *matrix, const double *x, double *out);
   int (*all_finite)(size_t count, const double *x);
   double (*largest)(size_t count, const double *x);
+  void (*leap)(const dvi__leap *l);
+  void (*kick)(size_t count, double factor, const double *force, double *p, double *p_carry);
 } level;
 
 #define LEVEL(suffix, target, widest)                                                                                             \
@@ -167,6 +214,14 @@ typedef struct level {
   target static double largest_##suffix(size_t count, const double *x)                                                            \
   {                                                                                                                               \
     return largest(count, x);                                                                                                     \
+  }                                                                                                                               \
+  target static void leap_##suffix(const dvi__leap *l)                                                                            \
+  {                                                                                                                               \
+    leap(widest, l);                                                                                                              \
+  }                                                                                                                               \
+  target static void kick_##suffix(size_t count, double factor, const double *force, double *p, double *p_carry)                  \
+  {                                                                                                                               \
+    kick(widest, count, factor, force, p, p_carry);                                                                               \
   }
 
 LEVEL(baseline, , 2)
@@ -177,10 +232,11 @@ LEVEL(avx512, __attribute__((target("fma,avx512f,avx512dq,avx512vl"))), 8)
 
 static const level levels[] = {
     {"baseline", sweep_baseline, split_baseline, begin_baseline, ends_baseline, product_baseline, all_finite_baseline,
-     largest_baseline},
+     largest_baseline, leap_baseline, kick_baseline},
 #ifdef __x86_64__
-    {"avx2", sweep_avx2, split_avx2, begin_avx2, ends_avx2, product_avx2, all_finite_avx2, largest_avx2},
-    {"avx512", sweep_avx512, split_avx512, begin_avx512, ends_avx512, product_avx512, all_finite_avx512, largest_avx512},
+    {"avx2", sweep_avx2, split_avx2, begin_avx2, ends_avx2, product_avx2, all_finite_avx2, largest_avx2, leap_avx2, kick_avx2},
+    {"avx512", sweep_avx512, split_avx512, begin_avx512, ends_avx512, product_avx512, all_finite_avx512, largest_avx512,
+     leap_avx512, kick_avx512},
 #endif
 };
 
@@ -248,4 +304,14 @@ int dvi__lanes_all_finite(size_t count, const double *x)
 double dvi__lanes_largest(size_t count, const double *x)
 {
   return best()->largest(count, x);
+}
+
+void dvi__lanes_leap(const dvi__leap *leap)
+{
+  best()->leap(leap);
+}
+
+void dvi__lanes_kick(size_t count, double factor, const double *force, double *p, double *p_carry)
+{
+  best()->kick(count, factor, force, p, p_carry);
 }

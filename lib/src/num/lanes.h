@@ -1,4 +1,5 @@
-/* Small dense products with the stages of a step as lanes of vectors.
+/* Loops for several instruction sets: small dense products with the stages of a step as lanes of vectors, and kicks and drifts with coordinates
+ * as lanes.
  *
  * A row of `lanes` numbers holds what one coordinate has at the stages, padded with zeros to 1, 2, 4 or a multiple of 8. The loops are
  * compiled for several instruction sets and chosen when they are first used; each gives the same bits, for every lane sees the same
@@ -58,6 +59,33 @@ int dvi__lanes_all_finite(size_t count, const double *x);
 
 /* See num/finite.h. */
 double dvi__lanes_largest(size_t count, const double *x);
+
+/* Coordinates and momenta with what their compensated sums carry. */
+typedef struct dvi__phase {
+  double *q, *p, *q_carry, *p_carry;
+} dvi__phase;
+
+/* How p becomes v: times a scalar (the inverse of a mass that is a power of two, where the product has the quotient's bits), over a scalar, over
+ * each one's own mass. */
+typedef enum dvi__division { DVI__TIMES_SCALAR, DVI__BY_SCALAR, DVI__BY_ARRAY } dvi__division;
+
+/* p <- p + kick_k force for one kick or two, then q <- q + drift v, all sums compensated (num/compensated.h). */
+typedef struct dvi__leap {
+  size_t count;
+  int kicks;
+  double kick[2], drift;
+  dvi__division by;
+  double scalar;
+  const double *mass;  /* [count], for DVI__BY_ARRAY */
+  const double *force; /* [count] */
+  dvi__phase from, to; /* [count] each, the same or apart */
+  int far;             /* whether all of these come from memory, not from a cache */
+} dvi__leap;
+
+void dvi__lanes_leap(const dvi__leap *leap);
+
+/* p <- p + factor force, compensated. */
+void dvi__lanes_kick(size_t count, double factor, const double *force, double *p, double *p_carry);
 
 /* The instruction sets, from the baseline (0) up; their count includes only those that this processor has. */
 int dvi__lanes_levels(void);

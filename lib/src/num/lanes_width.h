@@ -42,7 +42,7 @@ INLINE void NAME(store)(double *out, const NAME(vector) * x, int count)
 }
 
 /* sum <- sum + matrix_k x_k in WIDTH lanes. */
-INLINE void NAME(add)(int lanes, const double *matrix, const double *x, int k, NAME(vector) * sum)
+INLINE void NAME(add_column)(int lanes, const double *matrix, const double *x, int k, NAME(vector) * sum)
 {
   NAME(vector) column;
   NAME(load)(matrix + (size_t)k * (size_t)lanes, &column);
@@ -55,8 +55,8 @@ INLINE void NAME(row)(int terms, int lanes, const double *matrix, const double *
   NAME(vector) sum[4] = {{0}, {0}, {0}, {0}};
   int k = 0;
   for (; terms >= 8 && k + 4 <= terms; k += 4)
-    for (int j = 0; j < 4; j++) NAME(add)(lanes, matrix, x, k + j, &sum[j]);
-  for (; k < terms; k++) NAME(add)(lanes, matrix, x, k, &sum[0]);
+    for (int j = 0; j < 4; j++) NAME(add_column)(lanes, matrix, x, k + j, &sum[j]);
+  for (; k < terms; k++) NAME(add_column)(lanes, matrix, x, k, &sum[0]);
   *out = (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
