@@ -34,34 +34,56 @@ enum { FETCH_AHEAD = 1024 }; /* bytes: half of it is as good, twice as much is w
 #include "num/leap_width.h"
 #undef WIDTH
 
-/* Vectors as wide as the target has them, at most as wide as a row. Eight stages are so common, and so small, that their loops are worth knowing at
- * compile time. */
+/* Vectors as wide as the target has them, at most as wide as a row. Rows of eight lanes are the most common ones, and their few terms are worth
+ * knowing at compile time. */
+#define KNOWN(count, call) \
+  case count: call; return;
+
 INLINE void product(int widest, int n, int terms, int lanes, int width, const double *matrix, const double *x, double *out)
 {
-  const int W = lanes < widest ? lanes : widest, eight = lanes == 8 && width == 8 && terms == 8;
-  if (W == 1)
+  const int W = lanes < widest ? lanes : widest;
+  if (W == 1) {
     product1(n, terms, lanes, width, matrix, x, out);
-  else if (W == 2)
+    return;
+  }
+  if (W == 2) {
     product2(n, terms, lanes, width, matrix, x, out);
-  else if (W == 4)
+    return;
+  }
+  if (W == 4) {
     product4(n, terms, lanes, width, matrix, x, out);
-  else if (eight)
-    product8(n, 8, 8, 8, matrix, x, out);
-  else
-    product8(n, terms, lanes, width, matrix, x, out);
+    return;
+  }
+  switch (lanes == 8 ? terms : 0) {
+    KNOWN(5, product8(n, 5, 8, width, matrix, x, out))
+    KNOWN(6, product8(n, 6, 8, width, matrix, x, out))
+    KNOWN(7, product8(n, 7, 8, width, matrix, x, out))
+    KNOWN(8, product8(n, 8, 8, width, matrix, x, out))
+  default: product8(n, terms, lanes, width, matrix, x, out);
+  }
 }
+
+/* `known` for rows of eight lanes. */
+#define SWEEP(sweep, known)                \
+  switch (s->lanes == 8 ? s->stages : 0) { \
+    KNOWN(5, known(s, 5))                  \
+    KNOWN(6, known(s, 6))                  \
+    KNOWN(7, known(s, 7))                  \
+    KNOWN(8, known(s, 8))                  \
+  default: sweep(s);                       \
+  }
 
 INLINE void sweep(int widest, dvi__sweep *s)
 {
-  const int W = s->lanes < widest ? s->lanes : widest, eight = s->lanes == 8 && s->stages == 8;
+  const int W = s->lanes < widest ? s->lanes : widest;
   if (W == 1)
     sweep1(s);
   else if (W == 2)
-    eight ? sweep_eight2(s) : sweep2(s);
+    SWEEP(sweep2, sweep_known2)
   else if (W == 4)
-    eight ? sweep_eight4(s) : sweep4(s);
+    SWEEP(sweep4, sweep_known4)
   else
-    eight ? sweep_eight8(s) : sweep8(s);
+    SWEEP(sweep8, sweep_known8)
 }
 
 INLINE void begin(int widest, const dvi__sweep *s)

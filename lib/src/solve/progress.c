@@ -1,6 +1,7 @@
 #include <float.h>
 #include <math.h>
 
+#include "num/finite.h"
 #include "solve/solver_struct.h"
 
 /* Corrections of a few roundings are at the floor, if the iteration's own part of them is well below a rounding. That part counts although the
@@ -39,14 +40,8 @@ dvi__progress dvi__judge(double correction, dvi__trail *trail, const dvi__pace *
 
 void dvi__correct(int count, const double *correction, double *x, double *largest_correction, double *largest_x)
 {
-  double change = 0, whole = 0;
-  int nan = 0;
-  for (int i = 0; i < count; i++) {
-    x[i] -= correction[i];
-    change = fabs(correction[i]) > change ? fabs(correction[i]) : change;
-    whole = fabs(x[i]) > whole ? fabs(x[i]) : whole;
-    nan |= isnan(x[i]);
-  }
-  *largest_correction = nan ? HUGE_VAL : change;
-  *largest_x = whole;
+  for (int i = 0; i < count; i++) x[i] -= correction[i];
+  *largest_correction = dvi__largest((size_t)count, correction);
+  *largest_x = dvi__largest((size_t)count, x);
+  if (isnan(*largest_x)) *largest_correction = HUGE_VAL;
 }
