@@ -74,6 +74,16 @@ void dvi__action_ends(const dvi__action *a, const double *Y, double *dq, double 
 
 /* ---- chord: the kinetic part of the Jacobian ---- */
 
+static void invert_chord(dvi__action *a)
+{
+  const size_t n = (size_t)a->n;
+  memset(a->chord_inverse, 0, n * n * sizeof(double));
+  for (size_t j = 0; j < n; j++) {
+    a->chord_inverse[j * n + j] = 1;
+    dvi__linear_solve(a->chord, a->chord_inverse + j * n);
+  }
+}
+
 dvi_status dvi__action_prepare_chord(dvi__action *a, const double *Y)
 {
   if (a->system->lagrangian == NULL) return DVI_OK;
@@ -82,12 +92,29 @@ dvi_status dvi__action_prepare_chord(dvi__action *a, const double *Y)
   for (int i = 0; i < a->n; i++) a->middle[0][i] += a->q0[i];
   DVI_TRY(dvi__velocity_hessian(a->evaluator, middle, a->middle[0], a->middle[1], &L_vv));
   memcpy(a->middle_vv, L_vv, (size_t)dvi__pattern_entries(&a->system->vv) * sizeof(double));
-  return dvi__linear_factor(a->chord, a->middle_vv);
+  DVI_TRY(dvi__linear_factor(a->chord, a->middle_vv));
+  if (a->chord_inverse != NULL) invert_chord(a);
+  return DVI_OK;
+}
+
+/* R <- L_vv^{-1} R by the inverse, row by row. */
+static void multiply_by_inverse(dvi__action *a, double *R)
+{
+  const size_t s = (size_t)a->s, n = (size_t)a->n;
+  memset(a->rows, 0, n * s * sizeof(double));
+  for (size_t j = 0; j < n; j++)
+    for (size_t i = 0; i < n; i++)
+      for (size_t k = 0; k < s; k++) a->rows[i * s + k] += a->chord_inverse[j * n + i] * R[j * s + k];
+  memcpy(R, a->rows, n * s * sizeof(double));
 }
 
 static void solve_velocity_hessian(dvi__action *a, double *R)
 {
   const size_t s = (size_t)a->s;
+  if (a->chord_inverse != NULL) {
+    multiply_by_inverse(a, R);
+    return;
+  }
   for (size_t k = 0; k < s; k++) {
     for (size_t i = 0; i < (size_t)a->n; i++) a->middle[0][i] = R[i * s + k];
     dvi__linear_solve(a->chord, a->middle[0]);
