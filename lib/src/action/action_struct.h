@@ -55,6 +55,7 @@ struct dvi__action {
   dvi__shifts sweep_shift;                         /* from the last step's forces to offsets: [r*lanes], by columns */
   int swept;                                       /* the forces are a sweep's */
   /* Chord. */
+  double scaled_h;       /* the h of the last row scales */
   double *middle_vv;     /* L_vv at one point (general Lagrangians) */
   double *middle[2];     /* q, v at that point */
   dvi__linear *chord;    /* factors middle_vv */

@@ -27,20 +27,14 @@ static double dot(int count, const double *x, const double *y)
   return sum;
 }
 
-/* The forces enter every row, and p1, with the same rounded product b_j L_q: that keeps the rows consistent to the last bit. */
-static void weigh(const dvi__action *a, double *batch)
-{
-  for (size_t i = 0, r = (size_t)a->r; i < (size_t)a->n; i++)
-    for (size_t j = 0; j < r; j++) batch[i * r + j] *= a->weight[j];
-}
-
 dvi_status dvi__action_residual(dvi__action *a, const double *Y, double *R)
 {
   a->swept = 0;
   dvi__action_stages(a, Y);
   DVI_TRY(dvi__lagrangian_gradient(a->evaluator, a->r, a->t, a->Q, a->V, a->L_q, a->L_v));
-  weigh(a, a->L_q);
-  weigh(a, a->L_v);
+  /* The forces enter every row, and p1, with the same rounded product b_j L_q: that keeps the rows consistent to the last bit. */
+  dvi__lanes_weigh(a->n, a->r, a->weight, a->L_q);
+  dvi__lanes_weigh(a->n, a->r, a->weight, a->L_v);
   dvi__lanes_product(a->n, a->r, a->path_lanes, a->s, a->bar_row, a->L_q, R);
   dvi__lanes_product(a->n, a->r, a->path_lanes, a->s, a->slope_row, a->L_v, a->rows);
   for (size_t i = 0, s = (size_t)a->s; i < (size_t)a->n; i++)
@@ -133,8 +127,10 @@ void dvi__action_chord(dvi__action *a, double *R)
   for (size_t i = 0; i < (size_t)a->n * (size_t)s; i++) R[i] = a->h * a->rows[i];
 }
 
-void dvi__action_row_scale(const dvi__action *a, double *scale)
+int dvi__action_row_scale(dvi__action *a, double *scale)
 {
+  if (a->chord == NULL && a->scaled_h == a->h) return 0;
+  a->scaled_h = a->h;
   const dvi__pattern *vv = &a->system->vv;
   const double *values = a->chord != NULL                   ? a->middle_vv
                          : a->system->mass_diagonal != NULL ? a->system->mass_diagonal
@@ -145,6 +141,7 @@ void dvi__action_row_scale(const dvi__action *a, double *scale)
     const double row = (size > 0 ? size : 1.0) / fabs(a->h);
     for (int k = 0; k < a->s; k++) scale[i * a->s + k] = row;
   }
+  return 1;
 }
 
 /* ---- paths ---- */

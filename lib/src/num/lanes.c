@@ -99,6 +99,11 @@ INLINE void begin(int widest, const dvi__sweep *s)
     begin8(s);
 }
 
+INLINE void weigh(int n, int stages, const double *weight, double *x)
+{
+  stages == 8 ? weigh1(n, 8, weight, x) : weigh1(n, stages, weight, x);
+}
+
 /* A fused product tells what rounding takes from one; where the processor has none, the library function gives the same bits. */
 INLINE void split(const dvi__sweep *s)
 {
@@ -198,6 +203,7 @@ INLINE void kick(int widest, size_t count, double factor, const double *force, d
 typedef struct level {
   const char *name;
   void (*sweep)(dvi__sweep *s);
+  void (*weigh)(int n, int stages, const double *weight, double *x);
   void (*split)(const dvi__sweep *s);
   void (*begin)(const dvi__sweep *s);
   void (*ends)(const dvi__ends *e);
@@ -212,6 +218,10 @@ typedef struct level {
   target static void sweep_##suffix(dvi__sweep *s)                                                                                \
   {                                                                                                                               \
     sweep(widest, s);                                                                                                             \
+  }                                                                                                                               \
+  target static void weigh_##suffix(int n, int stages, const double *weight, double *x)                                           \
+  {                                                                                                                               \
+    weigh(n, stages, weight, x);                                                                                                  \
   }                                                                                                                               \
   target static void split_##suffix(const dvi__sweep *s)                                                                          \
   {                                                                                                                               \
@@ -253,12 +263,13 @@ LEVEL(avx512, __attribute__((target("fma,avx512f,avx512dq,avx512vl"))), 8)
 #endif
 
 static const level levels[] = {
-    {"baseline", sweep_baseline, split_baseline, begin_baseline, ends_baseline, product_baseline, all_finite_baseline,
-     largest_baseline, leap_baseline, kick_baseline},
+    {"baseline", sweep_baseline, weigh_baseline, split_baseline, begin_baseline, ends_baseline, product_baseline,
+     all_finite_baseline, largest_baseline, leap_baseline, kick_baseline},
 #ifdef __x86_64__
-    {"avx2", sweep_avx2, split_avx2, begin_avx2, ends_avx2, product_avx2, all_finite_avx2, largest_avx2, leap_avx2, kick_avx2},
-    {"avx512", sweep_avx512, split_avx512, begin_avx512, ends_avx512, product_avx512, all_finite_avx512, largest_avx512,
-     leap_avx512, kick_avx512},
+    {"avx2", sweep_avx2, weigh_avx2, split_avx2, begin_avx2, ends_avx2, product_avx2, all_finite_avx2, largest_avx2, leap_avx2,
+     kick_avx2},
+    {"avx512", sweep_avx512, weigh_avx512, split_avx512, begin_avx512, ends_avx512, product_avx512, all_finite_avx512,
+     largest_avx512, leap_avx512, kick_avx512},
 #endif
 };
 
@@ -296,6 +307,11 @@ static const level *best(void)
 void dvi__lanes_sweep(dvi__sweep *s)
 {
   best()->sweep(s);
+}
+
+void dvi__lanes_weigh(int n, int stages, const double *weight, double *x)
+{
+  best()->weigh(n, stages, weight, x);
 }
 
 void dvi__lanes_split(const dvi__sweep *s)
