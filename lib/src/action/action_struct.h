@@ -60,6 +60,12 @@ struct dvi__action {
   double *H_qq, *H_qv, *H_vv; /* [entries*r] */
 };
 
+/* The table that continues a path into a step `ratio` times as long, by columns of length path_lanes. */
+const double *dvi__action_shift(dvi__action *action, double ratio);
+
+/* The tables of sweeps that depend on h alone. */
+void dvi__action_set_step(dvi__action *action);
+
 /* Fill the batches Q and V with the path's points at the nodes. */
 void dvi__action_stages(const dvi__action *action, const double *Y);
 

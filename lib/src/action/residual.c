@@ -129,8 +129,8 @@ void dvi__action_straight(const dvi__action *a, const double *dq, double *Y)
     for (size_t k = 0; k < s; k++) Y[i * s + k] = a->straight[k] * dq[i];
 }
 
-/* The table for this ratio: one that is kept, or a new one in the place of the oldest. */
-static const double *shift_for(dvi__action *a, double ratio)
+/* One that is kept, or a new one in the place of the oldest. */
+const double *dvi__action_shift(dvi__action *a, double ratio)
 {
   const size_t s = (size_t)a->s, lanes = (size_t)a->path_lanes, size = s * lanes;
   for (size_t k = 0; k < DVI__SHIFTS; k++)
@@ -147,7 +147,7 @@ static const double *shift_for(dvi__action *a, double ratio)
 
 void dvi__action_continue(dvi__action *a, double ratio, const double *last, double *Y)
 {
-  dvi__lanes_product(a->n, a->s, a->path_lanes, a->s, shift_for(a, ratio), last, Y);
+  dvi__lanes_product(a->n, a->s, a->path_lanes, a->s, dvi__action_shift(a, ratio), last, Y);
 }
 
 const double *dvi__action_fit_points(const dvi__action *a)

@@ -132,8 +132,7 @@ dvi_status dvi__action_prepare_sweep(dvi__action *a)
 
 /* ---- iterations ---- */
 
-/* What depends on h alone. */
-static void set_step(dvi__action *a)
+void dvi__action_set_step(dvi__action *a)
 {
   if (a->sweep_h == a->h) return;
   a->sweep_h = a->h;
@@ -144,7 +143,7 @@ static void set_step(dvi__action *a)
 void dvi__action_sweep_from(dvi__action *a, const double *Y)
 {
   const size_t r = (size_t)a->r, lanes = (size_t)a->lanes;
-  set_step(a);
+  dvi__action_set_step(a);
   dvi__lanes_product(a->n, a->s, a->lanes, a->lanes, a->psi, Y, a->Z);
   for (size_t i = 0; i < (size_t)a->n; i++) {
     a->sweep_start[i] = a->sweep_factor[i] * a->p0[i];

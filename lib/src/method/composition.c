@@ -89,20 +89,54 @@ static void start(dvi__stepper *self, const double *v)
   base->method->start(base, v);
 }
 
+/* Substep i's part of the step. */
+static double weight_of(const scheme *s, int i)
+{
+  return s->weight[i < s->substeps - 1 - i ? i : s->substeps - 1 - i];
+}
+
 static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
 {
   dvi__stepper *base = self->own;
   const scheme *s = &schemes[self->settings.value[ORDER]];
   const double t = state->t, t_carry = state->t_carry;
-  for (int i = 0; i < s->substeps; i++) {
-    const int mirrored = i < s->substeps - 1 - i ? i : s->substeps - 1 - i;
-    DVI_TRY(base->method->step(base, state, s->weight[mirrored] * h));
-  }
+  for (int i = 0; i < s->substeps; i++) DVI_TRY(base->method->step(base, state, weight_of(s, i) * h));
   /* The rounded weights sum to 1 but for a rounding, which would add up over many steps: the clock moves by h. */
   state->t = t;
   state->t_carry = t_carry;
   dvi__add_compensated(&state->t, &state->t_carry, h);
   return DVI_OK;
+}
+
+/* ---- members side by side ---- */
+
+/* [2*capacity] the clocks at the start of a step. */
+static dvi_status prepare_lanes(dvi__stepper *self, int capacity)
+{
+  dvi__stepper *base = self->own;
+  DVI_TRY(dvi__stepper_prepare_lanes(base, capacity));
+  if (base->lanes == NULL) return DVI_OK;
+  self->lanes = DVI_NEW(double, 2 * (size_t)capacity);
+  return self->lanes != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "composition: no memory");
+}
+
+static void clear_lanes(dvi__stepper *self)
+{
+  dvi__release(self->lanes);
+}
+
+static void step_lanes(dvi__stepper *self, dvi__members *m, double h)
+{
+  dvi__stepper *base = self->own;
+  const scheme *s = &schemes[self->settings.value[ORDER]];
+  const size_t bytes = (size_t)m->count * sizeof(double);
+  double *t = self->lanes, *t_carry = t + m->count;
+  memcpy(t, m->t, bytes);
+  memcpy(t_carry, m->t_carry, bytes);
+  for (int i = 0; i < s->substeps; i++) base->method->step_lanes(base, m, weight_of(s, i) * h);
+  memcpy(m->t, t, bytes);
+  memcpy(m->t_carry, t_carry, bytes);
+  for (int k = 0; k < m->count; k++) dvi__add_compensated(m->t + k, m->t_carry + k, h);
 }
 
 static void explain(const dvi__stepper *self, dvi__text *text)
@@ -125,4 +159,7 @@ const dvi__method dvi__composition = {
     .start = start,
     .step = step,
     .explain = explain,
+    .prepare_lanes = prepare_lanes,
+    .clear_lanes = clear_lanes,
+    .step_lanes = step_lanes,
 };

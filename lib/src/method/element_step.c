@@ -19,10 +19,6 @@ const char *dvi__solver_choice(int index)
   return index >= 0 && index < 6 ? name[index] : NULL;
 }
 
-/* Memory: length of the last step (0: none), steps for which fixed point iteration and simplified Newton's method are not tried again, the last step's
- * unknowns; before the first step, the start's velocity in their place. */
-enum { LAST_H, NEWTON_STEPS, FULL_STEPS, LAST_Y };
-
 /* After an iteration failed once, the next better one takes over for this many steps. */
 static const double newton_steps = 64;
 
@@ -101,7 +97,7 @@ static void frozen_of(void *of, double *R)
 static int allocate(dvi__stepper *self, element *own)
 {
   const size_t n = (size_t)self->system->n, unknowns = (size_t)dvi__action_unknowns(own->action);
-  self->memory_count = LAST_Y + unknowns;
+  self->memory_count = DVI__LAST_Y + unknowns;
   self->memory = DVI_NEW(double, self->memory_count);
   own->Y = DVI_NEW(double, unknowns);
   own->dq = DVI_NEW(double, n);
@@ -193,12 +189,22 @@ void dvi__element_destroy(dvi__stepper *self)
   dvi__release(own);
 }
 
+dvi__action *dvi__element_action(const dvi__stepper *self)
+{
+  return ((const element *)self->own)->action;
+}
+
+int dvi__element_solver(const dvi__stepper *self)
+{
+  return ((const element *)self->own)->choice;
+}
+
 void dvi__element_start(dvi__stepper *self, const double *v)
 {
-  self->memory[LAST_H] = 0;
-  self->memory[NEWTON_STEPS] = 0;
-  self->memory[FULL_STEPS] = 0;
-  memcpy(self->memory + LAST_Y, v, (size_t)self->system->n * sizeof(double));
+  self->memory[DVI__LAST_H] = 0;
+  self->memory[DVI__NEWTON_STEPS] = 0;
+  self->memory[DVI__FULL_STEPS] = 0;
+  memcpy(self->memory + DVI__LAST_Y, v, (size_t)self->system->n * sizeof(double));
 }
 
 /* ---- guesses ---- */
@@ -261,15 +267,15 @@ static dvi_status solve_at(dvi__stepper *self, const place *at, double *Y, dvi__
 {
   element *own = self->own;
   dvi__action_place(own->action, at->t, at->h, at->q, at->p);
-  if (is_due(own, DVI__SOLVER_FIXED_POINT, &self->memory[NEWTON_STEPS])) {
+  if (is_due(own, DVI__SOLVER_FIXED_POINT, &self->memory[DVI__NEWTON_STEPS])) {
     const dvi_status status = solve_by(self, at, DVI__FIXED_POINT, Y, report);
     if (status <= 0) return status;
-    self->memory[NEWTON_STEPS] = newton_steps;
+    self->memory[DVI__NEWTON_STEPS] = newton_steps;
   }
-  if (own->decoupled != NULL && is_due(own, DVI__SOLVER_SIMPLIFIED, &self->memory[FULL_STEPS])) {
+  if (own->decoupled != NULL && is_due(own, DVI__SOLVER_SIMPLIFIED, &self->memory[DVI__FULL_STEPS])) {
     const dvi_status status = solve_by(self, at, DVI__SIMPLIFIED, Y, report);
     if (status <= 0) return status;
-    self->memory[FULL_STEPS] = newton_steps;
+    self->memory[DVI__FULL_STEPS] = newton_steps;
   }
   return solve_by(self, at, own->choice == DVI__SOLVER_KINSOL ? DVI__KINSOL : DVI__NEWTON, Y, report);
 }
@@ -352,8 +358,8 @@ static dvi_status advance(dvi__stepper *self, dvi__state *state, double h)
   dvi__add_compensated_all(n, state->q, state->q_carry, own->dq);
   dvi__add_compensated_all(n, state->p, state->p_carry, own->dp);
   dvi__add_compensated(&state->t, &state->t_carry, h);
-  self->memory[LAST_H] = h;
-  memcpy(self->memory + LAST_Y, own->Y, (size_t)dvi__action_unknowns(own->action) * sizeof(double));
+  self->memory[DVI__LAST_H] = h;
+  memcpy(self->memory + DVI__LAST_Y, own->Y, (size_t)dvi__action_unknowns(own->action) * sizeof(double));
   return DVI_OK;
 }
 
@@ -373,7 +379,7 @@ dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h)
 {
   element *own = self->own;
   dvi__solve_report report = {0};
-  const place at = {state->t, h, state->q, state->p, self->memory[LAST_H], self->memory + LAST_Y};
+  const place at = {state->t, h, state->q, state->p, self->memory[DVI__LAST_H], self->memory + DVI__LAST_Y};
   dvi_status status = solve_at(self, &at, own->Y, &report);
   if (status > 0) status = rescue(self, &at, own->Y, &report);
   if (status == DVI_OK) dvi__action_ends(own->action, own->Y, own->dq, own->dp);
@@ -384,7 +390,7 @@ dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h)
 void dvi__element_path(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v)
 {
   const element *own = self->own;
-  dvi__action_path(own->action, self->memory + LAST_Y, h, tau, q, v);
+  dvi__action_path(own->action, self->memory + DVI__LAST_Y, h, tau, q, v);
   for (int i = 0; q != NULL && i < self->system->n; i++) q[i] += q0[i];
 }
 

@@ -7,23 +7,20 @@
  * Order 2, symmetric, symplectic.  Source: Marsden and West 2001, sec. 2.3.1; Hairer, Lubich and Wanner 2003. */
 #include "core/memory.h"
 #include "core/status.h"
-#include "method/method.h"
+#include "method/verlet_lanes.h"
 #include "num/compensated.h"
 
-/* The forces at the end of a step are those at the start of the next: memory holds a flag, then the forces. */
 typedef struct verlet {
   dvi__evaluator *evaluator;
   double *change; /* [n] */
 } verlet;
-
-enum { FORCES_KNOWN, FORCES };
 
 static dvi_status create(dvi__stepper *self)
 {
   verlet *own = self->own = DVI_NEW(verlet, 1);
   self->order = 2;
   self->symmetric = 1;
-  self->memory_count = FORCES + (size_t)self->system->n;
+  self->memory_count = DVI__FORCES + (size_t)self->system->n;
   self->memory = DVI_NEW(double, self->memory_count);
   if (own == NULL || self->memory == NULL) return dvi__fail(DVI_NO_MEMORY, "verlet: no memory");
   own->change = DVI_NEW(double, self->system->n);
@@ -44,20 +41,20 @@ static void destroy(dvi__stepper *self)
 static void start(dvi__stepper *self, const double *v)
 {
   (void)v;
-  self->memory[FORCES_KNOWN] = 0;
+  self->memory[DVI__FORCES_KNOWN] = 0;
 }
 
 static dvi_status forces(dvi__stepper *self, const dvi__state *state)
 {
   const verlet *own = self->own;
-  self->memory[FORCES_KNOWN] = 1;
-  return dvi__lagrangian_gradient(own->evaluator, 1, &state->t, state->q, NULL, self->memory + FORCES, NULL);
+  self->memory[DVI__FORCES_KNOWN] = 1;
+  return dvi__lagrangian_gradient(own->evaluator, 1, &state->t, state->q, NULL, self->memory + DVI__FORCES, NULL);
 }
 
 static void kick(const dvi__stepper *self, dvi__state *state, double h)
 {
   const verlet *own = self->own;
-  for (int i = 0; i < self->system->n; i++) own->change[i] = h * self->memory[FORCES + i];
+  for (int i = 0; i < self->system->n; i++) own->change[i] = h * self->memory[DVI__FORCES + i];
   dvi__add_compensated_all(self->system->n, state->p, state->p_carry, own->change);
 }
 
@@ -72,7 +69,7 @@ static void drift(const dvi__stepper *self, dvi__state *state, double h)
 
 static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
 {
-  if (self->memory[FORCES_KNOWN] == 0) DVI_TRY(forces(self, state));
+  if (self->memory[DVI__FORCES_KNOWN] == 0) DVI_TRY(forces(self, state));
   kick(self, state, 0.5 * h);
   drift(self, state, h);
   DVI_TRY(forces(self, state));
@@ -98,4 +95,7 @@ const dvi__method dvi__verlet = {
     .start = start,
     .step = step,
     .explain = explain,
+    .prepare_lanes = dvi__verlet_prepare_lanes,
+    .clear_lanes = dvi__verlet_clear_lanes,
+    .step_lanes = dvi__verlet_step_lanes,
 };

@@ -5,15 +5,12 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "num/width.h"
+
 int dvi__lanes_for(int stages)
 {
   return stages <= 2 ? stages : stages <= 4 ? 4 : (stages + 7) / 8 * 8;
 }
-
-#define INLINE static inline __attribute__((always_inline))
-#define JOIN(a, b) a##b
-#define JOIN_EXPANDED(a, b) JOIN(a, b)
-#define NAME(name) JOIN_EXPANDED(name, WIDTH)
 
 #define WIDTH 1
 #include "num/lanes_width.h"
@@ -137,6 +134,11 @@ static const level *best(void)
   if (found != NULL) return found;
   dvi__lanes_choose(-1);
   return atomic_load_explicit(&chosen, memory_order_relaxed);
+}
+
+int dvi__lanes_level(void)
+{
+  return (int)(best() - levels);
 }
 
 void dvi__lanes_sweep(dvi__sweep *s)

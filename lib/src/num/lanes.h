@@ -38,6 +38,9 @@ int dvi__lanes_all_finite(size_t count, const double *x);
 int dvi__lanes_levels(void);
 const char *dvi__lanes_level_name(int level);
 
+/* The one in use. */
+int dvi__lanes_level(void);
+
 /* For tests: use this level from now on, on all threads; -1: the best. */
 void dvi__lanes_choose(int level);
 

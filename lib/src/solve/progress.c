@@ -17,7 +17,8 @@ static double smaller(double a, double b)
   return a < b ? a : b;
 }
 
-/* What is left of the iteration's error in a correction, by the contraction seen before. */
+/* What is left of the iteration's error in a correction, by the contraction seen before. It takes a division: where a correction is far from the
+ * floor it is not asked for. */
 static double expected(double correction, const dvi__trail *trail)
 {
   if (trail->before == 0) return correction;
@@ -26,10 +27,11 @@ static double expected(double correction, const dvi__trail *trail)
 
 dvi__progress dvi__judge(double correction, dvi__trail *trail, const dvi__pace *pace, double unknown, double size)
 {
-  const double last = trail->last, own = expected(correction, trail);
+  const dvi__trail before = *trail;
+  const double last = before.last;
   *trail = (dvi__trail){correction, last};
   if (!isfinite(correction)) return DVI__STALLED;
-  if (correction <= rounding * unknown && own <= settled * unknown) return DVI__CONVERGED;
+  if (correction <= rounding * unknown && expected(correction, &before) <= settled * unknown) return DVI__CONVERGED;
   if (pace->ahead && last > 0 && correction <= near * unknown && expected(correction, trail) <= unseen * unknown)
     return DVI__CONVERGED;
   if (last == 0) return DVI__GO_ON;

@@ -1,0 +1,157 @@
+/* The element's step for members of an ensemble side by side: the cheapest way of element_step.c alone, fixed point iteration from the last path
+ * continued. A member for which it would not be tried, or does not converge, is left to dvi__element_step. */
+#include <math.h>
+#include <string.h>
+
+#include "action/members.h"
+#include "action/sweep.h"
+#include "core/memory.h"
+#include "core/status.h"
+#include "method/element_step.h"
+#include "num/compensated.h"
+#include "num/members.h"
+#include "solve/progress.h"
+
+typedef struct lanes {
+  dvi__action_members members;
+  dvi__pace pace;
+  int patient;
+  dvi__trail *trail; /* [count] by members, as all of these */
+  double *size;      /* of q at the step's start */
+  char *going;       /* [width] by lanes: it iterates on */
+} lanes;
+
+dvi_status dvi__element_prepare_lanes(dvi__stepper *self, int capacity)
+{
+  dvi__action *action = dvi__element_action(self);
+  const int solver = dvi__element_solver(self), patient = solver == DVI__SOLVER_FIXED_POINT;
+  if (!patient && solver != DVI__SOLVER_AUTO) return DVI_OK;
+  if (!dvi__action_can_sweep(action) || !dvi__system_has_gradients(self->system)) return DVI_OK;
+  lanes *own = self->lanes = DVI_NEW(lanes, 1);
+  if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
+  own->patient = patient;
+  own->pace = dvi__fixed_point_pace(patient, 1);
+  own->trail = DVI_NEW(dvi__trail, capacity);
+  own->size = DVI_NEW(double, capacity);
+  own->going = DVI_NEW(char, capacity);
+  if (!own->trail || !own->size || !own->going) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
+  return dvi__action_members_create(action, capacity, &own->members);
+}
+
+void dvi__element_clear_lanes(dvi__stepper *self)
+{
+  lanes *own = self->lanes;
+  dvi__action_members_clear(&own->members);
+  dvi__release(own->trail);
+  dvi__release(own->size);
+  dvi__release(own->going);
+  dvi__release(own);
+}
+
+static double *memory_row(const dvi__members *m, int number)
+{
+  return m->memory + (size_t)number * (size_t)m->count;
+}
+
+/* Leave the members that would not try fixed point iteration, or whose last step had another length than the others'. Gives that length; 0: no
+ * member is left to be served. */
+static double choose(const lanes *own, dvi__members *m)
+{
+  const double *last_h = memory_row(m, DVI__LAST_H), *newton_steps = memory_row(m, DVI__NEWTON_STEPS);
+  double common = 0;
+  for (int k = 0; k < m->count; k++) {
+    if (common == 0 && !m->left[k]) common = last_h[k];
+    if (last_h[k] == 0 || last_h[k] != common || (newton_steps[k] != 0 && !own->patient)) m->left[k] = 1;
+  }
+  return memchr(m->left, 0, (size_t)m->count) != NULL ? common : 0;
+}
+
+static void set_out(lanes *own, int n, const dvi__members *m, double h, double last_h)
+{
+  const size_t count = (size_t)m->count;
+  memset(own->trail, 0, count * sizeof *own->trail);
+  memset(own->size, 0, count * sizeof *own->size);
+  for (size_t i = 0; i < (size_t)n; i++)
+    for (size_t k = 0; k < count; k++) {
+      const double q = fabs(m->q[i * count + k]);
+      own->size[k] = q > own->size[k] ? q : own->size[k];
+    }
+  for (size_t k = 0; k < count; k++) own->going[k] = !m->left[k];
+  dvi__action_members_place(&own->members, m->count, h, last_h, m->t, m->q, m->p, memory_row(m, DVI__LAST_Y));
+  dvi__action_members_close_up(&own->members, own->going);
+  memset(own->going, 1, (size_t)own->members.width);
+}
+
+/* Judge every lane's iteration. Gives how many still iterate; *stalled: some of the others must not be iterated any more. */
+static int judge(lanes *own, dvi__members *m, int iteration, int *stalled)
+{
+  dvi__action_members *at = &own->members;
+  int going = 0;
+  for (int lane = 0; lane < at->width; lane++) {
+    if (!own->going[lane]) continue;
+    const int k = at->member[lane];
+    const dvi__progress progress = dvi__judge(at->change[lane], &own->trail[k], &own->pace, at->largest[lane], own->size[k]);
+    if (progress == DVI__GO_ON) {
+      going++;
+      continue;
+    }
+    own->going[lane] = 0;
+    if (progress == DVI__STALLED) {
+      m->left[k] = 1;
+      *stalled = 1;
+      continue;
+    }
+    dvi__action_members_keep(at, lane);
+    m->residuals[k] += iteration;
+    m->gradients[k] += (long)iteration * dvi__action_nodes(at->action);
+    m->fixed[k]++;
+  }
+  return going;
+}
+
+/* Members whose iteration is cut short are left. */
+static void leave_going(const lanes *own, dvi__members *m)
+{
+  for (int lane = 0; lane < own->members.width; lane++)
+    if (own->going[lane]) m->left[own->members.member[lane]] = 1;
+}
+
+/* Lanes that have nothing to do any more are carried along until they are a quarter: to close up costs about as much as an iteration. */
+static void iterate(lanes *own, dvi__members *m)
+{
+  dvi__action_members *at = &own->members;
+  const int most = dvi__fixed_point_most(own->patient);
+  for (int iteration = 1; iteration <= most; iteration++) {
+    int stalled = 0;
+    if (dvi__action_members_sweep(at) != DVI_OK) break;
+    const int going = judge(own, m, iteration, &stalled);
+    if (going == 0) return;
+    if (!stalled && 4 * going > 3 * at->width) continue;
+    dvi__action_members_close_up(at, own->going);
+    memset(own->going, 1, (size_t)at->width);
+  }
+  leave_going(own, m);
+}
+
+static void advance(const lanes *own, int n, dvi__members *m, double h)
+{
+  const dvi__action_members *at = &own->members;
+  const size_t count = (size_t)m->count, unknowns = (size_t)dvi__action_unknowns(at->action);
+  double *last_h = memory_row(m, DVI__LAST_H);
+  dvi__members_add((size_t)n * count, 1.0, at->dq, m->q, m->q_carry);
+  dvi__members_add((size_t)n * count, 1.0, at->dp, m->p, m->p_carry);
+  for (size_t k = 0; k < count; k++) dvi__add_compensated(m->t + k, m->t_carry + k, h);
+  for (size_t k = 0; k < count; k++) last_h[k] = h;
+  memcpy(memory_row(m, DVI__LAST_Y), at->Y, unknowns * count * sizeof(double));
+}
+
+void dvi__element_step_lanes(dvi__stepper *self, dvi__members *m, double h)
+{
+  lanes *own = self->lanes;
+  const double last_h = choose(own, m);
+  if (last_h == 0) return;
+  set_out(own, self->system->n, m, h, last_h);
+  iterate(own, m);
+  dvi__action_members_ends(&own->members);
+  advance(own, self->system->n, m, h);
+}

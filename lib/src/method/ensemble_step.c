@@ -1,0 +1,148 @@
+/* The steps of an ensemble: a block at a time, its members side by side where the method can, else one after the other by the driver of a single
+ * integrator, which also takes every member that the first way leaves. */
+#include <math.h>
+#include <string.h>
+
+#include "core/status.h"
+#include "method/ensemble_struct.h"
+#include "num/finite.h"
+
+/* ---- side by side ---- */
+
+/* A copy of the block's state, for a step to work on. */
+static void copy_out(const dvi_ensemble *e, dvi__worker *w, const dvi__block *block)
+{
+  dvi__members *m = &w->members;
+  const size_t count = (size_t)block->count, n = (size_t)e->n;
+  double *at = w->numbers;
+  m->count = block->count;
+  m->t = at + DVI__MEMBER_T * count;
+  m->t_carry = at + DVI__MEMBER_T_CARRY * count;
+  m->q = at + DVI__MEMBER_Q * count;
+  m->p = m->q + n * count;
+  m->q_carry = m->p + n * count;
+  m->p_carry = m->q_carry + n * count;
+  m->memory = m->p_carry + n * count;
+  memcpy(at, block->numbers, e->state_numbers * count * sizeof(double));
+  memset(m->residuals, 0, count * sizeof(long));
+  memset(m->gradients, 0, count * sizeof(long));
+  memset(m->fixed, 0, count * sizeof(long));
+}
+
+/* Members that have failed take no more steps; what h does not move is for the driver to refuse. */
+static int choose(const dvi_ensemble *e, dvi__members *m, const dvi__block *block, double h)
+{
+  int chosen = 0;
+  for (int k = 0; k < m->count; k++) {
+    m->left[k] = e->status[block->first + k] != DVI_OK || m->t[k] + h == m->t[k];
+    chosen += !m->left[k];
+  }
+  return chosen;
+}
+
+/* What the driver checks of a new state. */
+static void leave_not_finite(const dvi_ensemble *e, dvi__members *m)
+{
+  const size_t count = (size_t)m->count, rows = 2 * (size_t)e->n;
+  if (dvi__first_not_finite(count, m->t) < 0 && dvi__first_not_finite(rows * count, m->q) < 0) return;
+  for (size_t k = 0; k < count; k++) {
+    int finite = isfinite(m->t[k]) != 0;
+    for (size_t i = 0; i < rows; i++) finite &= isfinite(m->q[i * count + k]) != 0;
+    if (!finite) m->left[k] = 1;
+  }
+}
+
+static void accept_one(const dvi_ensemble *e, const dvi__worker *w, const dvi__block *block, size_t k)
+{
+  const size_t count = (size_t)block->count;
+  for (size_t i = 0; i < e->state_numbers; i++) block->numbers[i * count + k] = w->numbers[i * count + k];
+}
+
+static void accept(const dvi_ensemble *e, dvi__worker *w, const dvi__block *block)
+{
+  const dvi__members *m = &w->members;
+  const size_t count = (size_t)block->count;
+  const int whole = memchr(m->left, 1, count) == NULL;
+  double *last_h = dvi__driver_row(e, block, DVI__MEMBER_LAST_H), *steps = dvi__driver_row(e, block, DVI__MEMBER_STEPS);
+  dvi_counters *counters = &w->integrator->counters;
+  if (whole) memcpy(block->numbers, w->numbers, e->state_numbers * count * sizeof(double));
+  for (size_t k = 0; k < count; k++) {
+    if (m->left[k]) continue;
+    if (!whole) accept_one(e, w, block, k);
+    last_h[k] = e->march.h;
+    steps[k]++;
+    w->steps++;
+    counters->residuals += m->residuals[k];
+    counters->gradients += m->gradients[k];
+    counters->fixed_points += m->fixed[k];
+  }
+}
+
+/* ---- alone ---- */
+
+static void alone(const dvi_ensemble *e, dvi__worker *w, const dvi__block *block, int k, long steps)
+{
+  dvi_integrator *I = w->integrator;
+  dvi_status status = DVI_OK;
+  dvi__member_load(e, w, block, k);
+  const long before = I->counters.steps;
+  for (long i = 0; i < steps && status == DVI_OK; i++) status = dvi_integrator_step(I, e->march.h);
+  w->steps += I->counters.steps - before;
+  dvi__member_store(e, w, block, k);
+  e->status[block->first + k] = status;
+  if (status != DVI_OK) dvi__worker_note(w, block->first + k, status);
+}
+
+/* ---- blocks ---- */
+
+/* One step of all members that have not failed; 0: there is none. */
+static int step_block(const dvi_ensemble *e, dvi__worker *w, const dvi__block *block)
+{
+  dvi__members *m = &w->members;
+  const dvi__stepper *stepper = &w->integrator->stepper;
+  copy_out(e, w, block);
+  if (choose(e, m, block, e->march.h) > 0) {
+    stepper->method->step_lanes(&w->integrator->stepper, m, e->march.h);
+    leave_not_finite(e, m);
+    accept(e, w, block);
+  }
+  int going = 0;
+  for (int k = 0; k < block->count; k++) {
+    if (e->status[block->first + k] != DVI_OK) continue;
+    if (m->left[k]) alone(e, w, block, k, 1);
+    going += e->status[block->first + k] == DVI_OK;
+  }
+  return going;
+}
+
+static void march_block(void *of, int thread, int item)
+{
+  dvi_ensemble *e = of;
+  dvi__worker *w = &e->workers[thread];
+  const dvi__block *block = &e->blocks[item];
+  dvi__worker_bind(w, block->system);
+  for (int k = 0; k < block->count; k++) e->status[block->first + k] = DVI_OK;
+  if (w->integrator->stepper.lanes != NULL && block->count > 1) {
+    for (long i = 0; i < e->march.steps; i++)
+      if (step_block(e, w, block) == 0) return;
+  } else {
+    for (int k = 0; k < block->count; k++) alone(e, w, block, k, e->march.steps);
+  }
+}
+
+dvi_status dvi_ensemble_advance(dvi_ensemble *e, double h, long steps)
+{
+  if (e == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "ensemble: it is NULL");
+  if (!e->started) return dvi__fail(DVI_BAD_STATE, "ensemble: its members have no state yet; call dvi_ensemble_start first");
+  if (steps < 0) return dvi__fail(DVI_BAD_ARGUMENT, "ensemble: %ld steps asked, 0 or more are possible", steps);
+  DVI_TRY(dvi__check_step(0.0, h));
+  e->march = (dvi__march){h, steps};
+  dvi__ensemble_clear_failures(e);
+  dvi__pool_run(e->pool, e->block_count, march_block, e);
+  return dvi__ensemble_verdict(e);
+}
+
+dvi_status dvi_ensemble_step(dvi_ensemble *e, double h)
+{
+  return dvi_ensemble_advance(e, h, 1);
+}
