@@ -87,32 +87,33 @@ void dvi__action_members_place(dvi__action_members *m, int count, double h, doub
   put_nodes(m, p);
 }
 
-/* Rows of the lanes `from`, packed; in place if they are the same array. */
-static void pack(size_t rows, size_t before, size_t after, const int *from, const double *x, double *packed)
+void dvi__action_members_pack(const dvi__action_members *m, int rows, int before, const double *x, double *packed)
 {
-  for (size_t i = 0; i < rows; i++)
-    for (size_t k = 0; k < after; k++) packed[i * after + k] = x[i * before + (size_t)from[k]];
+  for (size_t i = 0; i < (size_t)rows; i++) {
+    const double *from = x + i * (size_t)before;
+    double *to = packed + row(m, i);
+    for (int k = 0; k < m->width; k++) to[k] = from[m->going[k]];
+  }
 }
 
-void dvi__action_members_close_up(dvi__action_members *m, const char *going)
+void dvi__action_members_close_up(dvi__action_members *m, const char *marked)
 {
-  const size_t n = (size_t)m->action->n, r = (size_t)m->action->r, before = (size_t)m->width;
+  const int n = m->action->n, r = m->action->r, before = m->width;
   int lanes = 0;
-  for (int k = 0; k < m->width; k++)
-    if (going[k]) {
-      m->member[lanes] = m->member[k];
-      m->going[lanes++] = k;
-    }
-  if (lanes == m->width) return;
-  const size_t after = (size_t)lanes;
-  pack(r, before, after, m->going, m->t, m->t);
-  pack(n * r, before, after, m->going, m->Z, m->Z);
-  pack(n * r, before, after, m->going, m->Q, m->Q);
-  pack(n, before, after, m->going, m->start, m->packed_start);
-  pack(n, before, after, m->going, m->origin, m->packed_origin);
+  for (int k = 0; k < before; k++) {
+    m->member[lanes] = m->member[k];
+    m->going[lanes] = k;
+    lanes += marked[k] != 0;
+  }
+  if (lanes == before) return;
+  m->width = lanes;
+  dvi__action_members_pack(m, r, before, m->t, m->t);
+  dvi__action_members_pack(m, n * r, before, m->Z, m->Z);
+  dvi__action_members_pack(m, n * r, before, m->Q, m->Q);
+  dvi__action_members_pack(m, n, before, m->start, m->packed_start);
+  dvi__action_members_pack(m, n, before, m->origin, m->packed_origin);
   m->start = m->packed_start;
   m->origin = m->packed_origin;
-  m->width = lanes;
 }
 
 dvi_status dvi__action_members_sweep(dvi__action_members *m)

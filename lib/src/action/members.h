@@ -34,8 +34,11 @@ void dvi__action_members_clear(dvi__action_members *members);
 void dvi__action_members_place(dvi__action_members *members, int count, double h, double last_h, const double *t, const double *q,
                                const double *p, const double *last_Y);
 
-/* Go on with the lanes that are marked. */
-void dvi__action_members_close_up(dvi__action_members *members, const char *going);
+/* Go on with the lanes that are marked, whose numbers are then in members->going. */
+void dvi__action_members_close_up(dvi__action_members *members, const char *marked);
+
+/* Rows of numbers that lanes had before they were closed up: those of the lanes that went on. In place if both are the same. */
+void dvi__action_members_pack(const dvi__action_members *members, int rows, int before, const double *x, double *packed);
 
 /* One iteration of every lane. */
 dvi_status dvi__action_members_sweep(dvi__action_members *members);

@@ -16,9 +16,10 @@ typedef struct lanes {
   dvi__action_members members;
   dvi__pace pace;
   int patient;
-  dvi__trail *trail; /* [count] by members, as all of these */
-  double *size;      /* of q at the step's start */
-  char *going;       /* [width] by lanes: it iterates on */
+  dvi__trails trails; /* of the lanes; their size is that of q at the step's start */
+  char *going;        /* [width] the lane iterates on */
+  int64_t *verdict;   /* [width] of the last iteration */
+  int *ended;         /* [width] lanes that ended with it */
 } lanes;
 
 dvi_status dvi__element_prepare_lanes(dvi__stepper *self, int capacity)
@@ -31,10 +32,14 @@ dvi_status dvi__element_prepare_lanes(dvi__stepper *self, int capacity)
   if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
   own->patient = patient;
   own->pace = dvi__fixed_point_pace(patient, 1);
-  own->trail = DVI_NEW(dvi__trail, capacity);
-  own->size = DVI_NEW(double, capacity);
+  own->trails.last = DVI_NEW(double, capacity);
+  own->trails.before = DVI_NEW(double, capacity);
+  own->trails.size = DVI_NEW(double, capacity);
   own->going = DVI_NEW(char, capacity);
-  if (!own->trail || !own->size || !own->going) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
+  own->verdict = DVI_NEW(int64_t, capacity);
+  own->ended = DVI_NEW(int, capacity);
+  if (!own->trails.last || !own->trails.before || !own->trails.size || !own->going || !own->verdict || !own->ended)
+    return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
   return dvi__action_members_create(action, capacity, &own->members);
 }
 
@@ -42,9 +47,12 @@ void dvi__element_clear_lanes(dvi__stepper *self)
 {
   lanes *own = self->lanes;
   dvi__action_members_clear(&own->members);
-  dvi__release(own->trail);
-  dvi__release(own->size);
+  dvi__release(own->trails.last);
+  dvi__release(own->trails.before);
+  dvi__release(own->trails.size);
   dvi__release(own->going);
+  dvi__release(own->verdict);
+  dvi__release(own->ended);
   dvi__release(own);
 }
 
@@ -66,47 +74,65 @@ static double choose(const lanes *own, dvi__members *m)
   return memchr(m->left, 0, (size_t)m->count) != NULL ? common : 0;
 }
 
+/* Lanes that have nothing to do any more make room. */
+static void close_up(lanes *own)
+{
+  dvi__action_members *at = &own->members;
+  double *const rows[] = {own->trails.last, own->trails.before, own->trails.size};
+  const int before = at->width;
+  dvi__action_members_close_up(at, own->going);
+  for (int i = 0; i < 3 && at->width < before; i++) dvi__action_members_pack(at, 1, before, rows[i], rows[i]);
+  memset(own->going, 1, (size_t)at->width);
+}
+
 static void set_out(lanes *own, int n, const dvi__members *m, double h, double last_h)
 {
   const size_t count = (size_t)m->count;
-  memset(own->trail, 0, count * sizeof *own->trail);
-  memset(own->size, 0, count * sizeof *own->size);
+  double *size = own->trails.size;
+  memset(own->trails.last, 0, count * sizeof(double));
+  memset(own->trails.before, 0, count * sizeof(double));
+  memset(size, 0, count * sizeof(double));
   for (size_t i = 0; i < (size_t)n; i++)
     for (size_t k = 0; k < count; k++) {
       const double q = fabs(m->q[i * count + k]);
-      own->size[k] = q > own->size[k] ? q : own->size[k];
+      size[k] = q > size[k] ? q : size[k];
     }
   for (size_t k = 0; k < count; k++) own->going[k] = !m->left[k];
   dvi__action_members_place(&own->members, m->count, h, last_h, m->t, m->q, m->p, memory_row(m, DVI__LAST_Y));
-  dvi__action_members_close_up(&own->members, own->going);
-  memset(own->going, 1, (size_t)own->members.width);
+  close_up(own);
 }
 
-/* Judge every lane's iteration. Gives how many still iterate; *stalled: some of the others must not be iterated any more. */
-static int judge(lanes *own, dvi__members *m, int iteration, int *stalled)
+/* A lane's iteration has ended with this one. */
+static void end_lane(lanes *own, dvi__members *m, int lane, int iteration)
 {
   dvi__action_members *at = &own->members;
-  int going = 0;
-  for (int lane = 0; lane < at->width; lane++) {
-    if (!own->going[lane]) continue;
-    const int k = at->member[lane];
-    const dvi__progress progress = dvi__judge(at->change[lane], &own->trail[k], &own->pace, at->largest[lane], own->size[k]);
-    if (progress == DVI__GO_ON) {
-      going++;
-      continue;
-    }
-    own->going[lane] = 0;
-    if (progress == DVI__STALLED) {
-      m->left[k] = 1;
-      *stalled = 1;
-      continue;
-    }
-    dvi__action_members_keep(at, lane);
-    m->residuals[k] += iteration;
-    m->gradients[k] += (long)iteration * dvi__action_nodes(at->action);
-    m->fixed[k]++;
+  const int k = at->member[lane];
+  own->going[lane] = 0;
+  if (own->verdict[lane] == DVI__STALLED) {
+    m->left[k] = 1;
+    return;
   }
-  return going;
+  dvi__action_members_keep(at, lane);
+  m->residuals[k] += iteration;
+  m->gradients[k] += (long)iteration * dvi__action_nodes(at->action);
+  m->fixed[k]++;
+}
+
+/* Judge every lane's iteration. Gives how many ended with it; *stalled: some of them must not be iterated any more. */
+static int judge(lanes *own, dvi__members *m, int iteration, int *stalled)
+{
+  const dvi__action_members *at = &own->members;
+  int ended = 0;
+  dvi__judge_all(at->width, at->change, at->largest, &own->pace, &own->trails, own->verdict);
+  for (int lane = 0; lane < at->width; lane++) {
+    own->ended[ended] = lane;
+    ended += own->going[lane] & (own->verdict[lane] != DVI__GO_ON);
+  }
+  for (int i = 0; i < ended; i++) {
+    end_lane(own, m, own->ended[i], iteration);
+    *stalled |= own->verdict[own->ended[i]] == DVI__STALLED;
+  }
+  return ended;
 }
 
 /* Members whose iteration is cut short are left. */
@@ -116,19 +142,18 @@ static void leave_going(const lanes *own, dvi__members *m)
     if (own->going[lane]) m->left[own->members.member[lane]] = 1;
 }
 
-/* Lanes that have nothing to do any more are carried along until they are a quarter: to close up costs about as much as an iteration. */
+/* Lanes that have nothing to do any more are carried along until they are half of all: to close up costs about as much as an iteration. */
 static void iterate(lanes *own, dvi__members *m)
 {
   dvi__action_members *at = &own->members;
   const int most = dvi__fixed_point_most(own->patient);
+  int going = at->width;
   for (int iteration = 1; iteration <= most; iteration++) {
     int stalled = 0;
     if (dvi__action_members_sweep(at) != DVI_OK) break;
-    const int going = judge(own, m, iteration, &stalled);
+    going -= judge(own, m, iteration, &stalled);
     if (going == 0) return;
-    if (!stalled && 4 * going > 3 * at->width) continue;
-    dvi__action_members_close_up(at, own->going);
-    memset(own->going, 1, (size_t)at->width);
+    if (stalled || 2 * going <= at->width) close_up(own);
   }
   leave_going(own, m);
 }
