@@ -9,6 +9,9 @@
 #include "core/memory.h"
 #include "core/status.h"
 
+/* Of a round's work for each thread: many enough that all end together, few enough that taking them costs nothing. */
+enum { PORTIONS = 8 };
+
 typedef struct seat {
   dvi__pool *pool;
   int number;
@@ -26,16 +29,16 @@ struct dvi__pool {
   /* The round's work. */
   dvi__work work;
   void *of;
-  int count;
+  int count, portion; /* items that a thread takes at once */
   atomic_int next;
 };
 
 static void take_items(dvi__pool *pool, int thread)
 {
   for (;;) {
-    const int item = atomic_fetch_add_explicit(&pool->next, 1, memory_order_relaxed);
-    if (item >= pool->count) return;
-    pool->work(pool->of, thread, item);
+    const int first = atomic_fetch_add_explicit(&pool->next, pool->portion, memory_order_relaxed);
+    if (first >= pool->count) return;
+    for (int item = first; item < pool->count && item - first < pool->portion; item++) pool->work(pool->of, thread, item);
   }
 }
 
@@ -120,6 +123,7 @@ void dvi__pool_run(dvi__pool *pool, int count, dvi__work work, void *of)
   pool->work = work;
   pool->of = of;
   pool->count = count;
+  pool->portion = count / (PORTIONS * (pool->made + 1)) + 1;
   atomic_store_explicit(&pool->next, 0, memory_order_relaxed);
   pool->busy = pool->made;
   pool->round++;

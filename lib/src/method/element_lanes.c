@@ -22,11 +22,15 @@ typedef struct lanes {
   int *ended;         /* [width] lanes that ended with it */
 } lanes;
 
+/* From this many nodes on a single element fills the vectors with its stages, and members as lanes take as long. */
+enum { NODES_THAT_FILL_VECTORS = 8 };
+
 dvi_status dvi__element_prepare_lanes(dvi__stepper *self, int capacity)
 {
   dvi__action *action = dvi__element_action(self);
   const int solver = dvi__element_solver(self), patient = solver == DVI__SOLVER_FIXED_POINT;
   if (!patient && solver != DVI__SOLVER_AUTO) return DVI_OK;
+  if (dvi__action_nodes(action) >= NODES_THAT_FILL_VECTORS) return DVI_OK;
   if (!dvi__action_can_sweep(action) || !dvi__system_has_gradients(self->system)) return DVI_OK;
   lanes *own = self->lanes = DVI_NEW(lanes, 1);
   if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);

@@ -145,13 +145,25 @@ static int cut_blocks(const dvi_ensemble *e, const dvi_system *system, const dvi
   return count;
 }
 
+static void measure_member(dvi_ensemble *e)
+{
+  const size_t n = (size_t)e->n;
+  e->state_numbers = DVI__MEMBER_Q + 4 * n + e->workers[0].integrator->stepper.memory_count;
+  e->member_numbers = e->state_numbers + DVI__MEMBER_LAST + (e->system_is_general ? n : 0);
+}
+
+/* Where members go one after the other, what is one member's should stand together: a block for each. */
+static dvi_status make_lanes(dvi_ensemble *e, const dvi_ensemble_options *o)
+{
+  e->capacity = choose_capacity(e, o);
+  for (int i = 0; i < e->threads; i++) DVI_TRY(dvi__stepper_prepare_lanes(&e->workers[i].integrator->stepper, e->capacity));
+  if (e->workers[0].integrator->stepper.lanes == NULL && o->block == 0) e->capacity = 1;
+  for (int i = 0; i < e->threads; i++) DVI_TRY(make_room(e, &e->workers[i]));
+  return DVI_OK;
+}
+
 static dvi_status make_blocks(dvi_ensemble *e, const dvi_system *system, const dvi_ensemble_options *o)
 {
-  const dvi__stepper *stepper = &e->workers[0].integrator->stepper;
-  const size_t n = (size_t)e->n;
-  e->state_numbers = DVI__MEMBER_Q + 4 * n + stepper->memory_count;
-  e->member_numbers = e->state_numbers + DVI__MEMBER_LAST + (e->system_is_general ? n : 0);
-  e->capacity = choose_capacity(e, o);
   e->block_count = cut_blocks(e, system, o, NULL);
   e->numbers = DVI_NEW(double, (size_t)e->members * e->member_numbers);
   e->blocks = DVI_NEW(dvi__block, e->block_count);
@@ -165,12 +177,9 @@ static dvi_status make_blocks(dvi_ensemble *e, const dvi_system *system, const d
 static dvi_status fill(dvi_ensemble *e, const dvi_system *system, const char *method, const dvi_ensemble_options *o)
 {
   DVI_TRY(make_workers(e, system, method, o));
+  measure_member(e);
+  DVI_TRY(make_lanes(e, o));
   DVI_TRY(make_blocks(e, system, o));
-  for (int i = 0; i < e->threads; i++) {
-    dvi__worker *w = &e->workers[i];
-    DVI_TRY(dvi__stepper_prepare_lanes(&w->integrator->stepper, e->capacity));
-    DVI_TRY(make_room(e, w));
-  }
   return dvi__pool_create(e->threads, &e->pool);
 }
 

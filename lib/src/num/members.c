@@ -19,17 +19,23 @@
 #include "num/members_width.h"
 #undef WIDTH
 
+/* Whole vectors first, the rest in shorter ones. */
+#define TAIL2(name, ...) name##2(__VA_ARGS__, 0)
+#define TAIL4(name, ...) name##2(__VA_ARGS__, name##4(__VA_ARGS__, 0))
+#define TAIL8(name, ...) name##2(__VA_ARGS__, name##4(__VA_ARGS__, name##8(__VA_ARGS__, 0)))
+#define ALL(width, name, ...) ((void)name##1(__VA_ARGS__, TAIL##width(name, __VA_ARGS__)))
+
 /* Few stages are where members are lanes: their loops are worth knowing at compile time. */
-#define SWEEP(width)                                              \
-  INLINE void sweep_by##width(const dvi__members_sweep *s)        \
-  {                                                               \
-    switch (s->stages) {                                          \
-    case 1: sweep1(s, 1, sweep##width(s, 1, 0)); break;           \
-    case 2: sweep1(s, 2, sweep##width(s, 2, 0)); break;           \
-    case 3: sweep1(s, 3, sweep##width(s, 3, 0)); break;           \
-    case 4: sweep1(s, 4, sweep##width(s, 4, 0)); break;           \
-    default: sweep1(s, s->stages, sweep##width(s, s->stages, 0)); \
-    }                                                             \
+#define SWEEP(width)                                       \
+  INLINE void sweep_by##width(const dvi__members_sweep *s) \
+  {                                                        \
+    switch (s->stages) {                                   \
+    case 1: ALL(width, sweep, s, 1); break;                \
+    case 2: ALL(width, sweep, s, 2); break;                \
+    case 3: ALL(width, sweep, s, 3); break;                \
+    case 4: ALL(width, sweep, s, 4); break;                \
+    default: ALL(width, sweep, s, s->stages);              \
+    }                                                      \
   }
 SWEEP(2)
 SWEEP(4)
@@ -52,15 +58,15 @@ typedef struct level {
   target static void product_##suffix(int n, int terms, int lanes, int rows, const double *matrix, int members, const double *x, \
                                       double *out)                                                                               \
   {                                                                                                                              \
-    product1(n, terms, lanes, rows, matrix, members, x, out, product##width(n, terms, lanes, rows, matrix, members, x, out, 0)); \
+    ALL(width, product, n, terms, lanes, rows, matrix, members, x, out);                                                         \
   }                                                                                                                              \
   target static void add_##suffix(size_t count, double factor, const double *x, double *sum, double *carry)                      \
   {                                                                                                                              \
-    add1(count, factor, x, sum, carry, add##width(count, factor, x, sum, carry, 0));                                             \
+    ALL(width, add, count, factor, x, sum, carry);                                                                               \
   }                                                                                                                              \
   target static void drift_##suffix(size_t count, double h, double mass, const double *p, double *q, double *q_carry)            \
   {                                                                                                                              \
-    drift1(count, h, mass, p, q, q_carry, drift##width(count, h, mass, p, q, q_carry, 0));                                       \
+    ALL(width, drift, count, h, mass, p, q, q_carry);                                                                            \
   }
 
 LEVEL(baseline, , 2)
