@@ -10,6 +10,7 @@
 #include "file.h"
 #include "levels.h"
 #include "machine.h"
+#include "members.h"
 #include "open.h"
 #include "options.h"
 #include "outputs.h"
@@ -314,7 +315,7 @@ static int scale_problem(const bench_request *r, const char *name)
                                  .rounds = r->rounds,
                                  .csv = r->outputs.csv,
                                  .plot = r->outputs.plot};
-  return scale_run(&request);
+  return members_asked(r->scale) ? members_run(&request) : scale_run(&request);
 }
 
 static int bench_named(bench_request *r, const char *name)
@@ -355,6 +356,9 @@ static const char details[] =
     "number of coordinates n. The first 32 steps from the start are run again and again. Repeat --method to compare\n"
     "degrees. Columns: method,problem,parameter,value,n,h,step_seconds,step_lower,step_upper,bytes,step_evaluations;\n"
     "bytes is what the integrator holds of the heap (mallinfo2; empty where there is no such function).\n"
+    "--scale members=1,64,4096: members of an ensemble instead, near the problem's start, beside runs one after the other.\n"
+    "Columns: method,problem,members,n,h,step_seconds,step_lower,step_upper,alone_seconds,alone_lower,alone_upper,gain,\n"
+    "step_evaluations; seconds are those of one step of one member, on one thread, and gain is their ratio.\n"
     "\n"
     "Processor, compiler and flags are printed, and the time of 1e8 dependent multiplications, measured once a round:\n"
     "it tells times of two machines or two hours apart. Every integrator gets the same callbacks. Debian's packages of\n"
@@ -363,7 +367,8 @@ static const char details[] =
     "Examples:\n"
     "  dvi bench kepler --against cvode,arkode,ida --at 1e-6,1e-9 --plot bench.svg\n"
     "  dvi bench outer-solar --method galerkin:degree=8 --method verlet --csv bench.csv\n"
-    "  dvi bench fpu --method galerkin:degree=2 --method galerkin:degree=4 --scale ell=100,1000,10000\n";
+    "  dvi bench fpu --method galerkin:degree=2 --method galerkin:degree=4 --scale ell=100,1000,10000\n"
+    "  dvi bench kepler --method verlet --method galerkin:degree=2 --scale members=1,64,4096\n";
 
 int bench_command(int argc, char **argv)
 {
