@@ -118,6 +118,7 @@ static const char *const methods[] = {
     "galerkin:degree=3,basis=legendre,quadrature=lobatto",
     "galerkin:degree=5",
     "galerkin:degree=8",
+    "galerkin:degree=16",
     "galerkin:degree=2,solver=newton",
     "galerkin:degree=2,solver=certified",
     "composition",
@@ -307,7 +308,7 @@ START_TEST(explain_says_how_members_are_grouped)
   ck_assert_uint_eq(dvi_ensemble_explain(e, NULL, 0), length);
   ck_assert_str_eq(dvi_ensemble_method(e), "verlet");
   dvi_ensemble_destroy(&e);
-  e = made_ensemble(of->system, "galerkin:degree=8", (dvi_ensemble_options){.members = 64, .threads = 2});
+  e = made_ensemble(of->system, "galerkin:degree=16", (dvi_ensemble_options){.members = 64, .threads = 2});
   (void)dvi_ensemble_explain(e, text, sizeof text);
   ck_assert_ptr_nonnull(strstr(text, "64 members in 64 blocks, one after the other, 2 threads\n"));
   dvi_ensemble_destroy(&e);
@@ -323,7 +324,7 @@ int main(void)
   tcase_add_test(tests, every_method_has_its_place);
   tcase_add_loop_test(tests, every_member_has_the_bits_of_a_run_alone, 0, PLACES * METHODS);
   tcase_add_loop_test(tests, levels_threads_and_groupings_change_no_bit, 0, 30);
-  tcase_add_loop_test(tests, levels_agree_with_each_other, 0, 8);
+  tcase_add_loop_test(tests, levels_agree_with_each_other, 0, 9);
   tcase_add_test(tests, a_start_in_velocities_is_one_in_their_momenta);
   tcase_add_test(tests, verlet_evaluates_once_a_step);
   tcase_add_loop_test(tests, no_step_allocates, 0, PLACES * METHODS);

@@ -168,6 +168,58 @@ START_TEST(neighbours_with_one_system_share_a_call)
 }
 END_TEST
 
+/* ---- a parameter as a coordinate ---- */
+
+/* V = x[1] x[0]^2 / 2, with no force on x[1]: it rests, and each member has its own. */
+static int sprung(int count, const double *t, const double *x, double *V, void *user)
+{
+  (void)t, (void)user;
+  for (int k = 0; k < count; k++) V[k] = 0.5 * x[count + k] * x[k] * x[k];
+  return 0;
+}
+
+static int sprung_gradient(int count, const double *t, const double *x, double *V_q, void *user)
+{
+  (void)t, (void)user;
+  calls++;
+  for (int k = 0; k < count; k++) V_q[k] = x[count + k] * x[k], V_q[count + k] = 0;
+  return 0;
+}
+
+START_TEST(a_parameter_that_rests_is_one_to_the_last_bit)
+{
+  enum { BLOCK = 8, STEPS = 50 };
+  const dvi_potential potential = {.value_batch = sprung, .gradient_batch = sprung_gradient};
+  const dvi_system_terms terms = {.dimension = 2, .mass.scalar = 1, .potentials = &potential, .potential_count = 1};
+  double x[2 * MEMBERS], momentum[2 * MEMBERS] = {0}, end[2 * MEMBERS];
+  dvi_system *system = NULL;
+  dvi_ensemble *e = NULL;
+  for (int k = 0; k < MEMBERS; k++) x[k] = 1, x[MEMBERS + k] = 1 + 0.1 * k;
+  ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
+  ck_assert_int_eq(dvi_ensemble_create(system, "verlet", &(dvi_ensemble_options){.members = MEMBERS, .block = BLOCK}, &e), DVI_OK);
+  ck_assert_int_eq(dvi_ensemble_start(e, 0, x, momentum), DVI_OK);
+  calls = 0;
+  ck_assert_int_eq(dvi_ensemble_advance(e, 0.1, STEPS), DVI_OK);
+  ck_assert_int_eq(calls, MEMBERS / BLOCK * (STEPS + 1));
+  ck_assert_int_eq(dvi_ensemble_state(e, NULL, end, NULL), DVI_OK);
+  ck_assert_mem_eq(end + MEMBERS, x + MEMBERS, MEMBERS * sizeof(double));
+  for (int k = 0; k < MEMBERS; k++) {
+    dvi_potential fixed = {.value = quartic, .gradient_batch = counted_gradient, .user = &x[MEMBERS + k]};
+    const dvi_system_terms alone = {.dimension = 1, .mass.scalar = 1, .potentials = &fixed, .potential_count = 1};
+    dvi_system *of_member = NULL;
+    ck_assert_int_eq(dvi_system_create(&alone, &of_member), DVI_OK);
+    dvi_integrator *integrator = made_integrator(of_member, "verlet");
+    ck_assert_int_eq(dvi_integrator_start(integrator, 0, x + k, momentum + k), DVI_OK);
+    advance(integrator, 0.1, STEPS);
+    ck_assert_mem_eq(dvi_integrator_q(integrator), end + k, sizeof(double));
+    dvi_integrator_destroy(&integrator);
+    dvi_system_destroy(&of_member);
+  }
+  dvi_ensemble_destroy(&e);
+  dvi_system_destroy(&system);
+}
+END_TEST
+
 int main(void)
 {
   TCase *tests = tcase_create("ensemble_systems");
@@ -175,5 +227,6 @@ int main(void)
   tcase_add_test(tests, systems_that_are_not_alike_are_refused);
   tcase_add_test(tests, a_derivative_that_only_one_system_gives_is_refused);
   tcase_add_test(tests, neighbours_with_one_system_share_a_call);
+  tcase_add_test(tests, a_parameter_that_rests_is_one_to_the_last_bit);
   return run_tests("method/ensemble_systems", tests);
 }

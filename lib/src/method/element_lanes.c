@@ -22,15 +22,21 @@ typedef struct lanes {
   int *ended;         /* [width] lanes that ended with it */
 } lanes;
 
-/* From this many nodes on a single element fills the vectors with its stages, and members as lanes take as long. */
-enum { NODES_THAT_FILL_VECTORS = 8 };
+/* A vector's worth of nodes fills the vectors of a single element. Members as lanes then gain only as long as they all stay in the cache of the
+ * first level, and with two vectors' worth no more. */
+enum { NODES_OF_A_VECTOR = 8, POINTS_IN_CACHE = 64 };
+
+static int pays(int n, int nodes)
+{
+  return nodes < NODES_OF_A_VECTOR || (nodes < 2 * NODES_OF_A_VECTOR && n <= POINTS_IN_CACHE / nodes);
+}
 
 dvi_status dvi__element_prepare_lanes(dvi__stepper *self, int capacity)
 {
   dvi__action *action = dvi__element_action(self);
   const int solver = dvi__element_solver(self), patient = solver == DVI__SOLVER_FIXED_POINT;
   if (!patient && solver != DVI__SOLVER_AUTO) return DVI_OK;
-  if (dvi__action_nodes(action) >= NODES_THAT_FILL_VECTORS) return DVI_OK;
+  if (!pays(self->system->n, dvi__action_nodes(action))) return DVI_OK;
   if (!dvi__action_can_sweep(action) || !dvi__system_has_gradients(self->system)) return DVI_OK;
   lanes *own = self->lanes = DVI_NEW(lanes, 1);
   if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);

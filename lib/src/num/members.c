@@ -34,6 +34,7 @@
     case 2: ALL(width, sweep, s, 2); break;                \
     case 3: ALL(width, sweep, s, 3); break;                \
     case 4: ALL(width, sweep, s, 4); break;                \
+    case 8: ALL(width, sweep, s, 8); break;                \
     default: ALL(width, sweep, s, s->stages);              \
     }                                                      \
   }
