@@ -33,7 +33,7 @@ static void same_column(int rows, int width, int k, const double *all, const dou
 
 static double matrix[STAGES_MOST * LANES_MOST], node[LANES_MOST], weight[STAGES_MOST], factor[N];
 static double start[N * WIDTH_MOST], origin[N * WIDTH_MOST], change[WIDTH_MOST], largest[WIDTH_MOST];
-static double force[N * STAGES_MOST * WIDTH_MOST], Z[N * STAGES_MOST * WIDTH_MOST], Q[N * STAGES_MOST * WIDTH_MOST];
+static double force[N * STAGES_MOST * WIDTH_MOST], Z[N * STAGES_MOST * WIDTH_MOST], Q[N * STAGES_MOST * WIDTH_MOST + 1];
 static double old_force[N * STAGES_MOST * WIDTH_MOST], old_Z[N * STAGES_MOST * WIDTH_MOST];
 
 /* The sweep of dvi__lanes_sweep for member k, from the old forces and offsets. */

@@ -1,15 +1,14 @@
-/** An ensemble: many members, each a state of its own, advanced by one method in one call.
- *
- *  Members differ in their initial states, or in the parameters of their systems. Each has the digits of a dvi_integrator that runs it alone,
- *  bit for bit, on every processor, for every number of threads and however the members are grouped.
- *
- *  Members side by side are the lanes of vectors, and one batch callback evaluates all their points, where the mass is constant and scalar or
- *  diagonal and the potentials give their gradients: for verlet, for fixed point iteration of the implicit methods, and for compositions of
- *  both. Everything else goes member by member, as an integrator does. */
+/** An ensemble: many members, each a state of its own, advanced by one method in one call. */
 #ifndef DVI_ENSEMBLE_H
 #define DVI_ENSEMBLE_H
 #include <dvi/integrator.h>
 
+/** Members differ in their initial states, or in the parameters of their systems. Each has the digits of a dvi_integrator that runs it alone,
+ *  bit for bit, on every processor, for every number of threads and however the members are grouped.
+ *
+ *  Members side by side are the lanes of vectors, and one batch callback evaluates all their points, where the mass is constant and scalar or
+ *  diagonal and the potentials give their gradients: for verlet, for fixed point iteration of the implicit methods, and for compositions of
+ *  both. Everything else goes member by member, as an integrator does. One ensemble, one caller at a time. */
 typedef struct dvi_ensemble dvi_ensemble;
 
 /** Options of an ensemble; zero means default. */
