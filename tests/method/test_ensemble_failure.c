@@ -283,6 +283,37 @@ START_TEST(a_fatal_failure_is_worse_than_an_earlier_member)
 }
 END_TEST
 
+/* A force on x < 0 whose second kick overflows the momentum; the mass is so large that nobody moves much. */
+static int huge_gradient(int count, const double *t, const double *x, double *V_q, void *user)
+{
+  (void)t, (void)user;
+  for (int k = 0; k < count; k++) V_q[k] = x[k] < 0 ? -1.5e308 : 0;
+  return 0;
+}
+
+START_TEST(a_state_that_is_not_finite_is_not_taken)
+{
+  const dvi_potential potential = {.value_batch = fall, .gradient_batch = huge_gradient};
+  const dvi_system_terms terms = {.dimension = 1, .mass.scalar = 1e306, .potentials = &potential, .potential_count = 1};
+  double x[MEMBERS], momentum[MEMBERS] = {0}, x_now[MEMBERS], p_now[MEMBERS];
+  dvi_system *system = NULL;
+  dvi_ensemble *e = NULL;
+  for (int k = 0; k < MEMBERS; k++) x[k] = k == 5 ? -1e6 : 1;
+  ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
+  ck_assert_int_eq(dvi_ensemble_create(system, "verlet", &(dvi_ensemble_options){.members = MEMBERS}, &e), DVI_OK);
+  ck_assert_int_eq(dvi_ensemble_start(e, 0, x, momentum), DVI_OK);
+  ck_assert_int_eq(dvi_ensemble_step(e, 2), DVI_NOT_FINITE);
+  check_words("member 5: verlet: step 1 from t = 0");
+  ck_assert_int_eq(dvi_ensemble_state(e, NULL, x_now, p_now), DVI_OK);
+  ck_assert_mem_eq(x_now, x, sizeof x);
+  ck_assert_mem_eq(p_now, momentum, sizeof momentum);
+  ck_assert_int_eq(dvi_ensemble_steps(e, 5), 0);
+  ck_assert_int_eq(dvi_ensemble_steps(e, 6), 1);
+  dvi_ensemble_destroy(&e);
+  dvi_system_destroy(&system);
+}
+END_TEST
+
 /* ---- memory ---- */
 
 static const struct {
@@ -336,6 +367,7 @@ int main(void)
   tcase_add_test(tests, a_start_that_fails_for_one_changes_none);
   tcase_add_loop_test(tests, a_member_that_fails_stays_and_the_others_go_on, 0, 24);
   tcase_add_test(tests, a_fatal_failure_is_worse_than_an_earlier_member);
+  tcase_add_test(tests, a_state_that_is_not_finite_is_not_taken);
   tcase_add_loop_test(tests, creation_survives_every_failure_of_memory, 0, 5);
   return run_tests("method/ensemble_failure", tests);
 }
