@@ -8,25 +8,28 @@
 enum { FIRST_SHOWN = 3 };
 
 static const table_column columns[] = {
-    {"asked_error", "%.3e"}, {"problem", NULL},       {"judged", NULL}, {"integrator", NULL}, {"cpu_seconds", "%.3e"},
-    {"ratio", "%.2f"},       {"evaluations", "%.0f"}, {"answer", NULL}, {NULL, NULL},
+    {"asked_error", "%.3e"},    {"problem", NULL},           {"judged", NULL},          {"integrator", NULL},
+    {"cpu_seconds", "%.3e"},    {"ratio", "%.2f"},           {"evaluations", "%.0f"},   {"answer", NULL},
+    {"create_seconds", "%.3e"}, {"calibration_seconds", ""}, {"calibration_least", ""}, {NULL, NULL},
 };
 
 static const char *const answers[] = {
     [FRONTIER_NOT_REACHED] = "not reached", [FRONTIER_BETWEEN] = "interpolated", [FRONTIER_AT_MOST] = "at most"};
 
 typedef struct price {
-  double seconds, evaluations;
+  double seconds, creation, evaluations;
   frontier_answer answer;
 } price;
 
-/* Time and evaluations have a frontier each: what a method evaluates shall not depend on the clock. */
+/* Time and evaluations have a frontier each: what a method evaluates shall not depend on the clock. Its creation takes as
+ * long for any step. */
 static price price_at(const bench_results *results, int first, double asked)
 {
   enum { SETTINGS_MAX = 64 }; /* no integrator has as many */
   double error[SETTINGS_MAX];
   double seconds[SETTINGS_MAX];
   double evaluations[SETTINGS_MAX];
+  double creation[SETTINGS_MAX];
   price found;
   int count = 0;
   for (int i = first; i < bench_group_end(results, first) && count < SETTINGS_MAX; i++, count++) {
@@ -34,9 +37,11 @@ static price price_at(const bench_results *results, int first, double asked)
     error[count] = fmax(job->error, results->judge->error); /* more than the judge knows is not credited */
     seconds[count] = job->seconds.median;
     evaluations[count] = (double)job->evaluations;
+    creation[count] = job->creation_seconds;
   }
   found.answer = frontier_cost(count, error, seconds, asked, &found.seconds);
   (void)frontier_cost(count, error, evaluations, asked, &found.evaluations);
+  found.creation = found.answer == FRONTIER_NOT_REACHED ? (double)NAN : samples_spread(count, creation).median;
   return found;
 }
 
@@ -67,6 +72,9 @@ static void add_rows(result_table *rows, const bench_results *results, double as
     table_number(rows, found.seconds / least);
     table_number(rows, found.evaluations);
     table_text(rows, answers[found.answer]);
+    table_number(rows, found.creation);
+    table_number(rows, results->calibration.median);
+    table_number(rows, results->calibration.least);
   }
 }
 

@@ -4,12 +4,17 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "peer.h"
 #include "study.h"
 
-static dvi_status run_method(const bench_job *job, const problem *scene, double t_end, double *q, long *evaluations)
+/* Adds the time of creation to *creation. q: room for the end, [n], or NULL. */
+static dvi_status run_method(const bench_job *job, const problem *scene, double t_end, double *creation, double *q,
+                             long *evaluations)
 {
   dvi_integrator *integrator = NULL;
+  const double began = cpu_now();
   dvi_status status = dvi_integrator_create(scene->system, job->integrator, &integrator);
+  *creation += cpu_now() - began;
   if (status == DVI_OK) status = dvi_integrator_start(integrator, 0.0, scene->q, scene->p);
   const double h = t_end / (double)job->steps;
   for (long i = 0; i < job->steps && status == DVI_OK; i++) status = dvi_integrator_step(integrator, h);
@@ -21,16 +26,6 @@ static dvi_status run_method(const bench_job *job, const problem *scene, double 
   }
   dvi_integrator_destroy(&integrator);
   return status;
-}
-
-/* q and p are room for the state: [n] each. */
-static dvi_status run_code(const bench_job *job, const problem *scene, double t_end, double *q, double *p,
-                           dvi_reference_report *report)
-{
-  const dvi_reference_options options = {.code = job->code, .relative_tolerance = job->tolerance};
-  memcpy(q, scene->q, (size_t)scene->n * sizeof *q);
-  memcpy(p, scene->p, (size_t)scene->n * sizeof *p);
-  return dvi_reference_solve(scene->system, 0.0, t_end, q, p, &options, report);
 }
 
 static dvi_status energy_change(const problem *scene, double t, const double *q, const double *p, double *change)
@@ -46,7 +41,7 @@ static dvi_status energy_change(const problem *scene, double t, const double *q,
 }
 
 /* Watch the energy along the way, and leave the end in q and p. */
-static dvi_status try_code(bench_job *job, const problem *scene, double t_end, double *q, double *p, double *spent)
+static dvi_status try_peer(bench_job *job, const problem *scene, double t_end, double *q, double *p)
 {
   dvi_reference_report report = {0};
   dvi_status status = DVI_OK;
@@ -55,8 +50,8 @@ static dvi_status try_code(bench_job *job, const problem *scene, double t_end, d
     const double t = k == ENERGY_TIMES ? t_end : t_end * k / ENERGY_TIMES;
     double change = 0.0;
     const double began = cpu_now();
-    status = run_code(job, scene, t, q, p, &report);
-    *spent = cpu_now() - began;
+    status = peer_solve(job->peer, scene, t, job->tolerance, q, p, &report);
+    job->tried = cpu_now() - began;
     if (status == DVI_OK) status = energy_change(scene, t, q, p, &change);
     job->energy_error = fmax(job->energy_error, change);
   }
@@ -65,11 +60,12 @@ static dvi_status try_code(bench_job *job, const problem *scene, double t_end, d
   return status;
 }
 
-static dvi_status try_method(bench_job *job, const problem *scene, double t_end, double *q, double *spent)
+static dvi_status try_method(bench_job *job, const problem *scene, double t_end, double *q)
 {
+  double creation = 0.0;
   const double began = cpu_now();
-  const dvi_status status = run_method(job, scene, t_end, q, &job->evaluations);
-  *spent = cpu_now() - began;
+  const dvi_status status = run_method(job, scene, t_end, &creation, q, &job->evaluations);
+  job->tried = cpu_now() - began;
   return status;
 }
 
@@ -77,11 +73,9 @@ dvi_status bench_job_try(bench_job *job, const problem *scene, const judgement *
 {
   double *q = calloc(2 * (size_t)scene->n, sizeof *q);
   if (q == NULL) return DVI_NO_MEMORY;
-  double spent = 0.0;
-  const dvi_status status = job->peer ? try_code(job, scene, t_end, q, q + scene->n, &spent)
-                                      : try_method(job, scene, t_end, q, &spent);
+  const dvi_status status = job->peer >= 0 ? try_peer(job, scene, t_end, q, q + scene->n) : try_method(job, scene, t_end, q);
   job->error = judge_error(judge, scene, q);
-  job->repeats = study_repeats(spent);
+  job->repeats = study_repeats(job->tried);
   free(q);
   return status;
 }
@@ -91,10 +85,19 @@ dvi_status bench_job_time(bench_job *job, const problem *scene, double t_end, in
   double *q = calloc(2 * (size_t)scene->n, sizeof *q);
   if (q == NULL) return DVI_NO_MEMORY;
   dvi_status status = DVI_OK;
+  double creation = job->peer >= 0 ? (double)NAN : 0.0; /* a peer is created and run in one call */
   const double began = cpu_now();
   for (long i = 0; i < job->repeats && status == DVI_OK; i++)
-    status = job->peer ? run_code(job, scene, t_end, q, q + scene->n, NULL) : run_method(job, scene, t_end, NULL, NULL);
+    status = job->peer >= 0 ? peer_solve(job->peer, scene, t_end, job->tolerance, q, q + scene->n, NULL)
+                            : run_method(job, scene, t_end, &creation, NULL, NULL);
   job->cpu[round] = (cpu_now() - began) / (double)job->repeats;
+  job->creation[round] = creation / (double)job->repeats;
   free(q);
   return status;
+}
+
+void bench_job_finish(bench_job *job, int rounds)
+{
+  job->seconds = samples_spread(rounds, job->cpu);
+  job->creation_seconds = samples_spread(rounds, job->creation).median;
 }

@@ -13,17 +13,13 @@
 enum { CURVES_MAX = 128, TITLE_SIZE = 160 };
 
 static const table_column columns[] = {
-    {"integrator", NULL},
-    {"problem", NULL},
-    {"setting", NULL},
-    {"error", "%.3e"},
-    {"energy_error", "%.3e"},
-    {"cpu_seconds", "%.3e"},
-    {"evaluations", "%.0f"},
-    {"cpu_lower", "%.3e"},
-    {"cpu_upper", "%.3e"},
-    {"steps", "%.0f"},
-    {NULL, NULL},
+    {"integrator", NULL},       {"problem", NULL},
+    {"setting", NULL},          {"error", "%.3e"},
+    {"energy_error", "%.3e"},   {"cpu_seconds", "%.3e"},
+    {"evaluations", "%.0f"},    {"cpu_lower", "%.3e"},
+    {"cpu_upper", "%.3e"},      {"steps", "%.0f"},
+    {"create_seconds", "%.3e"}, {"calibration_seconds", ""},
+    {"calibration_least", ""},  {NULL, NULL},
 };
 
 int bench_group_end(const bench_results *results, int first)
@@ -48,14 +44,17 @@ static result_table *make_table(const bench_results *results)
     table_number(rows, job->seconds.lower);
     table_number(rows, job->seconds.upper);
     table_number(rows, (double)job->steps);
+    table_number(rows, job->creation_seconds);
+    table_number(rows, results->calibration.median);
+    table_number(rows, results->calibration.least);
   }
   return rows;
 }
 
-static bool has_peers(const bench_results *results)
+static bool has_sundials(const bench_results *results)
 {
   for (int i = 0; i < results->jobs; i++)
-    if (results->job[i].peer) return true;
+    if (results->job[i].peer >= 0 && dvi_reference_name((dvi_reference_code)results->job[i].peer) != NULL) return true;
   return false;
 }
 
@@ -64,16 +63,18 @@ static void print_head(FILE *stream, const bench_results *results)
   (void)fprintf(stream, "Speed against error on %s\n", results->scene->name);
   machine_print(stream);
   machine_print_calibration(stream, &results->calibration);
+  if (results->one_point) (void)fprintf(stream, "callbacks: one point a call\n");
 }
 
 static void print_notes(FILE *stream, const bench_results *results)
 {
-  (void)fprintf(stream, "judge at t = %g: %s, error %.1e\n", results->t_end, results->judge->kind, results->judge->error);
+  (void)fprintf(stream, "judge at t = %g: %s, error %.1e\n", results->t_end, results->judge->words, results->judge->error);
   (void)fprintf(stream,
                 "cpu_seconds: process time of a whole job, median of %ld interleaved rounds; cpu_lower, cpu_upper: quartiles\n",
                 results->rounds);
-  (void)fprintf(stream, "energy_error: methods: largest over the run; codes of SUNDIALS: largest of %d times\n", (int)ENERGY_TIMES);
-  if (!has_peers(results)) return;
+  (void)fprintf(stream, "create_seconds: its part that creates the integrator; of peers not known\n");
+  (void)fprintf(stream, "energy_error: methods: largest over the run; peers: largest of %d times\n", (int)ENERGY_TIMES);
+  if (!has_sundials(results)) return;
   (void)fprintf(stream, "SUNDIALS %s. Caution: Debian's packages of SUNDIALS are built without optimisation; its codes linked\n",
                 dvi_reference_version());
   (void)fprintf(stream, "from them are several times slower than they can be. Say which build a ratio was measured against.\n");

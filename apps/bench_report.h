@@ -11,6 +11,7 @@ typedef struct bench_results {
   const problem *scene;
   const judgement *judge;
   double t_end;
+  bool one_point; /**< callbacks of the one-point shape */
   long rounds;
   int jobs;
   bench_job *job;     /**< [jobs] in the order of the table: all settings of one integrator, then of the next */

@@ -2,8 +2,10 @@
 
 #include <dvi/dvi.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "peer.h"
 #include "study.h"
 
 /* A sanitizer brings a malloc of its own, of which the C library knows nothing. */
@@ -58,7 +60,9 @@ void machine_print(FILE *stream)
   processor(name);
   (void)fprintf(stream, "processor: %s\n", name);
   (void)fprintf(stream, "compiler: %s, %s\n", DVI_BUILD_COMPILER, DVI_BUILD_FLAGS);
-  (void)fprintf(stream, "libraries: dvi %s, SUNDIALS %s\n", dvi_version(), dvi_reference_version());
+  (void)fprintf(stream, "libraries: dvi %s, SUNDIALS %s", dvi_version(), dvi_reference_version());
+  if (peer_gsl_version() != NULL) (void)fprintf(stream, ", GSL %s", peer_gsl_version());
+  (void)fputc('\n', stream);
 }
 
 double machine_multiplications(void)
@@ -76,8 +80,35 @@ double machine_multiplications(void)
 
 void machine_print_calibration(FILE *stream, const spread *seconds)
 {
-  (void)fprintf(stream, "calibration: 1e8 dependent multiplications in %.3f s (quartiles %.3f, %.3f)\n", seconds->median,
-                seconds->lower, seconds->upper);
+  (void)fprintf(stream, "calibration: 1e8 dependent multiplications in %.3f s (least %.3f, quartiles %.3f, %.3f)\n",
+                seconds->median, seconds->least, seconds->lower, seconds->upper);
+}
+
+/* The best that the processor has: a yardstick shall not be short. */
+#if defined(__x86_64__) && defined(__gnu_linux__) && (!defined(__clang__) || __clang_major__ >= 14)
+__attribute__((target_clones("arch=x86-64-v4", "avx2", "default")))
+#endif
+static void
+add_multiple(size_t n, double a, const double *restrict x, double *restrict y)
+{
+  for (size_t i = 0; i < n; i++) y[i] += a * x[i];
+}
+
+double machine_axpy(int n)
+{
+  enum { LINE = 64, LEAST = 4 };
+  static const double seconds = 0.05;
+  const size_t count = (size_t)n, size = (count * sizeof(double) + LINE - 1) / LINE * LINE;
+  double *x = aligned_alloc(LINE, size), *y = aligned_alloc(LINE, size), spent = 0.0;
+  long passes = 0;
+  for (size_t i = 0; x != NULL && y != NULL && i < count; i++) x[i] = y[i] = 1.0;
+  for (const double began = cpu_now(); x != NULL && y != NULL && (passes < LEAST || spent < seconds); passes++) {
+    add_multiple(count, 1e-9, x, y);
+    spent = cpu_now() - began;
+  }
+  free(x);
+  free(y);
+  return passes > 0 ? 24.0 * n * (double)passes / spent : (double)NAN;
 }
 
 double machine_heap(void)

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "command.h"
+#include "peer.h"
 #include "signals.h"
 #include "spelling.h"
 
@@ -47,6 +48,14 @@ static const char *subcommand_at(int k, const void *list)
   return ((const subcommand *)list)[k].name;
 }
 
+/* A command that holds GSL is under GSL's licence, and says so. */
+static void print_version(void)
+{
+  (void)printf("dvi %s (SUNDIALS %s", dvi_version(), dvi_reference_version());
+  if (peer_gsl_version() != NULL) (void)printf(", GSL %s: this binary is under the GPL, version 3 or later", peer_gsl_version());
+  (void)printf(")\n");
+}
+
 static int dispatch(int argc, char **argv)
 {
   if (argc < 2) {
@@ -62,7 +71,7 @@ static int dispatch(int argc, char **argv)
     return DONE;
   }
   if (asks_version) {
-    (void)printf("dvi %s (SUNDIALS %s)\n", dvi_version(), dvi_reference_version());
+    print_version();
     return DONE;
   }
   for (const subcommand *s = subcommands; s->name != NULL; s++)

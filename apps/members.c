@@ -283,7 +283,7 @@ static int report(const comparison *c)
 
 static int read_counts(comparison *c)
 {
-  const int code = numbers_read("bench: --scale", c->request->sizes + sizeof axis_word - 1, &c->counts);
+  const int code = numbers_read("bench: --scale", c->request->scaled + sizeof axis_word - 1, &c->counts);
   for (int k = 0; k < c->counts.count && code == DONE; k++)
     if (c->counts.number[k] != floor(c->counts.number[k]) || c->counts.number[k] > MEMBERS_MOST)
       return usage_error("bench: --scale members=%s: a whole number from 1 to %d is wanted", c->counts.text[k], (int)MEMBERS_MOST);
@@ -318,7 +318,7 @@ int members_run(const scale_request *request)
   comparison c = {.request = request};
   if (request->methods->count == 0) return usage_error("bench: --scale needs a method: --method SPEC");
   int code = read_counts(&c);
-  if (code == DONE) code = open_problem(request->problem, request->settings, &c.scene);
+  if (code == DONE) code = open_shaped(request->problem, request->settings, request->one_point, &c.scene);
   if (code != DONE) return code;
   c.h = isnan(request->h) ? c.scene->h : request->h;
   code = check_methods(&c);

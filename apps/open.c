@@ -88,6 +88,16 @@ int open_problem(const char *name, const words *settings, problem **scene)
   return status == DVI_BAD_OPTION ? USAGE : FAILED;
 }
 
+int open_shaped(const char *name, const words *settings, bool one_point, problem **scene)
+{
+  const int code = open_problem(name, settings, scene);
+  if (code != DONE || !one_point) return code;
+  const dvi_status status = problem_one_point(*scene);
+  if (status == DVI_OK) return DONE;
+  problem_destroy(scene);
+  return library_error(status);
+}
+
 const char *start_setting(const char *name, const words *settings)
 {
   const int index = problem_find(name);

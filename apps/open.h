@@ -8,6 +8,9 @@
  *  exit code. */
 int open_problem(const char *name, const words *settings, problem **scene);
 
+/** The same; `one_point`: with callbacks of the one-point shape. */
+int open_shaped(const char *name, const words *settings, bool one_point, problem **scene);
+
 /** The first setting of a parameter that only places the start; NULL if there is none, or no such problem. */
 const char *start_setting(const char *name, const words *settings);
 

@@ -22,7 +22,8 @@ static const double lengthening = 4.0;
 
 /* What the command line asks for. */
 typedef struct order_request {
-  const char *csv, *plot;
+  const char *csv, *plot, *judged_by;
+  judge_kind judge;
   double h, t_end, ratio;
   long levels; /* 0: chosen */
   words methods, settings;
@@ -62,15 +63,16 @@ typedef struct hearing {
 } hearing;
 
 /* Have the judge's answer for this time. */
-static dvi_status ask_judge(hearing *ask, double t_end)
+static int ask_judge(hearing *ask, double t_end)
 {
-  if (t_end == ask->judged_at) return DVI_OK;
+  const judge_request request = {.kind = ask->request->judge, .progress = &ask->progress};
+  if (t_end == ask->judged_at) return DONE;
   judge_clear(&ask->judge);
   ask->judged_at = (double)NAN;
   progress_show(&ask->progress, -1.0, "judge");
-  const dvi_status status = judge_init(&ask->judge, ask->scene, t_end);
-  if (status == DVI_OK) ask->judged_at = t_end;
-  return status;
+  const int code = judge_init(&ask->judge, ask->scene, t_end, &request);
+  if (code == DONE) ask->judged_at = t_end;
+  return code;
 }
 
 static int level_count(const order_request *request, const order_study *study)
@@ -86,7 +88,7 @@ static dvi_status measure(hearing *ask, order_study *study, int levels, const lo
   result->method = study->method;
   result->claimed = study->order;
   result->t_end = study->t_end;
-  result->judge = ask->judge.kind;
+  memcpy(result->judge, ask->judge.words, sizeof result->judge);
   result->judge_error = ask->judge.error;
   result->floor = study->floor;
   result->ceiling = study->ceiling;
@@ -111,14 +113,14 @@ static int study_until(hearing *ask, const char *method, double t_end, bool *roo
   order_study study;
   long steps[LEVELS_MAX];
   const bool must_fit = *room;
-  dvi_status status = ask_judge(ask, t_end);
-  if (status != DVI_OK) return library_error(status);
-  const int code = study_init(&study, ask->scene, &ask->judge, method, t_end);
+  int code = ask_judge(ask, t_end);
+  if (code != DONE) return code;
+  code = study_init(&study, ask->scene, &ask->judge, method, t_end);
   if (code != DONE) return code;
   study.progress = &ask->progress;
   const int levels = level_count(request, &study);
-  status = choose_levels(&study, isnan(request->h) ? 0.0 : request->h, isnan(request->ratio) ? 0.0 : request->ratio, levels, steps,
-                         room);
+  dvi_status status = choose_levels(&study, isnan(request->h) ? 0.0 : request->h, isnan(request->ratio) ? 0.0 : request->ratio,
+                                    levels, steps, room);
   if (status == DVI_OK && (*room || !must_fit)) status = measure(ask, &study, levels, steps, result);
   study_clear(&study);
   if (status == DVI_OK) return DONE;
@@ -138,7 +140,8 @@ static double study_end(const order_request *request, const problem *scene)
 static int study_method(hearing *ask, const char *method, order_result *result)
 {
   const order_request *request = ask->request;
-  const bool fixed = !isnan(request->t_end) || !isnan(request->h) || (ask->scene->exact == NULL && ask->scene->digits_q != NULL);
+  const bool fixed = !isnan(request->t_end) || !isnan(request->h) || request->judge == JUDGE_STORED ||
+                     (ask->scene->exact == NULL && ask->scene->digits_q != NULL);
   double t_end = study_end(request, ask->scene);
   for (int i = 0;; i++) {
     bool room = !fixed && i < LENGTHENINGS;
@@ -210,7 +213,7 @@ static int check_methods(const order_request *request, const problem *scene)
   return code;
 }
 
-static int check_request(const order_request *request)
+static int check_request(order_request *request)
 {
   if (request->methods.count == 0)
     return usage_error("order: --method is missing, for example --method galerkin:degree=2; see dvi list methods");
@@ -222,7 +225,8 @@ static int check_request(const order_request *request)
   if (!isnan(request->ratio) && !(request->ratio >= 1.01 && request->ratio <= 10.0))
     return usage_error("order: --ratio %g is not between 1.01 and 10", request->ratio);
   const named_file files[] = {{"csv", request->csv}, {"plot", request->plot}};
-  int code = outputs_plot("order", request->plot);
+  int code = request->judged_by != NULL ? judge_read("order: --judge", request->judged_by, &request->judge) : DONE;
+  if (code == DONE) code = outputs_plot("order", request->plot);
   if (code == DONE) code = outputs_distinct("order", 2, files);
   if (code != DONE) return code;
   if (request->csv != NULL && !file_writable(request->csv)) return FAILED;
@@ -239,7 +243,8 @@ static const char details[] =
     "  the rest      counted by the library in one run\n"
     "\n"
     "The judge is the problem's exact solution; or its stored quadruple-precision result, if parameters and end are\n"
-    "the problem's own; or IDA of SUNDIALS, which shares no code with the methods, run at two tolerances. An error\n"
+    "the problem's own; or IDA of SUNDIALS, which shares no code with the methods, run at two tolerances. --judge\n"
+    "chooses: exact, stored, ida; or runs, two runs of high degree (see dvi bench --help). An error\n"
     "counts if it is above the floor: ten times the judge's own error, and ten times what a change of the start in\n"
     "its last digit does to the end. It must also be below 1 % of the solution. The order is fitted to the longest\n"
     "run of 4 or more such levels over which the slope is settled: the same within 0.1 in the coarser and the finer\n"
@@ -265,6 +270,7 @@ int order_command(int argc, char **argv)
       {.name = "levels", .count = &r.levels, .value = "N", .help = "how many step sizes; left out: 6, or 12 from order 8"},
       {.name = "ratio", .number = &r.ratio, .value = "R", .help = "of neighbouring steps; left out: 2, or less for high orders"},
       {.name = "t-end", .number = &r.t_end, .value = "T", .help = "the end; left out: the problem's for order studies"},
+      {.name = "judge", .word = &r.judged_by, .value = "WHO", .help = "auto, exact, stored, ida or runs; left out: auto"},
       {.name = "set", .words = &r.settings, .value = "NAME=VALUE", .help = "set a parameter of the problem; may be repeated"},
       {.name = "csv", .word = &r.csv, .value = "-|FILE", .help = "write the table as CSV; -: to standard output, words to stderr"},
       {.name = "plot", .word = &r.plot, .value = "FILE.svg", .help = "draw error against step, with the claimed slopes"},

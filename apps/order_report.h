@@ -4,6 +4,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
+#include "judge.h"
 #include "problem.h"
 #include "table.h"
 
@@ -12,9 +13,9 @@ enum { LEVELS_MAX = 40, LABEL_SIZE = 160 };
 /** What was found for one method. */
 typedef struct order_result {
   const char *method;
-  int claimed;       /**< its order */
-  double t_end;      /**< where it was judged */
-  const char *judge; /**< by whom, in words */
+  int claimed;             /**< its order */
+  double t_end;            /**< where it was judged */
+  char judge[JUDGE_WORDS]; /**< by whom, in words */
   double judge_error;
   int levels;
   double h[LEVELS_MAX]; /**< step sizes without sign */

@@ -22,8 +22,10 @@ static double quantile(int count, const double *sorted, double part)
 spread samples_spread(int count, double *sample)
 {
   qsort(sample, (size_t)count, sizeof *sample, by_size);
-  return (spread){
-      .lower = quantile(count, sample, 0.25), .median = quantile(count, sample, 0.5), .upper = quantile(count, sample, 0.75)};
+  return (spread){.least = sample[0],
+                  .lower = quantile(count, sample, 0.25),
+                  .median = quantile(count, sample, 0.5),
+                  .upper = quantile(count, sample, 0.75)};
 }
 
 static bool has_logarithm(double x)

@@ -6,10 +6,10 @@ enum { ROUNDS_MAX = 99 };
 
 /** Repeated measurements of one quantity: half of them lie between the quartiles. */
 typedef struct spread {
-  double lower, median, upper;
+  double least, lower, median, upper;
 } spread;
 
-/** Quartiles and median of sample [count], count >= 1, interpolated linearly between neighbours (Hyndman and Fan's type 7). Sorts the
+/** Least, quartiles and median of sample [count], count >= 1, interpolated linearly between neighbours (Hyndman and Fan's type 7). Sorts the
  *  sample. */
 spread samples_spread(int count, double *sample);
 

@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "axis.h"
 #include "command.h"
 #include "machine.h"
-#include "numbers.h"
 #include "open.h"
 #include "plot.h"
 #include "progress.h"
@@ -15,64 +15,63 @@
 #include "study.h"
 #include "table.h"
 
-enum { STEPS = 32, SETTING_SIZE = 128, TITLE_SIZE = 160 };
+enum { STEPS = 32, TITLE_SIZE = 160 };
 
-/* One method at one size. */
+/* One method at one value. */
 typedef struct cell {
   int n;
   double h;
   double cpu[ROUNDS_MAX]; /* seconds of a step, in each round */
   spread seconds;         /* of all rounds; set when they are over */
   double bytes;           /* NaN: not known */
-  double evaluations;     /* of a step */
+  dvi_counters counted;   /* in STEPS steps */
 } cell;
 
 typedef struct scaling {
   const scale_request *request;
-  char parameter[SETTING_SIZE];
-  numbers sizes;
-  cell *cell; /* [methods][sizes] */
+  scale_axis axis;
+  cell *cell; /* [methods][values] */
   spread calibration;
   progress_line progress;
 } scaling;
 
 static const table_column columns[] = {
-    {"method", NULL},       {"problem", NULL}, {"parameter", NULL},          {"value", "%.6g"},
-    {"n", "%.0f"},          {"h", "%.6g"},     {"step_seconds", "%.3e"},     {"step_lower", "%.3e"},
-    {"step_upper", "%.3e"}, {"bytes", "%.0f"}, {"step_evaluations", "%.2f"}, {NULL, NULL},
+    {"method", NULL},
+    {"problem", NULL},
+    {"parameter", NULL},
+    {"value", "%.6g"},
+    {"n", "%.0f"},
+    {"h", "%.6g"},
+    {"step_seconds", "%.3e"},
+    {"step_lower", "%.3e"},
+    {"step_upper", "%.3e"},
+    {"bytes", "%.0f"},
+    {"step_evaluations", "%.2f"},
+    {"step_residuals", "%.2f"},
+    {"step_factorizations", "%.2f"},
+    {"calibration_seconds", ""},
+    {"calibration_least", ""},
+    {NULL, NULL},
 };
 
-static cell *cell_at(const scaling *s, int method, int size)
+static cell *cell_at(const scaling *s, int method, int k)
 {
-  return &s->cell[method * s->sizes.count + size];
+  return &s->cell[method * s->axis.values.count + k];
 }
 
-/* Make the problem at one of the sizes. */
-static int open_size(const scaling *s, int size, problem **scene)
+/* The first steps from the start: their time, and what they counted. */
+static dvi_status run_steps(dvi_integrator *integrator, const problem *scene, double h, double *spent, dvi_counters *counted)
 {
-  char setting[2 * SETTING_SIZE];
-  words settings = *s->request->settings; /* of which scale_run left one free */
-  (void)snprintf(setting, sizeof setting, "%s=%s", s->parameter, s->sizes.text[size]);
-  settings.word[settings.count++] = setting;
-  return open_problem(s->request->problem, &settings, scene);
-}
-
-static long evaluations_of(const dvi_integrator *integrator)
-{
-  dvi_counters counters;
-  dvi_integrator_counters(integrator, &counters);
-  return counters.gradients;
-}
-
-/* The first steps from the start: their time, and the points at which they evaluated the gradient. */
-static dvi_status run_steps(dvi_integrator *integrator, const problem *scene, double h, double *spent, long *evaluations)
-{
+  dvi_counters before;
   dvi_status status = dvi_integrator_start(integrator, 0.0, scene->q, scene->p);
-  const long before = evaluations_of(integrator);
+  dvi_integrator_counters(integrator, &before);
   const double began = cpu_now();
   for (int i = 0; i < STEPS && status == DVI_OK; i++) status = dvi_integrator_step(integrator, h);
   *spent = cpu_now() - began;
-  *evaluations = evaluations_of(integrator) - before;
+  dvi_integrator_counters(integrator, counted);
+  counted->gradients -= before.gradients;
+  counted->residuals -= before.residuals;
+  counted->factorizations -= before.factorizations;
   return status;
 }
 
@@ -81,37 +80,45 @@ static dvi_status measure_cell(const char *method, const problem *scene, cell *c
   dvi_integrator *integrator = NULL;
   double spent = 0.0;
   double total = 0.0;
-  long evaluations = 0;
   const double heap = machine_heap();
   dvi_status status = dvi_integrator_create(scene->system, method, &integrator);
   /* The first run finds memory and the machine's caches as they will be: it is not timed. */
-  for (int i = 0; i < 2 && status == DVI_OK; i++) status = run_steps(integrator, scene, c->h, &spent, &evaluations);
+  for (int i = 0; i < 2 && status == DVI_OK; i++) status = run_steps(integrator, scene, c->h, &spent, &c->counted);
   const double grown = machine_heap() - heap;
   if (round == 0) c->bytes = grown > 0.0 ? grown : (double)NAN; /* another malloc does not show there */
   const long repeats = study_repeats(spent);
   for (long i = 0; i < repeats && status == DVI_OK; i++) {
-    status = run_steps(integrator, scene, c->h, &spent, &evaluations);
+    status = run_steps(integrator, scene, c->h, &spent, &c->counted);
     total += spent;
   }
-  c->evaluations = (double)evaluations / STEPS;
   c->cpu[round] = total / (STEPS * (double)repeats);
   dvi_integrator_destroy(&integrator);
   return status;
 }
 
-static int measure_size(scaling *s, int size, int round)
+static int measure_methods(scaling *s, const problem *scene, int k, int round)
 {
-  problem *scene;
-  int code = open_size(s, size, &scene);
-  if (code != DONE) return code;
+  char method[SPECIFICATION_SIZE];
+  int code = DONE;
   for (int i = 0; i < s->request->methods->count && code == DONE; i++) {
-    cell *c = cell_at(s, i, size);
+    cell *c = cell_at(s, i, k);
     c->n = scene->n;
     c->h = isnan(s->request->h) ? scene->h : s->request->h;
     progress_show(&s->progress, -1.0, s->request->methods->word[i]);
-    const dvi_status status = measure_cell(s->request->methods->word[i], scene, c, round);
+    code = axis_method(&s->axis, k, s->request->methods->word[i], method);
+    if (code != DONE) break;
+    const dvi_status status = measure_cell(method, scene, c, round);
     if (status != DVI_OK) code = library_error(status);
   }
+  return code;
+}
+
+static int measure_value(scaling *s, int k, int round)
+{
+  problem *scene;
+  int code = axis_problem(&s->axis, k, s->request->problem, s->request->settings, s->request->one_point, &scene);
+  if (code != DONE) return code;
+  code = measure_methods(s, scene, k, round);
   problem_destroy(&scene);
   return code;
 }
@@ -125,12 +132,13 @@ static int measure(scaling *s)
   progress_start(&s->progress, true);
   for (int round = 0; round < rounds && code == DONE; round++) {
     calibration[round] = machine_multiplications();
-    for (int size = 0; size < s->sizes.count && code == DONE; size++) code = measure_size(s, size, round);
+    for (int k = 0; k < s->axis.values.count && code == DONE; k++) code = measure_value(s, k, round);
   }
   progress_end(&s->progress);
   if (code != DONE) return code;
   s->calibration = samples_spread(rounds, calibration);
-  for (int i = 0; i < s->request->methods->count * s->sizes.count; i++) s->cell[i].seconds = samples_spread(rounds, s->cell[i].cpu);
+  for (int i = 0; i < s->request->methods->count * s->axis.values.count; i++)
+    s->cell[i].seconds = samples_spread(rounds, s->cell[i].cpu);
   return DONE;
 }
 
@@ -138,49 +146,52 @@ static result_table *make_table(const scaling *s)
 {
   result_table *rows = table_create(columns);
   for (int i = 0; i < s->request->methods->count; i++)
-    for (int k = 0; k < s->sizes.count; k++) {
+    for (int k = 0; k < s->axis.values.count; k++) {
       const cell *c = cell_at(s, i, k);
       table_text(rows, s->request->methods->word[i]);
       table_text(rows, s->request->problem);
-      table_text(rows, s->parameter);
-      table_number(rows, s->sizes.number[k]);
+      table_text(rows, s->axis.name);
+      table_number(rows, s->axis.values.number[k]);
       table_number(rows, c->n);
       table_number(rows, c->h);
       table_number(rows, c->seconds.median);
       table_number(rows, c->seconds.lower);
       table_number(rows, c->seconds.upper);
       table_number(rows, c->bytes);
-      table_number(rows, c->evaluations);
+      table_number(rows, (double)c->counted.gradients / STEPS);
+      table_number(rows, (double)c->counted.residuals / STEPS);
+      table_number(rows, (double)c->counted.factorizations / STEPS);
+      table_number(rows, s->calibration.median);
+      table_number(rows, s->calibration.least);
     }
   return rows;
 }
 
-static void print_power(FILE *stream, const char *name, int count, const double *n, const double *y)
+static void print_power(FILE *stream, const scaling *s, const char *name, const double *x, const double *y)
 {
-  const double exponent = samples_power(count, n, y);
+  const double exponent = samples_power(s->axis.values.count, x, y);
   if (isnan(exponent))
     (void)fprintf(stream, "  %s: not known", name);
   else
-    (void)fprintf(stream, "  %s ~ n^%.2f", name, exponent);
+    (void)fprintf(stream, "  %s ~ %s^%.2f", name, axis_symbol(&s->axis), exponent);
 }
 
 static void print_powers(FILE *stream, const scaling *s, int method)
 {
-  double n[NUMBERS_MAX];
+  double x[NUMBERS_MAX];
   double seconds[NUMBERS_MAX];
   double bytes[NUMBERS_MAX];
   double evaluations[NUMBERS_MAX];
-  const int count = s->sizes.count;
-  for (int k = 0; k < count; k++) {
+  for (int k = 0; k < s->axis.values.count; k++) {
     const cell *c = cell_at(s, method, k);
-    n[k] = c->n;
+    x[k] = axis_abscissa(&s->axis, k, c->n);
     seconds[k] = c->seconds.median;
     bytes[k] = c->bytes;
-    evaluations[k] = c->evaluations;
+    evaluations[k] = (double)c->counted.gradients;
   }
-  print_power(stream, "step_seconds", count, n, seconds);
-  print_power(stream, "bytes", count, n, bytes);
-  print_power(stream, "step_evaluations", count, n, evaluations);
+  print_power(stream, s, "step_seconds", x, seconds);
+  print_power(stream, s, "bytes", x, bytes);
+  print_power(stream, s, "step_evaluations", x, evaluations);
   (void)fputc('\n', stream);
 }
 
@@ -189,9 +200,10 @@ static void print_all(FILE *stream, const scaling *s, const result_table *rows)
   (void)fprintf(stream, "Cost of a step on %s\n", s->request->problem);
   machine_print(stream);
   machine_print_calibration(stream, &s->calibration);
+  if (s->request->one_point) (void)fprintf(stream, "callbacks: one point a call\n");
   for (int i = 0; i < s->request->methods->count; i++) {
     (void)fprintf(stream, "\n%s\n", s->request->methods->word[i]);
-    table_print(rows, stream, 2, i * s->sizes.count, (i + 1) * s->sizes.count);
+    table_print(rows, stream, 2, i * s->axis.values.count, (i + 1) * s->axis.values.count);
     print_powers(stream, s, i);
   }
   (void)fprintf(
@@ -208,22 +220,22 @@ static bool plot_cells(const scaling *s)
   plot_curve curve[WORDS_MAX];
   char title[TITLE_SIZE];
   const int methods = s->request->methods->count;
-  const int sizes = s->sizes.count;
-  double *x = calloc(2 * (size_t)methods * (size_t)sizes, sizeof *x);
+  const int values = s->axis.values.count;
+  double *x = calloc(2 * (size_t)methods * (size_t)values, sizeof *x);
   if (x == NULL) {
     complain("out of memory for the plot");
     return false;
   }
-  double *y = x + methods * sizes;
-  for (int i = 0; i < methods * sizes; i++) {
-    x[i] = s->cell[i].n;
+  double *y = x + methods * values;
+  for (int i = 0; i < methods * values; i++) {
+    x[i] = axis_abscissa(&s->axis, i % values, s->cell[i].n);
     y[i] = s->cell[i].seconds.median;
   }
   for (int i = 0; i < methods; i++)
-    curve[i] = (plot_curve){.label = s->request->methods->word[i], .count = sizes, .x = x + i * sizes, .y = y + i * sizes};
-  (void)snprintf(title, sizeof title, "CPU time of a step against size: %s", s->request->problem);
+    curve[i] = (plot_curve){.label = s->request->methods->word[i], .count = values, .x = x + i * values, .y = y + i * values};
+  (void)snprintf(title, sizeof title, "CPU time of a step against %s: %s", axis_title(&s->axis), s->request->problem);
   const plot_panel panel = {.title = title,
-                            .x_label = "coordinates",
+                            .x_label = axis_title(&s->axis),
                             .y_label = "CPU seconds of a step",
                             .logarithmic = true,
                             .curves = methods,
@@ -246,41 +258,44 @@ static int report(const scaling *s)
   return good ? DONE : FAILED;
 }
 
-/* Split "ell=100,1000" into the parameter and its values. */
-static int read_sizes(scaling *s)
+static int check_methods(const scaling *s, const problem *scene, int k)
 {
-  const char *text = s->request->sizes;
-  const size_t length = strcspn(text, "=");
-  if (text[length] == '\0' || length == 0 || length >= SETTING_SIZE)
-    return usage_error("bench: --scale wants a parameter of the problem and its values, NAME=V1,V2,..., not '%s'", text);
-  (void)snprintf(s->parameter, sizeof s->parameter, "%.*s", (int)length, text);
-  const int code = numbers_read("bench: --scale", text + length + 1, &s->sizes);
-  if (code == DONE && s->sizes.count < 2)
-    return usage_error("bench: --scale needs two values at least: with %s there is nothing to compare", text);
+  char method[SPECIFICATION_SIZE];
+  int code = DONE;
+  for (int i = 0; i < s->request->methods->count && code == DONE; i++) {
+    dvi_integrator *integrator = NULL;
+    code = axis_method(&s->axis, k, s->request->methods->word[i], method);
+    if (code == DONE) code = open_integrator(scene, method, &integrator);
+    dvi_integrator_destroy(&integrator);
+  }
   return code;
 }
 
-/* Before anything is measured: every size can be made, is another one, and every method can run on the first. */
-static int check_sizes(const scaling *s)
+/* Value k makes a problem of another size than those before it, n [k]. */
+static int check_growth(const scaling *s, const int *n, int k)
+{
+  const char(*value)[NUMBER_SIZE] = s->axis.values.text;
+  for (int j = 0; j < k && s->axis.kind == AXIS_PARAMETER; j++)
+    if (n[j] == n[k])
+      return usage_error("bench: --scale: %s has %d coordinates at %s=%s and at %s=%s alike; scale a parameter that makes it grow",
+                         s->request->problem, n[k], s->axis.name, value[j], s->axis.name, value[k]);
+  return DONE;
+}
+
+/* Before anything is measured: each problem and each specification can be made. What a method says to a problem does not depend on the
+ * problem's size, so it is asked once. */
+static int check_values(const scaling *s)
 {
   int n[NUMBERS_MAX];
   int code = DONE;
-  for (int k = 0; k < s->sizes.count && code == DONE; k++) {
+  for (int k = 0; k < s->axis.values.count && code == DONE; k++) {
     problem *scene;
-    code = open_size(s, k, &scene);
+    code = axis_problem(&s->axis, k, s->request->problem, s->request->settings, s->request->one_point, &scene);
     if (code != DONE) return code;
     n[k] = scene->n;
-    for (int i = 0; i < s->request->methods->count && k == 0 && code == DONE; i++) {
-      dvi_integrator *integrator = NULL;
-      code = open_integrator(scene, s->request->methods->word[i], &integrator);
-      dvi_integrator_destroy(&integrator);
-    }
+    if (k == 0 || s->axis.kind != AXIS_PARAMETER) code = check_methods(s, scene, k);
     problem_destroy(&scene);
-    for (int j = 0; j < k && code == DONE; j++)
-      if (n[j] == n[k])
-        code = usage_error(
-            "bench: --scale: %s has %d coordinates at %s=%s and at %s=%s alike; scale a parameter that makes it grow",
-            s->request->problem, n[k], s->parameter, s->sizes.text[j], s->parameter, s->sizes.text[k]);
+    if (code == DONE) code = check_growth(s, n, k);
   }
   return code;
 }
@@ -290,10 +305,10 @@ int scale_run(const scale_request *request)
   scaling s = {.request = request};
   if (request->methods->count == 0) return usage_error("bench: --scale needs a method: --method SPEC");
   if (request->settings->count == WORDS_MAX) return usage_error("bench: --set is given too often for --scale");
-  int code = read_sizes(&s);
-  if (code == DONE) code = check_sizes(&s);
+  int code = axis_read(request->scaled, &s.axis);
+  if (code == DONE) code = check_values(&s);
   if (code != DONE) return code;
-  const int cells = request->methods->count * s.sizes.count;
+  const int cells = request->methods->count * s.axis.values.count;
   s.cell = cells > 0 ? calloc((size_t)cells, sizeof *s.cell) : NULL;
   if (s.cell == NULL) {
     complain("out of memory");

@@ -1,4 +1,4 @@
-/** dvi bench --scale: what a step costs as the problem grows. */
+/** dvi bench --scale: what a step costs as the problem grows, or as a method's key does. */
 #ifndef SCALE_H
 #define SCALE_H
 #include "options.h"
@@ -6,9 +6,10 @@
 /** What is asked for. */
 typedef struct scale_request {
   const char *problem;
-  const char *sizes; /**< "ell=100,1000": a parameter and its values */
+  const char *scaled; /**< "ell=100,1000": what is varied, and its values */
   const words *methods, *settings;
-  double h; /**< NaN: the problem's */
+  bool one_point; /**< callbacks of the one-point shape */
+  double h;       /**< NaN: the problem's */
   long rounds;
   const char *csv, *plot;
 } scale_request;

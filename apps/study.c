@@ -14,11 +14,21 @@ static const double ceiling_digits = 1e-2; /* an error of 1 % of the solution's 
 static const double clock_seconds = 0.02;  /* process time that one measurement takes at least */
 static const double repeats_max = 1e6;
 
-double cpu_now(void)
+static double now(clockid_t clock)
 {
   struct timespec t;
-  (void)clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  (void)clock_gettime(clock, &t);
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+double cpu_now(void)
+{
+  return now(CLOCK_PROCESS_CPUTIME_ID);
+}
+
+double elapsed_now(void)
+{
+  return now(CLOCK_MONOTONIC);
 }
 
 long study_repeats(double seconds)

@@ -56,4 +56,7 @@ long study_repeats(double seconds);
 
 /** Process time in seconds. */
 double cpu_now(void);
+
+/** Elapsed time in seconds, from some moment on: for work on several threads. */
+double elapsed_now(void);
 #endif

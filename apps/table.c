@@ -149,21 +149,44 @@ static int column_width(const result_table *table, int column, int first, int la
   return (int)width;
 }
 
+static bool for_csv_alone(const table_column *column)
+{
+  return column->format != NULL && column->format[0] == '\0';
+}
+
+/* Where the columns that people see end. */
+static int shown_end(const result_table *table)
+{
+  int end = table->columns;
+  while (end > 0 && for_csv_alone(&table->column[end - 1])) end--;
+  return end;
+}
+
+/* And those of one row that hold anything; the titles stand in row first-1. */
+static int row_end(const result_table *table, int first, int row)
+{
+  char text[CELL_TEXT];
+  int end = shown_end(table);
+  while (row >= first && end > 0 && for_people(table, row, end - 1, text)[0] == '\0') end--;
+  return end;
+}
+
 /* Text to the left, numbers to the right; no blanks at the end of a line. */
-static void print_cell(const result_table *table, FILE *stream, int column, int width, const char *text)
+static void print_cell(const result_table *table, FILE *stream, int column, int width, bool last, const char *text)
 {
   if (table->column[column].format != NULL)
     (void)fprintf(stream, "  %*s", width, text);
   else
-    (void)fprintf(stream, "  %-*s", column + 1 < table->columns ? width : 0, text);
+    (void)fprintf(stream, "  %-*s", last ? 0 : width, text);
 }
 
 void table_print(const result_table *table, FILE *stream, int skip, int first, int last)
 {
   char text[CELL_TEXT];
   for (int row = first - 1; row < last; row++) {
-    for (int j = skip; j < table->columns; j++)
-      print_cell(table, stream, j, column_width(table, j, first, last),
+    const int end = row_end(table, first, row);
+    for (int j = skip; j < end; j++)
+      print_cell(table, stream, j, column_width(table, j, first, last), j + 1 == end,
                  row < first ? table->column[j].title : for_people(table, row, j, text));
     (void)fputc('\n', stream);
   }

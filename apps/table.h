@@ -7,7 +7,7 @@
 /** One column. */
 typedef struct table_column {
   const char *title;
-  const char *format; /**< how people read its numbers: "%.3e"; NULL: a column of text */
+  const char *format; /**< how people read its numbers: "%.3e"; "": they stand in CSV alone; NULL: a column of text */
 } table_column;
 
 typedef struct result_table result_table;
@@ -31,7 +31,7 @@ void table_csv(const result_table *table, FILE *stream);
 /** Write that into a file, whole or not at all; "-" is standard output. False, with a complaint, if it cannot be. */
 bool table_write(const result_table *table, const char *path);
 
-/** Print to a stream rows first to last-1 from column `skip` on, aligned, under their titles. */
+/** Print to a stream rows first to last-1 from column `skip` on, but for those of CSV alone, aligned, under their titles. */
 void table_print(const result_table *table, FILE *stream, int skip, int first, int last);
 
 /** Write one CSV field: quoted if it must be. */

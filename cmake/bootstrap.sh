@@ -7,7 +7,7 @@
 set -eu
 
 packages="gcc libc6-dev make cmake pkg-config libsundials-dev libsuitesparse-dev liblapack-dev check gnuplot-nox"
-lint_packages="clang clang-tidy clang-format cppcheck doxygen valgrind libc6-dbg g++ libclang-rt-dev"
+lint_packages="clang clang-tidy clang-format cppcheck doxygen valgrind libc6-dbg g++ libclang-rt-dev libgsl-dev"
 
 usage() {
   cat >&2 <<'END'
@@ -46,7 +46,7 @@ explain_by_hand() {
   cat >&2 <<END
 bootstrap: this system is neither Debian 12 or later nor Ubuntu 24.04 or later: please install what is needed yourself:
   a C11 compiler, make, CMake 3.22 or later, pkg-config, SUNDIALS 6.4 to 7 with KLU, SuiteSparse, LAPACK, Check and gnuplot;
-  for lint also clang, clang-tidy, clang-format, cppcheck, Doxygen, valgrind and a C++ compiler.
+  for lint also clang, clang-tidy, clang-format, cppcheck, Doxygen, valgrind, a C++ compiler and GSL.
 On Debian these packages are called
   $packages
   $lint_packages

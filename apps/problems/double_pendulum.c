@@ -78,7 +78,7 @@ static dvi_status make(const double *setting, problem *made)
 
   const dvi_lagrangian lagrangian = {.value_batch = value, .gradient_batch = gradient, .hessian_batch = hessian, .user = own};
   const dvi_system_terms terms = {.dimension = 2, .lagrangian = &lagrangian};
-  return dvi_system_create(&terms, &made->system);
+  return problem_system(made, &terms);
 }
 
 static const problem_parameter parameters[] = {
@@ -93,6 +93,10 @@ static const problem_parameter parameters[] = {
 /* Quadruple-precision results, recomputed by tests/reference/test_digits. */
 static const double digits_q[] = {0.61490406957921587, 0.37981894693941085};
 static const double digits_p[] = {-29.792570769056137, -47.393198976598959};
+static const double far_q[] = {
+    -0.48261051139722358,
+    -0.19794040936359078,
+};
 
 const problem_entry problem_entry_double_pendulum = {
     .name = "double-pendulum",
@@ -105,4 +109,7 @@ const problem_entry problem_entry_double_pendulum = {
     .order_t_end = 1.0,
     .digits_q = digits_q,
     .digits_p = digits_p,
+    .far_t_end = 20.0,
+    .far_q = far_q,
+    .far_error = 4e-13,
 };

@@ -46,12 +46,14 @@ PROBLEM_INLINE void problem_inverse_cubes(const int count, double *restrict x)
 typedef struct problem_entry {
   const char *name, *summary;
   const problem_parameter *parameters; /* ended by one without a name; NULL: none */
-  /* Given the parameters' values, allocate with problem_room, label the coordinates, fill q and v, create the system. The momenta
-   * are p = L_v(q, v) for all problems; problem_create sees to them. */
+  /* Given the parameters' values, allocate with problem_room, label the coordinates, fill q and v, create the system with
+   * problem_system. The momenta are p = L_v(q, v) for all problems; problem_create sees to them. */
   dvi_status (*make)(const double *value, problem *made);
   int (*exact)(const problem *made, double t, double *q, double *p);
   double h, t_end, order_h, order_t_end;
   const double *digits_q, *digits_p; /* for the default parameters; recomputed by tests/reference/test_digits */
+  double far_t_end, far_error;       /* as in problem.h; 0 without far_q */
+  const double *far_q;               /* recomputed by tests/reference/test_far_digits */
 } problem_entry;
 
 #define PROBLEM_ENTRY(name) extern const problem_entry problem_entry_##name;
@@ -63,6 +65,10 @@ void *problem_allocate(problem *made, size_t count, size_t size);
 
 /* Set n, and allocate q, v, p, the labels, and `parameters` of that size. */
 dvi_status problem_room(problem *made, int n, size_t parameters_size);
+
+/* Make the system from these terms, and keep them with the problem. What they point to, but for the arrays of terms, lives as long as the
+ * problem: parameters, patterns, masses. */
+dvi_status problem_system(problem *made, const dvi_system_terms *terms);
 
 /* Name coordinate i. */
 #if defined(__GNUC__)

@@ -213,7 +213,7 @@ static dvi_status make_system(problem *made, chain *own)
                                   .potential_count = 2,
                                   .invariants = watched > 0 ? energies : NULL,
                                   .invariant_count = watched};
-  return dvi_system_create(&terms, &made->system);
+  return problem_system(made, &terms);
 }
 
 static dvi_status make(const double *setting, problem *made)
@@ -250,6 +250,10 @@ static const double digits_p[] = {
     -1.0767844027571126, 0.80068939878788474,   0.028229458269830615,
     1.1820645462316858,  -0.013043151661235064, -0.00037594526734922536,
 };
+static const double far_q[] = {
+    0.056845823070123611,  0.79791318904286551,  0.22952640229139115,
+    0.0025196393499629975, 0.011235420456945567, -0.0097345812522916437,
+};
 
 const problem_entry problem_entry_fpu = {
     .name = "fpu",
@@ -262,4 +266,7 @@ const problem_entry problem_entry_fpu = {
     .order_t_end = 1.0,
     .digits_q = digits_q,
     .digits_p = digits_p,
+    .far_t_end = 200.0,
+    .far_q = far_q,
+    .far_error = 5e-14,
 };

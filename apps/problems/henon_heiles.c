@@ -54,7 +54,7 @@ static dvi_status make(const double *setting, problem *made)
   const dvi_potential well = {
       .name = "well", .value_batch = value, .gradient_batch = gradient, .hessian_batch = hessian, .user = lambda};
   const dvi_system_terms terms = {.dimension = 2, .mass = {.scalar = 1.0}, .potentials = &well, .potential_count = 1};
-  return dvi_system_create(&terms, &made->system);
+  return problem_system(made, &terms);
 }
 
 static const problem_parameter parameters[] = {

@@ -143,7 +143,7 @@ static dvi_status make(const double *setting, problem *made)
                                   .symmetry_count = 1,
                                   .invariants = laplace,
                                   .invariant_count = 2};
-  return dvi_system_create(&terms, &made->system);
+  return problem_system(made, &terms);
 }
 
 static const problem_parameter parameters[] = {

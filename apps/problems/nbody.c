@@ -87,13 +87,27 @@ PROBLEM_INLINE void gradient_at(const int dimension, const int lanes, int stride
   pull(dimension, lanes, stride, q, own, r, V_q);
 }
 
-/* Eight points at once, then the rest one by one: loops of known length need no preparation, which would cost more than their work. */
+/* Fewer than eight points: the last one fills up. */
+PROBLEM_INLINE void gradient_of_few(const int dimension, int points, int stride, const double *q, double *V_q, const nbody *own)
+{
+  double filled[24 * NBODY_MAX], result[24 * NBODY_MAX];
+  const int n = own->bodies * dimension;
+  for (int i = 0; i < n; i++)
+    for (int k = 0; k < 8; k++) filled[8 * i + k] = q[i * stride + (k < points ? k : points - 1)];
+  for (int j = 0; j < 8 * n; j++) result[j] = 0.0;
+  gradient_at(dimension, 8, 8, filled, result, own);
+  for (int i = 0; i < n; i++)
+    for (int k = 0; k < points; k++) V_q[i * stride + k] = result[8 * i + k];
+}
+
+/* Eight points at once: loops of known length need no preparation, which would cost more than their work. One point alone has its pairs for that. */
 PROBLEM_INLINE int gradient(const int dimension, int count, const double *q, double *V_q, const nbody *own)
 {
   int k = 0;
   for (int j = 0; j < own->bodies * dimension * count; j++) V_q[j] = 0.0;
   for (; k + 8 <= count; k += 8) gradient_at(dimension, 8, count, q + k, V_q + k, own);
-  for (; k < count; k++) gradient_at(dimension, 1, count, q + k, V_q + k, own);
+  if (count - k > 1) gradient_of_few(dimension, count - k, count, q + k, V_q + k, own);
+  if (count - k == 1) gradient_at(dimension, 1, count, q + k, V_q + k, own);
   return 0;
 }
 
@@ -201,7 +215,7 @@ static dvi_status make_system(gravity *own, problem *made)
                                   .potential_count = 1,
                                   .symmetries = symmetries,
                                   .symmetry_count = symmetry_count};
-  return dvi_system_create(&terms, &made->system);
+  return problem_system(made, &terms);
 }
 
 dvi_status nbody_make(const nbody *bodies, problem *made)

@@ -49,7 +49,7 @@ static dvi_status make(const double *setting, problem *made)
 
   const dvi_potential spring = {.name = "spring", .value = value, .gradient = gradient, .hessian = hessian, .user = k};
   const dvi_system_terms terms = {.dimension = 1, .mass = {.scalar = 1.0}, .potentials = &spring, .potential_count = 1};
-  return dvi_system_create(&terms, &made->system);
+  return problem_system(made, &terms);
 }
 
 static const problem_parameter parameters[] = {

@@ -61,7 +61,7 @@ static dvi_status make(const double *setting, problem *made)
       {.name = "fast", .value_batch = value, .gradient_batch = gradient, .hessian_batch = hessian, .user = &own->fast},
   };
   const dvi_system_terms terms = {.dimension = 1, .mass = {.scalar = 1.0}, .potentials = springs, .potential_count = 2};
-  return dvi_system_create(&terms, &made->system);
+  return problem_system(made, &terms);
 }
 
 static const problem_parameter parameters[] = {

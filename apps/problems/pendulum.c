@@ -35,7 +35,7 @@ static dvi_status make(const double *setting, problem *made)
 
   const dvi_potential gravity = {.name = "gravity", .value_batch = value, .gradient_batch = gradient, .hessian_batch = hessian};
   const dvi_system_terms terms = {.dimension = 1, .mass = {.scalar = 1.0}, .potentials = &gravity, .potential_count = 1};
-  return dvi_system_create(&terms, &made->system);
+  return problem_system(made, &terms);
 }
 
 static const problem_parameter parameters[] = {

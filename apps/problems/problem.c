@@ -153,6 +153,9 @@ static dvi_status make(const report *r, const problem_entry *entry, const double
   if (all_default(entry, value)) {
     made->digits_q = entry->digits_q;
     made->digits_p = entry->digits_p;
+    made->far_t_end = entry->far_t_end;
+    made->far_q = entry->far_q;
+    made->far_error = entry->far_error;
   }
   dvi_status status = entry->make(value, made);
   if (status == DVI_OK) status = dvi_system_momentum(made->system, 0.0, made->q, made->v, made->p);

@@ -19,6 +19,7 @@ typedef struct problem_parameter {
 typedef struct problem {
   const char *name;
   dvi_system *system;
+  const dvi_system_terms *terms; /**< what the system was made of */
   int n;
   char **coordinate;                 /**< [n] names, for the columns of tables: "x", "theta_1"; momenta are "p_" and the name */
   double *q, *p;                     /**< [n] the start at t = 0 */
@@ -28,6 +29,10 @@ typedef struct problem {
   double order_t_end;                /**< span of an order study; digits, if there are any, are for this time */
   const double *digits_q, *digits_p; /**< [n] quadruple-precision result at order_t_end; NULL unless all parameters are the
                                           defaults */
+  double far_t_end;                  /**< the end of a long span, for which there are digits too; 0 unless far_q is there */
+  const double
+      *far_q;       /**< [n] quadruple-precision result there; NULL unless all parameters are the defaults, and for most problems */
+  double far_error; /**< what rounding the start and the parameters to double does to it */
   /** The exact solution; NULL if none is known. 0 if found. */
   int (*exact)(const struct problem *problem, double t, double *q, double *p);
   void *parameters; /**< the callbacks' user pointer */
@@ -62,6 +67,13 @@ int problem_find(const char *name);
  *  @retval (others)        as dvi_system_create and dvi_system_momentum */
 dvi_status problem_create(const char *name, int setting_count, const char *const *settings, problem **out, char *message,
                           size_t size);
+
+/** Declare the terms again with callbacks of the one-point shape, which hand their point on as a batch of one: the system of a user who knows
+ *  nothing of batches. Gives the same numbers. Not after an integrator was made from the old system, which is freed.
+ *
+ *  @retval DVI_NO_MEMORY   nothing has changed
+ *  @retval (others)        as dvi_system_create; nothing has changed */
+dvi_status problem_one_point(problem *problem);
 
 /** Free it and set the pointer to NULL; NULL is allowed. */
 void problem_destroy(problem **problem);

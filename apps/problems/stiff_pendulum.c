@@ -64,7 +64,7 @@ static dvi_status make(const double *setting, problem *made)
   const dvi_lagrangian lagrangian = {
       .value = value, .gradient = gradient, .hessian = hessian, .qv = {qv_start, qv_row}, .vv = {vv_start, vv_row}, .user = own};
   const dvi_system_terms terms = {.dimension = 2, .lagrangian = &lagrangian};
-  return dvi_system_create(&terms, &made->system);
+  return problem_system(made, &terms);
 }
 
 static const problem_parameter parameters[] = {

@@ -147,7 +147,7 @@ static dvi_status make(const double *setting, problem *made)
                                   .potential_count = 1,
                                   .symmetries = &symmetry,
                                   .symmetry_count = 1};
-  return dvi_system_create(&terms, &made->system);
+  return problem_system(made, &terms);
 }
 
 static const problem_parameter parameters[] = {

@@ -5,8 +5,10 @@
 expect 0 'methods and peers' bench kepler --method verlet --method galerkin:degree=4 --against cvode,arkode,ida --rounds 1 --levels 3 \
   --csv - --plot bench.svg
 # The first seven are older than the rest: programs that read them by place shall go on.
-[ "$(head -n 1 out)" = integrator,problem,setting,error,energy_error,cpu_seconds,evaluations,cpu_lower,cpu_upper,steps ] || fail 'header'
-awk -F, 'NF != 10' out | grep -q . && fail 'every row has 10 fields'
+[ "$(head -n 1 out)" = integrator,problem,setting,error,energy_error,cpu_seconds,evaluations,cpu_lower,cpu_upper,steps,create_seconds,calibration_seconds,calibration_least ] ||
+  fail 'header'
+awk -F, 'NF != 13' out | grep -q . && fail 'every row has 13 fields'
+grep -q ' $' err && fail 'no blanks at the end of a line'
 grep -qi 'nan\|inf' out && fail 'every field is a number'
 [ "$(grep -c '^verlet,kepler,h=' out)" -eq 3 ] || fail 'three steps of verlet'
 for peer in cvode-adams arkode ida; do
@@ -14,6 +16,10 @@ for peer in cvode-adams arkode ida; do
 done
 awk -F, 'NR > 1 && !($4 > 0 && $5 > 0 && $6 > 0 && $7 > 0 && $10 > 0)' out | grep -q . && fail 'errors, times and counts are positive'
 awk -F, 'NR > 1 && !($8 > 0 && $8 <= $6 && $6 <= $9)' out | grep -q . && fail 'the median lies between the quartiles'
+# Creation is a part of a job; a peer is created and run in one call.
+awk -F, 'NR > 1 && $3 ~ /^h=/ && !($11 > 0 && $11 < $9)' out | grep -q . && fail 'creation takes a part of the time'
+awk -F, 'NR > 1 && $3 ~ /^tol=/ && $11 != ""' out | grep -q . && fail 'creation of a peer is not known'
+awk -F, 'NR > 1 && !($13 > 0 && $13 <= $12)' out | grep -q . && fail 'the calibration stands in every row'
 # verlet takes the steps it is given: the end of this study is t = 10.
 awk -F, '$1 == "verlet" { split($3, h, "="); if (h[2] * $10 < 9.999 || h[2] * $10 > 10.001) print }' out | grep -q . && fail 'steps of verlet'
 # A tolerance a thousand times smaller gives a smaller error: the setting does what it says.
@@ -24,7 +30,7 @@ says err 'judge at t' 'the judge'
 says err '^processor: .' 'the processor'
 says err '^compiler: .*-ffp-contract=off' 'the compiler and its flags'
 says err '^libraries: dvi [0-9.]*, SUNDIALS [0-9]' 'the libraries'
-says err '^calibration: 1e8 dependent multiplications in [0-9.]* s' 'the calibration'
+says err '^calibration: 1e8 dependent multiplications in [0-9.]* s (least [0-9.]*, quartiles' 'the calibration'
 if command -v gnuplot >/dev/null; then says bench.svg '</svg>' 'the plot is whole'; fi
 
 expect 0 'the selection on a general Lagrangian' bench double-pendulum --rounds 1 --levels 2 --csv bench.csv
@@ -37,11 +43,12 @@ expect 1 'no folder' bench kepler --method verlet --csv nowhere/a.csv
 
 # Asked errors. The kinds of answers depend on errors alone; only which settings lie on the frontier depends on the clock.
 expect 0 'asked errors' bench kepler --method verlet --method galerkin:degree=4 --rounds 2 --levels 4 --csv all.csv --at 1e-5,1e-20,1e3 --at-csv at.csv
-[ "$(head -n 1 at.csv)" = asked_error,problem,judged,integrator,cpu_seconds,ratio,evaluations,answer ] || fail 'header of asked errors'
-[ "$(awk -F, 'NF == 8' at.csv | wc -l)" -eq 7 ] || fail 'two integrators at three errors'
-[ "$(grep -c ',no,.*,,,,not reached$' at.csv)" -eq 2 ] || fail '1e-20 is neither reached nor judged'
-[ "$(grep -c ',yes,.*,at most$' at.csv)" -eq 2 ] || fail 'of 1e3 the cheapest settings are bounds'
-grep -q ',yes,verlet,,,,not reached$' at.csv || fail 'verlet does not reach 1e-5 in four levels'
+[ "$(head -n 1 at.csv)" = asked_error,problem,judged,integrator,cpu_seconds,ratio,evaluations,answer,create_seconds,calibration_seconds,calibration_least ] ||
+  fail 'header of asked errors'
+[ "$(awk -F, 'NF == 11' at.csv | wc -l)" -eq 7 ] || fail 'two integrators at three errors'
+[ "$(grep -c ',no,.*,,,,not reached,,' at.csv)" -eq 2 ] || fail '1e-20 is neither reached nor judged'
+[ "$(grep -c ',yes,.*,at most,' at.csv)" -eq 2 ] || fail 'of 1e3 the cheapest settings are bounds'
+grep -q ',yes,verlet,,,,not reached,,' at.csv || fail 'verlet does not reach 1e-5 in four levels'
 grep '^1[.0-9]*e-05,.*,galerkin' at.csv | awk -F, '!($5 > 0 && $6 == 1 && $7 > 0)' | grep -q . && fail 'who is alone is the fastest'
 awk -F, 'NR > 1 && !($8 <= $6 && $6 <= $9)' all.csv | grep -q . && fail 'the median of two rounds lies between the quartiles'
 awk -F, 'NR > 1 && $8 < $6 && $6 < $9' all.csv | grep -q . || fail 'two rounds never take the same time to the last nanosecond, in no setting'
@@ -53,12 +60,13 @@ awk -F, 'FNR == NR { if ($1 ~ /^galerkin/) { e[++n] = $4; c[n] = $7 } next }
              if ($7 < 0.999999 * wanted || $7 > 1.000001 * wanted) print "evaluations", $7, wanted } }
          END { if (!seen) print "no neighbours" }' all.csv at.csv | grep . && fail 'evaluations at 1e-5'
 says out '^At an error of 1e-5$' 'for people'
+grep -q ' $' out && fail 'no blanks at the end of a line'
 says out "^At an error of 1e-20: .* not to be trusted" 'what the judge cannot tell'
 # verlet, of order 2, needs more levels for 1e-5 than the six that it gets at first: they end at 2.6e-5.
 expect 0 'asked errors without levels' bench kepler --method verlet --rounds 1 --csv - --at 1e-4,1e-5 --at-csv at.csv
 [ "$(grep -c '^verlet' out)" -gt 6 ] || fail 'more than six levels'
 awk -F, 'NR > 1 { if ($4 > 1e-5) more++; else less++ } END { exit less != 1 || more < 6 }' out || fail 'levels end with the first that is good enough'
-grep -q ',not reached$' at.csv && fail 'both are reached'
+grep -q ',not reached,' at.csv && fail 'both are reached'
 expect 0 'asked errors to standard output' bench kepler --method verlet --rounds 1 --levels 2 --at 1 --at-csv -
 [ "$(wc -l <out)" -eq 2 ] || fail 'nothing but the table'
 says err '^Speed against error' 'the words are elsewhere'
@@ -71,10 +79,78 @@ expect 2 'two tables in one file' bench kepler --method verlet --at 1e-3 --csv a
 expect 1 'asked errors, no folder' bench kepler --method verlet --at 1e-3 --at-csv nowhere/a.csv
 [ ! -e a.csv ] || fail 'a refused command wrote'
 
+# Judges. What they say of one and the same run is the same up to their errors.
+judged() { expect 0 "judge $1" bench kepler --t-end 30 --method galerkin:degree=4 --levels 3 --rounds 1 --judge "$1" --csv -; cut -d, -f3-4 out >"by_$1"; }
+judged exact
+says err 'judge at t = 30: exact solution, error' 'judge exact'
+judged runs
+says err 'judge at t = 30: two runs of galerkin, degree 16 in [0-9]* steps and degree 12 in [0-9]*, error [0-9.]*e-1[0-9]$' 'judge runs'
+judged auto
+says err 'judge at t = 30: exact solution' 'judge auto'
+for other in runs auto; do
+  paste -d, by_exact by_$other | awk -F, 'NR > 1 && !($1 == $3 && $2 - $4 < 1e-10 && $4 - $2 < 1e-10)' | grep -q . && fail "judges exact and $other agree"
+done
+expect 0 'judge ida' bench kepler --t-end 1 --method verlet --levels 1 --rounds 1 --judge ida
+says out 'judge at t = 1: IDA, run at two tolerances, error' 'judge ida'
+expect 0 'a long span' bench fpu --t-end 200 --method galerkin:degree=6 --levels 1 --rounds 1
+says out 'judge at t = 200: stored quadruple-precision result, error 5' 'digits of a long span'
+expect 0 'IDA is not good enough' bench double-pendulum --t-end 10 --method galerkin:degree=8 --levels 1 --rounds 1 --at 1e-9
+says out 'two runs of galerkin, .* (IDA, of error [0-9.]*e-[01][0-9], is [0-9.]*e-[01][0-9] away), error [0-9.]*e-1[1-9]$' 'who took its place'
+grep -q 'not to be trusted' out && fail 'the runs can judge 1e-9'
+expect 0 'IDA is good enough' bench double-pendulum --t-end 5 --method galerkin:degree=8 --levels 1 --rounds 1 --at 1e-3
+says out 'judge at t = 5: IDA, run at two tolerances, error' 'who stays'
+# Degree 16 is not judged by itself alone: the other run's distance is always left.
+expect 0 'degree 16' bench pendulum --t-end 20 --method galerkin:degree=16 --levels 6 --rounds 1 --judge runs --csv -
+awk -F, 'NR > 1 && !($4 > 0)' out | grep -q . && fail 'no error is zero'
+expect 2 'no exact solution' bench fpu --method verlet --judge exact
+says err 'no known exact solution' 'no exact solution'
+expect 2 'no digits at this end' bench fpu --method verlet --judge stored --t-end 3
+expect 2 'no digits for these parameters' bench fpu --method verlet --judge stored --t-end 200 --set ell=4
+expect 1 'a judge that fails' bench pythagorean --t-end 60 --method verlet --levels 1 --rounds 1 --judge runs
+says err 'the judge, --judge runs, failed on pythagorean to t = 60:' 'who failed'
+expect 2 'nobody' bench fpu --method verlet --judge run
+says err "did you mean 'runs'" 'nobody'
+
+# Callbacks of the one-point shape give the same digits and counts.
+for shape in '' --one-point; do
+  # shellcheck disable=SC2086
+  expect 0 "shape '$shape'" bench double-pendulum --method galerkin:degree=3 --levels 3 --rounds 1 --against cvode --csv - $shape
+  cut -d, -f1-5,7,10 out >"shape$shape"
+done
+says err '^callbacks: one point a call' 'the shape is said'
+same shape shape--one-point 'shapes'
+expect 0 'sizes by one point' bench fpu --method galerkin --scale ell=5,50 --rounds 1 --one-point
+says out '^callbacks: one point a call' 'the shape is said with sizes'
+
+# GSL, in a build that has it.
+if "$dvi" --version | grep -q GSL; then
+  "$dvi" --version | grep -q GPL || fail 'whoever has GSL is told of its licence'
+  for problem in kepler double-pendulum outer-solar; do
+    expect 0 "GSL on $problem" bench $problem --method midpoint --levels 1 --rounds 1 --against gsl --at 1e-8 --csv -
+    awk -F, -v name=$problem '$1 == "gsl-rk8pd" && $2 == name && $4 > 0 && $4 < 1e-6 && $5 > 0 && $7 > $10 { good++ } END { exit good < 2 }' out || fail "GSL on $problem"
+  done
+  says err '^libraries: .*GSL [0-9]' 'the version of GSL'
+  awk -F, '$3 == "tol=1e-06" { a = $4 } $3 == "tol=1e-10" { b = $4 } END { exit !(b < a / 100) }' out || fail 'GSL obeys its tolerance'
+  expect 0 'GSL backward' bench kepler --t-end -3 --method verlet --levels 1 --rounds 1 --against gsl --csv -
+  awk -F, '$1 == "gsl-rk8pd" && $4 < 1e-9 { good++ } END { exit good < 1 }' out || fail 'GSL backward'
+  expect 0 'GSL gives up' bench kepler --set e=0.9999999999 --method verlet --levels 1 --rounds 1 --against gsl
+  says err 'left out gsl-rk8pd at tol=1e-04: gsl-rk8pd: stopped at t = .* before 1.25' 'where GSL gives up'
+else
+  expect 2 'no GSL' bench kepler --method verlet --against gsl
+  says err 'built without GSL; configure with -DDVI_GSL=ON (Debian.s package: libgsl-dev)' 'no GSL'
+fi
+expect 2 'an unknown peer' bench kepler --method verlet --against cvod
+expect 2 'a peer twice' bench kepler --method verlet --against cvode,cvode-adams
+# Tolerances below 1e-12 follow if the asked error wants them.
+expect 0 'more tolerances' bench kepler --method verlet --levels 1 --rounds 1 --against arkode,cvode --at 1e-10 --csv -
+[ "$(grep -c '^arkode' out)" -eq 5 ] || fail 'arkode needs no more'
+[ "$(grep -c '^cvode-adams' out)" -gt 5 ] || fail 'cvode needs more'
+
 # Sizes.
 expect 0 'sizes' bench fpu --method verlet --method galerkin:degree=2 --scale ell=5,50,10 --rounds 1 --csv - --plot scale.svg
-[ "$(head -n 1 out)" = method,problem,parameter,value,n,h,step_seconds,step_lower,step_upper,bytes,step_evaluations ] || fail 'header of sizes'
-[ "$(awk -F, 'NF == 11' out | wc -l)" -eq 7 ] || fail 'two methods at three sizes'
+[ "$(head -n 1 out)" = method,problem,parameter,value,n,h,step_seconds,step_lower,step_upper,bytes,step_evaluations,step_residuals,step_factorizations,calibration_seconds,calibration_least ] ||
+  fail 'header of sizes'
+[ "$(awk -F, 'NF == 15' out | wc -l)" -eq 7 ] || fail 'two methods at three sizes'
 awk -F, 'NR > 1 && !($5 == 2 * $4 && $7 > 0 && $8 <= $7 && $7 <= $9 && $11 > 0)' out | grep -q . && fail 'two coordinates to a spring, times, counts'
 awk -F, 'NR > 1 && $6 != 0.005' out | grep -q . && fail "the problem's own step"
 # verlet evaluates once a step, and once at the start; 32 steps are counted.
@@ -96,7 +172,7 @@ says err 'e=0.1 and at e=0.2 alike' 'why it is no size'
 expect 2 'sizes without a method' bench fpu --scale ell=5,6
 expect 2 'a size that is set' bench fpu --method verlet --scale ell=5,6 --set ell=7
 expect 2 'sizes with a wrong method' bench fpu --method verlett --scale ell=5,6
-for other in '--at 1e-3' '--against ida' '--levels 3' '--t-end 1' '--h 0'; do
+for other in '--at 1e-3' '--against ida' '--judge runs' '--levels 3' '--t-end 1' '--h 0'; do
   # shellcheck disable=SC2086
   expect 2 "sizes with $other" bench fpu --method verlet --scale ell=5,6 $other
 done
@@ -118,9 +194,43 @@ expect 2 'members without a method' bench kepler --scale members=4
 expect 2 'members of a wrong problem' bench keppler --method verlet --scale members=4
 expect 2 'members of a method that cannot' bench double-pendulum --method verlet --scale members=4
 expect 1 'members that fail' bench kepler --method midpoint --set e=0.6 --h 0.3 --scale members=4 --rounds 1
+
+# Degrees: a key of every method. A residual of degree s with Gauss' quadrature evaluates at s points.
+expect 0 'degrees' bench kepler --method galerkin --method composition:order=4,base=galerkin --scale degree=1,4,2 --rounds 1 --csv - --plot scale.svg
+[ "$(grep -c '^galerkin,kepler,degree,[142],2,' out)" -eq 3 ] || fail 'three degrees'
+[ "$(grep -c '^"composition:order=4,base=galerkin",kepler,degree,' out)" -eq 3 ] || fail 'three degrees of the base'
+awk -F, '$1 == "galerkin" && !($12 > 0 && $11 == $4 * $12 && $13 == 0)' out | grep -q . && fail 'evaluations and residuals of fixed point iteration'
+says err '  step_seconds ~ degree^[-0-9.]*  bytes ~ .*  step_evaluations ~ degree^0' 'exponents of the degree'
+if command -v gnuplot >/dev/null; then says scale.svg '</svg>' 'the plot of degrees is whole'; fi
+expect 0 'factorisations' bench fpu --method galerkin:solver=newton --scale degree=1,2 --rounds 1 --csv -
+awk -F, '$1 ~ /^galerkin/ && !($13 > 0)' out | grep -q . && fail "factorisations of Newton's method"
+for bad in degree=2,2.5 degree=1,200 degree=2 degree=2,2; do expect 2 "scale $bad" bench kepler --method galerkin --scale "$bad"; done
+expect 2 'a degree that is given' bench kepler --method galerkin:degree=3 --scale degree=1,2
+says err 'degree is given twice' 'why it is refused'
+expect 2 'a method without degrees' bench kepler --method verlet --scale degree=1,2
+expect 2 'a specification too long for a key' bench kepler --method "galerkin:$(printf '%0600d' 0)" --scale degree=1,2
+
 # Degree 8 finds no solution at the first steps of this span: the levels that can be solved are shown.
-expect 0 'a level that cannot be solved' bench double-pendulum --t-end 20 --method galerkin:degree=8 --rounds 1
+expect 0 'a level that cannot be solved' bench double-pendulum --t-end 20 --method galerkin:degree=8 --rounds 1 --judge ida
 says err 'left out galerkin' 'which level'
 expect 2 'h without sizes' bench kepler --method verlet --h 0.1
+
+# Threads, steps, and what waves move through memory: 120 bytes a coordinate.
+expect 0 'threads' bench chain --set n=20000 --method verlet --method composition:order=4 --scale threads=1,2 --steps 3 --rounds 2 --csv - --plot threads.svg
+awk -F, 'NR > 1 && !($3 == "threads" && $5 == 20000 && $7 > 0 && $8 <= $7 && $7 <= $9)' out | grep -q . && fail 'threads: rows'
+[ "$(awk -F, '$1 == "verlet" { print $4, $11 * 3 }' out | tr '\n' ' ')" = '1 4 2 4 ' ] || fail 'one gradient a step, one at the start, on any number of threads'
+says err '^  speed-up against threads=1:  [0-9.]*$' 'the speed-up'
+says err '^  threads=2: a step moves 2.4e+06 bytes, [0-9.]* GB/s: [0-9.]* of the [0-9.]* GB/s of an in-place axpy' 'the traffic'
+says err '^step_seconds: elapsed time of a step, mean of the first 3' 'which time'
+expect 0 'the traffic of waves alone' bench chain --method verlet --method verlet:sweep=plain --scale n=5,50 --steps 2 --rounds 1
+[ "$(grep -c 'a step moves' out)" -eq 2 ] || fail 'a plain sweep does not know its traffic'
+says out '^step_seconds: process time of a step, mean of the first 2' 'sizes: which time'
+expect 2 'threads where there is no wave' bench fpu --method verlet --scale threads=1,2
+says err 'no gradient_range' 'why there is none'
+expect 2 'threads of a method without' bench chain --method midpoint --scale threads=1,2
+expect 2 'half a thread' bench chain --method verlet --scale threads=1,1.5
+expect 2 'threads twice' bench chain --method verlet:threads=2 --scale threads=1,2
+expect 2 'steps without sizes' bench chain --method verlet --steps 3
+expect 2 'no steps' bench chain --method verlet --scale n=5,50 --steps 0
 no_trace 'bench'
 finish

@@ -28,6 +28,13 @@ says out '^"galerkin:degree=2,quadrature=lobatto",kepler,' 'quoted specification
 # With another span the stored digits are not for it, and IDA judges; its own error is said.
 expect 0 'IDA judges' order henon-heiles --method verlet --t-end 3
 says out 'judge at t = 3: IDA.*error [0-9.]*e-' 'IDA and its error'
+expect 0 'runs judge' order henon-heiles --method galerkin:degree=3 --t-end 3 --judge runs
+says out 'judge at t = 3: two runs of galerkin, degree 16 in .*, error [0-9.]*e-1[4-9]' 'the runs and their error'
+expect 2 'no exact judge' order henon-heiles --method verlet --judge exact
+expect 2 'no such judge' order henon-heiles --method verlet --judge none
+# Digits at one end only: the study is not lengthened out of it.
+expect 0 'stored digits judge' order kepler --method galerkin:degree=2 --judge stored
+says out 'judge at t = 10: stored' 'the digits'
 
 # Too few levels decide nothing, and that is not success.
 expect 3 'three levels' order kepler --method verlet --levels 3

@@ -20,6 +20,7 @@ START_TEST(between_two_measurements_they_are_interpolated)
 {
   double sample[] = {40, 10, 30, 20};
   const spread s = samples_spread(4, sample);
+  ck_assert_double_eq(s.least, 10);
   ck_assert_double_eq(s.lower, 17.5);
   ck_assert_double_eq(s.median, 25);
   ck_assert_double_eq(s.upper, 32.5);

@@ -30,6 +30,7 @@ function part_of_suitesparse(header) { return header ~ /^(suitesparse\/)?(klu|am
 function check_library(quoted, header,   target) {
   if (!quoted) {
     if (part_of_sundials(header) && room != "solve" && room != "reference") breach("SUNDIALS belongs to solve/ and reference/")
+    if (header ~ /^gsl\//) breach("GSL is under the GPL, and not for the library")
     if (part_of_suitesparse(header) && room != "num" && room != "reference") breach("KLU belongs to num/ and reference/")
     return
   }

@@ -24,6 +24,8 @@ static const struct {
     {"kepler", NULL, "composition"},
     {"kepler", NULL, "composition:order=8,base=galerkin,degree=2"},
     {"fpu", "ell=40", "verlet"},
+    {"chain", NULL, "verlet:sweep=wave"},
+    {"chain", NULL, "composition:order=8,sweep=wave,threads=2"},
     {"fpu", "ell=40", "midpoint:solver=kinsol"},
     {"fpu", "ell=40", "galerkin:degree=3"},
     {"fpu", "ell=40", "composition:order=6,base=trapezoidal"},

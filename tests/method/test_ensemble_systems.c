@@ -5,7 +5,7 @@
 #include "support/runs.h"
 #include "support/suite.h"
 
-enum { SYSTEMS = 4, EACH = 6, MEMBERS = SYSTEMS * EACH, N_MOST = 8 };
+enum { SYSTEMS = 4, EACH = 6, MEMBERS = SYSTEMS * EACH, N_MOST = 32 };
 
 static problem *of[SYSTEMS];
 static const dvi_system *systems[MEMBERS];
@@ -16,7 +16,8 @@ static const struct {
 } sweeps[] = {{"oscillator", {"k=1", "k=2", "k=4", "k=1600"}},
               {"fpu", {"omega=50", "omega=10", "omega=20", "omega=5"}},
               {"henon-heiles", {NULL, NULL, NULL, NULL}},
-              {"double-pendulum", {"m1=1", "m1=2", "m1=3", "m1=4"}}};
+              {"double-pendulum", {"m1=1", "m1=2", "m1=3", "m1=4"}},
+              {"chain", {"beta=0.1", "beta=0.2", "beta=0.3", "beta=0"}}};
 enum { SWEEPS = sizeof sweeps / sizeof *sweeps };
 
 static const char *const methods[] = {"verlet", "galerkin", "galerkin:degree=8", "galerkin:degree=3,solver=newton",
@@ -132,6 +133,38 @@ START_TEST(a_derivative_that_only_one_system_gives_is_refused)
 }
 END_TEST
 
+static int quartic_range(double t, const double *x, int first, int last, double *V_q, void *user)
+{
+  (void)t;
+  for (int i = first; i < last; i++) V_q[i - first] = i == 0 ? 4 * *(const double *)user * x[0] * x[0] * x[0] : 0;
+  return 0;
+}
+
+/* Waves are made once, for all systems. */
+START_TEST(a_reach_of_its_own_is_refused)
+{
+  double strength = 1;
+  dvi_potential potential = {.value = quartic, .gradient = quartic_gradient, .user = &strength};
+  const dvi_system_terms terms = {.dimension = 1, .mass.scalar = 1, .potentials = &potential, .potential_count = 1};
+  dvi_system *whole = NULL, *near = NULL, *far = NULL;
+  dvi_ensemble *e = NULL;
+  ck_assert_int_eq(dvi_system_create(&terms, &whole), DVI_OK);
+  potential.gradient_range = quartic_range;
+  ck_assert_int_eq(dvi_system_create(&terms, &near), DVI_OK);
+  potential.reach = 3;
+  ck_assert_int_eq(dvi_system_create(&terms, &far), DVI_OK);
+  const dvi_system *pairs[][2] = {{whole, near}, {near, whole}, {near, far}};
+  for (int i = 0; i < 3; i++) {
+    ck_assert_int_eq(dvi_ensemble_create(NULL, "verlet", &(dvi_ensemble_options){.members = 2, .systems = pairs[i]}, &e),
+                     DVI_BAD_ARGUMENT);
+    check_words("gradient_range");
+  }
+  dvi_system_destroy(&whole);
+  dvi_system_destroy(&near);
+  dvi_system_destroy(&far);
+}
+END_TEST
+
 /* Calls, not points: neighbours with one system share them. */
 static int calls;
 
@@ -226,6 +259,7 @@ int main(void)
   tcase_add_loop_test(tests, members_with_systems_of_their_own_have_the_bits_of_runs_alone, 0, 2 * SWEEPS * METHODS);
   tcase_add_test(tests, systems_that_are_not_alike_are_refused);
   tcase_add_test(tests, a_derivative_that_only_one_system_gives_is_refused);
+  tcase_add_test(tests, a_reach_of_its_own_is_refused);
   tcase_add_test(tests, neighbours_with_one_system_share_a_call);
   tcase_add_test(tests, a_parameter_that_rests_is_one_to_the_last_bit);
   return run_tests("method/ensemble_systems", tests);

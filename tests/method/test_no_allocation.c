@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "action/wave.h"
 #include "support/heap.h"
 #include "support/runs.h"
 #include "support/suite.h"
@@ -16,8 +17,9 @@ typedef struct place {
 } place;
 
 static const place places[] = {
-    {"pendulum", NULL, 0.1}, {"fpu", "ell=3", 0.1},        {"fpu", "ell=200", 0.1},        {"toda", "N=5", 0.1},
-    {"toda", "N=300", 0.1},  {"outer-solar", NULL, 100.0}, {"double-pendulum", NULL, 0.1}, {"kepler", "e=0.6", 0.1},
+    {"pendulum", NULL, 0.1},        {"fpu", "ell=3", 0.1},    {"fpu", "ell=200", 0.1},
+    {"toda", "N=5", 0.1},           {"toda", "N=300", 0.1},   {"outer-solar", NULL, 100.0},
+    {"double-pendulum", NULL, 0.1}, {"kepler", "e=0.6", 0.1}, {"chain", "n=500", 0.1},
 };
 
 static const char *const methods[] = {
@@ -36,6 +38,8 @@ static const char *const methods[] = {
     "composition:order=6,base=galerkin,degree=2,solver=newton",
     "verlet",
     "composition:order=8,base=verlet",
+    "verlet:threads=3",
+    "composition:order=6,base=verlet,threads=2",
 };
 enum { PLACES = sizeof places / sizeof *places, METHODS = sizeof methods / sizeof *methods };
 
@@ -169,6 +173,7 @@ int main(void)
     (void)puts("heap calls cannot be counted here: skipped");
     return 77;
   }
+  dvi__wave_choose_block(16); /* the chain of 500 is long enough for three threads then */
   TCase *tests = tcase_create("no_allocation");
   tcase_add_loop_test(tests, no_step_allocates_not_even_the_first, 0, PLACES * METHODS);
   tcase_add_loop_test(tests, invariants_and_dense_output_do_not_allocate, 0, PLACES * METHODS);

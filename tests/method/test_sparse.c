@@ -60,7 +60,8 @@ static void take_steps(dvi_integrator *integrator, measured *m)
   ck_assert_int_eq(before.symbolic, 2);
   ck_assert_int_eq(after.allocations, before.allocations);
   ck_assert_int_eq(after.simplified, STEPS); /* omega h = 5: fixed point iteration does not contract */
-  ck_assert_int_ge(after.factorizations, STEPS);
+  ck_assert_int_ge(after.factorizations, 1);
+  ck_assert_int_lt(after.factorizations, STEPS); /* kept while they are good */
   if (heap_is_counted()) ck_assert_int_eq(taken, 0);
 }
 

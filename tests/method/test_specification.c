@@ -29,7 +29,7 @@ static const struct {
     {"Verlet", "unknown method 'Verlet'"},
     {"galerkin,degree=2", "unknown method 'galerkin,degree=2'"},
     {"verlet:", "'' is not key=value"},
-    {"verlet:solver=auto", "verlet: unknown key 'solver'; it takes none"},
+    {"verlet:solver=auto", "verlet: unknown key 'solver'; it takes sweep, threads"},
     {"midpoint:degree=2", "midpoint: unknown key 'degree'; it takes solver"},
     {"trapezoidal:solver=", "trapezoidal: solver=; possible are auto, certified, fixed-point, simplified, newton, kinsol"},
     {"midpoint:solver=newton,solver=newton", "midpoint: solver is given twice"},

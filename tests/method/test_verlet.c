@@ -84,12 +84,28 @@ START_TEST(no_hessian_is_made_for_it)
 }
 END_TEST
 
-START_TEST(it_takes_no_keys)
+START_TEST(what_it_cannot_do_is_refused_by_name)
 {
+  static const struct {
+    const char *method;
+    dvi_status status;
+    const char *words;
+  } cases[] = {
+      {"verlet:degree=2", DVI_BAD_OPTION, "degree"},
+      {"verlet:sweep=tidal", DVI_BAD_OPTION, "auto, wave, plain"},
+      {"verlet:threads=0", DVI_BAD_OPTION, "1 to 64"},
+      {"verlet:threads=65", DVI_BAD_OPTION, "1 to 64"},
+      {"verlet:threads=-1", DVI_BAD_OPTION, "plain digits"},
+      {"verlet:sweep=wave", DVI_UNSUPPORTED, "no gradient_range"},
+      {"verlet:threads=2", DVI_UNSUPPORTED, "no gradient_range"},
+      {"verlet:threads=2,sweep=plain", DVI_UNSUPPORTED, "sweep=plain"},
+      {"composition:order=4,threads=2", DVI_UNSUPPORTED, "no gradient_range"},
+  };
   problem *oscillator = made_problem("oscillator", NULL);
   dvi_integrator *integrator = NULL;
-  ck_assert_int_eq(dvi_integrator_create(oscillator->system, "verlet:degree=2", &integrator), DVI_BAD_OPTION);
-  check_words("degree");
+  ck_assert_int_eq(dvi_integrator_create(oscillator->system, cases[_i].method, &integrator), cases[_i].status);
+  ck_assert_ptr_null(integrator);
+  check_words(cases[_i].words);
   problem_destroy(&oscillator);
 }
 END_TEST
@@ -100,7 +116,7 @@ int main(void)
   tcase_add_test(tests, a_step_is_kick_drift_kick);
   tcase_add_test(tests, a_step_costs_one_gradient_and_nothing_else);
   tcase_add_test(tests, a_general_lagrangian_is_refused_by_name);
-  tcase_add_test(tests, it_takes_no_keys);
+  tcase_add_loop_test(tests, what_it_cannot_do_is_refused_by_name, 0, 9);
   tcase_add_test(tests, no_hessian_is_made_for_it);
   return run_tests("verlet", tests);
 }

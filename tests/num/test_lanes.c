@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "num/compensated.h"
 #include "num/lanes.h"
 #include "support/runs.h"
 #include "support/suite.h"
@@ -26,8 +27,17 @@ static void fill(int count, double *x, int seed)
   for (int i = 0; i < count; i++) x[i] = number(seed + 3 * i);
 }
 
-static double sweep_matrix[STAGES_MOST * LANES_MOST], node[LANES_MOST], weight[STAGES_MOST], start[N], factor[N], origin[N];
-static double force[2][N * STAGES_MOST], Z[2][N * LANES_MOST], Q[2][N * STAGES_MOST];
+static double sweep_matrix[STAGES_MOST * LANES_MOST], node[LANES_MOST], weight[STAGES_MOST], p0[N], start[N], low[N], factor[N],
+    origin[N];
+static double force[2][N * STAGES_MOST], Z[2][N * LANES_MOST], Q[2][N * STAGES_MOST + LANES_MOST];
+
+/* One lane of a product: long ones as four sums. */
+static double lane(int terms, int lanes, const double *matrix, const double *x)
+{
+  double sum[4] = {0};
+  for (int k = 0; k < terms; k++) sum[terms >= 8 && k < terms / 4 * 4 ? k % 4 : 0] += matrix[k * lanes] * x[k];
+  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
 
 /* What lanes.h says, one number after the other. */
 static void plain_sweep(dvi__sweep *s)
@@ -37,9 +47,9 @@ static void plain_sweep(dvi__sweep *s)
     double *g = s->force + i * s->stages;
     for (int j = 0; j < s->stages; j++) g[j] *= s->weight[j];
     for (int l = 0; l < s->lanes; l++) {
-      double sum = 0, *z = &s->Z[i * s->lanes + l];
-      for (int j = 0; j < s->stages; j++) sum += s->matrix[j * s->lanes + l] * g[j];
-      const double next = s->start[i] * s->node[l] + s->factor[i] * sum;
+      double *z = &s->Z[i * s->lanes + l];
+      const double sum = lane(s->stages, s->lanes, s->matrix + l, g);
+      const double next = s->start[i] * s->node[l] + (s->factor[i] * sum + s->low[i] * s->node[l]);
       s->change = fmax(s->change, fabs(*z - next));
       s->largest = fmax(s->largest, fabs(next));
       if (l < s->stages) s->Q[i * s->stages + l] = s->origin[i] + next;
@@ -60,7 +70,9 @@ static dvi__sweep made_sweep(int stages, int which)
                       .matrix = sweep_matrix,
                       .node = node,
                       .weight = weight,
+                      .p0 = p0,
                       .start = start,
+                      .low = low,
                       .factor = factor,
                       .origin = origin,
                       .force = force[which],
@@ -74,11 +86,18 @@ START_TEST(a_sweep_has_the_bits_of_plain_loops)
   if (_i / STAGES_MOST >= dvi__lanes_levels()) return;
   dvi__lanes_choose(_i / STAGES_MOST);
   fill(stages * lanes, sweep_matrix, 4), fill(lanes, node, 5), fill(stages, weight, 6);
-  fill(N, start, 7), fill(N, factor, 8), fill(N, origin, 9);
+  fill(N, p0, 7), fill(N, factor, 8), fill(N, origin, 9);
   dvi__sweep fast = made_sweep(stages, 0), plain = made_sweep(stages, 1);
+  dvi__lanes_split(&fast);
+  for (int i = 0; i < N; i++) {
+    ck_assert_double_eq(start[i], factor[i] * p0[i]);
+    ck_assert_double_eq(low[i], fma(factor[i], p0[i], -start[i]));
+  }
   for (int again = 0; again < 2; again++) {
+    for (int k = 0; k < lanes; k++) Q[0][N * stages + k] = 42;
     dvi__lanes_sweep(&fast);
     plain_sweep(&plain);
+    for (int k = 0; k < lanes; k++) ck_assert_double_eq(Q[0][N * stages + k], 42); /* nothing is written behind */
     ck_assert_mem_eq(force[0], force[1], (size_t)(N * stages) * sizeof(double));
     ck_assert_mem_eq(Z[0], Z[1], (size_t)(N * lanes) * sizeof(double));
     ck_assert_mem_eq(Q[0], Q[1], (size_t)(N * stages) * sizeof(double));
@@ -98,12 +117,85 @@ START_TEST(a_product_has_the_bits_of_plain_loops)
   out[N * width] = 42;
   dvi__lanes_product(N, terms, lanes, width, sweep_matrix, x, out);
   for (int i = 0; i < N; i++)
-    for (int l = 0; l < width; l++) {
-      double sum = 0;
-      for (int k = 0; k < terms; k++) sum += sweep_matrix[k * lanes + l] * x[i * terms + k];
-      ck_assert_double_eq(out[i * width + l], sum);
-    }
+    for (int l = 0; l < width; l++) ck_assert_double_eq(out[i * width + l], lane(terms, lanes, sweep_matrix + l, x + i * terms));
   ck_assert_double_eq(out[N * width], 42); /* nothing is written behind */
+}
+END_TEST
+
+/* ---- kicks and drifts ---- */
+
+enum { LONGEST = 37 };
+
+typedef struct coordinates {
+  double q[LONGEST + 1], p[LONGEST + 1], q_carry[LONGEST + 1], p_carry[LONGEST + 1];
+} coordinates;
+
+static dvi__phase phase_of(coordinates *c)
+{
+  return (dvi__phase){c->q, c->p, c->q_carry, c->p_carry};
+}
+
+static coordinates made_coordinates(void)
+{
+  coordinates c;
+  fill(LONGEST + 1, c.q, 1), fill(LONGEST + 1, c.p, 2), fill(LONGEST + 1, c.q_carry, 3), fill(LONGEST + 1, c.p_carry, 4);
+  for (int i = 0; i <= LONGEST; i++) c.q_carry[i] *= 1e-17, c.p_carry[i] *= 1e-17;
+  return c;
+}
+
+/* What lanes.h says, one number after the other. */
+static void plain_leap(const dvi__leap *l)
+{
+  for (size_t i = 0; i < l->count; i++) {
+    double p = l->from.p[i], q = l->from.q[i], p_carry = l->from.p_carry[i], q_carry = l->from.q_carry[i];
+    for (int k = 0; k < l->kicks; k++) dvi__add_compensated(&p, &p_carry, l->kick[k] * l->force[i]);
+    const double v = l->by == DVI__BY_ARRAY ? p / l->mass[i] : l->by == DVI__BY_SCALAR ? p / l->scalar : p * l->scalar;
+    dvi__add_compensated(&q, &q_carry, v * l->drift);
+    l->to.p[i] = p, l->to.q[i] = q, l->to.p_carry[i] = p_carry, l->to.q_carry[i] = q_carry;
+  }
+}
+
+START_TEST(a_leap_has_the_bits_of_plain_loops)
+{
+  double forces[LONGEST], masses[LONGEST];
+  const int count = _i % (LONGEST + 1);
+  if (_i / (LONGEST + 1) >= dvi__lanes_levels()) return;
+  dvi__lanes_choose(_i / (LONGEST + 1));
+  fill(LONGEST, forces, 5), fill(LONGEST, masses, 6);
+  for (int variant = 0; variant < 12; variant++) {
+    coordinates from = made_coordinates(), fast = from, plain = from;
+    const int in_place = variant >= 6;
+    dvi__leap leap = {.count = (size_t)count,
+                      .kicks = 1 + variant % 2,
+                      .kick = {-0.3, 0.7},
+                      .drift = 0.1,
+                      .by = (dvi__division)(variant % 3),
+                      .scalar = 3,
+                      .mass = masses,
+                      .force = forces,
+                      .from = phase_of(in_place ? &fast : &from),
+                      .to = phase_of(&fast),
+                      .far = variant % 2};
+    dvi__lanes_leap(&leap);
+    leap.from = phase_of(in_place ? &plain : &from);
+    leap.to = phase_of(&plain);
+    plain_leap(&leap);
+    ck_assert_mem_eq(&fast, &plain, sizeof fast); /* nothing is written behind, either */
+  }
+}
+END_TEST
+
+START_TEST(a_kick_has_the_bits_of_plain_loops)
+{
+  double forces[LONGEST];
+  const int count = _i % (LONGEST + 1);
+  if (_i / (LONGEST + 1) >= dvi__lanes_levels()) return;
+  dvi__lanes_choose(_i / (LONGEST + 1));
+  fill(LONGEST, forces, 5);
+  coordinates fast = made_coordinates(), plain = fast;
+  dvi__lanes_add_scaled((size_t)count, -0.3, forces, fast.p, fast.p_carry);
+  for (int i = 0; i < count; i++) dvi__add_compensated(&plain.p[i], &plain.p_carry[i], -0.3 * forces[i]);
+  ck_assert_mem_eq(&fast, &plain, sizeof fast);
 }
 END_TEST
 
@@ -171,6 +263,8 @@ int main(void)
   tcase_add_checked_fixture(tests, NULL, best_again);
   tcase_add_loop_test(tests, a_sweep_has_the_bits_of_plain_loops, 0, 3 * STAGES_MOST);
   tcase_add_loop_test(tests, a_product_has_the_bits_of_plain_loops, 0, 3 * STAGES_MOST);
+  tcase_add_loop_test(tests, a_leap_has_the_bits_of_plain_loops, 0, 3 * (LONGEST + 1));
+  tcase_add_loop_test(tests, a_kick_has_the_bits_of_plain_loops, 0, 3 * (LONGEST + 1));
   tcase_add_loop_test(tests, one_number_that_is_not_finite_is_seen_anywhere, 0, 3);
   tcase_add_loop_test(tests, steps_have_the_same_bits_at_every_level, 0, 7);
   tcase_add_test(tests, levels_have_names);

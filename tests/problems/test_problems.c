@@ -85,6 +85,10 @@ START_TEST(derivatives_agree_for_other_parameters)
       {"fpu", "ell=1"},
       {"fpu", "ell=2"},
       {"fpu", "ell=9"},
+      {"chain", "n=1"},
+      {"chain", "n=2"},
+      {"chain", "n=3"},
+      {"chain", "beta=0"},
   };
   check_derivatives(cases[_i][0], 1, &cases[_i][1]);
 }
@@ -222,6 +226,8 @@ START_TEST(bad_settings_are_refused_with_a_sentence)
       {"toda", "N=2.5", "whole number"},
       {"fpu", "ell=0", "whole number"},
       {"fpu", "ell=1e9", "whole number"},
+      {"chain", "n=0", "whole number"},
+      {"chain", "beta=-1", "from 0"},
       {"fpu", "omega=0", "positive"},
       {"fpu", "omega=inf", "positive"},
       {"oscillator", "k=0", "positive"},
@@ -371,12 +377,12 @@ int main(void)
   TCase *tests = tcase_create("catalogue");
   const int count = problem_count();
   tcase_add_loop_test(tests, derivatives_and_patterns_agree_with_differences, 0, count);
-  tcase_add_loop_test(tests, derivatives_agree_for_other_parameters, 0, 16);
+  tcase_add_loop_test(tests, derivatives_agree_for_other_parameters, 0, 20);
   tcase_add_loop_test(tests, a_batch_gives_each_point_what_it_gets_alone, 0, count);
   tcase_add_loop_test(tests, momenta_are_the_legendre_transform_of_the_velocities, 0, count);
   tcase_add_loop_test(tests, every_problem_is_found_by_its_name_and_complete, 0, count);
   tcase_add_loop_test(tests, digits_belong_to_the_default_parameters_only, 0, count);
-  tcase_add_loop_test(tests, bad_settings_are_refused_with_a_sentence, 0, 19);
+  tcase_add_loop_test(tests, bad_settings_are_refused_with_a_sentence, 0, 21);
   tcase_add_test(tests, a_chain_of_any_length_starts_as_it_should);
   tcase_add_loop_test(tests, exact_solutions_meet_start_and_digits, 0, 3);
   tcase_add_loop_test(tests, keplers_equation_is_solved_for_any_eccentricity_and_time, 0, 7);

@@ -235,6 +235,27 @@ static void toda_acceleration(const quad_system *system, const quad *q, const qu
   }
 }
 
+/* V = sum_{i=0}^{n} d_i^2/2 + beta d_i^4/4, d_i = q_{i+1} - q_i between walls at q_0 = q_{n+1} = 0; start sin(pi k i/(n+1)). */
+static void chain_prepare(quad_system *system)
+{
+  const int n = (int)system->value[0];
+  if (n < 1 || n > QUAD_N_MAX) return;
+  system->n = n;
+  for (int i = 0; i < n; i++) system->q[i] = quad_sin(quad_acos(-1) * ((i + 1) * ((n + 7) / 8)) / (n + 1));
+}
+
+static void chain_acceleration(const quad_system *system, const quad *q, const quad *v, quad *a)
+{
+  const int n = system->n;
+  (void)v;
+  for (int i = 0; i < n; i++) a[i] = 0;
+  for (int i = 0; i <= n; i++) {
+    const quad d = (i < n ? q[i] : 0) - (i > 0 ? q[i - 1] : 0), force = d + system->value[1] * cube(d);
+    if (i < n) a[i] -= force;
+    if (i > 0) a[i - 1] += force;
+  }
+}
+
 /* Newton's gravity between point masses; q holds body after body. */
 static void gravity_acceleration(const quad_system *system, const quad *q, const quad *v, quad *a)
 {
@@ -331,6 +352,7 @@ static const quad_problem problems[] = {
      stiff_pendulum_velocity},
     {"fpu", {"ell", "omega"}, {"3", "50"}, fpu_prepare, fpu_acceleration, NULL, NULL},
     {"toda", {"N"}, {"20"}, toda_prepare, toda_acceleration, NULL, NULL},
+    {"chain", {"n", "beta"}, {"32", "1"}, chain_prepare, chain_acceleration, NULL, NULL},
     {.name = "outer-solar", .prepare = outer_solar_prepare, GRAVITY},
     {.name = "figure-eight", .prepare = figure_eight_prepare, GRAVITY},
     {.name = "pythagorean", .prepare = pythagorean_prepare, GRAVITY},

@@ -91,6 +91,11 @@ const dvi_system *dvi_integrator_system(const dvi_integrator *integrator);
 /** The order that theory claims for this method with its options. */
 int dvi_integrator_order(const dvi_integrator *integrator);
 
+/** Bytes that a step moves between memory and processor if the state fits in no cache: what it reads, what it writes, and the lines that are
+ *  fetched to be written. 0 if the method does not know: it does if it goes through memory in whole passes (verlet with potentials that
+ *  declare gradient_range, and its compositions). */
+double dvi_integrator_traffic(const dvi_integrator *integrator);
+
 /** The method's full specification, every key spelled out; owned by the integrator. */
 const char *dvi_integrator_method(const dvi_integrator *integrator);
 

@@ -11,7 +11,8 @@
  *
  *  Each callback comes in two shapes; declare one of them (both are refused). The one-point shape is the plain one. The batch shape gets
  *  `count` points stored component by component: coordinate i of point k is q[i*count + k], entry e of a Hessian of point k is
- *  values[e*count + k], and t[k] is the time of point k. One loop over k then serves all quadrature points of a step. */
+ *  values[e*count + k], and t[k] is the time of point k. One loop over k then serves all quadrature points of a step. A potential's
+ *  gradient has a third shape, for chains and meshes: a range of coordinates of one point, computed from their neighbours alone. */
 #ifndef DVI_SYSTEM_H
 #define DVI_SYSTEM_H
 #include <dvi/status.h>
@@ -57,6 +58,14 @@ typedef struct dvi_potential {
   int (*hessian_batch)(int count, const double *t, const double *q, double *V_qq, void *user);
   dvi_pattern qq;
   void *user;
+  /** dV/dq of the coordinates first to last-1, of one point, into V_q [last-first], from q[first-reach] to q[last-1+reach] alone (as far as
+   *  there are such coordinates); q is the whole array, and what stands elsewhere in it belongs to other times. The bits of an entry may
+   *  not depend on the range that it is asked in, and must be those of `gradient` or `gradient_batch`, if one of them is declared, too.
+   *  With it explicit methods take a long chain through memory once a step (docs/methods/verlet.md); on several threads, if they are told to,
+   *  and then it is called on all of them at one time. dvi_system_check tests all this. Alone it serves every method: 0 to n is the whole
+   *  gradient. */
+  int (*gradient_range)(double t, const double *q, int first, int last, double *V_q, void *user);
+  int reach; /**< of gradient_range, 0 or more: how far, in the order of the coordinates, the farthest neighbour of one is away */
 } dvi_potential;
 
 /** A constant mass matrix: exactly one of the three forms. */
@@ -104,8 +113,9 @@ extern "C" {
 /** Make a system from its terms.
  *
  *  @param[out] system  owned by the caller; NULL on failure. It must outlive every integrator made from it.
- *  @retval DVI_BAD_SIZE      dimension or a count is out of range
- *  @retval DVI_BAD_ARGUMENT  a term is missing, given twice, or without its value callback; a pattern is not sorted
+ *  @retval DVI_BAD_SIZE      dimension, a count or a reach is out of range
+ *  @retval DVI_BAD_ARGUMENT  a term is missing, given twice, or without its value callback; a reach has no gradient_range; a pattern is not
+ *                            sorted
  *  @retval DVI_SINGULAR      the constant mass is singular or not finite
  *  @retval DVI_NO_MEMORY */
 dvi_status dvi_system_create(const dvi_system_terms *terms, dvi_system **system);
@@ -152,9 +162,11 @@ typedef struct dvi_derivative_check {
   double outside;        /**< largest differenced entry outside the pattern, relative; more than roundoff: the pattern lies */
   int row, column;       /**< where `outside` is, or the worst Hessian entry if nothing is outside */
   char where[96];        /**< the worst offender in words, for example "potential 'gravity': d2V/dq2 (3,1) is not in the pattern" */
+  int range_row;         /**< the first coordinate for which a gradient_range breaks its promise; -1: none does */
 } dvi_derivative_check;
 
-/** Compare every gradient, Hessian and pattern of the system with differences of the values at one point.
+/** Compare every gradient, Hessian and pattern of the system with differences of the values at one point, and every gradient_range, bit for
+ *  bit, with the whole gradient: over short and long ranges, with NaN wherever it may not look.
  *
  *  Uses 6th order central differences; n^2 gradient calls: meant for tests and for moderate n.
  *  @param      q, v       [nq], [nv]: a point in general position

@@ -75,7 +75,7 @@ void dvi__action_destroy(dvi__action **action)
                            a->fit_point,
                            a->fit,
                            a->straight,
-                           a->shift,
+                           a->shift.table,
                            a->shift_rows,
                            a->rows,
                            a->bar_row,
@@ -95,12 +95,14 @@ void dvi__action_destroy(dvi__action **action)
                            a->H_vv,
                            a->sweep_matrix,
                            a->sweep_node,
-                           a->sweep_rest,
+                           a->sweep_slant,
                            a->sweep_path,
                            a->sweep_start,
+                           a->sweep_low,
                            a->sweep_factor,
                            a->sweep_weight,
-                           a->Z};
+                           a->Z,
+                           a->sweep_shift.table};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) dvi__release(owned[i]);
   dvi__linear_destroy(&a->chord);
   dvi__evaluator_destroy(&a->evaluator);

@@ -9,8 +9,15 @@ typedef struct dvi__block {
   int qq, qv, vq, vv;
 } dvi__block;
 
-/* Continuations that are kept: a composition of 17 substeps asks for as many ratios in turn. */
+/* Tables that continue what the last step found into the next: one for each ratio of their lengths. A composition of 17 substeps asks for as many
+ * ratios in turn. */
 enum { DVI__SHIFTS = 20 };
+
+typedef struct dvi__shifts {
+  double *table;             /* [DVI__SHIFTS * size of one] */
+  double ratio[DVI__SHIFTS]; /* the ratio that each was made for; 0: none */
+  int oldest;                /* the one to be replaced next */
+} dvi__shifts;
 
 struct dvi__action {
   const dvi_system *system;
@@ -26,11 +33,8 @@ struct dvi__action {
   double *end;                           /* [s] psi_k(1) */
   double *stiffness, *stiffness_inverse; /* [s*s] K_kl = sum_j b_j psi_k' psi_l' */
   double *fit_point, *fit, *straight;    /* [s], [s*s] rows, [s] */
-  double *shift;                         /* [DVI__SHIFTS] tables of [s*lanes], by columns */
+  dvi__shifts shift;                     /* of paths: [s*path_lanes], by columns */
   double *shift_rows;                    /* [s*s] work */
-  double shift_ratio[DVI__SHIFTS];       /* the ratio of steps that each was made for; 0: none */
-  int oldest_shift;                      /* the one to be replaced next */
-  int keep;                              /* degree up to which a path is continued */
   /* The element's place. */
   double t0, h;
   const double *q0, *p0;
@@ -42,13 +46,14 @@ struct dvi__action {
   double *bar_row, *slope_row; /* psi_k(c_j) - psi_k(1), psi_k'(c_j) */
   double *stiffness_row;       /* [s*path_lanes] K^{-1} */
   /* Sweeps (sweep.h); NULL if the mass couples coordinates. */
-  double *sweep_matrix, *sweep_node, *sweep_rest; /* [r*lanes] c_i - P_ij by columns, [lanes] c, [r] 1 - c */
-  double *sweep_path;                             /* paths from forces */
-  double *sweep_start, *sweep_factor;             /* [n] h/m p0, h/m */
-  double sweep_h;                                 /* the h of sweep_factor and sweep_weight */
-  double *sweep_weight;                           /* [r] -h b_j */
-  double *Z;                                      /* [n*lanes] offsets of the nodes from q0 */
-  int swept;                                      /* the forces are a sweep's */
+  double *sweep_matrix, *sweep_node, *sweep_slant; /* [r*lanes] c_i - P_ij by columns, [lanes] c, [r] 1/2 - c */
+  double *sweep_path;                              /* paths from forces */
+  double *sweep_start, *sweep_low, *sweep_factor;  /* [n] h/m p0 and what it is rounded by, h/m */
+  double sweep_h;                                  /* the h of sweep_factor and sweep_weight */
+  double *sweep_weight;                            /* [r] -h b_j */
+  double *Z;                                       /* [n*lanes] offsets of the nodes from q0 */
+  dvi__shifts sweep_shift;                         /* from the last step's forces to offsets: [r*lanes], by columns */
+  int swept;                                       /* the forces are a sweep's */
   /* Chord. */
   double *middle_vv;  /* L_vv at one point (general Lagrangians) */
   double *middle[2];  /* q, v at that point */
@@ -60,10 +65,10 @@ struct dvi__action {
   double *H_qq, *H_qv, *H_vv; /* [entries*r] */
 };
 
-/* The table that continues a path into a step `ratio` times as long, by columns of length path_lanes. */
-const double *dvi__action_shift(dvi__action *action, double ratio);
+/* The table from the last step's forces to the sums of forces in a step `ratio` times as long: [r*lanes], by columns. */
+const double *dvi__action_sweep_shift(dvi__action *action, double ratio);
 
-/* The tables of sweeps that depend on h alone. */
+/* What sweeps need that depends on h alone. */
 void dvi__action_set_step(dvi__action *action);
 
 /* Fill the batches Q and V with the path's points at the nodes. */

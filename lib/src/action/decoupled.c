@@ -1,5 +1,7 @@
 #include "action/decoupled.h"
 
+#include <string.h>
+
 #include "action/action_struct.h"
 #include "core/memory.h"
 #include "core/status.h"
@@ -20,6 +22,7 @@ struct dvi__decoupled {
   mode mode[DVI_DEGREE_MAX];
   double *in, *out;                 /* [s*lanes] by columns: X^{-1} K^{-1} and X */
   double *values, *b, *coefficient; /* [2 entries], [2 n], [n*s] */
+  double h, *point;                 /* what is frozen: the step (0: nothing), and t, q, v */
 };
 
 /* ---- tables ---- */
@@ -99,7 +102,8 @@ static dvi_status allocate(dvi__decoupled *d)
   d->values = DVI_NEW(double, 2 * (size_t)dvi__pattern_entries(&a->joint));
   d->b = DVI_NEW(double, 2 * n);
   d->coefficient = DVI_NEW(double, n *s);
-  if (d->in && d->out && d->values && d->b && d->coefficient) return DVI_OK;
+  d->point = DVI_NEW(double, dvi__decoupled_point_size(d));
+  if (d->in && d->out && d->values && d->b && d->coefficient && d->point) return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d decoupled systems in %d dimensions", a->s, a->n);
 }
 
@@ -131,6 +135,7 @@ void dvi__decoupled_destroy(dvi__decoupled **decoupled)
   dvi__release(d->values);
   dvi__release(d->b);
   dvi__release(d->coefficient);
+  dvi__release(d->point);
   dvi__release(d);
   *decoupled = NULL;
 }
@@ -153,18 +158,41 @@ static void assemble(const dvi__action *a, const mode *m, double *values)
   }
 }
 
-dvi_status dvi__decoupled_freeze(dvi__decoupled *d, const double *Y)
+int dvi__decoupled_point_size(const dvi__decoupled *d)
+{
+  return 1 + 2 * d->action->n;
+}
+
+void dvi__decoupled_point(const dvi__decoupled *d, const double *Y, double *point)
+{
+  const dvi__action *a = d->action;
+  double *q = point + 1, *v = q + a->n;
+  point[0] = a->t0 + 0.5 * a->h;
+  dvi__action_path(a, Y, a->h, 0.5, q, v);
+  for (int i = 0; i < a->n; i++) q[i] += a->q0[i];
+}
+
+static dvi_status factor(dvi__decoupled *d)
 {
   dvi__action *a = d->action;
-  const double middle = a->t0 + 0.5 * a->h;
-  dvi__action_path(a, Y, a->h, 0.5, a->Q, a->V); /* the batches are free between residuals */
-  for (int i = 0; i < a->n; i++) a->Q[i] += a->q0[i];
-  DVI_TRY(dvi__lagrangian_hessian(a->evaluator, 1, &middle, a->Q, a->V, a->H_qq, a->H_qv, a->H_vv));
+  const double *q = d->point + 1, *v = q + a->n;
+  d->counters->jacobians++;
+  DVI_TRY(dvi__lagrangian_hessian(a->evaluator, 1, d->point, q, v, a->H_qq, a->H_qv, a->H_vv));
   for (int m = 0; m < d->modes; m++) {
     assemble(a, &d->mode[m], d->values);
     DVI_TRY(dvi__linear_factor(d->mode[m].linear, d->values));
   }
   return DVI_OK;
+}
+
+dvi_status dvi__decoupled_freeze(dvi__decoupled *d, const double *point)
+{
+  const size_t bytes = (size_t)dvi__decoupled_point_size(d) * sizeof(double);
+  if (d->h == d->action->h && memcmp(d->point, point, bytes) == 0) return DVI_OK;
+  memcpy(d->point, point, bytes);
+  const dvi_status status = factor(d);
+  d->h = status == DVI_OK ? d->action->h : 0;
+  return status;
 }
 
 /* ---- solving ---- */

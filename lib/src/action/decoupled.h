@@ -16,8 +16,12 @@ typedef struct dvi__decoupled dvi__decoupled;
 dvi_status dvi__decoupled_create(dvi__action *action, dvi_counters *counters, dvi__decoupled **decoupled);
 void dvi__decoupled_destroy(dvi__decoupled **decoupled);
 
-/* Freeze the Jacobian in the middle of the path Y, and factor. */
-dvi_status dvi__decoupled_freeze(dvi__decoupled *decoupled, const double *Y);
+/* Where to freeze: t, q [n] and v [n] in the middle of the path Y. */
+int dvi__decoupled_point_size(const dvi__decoupled *decoupled);
+void dvi__decoupled_point(const dvi__decoupled *decoupled, const double *Y, double *point);
+
+/* Freeze the Jacobian of the action's h at a point, and factor; nothing is done if it is frozen there already. */
+dvi_status dvi__decoupled_freeze(dvi__decoupled *decoupled, const double *point);
 
 /* Overwrite R by the correction J^{-1} R. */
 void dvi__decoupled_solve(dvi__decoupled *decoupled, double *R);

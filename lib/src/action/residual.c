@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "action/action_struct.h"
+#include "action/sweep.h"
 #include "core/status.h"
 #include "num/lanes.h"
 #include "space/trial.h"
@@ -54,14 +55,21 @@ static double sum(int count, const double *x)
   return total;
 }
 
-void dvi__action_ends(const dvi__action *a, const double *Y, double *dq, double *dp)
+static void ends_by_rows(const dvi__action *a, const double *Y, double *dq, double *dq_low, double *dp)
 {
   for (size_t i = 0; i < (size_t)a->n; i++) {
-    const double *g = a->L_q + i * (size_t)a->r;
-    dq[i] = a->swept ? a->sweep_start[i] + a->sweep_factor[i] * dot(a->r, a->sweep_rest, g)
-                     : dot(a->s, a->end, Y + i * (size_t)a->s);
-    dp[i] = a->swept ? sum(a->r, g) : a->h * sum(a->r, g);
+    dq[i] = dot(a->s, a->end, Y + i * (size_t)a->s);
+    dq_low[i] = 0;
+    dp[i] = a->h * sum(a->r, a->L_q + i * (size_t)a->r);
   }
+}
+
+void dvi__action_ends(const dvi__action *a, const double *Y, double *dq, double *dq_low, double *dp)
+{
+  if (a->swept)
+    dvi__action_sweep_ends(a, dq, dq_low, dp);
+  else
+    ends_by_rows(a, Y, dq, dq_low, dp);
 }
 
 /* ---- chord: the kinetic part of the Jacobian ---- */
@@ -107,7 +115,8 @@ void dvi__action_row_scale(const dvi__action *a, double *scale)
   for (int i = 0; i < a->n; i++) {
     double size = 0;
     for (int e = vv->start[i]; e < vv->start[i + 1]; e++) size = fmax(size, fabs(values[e]));
-    for (int k = 0; k < a->s; k++) scale[i * a->s + k] = (size > 0 ? size : 1.0) / fabs(a->h);
+    const double row = (size > 0 ? size : 1.0) / fabs(a->h);
+    for (int k = 0; k < a->s; k++) scale[i * a->s + k] = row;
   }
 }
 
@@ -127,27 +136,6 @@ void dvi__action_straight(const dvi__action *a, const double *dq, double *Y)
 {
   for (size_t i = 0, s = (size_t)a->s; i < (size_t)a->n; i++)
     for (size_t k = 0; k < s; k++) Y[i * s + k] = a->straight[k] * dq[i];
-}
-
-/* One that is kept, or a new one in the place of the oldest. */
-const double *dvi__action_shift(dvi__action *a, double ratio)
-{
-  const size_t s = (size_t)a->s, lanes = (size_t)a->path_lanes, size = s * lanes;
-  for (size_t k = 0; k < DVI__SHIFTS; k++)
-    if (a->shift_ratio[k] == ratio) return a->shift + k * size;
-  const int place = a->oldest_shift;
-  double *shift = a->shift + (size_t)place * size;
-  dvi__trial_shift(a->space.basis, a->s, a->keep, ratio, a->shift_rows);
-  for (size_t k = 0; k < s; k++)
-    for (size_t l = 0; l < s; l++) shift[l * lanes + k] = a->shift_rows[k * s + l];
-  a->shift_ratio[place] = ratio;
-  a->oldest_shift = (place + 1) % DVI__SHIFTS;
-  return shift;
-}
-
-void dvi__action_continue(dvi__action *a, double ratio, const double *last, double *Y)
-{
-  dvi__lanes_product(a->n, a->s, a->path_lanes, a->s, dvi__action_shift(a, ratio), last, Y);
 }
 
 const double *dvi__action_fit_points(const dvi__action *a)

@@ -10,9 +10,6 @@
 #include "space/quadrature.h"
 #include "space/trial.h"
 
-/* Continuing a polynomial of degree d one step further multiplies rounding errors by about 6^d and gains little beyond this degree. */
-enum { CONTINUED_DEGREE = 10 };
-
 static int allocate(dvi__action *a)
 {
   a->lanes = dvi__lanes_for(a->r);
@@ -29,13 +26,13 @@ static int allocate(dvi__action *a)
   a->fit_point = DVI_NEW(double, s);
   a->fit = DVI_NEW(double, s *s);
   a->straight = DVI_NEW(double, s);
-  a->shift = DVI_NEW(double, DVI__SHIFTS *s *path_lanes);
+  a->shift.table = DVI_NEW(double, DVI__SHIFTS *s *path_lanes);
   a->shift_rows = DVI_NEW(double, s *s);
   a->bar_row = DVI_NEW(double, r *path_lanes);
   a->slope_row = DVI_NEW(double, r *path_lanes);
   a->stiffness_row = DVI_NEW(double, s *path_lanes);
   return a->psi && a->dpsi && a->bar && a->node && a->weight && a->end && a->stiffness && a->stiffness_inverse && a->fit_point &&
-         a->fit && a->straight && a->shift && a->shift_rows && a->bar_row && a->slope_row && a->stiffness_row;
+         a->fit && a->straight && a->shift.table && a->shift_rows && a->bar_row && a->slope_row && a->stiffness_row;
 }
 
 static double largest(int count, const double *x, double size)
@@ -131,7 +128,6 @@ static void fill_rows(dvi__action *a)
 dvi_status dvi__action_fill_tables(dvi__action *a)
 {
   if (!allocate(a)) return dvi__fail(DVI_NO_MEMORY, "action: no memory for tables of degree %d", a->s);
-  a->keep = a->s < CONTINUED_DEGREE ? a->s : CONTINUED_DEGREE;
   dvi__space_init(&a->trial, a->space.basis, a->s);
   DVI_TRY(fill_nodes(a));
   fill_stiffness(a);

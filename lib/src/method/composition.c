@@ -33,10 +33,12 @@ static const dvi__key keys[] = {
     {0},
 };
 
+enum { SUBSTEPS_MOST = 17 };
+
 /* The first half of the weights and the middle one; the rest mirrors them. */
 typedef struct scheme {
   int substeps;
-  double weight[9];
+  double weight[(SUBSTEPS_MOST + 1) / 2];
 } scheme;
 
 static const scheme schemes[] = {
@@ -71,7 +73,6 @@ static dvi_status create(dvi__stepper *self)
   self->order = 4 + 2 * self->settings.value[ORDER];
   self->order = base->order > self->order ? base->order : self->order;
   self->symmetric = 1;
-  self->memory = base->memory;
   self->memory_count = base->memory_count;
   return DVI_OK;
 }
@@ -83,29 +84,61 @@ static void destroy(dvi__stepper *self)
   dvi__release(self->own);
 }
 
-static void start(dvi__stepper *self, const double *v)
+/* The base, which works on this method's memory. */
+static dvi__stepper *base_of(const dvi__stepper *self)
 {
   dvi__stepper *base = self->own;
+  base->memory = self->memory;
+  return base;
+}
+
+static void start(dvi__stepper *self, const double *v)
+{
+  dvi__stepper *base = base_of(self);
   base->method->start(base, v);
 }
 
-/* Substep i's part of the step. */
-static double weight_of(const scheme *s, int i)
+static double substep(const scheme *s, int i, double h)
 {
-  return s->weight[i < s->substeps - 1 - i ? i : s->substeps - 1 - i];
+  const int mirrored = i < s->substeps - 1 - i ? i : s->substeps - 1 - i;
+  return s->weight[mirrored] * h;
+}
+
+/* The rounded weights sum to 1 but for a rounding, which would add up over many steps: the clock moves by h. */
+static void move_clock(double t, double t_carry, double h, double *moved, double *moved_carry)
+{
+  *moved = t;
+  *moved_carry = t_carry;
+  dvi__add_compensated(moved, moved_carry, h);
 }
 
 static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
 {
-  dvi__stepper *base = self->own;
+  dvi__stepper *base = base_of(self);
   const scheme *s = &schemes[self->settings.value[ORDER]];
   const double t = state->t, t_carry = state->t_carry;
-  for (int i = 0; i < s->substeps; i++) DVI_TRY(base->method->step(base, state, weight_of(s, i) * h));
-  /* The rounded weights sum to 1 but for a rounding, which would add up over many steps: the clock moves by h. */
-  state->t = t;
-  state->t_carry = t_carry;
-  dvi__add_compensated(&state->t, &state->t_carry, h);
+  for (int i = 0; i < s->substeps; i++) DVI_TRY(base->method->step(base, state, substep(s, i, h)));
+  move_clock(t, t_carry, h, &state->t, &state->t_carry);
   return DVI_OK;
+}
+
+static int pass(dvi__stepper *self, const dvi__state *now, const double *before, dvi__state *next, const double *h, int count)
+{
+  dvi__stepper *base = base_of(self);
+  const scheme *s = &schemes[self->settings.value[ORDER]];
+  double substeps[SUBSTEPS_MOST];
+  if (base->method->pass == NULL || count != 1) return 0;
+  for (int i = 0; i < s->substeps; i++) substeps[i] = substep(s, i, h[0]);
+  if (!base->method->pass(base, now, before, next, substeps, s->substeps)) return 0;
+  move_clock(now->t, now->t_carry, h[0], &next->t, &next->t_carry);
+  return 1;
+}
+
+static double traffic(const dvi__stepper *self, int count)
+{
+  const dvi__stepper *base = self->own;
+  return base->method->traffic != NULL && count == 1 ? base->method->traffic(base, schemes[self->settings.value[ORDER]].substeps)
+                                                     : 0;
 }
 
 /* ---- members side by side ---- */
@@ -133,10 +166,8 @@ static void step_lanes(dvi__stepper *self, dvi__members *m, double h)
   double *t = self->lanes, *t_carry = t + m->count;
   memcpy(t, m->t, bytes);
   memcpy(t_carry, m->t_carry, bytes);
-  for (int i = 0; i < s->substeps; i++) base->method->step_lanes(base, m, weight_of(s, i) * h);
-  memcpy(m->t, t, bytes);
-  memcpy(m->t_carry, t_carry, bytes);
-  for (int k = 0; k < m->count; k++) dvi__add_compensated(m->t + k, m->t_carry + k, h);
+  for (int i = 0; i < s->substeps; i++) base->method->step_lanes(base, m, substep(s, i, h));
+  for (int k = 0; k < m->count; k++) move_clock(t[k], t_carry[k], h, m->t + k, m->t_carry + k);
 }
 
 static void explain(const dvi__stepper *self, dvi__text *text)
@@ -158,6 +189,8 @@ const dvi__method dvi__composition = {
     .destroy = destroy,
     .start = start,
     .step = step,
+    .pass = pass,
+    .traffic = traffic,
     .explain = explain,
     .prepare_lanes = prepare_lanes,
     .clear_lanes = clear_lanes,

@@ -1,4 +1,4 @@
-/* The element's step for members of an ensemble side by side: the cheapest way of element_step.c alone, fixed point iteration from the last path
+/* The element's step for members of an ensemble side by side: the cheapest way of element_step.c alone, fixed point iteration from the last forces
  * continued. A member for which it would not be tried, or does not converge, is left to dvi__element_step. */
 #include <math.h>
 #include <string.h>
@@ -9,7 +9,7 @@
 #include "core/status.h"
 #include "method/element_step.h"
 #include "num/compensated.h"
-#include "num/members.h"
+#include "num/lanes.h"
 #include "solve/progress.h"
 
 typedef struct lanes {
@@ -66,9 +66,9 @@ void dvi__element_clear_lanes(dvi__stepper *self)
   dvi__release(own);
 }
 
-static double *memory_row(const dvi__members *m, int number)
+static double *memory_row(const dvi__members *m, size_t number)
 {
-  return m->memory + (size_t)number * (size_t)m->count;
+  return m->memory + number * (size_t)m->count;
 }
 
 /* Leave the members that would not try fixed point iteration, or whose last step had another length than the others'. Gives that length; 0: no
@@ -95,7 +95,7 @@ static void close_up(lanes *own)
   memset(own->going, 1, (size_t)at->width);
 }
 
-static void set_out(lanes *own, int n, const dvi__members *m, double h, double last_h)
+static void set_out(lanes *own, int n, size_t forces, const dvi__members *m, double h, double last_h)
 {
   const size_t count = (size_t)m->count;
   double *size = own->trails.size;
@@ -108,7 +108,7 @@ static void set_out(lanes *own, int n, const dvi__members *m, double h, double l
       size[k] = q > size[k] ? q : size[k];
     }
   for (size_t k = 0; k < count; k++) own->going[k] = !m->left[k];
-  dvi__action_members_place(&own->members, m->count, h, last_h, m->t, m->q, m->p, memory_row(m, DVI__LAST_Y));
+  dvi__action_members_place(&own->members, m->count, h, last_h, m->t, m->q, m->p, memory_row(m, forces));
   close_up(own);
 }
 
@@ -168,16 +168,19 @@ static void iterate(lanes *own, dvi__members *m)
   leave_going(own, m);
 }
 
-static void advance(const lanes *own, int n, dvi__members *m, double h)
+/* What a step that fixed point iteration has solved does to the state and the memory. */
+static void advance(const lanes *own, size_t n, dvi__members *m, double h)
 {
+  static const size_t forgotten[] = {DVI__NEWTON_STEPS, DVI__NEWTON_WAIT};
   const dvi__action_members *at = &own->members;
-  const size_t count = (size_t)m->count, unknowns = (size_t)dvi__action_unknowns(at->action);
+  const size_t count = (size_t)m->count;
   double *last_h = memory_row(m, DVI__LAST_H);
-  dvi__members_add((size_t)n * count, 1.0, at->dq, m->q, m->q_carry);
-  dvi__members_add((size_t)n * count, 1.0, at->dp, m->p, m->p_carry);
+  dvi__lanes_add_scaled(n * count, 1.0, at->dq, m->q, m->q_carry);
+  dvi__lanes_add_scaled(n * count, 1.0, at->dq_low, m->q, m->q_carry);
+  dvi__lanes_add_scaled(n * count, 1.0, at->dp, m->p, m->p_carry);
   for (size_t k = 0; k < count; k++) dvi__add_compensated(m->t + k, m->t_carry + k, h);
   for (size_t k = 0; k < count; k++) last_h[k] = h;
-  memcpy(memory_row(m, DVI__LAST_Y), at->Y, unknowns * count * sizeof(double));
+  for (int i = 0; i < 2; i++) memset(memory_row(m, forgotten[i]), 0, count * sizeof(double));
 }
 
 void dvi__element_step_lanes(dvi__stepper *self, dvi__members *m, double h)
@@ -185,8 +188,8 @@ void dvi__element_step_lanes(dvi__stepper *self, dvi__members *m, double h)
   lanes *own = self->lanes;
   const double last_h = choose(own, m);
   if (last_h == 0) return;
-  set_out(own, self->system->n, m, h, last_h);
+  set_out(own, self->system->n, dvi__element_forces(self), m, h, last_h);
   iterate(own, m);
-  dvi__action_members_ends(&own->members);
-  advance(own, self->system->n, m, h);
+  dvi__action_members_ends(&own->members, memory_row(m, DVI__LAST_Y));
+  advance(own, (size_t)self->system->n, m, h);
 }

@@ -19,11 +19,27 @@ const char *dvi__solver_choice(int index)
   return index >= 0 && index < 6 ? name[index] : NULL;
 }
 
-/* After an iteration failed once, the next better one takes over for this many steps. */
-static const double newton_steps = 64;
+/* What is frozen, in the memory. */
+enum { FROZEN_H, FROZEN_ITERATIONS, FROZEN_POINT };
+
+/* A kept factor may cost this many iterations more than a new one: about as much as making one. */
+enum { MORE_ITERATIONS = 2 };
+
+/* After an iteration failed, the next better one takes over: for one step, and for twice as many each time it fails again, up to this many. A close encounter
+ * is over soon; a stiff system stays stiff. */
+static const double longest_wait = 64;
 
 /* A guess is made from at most 2^5 shorter steps. */
 enum { MOST_HALVINGS = 5 };
+
+/* One step's worth of arguments: where it starts and what is known of the step before. */
+typedef struct place {
+  double t, h;
+  const double *q, *p;
+  double last_h;        /* 0: there was none */
+  const double *last_Y; /* its unknowns; without a step before, a guess of the velocity [n] */
+  const double *last_g; /* its forces; NULL: not known */
+} place;
 
 typedef struct element {
   dvi__action *action;
@@ -31,7 +47,11 @@ typedef struct element {
   dvi__solver *solver;
   int choice; /* of the solver */
   double *Y;  /* the unknowns */
-  double *dq, *dp;
+  double *
+      frozen; /* in the memory: the step for which the Jacobian is frozen (0: for none), the iterations that it took when it was new, and the point */
+  int keeps;  /* the Jacobian is not frozen anew */
+  const place *forces_of; /* the place whose iteration starts from the last step's forces; NULL: from Y */
+  double *dq, *dq_low, *dp;
   /* Shorter steps that build a guess. */
   double *part_q, *part_p, *part_v, *part_Y, *offset;
 } element;
@@ -71,7 +91,11 @@ static void row_scale_of(void *of, double *scale)
 
 static void sweep_from_of(void *of, const double *Y)
 {
-  dvi__action_sweep_from(((const element *)of)->action, Y);
+  const element *own = of;
+  if (own->forces_of != NULL)
+    dvi__action_sweep_continue(own->action, own->forces_of->h / own->forces_of->last_h, own->forces_of->last_g);
+  else
+    dvi__action_sweep_from(own->action, Y);
 }
 
 static dvi_status sweep_of(void *of, double *change, double *largest)
@@ -86,7 +110,9 @@ static void sweep_to_of(void *of, double *Y)
 
 static dvi_status freeze_of(void *of, const double *Y)
 {
-  return dvi__decoupled_freeze(((const element *)of)->decoupled, Y);
+  const element *own = of;
+  if (!own->keeps) dvi__decoupled_point(own->decoupled, Y, own->frozen + FROZEN_POINT);
+  return dvi__decoupled_freeze(own->decoupled, own->frozen + FROZEN_POINT);
 }
 
 static void frozen_of(void *of, double *R)
@@ -97,17 +123,18 @@ static void frozen_of(void *of, double *R)
 static int allocate(dvi__stepper *self, element *own)
 {
   const size_t n = (size_t)self->system->n, unknowns = (size_t)dvi__action_unknowns(own->action);
-  self->memory_count = DVI__LAST_Y + unknowns;
-  self->memory = DVI_NEW(double, self->memory_count);
+  self->memory_count = dvi__element_forces(self) + (size_t)dvi__action_forces_count(own->action);
+  if (own->decoupled != NULL) self->memory_count += FROZEN_POINT + (size_t)dvi__decoupled_point_size(own->decoupled);
   own->Y = DVI_NEW(double, unknowns);
   own->dq = DVI_NEW(double, n);
+  own->dq_low = DVI_NEW(double, n);
   own->dp = DVI_NEW(double, n);
   own->part_q = DVI_NEW(double, n);
   own->part_p = DVI_NEW(double, n);
   own->part_v = DVI_NEW(double, n);
   own->part_Y = DVI_NEW(double, unknowns);
   own->offset = DVI_NEW(double, unknowns);
-  return self->memory && own->Y && own->dq && own->dp && own->part_q && own->part_p && own->part_v && own->part_Y && own->offset;
+  return own->Y && own->dq && own->dq_low && own->dp && own->part_q && own->part_p && own->part_v && own->part_Y && own->offset;
 }
 
 static int symmetric_rule(dvi_rule rule)
@@ -173,13 +200,13 @@ dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *spac
 void dvi__element_destroy(dvi__stepper *self)
 {
   element *own = self->own;
-  dvi__release(self->memory);
   if (own == NULL) return;
   dvi__solver_destroy(&own->solver);
   dvi__decoupled_destroy(&own->decoupled);
   dvi__action_destroy(&own->action);
   dvi__release(own->Y);
   dvi__release(own->dq);
+  dvi__release(own->dq_low);
   dvi__release(own->dp);
   dvi__release(own->part_q);
   dvi__release(own->part_p);
@@ -194,6 +221,11 @@ dvi__action *dvi__element_action(const dvi__stepper *self)
   return ((const element *)self->own)->action;
 }
 
+size_t dvi__element_forces(const dvi__stepper *self)
+{
+  return DVI__LAST_Y + (size_t)dvi__action_unknowns(dvi__element_action(self));
+}
+
 int dvi__element_solver(const dvi__stepper *self)
 {
   return ((const element *)self->own)->choice;
@@ -202,27 +234,11 @@ int dvi__element_solver(const dvi__stepper *self)
 void dvi__element_start(dvi__stepper *self, const double *v)
 {
   self->memory[DVI__LAST_H] = 0;
-  self->memory[DVI__NEWTON_STEPS] = 0;
-  self->memory[DVI__FULL_STEPS] = 0;
+  for (size_t k = DVI__NEWTON_STEPS; k < self->memory_count; k++) self->memory[k] = 0;
   memcpy(self->memory + DVI__LAST_Y, v, (size_t)self->system->n * sizeof(double));
 }
 
 /* ---- guesses ---- */
-
-/* One step's worth of arguments: where it starts and what is known of the step before. */
-typedef struct place {
-  double t, h;
-  const double *q, *p;
-  double last_h;        /* 0: there was none */
-  const double *last_Y; /* its unknowns; without a step before, a guess of the velocity [n] */
-} place;
-
-static double largest(int n, const double *x)
-{
-  double size = 0;
-  for (int i = 0; i < n; i++) size = fabs(x[i]) > size ? fabs(x[i]) : size;
-  return size;
-}
 
 /* The last path continued; without one, a straight line along the starting velocity. */
 static dvi_status guess(dvi__stepper *self, const place *at, double *Y)
@@ -243,9 +259,10 @@ static dvi_status guess(dvi__stepper *self, const place *at, double *Y)
 static dvi_status solve_by(dvi__stepper *self, const place *at, dvi__rung rung, double *Y, dvi__solve_report *report)
 {
   element *own = self->own;
-  const double size = largest(self->system->n, at->q);
+  const double size = dvi__largest((size_t)self->system->n, at->q);
   const int patient = own->choice == DVI__SOLVER_FIXED_POINT;
-  DVI_TRY(guess(self, at, Y));
+  own->forces_of = rung == DVI__FIXED_POINT && at->last_g != NULL ? at : NULL;
+  if (own->forces_of == NULL) DVI_TRY(guess(self, at, Y));
   const dvi_status status = dvi__solve(own->solver, rung, size, 1, patient, Y, report);
   if (status == DVI_OK && rung == DVI__FIXED_POINT) self->counters->fixed_points++;
   if (status == DVI_OK && rung == DVI__SIMPLIFIED) self->counters->simplified++;
@@ -262,6 +279,32 @@ static int is_due(const element *own, int choice, double *steps_without)
   return 0;
 }
 
+/* What an iteration's success or failure means for the next steps. */
+static void learn(dvi__stepper *self, dvi_status status, int steps, int wait)
+{
+  double *last = &self->memory[wait];
+  *last = status == DVI_OK ? 0 : *last == 0 ? 1 : fmin(2 * *last, longest_wait);
+  self->memory[steps] = *last;
+}
+
+/* With the factor of earlier steps as long as that is as good as a new one. All that this depends on is in the memory: a restored run finds the same
+ * digits. */
+static dvi_status solve_simplified(dvi__stepper *self, const place *at, double *Y, dvi__solve_report *report)
+{
+  element *own = self->own;
+  double *frozen = own->frozen = self->memory + dvi__element_forces(self) + dvi__action_forces_count(own->action);
+  own->keeps = frozen[FROZEN_H] == at->h;
+  dvi_status status = solve_by(self, at, DVI__SIMPLIFIED, Y, report);
+  if (status > 0 && own->keeps) {
+    own->keeps = 0;
+    status = solve_by(self, at, DVI__SIMPLIFIED, Y, report);
+  }
+  const int good = status == DVI_OK && (!own->keeps || report->iterations <= frozen[FROZEN_ITERATIONS] + MORE_ITERATIONS);
+  frozen[FROZEN_H] = good ? at->h : 0;
+  if (!own->keeps) frozen[FROZEN_ITERATIONS] = report->iterations;
+  return status;
+}
+
 /* Solve the element at its place, from a first guess, by the rung that the user or the measured contraction chooses. */
 static dvi_status solve_at(dvi__stepper *self, const place *at, double *Y, dvi__solve_report *report)
 {
@@ -269,13 +312,13 @@ static dvi_status solve_at(dvi__stepper *self, const place *at, double *Y, dvi__
   dvi__action_place(own->action, at->t, at->h, at->q, at->p);
   if (is_due(own, DVI__SOLVER_FIXED_POINT, &self->memory[DVI__NEWTON_STEPS])) {
     const dvi_status status = solve_by(self, at, DVI__FIXED_POINT, Y, report);
+    learn(self, status, DVI__NEWTON_STEPS, DVI__NEWTON_WAIT);
     if (status <= 0) return status;
-    self->memory[DVI__NEWTON_STEPS] = newton_steps;
   }
   if (own->decoupled != NULL && is_due(own, DVI__SOLVER_SIMPLIFIED, &self->memory[DVI__FULL_STEPS])) {
-    const dvi_status status = solve_by(self, at, DVI__SIMPLIFIED, Y, report);
+    const dvi_status status = solve_simplified(self, at, Y, report);
+    learn(self, status, DVI__FULL_STEPS, DVI__FULL_WAIT);
     if (status <= 0) return status;
-    self->memory[DVI__FULL_STEPS] = newton_steps;
   }
   return solve_by(self, at, own->choice == DVI__SOLVER_KINSOL ? DVI__KINSOL : DVI__NEWTON, Y, report);
 }
@@ -299,7 +342,7 @@ static dvi_status guess_by_parts(dvi__stepper *self, const place *whole, int par
 {
   element *own = self->own;
   const size_t bytes = (size_t)self->system->n * sizeof(double);
-  place at = {whole->t, whole->h / parts, own->part_q, own->part_p, 0, own->part_v};
+  place at = {whole->t, whole->h / parts, own->part_q, own->part_p, 0, own->part_v, NULL};
   if (whole->last_h != 0)
     dvi__action_path(own->action, whole->last_Y, whole->last_h, 1.0, NULL, own->part_v);
   else
@@ -309,8 +352,8 @@ static dvi_status guess_by_parts(dvi__stepper *self, const place *whole, int par
   for (int part = 0; part < parts; part++) {
     DVI_TRY(solve_at(self, &at, own->part_Y, report));
     sample(self, whole->q, part, parts, at.h);
-    dvi__action_ends(own->action, own->part_Y, own->dq, own->dp);
-    for (int i = 0; i < self->system->n; i++) own->part_q[i] += own->dq[i], own->part_p[i] += own->dp[i];
+    dvi__action_ends(own->action, own->part_Y, own->dq, own->dq_low, own->dp);
+    for (int i = 0; i < self->system->n; i++) own->part_q[i] += own->dq[i] + own->dq_low[i], own->part_p[i] += own->dp[i];
     memcpy(Y, own->part_Y, (size_t)dvi__action_unknowns(own->action) * sizeof(double));
     at.t += at.h;
     at.last_h = at.h;
@@ -325,7 +368,7 @@ static dvi_status guess_by_parts(dvi__stepper *self, const place *whole, int par
 static dvi_status rescue(dvi__stepper *self, const place *at, double *Y, dvi__solve_report *report)
 {
   element *own = self->own;
-  const double size = largest(self->system->n, at->q);
+  const double size = dvi__largest((size_t)self->system->n, at->q);
   dvi_status guessed = DVI_NOT_CONVERGED;
   for (int halvings = 1; halvings <= MOST_HALVINGS; halvings++) {
     guessed = guess_by_parts(self, at, 1 << halvings, Y, report);
@@ -349,13 +392,19 @@ static dvi_status rescue(dvi__stepper *self, const place *at, double *Y, dvi__so
 
 /* ---- the step ---- */
 
+static int finite_increments(const element *own, size_t n)
+{
+  return dvi__first_not_finite(n, own->dq) < 0 && dvi__first_not_finite(n, own->dq_low) < 0 &&
+         dvi__first_not_finite(n, own->dp) < 0;
+}
+
 static dvi_status advance(dvi__stepper *self, dvi__state *state, double h)
 {
   element *own = self->own;
   const int n = self->system->n;
-  if (dvi__first_not_finite((size_t)n, own->dq) >= 0 || dvi__first_not_finite((size_t)n, own->dp) >= 0)
-    return dvi__fail(DVI_NOT_FINITE, "the step's end is not finite");
+  if (!finite_increments(own, (size_t)n)) return dvi__fail(DVI_NOT_FINITE, "the step's end is not finite");
   dvi__add_compensated_all(n, state->q, state->q_carry, own->dq);
+  dvi__add_compensated_all(n, state->q, state->q_carry, own->dq_low);
   dvi__add_compensated_all(n, state->p, state->p_carry, own->dp);
   dvi__add_compensated(&state->t, &state->t_carry, h);
   self->memory[DVI__LAST_H] = h;
@@ -367,11 +416,11 @@ static dvi_status advance(dvi__stepper *self, dvi__state *state, double h)
 static dvi_status certify(dvi__stepper *self, const place *at, double *Y, dvi__solve_report *report)
 {
   element *own = self->own;
-  const double size = largest(self->system->n, at->q);
+  const double size = dvi__largest((size_t)self->system->n, at->q);
   const dvi_status status = dvi__certify(own->solver, size, Y, report);
   if (status != DVI_NOT_CONVERGED) return status;
   DVI_TRY(dvi__solve(own->solver, DVI__KINSOL, size, 0, 0, Y, report));
-  dvi__action_ends(own->action, Y, own->dq, own->dp);
+  dvi__action_ends(own->action, Y, own->dq, own->dq_low, own->dp);
   return DVI_OK;
 }
 
@@ -379,10 +428,16 @@ dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h)
 {
   element *own = self->own;
   dvi__solve_report report = {0};
-  const place at = {state->t, h, state->q, state->p, self->memory[DVI__LAST_H], self->memory + DVI__LAST_Y};
+  double *forces = self->memory + dvi__element_forces(self);
+  const int continues = self->memory[DVI__LAST_H] != 0 && dvi__action_can_sweep(own->action);
+  const place at = {
+      state->t, h, state->q, state->p, self->memory[DVI__LAST_H], self->memory + DVI__LAST_Y, continues ? forces : NULL};
   dvi_status status = solve_at(self, &at, own->Y, &report);
   if (status > 0) status = rescue(self, &at, own->Y, &report);
-  if (status == DVI_OK) dvi__action_ends(own->action, own->Y, own->dq, own->dp);
+  if (status == DVI_OK) {
+    dvi__action_ends(own->action, own->Y, own->dq, own->dq_low, own->dp);
+    dvi__action_forces(own->action, forces);
+  }
   if (status == DVI_OK && own->choice == DVI__SOLVER_CERTIFIED) status = certify(self, &at, own->Y, &report);
   return status == DVI_OK ? advance(self, state, h) : status;
 }
@@ -401,7 +456,7 @@ static void explain_solver(const element *own, dvi__text *text)
     dvi__text_add(text, "solver: %s, as asked; what it cannot solve goes on to KINSOL with line search\n", name);
     return;
   }
-  dvi__text_add(text, "solver: %s: fixed point while it contracts by 0.35 or better, else simplified Newton's method (%s), ", name,
+  dvi__text_add(text, "solver: %s: fixed point while it contracts by 0.45 or better, else simplified Newton's method (%s), ", name,
                 own->decoupled != NULL ? "decoupled systems of n unknowns" : "not in this space");
   dvi__text_add(text, "Newton's method, last KINSOL with line search%s\n",
                 own->choice == DVI__SOLVER_CERTIFIED ? "; KINSOL certifies each solution" : "");

@@ -24,9 +24,13 @@ const char *dvi__solver_choice(int index);
 /* Fill a stepper's order, symmetric, memory and own for this space; `solver` is one of the numbers above. */
 dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *space, int solver);
 
-/* The memory: length of the last step (0: none), steps for which fixed point iteration and simplified Newton's method are not tried again, the last
- * step's unknowns; before the first step, the start's velocity in their place. */
-enum { DVI__LAST_H, DVI__NEWTON_STEPS, DVI__FULL_STEPS, DVI__LAST_Y };
+/* The memory: length of the last step (0: none); steps for which fixed point iteration and simplified Newton's method are not tried again, and how
+ * many they were when the iteration last failed (0: it has not since it last succeeded); the last step's unknowns (before the first step, the
+ * start's velocity in their place) and its forces; what simplified Newton's method keeps frozen. */
+enum { DVI__LAST_H, DVI__NEWTON_STEPS, DVI__FULL_STEPS, DVI__NEWTON_WAIT, DVI__FULL_WAIT, DVI__LAST_Y };
+
+/* Where the forces stand in it. */
+size_t dvi__element_forces(const dvi__stepper *self);
 
 /* What it was made of. */
 dvi__action *dvi__element_action(const dvi__stepper *self);

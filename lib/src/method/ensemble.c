@@ -137,7 +137,7 @@ static dvi_status start(dvi_ensemble *e, double t, const double *q, const double
   e->allocations++;
   e->departure = (dvi__departure){t, q, second, by_velocity, numbers};
   dvi__ensemble_clear_failures(e);
-  dvi__pool_run(e->pool, e->block_count, start_block, e);
+  dvi__team_share(e->team, e->block_count, start_block, e);
   const dvi_status status = dvi__ensemble_verdict(e);
   if (status != DVI_OK) {
     dvi__release(numbers);

@@ -9,7 +9,7 @@ enum { THREADS_MOST = 1024, BLOCK_MOST = 65536 };
 
 /* Members side by side: as many as have room, with what an iteration needs beside them, in a cache of the first level, but enough to fill vectors
  * and few enough to make use of a thread. */
-enum { SIDE_BY_SIDE_LEAST = 8, SIDE_BY_SIDE_MOST = 64, NUMBERS_SIDE_BY_SIDE = 1536 };
+enum { SIDE_BY_SIDE_LEAST = 8, SIDE_BY_SIDE_MOST = 64, NUMBERS_SIDE_BY_SIDE = 2304 };
 
 static const dvi_system *system_of(const dvi_system *system, const dvi_ensemble_options *o, int member)
 {
@@ -73,7 +73,7 @@ static dvi_status make_integrator(dvi__worker *w, const dvi_system *system, cons
   return DVI_OK;
 }
 
-/* Where a block's next state stands. */
+/* What a block's step needs. */
 static dvi_status make_room(const dvi_ensemble *e, dvi__worker *w)
 {
   dvi__members *m = &w->members;
@@ -83,11 +83,13 @@ static dvi_status make_room(const dvi_ensemble *e, dvi__worker *w)
   if (w->point[0] == NULL || w->point[1] == NULL) return dvi__fail(DVI_NO_MEMORY, "ensemble: no memory");
   if (w->integrator->stepper.lanes == NULL) return DVI_OK;
   w->numbers = DVI_NEW(double, e->state_numbers *capacity);
+  w->ahead = DVI_NEW(long, capacity);
+  w->absence = DVI_NEW(int, capacity);
   m->left = DVI_NEW(char, capacity);
   m->residuals = DVI_NEW(long, capacity);
   m->gradients = DVI_NEW(long, capacity);
   m->fixed = DVI_NEW(long, capacity);
-  if (w->numbers && m->left && m->residuals && m->gradients && m->fixed) return DVI_OK;
+  if (w->numbers && w->ahead && w->absence && m->left && m->residuals && m->gradients && m->fixed) return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "ensemble: no memory for %d members side by side", e->capacity);
 }
 
@@ -96,6 +98,8 @@ static void clear_worker(dvi__worker *w)
   dvi_integrator_destroy(&w->integrator);
   dvi__release(w->scene);
   dvi__release(w->numbers);
+  dvi__release(w->ahead);
+  dvi__release(w->absence);
   dvi__release(w->members.left);
   dvi__release(w->members.residuals);
   dvi__release(w->members.gradients);
@@ -180,7 +184,7 @@ static dvi_status fill(dvi_ensemble *e, const dvi_system *system, const char *me
   measure_member(e);
   DVI_TRY(make_lanes(e, o));
   DVI_TRY(make_blocks(e, system, o));
-  return dvi__pool_create(e->threads, &e->pool);
+  return dvi__team_create(e->threads, &e->team);
 }
 
 dvi_status dvi_ensemble_create(const dvi_system *system, const char *method, const dvi_ensemble_options *options,
@@ -207,7 +211,7 @@ void dvi_ensemble_destroy(dvi_ensemble **ensemble)
 {
   if (ensemble == NULL || *ensemble == NULL) return;
   dvi_ensemble *e = *ensemble;
-  dvi__pool_destroy(&e->pool);
+  dvi__team_destroy(&e->team);
   for (int i = 0; i < e->threads && e->workers != NULL; i++) clear_worker(&e->workers[i]);
   dvi__release(e->workers);
   dvi__release(e->blocks);

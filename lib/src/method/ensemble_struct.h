@@ -6,7 +6,7 @@
 #define DVI_METHOD_ENSEMBLE_STRUCT_H
 #include <dvi/ensemble.h>
 
-#include "core/pool.h"
+#include "num/team.h"
 #include "method/integrator_struct.h"
 
 enum { DVI__MISFORTUNE_SENTENCE = 900 };
@@ -32,8 +32,10 @@ typedef struct dvi__worker {
   dvi_integrator *integrator;
   dvi_system
       *scene; /* the integrator's system, if systems differ: it takes the terms of the block at hand. NULL: they do not differ */
-  dvi__members members; /* a block's next state */
-  double *numbers;      /* its memory */
+  dvi__members members; /* a block's state */
+  double *numbers;      /* what it was before a step */
+  long *ahead;          /* [capacity] steps of this march that a member has taken when it last went alone */
+  int *absence;         /* [capacity] for how many it did so */
   double *point[2];     /* [n] a start's q and p or v */
   long steps;           /* taken by members; the integrator's own count is that of the member at hand */
   dvi__misfortune worst;
@@ -64,7 +66,7 @@ struct dvi_ensemble {
   int block_count;
   double *numbers; /* the memory of all blocks */
   dvi_status *status;
-  dvi__pool *pool;
+  dvi__team *team;
   dvi__worker *workers; /* [threads] */
   int started;
   long allocations;

@@ -19,8 +19,9 @@ static dvi_status allocate(dvi_integrator *I)
 {
   const size_t n = (size_t)I->system->n;
   double *at = I->numbers = DVI_NEW(double, 14 * n);
+  I->stepper.memory = DVI_NEW(double, I->stepper.memory_count);
   I->memory_before = DVI_NEW(double, I->stepper.memory_count);
-  if (I->numbers == NULL || I->memory_before == NULL)
+  if (I->numbers == NULL || I->stepper.memory == NULL || I->memory_before == NULL)
     return dvi__fail(DVI_NO_MEMORY, "integrator: no memory for %zu coordinates", n);
   lay_out(&I->now, &at, n);
   lay_out(&I->last, &at, n);
@@ -51,6 +52,7 @@ void dvi_integrator_destroy(dvi_integrator **integrator)
 {
   if (integrator == NULL || *integrator == NULL) return;
   dvi_integrator *I = *integrator;
+  dvi__release(I->stepper.memory);
   dvi__stepper_destroy(&I->stepper);
   dvi__evaluator_destroy(&I->evaluator);
   dvi__release(I->numbers);
@@ -146,6 +148,13 @@ static void accept(dvi_integrator *I, double h)
   I->counters.steps++;
 }
 
+static void exchange_memory(dvi_integrator *I)
+{
+  double *memory = I->stepper.memory;
+  I->stepper.memory = I->memory_before;
+  I->memory_before = memory;
+}
+
 /* `next` still holds what `last` was. */
 dvi_status dvi__integrator_undo(dvi_integrator *I, dvi_status status)
 {
@@ -155,14 +164,14 @@ dvi_status dvi__integrator_undo(dvi_integrator *I, dvi_status status)
   I->last = oldest;
   I->last_h = I->last_h_before;
   I->counters.steps--;
-  memcpy(I->stepper.memory, I->memory_before, I->stepper.memory_count * sizeof(double));
+  exchange_memory(I);
   I->counters.failed_steps++;
   return dvi__fail_in(status, "the step from t = %.9g is taken back", I->now.t);
 }
 
 static dvi_status refuse(dvi_integrator *I, double h, dvi_status status)
 {
-  memcpy(I->stepper.memory, I->memory_before, I->stepper.memory_count * sizeof(double));
+  exchange_memory(I);
   I->counters.failed_steps++;
   return dvi__fail_in(status, "%s: step %ld from t = %.9g with h = %.3g failed%s", I->stepper.method->name, I->counters.steps + 1,
                       I->now.t, h, status > 0 ? "; the state is unchanged, try a smaller step" : "; the state is unchanged");
@@ -176,17 +185,27 @@ dvi_status dvi__check_step(double t, double h)
   return isnormal(h) ? DVI_OK : dvi__fail(DVI_BAD_ARGUMENT, "step: h = %g is so small that 1/h cannot be computed", h);
 }
 
+/* From `now` and memory_before to `next` and the stepper's memory. */
+static dvi_status advance(dvi_integrator *I, double h)
+{
+  const dvi__method *method = I->stepper.method;
+  if (method->pass != NULL && method->pass(&I->stepper, &I->now, I->memory_before, &I->next, &h, 1) && isfinite(I->next.t))
+    return DVI_OK;
+  copy_state((size_t)I->system->n, &I->now, &I->next);
+  memcpy(I->stepper.memory, I->memory_before, I->stepper.memory_count * sizeof(double));
+  DVI_TRY(method->step(&I->stepper, &I->next, h));
+  return check_state(I);
+}
+
 dvi_status dvi_integrator_step(dvi_integrator *I, double h)
 {
   if (I == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "step: the integrator is NULL");
   if (!I->started) return dvi__fail(DVI_BAD_STATE, "step: the integrator has no state yet; call dvi_integrator_start first");
   DVI_TRY(dvi__check_step(I->now.t, h));
-  copy_state((size_t)I->system->n, &I->now, &I->next);
-  memcpy(I->memory_before, I->stepper.memory, I->stepper.memory_count * sizeof(double));
+  exchange_memory(I);
   const long before = dvi__allocation_count();
-  dvi_status status = I->stepper.method->step(&I->stepper, &I->next, h);
+  const dvi_status status = advance(I, h);
   I->counters.allocations += dvi__allocation_count() - before;
-  if (status == DVI_OK) status = check_state(I);
   if (status != DVI_OK) return refuse(I, h, status);
   accept(I, h);
   return DVI_OK;
@@ -217,6 +236,13 @@ const dvi_system *dvi_integrator_system(const dvi_integrator *integrator)
 int dvi_integrator_order(const dvi_integrator *integrator)
 {
   return integrator != NULL ? integrator->stepper.order : 0;
+}
+
+double dvi_integrator_traffic(const dvi_integrator *integrator)
+{
+  return integrator != NULL && integrator->stepper.method->traffic != NULL
+             ? integrator->stepper.method->traffic(&integrator->stepper, 1)
+             : 0;
 }
 
 const char *dvi_integrator_method(const dvi_integrator *integrator)

@@ -12,7 +12,7 @@ struct dvi_integrator {
    * step `last.p` holds the start's velocity. */
   dvi__state now, last, next;
   double *numbers;       /* the memory of all three */
-  double *memory_before; /* the stepper's memory before a step */
+  double *memory_before; /* the stepper's memory before the last step: the two change places with every step */
   double *v, *last_v;    /* [n] */
   int started;
   double last_h;        /* 0: no step was taken yet */

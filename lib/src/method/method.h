@@ -49,7 +49,8 @@ typedef struct dvi__stepper {
   char specification[DVI__SPECIFICATION_SIZE]; /* every key spelled out */
   int order;                                   /* what theory claims */
   int symmetric;                               /* a step of -h undoes a step of h */
-  /* What the method carries from step to step beside the state: saved in checkpoints, restored when a step fails. */
+  /* What the method carries from step to step beside the state: saved in checkpoints, restored when a step fails. The method sets the count at
+   * create; the memory is the driver's, who has two and exchanges them, and is there from the first start on. */
   double *memory;
   size_t memory_count;
   void *own;   /* the method's struct */
@@ -70,13 +71,19 @@ struct dvi__method {
   int takes_rest;       /* keys of others are collected in settings.rest */
   unsigned needs;       /* dvi__term bits that the system must declare */
   unsigned uses;        /* bits that it may declare */
-  /* Set order, symmetric, memory, own. On failure destroy is called. */
+  /* Set order, symmetric, memory_count, own. On failure destroy is called. */
   dvi_status (*create)(dvi__stepper *self);
   void (*destroy)(dvi__stepper *self);
   /* Forget earlier steps: the state is new, and its velocity is v [n]. */
   void (*start)(dvi__stepper *self, const double *v);
   /* Advance the state. On failure the driver throws state and memory away. */
   dvi_status (*step)(dvi__stepper *self, dvi__state *state, double h);
+  /* The same for `count` steps at once, out of place: from `now` and the memory `before` to `next` and the stepper's memory. 1 if all of next's
+   * numbers are written and found finite; 0 if that cannot be, or a step fails: then the driver takes it by `step`, which is to give the same bits,
+   * and says what fails. NULL: no such thing. */
+  int (*pass)(dvi__stepper *self, const dvi__state *now, const double *before, dvi__state *next, const double *h, int count);
+  /* Bytes that this moves (dvi_integrator_traffic); 0: there is no pass with these settings. NULL: not known. */
+  double (*traffic)(const dvi__stepper *self, int count);
   /* q [n] and v [n] at tau in [0,1] of the last step, which started at q0 [n] with length h. NULL: Hermite's cubic. */
   void (*path)(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v);
   void (*explain)(const dvi__stepper *self, dvi__text *text);

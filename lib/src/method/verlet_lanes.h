@@ -1,10 +1,8 @@
-/* Verlet's step for members of an ensemble side by side, and the layout of its memory. */
+/* Verlet's step for members of an ensemble side by side. Its memory: the gradient at the end of a step, which is that at the start of the next,
+ * then a flag. */
 #ifndef DVI_METHOD_VERLET_LANES_H
 #define DVI_METHOD_VERLET_LANES_H
 #include "method/method.h"
-
-/* The forces at the end of a step are those at the start of the next: memory holds a flag, then the forces. */
-enum { DVI__FORCES_KNOWN, DVI__FORCES };
 
 dvi_status dvi__verlet_prepare_lanes(dvi__stepper *self, int capacity);
 void dvi__verlet_clear_lanes(dvi__stepper *self);

@@ -11,3 +11,8 @@ ptrdiff_t dvi__first_not_finite(size_t count, const double *x)
   while (isfinite(x[i])) i++;
   return (ptrdiff_t)i;
 }
+
+double dvi__largest(size_t count, const double *x)
+{
+  return dvi__lanes_largest(count, x);
+}

@@ -1,17 +1,4 @@
-/* The loops of lanes.c for vectors of WIDTH numbers; it includes this once for each width.
- *
- * GCC and clang lower a vector that the target lacks to smaller ones, lane by lane: the same operations. Vectors are handed on by pointers: as
- * arguments they would have another calling convention on every target. */
-
-typedef double NAME(vector) __attribute__((vector_size(WIDTH * sizeof(double))));
-typedef int64_t NAME(mask) __attribute__((vector_size(WIDTH * sizeof(double))));
-
-/* largest <- max(largest, |x|), lane by lane; NaN is not seen. */
-INLINE void NAME(larger)(NAME(vector) * largest, const NAME(vector) * x)
-{
-  const NAME(mask) magnitude = (NAME(mask)) * x & INT64_MAX, take = (NAME(mask))((NAME(vector))magnitude > *largest);
-  *largest = (NAME(vector))((take & magnitude) | (~take & (NAME(mask)) * largest));
-}
+/* The loops of lanes.c for vectors of WIDTH numbers, after vector_width.h; it includes this once for each width. */
 
 INLINE double NAME(largest_of)(const NAME(vector) * x)
 {
@@ -20,30 +7,23 @@ INLINE double NAME(largest_of)(const NAME(vector) * x)
   return largest;
 }
 
-INLINE void NAME(load)(const double *x, NAME(vector) * loaded)
+/* sum <- sum + matrix_k x_k in WIDTH lanes. */
+INLINE void NAME(add_column)(int lanes, const double *matrix, const double *x, int k, NAME(vector) * sum)
 {
-  memcpy(loaded, x, sizeof *loaded);
+  NAME(vector) column;
+  NAME(load)(matrix + (size_t)k * (size_t)lanes, &column);
+  *sum += column * x[k];
 }
 
-/* The first `count` lanes. */
-INLINE void NAME(store)(double *out, const NAME(vector) * x, int count)
-{
-  if (count >= WIDTH) {
-    memcpy(out, x, sizeof *x);
-    return;
-  }
-  for (int i = 0; i < count; i++) out[i] = (*x)[i];
-}
-
-/* WIDTH lanes of one row of a product. */
+/* WIDTH lanes of one row of a product; long ones as four sums, which do not wait for each other. */
 INLINE void NAME(row)(int terms, int lanes, const double *matrix, const double *x, NAME(vector) * out)
 {
-  NAME(vector) sum = {0}, column;
-  for (int k = 0; k < terms; k++) {
-    NAME(load)(matrix + (size_t)k * (size_t)lanes, &column);
-    sum += column * x[k];
-  }
-  *out = sum;
+  NAME(vector) sum[4] = {{0}, {0}, {0}, {0}};
+  int k = 0;
+  for (; terms >= 8 && k + 4 <= terms; k += 4)
+    for (int j = 0; j < 4; j++) NAME(add_column)(lanes, matrix, x, k + j, &sum[j]);
+  for (; k < terms; k++) NAME(add_column)(lanes, matrix, x, k, &sum[0]);
+  *out = (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
 INLINE void NAME(product)(int n, int terms, int lanes, int width, const double *restrict matrix, const double *restrict x,
@@ -64,25 +44,68 @@ INLINE void NAME(weigh)(int n, const int stages, const double *restrict weight, 
     for (int j = 0; j < stages; j++) force[j] *= weight[j];
 }
 
-INLINE void NAME(sweep)(dvi__sweep *s, const int stages, const int lanes)
+/* One row of a sweep: from its sums of forces to its new offsets and places. */
+INLINE void NAME(place)(const dvi__sweep *s, size_t i, int b, const NAME(vector) * c, const NAME(vector) * sum, double *Z,
+                        double *Q, NAME(vector) * change, NAME(vector) * largest)
 {
-  const double *restrict matrix = s->matrix, *restrict node = s->node, *restrict start = s->start, *restrict factor = s->factor;
-  const double *restrict origin = s->origin, *restrict g = s->force;
-  double *restrict Z = s->Z, *restrict Q = s->Q;
+  NAME(vector) before;
+  NAME(load)(Z, &before);
+  const NAME(vector) next = s->start[i] * *c + (s->factor[i] * *sum + s->low[i] * *c);
+  const NAME(vector) moved = before - next, at = s->origin[i] + next;
+  NAME(larger)(change, &moved);
+  NAME(larger)(largest, &next);
+  NAME(store)(Z, &next, WIDTH);
+  NAME(store)(Q, &at, s->stages - b);
+}
+
+/* Z holds the sums of forces. */
+INLINE void NAME(begin)(const dvi__sweep *s)
+{
   NAME(vector) change = {0}, largest = {0};
-  NAME(weigh)(s->n, stages, s->weight, s->force);
-  for (size_t i = 0, n = (size_t)s->n; i < n; i++, g += stages, Z += lanes, Q += stages)
-    for (int b = 0; b < lanes; b += WIDTH) {
-      NAME(vector) sum, c, before;
-      NAME(row)(stages, lanes, matrix + b, g, &sum);
-      NAME(load)(node + b, &c);
-      NAME(load)(Z + b, &before);
-      const NAME(vector) next = start[i] * c + factor[i] * sum, moved = before - next, place = origin[i] + next;
-      NAME(larger)(&change, &moved);
-      NAME(larger)(&largest, &next);
-      NAME(store)(Z + b, &next, WIDTH);
-      NAME(store)(Q + b, &place, stages - b);
+  for (size_t i = 0; i < (size_t)s->n; i++)
+    for (int b = 0; b < s->lanes; b += WIDTH) {
+      double *Z = s->Z + i * (size_t)s->lanes + b;
+      NAME(vector) sum, c;
+      NAME(load)(Z, &sum);
+      NAME(load)(s->node + b, &c);
+      NAME(place)(s, i, b, &c, &sum, Z, s->Q + i * (size_t)s->stages + b, &change, &largest);
+    }
+}
+
+INLINE void NAME(sweep)(dvi__sweep *s)
+{
+  const size_t stages = (size_t)s->stages, lanes = (size_t)s->lanes;
+  NAME(vector) change = {0}, largest = {0};
+  NAME(weigh)(s->n, s->stages, s->weight, s->force);
+  for (size_t i = 0; i < (size_t)s->n; i++)
+    for (int b = 0; b < s->lanes; b += WIDTH) {
+      NAME(vector) sum, c;
+      NAME(row)(s->stages, s->lanes, s->matrix + b, s->force + i * stages, &sum);
+      NAME(load)(s->node + b, &c);
+      NAME(place)(s, i, b, &c, &sum, s->Z + i * lanes + (size_t)b, s->Q + i * stages + (size_t)b, &change, &largest);
     }
   s->change = NAME(largest_of)(&change);
   s->largest = NAME(largest_of)(&largest);
+}
+
+/* The same for eight stages: the matrix' columns stay in registers while the coordinates pass by. */
+INLINE void NAME(sweep_eight)(dvi__sweep *sweep)
+{
+  const dvi__sweep own = *sweep, *s = &own; /* nobody else writes here */
+  NAME(vector) change = {0}, largest = {0};
+  NAME(weigh)(s->n, 8, s->weight, s->force);
+  for (int b = 0; b < 8; b += WIDTH) {
+    NAME(vector) column[8], c;
+    for (int j = 0; j < 8; j++) NAME(load)(s->matrix + 8 * j + b, &column[j]);
+    NAME(load)(s->node + b, &c);
+    for (size_t i = 0; i < (size_t)s->n; i++) {
+      const double *g = s->force + 8 * i;
+      NAME(vector) four[4];
+      for (int j = 0; j < 4; j++) four[j] = column[j] * g[j] + column[j + 4] * g[j + 4];
+      const NAME(vector) sum = (four[0] + four[1]) + (four[2] + four[3]);
+      NAME(place)(s, i, b, &c, &sum, s->Z + 8 * i + b, s->Q + 8 * i + b, &change, &largest);
+    }
+  }
+  sweep->change = NAME(largest_of)(&change);
+  sweep->largest = NAME(largest_of)(&largest);
 }

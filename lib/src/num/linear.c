@@ -97,29 +97,43 @@ static void invert_scales(int n, double *scale)
   for (int i = 0; i < n; i++) scale[i] = scale[i] > 0 ? ldexp(1.0, ilogb(scale[i]) < -1023 ? 1023 : -ilogb(scale[i])) : 1.0;
 }
 
+static double larger(double a, double b)
+{
+  return a > b ? a : b;
+}
+
+static double magnitude(int parts, const double *entry)
+{
+  return parts == 1 ? fabs(entry[0]) : larger(fabs(entry[0]), fabs(entry[1]));
+}
+
+static void scale_entry(int parts, double scale, double *entry)
+{
+  entry[0] *= scale;
+  if (parts == 2) entry[1] *= scale;
+}
+
 /* Rows of a stage system differ by the ratio of the masses, columns by the units of coordinates and momenta; neither says anything
  * about its condition. Powers of two round nothing. */
 static void equilibrate(dvi__linear *linear, const double *values)
 {
   const dvi__pattern *pattern = linear->pattern;
-  const int n = pattern->columns;
-  const ptrdiff_t parts = linear->parts;
-  double *rows = linear->row_scale, *columns = linear->column_scale;
+  const int n = pattern->columns, parts = linear->parts, *row = pattern->row;
+  double *rows = linear->row_scale, *columns = linear->column_scale, *scaled = linear->scaled;
   memset(rows, 0, (size_t)n * sizeof(double));
-  memset(columns, 0, (size_t)n * sizeof(double));
-  for (ptrdiff_t e = 0; e < parts * dvi__pattern_entries(pattern); e++) {
-    double *row = rows + pattern->row[e / parts];
-    *row = fmax(*row, fabs(values[e]));
-  }
+  for (ptrdiff_t e = 0; e < pattern->start[n]; e++) rows[row[e]] = larger(rows[row[e]], magnitude(parts, values + parts * e));
   invert_scales(n, rows);
-  for (int j = 0; j < n; j++)
-    for (ptrdiff_t e = parts * pattern->start[j]; e < parts * pattern->start[j + 1]; e++) {
-      linear->scaled[e] = rows[pattern->row[e / parts]] * values[e];
-      columns[j] = fmax(columns[j], fabs(linear->scaled[e]));
+  memcpy(scaled, values, (size_t)parts * (size_t)pattern->start[n] * sizeof(double));
+  for (int j = 0; j < n; j++) {
+    columns[j] = 0;
+    for (ptrdiff_t e = pattern->start[j]; e < pattern->start[j + 1]; e++) {
+      scale_entry(parts, rows[row[e]], scaled + parts * e);
+      columns[j] = larger(columns[j], magnitude(parts, scaled + parts * e));
     }
+  }
   invert_scales(n, columns);
   for (int j = 0; j < n; j++)
-    for (ptrdiff_t e = parts * pattern->start[j]; e < parts * pattern->start[j + 1]; e++) linear->scaled[e] *= columns[j];
+    for (ptrdiff_t e = pattern->start[j]; e < pattern->start[j + 1]; e++) scale_entry(parts, columns[j], scaled + parts * e);
 }
 
 dvi_status dvi__linear_factor(dvi__linear *linear, const double *values)
@@ -131,11 +145,16 @@ dvi_status dvi__linear_factor(dvi__linear *linear, const double *values)
   return linear->operations->refactor(linear->factor, linear->pattern, linear->scaled);
 }
 
+static void scale(int n, int parts, const double *by, double *b)
+{
+  for (int i = 0; i < n; i++) scale_entry(parts, by[i], b + (ptrdiff_t)parts * i);
+}
+
 void dvi__linear_solve(dvi__linear *linear, double *b)
 {
-  const ptrdiff_t parts = linear->parts, numbers = parts * linear->pattern->columns;
+  const int n = linear->pattern->columns;
   if (linear->counters != NULL) linear->counters->solves++;
-  for (ptrdiff_t i = 0; i < numbers; i++) b[i] *= linear->row_scale[i / parts];
+  scale(n, linear->parts, linear->row_scale, b);
   linear->operations->solve(linear->factor, linear->pattern, b);
-  for (ptrdiff_t j = 0; j < numbers; j++) b[j] *= linear->column_scale[j / parts];
+  scale(n, linear->parts, linear->column_scale, b);
 }

@@ -7,15 +7,19 @@
 #include "num/width.h"
 
 #define WIDTH 1
+#include "num/vector_width.h"
 #include "num/members_width.h"
 #undef WIDTH
 #define WIDTH 2
+#include "num/vector_width.h"
 #include "num/members_width.h"
 #undef WIDTH
 #define WIDTH 4
+#include "num/vector_width.h"
 #include "num/members_width.h"
 #undef WIDTH
 #define WIDTH 8
+#include "num/vector_width.h"
 #include "num/members_width.h"
 #undef WIDTH
 
@@ -42,13 +46,48 @@ SWEEP(2)
 SWEEP(4)
 SWEEP(8)
 
+/* As in lanes.c. */
+INLINE void split(int n, int width, const double *factor, const double *restrict p0, double *restrict start, double *restrict low)
+{
+  for (int i = 0; i < n; i++, p0 += width, start += width, low += width)
+    for (int k = 0; k < width; k++) {
+      start[k] = factor[i] * p0[k];
+      low[k] = __builtin_fma(factor[i], p0[k], -start[k]);
+    }
+}
+
+/* As in lanes.c, from the sums on. */
+INLINE void finish(int width, double factor, const double *restrict sum, const double *restrict p0, double *restrict moved,
+                   double *restrict low)
+{
+  for (int k = 0; k < width; k++) {
+    const double half = 0.5 * sum[k], middle = p0[k] + half, back = middle - p0[k];
+    const double rest = (p0[k] - (middle - back)) + (half - back);
+    moved[k] = factor * middle;
+    low[k] = __builtin_fma(factor, middle, -moved[k]) + factor * (rest + low[k]);
+  }
+}
+
+#define ENDS(suffix)                                                                                           \
+  INLINE void ends_by##suffix(const dvi__members_ends *e)                                                      \
+  {                                                                                                            \
+    const size_t row = (size_t)e->width;                                                                       \
+    ALL(suffix, sums, e);                                                                                      \
+    for (size_t i = 0; i < (size_t)e->n; i++)                                                                  \
+      finish(e->width, e->factor[i], e->sum + i * row, e->p0 + i * row, e->moved + i * row, e->low + i * row); \
+  }
+ENDS(2)
+ENDS(4)
+ENDS(8)
+
 /* ---- instruction sets ---- */
 
 typedef struct level {
   void (*sweep)(const dvi__members_sweep *s);
+  void (*split)(int n, int width, const double *factor, const double *p0, double *start, double *low);
+  void (*begin)(const dvi__members_sweep *s);
+  void (*ends)(const dvi__members_ends *e);
   void (*product)(int n, int terms, int lanes, int rows, const double *matrix, int width, const double *x, double *out);
-  void (*add)(size_t count, double factor, const double *x, double *sum, double *carry);
-  void (*drift)(size_t count, double h, double mass, const double *p, double *q, double *q_carry);
 } level;
 
 #define LEVEL(suffix, target, width)                                                                                             \
@@ -56,51 +95,65 @@ typedef struct level {
   {                                                                                                                              \
     sweep_by##width(s);                                                                                                          \
   }                                                                                                                              \
+  target static void split_##suffix(int n, int members, const double *factor, const double *p0, double *start, double *low)      \
+  {                                                                                                                              \
+    split(n, members, factor, p0, start, low);                                                                                   \
+  }                                                                                                                              \
+  target static void begin_##suffix(const dvi__members_sweep *s)                                                                 \
+  {                                                                                                                              \
+    ALL(width, begin, s);                                                                                                        \
+  }                                                                                                                              \
+  target static void ends_##suffix(const dvi__members_ends *e)                                                                   \
+  {                                                                                                                              \
+    ends_by##width(e);                                                                                                           \
+  }                                                                                                                              \
   target static void product_##suffix(int n, int terms, int lanes, int rows, const double *matrix, int members, const double *x, \
                                       double *out)                                                                               \
   {                                                                                                                              \
     ALL(width, product, n, terms, lanes, rows, matrix, members, x, out);                                                         \
-  }                                                                                                                              \
-  target static void add_##suffix(size_t count, double factor, const double *x, double *sum, double *carry)                      \
-  {                                                                                                                              \
-    ALL(width, add, count, factor, x, sum, carry);                                                                               \
-  }                                                                                                                              \
-  target static void drift_##suffix(size_t count, double h, double mass, const double *p, double *q, double *q_carry)            \
-  {                                                                                                                              \
-    ALL(width, drift, count, h, mass, p, q, q_carry);                                                                            \
   }
 
 LEVEL(baseline, , 2)
 #ifdef __x86_64__
-LEVEL(avx2, __attribute__((target("avx2"))), 4)
-LEVEL(avx512, __attribute__((target("avx512f,avx512dq,avx512vl"))), 8)
+LEVEL(avx2, __attribute__((target("avx2,fma"))), 4)
+LEVEL(avx512, __attribute__((target("fma,avx512f,avx512dq,avx512vl"))), 8)
 #endif
 
 /* In the order of num/lanes.c. */
 static const level levels[] = {
-    {sweep_baseline, product_baseline, add_baseline, drift_baseline},
+    {sweep_baseline, split_baseline, begin_baseline, ends_baseline, product_baseline},
 #ifdef __x86_64__
-    {sweep_avx2, product_avx2, add_avx2, drift_avx2},
-    {sweep_avx512, product_avx512, add_avx512, drift_avx512},
+    {sweep_avx2, split_avx2, begin_avx2, ends_avx2, product_avx2},
+    {sweep_avx512, split_avx512, begin_avx512, ends_avx512, product_avx512},
 #endif
 };
 
-void dvi__members_sweep_once(dvi__members_sweep *s)
+static const level *now(void)
 {
-  levels[dvi__lanes_level()].sweep(s);
+  return &levels[dvi__lanes_level()];
+}
+
+void dvi__members_sweep_once(const dvi__members_sweep *s)
+{
+  now()->sweep(s);
+}
+
+void dvi__members_split(int n, int width, const double *factor, const double *p0, double *start, double *low)
+{
+  now()->split(n, width, factor, p0, start, low);
+}
+
+void dvi__members_begin(const dvi__members_sweep *s)
+{
+  now()->begin(s);
+}
+
+void dvi__members_ends_of(const dvi__members_ends *ends)
+{
+  now()->ends(ends);
 }
 
 void dvi__members_product(int n, int terms, int lanes, int rows, const double *matrix, int width, const double *x, double *out)
 {
-  levels[dvi__lanes_level()].product(n, terms, lanes, rows, matrix, width, x, out);
-}
-
-void dvi__members_add(size_t count, double factor, const double *x, double *sum, double *carry)
-{
-  levels[dvi__lanes_level()].add(count, factor, x, sum, carry);
-}
-
-void dvi__members_drift(size_t count, double h, double mass, const double *p, double *q, double *q_carry)
-{
-  levels[dvi__lanes_level()].drift(count, h, mass, p, q, q_carry);
+  now()->product(n, terms, lanes, rows, matrix, width, x, out);
 }

@@ -1,35 +1,35 @@
-/* The loops of members.c for vectors of WIDTH numbers; it includes this once for each width. The last few of a row are done one by one, by the
- * same functions at WIDTH 1. As in lanes_width.h, vectors are handed on by pointers. */
+/* The loops of members.c for vectors of WIDTH numbers, after vector_width.h; it includes this once for each width. The last few of a row are done
+ * one by one, by the same functions at WIDTH 1. */
 
-typedef double NAME(vector) __attribute__((vector_size(WIDTH * sizeof(double))));
-typedef int64_t NAME(mask) __attribute__((vector_size(WIDTH * sizeof(double))));
-
-INLINE void NAME(load)(const double *x, NAME(vector) * loaded)
+/* sum <- sum + matrix_k x_k, with x_k and x_(k+1) `width` apart. */
+INLINE void NAME(add_term)(int lanes, const double *matrix, int width, const double *x, int k, NAME(vector) * sum)
 {
-  memcpy(loaded, x, sizeof *loaded);
+  NAME(vector) value;
+  NAME(load)(x + (size_t)k * (size_t)width, &value);
+  *sum += value * matrix[(size_t)k * (size_t)lanes];
 }
 
-INLINE void NAME(store)(double *out, const NAME(vector) * x)
-{
-  memcpy(out, x, sizeof *x);
-}
-
-/* largest <- max(largest, |x|), lane by lane; NaN is not seen. */
-INLINE void NAME(larger)(NAME(vector) * largest, const NAME(vector) * x)
-{
-  const NAME(mask) magnitude = (NAME(mask)) * x & INT64_MAX, take = (NAME(mask))((NAME(vector))magnitude > *largest);
-  *largest = (NAME(vector))((take & magnitude) | (~take & (NAME(mask)) * largest));
-}
-
-/* sum_k matrix_k x_k, with x_k and x_(k+1) `width` apart. */
+/* sum_k matrix_k x_k; long ones as four sums. */
 INLINE void NAME(row)(int terms, int lanes, const double *matrix, int width, const double *x, NAME(vector) * out)
 {
-  NAME(vector) sum = {0}, value;
-  for (int k = 0; k < terms; k++) {
-    NAME(load)(x + (size_t)k * (size_t)width, &value);
-    sum += value * matrix[(size_t)k * (size_t)lanes];
+  NAME(vector) sum[4] = {{0}, {0}, {0}, {0}};
+  int k = 0;
+  for (; terms >= 8 && k + 4 <= terms; k += 4)
+    for (int j = 0; j < 4; j++) NAME(add_term)(lanes, matrix, width, x, k + j, &sum[j]);
+  for (; k < terms; k++) NAME(add_term)(lanes, matrix, width, x, k, &sum[0]);
+  *out = terms >= 8 ? (sum[0] + sum[1]) + (sum[2] + sum[3]) : sum[0];
+}
+
+/* Eight terms of a sweep: as in lanes_width.h nothing is added to zero, which would take the sign from one. */
+INLINE void NAME(row_of_eight)(const double *matrix, int width, const double *x, NAME(vector) * out)
+{
+  NAME(vector) four[4];
+  for (int j = 0; j < 4; j++) {
+    NAME(load)(x + (size_t)j * (size_t)width, &four[j]);
+    four[j] *= matrix[8 * j];
+    NAME(add_term)(8, matrix, width, x, j + 4, &four[j]);
   }
-  *out = sum;
+  *out = (four[0] + four[1]) + (four[2] + four[3]);
 }
 
 /* WIDTH members, from member m on, of coordinate i. */
@@ -38,45 +38,8 @@ INLINE void NAME(product_at)(int terms, int lanes, int rows, const double *matri
   for (int j = 0; j < rows; j++) {
     NAME(vector) sum;
     NAME(row)(terms, lanes, matrix + j, width, x, &sum);
-    NAME(store)(out + (size_t)j * (size_t)width, &sum);
+    NAME(store)(out + (size_t)j * (size_t)width, &sum, WIDTH);
   }
-}
-
-/* WIDTH members of one coordinate: all forces are weighed, then the stages move. */
-INLINE void NAME(sweep_at)(const dvi__members_sweep *s, const int stages, size_t i, int m, NAME(vector) * change,
-                           NAME(vector) * largest)
-{
-  const size_t width = (size_t)s->width, at = i * (size_t)stages * width + (size_t)m;
-  double *restrict force = s->force + at, *restrict Z = s->Z + at, *restrict Q = s->Q + at;
-  NAME(vector) start, origin, value;
-  NAME(load)(s->start + i * width + m, &start);
-  NAME(load)(s->origin + i * width + m, &origin);
-  for (size_t j = 0; j < (size_t)stages; j++) {
-    NAME(load)(force + j * width, &value);
-    value = value * s->weight[j];
-    NAME(store)(force + j * width, &value);
-  }
-  for (size_t j = 0; j < (size_t)stages; j++) {
-    NAME(vector) sum, before;
-    NAME(row)(stages, s->lanes, s->matrix + j, s->width, force, &sum);
-    NAME(load)(Z + j * width, &before);
-    const NAME(vector) next = start * s->node[j] + s->factor[i] * sum, moved = before - next, place = origin + next;
-    NAME(larger)(change, &moved);
-    NAME(larger)(largest, &next);
-    NAME(store)(Z + j * width, &next);
-    NAME(store)(Q + j * width, &place);
-  }
-}
-
-INLINE int NAME(sweep)(const dvi__members_sweep *s, const int stages, int m)
-{
-  for (; m + WIDTH <= s->width; m += WIDTH) {
-    NAME(vector) change = {0}, largest = {0};
-    for (size_t i = 0; i < (size_t)s->n; i++) NAME(sweep_at)(s, stages, i, m, &change, &largest);
-    NAME(store)(s->change + m, &change);
-    NAME(store)(s->largest + m, &largest);
-  }
-  return m;
 }
 
 INLINE int NAME(product)(int n, int terms, int lanes, int rows, const double *matrix, int width, const double *x, double *out,
@@ -88,38 +51,106 @@ INLINE int NAME(product)(int n, int terms, int lanes, int rows, const double *ma
   return m;
 }
 
-/* As dvi__add_compensated. */
-INLINE void NAME(add_at)(double *sum, double *carry, const NAME(vector) * term)
+/* ---- sweeps ---- */
+
+/* What WIDTH members have at one coordinate. */
+typedef struct NAME(base) {
+  NAME(vector) start, low, origin;
+  double factor;
+} NAME(base);
+
+INLINE void NAME(load_base)(const dvi__members_sweep *s, size_t i, int m, NAME(base) * base)
 {
-  NAME(vector) before, rest;
-  NAME(load)(sum, &before);
-  NAME(load)(carry, &rest);
-  const NAME(vector) wanted = *term - rest, next = before + wanted;
-  rest = (next - before) - wanted;
-  NAME(store)(carry, &rest);
-  NAME(store)(sum, &next);
+  const size_t at = i * (size_t)s->width + (size_t)m;
+  NAME(load)(s->start + at, &base->start);
+  NAME(load)(s->low + at, &base->low);
+  NAME(load)(s->origin + at, &base->origin);
+  base->factor = s->factor[i];
 }
 
-INLINE size_t NAME(add)(size_t count, double factor, const double *restrict x, double *restrict sum, double *restrict carry,
-                        size_t k)
+/* One stage: from its sum of forces to its offset and place. */
+INLINE void NAME(place)(const NAME(base) * base, double node, const NAME(vector) * sum, NAME(vector) * next, double *Z, double *Q)
 {
-  for (; k + WIDTH <= count; k += WIDTH) {
-    NAME(vector) term;
-    NAME(load)(x + k, &term);
-    term = factor * term;
-    NAME(add_at)(sum + k, carry + k, &term);
-  }
-  return k;
+  *next = base->start * node + (base->factor * *sum + base->low * node);
+  const NAME(vector) place = base->origin + *next;
+  NAME(store)(Z, next, WIDTH);
+  NAME(store)(Q, &place, WIDTH);
 }
 
-INLINE size_t NAME(drift)(size_t count, double h, double mass, const double *restrict p, double *restrict q,
-                          double *restrict q_carry, size_t k)
+/* Z holds the sums of forces. */
+INLINE int NAME(begin)(const dvi__members_sweep *s, int m)
 {
-  for (; k + WIDTH <= count; k += WIDTH) {
-    NAME(vector) term;
-    NAME(load)(p + k, &term);
-    term = term / mass * h;
-    NAME(add_at)(q + k, q_carry + k, &term);
+  const size_t width = (size_t)s->width, stages = (size_t)s->stages;
+  for (; m + WIDTH <= s->width; m += WIDTH)
+    for (size_t i = 0; i < (size_t)s->n; i++) {
+      NAME(base) base;
+      NAME(load_base)(s, i, m, &base);
+      for (size_t j = 0; j < stages; j++) {
+        const size_t at = (i * stages + j) * width + (size_t)m;
+        NAME(vector) sum, next;
+        NAME(load)(s->Z + at, &sum);
+        NAME(place)(&base, s->node[j], &sum, &next, s->Z + at, s->Q + at);
+      }
+    }
+  return m;
+}
+
+/* WIDTH members of one coordinate: all forces are weighed, then the stages move. */
+INLINE void NAME(sweep_at)(const dvi__members_sweep *s, const int stages, size_t i, int m, NAME(vector) * change,
+                           NAME(vector) * largest)
+{
+  const size_t width = (size_t)s->width, at = i * (size_t)stages * width + (size_t)m;
+  double *restrict force = s->force + at, *restrict Z = s->Z + at, *restrict Q = s->Q + at;
+  NAME(base) base;
+  NAME(load_base)(s, i, m, &base);
+  for (size_t j = 0; j < (size_t)stages; j++) {
+    NAME(vector) value;
+    NAME(load)(force + j * width, &value);
+    value = value * s->weight[j];
+    NAME(store)(force + j * width, &value, WIDTH);
   }
-  return k;
+  for (size_t j = 0; j < (size_t)stages; j++) {
+    NAME(vector) sum, before, next;
+    if (stages == 8)
+      NAME(row_of_eight)(s->matrix + j, s->width, force, &sum);
+    else
+      NAME(row)(stages, s->lanes, s->matrix + j, s->width, force, &sum);
+    NAME(load)(Z + j * width, &before);
+    NAME(place)(&base, s->node[j], &sum, &next, Z + j * width, Q + j * width);
+    const NAME(vector) moved = before - next;
+    NAME(larger)(change, &moved);
+    NAME(larger)(largest, &next);
+  }
+}
+
+INLINE int NAME(sweep)(const dvi__members_sweep *s, const int stages, int m)
+{
+  for (; m + WIDTH <= s->width; m += WIDTH) {
+    NAME(vector) change = {0}, largest = {0};
+    for (size_t i = 0; i < (size_t)s->n; i++) NAME(sweep_at)(s, stages, i, m, &change, &largest);
+    NAME(store)(s->change + m, &change, WIDTH);
+    NAME(store)(s->largest + m, &largest, WIDTH);
+  }
+  return m;
+}
+
+/* ---- ends ---- */
+
+/* sum_j g_j, and sum_j slant_j g_j in the place of `low`. */
+INLINE int NAME(sums)(const dvi__members_ends *e, int m)
+{
+  const size_t width = (size_t)e->width, stages = (size_t)e->stages;
+  for (; m + WIDTH <= e->width; m += WIDTH)
+    for (size_t i = 0; i < (size_t)e->n; i++) {
+      NAME(vector) sum = {0}, slanted = {0};
+      for (size_t j = 0; j < stages; j++) {
+        NAME(vector) g;
+        NAME(load)(e->g + (i * stages + j) * width + m, &g);
+        sum += g;
+        slanted += e->slant[j] * g;
+      }
+      NAME(store)(e->sum + i * width + m, &sum, WIDTH);
+      NAME(store)(e->low + i * width + m, &slanted, WIDTH);
+    }
+  return m;
 }

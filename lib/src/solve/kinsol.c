@@ -160,22 +160,33 @@ void dvi__kinsol_destroy(dvi__kinsol **kinsol)
 
 /* ---- using it ---- */
 
+/* 1 / (row * whole) in the place of each row's scale: rows of one coordinate have the same, and a division costs more than all else here. */
+static int invert_rows(int n, double whole, double *scale)
+{
+  int usable = 1;
+  double row = 0, inverse = 0;
+  for (int i = 0; i < n; i++) {
+    if (scale[i] != row) {
+      row = scale[i];
+      inverse = 1 / (row * whole);
+      usable &= inverse > 0 && inverse <= DBL_MAX;
+    }
+    scale[i] = inverse;
+  }
+  return usable;
+}
+
 /* Both norms in units of the unknowns' size: a residual row over row_scale is a change of an unknown. */
 static dvi_status set_scales(dvi__kinsol *k, double size, const double *x)
 {
   const int n = k->solver->equations.unknowns;
   double *x_scale = N_VGetArrayPointer(k->x_scale), *r_scale = N_VGetArrayPointer(k->r_scale);
-  double whole = 0;
-  int usable = 1;
-  for (int i = 0; i < n; i++) whole = fabs(x[i]) > whole ? fabs(x[i]) : whole;
+  double whole = dvi__largest((size_t)n, x);
   if (whole == 0) whole = size > 0 ? size : 1;
+  const double inverse = 1 / whole;
   k->solver->equations.row_scale(k->solver->equations.of, r_scale);
-  for (int i = 0; i < n; i++) {
-    x_scale[i] = 1 / whole;
-    r_scale[i] = 1 / (r_scale[i] * whole);
-    usable &= r_scale[i] > 0 && r_scale[i] <= DBL_MAX;
-  }
-  usable &= 1 / whole > 0 && 1 / whole <= DBL_MAX;
+  for (int i = 0; i < n; i++) x_scale[i] = inverse;
+  const int usable = invert_rows(n, whole, r_scale) && inverse > 0 && inverse <= DBL_MAX;
   /* KINSOL would take it for a fault of its caller, but a smaller step may have a finite path. */
   return usable ? DVI_OK
                 : dvi__fail(DVI_NOT_FINITE, "the guess of the path is too large or too small to be scaled (size %g)", whole);

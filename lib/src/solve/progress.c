@@ -17,12 +17,15 @@ static const double rounding = 4 * DBL_EPSILON, settled = 0.125 * DBL_EPSILON;
 static const double unseen = DBL_EPSILON / 16384, near = 64 * DBL_EPSILON;
 
 #define WIDTH 1
+#include "num/vector_width.h"
 #include "solve/progress_width.h"
 #undef WIDTH
 #define WIDTH 2
+#include "num/vector_width.h"
 #include "solve/progress_width.h"
 #undef WIDTH
 #define WIDTH 4
+#include "num/vector_width.h"
 #include "solve/progress_width.h"
 #undef WIDTH
 

@@ -1,14 +1,6 @@
-/* The verdict of progress.c for vectors of WIDTH problems; it includes this once for each width.
+/* The verdict of progress.c for vectors of WIDTH problems, after vector_width.h; it includes this once for each width.
  *
  * There is no branch: which of many iterations end with this correction nobody could predict. */
-
-typedef double NAME(vector) __attribute__((vector_size(WIDTH * sizeof(double))));
-typedef int64_t NAME(mask) __attribute__((vector_size(WIDTH * sizeof(double))));
-
-INLINE void NAME(load)(const double *x, NAME(vector) * loaded)
-{
-  memcpy(loaded, x, sizeof *loaded);
-}
 
 INLINE void NAME(keep_smaller)(NAME(vector) * x, const NAME(vector) * other)
 {

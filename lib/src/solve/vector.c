@@ -2,6 +2,11 @@
 
 #include <math.h>
 
+#include "num/finite.h"
+
+/* Numbers that are reduced side by side, so that none waits for the one before. */
+enum { IN_TURN = 8 };
+
 /* The length and the numbers of a vector. */
 static sunindextype length(N_Vector x)
 {
@@ -34,32 +39,36 @@ static void product(N_Vector x, N_Vector y, N_Vector z)
   for (sunindextype i = 0, n = length(x); i < n; i++) zs[i] = xs[i] * ys[i];
 }
 
-/* A NaN is kept: it is not below any limit. */
 static sunrealtype max_norm(N_Vector x)
 {
-  const double *xs = numbers(x);
-  double largest = 0;
-  for (sunindextype i = 0, n = length(x); i < n; i++) {
-    const double size = fabs(xs[i]);
-    if (!(size <= largest)) largest = size;
-  }
-  return largest;
+  return dvi__largest((size_t)length(x), numbers(x));
 }
 
 static sunrealtype least(N_Vector x)
 {
   const double *xs = numbers(x);
-  double least = xs[0];
-  for (sunindextype i = 1, n = length(x); i < n; i++) least = xs[i] < least ? xs[i] : least;
-  return least;
+  const sunindextype n = length(x);
+  double least[IN_TURN];
+  for (int j = 0; j < IN_TURN; j++) least[j] = xs[0];
+  sunindextype i = 0;
+  for (; i + IN_TURN <= n; i += IN_TURN)
+    for (int j = 0; j < IN_TURN; j++) least[j] = xs[i + j] < least[j] ? xs[i + j] : least[j];
+  for (; i < n; i++) least[0] = xs[i] < least[0] ? xs[i] : least[0];
+  for (int j = 1; j < IN_TURN; j++) least[0] = least[j] < least[0] ? least[j] : least[0];
+  return least[0];
 }
 
 static sunrealtype weighted_norm(N_Vector x, N_Vector w)
 {
   const double *xs = numbers(x), *ws = numbers(w);
-  double sum = 0;
-  for (sunindextype i = 0, n = length(x); i < n; i++) sum += (xs[i] * ws[i]) * (xs[i] * ws[i]);
-  return sqrt(sum);
+  const sunindextype n = length(x);
+  double sum[IN_TURN] = {0};
+  sunindextype i = 0;
+  for (; i + IN_TURN <= n; i += IN_TURN)
+    for (int j = 0; j < IN_TURN; j++) sum[j] += (xs[i + j] * ws[i + j]) * (xs[i + j] * ws[i + j]);
+  for (; i < n; i++) sum[0] += (xs[i] * ws[i]) * (xs[i] * ws[i]);
+  for (int j = 1; j < IN_TURN; j++) sum[0] += sum[j];
+  return sqrt(sum[0]);
 }
 
 void dvi__vector_use_own_operations(N_Vector vector)

@@ -1,8 +1,10 @@
 /* The derivative check: every gradient against differences of the values, every Hessian and pattern against differences of the
- * gradients, one column at a time. */
+ * gradients, one column at a time; every gradient by ranges against the whole one. */
 #include <float.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "core/memory.h"
 #include "core/status.h"
@@ -31,6 +33,13 @@ typedef struct block {
   disagreement on_pattern, outside;
 } block;
 
+/* The first gradient_range that breaks its promise: coordinate `row` (-1: none) of the range from first to last-1. */
+typedef struct broken_range {
+  const dvi__potential_term *term;
+  int row, first, last;
+  double whole, part;
+} broken_range;
+
 typedef struct check {
   dvi__scratch scratch;
   dvi__differences differences;
@@ -41,6 +50,7 @@ typedef struct check {
   double *hessian[3];              /* as long as the longest pattern */
   double gradient_noise;           /* of the term at hand, if its gradient is itself differenced; else 0 */
   finding of_gradient, of_hessian, of_pattern;
+  broken_range range;
 } check;
 
 static void compare(block *b, int row, int column, double given, double differenced, double noise, disagreement *worst)
@@ -97,6 +107,56 @@ static dvi_status measure_noise(check *c, dvi__batch_value value, const void *fu
   return DVI_OK;
 }
 
+/* ---- gradients by ranges ---- */
+
+/* Copy the coordinates that the range may look at from `from` (NULL: NaN for all of them) to `to`. */
+static void expose(const check *c, int reach, int first, int last, const double *from, double *to)
+{
+  const int begin = first > reach ? first - reach : 0, end = last < c->n - reach ? last + reach : c->n;
+  for (int i = begin; i < end; i++) to[i] = from != NULL ? from[i] : (double)NAN;
+}
+
+/* Zeros of two signs differ here, too. */
+static int same_bits(double a, double b)
+{
+  uint64_t bits_of_a, bits_of_b;
+  memcpy(&bits_of_a, &a, sizeof a);
+  memcpy(&bits_of_b, &b, sizeof b);
+  return bits_of_a == bits_of_b;
+}
+
+/* One range, asked for with NaN beyond its reach and behind its end, against the whole gradient. `hidden` holds NaN before and after. */
+static dvi_status compare_range(check *c, const dvi__potential_term *p, int first, int last, const double *whole, double *hidden)
+{
+  const dvi_potential *asked = &p->callbacks;
+  double *part = c->column[1];
+  const int count = last - first;
+  for (int i = 0; i <= count; i++) part[i] = (double)NAN;
+  expose(c, asked->reach, first, last, c->q, hidden);
+  const int returned = asked->gradient_range(c->t, hidden, first, last, part, asked->user);
+  expose(c, asked->reach, first, last, NULL, hidden);
+  if (returned != 0)
+    return dvi__fail(returned < 0 ? DVI_CALLBACK_FAILED : DVI_CALLBACK_RETRY,
+                     "system check: %s: the gradient_range callback returned %d for coordinates %d to %d", p->name, returned, first,
+                     last - 1);
+  for (int i = 0; i <= count && c->range.row < 0; i++)
+    if (i < count ? !same_bits(whole[first + i], part[i]) : !isnan(part[i]))
+      c->range = (broken_range){p, first + i, first, last, i < count ? whole[first + i] : (double)NAN, part[i]};
+  return DVI_OK;
+}
+
+/* Ranges of one coordinate, of three, of half of them and one more, and of all. */
+static dvi_status check_ranges(check *c, const dvi__potential_term *p, const double *whole)
+{
+  const int lengths[] = {1, 3, c->n / 2 + 1, c->n};
+  double *hidden = c->column[0];
+  for (int i = 0; i < c->n; i++) hidden[i] = (double)NAN;
+  for (int k = 0; k < 4 && c->range.row < 0; k++)
+    for (int first = 0; first < c->n; first += lengths[k])
+      DVI_TRY(compare_range(c, p, first, lengths[k] < c->n - first ? first + lengths[k] : c->n, whole, hidden));
+  return DVI_OK;
+}
+
 /* ---- Hessians and patterns ---- */
 
 static void compare_column(block *b, int n, int j, const double *differenced, double noise)
@@ -143,6 +203,7 @@ static dvi_status check_potential(check *c, const dvi__potential_term *p)
   if (has_gradient) {
     DVI_TRY(dvi__potential_gradient(p, &c->scratch, 1, &c->t, c->q, c->gradient[0]));
     DVI_TRY(check_gradient(c, dvi__potential_value_of_q, &at, c->q, c->gradient[0], p->name, "dV/dq"));
+    if (p->callbacks.gradient_range != NULL) DVI_TRY(check_ranges(c, p, c->gradient[0]));
   } else {
     DVI_TRY(measure_noise(c, dvi__potential_value_of_q, &at, c->q));
   }
@@ -191,7 +252,23 @@ static void name_entry(const finding *f, size_t size, char *text)
   (void)snprintf(text, size, "%s: %s %s", owner, f->block, place);
 }
 
-/* A wrong gradient makes its Hessian look wrong too, so it is named first; then what a pattern misses. */
+static dvi_status report_range(const broken_range *r, dvi_derivative_check *result)
+{
+  const int behind = r->row == r->last;
+  result->range_row = r->row;
+  (void)snprintf(result->where, sizeof result->where, "potential '%.24s': gradient_range (%d) is %s", r->term->name, r->row,
+                 behind ? "written behind its range" : "not that of the whole");
+  if (behind)
+    return dvi__fail(DVI_BAD_ARGUMENT, "system check: potential '%.24s': gradient_range of coordinates %d to %d writes one more",
+                     r->term->name, r->first, r->last - 1);
+  return dvi__fail(
+      DVI_BAD_ARGUMENT,
+      "system check: potential '%.24s': dV/dq (%d) is %.17g from gradient_range of coordinates %d to %d, %.17g from the "
+      "whole gradient; is the reach %d too small?",
+      r->term->name, r->row, r->part, r->first, r->last - 1, r->whole, r->term->callbacks.reach);
+}
+
+/* A wrong gradient makes its ranges and its Hessian look wrong too, so it is named first; then what a pattern misses. */
 static dvi_status report(const check *c, double tolerance, dvi_derivative_check *result)
 {
   const finding *const hessian = c->of_pattern.worst.error > tolerance ? &c->of_pattern : &c->of_hessian;
@@ -203,7 +280,9 @@ static dvi_status report(const check *c, double tolerance, dvi_derivative_check 
                                    .hessian_error = c->of_hessian.worst.error,
                                    .outside = c->of_pattern.worst.error,
                                    .row = hessian->block != NULL ? hessian->worst.row : -1,
-                                   .column = hessian->block != NULL ? hessian->worst.column : -1};
+                                   .column = hessian->block != NULL ? hessian->worst.column : -1,
+                                   .range_row = -1};
+  if (c->range.row >= 0 && worst != &c->of_gradient) return report_range(&c->range, result);
   if (worst->worst.error <= tolerance) return DVI_OK;
   (void)snprintf(result->where, sizeof result->where, "%.70s %s", entry, missing ? "is not in the pattern" : "is wrong");
   if (missing)
@@ -229,7 +308,7 @@ static dvi_status allocate(check *c, const dvi_system *system)
   int complete = dvi__differences_allocate((size_t)c->n, &c->differences);
   for (int i = 0; i < 2; i++) {
     c->gradient[i] = DVI_NEW(double, c->n);
-    c->column[i] = DVI_NEW(double, c->n);
+    c->column[i] = DVI_NEW(double, (size_t)c->n + 1); /* one more shows what is written behind a range */
     complete = complete && c->gradient[i] != NULL && c->column[i] != NULL;
   }
   for (int i = 0; i < 3; i++) {
@@ -254,13 +333,13 @@ dvi_status dvi_system_check(const dvi_system *system, double t, const double *q,
                             dvi_derivative_check *result)
 {
   dvi_derivative_check unwanted, *const kept = result != NULL ? result : &unwanted;
-  *kept = (dvi_derivative_check){.row = -1, .column = -1};
+  *kept = (dvi_derivative_check){.row = -1, .column = -1, .range_row = -1};
   if (system == NULL || q == NULL || v == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "system check: an argument is NULL");
   if (!(tolerance >= 0)) return dvi__fail(DVI_BAD_ARGUMENT, "system check: tolerance %g; 0 or more is possible", tolerance);
   const size_t n = (size_t)system->n;
   if (!isfinite(t) || dvi__first_not_finite(n, q) >= 0 || dvi__first_not_finite(n, v) >= 0)
     return dvi__fail(DVI_NOT_FINITE, "system check: the point (t = %g) is not finite", t);
-  check c = {.n = system->n, .t = t, .q = q, .v = v};
+  check c = {.n = system->n, .t = t, .q = q, .v = v, .range.row = -1};
   dvi_status status = allocate(&c, system);
   if (status == DVI_OK) status = check_terms(&c, system);
   if (status == DVI_OK) status = report(&c, tolerance > 0 ? tolerance : 1e-6, kept);

@@ -141,6 +141,14 @@ static dvi_status copy_lagrangian(dvi_system *s, const dvi_lagrangian *given)
 
 /* ---- potentials ---- */
 
+static dvi_status check_range(const dvi_potential *given, const char *name)
+{
+  if (given->reach < 0)
+    return dvi__fail(DVI_BAD_SIZE, "system: potential '%s' has reach %d; 0 or more is possible", name, given->reach);
+  if (given->reach == 0 || given->gradient_range != NULL) return DVI_OK;
+  return dvi__fail(DVI_BAD_ARGUMENT, "system: potential '%s' has reach %d but no gradient_range callback", name, given->reach);
+}
+
 static dvi_status copy_potential(dvi_system *s, const dvi_potential *given, dvi__potential_term *term)
 {
   const char *name = given->name != NULL ? given->name : "potential";
@@ -148,6 +156,7 @@ static dvi_status copy_potential(dvi_system *s, const dvi_potential *given, dvi_
     return dvi__fail(DVI_BAD_ARGUMENT, "system: potential '%s' has no value callback", name);
   DVI_TRY(check_shapes(name, given->value && given->value_batch, given->gradient && given->gradient_batch,
                        given->hessian && given->hessian_batch));
+  DVI_TRY(check_range(given, name));
   term->callbacks = *given;
   term->name = copy_text(name);
   if (term->name == NULL) return no_memory();

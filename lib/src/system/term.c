@@ -31,7 +31,7 @@ static void scatter(int entries, int count, int k, const double *point, double *
 
 int dvi__potential_has_gradient(const dvi__potential_term *p)
 {
-  return p->callbacks.gradient != NULL || p->callbacks.gradient_batch != NULL;
+  return p->callbacks.gradient != NULL || p->callbacks.gradient_batch != NULL || p->callbacks.gradient_range != NULL;
 }
 
 int dvi__potential_has_hessian(const dvi__potential_term *p)
@@ -65,6 +65,12 @@ dvi_status dvi__potential_gradient_of_q(const void *function, int count, const d
   return dvi__potential_gradient(f->term, f->scratch, count, f->t, q, V_q);
 }
 
+/* The gradient at one point, in the shape that there is. */
+static int ask_gradient(const dvi_potential *c, int n, double t, const double *q, double *V_q)
+{
+  return c->gradient != NULL ? c->gradient(t, q, V_q, c->user) : c->gradient_range(t, q, 0, n, V_q, c->user);
+}
+
 dvi_status dvi__potential_gradient(const dvi__potential_term *p, dvi__scratch *s, int count, const double *t, const double *q,
                                    double *V_q)
 {
@@ -72,12 +78,16 @@ dvi_status dvi__potential_gradient(const dvi__potential_term *p, dvi__scratch *s
   int returned = 0;
   if (!dvi__potential_has_gradient(p))
     return dvi__difference_gradient(dvi__potential_value_of_q, &(dvi__potential_at){p, s, t}, &s->of_value, s->n, count, q, V_q);
-  if (c->gradient_batch != NULL) returned = c->gradient_batch(count, t, q, V_q, c->user);
-  for (int k = 0; c->gradient_batch == NULL && k < count && returned == 0; k++) {
-    gather(s->n, count, k, q, s->point_q);
-    returned = c->gradient(t[k], s->point_q, s->result[0], c->user);
-    scatter(s->n, count, k, s->result[0], V_q);
-  }
+  if (c->gradient_batch != NULL)
+    returned = c->gradient_batch(count, t, q, V_q, c->user);
+  else if (count == 1) /* a long point is not copied: it lies as the callback wants it */
+    returned = ask_gradient(c, s->n, t[0], q, V_q);
+  else
+    for (int k = 0; k < count && returned == 0; k++) {
+      gather(s->n, count, k, q, s->point_q);
+      returned = ask_gradient(c, s->n, t[k], s->point_q, s->result[0]);
+      scatter(s->n, count, k, s->result[0], V_q);
+    }
   return verdict(returned, s->n, count, V_q, p->name, "gradient", "");
 }
 

@@ -1,0 +1,126 @@
+/* The terms of a problem's system: kept with the problem, and turned into their one-point shapes. */
+#include "entry.h"
+
+/* A copy that the problem owns; NULL for an empty array. */
+static void *keep(problem *made, const void *array, int count, size_t size, int *lost)
+{
+  if (count == 0) return NULL;
+  void *copy = problem_allocate(made, (size_t)count, size);
+  if (copy)
+    memcpy(copy, array, (size_t)count * size);
+  else
+    *lost = 1;
+  return copy;
+}
+
+/* The struct and the arrays of terms; what these point to is the problem's anyway. */
+static dvi_system_terms *keep_terms(problem *made, const dvi_system_terms *terms)
+{
+  int lost = 0;
+  dvi_system_terms *kept = keep(made, terms, 1, sizeof *terms, &lost);
+  if (!kept) return NULL;
+  kept->lagrangian = keep(made, terms->lagrangian, terms->lagrangian != NULL, sizeof *terms->lagrangian, &lost);
+  kept->potentials = keep(made, terms->potentials, terms->potential_count, sizeof *terms->potentials, &lost);
+  kept->symmetries = keep(made, terms->symmetries, terms->symmetry_count, sizeof *terms->symmetries, &lost);
+  kept->invariants = keep(made, terms->invariants, terms->invariant_count, sizeof *terms->invariants, &lost);
+  return lost ? NULL : kept;
+}
+
+dvi_status problem_system(problem *made, const dvi_system_terms *terms)
+{
+  made->terms = keep_terms(made, terms);
+  return made->terms ? dvi_system_create(made->terms, &made->system) : DVI_NO_MEMORY;
+}
+
+/* One-point callbacks (and ranges, which are of one point anyway) whose `user` is the declared term, and which hand it their point as a batch of one. */
+
+static int value(double t, const double *q, double *V, void *user)
+{
+  const dvi_potential *own = user;
+  return own->value_batch ? own->value_batch(1, &t, q, V, own->user) : own->value(t, q, V, own->user);
+}
+
+static int gradient(double t, const double *q, double *V_q, void *user)
+{
+  const dvi_potential *own = user;
+  return own->gradient_batch ? own->gradient_batch(1, &t, q, V_q, own->user) : own->gradient(t, q, V_q, own->user);
+}
+
+static int gradient_range(double t, const double *q, int first, int last, double *V_q, void *user)
+{
+  const dvi_potential *own = user;
+  return own->gradient_range(t, q, first, last, V_q, own->user);
+}
+
+static int hessian(double t, const double *q, double *V_qq, void *user)
+{
+  const dvi_potential *own = user;
+  return own->hessian_batch ? own->hessian_batch(1, &t, q, V_qq, own->user) : own->hessian(t, q, V_qq, own->user);
+}
+
+static int lagrangian_value(double t, const double *q, const double *v, double *L, void *user)
+{
+  const dvi_lagrangian *own = user;
+  return own->value_batch ? own->value_batch(1, &t, q, v, L, own->user) : own->value(t, q, v, L, own->user);
+}
+
+static int lagrangian_gradient(double t, const double *q, const double *v, double *L_q, double *L_v, void *user)
+{
+  const dvi_lagrangian *own = user;
+  return own->gradient_batch ? own->gradient_batch(1, &t, q, v, L_q, L_v, own->user) : own->gradient(t, q, v, L_q, L_v, own->user);
+}
+
+static int lagrangian_hessian(double t, const double *q, const double *v, double *L_qq, double *L_qv, double *L_vv, void *user)
+{
+  const dvi_lagrangian *own = user;
+  return own->hessian_batch ? own->hessian_batch(1, &t, q, v, L_qq, L_qv, L_vv, own->user)
+                            : own->hessian(t, q, v, L_qq, L_qv, L_vv, own->user);
+}
+
+static dvi_potential one_point_potential(const dvi_potential *declared)
+{
+  return (dvi_potential){.name = declared->name,
+                         .value = value,
+                         .gradient = declared->gradient || declared->gradient_batch ? gradient : NULL,
+                         .hessian = declared->hessian || declared->hessian_batch ? hessian : NULL,
+                         .qq = declared->qq,
+                         .gradient_range = declared->gradient_range ? gradient_range : NULL,
+                         .reach = declared->reach,
+                         .user = (void *)declared};
+}
+
+static dvi_lagrangian one_point_lagrangian(const dvi_lagrangian *declared)
+{
+  return (dvi_lagrangian){.value = lagrangian_value,
+                          .gradient = declared->gradient || declared->gradient_batch ? lagrangian_gradient : NULL,
+                          .hessian = declared->hessian || declared->hessian_batch ? lagrangian_hessian : NULL,
+                          .qq = declared->qq,
+                          .qv = declared->qv,
+                          .vv = declared->vv,
+                          .user = (void *)declared};
+}
+
+dvi_status problem_one_point(problem *made)
+{
+  int lost = 0;
+  dvi_system_terms terms = *made->terms;
+  dvi_potential *potentials = keep(made, terms.potentials, terms.potential_count, sizeof *potentials, &lost);
+  if (lost) return DVI_NO_MEMORY;
+  for (int k = 0; k < terms.potential_count; k++) potentials[k] = one_point_potential(&made->terms->potentials[k]);
+  terms.potentials = potentials;
+  dvi_lagrangian lagrangian;
+  if (terms.lagrangian) {
+    lagrangian = one_point_lagrangian(terms.lagrangian);
+    terms.lagrangian = &lagrangian;
+  }
+  const dvi_system_terms *declared = made->terms;
+  dvi_system *batches = made->system;
+  const dvi_status status = problem_system(made, &terms);
+  if (status == DVI_OK) {
+    dvi_system_destroy(&batches);
+    return DVI_OK;
+  }
+  made->terms = declared;
+  made->system = batches;
+  return status;
+}
