@@ -10,6 +10,7 @@
 #include "command.h"
 #include "levels.h"
 #include "machine.h"
+#include "members.h"
 #include "open.h"
 #include "progress.h"
 #include "samples.h"
@@ -274,7 +275,7 @@ static int scale_problem(const bench_request *r)
                                  .steps = r->steps,
                                  .csv = r->outputs.csv,
                                  .plot = r->outputs.plot};
-  return scale_run(&request);
+  return members_asked(r->scale) ? members_run(&request) : scale_run(&request);
 }
 
 int bench_command(int argc, char **argv)

@@ -176,6 +176,24 @@ for other in '--at 1e-3' '--against ida' '--judge runs' '--levels 3' '--t-end 1'
   # shellcheck disable=SC2086
   expect 2 "sizes with $other" bench fpu --method verlet --scale ell=5,6 $other
 done
+# Members.
+expect 0 'members' bench kepler --method verlet --method galerkin:degree=2 --scale members=1,16,100 --rounds 1 --csv - --plot members.svg
+[ "$(head -n 1 out)" = method,problem,members,n,h,step_seconds,step_lower,step_upper,alone_seconds,alone_lower,alone_upper,gain,step_evaluations ] ||
+  fail 'header of members'
+[ "$(awk -F, 'NF == 13' out | wc -l)" -eq 7 ] || fail 'two methods with three numbers of members'
+awk -F, 'NR > 1 && !($4 == 2 && $5 == 0.05 && $6 > 0 && $7 <= $6 && $6 <= $8 && $9 > 0 && $10 <= $9 && $9 <= $11 && $12 > 0)' out | grep -q . &&
+  fail 'times of members'
+# 64 steps, a gradient for each, two more at the start.
+awk -F, '$1 == "verlet" && $13 * 64 != 66' out | grep -q . && fail 'evaluations of members'
+says err "^Cost of a member's step on kepler" 'members: the words are elsewhere'
+if command -v gnuplot >/dev/null; then says members.svg '</svg>' 'the plot of members is whole'; fi
+expect 0 'one number of members, for people' bench pendulum --method midpoint --scale members=8 --set q0=1 --h 0.05 --rounds 1
+says out '^gain: alone_seconds over step_seconds' 'members for people'
+for bad in '' 0 -1 1.5 x 4, 8,8 2000000; do expect 2 "members=$bad" bench kepler --method verlet --scale "members=$bad"; done
+expect 2 'members without a method' bench kepler --scale members=4
+expect 2 'members of a wrong problem' bench keppler --method verlet --scale members=4
+expect 2 'members of a method that cannot' bench double-pendulum --method verlet --scale members=4
+expect 1 'members that fail' bench kepler --method midpoint --set e=0.6 --h 0.3 --scale members=4 --rounds 1
 
 # Degrees: a key of every method. A residual of degree s with Gauss' quadrature evaluates at s points.
 expect 0 'degrees' bench kepler --method galerkin --method composition:order=4,base=galerkin --scale degree=1,4,2 --rounds 1 --csv - --plot scale.svg

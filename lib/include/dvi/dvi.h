@@ -3,6 +3,7 @@
 #define DVI_DVI_H
 #include <dvi/basis.h>
 #include <dvi/diagnostics.h>
+#include <dvi/ensemble.h>
 #include <dvi/integrator.h>
 #include <dvi/method.h>
 #include <dvi/quadrature.h>

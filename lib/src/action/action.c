@@ -120,6 +120,11 @@ int dvi__action_unknowns(const dvi__action *action)
   return action->n * action->s;
 }
 
+int dvi__action_nodes(const dvi__action *action)
+{
+  return action->r;
+}
+
 dvi__evaluator *dvi__action_evaluator(const dvi__action *action)
 {
   return action->evaluator;

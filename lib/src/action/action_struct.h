@@ -70,6 +70,12 @@ struct dvi__action {
 /* Up to so many coordinates the chord's inverse is cheaper than solving for each of the s functions. */
 enum { DVI__CHORD_INVERSE = 8 };
 
+/* The table from the last step's forces to the sums of forces in a step `ratio` times as long: [r*lanes], by columns. */
+const double *dvi__action_sweep_shift(dvi__action *action, double ratio);
+
+/* What sweeps need that depends on h alone. */
+void dvi__action_set_step(dvi__action *action);
+
 /* Fill the batches Q and V with the path's points at the nodes. */
 void dvi__action_stages(const dvi__action *action, const double *Y);
 

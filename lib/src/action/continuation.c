@@ -90,11 +90,16 @@ static void fill_forces(const dvi__action *a, double ratio, double *shift)
   }
 }
 
-void dvi__action_sweep_continue(dvi__action *a, double ratio, const double *g)
+const double *dvi__action_sweep_shift(dvi__action *a, double ratio)
 {
   int known;
   double *shift = table_for(&a->sweep_shift, (size_t)a->r * (size_t)a->lanes, ratio, &known);
   if (!known) fill_forces(a, ratio, shift);
-  dvi__lanes_product(a->n, a->r, a->lanes, a->lanes, shift, g, a->Z);
+  return shift;
+}
+
+void dvi__action_sweep_continue(dvi__action *a, double ratio, const double *g)
+{
+  dvi__lanes_product(a->n, a->r, a->lanes, a->lanes, dvi__action_sweep_shift(a, ratio), g, a->Z);
   dvi__action_sweep_begin(a);
 }

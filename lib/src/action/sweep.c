@@ -115,8 +115,7 @@ dvi_status dvi__action_prepare_sweep(dvi__action *a)
 
 /* ---- iterations ---- */
 
-/* What depends on h alone. */
-static void set_step(dvi__action *a)
+void dvi__action_set_step(dvi__action *a)
 {
   if (a->sweep_h == a->h) return;
   a->sweep_h = a->h;
@@ -145,7 +144,7 @@ static dvi__sweep sweep_of(const dvi__action *a)
 void dvi__action_sweep_from(dvi__action *a, const double *Y)
 {
   const size_t r = (size_t)a->r, lanes = (size_t)a->lanes;
-  set_step(a);
+  dvi__action_set_step(a);
   const dvi__sweep sweep = sweep_of(a);
   dvi__lanes_split(&sweep);
   dvi__lanes_product(a->n, a->s, a->lanes, a->lanes, a->psi, Y, a->Z);
@@ -155,7 +154,7 @@ void dvi__action_sweep_from(dvi__action *a, const double *Y)
 
 void dvi__action_sweep_begin(dvi__action *a)
 {
-  set_step(a);
+  dvi__action_set_step(a);
   const dvi__sweep sweep = sweep_of(a);
   dvi__lanes_split(&sweep);
   dvi__lanes_begin(&sweep);

@@ -1,7 +1,5 @@
 #include "action/wave.h"
 
-#include <float.h>
-#include <math.h>
 #include <stdatomic.h>
 #include <stddef.h>
 #include <string.h>
@@ -46,16 +44,6 @@ const char *dvi__wave_obstacle(const dvi_system *system)
   return NULL;
 }
 
-static void choose_division(dvi__wave *w)
-{
-  const double mass = w->system->mass_scalar;
-  int exponent;
-  w->by = mass == 0                                                   ? DVI__BY_ARRAY
-          : fabs(frexp(mass, &exponent)) == 0.5 && isnormal(1 / mass) ? DVI__TIMES_SCALAR
-                                                                      : DVI__BY_SCALAR;
-  w->scalar = w->by == DVI__TIMES_SCALAR ? 1 / mass : mass;
-}
-
 static dvi_status fill(dvi__wave *w)
 {
   const int potentials = w->system->potential_count, block = atomic_load(&chosen_block);
@@ -64,7 +52,7 @@ static dvi_status fill(dvi__wave *w)
     reach = w->system->potentials[k].callbacks.reach > reach ? w->system->potentials[k].callbacks.reach : reach;
   w->block = block > 0 ? block : BLOCK;
   w->lag = block > 0 ? reach : ((ptrdiff_t)reach + LINE - 1) / LINE * LINE;
-  choose_division(w);
+  w->by = w->system->mass_scalar != 0 ? dvi__division_by(w->system->mass_scalar, &w->scalar) : DVI__BY_ARRAY;
   w->begun = DVI_NEW(atomic_int, w->threads);
   if (potentials > 1) w->term = DVI_NEW(double, w->threads * w->block);
   if (w->begun == NULL || (potentials > 1 && w->term == NULL))
@@ -162,7 +150,7 @@ static int finish(const part *own, range r)
   const dvi__wave_step *s = &own->pass->step;
   const dvi__phase to = phase_at(&s->to, r.first);
   const size_t count = (size_t)(r.last - r.first);
-  dvi__lanes_kick(count, -0.5 * s->h[s->count - 1], s->gradient_to + r.first, to.p, to.p_carry);
+  dvi__lanes_add_scaled(count, -0.5 * s->h[s->count - 1], s->gradient_to + r.first, to.p, to.p_carry);
   return dvi__lanes_all_finite(count, to.p) && dvi__lanes_all_finite(count, to.q);
 }
 

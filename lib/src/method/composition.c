@@ -105,11 +105,11 @@ static double substep(const scheme *s, int i, double h)
 }
 
 /* The rounded weights sum to 1 but for a rounding, which would add up over many steps: the clock moves by h. */
-static void move_clock(double t, double t_carry, double h, dvi__state *state)
+static void move_clock(double t, double t_carry, double h, double *moved, double *moved_carry)
 {
-  state->t = t;
-  state->t_carry = t_carry;
-  dvi__add_compensated(&state->t, &state->t_carry, h);
+  *moved = t;
+  *moved_carry = t_carry;
+  dvi__add_compensated(moved, moved_carry, h);
 }
 
 static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
@@ -118,7 +118,7 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
   const scheme *s = &schemes[self->settings.value[ORDER]];
   const double t = state->t, t_carry = state->t_carry;
   for (int i = 0; i < s->substeps; i++) DVI_TRY(base->method->step(base, state, substep(s, i, h)));
-  move_clock(t, t_carry, h, state);
+  move_clock(t, t_carry, h, &state->t, &state->t_carry);
   return DVI_OK;
 }
 
@@ -130,7 +130,7 @@ static int pass(dvi__stepper *self, const dvi__state *now, const double *before,
   if (base->method->pass == NULL || count != 1) return 0;
   for (int i = 0; i < s->substeps; i++) substeps[i] = substep(s, i, h[0]);
   if (!base->method->pass(base, now, before, next, substeps, s->substeps)) return 0;
-  move_clock(now->t, now->t_carry, h[0], next);
+  move_clock(now->t, now->t_carry, h[0], &next->t, &next->t_carry);
   return 1;
 }
 
@@ -139,6 +139,35 @@ static double traffic(const dvi__stepper *self, int count)
   const dvi__stepper *base = self->own;
   return base->method->traffic != NULL && count == 1 ? base->method->traffic(base, schemes[self->settings.value[ORDER]].substeps)
                                                      : 0;
+}
+
+/* ---- members side by side ---- */
+
+/* [2*capacity] the clocks at the start of a step. */
+static dvi_status prepare_lanes(dvi__stepper *self, int capacity)
+{
+  dvi__stepper *base = self->own;
+  DVI_TRY(dvi__stepper_prepare_lanes(base, capacity));
+  if (base->lanes == NULL) return DVI_OK;
+  self->lanes = DVI_NEW(double, 2 * (size_t)capacity);
+  return self->lanes != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "composition: no memory");
+}
+
+static void clear_lanes(dvi__stepper *self)
+{
+  dvi__release(self->lanes);
+}
+
+static void step_lanes(dvi__stepper *self, dvi__members *m, double h)
+{
+  dvi__stepper *base = self->own;
+  const scheme *s = &schemes[self->settings.value[ORDER]];
+  const size_t bytes = (size_t)m->count * sizeof(double);
+  double *t = self->lanes, *t_carry = t + m->count;
+  memcpy(t, m->t, bytes);
+  memcpy(t_carry, m->t_carry, bytes);
+  for (int i = 0; i < s->substeps; i++) base->method->step_lanes(base, m, substep(s, i, h));
+  for (int k = 0; k < m->count; k++) move_clock(t[k], t_carry[k], h, m->t + k, m->t_carry + k);
 }
 
 static void explain(const dvi__stepper *self, dvi__text *text)
@@ -163,4 +192,7 @@ const dvi__method dvi__composition = {
     .pass = pass,
     .traffic = traffic,
     .explain = explain,
+    .prepare_lanes = prepare_lanes,
+    .clear_lanes = clear_lanes,
+    .step_lanes = step_lanes,
 };

@@ -19,10 +19,6 @@ const char *dvi__solver_choice(int index)
   return index >= 0 && index < 6 ? name[index] : NULL;
 }
 
-/* Memory: length of the last step (0: none); steps for which fixed point iteration and simplified Newton's method are not tried again, and how many they
- * were when the iteration last failed (0: it has not since it last succeeded); the last step's unknowns (before the first step, the start's velocity in their place) and its forces; what simplified Newton's method keeps frozen. */
-enum { LAST_H, NEWTON_STEPS, FULL_STEPS, NEWTON_WAIT, FULL_WAIT, LAST_Y };
-
 /* What is frozen, in the memory. */
 enum { FROZEN_H, FROZEN_ITERATIONS, FROZEN_POINT };
 
@@ -127,7 +123,7 @@ static void frozen_of(void *of, double *R)
 static int allocate(dvi__stepper *self, element *own)
 {
   const size_t n = (size_t)self->system->n, unknowns = (size_t)dvi__action_unknowns(own->action);
-  self->memory_count = LAST_Y + unknowns + (size_t)dvi__action_forces_count(own->action);
+  self->memory_count = dvi__element_forces(self) + (size_t)dvi__action_forces_count(own->action);
   if (own->decoupled != NULL) self->memory_count += FROZEN_POINT + (size_t)dvi__decoupled_point_size(own->decoupled);
   own->Y = DVI_NEW(double, unknowns);
   own->dq = DVI_NEW(double, n);
@@ -220,11 +216,26 @@ void dvi__element_destroy(dvi__stepper *self)
   dvi__release(own);
 }
 
+dvi__action *dvi__element_action(const dvi__stepper *self)
+{
+  return ((const element *)self->own)->action;
+}
+
+size_t dvi__element_forces(const dvi__stepper *self)
+{
+  return DVI__LAST_Y + (size_t)dvi__action_unknowns(dvi__element_action(self));
+}
+
+int dvi__element_solver(const dvi__stepper *self)
+{
+  return ((const element *)self->own)->choice;
+}
+
 void dvi__element_start(dvi__stepper *self, const double *v)
 {
-  self->memory[LAST_H] = 0;
-  for (size_t k = NEWTON_STEPS; k < self->memory_count; k++) self->memory[k] = 0;
-  memcpy(self->memory + LAST_Y, v, (size_t)self->system->n * sizeof(double));
+  self->memory[DVI__LAST_H] = 0;
+  for (size_t k = DVI__NEWTON_STEPS; k < self->memory_count; k++) self->memory[k] = 0;
+  memcpy(self->memory + DVI__LAST_Y, v, (size_t)self->system->n * sizeof(double));
 }
 
 /* ---- guesses ---- */
@@ -281,7 +292,7 @@ static void learn(dvi__stepper *self, dvi_status status, int steps, int wait)
 static dvi_status solve_simplified(dvi__stepper *self, const place *at, double *Y, dvi__solve_report *report)
 {
   element *own = self->own;
-  double *frozen = own->frozen = self->memory + LAST_Y + dvi__action_unknowns(own->action) + dvi__action_forces_count(own->action);
+  double *frozen = own->frozen = self->memory + dvi__element_forces(self) + dvi__action_forces_count(own->action);
   own->keeps = frozen[FROZEN_H] == at->h;
   dvi_status status = solve_by(self, at, DVI__SIMPLIFIED, Y, report);
   if (status > 0 && own->keeps) {
@@ -299,14 +310,14 @@ static dvi_status solve_at(dvi__stepper *self, const place *at, double *Y, dvi__
 {
   element *own = self->own;
   dvi__action_place(own->action, at->t, at->h, at->q, at->p);
-  if (is_due(own, DVI__SOLVER_FIXED_POINT, &self->memory[NEWTON_STEPS])) {
+  if (is_due(own, DVI__SOLVER_FIXED_POINT, &self->memory[DVI__NEWTON_STEPS])) {
     const dvi_status status = solve_by(self, at, DVI__FIXED_POINT, Y, report);
-    learn(self, status, NEWTON_STEPS, NEWTON_WAIT);
+    learn(self, status, DVI__NEWTON_STEPS, DVI__NEWTON_WAIT);
     if (status <= 0) return status;
   }
-  if (own->decoupled != NULL && is_due(own, DVI__SOLVER_SIMPLIFIED, &self->memory[FULL_STEPS])) {
+  if (own->decoupled != NULL && is_due(own, DVI__SOLVER_SIMPLIFIED, &self->memory[DVI__FULL_STEPS])) {
     const dvi_status status = solve_simplified(self, at, Y, report);
-    learn(self, status, FULL_STEPS, FULL_WAIT);
+    learn(self, status, DVI__FULL_STEPS, DVI__FULL_WAIT);
     if (status <= 0) return status;
   }
   return solve_by(self, at, own->choice == DVI__SOLVER_KINSOL ? DVI__KINSOL : DVI__NEWTON, Y, report);
@@ -396,8 +407,8 @@ static dvi_status advance(dvi__stepper *self, dvi__state *state, double h)
   dvi__add_compensated_all(n, state->q, state->q_carry, own->dq_low);
   dvi__add_compensated_all(n, state->p, state->p_carry, own->dp);
   dvi__add_compensated(&state->t, &state->t_carry, h);
-  self->memory[LAST_H] = h;
-  memcpy(self->memory + LAST_Y, own->Y, (size_t)dvi__action_unknowns(own->action) * sizeof(double));
+  self->memory[DVI__LAST_H] = h;
+  memcpy(self->memory + DVI__LAST_Y, own->Y, (size_t)dvi__action_unknowns(own->action) * sizeof(double));
   return DVI_OK;
 }
 
@@ -417,9 +428,10 @@ dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h)
 {
   element *own = self->own;
   dvi__solve_report report = {0};
-  double *forces = self->memory + LAST_Y + dvi__action_unknowns(own->action);
-  const int continues = self->memory[LAST_H] != 0 && dvi__action_can_sweep(own->action);
-  const place at = {state->t, h, state->q, state->p, self->memory[LAST_H], self->memory + LAST_Y, continues ? forces : NULL};
+  double *forces = self->memory + dvi__element_forces(self);
+  const int continues = self->memory[DVI__LAST_H] != 0 && dvi__action_can_sweep(own->action);
+  const place at = {
+      state->t, h, state->q, state->p, self->memory[DVI__LAST_H], self->memory + DVI__LAST_Y, continues ? forces : NULL};
   dvi_status status = solve_at(self, &at, own->Y, &report);
   if (status > 0) status = rescue(self, &at, own->Y, &report);
   if (status == DVI_OK) {
@@ -433,7 +445,7 @@ dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h)
 void dvi__element_path(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v)
 {
   const element *own = self->own;
-  dvi__action_path(own->action, self->memory + LAST_Y, h, tau, q, v);
+  dvi__action_path(own->action, self->memory + DVI__LAST_Y, h, tau, q, v);
   for (int i = 0; q != NULL && i < self->system->n; i++) q[i] += q0[i];
 }
 

@@ -24,6 +24,18 @@ const char *dvi__solver_choice(int index);
 /* Fill a stepper's order, symmetric, memory and own for this space; `solver` is one of the numbers above. */
 dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *space, int solver);
 
+/* The memory: length of the last step (0: none); steps for which fixed point iteration and simplified Newton's method are not tried again, and how
+ * many they were when the iteration last failed (0: it has not since it last succeeded); the last step's unknowns (before the first step, the
+ * start's velocity in their place) and its forces; what simplified Newton's method keeps frozen. */
+enum { DVI__LAST_H, DVI__NEWTON_STEPS, DVI__FULL_STEPS, DVI__NEWTON_WAIT, DVI__FULL_WAIT, DVI__LAST_Y };
+
+/* Where the forces stand in it. */
+size_t dvi__element_forces(const dvi__stepper *self);
+
+/* What it was made of. */
+dvi__action *dvi__element_action(const dvi__stepper *self);
+int dvi__element_solver(const dvi__stepper *self);
+
 /* The other operations of dvi__method, and what goes into its initialiser for them. */
 void dvi__element_destroy(dvi__stepper *self);
 void dvi__element_start(dvi__stepper *self, const double *v);
@@ -31,8 +43,14 @@ dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h);
 void dvi__element_path(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v);
 void dvi__element_explain(const dvi__stepper *self, dvi__text *text);
 
+/* Members side by side (element_lanes.c). */
+dvi_status dvi__element_prepare_lanes(dvi__stepper *self, int capacity);
+void dvi__element_clear_lanes(dvi__stepper *self);
+void dvi__element_step_lanes(dvi__stepper *self, dvi__members *members, double h);
+
 #define DVI__ELEMENT_OPERATIONS                                                                                                \
   .uses = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL, .destroy = dvi__element_destroy, .start = dvi__element_start, \
-  .step = dvi__element_step, .path = dvi__element_path, .explain = dvi__element_explain
+  .step = dvi__element_step, .path = dvi__element_path, .explain = dvi__element_explain,                                       \
+  .prepare_lanes = dvi__element_prepare_lanes, .clear_lanes = dvi__element_clear_lanes, .step_lanes = dvi__element_step_lanes
 
 #endif

@@ -177,6 +177,14 @@ static dvi_status refuse(dvi_integrator *I, double h, dvi_status status)
                       I->now.t, h, status > 0 ? "; the state is unchanged, try a smaller step" : "; the state is unchanged");
 }
 
+dvi_status dvi__check_step(double t, double h)
+{
+  if (!isfinite(h) || h == 0 || t + h == t)
+    return dvi__fail(DVI_BAD_ARGUMENT, "step: h = %g does not move the time from t = %.17g; a finite step other than 0 is needed",
+                     h, t);
+  return isnormal(h) ? DVI_OK : dvi__fail(DVI_BAD_ARGUMENT, "step: h = %g is so small that 1/h cannot be computed", h);
+}
+
 /* From `now` and memory_before to `next` and the stepper's memory. */
 static dvi_status advance(dvi_integrator *I, double h)
 {
@@ -193,10 +201,7 @@ dvi_status dvi_integrator_step(dvi_integrator *I, double h)
 {
   if (I == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "step: the integrator is NULL");
   if (!I->started) return dvi__fail(DVI_BAD_STATE, "step: the integrator has no state yet; call dvi_integrator_start first");
-  if (!isfinite(h) || h == 0 || I->now.t + h == I->now.t)
-    return dvi__fail(DVI_BAD_ARGUMENT, "step: h = %g does not move the time from t = %.17g; a finite step other than 0 is needed",
-                     h, I->now.t);
-  if (!isnormal(h)) return dvi__fail(DVI_BAD_ARGUMENT, "step: h = %g is so small that 1/h cannot be computed", h);
+  DVI_TRY(dvi__check_step(I->now.t, h));
   exchange_memory(I);
   const long before = dvi__allocation_count();
   const dvi_status status = advance(I, h);

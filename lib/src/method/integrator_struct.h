@@ -1,4 +1,4 @@
-/* The inside of an integrator, for integrator.c, checkpoint.c and run.c. */
+/* The inside of an integrator, for integrator.c, checkpoint.c, run.c and the ensemble's files. */
 #ifndef DVI_METHOD_INTEGRATOR_STRUCT_H
 #define DVI_METHOD_INTEGRATOR_STRUCT_H
 #include "method/method.h"
@@ -22,6 +22,9 @@ struct dvi_integrator {
 /* A guess of the velocity, for general Lagrangians: the last step's mean velocity, or the start's. It depends on nothing that a checkpoint does not
  * hold, so that a restored run gives the same digits. last_q [n], last_p [n]. */
 void dvi__guess_velocity(int n, const double *q, const double *last_q, const double *last_p, double last_h, double *v);
+
+/* DVI_BAD_ARGUMENT unless h is a step that moves the time from t. */
+dvi_status dvi__check_step(double t, double h);
 
 /* Take the last step back, once: it succeeded, but what followed did not. The status is passed on, the sentence named. */
 dvi_status dvi__integrator_undo(dvi_integrator *integrator, dvi_status status);

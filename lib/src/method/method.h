@@ -11,6 +11,16 @@ typedef struct dvi__state {
   double *q, *p, *q_carry, *p_carry; /* [n] */
 } dvi__state;
 
+/* Several members of an ensemble side by side, each a state with the method's memory: number i of member k is [i*count + k]. */
+typedef struct dvi__members {
+  int count;
+  double *t, *t_carry;                 /* [count] */
+  double *q, *p, *q_carry, *p_carry;   /* [n*count] */
+  double *memory;                      /* [memory_count*count] */
+  char *left;                          /* [count] not 0: this member is left to `step`; what stands here for it does not count */
+  long *residuals, *gradients, *fixed; /* [count] what the step took, as dvi_counters has it: residuals, gradients, fixed_points */
+} dvi__members;
+
 /* A key of a method's specification: a whole number, or one of a list of names. */
 typedef struct dvi__key {
   const char *name;
@@ -43,7 +53,8 @@ typedef struct dvi__stepper {
    * create; the memory is the driver's, who has two and exchanges them, and is there from the first start on. */
   double *memory;
   size_t memory_count;
-  void *own; /* the method's struct */
+  void *own;   /* the method's struct */
+  void *lanes; /* its struct for members side by side; NULL: each member steps on its own */
 } dvi__stepper;
 
 /* A growing text in memory of fixed size. */
@@ -76,11 +87,19 @@ struct dvi__method {
   /* q [n] and v [n] at tau in [0,1] of the last step, which started at q0 [n] with length h. NULL: Hermite's cubic. */
   void (*path)(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v);
   void (*explain)(const dvi__stepper *self, dvi__text *text);
+  /* Members as lanes; all three are NULL where there is no such way. prepare makes `lanes` for up to `capacity` members, if the system allows it
+   * and it pays. step advances all members that are not `left`, each with the bits and the counts of `step`, or leaves them to it. */
+  dvi_status (*prepare_lanes)(dvi__stepper *self, int capacity);
+  void (*clear_lanes)(dvi__stepper *self);
+  void (*step_lanes)(dvi__stepper *self, dvi__members *members, double h);
 };
 
 /* Make a stepper from a specification; it owns all that destroy frees. */
 dvi_status dvi__stepper_create(const dvi_system *system, const char *specification, dvi_counters *counters, dvi__stepper *stepper);
 void dvi__stepper_destroy(dvi__stepper *stepper);
+
+/* Let a stepper serve up to `capacity` members side by side, if its method can: lanes stays NULL if not. Once. */
+dvi_status dvi__stepper_prepare_lanes(dvi__stepper *stepper, int capacity);
 
 /* Parse a specification (settings.c). */
 dvi_status dvi__parse(const char *specification, const dvi__method **method, dvi__settings *settings);

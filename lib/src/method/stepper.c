@@ -43,8 +43,14 @@ dvi_status dvi__stepper_create(const dvi_system *system, const char *specificati
   return DVI_OK;
 }
 
+dvi_status dvi__stepper_prepare_lanes(dvi__stepper *stepper, int capacity)
+{
+  return stepper->method->prepare_lanes != NULL ? stepper->method->prepare_lanes(stepper, capacity) : DVI_OK;
+}
+
 void dvi__stepper_destroy(dvi__stepper *stepper)
 {
+  if (stepper->lanes != NULL) stepper->method->clear_lanes(stepper);
   if (stepper->method != NULL) stepper->method->destroy(stepper);
   *stepper = (dvi__stepper){0};
 }

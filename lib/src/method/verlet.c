@@ -10,7 +10,7 @@
 #include "action/wave.h"
 #include "core/memory.h"
 #include "core/status.h"
-#include "method/method.h"
+#include "method/verlet_lanes.h"
 #include "num/compensated.h"
 
 enum { SWEEP, THREADS };
@@ -96,7 +96,7 @@ static dvi_status gradient(dvi__stepper *self, const dvi__state *state)
 
 static void kick(const dvi__stepper *self, dvi__state *state, double h)
 {
-  dvi__lanes_kick((size_t)self->system->n, -h, self->memory, state->p, state->p_carry);
+  dvi__lanes_add_scaled((size_t)self->system->n, -h, self->memory, state->p, state->p_carry);
 }
 
 static void drift(const dvi__stepper *self, dvi__state *state, double h)
@@ -155,6 +155,19 @@ static double traffic(const dvi__stepper *self, int count)
   return own->wave != NULL ? dvi__wave_traffic(own->wave, count) : 0;
 }
 
+/* ---- members side by side ---- */
+
+/* A wave has coordinates as lanes: members gain only where these are too few to fill vectors, and who asks for waves gets them. */
+enum { FEW_COORDINATES = 16 };
+
+static dvi_status prepare_lanes(dvi__stepper *self, int capacity)
+{
+  const verlet *own = self->own;
+  const int asked = self->settings.value[SWEEP] == SWEEP_WAVE || self->settings.value[THREADS] > 1;
+  const int pays = own->wave == NULL || (!asked && self->system->n <= FEW_COORDINATES);
+  return pays ? dvi__verlet_prepare_lanes(self, capacity) : DVI_OK;
+}
+
 static void explain(const dvi__stepper *self, dvi__text *text)
 {
   const verlet *own = self->own;
@@ -182,4 +195,7 @@ const dvi__method dvi__verlet = {
     .pass = pass,
     .traffic = traffic,
     .explain = explain,
+    .prepare_lanes = prepare_lanes,
+    .clear_lanes = dvi__verlet_clear_lanes,
+    .step_lanes = dvi__verlet_step_lanes,
 };

@@ -1,35 +1,37 @@
 #include "num/lanes.h"
 
+#include <math.h>
 #include <stdatomic.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
+
+#include "num/width.h"
 
 int dvi__lanes_for(int stages)
 {
   return stages <= 2 ? stages : stages <= 4 ? 4 : (stages + 7) / 8 * 8;
 }
 
-#define INLINE static inline __attribute__((always_inline))
-#define JOIN(a, b) a##b
-#define JOIN_EXPANDED(a, b) JOIN(a, b)
-#define NAME(name) JOIN_EXPANDED(name, WIDTH)
-
 enum { FETCH_AHEAD = 1024 }; /* bytes: half of it is as good, twice as much is worse */
 
 #define WIDTH 1
+#include "num/vector_width.h"
 #include "num/lanes_width.h"
 #include "num/leap_width.h"
 #undef WIDTH
 #define WIDTH 2
+#include "num/vector_width.h"
 #include "num/lanes_width.h"
 #include "num/leap_width.h"
 #undef WIDTH
 #define WIDTH 4
+#include "num/vector_width.h"
 #include "num/lanes_width.h"
 #include "num/leap_width.h"
 #undef WIDTH
 #define WIDTH 8
+#include "num/vector_width.h"
 #include "num/lanes_width.h"
 #include "num/leap_width.h"
 #undef WIDTH
@@ -186,16 +188,16 @@ INLINE void leap(int widest, const dvi__leap *l)
     leap_by(widest, l, DVI__BY_ARRAY);
 }
 
-INLINE void kick(int widest, size_t count, double factor, const double *force, double *p, double *p_carry)
+INLINE void add_scaled(int widest, size_t count, double factor, const double *x, double *sum, double *carry)
 {
   size_t i = 0;
   if (widest == 8)
-    i = kick8(i, count, factor, force, p, p_carry);
+    i = add_scaled8(i, count, factor, x, sum, carry);
   else if (widest == 4)
-    i = kick4(i, count, factor, force, p, p_carry);
+    i = add_scaled4(i, count, factor, x, sum, carry);
   else
-    i = kick2(i, count, factor, force, p, p_carry);
-  (void)kick1(i, count, factor, force, p, p_carry);
+    i = add_scaled2(i, count, factor, x, sum, carry);
+  (void)add_scaled1(i, count, factor, x, sum, carry);
 }
 
 /* ---- instruction sets ---- */
@@ -211,7 +213,7 @@ typedef struct level {
   int (*all_finite)(size_t count, const double *x);
   double (*largest)(size_t count, const double *x);
   void (*leap)(const dvi__leap *l);
-  void (*kick)(size_t count, double factor, const double *force, double *p, double *p_carry);
+  void (*add_scaled)(size_t count, double factor, const double *x, double *sum, double *carry);
 } level;
 
 #define LEVEL(suffix, target, widest)                                                                                             \
@@ -251,9 +253,9 @@ typedef struct level {
   {                                                                                                                               \
     leap(widest, l);                                                                                                              \
   }                                                                                                                               \
-  target static void kick_##suffix(size_t count, double factor, const double *force, double *p, double *p_carry)                  \
+  target static void add_scaled_##suffix(size_t count, double factor, const double *x, double *sum, double *carry)                \
   {                                                                                                                               \
-    kick(widest, count, factor, force, p, p_carry);                                                                               \
+    add_scaled(widest, count, factor, x, sum, carry);                                                                             \
   }
 
 LEVEL(baseline, , 2)
@@ -264,12 +266,12 @@ LEVEL(avx512, __attribute__((target("fma,avx512f,avx512dq,avx512vl"))), 8)
 
 static const level levels[] = {
     {"baseline", sweep_baseline, weigh_baseline, split_baseline, begin_baseline, ends_baseline, product_baseline,
-     all_finite_baseline, largest_baseline, leap_baseline, kick_baseline},
+     all_finite_baseline, largest_baseline, leap_baseline, add_scaled_baseline},
 #ifdef __x86_64__
     {"avx2", sweep_avx2, weigh_avx2, split_avx2, begin_avx2, ends_avx2, product_avx2, all_finite_avx2, largest_avx2, leap_avx2,
-     kick_avx2},
+     add_scaled_avx2},
     {"avx512", sweep_avx512, weigh_avx512, split_avx512, begin_avx512, ends_avx512, product_avx512, all_finite_avx512,
-     largest_avx512, leap_avx512, kick_avx512},
+     largest_avx512, leap_avx512, add_scaled_avx512},
 #endif
 };
 
@@ -302,6 +304,11 @@ static const level *best(void)
   if (found != NULL) return found;
   dvi__lanes_choose(-1);
   return atomic_load_explicit(&chosen, memory_order_relaxed);
+}
+
+int dvi__lanes_level(void)
+{
+  return (int)(best() - levels);
 }
 
 void dvi__lanes_sweep(dvi__sweep *s)
@@ -349,7 +356,15 @@ void dvi__lanes_leap(const dvi__leap *leap)
   best()->leap(leap);
 }
 
-void dvi__lanes_kick(size_t count, double factor, const double *force, double *p, double *p_carry)
+void dvi__lanes_add_scaled(size_t count, double factor, const double *x, double *sum, double *carry)
 {
-  best()->kick(count, factor, force, p, p_carry);
+  best()->add_scaled(count, factor, x, sum, carry);
+}
+
+dvi__division dvi__division_by(double mass, double *scalar)
+{
+  int exponent;
+  const int power_of_two = fabs(frexp(mass, &exponent)) == 0.5 && isnormal(1 / mass);
+  *scalar = power_of_two ? 1 / mass : mass;
+  return power_of_two ? DVI__TIMES_SCALAR : DVI__BY_SCALAR;
 }

@@ -87,12 +87,18 @@ typedef struct dvi__leap {
 
 void dvi__lanes_leap(const dvi__leap *leap);
 
-/* p <- p + factor force, compensated. */
-void dvi__lanes_kick(size_t count, double factor, const double *force, double *p, double *p_carry);
+/* For one mass: the scalar and whether to divide by it. */
+dvi__division dvi__division_by(double mass, double *scalar);
+
+/* sum <- sum + factor x, compensated. */
+void dvi__lanes_add_scaled(size_t count, double factor, const double *x, double *sum, double *carry);
 
 /* The instruction sets, from the baseline (0) up; their count includes only those that this processor has. */
 int dvi__lanes_levels(void);
 const char *dvi__lanes_level_name(int level);
+
+/* The one in use. */
+int dvi__lanes_level(void);
 
 /* For tests: use this level from now on, on all threads; -1: the best. */
 void dvi__lanes_choose(int level);

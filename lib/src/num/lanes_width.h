@@ -1,44 +1,10 @@
-/* The loops of lanes.c for vectors of WIDTH numbers; it includes this once for each width.
- *
- * GCC and clang lower a vector that the target lacks to smaller ones, lane by lane: the same operations. Vectors are handed on by pointers: as
- * arguments they would have another calling convention on every target. */
-
-typedef double NAME(vector) __attribute__((vector_size(WIDTH * sizeof(double))));
-typedef int64_t NAME(mask) __attribute__((vector_size(WIDTH * sizeof(double))));
-
-/* largest <- max(largest, |x|), lane by lane; NaN is not seen. */
-INLINE void NAME(larger)(NAME(vector) * largest, const NAME(vector) * x)
-{
-  const NAME(mask) magnitude = (NAME(mask)) * x & INT64_MAX, take = (NAME(mask))((NAME(vector))magnitude > *largest);
-  *largest = (NAME(vector))((take & magnitude) | (~take & (NAME(mask)) * largest));
-}
+/* The loops of lanes.c for vectors of WIDTH numbers, after vector_width.h; it includes this once for each width. */
 
 INLINE double NAME(largest_of)(const NAME(vector) * x)
 {
   double largest = 0;
   for (int i = 0; i < WIDTH; i++) largest = (*x)[i] > largest ? (*x)[i] : largest;
   return largest;
-}
-
-INLINE void NAME(load)(const double *x, NAME(vector) * loaded)
-{
-  memcpy(loaded, x, sizeof *loaded);
-}
-
-/* The first `count` lanes, none if it is negative: of fewer than WIDTH in pieces of known size, for a call of memcpy costs more than all of them. */
-INLINE void NAME(store)(double *out, const NAME(vector) * x, int count)
-{
-  if (count >= WIDTH) {
-    memcpy(out, x, sizeof *x);
-    return;
-  }
-  const double *from = (const double *)x;
-  for (int piece = count > 0 ? WIDTH / 2 : 0; piece > 0; piece /= 2)
-    if (count & piece) {
-      memcpy(out, from, (size_t)piece * sizeof(double));
-      out += piece;
-      from += piece;
-    }
 }
 
 /* sum <- sum + matrix_k x_k in WIDTH lanes. */
@@ -135,7 +101,8 @@ INLINE void NAME(sweep_known)(dvi__sweep *sweep, const int stages)
     for (size_t i = 0; i < (size_t)s->n; i++) {
       const double *g = s->force + (size_t)stages * i;
       NAME(vector) four[4] = {{0}, {0}, {0}, {0}};
-      for (int j = 0; j < stages; j++) four[stages == 8 ? j % 4 : 0] += column[j] * g[j];
+      for (int j = 0; j < 4 && stages == 8; j++) four[j] = column[j] * g[j] + column[j + 4] * g[j + 4];
+      for (int j = 0; j < stages && stages < 8; j++) four[0] += column[j] * g[j];
       const NAME(vector) sum = (four[0] + four[1]) + (four[2] + four[3]);
       NAME(place)(s, i, b, &c, &sum, s->Z + 8 * i + b, s->Q + (size_t)stages * i + b, &change, &largest);
     }

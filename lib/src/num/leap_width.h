@@ -49,15 +49,15 @@ INLINE size_t NAME(leap)(const dvi__leap *whole, size_t i, const int kicks, cons
   return i;
 }
 
-INLINE size_t NAME(kick)(size_t i, size_t count, double factor, const double *force, double *p, double *carry)
+INLINE size_t NAME(add_scaled)(size_t i, size_t count, double factor, const double *x, double *sum, double *carry)
 {
   for (; i + WIDTH <= count; i += WIDTH) {
-    NAME(vector) f, sum, c;
-    NAME(load)(force + i, &f);
-    NAME(load)(p + i, &sum);
+    NAME(vector) term, s, c;
+    NAME(load)(x + i, &term);
+    NAME(load)(sum + i, &s);
     NAME(load)(carry + i, &c);
-    NAME(kick_by)(factor, &f, &sum, &c);
-    NAME(store)(p + i, &sum, WIDTH);
+    NAME(kick_by)(factor, &term, &s, &c);
+    NAME(store)(sum + i, &s, WIDTH);
     NAME(store)(carry + i, &c, WIDTH);
   }
   return i;

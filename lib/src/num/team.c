@@ -12,6 +12,9 @@
 /* Between two steps that follow each other a thread shall not fall asleep: waking it takes longer than this many looks. */
 enum { LOOKS = 1000, LOOKS_BEFORE_YIELDING = 200 };
 
+/* Of the items that are shared, for each member: many enough that all end together, few enough that taking them costs nothing. */
+enum { PORTIONS = 8 };
+
 typedef struct member {
   dvi__team *team;
   int number;
@@ -89,6 +92,30 @@ void dvi__team_run(dvi__team *team, int count, void (*work)(void *user, int memb
   (void)pthread_mutex_lock(&team->lock);
   while (atomic_load(&team->busy) > 0) (void)pthread_cond_wait(&team->end, &team->lock);
   (void)pthread_mutex_unlock(&team->lock);
+}
+
+typedef struct shared {
+  void (*work)(void *user, int member, int item);
+  void *user;
+  int count, portion; /* items that a member takes at once */
+  atomic_int next;
+} shared;
+
+static void take_items(void *user, int number)
+{
+  shared *items = user;
+  for (;;) {
+    const int first = atomic_fetch_add(&items->next, items->portion);
+    if (first >= items->count) return;
+    for (int i = first; i < items->count && i - first < items->portion; i++) items->work(items->user, number, i);
+  }
+}
+
+void dvi__team_share(dvi__team *team, int count, void (*work)(void *user, int member, int item), void *user)
+{
+  const int size = team->started + 1;
+  shared items = {.work = work, .user = user, .count = count, .portion = count / (PORTIONS * size) + 1};
+  dvi__team_run(team, size, take_items, &items);
 }
 
 /* The program's signals are for its own threads. */

@@ -69,6 +69,18 @@ dvi__linear_kind dvi__solver_linear_kind(const dvi__solver *solver)
  * roundings is it taken for noise. A patient user takes any gain; what no longer shrinks at all is noise. */
 static const dvi__pace paying = {0.35, 32 * DBL_EPSILON, 0.45, 0}, any_gain = {1.0, 1e4 * DBL_EPSILON, 1.0, 0};
 
+dvi__pace dvi__fixed_point_pace(int patient, int sweeps)
+{
+  dvi__pace pace = patient ? any_gain : paying;
+  pace.ahead = sweeps;
+  return pace;
+}
+
+int dvi__fixed_point_most(int patient)
+{
+  return patient ? MOST_PATIENT_ITERATIONS : MOST_FIXED_POINT_ITERATIONS;
+}
+
 /* One iteration: the largest correction, and the largest unknown. */
 static dvi_status iterate(dvi__solver *s, double *x, double *correction, double *whole)
 {
@@ -92,9 +104,8 @@ static dvi_status prepare(dvi__solver *s, const double *x)
 
 static dvi_status fixed_point(dvi__solver *s, double size, int patient, double *x, dvi__solve_report *report)
 {
-  const int most = patient ? MOST_PATIENT_ITERATIONS : MOST_FIXED_POINT_ITERATIONS;
-  dvi__pace pace = patient ? any_gain : paying;
-  pace.ahead = s->equations.sweep != NULL;
+  const int most = dvi__fixed_point_most(patient);
+  const dvi__pace pace = dvi__fixed_point_pace(patient, s->equations.sweep != NULL);
   dvi__trail trail = {0, 0};
   double whole;
   DVI_TRY(prepare(s, x));

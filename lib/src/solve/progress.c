@@ -1,7 +1,11 @@
 #include <float.h>
 #include <math.h>
+#include <stdint.h>
+#include <string.h>
 
 #include "num/finite.h"
+#include "num/lanes.h"
+#include "num/width.h"
 #include "solve/solver_struct.h"
 
 /* Corrections of a few roundings are at the floor, if the iteration's own part of them is well below a rounding. That part counts although the
@@ -13,29 +17,63 @@ static const double rounding = 4 * DBL_EPSILON, settled = 0.125 * DBL_EPSILON;
  * rounding does (5e-11), one of this part of it does not (2e-12, which is the roundings' own). The contraction is known only near the floor. */
 static const double unseen = DBL_EPSILON / 16384, near = 64 * DBL_EPSILON;
 
-static double smaller(double a, double b)
-{
-  return a < b ? a : b;
-}
+#define WIDTH 1
+#include "num/vector_width.h"
+#include "solve/progress_width.h"
+#undef WIDTH
+#define WIDTH 2
+#include "num/vector_width.h"
+#include "solve/progress_width.h"
+#undef WIDTH
+#define WIDTH 4
+#include "num/vector_width.h"
+#include "solve/progress_width.h"
+#undef WIDTH
 
-/* What is left of the iteration's error in a correction, by the contraction seen before. */
-static double expected(double correction, const dvi__trail *trail)
-{
-  if (trail->before == 0) return correction;
-  return smaller(correction, trail->last * smaller(trail->last / trail->before, 1));
-}
-
+/* Most corrections are far above the floor and shrink: for one problem that is cheaper to see than to compute. */
 dvi__progress dvi__judge(double correction, dvi__trail *trail, const dvi__pace *pace, double unknown, double size)
 {
-  const double last = trail->last, own = expected(correction, trail);
-  *trail = (dvi__trail){correction, last};
-  if (!isfinite(correction)) return DVI__STALLED;
-  if (correction <= rounding * unknown && own <= settled * unknown) return DVI__CONVERGED;
-  if (pace->ahead && last > 0 && correction <= near * unknown && expected(correction, trail) <= unseen * unknown)
-    return DVI__CONVERGED;
-  if (last == 0) return DVI__GO_ON;
-  if (correction >= pace->stagnant * last && correction <= pace->noise * (unknown + size)) return DVI__CONVERGED;
-  return correction > pace->slowest * last ? DVI__STALLED : DVI__GO_ON;
+  const dvi__trail before = *trail;
+  *trail = (dvi__trail){correction, before.last};
+  if (correction > near * unknown && correction < pace->stagnant * before.last && correction < pace->slowest * before.last)
+    return DVI__GO_ON;
+  const vector1 now = {correction}, last = {before.last}, older = {before.before}, whole = {unknown}, place = {size};
+  mask1 verdict;
+  judge1(&now, &last, &older, &whole, &place, pace, &verdict);
+  return (dvi__progress)verdict[0];
+}
+
+/* ---- many problems ---- */
+
+typedef void judge_many(int count, const double *correction, const double *unknown, const dvi__pace *pace,
+                        const dvi__trails *trails, int64_t *verdicts);
+
+#define LEVEL(suffix, target, width)                                                                                   \
+  target static void judge_##suffix(int count, const double *correction, const double *unknown, const dvi__pace *pace, \
+                                    const dvi__trails *trails, int64_t *verdicts)                                      \
+  {                                                                                                                    \
+    judge_from1(count, correction, unknown, pace, trails, verdicts,                                                    \
+                judge_from##width(count, correction, unknown, pace, trails, verdicts, 0));                             \
+  }
+
+LEVEL(baseline, , 2)
+#ifdef __x86_64__
+LEVEL(avx2, __attribute__((target("avx2"))), 4)
+#endif
+
+/* In the order of num/lanes.c. gcc 12 takes comparisons of 8 numbers apart, one by one. */
+static judge_many *const levels[] = {
+    judge_baseline,
+#ifdef __x86_64__
+    judge_avx2,
+    judge_avx2,
+#endif
+};
+
+void dvi__judge_all(int count, const double *correction, const double *unknown, const dvi__pace *pace, const dvi__trails *trails,
+                    int64_t *verdicts)
+{
+  levels[dvi__lanes_level()](count, correction, unknown, pace, trails, verdicts);
 }
 
 void dvi__correct(int count, const double *correction, double *x, double *largest_correction, double *largest_x)

@@ -2,6 +2,7 @@
 #ifndef DVI_SOLVE_SOLVER_STRUCT_H
 #define DVI_SOLVE_SOLVER_STRUCT_H
 #include "solve/nonlinear.h"
+#include "solve/progress.h"
 
 typedef struct dvi__kinsol dvi__kinsol;
 
@@ -29,25 +30,6 @@ void dvi__kinsol_destroy(dvi__kinsol **kinsol);
 /* Is x a solution by KINSOL's own test of its residual? */
 dvi_status dvi__kinsol_certify(dvi__kinsol *kinsol, double size, const double *x, int *certified, dvi__solve_report *report);
 dvi_status dvi__kinsol_solve(dvi__kinsol *kinsol, double size, double *x, dvi__solve_report *report);
-
-/* How far an iteration has come (progress.c). */
-typedef enum dvi__progress { DVI__GO_ON, DVI__CONVERGED, DVI__STALLED } dvi__progress;
-
-/* Ratios of a correction to the last one: above `stagnant` it is rounding noise if it is also below `noise` (relative to the numbers that are
- * added), above `slowest` the iteration is given up. */
-typedef struct dvi__pace {
-  double stagnant, noise, slowest;
-  int ahead; /* what counts is the next correction's own part: the step takes nothing from the point before the last */
-} dvi__pace;
-
-/* The corrections before the one at hand; 0: there was none. */
-typedef struct dvi__trail {
-  double last, before;
-} dvi__trail;
-
-/* Judge one correction and add it to the trail: converged at the roundoff floor, or stalled above it. `unknown` and `size` are the sizes of
- * the unknowns and of what they are added to. */
-dvi__progress dvi__judge(double correction, dvi__trail *trail, const dvi__pace *pace, double unknown, double size);
 
 /* After two corrections: is the guess so far off that another solution might be found? */
 int dvi__misleading(const dvi__trail *trail, double whole);

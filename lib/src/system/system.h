@@ -54,4 +54,11 @@ struct dvi_system {
  * several threads may call it at one time. DVI_BAD_SIZE if an int cannot count the entries. */
 dvi_status dvi__system_prepare_hessian(const dvi_system *system);
 
+/* Whether all potentials give their gradient: nothing is differenced for forces. */
+int dvi__system_has_gradients(const dvi_system *system);
+
+/* DVI_OK if one may stand in for the other in all that is made for it: they declare the same terms, masses, patterns, names and derivatives, and
+ * differ in what their callbacks compute alone. */
+dvi_status dvi__system_alike(const dvi_system *a, const dvi_system *b);
+
 #endif

@@ -1,0 +1,222 @@
+/* Making an ensemble: an integrator for each thread, and blocks of members that share a system. */
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "method/ensemble_struct.h"
+
+enum { THREADS_MOST = 1024, BLOCK_MOST = 65536 };
+
+/* Members side by side: as many as have room, with what an iteration needs beside them, in a cache of the first level, but enough to fill vectors
+ * and few enough to make use of a thread. */
+enum { SIDE_BY_SIDE_LEAST = 8, SIDE_BY_SIDE_MOST = 64, NUMBERS_SIDE_BY_SIDE = 2304 };
+
+static const dvi_system *system_of(const dvi_system *system, const dvi_ensemble_options *o, int member)
+{
+  return o->systems != NULL ? o->systems[member] : system;
+}
+
+static dvi_status check_systems(const dvi_ensemble_options *o)
+{
+  for (int k = 0; k < o->members; k++) {
+    if (o->systems[k] == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "ensemble: the system of member %d is NULL", k);
+    const dvi_status status = o->systems[k] != o->systems[0] ? dvi__system_alike(o->systems[0], o->systems[k]) : DVI_OK;
+    if (status != DVI_OK) return dvi__fail_in(status, "ensemble: the system of member %d is not like that of member 0", k);
+  }
+  return DVI_OK;
+}
+
+static dvi_status check(const dvi_system *system, const char *method, const dvi_ensemble_options *o)
+{
+  if (method == NULL || o == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "ensemble: the method or the options are NULL");
+  if (o->members < 1) return dvi__fail(DVI_BAD_SIZE, "ensemble: %d members asked, 1 or more are possible", o->members);
+  if (o->threads < 0 || o->threads > THREADS_MOST)
+    return dvi__fail(DVI_BAD_SIZE, "ensemble: %d threads asked, 1 to %d are possible (0: 1)", o->threads, THREADS_MOST);
+  if (o->block < 0 || o->block > BLOCK_MOST)
+    return dvi__fail(DVI_BAD_SIZE, "ensemble: blocks of %d asked, 1 to %d are possible (0: chosen)", o->block, BLOCK_MOST);
+  if ((system == NULL) == (o->systems == NULL))
+    return dvi__fail(DVI_BAD_ARGUMENT, "ensemble: %s; give one system, or options.systems",
+                     system == NULL ? "there is no system" : "two ways to name the systems are used");
+  return o->systems != NULL ? check_systems(o) : DVI_OK;
+}
+
+/* ---- workers ---- */
+
+/* Systems that differ in their callbacks share a thread's integrator: it is made for a copy, which takes the terms of each. The patterns of their
+ * Hessians, if the method needs them, must be complete before that: a first integrator tells. */
+static dvi_status prepare_systems(const dvi_ensemble_options *o, const char *method)
+{
+  dvi_integrator *first = NULL;
+  if (o->systems == NULL) return DVI_OK;
+  DVI_TRY(dvi_integrator_create(o->systems[0], method, &first));
+  dvi_integrator_destroy(&first);
+  for (int k = 0; k < o->members && o->systems[0]->qq.start != NULL; k++) DVI_TRY(dvi__system_prepare_hessian(o->systems[k]));
+  return DVI_OK;
+}
+
+void dvi__worker_bind(dvi__worker *w, const dvi_system *system)
+{
+  if (w->scene == NULL) return;
+  w->scene->potentials = system->potentials;
+  w->scene->lagrangian = system->lagrangian;
+  w->scene->symmetries = system->symmetries;
+  w->scene->invariants = system->invariants;
+}
+
+static dvi_status make_integrator(dvi__worker *w, const dvi_system *system, const char *method, const dvi_ensemble_options *o)
+{
+  if (o->systems != NULL) w->scene = dvi__duplicate(o->systems[0], 1, sizeof *w->scene);
+  if (o->systems != NULL && w->scene == NULL) return dvi__fail(DVI_NO_MEMORY, "ensemble: no memory");
+  DVI_TRY(dvi_integrator_create(w->scene != NULL ? w->scene : system, method, &w->integrator));
+  w->integrator->counters.allocations = 0; /* the ensemble counts those of its creation */
+  w->integrator->started = 1;              /* once the ensemble is */
+  return DVI_OK;
+}
+
+/* What a block's step needs. */
+static dvi_status make_room(const dvi_ensemble *e, dvi__worker *w)
+{
+  dvi__members *m = &w->members;
+  const size_t capacity = (size_t)e->capacity;
+  w->point[0] = DVI_NEW(double, e->n);
+  w->point[1] = DVI_NEW(double, e->n);
+  if (w->point[0] == NULL || w->point[1] == NULL) return dvi__fail(DVI_NO_MEMORY, "ensemble: no memory");
+  if (w->integrator->stepper.lanes == NULL) return DVI_OK;
+  w->numbers = DVI_NEW(double, e->state_numbers *capacity);
+  w->ahead = DVI_NEW(long, capacity);
+  w->absence = DVI_NEW(int, capacity);
+  m->left = DVI_NEW(char, capacity);
+  m->residuals = DVI_NEW(long, capacity);
+  m->gradients = DVI_NEW(long, capacity);
+  m->fixed = DVI_NEW(long, capacity);
+  if (w->numbers && w->ahead && w->absence && m->left && m->residuals && m->gradients && m->fixed) return DVI_OK;
+  return dvi__fail(DVI_NO_MEMORY, "ensemble: no memory for %d members side by side", e->capacity);
+}
+
+static void clear_worker(dvi__worker *w)
+{
+  dvi_integrator_destroy(&w->integrator);
+  dvi__release(w->scene);
+  dvi__release(w->numbers);
+  dvi__release(w->ahead);
+  dvi__release(w->absence);
+  dvi__release(w->members.left);
+  dvi__release(w->members.residuals);
+  dvi__release(w->members.gradients);
+  dvi__release(w->members.fixed);
+  dvi__release(w->point[0]);
+  dvi__release(w->point[1]);
+}
+
+/* What creation has counted is counted once, for any number of threads. */
+static dvi_status make_workers(dvi_ensemble *e, const dvi_system *system, const char *method, const dvi_ensemble_options *o)
+{
+  DVI_TRY(prepare_systems(o, method));
+  e->workers = DVI_NEW(dvi__worker, e->threads);
+  if (e->workers == NULL) return dvi__fail(DVI_NO_MEMORY, "ensemble: no memory for %d threads", e->threads);
+  for (int i = 0; i < e->threads; i++) {
+    DVI_TRY(make_integrator(&e->workers[i], system, method, o));
+    if (i > 0) e->workers[i].integrator->counters = (dvi_counters){0};
+  }
+  return DVI_OK;
+}
+
+/* ---- blocks ---- */
+
+static int smaller(int a, int b)
+{
+  return a < b ? a : b;
+}
+
+/* A share for every thread, in whole vectors. */
+static int choose_capacity(const dvi_ensemble *e, const dvi_ensemble_options *o)
+{
+  if (o->block > 0) return smaller(o->block, o->members);
+  const int share = (o->members - 1) / e->threads + 1, room = (int)(NUMBERS_SIDE_BY_SIDE / e->state_numbers) / 8 * 8;
+  const int chosen = room > SIDE_BY_SIDE_LEAST ? smaller(room, SIDE_BY_SIDE_MOST) : SIDE_BY_SIDE_LEAST;
+  return smaller(smaller(chosen, (share - 1) / 8 * 8 + 8), o->members);
+}
+
+/* The number of blocks; with `blocks`, they are written. */
+static int cut_blocks(const dvi_ensemble *e, const dvi_system *system, const dvi_ensemble_options *o, dvi__block *blocks)
+{
+  int count = 0;
+  for (int first = 0, end; first < o->members; first = end, count++) {
+    const dvi_system *of = system_of(system, o, first);
+    for (end = first + 1; end < o->members && end - first < e->capacity && system_of(system, o, end) == of;) end++;
+    if (blocks != NULL) blocks[count] = (dvi__block){first, end - first, of, e->numbers + (size_t)first * e->member_numbers};
+  }
+  return count;
+}
+
+static void measure_member(dvi_ensemble *e)
+{
+  const size_t n = (size_t)e->n;
+  e->state_numbers = DVI__MEMBER_Q + 4 * n + e->workers[0].integrator->stepper.memory_count;
+  e->member_numbers = e->state_numbers + DVI__MEMBER_LAST + (e->system_is_general ? n : 0);
+}
+
+/* Where members go one after the other, what is one member's should stand together: a block for each. */
+static dvi_status make_lanes(dvi_ensemble *e, const dvi_ensemble_options *o)
+{
+  e->capacity = choose_capacity(e, o);
+  for (int i = 0; i < e->threads; i++) DVI_TRY(dvi__stepper_prepare_lanes(&e->workers[i].integrator->stepper, e->capacity));
+  if (e->workers[0].integrator->stepper.lanes == NULL && o->block == 0) e->capacity = 1;
+  for (int i = 0; i < e->threads; i++) DVI_TRY(make_room(e, &e->workers[i]));
+  return DVI_OK;
+}
+
+static dvi_status make_blocks(dvi_ensemble *e, const dvi_system *system, const dvi_ensemble_options *o)
+{
+  e->block_count = cut_blocks(e, system, o, NULL);
+  e->numbers = DVI_NEW(double, (size_t)e->members * e->member_numbers);
+  e->blocks = DVI_NEW(dvi__block, e->block_count);
+  e->status = DVI_NEW(dvi_status, e->members);
+  if (e->numbers == NULL || e->blocks == NULL || e->status == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "ensemble: no memory for %d members", e->members);
+  (void)cut_blocks(e, system, o, e->blocks);
+  return DVI_OK;
+}
+
+static dvi_status fill(dvi_ensemble *e, const dvi_system *system, const char *method, const dvi_ensemble_options *o)
+{
+  DVI_TRY(make_workers(e, system, method, o));
+  measure_member(e);
+  DVI_TRY(make_lanes(e, o));
+  DVI_TRY(make_blocks(e, system, o));
+  return dvi__team_create(e->threads, &e->team);
+}
+
+dvi_status dvi_ensemble_create(const dvi_system *system, const char *method, const dvi_ensemble_options *options,
+                               dvi_ensemble **ensemble)
+{
+  if (ensemble == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "ensemble: no place for the result");
+  *ensemble = NULL;
+  DVI_TRY(check(system, method, options));
+  const long before = dvi__allocation_count();
+  dvi_ensemble *e = DVI_NEW(dvi_ensemble, 1);
+  if (e == NULL) return dvi__fail(DVI_NO_MEMORY, "ensemble: no memory");
+  e->members = options->members;
+  e->threads = smaller(options->threads > 0 ? options->threads : 1, options->members);
+  e->n = system_of(system, options, 0)->n;
+  e->system_is_general = system_of(system, options, 0)->lagrangian != NULL;
+  const dvi_status status = fill(e, system, method, options);
+  e->allocations = dvi__allocation_count() - before;
+  if (status != DVI_OK) dvi_ensemble_destroy(&e);
+  *ensemble = e;
+  return status;
+}
+
+void dvi_ensemble_destroy(dvi_ensemble **ensemble)
+{
+  if (ensemble == NULL || *ensemble == NULL) return;
+  dvi_ensemble *e = *ensemble;
+  dvi__team_destroy(&e->team);
+  for (int i = 0; i < e->threads && e->workers != NULL; i++) clear_worker(&e->workers[i]);
+  dvi__release(e->workers);
+  dvi__release(e->blocks);
+  dvi__release(e->numbers);
+  dvi__release(e->status);
+  dvi__release(e);
+  *ensemble = NULL;
+}

@@ -1,0 +1,156 @@
+/* The loops of members.c for vectors of WIDTH numbers, after vector_width.h; it includes this once for each width. The last few of a row are done
+ * one by one, by the same functions at WIDTH 1. */
+
+/* sum <- sum + matrix_k x_k, with x_k and x_(k+1) `width` apart. */
+INLINE void NAME(add_term)(int lanes, const double *matrix, int width, const double *x, int k, NAME(vector) * sum)
+{
+  NAME(vector) value;
+  NAME(load)(x + (size_t)k * (size_t)width, &value);
+  *sum += value * matrix[(size_t)k * (size_t)lanes];
+}
+
+/* sum_k matrix_k x_k; long ones as four sums. */
+INLINE void NAME(row)(int terms, int lanes, const double *matrix, int width, const double *x, NAME(vector) * out)
+{
+  NAME(vector) sum[4] = {{0}, {0}, {0}, {0}};
+  int k = 0;
+  for (; terms >= 8 && k + 4 <= terms; k += 4)
+    for (int j = 0; j < 4; j++) NAME(add_term)(lanes, matrix, width, x, k + j, &sum[j]);
+  for (; k < terms; k++) NAME(add_term)(lanes, matrix, width, x, k, &sum[0]);
+  *out = terms >= 8 ? (sum[0] + sum[1]) + (sum[2] + sum[3]) : sum[0];
+}
+
+/* Eight terms of a sweep: as in lanes_width.h nothing is added to zero, which would take the sign from one. */
+INLINE void NAME(row_of_eight)(const double *matrix, int width, const double *x, NAME(vector) * out)
+{
+  NAME(vector) four[4];
+  for (int j = 0; j < 4; j++) {
+    NAME(load)(x + (size_t)j * (size_t)width, &four[j]);
+    four[j] *= matrix[8 * j];
+    NAME(add_term)(8, matrix, width, x, j + 4, &four[j]);
+  }
+  *out = (four[0] + four[1]) + (four[2] + four[3]);
+}
+
+/* WIDTH members, from member m on, of coordinate i. */
+INLINE void NAME(product_at)(int terms, int lanes, int rows, const double *matrix, int width, const double *x, double *out)
+{
+  for (int j = 0; j < rows; j++) {
+    NAME(vector) sum;
+    NAME(row)(terms, lanes, matrix + j, width, x, &sum);
+    NAME(store)(out + (size_t)j * (size_t)width, &sum, WIDTH);
+  }
+}
+
+INLINE int NAME(product)(int n, int terms, int lanes, int rows, const double *matrix, int width, const double *x, double *out,
+                         int m)
+{
+  for (; m + WIDTH <= width; m += WIDTH)
+    for (size_t i = 0; i < (size_t)n; i++) NAME(product_at)
+  (terms, lanes, rows, matrix, width, x + i * (size_t)terms * (size_t)width + m, out + i * (size_t)rows * (size_t)width + m);
+  return m;
+}
+
+/* ---- sweeps ---- */
+
+/* What WIDTH members have at one coordinate. */
+typedef struct NAME(base) {
+  NAME(vector) start, low, origin;
+  double factor;
+} NAME(base);
+
+INLINE void NAME(load_base)(const dvi__members_sweep *s, size_t i, int m, NAME(base) * base)
+{
+  const size_t at = i * (size_t)s->width + (size_t)m;
+  NAME(load)(s->start + at, &base->start);
+  NAME(load)(s->low + at, &base->low);
+  NAME(load)(s->origin + at, &base->origin);
+  base->factor = s->factor[i];
+}
+
+/* One stage: from its sum of forces to its offset and place. */
+INLINE void NAME(place)(const NAME(base) * base, double node, const NAME(vector) * sum, NAME(vector) * next, double *Z, double *Q)
+{
+  *next = base->start * node + (base->factor * *sum + base->low * node);
+  const NAME(vector) place = base->origin + *next;
+  NAME(store)(Z, next, WIDTH);
+  NAME(store)(Q, &place, WIDTH);
+}
+
+/* Z holds the sums of forces. */
+INLINE int NAME(begin)(const dvi__members_sweep *s, int m)
+{
+  const size_t width = (size_t)s->width, stages = (size_t)s->stages;
+  for (; m + WIDTH <= s->width; m += WIDTH)
+    for (size_t i = 0; i < (size_t)s->n; i++) {
+      NAME(base) base;
+      NAME(load_base)(s, i, m, &base);
+      for (size_t j = 0; j < stages; j++) {
+        const size_t at = (i * stages + j) * width + (size_t)m;
+        NAME(vector) sum, next;
+        NAME(load)(s->Z + at, &sum);
+        NAME(place)(&base, s->node[j], &sum, &next, s->Z + at, s->Q + at);
+      }
+    }
+  return m;
+}
+
+/* WIDTH members of one coordinate: all forces are weighed, then the stages move. */
+INLINE void NAME(sweep_at)(const dvi__members_sweep *s, const int stages, size_t i, int m, NAME(vector) * change,
+                           NAME(vector) * largest)
+{
+  const size_t width = (size_t)s->width, at = i * (size_t)stages * width + (size_t)m;
+  double *restrict force = s->force + at, *restrict Z = s->Z + at, *restrict Q = s->Q + at;
+  NAME(base) base;
+  NAME(load_base)(s, i, m, &base);
+  for (size_t j = 0; j < (size_t)stages; j++) {
+    NAME(vector) value;
+    NAME(load)(force + j * width, &value);
+    value = value * s->weight[j];
+    NAME(store)(force + j * width, &value, WIDTH);
+  }
+  for (size_t j = 0; j < (size_t)stages; j++) {
+    NAME(vector) sum, before, next;
+    if (stages == 8)
+      NAME(row_of_eight)(s->matrix + j, s->width, force, &sum);
+    else
+      NAME(row)(stages, s->lanes, s->matrix + j, s->width, force, &sum);
+    NAME(load)(Z + j * width, &before);
+    NAME(place)(&base, s->node[j], &sum, &next, Z + j * width, Q + j * width);
+    const NAME(vector) moved = before - next;
+    NAME(larger)(change, &moved);
+    NAME(larger)(largest, &next);
+  }
+}
+
+INLINE int NAME(sweep)(const dvi__members_sweep *s, const int stages, int m)
+{
+  for (; m + WIDTH <= s->width; m += WIDTH) {
+    NAME(vector) change = {0}, largest = {0};
+    for (size_t i = 0; i < (size_t)s->n; i++) NAME(sweep_at)(s, stages, i, m, &change, &largest);
+    NAME(store)(s->change + m, &change, WIDTH);
+    NAME(store)(s->largest + m, &largest, WIDTH);
+  }
+  return m;
+}
+
+/* ---- ends ---- */
+
+/* sum_j g_j, and sum_j slant_j g_j in the place of `low`. */
+INLINE int NAME(sums)(const dvi__members_ends *e, int m)
+{
+  const size_t width = (size_t)e->width, stages = (size_t)e->stages;
+  for (; m + WIDTH <= e->width; m += WIDTH)
+    for (size_t i = 0; i < (size_t)e->n; i++) {
+      NAME(vector) sum = {0}, slanted = {0};
+      for (size_t j = 0; j < stages; j++) {
+        NAME(vector) g;
+        NAME(load)(e->g + (i * stages + j) * width + m, &g);
+        sum += g;
+        slanted += e->slant[j] * g;
+      }
+      NAME(store)(e->sum + i * width + m, &sum, WIDTH);
+      NAME(store)(e->low + i * width + m, &slanted, WIDTH);
+    }
+  return m;
+}

@@ -1,0 +1,39 @@
+/* How far an iteration has come: one verdict for the solver's own loops, and for loops over many problems side by side, which must stop where
+ * each of them would stop alone. */
+#ifndef DVI_SOLVE_PROGRESS_H
+#define DVI_SOLVE_PROGRESS_H
+#include <stdint.h>
+
+typedef enum dvi__progress { DVI__GO_ON, DVI__CONVERGED, DVI__STALLED } dvi__progress;
+
+/* Ratios of a correction to the last one: above `stagnant` it is rounding noise if it is also below `noise` (relative to the numbers that are
+ * added), above `slowest` the iteration is given up. */
+typedef struct dvi__pace {
+  double stagnant, noise, slowest;
+  int ahead; /* what counts is the next correction's own part: the step takes nothing from the point before the last */
+} dvi__pace;
+
+/* The corrections before the one at hand; 0: there was none. */
+typedef struct dvi__trail {
+  double last, before;
+} dvi__trail;
+
+/* Judge one correction and add it to the trail: converged at the roundoff floor, or stalled above it. `unknown` and `size` are the sizes of
+ * the unknowns and of what they are added to. */
+dvi__progress dvi__judge(double correction, dvi__trail *trail, const dvi__pace *pace, double unknown, double size);
+
+/* Iterations of many problems, [count] each: what they have gone through, and their sizes. */
+typedef struct dvi__trails {
+  double *last, *before; /* as a dvi__trail has them */
+  double *size;
+} dvi__trails;
+
+/* The same for all of them: verdicts[k] is dvi__judge's on problem k. */
+void dvi__judge_all(int count, const double *correction, const double *unknown, const dvi__pace *pace, const dvi__trails *trails,
+                    int64_t *verdicts);
+
+/* What the fixed point rung (nonlinear.h) judges by, with `patient` as there; `sweeps`: by the equations' own variables. Its most iterations. */
+dvi__pace dvi__fixed_point_pace(int patient, int sweeps);
+int dvi__fixed_point_most(int patient);
+
+#endif

@@ -1,0 +1,40 @@
+/* Which systems may stand in for one another. */
+#include "core/status.h"
+#include "system/term.h"
+
+int dvi__system_has_gradients(const dvi_system *system)
+{
+  for (int p = 0; p < system->potential_count; p++)
+    if (!dvi__potential_has_gradient(&system->potentials[p])) return 0;
+  return 1;
+}
+
+static int same_ranges(const dvi_system *a, const dvi_system *b)
+{
+  for (int p = 0; p < a->potential_count; p++) {
+    const dvi_potential *here = &a->potentials[p].callbacks, *there = &b->potentials[p].callbacks;
+    if ((here->gradient_range != NULL) != (there->gradient_range != NULL) || here->reach != there->reach) return 0;
+  }
+  return 1;
+}
+
+static int same_derivatives(const dvi_system *a, const dvi_system *b)
+{
+  for (int p = 0; p < a->potential_count; p++)
+    if (dvi__potential_has_gradient(&a->potentials[p]) != dvi__potential_has_gradient(&b->potentials[p]) ||
+        dvi__potential_has_hessian(&a->potentials[p]) != dvi__potential_has_hessian(&b->potentials[p]))
+      return 0;
+  return a->lagrangian == NULL || (dvi__general_has_gradient(a->lagrangian) == dvi__general_has_gradient(b->lagrangian) &&
+                                   dvi__general_has_hessian(a->lagrangian) == dvi__general_has_hessian(b->lagrangian));
+}
+
+dvi_status dvi__system_alike(const dvi_system *a, const dvi_system *b)
+{
+  /* The sizes stand before what they say how much of there is. */
+  if (a->n != b->n || a->terms != b->terms || a->potential_count != b->potential_count || a->hash != b->hash)
+    return dvi__fail(DVI_BAD_ARGUMENT, "the systems declare different terms, masses, patterns or names");
+  if (!same_ranges(a, b))
+    return dvi__fail(DVI_BAD_ARGUMENT, "a gradient_range is given in one of the systems alone, or they differ in its reach");
+  if (same_derivatives(a, b)) return DVI_OK;
+  return dvi__fail(DVI_BAD_ARGUMENT, "a derivative is given in one of the systems and differenced in the other");
+}
