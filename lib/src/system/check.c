@@ -143,7 +143,8 @@ static dvi_status compare_range(check *c, const dvi__potential_term *p, int firs
     if (!same_bits(whole[first + i], part[i])) c->range = (broken_range){p, first + i, 0, first, last, whole[first + i], part[i]};
   if (c->range.row < 0 && !isnan(part[count]))
     c->range = (broken_range){.term = p, .row = last, .outside = 1, .first = first, .last = last};
-  if (c->range.row < 0 && !isnan(part[-1])) c->range = (broken_range){.term = p, .row = first, .outside = -1, .first = first, .last = last};
+  if (c->range.row < 0 && !isnan(part[-1]))
+    c->range = (broken_range){.term = p, .row = first, .outside = -1, .first = first, .last = last};
   return DVI_OK;
 }
 
