@@ -10,26 +10,33 @@
 static const struct {
   const char *name;
   axis_kind kind;
+  bool parallel;
 } reserved[] = {
-    {"degree", AXIS_KEY},
+    {"degree", AXIS_KEY, false},
+    {"threads", AXIS_KEY, true},
 };
 enum { RESERVED = sizeof reserved / sizeof *reserved };
 
-static axis_kind kind_of(const char *name)
+static void classify(scale_axis *axis)
 {
+  axis->kind = AXIS_PARAMETER;
+  axis->parallel = false;
   for (int i = 0; i < RESERVED; i++)
-    if (strcmp(reserved[i].name, name) == 0) return reserved[i].kind;
-  return AXIS_PARAMETER;
+    if (strcmp(reserved[i].name, axis->name) == 0) {
+      axis->kind = reserved[i].kind;
+      axis->parallel = reserved[i].parallel;
+    }
 }
 
 int axis_read(const char *text, scale_axis *axis)
 {
   const size_t length = strcspn(text, "=");
   if (text[length] == '\0' || length == 0 || length >= AXIS_NAME_SIZE)
-    return usage_error("bench: --scale wants a parameter of the problem, or degree, and its values, NAME=V1,V2,..., not '%s'",
-                       text);
+    return usage_error(
+        "bench: --scale wants a parameter of the problem, degree, threads or members, and its values, NAME=V1,V2,..., not '%s'",
+        text);
   (void)snprintf(axis->name, sizeof axis->name, "%.*s", (int)length, text);
-  axis->kind = kind_of(axis->name);
+  classify(axis);
   const int code = numbers_read("bench: --scale", text + length + 1, &axis->values);
   if (code == DONE && axis->values.count < 2)
     return usage_error("bench: --scale needs two values at least: with %s there is nothing to compare", text);

@@ -1,7 +1,7 @@
 /** What dvi bench --scale varies: a parameter of the problem, which makes it grow, or a key of the methods. */
 #ifndef AXIS_H
 #define AXIS_H
-#include <stddef.h>
+#include <stdbool.h>
 
 #include "numbers.h"
 #include "options.h"
@@ -18,11 +18,12 @@ typedef enum axis_kind {
 /** The name and its values. */
 typedef struct scale_axis {
   axis_kind kind;
+  bool parallel; /**< its values are numbers of threads: elapsed time counts, and what it gains against the first */
   char name[AXIS_NAME_SIZE];
   numbers values;
 } scale_axis;
 
-/** Read "ell=100,1000" or "degree=2,4,8". Returns DONE, or complains and returns USAGE. */
+/** Read "ell=100,1000", "degree=2,4,8" or "threads=1,2". Returns DONE, or complains and returns USAGE. */
 int axis_read(const char *text, scale_axis *axis);
 
 /** Make the problem at value k; `settings` has room for one more; `one_point` as open_shaped has it. Returns DONE, or complains and returns the exit code. */

@@ -272,6 +272,7 @@ static int scale_problem(const bench_request *r)
                                  .one_point = r->one_point,
                                  .h = r->h,
                                  .rounds = r->rounds,
+                                 .steps = r->steps,
                                  .csv = r->outputs.csv,
                                  .plot = r->outputs.plot};
   return members_asked(r->scale) ? members_run(&request) : scale_run(&request);

@@ -30,6 +30,8 @@ static int check_modes(const bench_request *r)
 {
   static const char reason[] = "--scale measures single steps";
   if (r->scale == NULL && !isnan(r->h)) return usage_error("bench: --h goes with --scale; else the steps are chosen by the error");
+  if (r->scale == NULL && r->steps > 0)
+    return usage_error("bench: --steps goes with --scale; else their number follows from the error");
   if (r->outputs.at_csv != NULL && r->at == NULL) return usage_error("bench: --at-csv needs the errors: --at 1e-6,1e-9");
   if (r->scale == NULL) return DONE;
   if (r->at != NULL) return usage_error("bench: %s: --at has no meaning there", reason);
@@ -64,8 +66,7 @@ static int check_request(bench_request *request)
   return code == DONE ? check_outputs(&request->outputs) : code;
 }
 
-static const char details[] =
-    "\n"
+static const char *const details[] = {
     "Columns: integrator,problem,setting,error,energy_error,cpu_seconds,evaluations,cpu_lower,cpu_upper,steps,create_seconds,\n"
     "calibration_seconds,calibration_least (the last two in CSV alone).\n"
     "  setting       h=STEP of a method, tol=TOLERANCE of a peer\n"
@@ -78,19 +79,16 @@ static const char details[] =
     "  cpu_lower, cpu_upper   quartiles over the rounds\n"
     "  steps         of a peer those that it chose\n"
     "  create_seconds   the part of cpu_seconds that creates the integrator; empty for peers\n"
-    "  calibration_seconds, calibration_least   of 1e8 dependent multiplications: median and least over the rounds\n"
-    "\n"
+    "  calibration_seconds, calibration_least   of 1e8 dependent multiplications: median and least over the rounds\n",
     "--against: cvode (cvode-adams), cvode-bdf, arkode and ida of SUNDIALS; gsl is GSL's rk8pd, in builds with DVI_GSL.\n"
     "They run at tolerances from 1e-4 to 1e-12, and down to 1e-14 if --at asks for more. Every integrator gets the same\n"
-    "callbacks: batches, or one point a call with --one-point (peers always ask for one point).\n"
-    "\n"
+    "callbacks: batches, or one point a call with --one-point (peers always ask for one point).\n",
     "--judge: exact (the exact solution); stored (a quadruple-precision result, for the problem's own parameters and some\n"
     "ends); ida (IDA at two tolerances); runs (two runs, galerkin of degree 16 and of degree 12 with other steps, refined\n"
     "until two levels of both come no closer: the largest distance is the judge's error, and a method's error is its\n"
     "distance from the farther run, so that degree 16 is not judged by itself alone). auto takes exact, else stored, else\n"
     "IDA; where IDA's error is above a tenth of the smallest error of --at (1e-10 without --at) it takes the runs, with\n"
-    "IDA as their witness. The report names the judge and its error.\n"
-    "\n"
+    "IDA as their witness. The report names the judge and its error.\n",
     "--at: for each integrator, seconds and evaluations at these errors. Of its settings those count that no other one\n"
     "beats in both error and cost; between two neighbours the logarithms are interpolated, beyond the ends nothing is.\n"
     "Unless --levels is given, smaller steps follow until the smallest of these errors is met, and while they get\n"
@@ -98,23 +96,31 @@ static const char details[] =
     "answer,create_seconds,calibration_seconds,calibration_least.\n"
     "  judged        yes; no if the judge's own error is above a tenth of the asked one\n"
     "  ratio         seconds over those of the fastest integrator at this error\n"
-    "  answer        interpolated; at most (the cheapest setting is already better); not reached\n"
-    "\n"
+    "  answer        interpolated; at most (the cheapest setting is already better); not reached\n",
     "--scale: what is varied, and the values at which a step is measured: a parameter that changes the number of\n"
-    "coordinates n, or degree, a key that every --method gets. The exponents of cost against n or the degree are printed.\n"
-    "The first 32 steps from the start are run again and again. Columns: method,problem,parameter,value,n,h,step_seconds,\n"
-    "step_lower,step_upper,bytes,step_evaluations,step_residuals,step_factorizations,calibration_seconds,calibration_least;\n"
-    "bytes is what the integrator holds of the heap (mallinfo2; empty where there is no such function).\n"
-    "\n"
+    "coordinates n, or degree or threads, keys that every --method gets. The exponents of cost against n or the degree are\n"
+    "printed; with threads elapsed time is measured, and the speed-up is printed. The first 32 (--steps) steps from the\n"
+    "start are run again and again. Columns: method,problem,parameter,value,n,h,step_seconds,step_lower,step_upper,bytes,\n"
+    "step_evaluations,step_residuals,step_factorizations,calibration_seconds,calibration_least; bytes is what the\n"
+    "integrator holds of the heap (mallinfo2; empty where there is no such function). Of methods that know how many bytes a\n"
+    "step moves, those of a second are printed beside what an in-place axpy, y <- y + a x, of as many numbers moves on one\n"
+    "thread in the same round.\n",
+    "--scale members=1,64,4096: members of an ensemble instead, near the problem's start, beside runs one after the other.\n"
+    "The first 64 (--steps) steps, the start included. Columns: method,problem,members,n,h,step_seconds,step_lower,\n"
+    "step_upper,alone_seconds,alone_lower,alone_upper,gain,step_evaluations; seconds are those of one step of one member,\n"
+    "on one thread, and gain is their ratio.\n",
     "Processor, compiler and flags are printed, and the time of 1e8 dependent multiplications, measured once a round:\n"
     "it tells times of two machines or two hours apart. Debian's packages of SUNDIALS are built without optimisation: its\n"
-    "codes are several times slower in them than they can be.\n"
-    "\n"
+    "codes are several times slower in them than they can be.\n",
     "Examples:\n"
     "  dvi bench kepler --against cvode,arkode,ida --at 1e-6,1e-9 --plot bench.svg\n"
     "  dvi bench outer-solar --t-end 500000 --method galerkin:degree=8 --method galerkin:degree=8,solver=certified --at 1e-9\n"
     "  dvi bench fpu --method galerkin:degree=2 --method galerkin:degree=4 --scale ell=100,1000,10000\n"
-    "  dvi bench fpu --method galerkin --scale degree=1,2,4,8,16\n";
+    "  dvi bench fpu --method galerkin --scale degree=1,2,4,8,16\n"
+    "  dvi bench chain --set n=1e6 --method verlet --method composition:order=8 --scale threads=1,2\n"
+    "  dvi bench kepler --method verlet --method galerkin:degree=2 --scale members=1,64,4096\n",
+    NULL,
+};
 
 bool bench_request_read(int argc, char **argv, bench_request *r, int *exit_code)
 {
@@ -129,8 +135,12 @@ bool bench_request_read(int argc, char **argv, bench_request *r, int *exit_code)
       {.name = "scale",
        .word = &r->scale,
        .value = "NAME=V,V...",
-       .help = "measure steps instead, as a parameter or the degree grows"},
+       .help = "measure steps instead, as a parameter, the degree, the threads or an ensemble grow"},
       {.name = "h", .number = &r->h, .value = "H", .help = "the step of --scale; left out: the problem's"},
+      {.name = "steps",
+       .count = &r->steps,
+       .value = "N",
+       .help = "how many steps --scale times at once; left out: 32, 64 of members"},
       {.name = "levels",
        .count = &r->levels,
        .value = "N",

@@ -18,6 +18,7 @@ typedef struct bench_request {
   double t_end, h; /**< NaN: the problem's */
   long levels;     /**< 0: chosen, and more may follow */
   long rounds;
+  long steps; /**< of --scale, 0: its own */
   words methods, settings, against;
   peer_list peers;
   judge_kind judge;

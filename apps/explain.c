@@ -62,6 +62,13 @@ static int explain(const problem *scene, const char *method)
   return code;
 }
 
+static const char *const details[] = {
+    "Examples:\n"
+    "  dvi explain kepler --method galerkin:degree=4\n"
+    "  dvi explain fpu --method midpoint --set ell=1000\n",
+    NULL,
+};
+
 int explain_command(int argc, char **argv)
 {
   const char *method = NULL;
@@ -77,9 +84,7 @@ int explain_command(int argc, char **argv)
       .operand = "PROBLEM",
       .summary = "Say which terms a problem has, and which kernel, solver and sparsity a method chooses for it, and why.\n",
       .options = options,
-      .details = "\nExamples:\n"
-                 "  dvi explain kepler --method galerkin:degree=4\n"
-                 "  dvi explain fpu --method midpoint --set ell=1000\n",
+      .details = details,
   };
   const char *name;
   int code;

@@ -95,6 +95,15 @@ static int write_csv(const result_table *table, const char *path)
   return file_keep(&csv) ? DONE : FAILED;
 }
 
+static const char *const details[] = {
+    "CSV columns: method,summary,source,keys or problem,summary,parameters; keys and parameters are\n"
+    "separated by blanks, parameters stand with their defaults.\n",
+    "Examples:\n"
+    "  dvi list methods\n"
+    "  dvi list problems --csv -\n",
+    NULL,
+};
+
 int list_command(int argc, char **argv)
 {
   const char *csv = NULL;
@@ -105,11 +114,7 @@ int list_command(int argc, char **argv)
       .operand = "methods or problems",
       .summary = "List the methods with the keys of their specifications, or the problems with their parameters.\n",
       .options = options,
-      .details = "\nCSV columns: method,summary,source,keys or problem,summary,parameters; keys and parameters are\n"
-                 "separated by blanks, parameters stand with their defaults.\n\n"
-                 "Examples:\n"
-                 "  dvi list methods\n"
-                 "  dvi list problems --csv -\n",
+      .details = details,
   };
   const char *what;
   int code;

@@ -42,7 +42,8 @@ static void print_help(const command_line *command)
     const int width = printf("  --%s%s%s", o->name, o->value != NULL ? " " : "", o->value != NULL ? o->value : "");
     (void)printf("%*s%s\n", width < HELP_COLUMN ? HELP_COLUMN - width : 1, "", o->help);
   }
-  (void)printf("%-*s%s\n%s", HELP_COLUMN, "  --help", "print this text", command->details);
+  (void)printf("%-*s%s\n", HELP_COLUMN, "  --help", "print this text");
+  for (const char *const *paragraph = command->details; *paragraph != NULL; paragraph++) (void)printf("\n%s", *paragraph);
 }
 
 static int unknown_option(const command_line *command, const char *name)

@@ -26,11 +26,11 @@ typedef struct option {
 /** One subcommand, as its --help tells it. */
 typedef struct command_line {
   const char *name;
-  const char *synopsis;  /**< after "dvi <name> " */
-  const char *operand;   /**< what the one operand is, for messages: "PROBLEM"; NULL if there is none */
-  const char *summary;   /**< what it does: some lines, each ended by a newline */
-  const option *options; /**< ended by one without a name */
-  const char *details;   /**< after the options: columns, examples */
+  const char *synopsis;       /**< after "dvi <name> " */
+  const char *operand;        /**< what the one operand is, for messages: "PROBLEM"; NULL if there is none */
+  const char *summary;        /**< what it does: some lines, each ended by a newline */
+  const option *options;      /**< ended by one without a name */
+  const char *const *details; /**< after the options: paragraphs, for example of columns; ended by NULL */
 } command_line;
 
 /** Parse the arguments after the subcommand's name.

@@ -233,15 +233,13 @@ static int check_request(order_request *request)
   return request->plot == NULL || file_writable(request->plot) ? DONE : FAILED;
 }
 
-static const char details[] =
-    "\n"
+static const char *const details[] = {
     "Columns: method,problem,h,steps,error,slope,energy_error,cpu_seconds,residuals,jacobians,factorizations.\n"
     "  error         largest error of a coordinate at the end, against the judge\n"
     "  slope         log(error ratio) / log(step ratio) from the level before; empty at the first level\n"
     "  energy_error  largest |energy - energy at the start| over the run (an untimed run of its own)\n"
     "  cpu_seconds   process time of one run (short ones are repeated until 0.02 s have passed)\n"
-    "  the rest      counted by the library in one run\n"
-    "\n"
+    "  the rest      counted by the library in one run\n",
     "The judge is the problem's exact solution; or its stored quadruple-precision result, if parameters and end are\n"
     "the problem's own; or IDA of SUNDIALS, which shares no code with the methods, run at two tolerances. --judge\n"
     "chooses: exact, stored, ida; or runs, two runs of high degree (see dvi bench --help). An error\n"
@@ -251,15 +249,15 @@ static const char details[] =
     "half, with a standard error of 0.05 at most. The claimed order has no part in that choice. Exit code 0: the\n"
     "fitted order is the claimed one within 0.2. Exit code 3: it is not (MISSED), or there is no such run (not\n"
     "decided). From order 12 or so that is the rule: higher terms of the error count until roundoff takes over.\n"
-    "Higher terms that die out slowly may also settle on a wrong slope (pythagorean at order 10).\n"
-    "\n"
+    "Higher terms that die out slowly may also settle on a wrong slope (pythagorean at order 10).\n",
     "The first step is searched up to 2^17 steps to the end, the last level has up to 2^22; --h goes beyond. A span\n"
-    "too short for the levels of a high order is lengthened, unless a stored result would be lost by that.\n"
-    "\n"
+    "too short for the levels of a high order is lengthened, unless a stored result would be lost by that.\n",
     "Examples:\n"
     "  dvi order kepler --method galerkin:degree=2\n"
     "  dvi order pendulum --method verlet --method composition:order=6,base=verlet --plot order.svg\n"
-    "  dvi order toda --method galerkin:degree=3,quadrature=lobatto,nodes=3 --h 0.5 --levels 8 --csv order.csv\n";
+    "  dvi order toda --method galerkin:degree=3,quadrature=lobatto,nodes=3 --h 0.5 --levels 8 --csv order.csv\n",
+    NULL,
+};
 
 int order_command(int argc, char **argv)
 {

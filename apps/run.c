@@ -256,26 +256,24 @@ static int check_settings(const char *name, const words *settings)
   return usage_error("run: --set %s places the start, which --resume replaces; leave out one of them", setting);
 }
 
-static const char details[] =
-    "\n"
+static const char *const details[] = {
     "Columns: t, the coordinates, their momenta (p_ and the coordinate's name), energy, the other invariants;\n"
     "17 digits, so that every number is read back as it was. The first row is the start (with --resume: the\n"
-    "checkpoint), the last one is the end, wherever --every puts the rows between.\n"
-    "\n"
+    "checkpoint), the last one is the end, wherever --every puts the rows between.\n",
     "FILEs are written whole or not at all: a run that fails leaves what was there. Rows on standard output come\n"
     "as they are computed. Ctrl-C, SIGTERM and SIGHUP end a run after the current step, with the output complete, the\n"
     "checkpoint written, and exit code 130, 143 or 129; before the first step they end it at once, and nothing is\n"
-    "written. A second Ctrl-C ends it at once.\n"
-    "\n"
+    "written. A second Ctrl-C ends it at once.\n",
     "A checkpoint holds the state of the method, not the command line: resume with the same problem, method and\n"
-    "step, and the run continues bit for bit. Parameters that only place the start cannot be set then.\n"
-    "\n"
+    "step, and the run continues bit for bit. Parameters that only place the start cannot be set then.\n",
     "Examples:\n"
     "  dvi run kepler --method galerkin:degree=4 --h 0.1 --t-end 100 --out orbit.csv --plot orbit.svg\n"
     "  dvi run kepler --method verlet --h 0.001 --t-end 10 --set e=0.9 --every 100\n"
     "  dvi run outer-solar --method galerkin:degree=8 --h 200 --t-end 500000 --final\n"
     "  dvi run fpu --method midpoint --h 0.01 --t-end 100 --checkpoint fpu.state --out part1.csv\n"
-    "  dvi run fpu --method midpoint --h 0.01 --t-end 200 --resume fpu.state --out part2.csv\n";
+    "  dvi run fpu --method midpoint --h 0.01 --t-end 200 --resume fpu.state --out part2.csv\n",
+    NULL,
+};
 
 int run_command(int argc, char **argv)
 {

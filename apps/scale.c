@@ -15,21 +15,25 @@
 #include "study.h"
 #include "table.h"
 
-enum { STEPS = 32, TITLE_SIZE = 160 };
+enum { STEPS_DEFAULT = 32, TITLE_SIZE = 160 };
 
 /* One method at one value. */
 typedef struct cell {
   int n;
   double h;
-  double cpu[ROUNDS_MAX]; /* seconds of a step, in each round */
-  spread seconds;         /* of all rounds; set when they are over */
-  double bytes;           /* NaN: not known */
-  dvi_counters counted;   /* in STEPS steps */
+  double step[ROUNDS_MAX]; /* seconds of one, in each round */
+  spread seconds;          /* of all rounds; set when they are over */
+  double bytes;            /* NaN: not known */
+  dvi_counters counted;    /* in the steps of one run */
+  double traffic;          /* bytes that a step moves; 0: not known */
+  double axpy[ROUNDS_MAX]; /* bytes a second that one moves beside it, in each round, where the traffic is known */
+  spread bandwidth;        /* of these */
 } cell;
 
 typedef struct scaling {
   const scale_request *request;
   scale_axis axis;
+  long steps; /* of one run */
   cell *cell; /* [methods][values] */
   spread calibration;
   progress_line progress;
@@ -59,23 +63,29 @@ static cell *cell_at(const scaling *s, int method, int k)
   return &s->cell[method * s->axis.values.count + k];
 }
 
+/* Of several threads process time is the sum. */
+static double now(const scaling *s)
+{
+  return s->axis.parallel ? elapsed_now() : cpu_now();
+}
+
 /* The first steps from the start: their time, and what they counted. */
-static dvi_status run_steps(dvi_integrator *integrator, const problem *scene, double h, double *spent, dvi_counters *counted)
+static dvi_status run_steps(const scaling *s, dvi_integrator *integrator, const problem *scene, cell *c, double *spent)
 {
   dvi_counters before;
   dvi_status status = dvi_integrator_start(integrator, 0.0, scene->q, scene->p);
   dvi_integrator_counters(integrator, &before);
-  const double began = cpu_now();
-  for (int i = 0; i < STEPS && status == DVI_OK; i++) status = dvi_integrator_step(integrator, h);
-  *spent = cpu_now() - began;
-  dvi_integrator_counters(integrator, counted);
-  counted->gradients -= before.gradients;
-  counted->residuals -= before.residuals;
-  counted->factorizations -= before.factorizations;
+  const double began = now(s);
+  for (long i = 0; i < s->steps && status == DVI_OK; i++) status = dvi_integrator_step(integrator, c->h);
+  *spent = now(s) - began;
+  dvi_integrator_counters(integrator, &c->counted);
+  c->counted.gradients -= before.gradients;
+  c->counted.residuals -= before.residuals;
+  c->counted.factorizations -= before.factorizations;
   return status;
 }
 
-static dvi_status measure_cell(const char *method, const problem *scene, cell *c, int round)
+static dvi_status measure_cell(const scaling *s, const char *method, const problem *scene, cell *c, int round)
 {
   dvi_integrator *integrator = NULL;
   double spent = 0.0;
@@ -83,15 +93,16 @@ static dvi_status measure_cell(const char *method, const problem *scene, cell *c
   const double heap = machine_heap();
   dvi_status status = dvi_integrator_create(scene->system, method, &integrator);
   /* The first run finds memory and the machine's caches as they will be: it is not timed. */
-  for (int i = 0; i < 2 && status == DVI_OK; i++) status = run_steps(integrator, scene, c->h, &spent, &c->counted);
+  for (int i = 0; i < 2 && status == DVI_OK; i++) status = run_steps(s, integrator, scene, c, &spent);
   const double grown = machine_heap() - heap;
   if (round == 0) c->bytes = grown > 0.0 ? grown : (double)NAN; /* another malloc does not show there */
   const long repeats = study_repeats(spent);
   for (long i = 0; i < repeats && status == DVI_OK; i++) {
-    status = run_steps(integrator, scene, c->h, &spent, &c->counted);
+    status = run_steps(s, integrator, scene, c, &spent);
     total += spent;
   }
-  c->cpu[round] = total / (STEPS * (double)repeats);
+  c->step[round] = total / ((double)s->steps * (double)repeats);
+  c->traffic = dvi_integrator_traffic(integrator);
   dvi_integrator_destroy(&integrator);
   return status;
 }
@@ -107,8 +118,9 @@ static int measure_methods(scaling *s, const problem *scene, int k, int round)
     progress_show(&s->progress, -1.0, s->request->methods->word[i]);
     code = axis_method(&s->axis, k, s->request->methods->word[i], method);
     if (code != DONE) break;
-    const dvi_status status = measure_cell(method, scene, c, round);
+    const dvi_status status = measure_cell(s, method, scene, c, round);
     if (status != DVI_OK) code = library_error(status);
+    if (c->traffic > 0.0) c->axpy[round] = machine_axpy(c->n);
   }
   return code;
 }
@@ -137,8 +149,10 @@ static int measure(scaling *s)
   progress_end(&s->progress);
   if (code != DONE) return code;
   s->calibration = samples_spread(rounds, calibration);
-  for (int i = 0; i < s->request->methods->count * s->axis.values.count; i++)
-    s->cell[i].seconds = samples_spread(rounds, s->cell[i].cpu);
+  for (int i = 0; i < s->request->methods->count * s->axis.values.count; i++) {
+    s->cell[i].seconds = samples_spread(rounds, s->cell[i].step);
+    s->cell[i].bandwidth = samples_spread(rounds, s->cell[i].axpy);
+  }
   return DONE;
 }
 
@@ -158,9 +172,9 @@ static result_table *make_table(const scaling *s)
       table_number(rows, c->seconds.lower);
       table_number(rows, c->seconds.upper);
       table_number(rows, c->bytes);
-      table_number(rows, (double)c->counted.gradients / STEPS);
-      table_number(rows, (double)c->counted.residuals / STEPS);
-      table_number(rows, (double)c->counted.factorizations / STEPS);
+      table_number(rows, (double)c->counted.gradients / (double)s->steps);
+      table_number(rows, (double)c->counted.residuals / (double)s->steps);
+      table_number(rows, (double)c->counted.factorizations / (double)s->steps);
       table_number(rows, s->calibration.median);
       table_number(rows, s->calibration.least);
     }
@@ -195,6 +209,39 @@ static void print_powers(FILE *stream, const scaling *s, int method)
   (void)fputc('\n', stream);
 }
 
+static void print_speed_up(FILE *stream, const scaling *s, int method)
+{
+  (void)fprintf(stream, "  speed-up against %s=%s:", s->axis.name, s->axis.values.text[0]);
+  for (int k = 1; k < s->axis.values.count; k++)
+    (void)fprintf(stream, "  %.2f", cell_at(s, method, 0)->seconds.median / cell_at(s, method, k)->seconds.median);
+  (void)fputc('\n', stream);
+}
+
+/* How much of the machine's memory bandwidth the steps use. */
+static void print_traffic(FILE *stream, const scaling *s, int method)
+{
+  for (int k = 0; k < s->axis.values.count; k++) {
+    const cell *c = cell_at(s, method, k);
+    const double moved = c->traffic / c->seconds.median;
+    const double axpy = c->bandwidth.median;
+    if (c->traffic > 0.0)
+      (void)fprintf(stream, "  %s=%s: a step moves %.4g bytes, %.1f GB/s: %.2f of the %.1f GB/s of an in-place axpy\n",
+                    s->axis.name, s->axis.values.text[k], c->traffic, 1e-9 * moved, moved / axpy, 1e-9 * axpy);
+  }
+}
+
+static void print_meaning(FILE *stream, const scaling *s)
+{
+  (void)fprintf(stream,
+                "\nstep_seconds: %s time of a step, mean of the first %ld from the start, repeated; median of %ld interleaved\n",
+                s->axis.parallel ? "elapsed" : "process", s->steps, s->request->rounds);
+  (void)fprintf(stream, "rounds; step_lower, step_upper: quartiles%s\n",
+                s->axis.parallel ? "" : "; the fitted exponents are least squares over all rows");
+  (void)fprintf(
+      stream,
+      "bytes: what the integrator holds of the heap after its first steps, by mallinfo2; the problem's own is not counted\n");
+}
+
 static void print_all(FILE *stream, const scaling *s, const result_table *rows)
 {
   (void)fprintf(stream, "Cost of a step on %s\n", s->request->problem);
@@ -204,21 +251,20 @@ static void print_all(FILE *stream, const scaling *s, const result_table *rows)
   for (int i = 0; i < s->request->methods->count; i++) {
     (void)fprintf(stream, "\n%s\n", s->request->methods->word[i]);
     table_print(rows, stream, 2, i * s->axis.values.count, (i + 1) * s->axis.values.count);
-    print_powers(stream, s, i);
+    if (s->axis.parallel)
+      print_speed_up(stream, s, i);
+    else
+      print_powers(stream, s, i);
+    print_traffic(stream, s, i);
   }
-  (void)fprintf(
-      stream, "\nstep_seconds: process time of a step, mean of the first %d from the start, repeated; median of %ld interleaved\n",
-      (int)STEPS, s->request->rounds);
-  (void)fprintf(stream, "rounds; step_lower, step_upper: quartiles; the fitted exponents are least squares over all rows\n");
-  (void)fprintf(
-      stream,
-      "bytes: what the integrator holds of the heap after its first steps, by mallinfo2; the problem's own is not counted\n");
+  print_meaning(stream, s);
 }
 
 static bool plot_cells(const scaling *s)
 {
   plot_curve curve[WORDS_MAX];
   char title[TITLE_SIZE];
+  const char *y_label = s->axis.parallel ? "elapsed seconds of a step" : "CPU seconds of a step";
   const int methods = s->request->methods->count;
   const int values = s->axis.values.count;
   double *x = calloc(2 * (size_t)methods * (size_t)values, sizeof *x);
@@ -233,13 +279,10 @@ static bool plot_cells(const scaling *s)
   }
   for (int i = 0; i < methods; i++)
     curve[i] = (plot_curve){.label = s->request->methods->word[i], .count = values, .x = x + i * values, .y = y + i * values};
-  (void)snprintf(title, sizeof title, "CPU time of a step against %s: %s", axis_title(&s->axis), s->request->problem);
-  const plot_panel panel = {.title = title,
-                            .x_label = axis_title(&s->axis),
-                            .y_label = "CPU seconds of a step",
-                            .logarithmic = true,
-                            .curves = methods,
-                            .curve = curve};
+  (void)snprintf(title, sizeof title, "%s time of a step against %s: %s", s->axis.parallel ? "elapsed" : "CPU",
+                 axis_title(&s->axis), s->request->problem);
+  const plot_panel panel = {
+      .title = title, .x_label = axis_title(&s->axis), .y_label = y_label, .logarithmic = true, .curves = methods, .curve = curve};
   const bool good = plot_write(s->request->plot, 1, &panel);
   free(x);
   return good;
@@ -302,7 +345,7 @@ static int check_values(const scaling *s)
 
 int scale_run(const scale_request *request)
 {
-  scaling s = {.request = request};
+  scaling s = {.request = request, .steps = request->steps > 0 ? request->steps : STEPS_DEFAULT};
   if (request->methods->count == 0) return usage_error("bench: --scale needs a method: --method SPEC");
   if (request->settings->count == WORDS_MAX) return usage_error("bench: --set is given too often for --scale");
   int code = axis_read(request->scaled, &s.axis);

@@ -6,11 +6,12 @@
 /** What is asked for. */
 typedef struct scale_request {
   const char *problem;
-  const char *scaled; /**< "ell=100,1000": what is varied, and its values */
+  const char *scaled; /**< "ell=100,1000" or "threads=1,2": what is varied, and its values */
   const words *methods, *settings;
   bool one_point; /**< callbacks of the one-point shape */
   double h;       /**< NaN: the problem's */
   long rounds;
+  long steps; /**< timed from the start; 0: 32 */
   const char *csv, *plot;
 } scale_request;
 

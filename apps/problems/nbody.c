@@ -81,9 +81,10 @@ PROBLEM_INLINE void pull(const int dimension, const int lanes, int stride, const
 PROBLEM_INLINE void gradient_at(const int dimension, const int lanes, int stride, const double *q, double *V_q, const nbody *own)
 {
   double r[NBODY_PAIRS_MAX * 8 + PROBLEM_TILE];
+  const int tile = lanes == 1 ? PROBLEM_TILE / 2 : PROBLEM_TILE; /* six bodies have 15 pairs */
   const int numbers = squared_distances(dimension, lanes, stride, q, own, r);
-  for (int k = numbers; k < numbers + PROBLEM_TILE; k++) r[k] = 1.0; /* the last tile is computed in full */
-  for (int k = 0; k < numbers; k += PROBLEM_TILE) problem_inverse_cubes(PROBLEM_TILE, r + k);
+  for (int k = numbers; k < numbers + tile; k++) r[k] = 1.0; /* the last tile is computed in full */
+  for (int k = 0; k < numbers; k += tile) problem_inverse_cubes(tile, r + k);
   pull(dimension, lanes, stride, q, own, r, V_q);
 }
 

@@ -222,13 +222,15 @@ awk -F, 'NR > 1 && !($3 == "threads" && $5 == 20000 && $7 > 0 && $8 <= $7 && $7 
 says err '^  speed-up against threads=1:  [0-9.]*$' 'the speed-up'
 says err '^  threads=2: a step moves 2.4e+06 bytes, [0-9.]* GB/s: [0-9.]* of the [0-9.]* GB/s of an in-place axpy' 'the traffic'
 says err '^step_seconds: elapsed time of a step, mean of the first 3' 'which time'
+grep -q 'step_seconds ~\|exponents' err && fail 'of threads there are no exponents'
+if command -v gnuplot >/dev/null; then says threads.svg 'elapsed time of a step against threads: chain' 'the plot of threads'; fi
 expect 0 'the traffic of waves alone' bench chain --method verlet --method verlet:sweep=plain --scale n=5,50 --steps 2 --rounds 1
 [ "$(grep -c 'a step moves' out)" -eq 2 ] || fail 'a plain sweep does not know its traffic'
 says out '^step_seconds: process time of a step, mean of the first 2' 'sizes: which time'
 expect 2 'threads where there is no wave' bench fpu --method verlet --scale threads=1,2
 says err 'no gradient_range' 'why there is none'
 expect 2 'threads of a method without' bench chain --method midpoint --scale threads=1,2
-expect 2 'half a thread' bench chain --method verlet --scale threads=1,1.5
+for bad in threads=1,1.5 threads=1 threads=0,1 threads=1,65; do expect 2 "scale $bad" bench chain --method verlet --scale "$bad"; done
 expect 2 'threads twice' bench chain --method verlet:threads=2 --scale threads=1,2
 expect 2 'steps without sizes' bench chain --method verlet --steps 3
 expect 2 'no steps' bench chain --method verlet --scale n=5,50 --steps 0

@@ -91,10 +91,10 @@ START_TEST(a_charge_in_a_magnetic_field_keeps_its_energy_at_roundoff)
 END_TEST
 
 /* Brouwer's law: roundings without a common direction make an energy error that grows like the square root of the steps. Averaged over orbits of
- * different shape, the exponent is known to about 0.1. A rounded h^2/m beside a rounded h and h/m made it 0.87, and the error ten times as large. */
+ * different shape, the exponent is known to about 0.1. With h/m p0 rounded, in stages and ends alike, it was 0.83 from 6.6e4 to 4.2e6 steps. */
 START_TEST(the_energy_error_grows_like_the_square_root_of_the_steps)
 {
-  enum { ORBITS = 12, OCTAVES = 12, FIRST = 128 };
+  enum { ORBITS = 12, OCTAVES = 17, FIRST = 128 };
   double error[OCTAVES] = {0}, x = 0, y = 0, xx = 0, xy = 0;
   for (int orbit = 0; orbit < ORBITS; orbit++) {
     double first[8], value[8];
@@ -112,7 +112,7 @@ START_TEST(the_energy_error_grows_like_the_square_root_of_the_steps)
   for (int k = 0; k < OCTAVES; k++) x += k, y += log2(error[k]), xx += k * k, xy += k * log2(error[k]);
   const double exponent = (OCTAVES * xy - x * y) / (OCTAVES * xx - x * x);
   ck_assert_double_le(exponent, 0.65);
-  ck_assert_double_le(error[OCTAVES - 1], 5e-14); /* after 2.6e5 steps; roundings of an energy of 1/2 would make 3e-14 */
+  ck_assert_double_le(error[OCTAVES - 1], 1e-13); /* after 8.4e6 steps; roundings of an energy of 1/2 would make 1.6e-13 */
 }
 END_TEST
 

@@ -50,10 +50,11 @@ static void chain_chord(void *of, double *r)
   for (int i = 0; i < SIZE; i++) r[i] /= 2 + i;
 }
 
-static void chain_scale(void *of, double *scale)
+static int chain_scale(void *of, double *scale)
 {
   (void)of;
   for (int i = 0; i < SIZE; i++) scale[i] = 2 + i;
+  return 1;
 }
 
 void make_chain(double strength, chain *c)
@@ -83,10 +84,11 @@ static void single_chord(void *of, double *r)
   r[0] /= ((const single *)of)->chord;
 }
 
-static void single_scale(void *of, double *scale)
+static int single_scale(void *of, double *scale)
 {
   (void)of;
   scale[0] = 1;
+  return 1;
 }
 
 static void make_solver(const dvi__equations *equations, bench *b)

@@ -28,7 +28,8 @@ static dvi_status allocate_chord(dvi__action *a, dvi_counters *counters)
   a->middle[0] = DVI_NEW(double, a->n);
   a->middle[1] = DVI_NEW(double, a->n);
   a->middle_vv = DVI_NEW(double, dvi__pattern_entries(&system->vv));
-  if (!a->middle[0] || !a->middle[1] || !a->middle_vv)
+  if (a->n <= DVI__CHORD_INVERSE) a->chord_inverse = DVI_NEW(double, (size_t)a->n *(size_t)a->n);
+  if (!a->middle[0] || !a->middle[1] || !a->middle_vv || (a->n <= DVI__CHORD_INVERSE && !a->chord_inverse))
     return dvi__fail(DVI_NO_MEMORY, "action: no memory for the velocity Hessian");
   return dvi__linear_create(&system->vv, DVI__LINEAR_AUTO, counters, &a->chord);
 }
@@ -88,6 +89,7 @@ void dvi__action_destroy(dvi__action **action)
                            a->L_v,
                            a->line,
                            a->middle_vv,
+                           a->chord_inverse,
                            a->middle[0],
                            a->middle[1],
                            a->H_qq,

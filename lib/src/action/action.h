@@ -74,7 +74,8 @@ void dvi__action_continue(dvi__action *action, double ratio, const double *last,
 const double *dvi__action_fit_points(const dvi__action *action);
 void dvi__action_fit(const dvi__action *action, const double *offset, double *Y);
 
-/* Typical size of each row per unit of an unknown, for scaling norms: scale[i*s+k] = |L_vv|_ii / h > 0. After prepare_chord. */
-void dvi__action_row_scale(const dvi__action *action, double *scale);
+/* Typical size of each row per unit of an unknown, for scaling norms: scale[i*s+k] = |L_vv|_ii / h > 0. After prepare_chord. 0: it is still what it was at
+ * the last call, and nothing is written. */
+int dvi__action_row_scale(dvi__action *action, double *scale);
 
 #endif

@@ -55,15 +55,20 @@ struct dvi__action {
   dvi__shifts sweep_shift;                         /* from the last step's forces to offsets: [r*lanes], by columns */
   int swept;                                       /* the forces are a sweep's */
   /* Chord. */
-  double *middle_vv;  /* L_vv at one point (general Lagrangians) */
-  double *middle[2];  /* q, v at that point */
-  dvi__linear *chord; /* factors middle_vv */
+  double scaled_h;       /* the h of the last row scales */
+  double *middle_vv;     /* L_vv at one point (general Lagrangians) */
+  double *middle[2];     /* q, v at that point */
+  dvi__linear *chord;    /* factors middle_vv */
+  double *chord_inverse; /* [n*n] by columns; NULL: n is too large for it to pay */
   /* Jacobian; NULL until prepared. */
   dvi__pattern joint;         /* n x n: union of qq, qv, vq, vv */
   dvi__pattern pattern;       /* ns x ns */
   dvi__block *block;          /* [entries of joint] */
   double *H_qq, *H_qv, *H_vv; /* [entries*r] */
 };
+
+/* Up to so many coordinates the chord's inverse is cheaper than solving for each of the s functions. */
+enum { DVI__CHORD_INVERSE = 8 };
 
 /* The table from the last step's forces to the sums of forces in a step `ratio` times as long: [r*lanes], by columns. */
 const double *dvi__action_sweep_shift(dvi__action *action, double ratio);

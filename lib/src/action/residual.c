@@ -27,20 +27,14 @@ static double dot(int count, const double *x, const double *y)
   return sum;
 }
 
-/* The forces enter every row, and p1, with the same rounded product b_j L_q: that keeps the rows consistent to the last bit. */
-static void weigh(const dvi__action *a, double *batch)
-{
-  for (size_t i = 0, r = (size_t)a->r; i < (size_t)a->n; i++)
-    for (size_t j = 0; j < r; j++) batch[i * r + j] *= a->weight[j];
-}
-
 dvi_status dvi__action_residual(dvi__action *a, const double *Y, double *R)
 {
   a->swept = 0;
   dvi__action_stages(a, Y);
   DVI_TRY(dvi__lagrangian_gradient(a->evaluator, a->r, a->t, a->Q, a->V, a->L_q, a->L_v));
-  weigh(a, a->L_q);
-  weigh(a, a->L_v);
+  /* The forces enter every row, and p1, with the same rounded product b_j L_q: that keeps the rows consistent to the last bit. */
+  dvi__lanes_weigh(a->n, a->r, a->weight, a->L_q);
+  dvi__lanes_weigh(a->n, a->r, a->weight, a->L_v);
   dvi__lanes_product(a->n, a->r, a->path_lanes, a->s, a->bar_row, a->L_q, R);
   dvi__lanes_product(a->n, a->r, a->path_lanes, a->s, a->slope_row, a->L_v, a->rows);
   for (size_t i = 0, s = (size_t)a->s; i < (size_t)a->n; i++)
@@ -74,6 +68,16 @@ void dvi__action_ends(const dvi__action *a, const double *Y, double *dq, double 
 
 /* ---- chord: the kinetic part of the Jacobian ---- */
 
+static void invert_chord(dvi__action *a)
+{
+  const size_t n = (size_t)a->n;
+  memset(a->chord_inverse, 0, n * n * sizeof(double));
+  for (size_t j = 0; j < n; j++) {
+    a->chord_inverse[j * n + j] = 1;
+    dvi__linear_solve(a->chord, a->chord_inverse + j * n);
+  }
+}
+
 dvi_status dvi__action_prepare_chord(dvi__action *a, const double *Y)
 {
   if (a->system->lagrangian == NULL) return DVI_OK;
@@ -82,12 +86,29 @@ dvi_status dvi__action_prepare_chord(dvi__action *a, const double *Y)
   for (int i = 0; i < a->n; i++) a->middle[0][i] += a->q0[i];
   DVI_TRY(dvi__velocity_hessian(a->evaluator, middle, a->middle[0], a->middle[1], &L_vv));
   memcpy(a->middle_vv, L_vv, (size_t)dvi__pattern_entries(&a->system->vv) * sizeof(double));
-  return dvi__linear_factor(a->chord, a->middle_vv);
+  DVI_TRY(dvi__linear_factor(a->chord, a->middle_vv));
+  if (a->chord_inverse != NULL) invert_chord(a);
+  return DVI_OK;
+}
+
+/* R <- L_vv^{-1} R by the inverse, row by row. */
+static void multiply_by_inverse(dvi__action *a, double *R)
+{
+  const size_t s = (size_t)a->s, n = (size_t)a->n;
+  memset(a->rows, 0, n * s * sizeof(double));
+  for (size_t j = 0; j < n; j++)
+    for (size_t i = 0; i < n; i++)
+      for (size_t k = 0; k < s; k++) a->rows[i * s + k] += a->chord_inverse[j * n + i] * R[j * s + k];
+  memcpy(R, a->rows, n * s * sizeof(double));
 }
 
 static void solve_velocity_hessian(dvi__action *a, double *R)
 {
   const size_t s = (size_t)a->s;
+  if (a->chord_inverse != NULL) {
+    multiply_by_inverse(a, R);
+    return;
+  }
   for (size_t k = 0; k < s; k++) {
     for (size_t i = 0; i < (size_t)a->n; i++) a->middle[0][i] = R[i * s + k];
     dvi__linear_solve(a->chord, a->middle[0]);
@@ -106,8 +127,10 @@ void dvi__action_chord(dvi__action *a, double *R)
   for (size_t i = 0; i < (size_t)a->n * (size_t)s; i++) R[i] = a->h * a->rows[i];
 }
 
-void dvi__action_row_scale(const dvi__action *a, double *scale)
+int dvi__action_row_scale(dvi__action *a, double *scale)
 {
+  if (a->chord == NULL && a->scaled_h == a->h) return 0;
+  a->scaled_h = a->h;
   const dvi__pattern *vv = &a->system->vv;
   const double *values = a->chord != NULL                   ? a->middle_vv
                          : a->system->mass_diagonal != NULL ? a->system->mass_diagonal
@@ -118,6 +141,7 @@ void dvi__action_row_scale(const dvi__action *a, double *scale)
     const double row = (size > 0 ? size : 1.0) / fabs(a->h);
     for (int k = 0; k < a->s; k++) scale[i * a->s + k] = row;
   }
+  return 1;
 }
 
 /* ---- paths ---- */

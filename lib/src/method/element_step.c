@@ -84,9 +84,9 @@ static void chord_of(void *of, double *R)
   dvi__action_chord(((const element *)of)->action, R);
 }
 
-static void row_scale_of(void *of, double *scale)
+static int row_scale_of(void *of, double *scale)
 {
-  dvi__action_row_scale(((const element *)of)->action, scale);
+  return dvi__action_row_scale(((const element *)of)->action, scale);
 }
 
 static void sweep_from_of(void *of, const double *Y)

@@ -36,34 +36,56 @@ enum { FETCH_AHEAD = 1024 }; /* bytes: half of it is as good, twice as much is w
 #include "num/leap_width.h"
 #undef WIDTH
 
-/* Vectors as wide as the target has them, at most as wide as a row. Eight stages are so common, and so small, that their loops are worth knowing at
- * compile time. */
+/* Vectors as wide as the target has them, at most as wide as a row. Rows of eight lanes are the most common ones, and their few terms are worth
+ * knowing at compile time. */
+#define KNOWN(count, call) \
+  case count: call; return;
+
 INLINE void product(int widest, int n, int terms, int lanes, int width, const double *matrix, const double *x, double *out)
 {
-  const int W = lanes < widest ? lanes : widest, eight = lanes == 8 && width == 8 && terms == 8;
-  if (W == 1)
+  const int W = lanes < widest ? lanes : widest;
+  if (W == 1) {
     product1(n, terms, lanes, width, matrix, x, out);
-  else if (W == 2)
+    return;
+  }
+  if (W == 2) {
     product2(n, terms, lanes, width, matrix, x, out);
-  else if (W == 4)
+    return;
+  }
+  if (W == 4) {
     product4(n, terms, lanes, width, matrix, x, out);
-  else if (eight)
-    product8(n, 8, 8, 8, matrix, x, out);
-  else
-    product8(n, terms, lanes, width, matrix, x, out);
+    return;
+  }
+  switch (lanes == 8 ? terms : 0) {
+    KNOWN(5, product8(n, 5, 8, width, matrix, x, out))
+    KNOWN(6, product8(n, 6, 8, width, matrix, x, out))
+    KNOWN(7, product8(n, 7, 8, width, matrix, x, out))
+    KNOWN(8, product8(n, 8, 8, width, matrix, x, out))
+  default: product8(n, terms, lanes, width, matrix, x, out);
+  }
 }
+
+/* `known` for rows of eight lanes. */
+#define SWEEP(sweep, known)                \
+  switch (s->lanes == 8 ? s->stages : 0) { \
+    KNOWN(5, known(s, 5))                  \
+    KNOWN(6, known(s, 6))                  \
+    KNOWN(7, known(s, 7))                  \
+    KNOWN(8, known(s, 8))                  \
+  default: sweep(s);                       \
+  }
 
 INLINE void sweep(int widest, dvi__sweep *s)
 {
-  const int W = s->lanes < widest ? s->lanes : widest, eight = s->lanes == 8 && s->stages == 8;
+  const int W = s->lanes < widest ? s->lanes : widest;
   if (W == 1)
     sweep1(s);
   else if (W == 2)
-    eight ? sweep_eight2(s) : sweep2(s);
+    SWEEP(sweep2, sweep_known2)
   else if (W == 4)
-    eight ? sweep_eight4(s) : sweep4(s);
+    SWEEP(sweep4, sweep_known4)
   else
-    eight ? sweep_eight8(s) : sweep8(s);
+    SWEEP(sweep8, sweep_known8)
 }
 
 INLINE void begin(int widest, const dvi__sweep *s)
@@ -77,6 +99,11 @@ INLINE void begin(int widest, const dvi__sweep *s)
     begin4(s);
   else
     begin8(s);
+}
+
+INLINE void weigh(int n, int stages, const double *weight, double *x)
+{
+  stages == 8 ? weigh1(n, 8, weight, x) : weigh1(n, stages, weight, x);
 }
 
 /* A fused product tells what rounding takes from one; where the processor has none, the library function gives the same bits. */
@@ -178,6 +205,7 @@ INLINE void add_scaled(int widest, size_t count, double factor, const double *x,
 typedef struct level {
   const char *name;
   void (*sweep)(dvi__sweep *s);
+  void (*weigh)(int n, int stages, const double *weight, double *x);
   void (*split)(const dvi__sweep *s);
   void (*begin)(const dvi__sweep *s);
   void (*ends)(const dvi__ends *e);
@@ -192,6 +220,10 @@ typedef struct level {
   target static void sweep_##suffix(dvi__sweep *s)                                                                                \
   {                                                                                                                               \
     sweep(widest, s);                                                                                                             \
+  }                                                                                                                               \
+  target static void weigh_##suffix(int n, int stages, const double *weight, double *x)                                           \
+  {                                                                                                                               \
+    weigh(n, stages, weight, x);                                                                                                  \
   }                                                                                                                               \
   target static void split_##suffix(const dvi__sweep *s)                                                                          \
   {                                                                                                                               \
@@ -233,13 +265,13 @@ LEVEL(avx512, __attribute__((target("fma,avx512f,avx512dq,avx512vl"))), 8)
 #endif
 
 static const level levels[] = {
-    {"baseline", sweep_baseline, split_baseline, begin_baseline, ends_baseline, product_baseline, all_finite_baseline,
-     largest_baseline, leap_baseline, add_scaled_baseline},
+    {"baseline", sweep_baseline, weigh_baseline, split_baseline, begin_baseline, ends_baseline, product_baseline,
+     all_finite_baseline, largest_baseline, leap_baseline, add_scaled_baseline},
 #ifdef __x86_64__
-    {"avx2", sweep_avx2, split_avx2, begin_avx2, ends_avx2, product_avx2, all_finite_avx2, largest_avx2, leap_avx2,
+    {"avx2", sweep_avx2, weigh_avx2, split_avx2, begin_avx2, ends_avx2, product_avx2, all_finite_avx2, largest_avx2, leap_avx2,
      add_scaled_avx2},
-    {"avx512", sweep_avx512, split_avx512, begin_avx512, ends_avx512, product_avx512, all_finite_avx512, largest_avx512,
-     leap_avx512, add_scaled_avx512},
+    {"avx512", sweep_avx512, weigh_avx512, split_avx512, begin_avx512, ends_avx512, product_avx512, all_finite_avx512,
+     largest_avx512, leap_avx512, add_scaled_avx512},
 #endif
 };
 
@@ -282,6 +314,11 @@ int dvi__lanes_level(void)
 void dvi__lanes_sweep(dvi__sweep *s)
 {
   best()->sweep(s);
+}
+
+void dvi__lanes_weigh(int n, int stages, const double *weight, double *x)
+{
+  best()->weigh(n, stages, weight, x);
 }
 
 void dvi__lanes_split(const dvi__sweep *s)

@@ -31,7 +31,10 @@ typedef struct dvi__sweep {
 
 void dvi__lanes_sweep(dvi__sweep *sweep);
 
-/* Before the first one: set start and low. */
+/* x_ij <- weight_j x_ij for n rows of `stages`. */
+void dvi__lanes_weigh(int n, int stages, const double *weight, double *x);
+
+/* Before the first sweep: set start and low. */
 void dvi__lanes_split(const dvi__sweep *sweep);
 
 /* Then, if Z holds sums of forces, replace them by Z_i = factor_i (p0_i node + Z_i), and set Q. */

@@ -88,22 +88,22 @@ INLINE void NAME(sweep)(dvi__sweep *s)
   s->largest = NAME(largest_of)(&largest);
 }
 
-/* The same for eight stages: the matrix' columns stay in registers while the coordinates pass by. */
-INLINE void NAME(sweep_eight)(dvi__sweep *sweep)
+/* The same for five to eight stages, known at compile time: the matrix' columns stay in registers while the coordinates pass by. */
+INLINE void NAME(sweep_known)(dvi__sweep *sweep, const int stages)
 {
   const dvi__sweep own = *sweep, *s = &own; /* nobody else writes here */
   NAME(vector) change = {0}, largest = {0};
-  NAME(weigh)(s->n, 8, s->weight, s->force);
+  NAME(weigh)(s->n, stages, s->weight, s->force);
   for (int b = 0; b < 8; b += WIDTH) {
     NAME(vector) column[8], c;
-    for (int j = 0; j < 8; j++) NAME(load)(s->matrix + 8 * j + b, &column[j]);
+    for (int j = 0; j < stages; j++) NAME(load)(s->matrix + 8 * j + b, &column[j]);
     NAME(load)(s->node + b, &c);
     for (size_t i = 0; i < (size_t)s->n; i++) {
-      const double *g = s->force + 8 * i;
-      NAME(vector) four[4];
-      for (int j = 0; j < 4; j++) four[j] = column[j] * g[j] + column[j + 4] * g[j + 4];
+      const double *g = s->force + (size_t)stages * i;
+      NAME(vector) four[4] = {{0}, {0}, {0}, {0}};
+      for (int j = 0; j < stages; j++) four[stages == 8 ? j % 4 : 0] += column[j] * g[j];
       const NAME(vector) sum = (four[0] + four[1]) + (four[2] + four[3]);
-      NAME(place)(s, i, b, &c, &sum, s->Z + 8 * i + b, s->Q + 8 * i + b, &change, &largest);
+      NAME(place)(s, i, b, &c, &sum, s->Z + 8 * i + b, s->Q + (size_t)stages * i + b, &change, &largest);
     }
   }
   sweep->change = NAME(largest_of)(&change);

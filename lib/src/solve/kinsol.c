@@ -21,7 +21,8 @@ struct dvi__kinsol {
   SUNContext context;
   void *memory;
   N_Vector x, x_scale, r_scale;
-  SUNMatrix matrix; /* content: this struct */
+  double *row_scale, whole; /* [unknowns] as the equations gave it, and the unknowns' size: what both scales are made of */
+  SUNMatrix matrix;         /* content: this struct */
   SUNLinearSolver linear;
   dvi_status fatal; /* of a callback; 0: none */
 };
@@ -116,7 +117,8 @@ static int create_vectors(dvi__kinsol *k)
   k->x = made_vector(k);
   k->x_scale = made_vector(k);
   k->r_scale = made_vector(k);
-  return k->x != NULL && k->x_scale != NULL && k->r_scale != NULL;
+  k->row_scale = DVI_NEW(double, k->solver->equations.unknowns);
+  return k->x != NULL && k->x_scale != NULL && k->r_scale != NULL && k->row_scale != NULL;
 }
 
 /* KINSOL accepts a guess whose scaled norm is a hundredth of its tolerance. Roundings of the rows make 1e-15 to 1e-13 of the unknowns, the more the
@@ -154,42 +156,51 @@ void dvi__kinsol_destroy(dvi__kinsol **kinsol)
   if (k->x_scale != NULL) N_VDestroy(k->x_scale);
   if (k->r_scale != NULL) N_VDestroy(k->r_scale);
   if (k->context != NULL) SUNContext_Free(&k->context);
+  dvi__release(k->row_scale);
   dvi__release(k);
   *kinsol = NULL;
 }
 
 /* ---- using it ---- */
 
-/* 1 / (row * whole) in the place of each row's scale: rows of one coordinate have the same, and a division costs more than all else here. */
-static int invert_rows(int n, double whole, double *scale)
+/* 1 / (row * whole): rows of one coordinate have the same scale, and a division costs more than all else here. */
+static int invert_rows(dvi__kinsol *k)
 {
+  double *r_scale = N_VGetArrayPointer(k->r_scale), row = 0, inverse = 0;
   int usable = 1;
-  double row = 0, inverse = 0;
-  for (int i = 0; i < n; i++) {
-    if (scale[i] != row) {
-      row = scale[i];
-      inverse = 1 / (row * whole);
+  for (int i = 0; i < k->solver->equations.unknowns; i++) {
+    if (k->row_scale[i] != row) {
+      row = k->row_scale[i];
+      inverse = 1 / (row * k->whole);
       usable &= inverse > 0 && inverse <= DBL_MAX;
     }
-    scale[i] = inverse;
+    r_scale[i] = inverse;
   }
   return usable;
 }
 
-/* Both norms in units of the unknowns' size: a residual row over row_scale is a change of an unknown. */
+/* The power of two just above, where it is a number. */
+static double power_above(double x)
+{
+  int exponent;
+  (void)frexp(x, &exponent);
+  return exponent < DBL_MAX_EXP ? ldexp(1.0, exponent) : x;
+}
+
+/* Both norms in units of the unknowns' size, to a factor of 2, which seldom changes: a residual row over row_scale is a change of an unknown. */
 static dvi_status set_scales(dvi__kinsol *k, double size, const double *x)
 {
-  const int n = k->solver->equations.unknowns;
-  double *x_scale = N_VGetArrayPointer(k->x_scale), *r_scale = N_VGetArrayPointer(k->r_scale);
-  double whole = dvi__largest((size_t)n, x);
+  double whole = dvi__largest((size_t)k->solver->equations.unknowns, x);
   if (whole == 0) whole = size > 0 ? size : 1;
-  const double inverse = 1 / whole;
-  k->solver->equations.row_scale(k->solver->equations.of, r_scale);
-  for (int i = 0; i < n; i++) x_scale[i] = inverse;
-  const int usable = invert_rows(n, whole, r_scale) && inverse > 0 && inverse <= DBL_MAX;
+  whole = power_above(whole);
+  const int changed = k->solver->equations.row_scale(k->solver->equations.of, k->row_scale);
+  if (!changed && whole == k->whole) return DVI_OK;
+  k->whole = whole;
+  N_VConst(1 / whole, k->x_scale);
+  if (invert_rows(k) && 1 / whole > 0 && 1 / whole <= DBL_MAX) return DVI_OK;
+  k->whole = 0;
   /* KINSOL would take it for a fault of its caller, but a smaller step may have a finite path. */
-  return usable ? DVI_OK
-                : dvi__fail(DVI_NOT_FINITE, "the guess of the path is too large or too small to be scaled (size %g)", whole);
+  return dvi__fail(DVI_NOT_FINITE, "the guess of the path is too large or too small to be scaled (size %g)", whole);
 }
 
 dvi_status dvi__kinsol_certify(dvi__kinsol *k, double size, const double *x, int *certified, dvi__solve_report *report)

@@ -17,8 +17,9 @@ typedef struct dvi__equations {
   dvi_status (*residual)(void *of, const double *x, double *r);
   dvi_status (*jacobian)(void *of, const double *x, double *values);
   dvi_status (*prepare_chord)(void *of, const double *x);
-  void (*chord)(void *of, double *r);         /* r <- C^{-1} r */
-  void (*row_scale)(void *of, double *scale); /* [unknowns] > 0: size of a row per unit of an unknown; after prepare_chord */
+  void (*chord)(void *of, double *r); /* r <- C^{-1} r */
+  /* [unknowns] > 0: size of a row per unit of an unknown; after prepare_chord. 0: it is still what it was at the last call. */
+  int (*row_scale)(void *of, double *scale);
   /* The same fixed point iteration in variables of the equations' own, where that is cheaper; NULL: residual and chord do it. */
   void (*sweep_from)(void *of, const double *x);
   dvi_status (*sweep)(void *of, double *change, double *largest);

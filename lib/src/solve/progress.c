@@ -3,6 +3,7 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "num/finite.h"
 #include "num/lanes.h"
 #include "num/width.h"
 #include "solve/solver_struct.h"
@@ -77,14 +78,8 @@ void dvi__judge_all(int count, const double *correction, const double *unknown, 
 
 void dvi__correct(int count, const double *correction, double *x, double *largest_correction, double *largest_x)
 {
-  double change = 0, whole = 0;
-  int nan = 0;
-  for (int i = 0; i < count; i++) {
-    x[i] -= correction[i];
-    change = fabs(correction[i]) > change ? fabs(correction[i]) : change;
-    whole = fabs(x[i]) > whole ? fabs(x[i]) : whole;
-    nan |= isnan(x[i]);
-  }
-  *largest_correction = nan ? HUGE_VAL : change;
-  *largest_x = whole;
+  for (int i = 0; i < count; i++) x[i] -= correction[i];
+  *largest_correction = dvi__largest((size_t)count, correction);
+  *largest_x = dvi__largest((size_t)count, x);
+  if (isnan(*largest_x)) *largest_correction = HUGE_VAL;
 }
