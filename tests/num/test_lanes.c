@@ -94,11 +94,13 @@ START_TEST(a_sweep_has_the_bits_of_plain_loops)
     ck_assert_double_eq(low[i], fma(factor[i], p0[i], -start[i]));
   }
   for (int again = 0; again < 2; again++) {
+    for (int k = 0; k < lanes; k++) Q[0][N * stages + k] = 42;
     dvi__lanes_sweep(&fast);
     plain_sweep(&plain);
+    for (int k = 0; k < lanes; k++) ck_assert_double_eq(Q[0][N * stages + k], 42); /* nothing is written behind */
     ck_assert_mem_eq(force[0], force[1], (size_t)(N * stages) * sizeof(double));
     ck_assert_mem_eq(Z[0], Z[1], (size_t)(N * lanes) * sizeof(double));
-    ck_assert_mem_eq(Q[0], Q[1], sizeof Q[0]); /* nothing is written behind */
+    ck_assert_mem_eq(Q[0], Q[1], (size_t)(N * stages) * sizeof(double));
     ck_assert_double_eq(fast.change, plain.change);
     ck_assert_double_eq(fast.largest, plain.largest);
   }

@@ -101,7 +101,8 @@ INLINE void NAME(sweep_known)(dvi__sweep *sweep, const int stages)
     for (size_t i = 0; i < (size_t)s->n; i++) {
       const double *g = s->force + (size_t)stages * i;
       NAME(vector) four[4] = {{0}, {0}, {0}, {0}};
-      for (int j = 0; j < stages; j++) four[stages == 8 ? j % 4 : 0] += column[j] * g[j];
+      for (int j = 0; j < 4 && stages == 8; j++) four[j] = column[j] * g[j] + column[j + 4] * g[j + 4];
+      for (int j = 0; j < stages && stages < 8; j++) four[0] += column[j] * g[j];
       const NAME(vector) sum = (four[0] + four[1]) + (four[2] + four[3]);
       NAME(place)(s, i, b, &c, &sum, s->Z + 8 * i + b, s->Q + (size_t)stages * i + b, &change, &largest);
     }
