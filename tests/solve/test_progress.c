@@ -7,79 +7,111 @@
 #include "solve/progress.h"
 #include "support/suite.h"
 
-/* Corrections, and sizes of unknowns, on both sides of every limit that a verdict knows. */
-static const double corrections[] = {0,     1e-300, 1e-21, 1e-20,   1.3e-20, 3e-17, 2.7e-17,  2.8e-17,
-                                     1e-16, 8e-16,  9e-16, 1.4e-14, 1.5e-14, 1e-13, 1e-9,     0.1,
-                                     0.34,  0.35,   0.36,  1,       2,       1e300, HUGE_VAL, (double)NAN};
-enum { CORRECTIONS = sizeof corrections / sizeof *corrections, CASES = CORRECTIONS * CORRECTIONS * CORRECTIONS };
+/* Iterations whose corrections lie on both sides of every limit that a verdict knows: above the noise they shrink by one factor, or by several modes
+ * that hide each other; then there are only roundings. */
+enum { ITERATIONS = 40, COURSES = 600 };
 
-static double now[CASES], last[CASES], before[CASES], unknown[CASES], size[CASES];
-static int64_t verdicts[CASES];
+static double course[ITERATIONS][COURSES], unknown[COURSES], size[COURSES];
 
-/* Trails hold what did not stall: finite numbers. */
-static int make_cases(void)
+static double number(int seed)
 {
-  int count = 0;
-  for (int i = 0; i < CORRECTIONS; i++)
-    for (int j = 0; j < CORRECTIONS - 2; j++)
-      for (int k = 0; k < CORRECTIONS - 2; k++, count++) {
-        now[count] = corrections[i];
-        last[count] = corrections[j];
-        before[count] = corrections[k];
-        unknown[count] = count % 5 == 0 ? 0 : ldexp(1.0, count % 3 - 1);
-        size[count] = count % 7 == 0 ? 1000 : 0;
-      }
-  return count;
+  return fabs(sin(12.9898 * seed + 78.233));
+}
+
+static void make_courses(void)
+{
+  for (int k = 0; k < COURSES; k++) {
+    const double contraction = 0.001 + 0.6 * number(k) * number(k + 5000), turn = k % 3 == 0 ? 0 : 3 * number(k + 1000);
+    const double first = pow(10, -16 * number(k + 2000)), rounding = k % 5 == 0 ? 0 : pow(10, -15 - 4 * number(k + 3000));
+    unknown[k] = k % 11 == 0 ? 0 : ldexp(1.0, k % 3 - 1);
+    size[k] = k % 7 == 0 ? 1000 : 0;
+    for (int i = 0; i < ITERATIONS; i++)
+      course[i][k] = first * pow(contraction, i) * fabs(cos(turn * i)) + rounding * number(7 * i + k);
+    if (k % 50 == 49) course[3 + k % 7][k] = k % 100 == 49 ? HUGE_VAL : (double)NAN;
+  }
 }
 
 START_TEST(many_are_judged_as_each_alone)
 {
   const int level = _i / 4, patient = _i % 2, sweeps = _i / 2 % 2;
   const dvi__pace pace = dvi__fixed_point_pace(patient, sweeps);
+  static double last[COURSES], ratio[COURSES], contraction[COURSES], own[COURSES];
+  static dvi__trail alone[COURSES];
+  static int64_t verdicts[COURSES];
   long seen[3] = {0};
   if (level >= dvi__lanes_levels()) return;
-  const int count = make_cases();
-  const dvi__trails trails = {last, before, size};
-  dvi__lanes_choose(level);
-  dvi__judge_all(count, now, unknown, &pace, &trails, verdicts);
-  dvi__lanes_choose(-1);
-  for (int k = 0, i = 0; i < CORRECTIONS; i++)
-    for (int j = 0; j < CORRECTIONS - 2; j++)
-      for (int l = 0; l < CORRECTIONS - 2; l++, k++) {
-        dvi__trail trail = {corrections[j], corrections[l]};
-        const dvi__progress alone = dvi__judge(corrections[i], &trail, &pace, unknown[k], size[k]);
-        ck_assert_int_eq(verdicts[k], alone);
-        ck_assert(last[k] == corrections[i] || isnan(corrections[i]));
-        ck_assert_double_eq(before[k], corrections[j]);
-        seen[alone]++;
-      }
+  make_courses();
+  const dvi__trails trails = {last, ratio, contraction, own, size};
+  for (int i = 0; i < ITERATIONS; i++) {
+    dvi__lanes_choose(level);
+    dvi__judge_all(COURSES, course[i], unknown, &pace, &trails, verdicts);
+    dvi__lanes_choose(-1);
+    for (int k = 0; k < COURSES; k++) {
+      const dvi__progress verdict = dvi__judge(course[i][k], &alone[k], &pace, unknown[k], size[k]);
+      ck_assert_int_eq(verdicts[k], verdict);
+      seen[verdict]++;
+    }
+  }
   ck_assert(seen[DVI__GO_ON] > 0 && seen[DVI__CONVERGED] > 0 && seen[DVI__STALLED] > 0);
 }
 END_TEST
 
-/* What the fixed point rung of one problem said before there was a loop for many. */
-static dvi__progress spelled_out(double correction, double at_last, double at_before, const dvi__pace *pace, double x, double place)
+/* How many corrections were judged until the verdict, and the verdict itself. */
+static int judged(const double *corrections, int count, const dvi__pace *pace, dvi__progress *verdict)
 {
-  const double own = at_before == 0 ? correction : fmin(correction, at_last * fmin(at_last / at_before, 1));
-  if (!isfinite(correction)) return DVI__STALLED;
-  if (correction <= 4 * DBL_EPSILON * x && own <= 0.125 * DBL_EPSILON * x) return DVI__CONVERGED;
-  if (pace->ahead && at_last > 0 && correction <= 64 * DBL_EPSILON * x &&
-      fmin(correction, correction * fmin(correction / at_last, 1)) <= DBL_EPSILON / 16384 * x)
-    return DVI__CONVERGED;
-  if (at_last == 0) return DVI__GO_ON;
-  if (correction >= pace->stagnant * at_last && correction <= pace->noise * (x + place)) return DVI__CONVERGED;
-  return correction > pace->slowest * at_last ? DVI__STALLED : DVI__GO_ON;
+  dvi__trail trail = {0};
+  int i = 0;
+  do *verdict = dvi__judge(corrections[i++], &trail, pace, 1, 1);
+  while (*verdict == DVI__GO_ON && i < count);
+  return i;
 }
 
-START_TEST(a_verdict_is_what_its_rules_say)
+/* A complex pair of modes: the correction at which they hide each other is small by chance, and the next ones are not. */
+START_TEST(a_correction_that_is_small_by_chance_ends_nothing)
 {
-  const dvi__pace pace = dvi__fixed_point_pace(_i % 2, _i / 2);
-  const int count = make_cases();
-  for (int k = 0; k < count; k++) {
-    dvi__trail trail = {last[k], before[k]};
-    ck_assert_int_eq(dvi__judge(now[k], &trail, &pace, unknown[k], size[k]),
-                     spelled_out(now[k], last[k], before[k], &pace, unknown[k], size[k]));
+  enum { MOST = 30 };
+  const dvi__pace pace = dvi__fixed_point_pace(0, 1);
+  double corrections[MOST];
+  dvi__progress verdict;
+  const double contraction = 0.05 + 0.05 * _i;
+  for (int zero = 3; zero < 12; zero++) {
+    const double turn = acos(0) / zero; /* cos(turn zero) = 0 */
+    for (int i = 0; i < MOST; i++) corrections[i] = pow(contraction, i) * (fabs(cos(turn * i)) + 1e-9);
+    const int count = judged(corrections, MOST, &pace, &verdict);
+    ck_assert_int_eq(verdict, DVI__CONVERGED);
+    ck_assert_double_le(pow(contraction, count), DBL_EPSILON / 64);
   }
+}
+END_TEST
+
+/* Roundings do not keep an iteration from its end: its own part is below a rounding after six corrections, and known to be after ten at most. */
+START_TEST(noise_does_not_keep_an_iteration_from_its_end)
+{
+  enum { MOST = 30 };
+  double corrections[MOST];
+  dvi__progress verdict;
+  for (int sweeps = 0; sweeps < 2; sweeps++) {
+    const dvi__pace pace = dvi__fixed_point_pace(0, sweeps);
+    for (int i = 0; i < MOST; i++) corrections[i] = pow(0.002, i) + 4 * DBL_EPSILON * (0.5 + number(i + _i));
+    ck_assert_int_le(judged(corrections, MOST, &pace, &verdict), 10);
+    ck_assert_int_eq(verdict, DVI__CONVERGED);
+  }
+}
+END_TEST
+
+START_TEST(slow_contraction_is_given_up)
+{
+  const dvi__pace pace = dvi__fixed_point_pace(0, 1);
+  const double slow[] = {1, 0.5, 0.25}, growing[] = {1, 1.5}, bad[] = {1, (double)NAN}, worse[] = {1, HUGE_VAL};
+  dvi__progress verdict;
+  ck_assert_int_eq(judged(slow, 3, &pace, &verdict), 2);
+  ck_assert_int_eq(verdict, DVI__STALLED);
+  ck_assert_int_eq(judged(growing, 2, &pace, &verdict), 2);
+  ck_assert_int_eq(verdict, DVI__STALLED);
+  ck_assert_int_eq(judged(bad, 2, &pace, &verdict), 2);
+  ck_assert_int_eq(verdict, DVI__STALLED);
+  ck_assert_int_eq(judged(worse, 2, &pace, &verdict), 2);
+  ck_assert_int_eq(verdict, DVI__STALLED);
 }
 END_TEST
 
@@ -87,6 +119,8 @@ int main(void)
 {
   TCase *tests = tcase_create("progress");
   tcase_add_loop_test(tests, many_are_judged_as_each_alone, 0, 12);
-  tcase_add_loop_test(tests, a_verdict_is_what_its_rules_say, 0, 4);
+  tcase_add_loop_test(tests, a_correction_that_is_small_by_chance_ends_nothing, 0, 7);
+  tcase_add_loop_test(tests, noise_does_not_keep_an_iteration_from_its_end, 0, 50);
+  tcase_add_test(tests, slow_contraction_is_given_up);
   return run_tests("solve/progress", tests);
 }

@@ -43,12 +43,15 @@ dvi_status dvi__element_prepare_lanes(dvi__stepper *self, int capacity)
   own->patient = patient;
   own->pace = dvi__fixed_point_pace(patient, 1);
   own->trails.last = DVI_NEW(double, capacity);
-  own->trails.before = DVI_NEW(double, capacity);
+  own->trails.ratio = DVI_NEW(double, capacity);
+  own->trails.contraction = DVI_NEW(double, capacity);
+  own->trails.own = DVI_NEW(double, capacity);
   own->trails.size = DVI_NEW(double, capacity);
   own->going = DVI_NEW(char, capacity);
   own->verdict = DVI_NEW(int64_t, capacity);
   own->ended = DVI_NEW(int, capacity);
-  if (!own->trails.last || !own->trails.before || !own->trails.size || !own->going || !own->verdict || !own->ended)
+  if (!own->trails.last || !own->trails.ratio || !own->trails.contraction || !own->trails.own || !own->trails.size || !own->going ||
+      !own->verdict || !own->ended)
     return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
   return dvi__action_members_create(action, capacity, &own->members);
 }
@@ -58,7 +61,9 @@ void dvi__element_clear_lanes(dvi__stepper *self)
   lanes *own = self->lanes;
   dvi__action_members_clear(&own->members);
   dvi__release(own->trails.last);
-  dvi__release(own->trails.before);
+  dvi__release(own->trails.ratio);
+  dvi__release(own->trails.contraction);
+  dvi__release(own->trails.own);
   dvi__release(own->trails.size);
   dvi__release(own->going);
   dvi__release(own->verdict);
@@ -88,10 +93,11 @@ static double choose(const lanes *own, dvi__members *m)
 static void close_up(lanes *own)
 {
   dvi__action_members *at = &own->members;
-  double *const rows[] = {own->trails.last, own->trails.before, own->trails.size};
+  double *const rows[] = {own->trails.last, own->trails.ratio, own->trails.contraction, own->trails.own, own->trails.size};
   const int before = at->width;
   dvi__action_members_close_up(at, own->going);
-  for (int i = 0; i < 3 && at->width < before; i++) dvi__action_members_pack(at, 1, before, rows[i], rows[i]);
+  for (int i = 0; i < (int)(sizeof rows / sizeof *rows) && at->width < before; i++)
+    dvi__action_members_pack(at, 1, before, rows[i], rows[i]);
   memset(own->going, 1, (size_t)at->width);
 }
 
@@ -100,7 +106,9 @@ static void set_out(lanes *own, int n, size_t forces, const dvi__members *m, dou
   const size_t count = (size_t)m->count;
   double *size = own->trails.size;
   memset(own->trails.last, 0, count * sizeof(double));
-  memset(own->trails.before, 0, count * sizeof(double));
+  memset(own->trails.ratio, 0, count * sizeof(double));
+  memset(own->trails.contraction, 0, count * sizeof(double));
+  memset(own->trails.own, 0, count * sizeof(double));
   memset(size, 0, count * sizeof(double));
   for (size_t i = 0; i < (size_t)n; i++)
     for (size_t k = 0; k < count; k++) {

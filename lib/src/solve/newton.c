@@ -12,7 +12,7 @@ static const double keep_below = 0.05;
 
 /* Newton's corrections shrink fast until rounding noise of the residual, amplified by a stiff Jacobian, keeps them; one that doubles is a bad
  * sign, two are the end. */
-static const dvi__pace pace = {0.5, 1e4 * DBL_EPSILON, 2.0, 0};
+static const dvi__pace pace = {0.5, 1e4 * DBL_EPSILON, 2.0, 0, 0};
 
 /* A guess is as likely to lead to another solution as to the wanted one if the second correction is larger than the first, or if the first one is a
  * large part of the unknowns and does not shrink fast. */
@@ -42,7 +42,7 @@ static int small_ones_settled(dvi__solver *s, const double *x, double *last)
 
 dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__solve_report *report)
 {
-  dvi__trail trail = {0, 0};
+  dvi__trail trail = {0};
   double whole, last_relative = HUGE_VAL;
   int fresh = 0, growing = 0, converged = 0;
   for (report->iterations = 1; report->iterations <= MOST_ITERATIONS; report->iterations++) {

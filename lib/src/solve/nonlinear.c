@@ -67,7 +67,7 @@ dvi__linear_kind dvi__solver_linear_kind(const dvi__solver *solver)
 /* Fixed point iteration pays while each iteration gains a third of a digit: a step by simplified Newton's method costs about as much as 40 to 300 of
  * them. A ratio above that may just be slow contraction: only at a few
  * roundings is it taken for noise. A patient user takes any gain; what no longer shrinks at all is noise. */
-static const dvi__pace paying = {0.35, 32 * DBL_EPSILON, 0.45, 0}, any_gain = {1.0, 1e4 * DBL_EPSILON, 1.0, 0};
+static const dvi__pace paying = {0.35, 32 * DBL_EPSILON, 0.45, 1, 0}, any_gain = {1.0, 1e4 * DBL_EPSILON, 1.0, 1, 0};
 
 dvi__pace dvi__fixed_point_pace(int patient, int sweeps)
 {
@@ -106,7 +106,7 @@ static dvi_status fixed_point(dvi__solver *s, double size, int patient, double *
 {
   const int most = dvi__fixed_point_most(patient);
   const dvi__pace pace = dvi__fixed_point_pace(patient, s->equations.sweep != NULL);
-  dvi__trail trail = {0, 0};
+  dvi__trail trail = {0};
   double whole;
   DVI_TRY(prepare(s, x));
   for (report->iterations = 1; report->iterations <= most; report->iterations++) {
@@ -123,12 +123,12 @@ static dvi_status fixed_point(dvi__solver *s, double size, int patient, double *
 }
 
 /* Half a digit an iteration is worth it: n x n systems cost a small part of the one that Newton's method factors. */
-static const dvi__pace frozen = {0.35, 1e4 * DBL_EPSILON, 0.3, 0};
+static const dvi__pace frozen = {0.35, 1e4 * DBL_EPSILON, 0.3, 1, 0};
 
 static dvi_status simplified(dvi__solver *s, double size, int wary, double *x, dvi__solve_report *report)
 {
   const dvi__equations *equations = &s->equations;
-  dvi__trail trail = {0, 0};
+  dvi__trail trail = {0};
   double whole;
   const dvi_status frozen_at = equations->freeze(equations->of, x);
   if (frozen_at == DVI_SINGULAR) return dvi__fail_in(DVI_NOT_CONVERGED, "the frozen Jacobian cannot be factored");

@@ -8,14 +8,14 @@
 #include "num/width.h"
 #include "solve/solver_struct.h"
 
-/* Corrections of a few roundings are at the floor, if the iteration's own part of them is well below a rounding. That part counts although the
- * unknowns are then right: the last residual was that of the point before, and what a step takes from it would err by this part in the same
- * direction in every step (a charge in a magnetic field: energy drift of 1e-17 a step). */
-static const double rounding = 4 * DBL_EPSILON, settled = 0.125 * DBL_EPSILON;
+/* The iteration is at the floor when its own part of a correction is well below a rounding. That part counts although the unknowns are then right: the
+ * last residual was that of the point before, and what a step takes from it would err by this part in the same direction in every step (a charge in a
+ * magnetic field: energy drift of 1e-17 a step). */
+static const double settled = 0.125 * DBL_EPSILON;
 
 /* Where the step takes all from one point, it is the next correction that must not show; over 5000 steps of outer-solar one of an eighth of a
- * rounding does (5e-11), one of this part of it does not (2e-12, which is the roundings' own). The contraction is known only near the floor. */
-static const double unseen = DBL_EPSILON / 16384, near = 64 * DBL_EPSILON;
+ * rounding does (5e-11), one of this part of it does not (2e-12, which is the roundings' own), nor does it as energy drift of a stiff oscillator. */
+static const double unseen = DBL_EPSILON / 2048;
 
 #define WIDTH 1
 #include "num/vector_width.h"
@@ -30,16 +30,13 @@ static const double unseen = DBL_EPSILON / 16384, near = 64 * DBL_EPSILON;
 #include "solve/progress_width.h"
 #undef WIDTH
 
-/* Most corrections are far above the floor and shrink: for one problem that is cheaper to see than to compute. */
 dvi__progress dvi__judge(double correction, dvi__trail *trail, const dvi__pace *pace, double unknown, double size)
 {
-  const dvi__trail before = *trail;
-  *trail = (dvi__trail){correction, before.last};
-  if (correction > near * unknown && correction < pace->stagnant * before.last && correction < pace->slowest * before.last)
-    return DVI__GO_ON;
-  const vector1 now = {correction}, last = {before.last}, older = {before.before}, whole = {unknown}, place = {size};
+  trail1 t = {{trail->last}, {trail->ratio}, {trail->contraction}, {trail->own}};
+  const vector1 now = {correction}, whole = {unknown}, place = {size};
   mask1 verdict;
-  judge1(&now, &last, &older, &whole, &place, pace, &verdict);
+  judge1(&now, &whole, &place, pace, &t, &verdict);
+  *trail = (dvi__trail){t.last[0], trail->last, t.ratio[0], t.contraction[0], t.own[0]};
   return (dvi__progress)verdict[0];
 }
 

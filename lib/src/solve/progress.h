@@ -6,25 +6,30 @@
 
 typedef enum dvi__progress { DVI__GO_ON, DVI__CONVERGED, DVI__STALLED } dvi__progress;
 
-/* Ratios of a correction to the last one: above `stagnant` it is rounding noise if it is also below `noise` (relative to the numbers that are
- * added), above `slowest` the iteration is given up. */
+/* How an iteration is expected to go. */
 typedef struct dvi__pace {
-  double stagnant, noise, slowest;
-  int ahead; /* what counts is the next correction's own part: the step takes nothing from the point before the last */
+  double stagnant; /* a correction above this part of the last one, both below the noise, is noise alone */
+  double noise;    /* corrections below it may be rounding noise; relative to the numbers that are added */
+  double slowest;  /* a correction above this part of what was to be feared ends the iteration */
+  int steady;      /* it contracts by about one factor, of several modes that may hide each other; else faster and faster */
+  int ahead;       /* what counts is the next correction's own part: the step takes nothing from the point before the last */
 } dvi__pace;
 
-/* The corrections before the one at hand; 0: there was none. */
+/* What an iteration has gone through; 0: not yet. Below the noise nothing can be measured: there the contraction that was seen above it goes on. */
 typedef struct dvi__trail {
-  double last, before;
+  double last, before; /* the corrections before the one at hand */
+  double ratio;        /* the last one measured of two corrections */
+  double contraction;  /* by which the iteration's own part shrinks */
+  double own;          /* what may be left of that part: a correction may be small by chance, where complex modes turn */
 } dvi__trail;
 
 /* Judge one correction and add it to the trail: converged at the roundoff floor, or stalled above it. `unknown` and `size` are the sizes of
  * the unknowns and of what they are added to. */
 dvi__progress dvi__judge(double correction, dvi__trail *trail, const dvi__pace *pace, double unknown, double size);
 
-/* Iterations of many problems, [count] each: what they have gone through, and their sizes. */
+/* Iterations of many problems, [count] each: what they have gone through, as a dvi__trail has it (without `before`), and their sizes. */
 typedef struct dvi__trails {
-  double *last, *before; /* as a dvi__trail has them */
+  double *last, *ratio, *contraction, *own;
   double *size;
 } dvi__trails;
 

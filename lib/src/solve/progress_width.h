@@ -2,39 +2,63 @@
  *
  * There is no branch: which of many iterations end with this correction nobody could predict. */
 
-INLINE void NAME(keep_smaller)(NAME(vector) * x, const NAME(vector) * other)
+/* A dvi__trail of each. */
+typedef struct NAME(trail) {
+  NAME(vector) last, ratio, contraction, own;
+} NAME(trail);
+
+/* where ? yes : no, lane by lane. */
+INLINE void NAME(choose)(const NAME(mask) * where, const NAME(vector) * yes, const NAME(vector) * no, NAME(vector) * chosen)
 {
-  const NAME(mask) take = (NAME(mask))(*x < *other);
-  *x = (NAME(vector))((take & (NAME(mask)) * x) | (~take & (NAME(mask)) * other));
+  *chosen = (NAME(vector))((*where & (NAME(mask)) * yes) | (~*where & (NAME(mask)) * no));
 }
 
-/* What is left of the iteration's error in a correction, by the contraction from `before` to `last`; without one, all of it. */
-INLINE void NAME(expected)(const NAME(vector) * correction, const NAME(vector) * last, const NAME(vector) * before,
-                           NAME(vector) * left)
+INLINE void NAME(larger_of)(const NAME(vector) * x, const NAME(vector) * y, NAME(vector) * larger)
+{
+  const NAME(mask) above = (NAME(mask))(*x > *y);
+  NAME(choose)(&above, x, y, larger);
+}
+
+/* Go on with the trail by one correction; gives the contraction to be expected, 1 if there is no telling. */
+INLINE void NAME(follow)(const NAME(vector) * correction, const NAME(vector) * noise, const dvi__pace *pace, NAME(trail) * t,
+                         NAME(vector) * expected)
 {
   const NAME(vector) one = (NAME(vector)){0} + 1.0;
-  const NAME(mask) known = (NAME(mask))(*before != 0.0);
-  NAME(vector) shrunk = *last / *before;
-  NAME(keep_smaller)(&shrunk, &one);
-  shrunk = *last * shrunk;
-  NAME(keep_smaller)(&shrunk, correction);
-  *left = (NAME(vector))((known & (NAME(mask))shrunk) | (~known & (NAME(mask)) * correction));
+  const NAME(mask) first = (NAME(mask))(t->last == 0.0), measured = (NAME(mask))(t->last > *noise),
+                   loud = (NAME(mask))(*correction > *noise);
+  const NAME(vector) quotient = *correction / t->last;
+  NAME(vector) shrinking, contraction, own, larger;
+  const NAME(mask) grows = (NAME(mask))(quotient > one) | first;
+  NAME(choose)(&grows, &one, &quotient, &shrinking);
+  NAME(larger_of)(&shrinking, &t->ratio, &larger);
+  NAME(choose)(&measured, pace->steady ? &larger : &shrinking, &t->contraction, &contraction);
+  NAME(choose)(&measured, &shrinking, &t->ratio, &t->ratio);
+  const NAME(mask) blind = (NAME(mask))(contraction == 0.0);
+  NAME(choose)(&blind, &shrinking, &contraction, expected);
+  own = contraction * t->own;
+  NAME(larger_of)(correction, &own, &larger);
+  const NAME(mask) new = first | blind | (pace->steady ? (NAME(mask)){0} : loud);
+  NAME(choose)(&loud, &larger, &own, &own);
+  NAME(choose)(&new, correction, &own, &t->own);
+  t->contraction = contraction;
 }
 
 /* Every comparison with NaN is false. */
-INLINE void NAME(judge)(const NAME(vector) * correction, const NAME(vector) * last, const NAME(vector) * before,
-                        const NAME(vector) * unknown, const NAME(vector) * size, const dvi__pace *pace, NAME(mask) * verdict)
+INLINE void NAME(judge)(const NAME(vector) * correction, const NAME(vector) * unknown, const NAME(vector) * size,
+                        const dvi__pace *pace, NAME(trail) * t, NAME(mask) * verdict)
 {
-  const NAME(mask) finite = (NAME(mask))(*correction <= DBL_MAX), second = (NAME(mask))(*last != 0.0);
-  NAME(vector) own, next;
-  NAME(expected)(correction, last, before, &own);
-  NAME(expected)(correction, correction, last, &next);
-  const NAME(mask) still = (NAME(mask))(*correction <= rounding * *unknown) & (NAME(mask))(own <= settled * *unknown);
-  const NAME(mask) ahead = (NAME(mask))(*correction <= near * *unknown) & (NAME(mask))(next <= unseen * *unknown) & second;
-  const NAME(mask) noise = (NAME(mask))(*correction >= pace->stagnant * *last) &
-                           (NAME(mask))(*correction <= pace->noise * (*unknown + *size)) & second;
-  const NAME(mask) slow = (NAME(mask))(*correction > pace->slowest * *last) & second;
-  const NAME(mask) converged = finite & (still | (pace->ahead ? ahead : (NAME(mask)){0}) | noise);
+  const NAME(vector) last = t->last, feared = t->own, noise = pace->noise * (*unknown + *size);
+  const NAME(mask) finite = (NAME(mask))(*correction <= DBL_MAX), quiet = (NAME(mask))(*correction <= noise);
+  const NAME(mask) loud_before = (NAME(mask))(last > noise), second = (NAME(mask))(last != 0.0);
+  NAME(vector) expected;
+  NAME(follow)(correction, &noise, pace, t, &expected);
+  t->last = *correction;
+  const NAME(vector) shows = pace->ahead ? expected * t->own : t->own;
+  const NAME(mask) still = quiet & (NAME(mask))(shows <= (pace->ahead ? unseen : settled) * *unknown);
+  const NAME(mask) stagnant = second & quiet & ~loud_before & (NAME(mask))(t->contraction == 0.0) &
+                              (NAME(mask))(*correction >= pace->stagnant * last);
+  const NAME(mask) slow = loud_before & (NAME(mask))(*correction > pace->slowest * feared);
+  const NAME(mask) converged = finite & (still | stagnant);
   *verdict = (converged & DVI__CONVERGED) | (~converged & (slow | ~finite) & DVI__STALLED);
 }
 
@@ -42,17 +66,22 @@ INLINE int NAME(judge_from)(int count, const double *correction, const double *u
                             const dvi__trails *trails, int64_t *verdicts, int k)
 {
   for (; k + WIDTH <= count; k += WIDTH) {
-    NAME(vector) now, last, before, whole, size;
+    NAME(vector) now, whole, size;
+    NAME(trail) t;
     NAME(mask) verdict;
     NAME(load)(correction + k, &now);
-    NAME(load)(trails->last + k, &last);
-    NAME(load)(trails->before + k, &before);
     NAME(load)(unknown + k, &whole);
     NAME(load)(trails->size + k, &size);
-    NAME(judge)(&now, &last, &before, &whole, &size, pace, &verdict);
+    NAME(load)(trails->last + k, &t.last);
+    NAME(load)(trails->ratio + k, &t.ratio);
+    NAME(load)(trails->contraction + k, &t.contraction);
+    NAME(load)(trails->own + k, &t.own);
+    NAME(judge)(&now, &whole, &size, pace, &t, &verdict);
     memcpy(verdicts + k, &verdict, sizeof verdict);
-    memcpy(trails->before + k, &last, sizeof last);
-    memcpy(trails->last + k, &now, sizeof now);
+    memcpy(trails->last + k, &t.last, sizeof now);
+    memcpy(trails->ratio + k, &t.ratio, sizeof now);
+    memcpy(trails->contraction + k, &t.contraction, sizeof now);
+    memcpy(trails->own + k, &t.own, sizeof now);
   }
   return k;
 }
