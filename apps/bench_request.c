@@ -57,6 +57,8 @@ static int check_request(bench_request *request)
     return usage_error("bench: --levels %ld is too many, %d are possible", request->levels, (int)LEVELS_MAX);
   if (request->rounds > ROUNDS_MAX)
     return usage_error("bench: --rounds %ld is too many, %d are possible", request->rounds, (int)ROUNDS_MAX);
+  if (request->steps > STEPS_MAX)
+    return usage_error("bench: --steps %ld is too many, %d are possible", request->steps, (int)STEPS_MAX);
   if (request->t_end == 0.0) return usage_error("bench: --t-end 0 leaves nothing to do");
   int code = check_modes(request);
   if (code == DONE) code = check_methods(&request->methods);

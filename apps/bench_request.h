@@ -8,7 +8,7 @@
 #include "options.h"
 #include "peer.h"
 
-enum { LEVELS_MAX = 20 };
+enum { LEVELS_MAX = 20, STEPS_MAX = 1000000 };
 
 /** The options, read and checked as far as they can be without the problem. */
 typedef struct bench_request {

@@ -72,6 +72,7 @@ expect 0 'asked errors to standard output' bench kepler --method verlet --rounds
 says err '^Speed against error' 'the words are elsewhere'
 for bad in 0 -1 x nan inf '' , 1e-3, ,1e-3 1e-3,,1e-4 1e-3,0.001 1e-3,x 1e-3x; do expect 2 "at '$bad'" bench kepler --method verlet --at "$bad"; done
 says err "not '1e-3x'" 'which number makes no sense'
+expect 2 '--steps 1000001 is too many, 1000000 are possible' bench kepler --method verlet --scale degree=1,2 --steps 1000001
 expect 2 'too many errors' bench kepler --at "$(seq -s, 40)"
 expect 2 'at-csv alone' bench kepler --method verlet --at-csv a.csv
 expect 2 'two tables on one output' bench kepler --method verlet --at 1e-3 --csv - --at-csv -

@@ -69,7 +69,7 @@ static int judged(const double *corrections, int count, const dvi__pace *pace, d
 /* A complex pair of modes: the correction at which they hide each other is small by chance, and the next ones are not. */
 START_TEST(a_correction_that_is_small_by_chance_ends_nothing)
 {
-  enum { MOST = 30 };
+  enum { MOST = 60 };
   const dvi__pace pace = dvi__fixed_point_pace(0, 1);
   double corrections[MOST];
   dvi__progress verdict;
@@ -119,7 +119,7 @@ int main(void)
 {
   TCase *tests = tcase_create("progress");
   tcase_add_loop_test(tests, many_are_judged_as_each_alone, 0, 12);
-  tcase_add_loop_test(tests, a_correction_that_is_small_by_chance_ends_nothing, 0, 7);
+  tcase_add_loop_test(tests, a_correction_that_is_small_by_chance_ends_nothing, 0, 5);
   tcase_add_loop_test(tests, noise_does_not_keep_an_iteration_from_its_end, 0, 50);
   tcase_add_test(tests, slow_contraction_is_given_up);
   return run_tests("solve/progress", tests);

@@ -15,7 +15,7 @@ typedef struct line {
   int looks_at;        /* 0: nobody; else how far the first site of a range looks, too */
   double lie;          /* added to the site `at` */
   int at, longest_lie; /* of ranges up to this length */
-  int writes_behind, answer;
+  int writes_behind, writes_before, answer;
 } line;
 
 static double tension(double d)
@@ -66,6 +66,7 @@ static int line_range(double t, const double *q, int first, int last, double *V_
   if (own->looks_at != 0 && farther >= 0) V_q[0] += 0 * q[farther];
   if (own->lie != 0 && own->at >= first && own->at < last && last - first <= own->longest_lie) V_q[own->at - first] += own->lie;
   if (own->writes_behind && last < LENGTH) V_q[last - first] = 1;
+  if (own->writes_before && first > 0) V_q[-1] = 1;
   return own->answer;
 }
 
@@ -223,6 +224,14 @@ START_TEST(a_range_with_other_bits_than_the_whole_is_found)
 }
 END_TEST
 
+START_TEST(a_range_that_writes_before_its_start_is_found)
+{
+  line own = {.writes_before = 1};
+  const dvi_potential p = line_potential(&own);
+  found_lie(&p, 1, "gradient_range of coordinates 1 to 1 writes one before them");
+}
+END_TEST
+
 START_TEST(a_range_that_writes_behind_its_end_is_found)
 {
   line own = {.writes_behind = 1};
@@ -264,6 +273,7 @@ int main(void)
   tcase_add_test(tests, a_true_range_passes);
   tcase_add_test(tests, a_range_that_looks_beyond_its_reach_is_found);
   tcase_add_test(tests, a_range_with_other_bits_than_the_whole_is_found);
+  tcase_add_test(tests, a_range_that_writes_before_its_start_is_found);
   tcase_add_test(tests, a_range_that_writes_behind_its_end_is_found);
   tcase_add_test(tests, a_wrong_gradient_is_named_before_its_ranges);
   tcase_add_test(tests, a_range_that_fails_ends_the_check_with_its_status);

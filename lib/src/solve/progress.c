@@ -17,6 +17,9 @@ static const double settled = 0.125 * DBL_EPSILON;
  * rounding does (5e-11), one of this part of it does not (2e-12, which is the roundings' own), nor does it as energy drift of a stiff oscillator. */
 static const double unseen = DBL_EPSILON / 2048;
 
+/* Over many corrections an iteration that is not given up contracts at least by its slowest pace, whatever two of them say, or by this. */
+static const double hardly = 0.98;
+
 #define WIDTH 1
 #include "num/vector_width.h"
 #include "solve/progress_width.h"

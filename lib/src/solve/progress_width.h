@@ -23,13 +23,14 @@ INLINE void NAME(larger_of)(const NAME(vector) * x, const NAME(vector) * y, NAME
 INLINE void NAME(follow)(const NAME(vector) * correction, const NAME(vector) * noise, const dvi__pace *pace, NAME(trail) * t,
                          NAME(vector) * expected)
 {
-  const NAME(vector) one = (NAME(vector)){0} + 1.0;
+  const NAME(vector) one = (NAME(vector)){0} + 1.0, most = (NAME(vector)){0} + (pace->slowest < hardly ? pace->slowest : hardly);
   const NAME(mask) first = (NAME(mask))(t->last == 0.0), measured = (NAME(mask))(t->last > *noise),
                    loud = (NAME(mask))(*correction > *noise);
   const NAME(vector) quotient = *correction / t->last;
   NAME(vector) shrinking, contraction, own, larger;
-  const NAME(mask) grows = (NAME(mask))(quotient > one) | first;
-  NAME(choose)(&grows, &one, &quotient, &shrinking);
+  const NAME(mask) grows = (NAME(mask))(quotient > most);
+  NAME(choose)(&grows, &most, &quotient, &shrinking);
+  NAME(choose)(&first, &one, &shrinking, &shrinking);
   NAME(larger_of)(&shrinking, &t->ratio, &larger);
   NAME(choose)(&measured, pace->steady ? &larger : &shrinking, &t->contraction, &contraction);
   NAME(choose)(&measured, &shrinking, &t->ratio, &t->ratio);

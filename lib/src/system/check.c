@@ -36,7 +36,7 @@ typedef struct block {
 /* The first gradient_range that breaks its promise: coordinate `row` (-1: none) of the range from first to last-1. */
 typedef struct broken_range {
   const dvi__potential_term *term;
-  int row, first, last;
+  int row, outside, first, last; /* outside: 0, or -1 and 1 if it writes before its first and behind its last coordinate */
   double whole, part;
 } broken_range;
 
@@ -125,13 +125,13 @@ static int same_bits(double a, double b)
   return bits_of_a == bits_of_b;
 }
 
-/* One range, asked for with NaN beyond its reach and behind its end, against the whole gradient. `hidden` holds NaN before and after. */
+/* One range, asked for with NaN beyond its reach and on both sides of it, against the whole gradient. `hidden` holds NaN before and after. */
 static dvi_status compare_range(check *c, const dvi__potential_term *p, int first, int last, const double *whole, double *hidden)
 {
   const dvi_potential *asked = &p->callbacks;
-  double *part = c->column[1];
+  double *part = c->column[1] + 1;
   const int count = last - first;
-  for (int i = 0; i <= count; i++) part[i] = (double)NAN;
+  for (int i = -1; i <= count; i++) part[i] = (double)NAN;
   expose(c, asked->reach, first, last, c->q, hidden);
   const int returned = asked->gradient_range(c->t, hidden, first, last, part, asked->user);
   expose(c, asked->reach, first, last, NULL, hidden);
@@ -139,9 +139,11 @@ static dvi_status compare_range(check *c, const dvi__potential_term *p, int firs
     return dvi__fail(returned < 0 ? DVI_CALLBACK_FAILED : DVI_CALLBACK_RETRY,
                      "system check: %s: the gradient_range callback returned %d for coordinates %d to %d", p->name, returned, first,
                      last - 1);
-  for (int i = 0; i <= count && c->range.row < 0; i++)
-    if (i < count ? !same_bits(whole[first + i], part[i]) : !isnan(part[i]))
-      c->range = (broken_range){p, first + i, first, last, i < count ? whole[first + i] : (double)NAN, part[i]};
+  for (int i = 0; i < count && c->range.row < 0; i++)
+    if (!same_bits(whole[first + i], part[i])) c->range = (broken_range){p, first + i, 0, first, last, whole[first + i], part[i]};
+  if (c->range.row < 0 && !isnan(part[count]))
+    c->range = (broken_range){.term = p, .row = last, .outside = 1, .first = first, .last = last};
+  if (c->range.row < 0 && !isnan(part[-1])) c->range = (broken_range){.term = p, .row = first, .outside = -1, .first = first, .last = last};
   return DVI_OK;
 }
 
@@ -254,13 +256,14 @@ static void name_entry(const finding *f, size_t size, char *text)
 
 static dvi_status report_range(const broken_range *r, dvi_derivative_check *result)
 {
-  const int behind = r->row == r->last;
   result->range_row = r->row;
   (void)snprintf(result->where, sizeof result->where, "potential '%.24s': gradient_range (%d) is %s", r->term->name, r->row,
-                 behind ? "written behind its range" : "not that of the whole");
-  if (behind)
-    return dvi__fail(DVI_BAD_ARGUMENT, "system check: potential '%.24s': gradient_range of coordinates %d to %d writes one more",
-                     r->term->name, r->first, r->last - 1);
+                 r->outside > 0   ? "written behind its range"
+                 : r->outside < 0 ? "written before its range"
+                                  : "not that of the whole");
+  if (r->outside != 0)
+    return dvi__fail(DVI_BAD_ARGUMENT, "system check: potential '%.24s': gradient_range of coordinates %d to %d writes one %s",
+                     r->term->name, r->first, r->last - 1, r->outside > 0 ? "more" : "before them");
   return dvi__fail(
       DVI_BAD_ARGUMENT,
       "system check: potential '%.24s': dV/dq (%d) is %.17g from gradient_range of coordinates %d to %d, %.17g from the "
@@ -308,7 +311,7 @@ static dvi_status allocate(check *c, const dvi_system *system)
   int complete = dvi__differences_allocate((size_t)c->n, &c->differences);
   for (int i = 0; i < 2; i++) {
     c->gradient[i] = DVI_NEW(double, c->n);
-    c->column[i] = DVI_NEW(double, (size_t)c->n + 1); /* one more shows what is written behind a range */
+    c->column[i] = DVI_NEW(double, (size_t)c->n + 2); /* two more show what is written around a range */
     complete = complete && c->gradient[i] != NULL && c->column[i] != NULL;
   }
   for (int i = 0; i < 3; i++) {
