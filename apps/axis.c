@@ -33,7 +33,8 @@ int axis_read(const char *text, scale_axis *axis)
   const size_t length = strcspn(text, "=");
   if (text[length] == '\0' || length == 0 || length >= AXIS_NAME_SIZE)
     return usage_error(
-        "bench: --scale wants a parameter of the problem, degree or threads, and its values, NAME=V1,V2,..., not '%s'", text);
+        "bench: --scale wants a parameter of the problem, degree, threads or members, and its values, NAME=V1,V2,..., not '%s'",
+        text);
   (void)snprintf(axis->name, sizeof axis->name, "%.*s", (int)length, text);
   classify(axis);
   const int code = numbers_read("bench: --scale", text + length + 1, &axis->values);

@@ -107,6 +107,10 @@ static const char *const details[] = {
     "integrator holds of the heap (mallinfo2; empty where there is no such function). Of methods that know how many bytes a\n"
     "step moves, those of a second are printed beside what an in-place axpy, y <- y + a x, of as many numbers moves on one\n"
     "thread in the same round.\n",
+    "--scale members=1,64,4096: members of an ensemble instead, near the problem's start, beside runs one after the other.\n"
+    "The first 64 (--steps) steps, the start included. Columns: method,problem,members,n,h,step_seconds,step_lower,\n"
+    "step_upper,alone_seconds,alone_lower,alone_upper,gain,step_evaluations; seconds are those of one step of one member,\n"
+    "on one thread, and gain is their ratio.\n",
     "Processor, compiler and flags are printed, and the time of 1e8 dependent multiplications, measured once a round:\n"
     "it tells times of two machines or two hours apart. Debian's packages of SUNDIALS are built without optimisation: its\n"
     "codes are several times slower in them than they can be.\n",
@@ -115,7 +119,8 @@ static const char *const details[] = {
     "  dvi bench outer-solar --t-end 500000 --method galerkin:degree=8 --method galerkin:degree=8,solver=certified --at 1e-9\n"
     "  dvi bench fpu --method galerkin:degree=2 --method galerkin:degree=4 --scale ell=100,1000,10000\n"
     "  dvi bench fpu --method galerkin --scale degree=1,2,4,8,16\n"
-    "  dvi bench chain --set n=1e6 --method verlet --method composition:order=8 --scale threads=1,2\n",
+    "  dvi bench chain --set n=1e6 --method verlet --method composition:order=8 --scale threads=1,2\n"
+    "  dvi bench kepler --method verlet --method galerkin:degree=2 --scale members=1,64,4096\n",
     NULL,
 };
 
@@ -132,9 +137,12 @@ bool bench_request_read(int argc, char **argv, bench_request *r, int *exit_code)
       {.name = "scale",
        .word = &r->scale,
        .value = "NAME=V,V...",
-       .help = "measure steps instead, as a parameter, the degree or the threads grow"},
+       .help = "measure steps instead, as a parameter, the degree, the threads or an ensemble grow"},
       {.name = "h", .number = &r->h, .value = "H", .help = "the step of --scale; left out: the problem's"},
-      {.name = "steps", .count = &r->steps, .value = "N", .help = "how many steps --scale times at once; left out: 32"},
+      {.name = "steps",
+       .count = &r->steps,
+       .value = "N",
+       .help = "how many steps --scale times at once; left out: 32, 64 of members"},
       {.name = "levels",
        .count = &r->levels,
        .value = "N",

@@ -15,7 +15,7 @@
 #include "study.h"
 #include "table.h"
 
-enum { STEPS = 64, MEMBERS_MOST = 1000000, LABEL_SIZE = 300 };
+enum { STEPS_DEFAULT = 64, MEMBERS_MOST = 1000000, LABEL_SIZE = 300 };
 
 /* Members start within this part of the problem's own start, coordinate by coordinate. */
 static const double around = 0.01;
@@ -35,6 +35,7 @@ typedef struct comparison {
   numbers counts;
   problem *scene;
   double h;
+  long steps;    /* of one run */
   double *q, *p; /* [n*members] the members' starts */
   double *point; /* [2 n] one member's */
   cell *cell;    /* [methods][counts] */
@@ -87,7 +88,7 @@ static dvi_status run_together(const comparison *c, dvi_ensemble *ensemble, doub
 {
   const double began = cpu_now();
   dvi_status status = dvi_ensemble_start(ensemble, 0.0, c->q, c->p);
-  if (status == DVI_OK) status = dvi_ensemble_advance(ensemble, c->h, STEPS);
+  if (status == DVI_OK) status = dvi_ensemble_advance(ensemble, c->h, c->steps);
   *spent = cpu_now() - began;
   return status;
 }
@@ -100,7 +101,7 @@ static dvi_status run_one(const comparison *c, dvi_integrator *integrator, size_
     c->point[n + i] = c->p[i * members + k];
   }
   dvi_status status = dvi_integrator_start(integrator, 0.0, c->point, c->point + n);
-  for (int i = 0; i < STEPS && status == DVI_OK; i++) status = dvi_integrator_step(integrator, c->h);
+  for (long i = 0; i < c->steps && status == DVI_OK; i++) status = dvi_integrator_step(integrator, c->h);
   return status;
 }
 
@@ -132,8 +133,8 @@ static dvi_status measure_together(const comparison *c, const char *method, int 
   }
   dvi_ensemble_counters(ensemble, &after);
   dvi_ensemble_destroy(&ensemble);
-  *seconds = total / (STEPS * (double)members * (double)repeats);
-  *evaluations = (double)(after.gradients - before.gradients) / (STEPS * (double)members * (double)repeats);
+  *seconds = total / ((double)c->steps * (double)members * (double)repeats);
+  *evaluations = (double)(after.gradients - before.gradients) / ((double)c->steps * (double)members * (double)repeats);
   return status;
 }
 
@@ -150,7 +151,7 @@ static dvi_status measure_alone(const comparison *c, const char *method, int mem
     total += spent;
   }
   dvi_integrator_destroy(&integrator);
-  *seconds = total / (STEPS * (double)members * (double)repeats);
+  *seconds = total / ((double)c->steps * (double)members * (double)repeats);
   return status;
 }
 
@@ -230,8 +231,9 @@ static void print_all(FILE *stream, const comparison *c, const result_table *row
   }
   (void)fprintf(stream,
                 "\nstep_seconds: process time of a member's step in an ensemble on one thread, alone_seconds: in runs one after\n");
-  (void)fprintf(stream, "the other; means of the first %d steps, the start included, repeated; medians of %ld interleaved rounds\n",
-                (int)STEPS, c->request->rounds);
+  (void)fprintf(stream,
+                "the other; means of the first %ld steps, the start included, repeated; medians of %ld interleaved rounds\n",
+                c->steps, c->request->rounds);
   (void)fprintf(stream, "gain: alone_seconds over step_seconds\n");
 }
 
@@ -315,7 +317,7 @@ static bool make_room(comparison *c)
 
 int members_run(const scale_request *request)
 {
-  comparison c = {.request = request};
+  comparison c = {.request = request, .steps = request->steps > 0 ? request->steps : STEPS_DEFAULT};
   if (request->methods->count == 0) return usage_error("bench: --scale needs a method: --method SPEC");
   int code = read_counts(&c);
   if (code == DONE) code = open_shaped(request->problem, request->settings, request->one_point, &c.scene);

@@ -7,8 +7,9 @@
 #include "problem.h"
 
 /* A callback with loops over a batch's points is compiled for several instruction sets, and the processor chooses when the program starts. All give
- * the same bits: no sums are reordered, and -ffp-contract=off keeps products and sums apart. */
-#if defined(__x86_64__) && defined(__gnu_linux__) && (!defined(__clang__) || __clang_major__ >= 14)
+ * the same bits: no sums are reordered, and -ffp-contract=off keeps products and sums apart. The choice is made before gcc's thread sanitizer can
+ * watch it. */
+#if defined(__x86_64__) && defined(__gnu_linux__) && (!defined(__clang__) || __clang_major__ >= 14) && !defined(__SANITIZE_THREAD__)
 #define PROBLEM_LANES __attribute__((target_clones("arch=x86-64-v4", "avx2", "default")))
 #else
 #define PROBLEM_LANES

@@ -277,6 +277,32 @@ START_TEST(verlet_evaluates_once_a_step)
 }
 END_TEST
 
+/* A stiff step: simplified Newton's method keeps its Jacobian as long as it serves. Members that go on alone take 1, 2, 4, ... 32 steps at a time. */
+START_TEST(a_frozen_jacobian_serves_several_steps)
+{
+  enum { ALL = 21, SPAN = 63 };
+  problem *of = made_problem("fpu", "ell=3");
+  dvi_counters got, single;
+  long alone = 0;
+  spread_start(of, ALL, 0.01);
+  dvi_ensemble *e = made_ensemble(of->system, "galerkin", (dvi_ensemble_options){.members = ALL});
+  start_all(e);
+  ck_assert_int_eq(dvi_ensemble_advance(e, 0.1, SPAN), DVI_OK);
+  dvi_ensemble_counters(e, &got);
+  for (int k = 0; k < ALL; k++) {
+    dvi_integrator *one = twin(of->system, "galerkin", ALL, k);
+    advance(one, 0.1, SPAN);
+    dvi_integrator_counters(one, &single);
+    alone += single.jacobians;
+    dvi_integrator_destroy(&one);
+  }
+  ck_assert_int_gt(got.simplified, ALL * SPAN / 2);
+  ck_assert_int_le(got.jacobians, alone + 7 * ALL);
+  dvi_ensemble_destroy(&e);
+  problem_destroy(&of);
+}
+END_TEST
+
 START_TEST(no_step_allocates)
 {
   problem *of = made_problem(places[_i / METHODS].problem, places[_i / METHODS].setting);
@@ -357,6 +383,7 @@ int main(void)
   tcase_add_loop_test(tests, levels_agree_with_each_other, 0, 9);
   tcase_add_test(tests, a_start_in_velocities_is_one_in_their_momenta);
   tcase_add_test(tests, verlet_evaluates_once_a_step);
+  tcase_add_test(tests, a_frozen_jacobian_serves_several_steps);
   tcase_add_loop_test(tests, no_step_allocates, 0, PLACES * METHODS);
   tcase_add_test(tests, explain_says_how_members_are_grouped);
   tcase_add_test(tests, waves_are_not_given_up_for_members_as_lanes);

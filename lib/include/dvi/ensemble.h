@@ -15,12 +15,12 @@ typedef struct dvi_ensemble dvi_ensemble;
 typedef struct dvi_ensemble_options {
   int members; /**< how many, at least 1 */
   /** Threads that share the members, the caller's among them; 0: 1. With more than one, callbacks run at the same time on several threads:
-   *  what their `user` points to must bear that. */
+   *  what their `user` points to must bear that. A method's own threads (verlet's key) are made for each of these. */
   int threads;
-  int block; /**< members that are worked on together, side by side; 0: chosen by the system's size. It changes speed alone */
+  int block; /**< members that are worked on together, side by side; 1: none are; 0: chosen by the system's size. It changes speed alone */
   /** [members] the system of each member, for sweeps of parameters; the array is copied, the systems must outlive the ensemble. NULL: all have
-   *  the system that dvi_ensemble_create is given. They must declare the same terms, masses, patterns, names and derivatives, and differ in what
-   *  their callbacks compute. Only neighbours with the same system are worked on side by side. */
+   *  the system that dvi_ensemble_create is given. They must declare the same terms, masses, patterns, names, derivatives and reaches, and differ in
+   *  what their callbacks compute. Only neighbours with the same system are worked on side by side. */
   const dvi_system *const *systems;
 } dvi_ensemble_options;
 

@@ -57,7 +57,7 @@ dvi_status dvi__system_prepare_hessian(const dvi_system *system);
 /* Whether all potentials give their gradient: nothing is differenced for forces. */
 int dvi__system_has_gradients(const dvi_system *system);
 
-/* DVI_OK if one may stand in for the other in all that is made for it: they declare the same terms, masses, patterns, names and derivatives, and
+/* DVI_OK if one may stand in for the other in all that is made for it: they declare the same terms, masses, patterns, names, derivatives and reaches, and
  * differ in what their callbacks compute alone. */
 dvi_status dvi__system_alike(const dvi_system *a, const dvi_system *b);
 
