@@ -98,6 +98,15 @@ static bool became_cheaper(const bench *b, int first_job)
   return b->jobs > first_job + 1 && last->tried < clearly * (last - 1)->tried;
 }
 
+/* Whether neither of the last two levels is better than all before them: one may be worse than a larger step by chance. */
+static bool floor_is_reached(const bench *b, int first_job)
+{
+  double best = HUGE_VAL;
+  if (b->jobs < first_job + 3) return false;
+  for (int i = first_job; i < b->jobs - 2; i++) best = fmin(best, b->job[i].error);
+  return b->job[b->jobs - 2].error >= best && b->job[b->jobs - 1].error >= best;
+}
+
 /* Go on with smaller steps to the smallest asked error, as long as they make the error smaller; and beyond it as long as they make the job
  * cheaper. */
 static dvi_status extend_levels(bench *b, order_study *study, int first_job)
@@ -112,7 +121,7 @@ static dvi_status extend_levels(bench *b, order_study *study, int first_job)
     const bench_job *last = &b->job[b->jobs - 1];
     steps = ceil(ratio * steps);
     if (steps > steps_max || (last->error <= wanted && !became_cheaper(b, first_job))) break;
-    if (b->jobs > first_job + 1 && !(last->error < (last - 1)->error)) break;
+    if (floor_is_reached(b, first_job)) break;
     status = add_level(b, study, lround(steps));
   }
   return status;
