@@ -91,11 +91,10 @@ PROBLEM_INLINE void gradient_at(const int dimension, const int lanes, int stride
 /* Fewer than eight points: the last one fills up. */
 PROBLEM_INLINE void gradient_of_few(const int dimension, int points, int stride, const double *q, double *V_q, const nbody *own)
 {
-  double filled[24 * NBODY_MAX], result[24 * NBODY_MAX];
+  double filled[24 * NBODY_MAX] = {0}, result[24 * NBODY_MAX] = {0};
   const int n = own->bodies * dimension;
   for (int i = 0; i < n; i++)
     for (int k = 0; k < 8; k++) filled[8 * i + k] = q[i * stride + (k < points ? k : points - 1)];
-  for (int j = 0; j < 8 * n; j++) result[j] = 0.0;
   gradient_at(dimension, 8, 8, filled, result, own);
   for (int i = 0; i < n; i++)
     for (int k = 0; k < points; k++) V_q[i * stride + k] = result[8 * i + k];

@@ -38,9 +38,9 @@ INLINE void NAME(follow)(const NAME(vector) * correction, const NAME(vector) * n
   NAME(choose)(&blind, &shrinking, &contraction, expected);
   own = contraction * t->own;
   NAME(larger_of)(correction, &own, &larger);
-  const NAME(mask) new = first | blind | (pace->steady ? (NAME(mask)){0} : loud);
+  const NAME(mask) none = {0}, fresh = first | blind | (pace->steady ? none : loud);
   NAME(choose)(&loud, &larger, &own, &own);
-  NAME(choose)(&new, correction, &own, &t->own);
+  NAME(choose)(&fresh, correction, &own, &t->own);
   t->contraction = contraction;
 }
 
