@@ -36,14 +36,14 @@ int judge_read(const char *where, const char *name, judge_kind *kind)
                      suggestion(name, kind_at, NULL, hint, sizeof hint));
 }
 
-static double largest_difference(int n, const double *a, const double *b)
+double judge_distance(int n, const double *a, const double *b)
 {
   double size = 0.0;
   for (int i = 0; i < n; i++) size = fmax(size, fabs(a[i] - b[i]));
   return size;
 }
 
-static double largest(int n, const double *x)
+double judge_largest(int n, const double *x)
 {
   double size = 0.0;
   for (int i = 0; i < n; i++) size = fmax(size, fabs(x[i]));
@@ -60,7 +60,7 @@ static bool ask_exact(judgement *judge, const problem *scene, double t_end, doub
 {
   if (scene->exact == NULL || scene->exact(scene, t_end, judge->q, p) != 0) return false;
   set_words(judge, "exact solution");
-  judge->error = 4.0 * DBL_EPSILON * fmax(1.0, largest(scene->n, judge->q)); /* some roundings in its evaluation */
+  judge->error = 4.0 * DBL_EPSILON * fmax(1.0, judge_largest(scene->n, judge->q)); /* some roundings in its evaluation */
   return true;
 }
 
@@ -71,7 +71,7 @@ static bool ask_digits(judgement *judge, const problem *scene, double t_end)
   if (digits == NULL) return false;
   memcpy(judge->q, digits, (size_t)scene->n * sizeof *judge->q);
   set_words(judge, "stored quadruple-precision result");
-  judge->error = fmax(DBL_EPSILON * largest(scene->n, judge->q), far ? scene->far_error : 0.0); /* rounded to double */
+  judge->error = fmax(DBL_EPSILON * judge_largest(scene->n, judge->q), far ? scene->far_error : 0.0); /* rounded to double */
   return true;
 }
 
@@ -91,7 +91,7 @@ static dvi_status ask_ida(judgement *judge, const problem *scene, double t_end, 
  * say. */
 static void add_witness(judgement *judge, int n, const double *ida, double ida_error)
 {
-  const double apart = largest_difference(n, judge->q, ida);
+  const double apart = judge_distance(n, judge->q, ida);
   const size_t length = strlen(judge->words);
   if (apart > contradiction * (ida_error + judge->error)) judge->error = apart;
   (void)snprintf(judge->words + length, sizeof judge->words - length, " (IDA, of error %.1e, is %.1e away)", ida_error, apart);
@@ -165,6 +165,6 @@ void judge_clear(judgement *judge)
 
 double judge_error(const judgement *judge, const problem *scene, const double *q)
 {
-  const double error = largest_difference(scene->n, q, judge->q);
-  return judge->other == NULL ? error : fmax(error, largest_difference(scene->n, q, judge->other));
+  const double error = judge_distance(scene->n, q, judge->q);
+  return judge->other == NULL ? error : fmax(error, judge_distance(scene->n, q, judge->other));
 }

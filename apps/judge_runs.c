@@ -40,27 +40,13 @@ static dvi_status run_once(const problem *scene, int degree, long steps, double 
   return status;
 }
 
-static double distance(int n, const double *a, const double *b)
-{
-  double apart = 0.0;
-  for (int i = 0; i < n; i++) apart = fmax(apart, fabs(a[i] - b[i]));
-  return apart;
-}
-
-static double size_of(int n, const double *x)
-{
-  double size = 0.0;
-  for (int i = 0; i < n; i++) size = fmax(size, fabs(x[i]));
-  return size;
-}
-
 /* The largest distance of any two ends. Equal ends are no proof of no error: the last place remains. */
 static double spread_of(const levels *l, int n)
 {
   const double *const end[4] = {l->now, l->now + n, l->before, l->before + n};
-  double apart = DBL_EPSILON * size_of(n, l->now);
+  double apart = DBL_EPSILON * judge_largest(n, l->now);
   for (int i = 0; i < (l->follows ? 4 : 2); i++)
-    for (int j = 0; j < i; j++) apart = fmax(apart, distance(n, end[i], end[j]));
+    for (int j = 0; j < i; j++) apart = fmax(apart, judge_distance(n, end[i], end[j]));
   return apart;
 }
 
@@ -77,7 +63,7 @@ static void keep(judgement *judge, int n, const double *ends, double error, cons
 static bool take_level(judgement *judge, int n, levels *l, const long *steps)
 {
   const double error = spread_of(l, n);
-  const bool settled = l->best <= agreement * size_of(n, l->now) && !(error < 0.5 * l->best);
+  const bool settled = l->best <= agreement * judge_largest(n, l->now) && !(error < 0.5 * l->best);
   if (error < l->best) keep(judge, n, l->now, error, steps);
   if (l->follows) l->best = fmin(l->best, error);
   double *room = l->before;

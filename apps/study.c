@@ -38,8 +38,7 @@ long study_repeats(double seconds)
 
 double study_size(const order_study *s)
 {
-  double size = 0.0;
-  for (int i = 0; i < s->scene->n; i++) size = fmax(size, fabs(s->judge->q[i]));
+  const double size = judge_largest(s->scene->n, s->judge->q);
   return size > 0.0 ? size : 1.0;
 }
 

@@ -35,8 +35,9 @@ static double force[2][N * STAGES_MOST], Z[2][N * LANES_MOST], Q[2][N * STAGES_M
 static double lane(int terms, int lanes, const double *matrix, const double *x)
 {
   double sum[4] = {0};
-  for (int k = 0; k < terms; k++) sum[terms >= 8 && k < terms / 4 * 4 ? k % 4 : 0] += matrix[k * lanes] * x[k];
-  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+  for (int k = 0; k < 4 && terms >= 8; k++) sum[k] = matrix[k * lanes] * x[k];
+  for (int k = terms >= 8 ? 4 : 0; k < terms; k++) sum[terms >= 8 && k < terms / 4 * 4 ? k % 4 : 0] += matrix[k * lanes] * x[k];
+  return terms >= 8 ? (sum[0] + sum[1]) + (sum[2] + sum[3]) : sum[0];
 }
 
 /* What lanes.h says, one number after the other. */

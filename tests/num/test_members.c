@@ -133,9 +133,10 @@ static dvi__members_sweep made_sweep(int stages, int lanes, int width)
                               .largest = largest};
 }
 
-START_TEST(a_sweep_has_the_bits_of_one_member_alone)
+/* Many members by one loop, and each alone by the other, for case number i. */
+static void compare(int i, void (*many)(const dvi__members_sweep *s), void (*alone)(dvi__sweep *s))
 {
-  const int level = _i / STAGES_MOST, stages = 1 + _i % STAGES_MOST, lanes = dvi__lanes_for(stages);
+  const int level = i / STAGES_MOST, stages = 1 + i % STAGES_MOST, lanes = dvi__lanes_for(stages);
   if (level >= dvi__lanes_levels()) return;
   dvi__lanes_choose(level);
   fill_tables(stages, lanes);
@@ -143,37 +144,34 @@ START_TEST(a_sweep_has_the_bits_of_one_member_alone)
     const dvi__members_sweep sweep = made_sweep(stages, lanes, width);
     fill_members(stages, width);
     dvi__members_split(N, width, factor, p0, start, low);
-    dvi__members_sweep_once(&sweep);
+    for (int k = 0; k < width; k++) change[k] = largest[k] = 0;
+    many(&sweep);
     for (int k = 0; k < width; k++) {
       single one;
       take_member(k, stages, lanes, width, &one);
-      dvi__lanes_sweep(&one.sweep);
+      one.sweep.change = one.sweep.largest = 0;
+      alone(&one.sweep);
       same_member(k, stages, lanes, width, &one);
       ck_assert_double_eq(change[k], one.sweep.change);
       ck_assert_double_eq(largest[k], one.sweep.largest);
     }
   }
 }
+
+START_TEST(a_sweep_has_the_bits_of_one_member_alone)
+{
+  compare(_i, dvi__members_sweep_once, dvi__lanes_sweep);
+}
 END_TEST
+
+static void begin_alone(dvi__sweep *sweep)
+{
+  dvi__lanes_begin(sweep);
+}
 
 START_TEST(a_beginning_has_the_bits_of_one_member_alone)
 {
-  const int level = _i / STAGES_MOST, stages = 1 + _i % STAGES_MOST, lanes = dvi__lanes_for(stages);
-  if (level >= dvi__lanes_levels()) return;
-  dvi__lanes_choose(level);
-  fill_tables(stages, lanes);
-  for (int width = 1; width <= WIDTH_MOST; width += width < 9 ? 1 : 13) {
-    const dvi__members_sweep sweep = made_sweep(stages, lanes, width);
-    fill_members(stages, width);
-    dvi__members_split(N, width, factor, p0, start, low);
-    dvi__members_begin(&sweep);
-    for (int k = 0; k < width; k++) {
-      single one;
-      take_member(k, stages, lanes, width, &one);
-      dvi__lanes_begin(&one.sweep);
-      same_member(k, stages, lanes, width, &one);
-    }
-  }
+  compare(_i, dvi__members_begin, begin_alone);
 }
 END_TEST
 

@@ -2,7 +2,6 @@
 #include <math.h>
 
 #include "action/action_struct.h"
-#include "action/sweep.h"
 #include "num/cholesky.h"
 #include "num/lanes.h"
 #include "space/legendre.h"
@@ -96,10 +95,4 @@ const double *dvi__action_sweep_shift(dvi__action *a, double ratio)
   double *shift = table_for(&a->sweep_shift, (size_t)a->r * (size_t)a->lanes, ratio, &known);
   if (!known) fill_forces(a, ratio, shift);
   return shift;
-}
-
-void dvi__action_sweep_continue(dvi__action *a, double ratio, const double *g)
-{
-  dvi__lanes_product(a->n, a->r, a->lanes, a->lanes, dvi__action_sweep_shift(a, ratio), g, a->Z);
-  dvi__action_sweep_begin(a);
 }

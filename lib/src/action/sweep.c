@@ -152,11 +152,12 @@ void dvi__action_sweep_from(dvi__action *a, const double *Y)
     for (size_t j = 0; j < r; j++) a->Q[i * r + j] = a->q0[i] + a->Z[i * lanes + j];
 }
 
-void dvi__action_sweep_begin(dvi__action *a)
+void dvi__action_sweep_continue(dvi__action *a, double ratio, const double *g)
 {
   dvi__action_set_step(a);
   const dvi__sweep sweep = sweep_of(a);
   dvi__lanes_split(&sweep);
+  dvi__lanes_product(a->n, a->r, a->lanes, a->lanes, dvi__action_sweep_shift(a, ratio), g, a->Z);
   dvi__lanes_begin(&sweep);
 }
 

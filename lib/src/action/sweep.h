@@ -27,9 +27,6 @@ void dvi__action_forces(const dvi__action *action, double *g);
  * continued path (continuation.c). */
 void dvi__action_sweep_continue(dvi__action *action, double ratio, const double *g);
 
-/* Its second half: Z holds sums of forces. */
-void dvi__action_sweep_begin(dvi__action *action);
-
 /* One iteration: the largest change of a node's offset from q0, and the largest offset. */
 dvi_status dvi__action_sweep(dvi__action *action, double *change, double *largest);
 

@@ -45,11 +45,10 @@ typedef struct element {
   dvi__action *action;
   dvi__decoupled *decoupled; /* NULL: no simplified Newton's method */
   dvi__solver *solver;
-  int choice; /* of the solver */
-  double *Y;  /* the unknowns */
-  double *
-      frozen; /* in the memory: the step for which the Jacobian is frozen (0: for none), the iterations that it took when it was new, and the point */
-  int keeps;  /* the Jacobian is not frozen anew */
+  int choice;     /* of the solver */
+  double *Y;      /* the unknowns */
+  double *frozen; /* in the memory: FROZEN_H (0: nothing is), FROZEN_ITERATIONS that it took when it was new, FROZEN_POINT */
+  int keeps;      /* the Jacobian is not frozen anew */
   const place *forces_of; /* the place whose iteration starts from the last step's forces; NULL: from Y */
   double *dq, *dq_low, *dp;
   /* Shorter steps that build a guess. */
@@ -233,8 +232,7 @@ int dvi__element_solver(const dvi__stepper *self)
 
 void dvi__element_start(dvi__stepper *self, const double *v)
 {
-  self->memory[DVI__LAST_H] = 0;
-  for (size_t k = DVI__NEWTON_STEPS; k < self->memory_count; k++) self->memory[k] = 0;
+  memset(self->memory, 0, self->memory_count * sizeof(double));
   memcpy(self->memory + DVI__LAST_Y, v, (size_t)self->system->n * sizeof(double));
 }
 
@@ -392,24 +390,16 @@ static dvi_status rescue(dvi__stepper *self, const place *at, double *Y, dvi__so
 
 /* ---- the step ---- */
 
-static int finite_increments(const element *own, size_t n)
+static void advance(dvi__stepper *self, dvi__state *state, double h)
 {
-  return dvi__first_not_finite(n, own->dq) < 0 && dvi__first_not_finite(n, own->dq_low) < 0 &&
-         dvi__first_not_finite(n, own->dp) < 0;
-}
-
-static dvi_status advance(dvi__stepper *self, dvi__state *state, double h)
-{
-  element *own = self->own;
+  const element *own = self->own;
   const int n = self->system->n;
-  if (!finite_increments(own, (size_t)n)) return dvi__fail(DVI_NOT_FINITE, "the step's end is not finite");
   dvi__add_compensated_all(n, state->q, state->q_carry, own->dq);
   dvi__add_compensated_all(n, state->q, state->q_carry, own->dq_low);
   dvi__add_compensated_all(n, state->p, state->p_carry, own->dp);
   dvi__add_compensated(&state->t, &state->t_carry, h);
   self->memory[DVI__LAST_H] = h;
   memcpy(self->memory + DVI__LAST_Y, own->Y, (size_t)dvi__action_unknowns(own->action) * sizeof(double));
-  return DVI_OK;
 }
 
 /* KINSOL judges, but what the step takes stays what the iteration found; what does not pass is solved by KINSOL itself. */
@@ -439,7 +429,8 @@ dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h)
     dvi__action_forces(own->action, forces);
   }
   if (status == DVI_OK && own->choice == DVI__SOLVER_CERTIFIED) status = certify(self, &at, own->Y, &report);
-  return status == DVI_OK ? advance(self, state, h) : status;
+  if (status == DVI_OK) advance(self, state, h);
+  return status;
 }
 
 void dvi__element_path(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v)

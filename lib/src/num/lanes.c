@@ -15,64 +15,44 @@ int dvi__lanes_for(int stages)
 
 enum { FETCH_AHEAD = 1024 }; /* bytes: half of it is as good, twice as much is worse */
 
-#define WIDTH 1
-#include "num/vector_width.h"
-#include "num/lanes_width.h"
-#include "num/leap_width.h"
-#undef WIDTH
-#define WIDTH 2
-#include "num/vector_width.h"
-#include "num/lanes_width.h"
-#include "num/leap_width.h"
-#undef WIDTH
-#define WIDTH 4
-#include "num/vector_width.h"
-#include "num/lanes_width.h"
-#include "num/leap_width.h"
-#undef WIDTH
-#define WIDTH 8
-#include "num/vector_width.h"
-#include "num/lanes_width.h"
-#include "num/leap_width.h"
-#undef WIDTH
+#define LOOPS "num/lanes_width.h"
+#include "num/each_width.h"
 
-/* Vectors as wide as the target has them, at most as wide as a row. Rows of eight lanes are the most common ones, and their few terms are worth
- * knowing at compile time. */
-#define KNOWN(count, call) \
-  case count: call; return;
-
-INLINE void product(int widest, int n, int terms, int lanes, int width, const double *matrix, const double *x, double *out)
+/* Rows of eight lanes are the most common ones, and their few terms are worth knowing at compile time. */
+INLINE void product_of_eight(int n, int terms, int width, const double *matrix, const double *x, double *out)
 {
-  const int W = lanes < widest ? lanes : widest;
-  if (W == 1) {
-    product1(n, terms, lanes, width, matrix, x, out);
-    return;
-  }
-  if (W == 2) {
-    product2(n, terms, lanes, width, matrix, x, out);
-    return;
-  }
-  if (W == 4) {
-    product4(n, terms, lanes, width, matrix, x, out);
-    return;
-  }
-  switch (lanes == 8 ? terms : 0) {
-    KNOWN(5, product8(n, 5, 8, width, matrix, x, out))
-    KNOWN(6, product8(n, 6, 8, width, matrix, x, out))
-    KNOWN(7, product8(n, 7, 8, width, matrix, x, out))
-    KNOWN(8, product8(n, 8, 8, width, matrix, x, out))
-  default: product8(n, terms, lanes, width, matrix, x, out);
+  switch (terms) {
+  case 5: product8(n, 5, 8, width, matrix, x, out); break;
+  case 6: product8(n, 6, 8, width, matrix, x, out); break;
+  case 7: product8(n, 7, 8, width, matrix, x, out); break;
+  case 8: product8(n, 8, 8, width, matrix, x, out); break;
+  default: product8(n, terms, 8, width, matrix, x, out);
   }
 }
 
-/* `known` for rows of eight lanes. */
-#define SWEEP(sweep, known)                \
+/* Vectors as wide as the target has them, at most as wide as a row. */
+INLINE void product(int widest, int n, int terms, int lanes, int width, const double *matrix, const double *x, double *out)
+{
+  const int W = lanes < widest ? lanes : widest;
+  if (W == 1)
+    product1(n, terms, lanes, width, matrix, x, out);
+  else if (W == 2)
+    product2(n, terms, lanes, width, matrix, x, out);
+  else if (W == 4)
+    product4(n, terms, lanes, width, matrix, x, out);
+  else if (lanes == 8)
+    product_of_eight(n, terms, width, matrix, x, out);
+  else
+    product8(n, terms, lanes, width, matrix, x, out);
+}
+
+#define SWEEP(width)                       \
   switch (s->lanes == 8 ? s->stages : 0) { \
-    KNOWN(5, known(s, 5))                  \
-    KNOWN(6, known(s, 6))                  \
-    KNOWN(7, known(s, 7))                  \
-    KNOWN(8, known(s, 8))                  \
-  default: sweep(s);                       \
+  case 5: sweep_known##width(s, 5); break; \
+  case 6: sweep_known##width(s, 6); break; \
+  case 7: sweep_known##width(s, 7); break; \
+  case 8: sweep_known##width(s, 8); break; \
+  default: sweep##width(s);                \
   }
 
 INLINE void sweep(int widest, dvi__sweep *s)
@@ -81,11 +61,11 @@ INLINE void sweep(int widest, dvi__sweep *s)
   if (W == 1)
     sweep1(s);
   else if (W == 2)
-    SWEEP(sweep2, sweep_known2)
+    SWEEP(2)
   else if (W == 4)
-    SWEEP(sweep4, sweep_known4)
+    SWEEP(4)
   else
-    SWEEP(sweep8, sweep_known8)
+    SWEEP(8)
 }
 
 INLINE void begin(int widest, const dvi__sweep *s)

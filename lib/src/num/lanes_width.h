@@ -1,4 +1,5 @@
 /* The loops of lanes.c for vectors of WIDTH numbers, after vector_width.h; it includes this once for each width. */
+#include "num/leap_width.h"
 
 INLINE double NAME(largest_of)(const NAME(vector) * x)
 {
@@ -15,15 +16,19 @@ INLINE void NAME(add_column)(int lanes, const double *matrix, const double *x, i
   *sum += column * x[k];
 }
 
-/* WIDTH lanes of one row of a product; long ones as four sums, which do not wait for each other. */
+/* WIDTH lanes of one row of a product; eight terms and more as four sums, which do not wait for each other. */
 INLINE void NAME(row)(int terms, int lanes, const double *matrix, const double *x, NAME(vector) * out)
 {
   NAME(vector) sum[4] = {{0}, {0}, {0}, {0}};
   int k = 0;
+  for (; terms >= 8 && k < 4; k++) {
+    NAME(load)(matrix + (size_t)k * (size_t)lanes, &sum[k]);
+    sum[k] *= x[k];
+  }
   for (; terms >= 8 && k + 4 <= terms; k += 4)
     for (int j = 0; j < 4; j++) NAME(add_column)(lanes, matrix, x, k + j, &sum[j]);
   for (; k < terms; k++) NAME(add_column)(lanes, matrix, x, k, &sum[0]);
-  *out = (sum[0] + sum[1]) + (sum[2] + sum[3]);
+  *out = terms >= 8 ? (sum[0] + sum[1]) + (sum[2] + sum[3]) : sum[0];
 }
 
 INLINE void NAME(product)(int n, int terms, int lanes, int width, const double *restrict matrix, const double *restrict x,
@@ -100,10 +105,10 @@ INLINE void NAME(sweep_known)(dvi__sweep *sweep, const int stages)
     NAME(load)(s->node + b, &c);
     for (size_t i = 0; i < (size_t)s->n; i++) {
       const double *g = s->force + (size_t)stages * i;
-      NAME(vector) four[4] = {{0}, {0}, {0}, {0}};
+      NAME(vector) sum = {0}, four[4];
       for (int j = 0; j < 4 && stages == 8; j++) four[j] = column[j] * g[j] + column[j + 4] * g[j + 4];
-      for (int j = 0; j < stages && stages < 8; j++) four[0] += column[j] * g[j];
-      const NAME(vector) sum = (four[0] + four[1]) + (four[2] + four[3]);
+      for (int j = 0; j < stages && stages < 8; j++) sum += column[j] * g[j];
+      if (stages == 8) sum = (four[0] + four[1]) + (four[2] + four[3]);
       NAME(place)(s, i, b, &c, &sum, s->Z + 8 * i + b, s->Q + (size_t)stages * i + b, &change, &largest);
     }
   }

@@ -6,22 +6,8 @@
 #include "num/lanes.h"
 #include "num/width.h"
 
-#define WIDTH 1
-#include "num/vector_width.h"
-#include "num/members_width.h"
-#undef WIDTH
-#define WIDTH 2
-#include "num/vector_width.h"
-#include "num/members_width.h"
-#undef WIDTH
-#define WIDTH 4
-#include "num/vector_width.h"
-#include "num/members_width.h"
-#undef WIDTH
-#define WIDTH 8
-#include "num/vector_width.h"
-#include "num/members_width.h"
-#undef WIDTH
+#define LOOPS "num/members_width.h"
+#include "num/each_width.h"
 
 /* Whole vectors first, the rest in shorter ones. */
 #define TAIL2(name, ...) name##2(__VA_ARGS__, 0)

@@ -9,27 +9,19 @@ INLINE void NAME(add_term)(int lanes, const double *matrix, int width, const dou
   *sum += value * matrix[(size_t)k * (size_t)lanes];
 }
 
-/* sum_k matrix_k x_k; long ones as four sums. */
+/* sum_k matrix_k x_k; eight terms and more as four sums, as in lanes_width.h. */
 INLINE void NAME(row)(int terms, int lanes, const double *matrix, int width, const double *x, NAME(vector) * out)
 {
   NAME(vector) sum[4] = {{0}, {0}, {0}, {0}};
   int k = 0;
+  for (; terms >= 8 && k < 4; k++) {
+    NAME(load)(x + (size_t)k * (size_t)width, &sum[k]);
+    sum[k] *= matrix[(size_t)k * (size_t)lanes];
+  }
   for (; terms >= 8 && k + 4 <= terms; k += 4)
     for (int j = 0; j < 4; j++) NAME(add_term)(lanes, matrix, width, x, k + j, &sum[j]);
   for (; k < terms; k++) NAME(add_term)(lanes, matrix, width, x, k, &sum[0]);
   *out = terms >= 8 ? (sum[0] + sum[1]) + (sum[2] + sum[3]) : sum[0];
-}
-
-/* Eight terms of a sweep: as in lanes_width.h nothing is added to zero, which would take the sign from one. */
-INLINE void NAME(row_of_eight)(const double *matrix, int width, const double *x, NAME(vector) * out)
-{
-  NAME(vector) four[4];
-  for (int j = 0; j < 4; j++) {
-    NAME(load)(x + (size_t)j * (size_t)width, &four[j]);
-    four[j] *= matrix[8 * j];
-    NAME(add_term)(8, matrix, width, x, j + 4, &four[j]);
-  }
-  *out = (four[0] + four[1]) + (four[2] + four[3]);
 }
 
 /* WIDTH members, from member m on, of coordinate i. */
@@ -111,10 +103,7 @@ INLINE void NAME(sweep_at)(const dvi__members_sweep *s, const int stages, size_t
   }
   for (size_t j = 0; j < (size_t)stages; j++) {
     NAME(vector) sum, before, next;
-    if (stages == 8)
-      NAME(row_of_eight)(s->matrix + j, s->width, force, &sum);
-    else
-      NAME(row)(stages, s->lanes, s->matrix + j, s->width, force, &sum);
+    NAME(row)(stages, s->lanes, s->matrix + j, s->width, force, &sum);
     NAME(load)(Z + j * width, &before);
     NAME(place)(&base, s->node[j], &sum, &next, Z + j * width, Q + j * width);
     const NAME(vector) moved = before - next;

@@ -65,8 +65,7 @@ dvi__linear_kind dvi__solver_linear_kind(const dvi__solver *solver)
 }
 
 /* Fixed point iteration pays while each iteration gains a third of a digit: a step by simplified Newton's method costs about as much as 40 to 300 of
- * them. A ratio above that may just be slow contraction: only at a few
- * roundings is it taken for noise. A patient user takes any gain; what no longer shrinks at all is noise. */
+ * them. A patient user takes any gain. */
 static const dvi__pace paying = {0.35, 32 * DBL_EPSILON, 0.45, 1, 0}, any_gain = {1.0, 1e4 * DBL_EPSILON, 1.0, 1, 0};
 
 dvi__pace dvi__fixed_point_pace(int patient, int sweeps)

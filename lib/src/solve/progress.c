@@ -20,18 +20,8 @@ static const double unseen = DBL_EPSILON / 2048;
 /* Over many corrections an iteration that is not given up contracts at least by its slowest pace, whatever two of them say, or by this. */
 static const double hardly = 0.98;
 
-#define WIDTH 1
-#include "num/vector_width.h"
-#include "solve/progress_width.h"
-#undef WIDTH
-#define WIDTH 2
-#include "num/vector_width.h"
-#include "solve/progress_width.h"
-#undef WIDTH
-#define WIDTH 4
-#include "num/vector_width.h"
-#include "solve/progress_width.h"
-#undef WIDTH
+#define LOOPS "solve/progress_width.h"
+#include "num/each_width.h"
 
 dvi__progress dvi__judge(double correction, dvi__trail *trail, const dvi__pace *pace, double unknown, double size)
 {
