@@ -33,6 +33,7 @@ typedef struct dvi__lagrangian_term {
 
 struct dvi_system {
   int n;
+  int autonomous; /* declared so */
   uint64_t hash;  /* of all that is declared, but for what callbacks compute */
   unsigned terms; /* dvi__term bits */
   double mass_scalar;
@@ -56,6 +57,9 @@ dvi_status dvi__system_prepare_hessian(const dvi_system *system);
 
 /* Whether all potentials give their gradient: nothing is differenced for forces. */
 int dvi__system_has_gradients(const dvi_system *system);
+
+/* DVI_OK if L_t is known: the system is autonomous, or all terms give their rates. Else the sentence names the term without. */
+dvi_status dvi__system_has_rates(const dvi_system *system);
 
 /* DVI_OK if one may stand in for the other in all that is made for it: they declare the same terms, masses, patterns, names, derivatives and reaches, and
  * differ in what their callbacks compute alone. */
