@@ -44,6 +44,14 @@ extern "C" {
  *  @retval DVI_NO_MEMORY */
 dvi_status dvi_integrator_create(const dvi_system *system, const char *method, dvi_integrator **integrator);
 
+/** Make another one of the same system, method and monitor (dvi/transform.h), without a state.
+ *
+ *  If the given one is started, and its steps are in a fictitious time, the new one keeps its E0: starts near each other belong to one map.
+ *  @param[out] integrator  owned by the caller; NULL on failure
+ *  @retval DVI_BAD_ARGUMENT  a pointer is NULL
+ *  @retval (others)          as when the given one was made */
+dvi_status dvi_integrator_create_like(const dvi_integrator *like, dvi_integrator **integrator);
+
 /** Free an integrator and set the pointer to NULL; NULL is allowed. */
 void dvi_integrator_destroy(dvi_integrator **integrator);
 
@@ -64,7 +72,7 @@ dvi_status dvi_integrator_start(dvi_integrator *integrator, double t, const doub
  *  @retval (others)      as dvi_integrator_start */
 dvi_status dvi_integrator_start_velocity(dvi_integrator *integrator, double t, const double *q, const double *v);
 
-/** Take one step of length h (negative: backward).
+/** Take one step of length h (negative: backward); h is time, or the fictitious time of dvi/transform.h.
  *
  *  On any failure the state, and all that the next step depends on, is as before the call.
  *  @retval DVI_BAD_ARGUMENT    h is zero or not finite, or so small that t + h = t or 1/h = Inf

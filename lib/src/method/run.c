@@ -75,6 +75,7 @@ static double next_step(const dvi_integrator *I, const dvi_run_options *options)
 {
   const double left = (options->t_end - I->now.t) + I->now.t_carry, h = options->h, missed = clock_error(I, options);
   if (fabs(left) <= missed) return 0;
+  if (I->pace != NULL) return h; /* of another time: whether it is too long shows when it is taken */
   if (fabs(left - h) <= missed) return h;
   return left / h <= 1 + stretch ? left : h;
 }
@@ -84,7 +85,7 @@ static dvi_status one_step(dvi_integrator *I, const dvi_run_options *options, do
 {
   const double from = dvi_integrator_time(I);
   const long every = options->every > 0 ? options->every : 1;
-  DVI_TRY(dvi_integrator_step(I, h));
+  DVI_TRY(I->pace != NULL ? dvi__pace_step(I, h, options->t_end, clock_error(I, options)) : dvi_integrator_step(I, h));
   const dvi_status found = dvi__watch_find(watch, I, options, from);
   if (found != DVI_OK) return dvi__integrator_undo(I, found);
   report->steps++;
