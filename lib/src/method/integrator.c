@@ -158,6 +158,7 @@ static void accept(dvi_integrator *I, double h)
   I->now = I->next;
   I->next = oldest;
   I->last_h_before = I->last_h;
+  if (I->pace != NULL) I->pace->expanded = 0;
   /* What a transform makes of h, or the control, is known by the clock alone; the carries tell it to the last digit. */
   I->last_h = I->pace != NULL ? (I->now.t - I->last.t) - (I->now.t_carry - I->last.t_carry) : h;
   I->counters.steps++;
@@ -179,6 +180,7 @@ void dvi__integrator_take_back(dvi_integrator *I)
   I->last = oldest;
   I->last_h = I->last_h_before;
   I->counters.steps--;
+  if (I->pace != NULL) I->pace->expanded = 0;
   exchange_memory(I);
 }
 

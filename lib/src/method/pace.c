@@ -135,6 +135,7 @@ void dvi__pace_explain(const dvi__pace *pace, dvi__text *text)
 void dvi__pace_set_energy(dvi__pace *pace, double energy)
 {
   pace->energy = energy;
+  pace->expanded = 0;
   dvi__monitor_set_energy(monitor_of(pace), energy);
   if (pace->transformed != NULL) dvi__transformed_set_energy(pace->transformed, energy);
 }

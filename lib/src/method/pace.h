@@ -12,14 +12,16 @@ typedef enum dvi__pacing { DVI__TRANSFORM, DVI__CONTROL } dvi__pacing;
 
 typedef struct dvi__pace {
   dvi__pacing pacing;
-  dvi_monitor given;                                       /* to make another one alike */
-  char name[DVI__PACE_NAME];                               /* the monitor's */
-  dvi__transformed *transformed;                           /* the new system, of a transform */
-  dvi__monitor *monitor;                                   /* of control */
-  double energy;                                           /* E0 */
-  int holds;                                               /* E0 is given: starts do not choose it */
-  double *q, *v, *g_q;                                     /* [n] work */
-  double node[DVI__PACE_POINTS], weight[DVI__PACE_POINTS]; /* for time inside a step */
+  dvi_monitor given;             /* to make another one alike */
+  char name[DVI__PACE_NAME];     /* the monitor's */
+  dvi__transformed *transformed; /* the new system, of a transform */
+  dvi__monitor *monitor;         /* of control */
+  double energy;                 /* E0 */
+  int holds;                     /* E0 is given: starts do not choose it */
+  double *q, *v, *g_q;           /* [n] work */
+  /* Time inside the last step (physical_time.c): a quadrature, and g on the path by Legendre polynomials, if it is expanded. */
+  double node[DVI__PACE_POINTS], weight[DVI__PACE_POINTS], series[DVI__PACE_POINTS];
+  int expanded;
 } dvi__pace;
 
 dvi_status dvi__pace_create(const dvi_system *system, const dvi_monitor *monitor, dvi__pacing pacing, dvi_counters *counters,

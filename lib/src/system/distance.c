@@ -7,122 +7,130 @@
 
 #include "system/monitor.h"
 
-/* A batch of points: coordinate i of point k is q[i*count + k]. */
-typedef struct batch {
+/* A batch of points, coordinate i of point k at q[i*count + k], and two of the bodies; b < 0: the origin. */
+typedef struct pair {
   const dvi__built_in *own;
-  size_t count, k;
+  size_t count;
   const double *q;
-} batch;
+  int a, b;
+} pair;
 
-/* Coordinate i of the way from body b to body a; b < 0: from the origin. */
-static double way(const batch *at, int a, int b, int i)
+/* The first of all pairs, and the next one; 0 if there is none. */
+static pair first_pair(const dvi__built_in *own, int count, const double *q)
 {
-  const size_t d = (size_t)at->own->dimension, j = (size_t)i;
-  const double x = at->q[((size_t)a * d + j) * at->count + at->k];
-  return b < 0 ? x : x - at->q[((size_t)b * d + j) * at->count + at->k];
+  return (pair){own, (size_t)count, q, own->bodies > 1, own->bodies > 1 ? 0 : -1};
 }
 
-static double square(const batch *at, int a, int b)
+static int next_pair(pair *p)
 {
-  double sum = 0;
-  for (int i = 0; i < at->own->dimension; i++) sum += way(at, a, b, i) * way(at, a, b, i);
-  return sum;
+  if (p->b < 0) return 0;
+  if (++p->b == p->a) p->a++, p->b = 0;
+  return p->a < p->own->bodies;
 }
 
-typedef void (*of_pair)(const batch *at, int a, int b, double *result);
-
-static void for_pairs(const batch *at, of_pair add, double *result)
+/* Where coordinate i of a body begins in a batch. */
+static size_t place(const pair *p, int body, size_t i)
 {
-  if (at->own->bodies == 1) add(at, 0, -1, result);
-  for (int a = 0; a < at->own->bodies; a++)
-    for (int b = 0; b < a; b++) add(at, a, b, result);
+  return ((size_t)body * (size_t)p->own->dimension + i) * p->count;
 }
 
-static void add_rate(const batch *at, int a, int b, double *S)
+/* Coordinate i of the way from b to a, at point k. */
+static double way(const pair *p, size_t i, size_t k)
 {
-  *S += pow(square(at, a, b), -0.5 * at->own->power);
+  return p->q[place(p, p->a, i) + k] - (p->b < 0 ? 0 : p->q[place(p, p->b, i) + k]);
 }
 
-/* S_q of point k stands in its place of the batch. */
-static void add_slope(const batch *at, int a, int b, double *S_q)
+/* r^2 and r^-p at all points. */
+static void rates(const pair *p, double *square, double *rate)
 {
-  const double p = at->own->power, factor = -p * pow(square(at, a, b), -0.5 * p - 1);
-  const size_t d = (size_t)at->own->dimension;
-  for (size_t i = 0; i < d; i++) {
-    const double change = factor * way(at, a, b, (int)i);
-    S_q[((size_t)a * d + i) * at->count + at->k] += change;
-    if (b >= 0) S_q[((size_t)b * d + i) * at->count + at->k] -= change;
-  }
+  const double power = p->own->power;
+  memset(square, 0, p->count * sizeof *square);
+  for (size_t i = 0; i < (size_t)p->own->dimension; i++)
+    for (size_t k = 0; k < p->count; k++) square[k] += way(p, i, k) * way(p, i, k);
+  if (power == 1.5)
+    for (size_t k = 0; k < p->count; k++) rate[k] = 1 / sqrt(square[k] * sqrt(square[k]));
+  else
+    for (size_t k = 0; k < p->count; k++) rate[k] = pow(square[k], -0.5 * power);
 }
 
-/* Entry (body x coordinate i, body y coordinate j), by columns. */
-static void add_entry(const batch *at, int x, size_t i, int y, size_t j, double value, double *S_qq)
+/* g, and S_q [n*count] if it is wanted. */
+static void first_order(const dvi__built_in *own, int count, const double *q, double *g, double *S_q)
 {
-  const size_t d = (size_t)at->own->dimension, row = (size_t)x * d + i, column = (size_t)y * d + j;
-  S_qq[(column * (size_t)at->own->n + row) * at->count + at->k] += value;
-}
-
-static void add_curvature(const batch *at, int a, int b, double *S_qq)
-{
-  const double p = at->own->power, r2 = square(at, a, b), factor = p * pow(r2, -0.5 * p - 1);
-  const size_t d = (size_t)at->own->dimension;
-  for (size_t i = 0; i < d; i++)
-    for (size_t j = 0; j < d; j++) {
-      const double curvature = factor * ((p + 2) * way(at, a, b, (int)i) * way(at, a, b, (int)j) / r2 - (i == j));
-      add_entry(at, a, i, a, j, curvature, S_qq);
-      if (b < 0) continue;
-      add_entry(at, b, i, b, j, curvature, S_qq);
-      add_entry(at, a, i, b, j, -curvature, S_qq);
-      add_entry(at, b, i, a, j, -curvature, S_qq);
-    }
-}
-
-static double monitor(const batch *at)
-{
-  double S = 0;
-  for_pairs(at, add_rate, &S);
-  return 1 / S;
+  pair p = first_pair(own, count, q);
+  memset(g, 0, p.count * sizeof *g);
+  if (S_q != NULL) memset(S_q, 0, (size_t)own->n * p.count * sizeof *S_q);
+  do {
+    rates(&p, own->square, own->rate);
+    for (size_t k = 0; k < p.count; k++) g[k] += own->rate[k];
+    for (size_t i = 0; S_q != NULL && i < (size_t)own->dimension; i++)
+      for (size_t k = 0; k < p.count; k++) {
+        const double slope = -own->power * own->rate[k] / own->square[k] * way(&p, i, k);
+        S_q[place(&p, p.a, i) + k] += slope;
+        if (p.b >= 0) S_q[place(&p, p.b, i) + k] -= slope;
+      }
+  } while (next_pair(&p));
+  for (size_t k = 0; k < p.count; k++) g[k] = 1 / g[k];
 }
 
 static int value(int count, const double *t, const double *q, double *g, void *user)
 {
   (void)t;
-  for (int k = 0; k < count; k++) g[k] = monitor(&(batch){user, (size_t)count, (size_t)k, q});
+  first_order(user, count, q, g, NULL);
   return 0;
 }
 
 static int gradient(int count, const double *t, const double *q, double *g_q, void *user)
 {
   const dvi__built_in *own = user;
+  const size_t points = (size_t)count;
   (void)t;
-  memset(g_q, 0, (size_t)own->n * (size_t)count * sizeof *g_q);
-  for (int k = 0; k < count; k++) {
-    const batch at = {own, (size_t)count, (size_t)k, q};
-    const double g = monitor(&at);
-    for_pairs(&at, add_slope, g_q);
-    for (size_t i = 0; i < (size_t)own->n; i++) g_q[i * at.count + at.k] *= -g * g;
-  }
+  first_order(own, count, q, own->g, g_q);
+  for (size_t i = 0; i < (size_t)own->n; i++)
+    for (size_t k = 0; k < points; k++) g_q[i * points + k] *= -own->g[k] * own->g[k];
   return 0;
 }
 
-/* g_q is at hand only as own->V_q, which nobody else uses here. */
+/* Entry (coordinate i of body x, coordinate j of body y) += change, by columns. */
+static void add_entry(const pair *p, int x, size_t i, int y, size_t j, size_t k, double change, double *S_qq)
+{
+  S_qq[place(p, y, j) * (size_t)p->own->n + place(p, x, i) + k] += change;
+}
+
+static void add_curvature(const pair *p, double *S_qq)
+{
+  const double power = p->own->power;
+  const size_t d = (size_t)p->own->dimension;
+  for (size_t e = 0; e < d * d * p->count; e++) {
+    const size_t k = e % p->count, i = e / p->count % d, j = e / p->count / d;
+    const double square = p->own->square[k], factor = power * p->own->rate[k] / square;
+    const double change = factor * ((power + 2) * way(p, i, k) * way(p, j, k) / square - (i == j));
+    add_entry(p, p->a, i, p->a, j, k, change, S_qq);
+    if (p->b < 0) continue;
+    add_entry(p, p->b, i, p->b, j, k, change, S_qq);
+    add_entry(p, p->a, i, p->b, j, k, -change, S_qq);
+    add_entry(p, p->b, i, p->a, j, k, -change, S_qq);
+  }
+}
+
 static int hessian(int count, const double *t, const double *q, double *g_qq, void *user)
 {
   const dvi__built_in *own = user;
   const size_t n = (size_t)own->n, points = (size_t)count;
-  double *g_q = own->V_q;
+  double *S_q = own->V_q; /* nobody else uses it here */
+  pair p = first_pair(own, count, q);
+  (void)t;
   memset(g_qq, 0, n * n * points * sizeof *g_qq);
-  (void)gradient(count, t, q, g_q, user);
-  for (size_t k = 0; k < points; k++) {
-    const batch at = {own, points, k, q};
-    const double g = monitor(&at);
-    for_pairs(&at, add_curvature, g_qq);
-    for (size_t j = 0; j < n; j++)
-      for (size_t i = 0; i < n; i++) {
+  first_order(own, count, q, own->g, S_q);
+  do {
+    rates(&p, own->square, own->rate);
+    add_curvature(&p, g_qq);
+  } while (next_pair(&p));
+  for (size_t j = 0; j < n; j++)
+    for (size_t i = 0; i < n; i++)
+      for (size_t k = 0; k < points; k++) {
         double *entry = &g_qq[(j * n + i) * points + k];
-        *entry = 2 * g_q[i * points + k] * g_q[j * points + k] / g - g * g * *entry;
+        *entry = own->g[k] * own->g[k] * (2 * own->g[k] * S_q[i * points + k] * S_q[j * points + k] - *entry);
       }
-  }
   return 0;
 }
 

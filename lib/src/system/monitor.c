@@ -106,15 +106,17 @@ static dvi_status allocate_built_in(dvi__built_in *own, const dvi_monitor *given
 {
   const size_t numbers = (size_t)own->n * capacity;
   if (given->kind == DVI_MONITOR_FUNCTION) return DVI_OK;
+  own->g = DVI_NEW(double, capacity);
+  own->square = DVI_NEW(double, capacity);
+  own->rate = DVI_NEW(double, capacity);
   own->V_q = DVI_NEW(double, numbers);
-  if (own->V_q == NULL) return dvi__fail(DVI_NO_MEMORY, "monitor: no memory");
+  if (!own->g || !own->square || !own->rate || !own->V_q) return dvi__fail(DVI_NO_MEMORY, "monitor: no memory");
   if (given->kind == DVI_MONITOR_DISTANCE) return DVI_OK;
   DVI_TRY(dvi__evaluator_create(own->system, (int)capacity, DVI__HESSIANS, counters, &own->evaluator));
-  own->g = DVI_NEW(double, capacity);
   own->zero = DVI_NEW(double, numbers);
   own->a = DVI_NEW(double, numbers);
   own->V_qq = DVI_NEW(double, (1 + (size_t)dvi__pattern_entries(&own->system->qq)) * capacity);
-  return own->g && own->zero && own->a && own->V_qq ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "monitor: no memory");
+  return own->zero && own->a && own->V_qq ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "monitor: no memory");
 }
 
 static dvi_status fill(dvi__monitor *m, const dvi_system *system, const dvi_monitor *given, int capacity, dvi__derivatives most,
@@ -150,7 +152,7 @@ void dvi__monitor_destroy(dvi__monitor **monitor)
   dvi__monitor *m = *monitor;
   if (m == NULL) return;
   dvi__built_in *own = &m->built_in;
-  double *const owned[] = {own->g, own->zero, own->V_q, own->a, own->V_qq, m->t};
+  double *const owned[] = {own->g, own->square, own->rate, own->zero, own->V_q, own->a, own->V_qq, m->t};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) dvi__release(owned[i]);
   dvi__evaluator_destroy(&own->evaluator);
   dvi__scratch_clear(&m->scratch);

@@ -30,7 +30,7 @@ typedef struct dvi__built_in {
   double power, energy; /* E0 */
   int n, bodies, dimension;
   dvi__evaluator *evaluator; /* of the system; NULL: only distances are asked for */
-  double *g;                 /* [capacity] */
+  double *g, *square, *rate; /* [capacity] g; a pair's r^2 and r^-power */
   double *zero, *V_q, *a;    /* [n*capacity] no velocity, V_q, M^-1 V_q */
   double *V_qq;              /* [entries*capacity] */
 } dvi__built_in;
