@@ -38,6 +38,7 @@ static dvi_status follow(dvi_integrator *I, const dvi__state *state, double h, d
 dvi_status dvi__control_begin(dvi_integrator *I, double h, double *length)
 {
   *length = h;
+  I->next.density = I->now.density;
   if (I->pace == NULL || I->pace->pacing != DVI__CONTROL) return DVI_OK;
   DVI_TRY(follow(I, &I->now, h, I->now.density, &I->next.density));
   *length = h / I->next.density;
