@@ -83,7 +83,8 @@ static dvi_status check_method(const dvi_integrator *I)
 static dvi_status create(const dvi_system *system, const dvi_monitor *monitor, dvi__pacing pacing, const char *method,
                          dvi_integrator **integrator)
 {
-  const char *what = pacing == DVI__TRANSFORM ? "time transform (the new system's mass is M/g)" : "step control";
+  const char *what = pacing == DVI__TRANSFORM ? "time transform (its mass is M/g; explicit methods can be controlled instead)"
+                                              : "step control";
   if (integrator == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "integrator: no place for the result");
   *integrator = NULL;
   if (monitor == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "integrator: the monitor is NULL");
