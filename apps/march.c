@@ -30,7 +30,7 @@ dvi_status march(dvi_integrator *integrator, double h, long steps, double t_end,
                  progress_line *progress, const char *words)
 {
   marcher m = {look, user, progress, words, 0};
-  if (dvi_integrator_monitor(integrator) != NULL)
+  if (dvi_integrator_chooses_steps(integrator))
     return dvi_run(integrator, &(dvi_run_options){.h = h, .t_end = t_end, .observe = observe, .user = &m}, NULL);
   dvi_status status = DVI_OK;
   for (long i = 0; i < steps && status == DVI_OK; i++) {

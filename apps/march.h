@@ -8,7 +8,7 @@
 /** Called after every step; not 0: a failure. NULL: nobody looks. */
 typedef int (*march_look)(dvi_integrator *integrator, void *user);
 
-/** From where the integrator stands to t_end: so many steps of h, or, if they are steps of another time, as many as it takes.
+/** From where the integrator stands to t_end: so many steps of h, or, if their lengths are chosen, as many as it takes.
  *
  *  @param progress  shown while it lasts, with `words`; NULL: none */
 dvi_status march(dvi_integrator *integrator, double h, long steps, double t_end, march_look look, void *user,

@@ -79,7 +79,7 @@ dvi_status study_run(order_study *study, long steps, level_trial *trial)
   dvi_counters before;
   dvi_integrator_counters(study->integrator, &before);
   memset(trial, 0, sizeof *trial);
-  trial->steps = steps;
+  trial->steps = trial->taken = steps;
   trial->h = study->span / (double)steps;
   trial->energy_error = trial->cpu_seconds = (double)NAN;
   const dvi_status status = study_integrate(study, study->scene->q, steps);
@@ -90,6 +90,7 @@ dvi_status study_run(order_study *study, long steps, level_trial *trial)
   trial->spent.jacobians -= before.jacobians;
   trial->spent.factorizations -= before.factorizations;
   trial->spent.gradients -= before.gradients;
+  if (dvi_integrator_chooses_steps(study->integrator)) trial->taken = trial->spent.steps - before.steps;
   return DVI_OK;
 }
 

@@ -27,7 +27,8 @@ typedef struct order_study {
 /** What came out at one step size. */
 typedef struct level_trial {
   long steps;
-  double h;            /**< span / steps */
+  long taken;          /**< the same, but where steps are chosen */
+  double h;            /**< span / steps; of methods that choose their steps the first one */
   double error;        /**< of q at t_end, in the maximum norm */
   double energy_error; /**< largest |energy - energy at the start| over the run */
   double cpu_seconds;  /**< of one run without diagnostics */

@@ -32,10 +32,13 @@ dvi_status dvi__check_step(double t, double h);
 dvi_status dvi__integrator_make(const dvi_system *system, const char *method, const dvi_monitor *monitor, dvi__pacing pacing,
                                 dvi_integrator **integrator);
 
-/* Take the last step back, once. */
+/* A step of exactly h, from methods that choose their steps, too: what is left of a run. */
+dvi_status dvi__integrator_step_exactly(dvi_integrator *integrator, double h);
+
+/* Take the last step back, once, as if it had not been. */
 void dvi__integrator_take_back(dvi_integrator *integrator);
 
-/* The same where it succeeded, but what followed did not: the step counts as failed. The status is passed on, the sentence named. */
+/* The same for a step that succeeded while what followed did not. The status is passed on, the sentence named. */
 dvi_status dvi__integrator_undo(dvi_integrator *integrator, dvi_status status);
 
 #endif

@@ -73,6 +73,8 @@ dvi_status dvi__pace_monitor(dvi__pace *pace, const double *q, double *g)
 
 static dvi_status check_method(const dvi_integrator *I)
 {
+  if (I->stepper.method->chooses_steps)
+    return dvi__fail(DVI_UNSUPPORTED, "%s chooses the lengths of its steps itself", I->stepper.method->name);
   if (I->pace->pacing == DVI__TRANSFORM || I->stepper.symmetric) return DVI_OK;
   return dvi__fail(DVI_UNSUPPORTED,
                    "step control: %s is not symmetric, and only that keeps energies from drifting when steps change; "
