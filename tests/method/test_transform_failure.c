@@ -65,8 +65,19 @@ START_TEST(control_wants_a_symmetric_method)
   const dvi_monitor distance = monitor_of("distance");
   dvi_integrator *integrator;
   refused(dvi_integrator_create_controlled(kepler->system, &distance, "galerkin:degree=2,quadrature=radau-left", &integrator),
-          DVI_UNSUPPORTED, "is not symmetric");
+          DVI_UNSUPPORTED, "step control");
+  check_words("is not symmetric");
   ck_assert_ptr_null(integrator);
+  problem_destroy(&kepler);
+}
+END_TEST
+
+START_TEST(methods_that_choose_their_steps_have_no_monitor_beside_them)
+{
+  problem *kepler = made_problem("kepler", NULL);
+  const dvi_monitor distance = monitor_of("distance");
+  dvi_integrator *integrator;
+  refused(both[_i](kepler->system, &distance, "sem", &integrator), DVI_UNSUPPORTED, "chooses the lengths of its steps itself");
   problem_destroy(&kepler);
 }
 END_TEST
@@ -314,6 +325,7 @@ int main(void)
   tcase_add_test(tests, a_system_that_may_depend_on_time_is_not_transformed);
   tcase_add_test(tests, explicit_methods_are_not_transformed);
   tcase_add_test(tests, control_wants_a_symmetric_method);
+  tcase_add_loop_test(tests, methods_that_choose_their_steps_have_no_monitor_beside_them, 0, 2);
   tcase_add_loop_test(tests, monitors_of_the_motion_want_a_constant_mass, 0, 2);
   tcase_add_loop_test(tests, a_monitor_that_is_not_well_declared_is_refused, 0, WRONG);
   tcase_add_loop_test(tests, null_arguments_are_refused, 0, 2);

@@ -77,7 +77,7 @@ static dvi_status check_method(const dvi_integrator *I)
     return dvi__fail(DVI_UNSUPPORTED, "%s chooses the lengths of its steps itself", I->stepper.method->name);
   if (I->pace->pacing == DVI__TRANSFORM || I->stepper.symmetric) return DVI_OK;
   return dvi__fail(DVI_UNSUPPORTED,
-                   "step control: %s is not symmetric, and only that keeps energies from drifting when steps change; "
+                   "%s is not symmetric, and only that keeps energies from drifting when steps change; "
                    "choose a symmetric quadrature, or the time transform",
                    I->stepper.specification);
 }
@@ -85,14 +85,13 @@ static dvi_status check_method(const dvi_integrator *I)
 static dvi_status create(const dvi_system *system, const dvi_monitor *monitor, dvi__pacing pacing, const char *method,
                          dvi_integrator **integrator)
 {
-  const char *what = pacing == DVI__TRANSFORM ? "time transform (its mass is M/g; explicit methods can be controlled instead)"
-                                              : "step control";
+  const char *what = pacing == DVI__TRANSFORM ? "time transform, a general Lagrangian with the mass M/g" : "step control";
   if (integrator == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "integrator: no place for the result");
   *integrator = NULL;
   if (monitor == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "integrator: the monitor is NULL");
   dvi_status status = dvi__integrator_make(system, method, monitor, pacing, integrator);
-  if (status == DVI_UNSUPPORTED) return dvi__fail_in(status, "%s", what);
   if (status == DVI_OK) status = check_method(*integrator);
+  if (status == DVI_UNSUPPORTED) (void)dvi__fail_in(status, "%s", what);
   if (status != DVI_OK) dvi_integrator_destroy(integrator);
   return status;
 }

@@ -110,8 +110,9 @@ static dvi_status fill(dvi__transformed *x, const dvi_system *system, const dvi_
   x->counters = counters;
   x->energy = (double)NAN;
   if (!system->autonomous)
-    return dvi__fail(DVI_UNSUPPORTED, "time transform: the system is not declared autonomous; its energy is not conserved, and no "
-                                      "function of q alone can replace the time");
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "the system is not declared autonomous: its energy need not be conserved, and no function of q "
+                     "alone can stand for its time");
   DVI_TRY(dvi__system_prepare_hessian(system));
   DVI_TRY(dvi__transformed_reserve(x, 1));
   return make_system(x);
