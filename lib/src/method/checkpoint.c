@@ -178,15 +178,19 @@ dvi_status dvi_integrator_save(const dvi_integrator *I, const char *path)
 
 /* ---- restore ---- */
 
+static dvi_status other_system(const char *path)
+{
+  return dvi__fail(DVI_BAD_FILE,
+                   "checkpoint %s: of a system that declares other terms, masses, patterns or names, or of steps in another time",
+                   path);
+}
+
 static dvi_status check_system(const dvi_integrator *I, const char *path, const unsigned char *file)
 {
   const double *numbers = (const double *)(const void *)(file + sizeof(header));
   header head;
   memcpy(&head, file, sizeof head);
-  if (head.declared != declared(I))
-    return dvi__fail(DVI_BAD_FILE,
-                     "checkpoint %s: of a system that declares other terms, masses, patterns or names, or of steps in another time",
-                     path);
+  if (head.declared != declared(I)) return other_system(path);
   const portrait here = portray(I, head.t, numbers, numbers + 4 * (size_t)I->system->n, head.last_h);
   if (same_lagrangian(&here, &head.lagrangian)) return DVI_OK;
   return dvi__fail(DVI_BAD_FILE,
@@ -209,6 +213,7 @@ static dvi_status check(const dvi_integrator *I, const char *path, const unsigne
     return dvi__fail(DVI_BAD_FILE, "checkpoint %s: written by %s, not by %s", path, head.specification, I->stepper.specification);
   if (head.n != I->system->n)
     return dvi__fail(DVI_BAD_FILE, "checkpoint %s: %lld coordinates, not %d", path, (long long)head.n, I->system->n);
+  if (got != size && head.declared != declared(I)) return other_system(path); /* what the method remembers differs, too */
   if (got != size)
     return dvi__fail(DVI_BAD_FILE, "checkpoint %s: cut short or too long, %zu bytes instead of %zu", path, got, size);
   memcpy(&sum, file + size - sizeof sum, sizeof sum);
