@@ -257,37 +257,45 @@ static int measure(bench *b)
   return code;
 }
 
-/* Add a method, unless it cannot take the problem: of the selection it is left out then, one that is asked for is refused. */
-static int add_entry(bench *b, const char *method, const char *transform, bool asked)
+static void keep_entry(bench *b, const char *method, const pacing *how)
 {
-  dvi_integrator *integrator = NULL;
-  const pacing how = {.transform = transform};
-  if (b->entries == WORDS_MAX) return usage_error("bench: more than %d methods and time transforms", (int)WORDS_MAX);
-  const bool plain = !asked && transform == NULL; /* only a method whose terms do not fit can fail, and needs no words */
-  int code = plain ? dvi_integrator_create(b->scene->system, method, &integrator) == DVI_OK ? DONE : FAILED
-                   : open_paced(b->scene, method, &how, &integrator);
-  dvi_integrator_destroy(&integrator);
-  if (code != DONE) return plain ? DONE : code;
   entry *e = &b->entry[b->entries++];
   e->method = method;
-  e->how = how;
-  paced_name(method, &how, e->name, sizeof e->name);
+  e->how = *how;
+  paced_name(method, how, e->name, sizeof e->name);
+}
+
+/* Add a method, unless its structure forbids it: of the selection it is left out then; one that is asked for is refused, or, if there are other
+ * times to take it in, left out with a word. */
+static int add_entry(bench *b, const char *method, const pacing *how, const dvi_monitor *monitor)
+{
+  dvi_integrator *integrator = NULL;
+  const bool asked = b->request->methods.count > 0, several = b->request->transforms.count > 1;
+  if (b->entries == WORDS_MAX) return usage_error("bench: more than %d methods and time transforms", (int)WORDS_MAX);
+  const dvi_status status = create_paced(b->scene, method, how, monitor, &integrator);
+  dvi_integrator_destroy(&integrator);
+  if (status == DVI_OK) keep_entry(b, method, how);
+  if (status == DVI_OK || (!asked && status == DVI_UNSUPPORTED)) return DONE;
+  if (!several || status != DVI_UNSUPPORTED) return open_paced(b->scene, method, how, &integrator); /* which says why it fails */
+  complain("bench: left out %s @ %s: %s", method, how->transform != NULL ? how->transform : "none", dvi_last_error());
   return DONE;
 }
 
-/* Every method with every time transform; of the selection, the explicit ones stay with steps of time. */
+/* Every method with every time transform. */
 static int choose_methods(bench *b)
 {
   const words *methods = &b->request->methods, *transforms = &b->request->transforms;
-  const bool given = methods->count > 0;
-  const char *const *method = given ? methods->word : selection;
+  const char *const *method = methods->count > 0 ? methods->word : selection;
+  const int count = methods->count > 0 ? methods->count : (int)(sizeof selection / sizeof *selection) - 1;
   int code = DONE;
-  for (int k = 0; k < transforms->count || k == 0; k++) {
-    const char *transform = transforms->count > 0 && strcmp(transforms->word[k], "none") != 0 ? transforms->word[k] : NULL;
-    for (int i = 0; (given ? i < methods->count : method[i] != NULL) && code == DONE; i++)
-      if (given || transform == NULL || strstr(method[i], "verlet") == NULL) code = add_entry(b, method[i], transform, given);
+  for (int k = 0; (k < transforms->count || k == 0) && code == DONE; k++) {
+    const bool plain = transforms->count == 0 || strcmp(transforms->word[k], "none") == 0;
+    const pacing how = {.transform = plain ? NULL : transforms->word[k]};
+    dvi_monitor monitor = {0};
+    code = open_monitor(b->scene, &how, &monitor);
+    for (int i = 0; i < count && code == DONE; i++) code = add_entry(b, method[i], &how, &monitor);
   }
-  return code;
+  return code == DONE && b->entries == 0 ? usage_error("bench: no method is left") : code;
 }
 
 static int bench_problem(bench_request *request, const problem *scene)

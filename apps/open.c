@@ -155,18 +155,24 @@ int open_integrator(const problem *scene, const char *method, dvi_integrator **i
   return opened(dvi_integrator_create(scene->system, method, integrator), method);
 }
 
+int open_monitor(const problem *scene, const pacing *how, dvi_monitor *monitor)
+{
+  if (how->transform != NULL) return read_monitor(scene, "time-transform", how->transform, monitor);
+  return how->control != NULL ? read_monitor(scene, "step-control", how->control, monitor) : DONE;
+}
+
+dvi_status create_paced(const problem *scene, const char *method, const pacing *how, const dvi_monitor *monitor,
+                        dvi_integrator **integrator)
+{
+  if (how->transform != NULL) return dvi_integrator_create_transformed(scene->system, monitor, method, integrator);
+  if (how->control != NULL) return dvi_integrator_create_controlled(scene->system, monitor, method, integrator);
+  return dvi_integrator_create(scene->system, method, integrator);
+}
+
 int open_paced(const problem *scene, const char *method, const pacing *how, dvi_integrator **integrator)
 {
   dvi_monitor monitor = {0};
-  int code = DONE;
   *integrator = NULL;
-  if (how->transform == NULL && how->control == NULL) return open_integrator(scene, method, integrator);
-  if (how->transform != NULL)
-    code = read_monitor(scene, "time-transform", how->transform, &monitor);
-  else
-    code = read_monitor(scene, "step-control", how->control, &monitor);
-  if (code != DONE) return code;
-  return opened((how->transform != NULL ? dvi_integrator_create_transformed
-                                        : dvi_integrator_create_controlled)(scene->system, &monitor, method, integrator),
-                method);
+  const int code = open_monitor(scene, how, &monitor);
+  return code == DONE ? opened(create_paced(scene, method, how, &monitor, integrator), method) : code;
 }

@@ -43,7 +43,7 @@ typedef struct dvi_energy_balance {
   double last_jump;    /**< the jump of the last of those; 0: there was none */
   double largest_jump; /**< the largest of theirs, with its sign */
   long given_steps;    /**< how many others: ordinary steps of a given length, each of which begins a new sequence */
-  double given_jump;   /**< the jump of the last of those */
+  double given_jumps;  /**< the sum of the jumps of those */
 } dvi_energy_balance;
 
 #ifdef __cplusplus

@@ -31,14 +31,13 @@ static const dvi__key keys[] = {
     {"degree", NULL, 1, DVI_DEGREE_MAX, 1, "degree of the path, 1 to 40; left out: 1, the midpoint rule with Gauss"},
     {"quadrature", rule_name, 0, 0, 0, "gauss (degree points) or lobatto (degree + 1 points); left out: gauss"},
     {"hmin", NULL, DVI__POSITIVE, 0, 0, "the least length of a step, positive; auto, or left out: a tenth of the first step"},
-    {"hmax", NULL, DVI__POSITIVE, 0, 0,
-     "the largest length of a step, positive; auto, or left out: a hundred times the first step"},
+    {"hmax", NULL, DVI__POSITIVE, 0, 0, "the largest length of a step, positive; auto, or left out: thirty times the first step"},
     {"solver", solver_name, 0, 0, 0, "of rows and energy row together: newton, or kinsol, with line search; left out: newton"},
     {0},
 };
 
 /* Bounds that are left out, in units of the first step. */
-static const double least_part = 0.1, largest_part = 100;
+static const double least_part = 0.1, largest_part = 30;
 
 /* A root this far from the last length is not taken before the search has looked for a nearer one. */
 static const double near = 4;
@@ -58,7 +57,7 @@ enum {
   LAST_JUMP,
   LARGEST_JUMP,
   GIVEN,
-  GIVEN_JUMP,
+  GIVEN_JUMPS,
   OWN
 };
 
@@ -150,13 +149,10 @@ static void note(dvi__stepper *self, const dvi__mismatch *taken)
   self->taken = taken->h;
 }
 
-/* A step that does not solve the energy equation; of two kinds, each with its count and its last jump. */
-static void note_jump(dvi__stepper *self, double jump, int count, int last)
+/* A step that does not solve the energy equation. */
+static void note_jump(dvi__stepper *self, double jump)
 {
-  double *m = self->memory;
-  dvi__add_compensated(&m[JUMPS], &m[JUMPS_CARRY], jump);
-  m[count]++;
-  m[last] = jump;
+  dvi__add_compensated(&self->memory[JUMPS], &self->memory[JUMPS_CARRY], jump);
 }
 
 static void balance(const dvi__stepper *self, dvi_energy_balance *b)
@@ -170,7 +166,7 @@ static void balance(const dvi__stepper *self, dvi_energy_balance *b)
                             .last_jump = m[LAST_JUMP],
                             .largest_jump = m[LARGEST_JUMP],
                             .given_steps = (long)m[GIVEN],
-                            .given_jump = m[GIVEN_JUMP]};
+                            .given_jumps = m[GIVEN_JUMPS]};
 }
 
 /* ---- steps ---- */
@@ -186,10 +182,13 @@ static dvi_status given_step(dvi__stepper *self, dvi__state *state, double h)
   dvi__energy_search_begin(search, state, target_of(self));
   DVI_TRY(dvi__energy_search_try(search, h, 1, &found));
   dvi__energy_search_take(search, state);
-  if (continues)
-    note_jump(self, found.value, GIVEN, GIVEN_JUMP);
-  else
+  if (continues) {
+    note_jump(self, found.value);
+    m[GIVEN]++;
+    m[GIVEN_JUMPS] += found.value;
+  } else {
     m[FIRST] = found.E.start;
+  }
   m[FIRST_H] = self->exact ? 0 : h;
   note(self, &found);
   return DVI_OK;
@@ -241,7 +240,9 @@ static dvi_status search_length(dvi__stepper *self, dvi__state *state, double la
   DVI_TRY(dvi__energy_search_find(search, last, least, most, found));
   dvi__energy_search_take(search, state);
   if (dvi__energy_solved(found)) return DVI_OK;
-  note_jump(self, found->value, FALLBACKS, LAST_JUMP);
+  note_jump(self, found->value);
+  m[FALLBACKS]++;
+  m[LAST_JUMP] = found->value;
   if (fabs(found->value) > fabs(m[LARGEST_JUMP])) m[LARGEST_JUMP] = found->value;
   self->counters->energy_fallbacks++;
   return DVI_OK;
@@ -275,7 +276,7 @@ static void explain(const dvi__stepper *self, dvi__text *text)
   const int entries = dvi__pattern_entries(&own->bordered.pattern), unknowns = own->bordered.rows + 1;
   dvi__text_add(text, "steps: chosen by the method after the first one, whose length --h is; bounds %s to %s\n",
                 self->settings.number[HMIN] > 0 ? "hmin" : "a tenth of it",
-                self->settings.number[HMAX] > 0 ? "hmax" : "a hundred times it");
+                self->settings.number[HMAX] > 0 ? "hmax" : "thirty times it");
   dvi__text_add(text,
                 "kernel: implicit; %d unknowns a step, the last one its length; Jacobian with %d entries (%.3g %% of a full one)\n",
                 unknowns, entries, 100.0 * entries / unknowns / unknowns);
