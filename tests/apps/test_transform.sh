@@ -46,6 +46,9 @@ expect 2 'no transform of single steps' bench kepler --method midpoint --scale d
 
 expect 0 'explain' explain pythagorean --method galerkin --time-transform distance
 says out '^time: transformed, dt/dtau = g(q), distance:power=1.5,bodies=3,dimension=2' 'the monitor is explained'
+for bodies in kepler figure-eight outer-solar; do
+  expect 0 "distances of $bodies" explain $bodies --method midpoint --time-transform distance
+done
 expect 0 'explain control' explain toda --method verlet --step-control arclength
 says out '^time: steps follow arclength by reversible control' 'control is explained'
 
