@@ -48,7 +48,7 @@ dvi_status march_span(dvi_integrator *integrator, const double *q, const double 
   if (dvi_integrator_monitor(integrator) == NULL) return DVI_OK;
   h = copysign(h, t_end);
   for (int i = 0; i < SPAN_TRIES; i++, h *= shorter) {
-    dvi_run_report report;
+    dvi_run_report report = {0};
     status = dvi_integrator_start(integrator, 0.0, q, p);
     if (status == DVI_OK) status = dvi_run(integrator, &(dvi_run_options){.h = h, .t_end = t_end}, &report);
     if (status <= 0) {

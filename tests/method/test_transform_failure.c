@@ -102,6 +102,8 @@ static int one(double t, const double *q, double *g, void *user)
   return 0;
 }
 
+static const int two_columns[] = {0, 1, 2};
+
 static const struct {
   dvi_monitor monitor;
   const char *words;
@@ -117,6 +119,7 @@ static const struct {
     {{.kind = DVI_MONITOR_ARCLENGTH, .power = 1}, "belongs to distance or acceleration"},
     {{.function = {.value = one}, .power = 1}, "belongs to distance or acceleration"},
     {{.kind = DVI_MONITOR_ARCLENGTH, .function = {.value = one}}, "beside a built-in monitor"},
+    {{.function = {.value = one, .qq = {two_columns, two_columns}}}, "a pattern is given"},
 };
 enum { WRONG = sizeof wrong / sizeof *wrong };
 

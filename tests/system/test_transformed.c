@@ -116,6 +116,34 @@ START_TEST(pairs_of_bodies_are_summed)
 }
 END_TEST
 
+/* ---- the check of a user's monitor ---- */
+
+static int wrong_gradient(double t, const double *q, double *g_q, void *user)
+{
+  const int n = *(const int *)user;
+  const int status = bowl_gradient(t, q, g_q, user);
+  g_q[n - 1] += 1e-3;
+  return status;
+}
+
+START_TEST(a_wrong_gradient_of_a_monitor_is_named)
+{
+  problem *kepler = made_problem("kepler", NULL);
+  dvi_derivative_check found;
+  const double q[2] = {0.6, -0.8};
+  dvi_monitor monitor = {.function = {.name = "bowl", .value = bowl, .gradient = bowl_gradient, .user = (void *)&kepler->n}};
+  ck_assert_msg(dvi_monitor_check(kepler->system, &monitor, q, 0, &found) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_double_le(found.gradient_error, 1e-11);
+  monitor.function.gradient = wrong_gradient;
+  ck_assert_int_eq(dvi_monitor_check(kepler->system, &monitor, q, 0, NULL), DVI_BAD_ARGUMENT);
+  check_words("'bowl': dV/dq (1) is");
+  ck_assert_int_eq(dvi_monitor_check(kepler->system, NULL, q, 0, NULL), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_monitor_check(kepler->system, &(dvi_monitor){.kind = DVI_MONITOR_DISTANCE}, q, 0, NULL), DVI_BAD_ARGUMENT);
+  check_words("built-in");
+  problem_destroy(&kepler);
+}
+END_TEST
+
 /* ---- specifications ---- */
 
 START_TEST(specifications_are_read)
@@ -178,6 +206,7 @@ int main(void)
   tcase_add_loop_test(tests, its_derivatives_are_those_of_its_value, 0, PLACES);
   tcase_add_test(tests, its_value_is_the_definition);
   tcase_add_test(tests, pairs_of_bodies_are_summed);
+  tcase_add_test(tests, a_wrong_gradient_of_a_monitor_is_named);
   tcase_add_test(tests, specifications_are_read);
   tcase_add_loop_test(tests, wrong_specifications_are_refused_with_a_sentence, 0, WRONG);
   tcase_add_test(tests, null_arguments_are_refused);

@@ -41,7 +41,7 @@ typedef enum dvi_monitor_kind {
 typedef struct dvi_monitor {
   dvi_monitor_kind kind;
   /** DVI_MONITOR_FUNCTION: g in the place of V, with its name and `user`, in either shape; t is without meaning. Value needed; a gradient or Hessian that is
-   *  left out is differenced. The pattern is not used: the transformed system's L_qq is full anyway. */
+   *  left out is differenced. No pattern: the Hessian is full, for the transformed system's is. */
   dvi_potential function;
   /** Distance: positive, 0: 1.5, by which fast passages of bodies under gravity take a fixed number of steps. Acceleration: positive, 0: 0.75,
    *  which is the same for two such bodies. */
@@ -61,6 +61,18 @@ extern "C" {
  *  @retval DVI_BAD_ARGUMENT  a pointer is NULL
  *  @retval DVI_BAD_OPTION    an unknown name, key or value */
 dvi_status dvi_monitor_read(const char *specification, dvi_monitor *monitor);
+
+/** Compare the gradient and the Hessian of a user's monitor with differences at one point, as dvi_system_check does. A wrong gradient shows in no
+ *  status: the steps then belong to no action, and the energy drifts.
+ *
+ *  @param      q          [nq] a point in general position
+ *  @param      tolerance  largest relative difference to accept; 0: 1e-6
+ *  @param[out] check      the findings, with g in the place of V; may be NULL
+ *  @retval DVI_OK            everything agrees
+ *  @retval DVI_BAD_ARGUMENT  something does not, which the error sentence names; or a pointer is NULL, or the monitor is built in
+ *  @retval DVI_NOT_FINITE    the monitor is not finite at q, or not positive */
+dvi_status dvi_monitor_check(const dvi_system *system, const dvi_monitor *monitor, const double *q, double tolerance,
+                             dvi_derivative_check *check);
 
 /** Make an integrator of the time-transformed system.
  *

@@ -65,6 +65,8 @@ static dvi_status check_unused(const dvi_monitor *given)
   const dvi_potential *f = &given->function;
   if (given->kind != DVI_MONITOR_FUNCTION && (f->value || f->value_batch || f->gradient || f->gradient_batch))
     return dvi__fail(DVI_BAD_ARGUMENT, "monitor: a function is given beside a built-in monitor; one of them is possible");
+  if (f->qq.start != NULL || f->qq.row != NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "monitor: a pattern is given; leave it out, the Hessian is full");
   return DVI_OK;
 }
 
@@ -190,4 +192,30 @@ dvi_status dvi__monitor_gradient(dvi__monitor *m, int count, const double *q, do
 dvi_status dvi__monitor_hessian(dvi__monitor *m, int count, const double *q, double *g_qq)
 {
   return dvi__potential_hessian(&m->system->potentials[0], &m->scratch, count, m->t, q, g_qq);
+}
+
+/* ---- the check ---- */
+
+static dvi_status check_at(dvi__monitor *m, const double *q, double tolerance, dvi_derivative_check *check)
+{
+  double g, *v = DVI_NEW(double, m->system->n); /* at rest: the system's own kinetic part has nothing to say */
+  if (v == NULL) return dvi__fail(DVI_NO_MEMORY, "monitor check: no memory");
+  dvi_status status = dvi__monitor_value(m, 1, q, &g);
+  if (status == DVI_OK) status = dvi_system_check(m->system, 0, q, v, tolerance, check);
+  dvi__release(v);
+  return status;
+}
+
+dvi_status dvi_monitor_check(const dvi_system *system, const dvi_monitor *monitor, const double *q, double tolerance,
+                             dvi_derivative_check *check)
+{
+  dvi__monitor *m;
+  dvi_counters counters = {0};
+  if (system == NULL || monitor == NULL || q == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "monitor check: an argument is NULL");
+  if (monitor->kind != DVI_MONITOR_FUNCTION)
+    return dvi__fail(DVI_BAD_ARGUMENT, "monitor check: a built-in monitor has no callbacks to check");
+  DVI_TRY(dvi__monitor_create(system, monitor, 1, DVI__HESSIANS, &counters, &m));
+  const dvi_status status = check_at(m, q, tolerance, check);
+  dvi__monitor_destroy(&m);
+  return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "monitor, g in the place of V");
 }

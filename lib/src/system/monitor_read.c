@@ -47,9 +47,9 @@ static dvi_status read_key(const char *name, const char *at, dvi_monitor *monito
   const int power = monitor->kind != DVI_MONITOR_ARCLENGTH && begins(at, "power", "=");
   if (whole == NULL && !power)
     return dvi__fail(DVI_BAD_OPTION, "monitor %s: unknown key '%.*s'; it takes %s", name, (int)(equals - at), at,
-                     distance                                             ? "power, bodies, dimension"
-                     : power || monitor->kind == DVI_MONITOR_ACCELERATION ? "power"
-                                                                          : "none");
+                     distance                                    ? "power, bodies, dimension"
+                     : monitor->kind == DVI_MONITOR_ACCELERATION ? "power"
+                                                                 : "none");
   if (*equals != '=' || !read_number(equals + 1, &number))
     return dvi__fail(DVI_BAD_OPTION, "monitor %s: '%.*s' is not key=value with a positive number", name, length, at);
   if (whole != NULL && (floor(number) != number || number > 1e9))
