@@ -33,7 +33,7 @@ typedef enum dvi_monitor_kind {
   DVI_MONITOR_DISTANCE,
   /** 1/g^2 = 2 (E0 - V) + V_q.M^-1 V_q: equal lengths, in mass-weighted units, of the orbit in phase space (Huang and Leimkuhler 1997) */
   DVI_MONITOR_ARCLENGTH,
-  /** g = (V_q.M^-1 V_q)^(-power/2): the size of the mass-weighted acceleration */
+  /** g = (V_q.M^-1 V_q)^(-power/2): the size of the mass-weighted acceleration, which must vanish nowhere on the way */
   DVI_MONITOR_ACCELERATION
 } dvi_monitor_kind;
 
