@@ -177,6 +177,8 @@ static const char *const wrong[][2] = {
     {"distance:power=1,", "unknown key"},
     {"distance:bodies=1.5", "whole number"},
     {"distance:bodies=1e12", "whole number"},
+    {"distance:power=1,power=2", "given twice"},
+    {"distance:bodies=2,bodies=2", "given twice"},
     {"distance:speed=1", "it takes power, bodies, dimension"},
     {"acceleration:bodies=2", "it takes power"},
     {"arclength:power=1", "it takes none"},

@@ -138,8 +138,10 @@ void dvi__pace_set_energy(dvi__pace *pace, double energy)
 {
   pace->energy = energy;
   pace->expanded = 0;
-  dvi__monitor_set_energy(monitor_of(pace), energy);
-  if (pace->transformed != NULL) dvi__transformed_set_energy(pace->transformed, energy);
+  if (pace->transformed != NULL)
+    dvi__transformed_set_energy(pace->transformed, energy);
+  else
+    dvi__monitor_set_energy(pace->monitor, energy);
 }
 
 /* L_v.v - L. */

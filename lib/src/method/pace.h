@@ -6,14 +6,14 @@
 #include "method/method.h"
 #include "system/transformed.h"
 
-enum { DVI__PACE_POINTS = 16, DVI__PACE_NAME = 96 };
+enum { DVI__PACE_POINTS = 16 };
 
 typedef enum dvi__pacing { DVI__TRANSFORM, DVI__CONTROL } dvi__pacing;
 
 typedef struct dvi__pace {
   dvi__pacing pacing;
   dvi_monitor given;             /* to make another one alike */
-  char name[DVI__PACE_NAME];     /* the monitor's */
+  char name[DVI__MONITOR_NAME];  /* the monitor's */
   dvi__transformed *transformed; /* the new system, of a transform */
   dvi__monitor *monitor;         /* of control */
   double energy;                 /* E0 */

@@ -7,14 +7,12 @@
 #include "core/status.h"
 #include "system/term.h"
 
-enum { NAME_SIZE = 96 };
-
 struct dvi__monitor {
   dvi_system *system; /* of unit mass, with the monitor as its potential */
   dvi__scratch scratch;
   double *t;              /* [capacity] zeros: a monitor has no time */
   dvi__built_in built_in; /* of a user's function: not used */
-  char name[NAME_SIZE];
+  char name[DVI__MONITOR_NAME];
 };
 
 /* ---- what is declared ---- */
@@ -33,7 +31,7 @@ static dvi_status read_distance(const dvi_system *system, const dvi_monitor *giv
   if (own->bodies < 1 || own->dimension < 1 || system->n % own->bodies != 0 || system->n / own->bodies != own->dimension)
     return dvi__fail(DVI_BAD_ARGUMENT, "monitor distance: %d points of %d coordinates are not the %d coordinates of the system",
                      own->bodies, own->dimension, system->n);
-  (void)snprintf(name, NAME_SIZE, "distance:power=%g,bodies=%d,dimension=%d", own->power, own->bodies, own->dimension);
+  (void)snprintf(name, DVI__MONITOR_NAME, "distance:power=%g,bodies=%d,dimension=%d", own->power, own->bodies, own->dimension);
   return check_power("distance", given->power);
 }
 
@@ -48,9 +46,9 @@ static dvi_status read_motion(const dvi_system *system, const dvi_monitor *given
                      "monitor arclength: the system is not declared autonomous, and has no energy to take the speed from");
   own->power = given->power > 0 ? given->power : 0.75;
   if (arclength)
-    (void)snprintf(name, NAME_SIZE, "%s", what);
+    (void)snprintf(name, DVI__MONITOR_NAME, "%s", what);
   else
-    (void)snprintf(name, NAME_SIZE, "%s:power=%g", what, own->power);
+    (void)snprintf(name, DVI__MONITOR_NAME, "%s:power=%g", what, own->power);
   return check_power(what, given->power);
 }
 
@@ -80,7 +78,7 @@ static dvi_status declare(dvi__monitor *m, const dvi_system *system, const dvi_m
   switch (given->kind) {
   case DVI_MONITOR_FUNCTION:
     *function = given->function;
-    (void)snprintf(m->name, NAME_SIZE, "%s", function->name != NULL ? function->name : "function");
+    (void)snprintf(m->name, DVI__MONITOR_NAME, "%s", function->name != NULL ? function->name : "function");
     break;
   case DVI_MONITOR_DISTANCE:
     DVI_TRY(read_distance(system, given, &m->built_in, m->name));

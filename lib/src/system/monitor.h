@@ -7,6 +7,8 @@
 
 typedef struct dvi__monitor dvi__monitor;
 
+enum { DVI__MONITOR_NAME = 96 }; /* a longer name is cut */
+
 /* For batches of up to `capacity` points of the system. Counts what it asks the system for; counters must outlive it. */
 dvi_status dvi__monitor_create(const dvi_system *system, const dvi_monitor *given, int capacity, dvi__derivatives most,
                                dvi_counters *counters, dvi__monitor **monitor);

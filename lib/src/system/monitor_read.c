@@ -52,6 +52,8 @@ static dvi_status read_key(const char *name, const char *at, dvi_monitor *monito
                                                                  : "none");
   if (*equals != '=' || !read_number(equals + 1, &number))
     return dvi__fail(DVI_BAD_OPTION, "monitor %s: '%.*s' is not key=value with a positive number", name, length, at);
+  if (whole != NULL ? *whole != 0 : monitor->power != 0)
+    return dvi__fail(DVI_BAD_OPTION, "monitor %s: key '%.*s' is given twice", name, (int)(equals - at), at);
   if (whole != NULL && (floor(number) != number || number > 1e9))
     return dvi__fail(DVI_BAD_OPTION, "monitor %s: '%.*s' is not a whole number", name, length, at);
   if (whole != NULL)
