@@ -18,7 +18,8 @@
 /* What the command line asks for. */
 typedef struct run_request {
   const char *method, *out, *checkpoint, *resume, *plot;
-  double h, t_end;
+  double h, t_end, tolerance; /* tolerance: NaN, or refused */
+  pacing how;
   long every, checkpoint_every; /* 0: not given */
   bool final;
   words settings;
@@ -32,8 +33,11 @@ typedef struct recorder {
   run_trace trace;
   progress_line progress;
   double *invariant;
-  double t_start, t; /* where the run began; where the last observed step ended */
-  long step;         /* counted from t = 0, so that a resumed run writes the rows of an uninterrupted one */
+  double t_start, t;        /* where the run began; where the last observed step ended */
+  double shortest, longest; /* steps, of methods that choose them; 0: none yet */
+  long steps_taken, given_steps;
+  long step;    /* counted from t = 0, so that a resumed run writes the rows of an uninterrupted one */
+  bool chooses; /* the method chooses its steps */
   bool begun, row_written, stop_silently;
   const volatile sig_atomic_t *caught; /* the signal that ends the run after its step; 0: none yet */
 } recorder;
@@ -56,6 +60,7 @@ static void write_header(recorder *r)
     (void)fputc(',', stream);
     csv_text(stream, dvi_system_invariant_name(scene->system, i));
   }
+  if (r->chooses) (void)fputs(",h", stream);
   (void)fputc('\n', stream);
 }
 
@@ -91,6 +96,7 @@ static bool write_row(recorder *r, dvi_integrator *integrator)
   write_numbers(stream, r->scene->n, dvi_integrator_q(integrator));
   write_numbers(stream, r->scene->n, dvi_integrator_p(integrator));
   write_numbers(stream, dvi_system_invariant_count(r->scene->system), r->invariant);
+  if (r->chooses) write_numbers(stream, 1, (double[]){dvi_integrator_last_step(integrator)});
   (void)fputc('\n', stream);
   r->row_written = true;
   if (!ferror(stream)) return true;
@@ -103,6 +109,21 @@ static bool row_is_due(const recorder *r)
   return !r->request->final && (!r->begun || r->step % r->request->every == 0);
 }
 
+/* The lengths that the method chose: not that of the step that ends the run on time. */
+static void note_step(recorder *r, const dvi_integrator *integrator)
+{
+  const double length = fabs(dvi_integrator_last_step(integrator));
+  dvi_energy_balance energy = {0};
+  (void)dvi_integrator_energy_balance(integrator, &energy);
+  if (energy.given_steps > r->given_steps) {
+    r->given_steps = energy.given_steps;
+    return;
+  }
+  r->shortest = r->steps_taken == 0 ? length : fmin(r->shortest, length);
+  r->longest = fmax(r->longest, length);
+  r->steps_taken++;
+}
+
 /* The driver calls this at the start, after each step, and once more at the end. */
 static int observe(dvi_integrator *integrator, void *user)
 {
@@ -111,6 +132,7 @@ static int observe(dvi_integrator *integrator, void *user)
   if (r->begun && t == r->t) return 0;
   r->t = t;
   r->step += r->begun;
+  if (r->chooses && r->begun) note_step(r, integrator);
   r->row_written = false;
   const bool row = row_is_due(r);
   r->begun = true;
@@ -129,9 +151,12 @@ static bool write_last_row(recorder *r, dvi_integrator *integrator)
   return r->row_written || (measure(r, integrator) && write_row(r, integrator));
 }
 
-/* The number of the step that ends at t on the grid 0, h, 2h, ...; 0 if t is not on it. */
-static long step_number(double t, double h)
+/* The number of the step that ends at t on the grid 0, h, 2h, ...; 0 if t is not on it. In another time there is no such grid, but a count. */
+static long step_number(const dvi_integrator *integrator, double t, double h)
 {
+  dvi_counters counters;
+  dvi_integrator_counters(integrator, &counters);
+  if (dvi_integrator_monitor(integrator) != NULL) return counters.steps;
   const double steps = t / h;
   return steps > 0.0 && steps < 1e15 && fabs(steps - round(steps)) < 1e-6 ? lround(steps) : 0;
 }
@@ -141,6 +166,25 @@ static void say_interrupted(const recorder *r)
   complain("run: signal %d ended the run at t = %.17g of %g; the output is complete up to there", (int)*r->caught, r->t,
            r->request->t_end);
   if (r->request->checkpoint != NULL) complain("run: continue with --resume %s", r->request->checkpoint);
+}
+
+/* Of methods that choose their steps: what they chose, and where the energy jumped. */
+static void say_steps(const recorder *r, const dvi_integrator *integrator)
+{
+  dvi_energy_balance energy;
+  if (!r->chooses || r->steps_taken == 0) return;
+  complain("run: %ld step%s of %.3g to %.3g", r->steps_taken, r->steps_taken == 1 ? "" : "s", r->shortest, r->longest);
+  if (dvi_integrator_energy_balance(integrator, &energy) != DVI_OK) return;
+  if (energy.fallbacks == 0)
+    complain("run: no step was a fallback: the discrete energy is that of the start%s",
+             energy.work != 0 ? " and the drive's work" : "");
+  else
+    complain("run: %ld fallback%s to the least-squares step; the largest energy jump is %.3g, the last %.3g, all together %.3g",
+             energy.fallbacks, energy.fallbacks == 1 ? "" : "s", energy.largest_jump, energy.last_jump,
+             energy.jumps - energy.given_jumps);
+  if (energy.given_steps > 0)
+    complain("run: %ld ordinary step%s of given length, to end on time: energy jump %.3g", energy.given_steps,
+             energy.given_steps == 1 ? "" : "s", energy.given_jumps);
 }
 
 /* Drive the integrator to the end and write all rows. */
@@ -155,11 +199,12 @@ static int advance(recorder *r, dvi_integrator *integrator)
                                    .checkpoint_every = request->checkpoint_every,
                                    .cancel = r->caught};
   r->t_start = dvi_integrator_time(integrator);
-  r->step = step_number(r->t_start, request->h);
+  r->step = step_number(integrator, r->t_start, request->h);
   write_header(r);
   progress_start(&r->progress, request->final || r->out.path != NULL);
   const dvi_status status = dvi_run(integrator, &options, NULL);
   progress_end(&r->progress);
+  say_steps(r, integrator);
   if (r->stop_silently) return FAILED;
   const bool written = (status != DVI_OK && request->final) || write_last_row(r, integrator);
   if (status != DVI_OK) return library_error(status) == USAGE ? USAGE : FAILED;
@@ -193,7 +238,7 @@ static int complete(run_request *request, const problem *scene, double t)
 
 static int record(run_request *request, const problem *scene, dvi_integrator *integrator)
 {
-  recorder r = {.request = request, .scene = scene};
+  recorder r = {.request = request, .scene = scene, .chooses = dvi_integrator_chooses_steps(integrator)};
   r.invariant = calloc((size_t)dvi_system_invariant_count(scene->system), sizeof *r.invariant);
   int code = FAILED;
   r.caught = signals_note(ended_again);
@@ -214,7 +259,7 @@ static int record(run_request *request, const problem *scene, dvi_integrator *in
 static int run(run_request *request, const problem *scene)
 {
   dvi_integrator *integrator = NULL;
-  int code = open_integrator(scene, request->method, &integrator);
+  int code = open_paced(scene, request->method, &request->how, &integrator);
   if (code == DONE && !place(request, scene, integrator)) code = FAILED;
   if (code == DONE) code = complete(request, scene, dvi_integrator_time(integrator));
   if (code == DONE) code = record(request, scene, integrator);
@@ -242,6 +287,11 @@ static int check_request(const run_request *request)
     return usage_error("run: --checkpoint-every needs --checkpoint FILE");
   if (request->every > 0 && request->final)
     return usage_error("run: --every %ld places rows that --final leaves out; give one of them", request->every);
+  if (!isnan(request->tolerance))
+    return usage_error(
+        "run: --tolerance: steps chosen by estimates of their errors make any of these methods neither symplectic nor "
+        "symmetric, and its energy drifts; --time-transform or --step-control adapt steps without that");
+  if (pacing_check("run", &request->how) != DONE) return USAGE;
   const int code = check_files(request);
   if (code != DONE) return code;
   if (request->checkpoint != NULL && !file_writable(request->checkpoint)) return FAILED;
@@ -258,6 +308,7 @@ static int check_settings(const char *name, const words *settings)
 
 static const char *const details[] = {
     "Columns: t, the coordinates, their momenta (p_ and the coordinate's name), energy, the other invariants;\n"
+    "methods that choose their steps add h, the length of the step that led to the row.\n"
     "17 digits, so that every number is read back as it was. The first row is the start (with --resume: the\n"
     "checkpoint), the last one is the end, wherever --every puts the rows between.\n",
     "FILEs are written whole or not at all: a run that fails leaves what was there. Rows on standard output come\n"
@@ -266,10 +317,16 @@ static const char *const details[] = {
     "written. A second Ctrl-C ends it at once.\n",
     "A checkpoint holds the state of the method, not the command line: resume with the same problem, method and\n"
     "step, and the run continues bit for bit. Parameters that only place the start cannot be set then.\n",
+    "--time-transform: steps H of a fictitious time tau, dt/dtau = g(q), with g the monitor; the run stays symplectic, takes\n"
+    "implicit methods and autonomous problems, and ends at T all the same. Monitors: distance:power=P, 1/g = sum of r^-P over\n"
+    "all pairs of bodies (P left out: 1.5); arclength, equal lengths in phase space; acceleration:power=P, g = |a|^-P (0.75).\n"
+    "--step-control: a symmetric method takes steps of about H g. Rows are in t. Too large an H shows in the energy.\n",
     "Examples:\n"
     "  dvi run kepler --method galerkin:degree=4 --h 0.1 --t-end 100 --out orbit.csv --plot orbit.svg\n"
     "  dvi run kepler --method verlet --h 0.001 --t-end 10 --set e=0.9 --every 100\n"
     "  dvi run outer-solar --method galerkin:degree=8 --h 200 --t-end 500000 --final\n"
+    "  dvi run kepler --set e=0.99 --method galerkin:degree=4 --time-transform distance --h 0.3 --t-end 63\n"
+    "  dvi run kepler --method sem:degree=2 --h 0.05 --t-end 100 --set e=0.5 --out orbit.csv\n"
     "  dvi run fpu --method midpoint --h 0.01 --t-end 100 --checkpoint fpu.state --out part1.csv\n"
     "  dvi run fpu --method midpoint --h 0.01 --t-end 200 --resume fpu.state --out part2.csv\n",
     NULL,
@@ -281,11 +338,21 @@ int run_command(int argc, char **argv)
       .out = "-",
       .h = (double)NAN,
       .t_end = (double)NAN,
+      .tolerance = (double)NAN,
   };
   const option options[] = {
       {.name = "method", .word = &r.method, .value = "SPEC", .help = "the method: name[:key=value,...], see dvi list methods"},
-      {.name = "h", .number = &r.h, .value = "H", .help = "the step; left out: the problem's"},
+      {.name = "h", .number = &r.h, .value = "H", .help = "the step, for sem the first one; left out: the problem's"},
       {.name = "t-end", .number = &r.t_end, .value = "T", .help = "the end, from t = 0 (T < 0: backward); left out: the problem's"},
+      {.name = "time-transform",
+       .word = &r.how.transform,
+       .value = "MONITOR",
+       .help = "steps of equal length in another time: distance[:power=P], arclength or acceleration[:power=P]"},
+      {.name = "step-control",
+       .word = &r.how.control,
+       .value = "MONITOR",
+       .help = "steps that follow a monitor reversibly: cheaper, symmetric, not symplectic"},
+      {.name = "tolerance", .number = &r.tolerance, .value = "TOL", .help = "refused: see --time-transform and --step-control"},
       {.name = "every", .count = &r.every, .value = "K", .help = "a row after every K steps; left out: 1; not with --final"},
       {.name = "final", .flag = &r.final, .help = "the header and the last row only"},
       {.name = "set", .words = &r.settings, .value = "NAME=VALUE", .help = "set a parameter of the problem; may be repeated"},
@@ -306,7 +373,9 @@ int run_command(int argc, char **argv)
       .name = "run",
       .synopsis = "PROBLEM --method SPEC [--h H] [--t-end T] [OPTIONS]",
       .operand = "PROBLEM",
-      .summary = "Compute a trajectory with fixed steps; write it and its invariants as CSV.\n",
+      .summary = "Compute a trajectory with fixed steps, with those that sem chooses, or with steps that follow the motion; write "
+                 "it and its\n"
+                 "invariants as CSV.\n",
       .options = options,
       .details = details,
   };

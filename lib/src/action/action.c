@@ -106,6 +106,7 @@ void dvi__action_destroy(dvi__action **action)
                            a->Z,
                            a->sweep_shift.table};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) dvi__release(owned[i]);
+  dvi__action_clear_energy(a);
   dvi__linear_destroy(&a->chord);
   dvi__evaluator_destroy(&a->evaluator);
   dvi__pattern_clear(&a->joint);

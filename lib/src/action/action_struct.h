@@ -65,6 +65,12 @@ struct dvi__action {
   dvi__pattern pattern;       /* ns x ns */
   dvi__block *block;          /* [entries of joint] */
   double *H_qq, *H_qv, *H_vv; /* [entries*r] */
+  /* Energies; NULL until prepared. */
+  double *value, *rate;             /* [r] L, L_t */
+  double *by_q, *by_v;              /* [n*r] what L_v V - L changes by with q and with the path's derivative in tau */
+  double *rate_q, *rate_v, *rate_t; /* [n*r], [n*r], [r] L_tq, L_tv, L_tt; NULL: the system is autonomous */
+  double *moved_t, *moved_rate;     /* [r] work of their differences, */
+  double *moved_q, *moved_v;        /* [n*r] and more of it */
 };
 
 /* Up to so many coordinates the chord's inverse is cheaper than solving for each of the s functions. */
@@ -72,6 +78,9 @@ enum { DVI__CHORD_INVERSE = 8 };
 
 /* The table from the last step's forces to the sums of forces in a step `ratio` times as long: [r*lanes], by columns. */
 const double *dvi__action_sweep_shift(dvi__action *action, double ratio);
+
+/* Free what dvi__action_prepare_energy has made. */
+void dvi__action_clear_energy(dvi__action *action);
 
 /* What sweeps need that depends on h alone. */
 void dvi__action_set_step(dvi__action *action);

@@ -390,16 +390,19 @@ static dvi_status rescue(dvi__stepper *self, const place *at, double *Y, dvi__so
 
 /* ---- the step ---- */
 
-static void advance(dvi__stepper *self, dvi__state *state, double h)
+static dvi_status advance(dvi__stepper *self, dvi__state *state, double h)
 {
   const element *own = self->own;
   const int n = self->system->n;
+  double duration;
+  DVI_TRY(dvi__action_duration(own->action, own->Y, &duration));
   dvi__add_compensated_all(n, state->q, state->q_carry, own->dq);
   dvi__add_compensated_all(n, state->q, state->q_carry, own->dq_low);
   dvi__add_compensated_all(n, state->p, state->p_carry, own->dp);
-  dvi__add_compensated(&state->t, &state->t_carry, h);
+  dvi__add_compensated(&state->t, &state->t_carry, duration);
   self->memory[DVI__LAST_H] = h;
   memcpy(self->memory + DVI__LAST_Y, own->Y, (size_t)dvi__action_unknowns(own->action) * sizeof(double));
+  return DVI_OK;
 }
 
 /* KINSOL judges, but what the step takes stays what the iteration found; what does not pass is solved by KINSOL itself. */
@@ -414,14 +417,33 @@ static dvi_status certify(dvi__stepper *self, const place *at, double *Y, dvi__s
   return DVI_OK;
 }
 
+static place place_of(const dvi__stepper *self, const dvi__state *state, double h)
+{
+  const int continues = self->memory[DVI__LAST_H] != 0 && dvi__action_can_sweep(dvi__element_action(self));
+  return (place){state->t,
+                 h,
+                 state->q,
+                 state->p,
+                 self->memory[DVI__LAST_H],
+                 self->memory + DVI__LAST_Y,
+                 continues ? self->memory + dvi__element_forces(self) : NULL};
+}
+
+void dvi__element_take(dvi__stepper *self, dvi__state *state, double h, const double *Y)
+{
+  element *own = self->own;
+  memcpy(own->Y, Y, (size_t)dvi__action_unknowns(own->action) * sizeof(double));
+  dvi__action_ends(own->action, own->Y, own->dq, own->dq_low, own->dp);
+  dvi__action_forces(own->action, self->memory + dvi__element_forces(self));
+  advance(self, state, h);
+}
+
 dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h)
 {
   element *own = self->own;
   dvi__solve_report report = {0};
   double *forces = self->memory + dvi__element_forces(self);
-  const int continues = self->memory[DVI__LAST_H] != 0 && dvi__action_can_sweep(own->action);
-  const place at = {
-      state->t, h, state->q, state->p, self->memory[DVI__LAST_H], self->memory + DVI__LAST_Y, continues ? forces : NULL};
+  const place at = place_of(self, state, h);
   dvi_status status = solve_at(self, &at, own->Y, &report);
   if (status > 0) status = rescue(self, &at, own->Y, &report);
   if (status == DVI_OK) {
@@ -429,8 +451,7 @@ dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h)
     dvi__action_forces(own->action, forces);
   }
   if (status == DVI_OK && own->choice == DVI__SOLVER_CERTIFIED) status = certify(self, &at, own->Y, &report);
-  if (status == DVI_OK) advance(self, state, h);
-  return status;
+  return status == DVI_OK ? advance(self, state, h) : status;
 }
 
 void dvi__element_path(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v)

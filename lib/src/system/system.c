@@ -111,13 +111,21 @@ static dvi_status group_lagrangian(dvi__lagrangian_term *term)
 }
 
 /* Only one of two shapes would ever be called. */
-static dvi_status check_shapes(const char *owner, int values, int gradients, int hessians)
+static dvi_status check_shapes(const char *owner, int values, int gradients, int hessians, int rates)
 {
-  if (!values && !gradients && !hessians) return DVI_OK;
+  if (!values && !gradients && !hessians && !rates) return DVI_OK;
   return dvi__fail(DVI_BAD_ARGUMENT, "system: %s has its %s callback in two shapes, one-point and batch; declare one", owner,
                    values      ? "value"
                    : gradients ? "gradient"
-                               : "Hessian");
+                   : hessians  ? "Hessian"
+                               : "rate");
+}
+
+/* It would never be asked for. */
+static dvi_status check_rate(const dvi_system *s, const char *owner, int given)
+{
+  if (!given || !s->autonomous) return DVI_OK;
+  return dvi__fail(DVI_BAD_ARGUMENT, "system: %s has a rate, but the system is declared autonomous; leave out one of them", owner);
 }
 
 static dvi_status copy_lagrangian(dvi_system *s, const dvi_lagrangian *given)
@@ -125,7 +133,8 @@ static dvi_status copy_lagrangian(dvi_system *s, const dvi_lagrangian *given)
   if (given->value == NULL && given->value_batch == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "system: the Lagrangian has no value callback");
   DVI_TRY(check_shapes("the Lagrangian", given->value && given->value_batch, given->gradient && given->gradient_batch,
-                       given->hessian && given->hessian_batch));
+                       given->hessian && given->hessian_batch, given->rate && given->rate_batch));
+  DVI_TRY(check_rate(s, "the Lagrangian", given->rate || given->rate_batch));
   s->terms |= DVI__LAGRANGIAN;
   dvi__lagrangian_term *term = s->lagrangian = DVI_NEW(dvi__lagrangian_term, 1);
   if (term == NULL) return no_memory();
@@ -155,7 +164,8 @@ static dvi_status copy_potential(dvi_system *s, const dvi_potential *given, dvi_
   if (given->value == NULL && given->value_batch == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "system: potential '%s' has no value callback", name);
   DVI_TRY(check_shapes(name, given->value && given->value_batch, given->gradient && given->gradient_batch,
-                       given->hessian && given->hessian_batch));
+                       given->hessian && given->hessian_batch, given->rate && given->rate_batch));
+  DVI_TRY(check_rate(s, name, given->rate || given->rate_batch));
   DVI_TRY(check_range(given, name));
   term->callbacks = *given;
   term->name = copy_text(name);
@@ -316,6 +326,7 @@ static uint64_t hash_of(const dvi_system *s)
 static dvi_status fill(dvi_system *s, const dvi_system_terms *terms)
 {
   s->n = terms->dimension;
+  s->autonomous = terms->autonomous != 0;
   DVI_TRY(terms->lagrangian != NULL ? copy_lagrangian(s, terms->lagrangian) : copy_mass(s, &terms->mass));
   DVI_TRY(copy_potentials(s, terms));
   DVI_TRY(copy_invariants(s, terms));
@@ -385,6 +396,11 @@ int dvi_system_nq(const dvi_system *system)
 int dvi_system_nv(const dvi_system *system)
 {
   return system != NULL ? system->n : 0;
+}
+
+int dvi_system_autonomous(const dvi_system *system)
+{
+  return system != NULL && system->autonomous;
 }
 
 int dvi_system_invariant_count(const dvi_system *system)

@@ -26,6 +26,7 @@ typedef struct dvi__potential_term {
 
 typedef struct dvi__lagrangian_term {
   dvi_lagrangian callbacks;
+  struct dvi__transformed *transformed; /* not NULL: it stands in the place of the callbacks (transformed.h) */
   dvi__pattern qq, qv, vv;
   int *in_qq;                     /* [entries of qq] */
   dvi__groups q_groups, v_groups; /* q columns of qq; v columns of qv and vv together */
@@ -33,6 +34,7 @@ typedef struct dvi__lagrangian_term {
 
 struct dvi_system {
   int n;
+  int autonomous; /* declared so */
   uint64_t hash;  /* of all that is declared, but for what callbacks compute */
   unsigned terms; /* dvi__term bits */
   double mass_scalar;
@@ -56,6 +58,9 @@ dvi_status dvi__system_prepare_hessian(const dvi_system *system);
 
 /* Whether all potentials give their gradient: nothing is differenced for forces. */
 int dvi__system_has_gradients(const dvi_system *system);
+
+/* DVI_OK if L_t is known: the system is autonomous, or all terms give their rates. Else the sentence names the term without. */
+dvi_status dvi__system_has_rates(const dvi_system *system);
 
 /* DVI_OK if one may stand in for the other in all that is made for it: they declare the same terms, masses, patterns, names, derivatives and reaches, and
  * differ in what their callbacks compute alone. */

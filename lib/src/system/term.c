@@ -4,6 +4,7 @@
 #include "core/status.h"
 #include "num/finite.h"
 #include "system/difference.h"
+#include "system/transformed.h"
 
 /* The status that a callback's return and its results, `entries` at each of `count` points, amount to; `in` says which result. */
 static dvi_status verdict(int returned, int entries, int count, const double *result, const char *name, const char *what,
@@ -109,18 +110,36 @@ dvi_status dvi__potential_hessian(const dvi__potential_term *p, dvi__scratch *s,
   return verdict(returned, entries, count, V_qq, p->name, "Hessian", "");
 }
 
+int dvi__potential_has_rate(const dvi__potential_term *p)
+{
+  return p->callbacks.rate != NULL || p->callbacks.rate_batch != NULL;
+}
+
+dvi_status dvi__potential_rate(const dvi__potential_term *p, dvi__scratch *s, int count, const double *t, const double *q,
+                               double *V_t)
+{
+  const dvi_potential *c = &p->callbacks;
+  int returned = 0;
+  if (c->rate_batch != NULL) returned = c->rate_batch(count, t, q, V_t, c->user);
+  for (int k = 0; c->rate_batch == NULL && k < count && returned == 0; k++) {
+    gather(s->n, count, k, q, s->point_q);
+    returned = c->rate(t[k], s->point_q, V_t + k, c->user);
+  }
+  return verdict(returned, 1, count, V_t, p->name, "rate", "");
+}
+
 /* ---- general Lagrangian ---- */
 
 static const char *const general = "Lagrangian";
 
 int dvi__general_has_gradient(const dvi__lagrangian_term *l)
 {
-  return l->callbacks.gradient != NULL || l->callbacks.gradient_batch != NULL;
+  return l->transformed != NULL || l->callbacks.gradient != NULL || l->callbacks.gradient_batch != NULL;
 }
 
 int dvi__general_has_hessian(const dvi__lagrangian_term *l)
 {
-  return l->callbacks.hessian != NULL || l->callbacks.hessian_batch != NULL;
+  return l->transformed != NULL || l->callbacks.hessian != NULL || l->callbacks.hessian_batch != NULL;
 }
 
 dvi_status dvi__general_value(const dvi__lagrangian_term *l, dvi__scratch *s, int count, const double *t, const double *q,
@@ -128,6 +147,7 @@ dvi_status dvi__general_value(const dvi__lagrangian_term *l, dvi__scratch *s, in
 {
   const dvi_lagrangian *c = &l->callbacks;
   int returned = 0;
+  if (l->transformed != NULL) return dvi__transformed_value(l->transformed, count, t, q, v, L);
   if (c->value_batch != NULL) returned = c->value_batch(count, t, q, v, L, c->user);
   for (int k = 0; c->value_batch == NULL && k < count && returned == 0; k++) {
     gather(s->n, count, k, q, s->point_q);
@@ -166,6 +186,7 @@ dvi_status dvi__general_gradient(const dvi__lagrangian_term *l, dvi__scratch *s,
 {
   const dvi_lagrangian *c = &l->callbacks;
   int returned = 0;
+  if (l->transformed != NULL) return dvi__transformed_gradient(l->transformed, count, t, q, v, L_q, L_v);
   if (!dvi__general_has_gradient(l)) {
     const dvi__general_at at = {l, s, t, q, v};
     DVI_TRY(dvi__difference_gradient(dvi__general_value_of_q, &at, &s->of_value, s->n, count, q, L_q));
@@ -198,6 +219,7 @@ dvi_status dvi__general_hessian(const dvi__lagrangian_term *l, dvi__scratch *s, 
   const dvi_lagrangian *c = &l->callbacks;
   const int qq = dvi__pattern_entries(&l->qq), qv = dvi__pattern_entries(&l->qv), vv = dvi__pattern_entries(&l->vv);
   int returned = 0;
+  if (l->transformed != NULL) return dvi__transformed_hessian(l->transformed, count, t, q, v, L_qq, L_qv, L_vv);
   if (!dvi__general_has_hessian(l)) return difference_general_hessian(&(dvi__general_at){l, s, t, q, v}, count, L_qq, L_qv, L_vv);
   if (c->hessian_batch != NULL) returned = c->hessian_batch(count, t, q, v, L_qq, L_qv, L_vv, c->user);
   for (int k = 0; c->hessian_batch == NULL && k < count && returned == 0; k++) {
@@ -211,4 +233,23 @@ dvi_status dvi__general_hessian(const dvi__lagrangian_term *l, dvi__scratch *s, 
   DVI_TRY(verdict(returned, qq, count, L_qq, general, "Hessian", " in L_qq"));
   DVI_TRY(verdict(returned, qv, count, L_qv, general, "Hessian", " in L_qv"));
   return verdict(returned, vv, count, L_vv, general, "Hessian", " in L_vv");
+}
+
+int dvi__general_has_rate(const dvi__lagrangian_term *l)
+{
+  return l->callbacks.rate != NULL || l->callbacks.rate_batch != NULL;
+}
+
+dvi_status dvi__general_rate(const dvi__lagrangian_term *l, dvi__scratch *s, int count, const double *t, const double *q,
+                             const double *v, double *L_t)
+{
+  const dvi_lagrangian *c = &l->callbacks;
+  int returned = 0;
+  if (c->rate_batch != NULL) returned = c->rate_batch(count, t, q, v, L_t, c->user);
+  for (int k = 0; c->rate_batch == NULL && k < count && returned == 0; k++) {
+    gather(s->n, count, k, q, s->point_q);
+    gather(s->n, count, k, v, s->point_v);
+    returned = c->rate(t[k], s->point_q, s->point_v, L_t + k, c->user);
+  }
+  return verdict(returned, 1, count, L_t, general, "rate", "");
 }

@@ -34,12 +34,16 @@ dvi_status dvi__potential_gradient(const dvi__potential_term *p, dvi__scratch *s
                                    double *V_q);
 dvi_status dvi__potential_hessian(const dvi__potential_term *p, dvi__scratch *s, int count, const double *t, const double *q,
                                   double *V_qq);
+dvi_status dvi__potential_rate(const dvi__potential_term *p, dvi__scratch *s, int count, const double *t, const double *q,
+                               double *V_t);
 dvi_status dvi__general_value(const dvi__lagrangian_term *l, dvi__scratch *s, int count, const double *t, const double *q,
                               const double *v, double *L);
 dvi_status dvi__general_gradient(const dvi__lagrangian_term *l, dvi__scratch *s, int count, const double *t, const double *q,
                                  const double *v, double *L_q, double *L_v);
 dvi_status dvi__general_hessian(const dvi__lagrangian_term *l, dvi__scratch *s, int count, const double *t, const double *q,
                                 const double *v, double *L_qq, double *L_qv, double *L_vv);
+dvi_status dvi__general_rate(const dvi__lagrangian_term *l, dvi__scratch *s, int count, const double *t, const double *q,
+                             const double *v, double *L_t);
 
 /* A potential as a function of q alone, in the shapes that system/difference.h wants; `function` is a dvi__potential_at. */
 typedef struct dvi__potential_at {
@@ -68,7 +72,9 @@ int dvi__longest_hessian(const dvi_system *system, int hessians);
 
 int dvi__potential_has_gradient(const dvi__potential_term *p);
 int dvi__potential_has_hessian(const dvi__potential_term *p);
+int dvi__potential_has_rate(const dvi__potential_term *p);
 int dvi__general_has_gradient(const dvi__lagrangian_term *l);
 int dvi__general_has_hessian(const dvi__lagrangian_term *l);
+int dvi__general_has_rate(const dvi__lagrangian_term *l);
 
 #endif
