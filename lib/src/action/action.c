@@ -95,6 +95,11 @@ void dvi__action_destroy(dvi__action **action)
                            a->H_qq,
                            a->H_qv,
                            a->H_vv,
+                           a->bubble,
+                           a->chi,
+                           a->dchi,
+                           a->between_rows,
+                           a->between_dp,
                            a->sweep_matrix,
                            a->sweep_node,
                            a->sweep_slant,
@@ -113,6 +118,11 @@ void dvi__action_destroy(dvi__action **action)
   dvi__release(a->block);
   dvi__release(a);
   *action = NULL;
+}
+
+dvi__action_space dvi__action_space_of(const dvi__action *action)
+{
+  return action->space;
 }
 
 int dvi__action_unknowns(const dvi__action *action)

@@ -23,6 +23,14 @@ dvi_status dvi__solver_factor(dvi__solver *solver, const double *x)
   return dvi__fail_in(DVI_NOT_CONVERGED, "the Jacobian of the step's equations cannot be factored");
 }
 
+dvi_status dvi__solver_negative(dvi__solver *solver, const double *x, int *negative)
+{
+  *negative = -1;
+  const dvi_status status = dvi__solver_factor(solver, x);
+  if (status == DVI_OK) *negative = dvi__linear_negative(solver->linear);
+  return status == DVI_NOT_CONVERGED ? DVI_OK : status;
+}
+
 static dvi_status fill(dvi__solver *solver)
 {
   const dvi__pattern *pattern = solver->equations.pattern;
@@ -30,7 +38,7 @@ static dvi_status fill(dvi__solver *solver)
   solver->values = DVI_NEW(double, dvi__pattern_entries(pattern));
   if (solver->residual == NULL || solver->values == NULL)
     return dvi__fail(DVI_NO_MEMORY, "solver: no memory for %d unknowns", solver->equations.unknowns);
-  DVI_TRY(dvi__linear_create(pattern, DVI__LINEAR_AUTO, solver->counters, &solver->linear));
+  DVI_TRY(dvi__linear_create(pattern, solver->equations.linear, solver->counters, &solver->linear));
   return dvi__kinsol_create(solver, &solver->kinsol);
 }
 

@@ -1,0 +1,214 @@
+/* The stationarity of the whole action, its Hessian, and what borders them. */
+#include <math.h>
+#include <string.h>
+
+#include "core/status.h"
+#include "num/finite.h"
+#include "path/layout.h"
+
+double dvi__path_span(const dvi_path *path, const double *x)
+{
+  return path->free_span ? x[path->core] * path->span_unit : path->span;
+}
+
+void dvi__path_place(dvi_path *path, const double *x, int k)
+{
+  const double h = dvi__path_span(path, x) / path->steps;
+  dvi__action_place(path->action, path->start + k * h, h, dvi__path_at(path, x, k), path->rest);
+  dvi__action_between(path->action, dvi__path_at(path, x, k + 1), x + dvi__path_bubbles(path, k), path->Y);
+}
+
+/* ---- the gradient ---- */
+
+/* Add what an element gives: in_ends and in_Z of step k. */
+static void add_rows(dvi_path *path, int k, double *rows)
+{
+  dvi__places places;
+  for (int a = 0; a < 2; a++)
+    for (int i = 0; i < path->n; i++) {
+      dvi__path_places(path, k, a, i, 1, &places);
+      for (int c = 0; c < places.count; c++) rows[places.at[c]] += places.factor[c] * path->in_ends[a][i];
+    }
+  for (int m = 0, first = dvi__path_bubbles(path, k); m < path->n * (path->s - 1); m++) rows[first + m] += path->in_Z[m];
+}
+
+static dvi_status element_gradient(dvi_path *path, const double *x, int k)
+{
+  dvi__path_place(path, x, k);
+  return dvi__action_between_gradient(path->action, path->Y, path->in_ends[0], path->in_ends[1], path->in_Z);
+}
+
+/* -dS/dq0 of the first step is p_0. */
+static void add_given_momentum(const dvi_path *path, double *rows)
+{
+  dvi__places places;
+  for (int i = 0; path->p0 != NULL && i < path->n; i++) {
+    dvi__path_places(path, 0, 0, i, 1, &places);
+    rows[places.single] += path->p0[i];
+  }
+}
+
+/* rows [core]; p [(steps+1)*n] or NULL. */
+static dvi_status gradient(dvi_path *path, const double *x, double *rows, double *p)
+{
+  const size_t n = (size_t)path->n, bytes = n * sizeof(double);
+  memset(rows, 0, (size_t)path->core * sizeof(double));
+  for (int k = 0; k < path->steps; k++) {
+    DVI_TRY(element_gradient(path, x, k));
+    add_rows(path, k, rows);
+    if (p == NULL) continue;
+    memcpy(p + (size_t)(k + 1) * n, path->in_ends[1], bytes);
+    for (size_t i = 0; i < n && k == 0; i++) p[i] = -path->in_ends[0][i];
+  }
+  add_given_momentum(path, rows);
+  return DVI_OK;
+}
+
+dvi_status dvi__path_gradient(dvi_path *path, const double *x, double *p, double *largest, double *momentum)
+{
+  double *rows = path->rows;
+  DVI_TRY(gradient(path, x, rows, p));
+  *largest = dvi__largest((size_t)path->core, rows);
+  *momentum = dvi__largest((size_t)(path->steps + 1) * (size_t)path->n, p);
+  return DVI_OK;
+}
+
+/* ---- the border ---- */
+
+/* What the gauge is measured by: rows get the multipliers' part, multipliers' rows the distance from the origin. */
+typedef struct measure {
+  const dvi_path *path;
+  const double *x;
+  double *rows;
+} measure;
+
+static void add_gauge(void *of, int unknown, int multiplier, size_t from)
+{
+  const measure *m = of;
+  const double factor = m->path->gauge[from];
+  m->rows[unknown] += factor * m->x[multiplier];
+  m->rows[multiplier] += factor * (m->x[unknown] - m->path->origin[from % ((size_t)m->path->steps * (size_t)m->path->n)]);
+}
+
+static void border_rows(const dvi_path *path, const double *x, double *rows)
+{
+  const int first = path->unknowns - path->gauges;
+  measure m = {path, x, rows};
+  for (int g = 0; g < path->gauges; g++) rows[first + g] = g < path->in_use ? 0 : x[first + g];
+  dvi__path_each_gauge(path, add_gauge, &m);
+}
+
+static dvi_status residual(void *of, const double *x, double *rows)
+{
+  dvi_path *path = of;
+  DVI_TRY(gradient(path, x, rows, NULL));
+  border_rows(path, x, rows);
+  return DVI_OK;
+}
+
+/* ---- the Hessian ---- */
+
+/* Values being added up; the next entry is often the one after the last. */
+typedef struct assembly {
+  const dvi_path *path;
+  double *values;
+  int last;
+} assembly;
+
+static int entry(assembly *to, int row, int column)
+{
+  const dvi__pattern *pattern = &to->path->pattern;
+  const int next = to->last + 1;
+  const int follows = next >= pattern->start[column] && next < pattern->start[column + 1] && pattern->row[next] == row;
+  return to->last = follows ? next : dvi__pattern_find(pattern, row, column);
+}
+
+static void add_entry(void *of, int row, int column, double factor, size_t from)
+{
+  assembly *to = of;
+  to->values[entry(to, row, column)] += factor * to->path->block[from];
+}
+
+static void add_gauge_entry(void *of, int unknown, int multiplier, size_t from)
+{
+  assembly *to = of;
+  to->values[entry(to, multiplier, unknown)] += to->path->gauge[from];
+  to->values[entry(to, unknown, multiplier)] += to->path->gauge[from];
+}
+
+/* Multipliers that are not in use, and all of the border if the matrix is to be bare, are unknowns of their own. */
+static void add_border(assembly *to)
+{
+  const dvi_path *path = to->path;
+  if (!path->bare) dvi__path_each_gauge(path, add_gauge_entry, to);
+  const int first = path->bare ? path->core : path->unknowns - path->gauges + path->in_use;
+  for (int c = first; c < path->unknowns; c++) to->values[entry(to, c, c)] = 1;
+}
+
+/* The kinetic weight h |L_vv|_ii dq^2 at the nodes, over span^2. */
+static void add_lift(assembly *to, double span)
+{
+  const dvi_path *path = to->path;
+  for (int k = 0; k <= path->steps; k++) {
+    const int node = dvi__path_node(path, k);
+    for (int i = 0; node >= 0 && i < path->n; i++)
+      to->values[entry(to, node + i, node + i)] += path->lift * path->kinetic[i] / (span * path->steps);
+  }
+}
+
+static dvi_status jacobian(void *of, const double *x, double *values)
+{
+  dvi_path *path = of;
+  assembly to = {path, values, -1};
+  memset(values, 0, (size_t)dvi__pattern_entries(&path->pattern) * sizeof(double));
+  for (int k = 0; k < path->steps; k++) {
+    dvi__path_place(path, x, k);
+    DVI_TRY(dvi__action_between_hessian(path->action, path->Y, path->block));
+    dvi__path_each_entry(path, k, add_entry, &to);
+  }
+  add_border(&to);
+  if (path->lift != 0) add_lift(&to, dvi__path_span(path, x));
+  return DVI_OK;
+}
+
+/* ---- scales ---- */
+
+/* The kinetic part at the middle of the path tells how large rows are. */
+static dvi_status prepare(void *of, const double *x)
+{
+  dvi_path *path = of;
+  dvi__path_place(path, x, path->steps / 2);
+  DVI_TRY(dvi__action_prepare_chord(path->action, path->Y));
+  (void)dvi__action_row_scale(path->action, path->row_scale); /* 0: as it was */
+  const double h = dvi__path_span(path, x) / path->steps;
+  for (int i = 0; i < path->n; i++) path->kinetic[i] = path->row_scale[i * path->s] * h;
+  return DVI_OK;
+}
+
+static int row_scale(void *of, double *scale)
+{
+  const dvi_path *path = of;
+  dvi__places places;
+  for (int k = 0; k < path->steps; k++)
+    for (int i = 0; i < path->n; i++)
+      for (int a = path->ends == DVI_ENDS_PERIODIC || path->ends == DVI_ENDS_INITIAL ? 0 : 1; a <= path->s; a++) {
+        if (a == 1 && path->ends != DVI_ENDS_FIXED) continue;
+        dvi__path_places(path, k, a, i, 1, &places);
+        if (places.count == 1) scale[places.single] = path->row_scale[i * path->s];
+      }
+  for (int c = path->core; c < path->unknowns; c++) scale[c] = 1;
+  return 1;
+}
+
+dvi_status dvi__path_make_solver(dvi_path *path)
+{
+  const dvi__equations equations = {.unknowns = path->unknowns,
+                                    .pattern = &path->pattern,
+                                    .linear = DVI__LINEAR_SPARSE,
+                                    .of = path,
+                                    .residual = residual,
+                                    .jacobian = jacobian,
+                                    .prepare_chord = prepare,
+                                    .row_scale = row_scale};
+  return dvi__solver_create(&equations, &path->counters, &path->solver);
+}
