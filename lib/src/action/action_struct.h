@@ -69,6 +69,12 @@ struct dvi__action {
   double *bubble;                    /* [(s-1)*s] beta_m in the functions psi_k */
   double *chi, *dchi;                /* [(s+1)*lanes] tables over the nodes */
   double *between_rows, *between_dp; /* [n*s], [n] work */
+  /* Energies; NULL until prepared. */
+  double *value, *rate;             /* [r] L, L_t */
+  double *by_q, *by_v;              /* [n*r] what L_v V - L changes by with q and with the path's derivative in tau */
+  double *rate_q, *rate_v, *rate_t; /* [n*r], [n*r], [r] L_tq, L_tv, L_tt; NULL: the system is autonomous */
+  double *moved_t, *moved_rate;     /* [r] work of their differences, */
+  double *moved_q, *moved_v;        /* [n*r] and more of it */
 };
 
 /* Up to so many coordinates the chord's inverse is cheaper than solving for each of the s functions. */

@@ -66,32 +66,34 @@ void dvi__action_between(const dvi__action *a, const double *q1, const double *Z
     }
 }
 
-/* With S_Y = R + psi(1) dp, S_q0 = dp where q1 moves along, straight.psi(1) = 1 and bubble.psi(1) = 0. */
-void dvi__action_between_rows(const dvi__action *a, const double *R, const double *dp, double *in_q0, double *in_q1, double *in_Z)
+void dvi__action_between_ends(const dvi__action *a, const double *by_Y, const double *by_q0, double *in_q0, double *in_q1,
+                              double *in_Z)
 {
   const size_t s = (size_t)a->s;
   for (size_t i = 0; i < (size_t)a->n; i++) {
-    double along = 0;
-    for (size_t k = 0; k < s; k++) along += a->straight[k] * R[i * s + k];
-    in_q0[i] = -along;
-    in_q1[i] = along + dp[i];
+    const double *in_Y = by_Y + i * s;
+    in_q1[i] = 0;
+    for (size_t k = 0; k < s; k++) in_q1[i] += a->straight[k] * in_Y[k];
+    in_q0[i] = by_q0[i] - in_q1[i];
     for (size_t m = 0; m + 1 < s; m++) {
-      double sum = 0;
-      for (size_t k = 0; k < s; k++) sum += a->bubble[m * s + k] * R[i * s + k];
-      in_Z[i * (s - 1) + m] = sum;
+      double *sum = &in_Z[i * (s - 1) + m];
+      *sum = 0;
+      for (size_t k = 0; k < s; k++) *sum += a->bubble[m * s + k] * in_Y[k];
     }
   }
 }
 
+/* In Y with q0 fixed: the rows R, and psi(1) dp, which the elimination of p1 has taken from them. */
 dvi_status dvi__action_between_gradient(dvi__action *a, const double *Y, double *in_q0, double *in_q1, double *in_Z)
 {
   DVI_TRY(dvi__action_residual(a, Y, a->between_rows));
-  for (size_t i = 0, r = (size_t)a->r; i < (size_t)a->n; i++) {
+  for (size_t i = 0, r = (size_t)a->r, s = (size_t)a->s; i < (size_t)a->n; i++) {
     double sum = 0;
     for (size_t j = i * r; j < (i + 1) * r; j++) sum += a->L_q[j];
     a->between_dp[i] = a->h * sum;
+    for (size_t k = 0; k < s; k++) a->between_rows[i * s + k] += a->end[k] * a->between_dp[i];
   }
-  dvi__action_between_rows(a, a->between_rows, a->between_dp, in_q0, in_q1, in_Z);
+  dvi__action_between_ends(a, a->between_rows, a->between_dp, in_q0, in_q1, in_Z);
   return DVI_OK;
 }
 

@@ -23,8 +23,9 @@ void dvi__action_between(const dvi__action *action, const double *q1, const doub
 /* The derivatives of S: in q0 and q1 [n] and in Z [n*(s-1)], for the Y of dvi__action_between. The element must be placed with p0 = 0. */
 dvi_status dvi__action_between_gradient(dvi__action *action, const double *Y, double *in_q0, double *in_q1, double *in_Z);
 
-/* All that is linear in the rows R of action.h (with p0 = 0) and in dp, from these: the gradient, and its derivative in h, too. */
-void dvi__action_between_rows(const dvi__action *action, const double *R, const double *dp, double *in_q0, double *in_q1, double *in_Z);
+/* The derivatives of any function of q0 and Y in q0, q1 and Z, from those in Y [n*s] and in q0 with Y fixed [n]. */
+void dvi__action_between_ends(const dvi__action *action, const double *by_Y, const double *by_q0, double *in_q0, double *in_q1,
+                              double *in_Z);
 
 /* The second derivatives of S. For each entry e = (i,j) of dvi__action_coupling a block of (s+1)^2 numbers: that of X_a of coordinate i and X_b of
  * coordinate j is values[(e*(s+1) + b)*(s+1) + a]. */

@@ -2,13 +2,14 @@
 #include <math.h>
 #include <string.h>
 
+#include "action/energy.h"
 #include "core/status.h"
 #include "num/finite.h"
 #include "path/layout.h"
 
 double dvi__path_span(const dvi_path *path, const double *x)
 {
-  return path->free_span ? x[path->core] * path->span_unit : path->span;
+  return path->free_span ? x[path->core] * path->span : path->span;
 }
 
 void dvi__path_place(dvi_path *path, const double *x, int k)
@@ -48,14 +49,18 @@ static void add_given_momentum(const dvi_path *path, double *rows)
   }
 }
 
-/* rows [core]; p [(steps+1)*n] or NULL. */
-static dvi_status gradient(dvi_path *path, const double *x, double *rows, double *p)
+/* rows [core]; p [(steps+1)*n] or NULL; the mean energy of an autonomous system. */
+static dvi_status gradient(dvi_path *path, const double *x, double *rows, double *p, double *energy)
 {
   const size_t n = (size_t)path->n, bytes = n * sizeof(double);
+  dvi__energies E = {0};
+  *energy = 0;
   memset(rows, 0, (size_t)path->core * sizeof(double));
   for (int k = 0; k < path->steps; k++) {
     DVI_TRY(element_gradient(path, x, k));
     add_rows(path, k, rows);
+    if (path->system->autonomous) DVI_TRY(dvi__action_energies(path->action, &E));
+    *energy += E.end / path->steps;
     if (p == NULL) continue;
     memcpy(p + (size_t)(k + 1) * n, path->in_ends[1], bytes);
     for (size_t i = 0; i < n && k == 0; i++) p[i] = -path->in_ends[0][i];
@@ -64,12 +69,25 @@ static dvi_status gradient(dvi_path *path, const double *x, double *rows, double
   return DVI_OK;
 }
 
-dvi_status dvi__path_gradient(dvi_path *path, const double *x, double *p, double *largest, double *momentum)
+dvi_status dvi__path_gradient(dvi_path *path, const double *x, double *p, double *largest)
 {
-  double *rows = path->rows;
-  DVI_TRY(gradient(path, x, rows, p));
-  *largest = dvi__largest((size_t)path->core, rows);
-  *momentum = dvi__largest((size_t)(path->steps + 1) * (size_t)path->n, p);
+  double energy;
+  DVI_TRY(gradient(path, x, path->rows, p, &energy));
+  *largest = dvi__largest((size_t)path->core, path->rows);
+  return DVI_OK;
+}
+
+dvi_status dvi__path_action(dvi_path *path, const double *x, double *action, double *energy)
+{
+  double S;
+  *action = 0;
+  *energy = (double)NAN;
+  if (path->system->autonomous) DVI_TRY(gradient(path, x, path->rows, NULL, energy));
+  for (int k = 0; k < path->steps; k++) {
+    dvi__path_place(path, x, k);
+    DVI_TRY(dvi__action_value(path->action, path->Y, &S));
+    *action += S;
+  }
   return DVI_OK;
 }
 
@@ -101,7 +119,9 @@ static void border_rows(const dvi_path *path, const double *x, double *rows)
 static dvi_status residual(void *of, const double *x, double *rows)
 {
   dvi_path *path = of;
-  DVI_TRY(gradient(path, x, rows, NULL));
+  double energy;
+  DVI_TRY(gradient(path, x, rows, NULL, &energy));
+  if (path->free_span) rows[path->core] = path->span * (path->energy - energy);
   border_rows(path, x, rows);
   return DVI_OK;
 }
@@ -123,17 +143,43 @@ static int entry(assembly *to, int row, int column)
   return to->last = follows ? next : dvi__pattern_find(pattern, row, column);
 }
 
+static void add_at(assembly *to, int row, int column, double value)
+{
+  to->values[entry(to, row, column)] += value;
+}
+
 static void add_entry(void *of, int row, int column, double factor, size_t from)
 {
   assembly *to = of;
-  to->values[entry(to, row, column)] += factor * to->path->block[from];
+  add_at(to, row, column, factor * to->path->block[from]);
 }
 
 static void add_gauge_entry(void *of, int unknown, int multiplier, size_t from)
 {
   assembly *to = of;
-  to->values[entry(to, multiplier, unknown)] += to->path->gauge[from];
-  to->values[entry(to, unknown, multiplier)] += to->path->gauge[from];
+  add_at(to, multiplier, unknown, to->path->gauge[from]);
+  add_at(to, unknown, multiplier, to->path->gauge[from]);
+}
+
+/* What the rows of step k change by with the span's unknown, and the row of that unknown with them. */
+static dvi_status add_span(assembly *to, dvi_path *path, int k)
+{
+  const double part = -path->span / path->steps;
+  dvi__energy_gradient gradient = {path->energy_Y, path->energy_q0, 0};
+  dvi__places places;
+  DVI_TRY(dvi__action_energy_gradients(path->action, &gradient, &gradient));
+  dvi__action_between_ends(path->action, gradient.Y, gradient.q0, path->in_ends[0], path->in_ends[1], path->in_Z);
+  for (int a = 0; a <= path->s; a++)
+    for (int i = 0; i < path->n; i++) {
+      dvi__path_places(path, k, a, i, 0, &places);
+      const double value = part * (a < 2 ? path->in_ends[a][i] : path->in_Z[i * (path->s - 1) + a - 2]);
+      for (int c = 0; c < places.count; c++) {
+        add_at(to, path->core, places.at[c], places.factor[c] * value);
+        add_at(to, places.at[c], path->core, places.factor[c] * value);
+      }
+    }
+  add_at(to, path->core, path->core, part * path->span / path->steps * gradient.h);
+  return DVI_OK;
 }
 
 /* Multipliers that are not in use, and all of the border if the matrix is to be bare, are unknowns of their own. */
@@ -152,7 +198,7 @@ static void add_lift(assembly *to, double span)
   for (int k = 0; k <= path->steps; k++) {
     const int node = dvi__path_node(path, k);
     for (int i = 0; node >= 0 && i < path->n; i++)
-      to->values[entry(to, node + i, node + i)] += path->lift * path->kinetic[i] / (span * path->steps);
+      add_at(to, node + i, node + i, path->lift * path->kinetic[i] / (span * path->steps));
   }
 }
 
@@ -165,6 +211,7 @@ static dvi_status jacobian(void *of, const double *x, double *values)
     dvi__path_place(path, x, k);
     DVI_TRY(dvi__action_between_hessian(path->action, path->Y, path->block));
     dvi__path_each_entry(path, k, add_entry, &to);
+    if (path->free_span && !path->bare) DVI_TRY(add_span(&to, path, k));
   }
   add_border(&to);
   if (path->lift != 0) add_lift(&to, dvi__path_span(path, x));
@@ -174,9 +221,8 @@ static dvi_status jacobian(void *of, const double *x, double *values)
 /* ---- scales ---- */
 
 /* The kinetic part at the middle of the path tells how large rows are. */
-static dvi_status prepare(void *of, const double *x)
+dvi_status dvi__path_scale(dvi_path *path, const double *x)
 {
-  dvi_path *path = of;
   dvi__path_place(path, x, path->steps / 2);
   DVI_TRY(dvi__action_prepare_chord(path->action, path->Y));
   (void)dvi__action_row_scale(path->action, path->row_scale); /* 0: as it was */
@@ -185,18 +231,23 @@ static dvi_status prepare(void *of, const double *x)
   return DVI_OK;
 }
 
+static dvi_status prepare(void *of, const double *x)
+{
+  return dvi__path_scale(of, x);
+}
+
 static int row_scale(void *of, double *scale)
 {
   const dvi_path *path = of;
+  const double kinetic = dvi__largest((size_t)path->n, path->kinetic);
   dvi__places places;
   for (int k = 0; k < path->steps; k++)
     for (int i = 0; i < path->n; i++)
-      for (int a = path->ends == DVI_ENDS_PERIODIC || path->ends == DVI_ENDS_INITIAL ? 0 : 1; a <= path->s; a++) {
-        if (a == 1 && path->ends != DVI_ENDS_FIXED) continue;
+      for (int a = 0; a <= path->s; a++) {
         dvi__path_places(path, k, a, i, 1, &places);
-        if (places.count == 1) scale[places.single] = path->row_scale[i * path->s];
+        if (places.count == 1) scale[places.at[0]] = path->row_scale[i * path->s];
       }
-  for (int c = path->core; c < path->unknowns; c++) scale[c] = 1;
+  for (int c = path->core; c < path->unknowns; c++) scale[c] = kinetic > 0 ? kinetic : 1;
   return 1;
 }
 

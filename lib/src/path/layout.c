@@ -137,7 +137,7 @@ static void add_all(const dvi_path *path, draft *d)
 {
   for (int k = 0; k < path->steps; k++) dvi__path_each_entry(path, k, add_entry, d);
   dvi__path_each_gauge(path, add_gauge, d);
-  for (int c = 0; path->free_span && c < path->core; c++) add_gauge(d, c, path->core, 0);
+  for (int c = 0; path->free_span && c < path->core; c++) add_gauge(d, c, path->core, 0); /* the span's row and column are full */
   /* The unknowns of the border have entries on the diagonal, which `bare` needs. */
   for (int c = path->core; c < path->unknowns; c++) add(d, c, c);
 }

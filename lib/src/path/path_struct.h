@@ -18,8 +18,8 @@ struct dvi_path {
   char method[DVI__PATH_METHOD_SIZE];
   dvi_ends ends;
   int n, s, steps;
-  double start, span;
-  double energy; /* of a free span */
+  double start, span; /* the span's unknown, if it is free, is its ratio to this */
+  double energy;      /* of a free span */
   int free_span;
   double *q0, *q1, *p0, *shift; /* [n]; NULL where they are not given */
   dvi__pattern turn;            /* the symmetry's transpose: its column i is row i of A; empty: the identity */
@@ -32,17 +32,20 @@ struct dvi_path {
   int unknowns; /* of all kinds */
   double *x;    /* [unknowns] the path: a guess, or solved */
   double *trial; /* [unknowns] what a solve works on */
-  double *q, *p; /* [(steps+1)*n] nodes of x; momenta */
-  int solved;    /* p is there */
+  double *q, *p, *trial_p; /* [(steps+1)*n] nodes and momenta of x; momenta of trial */
+  int solved;              /* p is there */
   /* One element's worth of work. */
   double *Y, *in_ends[2], *in_Z, *wrapped, *rest; /* [n*s], [n], [n*(s-1)], [n]; rest: p0 = 0 */
   double *block;                                  /* [entries of the coupling * (s+1)^2] */
   double *kinetic;                                /* [n] size of |L_vv|_ii */
   double *row_scale;                              /* [n*s] */
+  double *rows;                                   /* [core] a gradient */
+  double *energy_Y, *energy_q0;                   /* [n*s], [n] what an energy changes by */
   /* Gauge (gauge.c): the columns [gauges*(steps+1)*n] at the nodes, the nodes that they are measured from, and how many are in use. */
   double *gauge, *origin;
+  double *defect; /* [gauges*n] */
+  int *broken;    /* [gauges] */
   int in_use;
-  double span_unit; /* the span's unknown is the span over this: of the coordinates' size */
   /* For the signs of the second variation: what is added to it, in units of 1/span^2; `bare` leaves all but nodes and bubbles out. */
   int bare;
   double lift;
@@ -80,26 +83,29 @@ void dvi__path_turn(const dvi_path *path, const double *x, double *y);
 
 dvi_status dvi__path_make_solver(dvi_path *path);
 
+/* Measure the kinetic part at x, which sets the scales of rows. */
+dvi_status dvi__path_scale(dvi_path *path, const double *x);
+
 /* Put the element on step k of x and find its Y; the span is that of x. */
 void dvi__path_place(dvi_path *path, const double *x, int k);
 
 /* The span that x holds. */
 double dvi__path_span(const dvi_path *path, const double *x);
 
-/* Largest |row| of nodes and bubbles, without multipliers; and the largest momentum. p [(steps+1)*n] gets the momenta; may be NULL. */
-dvi_status dvi__path_gradient(dvi_path *path, const double *x, double *p, double *gradient, double *momentum);
+/* The largest |row| of nodes and bubbles, without multipliers; p [(steps+1)*n] gets the momenta. */
+dvi_status dvi__path_gradient(dvi_path *path, const double *x, double *p, double *gradient);
+
+/* The action; and the mean energy, NaN if the system is not autonomous. */
+dvi_status dvi__path_action(dvi_path *path, const double *x, double *action, double *energy);
 
 /* ---- gauge.c ---- */
 
-/* Find the directions along which the periodic path x may be moved, and make its distance from x along them zero. */
+/* Find the directions along which the periodic path x may be moved; the solution is to have no distance from x along them. After dvi__path_scale. */
 dvi_status dvi__path_fix_gauge(dvi_path *path, const double *x);
-
-/* How many there may be: columns to be set aside. */
-int dvi__path_most_gauges(const dvi_path *path);
 
 /* ---- index.c ---- */
 
 /* Fill negative, zero and zero_below of the report. */
-dvi_status dvi__path_index(dvi_path *path, double *x, dvi_path_report *report);
+dvi_status dvi__path_index(dvi_path *path, const double *x, dvi_path_report *report);
 
 #endif

@@ -1,0 +1,115 @@
+/* Newton's method with line search from the guess, and what is asked of the path that it finds. */
+#include <math.h>
+#include <string.h>
+
+#include "core/status.h"
+#include "num/finite.h"
+#include "path/path_struct.h"
+
+/* What may be left of the gradient, of the largest momentum. */
+static const double stationary_below = 1e-9;
+
+/* A symmetry of the Lagrangian leaves its value as it is, to this part. */
+static const double symmetric_below = 1e-8;
+
+/* L at the first node with the first step's velocity, and where the symmetry takes both. */
+static dvi_status check_symmetry(dvi_path *path, const double *x)
+{
+  const double h = dvi__path_span(path, x) / path->steps, *q0 = dvi__path_at(path, x, 0);
+  dvi__evaluator *e = dvi__action_evaluator(path->action);
+  double *v = path->in_ends[0], *turned_v = path->in_ends[1], L, turned_L;
+  if (path->turn.start == NULL && path->shift == NULL) return DVI_OK;
+  memcpy(v, dvi__path_at(path, x, 1), (size_t)path->n * sizeof(double));
+  for (int i = 0; i < path->n; i++) v[i] = (v[i] - q0[i]) / h;
+  dvi__path_turn(path, v, turned_v);
+  DVI_TRY(dvi__lagrangian_value(e, 1, &path->start, q0, v, &L));
+  DVI_TRY(dvi__lagrangian_value(e, 1, &path->start, dvi__path_at(path, x, path->steps), turned_v, &turned_L));
+  if (fabs(L - turned_L) <= symmetric_below * fmax(fabs(L), fabs(turned_L))) return DVI_OK;
+  return dvi__fail(DVI_BAD_ARGUMENT, "path: the symmetry is none of the Lagrangian's: it takes L = %.9g to %.9g", L, turned_L);
+}
+
+static dvi_status not_found(dvi_path *path, dvi_status status, const dvi__solve_report *solved)
+{
+  const char *const advice[] = {
+      [DVI_ENDS_FIXED] = "a better guess, more steps or a longer span, or come by continuation; conjugate ends may have no path",
+      [DVI_ENDS_INITIAL] = "a guess from steps with dvi_run, or a shorter span",
+      [DVI_ENDS_PERIODIC] = "a better guess, more steps, another period, or come by continuation",
+  };
+  if (status < 0) return dvi__fail_in(status, "path");
+  if (status != DVI_NOT_CONVERGED) return dvi__fail_in(status, "path: no stationary path was found; the path is unchanged");
+  return dvi__fail_in(status,
+                      "path: no stationary path of %d steps over %g was found from this guess (%d iterations, residual %.1e); the path "
+                      "is unchanged; try %s",
+                      path->steps, path->span, solved->iterations, solved->residual, advice[path->ends]);
+}
+
+/* What is left of stationarity, relative to momenta; for a path at rest, to a momentum that would cross its own size. */
+static dvi_status measure(dvi_path *path, double size, dvi_path_report *report)
+{
+  const double *x = path->trial;
+  report->span = dvi__path_span(path, x);
+  if (!(report->span > 0))
+    return dvi__fail(DVI_NOT_CONVERGED, "path: the period shrank to %g; the path is unchanged; try a better guess", report->span);
+  DVI_TRY(dvi__path_gradient(path, x, path->trial_p, &report->gradient));
+  double momentum = dvi__largest((size_t)(path->steps + 1) * (size_t)path->n, path->trial_p);
+  momentum = fmax(momentum, dvi__largest((size_t)path->n, path->kinetic) * size / report->span * stationary_below);
+  if (momentum > 0) report->gradient /= momentum;
+  if (!(report->gradient <= stationary_below))
+    return dvi__fail(DVI_NOT_CONVERGED,
+                     "path: the gradient is %.1e of the momenta where the path is held in place; steps are too long for the motion "
+                     "to be one in time; the path is unchanged; try more steps",
+                     report->gradient);
+  return dvi__path_action(path, x, &report->action, &report->energy);
+}
+
+/* Zero eigenvalues that no symmetry explains: the path is one of many, or roundoff chose it. With a free span they may belong to the span. */
+static dvi_status check_isolated(const dvi_path *path, const dvi_path_report *report)
+{
+  if (path->free_span || report->zero <= report->symmetries) return DVI_OK;
+  return dvi__fail(DVI_SINGULAR,
+                   "path: along %ld directions, of which %d are symmetries, the action of the path that was found does not change to "
+                   "second order (below %.0e): %s; the path is unchanged; try another span",
+                   report->zero, report->symmetries, report->zero_below,
+                   path->ends == DVI_ENDS_FIXED ? "its ends are conjugate, so that there are many such paths or none"
+                                                : "it is not isolated");
+}
+
+static void accept(dvi_path *path)
+{
+  const size_t n = (size_t)path->n;
+  double *x = path->x, *p = path->p;
+  path->x = path->trial;
+  path->trial = x;
+  path->p = path->trial_p;
+  path->trial_p = p;
+  for (int k = 0; k <= path->steps; k++) memcpy(path->q + (size_t)k * n, dvi__path_at(path, path->x, k), n * sizeof(double));
+  path->solved = 1;
+}
+
+static dvi_status solve(dvi_path *path, dvi_path_report *report)
+{
+  dvi__solve_report solved;
+  memcpy(path->trial, path->x, (size_t)path->unknowns * sizeof(double));
+  DVI_TRY(check_symmetry(path, path->trial));
+  DVI_TRY(dvi__path_scale(path, path->trial));
+  DVI_TRY(dvi__path_fix_gauge(path, path->trial));
+  const double size = dvi__largest((size_t)path->core, path->trial);
+  const dvi_status status = dvi__solve(path->solver, DVI__KINSOL, size, 0, 0, path->trial, &solved);
+  if (status != DVI_OK) return not_found(path, status, &solved);
+  report->iterations = solved.iterations;
+  report->symmetries = path->in_use;
+  DVI_TRY(measure(path, size, report));
+  DVI_TRY(dvi__path_index(path, path->trial, report));
+  return check_isolated(path, report);
+}
+
+dvi_status dvi_path_solve(dvi_path *path, dvi_path_report *report)
+{
+  if (path == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "path: no path to solve");
+  dvi_path_report found = {0};
+  const dvi_status status = solve(path, &found);
+  if (status != DVI_OK) return status;
+  accept(path);
+  if (report != NULL) *report = found;
+  return DVI_OK;
+}
