@@ -9,6 +9,9 @@
 /* What may be left of the gradient, of the largest momentum. */
 static const double stationary_below = 1e-9;
 
+/* KINSOL's scaled residual below which its path tells of the one that was sought. */
+static const double nearly_stationary = 1e-6;
+
 /* A symmetry of the Lagrangian leaves its value as it is, to this part. */
 static const double symmetric_below = 1e-8;
 
@@ -37,10 +40,10 @@ static dvi_status not_found(dvi_path *path, dvi_status status, const dvi__solve_
   };
   if (status < 0) return dvi__fail_in(status, "path");
   if (status != DVI_NOT_CONVERGED) return dvi__fail_in(status, "path: no stationary path was found; the path is unchanged");
-  return dvi__fail_in(status,
-                      "path: no stationary path of %d steps over %g was found from this guess (%d iterations, residual %.1e); the path "
-                      "is unchanged; try %s",
-                      path->steps, path->span, solved->iterations, solved->residual, advice[path->ends]);
+  return dvi__fail(status,
+                   "path: no stationary path of %d steps over %g was found from this guess (%d iterations, residual %.1e); the path "
+                   "is unchanged; try %s",
+                   path->steps, path->span, solved->iterations, solved->residual, advice[path->ends]);
 }
 
 /* What is left of stationarity, relative to momenta; for a path at rest, to a momentum that would cross its own size. */
@@ -74,6 +77,16 @@ static dvi_status check_isolated(const dvi_path *path, const dvi_path_report *re
                                                 : "it is not isolated");
 }
 
+/* Newton's method does not settle where the Hessian is singular, although the gradient is small. Else the status stays. */
+static dvi_status check_singular(dvi_path *path, dvi_status status, const dvi__solve_report *solved)
+{
+  dvi_path_report found = {.symmetries = path->in_use};
+  if (status != DVI_NOT_CONVERGED || !(solved->residual < nearly_stationary)) return status;
+  if (dvi__first_not_finite((size_t)path->unknowns, path->trial) >= 0) return status;
+  const dvi_status sliced = dvi__path_index(path, path->trial, &found);
+  return sliced == DVI_OK && check_isolated(path, &found) == DVI_SINGULAR ? DVI_SINGULAR : status;
+}
+
 static void accept(dvi_path *path)
 {
   const size_t n = (size_t)path->n;
@@ -95,6 +108,7 @@ static dvi_status solve(dvi_path *path, dvi_path_report *report)
   DVI_TRY(dvi__path_fix_gauge(path, path->trial));
   const double size = dvi__largest((size_t)path->core, path->trial);
   const dvi_status status = dvi__solve(path->solver, DVI__KINSOL, size, 0, 0, path->trial, &solved);
+  if (status != DVI_OK && check_singular(path, status, &solved) == DVI_SINGULAR) return DVI_SINGULAR;
   if (status != DVI_OK) return not_found(path, status, &solved);
   report->iterations = solved.iterations;
   report->symmetries = path->in_use;
