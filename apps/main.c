@@ -15,9 +15,8 @@ typedef struct subcommand {
 } subcommand;
 
 static const subcommand subcommands[] = {
-    {"list", list_command},   {"explain", explain_command}, {"run", run_command},
-    {"order", order_command}, {"bench", bench_command},     {"path", path_command},
-    {NULL, NULL},
+    {"list", list_command},   {"explain", explain_command}, {"run", run_command}, {"order", order_command},
+    {"bench", bench_command}, {"path", path_command},       {NULL, NULL},
 };
 
 static const char help[] =

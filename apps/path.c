@@ -39,7 +39,8 @@ typedef struct member {
 
 /* ---- what the path is to be ---- */
 
-static const char *const ends_name[] = {[DVI_ENDS_FIXED] = "fixed", [DVI_ENDS_INITIAL] = "initial", [DVI_ENDS_PERIODIC] = "periodic"};
+static const char *const ends_name[] = {
+    [DVI_ENDS_FIXED] = "fixed", [DVI_ENDS_INITIAL] = "initial", [DVI_ENDS_PERIODIC] = "periodic"};
 
 /* The ends by their name; 0: unknown. */
 static dvi_ends ends_of(const char *name)
@@ -57,7 +58,7 @@ typedef struct arrays {
 
 static bool allocate(arrays *a, size_t n)
 {
-  *a = (arrays){calloc(n, sizeof(double)), calloc(n, sizeof(double)), calloc(n, sizeof(double)), calloc(n, sizeof(double)),
+  *a = (arrays){calloc(n, sizeof(double)), calloc(n, sizeof(double)),  calloc(n, sizeof(double)), calloc(n, sizeof(double)),
                 calloc(n, sizeof(double)), calloc(n + 1, sizeof(int)), calloc(n, sizeof(int))};
   if (a->q0 && a->q1 && a->p0 && a->signs && a->symmetry && a->start && a->row) return true;
   complain("out of memory");
@@ -117,7 +118,8 @@ static int read_ends(const path_request *request, const problem *scene, const po
     if (request->to == NULL && !guessed) return usage_error("path: --ends fixed needs --to, or --guess FILE that leads there");
     options->q1 = a->q1;
     if (code == DONE)
-      code = read_end("path: --to", request->to, scene, guessed ? guess->q + (size_t)(guess->count - 1) * (size_t)scene->n : NULL, a->q1);
+      code = read_end("path: --to", request->to, scene, guessed ? guess->q + (size_t)(guess->count - 1) * (size_t)scene->n : NULL,
+                      a->q1);
   } else {
     options->p0 = a->p0;
     if (code == DONE) code = read_end("path: --momentum", request->momentum, scene, scene->p, a->p0);
@@ -158,7 +160,8 @@ static int guess_by_steps(const dvi_path_options *o, const char *method, const p
   return added ? DONE : FAILED;
 }
 
-static int make_guess(const path_request *request, const dvi_path_options *o, const problem *scene, const points *given, dvi_path *path)
+static int make_guess(const path_request *request, const dvi_path_options *o, const problem *scene, const points *given,
+                      dvi_path *path)
 {
   points steps = {0};
   int code = DONE;
@@ -184,7 +187,8 @@ static int create_with(const path_request *request, const points *guess, member 
   if (code == DONE) code = read_energy(request, scene, &options);
   if (code != DONE) return code;
   const dvi_status status = dvi_path_create(scene->system, request->method, &options, &m->path);
-  if (status != DVI_OK) return library_error(status) == USAGE || status == DVI_BAD_ARGUMENT || status == DVI_BAD_SIZE ? USAGE : FAILED;
+  if (status != DVI_OK)
+    return library_error(status) == USAGE || status == DVI_BAD_ARGUMENT || status == DVI_BAD_SIZE ? USAGE : FAILED;
   return make_guess(request, &options, scene, guess, m->path);
 }
 
@@ -282,14 +286,15 @@ static void print_report(const member *m, const path_request *request, FILE *str
   const dvi_path_report *r = &m->report;
   dvi_counters counters;
   dvi_path_counters(m->path, &counters);
-  (void)fprintf(stream, "%s, ends %s, %d steps of %s\n", m->scene->name, request->ends, dvi_path_steps(m->path), dvi_path_method(m->path));
+  (void)fprintf(stream, "%s, ends %s, %d steps of %s\n", m->scene->name, request->ends, dvi_path_steps(m->path),
+                dvi_path_method(m->path));
   (void)fprintf(stream, "action            %.15g\n", r->action);
   if (!isnan(r->energy)) (void)fprintf(stream, "energy            %.15g\n", r->energy);
   (void)fprintf(stream, "span              %.15g\n", r->span);
   (void)fprintf(stream, "gradient          %.1e of the largest momentum\n", r->gradient);
   print_variation(r, stream);
-  (void)fprintf(stream, "solver            %d iterations, %ld factorizations, %ld symbolic\n", r->iterations, counters.factorizations,
-                counters.symbolic);
+  (void)fprintf(stream, "solver            %d iterations, %ld factorizations, %ld symbolic\n", r->iterations,
+                counters.factorizations, counters.symbolic);
 }
 
 static void write_header(const problem *scene, FILE *stream)
@@ -354,7 +359,8 @@ static int check_uses(const path_request *r)
   for (size_t k = 0; k < sizeof uses / sizeof *uses; k++)
     if (uses[k].given && !(uses[k].used_by & 1U << ends))
       return usage_error("path: --%s has no use with --ends %s", uses[k].option, r->ends);
-  if (!isnan(r->energy) && !r->free_period) return usage_error("path: --energy is for --free-period: a given period has its energy");
+  if (!isnan(r->energy) && !r->free_period)
+    return usage_error("path: --energy is for --free-period: a given period has its energy");
   return DONE;
 }
 
@@ -417,7 +423,10 @@ int path_command(int argc, char **argv)
       {.name = "steps", .count = &r.steps, .value = "N", .help = "how many steps the path has"},
       {.name = "t-end", .number = &r.t_end, .value = "T", .help = "the end, from t = 0; left out: the problem's"},
       {.name = "period", .number = &r.period, .value = "T", .help = "of periodic ends, or its guess; left out: the problem's end"},
-      {.name = "from", .word = &r.from, .value = "Q", .help = "the first node, \"1,0.5\"; left out: the problem's or the guess's start"},
+      {.name = "from",
+       .word = &r.from,
+       .value = "Q",
+       .help = "the first node, \"1,0.5\"; left out: the problem's or the guess's start"},
       {.name = "to", .word = &r.to, .value = "Q", .help = "the last node; left out: the guess's end"},
       {.name = "momentum", .word = &r.momentum, .value = "P", .help = "the first momentum; left out: the problem's"},
       {.name = "symmetry", .word = &r.symmetry, .value = "LIST", .help = "which coordinate each one ends as; see below"},

@@ -21,9 +21,9 @@ typedef enum dvi_ends {
 /** What a path is to be; all of it is copied. */
 typedef struct dvi_path_options {
   dvi_ends ends;
-  int steps;    /**< N, at least 1 (fixed ends: 2, or 1 from degree 2 on) */
-  double start; /**< the time t_0 */
-  double span;  /**< the time from the first to the last node, > 0; with free_span: a guess of it */
+  int steps;        /**< N, at least 1 (fixed ends: 2, or 1 from degree 2 on) */
+  double start;     /**< the time t_0 */
+  double span;      /**< the time from the first to the last node, > 0; with free_span: a guess of it */
   int dimension;    /**< numbers in each of the arrays below: nq; may be 0 if all of them are NULL */
   const double *q0; /**< first node; for fixed and initial ends */
   const double *q1; /**< last node; for fixed ends */
@@ -32,23 +32,24 @@ typedef struct dvi_path_options {
    *  them follow each other on one curve (a choreography of which this path is one part), a rotation makes the path relatively periodic. */
   const double *symmetry;
   dvi_pattern symmetry_pattern; /**< rows and columns of `symmetry`; all zero: a full matrix */
-  const double *shift;          /**< a [nq], added to the last node (an angle that has turned by 2 pi); NULL: 0. For periodic ends */
-  int free_span;                /**< not 0: for periodic ends of autonomous systems, the span is an unknown, too, and */
-  double energy;                /**< the path has this discrete energy, -dS/dspan */
+  const double *shift; /**< a [nq], added to the last node (an angle that has turned by 2 pi); NULL: 0. For periodic ends */
+  int free_span;       /**< not 0: for periodic ends of autonomous systems, the span is an unknown, too, and */
+  double energy;       /**< the path has this discrete energy, -dS/dspan */
 } dvi_path_options;
 
 /** How a solve went, and what it found. */
 typedef struct dvi_path_report {
-  double action;   /**< S, over the span */
-  double energy;   /**< -dS/dspan, the mean of the steps' discrete energies; NaN if the system is not declared autonomous */
-  double span;     /**< the time from the first to the last node */
-  double gradient; /**< largest |dS/dX| over nodes and inner unknowns, relative to the largest momentum: what is left of stationarity */
+  double action; /**< S, over the span */
+  double energy; /**< -dS/dspan, the mean of the steps' discrete energies; NaN if the system is not declared autonomous */
+  double span;   /**< the time from the first to the last node */
+  double
+      gradient; /**< largest |dS/dX| over nodes and inner unknowns, relative to the largest momentum: what is left of stationarity */
   /** Signs of the second variation on the paths with these ends, at this span. An eigenvalue lambda of d2S = lambda / span^2 times the kinetic
    *  weight sum_k h |L_vv| dq_k^2 is called zero if |lambda| < zero_below. negative = 0: the action has a minimum there; else a saddle. Its number
    *  is that of the conjugate points, for fixed ends (Morse). -1 where it is not defined (initial ends) or could not be found. */
   long negative;
-  long zero;         /**< the same, of zeros: directions along which the action stays as it is; -1 as above */
-  int symmetries;    /**< directions along which a periodic path may be moved at will: time, and declared symmetries that the ends keep */
+  long zero;      /**< the same, of zeros: directions along which the action stays as it is; -1 as above */
+  int symmetries; /**< directions along which a periodic path may be moved at will: time, and declared symmetries that the ends keep */
   double zero_below; /**< the largest |lambda| that is called zero: 1e-6, or what roundoff makes of 0 for N beyond 2e4 */
   int iterations;    /**< of KINSOL and Newton's method */
 } dvi_path_report;

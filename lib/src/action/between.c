@@ -1,5 +1,7 @@
 #include "action/between.h"
 
+#include <math.h>
+
 #include "action/action_struct.h"
 #include "core/memory.h"
 #include "core/status.h"
@@ -127,12 +129,28 @@ dvi_status dvi__action_between_hessian(dvi__action *a, const double *Y, double *
   return DVI_OK;
 }
 
-dvi_status dvi__action_value(dvi__action *a, const double *Y, double *S)
+dvi_status dvi__action_value(dvi__action *a, const double *Y, double *S, double *seen)
 {
   dvi__action_stages(a, Y);
   DVI_TRY(dvi__lagrangian_value(a->evaluator, a->r, a->t, a->Q, a->V, a->line));
-  double sum = 0;
-  for (int j = 0; j < a->r; j++) sum += a->weight[j] * a->line[j];
-  *S = a->h * sum;
+  *S = *seen = 0;
+  for (int j = 0; j < a->r; j++) {
+    *S += a->h * (a->weight[j] * a->line[j]);
+    *seen = fmax(*seen, fabs(a->line[j]));
+  }
+  return DVI_OK;
+}
+
+dvi_status dvi__action_unseen(dvi__action *a, const double *Y, double *unseen)
+{
+  double *q = a->between_dp, *v = a->between_rows, L;
+  *unseen = 0;
+  for (int half = 0; half <= 2; half++) {
+    const double tau = 0.5 * half, t = a->t0 + tau * a->h;
+    dvi__action_path(a, Y, a->h, tau, q, v);
+    for (int i = 0; i < a->n; i++) q[i] += a->q0[i];
+    DVI_TRY(dvi__lagrangian_value(a->evaluator, 1, &t, q, v, &L));
+    *unseen = fmax(*unseen, fabs(L));
+  }
   return DVI_OK;
 }

@@ -34,7 +34,10 @@ dvi_status dvi__action_between_hessian(dvi__action *action, const double *Y, dou
 /* Which coordinates L couples: the union of the patterns of L_qq, L_qv, L_vq and L_vv, [n x n]. */
 const dvi__pattern *dvi__action_coupling(const dvi__action *action);
 
-/* The discrete action S itself. */
-dvi_status dvi__action_value(dvi__action *action, const double *Y, double *S);
+/* The discrete action S itself; `seen`: the largest |L| at a node of the quadrature. */
+dvi_status dvi__action_value(dvi__action *action, const double *Y, double *S, double *seen);
+
+/* The largest |L| at both ends and in the middle, where the quadrature need not look; DVI_NOT_FINITE if it is not finite there. */
+dvi_status dvi__action_unseen(dvi__action *action, const double *Y, double *unseen);
 
 #endif

@@ -82,4 +82,4 @@ static void solve(void *factor, const dvi__pattern *pattern, double *b)
   dgetrs_("N", &n, &one, d->lu, &n, d->pivot, b, &n, &status, 1);
 }
 
-const dvi__factor_operations dvi__dense_factor = {create, refactor, solve, destroy, NULL};
+const dvi__factor_operations dvi__dense_factor = {create, refactor, solve, destroy};

@@ -15,8 +15,6 @@ typedef struct dvi__factor_operations {
   dvi_status (*refactor)(void *factor, const dvi__pattern *pattern, const double *values);
   void (*solve)(void *factor, const dvi__pattern *pattern, double *b);
   void (*destroy)(void *factor);
-  /* The negative pivots if all stand on the diagonal, -1 if not; NULL: they never do. */
-  int (*negative)(const void *factor, const dvi__pattern *pattern);
 } dvi__factor_operations;
 
 extern const dvi__factor_operations dvi__dense_factor;   /* dense.c */

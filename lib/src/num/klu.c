@@ -139,17 +139,5 @@ static void solve(void *factor, const dvi__pattern *pattern, double *b)
   s->of->solve(s->symbolic, s->current, pattern->rows, 1, b, &s->common);
 }
 
-static int negative(const void *factor, const dvi__pattern *pattern)
-{
-  const sparse *s = factor;
-  const double *pivot = s->current->Udiag;
-  int count = 0;
-  for (int k = 0; k < pattern->columns; k++) {
-    if (s->current->Pnum[k] != s->symbolic->Q[k]) return -1;
-    count += pivot[k] < 0;
-  }
-  return count;
-}
-
-const dvi__factor_operations dvi__sparse_factor = {create_real, refactor, solve, destroy, negative};
-const dvi__factor_operations dvi__complex_factor = {create_complex, refactor, solve, destroy, NULL};
+const dvi__factor_operations dvi__sparse_factor = {create_real, refactor, solve, destroy};
+const dvi__factor_operations dvi__complex_factor = {create_complex, refactor, solve, destroy};

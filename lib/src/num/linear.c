@@ -145,12 +145,6 @@ dvi_status dvi__linear_factor(dvi__linear *linear, const double *values)
   return linear->operations->refactor(linear->factor, linear->pattern, linear->scaled);
 }
 
-/* Scales of rows and columns are positive: P R A C P^T = L U has pivots of the signs that those of the symmetric A have. */
-int dvi__linear_negative(const dvi__linear *linear)
-{
-  return linear->operations->negative != NULL ? linear->operations->negative(linear->factor, linear->pattern) : -1;
-}
-
 static void scale(int n, int parts, const double *by, double *b)
 {
   for (int i = 0; i < n; i++) scale_entry(parts, by[i], b + (ptrdiff_t)parts * i);

@@ -30,10 +30,6 @@ dvi__linear_kind dvi__linear_kind_of(const dvi__linear *linear);
  * singular to working precision, DVI_NOT_FINITE, DVI_NO_MEMORY (KLU's own); the old factor is lost then. */
 dvi_status dvi__linear_factor(dvi__linear *linear, const double *values);
 
-/* How many eigenvalues of the symmetric matrix that was factored last are negative: as many as its pivots, where all of these stand on the diagonal
- * (Sylvester's law of inertia). -1: they do not, or the solver is not sparse. */
-int dvi__linear_negative(const dvi__linear *linear);
-
 /* Overwrite b [rows, or pairs of them] by the solution. Needs a factor. */
 void dvi__linear_solve(dvi__linear *linear, double *b);
 

@@ -19,6 +19,9 @@ void dvi__path_place(dvi_path *path, const double *x, int k)
   dvi__action_between(path->action, dvi__path_at(path, x, k + 1), x + dvi__path_bubbles(path, k), path->Y);
 }
 
+/* |L| that is so much larger between the quadrature's nodes than at any of them is a singularity, not a path. */
+static const double overlooked = 1e3;
+
 /* ---- the gradient ---- */
 
 /* Add what an element gives: in_ends and in_Z of step k. */
@@ -79,16 +82,25 @@ dvi_status dvi__path_gradient(dvi_path *path, const double *x, double *p, double
 
 dvi_status dvi__path_action(dvi_path *path, const double *x, double *action, double *energy)
 {
-  double S;
+  double S, seen, unseen, most_seen = 0, most_unseen = 0;
   *action = 0;
   *energy = (double)NAN;
   if (path->system->autonomous) DVI_TRY(gradient(path, x, path->rows, NULL, energy));
   for (int k = 0; k < path->steps; k++) {
     dvi__path_place(path, x, k);
-    DVI_TRY(dvi__action_value(path->action, path->Y, &S));
+    DVI_TRY(dvi__action_value(path->action, path->Y, &S, &seen));
+    const dvi_status status = dvi__action_unseen(path->action, path->Y, &unseen);
+    if (status < 0) return status;
     *action += S;
+    most_seen = fmax(most_seen, seen);
+    most_unseen = fmax(most_unseen, status == DVI_OK ? unseen : HUGE_VAL);
   }
-  return DVI_OK;
+  if (!(most_unseen > overlooked * most_seen)) return DVI_OK;
+  return dvi__fail(
+      DVI_NOT_CONVERGED,
+      "path: the path that was found goes through a singularity that the quadrature does not see (|L| of %.1e between its "
+      "nodes, %.1e at them); the path is unchanged; try a guess that passes it, more steps or a longer span",
+      most_unseen, most_seen);
 }
 
 /* ---- the border ---- */
@@ -182,40 +194,25 @@ static dvi_status add_span(assembly *to, dvi_path *path, int k)
   return DVI_OK;
 }
 
-/* Multipliers that are not in use, and all of the border if the matrix is to be bare, are unknowns of their own. */
-static void add_border(assembly *to)
+dvi_status dvi__path_jacobian(dvi_path *path, const double *x, double *values)
 {
-  const dvi_path *path = to->path;
-  if (!path->bare) dvi__path_each_gauge(path, add_gauge_entry, to);
-  const int first = path->bare ? path->core : path->unknowns - path->gauges + path->in_use;
-  for (int c = first; c < path->unknowns; c++) to->values[entry(to, c, c)] = 1;
-}
-
-/* The kinetic weight h |L_vv|_ii dq^2 at the nodes, over span^2. */
-static void add_lift(assembly *to, double span)
-{
-  const dvi_path *path = to->path;
-  for (int k = 0; k <= path->steps; k++) {
-    const int node = dvi__path_node(path, k);
-    for (int i = 0; node >= 0 && i < path->n; i++)
-      add_at(to, node + i, node + i, path->lift * path->kinetic[i] / (span * path->steps));
-  }
-}
-
-static dvi_status jacobian(void *of, const double *x, double *values)
-{
-  dvi_path *path = of;
   assembly to = {path, values, -1};
   memset(values, 0, (size_t)dvi__pattern_entries(&path->pattern) * sizeof(double));
   for (int k = 0; k < path->steps; k++) {
     dvi__path_place(path, x, k);
     DVI_TRY(dvi__action_between_hessian(path->action, path->Y, path->block));
     dvi__path_each_entry(path, k, add_entry, &to);
-    if (path->free_span && !path->bare) DVI_TRY(add_span(&to, path, k));
+    if (path->free_span) DVI_TRY(add_span(&to, path, k));
   }
-  add_border(&to);
-  if (path->lift != 0) add_lift(&to, dvi__path_span(path, x));
+  dvi__path_each_gauge(path, add_gauge_entry, &to);
+  /* Multipliers that are not in use are unknowns of their own. */
+  for (int c = path->unknowns - path->gauges + path->in_use; c < path->unknowns; c++) add_at(&to, c, c, 1);
   return DVI_OK;
+}
+
+static dvi_status jacobian(void *of, const double *x, double *values)
+{
+  return dvi__path_jacobian(of, x, values);
 }
 
 /* ---- scales ---- */

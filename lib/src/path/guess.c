@@ -18,9 +18,9 @@ static dvi_status check_points(const dvi_path *path, int points, int dimension, 
 {
   if (t == NULL || q == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "path: the guess has no times or no points");
   if (points < 2) return dvi__fail(DVI_BAD_SIZE, "path: the guess has %d points; at least 2 are needed", points);
-  if (dimension != path->n)
-    return dvi__fail(DVI_BAD_SIZE, "path: the guess has %d coordinates, the system %d", dimension, path->n);
-  const ptrdiff_t bad_q = dvi__first_not_finite((size_t)points * (size_t)dimension, q), bad_t = dvi__first_not_finite((size_t)points, t);
+  if (dimension != path->n) return dvi__fail(DVI_BAD_SIZE, "path: the guess has %d coordinates, the system %d", dimension, path->n);
+  const ptrdiff_t bad_q = dvi__first_not_finite((size_t)points * (size_t)dimension, q),
+                  bad_t = dvi__first_not_finite((size_t)points, t);
   if (bad_q >= 0)
     return dvi__fail(DVI_BAD_ARGUMENT, "path: point %td of the guess has the coordinate %g", bad_q / dimension, q[bad_q]);
   if (bad_t >= 0) return dvi__fail(DVI_BAD_ARGUMENT, "path: point %td of the guess has the time %g", bad_t, t[bad_t]);

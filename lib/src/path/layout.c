@@ -100,7 +100,8 @@ void dvi__path_each_gauge(const dvi_path *path, dvi__emit_gauge *emit, void *of)
   for (int k = 0; k < path->steps; k++)
     for (int g = 0; g < path->gauges; g++)
       for (int i = 0; i < path->n; i++)
-        emit(of, dvi__path_node(path, k) + i, first + g, ((size_t)g * (size_t)path->steps + (size_t)k) * (size_t)path->n + (size_t)i);
+        emit(of, dvi__path_node(path, k) + i, first + g,
+             ((size_t)g * (size_t)path->steps + (size_t)k) * (size_t)path->n + (size_t)i);
 }
 
 /* The pattern in the making. First its columns are counted, then filled, in any order and with entries that come twice. */
@@ -138,7 +139,7 @@ static void add_all(const dvi_path *path, draft *d)
   for (int k = 0; k < path->steps; k++) dvi__path_each_entry(path, k, add_entry, d);
   dvi__path_each_gauge(path, add_gauge, d);
   for (int c = 0; path->free_span && c < path->core; c++) add_gauge(d, c, path->core, 0); /* the span's row and column are full */
-  /* The unknowns of the border have entries on the diagonal, which `bare` needs. */
+  /* The span's own entry, and those of multipliers that are not in use. */
   for (int c = path->core; c < path->unknowns; c++) add(d, c, c);
 }
 
@@ -163,7 +164,8 @@ static dvi_status tidy(dvi__pattern *rough, dvi__pattern *tidied)
 
 static dvi_status too_many(const dvi_path *path, double count, const char *what)
 {
-  return dvi__fail(DVI_BAD_SIZE, "path: %d steps of degree %d in %d coordinates have %.3g %s, more than an int can count; take fewer",
+  return dvi__fail(DVI_BAD_SIZE,
+                   "path: %d steps of degree %d in %d coordinates have %.3g %s, more than an int can count; take fewer",
                    path->steps, path->s, path->n, count, what);
 }
 
@@ -192,7 +194,8 @@ dvi_status dvi__path_lay_out(dvi_path *path)
   const double core = (double)path->steps * path->n * path->s - (path->ends == DVI_ENDS_FIXED ? path->n : 0);
   /* The places of the last node, beyond the last unknown, are counted, too. */
   if (core + 2.0 * path->n * path->s > INT_MAX) return too_many(path, core, "unknowns");
-  if (core < 1) return dvi__fail(DVI_BAD_SIZE, "path: 1 straight step between fixed ends leaves nothing to vary; at least 2 steps are needed");
+  if (core < 1)
+    return dvi__fail(DVI_BAD_SIZE, "path: 1 straight step between fixed ends leaves nothing to vary; at least 2 steps are needed");
   path->core = (int)core;
   path->unknowns = path->core + (path->free_span != 0) + path->gauges;
   return draw(path);

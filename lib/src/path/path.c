@@ -36,11 +36,13 @@ static dvi_status check_arrays(const dvi_system *system, const dvi_path_options 
 
 static dvi_status check(const dvi_system *system, const dvi_path_options *o)
 {
-  if (o->ends < DVI_ENDS_FIXED || o->ends > DVI_ENDS_PERIODIC) return dvi__fail(DVI_BAD_ARGUMENT, "path: unknown ends %d", (int)o->ends);
+  if (o->ends < DVI_ENDS_FIXED || o->ends > DVI_ENDS_PERIODIC)
+    return dvi__fail(DVI_BAD_ARGUMENT, "path: unknown ends %d", (int)o->ends);
   if (o->steps < 1) return dvi__fail(DVI_BAD_SIZE, "path: %d steps; at least 1 is needed", o->steps);
   if (!isfinite(o->start)) return dvi__fail(DVI_BAD_ARGUMENT, "path: the start %g is no time", o->start);
   if (!(o->span > 0) || !isfinite(o->span))
-    return dvi__fail(DVI_BAD_ARGUMENT, "path: the %s %g is not a positive time", o->ends == DVI_ENDS_PERIODIC ? "period" : "span", o->span);
+    return dvi__fail(DVI_BAD_ARGUMENT, "path: the %s %g is not a positive time", o->ends == DVI_ENDS_PERIODIC ? "period" : "span",
+                     o->span);
   if (!(o->span / o->steps > fabs(o->start) * 0x1p-50) || !(o->steps / o->span < HUGE_VAL))
     return dvi__fail(DVI_BAD_ARGUMENT, "path: steps of %g from t = %g are too short for the clock", o->span / o->steps, o->start);
   if (o->free_span && o->ends != DVI_ENDS_PERIODIC)
@@ -184,10 +186,10 @@ void dvi_path_destroy(dvi_path **path)
 {
   if (path == NULL || *path == NULL) return;
   dvi_path *own = *path;
-  double *const owned[] = {own->q0,      own->q1,        own->p0,         own->shift, own->turn_values, own->x,      own->trial,
-                           own->q,       own->p,         own->trial_p,    own->Y,     own->in_ends[0],  own->in_ends[1],
-                           own->in_Z,    own->wrapped,   own->rest,       own->block, own->kinetic,     own->row_scale,
-                           own->rows,    own->energy_Y,  own->energy_q0,  own->gauge, own->origin,      own->defect};
+  double *const owned[] = {own->q0,        own->q1,    own->p0,      own->shift,   own->turn_values, own->x,          own->trial,
+                           own->q,         own->p,     own->trial_p, own->Y,       own->in_ends[0],  own->in_ends[1], own->in_Z,
+                           own->wrapped,   own->rest,  own->block,   own->kinetic, own->row_scale,   own->rows,       own->energy_Y,
+                           own->energy_q0, own->gauge, own->origin,  own->defect};
   dvi__solver_destroy(&own->solver);
   dvi__action_destroy(&own->action);
   dvi__pattern_clear(&own->turn);

@@ -27,11 +27,11 @@ struct dvi_path {
   dvi__action *action;
   dvi__solver *solver;
   dvi__pattern pattern;
-  int core;     /* unknowns of nodes and bubbles */
-  int gauges;   /* multipliers, the last unknowns */
-  int unknowns; /* of all kinds */
-  double *x;    /* [unknowns] the path: a guess, or solved */
-  double *trial; /* [unknowns] what a solve works on */
+  int core;                /* unknowns of nodes and bubbles */
+  int gauges;              /* multipliers, the last unknowns */
+  int unknowns;            /* of all kinds */
+  double *x;               /* [unknowns] the path: a guess, or solved */
+  double *trial;           /* [unknowns] what a solve works on */
   double *q, *p, *trial_p; /* [(steps+1)*n] nodes and momenta of x; momenta of trial */
   int solved;              /* p is there */
   /* One element's worth of work. */
@@ -46,9 +46,6 @@ struct dvi_path {
   double *defect; /* [gauges*n] */
   int *broken;    /* [gauges] */
   int in_use;
-  /* For the signs of the second variation: what is added to it, in units of 1/span^2; `bare` leaves all but nodes and bubbles out. */
-  int bare;
-  double lift;
 };
 
 /* Where a number of an element stands among all unknowns (or rows): in `count` places, with factors. */
@@ -95,7 +92,10 @@ double dvi__path_span(const dvi_path *path, const double *x);
 /* The largest |row| of nodes and bubbles, without multipliers; p [(steps+1)*n] gets the momenta. */
 dvi_status dvi__path_gradient(dvi_path *path, const double *x, double *p, double *gradient);
 
-/* The action; and the mean energy, NaN if the system is not autonomous. */
+/* The Hessian with its border, in the order of the pattern. */
+dvi_status dvi__path_jacobian(dvi_path *path, const double *x, double *values);
+
+/* The action; and the mean energy, NaN if the system is not autonomous. DVI_NOT_CONVERGED if the path leads through a singularity unseen. */
 dvi_status dvi__path_action(dvi_path *path, const double *x, double *action, double *energy);
 
 /* ---- gauge.c ---- */
@@ -105,7 +105,7 @@ dvi_status dvi__path_fix_gauge(dvi_path *path, const double *x);
 
 /* ---- index.c ---- */
 
-/* Fill negative, zero and zero_below of the report. */
-dvi_status dvi__path_index(dvi_path *path, const double *x, dvi_path_report *report);
+/* Fill negative, zero and zero_below of the report for `trial`. */
+dvi_status dvi__path_index(dvi_path *path, dvi_path_report *report);
 
 #endif

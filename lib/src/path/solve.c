@@ -9,8 +9,8 @@
 /* What may be left of the gradient, of the largest momentum. */
 static const double stationary_below = 1e-9;
 
-/* KINSOL's scaled residual below which its path tells of the one that was sought. */
-static const double nearly_stationary = 1e-6;
+/* Newton's method settles from there, unless the Hessian is singular. */
+static const double nearly_stationary = 1e-8;
 
 /* A symmetry of the Lagrangian leaves its value as it is, to this part. */
 static const double symmetric_below = 1e-8;
@@ -40,10 +40,17 @@ static dvi_status not_found(dvi_path *path, dvi_status status, const dvi__solve_
   };
   if (status < 0) return dvi__fail_in(status, "path");
   if (status != DVI_NOT_CONVERGED) return dvi__fail_in(status, "path: no stationary path was found; the path is unchanged");
-  return dvi__fail(status,
-                   "path: no stationary path of %d steps over %g was found from this guess (%d iterations, residual %.1e); the path "
-                   "is unchanged; try %s",
-                   path->steps, path->span, solved->iterations, solved->residual, advice[path->ends]);
+  if (solved->residual < nearly_stationary)
+    return dvi__fail(
+        DVI_SINGULAR,
+        "path: Newton's method came to a residual of %.1e but does not settle: the path is not isolated, one of many with "
+        "these ends; the path is unchanged; try another span, or declare the symmetries that move it",
+        solved->residual);
+  return dvi__fail(
+      status,
+      "path: no stationary path of %d steps over %g was found from this guess (%d iterations, residual %.1e); the path "
+      "is unchanged; try %s",
+      path->steps, path->span, solved->iterations, solved->residual, advice[path->ends]);
 }
 
 /* What is left of stationarity, relative to momenta; for a path at rest, to a momentum that would cross its own size. */
@@ -58,32 +65,33 @@ static dvi_status measure(dvi_path *path, double size, dvi_path_report *report)
   momentum = fmax(momentum, dvi__largest((size_t)path->n, path->kinetic) * size / report->span * stationary_below);
   if (momentum > 0) report->gradient /= momentum;
   if (!(report->gradient <= stationary_below))
-    return dvi__fail(DVI_NOT_CONVERGED,
-                     "path: the gradient is %.1e of the momenta where the path is held in place; steps are too long for the motion "
-                     "to be one in time; the path is unchanged; try more steps",
-                     report->gradient);
+    return dvi__fail(
+        DVI_NOT_CONVERGED,
+        "path: the path that was found is stationary only while it is held in place (gradient %.1e of the momenta): no "
+        "path of this period is near the guess, or the steps are too long; the path is unchanged; try another period or "
+        "guess, a free period, or more steps",
+        report->gradient);
   return dvi__path_action(path, x, &report->action, &report->energy);
 }
 
-/* Zero eigenvalues that no symmetry explains: the path is one of many, or roundoff chose it. With a free span they may belong to the span. */
+/* Zero eigenvalues that no symmetry explains: the path is one of many, or roundoff chose it. One may belong to a free span, which the energy fixes. */
 static dvi_status check_isolated(const dvi_path *path, const dvi_path_report *report)
 {
-  if (path->free_span || report->zero <= report->symmetries) return DVI_OK;
-  return dvi__fail(DVI_SINGULAR,
-                   "path: along %ld directions, of which %d are symmetries, the action of the path that was found does not change to "
-                   "second order (below %.0e): %s; the path is unchanged; try another span",
-                   report->zero, report->symmetries, report->zero_below,
-                   path->ends == DVI_ENDS_FIXED ? "its ends are conjugate, so that there are many such paths or none"
-                                                : "it is not isolated");
+  if (report->zero <= report->symmetries + path->free_span) return DVI_OK;
+  return dvi__fail(
+      DVI_SINGULAR,
+      "path: along %ld directions, of which %d are symmetries, the action does not change to second order (below %.0e): "
+      "%s; the path is unchanged; try another span",
+      report->zero, report->symmetries, report->zero_below,
+      path->ends == DVI_ENDS_FIXED ? "its ends are conjugate, so that there are many such paths or none" : "it is not isolated");
 }
 
-/* Newton's method does not settle where the Hessian is singular, although the gradient is small. Else the status stays. */
-static dvi_status check_singular(dvi_path *path, dvi_status status, const dvi__solve_report *solved)
+/* Newton's method finds nothing, or does not settle, where the Hessian is singular. Else the status stays. */
+static dvi_status check_singular(dvi_path *path, dvi_status status)
 {
   dvi_path_report found = {.symmetries = path->in_use};
-  if (status != DVI_NOT_CONVERGED || !(solved->residual < nearly_stationary)) return status;
-  if (dvi__first_not_finite((size_t)path->unknowns, path->trial) >= 0) return status;
-  const dvi_status sliced = dvi__path_index(path, path->trial, &found);
+  if (status != DVI_NOT_CONVERGED || dvi__first_not_finite((size_t)path->unknowns, path->trial) >= 0) return status;
+  const dvi_status sliced = dvi__path_index(path, &found);
   return sliced == DVI_OK && check_isolated(path, &found) == DVI_SINGULAR ? DVI_SINGULAR : status;
 }
 
@@ -108,12 +116,12 @@ static dvi_status solve(dvi_path *path, dvi_path_report *report)
   DVI_TRY(dvi__path_fix_gauge(path, path->trial));
   const double size = dvi__largest((size_t)path->core, path->trial);
   const dvi_status status = dvi__solve(path->solver, DVI__KINSOL, size, 0, 0, path->trial, &solved);
-  if (status != DVI_OK && check_singular(path, status, &solved) == DVI_SINGULAR) return DVI_SINGULAR;
+  if (status != DVI_OK && check_singular(path, status) == DVI_SINGULAR) return DVI_SINGULAR;
   if (status != DVI_OK) return not_found(path, status, &solved);
   report->iterations = solved.iterations;
   report->symmetries = path->in_use;
   DVI_TRY(measure(path, size, report));
-  DVI_TRY(dvi__path_index(path, path->trial, report));
+  DVI_TRY(dvi__path_index(path, report));
   return check_isolated(path, report);
 }
 

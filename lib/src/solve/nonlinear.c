@@ -23,14 +23,6 @@ dvi_status dvi__solver_factor(dvi__solver *solver, const double *x)
   return dvi__fail_in(DVI_NOT_CONVERGED, "the Jacobian of the step's equations cannot be factored");
 }
 
-dvi_status dvi__solver_negative(dvi__solver *solver, const double *x, int *negative)
-{
-  *negative = -1;
-  const dvi_status status = dvi__solver_factor(solver, x);
-  if (status == DVI_OK) *negative = dvi__linear_negative(solver->linear);
-  return status == DVI_NOT_CONVERGED ? DVI_OK : status;
-}
-
 static dvi_status fill(dvi__solver *solver)
 {
   const dvi__pattern *pattern = solver->equations.pattern;

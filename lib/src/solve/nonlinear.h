@@ -55,10 +55,6 @@ dvi_status dvi__solve(dvi__solver *solver, dvi__rung rung, double size, int wary
 /* Let KINSOL judge a solution that another rung found; x stays. DVI_NOT_CONVERGED: it does not pass, and the KINSOL rung should take over. */
 dvi_status dvi__certify(dvi__solver *solver, double size, const double *x, dvi__solve_report *report);
 
-/* Factor the Jacobian at x, which must be symmetric there, and count its negative eigenvalues; -1: the pivots do not tell (num/linear.h), or it is
- * singular. */
-dvi_status dvi__solver_negative(dvi__solver *solver, const double *x, int *negative);
-
 /* Which linear solver the Newton rungs use. */
 dvi__linear_kind dvi__solver_linear_kind(const dvi__solver *solver);
 
