@@ -10,9 +10,6 @@
 /* A symmetry is kept by the ends if xi(A q_0 + a) = A xi(q_0), to this part of it. */
 static const double kept_below = 1e-8;
 
-/* A direction that differs less from others, as time does from rotation on a circle, is none of its own. */
-static const double least_own_part = 1e-6;
-
 static double *column(const dvi_path *path, int g)
 {
   return path->gauge + (size_t)g * (size_t)path->steps * (size_t)path->n;
@@ -96,7 +93,7 @@ static void mend(dvi_path *path, int g)
 }
 
 /* Put direction g, if it is one of its own, orthogonal to those in use, behind them. */
-static void use(dvi_path *path, int g)
+static void use(dvi_path *path, int g, double least_own_part)
 {
   const size_t length = (size_t)path->steps * (size_t)path->n;
   double *own = column(path, g);
@@ -120,7 +117,7 @@ static void weigh(dvi_path *path)
       }
 }
 
-dvi_status dvi__path_fix_gauge(dvi_path *path, const double *x)
+dvi_status dvi__path_fix_gauge(dvi_path *path, const double *x, double least_own_part)
 {
   const dvi_system *system = path->system;
   path->in_use = 0;
@@ -129,7 +126,7 @@ dvi_status dvi__path_fix_gauge(dvi_path *path, const double *x)
   if (system->autonomous) time_column(path, x, system->symmetry_count);
   for (int g = 0; g < path->gauges; g++) mend(path, g);
   for (int g = 0; g < path->gauges; g++)
-    if (!path->broken[g]) use(path, g);
+    if (!path->broken[g]) use(path, g, least_own_part);
   weigh(path);
   for (int k = 0; k < path->steps; k++)
     memcpy(path->origin + (size_t)k * (size_t)path->n, dvi__path_at(path, x, k), (size_t)path->n * sizeof(double));

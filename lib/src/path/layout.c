@@ -191,9 +191,11 @@ static dvi_status draw(dvi_path *path)
 
 dvi_status dvi__path_lay_out(dvi_path *path)
 {
+  const double blocks = (path->s + 1.0) * (path->s + 1.0) * dvi__pattern_entries(dvi__action_coupling(path->action));
   const double core = (double)path->steps * path->n * path->s - (path->ends == DVI_ENDS_FIXED ? path->n : 0);
   /* The places of the last node, beyond the last unknown, are counted, too. */
   if (core + 2.0 * path->n * path->s > INT_MAX) return too_many(path, core, "unknowns");
+  if (path->steps * blocks > INT_MAX) return too_many(path, path->steps * blocks, "entries in the Jacobian");
   if (core < 1)
     return dvi__fail(DVI_BAD_SIZE, "path: 1 straight step between fixed ends leaves nothing to vary; at least 2 steps are needed");
   path->core = (int)core;

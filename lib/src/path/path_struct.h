@@ -100,8 +100,9 @@ dvi_status dvi__path_action(dvi_path *path, const double *x, double *action, dou
 
 /* ---- gauge.c ---- */
 
-/* Find the directions along which the periodic path x may be moved; the solution is to have no distance from x along them. After dvi__path_scale. */
-dvi_status dvi__path_fix_gauge(dvi_path *path, const double *x);
+/* Find the directions along which the periodic path x may be moved; the solution is to have no distance from x along them. One that differs from the others
+ * by less than `least_own_part` of itself is none of its own. After dvi__path_scale. */
+dvi_status dvi__path_fix_gauge(dvi_path *path, const double *x, double least_own_part);
 
 /* ---- index.c ---- */
 

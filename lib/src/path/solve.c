@@ -12,6 +12,10 @@ static const double stationary_below = 1e-9;
 /* Newton's method settles from there, unless the Hessian is singular. */
 static const double nearly_stationary = 1e-8;
 
+/* Directions that move the guess alike are one. On a circle rotation moves a path as time does, but on a rough guess of it they differ: if it cannot be held
+ * in place along both, they are taken for one. */
+static const double equal = 1e-6, alike = 0.5;
+
 /* A symmetry of the Lagrangian leaves its value as it is, to this part. */
 static const double symmetric_below = 1e-8;
 
@@ -86,13 +90,16 @@ static dvi_status check_isolated(const dvi_path *path, const dvi_path_report *re
       path->ends == DVI_ENDS_FIXED ? "its ends are conjugate, so that there are many such paths or none" : "it is not isolated");
 }
 
-/* Newton's method finds nothing, or does not settle, where the Hessian is singular. Else the status stays. */
+/* Newton's method finds nothing, or does not settle, where the Hessian is singular: where it ended, or at the guess. Else the status stays. */
 static dvi_status check_singular(dvi_path *path, dvi_status status)
 {
   dvi_path_report found = {.symmetries = path->in_use};
-  if (status != DVI_NOT_CONVERGED || dvi__first_not_finite((size_t)path->unknowns, path->trial) >= 0) return status;
-  const dvi_status sliced = dvi__path_index(path, &found);
-  return sliced == DVI_OK && check_isolated(path, &found) == DVI_SINGULAR ? DVI_SINGULAR : status;
+  for (int at_guess = 0; at_guess < 2 && status == DVI_NOT_CONVERGED; at_guess++) {
+    if (at_guess) memcpy(path->trial, path->x, (size_t)path->unknowns * sizeof(double));
+    if (dvi__first_not_finite((size_t)path->unknowns, path->trial) >= 0) continue;
+    if (dvi__path_index(path, &found) == DVI_OK && check_isolated(path, &found) == DVI_SINGULAR) status = DVI_SINGULAR;
+  }
+  return status;
 }
 
 static void accept(dvi_path *path)
@@ -107,20 +114,28 @@ static void accept(dvi_path *path)
   path->solved = 1;
 }
 
-static dvi_status solve(dvi_path *path, dvi_path_report *report)
+/* From the guess, which is held in place along directions that are independent to this part. */
+static dvi_status attempt(dvi_path *path, double least_own_part, dvi_path_report *report)
 {
   dvi__solve_report solved;
   memcpy(path->trial, path->x, (size_t)path->unknowns * sizeof(double));
-  DVI_TRY(check_symmetry(path, path->trial));
   DVI_TRY(dvi__path_scale(path, path->trial));
-  DVI_TRY(dvi__path_fix_gauge(path, path->trial));
+  DVI_TRY(dvi__path_fix_gauge(path, path->trial, least_own_part));
   const double size = dvi__largest((size_t)path->core, path->trial);
   const dvi_status status = dvi__solve(path->solver, DVI__KINSOL, size, 0, 0, path->trial, &solved);
   if (status != DVI_OK && check_singular(path, status) == DVI_SINGULAR) return DVI_SINGULAR;
   if (status != DVI_OK) return not_found(path, status, &solved);
   report->iterations = solved.iterations;
   report->symmetries = path->in_use;
-  DVI_TRY(measure(path, size, report));
+  return measure(path, size, report);
+}
+
+static dvi_status solve(dvi_path *path, dvi_path_report *report)
+{
+  DVI_TRY(check_symmetry(path, path->x));
+  dvi_status status = attempt(path, equal, report);
+  if (status == DVI_NOT_CONVERGED && path->in_use > 1) status = attempt(path, alike, report);
+  if (status != DVI_OK) return status;
   DVI_TRY(dvi__path_index(path, report));
   return check_isolated(path, report);
 }
