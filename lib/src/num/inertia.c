@@ -1,5 +1,6 @@
 #include "num/inertia.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "core/memory.h"
@@ -14,103 +15,159 @@ extern void dgemm_(const char *trans_a, const char *trans_b, const int *m, const
                    const double *a, const int *lda, const double *b, const int *ldb, const double *beta, double *c, const int *ldc,
                    size_t trans_a_length, size_t trans_b_length);
 
-/* The elimination: block k stands in D with what was eliminated before; B couples it with the next one, F with the last one. All by columns with `block`
- * rows. */
+/* A complement with a pivot so much smaller than the matrix spoils as many digits of the next one: they are factored together. */
+static const double least_pivot = 1e-4;
+enum { MOST_TOGETHER = 3 };
+
+/* The elimination: `together` blocks from block k on stand in D. What was eliminated before left `carry` to block k, `far` to its coupling with the last
+ * block, and `last` to that block. B couples block k with the next one, F with the last one. All by columns with `stride` rows. */
 typedef struct elimination {
   const dvi__pattern *pattern;
   const double *values;
-  int size, block, blocks;
-  double *D, *B, *F, *X, *next_D, *next_F, *last, *work;
+  int size, block, blocks, stride;
+  double *D, *B, *F, *X, *carry, *far, *last, *work;
   int *pivot;
 } elimination;
 
-static int block_size(const elimination *e, int k)
+static int first_of(const elimination *e, int k)
 {
-  return k + 1 < e->blocks ? e->block : e->size - k * e->block;
+  return k < e->blocks ? k * e->block : e->size;
 }
 
-/* to += the entries in the rows of block i and the columns of block j. */
-static void gather(const elimination *e, int i, int j, double *to)
+static int width(const elimination *e, int k, int together)
 {
-  const int first = i * e->block, end = first + block_size(e, i);
-  for (int c = 0; c < block_size(e, j); c++) {
-    const int column = j * e->block + c;
+  return first_of(e, k + together) - first_of(e, k);
+}
+
+static size_t square(const elimination *e)
+{
+  return (size_t)e->stride * (size_t)e->stride;
+}
+
+/* to = the entries in the rows of blocks i to i+rows-1 and the columns of block j to j+columns-1. */
+static void gather(const elimination *e, int i, int rows, int j, int columns, double *to)
+{
+  const int first = first_of(e, i), end = first_of(e, i + rows);
+  memset(to, 0, square(e) * sizeof(double));
+  for (int c = 0; c < width(e, j, columns); c++) {
+    const int column = first_of(e, j) + c;
     for (int at = e->pattern->start[column]; at < e->pattern->start[column + 1]; at++) {
       const int row = e->pattern->row[at];
-      if (row >= first && row < end) to[(size_t)c * (size_t)e->block + (size_t)(row - first)] += e->values[at];
+      if (row >= first && row < end) to[(size_t)c * (size_t)e->stride + (size_t)(row - first)] = e->values[at];
     }
   }
 }
 
-static void clear(const elimination *e, double *block)
+/* to += part, which begins there. */
+static void add(const elimination *e, const double *part, int row, int column, double *to)
 {
-  memset(block, 0, (size_t)e->block * (size_t)e->block * sizeof(double));
+  for (size_t c = 0; c < (size_t)e->block; c++)
+    for (size_t r = 0; r < (size_t)e->block; r++)
+      to[((size_t)column + c) * (size_t)e->stride + (size_t)row + r] += part[c * (size_t)e->stride + r];
 }
 
-/* C -= A^T X. */
-static void subtract_product(const elimination *e, int rows, int columns, int inner, const double *A, const double *X, double *C)
+/* The blocks with what was left to them; the last block, if it is among them, is coupled with block k by what is eliminated, too. LAPACK reads the lower
+ * triangle alone. */
+static void assemble(elimination *e, int k, int together)
+{
+  const int last = e->blocks - 1, to_last = first_of(e, last) - first_of(e, k);
+  gather(e, k, together, k, together, e->D);
+  add(e, e->carry, 0, 0, e->D);
+  if (k + together <= last) return;
+  add(e, e->last, to_last, to_last, e->D);
+  for (size_t c = 0; k < last && c < (size_t)e->block; c++)
+    for (size_t r = 0; r < (size_t)e->block; r++)
+      e->D[c * (size_t)e->stride + (size_t)to_last + r] += e->far[r * (size_t)e->stride + c];
+}
+
+/* The largest entry of the matrix in the columns of these blocks. */
+static double largest(const elimination *e, int k, int together)
+{
+  double found = 0;
+  for (int column = first_of(e, k); column < first_of(e, k + together); column++)
+    for (int at = e->pattern->start[column]; at < e->pattern->start[column + 1]; at++)
+      if (e->pattern->row[at] < e->size) found = fmax(found, fabs(e->values[at]));
+  return found;
+}
+
+/* The smallest pivot of the factor, and how many are negative: a 2 x 2 pivot has one of each sign. */
+static double count(const elimination *e, int size, long *negative)
+{
+  double least = HUGE_VAL;
+  for (int c = 0; c < size; c++) {
+    const double *at = e->D + (size_t)c * (size_t)e->stride + (size_t)c;
+    if (e->pivot[c] > 0) {
+      *negative += at[0] < 0;
+      least = fmin(least, fabs(at[0]));
+      continue;
+    }
+    const double a = at[0], b = at[1], d = at[e->stride + 1];
+    ++*negative;
+    least = fmin(least, fabs(a * d - b * b) / (fabs(a) + fabs(b) + fabs(d)));
+    c++;
+  }
+  return least;
+}
+
+/* Factor blocks from k on, as many together as need be. */
+static dvi_status factor(elimination *e, int k, int *together, long *negative)
+{
+  const int length = 64 * e->stride, most = e->blocks - k < MOST_TOGETHER ? e->blocks - k : MOST_TOGETHER;
+  for (*together = 1;; ++*together) {
+    int info = 0;
+    long found = 0;
+    assemble(e, k, *together);
+    const int size = width(e, k, *together);
+    const double whole = largest(e, k, *together);
+    dsytrf_("L", &size, e->D, &e->stride, e->pivot, e->work, &length, &info, 1);
+    const double least = info == 0 ? count(e, size, &found) : 0;
+    if (!(least > least_pivot * whole) && *together < most) continue;
+    *negative += found;
+    if (least > 0) return DVI_OK;
+    return dvi__fail(DVI_SINGULAR, "inertia: the Schur complement of block %d is singular", k);
+  }
+}
+
+/* to -= A^T X, rows x columns, with the factored blocks' `inner` rows. */
+static void subtract_product(const elimination *e, int rows, int columns, int inner, const double *A, double *to)
 {
   const double minus = -1, one = 1;
-  dgemm_("T", "N", &rows, &columns, &inner, &minus, A, &e->block, X, &e->block, &one, C, &e->block, 1, 1);
-}
-
-/* A 2 x 2 pivot has one negative eigenvalue. Returns 0 if D is singular. */
-static int factor(const elimination *e, int size, long *negative)
-{
-  const int length = 64 * e->block;
-  int info = 0;
-  dsytrf_("L", &size, e->D, &e->block, e->pivot, e->work, &length, &info, 1);
-  for (int c = 0; c < size && info == 0; c++) {
-    const int pair = e->pivot[c] < 0;
-    *negative += pair || e->D[(size_t)c * (size_t)e->block + (size_t)c] < 0;
-    c += pair;
-  }
-  return info == 0;
+  dgemm_("T", "N", &rows, &columns, &inner, &minus, A, &e->stride, e->X, &e->stride, &one, to, &e->stride, 1, 1);
 }
 
 /* X = D^-1 A. */
 static void solve(const elimination *e, int size, int columns, const double *A)
 {
   int info;
-  memcpy(e->X, A, (size_t)columns * (size_t)e->block * sizeof(double));
-  dsytrs_("L", &size, &columns, e->D, &e->block, e->pivot, e->X, &e->block, &info, 1);
+  memcpy(e->X, A, square(e) * sizeof(double));
+  dsytrs_("L", &size, &columns, e->D, &e->stride, e->pivot, e->X, &e->stride, &info, 1);
 }
 
-/* Block k is factored: what it leaves to the next block and to the last one. */
-static void pass_on(elimination *e, int k)
+/* Blocks k to next-1 are factored: what they leave to the next block and to the last one. */
+static void pass_on(elimination *e, int k, int next)
 {
-  const int last = e->blocks - 1, next_size = block_size(e, k + 1), last_size = block_size(e, last);
-  clear(e, e->next_D);
-  clear(e, e->next_F);
-  solve(e, e->block, next_size, e->B);
-  subtract_product(e, next_size, next_size, e->block, e->B, e->X, e->next_D);
-  if (k + 1 < last) {
-    solve(e, e->block, last_size, e->F);
-    subtract_product(e, next_size, last_size, e->block, e->B, e->X, e->next_F);
-    subtract_product(e, last_size, last_size, e->block, e->F, e->X, e->last);
-  }
-  double *D = e->D, *F = e->F;
-  e->D = e->next_D;
-  e->next_D = D;
-  e->F = e->next_F;
-  e->next_F = F;
+  const int last = e->blocks - 1, size = width(e, k, next - k), next_size = width(e, next, 1), last_size = width(e, last, 1);
+  gather(e, k, next - k, last, 1, e->F);
+  add(e, e->far, 0, 0, e->F);
+  if (next == last)
+    memcpy(e->B, e->F, square(e) * sizeof(double));
+  else
+    gather(e, k, next - k, next, 1, e->B);
+  memset(e->carry, 0, square(e) * sizeof(double));
+  memset(e->far, 0, square(e) * sizeof(double));
+  solve(e, size, next_size, e->B);
+  subtract_product(e, next_size, next_size, size, e->B, e->carry);
+  if (next == last) return;
+  solve(e, size, last_size, e->F);
+  subtract_product(e, next_size, last_size, size, e->B, e->far);
+  subtract_product(e, last_size, last_size, size, e->F, e->last);
 }
 
 static dvi_status eliminate(elimination *e, long *negative)
 {
-  const int last = e->blocks - 1;
-  if (last > 1) gather(e, 0, last, e->F);
-  for (int k = 0; k <= last; k++) {
-    gather(e, k, k, e->D);
-    for (size_t i = 0; k == last && i < (size_t)e->block * (size_t)e->block; i++) e->D[i] += e->last[i];
-    if (!factor(e, block_size(e, k), negative))
-      return dvi__fail(DVI_SINGULAR, "inertia: the Schur complement of block %d is singular", k);
-    if (k == last) break;
-    clear(e, e->B);
-    gather(e, k, k + 1, e->B);
-    /* The next block is the last one: both couplings are one. */
-    for (size_t i = 0; k + 1 == last && i < (size_t)e->block * (size_t)e->block; i++) e->B[i] += e->F[i];
-    pass_on(e, k);
+  for (int k = 0, together; k < e->blocks; k += together) {
+    DVI_TRY(factor(e, k, &together, negative));
+    if (k + together < e->blocks) pass_on(e, k, k + together);
   }
   return DVI_OK;
 }
@@ -118,16 +175,18 @@ static dvi_status eliminate(elimination *e, long *negative)
 dvi_status dvi__inertia(const dvi__pattern *pattern, const double *values, int size, int block, long *negative)
 {
   enum { ARRAYS = 7 };
-  const size_t square = (size_t)block * (size_t)block;
-  double *memory = DVI_NEW(double, ARRAYS *square + 64 * (size_t)block);
-  elimination e = {.pattern = pattern, .values = values, .size = size, .block = block, .pivot = DVI_NEW(int, block)};
-  double **const array[ARRAYS] = {&e.D, &e.B, &e.F, &e.X, &e.next_D, &e.next_F, &e.last};
+  const int stride = MOST_TOGETHER * block;
+  const size_t each = (size_t)stride * (size_t)stride;
+  double *memory = DVI_NEW(double, ARRAYS *each + 64 * (size_t)stride);
+  elimination e = {
+      .pattern = pattern, .values = values, .size = size, .block = block, .stride = stride, .pivot = DVI_NEW(int, stride)};
+  double **const array[ARRAYS] = {&e.D, &e.B, &e.F, &e.X, &e.carry, &e.far, &e.last};
   dvi_status status = DVI_NO_MEMORY;
   *negative = 0;
   if (memory != NULL && e.pivot != NULL) {
     e.blocks = (size + block - 1) / block;
-    for (size_t k = 0; k < ARRAYS; k++) *array[k] = memory + k * square;
-    e.work = memory + ARRAYS * square;
+    for (size_t k = 0; k < ARRAYS; k++) *array[k] = memory + k * each;
+    e.work = memory + ARRAYS * each;
     status = eliminate(&e, negative);
   } else {
     (void)dvi__fail(status, "inertia: no memory for blocks of %d", block);
