@@ -100,7 +100,7 @@ START_TEST(a_singular_complement_is_a_status)
   make(4, &m);
   ck_assert_int_eq(dvi__inertia(&m.pattern, m.value, 4, 2, &negative), DVI_SINGULAR);
   check_words("block 0");
-  for (long successes = 0; successes < 2; successes++) {
+  for (long successes = 0; successes < 3; successes++) {
     dvi__fail_allocations_after(successes);
     const dvi_status status = dvi__inertia(&m.pattern, m.value, 4, 2, &negative);
     dvi__fail_allocations_after(-1);

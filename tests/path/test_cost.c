@@ -90,7 +90,7 @@ START_TEST(a_solve_without_memory_fails)
   const dvi_path_options options = {.ends = DVI_ENDS_FIXED, .steps = 20, .span = 1, .dimension = 1, .q0 = q0, .q1 = q1};
   dvi_path *path = NULL;
   ck_assert_int_eq(dvi_path_create(of->system, "galerkin:degree=2", &options, &path), DVI_OK);
-  for (long successes = 0; successes < 3; successes++) {
+  for (long successes = 0; successes < 4; successes++) {
     dvi__fail_allocations_after(successes);
     const dvi_status status = dvi_path_solve(path, NULL);
     dvi__fail_allocations_after(-1);

@@ -15,7 +15,7 @@ extern void dgemm_(const char *trans_a, const char *trans_b, const int *m, const
                    const double *a, const int *lda, const double *b, const int *ldb, const double *beta, double *c, const int *ldc,
                    size_t trans_a_length, size_t trans_b_length);
 
-/* A complement with a pivot so much smaller than the matrix spoils as many digits of the next one: they are factored together. */
+/* A complement with a pivot so much smaller than the matrix, which is scaled to ones, spoils as many digits of the next one: they are factored together. */
 static const double least_pivot = 1e-4;
 enum { MOST_TOGETHER = 3 };
 
@@ -24,6 +24,7 @@ enum { MOST_TOGETHER = 3 };
 typedef struct elimination {
   const dvi__pattern *pattern;
   const double *values;
+  double *scale; /* [size] of rows and columns, powers of two */
   int size, block, blocks, stride;
   double *D, *B, *F, *X, *carry, *far, *last, *work;
   int *pivot;
@@ -53,7 +54,8 @@ static void gather(const elimination *e, int i, int rows, int j, int columns, do
     const int column = first_of(e, j) + c;
     for (int at = e->pattern->start[column]; at < e->pattern->start[column + 1]; at++) {
       const int row = e->pattern->row[at];
-      if (row >= first && row < end) to[(size_t)c * (size_t)e->stride + (size_t)(row - first)] = e->values[at];
+      if (row >= first && row < end)
+        to[(size_t)c * (size_t)e->stride + (size_t)(row - first)] = e->values[at] * e->scale[row] * e->scale[column];
     }
   }
 }
@@ -78,16 +80,6 @@ static void assemble(elimination *e, int k, int together)
   for (size_t c = 0; k < last && c < (size_t)e->block; c++)
     for (size_t r = 0; r < (size_t)e->block; r++)
       e->D[c * (size_t)e->stride + (size_t)to_last + r] += e->far[r * (size_t)e->stride + c];
-}
-
-/* The largest entry of the matrix in the columns of these blocks. */
-static double largest(const elimination *e, int k, int together)
-{
-  double found = 0;
-  for (int column = first_of(e, k); column < first_of(e, k + together); column++)
-    for (int at = e->pattern->start[column]; at < e->pattern->start[column + 1]; at++)
-      if (e->pattern->row[at] < e->size) found = fmax(found, fabs(e->values[at]));
-  return found;
 }
 
 /* The smallest pivot of the factor, and how many are negative: a 2 x 2 pivot has one of each sign. */
@@ -118,10 +110,9 @@ static dvi_status factor(elimination *e, int k, int *together, long *negative)
     long found = 0;
     assemble(e, k, *together);
     const int size = width(e, k, *together);
-    const double whole = largest(e, k, *together);
     dsytrf_("L", &size, e->D, &e->stride, e->pivot, e->work, &length, &info, 1);
     const double least = info == 0 ? count(e, size, &found) : 0;
-    if (!(least > least_pivot * whole) && *together < most) continue;
+    if (!(least > least_pivot) && *together < most) continue;
     *negative += found;
     if (least > 0) return DVI_OK;
     return dvi__fail(DVI_SINGULAR, "inertia: the Schur complement of block %d is singular", k);
@@ -163,8 +154,20 @@ static void pass_on(elimination *e, int k, int next)
   subtract_product(e, last_size, last_size, size, e->F, e->last);
 }
 
+/* Columns of size one: their roots are the scale of both sides, which leaves the signs of eigenvalues as they are. */
+static void equilibrate(const elimination *e)
+{
+  for (int column = 0; column < e->size; column++) {
+    double found = 0;
+    for (int at = e->pattern->start[column]; at < e->pattern->start[column + 1]; at++)
+      if (e->pattern->row[at] < e->size) found = fmax(found, fabs(e->values[at]));
+    e->scale[column] = found > 0 ? ldexp(1.0, -ilogb(found) / 2) : 1.0;
+  }
+}
+
 static dvi_status eliminate(elimination *e, long *negative)
 {
+  equilibrate(e);
   for (int k = 0, together; k < e->blocks; k += together) {
     DVI_TRY(factor(e, k, &together, negative));
     if (k + together < e->blocks) pass_on(e, k, k + together);
@@ -178,12 +181,13 @@ dvi_status dvi__inertia(const dvi__pattern *pattern, const double *values, int s
   const int stride = MOST_TOGETHER * block;
   const size_t each = (size_t)stride * (size_t)stride;
   double *memory = DVI_NEW(double, ARRAYS *each + 64 * (size_t)stride);
-  elimination e = {
-      .pattern = pattern, .values = values, .size = size, .block = block, .stride = stride, .pivot = DVI_NEW(int, stride)};
+  elimination e = {.pattern = pattern, .values = values, .size = size, .block = block, .stride = stride};
+  e.pivot = DVI_NEW(int, stride);
+  e.scale = DVI_NEW(double, size);
   double **const array[ARRAYS] = {&e.D, &e.B, &e.F, &e.X, &e.carry, &e.far, &e.last};
   dvi_status status = DVI_NO_MEMORY;
   *negative = 0;
-  if (memory != NULL && e.pivot != NULL) {
+  if (memory != NULL && e.pivot != NULL && e.scale != NULL) {
     e.blocks = (size + block - 1) / block;
     for (size_t k = 0; k < ARRAYS; k++) *array[k] = memory + k * each;
     e.work = memory + ARRAYS * each;
@@ -193,5 +197,6 @@ dvi_status dvi__inertia(const dvi__pattern *pattern, const double *values, int s
   }
   dvi__release(memory);
   dvi__release(e.pivot);
+  dvi__release(e.scale);
   return status;
 }
