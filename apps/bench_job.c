@@ -17,7 +17,10 @@ static dvi_status run_method(const bench_job *job, const problem *scene, double 
   *creation += cpu_now() - began;
   if (status == DVI_OK) status = dvi_integrator_start(integrator, 0.0, scene->q, scene->p);
   const double h = t_end / (double)job->steps;
-  for (long i = 0; i < job->steps && status == DVI_OK; i++) status = dvi_integrator_step(integrator, h);
+  if (status == DVI_OK && dvi_integrator_chooses_steps(integrator))
+    status = dvi_run(integrator, &(dvi_run_options){.h = h, .t_end = t_end}, NULL);
+  else
+    for (long i = 0; i < job->steps && status == DVI_OK; i++) status = dvi_integrator_step(integrator, h);
   if (status == DVI_OK && q != NULL) {
     dvi_counters counters;
     dvi_integrator_counters(integrator, &counters);

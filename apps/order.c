@@ -34,7 +34,7 @@ static void add_row(result_table *rows, const order_study *study, const order_re
   table_text(rows, study->method);
   table_text(rows, study->scene->name);
   table_number(rows, trial->h);
-  table_number(rows, (double)trial->steps);
+  table_number(rows, (double)trial->taken);
   table_number(rows, trial->error);
   table_number(rows, order_local_slope(result, k));
   table_number(rows, trial->energy_error);

@@ -32,8 +32,11 @@ typedef struct recorder {
   run_trace trace;
   progress_line progress;
   double *invariant;
-  double t_start, t; /* where the run began; where the last observed step ended */
-  long step;         /* counted from t = 0, so that a resumed run writes the rows of an uninterrupted one */
+  double t_start, t;        /* where the run began; where the last observed step ended */
+  double shortest, longest; /* steps, of methods that choose them; 0: none yet */
+  long steps_taken, given_steps;
+  long step;    /* counted from t = 0, so that a resumed run writes the rows of an uninterrupted one */
+  bool chooses; /* the method chooses its steps */
   bool begun, row_written, stop_silently;
   const volatile sig_atomic_t *caught; /* the signal that ends the run after its step; 0: none yet */
 } recorder;
@@ -56,6 +59,7 @@ static void write_header(recorder *r)
     (void)fputc(',', stream);
     csv_text(stream, dvi_system_invariant_name(scene->system, i));
   }
+  if (r->chooses) (void)fputs(",h", stream);
   (void)fputc('\n', stream);
 }
 
@@ -91,6 +95,7 @@ static bool write_row(recorder *r, dvi_integrator *integrator)
   write_numbers(stream, r->scene->n, dvi_integrator_q(integrator));
   write_numbers(stream, r->scene->n, dvi_integrator_p(integrator));
   write_numbers(stream, dvi_system_invariant_count(r->scene->system), r->invariant);
+  if (r->chooses) write_numbers(stream, 1, (double[]){dvi_integrator_last_step(integrator)});
   (void)fputc('\n', stream);
   r->row_written = true;
   if (!ferror(stream)) return true;
@@ -103,6 +108,21 @@ static bool row_is_due(const recorder *r)
   return !r->request->final && (!r->begun || r->step % r->request->every == 0);
 }
 
+/* The lengths that the method chose: not that of the step that ends the run on time. */
+static void note_step(recorder *r, const dvi_integrator *integrator)
+{
+  const double length = fabs(dvi_integrator_last_step(integrator));
+  dvi_energy_balance energy = {0};
+  (void)dvi_integrator_energy_balance(integrator, &energy);
+  if (energy.given_steps > r->given_steps) {
+    r->given_steps = energy.given_steps;
+    return;
+  }
+  r->shortest = r->steps_taken == 0 ? length : fmin(r->shortest, length);
+  r->longest = fmax(r->longest, length);
+  r->steps_taken++;
+}
+
 /* The driver calls this at the start, after each step, and once more at the end. */
 static int observe(dvi_integrator *integrator, void *user)
 {
@@ -111,6 +131,7 @@ static int observe(dvi_integrator *integrator, void *user)
   if (r->begun && t == r->t) return 0;
   r->t = t;
   r->step += r->begun;
+  if (r->chooses && r->begun) note_step(r, integrator);
   r->row_written = false;
   const bool row = row_is_due(r);
   r->begun = true;
@@ -143,6 +164,25 @@ static void say_interrupted(const recorder *r)
   if (r->request->checkpoint != NULL) complain("run: continue with --resume %s", r->request->checkpoint);
 }
 
+/* Of methods that choose their steps: what they chose, and where the energy jumped. */
+static void say_steps(const recorder *r, const dvi_integrator *integrator)
+{
+  dvi_energy_balance energy;
+  if (!r->chooses || r->steps_taken == 0) return;
+  complain("run: %ld step%s of %.3g to %.3g", r->steps_taken, r->steps_taken == 1 ? "" : "s", r->shortest, r->longest);
+  if (dvi_integrator_energy_balance(integrator, &energy) != DVI_OK) return;
+  if (energy.fallbacks == 0)
+    complain("run: no step was a fallback: the discrete energy is that of the start%s",
+             energy.work != 0 ? " and the drive's work" : "");
+  else
+    complain("run: %ld fallback%s to the least-squares step; the largest energy jump is %.3g, the last %.3g, all together %.3g",
+             energy.fallbacks, energy.fallbacks == 1 ? "" : "s", energy.largest_jump, energy.last_jump,
+             energy.jumps - energy.given_jumps);
+  if (energy.given_steps > 0)
+    complain("run: %ld ordinary step%s of given length, to end on time: energy jump %.3g", energy.given_steps,
+             energy.given_steps == 1 ? "" : "s", energy.given_jumps);
+}
+
 /* Drive the integrator to the end and write all rows. */
 static int advance(recorder *r, dvi_integrator *integrator)
 {
@@ -160,6 +200,7 @@ static int advance(recorder *r, dvi_integrator *integrator)
   progress_start(&r->progress, request->final || r->out.path != NULL);
   const dvi_status status = dvi_run(integrator, &options, NULL);
   progress_end(&r->progress);
+  say_steps(r, integrator);
   if (r->stop_silently) return FAILED;
   const bool written = (status != DVI_OK && request->final) || write_last_row(r, integrator);
   if (status != DVI_OK) return library_error(status) == USAGE ? USAGE : FAILED;
@@ -193,7 +234,7 @@ static int complete(run_request *request, const problem *scene, double t)
 
 static int record(run_request *request, const problem *scene, dvi_integrator *integrator)
 {
-  recorder r = {.request = request, .scene = scene};
+  recorder r = {.request = request, .scene = scene, .chooses = dvi_integrator_chooses_steps(integrator)};
   r.invariant = calloc((size_t)dvi_system_invariant_count(scene->system), sizeof *r.invariant);
   int code = FAILED;
   r.caught = signals_note(ended_again);
@@ -258,6 +299,7 @@ static int check_settings(const char *name, const words *settings)
 
 static const char *const details[] = {
     "Columns: t, the coordinates, their momenta (p_ and the coordinate's name), energy, the other invariants;\n"
+    "methods that choose their steps add h, the length of the step that led to the row.\n"
     "17 digits, so that every number is read back as it was. The first row is the start (with --resume: the\n"
     "checkpoint), the last one is the end, wherever --every puts the rows between.\n",
     "FILEs are written whole or not at all: a run that fails leaves what was there. Rows on standard output come\n"
@@ -270,6 +312,7 @@ static const char *const details[] = {
     "  dvi run kepler --method galerkin:degree=4 --h 0.1 --t-end 100 --out orbit.csv --plot orbit.svg\n"
     "  dvi run kepler --method verlet --h 0.001 --t-end 10 --set e=0.9 --every 100\n"
     "  dvi run outer-solar --method galerkin:degree=8 --h 200 --t-end 500000 --final\n"
+    "  dvi run kepler --method sem:degree=2 --h 0.05 --t-end 100 --set e=0.5 --out orbit.csv\n"
     "  dvi run fpu --method midpoint --h 0.01 --t-end 100 --checkpoint fpu.state --out part1.csv\n"
     "  dvi run fpu --method midpoint --h 0.01 --t-end 200 --resume fpu.state --out part2.csv\n",
     NULL,
@@ -284,7 +327,7 @@ int run_command(int argc, char **argv)
   };
   const option options[] = {
       {.name = "method", .word = &r.method, .value = "SPEC", .help = "the method: name[:key=value,...], see dvi list methods"},
-      {.name = "h", .number = &r.h, .value = "H", .help = "the step; left out: the problem's"},
+      {.name = "h", .number = &r.h, .value = "H", .help = "the step, for sem the first one; left out: the problem's"},
       {.name = "t-end", .number = &r.t_end, .value = "T", .help = "the end, from t = 0 (T < 0: backward); left out: the problem's"},
       {.name = "every", .count = &r.every, .value = "K", .help = "a row after every K steps; left out: 1; not with --final"},
       {.name = "final", .flag = &r.final, .help = "the header and the last row only"},
@@ -306,7 +349,7 @@ int run_command(int argc, char **argv)
       .name = "run",
       .synopsis = "PROBLEM --method SPEC [--h H] [--t-end T] [OPTIONS]",
       .operand = "PROBLEM",
-      .summary = "Compute a trajectory with fixed steps; write it and its invariants as CSV.\n",
+      .summary = "Compute a trajectory with fixed steps, or with those that sem chooses; write it and its invariants as CSV.\n",
       .options = options,
       .details = details,
   };

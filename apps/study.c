@@ -62,10 +62,17 @@ void study_clear(order_study *study)
   dvi_integrator_destroy(&study->integrator);
 }
 
+/* Methods that choose their steps are driven to the end: h is their first step. */
+static dvi_status drive(order_study *s, double h, int (*observe)(dvi_integrator *, void *), void *user)
+{
+  return dvi_run(s->integrator, &(dvi_run_options){.h = h, .t_end = s->t_end, .observe = observe, .user = user}, NULL);
+}
+
 dvi_status study_integrate(order_study *s, const double *q, long steps)
 {
   const double h = s->t_end / (double)steps;
   dvi_status status = dvi_integrator_start(s->integrator, 0.0, q, s->scene->p);
+  if (dvi_integrator_chooses_steps(s->integrator)) return status == DVI_OK ? drive(s, h, NULL, NULL) : status;
   for (long i = 0; i < steps && status == DVI_OK; i++) {
     if (s->progress != NULL && i % PROGRESS_STEPS == 0) progress_show(s->progress, -1.0, s->method);
     status = dvi_integrator_step(s->integrator, h);
@@ -78,7 +85,7 @@ dvi_status study_run(order_study *study, long steps, level_trial *trial)
   dvi_counters before;
   dvi_integrator_counters(study->integrator, &before);
   memset(trial, 0, sizeof *trial);
-  trial->steps = steps;
+  trial->steps = trial->taken = steps;
   trial->h = study->t_end / (double)steps;
   trial->energy_error = trial->cpu_seconds = (double)NAN;
   const dvi_status status = study_integrate(study, study->scene->q, steps);
@@ -89,6 +96,7 @@ dvi_status study_run(order_study *study, long steps, level_trial *trial)
   trial->spent.jacobians -= before.jacobians;
   trial->spent.factorizations -= before.factorizations;
   trial->spent.gradients -= before.gradients;
+  if (dvi_integrator_chooses_steps(study->integrator)) trial->taken = trial->spent.steps - before.steps;
   return DVI_OK;
 }
 
@@ -112,7 +120,9 @@ dvi_status study_watch_energy(order_study *study, level_trial *trial)
   const double h = study->t_end / (double)trial->steps;
   dvi_status status = dvi_integrator_start(study->integrator, 0.0, study->scene->q, study->scene->p);
   bool good = status == DVI_OK && watch(study->integrator, watched) == 0;
-  for (long i = 0; i < trial->steps && good; i++) {
+  const bool driven = good && dvi_integrator_chooses_steps(study->integrator);
+  if (driven) status = drive(study, h, watch, watched);
+  for (long i = 0; i < trial->steps && good && !driven; i++) {
     status = dvi_integrator_step(study->integrator, h);
     good = status == DVI_OK && watch(study->integrator, watched) == 0;
   }

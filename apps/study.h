@@ -25,6 +25,7 @@ typedef struct order_study {
 /** What came out at one step size. */
 typedef struct level_trial {
   long steps;
+  long taken;          /**< the same, but for methods that choose their steps after the first one of h */
   double h;            /**< t_end / steps */
   double error;        /**< of q at t_end, in the maximum norm */
   double energy_error; /**< largest |energy - energy at the start| over the run */

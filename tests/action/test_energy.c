@@ -151,7 +151,7 @@ static void rows_at(const element *e, double d, const double *direction, const d
 static void derivatives(const element *e, const double *direction, const double *start, double length, double *R, dvi__energies *E)
 {
   double plus[UNKNOWNS_MOST], minus[UNKNOWNS_MOST];
-  *E = (dvi__energies){0, 0};
+  *E = (dvi__energies){0};
   for (int i = 0; i < e->unknowns; i++) R[i] = 0;
   for (int m = 1; m <= 3; m++) {
     dvi__energies here, there;

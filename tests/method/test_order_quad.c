@@ -47,7 +47,7 @@ static void make_field(const place *at, quad_field *field)
 
 static void run(const place *at, const quad_field *field, const quad_galerkin *method, int steps, state *z)
 {
-  quad y[2 * QUAD_N_MAX];
+  quad y[2 * QUAD_N_MAX + 1] = {0};
   const int n = field->system.n;
   memcpy(y, field->system.q, (size_t)n * sizeof *y);
   memcpy(y + n, field->system.v, (size_t)n * sizeof *y);
@@ -101,7 +101,7 @@ static void check_order(const place *at, const variant *of, int degree)
   int count = 0;
   quad_galerkin method;
   quad_field field;
-  quad exact[2 * QUAD_N_MAX];
+  quad exact[2 * QUAD_N_MAX + 1] = {0};
   state z;
   make_field(at, &field);
   quad_galerkin_prepare(&method, degree, of->lobatto, degree + of->more_nodes);

@@ -8,20 +8,21 @@
 #include "quad_system.h"
 
 #define COLUMNS 12
-#define STATE_MAX (2 * QUAD_N_MAX)
+#define STATE_MAX (2 * QUAD_N_MAX + 1)
 
-/* y = (q, v), rate = (v, a). */
+/* y = (q, v, time), rate = (v, a, 1). */
 static void evaluate(const quad_field *f, const quad *y, quad *rate)
 {
   const int n = f->system.n;
   for (int i = 0; i < n; i++) rate[i] = y[n + i];
   f->problem->acceleration(&f->system, y, y + n, rate + n);
+  rate[2 * n] = 1;
 }
 
 /* The midpoint rule over a step of h in `count` (even) substeps. */
 static void midpoint(const quad_field *f, const quad *y, const quad *rate, quad h, int count, quad *end)
 {
-  const int size = 2 * f->system.n;
+  const int size = 2 * f->system.n + 1;
   const quad substep = h / count;
   quad before[STATE_MAX], here[STATE_MAX], here_rate[STATE_MAX];
   for (int i = 0; i < size; i++) {
@@ -62,7 +63,7 @@ static quad distance(int n, const quad *x, const quad *y)
 /* One step of h; returns the difference of the last two columns of the extrapolation table. */
 static quad extrapolate(const quad_field *f, const quad *y, quad h, quad *end)
 {
-  const int n = f->system.n, size = 2 * n;
+  const int n = f->system.n, size = 2 * n + 1;
   quad rate[STATE_MAX], row[COLUMNS][STATE_MAX], last[STATE_MAX];
   evaluate(f, y, rate);
   for (int j = 0; j < COLUMNS; j++) {
@@ -83,7 +84,7 @@ quad quad_march(const quad_field *f, quad t, quad *y)
 {
   const quad tolerance = quad_parse("1e-30", NULL);
   const int n = f->system.n;
-  const size_t bytes = 2 * (size_t)n * sizeof *y;
+  const size_t bytes = (2 * (size_t)n + 1) * sizeof *y;
   quad coarse[STATE_MAX], fine[STATE_MAX], next[STATE_MAX], left = t, h = t;
   memcpy(coarse, y, bytes);
   memcpy(fine, y, bytes);
@@ -135,7 +136,7 @@ void quad_momentum(const quad_field *f, const quad *y, quad *p)
 double quad_solve(const char *problem, int setting_count, const char *const *settings, double t, double *q, double *p)
 {
   quad_field f;
-  quad y[STATE_MAX], momenta[QUAD_N_MAX];
+  quad y[STATE_MAX] = {0}, momenta[QUAD_N_MAX];
   if (!quad_prepare(&f, problem, setting_count, settings)) return nan("");
   const int n = f.system.n;
   for (int i = 0; i < n; i++) {
@@ -156,7 +157,7 @@ double quad_digits(const char *problem, int setting_count, const char *const *se
                    char (*p)[QUAD_TEXT])
 {
   quad_field f;
-  quad y[STATE_MAX], momenta[QUAD_N_MAX];
+  quad y[STATE_MAX] = {0}, momenta[QUAD_N_MAX];
   if (!quad_prepare(&f, problem, setting_count, settings)) return nan("");
   *n = f.system.n;
   memcpy(y, f.system.q, (size_t)*n * sizeof *y);

@@ -106,7 +106,7 @@ void quad_galerkin_prepare(quad_galerkin *m, int degree, int is_lobatto, int nod
 
 static void momentum_at(const quad_field *f, const quad *q, const quad *v, quad *p)
 {
-  quad y[2 * QUAD_N_MAX];
+  quad y[2 * QUAD_N_MAX + 1] = {0};
   memcpy(y, q, (size_t)f->system.n * sizeof *y);
   memcpy(y + f->system.n, v, (size_t)f->system.n * sizeof *y);
   quad_momentum(f, y, p);

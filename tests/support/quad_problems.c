@@ -142,6 +142,30 @@ static void double_pendulum_velocity(const quad_system *system, const quad *q, c
   mass_solve(double_pendulum_mass(system, q), p[0], p[1], v);
 }
 
+/* L = v^2/2 + x'(t) v cos q - cos q with x' = a omega cos(omega t); the time stands behind the velocity. */
+static void driven_pendulum_prepare(quad_system *system)
+{
+  system->n = 1;
+  system->q[0] = 2;
+}
+
+static void driven_pendulum_acceleration(const quad_system *system, const quad *q, const quad *v, quad *a)
+{
+  const quad omega = system->value[1], pull = system->value[0] * omega * omega * quad_sin(omega * v[1]);
+  a[0] = quad_sin(q[0]) + pull * quad_cos(q[0]);
+}
+
+static void driven_pendulum_momentum(const quad_system *system, const quad *q, const quad *v, quad *p)
+{
+  p[0] = v[0] + system->value[0] * system->value[1] * quad_cos(system->value[1] * v[1]) * quad_cos(q[0]);
+}
+
+/* At t = 0. */
+static void driven_pendulum_velocity(const quad_system *system, const quad *q, const quad *p, quad *v)
+{
+  v[0] = p[0] - system->value[0] * system->value[1] * quad_cos(q[0]);
+}
+
 /* L = m/2 (a'^2 + (l+a)^2 th'^2) + m g (l+a) cos th - k a^2/2. */
 static void stiff_pendulum_prepare(quad_system *system)
 {
@@ -343,6 +367,13 @@ static const quad_problem problems[] = {
      double_pendulum_acceleration,
      double_pendulum_momentum,
      double_pendulum_velocity},
+    {"driven-pendulum",
+     {"a", "omega"},
+     {"0.25", "2"},
+     driven_pendulum_prepare,
+     driven_pendulum_acceleration,
+     driven_pendulum_momentum,
+     driven_pendulum_velocity},
     {"stiff-pendulum",
      {"k", "l", "m", "g"},
      {"1e4", "1", "1", "9.81"},

@@ -20,6 +20,7 @@ typedef struct quad_problem {
   const char *parameter[QUAD_PARAMETERS_MAX + 1]; /* names, ended by NULL */
   const char *standard[QUAD_PARAMETERS_MAX];      /* default values */
   void (*prepare)(quad_system *system);           /* value -> the other members; n stays 0 if there is no room */
+  /* v [n], and behind it the time since the start */
   void (*acceleration)(const quad_system *system, const quad *q, const quad *v, quad *a);
   void (*momentum)(const quad_system *system, const quad *q, const quad *v, quad *p); /* NULL: p = v */
   void (*velocity)(const quad_system *system, const quad *q, const quad *p, quad *v);
@@ -37,10 +38,10 @@ const quad_problem *quad_problem_find(const char *name);
 /* 1 if there is such a problem, with such settings, and room for it. */
 int quad_prepare(quad_field *field, const char *problem, int setting_count, const char *const *settings);
 
-/* Advance y = (q, v) by time t. Returns the judge's own error as quad_solve does. */
+/* Advance y = (q, v, 0) [2 n + 1] by time t, which then stands last. Returns the judge's own error as quad_solve does. */
 quad quad_march(const quad_field *field, quad t, quad *y);
 
-/* p [n] at y = (q, v). */
+/* p [n] at y = (q, v, time). */
 void quad_momentum(const quad_field *field, const quad *y, quad *p);
 
 /* A decimal number or a quotient of two, "1/1.3e8". */

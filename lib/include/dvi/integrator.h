@@ -26,7 +26,25 @@ typedef struct dvi_counters {
   long allocations;    /**< blocks of memory that its creation and its steps took; a step takes none */
   long simplified;     /**< solves by simplified Newton's method: the Jacobian of one point, decoupled into systems of n unknowns */
   long certified;      /**< solutions of other iterations that KINSOL's own test of the residual accepted (solver=certified) */
+  long energy_fallbacks; /**< steps of sem whose energy equation has no solution: least-squares steps */
 } dvi_counters;
+
+/** The energy of a run by a method whose discrete energy is conserved (sem): E+ of each step is E- of the next, but for jumps.
+ *
+ *      energy = first + work + jumps,   up to roundoff
+ *
+ *  Leok 2004, sec. 5.2; E+ = sum_j b_j ( L_v v - L - c_j h L_t )_j and E- = E+ + h sum_j b_j L_t are -dLd/dt1 and dLd/dt0. All in the unit of L. */
+typedef struct dvi_energy_balance {
+  double first;        /**< E- of the first step after dvi_integrator_start */
+  double energy;       /**< E+ of the last step, evaluated on its path */
+  double work;         /**< sum over the steps of E+ - E-, what the time dependence did: 0 for autonomous systems */
+  double jumps;        /**< sum over the steps of E- less the E+ before, for steps that do not solve the energy equation */
+  long fallbacks;      /**< how many of these are least-squares steps, because the energy equation has no solution in the bounds */
+  double last_jump;    /**< the jump of the last of those; 0: there was none */
+  double largest_jump; /**< the largest of theirs, with its sign */
+  long given_steps;    /**< how many others: ordinary steps of a given length, each of which begins a new sequence */
+  double given_jumps;  /**< the sum of the jumps of those */
+} dvi_energy_balance;
 
 #ifdef __cplusplus
 extern "C" {
@@ -66,6 +84,9 @@ dvi_status dvi_integrator_start_velocity(dvi_integrator *integrator, double t, c
 
 /** Take one step of length h (negative: backward).
  *
+ *  Methods that choose their steps (dvi_integrator_chooses_steps) take an ordinary step of h at first, and lengths of their own as long as h stays the
+ *  same; another h begins anew.
+ *
  *  On any failure the state, and all that the next step depends on, is as before the call.
  *  @retval DVI_BAD_ARGUMENT    h is zero or not finite, or so small that t + h = t or 1/h = Inf
  *  @retval DVI_BAD_STATE       before dvi_integrator_start
@@ -90,6 +111,19 @@ const dvi_system *dvi_integrator_system(const dvi_integrator *integrator);
 
 /** The order that theory claims for this method with its options. */
 int dvi_integrator_order(const dvi_integrator *integrator);
+
+/** Length of the last step, as it was taken; 0 before the first one, and for NULL. */
+double dvi_integrator_last_step(const dvi_integrator *integrator);
+
+/** Whether the method chooses the lengths of its steps: 1 or 0. */
+int dvi_integrator_chooses_steps(const dvi_integrator *integrator);
+
+/** What became of the discrete energy since the start.
+ *
+ *  @param[out] balance  see dvi_energy_balance
+ *  @retval DVI_UNSUPPORTED  the method conserves no discrete energy
+ *  @retval DVI_BAD_STATE    no step was taken yet */
+dvi_status dvi_integrator_energy_balance(const dvi_integrator *integrator, dvi_energy_balance *balance);
 
 /** Bytes that a step moves between memory and processor if the state fits in no cache: what it reads, what it writes, and the lines that are
  *  fetched to be written. 0 if the method does not know: it does if it goes through memory in whole passes (verlet with potentials that

@@ -17,8 +17,8 @@ typedef struct dvi_event {
 
 /** Options of a run; zero means default. */
 typedef struct dvi_run_options {
-  double h;     /**< the step; its sign must lead from the current time to t_end */
-  double t_end; /**< a last, shorter step ends the run here if h does not divide the way */
+  double h; /**< the step, or the first one of methods that choose their steps; its sign must lead from the current time to t_end */
+  double t_end; /**< a last, shorter step ends the run here if h does not divide the way, or the method chooses its steps */
   long every;   /**< call the observer after every so many steps; 0: 1 */
   /** Called at the start, after every `every` steps, and at the end. Return 0 to go on, >0 to end the run, <0 to fail. It may ask the
    *  integrator anything, but not step, start or restore it. */

@@ -41,17 +41,18 @@ dvi_status dvi__action_prepare_energy(dvi__action *a)
 dvi_status dvi__action_energies(dvi__action *a, dvi__energies *E)
 {
   const size_t r = (size_t)a->r;
-  double energy = 0, rate = 0, late_rate = 0;
+  double energy = 0, rate = 0, late_rate = 0, size = 0;
   DVI_TRY(dvi__lagrangian_value(a->evaluator, a->r, a->t, a->Q, a->V, a->value));
   DVI_TRY(dvi__lagrangian_rate(a->evaluator, a->r, a->t, a->Q, a->V, a->rate));
   for (size_t j = 0; j < r; j++) {
     double twice_kinetic = 0; /* L_v V; the residual left its weight in L_v */
     for (size_t i = 0; i < (size_t)a->n; i++) twice_kinetic += a->L_v[i * r + j] * a->V[i * r + j];
     energy += twice_kinetic - a->weight[j] * a->value[j];
+    size += fabs(twice_kinetic) + fabs(a->weight[j] * a->value[j]);
     rate += a->weight[j] * a->rate[j];
     late_rate += a->weight[j] * a->node[j] * a->rate[j];
   }
-  *E = (dvi__energies){energy + a->h * (rate - late_rate), energy - a->h * late_rate};
+  *E = (dvi__energies){energy + a->h * (rate - late_rate), energy - a->h * late_rate, size};
   return DVI_OK;
 }
 

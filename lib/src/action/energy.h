@@ -13,6 +13,7 @@
 
 typedef struct dvi__energies {
   double start, end; /* E-, E+ */
+  double size;       /* of the summands, sum_j b_j ( |L_v V| + |L| )_j: their roundings are those of the energies */
 } dvi__energies;
 
 /* Of one energy. */

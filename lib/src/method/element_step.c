@@ -414,14 +414,33 @@ static dvi_status certify(dvi__stepper *self, const place *at, double *Y, dvi__s
   return DVI_OK;
 }
 
+static place place_of(const dvi__stepper *self, const dvi__state *state, double h)
+{
+  const int continues = self->memory[DVI__LAST_H] != 0 && dvi__action_can_sweep(dvi__element_action(self));
+  return (place){state->t,
+                 h,
+                 state->q,
+                 state->p,
+                 self->memory[DVI__LAST_H],
+                 self->memory + DVI__LAST_Y,
+                 continues ? self->memory + dvi__element_forces(self) : NULL};
+}
+
+void dvi__element_take(dvi__stepper *self, dvi__state *state, double h, const double *Y)
+{
+  element *own = self->own;
+  memcpy(own->Y, Y, (size_t)dvi__action_unknowns(own->action) * sizeof(double));
+  dvi__action_ends(own->action, own->Y, own->dq, own->dq_low, own->dp);
+  dvi__action_forces(own->action, self->memory + dvi__element_forces(self));
+  advance(self, state, h);
+}
+
 dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h)
 {
   element *own = self->own;
   dvi__solve_report report = {0};
   double *forces = self->memory + dvi__element_forces(self);
-  const int continues = self->memory[DVI__LAST_H] != 0 && dvi__action_can_sweep(own->action);
-  const place at = {
-      state->t, h, state->q, state->p, self->memory[DVI__LAST_H], self->memory + DVI__LAST_Y, continues ? forces : NULL};
+  const place at = place_of(self, state, h);
   dvi_status status = solve_at(self, &at, own->Y, &report);
   if (status > 0) status = rescue(self, &at, own->Y, &report);
   if (status == DVI_OK) {

@@ -68,6 +68,9 @@ static dvi_status make_integrator(dvi__worker *w, const dvi_system *system, cons
   if (o->systems != NULL) w->scene = dvi__duplicate(o->systems[0], 1, sizeof *w->scene);
   if (o->systems != NULL && w->scene == NULL) return dvi__fail(DVI_NO_MEMORY, "ensemble: no memory");
   DVI_TRY(dvi_integrator_create(w->scene != NULL ? w->scene : system, method, &w->integrator));
+  if (dvi_integrator_chooses_steps(w->integrator))
+    return dvi__fail(DVI_UNSUPPORTED, "ensemble: %s chooses its steps, so that members would part in time; use single integrators",
+                     w->integrator->stepper.method->name);
   w->integrator->counters.allocations = 0; /* the ensemble counts those of its creation */
   w->integrator->started = 1;              /* once the ensemble is */
   return DVI_OK;

@@ -156,7 +156,7 @@ static void exchange_memory(dvi_integrator *I)
 }
 
 /* `next` still holds what `last` was. */
-dvi_status dvi__integrator_undo(dvi_integrator *I, dvi_status status)
+void dvi__integrator_take_back(dvi_integrator *I)
 {
   const dvi__state oldest = I->next;
   I->next = I->now;
@@ -165,6 +165,11 @@ dvi_status dvi__integrator_undo(dvi_integrator *I, dvi_status status)
   I->last_h = I->last_h_before;
   I->counters.steps--;
   exchange_memory(I);
+}
+
+dvi_status dvi__integrator_undo(dvi_integrator *I, dvi_status status)
+{
+  dvi__integrator_take_back(I);
   I->counters.failed_steps++;
   return dvi__fail_in(status, "the step from t = %.9g is taken back", I->now.t);
 }
@@ -207,8 +212,16 @@ dvi_status dvi_integrator_step(dvi_integrator *I, double h)
   const dvi_status status = advance(I, h);
   I->counters.allocations += dvi__allocation_count() - before;
   if (status != DVI_OK) return refuse(I, h, status);
-  accept(I, h);
+  accept(I, I->stepper.method->chooses_steps ? I->stepper.taken : h);
   return DVI_OK;
+}
+
+dvi_status dvi__integrator_step_exactly(dvi_integrator *I, double h)
+{
+  I->stepper.exact = 1;
+  const dvi_status status = dvi_integrator_step(I, h);
+  I->stepper.exact = 0;
+  return status;
 }
 
 /* ---- queries ---- */
@@ -243,6 +256,26 @@ double dvi_integrator_traffic(const dvi_integrator *integrator)
   return integrator != NULL && integrator->stepper.method->traffic != NULL
              ? integrator->stepper.method->traffic(&integrator->stepper, 1)
              : 0;
+}
+
+double dvi_integrator_last_step(const dvi_integrator *integrator)
+{
+  return integrator != NULL ? integrator->last_h : 0;
+}
+
+int dvi_integrator_chooses_steps(const dvi_integrator *integrator)
+{
+  return integrator != NULL && integrator->stepper.method->chooses_steps;
+}
+
+dvi_status dvi_integrator_energy_balance(const dvi_integrator *I, dvi_energy_balance *balance)
+{
+  if (I == NULL || balance == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "energy balance: an argument is NULL");
+  if (I->stepper.method->balance == NULL)
+    return dvi__fail(DVI_UNSUPPORTED, "energy balance: %s conserves no discrete energy; sem does", I->stepper.method->name);
+  if (I->last_h == 0) return dvi__fail(DVI_BAD_STATE, "energy balance: no step was taken yet");
+  I->stepper.method->balance(&I->stepper, balance);
+  return DVI_OK;
 }
 
 const char *dvi_integrator_method(const dvi_integrator *integrator)

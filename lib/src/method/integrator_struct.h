@@ -26,7 +26,13 @@ void dvi__guess_velocity(int n, const double *q, const double *last_q, const dou
 /* DVI_BAD_ARGUMENT unless h is a step that moves the time from t. */
 dvi_status dvi__check_step(double t, double h);
 
-/* Take the last step back, once: it succeeded, but what followed did not. The status is passed on, the sentence named. */
+/* A step of exactly h, from methods that choose their steps, too: what is left of a run. */
+dvi_status dvi__integrator_step_exactly(dvi_integrator *integrator, double h);
+
+/* Take the last step back, once, as if it had not been. */
+void dvi__integrator_take_back(dvi_integrator *integrator);
+
+/* The same for a step that succeeded while what followed did not. The status is passed on, the sentence named. */
 dvi_status dvi__integrator_undo(dvi_integrator *integrator, dvi_status status);
 
 #endif

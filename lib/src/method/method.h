@@ -21,20 +21,24 @@ typedef struct dvi__members {
   long *residuals, *gradients, *fixed; /* [count] what the step took, as dvi_counters has it: residuals, gradients, fixed_points */
 } dvi__members;
 
-/* A key of a method's specification: a whole number, or one of a list of names. */
+/* A key of a method's specification: a whole number, one of a list of names, or a positive number that "auto" leaves to the method. */
 typedef struct dvi__key {
   const char *name;
-  const char *(*choice)(int index); /* name of a choice, NULL past the last one; NULL: a whole number */
+  const char *(*choice)(int index); /* name of a choice, NULL past the last one; NULL: a number */
   int least, most;                  /* of a whole number */
   int left_out;                     /* the value of a key that is not given: a number, or the index of a choice */
   const char *help;
 } dvi__key;
+
+/* As `least`: the key is a positive number, or auto, which it is if it is not given. */
+enum { DVI__POSITIVE = -2 };
 
 enum { DVI__KEYS_MOST = 8, DVI__SPECIFICATION_SIZE = 256, DVI__LEFT_OUT = -1 };
 
 /* Values of the keys, in the order of the method's table. A method may replace DVI__LEFT_OUT by what it chose. */
 typedef struct dvi__settings {
   int value[DVI__KEYS_MOST];
+  double number[DVI__KEYS_MOST];      /* of keys that are DVI__POSITIVE; 0: auto */
   char rest[DVI__SPECIFICATION_SIZE]; /* "key=value,..." that are not the method's own; only for methods that take them */
 } dvi__settings;
 
@@ -53,6 +57,9 @@ typedef struct dvi__stepper {
    * create; the memory is the driver's, who has two and exchanges them, and is there from the first start on. */
   double *memory;
   size_t memory_count;
+  /* Of methods that choose their steps: the length of the last one, set by `step`; and what the driver sets, not 0: the next one is as long as it says. */
+  double taken;
+  int exact;
   void *own;   /* the method's struct */
   void *lanes; /* its struct for members side by side; NULL: each member steps on its own */
 } dvi__stepper;
@@ -71,6 +78,7 @@ struct dvi__method {
   int takes_rest;       /* keys of others are collected in settings.rest */
   unsigned needs;       /* dvi__term bits that the system must declare */
   unsigned uses;        /* bits that it may declare */
+  int chooses_steps;    /* `step` may take another length than h, of the same sign, and says it in `taken` */
   /* Set order, symmetric, memory_count, own. On failure destroy is called. */
   dvi_status (*create)(dvi__stepper *self);
   void (*destroy)(dvi__stepper *self);
@@ -87,6 +95,8 @@ struct dvi__method {
   /* q [n] and v [n] at tau in [0,1] of the last step, which started at q0 [n] with length h. NULL: Hermite's cubic. */
   void (*path)(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v);
   void (*explain)(const dvi__stepper *self, dvi__text *text);
+  /* What became of the energy that the method conserves; NULL: it conserves none. */
+  void (*balance)(const dvi__stepper *self, dvi_energy_balance *balance);
   /* Members as lanes; all three are NULL where there is no such way. prepare makes `lanes` for up to `capacity` members, if the system allows it
    * and it pays. step advances all members that are not `left`, each with the bits and the counts of `step`, or leaves them to it. */
   dvi_status (*prepare_lanes)(dvi__stepper *self, int capacity);

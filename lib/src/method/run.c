@@ -75,8 +75,20 @@ static double next_step(const dvi_integrator *I, const dvi_run_options *options)
 {
   const double left = (options->t_end - I->now.t) + I->now.t_carry, h = options->h, missed = clock_error(I, options);
   if (fabs(left) <= missed) return 0;
+  if (dvi_integrator_chooses_steps(I)) return h;
   if (fabs(left - h) <= missed) return h;
   return left / h <= 1 + stretch ? left : h;
+}
+
+/* A step of a method that chooses its length ends the run where it is to end: one that goes past is replaced by an ordinary one of what is left. */
+static dvi_status take_step(dvi_integrator *I, const dvi_run_options *options, double h)
+{
+  const double forward = options->h > 0 ? 1 : -1, left = (options->t_end - I->now.t) + I->now.t_carry;
+  if (!dvi_integrator_chooses_steps(I)) return dvi_integrator_step(I, h);
+  DVI_TRY(dvi_integrator_step(I, h));
+  if (forward * (I->now.t - options->t_end) <= clock_error(I, options)) return DVI_OK;
+  dvi__integrator_take_back(I);
+  return dvi__integrator_step_exactly(I, left);
 }
 
 static dvi_status one_step(dvi_integrator *I, const dvi_run_options *options, double h, dvi__watch *watch, dvi_run_report *report,
@@ -84,7 +96,7 @@ static dvi_status one_step(dvi_integrator *I, const dvi_run_options *options, do
 {
   const double from = dvi_integrator_time(I);
   const long every = options->every > 0 ? options->every : 1;
-  DVI_TRY(dvi_integrator_step(I, h));
+  DVI_TRY(take_step(I, options, h));
   const dvi_status found = dvi__watch_find(watch, I, options, from);
   if (found != DVI_OK) return dvi__integrator_undo(I, found);
   report->steps++;

@@ -1,5 +1,6 @@
 /* Specifications: name[:key=value,...]. */
 #include <dvi/method.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -77,6 +78,19 @@ static dvi_status parse_choice(const dvi__method *method, const dvi__key *key, p
   return dvi__fail(DVI_BAD_OPTION, "%s: %s=%.*s; possible are %s", method->name, key->name, value.length, value.text, known);
 }
 
+/* strtod takes more spellings than digits, point and exponent: they are refused. */
+static dvi_status parse_real(const dvi__method *method, const dvi__key *key, piece value, double *number)
+{
+  char *end = NULL;
+  *number = 0;
+  if (same(value, "auto")) return DVI_OK;
+  const int plain = value.length > 0 && (int)strspn(value.text, "0123456789.eE+-") == value.length;
+  if (plain) *number = strtod(value.text, &end);
+  if (plain && end == value.text + value.length && isfinite(*number) && *number > 0) return DVI_OK;
+  return dvi__fail(DVI_BAD_OPTION, "%s: %s=%.*s; a positive number is possible, or auto", method->name, key->name, value.length,
+                   value.text);
+}
+
 static dvi_status keep_for_others(const dvi__method *method, piece name, piece value, dvi__settings *settings)
 {
   dvi__text rest = {settings->rest, sizeof settings->rest, strlen(settings->rest)};
@@ -92,6 +106,7 @@ static dvi_status assign(const dvi__method *method, piece name, piece value, dvi
     if (!same(name, key->name)) continue;
     if (*given & 1U << k) return dvi__fail(DVI_BAD_OPTION, "%s: %s is given twice", method->name, key->name);
     *given |= 1U << k;
+    if (key->least == DVI__POSITIVE) return parse_real(method, key, value, &settings->number[k]);
     return key->choice == NULL ? parse_number(method, key, value, &settings->value[k])
                                : parse_choice(method, key, value, &settings->value[k]);
   }
@@ -126,13 +141,26 @@ dvi_status dvi__parse(const char *specification, const dvi__method **method, dvi
   return DVI_OK;
 }
 
+/* The fewest digits that are read back as the number. */
+static void spell_real(double number, dvi__text *text)
+{
+  char spelled[32] = "auto";
+  for (int digits = 1; digits <= 17 && number != 0; digits++) {
+    (void)snprintf(spelled, sizeof spelled, "%.*g", digits, number);
+    if (strtod(spelled, NULL) == number) break;
+  }
+  dvi__text_add(text, "%s", spelled);
+}
+
 void dvi__spell_out(const dvi__method *method, const dvi__settings *settings, dvi__text *text)
 {
   dvi__text_add(text, "%s", method->name);
   for (int k = 0; k < dvi__key_count(method); k++) {
     const dvi__key *key = &method->keys[k];
     dvi__text_add(text, "%c%s=", k == 0 ? ':' : ',', key->name);
-    if (key->choice != NULL)
+    if (key->least == DVI__POSITIVE)
+      spell_real(settings->number[k], text);
+    else if (key->choice != NULL)
       dvi__text_add(text, "%s", key->choice(settings->value[k]));
     else
       dvi__text_add(text, "%d", settings->value[k]);

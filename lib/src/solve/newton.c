@@ -56,7 +56,7 @@ dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__so
     growing = progress == DVI__STALLED ? growing + 1 : 0;
     if (growing == 2 || report->correction > 1e300) break;
     if (wary && report->iterations == 2 && !converged && dvi__misleading(&trail, whole)) break;
-    fresh = converged || trail.before == 0 || trail.last < keep_below * trail.before;
+    fresh = converged || (!s->equations.renewed && (trail.before == 0 || trail.last < keep_below * trail.before));
   }
   if (converged) return DVI_OK;
   return dvi__fail(DVI_NOT_CONVERGED, "Newton's method does not settle (change %.1e after %.1e)", trail.last, trail.before);

@@ -59,6 +59,11 @@ void dvi__solver_destroy(dvi__solver **solver)
   *solver = NULL;
 }
 
+void dvi__solver_apply_factor(dvi__solver *solver, double *b)
+{
+  dvi__linear_solve(solver->linear, b);
+}
+
 dvi__linear_kind dvi__solver_linear_kind(const dvi__solver *solver)
 {
   return dvi__linear_kind_of(solver->linear);

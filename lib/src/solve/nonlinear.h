@@ -21,6 +21,7 @@ typedef struct dvi__equations {
   void (*chord)(void *of, double *r); /* r <- C^{-1} r */
   /* [unknowns] > 0: size of a row per unit of an unknown; after prepare_chord. 0: it is still what it was at the last call. */
   int (*row_scale)(void *of, double *scale);
+  int renewed; /* Newton's method factors the Jacobian at each of its points: the equations are nearly singular, and an old factor leads astray */
   /* The same fixed point iteration in variables of the equations' own, where that is cheaper; NULL: residual and chord do it. */
   void (*sweep_from)(void *of, const double *x);
   dvi_status (*sweep)(void *of, double *change, double *largest);
@@ -54,6 +55,9 @@ dvi_status dvi__solve(dvi__solver *solver, dvi__rung rung, double size, int wary
 
 /* Let KINSOL judge a solution that another rung found; x stays. DVI_NOT_CONVERGED: it does not pass, and the KINSOL rung should take over. */
 dvi_status dvi__certify(dvi__solver *solver, double size, const double *x, dvi__solve_report *report);
+
+/* Solve with the Jacobian that the Newton rungs factored last: b [unknowns] becomes J^{-1} b. */
+void dvi__solver_apply_factor(dvi__solver *solver, double *b);
 
 /* Which linear solver the Newton rungs use. */
 dvi__linear_kind dvi__solver_linear_kind(const dvi__solver *solver);
