@@ -95,11 +95,6 @@ void dvi__action_destroy(dvi__action **action)
                            a->H_qq,
                            a->H_qv,
                            a->H_vv,
-                           a->bubble,
-                           a->chi,
-                           a->dchi,
-                           a->between_rows,
-                           a->between_dp,
                            a->sweep_matrix,
                            a->sweep_node,
                            a->sweep_slant,
@@ -122,6 +117,7 @@ void dvi__action_destroy(dvi__action **action)
                            a->moved_q,
                            a->moved_v};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) dvi__release(owned[i]);
+  dvi__action_clear_between(a);
   dvi__linear_destroy(&a->chord);
   dvi__evaluator_destroy(&a->evaluator);
   dvi__pattern_clear(&a->joint);

@@ -91,6 +91,9 @@ void dvi__action_set_step(dvi__action *action);
 void dvi__action_weigh_hessian(const dvi__action *action, const dvi__block *block, const double *f, const double *df, double *in_q,
                                double *in_v);
 
+/* Free what dvi__action_prepare_between made. */
+void dvi__action_clear_between(const dvi__action *action);
+
 /* Fill the batches Q and V with the path's points at the nodes. */
 void dvi__action_stages(const dvi__action *action, const double *Y);
 

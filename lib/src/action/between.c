@@ -57,6 +57,15 @@ dvi_status dvi__action_prepare_between(dvi__action *a)
   return DVI_OK;
 }
 
+void dvi__action_clear_between(const dvi__action *a)
+{
+  dvi__release(a->bubble);
+  dvi__release(a->chi);
+  dvi__release(a->dchi);
+  dvi__release(a->between_rows);
+  dvi__release(a->between_dp);
+}
+
 void dvi__action_between(const dvi__action *a, const double *q1, const double *Z, double *Y)
 {
   const size_t s = (size_t)a->s;

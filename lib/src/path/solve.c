@@ -84,9 +84,9 @@ static dvi_status check_isolated(const dvi_path *path, const dvi_path_report *re
   if (report->zero <= report->symmetries + path->free_span) return DVI_OK;
   return dvi__fail(
       DVI_SINGULAR,
-      "path: along %ld directions, of which %d are symmetries, the action does not change to second order (below %.0e): "
+      "path: along %ld direction%s, of which %d are symmetries, the action does not change to second order (below %.0e): "
       "%s; the path is unchanged; try another span",
-      report->zero, report->symmetries, report->zero_below,
+      report->zero, report->zero == 1 ? "" : "s", report->symmetries, report->zero_below,
       path->ends == DVI_ENDS_FIXED ? "its ends are conjugate, so that there are many such paths or none" : "it is not isolated");
 }
 
