@@ -349,6 +349,39 @@ START_TEST(a_circle_is_relatively_periodic)
 }
 END_TEST
 
+/* V = q^2/2 - q cos 2t: q'' + q = cos 2t has the solution -cos(2t)/3 of the drive's period, and no other. */
+static int swing(double t, const double *q, double *V, void *user)
+{
+  (void)user;
+  *V = q[0] * q[0] / 2 - q[0] * cos(2 * t);
+  return 0;
+}
+
+static int push(double t, const double *q, double *V_q, void *user)
+{
+  (void)user;
+  V_q[0] = q[0] - cos(2 * t);
+  return 0;
+}
+
+START_TEST(a_driven_oscillator_follows_its_drive)
+{
+  const dvi_potential potential = {.value = swing, .gradient = push};
+  dvi_system *system = make_system(
+      &(dvi_system_terms){.dimension = 1, .mass.scalar = 1, .potentials = &potential, .potential_count = 1});
+  const dvi_path_options options = {.ends = DVI_ENDS_PERIODIC, .steps = 12, .start = 0.4, .span = pi};
+  dvi_path *path = made_path(system, "galerkin:degree=6", &options);
+  const dvi_path_report report = solved(path);
+  for (int k = 0; k <= 12; k++) ck_assert_double_eq_tol(dvi_path_q(path, k)[0], -cos(2 * dvi_path_time(path, k)) / 3, 1e-11);
+  /* Of modes cos(2 m t) and sin(2 m t), with (2m)^2 - 1, the constant alone is negative; the phase is the drive's. */
+  ck_assert_int_eq(report.negative, 1);
+  ck_assert_int_eq(report.zero, 0);
+  ck_assert_int_eq(report.symmetries, 0);
+  dvi_path_destroy(&path);
+  dvi_system_destroy(&system);
+}
+END_TEST
+
 /* ---- continuation ---- */
 
 static double apart(const dvi_path *a, const dvi_path *b)
@@ -401,6 +434,7 @@ int main(void)
   tcase_add_test(tests, a_nearly_periodic_run_closes_to_roundoff);
   tcase_add_test(tests, a_pendulum_that_turns_over_is_periodic_up_to_a_shift);
   tcase_add_test(tests, a_circle_is_relatively_periodic);
+  tcase_add_test(tests, a_driven_oscillator_follows_its_drive);
   tcase_add_test(tests, a_guess_along_two_paths_is_better_than_the_last_one);
   return run_tests("path", tests);
 }

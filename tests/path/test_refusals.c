@@ -317,6 +317,31 @@ START_TEST(a_guess_where_the_lagrangian_is_infinite_fails)
 }
 END_TEST
 
+START_TEST(callbacks_have_the_last_word)
+{
+  const int answers[] = {-1, 1};
+  const dvi_status expected[] = {DVI_CALLBACK_FAILED, DVI_CALLBACK_RETRY};
+  for (int k = 0; k < 2; k++) {
+    behaviour well = {0};
+    const dvi_potential potential = springs(&well, ONE_POINT);
+    dvi_system *system = make_system(
+        &(dvi_system_terms){.dimension = SITES, .mass.scalar = 1, .potentials = &potential, .potential_count = 1});
+    const dvi_path_options options = {
+        .ends = DVI_ENDS_FIXED, .steps = 5, .span = 0.2, .dimension = SITES, .q0 = generic_q, .q1 = generic_v};
+    dvi_path *path = NULL;
+    ck_assert_int_eq(dvi_path_create(system, "midpoint", &options, &path), DVI_OK);
+    well.answer = answers[k];
+    const dvi_status status = dvi_path_solve(path, NULL);
+    ck_assert_msg(status == expected[k], "%s: %s", dvi_status_name(status), dvi_last_error());
+    check_words("path: ");
+    well.answer = 0;
+    ck_assert_msg(dvi_path_solve(path, NULL) == DVI_OK, "%s", dvi_last_error());
+    dvi_path_destroy(&path);
+    dvi_system_destroy(&system);
+  }
+}
+END_TEST
+
 int main(void)
 {
   TCase *tests = tcase_create("refusals");
@@ -337,5 +362,6 @@ int main(void)
   tcase_add_test(tests, a_family_of_closed_paths_is_named);
   tcase_add_test(tests, what_the_lagrangian_does_not_have_is_no_symmetry);
   tcase_add_test(tests, a_guess_where_the_lagrangian_is_infinite_fails);
+  tcase_add_test(tests, callbacks_have_the_last_word);
   return run_tests("refusals", tests);
 }
