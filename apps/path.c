@@ -214,12 +214,13 @@ static void destroy(member *m)
 /* ---- families ---- */
 
 /* "e=0.1:0.9:8" */
-static int read_family(const char *text, family *f)
+static int read_family(const path_request *request, family *f)
 {
-  char first[NAME_SIZE], last[NAME_SIZE], rest[2];
+  const char *text = request->follow;
+  char first[NAME_SIZE], last[NAME_SIZE], count[NAME_SIZE], rest[2];
   char *end = NULL;
   if (text == NULL) return DONE;
-  char count[NAME_SIZE];
+  if (request->settings.count == WORDS_MAX) return usage_error("path: --set is given too often for --continue");
   const int fields = sscanf(text, "%63[^=]=%63[^:]:%63[^:]:%63[0-9]%1s", f->name, first, last, count, rest);
   if (fields == 4) f->parts = strtol(count, &end, 10);
   if (fields != 4 || !parse_number(first, &f->first) || !parse_number(last, &f->last) || f->parts < 1 || f->parts > VALUES_MOST)
@@ -240,7 +241,6 @@ static int follow(const char *name, const path_request *request, const family *f
   char setting[SETTING_SIZE];
   words settings = request->settings;
   if (f->parts > 0) {
-    if (settings.count == WORDS_MAX) return usage_error("path: --set is given too often");
     (void)snprintf(setting, sizeof setting, "%s=%.17g", f->name, f->first + (f->last - f->first) * ((double)k / (double)f->parts));
     settings.word[settings.count++] = setting;
   }
@@ -259,13 +259,14 @@ static int solve_family(const char *name, const path_request *request, const fam
 {
   member before = {0};
   int code = DONE;
-  for (long k = 0; k <= f->parts && code == DONE; k++) {
+  long k = 0;
+  do {
     member next = {0};
     code = follow(name, request, f, k, last, &before, &next);
     destroy(&before);
     before = *last;
     *last = next;
-  }
+  } while (code == DONE && ++k <= f->parts);
   destroy(&before);
   return code;
 }
@@ -404,7 +405,7 @@ static int run(const char *name, const path_request *request)
   family values = {.parts = 0};
   member found = {0};
   int code = check_request(request);
-  if (code == DONE) code = read_family(request->follow, &values);
+  if (code == DONE) code = read_family(request, &values);
   if (code == DONE && request->out != NULL && strcmp(request->out, "-") != 0 && !file_writable(request->out)) return FAILED;
   if (code == DONE) code = solve_family(name, request, &values, &found);
   const bool rows_on_output = request->out != NULL && strcmp(request->out, "-") == 0;

@@ -134,8 +134,7 @@ static int read_row(reader *r, points *read)
   for (; text != NULL && column < r->columns; column++) {
     take_field(&text, field);
     const int coordinate = r->coordinate[column];
-    double *number = coordinate == -1 ? &t : coordinate >= 0 ? &r->q[coordinate] : NULL;
-    if (number != NULL && !parse_number(field, number))
+    if (coordinate >= -1 && !parse_number(field, coordinate == -1 ? &t : &r->q[coordinate]))
       return usage_error("path: '%s': line %d: '%s' is no number", r->path, r->row, field);
   }
   if (text != NULL || column < r->columns)
@@ -143,20 +142,24 @@ static int read_row(reader *r, points *read)
   return points_add(read, r->scene->n, t, r->q) ? DONE : FAILED;
 }
 
+static int read_all(reader *r, points *read)
+{
+  int code = read_header(r);
+  while (code == DONE && next_line(r)) code = read_row(r, read);
+  if (code == DONE && read->count < 2) code = usage_error("path: '%s' has %d points; at least 2 are needed", r->path, read->count);
+  return code;
+}
+
 int points_read(const char *path, const problem *scene, points *read)
 {
-  reader r = {.path = path, .scene = scene, .stream = fopen(path, "r"), .q = calloc((size_t)scene->n, sizeof(double))};
-  int code = DONE;
-  if (r.stream == NULL) {
+  int code = FAILED;
+  reader r = {.path = path, .scene = scene, .q = calloc((size_t)scene->n, sizeof(double))};
+  if (r.q == NULL) return complain("out of memory"), FAILED;
+  r.stream = fopen(path, "r");
+  if (r.stream == NULL)
     complain("cannot read '%s': %s", path, strerror(errno));
-    code = FAILED;
-  } else if (r.q == NULL) {
-    complain("out of memory");
-    code = FAILED;
-  }
-  if (code == DONE) code = read_header(&r);
-  while (code == DONE && next_line(&r)) code = read_row(&r, read);
-  if (code == DONE && read->count < 2) code = usage_error("path: '%s' has %d points; at least 2 are needed", path, read->count);
+  else
+    code = read_all(&r, read);
   if (r.stream != NULL) (void)fclose(r.stream);
   free(r.line);
   free(r.coordinate);
