@@ -11,6 +11,7 @@
 #include "options.h"
 #include "outputs.h"
 #include "points.h"
+#include "table.h"
 
 enum { VALUES_MOST = 10000, NAME_SIZE = 64, SETTING_SIZE = 128 };
 
@@ -156,6 +157,7 @@ static int guess_by_steps(const dvi_path_options *o, const char *method, const p
     added = points_add(guess, scene->n, k, dvi_integrator_q(integrator));
   }
   dvi_integrator_destroy(&integrator);
+  if (status != DVI_OK) complain("path: the guess by steps forward fails; give another one with --guess, or take more steps");
   if (status != DVI_OK) return library_error(status);
   return added ? DONE : FAILED;
 }
@@ -301,10 +303,14 @@ static void print_report(const member *m, const path_request *request, FILE *str
 static void write_header(const problem *scene, FILE *stream)
 {
   (void)fputs("t", stream);
-  for (int i = 0; i < scene->n; i++) (void)fprintf(stream, ",%s", scene->coordinate[i]);
-  for (int i = 0; i < scene->n; i++) (void)fprintf(stream, ",p_%s", scene->coordinate[i]);
-  for (int i = 0; i < dvi_system_invariant_count(scene->system); i++)
-    (void)fprintf(stream, ",%s", dvi_system_invariant_name(scene->system, i));
+  for (int i = 0; i < 2 * scene->n; i++) {
+    (void)fputs(i < scene->n ? "," : ",p_", stream);
+    csv_text(stream, scene->coordinate[i % scene->n]);
+  }
+  for (int i = 0; i < dvi_system_invariant_count(scene->system); i++) {
+    (void)fputc(',', stream);
+    csv_text(stream, dvi_system_invariant_name(scene->system, i));
+  }
   (void)fputc('\n', stream);
 }
 

@@ -90,13 +90,14 @@ static dvi_status check_isolated(const dvi_path *path, const dvi_path_report *re
       path->ends == DVI_ENDS_FIXED ? "its ends are conjugate, so that there are many such paths or none" : "it is not isolated");
 }
 
-/* Newton's method finds nothing, or does not settle, where the Hessian is singular: where it ended, or at the guess. Else the status stays. */
-static dvi_status check_singular(dvi_path *path, dvi_status status)
+/* Newton's method finds nothing, or does not settle, where the Hessian is singular: at the guess, or where it ended, if that is nearly stationary. Else the
+ * status stays. */
+static dvi_status check_singular(dvi_path *path, dvi_status status, const dvi__solve_report *solved)
 {
   dvi_path_report found = {.symmetries = path->in_use};
-  for (int at_guess = 0; at_guess < 2 && status == DVI_NOT_CONVERGED; at_guess++) {
+  const int tells = dvi__first_not_finite((size_t)path->unknowns, path->trial) < 0 && solved->residual < nearly_stationary;
+  for (int at_guess = !tells; at_guess < 2 && status == DVI_NOT_CONVERGED; at_guess++) {
     if (at_guess) memcpy(path->trial, path->x, (size_t)path->unknowns * sizeof(double));
-    if (dvi__first_not_finite((size_t)path->unknowns, path->trial) >= 0) continue;
     if (dvi__path_index(path, &found) == DVI_OK && check_isolated(path, &found) == DVI_SINGULAR) status = DVI_SINGULAR;
   }
   return status;
@@ -123,7 +124,7 @@ static dvi_status attempt(dvi_path *path, double least_own_part, dvi_path_report
   DVI_TRY(dvi__path_fix_gauge(path, path->trial, least_own_part));
   const double size = dvi__largest((size_t)path->core, path->trial);
   const dvi_status status = dvi__solve(path->solver, DVI__KINSOL, size, 0, 0, path->trial, &solved);
-  if (status != DVI_OK && check_singular(path, status) == DVI_SINGULAR) return DVI_SINGULAR;
+  if (status != DVI_OK && check_singular(path, status, &solved) == DVI_SINGULAR) return DVI_SINGULAR;
   if (status != DVI_OK) return not_found(path, status, &solved);
   report->iterations = solved.iterations;
   report->symmetries = path->in_use;
