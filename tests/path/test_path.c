@@ -373,6 +373,11 @@ START_TEST(a_driven_oscillator_follows_its_drive)
   dvi_path *path = made_path(system, "galerkin:degree=6", &options);
   const dvi_path_report report = solved(path);
   for (int k = 0; k <= 12; k++) ck_assert_double_eq_tol(dvi_path_q(path, k)[0], -cos(2 * dvi_path_time(path, k)) / 3, 1e-11);
+  dvi_path_destroy(&path);
+  path = made_path(system, "galerkin:degree=6", &(dvi_path_options){.ends = DVI_ENDS_PERIODIC, .steps = 12, .span = 3});
+  ck_assert_int_eq(dvi_path_guess(path, 2, 1, (const double[]){0, 1}, (const double[]){0.3, 0.3}), DVI_OK);
+  ck_assert_int_eq(dvi_path_solve(path, NULL), DVI_BAD_ARGUMENT);
+  check_words("the period is none of the Lagrangian's");
   /* Of modes cos(2 m t) and sin(2 m t), with (2m)^2 - 1, the constant alone is negative; the phase is the drive's. */
   ck_assert_int_eq(report.negative, 1);
   ck_assert_int_eq(report.zero, 0);
