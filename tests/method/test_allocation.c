@@ -32,6 +32,9 @@ static const struct {
     {"double-pendulum", NULL, "midpoint"},
     {"double-pendulum", NULL, "galerkin:degree=4"},
     {"double-pendulum", NULL, "composition:order=4,base=trapezoidal"},
+    {"kepler", NULL, "sem:degree=2"},
+    {"fpu", "ell=40", "sem:solver=kinsol"},
+    {"driven-pendulum", NULL, "sem:degree=2,quadrature=lobatto"},
 };
 enum { PLACES = sizeof places / sizeof *places };
 

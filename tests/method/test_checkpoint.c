@@ -36,6 +36,8 @@ static const struct {
     {"kepler", NULL, "composition:order=8,base=verlet", 0.05, 30},
     {"double-pendulum", NULL, "galerkin:degree=3", 0.02, 30},
     {"double-pendulum", NULL, "trapezoidal:solver=newton", 0.02, 30},
+    {"kepler", "e=0.8", "sem", 0.01, 120},
+    {"driven-pendulum", NULL, "sem:degree=3,quadrature=lobatto", 0.2, 30},
 };
 enum { RUNS = sizeof runs / sizeof *runs, COORDINATES_MOST = 8, INVARIANTS_MOST = 16 };
 

@@ -104,20 +104,10 @@ void dvi__action_destroy(dvi__action **action)
                            a->sweep_factor,
                            a->sweep_weight,
                            a->Z,
-                           a->sweep_shift.table,
-                           a->value,
-                           a->rate,
-                           a->by_q,
-                           a->by_v,
-                           a->rate_q,
-                           a->rate_v,
-                           a->rate_t,
-                           a->moved_t,
-                           a->moved_rate,
-                           a->moved_q,
-                           a->moved_v};
+                           a->sweep_shift.table};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) dvi__release(owned[i]);
   dvi__action_clear_between(a);
+  dvi__action_clear_energy(a);
   dvi__linear_destroy(&a->chord);
   dvi__evaluator_destroy(&a->evaluator);
   dvi__pattern_clear(&a->joint);

@@ -83,6 +83,9 @@ enum { DVI__CHORD_INVERSE = 8 };
 /* The table from the last step's forces to the sums of forces in a step `ratio` times as long: [r*lanes], by columns. */
 const double *dvi__action_sweep_shift(dvi__action *action, double ratio);
 
+/* Free what dvi__action_prepare_energy has made. */
+void dvi__action_clear_energy(dvi__action *action);
+
 /* What sweeps need that depends on h alone. */
 void dvi__action_set_step(dvi__action *action);
 

@@ -36,6 +36,13 @@ dvi_status dvi__action_prepare_energy(dvi__action *a)
   return dvi__fail(DVI_NO_MEMORY, "action: no memory for the energies of %d coordinates", a->n);
 }
 
+void dvi__action_clear_energy(dvi__action *a)
+{
+  double *const owned[] = {a->value,  a->rate,    a->by_q,       a->by_v,    a->rate_q, a->rate_v,
+                           a->rate_t, a->moved_t, a->moved_rate, a->moved_q, a->moved_v};
+  for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) dvi__release(owned[i]);
+}
+
 /* ---- energies ---- */
 
 dvi_status dvi__action_energies(dvi__action *a, dvi__energies *E)

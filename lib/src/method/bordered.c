@@ -154,10 +154,10 @@ void dvi__bordered_clear(dvi__bordered *b)
 
 /* ---- using it ---- */
 
-/* A few dozen roundings: of the summands, and of the path that they are taken at. */
+/* Some roundings: of the summands, and of the path that they are taken at. */
 double dvi__energy_floor(const dvi__energies *E)
 {
-  return 64 * DBL_EPSILON * E->size;
+  return 16 * DBL_EPSILON * E->size;
 }
 
 dvi_status dvi__bordered_energies(dvi__bordered *b, const dvi__state *state, double h, const double *Y, dvi__energies *E)
@@ -219,7 +219,7 @@ dvi_status dvi__bordered_solve(dvi__bordered *b, const dvi__state *state, double
   b->state = state;
   b->target = target;
   DVI_TRY(begin(b, size, Y, found));
-  const dvi_status status = dvi__solve(b->solver, rung, size, rung == DVI__NEWTON, 0, b->x, &report);
+  const dvi_status status = dvi__solve(b->solver, rung, size, 0, 0, b->x, &report);
   found->h = length_of(b, b->x);
   if (status != DVI_OK) return status;
   found->slope = slope_of_factor(b);
