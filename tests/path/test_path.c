@@ -282,6 +282,11 @@ START_TEST(an_energy_has_its_period)
   ck_assert_double_eq_tol(3 * report.span, eight_period, 1e-11);
   ck_assert_double_eq_tol(report.energy, eight_energy, 1e-14);
   ck_assert(dvi_path_time(path, 10) == report.span);
+  /* From itself it goes nowhere. */
+  const double before = dvi_path_q(path, 3)[0];
+  const dvi_path_report again = solved(path);
+  ck_assert_double_eq_tol(dvi_path_q(path, 3)[0], before, 1e-14);
+  ck_assert_double_eq_tol(again.span, report.span, 1e-14);
   dvi_path_destroy(&path);
   problem_destroy(&of);
 }
