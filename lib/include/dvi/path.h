@@ -9,7 +9,6 @@
 #ifndef DVI_PATH_H
 #define DVI_PATH_H
 #include <dvi/integrator.h>
-#include <stddef.h>
 
 /** What is known of the ends of a path. */
 typedef enum dvi_ends {
@@ -61,7 +60,7 @@ typedef struct dvi_path dvi_path;
 extern "C" {
 #endif
 
-/** Make a path; its first guess is the straight line between fixed ends, or a path at rest at 0.
+/** Make a path; its first guess is the straight line between fixed ends, else a path at rest: at q0, or at 0 for periodic ends.
  *
  *  The system must outlive it. One symbolic analysis of the whole Jacobian happens here.
  *  @param      method  specification of galerkin, midpoint or trapezoidal, see dvi/method.h; without `solver`

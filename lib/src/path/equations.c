@@ -52,18 +52,20 @@ static void add_given_momentum(const dvi_path *path, double *rows)
   }
 }
 
-/* rows [core]; p [(steps+1)*n] or NULL; the mean energy of an autonomous system. */
+/* rows [core]; p [(steps+1)*n]; the mean energy, for autonomous systems. The last two may be NULL. */
 static dvi_status gradient(dvi_path *path, const double *x, double *rows, double *p, double *energy)
 {
   const size_t n = (size_t)path->n, bytes = n * sizeof(double);
-  dvi__energies E = {0};
-  *energy = 0;
+  if (energy != NULL) *energy = 0;
   memset(rows, 0, (size_t)path->core * sizeof(double));
   for (int k = 0; k < path->steps; k++) {
     DVI_TRY(element_gradient(path, x, k));
     add_rows(path, k, rows);
-    if (path->system->autonomous) DVI_TRY(dvi__action_energies(path->action, &E));
-    *energy += E.end / path->steps;
+    if (energy != NULL) {
+      dvi__energies E;
+      DVI_TRY(dvi__action_energies(path->action, &E));
+      *energy += E.end / path->steps;
+    }
     if (p == NULL) continue;
     memcpy(p + (size_t)(k + 1) * n, path->in_ends[1], bytes);
     for (size_t i = 0; i < n && k == 0; i++) p[i] = -path->in_ends[0][i];
@@ -74,8 +76,7 @@ static dvi_status gradient(dvi_path *path, const double *x, double *rows, double
 
 dvi_status dvi__path_gradient(dvi_path *path, const double *x, double *p, double *largest)
 {
-  double energy;
-  DVI_TRY(gradient(path, x, path->rows, p, &energy));
+  DVI_TRY(gradient(path, x, path->rows, p, NULL));
   *largest = dvi__largest((size_t)path->core, path->rows);
   return DVI_OK;
 }
@@ -131,8 +132,8 @@ static void border_rows(const dvi_path *path, const double *x, double *rows)
 static dvi_status residual(void *of, const double *x, double *rows)
 {
   dvi_path *path = of;
-  double energy;
-  DVI_TRY(gradient(path, x, rows, NULL, &energy));
+  double energy = 0;
+  DVI_TRY(gradient(path, x, rows, NULL, path->free_span ? &energy : NULL));
   if (path->free_span) rows[path->core] = path->span * (path->energy - energy);
   border_rows(path, x, rows);
   return DVI_OK;

@@ -109,8 +109,8 @@ static dvi_status allocate(dvi_path *path)
                 {&path->rows, (size_t)path->core},
                 {&path->energy_Y, n * s},
                 {&path->energy_q0, n},
-                {&path->gauge, gauges * nodes * n},
-                {&path->origin, gauges > 0 ? nodes * n : 0},
+                {&path->gauge, gauges * (nodes - 1) * n},
+                {&path->origin, gauges > 0 ? (nodes - 1) * n : 0},
                 {&path->defect, gauges * n}};
   path->broken = DVI_NEW(int, gauges);
   int all = path->broken != NULL;
@@ -131,7 +131,7 @@ static dvi_status make_action(dvi_path *path, const char *method)
   return DVI_OK;
 }
 
-/* The straight line between fixed ends; along the first velocity, or at rest, there is nothing to know where it leads. */
+/* The straight line between fixed ends; else a path at rest, for want of anything better. */
 static dvi_status first_guess(dvi_path *path)
 {
   const size_t n = (size_t)path->n;

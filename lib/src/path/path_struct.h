@@ -41,7 +41,7 @@ struct dvi_path {
   double *row_scale;                              /* [n*s] */
   double *rows;                                   /* [core] a gradient */
   double *energy_Y, *energy_q0;                   /* [n*s], [n] what an energy changes by */
-  /* Gauge (gauge.c): the columns [gauges*(steps+1)*n] at the nodes, the nodes that they are measured from, and how many are in use. */
+  /* Gauge (gauge.c): the columns [gauges*steps*n] at the nodes but the last, the nodes that they are measured from, and how many are in use. */
   double *gauge, *origin;
   double *defect; /* [gauges*n] */
   int *broken;    /* [gauges] */
