@@ -15,8 +15,8 @@ typedef struct subcommand {
 } subcommand;
 
 static const subcommand subcommands[] = {
-    {"list", list_command},   {"explain", explain_command}, {"run", run_command},
-    {"order", order_command}, {"bench", bench_command},     {NULL, NULL},
+    {"list", list_command},   {"explain", explain_command}, {"run", run_command}, {"order", order_command},
+    {"bench", bench_command}, {"path", path_command},       {NULL, NULL},
 };
 
 static const char help[] =
@@ -28,6 +28,7 @@ static const char help[] =
     "  list methods|problems   what there is to choose from\n"
     "  explain PROBLEM ...     which kernel, solver and sparsity a method chooses for a problem, and why\n"
     "  run PROBLEM ...         compute a trajectory and its invariants as CSV\n"
+    "  path PROBLEM ...        find a path between given ends, or a periodic one, all its steps at once\n"
     "  order PROBLEM ...       measure the order of methods against an independent judge\n"
     "  bench PROBLEM ...       measure speed against error, also beside SUNDIALS' integrators\n"
     "\n"

@@ -10,6 +10,7 @@ BEGIN {
   sees["solve"] = "core num"
   sees["action"] = "core num space system"
   sees["method"] = "core num space system action solve"
+  sees["path"] = "core num space system action solve method"
   sees["diagnostics"] = "core num system"
   sees["reference"] = "core num system"
   # Single headers that are open to a room beyond that.

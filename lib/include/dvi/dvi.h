@@ -6,6 +6,7 @@
 #include <dvi/ensemble.h>
 #include <dvi/integrator.h>
 #include <dvi/method.h>
+#include <dvi/path.h>
 #include <dvi/quadrature.h>
 #include <dvi/reference.h>
 #include <dvi/run.h>

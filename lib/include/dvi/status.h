@@ -16,7 +16,7 @@
   X(DVI_BAD_OPTION, -3, "an unknown option, or a value that it cannot take")         \
   X(DVI_NO_MEMORY, -4, "memory could not be allocated")                              \
   X(DVI_CALLBACK_FAILED, -5, "a callback failed for good")                           \
-  X(DVI_SINGULAR, -6, "a mass or velocity Hessian is singular")                      \
+  X(DVI_SINGULAR, -6, "a mass, a velocity Hessian or an action's is singular")       \
   X(DVI_UNSUPPORTED, -7, "the method cannot use a term that the system declares")    \
   X(DVI_BAD_STATE, -8, "the call is out of order")                                   \
   X(DVI_IO_ERROR, -9, "a file could not be read or written")                         \

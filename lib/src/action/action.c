@@ -106,6 +106,7 @@ void dvi__action_destroy(dvi__action **action)
                            a->Z,
                            a->sweep_shift.table};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) dvi__release(owned[i]);
+  dvi__action_clear_between(a);
   dvi__action_clear_energy(a);
   dvi__linear_destroy(&a->chord);
   dvi__evaluator_destroy(&a->evaluator);
@@ -114,6 +115,11 @@ void dvi__action_destroy(dvi__action **action)
   dvi__release(a->block);
   dvi__release(a);
   *action = NULL;
+}
+
+dvi__action_space dvi__action_space_of(const dvi__action *action)
+{
+  return action->space;
 }
 
 int dvi__action_unknowns(const dvi__action *action)

@@ -36,6 +36,9 @@ void dvi__action_destroy(dvi__action **action);
 /* Prepare the Jacobian's pattern and memory; without it residuals and chords work, Jacobians do not. Once. */
 dvi_status dvi__action_prepare_jacobian(dvi__action *action);
 
+/* What it was made with. */
+dvi__action_space dvi__action_space_of(const dvi__action *action);
+
 /* Number of unknowns; of quadrature nodes; the Jacobian's pattern (after prepare). */
 int dvi__action_unknowns(const dvi__action *action);
 int dvi__action_nodes(const dvi__action *action);

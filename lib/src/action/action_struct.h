@@ -65,6 +65,10 @@ struct dvi__action {
   dvi__pattern pattern;       /* ns x ns */
   dvi__block *block;          /* [entries of joint] */
   double *H_qq, *H_qv, *H_vv; /* [entries*r] */
+  /* Between two ends (between.h); NULL until prepared. */
+  double *bubble;                    /* [(s-1)*s] beta_m in the functions psi_k */
+  double *chi, *dchi;                /* [(s+1)*lanes] tables over the nodes */
+  double *between_rows, *between_dp; /* [n*s], [n] work */
   /* Energies; NULL until prepared. */
   double *value, *rate;             /* [r] L, L_t */
   double *by_q, *by_v;              /* [n*r] what L_v V - L changes by with q and with the path's derivative in tau */
@@ -84,6 +88,14 @@ void dvi__action_clear_energy(dvi__action *action);
 
 /* What sweeps need that depends on h alone. */
 void dvi__action_set_step(dvi__action *action);
+
+/* in_q and in_v [r], which may stand in `line`: b_j (h L_qq f + L_qv f') and b_j (L_vq f + L_vv f'/h) for one entry of the joint pattern and a function f of
+ * which f and f' [r] are given at the nodes. */
+void dvi__action_weigh_hessian(const dvi__action *action, const dvi__block *block, const double *f, const double *df, double *in_q,
+                               double *in_v);
+
+/* Free what dvi__action_prepare_between made. */
+void dvi__action_clear_between(const dvi__action *action);
 
 /* Fill the batches Q and V with the path's points at the nodes. */
 void dvi__action_stages(const dvi__action *action, const double *Y);

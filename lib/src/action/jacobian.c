@@ -78,18 +78,24 @@ static void accumulate(int r, const double *H, int entry, double factor, const d
   for (int j = 0; j < r; j++) x[j] += factor * H[j] * table[j];
 }
 
+void dvi__action_weigh_hessian(const dvi__action *a, const dvi__block *block, const double *f, const double *df, double *in_q,
+                               double *in_v)
+{
+  const int r = a->r;
+  for (int j = 0; j < r; j++) in_q[j] = in_v[j] = 0;
+  accumulate(r, a->H_qq, block->qq, a->h, f, in_q);
+  accumulate(r, a->H_qv, block->qv, 1.0, df, in_q);
+  accumulate(r, a->H_qv, block->vq, 1.0, f, in_v);
+  accumulate(r, a->H_vv, block->vv, 1.0 / a->h, df, in_v);
+  for (int j = 0; j < r; j++) in_q[j] *= a->weight[j], in_v[j] *= a->weight[j];
+}
+
 /* Column l of a block: sum_j b_j [ (psi_k - psi_k(1)) (h L_qq psi_l + L_qv psi_l') + psi_k' (L_vq psi_l + L_vv psi_l'/h) ]. */
 static void block_column(const dvi__action *a, const dvi__block *block, int l, double *column)
 {
   const int r = a->r;
   double *in_q = a->line, *in_v = a->line + r;
-  const double *psi = a->psi + l * a->lanes, *dpsi = a->dpsi + l * a->lanes;
-  for (int j = 0; j < 2 * r; j++) a->line[j] = 0;
-  accumulate(r, a->H_qq, block->qq, a->h, psi, in_q);
-  accumulate(r, a->H_qv, block->qv, 1.0, dpsi, in_q);
-  accumulate(r, a->H_qv, block->vq, 1.0, psi, in_v);
-  accumulate(r, a->H_vv, block->vv, 1.0 / a->h, dpsi, in_v);
-  for (int j = 0; j < r; j++) in_q[j] *= a->weight[j], in_v[j] *= a->weight[j];
+  dvi__action_weigh_hessian(a, block, a->psi + l * a->lanes, a->dpsi + l * a->lanes, in_q, in_v);
   for (int k = 0; k < a->s; k++) {
     const double *bar = a->bar + k * a->lanes, *slope = a->dpsi + k * a->lanes;
     double sum = 0;

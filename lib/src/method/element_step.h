@@ -32,6 +32,11 @@ enum { DVI__LAST_H, DVI__NEWTON_STEPS, DVI__FULL_STEPS, DVI__NEWTON_WAIT, DVI__F
 /* Where the forces stand in it. */
 size_t dvi__element_forces(const dvi__stepper *self);
 
+/* The space of a method that is one element of the action, by its specification, spelled out into text; DVI_BAD_OPTION for other methods, and if a
+ * solver is asked for, which `user` would not heed. */
+dvi_status dvi__element_space(const dvi_system *system, const char *specification, const char *user, dvi__action_space *space,
+                              dvi__text *spelled);
+
 /* What it was made of. */
 dvi__action *dvi__element_action(const dvi__stepper *self);
 int dvi__element_solver(const dvi__stepper *self);

@@ -1,0 +1,25 @@
+/* The space of a method, for those who use its discrete action otherwise than step by step. */
+#include "core/status.h"
+#include "method/element_step.h"
+
+dvi_status dvi__element_space(const dvi_system *system, const char *specification, const char *user, dvi__action_space *space,
+                              dvi__text *spelled)
+{
+  dvi_counters counters = {0};
+  dvi__stepper stepper;
+  dvi_status status = dvi__stepper_create(system, specification, &counters, &stepper);
+  if (status != DVI_OK) return dvi__fail_in(status, "%s", user);
+  if (stepper.method->step != dvi__element_step)
+    status = dvi__fail(DVI_BAD_OPTION,
+                       "%s: %s is no discrete action with a polynomial path; galerkin, midpoint and trapezoidal are", user,
+                       stepper.method->name);
+  else if (dvi__element_solver(&stepper) != DVI__SOLVER_AUTO)
+    status = dvi__fail(DVI_BAD_OPTION, "%s: solver=%s is for steps; a path is solved as a whole, leave it out", user,
+                       dvi__solver_choice(dvi__element_solver(&stepper)));
+  if (status == DVI_OK) {
+    *space = dvi__action_space_of(dvi__element_action(&stepper));
+    dvi__text_add(spelled, "%s", stepper.specification);
+  }
+  dvi__stepper_destroy(&stepper);
+  return status;
+}
