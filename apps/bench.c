@@ -37,12 +37,21 @@ enum {
 
 static const double error_of_judge = 1e-10; /* that is good enough if no errors are asked for */
 
+/* A method as it is measured: with steps of time, or that follow a monitor. */
+typedef struct entry {
+  const char *method;
+  pacing how;
+  char name[PACED_NAME];
+} entry;
+
 /* All the work: jobs in the order of the table. */
 typedef struct bench {
   const bench_request *request;
   const problem *scene;
   judgement judge;
   progress_line progress;
+  int entries;
+  entry entry[WORDS_MAX];
   int jobs;
   bench_job *job; /* [JOBS_MAX] */
   double calibration[ROUNDS_MAX];
@@ -54,14 +63,17 @@ static void leave_out(const bench_job *job, const char *reason)
 }
 
 /* Add one level of the study's method; one whose steps cannot be solved is left out. */
-static dvi_status add_level(bench *b, order_study *study, long steps)
+static dvi_status add_level(bench *b, const entry *of, order_study *study, long steps)
 {
   bench_job *job = &b->job[b->jobs];
   level_trial trial = {.steps = steps};
   job->integrator = study->method;
   job->peer = -1;
+  job->method = of->method;
+  job->how = of->how;
   job->steps = steps;
-  (void)snprintf(job->setting, sizeof job->setting, "h=%.6g", b->request->t_end / (double)steps);
+  job->h = study->span / (double)steps;
+  (void)snprintf(job->setting, sizeof job->setting, "h=%.6g", job->h);
   dvi_status status = study_watch_energy(study, &trial);
   job->energy_error = trial.energy_error;
   if (status == DVI_OK) status = bench_job_try(job, b->scene, &b->judge, b->request->t_end);
@@ -109,7 +121,7 @@ static bool floor_is_reached(const bench *b, int first_job)
 
 /* Go on with smaller steps to the smallest asked error, as long as they make the error smaller; and beyond it as long as they make the job
  * cheaper. */
-static dvi_status extend_levels(bench *b, order_study *study, int first_job)
+static dvi_status extend_levels(bench *b, const entry *of, order_study *study, int first_job)
 {
   static const double ratio = 1.5;
   static const double steps_max = 1L << 20; /* of one job: some seconds at most for a small problem */
@@ -122,18 +134,19 @@ static dvi_status extend_levels(bench *b, order_study *study, int first_job)
     steps = ceil(ratio * steps);
     if (steps > steps_max || (last->error <= wanted && !became_cheaper(b, first_job))) break;
     if (floor_is_reached(b, first_job)) break;
-    status = add_level(b, study, lround(steps));
+    status = add_level(b, of, study, lround(steps));
   }
   return status;
 }
 
 /* Add a method's levels. */
-static int add_method(bench *b, const char *method)
+static int add_method(bench *b, const entry *of)
 {
   order_study study;
   long steps[LEVELS_MAX];
-  int code = study_init(&study, b->scene, &b->judge, method, b->request->t_end);
+  int code = study_init(&study, b->scene, &b->judge, of->method, &of->how, b->request->t_end);
   if (code != DONE) return code;
+  study.method = of->name;
   const bool extend = b->request->levels == 0;
   const int levels = extend ? LEVELS_DEFAULT : (int)b->request->levels;
   const int first_job = b->jobs;
@@ -141,8 +154,8 @@ static int add_method(bench *b, const char *method)
   study.first_error = first_error_of(b, &study);
   study.progress = &b->progress;
   dvi_status status = choose_levels(&study, 0.0, 0.0, levels, steps, &room);
-  for (int k = 0; k < levels && status == DVI_OK; k++) status = add_level(b, &study, steps[k]);
-  if (status == DVI_OK && extend) status = extend_levels(b, &study, first_job);
+  for (int k = 0; k < levels && status == DVI_OK; k++) status = add_level(b, of, &study, steps[k]);
+  if (status == DVI_OK && extend) status = extend_levels(b, of, &study, first_job);
   study_clear(&study);
   return status == DVI_OK ? DONE : library_error(status);
 }
@@ -182,7 +195,7 @@ static void add_peer(bench *b, int peer)
 static int add_jobs(bench *b)
 {
   int code = DONE;
-  for (int i = 0; i < b->request->methods.count && code == DONE; i++) code = add_method(b, b->request->methods.word[i]);
+  for (int i = 0; i < b->entries && code == DONE; i++) code = add_method(b, &b->entry[i]);
   for (int i = 0; i < b->request->peers.count && code == DONE; i++) add_peer(b, b->request->peers.peer[i]);
   return code;
 }
@@ -244,32 +257,53 @@ static int measure(bench *b)
   return code;
 }
 
-/* Refuse a wrong method before anything runs; of the selection, keep what the problem's structure allows. */
-static int choose_methods(bench_request *request, const problem *scene)
+static void keep_entry(bench *b, const char *method, const pacing *how)
 {
-  words *methods = &request->methods;
-  const bool given = methods->count > 0;
-  for (int i = 0; !given && selection[i] != NULL; i++) {
-    dvi_integrator *integrator = NULL;
-    if (dvi_integrator_create(scene->system, selection[i], &integrator) == DVI_OK) methods->word[methods->count++] = selection[i];
-    dvi_integrator_destroy(&integrator);
-  }
+  entry *e = &b->entry[b->entries++];
+  e->method = method;
+  e->how = *how;
+  paced_name(method, how, e->name, sizeof e->name);
+}
+
+/* Add a method, unless its structure forbids it: of the selection it is left out then; one that is asked for is refused, or, if there are other
+ * times to take it in, left out with a word. */
+static int add_entry(bench *b, const char *method, const pacing *how, const dvi_monitor *monitor)
+{
+  dvi_integrator *integrator = NULL;
+  const bool asked = b->request->methods.count > 0, several = b->request->transforms.count > 1;
+  if (b->entries == WORDS_MAX) return usage_error("bench: more than %d methods and time transforms", (int)WORDS_MAX);
+  const dvi_status status = create_paced(b->scene, method, how, monitor, &integrator);
+  dvi_integrator_destroy(&integrator);
+  if (status == DVI_OK) keep_entry(b, method, how);
+  if (status == DVI_OK || (!asked && status == DVI_UNSUPPORTED)) return DONE;
+  if (!several || status != DVI_UNSUPPORTED) return open_paced(b->scene, method, how, &integrator); /* which says why it fails */
+  complain("bench: left out %s @ %s: %s", method, how->transform != NULL ? how->transform : "none", dvi_last_error());
+  return DONE;
+}
+
+/* Every method with every time transform. */
+static int choose_methods(bench *b)
+{
+  const words *methods = &b->request->methods, *transforms = &b->request->transforms;
+  const char *const *method = methods->count > 0 ? methods->word : selection;
+  const int count = methods->count > 0 ? methods->count : (int)(sizeof selection / sizeof *selection) - 1;
   int code = DONE;
-  for (int i = 0; given && i < methods->count && code == DONE; i++) {
-    dvi_integrator *integrator = NULL;
-    code = open_integrator(scene, methods->word[i], &integrator);
-    dvi_integrator_destroy(&integrator);
+  for (int k = 0; (k < transforms->count || k == 0) && code == DONE; k++) {
+    const bool plain = transforms->count == 0 || strcmp(transforms->word[k], "none") == 0;
+    const pacing how = {.transform = plain ? NULL : transforms->word[k]};
+    dvi_monitor monitor = {0};
+    code = open_monitor(b->scene, &how, &monitor);
+    for (int i = 0; i < count && code == DONE; i++) code = add_entry(b, method[i], &how, &monitor);
   }
-  return code;
+  return code == DONE && b->entries == 0 ? usage_error("bench: no method is left") : code;
 }
 
 static int bench_problem(bench_request *request, const problem *scene)
 {
   if (isnan(request->t_end)) request->t_end = scene->order_t_end;
-  int code = choose_methods(request, scene);
-  if (code != DONE) return code;
   bench b = {.request = request, .scene = scene};
-  return measure(&b);
+  const int code = choose_methods(&b);
+  return code == DONE ? measure(&b) : code;
 }
 
 static int scale_problem(const bench_request *r)

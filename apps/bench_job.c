@@ -4,6 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "command.h"
+#include "march.h"
+#include "open.h"
 #include "peer.h"
 #include "study.h"
 
@@ -13,14 +16,10 @@ static dvi_status run_method(const bench_job *job, const problem *scene, double 
 {
   dvi_integrator *integrator = NULL;
   const double began = cpu_now();
-  dvi_status status = dvi_integrator_create(scene->system, job->integrator, &integrator);
+  dvi_status status = open_paced(scene, job->method, &job->how, &integrator) == DONE ? DVI_OK : DVI_BAD_OPTION;
   *creation += cpu_now() - began;
   if (status == DVI_OK) status = dvi_integrator_start(integrator, 0.0, scene->q, scene->p);
-  const double h = t_end / (double)job->steps;
-  if (status == DVI_OK && dvi_integrator_chooses_steps(integrator))
-    status = dvi_run(integrator, &(dvi_run_options){.h = h, .t_end = t_end}, NULL);
-  else
-    for (long i = 0; i < job->steps && status == DVI_OK; i++) status = dvi_integrator_step(integrator, h);
+  if (status == DVI_OK) status = march(integrator, job->h, job->steps, t_end, NULL, NULL, NULL, NULL);
   if (status == DVI_OK && q != NULL) {
     dvi_counters counters;
     dvi_integrator_counters(integrator, &counters);

@@ -2,6 +2,7 @@
 #ifndef BENCH_JOB_H
 #define BENCH_JOB_H
 #include "judge.h"
+#include "pacing.h"
 #include "problem.h"
 #include "samples.h"
 
@@ -12,6 +13,9 @@ typedef struct bench_job {
   const char *integrator;     /**< its name in the table */
   char setting[SETTING_SIZE]; /**< "h=0.05" or "tol=1e-08" */
   int peer;                   /**< a peer's number; -1: a method */
+  const char *method;         /**< of a method: its specification */
+  pacing how;                 /**< what its steps follow */
+  double h;                   /**< its step */
   long steps;                 /**< for a method as asked, of a peer as it took them */
   double tolerance;           /**< of a peer */
   double error, energy_error;

@@ -37,17 +37,18 @@ static int check_modes(const bench_request *r)
   if (r->at != NULL) return usage_error("bench: %s: --at has no meaning there", reason);
   if (r->against.count > 0) return usage_error("bench: %s: the codes of --against choose their own", reason);
   if (r->judged_by != NULL) return usage_error("bench: %s: --judge has no meaning there", reason);
+  if (r->transforms.count > 0) return usage_error("bench: %s: --time-transform has no meaning there", reason);
   if (r->levels > 0) return usage_error("bench: %s: --levels has no meaning there", reason);
   if (!isnan(r->t_end)) return usage_error("bench: %s: --t-end has no meaning there", reason);
   return r->h == 0.0 ? usage_error("bench: --h 0 leads nowhere") : DONE;
 }
 
 /* The settings of a method that is named twice could not be told apart. */
-static int check_methods(const words *methods)
+static int check_words(const char *name, const words *given)
 {
-  for (int i = 0; i < methods->count; i++)
+  for (int i = 0; i < given->count; i++)
     for (int j = 0; j < i; j++)
-      if (strcmp(methods->word[i], methods->word[j]) == 0) return usage_error("bench: --method names %s twice", methods->word[i]);
+      if (strcmp(given->word[i], given->word[j]) == 0) return usage_error("bench: --%s names %s twice", name, given->word[i]);
   return DONE;
 }
 
@@ -61,7 +62,8 @@ static int check_request(bench_request *request)
     return usage_error("bench: --steps %ld is too many, %d are possible", request->steps, (int)STEPS_MAX);
   if (request->t_end == 0.0) return usage_error("bench: --t-end 0 leaves nothing to do");
   int code = check_modes(request);
-  if (code == DONE) code = check_methods(&request->methods);
+  if (code == DONE) code = check_words("method", &request->methods);
+  if (code == DONE) code = check_words("time-transform", &request->transforms);
   if (code == DONE && request->at != NULL) code = numbers_read("bench: --at", request->at, &request->outputs.asked);
   if (code == DONE && request->judged_by != NULL) code = judge_read("bench: --judge", request->judged_by, &request->judge);
   if (code == DONE) code = peers_read(&request->against, &request->peers);
@@ -82,6 +84,9 @@ static const char *const details[] = {
     "  steps         of a peer those that it chose\n"
     "  create_seconds   the part of cpu_seconds that creates the integrator; empty for peers\n"
     "  calibration_seconds, calibration_least   of 1e8 dependent multiplications: median and least over the rounds\n",
+    "--time-transform: methods appear once for each, as METHOD @ MONITOR, in a fictitious time in which their h is measured; of "
+    "the\n"
+    "selection, explicit methods are left out then. --time-transform none puts the same methods beside them with steps of time.\n",
     "--against: cvode (cvode-adams), cvode-bdf, arkode and ida of SUNDIALS; gsl is GSL's rk8pd, in builds with DVI_GSL.\n"
     "They run at tolerances from 1e-4 to 1e-12, and down to 1e-14 if --at asks for more. Every integrator gets the same\n"
     "callbacks: batches, or one point a call with --one-point (peers always ask for one point).\n",
@@ -117,6 +122,7 @@ static const char *const details[] = {
     "Examples:\n"
     "  dvi bench kepler --against cvode,arkode,ida --at 1e-6,1e-9 --plot bench.svg\n"
     "  dvi bench outer-solar --t-end 500000 --method galerkin:degree=8 --method galerkin:degree=8,solver=certified --at 1e-9\n"
+    "  dvi bench kepler --set e=0.99 --time-transform none --time-transform distance --against cvode,ida --at 1e-6\n"
     "  dvi bench fpu --method galerkin:degree=2 --method galerkin:degree=4 --scale ell=100,1000,10000\n"
     "  dvi bench fpu --method galerkin --scale degree=1,2,4,8,16\n"
     "  dvi bench chain --set n=1e6 --method verlet --method composition:order=8 --scale threads=1,2\n"
@@ -129,6 +135,10 @@ bool bench_request_read(int argc, char **argv, bench_request *r, int *exit_code)
   *r = (bench_request){.t_end = (double)NAN, .h = (double)NAN, .rounds = ROUNDS_DEFAULT};
   const option options[] = {
       {.name = "method", .words = &r->methods, .value = "SPEC", .help = "a method; may be repeated; left out: a selection"},
+      {.name = "time-transform",
+       .words = &r->transforms,
+       .value = "MONITOR",
+       .help = "every method in this time (see dvi run --help), or in none; may be repeated; left out: none"},
       {.name = "against", .words = &r->against, .value = "CODES", .help = "codes beside them: of cvode,cvode-bdf,arkode,ida,gsl"},
       {.name = "judge", .word = &r->judged_by, .value = "WHO", .help = "auto, exact, stored, ida or runs; left out: auto"},
       {.name = "one-point", .flag = &r->one_point, .help = "give the problem's callbacks one point a call, not a batch"},

@@ -51,10 +51,10 @@ static int print_method(const dvi_integrator *integrator)
   return DONE;
 }
 
-static int explain(const problem *scene, const char *method)
+static int explain(const problem *scene, const char *method, const pacing *how)
 {
   dvi_integrator *integrator = NULL;
-  int code = open_integrator(scene, method, &integrator);
+  int code = open_paced(scene, method, how, &integrator);
   if (code != DONE) return code;
   const dvi_status status = dvi_integrator_start(integrator, 0.0, scene->q, scene->p);
   code = status == DVI_OK ? print_method(integrator) : library_error(status);
@@ -65,7 +65,8 @@ static int explain(const problem *scene, const char *method)
 static const char *const details[] = {
     "Examples:\n"
     "  dvi explain kepler --method galerkin:degree=4\n"
-    "  dvi explain fpu --method midpoint --set ell=1000\n",
+    "  dvi explain fpu --method midpoint --set ell=1000\n"
+    "  dvi explain kepler --method galerkin:degree=4 --time-transform distance:power=1.5\n",
     NULL,
 };
 
@@ -73,14 +74,23 @@ int explain_command(int argc, char **argv)
 {
   const char *method = NULL;
   words settings = {0};
+  pacing how = {0};
   const option options[] = {
       {.name = "method", .word = &method, .value = "SPEC", .help = "the method: name[:key=value,...], see dvi list methods"},
+      {.name = "time-transform",
+       .word = &how.transform,
+       .value = "MONITOR",
+       .help = "steps of equal length in another time: distance[:power=P], arclength or acceleration[:power=P]"},
+      {.name = "step-control",
+       .word = &how.control,
+       .value = "MONITOR",
+       .help = "steps that follow a monitor reversibly: cheaper, symmetric, not symplectic"},
       {.name = "set", .words = &settings, .value = "NAME=VALUE", .help = "set a parameter of the problem; may be repeated"},
       {.name = NULL},
   };
   const command_line command = {
       .name = "explain",
-      .synopsis = "PROBLEM --method SPEC [--set NAME=VALUE ...]",
+      .synopsis = "PROBLEM --method SPEC [OPTIONS]",
       .operand = "PROBLEM",
       .summary = "Say which terms a problem has, and which kernel, solver and sparsity a method chooses for it, and why.\n",
       .options = options,
@@ -91,11 +101,13 @@ int explain_command(int argc, char **argv)
   if (!options_parse(&command, argc, argv, &name, &code)) return code;
   if (method == NULL)
     return usage_error("explain: --method is missing, for example --method galerkin:degree=4; see dvi list methods");
+  code = pacing_check("explain", &how);
+  if (code != DONE) return code;
   problem *scene;
   code = open_problem(name, &settings, &scene);
   if (code != DONE) return code;
   print_problem(scene, &settings);
-  code = explain(scene, method);
+  code = explain(scene, method, &how);
   problem_destroy(&scene);
   return code;
 }

@@ -38,7 +38,7 @@ static dvi_status find_first(order_study *s, level_trial *first)
   const double target = first_target(s);
   long too_few = 0;
   long enough = 0;
-  long steps = lround(within(ceil(fabs(s->t_end) / s->scene->order_h), 1.0, (double)search_max));
+  long steps = lround(within(ceil(fabs(s->span) / s->scene->order_h), 1.0, (double)search_max));
   for (int i = 0; i < SEARCH_TRIES; i++) {
     const dvi_status status = study_run(s, steps, first);
     if (status < 0) return status;
@@ -104,7 +104,7 @@ static bool has_room(const order_study *s, const level_trial *first, int levels)
 dvi_status choose_levels(order_study *study, double h, double ratio, int levels, long *steps, bool *room)
 {
   level_trial first;
-  const double wanted = h > 0.0 ? within(fabs(study->t_end) / h, 1.0, (double)FIRST_STEPS_MAX) : 0.0;
+  const double wanted = h > 0.0 ? within(fabs(study->span) / h, 1.0, (double)FIRST_STEPS_MAX) : 0.0;
   dvi_status status = wanted > 0.0 ? study_run(study, lround(wanted), &first) : find_first(study, &first);
   if (status == DVI_OK) status = find_floor(study, first.steps);
   if (status == DVI_OK && !(wanted > 0.0)) status = find_first(study, &first); /* now that the floor is known */

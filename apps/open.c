@@ -129,12 +129,50 @@ static void hint_at_method(const char *method, char *hint)
   }
 }
 
-int open_integrator(const problem *scene, const char *method, dvi_integrator **integrator)
+static int read_monitor(const problem *scene, const char *asked, const char *specification, dvi_monitor *monitor)
 {
-  const dvi_status status = dvi_integrator_create(scene->system, method, integrator);
+  if (dvi_monitor_read(specification, monitor) != DVI_OK) return usage_error("--%s %s: %s", asked, specification, dvi_last_error());
+  if (monitor->kind != DVI_MONITOR_DISTANCE || monitor->bodies != 0) return DONE;
+  if (scene->bodies == 0)
+    return usage_error("--%s %s: %s has no bodies whose distances could be measured; see arclength and acceleration", asked,
+                       specification, scene->name);
+  monitor->bodies = scene->bodies;
+  return DONE;
+}
+
+/* The exit code for what came of making an integrator. */
+static int opened(dvi_status status, const char *method)
+{
   if (status != DVI_BAD_OPTION) return status == DVI_OK ? DONE : library_error(status);
   char hint[HINT_SIZE];
   hint_at_method(method, hint);
   const bool said = strstr(dvi_last_error(), "did you mean") != NULL;
   return usage_error("--method %s: %s%s", method, dvi_last_error(), said ? "" : hint);
+}
+
+int open_integrator(const problem *scene, const char *method, dvi_integrator **integrator)
+{
+  return opened(dvi_integrator_create(scene->system, method, integrator), method);
+}
+
+int open_monitor(const problem *scene, const pacing *how, dvi_monitor *monitor)
+{
+  if (how->transform != NULL) return read_monitor(scene, "time-transform", how->transform, monitor);
+  return how->control != NULL ? read_monitor(scene, "step-control", how->control, monitor) : DONE;
+}
+
+dvi_status create_paced(const problem *scene, const char *method, const pacing *how, const dvi_monitor *monitor,
+                        dvi_integrator **integrator)
+{
+  if (how->transform != NULL) return dvi_integrator_create_transformed(scene->system, monitor, method, integrator);
+  if (how->control != NULL) return dvi_integrator_create_controlled(scene->system, monitor, method, integrator);
+  return dvi_integrator_create(scene->system, method, integrator);
+}
+
+int open_paced(const problem *scene, const char *method, const pacing *how, dvi_integrator **integrator)
+{
+  dvi_monitor monitor = {0};
+  *integrator = NULL;
+  const int code = open_monitor(scene, how, &monitor);
+  return code == DONE ? opened(create_paced(scene, method, how, &monitor, integrator), method) : code;
 }

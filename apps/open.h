@@ -2,6 +2,7 @@
 #ifndef OPEN_H
 #define OPEN_H
 #include "options.h"
+#include "pacing.h"
 #include "problem.h"
 
 /** Make the problem, with its "name=value" settings. Returns DONE, or complains (with the nearest known name) and returns the
@@ -13,6 +14,16 @@ int open_shaped(const char *name, const words *settings, bool one_point, problem
 
 /** The first setting of a parameter that only places the start; NULL if there is none, or no such problem. */
 const char *start_setting(const char *name, const words *settings);
+
+/** Read the monitor that `how` names, if it names one. A distance is that of the problem's bodies. Returns DONE, or complains. */
+int open_monitor(const problem *scene, const pacing *how, dvi_monitor *monitor);
+
+/** Make an integrator whose steps follow the monitor, if `how` names one, and say nothing. */
+dvi_status create_paced(const problem *scene, const char *method, const pacing *how, const dvi_monitor *monitor,
+                        dvi_integrator **integrator);
+
+/** Both, in the manner of open_integrator. */
+int open_paced(const problem *scene, const char *method, const pacing *how, dvi_integrator **integrator);
 
 /** Make an integrator for it from a method's specification, in the same manner. */
 int open_integrator(const problem *scene, const char *method, dvi_integrator **integrator);

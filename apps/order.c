@@ -27,6 +27,7 @@ typedef struct order_request {
   double h, t_end, ratio;
   long levels; /* 0: chosen */
   words methods, settings;
+  pacing how;
 } order_request;
 
 static void add_row(result_table *rows, const order_study *study, const order_result *result, int k, const level_trial *trial)
@@ -85,7 +86,6 @@ static int level_count(const order_request *request, const order_study *study)
 static dvi_status measure(hearing *ask, order_study *study, int levels, const long *steps, order_result *result)
 {
   dvi_status status = DVI_OK;
-  result->method = study->method;
   result->claimed = study->order;
   result->t_end = study->t_end;
   memcpy(result->judge, ask->judge.words, sizeof result->judge);
@@ -115,8 +115,10 @@ static int study_until(hearing *ask, const char *method, double t_end, bool *roo
   const bool must_fit = *room;
   int code = ask_judge(ask, t_end);
   if (code != DONE) return code;
-  code = study_init(&study, ask->scene, &ask->judge, method, t_end);
+  code = study_init(&study, ask->scene, &ask->judge, method, &request->how, t_end);
   if (code != DONE) return code;
+  paced_name(method, &request->how, result->method, sizeof result->method);
+  study.method = result->method;
   study.progress = &ask->progress;
   const int levels = level_count(request, &study);
   dvi_status status = choose_levels(&study, isnan(request->h) ? 0.0 : request->h, isnan(request->ratio) ? 0.0 : request->ratio,
@@ -207,7 +209,7 @@ static int check_methods(const order_request *request, const problem *scene)
   int code = DONE;
   for (int i = 0; i < request->methods.count && code == DONE; i++) {
     dvi_integrator *integrator = NULL;
-    code = open_integrator(scene, request->methods.word[i], &integrator);
+    code = open_paced(scene, request->methods.word[i], &request->how, &integrator);
     dvi_integrator_destroy(&integrator);
   }
   return code;
@@ -224,6 +226,7 @@ static int check_request(order_request *request)
     return usage_error("order: --h %g is not positive; for a study backward in time set --t-end below 0", request->h);
   if (!isnan(request->ratio) && !(request->ratio >= 1.01 && request->ratio <= 10.0))
     return usage_error("order: --ratio %g is not between 1.01 and 10", request->ratio);
+  if (pacing_check("order", &request->how) != DONE) return USAGE;
   const named_file files[] = {{"csv", request->csv}, {"plot", request->plot}};
   int code = request->judged_by != NULL ? judge_read("order: --judge", request->judged_by, &request->judge) : DONE;
   if (code == DONE) code = outputs_plot("order", request->plot);
@@ -252,9 +255,12 @@ static const char *const details[] = {
     "Higher terms that die out slowly may also settle on a wrong slope (pythagorean at order 10).\n",
     "The first step is searched up to 2^17 steps to the end, the last level has up to 2^22; --h goes beyond. A span\n"
     "too short for the levels of a high order is lengthened, unless a stored result would be lost by that.\n",
+    "With --time-transform or --step-control h is a step of the other time, whose span is measured by a run of its own; the\n"
+    "number of steps is what that span gives, and the last one is shortened to end at t_end.\n",
     "Examples:\n"
     "  dvi order kepler --method galerkin:degree=2\n"
     "  dvi order pendulum --method verlet --method composition:order=6,base=verlet --plot order.svg\n"
+    "  dvi order kepler --set e=0.9 --method galerkin:degree=2 --time-transform distance\n"
     "  dvi order toda --method galerkin:degree=3,quadrature=lobatto,nodes=3 --h 0.5 --levels 8 --csv order.csv\n",
     NULL,
 };
@@ -268,6 +274,14 @@ int order_command(int argc, char **argv)
       {.name = "levels", .count = &r.levels, .value = "N", .help = "how many step sizes; left out: 6, or 12 from order 8"},
       {.name = "ratio", .number = &r.ratio, .value = "R", .help = "of neighbouring steps; left out: 2, or less for high orders"},
       {.name = "t-end", .number = &r.t_end, .value = "T", .help = "the end; left out: the problem's for order studies"},
+      {.name = "time-transform",
+       .word = &r.how.transform,
+       .value = "MONITOR",
+       .help = "steps of equal length in another time: distance[:power=P], arclength or acceleration[:power=P]"},
+      {.name = "step-control",
+       .word = &r.how.control,
+       .value = "MONITOR",
+       .help = "steps that follow a monitor reversibly: cheaper, symmetric, not symplectic"},
       {.name = "judge", .word = &r.judged_by, .value = "WHO", .help = "auto, exact, stored, ida or runs; left out: auto"},
       {.name = "set", .words = &r.settings, .value = "NAME=VALUE", .help = "set a parameter of the problem; may be repeated"},
       {.name = "csv", .word = &r.csv, .value = "-|FILE", .help = "write the table as CSV; -: to standard output, words to stderr"},

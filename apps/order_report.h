@@ -5,14 +5,15 @@
 #include <stdio.h>
 
 #include "judge.h"
+#include "pacing.h"
 #include "problem.h"
 #include "table.h"
 
-enum { LEVELS_MAX = 40, LABEL_SIZE = 160 };
+enum { LEVELS_MAX = 40, LABEL_SIZE = PACED_NAME + 32 };
 
 /** What was found for one method. */
 typedef struct order_result {
-  const char *method;
+  char method[PACED_NAME]; /**< with what its steps follow */
   int claimed;             /**< its order */
   double t_end;            /**< where it was judged */
   char judge[JUDGE_WORDS]; /**< by whom, in words */

@@ -18,7 +18,8 @@
 /* What the command line asks for. */
 typedef struct run_request {
   const char *method, *out, *checkpoint, *resume, *plot;
-  double h, t_end;
+  double h, t_end, tolerance; /* tolerance: NaN, or refused */
+  pacing how;
   long every, checkpoint_every; /* 0: not given */
   bool final;
   words settings;
@@ -150,9 +151,12 @@ static bool write_last_row(recorder *r, dvi_integrator *integrator)
   return r->row_written || (measure(r, integrator) && write_row(r, integrator));
 }
 
-/* The number of the step that ends at t on the grid 0, h, 2h, ...; 0 if t is not on it. */
-static long step_number(double t, double h)
+/* The number of the step that ends at t on the grid 0, h, 2h, ...; 0 if t is not on it. In another time there is no such grid, but a count. */
+static long step_number(const dvi_integrator *integrator, double t, double h)
 {
+  dvi_counters counters;
+  dvi_integrator_counters(integrator, &counters);
+  if (dvi_integrator_monitor(integrator) != NULL) return counters.steps;
   const double steps = t / h;
   return steps > 0.0 && steps < 1e15 && fabs(steps - round(steps)) < 1e-6 ? lround(steps) : 0;
 }
@@ -195,7 +199,7 @@ static int advance(recorder *r, dvi_integrator *integrator)
                                    .checkpoint_every = request->checkpoint_every,
                                    .cancel = r->caught};
   r->t_start = dvi_integrator_time(integrator);
-  r->step = step_number(r->t_start, request->h);
+  r->step = step_number(integrator, r->t_start, request->h);
   write_header(r);
   progress_start(&r->progress, request->final || r->out.path != NULL);
   const dvi_status status = dvi_run(integrator, &options, NULL);
@@ -255,7 +259,7 @@ static int record(run_request *request, const problem *scene, dvi_integrator *in
 static int run(run_request *request, const problem *scene)
 {
   dvi_integrator *integrator = NULL;
-  int code = open_integrator(scene, request->method, &integrator);
+  int code = open_paced(scene, request->method, &request->how, &integrator);
   if (code == DONE && !place(request, scene, integrator)) code = FAILED;
   if (code == DONE) code = complete(request, scene, dvi_integrator_time(integrator));
   if (code == DONE) code = record(request, scene, integrator);
@@ -283,6 +287,11 @@ static int check_request(const run_request *request)
     return usage_error("run: --checkpoint-every needs --checkpoint FILE");
   if (request->every > 0 && request->final)
     return usage_error("run: --every %ld places rows that --final leaves out; give one of them", request->every);
+  if (!isnan(request->tolerance))
+    return usage_error(
+        "run: --tolerance: steps chosen by estimates of their errors make any of these methods neither symplectic nor "
+        "symmetric, and its energy drifts; --time-transform or --step-control adapt steps without that");
+  if (pacing_check("run", &request->how) != DONE) return USAGE;
   const int code = check_files(request);
   if (code != DONE) return code;
   if (request->checkpoint != NULL && !file_writable(request->checkpoint)) return FAILED;
@@ -308,10 +317,15 @@ static const char *const details[] = {
     "written. A second Ctrl-C ends it at once.\n",
     "A checkpoint holds the state of the method, not the command line: resume with the same problem, method and\n"
     "step, and the run continues bit for bit. Parameters that only place the start cannot be set then.\n",
+    "--time-transform: steps H of a fictitious time tau, dt/dtau = g(q), with g the monitor; the run stays symplectic, takes\n"
+    "implicit methods and autonomous problems, and ends at T all the same. Monitors: distance:power=P, 1/g = sum of r^-P over\n"
+    "all pairs of bodies (P left out: 1.5); arclength, equal lengths in phase space; acceleration:power=P, g = |a|^-P (0.75).\n"
+    "--step-control: a symmetric method takes steps of about H g. Rows are in t. Too large an H shows in the energy.\n",
     "Examples:\n"
     "  dvi run kepler --method galerkin:degree=4 --h 0.1 --t-end 100 --out orbit.csv --plot orbit.svg\n"
     "  dvi run kepler --method verlet --h 0.001 --t-end 10 --set e=0.9 --every 100\n"
     "  dvi run outer-solar --method galerkin:degree=8 --h 200 --t-end 500000 --final\n"
+    "  dvi run kepler --set e=0.99 --method galerkin:degree=4 --time-transform distance --h 0.3 --t-end 63\n"
     "  dvi run kepler --method sem:degree=2 --h 0.05 --t-end 100 --set e=0.5 --out orbit.csv\n"
     "  dvi run fpu --method midpoint --h 0.01 --t-end 100 --checkpoint fpu.state --out part1.csv\n"
     "  dvi run fpu --method midpoint --h 0.01 --t-end 200 --resume fpu.state --out part2.csv\n",
@@ -324,11 +338,21 @@ int run_command(int argc, char **argv)
       .out = "-",
       .h = (double)NAN,
       .t_end = (double)NAN,
+      .tolerance = (double)NAN,
   };
   const option options[] = {
       {.name = "method", .word = &r.method, .value = "SPEC", .help = "the method: name[:key=value,...], see dvi list methods"},
       {.name = "h", .number = &r.h, .value = "H", .help = "the step, for sem the first one; left out: the problem's"},
       {.name = "t-end", .number = &r.t_end, .value = "T", .help = "the end, from t = 0 (T < 0: backward); left out: the problem's"},
+      {.name = "time-transform",
+       .word = &r.how.transform,
+       .value = "MONITOR",
+       .help = "steps of equal length in another time: distance[:power=P], arclength or acceleration[:power=P]"},
+      {.name = "step-control",
+       .word = &r.how.control,
+       .value = "MONITOR",
+       .help = "steps that follow a monitor reversibly: cheaper, symmetric, not symplectic"},
+      {.name = "tolerance", .number = &r.tolerance, .value = "TOL", .help = "refused: see --time-transform and --step-control"},
       {.name = "every", .count = &r.every, .value = "K", .help = "a row after every K steps; left out: 1; not with --final"},
       {.name = "final", .flag = &r.final, .help = "the header and the last row only"},
       {.name = "set", .words = &r.settings, .value = "NAME=VALUE", .help = "set a parameter of the problem; may be repeated"},
@@ -349,7 +373,9 @@ int run_command(int argc, char **argv)
       .name = "run",
       .synopsis = "PROBLEM --method SPEC [--h H] [--t-end T] [OPTIONS]",
       .operand = "PROBLEM",
-      .summary = "Compute a trajectory with fixed steps, or with those that sem chooses; write it and its invariants as CSV.\n",
+      .summary = "Compute a trajectory with fixed steps, with those that sem chooses, or with steps that follow the motion; write "
+                 "it and its\n"
+                 "invariants as CSV.\n",
       .options = options,
       .details = details,
   };

@@ -7,9 +7,8 @@
 #include <time.h>
 
 #include "command.h"
-#include "open.h"
+#include "march.h"
 
-enum { PROGRESS_STEPS = 256 };
 static const double ceiling_digits = 1e-2; /* an error of 1 % of the solution's size is no longer asymptotic */
 static const double clock_seconds = 0.02;  /* process time that one measurement takes at least */
 static const double repeats_max = 1e6;
@@ -42,15 +41,21 @@ double study_size(const order_study *s)
   return size > 0.0 ? size : 1.0;
 }
 
-int study_init(order_study *study, const problem *scene, const judgement *judge, const char *method, double t_end)
+int study_init(order_study *study, const problem *scene, const judgement *judge, const char *method, const pacing *how,
+               double t_end)
 {
   memset(study, 0, sizeof *study);
   study->scene = scene;
   study->judge = judge;
   study->method = method;
   study->t_end = t_end;
-  const int code = open_integrator(scene, method, &study->integrator);
+  const int code = open_paced(scene, method, how, &study->integrator);
   if (code != DONE) return code;
+  const dvi_status status = march_span(study->integrator, scene->q, scene->p, scene->order_h, t_end, &study->span);
+  if (status != DVI_OK) {
+    study_clear(study);
+    return library_error(status);
+  }
   study->order = dvi_integrator_order(study->integrator);
   study->ceiling = ceiling_digits * study_size(study);
   study->floor = STUDY_FLOOR_MARGIN * judge->error;
@@ -62,22 +67,11 @@ void study_clear(order_study *study)
   dvi_integrator_destroy(&study->integrator);
 }
 
-/* Methods that choose their steps are driven to the end: h is their first step. */
-static dvi_status drive(order_study *s, double h, int (*observe)(dvi_integrator *, void *), void *user)
-{
-  return dvi_run(s->integrator, &(dvi_run_options){.h = h, .t_end = s->t_end, .observe = observe, .user = user}, NULL);
-}
-
 dvi_status study_integrate(order_study *s, const double *q, long steps)
 {
-  const double h = s->t_end / (double)steps;
-  dvi_status status = dvi_integrator_start(s->integrator, 0.0, q, s->scene->p);
-  if (dvi_integrator_chooses_steps(s->integrator)) return status == DVI_OK ? drive(s, h, NULL, NULL) : status;
-  for (long i = 0; i < steps && status == DVI_OK; i++) {
-    if (s->progress != NULL && i % PROGRESS_STEPS == 0) progress_show(s->progress, -1.0, s->method);
-    status = dvi_integrator_step(s->integrator, h);
-  }
-  return status;
+  const dvi_status status = dvi_integrator_start(s->integrator, 0.0, q, s->scene->p);
+  if (status != DVI_OK) return status;
+  return march(s->integrator, s->span / (double)steps, steps, s->t_end, NULL, NULL, s->progress, s->method);
 }
 
 dvi_status study_run(order_study *study, long steps, level_trial *trial)
@@ -86,7 +80,7 @@ dvi_status study_run(order_study *study, long steps, level_trial *trial)
   dvi_integrator_counters(study->integrator, &before);
   memset(trial, 0, sizeof *trial);
   trial->steps = trial->taken = steps;
-  trial->h = study->t_end / (double)steps;
+  trial->h = study->span / (double)steps;
   trial->energy_error = trial->cpu_seconds = (double)NAN;
   const dvi_status status = study_integrate(study, study->scene->q, steps);
   if (status != DVI_OK) return status;
@@ -117,18 +111,13 @@ dvi_status study_watch_energy(order_study *study, level_trial *trial)
   if (value == NULL) return DVI_NO_MEMORY;
   double drift[2] = {(double)NAN, 0.0};
   double *watched[2] = {value, drift};
-  const double h = study->t_end / (double)trial->steps;
+  const double h = study->span / (double)trial->steps;
   dvi_status status = dvi_integrator_start(study->integrator, 0.0, study->scene->q, study->scene->p);
-  bool good = status == DVI_OK && watch(study->integrator, watched) == 0;
-  const bool driven = good && dvi_integrator_chooses_steps(study->integrator);
-  if (driven) status = drive(study, h, watch, watched);
-  for (long i = 0; i < trial->steps && good && !driven; i++) {
-    status = dvi_integrator_step(study->integrator, h);
-    good = status == DVI_OK && watch(study->integrator, watched) == 0;
-  }
+  if (status == DVI_OK && watch(study->integrator, watched) != 0) status = DVI_NOT_FINITE;
+  if (status == DVI_OK) status = march(study->integrator, h, trial->steps, study->t_end, watch, watched, NULL, NULL);
   free(value);
   trial->energy_error = drift[1];
-  return good || status != DVI_OK ? status : DVI_NOT_FINITE;
+  return status;
 }
 
 dvi_status study_time(order_study *study, level_trial *trial)

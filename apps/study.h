@@ -2,6 +2,7 @@
 #ifndef STUDY_H
 #define STUDY_H
 #include "judge.h"
+#include "open.h"
 #include "problem.h"
 #include "progress.h"
 
@@ -12,8 +13,9 @@
 typedef struct order_study {
   const problem *scene;
   const judgement *judge;
-  const char *method;
+  const char *method; /**< its name in tables */
   double t_end;
+  double span;                /**< the sum of the steps: t_end, or what it is in the time of the steps */
   dvi_integrator *integrator; /**< owned */
   progress_line *progress;    /**< shown while it runs; NULL: none */
   int order;                  /**< that the method claims */
@@ -25,16 +27,17 @@ typedef struct order_study {
 /** What came out at one step size. */
 typedef struct level_trial {
   long steps;
-  long taken;          /**< the same, but for methods that choose their steps after the first one of h */
-  double h;            /**< t_end / steps */
+  long taken;          /**< the same, but where steps are chosen */
+  double h;            /**< span / steps; of methods that choose their steps the first one */
   double error;        /**< of q at t_end, in the maximum norm */
   double energy_error; /**< largest |energy - energy at the start| over the run */
   double cpu_seconds;  /**< of one run without diagnostics */
   dvi_counters spent;  /**< by one run without diagnostics */
 } level_trial;
 
-/** Begin a study. Returns DONE, or complains and returns the exit code. */
-int study_init(order_study *study, const problem *scene, const judgement *judge, const char *method, double t_end);
+/** Begin a study of a method, whose steps may follow a monitor. Returns DONE, or complains and returns the exit code. */
+int study_init(order_study *study, const problem *scene, const judgement *judge, const char *method, const pacing *how,
+               double t_end);
 void study_clear(order_study *study);
 
 /** Run once with so many equal steps: fills steps, h, error and spent. */

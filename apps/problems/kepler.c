@@ -127,6 +127,7 @@ static dvi_status make(const double *setting, problem *made)
   if (status != DVI_OK) return status;
   double *e = made->parameters;
   *e = setting[0];
+  made->bodies = 1;
   problem_label(made, 0, "x");
   problem_label(made, 1, "y");
   made->q[0] = 1.0 - *e;

@@ -226,6 +226,7 @@ dvi_status nbody_make(const nbody *bodies, problem *made)
   if (status != DVI_OK) return status;
   gravity *own = made->parameters;
   own->bodies = *bodies;
+  made->bodies = bodies->bodies;
   for (int a = 0; a < bodies->bodies; a++)
     for (int i = 0; i < dimension; i++) {
       const int j = a * dimension + i;

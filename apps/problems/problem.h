@@ -21,6 +21,7 @@ typedef struct problem {
   dvi_system *system;
   const dvi_system_terms *terms; /**< what the system was made of */
   int n;
+  int bodies; /**< q lists so many points, of n/bodies coordinates each, between which distances matter; 1: from the origin; 0: none */
   char **coordinate;                 /**< [n] names, for the columns of tables: "x", "theta_1"; momenta are "p_" and the name */
   double *q, *p;                     /**< [n] the start at t = 0 */
   double *v;                         /**< [n] its velocity */

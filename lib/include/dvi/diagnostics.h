@@ -70,7 +70,7 @@ dvi_status dvi_order(int count, const double *h, const double *error, double flo
  *
  *  Takes 16 to 27 n steps where the map is smooth over lengths near unit size, at most 250 n. A second integrator of the same
  *  method takes them. Memory (2n)^2 numbers.
- *  @param      integrator  its method and system are used; it is left alone
+ *  @param      integrator  its method and system are used, and the E0 of its start if it is time-transformed (dvi/transform.h); it is left alone
  *  @param      t, q, p     where; q and p may be the integrator's own
  *  @param      h           the step
  *  @param[out] defect      the defect; not written on failure

@@ -12,5 +12,6 @@
 #include <dvi/run.h>
 #include <dvi/status.h>
 #include <dvi/system.h>
+#include <dvi/transform.h>
 #include <dvi/version.h>
 #endif

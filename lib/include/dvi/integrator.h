@@ -62,6 +62,14 @@ extern "C" {
  *  @retval DVI_NO_MEMORY */
 dvi_status dvi_integrator_create(const dvi_system *system, const char *method, dvi_integrator **integrator);
 
+/** Make another one of the same system, method and monitor (dvi/transform.h), without a state.
+ *
+ *  If the given one is started, and its steps are in a fictitious time, the new one keeps its E0: starts near each other belong to one map.
+ *  @param[out] integrator  owned by the caller; NULL on failure
+ *  @retval DVI_BAD_ARGUMENT  a pointer is NULL
+ *  @retval (others)          as when the given one was made */
+dvi_status dvi_integrator_create_like(const dvi_integrator *like, dvi_integrator **integrator);
+
 /** Free an integrator and set the pointer to NULL; NULL is allowed. */
 void dvi_integrator_destroy(dvi_integrator **integrator);
 
@@ -82,7 +90,7 @@ dvi_status dvi_integrator_start(dvi_integrator *integrator, double t, const doub
  *  @retval (others)      as dvi_integrator_start */
 dvi_status dvi_integrator_start_velocity(dvi_integrator *integrator, double t, const double *q, const double *v);
 
-/** Take one step of length h (negative: backward).
+/** Take one step of length h (negative: backward); h is time, or the fictitious time of dvi/transform.h.
  *
  *  Methods that choose their steps (dvi_integrator_chooses_steps) take an ordinary step of h at first, and lengths of their own as long as h stays the
  *  same; another h begins anew.
@@ -112,10 +120,10 @@ const dvi_system *dvi_integrator_system(const dvi_integrator *integrator);
 /** The order that theory claims for this method with its options. */
 int dvi_integrator_order(const dvi_integrator *integrator);
 
-/** Length of the last step, as it was taken; 0 before the first one, and for NULL. */
+/** Length of the last step in time, as it was taken; 0 before the first one, and for NULL. */
 double dvi_integrator_last_step(const dvi_integrator *integrator);
 
-/** Whether the method chooses the lengths of its steps: 1 or 0. */
+/** Whether steps have other lengths than they are asked for: the method chooses them, or they are steps in another time (dvi/transform.h). 1 or 0. */
 int dvi_integrator_chooses_steps(const dvi_integrator *integrator);
 
 /** What became of the discrete energy since the start.

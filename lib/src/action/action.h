@@ -64,6 +64,9 @@ void dvi__action_chord(dvi__action *action, double *R);
  * residual. dq_low is what dq alone would lack: rounded in each step by the same velocity, it adds up (energy drift of 5e-20 a step of kepler). */
 void dvi__action_ends(const dvi__action *action, const double *Y, double *dq, double *dq_low, double *dp);
 
+/* How much time passes over the element with the path Y: h; of a time-transformed system h sum_j b_j g(Q_j). */
+dvi_status dvi__action_duration(dvi__action *action, const double *Y, double *duration);
+
 /* The path at tau relative to q0, and its velocity for a step h; either may be NULL. */
 void dvi__action_path(const dvi__action *action, const double *Y, double h, double tau, double *offset, double *v);
 

@@ -280,7 +280,7 @@ dvi_status dvi_symplecticity(dvi_integrator *integrator, double t, const double 
   step_map map = {.n = n, .t = t, .h = h, .start = start, .z = DVI_NEW(double, size), .scale = DVI_NEW(double, size)};
   map.row = DVI_NEW(double, (ORDERS + 1) * size);
   map.M = (double *)dvi__allocate(size, size * sizeof *map.M);
-  dvi_status status = dvi_integrator_create(dvi_integrator_system(integrator), dvi_integrator_method(integrator), &map.probe);
+  dvi_status status = dvi_integrator_create_like(integrator, &map.probe);
   if (status == DVI_OK && (!start || !map.z || !map.scale || !map.row || !map.M))
     status = dvi__fail(DVI_NO_MEMORY, "symplecticity: no memory for a derivative of %zu by %zu", size, size);
   for (int i = 0; status == DVI_OK && i < n; i++) {

@@ -37,11 +37,12 @@ typedef struct header {
   portrait lagrangian;
   int64_t n, memory_count, steps;
   double t, t_carry, last_t, last_t_carry, last_h;
+  double density, energy; /* of steps in another time: z, E0 */
   char specification[DVI__SPECIFICATION_SIZE];
 } header;
 
 static const char magic[8] = {'d', 'v', 'i', 's', 't', 'a', 't', 'e'};
-enum { ORDER_MARK = 0x01020304, VERSION = 2 };
+enum { ORDER_MARK = 0x01020304, VERSION = 3 };
 
 /* Another machine's mathematical functions differ by a few roundings; other parameters by more than this. */
 static const double same_number = 1e-9;
@@ -53,6 +54,14 @@ static size_t file_size(const dvi_integrator *I)
 }
 
 /* ---- the system ---- */
+
+/* What the system declares, and the monitor. */
+static uint64_t declared(const dvi_integrator *I)
+{
+  if (I->pace == NULL) return I->system->hash;
+  const uint64_t hash = dvi__hash(I->system->hash, sizeof I->pace->pacing, &I->pace->pacing);
+  return dvi__hash(hash, strlen(I->pace->name), I->pace->name);
+}
 
 static portrait portray(const dvi_integrator *I, double t, const double *now, const double *last, double last_h)
 {
@@ -88,7 +97,7 @@ static void pack(const dvi_integrator *I, unsigned char *file)
   const size_t n = (size_t)I->system->n, size = file_size(I) - sizeof(uint64_t);
   header head = {.order_mark = ORDER_MARK,
                  .version = VERSION,
-                 .declared = I->system->hash,
+                 .declared = declared(I),
                  .lagrangian = portray(I, I->now.t, I->now.q, I->last.q, I->last_h),
                  .n = I->system->n,
                  .memory_count = (int64_t)I->stepper.memory_count,
@@ -97,7 +106,9 @@ static void pack(const dvi_integrator *I, unsigned char *file)
                  .t_carry = I->now.t_carry,
                  .last_t = I->last.t,
                  .last_t_carry = I->last.t_carry,
-                 .last_h = I->last_h};
+                 .last_h = I->last_h,
+                 .density = I->now.density,
+                 .energy = I->pace != NULL ? I->pace->energy : 0};
   memcpy(head.magic, magic, sizeof magic);
   memcpy(head.specification, I->stepper.specification, sizeof head.specification);
   memcpy(file, &head, sizeof head);
@@ -167,13 +178,19 @@ dvi_status dvi_integrator_save(const dvi_integrator *I, const char *path)
 
 /* ---- restore ---- */
 
+static dvi_status other_system(const char *path)
+{
+  return dvi__fail(DVI_BAD_FILE,
+                   "checkpoint %s: of a system that declares other terms, masses, patterns or names, or of steps in another time",
+                   path);
+}
+
 static dvi_status check_system(const dvi_integrator *I, const char *path, const unsigned char *file)
 {
   const double *numbers = (const double *)(const void *)(file + sizeof(header));
   header head;
   memcpy(&head, file, sizeof head);
-  if (head.declared != I->system->hash)
-    return dvi__fail(DVI_BAD_FILE, "checkpoint %s: of a system that declares other terms, masses, patterns or names", path);
+  if (head.declared != declared(I)) return other_system(path);
   const portrait here = portray(I, head.t, numbers, numbers + 4 * (size_t)I->system->n, head.last_h);
   if (same_lagrangian(&here, &head.lagrangian)) return DVI_OK;
   return dvi__fail(DVI_BAD_FILE,
@@ -196,6 +213,7 @@ static dvi_status check(const dvi_integrator *I, const char *path, const unsigne
     return dvi__fail(DVI_BAD_FILE, "checkpoint %s: written by %s, not by %s", path, head.specification, I->stepper.specification);
   if (head.n != I->system->n)
     return dvi__fail(DVI_BAD_FILE, "checkpoint %s: %lld coordinates, not %d", path, (long long)head.n, I->system->n);
+  if (got != size && head.declared != declared(I)) return other_system(path); /* what the method remembers differs, too */
   if (got != size)
     return dvi__fail(DVI_BAD_FILE, "checkpoint %s: cut short or too long, %zu bytes instead of %zu", path, got, size);
   memcpy(&sum, file + size - sizeof sum, sizeof sum);
@@ -214,6 +232,8 @@ static void unpack(dvi_integrator *I, const unsigned char *file)
   I->last.t = head.last_t;
   I->last.t_carry = head.last_t_carry;
   I->last_h = head.last_h;
+  I->now.density = head.density;
+  if (I->pace != NULL) dvi__pace_set_energy(I->pace, head.energy);
   I->counters.steps = (long)head.steps;
   const unsigned char *at = file + sizeof head;
   const size_t state = 4 * n * sizeof(double);

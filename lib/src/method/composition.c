@@ -10,6 +10,7 @@
 #include "core/status.h"
 #include "method/method.h"
 #include "num/compensated.h"
+#include "system/transformed.h"
 
 enum { ORDER, BASE };
 
@@ -118,7 +119,7 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
   const scheme *s = &schemes[self->settings.value[ORDER]];
   const double t = state->t, t_carry = state->t_carry;
   for (int i = 0; i < s->substeps; i++) DVI_TRY(base->method->step(base, state, substep(s, i, h)));
-  move_clock(t, t_carry, h, &state->t, &state->t_carry);
+  if (dvi__transformed_of(self->system) == NULL) move_clock(t, t_carry, h, &state->t, &state->t_carry);
   return DVI_OK;
 }
 

@@ -390,16 +390,19 @@ static dvi_status rescue(dvi__stepper *self, const place *at, double *Y, dvi__so
 
 /* ---- the step ---- */
 
-static void advance(dvi__stepper *self, dvi__state *state, double h)
+static dvi_status advance(dvi__stepper *self, dvi__state *state, double h)
 {
   const element *own = self->own;
   const int n = self->system->n;
+  double duration;
+  DVI_TRY(dvi__action_duration(own->action, own->Y, &duration));
   dvi__add_compensated_all(n, state->q, state->q_carry, own->dq);
   dvi__add_compensated_all(n, state->q, state->q_carry, own->dq_low);
   dvi__add_compensated_all(n, state->p, state->p_carry, own->dp);
-  dvi__add_compensated(&state->t, &state->t_carry, h);
+  dvi__add_compensated(&state->t, &state->t_carry, duration);
   self->memory[DVI__LAST_H] = h;
   memcpy(self->memory + DVI__LAST_Y, own->Y, (size_t)dvi__action_unknowns(own->action) * sizeof(double));
+  return DVI_OK;
 }
 
 /* KINSOL judges, but what the step takes stays what the iteration found; what does not pass is solved by KINSOL itself. */
@@ -448,8 +451,7 @@ dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h)
     dvi__action_forces(own->action, forces);
   }
   if (status == DVI_OK && own->choice == DVI__SOLVER_CERTIFIED) status = certify(self, &at, own->Y, &report);
-  if (status == DVI_OK) advance(self, state, h);
-  return status;
+  return status == DVI_OK ? advance(self, state, h) : status;
 }
 
 void dvi__element_path(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v)

@@ -31,7 +31,8 @@ static dvi_status allocate(dvi_integrator *I)
   return dvi__evaluator_create(I->system, 1, DVI__GRADIENTS, &I->counters, &I->evaluator);
 }
 
-dvi_status dvi_integrator_create(const dvi_system *system, const char *method, dvi_integrator **integrator)
+dvi_status dvi__integrator_make(const dvi_system *system, const char *method, const dvi_monitor *monitor, dvi__pacing pacing,
+                                dvi_integrator **integrator)
 {
   if (integrator == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "integrator: no place for the result");
   *integrator = NULL;
@@ -40,12 +41,18 @@ dvi_status dvi_integrator_create(const dvi_system *system, const char *method, d
   dvi_integrator *I = DVI_NEW(dvi_integrator, 1);
   if (I == NULL) return dvi__fail(DVI_NO_MEMORY, "integrator: no memory");
   I->system = system;
-  dvi_status status = dvi__stepper_create(system, method, &I->counters, &I->stepper);
+  dvi_status status = monitor != NULL ? dvi__pace_create(system, monitor, pacing, &I->counters, &I->pace) : DVI_OK;
+  if (status == DVI_OK) status = dvi__stepper_create(dvi__pace_system(I->pace, system), method, &I->counters, &I->stepper);
   if (status == DVI_OK) status = allocate(I);
   I->counters.allocations = dvi__allocation_count() - before;
   if (status != DVI_OK) dvi_integrator_destroy(&I);
   *integrator = I;
   return status;
+}
+
+dvi_status dvi_integrator_create(const dvi_system *system, const char *method, dvi_integrator **integrator)
+{
+  return dvi__integrator_make(system, method, NULL, DVI__TRANSFORM, integrator);
 }
 
 void dvi_integrator_destroy(dvi_integrator **integrator)
@@ -54,6 +61,7 @@ void dvi_integrator_destroy(dvi_integrator **integrator)
   dvi_integrator *I = *integrator;
   dvi__release(I->stepper.memory);
   dvi__stepper_destroy(&I->stepper);
+  dvi__pace_destroy(&I->pace);
   dvi__evaluator_destroy(&I->evaluator);
   dvi__release(I->numbers);
   dvi__release(I->memory_before);
@@ -76,9 +84,11 @@ static dvi_status check_start(const dvi_integrator *I, double t, const double *q
 static dvi_status start(dvi_integrator *I, double t, const double *q, const double *v, const double *p)
 {
   const size_t bytes = (size_t)I->system->n * sizeof(double);
-  double L;
+  const double *w = I->pace != NULL ? I->last_v : v;
+  double L, density = 0;
   DVI_TRY(dvi__lagrangian_value(I->evaluator, 1, &t, q, v, &L));
   DVI_TRY(dvi__lagrangian_gradient(I->evaluator, 1, &t, q, v, I->next.p_carry, NULL));
+  if (I->pace != NULL) DVI_TRY(dvi__pace_start(I, t, q, v, I->last_v, &density));
   memmove(I->now.q, q, bytes);
   memmove(I->now.p, p, bytes);
   memset(I->now.q_carry, 0, bytes);
@@ -86,9 +96,10 @@ static dvi_status start(dvi_integrator *I, double t, const double *q, const doub
   memcpy(I->last.p, v, bytes);
   I->now.t = t;
   I->now.t_carry = 0;
+  I->now.density = density;
   I->last_h = 0;
   I->started = 1;
-  I->stepper.method->start(&I->stepper, v);
+  I->stepper.method->start(&I->stepper, w);
   return DVI_OK;
 }
 
@@ -127,12 +138,15 @@ static void copy_state(size_t n, const dvi__state *from, dvi__state *to)
 {
   to->t = from->t;
   to->t_carry = from->t_carry;
+  to->density = from->density;
   memcpy(to->q, from->q, 4 * n * sizeof(double)); /* q, p and both carries lie in a row */
 }
 
 static dvi_status check_state(const dvi_integrator *I)
 {
   const size_t n = (size_t)I->system->n;
+  if (I->pace != NULL && I->next.t == I->now.t)
+    return dvi__fail(DVI_BAD_ARGUMENT, "monitor %s is so small that the step does not move the time", I->pace->name);
   if (isfinite(I->next.t) && dvi__first_not_finite(2 * n, I->next.q) < 0) return DVI_OK;
   return dvi__fail(DVI_NOT_FINITE, "the new state is not finite");
 }
@@ -144,7 +158,9 @@ static void accept(dvi_integrator *I, double h)
   I->now = I->next;
   I->next = oldest;
   I->last_h_before = I->last_h;
-  I->last_h = h;
+  if (I->pace != NULL) I->pace->expanded = 0;
+  /* What a transform makes of h, or the control, is known by the clock alone; the carries tell it to the last digit. */
+  I->last_h = I->pace != NULL ? (I->now.t - I->last.t) - (I->now.t_carry - I->last.t_carry) : h;
   I->counters.steps++;
 }
 
@@ -164,6 +180,7 @@ void dvi__integrator_take_back(dvi_integrator *I)
   I->last = oldest;
   I->last_h = I->last_h_before;
   I->counters.steps--;
+  if (I->pace != NULL) I->pace->expanded = 0;
   exchange_memory(I);
 }
 
@@ -194,19 +211,24 @@ dvi_status dvi__check_step(double t, double h)
 static dvi_status advance(dvi_integrator *I, double h)
 {
   const dvi__method *method = I->stepper.method;
-  if (method->pass != NULL && method->pass(&I->stepper, &I->now, I->memory_before, &I->next, &h, 1) && isfinite(I->next.t))
-    return DVI_OK;
+  double length;
+  DVI_TRY(dvi__control_begin(I, h, &length));
+  const double density = I->next.density;
+  if (method->pass != NULL && method->pass(&I->stepper, &I->now, I->memory_before, &I->next, &length, 1) && isfinite(I->next.t))
+    return dvi__control_end(I, h);
   copy_state((size_t)I->system->n, &I->now, &I->next);
   memcpy(I->stepper.memory, I->memory_before, I->stepper.memory_count * sizeof(double));
-  DVI_TRY(method->step(&I->stepper, &I->next, h));
-  return check_state(I);
+  I->next.density = density;
+  DVI_TRY(method->step(&I->stepper, &I->next, length));
+  DVI_TRY(check_state(I));
+  return dvi__control_end(I, h);
 }
 
 dvi_status dvi_integrator_step(dvi_integrator *I, double h)
 {
   if (I == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "step: the integrator is NULL");
   if (!I->started) return dvi__fail(DVI_BAD_STATE, "step: the integrator has no state yet; call dvi_integrator_start first");
-  DVI_TRY(dvi__check_step(I->now.t, h));
+  DVI_TRY(dvi__check_step(I->pace != NULL ? 0 : I->now.t, h));
   exchange_memory(I);
   const long before = dvi__allocation_count();
   const dvi_status status = advance(I, h);
@@ -265,7 +287,7 @@ double dvi_integrator_last_step(const dvi_integrator *integrator)
 
 int dvi_integrator_chooses_steps(const dvi_integrator *integrator)
 {
-  return integrator != NULL && integrator->stepper.method->chooses_steps;
+  return integrator != NULL && (integrator->pace != NULL || integrator->stepper.method->chooses_steps);
 }
 
 dvi_status dvi_integrator_energy_balance(const dvi_integrator *I, dvi_energy_balance *balance)
@@ -315,6 +337,7 @@ size_t dvi_integrator_explain(const dvi_integrator *integrator, char *text, size
   if (integrator == NULL) return 0;
   dvi__text_add(&out, "method: %s, order %d%s\n", integrator->stepper.specification, integrator->stepper.order,
                 integrator->stepper.symmetric ? ", symmetric" : "");
+  if (integrator->pace != NULL) dvi__pace_explain(integrator->pace, &out);
   integrator->stepper.method->explain(&integrator->stepper, &out);
   return out.length;
 }
@@ -347,6 +370,7 @@ dvi_status dvi_integrator_interpolate(dvi_integrator *I, double t, double *q, do
     return dvi__fail(DVI_BAD_ARGUMENT, "interpolate: t = %.17g is outside of the last step, %.17g to %.17g", t, I->last.t,
                      I->now.t);
   if (I->stepper.method->path == NULL) return hermite(I, tau, q, v);
+  if (I->pace != NULL && I->pace->pacing == DVI__TRANSFORM) return dvi__pace_path(I, tau, q, v);
   I->stepper.method->path(&I->stepper, I->last.q, I->last_h, tau, q, v);
   return DVI_OK;
 }

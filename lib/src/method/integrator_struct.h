@@ -2,10 +2,12 @@
 #ifndef DVI_METHOD_INTEGRATOR_STRUCT_H
 #define DVI_METHOD_INTEGRATOR_STRUCT_H
 #include "method/method.h"
+#include "method/pace.h"
 
 struct dvi_integrator {
   const dvi_system *system;
-  dvi__stepper stepper;
+  dvi__pace *pace;      /* NULL: steps are steps of time */
+  dvi__stepper stepper; /* of the system, or of the one that the pace puts in its place */
   dvi_counters counters;
   dvi__evaluator *evaluator; /* for diagnostics at one point */
   /* The present state, the one before the last step, and the one that a step works on: a step that fails spoils only `next`. Before the first
@@ -15,7 +17,7 @@ struct dvi_integrator {
   double *memory_before; /* the stepper's memory before the last step: the two change places with every step */
   double *v, *last_v;    /* [n] */
   int started;
-  double last_h;        /* 0: no step was taken yet */
+  double last_h;        /* in time; 0: no step was taken yet */
   double last_h_before; /* before the last step */
 };
 
@@ -25,6 +27,10 @@ void dvi__guess_velocity(int n, const double *q, const double *last_q, const dou
 
 /* DVI_BAD_ARGUMENT unless h is a step that moves the time from t. */
 dvi_status dvi__check_step(double t, double h);
+
+/* Make an integrator; `monitor` NULL: steps of time. */
+dvi_status dvi__integrator_make(const dvi_system *system, const char *method, const dvi_monitor *monitor, dvi__pacing pacing,
+                                dvi_integrator **integrator);
 
 /* A step of exactly h, from methods that choose their steps, too: what is left of a run. */
 dvi_status dvi__integrator_step_exactly(dvi_integrator *integrator, double h);

@@ -8,6 +8,7 @@
 /* The state that a step advances. Sums are compensated: what a carry holds, its number is too large by. */
 typedef struct dvi__state {
   double t, t_carry;
+  double density;                    /* step control's z (method/control.c) */
   double *q, *p, *q_carry, *p_carry; /* [n] */
 } dvi__state;
 

@@ -84,6 +84,7 @@ static double next_step(const dvi_integrator *I, const dvi_run_options *options)
 static dvi_status take_step(dvi_integrator *I, const dvi_run_options *options, double h)
 {
   const double forward = options->h > 0 ? 1 : -1, left = (options->t_end - I->now.t) + I->now.t_carry;
+  if (I->pace != NULL) return dvi__pace_step(I, h, options->t_end, clock_error(I, options));
   if (!dvi_integrator_chooses_steps(I)) return dvi_integrator_step(I, h);
   DVI_TRY(dvi_integrator_step(I, h));
   if (forward * (I->now.t - options->t_end) <= clock_error(I, options)) return DVI_OK;

@@ -39,12 +39,16 @@ static const dvi__key keys[] = {
 /* Bounds that are left out, in units of the first step. */
 static const double least_part = 0.1, largest_part = 30;
 
+/* Lengths that a rounding of the energy moves by more than a ten-millionth of themselves say nothing about the next one. */
+static const double certain = 1e-9;
+
 /* A root this far from the last length is not taken before the search has looked for a nearer one. */
 static const double near = 4;
 
 /* The memory, before the element's own. JUMPS and WORK are compensated sums. */
 enum {
   FIRST_H,
+  BEFORE_H,
   SLOPE,
   SIZE,
   FIRST,
@@ -190,6 +194,7 @@ static dvi_status given_step(dvi__stepper *self, dvi__state *state, double h)
     m[FIRST] = found.E.start;
   }
   m[FIRST_H] = self->exact ? 0 : h;
+  m[BEFORE_H] = 0;
   note(self, &found);
   return DVI_OK;
 }
@@ -205,6 +210,15 @@ static dvi_status far_off(const dvi__mismatch *found)
   return dvi__fail(DVI_NOT_CONVERGED, "the step found, %g, is far off, or misses the energy by %g", found->h, found->value);
 }
 
+/* The lengths continued. Where h hardly shows in the energy there is nothing to continue. */
+static double likely_length(const dvi__stepper *self, double last, double least, double most)
+{
+  const double *m = self->memory;
+  if (m[BEFORE_H] == 0 || fabs(last * m[SLOPE]) <= certain * m[SIZE]) return last;
+  const double growth = fmin(fmax(last / m[BEFORE_H], 0.8), 1.25);
+  return copysign(fmin(fmax(fabs(growth * last), least), most), last);
+}
+
 /* Where h hardly shows in the energy its noise keeps Newton's method from settling: then the rows alone, at the length that it came to, decide.
  *
  * Rows and energy row in one, from the path of the last length. A positive status: the search has to tell whether there is a solution. */
@@ -214,7 +228,7 @@ static dvi_status solve_together(dvi__stepper *self, dvi__state *state, double l
   dvi__bordered *b = &own->bordered;
   const dvi__rung rung = self->settings.value[SOLVER] == 0 ? DVI__NEWTON : DVI__KINSOL;
   const double last = b->element.memory[DVI__LAST_H], target = target_of(self);
-  DVI_TRY(dvi__energy_search_try(&own->search, last, 0, found));
+  DVI_TRY(dvi__energy_search_try(&own->search, likely_length(self, last, least, most), 0, found));
   found->slope = self->memory[SLOPE];
   if (dvi__energy_solved(found)) {
     dvi__energy_search_take(&own->search, state);
@@ -257,6 +271,7 @@ static dvi_status chosen_step(dvi__stepper *self, dvi__state *state)
   dvi_status status = solve_together(self, state, least, most, &found);
   if (status > 0) status = search_length(self, state, last, least, most, &found);
   if (status == DVI_OK) note(self, &found);
+  if (status == DVI_OK) self->memory[BEFORE_H] = last;
   return status;
 }
 

@@ -2,6 +2,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "system/term.h"
+#include "system/transformed.h"
 
 static int larger(int a, int b)
 {
@@ -70,6 +71,7 @@ static int allocate(const dvi_system *system, int capacity, int hessians, dvi__s
 dvi_status dvi__scratch_create(const dvi_system *system, int capacity, int hessians, dvi__scratch *scratch)
 {
   *scratch = (dvi__scratch){.n = system->n, .capacity = capacity};
+  if (dvi__transformed_of(system) != NULL) DVI_TRY(dvi__transformed_reserve(dvi__transformed_of(system), capacity));
   if (allocate(system, capacity, hessians, scratch)) return DVI_OK;
   dvi__scratch_clear(scratch);
   return dvi__fail(DVI_NO_MEMORY, "evaluator: no memory for %d points in %d dimensions", capacity, system->n);

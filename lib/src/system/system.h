@@ -26,6 +26,7 @@ typedef struct dvi__potential_term {
 
 typedef struct dvi__lagrangian_term {
   dvi_lagrangian callbacks;
+  struct dvi__transformed *transformed; /* not NULL: it stands in the place of the callbacks (transformed.h) */
   dvi__pattern qq, qv, vv;
   int *in_qq;                     /* [entries of qq] */
   dvi__groups q_groups, v_groups; /* q columns of qq; v columns of qv and vv together */

@@ -4,6 +4,7 @@
 #include "core/status.h"
 #include "num/finite.h"
 #include "system/difference.h"
+#include "system/transformed.h"
 
 /* The status that a callback's return and its results, `entries` at each of `count` points, amount to; `in` says which result. */
 static dvi_status verdict(int returned, int entries, int count, const double *result, const char *name, const char *what,
@@ -133,12 +134,12 @@ static const char *const general = "Lagrangian";
 
 int dvi__general_has_gradient(const dvi__lagrangian_term *l)
 {
-  return l->callbacks.gradient != NULL || l->callbacks.gradient_batch != NULL;
+  return l->transformed != NULL || l->callbacks.gradient != NULL || l->callbacks.gradient_batch != NULL;
 }
 
 int dvi__general_has_hessian(const dvi__lagrangian_term *l)
 {
-  return l->callbacks.hessian != NULL || l->callbacks.hessian_batch != NULL;
+  return l->transformed != NULL || l->callbacks.hessian != NULL || l->callbacks.hessian_batch != NULL;
 }
 
 dvi_status dvi__general_value(const dvi__lagrangian_term *l, dvi__scratch *s, int count, const double *t, const double *q,
@@ -146,6 +147,7 @@ dvi_status dvi__general_value(const dvi__lagrangian_term *l, dvi__scratch *s, in
 {
   const dvi_lagrangian *c = &l->callbacks;
   int returned = 0;
+  if (l->transformed != NULL) return dvi__transformed_value(l->transformed, count, t, q, v, L);
   if (c->value_batch != NULL) returned = c->value_batch(count, t, q, v, L, c->user);
   for (int k = 0; c->value_batch == NULL && k < count && returned == 0; k++) {
     gather(s->n, count, k, q, s->point_q);
@@ -184,6 +186,7 @@ dvi_status dvi__general_gradient(const dvi__lagrangian_term *l, dvi__scratch *s,
 {
   const dvi_lagrangian *c = &l->callbacks;
   int returned = 0;
+  if (l->transformed != NULL) return dvi__transformed_gradient(l->transformed, count, t, q, v, L_q, L_v);
   if (!dvi__general_has_gradient(l)) {
     const dvi__general_at at = {l, s, t, q, v};
     DVI_TRY(dvi__difference_gradient(dvi__general_value_of_q, &at, &s->of_value, s->n, count, q, L_q));
@@ -216,6 +219,7 @@ dvi_status dvi__general_hessian(const dvi__lagrangian_term *l, dvi__scratch *s, 
   const dvi_lagrangian *c = &l->callbacks;
   const int qq = dvi__pattern_entries(&l->qq), qv = dvi__pattern_entries(&l->qv), vv = dvi__pattern_entries(&l->vv);
   int returned = 0;
+  if (l->transformed != NULL) return dvi__transformed_hessian(l->transformed, count, t, q, v, L_qq, L_qv, L_vv);
   if (!dvi__general_has_hessian(l)) return difference_general_hessian(&(dvi__general_at){l, s, t, q, v}, count, L_qq, L_qv, L_vv);
   if (c->hessian_batch != NULL) returned = c->hessian_batch(count, t, q, v, L_qq, L_qv, L_vv, c->user);
   for (int k = 0; c->hessian_batch == NULL && k < count && returned == 0; k++) {

@@ -1,0 +1,81 @@
+#!/bin/sh
+# Time transforms and step control on the command line: they end where they should, resume bit for bit, and refuse what they cannot take.
+# Usage: test_transform.sh DVI
+. "$(dirname "$0")/check.sh"
+
+# A run ends at --t-end, whatever its steps are, forward and backward.
+comet='kepler --set e=0.9 --method galerkin:degree=4'
+# shellcheck disable=SC2086
+expect 0 'a transformed run' run $comet --time-transform distance --h 0.3 --t-end 20 --out whole.csv
+tail -n 1 whole.csv | grep -q '^20,' || fail 'the last row is at t = 20'
+awk -F, 'NR > 2 && $1 <= t { exit 1 } { t = $1 }' whole.csv || fail 'the time goes on in every row'
+awk -F, 'NR > 1 { d = $6 + 0.5; if (d > 1e-6 || d < -1e-6) exit 1 }' whole.csv || fail 'the energy is kept'
+# shellcheck disable=SC2086
+expect 0 'backward' run $comet --time-transform distance --h -0.3 --t-end -20 --final
+tail -n 1 out | grep -q '^-20,' || fail 'the last row is at t = -20'
+
+# A checkpoint goes on, in the same time only.  (tests/method/test_transform.c has the bits: here the first part ends with a shortened step.)
+for way in '--time-transform distance' '--step-control distance:power=1.2'; do
+  # shellcheck disable=SC2086
+  expect 0 'first part' run $comet $way --h 0.3 --t-end 7 --checkpoint half.state --out first.csv
+  # shellcheck disable=SC2086
+  expect 0 'second part' run kepler --method galerkin:degree=4 $way --h 0.3 --t-end 20 --resume half.state --out second.csv
+  [ "$(tail -n 1 first.csv)" = "$(sed -n 2p second.csv)" ] || fail 'the second part begins where the first one ended'
+  tail -n 1 second.csv | grep -q '^20,' || fail 'the resumed run ends at t = 20'
+  # shellcheck disable=SC2086
+  expect 1 'resume without it' run kepler --method galerkin:degree=4 --h 0.3 --t-end 20 --resume half.state
+  says err 'steps in another time' 'why it is not resumed'
+done
+
+# The same orders as without.
+expect 0 'order' order kepler --set e=0.9 --method galerkin:degree=2 --time-transform distance --levels 5 --csv order.csv
+says out 'galerkin:degree=2 @ distance: claimed order 4, fitted [34]\.[0-9]*.*ok' 'the order is found'
+says order.csv '^galerkin:degree=2 @ distance,kepler,' 'the row names the transform'
+expect 0 'order of a controlled run' order kepler --method verlet --step-control distance:power=1.2 --levels 5
+says out 'verlet @ control distance:power=1.2: claimed order 2, fitted' 'the order is found'
+expect 0 'order without bodies' order henon-heiles --method galerkin:degree=2 --time-transform arclength --levels 5
+
+# Plain and transformed rows stand beside each other, and the transformed ones need fewer evaluations.
+expect 0 'bench' bench kepler --set e=0.99 --t-end 6.2 --method galerkin:degree=4 --time-transform none --time-transform distance \
+  --at 1e-6 --rounds 1 --at-csv at.csv
+says out '^galerkin:degree=4 @ distance$' 'the transformed method has its own levels'
+awk -F, '$4 == "galerkin:degree=4" { plain = $7 } $4 == "galerkin:degree=4 @ distance" { transformed = $7 }
+         END { exit !(transformed > 0 && plain > 10 * transformed) }' at.csv || fail 'a tenth of the evaluations at an error of 1e-6'
+expect 2 'a monitor twice' bench kepler --time-transform distance --time-transform distance
+expect 2 'no transform of single steps' bench kepler --method midpoint --scale degree=1,2 --time-transform distance
+
+expect 0 'explain' explain pythagorean --method galerkin --time-transform distance
+says out '^time: transformed, dt/dtau = g(q), distance:power=1.5,bodies=3,dimension=2' 'the monitor is explained'
+for bodies in kepler figure-eight outer-solar; do
+  expect 0 "distances of $bodies" explain $bodies --method midpoint --time-transform distance
+done
+expect 0 'explain control' explain toda --method verlet --step-control arclength
+says out '^time: steps follow arclength by reversible control' 'control is explained'
+
+# What cannot be.
+for command in run order explain; do
+  expect 2 "both ways of $command" $command kepler --method midpoint --time-transform distance --step-control distance
+  says err 'give one of them' "both ways of $command"
+  expect 2 "an unknown monitor of $command" $command kepler --method midpoint --time-transform distances
+  says err 'distance, arclength and acceleration' 'those that there are'
+  expect 2 "an unknown key of $command" $command kepler --method midpoint --time-transform distance:pwer=2
+  says err 'it takes power' 'the keys that there are'
+  expect 2 "no bodies of $command" $command toda --method midpoint --time-transform distance
+  says err 'toda has no bodies' 'why there are no distances'
+  expect 2 "an explicit method of $command" $command kepler --method verlet --time-transform distance
+  says err 'verlet: the system declares a general Lagrangian' 'why verlet is refused'
+  expect 2 "not symmetric: $command" $command kepler --method galerkin:quadrature=radau-left --step-control distance
+  says err 'is not symmetric' 'why a Radau rule is refused'
+  expect 2 "general Lagrangian of $command" $command double-pendulum --method midpoint --time-transform arclength
+  says err 'constant mass' 'why there is no arc length'
+done
+for bad in power=0 power=-1 power=nan power=x bodies=7; do
+  code=0
+  "$dvi" run kepler --method midpoint --time-transform "distance:$bad" >out 2>err || code=$?
+  [ "$code" -ne 0 ] || fail "distance:$bad is taken"
+done
+expect 2 'naive steps' run kepler --method verlet --tolerance 1e-6
+says err 'neither symplectic nor symmetric' 'why there is no tolerance'
+expect 2 'wrong sign' run kepler --method midpoint --time-transform distance --h -0.1 --t-end 1
+expect 2 'no step' run kepler --method midpoint --time-transform distance --h 0 --t-end 1
+finish

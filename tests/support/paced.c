@@ -1,0 +1,26 @@
+#include "support/paced.h"
+
+#include <check.h>
+
+dvi_monitor monitor_of(const char *specification)
+{
+  dvi_monitor monitor = {0};
+  ck_assert_msg(dvi_monitor_read(specification, &monitor) == DVI_OK, "%s", dvi_last_error());
+  return monitor;
+}
+
+dvi_integrator *paced(const problem *of, paced_create create, const char *monitor, const char *method)
+{
+  dvi_integrator *made = NULL;
+  const dvi_monitor chosen = monitor_of(monitor);
+  ck_assert_msg(create(of->system, &chosen, method, &made) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi_integrator_start(made, 0, of->q, of->p) == DVI_OK, "%s", dvi_last_error());
+  return made;
+}
+
+void run_to(dvi_integrator *integrator, double h, double t_end)
+{
+  dvi_run_report report;
+  const dvi_status status = dvi_run(integrator, &(dvi_run_options){.h = h, .t_end = t_end}, &report);
+  ck_assert_msg(status == DVI_OK && report.end == DVI_RUN_COMPLETE, "%s", dvi_last_error());
+}
