@@ -12,7 +12,7 @@
 
 /* Adds the time of creation to *creation. q: room for the end, [n], or NULL. */
 static dvi_status run_method(const bench_job *job, const problem *scene, double t_end, double *creation, double *q,
-                             long *evaluations)
+                             long *evaluations, long *taken)
 {
   dvi_integrator *integrator = NULL;
   const double began = cpu_now();
@@ -24,6 +24,7 @@ static dvi_status run_method(const bench_job *job, const problem *scene, double 
     dvi_counters counters;
     dvi_integrator_counters(integrator, &counters);
     *evaluations = counters.gradients;
+    *taken = counters.steps;
     memcpy(q, dvi_integrator_q(integrator), (size_t)scene->n * sizeof *q);
   }
   dvi_integrator_destroy(&integrator);
@@ -58,7 +59,7 @@ static dvi_status try_peer(bench_job *job, const problem *scene, double t_end, d
     job->energy_error = fmax(job->energy_error, change);
   }
   job->evaluations = report.evaluations;
-  job->steps = report.steps;
+  job->taken = report.steps;
   return status;
 }
 
@@ -66,7 +67,7 @@ static dvi_status try_method(bench_job *job, const problem *scene, double t_end,
 {
   double creation = 0.0;
   const double began = cpu_now();
-  const dvi_status status = run_method(job, scene, t_end, &creation, q, &job->evaluations);
+  const dvi_status status = run_method(job, scene, t_end, &creation, q, &job->evaluations, &job->taken);
   job->tried = cpu_now() - began;
   return status;
 }
@@ -91,7 +92,7 @@ dvi_status bench_job_time(bench_job *job, const problem *scene, double t_end, in
   const double began = cpu_now();
   for (long i = 0; i < job->repeats && status == DVI_OK; i++)
     status = job->peer >= 0 ? peer_solve(job->peer, scene, t_end, job->tolerance, q, q + scene->n, NULL)
-                            : run_method(job, scene, t_end, &creation, NULL, NULL);
+                            : run_method(job, scene, t_end, &creation, NULL, NULL, NULL);
   job->cpu[round] = (cpu_now() - began) / (double)job->repeats;
   job->creation[round] = creation / (double)job->repeats;
   free(q);

@@ -16,7 +16,8 @@ typedef struct bench_job {
   const char *method;         /**< of a method: its specification */
   pacing how;                 /**< what its steps follow */
   double h;                   /**< its step */
-  long steps;                 /**< for a method as asked, of a peer as it took them */
+  long steps;                 /**< as asked, in equal parts of the span */
+  long taken;                 /**< as they were taken: those that a peer chose, a method that chooses, or another time */
   double tolerance;           /**< of a peer */
   double error, energy_error;
   long evaluations;

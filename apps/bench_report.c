@@ -43,7 +43,7 @@ static result_table *make_table(const bench_results *results)
     table_number(rows, (double)job->evaluations);
     table_number(rows, job->seconds.lower);
     table_number(rows, job->seconds.upper);
-    table_number(rows, (double)job->steps);
+    table_number(rows, (double)job->taken);
     table_number(rows, job->creation_seconds);
     table_number(rows, results->calibration.median);
     table_number(rows, results->calibration.least);

@@ -81,7 +81,7 @@ static const char *const details[] = {
     "                rounds; every round runs every setting, repeated until 0.02 s have passed\n"
     "  evaluations   points at which the gradient was evaluated\n"
     "  cpu_lower, cpu_upper   quartiles over the rounds\n"
-    "  steps         of a peer those that it chose\n"
+    "  steps         as they were taken: also those that a peer, sem or another time chose\n"
     "  create_seconds   the part of cpu_seconds that creates the integrator; empty for peers\n"
     "  calibration_seconds, calibration_least   of 1e8 dependent multiplications: median and least over the rounds\n",
     "--time-transform: methods appear once for each, as METHOD @ MONITOR, in a fictitious time in which their h is measured; of "

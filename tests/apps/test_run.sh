@@ -28,6 +28,21 @@ expect 0 'a last, shorter step' $kepler --t-end 0.3 --final
 says out '^0.29999999999999999,' 'the end is met'
 expect 0 'no way to go' $kepler --t-end 0 --final
 
+# A method that chooses its steps: one column more, the steps' lengths, and what became of the energy on standard error.
+expect 0 'sem' run kepler --method sem --set e=0.6 --h 0.01 --t-end 5
+says out '^t,.*,laplace_y,h$' 'the lengths are the last column'
+awk -F, 'NR > 2 { d = $1 - t - $NF; if (d > 1e-12 || d < -1e-12) bad = 1 } { t = $1 } END { exit bad }' out || fail 'h is the distance of two rows'
+says err 'run: no step was a fallback' 'no fallback is said'
+says err 'ordinary step of given length' 'the last step is said to be an ordinary one'
+expect 0 'sem with fallbacks' run kepler --method sem --set e=0.9 --h 0.001 --t-end 1 --final
+says err 'run: [0-9]* fallbacks* to the least-squares step; the largest energy jump is' 'fallbacks and their jumps are said'
+expect 2 'sem with a first step out of its bounds' run kepler --method sem:hmin=0.1 --h 0.01 --t-end 1
+says err 'the first step h = 0.01 is below hmin=0.1' 'the bound is named'
+expect 2 'sem with bounds in the wrong order' run kepler --method sem:hmin=0.2,hmax=0.1 --h 0.15 --t-end 1
+expect 2 'sem away from the end' run kepler --method sem --h -0.1 --t-end 1
+expect 0 'sem backward' run kepler --method sem --h -0.01 --t-end -5 --final
+says out '^-5,' 'backward to -5'
+
 # A run in two halves gives the same bits, for one method of each kind and for a general Lagrangian.
 for pair in 'kepler verlet' 'kepler galerkin:degree=4' 'kepler composition:order=6,base=midpoint' 'double-pendulum galerkin:degree=2' \
   'fpu midpoint' 'toda trapezoidal'; do

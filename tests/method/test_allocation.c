@@ -133,7 +133,7 @@ START_TEST(a_run_survives_every_failure)
     out_of_memory(status);
     ck_assert_int_eq(heap_bytes(), bytes_before);
     ck_assert_int_eq(report.end, DVI_RUN_FAILED);
-    ck_assert_int_le(report.steps, 5);
+    ck_assert_int_le(report.steps, 6); /* sem may take one more than those of a fixed h */
   }
   /* What was left off can be taken up. */
   ck_assert_msg(run(of, integrator, 2 * t_end, &report) == DVI_OK, "%s", dvi_last_error());

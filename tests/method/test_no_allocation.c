@@ -41,7 +41,6 @@ static const char *const methods[] = {
     "verlet:threads=3",
     "composition:order=6,base=verlet,threads=2",
     "sem:degree=2",
-    "sem:degree=3,quadrature=lobatto,solver=kinsol",
 };
 enum { PLACES = sizeof places / sizeof *places, METHODS = sizeof methods / sizeof *methods };
 

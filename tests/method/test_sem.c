@@ -324,8 +324,8 @@ START_TEST(bounds_that_cannot_be_are_refused)
   refused(of, "sem:hmax=0", 0.1, DVI_BAD_OPTION, "sem: hmax=0; a positive number is possible, or auto");
   refused(of, "sem:hmax=nan", 0.1, DVI_BAD_OPTION, "sem: hmax=nan; a positive number");
   refused(of, "sem:hmax=1e400", 0.1, DVI_BAD_OPTION, "sem: hmax=1e400; a positive number");
-  refused(of, "sem:hmin=0.2", 0.1, DVI_BAD_ARGUMENT, "the first step h = 0.1 is below hmin=0.2; the bounds must include it");
-  refused(of, "sem:hmax=0.05", -0.1, DVI_BAD_ARGUMENT, "the first step h = -0.1 is above hmax=0.05; the bounds must include it");
+  refused(of, "sem:hmin=0.2", 0.1, DVI_BAD_OPTION, "the first step h = 0.1 is below hmin=0.2; the bounds must include it");
+  refused(of, "sem:hmax=0.05", -0.1, DVI_BAD_OPTION, "the first step h = -0.1 is above hmax=0.05; the bounds must include it");
   refused(of, "sem", 0, DVI_BAD_ARGUMENT, "a finite step other than 0 is needed");
   problem_destroy(&of);
 }

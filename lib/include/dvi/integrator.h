@@ -97,6 +97,7 @@ dvi_status dvi_integrator_start_velocity(dvi_integrator *integrator, double t, c
  *
  *  On any failure the state, and all that the next step depends on, is as before the call.
  *  @retval DVI_BAD_ARGUMENT    h is zero or not finite, or so small that t + h = t or 1/h = Inf
+ *  @retval DVI_BAD_OPTION      sem: a first step h outside of hmin and hmax
  *  @retval DVI_BAD_STATE       before dvi_integrator_start
  *  @retval DVI_NOT_CONVERGED   the step's equations were not solved, even by KINSOL with line search; the error sentence names
  *                              step, time, iterations and residual

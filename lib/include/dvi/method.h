@@ -1,7 +1,7 @@
 /** The table of methods, and what each method's specification may say.
  *
  *  A specification is `name[:key=value,...]`, for example "galerkin:degree=4,quadrature=lobatto,nodes=5". Keys that every method
- *  takes: `solver` (auto, certified, fixed-point, simplified, newton, kinsol) for the implicit ones. A composition hands the keys that are not its own to its
+ *  takes: `solver` (auto, certified, fixed-point, simplified, newton, kinsol) for the implicit ones (sem: newton, kinsol). A composition hands the keys that are not its own to its
  *  base method: "composition:order=6,base=galerkin,degree=1". */
 #ifndef DVI_METHOD_H
 #define DVI_METHOD_H

@@ -130,7 +130,7 @@ static dvi_status check_first(const dvi__stepper *self, double h)
 {
   const double least = least_length(self, h), most = largest_length(self, h);
   if (fabs(h) >= least && fabs(h) <= most) return DVI_OK;
-  return dvi__fail(DVI_BAD_ARGUMENT, "sem: the first step h = %g is %s %s=%g; the bounds must include it", h,
+  return dvi__fail(DVI_BAD_OPTION, "sem: the first step h = %g is %s %s=%g; the bounds must include it", h,
                    fabs(h) < least ? "below" : "above", fabs(h) < least ? "hmin" : "hmax", fabs(h) < least ? least : most);
 }
 

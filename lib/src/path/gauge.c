@@ -120,15 +120,27 @@ static void weigh(dvi_path *path)
 dvi_status dvi__path_fix_gauge(dvi_path *path, const double *x, double least_own_part)
 {
   const dvi_system *system = path->system;
-  path->in_use = 0;
+  path->in_use = path->holds_time = 0;
   if (path->gauges == 0) return DVI_OK;
   for (int g = 0; g < system->symmetry_count; g++) DVI_TRY(symmetry_column(path, &system->symmetries[g], x, g));
   if (system->autonomous) time_column(path, x, system->symmetry_count);
   for (int g = 0; g < path->gauges; g++) mend(path, g);
-  for (int g = 0; g < path->gauges; g++)
+  for (int g = 0; g < system->symmetry_count; g++)
     if (!path->broken[g]) use(path, g, least_own_part);
+  const int others = path->in_use;
+  if (system->autonomous) use(path, system->symmetry_count, least_own_part);
+  path->holds_time = path->in_use > others;
   weigh(path);
   for (int k = 0; k < path->steps; k++)
     memcpy(path->origin + (size_t)k * (size_t)path->n, dvi__path_at(path, x, k), (size_t)path->n * sizeof(double));
   return DVI_OK;
+}
+
+int dvi__path_release_time(dvi_path *path)
+{
+  if (!path->holds_time) return 0;
+  path->holds_time = 0;
+  path->in_use--;
+  memset(column(path, path->in_use), 0, (size_t)path->steps * (size_t)path->n * sizeof(double));
+  return 1;
 }

@@ -46,6 +46,7 @@ struct dvi_path {
   double *defect; /* [gauges*n] */
   int *broken;    /* [gauges] */
   int in_use;
+  int holds_time; /* the last one in use is that of time */
 };
 
 /* Where a number of an element stands among all unknowns (or rows): in `count` places, with factors. */
@@ -103,6 +104,9 @@ dvi_status dvi__path_action(dvi_path *path, const double *x, double *action, dou
 /* Find the directions along which the periodic path x may be moved; the solution is to have no distance from x along them. One that differs from the others
  * by less than `least_own_part` of itself is none of its own. After dvi__path_scale. */
 dvi_status dvi__path_fix_gauge(dvi_path *path, const double *x, double least_own_part);
+
+/* Let the path go in time again; 0 if it was not held. */
+int dvi__path_release_time(dvi_path *path);
 
 /* ---- index.c ---- */
 

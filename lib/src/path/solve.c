@@ -12,6 +12,9 @@ static const double stationary_below = 1e-9;
 /* Newton's method settles from there, unless the Hessian is singular. */
 static const double nearly_stationary = 1e-8;
 
+/* A gradient that is no larger where the path is held in place may vanish at another time. */
+static const double nearly_in_time = 1e-4;
+
 /* Directions that move the guess alike are one. On a circle rotation moves a path as time does, but on a rough guess of it they differ: if it cannot be held
  * in place along both, they are taken for one. */
 static const double equal = 1e-6, alike = 0.5;
@@ -66,6 +69,15 @@ static dvi_status not_found(dvi_path *path, dvi_status status, const dvi__solve_
       path->steps, path->span, solved->iterations, solved->residual, advice[path->ends]);
 }
 
+static dvi_status held_in_place(double gradient)
+{
+  return dvi__fail(DVI_NOT_CONVERGED,
+                   "path: the path that was found is stationary only while it is held in place (gradient %.1e of the momenta): no "
+                   "path of this period is near the guess, or the steps are too long; the path is unchanged; try another period or "
+                   "guess, a free period, or more steps",
+                   gradient);
+}
+
 /* What is left of stationarity, relative to momenta; for a path at rest, to a momentum that would cross its own size. */
 static dvi_status measure(dvi_path *path, double size, dvi_path_report *report)
 {
@@ -77,13 +89,7 @@ static dvi_status measure(dvi_path *path, double size, dvi_path_report *report)
   double momentum = dvi__largest((size_t)(path->steps + 1) * (size_t)path->n, path->trial_p);
   momentum = fmax(momentum, dvi__largest((size_t)path->n, path->kinetic) * size / report->span * stationary_below);
   if (momentum > 0) report->gradient /= momentum;
-  if (!(report->gradient <= stationary_below))
-    return dvi__fail(
-        DVI_NOT_CONVERGED,
-        "path: the path that was found is stationary only while it is held in place (gradient %.1e of the momenta): no "
-        "path of this period is near the guess, or the steps are too long; the path is unchanged; try another period or "
-        "guess, a free period, or more steps",
-        report->gradient);
+  if (!(report->gradient <= stationary_below)) return held_in_place(report->gradient);
   return dvi__path_action(path, x, &report->action, &report->energy);
 }
 
@@ -124,6 +130,19 @@ static void accept(dvi_path *path)
   path->solved = 1;
 }
 
+/* The steps are so long that the discrete motion has preferred times, by a little: Newton's method takes the path to one of them. */
+static dvi_status settle(dvi_path *path, double size, dvi_path_report *report)
+{
+  dvi__solve_report solved;
+  const double gradient = report->gradient;
+  if (!dvi__path_release_time(path)) return DVI_NOT_CONVERGED;
+  const dvi_status status = dvi__solve(path->solver, DVI__KINSOL, size, 0, 0, path->trial, &solved);
+  if (status > 0) return held_in_place(gradient);
+  if (status < 0) return not_found(path, status, &solved);
+  report->iterations += solved.iterations;
+  return measure(path, size, report);
+}
+
 /* From the guess, which is held in place along directions that are independent to this part. */
 static dvi_status attempt(dvi_path *path, double least_own_part, dvi_path_report *report)
 {
@@ -137,7 +156,8 @@ static dvi_status attempt(dvi_path *path, double least_own_part, dvi_path_report
   if (status != DVI_OK) return not_found(path, status, &solved);
   report->iterations = solved.iterations;
   report->symmetries = path->in_use;
-  return measure(path, size, report);
+  const dvi_status measured = measure(path, size, report);
+  return measured == DVI_NOT_CONVERGED && report->gradient < nearly_in_time ? settle(path, size, report) : measured;
 }
 
 static dvi_status solve(dvi_path *path, dvi_path_report *report)
