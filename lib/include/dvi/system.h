@@ -179,7 +179,7 @@ typedef struct dvi_derivative_check {
 
 /** Compare every gradient, Hessian, pattern and rate of the system with differences of the values at one point, and every gradient_range, bit
  *  for bit, with the whole gradient: over short and long ranges, with NaN wherever it may not look. Of an autonomous system every callback must
- *  give the same bits at two other times.
+ *  give the same numbers at two other times.
  *
  *  Uses 6th order central differences; n^2 gradient calls: meant for tests and for moderate n.
  *  @param      q, v       [nq], [nv]: a point in general position

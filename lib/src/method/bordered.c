@@ -224,8 +224,5 @@ dvi_status dvi__bordered_solve(dvi__bordered *b, const dvi__state *state, double
   if (status != DVI_OK) return status;
   found->slope = slope_of_factor(b);
   if (!isfinite(found->slope)) return dvi__fail(DVI_NOT_CONVERGED, "the energy equation is degenerate at a step of %g", found->h);
-  DVI_TRY(place(b, b->x));
-  DVI_TRY(dvi__bordered_energies(b, state, found->h, b->Y, &found->E));
-  found->value = found->E.start - target;
   return DVI_OK;
 }

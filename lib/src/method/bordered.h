@@ -40,8 +40,8 @@ typedef struct dvi__mismatch {
 dvi_status dvi__bordered_create(const dvi__stepper *self, const dvi__action_space *space, dvi__bordered *b);
 void dvi__bordered_clear(dvi__bordered *b);
 
-/* Solve rows and energy row by this rung, from a solution Y [rows] of the rows, at which the action stands, with its h and energies in *found; b->Y and *found
- * are the solution then. A positive status: not solved. */
+/* Solve rows and energy row by this rung, from a solution Y [rows] of the rows, at which the action stands, with its h and energies in *found; the solution's h and slope
+ * are there then. A positive status: not solved. */
 dvi_status dvi__bordered_solve(dvi__bordered *b, const dvi__state *state, double target, dvi__rung rung, const double *Y,
                                dvi__mismatch *found);
 

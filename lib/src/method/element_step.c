@@ -429,15 +429,6 @@ static place place_of(const dvi__stepper *self, const dvi__state *state, double 
                  continues ? self->memory + dvi__element_forces(self) : NULL};
 }
 
-void dvi__element_take(dvi__stepper *self, dvi__state *state, double h, const double *Y)
-{
-  element *own = self->own;
-  memcpy(own->Y, Y, (size_t)dvi__action_unknowns(own->action) * sizeof(double));
-  dvi__action_ends(own->action, own->Y, own->dq, own->dq_low, own->dp);
-  dvi__action_forces(own->action, self->memory + dvi__element_forces(self));
-  advance(self, state, h);
-}
-
 dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h)
 {
   element *own = self->own;

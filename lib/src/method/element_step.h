@@ -45,9 +45,6 @@ int dvi__element_solver(const dvi__stepper *self);
 void dvi__element_destroy(dvi__stepper *self);
 void dvi__element_start(dvi__stepper *self, const double *v);
 dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h);
-/* Take a step whose unknowns somebody else has found: those of the action's last residual. */
-void dvi__element_take(dvi__stepper *self, dvi__state *state, double h, const double *Y);
-
 void dvi__element_path(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v);
 void dvi__element_explain(const dvi__stepper *self, dvi__text *text);
 

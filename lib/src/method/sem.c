@@ -219,9 +219,8 @@ static double likely_length(const dvi__stepper *self, double last, double least,
   return copysign(fmin(fmax(fabs(growth * last), least), most), last);
 }
 
-/* Where h hardly shows in the energy its noise keeps Newton's method from settling: then the rows alone, at the length that it came to, decide.
- *
- * Rows and energy row in one, from the path of the last length. A positive status: the search has to tell whether there is a solution. */
+/* Rows and energy row in one, from the path of a likely length. They give the length alone: the step is an ordinary one, whose roundings do not add up, and it
+ * decides, also where noise of h keeps Newton's method from settling. A positive status: the search has to tell whether there is a solution. */
 static dvi_status solve_together(dvi__stepper *self, dvi__state *state, double least, double most, dvi__mismatch *found)
 {
   sem *own = self->own;
@@ -236,11 +235,7 @@ static dvi_status solve_together(dvi__stepper *self, dvi__state *state, double l
   }
   const dvi_status status = dvi__bordered_solve(b, state, target, rung, b->element.memory + DVI__LAST_Y, found);
   if (status < 0 || !within(found->h, last, least, most)) return status != DVI_OK ? status : far_off(found);
-  if (status == DVI_OK && dvi__energy_solved(found)) {
-    dvi__element_take(&b->element, state, found->h, b->Y);
-    return DVI_OK;
-  }
-  DVI_TRY(dvi__energy_search_try(&own->search, found->h, 1, found));
+  DVI_TRY(dvi__energy_search_try(&own->search, found->h, status != DVI_OK, found));
   if (!dvi__energy_solved(found)) return far_off(found);
   dvi__energy_search_take(&own->search, state);
   return DVI_OK;

@@ -97,7 +97,7 @@ static dvi_status check_autonomous(const subject *s, double t, size_t longest, d
     const double other = t + apart[k] * fmax(1, fabs(t));
     DVI_TRY(portray(s, other, longest, moved));
     for (size_t i = 0; i < count; i++)
-      if (memcmp(&numbers[i], &moved[i], sizeof(double)) != 0) return report_change(s, i, t, other, numbers[i], moved[i], result);
+      if (numbers[i] != moved[i]) return report_change(s, i, t, other, numbers[i], moved[i], result);
   }
   return DVI_OK;
 }
