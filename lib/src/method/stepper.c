@@ -7,6 +7,7 @@ static const char *term_name(unsigned term)
   switch (term) {
   case DVI__CONSTANT_MASS: return "a constant mass";
   case DVI__LAGRANGIAN: return "a general Lagrangian";
+  case DVI__ONE_FORM: return "a one-form";
   default: return "potentials";
   }
 }

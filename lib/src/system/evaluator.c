@@ -18,7 +18,8 @@ static int allocate_general(dvi__evaluator *e)
   e->hessian[0] = DVI_NEW(double, dvi__pattern_entries(&system->lagrangian->qq));
   e->hessian[1] = DVI_NEW(double, dvi__pattern_entries(&system->qv));
   e->hessian[2] = DVI_NEW(double, dvi__pattern_entries(&system->vv));
-  return e->unwanted && e->velocity_search && e->hessian[0] && e->hessian[1] && e->hessian[2];
+  e->two_form = DVI_NEW(double, dvi__pattern_entries(&system->lagrangian->omega));
+  return e->unwanted && e->velocity_search && e->hessian[0] && e->hessian[1] && e->hessian[2] && e->two_form;
 }
 
 static dvi_status allocate(dvi__evaluator *e, int hessians)
@@ -35,7 +36,8 @@ static dvi_status prepare_velocity(dvi__evaluator *e)
 {
   const dvi_system *system = e->system;
   if (system->mass_diagonal != NULL) return DVI_OK;
-  DVI_TRY(dvi__linear_create(&system->vv, DVI__LINEAR_AUTO, e->counters, &e->velocity));
+  const dvi__pattern *pattern = system->terms & DVI__ONE_FORM ? &system->lagrangian->omega : &system->vv;
+  DVI_TRY(dvi__linear_create(pattern, DVI__LINEAR_AUTO, e->counters, &e->velocity));
   return system->mass_values != NULL ? dvi__linear_factor(e->velocity, system->mass_values) : DVI_OK;
 }
 
@@ -67,6 +69,7 @@ void dvi__evaluator_destroy(dvi__evaluator **evaluator)
   for (int i = 0; i < 3; i++) dvi__release(e->point[i]);
   dvi__release(e->unwanted);
   dvi__release(e->velocity_search);
+  dvi__release(e->two_form);
   for (int i = 0; i < 3; i++) dvi__release(e->hessian[i]);
   dvi__release(e);
   *evaluator = NULL;

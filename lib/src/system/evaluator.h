@@ -37,10 +37,14 @@ dvi_status dvi__lagrangian_hessian(dvi__evaluator *e, int count, const double *t
 /* One point of a general Lagrangian: *L_vv is owned by the evaluator, valid until its next call. Potentials do not matter for it. */
 dvi_status dvi__velocity_hessian(dvi__evaluator *e, double t, const double *q, const double *v, const double **L_vv);
 
-/* One point: v with L_v(t,q,v) = p. v holds a guess for general Lagrangians; unchanged on failure. */
+/* One point: v with L_v(t,q,v) = p, or that of the equations of motion with a one-form. v holds a guess for general Lagrangians; unchanged on failure. */
 dvi_status dvi__legendre_inverse(dvi__evaluator *e, double t, const double *q, const double *p, double *v);
 
-/* One point: DVI_SINGULAR if L_vv cannot be inverted there. */
+/* One point of a system with a one-form: factor Omega(q); v with Omega(q) v = H_q(t,q). DVI_SINGULAR. */
+dvi_status dvi__two_form_factor(dvi__evaluator *e, const double *q);
+dvi_status dvi__two_form_velocity(dvi__evaluator *e, double t, const double *q, double *v);
+
+/* One point: DVI_SINGULAR if L_vv (Omega with a one-form) cannot be inverted there. */
 dvi_status dvi__legendre_regular(dvi__evaluator *e, double t, const double *q, const double *v);
 
 /* x [n*count, component-major] = M^{-1} y for the constant mass; x may be y. Only for systems with DVI__CONSTANT_MASS. */
