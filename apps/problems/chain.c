@@ -134,7 +134,8 @@ static dvi_status make(const double *setting, problem *made)
                                    .user = own,
                                    .gradient_range = gradient_range,
                                    .reach = 1};
-  const dvi_system_terms terms = {.dimension = n, .mass = {.scalar = 1.0}, .potentials = &potential, .potential_count = 1};
+  const dvi_system_terms terms = {
+      .dimension = n, .mass = {.scalar = 1.0}, .potentials = &potential, .potential_count = 1, .autonomous = 1};
   return problem_system(made, &terms);
 }
 

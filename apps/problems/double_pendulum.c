@@ -77,7 +77,7 @@ static dvi_status make(const double *setting, problem *made)
   made->v[1] = pi / 8.0;
 
   const dvi_lagrangian lagrangian = {.value_batch = value, .gradient_batch = gradient, .hessian_batch = hessian, .user = own};
-  const dvi_system_terms terms = {.dimension = 2, .lagrangian = &lagrangian};
+  const dvi_system_terms terms = {.dimension = 2, .lagrangian = &lagrangian, .autonomous = 1};
   return problem_system(made, &terms);
 }
 

@@ -212,7 +212,8 @@ static dvi_status make_system(problem *made, chain *own)
                                   .potentials = springs,
                                   .potential_count = 2,
                                   .invariants = watched > 0 ? energies : NULL,
-                                  .invariant_count = watched};
+                                  .invariant_count = watched,
+                                  .autonomous = 1};
   return problem_system(made, &terms);
 }
 

@@ -53,7 +53,8 @@ static dvi_status make(const double *setting, problem *made)
 
   const dvi_potential well = {
       .name = "well", .value_batch = value, .gradient_batch = gradient, .hessian_batch = hessian, .user = lambda};
-  const dvi_system_terms terms = {.dimension = 2, .mass = {.scalar = 1.0}, .potentials = &well, .potential_count = 1};
+  const dvi_system_terms terms = {
+      .dimension = 2, .mass = {.scalar = 1.0}, .potentials = &well, .potential_count = 1, .autonomous = 1};
   return problem_system(made, &terms);
 }
 

@@ -142,7 +142,8 @@ static dvi_status make(const double *setting, problem *made)
                                   .symmetries = &symmetry,
                                   .symmetry_count = 1,
                                   .invariants = laplace,
-                                  .invariant_count = 2};
+                                  .invariant_count = 2,
+                                  .autonomous = 1};
   return problem_system(made, &terms);
 }
 

@@ -214,7 +214,8 @@ static dvi_status make_system(gravity *own, problem *made)
                                   .potentials = &attraction,
                                   .potential_count = 1,
                                   .symmetries = symmetries,
-                                  .symmetry_count = symmetry_count};
+                                  .symmetry_count = symmetry_count,
+                                  .autonomous = 1};
   return problem_system(made, &terms);
 }
 

@@ -48,7 +48,8 @@ static dvi_status make(const double *setting, problem *made)
   made->q[0] = 0.5;
 
   const dvi_potential spring = {.name = "spring", .value = value, .gradient = gradient, .hessian = hessian, .user = k};
-  const dvi_system_terms terms = {.dimension = 1, .mass = {.scalar = 1.0}, .potentials = &spring, .potential_count = 1};
+  const dvi_system_terms terms = {
+      .dimension = 1, .mass = {.scalar = 1.0}, .potentials = &spring, .potential_count = 1, .autonomous = 1};
   return problem_system(made, &terms);
 }
 

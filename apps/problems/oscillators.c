@@ -60,7 +60,8 @@ static dvi_status make(const double *setting, problem *made)
       {.name = "slow", .value_batch = value, .gradient_batch = gradient, .hessian_batch = hessian, .user = &own->slow},
       {.name = "fast", .value_batch = value, .gradient_batch = gradient, .hessian_batch = hessian, .user = &own->fast},
   };
-  const dvi_system_terms terms = {.dimension = 1, .mass = {.scalar = 1.0}, .potentials = springs, .potential_count = 2};
+  const dvi_system_terms terms = {
+      .dimension = 1, .mass = {.scalar = 1.0}, .potentials = springs, .potential_count = 2, .autonomous = 1};
   return problem_system(made, &terms);
 }
 

@@ -34,7 +34,8 @@ static dvi_status make(const double *setting, problem *made)
   made->q[0] = setting[0];
 
   const dvi_potential gravity = {.name = "gravity", .value_batch = value, .gradient_batch = gradient, .hessian_batch = hessian};
-  const dvi_system_terms terms = {.dimension = 1, .mass = {.scalar = 1.0}, .potentials = &gravity, .potential_count = 1};
+  const dvi_system_terms terms = {
+      .dimension = 1, .mass = {.scalar = 1.0}, .potentials = &gravity, .potential_count = 1, .autonomous = 1};
   return problem_system(made, &terms);
 }
 

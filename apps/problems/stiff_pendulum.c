@@ -63,7 +63,7 @@ static dvi_status make(const double *setting, problem *made)
 
   const dvi_lagrangian lagrangian = {
       .value = value, .gradient = gradient, .hessian = hessian, .qv = {qv_start, qv_row}, .vv = {vv_start, vv_row}, .user = own};
-  const dvi_system_terms terms = {.dimension = 2, .lagrangian = &lagrangian};
+  const dvi_system_terms terms = {.dimension = 2, .lagrangian = &lagrangian, .autonomous = 1};
   return problem_system(made, &terms);
 }
 

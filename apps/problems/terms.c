@@ -20,6 +20,7 @@ static dvi_system_terms *keep_terms(problem *made, const dvi_system_terms *terms
   dvi_system_terms *kept = keep(made, terms, 1, sizeof *terms, &lost);
   if (!kept) return NULL;
   kept->lagrangian = keep(made, terms->lagrangian, terms->lagrangian != NULL, sizeof *terms->lagrangian, &lost);
+  kept->one_form = keep(made, terms->one_form, terms->one_form != NULL, sizeof *terms->one_form, &lost);
   kept->potentials = keep(made, terms->potentials, terms->potential_count, sizeof *terms->potentials, &lost);
   kept->symmetries = keep(made, terms->symmetries, terms->symmetry_count, sizeof *terms->symmetries, &lost);
   kept->invariants = keep(made, terms->invariants, terms->invariant_count, sizeof *terms->invariants, &lost);
@@ -77,6 +78,18 @@ static int lagrangian_hessian(double t, const double *q, const double *v, double
                             : own->hessian(t, q, v, L_qq, L_qv, L_vv, own->user);
 }
 
+static int rate(double t, const double *q, double *V_t, void *user)
+{
+  const dvi_potential *own = user;
+  return own->rate_batch ? own->rate_batch(1, &t, q, V_t, own->user) : own->rate(t, q, V_t, own->user);
+}
+
+static int lagrangian_rate(double t, const double *q, const double *v, double *L_t, void *user)
+{
+  const dvi_lagrangian *own = user;
+  return own->rate_batch ? own->rate_batch(1, &t, q, v, L_t, own->user) : own->rate(t, q, v, L_t, own->user);
+}
+
 static dvi_potential one_point_potential(const dvi_potential *declared)
 {
   return (dvi_potential){.name = declared->name,
@@ -86,6 +99,7 @@ static dvi_potential one_point_potential(const dvi_potential *declared)
                          .qq = declared->qq,
                          .gradient_range = declared->gradient_range ? gradient_range : NULL,
                          .reach = declared->reach,
+                         .rate = declared->rate || declared->rate_batch ? rate : NULL,
                          .user = (void *)declared};
 }
 
@@ -97,6 +111,7 @@ static dvi_lagrangian one_point_lagrangian(const dvi_lagrangian *declared)
                           .qq = declared->qq,
                           .qv = declared->qv,
                           .vv = declared->vv,
+                          .rate = declared->rate || declared->rate_batch ? lagrangian_rate : NULL,
                           .user = (void *)declared};
 }
 

@@ -146,7 +146,8 @@ static dvi_status make(const double *setting, problem *made)
                                   .potentials = &bonds,
                                   .potential_count = 1,
                                   .symmetries = &symmetry,
-                                  .symmetry_count = 1};
+                                  .symmetry_count = 1,
+                                  .autonomous = 1};
   return problem_system(made, &terms);
 }
 

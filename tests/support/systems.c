@@ -95,14 +95,29 @@ static int springs_hessian(double t, const double *q, double *V_qq, void *user)
   return springs_hessians(1, &t, q, V_qq, user);
 }
 
+static int springs_rates(int count, const double *t, const double *q, double *V_t, void *user)
+{
+  const behaviour *b = user;
+  (void)t, (void)q;
+  for (int k = 0; k < count; k++) V_t[k] = b->rate_lie;
+  return b->answer;
+}
+
+static int springs_rate(double t, const double *q, double *V_t, void *user)
+{
+  return springs_rates(1, &t, q, V_t, user);
+}
+
 dvi_potential springs(behaviour *user, callback_shape shape)
 {
   dvi_potential p = {.name = "springs", .qq = tridiagonal, .user = user};
   if (shape == ONE_POINT) {
+    p.rate = springs_rate;
     p.value = springs_value;
     p.gradient = springs_gradient;
     p.hessian = springs_hessian;
   } else {
+    p.rate_batch = springs_rates;
     p.value_batch = springs_values;
     p.gradient_batch = springs_gradients;
     p.hessian_batch = springs_hessians;
@@ -159,14 +174,32 @@ static int wells_hessian(double t, const double *q, double *V_qq, void *user)
   return wells_hessians(1, &t, q, V_qq, user);
 }
 
+static int wells_rates(int count, const double *t, const double *q, double *V_t, void *user)
+{
+  const behaviour *b = user;
+  (void)t;
+  for (int k = 0; k < count; k++) {
+    V_t[k] = b->rate_lie;
+    for (int i = 0; i < SITES; i++) V_t[k] += q[i * count + k];
+  }
+  return b->answer;
+}
+
+static int wells_rate(double t, const double *q, double *V_t, void *user)
+{
+  return wells_rates(1, &t, q, V_t, user);
+}
+
 dvi_potential wells(behaviour *user, callback_shape shape)
 {
   dvi_potential p = {.name = "wells", .qq = diagonal, .user = user};
   if (shape == ONE_POINT) {
+    p.rate = wells_rate;
     p.value = wells_value;
     p.gradient = wells_gradient;
     p.hessian = wells_hessian;
   } else {
+    p.rate_batch = wells_rates;
     p.value_batch = wells_values;
     p.gradient_batch = wells_gradients;
     p.hessian_batch = wells_hessians;
@@ -243,14 +276,32 @@ static int rotors_hessian(double t, const double *q, const double *v, double *L_
   return rotors_hessians(1, &t, q, v, L_qq, L_qv, L_vv, user);
 }
 
+static int rotors_rates(int count, const double *t, const double *q, const double *v, double *L_t, void *user)
+{
+  const behaviour *b = user;
+  (void)t, (void)v;
+  for (int k = 0; k < count; k++) {
+    L_t[k] = b->rate_lie;
+    for (int i = 0; i < SITES; i++) L_t[k] -= q[i * count + k] * q[i * count + k] / 2;
+  }
+  return b->answer;
+}
+
+static int rotors_rate(double t, const double *q, const double *v, double *L_t, void *user)
+{
+  return rotors_rates(1, &t, q, v, L_t, user);
+}
+
 dvi_lagrangian rotors(behaviour *user, callback_shape shape)
 {
   dvi_lagrangian l = {.qq = diagonal, .qv = bidiagonal, .vv = tridiagonal, .user = user};
   if (shape == ONE_POINT) {
+    l.rate = rotors_rate;
     l.value = rotors_value;
     l.gradient = rotors_gradient;
     l.hessian = rotors_hessian;
   } else {
+    l.rate_batch = rotors_rates;
     l.value_batch = rotors_values;
     l.gradient_batch = rotors_gradients;
     l.hessian_batch = rotors_hessians;

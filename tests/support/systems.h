@@ -8,11 +8,11 @@ enum { SITES = 6 };
 typedef enum callback_shape { ONE_POINT, BATCH } callback_shape;
 
 /* What a term's callbacks did and shall do; its `user`. Gradients and Hessians get `lie` added to their entry `at`; for the
- * rotors' two gradients and three Hessian blocks `block` chooses which. */
+ * rotors' two gradients and three Hessian blocks `block` chooses which. Rates are right but for their lie. */
 typedef struct behaviour {
   long values, gradients, hessians; /* calls */
   int answer;                       /* what the callbacks return */
-  double value_lie, gradient_lie, hessian_lie;
+  double value_lie, gradient_lie, hessian_lie, rate_lie;
   int at, block;
 } behaviour;
 

@@ -11,7 +11,7 @@ typedef struct dvi_integrator dvi_integrator;
 typedef struct dvi_counters {
   long steps;          /**< accepted steps */
   long failed_steps;   /**< steps that failed */
-  long values;         /**< points at which values were evaluated, those of differences included */
+  long values;         /**< points at which values, or rates, were evaluated, those of differences included */
   long gradients;      /**< points at which gradients were evaluated, those of differences included */
   long hessians;       /**< points at which Hessians were evaluated */
   long residuals;      /**< residuals of the step's equations (fixed-point iterations count as one each) */

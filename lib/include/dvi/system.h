@@ -43,6 +43,9 @@ typedef struct dvi_lagrangian {
                        void *user);
   dvi_pattern qq, qv, vv;
   void *user;
+  /** The rate L_t, the derivative in time alone. Needed by methods for which time is an unknown, unless the system is autonomous. */
+  int (*rate)(double t, const double *q, const double *v, double *L_t, void *user);
+  int (*rate_batch)(int count, const double *t, const double *q, const double *v, double *L_t, void *user);
 } dvi_lagrangian;
 
 /** A one-form alpha(q), for degenerate Lagrangians alpha(q).v - H: magnetic field lines, guiding centres, point vortices, predators and their prey.
@@ -83,6 +86,9 @@ typedef struct dvi_potential {
    *  gradient. */
   int (*gradient_range)(double t, const double *q, int first, int last, double *V_q, void *user);
   int reach; /**< of gradient_range, 0 or more: how far, in the order of the coordinates, the farthest neighbour of one is away */
+  /** The rate V_t, the derivative in time alone. Needed by methods for which time is an unknown, unless the system is autonomous. */
+  int (*rate)(double t, const double *q, double *V_t, void *user);
+  int (*rate_batch)(int count, const double *t, const double *q, double *V_t, void *user);
 } dvi_potential;
 
 /** A constant mass matrix: exactly one of the three forms. */
@@ -119,6 +125,7 @@ typedef struct dvi_system_terms {
   int symmetry_count;
   const dvi_invariant *invariants;
   int invariant_count;
+  int autonomous; /**< not 0: no callback depends on t (dvi_system_check tests it), and no rates are given; 0: one may */
 } dvi_system_terms;
 
 /** A system; it never changes after its creation, so integrators on several threads may share it. */
@@ -133,7 +140,7 @@ extern "C" {
  *  @param[out] system  owned by the caller; NULL on failure. It must outlive every integrator made from it.
  *  @retval DVI_BAD_SIZE      dimension (odd with a one-form), a count or a reach is out of range
  *  @retval DVI_BAD_ARGUMENT  a term is missing, given twice, or without its value callback; a reach has no gradient_range; a pattern is not
- *                            sorted
+ *                            sorted; an autonomous system has a rate
  *  @retval DVI_SINGULAR      the constant mass is singular or not finite
  *  @retval DVI_NO_MEMORY */
 dvi_status dvi_system_create(const dvi_system_terms *terms, dvi_system **system);
@@ -146,6 +153,9 @@ int dvi_system_nq(const dvi_system *system);
 
 /** Number of degrees of freedom: the size of v and p; 0 for NULL. */
 int dvi_system_nv(const dvi_system *system);
+
+/** Whether the system was declared autonomous: 1 or 0; 0 for NULL. */
+int dvi_system_autonomous(const dvi_system *system);
 
 /** The Lagrangian's value at (t, q [nq], v [nv]). Allocates; fails as the callbacks do. */
 dvi_status dvi_system_lagrangian(const dvi_system *system, double t, const double *q, const double *v, double *L);
@@ -189,10 +199,13 @@ typedef struct dvi_derivative_check {
   int row, column;       /**< where `outside` is, or the worst Hessian entry if nothing is outside */
   char where[96];        /**< the worst offender in words, for example "potential 'gravity': d2V/dq2 (3,1) is not in the pattern" */
   int range_row;         /**< the first coordinate for which a gradient_range breaks its promise; -1: none does */
+  double rate_error;     /**< largest difference of given and differenced rate, relative to the rate */
+  int depends_on_time;   /**< 1: the system is declared autonomous, but a callback's results change with t */
 } dvi_derivative_check;
 
-/** Compare every gradient, Hessian and pattern of the system with differences of the values at one point, and every gradient_range, bit for
- *  bit, with the whole gradient: over short and long ranges, with NaN wherever it may not look.
+/** Compare every gradient, Hessian, pattern and rate of the system with differences of the values at one point, and every gradient_range, bit
+ *  for bit, with the whole gradient: over short and long ranges, with NaN wherever it may not look. Of an autonomous system every callback must
+ *  give the same bits at two other times.
  *
  *  Uses 6th order central differences; n^2 gradient calls: meant for tests and for moderate n.
  *  @param      q, v       [nq], [nv]: a point in general position

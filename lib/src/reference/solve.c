@@ -21,6 +21,7 @@ static const struct {
     [DVI_CVODE_ADAMS] = {"cvode-adams", dvi__reference_cvode},
     [DVI_CVODE_BDF] = {"cvode-bdf", dvi__reference_cvode},
     [DVI_ARKODE] = {"arkode", dvi__reference_arkode},
+    [DVI_IDA_INDEX_2] = {"ida-index-2", dvi__reference_ida},
 };
 
 enum { CODE_COUNT = sizeof codes / sizeof codes[0] };
@@ -135,10 +136,16 @@ static dvi_status reserve(dvi__reference_run *run, const double *q, const double
   return DVI_OK;
 }
 
+dvi_status dvi__reference_form_momentum(dvi__reference_run *run)
+{
+  return dvi__lagrangian_gradient(run->evaluator, 1, &run->t_end, run->q, run->v, NULL, run->p);
+}
+
 static dvi_status prepare(dvi__reference_run *run, const double *q, const double *p)
 {
   dvi_status status = dvi__evaluator_create(run->system, 1, DVI__HESSIANS, &run->counters, &run->evaluator);
   if (status == DVI_OK) status = reserve(run, q, p);
+  if (status == DVI_OK && run->system->terms & DVI__ONE_FORM) status = dvi__form_constraint(run->evaluator, run->q, run->p);
   if (status == DVI_OK) status = dvi__legendre_inverse(run->evaluator, run->t, run->q, run->p, run->v);
   if (status == DVI_OK) status = dvi__lagrangian_gradient(run->evaluator, 1, &run->t, run->q, run->v, run->force, NULL);
   if (status == DVI_OK) return DVI_OK;

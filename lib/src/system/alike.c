@@ -1,4 +1,4 @@
-/* Which systems may stand in for one another. */
+/* What a system's terms have in common, and which systems may stand in for one another. */
 #include "core/status.h"
 #include "system/term.h"
 
@@ -7,6 +7,20 @@ int dvi__system_has_gradients(const dvi_system *system)
   for (int p = 0; p < system->potential_count; p++)
     if (!dvi__potential_has_gradient(&system->potentials[p])) return 0;
   return 1;
+}
+
+dvi_status dvi__system_has_rates(const dvi_system *system)
+{
+  const dvi__lagrangian_term *l = system->lagrangian;
+  const char *without = l != NULL && !dvi__general_has_rate(l) ? "the Lagrangian" : NULL;
+  for (int p = 0; p < system->potential_count && without == NULL; p++)
+    if (!dvi__potential_has_rate(&system->potentials[p])) without = system->potentials[p].name;
+  if (system->autonomous || without == NULL) return DVI_OK;
+  return dvi__fail(
+      DVI_UNSUPPORTED,
+      "%s has no rate callback, and the system is not declared autonomous; give the rate, or declare it if no callback "
+      "depends on t",
+      without);
 }
 
 static int same_ranges(const dvi_system *a, const dvi_system *b)
@@ -22,10 +36,12 @@ static int same_derivatives(const dvi_system *a, const dvi_system *b)
 {
   for (int p = 0; p < a->potential_count; p++)
     if (dvi__potential_has_gradient(&a->potentials[p]) != dvi__potential_has_gradient(&b->potentials[p]) ||
-        dvi__potential_has_hessian(&a->potentials[p]) != dvi__potential_has_hessian(&b->potentials[p]))
+        dvi__potential_has_hessian(&a->potentials[p]) != dvi__potential_has_hessian(&b->potentials[p]) ||
+        dvi__potential_has_rate(&a->potentials[p]) != dvi__potential_has_rate(&b->potentials[p]))
       return 0;
   return a->lagrangian == NULL || (dvi__general_has_gradient(a->lagrangian) == dvi__general_has_gradient(b->lagrangian) &&
-                                   dvi__general_has_hessian(a->lagrangian) == dvi__general_has_hessian(b->lagrangian));
+                                   dvi__general_has_hessian(a->lagrangian) == dvi__general_has_hessian(b->lagrangian) &&
+                                   dvi__general_has_rate(a->lagrangian) == dvi__general_has_rate(b->lagrangian));
 }
 
 dvi_status dvi__system_alike(const dvi_system *a, const dvi_system *b)
@@ -33,6 +49,8 @@ dvi_status dvi__system_alike(const dvi_system *a, const dvi_system *b)
   /* The sizes stand before what they say how much of there is. */
   if (a->n != b->n || a->terms != b->terms || a->potential_count != b->potential_count || a->hash != b->hash)
     return dvi__fail(DVI_BAD_ARGUMENT, "the systems declare different terms, masses, patterns or names");
+  if (a->autonomous != b->autonomous)
+    return dvi__fail(DVI_BAD_ARGUMENT, "one of the systems is declared autonomous, the other is not");
   if (!same_ranges(a, b))
     return dvi__fail(DVI_BAD_ARGUMENT, "a gradient_range is given in one of the systems alone, or they differ in its reach");
   if (same_derivatives(a, b)) return DVI_OK;

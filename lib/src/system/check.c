@@ -1,5 +1,5 @@
 /* The derivative check: every gradient against differences of the values, every Hessian and pattern against differences of the
- * gradients, one column at a time; every gradient by ranges against the whole one. */
+ * gradients, one column at a time; every gradient by ranges against the whole one; then what is said about time. */
 #include <float.h>
 #include <math.h>
 #include <stdint.h>
@@ -9,6 +9,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/finite.h"
+#include "system/check_time.h"
 #include "system/difference.h"
 
 /* One entry at which callback and difference disagree. */
@@ -343,10 +344,12 @@ dvi_status dvi_system_check(const dvi_system *system, double t, const double *q,
   const size_t n = (size_t)system->n;
   if (!isfinite(t) || dvi__first_not_finite(n, q) >= 0 || dvi__first_not_finite(n, v) >= 0)
     return dvi__fail(DVI_NOT_FINITE, "system check: the point (t = %g) is not finite", t);
+  const double accepted = tolerance > 0 ? tolerance : 1e-6;
   check c = {.n = system->n, .t = t, .q = q, .v = v, .range.row = -1};
   dvi_status status = allocate(&c, system);
   if (status == DVI_OK) status = check_terms(&c, system);
-  if (status == DVI_OK) status = report(&c, tolerance > 0 ? tolerance : 1e-6, kept);
+  if (status == DVI_OK) status = report(&c, accepted, kept);
+  if (status == DVI_OK) status = dvi__check_time(system, &c.scratch, &c.differences, t, q, v, accepted, kept);
   clear(&c);
   return status;
 }

@@ -143,6 +143,20 @@ dvi_status dvi__lagrangian_value(dvi__evaluator *e, int count, const double *t, 
   return DVI_OK;
 }
 
+dvi_status dvi__lagrangian_rate(dvi__evaluator *e, int count, const double *t, const double *q, const double *v, double *L_t)
+{
+  const dvi_system *s = e->system;
+  memset(L_t, 0, (size_t)count * sizeof(double));
+  if (s->autonomous) return DVI_OK;
+  e->counters->values += count;
+  if (s->lagrangian != NULL) DVI_TRY(dvi__general_rate(s->lagrangian, &e->scratch, count, t, q, v, L_t));
+  for (int p = 0; p < s->potential_count; p++) {
+    DVI_TRY(dvi__potential_rate(&s->potentials[p], &e->scratch, count, t, q, e->term));
+    for (int k = 0; k < count; k++) L_t[k] -= e->term[k];
+  }
+  return DVI_OK;
+}
+
 /* ---- gradient ---- */
 
 /* The sum of the potentials' gradients; the first one is evaluated in place. */

@@ -29,6 +29,9 @@ dvi_status dvi__lagrangian_gradient(dvi__evaluator *e, int count, const double *
 /* V_q [n*count], the sum of the potentials' gradients: what a constant mass has for -L_q. */
 dvi_status dvi__potentials_gradient(dvi__evaluator *e, int count, const double *t, const double *q, double *V_q);
 
+/* L_t [count], for a system of which dvi__system_has_rates; 0 of an autonomous one. Counted as values. */
+dvi_status dvi__lagrangian_rate(dvi__evaluator *e, int count, const double *t, const double *q, const double *v, double *L_t);
+
 /* Only with DVI__HESSIANS. L_qq, L_qv, L_vv: [entries*count] in the order of the system's patterns, entry-major. For a constant mass L_qv is empty, and
  * L_qv and L_vv may be NULL. */
 dvi_status dvi__lagrangian_hessian(dvi__evaluator *e, int count, const double *t, const double *q, const double *v, double *L_qq,
@@ -43,6 +46,12 @@ dvi_status dvi__legendre_inverse(dvi__evaluator *e, double t, const double *q, c
 /* One point of a system with a one-form: factor Omega(q); v with Omega(q) v = H_q(t,q). DVI_SINGULAR. */
 dvi_status dvi__two_form_factor(dvi__evaluator *e, const double *q);
 dvi_status dvi__two_form_velocity(dvi__evaluator *e, double t, const double *q, double *v);
+
+/* F [n] = Omega(q) v - H_q(t,q), without a factorisation. */
+dvi_status dvi__two_form_residual(dvi__evaluator *e, double t, const double *q, const double *v, double *F);
+
+/* DVI_BAD_ARGUMENT unless p = alpha(q) up to rounding. */
+dvi_status dvi__form_constraint(dvi__evaluator *e, const double *q, const double *p);
 
 /* One point: DVI_SINGULAR if L_vv (Omega with a one-form) cannot be inverted there. */
 dvi_status dvi__legendre_regular(dvi__evaluator *e, double t, const double *q, const double *v);

@@ -111,13 +111,21 @@ static dvi_status group_lagrangian(dvi__lagrangian_term *term)
 }
 
 /* Only one of two shapes would ever be called. */
-static dvi_status check_shapes(const char *owner, int values, int gradients, int hessians)
+static dvi_status check_shapes(const char *owner, int values, int gradients, int hessians, int rates)
 {
-  if (!values && !gradients && !hessians) return DVI_OK;
+  if (!values && !gradients && !hessians && !rates) return DVI_OK;
   return dvi__fail(DVI_BAD_ARGUMENT, "system: %s has its %s callback in two shapes, one-point and batch; declare one", owner,
                    values      ? "value"
                    : gradients ? "gradient"
-                               : "Hessian");
+                   : hessians  ? "Hessian"
+                               : "rate");
+}
+
+/* It would never be asked for. */
+static dvi_status check_rate(const dvi_system *s, const char *owner, int given)
+{
+  if (!given || !s->autonomous) return DVI_OK;
+  return dvi__fail(DVI_BAD_ARGUMENT, "system: %s has a rate, but the system is declared autonomous; leave out one of them", owner);
 }
 
 static dvi_status copy_lagrangian(dvi_system *s, const dvi_lagrangian *given)
@@ -125,7 +133,8 @@ static dvi_status copy_lagrangian(dvi_system *s, const dvi_lagrangian *given)
   if (given->value == NULL && given->value_batch == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "system: the Lagrangian has no value callback");
   DVI_TRY(check_shapes("the Lagrangian", given->value && given->value_batch, given->gradient && given->gradient_batch,
-                       given->hessian && given->hessian_batch));
+                       given->hessian && given->hessian_batch, given->rate && given->rate_batch));
+  DVI_TRY(check_rate(s, "the Lagrangian", given->rate || given->rate_batch));
   s->terms |= DVI__LAGRANGIAN;
   dvi__lagrangian_term *term = s->lagrangian = DVI_NEW(dvi__lagrangian_term, 1);
   if (term == NULL) return no_memory();
@@ -154,7 +163,8 @@ static dvi_status copy_one_form(dvi_system *s, const dvi_one_form *given)
   if (given->value == NULL || given->gradient == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "system: the one-form has no %s callback", given->value == NULL ? "value" : "gradient");
   if (s->n % 2 != 0)
-    return dvi__fail(DVI_BAD_SIZE, "system: dimension %d with a one-form; its two-form is singular unless the dimension is even", s->n);
+    return dvi__fail(DVI_BAD_SIZE, "system: dimension %d with a one-form; its two-form is singular unless the dimension is even",
+                     s->n);
   s->terms |= DVI__ONE_FORM;
   dvi__lagrangian_term *term = s->lagrangian = DVI_NEW(dvi__lagrangian_term, 1);
   if (term == NULL) return no_memory();
@@ -184,7 +194,8 @@ static dvi_status copy_potential(dvi_system *s, const dvi_potential *given, dvi_
   if (given->value == NULL && given->value_batch == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "system: potential '%s' has no value callback", name);
   DVI_TRY(check_shapes(name, given->value && given->value_batch, given->gradient && given->gradient_batch,
-                       given->hessian && given->hessian_batch));
+                       given->hessian && given->hessian_batch, given->rate && given->rate_batch));
+  DVI_TRY(check_rate(s, name, given->rate || given->rate_batch));
   DVI_TRY(check_range(given, name));
   term->callbacks = *given;
   term->name = copy_text(name);
@@ -311,7 +322,8 @@ static dvi_status check_terms(const dvi_system_terms *terms)
   DVI_TRY(check_list("symmetries", terms->symmetry_count, terms->symmetries));
   DVI_TRY(check_list("invariants", terms->invariant_count, terms->invariants));
   if (has_mass + (terms->lagrangian != NULL) + (terms->one_form != NULL) > 1)
-    return dvi__fail(DVI_BAD_ARGUMENT, "system: more than one of a mass, a general Lagrangian and a one-form are declared; one of them is possible");
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "system: more than one of a mass, a general Lagrangian and a one-form are declared; one of them is possible");
   if (!has_mass && terms->lagrangian == NULL && terms->one_form == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "system: neither a mass (other than 0) nor a general Lagrangian nor a one-form is declared");
   if (has_pattern && mass->values == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "system: the mass has a pattern but no values");
@@ -345,6 +357,7 @@ static uint64_t hash_of(const dvi_system *s)
 static dvi_status fill(dvi_system *s, const dvi_system_terms *terms)
 {
   s->n = terms->dimension;
+  s->autonomous = terms->autonomous != 0;
   if (terms->lagrangian != NULL)
     DVI_TRY(copy_lagrangian(s, terms->lagrangian));
   else
@@ -418,6 +431,11 @@ int dvi_system_nq(const dvi_system *system)
 int dvi_system_nv(const dvi_system *system)
 {
   return system != NULL ? system->n : 0;
+}
+
+int dvi_system_autonomous(const dvi_system *system)
+{
+  return system != NULL && system->autonomous;
 }
 
 int dvi_system_invariant_count(const dvi_system *system)

@@ -27,7 +27,7 @@ typedef struct dvi__potential_term {
 /* A general Lagrangian, or alpha(q).v. */
 typedef struct dvi__lagrangian_term {
   dvi_lagrangian callbacks;
-  dvi_one_form one_form;          /* without a value: there is none, and the callbacks above count */
+  dvi_one_form one_form; /* without a value: there is none, and the callbacks above count */
   dvi__pattern qq, qv, vv;
   dvi__pattern omega;             /* of the one-form's two-form: qv and its transpose */
   int *in_qq;                     /* [entries of qq] */
@@ -36,11 +36,12 @@ typedef struct dvi__lagrangian_term {
 
 struct dvi_system {
   int n;
+  int autonomous; /* declared so */
   uint64_t hash;  /* of all that is declared, but for what callbacks compute */
   unsigned terms; /* dvi__term bits */
   double mass_scalar;
   double *mass_diagonal;
-  double *mass_values; /* in the order of vv */
+  double *mass_values;              /* in the order of vv */
   dvi__lagrangian_term *lagrangian; /* general, or made of the one-form */
   dvi__potential_term *potentials;
   int potential_count;
@@ -59,6 +60,9 @@ dvi_status dvi__system_prepare_hessian(const dvi_system *system);
 
 /* Whether all potentials give their gradient: nothing is differenced for forces. */
 int dvi__system_has_gradients(const dvi_system *system);
+
+/* DVI_OK if L_t is known: the system is autonomous, or all terms give their rates. Else the sentence names the term without. */
+dvi_status dvi__system_has_rates(const dvi_system *system);
 
 /* DVI_OK if one may stand in for the other in all that is made for it: they declare the same terms, masses, patterns, names, derivatives and reaches, and
  * differ in what their callbacks compute alone. */

@@ -109,6 +109,24 @@ dvi_status dvi__potential_hessian(const dvi__potential_term *p, dvi__scratch *s,
   return verdict(returned, entries, count, V_qq, p->name, "Hessian", "");
 }
 
+int dvi__potential_has_rate(const dvi__potential_term *p)
+{
+  return p->callbacks.rate != NULL || p->callbacks.rate_batch != NULL;
+}
+
+dvi_status dvi__potential_rate(const dvi__potential_term *p, dvi__scratch *s, int count, const double *t, const double *q,
+                               double *V_t)
+{
+  const dvi_potential *c = &p->callbacks;
+  int returned = 0;
+  if (c->rate_batch != NULL) returned = c->rate_batch(count, t, q, V_t, c->user);
+  for (int k = 0; c->rate_batch == NULL && k < count && returned == 0; k++) {
+    gather(s->n, count, k, q, s->point_q);
+    returned = c->rate(t[k], s->point_q, V_t + k, c->user);
+  }
+  return verdict(returned, 1, count, V_t, p->name, "rate", "");
+}
+
 /* ---- one-form: L = alpha(q).v ---- */
 
 static const char *const form = "one-form";
@@ -282,4 +300,25 @@ dvi_status dvi__general_hessian(const dvi__lagrangian_term *l, dvi__scratch *s, 
   DVI_TRY(verdict(returned, qq, count, L_qq, general, "Hessian", " in L_qq"));
   DVI_TRY(verdict(returned, qv, count, L_qv, general, "Hessian", " in L_qv"));
   return verdict(returned, vv, count, L_vv, general, "Hessian", " in L_vv");
+}
+
+int dvi__general_has_rate(const dvi__lagrangian_term *l)
+{
+  return is_form(l) || l->callbacks.rate != NULL || l->callbacks.rate_batch != NULL;
+}
+
+dvi_status dvi__general_rate(const dvi__lagrangian_term *l, dvi__scratch *s, int count, const double *t, const double *q,
+                             const double *v, double *L_t)
+{
+  const dvi_lagrangian *c = &l->callbacks;
+  int returned = 0;
+  for (int k = 0; is_form(l) && k < count; k++) L_t[k] = 0;
+  if (is_form(l)) return DVI_OK;
+  if (c->rate_batch != NULL) returned = c->rate_batch(count, t, q, v, L_t, c->user);
+  for (int k = 0; c->rate_batch == NULL && k < count && returned == 0; k++) {
+    gather(s->n, count, k, q, s->point_q);
+    gather(s->n, count, k, v, s->point_v);
+    returned = c->rate(t[k], s->point_q, s->point_v, L_t + k, c->user);
+  }
+  return verdict(returned, 1, count, L_t, general, "rate", "");
 }

@@ -34,12 +34,16 @@ dvi_status dvi__potential_gradient(const dvi__potential_term *p, dvi__scratch *s
                                    double *V_q);
 dvi_status dvi__potential_hessian(const dvi__potential_term *p, dvi__scratch *s, int count, const double *t, const double *q,
                                   double *V_qq);
+dvi_status dvi__potential_rate(const dvi__potential_term *p, dvi__scratch *s, int count, const double *t, const double *q,
+                               double *V_t);
 dvi_status dvi__general_value(const dvi__lagrangian_term *l, dvi__scratch *s, int count, const double *t, const double *q,
                               const double *v, double *L);
 dvi_status dvi__general_gradient(const dvi__lagrangian_term *l, dvi__scratch *s, int count, const double *t, const double *q,
                                  const double *v, double *L_q, double *L_v);
 dvi_status dvi__general_hessian(const dvi__lagrangian_term *l, dvi__scratch *s, int count, const double *t, const double *q,
                                 const double *v, double *L_qq, double *L_qv, double *L_vv);
+dvi_status dvi__general_rate(const dvi__lagrangian_term *l, dvi__scratch *s, int count, const double *t, const double *q,
+                             const double *v, double *L_t);
 
 /* One point: the gradients of a one-form's components, in the order of the term's qv. */
 dvi_status dvi__form_gradients(const dvi__lagrangian_term *l, const double *q, double *alpha_q);
@@ -71,7 +75,9 @@ int dvi__longest_hessian(const dvi_system *system, int hessians);
 
 int dvi__potential_has_gradient(const dvi__potential_term *p);
 int dvi__potential_has_hessian(const dvi__potential_term *p);
+int dvi__potential_has_rate(const dvi__potential_term *p);
 int dvi__general_has_gradient(const dvi__lagrangian_term *l);
 int dvi__general_has_hessian(const dvi__lagrangian_term *l);
+int dvi__general_has_rate(const dvi__lagrangian_term *l);
 
 #endif

@@ -2,7 +2,7 @@
  *
  *     Omega(q) v = dH/dq,    the Euler-Lagrange equations d/dt alpha - d(alpha.v)/dq + dH/dq = 0.
  *
- * Source: Kraus 2017, arXiv:1708.07356, sec. 2; Marsden and Ratiu 1999, sec. 8.6. */
+ * Source: Kraus 2017, arXiv:1708.07356; Marsden and Ratiu 1999, sec. 8.6. */
 #include <math.h>
 #include <string.h>
 
@@ -44,6 +44,35 @@ dvi_status dvi__two_form_velocity(dvi__evaluator *e, double t, const double *q, 
   DVI_TRY(dvi__potentials_gradient(e, 1, &t, q, v));
   dvi__linear_solve(e->velocity, v);
   return dvi__first_not_finite(n, v) < 0 ? DVI_OK : dvi__fail(DVI_NOT_FINITE, "the velocity at t = %.6g is not finite", t);
+}
+
+dvi_status dvi__two_form_residual(dvi__evaluator *e, double t, const double *q, const double *v, double *F)
+{
+  const dvi__pattern *omega = &e->system->lagrangian->omega;
+  DVI_TRY(evaluate(e, q));
+  DVI_TRY(dvi__potentials_gradient(e, 1, &t, q, F));
+  for (int i = 0; i < e->system->n; i++) F[i] = -F[i];
+  for (int j = 0; j < e->system->n; j++)
+    for (int k = omega->start[j]; k < omega->start[j + 1]; k++) F[omega->row[k]] += e->two_form[k] * v[j];
+  return DVI_OK;
+}
+
+/* A start computed in another way than by the callback differs by its roundings; one that is off the constraint, by more. */
+static const double on_constraint = 1e-11;
+
+dvi_status dvi__form_constraint(dvi__evaluator *e, const double *q, const double *p)
+{
+  const dvi__lagrangian_term *l = e->system->lagrangian;
+  double *alpha = e->point[2], scale = 0;
+  const int returned = l->one_form.value(q, alpha, l->one_form.user);
+  if (returned != 0) return dvi__fail(DVI_CALLBACK_FAILED, "one-form: the value callback failed with %d", returned);
+  for (int i = 0; i < e->system->n; i++) scale = fmax(scale, fmax(fabs(alpha[i]), fabs(p[i])));
+  for (int i = 0; i < e->system->n; i++)
+    if (!(fabs(p[i] - alpha[i]) <= on_constraint * scale))
+      return dvi__fail(DVI_BAD_ARGUMENT,
+                       "p[%d] is %.17g, but the one-form has alpha = %.17g there; start with p = alpha(q) (dvi_system_momentum)", i,
+                       p[i], alpha[i]);
+  return DVI_OK;
 }
 
 /* The largest sum of magnitudes in a column of the inverse. */
