@@ -276,6 +276,24 @@ dvi_status dvi__lagrangian_hessian(dvi__evaluator *e, int count, const double *t
   return status;
 }
 
+dvi_status dvi__form_gradient(dvi__evaluator *e, const double *q, const double *w, double *alpha_w_q, double *alpha)
+{
+  const double any_time = 0;
+  e->counters->gradients++;
+  return dvi__general_gradient(e->system->lagrangian, &e->scratch, 1, &any_time, q, w, alpha_w_q, alpha);
+}
+
+dvi_status dvi__form_hessian(dvi__evaluator *e, const double *q, const double *w, double *alpha_w_qq, double *alpha_q)
+{
+  const double any_time = 0;
+  e->counters->hessians++;
+  const dvi_status status = dvi__general_hessian(e->system->lagrangian, &e->scratch, 1, &any_time, q, w, alpha_w_qq, alpha_q,
+                                                 e->hessian[2]);
+  count_differences(e);
+  if (status == DVI_OK) spread(e->system, 1, alpha_w_qq);
+  return status;
+}
+
 dvi_status dvi__velocity_hessian(dvi__evaluator *e, double t, const double *q, const double *v, const double **L_vv)
 {
   e->counters->hessians++;

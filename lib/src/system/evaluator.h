@@ -47,6 +47,12 @@ dvi_status dvi__legendre_inverse(dvi__evaluator *e, double t, const double *q, c
 dvi_status dvi__two_form_factor(dvi__evaluator *e, const double *q);
 dvi_status dvi__two_form_velocity(dvi__evaluator *e, double t, const double *q, double *v);
 
+/* One point of a one-form: alpha [n], and the gradient [n] of alpha(q).w, w [n]. */
+dvi_status dvi__form_gradient(dvi__evaluator *e, const double *q, const double *w, double *alpha_w_q, double *alpha);
+
+/* Only with DVI__HESSIANS. The Hessian of alpha(q).w in the order of the system's qq, and the gradients of alpha in that of its qv. */
+dvi_status dvi__form_hessian(dvi__evaluator *e, const double *q, const double *w, double *alpha_w_qq, double *alpha_q);
+
 /* F [n] = Omega(q) v - H_q(t,q), without a factorisation. */
 dvi_status dvi__two_form_residual(dvi__evaluator *e, double t, const double *q, const double *v, double *F);
 
