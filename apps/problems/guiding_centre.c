@@ -127,6 +127,10 @@ static dvi_status make(const double *setting, problem *made)
   return problem_system(made, &terms);
 }
 
+/* Quadruple-precision results, recomputed by tests/reference/test_digits. */
+static const double digits_q[] = {0.2599766706654848, 0.42709733165835867, 32, 0.5};
+static const double digits_p[] = {-0.24024224905782676, 0.14623687724933521, 0.5, 0};
+
 const problem_entry problem_entry_guiding_centre = {
     .name = "guiding-centre",
     .summary = "the guiding centre of a particle in an axial magnetic field; degenerate, exact solution known",
@@ -136,4 +140,6 @@ const problem_entry problem_entry_guiding_centre = {
     .t_end = 1000.0,
     .order_h = 4.0,
     .order_t_end = 64.0,
+    .digits_q = digits_q,
+    .digits_p = digits_p,
 };

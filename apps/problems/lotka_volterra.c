@@ -98,6 +98,10 @@ static const problem_parameter parameters[] = {
     {.name = NULL},
 };
 
+/* Quadruple-precision results, recomputed by tests/reference/test_digits. */
+static const double digits_q[] = {0.42457656586168324, 1.4198182433045652};
+static const double digits_p[] = {2.2454145996096386, 0.42457656586168324};
+
 const problem_entry problem_entry_lotka_volterra = {
     .name = "lotka-volterra",
     .summary = "predators and their prey; degenerate, in three gauges",
@@ -107,4 +111,6 @@ const problem_entry problem_entry_lotka_volterra = {
     .t_end = 100.0,
     .order_h = 0.1,
     .order_t_end = 1.0,
+    .digits_q = digits_q,
+    .digits_p = digits_p,
 };

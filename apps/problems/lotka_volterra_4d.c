@@ -95,6 +95,10 @@ static dvi_status make(const double *setting, problem *made)
   return problem_system(made, &terms);
 }
 
+/* Quadruple-precision results, recomputed by tests/reference/test_digits. */
+static const double digits_q[] = {1.3748735653782593, 1.3106942389097525, 2.302370934659371, 1.1653546483773685};
+static const double digits_p[] = {-0.14923445812393354, 0.13830540641690078, 0.04361379852203847, -0.37831584513867866};
+
 const problem_entry problem_entry_lotka_volterra_4d = {
     .name = "lotka-volterra-4d",
     .summary = "four species that live on one another; degenerate",
@@ -103,4 +107,6 @@ const problem_entry problem_entry_lotka_volterra_4d = {
     .t_end = 100.0,
     .order_h = 0.1,
     .order_t_end = 1.0,
+    .digits_q = digits_q,
+    .digits_p = digits_p,
 };

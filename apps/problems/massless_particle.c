@@ -89,6 +89,10 @@ static const problem_parameter parameters[] = {
     {.name = NULL},
 };
 
+/* Quadruple-precision results, recomputed by tests/reference/test_digits. */
+static const double digits_q[] = {0.86001123161167659, 0.81736309057467182};
+static const double digits_p[] = {-0.98398326782989476, 1.0353252695282553};
+
 const problem_entry problem_entry_massless_particle = {
     .name = "massless-particle",
     .summary = "a charge without mass in a magnetic field; degenerate, in two gauges",
@@ -98,4 +102,6 @@ const problem_entry problem_entry_massless_particle = {
     .t_end = 100.0,
     .order_h = 0.1,
     .order_t_end = 1.0,
+    .digits_q = digits_q,
+    .digits_p = digits_p,
 };

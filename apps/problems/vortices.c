@@ -181,6 +181,10 @@ static dvi_status make_weighted(const double *setting, problem *made)
   return make((pair){{0.5, 0.5}, 1, 0.25 / (2 * pi)}, start, made);
 }
 
+/* Quadruple-precision results, recomputed by tests/reference/test_digits. */
+static const double digits_q_linear[] = {0.1925553923748704, 0.27209103619647379, -0.38511078474974081, -0.54418207239294758};
+static const double digits_p_linear[] = {-0.54418207239294758, 0.38511078474974081, 0.54418207239294758, -0.38511078474974081};
+
 const problem_entry problem_entry_vortices_linear = {
     .name = "vortices-linear",
     .summary = "two point vortices that turn about each other; degenerate, exact solution known",
@@ -190,7 +194,12 @@ const problem_entry problem_entry_vortices_linear = {
     .t_end = 100.0,
     .order_h = 0.1,
     .order_t_end = 1.0,
+    .digits_q = digits_q_linear,
+    .digits_p = digits_p_linear,
 };
+
+static const double digits_q[] = {0.34162219556328388, -0.3045647215322177, 0.51449169766719338, -0.20658184215249473};
+static const double digits_p[] = {0.092090122739494767, 0.10329505584786046, 0.067520126743644382, 0.16815875138434647};
 
 const problem_entry problem_entry_vortices = {
     .name = "vortices",
@@ -200,4 +209,6 @@ const problem_entry problem_entry_vortices = {
     .t_end = 100.0,
     .order_h = 0.1,
     .order_t_end = 1.0,
+    .digits_q = digits_q,
+    .digits_p = digits_p,
 };

@@ -32,6 +32,8 @@ static const struct {
     {"double-pendulum", NULL, "midpoint"},
     {"double-pendulum", NULL, "galerkin:degree=4"},
     {"double-pendulum", NULL, "composition:order=4,base=trapezoidal"},
+    {"vortices", NULL, "vprk"},
+    {"tokamak", NULL, "vprk:nodes=3,tableau=lobatto-iiie,projection=symplectic"},
 };
 enum { PLACES = sizeof places / sizeof *places };
 

@@ -36,6 +36,8 @@ static const struct {
     {"kepler", NULL, "composition:order=8,base=verlet", 0.05, 30},
     {"double-pendulum", NULL, "galerkin:degree=3", 0.02, 30},
     {"double-pendulum", NULL, "trapezoidal:solver=newton", 0.02, 30},
+    {"vortices", NULL, "vprk:nodes=3", 0.05, 30},
+    {"massless-particle", NULL, "vprk:projection=symplectic", 0.1, 30},
 };
 enum { RUNS = sizeof runs / sizeof *runs, COORDINATES_MOST = 8, INVARIANTS_MOST = 16 };
 

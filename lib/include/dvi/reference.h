@@ -17,7 +17,7 @@ typedef enum dvi_reference_code {
 typedef struct dvi_reference_options {
   dvi_reference_code code;
   double
-      relative_tolerance; /**< 0: 1e-12, or 1e-9 for a general Lagrangian without a gradient, whose differences are noise below 1e-11 */
+      relative_tolerance; /**< 0: 1e-12, or 1e-9 for a general Lagrangian without a gradient, whose differences are noise below 1e-11; 1e-9 at index 2 */
   double absolute_tolerance; /**< in units of q and p alike; 0: the relative one */
   long max_steps;            /**< 0: 50 million */
 } dvi_reference_options;

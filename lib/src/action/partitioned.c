@@ -60,7 +60,7 @@ static void conjugate(const dvi__partitioned *p, int i, int j, double *abar)
   *abar = p->b[j] - p->b[j] * p->a[j][i] / p->b[i];
 }
 
-/* Lobatto IIIE is the mean of IIIA and of its conjugate IIIB, and its own conjugate (Chan 1990). */
+/* Lobatto IIIE is the mean of IIIA and of its conjugate IIIB, and its own conjugate (Jay 2015). */
 static dvi_status fill_tableau(dvi__partitioned *p, dvi__tableau tableau)
 {
   DVI_TRY(dvi_quadrature(tableau == DVI__GAUSS ? DVI_GAUSS : DVI_LOBATTO, p->s, p->c, p->b));

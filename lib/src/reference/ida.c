@@ -11,7 +11,7 @@
  * whose Jacobian IDA differences: it has second derivatives of alpha that no callback gives.
  *
  * Nothing is discretised, inverted or assembled by the code that the methods use; only the callbacks are shared.
- * Source: Hindmarsh et al. 2005, ACM TOMS 31:363, sec. 2.3; Brenan, Campbell and Petzold 1996, sec. 5.4 (error tests at index 2). */
+ * Source: Hindmarsh et al. 2005, ACM TOMS 31:363, sec. 2.3; Brenan, Campbell and Petzold 1996 (error tests at index 2). */
 #include <float.h>
 #include <ida/ida.h>
 #include <math.h>

@@ -12,6 +12,7 @@
 #include "core/status.h"
 #include "num/finite.h"
 #include "reference/run.h"
+#include "system/term.h"
 
 static const struct {
   const char *name;
@@ -28,6 +29,8 @@ enum { CODE_COUNT = sizeof codes / sizeof codes[0] };
 
 /* Without a gradient the momenta L_v are differenced values: below about 1e-11 their noise stops the codes (measured on IDA). */
 static const double default_tolerance = 1e-12, default_without_gradient = 1e-9;
+/* At index 2 the multiplier's noise, 1/h times that of q, comes back through L_q. */
+static const double default_index_2 = 1e-9;
 static const long default_max_steps = 50000000;
 
 const char *dvi_reference_name(dvi_reference_code code)
@@ -84,10 +87,10 @@ dvi_status dvi__reference_stopped(const dvi__reference_run *run, int flag, char 
   return status;
 }
 
-static double default_of(const dvi_system *system)
+static double default_of(const dvi_system *system, dvi_reference_code code)
 {
-  const dvi__lagrangian_term *l = system->lagrangian;
-  const int differenced = l != NULL && l->callbacks.gradient == NULL && l->callbacks.gradient_batch == NULL;
+  const int differenced = system->lagrangian != NULL && !dvi__general_has_gradient(system->lagrangian);
+  if (code == DVI_IDA_INDEX_2) return default_index_2;
   return differenced ? default_without_gradient : default_tolerance;
 }
 
@@ -102,7 +105,7 @@ dvi_status dvi__reference_complete(const dvi_system *system, const dvi_reference
     return dvi__fail(DVI_BAD_ARGUMENT, "reference: absolute_tolerance is %g, must not be negative", options->absolute_tolerance);
   if (options->max_steps < 0)
     return dvi__fail(DVI_BAD_ARGUMENT, "reference: max_steps is %ld, must not be negative", options->max_steps);
-  if (options->relative_tolerance == 0) options->relative_tolerance = default_of(system);
+  if (options->relative_tolerance == 0) options->relative_tolerance = default_of(system, options->code);
   if (options->absolute_tolerance == 0) options->absolute_tolerance = options->relative_tolerance;
   if (options->max_steps == 0) options->max_steps = default_max_steps;
   return DVI_OK;

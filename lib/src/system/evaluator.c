@@ -18,8 +18,9 @@ static int allocate_general(dvi__evaluator *e)
   e->hessian[0] = DVI_NEW(double, dvi__pattern_entries(&system->lagrangian->qq));
   e->hessian[1] = DVI_NEW(double, dvi__pattern_entries(&system->qv));
   e->hessian[2] = DVI_NEW(double, dvi__pattern_entries(&system->vv));
-  e->two_form = DVI_NEW(double, dvi__pattern_entries(&system->lagrangian->omega));
-  return e->unwanted && e->velocity_search && e->hessian[0] && e->hessian[1] && e->hessian[2] && e->two_form;
+  if (system->terms & DVI__ONE_FORM) e->two_form = DVI_NEW(double, dvi__pattern_entries(&system->lagrangian->omega));
+  return e->unwanted && e->velocity_search && e->hessian[0] && e->hessian[1] && e->hessian[2] &&
+         (e->two_form || !(system->terms & DVI__ONE_FORM));
 }
 
 static dvi_status allocate(dvi__evaluator *e, int hessians)
@@ -36,8 +37,11 @@ static dvi_status prepare_velocity(dvi__evaluator *e)
 {
   const dvi_system *system = e->system;
   if (system->mass_diagonal != NULL) return DVI_OK;
-  const dvi__pattern *pattern = system->terms & DVI__ONE_FORM ? &system->lagrangian->omega : &system->vv;
-  DVI_TRY(dvi__linear_create(pattern, DVI__LINEAR_AUTO, e->counters, &e->velocity));
+  if (system->terms & DVI__ONE_FORM) {
+    const dvi__pattern *omega = &system->lagrangian->omega;
+    return dvi__linear_create(omega, dvi__linear_for_exchanges(omega), e->counters, &e->velocity);
+  }
+  DVI_TRY(dvi__linear_create(&system->vv, DVI__LINEAR_AUTO, e->counters, &e->velocity));
   return system->mass_values != NULL ? dvi__linear_factor(e->velocity, system->mass_values) : DVI_OK;
 }
 

@@ -2,7 +2,7 @@
  *
  *     Omega(q) v = dH/dq,    the Euler-Lagrange equations d/dt alpha - d(alpha.v)/dq + dH/dq = 0.
  *
- * Source: Kraus 2017, arXiv:1708.07356; Marsden and Ratiu 1999, sec. 8.6. */
+ * Source: Kraus 2017, arXiv:1708.07356; Marsden and Ratiu 1999. */
 #include <math.h>
 #include <string.h>
 
