@@ -18,7 +18,9 @@ static void print_parameter(const problem_parameter *parameter, const words *set
       (void)printf("  parameter    %s   %s\n", settings->word[i], parameter->help);
       return;
     }
-  (void)printf("  parameter    %s=%g   %s (default)\n", parameter->name, parameter->value, parameter->help);
+  char spelling[32];
+  problem_spell(parameter, parameter->value, spelling, sizeof spelling);
+  (void)printf("  parameter    %s=%s   %s (default)\n", parameter->name, spelling, parameter->help);
 }
 
 static void print_problem(const problem *scene, const words *settings)

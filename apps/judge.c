@@ -114,7 +114,7 @@ static dvi_status ask_ida_then_runs(judgement *judge, const problem *scene, doub
   judge->other = NULL;
   memcpy(judge->q, ida, (size_t)n * sizeof *ida);
   judge->error = ida_error;
-  set_words(judge, "IDA, run at two tolerances; two runs of galerkin do no better");
+  set_words(judge, "IDA, run at two tolerances; two runs of another method do no better");
   return DVI_OK;
 }
 

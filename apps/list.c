@@ -50,24 +50,14 @@ static void print_problems(void)
 {
   for (int i = 0; i < problem_count(); i++) {
     (void)printf("%-*s%s\n", NAME_COLUMN, problem_name(i), problem_summary(i));
-    for (const problem_parameter *k = problem_parameters(i); k->name != NULL; k++)
-      (void)printf("    %-*s  %s (default %g%s)\n", KEY_COLUMN, k->name, k->help, k->value,
+    for (const problem_parameter *k = problem_parameters(i); k->name != NULL; k++) {
+      char spelling[32];
+      problem_spell(k, k->value, spelling, sizeof spelling);
+      (void)printf("    %-*s  %s (default %s%s)\n", KEY_COLUMN, k->name, k->help, spelling,
                    k->start_only ? "; only places the start" : "");
+    }
   }
   (void)printf("\nParameters are set with --set name=value, for example dvi run kepler --method verlet --set e=0.9\n");
-}
-
-/* The fewest digits that give the number back: 0.6, not 0.59999999999999998. */
-static int digits_of(double number)
-{
-  char text[32];
-  int digits = 1;
-  for (; digits < 17; digits++) {
-    (void)snprintf(text, sizeof text, "%.*g", digits, number);
-    const double back = strtod(text, NULL);
-    if (!(back < number) && !(back > number)) break;
-  }
-  return digits;
 }
 
 static result_table *problems_table(void)
@@ -76,8 +66,9 @@ static result_table *problems_table(void)
   for (int i = 0; i < problem_count(); i++) {
     char parameters[NAMES_SIZE] = "";
     for (const problem_parameter *k = problem_parameters(i); k->name != NULL; k++) {
-      char pair[128];
-      (void)snprintf(pair, sizeof pair, "%s=%.*g", k->name, digits_of(k->value), k->value);
+      char spelling[32], pair[128];
+      problem_spell(k, k->value, spelling, sizeof spelling);
+      (void)snprintf(pair, sizeof pair, "%s=%s", k->name, spelling);
       append(parameters, pair);
     }
     table_text(t, problem_name(i));

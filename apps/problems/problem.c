@@ -89,10 +89,10 @@ static dvi_status refuse_name(const report *r, const problem_entry *entry, const
   return refuse(r, DVI_BAD_OPTION, "%s has no parameter '%.*s'; it has: %s", entry->name, (int)length, setting, names);
 }
 
-/* The shortest spelling that is read back as x. */
-static void spell(double x, char *text, size_t size)
+void problem_spell(const problem_parameter *parameter, double x, char *text, size_t size)
 {
-  for (int digits = 1; digits <= DBL_DECIMAL_DIG; digits++) {
+  if (parameter->choice) (void)snprintf(text, size, "%s", parameter->choice[(int)x]);
+  for (int digits = 6; !parameter->choice && digits <= DBL_DECIMAL_DIG; digits++) {
     (void)snprintf(text, size, "%.*g", digits, x);
     const double read = strtod(text, NULL);
     if (!(read < x) && !(read > x)) return;
@@ -104,10 +104,21 @@ static dvi_status refuse_value(const report *r, const problem_entry *entry, cons
                                double x)
 {
   char limit[32];
-  spell(x < parameter->least ? parameter->least : parameter->most, limit, sizeof limit);
+  problem_spell(parameter, x < parameter->least ? parameter->least : parameter->most, limit, sizeof limit);
   return refuse(r, DVI_BAD_OPTION, "%s: %s is %s %s, the %s that is taken; %s is %s", entry->name, setting,
                 x < parameter->least ? "below" : "above", limit, x < parameter->least ? "least" : "most", parameter->name,
                 parameter->help);
+}
+
+static dvi_status read_choice(const report *r, const problem_entry *entry, const char *setting, const problem_parameter *parameter,
+                              const char *name, double *value)
+{
+  for (int k = 0; parameter->choice[k]; k++)
+    if (strcmp(parameter->choice[k], name) == 0) {
+      *value = k;
+      return DVI_OK;
+    }
+  return refuse(r, DVI_BAD_OPTION, "%s: %s is no choice; %s is %s", entry->name, setting, parameter->name, parameter->help);
 }
 
 /* Read one "name=value"; given: which parameters were read before. */
@@ -124,6 +135,7 @@ static dvi_status read_setting(const report *r, const problem_entry *entry, cons
   if (given[i]) return refuse(r, DVI_BAD_OPTION, "%s: %s is set twice", entry->name, parameters[i].name);
   given[i] = 1;
 
+  if (parameters[i].choice) return read_choice(r, entry, setting, &parameters[i], equals + 1, value + i);
   char *end = NULL;
   const double x = strtod(equals + 1, &end);
   const int number = end != equals + 1 && *end == '\0' && isfinite(x);
@@ -158,6 +170,7 @@ static dvi_status make(const report *r, const problem_entry *entry, const double
     made->far_error = entry->far_error;
   }
   dvi_status status = entry->make(value, made);
+  if (status == DVI_OK && made->terms->one_form) status = dvi_system_velocity(made->system, 0.0, made->q, made->q, made->v);
   if (status == DVI_OK) status = dvi_system_momentum(made->system, 0.0, made->q, made->v, made->p);
   if (status == DVI_OK) return DVI_OK;
   const char *reason = status == DVI_NO_MEMORY ? dvi_status_meaning(status) : dvi_last_error();

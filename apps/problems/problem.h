@@ -5,14 +5,15 @@
 
 #include <dvi/dvi.h>
 
-/** A number that a user may set. Sizes are whole numbers given as doubles. */
+/** A number that a user may set. Sizes are whole numbers given as doubles, names of choices their indices. */
 typedef struct problem_parameter {
   const char *name;
-  double value;       /**< the default */
-  double least, most; /**< the values that make sense, both included */
-  int whole;          /**< not 0: whole numbers only */
-  int start_only;     /**< not 0: it places the start and leaves the system as it is */
-  const char *help;   /**< what it is, and its range in words */
+  const char *const *choice; /**< the names that it may be set to, ended by NULL; NULL: it is set to a number */
+  double value;              /**< the default */
+  double least, most;        /**< the values that make sense, both included */
+  int whole;                 /**< not 0: whole numbers only */
+  int start_only;            /**< not 0: it places the start and leaves the system as it is */
+  const char *help;          /**< what it is, and its range in words */
 } problem_parameter;
 
 /** One problem with its parameters fixed: the system, a start, and what is known about the solution. */
@@ -56,6 +57,9 @@ const problem_parameter *problem_parameters(int i);
 
 /** Index of a name, or -1. */
 int problem_find(const char *name);
+
+/** What a parameter is set by to have this value: a choice's name, or the shortest spelling of a number that is read back as it. */
+void problem_spell(const problem_parameter *parameter, double value, char *text, size_t size);
 
 /** Make a problem.
  *

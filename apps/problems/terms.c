@@ -20,6 +20,7 @@ static dvi_system_terms *keep_terms(problem *made, const dvi_system_terms *terms
   dvi_system_terms *kept = keep(made, terms, 1, sizeof *terms, &lost);
   if (!kept) return NULL;
   kept->lagrangian = keep(made, terms->lagrangian, terms->lagrangian != NULL, sizeof *terms->lagrangian, &lost);
+  kept->one_form = keep(made, terms->one_form, terms->one_form != NULL, sizeof *terms->one_form, &lost);
   kept->potentials = keep(made, terms->potentials, terms->potential_count, sizeof *terms->potentials, &lost);
   kept->symmetries = keep(made, terms->symmetries, terms->symmetry_count, sizeof *terms->symmetries, &lost);
   kept->invariants = keep(made, terms->invariants, terms->invariant_count, sizeof *terms->invariants, &lost);

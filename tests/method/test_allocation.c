@@ -35,6 +35,8 @@ static const struct {
     {"kepler", NULL, "sem:degree=2"},
     {"fpu", "ell=40", "sem:solver=kinsol"},
     {"driven-pendulum", NULL, "sem:degree=2,quadrature=lobatto"},
+    {"vortices", NULL, "vprk"},
+    {"tokamak", NULL, "vprk:nodes=3,tableau=lobatto-iiie,projection=symplectic"},
 };
 enum { PLACES = sizeof places / sizeof *places };
 

@@ -38,6 +38,8 @@ static const struct {
     {"double-pendulum", NULL, "trapezoidal:solver=newton", 0.02, 30},
     {"kepler", "e=0.8", "sem", 0.01, 120},
     {"driven-pendulum", NULL, "sem:degree=3,quadrature=lobatto", 0.2, 30},
+    {"vortices", NULL, "vprk:nodes=3", 0.05, 30},
+    {"massless-particle", NULL, "vprk:projection=symplectic", 0.1, 30},
 };
 enum { RUNS = sizeof runs / sizeof *runs, COORDINATES_MOST = 8, INVARIANTS_MOST = 16 };
 

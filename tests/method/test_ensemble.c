@@ -23,6 +23,20 @@ static void best_again(void)
 /* Initial states near the problem's own, no two alike; component-major. */
 static double first_q[N_MOST * MEMBERS_MOST], first_p[N_MOST * MEMBERS_MOST];
 
+static void take(int n, int members, int k, const double *all, double *one)
+{
+  for (int i = 0; i < n; i++) one[i] = all[i * members + k];
+}
+
+/* p = alpha(q), where there is a one-form. */
+static void constrain(const problem *of, int members, int k)
+{
+  double q[N_MOST], p[N_MOST];
+  take(of->n, members, k, first_q, q);
+  ck_assert_int_eq(dvi_system_momentum(of->system, 0, q, of->v, p), DVI_OK);
+  for (int i = 0; i < of->n; i++) first_p[i * members + k] = p[i];
+}
+
 static void spread_start(const problem *of, int members, double spread)
 {
   ck_assert_int_le(of->n, N_MOST);
@@ -33,11 +47,7 @@ static void spread_start(const problem *of, int members, double spread)
       first_q[i * members + k] = of->q[i] + spread * u * (1 + fabs(of->q[i]));
       first_p[i * members + k] = of->p[i] * (1 + spread * u);
     }
-}
-
-static void take(int n, int members, int k, const double *all, double *one)
-{
-  for (int i = 0; i < n; i++) one[i] = all[i * members + k];
+  for (int k = 0; k < members && of->terms->one_form != NULL; k++) constrain(of, members, k);
 }
 
 static dvi_ensemble *made_ensemble(const dvi_system *system, const char *method, dvi_ensemble_options options)
@@ -113,7 +123,8 @@ static const struct {
   double h, spread;
 } places[] = {{"kepler", NULL, 0.05, 0.1},      {"kepler", "e=0.8", 0.2, 0.02}, {"pendulum", NULL, 0.1, 0.5},
               {"fpu", "ell=3", 0.1, 0.1},       {"fpu", "ell=3", 0.03, 0.3},    {"double-pendulum", NULL, 0.05, 0.3},
-              {"henon-heiles", NULL, 0.2, 0.1}, {"chain", "n=8", 0.1, 0.1},     {"chain", "n=40", 0.1, 0.1}};
+              {"henon-heiles", NULL, 0.2, 0.1}, {"chain", "n=8", 0.1, 0.1},     {"chain", "n=40", 0.1, 0.1},
+              {"vortices", NULL, 0.05, 0.01}};
 
 static const char *const methods[] = {
     "verlet",
@@ -131,6 +142,8 @@ static const char *const methods[] = {
     "composition",
     "composition:order=8",
     "composition:order=6,base=galerkin,degree=2",
+    "vprk:nodes=3",
+    "vprk:projection=symplectic",
 };
 enum { PLACES = sizeof places / sizeof *places, METHODS = sizeof methods / sizeof *methods, STEPS = 12 };
 

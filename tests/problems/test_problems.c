@@ -197,8 +197,11 @@ START_TEST(digits_belong_to_the_default_parameters_only)
   const problem_parameter *p = problem_parameters(_i);
   if (!p->name) return;
   char same[64], other[64];
-  snprintf(same, sizeof same, "%s=%.17g", p->name, p->value);
-  snprintf(other, sizeof other, "%s=%.17g", p->name, p->whole ? p->value + 1.0 : 0.75 * p->value);
+  char value[32];
+  problem_spell(p, p->value, value, sizeof value);
+  snprintf(same, sizeof same, "%s=%s", p->name, value);
+  problem_spell(p, p->whole ? p->value + 1.0 : 0.75 * p->value, value, sizeof value);
+  snprintf(other, sizeof other, "%s=%s", p->name, value);
   const char *setting = same;
   problem *made = create(problem_name(_i), 1, &setting);
   ck_assert_ptr_nonnull(made->digits_q);

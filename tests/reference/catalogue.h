@@ -7,7 +7,7 @@
 
 #include "problem.h"
 
-enum { CODES = 4, MOST = 40 };
+enum { CODES = 4, MOST = 40 }; /* the codes for every system */
 
 static inline problem *make(const char *name, const char *setting)
 {

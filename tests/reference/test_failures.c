@@ -38,7 +38,7 @@ START_TEST(bad_input_is_refused_by_name)
   refuse(system, (double)NAN, q, p, good, DVI_NOT_FINITE, "nan");
   refuse(system, 1, nan_q, p, good, DVI_NOT_FINITE, "q[1]");
   refuse(system, 1, q, inf_p, good, DVI_NOT_FINITE, "p[0]");
-  refuse(system, 1, q, p, (dvi_reference_options){.code = (dvi_reference_code)CODES}, DVI_BAD_ARGUMENT, "code");
+  refuse(system, 1, q, p, (dvi_reference_options){.code = (dvi_reference_code)(CODES + 1)}, DVI_BAD_ARGUMENT, "code");
   refuse(system, 1, q, p, (dvi_reference_options){.relative_tolerance = -1e-3}, DVI_BAD_ARGUMENT, "relative_tolerance");
   refuse(system, 1, q, p, (dvi_reference_options){.relative_tolerance = (double)NAN}, DVI_BAD_ARGUMENT, "relative_tolerance");
   refuse(system, 1, q, p, (dvi_reference_options){.relative_tolerance = 1}, DVI_BAD_ARGUMENT, "relative_tolerance");

@@ -348,9 +348,9 @@ END_TEST
 
 START_TEST(codes_have_names_and_sundials_a_version)
 {
-  const char *const names[] = {"ida", "cvode-adams", "cvode-bdf", "arkode"};
-  for (int code = 0; code < CODES; code++) ck_assert_str_eq(dvi_reference_name((dvi_reference_code)code), names[code]);
-  ck_assert_ptr_null(dvi_reference_name((dvi_reference_code)CODES));
+  const char *const names[] = {"ida", "cvode-adams", "cvode-bdf", "arkode", "ida-index-2"};
+  for (int code = 0; code <= CODES; code++) ck_assert_str_eq(dvi_reference_name((dvi_reference_code)code), names[code]);
+  ck_assert_ptr_null(dvi_reference_name((dvi_reference_code)(CODES + 1)));
   const double version = strtod(dvi_reference_version(), NULL); /* major.minor */
   ck_assert_msg(version >= 6.4 && version < 8, "%s", dvi_reference_version());
 }

@@ -14,6 +14,11 @@
 static void evaluate(const quad_field *f, const quad *y, quad *rate)
 {
   const int n = f->system.n;
+  if (f->problem->rate) {
+    f->problem->rate(&f->system, y, rate);
+    for (int i = 0; i < n; i++) rate[n + i] = 0;
+    return;
+  }
   for (int i = 0; i < n; i++) rate[i] = y[n + i];
   f->problem->acceleration(&f->system, y, y + n, rate + n);
   rate[2 * n] = 1;
@@ -141,7 +146,8 @@ double quad_solve(const char *problem, int setting_count, const char *const *set
   const int n = f.system.n;
   for (int i = 0; i < n; i++) {
     y[i] = (quad)q[i];
-    momenta[i] = y[n + i] = (quad)p[i];
+    momenta[i] = (quad)p[i];
+    y[n + i] = f.problem->rate ? 0 : (quad)p[i];
   }
   if (f.problem->velocity) f.problem->velocity(&f.system, y, momenta, y + n);
   const double error = (double)quad_march(&f, (quad)t, y);

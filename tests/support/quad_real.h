@@ -14,6 +14,7 @@ typedef long double quad;
 #define quad_cos cosl
 #define quad_acos acosl
 #define quad_exp expl
+#define quad_log logl
 #define quad_abs fabsl
 #define quad_parse strtold
 #define quad_print snprintf
@@ -29,6 +30,7 @@ quad sinq(quad);
 quad cosq(quad);
 quad acosq(quad);
 quad expq(quad);
+quad logq(quad);
 quad fabsq(quad);
 quad strtoflt128(const char *, char **);
 int quadmath_snprintf(char *, size_t, const char *, ...);
@@ -37,6 +39,7 @@ int quadmath_snprintf(char *, size_t, const char *, ...);
 #define quad_cos cosq
 #define quad_acos acosq
 #define quad_exp expq
+#define quad_log logq
 #define quad_abs fabsq
 #define quad_parse strtoflt128
 #define quad_print quadmath_snprintf

@@ -24,7 +24,11 @@ typedef struct quad_problem {
   void (*acceleration)(const quad_system *system, const quad *q, const quad *v, quad *a);
   void (*momentum)(const quad_system *system, const quad *q, const quad *v, quad *p); /* NULL: p = v */
   void (*velocity)(const quad_system *system, const quad *q, const quad *p, quad *v);
+  void (*rate)(const quad_system *system, const quad *q, quad *qdot); /* degenerate: in place of the acceleration; v stays 0 */
 } quad_problem;
+
+/* The degenerate ones (quad_degenerate.c), ended by one without a name. */
+extern const quad_problem quad_degenerate[];
 
 /* A problem with its parameters set. */
 typedef struct quad_field {

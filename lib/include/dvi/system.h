@@ -1,6 +1,9 @@
 /** The mechanical system: a Lagrangian, declared as terms.
  *
- *      L(t,q,v) = v.M v/2  or  a general Lagrangian,  minus the sum of the potentials V_k(t,q),      q, v in R^n.
+ *      L(t,q,v) = v.M v/2  or  a general Lagrangian  or  a one-form alpha(q).v,  minus the sum of the potentials V_k(t,q),     q, v in R^n.
+ *
+ *  With a one-form the Lagrangian is degenerate: it is linear in v, the potentials' sum is the Hamiltonian H(t,q), the momenta are p = alpha(q), and the
+ *  equations of motion are of first order, Omega(q) v = dH/dq with the two-form Omega_ij = d alpha_j/dq_i - d alpha_i/dq_j.
  *
  *  Callbacks return 0 for success, a positive number if a smaller step might help (the step fails, the state stays, unless it can be taken
  *  without that point: iterations look for other ways first) and a negative one for a failure for good. They get the `user` pointer of the term that declares them. They must depend on
@@ -44,6 +47,20 @@ typedef struct dvi_lagrangian {
   int (*rate)(double t, const double *q, const double *v, double *L_t, void *user);
   int (*rate_batch)(int count, const double *t, const double *q, const double *v, double *L_t, void *user);
 } dvi_lagrangian;
+
+/** A one-form alpha(q), for degenerate Lagrangians alpha(q).v - H: magnetic field lines, guiding centres, point vortices, predators and their prey.
+ *
+ *  Its callbacks have the one-point shape alone. */
+typedef struct dvi_one_form {
+  /** alpha [n]. Needed. */
+  int (*value)(const double *q, double *alpha, void *user);
+  /** The gradients of its components in the order of the pattern `gradients`: column j holds d alpha_j/dq. Needed. */
+  int (*gradient)(const double *q, double *alpha_q, void *user);
+  /** The Hessian of the function alpha(q).w, w [n] fixed, in the order of the pattern `qq`. Left out: the gradients are differenced. */
+  int (*hessian)(const double *q, const double *w, double *alpha_w_qq, void *user);
+  dvi_pattern gradients, qq;
+  void *user;
+} dvi_one_form;
 
 /** A potential V(t,q); the Lagrangian holds -V. */
 typedef struct dvi_potential {
@@ -98,9 +115,10 @@ typedef struct dvi_invariant {
 
 /** What a system is made of. Only what is declared exists; all of it is copied (but what `user` points to). */
 typedef struct dvi_system_terms {
-  int dimension;                    /**< n, the number of coordinates, at least 1 */
+  int dimension;                    /**< n, the number of coordinates, at least 1; even with a one-form */
   dvi_mass mass;                    /**< or: */
-  const dvi_lagrangian *lagrangian; /**< exactly one of mass and lagrangian */
+  const dvi_lagrangian *lagrangian; /**< or: */
+  const dvi_one_form *one_form;     /**< exactly one of mass, lagrangian and one_form */
   const dvi_potential *potentials;
   int potential_count;
   const dvi_symmetry *symmetries;
@@ -120,7 +138,7 @@ extern "C" {
 /** Make a system from its terms.
  *
  *  @param[out] system  owned by the caller; NULL on failure. It must outlive every integrator made from it.
- *  @retval DVI_BAD_SIZE      dimension, a count or a reach is out of range
+ *  @retval DVI_BAD_SIZE      dimension (odd with a one-form), a count or a reach is out of range
  *  @retval DVI_BAD_ARGUMENT  a term is missing, given twice, or without its value callback; a reach has no gradient_range; a pattern is not
  *                            sorted; an autonomous system has a rate
  *  @retval DVI_SINGULAR      the constant mass is singular or not finite
@@ -147,11 +165,19 @@ dvi_status dvi_system_momentum(const dvi_system *system, double t, const double 
 
 /** The inverse Legendre map: the v [nv] with L_v(t,q,v) = p, by Newton's method from v as given.
  *
- *  If that does not settle, velocities along p are tried as guesses.
+ *  If that does not settle, velocities along p are tried as guesses. A degenerate Lagrangian alpha.v - H has no such map; there v is that of the
+ *  equations of motion, Omega(q) v = dH/dq, and p does not matter.
  *  @param[in,out] v  [nv]; a starting guess (read for general Lagrangians only), then the velocity; unchanged on failure
- *  @retval DVI_SINGULAR       L_vv is singular at every guess
+ *  @retval DVI_SINGULAR       L_vv is singular at every guess; or Omega is
  *  @retval DVI_NOT_CONVERGED  Newton's method did not settle from any guess */
 dvi_status dvi_system_velocity(const dvi_system *system, double t, const double *q, const double *p, double *v);
+
+/** The two-form Omega_ij = d alpha_j/dq_i - d alpha_i/dq_j of a system with a one-form, and its condition number. Allocates.
+ *
+ *  @param[out] Omega      [n*n] column by column, antisymmetric; may be NULL
+ *  @param[out] condition  |Omega| |Omega^-1| in the norm of the largest column sum; infinite where Omega is singular; may be NULL
+ *  @retval DVI_UNSUPPORTED  the system has no one-form */
+dvi_status dvi_system_two_form(const dvi_system *system, const double *q, double *Omega, double *condition);
 
 /** How many invariants are watched: the energy, one momentum for each symmetry, and the declared ones, in this order; 0 for NULL. */
 int dvi_system_invariant_count(const dvi_system *system);
@@ -161,7 +187,7 @@ const char *dvi_system_invariant_name(const dvi_system *system, int i);
 
 /** All invariants at (t, q [nq], p [nv]). Allocates; dvi_integrator_invariants does not.
  *
- *  The energy is p.v - L with v from the inverse Legendre map.
+ *  The energy is p.v - L with v from the inverse Legendre map; with a one-form it is H.
  *  @param[out] value  [dvi_system_invariant_count] */
 dvi_status dvi_system_invariants(const dvi_system *system, double t, const double *q, const double *p, double *value);
 

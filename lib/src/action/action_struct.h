@@ -2,12 +2,8 @@
 #ifndef DVI_ACTION_ACTION_STRUCT_H
 #define DVI_ACTION_ACTION_STRUCT_H
 #include "action/action.h"
+#include "action/joint.h"
 #include "space/basis.h"
-
-/* Where one entry (i,j) of the joint pattern stands in the Hessian's blocks; -1: nowhere. */
-typedef struct dvi__block {
-  int qq, qv, vq, vv;
-} dvi__block;
 
 /* Tables that continue what the last step found into the next: one for each ratio of their lengths. A composition of 17 substeps asks for as many
  * ratios in turn. */

@@ -8,61 +8,12 @@ const dvi__pattern *dvi__action_pattern(const dvi__action *action)
   return &action->pattern;
 }
 
-static dvi_status join(dvi__action *a)
-{
-  const dvi_system *system = a->system;
-  dvi__pattern vq = {0}, mixed = {0}, diagonal = {0};
-  dvi_status status = dvi__pattern_transpose(&system->qv, &vq);
-  if (status == DVI_OK) status = dvi__pattern_union(&system->qv, &vq, &mixed);
-  if (status == DVI_OK) status = dvi__pattern_union(&system->qq, &system->vv, &diagonal);
-  if (status == DVI_OK) status = dvi__pattern_union(&mixed, &diagonal, &a->joint);
-  dvi__pattern_clear(&vq);
-  dvi__pattern_clear(&mixed);
-  dvi__pattern_clear(&diagonal);
-  return status;
-}
-
-static dvi_status locate_blocks(dvi__action *a)
-{
-  const dvi_system *system = a->system;
-  a->block = DVI_NEW(dvi__block, dvi__pattern_entries(&a->joint));
-  if (a->block == NULL) return dvi__fail(DVI_NO_MEMORY, "action: no memory for the Jacobian");
-  for (int j = 0; j < a->n; j++)
-    for (int e = a->joint.start[j]; e < a->joint.start[j + 1]; e++) {
-      const int i = a->joint.row[e];
-      a->block[e] = (dvi__block){dvi__pattern_find(&system->qq, i, j), dvi__pattern_find(&system->qv, i, j),
-                                 dvi__pattern_find(&system->qv, j, i), dvi__pattern_find(&system->vv, i, j)};
-    }
-  return DVI_OK;
-}
-
-/* Every entry of the joint pattern becomes a full s x s block: column (j,l) holds rows (i,k). */
-static dvi_status expand_pattern(dvi__action *a)
-{
-  const int s = a->s, columns = a->n * s;
-  const size_t entries = (size_t)dvi__pattern_entries(&a->joint) * (size_t)s * (size_t)s;
-  if (entries > 0x7fffffff)
-    return dvi__fail(DVI_BAD_SIZE, "action: the Jacobian would have %zu entries; declare sparse Hessians", entries);
-  a->pattern = (dvi__pattern){columns, columns, DVI_NEW(int, columns + 1), DVI_NEW(int, entries)};
-  if (a->pattern.start == NULL || a->pattern.row == NULL)
-    return dvi__fail(DVI_NO_MEMORY, "action: no memory for a Jacobian of %zu entries", entries);
-  int at = 0;
-  for (int j = 0; j < a->n; j++)
-    for (int l = 0; l < s; l++) {
-      for (int e = a->joint.start[j]; e < a->joint.start[j + 1]; e++)
-        for (int k = 0; k < s; k++) a->pattern.row[at++] = a->joint.row[e] * s + k;
-      a->pattern.start[j * s + l + 1] = at;
-    }
-  return DVI_OK;
-}
-
 dvi_status dvi__action_prepare_jacobian(dvi__action *a)
 {
   const dvi_system *system = a->system;
   const size_t r = (size_t)a->r;
-  DVI_TRY(join(a));
-  DVI_TRY(locate_blocks(a));
-  DVI_TRY(expand_pattern(a));
+  DVI_TRY(dvi__joint_create(system, &a->joint, &a->block));
+  DVI_TRY(dvi__pattern_blocks(&a->joint, a->s, &a->pattern));
   a->H_qq = DVI_NEW(double, (size_t)dvi__pattern_entries(&system->qq) * r);
   a->H_qv = DVI_NEW(double, (size_t)dvi__pattern_entries(&system->qv) * r);
   a->H_vv = DVI_NEW(double, (size_t)dvi__pattern_entries(&system->vv) * r);

@@ -114,6 +114,7 @@ dvi_status dvi_integrator_start(dvi_integrator *I, double t, const double *q, co
   double *v = I->next.q_carry;
   memset(v, 0, (size_t)I->system->n * sizeof(double));
   dvi_status status = check_start(I, t, q, p, 'p');
+  if (status == DVI_OK && I->system->terms & DVI__ONE_FORM) status = dvi__form_constraint(I->evaluator, q, p);
   if (status == DVI_OK) status = dvi__legendre_inverse(I->evaluator, t, q, p, v);
   if (status == DVI_OK) status = start(I, t, q, v, p);
   return verdict(I, t, status);

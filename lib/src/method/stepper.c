@@ -1,4 +1,7 @@
 /* Making a stepper: the specification is parsed, the method must be able to use every term that the system declares. */
+#include <dvi/method.h>
+#include <string.h>
+
 #include "core/status.h"
 #include "method/method.h"
 
@@ -7,21 +10,38 @@ static const char *term_name(unsigned term)
   switch (term) {
   case DVI__CONSTANT_MASS: return "a constant mass";
   case DVI__LAGRANGIAN: return "a general Lagrangian";
+  case DVI__ONE_FORM: return "a one-form";
   default: return "potentials";
+  }
+}
+
+static int can_use(const dvi__method *method, const dvi_system *system)
+{
+  return (system->terms & ~method->uses) == 0 && (method->needs & ~system->terms) == 0;
+}
+
+/* The names of the methods for such a system. */
+static void name_others(const dvi_system *system, dvi__text *names)
+{
+  for (int i = 0; i < dvi_method_count(); i++) {
+    const char *name = dvi_method_name(i);
+    if (can_use(dvi__find_method(name, strlen(name)), system)) dvi__text_add(names, "%s%s", names->length > 0 ? ", " : "", name);
   }
 }
 
 static dvi_status check_terms(const dvi__method *method, const dvi_system *system)
 {
-  const char *others = "galerkin, midpoint and trapezoidal";
+  char names[DVI__SPECIFICATION_SIZE] = "";
+  if (can_use(method, system)) return DVI_OK;
+  name_others(system, &(dvi__text){names, sizeof names, 0});
   for (unsigned term = 1; term <= DVI__POTENTIAL; term <<= 1)
     if (system->terms & term & ~method->uses)
-      return dvi__fail(DVI_UNSUPPORTED, "%s: the system declares %s, which this method cannot use; %s can", method->name,
-                       term_name(term), others);
+      return dvi__fail(DVI_UNSUPPORTED, "%s: the system declares %s, which this method cannot use; methods for this system: %s",
+                       method->name, term_name(term), names);
   for (unsigned term = 1; term <= DVI__POTENTIAL; term <<= 1)
     if (method->needs & term & ~system->terms)
-      return dvi__fail(DVI_UNSUPPORTED, "%s: the method needs %s, which the system does not declare; %s do not", method->name,
-                       term_name(term), others);
+      return dvi__fail(DVI_UNSUPPORTED, "%s: the method needs %s, which the system does not declare; methods for this system: %s",
+                       method->name, term_name(term), names);
   return DVI_OK;
 }
 

@@ -26,6 +26,14 @@ struct dvi__linear {
   double *scaled;                   /* [entries*parts], what is factored */
 };
 
+/* Up to here a dense factorisation costs at most about as much as a search for pivots by KLU. */
+enum { MOST_EXCHANGED = 96 };
+
+dvi__linear_kind dvi__linear_for_exchanges(const dvi__pattern *pattern)
+{
+  return pattern->columns <= MOST_EXCHANGED ? DVI__LINEAR_DENSE : DVI__LINEAR_AUTO;
+}
+
 static int dense_is_better(const dvi__pattern *pattern)
 {
   const double n = pattern->columns;

@@ -21,6 +21,10 @@ dvi_status dvi__linear_create(const dvi__pattern *pattern, dvi__linear_kind kind
 /* The same for the pattern of another solver, sparse or complex, which must outlive this one: its analysis serves both. Not AUTO or DENSE. */
 dvi_status dvi__linear_create_like(const dvi__linear *like, dvi__linear_kind kind, dvi_counters *counters, dvi__linear **linear);
 
+/* The kind for a matrix that may have zeros on its diagonal: the order of the pivots, on which KLU settles at create, would fail it, and each
+ * factorisation would search for another one, on the heap. Dense, with LAPACK's row exchanges, as long as that is no slower. */
+dvi__linear_kind dvi__linear_for_exchanges(const dvi__pattern *pattern);
+
 void dvi__linear_destroy(dvi__linear **linear);
 
 /* Not DVI__LINEAR_AUTO. */

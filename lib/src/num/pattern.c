@@ -1,5 +1,6 @@
 #include "num/pattern.h"
 
+#include <limits.h>
 #include <string.h>
 
 #include "core/memory.h"
@@ -123,6 +124,28 @@ dvi_status dvi__pattern_transpose(const dvi__pattern *pattern, dvi__pattern *tra
   /* The starts have moved to the ends: move them back. */
   for (int i = pattern->rows; i > 0; i--) transpose->start[i] = transpose->start[i - 1];
   transpose->start[0] = 0;
+  return DVI_OK;
+}
+
+dvi_status dvi__pattern_blocks(const dvi__pattern *pattern, int size, dvi__pattern *blocks)
+{
+  const int columns = pattern->columns * size;
+  const size_t entries = (size_t)dvi__pattern_entries(pattern) * (size_t)size * (size_t)size;
+  *blocks = (dvi__pattern){0};
+  if (entries > INT_MAX)
+    return dvi__fail(DVI_BAD_SIZE, "action: the Jacobian would have %zu entries; declare sparse Hessians", entries);
+  *blocks = (dvi__pattern){columns, columns, DVI_NEW(int, columns + 1), DVI_NEW(int, entries)};
+  if (blocks->start == NULL || blocks->row == NULL) {
+    dvi__pattern_clear(blocks);
+    return dvi__fail(DVI_NO_MEMORY, "action: no memory for a Jacobian of %zu entries", entries);
+  }
+  int at = 0;
+  for (int j = 0; j < pattern->columns; j++)
+    for (int l = 0; l < size; l++) {
+      for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++)
+        for (int k = 0; k < size; k++) blocks->row[at++] = pattern->row[e] * size + k;
+      blocks->start[j * size + l + 1] = at;
+    }
   return DVI_OK;
 }
 

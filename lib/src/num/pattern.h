@@ -29,6 +29,9 @@ dvi_status dvi__pattern_union(const dvi__pattern *a, const dvi__pattern *b, dvi_
 /* The transposed pattern. */
 dvi_status dvi__pattern_transpose(const dvi__pattern *pattern, dvi__pattern *transpose);
 
+/* Every entry becomes a full size x size block: entry (i,j) the rows i*size+k and columns j*size+l. DVI_BAD_SIZE if an int cannot count the entries. */
+dvi_status dvi__pattern_blocks(const dvi__pattern *pattern, int size, dvi__pattern *blocks);
+
 /* Index of entry (row, column), or -1. */
 int dvi__pattern_find(const dvi__pattern *pattern, int row, int column);
 

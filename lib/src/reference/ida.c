@@ -1,17 +1,23 @@
 /* IDA on the implicit Euler-Lagrange equations.
  *
- * Unknowns y = (q, v, p), equations of index 1:
+ * Unknowns y = (q, v, p), equations of index 1, or of index 2 if L_v = alpha(q) does not depend on v:
  *     F(t, y, ydot) = ( qdot - v,  pdot - L_q(t,q,v),  p - L_v(t,q,v) ) = 0
  * with the Jacobian dF/dy + c dF/dydot, columns q, v, p:
  *     [  c I     -I      0  ]
  *     [ -L_qq   -L_qv   c I ]
  *     [ -L_vq   -L_vv    I  ]
+ * For index 2 the multiplier v is left out of the error test. With a one-form the first choice are the reduced equations of motion, unknowns y = q,
+ *     F(t, y, ydot) = Omega(q) qdot - H_q(t,q) = 0,
+ * whose Jacobian IDA differences: it has second derivatives of alpha that no callback gives.
+ *
  * Nothing is discretised, inverted or assembled by the code that the methods use; only the callbacks are shared.
- * Source: Hindmarsh et al. 2005, ACM TOMS 31:363, sec. 2.3. */
+ * Source: Hindmarsh et al. 2005, ACM TOMS 31:363, sec. 2.3; Brenan, Campbell and Petzold 1996 (error tests at index 2). */
 #include <float.h>
 #include <ida/ida.h>
 #include <math.h>
 #include <string.h>
+#include <sunlinsol/sunlinsol_dense.h>
+#include <sunmatrix/sunmatrix_dense.h>
 
 #include "core/memory.h"
 #include "core/status.h"
@@ -20,13 +26,16 @@
 
 typedef struct judge {
   dvi__reference_run *run;
+  int reduced;
   dvi__pattern vq; /* the transpose of the system's qv */
   int *in_qv;      /* [entries of vq]: the same entry of qv */
-  N_Vector y, ydot;
+  N_Vector y, ydot, differential;
   SUNMatrix matrix;
   SUNLinearSolver linear;
   void *ida;
 } judge;
+
+/* ---- the whole equations ---- */
 
 static int residual(double t, N_Vector y, N_Vector ydot, N_Vector F, void *user)
 {
@@ -113,28 +122,57 @@ static dvi_status acceleration(dvi__reference_run *run, double *vdot)
   return status;
 }
 
+/* ---- the reduced equations of a one-form ---- */
+
+static int reduced_residual(double t, N_Vector y, N_Vector ydot, N_Vector F, void *user)
+{
+  dvi__reference_run *run = ((judge *)user)->run;
+  const dvi_status status = dvi__two_form_residual(run->evaluator, t, N_VGetArrayPointer(y), N_VGetArrayPointer(ydot),
+                                                   N_VGetArrayPointer(F));
+  return dvi__reference_callback(run, status);
+}
+
+/* ---- a run ---- */
+
 static dvi_status start(const judge *self)
 {
   dvi__reference_run *run = self->run;
   const size_t n = (size_t)run->n, size = n * sizeof(double);
   double *y = N_VGetArrayPointer(self->y), *ydot = N_VGetArrayPointer(self->ydot);
   memcpy(y, run->q, size);
+  memcpy(ydot, run->v, size);
+  if (self->reduced) return DVI_OK;
   memcpy(y + n, run->v, size);
   memcpy(y + 2 * n, run->p, size);
-  memcpy(ydot, run->v, size);
   memcpy(ydot + 2 * n, run->force, size);
   return acceleration(run, ydot + n);
+}
+
+/* At index 2 the multiplier v has errors of 1/h times those of q and p: they belong neither in the error test nor in the test of the iteration's
+ * convergence. */
+static int leave_velocity_untested(const judge *self)
+{
+  const dvi_reference_options *options = &self->run->options;
+  const int n = self->run->n;
+  double *tolerance = N_VGetArrayPointer(self->differential);
+  for (int i = 0; i < 3 * n; i++) tolerance[i] = i >= n && i < 2 * n ? DBL_MAX : options->absolute_tolerance;
+  if (IDASVtolerances(self->ida, options->relative_tolerance, self->differential)) return -1;
+  for (int i = 0; i < 3 * n; i++) tolerance[i] = i >= n && i < 2 * n ? 0.0 : 1.0;
+  return IDASetId(self->ida, self->differential) || IDASetSuppressAlg(self->ida, 1);
 }
 
 static int configure(judge *self)
 {
   const dvi__reference_run *run = self->run;
   void *ida = self->ida;
-  return DVI__SUNDIALS_SILENCE(IDASetErrHandlerFn, ida) || IDAInit(ida, residual, run->t, self->y, self->ydot) ||
-         IDASStolerances(ida, run->options.relative_tolerance, run->options.absolute_tolerance) || IDASetUserData(ida, self) ||
-         IDASetMaxNumSteps(ida, run->options.max_steps) || IDASetStopTime(ida, run->t_end) ||
-         IDASetMinStep(ida, dvi__reference_least_step(run)) || IDASetLinearSolver(ida, self->linear, self->matrix) ||
-         IDASetJacFn(ida, jacobian);
+  if (DVI__SUNDIALS_SILENCE(IDASetErrHandlerFn, ida) ||
+      IDAInit(ida, self->reduced ? reduced_residual : residual, run->t, self->y, self->ydot) ||
+      IDASStolerances(ida, run->options.relative_tolerance, run->options.absolute_tolerance) || IDASetUserData(ida, self) ||
+      IDASetMaxNumSteps(ida, run->options.max_steps) || IDASetStopTime(ida, run->t_end) ||
+      IDASetMinStep(ida, dvi__reference_least_step(run)) || IDASetLinearSolver(ida, self->linear, self->matrix))
+    return -1;
+  if (run->options.code == DVI_IDA_INDEX_2 && leave_velocity_untested(self) != 0) return -1;
+  return self->reduced ? 0 : IDASetJacFn(ida, jacobian);
 }
 
 static dvi_status integrate(const judge *self)
@@ -147,6 +185,7 @@ static dvi_status integrate(const judge *self)
   if (flag < 0) return dvi__reference_stopped(run, flag, IDAGetReturnFlagName(flag));
   const double *y = N_VGetArrayPointer(self->y);
   memcpy(run->q, y, n * sizeof *y);
+  if (self->reduced) return dvi__reference_form_momentum(run);
   memcpy(run->p, y + 2 * n, n * sizeof *y);
   return DVI_OK;
 }
@@ -165,14 +204,16 @@ static dvi_status transpose(judge *self)
 static dvi_status reserve(judge *self)
 {
   dvi__reference_run *run = self->run;
-  const int n = run->n, size = 3 * n, qq = dvi__pattern_entries(&run->system->qq), qv = dvi__pattern_entries(&run->system->qv),
-            vv = dvi__pattern_entries(&run->system->vv);
+  const int n = run->n, size = self->reduced ? n : 3 * n, qq = dvi__pattern_entries(&run->system->qq),
+            qv = dvi__pattern_entries(&run->system->qv), vv = dvi__pattern_entries(&run->system->vv);
   DVI_TRY(transpose(self));
   self->y = N_VNew_Serial(size, run->context);
   self->ydot = N_VNew_Serial(size, run->context);
-  self->matrix = dvi__reference_matrix(run, size, 4 * n + qq + 2 * qv + vv);
+  self->differential = N_VNew_Serial(size, run->context);
+  self->matrix = self->reduced ? SUNDenseMatrix(n, n, run->context) : dvi__reference_matrix(run, size, 4 * n + qq + 2 * qv + vv);
   self->ida = IDACreate(run->context);
-  if (self->y == NULL || self->ydot == NULL || self->matrix == NULL || self->ida == NULL) return dvi__reference_no_setup(run);
+  if (self->y == NULL || self->ydot == NULL || self->differential == NULL || self->matrix == NULL || self->ida == NULL)
+    return dvi__reference_no_setup(run);
   self->linear = dvi__reference_linear(run, self->y, self->matrix);
   return self->linear == NULL ? dvi__reference_no_setup(run) : DVI_OK;
 }
@@ -182,6 +223,7 @@ static void clear(judge *self)
   if (self->ida != NULL) IDAFree(&self->ida);
   if (self->linear != NULL) (void)SUNLinSolFree(self->linear);
   if (self->matrix != NULL) SUNMatDestroy(self->matrix);
+  if (self->differential != NULL) N_VDestroy(self->differential);
   if (self->ydot != NULL) N_VDestroy(self->ydot);
   if (self->y != NULL) N_VDestroy(self->y);
   dvi__release(self->in_qv);
@@ -190,7 +232,10 @@ static void clear(judge *self)
 
 dvi_status dvi__reference_ida(dvi__reference_run *run)
 {
-  judge self = {.run = run};
+  const int form = (run->system->terms & DVI__ONE_FORM) != 0;
+  if (!form && run->options.code == DVI_IDA_INDEX_2)
+    return dvi__fail(DVI_UNSUPPORTED, "ida-index-2: the system declares no one-form; its equations are of index 1");
+  judge self = {.run = run, .reduced = form && run->options.code == DVI_IDA};
   dvi_status status = reserve(&self);
   if (status == DVI_OK) status = start(&self);
   if (status == DVI_OK && configure(&self) != 0) status = dvi__reference_no_setup(run);

@@ -1,5 +1,6 @@
 /* CVODE and ARKODE on Hamilton's equations, with the velocity from the inverse Legendre map:
- *     y = (q, p),   qdot = v(t,q,p),   pdot = L_q(t,q,v(t,q,p)).
+ *     y = (q, p),   qdot = v(t,q,p),   pdot = L_q(t,q,v(t,q,p)),
+ * with a one-form on the reduced ones alone: y = q, qdot = v(t,q).
  * Sources: Hindmarsh et al. 2005, ACM TOMS 31:363, sec. 2.1 (CVODE); Reynolds et al. 2023, ACM TOMS 49:19 (ARKODE). */
 #include <arkode/arkode_arkstep.h>
 #include <cvode/cvode.h>
@@ -9,6 +10,11 @@
 
 #include "core/status.h"
 #include "reference/run.h"
+
+static int has_momenta(const dvi__reference_run *run)
+{
+  return !(run->system->terms & DVI__ONE_FORM);
+}
 
 typedef struct flow {
   dvi__reference_run *run;
@@ -26,7 +32,7 @@ static int right_side(double t, N_Vector y, N_Vector ydot, void *user)
   const double *q = N_VGetArrayPointer(y), *p = q + n;
   double *qdot = N_VGetArrayPointer(ydot), *pdot = qdot + n;
   dvi_status status = dvi__legendre_inverse(run->evaluator, t, q, p, run->v);
-  if (status == DVI_OK) status = dvi__lagrangian_gradient(run->evaluator, 1, &t, q, run->v, pdot, NULL);
+  if (status == DVI_OK && has_momenta(run)) status = dvi__lagrangian_gradient(run->evaluator, 1, &t, q, run->v, pdot, NULL);
   if (status == DVI_OK) memcpy(qdot, run->v, (size_t)n * sizeof *qdot);
   return dvi__reference_callback(run, status);
 }
@@ -67,20 +73,22 @@ static dvi_status start(flow *self)
 {
   const dvi__reference_run *run = self->run;
   const size_t n = (size_t)run->n;
-  self->y = N_VNew_Serial(2 * (sunindextype)run->n, run->context);
+  self->y = N_VNew_Serial((1 + has_momenta(run)) * (sunindextype)run->n, run->context);
   if (self->y == NULL) return dvi__reference_no_setup(run);
   double *y = N_VGetArrayPointer(self->y);
   memcpy(y, run->q, n * sizeof *y);
-  memcpy(y + n, run->p, n * sizeof *y);
+  if (has_momenta(run)) memcpy(y + n, run->p, n * sizeof *y);
   return DVI_OK;
 }
 
-static void finish(const flow *self)
+static dvi_status finish(const flow *self)
 {
   const double *y = N_VGetArrayPointer(self->y);
   const size_t n = (size_t)self->run->n;
   memcpy(self->run->q, y, n * sizeof *y);
+  if (!has_momenta(self->run)) return dvi__reference_form_momentum(self->run);
   memcpy(self->run->p, y + n, n * sizeof *y);
+  return DVI_OK;
 }
 
 static void clear(flow *self)
@@ -96,8 +104,9 @@ static dvi_status make_linear(flow *self)
 {
   const dvi__reference_run *run = self->run;
   const int n = run->n, entries = dvi__pattern_entries(&run->system->qq), known = mass_is_diagonal(run->system);
-  if (known || dvi__reference_is_dense(2 * n)) {
-    self->matrix = dvi__reference_matrix(run, 2 * n, entries + 3 * n);
+  const int size = (1 + has_momenta(run)) * n;
+  if (known || dvi__reference_is_dense(size)) {
+    self->matrix = dvi__reference_matrix(run, size, entries + 3 * n);
     if (self->matrix == NULL) return dvi__reference_no_setup(run);
     self->linear = dvi__reference_linear(run, self->y, self->matrix);
   } else {
@@ -135,8 +144,7 @@ static dvi_status integrate_cvode(flow *self)
   (void)CVodeGetNumSteps(self->memory, &run->steps);
   (void)CVodeGetCurrentTime(self->memory, &run->reached);
   if (flag < 0) return dvi__reference_stopped(run, flag, CVodeGetReturnFlagName(flag));
-  finish(self);
-  return DVI_OK;
+  return finish(self);
 }
 
 dvi_status dvi__reference_cvode(dvi__reference_run *run)
@@ -172,8 +180,7 @@ static dvi_status integrate_arkode(flow *self)
   (void)ARKodeGetNumSteps(self->memory, &run->steps);
   (void)ARKodeGetCurrentTime(self->memory, &run->reached);
   if (flag < 0) return dvi__reference_stopped(run, flag, ARKodeGetReturnFlagName(flag));
-  finish(self);
-  return DVI_OK;
+  return finish(self);
 }
 
 dvi_status dvi__reference_arkode(dvi__reference_run *run)

@@ -30,6 +30,9 @@ dvi_status dvi__reference_ida(dvi__reference_run *run);
 dvi_status dvi__reference_cvode(dvi__reference_run *run);
 dvi_status dvi__reference_arkode(dvi__reference_run *run);
 
+/* With a one-form: the end's p from its q. */
+dvi_status dvi__reference_form_momentum(dvi__reference_run *run);
+
 /* Check the options (NULL: all defaults) and fill in what is left out. */
 dvi_status dvi__reference_complete(const dvi_system *system, const dvi_reference_options *given, dvi_reference_options *options);
 

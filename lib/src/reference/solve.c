@@ -12,6 +12,7 @@
 #include "core/status.h"
 #include "num/finite.h"
 #include "reference/run.h"
+#include "system/term.h"
 
 static const struct {
   const char *name;
@@ -21,12 +22,15 @@ static const struct {
     [DVI_CVODE_ADAMS] = {"cvode-adams", dvi__reference_cvode},
     [DVI_CVODE_BDF] = {"cvode-bdf", dvi__reference_cvode},
     [DVI_ARKODE] = {"arkode", dvi__reference_arkode},
+    [DVI_IDA_INDEX_2] = {"ida-index-2", dvi__reference_ida},
 };
 
 enum { CODE_COUNT = sizeof codes / sizeof codes[0] };
 
 /* Without a gradient the momenta L_v are differenced values: below about 1e-11 their noise stops the codes (measured on IDA). */
 static const double default_tolerance = 1e-12, default_without_gradient = 1e-9;
+/* At index 2 the multiplier's noise, 1/h times that of q, comes back through L_q. */
+static const double default_index_2 = 1e-9;
 static const long default_max_steps = 50000000;
 
 const char *dvi_reference_name(dvi_reference_code code)
@@ -83,10 +87,10 @@ dvi_status dvi__reference_stopped(const dvi__reference_run *run, int flag, char 
   return status;
 }
 
-static double default_of(const dvi_system *system)
+static double default_of(const dvi_system *system, dvi_reference_code code)
 {
-  const dvi__lagrangian_term *l = system->lagrangian;
-  const int differenced = l != NULL && l->callbacks.gradient == NULL && l->callbacks.gradient_batch == NULL;
+  const int differenced = system->lagrangian != NULL && !dvi__general_has_gradient(system->lagrangian);
+  if (code == DVI_IDA_INDEX_2) return default_index_2;
   return differenced ? default_without_gradient : default_tolerance;
 }
 
@@ -101,7 +105,7 @@ dvi_status dvi__reference_complete(const dvi_system *system, const dvi_reference
     return dvi__fail(DVI_BAD_ARGUMENT, "reference: absolute_tolerance is %g, must not be negative", options->absolute_tolerance);
   if (options->max_steps < 0)
     return dvi__fail(DVI_BAD_ARGUMENT, "reference: max_steps is %ld, must not be negative", options->max_steps);
-  if (options->relative_tolerance == 0) options->relative_tolerance = default_of(system);
+  if (options->relative_tolerance == 0) options->relative_tolerance = default_of(system, options->code);
   if (options->absolute_tolerance == 0) options->absolute_tolerance = options->relative_tolerance;
   if (options->max_steps == 0) options->max_steps = default_max_steps;
   return DVI_OK;
@@ -135,10 +139,16 @@ static dvi_status reserve(dvi__reference_run *run, const double *q, const double
   return DVI_OK;
 }
 
+dvi_status dvi__reference_form_momentum(dvi__reference_run *run)
+{
+  return dvi__lagrangian_gradient(run->evaluator, 1, &run->t_end, run->q, run->v, NULL, run->p);
+}
+
 static dvi_status prepare(dvi__reference_run *run, const double *q, const double *p)
 {
   dvi_status status = dvi__evaluator_create(run->system, 1, DVI__HESSIANS, &run->counters, &run->evaluator);
   if (status == DVI_OK) status = reserve(run, q, p);
+  if (status == DVI_OK && run->system->terms & DVI__ONE_FORM) status = dvi__form_constraint(run->evaluator, run->q, run->p);
   if (status == DVI_OK) status = dvi__legendre_inverse(run->evaluator, run->t, run->q, run->p, run->v);
   if (status == DVI_OK) status = dvi__lagrangian_gradient(run->evaluator, 1, &run->t, run->q, run->v, run->force, NULL);
   if (status == DVI_OK) return DVI_OK;

@@ -13,7 +13,7 @@
 typedef struct dvi__equations {
   int unknowns;
   const dvi__pattern *pattern; /* of the Jacobian; outlives the solver */
-  dvi__linear_kind linear;     /* 0: DVI__LINEAR_AUTO */
+  dvi__linear_kind linear;     /* that factors it; left out: AUTO, which takes the diagonal's entries for the largest ones */
   void *of;                    /* first argument of the callbacks */
   dvi_status (*residual)(void *of, const double *x, double *r);
   dvi_status (*jacobian)(void *of, const double *x, double *values);

@@ -42,6 +42,7 @@ typedef struct broken_range {
 } broken_range;
 
 typedef struct check {
+  const char *kinetic; /* what holds the velocities */
   dvi__scratch scratch;
   dvi__differences differences;
   int n;
@@ -245,9 +246,10 @@ static dvi_status check_terms(check *c, const dvi_system *system)
 
 /* ---- the report ---- */
 
-static void name_entry(const finding *f, size_t size, char *text)
+static void name_entry(const finding *f, const char *kinetic, size_t size, char *text)
 {
-  char place[32], owner[48] = "Lagrangian";
+  char place[32], owner[48];
+  (void)snprintf(owner, sizeof owner, "%s", kinetic);
   if (f->term != NULL) (void)snprintf(owner, sizeof owner, "potential '%.24s'", f->term);
   if (f->worst.column < 0)
     (void)snprintf(place, sizeof place, "(%d)", f->worst.row);
@@ -280,7 +282,7 @@ static dvi_status report(const check *c, double tolerance, dvi_derivative_check 
   const finding *const worst = c->of_gradient.worst.error > tolerance ? &c->of_gradient : hessian;
   const int missing = worst == &c->of_pattern;
   char entry[128] = "";
-  if (worst->block != NULL) name_entry(worst, sizeof entry, entry);
+  if (worst->block != NULL) name_entry(worst, c->kinetic, sizeof entry, entry);
   *result = (dvi_derivative_check){.gradient_error = c->of_gradient.worst.error,
                                    .hessian_error = c->of_hessian.worst.error,
                                    .outside = c->of_pattern.worst.error,
@@ -345,7 +347,12 @@ dvi_status dvi_system_check(const dvi_system *system, double t, const double *q,
   if (!isfinite(t) || dvi__first_not_finite(n, q) >= 0 || dvi__first_not_finite(n, v) >= 0)
     return dvi__fail(DVI_NOT_FINITE, "system check: the point (t = %g) is not finite", t);
   const double accepted = tolerance > 0 ? tolerance : 1e-6;
-  check c = {.n = system->n, .t = t, .q = q, .v = v, .range.row = -1};
+  check c = {.kinetic = system->terms & DVI__ONE_FORM ? "one-form" : "Lagrangian",
+             .n = system->n,
+             .t = t,
+             .q = q,
+             .v = v,
+             .range.row = -1};
   dvi_status status = allocate(&c, system);
   if (status == DVI_OK) status = check_terms(&c, system);
   if (status == DVI_OK) status = report(&c, accepted, kept);

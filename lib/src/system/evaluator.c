@@ -18,7 +18,9 @@ static int allocate_general(dvi__evaluator *e)
   e->hessian[0] = DVI_NEW(double, dvi__pattern_entries(&system->lagrangian->qq));
   e->hessian[1] = DVI_NEW(double, dvi__pattern_entries(&system->qv));
   e->hessian[2] = DVI_NEW(double, dvi__pattern_entries(&system->vv));
-  return e->unwanted && e->velocity_search && e->hessian[0] && e->hessian[1] && e->hessian[2];
+  if (system->terms & DVI__ONE_FORM) e->two_form = DVI_NEW(double, dvi__pattern_entries(&system->lagrangian->omega));
+  return e->unwanted && e->velocity_search && e->hessian[0] && e->hessian[1] && e->hessian[2] &&
+         (e->two_form || !(system->terms & DVI__ONE_FORM));
 }
 
 static dvi_status allocate(dvi__evaluator *e, int hessians)
@@ -35,6 +37,10 @@ static dvi_status prepare_velocity(dvi__evaluator *e)
 {
   const dvi_system *system = e->system;
   if (system->mass_diagonal != NULL) return DVI_OK;
+  if (system->terms & DVI__ONE_FORM) {
+    const dvi__pattern *omega = &system->lagrangian->omega;
+    return dvi__linear_create(omega, dvi__linear_for_exchanges(omega), e->counters, &e->velocity);
+  }
   DVI_TRY(dvi__linear_create(&system->vv, DVI__LINEAR_AUTO, e->counters, &e->velocity));
   return system->mass_values != NULL ? dvi__linear_factor(e->velocity, system->mass_values) : DVI_OK;
 }
@@ -67,6 +73,7 @@ void dvi__evaluator_destroy(dvi__evaluator **evaluator)
   for (int i = 0; i < 3; i++) dvi__release(e->point[i]);
   dvi__release(e->unwanted);
   dvi__release(e->velocity_search);
+  dvi__release(e->two_form);
   for (int i = 0; i < 3; i++) dvi__release(e->hessian[i]);
   dvi__release(e);
   *evaluator = NULL;
@@ -270,6 +277,24 @@ dvi_status dvi__lagrangian_hessian(dvi__evaluator *e, int count, const double *t
   e->counters->hessians += count;
   const dvi_status status = hessian(e, count, t, q, v, L_qq, L_qv, L_vv);
   count_differences(e);
+  return status;
+}
+
+dvi_status dvi__form_gradient(dvi__evaluator *e, const double *q, const double *w, double *alpha_w_q, double *alpha)
+{
+  const double any_time = 0;
+  e->counters->gradients++;
+  return dvi__general_gradient(e->system->lagrangian, &e->scratch, 1, &any_time, q, w, alpha_w_q, alpha);
+}
+
+dvi_status dvi__form_hessian(dvi__evaluator *e, const double *q, const double *w, double *alpha_w_qq, double *alpha_q)
+{
+  const double any_time = 0;
+  e->counters->hessians++;
+  const dvi_status status = dvi__general_hessian(e->system->lagrangian, &e->scratch, 1, &any_time, q, w, alpha_w_qq, alpha_q,
+                                                 e->hessian[2]);
+  count_differences(e);
+  if (status == DVI_OK) spread(e->system, 1, alpha_w_qq);
   return status;
 }
 

@@ -40,10 +40,26 @@ dvi_status dvi__lagrangian_hessian(dvi__evaluator *e, int count, const double *t
 /* One point of a general Lagrangian: *L_vv is owned by the evaluator, valid until its next call. Potentials do not matter for it. */
 dvi_status dvi__velocity_hessian(dvi__evaluator *e, double t, const double *q, const double *v, const double **L_vv);
 
-/* One point: v with L_v(t,q,v) = p. v holds a guess for general Lagrangians; unchanged on failure. */
+/* One point: v with L_v(t,q,v) = p, or that of the equations of motion with a one-form. v holds a guess for general Lagrangians; unchanged on failure. */
 dvi_status dvi__legendre_inverse(dvi__evaluator *e, double t, const double *q, const double *p, double *v);
 
-/* One point: DVI_SINGULAR if L_vv cannot be inverted there. */
+/* One point of a system with a one-form: factor Omega(q); v with Omega(q) v = H_q(t,q). DVI_SINGULAR. */
+dvi_status dvi__two_form_factor(dvi__evaluator *e, const double *q);
+dvi_status dvi__two_form_velocity(dvi__evaluator *e, double t, const double *q, double *v);
+
+/* One point of a one-form: alpha [n], and the gradient [n] of alpha(q).w, w [n]. */
+dvi_status dvi__form_gradient(dvi__evaluator *e, const double *q, const double *w, double *alpha_w_q, double *alpha);
+
+/* Only with DVI__HESSIANS. The Hessian of alpha(q).w in the order of the system's qq, and the gradients of alpha in that of its qv. */
+dvi_status dvi__form_hessian(dvi__evaluator *e, const double *q, const double *w, double *alpha_w_qq, double *alpha_q);
+
+/* F [n] = Omega(q) v - H_q(t,q), without a factorisation. */
+dvi_status dvi__two_form_residual(dvi__evaluator *e, double t, const double *q, const double *v, double *F);
+
+/* DVI_BAD_ARGUMENT unless p = alpha(q) up to rounding. */
+dvi_status dvi__form_constraint(dvi__evaluator *e, const double *q, const double *p);
+
+/* One point: DVI_SINGULAR if L_vv (Omega with a one-form) cannot be inverted there. */
 dvi_status dvi__legendre_regular(dvi__evaluator *e, double t, const double *q, const double *v);
 
 /* x [n*count, component-major] = M^{-1} y for the constant mass; x may be y. Only for systems with DVI__CONSTANT_MASS. */

@@ -1,4 +1,6 @@
 /* Energy, momentum maps of the declared symmetries, and declared invariants. */
+#include <string.h>
+
 #include "core/status.h"
 #include "num/finite.h"
 #include "system/evaluator_struct.h"
@@ -20,13 +22,22 @@ static dvi_status momentum_map(dvi__evaluator *e, const dvi_symmetry *symmetry, 
   return DVI_OK;
 }
 
+/* p.v - L; the Hamiltonian -L(t,q,0) of a one-form wants no velocity. */
+static dvi_status energy(dvi__evaluator *e, double t, const double *q, const double *v, const double *p, double *E)
+{
+  double L, pv = 0, *rest = e->point[2];
+  const int degenerate = (e->system->terms & DVI__ONE_FORM) != 0;
+  memset(rest, 0, (size_t)e->system->n * sizeof(double));
+  DVI_TRY(dvi__lagrangian_value(e, 1, &t, q, degenerate ? rest : v, &L));
+  for (int i = 0; i < e->system->n && !degenerate; i++) pv += p[i] * v[i];
+  *E = pv - L;
+  return DVI_OK;
+}
+
 dvi_status dvi__invariants(dvi__evaluator *e, double t, const double *q, const double *v, const double *p, double *value)
 {
   const dvi_system *s = e->system;
-  double L, pv = 0;
-  DVI_TRY(dvi__lagrangian_value(e, 1, &t, q, v, &L));
-  for (int i = 0; i < s->n; i++) pv += p[i] * v[i];
-  value[0] = pv - L;
+  DVI_TRY(energy(e, t, q, v, p, value));
   for (int i = 0; i < s->symmetry_count; i++) DVI_TRY(momentum_map(e, &s->symmetries[i], q, p, value + 1 + i));
   for (int i = 0; i < s->invariant_count; i++) {
     const dvi_invariant *invariant = &s->invariants[i];

@@ -126,6 +126,8 @@ dvi_status dvi__legendre_inverse(dvi__evaluator *e, double t, const double *q, c
     found = e->point[1];
     dvi__mass_solve(e, 1, p, found);
     if (dvi__first_not_finite(n, found) >= 0) return dvi__fail(DVI_NOT_FINITE, "the velocity M^-1 p at t = %.6g is not finite", t);
+  } else if (e->system->terms & DVI__ONE_FORM) {
+    DVI_TRY(dvi__two_form_velocity(e, t, q, found));
   } else {
     search s = {e, t, q, p, found, found + n, found + 2 * n, found + 3 * n, found + 4 * n, found + 5 * n};
     memcpy(found, v, n * sizeof(double));
@@ -139,6 +141,7 @@ dvi_status dvi__legendre_regular(dvi__evaluator *e, double t, const double *q, c
 {
   const double *L_vv;
   if (e->system->lagrangian == NULL) return DVI_OK;
+  if (e->system->terms & DVI__ONE_FORM) return dvi__two_form_factor(e, q);
   DVI_TRY(dvi__velocity_hessian(e, t, q, v, &L_vv));
   const dvi_status status = dvi__linear_factor(e->velocity, L_vv);
   return status == DVI_SINGULAR ? degenerate(t) : status;

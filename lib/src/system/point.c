@@ -45,7 +45,7 @@ dvi_status dvi_system_velocity(const dvi_system *system, double t, const double 
 {
   dvi__evaluator *e;
   DVI_TRY(check_point(system, t, q, p, v));
-  if (system->lagrangian != NULL && dvi__first_not_finite((size_t)system->n, v) >= 0)
+  if (system->terms & DVI__LAGRANGIAN && dvi__first_not_finite((size_t)system->n, v) >= 0)
     return dvi__fail(DVI_NOT_FINITE, "system: the starting velocity is not finite");
   DVI_TRY(dvi__evaluator_create(system, 1, DVI__GRADIENTS, NULL, &e));
   const dvi_status status = dvi__legendre_inverse(e, t, q, p, v);

@@ -148,6 +148,36 @@ static dvi_status copy_lagrangian(dvi_system *s, const dvi_lagrangian *given)
   return differenced ? group_lagrangian(term) : DVI_OK;
 }
 
+static dvi_status join_two_form(dvi__lagrangian_term *term)
+{
+  dvi__pattern vq;
+  DVI_TRY(dvi__pattern_transpose(&term->qv, &vq));
+  const dvi_status status = dvi__pattern_union(&term->qv, &vq, &term->omega);
+  dvi__pattern_clear(&vq);
+  return status;
+}
+
+/* alpha(q).v is a Lagrangian whose L_qv holds the gradients of alpha, and whose L_vv has no entries. */
+static dvi_status copy_one_form(dvi_system *s, const dvi_one_form *given)
+{
+  if (given->value == NULL || given->gradient == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "system: the one-form has no %s callback", given->value == NULL ? "value" : "gradient");
+  if (s->n % 2 != 0)
+    return dvi__fail(DVI_BAD_SIZE, "system: dimension %d with a one-form; its two-form is singular unless the dimension is even",
+                     s->n);
+  s->terms |= DVI__ONE_FORM;
+  dvi__lagrangian_term *term = s->lagrangian = DVI_NEW(dvi__lagrangian_term, 1);
+  if (term == NULL) return no_memory();
+  term->one_form = *given;
+  DVI_TRY(copy_symmetric(&given->qq, s->n, "one-form: d2(alpha.v)/dq2", &term->qq));
+  DVI_TRY(dvi__pattern_copy(&given->gradients, s->n, "one-form: gradients", &term->qv));
+  DVI_TRY(dvi__pattern_empty(s->n, &term->vv));
+  DVI_TRY(join_two_form(term));
+  DVI_TRY(dvi__pattern_union(&term->qv, &term->qv, &s->qv));
+  DVI_TRY(dvi__pattern_empty(s->n, &s->vv));
+  return given->hessian == NULL ? group_lagrangian(term) : DVI_OK;
+}
+
 /* ---- potentials ---- */
 
 static dvi_status check_range(const dvi_potential *given, const char *name)
@@ -291,10 +321,11 @@ static dvi_status check_terms(const dvi_system_terms *terms)
   DVI_TRY(check_list("potentials", terms->potential_count, terms->potentials));
   DVI_TRY(check_list("symmetries", terms->symmetry_count, terms->symmetries));
   DVI_TRY(check_list("invariants", terms->invariant_count, terms->invariants));
-  if (has_mass && terms->lagrangian != NULL)
-    return dvi__fail(DVI_BAD_ARGUMENT, "system: both a mass and a general Lagrangian are declared; one of them is possible");
-  if (!has_mass && terms->lagrangian == NULL)
-    return dvi__fail(DVI_BAD_ARGUMENT, "system: neither a mass (other than 0) nor a general Lagrangian is declared");
+  if (has_mass + (terms->lagrangian != NULL) + (terms->one_form != NULL) > 1)
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "system: more than one of a mass, a general Lagrangian and a one-form are declared; one of them is possible");
+  if (!has_mass && terms->lagrangian == NULL && terms->one_form == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "system: neither a mass (other than 0) nor a general Lagrangian nor a one-form is declared");
   if (has_pattern && mass->values == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "system: the mass has a pattern but no values");
   return check_watched(terms);
 }
@@ -327,7 +358,10 @@ static dvi_status fill(dvi_system *s, const dvi_system_terms *terms)
 {
   s->n = terms->dimension;
   s->autonomous = terms->autonomous != 0;
-  DVI_TRY(terms->lagrangian != NULL ? copy_lagrangian(s, terms->lagrangian) : copy_mass(s, &terms->mass));
+  if (terms->lagrangian != NULL)
+    DVI_TRY(copy_lagrangian(s, terms->lagrangian));
+  else
+    DVI_TRY(terms->one_form != NULL ? copy_one_form(s, terms->one_form) : copy_mass(s, &terms->mass));
   DVI_TRY(copy_potentials(s, terms));
   DVI_TRY(copy_invariants(s, terms));
   s->hash = hash_of(s);
@@ -354,6 +388,7 @@ static void clear_lagrangian(dvi__lagrangian_term *term)
   dvi__pattern_clear(&term->qq);
   dvi__pattern_clear(&term->qv);
   dvi__pattern_clear(&term->vv);
+  dvi__pattern_clear(&term->omega);
   dvi__release(term->in_qq);
   dvi__release(term->q_groups.of_column);
   dvi__release(term->v_groups.of_column);

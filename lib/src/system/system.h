@@ -8,7 +8,7 @@
 #include "num/pattern.h"
 
 /* What a system declares, and what a method can use: a set of bits. */
-typedef enum dvi__term { DVI__CONSTANT_MASS = 1, DVI__LAGRANGIAN = 2, DVI__POTENTIAL = 4 } dvi__term;
+typedef enum dvi__term { DVI__CONSTANT_MASS = 1, DVI__LAGRANGIAN = 2, DVI__ONE_FORM = 4, DVI__POTENTIAL = 8 } dvi__term;
 
 /* How to difference a missing Hessian block: columns of a group are moved together. */
 typedef struct dvi__groups {
@@ -24,10 +24,13 @@ typedef struct dvi__potential_term {
   dvi__groups groups;
 } dvi__potential_term;
 
+/* A general Lagrangian, or alpha(q).v. */
 typedef struct dvi__lagrangian_term {
   dvi_lagrangian callbacks;
   struct dvi__transformed *transformed; /* not NULL: it stands in the place of the callbacks (transformed.h) */
+  dvi_one_form one_form;                /* without a value: there is none, and the callbacks above count */
   dvi__pattern qq, qv, vv;
+  dvi__pattern omega;             /* of the one-form's two-form: qv and its transpose */
   int *in_qq;                     /* [entries of qq] */
   dvi__groups q_groups, v_groups; /* q columns of qq; v columns of qv and vv together */
 } dvi__lagrangian_term;
@@ -39,8 +42,8 @@ struct dvi_system {
   unsigned terms; /* dvi__term bits */
   double mass_scalar;
   double *mass_diagonal;
-  double *mass_values; /* in the order of vv */
-  dvi__lagrangian_term *lagrangian;
+  double *mass_values;              /* in the order of vv */
+  dvi__lagrangian_term *lagrangian; /* general, or made of the one-form */
   dvi__potential_term *potentials;
   int potential_count;
   dvi_symmetry *symmetries;
@@ -48,7 +51,7 @@ struct dvi_system {
   dvi_invariant *invariants;
   int invariant_count;
   char **invariant_names; /* energy, symmetries, invariants */
-  dvi__pattern qv, vv;    /* of L's Hessian; vv is diagonal for scalar and diagonal masses */
+  dvi__pattern qv, vv;    /* of L's Hessian; vv is diagonal for scalar and diagonal masses, empty for a one-form */
   dvi__pattern qq;        /* the union over the terms; empty until dvi__system_prepare_hessian */
 };
 

@@ -128,18 +128,87 @@ dvi_status dvi__potential_rate(const dvi__potential_term *p, dvi__scratch *s, in
   return verdict(returned, 1, count, V_t, p->name, "rate", "");
 }
 
+/* ---- one-form: L = alpha(q).v ---- */
+
+static const char *const form = "one-form";
+
+/* s->result[0] = alpha at point k of the batch, with s->point_q and s->point_v. */
+static dvi_status form_value(const dvi__lagrangian_term *l, dvi__scratch *s, int count, int k, const double *q, const double *v)
+{
+  gather(s->n, count, k, q, s->point_q);
+  gather(s->n, count, k, v, s->point_v);
+  const int returned = l->one_form.value(s->point_q, s->result[0], l->one_form.user);
+  return verdict(returned, s->n, 1, s->result[0], form, "value", "");
+}
+
+static dvi_status form_lagrangian(const dvi__lagrangian_term *l, dvi__scratch *s, int count, const double *q, const double *v,
+                                  double *L)
+{
+  for (int k = 0; k < count; k++) {
+    DVI_TRY(form_value(l, s, count, k, q, v));
+    L[k] = 0;
+    for (int i = 0; i < s->n; i++) L[k] += s->result[0][i] * s->point_v[i];
+  }
+  return DVI_OK;
+}
+
+dvi_status dvi__form_gradients(const dvi__lagrangian_term *l, const double *q, double *alpha_q)
+{
+  const int returned = l->one_form.gradient(q, alpha_q, l->one_form.user);
+  return verdict(returned, dvi__pattern_entries(&l->qv), 1, alpha_q, form, "gradient", "");
+}
+
+/* L_q = sum_j v_j d alpha_j/dq,  L_v = alpha. */
+static dvi_status form_gradient(const dvi__lagrangian_term *l, dvi__scratch *s, int count, const double *q, const double *v,
+                                double *L_q, double *L_v)
+{
+  for (int k = 0; k < count; k++) {
+    DVI_TRY(form_value(l, s, count, k, q, v));
+    scatter(s->n, count, k, s->result[0], L_v);
+    DVI_TRY(dvi__form_gradients(l, s->point_q, s->result[1]));
+    for (int i = 0; i < s->n; i++) s->result[0][i] = 0;
+    for (int j = 0; j < s->n; j++)
+      for (int e = l->qv.start[j]; e < l->qv.start[j + 1]; e++) s->result[0][l->qv.row[e]] += s->point_v[j] * s->result[1][e];
+    scatter(s->n, count, k, s->result[0], L_q);
+  }
+  return DVI_OK;
+}
+
+/* L_qq is the Hessian of alpha.v, L_qv has the gradients of alpha, and L_vv is empty. */
+static dvi_status form_hessian(const dvi__lagrangian_term *l, dvi__scratch *s, int count, const double *q, const double *v,
+                               double *L_qq, double *L_qv)
+{
+  const int qq = dvi__pattern_entries(&l->qq), qv = dvi__pattern_entries(&l->qv);
+  for (int k = 0; k < count; k++) {
+    gather(s->n, count, k, q, s->point_q);
+    gather(s->n, count, k, v, s->point_v);
+    const int returned = l->one_form.hessian(s->point_q, s->point_v, s->result[0], l->one_form.user);
+    DVI_TRY(verdict(returned, qq, 1, s->result[0], form, "Hessian", ""));
+    scatter(qq, count, k, s->result[0], L_qq);
+    DVI_TRY(dvi__form_gradients(l, s->point_q, s->result[0]));
+    scatter(qv, count, k, s->result[0], L_qv);
+  }
+  return DVI_OK;
+}
+
 /* ---- general Lagrangian ---- */
 
 static const char *const general = "Lagrangian";
 
+static int is_form(const dvi__lagrangian_term *l)
+{
+  return l->one_form.value != NULL;
+}
+
 int dvi__general_has_gradient(const dvi__lagrangian_term *l)
 {
-  return l->transformed != NULL || l->callbacks.gradient != NULL || l->callbacks.gradient_batch != NULL;
+  return is_form(l) || l->transformed != NULL || l->callbacks.gradient != NULL || l->callbacks.gradient_batch != NULL;
 }
 
 int dvi__general_has_hessian(const dvi__lagrangian_term *l)
 {
-  return l->transformed != NULL || l->callbacks.hessian != NULL || l->callbacks.hessian_batch != NULL;
+  return l->one_form.hessian != NULL || l->transformed != NULL || l->callbacks.hessian != NULL ||
+         l->callbacks.hessian_batch != NULL;
 }
 
 dvi_status dvi__general_value(const dvi__lagrangian_term *l, dvi__scratch *s, int count, const double *t, const double *q,
@@ -148,6 +217,7 @@ dvi_status dvi__general_value(const dvi__lagrangian_term *l, dvi__scratch *s, in
   const dvi_lagrangian *c = &l->callbacks;
   int returned = 0;
   if (l->transformed != NULL) return dvi__transformed_value(l->transformed, count, t, q, v, L);
+  if (is_form(l)) return form_lagrangian(l, s, count, q, v, L);
   if (c->value_batch != NULL) returned = c->value_batch(count, t, q, v, L, c->user);
   for (int k = 0; c->value_batch == NULL && k < count && returned == 0; k++) {
     gather(s->n, count, k, q, s->point_q);
@@ -187,6 +257,7 @@ dvi_status dvi__general_gradient(const dvi__lagrangian_term *l, dvi__scratch *s,
   const dvi_lagrangian *c = &l->callbacks;
   int returned = 0;
   if (l->transformed != NULL) return dvi__transformed_gradient(l->transformed, count, t, q, v, L_q, L_v);
+  if (is_form(l)) return form_gradient(l, s, count, q, v, L_q, L_v);
   if (!dvi__general_has_gradient(l)) {
     const dvi__general_at at = {l, s, t, q, v};
     DVI_TRY(dvi__difference_gradient(dvi__general_value_of_q, &at, &s->of_value, s->n, count, q, L_q));
@@ -221,6 +292,7 @@ dvi_status dvi__general_hessian(const dvi__lagrangian_term *l, dvi__scratch *s, 
   int returned = 0;
   if (l->transformed != NULL) return dvi__transformed_hessian(l->transformed, count, t, q, v, L_qq, L_qv, L_vv);
   if (!dvi__general_has_hessian(l)) return difference_general_hessian(&(dvi__general_at){l, s, t, q, v}, count, L_qq, L_qv, L_vv);
+  if (is_form(l)) return form_hessian(l, s, count, q, v, L_qq, L_qv);
   if (c->hessian_batch != NULL) returned = c->hessian_batch(count, t, q, v, L_qq, L_qv, L_vv, c->user);
   for (int k = 0; c->hessian_batch == NULL && k < count && returned == 0; k++) {
     gather(s->n, count, k, q, s->point_q);
@@ -237,7 +309,7 @@ dvi_status dvi__general_hessian(const dvi__lagrangian_term *l, dvi__scratch *s, 
 
 int dvi__general_has_rate(const dvi__lagrangian_term *l)
 {
-  return l->callbacks.rate != NULL || l->callbacks.rate_batch != NULL;
+  return is_form(l) || l->callbacks.rate != NULL || l->callbacks.rate_batch != NULL;
 }
 
 dvi_status dvi__general_rate(const dvi__lagrangian_term *l, dvi__scratch *s, int count, const double *t, const double *q,
@@ -245,6 +317,8 @@ dvi_status dvi__general_rate(const dvi__lagrangian_term *l, dvi__scratch *s, int
 {
   const dvi_lagrangian *c = &l->callbacks;
   int returned = 0;
+  for (int k = 0; is_form(l) && k < count; k++) L_t[k] = 0;
+  if (is_form(l)) return DVI_OK;
   if (c->rate_batch != NULL) returned = c->rate_batch(count, t, q, v, L_t, c->user);
   for (int k = 0; c->rate_batch == NULL && k < count && returned == 0; k++) {
     gather(s->n, count, k, q, s->point_q);

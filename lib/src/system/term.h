@@ -45,6 +45,9 @@ dvi_status dvi__general_hessian(const dvi__lagrangian_term *l, dvi__scratch *s, 
 dvi_status dvi__general_rate(const dvi__lagrangian_term *l, dvi__scratch *s, int count, const double *t, const double *q,
                              const double *v, double *L_t);
 
+/* One point: the gradients of a one-form's components, in the order of the term's qv. */
+dvi_status dvi__form_gradients(const dvi__lagrangian_term *l, const double *q, double *alpha_q);
+
 /* A potential as a function of q alone, in the shapes that system/difference.h wants; `function` is a dvi__potential_at. */
 typedef struct dvi__potential_at {
   const dvi__potential_term *term;

@@ -113,6 +113,9 @@ static dvi_status fill(dvi__transformed *x, const dvi_system *system, const dvi_
     return dvi__fail(DVI_UNSUPPORTED,
                      "the system is not declared autonomous: its energy need not be conserved, and no function of q "
                      "alone can stand for its time");
+  if (system->terms & DVI__ONE_FORM)
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "the system declares a one-form: its Lagrangian has no mass that could be divided by the monitor");
   DVI_TRY(dvi__system_prepare_hessian(system));
   DVI_TRY(dvi__transformed_reserve(x, 1));
   return make_system(x);

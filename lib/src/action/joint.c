@@ -1,0 +1,31 @@
+#include "action/joint.h"
+
+#include "core/memory.h"
+#include "core/status.h"
+
+static dvi_status join(const dvi_system *system, dvi__pattern *joint)
+{
+  dvi__pattern vq = {0}, mixed = {0}, diagonal = {0};
+  dvi_status status = dvi__pattern_transpose(&system->qv, &vq);
+  if (status == DVI_OK) status = dvi__pattern_union(&system->qv, &vq, &mixed);
+  if (status == DVI_OK) status = dvi__pattern_union(&system->qq, &system->vv, &diagonal);
+  if (status == DVI_OK) status = dvi__pattern_union(&mixed, &diagonal, joint);
+  dvi__pattern_clear(&vq);
+  dvi__pattern_clear(&mixed);
+  dvi__pattern_clear(&diagonal);
+  return status;
+}
+
+dvi_status dvi__joint_create(const dvi_system *system, dvi__pattern *joint, dvi__block **block)
+{
+  DVI_TRY(join(system, joint));
+  *block = DVI_NEW(dvi__block, dvi__pattern_entries(joint));
+  if (*block == NULL) return dvi__fail(DVI_NO_MEMORY, "action: no memory for the Jacobian");
+  for (int j = 0; j < joint->columns; j++)
+    for (int e = joint->start[j]; e < joint->start[j + 1]; e++) {
+      const int i = joint->row[e];
+      (*block)[e] = (dvi__block){dvi__pattern_find(&system->qq, i, j), dvi__pattern_find(&system->qv, i, j),
+                                 dvi__pattern_find(&system->qv, j, i), dvi__pattern_find(&system->vv, i, j)};
+    }
+  return DVI_OK;
+}

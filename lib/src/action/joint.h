@@ -1,0 +1,15 @@
+/* The joint pattern of a Lagrangian's Hessian: which coordinates meet in any of L_qq, L_qv, L_vq and L_vv. */
+#ifndef DVI_ACTION_JOINT_H
+#define DVI_ACTION_JOINT_H
+#include "system/system.h"
+
+/* Where one entry (i,j) of the joint pattern stands in the Hessian's blocks; -1: nowhere. */
+typedef struct dvi__block {
+  int qq, qv, vq, vv;
+} dvi__block;
+
+/* The pattern, and a block [entries] for each of its entries, from the heap; what a failure leaves belongs to the caller, too. The system must be
+ * prepared for Hessians. */
+dvi_status dvi__joint_create(const dvi_system *system, dvi__pattern *joint, dvi__block **block);
+
+#endif

@@ -1,0 +1,129 @@
+/* The two-form Omega_ij = d alpha_j/dq_i - d alpha_i/dq_j of a degenerate Lagrangian alpha(q).v - H, and the velocity that it gives:
+ *
+ *     Omega(q) v = dH/dq,    the Euler-Lagrange equations d/dt alpha - d(alpha.v)/dq + dH/dq = 0.
+ *
+ * Source: Kraus 2017, arXiv:1708.07356; Marsden and Ratiu 1999. */
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "num/finite.h"
+#include "system/evaluator_struct.h"
+
+/* An entry of the gradients; 0 outside of their pattern. */
+static double entry(const dvi__pattern *pattern, const double *values, int row, int column)
+{
+  const int e = dvi__pattern_find(pattern, row, column);
+  return e >= 0 ? values[e] : 0;
+}
+
+/* Omega at q into e->two_form, in the order of the term's omega. */
+static dvi_status evaluate(dvi__evaluator *e, const double *q)
+{
+  const dvi__lagrangian_term *l = e->system->lagrangian;
+  double *alpha_q = e->hessian[1];
+  DVI_TRY(dvi__form_gradients(l, q, alpha_q));
+  for (int j = 0; j < e->system->n; j++)
+    for (int k = l->omega.start[j]; k < l->omega.start[j + 1]; k++)
+      e->two_form[k] = entry(&l->qv, alpha_q, l->omega.row[k], j) - entry(&l->qv, alpha_q, j, l->omega.row[k]);
+  return DVI_OK;
+}
+
+dvi_status dvi__two_form_factor(dvi__evaluator *e, const double *q)
+{
+  DVI_TRY(evaluate(e, q));
+  const dvi_status status = dvi__linear_factor(e->velocity, e->two_form);
+  return status == DVI_SINGULAR ? dvi__fail(status, "the two-form of the one-form is singular at this point") : status;
+}
+
+dvi_status dvi__two_form_velocity(dvi__evaluator *e, double t, const double *q, double *v)
+{
+  const size_t n = (size_t)e->system->n;
+  DVI_TRY(dvi__two_form_factor(e, q));
+  DVI_TRY(dvi__potentials_gradient(e, 1, &t, q, v));
+  dvi__linear_solve(e->velocity, v);
+  return dvi__first_not_finite(n, v) < 0 ? DVI_OK : dvi__fail(DVI_NOT_FINITE, "the velocity at t = %.6g is not finite", t);
+}
+
+dvi_status dvi__two_form_residual(dvi__evaluator *e, double t, const double *q, const double *v, double *F)
+{
+  const dvi__pattern *omega = &e->system->lagrangian->omega;
+  DVI_TRY(evaluate(e, q));
+  DVI_TRY(dvi__potentials_gradient(e, 1, &t, q, F));
+  for (int i = 0; i < e->system->n; i++) F[i] = -F[i];
+  for (int j = 0; j < e->system->n; j++)
+    for (int k = omega->start[j]; k < omega->start[j + 1]; k++) F[omega->row[k]] += e->two_form[k] * v[j];
+  return DVI_OK;
+}
+
+/* A start computed in another way than by the callback differs by its roundings; one that is off the constraint, by more. */
+static const double on_constraint = 1e-11;
+
+dvi_status dvi__form_constraint(dvi__evaluator *e, const double *q, const double *p)
+{
+  const dvi__lagrangian_term *l = e->system->lagrangian;
+  double *alpha = e->point[2], scale = 0;
+  const int returned = l->one_form.value(q, alpha, l->one_form.user);
+  if (returned != 0) return dvi__fail(DVI_CALLBACK_FAILED, "one-form: the value callback failed with %d", returned);
+  for (int i = 0; i < e->system->n; i++) scale = fmax(scale, fmax(fabs(alpha[i]), fabs(p[i])));
+  for (int i = 0; i < e->system->n; i++)
+    if (!(fabs(p[i] - alpha[i]) <= on_constraint * scale))
+      return dvi__fail(DVI_BAD_ARGUMENT,
+                       "p[%d] is %.17g, but the one-form has alpha = %.17g there; start with p = alpha(q) (dvi_system_momentum)", i,
+                       p[i], alpha[i]);
+  return DVI_OK;
+}
+
+/* The largest sum of magnitudes in a column of the inverse. */
+static double inverse_norm(dvi__evaluator *e)
+{
+  const size_t n = (size_t)e->system->n;
+  double norm = 0;
+  for (size_t j = 0; j < n; j++) {
+    double sum = 0, *column = e->point[2];
+    memset(column, 0, n * sizeof(double));
+    column[j] = 1;
+    dvi__linear_solve(e->velocity, column);
+    for (size_t i = 0; i < n; i++) sum += fabs(column[i]);
+    norm = fmax(norm, sum);
+  }
+  return norm;
+}
+
+static double norm(const dvi__pattern *omega, const double *values)
+{
+  double largest = 0;
+  for (int j = 0; j < omega->columns; j++) {
+    double sum = 0;
+    for (int k = omega->start[j]; k < omega->start[j + 1]; k++) sum += fabs(values[k]);
+    largest = fmax(largest, sum);
+  }
+  return largest;
+}
+
+static dvi_status measure(dvi__evaluator *e, const double *q, double *Omega, double *condition)
+{
+  const dvi__pattern *omega = &e->system->lagrangian->omega;
+  const size_t n = (size_t)e->system->n;
+  const dvi_status status = dvi__two_form_factor(e, q);
+  if (status != DVI_OK && status != DVI_SINGULAR) return status;
+  if (condition != NULL) *condition = status == DVI_OK ? norm(omega, e->two_form) * inverse_norm(e) : HUGE_VAL;
+  if (Omega == NULL) return DVI_OK;
+  memset(Omega, 0, n * n * sizeof(double));
+  for (size_t j = 0; j < n; j++)
+    for (int k = omega->start[j]; k < omega->start[j + 1]; k++) Omega[j * n + (size_t)omega->row[k]] = e->two_form[k];
+  return DVI_OK;
+}
+
+dvi_status dvi_system_two_form(const dvi_system *system, const double *q, double *Omega, double *condition)
+{
+  dvi__evaluator *e;
+  if (system == NULL || q == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "two-form: an argument is NULL");
+  if (!(system->terms & DVI__ONE_FORM)) return dvi__fail(DVI_UNSUPPORTED, "two-form: the system declares no one-form");
+  if (dvi__first_not_finite((size_t)system->n, q) >= 0) return dvi__fail(DVI_NOT_FINITE, "two-form: the point is not finite");
+  DVI_TRY(dvi__evaluator_create(system, 1, DVI__GRADIENTS, NULL, &e));
+  const dvi_status status = measure(e, q, Omega, condition);
+  dvi__evaluator_destroy(&e);
+  return status;
+}

@@ -1,0 +1,289 @@
+/* labels: order invariant */
+/* Variational partitioned Runge-Kutta methods with projections: orders, constraint, energy, loop integrals, refusals. */
+#include <math.h>
+#include <string.h>
+
+#include "support/runs.h"
+#include "support/suite.h"
+
+enum { COORDINATES_MOST = 4, LEVELS = 4 };
+
+/* ---- orders ---- */
+
+/* Errors at the end of the span for four steps; those within 100 roundings of the floor are not fitted. */
+static void check_order(const char *name, const char *setting, const char *method, double h, int expected)
+{
+  problem *of = made_problem(name, setting), *standard = made_problem(name, NULL);
+  double last = 0;
+  int fitted = 0;
+  for (int level = 0; level < LEVELS; level++, h /= 2) {
+    dvi_integrator *integrator = started(of, method);
+    ck_assert_int_eq(dvi_integrator_order(integrator), expected);
+    advance(integrator, h, lround(of->order_t_end / h));
+    const double error = distance(of->n, dvi_integrator_q(integrator), standard->digits_q);
+    const double floor = 3e-13 * fmax(1, magnitude(of->n, standard->digits_q)), slope = log2(last / error);
+    if (level > 0 && error > floor) {
+      /* the first pair may not be asymptotic yet */
+      const double within = level == 1 ? 0.6 : 0.2;
+      ck_assert_msg(fabs(slope - expected) <= within, "%s %s: slope %.2f at h = %g (error %g)", name, method, slope, h, error);
+      fitted++;
+    }
+    last = error;
+    dvi_integrator_destroy(&integrator);
+  }
+  ck_assert_msg(fitted >= 1, "%s %s: nothing above the floor", name, method);
+  problem_destroy(&of);
+  problem_destroy(&standard);
+}
+
+static const struct {
+  const char *problem, *setting;
+  double h;
+} places[] = {{"lotka-volterra", NULL, 0.25},
+              {"lotka-volterra", "gauge=singular", 0.25},
+              {"lotka-volterra", "gauge=symmetric", 0.25},
+              {"lotka-volterra-4d", NULL, 0.125},
+              {"massless-particle", NULL, 0.5},
+              {"massless-particle", "gauge=singular", 0.5},
+              {"vortices-linear", NULL, 0.25},
+              {"vortices", NULL, 0.0625},
+              {"guiding-centre", NULL, 32},
+              {"tokamak", NULL, 800}};
+enum { PLACES = sizeof places / sizeof *places };
+
+/* Orders 2, 4 and 6 show over four steps; order 8 is at the floor after two of them on most problems. */
+START_TEST(gauss_with_the_symmetric_projection_has_order_2s)
+{
+  const int s = 1 + _i / PLACES, at = _i % PLACES;
+  check_order(places[at].problem, places[at].setting, spec("vprk:nodes=%d", s), places[at].h, 2 * s);
+}
+END_TEST
+
+static const struct {
+  const char *problem, *setting, *method;
+  double h;
+  int order;
+} kinds[] = {
+    {"massless-particle", NULL, "vprk:nodes=1,projection=symplectic", 0.25, 2},
+    {"massless-particle", NULL, "vprk:nodes=2,projection=symplectic", 0.25, 4},
+    {"vortices", NULL, "vprk:nodes=3,projection=symplectic", 0.0625, 6},
+    {"lotka-volterra", NULL, "vprk:nodes=4,projection=symplectic", 0.5, 8},
+    {"massless-particle", NULL, "vprk:nodes=1,projection=midpoint", 0.25, 2},
+    {"massless-particle", NULL, "vprk:nodes=2,projection=midpoint", 0.25, 4},
+    {"massless-particle", NULL, "vprk:nodes=3,projection=midpoint", 0.25, 4},
+    {"lotka-volterra", "gauge=symmetric", "vprk:nodes=4,projection=midpoint", 0.125, 6},
+    {"vortices", NULL, "vprk:nodes=5,projection=midpoint", 0.0625, 6},
+    {"massless-particle", NULL, "vprk:nodes=1,projection=post", 0.25, 2},
+    {"massless-particle", NULL, "vprk:nodes=2,projection=post", 0.25, 4},
+    {"vortices", NULL, "vprk:nodes=3,projection=post", 0.0625, 6},
+    {"lotka-volterra", "gauge=singular", "vprk:nodes=1,projection=none", 0.25, 2},
+    {"lotka-volterra", "gauge=singular", "vprk:nodes=2,projection=none", 0.25, 2},
+    {"lotka-volterra", "gauge=singular", "vprk:nodes=3,projection=none", 0.25, 4},
+    {"lotka-volterra", "gauge=singular", "vprk:nodes=4,projection=none", 0.25, 4},
+    {"lotka-volterra", "gauge=singular", "vprk:nodes=5,projection=none", 0.25, 6},
+    {"vortices", NULL, "vprk:nodes=2,tableau=lobatto-iiie", 0.0625, 2},
+    {"vortices", NULL, "vprk:nodes=3,tableau=lobatto-iiie", 0.0625, 4},
+    {"vortices", NULL, "vprk:nodes=4,tableau=lobatto-iiie", 0.0625, 6},
+    {"vortices", NULL, "vprk:nodes=5,tableau=lobatto-iiie", 0.0625, 8},
+    {"vortices", NULL, "vprk:nodes=3,tableau=lobatto-iiie,projection=symplectic", 0.0625, 4},
+    {"massless-particle", NULL, "vprk:nodes=3,tableau=lobatto-iiie,projection=post", 0.125, 3},
+    {"vortices", NULL, "vprk:nodes=5,tableau=lobatto-iiie,projection=midpoint", 0.0625, 4},
+    {"lotka-volterra", NULL, "vprk:nodes=4,tableau=lobatto-iiie,projection=none", 0.25, 2},
+    {"lotka-volterra", NULL, "vprk:nodes=5,tableau=lobatto-iiie,projection=none", 0.25, 4},
+};
+enum { KINDS = sizeof kinds / sizeof *kinds };
+
+START_TEST(tableaux_and_projections_have_the_order_that_they_claim)
+{
+  check_order(kinds[_i].problem, kinds[_i].setting, kinds[_i].method, kinds[_i].h, kinds[_i].order);
+}
+END_TEST
+
+/* ---- structure ---- */
+
+static double off_constraint(const problem *of, const dvi_integrator *integrator)
+{
+  double alpha[COORDINATES_MOST];
+  ck_assert_int_eq(dvi_system_momentum(of->system, 0, dvi_integrator_q(integrator), of->v, alpha), DVI_OK);
+  return distance(of->n, alpha, dvi_integrator_p(integrator));
+}
+
+START_TEST(projected_steps_end_on_the_constraint_and_others_leave_it)
+{
+  problem *of = made_problem("massless-particle", NULL);
+  static const char *const projected[] = {"symmetric", "midpoint", "symplectic", "post"};
+  for (int k = 0; k < 4; k++) {
+    dvi_integrator *integrator = started(of, spec("vprk:projection=%s", projected[k]));
+    for (int step = 0; step < 200; step++) {
+      advance(integrator, 0.1, 1);
+      ck_assert_double_eq(off_constraint(of, integrator), 0);
+    }
+    dvi_integrator_destroy(&integrator);
+  }
+  dvi_integrator *unprojected = started(of, "vprk:projection=none");
+  advance(unprojected, 0.1, 200);
+  ck_assert_double_gt(off_constraint(of, unprojected), 1e-8);
+  dvi_integrator_destroy(&unprojected);
+  problem_destroy(&of);
+}
+END_TEST
+
+/* Largest errors of the first half of a run and of the second. Over as many steps the energy of a method that drifts by 1e-14 a step would change by
+ * more than what is allowed between them. */
+static void check_long_run(const char *name, const char *method, double h, long steps, double bound, double most_of_momentum)
+{
+  problem *of = made_problem(name, NULL);
+  dvi_integrator *integrator = started(of, method);
+  double first[8], now[8], half[2] = {0, 0}, momentum = 0;
+  const int count = dvi_system_invariant_count(of->system);
+  ck_assert_int_eq(dvi_integrator_invariants(integrator, first), DVI_OK);
+  for (long k = 0; k < steps; k++) {
+    advance(integrator, h, 1);
+    ck_assert_int_eq(dvi_integrator_invariants(integrator, now), DVI_OK);
+    half[2 * k / steps] = fmax(half[2 * k / steps], fabs(now[0] - first[0]) / fabs(first[0]));
+    for (int i = 1; i < count; i++) momentum = fmax(momentum, fabs(now[i] - first[i]));
+  }
+  ck_assert_msg(half[0] <= bound && half[1] <= 1.02 * half[0] + 1e-12, "%s %s: energy errors %g, then %g", name, method, half[0],
+                half[1]);
+  ck_assert_double_le(momentum, most_of_momentum);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&of);
+}
+
+static const struct {
+  const char *problem, *method;
+  double h, bound, momentum;
+} runs[] = {
+    {"lotka-volterra", "vprk", 0.1, 2.1e-6, 0},
+    {"lotka-volterra", "vprk:nodes=3", 0.1, 2.6e-9, 0},
+    {"massless-particle", "vprk:nodes=3", 0.2, 2.5e-9, 0},
+    {"massless-particle", "vprk:nodes=4", 0.2, 1e-11, 0},
+    {"tokamak", "vprk", 500, 2e-7, 1e-14},
+    {"vortices", "vprk:nodes=3", 0.1, 2e-6, 1e-11},
+    {"vortices", "vprk:nodes=2,projection=symplectic", 0.1, 4e-5, 2e-7},
+    {"guiding-centre", "vprk", 10, 1e-7, 1e-13},
+};
+enum { RUNS = sizeof runs / sizeof *runs };
+
+/* Projections conserve the momenta of shifts exactly, those of rotations up to the square of the multiplier, which is largest on vortices. */
+START_TEST(energy_stays_bounded_and_momenta_are_conserved)
+{
+  check_long_run(runs[_i].problem, runs[_i].method, runs[_i].h, 15000, runs[_i].bound, runs[_i].momentum);
+}
+END_TEST
+
+/* The banana orbit turns back: R stays between the same two radii from beginning to end. */
+START_TEST(a_banana_stays_a_banana)
+{
+  problem *of = made_problem("tokamak", NULL);
+  dvi_integrator *integrator = started(of, "vprk");
+  double inner[2] = {2, 2}, outer[2] = {0, 0};
+  int turned = 0;
+  const int steps = 20000;
+  for (int k = 0; k < steps; k++) {
+    advance(integrator, 500, 1);
+    const double R = dvi_integrator_q(integrator)[0], u = dvi_integrator_q(integrator)[3];
+    inner[2 * k / steps] = fmin(inner[2 * k / steps], R);
+    outer[2 * k / steps] = fmax(outer[2 * k / steps], R);
+    turned += u < 0;
+  }
+  ck_assert(turned > steps / 4 && turned < 3 * steps / 4);
+  for (int k = 0; k < 2; k++) {
+    ck_assert_double_eq_tol(inner[k], 1.006697, 2e-5);
+    ck_assert_double_eq_tol(outer[k], 1.081944, 2e-5);
+  }
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&of);
+}
+END_TEST
+
+/* oint p dq over a loop of starts, by the derivative of the trigonometric polynomial through them: its error is far below roundoff for so small a
+ * circle. */
+enum { POINTS = 128 };
+
+static double loop_integral(dvi_integrator *const *point)
+{
+  const double pi = 3.14159265358979323846;
+  double integral = 0;
+  for (int k = 0; k < POINTS; k++)
+    for (int i = 0; i < 2; i++) {
+      double slope = 0;
+      for (int l = 0; l < POINTS; l++)
+        if (l != k) slope += ((k - l) % 2 ? -0.5 : 0.5) / tan(pi * (k - l) / POINTS) * dvi_integrator_q(point[l])[i];
+      integral += dvi_integrator_p(point[k])[i] * slope * 2 * pi / POINTS;
+    }
+  return integral;
+}
+
+static double change_of_loop(const char *method, long steps)
+{
+  problem *of = made_problem("massless-particle", NULL);
+  dvi_integrator *point[POINTS];
+  for (int k = 0; k < POINTS; k++) {
+    const double angle = 2 * 3.14159265358979323846 * k / POINTS, q[2] = {1 + 0.05 * cos(angle), 1 + 0.05 * sin(angle)};
+    double p[2];
+    point[k] = made_integrator(of->system, method);
+    ck_assert_int_eq(dvi_system_momentum(of->system, 0, q, of->v, p), DVI_OK);
+    ck_assert_int_eq(dvi_integrator_start(point[k], 0, q, p), DVI_OK);
+  }
+  const double before = loop_integral(point);
+  for (int k = 0; k < POINTS; k++) advance(point[k], 0.1, steps);
+  const double change = fabs(loop_integral(point) / before - 1);
+  for (int k = 0; k < POINTS; k++) dvi_integrator_destroy(&point[k]);
+  problem_destroy(&of);
+  return change;
+}
+
+START_TEST(loop_integrals_are_conserved_by_symplectic_maps_alone)
+{
+  ck_assert_double_le(change_of_loop("vprk:nodes=2,projection=symplectic", 600), 1e-11);
+  ck_assert_double_le(change_of_loop("vprk:nodes=3,projection=symplectic", 600), 1e-11);
+  ck_assert_double_ge(change_of_loop("vprk:nodes=2,projection=post", 600), 1e-9);
+}
+END_TEST
+
+/* ---- failures and restarts ---- */
+
+START_TEST(a_step_out_of_the_logarithms_domain_leaves_the_state)
+{
+  problem *of = made_problem("lotka-volterra", NULL);
+  dvi_integrator *integrator = started(of, "vprk");
+  advance(integrator, 0.1, 3);
+  double q[2], p[2];
+  memcpy(q, dvi_integrator_q(integrator), sizeof q);
+  memcpy(p, dvi_integrator_p(integrator), sizeof p);
+  ck_assert_int_gt(dvi_integrator_step(integrator, 40), 0);
+  check_words("the state is unchanged");
+  ck_assert_mem_eq(q, dvi_integrator_q(integrator), sizeof q);
+  ck_assert_mem_eq(p, dvi_integrator_p(integrator), sizeof p);
+  advance(integrator, 0.1, 1);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&of);
+}
+END_TEST
+
+START_TEST(lobatto_wants_two_nodes)
+{
+  problem *of = made_problem("lotka-volterra", NULL);
+  dvi_integrator *none = NULL;
+  ck_assert_int_eq(dvi_integrator_create(of->system, "vprk:nodes=1,tableau=lobatto-iiie", &none), DVI_BAD_OPTION);
+  check_words("nodes=2 or more");
+  ck_assert_ptr_null(none);
+  problem_destroy(&of);
+}
+END_TEST
+
+int main(void)
+{
+  TCase *tests = tcase_create("vprk");
+  tcase_set_timeout(tests, 120);
+  tcase_add_loop_test(tests, gauss_with_the_symmetric_projection_has_order_2s, 0, 3 * PLACES);
+  tcase_add_loop_test(tests, tableaux_and_projections_have_the_order_that_they_claim, 0, KINDS);
+  tcase_add_test(tests, projected_steps_end_on_the_constraint_and_others_leave_it);
+  tcase_add_loop_test(tests, energy_stays_bounded_and_momenta_are_conserved, 0, RUNS);
+  tcase_add_test(tests, a_banana_stays_a_banana);
+  tcase_add_test(tests, loop_integrals_are_conserved_by_symplectic_maps_alone);
+  tcase_add_test(tests, a_step_out_of_the_logarithms_domain_leaves_the_state);
+  tcase_add_test(tests, lobatto_wants_two_nodes);
+  return run_tests("method/vprk", tests);
+}

@@ -1,0 +1,55 @@
+/* labels: reference */
+/* Judges of degenerate Lagrangians: the reduced equations and the system of index 2 agree with the digits, and so with each other. */
+#include <math.h>
+#include <string.h>
+
+#include "support/runs.h"
+#include "support/suite.h"
+
+enum { CODES = 5, PROBLEMS = 7, COORDINATES_MOST = 4 };
+
+static const char *const names[PROBLEMS] = {
+    "lotka-volterra", "lotka-volterra-4d", "massless-particle", "vortices-linear", "vortices", "guiding-centre", "tokamak"};
+
+/* A code's own error is the distance of two runs; ten times that, or what its tolerance leaves at a thousand steps. */
+START_TEST(each_code_meets_the_digits_to_its_own_error)
+{
+  problem *of = made_problem(names[_i % PROBLEMS], NULL);
+  const dvi_reference_code code = (dvi_reference_code)(_i / PROBLEMS);
+  double q[COORDINATES_MOST], p[COORDINATES_MOST];
+  dvi_reference_report report;
+  memcpy(q, of->q, (size_t)of->n * sizeof *q);
+  memcpy(p, of->p, (size_t)of->n * sizeof *p);
+  const dvi_reference_options options = {.code = code};
+  const dvi_status status = dvi_reference_judge(of->system, 0, of->order_t_end, q, p, &options, &report);
+  ck_assert_msg(status == DVI_OK, "%s: %s", of->name, dvi_last_error());
+  const double apart = distance(of->n, q, of->digits_q), size = fmax(1, magnitude(of->n, of->digits_q));
+  ck_assert_msg(apart <= 10 * report.error + 1e-13 * size, "%s by %s: %g from the digits, states %g", of->name,
+                dvi_reference_name(code), apart, report.error);
+  ck_assert_msg(report.error <= (code == DVI_IDA_INDEX_2 ? 1e-5 : 1e-8) * size, "%s by %s: states %g", of->name,
+                dvi_reference_name(code), report.error);
+  ck_assert_double_le(distance(of->n, p, of->digits_p), 100 * (report.error + 1e-13 * size));
+  problem_destroy(&of);
+}
+END_TEST
+
+START_TEST(index_2_is_for_one_forms)
+{
+  problem *of = made_problem("kepler", NULL);
+  double q[2] = {of->q[0], of->q[1]}, p[2] = {of->p[0], of->p[1]};
+  const dvi_reference_options options = {.code = DVI_IDA_INDEX_2};
+  ck_assert_int_eq(dvi_reference_solve(of->system, 0, 1, q, p, &options, NULL), DVI_UNSUPPORTED);
+  check_words("no one-form");
+  ck_assert_mem_eq(q, of->q, sizeof q);
+  problem_destroy(&of);
+}
+END_TEST
+
+int main(void)
+{
+  TCase *tests = tcase_create("degenerate");
+  tcase_set_timeout(tests, 60);
+  tcase_add_loop_test(tests, each_code_meets_the_digits_to_its_own_error, 0, CODES * PROBLEMS);
+  tcase_add_test(tests, index_2_is_for_one_forms);
+  return run_tests("reference/degenerate", tests);
+}
