@@ -42,8 +42,9 @@ static const double least_part = 0.1, largest_part = 30;
 /* Lengths that a rounding of the energy moves by more than a ten-millionth of themselves say nothing about the next one. */
 static const double certain = 1e-9;
 
-/* A root this far from the last length is not taken before the search has looked for a nearer one. */
-static const double near = 4;
+/* A step is at most so many times as long or as short as the last one: a length farther off may solve the equations, but it has nothing to do with the steps
+ * before. */
+static const double reach = 4;
 
 /* The memory, before the element's own. JUMPS and WORK are compensated sums. */
 enum {
@@ -199,10 +200,9 @@ static dvi_status given_step(dvi__stepper *self, dvi__state *state, double h)
   return DVI_OK;
 }
 
-static int within(double h, double last, double least, double most)
+static int within(double h, double least, double most)
 {
-  const double ratio = h / last;
-  return fabs(h) >= least && fabs(h) <= most && ratio <= near && ratio >= 1 / near;
+  return fabs(h) >= least && fabs(h) <= most;
 }
 
 static dvi_status far_off(const dvi__mismatch *found)
@@ -234,7 +234,7 @@ static dvi_status solve_together(dvi__stepper *self, dvi__state *state, double l
     return DVI_OK;
   }
   const dvi_status status = dvi__bordered_solve(b, state, target, rung, b->element.memory + DVI__LAST_Y, found);
-  if (status < 0 || !within(found->h, last, least, most)) return status != DVI_OK ? status : far_off(found);
+  if (status < 0 || !within(found->h, least, most)) return status != DVI_OK ? status : far_off(found);
   DVI_TRY(dvi__energy_search_try(&own->search, found->h, status != DVI_OK, found));
   if (!dvi__energy_solved(found)) return far_off(found);
   dvi__energy_search_take(&own->search, state);
@@ -260,7 +260,8 @@ static dvi_status search_length(dvi__stepper *self, dvi__state *state, double la
 static dvi_status chosen_step(dvi__stepper *self, dvi__state *state)
 {
   const double first = self->memory[FIRST_H], last = element_of(self)->memory[DVI__LAST_H];
-  const double least = least_length(self, first), most = largest_length(self, first);
+  const double least = fmax(least_length(self, first), fabs(last) / reach);
+  const double most = fmin(largest_length(self, first), fabs(last) * reach);
   dvi__mismatch found = {0};
   dvi__energy_search_begin(&((sem *)self->own)->search, state, target_of(self));
   dvi_status status = solve_together(self, state, least, most, &found);
