@@ -146,6 +146,7 @@ static const hard_place hard[] = {
     {"duffing", NULL, "sem:degree=2", 0.1, {0.001}, {0}, 0},
     {"henon-heiles", NULL, "sem", 0.1, {0, -0.1}, {0.5649188730}, 0},
     {"henon-heiles", NULL, "sem:degree=2", 0.1, {0, -0.1}, {0.5649188730}, 0},
+    {"henon-heiles", NULL, "sem:degree=3,quadrature=lobatto", 0.1, {0}, {0}, 0},
     {"driven-pendulum", NULL, "sem:hmin=0.01,hmax=0.3", 0.1, {0}, {0}, 3},
     {"driven-pendulum", NULL, "sem:degree=2,hmin=0.01,hmax=0.3", 0.1, {0}, {0}, 3},
 };

@@ -103,7 +103,7 @@ static dvi_status narrow(dvi__energy_search *search, dvi__mismatch *a, dvi__mism
     double h = a->h + width * (fa / (fa - fc));
     dvi__mismatch middle;
     if (i % 3 == 0) looked_at = fabs(width);
-    if (lingers || !(fabs(h - a->h) < fabs(width)) || h == a->h) h = a->h + 0.5 * width;
+    if (lingers || !((h - a->h) / width > 0 && (h - a->h) / width < 1)) h = a->h + 0.5 * width; /* signs may be noise */
     if (h == a->h || h == c->h || (turning && fabs(width) <= turning_point * fabs(h))) break;
     DVI_TRY(dvi__energy_search_try(search, h, 1, &middle));
     if (dvi__energy_solved(&middle) || (turning && brackets(a, &middle, 0))) {

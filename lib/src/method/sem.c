@@ -200,9 +200,9 @@ static dvi_status given_step(dvi__stepper *self, dvi__state *state, double h)
   return DVI_OK;
 }
 
-static int within(double h, double least, double most)
+static int within(double h, double last, double least, double most)
 {
-  return fabs(h) >= least && fabs(h) <= most;
+  return h / last > 0 && fabs(h) >= least && fabs(h) <= most;
 }
 
 static dvi_status far_off(const dvi__mismatch *found)
@@ -234,7 +234,7 @@ static dvi_status solve_together(dvi__stepper *self, dvi__state *state, double l
     return DVI_OK;
   }
   const dvi_status status = dvi__bordered_solve(b, state, target, rung, b->element.memory + DVI__LAST_Y, found);
-  if (status < 0 || !within(found->h, least, most)) return status != DVI_OK ? status : far_off(found);
+  if (status < 0 || !within(found->h, last, least, most)) return status != DVI_OK ? status : far_off(found);
   DVI_TRY(dvi__energy_search_try(&own->search, found->h, status != DVI_OK, found));
   if (!dvi__energy_solved(found)) return far_off(found);
   dvi__energy_search_take(&own->search, state);
