@@ -21,7 +21,7 @@ words() { sed -e 's/^\(processor\): .*/\1/; s/^\(compiler\): .*/\1/; s/, GSL .*/
 
 commands=0
 for page in README.md docs/guide.md docs/theory.md docs/problems.md docs/adaptive.md docs/paths.md docs/methods/galerkin.md docs/methods/verlet.md \
-  docs/methods/midpoint.md docs/methods/trapezoidal.md docs/methods/composition.md docs/methods/sem.md; do
+  docs/methods/midpoint.md docs/methods/trapezoidal.md docs/methods/composition.md docs/methods/sem.md docs/methods/vprk.md; do
   split "$top/$page"
   n=1
   while [ -e command.$n ]; do

@@ -315,7 +315,7 @@ dvi_status dvi__partitioned_jacobian(dvi__partitioned *p, const double *x, doubl
   for (int j = 0; j < p->n; j++) {
     const int first = p->joint.start[j], length = p->joint.start[j + 1] - first;
     for (int e = 0; e < length; e++) {
-      entry block;
+      entry block = {0};
       double *columns = values + (size_t)m * (size_t)m * (size_t)first + (size_t)e * (size_t)m;
       gather_entry(p, &p->block[first + e], &block);
       for (int l = 0; l < p->s; l++) increment_column(p, &block, l, columns + (size_t)l * (size_t)length * (size_t)m);
