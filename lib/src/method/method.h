@@ -21,11 +21,11 @@ typedef struct dvi__members {
   long *residuals, *gradients, *fixed; /* [count] what the step took, as dvi_counters has it: residuals, gradients, fixed_points */
 } dvi__members;
 
-/* A key of a method's specification: a whole number, or one of a list of names. */
+/* A key of a method's specification: a number, or one of a list of names. */
 typedef struct dvi__key {
   const char *name;
-  const char *(*choice)(int index); /* name of a choice, NULL past the last one; NULL: a whole number */
-  int least, most;                  /* of a whole number */
+  const char *(*choice)(int index); /* name of a choice, NULL past the last one; NULL: a number, whole unless the method says otherwise */
+  int least, most;                  /* of a number */
   int left_out;                     /* the value of a key that is not given: a number, or the index of a choice */
   const char *help;
 } dvi__key;
@@ -68,6 +68,7 @@ void dvi__text_add(dvi__text *text, const char *format, ...) __attribute__((form
 struct dvi__method {
   const char *name, *summary, *cite;
   const dvi__key *keys; /* ended by a key without a name; NULL: none */
+  unsigned thousandths; /* bits of the keys whose numbers may have three decimals: their values count thousandths */
   int takes_rest;       /* keys of others are collected in settings.rest */
   unsigned needs;       /* dvi__term bits that the system must declare */
   unsigned uses;        /* bits that it may declare */
@@ -86,6 +87,8 @@ struct dvi__method {
   double (*traffic)(const dvi__stepper *self, int count);
   /* q [n] and v [n] at tau in [0,1] of the last step, which started at q0 [n] with length h. NULL: Hermite's cubic. */
   void (*path)(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v);
+  /* The jump [n] between the last element and the next, in the stepper's memory. NULL: the method's trajectories do not jump. */
+  const double *(*jump)(const dvi__stepper *self);
   void (*explain)(const dvi__stepper *self, dvi__text *text);
   /* Members as lanes; all three are NULL where there is no such way. prepare makes `lanes` for up to `capacity` members, if the system allows it
    * and it pays. step advances all members that are not `left`, each with the bits and the counts of `step`, or leaves them to it. */

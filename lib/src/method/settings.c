@@ -1,5 +1,6 @@
 /* Specifications: name[:key=value,...]. */
 #include <dvi/method.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -43,23 +44,39 @@ static dvi_status unknown_key(const dvi__method *method, piece name)
                    text.length > 0 ? "it takes " : "it takes none", known);
 }
 
-/* One spelling of each number: no sign, no blank, no leading zero, all of which strtol would take. */
+/* One spelling of each number: no sign, no blank, no leading zero, all of which strtol would take. The length of the digits, 0 if there is none such. */
 static int plain_digits(piece value)
 {
   const int digits = (int)strspn(value.text, "0123456789");
-  return value.length > 0 && digits == value.length && (value.text[0] != '0' || value.length == 1);
+  return value.text[0] != '0' || digits == 1 ? digits : 0;
 }
 
-static dvi_status parse_number(const dvi__method *method, const dvi__key *key, piece value, int *number)
+/* The length of ".5" and the like, of up to `most` digits and not ended by a 0; 0 if there is none. */
+static int plain_decimals(const char *text, int most)
 {
-  if (!plain_digits(value))
-    return dvi__fail(DVI_BAD_OPTION, "%s: %s=%.*s is not a whole number in plain digits", method->name, key->name, value.length,
-                     value.text);
-  const long parsed = strtol(value.text, NULL, 10); /* LONG_MAX if it is beyond */
+  const int digits = text[0] == '.' ? (int)strspn(text + 1, "0123456789") : 0;
+  return digits > 0 && digits <= most && text[digits] != '0' ? digits + 1 : 0;
+}
+
+/* What one stands for in the value of a key that is a number. */
+static int unit(const dvi__method *method, int key)
+{
+  return method->thousandths & 1U << key ? 1000 : 1;
+}
+
+static dvi_status parse_number(const dvi__method *method, int which, piece value, int *number)
+{
+  const dvi__key *key = &method->keys[which];
+  const int decimals = unit(method, which) == 1 ? 0 : 3;
+  const int whole = plain_digits(value), length = whole + plain_decimals(value.text + whole, decimals);
+  if (whole == 0 || length != value.length)
+    return dvi__fail(DVI_BAD_OPTION, "%s: %s=%.*s is not a %s", method->name, key->name, value.length, value.text,
+                     decimals == 0 ? "whole number in plain digits" : "number in plain digits with up to three decimals");
+  const double parsed = strtod(value.text, NULL);
   if (parsed < key->least || parsed > key->most)
     return dvi__fail(DVI_BAD_OPTION, "%s: %s=%.*s; %d to %d are possible", method->name, key->name, value.length, value.text,
                      key->least, key->most);
-  *number = (int)parsed;
+  *number = (int)lround(parsed * unit(method, which));
   return DVI_OK;
 }
 
@@ -92,7 +109,7 @@ static dvi_status assign(const dvi__method *method, piece name, piece value, dvi
     if (!same(name, key->name)) continue;
     if (*given & 1U << k) return dvi__fail(DVI_BAD_OPTION, "%s: %s is given twice", method->name, key->name);
     *given |= 1U << k;
-    return key->choice == NULL ? parse_number(method, key, value, &settings->value[k])
+    return key->choice == NULL ? parse_number(method, k, value, &settings->value[k])
                                : parse_choice(method, key, value, &settings->value[k]);
   }
   return method->takes_rest ? keep_for_others(method, name, value, settings) : unknown_key(method, name);
@@ -135,7 +152,7 @@ void dvi__spell_out(const dvi__method *method, const dvi__settings *settings, dv
     if (key->choice != NULL)
       dvi__text_add(text, "%s", key->choice(settings->value[k]));
     else
-      dvi__text_add(text, "%d", settings->value[k]);
+      dvi__text_add(text, "%.10g", (double)settings->value[k] / unit(method, k));
   }
   if (settings->rest[0] != 0) dvi__text_add(text, ",%s", settings->rest);
 }

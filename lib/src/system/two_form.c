@@ -37,6 +37,11 @@ dvi_status dvi__two_form_factor(dvi__evaluator *e, const double *q)
   return status == DVI_SINGULAR ? dvi__fail(status, "the two-form of the one-form is singular at this point") : status;
 }
 
+void dvi__two_form_solve(dvi__evaluator *e, double *x)
+{
+  dvi__linear_solve(e->velocity, x);
+}
+
 dvi_status dvi__two_form_velocity(dvi__evaluator *e, double t, const double *q, double *v)
 {
   const size_t n = (size_t)e->system->n;
