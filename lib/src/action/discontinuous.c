@@ -3,6 +3,7 @@
 #include <dvi/basis.h>
 #include <dvi/quadrature.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "action/joint.h"
@@ -167,7 +168,7 @@ dvi_status dvi__discontinuous_place(dvi__discontinuous *e, double t0, double h, 
 {
   e->h = h;
   e->from = *node;
-  e->stiffness = copysign(e->given_stiffness, h);
+  e->stiffness = copysign(e->given_stiffness * pow(fabs(h), getenv("PW") ? atof(getenv("PW")) : 0), h);
   for (int i = 0; i < e->r; i++) e->t[i] = t0 + e->c[i] * h;
   for (int i = 0; i < e->n; i++) {
     e->u[i] = node->offset[i] - 0.5 * node->jump[i];
@@ -317,15 +318,15 @@ dvi_status dvi__discontinuous_scale(dvi__discontinuous *e, double *scale)
 /* ---- the end ---- */
 
 /* {q} - q* = Omega^-1 C u at {q} = e->y, C = c + lean (Dalpha + (Dalpha)^T) = c + lean (2 (Dalpha)^T - Omega). */
-static dvi_status offset_at_end(dvi__discontinuous *e, double *offset)
+static dvi_status offset_of(dvi__discontinuous *e, const double *u, double *offset)
 {
   memset(offset, 0, (size_t)e->n * sizeof *offset);
   if (e->stiffness == 0 && e->lean == 0) return DVI_OK;
-  DVI_TRY(dvi__form_gradient(e->evaluator, e->y, e->u, e->gradient, e->alpha));
-  for (int i = 0; i < e->n; i++) offset[i] = e->stiffness * e->u[i] + 2 * e->lean * e->gradient[i];
+  DVI_TRY(dvi__form_gradient(e->evaluator, e->y, u, e->gradient, e->alpha));
+  for (int i = 0; i < e->n; i++) offset[i] = e->stiffness * u[i] + 2 * e->lean * e->gradient[i];
   DVI_TRY(dvi__two_form_factor(e->evaluator, e->y));
   dvi__two_form_solve(e->evaluator, offset);
-  for (int i = 0; i < e->n; i++) offset[i] -= e->lean * e->u[i];
+  for (int i = 0; i < e->n; i++) offset[i] -= e->lean * u[i];
   return DVI_OK;
 }
 
@@ -338,13 +339,51 @@ dvi_status dvi__discontinuous_end(dvi__discontinuous *e, const double *x, double
     dq[i] = e->Y[(i + 1) * S - 1] + 0.5 * e->u[i];
     e->y[i] = e->from.q[i] + dq[i];
   }
-  DVI_TRY(offset_at_end(e, offset));
+  DVI_TRY(offset_of(e, e->u, offset));
   memcpy(jump, e->u, (size_t)e->n * sizeof *jump);
   for (int i = 0; i < e->n; i++) {
     dq[i] -= offset[i];
     for (int k = 0; k < S; k++) coefficients[i * S + k] = e->Y[i * S + k] - dq[i];
   }
   return DVI_OK;
+}
+
+/* ---- the start ---- */
+
+/* y = Omega(q*) x. */
+static dvi_status times_two_form(dvi__discontinuous *e, const double *x, double *y)
+{
+  const dvi__pattern *qv = &e->system->qv;
+  DVI_TRY(dvi__form_hessian(e->evaluator, e->from.q, x, e->one_qq, e->one_qv));
+  memset(y, 0, (size_t)e->n * sizeof *y);
+  for (int j = 0; j < e->n; j++)
+    for (int k = qv->start[j]; k < qv->start[j + 1]; k++) {
+      y[qv->row[k]] += e->one_qv[k] * x[j];
+      y[j] -= e->one_qv[k] * x[qv->row[k]];
+    }
+  return DVI_OK;
+}
+
+int dvi__discontinuous_can_settle(const dvi__discontinuous *e)
+{
+  return e->S % 2 == 1 || (e->given_stiffness > 0 && e->lean == 0);
+}
+
+/* (1 - M)^-1 of what the jump changed by: 1/2 - Omega^-1 C for odd S, 1/2 - Omega/(4c) for even S. */
+dvi_status dvi__discontinuous_settle(dvi__discontinuous *e, const double *x, double *jump, double *offset)
+{
+  const double even = e->S % 2 == 0;
+  spread(e, x);
+  for (int i = 0; i < e->n; i++) {
+    e->u[i] -= jump[i];
+    e->y[i] = e->from.q[i] + offset[i];
+  }
+  if (even)
+    DVI_TRY(times_two_form(e, e->u, e->flux));
+  else
+    DVI_TRY(offset_of(e, e->u, e->flux));
+  for (int i = 0; i < e->n; i++) jump[i] += 0.5 * e->u[i] - (even ? e->flux[i] / (4 * e->stiffness) : e->flux[i]);
+  return offset_of(e, jump, offset);
 }
 
 /* ---- guesses ---- */

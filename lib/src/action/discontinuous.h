@@ -59,6 +59,13 @@ dvi_status dvi__discontinuous_scale(dvi__discontinuous *element, double *scale);
 dvi_status dvi__discontinuous_end(dvi__discontinuous *element, const double *x, double *dq, double *jump, double *offset,
                                   double *coefficients);
 
+/* A start gives q* alone. On the smooth branch the jump changes little from node to node, while the parasite's part of it is multiplied by
+ *     M = (-1)^S (Omega/2 - C)^-1 (Omega/2 + C)
+ * in each element. From the first element x: the jump and {q} - q* at its start for which the jump at its end would be the same, up to O(h) of their
+ * change. Not for even S without a stiffness, where M is 1. */
+int dvi__discontinuous_can_settle(const dvi__discontinuous *element);
+dvi_status dvi__discontinuous_settle(dvi__discontinuous *element, const double *x, double *jump, double *offset);
+
 /* x for the velocity v [n]; x by continuing the last element's coefficients, relative to its end; ratio = h_next / h_last. */
 void dvi__discontinuous_straight(const dvi__discontinuous *element, const double *v, double *x);
 void dvi__discontinuous_continue(const dvi__discontinuous *element, double ratio, const double *coefficients, double *x);

@@ -174,19 +174,38 @@ static dvi_status watch(const dvi__stepper *self, const double *q, const double 
   return DVI_OK;
 }
 
-static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
+static dvi_status solve(dvi__stepper *self, const dvi__state *state, double h)
 {
   dg *own = self->own;
-  const int n = self->system->n;
   const double last_h = self->memory[LAST_H];
-  if (last_h * h < 0) turn(self);
   DVI_TRY(dvi__discontinuous_place(own->element, state->t, h, &(dvi__dg_node){state->q, state->p, jump(self), offset(self)}));
   if (last_h != 0)
     dvi__discontinuous_continue(own->element, h / last_h, coefficients(self), own->guess);
   else
     dvi__discontinuous_straight(own->element, coefficients(self), own->guess);
-  DVI_TRY(dvi__stationary_solve(own->solver, self->counters, dvi__largest((size_t)n, state->q),
-                                dvi__discontinuous_unknowns(own->element), own->guess, own->x));
+  return dvi__stationary_solve(own->solver, self->counters, dvi__largest((size_t)self->system->n, state->q),
+                               dvi__discontinuous_unknowns(own->element), own->guess, own->x);
+}
+
+/* Each time the parasite's part of the jump at the start falls by a factor of h; the second time to the order at which it no longer matters. */
+static dvi_status settle(dvi__stepper *self, const dvi__state *state, double h)
+{
+  dg *own = self->own;
+  if (!dvi__discontinuous_can_settle(own->element)) return DVI_OK;
+  for (int k = 0; k < 2; k++) {
+    DVI_TRY(solve(self, state, h));
+    DVI_TRY(dvi__discontinuous_settle(own->element, own->x, jump(self), offset(self)));
+  }
+  return DVI_OK;
+}
+
+static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
+{
+  dg *own = self->own;
+  const int n = self->system->n;
+  if (self->memory[LAST_H] * h < 0) turn(self);
+  if (self->memory[LAST_H] == 0) DVI_TRY(settle(self, state, h));
+  DVI_TRY(solve(self, state, h));
   DVI_TRY(dvi__discontinuous_end(own->element, own->x, own->dq, jump(self), offset(self), coefficients(self)));
   DVI_TRY(watch(self, state->q, own->dq));
   self->memory[LAST_H] = h;
