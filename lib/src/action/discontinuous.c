@@ -3,7 +3,6 @@
 #include <dvi/basis.h>
 #include <dvi/quadrature.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "action/joint.h"
@@ -15,17 +14,17 @@ enum { MOST = DVI__DG_POINTS_MOST };
 struct dvi__discontinuous {
   const dvi_system *system;
   dvi__evaluator *evaluator;
-  int n, S, r, points;
+  int n, S, r, points, stiff;
   double node[MOST], phi[MOST][MOST], dphi[MOST][MOST]; /* nodes of the basis; phi_k and phi_k' at c_i: [k][i] */
   double b[MOST], c[MOST];
   double side[MOST], weight[MOST]; /* of the path: 1/2 + s_g, w_g */
-  double lean, stiffness;          /* sum_g w_g s_g; c, which changes its sign with h */
+  double lean;                     /* sum_g w_g s_g */
   dvi__pattern joint, pattern;     /* joint: of one block; pattern: of the Jacobian */
   dvi__block *block;               /* [entries of joint] */
-  double given_stiffness;
   /* The step. */
   double h;
   dvi__dg_node from;
+  double *given, *stiffness;                          /* [n] c, and with the sign of h */
   double *left;                                       /* [n] dN/dq+ at its start */
   double *t, *Q, *V, *L_q, *L_v, *H_qq, *H_qv, *H_vv; /* at c_i, component by component: [n*r] */
   double *Y, *u, *y, *alpha,
@@ -69,7 +68,6 @@ static dvi_status fill_path(dvi__discontinuous *e, const dvi__dg_space *space)
   if (space->flux == DVI__LEFT_FLUX) e->side[0] = 0;
   if (space->flux == DVI__RIGHT_FLUX) e->side[0] = 1;
   e->lean = space->flux == DVI__LEFT_FLUX ? -0.5 : space->flux == DVI__RIGHT_FLUX ? 0.5 : 0;
-  e->given_stiffness = space->stiffness;
   return DVI_OK;
 }
 
@@ -77,8 +75,9 @@ static dvi_status fill_path(dvi__discontinuous *e, const dvi__dg_space *space)
 
 static double **owned(dvi__discontinuous *e, int i)
 {
-  double **const all[] = {&e->left, &e->u,    &e->y,    &e->alpha, &e->gradient, &e->flux, &e->t,  &e->Q,      &e->V,     &e->L_q,
-                          &e->L_v,  &e->H_qq, &e->H_qv, &e->H_vv,  &e->Y,        &e->qq,   &e->qv, &e->one_qq, &e->one_qv};
+  double **const all[] = {&e->given, &e->stiffness, &e->left, &e->u,  &e->y,   &e->alpha,  &e->gradient,
+                          &e->flux,  &e->t,         &e->Q,    &e->V,  &e->L_q, &e->L_v,    &e->H_qq,
+                          &e->H_qv,  &e->H_vv,      &e->Y,    &e->qq, &e->qv,  &e->one_qq, &e->one_qv};
   return i < (int)(sizeof all / sizeof *all) ? all[i] : NULL;
 }
 
@@ -86,8 +85,8 @@ static dvi_status allocate(dvi__discontinuous *e)
 {
   const size_t n = (size_t)e->n, r = (size_t)e->r, qq = (size_t)dvi__pattern_entries(&e->system->qq),
                qv = (size_t)dvi__pattern_entries(&e->system->qv), points = (size_t)e->points;
-  const size_t size[] = {n,           n,           n,  n, n, n, r, n * r, n * r, n * r, n * r, qq * r, qv * r, 1, n * (size_t)e->S,
-                         qq * points, qv * points, qq, qv};
+  const size_t size[] = {
+      n, n, n, n, n, n, n, n, r, n * r, n * r, n * r, n * r, qq * r, qv * r, 1, n * (size_t)e->S, qq * points, qv * points, qq, qv};
   for (int i = 0; owned(e, i) != NULL; i++) {
     *owned(e, i) = DVI_NEW(double, size[i] > 0 ? size[i] : 1);
     if (*owned(e, i) == NULL) return dvi__fail(DVI_NO_MEMORY, "dg: no memory for degree %d in %d dimensions", e->S - 1, e->n);
@@ -102,7 +101,10 @@ static dvi_status fill(dvi__discontinuous *e, const dvi__dg_space *space, dvi_co
   DVI_TRY(dvi__evaluator_create(e->system, e->r, DVI__HESSIANS, counters, &e->evaluator));
   DVI_TRY(dvi__joint_create(e->system, &e->joint, &e->block));
   DVI_TRY(dvi__pattern_blocks(&e->joint, e->S, &e->pattern));
-  return allocate(e);
+  DVI_TRY(allocate(e));
+  e->stiff = space->stiffness_count > 0;
+  for (int i = 0; e->stiff && i < e->n; i++) e->given[i] = space->stiffness[space->stiffness_count > 1 ? i : 0];
+  return DVI_OK;
 }
 
 dvi_status dvi__discontinuous_create(const dvi_system *system, const dvi__dg_space *space, dvi_counters *counters,
@@ -154,7 +156,7 @@ dvi__evaluator *dvi__discontinuous_evaluator(const dvi__discontinuous *e)
 /* dN/dq+ (side of the factor: 1/2 + s) or dN/dq- (1/2 - s) less what a constant alpha has, at q- = q* + below, with the jump u. */
 static dvi_status node_gradient(dvi__discontinuous *e, const double *below, int stride, const double *u, int plus, double *gradient)
 {
-  for (int i = 0; i < e->n; i++) gradient[i] = (plus ? e->stiffness : -e->stiffness) * u[i];
+  for (int i = 0; i < e->n; i++) gradient[i] = (plus ? e->stiffness[i] : -e->stiffness[i]) * u[i];
   for (int g = 0; g < e->points; g++) {
     const double sign = plus ? e->weight[g] : -e->weight[g], turn = e->weight[g] * (plus ? e->side[g] : 1 - e->side[g]);
     for (int i = 0; i < e->n; i++) e->y[i] = e->from.q[i] + (below[i * stride] + e->side[g] * u[i]);
@@ -168,7 +170,7 @@ dvi_status dvi__discontinuous_place(dvi__discontinuous *e, double t0, double h, 
 {
   e->h = h;
   e->from = *node;
-  e->stiffness = copysign(e->given_stiffness * pow(fabs(h), getenv("PW") ? atof(getenv("PW")) : 0), h);
+  for (int i = 0; i < e->n; i++) e->stiffness[i] = copysign(e->given[i], h);
   for (int i = 0; i < e->r; i++) e->t[i] = t0 + e->c[i] * h;
   for (int i = 0; i < e->n; i++) {
     e->u[i] = node->offset[i] - 0.5 * node->jump[i];
@@ -250,7 +252,7 @@ static double at(const double *values, int where, int count, int point)
   return where >= 0 ? values[where * count + point] : 0;
 }
 
-static void gather(const dvi__discontinuous *e, const dvi__block *where, int diagonal, entry *out)
+static void gather(const dvi__discontinuous *e, const dvi__block *where, double stiffness, entry *out)
 {
   for (int k = 0; k < e->r; k++) {
     out->A[k] = at(e->H_qv, where->vq, e->r, k);
@@ -258,7 +260,7 @@ static void gather(const dvi__discontinuous *e, const dvi__block *where, int dia
     out->K[k] = e->h * at(e->H_qq, where->qq, e->r, k);
   }
   out->by_trace = 0;
-  out->by_jump = diagonal ? -e->stiffness : 0;
+  out->by_jump = -stiffness;
   for (int g = 0; g < e->points; g++) {
     const double A = at(e->qv, where->vq, e->points, g), B = at(e->qv, where->qv, e->points, g);
     const double H = at(e->qq, where->qq, e->points, g), plus = e->side[g], minus = 1 - plus;
@@ -290,7 +292,7 @@ dvi_status dvi__discontinuous_jacobian(dvi__discontinuous *e, const double *x, d
     for (size_t k = 0; k < length; k++) {
       entry of;
       double *columns = values + S * S * first + k * S, *last = columns + (S - 1) * length * S;
-      gather(e, &e->block[first + k], e->joint.row[first + k] == j, &of);
+      gather(e, &e->block[first + k], e->joint.row[first + k] == j ? e->stiffness[j] : 0, &of);
       for (int l = 1; l < e->S; l++) coefficient_column(e, &of, l, columns + (size_t)(l - 1) * length * S);
       memset(last, 0, S * sizeof *last);
       last[S - 1] = of.by_jump;
@@ -304,7 +306,7 @@ dvi_status dvi__discontinuous_scale(dvi__discontinuous *e, double *scale)
   const dvi__pattern *qv = &e->system->qv;
   memset(e->u, 0, (size_t)e->n * sizeof(double));
   DVI_TRY(dvi__form_hessian(e->evaluator, e->from.q, e->u, e->one_qq, e->one_qv));
-  for (int i = 0; i < e->n; i++) e->alpha[i] = fabs(e->stiffness);
+  for (int i = 0; i < e->n; i++) e->alpha[i] = e->given[i];
   for (int j = 0; j < e->n; j++)
     for (int k = qv->start[j]; k < qv->start[j + 1]; k++) {
       e->alpha[j] = fmax(e->alpha[j], fabs(e->one_qv[k]));
@@ -321,9 +323,9 @@ dvi_status dvi__discontinuous_scale(dvi__discontinuous *e, double *scale)
 static dvi_status offset_of(dvi__discontinuous *e, const double *u, double *offset)
 {
   memset(offset, 0, (size_t)e->n * sizeof *offset);
-  if (e->stiffness == 0 && e->lean == 0) return DVI_OK;
+  if (!e->stiff && e->lean == 0) return DVI_OK;
   DVI_TRY(dvi__form_gradient(e->evaluator, e->y, u, e->gradient, e->alpha));
-  for (int i = 0; i < e->n; i++) offset[i] = e->stiffness * u[i] + 2 * e->lean * e->gradient[i];
+  for (int i = 0; i < e->n; i++) offset[i] = e->stiffness[i] * u[i] + 2 * e->lean * e->gradient[i];
   DVI_TRY(dvi__two_form_factor(e->evaluator, e->y));
   dvi__two_form_solve(e->evaluator, offset);
   for (int i = 0; i < e->n; i++) offset[i] -= e->lean * u[i];
@@ -366,7 +368,7 @@ static dvi_status times_two_form(dvi__discontinuous *e, const double *x, double 
 
 int dvi__discontinuous_can_settle(const dvi__discontinuous *e)
 {
-  return e->S % 2 == 1 || (e->given_stiffness > 0 && e->lean == 0);
+  return e->S % 2 == 1 || (e->stiff && e->lean == 0);
 }
 
 /* (1 - M)^-1 of what the jump changed by: 1/2 - Omega^-1 C for odd S, 1/2 - Omega/(4c) for even S. */
@@ -382,7 +384,7 @@ dvi_status dvi__discontinuous_settle(dvi__discontinuous *e, const double *x, dou
     DVI_TRY(times_two_form(e, e->u, e->flux));
   else
     DVI_TRY(offset_of(e, e->u, e->flux));
-  for (int i = 0; i < e->n; i++) jump[i] += 0.5 * e->u[i] - (even ? e->flux[i] / (4 * e->stiffness) : e->flux[i]);
+  for (int i = 0; i < e->n; i++) jump[i] += 0.5 * e->u[i] - (even ? e->flux[i] / (4 * e->stiffness[i]) : e->flux[i]);
   return offset_of(e, jump, offset);
 }
 

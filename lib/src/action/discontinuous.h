@@ -28,8 +28,9 @@ enum { DVI__DG_POINTS_MOST = 8 };
 typedef struct dvi__dg_space {
   int degree, nodes; /* of the polynomials, of Gauss's rule in an element */
   dvi__flux flux;
-  int points;       /* of Gauss's rule on a path; 1 for the other fluxes */
-  double stiffness; /* c */
+  int points;              /* of Gauss's rule on a path; 1 for the other fluxes */
+  int stiffness_count;     /* 0: no stiffness; 1: one for all coordinates; n */
+  const double *stiffness; /* [stiffness_count] > 0, the diagonal of c */
 } dvi__dg_space;
 
 /* For a system with a one-form. */

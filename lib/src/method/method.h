@@ -21,20 +21,22 @@ typedef struct dvi__members {
   long *residuals, *gradients, *fixed; /* [count] what the step took, as dvi_counters has it: residuals, gradients, fixed_points */
 } dvi__members;
 
-/* A key of a method's specification: a number, or one of a list of names. */
+/* A key of a method's specification: a whole number, or one of a list of names. */
 typedef struct dvi__key {
   const char *name;
-  const char *(*choice)(int index); /* name of a choice, NULL past the last one; NULL: a number, whole unless the method says otherwise */
-  int least, most;                  /* of a number */
+  const char *(*choice)(int index); /* name of a choice, NULL past the last one; NULL: a whole number */
+  int least, most;                  /* of a whole number */
   int left_out;                     /* the value of a key that is not given: a number, or the index of a choice */
   const char *help;
 } dvi__key;
 
-enum { DVI__KEYS_MOST = 8, DVI__SPECIFICATION_SIZE = 256, DVI__LEFT_OUT = -1 };
+enum { DVI__KEYS_MOST = 8, DVI__LIST_MOST = 16, DVI__SPECIFICATION_SIZE = 256, DVI__LEFT_OUT = -1 };
 
 /* Values of the keys, in the order of the method's table. A method may replace DVI__LEFT_OUT by what it chose. */
 typedef struct dvi__settings {
   int value[DVI__KEYS_MOST];
+  double list[DVI__LIST_MOST]; /* numbers of the key that is a list */
+  int listed;                  /* how many; 0: it is not given */
   char rest[DVI__SPECIFICATION_SIZE]; /* "key=value,..." that are not the method's own; only for methods that take them */
 } dvi__settings;
 
@@ -68,7 +70,8 @@ void dvi__text_add(dvi__text *text, const char *format, ...) __attribute__((form
 struct dvi__method {
   const char *name, *summary, *cite;
   const dvi__key *keys; /* ended by a key without a name; NULL: none */
-  unsigned thousandths; /* bits of the keys whose numbers may have three decimals: their values count thousandths */
+  const char *list;     /* the key of a list of decimal numbers, c1:c2:..., not one of the above; NULL: none */
+  const char *list_help;
   int takes_rest;       /* keys of others are collected in settings.rest */
   unsigned needs;       /* dvi__term bits that the system must declare */
   unsigned uses;        /* bits that it may declare */

@@ -1,6 +1,5 @@
 /* Specifications: name[:key=value,...]. */
 #include <dvi/method.h>
-#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -40,43 +39,57 @@ static dvi_status unknown_key(const dvi__method *method, piece name)
   char known[DVI__SPECIFICATION_SIZE] = "";
   dvi__text text = {known, sizeof known, 0};
   for (int k = 0; k < dvi__key_count(method); k++) dvi__text_add(&text, "%s%s", k > 0 ? ", " : "", method->keys[k].name);
+  if (method->list != NULL) dvi__text_add(&text, ", %s", method->list);
   return dvi__fail(DVI_BAD_OPTION, "%s: unknown key '%.*s'; %s%s", method->name, name.length, name.text,
                    text.length > 0 ? "it takes " : "it takes none", known);
 }
 
 /* One spelling of each number: no sign, no blank, no leading zero, all of which strtol would take. The length of the digits, 0 if there is none such. */
-static int plain_digits(piece value)
+static int plain_digits(const char *text)
 {
-  const int digits = (int)strspn(value.text, "0123456789");
-  return value.text[0] != '0' || digits == 1 ? digits : 0;
+  const int digits = (int)strspn(text, "0123456789");
+  return text[0] != '0' || digits == 1 ? digits : 0;
 }
 
-/* The length of ".5" and the like, of up to `most` digits and not ended by a 0; 0 if there is none. */
-static int plain_decimals(const char *text, int most)
+enum { LONGEST_DECIMAL = 15 }; /* as many digits a double keeps */
+
+/* The same with decimals, of which the last is not 0. */
+static int plain_decimal(const char *text)
 {
-  const int digits = text[0] == '.' ? (int)strspn(text + 1, "0123456789") : 0;
-  return digits > 0 && digits <= most && text[digits] != '0' ? digits + 1 : 0;
+  const int whole = plain_digits(text);
+  if (whole == 0 || text[whole] != '.') return whole;
+  const int decimals = (int)strspn(text + whole + 1, "0123456789");
+  return decimals > 0 && text[whole + decimals] != '0' ? whole + 1 + decimals : 0;
 }
 
-/* What one stands for in the value of a key that is a number. */
-static int unit(const dvi__method *method, int key)
+static dvi_status parse_number(const dvi__method *method, const dvi__key *key, piece value, int *number)
 {
-  return method->thousandths & 1U << key ? 1000 : 1;
-}
-
-static dvi_status parse_number(const dvi__method *method, int which, piece value, int *number)
-{
-  const dvi__key *key = &method->keys[which];
-  const int decimals = unit(method, which) == 1 ? 0 : 3;
-  const int whole = plain_digits(value), length = whole + plain_decimals(value.text + whole, decimals);
-  if (whole == 0 || length != value.length)
-    return dvi__fail(DVI_BAD_OPTION, "%s: %s=%.*s is not a %s", method->name, key->name, value.length, value.text,
-                     decimals == 0 ? "whole number in plain digits" : "number in plain digits with up to three decimals");
-  const double parsed = strtod(value.text, NULL);
+  if (plain_digits(value.text) != value.length || value.length == 0)
+    return dvi__fail(DVI_BAD_OPTION, "%s: %s=%.*s is not a whole number in plain digits", method->name, key->name, value.length,
+                     value.text);
+  const long parsed = strtol(value.text, NULL, 10); /* LONG_MAX if it is beyond */
   if (parsed < key->least || parsed > key->most)
     return dvi__fail(DVI_BAD_OPTION, "%s: %s=%.*s; %d to %d are possible", method->name, key->name, value.length, value.text,
                      key->least, key->most);
-  *number = (int)lround(parsed * unit(method, which));
+  *number = (int)parsed;
+  return DVI_OK;
+}
+
+static dvi_status parse_list(const dvi__method *method, piece value, dvi__settings *settings)
+{
+  if (settings->listed > 0) return dvi__fail(DVI_BAD_OPTION, "%s: %s is given twice", method->name, method->list);
+  const char *at = value.text, *end = value.text + value.length;
+  for (int more = 1; more; at += more) {
+    const int length = plain_decimal(at);
+    if (settings->listed == DVI__LIST_MOST)
+      return dvi__fail(DVI_BAD_OPTION, "%s: %s has more than %d numbers", method->name, method->list, DVI__LIST_MOST);
+    if (length == 0 || length > LONGEST_DECIMAL || (at + length < end && at[length] != ':'))
+      return dvi__fail(DVI_BAD_OPTION, "%s: %s=%.*s is not a list of numbers in plain digits, such as 2 or 1:0.5", method->name,
+                       method->list, value.length, value.text);
+    settings->list[settings->listed++] = strtod(at, NULL);
+    at += length;
+    more = at < end;
+  }
   return DVI_OK;
 }
 
@@ -109,9 +122,10 @@ static dvi_status assign(const dvi__method *method, piece name, piece value, dvi
     if (!same(name, key->name)) continue;
     if (*given & 1U << k) return dvi__fail(DVI_BAD_OPTION, "%s: %s is given twice", method->name, key->name);
     *given |= 1U << k;
-    return key->choice == NULL ? parse_number(method, k, value, &settings->value[k])
+    return key->choice == NULL ? parse_number(method, key, value, &settings->value[k])
                                : parse_choice(method, key, value, &settings->value[k]);
   }
+  if (method->list != NULL && same(name, method->list)) return parse_list(method, value, settings);
   return method->takes_rest ? keep_for_others(method, name, value, settings) : unknown_key(method, name);
 }
 
@@ -152,7 +166,9 @@ void dvi__spell_out(const dvi__method *method, const dvi__settings *settings, dv
     if (key->choice != NULL)
       dvi__text_add(text, "%s", key->choice(settings->value[k]));
     else
-      dvi__text_add(text, "%.10g", (double)settings->value[k] / unit(method, k));
+      dvi__text_add(text, "%d", settings->value[k]);
   }
+  for (int k = 0; k < settings->listed; k++)
+    k == 0 ? dvi__text_add(text, ",%s=%.15g", method->list, settings->list[k]) : dvi__text_add(text, ":%.15g", settings->list[k]);
   if (settings->rest[0] != 0) dvi__text_add(text, ",%s", settings->rest);
 }
