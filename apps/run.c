@@ -35,6 +35,7 @@ typedef struct recorder {
   double t_start, t; /* where the run began; where the last observed step ended */
   long step;         /* counted from t = 0, so that a resumed run writes the rows of an uninterrupted one */
   bool begun, row_written, stop_silently;
+  bool jumps;                          /* the method's trajectories jump between elements */
   const volatile sig_atomic_t *caught; /* the signal that ends the run after its step; 0: none yet */
 } recorder;
 
@@ -56,6 +57,7 @@ static void write_header(recorder *r)
     (void)fputc(',', stream);
     csv_text(stream, dvi_system_invariant_name(scene->system, i));
   }
+  if (r->jumps) (void)fputs(",jump", stream);
   (void)fputc('\n', stream);
 }
 
@@ -91,6 +93,7 @@ static bool write_row(recorder *r, dvi_integrator *integrator)
   write_numbers(stream, r->scene->n, dvi_integrator_q(integrator));
   write_numbers(stream, r->scene->n, dvi_integrator_p(integrator));
   write_numbers(stream, dvi_system_invariant_count(r->scene->system), r->invariant);
+  if (r->jumps) (void)fprintf(stream, ",%.17g", dvi_integrator_jump(integrator, NULL));
   (void)fputc('\n', stream);
   r->row_written = true;
   if (!ferror(stream)) return true;
@@ -156,6 +159,7 @@ static int advance(recorder *r, dvi_integrator *integrator)
                                    .cancel = r->caught};
   r->t_start = dvi_integrator_time(integrator);
   r->step = step_number(r->t_start, request->h);
+  r->jumps = !isnan(dvi_integrator_jump(integrator, NULL));
   write_header(r);
   progress_start(&r->progress, request->final || r->out.path != NULL);
   const dvi_status status = dvi_run(integrator, &options, NULL);
@@ -257,7 +261,8 @@ static int check_settings(const char *name, const words *settings)
 }
 
 static const char *const details[] = {
-    "Columns: t, the coordinates, their momenta (p_ and the coordinate's name), energy, the other invariants;\n"
+    "Columns: t, the coordinates, their momenta (p_ and the coordinate's name), energy, the other invariants,\n"
+    "and with dg the largest jump;\n"
     "17 digits, so that every number is read back as it was. The first row is the start (with --resume: the\n"
     "checkpoint), the last one is the end, wherever --every puts the rows between.\n",
     "FILEs are written whole or not at all: a run that fails leaves what was there. Rows on standard output come\n"

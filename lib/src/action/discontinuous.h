@@ -1,9 +1,9 @@
 /* One element of the discontinuous Galerkin discretisation of a degenerate Lagrangian alpha(q).v - H(q), and the node at its end.
  *
  * The trajectory is a polynomial of degree d in each element and jumps between two. The jump [q] = q+ - q- costs the integral of alpha along the
- * straight path from q- to q+, by points s_g in [-1/2,1/2] of weight w_g (the numerical flux), and c [q].[q]/2 (the stiffness):
+ * straight path from q- to q+, by points s_g in [-1/2,1/2] of weight w_g (the numerical flux), and [q].c[q]/2 (the stiffness, c diagonal):
  *     S = sum over elements of h sum_i b_i L(Q_i, V_i) + sum over nodes of N(q-, q+),
- *     N = sum_g w_g [q].alpha(y_g) + c [q].[q]/2,    y_g = q- + (1/2 + s_g) [q].
+ *     N = sum_g w_g [q].alpha(y_g) + [q].c[q]/2,    y_g = q- + (1/2 + s_g) [q].
  * Stationary against the S = d+1 coefficients X_j of an element, with the traces q+ = X(0) and q'- = X(1):
  *     h sum_i b_i (phi_j(c_i) L_q + phi_j'(c_i) L_v / h) + phi_j(0) dN/dq+ (q-, q+) + phi_j(1) dN/dq- (q'-, q'+) = 0,    j = 0..S-1.
  * The state before the step is (q-, q+): q+ is X_0 in the nodal basis on Lobatto's points, so that X_1..X_{S-1} and the jump [q'] at the end are unknown,
@@ -12,7 +12,7 @@
  * What stands for q at a node is q* = {q} - Omega^-1 C [q], {q} = (q- + q+)/2, C the symmetric part of what the node's terms have for [q]: where alpha
  * is linear Omega q* changes by h sum_i b_i H_q(Q_i), while {q} of a stiff node oscillates with the jump.
  *
- * Source: Kraus 2017, sec. 5 of the talk of the same author (jump and average); the stiffness and q* are ours (docs/methods/dg.md).
+ * Source: Kraus 2016 (elements, jump, average flux; with its signs corrected); the stiffness and q* are ours (docs/methods/dg.md).
  *
  * Unknowns and rows are stored component by component: x[i*S + k-1] is component i of X_k - q*, x[i*S + S-1] that of the jump at the end. */
 #ifndef DVI_ACTION_DISCONTINUOUS_H

@@ -1,10 +1,9 @@
 /* Discontinuous Galerkin variational integrators for degenerate Lagrangians alpha(q).v - H(q).
  *
- *     S = sum over elements of h sum_i b_i L(Q_i, V_i) + sum over nodes of N(q-, q+),    N = [q].alpha({q}) + c [q].[q]/2 (average flux)
+ *     S = sum over elements of h sum_i b_i L(Q_i, V_i) + sum over nodes of N(q-, q+),    N = [q].alpha({q}) + [q].c[q]/2 (average flux)
  *
  * with polynomials of degree d in each element that jump between two: see action/discontinuous.h, whose q* is what stands here for q. p is alpha(q*). The
- * jump is memory of the method, and an oscillation of it, the parasite, is what can break a run: it is watched, and an alarm stops the run or counts.
- * Source: Kraus 2017 (talk); the stiffness without h and q* are ours. */
+ * jump is memory of the method, and its oscillation, the parasite, can break a run: it is watched, and an alarm stops the run or is counted. */
 #include <math.h>
 #include <string.h>
 
@@ -173,7 +172,7 @@ static void turn(dvi__stepper *self)
   for (int i = 0; i < self->system->n; i++) jump(self)[i] = -jump(self)[i];
 }
 
-/* The part of a step's motion that a jump may be. Elements of degree 0 move by jumps alone. */
+/* A jump may be half of the step's motion. Elements of degree 0 move by jumps alone, and may twice of it. */
 static dvi_status watch(const dvi__stepper *self, const double *q, const double *dq)
 {
   const size_t n = (size_t)self->system->n;
@@ -181,10 +180,11 @@ static dvi_status watch(const dvi__stepper *self, const double *q, const double 
   const double size = dvi__largest(n, jump(self)), motion = dvi__largest(n, dq);
   if (size <= part * motion + rounding * dvi__largest(n, q)) return DVI_OK;
   if (self->settings.value[ALARM] == STOP)
-    return dvi__fail(DVI_JUMP,
-                     "the jump, %.2e, is %.2g times the step's motion; a stiffness damps nothing but keeps jumps from growing "
-                     "(stiffness=1), alarm=warn goes on",
-                     size, size / motion);
+    return dvi__fail(
+        DVI_JUMP,
+        "the jump, %.2e, is large against the step's motion, %.2e: the parasite has grown; stiffness=c keeps it small, "
+        "alarm=warn goes on",
+        size, motion);
   self->counters->jump_alarms++;
   return DVI_OK;
 }

@@ -116,7 +116,7 @@ void dvi__spell_out(const dvi__method *method, const dvi__settings *settings, dv
 /* The method of a name, or NULL (table.c). */
 const dvi__method *dvi__find_method(const char *name, size_t length);
 
-/* Number of keys in a method's table. */
+/* Number of keys in a method's table, without that of a list. */
 int dvi__key_count(const dvi__method *method);
 
 #endif
