@@ -37,6 +37,8 @@ static const struct {
     {"double-pendulum", NULL, "galerkin:degree=3", 0.02, 30},
     {"double-pendulum", NULL, "trapezoidal:solver=newton", 0.02, 30},
     {"vortices", NULL, "vprk:nodes=3", 0.05, 30},
+    {"vortices", NULL, "dg", 0.05, 30},
+    {"massless-particle", NULL, "dg:degree=1,stiffness=1:2", 0.1, 30},
     {"massless-particle", NULL, "vprk:projection=symplectic", 0.1, 30},
 };
 enum { RUNS = sizeof runs / sizeof *runs, COORDINATES_MOST = 8, INVARIANTS_MOST = 16 };

@@ -371,6 +371,17 @@ int dvi__discontinuous_can_settle(const dvi__discontinuous *e)
   return e->S % 2 == 1 || (e->stiff && e->lean == 0);
 }
 
+/* {q} - q* at the start, where q* is known and {q} is not: by iteration, which a jump contracts. */
+static dvi_status offset_at_start(dvi__discontinuous *e, const double *jump, double *offset)
+{
+  const int enough = 8;
+  for (int k = 0; k < enough; k++) {
+    for (int i = 0; i < e->n; i++) e->y[i] = e->from.q[i] + offset[i];
+    DVI_TRY(offset_of(e, jump, offset));
+  }
+  return DVI_OK;
+}
+
 /* (1 - M)^-1 of what the jump changed by: 1/2 - Omega^-1 C for odd S, 1/2 - Omega/(4c) for even S. */
 dvi_status dvi__discontinuous_settle(dvi__discontinuous *e, const double *x, double *jump, double *offset)
 {
@@ -385,7 +396,7 @@ dvi_status dvi__discontinuous_settle(dvi__discontinuous *e, const double *x, dou
   else
     DVI_TRY(offset_of(e, e->u, e->flux));
   for (int i = 0; i < e->n; i++) jump[i] += 0.5 * e->u[i] - (even ? e->flux[i] / (4 * e->stiffness[i]) : e->flux[i]);
-  return offset_of(e, jump, offset);
+  return offset_at_start(e, jump, offset);
 }
 
 /* ---- guesses ---- */
