@@ -12,7 +12,7 @@
  * What stands for q at a node is q* = {q} - Omega^-1 C [q], {q} = (q- + q+)/2, C the symmetric part of what the node's terms have for [q]: where alpha
  * is linear Omega q* changes by h sum_i b_i H_q(Q_i), while {q} of a stiff node oscillates with the jump.
  *
- * Source: Kraus 2016 (elements, jump, average flux; with its signs corrected); the stiffness and q* are ours (docs/methods/dg.md).
+ * Source: Kraus, Yoshimura and Peng, talk (elements, jump, average flux; the signs of the flux corrected); the stiffness and q* are ours (docs/methods/dg.md).
  *
  * Unknowns and rows are stored component by component: x[i*S + k-1] is component i of X_k - q*, x[i*S + S-1] that of the jump at the end. */
 #ifndef DVI_ACTION_DISCONTINUOUS_H

@@ -249,7 +249,7 @@ static void explain(const dvi__stepper *self, dvi__text *text)
 const dvi__method dvi__dg = {
     .name = "dg",
     .summary = "discontinuous Galerkin with a numerical flux; order 2 (degree+1); degenerate Lagrangians only",
-    .cite = "Kraus2017",
+    .cite = "KrausYoshimuraPeng",
     .keys = keys,
     .list = "stiffness",
     .list_help = "c of the jump, one for all coordinates or one for each (c1:c2:...); left out: none",
