@@ -35,8 +35,8 @@ enum { DVI__KEYS_MOST = 8, DVI__LIST_MOST = 16, DVI__SPECIFICATION_SIZE = 256, D
 /* Values of the keys, in the order of the method's table. A method may replace DVI__LEFT_OUT by what it chose. */
 typedef struct dvi__settings {
   int value[DVI__KEYS_MOST];
-  double list[DVI__LIST_MOST]; /* numbers of the key that is a list */
-  int listed;                  /* how many; 0: it is not given */
+  double list[DVI__LIST_MOST];        /* numbers of the key that is a list */
+  int listed;                         /* how many; 0: it is not given */
   char rest[DVI__SPECIFICATION_SIZE]; /* "key=value,..." that are not the method's own; only for methods that take them */
 } dvi__settings;
 
@@ -72,9 +72,9 @@ struct dvi__method {
   const dvi__key *keys; /* ended by a key without a name; NULL: none */
   const char *list;     /* the key of a list of decimal numbers, c1:c2:..., not one of the above; NULL: none */
   const char *list_help;
-  int takes_rest;       /* keys of others are collected in settings.rest */
-  unsigned needs;       /* dvi__term bits that the system must declare */
-  unsigned uses;        /* bits that it may declare */
+  int takes_rest; /* keys of others are collected in settings.rest */
+  unsigned needs; /* dvi__term bits that the system must declare */
+  unsigned uses;  /* bits that it may declare */
   /* Set order, symmetric, memory_count, own. On failure destroy is called. */
   dvi_status (*create)(dvi__stepper *self);
   void (*destroy)(dvi__stepper *self);
