@@ -262,7 +262,7 @@ static int check_settings(const char *name, const words *settings)
 
 static const char *const details[] = {
     "Columns: t, the coordinates, their momenta (p_ and the coordinate's name), energy, the other invariants,\n"
-    "and with dg the largest jump;\n"
+    "and with dg and dg-phase the largest jump;\n"
     "17 digits, so that every number is read back as it was. The first row is the start (with --resume: the\n"
     "checkpoint), the last one is the end, wherever --every puts the rows between.\n",
     "FILEs are written whole or not at all: a run that fails leaves what was there. Rows on standard output come\n"

@@ -144,6 +144,7 @@ static const char *const methods[] = {
     "composition:order=6,base=galerkin,degree=2",
     "vprk:nodes=3",
     "dg",
+    "dg-phase",
     "dg:degree=3,stiffness=1",
     "vprk:projection=symplectic",
 };

@@ -42,6 +42,7 @@ static const char *const methods[] = {
     "composition:order=6,base=verlet,threads=2",
     "vprk:nodes=3",
     "dg:stiffness=1",
+    "dg-phase",
 };
 enum { PLACES = sizeof places / sizeof *places, METHODS = sizeof methods / sizeof *methods };
 

@@ -14,24 +14,24 @@ enum { MOST = DVI__DG_POINTS_MOST };
 struct dvi__discontinuous {
   const dvi_system *system;
   dvi__evaluator *evaluator;
-  int n, S, r, points, stiff;
+  int n, S, r, points;
   double node[MOST], phi[MOST][MOST], dphi[MOST][MOST]; /* nodes of the basis; phi_k and phi_k' at c_i: [k][i] */
   double b[MOST], c[MOST];
   double side[MOST], weight[MOST]; /* of the path: 1/2 + s_g, w_g */
   double lean;                     /* sum_g w_g s_g */
   dvi__pattern joint, pattern;     /* joint: of one block; pattern: of the Jacobian */
   dvi__block *block;               /* [entries of joint] */
+  int stiff;                       /* c is not 0 */
+  double *given;                   /* [n] c */
   /* The step. */
   double h;
   dvi__dg_node from;
-  double *given, *stiffness;                          /* [n] c, and with the sign of h */
-  double *left;                                       /* [n] dN/dq+ at its start */
+  double *left, *stiffness;                           /* [n] dN/dq+ at its start; c with the sign of h */
   double *t, *Q, *V, *L_q, *L_v, *H_qq, *H_qv, *H_vv; /* at c_i, component by component: [n*r] */
-  double *Y, *u, *y, *alpha,
-      *gradient;           /* [n*S] coefficients less q*; [n] the jump at the end, a point of the path, alpha, (Dalpha)^T u */
-  double *flux;            /* [n] */
-  double *qq, *qv;         /* Hessians at points of the path, entry by entry: [entries*points] */
-  double *one_qq, *one_qv; /* at one point */
+  double *Y, *u;                                      /* [n*S] the coefficients less q*; [n] the jump at the end */
+  /* At one point of a path: the point, alpha, (Dalpha)^T u, and dN/dq- of them all, [n] each. */
+  double *y, *alpha, *gradient, *flux;
+  double *qq, *qv, *one_qq, *one_qv; /* Hessians at points of the path, entry by entry: [entries*points]; at one point */
 };
 
 /* ---- tables ---- */
@@ -303,17 +303,9 @@ dvi_status dvi__discontinuous_jacobian(dvi__discontinuous *e, const double *x, d
 
 dvi_status dvi__discontinuous_scale(dvi__discontinuous *e, double *scale)
 {
-  const dvi__pattern *qv = &e->system->qv;
-  memset(e->u, 0, (size_t)e->n * sizeof(double));
-  DVI_TRY(dvi__form_hessian(e->evaluator, e->from.q, e->u, e->one_qq, e->one_qv));
-  for (int i = 0; i < e->n; i++) e->alpha[i] = e->given[i];
-  for (int j = 0; j < e->n; j++)
-    for (int k = qv->start[j]; k < qv->start[j + 1]; k++) {
-      e->alpha[j] = fmax(e->alpha[j], fabs(e->one_qv[k]));
-      e->alpha[qv->row[k]] = fmax(e->alpha[qv->row[k]], fabs(e->one_qv[k]));
-    }
+  DVI_TRY(dvi__form_scale(e->evaluator, e->from.q, e->alpha));
   for (int i = 0; i < e->n; i++)
-    for (int k = 0; k < e->S; k++) scale[i * e->S + k] = e->alpha[i] > 0 ? e->alpha[i] : 1;
+    for (int k = 0; k < e->S; k++) scale[i * e->S + k] = fmax(e->alpha[i], e->given[i]);
   return DVI_OK;
 }
 

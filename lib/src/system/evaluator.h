@@ -54,6 +54,9 @@ dvi_status dvi__form_gradient(dvi__evaluator *e, const double *q, const double *
 /* Only with DVI__HESSIANS. The Hessian of alpha(q).w in the order of the system's qq, and the gradients of alpha in that of its qv. */
 dvi_status dvi__form_hessian(dvi__evaluator *e, const double *q, const double *w, double *alpha_w_qq, double *alpha_q);
 
+/* scale [n]: the largest gradient of alpha at q that has to do with a coordinate; 1 where all vanish. */
+dvi_status dvi__form_scale(dvi__evaluator *e, const double *q, double *scale);
+
 /* F [n] = Omega(q) v - H_q(t,q), without a factorisation. */
 dvi_status dvi__two_form_residual(dvi__evaluator *e, double t, const double *q, const double *v, double *F);
 

@@ -62,6 +62,22 @@ dvi_status dvi__two_form_residual(dvi__evaluator *e, double t, const double *q, 
   return DVI_OK;
 }
 
+dvi_status dvi__form_scale(dvi__evaluator *e, const double *q, double *scale)
+{
+  const dvi__lagrangian_term *l = e->system->lagrangian;
+  double *alpha_q = e->hessian[1];
+  DVI_TRY(dvi__form_gradients(l, q, alpha_q));
+  memset(scale, 0, (size_t)e->system->n * sizeof *scale);
+  for (int j = 0; j < e->system->n; j++)
+    for (int k = l->qv.start[j]; k < l->qv.start[j + 1]; k++) {
+      scale[j] = fmax(scale[j], fabs(alpha_q[k]));
+      scale[l->qv.row[k]] = fmax(scale[l->qv.row[k]], fabs(alpha_q[k]));
+    }
+  for (int i = 0; i < e->system->n; i++)
+    if (scale[i] == 0) scale[i] = 1;
+  return DVI_OK;
+}
+
 /* A start computed in another way than by the callback differs by its roundings; one that is off the constraint, by more. */
 static const double on_constraint = 1e-11;
 
