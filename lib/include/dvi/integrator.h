@@ -25,7 +25,7 @@ typedef struct dvi_counters {
   long halvings;       /**< starting paths that were built from shorter steps */
   long allocations;    /**< blocks of memory that its creation and its steps took; a step takes none */
   long simplified;     /**< solves by simplified Newton's method: the Jacobian of one point, decoupled into systems of n unknowns */
-  long jump_alarms;    /**< steps that ended in a jump large against their motion (dg, dg-phase with alarm=warn) */
+  long jump_alarms;    /**< steps that ended in a jump large against the motion (dg, dg-phase with alarm=warn) */
   long certified;      /**< solutions of other iterations that KINSOL's own test of the residual accepted (solver=certified) */
 } dvi_counters;
 

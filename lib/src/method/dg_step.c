@@ -1,5 +1,6 @@
 #include "method/dg_step.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "core/memory.h"
@@ -14,15 +15,15 @@ const char *dvi__alarm_choice(int index)
   return index >= 0 && index < 2 ? name[index] : NULL;
 }
 
-/* The memory: the length of the last step (0: none); the jump [n]; {q} - q* [n]; the last element's coefficients less q* [n*S] (before the first step,
- * the start's velocity in their place). */
-enum { LAST_H, JUMP };
+/* The memory: the length of the last step (0: none); the largest motion of a step so far; the jump [n]; {q} - q* [n]; the last element's coefficients
+ * less q* [n*S] (before the first step, the start's velocity in their place). */
+enum { LAST_H, MOTION, JUMP };
 
 typedef struct dg_step {
   dvi__discontinuous *element;
   dvi__solver *solver;
   int alarm;
-  double part;            /* of a step's motion that its jump may be */
+  double part;            /* of the largest motion of a step that a jump may be */
   double *guess, *x, *dq; /* [unknowns], [unknowns], [n] */
 } dg_step;
 
@@ -74,7 +75,7 @@ dvi_status dvi__dg_create(dvi__stepper *self, const dvi__dg_space *space, int al
   if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
   self->symmetric = space->flux == DVI__AVERAGE_FLUX || space->flux == DVI__PATH_FLUX;
   own->alarm = alarm;
-  own->part = space->degree == 0 ? 2 : 0.5; /* elements of degree 0 move by jumps alone */
+  own->part = space->degree == 0 ? 4 : 0.5; /* elements of degree 0 move by jumps alone */
   DVI_TRY(dvi__discontinuous_create(self->system, space, self->counters, &own->element));
   DVI_TRY(allocate(self, own));
   const dvi__pattern *pattern = dvi__discontinuous_pattern(own->element);
@@ -114,18 +115,20 @@ static void turn(dvi__stepper *self)
   for (int i = 0; i < self->system->n; i++) jump(self)[i] = -jump(self)[i];
 }
 
-/* A step from q by dq. */
+/* A step from q by dq. The largest motion so far, and not this one's, for trajectories turn. */
 static dvi_status watch(const dvi__stepper *self, const double *q, const double *dq)
 {
   const dg_step *own = self->own;
   const size_t n = (size_t)self->system->n;
-  const double size = dvi__largest(n, jump(self)), motion = dvi__largest(n, dq), rounding = 1e-10;
-  if (size <= own->part * motion + rounding * dvi__largest(n, q)) return DVI_OK;
+  const double size = dvi__largest(n, jump(self)), rounding = 1e-10;
+  double *motion = &self->memory[MOTION];
+  *motion = fmax(*motion, dvi__largest(n, dq));
+  if (size <= own->part * *motion + rounding * dvi__largest(n, q)) return DVI_OK;
   if (own->alarm == DVI__ALARM_STOP)
     return dvi__fail(DVI_JUMP,
-                     "the jump, %.2e, is large against the step's motion, %.2e: the parasite has grown; a stiffness "
+                     "the jump, %.2e, is large against the largest motion of a step, %.2e: the parasite has grown; a stiffness "
                      "(dg:stiffness=c) keeps it small, alarm=warn goes on",
-                     size, motion);
+                     size, *motion);
   self->counters->jump_alarms++;
   return DVI_OK;
 }
