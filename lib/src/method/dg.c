@@ -69,7 +69,7 @@ static dvi_status create(dvi__stepper *self)
 
 const dvi__method dvi__dg = {
     .name = "dg",
-    .summary = "discontinuous Galerkin with a numerical flux; order 2 (degree+1); degenerate Lagrangians only",
+    .summary = "discontinuous Galerkin with a numerical flux; order up to 2 (degree+1); degenerate Lagrangians only",
     .cite = "KrausYoshimuraPeng",
     .keys = keys,
     .list = "stiffness",

@@ -35,9 +35,10 @@ enum { DVI__KEYS_MOST = 8, DVI__LIST_MOST = 16, DVI__SPECIFICATION_SIZE = 256, D
 /* Values of the keys, in the order of the method's table. A method may replace DVI__LEFT_OUT by what it chose. */
 typedef struct dvi__settings {
   int value[DVI__KEYS_MOST];
-  double list[DVI__LIST_MOST];        /* numbers of the key that is a list */
-  int listed;                         /* how many; 0: it is not given */
-  char rest[DVI__SPECIFICATION_SIZE]; /* "key=value,..." that are not the method's own; only for methods that take them */
+  double list[DVI__LIST_MOST];             /* numbers of the key that is a list */
+  int listed;                              /* how many; 0: it is not given */
+  char list_text[DVI__SPECIFICATION_SIZE]; /* as they were written */
+  char rest[DVI__SPECIFICATION_SIZE];      /* "key=value,..." that are not the method's own; only for methods that take them */
 } dvi__settings;
 
 typedef struct dvi__method dvi__method;

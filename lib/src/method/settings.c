@@ -78,18 +78,20 @@ static dvi_status parse_number(const dvi__method *method, const dvi__key *key, p
 static dvi_status parse_list(const dvi__method *method, piece value, dvi__settings *settings)
 {
   if (settings->listed > 0) return dvi__fail(DVI_BAD_OPTION, "%s: %s is given twice", method->name, method->list);
-  const char *at = value.text, *end = value.text + value.length;
-  for (int more = 1; more; at += more) {
+  const char *end = value.text + value.length;
+  for (const char *at = value.text;; at++) {
     const int length = plain_decimal(at);
-    if (settings->listed == DVI__LIST_MOST)
-      return dvi__fail(DVI_BAD_OPTION, "%s: %s has more than %d numbers", method->name, method->list, DVI__LIST_MOST);
-    if (length == 0 || length > LONGEST_DECIMAL || (at + length < end && at[length] != ':'))
+    if (length == 0 || length > LONGEST_DECIMAL || (at + length != end && at[length] != ':'))
       return dvi__fail(DVI_BAD_OPTION, "%s: %s=%.*s is not a list of numbers in plain digits, such as 2 or 1:0.5", method->name,
                        method->list, value.length, value.text);
+    if (settings->listed == DVI__LIST_MOST)
+      return dvi__fail(DVI_BAD_OPTION, "%s: %s has more than %d numbers", method->name, method->list, DVI__LIST_MOST);
     settings->list[settings->listed++] = strtod(at, NULL);
     at += length;
-    more = at < end;
+    if (at == end) break;
   }
+  /* It fits: at most DVI__LIST_MOST numbers of LONGEST_DECIMAL characters, and their colons. */
+  memcpy(settings->list_text, value.text, (size_t)value.length);
   return DVI_OK;
 }
 
@@ -168,7 +170,6 @@ void dvi__spell_out(const dvi__method *method, const dvi__settings *settings, dv
     else
       dvi__text_add(text, "%d", settings->value[k]);
   }
-  for (int k = 0; k < settings->listed; k++)
-    k == 0 ? dvi__text_add(text, ",%s=%.15g", method->list, settings->list[k]) : dvi__text_add(text, ":%.15g", settings->list[k]);
+  if (settings->listed > 0) dvi__text_add(text, ",%s=%s", method->list, settings->list_text);
   if (settings->rest[0] != 0) dvi__text_add(text, ",%s", settings->rest);
 }
