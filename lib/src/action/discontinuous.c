@@ -153,7 +153,8 @@ dvi__evaluator *dvi__discontinuous_evaluator(const dvi__discontinuous *e)
 
 /* ---- the nodes ---- */
 
-/* dN/dq+ (side of the factor: 1/2 + s) or dN/dq- (1/2 - s) less what a constant alpha has, at q- = q* + below, with the jump u. */
+/* dN/dq+ (`plus`) or dN/dq- at q- = q* + below, with the jump u. p = alpha(q*) is taken off alpha here and in the element, for roundings' sake: what a
+ * constant has in the rows adds up to nothing. */
 static dvi_status node_gradient(dvi__discontinuous *e, const double *below, int stride, const double *u, int plus, double *gradient)
 {
   for (int i = 0; i < e->n; i++) gradient[i] = (plus ? e->stiffness[i] : -e->stiffness[i]) * u[i];
@@ -377,7 +378,7 @@ static dvi_status offset_at_start(dvi__discontinuous *e, const double *jump, dou
 /* (1 - M)^-1 of what the jump changed by: 1/2 - Omega^-1 C for odd S, 1/2 - Omega/(4c) for even S. */
 dvi_status dvi__discontinuous_settle(dvi__discontinuous *e, const double *x, double *jump, double *offset)
 {
-  const double even = e->S % 2 == 0;
+  const int even = e->S % 2 == 0;
   spread(e, x);
   for (int i = 0; i < e->n; i++) {
     e->u[i] -= jump[i];

@@ -162,7 +162,7 @@ dvi_status dvi__dg_step(dvi__stepper *self, dvi__state *state, double h)
 {
   dg_step *own = self->own;
   const int n = self->system->n;
-  if (self->memory[LAST_H] * h < 0) turn(self);
+  if (self->memory[LAST_H] != 0 && signbit(self->memory[LAST_H]) != signbit(h)) turn(self);
   if (self->memory[LAST_H] == 0) DVI_TRY(settle(self, state, h));
   DVI_TRY(solve(self, state, h));
   DVI_TRY(dvi__discontinuous_end(own->element, own->x, own->dq, jump(self), offset(self), coefficients(self)));
