@@ -199,6 +199,25 @@ START_TEST(an_alarm_leaves_the_state_or_is_counted)
 }
 END_TEST
 
+/* Also the first step, which tries twice before it is taken, and keeps no jump of these trials. */
+START_TEST(a_step_out_of_the_logarithms_domain_leaves_the_state)
+{
+  problem *of = made_problem("lotka-volterra", NULL);
+  dvi_integrator *integrator = started(of, "dg"), *untroubled = started(of, "dg");
+  for (int steps = 0; steps < 3; steps++) {
+    ck_assert_int_gt(dvi_integrator_step(integrator, 40), 0);
+    check_words("the state is unchanged");
+    ck_assert_double_eq(dvi_integrator_jump(integrator, NULL), dvi_integrator_jump(untroubled, NULL));
+    advance(integrator, 0.1, 1);
+    advance(untroubled, 0.1, 1);
+    ck_assert_mem_eq(dvi_integrator_q(integrator), dvi_integrator_q(untroubled), 2 * sizeof(double));
+  }
+  dvi_integrator_destroy(&integrator);
+  dvi_integrator_destroy(&untroubled);
+  problem_destroy(&of);
+}
+END_TEST
+
 /* A start chooses the jump that varies as little as the motion does; from a jump of 0 its change would be as large as itself. */
 START_TEST(a_run_starts_on_the_smooth_branch)
 {
@@ -451,6 +470,7 @@ int main(void)
   tcase_add_loop_test(tests, energy_stays_bounded, 0, RUNS);
   tcase_add_loop_test(tests, runs_without_a_stiffness_break_down_and_the_alarm_stops_them_first, 0, 2);
   tcase_add_test(tests, an_alarm_leaves_the_state_or_is_counted);
+  tcase_add_test(tests, a_step_out_of_the_logarithms_domain_leaves_the_state);
   tcase_add_loop_test(tests, a_run_starts_on_the_smooth_branch, 0, 4);
   tcase_add_loop_test(tests, loop_integrals_of_the_map_of_both_sides_are_conserved, 0, 5);
   tcase_add_loop_test(tests, symmetric_fluxes_go_back_the_way_they_came, 0, 3);
