@@ -39,6 +39,7 @@ typedef struct recorder {
   long step;    /* counted from t = 0, so that a resumed run writes the rows of an uninterrupted one */
   bool chooses; /* the method chooses its steps */
   bool begun, row_written, stop_silently;
+  bool jumps;                          /* the method's trajectories jump between elements */
   const volatile sig_atomic_t *caught; /* the signal that ends the run after its step; 0: none yet */
 } recorder;
 
@@ -61,6 +62,7 @@ static void write_header(recorder *r)
     csv_text(stream, dvi_system_invariant_name(scene->system, i));
   }
   if (r->chooses) (void)fputs(",h", stream);
+  if (r->jumps) (void)fputs(",jump", stream);
   (void)fputc('\n', stream);
 }
 
@@ -97,6 +99,7 @@ static bool write_row(recorder *r, dvi_integrator *integrator)
   write_numbers(stream, r->scene->n, dvi_integrator_p(integrator));
   write_numbers(stream, dvi_system_invariant_count(r->scene->system), r->invariant);
   if (r->chooses) write_numbers(stream, 1, (double[]){dvi_integrator_last_step(integrator)});
+  if (r->jumps) (void)fprintf(stream, ",%.17g", dvi_integrator_jump(integrator, NULL));
   (void)fputc('\n', stream);
   r->row_written = true;
   if (!ferror(stream)) return true;
@@ -200,6 +203,7 @@ static int advance(recorder *r, dvi_integrator *integrator)
                                    .cancel = r->caught};
   r->t_start = dvi_integrator_time(integrator);
   r->step = step_number(integrator, r->t_start, request->h);
+  r->jumps = !isnan(dvi_integrator_jump(integrator, NULL));
   write_header(r);
   progress_start(&r->progress, request->final || r->out.path != NULL);
   const dvi_status status = dvi_run(integrator, &options, NULL);
@@ -308,7 +312,8 @@ static int check_settings(const char *name, const words *settings)
 
 static const char *const details[] = {
     "Columns: t, the coordinates, their momenta (p_ and the coordinate's name), energy, the other invariants;\n"
-    "methods that choose their steps add h, the length of the step that led to the row.\n"
+    "methods that choose their steps add h, the length of the step that led to the row, dg and dg-phase add jump,\n"
+    "the largest one;\n"
     "17 digits, so that every number is read back as it was. The first row is the start (with --resume: the\n"
     "checkpoint), the last one is the end, wherever --every puts the rows between.\n",
     "FILEs are written whole or not at all: a run that fails leaves what was there. Rows on standard output come\n"

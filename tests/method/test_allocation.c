@@ -36,6 +36,8 @@ static const struct {
     {"fpu", "ell=40", "sem:solver=kinsol"},
     {"driven-pendulum", NULL, "sem:degree=2,quadrature=lobatto"},
     {"vortices", NULL, "vprk"},
+    {"tokamak", NULL, "dg-phase"},
+    {"vortices", NULL, "dg:degree=1,flux=path,stiffness=1"},
     {"tokamak", NULL, "vprk:nodes=3,tableau=lobatto-iiie,projection=symplectic"},
 };
 enum { PLACES = sizeof places / sizeof *places };

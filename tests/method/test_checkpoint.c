@@ -39,6 +39,9 @@ static const struct {
     {"kepler", "e=0.8", "sem", 0.01, 120},
     {"driven-pendulum", NULL, "sem:degree=3,quadrature=lobatto", 0.2, 30},
     {"vortices", NULL, "vprk:nodes=3", 0.05, 30},
+    {"vortices", NULL, "dg", 0.05, 30},
+    {"vortices", NULL, "dg-phase", 0.02, 30},
+    {"massless-particle", NULL, "dg:degree=1,stiffness=1:2", 0.1, 30},
     {"massless-particle", NULL, "vprk:projection=symplectic", 0.1, 30},
 };
 enum { RUNS = sizeof runs / sizeof *runs, COORDINATES_MOST = 8, INVARIANTS_MOST = 16 };

@@ -143,6 +143,9 @@ static const char *const methods[] = {
     "composition:order=8",
     "composition:order=6,base=galerkin,degree=2",
     "vprk:nodes=3",
+    "dg",
+    "dg-phase",
+    "dg:degree=3,stiffness=1",
     "vprk:projection=symplectic",
 };
 enum { PLACES = sizeof places / sizeof *places, METHODS = sizeof methods / sizeof *methods, STEPS = 12 };
