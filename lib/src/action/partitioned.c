@@ -4,11 +4,10 @@
 #include <math.h>
 #include <string.h>
 
+#include "action/collocation.h"
 #include "action/joint.h"
 #include "core/memory.h"
 #include "core/status.h"
-
-enum { STAGES_MOST = 8 };
 
 /* The kicks: k0 = before lambda + carried times the last lambda, k1 = after lambda; their directions at the mean of q0 and q1, or at the ends. */
 typedef struct kicks {
@@ -20,7 +19,7 @@ struct dvi__partitioned {
   const dvi_system *system;
   dvi__evaluator *evaluator;
   int n, s, m; /* coordinates, stages, unknowns of a coordinate */
-  double a[STAGES_MOST][STAGES_MOST], abar[STAGES_MOST][STAGES_MOST], b[STAGES_MOST], c[STAGES_MOST];
+  double a[DVI__STAGES_MOST][DVI__STAGES_MOST], abar[DVI__STAGES_MOST][DVI__STAGES_MOST], b[DVI__STAGES_MOST], c[DVI__STAGES_MOST];
   kicks kick;
   dvi__pattern joint, pattern; /* joint: of one block; pattern: of the Jacobian */
   dvi__block *block;           /* [entries of joint] */
@@ -36,25 +35,6 @@ struct dvi__partitioned {
 
 /* ---- tableaux ---- */
 
-/* a_ij of collocation: the integral of the j-th Lagrange polynomial from 0 to c_i, by Gauss's rule with as many nodes. */
-static dvi_status collocate(dvi__partitioned *p)
-{
-  double node[STAGES_MOST], weight[STAGES_MOST];
-  DVI_TRY(dvi_quadrature(DVI_GAUSS, p->s, node, weight));
-  for (int i = 0; i < p->s; i++)
-    for (int j = 0; j < p->s; j++) {
-      p->a[i][j] = 0;
-      for (int k = 0; k < p->s; k++) {
-        const double tau = p->c[i] * node[k];
-        double product = p->c[i] * weight[k];
-        for (int l = 0; l < p->s; l++)
-          if (l != j) product *= (tau - p->c[l]) / (p->c[j] - p->c[l]);
-        p->a[i][j] += product;
-      }
-    }
-  return DVI_OK;
-}
-
 static void conjugate(const dvi__partitioned *p, int i, int j, double *abar)
 {
   *abar = p->b[j] - p->b[j] * p->a[j][i] / p->b[i];
@@ -64,7 +44,7 @@ static void conjugate(const dvi__partitioned *p, int i, int j, double *abar)
 static dvi_status fill_tableau(dvi__partitioned *p, dvi__tableau tableau)
 {
   DVI_TRY(dvi_quadrature(tableau == DVI__GAUSS ? DVI_GAUSS : DVI_LOBATTO, p->s, p->c, p->b));
-  DVI_TRY(collocate(p));
+  DVI_TRY(dvi__collocate(p->s, p->c, p->a));
   for (int i = 0; i < p->s; i++)
     for (int j = 0; j < p->s; j++) conjugate(p, i, j, &p->abar[i][j]);
   if (tableau == DVI__GAUSS) return DVI_OK;
@@ -263,7 +243,7 @@ static double at(const double *values, int entry)
 
 /* What one entry of the joint pattern has: d alpha_i/dq_j (A), d alpha_j/dq_i (B) and h d2L/dq2 (K) at the stages; the like at the ends. */
 typedef struct entry {
-  double A[STAGES_MOST], B[STAGES_MOST], K[STAGES_MOST];
+  double A[DVI__STAGES_MOST], B[DVI__STAGES_MOST], K[DVI__STAGES_MOST];
   double B0, H0, B1, H1, A_end;
 } entry;
 
@@ -327,17 +307,9 @@ dvi_status dvi__partitioned_jacobian(dvi__partitioned *p, const double *x, doubl
 
 dvi_status dvi__partitioned_scale(dvi__partitioned *p, double *scale)
 {
-  const dvi__pattern *qv = &p->system->qv;
   memset(p->k0, 0, (size_t)p->n * sizeof(double));
   DVI_TRY(dvi__form_hessian(p->evaluator, p->q0, p->k0, p->qq0, p->qv0));
-  memset(p->k1, 0, (size_t)p->n * sizeof(double));
-  for (int j = 0; j < p->n; j++)
-    for (int e = qv->start[j]; e < qv->start[j + 1]; e++) {
-      p->k1[j] = fmax(p->k1[j], fabs(p->qv0[e]));
-      p->k1[qv->row[e]] = fmax(p->k1[qv->row[e]], fabs(p->qv0[e]));
-    }
-  for (int i = 0; i < p->n; i++)
-    for (int k = 0; k < p->m; k++) scale[i * p->m + k] = p->k1[i] > 0 ? p->k1[i] : 1;
+  dvi__joint_scale(p->system, p->qv0, p->m, scale);
   return DVI_OK;
 }
 
@@ -354,13 +326,9 @@ void dvi__partitioned_straight(const dvi__partitioned *p, const double *v, doubl
 void dvi__partitioned_continue(const dvi__partitioned *p, double ratio, const double *last, double *x)
 {
   for (int k = 0; k < p->s; k++) {
-    double weight[STAGES_MOST];
-    for (int j = 0; j < p->s; j++) {
-      weight[j] = ratio;
-      for (int l = 0; l < p->s; l++)
-        if (l != j) weight[j] *= (1 + ratio * p->c[k] - p->c[l]) / (p->c[j] - p->c[l]);
-    }
-    for (int i = 0; i < p->n; i++) x[i * p->m + k] = dot(p->s, weight, last + i * p->m);
+    double weight[DVI__STAGES_MOST];
+    dvi__lagrange_weights(p->s, p->c, 1 + ratio * p->c[k], weight);
+    for (int i = 0; i < p->n; i++) x[i * p->m + k] = ratio * dot(p->s, weight, last + i * p->m);
   }
   for (int i = 0; p->kick.has_multiplier && i < p->n; i++) x[i * p->m + p->s] = 0;
 }
