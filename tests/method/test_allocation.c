@@ -34,6 +34,11 @@ static const struct {
     {"double-pendulum", NULL, "composition:order=4,base=trapezoidal"},
     {"vortices", NULL, "vprk"},
     {"tokamak", NULL, "vprk:nodes=3,tableau=lobatto-iiie,projection=symplectic"},
+    {"massless-particle", "gauge=singular", "dvi-a"},
+    {"massless-particle", "gauge=singular", "dvi-b"},
+    {"massless-particle", "gauge=singular", "dvi-midpoint"},
+    {"massless-particle", "gauge=singular", "dvi-trapezoidal"},
+    {"massless-particle", "gauge=singular", "dvrk:nodes=3"},
 };
 enum { PLACES = sizeof places / sizeof *places };
 

@@ -38,6 +38,9 @@ static const struct {
     {"double-pendulum", NULL, "trapezoidal:solver=newton", 0.02, 30},
     {"vortices", NULL, "vprk:nodes=3", 0.05, 30},
     {"massless-particle", NULL, "vprk:projection=symplectic", 0.1, 30},
+    {"massless-particle", "gauge=singular", "dvi-a", 0.1, 30},
+    {"massless-particle", "gauge=singular", "dvi-trapezoidal", 0.1, 30},
+    {"massless-particle", "gauge=singular", "dvrk:nodes=3", 0.1, 30},
 };
 enum { RUNS = sizeof runs / sizeof *runs, COORDINATES_MOST = 8, INVARIANTS_MOST = 16 };
 

@@ -17,6 +17,7 @@ struct dvi__darboux {
   dvi__evaluator *evaluator;
   int n, m;                               /* coordinates; stages, with the end */
   int *is_x;                              /* [n] */
+  int collocates;                         /* at Gauss's nodes */
   double a[MOST][MOST], abar[MOST][MOST]; /* row m-1: the weights */
   double time[MOST], middle[MOST];        /* of a stage in the step: for H; for guesses, the mean of x's time and of p's */
   dvi__pattern joint, pattern;            /* joint: of one block; pattern: of the Jacobian */
@@ -108,6 +109,7 @@ dvi_status dvi__darboux_create(const dvi_system *system, dvi__darboux_rule rule,
   d->system = system;
   d->n = system->n;
   d->m = stages_of(rule, stages) + 1;
+  d->collocates = rule == DVI__GAUSS_STAGES;
   const dvi_status status = fill(d, rule, counters);
   if (status != DVI_OK) dvi__darboux_destroy(&d);
   *darboux = d;
@@ -271,7 +273,8 @@ void dvi__darboux_straight(const dvi__darboux *d, const double *v, double *x)
     for (int k = 0; k < d->m; k++) x[k] = d->h * v[i] * (d->is_x[i] ? 1 : d->middle[k]);
 }
 
-void dvi__darboux_continue(const dvi__darboux *d, double ratio, const double *last, double *x)
+/* Only Gauss's stages lie close enough to the solution for a polynomial through them. */
+static void continue_polynomial(const dvi__darboux *d, double ratio, const double *last, double *x)
 {
   for (int k = 0; k < d->m; k++) {
     double weight[MOST];
@@ -281,4 +284,14 @@ void dvi__darboux_continue(const dvi__darboux *d, double ratio, const double *la
       x[i * d->m + k] = d->is_x[i] ? ratio * continued : continued - own[d->m - 1];
     }
   }
+}
+
+void dvi__darboux_continue(const dvi__darboux *d, double ratio, const double *last, double *x)
+{
+  if (d->collocates) {
+    continue_polynomial(d, ratio, last, x);
+    return;
+  }
+  for (int i = 0; i < d->n; i++, x += d->m, last += d->m)
+    for (int k = 0; k < d->m; k++) x[k] = ratio * last[d->m - 1] * (d->is_x[i] ? 1 : d->middle[k]);
 }
