@@ -13,8 +13,8 @@ enum { POINTS = 12, CANDIDATES_MOST = 16 };
 /* What was seen at the points: sizes of the gradients' entries, and of the two-form's, relative to the largest of the point. */
 typedef struct probe {
   const dvi_system *system;
-  double *q, *alpha_q; /* [n], [entries of qv] */
-  double *form;        /* [n] largest of a component */
+  double *q, *alpha_q, *work; /* [n], [entries of qv] */
+  double *form;               /* [n] largest of a component */
   double two_form[CANDIDATES_MOST][CANDIDATES_MOST];
   int seen;
 } probe;
@@ -44,7 +44,7 @@ static void look(probe *p, int k)
   const dvi__pattern *qv = &p->system->qv;
   double largest = 0;
   place(p, k);
-  if (dvi__form_gradients(p->system->lagrangian, p->q, p->alpha_q) != DVI_OK) return; /* outside of the domain */
+  if (dvi__form_gradients(p->system->lagrangian, p->q, p->alpha_q, p->work) != DVI_OK) return; /* outside of the domain */
   p->seen++;
   for (int e = 0; e < dvi__pattern_entries(qv); e++) largest = fmax(largest, fabs(p->alpha_q[e]));
   for (int j = 0; j < qv->columns && largest > 0; j++)
@@ -121,14 +121,16 @@ dvi_status dvi__form_half(const dvi_system *system, int *is_x)
   probe p = {.system = system,
              .q = DVI_NEW(double, n),
              .alpha_q = DVI_NEW(double, (size_t)dvi__pattern_entries(&system->qv) + 1),
+             .work = DVI_NEW(double, dvi__longest_hessian(system, 0)),
              .form = DVI_NEW(double, n)};
   dvi_status status = DVI_NO_MEMORY;
-  if (p.q && p.alpha_q && p.form)
+  if (p.q && p.alpha_q && p.work && p.form)
     status = decide(&p, is_x);
   else
     (void)dvi__fail(status, "no memory to look at the one-form");
   dvi__release(p.q);
   dvi__release(p.alpha_q);
+  dvi__release(p.work);
   dvi__release(p.form);
   return status;
 }

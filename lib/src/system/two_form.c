@@ -23,7 +23,7 @@ static dvi_status evaluate(dvi__evaluator *e, const double *q)
 {
   const dvi__lagrangian_term *l = e->system->lagrangian;
   double *alpha_q = e->hessian[1];
-  DVI_TRY(dvi__form_gradients(l, q, alpha_q));
+  DVI_TRY(dvi__form_gradients(l, q, alpha_q, e->scratch.result[0]));
   for (int j = 0; j < e->system->n; j++)
     for (int k = l->omega.start[j]; k < l->omega.start[j + 1]; k++)
       e->two_form[k] = entry(&l->qv, alpha_q, l->omega.row[k], j) - entry(&l->qv, alpha_q, j, l->omega.row[k]);
@@ -64,8 +64,7 @@ dvi_status dvi__form_constraint(dvi__evaluator *e, const double *q, const double
 {
   const dvi__lagrangian_term *l = e->system->lagrangian;
   double *alpha = e->point[2], scale = 0;
-  const int returned = l->one_form.value(q, alpha, l->one_form.user);
-  if (returned != 0) return dvi__fail(DVI_CALLBACK_FAILED, "one-form: the value callback failed with %d", returned);
+  DVI_TRY(dvi__form_value(l, q, alpha, e->scratch.result[0]));
   for (int i = 0; i < e->system->n; i++) scale = fmax(scale, fmax(fabs(alpha[i]), fabs(p[i])));
   for (int i = 0; i < e->system->n; i++)
     if (!(fabs(p[i] - alpha[i]) <= on_constraint * scale))
