@@ -32,6 +32,7 @@ typedef struct recorder {
   run_trace trace;
   progress_line progress;
   double *invariant;
+  double constraint; /* with a one-form: |p - alpha(q)| */
   double t_start, t; /* where the run began; where the last observed step ended */
   long step;         /* counted from t = 0, so that a resumed run writes the rows of an uninterrupted one */
   bool begun, row_written, stop_silently;
@@ -41,6 +42,11 @@ typedef struct recorder {
 /* Before the first step no file is open: a signal ends the process at once. */
 static const char ended_before[] = "dvi: run: a signal ended the run before its first step; nothing was written\n";
 static const char ended_again[] = "dvi: run: a second Ctrl-C ended the run at once; FILEs not yet complete stay as they were\n";
+
+static bool has_constraint(const problem *scene)
+{
+  return scene->terms->one_form != NULL;
+}
 
 static void write_header(recorder *r)
 {
@@ -56,6 +62,7 @@ static void write_header(recorder *r)
     (void)fputc(',', stream);
     csv_text(stream, dvi_system_invariant_name(scene->system, i));
   }
+  if (has_constraint(scene)) (void)fputs(",constraint", stream);
   (void)fputc('\n', stream);
 }
 
@@ -74,7 +81,8 @@ static void write_numbers(FILE *stream, int count, const double *number)
 /* Fetch the invariants of the current state. False, with a complaint, if they are no numbers. */
 static bool measure(recorder *r, dvi_integrator *integrator)
 {
-  const dvi_status status = dvi_integrator_invariants(integrator, r->invariant);
+  dvi_status status = dvi_integrator_invariants(integrator, r->invariant);
+  if (status == DVI_OK && has_constraint(r->scene)) status = dvi_integrator_constraint(integrator, &r->constraint);
   if (status != DVI_OK) {
     (void)library_error(status);
     return false;
@@ -91,6 +99,7 @@ static bool write_row(recorder *r, dvi_integrator *integrator)
   write_numbers(stream, r->scene->n, dvi_integrator_q(integrator));
   write_numbers(stream, r->scene->n, dvi_integrator_p(integrator));
   write_numbers(stream, dvi_system_invariant_count(r->scene->system), r->invariant);
+  if (has_constraint(r->scene)) write_numbers(stream, 1, &r->constraint);
   (void)fputc('\n', stream);
   r->row_written = true;
   if (!ferror(stream)) return true;
@@ -257,8 +266,9 @@ static int check_settings(const char *name, const words *settings)
 }
 
 static const char *const details[] = {
-    "Columns: t, the coordinates, their momenta (p_ and the coordinate's name), energy, the other invariants;\n"
-    "17 digits, so that every number is read back as it was. The first row is the start (with --resume: the\n"
+    "Columns: t, the coordinates, their momenta (p_ and the coordinate's name), energy, the other invariants,\n"
+    "with a one-form the constraint |p - alpha(q)|; 17 digits, so that every number is read back as it was. The first row is the "
+    "start (with --resume: the\n"
     "checkpoint), the last one is the end, wherever --every puts the rows between.\n",
     "FILEs are written whole or not at all: a run that fails leaves what was there. Rows on standard output come\n"
     "as they are computed. Ctrl-C, SIGTERM and SIGHUP end a run after the current step, with the output complete, the\n"

@@ -84,8 +84,11 @@ START_TEST(projected_steps_end_on_the_constraint_and_others_leave_it)
     dvi_integrator_destroy(&integrator);
   }
   dvi_integrator *unprojected = started(of, "vprk:projection=none");
+  double queried;
   advance(unprojected, 0.1, 200);
   ck_assert_double_gt(off_constraint(of, unprojected), 1e-8);
+  ck_assert_int_eq(dvi_integrator_constraint(unprojected, &queried), DVI_OK);
+  ck_assert_double_eq(queried, off_constraint(of, unprojected));
   dvi_integrator_destroy(&unprojected);
   problem_destroy(&of);
 }
@@ -105,6 +108,32 @@ static const struct {
     {"guiding-centre", "vprk", 10, 1e-7, 1e-13},
 };
 enum { RUNS = sizeof runs / sizeof *runs };
+
+/* From one start post ends where none does, but for its kick. */
+START_TEST(the_multiplier_is_the_kick)
+{
+  problem *of = made_problem("massless-particle", NULL), *regular = made_problem("kepler", NULL);
+  dvi_integrator *post = started(of, "vprk:projection=post"), *none = started(of, "vprk:projection=none"),
+                 *other = started(regular, "midpoint");
+  double unwanted;
+  ck_assert_ptr_null(dvi_integrator_multiplier(post));
+  advance(post, 0.2, 1);
+  advance(none, 0.2, 1);
+  advance(other, 0.01, 1);
+  const double *lambda = dvi_integrator_multiplier(post);
+  ck_assert_double_gt(magnitude(2, lambda), 1e-6);
+  for (int i = 0; i < 2; i++) ck_assert_double_eq_tol(dvi_integrator_q(post)[i], dvi_integrator_q(none)[i] + lambda[i], 1e-15);
+  ck_assert_ptr_null(dvi_integrator_multiplier(none));
+  ck_assert_ptr_null(dvi_integrator_multiplier(other));
+  ck_assert_ptr_null(dvi_integrator_multiplier(NULL));
+  ck_assert_int_eq(dvi_integrator_constraint(other, &unwanted), DVI_UNSUPPORTED);
+  dvi_integrator_destroy(&post);
+  dvi_integrator_destroy(&none);
+  dvi_integrator_destroy(&other);
+  problem_destroy(&of);
+  problem_destroy(&regular);
+}
+END_TEST
 
 /* Projections conserve the momenta of shifts exactly, those of rotations up to the square of the multiplier, which is largest on vortices. */
 START_TEST(energy_stays_bounded_and_momenta_are_conserved)
@@ -184,6 +213,7 @@ int main(void)
   tcase_add_loop_test(tests, gauss_with_the_symmetric_projection_has_order_2s, 0, 3 * PLACES);
   tcase_add_loop_test(tests, tableaux_and_projections_have_the_order_that_they_claim, 0, KINDS);
   tcase_add_test(tests, projected_steps_end_on_the_constraint_and_others_leave_it);
+  tcase_add_test(tests, the_multiplier_is_the_kick);
   tcase_add_loop_test(tests, energy_stays_bounded_and_momenta_are_conserved, 0, RUNS);
   tcase_add_test(tests, a_banana_stays_a_banana);
   tcase_add_test(tests, loop_integrals_are_conserved_by_symplectic_maps_alone);

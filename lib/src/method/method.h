@@ -86,6 +86,8 @@ struct dvi__method {
   double (*traffic)(const dvi__stepper *self, int count);
   /* q [n] and v [n] at tau in [0,1] of the last step, which started at q0 [n] with length h. NULL: Hermite's cubic. */
   void (*path)(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v);
+  /* The multiplier [n] of the last step, in the memory; NULL if there is none. NULL: never. */
+  const double *(*multiplier)(const dvi__stepper *self);
   void (*explain)(const dvi__stepper *self, dvi__text *text);
   /* Members as lanes; all three are NULL where there is no such way. prepare makes `lanes` for up to `capacity` members, if the system allows it
    * and it pays. step advances all members that are not `left`, each with the bits and the counts of `step`, or leaves them to it. */

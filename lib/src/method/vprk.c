@@ -179,6 +179,11 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
   return advance(self, state, h);
 }
 
+static const double *multiplier(const dvi__stepper *self)
+{
+  return self->settings.value[PROJECTION] == DVI__NO_PROJECTION ? NULL : self->memory + MULTIPLIER;
+}
+
 static void explain(const dvi__stepper *self, dvi__text *text)
 {
   const vprk *own = self->own;
@@ -202,5 +207,6 @@ const dvi__method dvi__vprk = {
     .destroy = destroy,
     .start = start,
     .step = step,
+    .multiplier = multiplier,
     .explain = explain,
 };

@@ -57,6 +57,15 @@ dvi_status dvi__two_form_residual(dvi__evaluator *e, double t, const double *q, 
   return DVI_OK;
 }
 
+dvi_status dvi__form_distance(dvi__evaluator *e, const double *q, const double *p, double *distance)
+{
+  double *alpha = e->point[2], largest = 0;
+  DVI_TRY(dvi__form_value(e->system->lagrangian, q, alpha, e->scratch.result[0]));
+  for (int i = 0; i < e->system->n; i++) largest = fmax(largest, fabs(p[i] - alpha[i]));
+  *distance = largest;
+  return DVI_OK;
+}
+
 /* A start computed in another way than by the callback differs by its roundings; one that is off the constraint, by more. */
 static const double on_constraint = 1e-11;
 
