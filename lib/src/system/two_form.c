@@ -69,14 +69,26 @@ dvi_status dvi__form_distance(dvi__evaluator *e, const double *q, const double *
 /* A start computed in another way than by the callback differs by its roundings; one that is off the constraint, by more. */
 static const double on_constraint = 1e-11;
 
+/* The size of alpha, and what its gradients make of q: where alpha happens to vanish, a rounding of q is not a violation. */
+static dvi_status size_of_form(dvi__evaluator *e, const double *q, const double *alpha, double *size)
+{
+  const dvi__pattern *qv = &e->system->lagrangian->qv;
+  double *alpha_q = e->hessian[1];
+  DVI_TRY(dvi__form_gradients(e->system->lagrangian, q, alpha_q, e->scratch.result[0]));
+  for (int j = 0; j < e->system->n; j++) {
+    *size = fmax(*size, fabs(alpha[j]));
+    for (int k = qv->start[j]; k < qv->start[j + 1]; k++) *size = fmax(*size, fabs(alpha_q[k] * q[qv->row[k]]));
+  }
+  return DVI_OK;
+}
+
 dvi_status dvi__form_constraint(dvi__evaluator *e, const double *q, const double *p)
 {
-  const dvi__lagrangian_term *l = e->system->lagrangian;
-  double *alpha = e->point[2], scale = 0;
-  DVI_TRY(dvi__form_value(l, q, alpha, e->scratch.result[0]));
-  for (int i = 0; i < e->system->n; i++) scale = fmax(scale, fmax(fabs(alpha[i]), fabs(p[i])));
+  double *alpha = e->point[2], size = 0;
+  DVI_TRY(dvi__form_value(e->system->lagrangian, q, alpha, e->scratch.result[0]));
+  DVI_TRY(size_of_form(e, q, alpha, &size));
   for (int i = 0; i < e->system->n; i++)
-    if (!(fabs(p[i] - alpha[i]) <= on_constraint * scale))
+    if (!(fabs(p[i] - alpha[i]) <= on_constraint * size))
       return dvi__fail(DVI_BAD_ARGUMENT,
                        "p[%d] is %.17g, but the one-form has alpha = %.17g there; start with p = alpha(q) (dvi_system_momentum)", i,
                        p[i], alpha[i]);
