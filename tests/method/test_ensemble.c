@@ -156,6 +156,9 @@ static const char *const methods[] = {
     "dvi-midpoint",
     "dvi-trapezoidal",
     "dvrk",
+    "vprk:projection=none",
+    "hp:type=3",
+    "hp:type=4",
 };
 enum { PLACES = sizeof places / sizeof *places, METHODS = sizeof methods / sizeof *methods, STEPS = 12 };
 

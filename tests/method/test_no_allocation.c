@@ -51,6 +51,7 @@ static const char *const methods[] = {
     "vprk:nodes=3",
     "dvi-trapezoidal",
     "dvrk:nodes=3",
+    "hp:type=3",
 };
 enum { PLACES = sizeof places / sizeof *places, METHODS = sizeof methods / sizeof *methods };
 

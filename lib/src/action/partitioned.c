@@ -40,16 +40,24 @@ static void conjugate(const dvi__partitioned *p, int i, int j, double *abar)
   *abar = p->b[j] - p->b[j] * p->a[j][i] / p->b[i];
 }
 
-/* Lobatto IIIE is the mean of IIIA and of its conjugate IIIB, and its own conjugate (Jay 2015). */
+/* With collocation at Lobatto's nodes a is IIIA, and its conjugate IIIB. IIIE is the mean of both, and its own conjugate (Jay 2015). */
+static void rearrange_lobatto(dvi__partitioned *p, dvi__tableau tableau)
+{
+  for (int i = 0; i < p->s; i++)
+    for (int j = 0; j < p->s; j++) {
+      const double A = p->a[i][j], B = p->abar[i][j], mean = 0.5 * (A + B);
+      p->a[i][j] = tableau == DVI__LOBATTO_IIIE ? mean : B;
+      p->abar[i][j] = tableau == DVI__LOBATTO_IIIE ? mean : A;
+    }
+}
+
 static dvi_status fill_tableau(dvi__partitioned *p, dvi__tableau tableau)
 {
   DVI_TRY(dvi_quadrature(tableau == DVI__GAUSS ? DVI_GAUSS : DVI_LOBATTO, p->s, p->c, p->b));
   DVI_TRY(dvi__collocate(p->s, p->c, p->a));
   for (int i = 0; i < p->s; i++)
     for (int j = 0; j < p->s; j++) conjugate(p, i, j, &p->abar[i][j]);
-  if (tableau == DVI__GAUSS) return DVI_OK;
-  for (int i = 0; i < p->s; i++)
-    for (int j = 0; j < p->s; j++) p->a[i][j] = p->abar[i][j] = 0.5 * (p->a[i][j] + p->abar[i][j]);
+  if (tableau != DVI__GAUSS) rearrange_lobatto(p, tableau);
   return DVI_OK;
 }
 
@@ -81,11 +89,12 @@ static double **owned(dvi__partitioned *p, int i)
 static dvi_status allocate(dvi__partitioned *p)
 {
   const size_t n = (size_t)p->n, s = (size_t)p->s, qq = (size_t)dvi__pattern_entries(&p->system->qq),
-               qv = (size_t)dvi__pattern_entries(&p->system->qv);
-  const size_t size[] = {s, n * s, n * s, n * s, n * s, qq * s, qv * s, 1, n, n, n, n, n, n, n, n, n, n, qq, qv, qq, qv, qv, qq};
+               qv = (size_t)dvi__pattern_entries(&p->system->qv), vv = (size_t)dvi__pattern_entries(&p->system->vv);
+  const size_t size[] = {s, n * s, n * s, n * s, n * s, qq * s, qv * s, vv * s, n,  n,  n,  n,
+                         n, n,     n,     n,     n,     n,      qq,     qv,     qq, qv, qv, qq};
   for (int i = 0; owned(p, i) != NULL; i++) {
     *owned(p, i) = DVI_NEW(double, size[i] > 0 ? size[i] : 1);
-    if (*owned(p, i) == NULL) return dvi__fail(DVI_NO_MEMORY, "vprk: no memory for %d stages in %d dimensions", p->s, p->n);
+    if (*owned(p, i) == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory for %d stages in %d dimensions", p->s, p->n);
   }
   return DVI_OK;
 }
@@ -104,7 +113,7 @@ dvi_status dvi__partitioned_create(const dvi_system *system, dvi__tableau tablea
 {
   *partitioned = NULL;
   dvi__partitioned *p = DVI_NEW(dvi__partitioned, 1);
-  if (p == NULL) return dvi__fail(DVI_NO_MEMORY, "vprk: no memory");
+  if (p == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory");
   p->system = system;
   p->n = system->n;
   p->s = stages;
@@ -241,9 +250,10 @@ static double at(const double *values, int entry)
   return entry >= 0 ? values[entry] : 0;
 }
 
-/* What one entry of the joint pattern has: d alpha_i/dq_j (A), d alpha_j/dq_i (B) and h d2L/dq2 (K) at the stages; the like at the ends. */
+/* What one entry of the joint pattern has: d2L/dv_i dq_j (A; of a one-form d alpha_i/dq_j), d2L/dq_i dv_j (B), h d2L/dq2 (K) and d2L/dv2/h (M) at the
+ * stages; the like at the ends. */
 typedef struct entry {
-  double A[DVI__STAGES_MOST], B[DVI__STAGES_MOST], K[DVI__STAGES_MOST];
+  double A[DVI__STAGES_MOST], B[DVI__STAGES_MOST], K[DVI__STAGES_MOST], M[DVI__STAGES_MOST];
   double B0, H0, B1, H1, A_end;
 } entry;
 
@@ -253,7 +263,9 @@ static void gather_entry(const dvi__partitioned *p, const dvi__block *where, ent
     out->A[k] = where->vq >= 0 ? p->H_qv[where->vq * p->s + k] : 0;
     out->B[k] = where->qv >= 0 ? p->H_qv[where->qv * p->s + k] : 0;
     out->K[k] = where->qq >= 0 ? p->h * p->H_qq[where->qq * p->s + k] : 0;
+    out->M[k] = where->vv >= 0 ? p->H_vv[where->vv * p->s + k] / p->h : 0;
   }
+  out->B0 = out->H0 = out->B1 = out->H1 = out->A_end = 0;
   if (!p->kick.has_multiplier) return;
   out->B0 = at(p->qv0, where->qv);
   out->H0 = p->kick.at_mean ? 0.5 * at(p->qq0, where->qq) : 0;
@@ -275,6 +287,7 @@ static void increment_column(const dvi__partitioned *p, const entry *e, int l, d
 {
   const double start = p->b[l] * e->H0;
   for (int k = 0; k < p->s; k++) column[k] = p->a[k][l] * e->A[k] - start - p->abar[k][l] * e->B[l] - impulse(p, e, p->abar[k], l);
+  column[l] += e->M[l];
   if (p->kick.has_multiplier) column[p->s] = start + p->b[l] * e->B[l] + impulse(p, e, p->b, l) + p->b[l] * (e->H1 - e->A_end);
 }
 
@@ -305,8 +318,23 @@ dvi_status dvi__partitioned_jacobian(dvi__partitioned *p, const double *x, doubl
   return DVI_OK;
 }
 
+/* By the last Jacobian's L_vv at the first stage. */
+static void scale_by_masses(const dvi__partitioned *p, double *scale)
+{
+  const dvi__pattern *vv = &p->system->vv;
+  for (int i = 0; i < p->n; i++) {
+    double size = 0;
+    for (int e = vv->start[i]; e < vv->start[i + 1]; e++) size = fmax(size, fabs(p->H_vv[e * p->s]));
+    for (int k = 0; k < p->m; k++) scale[i * p->m + k] = (size > 0 ? size : 1) / fabs(p->h);
+  }
+}
+
 dvi_status dvi__partitioned_scale(dvi__partitioned *p, double *scale)
 {
+  if (!(p->system->terms & DVI__ONE_FORM)) {
+    scale_by_masses(p, scale);
+    return DVI_OK;
+  }
   memset(p->k0, 0, (size_t)p->n * sizeof(double));
   DVI_TRY(dvi__form_hessian(p->evaluator, p->q0, p->k0, p->qq0, p->qv0));
   dvi__joint_scale(p->system, p->qv0, p->m, scale);
