@@ -33,6 +33,7 @@ typedef struct recorder {
   run_trace trace;
   progress_line progress;
   double *invariant;
+  double constraint;        /* with a one-form: |p - alpha(q)| */
   double t_start, t;        /* where the run began; where the last observed step ended */
   double shortest, longest; /* steps, of methods that choose them; 0: none yet */
   long steps_taken, given_steps;
@@ -46,6 +47,11 @@ typedef struct recorder {
 /* Before the first step no file is open: a signal ends the process at once. */
 static const char ended_before[] = "dvi: run: a signal ended the run before its first step; nothing was written\n";
 static const char ended_again[] = "dvi: run: a second Ctrl-C ended the run at once; FILEs not yet complete stay as they were\n";
+
+static bool has_constraint(const problem *scene)
+{
+  return scene->terms->one_form != NULL;
+}
 
 static void write_header(recorder *r)
 {
@@ -63,6 +69,7 @@ static void write_header(recorder *r)
   }
   if (r->chooses) (void)fputs(",h", stream);
   if (r->jumps) (void)fputs(",jump", stream);
+  if (has_constraint(scene)) (void)fputs(",constraint", stream);
   (void)fputc('\n', stream);
 }
 
@@ -81,7 +88,8 @@ static void write_numbers(FILE *stream, int count, const double *number)
 /* Fetch the invariants of the current state. False, with a complaint, if they are no numbers. */
 static bool measure(recorder *r, dvi_integrator *integrator)
 {
-  const dvi_status status = dvi_integrator_invariants(integrator, r->invariant);
+  dvi_status status = dvi_integrator_invariants(integrator, r->invariant);
+  if (status == DVI_OK && has_constraint(r->scene)) status = dvi_integrator_constraint(integrator, &r->constraint);
   if (status != DVI_OK) {
     (void)library_error(status);
     return false;
@@ -100,6 +108,7 @@ static bool write_row(recorder *r, dvi_integrator *integrator)
   write_numbers(stream, dvi_system_invariant_count(r->scene->system), r->invariant);
   if (r->chooses) write_numbers(stream, 1, (double[]){dvi_integrator_last_step(integrator)});
   if (r->jumps) (void)fprintf(stream, ",%.17g", dvi_integrator_jump(integrator, NULL));
+  if (has_constraint(r->scene)) write_numbers(stream, 1, &r->constraint);
   (void)fputc('\n', stream);
   r->row_written = true;
   if (!ferror(stream)) return true;
@@ -313,7 +322,7 @@ static int check_settings(const char *name, const words *settings)
 static const char *const details[] = {
     "Columns: t, the coordinates, their momenta (p_ and the coordinate's name), energy, the other invariants;\n"
     "methods that choose their steps add h, the length of the step that led to the row, dg and dg-phase add jump,\n"
-    "the largest one;\n"
+    "the largest one, and with a one-form there is the constraint |p - alpha(q)|;\n"
     "17 digits, so that every number is read back as it was. The first row is the start (with --resume: the\n"
     "checkpoint), the last one is the end, wherever --every puts the rows between.\n",
     "FILEs are written whole or not at all: a run that fails leaves what was there. Rows on standard output come\n"

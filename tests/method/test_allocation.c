@@ -39,6 +39,13 @@ static const struct {
     {"tokamak", NULL, "dg-phase"},
     {"vortices", NULL, "dg:degree=1,flux=path,stiffness=1"},
     {"tokamak", NULL, "vprk:nodes=3,tableau=lobatto-iiie,projection=symplectic"},
+    {"massless-particle", "gauge=singular", "dvi-a"},
+    {"massless-particle", "gauge=singular", "dvi-b"},
+    {"massless-particle", "gauge=singular", "dvi-midpoint"},
+    {"massless-particle", "gauge=singular", "dvi-trapezoidal"},
+    {"massless-particle", "gauge=singular", "dvrk:nodes=3"},
+    {"double-pendulum", NULL, "hp:type=2"},
+    {"kepler", NULL, "hp:type=4,degree=3"},
 };
 enum { PLACES = sizeof places / sizeof *places };
 

@@ -43,6 +43,11 @@ static const struct {
     {"vortices", NULL, "dg-phase", 0.02, 30},
     {"massless-particle", NULL, "dg:degree=1,stiffness=1:2", 0.1, 30},
     {"massless-particle", NULL, "vprk:projection=symplectic", 0.1, 30},
+    {"massless-particle", "gauge=singular", "dvi-a", 0.1, 30},
+    {"massless-particle", "gauge=singular", "dvi-trapezoidal", 0.1, 30},
+    {"massless-particle", "gauge=singular", "dvrk:nodes=3", 0.1, 30},
+    {"double-pendulum", NULL, "hp:type=2,degree=2", 0.02, 30},
+    {"double-pendulum", NULL, "hp:type=4,degree=2", 0.02, 30},
 };
 enum { RUNS = sizeof runs / sizeof *runs, COORDINATES_MOST = 8, INVARIANTS_MOST = 16 };
 

@@ -17,9 +17,17 @@ typedef struct place {
 } place;
 
 static const place places[] = {
-    {"pendulum", NULL, 0.1}, {"fpu", "ell=3", 0.1},        {"fpu", "ell=200", 0.1},        {"toda", "N=5", 0.1},
-    {"toda", "N=300", 0.1},  {"outer-solar", NULL, 100.0}, {"double-pendulum", NULL, 0.1}, {"kepler", "e=0.6", 0.1},
-    {"chain", "n=500", 0.1}, {"vortices", NULL, 0.05},
+    {"pendulum", NULL, 0.1},
+    {"fpu", "ell=3", 0.1},
+    {"fpu", "ell=200", 0.1},
+    {"toda", "N=5", 0.1},
+    {"toda", "N=300", 0.1},
+    {"outer-solar", NULL, 100.0},
+    {"double-pendulum", NULL, 0.1},
+    {"kepler", "e=0.6", 0.1},
+    {"chain", "n=500", 0.1},
+    {"vortices", NULL, 0.05},
+    {"massless-particle", "gauge=singular", 0.1},
 };
 
 static const char *const methods[] = {
@@ -43,6 +51,9 @@ static const char *const methods[] = {
     "vprk:nodes=3",
     "dg:stiffness=1",
     "dg-phase",
+    "dvi-trapezoidal",
+    "dvrk:nodes=3",
+    "hp:type=3",
 };
 enum { PLACES = sizeof places / sizeof *places, METHODS = sizeof methods / sizeof *methods };
 

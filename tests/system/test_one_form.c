@@ -194,6 +194,19 @@ START_TEST(a_start_off_the_constraint_is_refused)
 }
 END_TEST
 
+/* alpha = (ln y/x, 0) vanishes at (1,1): there a rounding of q moves it by more than its size. */
+START_TEST(a_start_that_is_rounded_where_the_one_form_vanishes_is_not_off_the_constraint)
+{
+  problem *of = made_problem("lotka-volterra", "gauge=singular");
+  dvi_integrator *integrator = made_integrator(of->system, "vprk");
+  const double beside[] = {1, 1 - 0x1p-53}, far[] = {1, 1 - 0x1p-33}, none[] = {0, 0};
+  ck_assert_msg(dvi_integrator_start(integrator, 0, beside, none) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_int_eq(dvi_integrator_start(integrator, 0, far, none), DVI_BAD_ARGUMENT);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&of);
+}
+END_TEST
+
 int main(void)
 {
   TCase *tests = tcase_create("one-form");
@@ -205,5 +218,6 @@ int main(void)
   tcase_add_test(tests, bad_declarations_are_refused);
   tcase_add_test(tests, methods_for_one_kind_of_system_refuse_the_other);
   tcase_add_test(tests, a_start_off_the_constraint_is_refused);
+  tcase_add_test(tests, a_start_that_is_rounded_where_the_one_form_vanishes_is_not_off_the_constraint);
   return run_tests("system/one_form", tests);
 }

@@ -1,10 +1,13 @@
-/** Diagnostics: drift of an invariant, fitted orders, symplecticity and reversibility of a step. */
+/** Diagnostics: drift of an invariant, fitted orders, symplecticity and reversibility of a step, loop integrals. */
 #ifndef DVI_DIAGNOSTICS_H
 #define DVI_DIAGNOSTICS_H
 #include <dvi/integrator.h>
 
 /** Blocks of a drift record; the record halves their number by joining neighbours when it is full. */
 #define DVI_DRIFT_BLOCKS 64
+
+/** The fewest points of a loop. */
+#define DVI_LOOP_LEAST 8
 
 /** A running record of one quantity along a run: constant memory for any number of samples. Visible so that it can live on the
  *  stack; read it through dvi_drift_result. */
@@ -105,6 +108,24 @@ dvi_status dvi_symplecticity(dvi_integrator *integrator, double t, const double 
  *  @retval DVI_SOLVER_FAILED    as DVI_NOT_CONVERGED */
 dvi_status dvi_reversibility(dvi_integrator *integrator, double t, const double *q, const double *p, double h, long steps,
                              double *defect);
+
+/** The loop integral of p dq, the sum over i of oint p_i dq_i, along a closed curve through `count` points: Poincare's first integral invariant.
+ *
+ *  A symplectic map conserves it for every loop of states. With a one-form p = alpha(q), and this is the noncanonical invariant oint alpha(q).dq, the flux of
+ *  the two-form through the loop. The points lie at equal distances of the curve's parameter, the last one before the first; the curve is the
+ *  trigonometric polynomial through them, and the integral is exact for it up to roundoff: for an analytic loop the error falls exponentially with the
+ *  number of points. Takes 2 n count^2 operations.
+ *
+ *  @param      n         coordinates, at least 1
+ *  @param      count     points, at least DVI_LOOP_LEAST
+ *  @param      q, p      [n*count], component by component: coordinate i of point k is q[i*count + k]
+ *  @param[out] integral  not written on failure
+ *  @retval DVI_BAD_ARGUMENT  a pointer is NULL
+ *  @retval DVI_BAD_SIZE      n or count is too small
+ *  @retval DVI_NOT_FINITE    a number of a point is not finite
+ *
+ *  Source: Fornberg 1996 (the derivative); Marsden and Ratiu 1999 (the invariant). */
+dvi_status dvi_loop_integral(int n, int count, const double *q, const double *p, double *integral);
 
 #ifdef __cplusplus
 }

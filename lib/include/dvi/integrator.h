@@ -155,6 +155,21 @@ const char *dvi_integrator_method(const dvi_integrator *integrator);
  *  @param[out] value  [dvi_system_invariant_count] */
 dvi_status dvi_integrator_invariants(dvi_integrator *integrator, double *value);
 
+/** How far the state is from the constraint of a system with a one-form: the largest |p_i - alpha_i(q)|, without an allocation.
+ *
+ *  @param[out] distance  not written on failure
+ *  @retval DVI_UNSUPPORTED  the system has no one-form
+ *  @retval DVI_BAD_STATE    before dvi_integrator_start
+ *  @retval (others)         as the one-form's callback fails */
+dvi_status dvi_integrator_constraint(dvi_integrator *integrator, double *distance);
+
+/** The multiplier [nv] of the last step's constraint, owned by the integrator, valid until its next call; NULL if the method has none, or before the first
+ *  step.
+ *
+ *  That of `vprk` is lambda in the units of q: the kick by which a projection moves q after the step (docs/methods/vprk.md). It measures by how much the
+ *  step without a projection leaves p = alpha(q); where its sign alternates from step to step and it grows, a parasitic mode does. */
+const double *dvi_integrator_multiplier(const dvi_integrator *integrator);
+
 /** Dense output: the trajectory inside the last step.
  *
  *  Galerkin methods (midpoint and trapezoidal among them) evaluate the step's polynomial of degree s; the others use Hermite's

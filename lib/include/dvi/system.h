@@ -62,6 +62,21 @@ typedef struct dvi_one_form {
   void *user;
 } dvi_one_form;
 
+/** A function f(q) whose gradient is added to a one-form: another gauge, alpha + grad f, with the same two-form and the same motion, but other momenta.
+ *
+ *  Methods may need a gauge in which some components are constant (docs/methods/dvrk.md). The value of f does not matter. The callbacks have the
+ *  one-point shape alone. */
+typedef struct dvi_gauge {
+  /** grad f [n]. Needed. */
+  int (*gradient)(const double *q, double *f_q, void *user);
+  /** The Hessian of f in the order of the pattern. Needed. */
+  int (*hessian)(const double *q, double *f_qq, void *user);
+  /** The Hessian of the function w.grad f, w [n] fixed, in the order of the pattern. Left out: the gradients of alpha + grad f are differenced. */
+  int (*third)(const double *q, const double *w, double *f_w_qq, void *user);
+  dvi_pattern qq;
+  void *user;
+} dvi_gauge;
+
 /** A potential V(t,q); the Lagrangian holds -V. */
 typedef struct dvi_potential {
   const char *name; /**< for messages; copied; NULL: "potential" */
@@ -119,6 +134,7 @@ typedef struct dvi_system_terms {
   dvi_mass mass;                    /**< or: */
   const dvi_lagrangian *lagrangian; /**< or: */
   const dvi_one_form *one_form;     /**< exactly one of mass, lagrangian and one_form */
+  const dvi_gauge *gauge;           /**< with a one-form, may be NULL: the system is that of alpha + grad f */
   const dvi_potential *potentials;
   int potential_count;
   const dvi_symmetry *symmetries;
@@ -140,7 +156,7 @@ extern "C" {
  *  @param[out] system  owned by the caller; NULL on failure. It must outlive every integrator made from it.
  *  @retval DVI_BAD_SIZE      dimension (odd with a one-form), a count or a reach is out of range
  *  @retval DVI_BAD_ARGUMENT  a term is missing, given twice, or without its value callback; a reach has no gradient_range; a pattern is not
- *                            sorted; an autonomous system has a rate
+ *                            sorted; an autonomous system has a rate; a gauge has no one-form
  *  @retval DVI_SINGULAR      the constant mass is singular or not finite
  *  @retval DVI_NO_MEMORY */
 dvi_status dvi_system_create(const dvi_system_terms *terms, dvi_system **system);

@@ -4,11 +4,10 @@
 #include <math.h>
 #include <string.h>
 
+#include "action/collocation.h"
 #include "action/joint.h"
 #include "core/memory.h"
 #include "core/status.h"
-
-enum { STAGES_MOST = 8 };
 
 /* The kicks: k0 = before lambda + carried times the last lambda, k1 = after lambda; their directions at the mean of q0 and q1, or at the ends. */
 typedef struct kicks {
@@ -20,7 +19,7 @@ struct dvi__partitioned {
   const dvi_system *system;
   dvi__evaluator *evaluator;
   int n, s, m; /* coordinates, stages, unknowns of a coordinate */
-  double a[STAGES_MOST][STAGES_MOST], abar[STAGES_MOST][STAGES_MOST], b[STAGES_MOST], c[STAGES_MOST];
+  double a[DVI__STAGES_MOST][DVI__STAGES_MOST], abar[DVI__STAGES_MOST][DVI__STAGES_MOST], b[DVI__STAGES_MOST], c[DVI__STAGES_MOST];
   kicks kick;
   dvi__pattern joint, pattern; /* joint: of one block; pattern: of the Jacobian */
   dvi__block *block;           /* [entries of joint] */
@@ -36,40 +35,29 @@ struct dvi__partitioned {
 
 /* ---- tableaux ---- */
 
-/* a_ij of collocation: the integral of the j-th Lagrange polynomial from 0 to c_i, by Gauss's rule with as many nodes. */
-static dvi_status collocate(dvi__partitioned *p)
-{
-  double node[STAGES_MOST], weight[STAGES_MOST];
-  DVI_TRY(dvi_quadrature(DVI_GAUSS, p->s, node, weight));
-  for (int i = 0; i < p->s; i++)
-    for (int j = 0; j < p->s; j++) {
-      p->a[i][j] = 0;
-      for (int k = 0; k < p->s; k++) {
-        const double tau = p->c[i] * node[k];
-        double product = p->c[i] * weight[k];
-        for (int l = 0; l < p->s; l++)
-          if (l != j) product *= (tau - p->c[l]) / (p->c[j] - p->c[l]);
-        p->a[i][j] += product;
-      }
-    }
-  return DVI_OK;
-}
-
 static void conjugate(const dvi__partitioned *p, int i, int j, double *abar)
 {
   *abar = p->b[j] - p->b[j] * p->a[j][i] / p->b[i];
 }
 
-/* Lobatto IIIE is the mean of IIIA and of its conjugate IIIB, and its own conjugate (Jay 2015). */
+/* With collocation at Lobatto's nodes a is IIIA, and its conjugate IIIB. IIIE is the mean of both, and its own conjugate (Jay 2015). */
+static void rearrange_lobatto(dvi__partitioned *p, dvi__tableau tableau)
+{
+  for (int i = 0; i < p->s; i++)
+    for (int j = 0; j < p->s; j++) {
+      const double A = p->a[i][j], B = p->abar[i][j], mean = 0.5 * (A + B);
+      p->a[i][j] = tableau == DVI__LOBATTO_IIIE ? mean : B;
+      p->abar[i][j] = tableau == DVI__LOBATTO_IIIE ? mean : A;
+    }
+}
+
 static dvi_status fill_tableau(dvi__partitioned *p, dvi__tableau tableau)
 {
   DVI_TRY(dvi_quadrature(tableau == DVI__GAUSS ? DVI_GAUSS : DVI_LOBATTO, p->s, p->c, p->b));
-  DVI_TRY(collocate(p));
+  DVI_TRY(dvi__collocate(p->s, p->c, p->a));
   for (int i = 0; i < p->s; i++)
     for (int j = 0; j < p->s; j++) conjugate(p, i, j, &p->abar[i][j]);
-  if (tableau == DVI__GAUSS) return DVI_OK;
-  for (int i = 0; i < p->s; i++)
-    for (int j = 0; j < p->s; j++) p->a[i][j] = p->abar[i][j] = 0.5 * (p->a[i][j] + p->abar[i][j]);
+  if (tableau != DVI__GAUSS) rearrange_lobatto(p, tableau);
   return DVI_OK;
 }
 
@@ -101,11 +89,12 @@ static double **owned(dvi__partitioned *p, int i)
 static dvi_status allocate(dvi__partitioned *p)
 {
   const size_t n = (size_t)p->n, s = (size_t)p->s, qq = (size_t)dvi__pattern_entries(&p->system->qq),
-               qv = (size_t)dvi__pattern_entries(&p->system->qv);
-  const size_t size[] = {s, n * s, n * s, n * s, n * s, qq * s, qv * s, 1, n, n, n, n, n, n, n, n, n, n, qq, qv, qq, qv, qv, qq};
+               qv = (size_t)dvi__pattern_entries(&p->system->qv), vv = (size_t)dvi__pattern_entries(&p->system->vv);
+  const size_t size[] = {s, n * s, n * s, n * s, n * s, qq * s, qv * s, vv * s, n,  n,  n,  n,
+                         n, n,     n,     n,     n,     n,      qq,     qv,     qq, qv, qv, qq};
   for (int i = 0; owned(p, i) != NULL; i++) {
     *owned(p, i) = DVI_NEW(double, size[i] > 0 ? size[i] : 1);
-    if (*owned(p, i) == NULL) return dvi__fail(DVI_NO_MEMORY, "vprk: no memory for %d stages in %d dimensions", p->s, p->n);
+    if (*owned(p, i) == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory for %d stages in %d dimensions", p->s, p->n);
   }
   return DVI_OK;
 }
@@ -124,7 +113,7 @@ dvi_status dvi__partitioned_create(const dvi_system *system, dvi__tableau tablea
 {
   *partitioned = NULL;
   dvi__partitioned *p = DVI_NEW(dvi__partitioned, 1);
-  if (p == NULL) return dvi__fail(DVI_NO_MEMORY, "vprk: no memory");
+  if (p == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory");
   p->system = system;
   p->n = system->n;
   p->s = stages;
@@ -261,9 +250,10 @@ static double at(const double *values, int entry)
   return entry >= 0 ? values[entry] : 0;
 }
 
-/* What one entry of the joint pattern has: d alpha_i/dq_j (A), d alpha_j/dq_i (B) and h d2L/dq2 (K) at the stages; the like at the ends. */
+/* What one entry of the joint pattern has: d2L/dv_i dq_j (A; of a one-form d alpha_i/dq_j), d2L/dq_i dv_j (B), h d2L/dq2 (K) and d2L/dv2/h (M) at the
+ * stages; the like at the ends. */
 typedef struct entry {
-  double A[STAGES_MOST], B[STAGES_MOST], K[STAGES_MOST];
+  double A[DVI__STAGES_MOST], B[DVI__STAGES_MOST], K[DVI__STAGES_MOST], M[DVI__STAGES_MOST];
   double B0, H0, B1, H1, A_end;
 } entry;
 
@@ -273,7 +263,9 @@ static void gather_entry(const dvi__partitioned *p, const dvi__block *where, ent
     out->A[k] = where->vq >= 0 ? p->H_qv[where->vq * p->s + k] : 0;
     out->B[k] = where->qv >= 0 ? p->H_qv[where->qv * p->s + k] : 0;
     out->K[k] = where->qq >= 0 ? p->h * p->H_qq[where->qq * p->s + k] : 0;
+    out->M[k] = where->vv >= 0 ? p->H_vv[where->vv * p->s + k] / p->h : 0;
   }
+  out->B0 = out->H0 = out->B1 = out->H1 = out->A_end = 0;
   if (!p->kick.has_multiplier) return;
   out->B0 = at(p->qv0, where->qv);
   out->H0 = p->kick.at_mean ? 0.5 * at(p->qq0, where->qq) : 0;
@@ -295,6 +287,7 @@ static void increment_column(const dvi__partitioned *p, const entry *e, int l, d
 {
   const double start = p->b[l] * e->H0;
   for (int k = 0; k < p->s; k++) column[k] = p->a[k][l] * e->A[k] - start - p->abar[k][l] * e->B[l] - impulse(p, e, p->abar[k], l);
+  column[l] += e->M[l];
   if (p->kick.has_multiplier) column[p->s] = start + p->b[l] * e->B[l] + impulse(p, e, p->b, l) + p->b[l] * (e->H1 - e->A_end);
 }
 
@@ -325,19 +318,26 @@ dvi_status dvi__partitioned_jacobian(dvi__partitioned *p, const double *x, doubl
   return DVI_OK;
 }
 
+/* By the last Jacobian's L_vv at the first stage. */
+static void scale_by_masses(const dvi__partitioned *p, double *scale)
+{
+  const dvi__pattern *vv = &p->system->vv;
+  for (int i = 0; i < p->n; i++) {
+    double size = 0;
+    for (int e = vv->start[i]; e < vv->start[i + 1]; e++) size = fmax(size, fabs(p->H_vv[e * p->s]));
+    for (int k = 0; k < p->m; k++) scale[i * p->m + k] = (size > 0 ? size : 1) / fabs(p->h);
+  }
+}
+
 dvi_status dvi__partitioned_scale(dvi__partitioned *p, double *scale)
 {
-  const dvi__pattern *qv = &p->system->qv;
+  if (!(p->system->terms & DVI__ONE_FORM)) {
+    scale_by_masses(p, scale);
+    return DVI_OK;
+  }
   memset(p->k0, 0, (size_t)p->n * sizeof(double));
   DVI_TRY(dvi__form_hessian(p->evaluator, p->q0, p->k0, p->qq0, p->qv0));
-  memset(p->k1, 0, (size_t)p->n * sizeof(double));
-  for (int j = 0; j < p->n; j++)
-    for (int e = qv->start[j]; e < qv->start[j + 1]; e++) {
-      p->k1[j] = fmax(p->k1[j], fabs(p->qv0[e]));
-      p->k1[qv->row[e]] = fmax(p->k1[qv->row[e]], fabs(p->qv0[e]));
-    }
-  for (int i = 0; i < p->n; i++)
-    for (int k = 0; k < p->m; k++) scale[i * p->m + k] = p->k1[i] > 0 ? p->k1[i] : 1;
+  dvi__joint_scale(p->system, p->qv0, p->m, scale);
   return DVI_OK;
 }
 
@@ -354,13 +354,9 @@ void dvi__partitioned_straight(const dvi__partitioned *p, const double *v, doubl
 void dvi__partitioned_continue(const dvi__partitioned *p, double ratio, const double *last, double *x)
 {
   for (int k = 0; k < p->s; k++) {
-    double weight[STAGES_MOST];
-    for (int j = 0; j < p->s; j++) {
-      weight[j] = ratio;
-      for (int l = 0; l < p->s; l++)
-        if (l != j) weight[j] *= (1 + ratio * p->c[k] - p->c[l]) / (p->c[j] - p->c[l]);
-    }
-    for (int i = 0; i < p->n; i++) x[i * p->m + k] = dot(p->s, weight, last + i * p->m);
+    double weight[DVI__STAGES_MOST];
+    dvi__lagrange_weights(p->s, p->c, 1 + ratio * p->c[k], weight);
+    for (int i = 0; i < p->n; i++) x[i * p->m + k] = ratio * dot(p->s, weight, last + i * p->m);
   }
   for (int i = 0; p->kick.has_multiplier && i < p->n; i++) x[i * p->m + p->s] = 0;
 }

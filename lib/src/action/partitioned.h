@@ -1,10 +1,10 @@
-/* One step of a variational partitioned Runge-Kutta method for a degenerate Lagrangian alpha(q).v - H(q), with a projection onto p = alpha(q).
+/* One step of a variational partitioned Runge-Kutta method, for a degenerate Lagrangian alpha(q).v - H(q) with a projection onto p = alpha(q).
  *
  * Stages i = 1..s with increments W_i = h V_i and impulses h F_i = h L_q(Q_i, V_i):
  *     Q_i = q0 + k0 + sum_j a_ij W_j,     alpha(Q_i) = p0 + K(k0) + h sum_j abar_ij F_j,     b_i abar_ij + b_j a_ji = b_i b_j,
  *     q1  = q0 + k0 + sum_j b_j W_j + k1,         p1 = p0 + K(k0) + h sum_j b_j F_j + K(k1) = alpha(q1).
  * The kicks k0 and k1 are multiples of the multiplier lambda, along Omega^-1 grad phi of the constraint phi = p - alpha(q): q moves by k and p by
- * K(k) = grad alpha.k, taken at q0 and q1, or at their mean.
+ * K(k) = grad alpha.k, taken at q0 and q1, or at their mean. Without a projection any Lagrangian serves, with L_v(Q_i, V_i) for alpha(Q_i).
  *
  * Source: Kraus 2017, arXiv:1708.07356; Marsden and West 2001, sec. 2.6 (the tableaux). The increments, which round better than velocities, are ours.
  *
@@ -16,7 +16,8 @@
 
 typedef struct dvi__partitioned dvi__partitioned;
 
-typedef enum dvi__tableau { DVI__GAUSS, DVI__LOBATTO_IIIE } dvi__tableau;
+/* IIIB-A: Lobatto IIIB for q, IIIA for p. */
+typedef enum dvi__tableau { DVI__GAUSS, DVI__LOBATTO_IIIE, DVI__LOBATTO_IIIB_A } dvi__tableau;
 
 typedef enum dvi__projection {
   DVI__SYMMETRIC,
@@ -26,7 +27,7 @@ typedef enum dvi__projection {
   DVI__NO_PROJECTION
 } dvi__projection;
 
-/* For a system with a one-form. `stages` suit the tableau. */
+/* `stages` suit the tableau; a projection is for a system with a one-form. */
 dvi_status dvi__partitioned_create(const dvi_system *system, dvi__tableau tableau, int stages, dvi__projection projection,
                                    dvi_counters *counters, dvi__partitioned **partitioned);
 void dvi__partitioned_destroy(dvi__partitioned **partitioned);
@@ -42,7 +43,7 @@ void dvi__partitioned_place(dvi__partitioned *partitioned, double t0, double h, 
 dvi_status dvi__partitioned_residual(dvi__partitioned *partitioned, const double *x, double *R);
 dvi_status dvi__partitioned_jacobian(dvi__partitioned *partitioned, const double *x, double *values);
 
-/* Size of the rows per unit of an unknown: of the gradients of alpha at q0. */
+/* Size of the rows per unit of an unknown: of the gradients of alpha at q0, or of L_vv/h. */
 dvi_status dvi__partitioned_scale(dvi__partitioned *partitioned, double *scale);
 
 /* Increments of q and p, [n] each, of the last residual. */

@@ -339,6 +339,20 @@ dvi_status dvi_integrator_invariants(dvi_integrator *I, double *value)
   return dvi__invariants(I->evaluator, I->now.t, I->now.q, I->v, I->now.p, value);
 }
 
+dvi_status dvi_integrator_constraint(dvi_integrator *I, double *distance)
+{
+  if (I == NULL || distance == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "constraint: an argument is NULL");
+  if (!(I->system->terms & DVI__ONE_FORM)) return dvi__fail(DVI_UNSUPPORTED, "constraint: the system declares no one-form");
+  if (!I->started) return dvi__fail(DVI_BAD_STATE, "constraint: the integrator has no state yet; call dvi_integrator_start first");
+  return dvi__form_distance(I->evaluator, I->now.q, I->now.p, distance);
+}
+
+const double *dvi_integrator_multiplier(const dvi_integrator *I)
+{
+  if (I == NULL || I->last_h == 0 || I->stepper.method->multiplier == NULL) return NULL;
+  return I->stepper.method->multiplier(&I->stepper);
+}
+
 size_t dvi_integrator_explain(const dvi_integrator *integrator, char *text, size_t size)
 {
   dvi__text out = {text, size, 0};

@@ -102,6 +102,8 @@ struct dvi__method {
   void (*path)(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v);
   /* The jump [n] between the last element and the next, in the stepper's memory. NULL: the method's trajectories do not jump. */
   const double *(*jump)(const dvi__stepper *self);
+  /* The multiplier [n] of the last step, in the memory; NULL if there is none. NULL: never. */
+  const double *(*multiplier)(const dvi__stepper *self);
   void (*explain)(const dvi__stepper *self, dvi__text *text);
   /* What became of the energy that the method conserves; NULL: it conserves none. */
   void (*balance)(const dvi__stepper *self, dvi_energy_balance *balance);

@@ -214,3 +214,14 @@ dvi_status dvi__pattern_groups(const dvi__pattern *pattern, int *group, int *gro
   dvi__pattern_clear(&transpose);
   return DVI_OK;
 }
+
+dvi_status dvi__pattern_copy_symmetric(const dvi_pattern *declared, int n, const char *name, dvi__pattern *copy)
+{
+  DVI_TRY(dvi__pattern_copy(declared, n, name, copy));
+  for (int j = 0; j < n; j++)
+    for (int e = copy->start[j]; e < copy->start[j + 1]; e++)
+      if (dvi__pattern_find(copy, j, copy->row[e]) < 0)
+        return dvi__fail(DVI_BAD_ARGUMENT, "%s: the pattern holds (%d,%d) but not (%d,%d); both triangles are needed", name,
+                         copy->row[e], j, j, copy->row[e]);
+  return DVI_OK;
+}

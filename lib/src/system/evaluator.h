@@ -60,6 +60,9 @@ dvi_status dvi__form_scale(dvi__evaluator *e, const double *q, double *scale);
 /* F [n] = Omega(q) v - H_q(t,q), without a factorisation. */
 dvi_status dvi__two_form_residual(dvi__evaluator *e, double t, const double *q, const double *v, double *F);
 
+/* The largest |p_i - alpha_i(q)|. */
+dvi_status dvi__form_distance(dvi__evaluator *e, const double *q, const double *p, double *distance);
+
 /* DVI_BAD_ARGUMENT unless p = alpha(q) up to rounding. */
 dvi_status dvi__form_constraint(dvi__evaluator *e, const double *q, const double *p);
 

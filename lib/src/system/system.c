@@ -9,6 +9,8 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/finite.h"
+#include "system/gauge.h"
+#include "system/term.h"
 
 static char *copy_text(const char *text)
 {
@@ -30,18 +32,6 @@ static dvi_status check_symmetric(const dvi__pattern *pattern, const double *val
       if (mirror < 0 || values[mirror] != values[e])
         return dvi__fail(DVI_BAD_ARGUMENT, "system: the mass matrix is not symmetric at (%d,%d)", pattern->row[e], j);
     }
-  return DVI_OK;
-}
-
-/* A Hessian's pattern: one triangle alone would leave out half of the entries of the step's Jacobian. */
-static dvi_status copy_symmetric(const dvi_pattern *declared, int n, const char *name, dvi__pattern *copy)
-{
-  DVI_TRY(dvi__pattern_copy(declared, n, name, copy));
-  for (int j = 0; j < n; j++)
-    for (int e = copy->start[j]; e < copy->start[j + 1]; e++)
-      if (dvi__pattern_find(copy, j, copy->row[e]) < 0)
-        return dvi__fail(DVI_BAD_ARGUMENT, "%s: the pattern holds (%d,%d) but not (%d,%d); both triangles are needed", name,
-                         copy->row[e], j, j, copy->row[e]);
   return DVI_OK;
 }
 
@@ -139,9 +129,9 @@ static dvi_status copy_lagrangian(dvi_system *s, const dvi_lagrangian *given)
   dvi__lagrangian_term *term = s->lagrangian = DVI_NEW(dvi__lagrangian_term, 1);
   if (term == NULL) return no_memory();
   term->callbacks = *given;
-  DVI_TRY(copy_symmetric(&given->qq, s->n, "Lagrangian: d2L/dq2", &term->qq));
+  DVI_TRY(dvi__pattern_copy_symmetric(&given->qq, s->n, "Lagrangian: d2L/dq2", &term->qq));
   DVI_TRY(dvi__pattern_copy(&given->qv, s->n, "Lagrangian: d2L/dqdv", &term->qv));
-  DVI_TRY(copy_symmetric(&given->vv, s->n, "Lagrangian: d2L/dv2", &term->vv));
+  DVI_TRY(dvi__pattern_copy_symmetric(&given->vv, s->n, "Lagrangian: d2L/dv2", &term->vv));
   DVI_TRY(dvi__pattern_union(&term->qv, &term->qv, &s->qv));
   DVI_TRY(dvi__pattern_union(&term->vv, &term->vv, &s->vv));
   const int differenced = given->hessian == NULL && given->hessian_batch == NULL;
@@ -158,7 +148,7 @@ static dvi_status join_two_form(dvi__lagrangian_term *term)
 }
 
 /* alpha(q).v is a Lagrangian whose L_qv holds the gradients of alpha, and whose L_vv has no entries. */
-static dvi_status copy_one_form(dvi_system *s, const dvi_one_form *given)
+static dvi_status copy_one_form(dvi_system *s, const dvi_one_form *given, const dvi_gauge *gauge)
 {
   if (given->value == NULL || given->gradient == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "system: the one-form has no %s callback", given->value == NULL ? "value" : "gradient");
@@ -169,13 +159,14 @@ static dvi_status copy_one_form(dvi_system *s, const dvi_one_form *given)
   dvi__lagrangian_term *term = s->lagrangian = DVI_NEW(dvi__lagrangian_term, 1);
   if (term == NULL) return no_memory();
   term->one_form = *given;
-  DVI_TRY(copy_symmetric(&given->qq, s->n, "one-form: d2(alpha.v)/dq2", &term->qq));
+  DVI_TRY(dvi__pattern_copy_symmetric(&given->qq, s->n, "one-form: d2(alpha.v)/dq2", &term->qq));
   DVI_TRY(dvi__pattern_copy(&given->gradients, s->n, "one-form: gradients", &term->qv));
   DVI_TRY(dvi__pattern_empty(s->n, &term->vv));
+  if (gauge != NULL) DVI_TRY(dvi__gauge_join(gauge, term));
   DVI_TRY(join_two_form(term));
   DVI_TRY(dvi__pattern_union(&term->qv, &term->qv, &s->qv));
   DVI_TRY(dvi__pattern_empty(s->n, &s->vv));
-  return given->hessian == NULL ? group_lagrangian(term) : DVI_OK;
+  return dvi__general_has_hessian(term) ? DVI_OK : group_lagrangian(term);
 }
 
 /* ---- potentials ---- */
@@ -202,7 +193,7 @@ static dvi_status copy_potential(dvi_system *s, const dvi_potential *given, dvi_
   if (term->name == NULL) return no_memory();
   term->callbacks.name = term->name;
   const int left_out = given->qq.start == NULL && given->qq.row == NULL;
-  return left_out ? DVI_OK : copy_symmetric(&given->qq, s->n, name, &term->qq);
+  return left_out ? DVI_OK : dvi__pattern_copy_symmetric(&given->qq, s->n, name, &term->qq);
 }
 
 static dvi_status copy_potentials(dvi_system *s, const dvi_system_terms *terms)
@@ -326,6 +317,8 @@ static dvi_status check_terms(const dvi_system_terms *terms)
                      "system: more than one of a mass, a general Lagrangian and a one-form are declared; one of them is possible");
   if (!has_mass && terms->lagrangian == NULL && terms->one_form == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "system: neither a mass (other than 0) nor a general Lagrangian nor a one-form is declared");
+  if (terms->gauge != NULL && terms->one_form == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "system: a gauge without a one-form; it changes nothing else");
   if (has_pattern && mass->values == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "system: the mass has a pattern but no values");
   return check_watched(terms);
 }
@@ -361,7 +354,7 @@ static dvi_status fill(dvi_system *s, const dvi_system_terms *terms)
   if (terms->lagrangian != NULL)
     DVI_TRY(copy_lagrangian(s, terms->lagrangian));
   else
-    DVI_TRY(terms->one_form != NULL ? copy_one_form(s, terms->one_form) : copy_mass(s, &terms->mass));
+    DVI_TRY(terms->one_form != NULL ? copy_one_form(s, terms->one_form, terms->gauge) : copy_mass(s, &terms->mass));
   DVI_TRY(copy_potentials(s, terms));
   DVI_TRY(copy_invariants(s, terms));
   s->hash = hash_of(s);
@@ -389,6 +382,7 @@ static void clear_lagrangian(dvi__lagrangian_term *term)
   dvi__pattern_clear(&term->qv);
   dvi__pattern_clear(&term->vv);
   dvi__pattern_clear(&term->omega);
+  dvi__gauge_clear(&term->gauge);
   dvi__release(term->in_qq);
   dvi__release(term->q_groups.of_column);
   dvi__release(term->v_groups.of_column);

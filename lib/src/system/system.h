@@ -24,11 +24,19 @@ typedef struct dvi__potential_term {
   dvi__groups groups;
 } dvi__potential_term;
 
+/* The gradient of a function beside a one-form alpha, and where the entries of both stand in the sum's. */
+typedef struct dvi__gauge_term {
+  dvi_gauge callbacks;               /* without a gradient: there is none */
+  dvi__pattern qq, form_qq, form_qv; /* of f; of alpha alone */
+  int *in_qq, *in_qv, *form_in_qq, *form_in_qv;
+} dvi__gauge_term;
+
 /* A general Lagrangian, or alpha(q).v. */
 typedef struct dvi__lagrangian_term {
   dvi_lagrangian callbacks;
   struct dvi__transformed *transformed; /* not NULL: it stands in the place of the callbacks (transformed.h) */
   dvi_one_form one_form;                /* without a value: there is none, and the callbacks above count */
+  dvi__gauge_term gauge;
   dvi__pattern qq, qv, vv;
   dvi__pattern omega;             /* of the one-form's two-form: qv and its transpose */
   int *in_qq;                     /* [entries of qq] */

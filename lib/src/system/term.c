@@ -130,15 +130,80 @@ dvi_status dvi__potential_rate(const dvi__potential_term *p, dvi__scratch *s, in
 
 /* ---- one-form: L = alpha(q).v ---- */
 
-static const char *const form = "one-form";
+static const char *const form = "one-form", *const gauge = "gauge";
+
+static int has_gauge(const dvi__lagrangian_term *l)
+{
+  return l->gauge.callbacks.gradient != NULL;
+}
+
+dvi_status dvi__form_value(const dvi__lagrangian_term *l, const double *q, double *alpha, double *work)
+{
+  const int n = l->qv.columns;
+  DVI_TRY(verdict(l->one_form.value(q, alpha, l->one_form.user), n, 1, alpha, form, "value", ""));
+  if (!has_gauge(l)) return DVI_OK;
+  DVI_TRY(verdict(l->gauge.callbacks.gradient(q, work, l->gauge.callbacks.user), n, 1, work, gauge, "gradient", ""));
+  for (int i = 0; i < n; i++) alpha[i] += work[i];
+  return DVI_OK;
+}
+
+/* Add entries of a part at their places in the whole. */
+static void add_part(const dvi__pattern *part, const int *where, const double *values, double *whole)
+{
+  for (int e = 0; e < dvi__pattern_entries(part); e++) whole[where[e]] += values[e];
+}
+
+static void clear(const dvi__pattern *pattern, double *values)
+{
+  for (int e = 0; e < dvi__pattern_entries(pattern); e++) values[e] = 0;
+}
+
+static dvi_status own_gradients(const dvi__lagrangian_term *l, const dvi__pattern *qv, const double *q, double *alpha_q)
+{
+  const int returned = l->one_form.gradient(q, alpha_q, l->one_form.user);
+  return verdict(returned, dvi__pattern_entries(qv), 1, alpha_q, form, "gradient", "");
+}
+
+dvi_status dvi__form_gradients(const dvi__lagrangian_term *l, const double *q, double *alpha_q, double *work)
+{
+  const dvi__gauge_term *g = &l->gauge;
+  if (!has_gauge(l)) return own_gradients(l, &l->qv, q, alpha_q);
+  clear(&l->qv, alpha_q);
+  DVI_TRY(own_gradients(l, &g->form_qv, q, work));
+  add_part(&g->form_qv, g->form_in_qv, work, alpha_q);
+  const int returned = g->callbacks.hessian(q, work, g->callbacks.user);
+  DVI_TRY(verdict(returned, dvi__pattern_entries(&g->qq), 1, work, gauge, "Hessian", ""));
+  add_part(&g->qq, g->in_qv, work, alpha_q);
+  return DVI_OK;
+}
+
+static dvi_status own_hessian(const dvi__lagrangian_term *l, const dvi__pattern *qq, const double *q, const double *w,
+                              double *alpha_w_qq)
+{
+  const int returned = l->one_form.hessian(q, w, alpha_w_qq, l->one_form.user);
+  return verdict(returned, dvi__pattern_entries(qq), 1, alpha_w_qq, form, "Hessian", "");
+}
+
+/* The Hessian of (alpha + grad f).w at one point. */
+static dvi_status whole_hessian(const dvi__lagrangian_term *l, const double *q, const double *w, double *qq, double *work)
+{
+  const dvi__gauge_term *g = &l->gauge;
+  if (!has_gauge(l)) return own_hessian(l, &l->qq, q, w, qq);
+  clear(&l->qq, qq);
+  DVI_TRY(own_hessian(l, &g->form_qq, q, w, work));
+  add_part(&g->form_qq, g->form_in_qq, work, qq);
+  const int returned = g->callbacks.third(q, w, work, g->callbacks.user);
+  DVI_TRY(verdict(returned, dvi__pattern_entries(&g->qq), 1, work, gauge, "third derivatives'", ""));
+  add_part(&g->qq, g->in_qq, work, qq);
+  return DVI_OK;
+}
 
 /* s->result[0] = alpha at point k of the batch, with s->point_q and s->point_v. */
 static dvi_status form_value(const dvi__lagrangian_term *l, dvi__scratch *s, int count, int k, const double *q, const double *v)
 {
   gather(s->n, count, k, q, s->point_q);
   gather(s->n, count, k, v, s->point_v);
-  const int returned = l->one_form.value(s->point_q, s->result[0], l->one_form.user);
-  return verdict(returned, s->n, 1, s->result[0], form, "value", "");
+  return dvi__form_value(l, s->point_q, s->result[0], s->result[2]);
 }
 
 static dvi_status form_lagrangian(const dvi__lagrangian_term *l, dvi__scratch *s, int count, const double *q, const double *v,
@@ -152,12 +217,6 @@ static dvi_status form_lagrangian(const dvi__lagrangian_term *l, dvi__scratch *s
   return DVI_OK;
 }
 
-dvi_status dvi__form_gradients(const dvi__lagrangian_term *l, const double *q, double *alpha_q)
-{
-  const int returned = l->one_form.gradient(q, alpha_q, l->one_form.user);
-  return verdict(returned, dvi__pattern_entries(&l->qv), 1, alpha_q, form, "gradient", "");
-}
-
 /* L_q = sum_j v_j d alpha_j/dq,  L_v = alpha. */
 static dvi_status form_gradient(const dvi__lagrangian_term *l, dvi__scratch *s, int count, const double *q, const double *v,
                                 double *L_q, double *L_v)
@@ -165,7 +224,7 @@ static dvi_status form_gradient(const dvi__lagrangian_term *l, dvi__scratch *s, 
   for (int k = 0; k < count; k++) {
     DVI_TRY(form_value(l, s, count, k, q, v));
     scatter(s->n, count, k, s->result[0], L_v);
-    DVI_TRY(dvi__form_gradients(l, s->point_q, s->result[1]));
+    DVI_TRY(dvi__form_gradients(l, s->point_q, s->result[1], s->result[2]));
     for (int i = 0; i < s->n; i++) s->result[0][i] = 0;
     for (int j = 0; j < s->n; j++)
       for (int e = l->qv.start[j]; e < l->qv.start[j + 1]; e++) s->result[0][l->qv.row[e]] += s->point_v[j] * s->result[1][e];
@@ -182,10 +241,9 @@ static dvi_status form_hessian(const dvi__lagrangian_term *l, dvi__scratch *s, i
   for (int k = 0; k < count; k++) {
     gather(s->n, count, k, q, s->point_q);
     gather(s->n, count, k, v, s->point_v);
-    const int returned = l->one_form.hessian(s->point_q, s->point_v, s->result[0], l->one_form.user);
-    DVI_TRY(verdict(returned, qq, 1, s->result[0], form, "Hessian", ""));
+    DVI_TRY(whole_hessian(l, s->point_q, s->point_v, s->result[0], s->result[2]));
     scatter(qq, count, k, s->result[0], L_qq);
-    DVI_TRY(dvi__form_gradients(l, s->point_q, s->result[0]));
+    DVI_TRY(dvi__form_gradients(l, s->point_q, s->result[0], s->result[2]));
     scatter(qv, count, k, s->result[0], L_qv);
   }
   return DVI_OK;
@@ -207,8 +265,8 @@ int dvi__general_has_gradient(const dvi__lagrangian_term *l)
 
 int dvi__general_has_hessian(const dvi__lagrangian_term *l)
 {
-  return l->one_form.hessian != NULL || l->transformed != NULL || l->callbacks.hessian != NULL ||
-         l->callbacks.hessian_batch != NULL;
+  if (is_form(l)) return l->one_form.hessian != NULL && (!has_gauge(l) || l->gauge.callbacks.third != NULL);
+  return l->transformed != NULL || l->callbacks.hessian != NULL || l->callbacks.hessian_batch != NULL;
 }
 
 dvi_status dvi__general_value(const dvi__lagrangian_term *l, dvi__scratch *s, int count, const double *t, const double *q,

@@ -45,8 +45,10 @@ dvi_status dvi__general_hessian(const dvi__lagrangian_term *l, dvi__scratch *s, 
 dvi_status dvi__general_rate(const dvi__lagrangian_term *l, dvi__scratch *s, int count, const double *t, const double *q,
                              const double *v, double *L_t);
 
-/* One point: the gradients of a one-form's components, in the order of the term's qv. */
-dvi_status dvi__form_gradients(const dvi__lagrangian_term *l, const double *q, double *alpha_q);
+/* One point of a one-form, its gauge included: alpha [n], and the gradients of its components in the order of the term's qv. `work` is as long as the
+ * longest Hessian. */
+dvi_status dvi__form_value(const dvi__lagrangian_term *l, const double *q, double *alpha, double *work);
+dvi_status dvi__form_gradients(const dvi__lagrangian_term *l, const double *q, double *alpha_q, double *work);
 
 /* A potential as a function of q alone, in the shapes that system/difference.h wants; `function` is a dvi__potential_at. */
 typedef struct dvi__potential_at {

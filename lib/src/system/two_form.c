@@ -23,7 +23,7 @@ static dvi_status evaluate(dvi__evaluator *e, const double *q)
 {
   const dvi__lagrangian_term *l = e->system->lagrangian;
   double *alpha_q = e->hessian[1];
-  DVI_TRY(dvi__form_gradients(l, q, alpha_q));
+  DVI_TRY(dvi__form_gradients(l, q, alpha_q, e->scratch.result[0]));
   for (int j = 0; j < e->system->n; j++)
     for (int k = l->omega.start[j]; k < l->omega.start[j + 1]; k++)
       e->two_form[k] = entry(&l->qv, alpha_q, l->omega.row[k], j) - entry(&l->qv, alpha_q, j, l->omega.row[k]);
@@ -66,7 +66,7 @@ dvi_status dvi__form_scale(dvi__evaluator *e, const double *q, double *scale)
 {
   const dvi__lagrangian_term *l = e->system->lagrangian;
   double *alpha_q = e->hessian[1];
-  DVI_TRY(dvi__form_gradients(l, q, alpha_q));
+  DVI_TRY(dvi__form_gradients(l, q, alpha_q, e->scratch.result[0]));
   memset(scale, 0, (size_t)e->system->n * sizeof *scale);
   for (int j = 0; j < e->system->n; j++)
     for (int k = l->qv.start[j]; k < l->qv.start[j + 1]; k++) {
@@ -78,18 +78,38 @@ dvi_status dvi__form_scale(dvi__evaluator *e, const double *q, double *scale)
   return DVI_OK;
 }
 
+dvi_status dvi__form_distance(dvi__evaluator *e, const double *q, const double *p, double *distance)
+{
+  double *alpha = e->point[2], largest = 0;
+  DVI_TRY(dvi__form_value(e->system->lagrangian, q, alpha, e->scratch.result[0]));
+  for (int i = 0; i < e->system->n; i++) largest = fmax(largest, fabs(p[i] - alpha[i]));
+  *distance = largest;
+  return DVI_OK;
+}
+
 /* A start computed in another way than by the callback differs by its roundings; one that is off the constraint, by more. */
 static const double on_constraint = 1e-11;
 
+/* The size of alpha, and what its gradients make of q: where alpha happens to vanish, a rounding of q is not a violation. */
+static dvi_status size_of_form(dvi__evaluator *e, const double *q, const double *alpha, double *size)
+{
+  const dvi__pattern *qv = &e->system->lagrangian->qv;
+  double *alpha_q = e->hessian[1];
+  DVI_TRY(dvi__form_gradients(e->system->lagrangian, q, alpha_q, e->scratch.result[0]));
+  for (int j = 0; j < e->system->n; j++) {
+    *size = fmax(*size, fabs(alpha[j]));
+    for (int k = qv->start[j]; k < qv->start[j + 1]; k++) *size = fmax(*size, fabs(alpha_q[k] * q[qv->row[k]]));
+  }
+  return DVI_OK;
+}
+
 dvi_status dvi__form_constraint(dvi__evaluator *e, const double *q, const double *p)
 {
-  const dvi__lagrangian_term *l = e->system->lagrangian;
-  double *alpha = e->point[2], scale = 0;
-  const int returned = l->one_form.value(q, alpha, l->one_form.user);
-  if (returned != 0) return dvi__fail(DVI_CALLBACK_FAILED, "one-form: the value callback failed with %d", returned);
-  for (int i = 0; i < e->system->n; i++) scale = fmax(scale, fmax(fabs(alpha[i]), fabs(p[i])));
+  double *alpha = e->point[2], size = 0;
+  DVI_TRY(dvi__form_value(e->system->lagrangian, q, alpha, e->scratch.result[0]));
+  DVI_TRY(size_of_form(e, q, alpha, &size));
   for (int i = 0; i < e->system->n; i++)
-    if (!(fabs(p[i] - alpha[i]) <= on_constraint * scale))
+    if (!(fabs(p[i] - alpha[i]) <= on_constraint * size))
       return dvi__fail(DVI_BAD_ARGUMENT,
                        "p[%d] is %.17g, but the one-form has alpha = %.17g there; start with p = alpha(q) (dvi_system_momentum)", i,
                        p[i], alpha[i]);
