@@ -267,9 +267,8 @@ static int check_settings(const char *name, const words *settings)
 
 static const char *const details[] = {
     "Columns: t, the coordinates, their momenta (p_ and the coordinate's name), energy, the other invariants,\n"
-    "with a one-form the constraint |p - alpha(q)|; 17 digits, so that every number is read back as it was. The first row is the "
-    "start (with --resume: the\n"
-    "checkpoint), the last one is the end, wherever --every puts the rows between.\n",
+    "with a one-form the constraint |p - alpha(q)|; 17 digits, so that every number is read back as it was. The first\n"
+    "row is the start (with --resume: the checkpoint), the last one is the end, wherever --every puts the rows between.\n",
     "FILEs are written whole or not at all: a run that fails leaves what was there. Rows on standard output come\n"
     "as they are computed. Ctrl-C, SIGTERM and SIGHUP end a run after the current step, with the output complete, the\n"
     "checkpoint written, and exit code 130, 143 or 129; before the first step they end it at once, and nothing is\n"
