@@ -175,6 +175,85 @@ START_TEST(a_pattern_tells_the_class_where_no_probe_reaches)
 }
 END_TEST
 
+/* ---- time ---- */
+
+/* V = (1 + sin(3 t)/2) x^4/4, of a regular system of one coordinate; H = y^2/2 + V of (y, x) with alpha = (0, y). */
+static int driven(double t, const double *x, double *V, void *user)
+{
+  (void)user;
+  *V = (1 + 0.5 * sin(3 * t)) * x[0] * x[0] * x[0] * x[0] / 4;
+  return 0;
+}
+
+static int driven_gradient(double t, const double *x, double *V_x, void *user)
+{
+  (void)user;
+  V_x[0] = (1 + 0.5 * sin(3 * t)) * x[0] * x[0] * x[0];
+  return 0;
+}
+
+static int driven_energy(double t, const double *q, double *H, void *user)
+{
+  const int returned = driven(t, q + 1, H, user);
+  *H += 0.5 * q[0] * q[0];
+  return returned;
+}
+
+static int driven_energy_gradient(double t, const double *q, double *H_q, void *user)
+{
+  H_q[0] = q[0];
+  return driven_gradient(t, q + 1, H_q + 1, user);
+}
+
+static int kinetic_form(const double *q, double *alpha, void *user)
+{
+  (void)user;
+  alpha[0] = 0;
+  alpha[1] = q[0];
+  return 0;
+}
+
+static int kinetic_gradient(const double *q, double *alpha_q, void *user)
+{
+  const double entries[] = {0, 0, 1, 0};
+  (void)q, (void)user;
+  memcpy(alpha_q, entries, sizeof entries);
+  return 0;
+}
+
+static const struct {
+  const char *degenerate, *regular;
+} pairs[] = {{"dvi-a", "hp:type=2"},        {"dvi-b", "hp:type=3"}, {"dvi-midpoint", "midpoint"},
+             {"dvi-trapezoidal", "verlet"}, {"dvrk", "galerkin"},   {"dvrk:nodes=5", "galerkin:degree=5"}};
+enum { PAIRS = sizeof pairs / sizeof *pairs };
+
+START_TEST(a_hamiltonian_that_depends_on_time_is_met_at_the_same_times)
+{
+  const dvi_potential V = {.value = driven, .gradient = driven_gradient};
+  const dvi_potential H = {.value = driven_energy, .gradient = driven_energy_gradient};
+  const dvi_one_form form = {.value = kinetic_form, .gradient = kinetic_gradient};
+  const double x = 1.2, y = -0.3, q[] = {y, x}, p[] = {0, y};
+  dvi_system *one = NULL, *other = NULL;
+  ck_assert_int_eq(
+      dvi_system_create(&(dvi_system_terms){.dimension = 2, .one_form = &form, .potentials = &H, .potential_count = 1}, &one),
+      DVI_OK);
+  ck_assert_int_eq(
+      dvi_system_create(&(dvi_system_terms){.dimension = 1, .mass.scalar = 1, .potentials = &V, .potential_count = 1}, &other),
+      DVI_OK);
+  dvi_integrator *a = made_integrator(one, pairs[_i].degenerate), *b = made_integrator(other, pairs[_i].regular);
+  ck_assert_int_eq(dvi_integrator_start(a, 0.4, q, p), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_start(b, 0.4, &x, &y), DVI_OK);
+  advance(a, 0.1, 40);
+  advance(b, 0.1, 40);
+  ck_assert_double_eq_tol(dvi_integrator_q(a)[1], dvi_integrator_q(b)[0], 2e-13);
+  ck_assert_double_eq_tol(dvi_integrator_q(a)[0], dvi_integrator_p(b)[0], 2e-13);
+  dvi_integrator_destroy(&a);
+  dvi_integrator_destroy(&b);
+  dvi_system_destroy(&one);
+  dvi_system_destroy(&other);
+}
+END_TEST
+
 int main(void)
 {
   TCase *tests = tcase_create("dvrk");
@@ -185,6 +264,7 @@ int main(void)
   tcase_add_loop_test(tests, energy_stays_bounded, 0, RUNS);
   tcase_add_loop_test(tests, every_step_ends_on_the_constraint, 0, FAMILY);
   tcase_add_loop_test(tests, symmetric_methods_return_and_the_two_eulers_are_adjoint, 0, FAMILY);
+  tcase_add_loop_test(tests, a_hamiltonian_that_depends_on_time_is_met_at_the_same_times, 0, PAIRS);
   tcase_add_test(tests, other_one_forms_are_refused);
   tcase_add_test(tests, a_component_that_changes_after_all_stops_the_step);
   tcase_add_test(tests, a_pattern_tells_the_class_where_no_probe_reaches);

@@ -48,9 +48,10 @@ static void complete(dvi__darboux *d, const double *b)
 
 static dvi_status fill_tableau(dvi__darboux *d, dvi__darboux_rule rule)
 {
-  double c[MOST], b[MOST] = {1};
+  double b[MOST] = {1};
   const int s = d->m - 1;
   if (rule == DVI__GAUSS_STAGES) {
+    double c[MOST];
     DVI_TRY(dvi_quadrature(DVI_GAUSS, s, c, b));
     DVI_TRY(dvi__collocate(s, c, d->a));
   } else if (rule == DVI__TRAPEZOIDAL_PAIR) {
