@@ -36,6 +36,7 @@ typedef struct recorder {
   double t_start, t; /* where the run began; where the last observed step ended */
   long step;         /* counted from t = 0, so that a resumed run writes the rows of an uninterrupted one */
   bool begun, row_written, stop_silently;
+  bool jumps;                          /* the method's trajectories jump between elements */
   const volatile sig_atomic_t *caught; /* the signal that ends the run after its step; 0: none yet */
 } recorder;
 
@@ -63,6 +64,7 @@ static void write_header(recorder *r)
     csv_text(stream, dvi_system_invariant_name(scene->system, i));
   }
   if (has_constraint(scene)) (void)fputs(",constraint", stream);
+  if (r->jumps) (void)fputs(",jump", stream);
   (void)fputc('\n', stream);
 }
 
@@ -100,6 +102,7 @@ static bool write_row(recorder *r, dvi_integrator *integrator)
   write_numbers(stream, r->scene->n, dvi_integrator_p(integrator));
   write_numbers(stream, dvi_system_invariant_count(r->scene->system), r->invariant);
   if (has_constraint(r->scene)) write_numbers(stream, 1, &r->constraint);
+  if (r->jumps) (void)fprintf(stream, ",%.17g", dvi_integrator_jump(integrator, NULL));
   (void)fputc('\n', stream);
   r->row_written = true;
   if (!ferror(stream)) return true;
@@ -165,6 +168,7 @@ static int advance(recorder *r, dvi_integrator *integrator)
                                    .cancel = r->caught};
   r->t_start = dvi_integrator_time(integrator);
   r->step = step_number(r->t_start, request->h);
+  r->jumps = !isnan(dvi_integrator_jump(integrator, NULL));
   write_header(r);
   progress_start(&r->progress, request->final || r->out.path != NULL);
   const dvi_status status = dvi_run(integrator, &options, NULL);
@@ -267,8 +271,9 @@ static int check_settings(const char *name, const words *settings)
 
 static const char *const details[] = {
     "Columns: t, the coordinates, their momenta (p_ and the coordinate's name), energy, the other invariants,\n"
-    "with a one-form the constraint |p - alpha(q)|; 17 digits, so that every number is read back as it was. The first\n"
-    "row is the start (with --resume: the checkpoint), the last one is the end, wherever --every puts the rows between.\n",
+    "with a one-form the constraint |p - alpha(q)|, and with dg and dg-phase the largest jump; 17 digits, so that every\n"
+    "number is read back as it was. The first row is the start (with --resume: the checkpoint), the last one is the end,\n"
+    "wherever --every puts the rows between.\n",
     "FILEs are written whole or not at all: a run that fails leaves what was there. Rows on standard output come\n"
     "as they are computed. Ctrl-C, SIGTERM and SIGHUP end a run after the current step, with the output complete, the\n"
     "checkpoint written, and exit code 130, 143 or 129; before the first step they end it at once, and nothing is\n"

@@ -20,8 +20,7 @@ split() {
 words() { sed -e 's/^\(processor\): .*/\1/; s/^\(compiler\): .*/\1/; s/, GSL .*//; s/  at most$/  interpolated/' -e 's/-\{0,1\}[0-9][0-9.]*\(e[-+]\{0,1\}[0-9][0-9]*\)\{0,1\}/N/g; s/  */ /g; s/ $//' "$1"; }
 
 commands=0
-for page in README.md docs/guide.md docs/theory.md docs/problems.md docs/methods/galerkin.md docs/methods/verlet.md docs/methods/midpoint.md \
-  docs/methods/trapezoidal.md docs/methods/composition.md; do
+for page in README.md docs/guide.md docs/theory.md docs/problems.md $(cd "$top" && ls docs/methods/*.md); do
   split "$top/$page"
   n=1
   while [ -e command.$n ]; do

@@ -33,6 +33,8 @@ static const struct {
     {"double-pendulum", NULL, "galerkin:degree=4"},
     {"double-pendulum", NULL, "composition:order=4,base=trapezoidal"},
     {"vortices", NULL, "vprk"},
+    {"tokamak", NULL, "dg-phase"},
+    {"vortices", NULL, "dg:degree=1,flux=path,stiffness=1"},
     {"tokamak", NULL, "vprk:nodes=3,tableau=lobatto-iiie,projection=symplectic"},
     {"massless-particle", "gauge=singular", "dvi-a"},
     {"massless-particle", "gauge=singular", "dvi-b"},

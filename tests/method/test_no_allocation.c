@@ -52,6 +52,8 @@ static const char *const methods[] = {
     "dvi-trapezoidal",
     "dvrk:nodes=3",
     "hp:type=3",
+    "dg:stiffness=1",
+    "dg-phase",
 };
 enum { PLACES = sizeof places / sizeof *places, METHODS = sizeof methods / sizeof *methods };
 

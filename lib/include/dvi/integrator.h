@@ -25,6 +25,7 @@ typedef struct dvi_counters {
   long halvings;       /**< starting paths that were built from shorter steps */
   long allocations;    /**< blocks of memory that its creation and its steps took; a step takes none */
   long simplified;     /**< solves by simplified Newton's method: the Jacobian of one point, decoupled into systems of n unknowns */
+  long jump_alarms;    /**< steps that ended in a jump large against the motion (dg, dg-phase with alarm=warn) */
   long certified;      /**< solutions of other iterations that KINSOL's own test of the residual accepted (solver=certified) */
 } dvi_counters;
 
@@ -72,6 +73,7 @@ dvi_status dvi_integrator_start_velocity(dvi_integrator *integrator, double t, c
  *  @retval DVI_NOT_CONVERGED   the step's equations were not solved, even by KINSOL with line search; the error sentence names
  *                              step, time, iterations and residual
  *  @retval DVI_NOT_FINITE      NaN or Inf came out of a callback or the step
+ *  @retval DVI_JUMP            a method with jumps ends the run because they have grown (its key `alarm`)
  *  @retval DVI_CALLBACK_RETRY  a callback returned a positive number
  *  @retval DVI_CALLBACK_FAILED a callback returned a negative number */
 dvi_status dvi_integrator_step(dvi_integrator *integrator, double h);
@@ -90,6 +92,12 @@ const dvi_system *dvi_integrator_system(const dvi_integrator *integrator);
 
 /** The order that theory claims for this method with its options. */
 int dvi_integrator_order(const dvi_integrator *integrator);
+
+/** The jump q+ - q- at the current time, of a method whose trajectories jump between two elements (dg, dg-phase).
+ *
+ *  @param[out] jump  [nq]; NULL if it is not wanted. Not written if the method has none
+ *  @return the largest magnitude of its components; NaN if the method has none, before the start, or for NULL */
+double dvi_integrator_jump(const dvi_integrator *integrator, double *jump);
 
 /** Bytes that a step moves between memory and processor if the state fits in no cache: what it reads, what it writes, and the lines that are
  *  fetched to be written. 0 if the method does not know: it does if it goes through memory in whole passes (verlet with potentials that

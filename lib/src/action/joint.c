@@ -1,20 +1,21 @@
 #include "action/joint.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "core/memory.h"
 #include "core/status.h"
 
 static dvi_status join(const dvi_system *system, dvi__pattern *joint)
 {
-  dvi__pattern vq = {0}, mixed = {0}, diagonal = {0};
+  dvi__pattern vq = {0}, mixed = {0}, own = {0}, diagonal = {0};
   dvi_status status = dvi__pattern_transpose(&system->qv, &vq);
   if (status == DVI_OK) status = dvi__pattern_union(&system->qv, &vq, &mixed);
-  if (status == DVI_OK) status = dvi__pattern_union(&system->qq, &system->vv, &diagonal);
+  if (status == DVI_OK)
+    status = system->terms & DVI__ONE_FORM ? dvi__pattern_diagonal(system->n, &own)
+                                           : dvi__pattern_union(&system->vv, &system->vv, &own);
+  if (status == DVI_OK) status = dvi__pattern_union(&system->qq, &own, &diagonal);
   if (status == DVI_OK) status = dvi__pattern_union(&mixed, &diagonal, joint);
   dvi__pattern_clear(&vq);
   dvi__pattern_clear(&mixed);
+  dvi__pattern_clear(&own);
   dvi__pattern_clear(&diagonal);
   return status;
 }
@@ -31,17 +32,4 @@ dvi_status dvi__joint_create(const dvi_system *system, dvi__pattern *joint, dvi_
                                  dvi__pattern_find(&system->qv, j, i), dvi__pattern_find(&system->vv, i, j)};
     }
   return DVI_OK;
-}
-
-void dvi__joint_scale(const dvi_system *system, const double *alpha_q, int m, double *scale)
-{
-  const dvi__pattern *qv = &system->qv;
-  memset(scale, 0, (size_t)system->n * (size_t)m * sizeof *scale);
-  for (int j = 0; j < system->n; j++)
-    for (int e = qv->start[j]; e < qv->start[j + 1]; e++) {
-      scale[j * m] = fmax(scale[j * m], fabs(alpha_q[e]));
-      scale[qv->row[e] * m] = fmax(scale[qv->row[e] * m], fabs(alpha_q[e]));
-    }
-  for (int i = 0; i < system->n; i++)
-    for (int k = m - 1; k >= 0; k--) scale[i * m + k] = scale[i * m] > 0 ? scale[i * m] : 1;
 }

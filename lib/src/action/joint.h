@@ -1,4 +1,4 @@
-/* The joint pattern of a Lagrangian's Hessian: which coordinates meet in any of L_qq, L_qv, L_vq and L_vv. */
+/* The joint pattern of a Lagrangian's Hessian: which coordinates meet in any of L_qq, L_qv, L_vq and L_vv; of a one-form with the diagonal. */
 #ifndef DVI_ACTION_JOINT_H
 #define DVI_ACTION_JOINT_H
 #include "system/system.h"
@@ -11,8 +11,5 @@ typedef struct dvi__block {
 /* The pattern, and a block [entries] for each of its entries, from the heap; what a failure leaves belongs to the caller, too. The system must be
  * prepared for Hessians. */
 dvi_status dvi__joint_create(const dvi_system *system, dvi__pattern *joint, dvi__block **block);
-
-/* scale [n*m]: for each of the m rows of component i the largest derivative in `alpha_q`, the one-form's gradients, of alpha_i or in q_i; 1 if it is 0. */
-void dvi__joint_scale(const dvi_system *system, const double *alpha_q, int m, double *scale);
 
 #endif

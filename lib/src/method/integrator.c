@@ -239,6 +239,14 @@ int dvi_integrator_order(const dvi_integrator *integrator)
   return integrator != NULL ? integrator->stepper.order : 0;
 }
 
+double dvi_integrator_jump(const dvi_integrator *I, double *jump)
+{
+  if (I == NULL || !I->started || I->stepper.method->jump == NULL) return (double)NAN;
+  const double *now = I->stepper.method->jump(&I->stepper);
+  if (jump != NULL) memcpy(jump, now, (size_t)I->system->n * sizeof *jump);
+  return dvi__largest((size_t)I->system->n, now);
+}
+
 double dvi_integrator_traffic(const dvi_integrator *integrator)
 {
   return integrator != NULL && integrator->stepper.method->traffic != NULL

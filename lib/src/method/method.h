@@ -30,12 +30,15 @@ typedef struct dvi__key {
   const char *help;
 } dvi__key;
 
-enum { DVI__KEYS_MOST = 8, DVI__SPECIFICATION_SIZE = 256, DVI__LEFT_OUT = -1 };
+enum { DVI__KEYS_MOST = 8, DVI__LIST_MOST = 16, DVI__SPECIFICATION_SIZE = 256, DVI__LEFT_OUT = -1 };
 
 /* Values of the keys, in the order of the method's table. A method may replace DVI__LEFT_OUT by what it chose. */
 typedef struct dvi__settings {
   int value[DVI__KEYS_MOST];
-  char rest[DVI__SPECIFICATION_SIZE]; /* "key=value,..." that are not the method's own; only for methods that take them */
+  double list[DVI__LIST_MOST];             /* numbers of the key that is a list */
+  int listed;                              /* how many; 0: it is not given */
+  char list_text[DVI__SPECIFICATION_SIZE]; /* as they were written */
+  char rest[DVI__SPECIFICATION_SIZE];      /* "key=value,..." that are not the method's own; only for methods that take them */
 } dvi__settings;
 
 typedef struct dvi__method dvi__method;
@@ -68,9 +71,11 @@ void dvi__text_add(dvi__text *text, const char *format, ...) __attribute__((form
 struct dvi__method {
   const char *name, *summary, *cite;
   const dvi__key *keys; /* ended by a key without a name; NULL: none */
-  int takes_rest;       /* keys of others are collected in settings.rest */
-  unsigned needs;       /* dvi__term bits that the system must declare */
-  unsigned uses;        /* bits that it may declare */
+  const char *list;     /* the key of a list of decimal numbers, c1:c2:..., not one of the above; NULL: none */
+  const char *list_help;
+  int takes_rest; /* keys of others are collected in settings.rest */
+  unsigned needs; /* dvi__term bits that the system must declare */
+  unsigned uses;  /* bits that it may declare */
   /* Set order, symmetric, memory_count, own. On failure destroy is called. */
   dvi_status (*create)(dvi__stepper *self);
   void (*destroy)(dvi__stepper *self);
@@ -88,6 +93,8 @@ struct dvi__method {
   void (*path)(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v);
   /* The multiplier [n] of the last step, in the memory; NULL if there is none. NULL: never. */
   const double *(*multiplier)(const dvi__stepper *self);
+  /* The jump [n] between the last element and the next, in the stepper's memory. NULL: the method's trajectories do not jump. */
+  const double *(*jump)(const dvi__stepper *self);
   void (*explain)(const dvi__stepper *self, dvi__text *text);
   /* Members as lanes; all three are NULL where there is no such way. prepare makes `lanes` for up to `capacity` members, if the system allows it
    * and it pays. step advances all members that are not `left`, each with the bits and the counts of `step`, or leaves them to it. */
@@ -112,7 +119,7 @@ void dvi__spell_out(const dvi__method *method, const dvi__settings *settings, dv
 /* The method of a name, or NULL (table.c). */
 const dvi__method *dvi__find_method(const char *name, size_t length);
 
-/* Number of keys in a method's table. */
+/* Number of keys in a method's table, without that of a list. */
 int dvi__key_count(const dvi__method *method);
 
 #endif

@@ -39,20 +39,32 @@ static dvi_status unknown_key(const dvi__method *method, piece name)
   char known[DVI__SPECIFICATION_SIZE] = "";
   dvi__text text = {known, sizeof known, 0};
   for (int k = 0; k < dvi__key_count(method); k++) dvi__text_add(&text, "%s%s", k > 0 ? ", " : "", method->keys[k].name);
+  if (method->list != NULL) dvi__text_add(&text, ", %s", method->list);
   return dvi__fail(DVI_BAD_OPTION, "%s: unknown key '%.*s'; %s%s", method->name, name.length, name.text,
                    text.length > 0 ? "it takes " : "it takes none", known);
 }
 
-/* One spelling of each number: no sign, no blank, no leading zero, all of which strtol would take. */
-static int plain_digits(piece value)
+/* One spelling of each number: no sign, no blank, no leading zero, all of which strtol would take. The length of the digits, 0 if there is none such. */
+static int plain_digits(const char *text)
 {
-  const int digits = (int)strspn(value.text, "0123456789");
-  return value.length > 0 && digits == value.length && (value.text[0] != '0' || value.length == 1);
+  const int digits = (int)strspn(text, "0123456789");
+  return text[0] != '0' || digits == 1 ? digits : 0;
+}
+
+enum { LONGEST_DECIMAL = 15 }; /* as many digits a double keeps */
+
+/* The same with decimals, of which the last is not 0. */
+static int plain_decimal(const char *text)
+{
+  const int whole = plain_digits(text);
+  if (whole == 0 || text[whole] != '.') return whole;
+  const int decimals = (int)strspn(text + whole + 1, "0123456789");
+  return decimals > 0 && text[whole + decimals] != '0' ? whole + 1 + decimals : 0;
 }
 
 static dvi_status parse_number(const dvi__method *method, const dvi__key *key, piece value, int *number)
 {
-  if (!plain_digits(value))
+  if (plain_digits(value.text) != value.length || value.length == 0)
     return dvi__fail(DVI_BAD_OPTION, "%s: %s=%.*s is not a whole number in plain digits", method->name, key->name, value.length,
                      value.text);
   const long parsed = strtol(value.text, NULL, 10); /* LONG_MAX if it is beyond */
@@ -60,6 +72,26 @@ static dvi_status parse_number(const dvi__method *method, const dvi__key *key, p
     return dvi__fail(DVI_BAD_OPTION, "%s: %s=%.*s; %d to %d are possible", method->name, key->name, value.length, value.text,
                      key->least, key->most);
   *number = (int)parsed;
+  return DVI_OK;
+}
+
+static dvi_status parse_list(const dvi__method *method, piece value, dvi__settings *settings)
+{
+  if (settings->listed > 0) return dvi__fail(DVI_BAD_OPTION, "%s: %s is given twice", method->name, method->list);
+  const char *end = value.text + value.length;
+  for (const char *at = value.text;; at++) {
+    const int length = plain_decimal(at);
+    if (length == 0 || length > LONGEST_DECIMAL || (at + length != end && at[length] != ':'))
+      return dvi__fail(DVI_BAD_OPTION, "%s: %s=%.*s is not a list of numbers in plain digits, such as 2 or 1:0.5", method->name,
+                       method->list, value.length, value.text);
+    if (settings->listed == DVI__LIST_MOST)
+      return dvi__fail(DVI_BAD_OPTION, "%s: %s has more than %d numbers", method->name, method->list, DVI__LIST_MOST);
+    settings->list[settings->listed++] = strtod(at, NULL);
+    at += length;
+    if (at == end) break;
+  }
+  /* It fits: at most DVI__LIST_MOST numbers of LONGEST_DECIMAL characters, and their colons. */
+  memcpy(settings->list_text, value.text, (size_t)value.length);
   return DVI_OK;
 }
 
@@ -95,6 +127,7 @@ static dvi_status assign(const dvi__method *method, piece name, piece value, dvi
     return key->choice == NULL ? parse_number(method, key, value, &settings->value[k])
                                : parse_choice(method, key, value, &settings->value[k]);
   }
+  if (method->list != NULL && same(name, method->list)) return parse_list(method, value, settings);
   return method->takes_rest ? keep_for_others(method, name, value, settings) : unknown_key(method, name);
 }
 
@@ -137,5 +170,6 @@ void dvi__spell_out(const dvi__method *method, const dvi__settings *settings, dv
     else
       dvi__text_add(text, "%d", settings->value[k]);
   }
+  if (settings->listed > 0) dvi__text_add(text, ",%s=%s", method->list, settings->list_text);
   if (settings->rest[0] != 0) dvi__text_add(text, ",%s", settings->rest);
 }

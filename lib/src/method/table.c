@@ -48,22 +48,20 @@ int dvi__key_count(const dvi__method *method)
 
 int dvi_method_key_count(int i)
 {
-  return entry(i) != NULL ? dvi__key_count(table[i]) : 0;
+  return entry(i) != NULL ? dvi__key_count(table[i]) + (table[i]->list != NULL) : 0;
 }
 
-static const dvi__key *key(int i, int k)
-{
-  return k >= 0 && k < dvi_method_key_count(i) ? &table[i]->keys[k] : NULL;
-}
-
+/* The key that is a list comes last. */
 const char *dvi_method_key_name(int i, int k)
 {
-  return key(i, k) != NULL ? key(i, k)->name : NULL;
+  if (k < 0 || k >= dvi_method_key_count(i)) return NULL;
+  return k < dvi__key_count(table[i]) ? table[i]->keys[k].name : table[i]->list;
 }
 
 const char *dvi_method_key_help(int i, int k)
 {
-  return key(i, k) != NULL ? key(i, k)->help : NULL;
+  if (k < 0 || k >= dvi_method_key_count(i)) return NULL;
+  return k < dvi__key_count(table[i]) ? table[i]->keys[k].help : table[i]->list_help;
 }
 
 const dvi__method *dvi__find_method(const char *name, size_t length)

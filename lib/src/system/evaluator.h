@@ -43,8 +43,9 @@ dvi_status dvi__velocity_hessian(dvi__evaluator *e, double t, const double *q, c
 /* One point: v with L_v(t,q,v) = p, or that of the equations of motion with a one-form. v holds a guess for general Lagrangians; unchanged on failure. */
 dvi_status dvi__legendre_inverse(dvi__evaluator *e, double t, const double *q, const double *p, double *v);
 
-/* One point of a system with a one-form: factor Omega(q); v with Omega(q) v = H_q(t,q). DVI_SINGULAR. */
+/* One point of a system with a one-form: factor Omega(q); x [n] <- Omega^-1 x with that; v with Omega(q) v = H_q(t,q). DVI_SINGULAR. */
 dvi_status dvi__two_form_factor(dvi__evaluator *e, const double *q);
+void dvi__two_form_solve(dvi__evaluator *e, double *x);
 dvi_status dvi__two_form_velocity(dvi__evaluator *e, double t, const double *q, double *v);
 
 /* One point of a one-form: alpha [n], and the gradient [n] of alpha(q).w, w [n]. */
@@ -52,6 +53,9 @@ dvi_status dvi__form_gradient(dvi__evaluator *e, const double *q, const double *
 
 /* Only with DVI__HESSIANS. The Hessian of alpha(q).w in the order of the system's qq, and the gradients of alpha in that of its qv. */
 dvi_status dvi__form_hessian(dvi__evaluator *e, const double *q, const double *w, double *alpha_w_qq, double *alpha_q);
+
+/* scale [n]: the largest gradient of alpha at q that has to do with a coordinate; 1 where all vanish. */
+dvi_status dvi__form_scale(dvi__evaluator *e, const double *q, double *scale);
 
 /* F [n] = Omega(q) v - H_q(t,q), without a factorisation. */
 dvi_status dvi__two_form_residual(dvi__evaluator *e, double t, const double *q, const double *v, double *F);

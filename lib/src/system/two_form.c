@@ -37,6 +37,11 @@ dvi_status dvi__two_form_factor(dvi__evaluator *e, const double *q)
   return status == DVI_SINGULAR ? dvi__fail(status, "the two-form of the one-form is singular at this point") : status;
 }
 
+void dvi__two_form_solve(dvi__evaluator *e, double *x)
+{
+  dvi__linear_solve(e->velocity, x);
+}
+
 dvi_status dvi__two_form_velocity(dvi__evaluator *e, double t, const double *q, double *v)
 {
   const size_t n = (size_t)e->system->n;
@@ -63,6 +68,22 @@ dvi_status dvi__form_distance(dvi__evaluator *e, const double *q, const double *
   DVI_TRY(dvi__form_value(e->system->lagrangian, q, alpha, e->scratch.result[0]));
   for (int i = 0; i < e->system->n; i++) largest = fmax(largest, fabs(p[i] - alpha[i]));
   *distance = largest;
+  return DVI_OK;
+}
+
+dvi_status dvi__form_scale(dvi__evaluator *e, const double *q, double *scale)
+{
+  const dvi__lagrangian_term *l = e->system->lagrangian;
+  double *alpha_q = e->hessian[1];
+  DVI_TRY(dvi__form_gradients(l, q, alpha_q, e->scratch.result[0]));
+  memset(scale, 0, (size_t)e->system->n * sizeof *scale);
+  for (int j = 0; j < e->system->n; j++)
+    for (int k = l->qv.start[j]; k < l->qv.start[j + 1]; k++) {
+      scale[j] = fmax(scale[j], fabs(alpha_q[k]));
+      scale[l->qv.row[k]] = fmax(scale[l->qv.row[k]], fabs(alpha_q[k]));
+    }
+  for (int i = 0; i < e->system->n; i++)
+    if (scale[i] == 0) scale[i] = 1;
   return DVI_OK;
 }
 
