@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/memory.h"
 #include "support/runs.h"
 #include "support/suite.h"
 
@@ -236,6 +237,29 @@ START_TEST(bad_gauges_are_refused_and_wrong_ones_found)
 }
 END_TEST
 
+START_TEST(a_system_in_another_gauge_survives_every_failure_of_memory)
+{
+  product own;
+  problem *of = made_problem("vortices", NULL);
+  const dvi_gauge f = declared(&places[0], 4, &own);
+  const long before = dvi__allocation_count();
+  dvi_system *system = gauged(of, &f);
+  const long needed = dvi__allocation_count() - before;
+  dvi_system_destroy(&system);
+  dvi_system_terms terms = *of->terms;
+  terms.gauge = &f;
+  for (long successes = 0; successes < needed; successes++) {
+    dvi__fail_allocations_after(successes);
+    const dvi_status status = dvi_system_create(&terms, &system);
+    dvi__fail_allocations_after(-1);
+    ck_assert_int_eq(status, DVI_NO_MEMORY);
+    ck_assert_ptr_null(system);
+  }
+  ck_assert_int_gt(needed, 20);
+  problem_destroy(&of);
+}
+END_TEST
+
 int main(void)
 {
   TCase *tests = tcase_create("gauge");
@@ -244,5 +268,6 @@ int main(void)
   tcase_add_loop_test(tests, a_gauge_brings_systems_into_the_class_of_one_step_methods, 0, IN_CLASS);
   tcase_add_loop_test(tests, a_gauge_is_the_one_form_that_it_gives, 0, 2);
   tcase_add_test(tests, bad_gauges_are_refused_and_wrong_ones_found);
+  tcase_add_test(tests, a_system_in_another_gauge_survives_every_failure_of_memory);
   return run_tests("system/gauge", tests);
 }
