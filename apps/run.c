@@ -68,8 +68,8 @@ static void write_header(recorder *r)
     csv_text(stream, dvi_system_invariant_name(scene->system, i));
   }
   if (r->chooses) (void)fputs(",h", stream);
-  if (r->jumps) (void)fputs(",jump", stream);
   if (has_constraint(scene)) (void)fputs(",constraint", stream);
+  if (r->jumps) (void)fputs(",jump", stream);
   (void)fputc('\n', stream);
 }
 
@@ -107,8 +107,8 @@ static bool write_row(recorder *r, dvi_integrator *integrator)
   write_numbers(stream, r->scene->n, dvi_integrator_p(integrator));
   write_numbers(stream, dvi_system_invariant_count(r->scene->system), r->invariant);
   if (r->chooses) write_numbers(stream, 1, (double[]){dvi_integrator_last_step(integrator)});
-  if (r->jumps) (void)fprintf(stream, ",%.17g", dvi_integrator_jump(integrator, NULL));
   if (has_constraint(r->scene)) write_numbers(stream, 1, &r->constraint);
+  if (r->jumps) (void)fprintf(stream, ",%.17g", dvi_integrator_jump(integrator, NULL));
   (void)fputc('\n', stream);
   r->row_written = true;
   if (!ferror(stream)) return true;
@@ -321,10 +321,10 @@ static int check_settings(const char *name, const words *settings)
 
 static const char *const details[] = {
     "Columns: t, the coordinates, their momenta (p_ and the coordinate's name), energy, the other invariants;\n"
-    "methods that choose their steps add h, the length of the step that led to the row, dg and dg-phase add jump,\n"
-    "the largest one, and with a one-form there is the constraint |p - alpha(q)|;\n"
-    "17 digits, so that every number is read back as it was. The first row is the start (with --resume: the\n"
-    "checkpoint), the last one is the end, wherever --every puts the rows between.\n",
+    "methods that choose their steps add h, the length of the step that led to the row, with a one-form there is the\n"
+    "constraint |p - alpha(q)|, and dg and dg-phase add jump, the largest one; 17 digits, so that every number is read\n"
+    "back as it was. The first row is the start (with --resume: the checkpoint), the last one is the end, wherever\n"
+    "--every puts the rows between.\n",
     "FILEs are written whole or not at all: a run that fails leaves what was there. Rows on standard output come\n"
     "as they are computed. Ctrl-C, SIGTERM and SIGHUP end a run after the current step, with the output complete, the\n"
     "checkpoint written, and exit code 130, 143 or 129; before the first step they end it at once, and nothing is\n"

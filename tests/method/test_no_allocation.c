@@ -49,11 +49,11 @@ static const char *const methods[] = {
     "verlet:threads=3",
     "composition:order=6,base=verlet,threads=2",
     "vprk:nodes=3",
-    "dg:stiffness=1",
-    "dg-phase",
     "dvi-trapezoidal",
     "dvrk:nodes=3",
     "hp:type=3",
+    "dg:stiffness=1",
+    "dg-phase",
 };
 enum { PLACES = sizeof places / sizeof *places, METHODS = sizeof methods / sizeof *methods };
 

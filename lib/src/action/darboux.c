@@ -260,9 +260,8 @@ dvi_status dvi__darboux_jacobian(dvi__darboux *d, const double *x, double *value
 
 dvi_status dvi__darboux_scale(dvi__darboux *d, double *scale)
 {
-  memset(d->V, 0, (size_t)d->n * sizeof(double));
-  DVI_TRY(dvi__form_hessian(d->evaluator, d->q0, d->V, d->H_qq, d->H_qv));
-  dvi__joint_scale(d->system, d->H_qv, d->m, scale);
+  DVI_TRY(dvi__form_scale(d->evaluator, d->q0, d->V));
+  for (int i = 0; i < d->n * d->m; i++) scale[i] = d->V[i / d->m];
   return DVI_OK;
 }
 

@@ -1,8 +1,5 @@
 #include "action/joint.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "core/memory.h"
 #include "core/status.h"
 
@@ -35,17 +32,4 @@ dvi_status dvi__joint_create(const dvi_system *system, dvi__pattern *joint, dvi_
                                  dvi__pattern_find(&system->qv, j, i), dvi__pattern_find(&system->vv, i, j)};
     }
   return DVI_OK;
-}
-
-void dvi__joint_scale(const dvi_system *system, const double *alpha_q, int m, double *scale)
-{
-  const dvi__pattern *qv = &system->qv;
-  memset(scale, 0, (size_t)system->n * (size_t)m * sizeof *scale);
-  for (int j = 0; j < system->n; j++)
-    for (int e = qv->start[j]; e < qv->start[j + 1]; e++) {
-      scale[j * m] = fmax(scale[j * m], fabs(alpha_q[e]));
-      scale[qv->row[e] * m] = fmax(scale[qv->row[e] * m], fabs(alpha_q[e]));
-    }
-  for (int i = 0; i < system->n; i++)
-    for (int k = m - 1; k >= 0; k--) scale[i * m + k] = scale[i * m] > 0 ? scale[i * m] : 1;
 }

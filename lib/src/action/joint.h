@@ -12,7 +12,4 @@ typedef struct dvi__block {
  * prepared for Hessians. */
 dvi_status dvi__joint_create(const dvi_system *system, dvi__pattern *joint, dvi__block **block);
 
-/* scale [n*m]: for each of the m rows of component i the largest derivative in `alpha_q`, the one-form's gradients, of alpha_i or in q_i; 1 if it is 0. */
-void dvi__joint_scale(const dvi_system *system, const double *alpha_q, int m, double *scale);
-
 #endif

@@ -335,9 +335,8 @@ dvi_status dvi__partitioned_scale(dvi__partitioned *p, double *scale)
     scale_by_masses(p, scale);
     return DVI_OK;
   }
-  memset(p->k0, 0, (size_t)p->n * sizeof(double));
-  DVI_TRY(dvi__form_hessian(p->evaluator, p->q0, p->k0, p->qq0, p->qv0));
-  dvi__joint_scale(p->system, p->qv0, p->m, scale);
+  DVI_TRY(dvi__form_scale(p->evaluator, p->q0, p->k0));
+  for (int i = 0; i < p->n * p->m; i++) scale[i] = p->k0[i / p->m];
   return DVI_OK;
 }
 

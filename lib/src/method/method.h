@@ -100,10 +100,10 @@ struct dvi__method {
   double (*traffic)(const dvi__stepper *self, int count);
   /* q [n] and v [n] at tau in [0,1] of the last step, which started at q0 [n] with length h. NULL: Hermite's cubic. */
   void (*path)(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v);
-  /* The jump [n] between the last element and the next, in the stepper's memory. NULL: the method's trajectories do not jump. */
-  const double *(*jump)(const dvi__stepper *self);
   /* The multiplier [n] of the last step, in the memory; NULL if there is none. NULL: never. */
   const double *(*multiplier)(const dvi__stepper *self);
+  /* The jump [n] between the last element and the next, in the stepper's memory. NULL: the method's trajectories do not jump. */
+  const double *(*jump)(const dvi__stepper *self);
   void (*explain)(const dvi__stepper *self, dvi__text *text);
   /* What became of the energy that the method conserves; NULL: it conserves none. */
   void (*balance)(const dvi__stepper *self, dvi_energy_balance *balance);
