@@ -99,7 +99,8 @@ dvi_status dvi_path_guess_along(dvi_path *path, const dvi_path *last, const dvi_
  *  @retval DVI_NOT_CONVERGED   no stationary path was found from there, or (with many conjugate points ahead) there is none
  *  @retval DVI_SINGULAR        the path that was found is not isolated, beyond its symmetries: the ends are conjugate, and every path beside it is as
  *                              good, or roundoff decided which one it is
- *  @retval DVI_BAD_ARGUMENT    the Lagrangian does not have `symmetry` for a symmetry, or, depending on time, not the period
+ *  @retval DVI_BAD_ARGUMENT    the Lagrangian does not have `symmetry` for a symmetry, or, depending on time, not the period: L, L_q or L_v is another
+ *                              one where they take the guess's first node, or a node of the path that was found
  *  @retval DVI_NOT_FINITE, DVI_CALLBACK_RETRY, DVI_CALLBACK_FAILED  from the callbacks */
 dvi_status dvi_path_solve(dvi_path *path, dvi_path_report *report);
 
