@@ -277,8 +277,11 @@ static int solve_family(const char *name, const path_request *request, const fam
 
 static void print_variation(const dvi_path_report *r, FILE *stream)
 {
-  if (r->negative < 0)
+  if (r->zero < 0)
     (void)fprintf(stream, "second variation  not defined for these ends, or not found\n");
+  else if (r->negative < 0)
+    (void)fprintf(stream, "second variation  not resolved by these steps: %ld zero, but %d of symmetry; take more steps\n", r->zero,
+                  r->symmetries);
   else
     (void)fprintf(stream, "second variation  %s: %ld negative, %ld zero (%d of symmetry)\n", r->negative > 0 ? "saddle" : "minimum",
                   r->negative, r->zero, r->symmetries);

@@ -328,6 +328,27 @@ START_TEST(long_steps_choose_their_time)
 }
 END_TEST
 
+/* Few steps move the zero of time to either side of 0. */
+START_TEST(steps_that_do_not_resolve_a_symmetry_have_no_index)
+{
+  static run r;
+  const int steps[] = {8, 30};
+  problem *of = made_problem("pendulum", NULL);
+  for (int k = 0; k < 2; k++) {
+    record(of->system, of->q, of->p, "midpoint", 7, steps[k], &r);
+    dvi_path *path = made_path(of->system, "midpoint",
+                               &(dvi_path_options){.ends = DVI_ENDS_PERIODIC, .steps = steps[k], .span = 7});
+    ck_assert_int_eq(dvi_path_guess(path, steps[k] + 1, 1, r.t, r.q), DVI_OK);
+    const dvi_path_report report = solved(path);
+    ck_assert_int_eq(report.symmetries, 1);
+    ck_assert_int_eq(report.zero, k);
+    ck_assert_int_eq(report.negative, k == 0 ? -1 : 1);
+    dvi_path_destroy(&path);
+  }
+  problem_destroy(&of);
+}
+END_TEST
+
 /* q_N = q_0 + 2 pi: the pendulum turns over. Its period with energy E = 2, by the arithmetic-geometric mean: T = 2 pi / agm(sqrt(2 (E+1)), sqrt(2 (E-1))). */
 START_TEST(a_pendulum_that_turns_over_is_periodic_up_to_a_shift)
 {
@@ -458,6 +479,7 @@ int main(void)
   tcase_add_test(tests, an_energy_has_its_period);
   tcase_add_test(tests, a_nearly_periodic_run_closes_to_roundoff);
   tcase_add_test(tests, long_steps_choose_their_time);
+  tcase_add_test(tests, steps_that_do_not_resolve_a_symmetry_have_no_index);
   tcase_add_test(tests, a_pendulum_that_turns_over_is_periodic_up_to_a_shift);
   tcase_add_test(tests, a_circle_is_relatively_periodic);
   tcase_add_test(tests, a_driven_oscillator_follows_its_drive);

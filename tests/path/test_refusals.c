@@ -307,6 +307,77 @@ START_TEST(what_the_lagrangian_does_not_have_is_no_symmetry)
 }
 END_TEST
 
+/* V = q^2/2 - q f: at the guess, at rest in 0, V vanishes whatever f is. `user`: the frequency of f = cos, or 0. */
+static int pushed_value(double t, const double *q, double *value, void *user)
+{
+  *value = q[0] * q[0] / 2 - q[0] * cos(*(const double *)user * t);
+  return 0;
+}
+
+static int pushed_gradient(double t, const double *q, double *gradient, void *user)
+{
+  gradient[0] = q[0] - cos(*(const double *)user * t);
+  return 0;
+}
+
+/* A period of 6 under a drive of 8.976, and a mirror that turns a constant push round. */
+START_TEST(a_path_at_rest_hides_no_force)
+{
+  static const double mirror[] = {-1};
+  double frequency[] = {0.7, 0};
+  const char *const words[] = {"the period is none of the Lagrangian's: it changes L_q",
+                               "the symmetry is none of the Lagrangian's: it changes L_q"};
+  for (int k = 0; k < 2; k++) {
+    const dvi_potential push = {.name = "push", .value = pushed_value, .gradient = pushed_gradient, .user = frequency + k};
+    dvi_system *system = make_system(&(dvi_system_terms){
+        .dimension = 1, .mass.scalar = 1, .potentials = &push, .potential_count = 1, .autonomous = frequency[k] == 0});
+    const dvi_path_options options = {
+        .ends = DVI_ENDS_PERIODIC, .steps = 40, .span = 6, .dimension = 1, .symmetry = k == 1 ? mirror : NULL};
+    dvi_path *path = NULL;
+    ck_assert_int_eq(dvi_path_create(system, "galerkin:degree=5", &options, &path), DVI_OK);
+    const dvi_status status = dvi_path_solve(path, NULL);
+    ck_assert_msg(status == DVI_BAD_ARGUMENT, "%s: %s", dvi_status_name(status), dvi_last_error());
+    check_words(words[k]);
+    ck_assert_ptr_null(dvi_path_p(path, 0));
+    dvi_path_destroy(&path);
+    dvi_system_destroy(&system);
+  }
+}
+END_TEST
+
+/* V = q^2/2 + q^3 sin t - q cos(2 pi t): at the guess, at rest in 0, it looks as if 1 were its period; the path that is found sees more. */
+static int hidden_value(double t, const double *q, double *value, void *user)
+{
+  (void)user;
+  *value = q[0] * q[0] * q[0] * sin(t) - q[0] * cos(2 * 3.14159265358979324 * t) + q[0] * q[0] / 2;
+  return 0;
+}
+
+static int hidden_gradient(double t, const double *q, double *gradient, void *user)
+{
+  (void)user;
+  gradient[0] = 3 * q[0] * q[0] * sin(t) - cos(2 * 3.14159265358979324 * t) + q[0];
+  return 0;
+}
+
+START_TEST(a_period_is_tested_on_the_path_that_is_found)
+{
+  const dvi_potential hidden = {.name = "hidden", .value = hidden_value, .gradient = hidden_gradient};
+  dvi_system *system = make_system(
+      &(dvi_system_terms){.dimension = 1, .mass.scalar = 1, .potentials = &hidden, .potential_count = 1});
+  const dvi_path_options options = {.ends = DVI_ENDS_PERIODIC, .steps = 20, .span = 1};
+  dvi_path *path = NULL;
+  ck_assert_int_eq(dvi_path_create(system, "galerkin:degree=4", &options, &path), DVI_OK);
+  for (int attempt = 0; attempt < 2; attempt++) {
+    const dvi_status status = dvi_path_solve(path, NULL);
+    ck_assert_msg(status == DVI_BAD_ARGUMENT, "%s: %s", dvi_status_name(status), dvi_last_error());
+    check_words("the period is none of the Lagrangian's");
+  }
+  dvi_path_destroy(&path);
+  dvi_system_destroy(&system);
+}
+END_TEST
+
 /* At rest in the centre. */
 START_TEST(a_guess_where_the_lagrangian_is_infinite_fails)
 {
@@ -362,6 +433,8 @@ int main(void)
   tcase_add_test(tests, a_period_that_no_path_has_is_named);
   tcase_add_test(tests, a_family_of_closed_paths_is_named);
   tcase_add_test(tests, what_the_lagrangian_does_not_have_is_no_symmetry);
+  tcase_add_test(tests, a_path_at_rest_hides_no_force);
+  tcase_add_test(tests, a_period_is_tested_on_the_path_that_is_found);
   tcase_add_test(tests, a_guess_where_the_lagrangian_is_infinite_fails);
   tcase_add_test(tests, callbacks_have_the_last_word);
   return run_tests("refusals", tests);

@@ -45,9 +45,11 @@ typedef struct dvi_path_report {
       gradient; /**< largest |dS/dX| over nodes and inner unknowns, relative to the largest momentum: what is left of stationarity */
   /** Signs of the second variation on the paths with these ends, at this span. An eigenvalue lambda of d2S = lambda / span^2 times the kinetic
    *  weight sum_k h |L_vv| dq_k^2 is called zero if |lambda| < zero_below. negative = 0: the action has a minimum there; else a saddle. Its number
-   *  is that of the conjugate points, for fixed ends (Morse). -1 where it is not defined (initial ends) or could not be found. */
+   *  is that of the conjugate points, for fixed ends (Morse). -1 where it is not defined (initial ends) or could not be found, and where
+   *  zero < symmetries: steps so long that symmetries do not have the eigenvalue 0 do not resolve the signs of others. Take more steps. */
   long negative;
-  long zero;      /**< the same, of zeros: directions along which the action stays as it is; -1 as above */
+  long
+      zero; /**< the number of zeros: directions along which the action stays as it is; -1 where it is not defined or could not be found */
   int symmetries; /**< directions along which a periodic path may be moved at will: time, and declared symmetries that the ends keep */
   double zero_below; /**< the largest |lambda| that is called zero: 1e-6, or what roundoff makes of 0 for N beyond 2e4 */
   int iterations;    /**< of KINSOL and Newton's method */
@@ -99,7 +101,8 @@ dvi_status dvi_path_guess_along(dvi_path *path, const dvi_path *last, const dvi_
  *  @retval DVI_NOT_CONVERGED   no stationary path was found from there, or (with many conjugate points ahead) there is none
  *  @retval DVI_SINGULAR        the path that was found is not isolated, beyond its symmetries: the ends are conjugate, and every path beside it is as
  *                              good, or roundoff decided which one it is
- *  @retval DVI_BAD_ARGUMENT    the Lagrangian does not have `symmetry` for a symmetry, or, depending on time, not the period
+ *  @retval DVI_BAD_ARGUMENT    the Lagrangian does not have `symmetry` for a symmetry, or, depending on time, not the period: L, L_q or L_v is another
+ *                              one where they take the guess's first node, or a node of the path that was found
  *  @retval DVI_NOT_FINITE, DVI_CALLBACK_RETRY, DVI_CALLBACK_FAILED  from the callbacks */
 dvi_status dvi_path_solve(dvi_path *path, dvi_path_report *report);
 

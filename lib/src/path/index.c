@@ -35,8 +35,9 @@ static dvi_status slices(dvi_path *path, double *values, dvi_path_report *report
   DVI_TRY(dvi__path_jacobian(path, path->trial, values));
   DVI_TRY(slice(path, values, report->zero_below, &negative));
   DVI_TRY(slice(path, values, -2 * report->zero_below, &not_positive));
-  report->negative = negative;
   report->zero = not_positive - negative;
+  /* Steps that move the eigenvalue of a symmetry away from 0 may move others to the wrong side of it. */
+  report->negative = report->zero < report->symmetries ? -1 : negative;
   return DVI_OK;
 }
 

@@ -58,15 +58,30 @@ void dvi__path_turn(const dvi_path *path, const double *x, double *y)
   }
 }
 
+void dvi__path_turn_back(const dvi_path *path, const double *y, double *x)
+{
+  if (path->turn.start == NULL) {
+    memmove(x, y, (size_t)path->n * sizeof(double));
+    return;
+  }
+  memset(x, 0, (size_t)path->n * sizeof(double));
+  for (int i = 0; i < path->n; i++)
+    for (int e = path->turn.start[i]; e < path->turn.start[i + 1]; e++) x[path->turn.row[e]] += path->turn_values[e] * y[i];
+}
+
+const double *dvi__path_image(dvi_path *path, const double *q)
+{
+  dvi__path_turn(path, q, path->wrapped);
+  for (int i = 0; i < path->n && path->shift != NULL; i++) path->wrapped[i] += path->shift[i];
+  return path->wrapped;
+}
+
 const double *dvi__path_at(dvi_path *path, const double *x, int k)
 {
   const int at = dvi__path_node(path, k);
   if (at >= 0) return x + at;
   if (k == 0) return path->q0;
-  if (path->ends == DVI_ENDS_FIXED) return path->q1;
-  dvi__path_turn(path, x, path->wrapped);
-  for (int i = 0; i < path->n && path->shift != NULL; i++) path->wrapped[i] += path->shift[i];
-  return path->wrapped;
+  return path->ends == DVI_ENDS_FIXED ? path->q1 : dvi__path_image(path, x);
 }
 
 /* ---- entries ---- */

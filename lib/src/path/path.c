@@ -112,6 +112,7 @@ static dvi_status allocate(dvi_path *path)
                 {&path->rows, (size_t)path->core},
                 {&path->energy_Y, n * s},
                 {&path->energy_q0, n},
+                {&path->probe, 7 * n},
                 {&path->gauge, gauges * (nodes - 1) * n},
                 {&path->origin, gauges > 0 ? (nodes - 1) * n : 0},
                 {&path->defect, gauges * n}};
@@ -192,7 +193,7 @@ void dvi_path_destroy(dvi_path **path)
   double *const owned[] = {own->q0,        own->q1,    own->p0,      own->shift,   own->turn_values, own->x,          own->trial,
                            own->q,         own->p,     own->trial_p, own->Y,       own->in_ends[0],  own->in_ends[1], own->in_Z,
                            own->wrapped,   own->rest,  own->block,   own->kinetic, own->row_scale,   own->rows,       own->energy_Y,
-                           own->energy_q0, own->gauge, own->origin,  own->defect};
+                           own->energy_q0, own->probe, own->gauge,   own->origin,  own->defect};
   dvi__solver_destroy(&own->solver);
   dvi__action_destroy(&own->action);
   dvi__pattern_clear(&own->turn);

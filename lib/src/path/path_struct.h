@@ -41,6 +41,7 @@ struct dvi_path {
   double *row_scale;                              /* [n*s] */
   double *rows;                                   /* [core] a gradient */
   double *energy_Y, *energy_q0;                   /* [n*s], [n] what an energy changes by */
+  double *probe;                                  /* [7*n] velocities and gradients at two points */
   /* Gauge (gauge.c): the columns [gauges*steps*n] at the nodes but the last, the nodes that they are measured from, and how many are in use. */
   double *gauge, *origin;
   double *defect; /* [gauges*n] */
@@ -77,6 +78,12 @@ const double *dvi__path_at(dvi_path *path, const double *x, int k);
 /* y [n] = A x [n], without the shift. */
 void dvi__path_turn(const dvi_path *path, const double *x, double *y);
 
+/* x [n] = A^T y. */
+void dvi__path_turn_back(const dvi_path *path, const double *y, double *x);
+
+/* A q + a, valid until the next call or that of dvi__path_at. */
+const double *dvi__path_image(dvi_path *path, const double *q);
+
 /* ---- equations.c ---- */
 
 dvi_status dvi__path_make_solver(dvi_path *path);
@@ -107,6 +114,11 @@ dvi_status dvi__path_fix_gauge(dvi_path *path, const double *x, double least_own
 
 /* Let the path go in time again; 0 if it was not held. */
 int dvi__path_release_time(dvi_path *path);
+
+/* ---- symmetry.c ---- */
+
+/* DVI_BAD_ARGUMENT if the ends are periodic and the Lagrangian at the first `nodes` nodes of x is another one where the symmetry takes them, a span later. */
+dvi_status dvi__path_check_symmetry(dvi_path *path, const double *x, int nodes);
 
 /* ---- index.c ---- */
 

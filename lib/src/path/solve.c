@@ -19,34 +19,6 @@ static const double nearly_in_time = 1e-4;
  * in place along both, they are taken for one. */
 static const double equal = 1e-6, alike = 0.5;
 
-/* A symmetry of the Lagrangian leaves its value as it is, to this part. */
-static const double symmetric_below = 1e-8;
-
-/* L at a time, at the first node with the first step's velocity, and a span later where the symmetry takes both. */
-static dvi_status check_symmetry_at(dvi_path *path, const double *x, double t)
-{
-  const double span = dvi__path_span(path, x), later = t + span, *q0 = dvi__path_at(path, x, 0);
-  dvi__evaluator *e = dvi__action_evaluator(path->action);
-  double *v = path->in_ends[0], *turned_v = path->in_ends[1], L, turned_L;
-  memcpy(v, dvi__path_at(path, x, 1), (size_t)path->n * sizeof(double));
-  for (int i = 0; i < path->n; i++) v[i] = (v[i] - q0[i]) * path->steps / span;
-  dvi__path_turn(path, v, turned_v);
-  DVI_TRY(dvi__lagrangian_value(e, 1, &t, q0, v, &L));
-  DVI_TRY(dvi__lagrangian_value(e, 1, &later, dvi__path_at(path, x, path->steps), turned_v, &turned_L));
-  if (fabs(L - turned_L) <= symmetric_below * fmax(fabs(L), fabs(turned_L))) return DVI_OK;
-  return dvi__fail(DVI_BAD_ARGUMENT, "path: the %s is none of the Lagrangian's: it takes L = %.9g at t = %.6g to %.9g",
-                   path->turn.start != NULL || path->shift != NULL ? "symmetry" : "period", L, t, turned_L);
-}
-
-/* A path that closes is periodic if the Lagrangian is. */
-static dvi_status check_symmetry(dvi_path *path, const double *x)
-{
-  if (path->ends != DVI_ENDS_PERIODIC) return DVI_OK;
-  if (path->system->autonomous && path->turn.start == NULL && path->shift == NULL) return DVI_OK;
-  DVI_TRY(check_symmetry_at(path, x, path->start));
-  return check_symmetry_at(path, x, path->start + 0.37 * dvi__path_span(path, x));
-}
-
 static dvi_status not_found(dvi_path *path, dvi_status status, const dvi__solve_report *solved)
 {
   const char *const advice[] = {
@@ -162,10 +134,11 @@ static dvi_status attempt(dvi_path *path, double least_own_part, dvi_path_report
 
 static dvi_status solve(dvi_path *path, dvi_path_report *report)
 {
-  DVI_TRY(check_symmetry(path, path->x));
+  DVI_TRY(dvi__path_check_symmetry(path, path->x, 1));
   dvi_status status = attempt(path, equal, report);
   if (status == DVI_NOT_CONVERGED && path->in_use > 1) status = attempt(path, alike, report);
   if (status != DVI_OK) return status;
+  DVI_TRY(dvi__path_check_symmetry(path, path->trial, path->steps));
   DVI_TRY(dvi__path_index(path, report));
   return check_isolated(path, report);
 }
