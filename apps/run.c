@@ -217,10 +217,12 @@ static int advance(recorder *r, dvi_integrator *integrator)
   progress_start(&r->progress, request->final || r->out.path != NULL);
   const dvi_status status = dvi_run(integrator, &options, NULL);
   progress_end(&r->progress);
+  /* Said at once: what is asked below may leave a sentence of its own. */
+  const int code = status == DVI_OK ? DONE : r->stop_silently ? FAILED : library_error(status);
   say_steps(r, integrator);
   if (r->stop_silently) return FAILED;
   const bool written = (status != DVI_OK && request->final) || write_last_row(r, integrator);
-  if (status != DVI_OK) return library_error(status) == USAGE ? USAGE : FAILED;
+  if (status != DVI_OK) return code;
   if (*r->caught != 0) say_interrupted(r);
   return !written ? FAILED : *r->caught != 0 ? 128 + (int)*r->caught : DONE;
 }

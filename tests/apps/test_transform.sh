@@ -14,6 +14,10 @@ awk -F, 'NR > 1 { d = $6 + 0.5; if (d > 1e-6 || d < -1e-6) exit 1 }' whole.csv |
 expect 0 'backward' run $comet --time-transform distance --h -0.3 --t-end -20 --final
 tail -n 1 out | grep -q '^-20,' || fail 'the last row is at t = -20'
 
+# A run that fails on its way says why.
+expect 1 'a step too large' run kepler --set e=0.99 --method verlet --step-control distance --h 1.5 --t-end 63 --final
+says err '^dvi: verlet: step [0-9]* from t = .* with h = 1.5 failed' 'the step that failed is named'
+
 # A checkpoint goes on, in the same time only.  (tests/method/test_transform.c has the bits: here the first part ends with a shortened step.)
 for way in '--time-transform distance' '--step-control distance:power=1.2'; do
   # shellcheck disable=SC2086
