@@ -66,6 +66,7 @@ expect 1 'missing checkpoint' $kepler --resume missing.state --out old.csv
 expect 1 'checkpoint of another problem' run toda --method galerkin:degree=3 --resume good.state --out old.csv
 expect 1 'checkpoint of another method' run kepler --method verlet --resume good.state --out old.csv
 says err '.' 'a reason is given'
+expect 0 'a checkpoint past the end by a rounding' $kepler --resume good.state --t-end 0.9999999999999998 --final
 expect 2 'checkpoint past the end' $kepler --resume good.state --t-end 0.5 --out old.csv
 [ "$(cat old.csv)" = old ] || fail 'a refused run leaves the old file'
 

@@ -13,6 +13,9 @@ awk -F, 'NR > 1 { d = $6 + 0.5; if (d > 1e-6 || d < -1e-6) exit 1 }' whole.csv |
 # shellcheck disable=SC2086
 expect 0 'backward' run $comet --time-transform distance --h -0.3 --t-end -20 --final
 tail -n 1 out | grep -q '^-20,' || fail 'the last row is at t = -20'
+expect 0 'to a time exactly' run kepler --method verlet --step-control distance --h=-0.1 --t-end=-3 --final --checkpoint end.state
+says out '^-3,' 'the end is met to the last digit'
+expect 0 'the checkpoint of an end' run kepler --method verlet --step-control distance --h=-0.1 --t-end=-3 --final --resume end.state
 
 # A run that fails on its way says why.
 expect 1 'a step too large' run kepler --set e=0.99 --method verlet --step-control distance --h 1.5 --t-end 63 --final

@@ -183,6 +183,15 @@ static double past(const dvi_integrator *I, double h, double t_end)
   return h > 0 ? later : -later;
 }
 
+/* What is left or too much by rounding belongs to nobody: the run ends at t_end itself, so that one that goes on, or ends there too, agrees. */
+static dvi_status arrive(dvi_integrator *I, double t_end)
+{
+  I->now.t = t_end;
+  I->now.t_carry = 0;
+  I->last_h = (t_end - I->last.t) + I->last.t_carry;
+  return DVI_OK;
+}
+
 /* Illinois' variant of regula falsi (Dowell and Jarratt 1971) on the length of the step, from where it began. */
 static dvi_status step_to_end(dvi_integrator *I, double h, double t_end, double tolerance)
 {
@@ -194,7 +203,7 @@ static dvi_status step_to_end(dvi_integrator *I, double h, double t_end, double 
     const double length = shorter + (longer - shorter) * (under / (under - over));
     DVI_TRY(dvi_integrator_step(I, length));
     const double missed = past(I, h, t_end);
-    if (fabs(missed) <= tolerance) return DVI_OK;
+    if (fabs(missed) <= tolerance) return arrive(I, t_end);
     dvi__integrator_take_back(I);
     if (missed > 0) {
       longer = length, over = missed;
@@ -213,5 +222,7 @@ static dvi_status step_to_end(dvi_integrator *I, double h, double t_end, double 
 dvi_status dvi__pace_step(dvi_integrator *I, double h, double t_end, double tolerance)
 {
   DVI_TRY(dvi_integrator_step(I, h));
-  return past(I, h, t_end) > tolerance ? step_to_end(I, h, t_end, tolerance) : DVI_OK;
+  const double over = past(I, h, t_end);
+  if (over > tolerance) return step_to_end(I, h, t_end, tolerance);
+  return over < -tolerance ? DVI_OK : arrive(I, t_end);
 }
