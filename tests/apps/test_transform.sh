@@ -76,7 +76,12 @@ for command in run order explain; do
   expect 2 "general Lagrangian of $command" $command double-pendulum --method midpoint --time-transform arclength
   says err 'constant mass' 'why there is no arc length'
 done
-for bad in power=0 power=-1 power=nan power=x bodies=7; do
+for wrong in bodies=2 bodies=1,dimension=1 dimension=4; do
+  expect 2 "$wrong of kepler" run kepler --method midpoint --time-transform "distance:$wrong"
+  says err 'kepler is bodies=1,dimension=2' 'what the problem is'
+done
+expect 0 'keys that are the problem' explain kepler --method midpoint --time-transform distance:power=1,bodies=1,dimension=2
+for bad in power=0 power=-1 power=nan power=x; do
   code=0
   "$dvi" run kepler --method midpoint --time-transform "distance:$bad" >out 2>err || code=$?
   [ "$code" -ne 0 ] || fail "distance:$bad is taken"
