@@ -166,6 +166,13 @@ expect 0 'a checkpoint of henon-heiles' run henon-heiles --method verlet --set l
 expect 0 'the same system' run henon-heiles --method verlet --set lambda=0.5 --t-end 2 --resume well.state
 expect 1 'another system' run henon-heiles --method verlet --set lambda=0.25 --t-end 2 --resume well.state
 
+# What a killed process of the same number has left behind is no hindrance.
+DVI=$dvi sh -c 'touch left.state.part-$$-0 left.state.part-$$-1; exec "$DVI" run kepler --method verlet --t-end 1 --final --checkpoint left.state' \
+  >out 2>err || fail 'a checkpoint beside stale files'
+says out '^1,' 'the row is written'
+expect 0 'what was written beside stale files' run kepler --method verlet --t-end 2 --resume left.state --final
+rm -f left.state.part-*
+
 # A run may go on in its own checkpoint.
 expect 0 'its own checkpoint' $kepler --t-end 1 --checkpoint own.state --final
 expect 0 'in place' $kepler --t-end 2 --resume own.state --checkpoint ./own.state --final
