@@ -132,10 +132,14 @@ static void hint_at_method(const char *method, char *hint)
 static int read_monitor(const problem *scene, const char *asked, const char *specification, dvi_monitor *monitor)
 {
   if (dvi_monitor_read(specification, monitor) != DVI_OK) return usage_error("--%s %s: %s", asked, specification, dvi_last_error());
-  if (monitor->kind != DVI_MONITOR_DISTANCE || monitor->bodies != 0) return DONE;
+  if (monitor->kind != DVI_MONITOR_DISTANCE) return DONE;
   if (scene->bodies == 0)
     return usage_error("--%s %s: %s has no bodies whose distances could be measured; see arclength and acceleration", asked,
                        specification, scene->name);
+  const int dimension = scene->n / scene->bodies;
+  if ((monitor->bodies != 0 && monitor->bodies != scene->bodies) || (monitor->dimension != 0 && monitor->dimension != dimension))
+    return usage_error("--%s %s: %s is bodies=%d,dimension=%d; leave the keys out", asked, specification, scene->name,
+                       scene->bodies, dimension);
   monitor->bodies = scene->bodies;
   return DONE;
 }

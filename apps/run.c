@@ -1,5 +1,6 @@
 /* dvi run: one trajectory with its invariants, as CSV. */
 #include <errno.h>
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -217,10 +218,12 @@ static int advance(recorder *r, dvi_integrator *integrator)
   progress_start(&r->progress, request->final || r->out.path != NULL);
   const dvi_status status = dvi_run(integrator, &options, NULL);
   progress_end(&r->progress);
+  /* Said at once: what is asked below may leave a sentence of its own. */
+  const int code = status == DVI_OK ? DONE : r->stop_silently ? FAILED : library_error(status);
   say_steps(r, integrator);
   if (r->stop_silently) return FAILED;
   const bool written = (status != DVI_OK && request->final) || write_last_row(r, integrator);
-  if (status != DVI_OK) return library_error(status) == USAGE ? USAGE : FAILED;
+  if (status != DVI_OK) return code;
   if (*r->caught != 0) say_interrupted(r);
   return !written ? FAILED : *r->caught != 0 ? 128 + (int)*r->caught : DONE;
 }
@@ -234,12 +237,18 @@ static bool place(const run_request *request, const problem *scene, dvi_integrat
   return false;
 }
 
+/* The way to the end; 0 if only roundings of the time lie between. */
+static double way_to_end(double t, double t_end)
+{
+  return fabs(t_end - t) <= 16 * DBL_EPSILON * fmax(fabs(t), fabs(t_end)) ? 0.0 : t_end - t;
+}
+
 /* Fill in what was left out, and refuse a step that cannot lead to the end. */
 static int complete(run_request *request, const problem *scene, double t)
 {
   if (request->every == 0) request->every = 1;
   if (isnan(request->t_end)) request->t_end = scene->t_end;
-  const double way = request->t_end - t;
+  const double way = way_to_end(t, request->t_end);
   if (isnan(request->h)) request->h = way < 0.0 ? -scene->h : scene->h;
   if (request->h == 0.0) return usage_error("run: --h 0 leads nowhere");
   if (request->resume != NULL && way * scene->h < 0.0 && request->h > 0.0)

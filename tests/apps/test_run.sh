@@ -66,6 +66,7 @@ expect 1 'missing checkpoint' $kepler --resume missing.state --out old.csv
 expect 1 'checkpoint of another problem' run toda --method galerkin:degree=3 --resume good.state --out old.csv
 expect 1 'checkpoint of another method' run kepler --method verlet --resume good.state --out old.csv
 says err '.' 'a reason is given'
+expect 0 'a checkpoint past the end by a rounding' $kepler --resume good.state --t-end 0.9999999999999998 --final
 expect 2 'checkpoint past the end' $kepler --resume good.state --t-end 0.5 --out old.csv
 [ "$(cat old.csv)" = old ] || fail 'a refused run leaves the old file'
 
@@ -164,6 +165,13 @@ done
 expect 0 'a checkpoint of henon-heiles' run henon-heiles --method verlet --set lambda=0.5 --t-end 1 --checkpoint well.state --final
 expect 0 'the same system' run henon-heiles --method verlet --set lambda=0.5 --t-end 2 --resume well.state
 expect 1 'another system' run henon-heiles --method verlet --set lambda=0.25 --t-end 2 --resume well.state
+
+# What a killed process of the same number has left behind is no hindrance.
+DVI=$dvi sh -c 'touch left.state.part-$$-0 left.state.part-$$-1; exec "$DVI" run kepler --method verlet --t-end 1 --final --checkpoint left.state' \
+  >out 2>err || fail 'a checkpoint beside stale files'
+says out '^1,' 'the row is written'
+expect 0 'what was written beside stale files' run kepler --method verlet --t-end 2 --resume left.state --final
+rm -f left.state.part-*
 
 # A run may go on in its own checkpoint.
 expect 0 'its own checkpoint' $kepler --t-end 1 --checkpoint own.state --final

@@ -13,6 +13,13 @@ awk -F, 'NR > 1 { d = $6 + 0.5; if (d > 1e-6 || d < -1e-6) exit 1 }' whole.csv |
 # shellcheck disable=SC2086
 expect 0 'backward' run $comet --time-transform distance --h -0.3 --t-end -20 --final
 tail -n 1 out | grep -q '^-20,' || fail 'the last row is at t = -20'
+expect 0 'to a time exactly' run kepler --method verlet --step-control distance --h=-0.1 --t-end=-3 --final --checkpoint end.state
+says out '^-3,' 'the end is met to the last digit'
+expect 0 'the checkpoint of an end' run kepler --method verlet --step-control distance --h=-0.1 --t-end=-3 --final --resume end.state
+
+# A run that fails on its way says why.
+expect 1 'a step too large' run kepler --set e=0.99 --method verlet --step-control distance --h 1.5 --t-end 63 --final
+says err '^dvi: verlet: step [0-9]* from t = .* with h = 1.5 failed' 'the step that failed is named'
 
 # A checkpoint goes on, in the same time only.  (tests/method/test_transform.c has the bits: here the first part ends with a shortened step.)
 for way in '--time-transform distance' '--step-control distance:power=1.2'; do
@@ -69,7 +76,12 @@ for command in run order explain; do
   expect 2 "general Lagrangian of $command" $command double-pendulum --method midpoint --time-transform arclength
   says err 'constant mass' 'why there is no arc length'
 done
-for bad in power=0 power=-1 power=nan power=x bodies=7; do
+for wrong in bodies=2 bodies=1,dimension=1 dimension=4; do
+  expect 2 "$wrong of kepler" run kepler --method midpoint --time-transform "distance:$wrong"
+  says err 'kepler is bodies=1,dimension=2' 'what the problem is'
+done
+expect 0 'keys that are the problem' explain kepler --method midpoint --time-transform distance:power=1,bodies=1,dimension=2
+for bad in power=0 power=-1 power=nan power=x; do
   code=0
   "$dvi" run kepler --method midpoint --time-transform "distance:$bad" >out 2>err || code=$?
   [ "$code" -ne 0 ] || fail "distance:$bad is taken"

@@ -220,6 +220,27 @@ START_TEST(a_step_where_the_monitor_is_not_positive_leaves_the_state_untouched)
 }
 END_TEST
 
+/* The step past the end looks at where the run never comes to; one that ends beyond the cliff cannot be taken. */
+START_TEST(a_failure_past_the_end_does_not_matter)
+{
+  problem *kepler = made_problem("kepler", NULL);
+  double q[2], p[2];
+  ck_assert_int_eq(kepler->exact(kepler, 2, q, p), 0);
+  for (int k = 0; k < 2; k++) {
+    cliff c = {q[0] - 0.01, (double)NAN};
+    dvi_integrator *integrator = at_cliff(kepler, both[k], &c);
+    ck_assert_int_eq(dvi_integrator_start(integrator, 0, kepler->q, kepler->p), DVI_OK);
+    run_to(integrator, 0.15, 2);
+    ck_assert_double_eq(dvi_integrator_time(integrator), 2);
+    ck_assert_double_le(distance(2, dvi_integrator_q(integrator), q), 1e-2);
+    refused(dvi_run(integrator, &(dvi_run_options){.h = 0.15, .t_end = 2.1}, NULL), DVI_NOT_FINITE, "cliff");
+    check_words("the state is unchanged");
+    dvi_integrator_destroy(&integrator);
+  }
+  problem_destroy(&kepler);
+}
+END_TEST
+
 /* The callback's own word counts: positive may be mended by a smaller step, negative not. */
 static int moody(double t, const double *q, double *g, void *user)
 {
@@ -334,6 +355,7 @@ int main(void)
   tcase_add_loop_test(tests, null_arguments_are_refused, 0, 2);
   tcase_add_loop_test(tests, a_start_where_the_monitor_is_not_positive_is_refused, 0, NOT_POSITIVE);
   tcase_add_loop_test(tests, a_step_where_the_monitor_is_not_positive_leaves_the_state_untouched, 0, NOT_POSITIVE);
+  tcase_add_test(tests, a_failure_past_the_end_does_not_matter);
   tcase_add_loop_test(tests, what_the_monitor_returns_is_passed_on, 0, 2);
   tcase_add_test(tests, a_control_step_too_large_for_the_monitor_is_refused);
   tcase_add_loop_test(tests, a_start_that_fails_leaves_the_state, 0, 2);

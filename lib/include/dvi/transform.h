@@ -19,8 +19,8 @@
  *  not symplectic.
  *
  *  An integrator made here takes h in units of tau: dvi_integrator_step, dvi_run_options.h, and the functions of dvi/diagnostics.h. All else is
- *  in physical time: dvi_integrator_time, observers, events, dense output, t_end. dvi_run ends at t_end to roundoff: a step that would
- *  pass it is taken back, and the shorter one that ends there is sought. Choosing steps by estimates of their errors is not offered: a step that
+ *  in physical time: dvi_integrator_time, observers, events, dense output, t_end. dvi_run ends at t_end: a step that would
+ *  pass it is taken back, and the shorter one that ends there to roundoff is sought. Choosing steps by estimates of their errors is not offered: a step that
  *  depends on where it is taken in such a way makes any of the methods neither symplectic nor symmetric, and their energies drift. */
 #ifndef DVI_TRANSFORM_H
 #define DVI_TRANSFORM_H

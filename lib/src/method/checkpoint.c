@@ -42,7 +42,7 @@ typedef struct header {
 } header;
 
 static const char magic[8] = {'d', 'v', 'i', 's', 't', 'a', 't', 'e'};
-enum { ORDER_MARK = 0x01020304, VERSION = 3 };
+enum { ORDER_MARK = 0x01020304, VERSION = 3, MOST_NAMES = 1000 };
 
 /* Another machine's mathematical functions differ by a few roundings; other parameters by more than this. */
 static const double same_number = 1e-9;
@@ -121,16 +121,26 @@ static void pack(const dvi_integrator *I, unsigned char *file)
   memcpy(file + size, &sum, sizeof sum);
 }
 
-/* A new file beside path, of a name that nobody else takes: other processes by its number, other threads by the count. */
-static FILE *open_beside(const char *path, size_t size, char *beside)
+/* A new file beside path, of a name that nobody else takes: other processes by its number, other threads by the count. One that a killed process of
+ * the same number has left behind is passed over. -1, and errno, if there is no such file. */
+static int create_beside(const char *path, size_t size, char *beside)
 {
   static atomic_ulong count;
-  const int length = snprintf(beside, size, "%s.part-%ld-%lu", path, (long)getpid(), atomic_fetch_add(&count, 1));
-  if (length < 0 || (size_t)length >= size) {
-    errno = ENAMETOOLONG;
-    return NULL;
+  for (int i = 0; i < MOST_NAMES; i++) {
+    const int length = snprintf(beside, size, "%s.part-%ld-%lu", path, (long)getpid(), atomic_fetch_add(&count, 1));
+    if (length < 0 || (size_t)length >= size) {
+      errno = ENAMETOOLONG;
+      return -1;
+    }
+    const int descriptor = open(beside, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor >= 0 || errno != EEXIST) return descriptor;
   }
-  const int descriptor = open(beside, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  return -1;
+}
+
+static FILE *open_beside(const char *path, size_t size, char *beside)
+{
+  const int descriptor = create_beside(path, size, beside);
   if (descriptor < 0) return NULL;
   struct stat old;
   if (stat(path, &old) == 0) (void)fchmod(descriptor, old.st_mode & 07777);

@@ -183,35 +183,61 @@ static double past(const dvi_integrator *I, double h, double t_end)
   return h > 0 ? later : -later;
 }
 
-/* Illinois' variant of regula falsi (Dowell and Jarratt 1971) on the length of the step, from where it began. */
-static dvi_status step_to_end(dvi_integrator *I, double h, double t_end, double tolerance)
+/* The run ends at t_end itself, not a few roundings beside it: what follows, or ends there too, finds it so. */
+static dvi_status arrive(dvi_integrator *I, double t_end)
 {
-  double longer = h, over = past(I, h, t_end), shorter = 0, under;
+  I->now.t = t_end;
+  I->now.t_carry = 0;
+  I->last_h = (t_end - I->last.t) + I->last.t_carry;
+  return DVI_OK;
+}
+
+/* The length of the step from here that ends at t_end: Illinois' variant of regula falsi (Dowell and Jarratt 1971) between one that falls short and
+ * one that passes the end, `over`; bisection while that one fails, `over` NaN, for beyond the end are places that the run never comes to, down to
+ * `least`. */
+static dvi_status step_to_end(dvi_integrator *I, double h, double over, double least, double t_end, double tolerance)
+{
+  double longer = h, shorter = 0, under = past(I, h, t_end);
+  dvi_status failure = DVI_OK;
   int side = 0;
-  dvi__integrator_take_back(I);
-  under = past(I, h, t_end);
-  for (int i = 0; i < MOST_TRIES; i++) {
-    const double length = shorter + (longer - shorter) * (under / (under - over));
-    DVI_TRY(dvi_integrator_step(I, length));
-    const double missed = past(I, h, t_end);
-    if (fabs(missed) <= tolerance) return DVI_OK;
-    dvi__integrator_take_back(I);
-    if (missed > 0) {
-      longer = length, over = missed;
-      if (side > 0) under *= 0.5;
-      side = 1;
-    } else {
+  for (int i = 0; i < MOST_TRIES && fabs(longer - shorter) > least; i++) {
+    const double part = isnan(over) ? 0.5 : under / (under - over), length = shorter + (longer - shorter) * part;
+    const dvi_status status = dvi_integrator_step(I, length);
+    if (status < 0) return status;
+    if (status > 0) failure = status;
+    const double missed = status == DVI_OK ? past(I, h, t_end) : (double)NAN;
+    if (fabs(missed) <= tolerance) return arrive(I, t_end);
+    if (status == DVI_OK) dvi__integrator_take_back(I);
+    if (missed < 0) {
       shorter = length, under = missed;
       if (side < 0) over *= 0.5;
       side = -1;
+    } else {
+      longer = length, over = missed;
+      if (side > 0) under *= 0.5;
+      side = 1;
     }
   }
+  if (failure != DVI_OK) return failure; /* its sentence is the last one */
   return dvi__fail(DVI_NOT_CONVERGED, "%s: the step from t = %.9g that ends at t = %.9g was not found; try a smaller h",
                    I->stepper.method->name, I->now.t, t_end);
 }
 
+/* After a step that has failed: it may have been one past the end, by the monitor here. */
+static dvi_status retry(dvi_integrator *I, double h, double t_end, double tolerance, dvi_status failure)
+{
+  double g;
+  if (failure < 0 || dvi__pace_monitor(I->pace, I->now.q, &g) != DVI_OK || past(I, h, t_end) + 2 * fabs(h) * g < 0) return failure;
+  return step_to_end(I, h, (double)NAN, 0.0625 * tolerance / g, t_end, tolerance);
+}
+
 dvi_status dvi__pace_step(dvi_integrator *I, double h, double t_end, double tolerance)
 {
-  DVI_TRY(dvi_integrator_step(I, h));
-  return past(I, h, t_end) > tolerance ? step_to_end(I, h, t_end, tolerance) : DVI_OK;
+  const dvi_status status = dvi_integrator_step(I, h);
+  if (status != DVI_OK) return retry(I, h, t_end, tolerance, status);
+  const double over = past(I, h, t_end);
+  if (over < -tolerance) return DVI_OK;
+  if (over <= tolerance) return arrive(I, t_end);
+  dvi__integrator_take_back(I);
+  return step_to_end(I, h, over, 0, t_end, tolerance);
 }

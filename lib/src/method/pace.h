@@ -49,7 +49,7 @@ dvi_status dvi__pace_path(dvi_integrator *integrator, double fraction, double *q
 /* Say in words how time passes. */
 void dvi__pace_explain(const dvi__pace *pace, dvi__text *text);
 
-/* One step h; if it passes t_end, the shorter one that ends there but for `tolerance`. */
+/* One step h; if it passes t_end, or fails where that is near, the shorter one that ends there. What is within `tolerance` of t_end is at t_end. */
 dvi_status dvi__pace_step(dvi_integrator *integrator, double h, double t_end, double tolerance);
 
 #endif
