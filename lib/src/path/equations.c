@@ -254,6 +254,7 @@ dvi_status dvi__path_make_solver(dvi_path *path)
   const dvi__equations equations = {.unknowns = path->unknowns,
                                     .pattern = &path->pattern,
                                     .linear = DVI__LINEAR_SPARSE,
+                                    .border = path->unknowns - path->core,
                                     .of = path,
                                     .residual = residual,
                                     .jacobian = jacobian,
