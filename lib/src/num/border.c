@@ -1,6 +1,7 @@
 /* Sparse LU of a matrix whose last rows and columns, its border, are full. KLU may take a full row for an early pivot, and all that comes later fills in. So the
  * border is stretched (Grcar 1990): row r is cut into pieces that hand on a sum, r_p x + y_(p-1) - y_p = 0, and column c into copies of its unknown, c_p = c_(p+1),
  * each for LENGTH unknowns of the core. What is factored then is sparse all over, and work and memory are in proportion to its size. */
+#include <limits.h>
 #include <string.h>
 
 #include "core/memory.h"
@@ -102,8 +103,12 @@ static void destroy(void *factor)
 
 static dvi_status fill(bordered *s, const dvi__pattern *pattern)
 {
-  const int extra = 2 * (s->pieces - 1) * s->border, size = pattern->columns + extra;
-  const size_t entries = (size_t)dvi__pattern_entries(pattern) + 2 * (size_t)extra;
+  const size_t extra = 2 * ((size_t)s->pieces - 1) * (size_t)s->border, all = (size_t)pattern->columns + extra;
+  const size_t entries = (size_t)dvi__pattern_entries(pattern) + 2 * extra;
+  if (entries > INT_MAX)
+    return dvi__fail(DVI_BAD_SIZE, "linear solver: a border of %d leads to %zu entries, more than an int can count", s->border,
+                     entries);
+  const int size = (int)all;
   s->pattern = (dvi__pattern){size, size, DVI_NEW(int, (size_t)size + 1), DVI_NEW(int, entries)};
   s->where = DVI_NEW(int, dvi__pattern_entries(pattern));
   s->values = DVI_NEW(double, entries);
