@@ -130,9 +130,10 @@ static int read_ends(const path_request *request, const problem *scene, const po
 
 static int read_energy(const path_request *request, const problem *scene, dvi_path_options *options)
 {
-  options->free_span = request->free_period;
+  if (!request->free_period) return DONE;
+  options->free_span = 1;
   options->energy = request->energy;
-  if (!request->free_period || !isnan(request->energy)) return DONE;
+  if (!isnan(request->energy)) return DONE;
   double *invariant = calloc((size_t)dvi_system_invariant_count(scene->system), sizeof *invariant);
   if (invariant == NULL) return complain("out of memory"), FAILED;
   const dvi_status status = dvi_system_invariants(scene->system, 0.0, scene->q, scene->p, invariant);

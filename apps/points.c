@@ -99,6 +99,12 @@ static bool next_line(reader *r)
   return length > 0;
 }
 
+static int unreadable(const char *path)
+{
+  complain("cannot read '%s': %s", path, strerror(errno));
+  return FAILED;
+}
+
 static int column_of(const problem *scene, const char *title)
 {
   if (strcmp(title, "t") == 0) return -1;
@@ -111,7 +117,7 @@ static int read_header(reader *r)
 {
   char title[WORD_SIZE];
   int known = 0;
-  if (!next_line(r)) return usage_error("path: '%s' is empty", r->path);
+  if (!next_line(r)) return ferror(r->stream) ? unreadable(r->path) : usage_error("path: '%s' is empty", r->path);
   for (const char *text = r->line; text != NULL; r->columns++) {
     int *grown = realloc(r->coordinate, ((size_t)r->columns + 1) * sizeof *grown);
     if (grown == NULL) return complain("out of memory"), FAILED;
@@ -139,6 +145,8 @@ static int read_row(reader *r, points *read)
   }
   if (text != NULL || column < r->columns)
     return usage_error("path: '%s': line %d does not have the header's %d fields", r->path, r->row, r->columns);
+  if (read->count > 0 && !(t > read->t[read->count - 1]))
+    return usage_error("path: '%s': line %d: the time %g does not come after %g", r->path, r->row, t, read->t[read->count - 1]);
   return points_add(read, r->scene->n, t, r->q) ? DONE : FAILED;
 }
 
@@ -146,18 +154,19 @@ static int read_all(reader *r, points *read)
 {
   int code = read_header(r);
   while (code == DONE && next_line(r)) code = read_row(r, read);
+  if (code == DONE && ferror(r->stream)) code = unreadable(r->path);
   if (code == DONE && read->count < 2) code = usage_error("path: '%s' has %d points; at least 2 are needed", r->path, read->count);
   return code;
 }
 
 int points_read(const char *path, const problem *scene, points *read)
 {
-  int code = FAILED;
+  int code;
   reader r = {.path = path, .scene = scene, .q = calloc((size_t)scene->n, sizeof(double))};
   if (r.q == NULL) return complain("out of memory"), FAILED;
   r.stream = fopen(path, "r");
   if (r.stream == NULL)
-    complain("cannot read '%s': %s", path, strerror(errno));
+    code = unreadable(path);
   else
     code = read_all(&r, read);
   if (r.stream != NULL) (void)fclose(r.stream);

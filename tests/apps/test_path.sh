@@ -87,6 +87,13 @@ expect 2 'a field that is no number' $eight --steps 9 --guess word.csv
 says err "line 3: 'word' is no number" 'where it is'
 sed 's/^1,0.9,/1,/' sketch.csv >ragged.csv
 expect 2 'a row that is too short' $eight --steps 9 --guess ragged.csv
+(cat sketch.csv; tail -n 1 sketch.csv) >twice.csv
+expect 2 'times that do not ascend' $eight --steps 9 --guess twice.csv
+says err 'line 5: the time 2 does not come after 2' 'where it is'
+expect 1 'a folder' $eight --steps 9 --guess /
+says err "cannot read '/'" 'a folder is not empty'
+expect 1 'an end beyond all numbers' $pendulum --to 1e300 --steps 50
+says err 'path: step [0-9]* of 50, from t = ' 'where it fails'
 : >empty.csv
 expect 2 'an empty file' $eight --steps 9 --guess empty.csv
 expect 1 'no folder' $eight --steps 24 --out nowhere/path.csv

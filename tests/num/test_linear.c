@@ -278,6 +278,58 @@ START_TEST(what_is_not_square_is_refused)
 }
 END_TEST
 
+/* ---- borders ---- */
+
+enum { RING = 300, BORDER = 2, RINGED = RING + BORDER, RING_MOST = 3 * RING + (2 * RING + BORDER) * BORDER };
+
+/* Entry (i,j) of a ring of springs, which nothing holds in place; bordered by what does, and by waves. */
+static double ring_entry(int i, int j, double hold)
+{
+  if (i < RING && j < RING) return i == j ? 2 : (i - j + RING) % RING == 1 || (j - i + RING) % RING == 1 ? -1 : 0;
+  if (i >= RING && j >= RING) return i == j && i > RING ? 0.5 : 0;
+  const int at = i < j ? i : j, border = i < j ? j : i;
+  return border == RING ? hold : 2 + sin(0.1 * at);
+}
+
+/* Whether it can be solved, and how wrong the solution is. */
+static dvi_status solve_ring(double hold, double *worst)
+{
+  static int start[RINGED + 1], row[RING_MOST];
+  static double values[RING_MOST];
+  double b[RINGED] = {0};
+  int count = 0;
+  for (int j = 0; j < RINGED; j++) {
+    for (int i = 0; i < RINGED; i++) {
+      if (i < RING && ring_entry(i, j, 1) == 0) continue;
+      if (j < RING && ring_entry(i, j, 1) == 0) continue;
+      row[count] = i;
+      values[count++] = ring_entry(i, j, hold);
+      b[i] += values[count - 1] * cos(j);
+    }
+    start[j + 1] = count;
+  }
+  const dvi__pattern pattern = {RINGED, RINGED, start, row};
+  dvi__linear *linear;
+  ck_assert_msg(dvi__linear_create_bordered(&pattern, BORDER, NULL, &linear) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_int_eq(dvi__linear_kind_of(linear), DVI__LINEAR_SPARSE);
+  const dvi_status status = dvi__linear_factor(linear, values);
+  if (status == DVI_OK) dvi__linear_solve(linear, b);
+  *worst = 0;
+  for (int j = 0; j < RINGED; j++) *worst = fmax(*worst, fabs(b[j] - cos(j)));
+  dvi__linear_destroy(&linear);
+  return status;
+}
+
+/* The ring alone is singular, and its other eigenvalues reach down to (2 pi/300)^2 = 4e-4; pivots that are kept may cost six digits. */
+START_TEST(a_border_makes_a_singular_matrix_regular)
+{
+  double worst;
+  ck_assert_msg(solve_ring(1, &worst) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_double_lt(worst, 1e6 * DBL_EPSILON);
+  ck_assert_int_eq(solve_ring(0, &worst), DVI_SINGULAR);
+}
+END_TEST
+
 int main(void)
 {
   TCase *tests = tcase_create("linear");
@@ -295,6 +347,7 @@ int main(void)
   tcase_add_loop_test(tests, values_that_are_not_finite_are_refused, 0, 2);
   tcase_add_test(tests, the_kind_is_what_was_asked_and_auto_prefers_klu_for_sparse_matrices);
   tcase_add_test(tests, auto_prefers_lapack_for_large_full_matrices);
+  tcase_add_test(tests, a_border_makes_a_singular_matrix_regular);
   tcase_add_loop_test(tests, what_is_not_square_is_refused, 0, 2);
   return run_tests("num/linear", tests);
 }

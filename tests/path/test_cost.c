@@ -52,6 +52,39 @@ START_TEST(memory_and_work_are_in_proportion_to_the_steps)
 }
 END_TEST
 
+/* A closed path of three bodies with four symmetries and a free period, each of which has a full row and column in the Jacobian: four times the steps, and perhaps
+ * a second order of pivots beside the first one. Fill-in would be sixteen times as much. */
+START_TEST(full_rows_and_columns_leave_it_in_proportion)
+{
+  problem *of = made_problem("figure-eight", NULL);
+  long bytes[2];
+  for (int k = 0; k < 2; k++) {
+    const int steps = 400 << 2 * k;
+    const dvi_path_options options = {
+        .ends = DVI_ENDS_PERIODIC, .steps = steps, .span = 6.32591398, .free_span = 1, .energy = -1.287142};
+    double *t = calloc((size_t)steps + 1, sizeof *t), *q = calloc(6 * ((size_t)steps + 1), sizeof *q);
+    dvi_integrator *stepped = started(of, "midpoint");
+    for (int m = 0; m <= steps; m++) {
+      t[m] = m;
+      memcpy(q + (size_t)6 * (size_t)m, dvi_integrator_q(stepped), 6 * sizeof *q);
+      advance(stepped, options.span / steps, 1);
+    }
+    dvi_integrator_destroy(&stepped);
+    const long before = heap_bytes();
+    dvi_path *path = NULL;
+    ck_assert_msg(dvi_path_create(of->system, "midpoint", &options, &path) == DVI_OK, "%s", dvi_last_error());
+    ck_assert_int_eq(dvi_path_guess(path, steps + 1, 6, t, q), DVI_OK);
+    ck_assert_msg(dvi_path_solve(path, NULL) == DVI_OK, "%s", dvi_last_error());
+    bytes[k] = heap_bytes() - before;
+    dvi_path_destroy(&path);
+    free(t);
+    free(q);
+  }
+  if (heap_is_counted() && bytes[0] > 0) ck_assert_msg(bytes[1] < 8 * bytes[0], "%ld %ld", bytes[0], bytes[1]);
+  problem_destroy(&of);
+}
+END_TEST
+
 static dvi_status closed(const problem *of, dvi_path **path)
 {
   const double turn[] = {-1, 0, 0, -1};
@@ -109,6 +142,7 @@ int main(void)
 {
   TCase *tests = tcase_create("cost");
   tcase_add_test(tests, memory_and_work_are_in_proportion_to_the_steps);
+  tcase_add_test(tests, full_rows_and_columns_leave_it_in_proportion);
   tcase_add_test(tests, a_path_survives_every_failure_of_memory);
   tcase_add_test(tests, a_solve_without_memory_fails);
   return run_tests("cost", tests);

@@ -33,7 +33,7 @@ typedef struct dvi_path_options {
   dvi_pattern symmetry_pattern; /**< rows and columns of `symmetry`; all zero: a full matrix */
   const double *shift; /**< a [nq], added to the last node (an angle that has turned by 2 pi); NULL: 0. For periodic ends */
   int free_span;       /**< not 0: for periodic ends of autonomous systems, the span is an unknown, too, and */
-  double energy;       /**< the path has this discrete energy, -dS/dspan */
+  double energy;       /**< the path has this discrete energy, -dS/dspan; else 0 */
 } dvi_path_options;
 
 /** How a solve went, and what it found. */
@@ -69,7 +69,8 @@ extern "C" {
  *  @param[out] path    owned by the caller; NULL on failure
  *  @retval DVI_BAD_OPTION    the method is none of these, or its specification makes no sense
  *  @retval DVI_BAD_ARGUMENT  the span is not positive and finite; an array is missing, given although these ends have no use for it, or not finite;
- *                            free_span without periodic ends, or for a system that is not declared autonomous
+ *                            free_span without periodic ends, or for a system that is not declared autonomous; an energy without
+ *                            free_span, a symmetry_pattern without symmetry
  *  @retval DVI_BAD_SIZE      steps is out of range, dimension is not nq, or there are more unknowns or entries than an int can count
  *  @retval DVI_NO_MEMORY     also for absurdly many steps */
 dvi_status dvi_path_create(const dvi_system *system, const char *method, const dvi_path_options *options, dvi_path **path);

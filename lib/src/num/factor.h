@@ -21,4 +21,8 @@ extern const dvi__factor_operations dvi__dense_factor;   /* dense.c */
 extern const dvi__factor_operations dvi__sparse_factor;  /* klu.c */
 extern const dvi__factor_operations dvi__complex_factor; /* klu.c; values and b in pairs of numbers */
 
+/* Of a matrix with a border; it has no `create`. */
+extern const dvi__factor_operations dvi__bordered_factor; /* border.c */
+dvi_status dvi__bordered_factor_create(const dvi__pattern *pattern, int border, void **factor);
+
 #endif

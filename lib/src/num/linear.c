@@ -40,24 +40,36 @@ static int dense_is_better(const dvi__pattern *pattern)
   return pattern->columns >= LEAST_DENSE && dvi__pattern_entries(pattern) >= LEAST_DENSITY * n * n;
 }
 
-static dvi_status fill(dvi__linear *linear, dvi__linear_kind kind, const dvi__linear *like)
+static dvi_status create_factor(dvi__linear *linear, const dvi__linear *like, int border)
+{
+  if (border > 0) return dvi__bordered_factor_create(linear->pattern, border, &linear->factor);
+  return linear->operations->create(linear->pattern, like != NULL ? like->factor : NULL, &linear->factor);
+}
+
+static const dvi__factor_operations *operations_for(dvi__linear_kind kind, int border)
+{
+  if (border > 0) return &dvi__bordered_factor;
+  return kind == DVI__LINEAR_COMPLEX ? &dvi__complex_factor : &dvi__sparse_factor;
+}
+
+static dvi_status fill(dvi__linear *linear, dvi__linear_kind kind, const dvi__linear *like, int border)
 {
   const dvi__pattern *pattern = linear->pattern;
   const int dense = kind == DVI__LINEAR_DENSE || (kind == DVI__LINEAR_AUTO && dense_is_better(pattern));
-  linear->operations = dense ? &dvi__dense_factor : kind == DVI__LINEAR_COMPLEX ? &dvi__complex_factor : &dvi__sparse_factor;
+  linear->operations = dense ? &dvi__dense_factor : operations_for(kind, border);
   linear->parts = kind == DVI__LINEAR_COMPLEX ? 2 : 1;
   linear->row_scale = DVI_NEW(double, pattern->rows);
   linear->column_scale = DVI_NEW(double, pattern->columns);
   linear->scaled = DVI_NEW(double, (size_t)linear->parts *(size_t)dvi__pattern_entries(pattern));
   if (linear->row_scale == NULL || linear->column_scale == NULL || linear->scaled == NULL)
     return dvi__fail(DVI_NO_MEMORY, "linear solver: no memory for %d entries", dvi__pattern_entries(pattern));
-  DVI_TRY(linear->operations->create(pattern, like != NULL ? like->factor : NULL, &linear->factor));
+  DVI_TRY(create_factor(linear, like, border));
   if (linear->counters != NULL && !dense && like == NULL) linear->counters->symbolic++;
   return DVI_OK;
 }
 
-static dvi_status create(const dvi__pattern *pattern, dvi__linear_kind kind, const dvi__linear *like, dvi_counters *counters,
-                         dvi__linear **linear)
+static dvi_status create(const dvi__pattern *pattern, dvi__linear_kind kind, const dvi__linear *like, int border,
+                         dvi_counters *counters, dvi__linear **linear)
 {
   *linear = NULL;
   if (pattern->columns < 1 || pattern->rows != pattern->columns)
@@ -66,7 +78,7 @@ static dvi_status create(const dvi__pattern *pattern, dvi__linear_kind kind, con
   if (made == NULL) return dvi__fail(DVI_NO_MEMORY, "linear solver: no memory");
   made->pattern = pattern;
   made->counters = counters;
-  const dvi_status status = fill(made, kind, like);
+  const dvi_status status = fill(made, kind, like, border);
   if (status != DVI_OK) dvi__linear_destroy(&made);
   *linear = made;
   return status;
@@ -74,12 +86,17 @@ static dvi_status create(const dvi__pattern *pattern, dvi__linear_kind kind, con
 
 dvi_status dvi__linear_create(const dvi__pattern *pattern, dvi__linear_kind kind, dvi_counters *counters, dvi__linear **linear)
 {
-  return create(pattern, kind, NULL, counters, linear);
+  return create(pattern, kind, NULL, 0, counters, linear);
+}
+
+dvi_status dvi__linear_create_bordered(const dvi__pattern *pattern, int border, dvi_counters *counters, dvi__linear **linear)
+{
+  return create(pattern, DVI__LINEAR_SPARSE, NULL, border, counters, linear);
 }
 
 dvi_status dvi__linear_create_like(const dvi__linear *like, dvi__linear_kind kind, dvi_counters *counters, dvi__linear **linear)
 {
-  return create(like->pattern, kind, like, counters, linear);
+  return create(like->pattern, kind, like, 0, counters, linear);
 }
 
 void dvi__linear_destroy(dvi__linear **linear)

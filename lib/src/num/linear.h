@@ -18,7 +18,10 @@ typedef enum dvi__linear_kind {
  * full matrices that are not small. The symbolic analysis happens here, once. */
 dvi_status dvi__linear_create(const dvi__pattern *pattern, dvi__linear_kind kind, dvi_counters *counters, dvi__linear **linear);
 
-/* The same for the pattern of another solver, sparse or complex, which must outlive this one: its analysis serves both. Not AUTO or DENSE. */
+/* Sparse, but for the last `border` rows and columns, which may be full; work and memory in proportion to the size all the same. */
+dvi_status dvi__linear_create_bordered(const dvi__pattern *pattern, int border, dvi_counters *counters, dvi__linear **linear);
+
+/* For the pattern of another solver, sparse or complex, which must outlive this one: its analysis serves both. Not AUTO or DENSE. */
 dvi_status dvi__linear_create_like(const dvi__linear *like, dvi__linear_kind kind, dvi_counters *counters, dvi__linear **linear);
 
 /* The kind for a matrix that may have zeros on its diagonal: the order of the pivots, on which KLU settles at create, would fail it, and each

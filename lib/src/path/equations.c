@@ -19,6 +19,14 @@ void dvi__path_place(dvi_path *path, const double *x, int k)
   dvi__action_between(path->action, dvi__path_at(path, x, k + 1), x + dvi__path_bubbles(path, k), path->Y);
 }
 
+/* Say in which step it failed. */
+static dvi_status at_step(const dvi_path *path, const double *x, int k, dvi_status status)
+{
+  if (status == DVI_OK) return DVI_OK;
+  const double t = path->start + k * (dvi__path_span(path, x) / path->steps);
+  return dvi__fail_in(status, "step %d of %d, from t = %.6g", k + 1, path->steps, t);
+}
+
 /* |L| that is so much larger between the quadrature's nodes than at any of them is a singularity, not a path. */
 static const double overlooked = 1e3;
 
@@ -59,11 +67,11 @@ static dvi_status gradient(dvi_path *path, const double *x, double *rows, double
   if (energy != NULL) *energy = 0;
   memset(rows, 0, (size_t)path->core * sizeof(double));
   for (int k = 0; k < path->steps; k++) {
-    DVI_TRY(element_gradient(path, x, k));
+    DVI_TRY(at_step(path, x, k, element_gradient(path, x, k)));
     add_rows(path, k, rows);
     if (energy != NULL) {
       dvi__energies E;
-      DVI_TRY(dvi__action_energies(path->action, &E));
+      DVI_TRY(at_step(path, x, k, dvi__action_energies(path->action, &E)));
       *energy += E.end / path->steps;
     }
     if (p == NULL) continue;
@@ -89,19 +97,18 @@ dvi_status dvi__path_action(dvi_path *path, const double *x, double *action, dou
   if (path->system->autonomous) DVI_TRY(gradient(path, x, path->rows, NULL, energy));
   for (int k = 0; k < path->steps; k++) {
     dvi__path_place(path, x, k);
-    DVI_TRY(dvi__action_value(path->action, path->Y, &S, &seen));
+    DVI_TRY(at_step(path, x, k, dvi__action_value(path->action, path->Y, &S, &seen)));
     const dvi_status status = dvi__action_unseen(path->action, path->Y, &unseen);
-    if (status < 0) return status;
+    if (status < 0) return at_step(path, x, k, status);
     *action += S;
     most_seen = fmax(most_seen, seen);
     most_unseen = fmax(most_unseen, status == DVI_OK ? unseen : HUGE_VAL);
   }
   if (!(most_unseen > overlooked * most_seen)) return DVI_OK;
-  return dvi__fail(
-      DVI_NOT_CONVERGED,
-      "path: the path that was found goes through a singularity that the quadrature does not see (|L| of %.1e between its "
-      "nodes, %.1e at them); the path is unchanged; try a guess that passes it, more steps or a longer span",
-      most_unseen, most_seen);
+  return dvi__fail(DVI_NOT_CONVERGED,
+                   "the path that was found goes through a singularity that the quadrature does not see (|L| of %.1e between its "
+                   "nodes, %.1e at them); the path is unchanged; try a guess that passes it, more steps or a longer span",
+                   most_unseen, most_seen);
 }
 
 /* ---- the border ---- */
@@ -201,9 +208,9 @@ dvi_status dvi__path_jacobian(dvi_path *path, const double *x, double *values)
   memset(values, 0, (size_t)dvi__pattern_entries(&path->pattern) * sizeof(double));
   for (int k = 0; k < path->steps; k++) {
     dvi__path_place(path, x, k);
-    DVI_TRY(dvi__action_between_hessian(path->action, path->Y, path->block));
+    DVI_TRY(at_step(path, x, k, dvi__action_between_hessian(path->action, path->Y, path->block)));
     dvi__path_each_entry(path, k, add_entry, &to);
-    if (path->free_span) DVI_TRY(add_span(&to, path, k));
+    if (path->free_span) DVI_TRY(at_step(path, x, k, add_span(&to, path, k)));
   }
   dvi__path_each_gauge(path, add_gauge_entry, &to);
   /* Multipliers that are not in use are unknowns of their own. */
@@ -222,7 +229,7 @@ static dvi_status jacobian(void *of, const double *x, double *values)
 dvi_status dvi__path_scale(dvi_path *path, const double *x)
 {
   dvi__path_place(path, x, path->steps / 2);
-  DVI_TRY(dvi__action_prepare_chord(path->action, path->Y));
+  DVI_TRY(at_step(path, x, path->steps / 2, dvi__action_prepare_chord(path->action, path->Y)));
   (void)dvi__action_row_scale(path->action, path->row_scale); /* 0: as it was */
   const double h = dvi__path_span(path, x) / path->steps;
   for (int i = 0; i < path->n; i++) path->kinetic[i] = path->row_scale[i * path->s] * h;
@@ -254,6 +261,7 @@ dvi_status dvi__path_make_solver(dvi_path *path)
   const dvi__equations equations = {.unknowns = path->unknowns,
                                     .pattern = &path->pattern,
                                     .linear = DVI__LINEAR_SPARSE,
+                                    .border = path->unknowns - path->core,
                                     .of = path,
                                     .residual = residual,
                                     .jacobian = jacobian,

@@ -45,7 +45,7 @@ static dvi_status generate(const dvi_symmetry *symmetry, const double *q, double
 {
   const int returned = symmetry->generator(q, xi, symmetry->user);
   if (returned == 0) return DVI_OK;
-  return dvi__fail(returned < 0 ? DVI_CALLBACK_FAILED : DVI_CALLBACK_RETRY, "path: symmetry '%s': the callback returned %d",
+  return dvi__fail(returned < 0 ? DVI_CALLBACK_FAILED : DVI_CALLBACK_RETRY, "symmetry '%s': the callback returned %d",
                    symmetry->name, returned);
 }
 

@@ -48,7 +48,7 @@ dvi_status dvi__path_index(dvi_path *path, dvi_path_report *report)
   if (path->ends == DVI_ENDS_INITIAL || path->n * path->s > LARGEST_BLOCK) return DVI_OK;
   const int entries = dvi__pattern_entries(&path->pattern);
   double *values = DVI_NEW(double, entries);
-  if (values == NULL) return dvi__fail(DVI_NO_MEMORY, "path: no memory for a Hessian of %d entries", entries);
+  if (values == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory for a Hessian of %d entries", entries);
   const dvi_status status = slices(path, values, report);
   dvi__release(values);
   return status == DVI_SINGULAR ? DVI_OK : status;

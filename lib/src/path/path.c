@@ -30,6 +30,8 @@ static dvi_status check_arrays(const dvi_system *system, const dvi_path_options 
   DVI_TRY(check_array(o, o->q1, "the last node q1", o->ends == DVI_ENDS_FIXED));
   DVI_TRY(check_array(o, o->p0, "the first momentum p0", o->ends == DVI_ENDS_INITIAL));
   if (o->shift != NULL) DVI_TRY(check_array(o, o->shift, "the shift", periodic));
+  if (o->symmetry == NULL && (o->symmetry_pattern.start != NULL || o->symmetry_pattern.row != NULL))
+    return dvi__fail(DVI_BAD_ARGUMENT, "path: a pattern of the symmetry is given, but no symmetry");
   if (o->symmetry == NULL || periodic) return DVI_OK;
   return dvi__fail(DVI_BAD_ARGUMENT, "path: a symmetry is given, but only periodic ends have a use for it");
 }
@@ -52,6 +54,8 @@ static dvi_status check(const dvi_system *system, const dvi_path_options *o)
     return dvi__fail(DVI_BAD_ARGUMENT, "path: only periodic ends can have a free period");
   if (o->free_span && !system->autonomous)
     return dvi__fail(DVI_BAD_ARGUMENT, "path: a free period needs a system that is declared autonomous");
+  if (!o->free_span && o->energy != 0)
+    return dvi__fail(DVI_BAD_ARGUMENT, "path: the energy %g is given, but the period is not free", o->energy);
   if (o->free_span && !isfinite(o->energy)) return dvi__fail(DVI_BAD_ARGUMENT, "path: the energy %g is no number", o->energy);
   return check_arrays(system, o);
 }

@@ -12,7 +12,7 @@ static const double stationary_below = 1e-9;
 /* Newton's method settles from there, unless the Hessian is singular. */
 static const double nearly_stationary = 1e-8;
 
-/* A gradient that is no larger where the path is held in place may vanish at another time. */
+/* A gradient that is no larger where the path is held in place may vanish at another time; and a residual, on another path beside it. */
 static const double nearly_in_time = 1e-4;
 
 /* Directions that move the guess alike are one. On a circle rotation moves a path as time does, but on a rough guess of it they differ: if it cannot be held
@@ -26,25 +26,29 @@ static dvi_status not_found(dvi_path *path, dvi_status status, const dvi__solve_
       [DVI_ENDS_INITIAL] = "a guess from steps with dvi_run, or a shorter span",
       [DVI_ENDS_PERIODIC] = "a better guess, more steps, another period, or come by continuation",
   };
-  if (status < 0) return dvi__fail_in(status, "path");
-  if (status != DVI_NOT_CONVERGED) return dvi__fail_in(status, "path: no stationary path was found; the path is unchanged");
+  if (status < 0) return status;
+  if (status != DVI_NOT_CONVERGED) return dvi__fail_in(status, "no stationary path was found; the path is unchanged");
   if (solved->residual < nearly_stationary)
+    return dvi__fail(DVI_SINGULAR,
+                     "Newton's method came to a residual of %.1e but does not settle: the path is not isolated, one of many with "
+                     "these ends; the path is unchanged; try another span, or declare the symmetries that move it",
+                     solved->residual);
+  if (path->ends == DVI_ENDS_PERIODIC && solved->residual < nearly_in_time)
     return dvi__fail(
-        DVI_SINGULAR,
-        "path: Newton's method came to a residual of %.1e but does not settle: the path is not isolated, one of many with "
-        "these ends; the path is unchanged; try another span, or declare the symmetries that move it",
-        solved->residual);
-  return dvi__fail(
-      status,
-      "path: no stationary path of %d steps over %g was found from this guess (%d iterations, residual %.1e); the path "
-      "is unchanged; try %s",
-      path->steps, path->span, solved->iterations, solved->residual, advice[path->ends]);
+        status,
+        "Newton's method comes near a stationary path (residual %.1e) but does not settle: no path has just this period, or "
+        "many have it, which %d steps tell apart by too little; the path is unchanged; try more steps, then another period",
+        solved->residual, path->steps);
+  return dvi__fail(status,
+                   "no stationary path of %d steps over %g was found from this guess (%d iterations, residual %.1e); the path "
+                   "is unchanged; try %s",
+                   path->steps, path->span, solved->iterations, solved->residual, advice[path->ends]);
 }
 
 static dvi_status held_in_place(double gradient)
 {
   return dvi__fail(DVI_NOT_CONVERGED,
-                   "path: the path that was found is stationary only while it is held in place (gradient %.1e of the momenta): no "
+                   "the path that was found is stationary only while it is held in place (gradient %.1e of the momenta): no "
                    "path of this period is near the guess, or the steps are too long; the path is unchanged; try another period or "
                    "guess, a free period, or more steps",
                    gradient);
@@ -56,7 +60,7 @@ static dvi_status measure(dvi_path *path, double size, dvi_path_report *report)
   const double *x = path->trial;
   report->span = dvi__path_span(path, x);
   if (!(report->span > 0))
-    return dvi__fail(DVI_NOT_CONVERGED, "path: the period shrank to %g; the path is unchanged; try a better guess", report->span);
+    return dvi__fail(DVI_NOT_CONVERGED, "the period shrank to %g; the path is unchanged; try a better guess", report->span);
   DVI_TRY(dvi__path_gradient(path, x, path->trial_p, &report->gradient));
   double momentum = dvi__largest((size_t)(path->steps + 1) * (size_t)path->n, path->trial_p);
   momentum = fmax(momentum, dvi__largest((size_t)path->n, path->kinetic) * size / report->span * stationary_below);
@@ -69,12 +73,12 @@ static dvi_status measure(dvi_path *path, double size, dvi_path_report *report)
 static dvi_status check_isolated(const dvi_path *path, const dvi_path_report *report)
 {
   if (report->zero <= report->symmetries + path->free_span) return DVI_OK;
-  return dvi__fail(
-      DVI_SINGULAR,
-      "path: along %ld direction%s, of which %d are symmetries, the action does not change to second order (below %.0e): "
-      "%s; the path is unchanged; try another span",
-      report->zero, report->zero == 1 ? "" : "s", report->symmetries, report->zero_below,
-      path->ends == DVI_ENDS_FIXED ? "its ends are conjugate, so that there are many such paths or none" : "it is not isolated");
+  return dvi__fail(DVI_SINGULAR,
+                   "along %ld direction%s, of which %d are symmetries, the action does not change to second order (below %.0e): "
+                   "%s; the path is unchanged; try another span",
+                   report->zero, report->zero == 1 ? "" : "s", report->symmetries, report->zero_below,
+                   path->ends == DVI_ENDS_FIXED ? "its ends are conjugate, so that there are many such paths or none"
+                                                : "it is not isolated");
 }
 
 /* Newton's method finds nothing, or does not settle, where the Hessian is singular: at the guess, or where it ended, if that is nearly stationary. Else the
@@ -148,7 +152,7 @@ dvi_status dvi_path_solve(dvi_path *path, dvi_path_report *report)
   if (path == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "path: no path to solve");
   dvi_path_report found = {0};
   const dvi_status status = solve(path, &found);
-  if (status != DVI_OK) return status;
+  if (status != DVI_OK) return dvi__fail_in(status, "path");
   accept(path);
   if (report != NULL) *report = found;
   return DVI_OK;

@@ -65,11 +65,10 @@ static dvi_status judge(const dvi_path *path, const comparison *c)
   static const char *const names[KINDS] = {"L", "L_q", "L_v"};
   for (int kind = 0; kind < KINDS; kind++)
     if (!(c->difference[kind] <= symmetric_below * c->size[kind]))
-      return dvi__fail(
-          DVI_BAD_ARGUMENT,
-          "path: the %s is none of the Lagrangian's: it changes %s by %.3g (of %.3g) at t = %.6g; the path is unchanged",
-          path->turn.start != NULL || path->shift != NULL ? "symmetry" : "period", names[kind], c->difference[kind], c->size[kind],
-          c->t[kind]);
+      return dvi__fail(DVI_BAD_ARGUMENT,
+                       "the %s is none of the Lagrangian's: it changes %s by %.3g (of %.3g) at t = %.6g; the path is unchanged",
+                       path->turn.start != NULL || path->shift != NULL ? "symmetry" : "period", names[kind], c->difference[kind],
+                       c->size[kind], c->t[kind]);
   return DVI_OK;
 }
 
@@ -81,7 +80,10 @@ dvi_status dvi__path_check_symmetry(dvi_path *path, const double *x, int nodes)
   DVI_TRY(dvi__path_scale(path, x));
   begin(path, x, &c);
   const double h = dvi__path_span(path, x) / path->steps;
-  for (int k = 0; k < nodes; k++) DVI_TRY(compare(path, x, k, path->start + k * h, &c));
+  for (int k = 0; k < nodes; k++) {
+    const dvi_status status = compare(path, x, k, path->start + k * h, &c);
+    if (status != DVI_OK) return dvi__fail_in(status, "node %d of %d", k, path->steps);
+  }
   /* The first node again: at its own time alone a drive may hide. */
   DVI_TRY(compare(path, x, 0, path->start + 0.37 * path->steps * h, &c));
   return judge(path, &c);

@@ -30,7 +30,9 @@ static dvi_status fill(dvi__solver *solver)
   solver->values = DVI_NEW(double, dvi__pattern_entries(pattern));
   if (solver->residual == NULL || solver->values == NULL)
     return dvi__fail(DVI_NO_MEMORY, "solver: no memory for %d unknowns", solver->equations.unknowns);
-  DVI_TRY(dvi__linear_create(pattern, solver->equations.linear, solver->counters, &solver->linear));
+  const int border = solver->equations.border;
+  DVI_TRY(border > 0 ? dvi__linear_create_bordered(pattern, border, solver->counters, &solver->linear)
+                     : dvi__linear_create(pattern, solver->equations.linear, solver->counters, &solver->linear));
   return dvi__kinsol_create(solver, &solver->kinsol);
 }
 

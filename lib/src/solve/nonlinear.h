@@ -14,7 +14,8 @@ typedef struct dvi__equations {
   int unknowns;
   const dvi__pattern *pattern; /* of the Jacobian; outlives the solver */
   dvi__linear_kind linear;     /* that factors it; left out: AUTO, which takes the diagonal's entries for the largest ones */
-  void *of;                    /* first argument of the callbacks */
+  int border; /* so many of the last rows and columns may be full: sparse all the same; 0: none, `linear` says what is done */
+  void *of;   /* first argument of the callbacks */
   dvi_status (*residual)(void *of, const double *x, double *r);
   dvi_status (*jacobian)(void *of, const double *x, double *values);
   dvi_status (*prepare_chord)(void *of, const double *x);
