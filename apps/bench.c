@@ -154,10 +154,12 @@ static int add_method(bench *b, const entry *of)
   study.first_error = first_error_of(b, &study);
   study.progress = &b->progress;
   dvi_status status = choose_levels(&study, 0.0, 0.0, levels, steps, &room);
-  for (int k = 0; k < levels && status == DVI_OK; k++) status = add_level(b, of, &study, steps[k]);
-  if (status == DVI_OK && extend) status = extend_levels(b, of, &study, first_job);
+  const bool lost = status == DVI_OK && steps[0] == 0;
+  if (lost) code = study_refuse(&study);
+  for (int k = 0; k < levels && status == DVI_OK && !lost; k++) status = add_level(b, of, &study, steps[k]);
+  if (status == DVI_OK && !lost && extend) status = extend_levels(b, of, &study, first_job);
   study_clear(&study);
-  return status == DVI_OK ? DONE : library_error(status);
+  return status == DVI_OK ? code : library_error(status);
 }
 
 /* Add a peer at a tolerance. One that it cannot keep is left out, and said. */

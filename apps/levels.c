@@ -101,6 +101,13 @@ static bool has_room(const order_study *s, const level_trial *first, int levels)
   return first->error * pow((double)first->steps / finest, s->order) > s->floor;
 }
 
+/* Whether even many steps fail, or end where the solution is not: finer ones cost much and tell nothing. */
+static bool is_lost(const order_study *s, dvi_status status, const level_trial *first)
+{
+  static const double far = 10.0; /* times the largest error that tells an order */
+  return dvi_integrator_monitor(s->integrator) != NULL && (status > 0 || (status == DVI_OK && !(first->error <= far * s->ceiling)));
+}
+
 dvi_status choose_levels(order_study *study, double h, double ratio, int levels, long *steps, bool *room)
 {
   level_trial first;
@@ -108,6 +115,8 @@ dvi_status choose_levels(order_study *study, double h, double ratio, int levels,
   dvi_status status = wanted > 0.0 ? study_run(study, lround(wanted), &first) : find_first(study, &first);
   if (status == DVI_OK) status = find_floor(study, first.steps);
   if (status == DVI_OK && !(wanted > 0.0)) status = find_first(study, &first); /* now that the floor is known */
+  steps[0] = 0;
+  if (!(wanted > 0.0) && is_lost(study, status, &first)) return DVI_OK;
   if (status != DVI_OK) return status;
   *room = has_room(study, &first, levels < ROOM_LEVELS ? levels : ROOM_LEVELS);
   const double factor = ratio > 0.0 ? ratio : choose_ratio(study, &first, levels, wanted > 0.0 ? HUGE_VAL : (double)finest_max);

@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-enum { PROGRESS_STEPS = 256, SPAN_TRIES = 8 };
+enum { PROGRESS_STEPS = 256, SPAN_TRIES = 8, SPAN_STEPS_MAX = 1 << 20 };
 static const double shorter = 0.25; /* steps of the next try to measure a span */
 
 /* A march under way, for dvi_run. */
@@ -41,6 +41,14 @@ dvi_status march(dvi_integrator *integrator, double h, long steps, double t_end,
   return status;
 }
 
+/* One that leaps where its monitor is large may end up where it is next to nothing. */
+static int count(dvi_integrator *integrator, void *user)
+{
+  long *steps = user;
+  (void)integrator;
+  return (*steps)++ > SPAN_STEPS_MAX;
+}
+
 dvi_status march_span(dvi_integrator *integrator, const double *q, const double *p, double h, double t_end, double *span)
 {
   dvi_status status = DVI_OK;
@@ -49,10 +57,12 @@ dvi_status march_span(dvi_integrator *integrator, const double *q, const double 
   h = copysign(h, t_end);
   for (int i = 0; i < SPAN_TRIES; i++, h *= shorter) {
     dvi_run_report report = {0};
+    long steps = 0;
     status = dvi_integrator_start(integrator, 0.0, q, p);
-    if (status == DVI_OK) status = dvi_run(integrator, &(dvi_run_options){.h = h, .t_end = t_end}, &report);
+    if (status == DVI_OK)
+      status = dvi_run(integrator, &(dvi_run_options){.h = h, .t_end = t_end, .observe = count, .user = &steps}, &report);
     if (status <= 0) {
-      *span = h * (double)report.steps;
+      *span = report.end == DVI_RUN_COMPLETE ? h * (double)report.steps : (double)NAN;
       return status;
     }
   }

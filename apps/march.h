@@ -14,7 +14,7 @@ typedef int (*march_look)(dvi_integrator *integrator, void *user);
 dvi_status march(dvi_integrator *integrator, double h, long steps, double t_end, march_look look, void *user,
                  progress_line *progress, const char *words);
 
-/** How much of their own time the steps take from the problem's start to t_end: t_end itself, or that of a first run with steps of h. The integrator is
- *  left at the end. */
+/** How much of their own time the steps take from the problem's start to t_end: t_end itself, or that of a first run with steps of h; NaN if a million of
+ *  these do not come to t_end. The integrator is left where the run ends. */
 dvi_status march_span(dvi_integrator *integrator, const double *q, const double *p, double h, double t_end, double *span);
 #endif

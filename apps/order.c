@@ -123,9 +123,11 @@ static int study_until(hearing *ask, const char *method, double t_end, bool *roo
   const int levels = level_count(request, &study);
   dvi_status status = choose_levels(&study, isnan(request->h) ? 0.0 : request->h, isnan(request->ratio) ? 0.0 : request->ratio,
                                     levels, steps, room);
-  if (status == DVI_OK && (*room || !must_fit)) status = measure(ask, &study, levels, steps, result);
+  const bool lost = status == DVI_OK && steps[0] == 0;
+  if (lost) code = study_refuse(&study);
+  if (status == DVI_OK && !lost && (*room || !must_fit)) status = measure(ask, &study, levels, steps, result);
   study_clear(&study);
-  if (status == DVI_OK) return DONE;
+  if (status == DVI_OK) return code;
   (void)library_error(status);
   complain("order: %s failed on %s; try a smaller --h", method, ask->scene->name);
   return FAILED;

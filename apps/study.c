@@ -41,6 +41,13 @@ double study_size(const order_study *s)
   return size > 0.0 ? size : 1.0;
 }
 
+int study_refuse(const order_study *s)
+{
+  complain("%s: its steps do not lead to the solution at t = %g; is the monitor finite and above 0 all the way?", s->method,
+           s->t_end);
+  return FAILED;
+}
+
 int study_init(order_study *study, const problem *scene, const judgement *judge, const char *method, const pacing *how,
                double t_end)
 {
@@ -52,9 +59,9 @@ int study_init(order_study *study, const problem *scene, const judgement *judge,
   const int code = open_paced(scene, method, how, &study->integrator);
   if (code != DONE) return code;
   const dvi_status status = march_span(study->integrator, scene->q, scene->p, scene->order_h, t_end, &study->span);
-  if (status != DVI_OK) {
+  if (status != DVI_OK || isnan(study->span)) {
     study_clear(study);
-    return library_error(status);
+    return status != DVI_OK ? library_error(status) : study_refuse(study);
   }
   study->order = dvi_integrator_order(study->integrator);
   study->ceiling = ceiling_digits * study_size(study);

@@ -38,6 +38,10 @@ typedef struct level_trial {
 /** Begin a study of a method, whose steps may follow a monitor. Returns DONE, or complains and returns the exit code. */
 int study_init(order_study *study, const problem *scene, const judgement *judge, const char *method, const pacing *how,
                double t_end);
+
+/** Complain that the monitor leads nowhere, and return FAILED. */
+int study_refuse(const order_study *study);
+
 void study_clear(order_study *study);
 
 /** Run once with so many equal steps: fills steps, h, error and spent. */

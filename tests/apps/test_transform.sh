@@ -86,6 +86,11 @@ for bad in power=0 power=-1 power=nan power=x; do
   "$dvi" run kepler --method midpoint --time-transform "distance:$bad" >out 2>err || code=$?
   [ "$code" -ne 0 ] || fail "distance:$bad is taken"
 done
+# An oscillator's acceleration vanishes: steps leap, and no search among them ends at the solution.
+expect 1 'order of leaps' order oscillator --method verlet --step-control acceleration --levels 4
+says err '^dvi: verlet: its steps do not lead to the solution at t = 50' 'why there is no order'
+expect 1 'bench of leaps' bench oscillator --method midpoint --time-transform acceleration --levels 2 --rounds 1
+says err 'is the monitor finite' 'why there is no bench'
 expect 2 'naive steps' run kepler --method verlet --tolerance 1e-6
 says err 'neither symplectic nor symmetric' 'why there is no tolerance'
 expect 2 'wrong sign' run kepler --method midpoint --time-transform distance --h -0.1 --t-end 1

@@ -114,9 +114,25 @@ START_TEST(the_form_is_the_same_before_and_after)
 }
 END_TEST
 
+/* dq ^ dp at a fixed h belongs to the ordinary step that begins a run: what dvi_symplecticity measures, wherever the integrator stands. */
+START_TEST(the_first_step_is_symplectic_in_q_and_p_alone)
+{
+  problem *kepler = made_problem("kepler", "e=0.2");
+  dvi_integrator *integrator = started(kepler, "sem:degree=2");
+  double defect;
+  advance(integrator, 0.5, 3);
+  ck_assert_int_eq(dvi_symplecticity(integrator, 0, dvi_integrator_q(integrator), dvi_integrator_p(integrator), 0.5, &defect),
+                   DVI_OK);
+  ck_assert_double_le(defect, 1e-11);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&kepler);
+}
+END_TEST
+
 int main(void)
 {
   TCase *tests = tcase_create("sem symplectic");
   tcase_add_loop_test(tests, the_form_is_the_same_before_and_after, 0, PLACES);
+  tcase_add_test(tests, the_first_step_is_symplectic_in_q_and_p_alone);
   return run_tests("method/sem_symplectic", tests);
 }

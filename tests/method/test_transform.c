@@ -265,6 +265,32 @@ START_TEST(one_like_another_takes_the_same_steps)
 }
 END_TEST
 
+/* By how much ten steps from a start of another energy change the energy. */
+static double energy_change(dvi_integrator *integrator, const double *q, const double *p)
+{
+  double before[4], after[4];
+  ck_assert_int_eq(dvi_integrator_start(integrator, 0, q, p), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_invariants(integrator, before), DVI_OK);
+  advance(integrator, 0.1, 10);
+  ck_assert_int_eq(dvi_integrator_invariants(integrator, after), DVI_OK);
+  return fabs(after[0] - before[0]);
+}
+
+/* As its docstring warns; and an integrator of its own takes every start's own energy. */
+START_TEST(one_like_another_keeps_its_E0)
+{
+  problem *kepler = made_problem("kepler", "e=0.5");
+  dvi_integrator *integrator = paced(kepler, dvi_integrator_create_transformed, "distance", "galerkin:degree=8"), *like;
+  const double q[] = {1.2, 0}, p[] = {0, 1};
+  ck_assert_int_eq(dvi_integrator_create_like(integrator, &like), DVI_OK);
+  ck_assert_double_gt(energy_change(like, q, p), 1e-3);
+  ck_assert_double_le(energy_change(integrator, q, p), 1e-12);
+  dvi_integrator_destroy(&like);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&kepler);
+}
+END_TEST
+
 START_TEST(explain_says_what_a_step_is)
 {
   problem *kepler = made_problem("kepler", NULL);
@@ -299,6 +325,7 @@ int main(void)
   tcase_add_loop_test(tests, a_restored_run_continues_bit_for_bit, 0, WAYS);
   tcase_add_test(tests, a_checkpoint_of_another_monitor_is_refused);
   tcase_add_loop_test(tests, one_like_another_takes_the_same_steps, 0, WAYS);
+  tcase_add_test(tests, one_like_another_keeps_its_E0);
   tcase_add_test(tests, explain_says_what_a_step_is);
   return run_tests("transform", tests);
 }

@@ -71,6 +71,9 @@ dvi_status dvi_order(int count, const double *h, const double *error, double flo
  *  whose steps fail with a positive status or DVI_SINGULAR is replaced by shorter ones, so that a domain's edge (|v| < 1, say)
  *  may be near.
  *
+ *  The step is one from a start. Methods that choose their steps (dvi_integrator_chooses_steps) begin with an ordinary step of h, and that alone is
+ *  measured for sem: its later steps conserve dq ^ dp - dt ^ dE, not dq ^ dp at a fixed h.
+ *
  *  Takes 16 to 27 n steps where the map is smooth over lengths near unit size, at most 250 n. A second integrator of the same
  *  method takes them. Memory (2n)^2 numbers.
  *  @param      integrator  its method and system are used, and the E0 of its start if it is time-transformed (dvi/transform.h); it is left alone

@@ -65,7 +65,10 @@ dvi_status dvi_integrator_create(const dvi_system *system, const char *method, d
 
 /** Make another one of the same system, method and monitor (dvi/transform.h), without a state.
  *
- *  If the given one is started, and its steps are in a fictitious time, the new one keeps its E0: starts near each other belong to one map.
+ *  If the given one is started, and its steps are in a fictitious time, the new one keeps its E0 in all its starts: those near each other belong to
+ *  one map, whose derivatives can be differenced. Time-transformed, only a start of the energy E0 follows the motion then; one of another energy E
+ *  succeeds and follows that of g (E - E0), which is another. For starts of their own energies make an integrator by
+ *  dvi_integrator_create_transformed.
  *  @param[out] integrator  owned by the caller; NULL on failure
  *  @retval DVI_BAD_ARGUMENT  a pointer is NULL
  *  @retval (others)          as when the given one was made */
