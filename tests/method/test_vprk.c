@@ -195,6 +195,60 @@ START_TEST(a_step_out_of_the_logarithms_domain_leaves_the_state)
 }
 END_TEST
 
+/* A potential that asks for a smaller step from some call on, as one that is short of a resource. */
+static int calls_left;
+
+static int short_of_calls(double t, const double *q, double *V, void *user)
+{
+  (void)t, (void)user;
+  *V = 0.5 * (q[0] * q[0] + q[1] * q[1]);
+  return 0;
+}
+
+static int gradient_short_of_calls(double t, const double *q, double *V_q, void *user)
+{
+  (void)t, (void)user;
+  V_q[0] = q[0];
+  V_q[1] = q[1];
+  return calls_left-- > 0 ? 0 : 1;
+}
+
+static int plane(const double *q, double *alpha, void *user)
+{
+  (void)user;
+  alpha[0] = -0.5 * q[1];
+  alpha[1] = 0.5 * q[0];
+  return 0;
+}
+
+static int plane_gradient(const double *q, double *alpha_q, void *user)
+{
+  (void)q, (void)user;
+  alpha_q[0] = alpha_q[3] = 0;
+  alpha_q[1] = -0.5;
+  alpha_q[2] = 0.5;
+  return 0;
+}
+
+START_TEST(a_callback_that_goes_on_asking_for_smaller_steps_is_heard)
+{
+  const dvi_one_form form = {.value = plane, .gradient = plane_gradient};
+  const dvi_potential H = {.value = short_of_calls, .gradient = gradient_short_of_calls};
+  const dvi_system_terms terms = {.dimension = 2, .one_form = &form, .potentials = &H, .potential_count = 1};
+  const double q[2] = {1, 0}, v[2] = {0, 1};
+  dvi_system *system = NULL;
+  ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
+  dvi_integrator *integrator = made_integrator(system, "vprk:nodes=3");
+  calls_left = 1000;
+  ck_assert_msg(dvi_integrator_start_velocity(integrator, 0, q, v) == DVI_OK, "%s", dvi_last_error());
+  calls_left = _i;
+  ck_assert_int_eq(dvi_integrator_step(integrator, 0.1), DVI_CALLBACK_RETRY);
+  ck_assert_mem_eq(dvi_integrator_q(integrator), q, sizeof q);
+  dvi_integrator_destroy(&integrator);
+  dvi_system_destroy(&system);
+}
+END_TEST
+
 START_TEST(lobatto_wants_two_nodes)
 {
   problem *of = made_problem("lotka-volterra", NULL);
@@ -218,6 +272,7 @@ int main(void)
   tcase_add_test(tests, a_banana_stays_a_banana);
   tcase_add_test(tests, loop_integrals_are_conserved_by_symplectic_maps_alone);
   tcase_add_test(tests, a_step_out_of_the_logarithms_domain_leaves_the_state);
+  tcase_add_loop_test(tests, a_callback_that_goes_on_asking_for_smaller_steps_is_heard, 0, 6);
   tcase_add_test(tests, lobatto_wants_two_nodes);
   return run_tests("method/vprk", tests);
 }

@@ -4,8 +4,8 @@
 
 /** Every status: name, number, meaning.
  *
- *  0 is success; a positive status says that this step failed and a smaller one may succeed; a negative one says that
- *  the call cannot succeed as it stands. */
+ *  0 is success; a positive status says that this step failed and another one may succeed, for most a smaller one; a negative one
+ *  says that the call cannot succeed as it stands. */
 #define DVI_STATUS_LIST(X)                                                           \
   X(DVI_OK, 0, "success")                                                            \
   X(DVI_NOT_CONVERGED, 1, "the step's equations could not be solved")                \

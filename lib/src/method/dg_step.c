@@ -125,10 +125,11 @@ static dvi_status watch(const dvi__stepper *self, const double *q, const double 
   *motion = fmax(*motion, dvi__largest(n, dq));
   if (size <= own->part * *motion + rounding * dvi__largest(n, q)) return DVI_OK;
   if (own->alarm == DVI__ALARM_STOP)
-    return dvi__fail(DVI_JUMP,
-                     "the jump, %.2e, is large against the largest motion of a step, %.2e: the parasite has grown; a stiffness "
-                     "(dg:stiffness=c) keeps it small, alarm=warn goes on",
-                     size, *motion);
+    return dvi__fail(
+        DVI_JUMP,
+        "the jump, %.2e, is large against the largest motion of a step, %.2e: the parasite has grown, and smaller steps do not "
+        "remove it; from the start on, a stiffness (dg:stiffness=c) keeps it small, alarm=warn goes on",
+        size, *motion);
   self->counters->jump_alarms++;
   return DVI_OK;
 }

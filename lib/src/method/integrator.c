@@ -196,8 +196,9 @@ static dvi_status refuse(dvi_integrator *I, double h, dvi_status status)
 {
   exchange_memory(I);
   I->counters.failed_steps++;
-  return dvi__fail_in(status, "%s: step %ld from t = %.9g with h = %.3g failed%s", I->stepper.method->name, I->counters.steps + 1,
-                      I->now.t, h, status > 0 ? "; the state is unchanged, try a smaller step" : "; the state is unchanged");
+  return dvi__fail_in(
+      status, "%s: step %ld from t = %.9g with h = %.3g failed%s", I->stepper.method->name, I->counters.steps + 1, I->now.t, h,
+      status > 0 && status != DVI_JUMP ? "; the state is unchanged, try a smaller step" : "; the state is unchanged");
 }
 
 dvi_status dvi__check_step(double t, double h)

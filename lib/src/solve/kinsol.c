@@ -25,12 +25,14 @@ struct dvi__kinsol {
   SUNMatrix matrix;         /* content: this struct */
   SUNLinearSolver linear;
   dvi_status fatal; /* of a callback; 0: none */
+  dvi_status last;  /* of the last callback */
 };
 
 /* ---- what KINSOL calls ---- */
 
 static int callback_return(dvi__kinsol *k, dvi_status status)
 {
+  k->last = status;
   if (status < 0) k->fatal = status;
   return status == DVI_OK ? 0 : status > 0 ? 1 : -1;
 }
@@ -222,7 +224,7 @@ dvi_status dvi__kinsol_solve(dvi__kinsol *k, double size, double *x, dvi__solve_
   long iterations = 0;
   DVI_TRY(set_scales(k, size, x));
   memcpy(N_VGetArrayPointer(k->x), x, bytes);
-  k->fatal = DVI_OK;
+  k->fatal = k->last = DVI_OK;
   const int flag = KINSol(k->memory, k->x, KIN_LINESEARCH, k->x_scale, k->r_scale);
   (void)KINGetNumNonlinSolvIters(k->memory, &iterations);
   (void)KINGetFuncNorm(k->memory, &report->residual);
@@ -230,6 +232,8 @@ dvi_status dvi__kinsol_solve(dvi__kinsol *k, double size, double *x, dvi__solve_
   if (k->fatal < 0) return k->fatal;
   memcpy(x, N_VGetArrayPointer(k->x), bytes);
   if (flag == KIN_SUCCESS || flag == KIN_INITIAL_GUESS_OK) return DVI_OK;
+  if (flag == KIN_ILL_INPUT && k->last > 0)
+    return k->last; /* a first residual that fails looks like its caller's fault to KINSOL */
   if (flag == KIN_MEM_NULL || flag == KIN_ILL_INPUT || flag == KIN_NO_MALLOC || flag == KIN_MEM_FAIL)
     return dvi__fail(DVI_SOLVER_FAILED, "KINSOL refused the step's equations (flag %d)", flag);
   return dvi__fail(DVI_NOT_CONVERGED, "KINSOL with line search found no solution (flag %d, scaled residual %.1e)", flag,

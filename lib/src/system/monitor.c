@@ -40,7 +40,8 @@ static dvi_status read_motion(const dvi_system *system, const dvi_monitor *given
   const int arclength = given->kind == DVI_MONITOR_ARCLENGTH;
   const char *what = arclength ? "arclength" : "acceleration";
   if (system->lagrangian != NULL)
-    return dvi__fail(DVI_UNSUPPORTED, "monitor %s: the system declares a general Lagrangian; a constant mass is needed", what);
+    return dvi__fail(DVI_UNSUPPORTED, "monitor %s: the system declares a %s; a constant mass is needed", what,
+                     system->terms & DVI__ONE_FORM ? "one-form" : "general Lagrangian");
   if (arclength && !system->autonomous)
     return dvi__fail(DVI_UNSUPPORTED,
                      "monitor arclength: the system is not declared autonomous, and has no energy to take the speed from");
