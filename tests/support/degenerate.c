@@ -7,7 +7,7 @@
 
 enum { LEVELS = 4, COORDINATES_MOST = 4 };
 
-/* Errors at the end of the span for four steps; those within 100 roundings of the floor are not fitted. */
+/* Errors at the end of the span for four steps; those that thousands of roundings may explain are not fitted. */
 void check_degenerate_order(const char *name, const char *setting, const char *method, double h, int expected)
 {
   problem *of = made_problem(name, setting), *standard = made_problem(name, NULL);
@@ -18,10 +18,10 @@ void check_degenerate_order(const char *name, const char *setting, const char *m
     ck_assert_int_eq(dvi_integrator_order(integrator), expected);
     advance(integrator, h, lround(of->order_t_end / h));
     const double error = distance(of->n, dvi_integrator_q(integrator), standard->digits_q);
-    const double floor = 3e-13 * fmax(1, magnitude(of->n, standard->digits_q)), slope = log2(last / error);
+    const double floor = 5e-13 * fmax(1, magnitude(of->n, standard->digits_q)), slope = log2(last / error);
     if (level > 0 && error > floor) {
       /* the first pair may not be asymptotic yet */
-      const double within = level == 1 ? 0.6 : 0.2;
+      const double within = level == 1 ? 0.7 : 0.2;
       ck_assert_msg(fabs(slope - expected) <= within, "%s %s: slope %.2f at h = %g (error %g)", name, method, slope, h, error);
       fitted++;
     }

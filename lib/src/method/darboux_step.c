@@ -54,7 +54,6 @@ dvi_status dvi__darboux_step_create(dvi__stepper *self, dvi__darboux_rule rule, 
   if (!allocate(self, own)) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
   dvi__equations equations = {.unknowns = dvi__darboux_unknowns(own->step),
                               .pattern = dvi__darboux_pattern(own->step),
-                              .linear = dvi__linear_for_exchanges(dvi__darboux_pattern(own->step)),
                               .of = own,
                               .residual = residual,
                               .jacobian = jacobian,

@@ -81,7 +81,6 @@ dvi_status dvi__dg_create(dvi__stepper *self, const dvi__dg_space *space, int al
   const dvi__pattern *pattern = dvi__discontinuous_pattern(own->element);
   dvi__equations equations = {.unknowns = pattern->columns,
                               .pattern = pattern,
-                              .linear = dvi__linear_for_exchanges(pattern),
                               .of = own,
                               .residual = residual,
                               .jacobian = jacobian,

@@ -61,7 +61,6 @@ dvi_status dvi__partitioned_step_create(dvi__stepper *self, dvi__tableau tableau
   const dvi__pattern *pattern = dvi__partitioned_pattern(own->step);
   dvi__equations equations = {.unknowns = dvi__partitioned_unknowns(own->step),
                               .pattern = pattern,
-                              .linear = dvi__linear_for_exchanges(pattern),
                               .of = own,
                               .residual = residual,
                               .jacobian = jacobian,

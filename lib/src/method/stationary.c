@@ -12,6 +12,7 @@ static dvi_status no_chord(void *of, const double *x)
 
 dvi_status dvi__stationary_create(dvi__equations *equations, dvi_counters *counters, dvi__solver **solver)
 {
+  equations->linear = dvi__linear_for_exchanges(equations->pattern);
   equations->prepare_chord = no_chord; /* KINSOL's rung asks for it; the chord itself belongs to fixed point iteration */
   return dvi__solver_create(equations, counters, solver);
 }

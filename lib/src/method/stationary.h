@@ -5,7 +5,7 @@
 #include "method/method.h"
 #include "solve/nonlinear.h"
 
-/* Fill in what every such method has alike: no fixed point iteration. The equations' residual, jacobian and row_scale are the method's. */
+/* Fill in what every such method has alike: no fixed point iteration, and zeros on the Jacobian's diagonal. The equations' residual, jacobian and row_scale are the method's. */
 dvi_status dvi__stationary_create(dvi__equations *equations, dvi_counters *counters, dvi__solver **solver);
 
 /* From the guess in x. `size` is that of the quantities to which x is an increment. On failure a sentence with iterations and residual. */
