@@ -12,6 +12,7 @@
   X(DVI_NOT_FINITE, 2, "NaN or Inf where a finite number is needed")                 \
   X(DVI_CALLBACK_RETRY, 3, "a callback asked for a smaller step")                    \
   X(DVI_JUMP, 4, "the jump between two elements is large against the motion")        \
+  X(DVI_STEP_TOO_LARGE, 5, "a rotation in one step is too large")                    \
   X(DVI_BAD_ARGUMENT, -1, "an argument is missing or out of range")                  \
   X(DVI_BAD_SIZE, -2, "a count or size is out of range")                             \
   X(DVI_BAD_OPTION, -3, "an unknown option, or a value that it cannot take")         \

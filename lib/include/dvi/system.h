@@ -114,7 +114,30 @@ typedef struct dvi_mass {
   dvi_pattern pattern;
 } dvi_mass;
 
-/** A one-parameter symmetry q -> q + epsilon xi(q); its momentum map is J = p.xi(q). */
+/** What a factor of a configuration space is. */
+typedef enum dvi_factor_kind {
+  DVI_RN,  /**< R^n: n coordinates */
+  DVI_SO3, /**< rotations R: the nine entries, row by row; v is the angular velocity Omega in the body's frame, R' = R Omega^, p = Pi its momentum */
+  DVI_SE3, /**< rigid motions: the nine entries of R, then x, the place of the body's origin; v = (Omega, x'), x' in the frame of space */
+  DVI_S2,  /**< directions: a unit vector q; v = q' and its momentum p are three numbers, too, orthogonal to q */
+  DVI_U1   /**< angles: (cos, sin); v is the angular rate */
+} dvi_factor_kind;
+
+/** A factor of a configuration space that is not R^n alone: bodies that turn, directions, angles.
+ *
+ *  The Lagrangian is one of the stored coordinates of all factors in a row, q [nq]: L = q'.M q'/2 - V(t,q) with a constant M, made of what the
+ *  factors say of themselves and of the system's mass, if it has one. Potentials have ordinary gradients and Hessians in the nq numbers, of any
+ *  smooth continuation of V off the manifold (for a body's weight m g (R rho)_3 those of this formula): only what is tangent counts. */
+typedef struct dvi_factor {
+  dvi_factor_kind kind;
+  int size;              /**< of R^n: n; of others 0 */
+  double mass;           /**< R^n: of every coordinate; SE(3): of the body; S^2: m l^2; U(1): the moment of inertia; 0: in the system's mass alone */
+  const double *inertia; /**< SO(3), SE(3): [9] the inertia about the body's origin, symmetric; copied. NULL: in the system's mass alone */
+  const double *centre;  /**< SE(3): [3] the centre of mass in the body's frame; NULL: its origin */
+} dvi_factor;
+
+/** A one-parameter symmetry q -> q + epsilon xi(q); its momentum map is J = p.xi(q). With factors xi is a velocity [nv], as v is (a body turned in space about
+ *  e has R^T e). */
 typedef struct dvi_symmetry {
   const char *name; /**< the momentum's name in tables; copied */
   int (*generator)(const double *q, double *xi, void *user);
@@ -130,7 +153,7 @@ typedef struct dvi_invariant {
 
 /** What a system is made of. Only what is declared exists; all of it is copied (but what `user` points to). */
 typedef struct dvi_system_terms {
-  int dimension;                    /**< n, the number of coordinates, at least 1; even with a one-form */
+  int dimension;                    /**< n, the number of coordinates, at least 1; even with a one-form; with factors 0: they say it */
   dvi_mass mass;                    /**< or: */
   const dvi_lagrangian *lagrangian; /**< or: */
   const dvi_one_form *one_form;     /**< exactly one of mass, lagrangian and one_form */
@@ -142,6 +165,8 @@ typedef struct dvi_system_terms {
   const dvi_invariant *invariants;
   int invariant_count;
   int autonomous; /**< not 0: no callback depends on t (dvi_system_check tests it), and no rates are given; 0: one may */
+  const dvi_factor *factors; /**< NULL: R^n */
+  int factor_count;
 } dvi_system_terms;
 
 /** A system; it never changes after its creation, so integrators on several threads may share it. */
@@ -156,8 +181,10 @@ extern "C" {
  *  @param[out] system  owned by the caller; NULL on failure. It must outlive every integrator made from it.
  *  @retval DVI_BAD_SIZE      dimension (odd with a one-form), a count or a reach is out of range
  *  @retval DVI_BAD_ARGUMENT  a term is missing, given twice, or without its value callback; a reach has no gradient_range; a pattern is not
- *                            sorted; an autonomous system has a rate; a gauge has no one-form
+ *                            sorted; an autonomous system has a rate; a gauge has no one-form; an inertia is that of no body (its principal moments must be positive, none above the
+ *                            sum of the others)
  *  @retval DVI_SINGULAR      the constant mass is singular or not finite
+ *  @retval DVI_UNSUPPORTED   factors beside a general Lagrangian or a one-form
  *  @retval DVI_NO_MEMORY */
 dvi_status dvi_system_create(const dvi_system_terms *terms, dvi_system **system);
 
@@ -167,7 +194,7 @@ void dvi_system_destroy(dvi_system **system);
 /** Number of stored coordinates; 0 for NULL. */
 int dvi_system_nq(const dvi_system *system);
 
-/** Number of degrees of freedom: the size of v and p; 0 for NULL. */
+/** The size of v and p; 0 for NULL. The number of degrees of freedom, but that directions have three numbers for their two. */
 int dvi_system_nv(const dvi_system *system);
 
 /** Whether the system was declared autonomous: 1 or 0; 0 for NULL. */
@@ -187,6 +214,17 @@ dvi_status dvi_system_momentum(const dvi_system *system, double t, const double 
  *  @retval DVI_SINGULAR       L_vv is singular at every guess; or Omega is
  *  @retval DVI_NOT_CONVERGED  Newton's method did not settle from any guess */
 dvi_status dvi_system_velocity(const dvi_system *system, double t, const double *q, const double *p, double *v);
+
+/** How far q [nq] is from the configuration space of a system with factors: the largest |R^T R - I| or ||q| - 1|, 1 or more for a reflection; 0
+ *  without factors, NaN for NULL. */
+double dvi_system_distance(const dvi_system *system, const double *q);
+
+/** Put q [nq] on the configuration space: the nearest rotations and unit vectors.
+ *
+ *  Integrators do this never, and refuse to start farther off than rounding: say by this call that it is meant.
+ *  @retval DVI_BAD_ARGUMENT  a pointer is NULL; a vector is zero; a matrix is singular or nearer to a reflection than to a rotation. q is unchanged then
+ *  @retval DVI_NOT_FINITE    a number is not */
+dvi_status dvi_system_project(const dvi_system *system, double *q);
 
 /** The two-form Omega_ij = d alpha_j/dq_i - d alpha_i/dq_j of a system with a one-form, and its condition number. Allocates.
  *

@@ -28,6 +28,21 @@ typedef struct dvi__action_space {
   int nodes;
 } dvi__action_space;
 
+/* Paths in a chart that is centred at their start (system/charted.h). Varying the start moves the chart, and with it the whole path xi(tau) as it is: that
+ * is more, or less, than varying q0 in a chart that stays, and makes
+ *     p1 = p0 + h sum_j b_j L_q_j + C
+ * with a C that depends on the path's end and on the nodes. For paths that start elsewhere in the chart C is 0. */
+typedef struct dvi__centring {
+  void *of;
+  /* Before the Lagrangian's derivatives at the nodes are asked for: where the path starts and ends, [n]. */
+  void (*place)(void *of, const double *q0, const double *q1);
+  /* After its gradients: C [n]. dp: h sum_j b_j L_q_j. */
+  void (*correct)(void *of, int nodes, double h, const double *weight, const double *p0, const double *dp, double *C);
+  /* After its Hessians: dC/dq1 in the order of qq, and what C_qq and C_qv are at the nodes: dC = dq1 + sum_j b_j (h C_qq dq + C_qv dv). */
+  void (*derive)(void *of, int nodes, double h, const double *weight, const double *p0, const double **C_q1, const double **C_qq,
+                 const double **C_qv);
+} dvi__centring;
+
 /* The space's numbers must be valid (nodes >= degree). */
 dvi_status dvi__action_create(const dvi_system *system, const dvi__action_space *space, dvi_counters *counters,
                               dvi__action **action);
@@ -35,6 +50,9 @@ void dvi__action_destroy(dvi__action **action);
 
 /* Prepare the Jacobian's pattern and memory; without it residuals and chords work, Jacobians do not. Once. */
 dvi_status dvi__action_prepare_jacobian(dvi__action *action);
+
+/* Let its paths be those of a chart centred at their start; the struct is copied. Once. */
+dvi_status dvi__action_centre(dvi__action *action, const dvi__centring *centring);
 
 /* What it was made with. */
 dvi__action_space dvi__action_space_of(const dvi__action *action);

@@ -61,6 +61,9 @@ struct dvi__action {
   dvi__pattern pattern;       /* ns x ns */
   dvi__block *block;          /* [entries of joint] */
   double *H_qq, *H_qv, *H_vv; /* [entries*r] */
+  /* Charts centred at the start; without `place`: there are none. */
+  dvi__centring centring;
+  double *correction, *end_q, *end_dp; /* [n] C, and work */
   /* Between two ends (between.h); NULL until prepared. */
   double *bubble;                    /* [(s-1)*s] beta_m in the functions psi_k */
   double *chi, *dchi;                /* [(s+1)*lanes] tables over the nodes */
@@ -78,6 +81,13 @@ enum { DVI__CHORD_INVERSE = 8 };
 
 /* The table from the last step's forces to the sums of forces in a step `ratio` times as long: [r*lanes], by columns. */
 const double *dvi__action_sweep_shift(dvi__action *action, double ratio);
+
+/* Announce the path to the centring, if there is one; and R -= psi(1) C. */
+void dvi__action_centre_path(dvi__action *action, const double *Y);
+void dvi__action_centre_rows(dvi__action *action, double *R);
+
+/* Subtract psi(1) dC from the Jacobian; after dvi__action_centre_path and the Hessians. */
+void dvi__action_centre_jacobian(dvi__action *action, double *values);
 
 /* Free what dvi__action_prepare_energy has made. */
 void dvi__action_clear_energy(dvi__action *action);

@@ -59,6 +59,7 @@ dvi_status dvi__action_jacobian(dvi__action *a, const double *Y, double *values)
 {
   const size_t s = (size_t)a->s;
   dvi__action_stages(a, Y);
+  dvi__action_centre_path(a, Y);
   DVI_TRY(dvi__lagrangian_hessian(a->evaluator, a->r, a->t, a->Q, a->V, a->H_qq, a->H_qv, a->H_vv));
   for (int j = 0; j < a->n; j++) {
     const int first = a->joint.start[j], length = a->joint.start[j + 1] - first;
@@ -66,5 +67,6 @@ dvi_status dvi__action_jacobian(dvi__action *a, const double *Y, double *values)
     for (int l = 0; l < a->s; l++)
       for (int e = first; e < first + length; e++, column += s) block_column(a, &a->block[e], l, column);
   }
+  dvi__action_centre_jacobian(a, values);
   return DVI_OK;
 }

@@ -31,6 +31,7 @@ dvi_status dvi__action_residual(dvi__action *a, const double *Y, double *R)
 {
   a->swept = 0;
   dvi__action_stages(a, Y);
+  dvi__action_centre_path(a, Y);
   DVI_TRY(dvi__lagrangian_gradient(a->evaluator, a->r, a->t, a->Q, a->V, a->L_q, a->L_v));
   /* The forces enter every row, and p1, with the same rounded product b_j L_q: that keeps the rows consistent to the last bit. */
   dvi__lanes_weigh(a->n, a->r, a->weight, a->L_q);
@@ -39,6 +40,7 @@ dvi_status dvi__action_residual(dvi__action *a, const double *Y, double *R)
   dvi__lanes_product(a->n, a->r, a->path_lanes, a->s, a->slope_row, a->L_v, a->rows);
   for (size_t i = 0, s = (size_t)a->s; i < (size_t)a->n; i++)
     for (size_t k = 0; k < s; k++) R[i * s + k] = a->h * R[i * s + k] + (a->rows[i * s + k] - a->end[k] * a->p0[i]);
+  dvi__action_centre_rows(a, R);
   return DVI_OK;
 }
 
@@ -54,7 +56,7 @@ static void ends_by_rows(const dvi__action *a, const double *Y, double *dq, doub
   for (size_t i = 0; i < (size_t)a->n; i++) {
     dq[i] = dot(a->s, a->end, Y + i * (size_t)a->s);
     dq_low[i] = 0;
-    dp[i] = a->h * sum(a->r, a->L_q + i * (size_t)a->r);
+    dp[i] = a->h * sum(a->r, a->L_q + i * (size_t)a->r) + (a->correction != NULL ? a->correction[i] : 0);
   }
 }
 

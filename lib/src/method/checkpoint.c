@@ -69,10 +69,10 @@ static portrait portray(const dvi_integrator *I, double t, const double *now, co
   const double *q = now, *p_now = now + n;
   double *v = I->v, *forces = I->last_v;
   portrait p = {0};
-  dvi__guess_velocity(n, q, last, last + n, last_h, v);
+  if (I->system->cells == NULL) dvi__guess_velocity(n, q, last, last + n, last_h, v);
   if (dvi__legendre_inverse(I->evaluator, t, q, p_now, v) != DVI_OK ||
-      dvi__lagrangian_value(I->evaluator, 1, &t, q, v, &p.value) != DVI_OK ||
-      dvi__lagrangian_gradient(I->evaluator, 1, &t, q, v, forces, NULL) != DVI_OK)
+      dvi__state_lagrangian(I->evaluator, t, q, v, &p.value) != DVI_OK ||
+      dvi__state_forces(I->evaluator, t, q, v, forces) != DVI_OK)
     return (portrait){(double)NAN, (double)NAN, (double)NAN, (double)NAN};
   p.value_size = fabs(p.value);
   for (int i = 0; i < n; i++) {

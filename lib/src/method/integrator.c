@@ -28,7 +28,7 @@ static dvi_status allocate(dvi_integrator *I)
   lay_out(&I->next, &at, n);
   I->v = at;
   I->last_v = at + n;
-  return dvi__evaluator_create(I->system, 1, DVI__GRADIENTS, &I->counters, &I->evaluator);
+  return dvi__evaluator_create(I->system, 1, DVI__STATES, &I->counters, &I->evaluator);
 }
 
 dvi_status dvi__integrator_make(const dvi_system *system, const char *method, const dvi_monitor *monitor, dvi__pacing pacing,
@@ -74,26 +74,27 @@ void dvi_integrator_destroy(dvi_integrator **integrator)
 static dvi_status check_start(const dvi_integrator *I, double t, const double *q, const double *second, char name)
 {
   if (!isfinite(t)) return dvi__fail(DVI_NOT_FINITE, "the time is %g", t);
-  for (int i = 0; i < I->system->n; i++)
-    if (!isfinite(q[i]) || !isfinite(second[i]))
-      return dvi__fail(DVI_NOT_FINITE, "coordinate %d is q = %g, %c = %g", i, q[i], name, second[i]);
-  return DVI_OK;
+  const ptrdiff_t in_q = dvi__first_not_finite((size_t)I->system->n, q);
+  const ptrdiff_t in_second = dvi__first_not_finite((size_t)I->system->nv, second);
+  if (in_q >= 0) return dvi__fail(DVI_NOT_FINITE, "coordinate %td is q = %g", in_q, q[in_q]);
+  if (in_second >= 0) return dvi__fail(DVI_NOT_FINITE, "number %td of the start's %c is %g", in_second, name, second[in_second]);
+  return dvi__state_check(I->evaluator, q, second);
 }
 
 /* The arguments may be the integrator's own. Until all is known to be good only `next` is written. */
 static dvi_status start(dvi_integrator *I, double t, const double *q, const double *v, const double *p)
 {
-  const size_t bytes = (size_t)I->system->n * sizeof(double);
+  const size_t bytes = (size_t)I->system->n * sizeof(double), v_bytes = (size_t)I->system->nv * sizeof(double);
   const double *w = I->pace != NULL ? I->last_v : v;
   double L, density = 0;
-  DVI_TRY(dvi__lagrangian_value(I->evaluator, 1, &t, q, v, &L));
-  DVI_TRY(dvi__lagrangian_gradient(I->evaluator, 1, &t, q, v, I->next.p_carry, NULL));
+  DVI_TRY(dvi__state_lagrangian(I->evaluator, t, q, v, &L));
+  DVI_TRY(dvi__state_forces(I->evaluator, t, q, v, I->next.p_carry));
   if (I->pace != NULL) DVI_TRY(dvi__pace_start(I, t, q, v, I->last_v, &density));
   memmove(I->now.q, q, bytes);
-  memmove(I->now.p, p, bytes);
+  memmove(I->now.p, p, v_bytes);
   memset(I->now.q_carry, 0, bytes);
   memset(I->now.p_carry, 0, bytes);
-  memcpy(I->last.p, v, bytes);
+  memcpy(I->last.p, v, v_bytes);
   I->now.t = t;
   I->now.t_carry = 0;
   I->now.density = density;
@@ -112,7 +113,7 @@ dvi_status dvi_integrator_start(dvi_integrator *I, double t, const double *q, co
 {
   if (I == NULL || q == NULL || p == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "start: an argument is NULL");
   double *v = I->next.q_carry;
-  memset(v, 0, (size_t)I->system->n * sizeof(double));
+  memset(v, 0, (size_t)I->system->nv * sizeof(double));
   dvi_status status = check_start(I, t, q, p, 'p');
   if (status == DVI_OK && I->system->terms & DVI__ONE_FORM) status = dvi__form_constraint(I->evaluator, q, p);
   if (status == DVI_OK) status = dvi__legendre_inverse(I->evaluator, t, q, p, v);
@@ -125,8 +126,8 @@ dvi_status dvi_integrator_start_velocity(dvi_integrator *I, double t, const doub
   if (I == NULL || q == NULL || v == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "start: an argument is NULL");
   double *p = I->next.p;
   dvi_status status = check_start(I, t, q, v, 'v');
-  if (status == DVI_OK) status = dvi__lagrangian_gradient(I->evaluator, 1, &t, q, v, NULL, p);
-  if (status == DVI_OK && dvi__first_not_finite((size_t)I->system->n, p) >= 0)
+  if (status == DVI_OK) status = dvi__state_momentum(I->evaluator, t, q, v, p);
+  if (status == DVI_OK && dvi__first_not_finite((size_t)I->system->nv, p) >= 0)
     status = dvi__fail(DVI_NOT_FINITE, "the momentum is not finite");
   if (status == DVI_OK) status = dvi__legendre_regular(I->evaluator, t, q, v);
   if (status == DVI_OK) status = start(I, t, q, v, p);
@@ -328,7 +329,7 @@ void dvi__guess_velocity(int n, const double *q, const double *last_q, const dou
 /* The velocity of one of the two states. */
 static dvi_status velocity(dvi_integrator *I, const dvi__state *state, double *v)
 {
-  dvi__guess_velocity(I->system->n, I->now.q, I->last.q, I->last.p, I->last_h, v);
+  if (I->system->cells == NULL) dvi__guess_velocity(I->system->n, I->now.q, I->last.q, I->last.p, I->last_h, v);
   return dvi__legendre_inverse(I->evaluator, state->t, state->q, state->p, v);
 }
 

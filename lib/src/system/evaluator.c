@@ -3,6 +3,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/finite.h"
+#include "system/charted.h"
 #include "system/evaluator_struct.h"
 
 static size_t numbers(const dvi__evaluator *e, int count)
@@ -36,13 +37,26 @@ static dvi_status allocate(dvi__evaluator *e, int hessians)
 static dvi_status prepare_velocity(dvi__evaluator *e)
 {
   const dvi_system *system = e->system;
-  if (system->mass_diagonal != NULL) return DVI_OK;
+  if (system->mass_diagonal != NULL || system->cells != NULL) return DVI_OK;
   if (system->terms & DVI__ONE_FORM) {
     const dvi__pattern *omega = &system->lagrangian->omega;
     return dvi__linear_create(omega, dvi__linear_for_exchanges(omega), e->counters, &e->velocity);
   }
   DVI_TRY(dvi__linear_create(&system->vv, DVI__LINEAR_AUTO, e->counters, &e->velocity));
   return system->mass_values != NULL ? dvi__linear_factor(e->velocity, system->mass_values) : DVI_OK;
+}
+
+static dvi_status prepare_states(dvi__evaluator *e)
+{
+  const size_t n = (size_t)e->system->n;
+  if (e->system->cells == NULL) return DVI_OK;
+  double *work = e->rate = DVI_NEW(double, 4 * n);
+  if (work == NULL) return dvi__fail(DVI_NO_MEMORY, "evaluator: no memory");
+  e->local_p = work + n;
+  e->local_v = work + 2 * n;
+  e->origin = work + 3 * n;
+  DVI_TRY(dvi__charted_create(e->system, e->counters, &e->charted));
+  return dvi__evaluator_create(dvi__charted_system(e->charted), 1, DVI__GRADIENTS, e->counters, &e->local);
 }
 
 dvi_status dvi__evaluator_create(const dvi_system *system, int capacity, dvi__derivatives most, dvi_counters *counters,
@@ -58,6 +72,7 @@ dvi_status dvi__evaluator_create(const dvi_system *system, int capacity, dvi__de
   e->counters = counters != NULL ? counters : &e->own;
   dvi_status status = allocate(e, hessians);
   if (status == DVI_OK) status = prepare_velocity(e);
+  if (status == DVI_OK && most == DVI__STATES) status = prepare_states(e);
   if (status != DVI_OK) dvi__evaluator_destroy(&e);
   *evaluator = e;
   return status;
@@ -67,6 +82,9 @@ void dvi__evaluator_destroy(dvi__evaluator **evaluator)
 {
   dvi__evaluator *e = *evaluator;
   if (e == NULL) return;
+  dvi__evaluator_destroy(&e->local);
+  dvi__charted_destroy(&e->charted);
+  dvi__release(e->rate);
   dvi__linear_destroy(&e->velocity);
   dvi__scratch_clear(&e->scratch);
   dvi__release(e->term);

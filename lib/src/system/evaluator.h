@@ -10,8 +10,9 @@
 
 typedef struct dvi__evaluator dvi__evaluator;
 
-/* What a user of an evaluator will ask for. */
-typedef enum dvi__derivatives { DVI__GRADIENTS, DVI__HESSIANS } dvi__derivatives;
+/* What a user of an evaluator will ask for. With DVI__STATES, gradients and what is marked so below: q [nq] with v and p [nv], on a manifold if the system
+ * has factors. All else takes v as the rate of the stored coordinates then. */
+typedef enum dvi__derivatives { DVI__GRADIENTS, DVI__HESSIANS, DVI__STATES } dvi__derivatives;
 
 /* For batches of up to `capacity` points. counters may be NULL; else values, gradients and hessians are counted there, and the
  * factorisations of the mass. It must outlive the evaluator. */
@@ -40,7 +41,15 @@ dvi_status dvi__lagrangian_hessian(dvi__evaluator *e, int count, const double *t
 /* One point of a general Lagrangian: *L_vv is owned by the evaluator, valid until its next call. Potentials do not matter for it. */
 dvi_status dvi__velocity_hessian(dvi__evaluator *e, double t, const double *q, const double *v, const double **L_vv);
 
-/* One point: v with L_v(t,q,v) = p, or that of the equations of motion with a one-form. v holds a guess for general Lagrangians; unchanged on failure. */
+/* One state: L; its momentum p; the forces L_q [nq]. */
+dvi_status dvi__state_lagrangian(dvi__evaluator *e, double t, const double *q, const double *v, double *L);
+dvi_status dvi__state_momentum(dvi__evaluator *e, double t, const double *q, const double *v, double *p);
+dvi_status dvi__state_forces(dvi__evaluator *e, double t, const double *q, const double *v, double *L_q);
+
+/* One state: DVI_BAD_ARGUMENT if q is not on the manifold of the factors, or second, v or p, not in its tangent space. */
+dvi_status dvi__state_check(const dvi__evaluator *e, const double *q, const double *second);
+
+/* One state: v with L_v(t,q,v) = p, or that of the equations of motion with a one-form. v holds a guess for general Lagrangians; unchanged on failure. */
 dvi_status dvi__legendre_inverse(dvi__evaluator *e, double t, const double *q, const double *p, double *v);
 
 /* One point of a system with a one-form: factor Omega(q); x [n] <- Omega^-1 x with that; v with Omega(q) v = H_q(t,q). DVI_SINGULAR. */
@@ -66,13 +75,13 @@ dvi_status dvi__form_distance(dvi__evaluator *e, const double *q, const double *
 /* DVI_BAD_ARGUMENT unless p = alpha(q) up to rounding. */
 dvi_status dvi__form_constraint(dvi__evaluator *e, const double *q, const double *p);
 
-/* One point: DVI_SINGULAR if L_vv (Omega with a one-form) cannot be inverted there. */
+/* One state: DVI_SINGULAR if L_vv (Omega with a one-form) cannot be inverted there. */
 dvi_status dvi__legendre_regular(dvi__evaluator *e, double t, const double *q, const double *v);
 
 /* x [n*count, component-major] = M^{-1} y for the constant mass; x may be y. Only for systems with DVI__CONSTANT_MASS. */
 void dvi__mass_solve(dvi__evaluator *e, int count, const double *y, double *x);
 
-/* One point: all invariants; v is the velocity that belongs to p. */
+/* One state: all invariants; v is the velocity that belongs to p. */
 dvi_status dvi__invariants(dvi__evaluator *e, double t, const double *q, const double *v, const double *p, double *value);
 
 #endif

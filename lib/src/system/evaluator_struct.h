@@ -16,6 +16,10 @@ struct dvi__evaluator {
   double *two_form;        /* one-forms: its entries */
   double *unwanted;        /* general Lagrangians: takes the half of a gradient that nobody asked for */
   double *hessian[3];      /* general Lagrangians: its own L_qq, L_qv, L_vv at one point, for the inverse Legendre map */
+  /* With factors, if states will be asked for: the charts at a state, their Lagrangian, and work there. */
+  struct dvi__charted *charted;
+  dvi__evaluator *local;
+  double *rate, *local_p, *local_v, *origin; /* [n] */
   double *velocity_search; /* general Lagrangians: [6 n], its work */
 };
 

@@ -18,7 +18,7 @@ static dvi_status momentum_map(dvi__evaluator *e, const dvi_symmetry *symmetry, 
   double *xi = e->point[2];
   *J = 0;
   DVI_TRY(callback(symmetry->generator(q, xi, symmetry->user), symmetry->name));
-  for (int i = 0; i < e->system->n; i++) *J += p[i] * xi[i];
+  for (int i = 0; i < e->system->nv; i++) *J += p[i] * xi[i];
   return DVI_OK;
 }
 
@@ -28,8 +28,8 @@ static dvi_status energy(dvi__evaluator *e, double t, const double *q, const dou
   double L, pv = 0, *rest = e->point[2];
   const int degenerate = (e->system->terms & DVI__ONE_FORM) != 0;
   memset(rest, 0, (size_t)e->system->n * sizeof(double));
-  DVI_TRY(dvi__lagrangian_value(e, 1, &t, q, degenerate ? rest : v, &L));
-  for (int i = 0; i < e->system->n && !degenerate; i++) pv += p[i] * v[i];
+  DVI_TRY(dvi__state_lagrangian(e, t, q, degenerate ? rest : v, &L));
+  for (int i = 0; i < e->system->nv && !degenerate; i++) pv += p[i] * v[i];
   *E = pv - L;
   return DVI_OK;
 }

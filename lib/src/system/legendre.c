@@ -9,6 +9,7 @@
 
 #include "core/status.h"
 #include "num/finite.h"
+#include "system/charted.h"
 #include "system/evaluator_struct.h"
 
 enum { MOST_ITERATIONS = 100, MOST_HALVINGS = 30 };
@@ -118,10 +119,22 @@ static dvi_status newton_from_guesses(search *s)
   return status;
 }
 
+/* With factors: in the charts at q. */
+static dvi_status inverse_in_charts(dvi__evaluator *e, double t, const double *q, const double *p, double *v)
+{
+  dvi__charted_centre(e->charted, q);
+  dvi__charted_enter(e->charted, p, e->local_p);
+  memset(e->local_v, 0, (size_t)e->system->nx * sizeof(double));
+  DVI_TRY(dvi__legendre_inverse(e->local, t, e->origin, e->local_p, e->local_v));
+  dvi__charted_store(e->charted, e->local_v, v);
+  return DVI_OK;
+}
+
 dvi_status dvi__legendre_inverse(dvi__evaluator *e, double t, const double *q, const double *p, double *v)
 {
   const size_t n = (size_t)e->system->n;
   double *found = e->velocity_search;
+  if (e->system->cells != NULL) return inverse_in_charts(e, t, q, p, v);
   if (e->system->lagrangian == NULL) {
     found = e->point[1];
     dvi__mass_solve(e, 1, p, found);
@@ -140,6 +153,11 @@ dvi_status dvi__legendre_inverse(dvi__evaluator *e, double t, const double *q, c
 dvi_status dvi__legendre_regular(dvi__evaluator *e, double t, const double *q, const double *v)
 {
   const double *L_vv;
+  if (e->system->cells != NULL) {
+    dvi__charted_centre(e->charted, q);
+    dvi__charted_enter(e->charted, v, e->local_v);
+    return dvi__legendre_regular(e->local, t, e->origin, e->local_v);
+  }
   if (e->system->lagrangian == NULL) return DVI_OK;
   if (e->system->terms & DVI__ONE_FORM) return dvi__two_form_factor(e, q);
   DVI_TRY(dvi__velocity_hessian(e, t, q, v, &L_vv));

@@ -11,8 +11,7 @@ static dvi_status check_point(const dvi_system *system, double t, const double *
 {
   if (system == NULL || q == NULL || second == NULL || result == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "system: an argument is NULL");
-  const size_t n = (size_t)system->n;
-  if (!isfinite(t) || dvi__first_not_finite(n, q) >= 0 || dvi__first_not_finite(n, second) >= 0)
+  if (!isfinite(t) || dvi__first_not_finite((size_t)system->n, q) >= 0 || dvi__first_not_finite((size_t)system->nv, second) >= 0)
     return dvi__fail(DVI_NOT_FINITE, "system: the point (t = %g) is not finite", t);
   return DVI_OK;
 }
@@ -22,8 +21,9 @@ dvi_status dvi_system_lagrangian(const dvi_system *system, double t, const doubl
   dvi__evaluator *e;
   double value = 0;
   DVI_TRY(check_point(system, t, q, v, L));
-  DVI_TRY(dvi__evaluator_create(system, 1, DVI__GRADIENTS, NULL, &e));
-  const dvi_status status = dvi__lagrangian_value(e, 1, &t, q, v, &value);
+  DVI_TRY(dvi__evaluator_create(system, 1, DVI__STATES, NULL, &e));
+  dvi_status status = dvi__state_check(e, q, v);
+  if (status == DVI_OK) status = dvi__state_lagrangian(e, t, q, v, &value);
   dvi__evaluator_destroy(&e);
   if (status == DVI_OK) *L = value;
   return status;
@@ -33,10 +33,11 @@ dvi_status dvi_system_momentum(const dvi_system *system, double t, const double 
 {
   dvi__evaluator *e;
   DVI_TRY(check_point(system, t, q, v, p));
-  DVI_TRY(dvi__evaluator_create(system, 1, DVI__GRADIENTS, NULL, &e));
-  const dvi_status status = dvi__lagrangian_gradient(e, 1, &t, q, v, NULL, p);
+  DVI_TRY(dvi__evaluator_create(system, 1, DVI__STATES, NULL, &e));
+  dvi_status status = dvi__state_check(e, q, v);
+  if (status == DVI_OK) status = dvi__state_momentum(e, t, q, v, p);
   dvi__evaluator_destroy(&e);
-  if (status == DVI_OK && dvi__first_not_finite((size_t)system->n, p) >= 0)
+  if (status == DVI_OK && dvi__first_not_finite((size_t)system->nv, p) >= 0)
     return dvi__fail(DVI_NOT_FINITE, "system: the momentum at t = %g is not finite", t);
   return status;
 }
@@ -47,8 +48,9 @@ dvi_status dvi_system_velocity(const dvi_system *system, double t, const double 
   DVI_TRY(check_point(system, t, q, p, v));
   if (system->terms & DVI__LAGRANGIAN && dvi__first_not_finite((size_t)system->n, v) >= 0)
     return dvi__fail(DVI_NOT_FINITE, "system: the starting velocity is not finite");
-  DVI_TRY(dvi__evaluator_create(system, 1, DVI__GRADIENTS, NULL, &e));
-  const dvi_status status = dvi__legendre_inverse(e, t, q, p, v);
+  DVI_TRY(dvi__evaluator_create(system, 1, DVI__STATES, NULL, &e));
+  dvi_status status = dvi__state_check(e, q, p);
+  if (status == DVI_OK) status = dvi__legendre_inverse(e, t, q, p, v);
   dvi__evaluator_destroy(&e);
   return status;
 }
@@ -59,7 +61,8 @@ dvi_status dvi_system_invariants(const dvi_system *system, double t, const doubl
   DVI_TRY(check_point(system, t, q, p, value));
   double *v = DVI_NEW(double, system->n);
   if (v == NULL) return dvi__fail(DVI_NO_MEMORY, "system: no memory for a velocity");
-  dvi_status status = dvi__evaluator_create(system, 1, DVI__GRADIENTS, NULL, &e);
+  dvi_status status = dvi__evaluator_create(system, 1, DVI__STATES, NULL, &e);
+  if (status == DVI_OK) status = dvi__state_check(e, q, p);
   if (status == DVI_OK) status = dvi__legendre_inverse(e, t, q, p, v);
   if (status == DVI_OK) status = dvi__invariants(e, t, q, v, p, value);
   dvi__evaluator_destroy(&e);

@@ -9,6 +9,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/finite.h"
+#include "system/factor.h"
 #include "system/gauge.h"
 #include "system/term.h"
 
@@ -78,6 +79,16 @@ static dvi_status copy_mass(dvi_system *s, const dvi_mass *mass)
   s->terms |= DVI__CONSTANT_MASS;
   DVI_TRY(dvi__pattern_empty(s->n, &s->qv));
   return mass->values != NULL ? copy_sparse_mass(s, mass) : copy_diagonal_mass(s, mass);
+}
+
+static dvi_status copy_factors(dvi_system *s, const dvi_system_terms *terms)
+{
+  const dvi_mass *mass = &terms->mass;
+  if ((mass->scalar != 0) + (mass->diagonal != NULL) + (mass->values != NULL) > 1)
+    return dvi__fail(DVI_BAD_ARGUMENT, "system: the mass is given in more than one form; one is possible");
+  s->terms |= DVI__CONSTANT_MASS;
+  DVI_TRY(dvi__pattern_empty(s->n, &s->qv));
+  return dvi__factors_mass(terms, s);
 }
 
 /* ---- general Lagrangian ---- */
@@ -308,14 +319,19 @@ static dvi_status check_terms(const dvi_system_terms *terms)
   const dvi_mass *mass = &terms->mass;
   const int has_pattern = mass->pattern.start != NULL || mass->pattern.row != NULL;
   const int has_mass = mass->scalar != 0 || mass->diagonal != NULL || mass->values != NULL;
-  if (terms->dimension < 1) return dvi__fail(DVI_BAD_SIZE, "system: dimension %d; at least 1 is needed", terms->dimension);
+  DVI_TRY(check_list("factors", terms->factor_count, terms->factors));
+  if (terms->factors == NULL && terms->dimension < 1)
+    return dvi__fail(DVI_BAD_SIZE, "system: dimension %d; at least 1 is needed", terms->dimension);
+  if (terms->factors != NULL && (terms->lagrangian != NULL || terms->one_form != NULL))
+    return dvi__fail(DVI_UNSUPPORTED, "system: factors go with a constant mass, not with %s",
+                     terms->lagrangian != NULL ? "a general Lagrangian" : "a one-form");
   DVI_TRY(check_list("potentials", terms->potential_count, terms->potentials));
   DVI_TRY(check_list("symmetries", terms->symmetry_count, terms->symmetries));
   DVI_TRY(check_list("invariants", terms->invariant_count, terms->invariants));
   if (has_mass + (terms->lagrangian != NULL) + (terms->one_form != NULL) > 1)
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "system: more than one of a mass, a general Lagrangian and a one-form are declared; one of them is possible");
-  if (!has_mass && terms->lagrangian == NULL && terms->one_form == NULL)
+  if (!has_mass && terms->lagrangian == NULL && terms->one_form == NULL && terms->factors == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "system: neither a mass (other than 0) nor a general Lagrangian nor a one-form is declared");
   if (terms->gauge != NULL && terms->one_form == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "system: a gauge without a one-form; it changes nothing else");
@@ -337,6 +353,7 @@ static uint64_t hash_of(const dvi_system *s)
   uint64_t hash = dvi__hash(DVI__HASH_START, sizeof s->n, &s->n);
   hash = dvi__hash(hash, sizeof s->terms, &s->terms);
   hash = add_pattern(add_pattern(hash, &s->qv), &s->vv);
+  for (int c = 0; c < s->cell_count; c++) hash = dvi__hash(hash, sizeof s->cells[c].kind, &s->cells[c].kind);
   if (s->mass_diagonal != NULL) hash = dvi__hash(hash, (size_t)s->n * sizeof(double), s->mass_diagonal);
   if (s->mass_values != NULL) hash = dvi__hash(hash, (size_t)dvi__pattern_entries(&s->vv) * sizeof(double), s->mass_values);
   if (s->lagrangian != NULL) hash = add_pattern(hash, &s->lagrangian->qq);
@@ -349,9 +366,11 @@ static uint64_t hash_of(const dvi_system *s)
 
 static dvi_status fill(dvi_system *s, const dvi_system_terms *terms)
 {
-  s->n = terms->dimension;
+  DVI_TRY(dvi__factors_lay_out(terms, s));
   s->autonomous = terms->autonomous != 0;
-  if (terms->lagrangian != NULL)
+  if (s->cells != NULL)
+    DVI_TRY(copy_factors(s, terms));
+  else if (terms->lagrangian != NULL)
     DVI_TRY(copy_lagrangian(s, terms->lagrangian));
   else
     DVI_TRY(terms->one_form != NULL ? copy_one_form(s, terms->one_form, terms->gauge) : copy_mass(s, &terms->mass));
@@ -407,6 +426,7 @@ void dvi_system_destroy(dvi_system **system)
   dvi__pattern_clear(&s->qq);
   dvi__pattern_clear(&s->qv);
   dvi__pattern_clear(&s->vv);
+  dvi__release(s->cells);
   dvi__release(s->mass_diagonal);
   dvi__release(s->mass_values);
   dvi__release(s->potentials);
@@ -424,7 +444,7 @@ int dvi_system_nq(const dvi_system *system)
 
 int dvi_system_nv(const dvi_system *system)
 {
-  return system != NULL ? system->n : 0;
+  return system != NULL ? system->nv : 0;
 }
 
 int dvi_system_autonomous(const dvi_system *system)

@@ -4,11 +4,12 @@
 #include <dvi/system.h>
 #include <stdint.h>
 
+#include "group/chart.h"
 #include "num/linear.h"
 #include "num/pattern.h"
 
 /* What a system declares, and what a method can use: a set of bits. */
-typedef enum dvi__term { DVI__CONSTANT_MASS = 1, DVI__LAGRANGIAN = 2, DVI__ONE_FORM = 4, DVI__POTENTIAL = 8 } dvi__term;
+typedef enum dvi__term { DVI__CONSTANT_MASS = 1, DVI__LAGRANGIAN = 2, DVI__ONE_FORM = 4, DVI__POTENTIAL = 8, DVI__FACTORS = 16 } dvi__term;
 
 /* How to difference a missing Hessian block: columns of a group are moved together. */
 typedef struct dvi__groups {
@@ -43,8 +44,18 @@ typedef struct dvi__lagrangian_term {
   dvi__groups q_groups, v_groups; /* q columns of qq; v columns of qv and vv together */
 } dvi__lagrangian_term;
 
+/* A factor, or a coordinate of R^n: which chart it has, and where its numbers begin. A factor of rigid motions is one of rotations and three coordinates. */
+typedef struct dvi__cell {
+  dvi__chart_kind kind;
+  int q, v, x; /* of the stored coordinates, of the stored velocities, of the chart's coordinates */
+} dvi__cell;
+
 struct dvi_system {
-  int n;
+  int n;             /* stored coordinates */
+  int nv;            /* numbers of a velocity: n without factors */
+  int nx;            /* degrees of freedom */
+  int cell_count;    /* 0: no factors */
+  dvi__cell *cells;
   int autonomous; /* declared so */
   uint64_t hash;  /* of all that is declared, but for what callbacks compute */
   unsigned terms; /* dvi__term bits */

@@ -94,7 +94,7 @@ static dvi_status make_system(dvi__transformed *x)
 {
   dvi_system *s = x->system = DVI_NEW(dvi_system, 1);
   if (s == NULL) return dvi__fail(DVI_NO_MEMORY, "time transform: no memory");
-  s->n = x->base->n;
+  s->n = s->nv = s->nx = x->base->n;
   s->terms = DVI__LAGRANGIAN;
   s->autonomous = 1;
   s->lagrangian = DVI_NEW(dvi__lagrangian_term, 1);

@@ -1,0 +1,79 @@
+/* Charts of a factor of the configuration space, centred at a point y0 of it: y(xi) with y(0) = y0, s = |xi|^2, c_k Stumpff's functions.
+ *
+ *     line       y = y0 + xi
+ *     circle     y = c_0 y0 + c_1 xi y0',  y0' = y0 turned by 90 degrees                    U(1) as unit vectors
+ *     sphere     y = c_0 y0 + c_1 B xi,    B an orthonormal basis of the tangent plane      S^2: great circles, the horizontal lift to SO(3)
+ *     rotation   R = R0 exp(xi^),          exp = I + c_1 xi^ + c_2 xi^^2                    SO(3): nine entries, row by row
+ *
+ * They are natural: a rotation of y0 rotates y. A Lagrangian on the stored coordinates y becomes one of xi: what that takes of the derivatives of y is here, in
+ * contractions f(xi) = w.y(xi) with a covector w, all of the form  f = w_0 c_0 + c_1 z.xi + c_2 xi.B xi + constant.
+ *
+ * What is tied to a point of the manifold itself, and stored with a state, is: v = dy/dt (circle: the angular rate; rotation: the angular velocity in the
+ * body's frame), and the momentum p of this v.
+ * Source: Leok 2004, sec. 5.3 and 5.4 (with the derivative of the exponential map on the side that the chart's left factor asks for); Iserles et al. 2000. */
+#ifndef DVI_GROUP_CHART_H
+#define DVI_GROUP_CHART_H
+
+typedef enum dvi__chart_kind { DVI__LINE, DVI__CIRCLE, DVI__SPHERE, DVI__ROTATION } dvi__chart_kind;
+
+/* Most numbers: of a point; of chart coordinates; of a stored velocity. */
+enum { DVI__CHART_POINT = 9, DVI__CHART_SIZE = 3, DVI__CHART_VELOCITY = 3 };
+
+/* How many numbers: of a point y; of a stored velocity; of chart coordinates. */
+int dvi__chart_stored(dvi__chart_kind kind);
+int dvi__chart_velocities(dvi__chart_kind kind);
+int dvi__chart_size(dvi__chart_kind kind);
+
+typedef struct dvi__chart {
+  dvi__chart_kind kind;
+  double y0[DVI__CHART_POINT];
+  double basis[2][3]; /* of the tangent plane: circle, sphere */
+} dvi__chart;
+
+/* Centre it at a point. */
+void dvi__chart_centre(dvi__chart_kind kind, const double *y0, dvi__chart *chart);
+
+/* y(xi), and dy/dt for dxi/dt = rate; rate and v may both be NULL. */
+void dvi__chart_point(const dvi__chart *chart, const double *xi, const double *rate, double *y, double *v);
+
+/* The gradient of a.y(xi) + b.v(xi,rate), in xi and in rate. */
+void dvi__chart_gradient(const dvi__chart *chart, const double *xi, const double *rate, const double *a, const double *b,
+                         double *in_xi, double *in_rate);
+
+/* Its second derivatives, [size*size]: in xi; in xi and rate. */
+void dvi__chart_curvature(const dvi__chart *chart, const double *xi, const double *rate, const double *a, const double *b,
+                          double *in_xi, double *mixed);
+
+/* T = dy/dxi = dv/drate and S = dv/dxi: row i is T[i*size]. */
+void dvi__chart_tangents(const dvi__chart *chart, const double *xi, const double *rate, double *T, double *S);
+
+/* ---- rotations and spheres: what turning them in space does, by w x y; `turned` [3] are the components of w ---- */
+
+/* Rows y x: row i is what a turn does to stored number i, [stored*3]; the same for v. */
+void dvi__chart_turns(dvi__chart_kind kind, const double *y, double *turns);
+
+/* The moment a.(w x y) = w.moment, added. */
+void dvi__chart_add_moment(dvi__chart_kind kind, const double *y, const double *a, double *moment);
+
+/* The angular momentum in space of the chart's momentum p at the centre. */
+void dvi__chart_angular_momentum(const dvi__chart *chart, const double *p, double *angular);
+
+/* At xi: W [size*3], by which the chart's momentum there is W times the angular momentum, and the derivative of W angular in xi, [size*size]. */
+void dvi__chart_momentum(const dvi__chart *chart, const double *xi, double *W);
+void dvi__chart_momentum_derivative(const dvi__chart *chart, const double *xi, const double *angular, double *derivative);
+
+/* xi of a point y, nearer than half a turn. */
+void dvi__chart_inverse(const dvi__chart *chart, const double *y, double *xi);
+
+/* At the centre: the rate of a stored velocity, and back; the chart's momentum of a stored one, and back. */
+void dvi__chart_enter(const dvi__chart *chart, const double *stored, double *local);
+void dvi__chart_store(const dvi__chart *chart, const double *local, double *stored);
+
+/* The point y(xi), and the stored momentum there of the chart's momentum p at xi, or the stored velocity there of a rate; either pair may be NULL. */
+void dvi__chart_leave(const dvi__chart *chart, const double *xi, const double *p, double *y, double *stored);
+void dvi__chart_leave_velocity(const dvi__chart *chart, const double *xi, const double *rate, double *stored);
+
+/* How large a number xi may be: half a turn; infinite for a line. */
+double dvi__chart_bound(dvi__chart_kind kind);
+
+#endif

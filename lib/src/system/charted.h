@@ -1,0 +1,52 @@
+/* A system with factors in the charts at one point of its configuration space: an ordinary Lagrangian of xi and its rate,
+ *
+ *     L(t, xi, xi') = L(t, y(xi), y'(xi, xi')),      y(0) = the centre
+ *
+ * for everything that knows R^n alone. It belongs to one user, who moves its centre, and has work memory, so it is not shared. */
+#ifndef DVI_SYSTEM_CHARTED_H
+#define DVI_SYSTEM_CHARTED_H
+#include "system/evaluator.h"
+
+typedef struct dvi__charted dvi__charted;
+
+/* `system` must have factors, and outlive it. Counters, which must outlive it, count the points at which `system` itself is evaluated; they must be
+ * those of every evaluator of the new system. */
+dvi_status dvi__charted_create(const dvi_system *system, dvi_counters *counters, dvi__charted **charted);
+void dvi__charted_destroy(dvi__charted **charted);
+
+/* The Lagrangian in the charts, in nx coordinates. */
+const dvi_system *dvi__charted_system(const dvi__charted *charted);
+
+/* Centre the charts at a point [nq]. */
+void dvi__charted_centre(dvi__charted *charted, const double *q);
+
+/* Paths that start at the centre, with `nodes` points in a batch: what action/action.h calls their centring, whose `of` is the charts. Room for it, once. */
+typedef struct dvi__charted_path {
+  void (*place)(void *of, const double *q0, const double *q1);
+  void (*correct)(void *of, int nodes, double h, const double *weight, const double *p0, const double *dp, double *C);
+  void (*derive)(void *of, int nodes, double h, const double *weight, const double *p0, const double **C_q1, const double **C_qq,
+                 const double **C_qv);
+} dvi__charted_path;
+dvi_status dvi__charted_reserve(dvi__charted *charted, int nodes);
+void dvi__charted_centring(dvi__charted_path *path);
+
+/* DVI_OK, or why the last evaluation failed, with its sentence set again: a coordinate beyond its chart's half turn is DVI_STEP_TOO_LARGE. */
+dvi_status dvi__charted_failure(const dvi__charted *charted);
+
+/* From stored velocities or momenta [nv] at the centre to the chart's [nx], and back. */
+void dvi__charted_enter(const dvi__charted *charted, const double *stored, double *local);
+void dvi__charted_store(const dvi__charted *charted, const double *local, double *stored);
+
+/* The point q [nq] of xi [nx], and the stored momentum [nv] there of the chart's momentum [nx]. */
+void dvi__charted_leave(const dvi__charted *charted, const double *xi, const double *p, double *q, double *stored);
+
+/* The point q [nq] of xi, and the stored velocity v [nv] of the rate [nx]; either may be NULL. */
+void dvi__charted_point(const dvi__charted *charted, const double *xi, const double *rate, double *q, double *v);
+
+/* xi [nx] of a point q [nq]. */
+void dvi__charted_inverse(const dvi__charted *charted, const double *q, double *xi);
+
+/* DVI_STEP_TOO_LARGE if a coordinate of xi is beyond its chart. */
+dvi_status dvi__charted_check(const dvi__charted *charted, const double *xi);
+
+#endif

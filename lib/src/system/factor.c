@@ -1,0 +1,382 @@
+#include "system/factor.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "num/finite.h"
+
+/* ---- places ---- */
+
+static dvi_status check_factor(int index, const dvi_factor *factor)
+{
+  const int turns = factor->kind == DVI_SO3 || factor->kind == DVI_SE3;
+  if ((int)factor->kind < DVI_RN || (int)factor->kind > DVI_U1)
+    return dvi__fail(DVI_BAD_ARGUMENT, "system: factor %d is of no known kind (%d)", index, (int)factor->kind);
+  if (factor->kind == DVI_RN ? factor->size < 1 : factor->size != 0)
+    return dvi__fail(DVI_BAD_SIZE, "system: factor %d has size %d; R^n has 1 or more, the others have 0", index, factor->size);
+  if (!isfinite(factor->mass) || factor->mass < 0)
+    return dvi__fail(DVI_BAD_ARGUMENT, "system: factor %d has mass %g; 0 or more is possible", index, factor->mass);
+  if (!turns && factor->inertia != NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "system: factor %d has an inertia matrix; only bodies that turn have", index);
+  if (factor->kind == DVI_SO3 && factor->mass != 0)
+    return dvi__fail(DVI_BAD_ARGUMENT, "system: factor %d, of SO(3), has a mass; its inertia says all", index);
+  if (factor->kind != DVI_SE3 && factor->centre != NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "system: factor %d has a centre of mass; only rigid motions, SE(3), have", index);
+  return DVI_OK;
+}
+
+/* How many cells of which kind a factor begins with and how many coordinates of R^n follow. */
+static int lines_of(const dvi_factor *factor)
+{
+  return factor->kind == DVI_RN ? factor->size : factor->kind == DVI_SE3 ? 3 : 0;
+}
+
+static int has_cell(const dvi_factor *factor, dvi__chart_kind *kind)
+{
+  *kind = factor->kind == DVI_S2 ? DVI__SPHERE : factor->kind == DVI_U1 ? DVI__CIRCLE : DVI__ROTATION;
+  return factor->kind != DVI_RN;
+}
+
+static void add_cell(dvi_system *s, dvi__chart_kind kind)
+{
+  s->cells[s->cell_count++] = (dvi__cell){kind, s->n, s->nv, s->nx};
+  s->n += dvi__chart_stored(kind);
+  s->nv += dvi__chart_velocities(kind);
+  s->nx += dvi__chart_size(kind);
+}
+
+static dvi_status count_cells(const dvi_system_terms *terms, size_t *cells)
+{
+  *cells = 0;
+  for (int f = 0; f < terms->factor_count; f++) {
+    dvi__chart_kind kind;
+    DVI_TRY(check_factor(f, &terms->factors[f]));
+    *cells += (size_t)has_cell(&terms->factors[f], &kind) + (size_t)lines_of(&terms->factors[f]);
+  }
+  return *cells <= 100000000 ? DVI_OK : dvi__fail(DVI_BAD_SIZE, "system: its factors have %zu coordinates, too many", *cells);
+}
+
+dvi_status dvi__factors_lay_out(const dvi_system_terms *terms, dvi_system *s)
+{
+  size_t cells;
+  dvi__chart_kind kind;
+  if (terms->factor_count == 0) {
+    s->n = s->nv = s->nx = terms->dimension;
+    return DVI_OK;
+  }
+  DVI_TRY(count_cells(terms, &cells));
+  s->terms |= DVI__FACTORS;
+  s->cells = DVI_NEW(dvi__cell, cells);
+  if (s->cells == NULL) return dvi__fail(DVI_NO_MEMORY, "system: no memory for its factors");
+  for (int f = 0; f < terms->factor_count; f++) {
+    if (has_cell(&terms->factors[f], &kind)) add_cell(s, kind);
+    for (int line = lines_of(&terms->factors[f]); line > 0; line--) add_cell(s, DVI__LINE);
+  }
+  if (terms->dimension == 0 || terms->dimension == s->n) return DVI_OK;
+  return dvi__fail(DVI_BAD_SIZE, "system: dimension %d, but the factors have %d coordinates; leave it 0", terms->dimension, s->n);
+}
+
+/* ---- mass ---- */
+
+/* Whether the symmetric A + shift I is positive definite. */
+static int positive(const double *A, double shift)
+{
+  const double a = A[0] + shift, b = A[4] + shift, c = A[8] + shift;
+  const double minor = a * b - A[1] * A[3];
+  const double determinant = a * (b * c - A[5] * A[7]) - A[1] * (A[3] * c - A[5] * A[6]) + A[2] * (A[3] * A[7] - b * A[6]);
+  return a > 0 && minor > 0 && determinant > 0;
+}
+
+/* The second moments of the mass, tr(J)/2 I - J: positive semidefinite for a body; about the centre of mass, too. */
+static dvi_status moments(int index, const dvi_factor *factor, double *Jd)
+{
+  const double *J = factor->inertia, trace = J[0] + J[4] + J[8], rounding = 1e-12 * trace;
+  double about[9];
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) {
+      if (!isfinite(J[3 * i + j]) || fabs(J[3 * i + j] - J[3 * j + i]) > rounding)
+        return dvi__fail(DVI_BAD_ARGUMENT, "system: the inertia of factor %d is not symmetric at (%d,%d)", index, i, j);
+      Jd[3 * i + j] = (i == j ? 0.5 * trace : 0) - J[3 * i + j];
+      about[3 * i + j] = Jd[3 * i + j] - (factor->centre != NULL ? factor->mass * factor->centre[i] * factor->centre[j] : 0);
+    }
+  if (!positive(J, 0)) return dvi__fail(DVI_BAD_ARGUMENT, "system: the inertia of factor %d is not positive definite", index);
+  if (positive(Jd, rounding) && positive(about, rounding)) return DVI_OK;
+  return dvi__fail(DVI_BAD_ARGUMENT,
+                   "system: the inertia of factor %d is that of no body: about its origin and its centre of mass no principal "
+                   "moment may be larger than the sum of the others",
+                   index);
+}
+
+/* Entries of the mass: (row, column, value), summed where they meet. */
+typedef struct entries {
+  int count;
+  int *row, *column;
+  double *value;
+} entries;
+
+static void add_entry(entries *list, int row, int column, double value)
+{
+  list->row[list->count] = row;
+  list->column[list->count] = column;
+  list->value[list->count++] = value;
+}
+
+/* A body's kinetic energy is that of its points x + R rho: sum_i of row i of R, R_i, (R_i'.Jd R_i' + m x_i'^2)/2 + m x_i' R_i'.centre. */
+static dvi_status add_body(int index, const dvi_factor *factor, int at, entries *list)
+{
+  double Jd[9] = {0};
+  DVI_TRY(moments(index, factor, Jd));
+  for (int i = 0; i < 3; i++) {
+    const int x = at + 9 + i, row = at + 3 * i;
+    for (int j = 0; j < 3; j++)
+      for (int k = 0; k < 3; k++) add_entry(list, row + j, row + k, Jd[3 * j + k]);
+    if (factor->kind == DVI_SO3) continue;
+    add_entry(list, x, x, factor->mass);
+    for (int j = 0; j < 3 && factor->centre != NULL; j++) {
+      add_entry(list, x, row + j, factor->mass * factor->centre[j]);
+      add_entry(list, row + j, x, factor->mass * factor->centre[j]);
+    }
+  }
+  return DVI_OK;
+}
+
+static int stored_of(const dvi_factor *factor)
+{
+  dvi__chart_kind kind;
+  return lines_of(factor) + (has_cell(factor, &kind) ? dvi__chart_stored(kind) : 0);
+}
+
+static dvi_status add_factors(const dvi_system_terms *terms, entries *list)
+{
+  int at = 0;
+  for (int f = 0; f < terms->factor_count; f++) {
+    const dvi_factor *factor = &terms->factors[f];
+    const int stored = stored_of(factor);
+    if (factor->inertia != NULL) DVI_TRY(add_body(f, factor, at, list));
+    if (factor->kind == DVI_SE3 && factor->inertia == NULL && factor->mass != 0)
+      return dvi__fail(DVI_BAD_ARGUMENT, "system: factor %d, of SE(3), has a mass but no inertia", f);
+    for (int i = 0; i < stored && factor->kind != DVI_SE3 && factor->mass != 0; i++) add_entry(list, at + i, at + i, factor->mass);
+    at += stored;
+  }
+  return DVI_OK;
+}
+
+static void add_mass(const dvi_mass *mass, const dvi__pattern *pattern, int n, entries *list)
+{
+  for (int j = 0; j < n && mass->values == NULL; j++)
+    if (mass->diagonal != NULL || mass->scalar != 0)
+      add_entry(list, j, j, mass->diagonal != NULL ? mass->diagonal[j] : mass->scalar);
+  for (int j = 0; j < n && mass->values != NULL; j++)
+    for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++) add_entry(list, pattern->row[e], j, mass->values[e]);
+}
+
+/* Sort the entries into columns with ascending rows: by rows first, then by columns, each sort keeping the other's order. */
+static void sort_by(const int *key, int n, int count, const int *order, int *start, int *sorted)
+{
+  memset(start, 0, ((size_t)n + 1) * sizeof *start);
+  for (int e = 0; e < count; e++) start[key[e] + 1]++;
+  for (int i = 0; i < n; i++) start[i + 1] += start[i];
+  for (int e = 0; e < count; e++) {
+    const int entry = order != NULL ? order[e] : e;
+    sorted[start[key[entry]]++] = entry;
+  }
+}
+
+/* `sorted` lists the entries column by column: equal ones become one. */
+static void join(const entries *list, const int *sorted, dvi_system *s)
+{
+  int made = -1;
+  for (int e = 0; e < list->count; e++) {
+    const int entry = sorted[e], row = list->row[entry], column = list->column[entry];
+    const int new_one = e == 0 || row != list->row[sorted[e - 1]] || column != list->column[sorted[e - 1]];
+    made += new_one;
+    s->vv.row[made] = row;
+    s->mass_values[made] = (new_one ? 0 : s->mass_values[made]) + list->value[entry];
+    s->vv.start[column + 1] = made + 1;
+  }
+  for (int j = 0; j < s->n; j++)
+    if (s->vv.start[j + 1] < s->vv.start[j]) s->vv.start[j + 1] = s->vv.start[j];
+}
+
+static dvi_status compress(const entries *list, dvi_system *s)
+{
+  dvi_status status = dvi__fail(DVI_NO_MEMORY, "system: no memory for its mass");
+  int *start = DVI_NEW(int, (size_t)s->n + 1), *by_row = DVI_NEW(int, list->count), *sorted = DVI_NEW(int, list->count);
+  s->vv = (dvi__pattern){s->n, s->n, DVI_NEW(int, (size_t)s->n + 1), DVI_NEW(int, list->count)};
+  s->mass_values = DVI_NEW(double, list->count);
+  if (start && by_row && sorted && s->vv.start && s->vv.row && s->mass_values) {
+    sort_by(list->row, s->n, list->count, NULL, start, by_row);
+    sort_by(list->column, s->n, list->count, by_row, start, sorted);
+    join(list, sorted, s);
+    status = DVI_OK;
+  }
+  dvi__release(start);
+  dvi__release(by_row);
+  dvi__release(sorted);
+  return status;
+}
+
+static size_t most_entries(const dvi_system_terms *terms, const dvi__pattern *declared, int n)
+{
+  size_t most = (size_t)dvi__pattern_entries(declared) + (size_t)n;
+  for (int f = 0; f < terms->factor_count; f++) most += 48 + (size_t)stored_of(&terms->factors[f]);
+  return most;
+}
+
+dvi_status dvi__factors_mass(const dvi_system_terms *terms, dvi_system *s)
+{
+  dvi__pattern declared = {0};
+  if (terms->mass.values != NULL)
+    DVI_TRY(dvi__pattern_copy_symmetric(&terms->mass.pattern, s->n, "system: mass matrix", &declared));
+  else
+    DVI_TRY(dvi__pattern_empty(s->n, &declared));
+  const size_t most = most_entries(terms, &declared, s->n);
+  entries list = {0, DVI_NEW(int, most), DVI_NEW(int, most), DVI_NEW(double, most)};
+  dvi_status status = DVI_OK;
+  if (list.row == NULL || list.column == NULL || list.value == NULL)
+    status = dvi__fail(DVI_NO_MEMORY, "system: no memory for its mass");
+  if (status == DVI_OK) status = add_factors(terms, &list);
+  if (status == DVI_OK) {
+    add_mass(&terms->mass, &declared, s->n, &list);
+    if (dvi__first_not_finite((size_t)list.count, list.value) >= 0)
+      status = dvi__fail(DVI_SINGULAR, "system: the mass matrix is not finite");
+  }
+  if (status == DVI_OK) status = compress(&list, s);
+  dvi__release(list.row);
+  dvi__release(list.column);
+  dvi__release(list.value);
+  dvi__pattern_clear(&declared);
+  return status;
+}
+
+/* ---- points ---- */
+
+/* The largest |R^T R - I|; of a reflection 2 at least. */
+static double rotation_distance(const double *R)
+{
+  double largest = 0;
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) {
+      const double product = R[i] * R[j] + R[3 + i] * R[3 + j] + R[6 + i] * R[6 + j];
+      largest = fmax(largest, fabs(product - (i == j)));
+    }
+  const double determinant =
+      R[0] * (R[4] * R[8] - R[5] * R[7]) - R[1] * (R[3] * R[8] - R[5] * R[6]) + R[2] * (R[3] * R[7] - R[4] * R[6]);
+  return determinant > 0 ? largest : fmax(largest, 2);
+}
+
+static double length(int count, const double *x)
+{
+  double sum = 0;
+  for (int i = 0; i < count; i++) sum += x[i] * x[i];
+  return sqrt(sum);
+}
+
+static double distance_of(const dvi__cell *cell, const double *q)
+{
+  if (cell->kind == DVI__LINE) return 0;
+  return cell->kind == DVI__ROTATION ? rotation_distance(q + cell->q) : fabs(length(dvi__chart_stored(cell->kind), q + cell->q) - 1);
+}
+
+double dvi_system_distance(const dvi_system *system, const double *q)
+{
+  double largest = 0;
+  if (system == NULL || q == NULL) return (double)NAN;
+  for (int c = 0; c < system->cell_count; c++) largest = fmax(largest, distance_of(&system->cells[c], q));
+  return largest;
+}
+
+/* Rounding of numbers that somebody else has computed. */
+static const double near_enough = 1e-12;
+
+dvi_status dvi__factors_check(const dvi_system *s, const double *q, const double *second)
+{
+  for (int c = 0; c < s->cell_count; c++) {
+    const dvi__cell *cell = &s->cells[c];
+    const double distance = distance_of(cell, q);
+    if (!(distance <= near_enough))
+      return dvi__fail(DVI_BAD_ARGUMENT,
+                       "coordinates %d to %d are no %s: off by %.2e; dvi_system_project puts them on the nearest one, if that is meant",
+                       cell->q, cell->q + dvi__chart_stored(cell->kind) - 1,
+                       cell->kind == DVI__ROTATION ? "rotation matrix" : "unit vector", distance);
+    if (cell->kind != DVI__SPHERE) continue;
+    const double *x = q + cell->q, *p = second + cell->v, radial = x[0] * p[0] + x[1] * p[1] + x[2] * p[2];
+    if (!(fabs(radial) <= near_enough * length(3, p)))
+      return dvi__fail(DVI_BAD_ARGUMENT, "numbers %d to %d of the velocity or momentum of a direction are not orthogonal to it: off by %.2e",
+                       cell->v, cell->v + 2, fabs(radial));
+  }
+  return DVI_OK;
+}
+
+void dvi__factors_rate(const dvi_system *s, const double *q, const double *v, double *rate)
+{
+  for (int c = 0; c < s->cell_count; c++) {
+    const dvi__cell *cell = &s->cells[c];
+    const double *x = q + cell->q, *w = v + cell->v, zero[DVI__CHART_SIZE] = {0};
+    double unused[DVI__CHART_POINT];
+    dvi__chart chart;
+    if (cell->kind == DVI__SPHERE) {
+      memcpy(rate + cell->q, w, 3 * sizeof *w);
+      continue;
+    }
+    dvi__chart_centre(cell->kind, x, &chart);
+    dvi__chart_point(&chart, zero, w, unused, rate + cell->q);
+  }
+}
+
+void dvi__factors_momentum(const dvi_system *s, const double *q, const double *covector, double *p)
+{
+  for (int c = 0; c < s->cell_count; c++) {
+    const dvi__cell *cell = &s->cells[c];
+    const double zero[DVI__CHART_SIZE] = {0};
+    double in_xi[DVI__CHART_SIZE], local[DVI__CHART_SIZE];
+    dvi__chart chart;
+    dvi__chart_centre(cell->kind, q + cell->q, &chart);
+    dvi__chart_gradient(&chart, zero, zero, covector + cell->q, covector + cell->q, in_xi, local);
+    dvi__chart_store(&chart, local, p + cell->v);
+  }
+}
+
+/* ---- projection ---- */
+
+/* The polar factor by Newton's iteration, R <- (R + R^-T)/2 (Higham 1986). */
+static int make_rotation(double *R)
+{
+  for (int iteration = 0; iteration < 60; iteration++) {
+    const double cofactor[] = {R[4] * R[8] - R[5] * R[7], R[5] * R[6] - R[3] * R[8], R[3] * R[7] - R[4] * R[6],
+                               R[2] * R[7] - R[1] * R[8], R[0] * R[8] - R[2] * R[6], R[1] * R[6] - R[0] * R[7],
+                               R[1] * R[5] - R[2] * R[4], R[2] * R[3] - R[0] * R[5], R[0] * R[4] - R[1] * R[3]};
+    const double determinant = R[0] * cofactor[0] + R[1] * cofactor[1] + R[2] * cofactor[2];
+    if (!(determinant > 0)) return 0;
+    for (int i = 0; i < 9; i++) R[i] = 0.5 * (R[i] + cofactor[i] / determinant);
+  }
+  return rotation_distance(R) <= near_enough;
+}
+
+static int make_unit(int count, double *x)
+{
+  const double size = length(count, x);
+  for (int i = 0; i < count; i++) x[i] /= size;
+  return size > 0;
+}
+
+dvi_status dvi_system_project(const dvi_system *system, double *q)
+{
+  if (system == NULL || q == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "project: an argument is NULL");
+  if (dvi__first_not_finite((size_t)system->n, q) >= 0) return dvi__fail(DVI_NOT_FINITE, "project: a coordinate is not finite");
+  for (int pass = 0; pass < 2; pass++)
+    for (int c = 0; c < system->cell_count; c++) {
+      const dvi__cell *cell = &system->cells[c];
+      const int stored = dvi__chart_stored(cell->kind);
+      double x[DVI__CHART_POINT];
+      if (cell->kind == DVI__LINE) continue;
+      memcpy(x, q + cell->q, (size_t)stored * sizeof *x);
+      if (!(cell->kind == DVI__ROTATION ? make_rotation(x) : make_unit(stored, x)))
+        return dvi__fail(DVI_BAD_ARGUMENT, "project: coordinates %d to %d have no nearest %s", cell->q, cell->q + stored - 1,
+                         cell->kind == DVI__ROTATION ? "rotation" : "direction");
+      if (pass == 1) memcpy(q + cell->q, x, (size_t)stored * sizeof *x);
+    }
+  return DVI_OK;
+}
