@@ -400,47 +400,72 @@ void dvi__chart_angular_momentum(const dvi__chart *chart, const double *p, doubl
 {
   double P[3];
   if (chart->kind == DVI__ROTATION) {
-    for (int i = 0; i < 3; i++) angular[i] = dot(3, chart->y0 + 3 * i, p);
+    memcpy(angular, p, 3 * sizeof *p);
     return;
   }
   lift(chart, p, P);
   cross(chart->y0, P, angular);
 }
 
-/* Of a rotation R0 exp(xi): turning by w in space is d xi with dexp_xi d xi = R0^T w, so p = dexp_xi^T R0^T angular = dexp_{-xi} R0^T angular. Of a direction:
- * p_j = T_j.(angular x y). */
-void dvi__chart_momentum(const dvi__chart *chart, const double *xi, double *W)
+void dvi__chart_add_impulse(const dvi__chart *chart, const double *impulse, double *angular)
 {
-  const int size = dvi__chart_size(chart->kind);
+  const double *R = chart->y0;
+  for (int j = 0; j < 3; j++)
+    angular[j] += chart->kind == DVI__ROTATION ? R[j] * impulse[0] + R[3 + j] * impulse[1] + R[6 + j] * impulse[2] : impulse[j];
+}
+
+/* Of a rotation R0 exp(xi): turning by w in the centre's frame is d xi with dexp_xi d xi = w, so p = dexp_xi^T angular = dexp_{-xi} angular. Of a direction:
+ * p_j = T_j.(angular x y). */
+void dvi__chart_momentum(const dvi__chart *chart, const double *xi, const double *angular, double *p)
+{
   functions c;
-  if (chart->kind == DVI__SPHERE) {
-    const double rest[2] = {0};
-    double y[3], T[6], S[6];
-    dvi__chart_point(chart, xi, NULL, y, NULL);
-    dvi__chart_tangents(chart, xi, rest, T, S);
-    for (int j = 0; j < size; j++) cross(y, (const double[]){T[j], T[2 + j], T[4 + j]}, W + 3 * j);
+  if (chart->kind == DVI__ROTATION) {
+    find_functions(3, xi, 0, &c);
+    add_turns(xi, angular, -c.of[2][0], c.of[3][0], p);
     return;
   }
-  find_functions(3, xi, 0, &c);
+  const double rest[2] = {0};
+  double y[3], P[3], unused[2];
+  dvi__chart_point(chart, xi, NULL, y, NULL);
+  cross(angular, y, P);
+  dvi__chart_gradient(chart, xi, rest, P, P, unused, p);
+}
+
+void dvi__chart_stored_momentum(const dvi__chart *chart, const double *xi, const double *angular, double *stored)
+{
+  functions c;
+  double y[3];
+  if (chart->kind == DVI__ROTATION) {
+    find_functions(3, xi, 0, &c);
+    add_turns(xi, angular, -c.of[1][0], c.of[2][0], stored);
+    return;
+  }
+  dvi__chart_point(chart, xi, NULL, y, NULL);
+  cross(angular, y, stored);
+}
+
+void dvi__chart_moments(const dvi__chart *chart, const double *xi, double *W)
+{
   for (int k = 0; k < 3; k++) {
-    double column[3];
-    add_turns(xi, chart->y0 + 3 * k, -c.of[2][0], c.of[3][0], column);
-    for (int j = 0; j < 3; j++) W[3 * j + k] = column[j];
+    double e[3] = {0}, impulse[3] = {0}, column[3];
+    e[k] = 1;
+    dvi__chart_add_impulse(chart, e, impulse);
+    dvi__chart_momentum(chart, xi, impulse, column);
+    for (int j = 0; j < dvi__chart_size(chart->kind); j++) W[3 * j + k] = column[j];
   }
 }
 
-static void rotation_derivative(const dvi__chart *chart, const double *xi, const double *angular, double *derivative)
+static void rotation_derivative(const double *xi, const double *angular, double *derivative)
 {
   functions c;
-  double nu[3] = {0}, once[3], twice[3];
+  double once[3], twice[3];
   find_functions(3, xi, 1, &c);
-  for (int i = 0; i < 9; i++) nu[i % 3] += chart->y0[i] * angular[i / 3];
-  cross(xi, nu, once);
+  cross(xi, angular, once);
   cross(xi, once, twice);
   for (int j = 0; j < 3; j++) {
     double e[3] = {0}, first[3], second[3], third[3];
     e[j] = 1;
-    cross(e, nu, first);
+    cross(e, angular, first);
     cross(e, once, second);
     cross(xi, first, third);
     for (int i = 0; i < 3; i++)
@@ -452,7 +477,7 @@ static void rotation_derivative(const dvi__chart *chart, const double *xi, const
 void dvi__chart_momentum_derivative(const dvi__chart *chart, const double *xi, const double *angular, double *derivative)
 {
   if (chart->kind == DVI__ROTATION) {
-    rotation_derivative(chart, xi, angular, derivative);
+    rotation_derivative(xi, angular, derivative);
     return;
   }
   const double rest[2] = {0}, none[3] = {0};
@@ -505,33 +530,6 @@ void dvi__chart_store(const dvi__chart *chart, const double *local, double *stor
     lift(chart, local, stored);
   else
     memcpy(stored, local, (size_t)dvi__chart_size(chart->kind) * sizeof *stored);
-}
-
-/* T (T^T T)^-1 p: the covector at y(xi) that is tangent and does what p does. T stretches xi by 1 and what is across it by c_1. */
-static void sphere_momentum(const dvi__chart *chart, const functions *c, const double *xi, const double *p, double *stored)
-{
-  const double c1 = c->of[1][0], along = c->of[3][0] * (1 + c1) * dot(2, xi, p);
-  double rate[2], y[3];
-  for (int j = 0; j < 2; j++) rate[j] = (p[j] - along * xi[j]) / (c1 * c1);
-  sphere_point(chart, c, xi, rate, y, stored);
-}
-
-void dvi__chart_leave(const dvi__chart *chart, const double *xi, const double *p, double *y, double *stored)
-{
-  functions c;
-  if (chart->kind == DVI__LINE || chart->kind == DVI__CIRCLE) {
-    dvi__chart_point(chart, xi, NULL, y, NULL);
-    *stored = *p;
-    return;
-  }
-  find_functions(dvi__chart_size(chart->kind), xi, 1, &c);
-  if (chart->kind == DVI__SPHERE) {
-    sphere_point(chart, &c, xi, NULL, y, NULL);
-    sphere_momentum(chart, &c, xi, p, stored);
-    return;
-  }
-  rotation_point(chart, &c, xi, NULL, y, NULL);
-  add_turns(xi, p, -0.5, (c.of[3][0] - 2 * c.of[4][0]) / (2 * c.of[2][0]), stored); /* the inverse of dexp_{-xi}^T */
 }
 
 void dvi__chart_leave_velocity(const dvi__chart *chart, const double *xi, const double *rate, double *stored)

@@ -55,12 +55,18 @@ void dvi__chart_turns(dvi__chart_kind kind, const double *y, double *turns);
 /* The moment a.(w x y) = w.moment, added. */
 void dvi__chart_add_moment(dvi__chart_kind kind, const double *y, const double *a, double *moment);
 
-/* The angular momentum in space of the chart's momentum p at the centre. */
+/* The angular momentum of the chart's momentum p at the centre; of a rotation in the centre's frame, where it is p, of a direction in space. What moments in
+ * space add to it, by components of this frame. */
 void dvi__chart_angular_momentum(const dvi__chart *chart, const double *p, double *angular);
+void dvi__chart_add_impulse(const dvi__chart *chart, const double *impulse, double *angular);
 
-/* At xi: W [size*3], by which the chart's momentum there is W times the angular momentum, and the derivative of W angular in xi, [size*size]. */
-void dvi__chart_momentum(const dvi__chart *chart, const double *xi, double *W);
+/* From it: the chart's momentum at xi, and its derivative in xi [size*size]; the stored momentum at y(xi). */
+void dvi__chart_momentum(const dvi__chart *chart, const double *xi, const double *angular, double *p);
 void dvi__chart_momentum_derivative(const dvi__chart *chart, const double *xi, const double *angular, double *derivative);
+void dvi__chart_stored_momentum(const dvi__chart *chart, const double *xi, const double *angular, double *stored);
+
+/* W [size*3]: the chart's momentum at xi of a moment in space. */
+void dvi__chart_moments(const dvi__chart *chart, const double *xi, double *W);
 
 /* xi of a point y, nearer than half a turn. */
 void dvi__chart_inverse(const dvi__chart *chart, const double *y, double *xi);
@@ -69,8 +75,7 @@ void dvi__chart_inverse(const dvi__chart *chart, const double *y, double *xi);
 void dvi__chart_enter(const dvi__chart *chart, const double *stored, double *local);
 void dvi__chart_store(const dvi__chart *chart, const double *local, double *stored);
 
-/* The point y(xi), and the stored momentum there of the chart's momentum p at xi, or the stored velocity there of a rate; either pair may be NULL. */
-void dvi__chart_leave(const dvi__chart *chart, const double *xi, const double *p, double *y, double *stored);
+/* The stored velocity at y(xi) of a rate. */
 void dvi__chart_leave_velocity(const dvi__chart *chart, const double *xi, const double *rate, double *stored);
 
 /* How large a number xi may be: half a turn; infinite for a line. */

@@ -4,7 +4,7 @@
  *     L_xi'   = T^T w                   L_xixi   = S^T M S + T^T L_yy T + (w.d3y) xi' + L_y.d2y
  *
  * Moving the centre turns a path in space. Let N = y x L_y + y' x w be the moment of what the Lagrangian does to a rotation or a direction, and mu its angular
- * momentum in space. Then mu1 = mu0 + h sum_j b_j N_j, and with the W of group/chart.h the chart's momentum at the end is p1 = W(xi1) mu1. So
+ * momentum. Then mu1 = mu0 + h sum_j b_j N_j, and the chart's momentum at the end is p1 = W(xi1) mu1 (group/chart.h). So
  *     C = W(xi1) mu1 - p0 - h sum_j b_j L_xi_j.
  * Without it steps have the same order, but keep neither momenta nor the symplectic form: they would have a discrete Lagrangian of their own in every step.
  *
@@ -42,10 +42,16 @@ struct dvi__charted {
   /* Paths from the centre (place): not 0 for those; W [cells*9], xi1 [nx]; N [cells*3*capacity], at node j of a batch [(3 c + a)*capacity + j]. */
   int from_centre, capacity;
   double *W, *end, *moment;
+  double *angular;              /* [cells*3] mu1 of the last path */
   double *turned_T, *turned_S;  /* [nq*3] y x and y' x, times W, of one point */
   double *C_q1, *C_qq, *C_qv;   /* [entries], [entries*capacity] */
   block *in_qq, *mass_in_qq, *mass_in_qv, *mass_in_vv;
 };
+
+static int turns(const dvi__cell *cell)
+{
+  return cell->kind == DVI__ROTATION || cell->kind == DVI__SPHERE;
+}
 
 /* ---- patterns ---- */
 
@@ -200,7 +206,7 @@ void dvi__charted_destroy(dvi__charted **charted)
   dvi__pattern_clear(&x->vv);
   void *const own[] = {x->chart, x->t, x->value, x->cell, x->y,      x->rate,  x->L_y,   x->w,          x->L_yy,
                        x->T,     x->S, x->curved, x->mixed, x->in_qq, x->mass_in_qq, x->mass_in_qv, x->mass_in_vv,
-                       x->W, x->end, x->moment, x->turned_T, x->turned_S, x->C_q1, x->C_qq, x->C_qv};
+                       x->angular, x->W, x->end, x->moment, x->turned_T, x->turned_S, x->C_q1, x->C_qq, x->C_qv};
   for (size_t i = 0; i < sizeof own / sizeof *own; i++) dvi__release(own[i]);
   dvi__release(x);
   *charted = NULL;
@@ -232,11 +238,15 @@ void dvi__charted_store(const dvi__charted *x, const double *local, double *stor
     dvi__chart_store(&x->chart[c], local + x->base->cells[c].x, stored + x->base->cells[c].v);
 }
 
-void dvi__charted_leave(const dvi__charted *x, const double *xi, const double *p, double *q, double *stored)
+void dvi__charted_arrive(const dvi__charted *x, const double *xi, const double *p, double *q, double *stored)
 {
   for (int c = 0; c < x->base->cell_count; c++) {
     const dvi__cell *at = &x->base->cells[c];
-    dvi__chart_leave(&x->chart[c], xi + at->x, p + at->x, q + at->q, stored + at->v);
+    dvi__chart_point(&x->chart[c], xi + at->x, NULL, q + at->q, NULL);
+    if (turns(at))
+      dvi__chart_stored_momentum(&x->chart[c], xi + at->x, x->angular + 3 * c, stored + at->v);
+    else
+      stored[at->v] = p[at->x];
   }
 }
 
@@ -322,11 +332,6 @@ static dvi_status points(dvi__charted *x, int count, int first, int group, const
   }
   memcpy(x->t, t + first, (size_t)group * sizeof *t);
   return DVI_OK;
-}
-
-static int turns(const dvi__cell *cell)
-{
-  return cell->kind == DVI__ROTATION || cell->kind == DVI__SPHERE;
 }
 
 static int smaller(int a, int b)
@@ -578,30 +583,30 @@ static void place_path(void *of, const double *q0, const double *q1)
   for (int i = 0; i < x->base->nx; i++) x->from_centre &= q0[i] == 0;
   memcpy(x->end, q1, (size_t)x->base->nx * sizeof *q1);
   for (int c = 0; c < x->base->cell_count && x->from_centre; c++)
-    if (turns(&x->base->cells[c])) dvi__chart_momentum(&x->chart[c], q1 + x->base->cells[c].x, x->W + 9 * c);
+    if (turns(&x->base->cells[c])) dvi__chart_moments(&x->chart[c], q1 + x->base->cells[c].x, x->W + 9 * c);
 }
 
 /* mu1 = mu0 + h sum_j b_j N_j of cell c. */
 static void angular_momentum(const dvi__charted *x, int c, int nodes, double h, const double *weight, const double *p0, double *mu)
 {
-  dvi__chart_angular_momentum(&x->chart[c], p0 + x->base->cells[c].x, mu);
+  double impulse[3] = {0};
   for (int i = 0; i < 3; i++)
-    for (int j = 0; j < nodes; j++) mu[i] += h * weight[j] * x->moment[(3 * c + i) * x->capacity + j];
+    for (int j = 0; j < nodes; j++) impulse[i] += h * weight[j] * x->moment[(3 * c + i) * x->capacity + j];
+  dvi__chart_angular_momentum(&x->chart[c], p0 + x->base->cells[c].x, mu);
+  dvi__chart_add_impulse(&x->chart[c], impulse, mu);
 }
 
 static void correct_path(void *of, int nodes, double h, const double *weight, const double *p0, const double *dp, double *C)
 {
-  const dvi__charted *x = of;
+  dvi__charted *x = of;
   memset(C, 0, (size_t)x->base->nx * sizeof *C);
   for (int c = 0; c < x->base->cell_count && x->from_centre; c++) {
     const dvi__cell *cell = &x->base->cells[c];
-    const double *W = x->W + 9 * c;
-    double mu[3];
+    double *mu = x->angular + 3 * c, p1[DVI__CHART_SIZE];
     if (!turns(cell)) continue;
     angular_momentum(x, c, nodes, h, weight, p0, mu);
-    for (int i = 0; i < dvi__chart_size(cell->kind); i++)
-      C[cell->x + i] =
-          W[3 * i] * mu[0] + W[3 * i + 1] * mu[1] + W[3 * i + 2] * mu[2] - p0[cell->x + i] - dp[cell->x + i];
+    dvi__chart_momentum(&x->chart[c], x->end + cell->x, mu, p1);
+    for (int i = 0; i < dvi__chart_size(cell->kind); i++) C[cell->x + i] = p1[i] - p0[cell->x + i] - dp[cell->x + i];
   }
 }
 
@@ -632,13 +637,14 @@ dvi_status dvi__charted_reserve(dvi__charted *x, int nodes)
   x->capacity = nodes;
   x->W = DVI_NEW(double, 9 * cells);
   x->end = DVI_NEW(double, x->base->nx);
+  x->angular = DVI_NEW(double, 3 * cells);
   x->moment = DVI_NEW(double, 3 * cells * (size_t)nodes);
   x->turned_T = DVI_NEW(double, 3 * n);
   x->turned_S = DVI_NEW(double, 3 * n);
   x->C_q1 = DVI_NEW(double, qq);
   x->C_qq = DVI_NEW(double, qq * (size_t)nodes);
   x->C_qv = DVI_NEW(double, (size_t)dvi__pattern_entries(&x->qv) * (size_t)nodes);
-  if (x->W && x->end && x->moment && x->turned_T && x->turned_S && x->C_q1 && x->C_qq && x->C_qv) return DVI_OK;
+  if (x->W && x->end && x->angular && x->moment && x->turned_T && x->turned_S && x->C_q1 && x->C_qq && x->C_qv) return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "charts: no memory for %d nodes", nodes);
 }
 
