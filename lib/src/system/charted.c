@@ -117,7 +117,7 @@ static dvi_status place(const dvi_system *base, const int *cell, const dvi__patt
   for (int j = 0; j < part->columns; j++)
     for (int e = part->start[j]; e < part->start[j + 1]; e++) {
       const int column = base->cells[cell[j]].x, row = base->cells[cell[part->row[e]]].x;
-      b[e] = (block){dvi__pattern_find(made, column, row), made->start[column + 1] - made->start[column]};
+      b[e] = (block){dvi__pattern_find(made, row, column), made->start[column + 1] - made->start[column]};
     }
   return DVI_OK;
 }
