@@ -74,7 +74,7 @@ START_TEST(exp_is_right_to_2_ulp)
 END_TEST
 
 /* Entries of R that are rounded by half an ulp move w by pi/2 times as much, at worst. */
-START_TEST(log_is_right_to_3_ulp_up_to_half_turns)
+START_TEST(log_is_right_to_4_ulp_up_to_half_turns)
 {
   double worst = 0;
   uint64_t seed = 4;
@@ -95,12 +95,12 @@ START_TEST(log_is_right_to_3_ulp_up_to_half_turns)
     if (error > 0) worst = fmax(worst, error / fmin(1, angle));
   }
   printf("log: %.2f ulp\n", worst / DBL_EPSILON);
-  ck_assert_double_le(worst, 3 * DBL_EPSILON);
+  ck_assert_double_le(worst, 4 * DBL_EPSILON);
 }
 END_TEST
 
-/* Against |v|, and for large angles against those: they are known to 1 ulp of themselves. */
-START_TEST(dexp_is_right_to_2_ulp)
+/* Against |v|. */
+START_TEST(dexp_is_right_to_3_ulp)
 {
   double worst = 0;
   uint64_t seed = 5;
@@ -116,7 +116,7 @@ START_TEST(dexp_is_right_to_2_ulp)
     worst = fmax(worst, quad_error(3, u, exact));
   }
   printf("dexp: %.2f ulp\n", worst / DBL_EPSILON);
-  ck_assert_double_le(worst, 2 * DBL_EPSILON);
+  ck_assert_double_le(worst, 3 * DBL_EPSILON);
 }
 END_TEST
 
@@ -160,6 +160,7 @@ static void quad_velocity_derivative(const double w[3], const double v[3], quad 
   }
 }
 
+/* Against |v|; large angles are known to 1 ulp of themselves. */
 START_TEST(the_derivative_of_the_velocity_is_right_to_2_ulp)
 {
   double worst = 0;
@@ -171,7 +172,7 @@ START_TEST(the_derivative_of_the_velocity_is_right_to_2_ulp)
     random_vector(&seed, 1, v);
     dvi_so3_velocity_derivative(w, v, D);
     quad_velocity_derivative(w, v, exact);
-    worst = fmax(worst, quad_error(9, D, exact));
+    worst = fmax(worst, quad_error(9, D, exact) / fmax(1, length(w)));
   }
   printf("velocity_derivative: %.2f ulp\n", worst / DBL_EPSILON);
   ck_assert_double_le(worst, 2 * DBL_EPSILON);
@@ -195,7 +196,7 @@ START_TEST(dexp_of_the_opposite_turn_is_the_transpose)
 }
 END_TEST
 
-START_TEST(exp_is_orthogonal_to_2_ulp)
+START_TEST(exp_is_orthogonal_to_1_ulp)
 {
   double worst = 0;
   uint64_t seed = 9;
@@ -206,7 +207,7 @@ START_TEST(exp_is_orthogonal_to_2_ulp)
     worst = fmax(worst, orthogonality(R, defect));
   }
   printf("R^T R - I of exp: %.2f ulp\n", worst / DBL_EPSILON);
-  ck_assert_double_le(worst, 2 * DBL_EPSILON);
+  ck_assert_double_le(worst, 1 * DBL_EPSILON);
 }
 END_TEST
 
@@ -273,9 +274,9 @@ START_TEST(no_angle_makes_nan)
     const double w[3] = {0, ldexp(1, exponent), -ldexp(0.75, exponent)}, v[3] = {1, -0.5, 0.25};
     double R[9], D[9], u[4][3], defect[9];
     dvi_so3_exp(w, R);
-    ck_assert_double_le(orthogonality(R, defect), 2 * DBL_EPSILON);
+    ck_assert_double_le(orthogonality(R, defect), DBL_EPSILON);
     dvi_so3_cayley(w, R);
-    ck_assert_double_le(orthogonality(R, defect), 2 * DBL_EPSILON);
+    ck_assert_double_le(orthogonality(R, defect), DBL_EPSILON);
     dvi_so3_dexp(w, v, u[0]);
     dvi_so3_dexp_inverse(w, v, u[1]);
     dvi_so3_dcayley(w, v, u[2]);
@@ -291,15 +292,15 @@ int main(void)
   TCase *tests = tcase_create("rotation");
 #ifdef DVI_HAVE_QUADMATH
   tcase_add_test(tests, exp_is_right_to_2_ulp);
-  tcase_add_test(tests, log_is_right_to_3_ulp_up_to_half_turns);
-  tcase_add_test(tests, dexp_is_right_to_2_ulp);
+  tcase_add_test(tests, log_is_right_to_4_ulp_up_to_half_turns);
+  tcase_add_test(tests, dexp_is_right_to_3_ulp);
   tcase_add_test(tests, the_inverse_of_dexp_is_right_to_4_ulp);
   tcase_add_test(tests, the_derivative_of_the_velocity_is_right_to_2_ulp);
 #else
   puts("no libquadmath: the comparison with quadruple precision is left out");
 #endif
   tcase_add_test(tests, dexp_of_the_opposite_turn_is_the_transpose);
-  tcase_add_test(tests, exp_is_orthogonal_to_2_ulp);
+  tcase_add_test(tests, exp_is_orthogonal_to_1_ulp);
   tcase_add_test(tests, a_million_factors_leave_the_group_as_a_random_walk_does);
   tcase_add_test(tests, of_two_half_turns_log_takes_the_one_whose_largest_component_is_positive);
   tcase_add_test(tests, what_is_no_rotation_is_refused_and_nothing_is_written);

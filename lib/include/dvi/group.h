@@ -25,7 +25,7 @@ extern "C" {
 /** The rotation about w by |w|, R = exp(hat(w)).
  *
  *  @param      w  [3] radians
- *  @param[out] R  [9] orthogonal to 2 ulp, without bias: of N factors the product leaves the group by about sqrt(N) ulp */
+ *  @param[out] R  [9] orthogonal to 1 ulp, without bias: of N factors the product leaves the group by about sqrt(N) ulp */
 void dvi_so3_exp(const double w[3], double R[9]);
 
 /** The shortest w with exp(hat(w)) = R, |w| <= pi. At a half turn, where w and -w are as short: the one whose largest component is positive.
@@ -52,7 +52,7 @@ void dvi_so3_velocity_derivative(const double w[3], const double v[3], double D[
 /** Cayley's map, R = (I - hat(w)/2)^-1 (I + hat(w)/2): the rotation about w by 2 atan(|w|/2). It agrees with exp to second order.
  *
  *  @param      w  [3]
- *  @param[out] R  [9] orthogonal to 2 ulp */
+ *  @param[out] R  [9] orthogonal to 1 ulp */
 void dvi_so3_cayley(const double w[3], double R[9]);
 
 /** The w with cayley(w) = R.
@@ -71,7 +71,7 @@ void dvi_so3_dcayley_inverse(const double w[3], const double v[3], double u[3]);
 /** The rotation of a quaternion: v becomes q v q^-1.
  *
  *  @param      q  [4] real part first, of any length; 0 is taken for 1
- *  @param[out] R  [9] orthogonal to 2 ulp, also where q is not of length 1 */
+ *  @param[out] R  [9] orthogonal to 1 ulp, also where q is not of length 1 */
 void dvi_so3_from_quaternion(const double q[4], double R[9]);
 
 /** The unit quaternion of a rotation, of the two the one with q[0] >= 0; at a half turn (q[0] = 0) the one whose largest component is positive.

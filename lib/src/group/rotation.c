@@ -41,17 +41,16 @@ void dvi_so3_dexp_inverse(const double w[3], const double v[3], double u[3])
   dvi__about(w, -0.5, c[1] != 0 ? (c[2] - c[3]) / (4 * c[1]) : 0, v, u);
 }
 
-/* Omega = v - c_2 w x v + c_3 (w (w.v) - |w|^2 v); the derivatives of c_2 and c_3 in w are (2 c_4 - c_3) w and (3 c_5 - c_4) w. */
+/* The velocity is v - c_2 w x v + c_3 (w (w.v) - |w|^2 v); the derivatives of c_2 and c_3 in w are (2 c_4 - c_3) w and (3 c_5 - c_4) w. */
 void dvi_so3_velocity_derivative(const double w[3], const double v[3], double D[9])
 {
-  double c[9], once[3], twice[3];
+  double c[9], once[3], inner[3], stretch[3];
   dvi__stumpff(dvi__dot(w, w), c);
   dvi__cross(w, v, once);
-  dvi__cross(w, once, twice);
-  const double along = c[3] * dvi__dot(w, v);
-  const double turn[9] = {along, -c[2] * v[2], c[2] * v[1], c[2] * v[2], along, -c[2] * v[0], -c[2] * v[1], c[2] * v[0], along};
-  for (int i = 0; i < 3; i++) {
-    const double stretch = (3 * c[5] - c[4]) * twice[i] - (2 * c[4] - c[3]) * once[i] - 2 * c[3] * v[i];
-    for (int j = 0; j < 3; j++) D[3 * i + j] = turn[3 * i + j] + c[3] * w[i] * v[j] + stretch * w[j];
-  }
+  for (int i = 0; i < 3; i++) inner[i] = (c[3] - 2 * c[4]) * v[i] + (3 * c[5] - c[4]) * once[i];
+  dvi__cross(w, inner, stretch);
+  const double along = c[3] * dvi__dot(w, v), x = c[2] * v[0], y = c[2] * v[1], z = c[2] * v[2];
+  const double turn[9] = {along, -z, y, z, along, -x, -y, x, along};
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) D[3 * i + j] = turn[3 * i + j] + c[3] * w[i] * v[j] + (stretch[i] - 2 * c[3] * v[i]) * w[j];
 }

@@ -18,10 +18,11 @@ static inline void dvi__cross(const double a[3], const double b[3], double produ
 /* sum = v + a w x v + b w x (w x v): every operator here that commutes with the rotations about w. It may overwrite v. */
 static inline void dvi__about(const double w[3], double a, double b, const double v[3], double sum[3])
 {
-  double once[3], twice[3];
+  double once[3], inner[3], turned[3];
   dvi__cross(w, v, once);
-  dvi__cross(w, once, twice);
-  for (int i = 0; i < 3; i++) sum[i] = v[i] + (a * once[i] + b * twice[i]);
+  for (int i = 0; i < 3; i++) inner[i] = a * v[i] + b * once[i];
+  dvi__cross(w, inner, turned);
+  for (int i = 0; i < 3; i++) sum[i] = v[i] + turned[i];
 }
 
 #endif
