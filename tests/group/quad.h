@@ -80,6 +80,15 @@ static inline void quad_from(int count, const double *x, quad *y)
   for (int i = 0; i < count; i++) y[i] = (quad)x[i];
 }
 
+/* R = exp(hat(w)) */
+static inline void quad_rotation(const double w[3], quad R[9])
+{
+  quad exact[3], W[9];
+  quad_from(3, w, exact);
+  quad_hat(exact, W);
+  quad_series(3, 0, W, R);
+}
+
 /* The largest |computed - exact|. */
 static inline double quad_error(int count, const double *computed, const quad *exact)
 {

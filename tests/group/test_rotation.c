@@ -3,45 +3,12 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "matrix.h"
 #include "points.h"
 #include "quad.h"
 #include "support/suite.h"
 
-static double length(const double w[3])
-{
-  return sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
-}
-
-/* C = A B */
-static void multiply(const double A[9], const double B[9], double C[9])
-{
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) C[3 * i + j] = A[3 * i] * B[j] + A[3 * i + 1] * B[3 + j] + A[3 * i + 2] * B[6 + j];
-}
-
-/* defect = R^T R - I, each product and sum exact to some 1e-19; returns its largest entry. */
-static double orthogonality(const double R[9], double defect[9])
-{
-  double largest = 0;
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) {
-      long double sum = -(i == j);
-      for (int k = 0; k < 3; k++) sum += (long double)R[3 * k + i] * R[3 * k + j];
-      defect[3 * i + j] = (double)sum;
-      largest = fmax(largest, fabs(defect[3 * i + j]));
-    }
-  return largest;
-}
-
 #ifdef DVI_HAVE_QUADMATH
-static void quad_rotation(const double w[3], quad R[9])
-{
-  quad exact[3], W[9];
-  quad_from(3, w, exact);
-  quad_hat(exact, W);
-  quad_series(3, 0, W, R);
-}
-
 static void quad_dexp(double sign, const double w[3], quad D[9])
 {
   quad exact[3], W[9];

@@ -81,6 +81,68 @@ void dvi_so3_from_quaternion(const double q[4], double R[9]);
  *  @retval DVI_BAD_ARGUMENT  R is further than 1e-8 from a rotation, see dvi_so3_project; q is as it was */
 dvi_status dvi_so3_quaternion(const double R[9], double q[4]);
 
+/** The rotation that is closest to a matrix in the sum of squares of its entries: the orthogonal factor of its polar decomposition, if det M > 0.
+ *
+ *  Of several closest ones (M of rank 1, M that turns right into left and is as far from several) one is taken, of M = 0 the identity.
+ *  @param      M  [9] any matrix
+ *  @param[out] R  [9] orthogonal to 1 ulp; may be M
+ *  Source: Horn 1987. */
+void dvi_so3_project(const double M[9], double R[9]);
+
+/** The distance of a matrix M [9] from SO(3): |M - R|, the root of the sum of squares of the entries, R from dvi_so3_project. */
+double dvi_so3_distance(const double M[9]);
+
+/** The rigid motion of a constant twist, g = exp([hat(w), u; 0, 0]): the rotation exp(hat(w)) and the translation dexp_w u.
+ *
+ *  @param      xi  [6] w, then u
+ *  @param[out] g   [12] R, then x */
+void dvi_se3_exp(const double xi[6], double g[12]);
+
+/** The xi with exp(xi) = g and the shortest w; at a half turn as dvi_so3_log.
+ *
+ *  @param      g   [12] R, then x
+ *  @param[out] xi  [6] w, then u
+ *  @retval DVI_BAD_ARGUMENT  R is further than 1e-8 from a rotation; xi is as it was */
+dvi_status dvi_se3_log(const double g[12], double xi[6]);
+
+/** Cayley's map, g = (I - A/2)^-1 (I + A/2), A = [hat(w), u; 0, 0]: the rotation cayley(w) and the translation (I - hat(w)/2)^-1 u.
+ *
+ *  @param      xi  [6] w, then u
+ *  @param[out] g   [12] R, then x */
+void dvi_se3_cayley(const double xi[6], double g[12]);
+
+/** u = dexp_xi v, all [6]: as on SO(3), with ad_(w,u) (a,b) = (w x a, w x b + u x a). dexp_{-xi} xi' is the body velocity (Omega, V) of g_0 exp(xi), with
+ *  R' = R hat(Omega), x' = R V. Its transpose is not that of the opposite twist. */
+void dvi_se3_dexp(const double xi[6], const double v[6], double u[6]);
+
+/** u = dexp_xi^-1 v, all [6]. Poles at full turns, as on SO(3), but double ones. */
+void dvi_se3_dexp_inverse(const double xi[6], const double v[6], double u[6]);
+
+/** The point at this angle on the unit circle, (cos, sin).
+ *
+ *  @param      angle  radians
+ *  @param[out] y      [2] */
+void dvi_u1_exp(double angle, double y[2]);
+
+/** The angle of a point of the circle, in [-pi, pi]; pi for (-1, 0), 0 for (0, 0).
+ *
+ *  @param y  [2] of any length */
+double dvi_u1_log(const double y[2]);
+
+/** The point that a great circle reaches from y by the tangent vector t: cos|t| y + t sin|t|/|t|.
+ *
+ *  @param      y  [3] of length 1
+ *  @param      t  [3] orthogonal to y
+ *  @param[out] z  [3] of length 1 to 1 ulp, though y and t may have roundoff */
+void dvi_s2_exp(const double y[3], const double t[3], double z[3]);
+
+/** The shortest tangent vector t at y that leads to z, |t| <= pi. For z = -y, where every direction does, the one towards the coordinate axis of the smallest
+ *  |y_i|, the first of equals.
+ *
+ *  @param      y, z  [3] of length 1
+ *  @param[out] t     [3] orthogonal to y to roundoff */
+void dvi_s2_log(const double y[3], const double z[3], double t[3]);
+
 #ifdef __cplusplus
 }
 #endif

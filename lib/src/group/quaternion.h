@@ -28,7 +28,8 @@ static inline void dvi__rotation(const double q[4], double R[9])
     for (int j = i; j < 4; j++) p[i][j] = (dvi__product){head[i] * head[j], tail[i] * q[j] + head[i] * tail[j]};
   for (int i = 0; i < 3; i++) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
-    const dvi__product side = j < k ? p[1 + j][1 + k] : p[1 + k][1 + j], turn = p[0][1 + i], *a = &p[1 + j][1 + j], *b = &p[1 + k][1 + k];
+    const dvi__product side = j < k ? p[1 + j][1 + k] : p[1 + k][1 + j], turn = p[0][1 + i], *a = &p[1 + j][1 + j],
+                       *b = &p[1 + k][1 + k];
     R[4 * i] = (1 - 2 * (a->head + b->head)) - 2 * (a->tail + b->tail);
     R[3 * j + k] = 2 * ((side.head - turn.head) + (side.tail - turn.tail));
     R[3 * k + j] = 2 * ((side.head + turn.head) + (side.tail + turn.tail));
