@@ -9,10 +9,9 @@
  *
  *  So a body with R = R_0 exp(w) has the body velocity dexp_{-w} w'. On SO(3) the transpose of dexp_w is dexp_{-w}, and that of its inverse likewise.
  *
- *  Nothing is allocated, and finite arguments have finite results as long as products of their sizes are finite. Where exp, dexp and dcayley are asked for
- *  rotations by |w| beyond 1e154, whose angles no double can tell, they are taken for rotations by 0. Results are right to a few ulp of their size (for
- *  rotations by many turns: of the angle); tests compare them with quadruple precision. Outputs may overwrite inputs of the same size, unless a function
- *  says otherwise.
+ *  Nothing is allocated, and finite arguments have finite results as long as products of a few of them are finite; where |w| is beyond 1e154, and |w|^2 is not,
+ *  exp and dexp are the identity. Results are right to a few ulp of their size (for rotations by many turns: of the angle); tests compare them with
+ *  quadruple precision. Outputs may overwrite inputs of the same size, unless a function says otherwise.
  *  Sources: Iserles, Munthe-Kaas, Norsett and Zanna 2000; Marsden and Ratiu 1999, ch. 9 and sec. 14.7. */
 #ifndef DVI_GROUP_H
 #define DVI_GROUP_H
