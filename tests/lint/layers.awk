@@ -5,6 +5,7 @@ BEGIN {
   # Rooms of lib/src that a room may look into, besides itself.
   sees["core"] = ""
   sees["num"] = "core"
+  sees["group"] = "core num"
   sees["space"] = "core num"
   sees["group"] = "core num"
   sees["system"] = "core num group"

@@ -1,8 +1,17 @@
-/* Stumpff's functions c_k(s) = sum_j (-s)^j / (2j+k)!:  c_0 = cos x, c_1 = sin x / x, c_2 = (1 - cos x)/x^2, c_3 = (x - sin x)/x^3 with s = x^2. */
+/* Stumpff's functions, of which the exponential and its derivatives on every group here are made. */
 #ifndef DVI_GROUP_STUMPFF_H
 #define DVI_GROUP_STUMPFF_H
 
-/* c_0 .. c_8 at s >= 0. */
+/* c[k] = c_k(s) = sum_j (-s)^j / (2j+k)!, s >= 0. With s = theta^2:
+ *
+ *     c_0 = cos theta,   c_1 = sin theta / theta,   c_2 = (1 - cos theta) / theta^2,   c_3 = (theta - sin theta) / theta^3,   ...
+ *
+ * Entire functions of s: nobody has to ask whether an angle is small. Their derivatives are d c_k / ds = (k c_{k+2} - c_{k+1}) / 2.
+ * For s up to (4 pi)^2 they are right to a few ulp, of their size where they have no zeros near (c_0, c_1, c_2: of 1/k!). Where s has overflowed
+ * c_0 is 1 and the others are 0. Source: Stiefel and Scheifele 1971, sec. 11. */
 void dvi__stumpff(double s, double c[9]);
+
+/* The first four alone, the same digits. */
+void dvi__stumpff_four(double s, double c[4]);
 
 #endif
