@@ -19,12 +19,12 @@ static void tangent(uint64_t *seed, double size, const double y[3], double t[3])
   for (int i = 0; i < 3; i++) t[i] *= scale;
 }
 
+#ifdef DVI_HAVE_QUADMATH
 static double chosen_length(int i, double longest, uint64_t *seed)
 {
   return i < 50 * SPECIAL_ANGLES ? special_angle(i % SPECIAL_ANGLES) : longest * fabs(uniform(seed));
 }
 
-#ifdef DVI_HAVE_QUADMATH
 static void quad_great_circle(const double y[3], const double t[3], quad z[3])
 {
   quad point[3], turn[3];
