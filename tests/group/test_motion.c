@@ -7,6 +7,7 @@
 #include "quad.h"
 #include "support/suite.h"
 
+#ifdef DVI_HAVE_QUADMATH
 /* A turn as for rotations, and a shift of length 1. */
 static void twist(int i, double longest, uint64_t *seed, double xi[6])
 {
@@ -14,7 +15,6 @@ static void twist(int i, double longest, uint64_t *seed, double xi[6])
   random_vector(seed, 1, xi + 3);
 }
 
-#ifdef DVI_HAVE_QUADMATH
 /* [hat(w), u; 0, 0] */
 static void quad_twist(const double xi[6], quad A[16])
 {
