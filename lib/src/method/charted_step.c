@@ -52,10 +52,9 @@ static void take_over(dvi__stepper *self, const dvi__stepper *inner)
 static dvi_status centre_paths(const charted_step *own)
 {
   dvi__action *action = dvi__element_action(&own->inner);
-  dvi__charted_path path;
-  dvi__charted_centring(&path);
-  DVI_TRY(dvi__charted_reserve(own->charted, dvi__action_nodes(action)));
-  return dvi__action_centre(action, &(dvi__centring){own->charted, path.place, path.correct, path.derive});
+  dvi__centring centring;
+  DVI_TRY(dvi__charted_centring(own->charted, dvi__action_nodes(action), &centring));
+  return dvi__action_centre(action, &centring);
 }
 
 dvi_status dvi__charted_step_create(dvi__stepper *self)
