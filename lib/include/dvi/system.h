@@ -119,8 +119,8 @@ typedef enum dvi_factor_kind {
   DVI_RN,  /**< R^n: n coordinates */
   DVI_SO3, /**< rotations R: the nine entries, row by row; v is the angular velocity Omega in the body's frame, R' = R Omega^, p = Pi its momentum */
   DVI_SE3, /**< rigid motions: the nine entries of R, then x, the place of the body's origin; v = (Omega, x'), x' in the frame of space */
-  DVI_S2,  /**< directions: a unit vector q; v = q' and its momentum p are three numbers, too, orthogonal to q */
-  DVI_U1   /**< angles: (cos, sin); v is the angular rate */
+  DVI_S2, /**< directions: a unit vector q; v = q' and its momentum p are three numbers, too, orthogonal to q */
+  DVI_U1  /**< angles: (cos, sin); v is the angular rate */
 } dvi_factor_kind;
 
 /** A factor of a configuration space that is not R^n alone: bodies that turn, directions, angles.
@@ -130,10 +130,12 @@ typedef enum dvi_factor_kind {
  *  smooth continuation of V off the manifold (for a body's weight m g (R rho)_3 those of this formula): only what is tangent counts. */
 typedef struct dvi_factor {
   dvi_factor_kind kind;
-  int size;              /**< of R^n: n; of others 0 */
-  double mass;           /**< R^n: of every coordinate; SE(3): of the body; S^2: m l^2; U(1): the moment of inertia; 0: in the system's mass alone */
-  const double *inertia; /**< SO(3), SE(3): [9] the inertia about the body's origin, symmetric; copied. NULL: in the system's mass alone */
-  const double *centre;  /**< SE(3): [3] the centre of mass in the body's frame; NULL: its origin */
+  int size; /**< of R^n: n; of others 0 */
+  double
+      mass; /**< R^n: of every coordinate; SE(3): of the body; S^2: m l^2; U(1): the moment of inertia; 0: in the system's mass alone */
+  const double
+      *inertia; /**< SO(3), SE(3): [9] the inertia about the body's origin, symmetric; copied. NULL: in the system's mass alone */
+  const double *centre; /**< SE(3): [3] the centre of mass in the body's frame; NULL: its origin */
 } dvi_factor;
 
 /** A one-parameter symmetry q -> q + epsilon xi(q); its momentum map is J = p.xi(q). With factors xi is a velocity [nv], as v is (a body turned in space about
@@ -153,8 +155,8 @@ typedef struct dvi_invariant {
 
 /** What a system is made of. Only what is declared exists; all of it is copied (but what `user` points to). */
 typedef struct dvi_system_terms {
-  int dimension;                    /**< n, the number of coordinates, at least 1; even with a one-form; with factors 0: they say it */
-  dvi_mass mass;                    /**< or: */
+  int dimension; /**< n, the number of coordinates, at least 1; even with a one-form; with factors 0: they say it */
+  dvi_mass mass; /**< or: */
   const dvi_lagrangian *lagrangian; /**< or: */
   const dvi_one_form *one_form;     /**< exactly one of mass, lagrangian and one_form */
   const dvi_gauge *gauge;           /**< with a one-form, may be NULL: the system is that of alpha + grad f */
@@ -164,7 +166,7 @@ typedef struct dvi_system_terms {
   int symmetry_count;
   const dvi_invariant *invariants;
   int invariant_count;
-  int autonomous; /**< not 0: no callback depends on t (dvi_system_check tests it), and no rates are given; 0: one may */
+  int autonomous;            /**< not 0: no callback depends on t (dvi_system_check tests it), and no rates are given; 0: one may */
   const dvi_factor *factors; /**< NULL: R^n */
   int factor_count;
 } dvi_system_terms;
@@ -215,8 +217,8 @@ dvi_status dvi_system_momentum(const dvi_system *system, double t, const double 
  *  @retval DVI_NOT_CONVERGED  Newton's method did not settle from any guess */
 dvi_status dvi_system_velocity(const dvi_system *system, double t, const double *q, const double *p, double *v);
 
-/** How far q [nq] is from the configuration space of a system with factors: the largest |R^T R - I| or ||q| - 1|, 1 or more for a reflection; 0
- *  without factors, NaN for NULL. */
+/** How far q [nq] is from the configuration space of a system with factors: the largest distance from a rotation (dvi_so3_distance) or ||q| - 1|; 0
+ *  without factors, NaN for NULL and where a coordinate of a factor is. */
 double dvi_system_distance(const dvi_system *system, const double *q);
 
 /** Put q [nq] on the configuration space: the nearest rotations and unit vectors.

@@ -17,6 +17,7 @@
 #include <dvi/basis.h>
 #include <dvi/quadrature.h>
 
+#include "system/centring.h"
 #include "system/evaluator.h"
 
 typedef struct dvi__action dvi__action;
@@ -27,21 +28,6 @@ typedef struct dvi__action_space {
   dvi_rule rule;
   int nodes;
 } dvi__action_space;
-
-/* Paths in a chart that is centred at their start (system/charted.h). Varying the start moves the chart, and with it the whole path xi(tau) as it is: that
- * is more, or less, than varying q0 in a chart that stays, and makes
- *     p1 = p0 + h sum_j b_j L_q_j + C
- * with a C that depends on the path's end and on the nodes. For paths that start elsewhere in the chart C is 0. */
-typedef struct dvi__centring {
-  void *of;
-  /* Before the Lagrangian's derivatives at the nodes are asked for: where the path starts and ends, [n]. */
-  void (*place)(void *of, const double *q0, const double *q1);
-  /* After its gradients: C [n]. dp: h sum_j b_j L_q_j. */
-  void (*correct)(void *of, int nodes, double h, const double *weight, const double *p0, const double *dp, double *C);
-  /* After its Hessians: dC/dq1 in the order of qq, and what C_qq and C_qv are at the nodes: dC = dq1 + sum_j b_j (h C_qq dq + C_qv dv). */
-  void (*derive)(void *of, int nodes, double h, const double *weight, const double *p0, const double **C_q1, const double **C_qq,
-                 const double **C_qv);
-} dvi__centring;
 
 /* The space's numbers must be valid (nodes >= degree). */
 dvi_status dvi__action_create(const dvi_system *system, const dvi__action_space *space, dvi_counters *counters,

@@ -78,7 +78,8 @@ void dvi__chart_store(const dvi__chart *chart, const double *local, double *stor
 /* The stored velocity at y(xi) of a rate. */
 void dvi__chart_leave_velocity(const dvi__chart *chart, const double *xi, const double *rate, double *stored);
 
-/* How large a number xi may be: half a turn; infinite for a line. */
+/* |xi|, and how large it may be: half a turn; infinite for a line. */
+double dvi__chart_angle(dvi__chart_kind kind, const double *xi);
 double dvi__chart_bound(dvi__chart_kind kind);
 
 #endif

@@ -40,22 +40,31 @@ static dvi_status allocate(dvi__stepper *self, charted_step *own)
   return DVI_OK;
 }
 
+/* Whether a path of degree s in the charts at its start is one in those at its end: s = 1 makes one-parameter subgroups and great circles, and lines and
+ * circles have one chart. */
+static int has_two_ends(const dvi_system *system, const dvi__stepper *inner)
+{
+  int turns = 0;
+  for (int c = 0; c < system->cell_count; c++)
+    turns |= system->cells[c].kind == DVI__ROTATION || system->cells[c].kind == DVI__SPHERE;
+  return !turns || dvi__action_space_of(dvi__element_action(inner)).degree == 1;
+}
+
 /* The inner method spells its keys out. */
 static void take_over(dvi__stepper *self, const dvi__stepper *inner)
 {
   dvi__text rest = {self->settings.rest, sizeof self->settings.rest, 0};
   dvi__text_add(&rest, "%s", strchr(inner->specification, ':') + 1);
   self->order = inner->order;
-  self->symmetric = inner->symmetric;
+  self->symmetric = inner->symmetric && has_two_ends(self->system, inner);
 }
 
 static dvi_status centre_paths(const charted_step *own)
 {
   dvi__action *action = dvi__element_action(&own->inner);
-  dvi__charted_path path;
-  dvi__charted_centring(&path);
-  DVI_TRY(dvi__charted_reserve(own->charted, dvi__action_nodes(action)));
-  return dvi__action_centre(action, &(dvi__centring){own->charted, path.place, path.correct, path.derive});
+  dvi__centring centring;
+  DVI_TRY(dvi__charted_centring(own->charted, dvi__action_nodes(action), &centring));
+  return dvi__action_centre(action, &centring);
 }
 
 dvi_status dvi__charted_step_create(dvi__stepper *self)
@@ -66,8 +75,7 @@ dvi_status dvi__charted_step_create(dvi__stepper *self)
   if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
   dvi__text_add(&text, "galerkin%s%s", self->settings.rest[0] != 0 ? ":" : "", self->settings.rest);
   DVI_TRY(dvi__charted_create(self->system, self->counters, &own->charted));
-  const dvi_status status =
-      dvi__stepper_create(dvi__charted_system(own->charted), specification, self->counters, &own->inner);
+  const dvi_status status = dvi__stepper_create(dvi__charted_system(own->charted), specification, self->counters, &own->inner);
   if (status != DVI_OK) return dvi__fail_in(status, "%s, by the keys of galerkin", self->method->name);
   take_over(self, &own->inner);
   DVI_TRY(centre_paths(own));
@@ -125,8 +133,8 @@ static dvi_status solve(dvi__stepper *self, const dvi__state *state, double h, d
   const size_t nx = (size_t)self->system->nx;
   dvi__charted_centre(own->charted, state->q);
   memset(own->local, 0, 4 * nx * sizeof(double));
-  *local = (dvi__state){state->t,   state->t_carry,      state->density,      own->local, own->local + nx,
-                        own->local + 2 * nx, own->local + 3 * nx};
+  *local = (dvi__state){state->t,        state->t_carry,      state->density,     own->local,
+                        own->local + nx, own->local + 2 * nx, own->local + 3 * nx};
   dvi__charted_enter(own->charted, state->p, local->p);
   own->inner.memory = self->memory;
   const dvi_status status = own->inner.method->step(&own->inner, local, h);
@@ -163,7 +171,7 @@ void dvi__charted_step_path(const dvi__stepper *self, const double *q0, double h
 void dvi__charted_step_explain(const dvi__stepper *self, dvi__text *text)
 {
   const charted_step *own = self->own;
-  dvi__text_add(text, "charts: natural ones, centred at the start of each step; %d coordinates for %d stored numbers\n", self->system->nx,
-                self->system->n);
+  dvi__text_add(text, "charts: natural ones, centred at the start of each step; %d coordinates for %d stored numbers\n",
+                self->system->nx, self->system->n);
   own->inner.method->explain(&own->inner, text);
 }

@@ -5,6 +5,7 @@
  * for everything that knows R^n alone. It belongs to one user, who moves its centre, and has work memory, so it is not shared. */
 #ifndef DVI_SYSTEM_CHARTED_H
 #define DVI_SYSTEM_CHARTED_H
+#include "system/centring.h"
 #include "system/evaluator.h"
 
 typedef struct dvi__charted dvi__charted;
@@ -20,15 +21,8 @@ const dvi_system *dvi__charted_system(const dvi__charted *charted);
 /* Centre the charts at a point [nq]. */
 void dvi__charted_centre(dvi__charted *charted, const double *q);
 
-/* Paths that start at the centre, with `nodes` points in a batch: what action/action.h calls their centring, whose `of` is the charts. Room for it, once. */
-typedef struct dvi__charted_path {
-  void (*place)(void *of, const double *q0, const double *q1);
-  void (*correct)(void *of, int nodes, double h, const double *weight, const double *p0, const double *dp, double *C);
-  void (*derive)(void *of, int nodes, double h, const double *weight, const double *p0, const double **C_q1, const double **C_qq,
-                 const double **C_qv);
-} dvi__charted_path;
-dvi_status dvi__charted_reserve(dvi__charted *charted, int nodes);
-void dvi__charted_centring(dvi__charted_path *path);
+/* Make room for the centring of paths with `nodes` points in a batch, and fill it in. Once. */
+dvi_status dvi__charted_centring(dvi__charted *charted, int nodes, dvi__centring *centring);
 
 /* DVI_OK, or why the last evaluation failed, with its sentence set again: a coordinate beyond its chart's half turn is DVI_STEP_TOO_LARGE. */
 dvi_status dvi__charted_failure(const dvi__charted *charted);

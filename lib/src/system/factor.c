@@ -1,10 +1,12 @@
 #include "system/factor.h"
 
+#include <dvi/group.h>
 #include <math.h>
 #include <string.h>
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "group/vector.h"
 #include "num/finite.h"
 
 /* ---- places ---- */
@@ -253,20 +255,6 @@ dvi_status dvi__factors_mass(const dvi_system_terms *terms, dvi_system *s)
 
 /* ---- points ---- */
 
-/* The largest |R^T R - I|; of a reflection 2 at least. */
-static double rotation_distance(const double *R)
-{
-  double largest = 0;
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) {
-      const double product = R[i] * R[j] + R[3 + i] * R[3 + j] + R[6 + i] * R[6 + j];
-      largest = fmax(largest, fabs(product - (i == j)));
-    }
-  const double determinant =
-      R[0] * (R[4] * R[8] - R[5] * R[7]) - R[1] * (R[3] * R[8] - R[5] * R[6]) + R[2] * (R[3] * R[7] - R[4] * R[6]);
-  return determinant > 0 ? largest : fmax(largest, 2);
-}
-
 static double length(int count, const double *x)
 {
   double sum = 0;
@@ -277,14 +265,18 @@ static double length(int count, const double *x)
 static double distance_of(const dvi__cell *cell, const double *q)
 {
   if (cell->kind == DVI__LINE) return 0;
-  return cell->kind == DVI__ROTATION ? rotation_distance(q + cell->q) : fabs(length(dvi__chart_stored(cell->kind), q + cell->q) - 1);
+  return cell->kind == DVI__ROTATION ? dvi_so3_distance(q + cell->q) : fabs(length(dvi__chart_stored(cell->kind), q + cell->q) - 1);
 }
 
 double dvi_system_distance(const dvi_system *system, const double *q)
 {
   double largest = 0;
   if (system == NULL || q == NULL) return (double)NAN;
-  for (int c = 0; c < system->cell_count; c++) largest = fmax(largest, distance_of(&system->cells[c], q));
+  for (int c = 0; c < system->cell_count; c++) {
+    const double distance = distance_of(&system->cells[c], q);
+    if (isnan(distance)) return distance;
+    largest = fmax(largest, distance);
+  }
   return largest;
 }
 
@@ -297,15 +289,16 @@ dvi_status dvi__factors_check(const dvi_system *s, const double *q, const double
     const dvi__cell *cell = &s->cells[c];
     const double distance = distance_of(cell, q);
     if (!(distance <= near_enough))
-      return dvi__fail(DVI_BAD_ARGUMENT,
-                       "coordinates %d to %d are no %s: off by %.2e; dvi_system_project puts them on the nearest one, if that is meant",
-                       cell->q, cell->q + dvi__chart_stored(cell->kind) - 1,
-                       cell->kind == DVI__ROTATION ? "rotation matrix" : "unit vector", distance);
+      return dvi__fail(
+          DVI_BAD_ARGUMENT,
+          "coordinates %d to %d are no %s: off by %.2e; dvi_system_project puts them on the nearest one, if that is meant", cell->q,
+          cell->q + dvi__chart_stored(cell->kind) - 1, cell->kind == DVI__ROTATION ? "rotation matrix" : "unit vector", distance);
     if (cell->kind != DVI__SPHERE) continue;
     const double *x = q + cell->q, *p = second + cell->v, radial = x[0] * p[0] + x[1] * p[1] + x[2] * p[2];
     if (!(fabs(radial) <= near_enough * length(3, p)))
-      return dvi__fail(DVI_BAD_ARGUMENT, "numbers %d to %d of the velocity or momentum of a direction are not orthogonal to it: off by %.2e",
-                       cell->v, cell->v + 2, fabs(radial));
+      return dvi__fail(DVI_BAD_ARGUMENT,
+                       "numbers %d to %d of the velocity or momentum of a direction are not orthogonal to it: off by %.2e", cell->v,
+                       cell->v + 2, fabs(radial));
   }
   return DVI_OK;
 }
@@ -341,25 +334,30 @@ void dvi__factors_momentum(const dvi_system *s, const double *q, const double *c
 
 /* ---- projection ---- */
 
-/* The polar factor by Newton's iteration, R <- (R + R^-T)/2 (Higham 1986). */
+/* Of finite numbers: so that none of their products is too large. 0: all of them are 0. */
+static int scale(int count, double *x)
+{
+  const double largest = dvi__largest((size_t)count, x);
+  for (int i = 0; i < count && largest > 0; i++) x[i] /= largest;
+  return largest > 0;
+}
+
 static int make_rotation(double *R)
 {
-  for (int iteration = 0; iteration < 60; iteration++) {
-    const double cofactor[] = {R[4] * R[8] - R[5] * R[7], R[5] * R[6] - R[3] * R[8], R[3] * R[7] - R[4] * R[6],
-                               R[2] * R[7] - R[1] * R[8], R[0] * R[8] - R[2] * R[6], R[1] * R[6] - R[0] * R[7],
-                               R[1] * R[5] - R[2] * R[4], R[2] * R[3] - R[0] * R[5], R[0] * R[4] - R[1] * R[3]};
-    const double determinant = R[0] * cofactor[0] + R[1] * cofactor[1] + R[2] * cofactor[2];
-    if (!(determinant > 0)) return 0;
-    for (int i = 0; i < 9; i++) R[i] = 0.5 * (R[i] + cofactor[i] / determinant);
-  }
-  return rotation_distance(R) <= near_enough;
+  double normal[3];
+  if (!scale(9, R)) return 0;
+  dvi__cross(R, R + 3, normal);
+  if (!(dvi__dot(normal, R + 6) > 0)) return 0;
+  dvi_so3_project(R, R);
+  return 1;
 }
 
 static int make_unit(int count, double *x)
 {
+  if (!scale(count, x)) return 0;
   const double size = length(count, x);
   for (int i = 0; i < count; i++) x[i] /= size;
-  return size > 0;
+  return 1;
 }
 
 dvi_status dvi_system_project(const dvi_system *system, double *q)

@@ -9,7 +9,13 @@
 #include "num/pattern.h"
 
 /* What a system declares, and what a method can use: a set of bits. */
-typedef enum dvi__term { DVI__CONSTANT_MASS = 1, DVI__LAGRANGIAN = 2, DVI__ONE_FORM = 4, DVI__POTENTIAL = 8, DVI__FACTORS = 16 } dvi__term;
+typedef enum dvi__term {
+  DVI__CONSTANT_MASS = 1,
+  DVI__LAGRANGIAN = 2,
+  DVI__ONE_FORM = 4,
+  DVI__POTENTIAL = 8,
+  DVI__FACTORS = 16
+} dvi__term;
 
 /* How to difference a missing Hessian block: columns of a group are moved together. */
 typedef struct dvi__groups {
@@ -51,10 +57,10 @@ typedef struct dvi__cell {
 } dvi__cell;
 
 struct dvi_system {
-  int n;             /* stored coordinates */
-  int nv;            /* numbers of a velocity: n without factors */
-  int nx;            /* degrees of freedom */
-  int cell_count;    /* 0: no factors */
+  int n;          /* stored coordinates */
+  int nv;         /* numbers of a velocity: n without factors */
+  int nx;         /* degrees of freedom */
+  int cell_count; /* 0: no factors */
   dvi__cell *cells;
   int autonomous; /* declared so */
   uint64_t hash;  /* of all that is declared, but for what callbacks compute */

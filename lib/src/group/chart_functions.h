@@ -1,0 +1,37 @@
+/* What charts are made of: Stumpff's functions of s = |xi|^2 with their derivatives, and matrices of few numbers. For chart*.c. */
+#ifndef DVI_GROUP_CHART_FUNCTIONS_H
+#define DVI_GROUP_CHART_FUNCTIONS_H
+#include "group/chart.h"
+
+/* of[k][j]: the derivative of order j of c_k in s. */
+typedef struct dvi__functions {
+  double of[9][4];
+} dvi__functions;
+
+/* c_k for all k; derivatives up to an order, of those k for which k + 2 order < 9. */
+void dvi__find_functions(int size, const double *xi, int derivatives, dvi__functions *c);
+
+/* B x: from the tangent plane's coordinates. */
+void dvi__chart_lift(const dvi__chart *chart, const double *x, double *out);
+
+static inline double dvi__inner(int n, const double *a, const double *b)
+{
+  double sum = 0;
+  for (int i = 0; i < n; i++) sum += a[i] * b[i];
+  return sum;
+}
+
+/* H += factor (a b^T + b a^T). */
+static inline void dvi__add_outer(int n, double factor, const double *a, const double *b, double *H)
+{
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < n; j++) H[i * n + j] += factor * (a[i] * b[j] + b[i] * a[j]);
+}
+
+/* H += factor I. */
+static inline void dvi__add_identity(int n, double factor, double *H)
+{
+  for (int i = 0; i < n; i++) H[i * n + i] += factor;
+}
+
+#endif

@@ -1,0 +1,121 @@
+/* What turning a rotation or a direction in space does, and its angular momentum. */
+#include <dvi/group.h>
+#include <string.h>
+
+#include "group/chart_functions.h"
+#include "group/vector.h"
+
+/* Vectors in a stored point: the columns of a rotation, or the direction itself. */
+static int vectors_of(dvi__chart_kind kind)
+{
+  return kind == DVI__ROTATION ? 3 : 1;
+}
+
+static void get_vector(const double *y, int vectors, int j, double *x)
+{
+  for (int i = 0; i < 3; i++) x[i] = y[i * vectors + j];
+}
+
+void dvi__chart_turns(dvi__chart_kind kind, const double *y, double *turns)
+{
+  const int vectors = vectors_of(kind);
+  for (int j = 0; j < vectors; j++)
+    for (int k = 0; k < 3; k++) {
+      double x[3], e[3] = {0}, moved[3];
+      e[k] = 1;
+      get_vector(y, vectors, j, x);
+      dvi__cross(e, x, moved);
+      for (int i = 0; i < 3; i++) turns[3 * (i * vectors + j) + k] = moved[i];
+    }
+}
+
+void dvi__chart_add_moment(dvi__chart_kind kind, const double *y, const double *a, double *moment)
+{
+  const int vectors = vectors_of(kind);
+  for (int j = 0; j < vectors; j++) {
+    double x[3], f[3], product[3];
+    get_vector(y, vectors, j, x);
+    get_vector(a, vectors, j, f);
+    dvi__cross(x, f, product);
+    for (int i = 0; i < 3; i++) moment[i] += product[i];
+  }
+}
+
+void dvi__chart_angular_momentum(const dvi__chart *chart, const double *p, double *angular)
+{
+  double P[3];
+  if (chart->kind == DVI__ROTATION) {
+    memcpy(angular, p, 3 * sizeof *p);
+    return;
+  }
+  dvi__chart_lift(chart, p, P);
+  dvi__cross(chart->y0, P, angular);
+}
+
+void dvi__chart_add_impulse(const dvi__chart *chart, const double *impulse, double *angular)
+{
+  const double *R = chart->y0;
+  for (int j = 0; j < 3; j++)
+    angular[j] += chart->kind == DVI__ROTATION ? R[j] * impulse[0] + R[3 + j] * impulse[1] + R[6 + j] * impulse[2] : impulse[j];
+}
+
+/* Of a rotation R0 exp(xi): turning by w in the centre's frame is d xi with dexp_xi d xi = w, so p = dexp_xi^T angular = dexp_{-xi} angular. Of a direction:
+ * p_j = T_j.(angular x y). */
+void dvi__chart_momentum(const dvi__chart *chart, const double *xi, const double *angular, double *p)
+{
+  dvi__functions c;
+  if (chart->kind == DVI__ROTATION) {
+    dvi__find_functions(3, xi, 0, &c);
+    dvi__about(xi, -c.of[2][0], c.of[3][0], angular, p);
+    return;
+  }
+  const double rest[2] = {0};
+  double y[3], P[3], unused[2];
+  dvi__chart_point(chart, xi, NULL, y, NULL);
+  dvi__cross(angular, y, P);
+  dvi__chart_gradient(chart, xi, rest, P, P, unused, p);
+}
+
+void dvi__chart_stored_momentum(const dvi__chart *chart, const double *xi, const double *angular, double *stored)
+{
+  dvi__functions c;
+  double y[3];
+  if (chart->kind == DVI__ROTATION) {
+    dvi__find_functions(3, xi, 0, &c);
+    dvi__about(xi, -c.of[1][0], c.of[2][0], angular, stored);
+    return;
+  }
+  dvi__chart_point(chart, xi, NULL, y, NULL);
+  dvi__cross(angular, y, stored);
+}
+
+void dvi__chart_moments(const dvi__chart *chart, const double *xi, double *W)
+{
+  for (int k = 0; k < 3; k++) {
+    double e[3] = {0}, impulse[3] = {0}, column[3];
+    e[k] = 1;
+    dvi__chart_add_impulse(chart, e, impulse);
+    dvi__chart_momentum(chart, xi, impulse, column);
+    for (int j = 0; j < dvi__chart_size(chart->kind); j++) W[3 * j + k] = column[j];
+  }
+}
+
+void dvi__chart_momentum_derivative(const dvi__chart *chart, const double *xi, const double *angular, double *derivative)
+{
+  if (chart->kind == DVI__ROTATION) {
+    dvi_so3_velocity_derivative(xi, angular, derivative);
+    return;
+  }
+  const double rest[2] = {0}, none[3] = {0};
+  double y[3], T[6], S[6], covector[3], unused[4];
+  dvi__chart_point(chart, xi, NULL, y, NULL);
+  dvi__chart_tangents(chart, xi, rest, T, S);
+  dvi__cross(angular, y, covector);
+  dvi__chart_curvature(chart, xi, rest, covector, none, derivative, unused);
+  for (int i = 0; i < 2; i++)
+    for (int j = 0; j < 2; j++) {
+      double turned[3];
+      dvi__cross(angular, (const double[]){T[j], T[2 + j], T[4 + j]}, turned);
+      for (int k = 0; k < 3; k++) derivative[2 * i + j] += turned[k] * T[2 * k + i];
+    }
+}
