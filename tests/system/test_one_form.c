@@ -185,10 +185,40 @@ START_TEST(a_start_off_the_constraint_is_refused)
   dvi_integrator *integrator = made_integrator(of->system, "vprk");
   double p[2] = {of->p[0], of->p[1] + 1e-9}, q_end[2] = {of->q[0], of->q[1]};
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, of->q, p), DVI_BAD_ARGUMENT);
-  check_words("start with p = alpha(q)");
+  check_words("1e-09 away; start with p = alpha(q)");
   ck_assert_int_eq(dvi_reference_solve(of->system, 0, 1, q_end, p, NULL, NULL), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, of->q, of->v), DVI_OK);
   ck_assert_mem_eq(dvi_integrator_p(integrator), of->p, sizeof p);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&of);
+}
+END_TEST
+
+START_TEST(a_start_off_the_constraint_is_projected_on_request)
+{
+  problem *of = made_problem("massless-particle", NULL);
+  dvi_integrator *integrator = made_integrator(of->system, "vprk");
+  const double p[2] = {of->p[0] + 3, of->p[1] - 2}, not_finite[2] = {(double)NAN, 0};
+  const dvi_start_options refused = {0}, projected = {.project = 1};
+  ck_assert_int_eq(dvi_integrator_start_with(integrator, 0, of->q, p, &refused), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_integrator_start_with(integrator, 0, of->q, p, NULL), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_integrator_start_with(integrator, 0, of->q, not_finite, &projected), DVI_NOT_FINITE);
+  ck_assert_int_eq(dvi_integrator_start_with(integrator, 0, of->q, p, &projected), DVI_OK);
+  ck_assert_mem_eq(dvi_integrator_q(integrator), of->q, sizeof p);
+  ck_assert_mem_eq(dvi_integrator_p(integrator), of->p, sizeof p);
+  ck_assert_int_eq(dvi_integrator_step(integrator, 0.1), DVI_OK);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&of);
+}
+END_TEST
+
+START_TEST(without_a_one_form_a_projection_changes_nothing)
+{
+  problem *of = made_problem("kepler", NULL);
+  dvi_integrator *integrator = made_integrator(of->system, "verlet");
+  const double p[2] = {0.25, -1};
+  ck_assert_int_eq(dvi_integrator_start_with(integrator, 0, of->q, p, &(dvi_start_options){.project = 1}), DVI_OK);
+  ck_assert_mem_eq(dvi_integrator_p(integrator), p, sizeof p);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&of);
 }
@@ -218,6 +248,8 @@ int main(void)
   tcase_add_test(tests, bad_declarations_are_refused);
   tcase_add_test(tests, methods_for_one_kind_of_system_refuse_the_other);
   tcase_add_test(tests, a_start_off_the_constraint_is_refused);
+  tcase_add_test(tests, a_start_off_the_constraint_is_projected_on_request);
+  tcase_add_test(tests, without_a_one_form_a_projection_changes_nothing);
   tcase_add_test(tests, a_start_that_is_rounded_where_the_one_form_vanishes_is_not_off_the_constraint);
   return run_tests("system/one_form", tests);
 }

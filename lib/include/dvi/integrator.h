@@ -47,6 +47,14 @@ typedef struct dvi_energy_balance {
   double given_jumps;  /**< the sum of the jumps of those */
 } dvi_energy_balance;
 
+/** Options of a start; zero means default. */
+typedef struct dvi_start_options {
+  /** What becomes of a p that is not alpha(q), in a system with a one-form. 0: it is refused. Else it is projected, by the simplest way onto p = alpha(q)
+   *  that there is: q stays, and p becomes alpha(q). The motion is that of q then, whatever p was; p says nothing that q does not. Without a one-form each
+   *  p is a state, and nothing changes. */
+  int project;
+} dvi_start_options;
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -81,12 +89,20 @@ void dvi_integrator_destroy(dvi_integrator **integrator);
  *
  *  A general Lagrangian's velocity is sought by Newton's method from v = 0 and from velocities along p. Where several velocities have one
  *  momentum, say which one is meant: dvi_integrator_start_velocity.
+ *  With a one-form p must be alpha(q) up to rounding; dvi_integrator_start_with can project another one.
  *  On any failure the old state stays.
+ *  @retval DVI_BAD_ARGUMENT   a pointer is NULL, or p is not alpha(q); the error sentence says how far it is off
  *  @retval DVI_NOT_FINITE     an argument, the energy or the forces are not finite there
  *  @retval DVI_SINGULAR       the velocity Hessian is singular wherever it was tried: a degenerate Lagrangian
  *  @retval DVI_NOT_CONVERGED  no velocity was found for p
  *  @retval DVI_CALLBACK_RETRY, DVI_CALLBACK_FAILED  a callback failed there */
 dvi_status dvi_integrator_start(dvi_integrator *integrator, double t, const double *q, const double *p);
+
+/** The same by options; NULL: the default ones.
+ *
+ *  @retval DVI_BAD_ARGUMENT  with a one-form p is not alpha(q), and is not to be projected; the error sentence says how far it is off */
+dvi_status dvi_integrator_start_with(dvi_integrator *integrator, double t, const double *q, const double *p,
+                                     const dvi_start_options *options);
 
 /** The same in state q [nq], v [nv], with p = L_v(t,q,v).
  *

@@ -108,16 +108,31 @@ static dvi_status verdict(const dvi_integrator *I, double t, dvi_status status)
   return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "%s: cannot start at t = %.6g", I->stepper.method->name, t);
 }
 
-dvi_status dvi_integrator_start(dvi_integrator *I, double t, const double *q, const double *p)
+/* *p as it was, on the constraint, or alpha(q) in the integrator's own memory; v [n] is zero. */
+static dvi_status constrain(dvi_integrator *I, double t, const double *q, const double *v, int project, const double **p)
+{
+  if (!(I->system->terms & DVI__ONE_FORM)) return DVI_OK;
+  if (!project) return dvi__form_constraint(I->evaluator, q, *p);
+  *p = I->next.p;
+  return dvi__lagrangian_gradient(I->evaluator, 1, &t, q, v, NULL, I->next.p);
+}
+
+dvi_status dvi_integrator_start_with(dvi_integrator *I, double t, const double *q, const double *p,
+                                     const dvi_start_options *options)
 {
   if (I == NULL || q == NULL || p == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "start: an argument is NULL");
   double *v = I->next.q_carry;
   memset(v, 0, (size_t)I->system->n * sizeof(double));
   dvi_status status = check_start(I, t, q, p, 'p');
-  if (status == DVI_OK && I->system->terms & DVI__ONE_FORM) status = dvi__form_constraint(I->evaluator, q, p);
+  if (status == DVI_OK) status = constrain(I, t, q, v, options != NULL && options->project, &p);
   if (status == DVI_OK) status = dvi__legendre_inverse(I->evaluator, t, q, p, v);
   if (status == DVI_OK) status = start(I, t, q, v, p);
   return verdict(I, t, status);
+}
+
+dvi_status dvi_integrator_start(dvi_integrator *I, double t, const double *q, const double *p)
+{
+  return dvi_integrator_start_with(I, t, q, p, NULL);
 }
 
 dvi_status dvi_integrator_start_velocity(dvi_integrator *I, double t, const double *q, const double *v)

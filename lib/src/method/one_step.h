@@ -18,7 +18,7 @@ typedef struct dvi__step_kind {
   dvi_status (*jacobian)(void *of, const double *x, double *values);
   int (*row_scale)(void *of, double *scale);
   void (*straight)(const void *of, const double *v, double *x);
-  void (*continued)(const void *of, double ratio, const double *last, double *x);
+  void (*continued)(void *of, double ratio, const double *last, double *x);
   const dvi__pattern *(*pattern)(const void *of);
   dvi__evaluator *(*evaluator)(const void *of);
   void (*destroy)(void *of);
@@ -72,7 +72,7 @@ void dvi__one_step_explain(const dvi__stepper *self, dvi__text *text);
   {                                                                                                       \
     dvi__##foo##_straight(of, v, x);                                                                      \
   }                                                                                                       \
-  static void continued_of(const void *of, double ratio, const double *last, double *x)                   \
+  static void continued_of(void *of, double ratio, const double *last, double *x)                         \
   {                                                                                                       \
     dvi__##foo##_continue(of, ratio, last, x);                                                            \
   }                                                                                                       \

@@ -78,6 +78,64 @@ dvi_status dvi__form_scale(dvi__evaluator *e, const double *q, double *scale)
   return DVI_OK;
 }
 
+/* S by columns; returns the largest gradient. */
+static double symmetric_part(const dvi__pattern *qv, const double *alpha_q, size_t n, double *S)
+{
+  double largest = 0;
+  memset(S, 0, n * n * sizeof *S);
+  for (size_t j = 0; j < n; j++)
+    for (int k = qv->start[j]; k < qv->start[j + 1]; k++) {
+      const size_t i = (size_t)qv->row[k];
+      S[j * n + i] += 0.5 * alpha_q[k];
+      S[i * n + j] += 0.5 * alpha_q[k];
+      largest = fmax(largest, fabs(alpha_q[k]));
+    }
+  return largest;
+}
+
+/* A c for which S + c is definite (Gershgorin). */
+static double lift(size_t n, const double *S)
+{
+  double least = 0;
+  for (size_t i = 0; i < n; i++) {
+    double row = -S[i * n + i];
+    for (size_t j = 0; j < n; j++) row += j != i ? fabs(S[j * n + i]) : 0;
+    least = fmax(least, row);
+  }
+  return least;
+}
+
+/* By Cholesky's factors of S or -S, whose pivots exceed the floor; S is spoilt. */
+static int is_definite(size_t n, double *S, double floor)
+{
+  const double sign = S[0] < 0 ? -1 : 1;
+  for (size_t k = 0; k < n; k++) {
+    const double pivot = sign * S[k * n + k];
+    if (!(pivot > floor)) return 0;
+    for (size_t j = k + 1; j < n; j++)
+      for (size_t i = j; i < n; i++) S[j * n + i] -= sign * S[k * n + j] * S[k * n + i] / pivot;
+  }
+  return 1;
+}
+
+dvi_status dvi__form_definite(dvi__evaluator *e, const double *q, double *S)
+{
+  const dvi__lagrangian_term *l = e->system->lagrangian;
+  const size_t n = (size_t)e->system->n;
+  double *alpha_q = e->hessian[1];
+  DVI_TRY(dvi__form_gradients(l, q, alpha_q, e->scratch.result[0]));
+  const double floor = 1e-12 * symmetric_part(&l->qv, alpha_q, n, S), c = lift(n, S);
+  double largest = 0;
+  for (size_t k = 0; k < n * n; k++) largest = fmax(largest, fabs(S[k]));
+  if (largest <= floor || is_definite(n, S, floor)) return DVI_OK;
+  return dvi__fail(
+      DVI_SINGULAR,
+      "the symmetric part of the one-form's derivatives is not definite here, and what is off p = alpha(q) grows from step "
+      "to step; use the gauge alpha + grad f, f = c |q|^2/2 with c well above %.2g, or a quadrature of higher order, "
+      "such as gauss",
+      c);
+}
+
 dvi_status dvi__form_distance(dvi__evaluator *e, const double *q, const double *p, double *distance)
 {
   double *alpha = e->point[2], largest = 0;
@@ -111,8 +169,9 @@ dvi_status dvi__form_constraint(dvi__evaluator *e, const double *q, const double
   for (int i = 0; i < e->system->n; i++)
     if (!(fabs(p[i] - alpha[i]) <= on_constraint * size))
       return dvi__fail(DVI_BAD_ARGUMENT,
-                       "p[%d] is %.17g, but the one-form has alpha = %.17g there; start with p = alpha(q) (dvi_system_momentum)", i,
-                       p[i], alpha[i]);
+                       "p[%d] is %.17g, but the one-form has alpha = %.17g there, %.2g away; start with p = alpha(q) "
+                       "(dvi_system_momentum), or let it be projected (dvi_start_options)",
+                       i, p[i], alpha[i], fabs(p[i] - alpha[i]));
   return DVI_OK;
 }
 
