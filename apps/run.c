@@ -351,6 +351,19 @@ static int check_settings(const char *name, const words *settings)
   return usage_error("run: --set %s places the start, which --resume replaces; leave out one of them", setting);
 }
 
+/* The line makes sense: everything else. */
+static int run_problem(run_request *request, const char *name)
+{
+  problem *scene;
+  signals_end(true, ended_before);
+  int code = open_problem(name, &request->settings, &scene);
+  if (code != DONE) return code;
+  code = place_momenta(request, scene);
+  if (code == DONE) code = run(request, scene);
+  problem_destroy(&scene);
+  return code;
+}
+
 static const char *const details[] = {
     "Columns: t, the coordinates, their momenta (p_ and the coordinate's name), energy, the other invariants;\n"
     "methods that choose their steps add h, the length of the step that led to the row, with a one-form there is the\n"
@@ -437,13 +450,5 @@ int run_command(int argc, char **argv)
   if (!options_parse(&command, argc, argv, &name, &code)) return code;
   code = check_request(&r);
   if (code == DONE && r.resume != NULL) code = check_settings(name, &r.settings);
-  if (code != DONE) return code;
-  problem *scene;
-  signals_end(true, ended_before);
-  code = open_problem(name, &r.settings, &scene);
-  if (code != DONE) return code;
-  code = place_momenta(&r, scene);
-  if (code == DONE) code = run(&r, scene);
-  problem_destroy(&scene);
-  return code;
+  return code == DONE ? run_problem(&r, name) : code;
 }

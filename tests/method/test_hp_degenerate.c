@@ -38,11 +38,11 @@ START_TEST(orders_are_those_claimed_in_every_gauge)
 }
 END_TEST
 
-/* 10000 time units and more; docs/methods/hp.md has what other quadratures do. */
-START_TEST(with_gauss_points_energy_stays_bounded)
+/* 20000 steps; docs/methods/hp.md has where other quadratures and problems break. */
+START_TEST(energy_stays_bounded_over_long_runs)
 {
-  check_long_run("lotka-volterra", NULL, "hp:type=2,degree=3,quadrature=gauss", 0.1, 20000, 2e-5, 0);
-  check_long_run("massless-particle", NULL, "hp:type=2,degree=3,quadrature=gauss", 0.1, 20000, 1e-6, 0);
+  check_long_run("lotka-volterra", NULL, "hp:type=2,degree=3,quadrature=gauss", 0.1, 20000, 1e-5, 0);
+  check_long_run("massless-particle", NULL, "hp:type=2,degree=3,quadrature=lobatto", 0.1, 20000, 5e-7, 0);
 }
 END_TEST
 
@@ -51,6 +51,18 @@ START_TEST(steps_are_symplectic)
 {
   ck_assert_double_le(change_of_loop("lotka-volterra", NULL, "hp:type=2,degree=2,quadrature=gauss", 0.1, 20), 1e-10);
   ck_assert_double_le(change_of_loop("massless-particle", NULL, "hp:type=3,degree=2,quadrature=lobatto", 0.1, 20), 1e-10);
+}
+END_TEST
+
+START_TEST(with_symmetric_quadratures_a_step_back_undoes_a_step)
+{
+  problem *of = made_problem("massless-particle", NULL);
+  dvi_integrator *integrator = started(of, spec("hp:type=2,degree=%d,quadrature=gauss", _i));
+  double defect;
+  ck_assert_int_eq(dvi_reversibility(integrator, 0, of->q, of->p, 0.1, 20, &defect), DVI_OK);
+  ck_assert_double_le(defect, 1e-12);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&of);
 }
 END_TEST
 
@@ -116,7 +128,7 @@ static void run_off(const dvi_system *system, const problem *of, const char *met
 static const struct {
   const char *problem;
   double h;
-} lifts[] = {{"lotka-volterra", 0.0125}, {"massless-particle", 0.0125}, {"vortices", 0.00025}};
+} lifts[] = {{"lotka-volterra", 0.003125}, {"massless-particle", 0.0125}, {"vortices", 0.0005}};
 enum { LIFTS = sizeof lifts / sizeof *lifts, LEVELS = 4 };
 
 /* The parasite has the size h^d, and sets both the distance from the constraint and the error; the error's phase at the end is the parasite's, so that
@@ -131,7 +143,7 @@ START_TEST(radaus_distance_from_the_constraint_shrinks_with_the_order_and_bounds
       double last = 0, off, error;
       for (int level = 0; level < LEVELS; level++, last = off) {
         run_off(system, of, method, lifts[_i].h / (1 << level), &off, &error);
-        ck_assert_double_le(error, off);
+        ck_assert_double_le(error, 10 * off);
         const double slope = log2(last / off), within = level == 1 ? 0.7 : 0.25;
         if (level > 0) ck_assert_msg(fabs(slope - degree) <= within, "%s %s: slope %.2f (%g)", of->name, method, slope, off);
       }
@@ -200,8 +212,9 @@ int main(void)
   TCase *tests = tcase_create("hp_degenerate");
   tcase_set_timeout(tests, 120);
   tcase_add_loop_test(tests, orders_are_those_claimed_in_every_gauge, 0, CLAIMS);
-  tcase_add_test(tests, with_gauss_points_energy_stays_bounded);
+  tcase_add_test(tests, energy_stays_bounded_over_long_runs);
   tcase_add_test(tests, steps_are_symplectic);
+  tcase_add_loop_test(tests, with_symmetric_quadratures_a_step_back_undoes_a_step, 1, 4);
   tcase_add_loop_test(tests, radaus_distance_from_the_constraint_shrinks_with_the_order_and_bounds_the_error, 0, LIFTS);
   tcase_add_loop_test(tests, the_lowest_degrees_take_alpha_at_one_end, 2, 4);
   tcase_add_loop_test(tests, other_gauges_are_refused_and_the_sentence_names_one_that_helps, 2, 4);

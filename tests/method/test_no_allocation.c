@@ -51,7 +51,7 @@ static const char *const methods[] = {
     "vprk:nodes=3",
     "dvi-trapezoidal",
     "dvrk:nodes=3",
-    "hp:type=3",
+    "hp:type=3,quadrature=gauss",
     "dg:stiffness=1",
     "dg-phase",
 };
