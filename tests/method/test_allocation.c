@@ -45,7 +45,7 @@ static const struct {
     {"massless-particle", "gauge=singular", "dvi-trapezoidal"},
     {"massless-particle", "gauge=singular", "dvrk:nodes=3"},
     {"double-pendulum", NULL, "hp:type=2"},
-    {"vortices", NULL, "hp:type=2"},
+    {"vortices-linear", NULL, "hp:type=2"},
     {"kepler", NULL, "hp:type=4,degree=3"},
 };
 enum { PLACES = sizeof places / sizeof *places };

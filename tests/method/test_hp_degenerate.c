@@ -196,6 +196,100 @@ START_TEST(other_gauges_are_refused_and_the_sentence_names_one_that_helps)
 }
 END_TEST
 
+/* ---- the parasite ---- */
+
+/* alpha = (S, W; -W, 2 S) q with S = 0.3, W = -1/2: the symmetric part is definite. */
+static int form(const double *q, double *alpha, void *user)
+{
+  (void)user;
+  alpha[0] = 0.3 * q[0] - 0.5 * q[1];
+  alpha[1] = 0.5 * q[0] + 0.6 * q[1];
+  return 0;
+}
+
+static int form_gradient(const double *q, double *alpha_q, void *user)
+{
+  static const double constant[] = {0.3, -0.5, 0.5, 0.6};
+  (void)q, (void)user;
+  memcpy(alpha_q, constant, sizeof constant);
+  return 0;
+}
+
+static int energy(double t, const double *q, double *H, void *user)
+{
+  (void)t, (void)user;
+  *H = cosh(q[0]) + 0.5 * cosh(1.5 * q[1]);
+  return 0;
+}
+
+static int energy_gradient(double t, const double *q, double *H_q, void *user)
+{
+  (void)t, (void)user;
+  H_q[0] = sinh(q[0]);
+  H_q[1] = 0.75 * sinh(1.5 * q[1]);
+  return 0;
+}
+
+enum { CHANGES = 4 };
+
+/* The changes of p - alpha(q) from step to step, which the parasite makes alone, but for O(h). */
+static void find_changes(const char *method, double (*change)[2])
+{
+  const dvi_one_form linear = {.value = form, .gradient = form_gradient};
+  const dvi_potential H = {.value = energy, .gradient = energy_gradient};
+  const dvi_system_terms terms = {.dimension = 2, .one_form = &linear, .potentials = &H, .potential_count = 1, .autonomous = 1};
+  const double q[2] = {1, 0.5}, v[2] = {0, 0};
+  double alpha[2], off[2] = {0, 0};
+  dvi_system *system = NULL;
+  ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
+  dvi_integrator *integrator = made_integrator(system, method);
+  ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, q, v), DVI_OK);
+  for (int k = 0; k < CHANGES; k++) {
+    advance(integrator, 0.005, 1);
+    (void)form(dvi_integrator_q(integrator), alpha, NULL);
+    for (int i = 0; i < 2; i++) {
+      const double now = dvi_integrator_p(integrator)[i] - alpha[i];
+      change[k][i] = now - off[i];
+      off[i] = now;
+    }
+  }
+  dvi_integrator_destroy(&integrator);
+  dvi_system_destroy(&system);
+}
+
+/* (-1)^(d-1) times the eigenvalues of Dalpha^-T Dalpha: their sum and product by Cayley and Hamilton, from three changes that follow each other. The trace
+ * of Dalpha^-T Dalpha is 2 (ad - b^2/2 - c^2/2)/(ad - bc). */
+START_TEST(the_parasites_multipliers_are_those_of_the_one_form_with_radaus_rules)
+{
+  const double expected = (_i % 2 == 1 ? 1 : -1) * 2 * (0.18 - 0.25) / (0.18 + 0.25);
+  for (int type = 2; type <= 3; type++) {
+    double D[CHANGES][2];
+    find_changes(spec("hp:type=%d,degree=%d", type, _i), D);
+    const double det = D[1][1] * D[2][0] - D[1][0] * D[2][1], sum = (D[1][1] * D[3][0] - D[1][0] * D[3][1]) / det,
+                 product = (D[3][0] * D[2][1] - D[3][1] * D[2][0]) / det;
+    ck_assert_double_eq_tol(sum, expected, 0.05);
+    ck_assert_double_eq_tol(product, 1, 0.05);
+  }
+}
+END_TEST
+
+START_TEST(with_lobattos_points_it_is_one_or_minus_one)
+{
+  double D[CHANGES][2];
+  find_changes(spec("hp:type=2,degree=%d,quadrature=lobatto", _i), D);
+  for (int i = 0; i < 2; i++) ck_assert_double_eq_tol(D[2][i] / D[1][i], _i % 2 == 1 ? -1 : 1, 0.1);
+}
+END_TEST
+
+/* What is left are roundings. */
+START_TEST(with_gauss_points_there_is_none_where_alpha_is_linear)
+{
+  double D[CHANGES][2];
+  find_changes(spec("hp:type=2,degree=%d,quadrature=gauss", _i), D);
+  for (int k = 0; k < CHANGES; k++) ck_assert_double_le(magnitude(2, D[k]), 5e-15);
+}
+END_TEST
+
 START_TEST(coarse_quadratures_are_refused)
 {
   problem *of = made_problem("lotka-volterra", NULL);
@@ -218,6 +312,9 @@ int main(void)
   tcase_add_loop_test(tests, radaus_distance_from_the_constraint_shrinks_with_the_order_and_bounds_the_error, 0, LIFTS);
   tcase_add_loop_test(tests, the_lowest_degrees_take_alpha_at_one_end, 2, 4);
   tcase_add_loop_test(tests, other_gauges_are_refused_and_the_sentence_names_one_that_helps, 2, 4);
+  tcase_add_loop_test(tests, the_parasites_multipliers_are_those_of_the_one_form_with_radaus_rules, 1, 4);
+  tcase_add_loop_test(tests, with_lobattos_points_it_is_one_or_minus_one, 1, 3);
+  tcase_add_loop_test(tests, with_gauss_points_there_is_none_where_alpha_is_linear, 1, 4);
   tcase_add_test(tests, coarse_quadratures_are_refused);
   return run_tests("method/hp_degenerate", tests);
 }

@@ -10,8 +10,8 @@
  * Lobatto IIIB for q, IIIA for p, or Gauss (action/partitioned.h): v has a value of its own at every point.
  *
  * For degenerate Lagrangians alpha(q).v - H(q), of types 2 and 3, the same rows hold; p is carried, and off alpha(q) by O(h^d). That distance is a second
- * solution beside the motion's, the parasite. A quadrature of order 2d or more gives it the multiplier (-1)^d in every gauge; Radau's, of order 2d-1, that
- * of Dalpha^-T Dalpha for d = 1, on the unit circle if the symmetric part of Dalpha is definite (x.Dalpha x = mu x.Dalpha^T x), else mostly not.
+ * solution beside the motion's, the parasite. A quadrature of order 2d or more gives it the multiplier (-1)^d in every gauge; Radau's, of order 2d-1,
+ * (-1)^(d-1) times those of Dalpha^-T Dalpha: on the unit circle if the symmetric part of Dalpha is definite (x.Dalpha x = mu x.Dalpha^T x), else mostly not.
  * Source: Leok and Ohsawa 2011; Marsden and West 2001, sec. 2.6 (the pairs). The parasite is ours. */
 #include "core/status.h"
 #include "method/carried_step.h"
