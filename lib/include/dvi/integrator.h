@@ -104,7 +104,8 @@ dvi_status dvi_integrator_start_velocity(dvi_integrator *integrator, double t, c
  *  @retval DVI_BAD_OPTION      sem: a first step h outside of hmin and hmax
  *  @retval DVI_BAD_STATE       before dvi_integrator_start
  *  @retval DVI_NOT_CONVERGED   the step's equations were not solved, even by KINSOL with line search; the error sentence names
- *                              step, time, iterations and residual
+ *                              step, time, iterations and residual. Of a one-form in up to 16 dimensions also: the step leads over a point
+ *                              where the two-form is singular, beyond which no trajectory goes on
  *  @retval DVI_NOT_FINITE      NaN or Inf came out of a callback or the step
  *  @retval DVI_JUMP            a method with jumps ends the run because they have grown (its key `alarm`)
  *  @retval DVI_CALLBACK_RETRY  a callback returned a positive number

@@ -243,6 +243,7 @@ static void unpack(dvi_integrator *I, const unsigned char *file)
   I->last.t_carry = head.last_t_carry;
   I->last_h = head.last_h;
   I->now.density = head.density;
+  I->now.side = 0;
   if (I->pace != NULL) dvi__pace_set_energy(I->pace, head.energy);
   I->counters.steps = (long)head.steps;
   const unsigned char *at = file + sizeof head;
