@@ -201,3 +201,21 @@ void dvi__spell_out(const dvi__method *method, const dvi__settings *settings, dv
   if (settings->listed > 0) dvi__text_add(text, ",%s=%s", method->list, settings->list_text);
   if (settings->rest[0] != 0) dvi__text_add(text, ",%s", settings->rest);
 }
+
+static dvi_status spell_steps(const char *specification, dvi__text *text)
+{
+  const dvi__method *method;
+  dvi__settings settings;
+  DVI_TRY(dvi__parse(specification, &method, &settings));
+  for (int k = 0; k < dvi__key_count(method); k++)
+    if (method->keys[k].least == DVI__SAID) settings.value[k] = method->keys[k].left_out;
+  dvi__spell_out(method, &settings, text);
+  return DVI_OK;
+}
+
+int dvi__same_steps(const char *one, const char *other)
+{
+  char spelled[2][DVI__SPECIFICATION_SIZE] = {"", ""};
+  return spell_steps(one, &(dvi__text){spelled[0], DVI__SPECIFICATION_SIZE, 0}) == DVI_OK &&
+         spell_steps(other, &(dvi__text){spelled[1], DVI__SPECIFICATION_SIZE, 0}) == DVI_OK && strcmp(spelled[0], spelled[1]) == 0;
+}
