@@ -83,10 +83,13 @@ static dvi_status parse_list(const dvi__method *method, piece value, dvi__settin
   for (const char *at = value.text;; at++) {
     const int length = plain_decimal(at);
     if (length == 0 || length > LONGEST_DECIMAL || (at + length != end && at[length] != ':'))
-      return dvi__fail(DVI_BAD_OPTION, "%s: %s=%.*s is not a list of numbers in plain digits, such as 2 or 1:0.5", method->name,
-                       method->list, value.length, value.text);
+      return dvi__fail(DVI_BAD_OPTION,
+                       "%s: %s=%.*s is not a list of numbers in plain digits, such as 2 or 1:0.5; positive ones of at most %d "
+                       "characters are possible, without sign, exponent, or zeros at the ends",
+                       method->name, method->list, value.length, value.text, LONGEST_DECIMAL);
     if (settings->listed == DVI__LIST_MOST)
-      return dvi__fail(DVI_BAD_OPTION, "%s: %s has more than %d numbers", method->name, method->list, DVI__LIST_MOST);
+      return dvi__fail(DVI_BAD_OPTION, "%s: %s has more than %d numbers; 1 to %d are possible", method->name, method->list,
+                       DVI__LIST_MOST, DVI__LIST_MOST);
     settings->list[settings->listed++] = strtod(at, NULL);
     at += length;
     if (at == end) break;
