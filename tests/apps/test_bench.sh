@@ -100,6 +100,11 @@ says out 'two runs of galerkin, .* (IDA, of error [0-9.]*e-[01][0-9], is [0-9.]*
 grep -q 'not to be trusted' out && fail 'the runs can judge 1e-9'
 expect 0 'IDA is good enough' bench double-pendulum --t-end 5 --method galerkin:degree=8 --levels 1 --rounds 1 --at 1e-3
 says out 'judge at t = 5: IDA, run at two tolerances, error' 'who stays'
+# Steps of 0.4 are solved or not by roundoff: a level that fails from a start disturbed in its last place is too rough, whatever the machine.
+for t in 4.58 4.86 4.88 5.12 5.24 5.44; do
+  expect 0 "levels at the edge of what can be solved, t-end $t" bench double-pendulum --t-end $t --method galerkin:degree=8 --levels 1 --rounds 1 --at 1e-3
+  grep -q '^ *h=' out || fail "a level for t-end $t"
+done
 # Degree 16 is not judged by itself alone: the other run's distance is always left.
 expect 0 'degree 16' bench pendulum --t-end 20 --method galerkin:degree=16 --levels 6 --rounds 1 --judge runs --csv -
 awk -F, 'NR > 1 && !($4 > 0)' out | grep -q . && fail 'no error is zero'

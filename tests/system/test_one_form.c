@@ -5,6 +5,7 @@
 
 #include "support/runs.h"
 #include "support/suite.h"
+#include "system/evaluator.h"
 
 /* alpha = (-x^2 y, lie + x y^2 + z, w, 0) of n coordinates, or 0 if `flat`; a wrong gradient where `lie` is not 0. */
 typedef struct form {
@@ -106,9 +107,33 @@ START_TEST(a_wrong_gradient_is_found)
   dvi_system *good = made(&right), *bad = made(&wrong);
   ck_assert_msg(dvi_system_check(good, 0, q, v, 0, NULL) == DVI_OK, "%s", dvi_last_error());
   ck_assert_int_eq(dvi_system_check(bad, 0, q, v, 0, NULL), DVI_BAD_ARGUMENT);
-  check_words("one-form: dL/dq (1)");
+  check_words("one-form: d alpha_j/dq_i at (i,j) = (1,0) is");
   dvi_system_destroy(&good);
   dvi_system_destroy(&bad);
+}
+END_TEST
+
+/* A Hessian that is left out is differenced, and it alone: the gradients are given. */
+START_TEST(gradients_are_taken_as_they_are_given_where_the_hessian_is_differenced)
+{
+  form right = {0};
+  dvi_system *system = made(&right);
+  dvi__evaluator *evaluator = NULL;
+  double qq[16], qv[6], given[6], all_qq[32], all_qv[12], none[1], twice_q[8], twice_v[8];
+  const double t[2] = {0, 0};
+  (void)gradient(q, given, &right);
+  ck_assert_msg(dvi__evaluator_create(system, 2, DVI__HESSIANS, NULL, &evaluator) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_int_eq(dvi__form_hessian(evaluator, q, v, qq, qv), DVI_OK);
+  ck_assert_mem_eq(qv, given, sizeof given);
+  for (int i = 0; i < 8; i++) {
+    twice_q[i] = q[i / 2];
+    twice_v[i] = v[i / 2];
+  }
+  ck_assert_int_eq(dvi__lagrangian_hessian(evaluator, 2, t, twice_q, twice_v, all_qq, all_qv, none), DVI_OK);
+  for (int e = 0; e < 6; e++) ck_assert(all_qv[2 * e] == given[e] && all_qv[2 * e + 1] == given[e]);
+  ck_assert_double_eq_tol(qq[1], -2 * q[0] * v[0] + 2 * q[1] * v[1], 1e-8); /* d2(alpha.v)/dxdy; differences err by some 1e-10 */
+  dvi__evaluator_destroy(&evaluator);
+  dvi_system_destroy(&system);
 }
 END_TEST
 
@@ -122,7 +147,7 @@ START_TEST(a_gradient_outside_of_its_pattern_is_found)
   const dvi_system_terms terms = {.dimension = 4, .one_form = &one_form, .potentials = &hamiltonian, .potential_count = 1};
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
   ck_assert_int_eq(dvi_system_check(system, 0, q, v, 0, NULL), DVI_BAD_ARGUMENT);
-  check_words("one-form");
+  check_words("one-form: d alpha_j/dq_i at (i,j) = (");
   dvi_system_destroy(&system);
 }
 END_TEST
@@ -243,6 +268,7 @@ int main(void)
   tcase_add_test(tests, values_momenta_and_two_form_are_those_of_the_definition);
   tcase_add_test(tests, the_velocity_solves_the_equations_of_motion);
   tcase_add_test(tests, a_wrong_gradient_is_found);
+  tcase_add_test(tests, gradients_are_taken_as_they_are_given_where_the_hessian_is_differenced);
   tcase_add_test(tests, a_gradient_outside_of_its_pattern_is_found);
   tcase_add_test(tests, a_singular_two_form_is_named);
   tcase_add_test(tests, bad_declarations_are_refused);

@@ -66,7 +66,8 @@ extern "C" {
  *  @param[out] integrator  owned by the caller; NULL on failure
  *  @retval DVI_BAD_OPTION   unknown method, key or value, or values that do not go together (nodes < degree, say); the error
  *                           sentence gives the reason
- *  @retval DVI_UNSUPPORTED  the method cannot use a term of the system (verlet with a general Lagrangian, say)
+ *  @retval DVI_UNSUPPORTED  the method cannot use a term of the system (verlet with a general Lagrangian, say), or, of dvrk and its kin, not this
+ *                           one-form
  *  @retval DVI_BAD_SIZE     the Jacobian has more entries than an int can count: a pattern was left out, or the degree is too high
  *  @retval DVI_NO_MEMORY */
 dvi_status dvi_integrator_create(const dvi_system *system, const char *method, dvi_integrator **integrator);
@@ -93,9 +94,10 @@ void dvi_integrator_destroy(dvi_integrator **integrator);
  *  On any failure the old state stays.
  *  @retval DVI_BAD_ARGUMENT   a pointer is NULL, or p is not alpha(q); the error sentence says how far it is off
  *  @retval DVI_NOT_FINITE     an argument, the energy or the forces are not finite there
- *  @retval DVI_SINGULAR       the velocity Hessian is singular wherever it was tried: a degenerate Lagrangian
+ *  @retval DVI_SINGULAR       the velocity Hessian is singular wherever it was tried: a degenerate Lagrangian; or a one-form's two-form is, there
  *  @retval DVI_NOT_CONVERGED  no velocity was found for p
- *  @retval DVI_CALLBACK_RETRY, DVI_CALLBACK_FAILED  a callback failed there */
+ *  @retval DVI_CALLBACK_RETRY, DVI_CALLBACK_FAILED  a callback failed there
+ *  @retval DVI_NO_MEMORY      KLU's own */
 dvi_status dvi_integrator_start(dvi_integrator *integrator, double t, const double *q, const double *p);
 
 /** The same by options; NULL: the default ones.
@@ -106,7 +108,7 @@ dvi_status dvi_integrator_start_with(dvi_integrator *integrator, double t, const
 
 /** The same in state q [nq], v [nv], with p = L_v(t,q,v).
  *
- *  @retval DVI_SINGULAR  the velocity Hessian is singular at this velocity
+ *  @retval DVI_SINGULAR  the velocity Hessian is singular at this velocity; or a one-form's two-form is, there
  *  @retval (others)      as dvi_integrator_start */
 dvi_status dvi_integrator_start_velocity(dvi_integrator *integrator, double t, const double *q, const double *v);
 
@@ -120,11 +122,16 @@ dvi_status dvi_integrator_start_velocity(dvi_integrator *integrator, double t, c
  *  @retval DVI_BAD_OPTION      sem: a first step h outside of hmin and hmax
  *  @retval DVI_BAD_STATE       before dvi_integrator_start
  *  @retval DVI_NOT_CONVERGED   the step's equations were not solved, even by KINSOL with line search; the error sentence names
- *                              step, time, iterations and residual
+ *                              step, time, iterations and residual. Of a one-form in up to 16 dimensions also: the step leads over a point
+ *                              where the two-form is singular, beyond which no trajectory goes on
  *  @retval DVI_NOT_FINITE      NaN or Inf came out of a callback or the step
  *  @retval DVI_JUMP            a method with jumps ends the run because they have grown (its key `alarm`)
  *  @retval DVI_CALLBACK_RETRY  a callback returned a positive number
- *  @retval DVI_CALLBACK_FAILED a callback returned a negative number */
+ *  @retval DVI_CALLBACK_FAILED a callback returned a negative number
+ *  @retval DVI_SINGULAR        dg, dg-phase: the two-form is singular at the step's end
+ *  @retval DVI_UNSUPPORTED     dvrk and its kin: a component of the one-form that seemed constant at create is not
+ *  @retval DVI_NO_MEMORY       KLU's own
+ *  @retval DVI_SOLVER_FAILED   KINSOL refuses the equations */
 dvi_status dvi_integrator_step(dvi_integrator *integrator, double h);
 
 /** Current time; NaN for NULL. The queries up to dvi_integrator_method give NULL or 0 for NULL. */

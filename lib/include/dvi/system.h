@@ -185,14 +185,22 @@ dvi_status dvi_system_momentum(const dvi_system *system, double t, const double 
  *  equations of motion, Omega(q) v = dH/dq, and p does not matter.
  *  @param[in,out] v  [nv]; a starting guess (read for general Lagrangians only), then the velocity; unchanged on failure
  *  @retval DVI_SINGULAR       L_vv is singular at every guess; or Omega is
- *  @retval DVI_NOT_CONVERGED  Newton's method did not settle from any guess */
+ *  @retval DVI_NOT_CONVERGED  Newton's method did not settle from any guess
+ *  @retval DVI_BAD_ARGUMENT   an argument is NULL
+ *  @retval DVI_NOT_FINITE     an argument, or the velocity that was found, is not finite
+ *  @retval DVI_NO_MEMORY
+ *  @retval (others)           as the callbacks fail */
 dvi_status dvi_system_velocity(const dvi_system *system, double t, const double *q, const double *p, double *v);
 
 /** The two-form Omega_ij = d alpha_j/dq_i - d alpha_i/dq_j of a system with a one-form, and its condition number. Allocates.
  *
  *  @param[out] Omega      [n*n] column by column, antisymmetric; may be NULL
  *  @param[out] condition  |Omega| |Omega^-1| in the norm of the largest column sum; infinite where Omega is singular; may be NULL
- *  @retval DVI_UNSUPPORTED  the system has no one-form */
+ *  @retval DVI_UNSUPPORTED   the system has no one-form
+ *  @retval DVI_BAD_ARGUMENT  system or q is NULL
+ *  @retval DVI_NOT_FINITE    q is not finite
+ *  @retval DVI_NO_MEMORY
+ *  @retval (others)          as the one-form's callback fails */
 dvi_status dvi_system_two_form(const dvi_system *system, const double *q, double *Omega, double *condition);
 
 /** How many invariants are watched: the energy, one momentum for each symmetry, and the declared ones, in this order; 0 for NULL. */
@@ -228,7 +236,10 @@ typedef struct dvi_derivative_check {
  *  @param      tolerance  largest relative difference to accept; 0: 1e-6
  *  @param[out] check      the findings; may be NULL
  *  @retval DVI_OK            everything agrees
- *  @retval DVI_BAD_ARGUMENT  something does not; the error sentence names it */
+ *  @retval DVI_BAD_ARGUMENT  something does not, and the error sentence names it; an argument is NULL; the tolerance is negative
+ *  @retval DVI_NOT_FINITE    the point is not finite
+ *  @retval DVI_NO_MEMORY
+ *  @retval (others)          as the callbacks fail */
 dvi_status dvi_system_check(const dvi_system *system, double t, const double *q, const double *v, double tolerance,
                             dvi_derivative_check *check);
 

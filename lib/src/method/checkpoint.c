@@ -219,7 +219,7 @@ static dvi_status check(const dvi_integrator *I, const char *path, const unsigne
   if (memcmp(head.magic, magic, sizeof magic) != 0) return dvi__fail(DVI_BAD_FILE, "%s is not a checkpoint", path);
   if (head.order_mark != ORDER_MARK || head.version != VERSION)
     return dvi__fail(DVI_BAD_FILE, "checkpoint %s: written on another kind of machine or by another version", path);
-  if (strcmp(head.specification, I->stepper.specification) != 0)
+  if (!dvi__same_steps(head.specification, I->stepper.specification))
     return dvi__fail(DVI_BAD_FILE, "checkpoint %s: written by %s, not by %s", path, head.specification, I->stepper.specification);
   if (head.n != I->system->n)
     return dvi__fail(DVI_BAD_FILE, "checkpoint %s: %lld coordinates, not %d", path, (long long)head.n, I->system->n);
@@ -243,6 +243,7 @@ static void unpack(dvi_integrator *I, const unsigned char *file)
   I->last.t_carry = head.last_t_carry;
   I->last_h = head.last_h;
   I->now.density = head.density;
+  I->now.side = 0;
   if (I->pace != NULL) dvi__pace_set_energy(I->pace, head.energy);
   I->counters.steps = (long)head.steps;
   const unsigned char *at = file + sizeof head;

@@ -5,9 +5,10 @@
 #include "method/one_step.h"
 
 /* The `alarm` key: what a jump that is large against the motion does. Its value goes to dvi__dg_create. */
-#define DVI__ALARM_KEY                                                                                                        \
-  {                                                                                                                           \
-    "alarm", dvi__alarm_choice, 0, 0, DVI__ALARM_STOP, "stop or warn if the jump is large against the motion; left out: stop" \
+#define DVI__ALARM_KEY                                                         \
+  {                                                                            \
+    "alarm", dvi__alarm_choice, DVI__SAID, 0, DVI__ALARM_STOP,                 \
+        "stop or warn if the jump is large against the motion; left out: stop" \
   }
 
 enum { DVI__ALARM_STOP, DVI__ALARM_WARN };

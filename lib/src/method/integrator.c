@@ -97,6 +97,7 @@ static dvi_status start(dvi_integrator *I, double t, const double *q, const doub
   I->now.t = t;
   I->now.t_carry = 0;
   I->now.density = density;
+  I->now.side = 0;
   I->last_h = 0;
   I->started = 1;
   I->stepper.method->start(&I->stepper, w);
@@ -155,6 +156,7 @@ static void copy_state(size_t n, const dvi__state *from, dvi__state *to)
   to->t = from->t;
   to->t_carry = from->t_carry;
   to->density = from->density;
+  to->side = from->side;
   memcpy(to->q, from->q, 4 * n * sizeof(double)); /* q, p and both carries lie in a row */
 }
 
@@ -165,6 +167,18 @@ static dvi_status check_state(const dvi_integrator *I)
     return dvi__fail(DVI_BAD_ARGUMENT, "monitor %s is so small that the step does not move the time", I->pace->name);
   if (isfinite(I->next.t) && dvi__first_not_finite(2 * n, I->next.q) < 0) return DVI_OK;
   return dvi__fail(DVI_NOT_FINITE, "the new state is not finite");
+}
+
+/* No trajectory goes through a point where the two-form is singular, but a step can go over it, and is on none then. */
+static dvi_status check_side(dvi_integrator *I)
+{
+  if (!(I->system->terms & DVI__ONE_FORM)) return DVI_OK;
+  if (I->now.side == 0) DVI_TRY(dvi__two_form_side(I->evaluator, I->now.q, &I->now.side));
+  DVI_TRY(dvi__two_form_side(I->evaluator, I->next.q, &I->next.side));
+  if (I->next.side == I->now.side) return DVI_OK;
+  return dvi__fail(
+      DVI_NOT_CONVERGED,
+      "the step leads over a point where the two-form of the one-form is singular, beyond which no trajectory goes on");
 }
 
 static void accept(dvi_integrator *I, double h)
@@ -238,6 +252,7 @@ static dvi_status advance(dvi_integrator *I, double h)
   I->next.density = density;
   DVI_TRY(method->step(&I->stepper, &I->next, length));
   DVI_TRY(check_state(I));
+  DVI_TRY(check_side(I));
   return dvi__control_end(I, h);
 }
 

@@ -22,15 +22,15 @@ typedef struct disagreement {
 /* The worst of one kind over all blocks, and whose it is. */
 typedef struct finding {
   disagreement worst;
-  const char *term, *block;
+  const char *term, *owner, *block;
 } finding;
 
 /* One block of one term while it is compared. */
 typedef struct block {
-  const char *term, *name;
-  const dvi__pattern *pattern; /* NULL: a gradient */
-  const double *given;         /* NULL: no callback, only the pattern is checked */
-  double largest;              /* magnitude of its entries, given or differenced */
+  const char *term, *owner, *name; /* whose: that potential, or else that part of the kinetic one, or else the whole of it */
+  const dvi__pattern *pattern;     /* NULL: a gradient */
+  const double *given;             /* NULL: no callback, only the pattern is checked */
+  double largest;                  /* magnitude of its entries, given or differenced */
   disagreement on_pattern, outside;
 } block;
 
@@ -69,6 +69,7 @@ static void keep_worst(const block *b, const disagreement *found, finding *kept)
   kept->worst = *found;
   kept->worst.error = error;
   kept->term = b->term;
+  kept->owner = b->owner;
   kept->block = b->name;
 }
 
@@ -237,9 +238,63 @@ static dvi_status check_lagrangian(check *c, const dvi__lagrangian_term *l)
   return check_blocks(c, dvi__general_gradient_of_v, &at, c->v, &qv, &vv);
 }
 
+/* The derivatives of all components in q_i, against row i of the gradients. */
+static void compare_row(block *b, int n, int i, const double *differenced, double noise)
+{
+  for (int j = 0; j < n; j++) {
+    const int e = dvi__pattern_find(b->pattern, i, j);
+    compare(b, i, j, e >= 0 ? b->given[e] : 0, differenced[j], noise, e >= 0 ? &b->on_pattern : &b->outside);
+  }
+}
+
+/* Of one one-form, which has no gauge: its gradients against differences of its components, its Hessian against those of the gradients. */
+static dvi_status check_form(check *c, const dvi__lagrangian_term *l, const char *owner, const char *first, const char *second)
+{
+  const dvi__general_at at = {l, &c->scratch, &c->t, c->q, c->v};
+  const dvi__differences *d = &c->differences;
+  const int has_hessian = dvi__general_has_hessian(l);
+  block qv = {.owner = owner, .name = first, .pattern = &l->qv, .given = c->hessian[1]};
+  block qq = {.owner = owner, .name = second, .pattern = &l->qq, .given = has_hessian ? c->hessian[0] : NULL};
+  DVI_TRY(dvi__form_gradients(l, c->q, c->hessian[1], c->scratch.result[2]));
+  if (has_hessian) DVI_TRY(dvi__general_hessian(l, &c->scratch, 1, &c->t, c->q, c->v, c->hessian[0], c->hessian[1], c->hessian[2]));
+  for (int i = 0; i < c->n; i++) {
+    DVI_TRY(dvi__difference_column(dvi__general_gradient_of_q, &at, &c->differences, c->n, i, c->q, c->column[0], c->column[1]));
+    compare_column(&qq, c->n, i, c->column[0], noise_of(max_norm(c->n, d->plus), d->step[i]));
+    compare_row(&qv, c->n, i, c->column[1], noise_of(max_norm(c->n, d->plus_v), d->step[i]));
+  }
+  keep_worst(&qv, &qv.on_pattern, &c->of_gradient);
+  keep_worst(&qv, &qv.outside, &c->of_pattern);
+  keep_worst(&qq, &qq.on_pattern, &c->of_hessian);
+  keep_worst(&qq, &qq.outside, &c->of_pattern);
+  return DVI_OK;
+}
+
+/* A gauge adds grad f, which is a one-form, too: each is checked on its own. The whole comes first: if a callback fails it says whose. */
+static dvi_status check_one_form(check *c, const dvi__lagrangian_term *l)
+{
+  const dvi__gauge_term *g = &l->gauge;
+  const dvi_gauge *f = &g->callbacks;
+  const char *const gradients = "d alpha_j/dq_i at (i,j) =", *const hessian = "d2(alpha.v)/dq2";
+  dvi__lagrangian_term part = *l;
+  c->gradient_noise = 0;
+  if (f->gradient == NULL) return check_form(c, l, "one-form", gradients, hessian);
+  DVI_TRY(dvi__general_gradient(l, &c->scratch, 1, &c->t, c->q, c->v, c->gradient[0], c->gradient[1]));
+  part.gauge = (dvi__gauge_term){0};
+  part.qv = g->form_qv;
+  part.qq = g->form_qq;
+  DVI_TRY(check_form(c, &part, "one-form", gradients, hessian));
+  part.one_form = (dvi_one_form){.value = f->gradient, .gradient = f->hessian, .hessian = f->third, .user = f->user};
+  part.qv = g->qq;
+  part.qq = g->qq;
+  return check_form(c, &part, "gauge", "d2f/dq2", "d2(grad f.v)/dq2");
+}
+
 static dvi_status check_terms(check *c, const dvi_system *system)
 {
-  if (system->lagrangian != NULL) DVI_TRY(check_lagrangian(c, system->lagrangian));
+  if (system->terms & DVI__ONE_FORM)
+    DVI_TRY(check_one_form(c, system->lagrangian));
+  else if (system->lagrangian != NULL)
+    DVI_TRY(check_lagrangian(c, system->lagrangian));
   for (int k = 0; k < system->potential_count; k++) DVI_TRY(check_potential(c, &system->potentials[k]));
   return DVI_OK;
 }
@@ -249,7 +304,7 @@ static dvi_status check_terms(check *c, const dvi_system *system)
 static void name_entry(const finding *f, const char *kinetic, size_t size, char *text)
 {
   char place[32], owner[48];
-  (void)snprintf(owner, sizeof owner, "%s", kinetic);
+  (void)snprintf(owner, sizeof owner, "%s", f->owner != NULL ? f->owner : kinetic);
   if (f->term != NULL) (void)snprintf(owner, sizeof owner, "potential '%.24s'", f->term);
   if (f->worst.column < 0)
     (void)snprintf(place, sizeof place, "(%d)", f->worst.row);

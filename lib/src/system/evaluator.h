@@ -48,6 +48,11 @@ dvi_status dvi__two_form_factor(dvi__evaluator *e, const double *q);
 void dvi__two_form_solve(dvi__evaluator *e, double *x);
 dvi_status dvi__two_form_velocity(dvi__evaluator *e, double t, const double *q, double *v);
 
+/* On which side of the points where the two-form is singular q lies: the sign of its Pfaffian, 0 at such a point. Always 1 in more than
+ * DVI__SIDES_MOST dimensions, where the answer would cost as much as a step. */
+enum { DVI__SIDES_MOST = 16 };
+dvi_status dvi__two_form_side(dvi__evaluator *e, const double *q, int *side);
+
 /* One point of a one-form: alpha [n], and the gradient [n] of alpha(q).w, w [n]. */
 dvi_status dvi__form_gradient(dvi__evaluator *e, const double *q, const double *w, double *alpha_w_q, double *alpha);
 

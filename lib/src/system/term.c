@@ -233,18 +233,33 @@ static dvi_status form_gradient(const dvi__lagrangian_term *l, dvi__scratch *s, 
   return DVI_OK;
 }
 
-/* L_qq is the Hessian of alpha.v, L_qv has the gradients of alpha, and L_vv is empty. */
-static dvi_status form_hessian(const dvi__lagrangian_term *l, dvi__scratch *s, int count, const double *q, const double *v,
-                               double *L_qq, double *L_qv)
+/* The Hessian of alpha.v, by differences of the gradients if it is not given. */
+static dvi_status form_curvature(const dvi__general_at *at, int count, double *L_qq)
 {
-  const int qq = dvi__pattern_entries(&l->qq), qv = dvi__pattern_entries(&l->qv);
+  const dvi__lagrangian_term *l = at->term;
+  dvi__scratch *s = at->scratch;
+  if (!dvi__general_has_hessian(l))
+    return dvi__difference_hessian(dvi__general_gradient_of_q, at, &s->of_gradient, &l->q_groups, 0, count, at->q, &l->qq, L_qq,
+                                   NULL, NULL);
   for (int k = 0; k < count; k++) {
-    gather(s->n, count, k, q, s->point_q);
-    gather(s->n, count, k, v, s->point_v);
+    gather(s->n, count, k, at->q, s->point_q);
+    gather(s->n, count, k, at->v, s->point_v);
     DVI_TRY(whole_hessian(l, s->point_q, s->point_v, s->result[0], s->result[2]));
-    scatter(qq, count, k, s->result[0], L_qq);
+    scatter(dvi__pattern_entries(&l->qq), count, k, s->result[0], L_qq);
+  }
+  return DVI_OK;
+}
+
+/* L_qq is the Hessian of alpha.v, L_qv has the gradients of alpha, and L_vv is empty. */
+static dvi_status form_hessian(const dvi__general_at *at, int count, double *L_qq, double *L_qv)
+{
+  const dvi__lagrangian_term *l = at->term;
+  dvi__scratch *s = at->scratch;
+  DVI_TRY(form_curvature(at, count, L_qq));
+  for (int k = 0; k < count; k++) {
+    gather(s->n, count, k, at->q, s->point_q);
     DVI_TRY(dvi__form_gradients(l, s->point_q, s->result[0], s->result[2]));
-    scatter(qv, count, k, s->result[0], L_qv);
+    scatter(dvi__pattern_entries(&l->qv), count, k, s->result[0], L_qv);
   }
   return DVI_OK;
 }
@@ -349,8 +364,8 @@ dvi_status dvi__general_hessian(const dvi__lagrangian_term *l, dvi__scratch *s, 
   const int qq = dvi__pattern_entries(&l->qq), qv = dvi__pattern_entries(&l->qv), vv = dvi__pattern_entries(&l->vv);
   int returned = 0;
   if (l->transformed != NULL) return dvi__transformed_hessian(l->transformed, count, t, q, v, L_qq, L_qv, L_vv);
+  if (is_form(l)) return form_hessian(&(dvi__general_at){l, s, t, q, v}, count, L_qq, L_qv);
   if (!dvi__general_has_hessian(l)) return difference_general_hessian(&(dvi__general_at){l, s, t, q, v}, count, L_qq, L_qv, L_vv);
-  if (is_form(l)) return form_hessian(l, s, count, q, v, L_qq, L_qv);
   if (c->hessian_batch != NULL) returned = c->hessian_batch(count, t, q, v, L_qq, L_qv, L_vv, c->user);
   for (int k = 0; c->hessian_batch == NULL && k < count && returned == 0; k++) {
     gather(s->n, count, k, q, s->point_q);

@@ -9,6 +9,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/finite.h"
+#include "num/pfaffian.h"
 #include "system/evaluator_struct.h"
 
 /* An entry of the gradients; 0 outside of their pattern. */
@@ -40,6 +41,27 @@ dvi_status dvi__two_form_factor(dvi__evaluator *e, const double *q)
 void dvi__two_form_solve(dvi__evaluator *e, double *x)
 {
   dvi__linear_solve(e->velocity, x);
+}
+
+/* Columns one after the other, [n*n]. */
+static void fill_dense(const dvi__evaluator *e, double *Omega)
+{
+  const dvi__pattern *omega = &e->system->lagrangian->omega;
+  const size_t n = (size_t)e->system->n;
+  memset(Omega, 0, n * n * sizeof(double));
+  for (size_t j = 0; j < n; j++)
+    for (int k = omega->start[j]; k < omega->start[j + 1]; k++) Omega[j * n + (size_t)omega->row[k]] = e->two_form[k];
+}
+
+dvi_status dvi__two_form_side(dvi__evaluator *e, const double *q, int *side)
+{
+  double Omega[DVI__SIDES_MOST * DVI__SIDES_MOST];
+  *side = 1;
+  if (e->system->n > DVI__SIDES_MOST) return DVI_OK;
+  DVI_TRY(evaluate(e, q));
+  fill_dense(e, Omega);
+  *side = dvi__pfaffian_sign((size_t)e->system->n, Omega);
+  return DVI_OK;
 }
 
 dvi_status dvi__two_form_velocity(dvi__evaluator *e, double t, const double *q, double *v)
@@ -205,14 +227,10 @@ static double norm(const dvi__pattern *omega, const double *values)
 static dvi_status measure(dvi__evaluator *e, const double *q, double *Omega, double *condition)
 {
   const dvi__pattern *omega = &e->system->lagrangian->omega;
-  const size_t n = (size_t)e->system->n;
   const dvi_status status = dvi__two_form_factor(e, q);
   if (status != DVI_OK && status != DVI_SINGULAR) return status;
   if (condition != NULL) *condition = status == DVI_OK ? norm(omega, e->two_form) * inverse_norm(e) : HUGE_VAL;
-  if (Omega == NULL) return DVI_OK;
-  memset(Omega, 0, n * n * sizeof(double));
-  for (size_t j = 0; j < n; j++)
-    for (int k = omega->start[j]; k < omega->start[j + 1]; k++) Omega[j * n + (size_t)omega->row[k]] = e->two_form[k];
+  if (Omega != NULL) fill_dense(e, Omega);
   return DVI_OK;
 }
 
