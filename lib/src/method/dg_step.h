@@ -2,7 +2,7 @@
 #ifndef DVI_METHOD_DG_STEP_H
 #define DVI_METHOD_DG_STEP_H
 #include "action/discontinuous.h"
-#include "method/method.h"
+#include "method/one_step.h"
 
 /* The `alarm` key: what a jump that is large against the motion does. Its value goes to dvi__dg_create. */
 #define DVI__ALARM_KEY                                                                                                        \
@@ -17,14 +17,11 @@ const char *dvi__alarm_choice(int index);
 dvi_status dvi__dg_create(dvi__stepper *self, const dvi__dg_space *space, int alarm);
 
 /* The other operations of dvi__method, and what goes into its initialiser for them. */
-void dvi__dg_destroy(dvi__stepper *self);
-void dvi__dg_start(dvi__stepper *self, const double *v);
 dvi_status dvi__dg_step(dvi__stepper *self, dvi__state *state, double h);
 const double *dvi__dg_jump(const dvi__stepper *self);
-void dvi__dg_explain(const dvi__stepper *self, dvi__text *text);
 
-#define DVI__DG_OPERATIONS                                                                                            \
-  .needs = DVI__ONE_FORM, .uses = DVI__ONE_FORM | DVI__POTENTIAL, .destroy = dvi__dg_destroy, .start = dvi__dg_start, \
-  .step = dvi__dg_step, .jump = dvi__dg_jump, .explain = dvi__dg_explain
+#define DVI__DG_OPERATIONS                                                                                    \
+  .needs = DVI__ONE_FORM, .uses = DVI__ONE_FORM | DVI__POTENTIAL, .step = dvi__dg_step, .jump = dvi__dg_jump, \
+  DVI__ONE_STEP_OPERATIONS
 
 #endif
