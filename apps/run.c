@@ -51,7 +51,7 @@ static const char ended_again[] = "dvi: run: a second Ctrl-C ended the run at on
 
 static bool has_constraint(const problem *scene)
 {
-  return scene->terms->one_form != NULL;
+  return scene->terms->one_form != NULL || scene->terms->constraint != NULL;
 }
 
 static void write_header(recorder *r)

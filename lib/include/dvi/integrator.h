@@ -181,12 +181,13 @@ const char *dvi_integrator_method(const dvi_integrator *integrator);
  *  @param[out] value  [dvi_system_invariant_count] */
 dvi_status dvi_integrator_invariants(dvi_integrator *integrator, double *value);
 
-/** How far the state is from the constraint of a system with a one-form: the largest |p_i - alpha_i(q)|, without an allocation.
+/** How far the state is from the constraint of a system with a one-form, the largest |p_i - alpha_i(q)|, or of a Hamiltonian, the largest |phi_a(q,p)|,
+ *  without an allocation.
  *
  *  @param[out] distance  not written on failure
- *  @retval DVI_UNSUPPORTED  the system has no one-form
+ *  @retval DVI_UNSUPPORTED  the system has neither a one-form nor a Hamiltonian
  *  @retval DVI_BAD_STATE    before dvi_integrator_start
- *  @retval (others)         as the one-form's callback fails */
+ *  @retval (others)         as the callback of the one-form or the constraint fails */
 dvi_status dvi_integrator_constraint(dvi_integrator *integrator, double *distance);
 
 /** The multiplier [nv] of the last step's constraint, owned by the integrator, valid until its next call; NULL if the method has none, or before the first

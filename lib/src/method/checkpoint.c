@@ -24,7 +24,7 @@
 #include "method/integrator_struct.h"
 #include "num/finite.h"
 
-/* The Lagrangian at a state: its value, and one sum over its forces; the sizes of the summands tell rounding from difference. NaN if a
+/* The Lagrangian, or the Hamiltonian, at a state: its value, and one sum over its forces; the sizes of the summands tell rounding from difference. NaN if a
  * callback fails there. */
 typedef struct portrait {
   double value, value_size, force, force_size;
@@ -68,11 +68,12 @@ static portrait portray(const dvi_integrator *I, double t, const double *now, co
   const int n = I->system->n;
   const double *q = now, *p_now = now + n;
   double *v = I->v, *forces = I->last_v;
+  const double *second = I->system->terms & DVI__HAMILTONIAN ? p_now : v;
   portrait p = {0};
   dvi__guess_velocity(n, q, last, last + n, last_h, v);
   if (dvi__legendre_inverse(I->evaluator, t, q, p_now, v) != DVI_OK ||
-      dvi__lagrangian_value(I->evaluator, 1, &t, q, v, &p.value) != DVI_OK ||
-      dvi__lagrangian_gradient(I->evaluator, 1, &t, q, v, forces, NULL) != DVI_OK)
+      dvi__lagrangian_value(I->evaluator, 1, &t, q, second, &p.value) != DVI_OK ||
+      dvi__lagrangian_gradient(I->evaluator, 1, &t, q, second, forces, NULL) != DVI_OK)
     return (portrait){(double)NAN, (double)NAN, (double)NAN, (double)NAN};
   p.value_size = fabs(p.value);
   for (int i = 0; i < n; i++) {

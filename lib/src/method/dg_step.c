@@ -31,11 +31,15 @@ static double *offset(const dvi__stepper *self)
 
 /* ---- making it ---- */
 
+void dvi__explain_jumps(int alarm, dvi__text *text)
+{
+  dvi__text_add(text, "jumps: memory of the method; watched, %s\n",
+                alarm == DVI__ALARM_STOP ? "an alarm stops the run" : "alarms are counted");
+}
+
 static void explain(const dvi__stepper *self, dvi__text *text)
 {
-  const dg_step *own = self->own;
-  dvi__text_add(text, "jumps: memory of the method; watched, %s\n",
-                own->alarm == DVI__ALARM_STOP ? "an alarm stops the run" : "alarms are counted");
+  dvi__explain_jumps(((const dg_step *)self->own)->alarm, text);
 }
 
 DVI__STEP_KIND(discontinuous, explain);
@@ -60,23 +64,30 @@ static void turn(dvi__stepper *self)
   for (int i = 0; i < self->system->n; i++) jump(self)[i] = -jump(self)[i];
 }
 
+dvi_status dvi__watch_jump(const dvi__stepper *self, int alarm, double part, double jump_size, double motion, double at,
+                           const char *remedy)
+{
+  const double rounding = 1e-10;
+  if (jump_size <= part * motion + rounding * at) return DVI_OK;
+  if (alarm == DVI__ALARM_STOP)
+    return dvi__fail(
+        DVI_JUMP,
+        "the jump, %.2e, is large against the largest motion of a step, %.2e: the parasite has grown, and smaller steps do not "
+        "remove it; %s, alarm=warn goes on",
+        jump_size, motion, remedy);
+  self->counters->jump_alarms++;
+  return DVI_OK;
+}
+
 /* A step from q by dq. The largest motion so far, and not this one's, for trajectories turn. */
 static dvi_status watch(const dvi__stepper *self, const double *q, const double *dq)
 {
   const dg_step *own = self->own;
   const size_t n = (size_t)self->system->n;
-  const double size = dvi__largest(n, jump(self)), rounding = 1e-10;
   double *motion = &self->memory[MOTION];
   *motion = fmax(*motion, dvi__largest(n, dq));
-  if (size <= own->part * *motion + rounding * dvi__largest(n, q)) return DVI_OK;
-  if (own->alarm == DVI__ALARM_STOP)
-    return dvi__fail(
-        DVI_JUMP,
-        "the jump, %.2e, is large against the largest motion of a step, %.2e: the parasite has grown, and smaller steps do not "
-        "remove it; from the start on, a stiffness (dg:stiffness=c) keeps it small, alarm=warn goes on",
-        size, *motion);
-  self->counters->jump_alarms++;
-  return DVI_OK;
+  return dvi__watch_jump(self, own->alarm, own->part, dvi__largest(n, jump(self)), *motion, dvi__largest(n, q),
+                         "from the start on, a stiffness (dg:stiffness=c) keeps it small");
 }
 
 static dvi_status solve(dvi__stepper *self, const dvi__state *state, double h)

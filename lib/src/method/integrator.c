@@ -6,6 +6,7 @@
 #include "core/status.h"
 #include "method/integrator_struct.h"
 #include "num/finite.h"
+#include "system/dirac.h"
 
 /* ---- create, destroy ---- */
 
@@ -84,10 +85,10 @@ static dvi_status check_start(const dvi_integrator *I, double t, const double *q
 static dvi_status start(dvi_integrator *I, double t, const double *q, const double *v, const double *p)
 {
   const size_t bytes = (size_t)I->system->n * sizeof(double);
-  const double *w = I->pace != NULL ? I->last_v : v;
+  const double *w = I->pace != NULL ? I->last_v : v, *second = I->system->terms & DVI__HAMILTONIAN ? p : v;
   double L, density = 0;
-  DVI_TRY(dvi__lagrangian_value(I->evaluator, 1, &t, q, v, &L));
-  DVI_TRY(dvi__lagrangian_gradient(I->evaluator, 1, &t, q, v, I->next.p_carry, NULL));
+  DVI_TRY(dvi__lagrangian_value(I->evaluator, 1, &t, q, second, &L));
+  DVI_TRY(dvi__lagrangian_gradient(I->evaluator, 1, &t, q, second, I->next.p_carry, NULL));
   if (I->pace != NULL) DVI_TRY(dvi__pace_start(I, t, q, v, I->last_v, &density));
   memmove(I->now.q, q, bytes);
   memmove(I->now.p, p, bytes);
@@ -126,6 +127,7 @@ dvi_status dvi_integrator_start_with(dvi_integrator *I, double t, const double *
   memset(v, 0, (size_t)I->system->n * sizeof(double));
   dvi_status status = check_start(I, t, q, p, 'p');
   if (status == DVI_OK) status = constrain(I, t, q, v, options != NULL && options->project, &p);
+  if (status == DVI_OK && I->system->terms & DVI__HAMILTONIAN) status = dvi__dirac_constraint(I->evaluator, q, p);
   if (status == DVI_OK) status = dvi__legendre_inverse(I->evaluator, t, q, p, v);
   if (status == DVI_OK) status = start(I, t, q, v, p);
   return verdict(I, t, status);
@@ -141,6 +143,8 @@ dvi_status dvi_integrator_start_velocity(dvi_integrator *I, double t, const doub
   if (I == NULL || q == NULL || v == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "start: an argument is NULL");
   double *p = I->next.p;
   dvi_status status = check_start(I, t, q, v, 'v');
+  if (status == DVI_OK && I->system->terms & DVI__HAMILTONIAN)
+    status = dvi__fail(DVI_UNSUPPORTED, "the system declares a Hamiltonian; start with q and p");
   if (status == DVI_OK) status = dvi__lagrangian_gradient(I->evaluator, 1, &t, q, v, NULL, p);
   if (status == DVI_OK && dvi__first_not_finite((size_t)I->system->n, p) >= 0)
     status = dvi__fail(DVI_NOT_FINITE, "the momentum is not finite");
@@ -373,8 +377,10 @@ dvi_status dvi_integrator_invariants(dvi_integrator *I, double *value)
 dvi_status dvi_integrator_constraint(dvi_integrator *I, double *distance)
 {
   if (I == NULL || distance == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "constraint: an argument is NULL");
-  if (!(I->system->terms & DVI__ONE_FORM)) return dvi__fail(DVI_UNSUPPORTED, "constraint: the system declares no one-form");
+  if (!(I->system->terms & (DVI__ONE_FORM | DVI__HAMILTONIAN)))
+    return dvi__fail(DVI_UNSUPPORTED, "constraint: the system declares neither a one-form nor a Hamiltonian with constraints");
   if (!I->started) return dvi__fail(DVI_BAD_STATE, "constraint: the integrator has no state yet; call dvi_integrator_start first");
+  if (I->system->terms & DVI__HAMILTONIAN) return dvi__dirac_distance(I->evaluator, I->now.q, I->now.p, distance);
   return dvi__form_distance(I->evaluator, I->now.q, I->now.p, distance);
 }
 

@@ -19,6 +19,8 @@ dvi_status dvi__evaluator_create(const dvi_system *system, int capacity, dvi__de
                                  dvi__evaluator **evaluator);
 void dvi__evaluator_destroy(dvi__evaluator **evaluator);
 
+/* With a Hamiltonian all functions of the Lagrangian give H and its derivatives: p stands for v. */
+
 /* L [count] at t [count], q and v [n*count]. Every result is finite, or the status is DVI_NOT_FINITE. */
 dvi_status dvi__lagrangian_value(dvi__evaluator *e, int count, const double *t, const double *q, const double *v, double *L);
 
