@@ -9,9 +9,10 @@
  * Types 1 to 3 are elements of the action (action/action.h), as v follows q there: with the same quadrature they are the same steps. Type 4 is the pair
  * Lobatto IIIB for q, IIIA for p, or Gauss (action/partitioned.h): v has a value of its own at every point.
  *
- * For degenerate Lagrangians alpha(q).v - H(q), of types 2 and 3, the same rows hold; p is carried, and off alpha(q) by O(h^d). That distance is a second
- * solution beside the motion's, the parasite. A quadrature of order 2d or more gives it the multiplier (-1)^d in every gauge; Radau's, of order 2d-1,
- * (-1)^(d-1) times those of Dalpha^-T Dalpha: on the unit circle if the symmetric part of Dalpha is definite (x.Dalpha x = mu x.Dalpha^T x), else mostly not.
+ * For degenerate Lagrangians alpha(q).v - H(q), of types 2 and 3, the same rows hold; p is carried, and off alpha(q) by O(h^d) or O(h^(d+1)). That distance
+ * is a second solution beside the motion's, the parasite. A quadrature of order 2d or more gives it the multiplier (-1)^d in every gauge; Radau's, of
+ * order 2d-1, (-1)^(d-1) times those of Dalpha^-T Dalpha: on the unit circle if the symmetric part of Dalpha is definite (x.Dalpha x = mu x.Dalpha^T x),
+ * else mostly not.
  * Source: Leok and Ohsawa 2011; Marsden and West 2001, sec. 2.6 (the pairs). The parasite is ours. */
 #include "core/status.h"
 #include "method/carried_step.h"
@@ -78,7 +79,7 @@ static dvi_status refuse_form(int type)
                                           "move, and is not consistent; type=2 and 3 can");
 }
 
-/* The parasite, started by p = alpha(q) at O(h^d), costs what the quadrature would give beyond. */
+/* The order of the parasite that p = alpha(q) starts: it costs what the quadrature would give beyond. */
 static dvi_status create_carried(dvi__stepper *self, const dvi__action_space *space)
 {
   const int d = space->degree, u = dvi_quadrature_order(space->rule, space->nodes);
