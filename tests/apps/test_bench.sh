@@ -195,6 +195,7 @@ says err "^Cost of a member's step on kepler" 'members: the words are elsewhere'
 if command -v gnuplot >/dev/null; then says members.svg '</svg>' 'the plot of members is whole'; fi
 expect 0 'one number of members, for people' bench pendulum --method midpoint --scale members=8 --set q0=1 --h 0.05 --rounds 1
 says out '^gain: alone_seconds over step_seconds' 'members for people'
+expect 0 'members on a one-form' bench lotka-volterra --method dg --scale members=2,8 --rounds 1 --steps 20
 for bad in '' 0 -1 1.5 x 4, 8,8 2000000; do expect 2 "members=$bad" bench kepler --method verlet --scale "members=$bad"; done
 expect 2 'members without a method' bench kepler --scale members=4
 expect 2 'members of a wrong problem' bench keppler --method verlet --scale members=4

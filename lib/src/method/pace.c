@@ -78,8 +78,10 @@ static dvi_status check_method(const dvi_integrator *I)
   if (I->pace->pacing == DVI__TRANSFORM || I->stepper.symmetric) return DVI_OK;
   return dvi__fail(DVI_UNSUPPORTED,
                    "%s is not symmetric, and only that keeps energies from drifting when steps change; "
-                   "choose a symmetric quadrature, or the time transform",
-                   I->stepper.specification);
+                   "choose %s",
+                   I->stepper.specification,
+                   I->system->terms & DVI__ONE_FORM ? "dg, dg-phase, dvrk, or vprk with its symmetric projection"
+                                                    : "a symmetric quadrature, or the time transform");
 }
 
 static dvi_status create(const dvi_system *system, const dvi_monitor *monitor, dvi__pacing pacing, const char *method,
