@@ -190,11 +190,12 @@ dvi_status dvi_integrator_invariants(dvi_integrator *integrator, double *value);
  *  @retval (others)         as the callback of the one-form or the constraint fails */
 dvi_status dvi_integrator_constraint(dvi_integrator *integrator, double *distance);
 
-/** The multiplier [nv] of the last step's constraint, owned by the integrator, valid until its next call; NULL if the method has none, or before the first
+/** The multiplier [nv], or [dvi_system_constraint_count], of the last step's constraint, owned by the integrator, valid until its next call; NULL if the method has none, or before the first
  *  step.
  *
  *  That of `vprk` is lambda in the units of q: the kick by which a projection moves q after the step (docs/methods/vprk.md). It measures by how much the
- *  step without a projection leaves p = alpha(q); where its sign alternates from step to step and it grows, a parasitic mode does. */
+ *  step without a projection leaves p = alpha(q); where its sign alternates from step to step and it grows, a parasitic mode does. That of `dg-phase` with a Hamiltonian is the lambda of the node at
+ *  the step's end (docs/methods/dg_phase.md). */
 const double *dvi_integrator_multiplier(const dvi_integrator *integrator);
 
 /** Dense output: the trajectory inside the last step.

@@ -50,16 +50,19 @@ static dvi_status solve(dvi__stepper *self, const dvi__state *state, double h)
   return dvi__one_step_solve(self, state, h);
 }
 
-/* The parasite of the multiplier changes its sign from node to node: the mean of two is the smooth branch, up to a factor of h each time. */
+/* The parasite of the multiplier changes its sign from node to node. A step forth and one back tell the smooth branch from it, up to its second
+ * difference: lambda <- (lambda(h) + 2 lambda + lambda(-h))/4. */
 static dvi_status settle(dvi__stepper *self, const dvi__state *state, double h)
 {
   const dvi__one_step *one = self->own;
   const int m = dvi_system_constraint_count(self->system);
+  double *there = one->guess;
   for (int k = 0; k < 2; k++) {
-    double *end = one->guess;
     DVI_TRY(solve(self, state, h));
-    dvi__phase_end(one->of, one->x, one->dq, one->dp, end);
-    for (int a = 0; a < m; a++) multiplier(self)[a] = 0.5 * (multiplier(self)[a] + end[a]);
+    dvi__phase_end(one->of, one->x, one->dq, one->dp, self->memory + JUMP);
+    DVI_TRY(solve(self, state, -h));
+    dvi__phase_end(one->of, one->x, one->dq, one->dp, there);
+    for (int a = 0; a < m; a++) multiplier(self)[a] = 0.25 * (self->memory[JUMP + a] + 2 * multiplier(self)[a] + there[a]);
   }
   return DVI_OK;
 }
@@ -74,7 +77,7 @@ static dvi_status watch(const dvi__stepper *self, const dvi__state *state)
   for (int i = 0; i < 2; i++, jump += n) {
     largest[i] = fmax(largest[i], dvi__largest(n, motion[i]));
     DVI_TRY(dvi__watch_jump(self, own->alarm, own->part, dvi__largest(n, jump), largest[i], dvi__largest(n, at[i]),
-                            "another degree moves the step at which it does"));
+                            "from the start on, an even degree keeps it small"));
   }
   return DVI_OK;
 }
