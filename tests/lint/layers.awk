@@ -5,12 +5,13 @@ BEGIN {
   # Rooms of lib/src that a room may look into, besides itself.
   sees["core"] = ""
   sees["num"] = "core"
+  sees["group"] = "core num"
   sees["space"] = "core num"
   sees["system"] = "core num"
   sees["solve"] = "core num"
-  sees["action"] = "core num space system"
-  sees["method"] = "core num space system action solve"
-  sees["path"] = "core num space system action solve method"
+  sees["action"] = "core num group space system"
+  sees["method"] = "core num group space system action solve"
+  sees["path"] = "core num group space system action solve method"
   sees["diagnostics"] = "core num system"
   sees["reference"] = "core num system"
   # Single headers that are open to a room beyond that.

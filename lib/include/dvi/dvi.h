@@ -4,6 +4,7 @@
 #include <dvi/basis.h>
 #include <dvi/diagnostics.h>
 #include <dvi/ensemble.h>
+#include <dvi/group.h>
 #include <dvi/integrator.h>
 #include <dvi/method.h>
 #include <dvi/path.h>

@@ -1,0 +1,66 @@
+/* The rotation closest to a matrix M: the largest tr(R^T M) = q.K q among the unit quaternions q of R, K symmetric of trace 0 (Horn 1987). Its eigenvectors
+ * are found by Jacobi's rotations, which need no case apart where M is singular or turns right into left. */
+#include <dvi/group.h>
+#include <math.h>
+
+enum { SWEEPS = 8 }; /* Jacobi's method converges quadratically: off-diagonals of 1 are below 1e-60 after six */
+
+/* Make K_ij zero by a rotation of the coordinates i and j; the columns of V are these coordinates' axes. */
+static void rotate(double K[4][4], double V[4][4], int i, int j)
+{
+  if (K[i][j] == 0) return;
+  const double cotangent = (K[j][j] - K[i][i]) / (2 * K[i][j]); /* of twice the angle; may overflow: the angle is 0 */
+  const double t = copysign(1, cotangent) / (fabs(cotangent) + hypot(1, cotangent)), c = 1 / sqrt(1 + t * t), s = t * c;
+  for (int k = 0; k < 4; k++) {
+    const double x = K[k][i], y = K[k][j], a = V[k][i], b = V[k][j];
+    K[k][i] = c * x - s * y;
+    K[k][j] = s * x + c * y;
+    V[k][i] = c * a - s * b;
+    V[k][j] = s * a + c * b;
+  }
+  for (int k = 0; k < 4; k++) {
+    const double x = K[i][k], y = K[j][k];
+    K[i][k] = c * x - s * y;
+    K[j][k] = s * x + c * y;
+  }
+  K[i][j] = K[j][i] = 0;
+}
+
+static double largest_entry(const double M[9])
+{
+  double largest = 0;
+  for (int i = 0; i < 9; i++) largest = fmax(largest, fabs(M[i]));
+  return largest;
+}
+
+void dvi_so3_project(const double M[9], double R[9])
+{
+  const double largest = largest_entry(M), scale = largest > 0 ? largest : 1;
+  double m[9], V[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
+  for (int i = 0; i < 9; i++) m[i] = M[i] / scale;
+  const double x = m[7] - m[5], y = m[2] - m[6], z = m[3] - m[1], xy = m[1] + m[3], yz = m[5] + m[7], zx = m[6] + m[2];
+  double K[4][4] = {{m[0] + m[4] + m[8], x, y, z},
+                    {x, m[0] - m[4] - m[8], xy, zx},
+                    {y, xy, m[4] - m[8] - m[0], yz},
+                    {z, zx, yz, m[8] - m[0] - m[4]}};
+  for (int sweep = 0; sweep < SWEEPS; sweep++)
+    for (int i = 0; i < 3; i++)
+      for (int j = i + 1; j < 4; j++) rotate(K, V, i, j);
+  int top = 0;
+  for (int i = 1; i < 4; i++)
+    if (K[i][i] > K[top][top]) top = i;
+  const double q[4] = {V[0][top], V[1][top], V[2][top], V[3][top]};
+  dvi_so3_from_quaternion(q, R);
+}
+
+double dvi_so3_distance(const double M[9])
+{
+  const double scale = fmax(1, largest_entry(M));
+  double R[9], sum = 0;
+  dvi_so3_project(M, R);
+  for (int i = 0; i < 9; i++) {
+    const double difference = M[i] / scale - R[i] / scale;
+    sum += difference * difference;
+  }
+  return scale * sqrt(sum);
+}
