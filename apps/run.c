@@ -242,8 +242,8 @@ static bool parse_momenta(const char *text, int n, double *p)
 
 static int place_momenta(const run_request *request, problem *scene)
 {
-  if (request->project && scene->terms->one_form == NULL)
-    return usage_error("run: --project is for problems with a one-form; of %s any momenta are a start", scene->name);
+  if (request->project && !has_constraint(scene))
+    return usage_error("run: --project is for problems with a constraint; of %s any momenta are a start", scene->name);
   if (request->momenta == NULL || parse_momenta(request->momenta, scene->n, scene->p)) return DONE;
   return usage_error("run: --momenta wants %d finite numbers with commas between them, not '%s'", scene->n, request->momenta);
 }
@@ -419,9 +419,7 @@ int run_command(int argc, char **argv)
        .word = &r.momenta,
        .value = "P1,P2,...",
        .help = "the momenta of the start, in the order of the coordinates; left out: the problem's"},
-      {.name = "project",
-       .flag = &r.project,
-       .help = "with a one-form, if these are not p = alpha(q): start from alpha(q); left out: refuse"},
+      {.name = "project", .flag = &r.project, .help = "if the start is off a problem's constraint: project it; left out: refuse"},
       {.name = "out", .word = &r.out, .value = "FILE", .help = "where the rows go; left out, or -: standard output"},
       {.name = "checkpoint",
        .word = &r.checkpoint,

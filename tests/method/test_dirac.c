@@ -329,6 +329,26 @@ START_TEST(starts_off_the_constraint_are_refused)
 }
 END_TEST
 
+/* The fields of (|q|^2 - 1)/2 and q.p at (q,p) are (0, -q) and (q, -p): the first has to change p along q, the second scales q. */
+START_TEST(a_start_off_the_constraint_is_projected_on_request)
+{
+  problem *of = made_problem("circle-dirac", NULL);
+  dvi_integrator *integrator = made_integrator(of->system, "dg-phase");
+  const dvi_start_options projected = {.project = 1};
+  double distance;
+  ck_assert_int_eq(dvi_integrator_start_with(integrator, 0, (double[]){0.9, 0.5}, (double[]){0.3, 0.4}, &projected), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_constraint(integrator, &distance), DVI_OK);
+  ck_assert_double_lt(distance, 1e-15);
+  ck_assert_double_eq_tol(dvi_integrator_q(integrator)[0] * 0.5, dvi_integrator_q(integrator)[1] * 0.9, 1e-15);
+  ck_assert_int_eq(dvi_integrator_step(integrator, 0.1), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_start_with(integrator, 0, (double[]){0, 0}, (double[]){0.3, 0.4}, &projected), DVI_SINGULAR);
+  check_words("singular");
+  ck_assert_double_gt(dvi_integrator_time(integrator), 0.05);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&of);
+}
+END_TEST
+
 int main(void)
 {
   TCase *tests = tcase_create("dirac");
@@ -343,5 +363,6 @@ int main(void)
   tcase_add_test(tests, the_parasite_rings_the_alarm);
   tcase_add_test(tests, what_cannot_be_is_refused_by_name);
   tcase_add_test(tests, starts_off_the_constraint_are_refused);
+  tcase_add_test(tests, a_start_off_the_constraint_is_projected_on_request);
   return run_tests("method/dirac", tests);
 }

@@ -49,9 +49,10 @@ typedef struct dvi_energy_balance {
 
 /** Options of a start; zero means default. */
 typedef struct dvi_start_options {
-  /** What becomes of a p that is not alpha(q), in a system with a one-form. 0: it is refused. Else it is projected, by the simplest way onto p = alpha(q)
-   *  that there is: q stays, and p becomes alpha(q). The motion is that of q then, whatever p was; p says nothing that q does not. Without a one-form each
-   *  p is a state, and nothing changes. */
+  /** What becomes of a start off the constraint. 0: it is refused. Else it is projected. With a one-form by the simplest way onto p = alpha(q) that there
+   *  is: q stays, and p becomes alpha(q); the motion is that of q then, whatever p was. With constraints phi(q,p) = 0 q and p move along the constraints'
+   *  own fields (phi_p, -phi_q), by Newton's method with the bracket matrix, which needs no measure of distance. Of other systems each p is a state, and
+   *  nothing changes. */
   int project;
 } dvi_start_options;
 
@@ -102,7 +103,9 @@ dvi_status dvi_integrator_start(dvi_integrator *integrator, double t, const doub
 
 /** The same by options; NULL: the default ones.
  *
- *  @retval DVI_BAD_ARGUMENT  with a one-form p is not alpha(q), and is not to be projected; the error sentence says how far it is off */
+ *  @retval DVI_BAD_ARGUMENT   the start is off the constraint, and not to be projected; the error sentence says how far it is off
+ *  @retval DVI_NOT_CONVERGED  no point with phi(q,p) = 0 was found from there
+ *  @retval (others)           as dvi_integrator_start */
 dvi_status dvi_integrator_start_with(dvi_integrator *integrator, double t, const double *q, const double *p,
                                      const dvi_start_options *options);
 

@@ -110,13 +110,24 @@ static dvi_status verdict(const dvi_integrator *I, double t, dvi_status status)
   return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "%s: cannot start at t = %.6g", I->stepper.method->name, t);
 }
 
-/* *p as it was, on the constraint, or alpha(q) in the integrator's own memory; v [n] is zero. */
-static dvi_status constrain(dvi_integrator *I, double t, const double *q, const double *v, int project, const double **p)
+/* Project a start in the integrator's own memory: onto p = alpha(q) by p, onto phi(q,p) = 0 by both; v [n] is zero. */
+static dvi_status project_start(dvi_integrator *I, double t, const double *v, const double **q, const double **p)
 {
-  if (!(I->system->terms & DVI__ONE_FORM)) return DVI_OK;
-  if (!project) return dvi__form_constraint(I->evaluator, q, *p);
+  const size_t n = (size_t)I->system->n;
+  memmove(I->next.p, *p, n * sizeof(double));
+  memmove(I->next.q, *q, n * sizeof(double));
+  *q = I->next.q;
   *p = I->next.p;
-  return dvi__lagrangian_gradient(I->evaluator, 1, &t, q, v, NULL, I->next.p);
+  if (I->system->terms & DVI__HAMILTONIAN) return dvi__dirac_project(I->evaluator, I->next.q);
+  return dvi__lagrangian_gradient(I->evaluator, 1, &t, *q, v, NULL, I->next.p);
+}
+
+static dvi_status constrain(dvi_integrator *I, double t, const double *v, int project, const double **q, const double **p)
+{
+  if (!(I->system->terms & (DVI__ONE_FORM | DVI__HAMILTONIAN))) return DVI_OK;
+  if (project) return project_start(I, t, v, q, p);
+  return I->system->terms & DVI__ONE_FORM ? dvi__form_constraint(I->evaluator, *q, *p)
+                                          : dvi__dirac_constraint(I->evaluator, *q, *p);
 }
 
 dvi_status dvi_integrator_start_with(dvi_integrator *I, double t, const double *q, const double *p,
@@ -126,8 +137,7 @@ dvi_status dvi_integrator_start_with(dvi_integrator *I, double t, const double *
   double *v = I->next.q_carry;
   memset(v, 0, (size_t)I->system->n * sizeof(double));
   dvi_status status = check_start(I, t, q, p, 'p');
-  if (status == DVI_OK) status = constrain(I, t, q, v, options != NULL && options->project, &p);
-  if (status == DVI_OK && I->system->terms & DVI__HAMILTONIAN) status = dvi__dirac_constraint(I->evaluator, q, p);
+  if (status == DVI_OK) status = constrain(I, t, v, options != NULL && options->project, &q, &p);
   if (status == DVI_OK) status = dvi__legendre_inverse(I->evaluator, t, q, p, v);
   if (status == DVI_OK) status = start(I, t, q, v, p);
   return verdict(I, t, status);

@@ -267,6 +267,30 @@ dvi_status dvi__dirac_constraint(dvi__evaluator *e, const double *q, const doubl
   return DVI_OK;
 }
 
+/* Newton's method along the fields of the constraints: the change X_phi mu makes phi smaller by {phi, phi} mu. */
+dvi_status dvi__dirac_project(dvi__evaluator *e, double *z)
+{
+  enum { MOST_ITERATIONS = 50 };
+  const dvi__constraint_term *c = e->system->constraint;
+  const dvi__dirac *d = e->dirac;
+  const size_t n = (size_t)e->system->n;
+  double size = HUGE_VAL, next;
+  DVI_TRY(dvi__dirac_distance(e, z, z + n, &next));
+  for (int iteration = 0; iteration < MOST_ITERATIONS && next > 0 && next < size; iteration++) {
+    size = next;
+    DVI_TRY(factor_bracket(e, z, z + n));
+    for (int a = 0; a < c->callbacks.count; a++) d->multiplier[a] = -d->weighted.phi[a];
+    dvi__linear_solve(e->velocity, d->multiplier);
+    memcpy(d->pushed, z, 2 * n * sizeof *z);
+    dvi__constraint_push(c, d->weighted.phi_z, d->multiplier, 1, d->pushed);
+    if (dvi__first_not_finite(2 * n, d->pushed) >= 0) return dvi__fail(DVI_NOT_CONVERGED, "no point of the constraint was found");
+    DVI_TRY(dvi__dirac_distance(e, d->pushed, d->pushed + n, &next));
+    if (next < size) memcpy(z, d->pushed, 2 * n * sizeof *z);
+  }
+  if (dvi__dirac_constraint(e, z, z + n) == DVI_OK) return DVI_OK;
+  return dvi__fail_in(DVI_NOT_CONVERGED, "no point of the constraint was found by Newton's method");
+}
+
 /* ---- the public view ---- */
 
 /* The largest sum of magnitudes in a column of the m x m matrix; of its inverse, by the factor. */

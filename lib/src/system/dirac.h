@@ -52,4 +52,7 @@ dvi_status dvi__dirac_motion(dvi__evaluator *e, double t, const double *q, const
 dvi_status dvi__dirac_distance(dvi__evaluator *e, const double *q, const double *p, double *distance);
 dvi_status dvi__dirac_constraint(dvi__evaluator *e, const double *q, const double *p);
 
+/* Move z = (q, p) [2n] onto phi = 0 along the fields (phi_p, -phi_q) of the constraints. */
+dvi_status dvi__dirac_project(dvi__evaluator *e, double *z);
+
 #endif
