@@ -82,16 +82,19 @@ void dvi_integrator_destroy(dvi_integrator **integrator);
  *  A general Lagrangian's velocity is sought by Newton's method from v = 0 and from velocities along p. Where several velocities have one
  *  momentum, say which one is meant: dvi_integrator_start_velocity.
  *  On any failure the old state stays.
+ *  @retval DVI_BAD_ARGUMENT   a pointer is NULL; or the state is off the constraint, p = alpha(q) of a one-form or phi(q,p) = 0 of a Hamiltonian
  *  @retval DVI_NOT_FINITE     an argument, the energy or the forces are not finite there
- *  @retval DVI_SINGULAR       the velocity Hessian is singular wherever it was tried: a degenerate Lagrangian
+ *  @retval DVI_SINGULAR       the velocity Hessian is singular wherever it was tried: a degenerate Lagrangian; or the two-form of a one-form
+ *                             is, or the bracket matrix of a Hamiltonian's constraints
  *  @retval DVI_NOT_CONVERGED  no velocity was found for p
  *  @retval DVI_CALLBACK_RETRY, DVI_CALLBACK_FAILED  a callback failed there */
 dvi_status dvi_integrator_start(dvi_integrator *integrator, double t, const double *q, const double *p);
 
 /** The same in state q [nq], v [nv], with p = L_v(t,q,v).
  *
- *  @retval DVI_SINGULAR  the velocity Hessian is singular at this velocity
- *  @retval (others)      as dvi_integrator_start */
+ *  @retval DVI_SINGULAR     the velocity Hessian is singular at this velocity
+ *  @retval DVI_UNSUPPORTED  the system declares a Hamiltonian, whose p is not known by v
+ *  @retval (others)         as dvi_integrator_start */
 dvi_status dvi_integrator_start_velocity(dvi_integrator *integrator, double t, const double *q, const double *v);
 
 /** Take one step of length h (negative: backward); h is time, or the fictitious time of dvi/transform.h.
