@@ -228,6 +228,34 @@ START_TEST(a_hamiltonian_may_depend_on_time)
 }
 END_TEST
 
+/* ---- steps of other lengths ---- */
+
+static int height(double t, const double *q, double *g, void *user)
+{
+  (void)t, (void)user;
+  *g = 1.5 + q[1];
+  return 0;
+}
+
+/* Steps as long as 3/2 + y says, forth and back; the parasite that a change of length starts turns back with them. */
+START_TEST(controlled_steps_back_undo_steps)
+{
+  problem *of = made_problem("circle-dirac", NULL);
+  const dvi_monitor monitor = {.kind = DVI_MONITOR_FUNCTION, .function = {.name = "height", .value = height}};
+  dvi_integrator *integrator = NULL;
+  ck_assert_msg(dvi_integrator_create_controlled(of->system, &monitor, "dg-phase:degree=2", &integrator) == DVI_OK, "%s",
+                dvi_last_error());
+  ck_assert_msg(dvi_integrator_start(integrator, 0, of->q, of->p) == DVI_OK, "%s", dvi_last_error());
+  advance(integrator, 0.05, 40);
+  ck_assert_double_gt(distance(2, dvi_integrator_q(integrator), of->q), 0.5);
+  advance(integrator, -0.05, 40);
+  ck_assert_double_le(distance(2, dvi_integrator_q(integrator), of->q), 1e-10);
+  ck_assert_double_le(distance(2, dvi_integrator_p(integrator), of->p), 1e-10);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&of);
+}
+END_TEST
+
 /* ---- ensembles ---- */
 
 START_TEST(members_have_the_digits_of_single_runs)
@@ -266,6 +294,7 @@ int main(void)
   tcase_add_loop_test(tests, beads_turn_at_their_rates, BEADS_MOST, BEADS_MOST + 1);
   tcase_add_test(tests, the_jacobian_is_as_sparse_as_the_system);
   tcase_add_test(tests, a_hamiltonian_may_depend_on_time);
+  tcase_add_test(tests, controlled_steps_back_undo_steps);
   tcase_add_test(tests, members_have_the_digits_of_single_runs);
   return run_tests("method/dirac_systems", tests);
 }

@@ -93,9 +93,10 @@ void dvi_integrator_destroy(dvi_integrator **integrator);
  *  momentum, say which one is meant: dvi_integrator_start_velocity.
  *  With a one-form p must be alpha(q) up to rounding; dvi_integrator_start_with can project another one.
  *  On any failure the old state stays.
- *  @retval DVI_BAD_ARGUMENT   a pointer is NULL, or p is not alpha(q); the error sentence says how far it is off
+ *  @retval DVI_BAD_ARGUMENT   a pointer is NULL; or the state is off the constraint, p = alpha(q) of a one-form or phi(q,p) = 0 of a Hamiltonian
  *  @retval DVI_NOT_FINITE     an argument, the energy or the forces are not finite there
- *  @retval DVI_SINGULAR       the velocity Hessian is singular wherever it was tried: a degenerate Lagrangian; or a one-form's two-form is, there
+ *  @retval DVI_SINGULAR       the velocity Hessian is singular wherever it was tried: a degenerate Lagrangian; or the two-form of a one-form
+ *                             is, or the bracket matrix of a Hamiltonian's constraints
  *  @retval DVI_NOT_CONVERGED  no velocity was found for p
  *  @retval DVI_CALLBACK_RETRY, DVI_CALLBACK_FAILED  a callback failed there
  *  @retval DVI_NO_MEMORY      KLU's own */
@@ -111,8 +112,9 @@ dvi_status dvi_integrator_start_with(dvi_integrator *integrator, double t, const
 
 /** The same in state q [nq], v [nv], with p = L_v(t,q,v).
  *
- *  @retval DVI_SINGULAR  the velocity Hessian is singular at this velocity; or a one-form's two-form is, there
- *  @retval (others)      as dvi_integrator_start */
+ *  @retval DVI_SINGULAR     the velocity Hessian is singular at this velocity
+ *  @retval DVI_UNSUPPORTED  the system declares a Hamiltonian, whose p is not known by v
+ *  @retval (others)         as dvi_integrator_start */
 dvi_status dvi_integrator_start_velocity(dvi_integrator *integrator, double t, const double *q, const double *v);
 
 /** Take one step of length h (negative: backward); h is time, or the fictitious time of dvi/transform.h.

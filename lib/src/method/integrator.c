@@ -89,7 +89,7 @@ static dvi_status start(dvi_integrator *I, double t, const double *q, const doub
   double L, density = 0;
   DVI_TRY(dvi__lagrangian_value(I->evaluator, 1, &t, q, second, &L));
   DVI_TRY(dvi__lagrangian_gradient(I->evaluator, 1, &t, q, second, I->next.p_carry, NULL));
-  if (I->pace != NULL) DVI_TRY(dvi__pace_start(I, t, q, v, I->last_v, &density));
+  if (I->pace != NULL) DVI_TRY(dvi__pace_start(I, t, q, v, p, I->last_v, &density));
   memmove(I->now.q, q, bytes);
   memmove(I->now.p, p, bytes);
   memset(I->now.q_carry, 0, bytes);

@@ -146,10 +146,11 @@ void dvi__pace_set_energy(dvi__pace *pace, double energy)
     dvi__monitor_set_energy(pace->monitor, energy);
 }
 
-/* L_v.v - L. */
-static dvi_status energy_at(dvi_integrator *I, double t, const double *q, const double *v, double *energy)
+/* L_v.v - L, or H at the start's momenta. */
+static dvi_status energy_at(dvi_integrator *I, double t, const double *q, const double *v, const double *momenta, double *energy)
 {
   double L, *p = I->pace->g_q;
+  if (I->system->terms & DVI__HAMILTONIAN) return dvi__lagrangian_value(I->evaluator, 1, &t, q, momenta, energy);
   DVI_TRY(dvi__lagrangian_value(I->evaluator, 1, &t, q, v, &L));
   DVI_TRY(dvi__lagrangian_gradient(I->evaluator, 1, &t, q, v, NULL, p));
   *energy = -L;
@@ -157,12 +158,13 @@ static dvi_status energy_at(dvi_integrator *I, double t, const double *q, const 
   return DVI_OK;
 }
 
-dvi_status dvi__pace_start(dvi_integrator *I, double t, const double *q, const double *v, double *w, double *density)
+dvi_status dvi__pace_start(dvi_integrator *I, double t, const double *q, const double *v, const double *p, double *w,
+                           double *density)
 {
   dvi__pace *pace = I->pace;
   const double before = pace->energy;
   double g = 1, energy = before;
-  if (!pace->holds) DVI_TRY(energy_at(I, t, q, v, &energy));
+  if (!pace->holds) DVI_TRY(energy_at(I, t, q, v, p, &energy));
   dvi__pace_set_energy(pace, energy);
   const dvi_status status = dvi__pace_monitor(pace, q, &g);
   if (status != DVI_OK) {
