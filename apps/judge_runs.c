@@ -22,7 +22,14 @@ typedef struct runner {
   int value[2];
 } runner;
 
-static const runner galerkin = {"galerkin", "degree", {16, 12}}, vprk = {"vprk", "nodes", {6, 5}};
+static const runner galerkin = {"galerkin", "degree", {16, 12}}, vprk = {"vprk", "nodes", {6, 5}},
+                    dg_phase = {"dg-phase", "degree", {6, 5}};
+
+static const runner *runner_for(const dvi_system_terms *terms)
+{
+  if (terms->hamiltonian != NULL) return &dg_phase;
+  return terms->one_form != NULL ? &vprk : &galerkin;
+}
 
 /* Ends of runs. */
 typedef struct levels {
@@ -106,7 +113,7 @@ dvi_status judge_by_runs(judgement *judge, const problem *scene, double t_end, p
   const size_t n = (size_t)scene->n;
   double *ends = calloc(4 * n, sizeof *ends);
   judge->other = calloc(n, sizeof *judge->other);
-  levels l = {.by = scene->terms->one_form != NULL ? &vprk : &galerkin, .now = ends, .before = ends + 2 * n, .best = HUGE_VAL};
+  levels l = {.by = runner_for(scene->terms), .now = ends, .before = ends + 2 * n, .best = HUGE_VAL};
   const dvi_status status = ends != NULL && judge->other != NULL ? refine(judge, scene, t_end, progress, &l) : DVI_NO_MEMORY;
   free(ends);
   return status;

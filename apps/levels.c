@@ -32,27 +32,27 @@ static long next_guess(const order_study *s, long steps, double error, double ta
   return lround(within(ceil((double)steps * factor), (double)too_few + 1.0, high));
 }
 
-/* Search for the first level: the error nearest below three times the target. A step too large to solve is too rough. */
-static dvi_status find_first(order_study *s, level_trial *first)
+/* Search for the first level, of more steps than too_few: the error nearest below three times the target. A step too large to solve is too rough. */
+static dvi_status find_first(order_study *s, long too_few, level_trial *first)
 {
   const double target = first_target(s);
-  long too_few = 0;
-  long enough = 0;
-  long steps = lround(within(ceil(fabs(s->span) / s->scene->order_h), 1.0, (double)search_max));
+  level_trial fine = {0}; /* the last one below; of no steps: there is none yet */
+  long steps = lround(within(ceil(fabs(s->span) / s->scene->order_h), (double)too_few + 1.0, (double)search_max));
   for (int i = 0; i < SEARCH_TRIES; i++) {
     const dvi_status status = study_run(s, steps, first);
     if (status < 0) return status;
     const double error = status == DVI_OK ? first->error : (double)NAN;
-    const bool fine = error <= 3.0 * target;
-    if (fine && error >= 0.1 * target) return DVI_OK;
-    if (fine)
-      enough = steps;
+    if (error <= 3.0 * target && error >= 0.1 * target) return DVI_OK;
+    if (error <= 3.0 * target)
+      fine = *first;
     else
       too_few = steps;
-    if (too_few + 1 == enough || too_few >= search_max) break;
-    steps = next_guess(s, steps, error, target, too_few, enough);
+    if (too_few + 1 == fine.steps || too_few >= search_max) break;
+    steps = next_guess(s, steps, error, target, too_few, fine.steps);
   }
-  return study_run(s, enough > 0 ? enough : too_few, first);
+  if (fine.steps == 0) return study_run(s, too_few, first);
+  *first = fine;
+  return DVI_OK;
 }
 
 /* A start that differs from the problem's in the last place. */
@@ -85,6 +85,18 @@ static dvi_status find_floor(order_study *s, long steps)
   return status;
 }
 
+/* The first level, and the floor there. One that cannot be solved from the disturbed start hangs on roundoffs: it is too rough, too. */
+static dvi_status find_first_and_floor(order_study *s, level_trial *first)
+{
+  long too_few = 0;
+  dvi_status status = find_first(s, too_few, first);
+  while (status == DVI_OK && (status = find_floor(s, first->steps)) > 0 && first->steps < search_max) {
+    too_few = first->steps;
+    status = find_first(s, too_few, first);
+  }
+  return status == DVI_OK ? find_first(s, too_few, first) : status; /* now that the floor is known */
+}
+
 /* The ratio that leads from the first error to a little above the floor, with at most so many steps if it can be. */
 static double choose_ratio(const order_study *s, const level_trial *first, int levels, double finest)
 {
@@ -112,9 +124,8 @@ dvi_status choose_levels(order_study *study, double h, double ratio, int levels,
 {
   level_trial first;
   const double wanted = h > 0.0 ? within(fabs(study->span) / h, 1.0, (double)FIRST_STEPS_MAX) : 0.0;
-  dvi_status status = wanted > 0.0 ? study_run(study, lround(wanted), &first) : find_first(study, &first);
-  if (status == DVI_OK) status = find_floor(study, first.steps);
-  if (status == DVI_OK && !(wanted > 0.0)) status = find_first(study, &first); /* now that the floor is known */
+  dvi_status status = wanted > 0.0 ? study_run(study, lround(wanted), &first) : find_first_and_floor(study, &first);
+  if (status == DVI_OK && wanted > 0.0) status = find_floor(study, first.steps);
   steps[0] = 0;
   if (!(wanted > 0.0) && is_lost(study, status, &first)) return DVI_OK;
   if (status != DVI_OK) return status;

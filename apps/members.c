@@ -70,16 +70,32 @@ static cell *cell_at(const comparison *c, int method, int k)
   return &c->cell[method * c->counts.count + k];
 }
 
-/* No two members alike, and the same ones in every run of this command. */
-static void place_members(comparison *c, int members)
+/* A one-form sets p, whatever v. */
+static dvi_status place_member(const comparison *c, int k)
 {
   const int n = c->scene->n;
-  for (int k = 0; k < members; k++)
-    for (int i = 0; i < n; i++) {
-      const double factor = 1.0 + around * (fmod(0.618033988749895 * ((double)k * n + i + 1), 1.0) - 0.5);
-      c->q[(size_t)i * (size_t)members + (size_t)k] = factor * c->scene->q[i];
-      c->p[(size_t)i * (size_t)members + (size_t)k] = factor * c->scene->p[i];
+  double *q = c->point, *p = c->point + n;
+  for (int i = 0; i < n; i++) {
+    const double factor = 1.0 + around * (fmod(0.618033988749895 * ((double)k * n + i + 1), 1.0) - 0.5);
+    q[i] = factor * c->scene->q[i];
+    p[i] = factor * c->scene->p[i];
+  }
+  return c->scene->terms->one_form != NULL ? dvi_system_momentum(c->scene->system, 0.0, q, c->scene->q, p) : DVI_OK;
+}
+
+/* No two members alike, and the same ones in every run of this command. */
+static dvi_status place_members(comparison *c, int members)
+{
+  const size_t n = (size_t)c->scene->n, count = (size_t)members;
+  dvi_status status = DVI_OK;
+  for (size_t k = 0; k < count && status == DVI_OK; k++) {
+    status = place_member(c, (int)k);
+    for (size_t i = 0; i < n; i++) {
+      c->q[i * count + k] = c->point[i];
+      c->p[i * count + k] = c->point[n + i];
     }
+  }
+  return status;
 }
 
 /* ---- two ways ---- */
@@ -159,12 +175,13 @@ static int measure_round(comparison *c, int round)
 {
   for (int k = 0; k < c->counts.count; k++) {
     const int members = (int)c->counts.number[k];
-    place_members(c, members);
+    dvi_status status = place_members(c, members);
+    if (status != DVI_OK) return library_error(status);
     for (int i = 0; i < c->request->methods->count; i++) {
       const char *method = c->request->methods->word[i];
       cell *at = cell_at(c, i, k);
       progress_show(&c->progress, -1.0, method);
-      dvi_status status = measure_together(c, method, members, &at->together[round], &at->evaluations);
+      status = measure_together(c, method, members, &at->together[round], &at->evaluations);
       if (status == DVI_OK) status = measure_alone(c, method, members, &at->alone[round]);
       if (status != DVI_OK) return library_error(status);
     }

@@ -18,11 +18,11 @@
 
 /* What the command line asks for. */
 typedef struct run_request {
-  const char *method, *out, *checkpoint, *resume, *plot;
+  const char *method, *momenta, *out, *checkpoint, *resume, *plot;
   double h, t_end, tolerance; /* tolerance: NaN, or refused */
   pacing how;
   long every, checkpoint_every; /* 0: not given */
-  bool final;
+  bool project, final;
   words settings;
 } run_request;
 
@@ -51,7 +51,7 @@ static const char ended_again[] = "dvi: run: a second Ctrl-C ended the run at on
 
 static bool has_constraint(const problem *scene)
 {
-  return scene->terms->one_form != NULL;
+  return scene->terms->one_form != NULL || scene->terms->constraint != NULL;
 }
 
 static void write_header(recorder *r)
@@ -228,10 +228,31 @@ static int advance(recorder *r, dvi_integrator *integrator)
   return !written ? FAILED : *r->caught != 0 ? 128 + (int)*r->caught : DONE;
 }
 
+/* The start's momenta, "P1,P2,...". */
+static bool parse_momenta(const char *text, int n, double *p)
+{
+  for (int i = 0; i < n; i++) {
+    char *end;
+    p[i] = strtod(text, &end);
+    if (end == text || !isfinite(p[i]) || *end != (i < n - 1 ? ',' : '\0')) return false;
+    text = end + 1;
+  }
+  return true;
+}
+
+static int place_momenta(const run_request *request, problem *scene)
+{
+  if (request->project && !has_constraint(scene))
+    return usage_error("run: --project is for problems with a constraint; of %s any momenta are a start", scene->name);
+  if (request->momenta == NULL || parse_momenta(request->momenta, scene->n, scene->p)) return DONE;
+  return usage_error("run: --momenta wants %d finite numbers with commas between them, not '%s'", scene->n, request->momenta);
+}
+
 static bool place(const run_request *request, const problem *scene, dvi_integrator *integrator)
 {
+  const dvi_start_options options = {.project = request->project};
   const dvi_status status = request->resume != NULL ? dvi_integrator_restore(integrator, request->resume)
-                                                    : dvi_integrator_start(integrator, 0.0, scene->q, scene->p);
+                                                    : dvi_integrator_start_with(integrator, 0.0, scene->q, scene->p, &options);
   if (status == DVI_OK) return true;
   (void)library_error(status);
   return false;
@@ -307,6 +328,8 @@ static int check_request(const run_request *request)
     return usage_error("run: --method is missing, for example --method galerkin:degree=4; see dvi list methods");
   if (request->checkpoint_every > 0 && request->checkpoint == NULL)
     return usage_error("run: --checkpoint-every needs --checkpoint FILE");
+  if (request->resume != NULL && (request->momenta != NULL || request->project))
+    return usage_error("run: --momenta and --project are for the start, which --resume replaces");
   if (request->every > 0 && request->final)
     return usage_error("run: --every %ld places rows that --final leaves out; give one of them", request->every);
   if (!isnan(request->tolerance))
@@ -326,6 +349,19 @@ static int check_settings(const char *name, const words *settings)
   const char *setting = start_setting(name, settings);
   if (setting == NULL) return DONE;
   return usage_error("run: --set %s places the start, which --resume replaces; leave out one of them", setting);
+}
+
+/* The line makes sense: everything else. */
+static int run_problem(run_request *request, const char *name)
+{
+  problem *scene;
+  signals_end(true, ended_before);
+  int code = open_problem(name, &request->settings, &scene);
+  if (code != DONE) return code;
+  code = place_momenta(request, scene);
+  if (code == DONE) code = run(request, scene);
+  problem_destroy(&scene);
+  return code;
 }
 
 static const char *const details[] = {
@@ -379,6 +415,11 @@ int run_command(int argc, char **argv)
       {.name = "every", .count = &r.every, .value = "K", .help = "a row after every K steps; left out: 1; not with --final"},
       {.name = "final", .flag = &r.final, .help = "the header and the last row only"},
       {.name = "set", .words = &r.settings, .value = "NAME=VALUE", .help = "set a parameter of the problem; may be repeated"},
+      {.name = "momenta",
+       .word = &r.momenta,
+       .value = "P1,P2,...",
+       .help = "the momenta of the start, in the order of the coordinates; left out: the problem's"},
+      {.name = "project", .flag = &r.project, .help = "if the start is off a problem's constraint: project it; left out: refuse"},
       {.name = "out", .word = &r.out, .value = "FILE", .help = "where the rows go; left out, or -: standard output"},
       {.name = "checkpoint",
        .word = &r.checkpoint,
@@ -407,12 +448,5 @@ int run_command(int argc, char **argv)
   if (!options_parse(&command, argc, argv, &name, &code)) return code;
   code = check_request(&r);
   if (code == DONE && r.resume != NULL) code = check_settings(name, &r.settings);
-  if (code != DONE) return code;
-  problem *scene;
-  signals_end(true, ended_before);
-  code = open_problem(name, &r.settings, &scene);
-  if (code != DONE) return code;
-  code = run(&r, scene);
-  problem_destroy(&scene);
-  return code;
+  return code == DONE ? run_problem(&r, name) : code;
 }

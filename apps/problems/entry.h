@@ -49,7 +49,7 @@ typedef struct problem_entry {
   const problem_parameter *parameters; /* ended by one without a name; NULL: none */
   /* Given the parameters' values, allocate with problem_room, label the coordinates, fill q and v, create the system with
    * problem_system. The momenta are p = L_v(q, v) for all problems, and with a one-form v is that of the equations of motion; problem_create sees
-   * to them. */
+   * to them. With a Hamiltonian p is filled in the place of v. */
   dvi_status (*make)(const double *value, problem *made);
   int (*exact)(const problem *made, double t, double *q, double *p);
   double h, t_end, order_h, order_t_end;

@@ -170,8 +170,9 @@ static dvi_status make(const report *r, const problem_entry *entry, const double
     made->far_error = entry->far_error;
   }
   dvi_status status = entry->make(value, made);
-  if (status == DVI_OK && made->terms->one_form) status = dvi_system_velocity(made->system, 0.0, made->q, made->q, made->v);
-  if (status == DVI_OK) status = dvi_system_momentum(made->system, 0.0, made->q, made->v, made->p);
+  if (status == DVI_OK && (made->terms->one_form || made->terms->hamiltonian))
+    status = dvi_system_velocity(made->system, 0.0, made->q, made->p, made->v);
+  if (status == DVI_OK && !made->terms->hamiltonian) status = dvi_system_momentum(made->system, 0.0, made->q, made->v, made->p);
   if (status == DVI_OK) return DVI_OK;
   const char *reason = status == DVI_NO_MEMORY ? dvi_status_meaning(status) : dvi_last_error();
   return refuse(r, status, "%s: %s", entry->name, reason);

@@ -21,6 +21,8 @@ static dvi_system_terms *keep_terms(problem *made, const dvi_system_terms *terms
   if (!kept) return NULL;
   kept->lagrangian = keep(made, terms->lagrangian, terms->lagrangian != NULL, sizeof *terms->lagrangian, &lost);
   kept->one_form = keep(made, terms->one_form, terms->one_form != NULL, sizeof *terms->one_form, &lost);
+  kept->hamiltonian = keep(made, terms->hamiltonian, terms->hamiltonian != NULL, sizeof *terms->hamiltonian, &lost);
+  kept->constraint = keep(made, terms->constraint, terms->constraint != NULL, sizeof *terms->constraint, &lost);
   kept->potentials = keep(made, terms->potentials, terms->potential_count, sizeof *terms->potentials, &lost);
   kept->symmetries = keep(made, terms->symmetries, terms->symmetry_count, sizeof *terms->symmetries, &lost);
   kept->invariants = keep(made, terms->invariants, terms->invariant_count, sizeof *terms->invariants, &lost);

@@ -385,8 +385,8 @@ static void check_straight(int kind, dvi__action_space space)
   for (double tau = 0; tau < 1.1; tau += 0.25) {
     dvi__action_path(e.action, Y, h, tau, offset, v);
     for (int i = 0; i < SITES; i++) {
-      ck_assert_double_eq_tol(offset[i], tau * generic_v[i], 1e-14);
-      ck_assert_double_eq_tol(v[i], generic_v[i] / h, 1e-13 / h);
+      ck_assert_double_eq_tol(offset[i], tau * h * generic_v[i], 1e-14);
+      ck_assert_double_eq_tol(v[i], generic_v[i], 1e-13);
     }
   }
   free_element(&e);

@@ -100,6 +100,11 @@ says out 'two runs of galerkin, .* (IDA, of error [0-9.]*e-[01][0-9], is [0-9.]*
 grep -q 'not to be trusted' out && fail 'the runs can judge 1e-9'
 expect 0 'IDA is good enough' bench double-pendulum --t-end 5 --method galerkin:degree=8 --levels 1 --rounds 1 --at 1e-3
 says out 'judge at t = 5: IDA, run at two tolerances, error' 'who stays'
+# Steps of 0.4 are solved or not by roundoff: a level that fails from a start disturbed in its last place is too rough, whatever the machine.
+for t in 4.58 4.86 4.88 5.12 5.24 5.44; do
+  expect 0 "levels at the edge of what can be solved, t-end $t" bench double-pendulum --t-end $t --method galerkin:degree=8 --levels 1 --rounds 1 --at 1e-3
+  grep -q '^ *h=' out || fail "a level for t-end $t"
+done
 # Degree 16 is not judged by itself alone: the other run's distance is always left.
 expect 0 'degree 16' bench pendulum --t-end 20 --method galerkin:degree=16 --levels 6 --rounds 1 --judge runs --csv -
 awk -F, 'NR > 1 && !($4 > 0)' out | grep -q . && fail 'no error is zero'
@@ -190,6 +195,7 @@ says err "^Cost of a member's step on kepler" 'members: the words are elsewhere'
 if command -v gnuplot >/dev/null; then says members.svg '</svg>' 'the plot of members is whole'; fi
 expect 0 'one number of members, for people' bench pendulum --method midpoint --scale members=8 --set q0=1 --h 0.05 --rounds 1
 says out '^gain: alone_seconds over step_seconds' 'members for people'
+expect 0 'members on a one-form' bench lotka-volterra --method dg --scale members=2,8 --rounds 1 --steps 20
 for bad in '' 0 -1 1.5 x 4, 8,8 2000000; do expect 2 "members=$bad" bench kepler --method verlet --scale "members=$bad"; done
 expect 2 'members without a method' bench kepler --scale members=4
 expect 2 'members of a wrong problem' bench keppler --method verlet --scale members=4

@@ -17,7 +17,7 @@ split() {
 }
 
 # Processor, compiler and the presence of GSL are those of the machine; the clock decides which settings lie on a frontier.
-words() { sed -e 's/^\(processor\): .*/\1/; s/^\(compiler\): .*/\1/; s/, GSL .*//; s/  at most$/  interpolated/' -e 's/-\{0,1\}[0-9][0-9.]*\(e[-+]\{0,1\}[0-9][0-9]*\)\{0,1\}/N/g; s/  */ /g; s/ $//' "$1"; }
+words() { sed -e 's/^\(processor\): .*/\1/; s/^\(compiler\): .*/\1/; s/, GSL .*//; s/  at most  /  interpolated  /' -e 's/-\{0,1\}[0-9][0-9.]*\(e[-+]\{0,1\}[0-9][0-9]*\)\{0,1\}/N/g; s/  */ /g; s/ $//' "$1"; }
 
 commands=0
 for page in README.md docs/guide.md docs/theory.md docs/problems.md docs/adaptive.md docs/paths.md $(cd "$top" && ls docs/methods/*.md); do

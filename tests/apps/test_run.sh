@@ -28,6 +28,20 @@ expect 0 'a last, shorter step' $kepler --t-end 0.3 --final
 says out '^0.29999999999999999,' 'the end is met'
 expect 0 'no way to go' $kepler --t-end 0 --final
 
+# Momenta of the start: with a one-form only p = alpha(q), or what is projected onto it.
+expect 0 'momenta' run kepler --method verlet --momenta 0,1 --t-end 0
+says out '^0,.*,.*,0,1,' 'the momenta are the start'
+expect 1 'off the constraint' run lotka-volterra --method vprk --momenta 1,2 --t-end 1
+says err 'p\[1\] is 2, but the one-form has alpha = 1 there, 1 away' 'the distance is said'
+expect 0 'on the constraint' run lotka-volterra --method vprk --t-end 1
+cp out constrained.csv
+expect 0 'projected' run lotka-volterra --method vprk --momenta 1,2 --project --t-end 1
+same out constrained.csv 'a projected start is that of alpha(q)'
+expect 2 'nothing to project' run kepler --method verlet --project
+says err 'of kepler any momenta are a start' 'the reason is given'
+for list in 1 1,2,3 1,x 1,inf '1;2'; do expect 2 "momenta $list" run kepler --method verlet --momenta "$list"; done
+expect 2 'momenta of a resumed run' $kepler --resume any.state --momenta 0,1
+
 # A method that chooses its steps: one column more, the steps' lengths, and what became of the energy on standard error.
 expect 0 'sem' run kepler --method sem --set e=0.6 --h 0.01 --t-end 5
 says out '^t,.*,laplace_y,h$' 'the lengths are the last column'

@@ -75,7 +75,12 @@ for command in run order explain; do
   says err 'is not symmetric' 'why a Radau rule is refused'
   expect 2 "general Lagrangian of $command" $command double-pendulum --method midpoint --time-transform arclength
   says err 'constant mass' 'why there is no arc length'
+  for way in --time-transform --step-control; do
+    expect 2 "$way of $command on a one-form" $command lotka-volterra --method dg $way arclength
+    says err 'the system declares a one-form' "why $way is refused"
+  done
 done
+expect 2 'no transform of a one-form' bench lotka-volterra --method dg --time-transform arclength
 for wrong in bodies=2 bodies=1,dimension=1 dimension=4; do
   expect 2 "$wrong of kepler" run kepler --method midpoint --time-transform "distance:$wrong"
   says err 'kepler is bodies=1,dimension=2' 'what the problem is'

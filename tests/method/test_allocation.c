@@ -37,6 +37,7 @@ static const struct {
     {"driven-pendulum", NULL, "sem:degree=2,quadrature=lobatto"},
     {"vortices", NULL, "vprk"},
     {"tokamak", NULL, "dg-phase"},
+    {"magnetic-pair", NULL, "dg-phase:degree=3"},
     {"vortices", NULL, "dg:degree=1,flux=path,stiffness=1"},
     {"tokamak", NULL, "vprk:nodes=3,tableau=lobatto-iiie,projection=symplectic"},
     {"massless-particle", "gauge=singular", "dvi-a"},
@@ -45,6 +46,7 @@ static const struct {
     {"massless-particle", "gauge=singular", "dvi-trapezoidal"},
     {"massless-particle", "gauge=singular", "dvrk:nodes=3"},
     {"double-pendulum", NULL, "hp:type=2"},
+    {"vortices-linear", NULL, "hp:type=2"},
     {"kepler", NULL, "hp:type=4,degree=3"},
 };
 enum { PLACES = sizeof places / sizeof *places };

@@ -41,6 +41,7 @@ static const struct {
     {"vortices", NULL, "vprk:nodes=3", 0.05, 30},
     {"vortices", NULL, "dg", 0.05, 30},
     {"vortices", NULL, "dg-phase", 0.02, 30},
+    {"circle-dirac", NULL, "dg-phase:degree=2", 0.1, 30},
     {"massless-particle", NULL, "dg:degree=1,stiffness=1:2", 0.1, 30},
     {"massless-particle", NULL, "vprk:projection=symplectic", 0.1, 30},
     {"massless-particle", "gauge=singular", "dvi-a", 0.1, 30},
@@ -48,6 +49,7 @@ static const struct {
     {"massless-particle", "gauge=singular", "dvrk:nodes=3", 0.1, 30},
     {"double-pendulum", NULL, "hp:type=2,degree=2", 0.02, 30},
     {"double-pendulum", NULL, "hp:type=4,degree=2", 0.02, 30},
+    {"lotka-volterra", NULL, "hp:type=2,degree=2,quadrature=gauss", 0.1, 30},
 };
 enum { RUNS = sizeof runs / sizeof *runs, COORDINATES_MOST = 8, INVARIANTS_MOST = 16 };
 
@@ -119,6 +121,31 @@ START_TEST(time_and_number_of_steps_are_restored)
   ck_assert_int_eq(files_in_folder(), 1);
   dvi_integrator_destroy(&first);
   dvi_integrator_destroy(&second);
+  problem_destroy(&of);
+}
+END_TEST
+
+/* What an alarm does is no part of the steps: a run that was stopped goes on with warnings, and one that was warned with stops. */
+START_TEST(a_run_goes_on_under_another_alarm_and_under_no_other_key)
+{
+  problem *of = made_problem("vortices", NULL);
+  const char *const method[] = {"dg", "dg-phase"}, *const other[] = {"dg:nodes=4,alarm=warn", "dg-phase:degree=2"};
+  dvi_integrator *stops = started(of, method[_i]), *warns = made_integrator(of->system, spec("%s:alarm=warn", method[_i]));
+  dvi_integrator *differs = made_integrator(of->system, other[_i]);
+  advance(stops, 0.02, 3);
+  ck_assert_int_eq(dvi_integrator_save(stops, in_folder("checkpoint")), DVI_OK);
+  ck_assert_msg(dvi_integrator_restore(warns, in_folder("checkpoint")) == DVI_OK, "%s", dvi_last_error());
+  advance(stops, 0.02, 3);
+  advance(warns, 0.02, 3);
+  ck_assert_mem_eq(dvi_integrator_q(stops), dvi_integrator_q(warns), (size_t)of->n * sizeof(double));
+  ck_assert_mem_eq(dvi_integrator_p(stops), dvi_integrator_p(warns), (size_t)of->n * sizeof(double));
+  ck_assert_int_eq(dvi_integrator_save(warns, in_folder("checkpoint")), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_restore(stops, in_folder("checkpoint")), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_restore(differs, in_folder("checkpoint")), DVI_BAD_FILE);
+  check_words(spec("written by %s", dvi_integrator_method(warns)));
+  dvi_integrator_destroy(&stops);
+  dvi_integrator_destroy(&warns);
+  dvi_integrator_destroy(&differs);
   problem_destroy(&of);
 }
 END_TEST
@@ -393,6 +420,7 @@ int main(void)
   tcase_add_loop_test(tests, a_restored_run_continues_bit_for_bit_from_any_step, 0, RUNS);
   tcase_add_test(tests, the_first_run_changes_its_solver_on_the_way);
   tcase_add_test(tests, time_and_number_of_steps_are_restored);
+  tcase_add_loop_test(tests, a_run_goes_on_under_another_alarm_and_under_no_other_key, 0, 2);
   tcase_add_test(tests, a_checkpoint_cut_anywhere_is_refused);
   tcase_add_test(tests, a_checkpoint_that_is_too_long_is_refused);
   tcase_add_test(tests, a_checkpoint_damaged_at_any_byte_is_refused);

@@ -394,7 +394,10 @@ static const struct {
     {"dg:degree=8", "degree=8; 0 to 7 are possible"},
     {"dg:degree=2,nodes=2", "take 3 or more"},
     {"dg:flux=left,points=2", "points=2 goes with flux=path"},
-    {"dg:stiffness=0", "leave it out"},
+    {"dg:stiffness=0", "number 1 of stiffness is 0; positive ones are possible, or none at all"},
+    {"dg:stiffness=1:0", "number 2 of stiffness is 0"},
+    {"dg:stiffness=nan", "positive ones of at most 15 characters are possible"},
+    {"dg:stiffness=inf", "positive ones of at most 15 characters are possible"},
     {"dg:stiffness=1:2:3", "one for each of the 2 coordinates"},
     {"dg:stiffness=1:1,stiffness=2", "stiffness is given twice"},
     {"dg:stiffness=", "is not a list of numbers"},
@@ -406,7 +409,7 @@ static const struct {
     {"dg:stiffness=01", "is not a list of numbers"},
     {"dg:stiffness=1e3", "is not a list of numbers"},
     {"dg:stiffness=1234567890.1234567", "is not a list of numbers"},
-    {"dg:stiffness=1:1:1:1:1:1:1:1:1:1:1:1:1:1:1:1:1", "more than 16 numbers"},
+    {"dg:stiffness=1:1:1:1:1:1:1:1:1:1:1:1:1:1:1:1:1", "more than 16 numbers; 1 to 16 are possible"},
     {"dg:stifness=1", "it takes degree, nodes, flux, points, alarm, stiffness"},
 };
 enum { REFUSED = sizeof refused / sizeof *refused };

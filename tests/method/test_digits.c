@@ -19,7 +19,11 @@ static problem *with_digits(int index)
 START_TEST(a_method_of_high_order_meets_the_digits)
 {
   problem *of = with_digits(_i);
-  dvi_integrator *integrator = started(of, of->terms->one_form != NULL ? "vprk:nodes=6" : "galerkin:degree=8");
+  const dvi_system_terms *terms = of->terms;
+  const char *method = terms->one_form != NULL      ? "vprk:nodes=6"
+                       : terms->hamiltonian != NULL ? "dg-phase:degree=6"
+                                                    : "galerkin:degree=8";
+  dvi_integrator *integrator = started(of, method);
   const long steps = lround(ceil(of->order_t_end / of->order_h)) * 2;
   advance(integrator, of->order_t_end / (double)steps, steps);
   const double apart = distance(of->n, dvi_integrator_q(integrator), of->digits_q);

@@ -31,7 +31,36 @@ START_TEST(type_1_is_galerkin_with_lobattos_points)
 }
 END_TEST
 
+START_TEST(with_the_same_quadrature_types_1_to_3_are_the_same)
+{
+  for (int type = 1; type <= 3; type++) {
+    check_same("double-pendulum", spec("hp:type=%d,degree=%d,quadrature=gauss", type, _i), spec("galerkin:degree=%d", _i), 0.02);
+    check_same("kepler", spec("hp:type=%d,degree=%d,quadrature=clenshaw-curtis", type, _i),
+               spec("galerkin:degree=%d,quadrature=clenshaw-curtis", _i), 0.05);
+    check_same("kepler", spec("hp:type=%d,degree=%d,quadrature=radau-right", type, _i),
+               spec("galerkin:degree=%d,quadrature=radau-right,nodes=%d", _i, _i), 0.05);
+  }
+}
+END_TEST
+
 static const double h = 0.1;
+
+/* Gauss's tableau is its own conjugate. The tolerance: some roundings a step. */
+START_TEST(type_4_with_gauss_points_is_gauss_collocation)
+{
+  problem *of = made_problem("double-pendulum", NULL);
+  dvi_integrator *a = started(of, spec("hp:type=4,degree=%d,quadrature=gauss", _i)),
+                 *b = started(of, spec("galerkin:degree=%d", _i));
+  advance(a, h / 5, STEPS);
+  advance(b, h / 5, STEPS);
+  ck_assert_int_eq(dvi_integrator_order(a), dvi_integrator_order(b));
+  ck_assert_double_le(distance(of->n, dvi_integrator_q(a), dvi_integrator_q(b)), 1e-12);
+  ck_assert_double_le(distance(of->n, dvi_integrator_p(a), dvi_integrator_p(b)), 1e-12 * magnitude(of->n, of->p) + 1e-11);
+  dvi_integrator_destroy(&a);
+  dvi_integrator_destroy(&b);
+  problem_destroy(&of);
+}
+END_TEST
 
 /* p = p + length times the well's force at x, of the Henon-Heiles system. */
 static void kick(const problem *of, double length, const double *x, double *p)
@@ -111,22 +140,36 @@ END_TEST
 /* ---- order and structure ---- */
 
 static const struct {
-  const char *problem;
-  int type, degree, order;
+  const char *problem, *setting;
+  int order;
   double h;
-} claims[] = {{"henon-heiles", 1, 1, 2, 0.125},       {"henon-heiles", 2, 1, 1, 0.03125}, {"henon-heiles", 3, 1, 1, 0.03125},
-              {"henon-heiles", 4, 1, 2, 0.125},       {"henon-heiles", 2, 2, 3, 0.25},    {"henon-heiles", 3, 2, 3, 0.25},
-              {"henon-heiles", 4, 2, 4, 0.25},        {"henon-heiles", 4, 3, 6, 0.5},     {"henon-heiles", 3, 3, 5, 0.5},
-              {"double-pendulum", 2, 2, 3, 0.02},     {"double-pendulum", 3, 2, 3, 0.02}, {"double-pendulum", 4, 1, 2, 0.005},
-              {"double-pendulum", 4, 2, 4, 0.02},     {"double-pendulum", 4, 3, 6, 0.05}, {"double-pendulum", 3, 1, 1, 0.0003125},
-              {"double-pendulum", 2, 1, 1, 0.0003125}};
+} claims[] = {{"henon-heiles", "type=1", 2, 0.125},
+              {"henon-heiles", "type=2", 1, 0.03125},
+              {"henon-heiles", "type=3", 1, 0.03125},
+              {"henon-heiles", "type=4", 2, 0.125},
+              {"henon-heiles", "type=2,degree=2", 3, 0.25},
+              {"henon-heiles", "type=3,degree=2", 3, 0.25},
+              {"henon-heiles", "type=4,degree=2", 4, 0.25},
+              {"henon-heiles", "type=4,degree=3", 6, 0.5},
+              {"henon-heiles", "type=3,degree=3", 5, 0.5},
+              {"double-pendulum", "type=2,degree=2", 3, 0.02},
+              {"double-pendulum", "type=3,degree=2", 3, 0.02},
+              {"double-pendulum", "type=4", 2, 0.005},
+              {"double-pendulum", "type=4,degree=2", 4, 0.02},
+              {"double-pendulum", "type=4,degree=3", 6, 0.05},
+              {"double-pendulum", "type=3", 1, 0.0003125},
+              {"double-pendulum", "type=2", 1, 0.0003125},
+              {"double-pendulum", "type=4,degree=2,quadrature=gauss", 4, 0.02},
+              {"double-pendulum", "type=2,degree=2,quadrature=gauss", 4, 0.02},
+              {"henon-heiles", "type=1,degree=2,quadrature=trapezoid", 2, 0.125},
+              {"henon-heiles", "type=1,degree=3,quadrature=simpson", 4, 0.25}};
 enum { CLAIMS = sizeof claims / sizeof *claims };
 
 /* Errors at t = 1, against quadruple precision; the slope between the last two of four steps. */
 START_TEST(orders_are_those_claimed)
 {
   problem *of = made_problem(claims[_i].problem, NULL);
-  const char *method = spec("hp:type=%d,degree=%d", claims[_i].type, claims[_i].degree);
+  const char *method = spec("hp:%s", claims[_i].setting);
   double error[4];
   for (int level = 0; level < 4; level++) {
     const double step = claims[_i].h / (1 << level);
@@ -173,8 +216,14 @@ START_TEST(what_does_not_go_is_refused)
   ck_assert_int_eq(dvi_integrator_create(of->system, "hp:type=4,degree=8", &none), DVI_BAD_OPTION);
   check_words("degree=1 to 7 is possible");
   ck_assert_int_eq(dvi_integrator_create(of->system, "hp:type=5", &none), DVI_BAD_OPTION);
+  ck_assert_int_eq(dvi_integrator_create(degenerate->system, "hp:type=1", &none), DVI_UNSUPPORTED);
+  check_words("q given at both ends");
   ck_assert_int_eq(dvi_integrator_create(degenerate->system, "hp:type=4", &none), DVI_UNSUPPORTED);
-  check_words("a one-form");
+  check_words("is not consistent");
+  ck_assert_int_eq(dvi_integrator_create(of->system, "hp:type=4,quadrature=radau-left", &none), DVI_BAD_OPTION);
+  check_words("for lobatto and gauss");
+  ck_assert_int_eq(dvi_integrator_create(of->system, "hp:type=2,degree=2,quadrature=midpoint", &none), DVI_BAD_OPTION);
+  check_words("degree=1 is possible");
   ck_assert_ptr_null(none);
   problem_destroy(&of);
   problem_destroy(&degenerate);
@@ -185,6 +234,8 @@ int main(void)
 {
   TCase *tests = tcase_create("hp");
   tcase_add_loop_test(tests, type_1_is_galerkin_with_lobattos_points, 1, 6);
+  tcase_add_loop_test(tests, with_the_same_quadrature_types_1_to_3_are_the_same, 1, 4);
+  tcase_add_loop_test(tests, type_4_with_gauss_points_is_gauss_collocation, 1, 4);
   tcase_add_loop_test(tests, lowest_degrees_are_the_explicit_formulae, 2, 5);
   tcase_add_loop_test(tests, lowest_degrees_are_the_generalised_formulae_with_any_lagrangian, 2, 5);
   tcase_add_loop_test(tests, orders_are_those_claimed, 0, CLAIMS);

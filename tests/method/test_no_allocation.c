@@ -28,10 +28,12 @@ static const place places[] = {
     {"chain", "n=500", 0.1},
     {"vortices", NULL, 0.05},
     {"massless-particle", "gauge=singular", 0.1},
+    {"magnetic-pair", NULL, 0.1},
 };
 
 static const char *const methods[] = {
     "midpoint",
+    "dg-phase:degree=3",
     "trapezoidal",
     "galerkin:degree=2",
     "galerkin:degree=2,solver=newton",
@@ -51,7 +53,7 @@ static const char *const methods[] = {
     "vprk:nodes=3",
     "dvi-trapezoidal",
     "dvrk:nodes=3",
-    "hp:type=3",
+    "hp:type=3,quadrature=gauss",
     "dg:stiffness=1",
     "dg-phase",
 };

@@ -72,6 +72,28 @@ START_TEST(control_wants_a_symmetric_method)
 }
 END_TEST
 
+/* A one-form has no mass to divide by the monitor; control goes with symmetric methods for it, to their order: halved steps divide the error by 64. */
+START_TEST(a_one_form_takes_control_alone)
+{
+  static const double h = 0.2;
+  problem *prey = made_problem("lotka-volterra", NULL);
+  const dvi_monitor distance_to_origin = monitor_of("distance");
+  double error[2];
+  dvi_integrator *integrator;
+  refused(dvi_integrator_create_transformed(prey->system, &distance_to_origin, "dg", &integrator), DVI_UNSUPPORTED, "has no mass");
+  refused(dvi_integrator_create_controlled(prey->system, &distance_to_origin, "vprk:projection=post", &integrator), DVI_UNSUPPORTED,
+          "choose dg, dg-phase, dvrk, or vprk with its symmetric projection");
+  for (int k = 0; k < 2; k++) {
+    integrator = paced(prey, dvi_integrator_create_controlled, "distance", "vprk:nodes=3");
+    run_to(integrator, ldexp(h, -k), prey->order_t_end);
+    error[k] = distance(2, dvi_integrator_q(integrator), prey->digits_q);
+    dvi_integrator_destroy(&integrator);
+  }
+  ck_assert_msg(fabs(log2(error[0] / error[1]) - 6) <= 0.5, "%g, %g", error[0], error[1]);
+  problem_destroy(&prey);
+}
+END_TEST
+
 START_TEST(methods_that_choose_their_steps_have_no_monitor_beside_them)
 {
   problem *kepler = made_problem("kepler", NULL);
@@ -349,6 +371,7 @@ int main(void)
   tcase_add_test(tests, a_system_that_may_depend_on_time_is_not_transformed);
   tcase_add_test(tests, explicit_methods_are_not_transformed);
   tcase_add_test(tests, control_wants_a_symmetric_method);
+  tcase_add_test(tests, a_one_form_takes_control_alone);
   tcase_add_loop_test(tests, methods_that_choose_their_steps_have_no_monitor_beside_them, 0, 2);
   tcase_add_loop_test(tests, monitors_of_the_motion_want_a_constant_mass, 0, 2);
   tcase_add_loop_test(tests, a_monitor_that_is_not_well_declared_is_refused, 0, WRONG);

@@ -11,7 +11,11 @@ enum { STEPS = 10 };
 /* The end of some steps, and what they counted. */
 static void end_of_run(const problem *of, double *q, dvi_counters *counted)
 {
-  dvi_integrator *integrator = started(of, of->terms->one_form != NULL ? "vprk:nodes=3" : "galerkin:degree=5");
+  const dvi_system_terms *terms = of->terms;
+  const char *method = terms->one_form != NULL      ? "vprk:nodes=3"
+                       : terms->hamiltonian != NULL ? "dg-phase:degree=3"
+                                                    : "galerkin:degree=5";
+  dvi_integrator *integrator = started(of, method);
   advance(integrator, of->h, STEPS);
   memcpy(q, dvi_integrator_q(integrator), (size_t)of->n * sizeof *q);
   dvi_integrator_counters(integrator, counted);

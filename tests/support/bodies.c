@@ -271,7 +271,7 @@ static void chain_pattern(chain *of)
   }
 }
 
-void make_chain(int links, chain *of)
+void make_linked_chain(int links, chain *of)
 {
   const size_t n = 3 * (size_t)links;
   dvi_factor *factors = room((size_t)links, sizeof *factors);

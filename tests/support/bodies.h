@@ -29,7 +29,7 @@ typedef struct chain {
   double *q, *v; /* [3*links] */
 } chain;
 
-void make_chain(int links, chain *of);
+void make_linked_chain(int links, chain *of);
 void destroy_chain(chain *of);
 
 /* An integrator at the start. */

@@ -222,6 +222,36 @@ void check_symplectic_euler(const char *degenerate, int momentum_first)
 
 /* ---- class ---- */
 
+static int no_form(const double *q, double *alpha, void *user)
+{
+  (void)q, (void)user;
+  alpha[0] = 1;
+  alpha[1] = 2;
+  return 0;
+}
+
+/* Or alpha = grad (c (x^2 + y^2)/2), which is no better. */
+static int no_curl(const double *q, double *alpha_q, void *user)
+{
+  (void)q;
+  alpha_q[0] = alpha_q[3] = *(const double *)user;
+  alpha_q[1] = alpha_q[2] = 0;
+  return 0;
+}
+
+/* No gauge helps where the two-form is 0. */
+static void check_no_two_form(const char *method, double c)
+{
+  const dvi_one_form form = {.value = no_form, .gradient = no_curl, .user = &c};
+  const dvi_system_terms terms = {.dimension = 2, .one_form = &form};
+  dvi_system *system = NULL;
+  dvi_integrator *none = NULL;
+  ck_assert_msg(dvi_system_create(&terms, &system) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_int_eq(dvi_integrator_create(system, method, &none), DVI_UNSUPPORTED);
+  check_words("singular at all of 12 points probed");
+  dvi_system_destroy(&system);
+}
+
 void check_class(const char *method)
 {
   static const struct {
@@ -240,6 +270,8 @@ void check_class(const char *method)
     ck_assert_ptr_null(none);
     problem_destroy(&of);
   }
+  check_no_two_form(method, 0);
+  check_no_two_form(method, 1);
 }
 
 void check_one_step(const char *method, int order)

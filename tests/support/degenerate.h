@@ -35,7 +35,7 @@ void check_symplectic_euler(const char *degenerate, int momentum_first);
  * the rest. */
 void check_one_step(const char *method, int order);
 
-/* The method refuses one-forms outside of its class, in words that name the gauge, or that there is none. */
+/* The method refuses one-forms outside of its class, in words that name the gauge, or that there is none, or that the two-form is singular. */
 void check_class(const char *method);
 
 #endif

@@ -1,4 +1,5 @@
-/* The catalogue's degenerate problems in quadruple precision: the velocity from Omega(q) v = dH/dq, solved by hand where Omega has blocks of two. */
+/* The catalogue's degenerate problems in quadruple precision: the velocity from Omega(q) v = dH/dq, solved by hand where Omega has blocks of two; those
+ * with a Hamiltonian and constraints by their accelerations. */
 #include "quad_system.h"
 
 /* A block of two coordinates: omega (v2, -v1) = (H_1, H_2). */
@@ -253,6 +254,60 @@ static void tokamak_momentum(const quad_system *system, const quad *q, const qua
   p[3] = 0;
 }
 
+/* A particle on a circle: x'' = (0,-1) - mu x with the mu that keeps |x| = 1. */
+static void circle_prepare(quad_system *system)
+{
+  system->n = 2;
+  system->q[0] = quad_number("0.8");
+  system->q[1] = quad_number("0.6");
+  system->v[0] = system->q[1] * system->value[0];
+  system->v[1] = -system->q[0] * system->value[0];
+}
+
+static void circle_acceleration(const quad_system *system, const quad *q, const quad *v, quad *a)
+{
+  const quad mu = (v[0] * v[0] + v[1] * v[1] - q[1]) / (q[0] * q[0] + q[1] * q[1]);
+  (void)system;
+  a[0] = -mu * q[0];
+  a[1] = -1 - mu * q[1];
+}
+
+/* x'' = -x - y'/2, S y' = -cos z, S z' = -x'/2 - sin y with S = 1 + y^2 + z^2; the last two differentiated. */
+static void pair_velocity(const quad_system *system, const quad *q, const quad *p, quad *v)
+{
+  const quad S = 1 + q[1] * q[1] + q[2] * q[2];
+  (void)system;
+  v[0] = p[0] - q[1] / 2;
+  v[1] = -quad_cos(q[2]) / S;
+  v[2] = (-v[0] / 2 - quad_sin(q[1])) / S;
+}
+
+static void pair_prepare(quad_system *system)
+{
+  const quad p[3] = {quad_number("0.5"), 0, 0};
+  system->n = 3;
+  system->q[0] = quad_number("0.5");
+  system->q[1] = system->q[2] = 1;
+  pair_velocity(system, system->q, p, system->v);
+}
+
+static void pair_acceleration(const quad_system *system, const quad *q, const quad *v, quad *a)
+{
+  const quad S = 1 + q[1] * q[1] + q[2] * q[2], S_t = 2 * (q[1] * v[1] + q[2] * v[2]);
+  (void)system;
+  a[0] = -q[0] - v[1] / 2;
+  a[1] = (quad_sin(q[2]) * v[2] - v[1] * S_t) / S;
+  a[2] = (-a[0] / 2 - quad_cos(q[1]) * v[1] - v[2] * S_t) / S;
+}
+
+static void pair_momentum(const quad_system *system, const quad *q, const quad *v, quad *p)
+{
+  (void)system;
+  p[0] = v[0] + q[1] / 2;
+  p[1] = -q[2] * (1 + q[1] * q[1] + q[2] * q[2] / 3);
+  p[2] = 0;
+}
+
 #define DEGENERATE(name) .prepare = name##_prepare, .rate = name##_rate, .momentum = name##_momentum
 
 const quad_problem quad_degenerate[] = {
@@ -263,5 +318,15 @@ const quad_problem quad_degenerate[] = {
     {.name = "vortices", DEGENERATE(vortices)},
     {.name = "guiding-centre", DEGENERATE(guiding_centre)},
     {.name = "tokamak", DEGENERATE(tokamak)},
+    {.name = "circle-dirac",
+     .parameter = {"speed"},
+     .standard = {"0.5"},
+     .prepare = circle_prepare,
+     .acceleration = circle_acceleration},
+    {.name = "magnetic-pair",
+     .prepare = pair_prepare,
+     .acceleration = pair_acceleration,
+     .momentum = pair_momentum,
+     .velocity = pair_velocity},
     {.name = NULL},
 };

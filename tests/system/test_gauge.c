@@ -205,6 +205,13 @@ static int wrong_hessian(const double *at, double *f_qq, void *user)
   return returned;
 }
 
+static int wrong_third(const double *at, const double *w, double *f_w_qq, void *user)
+{
+  const int returned = third(at, w, f_w_qq, user);
+  f_w_qq[0] += 1e-3;
+  return returned;
+}
+
 START_TEST(bad_gauges_are_refused_and_wrong_ones_found)
 {
   static const int upper_start[] = {0, 1, 3}, upper_row[] = {0, 0, 1};
@@ -226,7 +233,13 @@ START_TEST(bad_gauges_are_refused_and_wrong_ones_found)
   bad.hessian = wrong_hessian;
   system = gauged(of, &bad);
   ck_assert_int_eq(dvi_system_check(system, 0, q, v, 0, NULL), DVI_BAD_ARGUMENT);
-  check_words("one-form");
+  check_words("system check: gauge: d2f/dq2 (1,0) is");
+  dvi_system_destroy(&system);
+  bad = good;
+  bad.third = wrong_third;
+  system = gauged(of, &bad);
+  ck_assert_int_eq(dvi_system_check(system, 0, q, v, 0, NULL), DVI_BAD_ARGUMENT);
+  check_words("system check: gauge: d2(grad f.v)/dq2 (0,0) is");
   dvi_system_destroy(&system);
   terms = *regular->terms;
   terms.gauge = &good;

@@ -5,6 +5,7 @@
 
 #include "support/runs.h"
 #include "support/suite.h"
+#include "system/evaluator.h"
 
 /* alpha = (-x^2 y, lie + x y^2 + z, w, 0) of n coordinates, or 0 if `flat`; a wrong gradient where `lie` is not 0. */
 typedef struct form {
@@ -106,9 +107,33 @@ START_TEST(a_wrong_gradient_is_found)
   dvi_system *good = made(&right), *bad = made(&wrong);
   ck_assert_msg(dvi_system_check(good, 0, q, v, 0, NULL) == DVI_OK, "%s", dvi_last_error());
   ck_assert_int_eq(dvi_system_check(bad, 0, q, v, 0, NULL), DVI_BAD_ARGUMENT);
-  check_words("one-form: dL/dq (1)");
+  check_words("one-form: d alpha_j/dq_i at (i,j) = (1,0) is");
   dvi_system_destroy(&good);
   dvi_system_destroy(&bad);
+}
+END_TEST
+
+/* A Hessian that is left out is differenced, and it alone: the gradients are given. */
+START_TEST(gradients_are_taken_as_they_are_given_where_the_hessian_is_differenced)
+{
+  form right = {0};
+  dvi_system *system = made(&right);
+  dvi__evaluator *evaluator = NULL;
+  double qq[16], qv[6], given[6], all_qq[32], all_qv[12], none[1], twice_q[8], twice_v[8];
+  const double t[2] = {0, 0};
+  (void)gradient(q, given, &right);
+  ck_assert_msg(dvi__evaluator_create(system, 2, DVI__HESSIANS, NULL, &evaluator) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_int_eq(dvi__form_hessian(evaluator, q, v, qq, qv), DVI_OK);
+  ck_assert_mem_eq(qv, given, sizeof given);
+  for (int i = 0; i < 8; i++) {
+    twice_q[i] = q[i / 2];
+    twice_v[i] = v[i / 2];
+  }
+  ck_assert_int_eq(dvi__lagrangian_hessian(evaluator, 2, t, twice_q, twice_v, all_qq, all_qv, none), DVI_OK);
+  for (int e = 0; e < 6; e++) ck_assert(all_qv[2 * e] == given[e] && all_qv[2 * e + 1] == given[e]);
+  ck_assert_double_eq_tol(qq[1], -2 * q[0] * v[0] + 2 * q[1] * v[1], 1e-8); /* d2(alpha.v)/dxdy; differences err by some 1e-10 */
+  dvi__evaluator_destroy(&evaluator);
+  dvi_system_destroy(&system);
 }
 END_TEST
 
@@ -122,7 +147,7 @@ START_TEST(a_gradient_outside_of_its_pattern_is_found)
   const dvi_system_terms terms = {.dimension = 4, .one_form = &one_form, .potentials = &hamiltonian, .potential_count = 1};
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
   ck_assert_int_eq(dvi_system_check(system, 0, q, v, 0, NULL), DVI_BAD_ARGUMENT);
-  check_words("one-form");
+  check_words("one-form: d alpha_j/dq_i at (i,j) = (");
   dvi_system_destroy(&system);
 }
 END_TEST
@@ -185,10 +210,40 @@ START_TEST(a_start_off_the_constraint_is_refused)
   dvi_integrator *integrator = made_integrator(of->system, "vprk");
   double p[2] = {of->p[0], of->p[1] + 1e-9}, q_end[2] = {of->q[0], of->q[1]};
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, of->q, p), DVI_BAD_ARGUMENT);
-  check_words("start with p = alpha(q)");
+  check_words("1e-09 away; start with p = alpha(q)");
   ck_assert_int_eq(dvi_reference_solve(of->system, 0, 1, q_end, p, NULL, NULL), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, of->q, of->v), DVI_OK);
   ck_assert_mem_eq(dvi_integrator_p(integrator), of->p, sizeof p);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&of);
+}
+END_TEST
+
+START_TEST(a_start_off_the_constraint_is_projected_on_request)
+{
+  problem *of = made_problem("massless-particle", NULL);
+  dvi_integrator *integrator = made_integrator(of->system, "vprk");
+  const double p[2] = {of->p[0] + 3, of->p[1] - 2}, not_finite[2] = {(double)NAN, 0};
+  const dvi_start_options refused = {0}, projected = {.project = 1};
+  ck_assert_int_eq(dvi_integrator_start_with(integrator, 0, of->q, p, &refused), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_integrator_start_with(integrator, 0, of->q, p, NULL), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_integrator_start_with(integrator, 0, of->q, not_finite, &projected), DVI_NOT_FINITE);
+  ck_assert_int_eq(dvi_integrator_start_with(integrator, 0, of->q, p, &projected), DVI_OK);
+  ck_assert_mem_eq(dvi_integrator_q(integrator), of->q, sizeof p);
+  ck_assert_mem_eq(dvi_integrator_p(integrator), of->p, sizeof p);
+  ck_assert_int_eq(dvi_integrator_step(integrator, 0.1), DVI_OK);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&of);
+}
+END_TEST
+
+START_TEST(without_a_one_form_a_projection_changes_nothing)
+{
+  problem *of = made_problem("kepler", NULL);
+  dvi_integrator *integrator = made_integrator(of->system, "verlet");
+  const double p[2] = {0.25, -1};
+  ck_assert_int_eq(dvi_integrator_start_with(integrator, 0, of->q, p, &(dvi_start_options){.project = 1}), DVI_OK);
+  ck_assert_mem_eq(dvi_integrator_p(integrator), p, sizeof p);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&of);
 }
@@ -213,11 +268,14 @@ int main(void)
   tcase_add_test(tests, values_momenta_and_two_form_are_those_of_the_definition);
   tcase_add_test(tests, the_velocity_solves_the_equations_of_motion);
   tcase_add_test(tests, a_wrong_gradient_is_found);
+  tcase_add_test(tests, gradients_are_taken_as_they_are_given_where_the_hessian_is_differenced);
   tcase_add_test(tests, a_gradient_outside_of_its_pattern_is_found);
   tcase_add_test(tests, a_singular_two_form_is_named);
   tcase_add_test(tests, bad_declarations_are_refused);
   tcase_add_test(tests, methods_for_one_kind_of_system_refuse_the_other);
   tcase_add_test(tests, a_start_off_the_constraint_is_refused);
+  tcase_add_test(tests, a_start_off_the_constraint_is_projected_on_request);
+  tcase_add_test(tests, without_a_one_form_a_projection_changes_nothing);
   tcase_add_test(tests, a_start_that_is_rounded_where_the_one_form_vanishes_is_not_off_the_constraint);
   return run_tests("system/one_form", tests);
 }

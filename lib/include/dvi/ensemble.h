@@ -37,6 +37,7 @@ extern "C" {
  *  @param[out] ensemble  owned by the caller; NULL on failure
  *  @retval DVI_BAD_SIZE      members, threads or block is out of range (members 1 or more, threads up to 1024)
  *  @retval DVI_BAD_ARGUMENT  an argument is NULL, system and systems are both given, or a system differs from the first one
+ *  @retval DVI_UNSUPPORTED   the method chooses its steps, so that members would part in time
  *  @retval DVI_NO_MEMORY     also if the system gives no more threads
  *  @retval (others)          as dvi_integrator_create */
 dvi_status dvi_ensemble_create(const dvi_system *system, const char *method, const dvi_ensemble_options *options,

@@ -47,6 +47,15 @@ typedef struct dvi_energy_balance {
   double given_jumps;  /**< the sum of the jumps of those */
 } dvi_energy_balance;
 
+/** Options of a start; zero means default. */
+typedef struct dvi_start_options {
+  /** What becomes of a start off the constraint. 0: it is refused. Else it is projected. With a one-form by the simplest way onto p = alpha(q) that there
+   *  is: q stays, and p becomes alpha(q); the motion is that of q then, whatever p was. With constraints phi(q,p) = 0 q and p move along the constraints'
+   *  own fields (phi_p, -phi_q), by Newton's method with the bracket matrix, which needs no measure of distance. Of other systems each p is a state, and
+   *  nothing changes. */
+  int project;
+} dvi_start_options;
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -58,7 +67,8 @@ extern "C" {
  *  @param[out] integrator  owned by the caller; NULL on failure
  *  @retval DVI_BAD_OPTION   unknown method, key or value, or values that do not go together (nodes < degree, say); the error
  *                           sentence gives the reason
- *  @retval DVI_UNSUPPORTED  the method cannot use a term of the system (verlet with a general Lagrangian, say)
+ *  @retval DVI_UNSUPPORTED  the method cannot use a term of the system (verlet with a general Lagrangian, say), or, of dvrk and its kin, not this
+ *                           one-form
  *  @retval DVI_BAD_SIZE     the Jacobian has more entries than an int can count: a pattern was left out, or the degree is too high
  *  @retval DVI_NO_MEMORY */
 dvi_status dvi_integrator_create(const dvi_system *system, const char *method, dvi_integrator **integrator);
@@ -81,17 +91,30 @@ void dvi_integrator_destroy(dvi_integrator **integrator);
  *
  *  A general Lagrangian's velocity is sought by Newton's method from v = 0 and from velocities along p. Where several velocities have one
  *  momentum, say which one is meant: dvi_integrator_start_velocity.
+ *  With a one-form p must be alpha(q) up to rounding; dvi_integrator_start_with can project another one.
  *  On any failure the old state stays.
+ *  @retval DVI_BAD_ARGUMENT   a pointer is NULL; or the state is off the constraint, p = alpha(q) of a one-form or phi(q,p) = 0 of a Hamiltonian
  *  @retval DVI_NOT_FINITE     an argument, the energy or the forces are not finite there
- *  @retval DVI_SINGULAR       the velocity Hessian is singular wherever it was tried: a degenerate Lagrangian
+ *  @retval DVI_SINGULAR       the velocity Hessian is singular wherever it was tried: a degenerate Lagrangian; or the two-form of a one-form
+ *                             is, or the bracket matrix of a Hamiltonian's constraints
  *  @retval DVI_NOT_CONVERGED  no velocity was found for p
- *  @retval DVI_CALLBACK_RETRY, DVI_CALLBACK_FAILED  a callback failed there */
+ *  @retval DVI_CALLBACK_RETRY, DVI_CALLBACK_FAILED  a callback failed there
+ *  @retval DVI_NO_MEMORY      KLU's own */
 dvi_status dvi_integrator_start(dvi_integrator *integrator, double t, const double *q, const double *p);
+
+/** The same by options; NULL: the default ones.
+ *
+ *  @retval DVI_BAD_ARGUMENT   the start is off the constraint, and not to be projected; the error sentence says how far it is off
+ *  @retval DVI_NOT_CONVERGED  no point with phi(q,p) = 0 was found from there
+ *  @retval (others)           as dvi_integrator_start */
+dvi_status dvi_integrator_start_with(dvi_integrator *integrator, double t, const double *q, const double *p,
+                                     const dvi_start_options *options);
 
 /** The same in state q [nq], v [nv], with p = L_v(t,q,v).
  *
- *  @retval DVI_SINGULAR  the velocity Hessian is singular at this velocity
- *  @retval (others)      as dvi_integrator_start */
+ *  @retval DVI_SINGULAR     the velocity Hessian is singular at this velocity
+ *  @retval DVI_UNSUPPORTED  the system declares a Hamiltonian, whose p is not known by v
+ *  @retval (others)         as dvi_integrator_start */
 dvi_status dvi_integrator_start_velocity(dvi_integrator *integrator, double t, const double *q, const double *v);
 
 /** Take one step of length h (negative: backward); h is time, or the fictitious time of dvi/transform.h.
@@ -104,11 +127,16 @@ dvi_status dvi_integrator_start_velocity(dvi_integrator *integrator, double t, c
  *  @retval DVI_BAD_OPTION      sem: a first step h outside of hmin and hmax
  *  @retval DVI_BAD_STATE       before dvi_integrator_start
  *  @retval DVI_NOT_CONVERGED   the step's equations were not solved, even by KINSOL with line search; the error sentence names
- *                              step, time, iterations and residual
+ *                              step, time, iterations and residual. Of a one-form in up to 16 dimensions also: the step leads over a point
+ *                              where the two-form is singular, beyond which no trajectory goes on
  *  @retval DVI_NOT_FINITE      NaN or Inf came out of a callback or the step
  *  @retval DVI_JUMP            a method with jumps ends the run because they have grown (its key `alarm`)
  *  @retval DVI_CALLBACK_RETRY  a callback returned a positive number
- *  @retval DVI_CALLBACK_FAILED a callback returned a negative number */
+ *  @retval DVI_CALLBACK_FAILED a callback returned a negative number
+ *  @retval DVI_SINGULAR        dg, dg-phase: the two-form is singular at the step's end
+ *  @retval DVI_UNSUPPORTED     dvrk and its kin: a component of the one-form that seemed constant at create is not
+ *  @retval DVI_NO_MEMORY       KLU's own
+ *  @retval DVI_SOLVER_FAILED   KINSOL refuses the equations */
 dvi_status dvi_integrator_step(dvi_integrator *integrator, double h);
 
 /** Current time; NaN for NULL. The queries up to dvi_integrator_method give NULL or 0 for NULL. */
@@ -158,19 +186,21 @@ const char *dvi_integrator_method(const dvi_integrator *integrator);
  *  @param[out] value  [dvi_system_invariant_count] */
 dvi_status dvi_integrator_invariants(dvi_integrator *integrator, double *value);
 
-/** How far the state is from the constraint of a system with a one-form: the largest |p_i - alpha_i(q)|, without an allocation.
+/** How far the state is from the constraint of a system with a one-form, the largest |p_i - alpha_i(q)|, or of a Hamiltonian, the largest |phi_a(q,p)|,
+ *  without an allocation.
  *
  *  @param[out] distance  not written on failure
- *  @retval DVI_UNSUPPORTED  the system has no one-form
+ *  @retval DVI_UNSUPPORTED  the system has neither a one-form nor a Hamiltonian
  *  @retval DVI_BAD_STATE    before dvi_integrator_start
- *  @retval (others)         as the one-form's callback fails */
+ *  @retval (others)         as the callback of the one-form or the constraint fails */
 dvi_status dvi_integrator_constraint(dvi_integrator *integrator, double *distance);
 
-/** The multiplier [nv] of the last step's constraint, owned by the integrator, valid until its next call; NULL if the method has none, or before the first
+/** The multiplier [nv], or [dvi_system_constraint_count], of the last step's constraint, owned by the integrator, valid until its next call; NULL if the method has none, or before the first
  *  step.
  *
  *  That of `vprk` is lambda in the units of q: the kick by which a projection moves q after the step (docs/methods/vprk.md). It measures by how much the
- *  step without a projection leaves p = alpha(q); where its sign alternates from step to step and it grows, a parasitic mode does. */
+ *  step without a projection leaves p = alpha(q); where its sign alternates from step to step and it grows, a parasitic mode does. That of `dg-phase` with a Hamiltonian is the lambda of the node at
+ *  the step's end (docs/methods/dg_phase.md). */
 const double *dvi_integrator_multiplier(const dvi_integrator *integrator);
 
 /** Dense output: the trajectory inside the last step.

@@ -68,6 +68,7 @@ extern "C" {
  *  @param      method  specification of galerkin, midpoint or trapezoidal, see dvi/method.h; without `solver`
  *  @param[out] path    owned by the caller; NULL on failure
  *  @retval DVI_BAD_OPTION    the method is none of these, or its specification makes no sense
+ *  @retval DVI_UNSUPPORTED   the system declares a one-form: its equations are of first order
  *  @retval DVI_BAD_ARGUMENT  the span is not positive and finite; an array is missing, given although these ends have no use for it, or not finite;
  *                            free_span without periodic ends, or for a system that is not declared autonomous; an energy without
  *                            free_span, a symmetry_pattern without symmetry
@@ -104,7 +105,8 @@ dvi_status dvi_path_guess_along(dvi_path *path, const dvi_path *last, const dvi_
  *                              good, or roundoff decided which one it is
  *  @retval DVI_BAD_ARGUMENT    the Lagrangian does not have `symmetry` for a symmetry, or, depending on time, not the period: L, L_q or L_v is another
  *                              one where they take the guess's first node, or a node of the path that was found
- *  @retval DVI_NOT_FINITE, DVI_CALLBACK_RETRY, DVI_CALLBACK_FAILED  from the callbacks */
+ *  @retval DVI_NOT_FINITE, DVI_CALLBACK_RETRY, DVI_CALLBACK_FAILED  from the callbacks
+ *  @retval DVI_NO_MEMORY       KLU's own, too */
 dvi_status dvi_path_solve(dvi_path *path, dvi_path_report *report);
 
 /** Number of steps N, there are N+1 nodes; 0 for NULL. */

@@ -6,11 +6,12 @@
 /** The codes. */
 typedef enum dvi_reference_code {
   DVI_IDA, /**< variable-order BDF on the implicit Euler-Lagrange equations: qdot = v, pdot = L_q, 0 = p - L_v (index 1); with a one-form on
-                        Omega(q) qdot = H_q */
+                        Omega(q) qdot = H_q; with a Hamiltonian on its equations with the multiplier eliminated */
   DVI_CVODE_ADAMS, /**< on qdot = v(q,p), pdot = L_q; with a one-form on qdot = v(q) alone */
   DVI_CVODE_BDF,
-  DVI_ARKODE,     /**< explicit Runge-Kutta, order 8 (Fehlberg 13-7-8) */
-  DVI_IDA_INDEX_2 /**< for one-forms: IDA on qdot = v, pdot = L_q, 0 = p - alpha(q), of index 2, without v in the error test */
+  DVI_ARKODE, /**< explicit Runge-Kutta, order 8 (Fehlberg 13-7-8) */
+  DVI_IDA_INDEX_2 /**< for one-forms: IDA on qdot = v, pdot = L_q, 0 = p - alpha(q), of index 2, without v in the error test; for Hamiltonians
+                        on qdot = H_p + phi_p^T lambda, pdot = -H_q - phi_q^T lambda, 0 = phi, without lambda in it */
 } dvi_reference_code;
 
 /** Options; zero means default. */
@@ -36,11 +37,11 @@ extern "C" {
 
 /** Integrate from (t, q, p) to t_end with one code at one tolerance.
  *
- *  @param[in,out] q, p    [nq], [nv]: initial state, then the state at t_end; unchanged on failure. With a one-form p must be alpha(q)
+ *  @param[in,out] q, p    [nq], [nv]: initial state, then the state at t_end; unchanged on failure. With a one-form p must be alpha(q), with constraints phi(q,p) 0
  *  @param         options NULL: IDA at its defaults
  *  @param[out]    report  may be NULL
  *  @retval DVI_REFERENCE_FAILED  the code stopped early; the error sentence has its reason and time
- *  @retval DVI_UNSUPPORTED       DVI_IDA_INDEX_2 for a system without a one-form */
+ *  @retval DVI_UNSUPPORTED       DVI_IDA_INDEX_2 for a system without a one-form or a Hamiltonian */
 dvi_status dvi_reference_solve(const dvi_system *system, double t, double t_end, double *q, double *p,
                                const dvi_reference_options *options, dvi_reference_report *report);
 

@@ -1,9 +1,12 @@
-/** The mechanical system: a Lagrangian, declared as terms.
+/** The mechanical system: a Lagrangian, or a Hamiltonian with constraints, declared as terms.
  *
  *      L(t,q,v) = v.M v/2  or  a general Lagrangian  or  a one-form alpha(q).v,  minus the sum of the potentials V_k(t,q),     q, v in R^n.
  *
  *  With a one-form the Lagrangian is degenerate: it is linear in v, the potentials' sum is the Hamiltonian H(t,q), the momenta are p = alpha(q), and the
  *  equations of motion are of first order, Omega(q) v = dH/dq with the two-form Omega_ij = d alpha_j/dq_i - d alpha_i/dq_j.
+ *
+ *  A Hamiltonian H(t,q,p) comes with an even number of constraints phi(q,p) = 0 (of second class: their bracket matrix {phi_a, phi_b} is regular).
+ *  The equations of motion are q' = H_p + phi_p^T lambda, p' = -H_q - phi_q^T lambda with the multipliers that keep phi = 0 (Dirac 1964).
  *
  *  Callbacks return 0 for success, a positive number if a smaller step might help (the step fails, the state stays, unless it can be taken
  *  without that point: iterations look for other ways first) and a negative one for a failure for good. They get the `user` pointer of the term that declares them. They must depend on
@@ -76,6 +79,38 @@ typedef struct dvi_gauge {
   dvi_pattern qq;
   void *user;
 } dvi_gauge;
+
+/** A Hamiltonian H(t,q,p) on phase space, all of it: potentials are no terms beside it. Its motion is constrained (dvi_constraint).
+ *
+ *  Its callbacks have the one-point shape alone. */
+typedef struct dvi_hamiltonian {
+  /** The value H. Needed. */
+  int (*value)(double t, const double *q, const double *p, double *H, void *user);
+  /** dH/dq [n] and dH/dp [n]. Needed. */
+  int (*gradient)(double t, const double *q, const double *p, double *H_q, double *H_p, void *user);
+  /** Second derivatives in the order of the patterns qq, qp (row q, column p) and pp. Left out: the gradient is differenced. */
+  int (*hessian)(double t, const double *q, const double *p, double *H_qq, double *H_qp, double *H_pp, void *user);
+  dvi_pattern qq, qp, pp;
+  void *user;
+} dvi_hamiltonian;
+
+/** The constraints phi(q,p) = 0 of a Hamiltonian system: particles on curves, Lagrangians of which only some coordinates have mass (p = alpha(q) for the
+ *  others), and p = alpha(q) for all of them.
+ *
+ *  Their callbacks have the one-point shape alone. */
+typedef struct dvi_constraint {
+  int count; /**< m, even, 2 to 2 n */
+  /** phi [m]. Needed. */
+  int (*value)(const double *q, const double *p, double *phi, void *user);
+  /** The gradients of its components in the order of the pattern `gradients`, of m columns and 2 n rows: column a holds d phi_a/dq, rows 0 to n-1, and
+   *  d phi_a/dp, rows n to 2n-1. Needed. */
+  int (*gradient)(const double *q, const double *p, double *phi_z, void *user);
+  /** The second derivatives of the function phi(q,p).w, w [m] fixed, in the order of the patterns qq, qp and pp. Left out: the gradients are differenced. */
+  int (*hessian)(const double *q, const double *p, const double *w, double *phi_w_qq, double *phi_w_qp, double *phi_w_pp,
+                 void *user);
+  dvi_pattern gradients, qq, qp, pp;
+  void *user;
+} dvi_constraint;
 
 /** A potential V(t,q); the Lagrangian holds -V. */
 typedef struct dvi_potential {
@@ -158,7 +193,7 @@ typedef struct dvi_system_terms {
   int dimension; /**< n, the number of coordinates, at least 1; even with a one-form; with factors 0: they say it */
   dvi_mass mass; /**< or: */
   const dvi_lagrangian *lagrangian; /**< or: */
-  const dvi_one_form *one_form;     /**< exactly one of mass, lagrangian and one_form */
+  const dvi_one_form *one_form;     /**< exactly one of mass, lagrangian, one_form and hamiltonian */
   const dvi_gauge *gauge;           /**< with a one-form, may be NULL: the system is that of alpha + grad f */
   const dvi_potential *potentials;
   int potential_count;
@@ -166,7 +201,9 @@ typedef struct dvi_system_terms {
   int symmetry_count;
   const dvi_invariant *invariants;
   int invariant_count;
-  int autonomous;            /**< not 0: no callback depends on t (dvi_system_check tests it), and no rates are given; 0: one may */
+  int autonomous; /**< not 0: no callback depends on t (dvi_system_check tests it), and no rates are given; 0: one may */
+  const dvi_hamiltonian *hamiltonian; /**< without potentials, and with: */
+  const dvi_constraint *constraint;
   const dvi_factor *factors; /**< NULL: R^n */
   int factor_count;
 } dvi_system_terms;
@@ -181,10 +218,11 @@ extern "C" {
 /** Make a system from its terms.
  *
  *  @param[out] system  owned by the caller; NULL on failure. It must outlive every integrator made from it.
- *  @retval DVI_BAD_SIZE      dimension (odd with a one-form), a count or a reach is out of range
+ *  @retval DVI_BAD_SIZE      dimension (odd with a one-form), a count (of constraints: odd, too) or a reach is out of range
  *  @retval DVI_BAD_ARGUMENT  a term is missing, given twice, or without its value callback; a reach has no gradient_range; a pattern is not
  *                            sorted; an autonomous system has a rate; a gauge has no one-form; an inertia is that of no body (its principal moments must be positive, none above the
- *                            sum of the others)
+ *                            sum of the others);
+ *                            of a Hamiltonian and a constraint one is missing, or there are potentials beside them
  *  @retval DVI_SINGULAR      the constant mass is singular or not finite
  *  @retval DVI_UNSUPPORTED   factors beside a general Lagrangian or a one-form
  *  @retval DVI_NO_MEMORY */
@@ -202,19 +240,27 @@ int dvi_system_nv(const dvi_system *system);
 /** Whether the system was declared autonomous: 1 or 0; 0 for NULL. */
 int dvi_system_autonomous(const dvi_system *system);
 
-/** The Lagrangian's value at (t, q [nq], v [nv]). Allocates; fails as the callbacks do. */
+/** How many constraints phi(q,p) = 0 a Hamiltonian has; 0 for other systems, and for NULL. */
+int dvi_system_constraint_count(const dvi_system *system);
+
+/** The Lagrangian's value at (t, q [nq], v [nv]). Allocates; fails as the callbacks do; DVI_UNSUPPORTED for a Hamiltonian. */
 dvi_status dvi_system_lagrangian(const dvi_system *system, double t, const double *q, const double *v, double *L);
 
-/** The Legendre map p = L_v(t,q,v) [nv] (Marsden and West 2001, sec. 1.2.5). Allocates. */
+/** The Legendre map p = L_v(t,q,v) [nv] (Marsden and West 2001, sec. 1.2.5). Allocates. DVI_UNSUPPORTED for a Hamiltonian: its constraints may leave
+ *  more than one p to a v, or none. */
 dvi_status dvi_system_momentum(const dvi_system *system, double t, const double *q, const double *v, double *p);
 
 /** The inverse Legendre map: the v [nv] with L_v(t,q,v) = p, by Newton's method from v as given.
  *
  *  If that does not settle, velocities along p are tried as guesses. A degenerate Lagrangian alpha.v - H has no such map; there v is that of the
- *  equations of motion, Omega(q) v = dH/dq, and p does not matter.
+ *  equations of motion, Omega(q) v = dH/dq, and p does not matter. Of a Hamiltonian v = H_p + phi_p^T lambda.
  *  @param[in,out] v  [nv]; a starting guess (read for general Lagrangians only), then the velocity; unchanged on failure
- *  @retval DVI_SINGULAR       L_vv is singular at every guess; or Omega is
- *  @retval DVI_NOT_CONVERGED  Newton's method did not settle from any guess */
+ *  @retval DVI_SINGULAR       L_vv is singular at every guess; or Omega is; or the constraints' bracket matrix
+ *  @retval DVI_NOT_CONVERGED  Newton's method did not settle from any guess
+ *  @retval DVI_BAD_ARGUMENT   an argument is NULL
+ *  @retval DVI_NOT_FINITE     an argument, or the velocity that was found, is not finite
+ *  @retval DVI_NO_MEMORY
+ *  @retval (others)           as the callbacks fail */
 dvi_status dvi_system_velocity(const dvi_system *system, double t, const double *q, const double *p, double *v);
 
 /** How far q [nq] is from the configuration space of a system with factors: the largest distance from a rotation (dvi_so3_distance) or ||q| - 1|; 0
@@ -232,8 +278,19 @@ dvi_status dvi_system_project(const dvi_system *system, double *q);
  *
  *  @param[out] Omega      [n*n] column by column, antisymmetric; may be NULL
  *  @param[out] condition  |Omega| |Omega^-1| in the norm of the largest column sum; infinite where Omega is singular; may be NULL
- *  @retval DVI_UNSUPPORTED  the system has no one-form */
+ *  @retval DVI_UNSUPPORTED   the system has no one-form
+ *  @retval DVI_BAD_ARGUMENT  system or q is NULL
+ *  @retval DVI_NOT_FINITE    q is not finite
+ *  @retval DVI_NO_MEMORY
+ *  @retval (others)          as the one-form's callback fails */
 dvi_status dvi_system_two_form(const dvi_system *system, const double *q, double *Omega, double *condition);
+
+/** The bracket matrix B_ab = {phi_a, phi_b} = phi_a,q.phi_b,p - phi_a,p.phi_b,q of a Hamiltonian's m constraints, and its condition number. Allocates.
+ *
+ *  @param[out] bracket    [m*m] column by column, antisymmetric; may be NULL
+ *  @param[out] condition  |B| |B^-1| in the norm of the largest column sum; infinite where B is singular; may be NULL
+ *  @retval DVI_UNSUPPORTED  the system has no constraints phi(q,p) */
+dvi_status dvi_system_bracket(const dvi_system *system, const double *q, const double *p, double *bracket, double *condition);
 
 /** How many invariants are watched: the energy, one momentum for each symmetry, and the declared ones, in this order; 0 for NULL. */
 int dvi_system_invariant_count(const dvi_system *system);
@@ -243,7 +300,7 @@ const char *dvi_system_invariant_name(const dvi_system *system, int i);
 
 /** All invariants at (t, q [nq], p [nv]). Allocates; dvi_integrator_invariants does not.
  *
- *  The energy is p.v - L with v from the inverse Legendre map; with a one-form it is H.
+ *  The energy is p.v - L with v from the inverse Legendre map; with a one-form, or a Hamiltonian, it is H.
  *  @param[out] value  [dvi_system_invariant_count] */
 dvi_status dvi_system_invariants(const dvi_system *system, double t, const double *q, const double *p, double *value);
 
@@ -264,11 +321,14 @@ typedef struct dvi_derivative_check {
  *  give the same numbers at two other times.
  *
  *  Uses 6th order central differences; n^2 gradient calls: meant for tests and for moderate n.
- *  @param      q, v       [nq], [nv]: a point in general position
+ *  @param      q, v       [nq], [nv]: a point in general position; with a Hamiltonian v stands for p
  *  @param      tolerance  largest relative difference to accept; 0: 1e-6
  *  @param[out] check      the findings; may be NULL
  *  @retval DVI_OK            everything agrees
- *  @retval DVI_BAD_ARGUMENT  something does not; the error sentence names it */
+ *  @retval DVI_BAD_ARGUMENT  something does not, and the error sentence names it; an argument is NULL; the tolerance is negative
+ *  @retval DVI_NOT_FINITE    the point is not finite
+ *  @retval DVI_NO_MEMORY
+ *  @retval (others)          as the callbacks fail */
 dvi_status dvi_system_check(const dvi_system *system, double t, const double *q, const double *v, double tolerance,
                             dvi_derivative_check *check);
 

@@ -24,7 +24,7 @@ static int allocate_batches(dvi__action *a)
 static dvi_status allocate_chord(dvi__action *a, dvi_counters *counters)
 {
   const dvi_system *system = a->system;
-  if (system->lagrangian == NULL) return DVI_OK;
+  if (system->lagrangian == NULL || system->terms & DVI__ONE_FORM) return DVI_OK;
   a->middle[0] = DVI_NEW(double, a->n);
   a->middle[1] = DVI_NEW(double, a->n);
   a->middle_vv = DVI_NEW(double, dvi__pattern_entries(&system->vv));

@@ -74,8 +74,8 @@ dvi_status dvi__action_duration(dvi__action *action, const double *Y, double *du
 /* The path at tau relative to q0, and its velocity for a step h; either may be NULL. */
 void dvi__action_path(const dvi__action *action, const double *Y, double h, double tau, double *offset, double *v);
 
-/* Y of the straight path q0 + tau dq. */
-void dvi__action_straight(const dvi__action *action, const double *dq, double *Y);
+/* Y of the straight path along v [n]. */
+void dvi__action_straight(const dvi__action *action, const double *v, double *Y);
 
 /* Y of the next step from the last one's, by continuing its polynomial; ratio = h_next / h_last. May not alias. */
 void dvi__action_continue(dvi__action *action, double ratio, const double *last, double *Y);
@@ -87,5 +87,8 @@ void dvi__action_fit(const dvi__action *action, const double *offset, double *Y)
 /* Typical size of each row per unit of an unknown, for scaling norms: scale[i*s+k] = |L_vv|_ii / h > 0. After prepare_chord. 0: it is still what it was at
  * the last call, and nothing is written. */
 int dvi__action_row_scale(dvi__action *action, double *scale);
+
+/* The same for a system with a one-form: of the gradients of alpha at q0. */
+dvi_status dvi__action_scale(dvi__action *action, double *scale);
 
 #endif

@@ -131,11 +131,6 @@ void dvi__darboux_destroy(dvi__darboux **darboux)
   *darboux = NULL;
 }
 
-int dvi__darboux_unknowns(const dvi__darboux *d)
-{
-  return d->n * d->m;
-}
-
 const dvi__pattern *dvi__darboux_pattern(const dvi__darboux *d)
 {
   return &d->pattern;

@@ -25,7 +25,6 @@ dvi_status dvi__darboux_create(const dvi_system *system, dvi__darboux_rule rule,
                                dvi__darboux **darboux);
 void dvi__darboux_destroy(dvi__darboux **darboux);
 
-int dvi__darboux_unknowns(const dvi__darboux *darboux);
 const dvi__pattern *dvi__darboux_pattern(const dvi__darboux *darboux);
 dvi__evaluator *dvi__darboux_evaluator(const dvi__darboux *darboux);
 

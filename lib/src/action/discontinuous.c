@@ -136,11 +136,6 @@ void dvi__discontinuous_destroy(dvi__discontinuous **element)
   *element = NULL;
 }
 
-int dvi__discontinuous_unknowns(const dvi__discontinuous *e)
-{
-  return e->n * e->S;
-}
-
 const dvi__pattern *dvi__discontinuous_pattern(const dvi__discontinuous *e)
 {
   return &e->pattern;

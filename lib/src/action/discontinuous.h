@@ -38,7 +38,6 @@ dvi_status dvi__discontinuous_create(const dvi_system *system, const dvi__dg_spa
                                      dvi__discontinuous **element);
 void dvi__discontinuous_destroy(dvi__discontinuous **element);
 
-int dvi__discontinuous_unknowns(const dvi__discontinuous *element);
 const dvi__pattern *dvi__discontinuous_pattern(const dvi__discontinuous *element);
 dvi__evaluator *dvi__discontinuous_evaluator(const dvi__discontinuous *element);
 

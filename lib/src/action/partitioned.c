@@ -138,11 +138,6 @@ void dvi__partitioned_destroy(dvi__partitioned **partitioned)
   *partitioned = NULL;
 }
 
-int dvi__partitioned_unknowns(const dvi__partitioned *p)
-{
-  return p->n * p->m;
-}
-
 const dvi__pattern *dvi__partitioned_pattern(const dvi__partitioned *p)
 {
   return &p->pattern;

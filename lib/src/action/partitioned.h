@@ -32,7 +32,6 @@ dvi_status dvi__partitioned_create(const dvi_system *system, dvi__tableau tablea
                                    dvi_counters *counters, dvi__partitioned **partitioned);
 void dvi__partitioned_destroy(dvi__partitioned **partitioned);
 
-int dvi__partitioned_unknowns(const dvi__partitioned *partitioned);
 const dvi__pattern *dvi__partitioned_pattern(const dvi__partitioned *partitioned);
 dvi__evaluator *dvi__partitioned_evaluator(const dvi__partitioned *partitioned);
 

@@ -146,6 +146,13 @@ int dvi__action_row_scale(dvi__action *a, double *scale)
   return 1;
 }
 
+dvi_status dvi__action_scale(dvi__action *a, double *scale)
+{
+  DVI_TRY(dvi__form_scale(a->evaluator, a->q0, a->rows));
+  for (int i = 0; i < a->n * a->s; i++) scale[i] = a->rows[i / a->s];
+  return DVI_OK;
+}
+
 /* ---- paths ---- */
 
 void dvi__action_path(const dvi__action *a, const double *Y, double h, double tau, double *offset, double *v)
@@ -158,10 +165,10 @@ void dvi__action_path(const dvi__action *a, const double *Y, double h, double ta
   }
 }
 
-void dvi__action_straight(const dvi__action *a, const double *dq, double *Y)
+void dvi__action_straight(const dvi__action *a, const double *v, double *Y)
 {
   for (size_t i = 0, s = (size_t)a->s; i < (size_t)a->n; i++)
-    for (size_t k = 0; k < s; k++) Y[i * s + k] = a->straight[k] * dq[i];
+    for (size_t k = 0; k < s; k++) Y[i * s + k] = a->straight[k] * (a->h * v[i]);
 }
 
 const double *dvi__action_fit_points(const dvi__action *a)

@@ -133,8 +133,13 @@ static dvi_status solve(dvi__stepper *self, const dvi__state *state, double h, d
   const size_t nx = (size_t)self->system->nx;
   dvi__charted_centre(own->charted, state->q);
   memset(own->local, 0, 4 * nx * sizeof(double));
-  *local = (dvi__state){state->t,        state->t_carry,      state->density,     own->local,
-                        own->local + nx, own->local + 2 * nx, own->local + 3 * nx};
+  *local = (dvi__state){.t = state->t,
+                        .t_carry = state->t_carry,
+                        .density = state->density,
+                        .q = own->local,
+                        .p = own->local + nx,
+                        .q_carry = own->local + 2 * nx,
+                        .p_carry = own->local + 3 * nx};
   dvi__charted_enter(own->charted, state->p, local->p);
   own->inner.memory = self->memory;
   const dvi_status status = own->inner.method->step(&own->inner, local, h);

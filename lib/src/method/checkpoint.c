@@ -24,7 +24,7 @@
 #include "method/integrator_struct.h"
 #include "num/finite.h"
 
-/* The Lagrangian at a state: its value, and one sum over its forces; the sizes of the summands tell rounding from difference. NaN if a
+/* The Lagrangian, or the Hamiltonian, at a state: its value, and one sum over its forces; the sizes of the summands tell rounding from difference. NaN if a
  * callback fails there. */
 typedef struct portrait {
   double value, value_size, force, force_size;
@@ -68,11 +68,12 @@ static portrait portray(const dvi_integrator *I, double t, const double *now, co
   const int n = I->system->n;
   const double *q = now, *p_now = now + n;
   double *v = I->v, *forces = I->last_v;
+  const double *second = I->system->terms & DVI__HAMILTONIAN ? p_now : v;
   portrait p = {0};
   if (I->system->cells == NULL) dvi__guess_velocity(n, q, last, last + n, last_h, v);
   if (dvi__legendre_inverse(I->evaluator, t, q, p_now, v) != DVI_OK ||
-      dvi__state_lagrangian(I->evaluator, t, q, v, &p.value) != DVI_OK ||
-      dvi__state_forces(I->evaluator, t, q, v, forces) != DVI_OK)
+      dvi__state_lagrangian(I->evaluator, t, q, second, &p.value) != DVI_OK ||
+      dvi__state_forces(I->evaluator, t, q, second, forces) != DVI_OK)
     return (portrait){(double)NAN, (double)NAN, (double)NAN, (double)NAN};
   p.value_size = fabs(p.value);
   for (int i = 0; i < n; i++) {
@@ -219,7 +220,7 @@ static dvi_status check(const dvi_integrator *I, const char *path, const unsigne
   if (memcmp(head.magic, magic, sizeof magic) != 0) return dvi__fail(DVI_BAD_FILE, "%s is not a checkpoint", path);
   if (head.order_mark != ORDER_MARK || head.version != VERSION)
     return dvi__fail(DVI_BAD_FILE, "checkpoint %s: written on another kind of machine or by another version", path);
-  if (strcmp(head.specification, I->stepper.specification) != 0)
+  if (!dvi__same_steps(head.specification, I->stepper.specification))
     return dvi__fail(DVI_BAD_FILE, "checkpoint %s: written by %s, not by %s", path, head.specification, I->stepper.specification);
   if (head.n != I->system->n)
     return dvi__fail(DVI_BAD_FILE, "checkpoint %s: %lld coordinates, not %d", path, (long long)head.n, I->system->n);
@@ -243,6 +244,7 @@ static void unpack(dvi_integrator *I, const unsigned char *file)
   I->last.t_carry = head.last_t_carry;
   I->last_h = head.last_h;
   I->now.density = head.density;
+  I->now.side = 0;
   if (I->pace != NULL) dvi__pace_set_energy(I->pace, head.energy);
   I->counters.steps = (long)head.steps;
   const unsigned char *at = file + sizeof head;

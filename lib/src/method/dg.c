@@ -39,10 +39,13 @@ static dvi_status choose(int *value)
 static dvi_status check_stiffness(const dvi__settings *settings, int n)
 {
   if (settings->listed > 1 && settings->listed != n)
-    return dvi__fail(DVI_BAD_OPTION, "dg: stiffness has %d numbers; one, or one for each of the %d coordinates is needed",
+    return dvi__fail(DVI_BAD_OPTION,
+                     n <= DVI__LIST_MOST ? "dg: stiffness has %d numbers; one, or one for each of the %d coordinates is needed"
+                                         : "dg: stiffness has %d numbers; one is needed, for all of the %d coordinates",
                      settings->listed, n);
   for (int i = 0; i < settings->listed; i++)
-    if (settings->list[i] == 0) return dvi__fail(DVI_BAD_OPTION, "dg: stiffness is 0; leave it out, or take positive numbers");
+    if (settings->list[i] == 0)
+      return dvi__fail(DVI_BAD_OPTION, "dg: number %d of stiffness is 0; positive ones are possible, or none at all", i + 1);
   return DVI_OK;
 }
 

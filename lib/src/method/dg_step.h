@@ -2,29 +2,32 @@
 #ifndef DVI_METHOD_DG_STEP_H
 #define DVI_METHOD_DG_STEP_H
 #include "action/discontinuous.h"
-#include "method/method.h"
+#include "method/one_step.h"
 
 /* The `alarm` key: what a jump that is large against the motion does. Its value goes to dvi__dg_create. */
-#define DVI__ALARM_KEY                                                                                                        \
-  {                                                                                                                           \
-    "alarm", dvi__alarm_choice, 0, 0, DVI__ALARM_STOP, "stop or warn if the jump is large against the motion; left out: stop" \
+#define DVI__ALARM_KEY                                                         \
+  {                                                                            \
+    "alarm", dvi__alarm_choice, DVI__SAID, 0, DVI__ALARM_STOP,                 \
+        "stop or warn if the jump is large against the motion; left out: stop" \
   }
 
 enum { DVI__ALARM_STOP, DVI__ALARM_WARN };
 const char *dvi__alarm_choice(int index);
 
+/* Judge a jump of this size against a part of the largest motion, with `at` the size of what jumps: DVI_JUMP with the remedy, or counted, if it is larger. */
+dvi_status dvi__watch_jump(const dvi__stepper *self, int alarm, double part, double jump, double motion, double at,
+                           const char *remedy);
+void dvi__explain_jumps(int alarm, dvi__text *text);
+
 /* Fill a stepper's symmetric, memory and own for this space; not its order. */
 dvi_status dvi__dg_create(dvi__stepper *self, const dvi__dg_space *space, int alarm);
 
 /* The other operations of dvi__method, and what goes into its initialiser for them. */
-void dvi__dg_destroy(dvi__stepper *self);
-void dvi__dg_start(dvi__stepper *self, const double *v);
 dvi_status dvi__dg_step(dvi__stepper *self, dvi__state *state, double h);
 const double *dvi__dg_jump(const dvi__stepper *self);
-void dvi__dg_explain(const dvi__stepper *self, dvi__text *text);
 
-#define DVI__DG_OPERATIONS                                                                                            \
-  .needs = DVI__ONE_FORM, .uses = DVI__ONE_FORM | DVI__POTENTIAL, .destroy = dvi__dg_destroy, .start = dvi__dg_start, \
-  .step = dvi__dg_step, .jump = dvi__dg_jump, .explain = dvi__dg_explain
+#define DVI__DG_OPERATIONS                                                                                    \
+  .needs = DVI__ONE_FORM, .uses = DVI__ONE_FORM | DVI__POTENTIAL, .step = dvi__dg_step, .jump = dvi__dg_jump, \
+  DVI__ONE_STEP_OPERATIONS
 
 #endif

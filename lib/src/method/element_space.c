@@ -1,6 +1,22 @@
-/* The space of a method, for those who use its discrete action otherwise than step by step. */
+/* What methods say of their spaces, and the space of a method for those who use its discrete action otherwise than step by step. */
 #include "core/status.h"
 #include "method/element_step.h"
+
+int dvi__fewest_nodes(dvi_rule rule, int degree)
+{
+  int best = 0;
+  for (int nodes = 1; nodes <= DVI_QUADRATURE_MAX; nodes++) {
+    const int order = dvi_quadrature_order(rule, nodes);
+    if (order > 0) best = nodes;
+    if (order >= 2 * degree && nodes >= degree) break;
+  }
+  return best;
+}
+
+int dvi__symmetric_rule(dvi_rule rule)
+{
+  return rule != DVI_RADAU_LEFT && rule != DVI_RADAU_RIGHT;
+}
 
 dvi_status dvi__element_space(const dvi_system *system, const char *specification, const char *user, dvi__action_space *space,
                               dvi__text *spelled)

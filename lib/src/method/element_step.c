@@ -136,11 +136,6 @@ static int allocate(dvi__stepper *self, element *own)
   return own->Y && own->dq && own->dq_low && own->dp && own->part_q && own->part_p && own->part_v && own->part_Y && own->offset;
 }
 
-static int symmetric_rule(dvi_rule rule)
-{
-  return rule != DVI_RADAU_LEFT && rule != DVI_RADAU_RIGHT;
-}
-
 static int smaller(int a, int b)
 {
   return a < b ? a : b;
@@ -187,7 +182,7 @@ dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *spac
   element *own = self->own = DVI_NEW(element, 1);
   if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
   self->order = order_of(space->degree, quadrature_order);
-  self->symmetric = symmetric_rule(space->rule);
+  self->symmetric = dvi__symmetric_rule(space->rule);
   own->choice = solver;
   DVI_TRY(dvi__action_create(self->system, space, self->counters, &own->action));
   DVI_TRY(dvi__action_prepare_jacobian(own->action));
@@ -248,7 +243,6 @@ static dvi_status guess(dvi__stepper *self, const place *at, double *Y)
   }
   memcpy(own->dq, at->last_Y, (size_t)self->system->n * sizeof(double));
   DVI_TRY(dvi__legendre_inverse(dvi__action_evaluator(own->action), at->t, at->q, at->p, own->dq));
-  for (int i = 0; i < self->system->n; i++) own->dq[i] *= at->h;
   dvi__action_straight(own->action, own->dq, Y);
   return DVI_OK;
 }

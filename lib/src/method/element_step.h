@@ -37,6 +37,10 @@ size_t dvi__element_forces(const dvi__stepper *self);
 dvi_status dvi__element_space(const dvi_system *system, const char *specification, const char *user, dvi__action_space *space,
                               dvi__text *spelled);
 
+/* The fewest nodes of a rule whose order is 2 degree, or the most that it has; whether it is the same from both ends. */
+int dvi__fewest_nodes(dvi_rule rule, int degree);
+int dvi__symmetric_rule(dvi_rule rule);
+
 /* What it was made of. */
 dvi__action *dvi__element_action(const dvi__stepper *self);
 int dvi__element_solver(const dvi__stepper *self);
@@ -53,9 +57,12 @@ dvi_status dvi__element_prepare_lanes(dvi__stepper *self, int capacity);
 void dvi__element_clear_lanes(dvi__stepper *self);
 void dvi__element_step_lanes(dvi__stepper *self, dvi__members *members, double h);
 
-#define DVI__ELEMENT_OPERATIONS                                                                                                \
-  .uses = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL, .destroy = dvi__element_destroy, .start = dvi__element_start, \
-  .step = dvi__element_step, .path = dvi__element_path, .explain = dvi__element_explain,                                       \
-  .prepare_lanes = dvi__element_prepare_lanes, .clear_lanes = dvi__element_clear_lanes, .step_lanes = dvi__element_step_lanes
+/* The terms that they can use. */
+enum { DVI__ELEMENT_TERMS = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL };
+
+#define DVI__ELEMENT_OPERATIONS                                                                                          \
+  .destroy = dvi__element_destroy, .start = dvi__element_start, .step = dvi__element_step, .path = dvi__element_path,    \
+  .explain = dvi__element_explain, .prepare_lanes = dvi__element_prepare_lanes, .clear_lanes = dvi__element_clear_lanes, \
+  .step_lanes = dvi__element_step_lanes
 
 #endif

@@ -37,23 +37,11 @@ static int fixed_size(dvi_rule rule)
   return rule == DVI_MIDPOINT || rule == DVI_TRAPEZOID || rule == DVI_SIMPSON;
 }
 
-/* The fewest nodes whose order is 2 degree, or the most that the rule has. */
-static int choose_nodes(dvi_rule rule, int degree)
-{
-  int best = 0;
-  for (int nodes = 1; nodes <= DVI_QUADRATURE_MAX; nodes++) {
-    const int order = dvi_quadrature_order(rule, nodes);
-    if (order > 0) best = nodes;
-    if (order >= 2 * degree && nodes >= degree) break;
-  }
-  return best;
-}
-
 static dvi_status create(dvi__stepper *self)
 {
   int *value = self->settings.value;
   const dvi_rule rule = (dvi_rule)value[QUADRATURE];
-  if (value[NODES] == DVI__LEFT_OUT) value[NODES] = choose_nodes(rule, value[DEGREE]);
+  if (value[NODES] == DVI__LEFT_OUT) value[NODES] = dvi__fewest_nodes(rule, value[DEGREE]);
   if (dvi_quadrature_order(rule, value[NODES]) == 0)
     return dvi__fail(DVI_BAD_OPTION, "galerkin: quadrature %s has no rule with %d point%s%s", dvi_rule_name(rule), value[NODES],
                      value[NODES] == 1 ? "" : "s", fixed_size(rule) ? "; leave nodes out" : "; at least 2 are needed");
@@ -72,6 +60,7 @@ const dvi__method dvi__galerkin = {
     .summary = "polynomials of any degree s, any quadrature; order 2s if the quadrature's order is 2s or more",
     .cite = "LeokShingel2012",
     .keys = keys,
+    .uses = DVI__ELEMENT_TERMS,
     .create = create,
     DVI__ELEMENT_OPERATIONS,
 };

@@ -6,6 +6,7 @@
 #include "core/status.h"
 #include "method/integrator_struct.h"
 #include "num/finite.h"
+#include "system/dirac.h"
 
 /* ---- create, destroy ---- */
 
@@ -85,11 +86,11 @@ static dvi_status check_start(const dvi_integrator *I, double t, const double *q
 static dvi_status start(dvi_integrator *I, double t, const double *q, const double *v, const double *p)
 {
   const size_t bytes = (size_t)I->system->n * sizeof(double), v_bytes = (size_t)I->system->nv * sizeof(double);
-  const double *w = I->pace != NULL ? I->last_v : v;
+  const double *w = I->pace != NULL ? I->last_v : v, *second = I->system->terms & DVI__HAMILTONIAN ? p : v;
   double L, density = 0;
-  DVI_TRY(dvi__state_lagrangian(I->evaluator, t, q, v, &L));
-  DVI_TRY(dvi__state_forces(I->evaluator, t, q, v, I->next.p_carry));
-  if (I->pace != NULL) DVI_TRY(dvi__pace_start(I, t, q, v, I->last_v, &density));
+  DVI_TRY(dvi__state_lagrangian(I->evaluator, t, q, second, &L));
+  DVI_TRY(dvi__state_forces(I->evaluator, t, q, second, I->next.p_carry));
+  if (I->pace != NULL) DVI_TRY(dvi__pace_start(I, t, q, v, p, I->last_v, &density));
   memmove(I->now.q, q, bytes);
   memmove(I->now.p, p, v_bytes);
   memset(I->now.q_carry, 0, bytes);
@@ -98,6 +99,7 @@ static dvi_status start(dvi_integrator *I, double t, const double *q, const doub
   I->now.t = t;
   I->now.t_carry = 0;
   I->now.density = density;
+  I->now.side = 0;
   I->last_h = 0;
   I->started = 1;
   I->stepper.method->start(&I->stepper, w);
@@ -109,16 +111,42 @@ static dvi_status verdict(const dvi_integrator *I, double t, dvi_status status)
   return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "%s: cannot start at t = %.6g", I->stepper.method->name, t);
 }
 
-dvi_status dvi_integrator_start(dvi_integrator *I, double t, const double *q, const double *p)
+/* Project a start in the integrator's own memory: onto p = alpha(q) by p, onto phi(q,p) = 0 by both; v [n] is zero. */
+static dvi_status project_start(dvi_integrator *I, double t, const double *v, const double **q, const double **p)
+{
+  const size_t n = (size_t)I->system->n;
+  memmove(I->next.p, *p, n * sizeof(double));
+  memmove(I->next.q, *q, n * sizeof(double));
+  *q = I->next.q;
+  *p = I->next.p;
+  if (I->system->terms & DVI__HAMILTONIAN) return dvi__dirac_project(I->evaluator, I->next.q);
+  return dvi__lagrangian_gradient(I->evaluator, 1, &t, *q, v, NULL, I->next.p);
+}
+
+static dvi_status constrain(dvi_integrator *I, double t, const double *v, int project, const double **q, const double **p)
+{
+  if (!(I->system->terms & (DVI__ONE_FORM | DVI__HAMILTONIAN))) return DVI_OK;
+  if (project) return project_start(I, t, v, q, p);
+  return I->system->terms & DVI__ONE_FORM ? dvi__form_constraint(I->evaluator, *q, *p)
+                                          : dvi__dirac_constraint(I->evaluator, *q, *p);
+}
+
+dvi_status dvi_integrator_start_with(dvi_integrator *I, double t, const double *q, const double *p,
+                                     const dvi_start_options *options)
 {
   if (I == NULL || q == NULL || p == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "start: an argument is NULL");
   double *v = I->next.q_carry;
   memset(v, 0, (size_t)I->system->nv * sizeof(double));
   dvi_status status = check_start(I, t, q, p, 'p');
-  if (status == DVI_OK && I->system->terms & DVI__ONE_FORM) status = dvi__form_constraint(I->evaluator, q, p);
+  if (status == DVI_OK) status = constrain(I, t, v, options != NULL && options->project, &q, &p);
   if (status == DVI_OK) status = dvi__legendre_inverse(I->evaluator, t, q, p, v);
   if (status == DVI_OK) status = start(I, t, q, v, p);
   return verdict(I, t, status);
+}
+
+dvi_status dvi_integrator_start(dvi_integrator *I, double t, const double *q, const double *p)
+{
+  return dvi_integrator_start_with(I, t, q, p, NULL);
 }
 
 dvi_status dvi_integrator_start_velocity(dvi_integrator *I, double t, const double *q, const double *v)
@@ -126,6 +154,8 @@ dvi_status dvi_integrator_start_velocity(dvi_integrator *I, double t, const doub
   if (I == NULL || q == NULL || v == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "start: an argument is NULL");
   double *p = I->next.p;
   dvi_status status = check_start(I, t, q, v, 'v');
+  if (status == DVI_OK && I->system->terms & DVI__HAMILTONIAN)
+    status = dvi__fail(DVI_UNSUPPORTED, "the system declares a Hamiltonian; start with q and p");
   if (status == DVI_OK) status = dvi__state_momentum(I->evaluator, t, q, v, p);
   if (status == DVI_OK && dvi__first_not_finite((size_t)I->system->nv, p) >= 0)
     status = dvi__fail(DVI_NOT_FINITE, "the momentum is not finite");
@@ -141,6 +171,7 @@ static void copy_state(size_t n, const dvi__state *from, dvi__state *to)
   to->t = from->t;
   to->t_carry = from->t_carry;
   to->density = from->density;
+  to->side = from->side;
   memcpy(to->q, from->q, 4 * n * sizeof(double)); /* q, p and both carries lie in a row */
 }
 
@@ -151,6 +182,18 @@ static dvi_status check_state(const dvi_integrator *I)
     return dvi__fail(DVI_BAD_ARGUMENT, "monitor %s is so small that the step does not move the time", I->pace->name);
   if (isfinite(I->next.t) && dvi__first_not_finite(2 * n, I->next.q) < 0) return DVI_OK;
   return dvi__fail(DVI_NOT_FINITE, "the new state is not finite");
+}
+
+/* No trajectory goes through a point where the two-form is singular, but a step can go over it, and is on none then. */
+static dvi_status check_side(dvi_integrator *I)
+{
+  if (!(I->system->terms & DVI__ONE_FORM)) return DVI_OK;
+  if (I->now.side == 0) DVI_TRY(dvi__two_form_side(I->evaluator, I->now.q, &I->now.side));
+  DVI_TRY(dvi__two_form_side(I->evaluator, I->next.q, &I->next.side));
+  if (I->next.side == I->now.side) return DVI_OK;
+  return dvi__fail(
+      DVI_NOT_CONVERGED,
+      "the step leads over a point where the two-form of the one-form is singular, beyond which no trajectory goes on");
 }
 
 static void accept(dvi_integrator *I, double h)
@@ -224,6 +267,7 @@ static dvi_status advance(dvi_integrator *I, double h)
   I->next.density = density;
   DVI_TRY(method->step(&I->stepper, &I->next, length));
   DVI_TRY(check_state(I));
+  DVI_TRY(check_side(I));
   return dvi__control_end(I, h);
 }
 
@@ -344,8 +388,10 @@ dvi_status dvi_integrator_invariants(dvi_integrator *I, double *value)
 dvi_status dvi_integrator_constraint(dvi_integrator *I, double *distance)
 {
   if (I == NULL || distance == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "constraint: an argument is NULL");
-  if (!(I->system->terms & DVI__ONE_FORM)) return dvi__fail(DVI_UNSUPPORTED, "constraint: the system declares no one-form");
+  if (!(I->system->terms & (DVI__ONE_FORM | DVI__HAMILTONIAN)))
+    return dvi__fail(DVI_UNSUPPORTED, "constraint: the system declares neither a one-form nor a Hamiltonian with constraints");
   if (!I->started) return dvi__fail(DVI_BAD_STATE, "constraint: the integrator has no state yet; call dvi_integrator_start first");
+  if (I->system->terms & DVI__HAMILTONIAN) return dvi__dirac_distance(I->evaluator, I->now.q, I->now.p, distance);
   return dvi__form_distance(I->evaluator, I->now.q, I->now.p, distance);
 }
 

@@ -9,6 +9,7 @@
 typedef struct dvi__state {
   double t, t_carry;
   double density;                    /* step control's z (method/control.c) */
+  int side;                          /* the driver's, of degenerate systems: dvi__two_form_side at q; 0: not known */
   double *q, *p, *q_carry, *p_carry; /* [n] */
 } dvi__state;
 
@@ -31,8 +32,9 @@ typedef struct dvi__key {
   const char *help;
 } dvi__key;
 
-/* As `least`: the key is a positive number, or auto, which it is if it is not given. */
-enum { DVI__POSITIVE = -2 };
+/* As `least`: the key is a positive number, or auto, which it is if it is not given; the key is a choice of what is said of the steps, and does not
+ * change them. */
+enum { DVI__POSITIVE = -2, DVI__SAID = -3 };
 
 enum { DVI__KEYS_MOST = 8, DVI__LIST_MOST = 16, DVI__SPECIFICATION_SIZE = 256, DVI__LEFT_OUT = -1 };
 
@@ -126,6 +128,9 @@ dvi_status dvi__parse(const char *specification, const dvi__method **method, dvi
 
 /* Write it with every key spelled out. */
 void dvi__spell_out(const dvi__method *method, const dvi__settings *settings, dvi__text *text);
+
+/* Whether two specifications with every key spelled out have the same steps: in what is said of them they may differ. */
+int dvi__same_steps(const char *one, const char *other);
 
 /* The method of a name, or NULL (table.c). */
 const dvi__method *dvi__find_method(const char *name, size_t length);

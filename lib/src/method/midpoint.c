@@ -20,6 +20,7 @@ const dvi__method dvi__midpoint = {
     .summary = "implicit midpoint rule: straight line, midpoint; order 2; any Lagrangian",
     .cite = "MarsdenWest2001",
     .keys = keys,
+    .uses = DVI__ELEMENT_TERMS,
     .create = create,
     DVI__ELEMENT_OPERATIONS,
 };

@@ -78,8 +78,10 @@ static dvi_status check_method(const dvi_integrator *I)
   if (I->pace->pacing == DVI__TRANSFORM || I->stepper.symmetric) return DVI_OK;
   return dvi__fail(DVI_UNSUPPORTED,
                    "%s is not symmetric, and only that keeps energies from drifting when steps change; "
-                   "choose a symmetric quadrature, or the time transform",
-                   I->stepper.specification);
+                   "choose %s",
+                   I->stepper.specification,
+                   I->system->terms & DVI__ONE_FORM ? "dg, dg-phase, dvrk, or vprk with its symmetric projection"
+                                                    : "a symmetric quadrature, or the time transform");
 }
 
 static dvi_status create(const dvi_system *system, const dvi_monitor *monitor, dvi__pacing pacing, const char *method,
@@ -144,10 +146,11 @@ void dvi__pace_set_energy(dvi__pace *pace, double energy)
     dvi__monitor_set_energy(pace->monitor, energy);
 }
 
-/* L_v.v - L. */
-static dvi_status energy_at(dvi_integrator *I, double t, const double *q, const double *v, double *energy)
+/* L_v.v - L, or H at the start's momenta. */
+static dvi_status energy_at(dvi_integrator *I, double t, const double *q, const double *v, const double *momenta, double *energy)
 {
   double L, *p = I->pace->g_q;
+  if (I->system->terms & DVI__HAMILTONIAN) return dvi__lagrangian_value(I->evaluator, 1, &t, q, momenta, energy);
   DVI_TRY(dvi__lagrangian_value(I->evaluator, 1, &t, q, v, &L));
   DVI_TRY(dvi__lagrangian_gradient(I->evaluator, 1, &t, q, v, NULL, p));
   *energy = -L;
@@ -155,12 +158,13 @@ static dvi_status energy_at(dvi_integrator *I, double t, const double *q, const 
   return DVI_OK;
 }
 
-dvi_status dvi__pace_start(dvi_integrator *I, double t, const double *q, const double *v, double *w, double *density)
+dvi_status dvi__pace_start(dvi_integrator *I, double t, const double *q, const double *v, const double *p, double *w,
+                           double *density)
 {
   dvi__pace *pace = I->pace;
   const double before = pace->energy;
   double g = 1, energy = before;
-  if (!pace->holds) DVI_TRY(energy_at(I, t, q, v, &energy));
+  if (!pace->holds) DVI_TRY(energy_at(I, t, q, v, p, &energy));
   dvi__pace_set_energy(pace, energy);
   const dvi_status status = dvi__pace_monitor(pace, q, &g);
   if (status != DVI_OK) {

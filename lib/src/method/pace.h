@@ -36,8 +36,9 @@ dvi_status dvi__pace_monitor(dvi__pace *pace, const double *q, double *g);
 
 void dvi__pace_set_energy(dvi__pace *pace, double energy);
 
-/* E0 for a start at q, v, the velocity w = dq/dtau of the steps that follow (v itself under control), and z = 1/g. On failure E0 is as before. */
-dvi_status dvi__pace_start(dvi_integrator *integrator, double t, const double *q, const double *v, double *w, double *density);
+/* E0 for a start at q, v and p, the velocity w = dq/dtau of the steps that follow (v itself under control), and z = 1/g. On failure E0 is as before. */
+dvi_status dvi__pace_start(dvi_integrator *integrator, double t, const double *q, const double *v, const double *p, double *w,
+                           double *density);
 
 /* Control: half of z's step h from `now` into `next`, and the length of time that follows; and the other half, from the end of the step. */
 dvi_status dvi__control_begin(dvi_integrator *integrator, double h, double *length);

@@ -83,10 +83,13 @@ static dvi_status parse_list(const dvi__method *method, piece value, dvi__settin
   for (const char *at = value.text;; at++) {
     const int length = plain_decimal(at);
     if (length == 0 || length > LONGEST_DECIMAL || (at + length != end && at[length] != ':'))
-      return dvi__fail(DVI_BAD_OPTION, "%s: %s=%.*s is not a list of numbers in plain digits, such as 2 or 1:0.5", method->name,
-                       method->list, value.length, value.text);
+      return dvi__fail(DVI_BAD_OPTION,
+                       "%s: %s=%.*s is not a list of numbers in plain digits, such as 2 or 1:0.5; positive ones of at most %d "
+                       "characters are possible, without sign, exponent, or zeros at the ends",
+                       method->name, method->list, value.length, value.text, LONGEST_DECIMAL);
     if (settings->listed == DVI__LIST_MOST)
-      return dvi__fail(DVI_BAD_OPTION, "%s: %s has more than %d numbers", method->name, method->list, DVI__LIST_MOST);
+      return dvi__fail(DVI_BAD_OPTION, "%s: %s has more than %d numbers; 1 to %d are possible", method->name, method->list,
+                       DVI__LIST_MOST, DVI__LIST_MOST);
     settings->list[settings->listed++] = strtod(at, NULL);
     at += length;
     if (at == end) break;
@@ -200,4 +203,22 @@ void dvi__spell_out(const dvi__method *method, const dvi__settings *settings, dv
   }
   if (settings->listed > 0) dvi__text_add(text, ",%s=%s", method->list, settings->list_text);
   if (settings->rest[0] != 0) dvi__text_add(text, ",%s", settings->rest);
+}
+
+static dvi_status spell_steps(const char *specification, dvi__text *text)
+{
+  const dvi__method *method;
+  dvi__settings settings;
+  DVI_TRY(dvi__parse(specification, &method, &settings));
+  for (int k = 0; k < dvi__key_count(method); k++)
+    if (method->keys[k].least == DVI__SAID) settings.value[k] = method->keys[k].left_out;
+  dvi__spell_out(method, &settings, text);
+  return DVI_OK;
+}
+
+int dvi__same_steps(const char *one, const char *other)
+{
+  char spelled[2][DVI__SPECIFICATION_SIZE] = {"", ""};
+  return spell_steps(one, &(dvi__text){spelled[0], DVI__SPECIFICATION_SIZE, 0}) == DVI_OK &&
+         spell_steps(other, &(dvi__text){spelled[1], DVI__SPECIFICATION_SIZE, 0}) == DVI_OK && strcmp(spelled[0], spelled[1]) == 0;
 }

@@ -12,6 +12,7 @@ static const char *term_name(unsigned term)
   case DVI__LAGRANGIAN: return "a general Lagrangian";
   case DVI__ONE_FORM: return "a one-form";
   case DVI__FACTORS: return "factors of its configuration space";
+  case DVI__HAMILTONIAN: return "a Hamiltonian with constraints";
   default: return "potentials";
   }
 }
@@ -35,11 +36,11 @@ static dvi_status check_terms(const dvi__method *method, const dvi_system *syste
   char names[DVI__SPECIFICATION_SIZE] = "";
   if (can_use(method, system)) return DVI_OK;
   name_others(system, &(dvi__text){names, sizeof names, 0});
-  for (unsigned term = 1; term <= DVI__FACTORS; term <<= 1)
+  for (unsigned term = 1; term <= DVI__LAST_TERM; term <<= 1)
     if (system->terms & term & ~method->uses)
       return dvi__fail(DVI_UNSUPPORTED, "%s: the system declares %s, which this method cannot use; methods for this system: %s",
                        method->name, term_name(term), names);
-  for (unsigned term = 1; term <= DVI__FACTORS; term <<= 1)
+  for (unsigned term = 1; term <= DVI__LAST_TERM; term <<= 1)
     if (method->needs & term & ~system->terms)
       return dvi__fail(DVI_UNSUPPORTED, "%s: the method needs %s, which the system does not declare; methods for this system: %s",
                        method->name, term_name(term), names);

@@ -21,6 +21,7 @@ const dvi__method dvi__trapezoidal = {
     .summary = "Stoermer-Verlet for any Lagrangian: straight line, trapezoid; order 2; implicit",
     .cite = "MarsdenWest2001",
     .keys = keys,
+    .uses = DVI__ELEMENT_TERMS,
     .create = create,
     DVI__ELEMENT_OPERATIONS,
 };

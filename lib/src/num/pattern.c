@@ -40,14 +40,14 @@ dvi_status dvi__pattern_diagonal(int n, dvi__pattern *pattern)
   return DVI_OK;
 }
 
-static dvi_status full(int n, dvi__pattern *pattern)
+static dvi_status full(int rows, int columns, dvi__pattern *pattern)
 {
-  DVI_TRY(allocate(n, n, (size_t)n * (size_t)n, pattern));
-  for (int j = 0; j < n; j++) {
-    pattern->start[j] = j * n;
-    for (int i = 0; i < n; i++) pattern->row[j * n + i] = i;
+  DVI_TRY(allocate(rows, columns, (size_t)rows * (size_t)columns, pattern));
+  for (int j = 0; j < columns; j++) {
+    pattern->start[j] = j * rows;
+    for (int i = 0; i < rows; i++) pattern->row[j * rows + i] = i;
   }
-  pattern->start[n] = n * n;
+  pattern->start[columns] = rows * columns;
   return DVI_OK;
 }
 
@@ -77,16 +77,21 @@ static dvi_status validate_column(const dvi_pattern *declared, int n, int j, con
   return DVI_OK;
 }
 
-dvi_status dvi__pattern_copy(const dvi_pattern *declared, int n, const char *name, dvi__pattern *copy)
+dvi_status dvi__pattern_copy_rectangular(const dvi_pattern *declared, int rows, int columns, const char *name, dvi__pattern *copy)
 {
   *copy = (dvi__pattern){0};
-  if (declared->start == NULL && declared->row == NULL) return full(n, copy);
-  DVI_TRY(validate_starts(declared, n, name));
-  for (int j = 0; j < n; j++) DVI_TRY(validate_column(declared, n, j, name));
-  DVI_TRY(allocate(n, n, (size_t)declared->start[n], copy));
-  memcpy(copy->start, declared->start, ((size_t)n + 1) * sizeof(int));
-  if (declared->start[n] > 0) memcpy(copy->row, declared->row, (size_t)declared->start[n] * sizeof(int));
+  if (declared->start == NULL && declared->row == NULL) return full(rows, columns, copy);
+  DVI_TRY(validate_starts(declared, columns, name));
+  for (int j = 0; j < columns; j++) DVI_TRY(validate_column(declared, rows, j, name));
+  DVI_TRY(allocate(rows, columns, (size_t)declared->start[columns], copy));
+  memcpy(copy->start, declared->start, ((size_t)columns + 1) * sizeof(int));
+  if (declared->start[columns] > 0) memcpy(copy->row, declared->row, (size_t)declared->start[columns] * sizeof(int));
   return DVI_OK;
+}
+
+dvi_status dvi__pattern_copy(const dvi_pattern *declared, int n, const char *name, dvi__pattern *copy)
+{
+  return dvi__pattern_copy_rectangular(declared, n, n, name, copy);
 }
 
 /* Merge two ascending columns; the rows are written if out is not NULL. Returns their number. */

@@ -17,6 +17,9 @@ int dvi__pattern_entries(const dvi__pattern *pattern);
  * DVI_BAD_ARGUMENT if it is not a pattern, DVI_NO_MEMORY. On failure nothing is owned. */
 dvi_status dvi__pattern_copy(const dvi_pattern *declared, int n, const char *name, dvi__pattern *copy);
 
+/* The same of a matrix with other numbers of rows and columns. */
+dvi_status dvi__pattern_copy_rectangular(const dvi_pattern *declared, int rows, int columns, const char *name, dvi__pattern *copy);
+
 /* The same for a Hessian: DVI_BAD_ARGUMENT also if it is not symmetric. One triangle alone would leave out half of the entries of a step's Jacobian. */
 dvi_status dvi__pattern_copy_symmetric(const dvi_pattern *declared, int n, const char *name, dvi__pattern *copy);
 

@@ -1,6 +1,6 @@
 /* CVODE and ARKODE on Hamilton's equations, with the velocity from the inverse Legendre map:
  *     y = (q, p),   qdot = v(t,q,p),   pdot = L_q(t,q,v(t,q,p)),
- * with a one-form on the reduced ones alone: y = q, qdot = v(t,q).
+ * with a one-form on the reduced ones alone: y = q, qdot = v(t,q); with a Hamiltonian on q' and p' with the multiplier eliminated.
  * Sources: Hindmarsh et al. 2005, ACM TOMS 31:363, sec. 2.1 (CVODE); Reynolds et al. 2023, ACM TOMS 49:19 (ARKODE). */
 #include <arkode/arkode_arkstep.h>
 #include <cvode/cvode.h>
@@ -10,6 +10,7 @@
 
 #include "core/status.h"
 #include "reference/run.h"
+#include "system/dirac.h"
 
 static int has_momenta(const dvi__reference_run *run)
 {
@@ -25,16 +26,21 @@ typedef struct flow {
   void *memory;                   /* CVODE's or ARKODE's */
 } flow;
 
+static dvi_status rate(dvi__reference_run *run, double t, const double *q, const double *p, double *qdot, double *pdot)
+{
+  if (run->system->terms & DVI__HAMILTONIAN) return dvi__dirac_motion(run->evaluator, t, q, p, qdot, pdot, NULL);
+  DVI_TRY(dvi__legendre_inverse(run->evaluator, t, q, p, run->v));
+  if (has_momenta(run)) DVI_TRY(dvi__lagrangian_gradient(run->evaluator, 1, &t, q, run->v, pdot, NULL));
+  memcpy(qdot, run->v, (size_t)run->n * sizeof *qdot);
+  return DVI_OK;
+}
+
 static int right_side(double t, N_Vector y, N_Vector ydot, void *user)
 {
   dvi__reference_run *run = ((flow *)user)->run;
-  const int n = run->n;
-  const double *q = N_VGetArrayPointer(y), *p = q + n;
-  double *qdot = N_VGetArrayPointer(ydot), *pdot = qdot + n;
-  dvi_status status = dvi__legendre_inverse(run->evaluator, t, q, p, run->v);
-  if (status == DVI_OK && has_momenta(run)) status = dvi__lagrangian_gradient(run->evaluator, 1, &t, q, run->v, pdot, NULL);
-  if (status == DVI_OK) memcpy(qdot, run->v, (size_t)n * sizeof *qdot);
-  return dvi__reference_callback(run, status);
+  const double *q = N_VGetArrayPointer(y), *p = q + run->n;
+  double *qdot = N_VGetArrayPointer(ydot), *pdot = qdot + run->n;
+  return dvi__reference_callback(run, rate(run, t, q, p, qdot, pdot));
 }
 
 /* Only then is M^-1 as sparse as M, and the Jacobian written down at once. */

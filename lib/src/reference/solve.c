@@ -12,6 +12,7 @@
 #include "core/status.h"
 #include "num/finite.h"
 #include "reference/run.h"
+#include "system/dirac.h"
 #include "system/term.h"
 
 static const struct {
@@ -130,11 +131,12 @@ static dvi_status reserve(dvi__reference_run *run, const double *q, const double
   run->p = dvi__duplicate(p, n, sizeof *p);
   run->v = DVI_NEW(double, n);
   run->force = DVI_NEW(double, n);
+  run->multiplier = DVI_NEW(double, dvi_system_constraint_count(run->system));
   run->L_qq = DVI_NEW(double, dvi__pattern_entries(&run->system->qq));
   run->L_qv = DVI_NEW(double, dvi__pattern_entries(&run->system->qv));
   run->L_vv = DVI_NEW(double, dvi__pattern_entries(&run->system->vv));
-  if (run->q == NULL || run->p == NULL || run->v == NULL || run->force == NULL || run->L_qq == NULL || run->L_qv == NULL ||
-      run->L_vv == NULL || dvi__sundials_context(&run->context) != 0)
+  if (run->q == NULL || run->p == NULL || run->v == NULL || run->force == NULL || run->multiplier == NULL || run->L_qq == NULL ||
+      run->L_qv == NULL || run->L_vv == NULL || dvi__sundials_context(&run->context) != 0)
     return dvi__reference_no_setup(run);
   return DVI_OK;
 }
@@ -149,8 +151,13 @@ static dvi_status prepare(dvi__reference_run *run, const double *q, const double
   dvi_status status = dvi__evaluator_create(run->system, 1, DVI__HESSIANS, &run->counters, &run->evaluator);
   if (status == DVI_OK) status = reserve(run, q, p);
   if (status == DVI_OK && run->system->terms & DVI__ONE_FORM) status = dvi__form_constraint(run->evaluator, run->q, run->p);
-  if (status == DVI_OK) status = dvi__legendre_inverse(run->evaluator, run->t, run->q, run->p, run->v);
-  if (status == DVI_OK) status = dvi__lagrangian_gradient(run->evaluator, 1, &run->t, run->q, run->v, run->force, NULL);
+  if (run->system->terms & DVI__HAMILTONIAN) {
+    if (status == DVI_OK) status = dvi__dirac_constraint(run->evaluator, run->q, run->p);
+    if (status == DVI_OK) status = dvi__dirac_motion(run->evaluator, run->t, run->q, run->p, run->v, run->force, run->multiplier);
+  } else {
+    if (status == DVI_OK) status = dvi__legendre_inverse(run->evaluator, run->t, run->q, run->p, run->v);
+    if (status == DVI_OK) status = dvi__lagrangian_gradient(run->evaluator, 1, &run->t, run->q, run->v, run->force, NULL);
+  }
   if (status == DVI_OK) return DVI_OK;
   return dvi__fail_in(status, "%s: no start at t = %.9g", codes[run->options.code].name, run->t);
 }
@@ -162,6 +169,7 @@ static void clear(dvi__reference_run *run)
   dvi__release(run->L_vv);
   dvi__release(run->L_qv);
   dvi__release(run->L_qq);
+  dvi__release(run->multiplier);
   dvi__release(run->force);
   dvi__release(run->v);
   dvi__release(run->p);

@@ -39,6 +39,7 @@ static int same_derivatives(const dvi_system *a, const dvi_system *b)
         dvi__potential_has_hessian(&a->potentials[p]) != dvi__potential_has_hessian(&b->potentials[p]) ||
         dvi__potential_has_rate(&a->potentials[p]) != dvi__potential_has_rate(&b->potentials[p]))
       return 0;
+  if (a->constraint != NULL && (a->constraint->callbacks.hessian != NULL) != (b->constraint->callbacks.hessian != NULL)) return 0;
   return a->lagrangian == NULL || (dvi__general_has_gradient(a->lagrangian) == dvi__general_has_gradient(b->lagrangian) &&
                                    dvi__general_has_hessian(a->lagrangian) == dvi__general_has_hessian(b->lagrangian) &&
                                    dvi__general_has_rate(a->lagrangian) == dvi__general_has_rate(b->lagrangian));

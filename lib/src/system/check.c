@@ -11,6 +11,7 @@
 #include "num/finite.h"
 #include "system/check_time.h"
 #include "system/difference.h"
+#include "system/dirac.h"
 
 /* One entry at which callback and difference disagree. */
 typedef struct disagreement {
@@ -22,15 +23,16 @@ typedef struct disagreement {
 /* The worst of one kind over all blocks, and whose it is. */
 typedef struct finding {
   disagreement worst;
-  const char *term, *block;
+  const char *term, *owner, *block;
+  int constraint;
 } finding;
 
 /* One block of one term while it is compared. */
 typedef struct block {
-  const char *term, *name;
-  const dvi__pattern *pattern; /* NULL: a gradient */
-  const double *given;         /* NULL: no callback, only the pattern is checked */
-  double largest;              /* magnitude of its entries, given or differenced */
+  const char *term, *owner, *name; /* whose: that potential, or else that part of the kinetic one, or else the whole of it */
+  const dvi__pattern *pattern;     /* NULL: a gradient */
+  const double *given;             /* NULL: no callback, only the pattern is checked */
+  double largest;                  /* magnitude of its entries, given or differenced */
   disagreement on_pattern, outside;
 } block;
 
@@ -42,7 +44,8 @@ typedef struct broken_range {
 } broken_range;
 
 typedef struct check {
-  const char *kinetic; /* what holds the velocities */
+  const char *kinetic; /* what holds the velocities or momenta */
+  int constraint;      /* 1 more than the number of the one that is compared; 0: none is */
   dvi__scratch scratch;
   dvi__differences differences;
   int n;
@@ -62,14 +65,12 @@ static void compare(block *b, int row, int column, double given, double differen
   if (error > worst->error) *worst = (disagreement){error, given, differenced, row, column};
 }
 
-static void keep_worst(const block *b, const disagreement *found, finding *kept)
+static void keep_worst(const check *c, const block *b, const disagreement *found, finding *kept)
 {
   const double error = found->error > 0 ? found->error / b->largest : 0;
   if (error <= kept->worst.error) return;
-  kept->worst = *found;
+  *kept = (finding){.worst = *found, .term = b->term, .owner = b->owner, .block = b->name, .constraint = c->constraint};
   kept->worst.error = error;
-  kept->term = b->term;
-  kept->block = b->name;
 }
 
 /* What roundoff in values as large as `magnitude` does to a difference over the step. */
@@ -95,7 +96,7 @@ static dvi_status check_gradient(check *c, dvi__batch_value value, const void *f
   DVI_TRY(dvi__difference_gradient(value, function, &c->differences, c->n, 1, x, c->column[0]));
   const double magnitude = fmax(fabs(d->plus[0]), fabs(d->minus[0]));
   for (int i = 0; i < c->n; i++) compare(&b, i, -1, given[i], c->column[0][i], noise_of(magnitude, d->step[i]), &b.on_pattern);
-  keep_worst(&b, &b.on_pattern, &c->of_gradient);
+  keep_worst(c, &b, &b.on_pattern, &c->of_gradient);
   return DVI_OK;
 }
 
@@ -191,8 +192,8 @@ static dvi_status check_blocks(check *c, dvi__batch_gradient gradient, const voi
     compare_column(second, c->n, j, c->column[1], (noise_of(max_norm(c->n, d->plus_v), 1) + c->gradient_noise) / d->step[j]);
   }
   for (block *b = first; b != NULL; b = b == first ? second : NULL) {
-    keep_worst(b, &b->on_pattern, &c->of_hessian);
-    keep_worst(b, &b->outside, &c->of_pattern);
+    keep_worst(c, b, &b->on_pattern, &c->of_hessian);
+    keep_worst(c, b, &b->outside, &c->of_pattern);
   }
   return DVI_OK;
 }
@@ -216,18 +217,27 @@ static dvi_status check_potential(check *c, const dvi__potential_term *p)
   return check_blocks(c, dvi__potential_gradient_of_q, &at, c->q, &qq, NULL);
 }
 
-static dvi_status check_lagrangian(check *c, const dvi__lagrangian_term *l)
+/* Of L, of H, of a constraint: the derivatives in q and v, or q and p. */
+typedef struct names {
+  const char *q, *v, *qq, *qv, *vv;
+} names;
+
+static const names of_lagrangian = {"dL/dq", "dL/dv", "d2L/dq2", "d2L/dqdv", "d2L/dv2"},
+                   of_hamiltonian = {"dH/dq", "dH/dp", "d2H/dq2", "d2H/dqdp", "d2H/dp2"},
+                   of_constraint = {"dphi/dq", "dphi/dp", "d2phi/dq2", "d2phi/dqdp", "d2phi/dp2"};
+
+static dvi_status check_general(check *c, const dvi__lagrangian_term *l, const names *name)
 {
   const dvi__general_at at = {l, &c->scratch, &c->t, c->q, c->v};
   const int has_hessian = dvi__general_has_hessian(l);
-  block qq = {.name = "d2L/dq2", .pattern = &l->qq, .given = has_hessian ? c->hessian[0] : NULL};
-  block qv = {.name = "d2L/dqdv", .pattern = &l->qv, .given = has_hessian ? c->hessian[1] : NULL};
-  block vv = {.name = "d2L/dv2", .pattern = &l->vv, .given = has_hessian ? c->hessian[2] : NULL};
+  block qq = {.name = name->qq, .pattern = &l->qq, .given = has_hessian ? c->hessian[0] : NULL};
+  block qv = {.name = name->qv, .pattern = &l->qv, .given = has_hessian ? c->hessian[1] : NULL};
+  block vv = {.name = name->vv, .pattern = &l->vv, .given = has_hessian ? c->hessian[2] : NULL};
   c->gradient_noise = 0;
   if (dvi__general_has_gradient(l)) {
     DVI_TRY(dvi__general_gradient(l, &c->scratch, 1, &c->t, c->q, c->v, c->gradient[0], c->gradient[1]));
-    DVI_TRY(check_gradient(c, dvi__general_value_of_q, &at, c->q, c->gradient[0], NULL, "dL/dq"));
-    DVI_TRY(check_gradient(c, dvi__general_value_of_v, &at, c->v, c->gradient[1], NULL, "dL/dv"));
+    DVI_TRY(check_gradient(c, dvi__general_value_of_q, &at, c->q, c->gradient[0], NULL, name->q));
+    DVI_TRY(check_gradient(c, dvi__general_value_of_v, &at, c->v, c->gradient[1], NULL, name->v));
   } else {
     DVI_TRY(measure_noise(c, dvi__general_value_of_q, &at, c->q));
     DVI_TRY(measure_noise(c, dvi__general_value_of_v, &at, c->v));
@@ -237,9 +247,92 @@ static dvi_status check_lagrangian(check *c, const dvi__lagrangian_term *l)
   return check_blocks(c, dvi__general_gradient_of_v, &at, c->v, &qv, &vv);
 }
 
+/* The derivatives of all components in q_i, against row i of the gradients. */
+static void compare_row(block *b, int n, int i, const double *differenced, double noise)
+{
+  for (int j = 0; j < n; j++) {
+    const int e = dvi__pattern_find(b->pattern, i, j);
+    compare(b, i, j, e >= 0 ? b->given[e] : 0, differenced[j], noise, e >= 0 ? &b->on_pattern : &b->outside);
+  }
+}
+
+/* Of one one-form, which has no gauge: its gradients against differences of its components, its Hessian against those of the gradients. */
+static dvi_status check_form(check *c, const dvi__lagrangian_term *l, const char *owner, const char *first, const char *second)
+{
+  const dvi__general_at at = {l, &c->scratch, &c->t, c->q, c->v};
+  const dvi__differences *d = &c->differences;
+  const int has_hessian = dvi__general_has_hessian(l);
+  block qv = {.owner = owner, .name = first, .pattern = &l->qv, .given = c->hessian[1]};
+  block qq = {.owner = owner, .name = second, .pattern = &l->qq, .given = has_hessian ? c->hessian[0] : NULL};
+  DVI_TRY(dvi__form_gradients(l, c->q, c->hessian[1], c->scratch.result[2]));
+  if (has_hessian) DVI_TRY(dvi__general_hessian(l, &c->scratch, 1, &c->t, c->q, c->v, c->hessian[0], c->hessian[1], c->hessian[2]));
+  for (int i = 0; i < c->n; i++) {
+    DVI_TRY(dvi__difference_column(dvi__general_gradient_of_q, &at, &c->differences, c->n, i, c->q, c->column[0], c->column[1]));
+    compare_column(&qq, c->n, i, c->column[0], noise_of(max_norm(c->n, d->plus), d->step[i]));
+    compare_row(&qv, c->n, i, c->column[1], noise_of(max_norm(c->n, d->plus_v), d->step[i]));
+  }
+  keep_worst(c, &qv, &qv.on_pattern, &c->of_gradient);
+  keep_worst(c, &qv, &qv.outside, &c->of_pattern);
+  keep_worst(c, &qq, &qq.on_pattern, &c->of_hessian);
+  keep_worst(c, &qq, &qq.outside, &c->of_pattern);
+  return DVI_OK;
+}
+
+/* A gauge adds grad f, which is a one-form, too: each is checked on its own. The whole comes first: if a callback fails it says whose. */
+static dvi_status check_one_form(check *c, const dvi__lagrangian_term *l)
+{
+  const dvi__gauge_term *g = &l->gauge;
+  const dvi_gauge *f = &g->callbacks;
+  const char *const gradients = "d alpha_j/dq_i at (i,j) =", *const hessian = "d2(alpha.v)/dq2";
+  dvi__lagrangian_term part = *l;
+  c->gradient_noise = 0;
+  if (f->gradient == NULL) return check_form(c, l, "one-form", gradients, hessian);
+  DVI_TRY(dvi__general_gradient(l, &c->scratch, 1, &c->t, c->q, c->v, c->gradient[0], c->gradient[1]));
+  part.gauge = (dvi__gauge_term){0};
+  part.qv = g->form_qv;
+  part.qq = g->form_qq;
+  DVI_TRY(check_form(c, &part, "one-form", gradients, hessian));
+  part.one_form = (dvi_one_form){.value = f->gradient, .gradient = f->hessian, .hessian = f->third, .user = f->user};
+  part.qv = g->qq;
+  part.qq = g->qq;
+  return check_form(c, &part, "gauge", "d2f/dq2", "d2(grad f.v)/dq2");
+}
+
+/* An entry outside of the gradients' pattern is a wrong 0 of the gradient. */
+static dvi_status check_weighted(check *c, dvi__weighted *weighted, double *w, int count)
+{
+  weighted->w = w;
+  for (int a = 0; a < count; a++) {
+    w[a] = 1;
+    c->constraint = a + 1;
+    DVI_TRY(check_general(c, &weighted->term, &of_constraint));
+    w[a] = 0;
+  }
+  c->constraint = 0;
+  return DVI_OK;
+}
+
+static dvi_status check_constraint(check *c, const dvi_system *system)
+{
+  const int count = system->constraint->callbacks.count;
+  dvi__weighted weighted;
+  double *w = DVI_NEW(double, count);
+  dvi_status status = dvi__weighted_open(system, &weighted);
+  if (w == NULL) status = dvi__fail(DVI_NO_MEMORY, "system check: no memory for %d constraints", count);
+  if (status == DVI_OK) status = check_weighted(c, &weighted, w, count);
+  dvi__weighted_close(&weighted);
+  dvi__release(w);
+  return status;
+}
+
 static dvi_status check_terms(check *c, const dvi_system *system)
 {
-  if (system->lagrangian != NULL) DVI_TRY(check_lagrangian(c, system->lagrangian));
+  const names *name = system->terms & DVI__HAMILTONIAN ? &of_hamiltonian : &of_lagrangian;
+  if (system->terms & DVI__ONE_FORM)
+    DVI_TRY(check_one_form(c, system->lagrangian));
+  else if (system->lagrangian != NULL)
+    DVI_TRY(check_general(c, system->lagrangian, name));
+  if (system->constraint != NULL) DVI_TRY(check_constraint(c, system));
   for (int k = 0; k < system->potential_count; k++) DVI_TRY(check_potential(c, &system->potentials[k]));
   return DVI_OK;
 }
@@ -249,8 +342,9 @@ static dvi_status check_terms(check *c, const dvi_system *system)
 static void name_entry(const finding *f, const char *kinetic, size_t size, char *text)
 {
   char place[32], owner[48];
-  (void)snprintf(owner, sizeof owner, "%s", kinetic);
+  (void)snprintf(owner, sizeof owner, "%s", f->owner != NULL ? f->owner : kinetic);
   if (f->term != NULL) (void)snprintf(owner, sizeof owner, "potential '%.24s'", f->term);
+  if (f->constraint > 0) (void)snprintf(owner, sizeof owner, "constraint %d", f->constraint - 1);
   if (f->worst.column < 0)
     (void)snprintf(place, sizeof place, "(%d)", f->worst.row);
   else
@@ -304,8 +398,8 @@ static dvi_status report(const check *c, double tolerance, dvi_derivative_check 
 static int longest_pattern(const dvi_system *system)
 {
   const int vv = dvi__pattern_entries(&system->vv), qv = dvi__pattern_entries(&system->qv), qq = dvi__pattern_entries(&system->qq);
-  const int longest = vv > qv ? vv : qv;
-  return qq > longest ? qq : longest;
+  const int longest = vv > qv ? vv : qv, terms = dvi__longest_hessian(system, 1), most = longest > terms ? longest : terms;
+  return qq > most ? qq : most;
 }
 
 static dvi_status allocate(check *c, const dvi_system *system)
@@ -347,7 +441,7 @@ dvi_status dvi_system_check(const dvi_system *system, double t, const double *q,
   if (!isfinite(t) || dvi__first_not_finite(n, q) >= 0 || dvi__first_not_finite(n, v) >= 0)
     return dvi__fail(DVI_NOT_FINITE, "system check: the point (t = %g) is not finite", t);
   const double accepted = tolerance > 0 ? tolerance : 1e-6;
-  check c = {.kinetic = system->terms & DVI__ONE_FORM ? "one-form" : "Lagrangian",
+  check c = {.kinetic = system->lagrangian != NULL ? system->lagrangian->name : "Lagrangian",
              .n = system->n,
              .t = t,
              .q = q,

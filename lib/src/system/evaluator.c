@@ -4,6 +4,7 @@
 #include "core/status.h"
 #include "num/finite.h"
 #include "system/charted.h"
+#include "system/dirac.h"
 #include "system/evaluator_struct.h"
 
 static size_t numbers(const dvi__evaluator *e, int count)
@@ -38,6 +39,11 @@ static dvi_status prepare_velocity(dvi__evaluator *e)
 {
   const dvi_system *system = e->system;
   if (system->mass_diagonal != NULL || system->cells != NULL) return DVI_OK;
+  if (system->terms & DVI__HAMILTONIAN) {
+    const dvi__pattern *bracket = &system->constraint->bracket;
+    DVI_TRY(dvi__dirac_create(system, &e->dirac));
+    return dvi__linear_create(bracket, dvi__linear_for_exchanges(bracket), e->counters, &e->velocity);
+  }
   if (system->terms & DVI__ONE_FORM) {
     const dvi__pattern *omega = &system->lagrangian->omega;
     return dvi__linear_create(omega, dvi__linear_for_exchanges(omega), e->counters, &e->velocity);
@@ -89,6 +95,7 @@ void dvi__evaluator_destroy(dvi__evaluator **evaluator)
   dvi__scratch_clear(&e->scratch);
   dvi__release(e->term);
   for (int i = 0; i < 3; i++) dvi__release(e->point[i]);
+  dvi__dirac_destroy(&e->dirac);
   dvi__release(e->unwanted);
   dvi__release(e->velocity_search);
   dvi__release(e->two_form);
@@ -130,8 +137,7 @@ void dvi__mass_solve(dvi__evaluator *e, int count, const double *y, double *x)
   }
 }
 
-/* Move the points that differences asked for to the counters. */
-static void count_differences(dvi__evaluator *e)
+void dvi__count_differences(dvi__evaluator *e)
 {
   e->counters->values += e->scratch.of_value.points;
   e->counters->gradients += e->scratch.of_gradient.points;
@@ -161,7 +167,8 @@ dvi_status dvi__lagrangian_value(dvi__evaluator *e, int count, const double *t, 
     DVI_TRY(dvi__potential_value(&s->potentials[p], &e->scratch, count, t, q, e->term));
     for (int k = 0; k < count; k++) L[k] -= e->term[k];
   }
-  if (dvi__first_not_finite((size_t)count, L) >= 0) return dvi__fail(DVI_NOT_FINITE, "the Lagrangian's value is not finite");
+  if (dvi__first_not_finite((size_t)count, L) >= 0)
+    return dvi__fail(DVI_NOT_FINITE, "the %s's value is not finite", s->terms & DVI__HAMILTONIAN ? "Hamiltonian" : "Lagrangian");
   return DVI_OK;
 }
 
@@ -198,7 +205,7 @@ dvi_status dvi__potentials_gradient(dvi__evaluator *e, int count, const double *
 {
   e->counters->gradients += count;
   const dvi_status status = sum_gradients(e, count, t, q, V_q);
-  count_differences(e);
+  dvi__count_differences(e);
   return status;
 }
 
@@ -231,7 +238,7 @@ dvi_status dvi__lagrangian_gradient(dvi__evaluator *e, int count, const double *
   const dvi_status status = s->lagrangian == NULL
                                 ? potential_forces(e, count, t, q, L_q)
                                 : general_gradient(e, count, t, q, v, L_q ? L_q : e->unwanted, L_v ? L_v : e->unwanted);
-  count_differences(e);
+  dvi__count_differences(e);
   return status;
 }
 
@@ -294,7 +301,7 @@ dvi_status dvi__lagrangian_hessian(dvi__evaluator *e, int count, const double *t
 {
   e->counters->hessians += count;
   const dvi_status status = hessian(e, count, t, q, v, L_qq, L_qv, L_vv);
-  count_differences(e);
+  dvi__count_differences(e);
   return status;
 }
 
@@ -311,7 +318,7 @@ dvi_status dvi__form_hessian(dvi__evaluator *e, const double *q, const double *w
   e->counters->hessians++;
   const dvi_status status = dvi__general_hessian(e->system->lagrangian, &e->scratch, 1, &any_time, q, w, alpha_w_qq, alpha_q,
                                                  e->hessian[2]);
-  count_differences(e);
+  dvi__count_differences(e);
   if (status == DVI_OK) spread(e->system, 1, alpha_w_qq);
   return status;
 }
@@ -322,6 +329,6 @@ dvi_status dvi__velocity_hessian(dvi__evaluator *e, double t, const double *q, c
   *L_vv = e->hessian[2];
   const dvi_status status = dvi__general_hessian(e->system->lagrangian, &e->scratch, 1, &t, q, v, e->hessian[0], e->hessian[1],
                                                  e->hessian[2]);
-  count_differences(e);
+  dvi__count_differences(e);
   return status;
 }

@@ -20,6 +20,8 @@ dvi_status dvi__evaluator_create(const dvi_system *system, int capacity, dvi__de
                                  dvi__evaluator **evaluator);
 void dvi__evaluator_destroy(dvi__evaluator **evaluator);
 
+/* With a Hamiltonian all functions of the Lagrangian give H and its derivatives: p stands for v. */
+
 /* L [count] at t [count], q and v [n*count]. Every result is finite, or the status is DVI_NOT_FINITE. */
 dvi_status dvi__lagrangian_value(dvi__evaluator *e, int count, const double *t, const double *q, const double *v, double *L);
 
@@ -57,6 +59,11 @@ dvi_status dvi__two_form_factor(dvi__evaluator *e, const double *q);
 void dvi__two_form_solve(dvi__evaluator *e, double *x);
 dvi_status dvi__two_form_velocity(dvi__evaluator *e, double t, const double *q, double *v);
 
+/* On which side of the points where the two-form is singular q lies: the sign of its Pfaffian, 0 at such a point. Always 1 in more than
+ * DVI__SIDES_MOST dimensions, where the answer would cost as much as a step. */
+enum { DVI__SIDES_MOST = 16 };
+dvi_status dvi__two_form_side(dvi__evaluator *e, const double *q, int *side);
+
 /* One point of a one-form: alpha [n], and the gradient [n] of alpha(q).w, w [n]. */
 dvi_status dvi__form_gradient(dvi__evaluator *e, const double *q, const double *w, double *alpha_w_q, double *alpha);
 
@@ -65,6 +72,9 @@ dvi_status dvi__form_hessian(dvi__evaluator *e, const double *q, const double *w
 
 /* scale [n]: the largest gradient of alpha at q that has to do with a coordinate; 1 where all vanish. */
 dvi_status dvi__form_scale(dvi__evaluator *e, const double *q, double *scale);
+
+/* DVI_SINGULAR unless the symmetric part S of alpha's gradients at q is definite, or 0; with a gauge that makes it so. S [n*n]: room for it. */
+dvi_status dvi__form_definite(dvi__evaluator *e, const double *q, double *S);
 
 /* F [n] = Omega(q) v - H_q(t,q), without a factorisation. */
 dvi_status dvi__two_form_residual(dvi__evaluator *e, double t, const double *q, const double *v, double *F);

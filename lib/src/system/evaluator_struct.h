@@ -10,17 +10,21 @@ struct dvi__evaluator {
   dvi_counters *counters;
   dvi_counters own; /* counts if nobody else wants them */
   dvi__scratch scratch;
-  double *term;          /* one term's gradient or Hessian, before it is added to the others */
-  double *point[3];      /* [n] for work at one point */
-  dvi__linear *velocity; /* factors L_vv, the constant sparse mass, or a two-form; NULL for diagonal masses */
-  double *two_form;      /* one-forms: its entries */
-  double *unwanted;      /* general Lagrangians: takes the half of a gradient that nobody asked for */
-  double *hessian[3];    /* general Lagrangians: its own L_qq, L_qv, L_vv at one point, for the inverse Legendre map */
+  double *term;             /* one term's gradient or Hessian, before it is added to the others */
+  double *point[3];         /* [n] for work at one point */
+  dvi__linear *velocity;    /* factors L_vv, the constant sparse mass, a two-form or a bracket matrix; NULL for diagonal masses */
+  double *two_form;         /* one-forms: its entries */
+  double *unwanted;         /* general Lagrangians: takes the half of a gradient that nobody asked for */
+  double *hessian[3];       /* general Lagrangians: its own L_qq, L_qv, L_vv at one point, for the inverse Legendre map */
+  struct dvi__dirac *dirac; /* Hamiltonians: their constraints' part */
   /* With factors, if states will be asked for: the charts at a state, their Lagrangian, and work there. */
   struct dvi__charted *charted;
   dvi__evaluator *local;
   double *rate, *local_p, *local_v, *origin; /* [n] */
-  double *velocity_search;                   /* general Lagrangians: [6 n], its work */
+  double *velocity_search;  /* general Lagrangians: [6 n], its work */
 };
+
+/* Move the points that differences asked for to the counters. */
+void dvi__count_differences(dvi__evaluator *e);
 
 #endif

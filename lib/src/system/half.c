@@ -14,7 +14,7 @@ enum { POINTS = 12, CANDIDATES_MOST = 16 };
 typedef struct probe {
   const dvi_system *system;
   double *q, *alpha_q, *work; /* [n], [entries of qv] */
-  double *form;               /* [n] largest of a component */
+  double *form, *turn;        /* [n] largest of a component, and of the two-form in a coordinate's row */
   double two_form[CANDIDATES_MOST][CANDIDATES_MOST];
   int seen;
 } probe;
@@ -52,6 +52,8 @@ static void look(probe *p, int k)
       const int i = qv->row[e];
       const double omega = fabs(p->alpha_q[e] - entry(p, j, i)) / largest;
       p->form[j] = fmax(p->form[j], fabs(p->alpha_q[e]) / largest);
+      p->turn[i] = fmax(p->turn[i], omega);
+      p->turn[j] = fmax(p->turn[j], omega);
       if (qv->columns <= CANDIDATES_MOST) p->two_form[i][j] = p->two_form[j][i] = fmax(p->two_form[i][j], omega);
     }
 }
@@ -93,12 +95,25 @@ static dvi_status refuse(const probe *p, int constant, int *chosen)
       needs, constant, n, name);
 }
 
+/* A row of zeros in the two-form, at all points. */
+static dvi_status check_turns(const probe *p)
+{
+  for (int i = 0; i < p->system->n && p->seen > 0; i++)
+    if (p->turn[i] <= negligible)
+      return dvi__fail(DVI_UNSUPPORTED,
+                       "the two-form of the one-form is singular at all of %d points probed, within 1 and 100 of the origin, for "
+                       "q[%d] takes no part in it; no gauge and no other method helps",
+                       p->seen, i);
+  return DVI_OK;
+}
+
 static dvi_status decide(probe *p, int *is_x)
 {
   const dvi__pattern *qv = &p->system->qv;
   const int n = p->system->n;
   int constant = 0, empty = 0;
   for (int k = 0; k < POINTS; k++) look(p, k);
+  DVI_TRY(check_turns(p));
   for (int i = 0; i < n; i++) {
     const int without = qv->start[i] == qv->start[i + 1];
     is_x[i] = p->seen > 0 ? p->form[i] > negligible : !without;
@@ -122,9 +137,10 @@ dvi_status dvi__form_half(const dvi_system *system, int *is_x)
              .q = DVI_NEW(double, n),
              .alpha_q = DVI_NEW(double, (size_t)dvi__pattern_entries(&system->qv) + 1),
              .work = DVI_NEW(double, dvi__longest_hessian(system, 0)),
-             .form = DVI_NEW(double, n)};
+             .form = DVI_NEW(double, n),
+             .turn = DVI_NEW(double, n)};
   dvi_status status = DVI_NO_MEMORY;
-  if (p.q && p.alpha_q && p.work && p.form)
+  if (p.q && p.alpha_q && p.work && p.form && p.turn)
     status = decide(&p, is_x);
   else
     (void)dvi__fail(status, "no memory to look at the one-form");
@@ -132,5 +148,6 @@ dvi_status dvi__form_half(const dvi_system *system, int *is_x)
   dvi__release(p.alpha_q);
   dvi__release(p.work);
   dvi__release(p.form);
+  dvi__release(p.turn);
   return status;
 }

@@ -22,11 +22,12 @@ static dvi_status momentum_map(dvi__evaluator *e, const dvi_symmetry *symmetry, 
   return DVI_OK;
 }
 
-/* p.v - L; the Hamiltonian -L(t,q,0) of a one-form wants no velocity. */
+/* H, or p.v - L; the Hamiltonian -L(t,q,0) of a one-form wants no velocity. */
 static dvi_status energy(dvi__evaluator *e, double t, const double *q, const double *v, const double *p, double *E)
 {
   double L, pv = 0, *rest = e->point[2];
   const int degenerate = (e->system->terms & DVI__ONE_FORM) != 0;
+  if (e->system->terms & DVI__HAMILTONIAN) return dvi__lagrangian_value(e, 1, &t, q, p, E);
   memset(rest, 0, (size_t)e->system->n * sizeof(double));
   DVI_TRY(dvi__state_lagrangian(e, t, q, degenerate ? rest : v, &L));
   for (int i = 0; i < e->system->nv && !degenerate; i++) pv += p[i] * v[i];

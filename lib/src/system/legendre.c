@@ -10,6 +10,7 @@
 #include "core/status.h"
 #include "num/finite.h"
 #include "system/charted.h"
+#include "system/dirac.h"
 #include "system/evaluator_struct.h"
 
 enum { MOST_ITERATIONS = 100, MOST_HALVINGS = 30 };
@@ -141,6 +142,8 @@ dvi_status dvi__legendre_inverse(dvi__evaluator *e, double t, const double *q, c
     if (dvi__first_not_finite(n, found) >= 0) return dvi__fail(DVI_NOT_FINITE, "the velocity M^-1 p at t = %.6g is not finite", t);
   } else if (e->system->terms & DVI__ONE_FORM) {
     DVI_TRY(dvi__two_form_velocity(e, t, q, found));
+  } else if (e->system->terms & DVI__HAMILTONIAN) {
+    DVI_TRY(dvi__dirac_motion(e, t, q, p, found, found + n, NULL));
   } else {
     search s = {e, t, q, p, found, found + n, found + 2 * n, found + 3 * n, found + 4 * n, found + 5 * n};
     memcpy(found, v, n * sizeof(double));

@@ -41,7 +41,7 @@ static dvi_status read_motion(const dvi_system *system, const dvi_monitor *given
   const char *what = arclength ? "arclength" : "acceleration";
   if (system->lagrangian != NULL)
     return dvi__fail(DVI_UNSUPPORTED, "monitor %s: the system declares a %s; a constant mass is needed", what,
-                     system->terms & DVI__ONE_FORM ? "one-form" : "general Lagrangian");
+                     system->terms & DVI__LAGRANGIAN ? "general Lagrangian" : system->lagrangian->name);
   if (arclength && !system->autonomous)
     return dvi__fail(DVI_UNSUPPORTED,
                      "monitor arclength: the system is not declared autonomous, and has no energy to take the speed from");

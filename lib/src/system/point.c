@@ -16,11 +16,19 @@ static dvi_status check_point(const dvi_system *system, double t, const double *
   return DVI_OK;
 }
 
+static dvi_status needs_lagrangian(const dvi_system *system)
+{
+  if (!(system->terms & DVI__HAMILTONIAN)) return DVI_OK;
+  return dvi__fail(DVI_UNSUPPORTED,
+                   "system: a Hamiltonian is declared, no Lagrangian; ask at q and p: dvi_system_invariants, dvi_system_velocity");
+}
+
 dvi_status dvi_system_lagrangian(const dvi_system *system, double t, const double *q, const double *v, double *L)
 {
   dvi__evaluator *e;
   double value = 0;
   DVI_TRY(check_point(system, t, q, v, L));
+  DVI_TRY(needs_lagrangian(system));
   DVI_TRY(dvi__evaluator_create(system, 1, DVI__STATES, NULL, &e));
   dvi_status status = dvi__state_check(e, q, v);
   if (status == DVI_OK) status = dvi__state_lagrangian(e, t, q, v, &value);
@@ -33,6 +41,7 @@ dvi_status dvi_system_momentum(const dvi_system *system, double t, const double 
 {
   dvi__evaluator *e;
   DVI_TRY(check_point(system, t, q, v, p));
+  DVI_TRY(needs_lagrangian(system));
   DVI_TRY(dvi__evaluator_create(system, 1, DVI__STATES, NULL, &e));
   dvi_status status = dvi__state_check(e, q, v);
   if (status == DVI_OK) status = dvi__state_momentum(e, t, q, v, p);

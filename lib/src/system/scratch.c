@@ -9,15 +9,20 @@ static int larger(int a, int b)
   return a > b ? a : b;
 }
 
+static int longest_of(const dvi__lagrangian_term *term)
+{
+  const int qq = dvi__pattern_entries(&term->qq), qv = dvi__pattern_entries(&term->qv), vv = dvi__pattern_entries(&term->vv);
+  return larger(larger(qq, qv), vv);
+}
+
 int dvi__longest_hessian(const dvi_system *system, int hessians)
 {
   int longest = system->n;
   for (int k = 0; k < system->potential_count && hessians; k++)
     longest = larger(longest, dvi__pattern_entries(&system->potentials[k].qq));
   if (system->lagrangian == NULL) return longest;
-  longest = larger(longest, dvi__pattern_entries(&system->lagrangian->qq));
-  longest = larger(longest, dvi__pattern_entries(&system->lagrangian->qv));
-  return larger(longest, dvi__pattern_entries(&system->lagrangian->vv));
+  if (system->constraint != NULL) longest = larger(longest, longest_of(&system->constraint->weighted));
+  return larger(longest, longest_of(system->lagrangian));
 }
 
 static int lacks_gradient(const dvi_system *system)
@@ -31,6 +36,7 @@ static int lacks_gradient(const dvi_system *system)
 static int lacks_hessian(const dvi_system *system, int hessians)
 {
   int lacks = system->lagrangian != NULL && !dvi__general_has_hessian(system->lagrangian);
+  lacks |= system->constraint != NULL && system->constraint->callbacks.hessian == NULL;
   for (int k = 0; k < system->potential_count && hessians; k++) lacks |= !dvi__potential_has_hessian(&system->potentials[k]);
   return lacks;
 }

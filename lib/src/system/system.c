@@ -9,6 +9,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/finite.h"
+#include "system/dirac.h"
 #include "system/factor.h"
 #include "system/gauge.h"
 #include "system/term.h"
@@ -101,7 +102,7 @@ static dvi_status make_groups(const dvi__pattern *pattern, dvi__groups *groups)
   return dvi__pattern_groups(pattern, groups->of_column, &groups->count);
 }
 
-static dvi_status group_lagrangian(dvi__lagrangian_term *term)
+dvi_status dvi__general_group(dvi__lagrangian_term *term)
 {
   dvi__pattern v_columns;
   DVI_TRY(make_groups(&term->qq, &term->q_groups));
@@ -129,24 +130,50 @@ static dvi_status check_rate(const dvi_system *s, const char *owner, int given)
   return dvi__fail(DVI_BAD_ARGUMENT, "system: %s has a rate, but the system is declared autonomous; leave out one of them", owner);
 }
 
+/* A function of q and v, or of q and p; `part` names its Hessian's blocks. */
+static dvi_status copy_general(dvi_system *s, const dvi_lagrangian *given, const char *name, const char *const part[3])
+{
+  dvi__lagrangian_term *term = s->lagrangian = DVI_NEW(dvi__lagrangian_term, 1);
+  if (term == NULL) return no_memory();
+  term->name = name;
+  term->callbacks = *given;
+  DVI_TRY(dvi__pattern_copy_symmetric(&given->qq, s->n, part[0], &term->qq));
+  DVI_TRY(dvi__pattern_copy(&given->qv, s->n, part[1], &term->qv));
+  DVI_TRY(dvi__pattern_copy_symmetric(&given->vv, s->n, part[2], &term->vv));
+  DVI_TRY(dvi__pattern_union(&term->qv, &term->qv, &s->qv));
+  DVI_TRY(dvi__pattern_union(&term->vv, &term->vv, &s->vv));
+  const int differenced = given->hessian == NULL && given->hessian_batch == NULL;
+  return differenced ? dvi__general_group(term) : DVI_OK;
+}
+
 static dvi_status copy_lagrangian(dvi_system *s, const dvi_lagrangian *given)
 {
+  static const char *const part[] = {"Lagrangian: d2L/dq2", "Lagrangian: d2L/dqdv", "Lagrangian: d2L/dv2"};
   if (given->value == NULL && given->value_batch == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "system: the Lagrangian has no value callback");
   DVI_TRY(check_shapes("the Lagrangian", given->value && given->value_batch, given->gradient && given->gradient_batch,
                        given->hessian && given->hessian_batch, given->rate && given->rate_batch));
   DVI_TRY(check_rate(s, "the Lagrangian", given->rate || given->rate_batch));
   s->terms |= DVI__LAGRANGIAN;
-  dvi__lagrangian_term *term = s->lagrangian = DVI_NEW(dvi__lagrangian_term, 1);
-  if (term == NULL) return no_memory();
-  term->callbacks = *given;
-  DVI_TRY(dvi__pattern_copy_symmetric(&given->qq, s->n, "Lagrangian: d2L/dq2", &term->qq));
-  DVI_TRY(dvi__pattern_copy(&given->qv, s->n, "Lagrangian: d2L/dqdv", &term->qv));
-  DVI_TRY(dvi__pattern_copy_symmetric(&given->vv, s->n, "Lagrangian: d2L/dv2", &term->vv));
-  DVI_TRY(dvi__pattern_union(&term->qv, &term->qv, &s->qv));
-  DVI_TRY(dvi__pattern_union(&term->vv, &term->vv, &s->vv));
-  const int differenced = given->hessian == NULL && given->hessian_batch == NULL;
-  return differenced ? group_lagrangian(term) : DVI_OK;
+  return copy_general(s, given, "Lagrangian", part);
+}
+
+/* H stands where a general Lagrangian stands, and p where its v does. */
+static dvi_status copy_hamiltonian(dvi_system *s, const dvi_hamiltonian *given, const dvi_constraint *constraint)
+{
+  static const char *const part[] = {"Hamiltonian: d2H/dq2", "Hamiltonian: d2H/dqdp", "Hamiltonian: d2H/dp2"};
+  const dvi_lagrangian function = {.value = given->value,
+                                   .gradient = given->gradient,
+                                   .hessian = given->hessian,
+                                   .qq = given->qq,
+                                   .qv = given->qp,
+                                   .vv = given->pp,
+                                   .user = given->user};
+  if (given->value == NULL || given->gradient == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "system: the Hamiltonian has no %s callback", given->value == NULL ? "value" : "gradient");
+  s->terms |= DVI__HAMILTONIAN;
+  DVI_TRY(copy_general(s, &function, "Hamiltonian", part));
+  return dvi__constraint_copy(constraint, s->n, &s->constraint);
 }
 
 static dvi_status join_two_form(dvi__lagrangian_term *term)
@@ -169,6 +196,7 @@ static dvi_status copy_one_form(dvi_system *s, const dvi_one_form *given, const 
   s->terms |= DVI__ONE_FORM;
   dvi__lagrangian_term *term = s->lagrangian = DVI_NEW(dvi__lagrangian_term, 1);
   if (term == NULL) return no_memory();
+  term->name = "one-form";
   term->one_form = *given;
   DVI_TRY(dvi__pattern_copy_symmetric(&given->qq, s->n, "one-form: d2(alpha.v)/dq2", &term->qq));
   DVI_TRY(dvi__pattern_copy(&given->gradients, s->n, "one-form: gradients", &term->qv));
@@ -177,7 +205,7 @@ static dvi_status copy_one_form(dvi_system *s, const dvi_one_form *given, const 
   DVI_TRY(join_two_form(term));
   DVI_TRY(dvi__pattern_union(&term->qv, &term->qv, &s->qv));
   DVI_TRY(dvi__pattern_empty(s->n, &s->vv));
-  return dvi__general_has_hessian(term) ? DVI_OK : group_lagrangian(term);
+  return dvi__general_has_hessian(term) ? DVI_OK : dvi__general_group(term);
 }
 
 /* ---- potentials ---- */
@@ -314,6 +342,16 @@ static dvi_status check_list(const char *what, int count, const void *list)
   return DVI_OK;
 }
 
+static dvi_status check_hamiltonian(const dvi_system_terms *terms)
+{
+  if ((terms->hamiltonian != NULL) != (terms->constraint != NULL))
+    return dvi__fail(DVI_BAD_ARGUMENT, "system: %s; both or none are possible",
+                     terms->constraint != NULL ? "constraints without a Hamiltonian" : "a Hamiltonian without constraints");
+  if (terms->hamiltonian != NULL && terms->potential_count > 0)
+    return dvi__fail(DVI_BAD_ARGUMENT, "system: %d potentials beside a Hamiltonian; add them to it", terms->potential_count);
+  return DVI_OK;
+}
+
 static dvi_status check_terms(const dvi_system_terms *terms)
 {
   const dvi_mass *mass = &terms->mass;
@@ -322,17 +360,24 @@ static dvi_status check_terms(const dvi_system_terms *terms)
   DVI_TRY(check_list("factors", terms->factor_count, terms->factors));
   if (terms->factors == NULL && terms->dimension < 1)
     return dvi__fail(DVI_BAD_SIZE, "system: dimension %d; at least 1 is needed", terms->dimension);
-  if (terms->factors != NULL && (terms->lagrangian != NULL || terms->one_form != NULL))
+  if (terms->factors != NULL && (terms->lagrangian != NULL || terms->one_form != NULL || terms->hamiltonian != NULL))
     return dvi__fail(DVI_UNSUPPORTED, "system: factors go with a constant mass, not with %s",
-                     terms->lagrangian != NULL ? "a general Lagrangian" : "a one-form");
+                     terms->lagrangian != NULL ? "a general Lagrangian"
+                     : terms->one_form != NULL ? "a one-form"
+                                               : "a Hamiltonian");
   DVI_TRY(check_list("potentials", terms->potential_count, terms->potentials));
   DVI_TRY(check_list("symmetries", terms->symmetry_count, terms->symmetries));
   DVI_TRY(check_list("invariants", terms->invariant_count, terms->invariants));
-  if (has_mass + (terms->lagrangian != NULL) + (terms->one_form != NULL) > 1)
+  const int kinds = has_mass + (terms->lagrangian != NULL) + (terms->one_form != NULL) + (terms->hamiltonian != NULL);
+  if (kinds > 1)
+    return dvi__fail(
+        DVI_BAD_ARGUMENT,
+        "system: more than one of a mass, a general Lagrangian, a one-form and a Hamiltonian are declared; one of them is "
+        "possible");
+  if (kinds == 0 && terms->factors == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT,
-                     "system: more than one of a mass, a general Lagrangian and a one-form are declared; one of them is possible");
-  if (!has_mass && terms->lagrangian == NULL && terms->one_form == NULL && terms->factors == NULL)
-    return dvi__fail(DVI_BAD_ARGUMENT, "system: neither a mass (other than 0) nor a general Lagrangian nor a one-form is declared");
+                     "system: neither a mass (other than 0) nor a general Lagrangian nor a one-form nor a Hamiltonian is declared");
+  DVI_TRY(check_hamiltonian(terms));
   if (terms->gauge != NULL && terms->one_form == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "system: a gauge without a one-form; it changes nothing else");
   if (has_pattern && mass->values == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "system: the mass has a pattern but no values");
@@ -357,6 +402,7 @@ static uint64_t hash_of(const dvi_system *s)
   if (s->mass_diagonal != NULL) hash = dvi__hash(hash, (size_t)s->n * sizeof(double), s->mass_diagonal);
   if (s->mass_values != NULL) hash = dvi__hash(hash, (size_t)dvi__pattern_entries(&s->vv) * sizeof(double), s->mass_values);
   if (s->lagrangian != NULL) hash = add_pattern(hash, &s->lagrangian->qq);
+  if (s->constraint != NULL) hash = add_pattern(hash, &s->constraint->gradients);
   for (int k = 0; k < s->potential_count; k++)
     hash = dvi__hash(add_pattern(hash, &s->potentials[k].qq), strlen(s->potentials[k].name) + 1, s->potentials[k].name);
   for (int i = 0; i < dvi_system_invariant_count(s); i++)
@@ -372,6 +418,8 @@ static dvi_status fill(dvi_system *s, const dvi_system_terms *terms)
     DVI_TRY(copy_factors(s, terms));
   else if (terms->lagrangian != NULL)
     DVI_TRY(copy_lagrangian(s, terms->lagrangian));
+  else if (terms->hamiltonian != NULL)
+    DVI_TRY(copy_hamiltonian(s, terms->hamiltonian, terms->constraint));
   else
     DVI_TRY(terms->one_form != NULL ? copy_one_form(s, terms->one_form, terms->gauge) : copy_mass(s, &terms->mass));
   DVI_TRY(copy_potentials(s, terms));
@@ -394,9 +442,8 @@ dvi_status dvi_system_create(const dvi_system_terms *terms, dvi_system **system)
   return status;
 }
 
-static void clear_lagrangian(dvi__lagrangian_term *term)
+void dvi__general_clear(dvi__lagrangian_term *term)
 {
-  if (term == NULL) return;
   dvi__pattern_clear(&term->qq);
   dvi__pattern_clear(&term->qv);
   dvi__pattern_clear(&term->vv);
@@ -405,7 +452,6 @@ static void clear_lagrangian(dvi__lagrangian_term *term)
   dvi__release(term->in_qq);
   dvi__release(term->q_groups.of_column);
   dvi__release(term->v_groups.of_column);
-  dvi__release(term);
 }
 
 static void clear_potential(dvi__potential_term *term)
@@ -422,7 +468,9 @@ void dvi_system_destroy(dvi_system **system)
   dvi_system *s = *system;
   for (int k = 0; k < s->potential_count; k++) clear_potential(&s->potentials[k]);
   for (int i = 0; s->invariant_names != NULL && i < dvi_system_invariant_count(s); i++) dvi__release(s->invariant_names[i]);
-  clear_lagrangian(s->lagrangian);
+  if (s->lagrangian != NULL) dvi__general_clear(s->lagrangian);
+  dvi__release(s->lagrangian);
+  dvi__constraint_clear(&s->constraint);
   dvi__pattern_clear(&s->qq);
   dvi__pattern_clear(&s->qv);
   dvi__pattern_clear(&s->vv);

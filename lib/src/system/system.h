@@ -14,7 +14,9 @@ typedef enum dvi__term {
   DVI__LAGRANGIAN = 2,
   DVI__ONE_FORM = 4,
   DVI__POTENTIAL = 8,
-  DVI__FACTORS = 16
+  DVI__HAMILTONIAN = 16, /* with its constraints */
+  DVI__FACTORS = 32,
+  DVI__LAST_TERM = DVI__FACTORS
 } dvi__term;
 
 /* How to difference a missing Hessian block: columns of a group are moved together. */
@@ -38,8 +40,9 @@ typedef struct dvi__gauge_term {
   int *in_qq, *in_qv, *form_in_qq, *form_in_qv;
 } dvi__gauge_term;
 
-/* A general Lagrangian, or alpha(q).v. */
+/* A general Lagrangian, or alpha(q).v; or a Hamiltonian, which is a function of p where these are functions of v. */
 typedef struct dvi__lagrangian_term {
+  const char *name; /* for messages: "Lagrangian", "Hamiltonian", "constraint" */
   dvi_lagrangian callbacks;
   struct dvi__transformed *transformed; /* not NULL: it stands in the place of the callbacks (transformed.h) */
   dvi_one_form one_form;                /* without a value: there is none, and the callbacks above count */
@@ -56,6 +59,14 @@ typedef struct dvi__cell {
   int q, v, x; /* of the stored coordinates, of the stored velocities, of the chart's coordinates */
 } dvi__cell;
 
+/* Constraints phi(q,p) = 0. */
+typedef struct dvi__constraint_term {
+  dvi_constraint callbacks;
+  dvi__pattern gradients;        /* 2n rows, m columns */
+  dvi__pattern bracket;          /* full, m x m */
+  dvi__lagrangian_term weighted; /* patterns and groups of phi.w, a function of q and p; without callbacks */
+} dvi__constraint_term;
+
 struct dvi_system {
   int n;          /* stored coordinates */
   int nv;         /* numbers of a velocity: n without factors */
@@ -68,7 +79,8 @@ struct dvi_system {
   double mass_scalar;
   double *mass_diagonal;
   double *mass_values;              /* in the order of vv */
-  dvi__lagrangian_term *lagrangian; /* general, or made of the one-form */
+  dvi__lagrangian_term *lagrangian; /* general, or made of the one-form, or the Hamiltonian */
+  dvi__constraint_term *constraint; /* with a Hamiltonian; else NULL */
   dvi__potential_term *potentials;
   int potential_count;
   dvi_symmetry *symmetries;
@@ -76,8 +88,9 @@ struct dvi_system {
   dvi_invariant *invariants;
   int invariant_count;
   char **invariant_names; /* energy, symmetries, invariants */
-  dvi__pattern qv, vv;    /* of L's Hessian; vv is diagonal for scalar and diagonal masses, empty for a one-form */
-  dvi__pattern qq;        /* the union over the terms; empty until dvi__system_prepare_hessian */
+  dvi__pattern qv,
+      vv; /* of L's Hessian; vv is diagonal for scalar and diagonal masses, empty for a one-form. With a Hamiltonian: of its H_qp and H_pp */
+  dvi__pattern qq; /* the union over the terms; empty until dvi__system_prepare_hessian */
 };
 
 /* Complete the patterns of L_qq, once: left-out ones are full, n^2 entries that only a method with Hessians should pay for. Integrators on

@@ -6,9 +6,8 @@
 #include "system/difference.h"
 #include "system/transformed.h"
 
-/* The status that a callback's return and its results, `entries` at each of `count` points, amount to; `in` says which result. */
-static dvi_status verdict(int returned, int entries, int count, const double *result, const char *name, const char *what,
-                          const char *in)
+dvi_status dvi__verdict(int returned, int entries, int count, const double *result, const char *name, const char *what,
+                        const char *in)
 {
   if (returned < 0) return dvi__fail(DVI_CALLBACK_FAILED, "%s: the %s callback failed with %d", name, what, returned);
   if (returned > 0) return dvi__fail(DVI_CALLBACK_RETRY, "%s: the %s callback asked for a smaller step (%d)", name, what, returned);
@@ -50,7 +49,7 @@ dvi_status dvi__potential_value(const dvi__potential_term *p, dvi__scratch *s, i
     gather(s->n, count, k, q, s->point_q);
     returned = c->value(t[k], s->point_q, V + k, c->user);
   }
-  return verdict(returned, 1, count, V, p->name, "value", "");
+  return dvi__verdict(returned, 1, count, V, p->name, "value", "");
 }
 
 dvi_status dvi__potential_value_of_q(const void *function, int count, const double *q, double *V)
@@ -89,7 +88,7 @@ dvi_status dvi__potential_gradient(const dvi__potential_term *p, dvi__scratch *s
       returned = ask_gradient(c, s->n, t[k], s->point_q, s->result[0]);
       scatter(s->n, count, k, s->result[0], V_q);
     }
-  return verdict(returned, s->n, count, V_q, p->name, "gradient", "");
+  return dvi__verdict(returned, s->n, count, V_q, p->name, "gradient", "");
 }
 
 dvi_status dvi__potential_hessian(const dvi__potential_term *p, dvi__scratch *s, int count, const double *t, const double *q,
@@ -107,7 +106,7 @@ dvi_status dvi__potential_hessian(const dvi__potential_term *p, dvi__scratch *s,
     returned = c->hessian(t[k], s->point_q, s->result[0], c->user);
     scatter(entries, count, k, s->result[0], V_qq);
   }
-  return verdict(returned, entries, count, V_qq, p->name, "Hessian", "");
+  return dvi__verdict(returned, entries, count, V_qq, p->name, "Hessian", "");
 }
 
 int dvi__potential_has_rate(const dvi__potential_term *p)
@@ -125,7 +124,7 @@ dvi_status dvi__potential_rate(const dvi__potential_term *p, dvi__scratch *s, in
     gather(s->n, count, k, q, s->point_q);
     returned = c->rate(t[k], s->point_q, V_t + k, c->user);
   }
-  return verdict(returned, 1, count, V_t, p->name, "rate", "");
+  return dvi__verdict(returned, 1, count, V_t, p->name, "rate", "");
 }
 
 /* ---- one-form: L = alpha(q).v ---- */
@@ -140,9 +139,9 @@ static int has_gauge(const dvi__lagrangian_term *l)
 dvi_status dvi__form_value(const dvi__lagrangian_term *l, const double *q, double *alpha, double *work)
 {
   const int n = l->qv.columns;
-  DVI_TRY(verdict(l->one_form.value(q, alpha, l->one_form.user), n, 1, alpha, form, "value", ""));
+  DVI_TRY(dvi__verdict(l->one_form.value(q, alpha, l->one_form.user), n, 1, alpha, form, "value", ""));
   if (!has_gauge(l)) return DVI_OK;
-  DVI_TRY(verdict(l->gauge.callbacks.gradient(q, work, l->gauge.callbacks.user), n, 1, work, gauge, "gradient", ""));
+  DVI_TRY(dvi__verdict(l->gauge.callbacks.gradient(q, work, l->gauge.callbacks.user), n, 1, work, gauge, "gradient", ""));
   for (int i = 0; i < n; i++) alpha[i] += work[i];
   return DVI_OK;
 }
@@ -161,7 +160,7 @@ static void clear(const dvi__pattern *pattern, double *values)
 static dvi_status own_gradients(const dvi__lagrangian_term *l, const dvi__pattern *qv, const double *q, double *alpha_q)
 {
   const int returned = l->one_form.gradient(q, alpha_q, l->one_form.user);
-  return verdict(returned, dvi__pattern_entries(qv), 1, alpha_q, form, "gradient", "");
+  return dvi__verdict(returned, dvi__pattern_entries(qv), 1, alpha_q, form, "gradient", "");
 }
 
 dvi_status dvi__form_gradients(const dvi__lagrangian_term *l, const double *q, double *alpha_q, double *work)
@@ -172,7 +171,7 @@ dvi_status dvi__form_gradients(const dvi__lagrangian_term *l, const double *q, d
   DVI_TRY(own_gradients(l, &g->form_qv, q, work));
   add_part(&g->form_qv, g->form_in_qv, work, alpha_q);
   const int returned = g->callbacks.hessian(q, work, g->callbacks.user);
-  DVI_TRY(verdict(returned, dvi__pattern_entries(&g->qq), 1, work, gauge, "Hessian", ""));
+  DVI_TRY(dvi__verdict(returned, dvi__pattern_entries(&g->qq), 1, work, gauge, "Hessian", ""));
   add_part(&g->qq, g->in_qv, work, alpha_q);
   return DVI_OK;
 }
@@ -181,7 +180,7 @@ static dvi_status own_hessian(const dvi__lagrangian_term *l, const dvi__pattern 
                               double *alpha_w_qq)
 {
   const int returned = l->one_form.hessian(q, w, alpha_w_qq, l->one_form.user);
-  return verdict(returned, dvi__pattern_entries(qq), 1, alpha_w_qq, form, "Hessian", "");
+  return dvi__verdict(returned, dvi__pattern_entries(qq), 1, alpha_w_qq, form, "Hessian", "");
 }
 
 /* The Hessian of (alpha + grad f).w at one point. */
@@ -193,7 +192,7 @@ static dvi_status whole_hessian(const dvi__lagrangian_term *l, const double *q, 
   DVI_TRY(own_hessian(l, &g->form_qq, q, w, work));
   add_part(&g->form_qq, g->form_in_qq, work, qq);
   const int returned = g->callbacks.third(q, w, work, g->callbacks.user);
-  DVI_TRY(verdict(returned, dvi__pattern_entries(&g->qq), 1, work, gauge, "third derivatives'", ""));
+  DVI_TRY(dvi__verdict(returned, dvi__pattern_entries(&g->qq), 1, work, gauge, "third derivatives'", ""));
   add_part(&g->qq, g->in_qq, work, qq);
   return DVI_OK;
 }
@@ -233,25 +232,38 @@ static dvi_status form_gradient(const dvi__lagrangian_term *l, dvi__scratch *s, 
   return DVI_OK;
 }
 
-/* L_qq is the Hessian of alpha.v, L_qv has the gradients of alpha, and L_vv is empty. */
-static dvi_status form_hessian(const dvi__lagrangian_term *l, dvi__scratch *s, int count, const double *q, const double *v,
-                               double *L_qq, double *L_qv)
+/* The Hessian of alpha.v, by differences of the gradients if it is not given. */
+static dvi_status form_curvature(const dvi__general_at *at, int count, double *L_qq)
 {
-  const int qq = dvi__pattern_entries(&l->qq), qv = dvi__pattern_entries(&l->qv);
+  const dvi__lagrangian_term *l = at->term;
+  dvi__scratch *s = at->scratch;
+  if (!dvi__general_has_hessian(l))
+    return dvi__difference_hessian(dvi__general_gradient_of_q, at, &s->of_gradient, &l->q_groups, 0, count, at->q, &l->qq, L_qq,
+                                   NULL, NULL);
   for (int k = 0; k < count; k++) {
-    gather(s->n, count, k, q, s->point_q);
-    gather(s->n, count, k, v, s->point_v);
+    gather(s->n, count, k, at->q, s->point_q);
+    gather(s->n, count, k, at->v, s->point_v);
     DVI_TRY(whole_hessian(l, s->point_q, s->point_v, s->result[0], s->result[2]));
-    scatter(qq, count, k, s->result[0], L_qq);
+    scatter(dvi__pattern_entries(&l->qq), count, k, s->result[0], L_qq);
+  }
+  return DVI_OK;
+}
+
+/* L_qq is the Hessian of alpha.v, L_qv has the gradients of alpha, and L_vv is empty. */
+static dvi_status form_hessian(const dvi__general_at *at, int count, double *L_qq, double *L_qv)
+{
+  const dvi__lagrangian_term *l = at->term;
+  dvi__scratch *s = at->scratch;
+  DVI_TRY(form_curvature(at, count, L_qq));
+  for (int k = 0; k < count; k++) {
+    gather(s->n, count, k, at->q, s->point_q);
     DVI_TRY(dvi__form_gradients(l, s->point_q, s->result[0], s->result[2]));
-    scatter(qv, count, k, s->result[0], L_qv);
+    scatter(dvi__pattern_entries(&l->qv), count, k, s->result[0], L_qv);
   }
   return DVI_OK;
 }
 
 /* ---- general Lagrangian ---- */
-
-static const char *const general = "Lagrangian";
 
 static int is_form(const dvi__lagrangian_term *l)
 {
@@ -282,7 +294,7 @@ dvi_status dvi__general_value(const dvi__lagrangian_term *l, dvi__scratch *s, in
     gather(s->n, count, k, v, s->point_v);
     returned = c->value(t[k], s->point_q, s->point_v, L + k, c->user);
   }
-  return verdict(returned, 1, count, L, general, "value", "");
+  return dvi__verdict(returned, 1, count, L, l->name, "value", "");
 }
 
 dvi_status dvi__general_value_of_q(const void *function, int count, const double *q, double *L)
@@ -329,8 +341,8 @@ dvi_status dvi__general_gradient(const dvi__lagrangian_term *l, dvi__scratch *s,
     scatter(s->n, count, k, s->result[0], L_q);
     scatter(s->n, count, k, s->result[1], L_v);
   }
-  DVI_TRY(verdict(returned, s->n, count, L_q, general, "gradient", " in L_q"));
-  return verdict(returned, s->n, count, L_v, general, "gradient", " in L_v");
+  DVI_TRY(dvi__verdict(returned, s->n, count, L_q, l->name, "gradient", " in L_q"));
+  return dvi__verdict(returned, s->n, count, L_v, l->name, "gradient", " in L_v");
 }
 
 static dvi_status difference_general_hessian(const dvi__general_at *at, int count, double *L_qq, double *L_qv, double *L_vv)
@@ -349,8 +361,8 @@ dvi_status dvi__general_hessian(const dvi__lagrangian_term *l, dvi__scratch *s, 
   const int qq = dvi__pattern_entries(&l->qq), qv = dvi__pattern_entries(&l->qv), vv = dvi__pattern_entries(&l->vv);
   int returned = 0;
   if (l->transformed != NULL) return dvi__transformed_hessian(l->transformed, count, t, q, v, L_qq, L_qv, L_vv);
+  if (is_form(l)) return form_hessian(&(dvi__general_at){l, s, t, q, v}, count, L_qq, L_qv);
   if (!dvi__general_has_hessian(l)) return difference_general_hessian(&(dvi__general_at){l, s, t, q, v}, count, L_qq, L_qv, L_vv);
-  if (is_form(l)) return form_hessian(l, s, count, q, v, L_qq, L_qv);
   if (c->hessian_batch != NULL) returned = c->hessian_batch(count, t, q, v, L_qq, L_qv, L_vv, c->user);
   for (int k = 0; c->hessian_batch == NULL && k < count && returned == 0; k++) {
     gather(s->n, count, k, q, s->point_q);
@@ -360,9 +372,9 @@ dvi_status dvi__general_hessian(const dvi__lagrangian_term *l, dvi__scratch *s, 
     scatter(qv, count, k, s->result[1], L_qv);
     scatter(vv, count, k, s->result[2], L_vv);
   }
-  DVI_TRY(verdict(returned, qq, count, L_qq, general, "Hessian", " in L_qq"));
-  DVI_TRY(verdict(returned, qv, count, L_qv, general, "Hessian", " in L_qv"));
-  return verdict(returned, vv, count, L_vv, general, "Hessian", " in L_vv");
+  DVI_TRY(dvi__verdict(returned, qq, count, L_qq, l->name, "Hessian", " in L_qq"));
+  DVI_TRY(dvi__verdict(returned, qv, count, L_qv, l->name, "Hessian", " in L_qv"));
+  return dvi__verdict(returned, vv, count, L_vv, l->name, "Hessian", " in L_vv");
 }
 
 int dvi__general_has_rate(const dvi__lagrangian_term *l)
@@ -383,5 +395,5 @@ dvi_status dvi__general_rate(const dvi__lagrangian_term *l, dvi__scratch *s, int
     gather(s->n, count, k, v, s->point_v);
     returned = c->rate(t[k], s->point_q, s->point_v, L_t + k, c->user);
   }
-  return verdict(returned, 1, count, L_t, general, "rate", "");
+  return dvi__verdict(returned, 1, count, L_t, l->name, "rate", "");
 }

@@ -27,6 +27,14 @@ void dvi__differences_clear(dvi__differences *d);
 dvi_status dvi__scratch_create(const dvi_system *system, int capacity, int hessians, dvi__scratch *scratch);
 void dvi__scratch_clear(dvi__scratch *scratch);
 
+/* The status that a callback's return and its results, `entries` at each of `count` points, amount to; `in` says which result. */
+dvi_status dvi__verdict(int returned, int entries, int count, const double *result, const char *name, const char *what,
+                        const char *in);
+
+/* Group the columns of a Lagrangian's patterns for differences, or of a function's that stands in its place; free what it owns. */
+dvi_status dvi__general_group(dvi__lagrangian_term *term);
+void dvi__general_clear(dvi__lagrangian_term *term);
+
 /* All of these check the callback's return and that every number is finite. Shapes as in evaluator.h. */
 dvi_status dvi__potential_value(const dvi__potential_term *p, dvi__scratch *s, int count, const double *t, const double *q,
                                 double *V);

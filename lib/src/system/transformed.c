@@ -99,6 +99,7 @@ static dvi_status make_system(dvi__transformed *x)
   s->autonomous = 1;
   s->lagrangian = DVI_NEW(dvi__lagrangian_term, 1);
   if (s->lagrangian == NULL) return dvi__fail(DVI_NO_MEMORY, "time transform: no memory");
+  s->lagrangian->name = "Lagrangian";
   s->lagrangian->transformed = x;
   return make_patterns(s, x->base);
 }
@@ -113,9 +114,9 @@ static dvi_status fill(dvi__transformed *x, const dvi_system *system, const dvi_
     return dvi__fail(DVI_UNSUPPORTED,
                      "the system is not declared autonomous: its energy need not be conserved, and no function of q "
                      "alone can stand for its time");
-  if (system->terms & DVI__ONE_FORM)
-    return dvi__fail(DVI_UNSUPPORTED,
-                     "the system declares a one-form: its Lagrangian has no mass that could be divided by the monitor");
+  if (system->terms & (DVI__ONE_FORM | DVI__HAMILTONIAN))
+    return dvi__fail(DVI_UNSUPPORTED, "the system declares a %s: its Lagrangian has no mass that could be divided by the monitor",
+                     system->lagrangian->name);
   DVI_TRY(dvi__system_prepare_hessian(system));
   DVI_TRY(dvi__transformed_reserve(x, 1));
   return make_system(x);

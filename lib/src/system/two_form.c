@@ -9,6 +9,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/finite.h"
+#include "num/pfaffian.h"
 #include "system/evaluator_struct.h"
 
 /* An entry of the gradients; 0 outside of their pattern. */
@@ -40,6 +41,27 @@ dvi_status dvi__two_form_factor(dvi__evaluator *e, const double *q)
 void dvi__two_form_solve(dvi__evaluator *e, double *x)
 {
   dvi__linear_solve(e->velocity, x);
+}
+
+/* Columns one after the other, [n*n]. */
+static void fill_dense(const dvi__evaluator *e, double *Omega)
+{
+  const dvi__pattern *omega = &e->system->lagrangian->omega;
+  const size_t n = (size_t)e->system->n;
+  memset(Omega, 0, n * n * sizeof(double));
+  for (size_t j = 0; j < n; j++)
+    for (int k = omega->start[j]; k < omega->start[j + 1]; k++) Omega[j * n + (size_t)omega->row[k]] = e->two_form[k];
+}
+
+dvi_status dvi__two_form_side(dvi__evaluator *e, const double *q, int *side)
+{
+  double Omega[DVI__SIDES_MOST * DVI__SIDES_MOST];
+  *side = 1;
+  if (e->system->n > DVI__SIDES_MOST) return DVI_OK;
+  DVI_TRY(evaluate(e, q));
+  fill_dense(e, Omega);
+  *side = dvi__pfaffian_sign((size_t)e->system->n, Omega);
+  return DVI_OK;
 }
 
 dvi_status dvi__two_form_velocity(dvi__evaluator *e, double t, const double *q, double *v)
@@ -78,6 +100,64 @@ dvi_status dvi__form_scale(dvi__evaluator *e, const double *q, double *scale)
   return DVI_OK;
 }
 
+/* S by columns; returns the largest gradient. */
+static double symmetric_part(const dvi__pattern *qv, const double *alpha_q, size_t n, double *S)
+{
+  double largest = 0;
+  memset(S, 0, n * n * sizeof *S);
+  for (size_t j = 0; j < n; j++)
+    for (int k = qv->start[j]; k < qv->start[j + 1]; k++) {
+      const size_t i = (size_t)qv->row[k];
+      S[j * n + i] += 0.5 * alpha_q[k];
+      S[i * n + j] += 0.5 * alpha_q[k];
+      largest = fmax(largest, fabs(alpha_q[k]));
+    }
+  return largest;
+}
+
+/* A c for which S + c is definite (Gershgorin). */
+static double lift(size_t n, const double *S)
+{
+  double least = 0;
+  for (size_t i = 0; i < n; i++) {
+    double row = -S[i * n + i];
+    for (size_t j = 0; j < n; j++) row += j != i ? fabs(S[j * n + i]) : 0;
+    least = fmax(least, row);
+  }
+  return least;
+}
+
+/* By Cholesky's factors of S or -S, whose pivots exceed the floor; S is spoilt. */
+static int is_definite(size_t n, double *S, double floor)
+{
+  const double sign = S[0] < 0 ? -1 : 1;
+  for (size_t k = 0; k < n; k++) {
+    const double pivot = sign * S[k * n + k];
+    if (!(pivot > floor)) return 0;
+    for (size_t j = k + 1; j < n; j++)
+      for (size_t i = j; i < n; i++) S[j * n + i] -= sign * S[k * n + j] * S[k * n + i] / pivot;
+  }
+  return 1;
+}
+
+dvi_status dvi__form_definite(dvi__evaluator *e, const double *q, double *S)
+{
+  const dvi__lagrangian_term *l = e->system->lagrangian;
+  const size_t n = (size_t)e->system->n;
+  double *alpha_q = e->hessian[1];
+  DVI_TRY(dvi__form_gradients(l, q, alpha_q, e->scratch.result[0]));
+  const double floor = 1e-12 * symmetric_part(&l->qv, alpha_q, n, S), c = lift(n, S);
+  double largest = 0;
+  for (size_t k = 0; k < n * n; k++) largest = fmax(largest, fabs(S[k]));
+  if (largest <= floor || is_definite(n, S, floor)) return DVI_OK;
+  return dvi__fail(
+      DVI_SINGULAR,
+      "the symmetric part of the one-form's derivatives is not definite here, and what is off p = alpha(q) grows from step "
+      "to step; use the gauge alpha + grad f, f = c |q|^2/2 with c well above %.2g, or a quadrature of higher order, "
+      "such as gauss",
+      c);
+}
+
 dvi_status dvi__form_distance(dvi__evaluator *e, const double *q, const double *p, double *distance)
 {
   double *alpha = e->point[2], largest = 0;
@@ -111,8 +191,9 @@ dvi_status dvi__form_constraint(dvi__evaluator *e, const double *q, const double
   for (int i = 0; i < e->system->n; i++)
     if (!(fabs(p[i] - alpha[i]) <= on_constraint * size))
       return dvi__fail(DVI_BAD_ARGUMENT,
-                       "p[%d] is %.17g, but the one-form has alpha = %.17g there; start with p = alpha(q) (dvi_system_momentum)", i,
-                       p[i], alpha[i]);
+                       "p[%d] is %.17g, but the one-form has alpha = %.17g there, %.2g away; start with p = alpha(q) "
+                       "(dvi_system_momentum), or let it be projected (dvi_start_options)",
+                       i, p[i], alpha[i], fabs(p[i] - alpha[i]));
   return DVI_OK;
 }
 
@@ -146,14 +227,10 @@ static double norm(const dvi__pattern *omega, const double *values)
 static dvi_status measure(dvi__evaluator *e, const double *q, double *Omega, double *condition)
 {
   const dvi__pattern *omega = &e->system->lagrangian->omega;
-  const size_t n = (size_t)e->system->n;
   const dvi_status status = dvi__two_form_factor(e, q);
   if (status != DVI_OK && status != DVI_SINGULAR) return status;
   if (condition != NULL) *condition = status == DVI_OK ? norm(omega, e->two_form) * inverse_norm(e) : HUGE_VAL;
-  if (Omega == NULL) return DVI_OK;
-  memset(Omega, 0, n * n * sizeof(double));
-  for (size_t j = 0; j < n; j++)
-    for (int k = omega->start[j]; k < omega->start[j + 1]; k++) Omega[j * n + (size_t)omega->row[k]] = e->two_form[k];
+  if (Omega != NULL) fill_dense(e, Omega);
   return DVI_OK;
 }
 

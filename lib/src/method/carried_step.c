@@ -1,0 +1,68 @@
+#include "method/carried_step.h"
+
+#include "core/memory.h"
+#include "num/compensated.h"
+
+typedef struct carried {
+  dvi__one_step one;
+  double *symmetric; /* [n*n]; NULL: every gauge will do */
+} carried;
+
+static void explain(const dvi__stepper *self, dvi__text *text)
+{
+  const carried *own = self->own;
+  dvi__text_add(text, "constraint: p = alpha(q), which the steps leave; %s\n",
+                own->symmetric != NULL ? "the gauge must make the symmetric part of Dalpha definite, which each step checks"
+                                       : "every gauge will do");
+}
+
+DVI__STEP_KIND(action, explain);
+
+static dvi_status make_action(const dvi__stepper *self, const dvi__action_space *space, dvi__action **action)
+{
+  DVI_TRY(dvi__action_create(self->system, space, self->counters, action));
+  const dvi_status status = dvi__action_prepare_jacobian(*action);
+  if (status != DVI_OK) dvi__action_destroy(action);
+  return status;
+}
+
+dvi_status dvi__carried_step_create(dvi__stepper *self, const dvi__action_space *space, int needs_definite)
+{
+  const size_t n = (size_t)self->system->n;
+  dvi__action *action;
+  DVI_TRY(make_action(self, space, &action));
+  DVI_TRY(dvi__one_step_create(self, sizeof(carried), &kind, action, 0));
+  if (!needs_definite) return DVI_OK;
+  carried *own = self->own;
+  own->symmetric = DVI_NEW(double, n *n);
+  return own->symmetric != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
+}
+
+void dvi__carried_step_destroy(dvi__stepper *self)
+{
+  const carried *own = self->own;
+  if (own != NULL) dvi__release(own->symmetric);
+  dvi__one_step_destroy(self);
+}
+
+dvi_status dvi__carried_step(dvi__stepper *self, dvi__state *state, double h)
+{
+  const carried *own = self->own;
+  const dvi__one_step *one = &own->one;
+  double *rows = one->guess, *dq_low = one->guess;
+  if (own->symmetric != NULL) DVI_TRY(dvi__form_definite(dvi__action_evaluator(one->of), state->q, own->symmetric));
+  dvi__action_place(one->of, state->t, h, state->q, state->p);
+  DVI_TRY(dvi__one_step_solve(self, state, h));
+  DVI_TRY(dvi__action_residual(one->of, one->x, rows));
+  dvi__action_ends(one->of, one->x, one->dq, dq_low, one->dp);
+  dvi__one_step_move(self, state, h, one->x);
+  dvi__add_compensated_all(self->system->n, state->p, state->p_carry, one->dp);
+  return DVI_OK;
+}
+
+void dvi__carried_step_path(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v)
+{
+  const dvi__one_step *one = self->own;
+  dvi__action_path(one->of, self->memory + one->last, h, tau, q, v);
+  for (int i = 0; q != NULL && i < self->system->n; i++) q[i] += q0[i];
+}

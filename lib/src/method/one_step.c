@@ -1,0 +1,105 @@
+#include "method/one_step.h"
+
+#include <string.h>
+
+#include "core/memory.h"
+#include "method/stationary.h"
+#include "num/compensated.h"
+#include "num/finite.h"
+
+static size_t unknowns(const dvi__one_step *one)
+{
+  return (size_t)one->kind->pattern(one->of)->columns;
+}
+
+/* ---- making it ---- */
+
+static int allocate(dvi__one_step *one, size_t n)
+{
+  one->guess = DVI_NEW(double, unknowns(one));
+  one->x = DVI_NEW(double, unknowns(one));
+  one->dq = DVI_NEW(double, n);
+  one->dp = DVI_NEW(double, n);
+  return one->guess && one->x && one->dq && one->dp;
+}
+
+dvi_status dvi__one_step_create(dvi__stepper *self, size_t size, const dvi__step_kind *kind, void *of, size_t carried)
+{
+  dvi__one_step *one = self->own = dvi__allocate(1, size);
+  if (one == NULL) {
+    kind->destroy(of);
+    return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
+  }
+  one->kind = kind;
+  one->of = of;
+  one->last = DVI__CARRIED + carried;
+  self->memory_count = one->last + unknowns(one);
+  if (!allocate(one, (size_t)self->system->n)) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
+  dvi__equations equations = {.unknowns = (int)unknowns(one),
+                              .pattern = kind->pattern(of),
+                              .of = of,
+                              .residual = kind->residual,
+                              .jacobian = kind->jacobian,
+                              .row_scale = kind->row_scale};
+  return dvi__stationary_create(&equations, self->counters, &one->solver);
+}
+
+void dvi__one_step_destroy(dvi__stepper *self)
+{
+  dvi__one_step *one = self->own;
+  if (one == NULL) return;
+  dvi__solver_destroy(&one->solver);
+  one->kind->destroy(one->of);
+  dvi__release(one->guess);
+  dvi__release(one->x);
+  dvi__release(one->dq);
+  dvi__release(one->dp);
+  dvi__release(one);
+}
+
+void dvi__one_step_start(dvi__stepper *self, const double *v)
+{
+  const dvi__one_step *one = self->own;
+  memset(self->memory, 0, self->memory_count * sizeof(double));
+  memcpy(self->memory + one->last, v, (size_t)self->system->n * sizeof(double));
+}
+
+/* ---- the step ---- */
+
+dvi_status dvi__one_step_solve(dvi__stepper *self, const dvi__state *state, double h)
+{
+  const dvi__one_step *one = self->own;
+  const double last_h = self->memory[DVI__LENGTH], *last = self->memory + one->last;
+  if (last_h != 0)
+    one->kind->continued(one->of, h / last_h, last, one->guess);
+  else
+    one->kind->straight(one->of, last, one->guess);
+  return dvi__stationary_solve(one->solver, self->counters, dvi__largest((size_t)self->system->n, state->q), (int)unknowns(one),
+                               one->guess, one->x);
+}
+
+void dvi__one_step_move(dvi__stepper *self, dvi__state *state, double h, const double *last)
+{
+  const dvi__one_step *one = self->own;
+  dvi__add_compensated_all(self->system->n, state->q, state->q_carry, one->dq);
+  dvi__add_compensated(&state->t, &state->t_carry, h);
+  self->memory[DVI__LENGTH] = h;
+  memcpy(self->memory + one->last, last, unknowns(one) * sizeof(double));
+}
+
+dvi_status dvi__one_step_constrain(dvi__stepper *self, dvi__state *state)
+{
+  const dvi__one_step *one = self->own;
+  memset(one->dq, 0, (size_t)self->system->n * sizeof(double));
+  return dvi__form_gradient(one->kind->evaluator(one->of), state->q, one->dq, one->dp, state->p);
+}
+
+void dvi__one_step_explain(const dvi__stepper *self, dvi__text *text)
+{
+  const dvi__one_step *one = self->own;
+  const dvi__pattern *pattern = one->kind->pattern(one->of);
+  dvi__text_add(text, "kernel: implicit; %d unknowns a step, Jacobian with %d entries (%.3g %% of a full one)\n", pattern->columns,
+                dvi__pattern_entries(pattern), 100.0 * dvi__pattern_entries(pattern) / pattern->columns / pattern->columns);
+  one->kind->explain(self, text);
+  dvi__text_add(text, "solver: Newton's method, last KINSOL with line search\n");
+}

@@ -1,0 +1,95 @@
+/* A step by the stationarity conditions of a kind of step that is not one element of the action (element_step.h has those): the vectors, the guess, the
+ * solution, the new state and what is remembered for the next guess.
+ *
+ * The kind (action/partitioned.h and its neighbours) has the equations. To add one: DVI__STEP_KIND(foo, explain), a step of four lines (darboux_step.c), and
+ * the operations below in the methods' initialiser. */
+#ifndef DVI_METHOD_ONE_STEP_H
+#define DVI_METHOD_ONE_STEP_H
+#include "core/status.h"
+#include "method/method.h"
+#include "solve/nonlinear.h"
+
+/* The memory: the length of the last step (0: none); what the method carries of its own; what the guess continues, as many numbers as unknowns (before
+ * the first step, the start's velocity in their place). */
+enum { DVI__LENGTH, DVI__CARRIED };
+
+typedef struct dvi__step_kind {
+  dvi_status (*residual)(void *of, const double *x, double *R);
+  dvi_status (*jacobian)(void *of, const double *x, double *values);
+  int (*row_scale)(void *of, double *scale);
+  void (*straight)(const void *of, const double *v, double *x);
+  void (*continued)(void *of, double ratio, const double *last, double *x);
+  const dvi__pattern *(*pattern)(const void *of);
+  dvi__evaluator *(*evaluator)(const void *of);
+  void (*destroy)(void *of);
+  void (*explain)(const dvi__stepper *self, dvi__text *text); /* what is its own */
+} dvi__step_kind;
+
+/* A stepper's own struct begins with it. */
+typedef struct dvi__one_step {
+  const dvi__step_kind *kind;
+  void *of; /* the step, of this kind */
+  dvi__solver *solver;
+  size_t last;                 /* where in the memory stands what the guess continues */
+  double *guess, *x, *dq, *dp; /* [unknowns], [unknowns], [n], [n] */
+} dvi__one_step;
+
+/* Make self->own, `size` bytes, and the memory with `carried` numbers of the method's own. The step is owned from here on, also on failure. */
+dvi_status dvi__one_step_create(dvi__stepper *self, size_t size, const dvi__step_kind *kind, void *of, size_t carried);
+
+/* Solve the step that was placed at the state, by Newton's method, else by KINSOL: x, from the guess that is a straight line along the velocity at the
+ * start, and later what was remembered, continued. */
+dvi_status dvi__one_step_solve(dvi__stepper *self, const dvi__state *state, double h);
+
+/* Move q by dq and t by h, and remember `last` [unknowns]. */
+void dvi__one_step_move(dvi__stepper *self, dvi__state *state, double h, const double *last);
+
+/* p = alpha(q), to the last bit. */
+dvi_status dvi__one_step_constrain(dvi__stepper *self, dvi__state *state);
+
+/* Operations of dvi__method, and what goes into its initialiser for them. */
+void dvi__one_step_destroy(dvi__stepper *self);
+void dvi__one_step_start(dvi__stepper *self, const double *v);
+void dvi__one_step_explain(const dvi__stepper *self, dvi__text *text);
+
+#define DVI__ONE_STEP_OPERATIONS .destroy = dvi__one_step_destroy, .start = dvi__one_step_start, .explain = dvi__one_step_explain
+
+/* The kind whose functions are dvi__foo_..., as `kind`. */
+#define DVI__STEP_KIND(foo, explain_own)                                                                  \
+  static dvi_status residual_of(void *of, const double *x, double *R)                                     \
+  {                                                                                                       \
+    return dvi__##foo##_residual(of, x, R);                                                               \
+  }                                                                                                       \
+  static dvi_status jacobian_of(void *of, const double *x, double *values)                                \
+  {                                                                                                       \
+    return dvi__##foo##_jacobian(of, x, values);                                                          \
+  }                                                                                                       \
+  static int row_scale_of(void *of, double *scale)                                                        \
+  {                                                                                                       \
+    return dvi__##foo##_scale(of, scale) == DVI_OK;                                                       \
+  }                                                                                                       \
+  static void straight_of(const void *of, const double *v, double *x)                                     \
+  {                                                                                                       \
+    dvi__##foo##_straight(of, v, x);                                                                      \
+  }                                                                                                       \
+  static void continued_of(void *of, double ratio, const double *last, double *x)                         \
+  {                                                                                                       \
+    dvi__##foo##_continue(of, ratio, last, x);                                                            \
+  }                                                                                                       \
+  static const dvi__pattern *pattern_of(const void *of)                                                   \
+  {                                                                                                       \
+    return dvi__##foo##_pattern(of);                                                                      \
+  }                                                                                                       \
+  static dvi__evaluator *evaluator_of(const void *of)                                                     \
+  {                                                                                                       \
+    return dvi__##foo##_evaluator(of);                                                                    \
+  }                                                                                                       \
+  static void destroy_of(void *of)                                                                        \
+  {                                                                                                       \
+    dvi__##foo *step = of;                                                                                \
+    dvi__##foo##_destroy(&step);                                                                          \
+  }                                                                                                       \
+  static const dvi__step_kind kind = {residual_of, jacobian_of,  row_scale_of, straight_of, continued_of, \
+                                      pattern_of,  evaluator_of, destroy_of,   explain_own}
+
+#endif

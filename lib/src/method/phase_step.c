@@ -1,0 +1,106 @@
+#include "method/phase_step.h"
+
+#include <math.h>
+
+#include "action/phase.h"
+#include "method/dg_step.h"
+#include "num/compensated.h"
+#include "num/finite.h"
+
+/* Carried: the largest motions of a step so far, of q and of p; the jumps of both [n]; the node's multiplier [m]. */
+enum { MOTION = DVI__CARRIED, JUMP = MOTION + 2 };
+
+typedef struct phase_step {
+  dvi__one_step one;
+  int alarm;
+  double part; /* of the largest motion of a step that a jump may be */
+} phase_step;
+
+static double *multiplier(const dvi__stepper *self)
+{
+  return self->memory + JUMP + 2 * self->system->n;
+}
+
+static void explain(const dvi__stepper *self, dvi__text *text)
+{
+  const phase_step *own = self->own;
+  dvi__text_add(text, "constraint: %d functions phi(q,p), 0 after every step\n", dvi_system_constraint_count(self->system));
+  dvi__explain_jumps(own->alarm, text);
+}
+
+DVI__STEP_KIND(phase, explain);
+
+dvi_status dvi__phase_step_create(dvi__stepper *self, int degree, int moments, int alarm)
+{
+  dvi__phase *step;
+  const size_t n = (size_t)self->system->n, m = (size_t)dvi_system_constraint_count(self->system);
+  self->symmetric = 1;
+  DVI_TRY(dvi__phase_create(self->system, degree, moments, self->counters, &step));
+  DVI_TRY(dvi__one_step_create(self, sizeof(phase_step), &kind, step, 2 + 2 * n + m));
+  phase_step *own = self->own;
+  own->alarm = alarm;
+  own->part = moments == 0 ? 4 : 0.5; /* without moments the constraint's force is in the jumps alone */
+  return DVI_OK;
+}
+
+static dvi_status solve(dvi__stepper *self, const dvi__state *state, double h)
+{
+  const dvi__one_step *one = self->own;
+  DVI_TRY(dvi__phase_place(one->of, state->t, h, state->q, state->p, multiplier(self)));
+  return dvi__one_step_solve(self, state, h);
+}
+
+/* The parasite of the multiplier changes its sign from node to node. A step forth and one back tell the smooth branch from it, up to its second
+ * difference: lambda <- (lambda(h) + 2 lambda + lambda(-h))/4. */
+static dvi_status settle(dvi__stepper *self, const dvi__state *state, double h)
+{
+  const dvi__one_step *one = self->own;
+  const int m = dvi_system_constraint_count(self->system);
+  double *there = one->guess;
+  for (int k = 0; k < 2; k++) {
+    DVI_TRY(solve(self, state, h));
+    dvi__phase_end(one->of, one->x, one->dq, one->dp, self->memory + JUMP);
+    DVI_TRY(solve(self, state, -h));
+    dvi__phase_end(one->of, one->x, one->dq, one->dp, there);
+    for (int a = 0; a < m; a++) multiplier(self)[a] = 0.25 * (self->memory[JUMP + a] + 2 * multiplier(self)[a] + there[a]);
+  }
+  return DVI_OK;
+}
+
+/* The jump of q against the motion of q, that of p against the motion of p. */
+static dvi_status watch(const dvi__stepper *self, const dvi__state *state)
+{
+  const phase_step *own = self->own;
+  const size_t n = (size_t)self->system->n;
+  const double *const motion[] = {own->one.dq, own->one.dp}, *const at[] = {state->q, state->p};
+  double *largest = self->memory + MOTION, *jump = self->memory + JUMP;
+  for (int i = 0; i < 2; i++, jump += n) {
+    largest[i] = fmax(largest[i], dvi__largest(n, motion[i]));
+    DVI_TRY(dvi__watch_jump(self, own->alarm, own->part, dvi__largest(n, jump), largest[i], dvi__largest(n, at[i]),
+                            "from the start on, an even degree keeps it small"));
+  }
+  return DVI_OK;
+}
+
+dvi_status dvi__phase_step(dvi__stepper *self, dvi__state *state, double h)
+{
+  const dvi__one_step *one = self->own;
+  if (self->memory[DVI__LENGTH] == 0) DVI_TRY(settle(self, state, h));
+  DVI_TRY(solve(self, state, h));
+  dvi__phase_end(one->of, one->x, one->dq, one->dp, multiplier(self));
+  DVI_TRY(dvi__phase_jump(one->of, one->x, self->memory + JUMP));
+  DVI_TRY(watch(self, state));
+  dvi__one_step_move(self, state, h, one->x);
+  dvi__add_compensated_all(self->system->n, state->p, state->p_carry, one->dp);
+  return DVI_OK;
+}
+
+const double *dvi__phase_step_multiplier(const dvi__stepper *self)
+{
+  return multiplier(self);
+}
+
+const double *dvi__phase_step_jump(const dvi__stepper *self)
+{
+  return self->memory + JUMP;
+}
