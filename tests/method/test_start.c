@@ -194,7 +194,7 @@ START_TEST(bad_velocities_are_refused_and_the_state_stays)
   problem *of = made_problem("pendulum", NULL);
   dvi_integrator *integrator = started(of, "midpoint");
   ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, of->q, &(double){(double)NAN}), DVI_NOT_FINITE);
-  check_words("v = nan");
+  check_words("v[0] = nan");
   ck_assert_int_eq(dvi_integrator_start_velocity(integrator, (double)NAN, of->q, of->p), DVI_NOT_FINITE);
   ck_assert_int_eq(dvi_integrator_start_velocity(NULL, 0, of->q, of->p), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, NULL, of->p), DVI_BAD_ARGUMENT);

@@ -77,8 +77,8 @@ static dvi_status check_start(const dvi_integrator *I, double t, const double *q
   if (!isfinite(t)) return dvi__fail(DVI_NOT_FINITE, "the time is %g", t);
   const ptrdiff_t in_q = dvi__first_not_finite((size_t)I->system->n, q);
   const ptrdiff_t in_second = dvi__first_not_finite((size_t)I->system->nv, second);
-  if (in_q >= 0) return dvi__fail(DVI_NOT_FINITE, "coordinate %td is q = %g", in_q, q[in_q]);
-  if (in_second >= 0) return dvi__fail(DVI_NOT_FINITE, "number %td of the start's %c is %g", in_second, name, second[in_second]);
+  if (in_q >= 0) return dvi__fail(DVI_NOT_FINITE, "the start's q[%td] = %g", in_q, q[in_q]);
+  if (in_second >= 0) return dvi__fail(DVI_NOT_FINITE, "the start's %c[%td] = %g", name, in_second, second[in_second]);
   return dvi__state_check(I->evaluator, q, second);
 }
 
