@@ -292,7 +292,7 @@ START_TEST(a_bad_start_leaves_the_old_state)
   advance(integrator, 0.05, 3);
   const bytes before = state_of(integrator);
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, bad_q, fine), DVI_NOT_FINITE);
-  check_words("coordinate 1 is q = ");
+  check_words("the start's q[1] = ");
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, fine, bad_p), DVI_NOT_FINITE);
   check_words("the start's p[0] = inf");
   ck_assert_int_eq(dvi_integrator_start(integrator, nan, fine, fine), DVI_NOT_FINITE);
