@@ -73,7 +73,7 @@ static cell *cell_at(const comparison *c, int method, int k)
 /* No two members alike, and the same ones in every run of this command. */
 static void place_members(comparison *c, int members)
 {
-  const int n = c->scene->n;
+  const int n = c->scene->nq;
   for (int k = 0; k < members; k++)
     for (int i = 0; i < n; i++) {
       const double factor = 1.0 + around * (fmod(0.618033988749895 * ((double)k * n + i + 1), 1.0) - 0.5);
@@ -95,7 +95,7 @@ static dvi_status run_together(const comparison *c, dvi_ensemble *ensemble, doub
 
 static dvi_status run_one(const comparison *c, dvi_integrator *integrator, size_t members, size_t k)
 {
-  const size_t n = (size_t)c->scene->n;
+  const size_t n = (size_t)c->scene->nq;
   for (size_t i = 0; i < n; i++) {
     c->point[i] = c->q[i * members + k];
     c->point[n + i] = c->p[i * members + k];
@@ -210,7 +210,7 @@ static result_table *make_table(const comparison *c)
       table_text(rows, c->request->methods->word[i]);
       table_text(rows, c->request->problem);
       table_number(rows, c->counts.number[k]);
-      table_number(rows, c->scene->n);
+      table_number(rows, c->scene->nq);
       table_number(rows, c->h);
       add_spread(rows, &at->of_together);
       add_spread(rows, &at->of_alone);
@@ -307,10 +307,10 @@ static bool make_room(comparison *c)
 {
   double most = 0.0;
   for (int k = 0; k < c->counts.count; k++) most = fmax(most, c->counts.number[k]);
-  const size_t numbers_of_all = (size_t)most * (size_t)c->scene->n;
+  const size_t numbers_of_all = (size_t)most * (size_t)c->scene->nq;
   c->q = calloc(numbers_of_all, sizeof *c->q);
   c->p = calloc(numbers_of_all, sizeof *c->p);
-  c->point = calloc(2 * (size_t)c->scene->n, sizeof *c->point);
+  c->point = calloc(2 * (size_t)c->scene->nq, sizeof *c->point);
   c->cell = calloc((size_t)c->request->methods->count * (size_t)c->counts.count, sizeof *c->cell);
   return c->q != NULL && c->p != NULL && c->point != NULL && c->cell != NULL;
 }

@@ -199,7 +199,7 @@ static dvi_status run(flow *f, const problem *scene, double t_end, double tolera
 dvi_status rk8pd_solve(const problem *scene, double t_end, double tolerance, double *q, double *p, dvi_reference_report *report,
                        char *reason, size_t size)
 {
-  flow f = {.terms = scene->terms, .n = scene->n};
+  flow f = {.terms = scene->terms, .n = scene->nq};
   if (!provided_for(f.terms)) {
     (void)snprintf(reason, size,
                    "gsl-rk8pd: it is provided for scalar and diagonal masses and for general Lagrangians with Hessians");
