@@ -131,7 +131,7 @@ START_TEST(a_wrong_gradient_of_a_monitor_is_named)
   problem *kepler = made_problem("kepler", NULL);
   dvi_derivative_check found;
   const double q[2] = {0.6, -0.8};
-  dvi_monitor monitor = {.function = {.name = "bowl", .value = bowl, .gradient = bowl_gradient, .user = (void *)&kepler->n}};
+  dvi_monitor monitor = {.function = {.name = "bowl", .value = bowl, .gradient = bowl_gradient, .user = (void *)&kepler->nq}};
   ck_assert_msg(dvi_monitor_check(kepler->system, &monitor, q, 0, &found) == DVI_OK, "%s", dvi_last_error());
   ck_assert_double_le(found.gradient_error, 1e-11);
   monitor.function.gradient = wrong_gradient;
