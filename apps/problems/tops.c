@@ -8,20 +8,20 @@
 
 static dvi_status make_pendulum(const double *setting, problem *made)
 {
-  const dvi_status status = top_room(made, setting + 3);
+  const dvi_status status = top_room(made, setting + 6);
   if (status != DVI_OK) return status;
   top *own = made->parameters;
-  top_inertia(own, setting);
-  own->weight[2] = -setting[6] * setting[7] * setting[8];
+  top_inertia(own, setting + 3);
+  own->weight[2] = -setting[0] * setting[2] * setting[1];
   return top_system(made, NULL);
 }
 
 static dvi_status make_top(const double *setting, problem *made)
 {
-  const dvi_status status = top_room(made, setting);
+  const dvi_status status = top_room(made, setting + 3);
   if (status != DVI_OK) return status;
   top *own = made->parameters;
-  const double m = setting[3], l = setting[4], g = setting[5];
+  const double m = setting[0], l = setting[1], g = setting[2];
   top_inertia(own, (double[]){0.234375 + m * l * l, 0.46875, 0.234375 + m * l * l});
   own->weight[1] = m * g * l;
   return top_system(made, NULL);
@@ -38,41 +38,43 @@ static int kovalevskaya_value(double t, const double *q, const double *p, double
 
 static dvi_status make_kovalevskaya(const double *setting, problem *made)
 {
-  const dvi_status status = top_room(made, setting);
+  const dvi_status status = top_room(made, setting + 1);
   if (status != DVI_OK) return status;
   top *own = made->parameters;
   top_inertia(own, (double[]){2.0, 2.0, 1.0});
-  own->weight[0] = setting[3];
+  own->weight[0] = setting[0];
   const dvi_invariant invariant = {.name = "kovalevskaya", .value = kovalevskaya_value, .user = own};
   return top_system(made, &invariant);
 }
 
 static const problem_parameter pendulum_parameters[] = {
+    {.name = "m", .value = 1.0, .least = 1e-50, .most = 1e50, .help = "the mass, positive"},
+    {.name = "l", .value = 0.3, .least = 0.0, .most = 1e50, .help = "how far the centre of mass is from the pivot, from 0"},
+    {.name = "g", .value = 9.81, .least = -1e50, .most = 1e50, .help = "the acceleration of gravity, any number"},
     TOP_INERTIA("J1", 0.13),
     TOP_INERTIA("J2", 0.28),
     TOP_INERTIA("J3", 0.17),
     TOP_START("Omega1", 4.14),
     TOP_START("Omega2", 4.14),
     TOP_START("Omega3", 4.14),
-    {.name = "m", .value = 1.0, .least = 1e-50, .most = 1e50, .help = "the mass, positive"},
-    {.name = "l", .value = 0.3, .least = 0.0, .most = 1e50, .help = "how far the centre of mass is from the pivot, from 0"},
-    {.name = "g", .value = 9.81, .least = -1e50, .most = 1e50, .help = "the acceleration of gravity, any number"},
     {.name = NULL},
 };
 
 static const problem_parameter top_parameters[] = {
-    TOP_START("Omega1", 0.0),
-    TOP_START("Omega2", 150.0),
-    TOP_START("Omega3", -4.61538),
     {.name = "m", .value = 15.0, .least = 1e-50, .most = 1e50, .help = "the mass, positive"},
     {.name = "l", .value = 1.0, .least = 0.0, .most = 1e50, .help = "how far the centre of mass is from the pivot, from 0"},
     {.name = "g", .value = 9.81, .least = -1e50, .most = 1e50, .help = "the acceleration of gravity, any number"},
+    TOP_START("Omega1", 0.0),
+    TOP_START("Omega2", 150.0),
+    TOP_START("Omega3", -4.61538),
     {.name = NULL},
 };
 
 static const problem_parameter kovalevskaya_parameters[] = {
-    TOP_START("Omega1", 0.5), TOP_START("Omega2", 1.0),
-    TOP_START("Omega3", 1.5), {.name = "weight", .value = 1.0, .least = 1e-50, .most = 1e50, .help = "m g |X|, positive"},
+    {.name = "weight", .value = 1.0, .least = 1e-50, .most = 1e50, .help = "m g |X|, positive"},
+    TOP_START("Omega1", 0.5),
+    TOP_START("Omega2", 1.0),
+    TOP_START("Omega3", 1.5),
     {.name = NULL},
 };
 
