@@ -25,7 +25,7 @@ static dvi_status run_method(const bench_job *job, const problem *scene, double 
     dvi_integrator_counters(integrator, &counters);
     *evaluations = counters.gradients;
     *taken = counters.steps;
-    memcpy(q, dvi_integrator_q(integrator), (size_t)scene->n * sizeof *q);
+    memcpy(q, dvi_integrator_q(integrator), (size_t)scene->nq * sizeof *q);
   }
   dvi_integrator_destroy(&integrator);
   return status;
@@ -74,9 +74,9 @@ static dvi_status try_method(bench_job *job, const problem *scene, double t_end,
 
 dvi_status bench_job_try(bench_job *job, const problem *scene, const judgement *judge, double t_end)
 {
-  double *q = calloc(2 * (size_t)scene->n, sizeof *q);
+  double *q = calloc(2 * (size_t)scene->nq, sizeof *q);
   if (q == NULL) return DVI_NO_MEMORY;
-  const dvi_status status = job->peer >= 0 ? try_peer(job, scene, t_end, q, q + scene->n) : try_method(job, scene, t_end, q);
+  const dvi_status status = job->peer >= 0 ? try_peer(job, scene, t_end, q, q + scene->nq) : try_method(job, scene, t_end, q);
   job->error = judge_error(judge, scene, q);
   job->repeats = study_repeats(job->tried);
   free(q);
@@ -85,13 +85,13 @@ dvi_status bench_job_try(bench_job *job, const problem *scene, const judgement *
 
 dvi_status bench_job_time(bench_job *job, const problem *scene, double t_end, int round)
 {
-  double *q = calloc(2 * (size_t)scene->n, sizeof *q);
+  double *q = calloc(2 * (size_t)scene->nq, sizeof *q);
   if (q == NULL) return DVI_NO_MEMORY;
   dvi_status status = DVI_OK;
   double creation = job->peer >= 0 ? (double)NAN : 0.0; /* a peer is created and run in one call */
   const double began = cpu_now();
   for (long i = 0; i < job->repeats && status == DVI_OK; i++)
-    status = job->peer >= 0 ? peer_solve(job->peer, scene, t_end, job->tolerance, q, q + scene->n, NULL)
+    status = job->peer >= 0 ? peer_solve(job->peer, scene, t_end, job->tolerance, q, q + scene->nq, NULL)
                             : run_method(job, scene, t_end, &creation, NULL, NULL, NULL);
   job->cpu[round] = (cpu_now() - began) / (double)job->repeats;
   job->creation[round] = creation / (double)job->repeats;

@@ -28,9 +28,12 @@ static void print_problem(const problem *scene, const words *settings)
   const int index = problem_find(scene->name);
   (void)printf("problem %s: %s\n", scene->name, problem_summary(index));
   for (const problem_parameter *k = problem_parameters(index); k->name != NULL; k++) print_parameter(k, settings);
-  (void)printf("  coordinates  %d:", scene->n);
-  for (int i = 0; i < scene->n && i < NAMES_SHOWN; i++) (void)printf(" %s", scene->coordinate[i]);
-  (void)printf("%s\n  watched      ", scene->n > NAMES_SHOWN ? " ..." : "");
+  if (scene->velocity != NULL)
+    (void)printf("  coordinates  %d, velocities %d:", scene->nq, scene->nv);
+  else
+    (void)printf("  coordinates  %d:", scene->nq);
+  for (int i = 0; i < scene->nq && i < NAMES_SHOWN; i++) (void)printf(" %s", scene->coordinate[i]);
+  (void)printf("%s\n  watched      ", scene->nq > NAMES_SHOWN ? " ..." : "");
   for (int i = 0; i < dvi_system_invariant_count(scene->system); i++)
     (void)printf("%s%s", i > 0 ? ", " : "", dvi_system_invariant_name(scene->system, i));
   (void)printf("\n  first run    --h %g --t-end %g\n", scene->h, scene->t_end);

@@ -60,7 +60,7 @@ static bool ask_exact(judgement *judge, const problem *scene, double t_end, doub
 {
   if (scene->exact == NULL || scene->exact(scene, t_end, judge->q, p) != 0) return false;
   set_words(judge, "exact solution");
-  judge->error = 4.0 * DBL_EPSILON * fmax(1.0, judge_largest(scene->n, judge->q)); /* some roundings in its evaluation */
+  judge->error = 4.0 * DBL_EPSILON * fmax(1.0, judge_largest(scene->nq, judge->q)); /* some roundings in its evaluation */
   return true;
 }
 
@@ -69,16 +69,16 @@ static bool ask_digits(judgement *judge, const problem *scene, double t_end)
   const bool far = scene->far_q != NULL && t_end == scene->far_t_end;
   const double *digits = far ? scene->far_q : t_end == scene->order_t_end ? scene->digits_q : NULL;
   if (digits == NULL) return false;
-  memcpy(judge->q, digits, (size_t)scene->n * sizeof *judge->q);
+  memcpy(judge->q, digits, (size_t)scene->nq * sizeof *judge->q);
   set_words(judge, "stored quadruple-precision result");
-  judge->error = fmax(DBL_EPSILON * judge_largest(scene->n, judge->q), far ? scene->far_error : 0.0); /* rounded to double */
+  judge->error = fmax(DBL_EPSILON * judge_largest(scene->nq, judge->q), far ? scene->far_error : 0.0); /* rounded to double */
   return true;
 }
 
 static dvi_status ask_ida(judgement *judge, const problem *scene, double t_end, double *p)
 {
-  memcpy(judge->q, scene->q, (size_t)scene->n * sizeof *judge->q);
-  memcpy(p, scene->p, (size_t)scene->n * sizeof *p);
+  memcpy(judge->q, scene->q, (size_t)scene->nq * sizeof *judge->q);
+  memcpy(p, scene->p, (size_t)scene->nv * sizeof *p);
   dvi_reference_report report;
   const dvi_status status = dvi_reference_judge(scene->system, 0.0, t_end, judge->q, p, NULL, &report);
   if (status != DVI_OK) return status;
@@ -101,7 +101,7 @@ static void add_witness(judgement *judge, int n, const double *ida, double ida_e
 static dvi_status ask_ida_then_runs(judgement *judge, const problem *scene, double t_end, const judge_request *request, double *p,
                                     double *ida)
 {
-  const int n = scene->n;
+  const int n = scene->nq;
   const dvi_status of_ida = ask_ida(judge, scene, t_end, p);
   if (request->wanted <= 0.0 || (of_ida == DVI_OK && judge->error <= request->wanted)) return of_ida;
   const double ida_error = judge->error;
@@ -145,7 +145,7 @@ static int ask(judgement *judge, const problem *scene, double t_end, const judge
 
 int judge_init(judgement *judge, const problem *scene, double t_end, const judge_request *request)
 {
-  const size_t n = (size_t)scene->n;
+  const size_t n = (size_t)scene->nq;
   memset(judge, 0, sizeof *judge);
   judge->q = calloc(n, sizeof *judge->q);
   double *room = calloc(2 * n, sizeof *room);
@@ -165,6 +165,6 @@ void judge_clear(judgement *judge)
 
 double judge_error(const judgement *judge, const problem *scene, const double *q)
 {
-  const double error = judge_distance(scene->n, q, judge->q);
-  return judge->other == NULL ? error : fmax(error, judge_distance(scene->n, q, judge->other));
+  const double error = judge_distance(scene->nq, q, judge->q);
+  return judge->other == NULL ? error : fmax(error, judge_distance(scene->nq, q, judge->other));
 }

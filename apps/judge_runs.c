@@ -22,12 +22,13 @@ typedef struct runner {
   int value[2];
 } runner;
 
-static const runner galerkin = {"galerkin", "degree", {16, 12}}, vprk = {"vprk", "nodes", {6, 5}},
-                    dg_phase = {"dg-phase", "degree", {6, 5}};
+static const runner galerkin = {"galerkin", "degree", {16, 12}}, lie_galerkin = {"lie-galerkin", "degree", {16, 12}},
+                    vprk = {"vprk", "nodes", {6, 5}}, dg_phase = {"dg-phase", "degree", {6, 5}};
 
 static const runner *runner_for(const dvi_system_terms *terms)
 {
   if (terms->hamiltonian != NULL) return &dg_phase;
+  if (terms->factors != NULL) return &lie_galerkin;
   return terms->one_form != NULL ? &vprk : &galerkin;
 }
 
@@ -52,7 +53,7 @@ static dvi_status run_once(const problem *scene, const runner *by, int which, lo
     if (progress != NULL && i % PROGRESS_STEPS == 0) progress_show(progress, -1.0, "judge");
     status = dvi_integrator_step(integrator, t_end / (double)steps);
   }
-  if (status == DVI_OK) memcpy(q, dvi_integrator_q(integrator), (size_t)scene->n * sizeof *q);
+  if (status == DVI_OK) memcpy(q, dvi_integrator_q(integrator), (size_t)scene->nq * sizeof *q);
   dvi_integrator_destroy(&integrator);
   return status;
 }
@@ -92,7 +93,7 @@ static bool take_level(judgement *judge, int n, levels *l, const long *steps)
 
 static dvi_status refine(judgement *judge, const problem *scene, double t_end, progress_line *progress, levels *l)
 {
-  const int n = scene->n;
+  const int n = scene->nq;
   dvi_status failure = DVI_OK;
   double steps = fmax(2.0, ceil(fabs(t_end) / (first_step * scene->h)));
   for (int level = 0; level < LEVELS_MAX && (level == 0 || other_ratio * steps <= steps_max); level++, steps *= 2.0) {
@@ -110,7 +111,7 @@ static dvi_status refine(judgement *judge, const problem *scene, double t_end, p
 
 dvi_status judge_by_runs(judgement *judge, const problem *scene, double t_end, progress_line *progress)
 {
-  const size_t n = (size_t)scene->n;
+  const size_t n = (size_t)scene->nq;
   double *ends = calloc(4 * n, sizeof *ends);
   judge->other = calloc(n, sizeof *judge->other);
   levels l = {.by = runner_for(scene->terms), .now = ends, .before = ends + 2 * n, .best = HUGE_VAL};

@@ -59,7 +59,7 @@ static dvi_status find_first(order_study *s, long too_few, level_trial *first)
 static void disturb(const order_study *s, double *q)
 {
   const double size = study_size(s);
-  for (int i = 0; i < s->scene->n; i++) {
+  for (int i = 0; i < s->scene->nq; i++) {
     const double place = DBL_EPSILON * fmax(fabs(s->scene->q[i]), 0.1 * size);
     q[i] = s->scene->q[i] + (i % 2 == 0 ? place : -place);
   }
@@ -68,7 +68,7 @@ static void disturb(const order_study *s, double *q)
 /* What roundoff does to the end: how far a change of the start in its last place moves it. */
 static dvi_status find_floor(order_study *s, long steps)
 {
-  const int n = s->scene->n;
+  const int n = s->scene->nq;
   double *q = calloc(2 * (size_t)n, sizeof *q);
   if (q == NULL) return DVI_NO_MEMORY;
   double *end = q + n;

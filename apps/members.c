@@ -73,7 +73,7 @@ static cell *cell_at(const comparison *c, int method, int k)
 /* A one-form sets p, whatever v. */
 static dvi_status place_member(const comparison *c, int k)
 {
-  const int n = c->scene->n;
+  const int n = c->scene->nq;
   double *q = c->point, *p = c->point + n;
   for (int i = 0; i < n; i++) {
     const double factor = 1.0 + around * (fmod(0.618033988749895 * ((double)k * n + i + 1), 1.0) - 0.5);
@@ -86,7 +86,7 @@ static dvi_status place_member(const comparison *c, int k)
 /* No two members alike, and the same ones in every run of this command. */
 static dvi_status place_members(comparison *c, int members)
 {
-  const size_t n = (size_t)c->scene->n, count = (size_t)members;
+  const size_t n = (size_t)c->scene->nq, count = (size_t)members;
   dvi_status status = DVI_OK;
   for (size_t k = 0; k < count && status == DVI_OK; k++) {
     status = place_member(c, (int)k);
@@ -111,7 +111,7 @@ static dvi_status run_together(const comparison *c, dvi_ensemble *ensemble, doub
 
 static dvi_status run_one(const comparison *c, dvi_integrator *integrator, size_t members, size_t k)
 {
-  const size_t n = (size_t)c->scene->n;
+  const size_t n = (size_t)c->scene->nq;
   for (size_t i = 0; i < n; i++) {
     c->point[i] = c->q[i * members + k];
     c->point[n + i] = c->p[i * members + k];
@@ -227,7 +227,7 @@ static result_table *make_table(const comparison *c)
       table_text(rows, c->request->methods->word[i]);
       table_text(rows, c->request->problem);
       table_number(rows, c->counts.number[k]);
-      table_number(rows, c->scene->n);
+      table_number(rows, c->scene->nq);
       table_number(rows, c->h);
       add_spread(rows, &at->of_together);
       add_spread(rows, &at->of_alone);
@@ -324,10 +324,10 @@ static bool make_room(comparison *c)
 {
   double most = 0.0;
   for (int k = 0; k < c->counts.count; k++) most = fmax(most, c->counts.number[k]);
-  const size_t numbers_of_all = (size_t)most * (size_t)c->scene->n;
+  const size_t numbers_of_all = (size_t)most * (size_t)c->scene->nq;
   c->q = calloc(numbers_of_all, sizeof *c->q);
   c->p = calloc(numbers_of_all, sizeof *c->p);
-  c->point = calloc(2 * (size_t)c->scene->n, sizeof *c->point);
+  c->point = calloc(2 * (size_t)c->scene->nq, sizeof *c->point);
   c->cell = calloc((size_t)c->request->methods->count * (size_t)c->counts.count, sizeof *c->cell);
   return c->q != NULL && c->p != NULL && c->point != NULL && c->cell != NULL;
 }

@@ -136,7 +136,7 @@ static int read_monitor(const problem *scene, const char *asked, const char *spe
   if (scene->bodies == 0)
     return usage_error("--%s %s: %s has no bodies whose distances could be measured; see arclength and acceleration", asked,
                        specification, scene->name);
-  const int dimension = scene->n / scene->bodies;
+  const int dimension = scene->nq / scene->bodies;
   if ((monitor->bodies != 0 && monitor->bodies != scene->bodies) || (monitor->dimension != 0 && monitor->dimension != dimension))
     return usage_error("--%s %s: %s is bodies=%d,dimension=%d; leave the keys out", asked, specification, scene->name,
                        scene->bodies, dimension);

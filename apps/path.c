@@ -82,16 +82,16 @@ static int read_symmetry(const char *text, const problem *scene, arrays *a)
 {
   const int code = list_read("path: --symmetry", text, scene, a->signs);
   if (code != DONE) return code;
-  for (int i = 0; i < scene->n; i++) {
+  for (int i = 0; i < scene->nq; i++) {
     const double place = fabs(a->signs[i]);
-    if (!(place >= 1.0 && place <= scene->n && place == floor(place)))
-      return usage_error("path: --symmetry: %g is no coordinate; there are 1 to %d", a->signs[i], scene->n);
+    if (!(place >= 1.0 && place <= scene->nq && place == floor(place)))
+      return usage_error("path: --symmetry: %g is no coordinate; there are 1 to %d", a->signs[i], scene->nq);
     const int column = (int)place - 1;
     if (a->symmetry[column] != 0.0) return usage_error("path: --symmetry names coordinate %d twice", column + 1);
     a->symmetry[column] = copysign(1.0, a->signs[i]);
     a->row[column] = i;
   }
-  for (int i = 0; i <= scene->n; i++) a->start[i] = i;
+  for (int i = 0; i <= scene->nq; i++) a->start[i] = i;
   return DONE;
 }
 
@@ -99,7 +99,7 @@ static int read_symmetry(const char *text, const problem *scene, arrays *a)
 static int read_end(const char *where, const char *text, const problem *scene, const double *otherwise, double *end)
 {
   if (text != NULL) return list_read(where, text, scene, end);
-  memcpy(end, otherwise, (size_t)scene->n * sizeof *end);
+  memcpy(end, otherwise, (size_t)scene->nq * sizeof *end);
   return DONE;
 }
 
@@ -119,7 +119,7 @@ static int read_ends(const path_request *request, const problem *scene, const po
     if (request->to == NULL && !guessed) return usage_error("path: --ends fixed needs --to, or --guess FILE that leads there");
     options->q1 = a->q1;
     if (code == DONE)
-      code = read_end("path: --to", request->to, scene, guessed ? guess->q + (size_t)(guess->count - 1) * (size_t)scene->n : NULL,
+      code = read_end("path: --to", request->to, scene, guessed ? guess->q + (size_t)(guess->count - 1) * (size_t)scene->nq : NULL,
                       a->q1);
   } else {
     options->p0 = a->p0;
@@ -152,10 +152,10 @@ static int guess_by_steps(const dvi_path_options *o, const char *method, const p
   if (code != DONE) return code;
   const double *q = o->q0 != NULL ? o->q0 : scene->q, *p = o->p0 != NULL ? o->p0 : scene->p;
   dvi_status status = dvi_integrator_start(integrator, 0.0, q, p);
-  bool added = points_add(guess, scene->n, 0.0, q);
+  bool added = points_add(guess, scene->nq, 0.0, q);
   for (int k = 1; k <= o->steps && status == DVI_OK && added; k++) {
     status = dvi_integrator_step(integrator, o->span / o->steps);
-    added = points_add(guess, scene->n, k, dvi_integrator_q(integrator));
+    added = points_add(guess, scene->nq, k, dvi_integrator_q(integrator));
   }
   dvi_integrator_destroy(&integrator);
   if (status != DVI_OK) complain("path: the guess by steps forward fails; give another one with --guess, or take more steps");
@@ -172,7 +172,7 @@ static int make_guess(const path_request *request, const dvi_path_options *o, co
   if (request->guess == NULL) code = guess_by_steps(o, request->method, scene, &steps);
   const points *guess = request->guess != NULL ? given : &steps;
   if (code == DONE) {
-    const dvi_status status = dvi_path_guess(path, guess->count, scene->n, guess->t, guess->q);
+    const dvi_status status = dvi_path_guess(path, guess->count, scene->nq, guess->t, guess->q);
     code = status == DVI_OK ? DONE : library_error(status);
   }
   points_clear(&steps);
@@ -185,7 +185,7 @@ static int create_with(const path_request *request, const points *guess, member 
 {
   const problem *scene = m->scene;
   const double span = !isnan(request->period) ? request->period : !isnan(request->t_end) ? request->t_end : scene->t_end;
-  dvi_path_options options = {.ends = ends_of(request->ends), .steps = (int)request->steps, .span = span, .dimension = scene->n};
+  dvi_path_options options = {.ends = ends_of(request->ends), .steps = (int)request->steps, .span = span, .dimension = scene->nq};
   int code = read_ends(request, scene, guess, &options, a);
   if (code == DONE) code = read_energy(request, scene, &options);
   if (code != DONE) return code;
@@ -202,7 +202,7 @@ static int create(const char *name, const path_request *request, const words *se
   arrays a = {0};
   int code = open_problem(name, settings, &m->scene);
   if (code == DONE && request->guess != NULL) code = points_read(request->guess, m->scene, &guess);
-  if (code == DONE) code = allocate(&a, (size_t)m->scene->n) ? create_with(request, &guess, m, &a) : FAILED;
+  if (code == DONE) code = allocate(&a, (size_t)m->scene->nq) ? create_with(request, &guess, m, &a) : FAILED;
   release(&a);
   points_clear(&guess);
   return code;
@@ -307,9 +307,9 @@ static void print_report(const member *m, const path_request *request, FILE *str
 static void write_header(const problem *scene, FILE *stream)
 {
   (void)fputs("t", stream);
-  for (int i = 0; i < 2 * scene->n; i++) {
-    (void)fputs(i < scene->n ? "," : ",p_", stream);
-    csv_text(stream, scene->coordinate[i % scene->n]);
+  for (int i = 0; i < 2 * scene->nq; i++) {
+    (void)fputc(',', stream);
+    csv_text(stream, i < scene->nq ? scene->coordinate[i] : scene->momentum[i - scene->nq]);
   }
   for (int i = 0; i < dvi_system_invariant_count(scene->system); i++) {
     (void)fputc(',', stream);
@@ -325,8 +325,8 @@ static dvi_status write_rows(const member *m, double *invariant, FILE *stream)
     const dvi_status status = dvi_system_invariants(m->scene->system, t, q, p, invariant);
     if (status != DVI_OK) return status;
     (void)fprintf(stream, "%.17g", t);
-    for (int i = 0; i < m->scene->n; i++) (void)fprintf(stream, ",%.17g", q[i]);
-    for (int i = 0; i < m->scene->n; i++) (void)fprintf(stream, ",%.17g", p[i]);
+    for (int i = 0; i < m->scene->nq; i++) (void)fprintf(stream, ",%.17g", q[i]);
+    for (int i = 0; i < m->scene->nq; i++) (void)fprintf(stream, ",%.17g", p[i]);
     for (int i = 0; i < dvi_system_invariant_count(m->scene->system); i++) (void)fprintf(stream, ",%.17g", invariant[i]);
     (void)fputc('\n', stream);
   }

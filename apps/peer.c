@@ -80,8 +80,8 @@ dvi_status peer_solve(int peer, const problem *scene, double t_end, double toler
 {
   dvi_reference_report unread;
   const dvi_reference_options options = {.code = (dvi_reference_code)peer, .relative_tolerance = tolerance};
-  memcpy(q, scene->q, (size_t)scene->n * sizeof *q);
-  memcpy(p, scene->p, (size_t)scene->n * sizeof *p);
+  memcpy(q, scene->q, (size_t)scene->nq * sizeof *q);
+  memcpy(p, scene->p, (size_t)scene->nv * sizeof *p);
   if (report == NULL) report = &unread;
 #ifdef DVI_GSL
   if (peer == gsl_number()) return rk8pd_solve(scene, t_end, tolerance, q, p, report, reason, sizeof reason);

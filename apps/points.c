@@ -56,12 +56,12 @@ int list_read(const char *where, const char *text, const problem *scene, double 
     double read;
     take_field(&text, field);
     if (!parse_number(field, &read)) return usage_error("%s: '%s' is no number", where, field);
-    if (count < scene->n) number[count] = read;
+    if (count < scene->nq) number[count] = read;
     count++;
   }
-  if (count == scene->n) return DONE;
-  return usage_error("%s has %d number%s; %s has %d coordinate%s", where, count, count == 1 ? "" : "s", scene->name, scene->n,
-                     scene->n == 1 ? "" : "s");
+  if (count == scene->nq) return DONE;
+  return usage_error("%s has %d number%s; %s has %d coordinate%s", where, count, count == 1 ? "" : "s", scene->name, scene->nq,
+                     scene->nq == 1 ? "" : "s");
 }
 
 /* ---- files ---- */
@@ -108,7 +108,7 @@ static int unreadable(const char *path)
 static int column_of(const problem *scene, const char *title)
 {
   if (strcmp(title, "t") == 0) return -1;
-  for (int i = 0; i < scene->n; i++)
+  for (int i = 0; i < scene->nq; i++)
     if (strcmp(title, scene->coordinate[i]) == 0) return i;
   return -2;
 }
@@ -126,9 +126,9 @@ static int read_header(reader *r)
     r->coordinate[r->columns] = column_of(r->scene, title);
     known += r->coordinate[r->columns] >= -1;
   }
-  if (known == r->scene->n + 1) return DONE;
+  if (known == r->scene->nq + 1) return DONE;
   return usage_error("path: '%s' has %d of the %d columns t and coordinates of %s, as dvi run writes them", r->path, known,
-                     r->scene->n + 1, r->scene->name);
+                     r->scene->nq + 1, r->scene->name);
 }
 
 static int read_row(reader *r, points *read)
@@ -147,7 +147,7 @@ static int read_row(reader *r, points *read)
     return usage_error("path: '%s': line %d does not have the header's %d fields", r->path, r->row, r->columns);
   if (read->count > 0 && !(t > read->t[read->count - 1]))
     return usage_error("path: '%s': line %d: the time %g does not come after %g", r->path, r->row, t, read->t[read->count - 1]);
-  return points_add(read, r->scene->n, t, r->q) ? DONE : FAILED;
+  return points_add(read, r->scene->nq, t, r->q) ? DONE : FAILED;
 }
 
 static int read_all(reader *r, points *read)
@@ -162,7 +162,7 @@ static int read_all(reader *r, points *read)
 int points_read(const char *path, const problem *scene, points *read)
 {
   int code;
-  reader r = {.path = path, .scene = scene, .q = calloc((size_t)scene->n, sizeof(double))};
+  reader r = {.path = path, .scene = scene, .q = calloc((size_t)scene->nq, sizeof(double))};
   if (r.q == NULL) return complain("out of memory"), FAILED;
   r.stream = fopen(path, "r");
   if (r.stream == NULL)

@@ -123,6 +123,7 @@ static int right_side(double t, const double y[], double ydot[], void *user)
 
 static bool provided_for(const dvi_system_terms *terms)
 {
+  if (terms->factors != NULL) return false;
   for (int k = 0; k < terms->potential_count; k++)
     if (terms->potentials[k].gradient == NULL && terms->potentials[k].gradient_batch == NULL) return false;
   const dvi_lagrangian *l = terms->lagrangian;
@@ -199,10 +200,10 @@ static dvi_status run(flow *f, const problem *scene, double t_end, double tolera
 dvi_status rk8pd_solve(const problem *scene, double t_end, double tolerance, double *q, double *p, dvi_reference_report *report,
                        char *reason, size_t size)
 {
-  flow f = {.terms = scene->terms, .n = scene->n};
+  flow f = {.terms = scene->terms, .n = scene->nq};
   if (!provided_for(f.terms)) {
     (void)snprintf(reason, size,
-                   "gsl-rk8pd: it is provided for scalar and diagonal masses and for general Lagrangians with Hessians");
+                   "gsl-rk8pd: it is provided for scalar and diagonal masses on R^n and for general Lagrangians with Hessians");
     return DVI_UNSUPPORTED;
   }
   gsl_error_handler_t *handler = gsl_set_error_handler_off(); /* GSL's own ends the program */

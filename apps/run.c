@@ -34,6 +34,7 @@ typedef struct recorder {
   run_trace trace;
   progress_line progress;
   double *invariant;
+  double *velocity;         /* [nv] with factors; else NULL */
   double constraint;        /* with a one-form: |p - alpha(q)| */
   double t_start, t;        /* where the run began; where the last observed step ended */
   double shortest, longest; /* steps, of methods that choose them; 0: none yet */
@@ -54,21 +55,28 @@ static bool has_constraint(const problem *scene)
   return scene->terms->one_form != NULL || scene->terms->constraint != NULL;
 }
 
+static void write_names(FILE *stream, int count, char *const *name)
+{
+  for (int i = 0; i < count; i++) {
+    (void)fputc(',', stream);
+    csv_text(stream, name[i]);
+  }
+}
+
 static void write_header(recorder *r)
 {
   FILE *stream = r->out.stream;
   const problem *scene = r->scene;
   (void)fputs("t", stream);
-  for (int i = 0; i < scene->n; i++) {
-    (void)fputc(',', stream);
-    csv_text(stream, scene->coordinate[i]);
-  }
-  for (int i = 0; i < scene->n; i++) (void)fprintf(stream, ",p_%s", scene->coordinate[i]);
+  write_names(stream, scene->nq, scene->coordinate);
+  if (scene->velocity != NULL) write_names(stream, scene->nv, scene->velocity);
+  write_names(stream, scene->nv, scene->momentum);
   for (int i = 0; i < dvi_system_invariant_count(scene->system); i++) {
     (void)fputc(',', stream);
     csv_text(stream, dvi_system_invariant_name(scene->system, i));
   }
   if (r->chooses) (void)fputs(",h", stream);
+  if (scene->velocity != NULL) (void)fputs(",distance", stream);
   if (has_constraint(scene)) (void)fputs(",constraint", stream);
   if (r->jumps) (void)fputs(",jump", stream);
   (void)fputc('\n', stream);
@@ -90,6 +98,8 @@ static void write_numbers(FILE *stream, int count, const double *number)
 static bool measure(recorder *r, dvi_integrator *integrator)
 {
   dvi_status status = dvi_integrator_invariants(integrator, r->invariant);
+  if (status == DVI_OK && r->velocity != NULL)
+    status = dvi_system_velocity(r->scene->system, r->t, dvi_integrator_q(integrator), dvi_integrator_p(integrator), r->velocity);
   if (status == DVI_OK && has_constraint(r->scene)) status = dvi_integrator_constraint(integrator, &r->constraint);
   if (status != DVI_OK) {
     (void)library_error(status);
@@ -104,11 +114,15 @@ static bool write_row(recorder *r, dvi_integrator *integrator)
 {
   FILE *stream = r->out.stream;
   (void)fprintf(stream, "%.17g", r->t);
-  write_numbers(stream, r->scene->n, dvi_integrator_q(integrator));
-  write_numbers(stream, r->scene->n, dvi_integrator_p(integrator));
-  write_numbers(stream, dvi_system_invariant_count(r->scene->system), r->invariant);
+  const problem *scene = r->scene;
+  write_numbers(stream, scene->nq, dvi_integrator_q(integrator));
+  if (scene->velocity != NULL) write_numbers(stream, scene->nv, r->velocity);
+  write_numbers(stream, scene->nv, dvi_integrator_p(integrator));
+  write_numbers(stream, dvi_system_invariant_count(scene->system), r->invariant);
   if (r->chooses) write_numbers(stream, 1, (double[]){dvi_integrator_last_step(integrator)});
-  if (has_constraint(r->scene)) write_numbers(stream, 1, &r->constraint);
+  if (scene->velocity != NULL)
+    write_numbers(stream, 1, (double[]){dvi_system_distance(scene->system, dvi_integrator_q(integrator))});
+  if (has_constraint(scene)) write_numbers(stream, 1, &r->constraint);
   if (r->jumps) (void)fprintf(stream, ",%.17g", dvi_integrator_jump(integrator, NULL));
   (void)fputc('\n', stream);
   r->row_written = true;
@@ -244,8 +258,8 @@ static int place_momenta(const run_request *request, problem *scene)
 {
   if (request->project && !has_constraint(scene))
     return usage_error("run: --project is for problems with a constraint; of %s any momenta are a start", scene->name);
-  if (request->momenta == NULL || parse_momenta(request->momenta, scene->n, scene->p)) return DONE;
-  return usage_error("run: --momenta wants %d finite numbers with commas between them, not '%s'", scene->n, request->momenta);
+  if (request->momenta == NULL || parse_momenta(request->momenta, scene->nv, scene->p)) return DONE;
+  return usage_error("run: --momenta wants %d finite numbers with commas between them, not '%s'", scene->nv, request->momenta);
 }
 
 static bool place(const run_request *request, const problem *scene, dvi_integrator *integrator)
@@ -282,12 +296,14 @@ static int complete(run_request *request, const problem *scene, double t)
 static int record(run_request *request, const problem *scene, dvi_integrator *integrator)
 {
   recorder r = {.request = request, .scene = scene, .chooses = dvi_integrator_chooses_steps(integrator)};
-  r.invariant = calloc((size_t)dvi_system_invariant_count(scene->system), sizeof *r.invariant);
+  const size_t invariants = (size_t)dvi_system_invariant_count(scene->system);
+  r.invariant = calloc(invariants + (size_t)scene->nv, sizeof *r.invariant);
+  if (r.invariant != NULL && scene->velocity != NULL) r.velocity = r.invariant + invariants;
   int code = FAILED;
   r.caught = signals_note(ended_again);
   if (r.invariant == NULL)
     complain("out of memory");
-  else if ((request->plot == NULL || trace_init(&r.trace, scene->n)) && file_open(&r.out, request->out))
+  else if ((request->plot == NULL || trace_init(&r.trace, scene->nq)) && file_open(&r.out, request->out))
     code = advance(&r, integrator);
   if ((code == DONE || code > CHECK_FAILED) && !file_keep(&r.out)) code = FAILED;
   if ((code == DONE || code > CHECK_FAILED) && request->plot != NULL &&
@@ -365,7 +381,9 @@ static int run_problem(run_request *request, const char *name)
 }
 
 static const char *const details[] = {
-    "Columns: t, the coordinates, their momenta (p_ and the coordinate's name), energy, the other invariants;\n"
+    "Columns: t, the coordinates, their momenta (p_ and the coordinate's name), energy, the other invariants; of problems\n"
+    "with rotations and directions the velocities, too (Omega in the body's frame), before the momenta, and after all the\n"
+    "distance of the coordinates from their manifold;\n"
     "methods that choose their steps add h, the length of the step that led to the row, with a one-form there is the\n"
     "constraint |p - alpha(q)|, and dg and dg-phase add jump, the largest one; 17 digits, so that every number is read\n"
     "back as it was. The first row is the start (with --resume: the checkpoint), the last one is the end, wherever\n"

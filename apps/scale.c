@@ -113,7 +113,7 @@ static int measure_methods(scaling *s, const problem *scene, int k, int round)
   int code = DONE;
   for (int i = 0; i < s->request->methods->count && code == DONE; i++) {
     cell *c = cell_at(s, i, k);
-    c->n = scene->n;
+    c->n = scene->nq;
     c->h = isnan(s->request->h) ? scene->h : s->request->h;
     progress_show(&s->progress, -1.0, s->request->methods->word[i]);
     code = axis_method(&s->axis, k, s->request->methods->word[i], method);
@@ -335,7 +335,7 @@ static int check_values(const scaling *s)
     problem *scene;
     code = axis_problem(&s->axis, k, s->request->problem, s->request->settings, s->request->one_point, &scene);
     if (code != DONE) return code;
-    n[k] = scene->n;
+    n[k] = scene->nq;
     if (k == 0 || s->axis.kind != AXIS_PARAMETER) code = check_methods(s, scene, k);
     problem_destroy(&scene);
     if (code == DONE) code = check_growth(s, n, k);

@@ -37,7 +37,7 @@ long study_repeats(double seconds)
 
 double study_size(const order_study *s)
 {
-  const double size = judge_largest(s->scene->n, s->judge->q);
+  const double size = judge_largest(s->scene->nq, s->judge->q);
   return size > 0.0 ? size : 1.0;
 }
 

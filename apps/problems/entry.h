@@ -41,7 +41,10 @@ PROBLEM_INLINE void problem_inverse_cubes(const int count, double *restrict x)
 }
 
 /* Most parameters that a problem may have. */
-#define PROBLEM_PARAMETERS_MAX 8
+#define PROBLEM_PARAMETERS_MAX 12
+
+/* Room for one number's name. */
+#define PROBLEM_LABEL_SIZE 24
 
 /* One problem of the catalogue. */
 typedef struct problem_entry {
@@ -65,14 +68,22 @@ typedef struct problem_entry {
 /* Zeroed memory that problem_destroy frees; NULL if there is none left. */
 void *problem_allocate(problem *made, size_t count, size_t size);
 
-/* Set n, and allocate q, v, p, the labels, and `parameters` of that size. */
+/* Set nq = nv = n, and allocate q, v, p, the labels, and `parameters` of that size. */
 dvi_status problem_room(problem *made, int n, size_t parameters_size);
+
+/* The same with nq coordinates and nv velocities; and room for so many names, NULL if there is none. */
+dvi_status problem_room_of(problem *made, int nq, int nv, size_t parameters_size);
+char **problem_names(problem *made, int count);
+
+/* The same for a product of SO(3), SE(3) and S^2, with the names of all numbers; rotations are set to the identity, their places and the directions
+ * are left 0. */
+dvi_status problem_factors(problem *made, int count, const dvi_factor *factors, size_t parameters_size);
 
 /* Make the system from these terms, and keep them with the problem. What they point to, but for the arrays of terms, lives as long as the
  * problem: parameters, patterns, masses. */
 dvi_status problem_system(problem *made, const dvi_system_terms *terms);
 
-/* Name coordinate i. */
+/* Name coordinate i, and its momentum after it. */
 #if defined(__GNUC__)
 __attribute__((format(printf, 3, 4)))
 #endif

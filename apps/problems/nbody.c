@@ -209,7 +209,7 @@ static dvi_status make_system(gravity *own, problem *made)
                                     .user = &own->bodies};
   dvi_symmetry symmetries[SYMMETRIES_MAX];
   const int symmetry_count = make_symmetries(own, symmetries);
-  const dvi_system_terms terms = {.dimension = made->n,
+  const dvi_system_terms terms = {.dimension = made->nq,
                                   .mass = {.diagonal = own->masses},
                                   .potentials = &attraction,
                                   .potential_count = 1,

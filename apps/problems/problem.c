@@ -9,9 +9,6 @@
 
 #include "entry.h"
 
-/* Room for one coordinate's name. */
-#define LABEL_SIZE 24
-
 #define PROBLEM_ENTRY(name) &problem_entry_##name,
 static const problem_entry *const table[] = {
 #include "problems.def"
@@ -234,28 +231,41 @@ void *problem_allocate(problem *made, size_t count, size_t size)
   return b + 1;
 }
 
+char **problem_names(problem *made, int count)
+{
+  char *text = problem_allocate(made, (size_t)count, PROBLEM_LABEL_SIZE);
+  char **name = problem_allocate(made, (size_t)count, sizeof *name);
+  for (int i = 0; text && name && i < count; i++) name[i] = text + (size_t)i * PROBLEM_LABEL_SIZE;
+  return text ? name : NULL;
+}
+
+dvi_status problem_room_of(problem *made, int nq, int nv, size_t parameters_size)
+{
+  double *numbers = problem_allocate(made, (size_t)nq + 2 * (size_t)nv, sizeof *numbers);
+  made->coordinate = problem_names(made, nq);
+  made->momentum = problem_names(made, nv);
+  made->parameters = problem_allocate(made, 1, parameters_size);
+  if (!numbers || !made->coordinate || !made->momentum || !made->parameters) return DVI_NO_MEMORY;
+  made->nq = nq;
+  made->nv = nv;
+  made->q = numbers;
+  made->v = numbers + nq;
+  made->p = numbers + nq + nv;
+  return DVI_OK;
+}
+
 dvi_status problem_room(problem *made, int n, size_t parameters_size)
 {
-  const size_t count = (size_t)n;
-  double *numbers = problem_allocate(made, 3 * count, sizeof *numbers);
-  char *labels = problem_allocate(made, count, LABEL_SIZE);
-  made->coordinate = problem_allocate(made, count, sizeof *made->coordinate);
-  made->parameters = problem_allocate(made, 1, parameters_size);
-  if (!numbers || !labels || !made->coordinate || !made->parameters) return DVI_NO_MEMORY;
-  made->n = n;
-  made->q = numbers;
-  made->v = numbers + n;
-  made->p = numbers + 2 * n;
-  for (int i = 0; i < n; i++) made->coordinate[i] = labels + (size_t)i * LABEL_SIZE;
-  return DVI_OK;
+  return problem_room_of(made, n, n, parameters_size);
 }
 
 void problem_label(problem *made, int i, const char *format, ...)
 {
   va_list arguments;
   va_start(arguments, format);
-  vsnprintf(made->coordinate[i], LABEL_SIZE, format, arguments);
+  vsnprintf(made->coordinate[i], PROBLEM_LABEL_SIZE, format, arguments);
   va_end(arguments);
+  (void)snprintf(made->momentum[i], PROBLEM_LABEL_SIZE, "p_%.*s", PROBLEM_LABEL_SIZE - 3, made->coordinate[i]);
 }
 
 void problem_oscillation(double square, double t, double *cosine, double *sine)

@@ -21,19 +21,22 @@ typedef struct problem {
   const char *name;
   dvi_system *system;
   const dvi_system_terms *terms; /**< what the system was made of */
-  int n;
-  int bodies; /**< q lists so many points, of n/bodies coordinates each, between which distances matter; 1: from the origin; 0: none */
-  char **coordinate;                 /**< [n] names, for the columns of tables: "x", "theta_1"; momenta are "p_" and the name */
-  double *q, *p;                     /**< [n] the start at t = 0 */
-  double *v;                         /**< [n] its velocity */
-  double h, t_end;                   /**< a step and a span that suit a first run */
-  double order_h;                    /**< first step of an order study of a method of order 2 to 4 */
-  double order_t_end;                /**< span of an order study; digits, if there are any, are for this time */
-  const double *digits_q, *digits_p; /**< [n] quadruple-precision result at order_t_end; NULL unless all parameters are the
+  int nq;                        /**< numbers of q */
+  int nv;                        /**< numbers of v and p: nq, but for systems with factors */
+  int bodies; /**< q lists so many points, of nq/bodies coordinates each, between which distances matter; 1: from the origin; 0: none */
+  char **coordinate;  /**< [nq] names, for the columns of tables: "x", "theta_1", "R11" */
+  char **velocity;    /**< [nv] with factors: names of the velocities, "Omega1"; else NULL, they are the coordinates' rates */
+  char **momentum;    /**< [nv] names of the momenta: "p_x", "Pi1" */
+  double *q;          /**< [nq] the start at t = 0 */
+  double *v, *p;      /**< [nv] its velocity and its momentum */
+  double h, t_end;    /**< a step and a span that suit a first run */
+  double order_h;     /**< first step of an order study of a method of order 2 to 4 */
+  double order_t_end; /**< span of an order study; digits, if there are any, are for this time */
+  const double *digits_q, *digits_p; /**< [nq], [nv] quadruple-precision result at order_t_end; NULL unless all parameters are the
                                           defaults */
   double far_t_end;                  /**< the end of a long span, for which there are digits too; 0 unless far_q is there */
   const double
-      *far_q;       /**< [n] quadruple-precision result there; NULL unless all parameters are the defaults, and for most problems */
+      *far_q; /**< [nq] quadruple-precision result there; NULL unless all parameters are the defaults, and for most problems */
   double far_error; /**< what rounding the start and the parameters to double does to it */
   /** The exact solution; NULL if none is known. 0 if found. */
   int (*exact)(const struct problem *problem, double t, double *q, double *p);

@@ -25,6 +25,7 @@ static dvi_system_terms *keep_terms(problem *made, const dvi_system_terms *terms
   kept->constraint = keep(made, terms->constraint, terms->constraint != NULL, sizeof *terms->constraint, &lost);
   kept->potentials = keep(made, terms->potentials, terms->potential_count, sizeof *terms->potentials, &lost);
   kept->symmetries = keep(made, terms->symmetries, terms->symmetry_count, sizeof *terms->symmetries, &lost);
+  kept->factors = keep(made, terms->factors, terms->factor_count, sizeof *terms->factors, &lost);
   kept->invariants = keep(made, terms->invariants, terms->invariant_count, sizeof *terms->invariants, &lost);
   return lost ? NULL : kept;
 }

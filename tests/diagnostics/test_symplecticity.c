@@ -368,8 +368,8 @@ START_TEST(the_integrator_goes_on_as_if_nothing_had_happened)
     ck_assert_int_eq(dvi_integrator_step(probed, p->h), DVI_OK);
     ck_assert_int_eq(dvi_integrator_step(alone, p->h), DVI_OK);
     ck_assert(dvi_integrator_time(probed) == dvi_integrator_time(alone));
-    ck_assert_mem_eq(dvi_integrator_q(probed), dvi_integrator_q(alone), (size_t)p->n * sizeof(double));
-    ck_assert_mem_eq(dvi_integrator_p(probed), dvi_integrator_p(alone), (size_t)p->n * sizeof(double));
+    ck_assert_mem_eq(dvi_integrator_q(probed), dvi_integrator_q(alone), (size_t)p->nq * sizeof(double));
+    ck_assert_mem_eq(dvi_integrator_p(probed), dvi_integrator_p(alone), (size_t)p->nq * sizeof(double));
   }
   dvi_integrator_destroy(&probed);
   dvi_integrator_destroy(&alone);

@@ -137,8 +137,8 @@ START_TEST(a_run_goes_on_under_another_alarm_and_under_no_other_key)
   ck_assert_msg(dvi_integrator_restore(warns, in_folder("checkpoint")) == DVI_OK, "%s", dvi_last_error());
   advance(stops, 0.02, 3);
   advance(warns, 0.02, 3);
-  ck_assert_mem_eq(dvi_integrator_q(stops), dvi_integrator_q(warns), (size_t)of->n * sizeof(double));
-  ck_assert_mem_eq(dvi_integrator_p(stops), dvi_integrator_p(warns), (size_t)of->n * sizeof(double));
+  ck_assert_mem_eq(dvi_integrator_q(stops), dvi_integrator_q(warns), (size_t)of->nq * sizeof(double));
+  ck_assert_mem_eq(dvi_integrator_p(stops), dvi_integrator_p(warns), (size_t)of->nq * sizeof(double));
   ck_assert_int_eq(dvi_integrator_save(warns, in_folder("checkpoint")), DVI_OK);
   ck_assert_int_eq(dvi_integrator_restore(stops, in_folder("checkpoint")), DVI_OK);
   ck_assert_int_eq(dvi_integrator_restore(differs, in_folder("checkpoint")), DVI_BAD_FILE);

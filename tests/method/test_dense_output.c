@@ -97,8 +97,8 @@ static void errors_inside(const problem *of, dvi_integrator *integrator, double 
     const double t = from + h * k / (double)INSIDE;
     ck_assert_int_eq(of->exact(of, t, q, p), 0);
     ck_assert_int_eq(dvi_integrator_interpolate(integrator, t, found_q, found_v), DVI_OK);
-    *q_error = fmax(*q_error, distance(of->n, found_q, q));
-    *v_error = fmax(*v_error, distance(of->n, found_v, p));
+    *q_error = fmax(*q_error, distance(of->nq, found_q, q));
+    *v_error = fmax(*v_error, distance(of->nq, found_v, p));
   }
 }
 

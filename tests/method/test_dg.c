@@ -14,7 +14,7 @@ static double error_at_end(problem *of, const problem *standard, const char *met
 {
   dvi_integrator *integrator = started(of, method);
   advance(integrator, h, lround(of->order_t_end / h));
-  const double error = distance(of->n, dvi_integrator_q(integrator), standard->digits_q);
+  const double error = distance(of->nq, dvi_integrator_q(integrator), standard->digits_q);
   dvi_integrator_destroy(&integrator);
   return error;
 }
@@ -306,7 +306,7 @@ START_TEST(symmetric_fluxes_go_back_the_way_they_came)
   dvi_integrator *integrator = started(of, methods[_i]);
   advance(integrator, 0.05, 20);
   advance(integrator, -0.05, 20);
-  ck_assert_double_le(distance(of->n, dvi_integrator_q(integrator), of->q), 1e-13);
+  ck_assert_double_le(distance(of->nq, dvi_integrator_q(integrator), of->q), 1e-13);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&of);
 }

@@ -13,7 +13,7 @@ static double error_at_end(problem *of, const problem *standard, const char *met
   dvi_integrator *integrator = started(of, method);
   ck_assert_int_eq(dvi_integrator_order(integrator), 2);
   advance(integrator, h, lround(of->order_t_end / h));
-  const double error = distance(of->n, dvi_integrator_q(integrator), standard->digits_q);
+  const double error = distance(of->nq, dvi_integrator_q(integrator), standard->digits_q);
   dvi_integrator_destroy(&integrator);
   return error;
 }
@@ -93,7 +93,7 @@ START_TEST(degrees_and_nodes_give_the_steps_of_degree_0_on_the_configurations)
   dvi_integrator *one = started(of, methods[_i]), *other = started(of, "dg:degree=0");
   advance(one, 0.02, 20);
   advance(other, 0.02, 20);
-  ck_assert_mem_eq(dvi_integrator_q(one), dvi_integrator_q(other), (size_t)of->n * sizeof(double));
+  ck_assert_mem_eq(dvi_integrator_q(one), dvi_integrator_q(other), (size_t)of->nq * sizeof(double));
   dvi_integrator_destroy(&one);
   dvi_integrator_destroy(&other);
   problem_destroy(&of);

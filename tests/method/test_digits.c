@@ -26,8 +26,8 @@ START_TEST(a_method_of_high_order_meets_the_digits)
   dvi_integrator *integrator = started(of, method);
   const long steps = lround(ceil(of->order_t_end / of->order_h)) * 2;
   advance(integrator, of->order_t_end / (double)steps, steps);
-  const double apart = distance(of->n, dvi_integrator_q(integrator), of->digits_q);
-  ck_assert_msg(apart <= close_enough * fmax(1, magnitude(of->n, of->digits_q)), "%s: %g from the digits", of->name, apart);
+  const double apart = distance(of->nq, dvi_integrator_q(integrator), of->digits_q);
+  ck_assert_msg(apart <= close_enough * fmax(1, magnitude(of->nq, of->digits_q)), "%s: %g from the digits", of->name, apart);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&of);
 }
@@ -38,12 +38,12 @@ START_TEST(ida_meets_the_digits_to_its_own_error)
 {
   problem *of = with_digits(_i);
   double q[64], p[64];
-  ck_assert_int_le(of->n, 64);
-  for (int i = 0; i < of->n; i++) q[i] = of->q[i], p[i] = of->p[i];
+  ck_assert_int_le(of->nq, 64);
+  for (int i = 0; i < of->nq; i++) q[i] = of->q[i], p[i] = of->p[i];
   dvi_reference_report report;
   const dvi_status status = dvi_reference_judge(of->system, 0, of->order_t_end, q, p, NULL, &report);
   ck_assert_msg(status == DVI_OK, "%s: %s", of->name, dvi_last_error());
-  const double apart = distance(of->n, q, of->digits_q), size = fmax(1, magnitude(of->n, of->digits_q));
+  const double apart = distance(of->nq, q, of->digits_q), size = fmax(1, magnitude(of->nq, of->digits_q));
   ck_assert_msg(apart <= 10 * report.error + 1e-13 * size, "%s: %g from the digits, states %g", of->name, apart, report.error);
   ck_assert_msg(report.error <= 1e-6 * size, "%s: states %g", of->name, report.error);
   problem_destroy(&of);

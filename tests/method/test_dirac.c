@@ -32,8 +32,8 @@ static double error_of(const problem *of, const char *method, int order, int ste
   dvi_integrator *integrator = started(of, method);
   ck_assert_int_eq(dvi_integrator_order(integrator), order);
   advance(integrator, of->order_t_end / steps, steps);
-  const double error = fmax(distance(of->n, dvi_integrator_q(integrator), of->digits_q),
-                            distance(of->n, dvi_integrator_p(integrator), of->digits_p));
+  const double error = fmax(distance(of->nq, dvi_integrator_q(integrator), of->digits_q),
+                            distance(of->nq, dvi_integrator_p(integrator), of->digits_p));
   dvi_integrator_destroy(&integrator);
   return error;
 }
@@ -224,8 +224,8 @@ START_TEST(steps_back_undo_steps)
   dvi_integrator *integrator = started(of, structured[_i / 2]);
   advance(integrator, 0.1, 50);
   advance(integrator, -0.1, 50);
-  ck_assert_double_le(distance(of->n, dvi_integrator_q(integrator), of->q), 1e-11);
-  ck_assert_double_le(distance(of->n, dvi_integrator_p(integrator), of->p), 1e-11);
+  ck_assert_double_le(distance(of->nq, dvi_integrator_q(integrator), of->q), 1e-11);
+  ck_assert_double_le(distance(of->nq, dvi_integrator_p(integrator), of->p), 1e-11);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&of);
 }

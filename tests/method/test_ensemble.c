@@ -32,18 +32,18 @@ static void take(int n, int members, int k, const double *all, double *one)
 static void constrain(const problem *of, int members, int k)
 {
   double q[N_MOST], p[N_MOST];
-  take(of->n, members, k, first_q, q);
+  take(of->nq, members, k, first_q, q);
   ck_assert_int_eq(dvi_system_momentum(of->system, 0, q, of->v, p), DVI_OK);
-  for (int i = 0; i < of->n; i++) first_p[i * members + k] = p[i];
+  for (int i = 0; i < of->nq; i++) first_p[i * members + k] = p[i];
 }
 
 static void spread_start(const problem *of, int members, double spread)
 {
-  ck_assert_int_le(of->n, N_MOST);
+  ck_assert_int_le(of->nq, N_MOST);
   ck_assert_int_le(members, MEMBERS_MOST);
   for (int k = 0; k < members; k++)
-    for (int i = 0; i < of->n; i++) {
-      const double u = fmod(0.618033988749895 * (k * of->n + i + 1), 1.0) - 0.5;
+    for (int i = 0; i < of->nq; i++) {
+      const double u = fmod(0.618033988749895 * (k * of->nq + i + 1), 1.0) - 0.5;
       first_q[i * members + k] = of->q[i] + spread * u * (1 + fabs(of->q[i]));
       first_p[i * members + k] = of->p[i] * (1 + spread * u);
     }
@@ -263,7 +263,7 @@ START_TEST(levels_agree_with_each_other)
     start_all(e);
     ck_assert_msg(dvi_ensemble_advance(e, 50, 20) == DVI_OK, "%s", dvi_last_error());
     ck_assert_int_eq(dvi_ensemble_state(e, NULL, level == 0 ? base_q : q, NULL), DVI_OK);
-    if (level > 0) ck_assert_mem_eq(q, base_q, (size_t)of->n * 33 * sizeof(double));
+    if (level > 0) ck_assert_mem_eq(q, base_q, (size_t)of->nq * 33 * sizeof(double));
     dvi_ensemble_destroy(&e);
   }
   problem_destroy(&of);
@@ -280,9 +280,9 @@ START_TEST(a_start_in_velocities_is_one_in_their_momenta)
   ck_assert_int_eq(dvi_ensemble_state(e, NULL, NULL, p), DVI_OK);
   for (int k = 0; k < 5; k++) {
     double q[N_MOST];
-    take(of->n, 5, k, first_q, q), take(of->n, 5, k, first_p, v);
+    take(of->nq, 5, k, first_q, q), take(of->nq, 5, k, first_p, v);
     ck_assert_int_eq(dvi_system_momentum(of->system, 0, q, v, momentum), DVI_OK);
-    for (int i = 0; i < of->n; i++) ck_assert_double_eq(p[i * 5 + k], momentum[i]);
+    for (int i = 0; i < of->nq; i++) ck_assert_double_eq(p[i * 5 + k], momentum[i]);
   }
   dvi_ensemble_destroy(&e);
   problem_destroy(&of);

@@ -28,7 +28,7 @@ enum { METHODS = 5 };
 static void make_sweep(int which, int interleaved)
 {
   for (int s = 0; s < SYSTEMS; s++) of[s] = made_problem(sweeps[which].problem, sweeps[which].setting[s]);
-  const int n = of[0]->n;
+  const int n = of[0]->nq;
   ck_assert_int_le(n, N_MOST);
   for (int k = 0; k < MEMBERS; k++) {
     const problem *own = of[interleaved ? k % SYSTEMS : k / EACH];

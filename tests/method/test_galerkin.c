@@ -16,7 +16,7 @@ static void check_bases_agree(const char *problem_name, int degree, const char *
   dvi_integrator *other = started(of, spec("galerkin:degree=%d,basis=%s", degree, basis));
   advance(lobatto, of->h, 100);
   advance(other, of->h, 100);
-  const double apart = distance(of->n, dvi_integrator_q(lobatto), dvi_integrator_q(other));
+  const double apart = distance(of->nq, dvi_integrator_q(lobatto), dvi_integrator_q(other));
   /* 100 steps' roundings, with the basis' Lebesgue constant (10 at most here), far below what users can see */
   ck_assert_msg(apart <= 1e-12, "%s: degree %d, basis %s: %g apart", problem_name, degree, basis, apart);
   dvi_integrator_destroy(&lobatto);
@@ -197,8 +197,8 @@ START_TEST(kinsol_certifies_every_step)
   dvi_integrator_counters(certified, &counters);
   ck_assert_int_eq(counters.certified, STEPS);
   ck_assert_int_eq(counters.kinsols, 0);
-  ck_assert_double_le(distance(of->n, dvi_integrator_q(plain), dvi_integrator_q(certified)),
-                      1e-11 * magnitude(of->n, dvi_integrator_q(plain)));
+  ck_assert_double_le(distance(of->nq, dvi_integrator_q(plain), dvi_integrator_q(certified)),
+                      1e-11 * magnitude(of->nq, dvi_integrator_q(plain)));
   dvi_integrator_destroy(&plain);
   dvi_integrator_destroy(&certified);
   problem_destroy(&of);

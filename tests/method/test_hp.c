@@ -17,8 +17,8 @@ static void check_same(const char *name, const char *one, const char *other, dou
   advance(a, h, STEPS);
   advance(b, h, STEPS);
   ck_assert_int_eq(dvi_integrator_order(a), dvi_integrator_order(b));
-  ck_assert_mem_eq(dvi_integrator_q(a), dvi_integrator_q(b), (size_t)of->n * sizeof(double));
-  ck_assert_mem_eq(dvi_integrator_p(a), dvi_integrator_p(b), (size_t)of->n * sizeof(double));
+  ck_assert_mem_eq(dvi_integrator_q(a), dvi_integrator_q(b), (size_t)of->nq * sizeof(double));
+  ck_assert_mem_eq(dvi_integrator_p(a), dvi_integrator_p(b), (size_t)of->nq * sizeof(double));
   dvi_integrator_destroy(&a);
   dvi_integrator_destroy(&b);
   problem_destroy(&of);
@@ -54,8 +54,8 @@ START_TEST(type_4_with_gauss_points_is_gauss_collocation)
   advance(a, h / 5, STEPS);
   advance(b, h / 5, STEPS);
   ck_assert_int_eq(dvi_integrator_order(a), dvi_integrator_order(b));
-  ck_assert_double_le(distance(of->n, dvi_integrator_q(a), dvi_integrator_q(b)), 1e-12);
-  ck_assert_double_le(distance(of->n, dvi_integrator_p(a), dvi_integrator_p(b)), 1e-12 * magnitude(of->n, of->p) + 1e-11);
+  ck_assert_double_le(distance(of->nq, dvi_integrator_q(a), dvi_integrator_q(b)), 1e-12);
+  ck_assert_double_le(distance(of->nq, dvi_integrator_p(a), dvi_integrator_p(b)), 1e-12 * magnitude(of->nq, of->p) + 1e-11);
   dvi_integrator_destroy(&a);
   dvi_integrator_destroy(&b);
   problem_destroy(&of);
@@ -176,7 +176,7 @@ START_TEST(orders_are_those_claimed)
     dvi_integrator *integrator = started(of, method);
     ck_assert_int_eq(dvi_integrator_order(integrator), claims[_i].order);
     advance(integrator, step, lround(of->order_t_end / step));
-    error[level] = distance(of->n, dvi_integrator_q(integrator), of->digits_q);
+    error[level] = distance(of->nq, dvi_integrator_q(integrator), of->digits_q);
     ck_assert_double_gt(error[level], 3e-14);
     dvi_integrator_destroy(&integrator);
   }

@@ -71,7 +71,7 @@ END_TEST
 static int gradient(const double *q, double *f_q, void *user)
 {
   const problem *of = user;
-  for (int i = 0; i < of->n; i++) f_q[i] = 20 * q[i];
+  for (int i = 0; i < of->nq; i++) f_q[i] = 20 * q[i];
   return 0;
 }
 
@@ -79,7 +79,7 @@ static int hessian(const double *q, double *f_qq, void *user)
 {
   const problem *of = user;
   (void)q;
-  for (int i = 0; i < of->n; i++) f_qq[i] = 20;
+  for (int i = 0; i < of->nq; i++) f_qq[i] = 20;
   return 0;
 }
 
@@ -87,7 +87,7 @@ static int third(const double *q, const double *w, double *f_w_qq, void *user)
 {
   const problem *of = user;
   (void)q, (void)w;
-  memset(f_w_qq, 0, (size_t)of->n * sizeof *f_w_qq);
+  memset(f_w_qq, 0, (size_t)of->nq * sizeof *f_w_qq);
   return 0;
 }
 
@@ -121,7 +121,7 @@ static void run_off(const dvi_system *system, const problem *of, const char *met
     ck_assert_int_eq(dvi_integrator_constraint(integrator, &now), DVI_OK);
     *off = fmax(*off, now);
   }
-  *error = distance(of->n, dvi_integrator_q(integrator), of->digits_q);
+  *error = distance(of->nq, dvi_integrator_q(integrator), of->digits_q);
   dvi_integrator_destroy(&integrator);
 }
 
@@ -189,7 +189,7 @@ START_TEST(other_gauges_are_refused_and_the_sentence_names_one_that_helps)
     dvi_integrator *integrator = started(of, spec("hp:type=%d", _i));
     ck_assert_int_eq(dvi_integrator_step(integrator, 1e-3), DVI_SINGULAR);
     check_words("f = c |q|^2/2 with c well above");
-    ck_assert_mem_eq(dvi_integrator_p(integrator), of->p, (size_t)of->n * sizeof(double));
+    ck_assert_mem_eq(dvi_integrator_p(integrator), of->p, (size_t)of->nq * sizeof(double));
     dvi_integrator_destroy(&integrator);
     problem_destroy(&of);
   }

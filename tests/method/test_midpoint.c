@@ -38,8 +38,8 @@ static void check_same(const char *problem_name, const char *a, const char *b)
   dvi_integrator *first = started(of, a), *second = started(of, b);
   advance(first, of->h, 50);
   advance(second, of->h, 50);
-  ck_assert_double_eq(distance(of->n, dvi_integrator_q(first), dvi_integrator_q(second)), 0);
-  ck_assert_double_eq(distance(of->n, dvi_integrator_p(first), dvi_integrator_p(second)), 0);
+  ck_assert_double_eq(distance(of->nq, dvi_integrator_q(first), dvi_integrator_q(second)), 0);
+  ck_assert_double_eq(distance(of->nq, dvi_integrator_p(first), dvi_integrator_p(second)), 0);
   dvi_integrator_destroy(&first);
   dvi_integrator_destroy(&second);
   problem_destroy(&of);

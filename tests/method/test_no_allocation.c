@@ -147,7 +147,7 @@ START_TEST(invariants_and_dense_output_do_not_allocate)
   const place *at = &places[_i / METHODS];
   double value[INVARIANTS_MOST], q[COORDINATES_MOST], v[COORDINATES_MOST];
   problem *of = made_problem(at->name, at->setting);
-  ck_assert_int_le(of->n, COORDINATES_MOST);
+  ck_assert_int_le(of->nq, COORDINATES_MOST);
   ck_assert_int_le(dvi_system_invariant_count(of->system), INVARIANTS_MOST);
   dvi_integrator *integrator = ready(of, methods[_i % METHODS]);
   if (integrator != NULL) {

@@ -144,11 +144,11 @@ static void check_same(const place *at, const variant *of, int degree)
   advance(integrator, at->t_end / at->steps, at->steps);
   ck_assert_int_eq(dvi_integrator_order(integrator), 2 * degree - of->order_lost);
   double most = 0;
-  for (int i = 0; i < made->n; i++) {
+  for (int i = 0; i < made->nq; i++) {
     most = fmax(most,
-                fabs((double)(z.q[i] - (quad)dvi_integrator_q(integrator)[i])) / magnitude(made->n, dvi_integrator_q(integrator)));
+                fabs((double)(z.q[i] - (quad)dvi_integrator_q(integrator)[i])) / magnitude(made->nq, dvi_integrator_q(integrator)));
     most = fmax(most,
-                fabs((double)(z.p[i] - (quad)dvi_integrator_p(integrator)[i])) / magnitude(made->n, dvi_integrator_p(integrator)));
+                fabs((double)(z.p[i] - (quad)dvi_integrator_p(integrator)[i])) / magnitude(made->nq, dvi_integrator_p(integrator)));
   }
   ck_assert_msg(most <= roundoff, "%s, %s, degree %d: %g apart", at->problem, of->rule, degree, most);
   dvi_integrator_destroy(&integrator);

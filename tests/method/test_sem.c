@@ -84,7 +84,7 @@ START_TEST(the_steps_are_galerkin_steps_of_other_lengths)
     advance(sem, 0.05, 1);
     lengths += fabs(dvi_integrator_last_step(sem) - 0.05) > 1e-3;
     advance(galerkin, dvi_integrator_last_step(sem), 1);
-    ck_assert_double_eq_tol(distance(of->n, dvi_integrator_q(sem), dvi_integrator_q(galerkin)), 0, 1e-12);
+    ck_assert_double_eq_tol(distance(of->nq, dvi_integrator_q(sem), dvi_integrator_q(galerkin)), 0, 1e-12);
   }
   ck_assert_int_gt(lengths, 100);
   dvi_integrator_destroy(&sem);

@@ -94,7 +94,7 @@ START_TEST(the_form_is_the_same_before_and_after)
 {
   const place *at = &places[_i];
   problem *of = made_problem(at->problem, at->setting);
-  const int n = of->n, columns = 2 * n + 2;
+  const int n = of->nq, columns = 2 * n + 2;
   dvi_integrator *integrator = made_integrator(of->system, at->method);
   double start[COLUMNS_MOST] = {0.3, at->h}, worst = 0, largest = 0;
   point dF[COLUMNS_MOST], dG[COLUMNS_MOST];

@@ -68,7 +68,7 @@ static void take_steps(dvi_integrator *integrator, measured *m)
 static void measure(const kind *k, int ell, measured *m)
 {
   problem *of = made_problem("fpu", spec("ell=%d", ell));
-  m->n = of->n;
+  m->n = of->nq;
   m->entries = entries_of(of, &k->space);
   const long before = heap_bytes();
   dvi_integrator *integrator = started(of, k->method);

@@ -69,9 +69,9 @@ END_TEST
 static void momentum_sizes(const problem *solar, double size[6])
 {
   double linear = 0, angular = 0;
-  for (int i = 0; i < solar->n; i++) {
+  for (int i = 0; i < solar->nq; i++) {
     linear += fabs(solar->p[i]);
-    angular += fabs(solar->p[i]) * magnitude(solar->n, solar->q);
+    angular += fabs(solar->p[i]) * magnitude(solar->nq, solar->q);
   }
   for (int i = 0; i < 3; i++) size[i] = linear, size[3 + i] = angular;
 }

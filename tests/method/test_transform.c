@@ -196,10 +196,10 @@ START_TEST(dense_output_meets_the_ends_of_a_step)
   problem *of = scene(_i);
   dvi_integrator *integrator = way(of, _i);
   double q[MOST];
-  ck_assert_int_le(of->n, MOST);
+  ck_assert_int_le(of->nq, MOST);
   advance(integrator, ways[_i].h, 5);
   ck_assert_int_eq(dvi_integrator_interpolate(integrator, dvi_integrator_time(integrator), q, NULL), DVI_OK);
-  ck_assert_double_le(distance(of->n, q, dvi_integrator_q(integrator)), 4e-16 * magnitude(of->n, q) * of->n);
+  ck_assert_double_le(distance(of->nq, q, dvi_integrator_q(integrator)), 4e-16 * magnitude(of->nq, q) * of->nq);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&of);
 }

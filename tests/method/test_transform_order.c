@@ -120,14 +120,14 @@ static void check_runs(const char *name, const dvi_monitor *monitor, const char 
   double error[LEVELS], q[MOST], p[MOST];
   problem *of = made_problem(name, NULL);
   const double t_end = of->order_t_end;
-  for (int i = 0; i < of->n; i++) q[i] = of->q[i], p[i] = of->p[i];
+  for (int i = 0; i < of->nq; i++) q[i] = of->q[i], p[i] = of->p[i];
   ck_assert_double_lt(quad_solve(name, 0, NULL, t_end, q, p), 1e-15);
   for (int k = 0; k < LEVELS; k++) {
     dvi_integrator *integrator = transformed(of, monitor, method);
     ck_assert_msg(dvi_run(integrator, &(dvi_run_options){.h = t_end / steps_at(first, k), .t_end = t_end}, NULL) == DVI_OK, "%s",
                   dvi_last_error());
     ck_assert_double_eq_tol(dvi_integrator_time(integrator), t_end, 4e-15 * t_end); /* 16 roundings */
-    error[k] = distance(of->n, dvi_integrator_q(integrator), q);
+    error[k] = distance(of->nq, dvi_integrator_q(integrator), q);
     dvi_integrator_destroy(&integrator);
   }
   check_slope(name, method, first, error, order);

@@ -239,8 +239,8 @@ START_TEST(steps_have_the_same_bits_at_every_level)
     dvi__lanes_choose(level);
     dvi_integrator *integrator = started(of, runs[_i].method);
     advance(integrator, runs[_i].h, 50);
-    if (level > 0) ck_assert_mem_eq(q, dvi_integrator_q(integrator), (size_t)of->n * sizeof(double));
-    memcpy(q, dvi_integrator_q(integrator), (size_t)of->n * sizeof(double));
+    if (level > 0) ck_assert_mem_eq(q, dvi_integrator_q(integrator), (size_t)of->nq * sizeof(double));
+    memcpy(q, dvi_integrator_q(integrator), (size_t)of->nq * sizeof(double));
     dvi_integrator_destroy(&integrator);
   }
   problem_destroy(&of);

@@ -91,7 +91,7 @@ static void check_place(int index, dvi_ends ends)
 {
   static run r;
   problem *of = made_problem(places[index].problem, places[index].setting);
-  const int steps = places[index].steps, n = of->n;
+  const int steps = places[index].steps, n = of->nq;
   record(of->system, of->q, of->p, places[index].method, places[index].span, steps, &r);
   const dvi_path_options options = {.ends = ends,
                                     .steps = steps,
@@ -230,7 +230,7 @@ static const double eight_period = 6.32591398, eight_action = 24.4270486407709, 
 static void check_closes(const problem *of, const char *method, const dvi_path *path, const double *turn)
 {
   static run r;
-  const int n = of->n, steps = dvi_path_steps(path);
+  const int n = of->nq, steps = dvi_path_steps(path);
   double q[8] = {0}, p[8] = {0};
   record(of->system, dvi_path_q(path, 0), dvi_path_p(path, 0), method, dvi_path_time(path, steps) - dvi_path_time(path, 0), steps,
          &r);

@@ -17,7 +17,7 @@ static void end_of_run(const problem *of, double *q, dvi_counters *counted)
                                                     : "galerkin:degree=5";
   dvi_integrator *integrator = started(of, method);
   advance(integrator, of->h, STEPS);
-  memcpy(q, dvi_integrator_q(integrator), (size_t)of->n * sizeof *q);
+  memcpy(q, dvi_integrator_q(integrator), (size_t)of->nq * sizeof *q);
   dvi_integrator_counters(integrator, counted);
   dvi_integrator_destroy(&integrator);
 }
@@ -28,11 +28,11 @@ START_TEST(one_point_callbacks_give_the_same_digits_and_counts)
   problem *of = made_problem(problem_name(_i), NULL);
   double batches[MOST], points[MOST];
   dvi_counters of_batches, of_points;
-  ck_assert_int_le(of->n, MOST);
+  ck_assert_int_le(of->nq, MOST);
   end_of_run(of, batches, &of_batches);
   ck_assert_int_eq(problem_one_point(of), DVI_OK);
   end_of_run(of, points, &of_points);
-  ck_assert_mem_eq(batches, points, (size_t)of->n * sizeof *points);
+  ck_assert_mem_eq(batches, points, (size_t)of->nq * sizeof *points);
   ck_assert_int_eq(of_batches.gradients, of_points.gradients);
   ck_assert_int_eq(of_batches.hessians, of_points.hessians);
   problem_destroy(&of);

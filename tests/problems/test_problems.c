@@ -36,7 +36,7 @@ static double size_of(int n, const double *x)
 /* Check the derivatives, at a time when no drive stands still, at the start moved by `distance`, relative to the size of q and v. */
 static void check_near_start(const problem *made, double distance, unsigned seed)
 {
-  const int n = made->n;
+  const int n = made->nq;
   double *q = calloc((size_t)n, sizeof *q), *v = calloc((size_t)n, sizeof *v);
   ck_assert(q && v);
   unsigned state = seed;
@@ -109,7 +109,7 @@ static void check_same(const char *name, const char *what, int entries, const do
 static void check_batches(const char *name, int setting_count, const char *const *settings)
 {
   problem *made = create(name, setting_count, settings);
-  const int n = made->n, most = n * n > n ? n * n : n;
+  const int n = made->nq, most = n * n > n ? n * n : n;
   double *numbers = calloc((size_t)(4 * n + 3 * most) * (POINTS + 1), sizeof *numbers), t[POINTS] = {0.0}, L[POINTS], one;
   ck_assert_ptr_nonnull(numbers);
   double *q = numbers, *v = q + n * POINTS, *rows = v + n * POINTS, *blocks = rows + 2 * n * POINTS;
@@ -156,14 +156,14 @@ END_TEST
 START_TEST(momenta_are_the_legendre_transform_of_the_velocities)
 {
   problem *made = create(problem_name(_i), 0, NULL);
-  const size_t n = (size_t)made->n;
+  const size_t n = (size_t)made->nq;
   double *v = calloc(n, sizeof *v);
   ck_assert_ptr_nonnull(v);
   memcpy(v, made->v, n * sizeof *v);
-  for (size_t i = 0; i < n; i++) v[i] += 1e-3 * size_of(made->n, made->v);
+  for (size_t i = 0; i < n; i++) v[i] += 1e-3 * size_of(made->nq, made->v);
   ck_assert_int_eq(dvi_system_velocity(made->system, 0.0, made->q, made->p, v), DVI_OK);
   /* M is well conditioned in all of them: roundoff of one solve */
-  for (size_t i = 0; i < n; i++) ck_assert_double_eq_tol(v[i], made->v[i], 1e-13 * size_of(made->n, made->v));
+  for (size_t i = 0; i < n; i++) ck_assert_double_eq_tol(v[i], made->v[i], 1e-13 * size_of(made->nq, made->v));
   free(v);
   problem_destroy(&made);
 }
@@ -180,10 +180,10 @@ START_TEST(every_problem_is_found_by_its_name_and_complete)
   }
   problem *made = create(name, 0, NULL);
   ck_assert_str_eq(made->name, name);
-  ck_assert_int_eq(made->n, dvi_system_nq(made->system));
+  ck_assert_int_eq(made->nq, dvi_system_nq(made->system));
   ck_assert(made->h > 0.0 && made->h < made->t_end && made->order_h > 0.0 && made->order_h < made->order_t_end);
   ck_assert(made->digits_q && made->digits_p);
-  for (int i = 0; i < made->n; i++) {
+  for (int i = 0; i < made->nq; i++) {
     ck_assert_int_gt((int)strlen(made->coordinate[i]), 0);
     for (int j = 0; j < i; j++) ck_assert_str_ne(made->coordinate[i], made->coordinate[j]);
   }
@@ -252,7 +252,7 @@ START_TEST(a_chain_of_any_length_starts_as_it_should)
 {
   const char *setting = "ell=1000";
   problem *made = create("fpu", 1, &setting);
-  ck_assert_int_eq(made->n, 2000);
+  ck_assert_int_eq(made->nq, 2000);
   ck_assert_str_eq(made->coordinate[999], "x0_1000");
   ck_assert_str_eq(made->coordinate[1000], "x1_1");
   ck_assert(made->q[0] == 1.0 && made->p[0] == 1.0 && made->q[1000] == 1.0 / 50.0 && made->p[1000] == 1.0);
@@ -267,15 +267,15 @@ START_TEST(exact_solutions_meet_start_and_digits)
   problem *made = create(names[_i], 0, NULL);
   double q[2], p[2];
   ck_assert_int_eq(made->exact(made, 0.0, q, p), 0);
-  for (int i = 0; i < made->n; i++) {
+  for (int i = 0; i < made->nq; i++) {
     ck_assert_double_eq_tol(q[i], made->q[i], 1e-16);
     ck_assert_double_eq_tol(p[i], made->p[i], 1e-15);
   }
   ck_assert_int_eq(made->exact(made, made->order_t_end, q, p), 0);
   /* a few ulp; the parameter itself is rounded (e = 0.6) */
-  for (int i = 0; i < made->n; i++) {
-    ck_assert_double_eq_tol(q[i], made->digits_q[i], 1e-15 * size_of(made->n, made->digits_q) * made->order_t_end);
-    ck_assert_double_eq_tol(p[i], made->digits_p[i], 1e-15 * size_of(made->n, made->digits_p) * made->order_t_end);
+  for (int i = 0; i < made->nq; i++) {
+    ck_assert_double_eq_tol(q[i], made->digits_q[i], 1e-15 * size_of(made->nq, made->digits_q) * made->order_t_end);
+    ck_assert_double_eq_tol(p[i], made->digits_p[i], 1e-15 * size_of(made->nq, made->digits_p) * made->order_t_end);
   }
   problem_destroy(&made);
 }

@@ -14,7 +14,7 @@ static inline problem *make(const char *name, const char *setting)
   problem *made = NULL;
   char message[256] = "";
   ck_assert_msg(problem_create(name, setting != NULL, &setting, &made, message, sizeof message) == DVI_OK, "%s", message);
-  ck_assert_int_le(made->n, MOST);
+  ck_assert_int_le(made->nq, MOST);
   return made;
 }
 
@@ -25,8 +25,8 @@ static inline dvi_reference_options option(int code, double tolerance)
 
 static inline void start(const problem *of, double *q, double *p)
 {
-  memcpy(q, of->q, (size_t)of->n * sizeof *q);
-  memcpy(p, of->p, (size_t)of->n * sizeof *p);
+  memcpy(q, of->q, (size_t)of->nq * sizeof *q);
+  memcpy(p, of->p, (size_t)of->nv * sizeof *p);
 }
 
 #endif

@@ -19,17 +19,17 @@ START_TEST(each_code_meets_the_digits_to_its_own_error)
   const dvi_reference_code code = (dvi_reference_code)(_i / PROBLEMS);
   double q[COORDINATES_MOST], p[COORDINATES_MOST];
   dvi_reference_report report;
-  memcpy(q, of->q, (size_t)of->n * sizeof *q);
-  memcpy(p, of->p, (size_t)of->n * sizeof *p);
+  memcpy(q, of->q, (size_t)of->nq * sizeof *q);
+  memcpy(p, of->p, (size_t)of->nq * sizeof *p);
   const dvi_reference_options options = {.code = code};
   const dvi_status status = dvi_reference_judge(of->system, 0, of->order_t_end, q, p, &options, &report);
   ck_assert_msg(status == DVI_OK, "%s: %s", of->name, dvi_last_error());
-  const double apart = distance(of->n, q, of->digits_q), size = fmax(1, magnitude(of->n, of->digits_q));
+  const double apart = distance(of->nq, q, of->digits_q), size = fmax(1, magnitude(of->nq, of->digits_q));
   ck_assert_msg(apart <= 10 * report.error + 1e-13 * size, "%s by %s: %g from the digits, states %g", of->name,
                 dvi_reference_name(code), apart, report.error);
   ck_assert_msg(report.error <= (code == DVI_IDA_INDEX_2 ? 1e-5 : 1e-8) * size, "%s by %s: states %g", of->name,
                 dvi_reference_name(code), report.error);
-  ck_assert_double_le(distance(of->n, p, of->digits_p), 100 * (report.error + 1e-13 * size));
+  ck_assert_double_le(distance(of->nq, p, of->digits_p), 100 * (report.error + 1e-13 * size));
   problem_destroy(&of);
 }
 END_TEST

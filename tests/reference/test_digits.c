@@ -45,7 +45,7 @@ START_TEST(stored_digits_are_those_of_the_judge)
   char message[256];
   ck_assert_int_eq(problem_create(problem_name(_i), 0, NULL, &made, message, sizeof message), DVI_OK);
   const result r = judge(made->name, made->order_t_end);
-  ck_assert_int_eq(r.n, made->n);
+  ck_assert_int_eq(r.n, made->nq);
   check_stored(made->name, made->digits_q, r.n, (const text *)r.q);
   check_stored(made->name, made->digits_p, r.n, (const text *)r.p);
   problem_destroy(&made);
@@ -60,8 +60,8 @@ START_TEST(the_judge_agrees_with_itself_from_the_rounded_start)
   ck_assert_int_eq(problem_create(problem_name(_i), 0, NULL, &made, message, sizeof message), DVI_OK);
   ck_assert_double_lt(quad_solve(made->name, 0, NULL, made->order_t_end, made->q, made->p), JUDGE_ERROR);
   double largest = 0.0;
-  for (int i = 0; i < made->n; i++) largest = fmax(largest, fabs(made->digits_q[i]));
-  for (int i = 0; i < made->n; i++) ck_assert_double_eq_tol(made->q[i], made->digits_q[i], 30 * 2.2e-16 * largest);
+  for (int i = 0; i < made->nq; i++) largest = fmax(largest, fabs(made->digits_q[i]));
+  for (int i = 0; i < made->nq; i++) ck_assert_double_eq_tol(made->q[i], made->digits_q[i], 30 * 2.2e-16 * largest);
   problem_destroy(&made);
 }
 END_TEST

@@ -21,7 +21,7 @@ START_TEST(far_digits_are_those_of_the_judge)
   int n = 0;
   ck_assert_ptr_nonnull(of->far_q);
   ck_assert_double_lt(quad_digits(of->name, 0, NULL, of->far_t_end, &n, q, p), judge_error);
-  ck_assert_int_eq(n, of->n);
+  ck_assert_int_eq(n, of->nq);
   for (int i = 0; i < n; i++) {
     const double judged = strtod(q[i], NULL);
     /* half an ulp of each of the two roundings */
@@ -36,10 +36,10 @@ START_TEST(the_rounded_start_ends_where_is_said)
 {
   problem *of = made_problem(names[_i], NULL);
   double q[N_MAX], p[N_MAX];
-  memcpy(q, of->q, (size_t)of->n * sizeof *q);
-  memcpy(p, of->p, (size_t)of->n * sizeof *p);
+  memcpy(q, of->q, (size_t)of->nq * sizeof *q);
+  memcpy(p, of->p, (size_t)of->nq * sizeof *p);
   ck_assert_double_lt(quad_solve(of->name, 0, NULL, of->far_t_end, q, p), judge_error);
-  const double moved = distance(of->n, q, of->far_q);
+  const double moved = distance(of->nq, q, of->far_q);
   ck_assert_msg(moved <= of->far_error && moved > 0.1 * of->far_error, "%s: moved by %g", of->name, moved);
   problem_destroy(&of);
 }

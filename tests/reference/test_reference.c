@@ -23,7 +23,7 @@ static double exact_error(const problem *of, dvi_reference_options options, doub
   start(of, q, p);
   ck_assert_msg(dvi_reference_solve(of->system, 0, t_end, q, p, &options, report) == DVI_OK, "%s", dvi_last_error());
   ck_assert_int_eq(of->exact(of, t_end, exact_q, exact_p), 0);
-  return fmax(distance(of->n, q, exact_q), distance(of->n, p, exact_p));
+  return fmax(distance(of->nq, q, exact_q), distance(of->nq, p, exact_p));
 }
 
 /* The codes bound the error of each step, so the errors after all steps lie above the tolerance: over one period of the oscillator
@@ -190,7 +190,7 @@ START_TEST(bdf_has_the_right_jacobian)
   problem *fpu = make("fpu", "omega=1e4");
   double q[MOST], p[MOST];
   start(fpu, q, p);
-  for (int i = fpu->n / 2; i < fpu->n; i++) q[i] = p[i] = 0;
+  for (int i = fpu->nq / 2; i < fpu->nq; i++) q[i] = p[i] = 0;
   const dvi_reference_options options = option(DVI_CVODE_BDF, 1e-5);
   dvi_reference_report report;
   ck_assert_msg(dvi_reference_solve(fpu->system, 0, 3, q, p, &options, &report) == DVI_OK, "%s", dvi_last_error());
@@ -209,7 +209,7 @@ START_TEST(sparse_systems_agree_with_the_explicit_code)
   start(fpu, explicit_q, explicit_p);
   ck_assert_int_eq(dvi_reference_solve(fpu->system, 0, 1, explicit_q, explicit_p, &tight, NULL), DVI_OK);
   ck_assert_int_eq(dvi_reference_solve(fpu->system, 0, 1, q, p, &options, NULL), DVI_OK);
-  ck_assert_double_lt(distance(fpu->n, q, explicit_q), 1e-6); /* some 1000 steps of 1e-9 each */
+  ck_assert_double_lt(distance(fpu->nq, q, explicit_q), 1e-6); /* some 1000 steps of 1e-9 each */
   problem_destroy(&fpu);
 }
 END_TEST
@@ -272,8 +272,8 @@ START_TEST(ida_bounds_its_own_error)
       start(of, q, p);
       ck_assert_int_eq(dvi_reference_judge(of->system, 0, 5, q, p, &options, &report), DVI_OK);
       ck_assert_int_eq(of->exact(of, 5, exact_q, exact_p), 0);
-      ck_assert_msg(distance(of->n, q, exact_q) <= 5 * report.error + 1e-14, "%s at %g: error %g, claimed %g", names[k], tolerance,
-                    distance(of->n, q, exact_q), report.error);
+      ck_assert_msg(distance(of->nq, q, exact_q) <= 5 * report.error + 1e-14, "%s at %g: error %g, claimed %g", names[k], tolerance,
+                    distance(of->nq, q, exact_q), report.error);
     }
     problem_destroy(&of);
   }

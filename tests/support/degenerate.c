@@ -17,8 +17,8 @@ void check_degenerate_order(const char *name, const char *setting, const char *m
     dvi_integrator *integrator = started(of, method);
     ck_assert_int_eq(dvi_integrator_order(integrator), expected);
     advance(integrator, h, lround(of->order_t_end / h));
-    const double error = distance(of->n, dvi_integrator_q(integrator), standard->digits_q);
-    const double floor = 5e-13 * fmax(1, magnitude(of->n, standard->digits_q)), slope = log2(last / error);
+    const double error = distance(of->nq, dvi_integrator_q(integrator), standard->digits_q);
+    const double floor = 5e-13 * fmax(1, magnitude(of->nq, standard->digits_q)), slope = log2(last / error);
     if (level > 0 && error > floor) {
       /* the first pair may not be asymptotic yet */
       const double within = level == 1 ? 0.7 : 0.2;
@@ -37,7 +37,7 @@ double off_constraint(const problem *of, const dvi_integrator *integrator)
 {
   double alpha[COORDINATES_MOST];
   ck_assert_int_eq(dvi_system_momentum(of->system, 0, dvi_integrator_q(integrator), of->v, alpha), DVI_OK);
-  return distance(of->n, alpha, dvi_integrator_p(integrator));
+  return distance(of->nq, alpha, dvi_integrator_p(integrator));
 }
 
 /* Largest errors of the first half of a run and of the second. Over as many steps the energy of a method that drifts by 1e-14 a step would change by
@@ -89,9 +89,9 @@ double change_of_loop(const char *name, const char *setting, const char *method,
     ck_assert_int_eq(dvi_system_momentum(of->system, 0, q, of->v, p), DVI_OK);
     ck_assert_int_eq(dvi_integrator_start(point[k], 0, q, p), DVI_OK);
   }
-  const double before = loop_integral(of->n, point);
+  const double before = loop_integral(of->nq, point);
   for (int k = 0; k < POINTS; k++) advance(point[k], h, steps);
-  const double change = fabs(loop_integral(of->n, point) / before - 1);
+  const double change = fabs(loop_integral(of->nq, point) / before - 1);
   for (int k = 0; k < POINTS; k++) dvi_integrator_destroy(&point[k]);
   problem_destroy(&of);
   return change;

@@ -44,9 +44,9 @@ static void judge(const problem *of, const char *setting, double t, double least
 static state start_of(const problem *of)
 {
   state z;
-  ck_assert_int_le(of->n, N);
-  memcpy(z.q, of->q, (size_t)of->n * sizeof(double));
-  memcpy(z.p, of->p, (size_t)of->n * sizeof(double));
+  ck_assert_int_le(of->nq, N);
+  memcpy(z.q, of->q, (size_t)of->nq * sizeof(double));
+  memcpy(z.p, of->p, (size_t)of->nq * sizeof(double));
   return z;
 }
 
@@ -107,7 +107,7 @@ static double global_error(const problem *of, const span *over, const char *meth
 {
   dvi_integrator *integrator = started(of, method);
   advance(integrator, over->length / (double)steps, steps);
-  const double error = relative(of->n, dvi_integrator_q(integrator), dvi_integrator_p(integrator), exact);
+  const double error = relative(of->nq, dvi_integrator_q(integrator), dvi_integrator_p(integrator), exact);
   dvi_integrator_destroy(&integrator);
   return error;
 }
@@ -149,7 +149,7 @@ void check_order_by_ida(int index, const char *method, int order)
   const dvi_status status = dvi_reference_judge(of->system, 0, at->over.length, exact.q, exact.p, NULL, &report);
   ck_assert_msg(status == DVI_OK, "%s", dvi_last_error());
   /* its stated error is the distance of two runs: ten times that, for the momenta and for luck, must not show */
-  const double floor = 100 * report.error / magnitude(of->n, exact.q);
+  const double floor = 100 * report.error / magnitude(of->nq, exact.q);
   check_global_order(at, method, order, of, &exact, 1.4, floor);
   problem_destroy(&of);
 }
@@ -187,7 +187,7 @@ static double carry(const local_study *study, double t, state *z)
 static double centred_error(const local_study *study, const state *centre, double h)
 {
   const problem *of = study->of;
-  const size_t bytes = (size_t)of->n * sizeof(double);
+  const size_t bytes = (size_t)of->nq * sizeof(double);
   state exact = *centre, end;
   (void)carry(study, -h / 2, &exact);
   if (dvi_integrator_start(study->integrator, 0, exact.q, exact.p) != DVI_OK || dvi_integrator_step(study->integrator, h) != DVI_OK)
@@ -195,9 +195,9 @@ static double centred_error(const local_study *study, const state *centre, doubl
   memcpy(end.q, dvi_integrator_q(study->integrator), bytes);
   memcpy(end.p, dvi_integrator_p(study->integrator), bytes);
   const double judged = carry(study, h / 2, &exact) + carry(study, -h / 2, &end);
-  const double q = magnitude(of->n, exact.q), p = magnitude(of->n, exact.p);
+  const double q = magnitude(of->nq, exact.q), p = magnitude(of->nq, exact.p);
   double sum = 0;
-  for (int i = 0; i < of->n; i++) sum += pow((end.q[i] - exact.q[i]) / q, 2) + pow((end.p[i] - exact.p[i]) / p, 2);
+  for (int i = 0; i < of->nq; i++) sum += pow((end.q[i] - exact.q[i]) / q, 2) + pow((end.p[i] - exact.p[i]) / p, 2);
   return judged * judged < 1e-4 * sum + 1e-36 ? sum : HUGE_VAL;
 }
 

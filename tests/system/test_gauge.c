@@ -91,7 +91,7 @@ static dvi_system *gauged(const problem *of, const dvi_gauge *gauge)
   dvi_system_terms terms = *of->terms;
   dvi_gauge f = *gauge;
   dvi_system *system = NULL;
-  if (of->n == 2) f.gradient = gradient_of_two;
+  if (of->nq == 2) f.gradient = gradient_of_two;
   terms.gauge = &f;
   ck_assert_msg(dvi_system_create(&terms, &system) == DVI_OK, "%s", dvi_last_error());
   return system;
@@ -104,16 +104,16 @@ START_TEST(the_two_form_stays_and_the_momenta_move_by_the_gradient)
   product own;
   const place *at = &places[_i];
   problem *of = made_problem(at->problem, at->setting);
-  const dvi_gauge f = declared(at, of->n, &own);
+  const dvi_gauge f = declared(at, of->nq, &own);
   dvi_system *system = gauged(of, &f);
   double before[16], after[16], p[4], moved[4], f_q[4];
   ck_assert_int_eq(dvi_system_two_form(of->system, q, before, NULL), DVI_OK);
   ck_assert_int_eq(dvi_system_two_form(system, q, after, NULL), DVI_OK);
-  ck_assert_double_le(distance(of->n * of->n, before, after), 1e-15 * fmax(1, magnitude(of->n * of->n, before)));
+  ck_assert_double_le(distance(of->nq * of->nq, before, after), 1e-15 * fmax(1, magnitude(of->nq * of->nq, before)));
   ck_assert_int_eq(dvi_system_momentum(of->system, 0, q, v, p), DVI_OK);
   ck_assert_int_eq(dvi_system_momentum(system, 0, q, v, moved), DVI_OK);
   (void)gradient(q, f_q, &own);
-  for (int i = 0; i < of->n; i++) ck_assert_double_eq(moved[i], p[i] + f_q[i]);
+  for (int i = 0; i < of->nq; i++) ck_assert_double_eq(moved[i], p[i] + f_q[i]);
   ck_assert_msg(dvi_system_check(system, 0, q, v, 0, NULL) == DVI_OK, "%s", dvi_last_error());
   dvi_system_destroy(&system);
   problem_destroy(&of);
@@ -128,7 +128,7 @@ static void check_order(const problem *of, const dvi_system *system, const char 
     dvi_integrator *integrator = made_integrator(system, method);
     ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, of->q, of->v), DVI_OK);
     advance(integrator, h, lround(of->order_t_end / h));
-    const double error = distance(of->n, dvi_integrator_q(integrator), of->digits_q), slope = log2(last / error);
+    const double error = distance(of->nq, dvi_integrator_q(integrator), of->digits_q), slope = log2(last / error);
     ck_assert_msg(level == 0 || fabs(slope - order) <= (level == 1 ? 0.6 : 0.2), "%s %s: slope %.2f at h = %g (error %g)", of->name,
                   method, slope, h, error);
     last = error;
@@ -147,7 +147,7 @@ START_TEST(in_another_gauge_the_trajectory_is_the_same_to_the_methods_order)
   const place *at = &places[_i];
   problem *of = made_problem(at->problem, NULL); /* its digits; the motion is that of every gauge */
   problem *in_gauge = made_problem(at->problem, at->setting);
-  const dvi_gauge f = declared(at, of->n, &own);
+  const dvi_gauge f = declared(at, of->nq, &own);
   dvi_system *system = gauged(in_gauge, &f);
   check_order(of, system, "vprk", step_of(of), 4);
   dvi_system_destroy(&system);
@@ -165,7 +165,7 @@ START_TEST(a_gauge_brings_systems_into_the_class_of_one_step_methods)
   product own;
   const place *at = &places[_i];
   problem *of = made_problem(at->problem, at->setting);
-  const dvi_gauge f = declared(at, of->n, &own);
+  const dvi_gauge f = declared(at, of->nq, &own);
   dvi_system *system = gauged(of, &f);
   dvi_integrator *none = NULL;
   ck_assert_int_eq(dvi_integrator_create(of->system, "dvrk", &none), DVI_UNSUPPORTED);

@@ -40,8 +40,8 @@ enum { PLACES = sizeof places / sizeof *places, MOST = 64 };
 /* A point near the start, none of whose numbers is 0 or like another. */
 static void generic_point(const problem *of, double *q, double *v)
 {
-  ck_assert_int_le(of->n, MOST);
-  for (int i = 0; i < of->n; i++) {
+  ck_assert_int_le(of->nq, MOST);
+  for (int i = 0; i < of->nq; i++) {
     q[i] = of->q[i] + 0.1 * sin(1.0 + i);
     v[i] = of->v[i] + 0.1 * cos(2.0 + i);
   }
@@ -50,7 +50,7 @@ static void generic_point(const problem *of, double *q, double *v)
 static dvi__transformed *transformed(const problem *of, const char *monitor, dvi_counters *counters)
 {
   dvi__transformed *made = NULL;
-  dvi_monitor chosen = {.function = {.name = "bowl", .value = bowl, .gradient = bowl_gradient, .user = (void *)&of->n}};
+  dvi_monitor chosen = {.function = {.name = "bowl", .value = bowl, .gradient = bowl_gradient, .user = (void *)&of->nq}};
   if (monitor != NULL) ck_assert_msg(dvi_monitor_read(monitor, &chosen) == DVI_OK, "%s", dvi_last_error());
   ck_assert_msg(dvi__transformed_create(of->system, &chosen, counters, &made) == DVI_OK, "%s", dvi_last_error());
   return made;
@@ -131,7 +131,7 @@ START_TEST(a_wrong_gradient_of_a_monitor_is_named)
   problem *kepler = made_problem("kepler", NULL);
   dvi_derivative_check found;
   const double q[2] = {0.6, -0.8};
-  dvi_monitor monitor = {.function = {.name = "bowl", .value = bowl, .gradient = bowl_gradient, .user = (void *)&kepler->n}};
+  dvi_monitor monitor = {.function = {.name = "bowl", .value = bowl, .gradient = bowl_gradient, .user = (void *)&kepler->nq}};
   ck_assert_msg(dvi_monitor_check(kepler->system, &monitor, q, 0, &found) == DVI_OK, "%s", dvi_last_error());
   ck_assert_double_le(found.gradient_error, 1e-11);
   monitor.function.gradient = wrong_gradient;

@@ -238,6 +238,7 @@ dvi_status dvi__reference_ida(dvi__reference_run *run)
     return dvi__fail(
         DVI_UNSUPPORTED,
         "ida-index-2: the system declares neither a one-form nor a Hamiltonian with constraints; its equations are of index 1");
+  if (run->system->terms & DVI__FACTORS) return dvi__reference_ida_lift(run);
   judge self = {.run = run, .reduced = form && run->options.code == DVI_IDA};
   dvi_status status = reserve(&self);
   if (status == DVI_OK) status = start(&self);

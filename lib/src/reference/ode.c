@@ -1,6 +1,7 @@
 /* CVODE and ARKODE on Hamilton's equations, with the velocity from the inverse Legendre map:
  *     y = (q, p),   qdot = v(t,q,p),   pdot = L_q(t,q,v(t,q,p)),
- * with a one-form on the reduced ones alone: y = q, qdot = v(t,q); with a Hamiltonian on q' and p' with the multiplier eliminated.
+ * with a one-form on the reduced ones alone: y = q, qdot = v(t,q); with a Hamiltonian on q' and p' with the multiplier eliminated; with factors on the lifted
+ * ones, y = (kappa, p) (lift.h).
  * Sources: Hindmarsh et al. 2005, ACM TOMS 31:363, sec. 2.1 (CVODE); Reynolds et al. 2023, ACM TOMS 49:19 (ARKODE). */
 #include <arkode/arkode_arkstep.h>
 #include <cvode/cvode.h>
@@ -9,7 +10,7 @@
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
 #include "core/status.h"
-#include "reference/run.h"
+#include "reference/lift.h"
 #include "system/dirac.h"
 
 static int has_momenta(const dvi__reference_run *run)
@@ -17,8 +18,15 @@ static int has_momenta(const dvi__reference_run *run)
   return !(run->system->terms & DVI__ONE_FORM);
 }
 
+static int has_factors(const dvi__reference_run *run)
+{
+  return (run->system->terms & DVI__FACTORS) != 0;
+}
+
 typedef struct flow {
   dvi__reference_run *run;
+  dvi__lift lift; /* with factors */
+  int positions;  /* how many numbers of y come before p */
   N_Vector y;
   SUNMatrix matrix;               /* NULL without a matrix */
   SUNLinearSolver linear;         /* NULL for Adams */
@@ -43,10 +51,27 @@ static int right_side(double t, N_Vector y, N_Vector ydot, void *user)
   return dvi__reference_callback(run, rate(run, t, q, p, qdot, pdot));
 }
 
+static int lifted_right_side(double t, N_Vector y, N_Vector ydot, void *user)
+{
+  flow *self = user;
+  dvi__reference_run *run = self->run;
+  const double *kappa = N_VGetArrayPointer(y), *p = kappa + self->positions;
+  double *rate = N_VGetArrayPointer(ydot);
+  dvi__lift_down(&self->lift, kappa, run->q);
+  dvi_status status = dvi__legendre_inverse(run->evaluator, t, run->q, p, run->v);
+  if (status == DVI_OK) status = dvi__lift_equations(&self->lift, t, kappa, run->v, rate, rate + self->positions, run->force);
+  return dvi__reference_callback(run, status);
+}
+
+static CVRhsFn right_side_of(const dvi__reference_run *run)
+{
+  return has_factors(run) ? lifted_right_side : right_side;
+}
+
 /* Only then is M^-1 as sparse as M, and the Jacobian written down at once. */
 static int mass_is_diagonal(const dvi_system *system)
 {
-  return (system->terms & DVI__CONSTANT_MASS) && system->mass_values == NULL;
+  return (system->terms & DVI__CONSTANT_MASS) && system->mass_values == NULL && !(system->terms & DVI__FACTORS);
 }
 
 /* d(qdot, pdot)/d(q, p) = [ 0, M^-1; L_qq, 0 ], with its diagonal, to which CVODE adds the identity in place. */
@@ -75,25 +100,40 @@ static int jacobian(double t, N_Vector y, N_Vector ydot, SUNMatrix matrix, void 
   return dvi__reference_callback(run, DVI_OK);
 }
 
+static int size_of(const flow *self)
+{
+  return self->positions + (has_momenta(self->run) ? self->run->n : 0);
+}
+
 static dvi_status start(flow *self)
 {
-  const dvi__reference_run *run = self->run;
+  dvi__reference_run *run = self->run;
   const size_t n = (size_t)run->n;
-  self->y = N_VNew_Serial((1 + has_momenta(run)) * (sunindextype)run->n, run->context);
+  if (has_factors(run)) DVI_TRY(dvi__lift_create(run, &self->lift));
+  self->positions = has_factors(run) ? self->lift.size : run->n;
+  self->y = N_VNew_Serial(size_of(self), run->context);
   if (self->y == NULL) return dvi__reference_no_setup(run);
   double *y = N_VGetArrayPointer(self->y);
-  memcpy(y, run->q, n * sizeof *y);
-  if (has_momenta(run)) memcpy(y + n, run->p, n * sizeof *y);
+  if (has_factors(run))
+    dvi__lift_up(&self->lift, run->q, y);
+  else
+    memcpy(y, run->q, n * sizeof *y);
+  if (has_momenta(run)) memcpy(y + self->positions, run->p, n * sizeof *y);
   return DVI_OK;
 }
 
 static dvi_status finish(const flow *self)
 {
   const double *y = N_VGetArrayPointer(self->y);
-  const size_t n = (size_t)self->run->n;
-  memcpy(self->run->q, y, n * sizeof *y);
-  if (!has_momenta(self->run)) return dvi__reference_form_momentum(self->run);
-  memcpy(self->run->p, y + n, n * sizeof *y);
+  dvi__reference_run *run = self->run;
+  const size_t n = (size_t)run->n;
+  if (has_factors(run))
+    dvi__lift_down(&self->lift, y, run->q);
+  else
+    memcpy(run->q, y, n * sizeof *y);
+  if (!has_momenta(run)) return dvi__reference_form_momentum(run);
+  memcpy(run->p, y + self->positions, n * sizeof *y);
+  if (has_factors(run)) dvi__lift_tangent(&self->lift, run->q, run->p);
   return DVI_OK;
 }
 
@@ -103,6 +143,7 @@ static void clear(flow *self)
   if (self->linear != NULL) (void)SUNLinSolFree(self->linear);
   if (self->matrix != NULL) SUNMatDestroy(self->matrix);
   if (self->y != NULL) N_VDestroy(self->y);
+  dvi__lift_clear(&self->lift);
 }
 
 /* Direct where the Jacobian is known or small enough to be differenced, else Krylov without a matrix. */
@@ -110,7 +151,7 @@ static dvi_status make_linear(flow *self)
 {
   const dvi__reference_run *run = self->run;
   const int n = run->n, entries = dvi__pattern_entries(&run->system->qq), known = mass_is_diagonal(run->system);
-  const int size = (1 + has_momenta(run)) * n;
+  const int size = size_of(self);
   if (known || dvi__reference_is_dense(size)) {
     self->matrix = dvi__reference_matrix(run, size, entries + 3 * n);
     if (self->matrix == NULL) return dvi__reference_no_setup(run);
@@ -132,7 +173,7 @@ static int configure_cvode(flow *self)
 {
   const dvi__reference_run *run = self->run;
   void *cvode = self->memory;
-  if (DVI__SUNDIALS_SILENCE(CVodeSetErrHandlerFn, cvode) || CVodeInit(cvode, right_side, run->t, self->y) ||
+  if (DVI__SUNDIALS_SILENCE(CVodeSetErrHandlerFn, cvode) || CVodeInit(cvode, right_side_of(run), run->t, self->y) ||
       CVodeSStolerances(cvode, run->options.relative_tolerance, run->options.absolute_tolerance) || CVodeSetUserData(cvode, self) ||
       CVodeSetMaxNumSteps(cvode, run->options.max_steps) || CVodeSetStopTime(cvode, run->t_end) ||
       CVodeSetMinStep(cvode, dvi__reference_least_step(run)))
@@ -194,7 +235,7 @@ dvi_status dvi__reference_arkode(dvi__reference_run *run)
   flow self = {.run = run};
   dvi_status status = start(&self);
   if (status == DVI_OK) {
-    self.memory = ARKStepCreate(right_side, NULL, run->t, self.y, run->context);
+    self.memory = ARKStepCreate(right_side_of(run), NULL, run->t, self.y, run->context);
     status = self.memory == NULL ? dvi__reference_no_setup(run) : integrate_arkode(&self);
     if (self.memory != NULL) ARKodeFree(&self.memory);
   }

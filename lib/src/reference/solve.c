@@ -127,7 +127,7 @@ static dvi_status check_start(const dvi_system *system, double t, double t_end, 
 static dvi_status reserve(dvi__reference_run *run, const double *q, const double *p)
 {
   const size_t n = (size_t)run->n;
-  run->q = dvi__duplicate(q, n, sizeof *q);
+  run->q = dvi__duplicate(q, (size_t)run->system->n, sizeof *q);
   run->p = dvi__duplicate(p, n, sizeof *p);
   run->v = DVI_NEW(double, n);
   run->force = DVI_NEW(double, n);
@@ -148,15 +148,17 @@ dvi_status dvi__reference_form_momentum(dvi__reference_run *run)
 
 static dvi_status prepare(dvi__reference_run *run, const double *q, const double *p)
 {
-  dvi_status status = dvi__evaluator_create(run->system, 1, DVI__HESSIANS, &run->counters, &run->evaluator);
+  const int factors = (run->system->terms & DVI__FACTORS) != 0;
+  dvi_status status = dvi__evaluator_create(run->system, 1, factors ? DVI__STATES : DVI__HESSIANS, &run->counters, &run->evaluator);
   if (status == DVI_OK) status = reserve(run, q, p);
+  if (status == DVI_OK) status = dvi__state_check(run->evaluator, run->q, run->p);
   if (status == DVI_OK && run->system->terms & DVI__ONE_FORM) status = dvi__form_constraint(run->evaluator, run->q, run->p);
   if (run->system->terms & DVI__HAMILTONIAN) {
     if (status == DVI_OK) status = dvi__dirac_constraint(run->evaluator, run->q, run->p);
     if (status == DVI_OK) status = dvi__dirac_motion(run->evaluator, run->t, run->q, run->p, run->v, run->force, run->multiplier);
   } else {
     if (status == DVI_OK) status = dvi__legendre_inverse(run->evaluator, run->t, run->q, run->p, run->v);
-    if (status == DVI_OK) status = dvi__lagrangian_gradient(run->evaluator, 1, &run->t, run->q, run->v, run->force, NULL);
+    if (status == DVI_OK && !factors) status = dvi__lagrangian_gradient(run->evaluator, 1, &run->t, run->q, run->v, run->force, NULL);
   }
   if (status == DVI_OK) return DVI_OK;
   return dvi__fail_in(status, "%s: no start at t = %.9g", codes[run->options.code].name, run->t);
@@ -185,12 +187,11 @@ static double cpu_time(void)
 
 static dvi_status integrate(dvi__reference_run *run, double *q, double *p)
 {
-  const size_t n = (size_t)run->n;
   dvi_status status = prepare(run, q, p);
   if (status == DVI_OK) status = codes[run->options.code].integrate(run);
   if (status == DVI_OK) {
-    memcpy(q, run->q, n * sizeof *q);
-    memcpy(p, run->p, n * sizeof *p);
+    memcpy(q, run->q, (size_t)run->system->n * sizeof *q);
+    memcpy(p, run->p, (size_t)run->n * sizeof *p);
   }
   clear(run);
   return status;

@@ -1,0 +1,34 @@
+/* Rigid bodies that turn about a fixed point, under their weight or none: on SO(3), V = w.R^T e3 with the vector w = m g X in the body's frame, X from the
+ * fixed point to the centre of mass and e3 up. */
+#ifndef PROBLEMS_TOP_H
+#define PROBLEMS_TOP_H
+#include "entry.h"
+
+/* What is said about a body. */
+typedef struct top {
+  double J[9];      /* the inertia about the fixed point, in the body's frame */
+  double weight[3]; /* w */
+} top;
+
+/* Room for a body, which `made->parameters` points to then, at R = I and with this angular velocity. J and w are still to be set. */
+dvi_status top_room(problem *made, const double *Omega);
+
+/* The principal inertias. */
+void top_inertia(top *body, const double *J);
+
+/* Make the system. Without weight (the vector is 0) there is no potential, and the angular momentum has three components in space; with weight that
+ * about the vertical is left. */
+dvi_status top_system(problem *made, const dvi_invariant *invariant);
+
+#define TOP_START(title, number)                                                     \
+  {                                                                                  \
+    .name = (title), .value = (number), .least = -1e6, .most = 1e6, .start_only = 1, \
+    .help = "the angular velocity at the start, in the body's frame"                 \
+  }
+#define TOP_INERTIA(title, number)                                              \
+  {                                                                             \
+    .name = (title), .value = (number), .least = 1e-50, .most = 1e50,           \
+    .help = "a principal inertia, positive, no more than the sum of the others" \
+  }
+
+#endif

@@ -1,0 +1,135 @@
+/* IDA on the equations of systems with factors (lift.h). Unknowns y = (kappa, v, p), of index 1:
+ *     F(t, y, ydot) = ( kappa' - K(kappa, v),  p' - f(t, kappa, v),  p - T^t C(kappa, v) ) = 0
+ * with K and f as there. IDA differences the Jacobian. Source: Hindmarsh et al. 2005, ACM TOMS 31:363, sec. 2.3. */
+#include <float.h>
+#include <ida/ida.h>
+#include <math.h>
+#include <string.h>
+#include <sunlinsol/sunlinsol_dense.h>
+#include <sunmatrix/sunmatrix_dense.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "reference/lift.h"
+
+/* A differenced Jacobian is a dense one. */
+enum { UNKNOWNS_MAX = 2000 };
+
+typedef struct judge {
+  dvi__reference_run *run;
+  dvi__lift lift;
+  N_Vector y, ydot;
+  SUNMatrix matrix;
+  SUNLinearSolver linear;
+  void *ida;
+} judge;
+
+static int residual(double t, N_Vector y, N_Vector ydot, N_Vector F, void *user)
+{
+  judge *self = user;
+  const int size = self->lift.size, nv = self->run->n;
+  const double *kappa = N_VGetArrayPointer(y), *v = kappa + size, *p = v + nv, *rate = N_VGetArrayPointer(ydot),
+               *p_rate = rate + size + nv;
+  double *F_kappa = N_VGetArrayPointer(F), *F_p = F_kappa + size, *F_v = F_p + nv;
+  const dvi_status status = dvi__lift_equations(&self->lift, t, kappa, v, F_kappa, F_p, F_v);
+  for (int i = 0; i < size; i++) F_kappa[i] = rate[i] - F_kappa[i];
+  for (int i = 0; i < nv; i++) {
+    F_p[i] = p_rate[i] - F_p[i];
+    F_v[i] = p[i] - F_v[i];
+  }
+  return dvi__reference_callback(self->run, status);
+}
+
+/* vdot is in no equation, but IDA's first predictor and first error test use it: a difference along the flow. moved [size + 2 nv + nq]: room. */
+static dvi_status acceleration(judge *self, const double *y, double *ydot, double *moved)
+{
+  const dvi__reference_run *run = self->run;
+  const int size = self->lift.size, nv = run->n;
+  const double span = run->t_end - run->t, e = copysign(fmax(1e-8 * fabs(span), 16 * DBL_EPSILON * fabs(run->t)), span);
+  double *v = moved + size, *p = v + nv, *q = p + nv;
+  for (int i = 0; i < size; i++) moved[i] = y[i] + e * ydot[i];
+  for (int i = 0; i < nv; i++) p[i] = y[size + nv + i] + e * ydot[size + nv + i];
+  dvi__lift_down(&self->lift, moved, q);
+  dvi__lift_tangent(&self->lift, q, p);
+  DVI_TRY(dvi__legendre_inverse(run->evaluator, run->t + e, q, p, v));
+  for (int i = 0; i < nv; i++) ydot[size + i] = (v[i] - run->v[i]) / e;
+  return DVI_OK;
+}
+
+static dvi_status start(judge *self)
+{
+  const dvi__reference_run *run = self->run;
+  const size_t size = (size_t)self->lift.size, nv = (size_t)run->n;
+  double *y = N_VGetArrayPointer(self->y), *ydot = N_VGetArrayPointer(self->ydot);
+  double *room = DVI_NEW(double, size + 2 * nv + (size_t)run->system->n);
+  if (room == NULL) return dvi__reference_no_setup(run);
+  dvi__lift_up(&self->lift, run->q, y);
+  memcpy(y + size, run->v, nv * sizeof *y);
+  memcpy(y + size + nv, run->p, nv * sizeof *y);
+  dvi_status status = dvi__lift_equations(&self->lift, run->t, y, run->v, ydot, ydot + size + nv, room);
+  if (status == DVI_OK) status = acceleration(self, y, ydot, room);
+  dvi__release(room);
+  return status;
+}
+
+static int configure(judge *self)
+{
+  const dvi__reference_run *run = self->run;
+  void *ida = self->ida;
+  return DVI__SUNDIALS_SILENCE(IDASetErrHandlerFn, ida) || IDAInit(ida, residual, run->t, self->y, self->ydot) ||
+         IDASStolerances(ida, run->options.relative_tolerance, run->options.absolute_tolerance) || IDASetUserData(ida, self) ||
+         IDASetMaxNumSteps(ida, run->options.max_steps) || IDASetStopTime(ida, run->t_end) ||
+         IDASetMinStep(ida, dvi__reference_least_step(run)) || IDASetLinearSolver(ida, self->linear, self->matrix);
+}
+
+static dvi_status integrate(const judge *self)
+{
+  dvi__reference_run *run = self->run;
+  const int flag = IDASolve(self->ida, run->t_end, &run->reached, self->y, self->ydot, IDA_NORMAL);
+  (void)IDAGetNumSteps(self->ida, &run->steps);
+  (void)IDAGetCurrentTime(self->ida, &run->reached);
+  if (flag < 0) return dvi__reference_stopped(run, flag, IDAGetReturnFlagName(flag));
+  const double *y = N_VGetArrayPointer(self->y);
+  dvi__lift_down(&self->lift, y, run->q);
+  memcpy(run->p, y + self->lift.size + run->n, (size_t)run->n * sizeof *y);
+  dvi__lift_tangent(&self->lift, run->q, run->p);
+  return DVI_OK;
+}
+
+static dvi_status reserve(judge *self)
+{
+  dvi__reference_run *run = self->run;
+  DVI_TRY(dvi__lift_create(run, &self->lift));
+  const int size = self->lift.size + 2 * run->n;
+  if (size > UNKNOWNS_MAX)
+    return dvi__fail(DVI_UNSUPPORTED, "ida: the system's factors give %d unknowns, and a dense Jacobian; %d are possible", size,
+                     UNKNOWNS_MAX);
+  self->y = N_VNew_Serial(size, run->context);
+  self->ydot = N_VNew_Serial(size, run->context);
+  self->matrix = SUNDenseMatrix(size, size, run->context);
+  self->ida = IDACreate(run->context);
+  if (self->y == NULL || self->ydot == NULL || self->matrix == NULL || self->ida == NULL) return dvi__reference_no_setup(run);
+  self->linear = SUNLinSol_Dense(self->y, self->matrix, run->context);
+  return self->linear == NULL ? dvi__reference_no_setup(run) : DVI_OK;
+}
+
+static void clear(judge *self)
+{
+  if (self->ida != NULL) IDAFree(&self->ida);
+  if (self->linear != NULL) (void)SUNLinSolFree(self->linear);
+  if (self->matrix != NULL) SUNMatDestroy(self->matrix);
+  if (self->ydot != NULL) N_VDestroy(self->ydot);
+  if (self->y != NULL) N_VDestroy(self->y);
+  dvi__lift_clear(&self->lift);
+}
+
+dvi_status dvi__reference_ida_lift(dvi__reference_run *run)
+{
+  judge self = {.run = run};
+  dvi_status status = reserve(&self);
+  if (status == DVI_OK) status = start(&self);
+  if (status == DVI_OK && configure(&self) != 0) status = dvi__reference_no_setup(run);
+  if (status == DVI_OK) status = integrate(&self);
+  clear(&self);
+  return status;
+}
