@@ -338,18 +338,22 @@ static void arrive_rotation(const unit *of, const double *xi, const double *mome
 
 static void arrive_chord(const unit *of, const double *xi, const double *moment, const dvi__phase *state, double *leap)
 {
-  const int stored = dvi__chart_stored(of->cell->kind);
-  double *p = state->p + of->cell->v, u[3], mu[3];
+  const double *y0 = of->chart.y0;
+  double *y = state->q + of->cell->q, *p = state->p + of->cell->v, u[3], mu[3], given[3];
   const double d = chord(&of->chart, xi, u);
-  dvi__swing(stored, d, u, state->q + of->cell->q, state->q_carry + of->cell->q);
+  dvi__swing(dvi__chart_stored(of->cell->kind), d, u, y, state->q_carry + of->cell->q, u);
   dvi__chart_store(&of->chart, xi, leap);
   if (of->cell->kind == DVI__CIRCLE) {
     *p += moment[0];
     return;
   }
-  dvi__cross(of->chart.y0, p, mu);
-  for (int i = 0; i < 3; i++) mu[i] += moment[i];
-  dvi__direction_momentum(mu, state->q + of->cell->q, p);
+  dvi__cross(y0, p, mu);
+  dvi__cross(moment, y0, given);
+  for (int i = 0; i < 3; i++) {
+    mu[i] += moment[i];
+    p[i] += given[i];
+  }
+  dvi__swing_momentum(mu, u, y, p);
 }
 
 static void arrive(const dvi__coupled_leaps *l, const unit *of, double h, const dvi__phase *state, double *leap)

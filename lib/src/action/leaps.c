@@ -217,10 +217,11 @@ static void leap_line(const piece *own, double h, const dvi__phase *state, doubl
 static dvi_status leap_circle(const piece *own, double h, const dvi__phase *state, double *leap)
 {
   const int q = own->cell->q, v = own->cell->v;
-  const double sine = h * (state->p[v] / own->mass), *y = state->q + q, u[] = {-sine * y[1], sine * y[0]};
+  const double sine = h * (state->p[v] / own->mass), *y = state->q + q;
+  double u[] = {-sine * y[1], sine * y[0]};
   if (!(fabs(sine) < 1)) return too_large(own->cell, fabs(h * state->p[v]), own->mass);
   leap[v] = asin(sine);
-  dvi__swing(2, dvi__swing_cosine(2, u), u, state->q + q, state->q_carry + q);
+  dvi__swing(2, dvi__swing_cosine(2, u), u, state->q + q, state->q_carry + q, u);
   return DVI_OK;
 }
 
@@ -233,8 +234,8 @@ static dvi_status leap_sphere(const piece *own, double h, const dvi__phase *stat
   const double sine = sqrt(dvi__dot(u, u)), stretch = sine > 0 ? asin(sine) / sine : 1;
   if (!(sine < 1)) return too_large(own->cell, sine * own->mass, own->mass);
   for (int i = 0; i < 3; i++) leap[own->cell->v + i] = stretch * u[i];
-  dvi__swing(3, dvi__swing_cosine(3, u), u, y, state->q_carry + own->cell->q);
-  dvi__direction_momentum(mu, y, p);
+  dvi__swing(3, dvi__swing_cosine(3, u), u, y, state->q_carry + own->cell->q, u);
+  dvi__swing_momentum(mu, u, y, p);
   return DVI_OK;
 }
 

@@ -51,19 +51,23 @@ double dvi__swing_cosine(int count, const double *u)
 }
 
 /* (1 + d)^2 + |u|^2 - 1 = 2 d + d^2 + |u|^2 is made 0 to twice the digits, by the larger of both. */
-void dvi__swing(int count, double d, const double *u, double *y, double *carry)
+void dvi__swing(int count, double d, const double *u, double *y, double *carry, double *change)
 {
   double square = 0, low = 0;
   add_squares(count, u, &square, &low);
   const double d_square = d * d, excess = ((2 * d + square) + d_square) + (__builtin_fma(d, d, -d_square) + low);
   const int along = (1 + d) * (1 + d) > square;
   const double more_d = along ? -0.5 * excess / (1 + d) : 0, more_u = along ? 0 : -0.5 * excess / square;
-  for (int i = 0; i < count; i++) dvi__add_compensated(y + i, carry + i, (d * y[i] + u[i]) + (more_d * y[i] + more_u * u[i]));
+  for (int i = 0; i < count; i++) change[i] = (d * y[i] + u[i]) + (more_d * y[i] + more_u * u[i]);
+  dvi__add_compensated_all(count, y, carry, change);
 }
 
-void dvi__direction_momentum(const double mu[3], const double y[3], double p[3])
+/* mu x y has changed by mu x change; what rounding leaves along y would grow. */
+void dvi__swing_momentum(const double mu[3], const double change[3], const double y[3], double p[3])
 {
-  const double square = dvi__dot(y, y);
-  dvi__cross(mu, y, p);
-  for (int i = 0; i < 3; i++) p[i] /= square;
+  double turned[3];
+  dvi__cross(mu, change, turned);
+  for (int i = 0; i < 3; i++) p[i] += turned[i];
+  const double along = dvi__dot(p, y) / dvi__dot(y, y);
+  for (int i = 0; i < 3; i++) p[i] -= along * y[i];
 }

@@ -16,13 +16,14 @@ void dvi__turn_change(const dvi__turn *turn, const double x[3], double change[3]
 /* R [9] <- R F with its carries. */
 void dvi__turn_frame(const dvi__turn *turn, double *R, double *carry);
 
-/* y [count] <- (1 + d) y + u with its carries: for a unit vector y and u orthogonal to it of length sin(a), d = cos(a) - 1. */
-void dvi__swing(int count, double d, const double *u, double *y, double *carry);
+/* y [count] <- (1 + d) y + u with its carries: for a unit vector y and u orthogonal to it of length sin(a), d = cos(a) - 1. change [count] is that of y; it may be
+ * u. */
+void dvi__swing(int count, double d, const double *u, double *y, double *carry, double *change);
 
 /* cos(a) - 1 for |u| = sin(a), up to a quarter turn. */
 double dvi__swing_cosine(int count, const double *u);
 
-/* p of a direction y with the angular momentum mu = y x p. */
-void dvi__direction_momentum(const double mu[3], const double y[3], double p[3]);
+/* The momentum p of a direction that has changed to y with the angular momentum mu kept. */
+void dvi__swing_momentum(const double mu[3], const double change[3], const double y[3], double p[3]);
 
 #endif
