@@ -45,7 +45,7 @@ static void judge(state *end)
   dvi__charted *charts;
   dvi_integrator *made;
   double zero[BODY_V] = {0}, rate[BODY_V], v[BODY_V];
-  ck_assert_msg(dvi__charted_create(of.system, &counters, &charts) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi__charted_create(of.system, 0, &counters, &charts) == DVI_OK, "%s", dvi_last_error());
   dvi__charted_centre(charts, of.q);
   dvi__charted_enter(charts, of.v, rate);
   made = made_integrator(dvi__charted_system(charts), "galerkin:degree=8");

@@ -47,6 +47,11 @@ void dvi__chart_curvature(const dvi__chart *chart, const double *xi, const doubl
 /* T = dy/dxi = dv/drate and S = dv/dxi: row i is T[i*size]. */
 void dvi__chart_tangents(const dvi__chart *chart, const double *xi, const double *rate, double *T, double *S);
 
+/* Of a rotation: the gradient of l.Omega in xi and in rate [3], Omega = dexp_{-xi} rate the velocity in the body's frame, l fixed; its second derivatives in
+ * xi, and in xi (rows) and rate, [9]. */
+void dvi__chart_turning_gradient(const double *xi, const double *rate, const double *l, double *in_xi, double *in_rate);
+void dvi__chart_turning_curvature(const double *xi, const double *rate, const double *l, double *in_xi, double *mixed);
+
 /* ---- rotations and spheres: what turning them in space does, by w x y; `turned` [3] are the components of w ---- */
 
 /* Rows y x: row i is what a turn does to stored number i, [stored*3]; the same for v. */

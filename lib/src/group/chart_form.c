@@ -1,4 +1,5 @@
 /* Derivatives of what a covector makes of a chart: a.y(xi) + b.v(xi,rate). */
+#include <dvi/group.h>
 #include <string.h>
 
 #include "group/chart_functions.h"
@@ -118,4 +119,37 @@ void dvi__chart_curvature(const dvi__chart *chart, const double *xi, const doubl
   add_hessian(&of_a, &c, xi, in_xi);
   add_third(&of_b, &c, xi, rate, in_xi);
   add_hessian(&of_b, &c, xi, mixed);
+}
+
+/* l.dexp_{-xi} rate as a form of c_2 and c_3, in the place of c_1 and c_2. */
+static form turning_form(const double *xi, const double *rate, const double *l, int derivatives, dvi__functions *c)
+{
+  form f = {.size = 3};
+  dvi__find_functions(3, xi, derivatives, c);
+  memmove(c->of, c->of + 1, 8 * sizeof *c->of);
+  dvi__cross(l, rate, f.z);
+  dvi__add_outer(3, 0.5, l, rate, f.B);
+  dvi__add_identity(3, -dvi__dot(l, rate), f.B);
+  return f;
+}
+
+void dvi__chart_turning_gradient(const double *xi, const double *rate, const double *l, double *in_xi, double *in_rate)
+{
+  dvi__functions c;
+  const form f = turning_form(xi, rate, l, 2, &c);
+  form_gradient(&f, &c, xi, in_xi);
+  dvi_so3_dexp(xi, l, in_rate);
+}
+
+void dvi__chart_turning_curvature(const double *xi, const double *rate, const double *l, double *in_xi, double *mixed)
+{
+  const double back[] = {-xi[0], -xi[1], -xi[2]};
+  dvi__functions c;
+  double derivative[9]; /* of dexp_{-back} l in back */
+  const form f = turning_form(xi, rate, l, 3, &c);
+  memset(in_xi, 0, 9 * sizeof *in_xi);
+  add_hessian(&f, &c, xi, in_xi);
+  dvi_so3_velocity_derivative(back, l, derivative);
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) mixed[3 * i + j] = -derivative[3 * j + i];
 }

@@ -67,14 +67,15 @@ static dvi_status centre_paths(const charted_step *own)
   return dvi__action_centre(action, &centring);
 }
 
-dvi_status dvi__charted_step_create(dvi__stepper *self)
+dvi_status dvi__charted_step_create(dvi__stepper *self, int reduced)
 {
   char specification[2 * DVI__SPECIFICATION_SIZE] = "";
   dvi__text text = {specification, sizeof specification, 0};
   charted_step *own = self->own = DVI_NEW(charted_step, 1);
   if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
   dvi__text_add(&text, "galerkin%s%s", self->settings.rest[0] != 0 ? ":" : "", self->settings.rest);
-  DVI_TRY(dvi__charted_create(self->system, self->counters, &own->charted));
+  const dvi_status made = dvi__charted_create(self->system, reduced, self->counters, &own->charted);
+  if (made != DVI_OK) return dvi__fail_in(made, "%s", self->method->name);
   const dvi_status status = dvi__stepper_create(dvi__charted_system(own->charted), specification, self->counters, &own->inner);
   if (status != DVI_OK) return dvi__fail_in(status, "%s, by the keys of galerkin", self->method->name);
   take_over(self, &own->inner);

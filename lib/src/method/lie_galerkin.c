@@ -10,12 +10,13 @@
 
 static dvi_status create(dvi__stepper *self)
 {
-  return dvi__charted_step_create(self);
+  return dvi__charted_step_create(self, 0);
 }
 
 const dvi__method dvi__lie_galerkin = {
     .name = "lie-galerkin",
-    .summary = "galerkin in natural charts: rotations, rigid motions, directions, angles and products; order 2s; the keys of galerkin",
+    .summary =
+        "galerkin in natural charts: rotations, rigid motions, directions, angles and products; order 2s; the keys of galerkin",
     .cite = "LeokShingel2012",
     .uses = DVI__CONSTANT_MASS | DVI__POTENTIAL | DVI__FACTORS,
     .create = create,

@@ -11,9 +11,10 @@
 
 static dvi_status make_system(dvi__charted *x)
 {
-  const dvi_lagrangian lagrangian = {.value_batch = dvi__charted_value,
-                                     .gradient_batch = dvi__charted_gradient,
-                                     .hessian_batch = dvi__charted_hessian,
+  const int reduced = x->reduced.bodies != NULL;
+  const dvi_lagrangian lagrangian = {.value_batch = reduced ? dvi__reduced_value : dvi__charted_value,
+                                     .gradient_batch = reduced ? dvi__reduced_gradient : dvi__charted_gradient,
+                                     .hessian_batch = reduced ? dvi__reduced_hessian : dvi__charted_hessian,
                                      .qq = {x->qq.start, x->qq.row},
                                      .qv = {x->qv.start, x->qv.row},
                                      .vv = {x->vv.start, x->vv.row},
@@ -39,22 +40,24 @@ static dvi_status allocate(dvi__charted *x)
   return dvi__fail(DVI_NO_MEMORY, "charts: no memory for %zu factors", cells);
 }
 
-static dvi_status fill(dvi__charted *x, const dvi_system *system, dvi_counters *counters)
+static dvi_status fill(dvi__charted *x, const dvi_system *system, int reduced, dvi_counters *counters)
 {
   x->base = system;
   x->counters = counters;
   DVI_TRY(dvi__system_prepare_hessian(system));
   DVI_TRY(allocate(x));
   DVI_TRY(dvi__evaluator_create(system, DVI__GROUP, DVI__HESSIANS, counters, &x->evaluator));
+  if (reduced) DVI_TRY(dvi__reduced_create(system, &x->reduced));
   DVI_TRY(dvi__charted_make_patterns(x));
+  if (reduced) DVI_TRY(dvi__reduced_place(x));
   return make_system(x);
 }
 
-dvi_status dvi__charted_create(const dvi_system *system, dvi_counters *counters, dvi__charted **charted)
+dvi_status dvi__charted_create(const dvi_system *system, int reduced, dvi_counters *counters, dvi__charted **charted)
 {
   dvi__charted *x = *charted = DVI_NEW(dvi__charted, 1);
   if (x == NULL) return dvi__fail(DVI_NO_MEMORY, "charts: no memory");
-  const dvi_status status = fill(x, system, counters);
+  const dvi_status status = fill(x, system, reduced, counters);
   if (status != DVI_OK) dvi__charted_destroy(charted);
   return status;
 }
@@ -68,10 +71,12 @@ void dvi__charted_destroy(dvi__charted **charted)
   dvi__pattern_clear(&x->qq);
   dvi__pattern_clear(&x->qv);
   dvi__pattern_clear(&x->vv);
-  void *const own[] = {x->chart,      x->cell,       x->cell_of_x,  x->t,         x->y,         x->rate,  x->L_y,
-                       x->w,          x->L_yy,       x->T,          x->S,         x->curved,    x->mixed, x->in_qq,
-                       x->mass_in_qq, x->mass_in_qv, x->mass_in_vv, x->own_in_qq, x->own_in_qv, x->W,     x->end,
-                       x->moment,     x->angular,    x->turned_T,   x->turned_S,  x->C_q1,      x->C_qq,  x->C_qv};
+  dvi__reduced_clear(&x->reduced);
+  void *const own[] = {x->chart,     x->cell,      x->cell_of_x,  x->t,          x->y,          x->rate,
+                       x->L_y,       x->w,         x->L_yy,       x->T,          x->S,          x->curved,
+                       x->mixed,     x->in_qq,     x->mass_in_qq, x->mass_in_qv, x->mass_in_vv, x->own_in_qq,
+                       x->own_in_qv, x->own_in_vv, x->coupled_in, x->W,          x->end,        x->moment,
+                       x->angular,   x->turned_T,  x->turned_S,   x->C_q1,       x->C_qq,       x->C_qv};
   for (size_t i = 0; i < sizeof own / sizeof *own; i++) dvi__release(own[i]);
   dvi__release(x);
   *charted = NULL;

@@ -11,8 +11,9 @@
 typedef struct dvi__charted dvi__charted;
 
 /* `system` must have factors, and outlive it. Counters, which must outlive it, count the points at which `system` itself is evaluated; they must be
- * those of every evaluator of the new system. */
-dvi_status dvi__charted_create(const dvi_system *system, dvi_counters *counters, dvi__charted **charted);
+ * those of every evaluator of the new system. `reduced`: the Lagrangian as one of the group's own velocity, which the centre does not change
+ * (system/reduced.h); DVI_UNSUPPORTED if it is none. */
+dvi_status dvi__charted_create(const dvi_system *system, int reduced, dvi_counters *counters, dvi__charted **charted);
 void dvi__charted_destroy(dvi__charted **charted);
 
 /* The Lagrangian in the charts, in nx coordinates. */

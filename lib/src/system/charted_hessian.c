@@ -62,19 +62,19 @@ void dvi__charted_add_potentials(const dvi__charted *x, int group, int in_group,
     }
 }
 
-/* values += the matrix [size*size] in its block. */
-static void add_block(const dvi__place *at, int size, const double *matrix, size_t count, size_t k, double *values)
+void dvi__charted_add_block(const dvi__place *at, int rows, int columns, const double *matrix, size_t count, size_t k,
+                            double *values)
 {
-  for (int b = 0; b < size; b++)
-    for (int a = 0; a < size; a++) values[(size_t)(at->first + b * at->column + a) * count + k] += matrix[a * size + b];
+  for (int b = 0; b < columns; b++)
+    for (int a = 0; a < rows; a++) values[(size_t)(at->first + b * at->column + a) * count + k] += matrix[a * columns + b];
 }
 
 void dvi__charted_add_own_blocks(const dvi__charted *x, int c, const double *in_qq, const double *in_qv, size_t count, size_t k,
                                  double *qq, double *qv)
 {
   const int size = dvi__chart_size(x->base->cells[c].kind);
-  add_block(&x->own_in_qq[c], size, in_qq, count, k, qq);
-  add_block(&x->own_in_qv[c], size, in_qv, count, k, qv);
+  dvi__charted_add_block(&x->own_in_qq[c], size, size, in_qq, count, k, qq);
+  dvi__charted_add_block(&x->own_in_qv[c], size, size, in_qv, count, k, qv);
 }
 
 static void add_curvature(const dvi__charted *x, size_t count, size_t k, double *L_qq, double *L_qv)

@@ -101,7 +101,7 @@ static void place_path(void *of, const double *q0, const double *q1)
   x->from_centre = 1;
   for (int i = 0; i < x->base->nx; i++) x->from_centre &= q0[i] == 0;
   memcpy(x->end, q1, (size_t)x->base->nx * sizeof *q1);
-  for (int c = 0; c < x->base->cell_count && x->from_centre; c++)
+  for (int c = 0; c < x->base->cell_count && x->from_centre && x->reduced.bodies == NULL; c++)
     if (dvi__turns(&x->base->cells[c])) dvi__chart_moments(&x->chart[c], q1 + x->base->cells[c].x, x->W + 9 * c);
 }
 
@@ -115,39 +115,82 @@ static void angular_momentum(const dvi__charted *x, int c, int nodes, double h, 
   dvi__chart_add_impulse(&x->chart[c], impulse, mu);
 }
 
+/* C of cell c, whose angular momentum at the end is known. */
+static void correct_cell(const dvi__charted *x, int c, const double *p0, const double *dp, double *C)
+{
+  const dvi__cell *cell = &x->base->cells[c];
+  double p1[DVI__CHART_SIZE];
+  dvi__chart_momentum(&x->chart[c], x->end + cell->x, x->angular + 3 * c, p1);
+  for (int i = 0; i < dvi__chart_size(cell->kind); i++) C[cell->x + i] = p1[i] - p0[cell->x + i] - dp[cell->x + i];
+}
+
 static void correct_path(void *of, int nodes, double h, const double *weight, const double *p0, const double *dp, double *C)
 {
   dvi__charted *x = of;
   memset(C, 0, (size_t)x->base->nx * sizeof *C);
-  for (int c = 0; c < x->base->cell_count && x->from_centre; c++) {
-    const dvi__cell *cell = &x->base->cells[c];
-    double *mu = x->angular + 3 * c, p1[DVI__CHART_SIZE];
-    if (!dvi__turns(cell)) continue;
-    angular_momentum(x, c, nodes, h, weight, p0, mu);
-    dvi__chart_momentum(&x->chart[c], x->end + cell->x, mu, p1);
-    for (int i = 0; i < dvi__chart_size(cell->kind); i++) C[cell->x + i] = p1[i] - p0[cell->x + i] - dp[cell->x + i];
+  for (int c = 0; c < x->base->cell_count && x->from_centre; c++)
+    if (dvi__turns(&x->base->cells[c])) {
+      angular_momentum(x, c, nodes, h, weight, p0, x->angular + 3 * c);
+      correct_cell(x, c, p0, dp, C);
+    }
+}
+
+/* Where nothing but the group's own motion changes momenta. */
+static void correct_reduced(void *of, int nodes, double h, const double *weight, const double *p0, const double *dp, double *C)
+{
+  dvi__charted *x = of;
+  (void)nodes, (void)h, (void)weight;
+  memset(C, 0, (size_t)x->base->nx * sizeof *C);
+  for (int b = 0; b < x->reduced.count && x->from_centre; b++) {
+    const int c = x->reduced.bodies[b].cell;
+    dvi__reduced_angular(x, &x->reduced.bodies[b], p0, x->angular + 3 * c);
+    correct_cell(x, c, p0, dp, C);
   }
+}
+
+/* Into the diagonal block of C_q1. */
+static void derive_cell(const dvi__charted *x, int c, const double *mu)
+{
+  const dvi__cell *cell = &x->base->cells[c];
+  const int size = dvi__chart_size(cell->kind);
+  double derivative[9];
+  dvi__chart_momentum_derivative(&x->chart[c], x->end + cell->x, mu, derivative);
+  dvi__charted_add_block(&x->own_in_qq[c], size, size, derivative, 1, 0, x->C_q1);
+}
+
+static void name_changes(const dvi__charted *x, const double **C_q1, const double **C_qq, const double **C_qv)
+{
+  memset(x->C_q1, 0, (size_t)dvi__pattern_entries(&x->qq) * sizeof(double));
+  *C_q1 = x->C_q1;
+  *C_qq = x->C_qq;
+  *C_qv = x->C_qv;
 }
 
 static void derive_path(void *of, int nodes, double h, const double *weight, const double *p0, const double **C_q1,
                         const double **C_qq, const double **C_qv)
 {
   dvi__charted *x = of;
-  memset(x->C_q1, 0, (size_t)dvi__pattern_entries(&x->qq) * sizeof(double));
-  for (int c = 0; c < x->base->cell_count && x->from_centre; c++) {
-    const dvi__cell *cell = &x->base->cells[c];
-    const int size = dvi__chart_size(cell->kind);
-    const dvi__place *at = &x->own_in_qq[c];
-    double mu[3], derivative[9];
-    if (!dvi__turns(cell)) continue;
-    angular_momentum(x, c, nodes, h, weight, p0, mu);
-    dvi__chart_momentum_derivative(&x->chart[c], x->end + cell->x, mu, derivative);
-    for (int a = 0; a < size; a++)
-      for (int b = 0; b < size; b++) x->C_q1[at->first + b * at->column + a] = derivative[a * size + b];
+  double mu[3];
+  name_changes(x, C_q1, C_qq, C_qv);
+  for (int c = 0; c < x->base->cell_count && x->from_centre; c++)
+    if (dvi__turns(&x->base->cells[c])) {
+      angular_momentum(x, c, nodes, h, weight, p0, mu);
+      derive_cell(x, c, mu);
+    }
+}
+
+static void derive_reduced(void *of, int nodes, double h, const double *weight, const double *p0, const double **C_q1,
+                           const double **C_qq, const double **C_qv)
+{
+  dvi__charted *x = of;
+  double mu[3];
+  (void)nodes, (void)h, (void)weight;
+  name_changes(x, C_q1, C_qq, C_qv);
+  for (int b = 0; b < x->reduced.count && x->from_centre; b++) {
+    dvi__reduced_angular(x, &x->reduced.bodies[b], p0, mu);
+    derive_cell(x, x->reduced.bodies[b].cell, mu);
+    dvi__reduced_derive(x, &x->reduced.bodies[b], &x->coupled_in[b], p0, x->C_q1);
   }
-  *C_q1 = x->C_q1;
-  *C_qq = x->C_qq;
-  *C_qv = x->C_qv;
 }
 
 static dvi_status reserve(dvi__charted *x, int nodes)
@@ -169,6 +212,7 @@ static dvi_status reserve(dvi__charted *x, int nodes)
 
 dvi_status dvi__charted_centring(dvi__charted *x, int nodes, dvi__centring *centring)
 {
-  *centring = (dvi__centring){x, place_path, correct_path, derive_path};
+  *centring = (dvi__centring){x, place_path, x->reduced.bodies != NULL ? correct_reduced : correct_path,
+                              x->reduced.bodies != NULL ? derive_reduced : derive_path};
   return reserve(x, nodes);
 }

@@ -114,10 +114,9 @@ static dvi_status make_pattern(const dvi__charted *x, const dvi__pattern *a, con
   return status;
 }
 
-/* Where the block of two cells begins. */
-static dvi__place place_of(const dvi_system *base, const dvi__pattern *made, int row_cell, int column_cell)
+dvi__place dvi__charted_place(const dvi__charted *x, const dvi__pattern *made, int row_cell, int column_cell)
 {
-  const int row = base->cells[row_cell].x, column = base->cells[column_cell].x;
+  const int row = x->base->cells[row_cell].x, column = x->base->cells[column_cell].x;
   return (dvi__place){dvi__pattern_find(made, row, column), made->start[column + 1] - made->start[column]};
 }
 
@@ -128,7 +127,7 @@ static dvi_status place(const dvi__charted *x, const dvi__pattern *part, const d
   if (*places == NULL) return no_memory();
   for (int j = 0; j < part->columns; j++)
     for (int e = part->start[j]; e < part->start[j + 1]; e++)
-      (*places)[e] = place_of(x->base, made, x->cell[part->row[e]], x->cell[j]);
+      (*places)[e] = dvi__charted_place(x, made, x->cell[part->row[e]], x->cell[j]);
   return DVI_OK;
 }
 
@@ -136,7 +135,7 @@ static dvi_status place_own(const dvi__charted *x, const dvi__pattern *made, dvi
 {
   *places = DVI_NEW(dvi__place, x->base->cell_count);
   if (*places == NULL) return no_memory();
-  for (int c = 0; c < x->base->cell_count; c++) (*places)[c] = place_of(x->base, made, c, c);
+  for (int c = 0; c < x->base->cell_count; c++) (*places)[c] = dvi__charted_place(x, made, c, c);
   return DVI_OK;
 }
 

@@ -2,6 +2,7 @@
 #ifndef DVI_SYSTEM_CHARTED_STRUCT_H
 #define DVI_SYSTEM_CHARTED_STRUCT_H
 #include "system/charted.h"
+#include "system/reduced.h"
 
 /* Points are taken in groups, whose size does not depend on the batch that is asked for. */
 enum { DVI__GROUP = 8 };
@@ -10,6 +11,11 @@ enum { DVI__GROUP = 8 };
 typedef struct dvi__place {
   int first, column;
 } dvi__place;
+
+/* Blocks of a body's rotation and its place x: rotation in rows and x in columns of qq and qv, both ways in vv. */
+typedef struct dvi__coupling {
+  dvi__place qq[3], qv[3], vv[3], vv_back[3];
+} dvi__coupling;
 
 struct dvi__charted {
   const dvi_system *base;
@@ -27,6 +33,10 @@ struct dvi__charted {
   dvi__pattern qq, qv, vv;                                  /* of the new system */
   dvi__place *in_qq, *mass_in_qq, *mass_in_qv, *mass_in_vv; /* of every entry of the stored coordinates' matrices */
   dvi__place *own_in_qq, *own_in_qv;                        /* [cells] of their diagonal blocks; of lines these may be missing */
+  /* Without potentials, and left as it is by the group: what its Lagrangian is made of (charted_reduced.c); bodies NULL: it is not. */
+  dvi__reduced reduced;
+  dvi__place *own_in_vv;     /* [cells] */
+  dvi__coupling *coupled_in; /* [bodies] */
   /* Paths from the centre (dvi__charted_centring): not 0 for those; N [cells*3*capacity], at node j of a batch [(3 c + a)*capacity + j]. */
   int from_centre, capacity;
   double *W, *end, *moment;    /* W [cells*9], xi1 [nx] */
@@ -41,6 +51,13 @@ static inline int dvi__turns(const dvi__cell *cell)
   return cell->kind == DVI__ROTATION || cell->kind == DVI__SPHERE;
 }
 
+/* Where the block of two cells begins in a pattern of the new system. */
+dvi__place dvi__charted_place(const dvi__charted *charted, const dvi__pattern *pattern, int row_cell, int column_cell);
+
+/* values += the matrix [rows*columns] in its block, for point k of `count`. */
+void dvi__charted_add_block(const dvi__place *at, int rows, int columns, const double *matrix, size_t count, size_t k,
+                            double *values);
+
 /* The new system's patterns, and where in them what comes from the stored coordinates belongs. */
 dvi_status dvi__charted_make_patterns(dvi__charted *charted);
 
@@ -50,6 +67,21 @@ int dvi__charted_gradient(int count, const double *t, const double *xi, const do
                           void *user);
 int dvi__charted_hessian(int count, const double *t, const double *xi, const double *rate, double *L_qq, double *L_qv, double *L_vv,
                          void *user);
+
+/* The same of a reduced one; its places, once; and of its paths. */
+int dvi__reduced_value(int count, const double *t, const double *xi, const double *rate, double *L, void *user);
+int dvi__reduced_gradient(int count, const double *t, const double *xi, const double *rate, double *L_xi, double *L_rate,
+                          void *user);
+int dvi__reduced_hessian(int count, const double *t, const double *xi, const double *rate, double *L_qq, double *L_qv, double *L_vv,
+                         void *user);
+dvi_status dvi__reduced_place(dvi__charted *charted);
+
+/* Angular momentum of a body at the end of a path, in the frame of the centre: where x goes with momentum, that of Ad*. */
+void dvi__reduced_angular(const dvi__charted *charted, const dvi__body *body, const double *p0, double *mu);
+
+/* What the charted momentum there changes by with the end of x, added in the blocks of qq. */
+void dvi__reduced_derive(const dvi__charted *charted, const dvi__body *body, const dvi__coupling *at, const double *p0,
+                         double *C_q1);
 
 /* What a callback returns for a status, which is kept. */
 int dvi__charted_verdict(dvi__charted *charted, dvi_status status);

@@ -61,7 +61,7 @@ static dvi_status prepare_states(dvi__evaluator *e)
   e->local_p = work + n;
   e->local_v = work + 2 * n;
   e->origin = work + 3 * n;
-  DVI_TRY(dvi__charted_create(e->system, e->counters, &e->charted));
+  DVI_TRY(dvi__charted_create(e->system, 0, e->counters, &e->charted));
   return dvi__evaluator_create(dvi__charted_system(e->charted), 1, DVI__GRADIENTS, e->counters, &e->local);
 }
 
