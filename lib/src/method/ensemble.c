@@ -112,13 +112,13 @@ static void start_block(void *of, int thread, int item)
   dvi__worker *w = &e->workers[thread];
   dvi__block block = e->blocks[item];
   const dvi__departure *from = &e->departure;
-  const size_t n = (size_t)e->n, members = (size_t)e->members;
+  const size_t n = (size_t)e->n, nv = (size_t)block.system->nv, members = (size_t)e->members;
   block.numbers = from->numbers + (size_t)block.first * e->member_numbers;
   dvi__worker_bind(w, block.system);
   for (int k = 0; k < block.count; k++) {
     const int member = block.first + k;
     load_rows(n, from->q + member, members, w->point[0]);
-    load_rows(n, from->second + member, members, w->point[1]);
+    load_rows(nv, from->second + member, members, w->point[1]);
     w->integrator->counters.steps = 0;
     const dvi_status status = from->by_velocity ? dvi_integrator_start_velocity(w->integrator, from->t, w->point[0], w->point[1])
                                                 : dvi_integrator_start(w->integrator, from->t, w->point[0], w->point[1]);
@@ -180,7 +180,7 @@ dvi_status dvi_ensemble_state(const dvi_ensemble *e, double *t, double *q, doubl
   const size_t n = (size_t)e->n;
   copy_rows(e, DVI__MEMBER_T, 1, t);
   copy_rows(e, DVI__MEMBER_Q, n, q);
-  copy_rows(e, DVI__MEMBER_Q + n, n, p);
+  copy_rows(e, DVI__MEMBER_Q + n, (size_t)e->blocks[0].system->nv, p);
   return DVI_OK;
 }
 
