@@ -225,16 +225,16 @@ static double energy_of(dvi__coupled_leaps *l, const double *change)
 
 /* ---- Newton's method ---- */
 
-static void begin(dvi__coupled_leaps *l, double h, const dvi__phase *state)
+static void begin(dvi__coupled_leaps *l, double h, const double *q, const double *p)
 {
   const double rest[DVI__CHART_SIZE] = {0};
   memset(l->xi, 0, (size_t)l->unknowns * sizeof *l->xi);
   for (int u = 0; u < l->count; u++) {
     unit *of = &l->unit[u];
     double *impulse = l->impulse + of->x;
-    dvi__chart_centre(of->cell->kind, state->q + of->cell->q, &of->chart);
+    dvi__chart_centre(of->cell->kind, q + of->cell->q, &of->chart);
     dvi__chart_tangents(&of->chart, rest, rest, l->T0 + 3 * (size_t)of->cell->q, l->unwanted);
-    dvi__chart_enter(&of->chart, state->p + of->cell->v, impulse);
+    dvi__chart_enter(&of->chart, p + of->cell->v, impulse);
     for (int a = 0; a < dvi__chart_size(of->cell->kind); a++) impulse[a] *= h;
   }
 }
@@ -386,10 +386,18 @@ static dvi_status check_turns(const dvi__coupled_leaps *l)
 
 dvi_status dvi__coupled_leaps_drift(dvi__coupled_leaps *l, double h, const dvi__phase *state, double *leap)
 {
-  begin(l, h, state);
+  begin(l, h, state->q, state->p);
   DVI_TRY(newton(l));
   DVI_TRY(check_turns(l));
   find_residual(l);
   for (int u = 0; u < l->count; u++) arrive(l, &l->unit[u], h, state, leap);
+  return DVI_OK;
+}
+
+dvi_status dvi__coupled_leaps_velocity(dvi__coupled_leaps *l, const double *q, const double *p, double *v)
+{
+  begin(l, 1, q, p);
+  DVI_TRY(correct(l));
+  for (int u = 0; u < l->count; u++) dvi__chart_store(&l->unit[u].chart, l->change + l->unit[u].x, v + l->unit[u].cell->v);
   return DVI_OK;
 }

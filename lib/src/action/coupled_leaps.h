@@ -14,4 +14,7 @@ void dvi__coupled_leaps_destroy(dvi__coupled_leaps **leaps);
 /* As dvi__leaps_drift, for these cells. */
 dvi_status dvi__coupled_leaps_drift(dvi__coupled_leaps *leaps, double h, const dvi__phase *state, double *leap);
 
+/* The velocities v [nv] of these cells with p = T^T M T v: the first correction. */
+dvi_status dvi__coupled_leaps_velocity(dvi__coupled_leaps *leaps, const double *q, const double *p, double *v);
+
 #endif

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "action/coupled_leaps.h"
 #include "action/pieces.h"
 #include "core/memory.h"
 #include "core/status.h"
@@ -15,10 +16,11 @@ struct dvi__flow {
   const dvi_system *system;
   dvi__evaluator *evaluator;
   dvi__pieces pieces;
-  int mixed;               /* not 0: cells are coupled, or places to rotations: y' x M y' counts */
-  double *force;           /* [nq] V_y */
-  double *rate, *covector; /* [nq] y' and M y' */
-  double *v;               /* [nv] */
+  dvi__coupled_leaps *together; /* NULL: nothing is coupled */
+  int mixed;                    /* not 0: cells are coupled, or places to rotations: y' x M y' counts */
+  double *force;                /* [nq] V_y */
+  double *rate, *covector;      /* [nq] y' and M y' */
+  double *v;                    /* [nv] */
 };
 
 /* ---- making it ---- */
@@ -34,7 +36,8 @@ static dvi_status fill(dvi__flow *f, dvi_counters *counters)
   f->rate = f->force + n;
   f->covector = f->rate + n;
   f->v = f->covector + n;
-  return dvi__evaluator_create(f->system, 1, f->pieces.coupled > 0 ? DVI__STATES : DVI__GRADIENTS, counters, &f->evaluator);
+  if (f->pieces.coupled > 0) DVI_TRY(dvi__coupled_leaps_create(f->system, f->pieces.together, counters, &f->together));
+  return dvi__evaluator_create(f->system, 1, DVI__GRADIENTS, counters, &f->evaluator);
 }
 
 dvi_status dvi__flow_create(const dvi_system *system, dvi_counters *counters, dvi__flow **flow)
@@ -52,6 +55,7 @@ void dvi__flow_destroy(dvi__flow **flow)
   dvi__flow *f = *flow;
   if (f == NULL) return;
   dvi__evaluator_destroy(&f->evaluator);
+  dvi__coupled_leaps_destroy(&f->together);
   dvi__pieces_clear(&f->pieces);
   dvi__release(f->force);
   dvi__release(f);
@@ -101,11 +105,10 @@ static void move_rate(dvi__chart_kind kind, const double *y, const double *omega
   }
 }
 
-static dvi_status velocities(dvi__flow *f, double t, const double *q, const double *p)
+static dvi_status velocities(dvi__flow *f, const double *q, const double *p)
 {
-  if (f->pieces.coupled > 0) return dvi__legendre_inverse(f->evaluator, t, q, p, f->v);
   for (int i = 0; i < f->pieces.alone; i++) dvi__piece_velocity(&f->pieces.piece[i], q, p, f->v);
-  return DVI_OK;
+  return f->together == NULL ? DVI_OK : dvi__coupled_leaps_velocity(f->together, q, p, f->v);
 }
 
 /* covector = M y' */
@@ -152,7 +155,7 @@ static void momentum_rate(const dvi__flow *f, const dvi__cell *cell, const doubl
 dvi_status dvi__flow_rates(dvi__flow *f, double t, const double *q, const double *p, double *omega, double *m_rate)
 {
   const dvi_system *s = f->system;
-  DVI_TRY(velocities(f, t, q, p));
+  DVI_TRY(velocities(f, q, p));
   DVI_TRY(dvi__potentials_gradient(f->evaluator, 1, &t, q, f->force));
   for (int c = 0; c < s->cell_count; c++) {
     const dvi__cell *cell = &s->cells[c];

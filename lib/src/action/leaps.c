@@ -76,12 +76,15 @@ void dvi__leaps_kick(const dvi__leaps *l, double h, const double *V_q, const dvi
 
 /* ---- leaps of one cell ---- */
 
-static dvi_status too_large(const dvi__cell *cell, double impulse, double most)
+static dvi_status too_large(const dvi__piece *own, double impulse, double most)
 {
+  const dvi__cell *cell = own->cell;
   const char *what = cell->kind == DVI__ROTATION ? "body" : cell->kind == DVI__SPHERE ? "direction" : "angle";
-  return dvi__fail(DVI_STEP_TOO_LARGE, "the %s at coordinates %d to %d turns too far: h |p| is %.6g; %s solvable up to %.6g%s",
-                   what, cell->q, cell->q + dvi__chart_stored(cell->kind) - 1, impulse, "its equation is", most,
-                   cell->kind == DVI__ROTATION ? ", its largest moment of inertia, at most" : ", its moment of inertia");
+  return dvi__fail(
+      DVI_STEP_TOO_LARGE,
+      "the %s at coordinates %d to %d turns too far: h |p| is %.6g, and a step can be solved up to %.6g, its %smoment of inertia%s",
+      what, cell->q, cell->q + dvi__chart_stored(cell->kind) - 1, impulse, most, cell->kind == DVI__ROTATION ? "largest " : "",
+      cell->kind == DVI__ROTATION ? ", about another axis only up to that of this axis" : "");
 }
 
 static void leap_line(const dvi__piece *own, double h, const dvi__phase *state, double *leap)
@@ -96,7 +99,7 @@ static dvi_status leap_circle(const dvi__piece *own, double h, const dvi__phase 
   const int q = own->cell->q, v = own->cell->v;
   const double sine = h * (state->p[v] / own->mass), *y = state->q + q;
   double u[] = {-sine * y[1], sine * y[0]};
-  if (!(fabs(sine) < 1)) return too_large(own->cell, fabs(h * state->p[v]), own->mass);
+  if (!(fabs(sine) < 1)) return too_large(own, fabs(h * state->p[v]), own->mass);
   leap[v] = asin(sine);
   dvi__swing(2, dvi__swing_cosine(2, u), u, state->q + q, state->q_carry + q, u);
   return DVI_OK;
@@ -109,7 +112,7 @@ static dvi_status leap_sphere(const dvi__piece *own, double h, const dvi__phase 
   dvi__cross(mu, y, u);
   for (int i = 0; i < 3; i++) u[i] *= h / own->mass;
   const double sine = sqrt(dvi__dot(u, u)), stretch = sine > 0 ? asin(sine) / sine : 1;
-  if (!(sine < 1)) return too_large(own->cell, sine * own->mass, own->mass);
+  if (!(sine < 1)) return too_large(own, sine * own->mass, own->mass);
   for (int i = 0; i < 3; i++) leap[own->cell->v + i] = stretch * u[i];
   dvi__swing(3, dvi__swing_cosine(3, u), u, y, state->q_carry + own->cell->q, u);
   dvi__swing_momentum(mu, u, y, p);
@@ -133,7 +136,7 @@ static dvi_status leap_body(const dvi__piece *own, dvi__leap_by by, double h, co
   double *p = state->p + own->cell->v, *w = leap + own->cell->v, change[3];
   if (own->rigid) dvi__piece_shift(own, -1, state->q, state->p);
   const double impulse[] = {h * p[0], h * p[1], h * p[2]};
-  if (!dvi__body_leap(own->body, by, impulse, w)) return too_large(own->cell, sqrt(dvi__dot(impulse, impulse)), own->body->largest);
+  if (!dvi__body_leap(own->body, by, impulse, w)) return too_large(own, sqrt(dvi__dot(impulse, impulse)), own->body->largest);
   if (own->rigid) leap_place(own, h, state, leap);
   const dvi__turn turn = dvi__turn_of(w);
   dvi__turn_frame(&turn, state->q + own->cell->q, state->q_carry + own->cell->q);
