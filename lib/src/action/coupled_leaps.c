@@ -1,0 +1,395 @@
+/* The unknowns are the chart coordinates xi of q1 at q0:
+ *
+ *     h p - T0^T M (y(xi) - y0) = 0,     with the derivative  -T0^T M T(xi).
+ *
+ * From xi = 0 the first correction is h v. As long as each is much shorter than the one before, in the norm of the kinetic energy, the same holds for all shorter
+ * steps: the solution is on their branch (Kantorovich's theorem; Deuflhard 2004, sec. 2.1). Where it ends corrections shrink by one half only.
+ *
+ * With a = M (y1 - y0)/h the angular momentum y x a of a cell changes by (y1 - y0) x a, what the other cells do to it: all these together are 0 if the mass has
+ * the symmetry. */
+#include "action/coupled_leaps.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "group/stumpff.h"
+#include "group/turn.h"
+#include "group/vector.h"
+#include "num/compensated.h"
+
+enum { MOST_ITERATIONS = 60 };
+
+typedef struct unit {
+  const dvi__cell *cell;
+  int x; /* where its unknowns begin */
+  dvi__chart chart;
+} unit;
+
+struct dvi__coupled_leaps {
+  const dvi_system *system;
+  dvi_counters *counters;
+  int count, unknowns;
+  unit *unit;           /* [count] */
+  int *owner;           /* [n] the unit of a stored coordinate, or -1 */
+  dvi__pattern pattern; /* of the derivative */
+  int *first;           /* [entries of the mass] of an entry's block in the derivative */
+  dvi__linear *linear;
+  double *T0, *T;                /* [3 n] as dvi__chart_tangents has them */
+  double *moved, *force;         /* [n] y(xi) - y0, and M times that */
+  double *unwanted;              /* [3 n] */
+  double *values;                /* [entries] */
+  double *xi, *impulse, *change; /* [unknowns] */
+};
+
+/* ---- making it ---- */
+
+static void find_units(dvi__coupled_leaps *l, const int *together)
+{
+  const dvi_system *s = l->system;
+  for (int i = 0; i < s->n; i++) l->owner[i] = -1;
+  for (int c = 0; c < s->cell_count; c++) {
+    const dvi__cell *cell = &s->cells[c];
+    if (!together[c]) continue;
+    for (int i = 0; i < dvi__chart_stored(cell->kind); i++) l->owner[cell->q + i] = l->count;
+    l->unit[l->count++] = (unit){.cell = cell, .x = l->unknowns};
+    l->unknowns += dvi__chart_size(cell->kind);
+  }
+}
+
+/* The rows of unit `column`'s block column: those of all units that the mass ties to it. Only counts them without `row`. */
+static size_t list_rows(const dvi__coupled_leaps *l, int column, int *seen, int stamp, int *row)
+{
+  const dvi__cell *cell = l->unit[column].cell;
+  const dvi__pattern *vv = &l->system->vv;
+  size_t rows = 0;
+  seen[column] = stamp;
+  for (int j = cell->q; j < cell->q + dvi__chart_stored(cell->kind); j++)
+    for (int e = vv->start[j]; e < vv->start[j + 1]; e++)
+      if (l->owner[vv->row[e]] >= 0) seen[l->owner[vv->row[e]]] = stamp;
+  for (int u = 0; u < l->count; u++)
+    for (int i = 0; seen[u] == stamp && i < dvi__chart_size(l->unit[u].cell->kind); i++, rows++)
+      if (row != NULL) row[rows] = l->unit[u].x + i;
+  return rows;
+}
+
+static dvi_status make_pattern(dvi__coupled_leaps *l)
+{
+  int *seen = DVI_NEW(int, l->count);
+  size_t entries = 0;
+  for (int u = 0; u < l->count && seen != NULL; u++)
+    entries += list_rows(l, u, seen, u + 1, NULL) * (size_t)dvi__chart_size(l->unit[u].cell->kind);
+  l->pattern = (dvi__pattern){l->unknowns, l->unknowns, DVI_NEW(int, (size_t)l->unknowns + 1), DVI_NEW(int, entries)};
+  const int possible = seen != NULL && l->pattern.start != NULL && l->pattern.row != NULL && entries <= 0x7fffffff;
+  for (int u = 0, at = 0; u < l->count && possible; u++)
+    for (int j = 0; j < dvi__chart_size(l->unit[u].cell->kind); j++) {
+      at += (int)list_rows(l, u, seen, l->count + u + 1, l->pattern.row + at);
+      l->pattern.start[l->unit[u].x + j + 1] = at;
+    }
+  dvi__release(seen);
+  return possible ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "leaps: no memory for the mass in charts");
+}
+
+static void find_blocks(dvi__coupled_leaps *l)
+{
+  const dvi__pattern *vv = &l->system->vv;
+  for (int j = 0; j < vv->columns; j++)
+    for (int e = vv->start[j]; e < vv->start[j + 1] && l->owner[j] >= 0; e++)
+      if (l->owner[vv->row[e]] >= 0)
+        l->first[e] = dvi__pattern_find(&l->pattern, l->unit[l->owner[vv->row[e]]].x, l->unit[l->owner[j]].x);
+}
+
+static dvi_status allocate(dvi__coupled_leaps *l)
+{
+  const size_t n = (size_t)l->system->n, unknowns = (size_t)l->unknowns;
+  l->first = DVI_NEW(int, dvi__pattern_entries(&l->system->vv));
+  l->values = DVI_NEW(double, dvi__pattern_entries(&l->pattern));
+  l->T0 = DVI_NEW(double, 11 * n + 3 * unknowns);
+  if (l->first == NULL || l->values == NULL || l->T0 == NULL) return dvi__fail(DVI_NO_MEMORY, "leaps: no memory");
+  l->T = l->T0 + 3 * n;
+  l->unwanted = l->T + 3 * n;
+  l->moved = l->unwanted + 3 * n;
+  l->force = l->moved + n;
+  l->xi = l->force + n;
+  l->impulse = l->xi + unknowns;
+  l->change = l->impulse + unknowns;
+  return DVI_OK;
+}
+
+static dvi_status fill(dvi__coupled_leaps *l, const int *together)
+{
+  l->unit = DVI_NEW(unit, l->system->cell_count);
+  l->owner = DVI_NEW(int, l->system->n);
+  if (l->unit == NULL || l->owner == NULL) return dvi__fail(DVI_NO_MEMORY, "leaps: no memory");
+  find_units(l, together);
+  DVI_TRY(make_pattern(l));
+  DVI_TRY(allocate(l));
+  find_blocks(l);
+  return dvi__linear_create(&l->pattern, DVI__LINEAR_AUTO, l->counters, &l->linear);
+}
+
+dvi_status dvi__coupled_leaps_create(const dvi_system *system, const int *together, dvi_counters *counters,
+                                     dvi__coupled_leaps **leaps)
+{
+  dvi__coupled_leaps *l = *leaps = DVI_NEW(dvi__coupled_leaps, 1);
+  if (l == NULL) return dvi__fail(DVI_NO_MEMORY, "leaps: no memory");
+  l->system = system;
+  l->counters = counters;
+  const dvi_status status = fill(l, together);
+  if (status != DVI_OK) dvi__coupled_leaps_destroy(leaps);
+  return status;
+}
+
+void dvi__coupled_leaps_destroy(dvi__coupled_leaps **leaps)
+{
+  dvi__coupled_leaps *l = *leaps;
+  if (l == NULL) return;
+  dvi__linear_destroy(&l->linear);
+  dvi__pattern_clear(&l->pattern);
+  dvi__release(l->unit);
+  dvi__release(l->owner);
+  dvi__release(l->first);
+  dvi__release(l->values);
+  dvi__release(l->T0);
+  dvi__release(l);
+  *leaps = NULL;
+}
+
+/* ---- points ---- */
+
+/* cos(a) - 1 and the tangent vector u of length sin(a), of a direction or an angle. */
+static double chord(const dvi__chart *chart, const double *xi, double *u)
+{
+  double square = 0, c[4];
+  for (int j = 0; j < dvi__chart_size(chart->kind); j++) square += xi[j] * xi[j];
+  dvi__stumpff_four(square, c);
+  for (int i = 0; i < dvi__chart_stored(chart->kind); i++) {
+    u[i] = 0;
+    for (int j = 0; j < dvi__chart_size(chart->kind); j++) u[i] += c[1] * chart->basis[j][i] * xi[j];
+  }
+  return -square * c[2];
+}
+
+/* n tan(a/2) of the rotation xi. */
+static void tangent_of(const double *xi, double *w)
+{
+  double c[4];
+  dvi__stumpff_four(dvi__dot(xi, xi), c);
+  for (int i = 0; i < 3; i++) w[i] = c[1] / (1 + c[0]) * xi[i];
+}
+
+/* y(xi) - y0 of one unit, to its own last digit. */
+static void move_unit(const unit *of, const double *xi, double *moved)
+{
+  double w[3], d;
+  switch (of->chart.kind) {
+  case DVI__LINE: *moved = *xi; return;
+  case DVI__ROTATION:
+    tangent_of(xi, w);
+    const dvi__turn turn = dvi__turn_of(w);
+    for (int i = 0; i < 3; i++) dvi__turn_change(&turn, of->chart.y0 + 3 * i, moved + 3 * i);
+    return;
+  default:
+    d = chord(&of->chart, xi, moved);
+    for (int i = 0; i < dvi__chart_stored(of->chart.kind); i++) moved[i] += d * of->chart.y0[i];
+  }
+}
+
+/* force = M moved. */
+static void multiply(dvi__coupled_leaps *l)
+{
+  const dvi__pattern *vv = &l->system->vv;
+  memset(l->force, 0, (size_t)l->system->n * sizeof *l->force);
+  for (int j = 0; j < vv->columns; j++)
+    for (int e = vv->start[j]; e < vv->start[j + 1] && l->owner[j] >= 0; e++)
+      l->force[vv->row[e]] += l->system->mass_values[e] * l->moved[j];
+}
+
+/* The squared length of a change of xi at q0, in the kinetic energy. */
+static double energy_of(dvi__coupled_leaps *l, const double *change)
+{
+  double sum = 0;
+  for (int u = 0; u < l->count; u++) {
+    const dvi__cell *cell = l->unit[u].cell;
+    const int size = dvi__chart_size(cell->kind);
+    for (int i = 0; i < dvi__chart_stored(cell->kind); i++) {
+      l->moved[cell->q + i] = 0;
+      for (int a = 0; a < size; a++) l->moved[cell->q + i] += l->T0[3 * cell->q + i * size + a] * change[l->unit[u].x + a];
+    }
+  }
+  multiply(l);
+  for (int i = 0; i < l->system->n; i++) sum += l->owner[i] >= 0 ? l->moved[i] * l->force[i] : 0;
+  return fabs(sum);
+}
+
+/* ---- Newton's method ---- */
+
+static void begin(dvi__coupled_leaps *l, double h, const dvi__phase *state)
+{
+  const double rest[DVI__CHART_SIZE] = {0};
+  memset(l->xi, 0, (size_t)l->unknowns * sizeof *l->xi);
+  for (int u = 0; u < l->count; u++) {
+    unit *of = &l->unit[u];
+    double *impulse = l->impulse + of->x;
+    dvi__chart_centre(of->cell->kind, state->q + of->cell->q, &of->chart);
+    dvi__chart_tangents(&of->chart, rest, rest, l->T0 + 3 * (size_t)of->cell->q, l->unwanted);
+    dvi__chart_enter(&of->chart, state->p + of->cell->v, impulse);
+    for (int a = 0; a < dvi__chart_size(of->cell->kind); a++) impulse[a] *= h;
+  }
+}
+
+/* change = h p - T0^T M (y(xi) - y0). */
+static void find_residual(dvi__coupled_leaps *l)
+{
+  for (int u = 0; u < l->count; u++) move_unit(&l->unit[u], l->xi + l->unit[u].x, l->moved + l->unit[u].cell->q);
+  multiply(l);
+  memcpy(l->change, l->impulse, (size_t)l->unknowns * sizeof *l->change);
+  for (int u = 0; u < l->count; u++) {
+    const dvi__cell *cell = l->unit[u].cell;
+    const int size = dvi__chart_size(cell->kind);
+    for (int i = 0; i < dvi__chart_stored(cell->kind); i++)
+      for (int a = 0; a < size; a++) l->change[l->unit[u].x + a] -= l->T0[3 * cell->q + i * size + a] * l->force[cell->q + i];
+  }
+}
+
+/* values += T0^T (entry e, in column j) T */
+static void add_block(dvi__coupled_leaps *l, int e, int j)
+{
+  const int i = l->system->vv.row[e];
+  const unit *row = &l->unit[l->owner[i]], *column = &l->unit[l->owner[j]];
+  const int rows = dvi__chart_size(row->cell->kind), columns = dvi__chart_size(column->cell->kind),
+            length = l->pattern.start[column->x + 1] - l->pattern.start[column->x];
+  const double *left = l->T0 + 3 * row->cell->q + (i - row->cell->q) * rows,
+               *right = l->T + 3 * column->cell->q + (j - column->cell->q) * columns;
+  for (int b = 0; b < columns; b++)
+    for (int a = 0; a < rows; a++) l->values[l->first[e] + b * length + a] += left[a] * l->system->mass_values[e] * right[b];
+}
+
+static dvi_status correct(dvi__coupled_leaps *l)
+{
+  const double rest[DVI__CHART_SIZE] = {0};
+  const dvi__pattern *vv = &l->system->vv;
+  for (int u = 0; u < l->count; u++)
+    dvi__chart_tangents(&l->unit[u].chart, l->xi + l->unit[u].x, rest, l->T + 3 * (size_t)l->unit[u].cell->q, l->unwanted);
+  memset(l->values, 0, (size_t)dvi__pattern_entries(&l->pattern) * sizeof *l->values);
+  for (int j = 0; j < vv->columns; j++)
+    for (int e = vv->start[j]; e < vv->start[j + 1] && l->owner[j] >= 0; e++)
+      if (l->owner[vv->row[e]] >= 0) add_block(l, e, j);
+  l->counters->jacobians++;
+  find_residual(l);
+  l->counters->residuals++;
+  DVI_TRY(dvi__linear_factor(l->linear, l->values));
+  dvi__linear_solve(l->linear, l->change);
+  return DVI_OK;
+}
+
+static dvi_status too_large(double ratio)
+{
+  return dvi__fail(DVI_STEP_TOO_LARGE,
+                   "coupled cells turn too far: the corrections of their leap shrink by %.3g, not by 1/2 as on the branch of short "
+                   "steps; for a single "
+                   "one that means h |p| near its moment of inertia",
+                   ratio);
+}
+
+static dvi_status newton(dvi__coupled_leaps *l)
+{
+  double first = 0, last = HUGE_VAL;
+  for (int iteration = 0; iteration < MOST_ITERATIONS; iteration++) {
+    const dvi_status status = correct(l);
+    if (status == DVI_SINGULAR && iteration > 0) return too_large(1);
+    DVI_TRY(status);
+    const double length = sqrt(energy_of(l, l->change));
+    if (!(length <= 0.6 * last)) return too_large(length / last);
+    for (int i = 0; i < l->unknowns; i++) l->xi[i] += l->change[i];
+    if (iteration == 0) first = length;
+    if (length <= 1e-9 * first) return DVI_OK;
+    last = length;
+  }
+  return too_large(1);
+}
+
+/* ---- the end ---- */
+
+/* The moment (y1 - y0) x a in space. */
+static void moment_of(const dvi__coupled_leaps *l, const unit *of, double h, double *moment)
+{
+  const int q = of->cell->q;
+  memset(moment, 0, 3 * sizeof *moment);
+  if (of->cell->kind == DVI__CIRCLE)
+    moment[0] = l->moved[q] * l->force[q + 1] - l->moved[q + 1] * l->force[q];
+  else if (of->cell->kind != DVI__LINE)
+    dvi__chart_add_moment(of->cell->kind, l->moved + q, l->force + q, moment);
+  for (int i = 0; i < 3; i++) moment[i] /= h;
+}
+
+static void arrive_rotation(const unit *of, const double *xi, const double *moment, const dvi__phase *state, double *leap)
+{
+  const double *R = of->chart.y0;
+  double *p = state->p + of->cell->v, change[3];
+  for (int i = 0; i < 3; i++) p[i] += R[i] * moment[0] + R[3 + i] * moment[1] + R[6 + i] * moment[2];
+  tangent_of(xi, leap);
+  const dvi__turn turn = dvi__turn_of(leap);
+  dvi__turn_frame(&turn, state->q + of->cell->q, state->q_carry + of->cell->q);
+  dvi__turn_change(&turn, p, change);
+  for (int i = 0; i < 3; i++) p[i] += change[i];
+}
+
+static void arrive_chord(const unit *of, const double *xi, const double *moment, const dvi__phase *state, double *leap)
+{
+  const double *y0 = of->chart.y0;
+  double *y = state->q + of->cell->q, *p = state->p + of->cell->v, u[3], mu[3], given[3];
+  const double d = chord(&of->chart, xi, u);
+  dvi__swing(dvi__chart_stored(of->cell->kind), d, u, y, state->q_carry + of->cell->q, u);
+  dvi__chart_store(&of->chart, xi, leap);
+  if (of->cell->kind == DVI__CIRCLE) {
+    *p += moment[0];
+    return;
+  }
+  dvi__cross(y0, p, mu);
+  dvi__cross(moment, y0, given);
+  for (int i = 0; i < 3; i++) {
+    mu[i] += moment[i];
+    p[i] += given[i];
+  }
+  dvi__swing_momentum(mu, u, y, p);
+}
+
+static void arrive(const dvi__coupled_leaps *l, const unit *of, double h, const dvi__phase *state, double *leap)
+{
+  const double *xi = l->xi + of->x;
+  double moment[3];
+  moment_of(l, of, h, moment);
+  if (of->cell->kind == DVI__ROTATION) {
+    arrive_rotation(of, xi, moment, state, leap + of->cell->v);
+  } else if (of->cell->kind == DVI__LINE) {
+    leap[of->cell->v] = *xi;
+    dvi__add_compensated(state->q + of->cell->q, state->q_carry + of->cell->q, *xi);
+  } else {
+    arrive_chord(of, xi, moment, state, leap + of->cell->v);
+  }
+}
+
+static dvi_status check_turns(const dvi__coupled_leaps *l)
+{
+  for (int u = 0; u < l->count; u++) {
+    const unit *of = &l->unit[u];
+    double square = 0;
+    for (int a = 0; a < dvi__chart_size(of->cell->kind); a++) square += l->xi[of->x + a] * l->xi[of->x + a];
+    if (!(sqrt(square) < dvi__chart_bound(of->cell->kind)))
+      return dvi__fail(DVI_STEP_TOO_LARGE, "the cell at coordinate %d turns by %.3g in one step, half a turn or more", of->cell->q,
+                       sqrt(square));
+  }
+  return DVI_OK;
+}
+
+dvi_status dvi__coupled_leaps_drift(dvi__coupled_leaps *l, double h, const dvi__phase *state, double *leap)
+{
+  begin(l, h, state);
+  DVI_TRY(newton(l));
+  DVI_TRY(check_turns(l));
+  find_residual(l);
+  for (int u = 0; u < l->count; u++) arrive(l, &l->unit[u], h, state, leap);
+  return DVI_OK;
+}
