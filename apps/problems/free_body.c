@@ -256,6 +256,12 @@ static const problem_parameter parameters[] = {
     TOP_START("Omega2", -0.5), TOP_START("Omega3", 0.4), {.name = NULL},
 };
 
+/* Quadruple-precision results, recomputed by tests/reference/test_digits. */
+static const double digits_q[] = {0.43973921242427894,  0.55114463629079535,  -0.70913257924337514,
+                                  -0.87164410175790596, 0.071575174600853345, -0.48488509386401091,
+                                  -0.21648553052601044, 0.83133421935389151,  0.51187638234648758};
+static const double digits_p[] = {1.4013616020787181, 1.2539423114476747, -0.27168794559315923};
+
 const problem_entry problem_entry_free_body = {
     .name = "free-body",
     .summary = "a rigid body without forces; rotations, exact solution known",
@@ -266,4 +272,6 @@ const problem_entry problem_entry_free_body = {
     .t_end = 100.0,
     .order_h = 0.2,
     .order_t_end = 10.0,
+    .digits_q = digits_q,
+    .digits_p = digits_p,
 };
