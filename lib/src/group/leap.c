@@ -162,3 +162,11 @@ int dvi__body_leap(const dvi__body *body, dvi__leap_by by, const double impulse[
   out_of_axes(body, f, w);
   return iterations;
 }
+
+void dvi__body_velocity(const dvi__body *body, const double Pi[3], double Omega[3])
+{
+  double inside[3];
+  into_axes(body, Pi, inside);
+  for (int i = 0; i < 3; i++) inside[i] /= body->moment[i];
+  out_of_axes(body, inside, Omega);
+}

@@ -24,4 +24,7 @@ int dvi__body_of(const double Jd[9], dvi__body *body);
 /* w = n tan(a/2) of the rotation F about n by a, from h Pi. The number of iterations; 0: there is no such F, or none that belongs to the branch. */
 int dvi__body_leap(const dvi__body *body, dvi__leap_by by, const double impulse[3], double w[3]);
 
+/* Omega = J^-1 Pi; both may be one array. */
+void dvi__body_velocity(const dvi__body *body, const double Pi[3], double Omega[3]);
+
 #endif

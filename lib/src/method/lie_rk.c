@@ -1,0 +1,211 @@
+/* Runge-Kutta methods on Lie groups, for comparison: none of them is symplectic on a group, none keeps momenta or the energy over long times.
+ *
+ * With q' = q.omega(q,p), the group's own multiplication, and m' of the momenta (action/flow.h), k = (omega, m'):
+ *     explicit-midpoint   y1 = y0 + h k(y0 + h/2 k(y0)),  in the coordinates y that contain the group: they leave it
+ *     implicit-midpoint   y1 = y0 + h k((y0 + y1)/2),     the same; it keeps R^T R, as all quadratic invariants
+ *     crouch-grossman     q1 = q0 exp(h omega_2),         k_2 at q0 exp(h/2 omega_1): two stages
+ *     munthe-kaas         q1 = q0 exp(theta),             theta' = dexp^-1 omega by the classical method of order 4
+ * Orders 2, 2, 2, 4.  Source: Leok and Shingel 2012, sec. 2.4; Crouch and Grossman 1993; Munthe-Kaas 1998. */
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "action/flow.h"
+#include "core/memory.h"
+#include "core/status.h"
+#include "method/method.h"
+#include "num/compensated.h"
+#include "num/finite.h"
+
+enum { SCHEME };
+
+enum { EXPLICIT_MIDPOINT, IMPLICIT_MIDPOINT, CROUCH_GROSSMAN, MUNTHE_KAAS, SCHEMES };
+
+static const char *scheme_name(int index)
+{
+  static const char *const name[] = {"explicit-midpoint", "implicit-midpoint", "crouch-grossman", "munthe-kaas"};
+  return index >= 0 && index < SCHEMES ? name[index] : NULL;
+}
+
+static const dvi__key keys[] = {
+    {"scheme", scheme_name, 0, 0, MUNTHE_KAAS,
+     "explicit-midpoint, implicit-midpoint, crouch-grossman (order 2) or munthe-kaas (order 4); left out: munthe-kaas"},
+    {0},
+};
+
+typedef struct lie_rk {
+  dvi__flow *flow;
+  double *numbers;                                  /* where the arrays lie: */
+  double *q0, *p0;                                  /* [n] the step's start; m0 in p0 for the schemes with exponentials */
+  double *omega, *m_rate, *sum, *m_sum, *theta, *m; /* [n] */
+} lie_rk;
+
+enum { ARRAYS = 8, MOST_ITERATIONS = 200 };
+
+static dvi_status create(dvi__stepper *self)
+{
+  const size_t n = (size_t)self->system->n;
+  lie_rk *own = self->own = DVI_NEW(lie_rk, 1);
+  self->order = self->settings.value[SCHEME] == MUNTHE_KAAS ? 4 : 2;
+  self->symmetric = self->settings.value[SCHEME] == IMPLICIT_MIDPOINT;
+  self->memory_count = 0;
+  if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "lie-rk: no memory");
+  double *at = own->numbers = DVI_NEW(double, ARRAYS *n);
+  if (at == NULL) return dvi__fail(DVI_NO_MEMORY, "lie-rk: no memory");
+  double **const array[ARRAYS] = {&own->q0, &own->p0, &own->omega, &own->m_rate, &own->sum, &own->m_sum, &own->theta, &own->m};
+  for (int i = 0; i < ARRAYS; i++) *array[i] = at + (size_t)i * n;
+  return dvi__flow_create(self->system, self->counters, &own->flow);
+}
+
+static void destroy(dvi__stepper *self)
+{
+  lie_rk *own = self->own;
+  if (own == NULL) return;
+  dvi__flow_destroy(&own->flow);
+  dvi__release(own->numbers);
+  dvi__release(own);
+}
+
+static void start(dvi__stepper *self, const double *v)
+{
+  (void)self, (void)v;
+}
+
+/* ---- in the coordinates that contain the group ---- */
+
+/* The rates of the state's plain numbers, in sum and m_sum. */
+static dvi_status plain_rates(dvi__stepper *self, double t, const dvi__state *state)
+{
+  const lie_rk *own = self->own;
+  DVI_TRY(dvi__flow_rates(own->flow, t, state->q, state->p, own->omega, own->m_rate));
+  dvi__flow_plain(own->flow, state->q, state->p, own->omega, own->m_rate, own->sum, own->m_sum);
+  return DVI_OK;
+}
+
+/* The state = the start + h times the rates; how far that moved it. */
+static double move_plainly(dvi__stepper *self, dvi__state *state, double h)
+{
+  const lie_rk *own = self->own;
+  double moved = 0;
+  for (int i = 0; i < self->system->n; i++) {
+    const double q = own->q0[i] + h * own->sum[i];
+    moved = fmax(moved, fabs(q - state->q[i]));
+    state->q[i] = q;
+  }
+  for (int i = 0; i < self->system->nv; i++) {
+    const double p = own->p0[i] + h * own->m_sum[i];
+    moved = fmax(moved, fabs(p - state->p[i]));
+    state->p[i] = p;
+  }
+  return moved;
+}
+
+static dvi_status explicit_midpoint(dvi__stepper *self, dvi__state *state, double h)
+{
+  DVI_TRY(plain_rates(self, state->t, state));
+  (void)move_plainly(self, state, 0.5 * h);
+  DVI_TRY(plain_rates(self, state->t + 0.5 * h, state));
+  (void)move_plainly(self, state, h);
+  return DVI_OK;
+}
+
+/* Fixed-point iteration for the midpoint, to the floor of rounding. */
+static dvi_status implicit_midpoint(dvi__stepper *self, dvi__state *state, double h)
+{
+  double last = HUGE_VAL;
+  for (int iteration = 0; iteration < MOST_ITERATIONS; iteration++) {
+    DVI_TRY(plain_rates(self, state->t + 0.5 * h, state));
+    const double moved = move_plainly(self, state, 0.5 * h);
+    const double scale = fmax(dvi__largest((size_t)self->system->n, state->q), dvi__largest((size_t)self->system->nv, state->p));
+    self->counters->residuals++;
+    if (!isfinite(moved) || !isfinite(scale)) break;
+    if (moved <= 64 * DBL_EPSILON * scale && (moved == 0 || moved >= last)) {
+      (void)move_plainly(self, state, h);
+      return DVI_OK;
+    }
+    last = moved;
+  }
+  return dvi__fail(DVI_NOT_CONVERGED, "the fixed-point iteration for the midpoint does not settle");
+}
+
+/* ---- on the group ---- */
+
+/* The state moved from the start by theta, with the momenta m0 + h m_rate. */
+static void move_state(dvi__stepper *self, dvi__state *state, const double *theta, double h, const double *m_rate)
+{
+  const lie_rk *own = self->own;
+  dvi__flow_move(own->flow, own->q0, theta, state->q);
+  for (int i = 0; i < self->system->nv; i++) own->m[i] = own->p0[i] + h * m_rate[i];
+  dvi__flow_leave(own->flow, state->q, own->m, state->p);
+}
+
+static dvi_status crouch_grossman(dvi__stepper *self, dvi__state *state, double h)
+{
+  const lie_rk *own = self->own;
+  const double part[] = {0.5 * h, h};
+  dvi__flow_enter(own->flow, own->q0, state->p, own->p0);
+  for (int stage = 0; stage < 2; stage++) {
+    DVI_TRY(dvi__flow_rates(own->flow, state->t + 0.5 * h * stage, state->q, state->p, own->omega, own->m_rate));
+    for (int i = 0; i < self->system->nv; i++) own->theta[i] = part[stage] * own->omega[i];
+    move_state(self, state, own->theta, part[stage], own->m_rate);
+  }
+  return DVI_OK;
+}
+
+static dvi_status munthe_kaas(dvi__stepper *self, dvi__state *state, double h)
+{
+  static const double c[] = {0, 0.5, 0.5, 1}, b[] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
+  const lie_rk *own = self->own;
+  const size_t bytes = (size_t)self->system->nv * sizeof(double);
+  dvi__flow_enter(own->flow, own->q0, state->p, own->p0);
+  memset(own->sum, 0, bytes);
+  memset(own->m_sum, 0, bytes);
+  memset(own->theta, 0, bytes);
+  for (int stage = 0; stage < 4; stage++) {
+    DVI_TRY(dvi__flow_rates(own->flow, state->t + c[stage] * h, state->q, state->p, own->omega, own->m_rate));
+    dvi__flow_theta_rate(own->flow, own->theta, own->omega, own->omega);
+    const double next = stage < 3 ? c[stage + 1] * h : 0;
+    for (int i = 0; i < self->system->nv; i++) {
+      own->sum[i] += h * b[stage] * own->omega[i];
+      own->m_sum[i] += b[stage] * own->m_rate[i];
+      own->theta[i] = next * own->omega[i];
+    }
+    if (stage < 3) move_state(self, state, own->theta, next, own->m_rate);
+  }
+  move_state(self, state, own->sum, h, own->m_sum);
+  return DVI_OK;
+}
+
+static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
+{
+  static dvi_status (*const scheme[])(dvi__stepper *, dvi__state *, double) = {explicit_midpoint, implicit_midpoint,
+                                                                               crouch_grossman, munthe_kaas};
+  const lie_rk *own = self->own;
+  memcpy(own->q0, state->q, (size_t)self->system->n * sizeof(double));
+  memcpy(own->p0, state->p, (size_t)self->system->nv * sizeof(double));
+  DVI_TRY(scheme[self->settings.value[SCHEME]](self, state, h));
+  dvi__add_compensated(&state->t, &state->t_carry, h);
+  return DVI_OK;
+}
+
+static void explain(const dvi__stepper *self, dvi__text *text)
+{
+  static const char *const kernel[] = {"explicit; two gradients a step", "fixed-point iteration; one gradient an iteration",
+                                       "explicit; two gradients a step", "explicit; four gradients a step"};
+  dvi__text_add(text, "kernel: %s; not symplectic\n", kernel[self->settings.value[SCHEME]]);
+}
+
+const dvi__method dvi__lie_rk = {
+    .name = "lie-rk",
+    .summary =
+        "Runge-Kutta on groups, for comparison: Crouch-Grossman, Munthe-Kaas, midpoint rules; orders 2 and 4; not symplectic",
+    .cite = "LeokShingel2012",
+    .keys = keys,
+    .needs = DVI__FACTORS,
+    .uses = DVI__CONSTANT_MASS | DVI__POTENTIAL | DVI__FACTORS,
+    .create = create,
+    .destroy = destroy,
+    .start = start,
+    .step = step,
+    .explain = explain,
+};
