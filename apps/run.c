@@ -15,6 +15,7 @@
 #include "signals.h"
 #include "table.h"
 #include "trace.h"
+#include "velocity.h"
 
 /* What the command line asks for. */
 typedef struct run_request {
@@ -35,6 +36,7 @@ typedef struct recorder {
   progress_line progress;
   double *invariant;
   double *velocity;         /* [nv] with factors; else NULL */
+  double *room;             /* [nq + nv] likewise */
   double constraint;        /* with a one-form: |p - alpha(q)| */
   double t_start, t;        /* where the run began; where the last observed step ended */
   double shortest, longest; /* steps, of methods that choose them; 0: none yet */
@@ -99,7 +101,7 @@ static bool measure(recorder *r, dvi_integrator *integrator)
 {
   dvi_status status = dvi_integrator_invariants(integrator, r->invariant);
   if (status == DVI_OK && r->velocity != NULL)
-    status = dvi_system_velocity(r->scene->system, r->t, dvi_integrator_q(integrator), dvi_integrator_p(integrator), r->velocity);
+    status = velocity_near(r->scene, r->t, dvi_integrator_q(integrator), dvi_integrator_p(integrator), r->room, r->velocity);
   if (status == DVI_OK && has_constraint(r->scene)) status = dvi_integrator_constraint(integrator, &r->constraint);
   if (status != DVI_OK) {
     (void)library_error(status);
@@ -297,8 +299,12 @@ static int record(run_request *request, const problem *scene, dvi_integrator *in
 {
   recorder r = {.request = request, .scene = scene, .chooses = dvi_integrator_chooses_steps(integrator)};
   const size_t invariants = (size_t)dvi_system_invariant_count(scene->system);
-  r.invariant = calloc(invariants + (size_t)scene->nv, sizeof *r.invariant);
-  if (r.invariant != NULL && scene->velocity != NULL) r.velocity = r.invariant + invariants;
+  const size_t nq = (size_t)scene->nq, nv = (size_t)scene->nv;
+  r.invariant = calloc(invariants + nq + 2 * nv, sizeof *r.invariant);
+  if (r.invariant != NULL && scene->velocity != NULL) {
+    r.velocity = r.invariant + invariants;
+    r.room = r.velocity + nv;
+  }
   int code = FAILED;
   r.caught = signals_note(ended_again);
   if (r.invariant == NULL)

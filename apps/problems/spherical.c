@@ -185,6 +185,12 @@ static const problem_parameter chain_parameters[] = {
     {.name = NULL},
 };
 
+/* Quadruple-precision results, recomputed by tests/reference/test_digits. */
+static const double double_digits_q[] = {0.46250651653439634,  0.11725857616840518, 0.87882771262527704,
+                                         -0.12092334248324678, 0.17487264485413442, 0.97713719779998098};
+static const double double_digits_p[] = {-0.014149547115099687,  -0.0019368766442725035,  0.0077050063931615557,
+                                         -0.0035388204405951604, -0.00097414963940879132, -0.00026360051871693384};
+
 const problem_entry problem_entry_spherical_double_pendulum = {
     .name = "spherical-double-pendulum",
     .summary = "two masses on two rods that swing in all directions; directions, coupled by their mass",
@@ -194,7 +200,22 @@ const problem_entry problem_entry_spherical_double_pendulum = {
     .t_end = 10.0,
     .order_h = 0.01,
     .order_t_end = 1.0,
+    .digits_q = double_digits_q,
+    .digits_p = double_digits_p,
 };
+
+static const double chain_digits_q[] = {0.44550754251153685,  0.062979299618785123, 0.89306026525921445,   0.26315007597599088,
+                                        0.10633715274483123,  0.95887665914858555,  -0.058194240639614987, 0.2864534413854985,
+                                        0.95632518333189542,  -0.34996696668307986, 0.29007110093250105,   0.89071986540912562,
+                                        -0.45257525782851127, 0.042352772837273379, 0.89071986540912562,   -0.24370271308018274,
+                                        -0.16140362871563568, 0.95632518333189542,  0.1108834813944385,    -0.26126692499031823,
+                                        0.95887665914858555,  0.27048831454483951,  -0.35955449421448415,  0.89306026525921445};
+static const double chain_digits_p[] = {0.16710042015453355,   0.59586952005996896,   -0.12538005208500649,  0.11026296125363481,
+                                        0.34526041372020705,   -0.068548666144511591, -0.04607645557900749,  -0.035066986862663387,
+                                        0.0076999694773164989, -0.090021159105311485, -0.033086674369940387, -0.024594650663409986,
+                                        -0.040258760239742883, 0.087050383867534858,  -0.024594650663409986, -0.0077848699865880732,
+                                        0.057377078399325779,  0.0076999694773164989, -0.16616829220067661,  -0.32210366743298602,
+                                        -0.068548666144511591, -0.30318553810638565,  -0.53950121856716948,  -0.12538005208500649};
 
 const problem_entry problem_entry_spherical_chain = {
     .name = "spherical-chain",
@@ -205,4 +226,6 @@ const problem_entry problem_entry_spherical_chain = {
     .t_end = 100.0,
     .order_h = 0.1,
     .order_t_end = 5.0,
+    .digits_q = chain_digits_q,
+    .digits_p = chain_digits_p,
 };

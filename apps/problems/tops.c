@@ -78,6 +78,12 @@ static const problem_parameter kovalevskaya_parameters[] = {
     {.name = NULL},
 };
 
+/* Quadruple-precision results, recomputed by tests/reference/test_digits. */
+static const double pendulum_digits_q[] = {-0.91094688055232031,  0.30657059823852456,  -0.27602581239382284,
+                                           -0.020319793854638873, -0.70164896551149203, -0.71223299219732727,
+                                           -0.41202292022374398,  -0.64319763486219861, 0.6453943877335564};
+static const double pendulum_digits_p[] = {-0.87769160184370953, 0.041561708509644309, 0.57159365308740806};
+
 const problem_entry problem_entry_pendulum_3d = {
     .name = "pendulum-3d",
     .summary = "a rigid body that hangs from a pivot; rotations",
@@ -87,7 +93,14 @@ const problem_entry problem_entry_pendulum_3d = {
     .t_end = 10.0,
     .order_h = 0.02,
     .order_t_end = 1.0,
+    .digits_q = pendulum_digits_q,
+    .digits_p = pendulum_digits_p,
 };
+
+static const double top_digits_q[] = {0.2292996408036076,   0.17334396409838604, 0.95779619170155084,
+                                      -0.76534074220468096, 0.64008859207056878, 0.067380580456872716,
+                                      -0.60139439891715374, -0.7484907911335813, 0.27943928238402865};
+static const double top_digits_p[] = {-12.52384608032245, 70.3125, -90.237641631475043};
 
 const problem_entry problem_entry_heavy_top = {
     .name = "heavy-top",
@@ -98,7 +111,14 @@ const problem_entry problem_entry_heavy_top = {
     .t_end = 1.0,
     .order_h = 0.002,
     .order_t_end = 1.0,
+    .digits_q = top_digits_q,
+    .digits_p = top_digits_p,
 };
+
+static const double kovalevskaya_digits_q[] = {0.33219879765413118,   -0.94303267189375983, 0.018257562215857958,
+                                               0.94302247719213284,   0.33245607953572426,  0.013474520034105529,
+                                               -0.018776750186412238, 0.012741072193991497, 0.99974251621694299};
+static const double kovalevskaya_digits_p[] = {1.2462333217864159, 1.8769053703135141, 1.4998726178084483};
 
 const problem_entry problem_entry_kovalevskaya = {
     .name = "kovalevskaya",
@@ -109,4 +129,6 @@ const problem_entry problem_entry_kovalevskaya = {
     .t_end = 100.0,
     .order_h = 0.1,
     .order_t_end = 10.0,
+    .digits_q = kovalevskaya_digits_q,
+    .digits_p = kovalevskaya_digits_p,
 };

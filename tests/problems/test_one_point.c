@@ -8,14 +8,18 @@
 
 enum { STEPS = 10 };
 
+static const char *method_for(const problem *of)
+{
+  const dvi_system_terms *terms = of->terms;
+  if (terms->hamiltonian != NULL) return "dg-phase:degree=3";
+  if (terms->factors != NULL) return "lie-galerkin:degree=5";
+  return terms->one_form != NULL ? "vprk:nodes=3" : "galerkin:degree=5";
+}
+
 /* The end of some steps, and what they counted. */
 static void end_of_run(const problem *of, double *q, dvi_counters *counted)
 {
-  const dvi_system_terms *terms = of->terms;
-  const char *method = terms->one_form != NULL      ? "vprk:nodes=3"
-                       : terms->hamiltonian != NULL ? "dg-phase:degree=3"
-                                                    : "galerkin:degree=5";
-  dvi_integrator *integrator = started(of, method);
+  dvi_integrator *integrator = started(of, method_for(of));
   advance(integrator, of->h, STEPS);
   memcpy(q, dvi_integrator_q(integrator), (size_t)of->nq * sizeof *q);
   dvi_integrator_counters(integrator, counted);
@@ -46,6 +50,7 @@ START_TEST(no_batch_is_left_and_no_term_is_lost)
   ck_assert_int_eq(problem_one_point(of), DVI_OK);
   const dvi_system_terms *terms = of->terms;
   ck_assert_int_eq(terms->dimension, declared.dimension);
+  ck_assert_int_eq(terms->factor_count, declared.factor_count);
   ck_assert_int_eq(terms->potential_count, declared.potential_count);
   ck_assert_int_eq(terms->symmetry_count, declared.symmetry_count);
   ck_assert_int_eq(terms->invariant_count, declared.invariant_count);

@@ -36,14 +36,11 @@ static double size_of(int n, const double *x)
 /* Check the derivatives, at a time when no drive stands still, at the start moved by `distance`, relative to the size of q and v. */
 static void check_near_start(const problem *made, double distance, unsigned seed)
 {
-  const int n = made->nq;
-  double *q = calloc((size_t)n, sizeof *q), *v = calloc((size_t)n, sizeof *v);
+  double *q = calloc((size_t)made->nq, sizeof *q), *v = calloc((size_t)made->nv, sizeof *v);
   ck_assert(q && v);
   unsigned state = seed;
-  for (int i = 0; i < n; i++) {
-    q[i] = made->q[i] + distance * size_of(n, made->q) * noise(&state);
-    v[i] = made->v[i] + distance * size_of(n, made->v) * noise(&state);
-  }
+  for (int i = 0; i < made->nq; i++) q[i] = made->q[i] + distance * size_of(made->nq, made->q) * noise(&state);
+  for (int i = 0; i < made->nv; i++) v[i] = made->v[i] + distance * size_of(made->nv, made->v) * noise(&state);
   dvi_derivative_check found;
   const dvi_status status = dvi_system_check(made->system, 0.7, q, v, TOLERANCE, &found);
   ck_assert_msg(status == DVI_OK, "%s: %s (gradient %g, hessian %g, outside %g)", made->name, dvi_last_error(),
@@ -90,6 +87,11 @@ START_TEST(derivatives_agree_for_other_parameters)
       {"chain", "n=2"},
       {"chain", "n=3"},
       {"chain", "beta=0"},
+      {"pendulum-3d", "l=2"},
+      {"spherical-chain", "n=1"},
+      {"spherical-chain", "n=3"},
+      {"two-body", "size=2"},
+      {"satellite", "n=1"},
   };
   check_derivatives(cases[_i][0], 1, &cases[_i][1]);
 }
@@ -117,7 +119,7 @@ static void check_batches(const char *name, int setting_count, const char *const
   unsigned state = 7;
   for (int j = 0; j < n * POINTS; j++) {
     q[j] = made->q[j / POINTS] + 0.2 * size_of(n, made->q) * noise(&state);
-    v[j] = made->v[j / POINTS] + 0.2 * size_of(n, made->v) * noise(&state);
+    v[j] = (n == made->nv ? made->v[j / POINTS] : 0) + 0.2 * size_of(made->nv, made->v) * noise(&state);
   }
   dvi__evaluator *e = NULL;
   ck_assert_int_eq(dvi__evaluator_create(made->system, POINTS, DVI__HESSIANS, NULL, &e), DVI_OK);
@@ -156,14 +158,14 @@ END_TEST
 START_TEST(momenta_are_the_legendre_transform_of_the_velocities)
 {
   problem *made = create(problem_name(_i), 0, NULL);
-  const size_t n = (size_t)made->nq;
+  const size_t n = (size_t)made->nv;
   double *v = calloc(n, sizeof *v);
   ck_assert_ptr_nonnull(v);
   memcpy(v, made->v, n * sizeof *v);
-  for (size_t i = 0; i < n; i++) v[i] += 1e-3 * size_of(made->nq, made->v);
+  for (size_t i = 0; i < n; i++) v[i] += 1e-3 * size_of(made->nv, made->v);
   ck_assert_int_eq(dvi_system_velocity(made->system, 0.0, made->q, made->p, v), DVI_OK);
   /* M is well conditioned in all of them: roundoff of one solve */
-  for (size_t i = 0; i < n; i++) ck_assert_double_eq_tol(v[i], made->v[i], 1e-13 * size_of(made->nq, made->v));
+  for (size_t i = 0; i < n; i++) ck_assert_double_eq_tol(v[i], made->v[i], 1e-13 * size_of(made->nv, made->v));
   free(v);
   problem_destroy(&made);
 }
@@ -181,11 +183,17 @@ START_TEST(every_problem_is_found_by_its_name_and_complete)
   problem *made = create(name, 0, NULL);
   ck_assert_str_eq(made->name, name);
   ck_assert_int_eq(made->nq, dvi_system_nq(made->system));
+  ck_assert_int_eq(made->nv, dvi_system_nv(made->system));
   ck_assert(made->h > 0.0 && made->h < made->t_end && made->order_h > 0.0 && made->order_h < made->order_t_end);
   ck_assert(made->digits_q && made->digits_p);
   for (int i = 0; i < made->nq; i++) {
     ck_assert_int_gt((int)strlen(made->coordinate[i]), 0);
     for (int j = 0; j < i; j++) ck_assert_str_ne(made->coordinate[i], made->coordinate[j]);
+  }
+  for (int i = 0; i < made->nv; i++) {
+    ck_assert_int_gt((int)strlen(made->momentum[i]), 0);
+    for (int j = 0; j < i; j++) ck_assert_str_ne(made->momentum[i], made->momentum[j]);
+    for (int j = 0; j < i && made->velocity; j++) ck_assert_str_ne(made->velocity[i], made->velocity[j]);
   }
   problem_destroy(&made);
   ck_assert_ptr_null(made);
@@ -236,6 +244,7 @@ START_TEST(bad_settings_are_refused_with_a_sentence)
       {"fpu", "omega=inf", "positive"},
       {"oscillator", "k=0", "positive"},
       {"double-pendulum", "m1=-1", "positive"},
+      {"pendulum-3d", "m=0", "positive"},
       {"double-pendulum", "m3=1", "l1, l2, m1, m2, g"},
       {"outer-solar", "G=1", "it has: none"},
   };
@@ -263,19 +272,20 @@ END_TEST
 /* Exact solutions start where the problem starts, and meet the digits at order_t_end. */
 START_TEST(exact_solutions_meet_start_and_digits)
 {
-  static const char *const names[] = {"oscillator", "oscillators", "kepler"};
+  static const char *const names[] = {"oscillator", "oscillators", "kepler", "free-body"};
   problem *made = create(names[_i], 0, NULL);
-  double q[2], p[2];
+  double q[9], p[9];
   ck_assert_int_eq(made->exact(made, 0.0, q, p), 0);
   for (int i = 0; i < made->nq; i++) {
     ck_assert_double_eq_tol(q[i], made->q[i], 1e-16);
-    ck_assert_double_eq_tol(p[i], made->p[i], 1e-15);
+    if (i < made->nv) ck_assert_double_eq_tol(p[i], made->p[i], 1e-15);
   }
   ck_assert_int_eq(made->exact(made, made->order_t_end, q, p), 0);
   /* a few ulp; the parameter itself is rounded (e = 0.6) */
   for (int i = 0; i < made->nq; i++) {
     ck_assert_double_eq_tol(q[i], made->digits_q[i], 1e-15 * size_of(made->nq, made->digits_q) * made->order_t_end);
-    ck_assert_double_eq_tol(p[i], made->digits_p[i], 1e-15 * size_of(made->nq, made->digits_p) * made->order_t_end);
+    if (i < made->nv)
+      ck_assert_double_eq_tol(p[i], made->digits_p[i], 1e-15 * size_of(made->nv, made->digits_p) * made->order_t_end);
   }
   problem_destroy(&made);
 }
@@ -343,6 +353,8 @@ START_TEST(symmetries_and_invariants_have_their_names)
       {"kepler", {"energy", "angular_momentum", "laplace_x", "laplace_y"}},
       {"toda", {"energy", "momentum"}},
       {"fpu", {"energy", "I_1", "I_2", "I_3"}},
+      {"pendulum-3d", {"energy", "angular_momentum_z"}},
+      {"kovalevskaya", {"energy", "angular_momentum_z", "kovalevskaya"}},
       {"figure-eight", {"energy", "momentum_x", "momentum_y", "angular_momentum"}},
       {"outer-solar",
        {"energy", "momentum_x", "momentum_y", "momentum_z", "angular_momentum_x", "angular_momentum_y", "angular_momentum_z"}},
@@ -382,18 +394,18 @@ int main(void)
   TCase *tests = tcase_create("catalogue");
   const int count = problem_count();
   tcase_add_loop_test(tests, derivatives_and_patterns_agree_with_differences, 0, count);
-  tcase_add_loop_test(tests, derivatives_agree_for_other_parameters, 0, 21);
+  tcase_add_loop_test(tests, derivatives_agree_for_other_parameters, 0, 26);
   tcase_add_loop_test(tests, a_batch_gives_each_point_what_it_gets_alone, 0, count);
   tcase_add_loop_test(tests, momenta_are_the_legendre_transform_of_the_velocities, 0, count);
   tcase_add_loop_test(tests, every_problem_is_found_by_its_name_and_complete, 0, count);
   tcase_add_loop_test(tests, digits_belong_to_the_default_parameters_only, 0, count);
-  tcase_add_loop_test(tests, bad_settings_are_refused_with_a_sentence, 0, 21);
+  tcase_add_loop_test(tests, bad_settings_are_refused_with_a_sentence, 0, 22);
   tcase_add_test(tests, a_chain_of_any_length_starts_as_it_should);
-  tcase_add_loop_test(tests, exact_solutions_meet_start_and_digits, 0, 3);
+  tcase_add_loop_test(tests, exact_solutions_meet_start_and_digits, 0, 4);
   tcase_add_loop_test(tests, keplers_equation_is_solved_for_any_eccentricity_and_time, 0, 7);
   tcase_add_test(tests, many_periods_are_reduced_without_loss);
   tcase_add_test(tests, kepler_in_the_singularity_gives_no_finite_number);
-  tcase_add_loop_test(tests, symmetries_and_invariants_have_their_names, 0, 6);
+  tcase_add_loop_test(tests, symmetries_and_invariants_have_their_names, 0, 8);
   tcase_add_loop_test(tests, invariants_hold_between_start_and_digits, 0, count);
   suite_add_tcase(suite, tests);
   SRunner *runner = srunner_create(suite);

@@ -47,7 +47,7 @@ START_TEST(stored_digits_are_those_of_the_judge)
   const result r = judge(made->name, made->order_t_end);
   ck_assert_int_eq(r.n, made->nq);
   check_stored(made->name, made->digits_q, r.n, (const text *)r.q);
-  check_stored(made->name, made->digits_p, r.n, (const text *)r.p);
+  check_stored(made->name, made->digits_p, made->nv, (const text *)r.p);
   problem_destroy(&made);
 }
 END_TEST

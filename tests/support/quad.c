@@ -19,9 +19,13 @@ static void evaluate(const quad_field *f, const quad *y, quad *rate)
     for (int i = 0; i < n; i++) rate[n + i] = 0;
     return;
   }
+  rate[2 * n] = 1;
+  if (f->problem->flow) {
+    f->problem->flow(&f->system, y, rate);
+    return;
+  }
   for (int i = 0; i < n; i++) rate[i] = y[n + i];
   f->problem->acceleration(&f->system, y, y + n, rate + n);
-  rate[2 * n] = 1;
 }
 
 /* The midpoint rule over a step of h in `count` (even) substeps. */
@@ -126,6 +130,7 @@ int quad_prepare(quad_field *f, const char *problem, int setting_count, const ch
     f->system.value[i] = quad_number(settings[s] + length + 1);
   }
   f->problem->prepare(&f->system);
+  if (f->system.nv == 0) f->system.nv = f->system.n;
   return f->system.n > 0;
 }
 
@@ -144,18 +149,17 @@ double quad_solve(const char *problem, int setting_count, const char *const *set
   quad y[STATE_MAX] = {0}, momenta[QUAD_N_MAX];
   if (!quad_prepare(&f, problem, setting_count, settings)) return nan("");
   const int n = f.system.n;
-  for (int i = 0; i < n; i++) {
-    y[i] = (quad)q[i];
+  const int nv = f.system.nv;
+  for (int i = 0; i < n; i++) y[i] = (quad)q[i];
+  for (int i = 0; i < nv; i++) {
     momenta[i] = (quad)p[i];
     y[n + i] = f.problem->rate ? 0 : (quad)p[i];
   }
   if (f.problem->velocity) f.problem->velocity(&f.system, y, momenta, y + n);
   const double error = (double)quad_march(&f, (quad)t, y);
   quad_momentum(&f, y, momenta);
-  for (int i = 0; i < n; i++) {
-    q[i] = (double)y[i];
-    p[i] = (double)momenta[i];
-  }
+  for (int i = 0; i < n; i++) q[i] = (double)y[i];
+  for (int i = 0; i < nv; i++) p[i] = (double)momenta[i];
   return error;
 }
 
@@ -170,9 +174,7 @@ double quad_digits(const char *problem, int setting_count, const char *const *se
   memcpy(y + *n, f.system.v, (size_t)*n * sizeof *y);
   const double error = (double)quad_march(&f, (quad)t, y);
   quad_momentum(&f, y, momenta);
-  for (int i = 0; i < *n; i++) {
-    quad_print(q[i], QUAD_TEXT, QUAD_FORMAT, y[i]);
-    quad_print(p[i], QUAD_TEXT, QUAD_FORMAT, momenta[i]);
-  }
+  for (int i = 0; i < *n; i++) quad_print(q[i], QUAD_TEXT, QUAD_FORMAT, y[i]);
+  for (int i = 0; i < f.system.nv; i++) quad_print(p[i], QUAD_TEXT, QUAD_FORMAT, momenta[i]);
   return error;
 }

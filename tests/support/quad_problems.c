@@ -355,11 +355,11 @@ static void pythagorean_prepare(quad_system *system)
 #define GRAVITY .acceleration = gravity_acceleration, .momentum = gravity_momentum, .velocity = gravity_velocity
 
 static const quad_problem problems[] = {
-    {"oscillator", {"k"}, {"0.5"}, oscillator_prepare, oscillator_acceleration, NULL, NULL, NULL},
-    {"oscillators", {"omega"}, {"50"}, oscillators_prepare, oscillators_acceleration, NULL, NULL, NULL},
-    {"pendulum", {"q0"}, {"1.1592794807274085998465837940224"}, pendulum_prepare, pendulum_acceleration, NULL, NULL, NULL},
-    {"kepler", {"e"}, {"0.6"}, kepler_prepare, kepler_acceleration, NULL, NULL, NULL},
-    {"henon-heiles", {"lambda"}, {"1"}, henon_heiles_prepare, henon_heiles_acceleration, NULL, NULL, NULL},
+    {"oscillator", {"k"}, {"0.5"}, oscillator_prepare, oscillator_acceleration, NULL, NULL, NULL, NULL},
+    {"oscillators", {"omega"}, {"50"}, oscillators_prepare, oscillators_acceleration, NULL, NULL, NULL, NULL},
+    {"pendulum", {"q0"}, {"1.1592794807274085998465837940224"}, pendulum_prepare, pendulum_acceleration, NULL, NULL, NULL, NULL},
+    {"kepler", {"e"}, {"0.6"}, kepler_prepare, kepler_acceleration, NULL, NULL, NULL, NULL},
+    {"henon-heiles", {"lambda"}, {"1"}, henon_heiles_prepare, henon_heiles_acceleration, NULL, NULL, NULL, NULL},
     {"double-pendulum",
      {"l1", "l2", "m1", "m2", "g"},
      {"2", "3", "1", "2", "9.80665"},
@@ -367,6 +367,7 @@ static const quad_problem problems[] = {
      double_pendulum_acceleration,
      double_pendulum_momentum,
      double_pendulum_velocity,
+     NULL,
      NULL},
     {"driven-pendulum",
      {"a", "omega"},
@@ -375,6 +376,7 @@ static const quad_problem problems[] = {
      driven_pendulum_acceleration,
      driven_pendulum_momentum,
      driven_pendulum_velocity,
+     NULL,
      NULL},
     {"stiff-pendulum",
      {"k", "l", "m", "g"},
@@ -383,10 +385,11 @@ static const quad_problem problems[] = {
      stiff_pendulum_acceleration,
      stiff_pendulum_momentum,
      stiff_pendulum_velocity,
+     NULL,
      NULL},
-    {"fpu", {"ell", "omega"}, {"3", "50"}, fpu_prepare, fpu_acceleration, NULL, NULL, NULL},
-    {"toda", {"N"}, {"20"}, toda_prepare, toda_acceleration, NULL, NULL, NULL},
-    {"chain", {"n", "beta"}, {"32", "1"}, chain_prepare, chain_acceleration, NULL, NULL, NULL},
+    {"fpu", {"ell", "omega"}, {"3", "50"}, fpu_prepare, fpu_acceleration, NULL, NULL, NULL, NULL},
+    {"toda", {"N"}, {"20"}, toda_prepare, toda_acceleration, NULL, NULL, NULL, NULL},
+    {"chain", {"n", "beta"}, {"32", "1"}, chain_prepare, chain_acceleration, NULL, NULL, NULL, NULL},
     {.name = "outer-solar", .prepare = outer_solar_prepare, GRAVITY},
     {.name = "figure-eight", .prepare = figure_eight_prepare, GRAVITY},
     {.name = "pythagorean", .prepare = pythagorean_prepare, GRAVITY},
@@ -397,6 +400,8 @@ const quad_problem *quad_problem_find(const char *name)
   for (size_t i = 0; i < sizeof problems / sizeof *problems; i++)
     if (strcmp(problems[i].name, name) == 0) return &problems[i];
   for (const quad_problem *p = quad_degenerate; p->name; p++)
+    if (strcmp(p->name, name) == 0) return p;
+  for (const quad_problem *p = quad_factors; p->name; p++)
     if (strcmp(p->name, name) == 0) return p;
   return NULL;
 }

@@ -6,9 +6,21 @@
 
 #define QUAD_PARAMETERS_MAX 8
 #define QUAD_BODIES_MAX 6
+#define QUAD_CELLS_MAX 8
+#define QUAD_POINTS_MAX 48
+
+/* A point of a system of rotations, places and directions (quad_factors.c). */
+typedef struct quad_point {
+  quad mass, weight[3], spring, pull;
+  quad arm[QUAD_CELLS_MAX][3]; /* of each cell: rho of a rotation; the factor, and 0, 0 */
+} quad_point;
 
 typedef struct quad_system {
-  int n;
+  int n;  /* of q */
+  int nv; /* of v and p; 0 until quad_prepare: n */
+  char cells[QUAD_CELLS_MAX + 1];
+  int points;
+  quad_point point[QUAD_POINTS_MAX];
   quad value[QUAD_PARAMETERS_MAX];
   int bodies, dimension; /* the point masses, where there are any */
   quad G, mass[QUAD_BODIES_MAX];
@@ -24,11 +36,15 @@ typedef struct quad_problem {
   void (*acceleration)(const quad_system *system, const quad *q, const quad *v, quad *a);
   void (*momentum)(const quad_system *system, const quad *q, const quad *v, quad *p); /* NULL: p = v */
   void (*velocity)(const quad_system *system, const quad *q, const quad *p, quad *v);
+  void (*flow)(const quad_system *system, const quad *y, quad *rate); /* in place of the acceleration: y = (q, v), [2 n] */
   void (*rate)(const quad_system *system, const quad *q, quad *qdot); /* degenerate: in place of the acceleration; v stays 0 */
 } quad_problem;
 
 /* The degenerate ones (quad_degenerate.c), ended by one without a name. */
 extern const quad_problem quad_degenerate[];
+
+/* Those with rotations and directions (quad_factors.c), likewise. */
+extern const quad_problem quad_factors[];
 
 /* A problem with its parameters set. */
 typedef struct quad_field {
@@ -45,7 +61,7 @@ int quad_prepare(quad_field *field, const char *problem, int setting_count, cons
 /* Advance y = (q, v, 0) [2 n + 1] by time t, which then stands last. Returns the judge's own error as quad_solve does. */
 quad quad_march(const quad_field *field, quad t, quad *y);
 
-/* p [n] at y = (q, v, time). */
+/* p [nv] at y = (q, v, time). */
 void quad_momentum(const quad_field *field, const quad *y, quad *p);
 
 /* A decimal number or a quotient of two, "1/1.3e8". */

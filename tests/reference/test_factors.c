@@ -1,0 +1,133 @@
+/* labels: reference */
+/* The reference codes on rotations, directions and angles: against exact solutions and digits, and their own word about their errors. */
+#include <check.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "reference/catalogue.h"
+#include "support/runs.h"
+#include "support/suite.h"
+
+static const char *const problems[] = {"free-body",       "pendulum-3d", "heavy-top", "kovalevskaya", "spherical-double-pendulum",
+                                       "spherical-chain", "two-body",    "satellite"};
+
+/* At 1e-9 every code is within 1e-5 of the digits (BDF of the fast top loses most), on the manifold to rounding, with a momentum on it. */
+START_TEST(every_code_meets_the_digits)
+{
+  problem *of = make(problems[_i / CODES], NULL);
+  const dvi_reference_options options = option(_i % CODES, 1e-9);
+  const double size = fmax(1, magnitude(of->nv, of->digits_p));
+  double q[MOST], p[MOST];
+  start(of, q, p);
+  const dvi_status status = dvi_reference_solve(of->system, 0, of->order_t_end, q, p, &options, NULL);
+  ck_assert_msg(status == DVI_OK, "%s: %s", of->name, dvi_last_error());
+  ck_assert_msg(distance(of->nq, q, of->digits_q) <= 1e-5, "%s, %s: q is %g away", of->name, dvi_reference_name(options.code),
+                distance(of->nq, q, of->digits_q));
+  ck_assert_msg(distance(of->nv, p, of->digits_p) <= 1e-5 * size, "%s, %s: p is %g away", of->name,
+                dvi_reference_name(options.code), distance(of->nv, p, of->digits_p));
+  ck_assert_double_le(dvi_system_distance(of->system, q), 1e-15);
+  dvi_integrator *integrator = NULL;
+  ck_assert_int_eq(dvi_integrator_create(of->system, "lie-galerkin", &integrator), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_start(integrator, of->order_t_end, q, p), DVI_OK);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&of);
+}
+END_TEST
+
+/* The judge's error is above a tenth of the true one, and below 1e-8. */
+START_TEST(the_judge_knows_its_error_on_the_free_body)
+{
+  problem *of = make("free-body", NULL);
+  double q[MOST], p[MOST], exact_q[9], exact_p[3];
+  for (double t = 2; t <= 50; t += 16) {
+    dvi_reference_report report;
+    start(of, q, p);
+    ck_assert_int_eq(dvi_reference_judge(of->system, 0, t, q, p, NULL, &report), DVI_OK);
+    ck_assert_int_eq(of->exact(of, t, exact_q, exact_p), 0);
+    ck_assert_msg(distance(9, q, exact_q) <= 10 * report.error && report.error < 1e-8, "t = %g: %g away, states %g", t,
+                  distance(9, q, exact_q), report.error);
+  }
+  problem_destroy(&of);
+}
+END_TEST
+
+/* Turned in space as a whole, the free body moves as before: from attitudes at which each of a quaternion's four numbers is the largest. */
+START_TEST(every_attitude_is_a_start)
+{
+  static const double turned[4][9] = {
+      {1, 0, 0, 0, 1, 0, 0, 0, 1}, {1, 0, 0, 0, -1, 0, 0, 0, -1}, {-1, 0, 0, 0, 1, 0, 0, 0, -1}, {-1, 0, 0, 0, -1, 0, 0, 0, 1}};
+  problem *of = make("free-body", NULL);
+  const dvi_reference_options options = option(DVI_ARKODE, 1e-12);
+  double q[9], p[3];
+  memcpy(q, turned[_i], sizeof q);
+  memcpy(p, of->p, sizeof p);
+  ck_assert_int_eq(dvi_reference_solve(of->system, 0, 10, q, p, &options, NULL), DVI_OK);
+  for (int k = 0; k < 9; k++) ck_assert_double_eq_tol(q[k], turned[_i][4 * (k / 3)] * of->digits_q[k], 1e-11);
+  problem_destroy(&of);
+}
+END_TEST
+
+static int circle_value(double t, const double *q, double *V, void *user)
+{
+  (void)t, (void)user;
+  *V = q[0];
+  return 0;
+}
+
+static int circle_gradient(double t, const double *q, double *V_q, void *user)
+{
+  (void)t, (void)q, (void)user;
+  V_q[0] = 1;
+  V_q[1] = 0;
+  return 0;
+}
+
+/* A pendulum by its angle and one on the circle, V = cos q. */
+START_TEST(an_angle_on_the_circle_moves_as_a_number)
+{
+  problem *of = make("pendulum", NULL);
+  const dvi_factor circle = {.kind = DVI_U1, .mass = 1};
+  const dvi_potential weight = {.value = circle_value, .gradient = circle_gradient};
+  const dvi_system_terms terms = {.factors = &circle, .factor_count = 1, .potentials = &weight, .potential_count = 1};
+  const dvi_reference_options options = option(_i, 1e-10);
+  dvi_system *system = NULL;
+  ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
+  double q[2] = {cos(of->q[0]), sin(of->q[0])}, p[1] = {0};
+  ck_assert_int_eq(dvi_reference_solve(system, 0, of->order_t_end, q, p, &options, NULL), DVI_OK);
+  ck_assert_double_eq_tol(q[0], cos(of->digits_q[0]), 1e-6);
+  ck_assert_double_eq_tol(q[1], sin(of->digits_q[0]), 1e-6);
+  ck_assert_double_eq_tol(p[0], of->digits_p[0], 1e-6);
+  dvi_system_destroy(&system);
+  problem_destroy(&of);
+}
+END_TEST
+
+START_TEST(what_is_off_the_manifold_or_too_large_is_refused)
+{
+  problem *of = make("free-body", NULL);
+  double q[9], p[3];
+  start(of, q, p);
+  q[0] += 1e-6;
+  ck_assert_int_eq(dvi_reference_solve(of->system, 0, 1, q, p, NULL, NULL), DVI_BAD_ARGUMENT);
+  problem_destroy(&of);
+  problem *chain = NULL;
+  char message[256] = "";
+  const char *setting = "n=300";
+  ck_assert_int_eq(problem_create("spherical-chain", 1, &setting, &chain, message, sizeof message), DVI_OK);
+  ck_assert_int_eq(dvi_reference_solve(chain->system, 0, 1, chain->q, chain->p, NULL, NULL), DVI_UNSUPPORTED);
+  ck_assert_ptr_nonnull(strstr(dvi_last_error(), "2000 are possible"));
+  problem_destroy(&chain);
+}
+END_TEST
+
+int main(void)
+{
+  TCase *tests = tcase_create("factors");
+  tcase_add_loop_test(tests, every_code_meets_the_digits, 0, CODES * 8);
+  tcase_add_test(tests, the_judge_knows_its_error_on_the_free_body);
+  tcase_add_loop_test(tests, every_attitude_is_a_start, 0, 4);
+  tcase_add_loop_test(tests, an_angle_on_the_circle_moves_as_a_number, 0, CODES);
+  tcase_add_test(tests, what_is_off_the_manifold_or_too_large_is_refused);
+  return run_tests("reference/factors", tests);
+}
