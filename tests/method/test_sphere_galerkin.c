@@ -1,0 +1,100 @@
+/* Directions alone: the steps of lie-galerkin, their length, chains at linear cost, and what is refused. */
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "support/bodies.h"
+#include "support/heap.h"
+#include "support/runs.h"
+#include "support/suite.h"
+
+START_TEST(it_takes_the_steps_of_lie_galerkin)
+{
+  body of;
+  make_body(_i == 0 ? DIRECTIONS : ANGLE, &of);
+  dvi_integrator *mine = body_integrator(&of, "sphere-galerkin:degree=3"), *theirs = body_integrator(&of, "lie-galerkin:degree=3");
+  advance(mine, 0.02, 100);
+  advance(theirs, 0.02, 100);
+  ck_assert_mem_eq(dvi_integrator_q(mine), dvi_integrator_q(theirs), (size_t)of.nq * sizeof(double));
+  ck_assert_mem_eq(dvi_integrator_p(mine), dvi_integrator_p(theirs), (size_t)of.nv * sizeof(double));
+  dvi_integrator_destroy(&mine);
+  dvi_integrator_destroy(&theirs);
+  destroy_body(&of);
+}
+END_TEST
+
+/* |q| = 1 and p orthogonal to q, without projection; the vertical momentum. */
+START_TEST(directions_stay_directions)
+{
+  body of;
+  double before[2], after[2];
+  make_body(DIRECTIONS, &of);
+  dvi_integrator *made = body_integrator(&of, "sphere-galerkin:degree=2");
+  ck_assert_int_eq(dvi_integrator_invariants(made, before), DVI_OK);
+  advance(made, 0.01, 10000);
+  ck_assert_int_eq(dvi_integrator_invariants(made, after), DVI_OK);
+  const double *q = dvi_integrator_q(made), *p = dvi_integrator_p(made);
+  ck_assert_double_le(dvi_system_distance(of.system, q), 1e-13);
+  for (int i = 0; i < 6; i += 3)
+    ck_assert_double_le(fabs(q[i] * p[i] + q[i + 1] * p[i + 1] + q[i + 2] * p[i + 2]), 1e-14 * magnitude(6, p));
+  ck_assert_double_le(fabs(after[1] - before[1]), 2e-14); /* momenta are about 0.03: 100 roundings of these */
+  dvi_integrator_destroy(&made);
+  destroy_body(&of);
+}
+END_TEST
+
+START_TEST(rotations_are_refused_by_name)
+{
+  body of;
+  dvi_integrator *made;
+  make_body(PRODUCT, &of);
+  ck_assert_int_eq(dvi_integrator_create(of.system, "sphere-galerkin", &made), DVI_UNSUPPORTED);
+  check_words("sphere-galerkin: coordinates 6 to 14 are a rotation");
+  check_words("lie-galerkin takes both");
+  destroy_body(&of);
+}
+END_TEST
+
+typedef struct cost {
+  long bytes;
+  dvi_counters counters;
+} cost;
+
+static cost cost_of(int links)
+{
+  chain of;
+  cost found;
+  make_chain(links, &of);
+  const long before = heap_bytes();
+  dvi_integrator *made = made_integrator(of.system, "sphere-galerkin:degree=2,solver=newton");
+  found.bytes = heap_bytes() - before;
+  ck_assert_int_eq(dvi_integrator_start_velocity(made, 0, of.q, of.v), DVI_OK);
+  advance(made, 0.02, 10);
+  dvi_integrator_counters(made, &found.counters);
+  dvi_integrator_destroy(&made);
+  destroy_chain(&of);
+  return found;
+}
+
+/* Ten times the links: ten times the memory, and as many residuals and Jacobians, whose entries test_charted counts; what a chain of one link needs is part of
+ * both. */
+START_TEST(chains_cost_as_much_as_they_have_links)
+{
+  const cost few = cost_of(100), many = cost_of(1000);
+  ck_assert_int_le(many.counters.residuals, few.counters.residuals * 12 / 10);
+  ck_assert_int_le(many.counters.jacobians, few.counters.jacobians * 12 / 10);
+  if (heap_is_counted())
+    ck_assert_msg(many.bytes < 12 * few.bytes && few.bytes > 100000, "%ld and %ld bytes", few.bytes, many.bytes);
+}
+END_TEST
+
+int main(void)
+{
+  TCase *tests = tcase_create("sphere_galerkin");
+  tcase_add_loop_test(tests, it_takes_the_steps_of_lie_galerkin, 0, 2);
+  tcase_add_test(tests, directions_stay_directions);
+  tcase_add_test(tests, rotations_are_refused_by_name);
+  tcase_add_test(tests, chains_cost_as_much_as_they_have_links);
+  return run_tests("method/sphere_galerkin", tests);
+}
