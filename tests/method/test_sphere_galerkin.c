@@ -65,7 +65,7 @@ static cost cost_of(int links)
 {
   chain of;
   cost found;
-  make_chain(links, &of);
+  make_linked_chain(links, &of);
   const long before = heap_bytes();
   dvi_integrator *made = made_integrator(of.system, "sphere-galerkin:degree=2,solver=newton");
   found.bytes = heap_bytes() - before;
