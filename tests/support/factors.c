@@ -182,7 +182,7 @@ typedef struct darboux {
 static darboux darboux_at(const dvi_system *system, dvi_counters *counters, const double *q)
 {
   darboux made = {.system = system};
-  ck_assert_int_eq(dvi__charted_create(system, counters, &made.charts), DVI_OK);
+  ck_assert_int_eq(dvi__charted_create(system, 0, counters, &made.charts), DVI_OK);
   dvi__charted_centre(made.charts, q);
   return made;
 }
