@@ -1,43 +1,42 @@
-/* Systems on groups and spheres, and whether a step on them is symplectic. */
+/* Systems with factors: bodies that turn, directions, angles, and a product of all of them whose mass couples factors. */
 #ifndef TESTS_SUPPORT_BODIES_H
 #define TESTS_SUPPORT_BODIES_H
 #include <dvi/integrator.h>
 
-/* Numbers of a state at most. */
-enum { BODIES_MOST = 32 };
+enum { BODY_Q = 20, BODY_V = 13 };
 
-/* A system with a state, q and v. */
-typedef struct bodies {
+/* free_body: J = (3, 2, 1.5), no potential. pendulum_3d: J = (.13, .28, .17), its centre of mass below the pivot at (0, 0, .3). heavy_top: about 150 radians per
+ * unit of time about the axis e2. free_motion, motion: a body on SE(3) whose centre of mass is not its origin; without potential, and tied by springs.
+ * directions: a spherical double pendulum. angle: a pendulum on the circle. product: two directions, a motion, an angle, with masses between them. */
+typedef enum body_kind { FREE_BODY, PENDULUM_3D, HEAVY_TOP, FREE_MOTION, MOTION, DIRECTIONS, ANGLE, PRODUCT, BODIES } body_kind;
+
+/* A system and a start; all but the product know their momentum of turns about the vertical as invariant 1, where it is one (not angle and motion). */
+typedef struct body {
+  const char *name;
   dvi_system *system;
-  double q[BODIES_MOST], v[BODIES_MOST];
-} bodies;
+  const dvi_factor *factors;
+  int factor_count, nq, nv;
+  double q[BODY_Q], v[BODY_V];
+} body;
 
-/* J = diag(3, 2, 1.5), Omega = (.5, -.5, .4). At T = 10 Omega is free_body_end, by Jacobi's elliptic functions. */
-bodies free_body(void);
-extern const double free_body_moments[3], free_body_end[3];
+void make_body(body_kind kind, body *of);
+void destroy_body(body *of);
 
-/* A body of mass 1 that hangs from a point at (0, 0, .3) of its frame, J = diag(.13, .28, .17) about it; Omega = 4.14 (1, 1, 1). At T = 1 Omega is
- * pendulum_end. Its vertical angular momentum is a symmetry. */
-bodies pendulum_in_space(void);
-extern const double pendulum_moments[3], pendulum_end[3];
+/* A chain of directions with springs between neighbours, and weights; must not move in memory. */
+typedef struct chain {
+  int links, *start, *row; /* and the potential's pattern */
+  dvi_system *system;
+  double *q, *v; /* [3*links] */
+} chain;
 
-/* A direction, an angle, two coordinates, and a rigid motion whose centre of mass is not its origin, in a common potential; no mass couples them. */
-bodies loose_cells(void);
+void make_linked_chain(int links, chain *of);
+void destroy_chain(chain *of);
 
-/* Two directions that a mass couples as in a double pendulum, the second to the place of a rigid motion; an angle with a mass that is not a multiple of the
- * identity; a rotation whose mass is not that of a body. In a common potential. */
-bodies tied_cells(void);
+/* An integrator at the start. */
+dvi_integrator *body_integrator(const body *of, const char *method);
 
-/* A free body; its inertia may be any. */
-bodies body_of(const double inertia[9], const double Omega[3]);
-
-void bodies_clear(bodies *of);
-
-/* An integrator at its start. */
-dvi_integrator *body_started(const bodies *of, const char *method);
-
-/* The largest entry of D^T J D - J, D the derivative of one step of the method from this state. Both ends have the canonical coordinates of natural charts: xi,
- * and the momentum of xi, A(xi)^T p with the velocity v = A(xi) xi'. D is differenced, right to about 1e-11. */
-double symplecticity_of_step(const bodies *of, const char *method, double h);
+/* How far one step is from symplectic: the largest change of the form dp ^ dq, in the letters of dvi/system.h, over pairs of differenced directions of
+ * unit size in units of the momentum. On SO(3) it is dPi1.eta2 - dPi2.eta1 - Pi.(eta1 x eta2), R^T dR = eta^. */
+double symplectic_defect(const body *of, const char *method, double h);
 
 #endif
