@@ -74,7 +74,7 @@ static dvi_status add_level(bench *b, const entry *of, order_study *study, long 
   job->steps = steps;
   job->h = study->span / (double)steps;
   (void)snprintf(job->setting, sizeof job->setting, "h=%.6g", job->h);
-  dvi_status status = study_watch_energy(study, &trial);
+  dvi_status status = study_watch(study, &trial);
   job->energy_error = trial.energy_error;
   if (status == DVI_OK) status = bench_job_try(job, b->scene, &b->judge, b->request->t_end);
   b->jobs += status == DVI_OK;

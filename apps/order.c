@@ -43,12 +43,13 @@ static void add_row(result_table *rows, const order_study *study, const order_re
   table_number(rows, (double)trial->spent.residuals);
   table_number(rows, (double)trial->spent.jacobians);
   table_number(rows, (double)trial->spent.factorizations);
+  if (study->scene->velocity != NULL) table_number(rows, trial->distance);
 }
 
 static dvi_status run_level(order_study *study, long steps, level_trial *trial)
 {
   dvi_status status = study_run(study, steps, trial);
-  if (status == DVI_OK) status = study_watch_energy(study, trial);
+  if (status == DVI_OK) status = study_watch(study, trial);
   if (status == DVI_OK) status = study_time(study, trial);
   return status;
 }
@@ -192,7 +193,7 @@ static int report(const hearing *ask, order_result *result)
 
 static int study_all(const order_request *request, const problem *scene)
 {
-  hearing ask = {.request = request, .scene = scene, .judged_at = (double)NAN, .rows = table_create(order_columns)};
+  hearing ask = {.request = request, .scene = scene, .judged_at = (double)NAN, .rows = table_create(order_columns(scene))};
   order_result *result = calloc((size_t)request->methods.count, sizeof *result);
   int code = result != NULL && table_good(ask.rows) ? DONE : FAILED;
   progress_start(&ask.progress, true);
@@ -244,7 +245,8 @@ static const char *const details[] = {
     "  slope         log(error ratio) / log(step ratio) from the level before; empty at the first level\n"
     "  energy_error  largest |energy - energy at the start| over the run (an untimed run of its own)\n"
     "  cpu_seconds   process time of one run (short ones are repeated until 0.02 s have passed)\n"
-    "  the rest      counted by the library in one run\n",
+    "  the rest      counted by the library in one run; of problems with rotations and directions there is one more,\n"
+    "  distance      largest distance of the coordinates from their manifold over the run, |R^T R - I| or ||q| - 1|\n",
     "The judge is the problem's exact solution; or its stored quadruple-precision result, if parameters and end are\n"
     "the problem's own; or IDA of SUNDIALS, which shares no code with the methods, run at two tolerances. --judge\n"
     "chooses: exact, stored, ida; or runs, two runs of high degree (see dvi bench --help). An error\n"

@@ -9,12 +9,18 @@
 
 static const double order_tolerance = 0.2;
 
-const table_column order_columns[] = {
-    {"method", NULL},         {"problem", NULL},          {"h", "%.6g"},
-    {"steps", "%.0f"},        {"error", "%.3e"},          {"slope", "%.2f"},
-    {"energy_error", "%.3e"}, {"cpu_seconds", "%.3e"},    {"residuals", "%.0f"},
-    {"jacobians", "%.0f"},    {"factorizations", "%.0f"}, {NULL, NULL},
-};
+#define COLUMNS                                                                                                \
+  {"method", NULL}, {"problem", NULL}, {"h", "%.6g"}, {"steps", "%.0f"}, {"error", "%.3e"}, {"slope", "%.2f"}, \
+      {"energy_error", "%.3e"}, {"cpu_seconds", "%.3e"}, {"residuals", "%.0f"}, {"jacobians", "%.0f"},         \
+  {                                                                                                            \
+    "factorizations", "%.0f"                                                                                   \
+  }
+
+const table_column *order_columns(const problem *scene)
+{
+  static const table_column plain[] = {COLUMNS, {NULL, NULL}}, with_distance[] = {COLUMNS, {"distance", "%.1e"}, {NULL, NULL}};
+  return scene->velocity != NULL ? with_distance : plain;
+}
 
 static int fitted_levels(const order_result *result)
 {

@@ -30,8 +30,8 @@ typedef struct order_result {
 /** The order that level k and the one before it show; NaN if there is none. */
 double order_local_slope(const order_result *result, int k);
 
-/** The columns of the table. */
-extern const table_column order_columns[];
+/** The columns of the table; of problems with factors there is one more, the distance from their manifold. */
+const table_column *order_columns(const problem *scene);
 
 /** Whether a settled slope is the claimed order. */
 bool order_holds(const order_result *result);

@@ -101,29 +101,35 @@ dvi_status study_run(order_study *study, long steps, level_trial *trial)
   return DVI_OK;
 }
 
+/* What a run is watched for. */
+typedef struct watched {
+  const dvi_system *system;
+  double *value; /* [invariants] */
+  double first;  /* the energy at the start; NaN: not yet */
+  level_trial *trial;
+} watched;
+
 static int watch(dvi_integrator *integrator, void *user)
 {
-  double **watched = user;
-  double *value = watched[0];
-  double *drift = watched[1];
-  if (dvi_integrator_invariants(integrator, value) != DVI_OK) return -1;
-  if (isnan(drift[0])) drift[0] = value[0];
-  drift[1] = fmax(drift[1], fabs(value[0] - drift[0]));
+  watched *w = user;
+  if (dvi_integrator_invariants(integrator, w->value) != DVI_OK) return -1;
+  if (isnan(w->first)) w->first = w->value[0];
+  w->trial->energy_error = fmax(w->trial->energy_error, fabs(w->value[0] - w->first));
+  w->trial->distance = fmax(w->trial->distance, dvi_system_distance(w->system, dvi_integrator_q(integrator)));
   return 0;
 }
 
-dvi_status study_watch_energy(order_study *study, level_trial *trial)
+dvi_status study_watch(order_study *study, level_trial *trial)
 {
   double *value = calloc((size_t)dvi_system_invariant_count(study->scene->system), sizeof *value);
   if (value == NULL) return DVI_NO_MEMORY;
-  double drift[2] = {(double)NAN, 0.0};
-  double *watched[2] = {value, drift};
+  watched w = {.system = study->scene->system, .value = value, .first = (double)NAN, .trial = trial};
+  trial->energy_error = trial->distance = 0.0;
   const double h = study->span / (double)trial->steps;
   dvi_status status = dvi_integrator_start(study->integrator, 0.0, study->scene->q, study->scene->p);
-  if (status == DVI_OK && watch(study->integrator, watched) != 0) status = DVI_NOT_FINITE;
-  if (status == DVI_OK) status = march(study->integrator, h, trial->steps, study->t_end, watch, watched, NULL, NULL);
+  if (status == DVI_OK && watch(study->integrator, &w) != 0) status = DVI_NOT_FINITE;
+  if (status == DVI_OK) status = march(study->integrator, h, trial->steps, study->t_end, watch, &w, NULL, NULL);
   free(value);
-  trial->energy_error = drift[1];
   return status;
 }
 

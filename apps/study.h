@@ -31,6 +31,7 @@ typedef struct level_trial {
   double h;            /**< span / steps; of methods that choose their steps the first one */
   double error;        /**< of q at t_end, in the maximum norm */
   double energy_error; /**< largest |energy - energy at the start| over the run */
+  double distance;     /**< largest distance of q from its manifold over the run */
   double cpu_seconds;  /**< of one run without diagnostics */
   dvi_counters spent;  /**< by one run without diagnostics */
 } level_trial;
@@ -47,8 +48,8 @@ void study_clear(order_study *study);
 /** Run once with so many equal steps: fills steps, h, error and spent. */
 dvi_status study_run(order_study *study, long steps, level_trial *trial);
 
-/** Run again, to watch the energy: fills energy_error. */
-dvi_status study_watch_energy(order_study *study, level_trial *trial);
+/** Run again, to watch the energy and the manifold: fills energy_error and distance. */
+dvi_status study_watch(order_study *study, level_trial *trial);
 
 /** Run as often as a clock needs: fills cpu_seconds. */
 dvi_status study_time(order_study *study, level_trial *trial);

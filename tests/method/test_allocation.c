@@ -48,6 +48,13 @@ static const struct {
     {"double-pendulum", NULL, "hp:type=2"},
     {"vortices-linear", NULL, "hp:type=2"},
     {"kepler", NULL, "hp:type=4,degree=3"},
+    {"heavy-top", NULL, "lie-galerkin:degree=3"},
+    {"satellite", NULL, "lie-galerkin"},
+    {"spherical-chain", "n=6", "sphere-galerkin:degree=1"},
+    {"free-body", NULL, "euler-poincare:degree=2"},
+    {"two-body", NULL, "lie-verlet:solve=cayley"},
+    {"satellite", NULL, "lie-verlet"},
+    {"spherical-double-pendulum", NULL, "lie-rk:scheme=implicit-midpoint"},
 };
 enum { PLACES = sizeof places / sizeof *places };
 

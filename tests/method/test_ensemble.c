@@ -131,7 +131,9 @@ static const struct {
               {"chain", "n=8", 0.1, 0.1},
               {"chain", "n=40", 0.1, 0.1},
               {"vortices", NULL, 0.05, 0.01},
-              {"massless-particle", "gauge=singular", 0.1, 0.01}};
+              {"massless-particle", "gauge=singular", 0.1, 0.01},
+              {"free-body", NULL, 0.1, 0.01},
+              {"spherical-double-pendulum", NULL, 0.01, 0.01}};
 
 static const char *const methods[] = {
     "verlet",
@@ -162,6 +164,11 @@ static const char *const methods[] = {
     "vprk:projection=none",
     "hp:type=3",
     "hp:type=4",
+    "lie-galerkin",
+    "euler-poincare",
+    "sphere-galerkin:degree=1",
+    "lie-verlet",
+    "lie-rk",
 };
 enum { PLACES = sizeof places / sizeof *places, METHODS = sizeof methods / sizeof *methods, STEPS = 12 };
 

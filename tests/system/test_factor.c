@@ -160,7 +160,7 @@ static const struct {
     {FREE_BODY, 1, 1e-6, DVI_BAD_ARGUMENT, DVI_OK, "coordinates 0 to 8 are no rotation matrix: off by 7.07e-07", NULL},
     {FREE_BODY, 8, -1, DVI_BAD_ARGUMENT, DVI_BAD_ARGUMENT, "no rotation matrix", "no nearest rotation"},
     {FREE_BODY, 8, 0, DVI_BAD_ARGUMENT, DVI_BAD_ARGUMENT, "no rotation matrix", "no nearest rotation"},
-    {FREE_BODY, 8, NAN, DVI_NOT_FINITE, DVI_NOT_FINITE, "coordinate 8 is q = nan", "not finite"},
+    {FREE_BODY, 8, NAN, DVI_NOT_FINITE, DVI_NOT_FINITE, "the start's q[8] = nan", "not finite"},
     {DIRECTIONS, 5, 1.001, DVI_BAD_ARGUMENT, DVI_OK, "coordinates 3 to 5 are no unit vector: off by 1.00e-03", NULL},
     {DIRECTIONS, 5, 0, DVI_BAD_ARGUMENT, DVI_BAD_ARGUMENT, "no unit vector", "coordinates 3 to 5 have no nearest direction"},
     {ANGLE, 0, 1e200, DVI_BAD_ARGUMENT, DVI_OK, "no unit vector", NULL},

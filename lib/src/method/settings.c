@@ -202,7 +202,7 @@ void dvi__spell_out(const dvi__method *method, const dvi__settings *settings, dv
       dvi__text_add(text, "%d", settings->value[k]);
   }
   if (settings->listed > 0) dvi__text_add(text, ",%s=%s", method->list, settings->list_text);
-  if (settings->rest[0] != 0) dvi__text_add(text, ",%s", settings->rest);
+  if (settings->rest[0] != 0) dvi__text_add(text, "%c%s", dvi__key_count(method) == 0 ? ':' : ',', settings->rest);
 }
 
 static dvi_status spell_steps(const char *specification, dvi__text *text)
