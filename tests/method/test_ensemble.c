@@ -37,10 +37,23 @@ static void constrain(const problem *of, int members, int k)
   for (int i = 0; i < of->nq; i++) first_p[i * members + k] = p[i];
 }
 
+/* With factors the places stay on their manifold, and the momenta in its tangent spaces. */
+static void spread_momenta(const problem *of, int members, double spread)
+{
+  for (int k = 0; k < members; k++) {
+    for (int i = 0; i < of->nq; i++) first_q[i * members + k] = of->q[i];
+    for (int i = 0; i < of->nv; i++) first_p[i * members + k] = of->p[i] * (1 + spread * k / members);
+  }
+}
+
 static void spread_start(const problem *of, int members, double spread)
 {
   ck_assert_int_le(of->nq, N_MOST);
   ck_assert_int_le(members, MEMBERS_MOST);
+  if (of->terms->factors != NULL) {
+    spread_momenta(of, members, spread);
+    return;
+  }
   for (int k = 0; k < members; k++)
     for (int i = 0; i < of->nq; i++) {
       const double u = fmod(0.618033988749895 * (k * of->nq + i + 1), 1.0) - 0.5;

@@ -38,7 +38,8 @@ void dvi__action_centre_rows(dvi__action *a, double *R)
 }
 
 /* dC/dY_l for one entry of the joint pattern. */
-static double change(const dvi__action *a, const dvi__block *block, int l, const double *C_q1, const double *C_qq, const double *C_qv)
+static double change(const dvi__action *a, const dvi__block *block, int l, const double *C_q1, const double *C_qq,
+                     const double *C_qv)
 {
   double sum = block->qq >= 0 ? C_q1[block->qq] * a->end[l] : 0;
   const double *psi = a->psi + l * a->lanes, *dpsi = a->dpsi + l * a->lanes;

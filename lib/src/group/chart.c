@@ -196,8 +196,9 @@ void dvi__chart_tangents(const dvi__chart *chart, const double *xi, const double
   const int stored = dvi__chart_stored(chart->kind), size = dvi__chart_size(chart->kind);
   dvi__find_functions(size, xi, 2, &c);
   for (int j = 0; j < size; j++) {
-    double column[2][9] = {{0}}, turned[2][9];
+    double column[2][9] = {{0}};
     if (chart->kind == DVI__ROTATION) {
+      double turned[2][9];
       rotation_tangent(&c, xi, rate, j, column[0], column[1]);
       turn(chart->y0, column[0], turned[0]);
       turn(chart->y0, column[1], turned[1]);
@@ -257,15 +258,13 @@ void dvi__chart_store(const dvi__chart *chart, const double *local, double *stor
 
 void dvi__chart_leave_velocity(const dvi__chart *chart, const double *xi, const double *rate, double *stored)
 {
-  dvi__functions c;
-  double y[3];
-  if (chart->kind == DVI__LINE || chart->kind == DVI__CIRCLE) {
+  if (chart->kind == DVI__SPHERE) {
+    double y[3];
+    dvi__chart_point(chart, xi, rate, y, stored);
+  } else if (chart->kind == DVI__ROTATION) {
+    const double back[] = {-xi[0], -xi[1], -xi[2]};
+    dvi_so3_dexp(back, rate, stored);
+  } else {
     *stored = *rate;
-    return;
   }
-  dvi__find_functions(dvi__chart_size(chart->kind), xi, 1, &c);
-  if (chart->kind == DVI__SPHERE)
-    sphere_point(chart, &c, xi, rate, y, stored);
-  else
-    dvi__about(xi, -c.of[2][0], c.of[3][0], rate, stored); /* dexp_{-xi} */
 }

@@ -92,7 +92,7 @@ void dvi__chart_stored_momentum(const dvi__chart *chart, const double *xi, const
 void dvi__chart_moments(const dvi__chart *chart, const double *xi, double *W)
 {
   for (int k = 0; k < 3; k++) {
-    double e[3] = {0}, impulse[3] = {0}, column[3];
+    double e[3] = {0}, impulse[3] = {0}, column[3] = {0};
     e[k] = 1;
     dvi__chart_add_impulse(chart, e, impulse);
     dvi__chart_momentum(chart, xi, impulse, column);

@@ -91,7 +91,7 @@ static dvi_status hessian_group(dvi__charted *x, int count, int first, int group
   DVI_TRY(dvi__charted_forces(x, count, first, group, t, xi, rate));
   DVI_TRY(dvi__lagrangian_hessian(x->evaluator, group, x->t, x->y, x->rate, x->L_yy, NULL, NULL));
   for (int k = 0; k < group; k++) {
-    const size_t points = (size_t)count, to = (size_t)(first + k);
+    const size_t points = (size_t)count, to = (size_t)first + (size_t)k;
     bend(x, count, first, group, k, xi, rate);
     dvi__charted_add_mass_product(x, x->mass_in_qq, x->S, x->S, points, to, L_qq);
     dvi__charted_add_mass_product(x, x->mass_in_qv, x->S, x->T, points, to, L_qv);

@@ -92,7 +92,7 @@ static void pull_back(const dvi__charted *x, int count, int first, int group, co
       dvi__charted_pair(cell, group, k, x->L_y, x->w, a, b);
       dvi__chart_gradient(&x->chart[c], at, u, a, b, in_xi, in_rate);
       for (int i = 0; i < dvi__chart_size(cell->kind); i++) {
-        const size_t to = (size_t)(cell->x + i) * (size_t)count + (size_t)(first + k);
+        const size_t to = (size_t)(cell->x + i) * (size_t)count + ((size_t)first + (size_t)k);
         L_xi[to] = in_xi[i];
         L_rate[to] = in_rate[i];
       }

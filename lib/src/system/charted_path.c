@@ -50,7 +50,7 @@ static void moment_change(const dvi__charted *x, const dvi__cell *cell, const do
 /* W N_xi and W N_xi' at point k of a group, into C_qq and C_qv. */
 void dvi__charted_add_moment_changes(dvi__charted *x, int count, int first, int group, int k)
 {
-  const size_t to = (size_t)(first + k);
+  const size_t to = (size_t)first + (size_t)k;
   memset(x->turned_T, 0, 3 * (size_t)x->base->n * sizeof(double));
   memset(x->turned_S, 0, 3 * (size_t)x->base->n * sizeof(double));
   for (int c = 0; c < x->base->cell_count; c++) {
