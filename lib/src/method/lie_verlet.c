@@ -5,7 +5,8 @@
  * p0 = -D1 Ld, p1 = D2 Ld, with all forces and momenta as the tangent spaces see them:
  *     p_half = p0 - h/2 dV(q0),   F Jd - Jd F^T = (h p_half)^ gives q1 and turns p_half,   p1 = p_half - h/2 dV(q1).
  * The equation for q1 has no potential in it (action/leaps.h): a step has one gradient and is explicit in the forces.
- * Order 2, symmetric, symplectic; momenta of symmetries to roundoff.  Source: Moser and Veselov 1991; Leok and Shingel 2012, sec. 2.3. */
+ * Order 2, symmetric, symplectic; momenta of symmetries to roundoff; a free body keeps its energy, too (Hairer and Vilmart 2006).
+ * Source: Moser and Veselov 1991; Leok and Shingel 2012, sec. 2.3. */
 #include <string.h>
 
 #include "action/leaps.h"
@@ -110,10 +111,9 @@ static void explain(const dvi__stepper *self, dvi__text *text)
   dvi__leaps_count(own->leaps, &alone, &coupled);
   dvi__text_add(text, "kernel: explicit in the forces; one gradient a step (the last one of a step is the first of the next)\n");
   dvi__text_add(text,
-                "solver: %d cells one by one (lines, directions and angles in closed form, bodies by Newton's method in 3 "
-                "unknowns, %s); %d coupled by the "
-                "mass, by one Newton iteration\n",
-                alone, solve_name(self->settings.value[SOLVE]), coupled);
+                "solver: cells by themselves: %d (lines, directions and angles in closed form, bodies by Newton's method, %s)\n",
+                alone, solve_name(self->settings.value[SOLVE]));
+  dvi__text_add(text, "solver: cells coupled by the mass, in one Newton iteration: %d\n", coupled);
 }
 
 const dvi__method dvi__lie_verlet = {
