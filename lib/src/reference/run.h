@@ -13,10 +13,11 @@ typedef struct dvi__reference_run {
   const dvi_system *system;
   dvi_reference_options options; /* complete: no zeros */
   double t, t_end;
-  int n;              /* numbers of v and p, and without factors of q */
-  double *q, *v, *p;  /* q [nq], v and p [n]: the start; the end after success. v is also the guess for the next inverse Legendre map */
-  double *force;      /* [n] L_q at the start; with a Hamiltonian p'; not with factors */
-  double *multiplier; /* [m] with a Hamiltonian: its constraints', at the start */
+  int n; /* numbers of v and p, and without factors of q */
+  double *q, *v,
+      *p;        /* q [nq], v and p [n]: the start; the end after success. v is also the guess for the next inverse Legendre map */
+  double *force; /* [n] L_q at the start; with a Hamiltonian p'; not with factors */
+  double *multiplier;         /* [m] with a Hamiltonian: its constraints', at the start */
   double *L_qq, *L_qv, *L_vv; /* in the order of the system's patterns */
   dvi__evaluator *evaluator;
   dvi_counters counters;
@@ -28,7 +29,7 @@ typedef struct dvi__reference_run {
 
 /* The codes. They leave the end in run->q and run->p, and what they did in run->reached and run->steps. */
 dvi_status dvi__reference_ida(dvi__reference_run *run);
-dvi_status dvi__reference_dirac(dvi__reference_run *run); /* IDA with a Hamiltonian */
+dvi_status dvi__reference_dirac(dvi__reference_run *run);    /* IDA with a Hamiltonian */
 dvi_status dvi__reference_ida_lift(dvi__reference_run *run); /* of systems with factors */
 dvi_status dvi__reference_cvode(dvi__reference_run *run);
 dvi_status dvi__reference_arkode(dvi__reference_run *run);

@@ -158,7 +158,8 @@ static dvi_status prepare(dvi__reference_run *run, const double *q, const double
     if (status == DVI_OK) status = dvi__dirac_motion(run->evaluator, run->t, run->q, run->p, run->v, run->force, run->multiplier);
   } else {
     if (status == DVI_OK) status = dvi__legendre_inverse(run->evaluator, run->t, run->q, run->p, run->v);
-    if (status == DVI_OK && !factors) status = dvi__lagrangian_gradient(run->evaluator, 1, &run->t, run->q, run->v, run->force, NULL);
+    if (status == DVI_OK && !factors)
+      status = dvi__lagrangian_gradient(run->evaluator, 1, &run->t, run->q, run->v, run->force, NULL);
   }
   if (status == DVI_OK) return DVI_OK;
   return dvi__fail_in(status, "%s: no start at t = %.9g", codes[run->options.code].name, run->t);

@@ -21,7 +21,7 @@ struct dvi__evaluator {
   struct dvi__charted *charted;
   dvi__evaluator *local;
   double *rate, *local_p, *local_v, *origin; /* [n] */
-  double *velocity_search;  /* general Lagrangians: [6 n], its work */
+  double *velocity_search;                   /* general Lagrangians: [6 n], its work */
 };
 
 /* Move the points that differences asked for to the counters. */
