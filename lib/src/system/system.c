@@ -1,14 +1,12 @@
 /* Making a system: every term is checked, copied, and its patterns joined to those of the whole Lagrangian. */
 #include "system/system.h"
 
-#include <math.h>
 #include <pthread.h>
 #include <string.h>
 
 #include "core/hash.h"
 #include "core/memory.h"
 #include "core/status.h"
-#include "num/finite.h"
 #include "system/dirac.h"
 #include "system/factor.h"
 #include "system/gauge.h"
