@@ -65,7 +65,7 @@ static cost cost_of(int links)
 {
   chain of;
   cost found;
-  make_link_chain(links, &of);
+  make_linked_chain(links, &of);
   const long before = heap_bytes();
   dvi_integrator *made = made_integrator(of.system, "sphere-galerkin:degree=2,solver=newton");
   found.bytes = heap_bytes() - before;
@@ -73,7 +73,7 @@ static cost cost_of(int links)
   advance(made, 0.02, 10);
   dvi_integrator_counters(made, &found.counters);
   dvi_integrator_destroy(&made);
-  destroy_link_chain(&of);
+  destroy_chain(&of);
   return found;
 }
 

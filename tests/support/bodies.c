@@ -267,7 +267,7 @@ static void chain_pattern(chain *of)
   }
 }
 
-void make_link_chain(int links, chain *of)
+void make_linked_chain(int links, chain *of)
 {
   const size_t n = 3 * (size_t)links;
   dvi_factor *factors = room((size_t)links, sizeof *factors);
@@ -296,7 +296,7 @@ void make_link_chain(int links, chain *of)
   ck_assert_int_eq(dvi_system_project(of->system, of->q), DVI_OK);
 }
 
-void destroy_link_chain(chain *of)
+void destroy_chain(chain *of)
 {
   dvi_system_destroy(&of->system);
   free(of->start);

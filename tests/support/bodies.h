@@ -29,8 +29,8 @@ typedef struct chain {
   double *q, *v; /* [3*links] */
 } chain;
 
-void make_link_chain(int links, chain *of);
-void destroy_link_chain(chain *of);
+void make_linked_chain(int links, chain *of);
+void destroy_chain(chain *of);
 
 /* An integrator at the start. */
 dvi_integrator *body_integrator(const body *of, const char *method);

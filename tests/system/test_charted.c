@@ -181,13 +181,13 @@ END_TEST
 START_TEST(a_chains_patterns_are_sparse)
 {
   chain long_chain;
-  make_link_chain(100, &long_chain);
+  make_linked_chain(100, &long_chain);
   ck_assert_int_eq(dvi__charted_create(long_chain.system, 0, &counters, &charts), DVI_OK);
   ck_assert_int_eq(dvi__pattern_entries(&charts->qq), 4 * (3 * 100 - 2));
   ck_assert_int_eq(dvi__pattern_entries(&charts->qv), 4 * 100);
   ck_assert_int_eq(dvi__pattern_entries(&charts->vv), 4 * 100);
   dvi__charted_destroy(&charts);
-  destroy_link_chain(&long_chain);
+  destroy_chain(&long_chain);
 }
 END_TEST
 
