@@ -65,7 +65,10 @@ void dvi__action_destroy(dvi__action **action)
 {
   dvi__action *a = *action;
   if (a == NULL) return;
-  double *const owned[] = {a->psi,
+  double *const owned[] = {a->correction,
+                           a->end_q,
+                           a->end_dp,
+                           a->psi,
                            a->dpsi,
                            a->bar,
                            a->node,
