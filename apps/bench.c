@@ -20,8 +20,17 @@
 enum { LEVELS_DEFAULT = 6 };
 
 /* What runs if no --method is given; those that the problem's structure excludes are left out. */
-static const char *const selection[] = {
-    "verlet", "composition:order=8,base=verlet", "midpoint", "galerkin:degree=2", "galerkin:degree=4", "galerkin:degree=8", NULL};
+static const char *const selection[] = {"verlet",
+                                        "composition:order=8,base=verlet",
+                                        "midpoint",
+                                        "galerkin:degree=2",
+                                        "galerkin:degree=4",
+                                        "galerkin:degree=8",
+                                        "lie-verlet",
+                                        "lie-galerkin:degree=2",
+                                        "lie-galerkin:degree=4",
+                                        "lie-galerkin:degree=8",
+                                        NULL};
 
 static const double first_error = 1e-2; /* of each method, relative to the solution */
 static const double above_asked = 1e3;  /* the first error over the largest asked one, at most, as far as that takes */

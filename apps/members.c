@@ -339,6 +339,13 @@ int members_run(const scale_request *request)
   int code = read_counts(&c);
   if (code == DONE) code = open_shaped(request->problem, request->settings, request->one_point, &c.scene);
   if (code != DONE) return code;
+  if (c.scene->velocity != NULL) {
+    code = usage_error(
+        "bench: --scale members: the members are numbers near %s's start, and so off its manifold; try another problem",
+        c.scene->name);
+    problem_destroy(&c.scene);
+    return code;
+  }
   c.h = isnan(request->h) ? c.scene->h : request->h;
   code = check_methods(&c);
   if (code == DONE && !make_room(&c)) {

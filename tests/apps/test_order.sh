@@ -26,6 +26,12 @@ expect 0 'commas are quoted' order kepler --method galerkin:degree=2,quadrature=
 says out '^"galerkin:degree=2,quadrature=lobatto",kepler,' 'quoted specification'
 
 # With another span the stored digits are not for it, and IDA judges; its own error is said.
+expect 0 'rotations' order free-body --method lie-galerkin --method lie-verlet --csv -
+says out '^method,.*,factorizations,distance$' 'one column more, the distance'
+awk -F, 'NR > 1 && !($NF < 1e-13) { bad = 1 } END { exit bad }' out || fail 'every distance is rounding'
+expect 0 'IDA judges rotations' order kovalevskaya --method lie-galerkin:degree=2 --judge ida
+expect 0 'runs judge rotations' order pendulum-3d --method lie-verlet --t-end 2 --judge runs
+says out 'two runs of lie-galerkin' 'the runs are named'
 expect 0 'IDA judges' order henon-heiles --method verlet --t-end 3
 says out 'judge at t = 3: IDA.*error [0-9.]*e-' 'IDA and its error'
 expect 0 'runs judge' order henon-heiles --method galerkin:degree=3 --t-end 3 --judge runs

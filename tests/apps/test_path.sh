@@ -10,6 +10,8 @@ kepler='path kepler --method galerkin:degree=4 --ends fixed --t-end 3 --steps 30
 # Fixed ends, and the run that has them.
 expect 0 'a run' run pendulum --method midpoint --h 0.04 --t-end 2 --out run.csv
 end=$(tail -n 1 run.csv | cut -d, -f2)
+expect 2 'rotations' path free-body --method lie-galerkin --ends initial --steps 10 --t-end 1
+says err 'paths are found between ends in R\^n' 'refused with the reason'
 expect 0 'fixed ends' $pendulum --to "$end" --steps 50 --out path.csv
 says out 'minimum: 0 negative, 0 zero' 'what the action has there'
 [ "$(head -n 1 path.csv)" = "$(head -n 1 run.csv)" ] || fail 'columns are those of dvi run'

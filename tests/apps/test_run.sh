@@ -42,6 +42,26 @@ says err 'of kepler any momenta are a start' 'the reason is given'
 for list in 1 1,2,3 1,x 1,inf '1;2'; do expect 2 "momenta $list" run kepler --method verlet --momenta "$list"; done
 expect 2 'momenta of a resumed run' $kepler --resume any.state --momenta 0,1
 
+# Rotations and directions: velocities before the momenta, and the distance from the manifold last, which is rounding or is told.
+expect 0 'a body' run free-body --method lie-galerkin --h 0.1 --t-end 10
+says out '^t,R11,.*,R33,Omega1,Omega2,Omega3,Pi1,Pi2,Pi3,energy,angular_momentum_z,.*,distance$' 'the columns of a body'
+awk -F, 'NR > 1 && ($NF > 1e-14 || (3 * $11 - $14) ^ 2 > 1e-28) { bad = 1 } END { exit bad }' out || fail 'Pi1 = J1 Omega1, and R is a rotation'
+expect 0 'two bodies' run two-body --method lie-verlet --h 0.1 --t-end 1 --final
+says out '^t,R11_1,.*,x_1,y_1,z_1,R11_2,.*,z_2,Omega1_1,.*,v_z_2,Pi1_1,.*,p_z_2,energy,.*,distance$' 'the columns of two bodies'
+expect 0 'directions' run spherical-chain --set n=2 --method lie-verlet --h 0.1 --t-end 1 --final
+says out '^t,q1_x,q1_y,q1_z,q2_x,q2_y,q2_z,v_q1_x,.*,p_q2_z,energy,angular_momentum_z,distance$' 'the columns of directions'
+expect 0 'off the manifold' run free-body --method lie-rk:scheme=explicit-midpoint --h 0.1 --t-end 10 --final
+awk -F, 'NR > 1 && $NF < 1e-4 { bad = 1 } END { exit bad }' out || fail 'the distance is told'
+expect 2 'a method for R^n' run free-body --method galerkin
+says err 'factors of its configuration space, which this method cannot use' 'refused with the reason'
+expect 1 'an inertia of no body' run free-body --method lie-verlet --set J1=4
+says err 'that of no body' 'refused with the reason'
+expect 0 'half of a body' run free-body --method lie-galerkin --h 0.125 --t-end 1 --checkpoint body.state
+expect 0 'the other half' run free-body --method lie-galerkin --h 0.125 --t-end 2 --resume body.state --final
+cp out halves.csv
+expect 0 'one piece' run free-body --method lie-galerkin --h 0.125 --t-end 2 --final
+same out halves.csv 'two halves of a body are one piece'
+
 # A method that chooses its steps: one column more, the steps' lengths, and what became of the energy on standard error.
 expect 0 'sem' run kepler --method sem --set e=0.6 --h 0.01 --t-end 5
 says out '^t,.*,laplace_y,h$' 'the lengths are the last column'
