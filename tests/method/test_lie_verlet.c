@@ -53,10 +53,10 @@ START_TEST(a_pendulum_has_order_2)
 END_TEST
 
 /* Distance of q and p at time 1 from those of lie-galerkin:degree=6. */
-static double distance_from_galerkin(const body *of, double h)
+static double distance_from_galerkin(const body *of, const char *method, double h)
 {
   const int n = dvi_system_nq(of->system), nv = dvi_system_nv(of->system);
-  dvi_integrator *judge = body_integrator(of, "lie-galerkin:degree=6"), *integrator = body_integrator(of, "lie-verlet");
+  dvi_integrator *judge = body_integrator(of, "lie-galerkin:degree=6"), *integrator = body_integrator(of, method);
   advance(judge, 1.0 / 16, 16);
   advance(integrator, h, lround(1 / h));
   const double error = fmax(distance(n, dvi_integrator_q(judge), dvi_integrator_q(integrator)),
@@ -80,9 +80,22 @@ START_TEST(products_have_order_2)
 {
   body cells;
   make_product(_i, &cells);
-  const double coarse = distance_from_galerkin(&cells, 1.0 / 64), fine = distance_from_galerkin(&cells, 1.0 / 128);
+  const double coarse = distance_from_galerkin(&cells, "lie-verlet", 1.0 / 64),
+               fine = distance_from_galerkin(&cells, "lie-verlet", 1.0 / 128);
   ck_assert_double_le(fine, 1e-3);
   ck_assert_double_eq_tol(log2(coarse / fine), 2, .1);
+  destroy_body(&cells);
+}
+END_TEST
+
+START_TEST(compositions_have_order_4)
+{
+  const char *method = "composition:order=4,base=lie-verlet";
+  body cells;
+  make_product(_i, &cells);
+  const double coarse = distance_from_galerkin(&cells, method, 1.0 / 32), fine = distance_from_galerkin(&cells, method, 1.0 / 64);
+  ck_assert_double_le(fine, 1e-5);
+  ck_assert_double_eq_tol(log2(coarse / fine), 4, .2);
   destroy_body(&cells);
 }
 END_TEST
@@ -337,6 +350,7 @@ int main(void)
   tcase_add_loop_test(tests, a_free_body_has_order_2, 0, 2);
   tcase_add_loop_test(tests, a_pendulum_has_order_2, 0, 2);
   tcase_add_loop_test(tests, products_have_order_2, 0, PRODUCTS);
+  tcase_add_loop_test(tests, compositions_have_order_4, 0, PRODUCTS);
   tcase_add_test(tests, both_parametrisations_are_one_method);
   tcase_add_loop_test(tests, a_step_is_symplectic, 0, 7);
   tcase_add_loop_test(tests, a_step_of_cells_is_symplectic, 0, 2);

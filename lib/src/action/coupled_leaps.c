@@ -171,14 +171,6 @@ static double chord(const dvi__chart *chart, const double *xi, double *u)
   return -square * c[2];
 }
 
-/* n tan(a/2) of the rotation xi. */
-static void tangent_of(const double *xi, double *w)
-{
-  double c[4];
-  dvi__stumpff_four(dvi__dot(xi, xi), c);
-  for (int i = 0; i < 3; i++) w[i] = c[1] / (1 + c[0]) * xi[i];
-}
-
 /* y(xi) - y0 of one unit, to its own last digit. */
 static void move_unit(const unit *of, const double *xi, double *moved)
 {
@@ -186,7 +178,7 @@ static void move_unit(const unit *of, const double *xi, double *moved)
   switch (of->chart.kind) {
   case DVI__LINE: *moved = *xi; return;
   case DVI__ROTATION:
-    tangent_of(xi, w);
+    dvi__turn_tangent(xi, w);
     const dvi__turn turn = dvi__turn_of(w);
     for (int i = 0; i < 3; i++) dvi__turn_change(&turn, of->chart.y0 + 3 * i, moved + 3 * i);
     return;
@@ -329,7 +321,7 @@ static void arrive_rotation(const unit *of, const double *xi, const double *mome
   const double *R = of->chart.y0;
   double *p = state->p + of->cell->v, change[3];
   for (int i = 0; i < 3; i++) p[i] += R[i] * moment[0] + R[3 + i] * moment[1] + R[6 + i] * moment[2];
-  tangent_of(xi, leap);
+  dvi__turn_tangent(xi, leap);
   const dvi__turn turn = dvi__turn_of(leap);
   dvi__turn_frame(&turn, state->q + of->cell->q, state->q_carry + of->cell->q);
   dvi__turn_change(&turn, p, change);

@@ -13,6 +13,7 @@
 #include <string.h>
 
 #include "group/stumpff.h"
+#include "group/turn.h"
 #include "group/vector.h"
 
 enum { MOST_ITERATIONS = 60, SWEEPS = 12 };
@@ -149,16 +150,13 @@ static void out_of_axes(const dvi__body *body, const double y[3], double x[3])
 
 int dvi__body_leap(const dvi__body *body, dvi__leap_by by, const double impulse[3], double w[3])
 {
-  double g[3], f[3], c[4];
+  double g[3], f[3];
   if (!(dvi__dot(impulse, impulse) <= body->largest * body->largest)) return 0;
   into_axes(body, impulse, g);
   for (int i = 0; i < 3; i++) g[i] /= body->moment[i];
   guess(body, by, g, f);
   const int iterations = newton(body, by, g, f);
-  if (iterations != 0 && by == DVI__BY_EXPONENTIAL) {
-    dvi__stumpff_four(dvi__dot(f, f), c);
-    for (int i = 0; i < 3; i++) f[i] *= c[1] / (1 + c[0]);
-  }
+  if (iterations != 0 && by == DVI__BY_EXPONENTIAL) dvi__turn_tangent(f, f);
   out_of_axes(body, f, w);
   return iterations;
 }

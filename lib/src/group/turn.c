@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "group/stumpff.h"
 #include "group/vector.h"
 #include "num/compensated.h"
 
@@ -13,6 +14,13 @@ static void add_squares(int count, const double *x, double *sum, double *low)
     *low += __builtin_fma(x[i], x[i], -square) + ((*sum - (next - added)) + (square - added));
     *sum = next;
   }
+}
+
+void dvi__turn_tangent(const double f[3], double w[3])
+{
+  double c[4];
+  dvi__stumpff_four(dvi__dot(f, f), c);
+  for (int i = 0; i < 3; i++) w[i] = c[1] / (1 + c[0]) * f[i];
 }
 
 dvi__turn dvi__turn_of(const double w[3])

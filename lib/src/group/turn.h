@@ -10,6 +10,9 @@ typedef struct dvi__turn {
 
 dvi__turn dvi__turn_of(const double w[3]);
 
+/* w of the rotation exp(f^), |f| below half a turn; both may be one array. */
+void dvi__turn_tangent(const double f[3], double w[3]);
+
 /* x^T (F - I): what a row of R, or a body momentum, changes by when R becomes R F. */
 void dvi__turn_change(const dvi__turn *turn, const double x[3], double change[3]);
 

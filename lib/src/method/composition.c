@@ -22,14 +22,14 @@ static const char *order_name(int index)
 
 static const char *base_name(int index)
 {
-  static const char *const name[] = {"verlet", "midpoint", "trapezoidal", "galerkin"};
-  return index >= 0 && index < 4 ? name[index] : NULL;
+  static const char *const name[] = {"verlet", "midpoint", "trapezoidal", "galerkin", "lie-verlet"};
+  return index >= 0 && index < 5 ? name[index] : NULL;
 }
 
 static const dvi__key keys[] = {
     {"order", order_name, 0, 0, 0, "4, 6 or 8; left out: 4"},
     {"base", base_name, 0, 0, 0,
-     "the symmetric method that is composed: verlet, midpoint, trapezoidal or galerkin; all other keys are its own; "
+     "the symmetric method that is composed: verlet, midpoint, trapezoidal, galerkin or lie-verlet; all other keys are its own; "
      "left out: verlet"},
     {0},
 };
@@ -185,7 +185,7 @@ const dvi__method dvi__composition = {
     .cite = "KahanLi1997",
     .keys = keys,
     .takes_rest = 1,
-    .uses = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL,
+    .uses = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL | DVI__FACTORS,
     .create = create,
     .destroy = destroy,
     .start = start,
