@@ -128,6 +128,11 @@ START_TEST(what_the_group_does_not_leave_alone_is_refused)
                    DVI_OK);
   check_refusal(&of, "the mass of coordinates 1 and 1");
   destroy_body(&of);
+  const dvi_system_terms one_entry = {
+      .factors = &angle, .factor_count = 1, .mass = {.values = plane, .pattern = {(const int[]){0, 1, 1}, (const int[]){0}}}};
+  ck_assert_int_eq(dvi_system_create(&one_entry, &of.system), DVI_OK);
+  check_refusal(&of, "the mass of coordinates 1 and 1");
+  destroy_body(&of);
 }
 END_TEST
 
