@@ -22,7 +22,6 @@ typedef struct motion {
   int axis[3];              /* which of the body's axes is 1, 2, 3 */
   real A, B, C, lambda, k2; /* Omega, u's rate and the modulus squared */
   real rest;                /* 1 - k2, without cancellation */
-  real start;               /* epsilon */
   real momentum, bend;      /* |L|; bend is n in the integral of the third kind, below 0 */
   real mean, excess;        /* phi = mean t + excess times that integral */
 } motion;
