@@ -165,7 +165,7 @@ static void turn_state(const double *A, double *q, double *second)
 /* Turns about the vertical, and any turn where there is no weight. */
 START_TEST(turned_starts_have_turned_trajectories)
 {
-  static const body_kind kinds[] = {FREE_BODY, PENDULUM_3D, HEAVY_TOP, FREE_MOTION, DIRECTIONS};
+  static const int kinds[] = {FREE_BODY, PENDULUM_3D, HEAVY_TOP, FREE_MOTION, DIRECTIONS};
   take_body(kinds[_i]);
   const double any[] = {0.7, -1.1, 2.1}, vertical[] = {0, 0, 2.3};
   double A[9];
@@ -207,7 +207,7 @@ END_TEST
 /* With weight: that about the vertical. Steps so long that a centre that does not move (system/centring.h) loses 1e-6. */
 START_TEST(vertical_momentum_is_kept)
 {
-  static const body_kind kinds[] = {PENDULUM_3D, HEAVY_TOP, DIRECTIONS};
+  static const int kinds[] = {PENDULUM_3D, HEAVY_TOP, DIRECTIONS};
   take_body(kinds[_i]);
   dvi_integrator *made = body_integrator(&of, "lie-galerkin:degree=2");
   double before[2], after[2];
