@@ -64,8 +64,9 @@ dvi_status dvi__form_hessian(dvi__evaluator *e, const double *q, const double *w
 /* scale [n]: the largest gradient of alpha at q that has to do with a coordinate; 1 where all vanish. */
 dvi_status dvi__form_scale(dvi__evaluator *e, const double *q, double *scale);
 
-/* DVI_SINGULAR unless the symmetric part S of alpha's gradients at q is definite, or 0; with a gauge that makes it so. S [n*n]: room for it. */
-dvi_status dvi__form_definite(dvi__evaluator *e, const double *q, double *S);
+/* DVI_SINGULAR unless the symmetric part S of alpha's gradients D at q is definite, and with it the eigenvalues of sign D^-T D away from 1 on the unit
+ * circle; with sign = 1 S may be 0. The sentence names a gauge that helps. A [4*n*n]: room. */
+dvi_status dvi__form_definite(dvi__evaluator *e, const double *q, int sign, double *A);
 
 /* F [n] = Omega(q) v - H_q(t,q), without a factorisation. */
 dvi_status dvi__two_form_residual(dvi__evaluator *e, double t, const double *q, const double *v, double *F);
