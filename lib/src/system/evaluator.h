@@ -55,6 +55,9 @@ dvi_status dvi__two_form_velocity(dvi__evaluator *e, double t, const double *q, 
 enum { DVI__SIDES_MOST = 16 };
 dvi_status dvi__two_form_side(dvi__evaluator *e, const double *q, int *side);
 
+/* Whether the trajectory from q seems to end within h at a point where the two-form is singular, or is as good as there. v, ahead [n]: room. */
+int dvi__two_form_ends(dvi__evaluator *e, double t, const double *q, double h, double *v, double *ahead);
+
 /* One point of a one-form: alpha [n], and the gradient [n] of alpha(q).w, w [n]. */
 dvi_status dvi__form_gradient(dvi__evaluator *e, const double *q, const double *w, double *alpha_w_q, double *alpha);
 

@@ -274,6 +274,21 @@ static dvi_status measure(dvi__evaluator *e, const double *q, double *Omega, dou
   return DVI_OK;
 }
 
+/* Towards a singular point distances fall as the root of the time left, so that a straight path meets it after twice that time. Or the condition number,
+ * which in two dimensions is always 1. */
+static const double straight = 2, large_condition = 1e6;
+
+int dvi__two_form_ends(dvi__evaluator *e, double t, const double *q, double h, double *v, double *ahead)
+{
+  int here, there;
+  double condition;
+  if (measure(e, q, NULL, &condition) != DVI_OK || dvi__two_form_side(e, q, &here) != DVI_OK) return 0;
+  if (condition > large_condition) return 1;
+  if (dvi__two_form_velocity(e, t, q, v) != DVI_OK) return 0;
+  for (int i = 0; i < e->system->n; i++) ahead[i] = q[i] + straight * h * v[i];
+  return dvi__two_form_side(e, ahead, &there) == DVI_OK && there != here;
+}
+
 dvi_status dvi_system_two_form(const dvi_system *system, const double *q, double *Omega, double *condition)
 {
   dvi__evaluator *e;
