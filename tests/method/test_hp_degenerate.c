@@ -290,6 +290,69 @@ START_TEST(with_gauss_points_there_is_none_where_alpha_is_linear)
 }
 END_TEST
 
+/* ---- a multiplier at 1 ---- */
+
+/* alpha = (S q0 - q1/2, q0/2 + S q1): with nu = 1/(2 S) lambda is -1 for S = 0, and goes to 1 with S. */
+static int round_form(const double *q, double *alpha, void *user)
+{
+  const double S = *(const double *)user;
+  alpha[0] = S * q[0] - 0.5 * q[1];
+  alpha[1] = 0.5 * q[0] + S * q[1];
+  return 0;
+}
+
+static int round_gradient(const double *q, double *alpha_q, void *user)
+{
+  const double S = *(const double *)user;
+  (void)q;
+  alpha_q[0] = alpha_q[3] = S;
+  alpha_q[1] = -0.5;
+  alpha_q[2] = 0.5;
+  return 0;
+}
+
+static dvi_status try_round(double S, const char *method)
+{
+  const dvi_one_form linear = {.value = round_form, .gradient = round_gradient, .user = &S};
+  const dvi_potential H = {.value = energy, .gradient = energy_gradient};
+  const dvi_system_terms terms = {.dimension = 2, .one_form = &linear, .potentials = &H, .potential_count = 1, .autonomous = 1};
+  const double q[2] = {1, 0.5}, v[2] = {0, 0};
+  dvi_system *system = NULL;
+  ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
+  dvi_integrator *integrator = made_integrator(system, method);
+  ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, q, v), DVI_OK);
+  const dvi_status status = dvi_integrator_step(integrator, 1e-4);
+  dvi_integrator_destroy(&integrator);
+  dvi_system_destroy(&system);
+  return status;
+}
+
+/* |1 - mu| is below 0.02 for 2 S < 0.01 and even degrees, and for 2 S > 100 and odd ones. */
+START_TEST(multipliers_near_1_are_refused)
+{
+  static const struct {
+    double S;
+    int odd, even;
+  } tried[] = {{0, 1, 0}, {2e-9, 1, 0}, {-0.004, 1, 0}, {-0.006, 1, 1}, {0.3, 1, 1}, {45, 1, 1}, {-55, 0, 1}, {300, 0, 1}};
+  for (size_t k = 0; k < sizeof tried / sizeof *tried; k++) {
+    const int allowed = _i % 2 == 1 ? tried[k].odd : tried[k].even;
+    for (int type = 2; type <= 3; type++) {
+      const dvi_status status = try_round(tried[k].S, spec("hp:type=%d,degree=%d", type, _i));
+      ck_assert_msg(status == (allowed ? DVI_OK : DVI_SINGULAR), "S = %g: %s", tried[k].S, dvi_status_name(status));
+      if (!allowed) check_words("adds up from step to step and costs an order; use ");
+      if (!allowed) check_words(_i % 2 == 1 ? "a weaker gauge" : "f = c |q|^2/2 with c about 0.5");
+    }
+  }
+}
+END_TEST
+
+START_TEST(odd_degrees_need_no_symmetric_part)
+{
+  check_degenerate_order("vortices-linear", NULL, spec("hp:type=%d", _i), 0.0001, 1);
+  check_degenerate_order("vortices-linear", NULL, spec("hp:type=%d,degree=3", _i), 0.05, 3);
+}
+END_TEST
+
 START_TEST(coarse_quadratures_are_refused)
 {
   problem *of = made_problem("lotka-volterra", NULL);
@@ -315,6 +378,8 @@ int main(void)
   tcase_add_loop_test(tests, the_parasites_multipliers_are_those_of_the_one_form_with_radaus_rules, 1, 4);
   tcase_add_loop_test(tests, with_lobattos_points_it_is_one_or_minus_one, 1, 3);
   tcase_add_loop_test(tests, with_gauss_points_there_is_none_where_alpha_is_linear, 1, 4);
+  tcase_add_loop_test(tests, multipliers_near_1_are_refused, 1, 5);
+  tcase_add_loop_test(tests, odd_degrees_need_no_symmetric_part, 2, 4);
   tcase_add_test(tests, coarse_quadratures_are_refused);
   return run_tests("method/hp_degenerate", tests);
 }

@@ -57,7 +57,7 @@ START_TEST(products_show_the_order)
   body cells;
   const char *method = schemes[_i % 4].method;
   if (_i / 4 < CELLS)
-    make_cells(_i / 4, &cells);
+    make_cells((cells_kind)(_i / 4), &cells);
   else
     make_body(PRODUCT, &cells);
   const double coarse = error_of_product(&cells, method, 1.0 / 64), fine = error_of_product(&cells, method, 1.0 / 128);

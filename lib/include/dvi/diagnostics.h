@@ -81,7 +81,8 @@ dvi_status dvi_order(int count, const double *h, const double *error, double flo
  *  @param      h           the step
  *  @param[out] defect      the defect; not written on failure
  *  @retval DVI_BAD_ARGUMENT     a pointer is NULL, or h is zero, not finite, or so small that t + h = t
- *  @retval DVI_UNSUPPORTED      the system has more coordinates than freedoms: they are not canonical
+ *  @retval DVI_UNSUPPORTED      the system has more coordinates than freedoms: they are not canonical; or it is degenerate, with a one-form or a
+ *                               Hamiltonian with constraints: its states fill only a part of phase space. Take dvi_loop_integral over a loop of them
  *  @retval DVI_NO_MEMORY
  *  @retval DVI_NOT_CONVERGED    the step at (q, p) fails so, or the inverse Legendre map there; or too many of the lengths tried
  *                               have failed, this one last

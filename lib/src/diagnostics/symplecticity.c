@@ -28,6 +28,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "system/system.h"
 
 enum {
   ORDERS = 6, /* entries of a row of the extrapolation: even powers of the length up to the 10th are removed */
@@ -268,6 +269,10 @@ static dvi_status check(const dvi_integrator *integrator, const double *q, const
   if (dvi_system_nq(system) != dvi_system_nv(system))
     return dvi__fail(DVI_UNSUPPORTED, "symplecticity: %d coordinates of %d freedoms are no canonical coordinates",
                      dvi_system_nq(system), dvi_system_nv(system));
+  if (system->terms & (DVI__ONE_FORM | DVI__HAMILTONIAN))
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "symplecticity: the system is degenerate, and no step starts off its constraint, where the map would be "
+                     "differenced; use dvi_loop_integral over a loop of starts");
   return DVI_OK;
 }
 

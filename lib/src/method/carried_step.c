@@ -5,15 +5,17 @@
 
 typedef struct carried {
   dvi__one_step one;
-  double *symmetric; /* [n*n]; NULL: every gauge will do */
+  int sign;     /* of the parasite's multipliers; 0: every gauge will do */
+  double *room; /* [4*n*n], to look at them */
 } carried;
 
 static void explain(const dvi__stepper *self, dvi__text *text)
 {
   const carried *own = self->own;
-  dvi__text_add(text, "constraint: p = alpha(q), which the steps leave; %s\n",
-                own->symmetric != NULL ? "the gauge must make the symmetric part of Dalpha definite, which each step checks"
-                                       : "every gauge will do");
+  static const char *const gauge[] = {
+      "the gauge must make the symmetric part of Dalpha definite, and not 0, which each step checks", "every gauge will do",
+      "the gauge must make the symmetric part of Dalpha definite, or 0, which each step checks"};
+  dvi__text_add(text, "constraint: p = alpha(q), which the steps leave; %s\n", gauge[own->sign + 1]);
 }
 
 DVI__STEP_KIND(action, explain);
@@ -26,22 +28,23 @@ static dvi_status make_action(const dvi__stepper *self, const dvi__action_space 
   return status;
 }
 
-dvi_status dvi__carried_step_create(dvi__stepper *self, const dvi__action_space *space, int needs_definite)
+dvi_status dvi__carried_step_create(dvi__stepper *self, const dvi__action_space *space, int sign)
 {
   const size_t n = (size_t)self->system->n;
   dvi__action *action;
   DVI_TRY(make_action(self, space, &action));
   DVI_TRY(dvi__one_step_create(self, sizeof(carried), &kind, action, 0));
-  if (!needs_definite) return DVI_OK;
+  if (sign == 0) return DVI_OK;
   carried *own = self->own;
-  own->symmetric = DVI_NEW(double, n *n);
-  return own->symmetric != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
+  own->sign = sign;
+  own->room = DVI_NEW(double, 4 * n * n);
+  return own->room != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
 }
 
 void dvi__carried_step_destroy(dvi__stepper *self)
 {
   const carried *own = self->own;
-  if (own != NULL) dvi__release(own->symmetric);
+  if (own != NULL) dvi__release(own->room);
   dvi__one_step_destroy(self);
 }
 
@@ -50,7 +53,7 @@ dvi_status dvi__carried_step(dvi__stepper *self, dvi__state *state, double h)
   const carried *own = self->own;
   const dvi__one_step *one = &own->one;
   double *rows = one->guess, *dq_low = one->guess;
-  if (own->symmetric != NULL) DVI_TRY(dvi__form_definite(dvi__action_evaluator(one->of), state->q, own->symmetric));
+  if (own->sign != 0) DVI_TRY(dvi__form_definite(dvi__action_evaluator(one->of), state->q, own->sign, own->room));
   dvi__action_place(one->of, state->t, h, state->q, state->p);
   DVI_TRY(dvi__one_step_solve(self, state, h));
   DVI_TRY(dvi__action_residual(one->of, one->x, rows));

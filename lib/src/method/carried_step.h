@@ -4,9 +4,9 @@
 #include "action/action.h"
 #include "method/one_step.h"
 
-/* Make memory and own; order and symmetric are the method's. For a system with a one-form. `needs_definite`: a step is refused where the symmetric part
- * of the one-form's derivatives is neither definite nor 0. */
-dvi_status dvi__carried_step_create(dvi__stepper *self, const dvi__action_space *space, int needs_definite);
+/* Make memory and own; order and symmetric are the method's. For a system with a one-form. `sign`: what is off p = alpha(q) has the multipliers
+ * sign*lambda, and a step is refused where dvi__form_definite does not like them; 0: every gauge will do. */
+dvi_status dvi__carried_step_create(dvi__stepper *self, const dvi__action_space *space, int sign);
 
 /* The other operations of dvi__method, and what goes into its initialiser for them. */
 void dvi__carried_step_destroy(dvi__stepper *self);

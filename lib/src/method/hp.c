@@ -12,7 +12,7 @@
  * For degenerate Lagrangians alpha(q).v - H(q), of types 2 and 3, the same rows hold; p is carried, and off alpha(q) by O(h^d) or O(h^(d+1)). That distance
  * is a second solution beside the motion's, the parasite. A quadrature of order 2d or more gives it the multiplier (-1)^d in every gauge; Radau's, of
  * order 2d-1, (-1)^(d-1) times those of Dalpha^-T Dalpha: on the unit circle if the symmetric part of Dalpha is definite (x.Dalpha x = mu x.Dalpha^T x),
- * else mostly not.
+ * else mostly not. At 1 the parasite adds up, and the order is d-1: for even d where the symmetric part is 0, for odd d where it is all.
  * Source: Leok and Ohsawa 2011; Marsden and West 2001, sec. 2.6 (the pairs). The parasite is ours. */
 #include "core/status.h"
 #include "method/carried_step.h"
@@ -91,7 +91,7 @@ static dvi_status create_carried(dvi__stepper *self, const dvi__action_space *sp
   self->method = &carried;
   self->order = u >= 2 * d && d % 2 == 1 ? d + 1 : d;
   self->symmetric = dvi__symmetric_rule(space->rule);
-  return dvi__carried_step_create(self, space, u < 2 * d);
+  return dvi__carried_step_create(self, space, u >= 2 * d ? 0 : d % 2 == 1 ? 1 : -1);
 }
 
 /* ---- all ---- */

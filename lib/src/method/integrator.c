@@ -1,5 +1,6 @@
 /* The driver of one step: it owns the states, so that a failed step leaves everything as it was, for every method, in one place. */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "core/memory.h"
@@ -196,6 +197,18 @@ static dvi_status check_side(dvi_integrator *I)
       "the step leads over a point where the two-form of the one-form is singular, beyond which no trajectory goes on");
 }
 
+/* A step of the method that failed, with the reason if it is where the trajectory ends. `next` is spoilt already. */
+static dvi_status name_end(const dvi_integrator *I, double h, dvi_status status)
+{
+  char sentence[1024];
+  if (!(I->system->terms & DVI__ONE_FORM) || I->pace != NULL || (status < 0 && status != DVI_SINGULAR)) return status;
+  (void)snprintf(sentence, sizeof sentence, "%s", dvi_last_error());
+  const int ends = dvi__two_form_ends(I->evaluator, I->now.t, I->now.q, h, I->next.p, I->next.q);
+  return dvi__fail(status, "%s%s", sentence,
+                   ends ? "; the two-form of the one-form becomes singular within this step, and no trajectory goes on from there"
+                        : "");
+}
+
 static void accept(dvi_integrator *I, double h)
 {
   const dvi__state oldest = I->last;
@@ -265,7 +278,8 @@ static dvi_status advance(dvi_integrator *I, double h)
   copy_state((size_t)I->system->n, &I->now, &I->next);
   memcpy(I->stepper.memory, I->memory_before, I->stepper.memory_count * sizeof(double));
   I->next.density = density;
-  DVI_TRY(method->step(&I->stepper, &I->next, length));
+  const dvi_status status = method->step(&I->stepper, &I->next, length);
+  if (status != DVI_OK) return name_end(I, length, status);
   DVI_TRY(check_state(I));
   DVI_TRY(check_side(I));
   return dvi__control_end(I, h);

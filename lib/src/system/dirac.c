@@ -262,7 +262,10 @@ dvi_status dvi__dirac_constraint(dvi__evaluator *e, const double *q, const doubl
       size = fmax(size, fabs(at->phi_z[k] * (row < n ? q[row] : p[row - n])));
     }
     if (!(fabs(at->phi[a]) <= on_constraint * size))
-      return dvi__fail(DVI_BAD_ARGUMENT, "constraint %d is %.17g at this point, not 0; start with phi(q,p) = 0", a, at->phi[a]);
+      return dvi__fail(
+          DVI_BAD_ARGUMENT,
+          "constraint %d is %.17g at this point, not 0; start with phi(q,p) = 0, or let it be projected (dvi_start_options)", a,
+          at->phi[a]);
   }
   return DVI_OK;
 }

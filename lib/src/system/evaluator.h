@@ -64,6 +64,9 @@ dvi_status dvi__two_form_velocity(dvi__evaluator *e, double t, const double *q, 
 enum { DVI__SIDES_MOST = 16 };
 dvi_status dvi__two_form_side(dvi__evaluator *e, const double *q, int *side);
 
+/* Whether the trajectory from q seems to end within h at a point where the two-form is singular, or is as good as there. v, ahead [n]: room. */
+int dvi__two_form_ends(dvi__evaluator *e, double t, const double *q, double h, double *v, double *ahead);
+
 /* One point of a one-form: alpha [n], and the gradient [n] of alpha(q).w, w [n]. */
 dvi_status dvi__form_gradient(dvi__evaluator *e, const double *q, const double *w, double *alpha_w_q, double *alpha);
 
@@ -73,8 +76,9 @@ dvi_status dvi__form_hessian(dvi__evaluator *e, const double *q, const double *w
 /* scale [n]: the largest gradient of alpha at q that has to do with a coordinate; 1 where all vanish. */
 dvi_status dvi__form_scale(dvi__evaluator *e, const double *q, double *scale);
 
-/* DVI_SINGULAR unless the symmetric part S of alpha's gradients at q is definite, or 0; with a gauge that makes it so. S [n*n]: room for it. */
-dvi_status dvi__form_definite(dvi__evaluator *e, const double *q, double *S);
+/* DVI_SINGULAR unless the symmetric part S of alpha's gradients D at q is definite, and with it the eigenvalues of sign D^-T D away from 1 on the unit
+ * circle; with sign = 1 S may be 0. The sentence names a gauge that helps. A [4*n*n]: room. */
+dvi_status dvi__form_definite(dvi__evaluator *e, const double *q, int sign, double *A);
 
 /* F [n] = Omega(q) v - H_q(t,q), without a factorisation. */
 dvi_status dvi__two_form_residual(dvi__evaluator *e, double t, const double *q, const double *v, double *F);

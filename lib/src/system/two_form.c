@@ -100,62 +100,102 @@ dvi_status dvi__form_scale(dvi__evaluator *e, const double *q, double *scale)
   return DVI_OK;
 }
 
-/* S by columns; returns the largest gradient. */
-static double symmetric_part(const dvi__pattern *qv, const double *alpha_q, size_t n, double *S)
+/* The multipliers sign*lambda, D x = lambda D^T x for D = Dalpha = S + W, must be on the unit circle and away from 1. With S definite they are: nu from
+ * W x = i nu S x is real, lambda = (1 + i nu)/(1 - i nu), so that |lambda + 1| = 2/sqrt(1 + nu^2), |lambda - 1| = |nu| times that. N steps add up to
+ * |sum mu^k| <= min(N, 2/|1 - mu|) of one: with |1 - mu| = 0.02 not to more than 100, with mu = 1 to all, and the order is less by 1. */
+static const double nearest = 0.01; /* of |nu| for lambda, of 1/|nu| for -lambda */
+
+/* [ S W; W^T m S ] by columns, [2n*2n]; returns the largest gradient. By S = L L^T its inertia is that of S and of m - K^T K, K = L^-1 W L^-T. */
+static double split(const dvi__pattern *qv, const double *alpha_q, size_t n, double m, double *A)
 {
   double largest = 0;
-  memset(S, 0, n * n * sizeof *S);
+  memset(A, 0, 4 * n * n * sizeof *A);
   for (size_t j = 0; j < n; j++)
     for (int k = qv->start[j]; k < qv->start[j + 1]; k++) {
-      const size_t i = (size_t)qv->row[k];
-      S[j * n + i] += 0.5 * alpha_q[k];
-      S[i * n + j] += 0.5 * alpha_q[k];
+      const size_t i = (size_t)qv->row[k], N = 2 * n;
+      const double half = 0.5 * alpha_q[k];
+      A[j * N + i] += half;
+      A[i * N + j] += half;
+      A[(n + j) * N + n + i] += m * half;
+      A[(n + i) * N + n + j] += m * half;
+      A[j * N + n + i] -= half;
+      A[(n + i) * N + j] -= half;
+      A[i * N + n + j] += half;
+      A[(n + j) * N + i] += half;
       largest = fmax(largest, fabs(alpha_q[k]));
     }
   return largest;
 }
 
-/* A c for which S + c is definite (Gershgorin). */
-static double lift(size_t n, const double *S)
+/* The largest entry of S, and a c for which S + c is definite (Gershgorin). */
+static double size_and_lift(size_t n, const double *A, double *c)
 {
-  double least = 0;
-  for (size_t i = 0; i < n; i++) {
-    double row = -S[i * n + i];
-    for (size_t j = 0; j < n; j++) row += j != i ? fabs(S[j * n + i]) : 0;
-    least = fmax(least, row);
-  }
-  return least;
-}
-
-/* By Cholesky's factors of S or -S, whose pivots exceed the floor; S is spoilt. */
-static int is_definite(size_t n, double *S, double floor)
-{
-  const double sign = S[0] < 0 ? -1 : 1;
-  for (size_t k = 0; k < n; k++) {
-    const double pivot = sign * S[k * n + k];
-    if (!(pivot > floor)) return 0;
-    for (size_t j = k + 1; j < n; j++)
-      for (size_t i = j; i < n; i++) S[j * n + i] -= sign * S[k * n + j] * S[k * n + i] / pivot;
-  }
-  return 1;
-}
-
-dvi_status dvi__form_definite(dvi__evaluator *e, const double *q, double *S)
-{
-  const dvi__lagrangian_term *l = e->system->lagrangian;
-  const size_t n = (size_t)e->system->n;
-  double *alpha_q = e->hessian[1];
-  DVI_TRY(dvi__form_gradients(l, q, alpha_q, e->scratch.result[0]));
-  const double floor = 1e-12 * symmetric_part(&l->qv, alpha_q, n, S), c = lift(n, S);
   double largest = 0;
-  for (size_t k = 0; k < n * n; k++) largest = fmax(largest, fabs(S[k]));
-  if (largest <= floor || is_definite(n, S, floor)) return DVI_OK;
+  *c = 0;
+  for (size_t i = 0; i < n; i++) {
+    double row = -A[i * 2 * n + i];
+    for (size_t j = 0; j < n; j++) {
+      const double S_ij = A[j * 2 * n + i];
+      row += j != i ? fabs(S_ij) : 0;
+      largest = fmax(largest, fabs(S_ij));
+    }
+    *c = fmax(*c, row);
+  }
+  return largest;
+}
+
+/* How many of the 2n pivots, from the first on, have the sign of the first, and from number n on that times `then`; they must exceed the floor. A is
+ * spoilt. */
+static size_t good_pivots(size_t n, double *A, double floor, double then)
+{
+  const size_t N = 2 * n;
+  const double sign = A[0] < 0 ? -1 : 1;
+  for (size_t k = 0; k < N; k++) {
+    const double pivot = A[k * N + k];
+    if (!((k < n ? sign : then * sign) * pivot > floor)) return k;
+    for (size_t j = k + 1; j < N; j++)
+      for (size_t i = j; i < N; i++) A[j * N + i] -= A[k * N + j] * A[k * N + i] / pivot;
+  }
+  return N;
+}
+
+static dvi_status refuse_indefinite(double c)
+{
   return dvi__fail(
       DVI_SINGULAR,
       "the symmetric part of the one-form's derivatives is not definite here, and what is off p = alpha(q) grows from step "
       "to step; use the gauge alpha + grad f, f = c |q|^2/2 with c well above %.2g, or a quadrature of higher order, "
       "such as gauss",
       c);
+}
+
+static dvi_status refuse_near_one(int sign, double size)
+{
+  return sign < 0
+             ? dvi__fail(DVI_SINGULAR,
+                         "the symmetric part of the one-form's derivatives is 0 or nearly so here, and with even degree what is "
+                         "off p = alpha(q) adds up from step to step and costs an order; use the gauge alpha + grad f, f = c "
+                         "|q|^2/2 with c about %.2g, an odd degree, or a quadrature of higher order, such as gauss",
+                         size)
+             : dvi__fail(DVI_SINGULAR,
+                         "the symmetric part of the one-form's derivatives is more than %g times the two-form here, and with odd "
+                         "degree what is off p = alpha(q) adds up from step to step and costs an order; use a weaker gauge, an "
+                         "even degree, or a quadrature of higher order, such as gauss",
+                         0.5 / nearest);
+}
+
+dvi_status dvi__form_definite(dvi__evaluator *e, const double *q, int sign, double *A)
+{
+  const dvi__lagrangian_term *l = e->system->lagrangian;
+  const size_t n = (size_t)e->system->n;
+  const double m = nearest * nearest;
+  double *alpha_q = e->hessian[1], c;
+  DVI_TRY(dvi__form_gradients(l, q, alpha_q, e->scratch.result[0]));
+  const double size = split(&l->qv, alpha_q, n, sign < 0 ? 1 / m : m, A), floor = 1e-12 * size;
+  if (size_and_lift(n, A, &c) <= floor) return sign < 0 ? refuse_near_one(sign, size) : DVI_OK;
+  const size_t good = good_pivots(n, A, floor, -sign);
+  if (good < n) return refuse_indefinite(c);
+  return good < 2 * n ? refuse_near_one(sign, size) : DVI_OK;
 }
 
 dvi_status dvi__form_distance(dvi__evaluator *e, const double *q, const double *p, double *distance)
@@ -232,6 +272,21 @@ static dvi_status measure(dvi__evaluator *e, const double *q, double *Omega, dou
   if (condition != NULL) *condition = status == DVI_OK ? norm(omega, e->two_form) * inverse_norm(e) : HUGE_VAL;
   if (Omega != NULL) fill_dense(e, Omega);
   return DVI_OK;
+}
+
+/* Towards a singular point distances fall as the root of the time left, so that a straight path meets it after twice that time. Or the condition number,
+ * which in two dimensions is always 1. */
+static const double straight = 2, large_condition = 1e6;
+
+int dvi__two_form_ends(dvi__evaluator *e, double t, const double *q, double h, double *v, double *ahead)
+{
+  int here, there;
+  double condition;
+  if (measure(e, q, NULL, &condition) != DVI_OK || dvi__two_form_side(e, q, &here) != DVI_OK) return 0;
+  if (condition > large_condition) return 1;
+  if (dvi__two_form_velocity(e, t, q, v) != DVI_OK) return 0;
+  for (int i = 0; i < e->system->n; i++) ahead[i] = q[i] + straight * h * v[i];
+  return dvi__two_form_side(e, ahead, &there) == DVI_OK && there != here;
 }
 
 dvi_status dvi_system_two_form(const dvi_system *system, const double *q, double *Omega, double *condition)
