@@ -76,17 +76,18 @@ static dvi_status watch(dvi__stepper *self)
   const dvi__one_step *one = &own->one;
   const size_t n = (size_t)self->system->n;
   const double *const moved[] = {one->dq, one->dp}, *change = one->guess, rounding = 1e-10;
-  double *motion = self->memory + MOTION, *largest = self->memory + LARGEST_JUMP, *jump = self->memory + JUMP, size[2];
+  double *motion = self->memory + MOTION, *largest = self->memory + LARGEST_JUMP, *jump = self->memory + JUMP, size[2], changed[2];
+  int rings = -1;
   DVI_TRY(dvi__phase_jump(one->of, one->x, jump, one->guess));
   dvi__phase_sizes(one->of, one->x, size);
   for (int i = 0; i < 2; i++, jump += n, change += n) {
-    const double changed = dvi__largest(n, change);
+    changed[i] = dvi__largest(n, change);
     motion[i] = fmax(motion[i], dvi__largest(n, moved[i]));
     largest[i] = fmax(largest[i], dvi__largest(n, jump));
-    if (changed > fmax(motion[i], 1.5 * largest[i]) + rounding * size[i])
-      DVI_TRY(dvi__ring_alarm(self, own->alarm, "the change of the jump", changed, motion[i], own->remedy));
+    if (changed[i] > fmax(motion[i], 1.5 * largest[i]) + rounding * size[i]) rings = i;
   }
-  return DVI_OK;
+  return rings < 0 ? DVI_OK
+                   : dvi__ring_alarm(self, own->alarm, "the change of the jump", changed[rings], motion[rings], own->remedy);
 }
 
 dvi_status dvi__phase_step(dvi__stepper *self, dvi__state *state, double h)
