@@ -71,7 +71,7 @@ enum { PRODUCTS = CELLS + 1 };
 static void make_product(int number, body *of)
 {
   if (number < CELLS)
-    make_cells(number, of);
+    make_cells((cells_kind)number, of);
   else
     make_body(PRODUCT, of);
 }

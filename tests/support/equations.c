@@ -50,11 +50,11 @@ static void chain_chord(void *of, double *r)
   for (int i = 0; i < SIZE; i++) r[i] /= 2 + i;
 }
 
-static int chain_scale(void *of, double *scale)
+static dvi_status chain_scale(void *of, double *scale, int *unchanged)
 {
-  (void)of;
+  (void)of, (void)unchanged;
   for (int i = 0; i < SIZE; i++) scale[i] = 2 + i;
-  return 1;
+  return DVI_OK;
 }
 
 void make_chain(double strength, chain *c)
@@ -84,11 +84,11 @@ static void single_chord(void *of, double *r)
   r[0] /= ((const single *)of)->chord;
 }
 
-static int single_scale(void *of, double *scale)
+static dvi_status single_scale(void *of, double *scale, int *unchanged)
 {
-  (void)of;
+  (void)of, (void)unchanged;
   scale[0] = 1;
-  return 1;
+  return DVI_OK;
 }
 
 static void make_solver(const dvi__equations *equations, bench *b)

@@ -127,8 +127,9 @@ dvi_status dvi_integrator_start_velocity(dvi_integrator *integrator, double t, c
  *  @retval DVI_BAD_OPTION      sem: a first step h outside of hmin and hmax
  *  @retval DVI_BAD_STATE       before dvi_integrator_start
  *  @retval DVI_NOT_CONVERGED   the step's equations were not solved, even by KINSOL with line search; the error sentence names
- *                              step, time, iterations and residual. Of a one-form in up to 16 dimensions also: the step leads over a point
- *                              where the two-form is singular, beyond which no trajectory goes on
+ *                              step, time, iterations and residual. Of a one-form in up to 16 dimensions, and of up to 16 constraints, also:
+ *                              the step leads over a point where the two-form, or the bracket matrix, is singular, beyond which no
+ *                              trajectory goes on
  *  @retval DVI_NOT_FINITE      NaN or Inf came out of a callback or the step
  *  @retval DVI_JUMP            a method with jumps ends the run because they have grown (its key `alarm`)
  *  @retval DVI_CALLBACK_RETRY  a callback returned a positive number
@@ -169,6 +170,8 @@ dvi_status dvi_integrator_energy_balance(const dvi_integrator *integrator, dvi_e
 
 /** The jump q+ - q- at the current time, of a method whose trajectories jump between two elements (dg, dg-phase).
  *
+ *  With constraints phi(q,p) that of p follows from the multiplier: [q] = h phi_p^T lambda and [p] = -h phi_q^T lambda at the state, with
+ *  h = dvi_integrator_last_step and lambda = dvi_integrator_multiplier.
  *  @param[out] jump  [nq]; NULL if it is not wanted. Not written if the method has none
  *  @return the largest magnitude of its components; NaN if the method has none, before the start, or for NULL */
 double dvi_integrator_jump(const dvi_integrator *integrator, double *jump);
@@ -235,7 +238,7 @@ dvi_status dvi_integrator_save(const dvi_integrator *integrator, const char *pat
 /** Read a state that dvi_integrator_save wrote; a run then continues bit for bit.
  *
  *  On any failure the state stays. Callbacks are not in the file; the system is known again by what it declares and by the Lagrangian's value
- *  and forces at the saved state, which must agree to nine digits. Other parameters that show in neither (a drive's frequency at t = 0) are
+ *  and forces, and the distance from phi(q,p) = 0 or p = alpha(q), at the saved state, which must agree to nine digits. Other parameters that show in neither (a drive's frequency at t = 0) are
  *  not noticed.
  *  @retval DVI_IO_ERROR  the file cannot be read
  *  @retval DVI_BAD_FILE  it is cut short, damaged, or from another method or system */

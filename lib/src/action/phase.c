@@ -5,6 +5,7 @@
 #include "action/phase_struct.h"
 #include "core/memory.h"
 #include "core/status.h"
+#include "num/finite.h"
 #include "space/legendre.h"
 
 enum { MOST = DVI__STAGES_MOST };
@@ -350,13 +351,44 @@ void dvi__phase_end(const dvi__phase *f, const double *x, double *dq, double *dp
   for (int a = 0; a < f->m; a++) multiplier[a] = multipliers(f, x, a)[0] / f->h;
 }
 
-dvi_status dvi__phase_jump(dvi__phase *f, const double *x, double *jump)
+dvi_status dvi__phase_jump(dvi__phase *f, const double *x, double *jump, double *change)
 {
+  const size_t bytes = 2 * (size_t)f->n * sizeof *jump;
   points(f, x);
   take_end(f, x);
   DVI_TRY(push(f, f->d));
-  memcpy(jump, f->field, 2 * (size_t)f->n * sizeof *jump);
+  memcpy(jump, f->field, bytes);
+  memcpy(change, f->field, bytes);
+  dvi__constraint_push(f->system->constraint, gradients_at(f, f->d), f->impulse, -1, change);
   return DVI_OK;
+}
+
+/* The gradients are those of the end, where the multipliers of q's kicks are those of phi_p. */
+static void add_kicks(const dvi__phase *f, const double *x, double size[2])
+{
+  const dvi__pattern *gradients = &f->system->constraint->gradients;
+  const double *phi_z = gradients_at(f, f->d);
+  for (int a = 0; a < f->m; a++)
+    for (int e = gradients->start[a]; e < gradients->start[a + 1]; e++) {
+      double *of = &size[gradients->row[e] < f->n];
+      *of = fmax(*of, fabs(phi_z[e]) * dvi__largest((size_t)f->k + 1, multipliers(f, x, a)));
+    }
+}
+
+static double largest_entry(const dvi__phase *f, const dvi__pattern *pattern, const double *values)
+{
+  return dvi__largest((size_t)(dvi__pattern_entries(pattern) * f->d), values);
+}
+
+void dvi__phase_sizes(const dvi__phase *f, const double *x, double size[2])
+{
+  const dvi_system *s = f->system;
+  size[0] = dvi__largest((size_t)f->n, f->q0);
+  size[1] = dvi__largest((size_t)f->n, f->p0);
+  add_kicks(f, x, size);
+  const double h = fabs(f->h), of_q = size[0];
+  size[0] += h * largest_entry(f, &s->vv, f->H_pp) * size[1];
+  size[1] += h * largest_entry(f, &s->qq, f->H_qq) * of_q;
 }
 
 /* ---- guesses ---- */

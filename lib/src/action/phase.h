@@ -35,9 +35,14 @@ dvi_status dvi__phase_residual(dvi__phase *phase, const double *x, double *R);
 dvi_status dvi__phase_jacobian(dvi__phase *phase, const double *x, double *values);
 dvi_status dvi__phase_scale(dvi__phase *phase, double *scale);
 
-/* Of a solution: the increments dq and dp [n], the end's multiplier [m]; the jump there [2n], of q and of p. */
+/* Of a solution: the increments dq and dp [n], the end's multiplier [m]; the jump there [2n], of q and of p, and what the multiplier's change in the
+ * step makes of it, h X_phi (lambda' - lambda) [2n]. */
 void dvi__phase_end(const dvi__phase *phase, const double *x, double *dq, double *dp, double *multiplier);
-dvi_status dvi__phase_jump(dvi__phase *phase, const double *x, double *jump);
+dvi_status dvi__phase_jump(dvi__phase *phase, const double *x, double *jump, double *change);
+
+/* After dvi__phase_jump: the sizes, of q and of p, to which roundings of the step are relative: of the state and the kicks of all multipliers,
+ * and of what H's Hessian makes of the other one's. */
+void dvi__phase_sizes(const dvi__phase *phase, const double *x, double size[2]);
 
 /* x for a start with q' = v [n]; x by continuing the last step's, ratio = h_next / h_last. */
 void dvi__phase_straight(const dvi__phase *phase, const double *v, double *x);

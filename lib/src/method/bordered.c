@@ -74,12 +74,13 @@ static dvi_status prepare_of(void *of, const double *x)
   return dvi__action_prepare_chord(b->action, b->Y);
 }
 
-static int row_scale_of(void *of, double *scale)
+static dvi_status row_scale_of(void *of, double *scale, int *unchanged)
 {
   const dvi__bordered *b = of;
+  (void)unchanged;
   (void)dvi__action_row_scale(b->action, scale);
   scale[b->rows] = b->row;
-  return 1;
+  return DVI_OK;
 }
 
 /* ---- making it ---- */

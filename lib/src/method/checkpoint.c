@@ -1,7 +1,7 @@
 /* Checkpoints: everything that the next step depends on, in one file with a checksum.
  *
- * Callbacks cannot be saved, but the system can be known again: by what it declares (a hash), and by the Lagrangian's value and forces at the
- * saved state, which other parameters would change.
+ * Callbacks cannot be saved, but the system can be known again: by what it declares (a hash), and by the Lagrangian's value and forces, and the
+ * distance from the constraint, at the saved state, which other parameters would change.
  *
  * Layout, in the machine's own byte order (a mark tells a foreign one): the header, the specification, then numbers: the state and the one before it
  * with their carries, the method's memory. The checksum is FNV-1a over all that precedes it. */
@@ -23,18 +23,19 @@
 #include "core/status.h"
 #include "method/integrator_struct.h"
 #include "num/finite.h"
+#include "system/dirac.h"
 
-/* The Lagrangian, or the Hamiltonian, at a state: its value, and one sum over its forces; the sizes of the summands tell rounding from difference. NaN if a
- * callback fails there. */
+/* The Lagrangian, or the Hamiltonian, at a state: its value, and one sum over its forces; the largest |phi| or |p - alpha(q)|; the sizes of the
+ * summands tell rounding from difference. NaN if a callback fails there. */
 typedef struct portrait {
-  double value, value_size, force, force_size;
+  double value, value_size, force, force_size, distance, distance_size;
 } portrait;
 
 typedef struct header {
   char magic[8];
   uint32_t order_mark, version;
   uint64_t declared; /* hash of the system's terms */
-  portrait lagrangian;
+  portrait system;
   int64_t n, memory_count, steps;
   double t, t_carry, last_t, last_t_carry, last_h;
   double density, energy; /* of steps in another time: z, E0 */
@@ -42,7 +43,7 @@ typedef struct header {
 } header;
 
 static const char magic[8] = {'d', 'v', 'i', 's', 't', 'a', 't', 'e'};
-enum { ORDER_MARK = 0x01020304, VERSION = 3, MOST_NAMES = 1000 };
+enum { ORDER_MARK = 0x01020304, VERSION = 4, MOST_NAMES = 1000 };
 
 /* Another machine's mathematical functions differ by a few roundings; other parameters by more than this. */
 static const double same_number = 1e-9;
@@ -63,6 +64,17 @@ static uint64_t declared(const dvi_integrator *I)
   return dvi__hash(hash, strlen(I->pace->name), I->pace->name);
 }
 
+static dvi_status portray_constraint(const dvi_integrator *I, const double *q, const double *p, portrait *of)
+{
+  if (I->system->terms & DVI__HAMILTONIAN) {
+    DVI_TRY(dvi__dirac_size(I->evaluator, q, p, &of->distance_size));
+    return dvi__dirac_distance(I->evaluator, q, p, &of->distance);
+  }
+  if (!(I->system->terms & DVI__ONE_FORM)) return DVI_OK;
+  DVI_TRY(dvi__form_size(I->evaluator, q, &of->distance_size));
+  return dvi__form_distance(I->evaluator, q, p, &of->distance);
+}
+
 static portrait portray(const dvi_integrator *I, double t, const double *now, const double *last, double last_h)
 {
   const int n = I->system->n;
@@ -73,8 +85,8 @@ static portrait portray(const dvi_integrator *I, double t, const double *now, co
   if (I->system->cells == NULL) dvi__guess_velocity(n, q, last, last + n, last_h, v);
   if (dvi__legendre_inverse(I->evaluator, t, q, p_now, v) != DVI_OK ||
       dvi__state_lagrangian(I->evaluator, t, q, second, &p.value) != DVI_OK ||
-      dvi__state_forces(I->evaluator, t, q, second, forces) != DVI_OK)
-    return (portrait){(double)NAN, (double)NAN, (double)NAN, (double)NAN};
+      dvi__state_forces(I->evaluator, t, q, second, forces) != DVI_OK || portray_constraint(I, q, p_now, &p) != DVI_OK)
+    return (portrait){(double)NAN, (double)NAN, (double)NAN, (double)NAN, (double)NAN, (double)NAN};
   p.value_size = fabs(p.value);
   for (int i = 0; i < n; i++) {
     p.value_size += fabs(p_now[i] * v[i]);
@@ -91,6 +103,11 @@ static int same_lagrangian(const portrait *a, const portrait *b)
          !(fabs(a->force - b->force) > same_number * (a->force_size + b->force_size));
 }
 
+static int same_constraint(const portrait *a, const portrait *b)
+{
+  return !(fabs(a->distance - b->distance) > same_number * (a->distance_size + b->distance_size));
+}
+
 /* ---- save ---- */
 
 static void pack(const dvi_integrator *I, unsigned char *file)
@@ -99,7 +116,7 @@ static void pack(const dvi_integrator *I, unsigned char *file)
   header head = {.order_mark = ORDER_MARK,
                  .version = VERSION,
                  .declared = declared(I),
-                 .lagrangian = portray(I, I->now.t, I->now.q, I->last.q, I->last_h),
+                 .system = portray(I, I->now.t, I->now.q, I->last.q, I->last_h),
                  .n = I->system->n,
                  .memory_count = (int64_t)I->stepper.memory_count,
                  .steps = I->counters.steps,
@@ -203,10 +220,16 @@ static dvi_status check_system(const dvi_integrator *I, const char *path, const 
   memcpy(&head, file, sizeof head);
   if (head.declared != declared(I)) return other_system(path);
   const portrait here = portray(I, head.t, numbers, numbers + 4 * (size_t)I->system->n, head.last_h);
-  if (same_lagrangian(&here, &head.lagrangian)) return DVI_OK;
-  return dvi__fail(DVI_BAD_FILE,
-                   "checkpoint %s: of another system or other parameters; at its state the Lagrangian was %.9g, here it is %.9g",
-                   path, head.lagrangian.value, here.value);
+  if (!same_lagrangian(&here, &head.system))
+    return dvi__fail(DVI_BAD_FILE,
+                     "checkpoint %s: of another system or other parameters; at its state the Lagrangian was %.9g, here it is %.9g",
+                     path, head.system.value, here.value);
+  if (same_constraint(&here, &head.system)) return DVI_OK;
+  return dvi__fail(
+      DVI_BAD_FILE,
+      "checkpoint %s: of a system with another constraint or other parameters; its state was %.2g away from it, here it "
+      "is %.2g away",
+      path, head.system.distance, here.distance);
 }
 
 static dvi_status check(const dvi_integrator *I, const char *path, const unsigned char *file, size_t got)

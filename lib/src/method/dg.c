@@ -67,7 +67,7 @@ static dvi_status create(dvi__stepper *self)
   self->order = order_of(&self->settings);
   const dvi__dg_space space = {value[DEGREE], value[NODES],          (dvi__flux)value[FLUX],
                                value[POINTS], self->settings.listed, self->settings.list};
-  return dvi__dg_create(self, &space, value[ALARM]);
+  return dvi__dg_create(self, &space, value[ALARM], "from the start on, a stiffness (dg:stiffness=c) keeps it small");
 }
 
 const dvi__method dvi__dg = {

@@ -44,7 +44,7 @@ static dvi_status create_for_form(dvi__stepper *self)
         "dg-phase: moments=%d with a one-form; take 0, or vprk:projection=symplectic, whose stages fulfil the constraint",
         value[MOMENTS]);
   self->order = 2;
-  return dvi__dg_create(self, &space, value[ALARM]);
+  return dvi__dg_create(self, &space, value[ALARM], "take another method, dg:degree=3,stiffness=c, from the start on");
 }
 
 /* Measured on circle-dirac and magnetic-pair (tests/method/test_dg_phase.c). */

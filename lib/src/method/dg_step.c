@@ -16,6 +16,7 @@ enum { MOTION = DVI__CARRIED, JUMP };
 typedef struct dg_step {
   dvi__one_step one;
   int alarm;
+  const char *remedy;
   double part; /* of the largest motion of a step that a jump may be */
 } dg_step;
 
@@ -44,7 +45,7 @@ static void explain(const dvi__stepper *self, dvi__text *text)
 
 DVI__STEP_KIND(discontinuous, explain);
 
-dvi_status dvi__dg_create(dvi__stepper *self, const dvi__dg_space *space, int alarm)
+dvi_status dvi__dg_create(dvi__stepper *self, const dvi__dg_space *space, int alarm, const char *remedy)
 {
   dvi__discontinuous *element;
   self->symmetric = space->flux == DVI__AVERAGE_FLUX || space->flux == DVI__PATH_FLUX;
@@ -52,6 +53,7 @@ dvi_status dvi__dg_create(dvi__stepper *self, const dvi__dg_space *space, int al
   DVI_TRY(dvi__one_step_create(self, sizeof(dg_step), &kind, element, 1 + 2 * (size_t)self->system->n));
   dg_step *own = self->own;
   own->alarm = alarm;
+  own->remedy = remedy;
   own->part = space->degree == 0 ? 4 : 0.5; /* elements of degree 0 move by jumps alone */
   return DVI_OK;
 }
@@ -64,17 +66,14 @@ static void turn(dvi__stepper *self)
   for (int i = 0; i < self->system->n; i++) jump(self)[i] = -jump(self)[i];
 }
 
-dvi_status dvi__watch_jump(const dvi__stepper *self, int alarm, double part, double jump_size, double motion, double at,
-                           const char *remedy)
+dvi_status dvi__ring_alarm(const dvi__stepper *self, int alarm, const char *what, double size, double motion, const char *remedy)
 {
-  const double rounding = 1e-10;
-  if (jump_size <= part * motion + rounding * at) return DVI_OK;
   if (alarm == DVI__ALARM_STOP)
     return dvi__fail(
         DVI_JUMP,
-        "the jump, %.2e, is large against the largest motion of a step, %.2e: the parasite has grown, and smaller steps do not "
+        "%s, %.2e, is large against the largest motion of a step, %.2e: the parasite has grown, and smaller steps do not "
         "remove it; %s, alarm=warn goes on",
-        jump_size, motion, remedy);
+        what, size, motion, remedy);
   self->counters->jump_alarms++;
   return DVI_OK;
 }
@@ -85,9 +84,10 @@ static dvi_status watch(const dvi__stepper *self, const double *q, const double 
   const dg_step *own = self->own;
   const size_t n = (size_t)self->system->n;
   double *motion = &self->memory[MOTION];
+  const double size = dvi__largest(n, jump(self)), rounding = 1e-10;
   *motion = fmax(*motion, dvi__largest(n, dq));
-  return dvi__watch_jump(self, own->alarm, own->part, dvi__largest(n, jump(self)), *motion, dvi__largest(n, q),
-                         "from the start on, a stiffness (dg:stiffness=c) keeps it small");
+  if (size <= own->part * *motion + rounding * dvi__largest(n, q)) return DVI_OK;
+  return dvi__ring_alarm(self, own->alarm, "the jump", size, *motion, own->remedy);
 }
 
 static dvi_status solve(dvi__stepper *self, const dvi__state *state, double h)

@@ -14,13 +14,12 @@
 enum { DVI__ALARM_STOP, DVI__ALARM_WARN };
 const char *dvi__alarm_choice(int index);
 
-/* Judge a jump of this size against a part of the largest motion, with `at` the size of what jumps: DVI_JUMP with the remedy, or counted, if it is larger. */
-dvi_status dvi__watch_jump(const dvi__stepper *self, int alarm, double part, double jump, double motion, double at,
-                           const char *remedy);
+/* A jump, or `what` is watched of it, is too large: DVI_JUMP with the remedy, or counted. */
+dvi_status dvi__ring_alarm(const dvi__stepper *self, int alarm, const char *what, double size, double motion, const char *remedy);
 void dvi__explain_jumps(int alarm, dvi__text *text);
 
-/* Fill a stepper's symmetric, memory and own for this space; not its order. */
-dvi_status dvi__dg_create(dvi__stepper *self, const dvi__dg_space *space, int alarm);
+/* Fill a stepper's symmetric, memory and own for this space; not its order. The remedy, a literal, is what the alarm advises. */
+dvi_status dvi__dg_create(dvi__stepper *self, const dvi__dg_space *space, int alarm, const char *remedy);
 
 /* The other operations of dvi__method, and what goes into its initialiser for them. */
 dvi_status dvi__dg_step(dvi__stepper *self, dvi__state *state, double h);

@@ -83,9 +83,10 @@ static void chord_of(void *of, double *R)
   dvi__action_chord(((const element *)of)->action, R);
 }
 
-static int row_scale_of(void *of, double *scale)
+static dvi_status row_scale_of(void *of, double *scale, int *unchanged)
 {
-  return dvi__action_row_scale(((const element *)of)->action, scale);
+  *unchanged = !dvi__action_row_scale(((const element *)of)->action, scale);
+  return DVI_OK;
 }
 
 static void sweep_from_of(void *of, const double *Y)

@@ -185,16 +185,21 @@ static dvi_status check_state(const dvi_integrator *I)
   return dvi__fail(DVI_NOT_FINITE, "the new state is not finite");
 }
 
-/* No trajectory goes through a point where the two-form is singular, but a step can go over it, and is on none then. */
+static dvi_status find_side(const dvi_integrator *I, dvi__state *state)
+{
+  if (I->system->terms & DVI__HAMILTONIAN) return dvi__dirac_side(I->evaluator, state->q, state->p, &state->side);
+  return dvi__two_form_side(I->evaluator, state->q, &state->side);
+}
+
+/* No trajectory goes through a point where the two-form, or the bracket matrix, is singular, but a step can go over it, and is on none then. */
 static dvi_status check_side(dvi_integrator *I)
 {
-  if (!(I->system->terms & DVI__ONE_FORM)) return DVI_OK;
-  if (I->now.side == 0) DVI_TRY(dvi__two_form_side(I->evaluator, I->now.q, &I->now.side));
-  DVI_TRY(dvi__two_form_side(I->evaluator, I->next.q, &I->next.side));
+  if (!(I->system->terms & (DVI__ONE_FORM | DVI__HAMILTONIAN))) return DVI_OK;
+  if (I->now.side == 0) DVI_TRY(find_side(I, &I->now));
+  DVI_TRY(find_side(I, &I->next));
   if (I->next.side == I->now.side) return DVI_OK;
-  return dvi__fail(
-      DVI_NOT_CONVERGED,
-      "the step leads over a point where the two-form of the one-form is singular, beyond which no trajectory goes on");
+  return dvi__fail(DVI_NOT_CONVERGED, "the step leads over a point where the %s is singular, beyond which no trajectory goes on",
+                   I->system->terms & DVI__HAMILTONIAN ? "constraints' bracket matrix" : "two-form of the one-form");
 }
 
 /* A step of the method that failed, with the reason if it is where the trajectory ends. `next` is spoilt already. */

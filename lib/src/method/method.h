@@ -9,7 +9,7 @@
 typedef struct dvi__state {
   double t, t_carry;
   double density;                    /* step control's z (method/control.c) */
-  int side;                          /* the driver's, of degenerate systems: dvi__two_form_side at q; 0: not known */
+  int side;                          /* the driver's, of degenerate systems: dvi__two_form_side or dvi__dirac_side; 0: not known */
   double *q, *p, *q_carry, *p_carry; /* [n] */
 } dvi__state;
 

@@ -16,7 +16,7 @@ enum { DVI__LENGTH, DVI__CARRIED };
 typedef struct dvi__step_kind {
   dvi_status (*residual)(void *of, const double *x, double *R);
   dvi_status (*jacobian)(void *of, const double *x, double *values);
-  int (*row_scale)(void *of, double *scale);
+  dvi_status (*row_scale)(void *of, double *scale, int *unchanged);
   void (*straight)(const void *of, const double *v, double *x);
   void (*continued)(void *of, double ratio, const double *last, double *x);
   const dvi__pattern *(*pattern)(const void *of);
@@ -64,9 +64,10 @@ void dvi__one_step_explain(const dvi__stepper *self, dvi__text *text);
   {                                                                                                       \
     return dvi__##foo##_jacobian(of, x, values);                                                          \
   }                                                                                                       \
-  static int row_scale_of(void *of, double *scale)                                                        \
+  static dvi_status row_scale_of(void *of, double *scale, int *unchanged)                                 \
   {                                                                                                       \
-    return dvi__##foo##_scale(of, scale) == DVI_OK;                                                       \
+    (void)unchanged;                                                                                      \
+    return dvi__##foo##_scale(of, scale);                                                                 \
   }                                                                                                       \
   static void straight_of(const void *of, const double *v, double *x)                                     \
   {                                                                                                       \

@@ -7,13 +7,13 @@
 #include "num/compensated.h"
 #include "num/finite.h"
 
-/* Carried: the largest motions of a step so far, of q and of p; the jumps of both [n]; the node's multiplier [m]. */
-enum { MOTION = DVI__CARRIED, JUMP = MOTION + 2 };
+/* Carried: the largest motions of a step and the largest jumps so far, of q and of p each; the jumps of both [n]; the node's multiplier [m]. */
+enum { MOTION = DVI__CARRIED, LARGEST_JUMP = MOTION + 2, JUMP = LARGEST_JUMP + 2 };
 
 typedef struct phase_step {
   dvi__one_step one;
   int alarm;
-  double part; /* of the largest motion of a step that a jump may be */
+  const char *remedy;
 } phase_step;
 
 static double *multiplier(const dvi__stepper *self)
@@ -36,10 +36,11 @@ dvi_status dvi__phase_step_create(dvi__stepper *self, int degree, int moments, i
   const size_t n = (size_t)self->system->n, m = (size_t)dvi_system_constraint_count(self->system);
   self->symmetric = 1;
   DVI_TRY(dvi__phase_create(self->system, degree, moments, self->counters, &step));
-  DVI_TRY(dvi__one_step_create(self, sizeof(phase_step), &kind, step, 2 + 2 * n + m));
+  DVI_TRY(dvi__one_step_create(self, sizeof(phase_step), &kind, step, 4 + 2 * n + m));
   phase_step *own = self->own;
   own->alarm = alarm;
-  own->part = moments == 0 ? 4 : 0.5; /* without moments the constraint's force is in the jumps alone */
+  own->remedy = moments < degree ? "from the start on, an even degree with all its moments keeps it small"
+                                 : "from the start on, smaller steps keep it small for longer";
   return DVI_OK;
 }
 
@@ -67,19 +68,26 @@ static dvi_status settle(dvi__stepper *self, const dvi__state *state, double h)
   return DVI_OK;
 }
 
-/* The jump of q against the motion of q, that of p against the motion of p. */
-static dvi_status watch(const dvi__stepper *self, const dvi__state *state)
+/* A jump is the constraint's force, and may be large while nothing moves. The parasite changes its sign from node to node, by twice its size: by more
+ * than the motion, and by more than 1.5 of the largest jump so far. Of q and of p, each by itself. */
+static dvi_status watch(dvi__stepper *self)
 {
   const phase_step *own = self->own;
+  const dvi__one_step *one = &own->one;
   const size_t n = (size_t)self->system->n;
-  const double *const motion[] = {own->one.dq, own->one.dp}, *const at[] = {state->q, state->p};
-  double *largest = self->memory + MOTION, *jump = self->memory + JUMP;
-  for (int i = 0; i < 2; i++, jump += n) {
-    largest[i] = fmax(largest[i], dvi__largest(n, motion[i]));
-    DVI_TRY(dvi__watch_jump(self, own->alarm, own->part, dvi__largest(n, jump), largest[i], dvi__largest(n, at[i]),
-                            "from the start on, an even degree keeps it small"));
+  const double *const moved[] = {one->dq, one->dp}, *change = one->guess, rounding = 1e-10;
+  double *motion = self->memory + MOTION, *largest = self->memory + LARGEST_JUMP, *jump = self->memory + JUMP, size[2], changed[2];
+  int rings = -1;
+  DVI_TRY(dvi__phase_jump(one->of, one->x, jump, one->guess));
+  dvi__phase_sizes(one->of, one->x, size);
+  for (int i = 0; i < 2; i++, jump += n, change += n) {
+    changed[i] = dvi__largest(n, change);
+    motion[i] = fmax(motion[i], dvi__largest(n, moved[i]));
+    largest[i] = fmax(largest[i], dvi__largest(n, jump));
+    if (changed[i] > fmax(motion[i], 1.5 * largest[i]) + rounding * size[i]) rings = i;
   }
-  return DVI_OK;
+  return rings < 0 ? DVI_OK
+                   : dvi__ring_alarm(self, own->alarm, "the change of the jump", changed[rings], motion[rings], own->remedy);
 }
 
 dvi_status dvi__phase_step(dvi__stepper *self, dvi__state *state, double h)
@@ -88,8 +96,7 @@ dvi_status dvi__phase_step(dvi__stepper *self, dvi__state *state, double h)
   if (self->memory[DVI__LENGTH] == 0) DVI_TRY(settle(self, state, h));
   DVI_TRY(solve(self, state, h));
   dvi__phase_end(one->of, one->x, one->dq, one->dp, multiplier(self));
-  DVI_TRY(dvi__phase_jump(one->of, one->x, self->memory + JUMP));
-  DVI_TRY(watch(self, state));
+  DVI_TRY(watch(self));
   dvi__one_step_move(self, state, h, one->x);
   dvi__add_compensated_all(self->system->n, state->p, state->p_carry, one->dp);
   return DVI_OK;

@@ -241,8 +241,9 @@ static dvi_status prepare(void *of, const double *x)
   return dvi__path_scale(of, x);
 }
 
-static int row_scale(void *of, double *scale)
+static dvi_status row_scale(void *of, double *scale, int *unchanged)
 {
+  (void)unchanged;
   const dvi_path *path = of;
   const double kinetic = dvi__largest((size_t)path->n, path->kinetic);
   dvi__places places;
@@ -253,7 +254,7 @@ static int row_scale(void *of, double *scale)
         if (places.count == 1) scale[places.at[0]] = path->row_scale[i * path->s];
       }
   for (int c = path->core; c < path->unknowns; c++) scale[c] = kinetic > 0 ? kinetic : 1;
-  return 1;
+  return DVI_OK;
 }
 
 dvi_status dvi__path_make_solver(dvi_path *path)

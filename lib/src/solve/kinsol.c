@@ -195,8 +195,9 @@ static dvi_status set_scales(dvi__kinsol *k, double size, const double *x)
   double whole = dvi__largest((size_t)k->solver->equations.unknowns, x);
   if (whole == 0) whole = size > 0 ? size : 1;
   whole = power_above(whole);
-  const int changed = k->solver->equations.row_scale(k->solver->equations.of, k->row_scale);
-  if (!changed && whole == k->whole) return DVI_OK;
+  int unchanged = 0;
+  DVI_TRY(k->solver->equations.row_scale(k->solver->equations.of, k->row_scale, &unchanged));
+  if (unchanged && whole == k->whole) return DVI_OK;
   k->whole = whole;
   N_VConst(1 / whole, k->x_scale);
   if (invert_rows(k) && 1 / whole > 0 && 1 / whole <= DBL_MAX) return DVI_OK;

@@ -20,8 +20,8 @@ typedef struct dvi__equations {
   dvi_status (*jacobian)(void *of, const double *x, double *values);
   dvi_status (*prepare_chord)(void *of, const double *x);
   void (*chord)(void *of, double *r); /* r <- C^{-1} r */
-  /* [unknowns] > 0: size of a row per unit of an unknown; after prepare_chord. 0: it is still what it was at the last call. */
-  int (*row_scale)(void *of, double *scale);
+  /* [unknowns] > 0: size of a row per unit of an unknown; after prepare_chord. *unchanged, 0 before, is set to 1 if it is what it was at the last call. */
+  dvi_status (*row_scale)(void *of, double *scale, int *unchanged);
   int renewed; /* Newton's method factors the Jacobian at each of its points: the equations are nearly singular, and an old factor leads astray */
   /* The same fixed point iteration in variables of the equations' own, where that is cheaper; NULL: residual and chord do it. */
   void (*sweep_from)(void *of, const double *x);

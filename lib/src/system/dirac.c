@@ -6,6 +6,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/finite.h"
+#include "num/pfaffian.h"
 #include "system/evaluator_struct.h"
 
 static dvi_status no_memory(void)
@@ -214,6 +215,16 @@ static dvi_status factor_bracket(dvi__evaluator *e, const double *q, const doubl
       "the constraints' bracket matrix {phi_a, phi_b} is singular at this point: they are dependent, or not all of second class");
 }
 
+dvi_status dvi__dirac_side(dvi__evaluator *e, const double *q, const double *p, int *side)
+{
+  const int m = e->system->constraint->callbacks.count;
+  *side = 1;
+  if (m > DVI__SIDES_MOST) return DVI_OK;
+  DVI_TRY(evaluate_bracket(e, q, p));
+  *side = dvi__pfaffian_sign((size_t)m, e->dirac->bracket);
+  return DVI_OK;
+}
+
 dvi_status dvi__dirac_motion(dvi__evaluator *e, double t, const double *q, const double *p, double *qdot, double *pdot,
                              double *multiplier)
 {
@@ -248,20 +259,35 @@ dvi_status dvi__dirac_distance(dvi__evaluator *e, const double *q, const double 
 static const double on_constraint = 1e-11;
 
 /* What the roundings of a point do to phi_a is measured by its gradient. */
+static double size_of(const dvi__constraint_term *c, const double *phi_z, int a, const double *q, const double *p)
+{
+  const int n = c->gradients.rows / 2;
+  double size = 0;
+  for (int k = c->gradients.start[a]; k < c->gradients.start[a + 1]; k++) {
+    const int row = c->gradients.row[k];
+    size = fmax(size, fabs(phi_z[k] * (row < n ? q[row] : p[row - n])));
+  }
+  return size;
+}
+
+dvi_status dvi__dirac_size(dvi__evaluator *e, const double *q, const double *p, double *size)
+{
+  const dvi__constraint_term *c = e->system->constraint;
+  double *phi_z = e->dirac->weighted.phi_z;
+  *size = 0;
+  DVI_TRY(dvi__constraint_gradients(e, q, p, phi_z));
+  for (int a = 0; a < c->callbacks.count; a++) *size = fmax(*size, size_of(c, phi_z, a, q, p));
+  return DVI_OK;
+}
+
 dvi_status dvi__dirac_constraint(dvi__evaluator *e, const double *q, const double *p)
 {
   const dvi__constraint_term *c = e->system->constraint;
   const dvi__weighted *at = &e->dirac->weighted;
-  const int n = e->system->n;
   DVI_TRY(dvi__constraint_value(e, q, p, at->phi));
   DVI_TRY(dvi__constraint_gradients(e, q, p, at->phi_z));
   for (int a = 0; a < c->callbacks.count; a++) {
-    double size = 0;
-    for (int k = c->gradients.start[a]; k < c->gradients.start[a + 1]; k++) {
-      const int row = c->gradients.row[k];
-      size = fmax(size, fabs(at->phi_z[k] * (row < n ? q[row] : p[row - n])));
-    }
-    if (!(fabs(at->phi[a]) <= on_constraint * size))
+    if (!(fabs(at->phi[a]) <= on_constraint * size_of(c, at->phi_z, a, q, p)))
       return dvi__fail(
           DVI_BAD_ARGUMENT,
           "constraint %d is %.17g at this point, not 0; start with phi(q,p) = 0, or let it be projected (dvi_start_options)", a,

@@ -48,9 +48,13 @@ void dvi__constraint_push(const dvi__constraint_term *c, const double *phi_z, co
 dvi_status dvi__dirac_motion(dvi__evaluator *e, double t, const double *q, const double *p, double *qdot, double *pdot,
                              double *multiplier);
 
-/* The largest |phi_a(q,p)|; DVI_BAD_ARGUMENT unless it is 0 up to rounding. */
+/* The largest |phi_a(q,p)|, and what it is measured by; DVI_BAD_ARGUMENT unless it is 0 up to rounding. */
 dvi_status dvi__dirac_distance(dvi__evaluator *e, const double *q, const double *p, double *distance);
+dvi_status dvi__dirac_size(dvi__evaluator *e, const double *q, const double *p, double *size);
 dvi_status dvi__dirac_constraint(dvi__evaluator *e, const double *q, const double *p);
+
+/* On which side of the points where the bracket matrix is singular a point lies, as dvi__two_form_side tells it of a one-form. */
+dvi_status dvi__dirac_side(dvi__evaluator *e, const double *q, const double *p, int *side);
 
 /* Move z = (q, p) [2n] onto phi = 0 along the fields (phi_p, -phi_q) of the constraints. */
 dvi_status dvi__dirac_project(dvi__evaluator *e, double *z);

@@ -83,8 +83,9 @@ dvi_status dvi__form_definite(dvi__evaluator *e, const double *q, int sign, doub
 /* F [n] = Omega(q) v - H_q(t,q), without a factorisation. */
 dvi_status dvi__two_form_residual(dvi__evaluator *e, double t, const double *q, const double *v, double *F);
 
-/* The largest |p_i - alpha_i(q)|. */
+/* The largest |p_i - alpha_i(q)|, and the size of alpha and of what its gradients make of q, by which that is measured. */
 dvi_status dvi__form_distance(dvi__evaluator *e, const double *q, const double *p, double *distance);
+dvi_status dvi__form_size(dvi__evaluator *e, const double *q, double *size);
 
 /* DVI_BAD_ARGUMENT unless p = alpha(q) up to rounding. */
 dvi_status dvi__form_constraint(dvi__evaluator *e, const double *q, const double *p);

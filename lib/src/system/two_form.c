@@ -223,6 +223,14 @@ static dvi_status size_of_form(dvi__evaluator *e, const double *q, const double 
   return DVI_OK;
 }
 
+dvi_status dvi__form_size(dvi__evaluator *e, const double *q, double *size)
+{
+  double *alpha = e->point[2];
+  *size = 0;
+  DVI_TRY(dvi__form_value(e->system->lagrangian, q, alpha, e->scratch.result[0]));
+  return size_of_form(e, q, alpha, size);
+}
+
 dvi_status dvi__form_constraint(dvi__evaluator *e, const double *q, const double *p)
 {
   double *alpha = e->point[2], size = 0;
