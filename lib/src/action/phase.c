@@ -377,7 +377,7 @@ static void add_kicks(const dvi__phase *f, const double *x, double size[2])
 
 static double largest_entry(const dvi__phase *f, const dvi__pattern *pattern, const double *values)
 {
-  return dvi__largest((size_t)(dvi__pattern_entries(pattern) * f->d), values);
+  return dvi__largest((size_t)dvi__pattern_entries(pattern) * (size_t)f->d, values);
 }
 
 void dvi__phase_sizes(const dvi__phase *f, const double *x, double size[2])

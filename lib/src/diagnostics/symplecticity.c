@@ -266,9 +266,10 @@ static dvi_status check(const dvi_integrator *integrator, const double *q, const
   if (!integrator || !q || !p || !defect) return dvi__fail(DVI_BAD_ARGUMENT, "symplecticity: an argument is NULL");
   if (!isfinite(h) || h == 0) return dvi__fail(DVI_BAD_ARGUMENT, "symplecticity: h = %g, a finite step other than 0 is needed", h);
   const dvi_system *system = dvi_integrator_system(integrator);
-  if (dvi_system_nq(system) != dvi_system_nv(system))
-    return dvi__fail(DVI_UNSUPPORTED, "symplecticity: %d coordinates of %d freedoms are no canonical coordinates",
-                     dvi_system_nq(system), dvi_system_nv(system));
+  if (system->terms & DVI__FACTORS)
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "symplecticity: the %d coordinates of a system with factors, and its momenta, are no canonical coordinates",
+                     dvi_system_nq(system));
   if (system->terms & (DVI__ONE_FORM | DVI__HAMILTONIAN))
     return dvi__fail(DVI_UNSUPPORTED,
                      "symplecticity: the system is degenerate, and no step starts off its constraint, where the map would be "

@@ -64,6 +64,16 @@ static void add_hat(const double *a, double *E)
 
 /* ---- centre ---- */
 
+/* Orthonormal and across y0 even where rounding has made y0 longer or shorter than 1: what it lost in every step would add up.  Source: Duff et al. 2017. */
+static void find_basis(const double *y0, double basis[2][3])
+{
+  const double length = sqrt(dvi__dot(y0, y0)), x = y0[0] / length, y = y0[1] / length, z = y0[2] / length;
+  const double sign = copysign(1, z), a = -1 / (sign + z), b = x * y * a;
+  const double first[] = {1 + sign * x * x * a, sign * b, -sign * x}, second[] = {b, sign + y * y * a, -y};
+  memcpy(basis[0], first, sizeof first);
+  memcpy(basis[1], second, sizeof second);
+}
+
 void dvi__chart_centre(dvi__chart_kind kind, const double *y0, dvi__chart *chart)
 {
   memset(chart, 0, sizeof *chart);
@@ -73,12 +83,7 @@ void dvi__chart_centre(dvi__chart_kind kind, const double *y0, dvi__chart *chart
     chart->basis[0][0] = -y0[1];
     chart->basis[0][1] = y0[0];
   }
-  if (kind != DVI__SPHERE) return;
-  /* Duff et al. 2017. */
-  const double sign = copysign(1, y0[2]), a = -1 / (sign + y0[2]), b = y0[0] * y0[1] * a;
-  const double first[] = {1 + sign * y0[0] * y0[0] * a, sign * b, -sign * y0[0]}, second[] = {b, sign + y0[1] * y0[1] * a, -y0[1]};
-  memcpy(chart->basis[0], first, sizeof first);
-  memcpy(chart->basis[1], second, sizeof second);
+  if (kind == DVI__SPHERE) find_basis(y0, chart->basis);
 }
 
 void dvi__chart_lift(const dvi__chart *chart, const double *x, double *out)
@@ -147,6 +152,28 @@ void dvi__chart_point(const dvi__chart *chart, const double *xi, const double *r
     rotation_point(chart, &c, xi, rate, y, v);
   else
     sphere_point(chart, &c, xi, rate, y, v);
+}
+
+void dvi__chart_leap(const dvi__chart *chart, const double *xi, double *leap)
+{
+  const int stored = dvi__chart_stored(chart->kind), size = dvi__chart_size(chart->kind);
+  double E[9] = {0}, x[3];
+  dvi__functions c;
+  if (chart->kind == DVI__LINE) {
+    *leap = *xi;
+    return;
+  }
+  dvi__find_functions(size, xi, 0, &c);
+  if (chart->kind == DVI__ROTATION) {
+    for (int i = 0; i < 3; i++) x[i] = c.of[1][0] * xi[i];
+    add_hat(x, E);
+    add_squares(0.5 * c.of[2][0], xi, xi, E);
+    turn(chart->y0, E, leap);
+    return;
+  }
+  dvi__chart_lift(chart, xi, x);
+  const double fall = dvi__inner(size, xi, xi) * c.of[2][0];
+  for (int i = 0; i < stored; i++) leap[i] = c.of[1][0] * x[i] - fall * chart->y0[i];
 }
 
 /* ---- tangents ---- */

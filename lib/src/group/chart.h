@@ -36,6 +36,9 @@ void dvi__chart_centre(dvi__chart_kind kind, const double *y0, dvi__chart *chart
 /* y(xi), and dy/dt for dxi/dt = rate; rate and v may both be NULL. */
 void dvi__chart_point(const dvi__chart *chart, const double *xi, const double *rate, double *y, double *v);
 
+/* y(xi) - y0, right to a rounding of its own size: what is added to y0 with a carry does not leave the manifold, however many steps there are. */
+void dvi__chart_leap(const dvi__chart *chart, const double *xi, double *leap);
+
 /* The gradient of a.y(xi) + b.v(xi,rate), in xi and in rate. */
 void dvi__chart_gradient(const dvi__chart *chart, const double *xi, const double *rate, const double *a, const double *b,
                          double *in_xi, double *in_rate);
@@ -65,10 +68,11 @@ void dvi__chart_add_moment(dvi__chart_kind kind, const double *y, const double *
 void dvi__chart_angular_momentum(const dvi__chart *chart, const double *p, double *angular);
 void dvi__chart_add_impulse(const dvi__chart *chart, const double *impulse, double *angular);
 
-/* From it: the chart's momentum at xi, and its derivative in xi [size*size]; the stored momentum at y(xi). */
+/* From it: the chart's momentum at xi, and its derivative in xi [size*size]; the stored momentum at y(xi),
+ * which may be y rounded otherwise. */
 void dvi__chart_momentum(const dvi__chart *chart, const double *xi, const double *angular, double *p);
 void dvi__chart_momentum_derivative(const dvi__chart *chart, const double *xi, const double *angular, double *derivative);
-void dvi__chart_stored_momentum(const dvi__chart *chart, const double *xi, const double *angular, double *stored);
+void dvi__chart_stored_momentum(const dvi__chart *chart, const double *xi, const double *y, const double *angular, double *stored);
 
 /* W [size*3]: the chart's momentum at xi of a moment in space. */
 void dvi__chart_moments(const dvi__chart *chart, const double *xi, double *W);

@@ -50,6 +50,9 @@ void dvi__chart_angular_momentum(const dvi__chart *chart, const double *p, doubl
   }
   dvi__chart_lift(chart, p, P);
   dvi__cross(chart->y0, P, angular);
+  /* A direction's length is 1 but for rounding; what it differs by must not add up in p (dvi__chart_stored_momentum has angular x y). */
+  const double square = dvi__dot(chart->y0, chart->y0);
+  for (int i = 0; i < 3; i++) angular[i] /= square;
 }
 
 void dvi__chart_add_impulse(const dvi__chart *chart, const double *impulse, double *angular)
@@ -76,17 +79,15 @@ void dvi__chart_momentum(const dvi__chart *chart, const double *xi, const double
   dvi__chart_gradient(chart, xi, rest, P, P, unused, p);
 }
 
-void dvi__chart_stored_momentum(const dvi__chart *chart, const double *xi, const double *angular, double *stored)
+void dvi__chart_stored_momentum(const dvi__chart *chart, const double *xi, const double *y, const double *angular, double *stored)
 {
   dvi__functions c;
-  double y[3];
-  if (chart->kind == DVI__ROTATION) {
-    dvi__find_functions(3, xi, 0, &c);
-    dvi__about(xi, -c.of[1][0], c.of[2][0], angular, stored);
+  if (chart->kind == DVI__SPHERE) {
+    dvi__cross(angular, y, stored);
     return;
   }
-  dvi__chart_point(chart, xi, NULL, y, NULL);
-  dvi__cross(angular, y, stored);
+  dvi__find_functions(3, xi, 0, &c);
+  dvi__about(xi, -c.of[1][0], c.of[2][0], angular, stored);
 }
 
 void dvi__chart_moments(const dvi__chart *chart, const double *xi, double *W)

@@ -158,7 +158,7 @@ dvi_status dvi__charted_step(dvi__stepper *self, dvi__state *state, double h)
   memcpy(own_path, path, unknowns * sizeof(double));
   memcpy(own->seen + n * (unknowns / (size_t)self->system->nx), state->q, n * sizeof(double));
   look_back(own, n, own_path);
-  dvi__charted_arrive(own->charted, local.q, local.p, state->q, state->p);
+  dvi__charted_arrive(own->charted, local.q, local.p, state->q, state->q_carry, state->p);
   dvi__charted_centre(own->charted, state->q);
   turn_path(own, n, path);
   state->t = local.t;

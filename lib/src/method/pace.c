@@ -91,6 +91,8 @@ static dvi_status create(const dvi_system *system, const dvi_monitor *monitor, d
   if (integrator == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "integrator: no place for the result");
   *integrator = NULL;
   if (monitor == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "integrator: the monitor is NULL");
+  if (system != NULL && system->terms & DVI__FACTORS)
+    return dvi__fail(DVI_UNSUPPORTED, "%s: the system has factors; monitors are functions of coordinates of R^n", what);
   dvi_status status = dvi__integrator_make(system, method, monitor, pacing, integrator);
   if (status == DVI_OK) status = check_method(*integrator);
   if (status == DVI_UNSUPPORTED) (void)dvi__fail_in(status, "%s", what);

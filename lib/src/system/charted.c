@@ -6,6 +6,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "num/compensated.h"
 
 /* ---- create, destroy ---- */
 
@@ -107,13 +108,15 @@ void dvi__charted_store(const dvi__charted *x, const double *local, double *stor
     dvi__chart_store(&x->chart[c], local + x->base->cells[c].x, stored + x->base->cells[c].v);
 }
 
-void dvi__charted_arrive(const dvi__charted *x, const double *xi, const double *p, double *q, double *stored)
+void dvi__charted_arrive(const dvi__charted *x, const double *xi, const double *p, double *q, double *q_carry, double *stored)
 {
   for (int c = 0; c < x->base->cell_count; c++) {
     const dvi__cell *at = &x->base->cells[c];
-    dvi__chart_point(&x->chart[c], xi + at->x, NULL, q + at->q, NULL);
+    double leap[DVI__CHART_POINT];
+    dvi__chart_leap(&x->chart[c], xi + at->x, leap);
+    dvi__add_compensated_all(dvi__chart_stored(at->kind), q + at->q, q_carry + at->q, leap);
     if (dvi__turns(at))
-      dvi__chart_stored_momentum(&x->chart[c], xi + at->x, x->angular + 3 * c, stored + at->v);
+      dvi__chart_stored_momentum(&x->chart[c], xi + at->x, q + at->q, x->angular + 3 * c, stored + at->v);
     else
       stored[at->v] = p[at->x];
   }

@@ -32,9 +32,10 @@ dvi_status dvi__charted_failure(const dvi__charted *charted);
 void dvi__charted_enter(const dvi__charted *charted, const double *stored, double *local);
 void dvi__charted_store(const dvi__charted *charted, const double *local, double *stored);
 
-/* The end q [nq] of the last path from the centre, xi [nx], and the stored momentum [nv] there: that of the angular momentum in space where there is one, to
+/* Move q [nq], where the charts are centred, with its carry to the end of the last path from there, xi [nx]; and the stored momentum [nv] there: that of the angular momentum in space where there is one, to
  * the last bit of its conservation, else the chart's p [nx]. */
-void dvi__charted_arrive(const dvi__charted *charted, const double *xi, const double *p, double *q, double *stored);
+void dvi__charted_arrive(const dvi__charted *charted, const double *xi, const double *p, double *q, double *q_carry,
+                         double *stored);
 
 /* The point q [nq] of xi, and the stored velocity v [nv] of the rate [nx]; either may be NULL. */
 void dvi__charted_point(const dvi__charted *charted, const double *xi, const double *rate, double *q, double *v);

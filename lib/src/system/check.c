@@ -328,10 +328,8 @@ static dvi_status check_constraint(check *c, const dvi_system *system)
 static dvi_status check_terms(check *c, const dvi_system *system)
 {
   const names *name = system->terms & DVI__HAMILTONIAN ? &of_hamiltonian : &of_lagrangian;
-  if (system->terms & DVI__ONE_FORM)
-    DVI_TRY(check_one_form(c, system->lagrangian));
-  else if (system->lagrangian != NULL)
-    DVI_TRY(check_general(c, system->lagrangian, name));
+  if (system->lagrangian != NULL)
+    DVI_TRY(system->terms & DVI__ONE_FORM ? check_one_form(c, system->lagrangian) : check_general(c, system->lagrangian, name));
   if (system->constraint != NULL) DVI_TRY(check_constraint(c, system));
   for (int k = 0; k < system->potential_count; k++) DVI_TRY(check_potential(c, &system->potentials[k]));
   return DVI_OK;
@@ -437,8 +435,7 @@ dvi_status dvi_system_check(const dvi_system *system, double t, const double *q,
   *kept = (dvi_derivative_check){.row = -1, .column = -1, .range_row = -1};
   if (system == NULL || q == NULL || v == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "system check: an argument is NULL");
   if (!(tolerance >= 0)) return dvi__fail(DVI_BAD_ARGUMENT, "system check: tolerance %g; 0 or more is possible", tolerance);
-  const size_t n = (size_t)system->n;
-  if (!isfinite(t) || dvi__first_not_finite(n, q) >= 0 || dvi__first_not_finite(n, v) >= 0)
+  if (!isfinite(t) || dvi__first_not_finite((size_t)system->n, q) >= 0 || dvi__first_not_finite((size_t)system->nv, v) >= 0)
     return dvi__fail(DVI_NOT_FINITE, "system check: the point (t = %g) is not finite", t);
   const double accepted = tolerance > 0 ? tolerance : 1e-6;
   check c = {.kinetic = system->lagrangian != NULL ? system->lagrangian->name : "Lagrangian",

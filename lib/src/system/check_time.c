@@ -23,7 +23,7 @@ static void name_subject(const subject *s, size_t size, char *text)
   if (s->potential != NULL)
     (void)snprintf(text, size, "potential '%.24s'", s->potential->name);
   else
-    (void)snprintf(text, size, "%s", s->lagrangian->name);
+    (void)snprintf(text, size, "%s", s->lagrangian != NULL ? s->lagrangian->name : "");
 }
 
 /* ---- rates ---- */
