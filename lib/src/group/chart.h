@@ -63,9 +63,9 @@ void dvi__chart_turns(dvi__chart_kind kind, const double *y, double *turns);
 /* The moment a.(w x y) = w.moment, added. */
 void dvi__chart_add_moment(dvi__chart_kind kind, const double *y, const double *a, double *moment);
 
-/* The angular momentum of the chart's momentum p at the centre; of a rotation in the centre's frame, where it is p, of a direction in space. What moments in
- * space add to it, by components of this frame. */
-void dvi__chart_angular_momentum(const dvi__chart *chart, const double *p, double *angular);
+/* The angular momentum in space of a direction's stored momentum at the centre. That of a rotation is taken in the centre's frame, where it is p. What moments
+ * in space add to either. */
+void dvi__chart_angular_momentum(const dvi__chart *chart, const double *stored, double *angular);
 void dvi__chart_add_impulse(const dvi__chart *chart, const double *impulse, double *angular);
 
 /* From it: the chart's momentum at xi, and its derivative in xi [size*size]; the stored momentum at y(xi),

@@ -41,18 +41,14 @@ void dvi__chart_add_moment(dvi__chart_kind kind, const double *y, const double *
   }
 }
 
-void dvi__chart_angular_momentum(const dvi__chart *chart, const double *p, double *angular)
+void dvi__chart_angular_momentum(const dvi__chart *chart, const double *stored, double *angular)
 {
-  double P[3];
-  if (chart->kind == DVI__ROTATION) {
-    memcpy(angular, p, 3 * sizeof *p);
-    return;
-  }
-  dvi__chart_lift(chart, p, P);
-  dvi__cross(chart->y0, P, angular);
-  /* A direction's length is 1 but for rounding; what it differs by must not add up in p (dvi__chart_stored_momentum has angular x y). */
-  const double square = dvi__dot(chart->y0, chart->y0);
-  for (int i = 0; i < 3; i++) angular[i] /= square;
+  const double *y = chart->y0;
+  dvi__cross(y, stored, angular);
+  /* A direction's length is 1 but for rounding; what it differs by must not add up in p (dvi__chart_stored_momentum has angular x y). In this order the sum is
+   * not rounded near 1, where numbers above are coarser than those below. */
+  const double excess = (y[0] * y[0] - 1) + y[1] * y[1] + y[2] * y[2];
+  for (int i = 0; i < 3; i++) angular[i] -= excess * angular[i];
 }
 
 void dvi__chart_add_impulse(const dvi__chart *chart, const double *impulse, double *angular)

@@ -73,11 +73,11 @@ void dvi__charted_destroy(dvi__charted **charted)
   dvi__pattern_clear(&x->qv);
   dvi__pattern_clear(&x->vv);
   dvi__reduced_clear(&x->reduced);
-  void *const own[] = {x->chart,     x->cell,      x->cell_of_x,  x->t,          x->y,          x->rate,
-                       x->L_y,       x->w,         x->L_yy,       x->T,          x->S,          x->curved,
-                       x->mixed,     x->in_qq,     x->mass_in_qq, x->mass_in_qv, x->mass_in_vv, x->own_in_qq,
-                       x->own_in_qv, x->own_in_vv, x->coupled_in, x->W,          x->end,        x->moment,
-                       x->angular,   x->turned_T,  x->turned_S,   x->C_q1,       x->C_qq,       x->C_qv};
+  void *const own[] = {x->chart,      x->cell,       x->cell_of_x,  x->t,         x->y,         x->rate,      x->L_y,
+                       x->w,          x->L_yy,       x->T,          x->S,         x->curved,    x->mixed,     x->in_qq,
+                       x->mass_in_qq, x->mass_in_qv, x->mass_in_vv, x->own_in_qq, x->own_in_qv, x->own_in_vv, x->coupled_in,
+                       x->W,          x->end,        x->moment,     x->departure, x->angular,   x->turned_T,  x->turned_S,
+                       x->C_q1,       x->C_qq,       x->C_qv};
   for (size_t i = 0; i < sizeof own / sizeof *own; i++) dvi__release(own[i]);
   dvi__release(x);
   *charted = NULL;
@@ -100,6 +100,9 @@ void dvi__charted_enter(const dvi__charted *x, const double *stored, double *loc
 {
   for (int c = 0; c < x->base->cell_count; c++)
     dvi__chart_enter(&x->chart[c], stored + x->base->cells[c].v, local + x->base->cells[c].x);
+  for (int c = 0; c < x->base->cell_count && x->departure != NULL; c++)
+    if (x->base->cells[c].kind == DVI__SPHERE)
+      dvi__chart_angular_momentum(&x->chart[c], stored + x->base->cells[c].v, x->departure + 3 * c);
 }
 
 void dvi__charted_store(const dvi__charted *x, const double *local, double *stored)

@@ -111,7 +111,10 @@ static void angular_momentum(const dvi__charted *x, int c, int nodes, double h, 
   double impulse[3] = {0};
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < nodes; j++) impulse[i] += h * weight[j] * x->moment[(3 * c + i) * x->capacity + j];
-  dvi__chart_angular_momentum(&x->chart[c], p0 + x->base->cells[c].x, mu);
+  if (x->base->cells[c].kind == DVI__SPHERE)
+    memcpy(mu, x->departure + 3 * c, 3 * sizeof *mu);
+  else
+    memcpy(mu, p0 + x->base->cells[c].x, 3 * sizeof *mu);
   dvi__chart_add_impulse(&x->chart[c], impulse, mu);
 }
 
@@ -199,6 +202,7 @@ static dvi_status reserve(dvi__charted *x, int nodes)
   x->capacity = nodes;
   x->W = DVI_NEW(double, 9 * cells);
   x->end = DVI_NEW(double, x->base->nx);
+  x->departure = DVI_NEW(double, 3 * cells);
   x->angular = DVI_NEW(double, 3 * cells);
   x->moment = DVI_NEW(double, 3 * cells * (size_t)nodes);
   x->turned_T = DVI_NEW(double, 3 * n);
@@ -206,7 +210,8 @@ static dvi_status reserve(dvi__charted *x, int nodes)
   x->C_q1 = DVI_NEW(double, qq);
   x->C_qq = DVI_NEW(double, qq *(size_t)nodes);
   x->C_qv = DVI_NEW(double, (size_t)dvi__pattern_entries(&x->qv) * (size_t)nodes);
-  if (x->W && x->end && x->angular && x->moment && x->turned_T && x->turned_S && x->C_q1 && x->C_qq && x->C_qv) return DVI_OK;
+  if (x->W && x->end && x->departure && x->angular && x->moment && x->turned_T && x->turned_S && x->C_q1 && x->C_qq && x->C_qv)
+    return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "charts: no memory for %d nodes", nodes);
 }
 

@@ -40,6 +40,7 @@ struct dvi__charted {
   /* Paths from the centre (dvi__charted_centring): not 0 for those; N [cells*3*capacity], at node j of a batch [(3 c + a)*capacity + j]. */
   int from_centre, capacity;
   double *W, *end, *moment;    /* W [cells*9], xi1 [nx] */
+  double *departure;           /* [cells*3] mu0 of directions, from the stored momentum, which the chart's rounds once more */
   double *angular;             /* [cells*3] mu1 of the last path */
   double *turned_T, *turned_S; /* [nq*3] y x and y' x, times W, of one point */
   double *C_q1, *C_qq, *C_qv;  /* [entries], [entries*capacity] */
