@@ -101,6 +101,86 @@ START_TEST(nearly_degenerate_bodies_keep_energy_and_momentum)
 }
 END_TEST
 
+/* ---- failing callbacks ---- */
+
+/* V = q_3 of a direction, whose gradient fails on demand. */
+typedef struct trap {
+  int returned;
+  double last;
+} trap;
+
+static int height(double t, const double *q, double *V, void *user)
+{
+  (void)t, (void)user;
+  *V = q[2];
+  return 0;
+}
+
+static int height_gradient(double t, const double *q, double *V_q, void *user)
+{
+  const trap *set = user;
+  (void)t, (void)q;
+  V_q[0] = V_q[1] = 0;
+  V_q[2] = set->last;
+  return set->returned;
+}
+
+static const struct {
+  const char *method;
+  trap set;
+  dvi_status status;
+  const char *words;
+} traps[] = {
+    {"lie-galerkin:degree=2", {0, NAN}, DVI_NOT_FINITE, "height: the gradient callback gave nan"},
+    {"lie-galerkin:degree=2", {1, 1}, DVI_CALLBACK_RETRY, "height: the gradient callback asked for a smaller step (1)"},
+    {"sphere-galerkin:degree=2", {-1, 1}, DVI_CALLBACK_FAILED, "height: the gradient callback failed with -1"},
+    {"sphere-galerkin:degree=2,solver=newton", {0, INFINITY}, DVI_NOT_FINITE, "height: the gradient callback gave inf"},
+    {"lie-galerkin:degree=1,solver=kinsol", {-7, 1}, DVI_CALLBACK_FAILED, "height: the gradient callback failed with -7"},
+};
+
+/* Its name and its status, of the start and of the step; then all goes on. */
+START_TEST(failing_callbacks_are_named)
+{
+  const double q[] = {1, 0, 0}, v[] = {0, 1, .5};
+  const dvi_factor factor = {.kind = DVI_S2, .mass = 1};
+  trap set = {0, 1};
+  const dvi_potential potential = {.name = "height", .value = height, .gradient = height_gradient, .user = &set};
+  dvi_system *system;
+  ck_assert_int_eq(dvi_system_create(
+                       &(dvi_system_terms){
+                           .factors = &factor, .factor_count = 1, .potentials = &potential, .potential_count = 1, .autonomous = 1},
+                       &system),
+                   DVI_OK);
+  dvi_integrator *made = made_integrator(system, traps[_i].method);
+  ck_assert_int_eq(dvi_integrator_start_velocity(made, 0, q, v), DVI_OK);
+  advance(made, .05, 2);
+  set = traps[_i].set;
+  ck_assert_int_eq(dvi_integrator_step(made, .05), traps[_i].status);
+  check_words(traps[_i].words);
+  ck_assert_int_eq(dvi_integrator_start(made, 0, q, v), traps[_i].status);
+  check_words(traps[_i].words);
+  set = (trap){0, 1};
+  advance(made, .05, 2);
+  dvi_integrator_destroy(&made);
+  dvi_system_destroy(&system);
+}
+END_TEST
+
+/* Its derivatives are squares of the velocity. */
+START_TEST(a_start_too_fast_for_its_derivatives_is_refused)
+{
+  static const char *const names[] = {"lie-galerkin:degree=2", "euler-poincare:degree=2"};
+  body of;
+  make_body(FREE_BODY, &of);
+  of.v[0] = 1e200;
+  dvi_integrator *made = made_integrator(of.system, names[_i]);
+  ck_assert_int_eq(dvi_integrator_start_velocity(made, 0, of.q, of.v), DVI_NOT_FINITE);
+  check_words("the derivatives of the Lagrangian overflow at this state");
+  dvi_integrator_destroy(&made);
+  destroy_body(&of);
+}
+END_TEST
+
 /* ---- what every method owes ---- */
 
 static const char *const methods[] = {"lie-galerkin:degree=2", "lie-galerkin:degree=3,solver=newton", "euler-poincare:degree=3",
@@ -195,6 +275,8 @@ int main(void)
   tcase_add_loop_test(tests, steps_of_nearly_half_a_turn_are_taken, 0, 3);
   tcase_add_loop_test(tests, more_than_half_a_turn_is_a_step_too_large, 0, 5);
   tcase_add_loop_test(tests, nearly_degenerate_bodies_keep_energy_and_momentum, 0, 3);
+  tcase_add_loop_test(tests, failing_callbacks_are_named, 0, sizeof traps / sizeof *traps);
+  tcase_add_loop_test(tests, a_start_too_fast_for_its_derivatives_is_refused, 0, 2);
   tcase_add_loop_test(tests, checkpoints_continue_bit_for_bit, 0, METHODS);
   tcase_add_loop_test(tests, no_step_allocates, 0, METHODS);
   tcase_add_loop_test(tests, paths_between_states_are_those_of_the_group, 0, METHODS);

@@ -86,7 +86,8 @@ END_TEST
 /* ---- refusals ---- */
 
 static const double flat[] = {1, 0, 0, 0, 1, 0, 0, 0, 3}, indefinite[] = {1, 2, 0, 2, 1, 0, 0, 0, 1},
-                    skew[] = {1, .1, 0, 0, 1, 0, 0, 0, 1}, not_a_number[] = {NAN, 0, 0, 0, 1, 0, 0, 0, 1}, far[] = {2, 0, 0};
+                    skew[] = {1, .1, 0, 0, 1, 0, 0, 0, 1}, not_a_number[] = {NAN, 0, 0, 0, 1, 0, 0, 0, 1},
+                    infinite[] = {1, 0, 0, 0, 1, 0, 0, 0, INFINITY}, negative[] = {-1, 0, 0, 0, -1, 0, 0, 0, -1}, far[] = {2, 0, 0};
 
 static const struct {
   dvi_factor factor;
@@ -96,7 +97,12 @@ static const struct {
     {{.kind = DVI_SO3, .inertia = flat}, DVI_BAD_ARGUMENT, "is that of no body"},
     {{.kind = DVI_SO3, .inertia = indefinite}, DVI_BAD_ARGUMENT, "is not positive definite"},
     {{.kind = DVI_SO3, .inertia = skew}, DVI_BAD_ARGUMENT, "is not symmetric at (0,1)"},
-    {{.kind = DVI_SO3, .inertia = not_a_number}, DVI_BAD_ARGUMENT, "inertia of factor 0"},
+    {{.kind = DVI_SO3, .inertia = not_a_number}, DVI_BAD_ARGUMENT, "the inertia of factor 0 is not finite"},
+    {{.kind = DVI_SO3, .inertia = infinite}, DVI_BAD_ARGUMENT, "the inertia of factor 0 is not finite"},
+    {{.kind = DVI_SO3, .inertia = negative}, DVI_BAD_ARGUMENT, "is not positive definite"},
+    {{.kind = DVI_SE3, .mass = 2, .inertia = inertia, .centre = not_a_number},
+     DVI_BAD_ARGUMENT,
+     "centre of mass of factor 0 is not"},
     {{.kind = DVI_SE3, .mass = 2, .inertia = inertia, .centre = far}, DVI_BAD_ARGUMENT, "and its centre of mass"},
     {{.kind = DVI_SE3, .mass = 2}, DVI_BAD_ARGUMENT, "has a mass but no inertia"},
     {{.kind = DVI_SO3, .mass = 2, .inertia = inertia}, DVI_BAD_ARGUMENT, "its inertia says all"},
@@ -116,6 +122,28 @@ START_TEST(bad_factors_are_refused_with_the_reason)
   ck_assert_msg(status == refusals[_i].status, "%d: %s: %s", _i, dvi_status_name(status), dvi_last_error());
   ck_assert_ptr_null(made);
   check_words(refusals[_i].words);
+}
+END_TEST
+
+/* As small as an atom's, or as large as a star's. */
+START_TEST(inertia_has_any_unit)
+{
+  static const double units[] = {1e-300, 1e-150, 1e150, 1e300};
+  double scaled[9];
+  for (int i = 0; i < 9; i++) scaled[i] = units[_i] * inertia[i];
+  ck_assert_msg(create(&(dvi_factor){.kind = DVI_SO3, .inertia = scaled}, 1) == DVI_OK, "%s", dvi_last_error());
+}
+END_TEST
+
+/* Rounding is taken off: a mass is symmetric. */
+START_TEST(inertia_is_made_symmetric)
+{
+  const double rounded[] = {1.3, .1 + 1e-14, 0, .1, 1.1, .05, 0, .05 - 1e-14, .9};
+  ck_assert_int_eq(create(&(dvi_factor){.kind = DVI_SO3, .inertia = rounded}, 1), DVI_OK);
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      ck_assert_double_eq(made->mass_values[dvi__pattern_find(&made->vv, i, j)],
+                          made->mass_values[dvi__pattern_find(&made->vv, j, i)]);
 }
 END_TEST
 
@@ -198,7 +226,8 @@ START_TEST(velocities_off_the_tangent_plane_are_refused)
   of.v[5] = 1e-3;
   ck_assert_int_eq(dvi_integrator_create(of.system, "lie-galerkin", &integrator), DVI_OK);
   ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, of.q, of.v), DVI_BAD_ARGUMENT);
-  check_words("numbers 3 to 5 of the velocity or momentum of a direction are not orthogonal to it: off by");
+  check_words("numbers 3 to 5 of the velocity or momentum of a direction q are not orthogonal to it: off by");
+  check_words("subtract (p.q) q");
   dvi_integrator_destroy(&integrator);
   destroy_body(&of);
 }
@@ -262,6 +291,8 @@ int main(void)
   tcase_add_test(tests, a_bodys_energy_is_that_of_its_inertia);
   tcase_add_test(tests, masses_add_up);
   tcase_add_loop_test(tests, bad_factors_are_refused_with_the_reason, 0, sizeof refusals / sizeof *refusals);
+  tcase_add_loop_test(tests, inertia_has_any_unit, 0, 4);
+  tcase_add_test(tests, inertia_is_made_symmetric);
   tcase_add_test(tests, general_lagrangians_and_wrong_sizes_are_refused);
   tcase_add_loop_test(tests, points_off_the_manifold_are_refused_and_projected_on_request, 0, sizeof places / sizeof *places);
   tcase_add_test(tests, velocities_off_the_tangent_plane_are_refused);

@@ -4,9 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { SENTENCE_SIZE = 1024 };
-
-static _Thread_local char sentence[SENTENCE_SIZE];
+static _Thread_local char sentence[DVI__SENTENCE_SIZE];
 
 const char *dvi_status_name(dvi_status status)
 {
@@ -38,7 +36,7 @@ const char *dvi_last_error(void)
 /* Both functions write aside first: an argument may be the last sentence itself. */
 dvi_status dvi__fail(dvi_status status, const char *format, ...)
 {
-  char text[SENTENCE_SIZE];
+  char text[DVI__SENTENCE_SIZE];
   va_list arguments;
   va_start(arguments, format);
   (void)vsnprintf(text, sizeof text, format, arguments);
@@ -49,13 +47,13 @@ dvi_status dvi__fail(dvi_status status, const char *format, ...)
 
 dvi_status dvi__fail_in(dvi_status status, const char *format, ...)
 {
-  char text[SENTENCE_SIZE] = "";
+  char text[DVI__SENTENCE_SIZE] = "";
   va_list arguments;
   va_start(arguments, format);
   const int length = vsnprintf(text, sizeof text, format, arguments);
   va_end(arguments);
-  if (length >= 0 && length < SENTENCE_SIZE - 3 && sentence[0] != '\0')
-    (void)snprintf(text + length, sizeof text - (size_t)length, ": %.*s", SENTENCE_SIZE - 3 - length, sentence);
+  if (length >= 0 && length < DVI__SENTENCE_SIZE - 3 && sentence[0] != '\0')
+    (void)snprintf(text + length, sizeof text - (size_t)length, ": %.*s", DVI__SENTENCE_SIZE - 3 - length, sentence);
   memcpy(sentence, text, sizeof text);
   return status;
 }

@@ -9,6 +9,9 @@
 #define DVI_PRINTF(text, first)
 #endif
 
+/* Of a sentence with its end. */
+enum { DVI__SENTENCE_SIZE = 1024 };
+
 /* Leave through the caller's caller on failure. Only where nothing is owned. */
 #define DVI_TRY(call)                              \
   do {                                             \

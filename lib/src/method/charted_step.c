@@ -127,7 +127,7 @@ static void turn_path(const charted_step *own, size_t n, double *path)
   dvi__action_fit(dvi__element_action(&own->inner), own->offset, path);
 }
 
-/* In the charts at the state; what fails there beyond a chart is a step too large. */
+/* In the charts at the state. */
 static dvi_status solve(dvi__stepper *self, const dvi__state *state, double h, dvi__state *local)
 {
   charted_step *own = self->own;
@@ -144,8 +144,7 @@ static dvi_status solve(dvi__stepper *self, const dvi__state *state, double h, d
   dvi__charted_enter(own->charted, state->p, local->p);
   own->inner.memory = self->memory;
   const dvi_status status = own->inner.method->step(&own->inner, local, h);
-  if (status > 0 && dvi__charted_failure(own->charted) == DVI_STEP_TOO_LARGE) return DVI_STEP_TOO_LARGE;
-  return status == DVI_OK ? dvi__charted_check(own->charted, local->q) : status;
+  return status == DVI_OK ? dvi__charted_check(own->charted, local->q) : dvi__charted_explain(own->charted, status);
 }
 
 dvi_status dvi__charted_step(dvi__stepper *self, dvi__state *state, double h)

@@ -155,7 +155,16 @@ dvi_status dvi__charted_check(const dvi__charted *x, const double *xi)
   return DVI_OK;
 }
 
-dvi_status dvi__charted_failure(const dvi__charted *x)
+/* Where every number of `system` was finite, those of the charts are too large. */
+dvi_status dvi__charted_explain(const dvi__charted *x, dvi_status status)
 {
-  return x->failure == DVI_STEP_TOO_LARGE ? dvi__charted_too_large(x->turned) : x->failure;
+  const int by_callback = status == DVI_CALLBACK_RETRY || status == DVI_CALLBACK_FAILED;
+  const int too_large = status > 0 && x->failure == DVI_STEP_TOO_LARGE;
+  if (x->failure != DVI_OK && (by_callback || too_large)) return dvi__fail(x->failure, "%s", x->sentence);
+  if (x->failure == DVI_OK && status == DVI_NOT_FINITE)
+    return dvi__fail(
+        DVI_NOT_FINITE,
+        "the derivatives of the Lagrangian overflow at this state: its velocities or forces are too large; other units "
+        "make them smaller");
+  return status;
 }

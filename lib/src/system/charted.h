@@ -25,8 +25,9 @@ void dvi__charted_centre(dvi__charted *charted, const double *q);
 /* Make room for the centring of paths with `nodes` points in a batch, and fill it in. Once. */
 dvi_status dvi__charted_centring(dvi__charted *charted, int nodes, dvi__centring *centring);
 
-/* DVI_OK, or why the last evaluation failed, with its sentence set again: a coordinate beyond its chart's half turn is DVI_STEP_TOO_LARGE. */
-dvi_status dvi__charted_failure(const dvi__charted *charted);
+/* The status of what was asked of the new system, in the terms of `system`: if a callback of the new one is to blame, the failure behind it, with its
+ * sentence set again. A coordinate beyond its chart's half turn is DVI_STEP_TOO_LARGE. */
+dvi_status dvi__charted_explain(const dvi__charted *charted, dvi_status status);
 
 /* From stored velocities or momenta [nv] at the centre to the chart's [nx], and back. */
 void dvi__charted_enter(const dvi__charted *charted, const double *stored, double *local);

@@ -8,10 +8,11 @@
 
 #include "core/status.h"
 
-/* A callback of the new system says it by a number; the status itself is kept. */
+/* A callback of the new system says it by a number; the status itself is kept, and its sentence. */
 int dvi__charted_verdict(dvi__charted *x, dvi_status status)
 {
   x->failure = status;
+  if (status != DVI_OK) memcpy(x->sentence, dvi_last_error(), sizeof x->sentence);
   return status == DVI_OK ? 0 : status > 0 ? 1 : -1;
 }
 
@@ -29,7 +30,7 @@ static dvi_status find_point(dvi__charted *x, int c, int count, int from, int gr
   dvi__charted_gather(cell, count, from, xi, at);
   dvi__charted_gather(cell, count, from, rate, u);
   const double angle = dvi__chart_angle(cell->kind, at);
-  if (!(angle < dvi__chart_bound(cell->kind))) return dvi__charted_too_large(x->turned = angle);
+  if (!(angle < dvi__chart_bound(cell->kind))) return dvi__charted_too_large(angle);
   dvi__chart_point(&x->chart[c], at, u, y, v);
   for (int i = 0; i < dvi__chart_stored(cell->kind); i++) {
     x->y[(cell->q + i) * group + k] = y[i];

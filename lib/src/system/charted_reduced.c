@@ -38,7 +38,7 @@ static dvi_status find_spin(dvi__charted *x, const dvi__body *body, int count, i
   dvi__charted_gather(m->cell, count, k, xi, m->xi);
   dvi__charted_gather(m->cell, count, k, rate, m->rate);
   const double angle = dvi__chart_angle(DVI__ROTATION, m->xi);
-  if (!(angle < dvi__chart_bound(DVI__ROTATION))) return dvi__charted_too_large(x->turned = angle);
+  if (!(angle < dvi__chart_bound(DVI__ROTATION))) return dvi__charted_too_large(angle);
   dvi__chart_leave_velocity(m->chart, m->xi, m->rate, m->Omega);
   times(body->inertia, m->Omega, m->spin);
   for (int i = 0; i < 3 && m->line != NULL; i++)

@@ -1,6 +1,7 @@
 /* The inside of a charted system, for its files: charted.c, charted_pattern.c, charted_lagrangian.c, charted_hessian.c, charted_path.c. */
 #ifndef DVI_SYSTEM_CHARTED_STRUCT_H
 #define DVI_SYSTEM_CHARTED_STRUCT_H
+#include "core/status.h"
 #include "system/charted.h"
 #include "system/reduced.h"
 
@@ -24,8 +25,8 @@ struct dvi__charted {
   dvi_counters *counters;
   dvi__chart *chart;     /* [cells] */
   int *cell, *cell_of_x; /* [nq], [nx] that a stored coordinate, and a chart's, belongs to */
-  dvi_status failure;
-  double turned;                                            /* how far a coordinate beyond its chart was */
+  dvi_status failure;    /* of the last evaluation, and why */
+  char sentence[DVI__SENTENCE_SIZE];
   double *t, *y, *rate, *L_y, *w;                           /* a group: [GROUP], [nq*GROUP]; w = M y' */
   double *L_yy;                                             /* [entries*GROUP] */
   double *T, *S;                                            /* [nq*3], of one point */
@@ -84,7 +85,7 @@ void dvi__reduced_angular(const dvi__charted *charted, const dvi__body *body, co
 void dvi__reduced_derive(const dvi__charted *charted, const dvi__body *body, const dvi__coupling *at, const double *p0,
                          double *C_q1);
 
-/* What a callback returns for a status, which is kept. */
+/* What a callback returns for a status, which is kept with its sentence. */
 int dvi__charted_verdict(dvi__charted *charted, dvi_status status);
 
 /* A coordinate that is beyond its chart by this angle. */

@@ -82,29 +82,44 @@ dvi_status dvi__factors_lay_out(const dvi_system_terms *terms, dvi_system *s)
 
 /* ---- mass ---- */
 
-/* Whether the symmetric A + shift I is positive definite. */
-static int positive(const double *A, double shift)
+/* Whether the symmetric A/size + shift I is positive definite: of size 1, so that no product is too small. */
+static int positive(const double *A, double size, double shift)
 {
-  const double a = A[0] + shift, b = A[4] + shift, c = A[8] + shift;
-  const double minor = a * b - A[1] * A[3];
-  const double determinant = a * (b * c - A[5] * A[7]) - A[1] * (A[3] * c - A[5] * A[6]) + A[2] * (A[3] * A[7] - b * A[6]);
-  return a > 0 && minor > 0 && determinant > 0;
+  const double a = A[0] / size + shift, b = A[4] / size + shift, c = A[8] / size + shift;
+  const double d = A[1] / size, e = A[2] / size, f = A[5] / size;
+  return a > 0 && a * b - d * d > 0 && a * (b * c - f * f) - d * (d * c - f * e) + e * (d * f - b * e) > 0;
+}
+
+/* J, symmetric to the last digit, and its trace. */
+static dvi_status symmetric_inertia(int index, const double *given, double *J, double *trace)
+{
+  *trace = given[0] + given[4] + given[8];
+  if (dvi__first_not_finite(9, given) >= 0 || !isfinite(*trace))
+    return dvi__fail(DVI_BAD_ARGUMENT, "system: the inertia of factor %d is not finite", index);
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) {
+      if (fabs(given[3 * i + j] - given[3 * j + i]) > 1e-12 * fabs(*trace))
+        return dvi__fail(DVI_BAD_ARGUMENT, "system: the inertia of factor %d is not symmetric at (%d,%d)", index, i, j);
+      J[3 * i + j] = 0.5 * given[3 * i + j] + 0.5 * given[3 * j + i];
+    }
+  if (*trace > 0 && positive(J, *trace, 0)) return DVI_OK;
+  return dvi__fail(DVI_BAD_ARGUMENT, "system: the inertia of factor %d is not positive definite", index);
 }
 
 /* The second moments of the mass, tr(J)/2 I - J: positive semidefinite for a body; about the centre of mass, too. */
 static dvi_status moments(int index, const dvi_factor *factor, double *Jd)
 {
-  const double *J = factor->inertia, trace = J[0] + J[4] + J[8], rounding = 1e-12 * trace;
-  double about[9];
+  double J[9] = {0}, about[9], trace;
+  const double rounding = 1e-12, *centre = factor->centre;
+  DVI_TRY(symmetric_inertia(index, factor->inertia, J, &trace));
+  if (centre != NULL && dvi__first_not_finite(3, centre) >= 0)
+    return dvi__fail(DVI_BAD_ARGUMENT, "system: the centre of mass of factor %d is not finite", index);
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) {
-      if (!isfinite(J[3 * i + j]) || fabs(J[3 * i + j] - J[3 * j + i]) > rounding)
-        return dvi__fail(DVI_BAD_ARGUMENT, "system: the inertia of factor %d is not symmetric at (%d,%d)", index, i, j);
       Jd[3 * i + j] = (i == j ? 0.5 * trace : 0) - J[3 * i + j];
-      about[3 * i + j] = Jd[3 * i + j] - (factor->centre != NULL ? factor->mass * factor->centre[i] * factor->centre[j] : 0);
+      about[3 * i + j] = Jd[3 * i + j] - (centre != NULL ? factor->mass * centre[i] * centre[j] : 0);
     }
-  if (!positive(J, 0)) return dvi__fail(DVI_BAD_ARGUMENT, "system: the inertia of factor %d is not positive definite", index);
-  if (positive(Jd, rounding) && positive(about, rounding)) return DVI_OK;
+  if (positive(Jd, trace, rounding) && positive(about, trace, rounding)) return DVI_OK;
   return dvi__fail(DVI_BAD_ARGUMENT,
                    "system: the inertia of factor %d is that of no body: about its origin and its centre of mass no principal "
                    "moment may be larger than the sum of the others",
@@ -296,9 +311,11 @@ dvi_status dvi__factors_check(const dvi_system *s, const double *q, const double
     if (cell->kind != DVI__SPHERE) continue;
     const double *x = q + cell->q, *p = second + cell->v, radial = x[0] * p[0] + x[1] * p[1] + x[2] * p[2];
     if (!(fabs(radial) <= near_enough * length(3, p)))
-      return dvi__fail(DVI_BAD_ARGUMENT,
-                       "numbers %d to %d of the velocity or momentum of a direction are not orthogonal to it: off by %.2e", cell->v,
-                       cell->v + 2, fabs(radial));
+      return dvi__fail(
+          DVI_BAD_ARGUMENT,
+          "numbers %d to %d of the velocity or momentum of a direction q are not orthogonal to it: off by %.2e; subtract "
+          "(p.q) q, or (v.q) q, if that is meant",
+          cell->v, cell->v + 2, fabs(radial));
   }
   return DVI_OK;
 }

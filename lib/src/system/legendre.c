@@ -126,7 +126,8 @@ static dvi_status inverse_in_charts(dvi__evaluator *e, double t, const double *q
   dvi__charted_centre(e->charted, q);
   dvi__charted_enter(e->charted, p, e->local_p);
   memset(e->local_v, 0, (size_t)e->system->nx * sizeof(double));
-  DVI_TRY(dvi__legendre_inverse(e->local, t, e->origin, e->local_p, e->local_v));
+  const dvi_status status = dvi__legendre_inverse(e->local, t, e->origin, e->local_p, e->local_v);
+  if (status != DVI_OK) return dvi__charted_explain(e->charted, status);
   dvi__charted_store(e->charted, e->local_v, v);
   return DVI_OK;
 }
@@ -159,7 +160,7 @@ dvi_status dvi__legendre_regular(dvi__evaluator *e, double t, const double *q, c
   if (e->system->cells != NULL) {
     dvi__charted_centre(e->charted, q);
     dvi__charted_enter(e->charted, v, e->local_v);
-    return dvi__legendre_regular(e->local, t, e->origin, e->local_v);
+    return dvi__charted_explain(e->charted, dvi__legendre_regular(e->local, t, e->origin, e->local_v));
   }
   if (e->system->lagrangian == NULL) return DVI_OK;
   if (e->system->terms & DVI__ONE_FORM) return dvi__two_form_factor(e, q);
