@@ -24,6 +24,24 @@ START_TEST(it_takes_the_steps_of_lie_galerkin)
 }
 END_TEST
 
+/* A free direction goes round a great circle: always the same step, in which rounding errors of one sign would add up to 1e-10. */
+START_TEST(a_free_direction_keeps_its_momentum)
+{
+  const dvi_factor factor = {.kind = DVI_S2, .mass = 1};
+  dvi_system *system;
+  ck_assert_int_eq(dvi_system_create(&(dvi_system_terms){.factors = &factor, .factor_count = 1, .autonomous = 1}, &system), DVI_OK);
+  dvi_integrator *made = made_integrator(system, "sphere-galerkin:degree=2");
+  ck_assert_int_eq(dvi_integrator_start_velocity(made, 0, (double[]){1, 0, 0}, (double[]){0, .7, .4}), DVI_OK);
+  advance(made, 1e-3, 100000);
+  const double *q = dvi_integrator_q(made), *p = dvi_integrator_p(made);
+  ck_assert_double_le(fabs(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] - 0.65), 2e-12);
+  ck_assert_double_le(fabs(q[0] * p[1] - q[1] * p[0] - 0.7), 2e-12);
+  ck_assert_double_le(dvi_system_distance(system, q), 1e-15);
+  dvi_integrator_destroy(&made);
+  dvi_system_destroy(&system);
+}
+END_TEST
+
 /* |q| = 1 and p orthogonal to q, without projection; the vertical momentum. */
 START_TEST(directions_stay_directions)
 {
@@ -92,6 +110,7 @@ END_TEST
 int main(void)
 {
   TCase *tests = tcase_create("sphere_galerkin");
+  tcase_add_test(tests, a_free_direction_keeps_its_momentum);
   tcase_add_loop_test(tests, it_takes_the_steps_of_lie_galerkin, 0, 2);
   tcase_add_test(tests, directions_stay_directions);
   tcase_add_test(tests, rotations_are_refused_by_name);

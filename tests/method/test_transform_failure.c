@@ -94,6 +94,23 @@ START_TEST(a_one_form_takes_control_alone)
 }
 END_TEST
 
+/* Neither by galerkin, which would take the stored coordinates for those of R^n, nor by a method in charts. */
+START_TEST(factors_have_no_monitor)
+{
+  static const char *const method[] = {"galerkin", "lie-galerkin:degree=1", "lie-verlet"};
+  problem *body = made_problem("free-body", NULL);
+  const dvi_monitor given[] = {monitor_of("arclength"), monitor_of("acceleration"), monitor_of("distance")};
+  dvi_integrator *integrator;
+  for (int k = 0; k < 9; k++) {
+    refused(dvi_integrator_create_transformed(body->system, &given[k / 3], method[k % 3], &integrator), DVI_UNSUPPORTED,
+            "has factors");
+    refused(dvi_integrator_create_controlled(body->system, &given[k / 3], method[k % 3], &integrator), DVI_UNSUPPORTED,
+            "has factors");
+  }
+  problem_destroy(&body);
+}
+END_TEST
+
 START_TEST(methods_that_choose_their_steps_have_no_monitor_beside_them)
 {
   problem *kepler = made_problem("kepler", NULL);
@@ -372,6 +389,7 @@ int main(void)
   tcase_add_test(tests, explicit_methods_are_not_transformed);
   tcase_add_test(tests, control_wants_a_symmetric_method);
   tcase_add_test(tests, a_one_form_takes_control_alone);
+  tcase_add_test(tests, factors_have_no_monitor);
   tcase_add_loop_test(tests, methods_that_choose_their_steps_have_no_monitor_beside_them, 0, 2);
   tcase_add_loop_test(tests, monitors_of_the_motion_want_a_constant_mass, 0, 2);
   tcase_add_loop_test(tests, a_monitor_that_is_not_well_declared_is_refused, 0, WRONG);
