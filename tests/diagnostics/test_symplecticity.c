@@ -407,6 +407,22 @@ START_TEST(missing_arguments_and_a_step_of_0_are_refused)
 }
 END_TEST
 
+/* Directions, too, whose q and v have as many numbers. */
+START_TEST(factors_have_no_canonical_coordinates)
+{
+  static const char *const place[] = {"free-body", "spherical-double-pendulum", "two-body"};
+  for (size_t k = 0; k < sizeof place / sizeof *place; k++) {
+    problem *p = made_problem(place[k], NULL);
+    dvi_integrator *integrator = made_integrator(p->system, "lie-verlet");
+    double defect = 7;
+    ck_assert_int_eq(dvi_symplecticity(integrator, 0, p->q, p->p, p->h, &defect), DVI_UNSUPPORTED);
+    ck_assert(defect == 7);
+    dvi_integrator_destroy(&integrator);
+    problem_destroy(&p);
+  }
+}
+END_TEST
+
 /* Their starts lie on a constraint, and the map of a step is not defined off it. */
 START_TEST(degenerate_systems_are_refused_and_the_sentence_names_the_loop_integral)
 {
@@ -462,6 +478,7 @@ int main(void)
   tcase_add_test(tests, the_integrator_goes_on_as_if_nothing_had_happened);
   tcase_add_test(tests, a_start_in_a_singularity_is_reported_and_nothing_is_written);
   tcase_add_test(tests, missing_arguments_and_a_step_of_0_are_refused);
+  tcase_add_test(tests, factors_have_no_canonical_coordinates);
   tcase_add_test(tests, degenerate_systems_are_refused_and_the_sentence_names_the_loop_integral);
   tcase_add_test(tests, every_failing_allocation_is_reported);
   return run_tests("diagnostics/symplecticity", tests);
