@@ -111,6 +111,12 @@ static const struct {
     {{.kind = DVI_S2, .mass = -1}, DVI_BAD_ARGUMENT, "has mass -1"},
     {{.kind = DVI_U1, .mass = INFINITY}, DVI_BAD_ARGUMENT, "has mass inf"},
     {{.kind = DVI_U1, .mass = NAN}, DVI_BAD_ARGUMENT, "has mass nan"},
+    {{.kind = DVI_SO3}, DVI_SINGULAR, "factor 0 has no mass at coordinates 0 to 8"},
+    {{.kind = DVI_SE3}, DVI_SINGULAR, "factor 0 has no mass at coordinates 0 to 8"},
+    {{.kind = DVI_SE3, .inertia = inertia}, DVI_SINGULAR, "factor 0 has no mass at coordinates 9 to 9"},
+    {{.kind = DVI_S2}, DVI_SINGULAR, "factor 0 has no mass at coordinates 0 to 2"},
+    {{.kind = DVI_U1}, DVI_SINGULAR, "factor 0 has no mass at coordinates 0 to 1"},
+    {{.kind = DVI_RN, .size = 2}, DVI_SINGULAR, "factor 0 has no mass at coordinates 0 to 0"},
     {{.kind = DVI_RN, .mass = 1}, DVI_BAD_SIZE, "has size 0"},
     {{.kind = DVI_S2, .size = 3, .mass = 1}, DVI_BAD_SIZE, "has size 3"},
     {{.kind = (dvi_factor_kind)17}, DVI_BAD_ARGUMENT, "is of no known kind (17)"},
@@ -248,13 +254,30 @@ START_TEST(distances_are_those_of_the_nearest_point)
 }
 END_TEST
 
-/* What is massless has no velocity for its momentum. */
-START_TEST(massless_factors_cannot_start)
+/* A line without a mass of its own, coupled to an angle by the system's. */
+START_TEST(massless_factors_may_be_coupled)
 {
-  const dvi_factor factors[] = {{.kind = DVI_S2, .mass = 1}, {.kind = DVI_U1}};
-  const double q[] = {0, 0, 1, 1, 0}, v[] = {1, 0, 0, 1};
+  const dvi_factor factors[] = {{.kind = DVI_U1, .mass = 1}, {.kind = DVI_RN, .size = 1}};
+  const double mass[] = {0, 0, .5, 0, 0, 0, .5, 0, 0}, q[] = {0, 1, 0}, v[] = {1, 2};
+  double p[2], back[2] = {0};
+  ck_assert_int_eq(create(factors, 2), DVI_SINGULAR);
+  check_words("factor 1 has no mass at coordinates 2 to 2");
+  ck_assert_int_eq(dvi_system_create(&(dvi_system_terms){.factors = factors, .factor_count = 2, .mass = {.values = mass}}, &made),
+                   DVI_OK);
+  ck_assert_int_eq(dvi_system_momentum(made, 0, q, v, p), DVI_OK);
+  ck_assert_int_eq(dvi_system_velocity(made, 0, q, p, back), DVI_OK);
+  ck_assert_double_le(distance(2, v, back), 1e-15);
+}
+END_TEST
+
+/* A direction with a mass along x alone: across it a velocity has no momentum. */
+START_TEST(singular_masses_cannot_start)
+{
+  const dvi_factor factor = {.kind = DVI_S2};
+  const double mass[] = {1, 0, 0}, q[] = {0, 0, 1}, v[] = {1, 0, 0};
   dvi_integrator *integrator;
-  ck_assert_int_eq(create(factors, 2), DVI_OK);
+  ck_assert_int_eq(dvi_system_create(&(dvi_system_terms){.factors = &factor, .factor_count = 1, .mass = {.diagonal = mass}}, &made),
+                   DVI_OK);
   ck_assert_int_eq(dvi_integrator_create(made, "lie-galerkin", &integrator), DVI_OK);
   ck_assert_msg(dvi_integrator_start_velocity(integrator, 0, q, v) == DVI_SINGULAR, "%s", dvi_last_error());
   dvi_integrator_destroy(&integrator);
@@ -297,7 +320,8 @@ int main(void)
   tcase_add_loop_test(tests, points_off_the_manifold_are_refused_and_projected_on_request, 0, sizeof places / sizeof *places);
   tcase_add_test(tests, velocities_off_the_tangent_plane_are_refused);
   tcase_add_test(tests, distances_are_those_of_the_nearest_point);
-  tcase_add_test(tests, massless_factors_cannot_start);
+  tcase_add_test(tests, massless_factors_may_be_coupled);
+  tcase_add_test(tests, singular_masses_cannot_start);
   tcase_add_test(tests, systems_with_factors_survive_every_failure);
   return run_tests("system/factor", tests);
 }

@@ -223,7 +223,7 @@ extern "C" {
  *                            sorted; an autonomous system has a rate; a gauge has no one-form; an inertia is that of no body (its principal moments must be positive, none above the
  *                            sum of the others);
  *                            of a Hamiltonian and a constraint one is missing, or there are potentials beside them
- *  @retval DVI_SINGULAR      the constant mass is singular or not finite
+ *  @retval DVI_SINGULAR      the constant mass is singular or not finite; with factors: not finite, or none at all at a factor's coordinates
  *  @retval DVI_UNSUPPORTED   factors beside a general Lagrangian or a one-form
  *  @retval DVI_NO_MEMORY */
 dvi_status dvi_system_create(const dvi_system_terms *terms, dvi_system **system);

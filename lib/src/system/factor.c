@@ -235,6 +235,29 @@ static dvi_status compress(const entries *list, dvi_system *s)
   return status;
 }
 
+/* Whether no mass concerns a cell: wherever it stands, its momentum says nothing of its velocity. */
+static int is_massless(const dvi_system *s, const dvi__cell *cell)
+{
+  const int end = s->vv.start[cell->q + dvi__chart_stored(cell->kind)];
+  for (int e = s->vv.start[cell->q]; e < end; e++)
+    if (s->mass_values[e] != 0) return 0;
+  return 1;
+}
+
+static dvi_status check_massive(const dvi_system_terms *terms, const dvi_system *s)
+{
+  for (int f = 0, c = 0; f < terms->factor_count; f++) {
+    dvi__chart_kind kind;
+    const int end = c + has_cell(&terms->factors[f], &kind) + lines_of(&terms->factors[f]);
+    for (; c < end; c++)
+      if (is_massless(s, &s->cells[c]))
+        return dvi__fail(DVI_SINGULAR,
+                         "system: factor %d has no mass at coordinates %d to %d; give it one of its own, or in the system's mass",
+                         f, s->cells[c].q, s->cells[c].q + dvi__chart_stored(s->cells[c].kind) - 1);
+  }
+  return DVI_OK;
+}
+
 static size_t most_entries(const dvi_system_terms *terms, const dvi__pattern *declared, int n)
 {
   size_t most = (size_t)dvi__pattern_entries(declared) + (size_t)n;
@@ -261,6 +284,7 @@ dvi_status dvi__factors_mass(const dvi_system_terms *terms, dvi_system *s)
       status = dvi__fail(DVI_SINGULAR, "system: the mass matrix is not finite");
   }
   if (status == DVI_OK) status = compress(&list, s);
+  if (status == DVI_OK) status = check_massive(terms, s);
   dvi__release(list.row);
   dvi__release(list.column);
   dvi__release(list.value);
