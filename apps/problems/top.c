@@ -54,9 +54,10 @@ static int turn_z(const double *q, double *xi, void *user)
   return turn(q, xi, 2);
 }
 
-static const dvi_symmetry symmetries[] = {{.name = "angular_momentum_z", .generator = turn_z},
-                                          {.name = "angular_momentum_x", .generator = turn_x},
-                                          {.name = "angular_momentum_y", .generator = turn_y}};
+/* The vertical one, which weight leaves, is the last. */
+static const dvi_symmetry symmetries[] = {{.name = "angular_momentum_x", .generator = turn_x},
+                                          {.name = "angular_momentum_y", .generator = turn_y},
+                                          {.name = "angular_momentum_z", .generator = turn_z}};
 
 void top_inertia(top *body, const double *J)
 {
@@ -86,7 +87,7 @@ dvi_status top_system(problem *made, const dvi_invariant *invariant)
                                   .factor_count = 1,
                                   .potentials = &potential,
                                   .potential_count = heavy,
-                                  .symmetries = symmetries,
+                                  .symmetries = heavy ? symmetries + 2 : symmetries,
                                   .symmetry_count = heavy ? 1 : 3,
                                   .invariants = invariant,
                                   .invariant_count = invariant != NULL,

@@ -44,7 +44,7 @@ expect 2 'momenta of a resumed run' $kepler --resume any.state --momenta 0,1
 
 # Rotations and directions: velocities before the momenta, and the distance from the manifold last, which is rounding or is told.
 expect 0 'a body' run free-body --method lie-galerkin --h 0.1 --t-end 10
-says out '^t,R11,.*,R33,Omega1,Omega2,Omega3,Pi1,Pi2,Pi3,energy,angular_momentum_z,.*,distance$' 'the columns of a body'
+says out '^t,R11,.*,R33,Omega1,Omega2,Omega3,Pi1,Pi2,Pi3,energy,angular_momentum_x,angular_momentum_y,angular_momentum_z,distance$' 'the columns of a body'
 awk -F, 'NR > 1 && ($NF > 1e-14 || (3 * $11 - $14) ^ 2 > 1e-28) { bad = 1 } END { exit bad }' out || fail 'Pi1 = J1 Omega1, and R is a rotation'
 expect 0 'two bodies' run two-body --method lie-verlet --h 0.1 --t-end 1 --final
 says out '^t,R11_1,.*,x_1,y_1,z_1,R11_2,.*,z_2,Omega1_1,.*,v_z_2,Pi1_1,.*,p_z_2,energy,.*,distance$' 'the columns of two bodies'
