@@ -154,10 +154,19 @@ void dvi__chart_point(const dvi__chart *chart, const double *xi, const double *r
     sphere_point(chart, &c, xi, rate, y, v);
 }
 
+static void rotation_leap(const dvi__chart *chart, const dvi__functions *c, const double *xi, double *leap)
+{
+  double E[9] = {0}, a[3];
+  for (int i = 0; i < 3; i++) a[i] = c->of[1][0] * xi[i];
+  add_hat(a, E);
+  add_squares(0.5 * c->of[2][0], xi, xi, E);
+  turn(chart->y0, E, leap);
+}
+
 void dvi__chart_leap(const dvi__chart *chart, const double *xi, double *leap)
 {
   const int stored = dvi__chart_stored(chart->kind), size = dvi__chart_size(chart->kind);
-  double E[9] = {0}, x[3];
+  double x[3];
   dvi__functions c;
   if (chart->kind == DVI__LINE) {
     *leap = *xi;
@@ -165,10 +174,7 @@ void dvi__chart_leap(const dvi__chart *chart, const double *xi, double *leap)
   }
   dvi__find_functions(size, xi, 0, &c);
   if (chart->kind == DVI__ROTATION) {
-    for (int i = 0; i < 3; i++) x[i] = c.of[1][0] * xi[i];
-    add_hat(x, E);
-    add_squares(0.5 * c.of[2][0], xi, xi, E);
-    turn(chart->y0, E, leap);
+    rotation_leap(chart, &c, xi, leap);
     return;
   }
   dvi__chart_lift(chart, xi, x);
