@@ -157,7 +157,7 @@ START_TEST(a_parasite_does_with_a_remedy_that_is_another_method)
   problem *of = made_problem(parasites[_i].problem, NULL);
   dvi_integrator *integrator = started(of, parasites[_i].method);
   dvi_status status = DVI_OK;
-  for (int step = 0; step < 5000 && status == DVI_OK; step++) status = dvi_integrator_step(integrator, parasites[_i].h);
+  for (int step = 0; step < 20000 && status == DVI_OK; step++) status = dvi_integrator_step(integrator, parasites[_i].h);
   ck_assert_int_eq(status, DVI_JUMP);
   check_words(parasites[_i].remedy);
   dvi_integrator_destroy(&integrator);

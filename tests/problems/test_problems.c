@@ -277,7 +277,7 @@ START_TEST(exact_solutions_meet_start_and_digits)
   double q[9], p[9];
   ck_assert_int_eq(made->exact(made, 0.0, q, p), 0);
   for (int i = 0; i < made->nq; i++) {
-    ck_assert_double_eq_tol(q[i], made->q[i], 1e-16);
+    ck_assert_double_eq_tol(q[i], made->q[i], 1e-15);
     if (i < made->nv) ck_assert_double_eq_tol(p[i], made->p[i], 1e-15);
   }
   ck_assert_int_eq(made->exact(made, made->order_t_end, q, p), 0);
