@@ -1,4 +1,4 @@
-/* labels: order, invariant */
+/* labels: order invariant */
 /* Hamilton-Pontryagin integrators of types 2 and 3 for degenerate Lagrangians: p is carried, off alpha(q). */
 #include <math.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* labels: invariant */
 /* Directions alone: the steps of lie-galerkin, their length, chains at linear cost, and what is refused. */
 #include <float.h>
 #include <math.h>
