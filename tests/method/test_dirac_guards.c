@@ -1,5 +1,4 @@
 /* labels: invariant */
-/* labels: unit */
 /* What watches over a Hamiltonian with constraints, and over a one-form like it: the alarm, the bracket matrix, statuses, checkpoints. */
 #include <math.h>
 #include <string.h>
