@@ -29,35 +29,21 @@ static int hessian(int count, const double *t, const double *q, double *V_qq, vo
 
 static const int none_start[10], none_row[1];
 
+/* What the generators point to. */
+static int axes[] = {0, 1, 2};
+
 /* A turn in space about axis e: Omega = R^T e, that row of R. */
-static int turn(const double *q, double *xi, int e)
+static int turn(const double *q, double *xi, void *user)
 {
+  const int e = *(const int *)user;
   for (int i = 0; i < 3; i++) xi[i] = q[3 * e + i];
   return 0;
 }
 
-static int turn_x(const double *q, double *xi, void *user)
-{
-  (void)user;
-  return turn(q, xi, 0);
-}
-
-static int turn_y(const double *q, double *xi, void *user)
-{
-  (void)user;
-  return turn(q, xi, 1);
-}
-
-static int turn_z(const double *q, double *xi, void *user)
-{
-  (void)user;
-  return turn(q, xi, 2);
-}
-
 /* The vertical one, which weight leaves, is the last. */
-static const dvi_symmetry symmetries[] = {{.name = "angular_momentum_x", .generator = turn_x},
-                                          {.name = "angular_momentum_y", .generator = turn_y},
-                                          {.name = "angular_momentum_z", .generator = turn_z}};
+static const dvi_symmetry symmetries[] = {{.name = "angular_momentum_x", .generator = turn, .user = &axes[0]},
+                                          {.name = "angular_momentum_y", .generator = turn, .user = &axes[1]},
+                                          {.name = "angular_momentum_z", .generator = turn, .user = &axes[2]}};
 
 void top_inertia(top *body, const double *J)
 {

@@ -35,17 +35,22 @@ static void set_inertia(const double *semiaxis, double size, double mass, double
   for (int k = 0; k < 3; k++) J[4 * k] = mass * size * size * (square - semiaxis[k] * semiaxis[k]) / 3.0;
 }
 
+/* What the generators point to. */
+static int axes[] = {0, 1, 2};
+
 /* Shifts along axis e; turns in space about it: Omega = R^t e, x' = e x x. */
-static int shift(double *xi, int e)
+static int shift(const double *q, double *xi, void *user)
 {
+  const int e = *(const int *)user;
+  (void)q;
   memset(xi, 0, 2 * VELOCITIES * sizeof *xi);
   xi[3 + e] = xi[VELOCITIES + 3 + e] = 1.0;
   return 0;
 }
 
-static int turn(const double *q, double *xi, int e)
+static int turn(const double *q, double *xi, void *user)
 {
-  const int i = (e + 1) % 3, j = (e + 2) % 3;
+  const int e = *(const int *)user, i = (e + 1) % 3, j = (e + 2) % 3;
   for (int body = 0; body < 2; body++, q += STORED, xi += VELOCITIES) {
     for (int k = 0; k < 3; k++) xi[k] = q[3 * e + k];
     xi[3 + e] = 0.0;
@@ -55,46 +60,13 @@ static int turn(const double *q, double *xi, int e)
   return 0;
 }
 
-static int shift_x(const double *q, double *xi, void *user)
-{
-  (void)q, (void)user;
-  return shift(xi, 0);
-}
-
-static int shift_y(const double *q, double *xi, void *user)
-{
-  (void)q, (void)user;
-  return shift(xi, 1);
-}
-
-static int shift_z(const double *q, double *xi, void *user)
-{
-  (void)q, (void)user;
-  return shift(xi, 2);
-}
-
-static int turn_x(const double *q, double *xi, void *user)
-{
-  (void)user;
-  return turn(q, xi, 0);
-}
-
-static int turn_y(const double *q, double *xi, void *user)
-{
-  (void)user;
-  return turn(q, xi, 1);
-}
-
-static int turn_z(const double *q, double *xi, void *user)
-{
-  (void)user;
-  return turn(q, xi, 2);
-}
-
 static const dvi_symmetry symmetries[] = {
-    {.name = "momentum_x", .generator = shift_x},        {.name = "momentum_y", .generator = shift_y},
-    {.name = "momentum_z", .generator = shift_z},        {.name = "angular_momentum_x", .generator = turn_x},
-    {.name = "angular_momentum_y", .generator = turn_y}, {.name = "angular_momentum_z", .generator = turn_z},
+    {.name = "momentum_x", .generator = shift, .user = &axes[0]},
+    {.name = "momentum_y", .generator = shift, .user = &axes[1]},
+    {.name = "momentum_z", .generator = shift, .user = &axes[2]},
+    {.name = "angular_momentum_x", .generator = turn, .user = &axes[0]},
+    {.name = "angular_momentum_y", .generator = turn, .user = &axes[1]},
+    {.name = "angular_momentum_z", .generator = turn, .user = &axes[2]},
 };
 
 /* The centre of mass rests at the origin; the bodies are apart along x and move along y. */

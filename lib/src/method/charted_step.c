@@ -12,8 +12,7 @@
 typedef struct charted_step {
   dvi__charted *charted;
   dvi__stepper inner; /* galerkin in the charts */
-  double *numbers;    /* where the arrays lie: */
-  double *local;      /* [4 nx] q, p and their carries in the charts */
+  double *local;      /* [4 nx] q, p and their carries in the charts; the other arrays lie behind */
   double *xi, *rate;  /* [nx] */
   double *seen;       /* [nq*(s+1)] points of the path, its start last */
   double *offset;     /* [unknowns] */
@@ -31,8 +30,8 @@ static dvi_status allocate(dvi__stepper *self, charted_step *own)
   const size_t nx = (size_t)self->system->nx, n = (size_t)self->system->n, unknowns = unknowns_of(own);
   const size_t seen = n * (unknowns / nx + 1);
   self->memory_count = own->inner.memory_count + unknowns;
-  own->local = own->numbers = DVI_NEW(double, 6 * nx + seen + unknowns);
-  if (own->numbers == NULL) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
+  own->local = DVI_NEW(double, 6 * nx + seen + unknowns);
+  if (own->local == NULL) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
   own->xi = own->local + 4 * nx;
   own->rate = own->xi + nx;
   own->seen = own->rate + nx;
@@ -90,7 +89,7 @@ void dvi__charted_step_destroy(dvi__stepper *self)
   own->inner.memory = NULL;
   dvi__stepper_destroy(&own->inner);
   dvi__charted_destroy(&own->charted);
-  dvi__release(own->numbers);
+  dvi__release(own->local);
   dvi__release(own);
 }
 

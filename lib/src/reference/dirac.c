@@ -9,25 +9,18 @@
  * Source: Hindmarsh et al. 2005, ACM TOMS 31:363, sec. 2.3; Brenan, Campbell and Petzold 1996 (error tests at index 2). */
 #include "system/dirac.h"
 
-#include <float.h>
-#include <ida/ida.h>
 #include <string.h>
-#include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "reference/run.h"
+#include "reference/ida_run.h"
 
 typedef struct judge {
   dvi__reference_run *run;
-  int whole; /* the multiplier is an unknown */
-  int size;
+  int whole;                                /* the multiplier is an unknown */
   double *phi_z, *phi_qq, *phi_qp, *phi_pp; /* in the order of the constraint's patterns */
-  N_Vector y, ydot, differential;
-  SUNMatrix matrix;
-  SUNLinearSolver linear;
-  void *ida;
+  dvi__ida_run ida;
 } judge;
 
 static int reduced_residual(double t, N_Vector y, N_Vector ydot, N_Vector F, void *user)
@@ -114,80 +107,50 @@ static void start(const judge *self)
 {
   const dvi__reference_run *run = self->run;
   const size_t n = (size_t)run->n, bytes = n * sizeof(double);
-  double *y = N_VGetArrayPointer(self->y), *ydot = N_VGetArrayPointer(self->ydot);
-  memset(ydot, 0, (size_t)self->size * sizeof *ydot);
+  double *y = N_VGetArrayPointer(self->ida.y), *ydot = N_VGetArrayPointer(self->ida.ydot);
+  memset(ydot, 0, (size_t)self->ida.size * sizeof *ydot);
   memcpy(y, run->q, bytes);
   memcpy(y + n, run->p, bytes);
   memcpy(ydot, run->v, bytes);
   memcpy(ydot + n, run->force, bytes);
-  if (self->whole) memcpy(y + 2 * n, run->multiplier, ((size_t)self->size - 2 * n) * sizeof *y);
-}
-
-static int leave_multiplier_untested(const judge *self)
-{
-  const dvi_reference_options *options = &self->run->options;
-  const int n = self->run->n;
-  double *tolerance = N_VGetArrayPointer(self->differential);
-  for (int i = 0; i < self->size; i++) tolerance[i] = i < 2 * n ? options->absolute_tolerance : DBL_MAX;
-  if (IDASVtolerances(self->ida, options->relative_tolerance, self->differential)) return -1;
-  for (int i = 0; i < self->size; i++) tolerance[i] = i < 2 * n;
-  return IDASetId(self->ida, self->differential) || IDASetSuppressAlg(self->ida, 1);
+  if (self->whole) memcpy(y + 2 * n, run->multiplier, ((size_t)self->ida.size - 2 * n) * sizeof *y);
 }
 
 static int configure(judge *self)
 {
-  const dvi__reference_run *run = self->run;
-  void *ida = self->ida;
-  if (DVI__SUNDIALS_SILENCE(IDASetErrHandlerFn, ida) ||
-      IDAInit(ida, self->whole ? whole_residual : reduced_residual, run->t, self->y, self->ydot) ||
-      IDASStolerances(ida, run->options.relative_tolerance, run->options.absolute_tolerance) || IDASetUserData(ida, self) ||
-      IDASetMaxNumSteps(ida, run->options.max_steps) || IDASetStopTime(ida, run->t_end) ||
-      IDASetMinStep(ida, dvi__reference_least_step(run)) || IDASetLinearSolver(ida, self->linear, self->matrix))
-    return -1;
-  return self->whole ? IDASetJacFn(ida, whole_jacobian) || leave_multiplier_untested(self) : 0;
+  const dvi__ida_run *ida = &self->ida;
+  const int states = 2 * self->run->n;
+  if (dvi__ida_run_configure(ida, self->whole ? whole_residual : reduced_residual, self) != 0) return -1;
+  return self->whole ? IDASetJacFn(ida->memory, whole_jacobian) || dvi__ida_run_leave_untested(ida, states, ida->size - states) : 0;
 }
 
 static dvi_status integrate(const judge *self)
 {
   dvi__reference_run *run = self->run;
   const size_t bytes = (size_t)run->n * sizeof(double);
-  const int flag = IDASolve(self->ida, run->t_end, &run->reached, self->y, self->ydot, IDA_NORMAL);
-  (void)IDAGetNumSteps(self->ida, &run->steps);
-  (void)IDAGetCurrentTime(self->ida, &run->reached);
-  if (flag < 0) return dvi__reference_stopped(run, flag, IDAGetReturnFlagName(flag));
-  memcpy(run->q, N_VGetArrayPointer(self->y), bytes);
-  memcpy(run->p, N_VGetArrayPointer(self->y) + run->n, bytes);
+  DVI_TRY(dvi__ida_run_solve(&self->ida));
+  memcpy(run->q, N_VGetArrayPointer(self->ida.y), bytes);
+  memcpy(run->p, N_VGetArrayPointer(self->ida.y) + run->n, bytes);
   return DVI_OK;
 }
 
 static dvi_status reserve(judge *self)
 {
-  const dvi__reference_run *run = self->run;
+  dvi__reference_run *run = self->run;
   const dvi__constraint_term *c = run->system->constraint;
+  const int size = 2 * run->n + (self->whole ? c->callbacks.count : 0);
   self->phi_z = DVI_NEW(double, dvi__pattern_entries(&c->gradients));
   self->phi_qq = DVI_NEW(double, dvi__pattern_entries(&c->weighted.qq));
   self->phi_qp = DVI_NEW(double, dvi__pattern_entries(&c->weighted.qv));
   self->phi_pp = DVI_NEW(double, dvi__pattern_entries(&c->weighted.vv));
-  self->y = N_VNew_Serial(self->size, run->context);
-  self->ydot = N_VNew_Serial(self->size, run->context);
-  self->differential = N_VNew_Serial(self->size, run->context);
-  self->matrix = SUNDenseMatrix(self->size, self->size, run->context);
-  self->ida = IDACreate(run->context);
-  if (self->phi_z == NULL || self->phi_qq == NULL || self->phi_qp == NULL || self->phi_pp == NULL || self->y == NULL ||
-      self->ydot == NULL || self->differential == NULL || self->matrix == NULL || self->ida == NULL)
+  if (self->phi_z == NULL || self->phi_qq == NULL || self->phi_qp == NULL || self->phi_pp == NULL)
     return dvi__reference_no_setup(run);
-  self->linear = dvi__reference_linear(run, self->y, self->matrix);
-  return self->linear == NULL ? dvi__reference_no_setup(run) : DVI_OK;
+  return dvi__ida_run_create(run, size, SUNDenseMatrix(size, size, run->context), &self->ida);
 }
 
 static void clear(judge *self)
 {
-  if (self->ida != NULL) IDAFree(&self->ida);
-  if (self->linear != NULL) (void)SUNLinSolFree(self->linear);
-  if (self->matrix != NULL) SUNMatDestroy(self->matrix);
-  if (self->differential != NULL) N_VDestroy(self->differential);
-  if (self->ydot != NULL) N_VDestroy(self->ydot);
-  if (self->y != NULL) N_VDestroy(self->y);
+  dvi__ida_run_clear(&self->ida);
   dvi__release(self->phi_z);
   dvi__release(self->phi_qq);
   dvi__release(self->phi_qp);
@@ -196,8 +159,7 @@ static void clear(judge *self)
 
 dvi_status dvi__reference_dirac(dvi__reference_run *run)
 {
-  judge self = {.run = run, .whole = run->options.code == DVI_IDA_INDEX_2, .size = 2 * run->n};
-  if (self.whole) self.size += dvi_system_constraint_count(run->system);
+  judge self = {.run = run, .whole = run->options.code == DVI_IDA_INDEX_2};
   dvi_status status = reserve(&self);
   if (status == DVI_OK) start(&self);
   if (status == DVI_OK && configure(&self) != 0) status = dvi__reference_no_setup(run);

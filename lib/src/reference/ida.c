@@ -13,26 +13,21 @@
  * Nothing is discretised, inverted or assembled by the code that the methods use; only the callbacks are shared.
  * Source: Hindmarsh et al. 2005, ACM TOMS 31:363, sec. 2.3; Brenan, Campbell and Petzold 1996 (error tests at index 2). */
 #include <float.h>
-#include <ida/ida.h>
 #include <math.h>
 #include <string.h>
-#include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/pattern.h"
-#include "reference/run.h"
+#include "reference/ida_run.h"
 
 typedef struct judge {
   dvi__reference_run *run;
   int reduced;
   dvi__pattern vq; /* the transpose of the system's qv */
   int *in_qv;      /* [entries of vq]: the same entry of qv */
-  N_Vector y, ydot, differential;
-  SUNMatrix matrix;
-  SUNLinearSolver linear;
-  void *ida;
+  dvi__ida_run ida;
 } judge;
 
 /* ---- the whole equations ---- */
@@ -138,7 +133,7 @@ static dvi_status start(const judge *self)
 {
   dvi__reference_run *run = self->run;
   const size_t n = (size_t)run->n, size = n * sizeof(double);
-  double *y = N_VGetArrayPointer(self->y), *ydot = N_VGetArrayPointer(self->ydot);
+  double *y = N_VGetArrayPointer(self->ida.y), *ydot = N_VGetArrayPointer(self->ida.ydot);
   memcpy(y, run->q, size);
   memcpy(ydot, run->v, size);
   if (self->reduced) return DVI_OK;
@@ -148,42 +143,21 @@ static dvi_status start(const judge *self)
   return acceleration(run, ydot + n);
 }
 
-/* At index 2 the multiplier v has errors of 1/h times those of q and p: they belong neither in the error test nor in the test of the iteration's
- * convergence. */
-static int leave_velocity_untested(const judge *self)
-{
-  const dvi_reference_options *options = &self->run->options;
-  const int n = self->run->n;
-  double *tolerance = N_VGetArrayPointer(self->differential);
-  for (int i = 0; i < 3 * n; i++) tolerance[i] = i >= n && i < 2 * n ? DBL_MAX : options->absolute_tolerance;
-  if (IDASVtolerances(self->ida, options->relative_tolerance, self->differential)) return -1;
-  for (int i = 0; i < 3 * n; i++) tolerance[i] = i >= n && i < 2 * n ? 0.0 : 1.0;
-  return IDASetId(self->ida, self->differential) || IDASetSuppressAlg(self->ida, 1);
-}
-
 static int configure(judge *self)
 {
-  const dvi__reference_run *run = self->run;
-  void *ida = self->ida;
-  if (DVI__SUNDIALS_SILENCE(IDASetErrHandlerFn, ida) ||
-      IDAInit(ida, self->reduced ? reduced_residual : residual, run->t, self->y, self->ydot) ||
-      IDASStolerances(ida, run->options.relative_tolerance, run->options.absolute_tolerance) || IDASetUserData(ida, self) ||
-      IDASetMaxNumSteps(ida, run->options.max_steps) || IDASetStopTime(ida, run->t_end) ||
-      IDASetMinStep(ida, dvi__reference_least_step(run)) || IDASetLinearSolver(ida, self->linear, self->matrix))
-    return -1;
-  if (run->options.code == DVI_IDA_INDEX_2 && leave_velocity_untested(self) != 0) return -1;
-  return self->reduced ? 0 : IDASetJacFn(ida, jacobian);
+  const dvi__ida_run *ida = &self->ida;
+  const int n = self->run->n;
+  if (dvi__ida_run_configure(ida, self->reduced ? reduced_residual : residual, self) != 0) return -1;
+  if (self->run->options.code == DVI_IDA_INDEX_2 && dvi__ida_run_leave_untested(ida, n, n) != 0) return -1;
+  return self->reduced ? 0 : IDASetJacFn(ida->memory, jacobian);
 }
 
 static dvi_status integrate(const judge *self)
 {
   dvi__reference_run *run = self->run;
   const size_t n = (size_t)run->n;
-  const int flag = IDASolve(self->ida, run->t_end, &run->reached, self->y, self->ydot, IDA_NORMAL);
-  (void)IDAGetNumSteps(self->ida, &run->steps);
-  (void)IDAGetCurrentTime(self->ida, &run->reached);
-  if (flag < 0) return dvi__reference_stopped(run, flag, IDAGetReturnFlagName(flag));
-  const double *y = N_VGetArrayPointer(self->y);
+  DVI_TRY(dvi__ida_run_solve(&self->ida));
+  const double *y = N_VGetArrayPointer(self->ida.y);
   memcpy(run->q, y, n * sizeof *y);
   if (self->reduced) return dvi__reference_form_momentum(run);
   memcpy(run->p, y + 2 * n, n * sizeof *y);
@@ -207,25 +181,14 @@ static dvi_status reserve(judge *self)
   const int n = run->n, size = self->reduced ? n : 3 * n, qq = dvi__pattern_entries(&run->system->qq),
             qv = dvi__pattern_entries(&run->system->qv), vv = dvi__pattern_entries(&run->system->vv);
   DVI_TRY(transpose(self));
-  self->y = N_VNew_Serial(size, run->context);
-  self->ydot = N_VNew_Serial(size, run->context);
-  self->differential = N_VNew_Serial(size, run->context);
-  self->matrix = self->reduced ? SUNDenseMatrix(n, n, run->context) : dvi__reference_matrix(run, size, 4 * n + qq + 2 * qv + vv);
-  self->ida = IDACreate(run->context);
-  if (self->y == NULL || self->ydot == NULL || self->differential == NULL || self->matrix == NULL || self->ida == NULL)
-    return dvi__reference_no_setup(run);
-  self->linear = dvi__reference_linear(run, self->y, self->matrix);
-  return self->linear == NULL ? dvi__reference_no_setup(run) : DVI_OK;
+  SUNMatrix matrix = self->reduced ? SUNDenseMatrix(n, n, run->context)
+                                   : dvi__reference_matrix(run, size, 4 * n + qq + 2 * qv + vv);
+  return dvi__ida_run_create(run, size, matrix, &self->ida);
 }
 
 static void clear(judge *self)
 {
-  if (self->ida != NULL) IDAFree(&self->ida);
-  if (self->linear != NULL) (void)SUNLinSolFree(self->linear);
-  if (self->matrix != NULL) SUNMatDestroy(self->matrix);
-  if (self->differential != NULL) N_VDestroy(self->differential);
-  if (self->ydot != NULL) N_VDestroy(self->ydot);
-  if (self->y != NULL) N_VDestroy(self->y);
+  dvi__ida_run_clear(&self->ida);
   dvi__release(self->in_qv);
   dvi__pattern_clear(&self->vq);
 }

@@ -2,14 +2,13 @@
  *     F(t, y, ydot) = ( kappa' - K(kappa, v),  p' - f(t, kappa, v),  p - T^t C(kappa, v) ) = 0
  * with K and f as there. IDA differences the Jacobian. Source: Hindmarsh et al. 2005, ACM TOMS 31:363, sec. 2.3. */
 #include <float.h>
-#include <ida/ida.h>
 #include <math.h>
 #include <string.h>
-#include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "reference/ida_run.h"
 #include "reference/lift.h"
 
 /* A differenced Jacobian is a dense one. */
@@ -18,10 +17,7 @@ enum { UNKNOWNS_MAX = 2000 };
 typedef struct judge {
   dvi__reference_run *run;
   dvi__lift lift;
-  N_Vector y, ydot;
-  SUNMatrix matrix;
-  SUNLinearSolver linear;
-  void *ida;
+  dvi__ida_run ida;
 } judge;
 
 static int residual(double t, N_Vector y, N_Vector ydot, N_Vector F, void *user)
@@ -60,7 +56,7 @@ static dvi_status start(judge *self)
 {
   const dvi__reference_run *run = self->run;
   const size_t size = (size_t)self->lift.size, nv = (size_t)run->n;
-  double *y = N_VGetArrayPointer(self->y), *ydot = N_VGetArrayPointer(self->ydot);
+  double *y = N_VGetArrayPointer(self->ida.y), *ydot = N_VGetArrayPointer(self->ida.ydot);
   double *room = DVI_NEW(double, size + 2 * nv + (size_t)run->system->n);
   if (room == NULL) return dvi__reference_no_setup(run);
   dvi__lift_up(&self->lift, run->q, y);
@@ -72,24 +68,11 @@ static dvi_status start(judge *self)
   return status;
 }
 
-static int configure(judge *self)
-{
-  const dvi__reference_run *run = self->run;
-  void *ida = self->ida;
-  return DVI__SUNDIALS_SILENCE(IDASetErrHandlerFn, ida) || IDAInit(ida, residual, run->t, self->y, self->ydot) ||
-         IDASStolerances(ida, run->options.relative_tolerance, run->options.absolute_tolerance) || IDASetUserData(ida, self) ||
-         IDASetMaxNumSteps(ida, run->options.max_steps) || IDASetStopTime(ida, run->t_end) ||
-         IDASetMinStep(ida, dvi__reference_least_step(run)) || IDASetLinearSolver(ida, self->linear, self->matrix);
-}
-
 static dvi_status integrate(const judge *self)
 {
   dvi__reference_run *run = self->run;
-  const int flag = IDASolve(self->ida, run->t_end, &run->reached, self->y, self->ydot, IDA_NORMAL);
-  (void)IDAGetNumSteps(self->ida, &run->steps);
-  (void)IDAGetCurrentTime(self->ida, &run->reached);
-  if (flag < 0) return dvi__reference_stopped(run, flag, IDAGetReturnFlagName(flag));
-  const double *y = N_VGetArrayPointer(self->y);
+  DVI_TRY(dvi__ida_run_solve(&self->ida));
+  const double *y = N_VGetArrayPointer(self->ida.y);
   dvi__lift_down(&self->lift, y, run->q);
   memcpy(run->p, y + self->lift.size + run->n, (size_t)run->n * sizeof *y);
   dvi__lift_tangent(&self->lift, run->q, run->p);
@@ -104,22 +87,12 @@ static dvi_status reserve(judge *self)
   if (size > UNKNOWNS_MAX)
     return dvi__fail(DVI_UNSUPPORTED, "ida: the system's factors give %d unknowns, and a dense Jacobian; %d are possible", size,
                      UNKNOWNS_MAX);
-  self->y = N_VNew_Serial(size, run->context);
-  self->ydot = N_VNew_Serial(size, run->context);
-  self->matrix = SUNDenseMatrix(size, size, run->context);
-  self->ida = IDACreate(run->context);
-  if (self->y == NULL || self->ydot == NULL || self->matrix == NULL || self->ida == NULL) return dvi__reference_no_setup(run);
-  self->linear = SUNLinSol_Dense(self->y, self->matrix, run->context);
-  return self->linear == NULL ? dvi__reference_no_setup(run) : DVI_OK;
+  return dvi__ida_run_create(run, size, SUNDenseMatrix(size, size, run->context), &self->ida);
 }
 
 static void clear(judge *self)
 {
-  if (self->ida != NULL) IDAFree(&self->ida);
-  if (self->linear != NULL) (void)SUNLinSolFree(self->linear);
-  if (self->matrix != NULL) SUNMatDestroy(self->matrix);
-  if (self->ydot != NULL) N_VDestroy(self->ydot);
-  if (self->y != NULL) N_VDestroy(self->y);
+  dvi__ida_run_clear(&self->ida);
   dvi__lift_clear(&self->lift);
 }
 
@@ -128,7 +101,7 @@ dvi_status dvi__reference_ida_lift(dvi__reference_run *run)
   judge self = {.run = run};
   dvi_status status = reserve(&self);
   if (status == DVI_OK) status = start(&self);
-  if (status == DVI_OK && configure(&self) != 0) status = dvi__reference_no_setup(run);
+  if (status == DVI_OK && dvi__ida_run_configure(&self.ida, residual, &self) != 0) status = dvi__reference_no_setup(run);
   if (status == DVI_OK) status = integrate(&self);
   clear(&self);
   return status;
