@@ -7,12 +7,11 @@
 #include "asked.h"
 #include "command.h"
 #include "machine.h"
-#include "plot.h"
 #include "table.h"
 
-enum { CURVES_MAX = 128, TITLE_SIZE = 160 };
+enum { SUBJECT_SIZE = 96 };
 
-static const table_column columns[] = {
+const table_column bench_columns[] = {
     {"integrator", NULL},       {"problem", NULL},
     {"setting", NULL},          {"error", "%.3e"},
     {"energy_error", "%.3e"},   {"cpu_seconds", "%.3e"},
@@ -31,7 +30,7 @@ int bench_group_end(const bench_results *results, int first)
 
 static result_table *make_table(const bench_results *results)
 {
-  result_table *rows = table_create(columns);
+  result_table *rows = table_create(bench_columns);
   for (int i = 0; i < results->jobs; i++) {
     const bench_job *job = &results->job[i];
     table_text(rows, job->integrator);
@@ -89,34 +88,11 @@ static void print_table(FILE *stream, const bench_results *results, const result
   (void)fputc('\n', stream);
 }
 
-static bool plot_jobs(const bench_results *results, const char *path)
+static bool plot_jobs(const bench_results *results, const result_table *rows, const plot_axes *axes, const char *path)
 {
-  plot_curve curve[CURVES_MAX];
-  char title[TITLE_SIZE];
-  int curves = 0;
-  double *x = calloc(2 * (size_t)results->jobs, sizeof *x);
-  if (x == NULL) {
-    complain("out of memory for the plot");
-    return false;
-  }
-  double *y = x + results->jobs;
-  for (int i = 0; i < results->jobs; i++) {
-    x[i] = results->job[i].error;
-    y[i] = results->job[i].seconds.median;
-  }
-  for (int first = 0; first < results->jobs && curves < CURVES_MAX; first = bench_group_end(results, first))
-    curve[curves++] = (plot_curve){
-        .label = results->job[first].integrator, .count = bench_group_end(results, first) - first, .x = x + first, .y = y + first};
-  (void)snprintf(title, sizeof title, "CPU time against error: %s to t = %g", results->scene->name, results->t_end);
-  const plot_panel panel = {.title = title,
-                            .x_label = "largest error of q at the end",
-                            .y_label = "CPU seconds",
-                            .logarithmic = true,
-                            .curves = curves,
-                            .curve = curve};
-  const bool good = plot_write(path, 1, &panel);
-  free(x);
-  return good;
+  char subject[SUBJECT_SIZE];
+  (void)snprintf(subject, sizeof subject, "%s, to t = %g", results->scene->name, results->t_end);
+  return axes_plot(rows, axes, subject, 0, NULL, path);
 }
 
 static bool on_standard_output(const char *path)
@@ -137,15 +113,15 @@ static bool report_asked(FILE *stream, const bench_results *results, const bench
 
 int bench_report(const bench_results *results, const bench_outputs *outputs)
 {
-  FILE *words = on_standard_output(outputs->csv) || on_standard_output(outputs->at_csv) ? stderr : stdout;
+  FILE *report = on_standard_output(outputs->csv) || on_standard_output(outputs->at_csv) ? stderr : stdout;
   result_table *rows = make_table(results);
   bool good = table_good(rows);
-  print_head(words, results);
-  if (good && !on_standard_output(outputs->csv)) print_table(words, results, rows);
-  good = good && report_asked(words, results, outputs);
-  print_notes(words, results);
+  print_head(report, results);
+  if (good && !on_standard_output(outputs->csv)) print_table(report, results, rows);
+  good = good && report_asked(report, results, outputs);
+  print_notes(report, results);
   if (good && outputs->csv != NULL) good = table_write(rows, outputs->csv);
-  if (good && outputs->plot != NULL) good = plot_jobs(results, outputs->plot);
+  if (good && outputs->plot != NULL) good = plot_jobs(results, rows, &outputs->axes, outputs->plot);
   table_destroy(&rows);
   return good ? DONE : FAILED;
 }

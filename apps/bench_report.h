@@ -3,6 +3,7 @@
 #define BENCH_REPORT_H
 #include <stdbool.h>
 
+#include "axes.h"
 #include "bench_job.h"
 #include "numbers.h"
 
@@ -21,8 +22,12 @@ typedef struct bench_results {
 /** Where the results go; NULL: nowhere, "-": standard output, and all words to standard error. */
 typedef struct bench_outputs {
   const char *csv, *plot, *at_csv;
-  numbers asked; /**< errors at which the integrators are compared */
+  plot_axes axes; /**< of the plot */
+  numbers asked;  /**< errors at which the integrators are compared */
 } bench_outputs;
+
+/** The columns of the table, ended by one without a title. */
+extern const table_column bench_columns[];
 
 /** One past the last job of the integrator that job `first` belongs to. */
 int bench_group_end(const bench_results *results, int first);

@@ -38,6 +38,7 @@ static int check_modes(const bench_request *r)
   if (r->against.count > 0) return usage_error("bench: %s: the codes of --against choose their own", reason);
   if (r->judged_by != NULL) return usage_error("bench: %s: --judge has no meaning there", reason);
   if (r->transforms.count > 0) return usage_error("bench: %s: --time-transform has no meaning there", reason);
+  if (r->axes.count > 0) return usage_error("bench: %s: --axes has no meaning there", reason);
   if (r->levels > 0) return usage_error("bench: %s: --levels has no meaning there", reason);
   if (!isnan(r->t_end)) return usage_error("bench: %s: --t-end has no meaning there", reason);
   return r->h == 0.0 ? usage_error("bench: --h 0 leads nowhere") : DONE;
@@ -66,6 +67,8 @@ static int check_request(bench_request *request)
   if (code == DONE) code = check_words("time-transform", &request->transforms);
   if (code == DONE && request->at != NULL) code = numbers_read("bench: --at", request->at, &request->outputs.asked);
   if (code == DONE && request->judged_by != NULL) code = judge_read("bench: --judge", request->judged_by, &request->judge);
+  if (code == DONE)
+    code = axes_read("bench", &request->axes, request->outputs.plot, "error:cpu_seconds", bench_columns, &request->outputs.axes);
   if (code == DONE) code = peers_read(&request->against, &request->peers);
   return code == DONE ? check_outputs(&request->outputs) : code;
 }
@@ -168,6 +171,7 @@ bool bench_request_read(int argc, char **argv, bench_request *r, int *exit_code)
        .word = &r->outputs.plot,
        .value = "FILE.svg",
        .help = "draw CPU time against error, or against what is varied"},
+      {.name = "axes", .words = &r->axes, .value = "X:Y", .help = "draw these columns of the table instead; may be repeated"},
       {.name = NULL},
   };
   const command_line command = {

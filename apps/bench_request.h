@@ -19,7 +19,7 @@ typedef struct bench_request {
   long levels;     /**< 0: chosen, and more may follow */
   long rounds;
   long steps; /**< of --scale, 0: its own */
-  words methods, transforms, settings, against;
+  words methods, transforms, settings, against, axes;
   peer_list peers;
   judge_kind judge;
   bool one_point;

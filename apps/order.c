@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "axes.h"
 #include "command.h"
 #include "file.h"
 #include "levels.h"
@@ -25,8 +26,9 @@ typedef struct order_request {
   const char *csv, *plot, *judged_by;
   judge_kind judge;
   double h, t_end, ratio;
-  long levels; /* 0: chosen */
-  words methods, settings;
+  long levels;                    /* 0: chosen */
+  words methods, settings, asked; /* asked: the axes of the plot */
+  plot_axes axes;
   pacing how;
 } order_request;
 
@@ -187,7 +189,8 @@ static int report(const hearing *ask, order_result *result)
     all_hold = all_hold && order_holds(&result[i]);
   }
   if (request->csv != NULL && !write_csv(ask->rows, request->csv)) return FAILED;
-  if (request->plot != NULL && !order_plot(ask->scene->name, results, result, request->plot)) return FAILED;
+  if (request->plot != NULL && !order_plot(ask->scene->name, ask->rows, &request->axes, results, result, request->plot))
+    return FAILED;
   return all_hold ? DONE : CHECK_FAILED;
 }
 
@@ -265,6 +268,7 @@ static const char *const details[] = {
     "  dvi order kepler --method galerkin:degree=2\n"
     "  dvi order pendulum --method verlet --method composition:order=6,base=verlet --plot order.svg\n"
     "  dvi order kepler --set e=0.9 --method galerkin:degree=2 --time-transform distance\n"
+    "  dvi order pendulum-3d --method lie-verlet --method lie-rk --plot lie.svg --axes h:energy_error --axes h:distance\n"
     "  dvi order toda --method galerkin:degree=3,quadrature=lobatto,nodes=3 --h 0.5 --levels 8 --csv order.csv\n",
     NULL,
 };
@@ -290,6 +294,7 @@ int order_command(int argc, char **argv)
       {.name = "set", .words = &r.settings, .value = "NAME=VALUE", .help = "set a parameter of the problem; may be repeated"},
       {.name = "csv", .word = &r.csv, .value = "-|FILE", .help = "write the table as CSV; -: to standard output, words to stderr"},
       {.name = "plot", .word = &r.plot, .value = "FILE.svg", .help = "draw error against step, with the claimed slopes"},
+      {.name = "axes", .words = &r.asked, .value = "X:Y", .help = "draw these columns of the table instead; may be repeated"},
       {.name = NULL},
   };
   const command_line command = {
@@ -308,7 +313,8 @@ int order_command(int argc, char **argv)
   problem *scene;
   code = open_problem(name, &r.settings, &scene);
   if (code != DONE) return code;
-  code = check_step(&r, scene);
+  code = axes_read("order", &r.asked, r.plot, "h:error", order_columns(scene), &r.axes);
+  if (code == DONE) code = check_step(&r, scene);
   if (code == DONE) code = check_methods(&r, scene);
   if (code == DONE) code = study_all(&r, scene);
   problem_destroy(&scene);

@@ -3,8 +3,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "options.h"
-#include "plot.h"
 #include "window.h"
 
 static const double order_tolerance = 0.2;
@@ -96,28 +94,16 @@ static int guide(const order_result *result, double *x, double *y)
   return 2;
 }
 
-bool order_plot(const char *name, int results, order_result *result, const char *path)
+bool order_plot(const char *name, const result_table *rows, const plot_axes *axes, int results, const order_result *result,
+                const char *path)
 {
-  plot_curve curve[2 * WORDS_MAX];
+  plot_curve curve[WORDS_MAX];
   double x[WORDS_MAX][2];
   double y[WORDS_MAX][2];
-  char title[LABEL_SIZE];
-  int curves = 0;
-  for (int i = 0; i < results; i++) {
-    (void)snprintf(result[i].label, sizeof result[i].label, "%s (order %d)", result[i].method, result[i].claimed);
-    curve[curves++] = (plot_curve){.label = result[i].label, .count = result[i].levels, .x = result[i].h, .y = result[i].error};
-  }
   for (int i = 0; i < results; i++) {
     const int count = guide(&result[i], x[i], y[i]);
-    curve[curves++] = (plot_curve){
+    curve[i] = (plot_curve){
         .label = i == 0 ? "slopes of the claimed orders" : NULL, .count = count, .x = x[i], .y = y[i], .guide = true};
   }
-  (void)snprintf(title, sizeof title, "Error against step size: %s", name);
-  const plot_panel panel = {.title = title,
-                            .x_label = "step h",
-                            .y_label = "largest error of q at the end",
-                            .logarithmic = true,
-                            .curves = curves,
-                            .curve = curve};
-  return plot_write(path, 1, &panel);
+  return axes_plot(rows, axes, name, results, curve, path);
 }

@@ -4,12 +4,13 @@
 #include <stdbool.h>
 #include <stdio.h>
 
+#include "axes.h"
 #include "judge.h"
 #include "pacing.h"
 #include "problem.h"
 #include "table.h"
 
-enum { LEVELS_MAX = 40, LABEL_SIZE = PACED_NAME + 32 };
+enum { LEVELS_MAX = 40 };
 
 /** What was found for one method. */
 typedef struct order_result {
@@ -23,8 +24,7 @@ typedef struct order_result {
   double error[LEVELS_MAX];
   double floor, ceiling; /**< errors outside are not fitted */
   dvi_order_fit fit;
-  bool settled;           /**< the slope is the same all over the fitted levels */
-  char label[LABEL_SIZE]; /**< in the legend of its plot */
+  bool settled; /**< the slope is the same all over the fitted levels */
 } order_result;
 
 /** The order that level k and the one before it show; NaN if there is none. */
@@ -42,6 +42,8 @@ void order_print_tables(const char *name, const result_table *rows, int results,
 /** Who judged a method, and whether it has its order. */
 void order_print_verdict(FILE *stream, const order_result *result);
 
-/** Error against step, with the claimed slopes, as an SVG file. False, with a complaint, if it cannot be written. */
-bool order_plot(const char *name, int results, order_result *result, const char *path);
+/** Columns of the table against each other, the error against the step with the claimed slopes, as an SVG file. False, with a complaint, if it
+ *  cannot be written. */
+bool order_plot(const char *name, const result_table *rows, const plot_axes *axes, int results, const order_result *result,
+                const char *path);
 #endif

@@ -89,6 +89,21 @@ int table_rows(const result_table *table)
   return table->cells / table->columns;
 }
 
+const char *table_title(const result_table *table, int column)
+{
+  return table->column[column].title;
+}
+
+double table_number_at(const result_table *table, int row, int column)
+{
+  return table->cell[row * table->columns + column].number;
+}
+
+const char *table_text_at(const result_table *table, int row, int column)
+{
+  return table->cell[row * table->columns + column].text;
+}
+
 void csv_text(FILE *stream, const char *text)
 {
   if (strpbrk(text, ",\"\r\n") == NULL) {

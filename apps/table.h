@@ -25,6 +25,11 @@ bool table_good(const result_table *table);
 
 int table_rows(const result_table *table);
 
+/** Its parts: the title of a column; a cell of a column of numbers, NaN if it is empty; one of a column of text. */
+const char *table_title(const result_table *table, int column);
+double table_number_at(const result_table *table, int row, int column);
+const char *table_text_at(const result_table *table, int row, int column);
+
 /** Write all of it as CSV (RFC 4180, lines ended by a plain newline). */
 void table_csv(const result_table *table, FILE *stream);
 

@@ -1,6 +1,6 @@
 #!/bin/sh
 # From a bare Debian (12 or later) or Ubuntu (24.04 or later) to a built, run and tested libdvi:
-#   sh cmake/bootstrap.sh demo    build, then the order study and the speed-against-error study of the Kepler problem
+#   sh cmake/bootstrap.sh demo    build, then studies of the Kepler problem and of a pendulum that turns in space
 #   sh cmake/bootstrap.sh test    build, then all tests that a user needs to trust the build
 #   sh cmake/bootstrap.sh lint    install more tools, then sanitizers, valgrind, clang, clang-tidy, cppcheck, Doxygen, layout
 # Missing packages are installed by apt-get, with sudo if needed.  With CI=true in the environment compiler warnings are errors.
@@ -12,7 +12,7 @@ lint_packages="clang clang-tidy clang-format cppcheck doxygen valgrind libc6-dbg
 usage() {
   cat >&2 <<'END'
 usage: sh cmake/bootstrap.sh demo|test|lint
-  demo   build, and run two studies of the Kepler problem; plots go to build/demo/
+  demo   build, and run three studies; plots go to build/demo/
   test   build, and run the tests
   lint   build with sanitizers and with clang, and run every gate
 END
@@ -111,7 +111,13 @@ demo() {
   say "speed against error"
   $dvi bench kepler --method verlet --method galerkin:degree=2 --method galerkin:degree=4 --method galerkin:degree=8 \
     --against cvode,arkode,ida --plot build/demo/bench.svg
-  for plot in build/demo/order.svg build/demo/bench.svg; do
+  say "a body that turns: energy and distance from SO(3) against step, time against energy"
+  # It ends with 3: the motion is chaotic, and not every order is decided.
+  $dvi order pendulum-3d --t-end 10 --h 0.04 --levels 5 --judge runs --csv build/demo/rotations.csv --plot build/demo/rotations.svg \
+    --axes h:energy_error --axes h:distance --axes energy_error:cpu_seconds --method lie-verlet:solve=exp --method lie-verlet:solve=cayley \
+    --method lie-rk:scheme=explicit-midpoint --method lie-rk:scheme=implicit-midpoint --method lie-rk:scheme=crouch-grossman \
+    --method lie-rk:scheme=munthe-kaas --method lie-galerkin:degree=2 || [ $? -eq 3 ]
+  for plot in build/demo/order.svg build/demo/bench.svg build/demo/rotations.svg; do
     [ -s $plot ] || refuse "$plot was not written"
     say "plot: $plot"
   done

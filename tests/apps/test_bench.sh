@@ -152,6 +152,13 @@ else
 fi
 expect 2 'an unknown peer' bench kepler --method verlet --against cvod
 expect 2 'a peer twice' bench kepler --method verlet --against cvode,cvode-adams
+expect 0 'axes' bench kepler --method verlet --against ida --levels 2 --rounds 1 --plot axes.svg --axes energy_error:evaluations --axes error:steps
+if command -v gnuplot >/dev/null; then
+  says axes.svg 'evaluations against energy_error: kepler, to t = 10' 'the first panel'
+  [ "$(grep -c '<text>ida<' axes.svg)" -eq 2 ] || fail 'each panel names the peer'
+fi
+expect 2 'axes of a column of text' bench kepler --plot a.svg --axes setting:error
+says err "column 'setting' has no numbers" 'which column is text'
 # Tolerances below 1e-12 follow if the asked error wants them.
 expect 0 'more tolerances' bench kepler --method verlet --levels 1 --rounds 1 --against arkode,cvode --at 1e-10 --csv -
 [ "$(grep -c '^arkode' out)" -eq 5 ] || fail 'arkode needs no more'
@@ -183,7 +190,7 @@ says err 'e=0.1 and at e=0.2 alike' 'why it is no size'
 expect 2 'sizes without a method' bench fpu --scale ell=5,6
 expect 2 'a size that is set' bench fpu --method verlet --scale ell=5,6 --set ell=7
 expect 2 'sizes with a wrong method' bench fpu --method verlett --scale ell=5,6
-for other in '--at 1e-3' '--against ida' '--judge runs' '--levels 3' '--t-end 1' '--h 0'; do
+for other in '--at 1e-3' '--against ida' '--judge runs' '--levels 3' '--t-end 1' '--h 0' '--plot a.svg --axes n:bytes'; do
   # shellcheck disable=SC2086
   expect 2 "sizes with $other" bench fpu --method verlet --scale ell=5,6 $other
 done

@@ -18,6 +18,24 @@ awk -F, '$1 == "galerkin:degree=2" { if (e) s = log(e / $5) / log(h / $3); e = $
   fail 'the table shows order 4'
 if command -v gnuplot >/dev/null; then says order.svg '</svg>' 'the plot is whole'; fi
 
+# Any columns against each other, a panel each; the slopes stand beside the error alone.
+expect 0 'axes' order free-body --method lie-rk --method lie-galerkin --levels 4 --csv axes.csv --plot axes.svg \
+  --axes h:energy_error --axes h:distance --axes error:cpu_seconds
+if command -v gnuplot >/dev/null; then
+  for title in 'energy_error against h: free-body' 'distance against h: free-body' 'cpu_seconds against error: free-body'; do
+    says axes.svg "$title" "the panel $title"
+  done
+  [ "$(grep -c '<text>lie-galerkin<' axes.svg)" -eq 3 ] || fail 'each panel names the methods'
+  grep -q 'claimed orders' axes.svg && fail 'no slopes where there is no error against h'
+  says order.svg 'claimed orders' 'the slopes beside the error'
+fi
+for bad in h h: :h h:errors hh:error method:error error:problem h:distance; do
+  expect 2 "axes $bad" order kepler --method verlet --plot a.svg --axes "$bad"
+done
+expect 2 'axes of a wrong name' order kepler --method verlet --plot a.svg --axes h:eror
+says err "no column 'eror' (did you mean 'error'?)" 'the nearest column'
+expect 2 'axes without a plot' order kepler --method verlet --axes h:error
+
 expect 0 'for people' order pendulum --method midpoint --csv order.csv
 says out 'judge at t' 'the judge is named'
 says out 'ok$' 'the verdict is printed'
