@@ -44,15 +44,6 @@ static int check_modes(const bench_request *r)
   return r->h == 0.0 ? usage_error("bench: --h 0 leads nowhere") : DONE;
 }
 
-/* The settings of a method that is named twice could not be told apart. */
-static int check_words(const char *name, const words *given)
-{
-  for (int i = 0; i < given->count; i++)
-    for (int j = 0; j < i; j++)
-      if (strcmp(given->word[i], given->word[j]) == 0) return usage_error("bench: --%s names %s twice", name, given->word[i]);
-  return DONE;
-}
-
 static int check_request(bench_request *request)
 {
   if (request->levels > LEVELS_MAX)
@@ -63,8 +54,8 @@ static int check_request(bench_request *request)
     return usage_error("bench: --steps %ld is too many, %d are possible", request->steps, (int)STEPS_MAX);
   if (request->t_end == 0.0) return usage_error("bench: --t-end 0 leaves nothing to do");
   int code = check_modes(request);
-  if (code == DONE) code = check_words("method", &request->methods);
-  if (code == DONE) code = check_words("time-transform", &request->transforms);
+  if (code == DONE) code = words_distinct("bench", "method", &request->methods);
+  if (code == DONE) code = words_distinct("bench", "time-transform", &request->transforms);
   if (code == DONE && request->at != NULL) code = numbers_read("bench: --at", request->at, &request->outputs.asked);
   if (code == DONE && request->judged_by != NULL) code = judge_read("bench: --judge", request->judged_by, &request->judge);
   if (code == DONE)

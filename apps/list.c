@@ -9,7 +9,7 @@
 #include "problem.h"
 #include "table.h"
 
-enum { NAMES_SIZE = 1024, NAME_COLUMN = 18, KEY_COLUMN = 12 };
+enum { NAMES_SIZE = 1024, NAME_COLUMN = 17, KEY_COLUMN = 12 };
 
 static const table_column method_columns[] = {{"method", NULL}, {"summary", NULL}, {"source", NULL}, {"keys", NULL}, {NULL, NULL}};
 static const table_column problem_columns[] = {{"problem", NULL}, {"summary", NULL}, {"parameters", NULL}, {NULL, NULL}};
@@ -25,7 +25,7 @@ static void append(char *text, const char *word)
 static void print_methods(void)
 {
   for (int i = 0; i < dvi_method_count(); i++) {
-    (void)printf("%-*s%s [%s]\n", NAME_COLUMN, dvi_method_name(i), dvi_method_summary(i), dvi_method_citation(i));
+    (void)printf("%-*s %s [%s]\n", NAME_COLUMN, dvi_method_name(i), dvi_method_summary(i), dvi_method_citation(i));
     for (int k = 0; k < dvi_method_key_count(i); k++)
       (void)printf("    %-*s  %s\n", KEY_COLUMN, dvi_method_key_name(i, k), dvi_method_key_help(i, k));
   }
@@ -49,7 +49,7 @@ static result_table *methods_table(void)
 static void print_problems(void)
 {
   for (int i = 0; i < problem_count(); i++) {
-    (void)printf("%-*s%s\n", NAME_COLUMN, problem_name(i), problem_summary(i));
+    (void)printf("%-*s %s\n", NAME_COLUMN, problem_name(i), problem_summary(i));
     for (const problem_parameter *k = problem_parameters(i); k->name != NULL; k++) {
       char spelling[32];
       problem_spell(k, k->value, spelling, sizeof spelling);

@@ -132,7 +132,7 @@ static void hint_at_method(const char *method, char *hint)
 static int read_monitor(const problem *scene, const char *asked, const char *specification, dvi_monitor *monitor)
 {
   if (dvi_monitor_read(specification, monitor) != DVI_OK) return usage_error("--%s %s: %s", asked, specification, dvi_last_error());
-  if (monitor->kind != DVI_MONITOR_DISTANCE) return DONE;
+  if (monitor->kind != DVI_MONITOR_DISTANCE || scene->velocity != NULL) return DONE; /* with factors there is no monitor at all */
   if (scene->bodies == 0)
     return usage_error("--%s %s: %s has no bodies whose distances could be measured; see arclength and acceleration", asked,
                        specification, scene->name);

@@ -138,3 +138,11 @@ bool options_parse(const command_line *command, int argc, char **argv, const cha
   }
   return true;
 }
+
+int words_distinct(const char *command, const char *name, const words *given)
+{
+  for (int i = 0; i < given->count; i++)
+    for (int j = 0; j < i; j++)
+      if (strcmp(given->word[i], given->word[j]) == 0) return usage_error("%s: --%s names %s twice", command, name, given->word[i]);
+  return DONE;
+}

@@ -40,6 +40,9 @@ typedef struct command_line {
  *  @return true to go on */
 bool options_parse(const command_line *command, int argc, char **argv, const char **operand, int *exit_code);
 
+/** Refuse values of --name of which two are the same: rows of a table could not be told apart. Returns DONE, or complains and returns USAGE. */
+int words_distinct(const char *command, const char *name, const words *given);
+
 /** A whole text as a finite number. */
 bool parse_number(const char *text, double *number);
 #endif

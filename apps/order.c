@@ -232,7 +232,7 @@ static int check_request(order_request *request)
     return usage_error("order: --h %g is not positive; for a study backward in time set --t-end below 0", request->h);
   if (!isnan(request->ratio) && !(request->ratio >= 1.01 && request->ratio <= 10.0))
     return usage_error("order: --ratio %g is not between 1.01 and 10", request->ratio);
-  if (pacing_check("order", &request->how) != DONE) return USAGE;
+  if (pacing_check("order", &request->how) != DONE || words_distinct("order", "method", &request->methods) != DONE) return USAGE;
   const named_file files[] = {{"csv", request->csv}, {"plot", request->plot}};
   int code = request->judged_by != NULL ? judge_read("order: --judge", request->judged_by, &request->judge) : DONE;
   if (code == DONE) code = outputs_plot("order", request->plot);

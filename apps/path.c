@@ -202,7 +202,7 @@ static int create(const char *name, const path_request *request, const words *se
   arrays a = {0};
   int code = open_problem(name, settings, &m->scene);
   if (code == DONE && m->scene->terms->factors != NULL)
-    code = usage_error("path: %s has factors; paths are found between ends in R^n", name);
+    code = usage_error("path: %s has factors, and paths are found between ends in R^n; dvi run goes forward from its start", name);
   if (code == DONE && request->guess != NULL) code = points_read(request->guess, m->scene, &guess);
   if (code == DONE) code = allocate(&a, (size_t)m->scene->nq) ? create_with(request, &guess, m, &a) : FAILED;
   release(&a);

@@ -104,7 +104,7 @@ static bool measure(recorder *r, dvi_integrator *integrator)
     status = velocity_near(r->scene, r->t, dvi_integrator_q(integrator), dvi_integrator_p(integrator), r->room, r->velocity);
   if (status == DVI_OK && has_constraint(r->scene)) status = dvi_integrator_constraint(integrator, &r->constraint);
   if (status != DVI_OK) {
-    (void)library_error(status);
+    complain("run: no row at t = %.17g: %s; try a smaller --h", r->t, dvi_last_error());
     return false;
   }
   if (finite_numbers(dvi_system_invariant_count(r->scene->system), r->invariant)) return true;
@@ -259,7 +259,7 @@ static bool parse_momenta(const char *text, int n, double *p)
 static int place_momenta(const run_request *request, problem *scene)
 {
   if (request->project && !has_constraint(scene))
-    return usage_error("run: --project is for problems with a constraint; of %s any momenta are a start", scene->name);
+    return usage_error("run: --project is for problems with a constraint, p = alpha(q) or phi(q,p) = 0; %s has none", scene->name);
   if (request->momenta == NULL || parse_momenta(request->momenta, scene->nv, scene->p)) return DONE;
   return usage_error("run: --momenta wants %d finite numbers with commas between them, not '%s'", scene->nv, request->momenta);
 }
@@ -387,9 +387,10 @@ static int run_problem(run_request *request, const char *name)
 }
 
 static const char *const details[] = {
-    "Columns: t, the coordinates, their momenta (p_ and the coordinate's name), energy, the other invariants; of problems\n"
-    "with rotations and directions the velocities, too (Omega in the body's frame), before the momenta, and after all the\n"
-    "distance of the coordinates from their manifold;\n"
+    "Columns: t, the coordinates, their momenta (p_ and the coordinate's name), energy, the other invariants. Problems with\n"
+    "rotations and directions have velocities, too, before the momenta, and after all the distance of the coordinates from\n"
+    "their manifold. A rotation is R11,R12,R13,R21..R33, its velocity Omega1..Omega3 and its momentum Pi1..Pi3, both in the\n"
+    "body's frame; a direction is a unit vector, its velocity (v_) and its momentum (p_) vectors orthogonal to it;\n"
     "methods that choose their steps add h, the length of the step that led to the row, with a one-form there is the\n"
     "constraint |p - alpha(q)|, and dg and dg-phase add jump, the largest one; 17 digits, so that every number is read\n"
     "back as it was. The first row is the start (with --resume: the checkpoint), the last one is the end, wherever\n"
@@ -407,6 +408,7 @@ static const char *const details[] = {
     "Examples:\n"
     "  dvi run kepler --method galerkin:degree=4 --h 0.1 --t-end 100 --out orbit.csv --plot orbit.svg\n"
     "  dvi run kepler --method verlet --h 0.001 --t-end 10 --set e=0.9 --every 100\n"
+    "  dvi run free-body --method lie-verlet --h 0.1 --t-end 100 --momenta 1.5,-1,0.6 --out body.csv\n"
     "  dvi run outer-solar --method galerkin:degree=8 --h 200 --t-end 500000 --final\n"
     "  dvi run kepler --set e=0.99 --method galerkin:degree=4 --time-transform distance --h 0.3 --t-end 63\n"
     "  dvi run kepler --method sem:degree=2 --h 0.05 --t-end 100 --set e=0.5 --out orbit.csv\n"
@@ -442,7 +444,7 @@ int run_command(int argc, char **argv)
       {.name = "momenta",
        .word = &r.momenta,
        .value = "P1,P2,...",
-       .help = "the momenta of the start, in the order of the coordinates; left out: the problem's"},
+       .help = "the momenta of the start, in the order of their columns; left out: the problem's"},
       {.name = "project", .flag = &r.project, .help = "if the start is off a problem's constraint: project it; left out: refuse"},
       {.name = "out", .word = &r.out, .value = "FILE", .help = "where the rows go; left out, or -: standard output"},
       {.name = "checkpoint",

@@ -33,7 +33,7 @@ const char *nearest_word(const char *word, word_at known, const void *list)
 {
   const size_t length = strlen(word);
   if (length > WORD_MAX) return NULL;
-  int best = length < 6 ? 3 : 4; /* more edits than this make another word, not a slip */
+  int best = length < 3 ? (int)length : length < 6 ? 3 : 4; /* so many edits make another word, not a slip */
   const char *nearest = NULL;
   const char *candidate;
   for (int k = 0; (candidate = known(k, list)) != NULL; k++) {

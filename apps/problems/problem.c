@@ -172,6 +172,8 @@ static dvi_status make(const report *r, const problem_entry *entry, const double
   if (status == DVI_OK && !made->terms->hamiltonian) status = dvi_system_momentum(made->system, 0.0, made->q, made->v, made->p);
   if (status == DVI_OK) return DVI_OK;
   const char *reason = status == DVI_NO_MEMORY ? dvi_status_meaning(status) : dvi_last_error();
+  if (status == DVI_BAD_ARGUMENT) /* each parameter is in its range, but not together: the triangle inequality of inertias */
+    return refuse(r, DVI_BAD_OPTION, "%s with these parameters: %s", entry->name, reason);
   return refuse(r, status, "%s: %s", entry->name, reason);
 }
 

@@ -119,7 +119,7 @@ START_TEST(what_the_group_does_not_leave_alone_is_refused)
   check_refusal(&of, "potentials");
   destroy_body(&of);
   ck_assert_int_eq(dvi_system_create(&(dvi_system_terms){.factors = &direction, .factor_count = 1}, &of.system), DVI_OK);
-  check_refusal(&of, "directions (S^2) are no group");
+  check_refusal(&of, "directions (S^2)");
   destroy_body(&of);
   make_product(0, .1, &of);
   check_refusal(&of, "the mass of coordinates");

@@ -20,17 +20,19 @@ static const char *order_name(int index)
   return index >= 0 && index < 3 ? name[index] : NULL;
 }
 
+enum { VERLET, MIDPOINT, TRAPEZOIDAL, GALERKIN, LIE_VERLET, BASES };
+
 static const char *base_name(int index)
 {
   static const char *const name[] = {"verlet", "midpoint", "trapezoidal", "galerkin", "lie-verlet"};
-  return index >= 0 && index < 5 ? name[index] : NULL;
+  return index >= 0 && index < BASES ? name[index] : NULL;
 }
 
 static const dvi__key keys[] = {
     {"order", order_name, 0, 0, 0, "4, 6 or 8; left out: 4"},
-    {"base", base_name, 0, 0, 0,
+    {"base", base_name, 0, 0, DVI__LEFT_OUT,
      "the symmetric method that is composed: verlet, midpoint, trapezoidal, galerkin or lie-verlet; all other keys are its own; "
-     "left out: verlet"},
+     "left out: verlet, on groups lie-verlet"},
     {0},
 };
 
@@ -62,8 +64,10 @@ static dvi_status create(dvi__stepper *self)
 {
   char specification[2 * DVI__SPECIFICATION_SIZE] = "";
   const char *rest = self->settings.rest;
+  int *chosen = &self->settings.value[BASE];
+  if (*chosen == DVI__LEFT_OUT) *chosen = self->system->terms & DVI__FACTORS ? LIE_VERLET : VERLET;
   dvi__text text = {specification, sizeof specification, 0};
-  dvi__text_add(&text, "%s%s%s", base_name(self->settings.value[BASE]), rest[0] != 0 ? ":" : "", rest);
+  dvi__text_add(&text, "%s%s%s", base_name(*chosen), rest[0] != 0 ? ":" : "", rest);
   dvi__stepper *base = self->own = DVI_NEW(dvi__stepper, 1);
   if (base == NULL) return dvi__fail(DVI_NO_MEMORY, "composition: no memory");
   const dvi_status status = dvi__stepper_create(self->system, specification, self->counters, base);

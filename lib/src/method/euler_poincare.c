@@ -19,6 +19,7 @@ const dvi__method dvi__euler_poincare = {
                "keys of galerkin",
     .cite = "MarsdenPekarskyShkoller1999",
     .uses = DVI__CONSTANT_MASS | DVI__FACTORS,
+    .refuses = DVI__DIRECTIONS,
     .create = create,
     DVI__CHARTED_OPERATIONS,
 };

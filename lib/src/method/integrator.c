@@ -460,7 +460,9 @@ dvi_status dvi_integrator_interpolate(dvi_integrator *I, double t, double *q, do
     return dvi__fail(DVI_BAD_ARGUMENT, "interpolate: t = %.17g is outside of the last step, %.17g to %.17g", t, I->last.t,
                      I->now.t);
   if (I->stepper.method->path == NULL && I->system->cells != NULL)
-    return dvi__fail(DVI_UNSUPPORTED, "interpolate: %s has no path between its steps, and a cubic would leave the rotations",
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "interpolate: %s has no path between its steps, and a cubic would leave the rotations; "
+                     "lie-verlet and lie-galerkin have one",
                      I->stepper.method->name);
   if (I->stepper.method->path == NULL) return hermite(I, tau, q, v);
   if (I->pace != NULL && I->pace->pacing == DVI__TRANSFORM) return dvi__pace_path(I, tau, q, v);

@@ -176,6 +176,11 @@ static dvi_status munthe_kaas(dvi__stepper *self, dvi__state *state, double h)
   return DVI_OK;
 }
 
+static int is_finite(const dvi_system *system, const dvi__state *state)
+{
+  return dvi__first_not_finite((size_t)system->n, state->q) < 0 && dvi__first_not_finite((size_t)system->nv, state->p) < 0;
+}
+
 static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
 {
   static dvi_status (*const scheme[])(dvi__stepper *, dvi__state *, double) = {explicit_midpoint, implicit_midpoint,
@@ -183,7 +188,10 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
   const lie_rk *own = self->own;
   memcpy(own->q0, state->q, (size_t)self->system->n * sizeof(double));
   memcpy(own->p0, state->p, (size_t)self->system->nv * sizeof(double));
-  DVI_TRY(scheme[self->settings.value[SCHEME]](self, state, h));
+  const dvi_status status = scheme[self->settings.value[SCHEME]](self, state, h);
+  if (status != DVI_OK && status != DVI_NOT_CONVERGED && !is_finite(self->system, state))
+    return dvi__fail(DVI_NOT_FINITE, "a state inside the step is not finite");
+  DVI_TRY(status);
   dvi__add_compensated(&state->t, &state->t_carry, h);
   return DVI_OK;
 }

@@ -85,7 +85,8 @@ struct dvi__method {
   const char *list_help;
   int takes_rest;    /* keys of others are collected in settings.rest */
   unsigned needs;    /* dvi__term bits that the system must declare */
-  unsigned uses;     /* bits that it may declare */
+  unsigned uses;     /* bits that it may declare; with DVI__FACTORS of every kind, but for */
+  unsigned refuses;  /* these kinds */
   int chooses_steps; /* `step` may take another length than h, of the same sign, and says it in `taken` */
   /* Set order, symmetric, memory_count, own. On failure destroy is called. */
   dvi_status (*create)(dvi__stepper *self);

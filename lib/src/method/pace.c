@@ -92,7 +92,9 @@ static dvi_status create(const dvi_system *system, const dvi_monitor *monitor, d
   *integrator = NULL;
   if (monitor == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "integrator: the monitor is NULL");
   if (system != NULL && system->terms & DVI__FACTORS)
-    return dvi__fail(DVI_UNSUPPORTED, "%s: the system has factors; monitors are functions of coordinates of R^n", what);
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "%s: the system has factors, and monitors are functions of coordinates of R^n; take steps of equal length",
+                     what);
   dvi_status status = dvi__integrator_make(system, method, monitor, pacing, integrator);
   if (status == DVI_OK) status = check_method(*integrator);
   if (status == DVI_UNSUPPORTED) (void)dvi__fail_in(status, "%s", what);

@@ -4,18 +4,12 @@
  * of rotations that lead to the same path none but those without spin are taken.  Two unknowns a direction and function.  Quadrature: any rule with r >= s
  * points.  Angles and coordinates of R^n may stand beside: hinges and carts.
  *     Ld(q0,q1) = ext over theta of  h sum_j b_j L(q, dq/dt)
- * That is lie-galerkin's chart of a direction, xi = B^T (q0 x theta) (group/chart.h); this method is the one that has no other, and says so of bodies that
+ * That is lie-galerkin's chart of a direction, xi = B^T (q0 x theta) (group/chart.h); this method is the one that has no other, and refuses bodies that
  * turn. Order 2s; |q| = 1 without a multiplier.  Source: Leok 2004, sec. 5.4; Leok and Shingel 2012, sec. 2. */
-#include "core/status.h"
 #include "method/charted_step.h"
 
 static dvi_status create(dvi__stepper *self)
 {
-  for (int c = 0; c < self->system->cell_count; c++)
-    if (self->system->cells[c].kind == DVI__ROTATION)
-      return dvi__fail(DVI_UNSUPPORTED,
-                       "sphere-galerkin: coordinates %d to %d are a rotation, no direction; lie-galerkin takes both",
-                       self->system->cells[c].q, self->system->cells[c].q + 8);
   return dvi__charted_step_create(self, 0);
 }
 
@@ -25,6 +19,7 @@ const dvi__method dvi__sphere_galerkin = {
         "galerkin on products of spheres by horizontal lifts: directions, with angles and R^n beside them; the keys of galerkin",
     .cite = "LeokShingel2012",
     .uses = DVI__CONSTANT_MASS | DVI__POTENTIAL | DVI__FACTORS,
+    .refuses = DVI__ROTATIONS,
     .create = create,
     DVI__CHARTED_OPERATIONS,
 };

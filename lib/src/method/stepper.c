@@ -13,13 +13,21 @@ static const char *term_name(unsigned term)
   case DVI__ONE_FORM: return "a one-form";
   case DVI__FACTORS: return "factors of its configuration space";
   case DVI__HAMILTONIAN: return "a Hamiltonian with constraints";
+  case DVI__ROTATIONS: return "rotations";
+  case DVI__DIRECTIONS: return "directions (S^2)";
   default: return "potentials";
   }
 }
 
+/* What the system declares and the method cannot use. */
+static unsigned surplus(const dvi__method *method, const dvi_system *system)
+{
+  return system->terms & ((~method->uses & ~(unsigned)DVI__KINDS) | method->refuses);
+}
+
 static int can_use(const dvi__method *method, const dvi_system *system)
 {
-  return (system->terms & ~method->uses) == 0 && (method->needs & ~system->terms) == 0;
+  return surplus(method, system) == 0 && (method->needs & ~system->terms) == 0;
 }
 
 /* The names of the methods for such a system. */
@@ -37,7 +45,7 @@ static dvi_status check_terms(const dvi__method *method, const dvi_system *syste
   if (can_use(method, system)) return DVI_OK;
   name_others(system, &(dvi__text){names, sizeof names, 0});
   for (unsigned term = 1; term <= DVI__LAST_TERM; term <<= 1)
-    if (system->terms & term & ~method->uses)
+    if (surplus(method, system) & term)
       return dvi__fail(DVI_UNSUPPORTED, "%s: the system declares %s, which this method cannot use; methods for this system: %s",
                        method->name, term_name(term), names);
   for (unsigned term = 1; term <= DVI__LAST_TERM; term <<= 1)

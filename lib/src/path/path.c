@@ -44,7 +44,9 @@ static dvi_status check(const dvi_system *system, const dvi_path_options *o)
     return dvi__fail(DVI_UNSUPPORTED, "path: the system declares a %s: its equations are of first order, and two ends are too many",
                      system->lagrangian->name);
   if (system->terms & DVI__FACTORS)
-    return dvi__fail(DVI_UNSUPPORTED, "path: the system has factors; paths are found between ends in R^n");
+    return dvi__fail(
+        DVI_UNSUPPORTED,
+        "path: the system has factors, and paths are found between ends in R^n; an integrator goes forward from a start");
   if (o->steps < 1) return dvi__fail(DVI_BAD_SIZE, "path: %d steps; at least 1 is needed", o->steps);
   if (!isfinite(o->start)) return dvi__fail(DVI_BAD_ARGUMENT, "path: the start %g is no time", o->start);
   if (!(o->span > 0) || !isfinite(o->span))

@@ -44,6 +44,7 @@ static int has_cell(const dvi_factor *factor, dvi__chart_kind *kind)
 static void add_cell(dvi_system *s, dvi__chart_kind kind)
 {
   s->cells[s->cell_count++] = (dvi__cell){kind, s->n, s->nv, s->nx};
+  s->terms |= kind == DVI__ROTATION ? DVI__ROTATIONS : kind == DVI__SPHERE ? DVI__DIRECTIONS : 0U;
   s->n += dvi__chart_stored(kind);
   s->nv += dvi__chart_velocities(kind);
   s->nx += dvi__chart_size(kind);

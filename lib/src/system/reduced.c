@@ -132,8 +132,6 @@ static dvi_status read(const reader *r, int *cell)
 {
   const dvi_system *s = r->system;
   for (int c = 0; c < s->cell_count; c++) {
-    if (s->cells[c].kind == DVI__SPHERE)
-      return dvi__fail(DVI_UNSUPPORTED, "directions (S^2) are no group; lie-galerkin and sphere-galerkin take them");
     for (int i = 0; i < dvi__chart_stored(s->cells[c].kind); i++) cell[s->cells[c].q + i] = c;
     r->body_of[c] = -1;
   }

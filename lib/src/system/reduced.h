@@ -19,7 +19,7 @@ typedef struct dvi__reduced {
   double *mass;
 } dvi__reduced;
 
-/* Read it from the system's mass. DVI_UNSUPPORTED names what is in the way: directions, which are no group, or a mass that depends on where the group is. */
+/* Read it from the mass of a system without directions, which are no group. DVI_UNSUPPORTED names a mass that depends on where the group is. */
 dvi_status dvi__reduced_create(const dvi_system *system, dvi__reduced *reduced);
 void dvi__reduced_clear(dvi__reduced *reduced);
 

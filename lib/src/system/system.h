@@ -16,7 +16,10 @@ typedef enum dvi__term {
   DVI__POTENTIAL = 8,
   DVI__HAMILTONIAN = 16, /* with its constraints */
   DVI__FACTORS = 32,
-  DVI__LAST_TERM = DVI__FACTORS
+  DVI__ROTATIONS = 64, /* among the factors */
+  DVI__DIRECTIONS = 128,
+  DVI__KINDS = DVI__ROTATIONS | DVI__DIRECTIONS,
+  DVI__LAST_TERM = DVI__DIRECTIONS
 } dvi__term;
 
 /* How to difference a missing Hessian block: columns of a group are moved together. */
