@@ -321,7 +321,7 @@ static void satellite_prepare(quad_system *system)
     link->pull = 10 * half;
     set(link->arm[0], "-0.5", "0", "0.1");
     link->arm[1][0] = 1;
-    for (int c = 2; c < 2 + k; c++) link->arm[c][0] = half;
+    for (int c = 2; c < 2 + k; c++) link->arm[c][0] = half / 2;
     quad *q = system->q + 12 + 3 * (k - 1), *omega = system->v + 6 + 3 * (k - 1);
     q[0] = -1 / length;
     q[1] = quad_number("0.3") / length;
