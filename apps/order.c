@@ -249,7 +249,7 @@ static const char *const details[] = {
     "  energy_error  largest |energy - energy at the start| over the run (an untimed run of its own)\n"
     "  cpu_seconds   process time of one run (short ones are repeated until 0.02 s have passed)\n"
     "  the rest      counted by the library in one run; of problems with rotations and directions there is one more,\n"
-    "  distance      largest distance of the coordinates from their manifold over the run, |R^T R - I| or ||q| - 1|\n",
+    "  distance      largest distance over the run of R from the nearest rotation, or ||q| - 1|\n",
     "The judge is the problem's exact solution; or its stored quadruple-precision result, if parameters and end are\n"
     "the problem's own; or IDA of SUNDIALS, which shares no code with the methods, run at two tolerances. --judge\n"
     "chooses: exact, stored, ida; or runs, two runs of high degree (see dvi bench --help). An error\n"
