@@ -16,7 +16,7 @@ static const char *const methods[] = {
     "galerkin:degree=4,quadrature=radau-right,basis=legendre",
     "galerkin:degree=5,quadrature=clenshaw-curtis,nodes=7,basis=chebyshev",
     "galerkin:degree=8",
-    "composition:order=4",
+    "composition:order=4,base=verlet",
     "composition:order=6,base=midpoint",
     "composition:order=8,base=galerkin,degree=1,quadrature=trapezoid",
 };
