@@ -17,12 +17,13 @@ static const char *title_at(int k, const void *list)
 
 static int find_column(const char *command, const char *title, const table_column *columns, int *column)
 {
-  char hint[HINT_SIZE];
   for (*column = 0; columns[*column].title != NULL; ++*column)
     if (strcmp(columns[*column].title, title) == 0) break;
-  if (columns[*column].title == NULL)
+  if (columns[*column].title == NULL) {
+    char hint[HINT_SIZE];
     return usage_error("%s: --axes: the table has no column '%s'%s; dvi %s --help has their names", command, title,
                        suggestion(title, title_at, columns, hint, sizeof hint), command);
+  }
   return columns[*column].format != NULL ? DONE : usage_error("%s: --axes: column '%s' has no numbers", command, title);
 }
 
