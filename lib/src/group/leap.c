@@ -45,7 +45,7 @@ static void rotate(double A[3][3], double axis[3][3], int p, int q)
   A[p][q] = A[q][p] = 0;
 }
 
-/* The turn of rows into the axes, or into those with two of them reversed: of the four the one by the smallest angle, below 2 pi/3. */
+/* The turn of rows into the axes, or into those with two of them reversed: of the four the one by the smallest angle, at most 2 pi/3. */
 static dvi__turn turn_into(double axis[3][3])
 {
   double columns[9], q[4] = {1}, w[3];
@@ -54,8 +54,8 @@ static dvi__turn turn_into(double axis[3][3])
   (void)dvi_so3_quaternion(columns, q);
   for (int i = 1; i < 4; i++)
     if (fabs(q[i]) > fabs(q[m])) m = i;
-  const double e[3] = {m == 1, m == 2,
-                       m == 3}; /* the half turn about it before that of q is by the quaternion (-q.e, q_0 e + q x e) */
+  /* The half turn about e, and after it that of q: the quaternion (-q.e, q_0 e + q x e). */
+  const double e[3] = {m == 1, m == 2, m == 3};
   dvi__cross(q + 1, e, w);
   for (int i = 0; i < 3; i++) w[i] = m == 0 ? q[1 + i] / q[0] : -(w[i] + q[0] * e[i]) / q[m];
   return dvi__turn_of(w);
