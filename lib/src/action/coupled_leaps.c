@@ -14,7 +14,6 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "group/stumpff.h"
 #include "group/turn.h"
 #include "group/vector.h"
 #include "num/compensated.h"
@@ -158,36 +157,6 @@ void dvi__coupled_leaps_destroy(dvi__coupled_leaps **leaps)
 
 /* ---- points ---- */
 
-/* cos(a) - 1 and the tangent vector u of length sin(a), of a direction or an angle. */
-static double chord(const dvi__chart *chart, const double *xi, double *u)
-{
-  double square = 0, c[4];
-  for (int j = 0; j < dvi__chart_size(chart->kind); j++) square += xi[j] * xi[j];
-  dvi__stumpff_four(square, c);
-  for (int i = 0; i < dvi__chart_stored(chart->kind); i++) {
-    u[i] = 0;
-    for (int j = 0; j < dvi__chart_size(chart->kind); j++) u[i] += c[1] * chart->basis[j][i] * xi[j];
-  }
-  return -square * c[2];
-}
-
-/* y(xi) - y0 of one unit, to its own last digit. */
-static void move_unit(const unit *of, const double *xi, double *moved)
-{
-  double w[3], d;
-  switch (of->chart.kind) {
-  case DVI__LINE: *moved = *xi; return;
-  case DVI__ROTATION:
-    dvi__turn_tangent(xi, w);
-    const dvi__turn turn = dvi__turn_of(w);
-    for (int i = 0; i < 3; i++) dvi__turn_change(&turn, of->chart.y0 + 3 * i, moved + 3 * i);
-    return;
-  default:
-    d = chord(&of->chart, xi, moved);
-    for (int i = 0; i < dvi__chart_stored(of->chart.kind); i++) moved[i] += d * of->chart.y0[i];
-  }
-}
-
 /* force = M moved. */
 static void multiply(dvi__coupled_leaps *l)
 {
@@ -234,7 +203,7 @@ static void begin(dvi__coupled_leaps *l, double h, const double *q, const double
 /* change = h p - T0^T M (y(xi) - y0). */
 static void find_residual(dvi__coupled_leaps *l)
 {
-  for (int u = 0; u < l->count; u++) move_unit(&l->unit[u], l->xi + l->unit[u].x, l->moved + l->unit[u].cell->q);
+  for (int u = 0; u < l->count; u++) dvi__chart_leap(&l->unit[u].chart, l->xi + l->unit[u].x, l->moved + l->unit[u].cell->q);
   multiply(l);
   memcpy(l->change, l->impulse, (size_t)l->unknowns * sizeof *l->change);
   for (int u = 0; u < l->count; u++) {
@@ -316,50 +285,44 @@ static void moment_of(const dvi__coupled_leaps *l, const unit *of, double h, dou
   for (int i = 0; i < 3; i++) moment[i] /= h;
 }
 
-static void arrive_rotation(const unit *of, const double *xi, const double *moment, const dvi__phase *state, double *leap)
+static void turn_body(const unit *of, const double *xi, const double *moment, const dvi__phase *state, double *leap)
 {
+  const int v = of->cell->v;
   const double *R = of->chart.y0;
-  double *p = state->p + of->cell->v, change[3];
+  double *p = state->p + v, change[3];
   for (int i = 0; i < 3; i++) p[i] += R[i] * moment[0] + R[3 + i] * moment[1] + R[6 + i] * moment[2];
   dvi__turn_tangent(xi, leap);
   const dvi__turn turn = dvi__turn_of(leap);
-  dvi__turn_frame(&turn, state->q + of->cell->q, state->q_carry + of->cell->q);
   dvi__turn_change(&turn, p, change);
-  for (int i = 0; i < 3; i++) p[i] += change[i];
+  dvi__add_compensated_all(3, p, state->p_carry + v, change);
 }
 
-static void arrive_chord(const unit *of, const double *xi, const double *moment, const dvi__phase *state, double *leap)
+static void turn_direction(const unit *of, const double *moved, const double *moment, const dvi__phase *state)
 {
   const double *y0 = of->chart.y0;
-  double *y = state->q + of->cell->q, *p = state->p + of->cell->v, u[3], mu[3], given[3];
-  const double d = chord(&of->chart, xi, u);
-  dvi__swing(dvi__chart_stored(of->cell->kind), d, u, y, state->q_carry + of->cell->q, u);
-  dvi__chart_store(&of->chart, xi, leap);
-  if (of->cell->kind == DVI__CIRCLE) {
-    *p += moment[0];
-    return;
-  }
+  double *p = state->p + of->cell->v, mu[3], given[3];
   dvi__cross(y0, p, mu);
   dvi__cross(moment, y0, given);
   for (int i = 0; i < 3; i++) {
     mu[i] += moment[i];
     p[i] += given[i];
   }
-  dvi__swing_momentum(mu, u, y, p);
+  dvi__swing_momentum(mu, moved, state->q + of->cell->q, p);
 }
 
 static void arrive(const dvi__coupled_leaps *l, const unit *of, double h, const dvi__phase *state, double *leap)
 {
-  const double *xi = l->xi + of->x;
+  const int q = of->cell->q, v = of->cell->v;
+  const double *xi = l->xi + of->x, *moved = l->moved + q;
   double moment[3];
   moment_of(l, of, h, moment);
-  if (of->cell->kind == DVI__ROTATION) {
-    arrive_rotation(of, xi, moment, state, leap + of->cell->v);
-  } else if (of->cell->kind == DVI__LINE) {
-    leap[of->cell->v] = *xi;
-    dvi__add_compensated(state->q + of->cell->q, state->q_carry + of->cell->q, *xi);
-  } else {
-    arrive_chord(of, xi, moment, state, leap + of->cell->v);
+  dvi__add_compensated_all(dvi__chart_stored(of->cell->kind), state->q + q, state->q_carry + q, moved);
+  dvi__chart_store(&of->chart, xi, leap + v);
+  switch (of->cell->kind) {
+  case DVI__LINE: return;
+  case DVI__CIRCLE: state->p[v] += moment[0]; return;
+  case DVI__SPHERE: turn_direction(of, moved, moment, state); return;
+  case DVI__ROTATION: turn_body(of, xi, moment, state, leap + v); return;
   }
 }
 

@@ -101,7 +101,8 @@ static dvi_status leap_circle(const dvi__piece *own, double h, const dvi__phase 
   double u[] = {-sine * y[1], sine * y[0]};
   if (!(fabs(sine) < 1)) return too_large(own, fabs(h * state->p[v]), own->mass);
   leap[v] = asin(sine);
-  dvi__swing(2, dvi__swing_cosine(2, u), u, state->q + q, state->q_carry + q, u);
+  dvi__swing(2, dvi__swing_cosine(2, u), u, y, u);
+  dvi__add_compensated_all(2, state->q + q, state->q_carry + q, u);
   return DVI_OK;
 }
 
@@ -114,7 +115,8 @@ static dvi_status leap_sphere(const dvi__piece *own, double h, const dvi__phase 
   const double sine = sqrt(dvi__dot(u, u)), stretch = sine > 0 ? asin(sine) / sine : 1;
   if (!(sine < 1)) return too_large(own, sine * own->mass, own->mass);
   for (int i = 0; i < 3; i++) leap[own->cell->v + i] = stretch * u[i];
-  dvi__swing(3, dvi__swing_cosine(3, u), u, y, state->q_carry + own->cell->q, u);
+  dvi__swing(3, dvi__swing_cosine(3, u), u, y, u);
+  dvi__add_compensated_all(3, y, state->q_carry + own->cell->q, u);
   dvi__swing_momentum(mu, u, y, p);
   return DVI_OK;
 }
@@ -141,7 +143,7 @@ static dvi_status leap_body(const dvi__piece *own, dvi__leap_by by, double h, co
   const dvi__turn turn = dvi__turn_of(w);
   dvi__turn_frame(&turn, state->q + own->cell->q, state->q_carry + own->cell->q);
   dvi__turn_change(&turn, p, change);
-  for (int i = 0; i < 3; i++) p[i] += change[i];
+  dvi__add_compensated_all(3, p, state->p_carry + own->cell->v, change);
   if (own->rigid) dvi__piece_shift(own, 1, state->q, state->p);
   return DVI_OK;
 }

@@ -6,6 +6,7 @@
 
 #include "group/chart_functions.h"
 #include "group/stumpff.h"
+#include "group/turn.h"
 #include "group/vector.h"
 
 int dvi__chart_stored(dvi__chart_kind kind)
@@ -154,32 +155,28 @@ void dvi__chart_point(const dvi__chart *chart, const double *xi, const double *r
     sphere_point(chart, &c, xi, rate, y, v);
 }
 
-static void rotation_leap(const dvi__chart *chart, const dvi__functions *c, const double *xi, double *leap)
+static void rotation_leap(const dvi__chart *chart, const double *xi, double *leap)
 {
-  double E[9] = {0}, a[3];
-  for (int i = 0; i < 3; i++) a[i] = c->of[1][0] * xi[i];
-  add_hat(a, E);
-  add_squares(0.5 * c->of[2][0], xi, xi, E);
-  turn(chart->y0, E, leap);
+  double w[3];
+  dvi__turn_tangent(xi, w);
+  const dvi__turn turn = dvi__turn_of(w);
+  for (int i = 0; i < 9; i += 3) dvi__turn_change(&turn, chart->y0 + i, leap + i);
 }
 
 void dvi__chart_leap(const dvi__chart *chart, const double *xi, double *leap)
 {
-  const int stored = dvi__chart_stored(chart->kind), size = dvi__chart_size(chart->kind);
-  double x[3];
-  dvi__functions c;
-  if (chart->kind == DVI__LINE) {
-    *leap = *xi;
-    return;
+  const int stored = dvi__chart_stored(chart->kind);
+  double square, c[4];
+  switch (chart->kind) {
+  case DVI__LINE: *leap = *xi; return;
+  case DVI__ROTATION: rotation_leap(chart, xi, leap); return;
+  default:
+    square = dvi__inner(dvi__chart_size(chart->kind), xi, xi);
+    dvi__stumpff_four(square, c);
+    dvi__chart_lift(chart, xi, leap);
+    for (int i = 0; i < stored; i++) leap[i] *= c[1];
+    dvi__swing(stored, -square * c[2], leap, chart->y0, leap);
   }
-  dvi__find_functions(size, xi, 0, &c);
-  if (chart->kind == DVI__ROTATION) {
-    rotation_leap(chart, &c, xi, leap);
-    return;
-  }
-  dvi__chart_lift(chart, xi, x);
-  const double fall = dvi__inner(size, xi, xi) * c.of[2][0];
-  for (int i = 0; i < stored; i++) leap[i] = c.of[1][0] * x[i] - fall * chart->y0[i];
 }
 
 /* ---- tangents ---- */

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "group/chart_functions.h"
+#include "group/turn.h"
 #include "group/vector.h"
 
 /* Vectors in a stored point: the columns of a rotation, or the direction itself. */
@@ -77,13 +78,15 @@ void dvi__chart_momentum(const dvi__chart *chart, const double *xi, const double
 
 void dvi__chart_stored_momentum(const dvi__chart *chart, const double *xi, const double *y, const double *angular, double *stored)
 {
-  dvi__functions c;
+  double w[3], change[3];
   if (chart->kind == DVI__SPHERE) {
     dvi__cross(angular, y, stored);
     return;
   }
-  dvi__find_functions(3, xi, 0, &c);
-  dvi__about(xi, -c.of[1][0], c.of[2][0], angular, stored);
+  dvi__turn_tangent(xi, w);
+  const dvi__turn turn = dvi__turn_of(w);
+  dvi__turn_change(&turn, angular, change);
+  for (int i = 0; i < 3; i++) stored[i] = angular[i] + change[i];
 }
 
 void dvi__chart_moments(const dvi__chart *chart, const double *xi, double *W)

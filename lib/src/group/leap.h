@@ -5,17 +5,19 @@
  * on the branch that is the identity for h = 0. */
 #ifndef DVI_GROUP_LEAP_H
 #define DVI_GROUP_LEAP_H
+#include "group/turn.h"
 
 /* The unknown of Newton's method: f of F = exp(f^), or f of F = (I + f^)(I - f^)^-1. Both give the same F. */
 typedef enum dvi__leap_by { DVI__BY_EXPONENTIAL, DVI__BY_CAYLEY } dvi__leap_by;
 
 /* A body in its principal axes. */
 typedef struct dvi__body {
-  double moment[3];  /* J_i = d_j + d_k, d the second moments */
-  double slant[3];   /* (J_k - J_j)/J_i = (d_j - d_k)/J_i, i, j, k cyclic: between -1 and 1 */
-  double largest;    /* of the moments */
-  int turned;        /* not 0: the axes are not those of the body's frame, but */
-  double axis[3][3]; /* these; the third is the cross product of the others */
+  double second[3];    /* d, its second moments */
+  double moment[3];    /* J_i = d_j + d_k, i, j, k cyclic */
+  double slant[3];     /* (J_k - J_j)/J_i = (d_j - d_k)/J_i: between -1 and 1 */
+  double largest;      /* of the moments */
+  int turned;          /* not 0: the axes are not those of the body's frame, but */
+  dvi__turn into, out; /* rows x F and y F^T are vectors in them, and back */
 } dvi__body;
 
 /* From Jd [9], symmetric. 0 unless all moments are positive. */

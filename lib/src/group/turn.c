@@ -16,19 +16,27 @@ static void add_squares(int count, const double *x, double *sum, double *low)
   }
 }
 
+/* tan(x)/x - 1 = x^2 (c_2 - c_3)/c_0 at x = |f|/2 is small: its rounding, the same in all steps of a steady turn, is too. */
 void dvi__turn_tangent(const double f[3], double w[3])
 {
   double c[4];
-  dvi__stumpff_four(dvi__dot(f, f), c);
-  for (int i = 0; i < 3; i++) w[i] = c[1] / (1 + c[0]) * f[i];
+  const double square = 0.25 * dvi__dot(f, f);
+  dvi__stumpff_four(square, c);
+  const double more = square * (c[2] - c[3]) / c[0];
+  for (int i = 0; i < 3; i++) w[i] = 0.5 * f[i] + more * (0.5 * f[i]);
 }
 
 dvi__turn dvi__turn_of(const double w[3])
 {
   double n = 1, n_low = 0;
   add_squares(3, w, &n, &n_low);
-  const double s = 2 / n;
+  const double s = (double)(float)(2 / n);
   return (dvi__turn){{w[0], w[1], w[2]}, s, (__builtin_fma(-s, n, 2) - s * n_low) / n};
+}
+
+dvi__turn dvi__turn_back(const dvi__turn *turn)
+{
+  return (dvi__turn){{-turn->w[0], -turn->w[1], -turn->w[2]}, turn->s, turn->s_low};
 }
 
 void dvi__turn_change(const dvi__turn *turn, const double x[3], double change[3])
@@ -59,7 +67,7 @@ double dvi__swing_cosine(int count, const double *u)
 }
 
 /* (1 + d)^2 + |u|^2 - 1 = 2 d + d^2 + |u|^2 is made 0 to twice the digits, by the larger of both. */
-void dvi__swing(int count, double d, const double *u, double *y, double *carry, double *change)
+void dvi__swing(int count, double d, const double *u, const double *y, double *change)
 {
   double square = 0, low = 0;
   add_squares(count, u, &square, &low);
@@ -67,7 +75,6 @@ void dvi__swing(int count, double d, const double *u, double *y, double *carry, 
   const int along = (1 + d) * (1 + d) > square;
   const double more_d = along ? -0.5 * excess / (1 + d) : 0, more_u = along ? 0 : -0.5 * excess / square;
   for (int i = 0; i < count; i++) change[i] = (d * y[i] + u[i]) + (more_d * y[i] + more_u * u[i]);
-  dvi__add_compensated_all(count, y, carry, change);
 }
 
 /* mu x y has changed by mu x change; what rounding leaves along y would grow. */
