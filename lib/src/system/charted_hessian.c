@@ -16,8 +16,9 @@ static void bend(dvi__charted *x, int count, int first, int group, int k, const 
     dvi__charted_gather(cell, count, first + k, xi, at);
     dvi__charted_gather(cell, count, first + k, rate, u);
     dvi__charted_pair(cell, group, k, x->L_y, x->w, a, b);
-    dvi__chart_tangents(&x->chart[c], at, u, x->T + 3 * (size_t)cell->q, x->S + 3 * (size_t)cell->q);
-    dvi__chart_curvature(&x->chart[c], at, u, a, b, x->curved + 9 * (size_t)c, x->mixed + 9 * (size_t)c);
+    const dvi__functions *functions = dvi__charted_functions(x, c, k);
+    dvi__chart_tangents(&x->chart[c], functions, at, u, x->T + 3 * (size_t)cell->q, x->S + 3 * (size_t)cell->q);
+    dvi__chart_curvature(&x->chart[c], functions, at, u, a, b, x->curved + 9 * (size_t)c, x->mixed + 9 * (size_t)c);
   }
 }
 
@@ -107,6 +108,19 @@ static dvi_status hessian_group(dvi__charted *x, int count, int first, int group
 static void clear(const dvi__pattern *pattern, int count, double *values)
 {
   memset(values, 0, (size_t)dvi__pattern_entries(pattern) * (size_t)count * sizeof *values);
+}
+
+void dvi__charted_mass(dvi__charted *x, double *mass)
+{
+  static const double rest[DVI__CHART_SIZE] = {0};
+  clear(&x->vv, 1, mass);
+  for (int c = 0; c < x->base->cell_count; c++) {
+    const size_t row = 3 * (size_t)x->base->cells[c].q;
+    dvi__functions functions;
+    dvi__chart_functions(x->chart[c].kind, rest, &functions);
+    dvi__chart_tangents(&x->chart[c], &functions, rest, rest, x->T + row, x->S + row);
+  }
+  dvi__charted_add_mass_product(x, x->mass_in_vv, x->T, x->T, 1, 0, mass);
 }
 
 static int smaller(int a, int b)
