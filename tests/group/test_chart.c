@@ -56,6 +56,14 @@ static void difference(vector_of *f, const scene *s, int in, int j, int count, d
   }
 }
 
+/* Good until the next call. */
+static const dvi__functions *functions_at(const scene *s, const double *xi)
+{
+  static dvi__functions c;
+  dvi__chart_functions(s->chart.kind, xi, &c);
+  return &c;
+}
+
 /* Row i of `derivative` holds the derivatives of number i. */
 static void check_derivative(vector_of *f, const scene *s, int in, int count, const double *derivative, const char *what)
 {
@@ -72,19 +80,19 @@ static void check_derivative(vector_of *f, const scene *s, int in, int count, co
 static void point_of(const scene *s, const double *xi, const double *rate, double *value)
 {
   double v[9];
-  dvi__chart_point(&s->chart, xi, rate, value, v);
+  dvi__chart_point(&s->chart, functions_at(s, xi), xi, rate, value, v);
 }
 
 static void velocity_of(const scene *s, const double *xi, const double *rate, double *value)
 {
   double y[9];
-  dvi__chart_point(&s->chart, xi, rate, y, value);
+  dvi__chart_point(&s->chart, functions_at(s, xi), xi, rate, y, value);
 }
 
 static void contraction_of(const scene *s, const double *xi, const double *rate, double *value)
 {
   double y[9], v[9];
-  dvi__chart_point(&s->chart, xi, rate, y, v);
+  dvi__chart_point(&s->chart, functions_at(s, xi), xi, rate, y, v);
   *value = 0;
   for (int i = 0; i < s->stored; i++) *value += s->a[i] * y[i] + s->b[i] * v[i];
 }
@@ -92,13 +100,13 @@ static void contraction_of(const scene *s, const double *xi, const double *rate,
 static void in_xi_of(const scene *s, const double *xi, const double *rate, double *value)
 {
   double unused[3];
-  dvi__chart_gradient(&s->chart, xi, rate, s->a, s->b, value, unused);
+  dvi__chart_gradient(&s->chart, functions_at(s, xi), xi, rate, s->a, s->b, value, unused);
 }
 
 static void in_rate_of(const scene *s, const double *xi, const double *rate, double *value)
 {
   double unused[3];
-  dvi__chart_gradient(&s->chart, xi, rate, s->a, s->b, unused, value);
+  dvi__chart_gradient(&s->chart, functions_at(s, xi), xi, rate, s->a, s->b, unused, value);
 }
 
 static void momentum_of(const scene *s, const double *xi, const double *rate, double *value)
@@ -110,28 +118,28 @@ static void momentum_of(const scene *s, const double *xi, const double *rate, do
 static void spin_of(const scene *s, const double *xi, const double *rate, double *value)
 {
   double Omega[3];
-  dvi__chart_leave_velocity(&s->chart, xi, rate, Omega);
+  dvi__chart_leave_velocity(&s->chart, functions_at(s, xi), xi, rate, Omega);
   *value = s->a[0] * Omega[0] + s->a[1] * Omega[1] + s->a[2] * Omega[2];
 }
 
 static void spin_in_xi_of(const scene *s, const double *xi, const double *rate, double *value)
 {
   double unused[3];
-  dvi__chart_turning_gradient(xi, rate, s->a, value, unused);
+  dvi__chart_turning_gradient(functions_at(s, xi), xi, rate, s->a, value, unused);
 }
 
 START_TEST(derivatives_are_those_of_points)
 {
   const scene s = set(_i);
   double T[27], S[27], in_xi[9], in_rate[9], mixed[9];
-  dvi__chart_tangents(&s.chart, s.xi, s.rate, T, S);
+  dvi__chart_tangents(&s.chart, functions_at(&s, s.xi), s.xi, s.rate, T, S);
   check_derivative(point_of, &s, IN_XI, s.stored, T, "T");
   check_derivative(velocity_of, &s, IN_XI, s.stored, S, "S");
   check_derivative(velocity_of, &s, IN_RATE, s.stored, T, "T as that of the rate");
-  dvi__chart_gradient(&s.chart, s.xi, s.rate, s.a, s.b, in_xi, in_rate);
+  dvi__chart_gradient(&s.chart, functions_at(&s, s.xi), s.xi, s.rate, s.a, s.b, in_xi, in_rate);
   check_derivative(contraction_of, &s, IN_XI, 1, in_xi, "the gradient in xi");
   check_derivative(contraction_of, &s, IN_RATE, 1, in_rate, "the gradient in the rate");
-  dvi__chart_curvature(&s.chart, s.xi, s.rate, s.a, s.b, in_xi, mixed);
+  dvi__chart_curvature(&s.chart, functions_at(&s, s.xi), s.xi, s.rate, s.a, s.b, in_xi, mixed);
   check_derivative(in_xi_of, &s, IN_XI, s.size, in_xi, "the curvature");
   check_derivative(in_xi_of, &s, IN_RATE, s.size, mixed, "the mixed curvature");
   check_derivative(in_rate_of, &s, IN_XI, s.size, mixed, "the mixed curvature"); /* it is symmetric */
@@ -143,12 +151,12 @@ START_TEST(velocities_are_those_of_points)
 {
   const scene s = set(_i);
   double y[9], v[9], T[27], S[27], along[9] = {0}, stored[3];
-  dvi__chart_point(&s.chart, s.xi, s.rate, y, v);
-  dvi__chart_tangents(&s.chart, s.xi, s.rate, T, S);
+  dvi__chart_point(&s.chart, functions_at(&s, s.xi), s.xi, s.rate, y, v);
+  dvi__chart_tangents(&s.chart, functions_at(&s, s.xi), s.xi, s.rate, T, S);
   for (int i = 0; i < s.stored; i++)
     for (int j = 0; j < s.size; j++) along[i] += T[i * s.size + j] * s.rate[j];
   ck_assert_double_le(distance(s.stored, along, v), 1e-15 * 10);
-  dvi__chart_leave_velocity(&s.chart, s.xi, s.rate, stored);
+  dvi__chart_leave_velocity(&s.chart, functions_at(&s, s.xi), s.xi, s.rate, stored);
   if (s.chart.kind == DVI__SPHERE) ck_assert_double_le(distance(3, stored, v), 1e-15);
   for (int j = 0; j < 3 && s.chart.kind == DVI__ROTATION; j++) { /* R' e_j = R (Omega x e_j) */
     double e[3] = {0}, turned[3], column[3], found[3];
@@ -174,7 +182,7 @@ START_TEST(momenta_are_those_of_turns)
   check_derivative(momentum_of, &s, IN_XI, s.size, derivative, "the momentum's derivative");
   if (s.chart.kind == DVI__ROTATION) return;
   double y[9], v[9], moment[3] = {0}, power = 0;
-  dvi__chart_point(&s.chart, s.xi, s.rate, y, v);
+  dvi__chart_point(&s.chart, functions_at(&s, s.xi), s.xi, s.rate, y, v);
   dvi__chart_add_moment(DVI__SPHERE, y, v, moment);
   for (int i = 0; i < 3; i++) power += s.a[i] * moment[i];
   ck_assert_double_eq_tol(p[0] * s.rate[0] + p[1] * s.rate[1], power, 1e-14);
@@ -185,10 +193,10 @@ START_TEST(spins_have_their_derivatives)
 {
   const scene s = set(DVI__ROTATION * LENGTHS + _i);
   double in_xi[9], in_rate[9], mixed[9];
-  dvi__chart_turning_gradient(s.xi, s.rate, s.a, in_xi, in_rate);
+  dvi__chart_turning_gradient(functions_at(&s, s.xi), s.xi, s.rate, s.a, in_xi, in_rate);
   check_derivative(spin_of, &s, IN_XI, 1, in_xi, "the spin's gradient in xi");
   check_derivative(spin_of, &s, IN_RATE, 1, in_rate, "the spin's gradient in the rate");
-  dvi__chart_turning_curvature(s.xi, s.rate, s.a, in_xi, mixed);
+  dvi__chart_turning_curvature(functions_at(&s, s.xi), s.xi, s.rate, s.a, in_xi, mixed);
   check_derivative(spin_in_xi_of, &s, IN_XI, 3, in_xi, "the spin's curvature");
   check_derivative(spin_in_xi_of, &s, IN_RATE, 3, mixed, "the spin's mixed curvature");
 }
@@ -203,7 +211,7 @@ START_TEST(points_are_found_again)
     double y[9], found[3];
     const double norm = dvi__chart_angle(s.chart.kind, s.xi);
     for (int i = 0; i < s.size; i++) s.xi[i] *= far[k] / norm;
-    dvi__chart_point(&s.chart, s.xi, NULL, y, NULL);
+    dvi__chart_place(&s.chart, s.xi, y);
     dvi__chart_inverse(&s.chart, y, found);
     const double lost = s.chart.kind == DVI__SPHERE && far[k] > 1 ? 1 / sin(far[k]) : 1;
     ck_assert_msg(distance(s.size, s.xi, found) < 2e-15 * lost, "kind %d at %g: %.1e", _i, far[k], distance(s.size, s.xi, found));

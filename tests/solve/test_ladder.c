@@ -176,6 +176,25 @@ START_TEST(a_start_on_a_critical_point_is_a_failure)
 }
 END_TEST
 
+/* No correction becomes small: where the row is known to be rounding, the solution is, too. Without that, or with a row above it, there is none. */
+START_TEST(a_row_that_is_rounding_is_solved)
+{
+  single s = {faint, faint_slope, 1, -HUGE_VAL, 0}, none = {never_zero, parabola_slope, 1, -HUGE_VAL, 0};
+  bench b;
+  double x = 1.3;
+  for_sum(&s, &b);
+  ck_assert_msg(run_rung(&b, rungs[1 + _i], &x) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_double_eq_tol(x, 1, 1e-9);
+  free_bench(&b, NULL);
+  for_single(&s, &b);
+  failed_with(run_rung(&b, rungs[1 + _i], &x), DVI_NOT_CONVERGED);
+  free_bench(&b, NULL);
+  for_sum(&none, &b);
+  failed_with(run_rung(&b, rungs[1 + _i], &x), DVI_NOT_CONVERGED);
+  free_bench(&b, NULL);
+}
+END_TEST
+
 int main(void)
 {
   TCase *tests = tcase_create("ladder");
@@ -189,5 +208,6 @@ int main(void)
   tcase_add_loop_test(tests, no_solution_is_a_failure_after_a_bounded_number_of_iterations, 0, 3);
   tcase_add_loop_test(tests, a_singular_jacobian_is_a_step_s_failure, 0, 2);
   tcase_add_loop_test(tests, a_start_on_a_critical_point_is_a_failure, 0, 2);
+  tcase_add_loop_test(tests, a_row_that_is_rounding_is_solved, 0, 2);
   return run_tests("solve/ladder", tests);
 }

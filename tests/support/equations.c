@@ -1,6 +1,7 @@
 #include "support/equations.h"
 
 #include <check.h>
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -110,19 +111,37 @@ void for_chain(chain *c, bench *b)
               b);
 }
 
-void for_single(single *s, bench *b)
+static void of_size_1(void *of, double *magnitude)
+{
+  (void)of;
+  magnitude[0] = 1;
+}
+
+static dvi__equations equations_of(single *s)
 {
   static int start[2] = {0, 1}, row[1] = {0};
   static const dvi__pattern one = {1, 1, start, row};
-  make_solver(&(dvi__equations){.unknowns = 1,
-                                .pattern = &one,
-                                .of = s,
-                                .residual = single_residual,
-                                .jacobian = single_jacobian,
-                                .prepare_chord = chain_prepare,
-                                .chord = single_chord,
-                                .row_scale = single_scale},
-              b);
+  return (dvi__equations){.unknowns = 1,
+                          .pattern = &one,
+                          .of = s,
+                          .residual = single_residual,
+                          .jacobian = single_jacobian,
+                          .prepare_chord = chain_prepare,
+                          .chord = single_chord,
+                          .row_scale = single_scale};
+}
+
+void for_single(single *s, bench *b)
+{
+  const dvi__equations equations = equations_of(s);
+  make_solver(&equations, b);
+}
+
+void for_sum(single *s, bench *b)
+{
+  dvi__equations equations = equations_of(s);
+  equations.magnitudes = of_size_1;
+  make_solver(&equations, b);
 }
 
 dvi_status run_rung(bench *b, dvi__rung rung, double *x)
@@ -140,6 +159,16 @@ void failed_with(dvi_status status, dvi_status expected)
 {
   ck_assert_msg(status == expected, "%s, not %s: %s", dvi_status_name(status), dvi_status_name(expected), dvi_last_error());
   ck_assert_msg(strlen(dvi_last_error()) > 20, "%s", dvi_last_error());
+}
+
+double faint(double x)
+{
+  return 1e-6 * (x - 1) * (x + 1) + DBL_EPSILON * sin(1e14 * x);
+}
+
+double faint_slope(double x)
+{
+  return 2e-6 * x;
 }
 
 double arctangent(double x)

@@ -40,6 +40,9 @@ void make_chain(double strength, chain *c);
 void for_chain(chain *c, bench *b);
 void for_single(single *s, bench *b);
 
+/* The same for a row in which numbers of size 1 are summed. */
+void for_sum(single *s, bench *b);
+
 /* One rung, neither wary nor patient. */
 dvi_status run_rung(bench *b, dvi__rung rung, double *x);
 
@@ -56,6 +59,10 @@ double parabola(double x);
 double parabola_slope(double x);
 double never_zero(double x);
 double flat_slope(double x); /* 0 */
+
+/* A millionth of x^2 - 1, rounded as a sum of numbers of size 1 is, at random. */
+double faint(double x);
+double faint_slope(double x);
 
 /* Every rung, cheap to robust. */
 extern const dvi__rung rungs[3];

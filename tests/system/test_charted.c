@@ -74,6 +74,21 @@ START_TEST(the_value_is_the_systems_own)
 }
 END_TEST
 
+/* L_vv rate is the momentum, reduced or not. */
+START_TEST(the_mass_at_the_centre_is_that_of_velocities)
+{
+  double zero[BODY_V] = {0}, rate[BODY_V], momentum[BODY_V], by_mass[BODY_V] = {0}, mass[ENTRIES_MOST];
+  take(_i);
+  const dvi__pattern *vv = &local()->vv;
+  scatter(dvi_system_nq(local()), 0.7, rate);
+  ck_assert_int_eq(dvi_system_momentum(local(), 0, zero, rate, momentum), DVI_OK);
+  dvi__charted_mass(charts, mass);
+  for (int j = 0; j < vv->columns; j++)
+    for (int e = vv->start[j]; e < vv->start[j + 1]; e++) by_mass[vv->row[e]] += mass[e] * rate[j];
+  for (int i = 0; i < vv->columns; i++) ck_assert_double_eq_tol(by_mass[i], momentum[i], 1e-14 * fmax(1, fabs(momentum[i])));
+}
+END_TEST
+
 START_TEST(points_are_found_again)
 {
   double xi[BODY_V], q[BODY_Q], found[BODY_V];
@@ -197,6 +212,7 @@ int main(void)
   tcase_add_checked_fixture(tests, NULL, give_back);
   tcase_add_loop_test(tests, derivatives_are_those_of_the_value, 0, KINDS);
   tcase_add_loop_test(tests, the_value_is_the_systems_own, 0, KINDS);
+  tcase_add_loop_test(tests, the_mass_at_the_centre_is_that_of_velocities, 0, KINDS);
   tcase_add_loop_test(tests, points_are_found_again, 0, BODIES);
   tcase_add_loop_test(tests, the_centred_jacobian_is_that_of_the_rows, 0, KINDS);
   tcase_add_loop_test(tests, charts_survive_every_failure, 0, KINDS);

@@ -55,6 +55,9 @@ void dvi__action_place(dvi__action *action, double t0, double h, const double *q
 /* R(Y). Keeps the forces at the nodes for dvi__action_ends. */
 dvi_status dvi__action_residual(dvi__action *action, const double *Y, double *R);
 
+/* Sums of the magnitudes of what was summed in each row of the last residual. */
+void dvi__action_magnitudes(const dvi__action *action, double *magnitude);
+
 /* dR/dY in the order of the pattern. */
 dvi_status dvi__action_jacobian(dvi__action *action, const double *Y, double *values);
 

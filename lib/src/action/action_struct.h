@@ -86,6 +86,9 @@ const double *dvi__action_sweep_shift(dvi__action *action, double ratio);
 void dvi__action_centre_path(dvi__action *action, const double *Y);
 void dvi__action_centre_rows(dvi__action *action, double *R);
 
+/* Add those of the centring to the rows' magnitudes. */
+void dvi__action_centre_magnitudes(const dvi__action *action, double *magnitude);
+
 /* Subtract psi(1) dC from the Jacobian; after dvi__action_centre_path and the Hessians. */
 void dvi__action_centre_jacobian(dvi__action *action, double *values);
 

@@ -1,6 +1,8 @@
 /* Rows and Jacobian of paths in a chart that is centred at their start: with p1 = p0 + dp + C the rows are
  *
  *     R_k = sum_j b_j ( h (psi_k - psi_k(1)) L_q + psi_k' L_v )_j - psi_k(1) (p0 + C) */
+#include <math.h>
+
 #include "action/action_struct.h"
 #include "core/memory.h"
 #include "core/status.h"
@@ -35,6 +37,14 @@ void dvi__action_centre_rows(dvi__action *a, double *R)
   a->centring.correct(a->centring.of, a->r, a->h, a->weight, a->p0, a->end_dp, a->correction);
   for (int i = 0; i < a->n; i++)
     for (int k = 0; k < a->s; k++) R[i * a->s + k] -= a->end[k] * a->correction[i];
+}
+
+void dvi__action_centre_magnitudes(const dvi__action *a, double *magnitude)
+{
+  if (a->correction == NULL) return;
+  for (int i = 0; i < a->n; i++)
+    for (int k = 0; k < a->s; k++) magnitude[i * a->s + k] += fabs(a->end[k] * a->correction[i]);
+  a->centring.mix(a->centring.of, a->s, magnitude);
 }
 
 /* dC/dY_l for one entry of the joint pattern. */

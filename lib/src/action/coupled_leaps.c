@@ -186,6 +186,15 @@ static double energy_of(dvi__coupled_leaps *l, const double *change)
 
 /* ---- Newton's method ---- */
 
+/* T of a unit at xi. */
+static void find_tangents(const dvi__coupled_leaps *l, const unit *of, const double *xi, double *T)
+{
+  const double rest[DVI__CHART_SIZE] = {0};
+  dvi__functions c;
+  dvi__chart_functions(of->chart.kind, xi, &c);
+  dvi__chart_tangents(&of->chart, &c, xi, rest, T + 3 * (size_t)of->cell->q, l->unwanted);
+}
+
 static void begin(dvi__coupled_leaps *l, double h, const double *q, const double *p)
 {
   const double rest[DVI__CHART_SIZE] = {0};
@@ -194,7 +203,7 @@ static void begin(dvi__coupled_leaps *l, double h, const double *q, const double
     unit *of = &l->unit[u];
     double *impulse = l->impulse + of->x;
     dvi__chart_centre(of->cell->kind, q + of->cell->q, &of->chart);
-    dvi__chart_tangents(&of->chart, rest, rest, l->T0 + 3 * (size_t)of->cell->q, l->unwanted);
+    find_tangents(l, of, rest, l->T0);
     dvi__chart_enter(&of->chart, p + of->cell->v, impulse);
     for (int a = 0; a < dvi__chart_size(of->cell->kind); a++) impulse[a] *= h;
   }
@@ -229,10 +238,8 @@ static void add_block(dvi__coupled_leaps *l, int e, int j)
 
 static dvi_status correct(dvi__coupled_leaps *l)
 {
-  const double rest[DVI__CHART_SIZE] = {0};
   const dvi__pattern *vv = &l->system->vv;
-  for (int u = 0; u < l->count; u++)
-    dvi__chart_tangents(&l->unit[u].chart, l->xi + l->unit[u].x, rest, l->T + 3 * (size_t)l->unit[u].cell->q, l->unwanted);
+  for (int u = 0; u < l->count; u++) find_tangents(l, &l->unit[u], l->xi + l->unit[u].x, l->T);
   memset(l->values, 0, (size_t)dvi__pattern_entries(&l->pattern) * sizeof *l->values);
   for (int j = 0; j < vv->columns; j++)
     for (int e = vv->start[j]; e < vv->start[j + 1] && l->owner[j] >= 0; e++)

@@ -181,13 +181,16 @@ void dvi__leaps_path(const dvi__leaps *l, const double *q0, const double *leap, 
     const dvi__cell *cell = &l->pieces.system->cells[c];
     double xi[DVI__CHART_SIZE], rate[DVI__CHART_SIZE];
     dvi__chart chart;
+    dvi__functions functions;
     dvi__chart_centre(cell->kind, q0 + cell->q, &chart);
     coordinates_of(&chart, leap + cell->v, xi);
     for (int i = 0; i < dvi__chart_size(cell->kind); i++) {
       rate[i] = xi[i] / h;
       xi[i] *= tau;
     }
-    if (q != NULL) dvi__chart_point(&chart, xi, NULL, q + cell->q, NULL);
-    if (v != NULL) dvi__chart_leave_velocity(&chart, xi, rate, v + cell->v);
+    if (q != NULL) dvi__chart_place(&chart, xi, q + cell->q);
+    if (v == NULL) continue;
+    dvi__chart_functions(cell->kind, xi, &functions);
+    dvi__chart_leave_velocity(&chart, &functions, xi, rate, v + cell->v);
   }
 }

@@ -44,6 +44,19 @@ dvi_status dvi__action_residual(dvi__action *a, const double *Y, double *R)
   return DVI_OK;
 }
 
+/* L_q and L_v hold the weights. */
+void dvi__action_magnitudes(const dvi__action *a, double *magnitude)
+{
+  for (int i = 0; i < a->n; i++)
+    for (int k = 0; k < a->s; k++) {
+      const double *bar = a->bar + k * a->lanes, *slope = a->dpsi + k * a->lanes;
+      double total = fabs(a->end[k] * a->p0[i]);
+      for (int j = 0; j < a->r; j++) total += fabs(a->h * bar[j] * a->L_q[i * a->r + j]) + fabs(slope[j] * a->L_v[i * a->r + j]);
+      magnitude[i * a->s + k] = total;
+    }
+  dvi__action_centre_magnitudes(a, magnitude);
+}
+
 static double sum(int count, const double *x)
 {
   double total = 0;

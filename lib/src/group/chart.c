@@ -9,24 +9,6 @@
 #include "group/turn.h"
 #include "group/vector.h"
 
-int dvi__chart_stored(dvi__chart_kind kind)
-{
-  static const int count[] = {1, 2, 3, 9};
-  return count[kind];
-}
-
-int dvi__chart_velocities(dvi__chart_kind kind)
-{
-  static const int count[] = {1, 1, 3, 3};
-  return count[kind];
-}
-
-int dvi__chart_size(dvi__chart_kind kind)
-{
-  static const int count[] = {1, 1, 2, 3};
-  return count[kind];
-}
-
 double dvi__chart_bound(dvi__chart_kind kind)
 {
   return kind == DVI__LINE ? HUGE_VAL : 3.14159265358979323846;
@@ -38,13 +20,17 @@ double dvi__chart_angle(dvi__chart_kind kind, const double *xi)
 }
 
 /* By d c_k / ds = (k c_{k+2} - c_{k+1}) / 2. */
-void dvi__find_functions(int size, const double *xi, int derivatives, dvi__functions *c)
+void dvi__chart_functions(dvi__chart_kind kind, const double *xi, dvi__functions *c)
 {
-  double value[9];
-  dvi__stumpff(dvi__inner(size, xi, xi), value);
-  for (int k = 0; k < 9; k++) c->of[k][0] = value[k];
-  for (int j = 0; j < derivatives; j++)
-    for (int k = 0; k + 2 * (j + 1) < 9; k++) c->of[k][j + 1] = 0.5 * (k * c->of[k + 2][j] - c->of[k + 1][j]);
+  const int size = dvi__chart_size(kind);
+  double derivative[9];
+  *c = (dvi__functions){{{0}}};
+  if (kind == DVI__LINE) return;
+  dvi__stumpff(dvi__inner(size, xi, xi), derivative);
+  for (int j = 0; j < 4; j++) {
+    for (int k = 0; k < 4 && k + 2 * j < 9; k++) c->of[k][j] = derivative[k];
+    for (int k = 0; k + 2 * (j + 1) < 9; k++) derivative[k] = 0.5 * (k * derivative[k + 2] - derivative[k + 1]);
+  }
 }
 
 /* ---- matrices ---- */
@@ -109,11 +95,6 @@ static void rotation_point(const dvi__chart *chart, const dvi__functions *c, con
                            double *v)
 {
   double E[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, a[3];
-  if (rate == NULL) { /* what a step keeps: orthogonal without bias */
-    dvi_so3_exp(xi, E);
-    turn(chart->y0, E, y);
-    return;
-  }
   const double sigma = dvi__dot(xi, rate);
   for (int i = 0; i < 3; i++) a[i] = c->of[1][0] * xi[i];
   add_hat(a, E);
@@ -134,25 +115,35 @@ static void sphere_point(const dvi__chart *chart, const dvi__functions *c, const
   double x[3], w[3];
   dvi__chart_lift(chart, xi, x);
   for (int i = 0; i < stored; i++) y[i] = c->of[0][0] * chart->y0[i] + c->of[1][0] * x[i];
-  if (rate == NULL) return;
   const double sigma = dvi__inner(size, xi, rate);
   dvi__chart_lift(chart, rate, w);
   for (int i = 0; i < stored; i++) v[i] = 2 * sigma * (c->of[0][1] * chart->y0[i] + c->of[1][1] * x[i]) + c->of[1][0] * w[i];
 }
 
-void dvi__chart_point(const dvi__chart *chart, const double *xi, const double *rate, double *y, double *v)
+void dvi__chart_point(const dvi__chart *chart, const dvi__functions *c, const double *xi, const double *rate, double *y, double *v)
 {
-  dvi__functions c;
   if (chart->kind == DVI__LINE) {
     *y = *chart->y0 + *xi;
-    if (rate != NULL) *v = *rate;
+    *v = *rate;
+  } else if (chart->kind == DVI__ROTATION) {
+    rotation_point(chart, c, xi, rate, y, v);
+  } else {
+    sphere_point(chart, c, xi, rate, y, v);
+  }
+}
+
+void dvi__chart_place(const dvi__chart *chart, const double *xi, double *y)
+{
+  static const double rest[DVI__CHART_SIZE] = {0};
+  double E[9], v[DVI__CHART_POINT];
+  dvi__functions c;
+  if (chart->kind == DVI__ROTATION) {
+    dvi_so3_exp(xi, E);
+    turn(chart->y0, E, y);
     return;
   }
-  dvi__find_functions(dvi__chart_size(chart->kind), xi, 1, &c);
-  if (chart->kind == DVI__ROTATION)
-    rotation_point(chart, &c, xi, rate, y, v);
-  else
-    sphere_point(chart, &c, xi, rate, y, v);
+  dvi__chart_functions(chart->kind, xi, &c);
+  dvi__chart_point(chart, &c, xi, rest, y, v);
 }
 
 static void rotation_leap(const dvi__chart *chart, const double *xi, double *leap)
@@ -215,26 +206,25 @@ static void sphere_tangent(const dvi__chart *chart, const dvi__functions *c, con
   }
 }
 
-void dvi__chart_tangents(const dvi__chart *chart, const double *xi, const double *rate, double *T, double *S)
+void dvi__chart_tangents(const dvi__chart *chart, const dvi__functions *c, const double *xi, const double *rate, double *T,
+                         double *S)
 {
-  dvi__functions c;
   if (chart->kind == DVI__LINE) {
     *T = 1;
     *S = 0;
     return;
   }
   const int stored = dvi__chart_stored(chart->kind), size = dvi__chart_size(chart->kind);
-  dvi__find_functions(size, xi, 2, &c);
   for (int j = 0; j < size; j++) {
     double column[2][9] = {{0}};
     if (chart->kind == DVI__ROTATION) {
       double turned[2][9];
-      rotation_tangent(&c, xi, rate, j, column[0], column[1]);
+      rotation_tangent(c, xi, rate, j, column[0], column[1]);
       turn(chart->y0, column[0], turned[0]);
       turn(chart->y0, column[1], turned[1]);
       memcpy(column, turned, sizeof column);
     } else {
-      sphere_tangent(chart, &c, xi, rate, j, column[0], column[1]);
+      sphere_tangent(chart, c, xi, rate, j, column[0], column[1]);
     }
     for (int i = 0; i < stored; i++) {
       T[i * size + j] = column[0][i];
@@ -286,14 +276,14 @@ void dvi__chart_store(const dvi__chart *chart, const double *local, double *stor
     memcpy(stored, local, (size_t)dvi__chart_size(chart->kind) * sizeof *stored);
 }
 
-void dvi__chart_leave_velocity(const dvi__chart *chart, const double *xi, const double *rate, double *stored)
+void dvi__chart_leave_velocity(const dvi__chart *chart, const dvi__functions *c, const double *xi, const double *rate,
+                               double *stored)
 {
   if (chart->kind == DVI__SPHERE) {
     double y[3];
-    dvi__chart_point(chart, xi, rate, y, stored);
+    dvi__chart_point(chart, c, xi, rate, y, stored);
   } else if (chart->kind == DVI__ROTATION) {
-    const double back[] = {-xi[0], -xi[1], -xi[2]};
-    dvi_so3_dexp(back, rate, stored);
+    dvi__about(xi, -c->of[2][0], c->of[3][0], rate, stored); /* dexp_{-xi} rate */
   } else {
     *stored = *rate;
   }

@@ -20,9 +20,22 @@ typedef enum dvi__chart_kind { DVI__LINE, DVI__CIRCLE, DVI__SPHERE, DVI__ROTATIO
 enum { DVI__CHART_POINT = 9, DVI__CHART_SIZE = 3, DVI__CHART_VELOCITY = 3 };
 
 /* How many numbers: of a point y; of a stored velocity; of chart coordinates. */
-int dvi__chart_stored(dvi__chart_kind kind);
-int dvi__chart_velocities(dvi__chart_kind kind);
-int dvi__chart_size(dvi__chart_kind kind);
+static inline int dvi__chart_stored(dvi__chart_kind kind)
+{
+  static const int count[] = {1, 2, 3, 9};
+  return count[kind];
+}
+
+static inline int dvi__chart_velocities(dvi__chart_kind kind)
+{
+  return kind == DVI__SPHERE || kind == DVI__ROTATION ? 3 : 1;
+}
+
+static inline int dvi__chart_size(dvi__chart_kind kind)
+{
+  static const int count[] = {1, 1, 2, 3};
+  return count[kind];
+}
 
 typedef struct dvi__chart {
   dvi__chart_kind kind;
@@ -30,30 +43,43 @@ typedef struct dvi__chart {
   double basis[2][3]; /* of the tangent plane: circle, sphere */
 } dvi__chart;
 
+/* What everything at one xi is made of: of[k][j] is the derivative of order j of c_k in s; c_3 has two. Nothing of a line needs them. */
+typedef struct dvi__functions {
+  double of[4][4];
+} dvi__functions;
+
+void dvi__chart_functions(dvi__chart_kind kind, const double *xi, dvi__functions *c);
+
 /* Centre it at a point. */
 void dvi__chart_centre(dvi__chart_kind kind, const double *y0, dvi__chart *chart);
 
-/* y(xi), and dy/dt for dxi/dt = rate; rate and v may both be NULL. */
-void dvi__chart_point(const dvi__chart *chart, const double *xi, const double *rate, double *y, double *v);
+/* y(xi), orthogonal without bias where it is a rotation. */
+void dvi__chart_place(const dvi__chart *chart, const double *xi, double *y);
+
+/* y(xi), and v = dy/dt for dxi/dt = rate. */
+void dvi__chart_point(const dvi__chart *chart, const dvi__functions *c, const double *xi, const double *rate, double *y, double *v);
 
 /* y(xi) - y0, right to a rounding of its own size: what is added to y0 with a carry does not leave the manifold, however many steps there are. */
 void dvi__chart_leap(const dvi__chart *chart, const double *xi, double *leap);
 
 /* The gradient of a.y(xi) + b.v(xi,rate), in xi and in rate. */
-void dvi__chart_gradient(const dvi__chart *chart, const double *xi, const double *rate, const double *a, const double *b,
-                         double *in_xi, double *in_rate);
+void dvi__chart_gradient(const dvi__chart *chart, const dvi__functions *c, const double *xi, const double *rate, const double *a,
+                         const double *b, double *in_xi, double *in_rate);
 
 /* Its second derivatives, [size*size]: in xi; in xi and rate. */
-void dvi__chart_curvature(const dvi__chart *chart, const double *xi, const double *rate, const double *a, const double *b,
-                          double *in_xi, double *mixed);
+void dvi__chart_curvature(const dvi__chart *chart, const dvi__functions *c, const double *xi, const double *rate, const double *a,
+                          const double *b, double *in_xi, double *mixed);
 
 /* T = dy/dxi = dv/drate and S = dv/dxi: row i is T[i*size]. */
-void dvi__chart_tangents(const dvi__chart *chart, const double *xi, const double *rate, double *T, double *S);
+void dvi__chart_tangents(const dvi__chart *chart, const dvi__functions *c, const double *xi, const double *rate, double *T,
+                         double *S);
 
 /* Of a rotation: the gradient of l.Omega in xi and in rate [3], Omega = dexp_{-xi} rate the velocity in the body's frame, l fixed; its second derivatives in
  * xi, and in xi (rows) and rate, [9]. */
-void dvi__chart_turning_gradient(const double *xi, const double *rate, const double *l, double *in_xi, double *in_rate);
-void dvi__chart_turning_curvature(const double *xi, const double *rate, const double *l, double *in_xi, double *mixed);
+void dvi__chart_turning_gradient(const dvi__functions *c, const double *xi, const double *rate, const double *l, double *in_xi,
+                                 double *in_rate);
+void dvi__chart_turning_curvature(const dvi__functions *c, const double *xi, const double *rate, const double *l, double *in_xi,
+                                  double *mixed);
 
 /* ---- rotations and spheres: what turning them in space does, by w x y; `turned` [3] are the components of w ---- */
 
@@ -85,7 +111,8 @@ void dvi__chart_enter(const dvi__chart *chart, const double *stored, double *loc
 void dvi__chart_store(const dvi__chart *chart, const double *local, double *stored);
 
 /* The stored velocity at y(xi) of a rate. */
-void dvi__chart_leave_velocity(const dvi__chart *chart, const double *xi, const double *rate, double *stored);
+void dvi__chart_leave_velocity(const dvi__chart *chart, const dvi__functions *c, const double *xi, const double *rate,
+                               double *stored);
 
 /* |xi|, and how large it may be: half a turn; infinite for a line. */
 double dvi__chart_angle(dvi__chart_kind kind, const double *xi);

@@ -88,10 +88,9 @@ static void add_third(const form *f, const dvi__functions *c, const double *xi, 
   for (int i = 0; i < n * n; i++) H[i] += 4 * c->of[2][1] * sigma * f->B[i];
 }
 
-void dvi__chart_gradient(const dvi__chart *chart, const double *xi, const double *rate, const double *a, const double *b,
-                         double *in_xi, double *in_rate)
+void dvi__chart_gradient(const dvi__chart *chart, const dvi__functions *c, const double *xi, const double *rate, const double *a,
+                         const double *b, double *in_xi, double *in_rate)
 {
-  dvi__functions c;
   double H[9] = {0};
   if (chart->kind == DVI__LINE) {
     *in_xi = *a;
@@ -99,56 +98,54 @@ void dvi__chart_gradient(const dvi__chart *chart, const double *xi, const double
     return;
   }
   const form of_a = form_of(chart, a), of_b = form_of(chart, b);
-  dvi__find_functions(of_a.size, xi, 2, &c);
-  form_gradient(&of_a, &c, xi, in_xi);
-  form_gradient(&of_b, &c, xi, in_rate);
-  add_hessian(&of_b, &c, xi, H);
+  form_gradient(&of_a, c, xi, in_xi);
+  form_gradient(&of_b, c, xi, in_rate);
+  add_hessian(&of_b, c, xi, H);
   for (int i = 0; i < of_a.size; i++) in_xi[i] += dvi__inner(of_a.size, H + i * of_a.size, rate);
 }
 
-void dvi__chart_curvature(const dvi__chart *chart, const double *xi, const double *rate, const double *a, const double *b,
-                          double *in_xi, double *mixed)
+void dvi__chart_curvature(const dvi__chart *chart, const dvi__functions *c, const double *xi, const double *rate, const double *a,
+                          const double *b, double *in_xi, double *mixed)
 {
-  dvi__functions c;
   const int n = dvi__chart_size(chart->kind);
   memset(in_xi, 0, (size_t)(n * n) * sizeof *in_xi);
   memset(mixed, 0, (size_t)(n * n) * sizeof *mixed);
   if (chart->kind == DVI__LINE) return;
   const form of_a = form_of(chart, a), of_b = form_of(chart, b);
-  dvi__find_functions(n, xi, 3, &c);
-  add_hessian(&of_a, &c, xi, in_xi);
-  add_third(&of_b, &c, xi, rate, in_xi);
-  add_hessian(&of_b, &c, xi, mixed);
+  add_hessian(&of_a, c, xi, in_xi);
+  add_third(&of_b, c, xi, rate, in_xi);
+  add_hessian(&of_b, c, xi, mixed);
 }
 
 /* l.dexp_{-xi} rate as a form of c_2 and c_3, in the place of c_1 and c_2. */
-static form turning_form(const double *xi, const double *rate, const double *l, int derivatives, dvi__functions *c)
+static form turning_form(const dvi__functions *c, const double *rate, const double *l, dvi__functions *shifted)
 {
   form f = {.size = 3};
-  dvi__find_functions(3, xi, derivatives, c);
-  memmove(c->of, c->of + 1, 8 * sizeof *c->of);
+  memcpy(shifted->of, c->of + 1, 3 * sizeof *c->of);
   dvi__cross(l, rate, f.z);
   dvi__add_outer(3, 0.5, l, rate, f.B);
   dvi__add_identity(3, -dvi__dot(l, rate), f.B);
   return f;
 }
 
-void dvi__chart_turning_gradient(const double *xi, const double *rate, const double *l, double *in_xi, double *in_rate)
+void dvi__chart_turning_gradient(const dvi__functions *c, const double *xi, const double *rate, const double *l, double *in_xi,
+                                 double *in_rate)
 {
-  dvi__functions c;
-  const form f = turning_form(xi, rate, l, 2, &c);
-  form_gradient(&f, &c, xi, in_xi);
-  dvi_so3_dexp(xi, l, in_rate);
+  dvi__functions shifted;
+  const form f = turning_form(c, rate, l, &shifted);
+  form_gradient(&f, &shifted, xi, in_xi);
+  dvi__about(xi, c->of[2][0], c->of[3][0], l, in_rate); /* dexp_xi l */
 }
 
-void dvi__chart_turning_curvature(const double *xi, const double *rate, const double *l, double *in_xi, double *mixed)
+void dvi__chart_turning_curvature(const dvi__functions *c, const double *xi, const double *rate, const double *l, double *in_xi,
+                                  double *mixed)
 {
   const double back[] = {-xi[0], -xi[1], -xi[2]};
-  dvi__functions c;
+  dvi__functions shifted;
   double derivative[9]; /* of dexp_{-back} l in back */
-  const form f = turning_form(xi, rate, l, 3, &c);
+  const form f = turning_form(c, rate, l, &shifted);
   memset(in_xi, 0, 9 * sizeof *in_xi);
-  add_hessian(&f, &c, xi, in_xi);
+  add_hessian(&f, &shifted, xi, in_xi);
   dvi_so3_velocity_derivative(back, l, derivative);
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) mixed[3 * i + j] = -derivative[3 * j + i];

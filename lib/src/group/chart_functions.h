@@ -1,15 +1,7 @@
-/* What charts are made of: Stumpff's functions of s = |xi|^2 with their derivatives, and matrices of few numbers. For chart*.c. */
+/* What charts are made of: matrices of few numbers. For chart*.c. */
 #ifndef DVI_GROUP_CHART_FUNCTIONS_H
 #define DVI_GROUP_CHART_FUNCTIONS_H
 #include "group/chart.h"
-
-/* of[k][j]: the derivative of order j of c_k in s. */
-typedef struct dvi__functions {
-  double of[9][4];
-} dvi__functions;
-
-/* c_k for all k; derivatives up to an order, of those k for which k + 2 order < 9. */
-void dvi__find_functions(int size, const double *xi, int derivatives, dvi__functions *c);
 
 /* B x: from the tangent plane's coordinates. */
 void dvi__chart_lift(const dvi__chart *chart, const double *x, double *out);

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "group/chart_functions.h"
+#include "group/stumpff.h"
 #include "group/turn.h"
 #include "group/vector.h"
 
@@ -63,17 +64,19 @@ void dvi__chart_add_impulse(const dvi__chart *chart, const double *impulse, doub
  * p_j = T_j.(angular x y). */
 void dvi__chart_momentum(const dvi__chart *chart, const double *xi, const double *angular, double *p)
 {
-  dvi__functions c;
+  double c[4];
   if (chart->kind == DVI__ROTATION) {
-    dvi__find_functions(3, xi, 0, &c);
-    dvi__about(xi, -c.of[2][0], c.of[3][0], angular, p);
+    dvi__stumpff_four(dvi__dot(xi, xi), c);
+    dvi__about(xi, -c[2], c[3], angular, p);
     return;
   }
   const double rest[2] = {0};
-  double y[3], P[3], unused[2];
-  dvi__chart_point(chart, xi, NULL, y, NULL);
+  double y[3], v[3], P[3], unused[2];
+  dvi__functions all;
+  dvi__chart_functions(chart->kind, xi, &all);
+  dvi__chart_point(chart, &all, xi, rest, y, v);
   dvi__cross(angular, y, P);
-  dvi__chart_gradient(chart, xi, rest, P, P, unused, p);
+  dvi__chart_gradient(chart, &all, xi, rest, P, P, unused, p);
 }
 
 void dvi__chart_stored_momentum(const dvi__chart *chart, const double *xi, const double *y, const double *angular, double *stored)
@@ -107,11 +110,13 @@ void dvi__chart_momentum_derivative(const dvi__chart *chart, const double *xi, c
     return;
   }
   const double rest[2] = {0}, none[3] = {0};
-  double y[3], T[6], S[6], covector[3], unused[4];
-  dvi__chart_point(chart, xi, NULL, y, NULL);
-  dvi__chart_tangents(chart, xi, rest, T, S);
+  double y[3], v[3], T[6], S[6], covector[3], unused[4];
+  dvi__functions c;
+  dvi__chart_functions(chart->kind, xi, &c);
+  dvi__chart_point(chart, &c, xi, rest, y, v);
+  dvi__chart_tangents(chart, &c, xi, rest, T, S);
   dvi__cross(angular, y, covector);
-  dvi__chart_curvature(chart, xi, rest, covector, none, derivative, unused);
+  dvi__chart_curvature(chart, &c, xi, rest, covector, none, derivative, unused);
   for (int i = 0; i < 2; i++)
     for (int j = 0; j < 2; j++) {
       double turned[3];

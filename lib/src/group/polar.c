@@ -3,6 +3,8 @@
 #include <dvi/group.h>
 #include <math.h>
 
+#include "group/vector.h"
+
 enum { SWEEPS = 8 }; /* Jacobi's method converges quadratically: off-diagonals of 1 are below 1e-60 after six */
 
 /* Make K_ij zero by a rotation of the coordinates i and j; the columns of V are these coordinates' axes. */
@@ -53,8 +55,31 @@ void dvi_so3_project(const double M[9], double R[9])
   dvi_so3_from_quaternion(q, R);
 }
 
+/* excess = M^T M - I. */
+static void find_excess(const double M[9], double excess[9])
+{
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) excess[3 * i + j] = ((M[i] * M[j] - (i == j)) + M[3 + i] * M[3 + j]) + M[6 + i] * M[6 + j];
+}
+
+/* |M - R| of a matrix M = R S that is a rotation but for its excess: that of S - I = (I + excess)^{1/2} - I = excess/2 - excess^2/8 + ... */
+static double small_distance(const double excess[9])
+{
+  double sum = 0;
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) {
+      const double stretch = 0.5 * excess[3 * i + j] - 0.125 * dvi__dot(excess + 3 * i, excess + 3 * j);
+      sum += stretch * stretch;
+    }
+  return sqrt(sum);
+}
+
 double dvi_so3_distance(const double M[9])
 {
+  double third[3], excess[9];
+  find_excess(M, excess);
+  dvi__cross(M, M + 3, third);
+  if (largest_entry(excess) <= 1e-8 && dvi__dot(third, M + 6) > 0) return small_distance(excess);
   const double scale = fmax(1, largest_entry(M));
   double R[9], sum = 0;
   dvi_so3_project(M, R);

@@ -58,12 +58,11 @@ static void take_over(dvi__stepper *self, const dvi__stepper *inner)
   self->symmetric = inner->symmetric && has_two_ends(self->system, inner);
 }
 
-static dvi_status centre_paths(const charted_step *own)
+static dvi_status centre_paths(charted_step *own)
 {
-  dvi__action *action = dvi__element_action(&own->inner);
   dvi__centring centring;
-  DVI_TRY(dvi__charted_centring(own->charted, dvi__action_nodes(action), &centring));
-  return dvi__action_centre(action, &centring);
+  DVI_TRY(dvi__charted_centring(own->charted, dvi__action_nodes(dvi__element_action(&own->inner)), &centring));
+  return dvi__element_centre(&own->inner, &centring);
 }
 
 dvi_status dvi__charted_step_create(dvi__stepper *self, int reduced)

@@ -1,6 +1,23 @@
-/* What methods say of their spaces, and the space of a method for those who use its discrete action otherwise than step by step. */
+/* What methods say of their solvers and spaces, and the space of a method for those who use its discrete action otherwise than step by step. */
 #include "core/status.h"
 #include "method/element_step.h"
+
+const char *dvi__solver_choice(int index)
+{
+  static const char *const name[] = {"auto", "certified", "fixed-point", "simplified", "newton", "kinsol"};
+  return index >= 0 && index < 6 ? name[index] : NULL;
+}
+
+static int smaller(int a, int b)
+{
+  return a < b ? a : b;
+}
+
+int dvi__element_order(const dvi__action_space *space)
+{
+  const int s = space->degree, u = dvi_quadrature_order(space->rule, space->nodes);
+  return smaller(smaller(2 * s, u), 2 * (u - s + 1));
+}
 
 int dvi__fewest_nodes(dvi_rule rule, int degree)
 {

@@ -13,13 +13,7 @@
 #include "num/finite.h"
 #include "solve/nonlinear.h"
 
-const char *dvi__solver_choice(int index)
-{
-  static const char *const name[] = {"auto", "certified", "fixed-point", "simplified", "newton", "kinsol"};
-  return index >= 0 && index < 6 ? name[index] : NULL;
-}
-
-/* What is frozen, in the memory. */
+/* What is frozen, in the memory: the Jacobian at a point, by that, or as it is. */
 enum { FROZEN_H, FROZEN_ITERATIONS, FROZEN_POINT };
 
 /* A kept factor may cost this many iterations more than a new one: about as much as making one. */
@@ -43,11 +37,12 @@ typedef struct place {
 
 typedef struct element {
   dvi__action *action;
-  dvi__decoupled *decoupled; /* NULL: no simplified Newton's method */
+  dvi__decoupled *decoupled; /* simplified Newton's method takes the Jacobian apart; NULL: it does not */
+  int keeps_whole;           /* it keeps the whole one */
   dvi__solver *solver;
   int choice;     /* of the solver */
   double *Y;      /* the unknowns */
-  double *frozen; /* in the memory: FROZEN_H (0: nothing is), FROZEN_ITERATIONS that it took when it was new, FROZEN_POINT */
+  double *frozen; /* in the memory: FROZEN_H (0: nothing is), FROZEN_ITERATIONS that it took when it was new, and the Jacobian */
   int keeps;      /* the Jacobian is not frozen anew */
   const place *forces_of; /* the place whose iteration starts from the last step's forces; NULL: from Y */
   double *dq, *dq_low, *dp;
@@ -89,6 +84,11 @@ static dvi_status row_scale_of(void *of, double *scale, int *unchanged)
   return DVI_OK;
 }
 
+static void magnitudes_of(void *of, double *magnitude)
+{
+  dvi__action_magnitudes(((const element *)of)->action, magnitude);
+}
+
 static void sweep_from_of(void *of, const double *Y)
 {
   const element *own = of;
@@ -111,20 +111,35 @@ static void sweep_to_of(void *of, double *Y)
 static dvi_status freeze_of(void *of, const double *Y)
 {
   const element *own = of;
-  if (!own->keeps) dvi__decoupled_point(own->decoupled, Y, own->frozen + FROZEN_POINT);
-  return dvi__decoupled_freeze(own->decoupled, own->frozen + FROZEN_POINT);
+  double *point = own->frozen + FROZEN_POINT;
+  if (own->keeps_whole) {
+    if (!own->keeps) DVI_TRY(dvi__solver_jacobian(own->solver, Y, point));
+    return dvi__solver_take_jacobian(own->solver, point);
+  }
+  if (!own->keeps) dvi__decoupled_point(own->decoupled, Y, point);
+  return dvi__decoupled_freeze(own->decoupled, point);
 }
 
 static void frozen_of(void *of, double *R)
 {
-  dvi__decoupled_solve(((const element *)of)->decoupled, R);
+  const element *own = of;
+  if (own->keeps_whole)
+    dvi__solver_apply_factor(own->solver, R);
+  else
+    dvi__decoupled_solve(own->decoupled, R);
+}
+
+static void count_memory(dvi__stepper *self, const element *own)
+{
+  self->memory_count = dvi__element_forces(self) + (size_t)dvi__action_forces_count(own->action);
+  if (own->decoupled != NULL) self->memory_count += FROZEN_POINT + (size_t)dvi__decoupled_point_size(own->decoupled);
+  if (own->keeps_whole) self->memory_count += FROZEN_POINT + (size_t)dvi__pattern_entries(dvi__action_pattern(own->action));
 }
 
 static int allocate(dvi__stepper *self, element *own)
 {
   const size_t n = (size_t)self->system->n, unknowns = (size_t)dvi__action_unknowns(own->action);
-  self->memory_count = dvi__element_forces(self) + (size_t)dvi__action_forces_count(own->action);
-  if (own->decoupled != NULL) self->memory_count += FROZEN_POINT + (size_t)dvi__decoupled_point_size(own->decoupled);
+  count_memory(self, own);
   own->Y = DVI_NEW(double, unknowns);
   own->dq = DVI_NEW(double, n);
   own->dq_low = DVI_NEW(double, n);
@@ -135,18 +150,6 @@ static int allocate(dvi__stepper *self, element *own)
   own->part_Y = DVI_NEW(double, unknowns);
   own->offset = DVI_NEW(double, unknowns);
   return own->Y && own->dq && own->dq_low && own->dp && own->part_q && own->part_p && own->part_v && own->part_Y && own->offset;
-}
-
-static int smaller(int a, int b)
-{
-  return a < b ? a : b;
-}
-
-/* For degree s and a quadrature of order u. The action errs by the quadrature's error, h^u of itself, and by the square of the path's: the path is
- * stationary, and its velocity errs by h^s, or by h^(u-s+1) if the quadrature does not see all of it. */
-static int order_of(int s, int u)
-{
-  return smaller(smaller(2 * s, u), 2 * (u - s + 1));
 }
 
 /* Simplified Newton's method is for those who may use it; in a space without a full set of eigenvectors the ladder goes without it. */
@@ -172,17 +175,17 @@ static dvi_status make_solver(dvi__stepper *self, element *own)
                                     .sweep_from = sweeps ? sweep_from_of : NULL,
                                     .sweep = sweeps ? sweep_of : NULL,
                                     .sweep_to = sweeps ? sweep_to_of : NULL,
-                                    .freeze = own->decoupled != NULL ? freeze_of : NULL,
-                                    .frozen = own->decoupled != NULL ? frozen_of : NULL};
+                                    .magnitudes = magnitudes_of,
+                                    .freeze = freeze_of,
+                                    .frozen = frozen_of};
   return dvi__solver_create(&equations, self->counters, &own->solver);
 }
 
 dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *space, int solver)
 {
-  const int quadrature_order = dvi_quadrature_order(space->rule, space->nodes);
   element *own = self->own = DVI_NEW(element, 1);
   if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
-  self->order = order_of(space->degree, quadrature_order);
+  self->order = dvi__element_order(space);
   self->symmetric = dvi__symmetric_rule(space->rule);
   own->choice = solver;
   DVI_TRY(dvi__action_create(self->system, space, self->counters, &own->action));
@@ -209,6 +212,15 @@ void dvi__element_destroy(dvi__stepper *self)
   dvi__release(own->part_Y);
   dvi__release(own->offset);
   dvi__release(own);
+}
+
+dvi_status dvi__element_centre(dvi__stepper *self, const dvi__centring *centring)
+{
+  element *own = self->own;
+  own->keeps_whole = is_ladder(own) || own->choice == DVI__SOLVER_SIMPLIFIED;
+  dvi__decoupled_destroy(&own->decoupled);
+  count_memory(self, own);
+  return dvi__action_centre(own->action, centring);
 }
 
 dvi__action *dvi__element_action(const dvi__stepper *self)
@@ -303,12 +315,12 @@ static dvi_status solve_at(dvi__stepper *self, const place *at, double *Y, dvi__
 {
   element *own = self->own;
   dvi__action_place(own->action, at->t, at->h, at->q, at->p);
-  if (is_due(own, DVI__SOLVER_FIXED_POINT, &self->memory[DVI__NEWTON_STEPS])) {
+  if ((!own->keeps_whole || !is_ladder(own)) && is_due(own, DVI__SOLVER_FIXED_POINT, &self->memory[DVI__NEWTON_STEPS])) {
     const dvi_status status = solve_by(self, at, DVI__FIXED_POINT, Y, report);
     learn(self, status, DVI__NEWTON_STEPS, DVI__NEWTON_WAIT);
     if (status <= 0) return status;
   }
-  if (own->decoupled != NULL && is_due(own, DVI__SOLVER_SIMPLIFIED, &self->memory[DVI__FULL_STEPS])) {
+  if ((own->decoupled != NULL || own->keeps_whole) && is_due(own, DVI__SOLVER_SIMPLIFIED, &self->memory[DVI__FULL_STEPS])) {
     const dvi_status status = solve_simplified(self, at, Y, report);
     learn(self, status, DVI__FULL_STEPS, DVI__FULL_WAIT);
     if (status <= 0) return status;
@@ -454,8 +466,11 @@ static void explain_solver(const element *own, dvi__text *text)
     dvi__text_add(text, "solver: %s, as asked; what it cannot solve goes on to KINSOL with line search\n", name);
     return;
   }
-  dvi__text_add(text, "solver: %s: fixed point while it contracts by 0.45 or better, else simplified Newton's method (%s), ", name,
-                own->decoupled != NULL ? "decoupled systems of n unknowns" : "not in this space");
+  dvi__text_add(text, "solver: %s: %ssimplified Newton's method (%s), ", name,
+                own->keeps_whole ? "" : "fixed point while it contracts by 0.45 or better, else ",
+                own->keeps_whole         ? "its Jacobian kept over steps"
+                : own->decoupled != NULL ? "decoupled systems of n unknowns"
+                                         : "not in this space");
   dvi__text_add(text, "Newton's method, last KINSOL with line search%s\n",
                 own->choice == DVI__SOLVER_CERTIFIED ? "; KINSOL certifies each solution" : "");
 }

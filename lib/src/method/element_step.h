@@ -24,6 +24,10 @@ const char *dvi__solver_choice(int index);
 /* Fill a stepper's order, symmetric, memory and own for this space; `solver` is one of the numbers above. */
 dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *space, int solver);
 
+/* Let its paths be those of charts centred at their start, after create. What the Jacobian loses when it is taken apart, or replaced by its kinetic part, is as
+ * large there as the turn of a step: the ladder begins with the whole one, kept over steps. */
+dvi_status dvi__element_centre(dvi__stepper *self, const dvi__centring *centring);
+
 /* The memory: length of the last step (0: none); steps for which fixed point iteration and simplified Newton's method are not tried again, and how
  * many they were when the iteration last failed (0: it has not since it last succeeded); the last step's unknowns (before the first step, the
  * start's velocity in their place) and its forces; what simplified Newton's method keeps frozen. */
@@ -36,6 +40,10 @@ size_t dvi__element_forces(const dvi__stepper *self);
  * solver is asked for, which `user` would not heed. */
 dvi_status dvi__element_space(const dvi_system *system, const char *specification, const char *user, dvi__action_space *space,
                               dvi__text *spelled);
+
+/* The method's order. With a quadrature of order u the action errs by that one's error, h^u of itself, and by the square of the path's: the path is stationary,
+ * and its velocity errs by h^s, or by h^(u-s+1) if the quadrature does not see all of it. */
+int dvi__element_order(const dvi__action_space *space);
 
 /* The fewest nodes of a rule whose order is 2 degree, or the most that it has; whether it is the same from both ends. */
 int dvi__fewest_nodes(dvi_rule rule, int degree);

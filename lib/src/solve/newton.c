@@ -51,6 +51,10 @@ dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__so
     dvi__linear_solve(s->linear, s->residual);
     dvi__correct(s->equations.unknowns, s->residual, x, &report->correction, &whole);
     const dvi__progress progress = dvi__judge(report->correction, &trail, &pace, whole, size);
+    int at_floor = 0;
+    if (progress != DVI__CONVERGED && report->correction >= pace.stagnant * trail.before)
+      DVI_TRY(dvi__solver_at_floor(s, x, &at_floor));
+    if (at_floor) return DVI_OK;
     converged |= progress == DVI__CONVERGED;
     if (converged && small_ones_settled(s, x, &last_relative)) return DVI_OK;
     growing = progress == DVI__STALLED ? growing + 1 : 0;

@@ -1,6 +1,8 @@
 #include "solve/nonlinear.h"
 
 #include <float.h>
+#include <math.h>
+#include <string.h>
 
 #include "core/memory.h"
 #include "core/status.h"
@@ -14,13 +16,50 @@ dvi_status dvi__solver_residual(dvi__solver *solver, const double *x, double *r)
   return solver->equations.residual(solver->equations.of, x, r);
 }
 
-dvi_status dvi__solver_factor(dvi__solver *solver, const double *x)
+dvi_status dvi__solver_jacobian(dvi__solver *solver, const double *x, double *values)
 {
   solver->counters->jacobians++;
-  DVI_TRY(solver->equations.jacobian(solver->equations.of, x, solver->values));
+  return solver->equations.jacobian(solver->equations.of, x, values);
+}
+
+dvi_status dvi__solver_factor(dvi__solver *solver, const double *x)
+{
+  solver->factored = 0;
+  DVI_TRY(dvi__solver_jacobian(solver, x, solver->values));
+  solver->factored = dvi__linear_factor(solver->linear, solver->values) == DVI_OK;
+  solver->in_use = 1;
   /* A singular Jacobian at one point of one step: a smaller step may avoid it. */
-  if (dvi__linear_factor(solver->linear, solver->values) == DVI_OK) return DVI_OK;
-  return dvi__fail_in(DVI_NOT_CONVERGED, "the Jacobian of the step's equations cannot be factored");
+  return solver->factored ? DVI_OK : dvi__fail_in(DVI_NOT_CONVERGED, "the Jacobian of the step's equations cannot be factored");
+}
+
+dvi_status dvi__solver_take_jacobian(dvi__solver *solver, const double *values)
+{
+  const size_t bytes = (size_t)dvi__pattern_entries(solver->equations.pattern) * sizeof *values;
+  solver->in_use = 1;
+  if (solver->factored && memcmp(solver->values, values, bytes) == 0) return DVI_OK;
+  memcpy(solver->values, values, bytes);
+  const dvi_status status = dvi__linear_factor(solver->linear, solver->values);
+  solver->factored = status == DVI_OK;
+  return status;
+}
+
+/* Each term of a row is itself the end of a few products and sums. */
+static const double floor_of_row = 4 * DBL_EPSILON;
+
+dvi_status dvi__solver_at_floor(dvi__solver *solver, const double *x, int *at_floor)
+{
+  const dvi__pattern *pattern = solver->equations.pattern;
+  *at_floor = 0;
+  if (solver->magnitude == NULL || !solver->in_use) return DVI_OK;
+  DVI_TRY(dvi__solver_residual(solver, x, solver->residual));
+  solver->equations.magnitudes(solver->equations.of, solver->magnitude);
+  for (int j = 0; j < pattern->columns; j++)
+    for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++)
+      solver->magnitude[pattern->row[e]] += fabs(solver->values[e] * x[j]);
+  *at_floor = 1;
+  for (int i = 0; i < solver->equations.unknowns; i++)
+    *at_floor &= fabs(solver->residual[i]) <= floor_of_row * solver->magnitude[i];
+  return DVI_OK;
 }
 
 static dvi_status fill(dvi__solver *solver)
@@ -28,7 +67,8 @@ static dvi_status fill(dvi__solver *solver)
   const dvi__pattern *pattern = solver->equations.pattern;
   solver->residual = DVI_NEW(double, solver->equations.unknowns);
   solver->values = DVI_NEW(double, dvi__pattern_entries(pattern));
-  if (solver->residual == NULL || solver->values == NULL)
+  if (solver->equations.magnitudes != NULL) solver->magnitude = DVI_NEW(double, solver->equations.unknowns);
+  if (solver->residual == NULL || solver->values == NULL || (solver->equations.magnitudes != NULL && solver->magnitude == NULL))
     return dvi__fail(DVI_NO_MEMORY, "solver: no memory for %d unknowns", solver->equations.unknowns);
   const int border = solver->equations.border;
   DVI_TRY(border > 0 ? dvi__linear_create_bordered(pattern, border, solver->counters, &solver->linear)
@@ -56,6 +96,7 @@ void dvi__solver_destroy(dvi__solver **solver)
   dvi__kinsol_destroy(&s->kinsol);
   dvi__linear_destroy(&s->linear);
   dvi__release(s->residual);
+  dvi__release(s->magnitude);
   dvi__release(s->values);
   dvi__release(s);
   *solver = NULL;
@@ -136,6 +177,7 @@ static dvi_status simplified(dvi__solver *s, double size, int wary, double *x, d
   const dvi__equations *equations = &s->equations;
   dvi__trail trail = {0};
   double whole;
+  s->in_use = 0;
   const dvi_status frozen_at = equations->freeze(equations->of, x);
   if (frozen_at == DVI_SINGULAR) return dvi__fail_in(DVI_NOT_CONVERGED, "the frozen Jacobian cannot be factored");
   if (frozen_at != DVI_OK) return frozen_at;
@@ -144,7 +186,9 @@ static dvi_status simplified(dvi__solver *s, double size, int wary, double *x, d
     equations->frozen(equations->of, s->residual);
     dvi__correct(equations->unknowns, s->residual, x, &report->correction, &whole);
     const dvi__progress progress = dvi__judge(report->correction, &trail, &frozen, whole, size);
-    if (progress == DVI__CONVERGED) return DVI_OK;
+    int converged = progress == DVI__CONVERGED;
+    if (progress == DVI__STALLED) DVI_TRY(dvi__solver_at_floor(s, x, &converged));
+    if (converged) return DVI_OK;
     if (progress == DVI__STALLED || (wary && report->iterations == 2 && dvi__misleading(&trail, whole))) break;
   }
   return dvi__fail(DVI_NOT_CONVERGED, "simplified Newton's method contracts too slowly (change %.1e after %.1e)", trail.last,

@@ -22,6 +22,9 @@ typedef struct dvi__equations {
   void (*chord)(void *of, double *r); /* r <- C^{-1} r */
   /* [unknowns] > 0: size of a row per unit of an unknown; after prepare_chord. *unchanged, 0 before, is set to 1 if it is what it was at the last call. */
   dvi_status (*row_scale)(void *of, double *scale, int *unchanged);
+  /* [unknowns] sums of the magnitudes of what is summed in each row at the last residual's point; NULL: not known. A row cannot be told from 0 to better than a
+   * rounding of it, and a correction cannot be smaller than what the Jacobian makes of that. */
+  void (*magnitudes)(void *of, double *magnitude);
   int renewed; /* Newton's method factors the Jacobian at each of its points: the equations are nearly singular, and an old factor leads astray */
   /* The same fixed point iteration in variables of the equations' own, where that is cheaper; NULL: residual and chord do it. */
   void (*sweep_from)(void *of, const double *x);
@@ -57,7 +60,13 @@ dvi_status dvi__solve(dvi__solver *solver, dvi__rung rung, double size, int wary
 /* Let KINSOL judge a solution that another rung found; x stays. DVI_NOT_CONVERGED: it does not pass, and the KINSOL rung should take over. */
 dvi_status dvi__certify(dvi__solver *solver, double size, const double *x, dvi__solve_report *report);
 
-/* Solve with the Jacobian that the Newton rungs factored last: b [unknowns] becomes J^{-1} b. */
+/* The Jacobian's values at x, and no factor. */
+dvi_status dvi__solver_jacobian(dvi__solver *solver, const double *x, double *values);
+
+/* Factor a Jacobian of these values, in the order of the pattern, unless it is the last one that was factored. */
+dvi_status dvi__solver_take_jacobian(dvi__solver *solver, const double *values);
+
+/* Solve with the Jacobian that was factored last: b [unknowns] becomes J^{-1} b. */
 void dvi__solver_apply_factor(dvi__solver *solver, double *b);
 
 /* Which linear solver the Newton rungs use. */

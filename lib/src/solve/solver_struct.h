@@ -9,8 +9,11 @@ typedef struct dvi__kinsol dvi__kinsol;
 struct dvi__solver {
   dvi__equations equations;
   dvi_counters *counters;
-  double *residual; /* [unknowns]; then the correction */
-  double *values;   /* of the Jacobian */
+  double *residual;  /* [unknowns]; then the correction */
+  double *magnitude; /* [unknowns] of what is summed in the rows; NULL: not known */
+  double *values;    /* of the Jacobian */
+  int factored;      /* these values are, */
+  int in_use;        /* and the iteration at hand goes by them */
   dvi__linear *linear;
   dvi__kinsol *kinsol;
 };
@@ -20,6 +23,9 @@ dvi_status dvi__solver_residual(dvi__solver *solver, const double *x, double *r)
 
 /* The Jacobian at x into values, and its factor. */
 dvi_status dvi__solver_factor(dvi__solver *solver, const double *x);
+
+/* Whether every row at x is 0 to a rounding of what is summed in it and of the unknowns, as the Jacobian in use sees them. */
+dvi_status dvi__solver_at_floor(dvi__solver *solver, const double *x, int *at_floor);
 
 /* Newton's method alone (newton.c). */
 dvi_status dvi__newton(dvi__solver *solver, double size, int wary, double *x, dvi__solve_report *report);

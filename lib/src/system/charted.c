@@ -27,6 +27,7 @@ static dvi_status allocate(dvi__charted *x)
 {
   const size_t group = (size_t)x->base->n * DVI__GROUP, cells = (size_t)x->base->cell_count;
   x->chart = DVI_NEW(dvi__chart, cells);
+  x->functions = DVI_NEW(dvi__functions, DVI__GROUP * cells);
   x->t = DVI_NEW(double, DVI__GROUP);
   x->y = DVI_NEW(double, group);
   x->rate = DVI_NEW(double, group);
@@ -37,7 +38,8 @@ static dvi_status allocate(dvi__charted *x)
   x->S = DVI_NEW(double, 3 * (size_t)x->base->n);
   x->curved = DVI_NEW(double, 9 * cells);
   x->mixed = DVI_NEW(double, 9 * cells);
-  if (x->chart && x->t && x->y && x->rate && x->L_y && x->w && x->L_yy && x->T && x->S && x->curved && x->mixed) return DVI_OK;
+  if (x->chart && x->functions && x->t && x->y && x->rate && x->L_y && x->w && x->L_yy && x->T && x->S && x->curved && x->mixed)
+    return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "charts: no memory for %zu factors", cells);
 }
 
@@ -73,11 +75,11 @@ void dvi__charted_destroy(dvi__charted **charted)
   dvi__pattern_clear(&x->qv);
   dvi__pattern_clear(&x->vv);
   dvi__reduced_clear(&x->reduced);
-  void *const own[] = {x->chart,      x->cell,       x->cell_of_x,  x->t,         x->y,         x->rate,      x->L_y,
-                       x->w,          x->L_yy,       x->T,          x->S,         x->curved,    x->mixed,     x->in_qq,
-                       x->mass_in_qq, x->mass_in_qv, x->mass_in_vv, x->own_in_qq, x->own_in_qv, x->own_in_vv, x->coupled_in,
-                       x->W,          x->end,        x->moment,     x->departure, x->angular,   x->turned_T,  x->turned_S,
-                       x->C_q1,       x->C_qq,       x->C_qv};
+  void *const own[] = {x->functions,  x->chart,      x->cell,       x->cell_of_x,  x->t,         x->y,         x->rate,
+                       x->L_y,        x->w,          x->L_yy,       x->T,          x->S,         x->curved,    x->mixed,
+                       x->in_qq,      x->mass_in_qq, x->mass_in_qv, x->mass_in_vv, x->own_in_qq, x->own_in_qv, x->own_in_vv,
+                       x->coupled_in, x->W,          x->end,        x->moment,     x->departure, x->angular,   x->turned_T,
+                       x->turned_S,   x->C_q1,       x->C_qq,       x->C_qv};
   for (size_t i = 0; i < sizeof own / sizeof *own; i++) dvi__release(own[i]);
   dvi__release(x);
   *charted = NULL;
@@ -129,8 +131,11 @@ void dvi__charted_point(const dvi__charted *x, const double *xi, const double *r
 {
   for (int c = 0; c < x->base->cell_count; c++) {
     const dvi__cell *at = &x->base->cells[c];
-    if (q != NULL) dvi__chart_point(&x->chart[c], xi + at->x, NULL, q + at->q, NULL);
-    if (v != NULL) dvi__chart_leave_velocity(&x->chart[c], xi + at->x, rate + at->x, v + at->v);
+    if (q != NULL) dvi__chart_place(&x->chart[c], xi + at->x, q + at->q);
+    if (v == NULL) continue;
+    dvi__functions functions;
+    dvi__chart_functions(at->kind, xi + at->x, &functions);
+    dvi__chart_leave_velocity(&x->chart[c], &functions, xi + at->x, rate + at->x, v + at->v);
   }
 }
 

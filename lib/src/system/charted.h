@@ -22,6 +22,9 @@ const dvi_system *dvi__charted_system(const dvi__charted *charted);
 /* Centre the charts at a point [nq]. */
 void dvi__charted_centre(dvi__charted *charted, const double *q);
 
+/* L_vv at the centre, in the order of the new system's vv: the mass as the tangent spaces there have it. */
+void dvi__charted_mass(dvi__charted *charted, double *mass);
+
 /* Make room for the centring of paths with `nodes` points in a batch, and fill it in. Once. */
 dvi_status dvi__charted_centring(dvi__charted *charted, int nodes, dvi__centring *centring);
 

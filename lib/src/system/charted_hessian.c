@@ -16,8 +16,9 @@ static void bend(dvi__charted *x, int count, int first, int group, int k, const 
     dvi__charted_gather(cell, count, first + k, xi, at);
     dvi__charted_gather(cell, count, first + k, rate, u);
     dvi__charted_pair(cell, group, k, x->L_y, x->w, a, b);
-    dvi__chart_tangents(&x->chart[c], at, u, x->T + 3 * (size_t)cell->q, x->S + 3 * (size_t)cell->q);
-    dvi__chart_curvature(&x->chart[c], at, u, a, b, x->curved + 9 * (size_t)c, x->mixed + 9 * (size_t)c);
+    const dvi__functions *functions = dvi__charted_functions(x, c, k);
+    dvi__chart_tangents(&x->chart[c], functions, at, u, x->T + 3 * (size_t)cell->q, x->S + 3 * (size_t)cell->q);
+    dvi__chart_curvature(&x->chart[c], functions, at, u, a, b, x->curved + 9 * (size_t)c, x->mixed + 9 * (size_t)c);
   }
 }
 
@@ -35,18 +36,34 @@ static void add_product(const dvi__place *at, int rows, int columns, double entr
     for (int a = 0; a < rows; a++) values[(size_t)(at->first + b * at->column + a) * count + k] += left[a] * entry * right[b];
 }
 
-/* left^T M right in the blocks of `in`. */
+/* left^T M right in the blocks of `in`; a cell's own block, nearly all of M, is summed up before it is added. */
+static void add_cell_product(const dvi__charted *x, const dvi__cell *cell, const dvi__place *in, const double *left,
+                             const double *right, size_t count, size_t k, double *values)
+{
+  const dvi__pattern *vv = &x->base->vv;
+  const int size = dvi__chart_size(cell->kind);
+  const dvi__place *own = NULL;
+  double block[DVI__CHART_SIZE * DVI__CHART_SIZE] = {0};
+  for (int j = cell->q; j < cell->q + dvi__chart_stored(cell->kind); j++)
+    for (int e = vv->start[j]; e < vv->start[j + 1]; e++) {
+      const int i = vv->row[e];
+      const dvi__cell *row = &x->base->cells[x->cell[i]];
+      const double *from = row_of(row, left, i), *to = row_of(cell, right, j);
+      if (row != cell) {
+        add_product(&in[e], dvi__chart_size(row->kind), size, x->base->mass_values[e], from, to, count, k, values);
+        continue;
+      }
+      own = &in[e];
+      for (int a = 0; a < size; a++)
+        for (int b = 0; b < size; b++) block[a * size + b] += from[a] * x->base->mass_values[e] * to[b];
+    }
+  if (own != NULL) dvi__charted_add_block(own, size, size, block, count, k, values);
+}
+
 void dvi__charted_add_mass_product(const dvi__charted *x, const dvi__place *in, const double *left, const double *right,
                                    size_t count, size_t k, double *values)
 {
-  const dvi__pattern *vv = &x->base->vv;
-  for (int j = 0; j < x->base->n; j++)
-    for (int e = vv->start[j]; e < vv->start[j + 1]; e++) {
-      const int i = vv->row[e];
-      const dvi__cell *row = &x->base->cells[x->cell[i]], *column = &x->base->cells[x->cell[j]];
-      add_product(&in[e], dvi__chart_size(row->kind), dvi__chart_size(column->kind), x->base->mass_values[e], row_of(row, left, i),
-                  row_of(column, right, j), count, k, values);
-    }
+  for (int c = 0; c < x->base->cell_count; c++) add_cell_product(x, &x->base->cells[c], in, left, right, count, k, values);
 }
 
 /* left^T L_yy T in the blocks of qq. */
@@ -107,6 +124,19 @@ static dvi_status hessian_group(dvi__charted *x, int count, int first, int group
 static void clear(const dvi__pattern *pattern, int count, double *values)
 {
   memset(values, 0, (size_t)dvi__pattern_entries(pattern) * (size_t)count * sizeof *values);
+}
+
+void dvi__charted_mass(dvi__charted *x, double *mass)
+{
+  static const double rest[DVI__CHART_SIZE] = {0};
+  clear(&x->vv, 1, mass);
+  for (int c = 0; c < x->base->cell_count; c++) {
+    const size_t row = 3 * (size_t)x->base->cells[c].q;
+    dvi__functions functions;
+    dvi__chart_functions(x->chart[c].kind, rest, &functions);
+    dvi__chart_tangents(&x->chart[c], &functions, rest, rest, x->T + row, x->S + row);
+  }
+  dvi__charted_add_mass_product(x, x->mass_in_vv, x->T, x->T, 1, 0, mass);
 }
 
 static int smaller(int a, int b)

@@ -22,7 +22,7 @@ void dvi__charted_gather(const dvi__cell *cell, int count, int k, const double *
   for (int i = 0; i < dvi__chart_size(cell->kind); i++) one[i] = batch[(size_t)(cell->x + i) * (size_t)count + (size_t)k];
 }
 
-/* y and rate of a cell at point k of a group, which is point `from` of a batch. */
+/* y and rate of a cell, and its chart's functions, at point k of a group, which is point `from` of a batch. */
 static dvi_status find_point(dvi__charted *x, int c, int count, int from, int group, int k, const double *xi, const double *rate)
 {
   const dvi__cell *cell = &x->base->cells[c];
@@ -31,7 +31,9 @@ static dvi_status find_point(dvi__charted *x, int c, int count, int from, int gr
   dvi__charted_gather(cell, count, from, rate, u);
   const double angle = dvi__chart_angle(cell->kind, at);
   if (!(angle < dvi__chart_bound(cell->kind))) return dvi__charted_too_large(angle);
-  dvi__chart_point(&x->chart[c], at, u, y, v);
+  dvi__functions *functions = dvi__charted_functions(x, c, k);
+  dvi__chart_functions(cell->kind, at, functions);
+  dvi__chart_point(&x->chart[c], functions, at, u, y, v);
   for (int i = 0; i < dvi__chart_stored(cell->kind); i++) {
     x->y[(cell->q + i) * group + k] = y[i];
     x->rate[(cell->q + i) * group + k] = v[i];
@@ -91,7 +93,7 @@ static void pull_back(const dvi__charted *x, int count, int first, int group, co
       dvi__charted_gather(cell, count, first + k, xi, at);
       dvi__charted_gather(cell, count, first + k, rate, u);
       dvi__charted_pair(cell, group, k, x->L_y, x->w, a, b);
-      dvi__chart_gradient(&x->chart[c], at, u, a, b, in_xi, in_rate);
+      dvi__chart_gradient(&x->chart[c], dvi__charted_functions(x, c, k), at, u, a, b, in_xi, in_rate);
       for (int i = 0; i < dvi__chart_size(cell->kind); i++) {
         const size_t to = (size_t)(cell->x + i) * (size_t)count + ((size_t)first + (size_t)k);
         L_xi[to] = in_xi[i];

@@ -4,6 +4,7 @@
  * Without it steps have the same order, but keep neither momenta nor the symplectic form: they would have a discrete Lagrangian of their own in every step. */
 #include "system/charted_struct.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "core/memory.h"
@@ -151,6 +152,21 @@ static void correct_reduced(void *of, int nodes, double h, const double *weight,
   }
 }
 
+/* In whatever frame it is summed up, one component of a turn's momentum is rounded as the largest one. */
+static void mix_magnitudes(void *of, int s, double *magnitude)
+{
+  const dvi__charted *x = of;
+  for (int c = 0; c < x->base->cell_count; c++) {
+    const dvi__cell *cell = &x->base->cells[c];
+    double *rows = magnitude + cell->x * s;
+    for (int k = 0; k < s && dvi__turns(cell); k++) {
+      double largest = 0;
+      for (int i = 0; i < dvi__chart_size(cell->kind); i++) largest = fmax(largest, rows[i * s + k]);
+      for (int i = 0; i < dvi__chart_size(cell->kind); i++) rows[i * s + k] = largest;
+    }
+  }
+}
+
 /* Into the diagonal block of C_q1. */
 static void derive_cell(const dvi__charted *x, int c, const double *mu)
 {
@@ -217,7 +233,7 @@ static dvi_status reserve(dvi__charted *x, int nodes)
 
 dvi_status dvi__charted_centring(dvi__charted *x, int nodes, dvi__centring *centring)
 {
-  *centring = (dvi__centring){x, place_path, x->reduced.bodies != NULL ? correct_reduced : correct_path,
+  *centring = (dvi__centring){x, place_path, x->reduced.bodies != NULL ? correct_reduced : correct_path, mix_magnitudes,
                               x->reduced.bodies != NULL ? derive_reduced : derive_path};
   return reserve(x, nodes);
 }

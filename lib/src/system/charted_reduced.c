@@ -20,7 +20,8 @@ static const double none[DVI__CHART_POINT] = {0};
 /* One body at one point of a batch. */
 typedef struct spinning {
   const dvi__chart *chart;
-  const dvi__cell *cell, *line;             /* line NULL: there is none */
+  const dvi__cell *cell, *line; /* line NULL: there is none */
+  dvi__functions functions;
   double xi[3], rate[3], Omega[3], spin[3]; /* spin = J Omega */
   double w[DVI__CHART_POINT];               /* x' m rho^T */
 } spinning;
@@ -39,7 +40,8 @@ static dvi_status find_spin(dvi__charted *x, const dvi__body *body, int count, i
   dvi__charted_gather(m->cell, count, k, rate, m->rate);
   const double angle = dvi__chart_angle(DVI__ROTATION, m->xi);
   if (!(angle < dvi__chart_bound(DVI__ROTATION))) return dvi__charted_too_large(angle);
-  dvi__chart_leave_velocity(m->chart, m->xi, m->rate, m->Omega);
+  dvi__chart_functions(DVI__ROTATION, m->xi, &m->functions);
+  dvi__chart_leave_velocity(m->chart, &m->functions, m->xi, m->rate, m->Omega);
   times(body->inertia, m->Omega, m->spin);
   for (int i = 0; i < 3 && m->line != NULL; i++)
     for (int j = 0; j < 3; j++) m->w[3 * i + j] = rate[(size_t)(m->line->x + i) * (size_t)count + (size_t)k] * body->shift[j];
@@ -69,7 +71,7 @@ int dvi__reduced_value(int count, const double *t, const double *xi, const doubl
       status = find_spin(x, &of->bodies[b], count, (int)k, xi, rate, &m);
       L[k] += 0.5 * dvi__dot(m.Omega, m.spin);
       if (m.line == NULL || status != DVI_OK) continue;
-      dvi__chart_point(m.chart, m.xi, m.rate, y, v);
+      dvi__chart_point(m.chart, &m.functions, m.xi, m.rate, y, v);
       for (int i = 0; i < 9; i++) L[k] += m.w[i] * v[i];
     }
   }
@@ -92,8 +94,8 @@ static void add_vector(int first, const double *vector, size_t count, size_t k, 
 static void add_shift(const dvi__body *body, const spinning *m, size_t count, size_t k, double *L_xi, double *L_rate)
 {
   double in_xi[3], in_rate[3], y[9], v[9], shift[3];
-  dvi__chart_gradient(m->chart, m->xi, m->rate, none, m->w, in_xi, in_rate);
-  dvi__chart_point(m->chart, m->xi, m->rate, y, v);
+  dvi__chart_gradient(m->chart, &m->functions, m->xi, m->rate, none, m->w, in_xi, in_rate);
+  dvi__chart_point(m->chart, &m->functions, m->xi, m->rate, y, v);
   shifted(body, v, shift);
   add_vector(m->cell->x, in_xi, count, k, L_xi);
   add_vector(m->cell->x, in_rate, count, k, L_rate);
@@ -116,7 +118,7 @@ int dvi__reduced_gradient(int count, const double *t, const double *xi, const do
       spinning m;
       status = find_spin(x, &x->reduced.bodies[b], count, (int)k, xi, rate, &m);
       if (status != DVI_OK) break;
-      dvi__chart_turning_gradient(m.xi, m.rate, m.spin, in_xi, in_rate);
+      dvi__chart_turning_gradient(&m.functions, m.xi, m.rate, m.spin, in_xi, in_rate);
       add_vector(m.cell->x, in_xi, points, k, L_xi);
       add_vector(m.cell->x, in_rate, points, k, L_rate);
       if (m.line != NULL) add_shift(&x->reduced.bodies[b], &m, points, k, L_xi, L_rate);
@@ -142,7 +144,7 @@ static void velocity_matrix(const spinning *m, double *A)
   for (int j = 0; j < 3; j++) {
     double e[3] = {0}, column[3];
     e[j] = 1;
-    dvi__chart_leave_velocity(m->chart, m->xi, e, column);
+    dvi__chart_leave_velocity(m->chart, &m->functions, m->xi, e, column);
     for (int i = 0; i < 3; i++) A[3 * i + j] = column[i];
   }
 }
@@ -154,7 +156,7 @@ static void add_spin(dvi__charted *x, const dvi__body *body, const spinning *m, 
   double A[9], D[9], in_qq[9], in_qv[9], product[9];
   velocity_matrix(m, A);
   dvi_so3_velocity_derivative(m->xi, m->rate, D);
-  dvi__chart_turning_curvature(m->xi, m->rate, m->spin, in_qq, in_qv);
+  dvi__chart_turning_curvature(&m->functions, m->xi, m->rate, m->spin, in_qq, in_qv);
   dvi__charted_add_own_blocks(x, body->cell, in_qq, in_qv, count, k, L_qq, L_qv);
   sandwich(D, body->inertia, D, in_qq);
   sandwich(D, body->inertia, A, in_qv);
@@ -168,9 +170,9 @@ static void add_shift_blocks(dvi__charted *x, const dvi__body *body, const dvi__
                              size_t k, double *L_qq, double *L_qv, double *L_vv)
 {
   double in_qq[9], in_qv[9], T[27], S[27];
-  dvi__chart_curvature(m->chart, m->xi, m->rate, none, m->w, in_qq, in_qv);
+  dvi__chart_curvature(m->chart, &m->functions, m->xi, m->rate, none, m->w, in_qq, in_qv);
   dvi__charted_add_own_blocks(x, body->cell, in_qq, in_qv, count, k, L_qq, L_qv);
-  dvi__chart_tangents(m->chart, m->xi, m->rate, T, S);
+  dvi__chart_tangents(m->chart, &m->functions, m->xi, m->rate, T, S);
   for (int i = 0; i < 3; i++) {
     double by_xi[3] = {0}, by_rate[3] = {0}; /* of R'_i m rho, row i */
     for (int j = 0; j < 3; j++)

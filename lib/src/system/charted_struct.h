@@ -27,6 +27,7 @@ struct dvi__charted {
   int *cell, *cell_of_x; /* [nq], [nx] that a stored coordinate, and a chart's, belongs to */
   dvi_status failure;    /* of the last evaluation, and why */
   char sentence[DVI__SENTENCE_SIZE];
+  dvi__functions *functions;                                /* [cells*GROUP] of the charts, at the points of a group */
   double *t, *y, *rate, *L_y, *w;                           /* a group: [GROUP], [nq*GROUP]; w = M y' */
   double *L_yy;                                             /* [entries*GROUP] */
   double *T, *S;                                            /* [nq*3], of one point */
@@ -51,6 +52,12 @@ struct dvi__charted {
 static inline int dvi__turns(const dvi__cell *cell)
 {
   return cell->kind == DVI__ROTATION || cell->kind == DVI__SPHERE;
+}
+
+/* Of cell c at point k of a group. */
+static inline dvi__functions *dvi__charted_functions(const dvi__charted *x, int c, int k)
+{
+  return &x->functions[(size_t)c * DVI__GROUP + (size_t)k];
 }
 
 /* Where the block of two cells begins in a pattern of the new system. */

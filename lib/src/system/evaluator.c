@@ -56,13 +56,13 @@ static dvi_status prepare_states(dvi__evaluator *e)
 {
   const size_t n = (size_t)e->system->n;
   if (e->system->cells == NULL) return DVI_OK;
-  double *work = e->rate = DVI_NEW(double, 4 * n);
-  if (work == NULL) return dvi__fail(DVI_NO_MEMORY, "evaluator: no memory");
-  e->local_p = work + n;
-  e->local_v = work + 2 * n;
-  e->origin = work + 3 * n;
   DVI_TRY(dvi__charted_create(e->system, 0, e->counters, &e->charted));
-  return dvi__evaluator_create(dvi__charted_system(e->charted), 1, DVI__GRADIENTS, e->counters, &e->local);
+  const dvi__pattern *vv = &dvi__charted_system(e->charted)->vv;
+  e->rate = DVI_NEW(double, n);
+  e->local = DVI_NEW(double, n);
+  e->mass = DVI_NEW(double, dvi__pattern_entries(vv));
+  if (!e->rate || !e->local || !e->mass) return dvi__fail(DVI_NO_MEMORY, "evaluator: no memory");
+  return dvi__linear_create(vv, DVI__LINEAR_AUTO, e->counters, &e->velocity);
 }
 
 dvi_status dvi__evaluator_create(const dvi_system *system, int capacity, dvi__derivatives most, dvi_counters *counters,
@@ -88,10 +88,11 @@ void dvi__evaluator_destroy(dvi__evaluator **evaluator)
 {
   dvi__evaluator *e = *evaluator;
   if (e == NULL) return;
-  dvi__evaluator_destroy(&e->local);
+  dvi__linear_destroy(&e->velocity);
   dvi__charted_destroy(&e->charted);
   dvi__release(e->rate);
-  dvi__linear_destroy(&e->velocity);
+  dvi__release(e->local);
+  dvi__release(e->mass);
   dvi__scratch_clear(&e->scratch);
   dvi__release(e->term);
   for (int i = 0; i < 3; i++) dvi__release(e->point[i]);

@@ -17,11 +17,11 @@ struct dvi__evaluator {
   double *unwanted;         /* general Lagrangians: takes the half of a gradient that nobody asked for */
   double *hessian[3];       /* general Lagrangians: its own L_qq, L_qv, L_vv at one point, for the inverse Legendre map */
   struct dvi__dirac *dirac; /* Hamiltonians: their constraints' part */
-  /* With factors, if states will be asked for: the charts at a state, their Lagrangian, and work there. */
+  /* With factors, if states will be asked for: the charts at a state, and the mass there, which `velocity` factors. */
   struct dvi__charted *charted;
-  dvi__evaluator *local;
-  double *rate, *local_p, *local_v, *origin; /* [n] */
-  double *velocity_search;                   /* general Lagrangians: [6 n], its work */
+  double *mass;
+  double *rate, *local;    /* [n] work */
+  double *velocity_search; /* general Lagrangians: [6 n], its work */
 };
 
 /* Move the points that differences asked for to the counters. */

@@ -352,12 +352,14 @@ void dvi__factors_rate(const dvi_system *s, const double *q, const double *v, do
     const double *x = q + cell->q, *w = v + cell->v, zero[DVI__CHART_SIZE] = {0};
     double unused[DVI__CHART_POINT];
     dvi__chart chart;
+    dvi__functions c_at_zero;
     if (cell->kind == DVI__SPHERE) {
       memcpy(rate + cell->q, w, 3 * sizeof *w);
       continue;
     }
     dvi__chart_centre(cell->kind, x, &chart);
-    dvi__chart_point(&chart, zero, w, unused, rate + cell->q);
+    dvi__chart_functions(cell->kind, zero, &c_at_zero);
+    dvi__chart_point(&chart, &c_at_zero, zero, w, unused, rate + cell->q);
   }
 }
 
@@ -368,8 +370,10 @@ void dvi__factors_momentum(const dvi_system *s, const double *q, const double *c
     const double zero[DVI__CHART_SIZE] = {0};
     double in_xi[DVI__CHART_SIZE], local[DVI__CHART_SIZE];
     dvi__chart chart;
+    dvi__functions c_at_zero;
     dvi__chart_centre(cell->kind, q + cell->q, &chart);
-    dvi__chart_gradient(&chart, zero, zero, covector + cell->q, covector + cell->q, in_xi, local);
+    dvi__chart_functions(cell->kind, zero, &c_at_zero);
+    dvi__chart_gradient(&chart, &c_at_zero, zero, zero, covector + cell->q, covector + cell->q, in_xi, local);
     dvi__chart_store(&chart, local, p + cell->v);
   }
 }

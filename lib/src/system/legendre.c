@@ -120,15 +120,27 @@ static dvi_status newton_from_guesses(search *s)
   return status;
 }
 
-/* With factors: in the charts at q. */
-static dvi_status inverse_in_charts(dvi__evaluator *e, double t, const double *q, const double *p, double *v)
+/* With factors, in the charts at q: the mass is constant in the stored coordinates, so that p = L_vv v. */
+static dvi_status factor_mass(dvi__evaluator *e, double t, const double *q)
 {
   dvi__charted_centre(e->charted, q);
-  dvi__charted_enter(e->charted, p, e->local_p);
-  memset(e->local_v, 0, (size_t)e->system->nx * sizeof(double));
-  const dvi_status status = dvi__legendre_inverse(e->local, t, e->origin, e->local_p, e->local_v);
-  if (status != DVI_OK) return dvi__charted_explain(e->charted, status);
-  dvi__charted_store(e->charted, e->local_v, v);
+  dvi__charted_mass(e->charted, e->mass);
+  const dvi_status status = dvi__linear_factor(e->velocity, e->mass);
+  return status == DVI_SINGULAR ? degenerate(t) : status;
+}
+
+static dvi_status not_finite(double t)
+{
+  return dvi__fail(DVI_NOT_FINITE, "the velocity M^-1 p at t = %.6g is not finite", t);
+}
+
+static dvi_status inverse_in_charts(dvi__evaluator *e, double t, const double *q, const double *p, double *v)
+{
+  DVI_TRY(factor_mass(e, t, q));
+  dvi__charted_enter(e->charted, p, e->local);
+  dvi__linear_solve(e->velocity, e->local);
+  if (dvi__first_not_finite((size_t)e->system->nx, e->local) >= 0) return not_finite(t);
+  dvi__charted_store(e->charted, e->local, v);
   return DVI_OK;
 }
 
@@ -140,7 +152,7 @@ dvi_status dvi__legendre_inverse(dvi__evaluator *e, double t, const double *q, c
   if (e->system->lagrangian == NULL) {
     found = e->point[1];
     dvi__mass_solve(e, 1, p, found);
-    if (dvi__first_not_finite(n, found) >= 0) return dvi__fail(DVI_NOT_FINITE, "the velocity M^-1 p at t = %.6g is not finite", t);
+    if (dvi__first_not_finite(n, found) >= 0) return not_finite(t);
   } else if (e->system->terms & DVI__ONE_FORM) {
     DVI_TRY(dvi__two_form_velocity(e, t, q, found));
   } else if (e->system->terms & DVI__HAMILTONIAN) {
@@ -157,11 +169,7 @@ dvi_status dvi__legendre_inverse(dvi__evaluator *e, double t, const double *q, c
 dvi_status dvi__legendre_regular(dvi__evaluator *e, double t, const double *q, const double *v)
 {
   const double *L_vv;
-  if (e->system->cells != NULL) {
-    dvi__charted_centre(e->charted, q);
-    dvi__charted_enter(e->charted, v, e->local_v);
-    return dvi__charted_explain(e->charted, dvi__legendre_regular(e->local, t, e->origin, e->local_v));
-  }
+  if (e->system->cells != NULL) return factor_mass(e, t, q);
   if (e->system->lagrangian == NULL) return DVI_OK;
   if (e->system->terms & DVI__ONE_FORM) return dvi__two_form_factor(e, q);
   DVI_TRY(dvi__velocity_hessian(e, t, q, v, &L_vv));
