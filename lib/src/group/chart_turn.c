@@ -60,23 +60,26 @@ void dvi__chart_add_impulse(const dvi__chart *chart, const double *impulse, doub
     angular[j] += chart->kind == DVI__ROTATION ? R[j] * impulse[0] + R[3 + j] * impulse[1] + R[6 + j] * impulse[2] : impulse[j];
 }
 
-/* Of a rotation R0 exp(xi): turning by w in the centre's frame is d xi with dexp_xi d xi = w, so p = dexp_xi^T angular = dexp_{-xi} angular. Of a direction:
- * p_j = T_j.(angular x y). */
+/* Of a direction: p_j = T_j.(angular x y), T_j = c_1 B_j + xi_j ((c_3 - c_2) B xi - c_1 y0). */
+static void direction_momentum(const dvi__chart *chart, const double c[4], const double *xi, const double *angular, double *p)
+{
+  double x[3], y[3], P[3];
+  dvi__chart_lift(chart, xi, x);
+  for (int i = 0; i < 3; i++) y[i] = c[0] * chart->y0[i] + c[1] * x[i];
+  dvi__cross(angular, y, P);
+  const double along = (c[3] - c[2]) * dvi__dot(x, P) - c[1] * dvi__dot(chart->y0, P);
+  for (int j = 0; j < 2; j++) p[j] = c[1] * dvi__dot(chart->basis[j], P) + along * xi[j];
+}
+
+/* Of a rotation R0 exp(xi): turning by w in the centre's frame is d xi with dexp_xi d xi = w, so p = dexp_xi^T angular = dexp_{-xi} angular. */
 void dvi__chart_momentum(const dvi__chart *chart, const double *xi, const double *angular, double *p)
 {
   double c[4];
-  if (chart->kind == DVI__ROTATION) {
-    dvi__stumpff_four(dvi__dot(xi, xi), c);
+  dvi__stumpff_four(dvi__inner(dvi__chart_size(chart->kind), xi, xi), c);
+  if (chart->kind == DVI__ROTATION)
     dvi__about(xi, -c[2], c[3], angular, p);
-    return;
-  }
-  const double rest[2] = {0};
-  double y[3], v[3], P[3], unused[2];
-  dvi__functions all;
-  dvi__chart_functions(chart->kind, xi, &all);
-  dvi__chart_point(chart, &all, xi, rest, y, v);
-  dvi__cross(angular, y, P);
-  dvi__chart_gradient(chart, &all, xi, rest, P, P, unused, p);
+  else
+    direction_momentum(chart, c, xi, angular, p);
 }
 
 void dvi__chart_stored_momentum(const dvi__chart *chart, const double *xi, const double *y, const double *angular, double *stored)

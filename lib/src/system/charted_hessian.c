@@ -154,7 +154,10 @@ int dvi__charted_hessian(int count, const double *t, const double *xi, const dou
   clear(&x->qq, count, L_qq);
   clear(&x->qv, count, L_qv);
   clear(&x->vv, count, L_vv);
-  if (on_path) dvi__charted_clear_changes(x, count);
+  if (on_path) {
+    dvi__charted_find_turns(x);
+    dvi__charted_clear_changes(x, count);
+  }
   for (int first = 0; first < count && status == DVI_OK; first += DVI__GROUP)
     status = hessian_group(x, count, first, smaller(DVI__GROUP, count - first), t, xi, rate, L_qq, L_qv, L_vv);
   if (on_path && status == DVI_OK) dvi__charted_finish_changes(x, count, L_qq, L_qv);

@@ -70,6 +70,12 @@ void dvi__charted_add_moment_changes(dvi__charted *x, int count, int first, int 
   dvi__charted_add_mass_product(x, x->mass_in_qv, x->turned_S, x->T, (size_t)count, to, x->C_qv);
 }
 
+void dvi__charted_find_turns(dvi__charted *x)
+{
+  for (int c = 0; c < x->base->cell_count; c++)
+    if (dvi__turns(&x->base->cells[c])) dvi__chart_moments(&x->chart[c], x->end + x->base->cells[c].x, x->W + 9 * c);
+}
+
 int dvi__charted_on_path(const dvi__charted *x, int count)
 {
   return x->from_centre && count <= x->capacity;
@@ -102,8 +108,6 @@ static void place_path(void *of, const double *q0, const double *q1)
   x->from_centre = 1;
   for (int i = 0; i < x->base->nx; i++) x->from_centre &= q0[i] == 0;
   memcpy(x->end, q1, (size_t)x->base->nx * sizeof *q1);
-  for (int c = 0; c < x->base->cell_count && x->from_centre && x->reduced.bodies == NULL; c++)
-    if (dvi__turns(&x->base->cells[c])) dvi__chart_moments(&x->chart[c], q1 + x->base->cells[c].x, x->W + 9 * c);
 }
 
 /* mu1 = mu0 + h sum_j b_j N_j of cell c. */

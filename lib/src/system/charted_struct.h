@@ -122,6 +122,9 @@ void dvi__charted_add_potentials(const dvi__charted *charted, int group, int in_
 void dvi__charted_add_own_blocks(const dvi__charted *charted, int c, const double *in_qq, const double *in_qv, size_t count,
                                  size_t k, double *qq, double *qv);
 
+/* W at the end of the path. */
+void dvi__charted_find_turns(dvi__charted *charted);
+
 /* What W N changes by, at point k of a group whose tangents are known, into C_qq and C_qv; first of all they are cleared, last L's own Hessian is taken off. */
 void dvi__charted_clear_changes(dvi__charted *charted, int count);
 void dvi__charted_add_moment_changes(dvi__charted *charted, int count, int first, int group, int k);
