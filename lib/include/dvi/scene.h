@@ -43,15 +43,15 @@ typedef struct dvi_scene_range {
 
 /** What was found in a scene, for people and for tests. */
 typedef struct dvi_scene_facts {
-  const char *form;        /**< "separable", "general Lagrangian", "one-form", "Hamiltonian with constraints" */
-  const char *mass;        /**< "identity", "scalar", "diagonal", "sparse"; NULL without a constant mass */
-  int kernels;             /**< expressions that are summed over elements */
-  long elements;           /**< of all kernels */
-  int nodes;               /**< of all expressions, before derivatives */
+  const char *form; /**< "separable", "general Lagrangian", "one-form", "Hamiltonian with constraints" */
+  const char *mass; /**< "identity", "scalar", "diagonal", "sparse"; NULL without a constant mass */
+  int kernels;      /**< expressions that are summed over elements */
+  long elements;    /**< of all kernels */
+  int nodes;        /**< of all expressions, before derivatives */
   int value_operations, gradient_operations, hessian_operations; /**< a point; 0: never derived */
   long hessian_entries;
   long value_points, gradient_points, hessian_points; /**< evaluated so far */
-  int quadratic_potentials; /**< how many potentials have constant Hessians */
+  int quadratic_potentials;                           /**< how many potentials have constant Hessians */
 } dvi_scene_facts;
 
 #ifdef __cplusplus

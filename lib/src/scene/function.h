@@ -35,7 +35,7 @@ typedef struct dvi__function dvi__function;
 
 /* What the evaluations of a function have cost so far, and what was made for them. */
 typedef struct dvi__function_counters {
-  long value_points, gradient_points, second_points; /* points evaluated */
+  long value_points, gradient_points, second_points;            /* points evaluated */
   int value_operations, gradient_operations, second_operations; /* a point; 0: not derived */
   int second_entries;
 } dvi__function_counters;
@@ -51,7 +51,16 @@ int dvi__function_value(const dvi__function *function, int count, const double *
 /* The derivatives by all variables of the blocks for which gradient[b] is not NULL, [block_size[b] * count]. Derived at the first call, or by _prepare. */
 int dvi__function_gradient(dvi__function *function, int count, const double *const *x, double *const *gradient);
 /* Second derivatives by (row, column) variables of the block pairs for which values[pair] is not NULL, in the order of the patterns. */
-typedef enum dvi__pair { DVI__PAIR_QQ, DVI__PAIR_QV, DVI__PAIR_VV, DVI__PAIR_QW, DVI__PAIR_VW, DVI__PAIR_TQ, DVI__PAIR_TV, DVI__PAIRS } dvi__pair;
+typedef enum dvi__pair {
+  DVI__PAIR_QQ,
+  DVI__PAIR_QV,
+  DVI__PAIR_VV,
+  DVI__PAIR_QW,
+  DVI__PAIR_VW,
+  DVI__PAIR_TQ,
+  DVI__PAIR_TV,
+  DVI__PAIRS
+} dvi__pair;
 int dvi__function_second(dvi__function *function, int count, const double *const *x, double *const *values);
 
 /* The pattern of a pair of blocks: sorted columns, both triangles of qq and vv; *full = 1 and no pattern if it would hold more than half of all entries.

@@ -12,35 +12,35 @@
 typedef int dvi__node;
 
 /* X(identifier, operand count, spelling in C) */
-#define DVI__OP_LIST(X)   \
-  X(CONSTANT, 0, "")      \
-  X(INPUT, 0, "")         \
-  X(NEGATE, 1, "-")       \
-  X(SQUARE, 1, "")        \
-  X(POWER, 1, "")         /* by the constant `value`: a whole number, or half an odd one */ \
-  X(SQRT, 1, "sqrt")      \
-  X(EXP, 1, "exp")        \
-  X(LOG, 1, "log")        \
-  X(SIN, 1, "sin")        \
-  X(COS, 1, "cos")        \
-  X(TAN, 1, "tan")        \
-  X(ASIN, 1, "asin")      \
-  X(ACOS, 1, "acos")      \
-  X(ATAN, 1, "atan")      \
-  X(SINH, 1, "sinh")      \
-  X(COSH, 1, "cosh")      \
-  X(TANH, 1, "tanh")      \
-  X(ASINH, 1, "asinh")    \
-  X(ACOSH, 1, "acosh")    \
-  X(ATANH, 1, "atanh")    \
-  X(ABS, 1, "fabs")       \
-  X(SIGN, 1, "")          /* -1, 0, 1: the derivative of abs */ \
-  X(ADD, 2, "+")          \
-  X(SUBTRACT, 2, "-")     \
-  X(MULTIPLY, 2, "*")     \
-  X(DIVIDE, 2, "/")       \
-  X(RAISE, 2, "pow")      /* by anything else */ \
-  X(ATAN2, 2, "atan2")    \
+#define DVI__OP_LIST(X)                                                             \
+  X(CONSTANT, 0, "")                                                                \
+  X(INPUT, 0, "")                                                                   \
+  X(NEGATE, 1, "-")                                                                 \
+  X(SQUARE, 1, "")                                                                  \
+  X(POWER, 1, "") /* by the constant `value`: a whole number, or half an odd one */ \
+  X(SQRT, 1, "sqrt")                                                                \
+  X(EXP, 1, "exp")                                                                  \
+  X(LOG, 1, "log")                                                                  \
+  X(SIN, 1, "sin")                                                                  \
+  X(COS, 1, "cos")                                                                  \
+  X(TAN, 1, "tan")                                                                  \
+  X(ASIN, 1, "asin")                                                                \
+  X(ACOS, 1, "acos")                                                                \
+  X(ATAN, 1, "atan")                                                                \
+  X(SINH, 1, "sinh")                                                                \
+  X(COSH, 1, "cosh")                                                                \
+  X(TANH, 1, "tanh")                                                                \
+  X(ASINH, 1, "asinh")                                                              \
+  X(ACOSH, 1, "acosh")                                                              \
+  X(ATANH, 1, "atanh")                                                              \
+  X(ABS, 1, "fabs")                                                                 \
+  X(SIGN, 1, "") /* -1, 0, 1: the derivative of abs */                              \
+  X(ADD, 2, "+")                                                                    \
+  X(SUBTRACT, 2, "-")                                                               \
+  X(MULTIPLY, 2, "*")                                                               \
+  X(DIVIDE, 2, "/")                                                                 \
+  X(RAISE, 2, "pow") /* by anything else */                                         \
+  X(ATAN2, 2, "atan2")                                                              \
   X(HYPOT, 2, "hypot")
 
 typedef enum dvi__op {
@@ -99,6 +99,7 @@ dvi_status dvi__second_pattern(const dvi__graph *graph, dvi__node root, int coun
 void dvi__inputs_used(const dvi__graph *graph, int root_count, const dvi__node *root, int count, char *used);
 
 /* The roots' values [root_count] at the inputs x, one operation after the other; x NULL: no inputs. The first node with a result that is not finite, or -1. Allocates. */
-dvi_status dvi__evaluate(const dvi__graph *graph, const double *x, int root_count, const dvi__node *root, double *value, dvi__node *not_finite);
+dvi_status dvi__evaluate(const dvi__graph *graph, const double *x, int root_count, const dvi__node *root, double *value,
+                         dvi__node *not_finite);
 
 #endif

@@ -24,7 +24,8 @@ typedef struct dvi__program {
 } dvi__program;
 
 /* Compile. Inputs 0 .. input_count-1 of the graph are read from rows, roots are written to rows. */
-dvi_status dvi__program_make(const dvi__graph *graph, int input_count, int root_count, const dvi__node *root, dvi__program *program);
+dvi_status dvi__program_make(const dvi__graph *graph, int input_count, int root_count, const dvi__node *root,
+                             dvi__program *program);
 void dvi__program_free(dvi__program *program);
 
 /* How many operations a lane takes, loads and stores not counted. */

@@ -8,10 +8,11 @@ typedef enum dvi__tree_kind { DVI__SCALAR, DVI__SEQUENCE, DVI__MAPPING } dvi__tr
 
 typedef struct dvi__tree {
   dvi__tree_kind kind;
-  dvi__span span;   /* of a scalar: its characters as they stand in the source, without quotes and block headers; else the whole collection */
-  const char *text; /* of a scalar: its value, ended by NUL */
-  int plain;        /* of a scalar: 1 if it has neither quotes nor a block header */
-  int count;        /* of a collection */
+  dvi__span
+      span; /* of a scalar: its characters as they stand in the source, without quotes and block headers; else the whole collection */
+  const char *text;               /* of a scalar: its value, ended by NUL */
+  int plain;                      /* of a scalar: 1 if it has neither quotes nor a block header */
+  int count;                      /* of a collection */
   struct dvi__tree *const *key;   /* [count] scalars, of a mapping, all different */
   struct dvi__tree *const *child; /* [count] */
 } dvi__tree;
