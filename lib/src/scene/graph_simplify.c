@@ -118,8 +118,8 @@ static dvi__node add(dvi__graph *graph, dvi__node a, dvi__node b)
   if (dvi__is_constant(graph, a, &c) && c == 0) return b;
   if (dvi__is_constant(graph, b, &c) && c == 0) return a;
   if (x.rest == y.rest) return dvi__scale(graph, x.factor + y.factor, x.rest);
-  if (y.factor == -1) return dvi__subtract(graph, a, y.rest);
-  if (x.factor == -1) return dvi__subtract(graph, b, x.rest);
+  if (y.factor < 0) return dvi__subtract(graph, a, dvi__scale(graph, -y.factor, y.rest));
+  if (x.factor < 0) return dvi__subtract(graph, b, dvi__scale(graph, -x.factor, x.rest));
   return make_sum(graph, a, b);
 }
 
@@ -130,7 +130,7 @@ static dvi__node subtract(dvi__graph *graph, dvi__node a, dvi__node b)
   if (dvi__is_constant(graph, a, &c) && c == 0) return dvi__negate(graph, b);
   if (dvi__is_constant(graph, b, &c) && c == 0) return a;
   if (x.rest == y.rest) return dvi__scale(graph, x.factor - y.factor, x.rest);
-  if (y.factor == -1) return dvi__add(graph, a, y.rest);
+  if (y.factor < 0) return dvi__add(graph, a, dvi__scale(graph, -y.factor, y.rest));
   if (x.factor == -1) return dvi__negate(graph, dvi__add(graph, x.rest, b));
   return dvi__make(graph, DVI__OP_SUBTRACT, a, b, 0);
 }
@@ -151,7 +151,7 @@ static int rank(const dvi__graph *graph, dvi__node n)
 static dvi__node product(dvi__graph *graph, double c, dvi__node x, dvi__node y)
 {
   if (c == 1) return dvi__multiply(graph, x, y);
-  if (c == -1) return dvi__negate(graph, dvi__multiply(graph, x, y));
+  if (c < 0) return dvi__negate(graph, product(graph, -c, x, y));
   return rank(graph, x) >= rank(graph, y) ? make_product(graph, dvi__scale(graph, c, x), y)
                                           : make_product(graph, x, dvi__scale(graph, c, y));
 }
