@@ -18,7 +18,7 @@ enum {
 
 /* A place for each element: start + stride*e, or start + list[e]. */
 typedef struct dvi__places {
-  const int *list;   /* NULL: none */
+  const int *list;      /* NULL: none */
   const int *stride_of; /* [units] with a list: its stride within a unit, or DVI__IRREGULAR */
   int start, stride;
 } dvi__places;
@@ -40,10 +40,10 @@ typedef struct dvi__part {
   const dvi__kernel *kernel;
   dvi__program program;
   int variable_count, column_count;
-  dvi__block *block;      /* [variable_count] */
-  dvi__places *variable;  /* [variable_count] */
-  const double **column;  /* [column_count], [elements] each: what depends on no variable */
-  dvi__target *target;    /* [output_count] */
+  dvi__block *block;     /* [variable_count] */
+  dvi__places *variable; /* [variable_count] */
+  const double **column; /* [column_count], [elements] each: what depends on no variable */
+  dvi__target *target;   /* [output_count] */
 } dvi__part;
 
 /* A value, a gradient by some blocks, or second derivatives by some pairs. */
@@ -62,16 +62,16 @@ typedef struct dvi__column {
 
 /* What is known of a kernel beyond the kernel. */
 typedef struct dvi__derivatives {
-  dvi__places *place;    /* [input_count], of variables */
-  dvi__node *gradient;   /* [input_count], or NULL: not derived yet */
-  int pair_count;        /* of inputs; -1: not found yet */
+  dvi__places *place;  /* [input_count], of variables */
+  dvi__node *gradient; /* [input_count], or NULL: not derived yet */
+  int pair_count;      /* of inputs; -1: not found yet */
   int (*pair)[2];
-  dvi__node *second;     /* [pair_count], or -1: not derived yet; or NULL */
-  dvi__column *column;   /* the last one */
+  dvi__node *second;   /* [pair_count], or -1: not derived yet; or NULL */
+  dvi__column *column; /* the last one */
 } dvi__derivatives;
 
 typedef struct dvi__pair_pattern {
-  int found, full;
+  int found, full, entries;
   dvi_pattern pattern;
 } dvi__pair_pattern;
 
@@ -83,7 +83,7 @@ struct dvi__function {
   dvi__arena arena;
   dvi__sum *last; /* that was made */
   dvi__pair_pattern pattern[DVI__PAIRS];
-  dvi__function_counters counters;                             /* of operations and entries */
+  dvi__function_counters counters; /* of operations and entries */
   _Atomic(dvi__sum *) value, gradient[1 << DVI__BLOCKS], second[1 << DVI__PAIRS];
   atomic_long value_points, gradient_points, second_points;
 };
@@ -102,6 +102,15 @@ static inline dvi__track dvi__track_of(const dvi__places *places, int first)
   return (dvi__track){NULL, places->start + places->list[first], stride};
 }
 
+/* The place of element e. */
+static inline int dvi__place_at(const dvi__places *places, int e)
+{
+  return places->start + (places->list != NULL ? places->list[e] : places->stride * e);
+}
+
+/* Whether a tile of the part has room for a unit. */
+int dvi__part_fits(const dvi__part *part);
+
 /* The blocks of a pair: of its rows and of its columns. */
 void dvi__pair_blocks(dvi__pair pair, dvi__block *rows, dvi__block *columns);
 /* The pair of two blocks, in either order; DVI__PAIRS: there is none. */
@@ -115,18 +124,25 @@ void dvi__sum_add(const dvi__sum *sum, int count, const double *const *x, double
 
 /* The following want the lock. */
 
-/* Make the sum of roots: for kernel k root_count[k] of them, with their targets. */
-dvi_status dvi__sum_make(dvi__function *function, const int *root_count, dvi__node *const *root, dvi__target *const *target,
-                         dvi__sum **sum);
+/* An empty sum with room for a part of each kernel; NULL: no memory. */
+dvi__sum *dvi__sum_new(dvi__function *function);
+/* Add the part of kernel k: root[i] goes to target[i], which is kept. */
+dvi_status dvi__sum_extend(dvi__function *function, dvi__sum *sum, int k, int root_count, const dvi__node *root,
+                           dvi__target *target);
 
-/* Find which second derivatives of a kernel there are. */
+/* Find which second derivatives of kernel k there are; and the pattern of a pair. */
 dvi_status dvi__find_pairs(dvi__function *function, int k);
 dvi_status dvi__find_pattern(dvi__function *function, dvi__pair pair);
+/* The index of an entry that is in the pattern. */
+int dvi__pattern_entry(const dvi_pattern *pattern, int row, int column);
 
-dvi_status dvi__derive_value(dvi__function *function, dvi__sum **sum);
-dvi_status dvi__derive_gradient(dvi__function *function, unsigned blocks, dvi__sum **sum);
-dvi_status dvi__derive_second(dvi__function *function, unsigned pairs, dvi__sum **sum);
-/* second[] of kernel k for the pairs in the mask. */
+/* Derivatives as nodes: gradient[], and second[] of the pairs in the mask. */
+dvi_status dvi__derive_first(dvi__function *function, int k);
 dvi_status dvi__derive_pairs(dvi__function *function, int k, unsigned pairs);
+
+/* `mask`: of blocks, or of pairs. */
+dvi_status dvi__derive_value(dvi__function *function, unsigned mask, dvi__sum **sum);
+dvi_status dvi__derive_gradient(dvi__function *function, unsigned mask, dvi__sum **sum);
+dvi_status dvi__derive_second(dvi__function *function, unsigned mask, dvi__sum **sum);
 
 #endif

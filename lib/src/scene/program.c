@@ -140,7 +140,6 @@ static int row_of(compiler *c, dvi__node n)
 
 static int power_code(double exponent)
 {
-  if (fabs(exponent) > DVI__POWER_MAX) return DVI__OP_POWER;
   if (exponent == floor(exponent)) return DVI__CODE_WHOLE_POWER;
   return exponent > 0.0 ? DVI__CODE_ROOT_POWER : DVI__CODE_INVERSE_ROOT_POWER;
 }

@@ -20,7 +20,4 @@ typedef enum dvi__code {
   DVI__CODE_INVERSE_ROOT_POWER /* a^value, value = -1/2, -3/2, .. */
 } dvi__code;
 
-/* Powers up to this one are products; beyond, their roundings add up to more than those of pow. */
-#define DVI__POWER_MAX 16.0
-
 #endif

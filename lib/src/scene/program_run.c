@@ -102,10 +102,9 @@ static void sines_and_cosines(int lanes, int width, const double *restrict angle
     break;
 
 /* Operations that the C library does. */
-static void call_library(const dvi__instruction *at, int lanes, int width, const double *restrict a, const double *restrict b,
-                         double *restrict to)
+static void call_library(int op, int lanes, int width, const double *restrict a, const double *restrict b, double *restrict to)
 {
-  switch (at->op) {
+  switch (op) {
     CALLS(DVI__OP_EXP, exp(a[k]))
     CALLS(DVI__OP_LOG, log(a[k]))
     CALLS(DVI__OP_SIN, sin(a[k]))
@@ -120,7 +119,6 @@ static void call_library(const dvi__instruction *at, int lanes, int width, const
     CALLS(DVI__OP_ASINH, asinh(a[k]))
     CALLS(DVI__OP_ACOSH, acosh(a[k]))
     CALLS(DVI__OP_ATANH, atanh(a[k]))
-    CALLS(DVI__OP_POWER, pow(a[k], at->value))
     CALLS(DVI__OP_RAISE, pow(a[k], b[k]))
     CALLS(DVI__OP_ATAN2, atan2(a[k], b[k]))
     CALLS(DVI__OP_HYPOT, hypot(a[k], b[k]))
@@ -162,7 +160,7 @@ DVI__SCENE_LANES void dvi__program_run(const dvi__program *program, int lanes, c
     case DVI__CODE_ROOT_POWER: root_powers(width, value, a, to); break;
     case DVI__CODE_INVERSE_ROOT_POWER: inverse_root_powers(width, value, a, to); break;
     case DVI__CODE_SINE_AND_COSINE: sines_and_cosines(lanes, width, a, to, registers + (ptrdiff_t)at->b * width); break;
-    default: call_library(at, lanes, width, a, b, to);
+    default: call_library(at->op, lanes, width, a, b, to);
     }
   }
 #undef ROW
