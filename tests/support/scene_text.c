@@ -1,5 +1,7 @@
 #include "support/scene_text.h"
 
+#include "scene/utf8.h"
+
 #include <check.h>
 #include <string.h>
 
@@ -18,6 +20,17 @@ void check_complaint(const scene_text *scene, dvi_status status, const char *mes
 {
   ck_assert_str_eq(scene->message, message);
   ck_assert_int_eq(scene->complaint.status, status);
+}
+
+void check_printable(const scene_text *scene)
+{
+  ck_assert_msg(strncmp(scene->message, "s.yaml:", 7) == 0, "%s", scene->message);
+  const size_t length = strlen(scene->message);
+  unsigned code = 0;
+  for (size_t k = 0, width = 0; k < length; k += width) {
+    width = dvi__utf8(scene->message + k, length - k, &code);
+    ck_assert_msg(width > 0 && dvi__utf8_printable(code), "byte %zu of %s", k, scene->message);
+  }
 }
 
 void check_span(const scene_text *scene, dvi__span span, const char *characters)

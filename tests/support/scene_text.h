@@ -19,6 +19,9 @@ void close_text(scene_text *scene);
 /* The complaint must have this status and must be this message, whole. */
 void check_complaint(const scene_text *scene, dvi_status status, const char *message);
 
+/* There must be a message, with the name of the file, of characters that can be printed. */
+void check_printable(const scene_text *scene);
+
 /* These characters must stand at the span. */
 void check_span(const scene_text *scene, dvi__span span, const char *characters);
 
