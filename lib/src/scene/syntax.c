@@ -274,9 +274,8 @@ static bool postfix(parser *p, node **result)
   const int depth = p->depth;
   bool fine = atom(p, result);
   while (fine && (p->token.kind == '\'' || p->token.kind == '[' || p->token.kind == '.')) {
-    fine = enter(p);
-    if (!fine) break;
     fine = p->token.kind == '\'' ? rate(p, result) : p->token.kind == '[' ? indexed(p, result) : member(p, result);
+    fine = fine && enter(p);
   }
   p->depth = depth;
   return fine && (!begins_operand(p) || refuse_neighbours(p, *result));

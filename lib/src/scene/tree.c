@@ -72,14 +72,13 @@ static bool is_blank(char c)
   return c == ' ' || c == '\t' || c == '\n' || c == '\r';
 }
 
-/* The text in a block, after the line of its header and without the blanks around it. */
+/* The text in a block, after the line of its header. */
 static dvi__span inside_block(const dvi__source *source, dvi__span span)
 {
   size_t first = span.first;
-  size_t end = span.first + span.size;
+  const size_t end = span.first + span.size;
   while (first < end && source->text[first] != '\n' && source->text[first] != '\r') first++;
   while (first < end && is_blank(source->text[first])) first++;
-  while (end > first && is_blank(source->text[end - 1])) end--;
   return (dvi__span){first, end - first};
 }
 
@@ -130,7 +129,8 @@ static bool refuse_properties(const reader *r, const unsigned char *anchor, dvi_
 
 static bool add_scalar(reader *r, const yaml_event_t *event)
 {
-  const dvi__span span = span_of(r, event);
+  dvi__span span = span_of(r, event);
+  while (span.size > 0 && is_blank(r->source->text[span.first + span.size - 1])) span.size--; /* the end of a block */
   if (!refuse_properties(r, event->data.scalar.anchor, span)) return false;
   dvi__span inside = span;
   if (!inside_scalar(r, event->data.scalar.style, span, &inside)) return false;
@@ -139,7 +139,7 @@ static bool add_scalar(reader *r, const yaml_event_t *event)
   if (node == NULL || text == NULL) return no_memory(r);
   const int plain = event->data.scalar.style == YAML_PLAIN_SCALAR_STYLE;
   *node = (dvi__tree){.kind = DVI__SCALAR, .span = inside, .text = text, .plain = plain};
-  r->last = span.first + span.size;
+  if (span.size > 0) r->last = span.first + span.size;
   bool is_key = false;
   return attach(r, node, &is_key);
 }
@@ -239,7 +239,8 @@ static bool take_event(reader *r, const yaml_event_t *event)
 static bool refuse_syntax(reader *r, const yaml_parser_t *parser)
 {
   static const char *const remedy[][2] = {
-      {"mapping values are not allowed", "; a text with a colon and a blank needs quotes"},
+      {"mapping values are not allowed",
+       "; a text with a colon and a blank needs quotes, and keys of one mapping the same indentation"},
       {"expected ',' or ']'", "; an element with brackets or commas needs quotes, as \"[x[1], y[1]]\" does as a whole"},
       {"expected ',' or '}'", "; an element with brackets or commas needs quotes"},
       {"cannot start any token", "; indent by blanks, not by tabs, and put quotes around texts that begin with @, ` or %"},
@@ -248,12 +249,15 @@ static bool refuse_syntax(reader *r, const yaml_parser_t *parser)
   };
   if (parser->error == YAML_MEMORY_ERROR) return no_memory(r);
   const char *problem = parser->problem != NULL ? parser->problem : "something is wrong";
-  const char *context = parser->context != NULL ? parser->context : "while reading it";
+  const char *context = parser->context != NULL ? parser->context : "";
   const char *help = "";
   for (size_t k = 0; k < sizeof remedy / sizeof *remedy && help[0] == '\0'; k++)
     if (strstr(problem, remedy[k][0]) != NULL) help = remedy[k][1];
-  const dvi__span where = {place(r, &parser->problem_mark), 1};
-  return dvi__complain(r->complaint, DVI_BAD_FILE, where, "this is no YAML: %s %s%s", context, problem, help);
+  dvi__span where = {place(r, &parser->problem_mark), 1};
+  const bool never_ends = where.first == r->source->size && parser->context != NULL;
+  if (never_ends) where.first = place(r, &parser->context_mark); /* where it begins says more */
+  return dvi__complain(r->complaint, DVI_BAD_FILE, where, "this is no YAML: %s%s%s%s", problem, context[0] != '\0' ? " " : "",
+                       context, help);
 }
 
 static bool read_events(reader *r, yaml_parser_t *parser)
