@@ -337,6 +337,7 @@ bool dvi__kernels_function(dvi_scene *scene, dvi__kernels *list, int count, dvi_
   made->scene = scene;
   made->n = scene->n;
   made->count = count;
+  made->none = scene->zeros;
   made->next = scene->functions;
   scene->functions = made;
   return true;

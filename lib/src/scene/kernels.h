@@ -3,7 +3,7 @@
 #define DVI_SCENE_KERNELS_H
 #include "scene/context.h"
 
-/* A list of kernels that owns their graphs and inputs; dvi__kernels_free. */
+/* A list of kernels that owns the nodes of their graphs; dvi__kernels_free. All else is the arena's. */
 typedef struct dvi__kernels {
   dvi__kernel *kernel;
   int count, room;

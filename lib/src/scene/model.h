@@ -8,15 +8,17 @@
 #include "scene/names.h"
 #include "scene/tree.h"
 
+/* What a function is for: the motion; symmetries and invariants; events, which are no part of the system. */
+typedef enum dvi__role { DVI__MOVES, DVI__WATCHES, DVI__STANDS_BESIDE } dvi__role;
+
 /* The functions that callbacks evaluate, in a list that the scene frees. */
 typedef struct dvi__term {
   dvi__function *function;
   const dvi_scene *scene;
   int n, count;       /* coordinates; multipliers */
   const double *none; /* zeros, as many as the longest block has */
-  int qw_full, vw_full;
-  dvi_pattern qw, vw;  /* of a constraint, joined in its gradients */
-  dvi__block momentum; /* unused blocks stay NULL: whether VELOCITIES are read */
+  dvi_pattern qw, vw; /* of constraints: d phi/dq and d phi/dp, of which the gradients are made */
+  dvi__role role;
   struct dvi__term *next;
 } dvi__term;
 
@@ -42,8 +44,8 @@ struct dvi_scene {
   dvi__term *functions;
   dvi_system *system;
   double *q, *v, *p;
-  double *zeros; /* [max(n, constraints)] */
-  int depends_on_time;
+  double *zeros; /* [2 n] */
+  int depends_on_time, momenta_given;
 
   dvi_scene_plan plan;
   dvi_scene_parameter *shown; /* [parameter_count] */

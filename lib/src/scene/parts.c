@@ -118,14 +118,14 @@ static void free_work(copy *c, char *needed)
   free(needed);
 }
 
-/* Z of a kernel, or P, into a kernel of its own, whose graph and inputs are the caller's. */
-static bool copy_part(const dvi__kernel *from, dvi__block block, dvi__block as, int moving, dvi__kernel *to)
+/* Z of a kernel, or P, into a kernel of its own, in the arena but for the nodes of its graph. */
+static bool copy_part(dvi_scene *scene, const dvi__kernel *from, dvi__block block, dvi__block as, int moving, dvi__kernel *to)
 {
   const size_t nodes = (size_t)from->root + 1, inputs = (size_t)from->input_count + 1;
   char *needed = calloc(nodes, 1);
   copy c = {.from = from, .block = block, .as = as};
-  c.graph = calloc(1, sizeof *c.graph);
-  c.input = calloc(inputs, sizeof *c.input);
+  c.graph = dvi__arena_take(&scene->arena, 1, sizeof *c.graph);
+  c.input = dvi__arena_take(&scene->arena, inputs, sizeof *c.input);
   c.of_input = calloc(inputs, sizeof *c.of_input);
   c.rest = calloc(nodes, sizeof *c.rest);
   if (moving) c.moving = calloc(nodes, sizeof *c.moving);
@@ -142,23 +142,13 @@ static bool copy_part(const dvi__kernel *from, dvi__block block, dvi__block as, 
   }
   const bool good = made && c.graph->failed == DVI_OK;
   free_work(&c, needed);
-  if (good) return true;
-  if (c.graph != NULL) dvi__graph_free(c.graph);
-  free(c.graph);
-  free(c.input);
-  return false;
-}
-
-static void free_kernel(const dvi__kernel *kernel)
-{
-  dvi__graph_free(kernel->graph);
-  free(kernel->graph);
-  free((void *)kernel->input);
+  if (!good && c.graph != NULL) dvi__graph_free(c.graph);
+  return good || dvi__scene_no_memory(scene);
 }
 
 void dvi__kernels_free(dvi__kernels *list)
 {
-  for (int k = 0; k < list->count; k++) free_kernel(&list->kernel[k]);
+  for (int k = 0; k < list->count; k++) dvi__graph_free(list->kernel[k].graph);
   free(list->kernel);
   *list = (dvi__kernels){0};
 }
@@ -168,14 +158,14 @@ static bool append(dvi_scene *scene, dvi__kernels *list, const dvi__kernel *kern
 {
   double value;
   if (dvi__is_constant(kernel->graph, kernel->root, &value) && !(value < 0) && !(value > 0)) {
-    free_kernel(kernel);
+    dvi__graph_free(kernel->graph);
     return true;
   }
   if (list->count == list->room) {
     const int room = list->room == 0 ? 8 : 2 * list->room;
     dvi__kernel *longer = realloc(list->kernel, (size_t)room * sizeof *longer);
     if (longer == NULL) {
-      free_kernel(kernel);
+      dvi__graph_free(kernel->graph);
       return dvi__scene_no_memory(scene);
     }
     list->kernel = longer;
@@ -189,7 +179,7 @@ static bool append(dvi_scene *scene, dvi__kernels *list, const dvi__kernel *kern
 static bool append_needed(dvi_scene *scene, dvi__kernels *list, const dvi__kernel *kernel)
 {
   dvi__kernel needed;
-  if (!copy_part(kernel, DVI__BLOCKS, DVI__BLOCKS, 0, &needed)) return dvi__scene_no_memory(scene);
+  if (!copy_part(scene, kernel, DVI__BLOCKS, DVI__BLOCKS, 0, &needed)) return false;
   return append(scene, list, &needed);
 }
 
@@ -208,10 +198,10 @@ bool dvi__kernels_at_rest(dvi_scene *scene, const dvi__kernels *of, dvi__block b
 {
   for (int k = 0; k < of->count; k++) {
     dvi__kernel part;
-    if (!copy_part(&of->kernel[k], block, block, 0, &part)) return dvi__scene_no_memory(scene);
+    if (!copy_part(scene, &of->kernel[k], block, block, 0, &part)) return false;
     if (negative) part.root = dvi__apply(part.graph, DVI__OP_NEGATE, part.root, 0);
     const bool added = append_needed(scene, list, &part);
-    free_kernel(&part);
+    dvi__graph_free(part.graph);
     if (!added) return false;
   }
   return true;
@@ -221,9 +211,9 @@ bool dvi__kernels_moving(dvi_scene *scene, const dvi__kernels *of, dvi__block bl
 {
   for (int k = 0; k < of->count; k++) {
     dvi__kernel part;
-    if (!copy_part(&of->kernel[k], block, as, 1, &part)) return dvi__scene_no_memory(scene);
+    if (!copy_part(scene, &of->kernel[k], block, as, 1, &part)) return false;
     const bool added = append_needed(scene, list, &part);
-    free_kernel(&part);
+    dvi__graph_free(part.graph);
     if (!added) return false;
   }
   return true;
