@@ -8,7 +8,7 @@
 #include "scene/names.h"
 #include "scene/tree.h"
 
-/* What a function is for: the motion; symmetries and invariants; events, which are no part of the system. */
+/* What a function is for: the motion; symmetries and invariants; events and constant masses, which the system does not evaluate. */
 typedef enum dvi__role { DVI__MOVES, DVI__WATCHES, DVI__STANDS_BESIDE } dvi__role;
 
 /* The functions that callbacks evaluate, in a list that the scene frees. */

@@ -40,6 +40,9 @@ static bool make_system(dvi_scene *scene)
 {
   find_time(scene);
   scene->terms.dimension = scene->n;
+  if (scene->terms.potential_count == 0) scene->terms.potentials = NULL;
+  if (scene->terms.symmetry_count == 0) scene->terms.symmetries = NULL;
+  if (scene->terms.invariant_count == 0) scene->terms.invariants = NULL;
   const dvi_status status = dvi_system_create(&scene->terms, &scene->system);
   return status == DVI_OK || dvi__complain(scene->complaint, status, DVI__NOWHERE, "%s", dvi_last_error());
 }

@@ -165,7 +165,7 @@ static bool read_steps(dvi_scene *scene, const dvi__tree *steps, dvi_scene_range
   static const char *const known[] = {"from", "to", "count"};
   enum { COUNT_MAX = 1000000 };
   double end[2];
-  int count;
+  int count = 0;
   if (!dvi__want_keys(scene, steps, "a range", 3, known)) return false;
   for (int k = 0; k < 3; k++)
     if (dvi__tree_find(steps, known[k]) == NULL) return dvi__scene_refuse(scene, steps->span, "a range needs '%s'", known[k]);

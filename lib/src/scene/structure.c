@@ -162,6 +162,7 @@ static bool make_separable(dvi_scene *scene, dvi__kernels *L, const char *rest)
   bool good = dvi__kernels_moving(scene, L, DVI__VELOCITIES, DVI__VELOCITIES, &moving) &&
               dvi__kernels_function(scene, &moving, 0, &T) && rests(scene, T, &at_rest);
   dvi__kernels_free(&moving);
+  if (T != NULL) T->role = DVI__STANDS_BESIDE;
   if (good && !at_rest) return make_general(scene, L);
   good = good && mass_values(scene, T, &pattern, &values) && set_mass(scene, &pattern, values) &&
          dvi__kernels_at_rest(scene, L, DVI__VELOCITIES, 1, &V) && add_potential(scene, rest, &V);
