@@ -187,6 +187,8 @@ START_TEST(other_encodings_and_control_characters_are_refused)
   check_refused("\xFF\xFE"
                 "a",
                 "s.yaml: the file is UTF-16; save it as UTF-8");
+  check_refused("a: \xE2\x80\xA8\n",
+                "s.yaml:1:4: the character U+2028 cannot stand in a scene\n  a: ?\n     ^"); /* a break of lines in YAML 1.1 */
   ck_assert_ptr_null(tree_of_bytes("a: \0\n", 5));
   check_complaint(&scene, DVI_BAD_FILE, "s.yaml:1:4: the character U+0000 cannot stand in a scene\n  a: ?\n     ^");
 }

@@ -48,7 +48,7 @@ static size_t put_shown(writer *w, const char *text, size_t size)
 {
   unsigned code = 0;
   const size_t width = dvi__utf8(text, size, &code);
-  const int shown = width > 0 && dvi__utf8_printable(code) && code != '\n' && code != '\r' && code != 0x85;
+  const int shown = width > 0 && dvi__utf8_printable(code) && code != '\n' && code != '\r';
   if (shown)
     put_bytes(w, text, width);
   else

@@ -23,7 +23,7 @@ typedef struct reader {
   dvi__arena *arena;
   dvi__complaint *complaint;
   size_t index, offset; /* a place: in characters, in bytes */
-  size_t last;          /* where the last scalar or list ended, with its quotes */
+  size_t last;          /* the end of what was read last, with its quotes or brackets */
   dvi__tree *root;
   size_t depth;
   level open[LEVELS_MAX];
@@ -157,6 +157,7 @@ static bool open_collection(reader *r, dvi__tree_kind kind, const yaml_event_t *
   bool is_key = false;
   if (!attach(r, node, &is_key)) return false;
   if (is_key && !list) return complain(r, where, "a key is a name, or a list of names, and no mapping or sequence");
+  r->last = span.first + span.size;
   r->open[r->depth++] = (level){.tree = node, .is_key = is_key};
   return true;
 }
@@ -201,7 +202,7 @@ static bool close_collection(reader *r, const yaml_event_t *event)
   dvi__tree *node = closed->tree;
   const dvi__span bracket = span_of(r, event);
   if (bracket.size > 0) r->last = bracket.first + bracket.size; /* else it ends with what it holds */
-  if (r->last > node->span.first) node->span.size = r->last - node->span.first;
+  node->span.size = r->last - node->span.first;
   node->count = (int)closed->child_count;
   node->key = closed->key;
   node->child = closed->child;
