@@ -122,7 +122,7 @@ static void put_excerpt(writer *w, const dvi__source *source, dvi__span where)
   for (size_t k = characters(source, where.first, end); k > 1; k--) put_text(w, "~");
 }
 
-bool dvi__complain(dvi__complaint *complaint, dvi_status status, dvi__span where, const char *format, ...)
+bool(dvi__complain)(dvi__complaint *complaint, dvi_status status, dvi__span where, const char *format, ...)
 {
   if (complaint->status != DVI_OK) return false;
   complaint->status = status;
