@@ -231,7 +231,7 @@ static bool take_event(reader *r, const yaml_event_t *event)
     return open_collection(r, DVI__SEQUENCE, event, event->data.sequence_start.style == YAML_FLOW_SEQUENCE_STYLE);
   case YAML_MAPPING_START_EVENT: return open_collection(r, DVI__MAPPING, event, false);
   case YAML_SEQUENCE_END_EVENT:
-  case YAML_MAPPING_END_EVENT: return close_collection(r, event);
+  case YAML_MAPPING_END_EVENT: return r->depth == 0 || close_collection(r, event); /* never 0, but that is not seen from here */
   default: return true;
   }
 }
