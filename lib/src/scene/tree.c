@@ -31,7 +31,7 @@ typedef struct reader {
 
 static bool no_memory(const reader *r)
 {
-  return dvi__complain(r->complaint, DVI_NO_MEMORY, DVI__NOWHERE, "no memory is left for the tree of the file");
+  return dvi__complain(r->complaint, DVI_NO_MEMORY, DVI__NOWHERE, "no memory is left for the file; at most 1 GiB is taken");
 }
 
 static bool complain(const reader *r, dvi__span where, const char *sentence)
@@ -67,18 +67,13 @@ static dvi__span span_of(reader *r, const yaml_event_t *event)
   return (dvi__span){first, end - first};
 }
 
-static bool is_blank(char c)
-{
-  return c == ' ' || c == '\t' || c == '\n' || c == '\r';
-}
-
 /* The text in a block, after the line of its header. */
 static dvi__span inside_block(const dvi__source *source, dvi__span span)
 {
   size_t first = span.first;
   const size_t end = span.first + span.size;
   while (first < end && source->text[first] != '\n' && source->text[first] != '\r') first++;
-  while (first < end && is_blank(source->text[first])) first++;
+  while (first < end && dvi__is_blank(source->text[first])) first++;
   return (dvi__span){first, end - first};
 }
 
@@ -130,7 +125,7 @@ static bool refuse_properties(const reader *r, const unsigned char *anchor, dvi_
 static bool add_scalar(reader *r, const yaml_event_t *event)
 {
   dvi__span span = span_of(r, event);
-  while (span.size > 0 && is_blank(r->source->text[span.first + span.size - 1])) span.size--; /* the end of a block */
+  while (span.size > 0 && dvi__is_blank(r->source->text[span.first + span.size - 1])) span.size--; /* the end of a block */
   if (!refuse_properties(r, event->data.scalar.anchor, span)) return false;
   dvi__span inside = span;
   if (!inside_scalar(r, event->data.scalar.style, span, &inside)) return false;

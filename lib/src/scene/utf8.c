@@ -37,3 +37,8 @@ int dvi__utf8_printable(unsigned code)
   if (code == 0x2028 || code == 0x2029) return 0;
   return code < 0xFFFE || code > 0xFFFF;
 }
+
+int dvi__is_blank(char c)
+{
+  return c == ' ' || c == '\t' || c == '\n' || c == '\r';
+}
