@@ -72,10 +72,9 @@ static unsigned next_seen(const char **at, const char *end)
   while (*at < end) {
     unsigned code = 0;
     const size_t width = dvi__utf8(*at, (size_t)(end - *at), &code);
-    ck_assert_uint_gt(width, 0);
+    fuzz_requires(width > 0);
     *at += width;
-    if (code != ' ' && code != '\t' && code != '\n' && code != '\r' && code != 0x85 && code != 0x2028 && code != 0x2029)
-      return code;
+    if (code != ' ' && code != '\t' && code != '\n' && code != '\r') return code;
   }
   return 0;
 }
@@ -90,7 +89,7 @@ static void check_text(const dvi__tree *scalar)
   unsigned code = 0;
   do {
     code = next_seen(&at, end);
-    ck_assert_uint_eq(next_seen(&value, value_end), code);
+    fuzz_requires(next_seen(&value, value_end) == code);
   } while (code != 0);
 }
 
@@ -102,23 +101,23 @@ static size_t end_of(dvi__span span)
 /* The node stands inside of its parent, behind `before`. Returns how many nodes it has, itself included. */
 static int check_node(const dvi__tree *node, size_t before, size_t end, int level)
 {
-  ck_assert_uint_ge(node->span.first, before);
-  ck_assert(node->span.size == 0 || end_of(node->span) <= end);
-  ck_assert_uint_le(end_of(node->span), scene.source.size);
+  fuzz_requires(node->span.first >= before);
+  fuzz_requires(node->span.size == 0 || end_of(node->span) <= end);
+  fuzz_requires(end_of(node->span) <= scene.source.size);
   if (node->kind == DVI__SCALAR) {
     check_text(node);
-    ck_assert_int_eq(node->count, 0);
+    fuzz_requires(node->count == 0);
     return 1;
   }
-  ck_assert_int_le(level, 64);
+  fuzz_requires(level <= 64);
   int nodes = 1;
   before = node->span.first;
   for (int k = 0; k < node->count; k++) {
     if (node->kind == DVI__MAPPING) {
-      ck_assert_int_eq(node->key[k]->kind, DVI__SCALAR);
+      fuzz_requires(node->key[k]->kind == DVI__SCALAR);
       nodes += check_node(node->key[k], before, end_of(node->span), level + 1);
       before = end_of(node->key[k]->span);
-      ck_assert_ptr_nonnull(dvi__tree_find(node, node->key[k]->text));
+      fuzz_requires(dvi__tree_find(node, node->key[k]->text) != NULL);
     }
     nodes += check_node(node->child[k], before, end_of(node->span), level + 1);
     before = end_of(node->child[k]->span);
@@ -131,10 +130,10 @@ static unsigned one(const char *text, size_t size)
   open_text(&scene, text, size);
   const dvi__tree *root = NULL;
   const bool fine = dvi__tree_read(&scene.source, &scene.arena, &scene.complaint, &root);
-  ck_assert(fine == (root != NULL) && fine == (scene.complaint.status == DVI_OK));
+  fuzz_requires(fine == (root != NULL) && fine == (scene.complaint.status == DVI_OK));
   unsigned outcome = fuzz_hash(scene.message);
   if (fine)
-    outcome = (unsigned)check_node(root, 0, size, 1);
+    outcome = (unsigned)check_node(root, 0, size, 1) % 256; /* more nodes are nothing new */
   else
     check_printable(&scene);
   close_text(&scene);

@@ -222,6 +222,8 @@ END_TEST
 START_TEST(what_was_found_and_what_was_expected_is_told)
 {
   check_refused("", "s.yaml:1:1: an expression is missing here");
+  check_refused("# a", "s.yaml:1:1: an expression is missing here\n  # a\n  ^");
+  check_refused("a + # b", "s.yaml:1:4: found the end where a number, a name or a bracket is expected\n  a + # b\n     ^");
   check_refused("a + * b", "s.yaml:1:5: found '*' where a number, a name or a bracket is expected\n  a + * b\n      ^");
   check_refused("f()", "s.yaml:1:3: found ')' where a number, a name or a bracket is expected\n  f()\n    ^");
   check_refused("a = b", "s.yaml:1:3: found '=' where an operator or the end is expected\n  a = b\n    ^");
@@ -267,6 +269,23 @@ START_TEST(chains_may_be_as_long_as_the_file)
 }
 END_TEST
 
+/* Wherever memory runs out. */
+START_TEST(missing_memory_is_told)
+{
+  static const char text[] = "-[1, x']/f(a.b, 2^c) + sum(i<j=1..2, x[i,j])";
+  bool fine = false;
+  for (size_t room = 0; !fine; room += 16) {
+    close_text(&scene);
+    open_text(&scene, text, sizeof text - 1);
+    limit_memory(&scene, room);
+    const dvi__expression *expression = NULL;
+    fine = dvi__expression_parse(&scene.source, (dvi__span){0, sizeof text - 1}, &scene.arena, &scene.complaint, &expression);
+    if (!fine) check_complaint(&scene, DVI_NO_MEMORY, "s.yaml: no memory is left for the expressions; at most 1 GiB is taken");
+    ck_assert_uint_lt(room, 8192);
+  }
+}
+END_TEST
+
 static void release(void)
 {
   close_text(&scene);
@@ -290,6 +309,7 @@ int main(void)
   tcase_add_test(tests, brackets_are_told_where_they_open);
   tcase_add_test(tests, what_was_found_and_what_was_expected_is_told);
   tcase_add_test(tests, nesting_ends_at_64_levels);
+  tcase_add_test(tests, missing_memory_is_told);
   tcase_add_test(tests, chains_may_be_as_long_as_the_file);
   return run_tests("syntax", tests);
 }

@@ -187,6 +187,8 @@ START_TEST(other_encodings_and_control_characters_are_refused)
   check_refused("\xFF\xFE"
                 "a",
                 "s.yaml: the file is UTF-16; save it as UTF-8");
+  check_refused("a: \xE2\x80\xA8\n",
+                "s.yaml:1:4: the character U+2028 cannot stand in a scene\n  a: ?\n     ^"); /* a break of lines in YAML 1.1 */
   ck_assert_ptr_null(tree_of_bytes("a: \0\n", 5));
   check_complaint(&scene, DVI_BAD_FILE, "s.yaml:1:4: the character U+0000 cannot stand in a scene\n  a: ?\n     ^");
 }
@@ -265,6 +267,23 @@ START_TEST(many_keys_take_no_longer_each)
 }
 END_TEST
 
+/* Wherever memory runs out. */
+START_TEST(missing_memory_is_told)
+{
+  static const char text[] = "a: [1, {b: 2, c: 3}]\n[d, e]: 4\n";
+  bool fine = false;
+  for (size_t room = 0; !fine; room += 16) {
+    close_text(&scene);
+    open_text(&scene, text, sizeof text - 1);
+    limit_memory(&scene, room);
+    const dvi__tree *root = NULL;
+    fine = dvi__tree_read(&scene.source, &scene.arena, &scene.complaint, &root);
+    if (!fine) check_complaint(&scene, DVI_NO_MEMORY, "s.yaml: no memory is left for the file; at most 1 GiB is taken");
+    ck_assert_uint_lt(room, 4096);
+  }
+}
+END_TEST
+
 static void release(void)
 {
   close_text(&scene);
@@ -290,6 +309,7 @@ int main(void)
   tcase_add_test(tests, what_never_ends_is_shown_where_it_begins);
   tcase_add_test(tests, nesting_ends_at_64_levels);
   tcase_add_test(tests, files_end_at_one_mebibyte);
+  tcase_add_test(tests, missing_memory_is_told);
   tcase_add_test(tests, many_keys_take_no_longer_each);
   return run_tests("tree", tests);
 }

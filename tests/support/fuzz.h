@@ -1,6 +1,7 @@
 /* Hostile texts for readers: made by mutation of good ones, the same in every run, so that a failure comes again. */
 #ifndef TESTS_SUPPORT_FUZZ_H
 #define TESTS_SUPPORT_FUZZ_H
+#include <check.h>
 #include <stddef.h>
 
 typedef struct fuzz_target {
@@ -15,6 +16,12 @@ typedef struct fuzz_target {
 /* Try texts for as long as DVI_FUZZ_SECONDS says; else 30 s where the address sanitizer watches, 2 s where not. With DVI_FUZZ_TEXT try the text in this
  * file alone. Returns how many were tried. */
 long fuzz(const fuzz_target *target);
+
+/* As ck_assert, which writes a line each time. */
+#define fuzz_requires(condition)                      \
+  do {                                                \
+    if (!(condition)) ck_abort_msg("%s", #condition); \
+  } while (0)
 
 /* How long a case of Check may take that fuzzes. */
 int fuzz_timeout(void);

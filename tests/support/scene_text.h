@@ -16,6 +16,9 @@ typedef struct scene_text {
 void open_text(scene_text *scene, const char *text, size_t size);
 void close_text(scene_text *scene);
 
+/* After open_text: let the scene take so many bytes and no more; at most 65536. */
+void limit_memory(scene_text *scene, size_t size);
+
 /* The complaint must have this status and must be this message, whole. */
 void check_complaint(const scene_text *scene, dvi_status status, const char *message);
 

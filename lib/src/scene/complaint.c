@@ -48,7 +48,7 @@ static size_t put_shown(writer *w, const char *text, size_t size)
 {
   unsigned code = 0;
   const size_t width = dvi__utf8(text, size, &code);
-  const int shown = width > 0 && dvi__utf8_printable(code) && code != '\n' && code != '\r' && code != 0x85;
+  const int shown = width > 0 && dvi__utf8_printable(code) && code != '\n' && code != '\r';
   if (shown)
     put_bytes(w, text, width);
   else
@@ -122,7 +122,7 @@ static void put_excerpt(writer *w, const dvi__source *source, dvi__span where)
   for (size_t k = characters(source, where.first, end); k > 1; k--) put_text(w, "~");
 }
 
-bool dvi__complain(dvi__complaint *complaint, dvi_status status, dvi__span where, const char *format, ...)
+bool(dvi__complain)(dvi__complaint *complaint, dvi_status status, dvi__span where, const char *format, ...)
 {
   if (complaint->status != DVI_OK) return false;
   complaint->status = status;

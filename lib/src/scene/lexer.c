@@ -14,11 +14,6 @@ static bool is_letter(char c)
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
 }
 
-static bool is_blank(char c)
-{
-  return c == ' ' || c == '\t' || c == '\n' || c == '\r';
-}
-
 /* A part of the source from which characters are read; behind its end there are NULs. */
 typedef struct text {
   const char *at;
@@ -54,7 +49,7 @@ static size_t name_end(const text *t, size_t k)
 
 static size_t skip_blanks(const text *t, size_t k)
 {
-  while (k < t->end && (is_blank(t->at[k]) || t->at[k] == '#')) {
+  while (k < t->end && (dvi__is_blank(t->at[k]) || t->at[k] == '#')) {
     if (t->at[k] == '#')
       while (k < t->end && t->at[k] != '\n' && t->at[k] != '\r') k++;
     else
@@ -104,7 +99,7 @@ static bool refuse(const text *t, size_t k, dvi__complaint *complaint)
   } known[] = {{'|', "; write abs(x) of a number, norm(a) of a vector"},
                {':', "; a range is a..b"},
                {';', "; elements of a list are separated by commas, rows are lists: [[a, b], [c, d]]"},
-               {'"', "; the rate of x is x'"},
+               {'"', "; quotes stand around the whole expression, and the rate of x is x'"},
                {'%', "; there is no remainder"},
                {'{', "; write parentheses"},
                {'}', "; write parentheses"},

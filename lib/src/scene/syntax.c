@@ -42,13 +42,15 @@ static bool sum_of(parser *p, node **result);
 
 static bool no_memory(const parser *p)
 {
-  return dvi__complain(p->complaint, DVI_NO_MEMORY, DVI__NOWHERE, "no memory is left for the expressions");
+  return dvi__complain(p->complaint, DVI_NO_MEMORY, DVI__NOWHERE, "no memory is left for the expressions; at most 1 GiB is taken");
 }
 
 static bool next(parser *p)
 {
   p->last = p->token.span.first + p->token.span.size;
-  return dvi__token_read(p->source, p->last, p->end, p->complaint, &p->token);
+  if (!dvi__token_read(p->source, p->last, p->end, p->complaint, &p->token)) return false;
+  if (p->token.kind == DVI__TOKEN_END) p->token.span.first = p->last; /* behind the last word, before blanks and comments */
+  return true;
 }
 
 static bool enter(parser *p)

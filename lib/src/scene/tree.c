@@ -23,7 +23,7 @@ typedef struct reader {
   dvi__arena *arena;
   dvi__complaint *complaint;
   size_t index, offset; /* a place: in characters, in bytes */
-  size_t last;          /* where the last scalar or list ended, with its quotes */
+  size_t last;          /* the end of what was read last, with its quotes or brackets */
   dvi__tree *root;
   size_t depth;
   level open[LEVELS_MAX];
@@ -31,7 +31,7 @@ typedef struct reader {
 
 static bool no_memory(const reader *r)
 {
-  return dvi__complain(r->complaint, DVI_NO_MEMORY, DVI__NOWHERE, "no memory is left for the tree of the file");
+  return dvi__complain(r->complaint, DVI_NO_MEMORY, DVI__NOWHERE, "no memory is left for the file; at most 1 GiB is taken");
 }
 
 static bool complain(const reader *r, dvi__span where, const char *sentence)
@@ -67,18 +67,13 @@ static dvi__span span_of(reader *r, const yaml_event_t *event)
   return (dvi__span){first, end - first};
 }
 
-static bool is_blank(char c)
-{
-  return c == ' ' || c == '\t' || c == '\n' || c == '\r';
-}
-
 /* The text in a block, after the line of its header. */
 static dvi__span inside_block(const dvi__source *source, dvi__span span)
 {
   size_t first = span.first;
   const size_t end = span.first + span.size;
   while (first < end && source->text[first] != '\n' && source->text[first] != '\r') first++;
-  while (first < end && is_blank(source->text[first])) first++;
+  while (first < end && dvi__is_blank(source->text[first])) first++;
   return (dvi__span){first, end - first};
 }
 
@@ -130,7 +125,7 @@ static bool refuse_properties(const reader *r, const unsigned char *anchor, dvi_
 static bool add_scalar(reader *r, const yaml_event_t *event)
 {
   dvi__span span = span_of(r, event);
-  while (span.size > 0 && is_blank(r->source->text[span.first + span.size - 1])) span.size--; /* the end of a block */
+  while (span.size > 0 && dvi__is_blank(r->source->text[span.first + span.size - 1])) span.size--; /* the end of a block */
   if (!refuse_properties(r, event->data.scalar.anchor, span)) return false;
   dvi__span inside = span;
   if (!inside_scalar(r, event->data.scalar.style, span, &inside)) return false;
@@ -157,6 +152,7 @@ static bool open_collection(reader *r, dvi__tree_kind kind, const yaml_event_t *
   bool is_key = false;
   if (!attach(r, node, &is_key)) return false;
   if (is_key && !list) return complain(r, where, "a key is a name, or a list of names, and no mapping or sequence");
+  r->last = span.first + span.size;
   r->open[r->depth++] = (level){.tree = node, .is_key = is_key};
   return true;
 }
@@ -201,7 +197,7 @@ static bool close_collection(reader *r, const yaml_event_t *event)
   dvi__tree *node = closed->tree;
   const dvi__span bracket = span_of(r, event);
   if (bracket.size > 0) r->last = bracket.first + bracket.size; /* else it ends with what it holds */
-  if (r->last > node->span.first) node->span.size = r->last - node->span.first;
+  node->span.size = r->last - node->span.first;
   node->count = (int)closed->child_count;
   node->key = closed->key;
   node->child = closed->child;
@@ -230,7 +226,7 @@ static bool take_event(reader *r, const yaml_event_t *event)
     return open_collection(r, DVI__SEQUENCE, event, event->data.sequence_start.style == YAML_FLOW_SEQUENCE_STYLE);
   case YAML_MAPPING_START_EVENT: return open_collection(r, DVI__MAPPING, event, false);
   case YAML_SEQUENCE_END_EVENT:
-  case YAML_MAPPING_END_EVENT: return close_collection(r, event);
+  case YAML_MAPPING_END_EVENT: return r->depth == 0 || close_collection(r, event); /* never 0, but that is not seen from here */
   default: return true;
   }
 }

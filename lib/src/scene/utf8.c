@@ -33,6 +33,12 @@ size_t dvi__utf8(const char *text, size_t size, unsigned *code)
 int dvi__utf8_printable(unsigned code)
 {
   if (code < 0x20) return code == '\t' || code == '\n' || code == '\r';
-  if (code >= 0x7F && code < 0xA0) return code == 0x85;
+  if (code >= 0x7F && code < 0xA0) return 0;
+  if (code == 0x2028 || code == 0x2029) return 0;
   return code < 0xFFFE || code > 0xFFFF;
+}
+
+int dvi__is_blank(char c)
+{
+  return c == ' ' || c == '\t' || c == '\n' || c == '\r';
 }
