@@ -12,10 +12,15 @@ typedef struct given {
   int velocities, momenta;
 } given;
 
+/* How a number was given: by a formula or a list, which one for a single member overrides. */
+enum { BY_ALL = 1, BY_ONE = 2 };
+
 static bool put(dvi_scene *scene, const dvi__target *target, int number, double value, double *to, char *mark)
 {
-  if (mark[number]) return dvi__scene_refuse(scene, target->span, "a number of %s is given twice", target->x->name);
-  mark[number] = 1;
+  const char how = target->index != NULL ? BY_ONE : BY_ALL;
+  if (mark[number] == how) return dvi__scene_refuse(scene, target->span, "a number of %s is given twice", target->x->name);
+  if (mark[number] == BY_ONE) return true;
+  mark[number] = how;
   to[number] = value;
   return true;
 }
