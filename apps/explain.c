@@ -25,9 +25,8 @@ static void print_parameter(const problem_parameter *parameter, const words *set
 
 static void print_problem(const problem *scene, const words *settings)
 {
-  const int index = problem_find(scene->name);
-  (void)printf("problem %s: %s\n", scene->name, problem_summary(index));
-  for (const problem_parameter *k = problem_parameters(index); k->name != NULL; k++) print_parameter(k, settings);
+  (void)printf("problem %s: %s\n", scene->name, scene->summary);
+  for (const problem_parameter *k = scene->parameter; k->name != NULL; k++) print_parameter(k, settings);
   if (scene->velocity != NULL)
     (void)printf("  coordinates  %d, velocities %d:", scene->nq, scene->nv);
   else

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "command.h"
+#include "scene.h"
 #include "spelling.h"
 
 enum { MESSAGE_SIZE = 1024, WORD_SIZE = 64, HINT_SIZE = 128 };
@@ -76,6 +77,7 @@ int open_problem(const char *name, const words *settings, problem **scene)
   char message[MESSAGE_SIZE] = "";
   char hint[HINT_SIZE];
   *scene = NULL;
+  if (scene_is_path(name)) return scene_open(name, settings, scene);
   const int index = problem_find(name);
   if (index < 0)
     return usage_error("unknown problem '%s'%s; see dvi list problems", name,
@@ -92,6 +94,10 @@ int open_shaped(const char *name, const words *settings, bool one_point, problem
 {
   const int code = open_problem(name, settings, scene);
   if (code != DONE || !one_point) return code;
+  if ((*scene)->scene != NULL) {
+    problem_destroy(scene);
+    return usage_error("--one-point: %s is a scene, and those evaluate batches", name);
+  }
   const dvi_status status = problem_one_point(*scene);
   if (status == DVI_OK) return DONE;
   problem_destroy(scene);

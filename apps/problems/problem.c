@@ -154,6 +154,8 @@ static int all_default(const problem_entry *entry, const double *value)
 static dvi_status make(const report *r, const problem_entry *entry, const double *value, problem *made)
 {
   made->name = entry->name;
+  made->summary = entry->summary;
+  made->parameter = parameters_of(entry);
   made->h = entry->h;
   made->t_end = entry->t_end;
   made->order_h = entry->order_h;
@@ -213,7 +215,10 @@ typedef union block {
 void problem_destroy(problem **made)
 {
   if (!made || !*made) return;
-  dvi_system_destroy(&(*made)->system);
+  if ((*made)->close)
+    (*made)->close(*made);
+  else
+    dvi_system_destroy(&(*made)->system);
   for (block *b = (*made)->blocks; b;) {
     block *next = b->next;
     free(b);

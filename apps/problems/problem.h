@@ -18,7 +18,10 @@ typedef struct problem_parameter {
 
 /** One problem with its parameters fixed: the system, a start, and what is known about the solution. */
 typedef struct problem {
-  const char *name;
+  const char *name, *summary;
+  const problem_parameter *parameter; /**< ended by one without a name */
+  const char *method;                 /**< the specification that it wants to be run with; NULL: none */
+  long every;                         /**< a row after so many steps; 0: it does not say */
   dvi_system *system;
   const dvi_system_terms *terms; /**< what the system was made of */
   int nq;                        /**< numbers of q */
@@ -42,6 +45,8 @@ typedef struct problem {
   int (*exact)(const struct problem *problem, double t, double *q, double *p);
   void *parameters; /**< the callbacks' user pointer */
   void *blocks;     /**< the memory that goes with the problem */
+  void *scene;      /**< what it was read from, which owns the system; NULL: nothing, it is of the catalogue */
+  void (*close)(struct problem *problem); /**< frees that; NULL without it */
 } problem;
 
 #ifdef __cplusplus

@@ -15,6 +15,7 @@ BEGIN {
   sees["path"] = "core num group space system action solve method"
   sees["diagnostics"] = "core num system"
   sees["reference"] = "core num system"
+  sees["scene"] = "" # a library of its own, beside libdvi's public headers
   # Single headers that are open to a room beyond that.
   also["reference solve/sundials_compat.h"] = 1
   # Standard headers that a public header may need.

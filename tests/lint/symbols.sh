@@ -1,15 +1,16 @@
 #!/bin/sh
-# The shared library exports exactly the functions that the public headers declare; the static one defines no global name outside
-# dvi_ and dvi__.  Usage: symbols.sh SHARED STATIC INCLUDE_DIRECTORY
+# The shared library exports exactly the functions that its public headers declare; the static one defines no global name outside
+# dvi_ and dvi__.  Usage: symbols.sh SHARED STATIC HEADER...
 set -u
-shared=$1 static=$2 include=$3
+shared=$1 static=$2
+shift 2
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 rc=0
 
 nm -D --defined-only "$shared" | awk 'NF == 3 { print $3 }' | sort -u >"$work/exported"
 # Comments are cut out; what is left before an opening parenthesis at a prototype's start is its name.
-cat "$include"/dvi/*.h | awk '
+cat "$@" | awk '
   { text = text " " $0 "\n" }
   END {
     while ((start = index(text, "/*")) > 0) {
@@ -26,7 +27,7 @@ cat "$include"/dvi/*.h | awk '
       }
   }' | sort -u >"$work/declared"
 
-[ -s "$work/declared" ] || { echo "no declarations found in $include"; rc=1; }
+[ -s "$work/declared" ] || { echo "no declarations found in $*"; rc=1; }
 comm -23 "$work/exported" "$work/declared" | sed 's/^/exported, but in no public header: /' >"$work/report"
 comm -13 "$work/exported" "$work/declared" | sed 's/^/declared, but not exported: /' >>"$work/report"
 nm -g --defined-only "$static" 2>/dev/null | awk 'NF == 3 && $3 !~ /^dvi_/ { print "global name without the prefix: " $3 }' >>"$work/report"

@@ -1,0 +1,119 @@
+/* A scene file as a problem: what the subcommands take without knowing the difference. */
+#include "scene.h"
+
+#include <dvi/scene.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "command.h"
+#include "entry.h"
+
+/* A scene's error has its line and a caret below it. */
+enum { MESSAGE_SIZE = 2048 };
+
+/* Steps of an order study that begins where the scene's own step is. */
+enum { STUDY_STEPS = 200 };
+
+bool scene_is_path(const char *name)
+{
+  const char *dot = strrchr(name, '.');
+  return dot != NULL && (strcmp(dot, ".yaml") == 0 || strcmp(dot, ".yml") == 0);
+}
+
+static void close_scene(problem *made)
+{
+  dvi_scene *scene = made->scene;
+  dvi_scene_destroy(&scene);
+}
+
+static void label(const dvi_scene *scene, problem *made)
+{
+  for (int i = 0; i < made->nq; i++) (void)snprintf(made->coordinate[i], PROBLEM_LABEL_SIZE, "%s", dvi_scene_coordinate(scene, i));
+  for (int i = 0; i < made->nv; i++) (void)snprintf(made->momentum[i], PROBLEM_LABEL_SIZE, "%s", dvi_scene_momentum(scene, i));
+  for (int i = 0; i < made->nv && made->velocity != NULL; i++)
+    (void)snprintf(made->velocity[i], PROBLEM_LABEL_SIZE, "%s", dvi_scene_velocity(scene, i));
+}
+
+static void place(const dvi_scene *scene, problem *made)
+{
+  const double *q, *v, *p;
+  dvi_scene_start(scene, &q, &v, &p);
+  memcpy(made->q, q, (size_t)made->nq * sizeof *q);
+  memcpy(made->v, v, (size_t)made->nv * sizeof *v);
+  memcpy(made->p, p, (size_t)made->nv * sizeof *p);
+}
+
+/* The parameters that can be set, in the form of the catalogue's. */
+static bool list_parameters(const dvi_scene *scene, problem *made)
+{
+  const dvi_scene_parameter *p;
+  int count = 0;
+  while (dvi_scene_parameter_at(scene, count) != NULL) count++;
+  problem_parameter *list = problem_allocate(made, (size_t)count + 1, sizeof *list);
+  if (list == NULL) return false;
+  made->parameter = list;
+  for (int i = 0; (p = dvi_scene_parameter_at(scene, i)) != NULL; i++)
+    if (p->settable)
+      *list++ = (problem_parameter){
+          .name = p->name, .value = p->value, .least = -HUGE_VAL, .most = HUGE_VAL, .help = "of the scene"};
+  return true;
+}
+
+static bool describe(dvi_scene *scene, problem *made)
+{
+  const dvi_scene_plan *plan = dvi_scene_plan_of(scene);
+  made->scene = scene;
+  made->close = close_scene;
+  made->terms = dvi_scene_terms(scene);
+  made->system = (dvi_system *)dvi_scene_system(scene); /* which is not to be changed, nor does anyone here */
+  if (problem_room_of(made, dvi_system_nq(made->system), dvi_system_nv(made->system), 1) != DVI_OK) return false;
+  if (made->terms->factors != NULL && (made->velocity = problem_names(made, made->nv)) == NULL) return false;
+  label(scene, made);
+  place(scene, made);
+  made->bodies = dvi_scene_bodies(scene);
+  made->summary = plan->title != NULL ? plan->title : "a scene";
+  made->method = plan->method;
+  made->every = plan->every;
+  made->h = plan->h;
+  made->t_end = plan->t_end;
+  made->order_h = plan->h;
+  made->order_t_end = STUDY_STEPS * plan->h < plan->t_end ? STUDY_STEPS * plan->h : plan->t_end;
+  return list_parameters(scene, made);
+}
+
+/* "scenes/cart.yaml" is called cart. */
+static const char *name_of(problem *made, const char *path)
+{
+  const char *slash = strrchr(path, '/'), *start = slash != NULL ? slash + 1 : path;
+  const size_t length = (size_t)(strrchr(start, '.') - start);
+  char *name = problem_allocate(made, length + 1, 1);
+  return name != NULL ? memcpy(name, start, length) : NULL;
+}
+
+static problem *problem_of(dvi_scene *scene, const char *path)
+{
+  problem *made = calloc(1, sizeof *made);
+  if (made == NULL) {
+    dvi_scene_destroy(&scene);
+    return NULL;
+  }
+  if (!describe(scene, made) || (made->name = name_of(made, path)) == NULL) problem_destroy(&made);
+  return made;
+}
+
+int scene_open(const char *path, const words *settings, problem **scene)
+{
+  char message[MESSAGE_SIZE] = "";
+  dvi_scene *read = NULL;
+  *scene = NULL;
+  const dvi_status status = dvi_scene_read(path, settings->count, settings->word, &read, message, sizeof message);
+  if (status != DVI_OK) {
+    complain("%s", message);
+    return status == DVI_NO_MEMORY || status == DVI_IO_ERROR ? FAILED : USAGE;
+  }
+  *scene = problem_of(read, path);
+  if (*scene == NULL) complain("out of memory");
+  return *scene != NULL ? DONE : FAILED;
+}

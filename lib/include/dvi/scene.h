@@ -1,0 +1,120 @@
+/** Scenes: systems that a file describes by expressions. docs/scenes.md has the format.
+ *
+ *  Not part of <dvi/dvi.h>: link dvi::scene (dvi-scene), which needs libyaml beside libdvi. */
+#ifndef DVI_SCENE_H
+#define DVI_SCENE_H
+#include <dvi/system.h>
+#include <stddef.h>
+
+/** A scene: the system, its start, and how it wants to be run. It never changes; its system may be shared by integrators on several threads. */
+typedef struct dvi_scene dvi_scene;
+
+/** A parameter of a scene. */
+typedef struct dvi_scene_parameter {
+  const char *name;
+  double value; /**< as it is set; NaN if it is not one number */
+  int settable; /**< 1: a number that a setting may replace */
+} dvi_scene_parameter;
+
+/** How a scene wants to be run. Strings are NULL and numbers 0 where it does not say. */
+typedef struct dvi_scene_plan {
+  const char *title, *method;
+  double h, t_end;
+  long every;
+  int column_count;
+  const char *const *column; /**< names for tables */
+} dvi_scene_plan;
+
+/** An event of a scene: the sign of an expression changes. */
+typedef struct dvi_scene_event {
+  const char *name;
+  int (*value)(double t, const double *q, const double *v, double *g, void *user); /**< as in dvi_event */
+  void *user;
+  int direction; /**< +1 rising, -1 falling, 0 both */
+  int terminal;
+} dvi_scene_event;
+
+/** Values of a parameter to be swept over. */
+typedef struct dvi_scene_range {
+  const char *name;
+  int count;
+  const double *value; /**< [count] */
+} dvi_scene_range;
+
+/** What was found in a scene, for people and for tests. */
+typedef struct dvi_scene_facts {
+  const char *form; /**< "separable", "general Lagrangian", "one-form", "Hamiltonian with constraints" */
+  const char *mass; /**< "identity", "scalar", "diagonal", "sparse"; NULL without a constant mass */
+  int kernels;      /**< expressions that are summed over elements */
+  long elements;    /**< of all kernels */
+  int nodes;        /**< of all expressions, before derivatives */
+  int value_operations, gradient_operations, hessian_operations; /**< a point; 0: never derived */
+  long hessian_entries;
+  long value_points, gradient_points, hessian_points; /**< evaluated so far */
+  int quadratic_potentials;                           /**< how many potentials have constant Hessians */
+} dvi_scene_facts;
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Read a scene from a file.
+ *
+ *  @param      settings  [setting_count] texts "name=value" that replace parameters
+ *  @param[out] scene     owned by the caller; NULL on failure
+ *  @param[out] message   [size] on failure: file, line, column, what is wrong, the line itself and a caret; may be NULL
+ *  @retval DVI_BAD_FILE    the scene makes no sense
+ *  @retval DVI_BAD_OPTION  a setting does not
+ *  @retval DVI_BAD_SIZE    a limit of docs/scenes.md is passed
+ *  @retval DVI_IO_ERROR    the file cannot be read
+ *  @retval DVI_NO_MEMORY
+ *  @retval (others)        as dvi_system_create */
+dvi_status dvi_scene_read(const char *path, int setting_count, const char *const *settings, dvi_scene **scene, char *message,
+                          size_t size);
+
+/** The same from a text of `length` characters; `name` stands for the path in messages. */
+dvi_status dvi_scene_parse(const char *name, const char *text, size_t length, int setting_count, const char *const *settings,
+                           dvi_scene **scene, char *message, size_t size);
+
+/** Free a scene, its system and all that was asked of it, and set the pointer to NULL; NULL is allowed. */
+void dvi_scene_destroy(dvi_scene **scene);
+
+/** The system, owned by the scene; and the terms that it was made of. */
+const dvi_system *dvi_scene_system(const dvi_scene *scene);
+const dvi_system_terms *dvi_scene_terms(const dvi_scene *scene);
+
+/** The start at t = 0: q [nq], v [nv], p [nv]. */
+void dvi_scene_start(const dvi_scene *scene, const double **q, const double **v, const double **p);
+
+/** Names for columns: of q [nq], v [nv], p [nv]; NULL if i is out of range. */
+const char *dvi_scene_coordinate(const dvi_scene *scene, int i);
+const char *dvi_scene_velocity(const dvi_scene *scene, int i);
+const char *dvi_scene_momentum(const dvi_scene *scene, int i);
+
+/** If the state is bodies of a plane or of space, how many: one family of vectors of 2 or 3; else 0. */
+int dvi_scene_bodies(const dvi_scene *scene);
+
+/** What it says of itself; parameter, event and range i, NULL if i is out of range. Owned by the scene. */
+const dvi_scene_plan *dvi_scene_plan_of(const dvi_scene *scene);
+const dvi_scene_parameter *dvi_scene_parameter_at(const dvi_scene *scene, int i);
+const dvi_scene_event *dvi_scene_event_at(const dvi_scene *scene, int i);
+const dvi_scene_range *dvi_scene_range_at(const dvi_scene *scene, int i);
+
+/** Counts of evaluations so far, and what was derived. */
+void dvi_scene_facts_of(const dvi_scene *scene, dvi_scene_facts *facts);
+
+/** The part of an expression that was not finite when a callback of this scene's system last failed on this thread, with the time; "" if none did. */
+const char *dvi_scene_blame(void);
+
+/** Write a C file that declares the same system by callbacks of the C API: a function `dvi_status NAME_create(dvi_system **system)` and the start.
+ *
+ *  @param name   a C identifier, in front of every external name
+ *  @param write  gets the text, piece by piece; not 0 ends it with DVI_IO_ERROR
+ *  @retval DVI_BAD_ARGUMENT  name is no identifier */
+dvi_status dvi_scene_emit_c(const dvi_scene *scene, const char *name, int (*write)(const char *text, size_t size, void *user),
+                            void *user);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,146 @@
+/* Which part of an expression is not finite: for messages. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "scene/function_parts.h"
+
+/* A node of a kernel at one of its elements. */
+typedef struct culprit {
+  const dvi__kernel *kernel;
+  dvi__node node; /* -1: nobody */
+  double *input;  /* [input_count], to be freed */
+  int of_derivative;
+} culprit;
+
+static void read_inputs(const dvi__kernel *kernel, const dvi__places *place, int e, int count, const double *const *x, int k,
+                        double *value)
+{
+  for (int i = 0; i < kernel->input_count; i++)
+    value[i] = kernel->input[i].is_data ? kernel->input[i].data[e]
+                                        : x[kernel->input[i].block][(ptrdiff_t)dvi__place_at(&place[i], e) * count + k];
+}
+
+/* The first node that is not finite below roots of which one is not; -1: all are. */
+static dvi__node first_below(const dvi__kernel *kernel, const double *input, int root_count, const dvi__node *root)
+{
+  double *value = calloc((size_t)root_count + 1, sizeof *value);
+  dvi__node node = -1;
+  int finite = 1;
+  if (value == NULL || dvi__evaluate(kernel->graph, input, root_count, root, value, &node) != DVI_OK) {
+    free(value);
+    return -1;
+  }
+  for (int r = 0; r < root_count; r++) finite &= isfinite(value[r]) != 0;
+  free(value);
+  return finite ? -1 : node;
+}
+
+/* The derivatives of kernel k that are known, by variables; their number. Freed by the caller; NULL: no memory. */
+static dvi__node *known_derivatives(const dvi__function *function, int k, int *count)
+{
+  const dvi__kernel *kernel = &function->kernel[k];
+  const dvi__derivatives *own = &function->derivatives[k];
+  const int pairs = own->second != NULL ? own->pair_count : 0;
+  dvi__node *root = calloc((size_t)kernel->input_count + (size_t)pairs + 1, sizeof *root);
+  *count = 0;
+  if (root == NULL) return NULL;
+  for (int i = 0; i < kernel->input_count && own->gradient != NULL; i++)
+    if (!kernel->input[i].is_data) root[(*count)++] = own->gradient[i];
+  for (int e = 0; e < pairs; e++)
+    if (own->second[e] >= 0) root[(*count)++] = own->second[e];
+  return root;
+}
+
+/* Look at kernel k, its value or its derivatives, element by element. */
+static void search_kernel(const dvi__function *function, int k, int count, const double *const *x, int point, culprit *found)
+{
+  const dvi__kernel *kernel = &function->kernel[k];
+  int root_count = 1;
+  dvi__node *derivatives = found->of_derivative ? known_derivatives(function, k, &root_count) : NULL;
+  const dvi__node *root = found->of_derivative ? derivatives : &kernel->root;
+  double *input = calloc((size_t)kernel->input_count + 1, sizeof *input);
+  for (int e = 0; e < kernel->elements && found->node < 0 && root != NULL && input != NULL; e++) {
+    read_inputs(kernel, function->derivatives[k].place, e, count, x, point, input);
+    found->node = first_below(kernel, input, root_count, root);
+  }
+  free(derivatives);
+  found->kernel = kernel;
+  if (found->node >= 0)
+    found->input = input;
+  else
+    free(input);
+}
+
+/* --- The words. --- */
+
+enum { PART_SIZE = 64 };
+
+/* A part of the source on one line, cut if it is long; "" if it is nowhere. */
+static void copy_part(const dvi__source *source, dvi__span span, char *text)
+{
+  int length = 0;
+  text[0] = '\0';
+  if (span.first >= source->size || span.size > source->size - span.first) return;
+  for (size_t i = 0; i < span.size && length < PART_SIZE - 4; i++) {
+    const char letter = source->text[span.first + i];
+    const int blank = letter == ' ' || letter == '\n' || letter == '\r' || letter == '\t';
+    if (!blank) text[length++] = letter;
+    if (blank && length > 0 && text[length - 1] != ' ') text[length++] = ' ';
+    if (length == PART_SIZE - 4 && i + 1 < span.size) {
+      memcpy(text + length, "..", 2);
+      length += 2;
+    }
+  }
+  text[length] = '\0';
+}
+
+/* The operand that is to blame: what is divided by, else the first; -1: none. */
+static dvi__node operand_of(const dvi__graph_node *node)
+{
+  if (node->op == DVI__OP_CONSTANT || node->op == DVI__OP_INPUT) return -1;
+  return node->op == DVI__OP_DIVIDE ? node->b : node->a;
+}
+
+static void describe(const culprit *found, const dvi__source *source, char *text, size_t size, dvi__span *span)
+{
+  const dvi__graph *graph = found->kernel->graph;
+  const dvi__graph_node *node = &graph->node[found->node];
+  const dvi__node operand = operand_of(node);
+  char part[PART_SIZE], operand_part[PART_SIZE] = "";
+  double value = 0.0;
+  dvi__node unused = -1;
+  copy_part(source, node->span, part);
+  *span = node->span;
+  if (operand >= 0 && graph->node[operand].span.first + graph->node[operand].span.size != node->span.first + node->span.size)
+    copy_part(source, graph->node[operand].span, operand_part);
+  if (operand < 0) (void)dvi__evaluate(graph, found->input, 1, &found->node, &value, &unused);
+  if (operand >= 0) (void)dvi__evaluate(graph, found->input, 1, &operand, &value, &unused);
+  const char *prefix = found->of_derivative ? "the derivative of " : "";
+  if (operand < 0)
+    (void)snprintf(text, size, "%s%s = %.6g", prefix, part, value);
+  else if (operand_part[0] != '\0')
+    (void)snprintf(text, size, "%s%s, %s = %.6g", prefix, part, operand_part, value);
+  else
+    (void)snprintf(text, size, "%s%s", prefix, part);
+}
+
+void dvi__function_blame(dvi__function *function, const dvi__source *source, int count, const double *const *x, int k, char *text,
+                         size_t size, dvi__span *span)
+{
+  culprit found = {.node = -1};
+  pthread_mutex_lock(&function->lock);
+  for (int pass = 0; pass < 2 && found.node < 0; pass++)
+    for (int i = 0; i < function->kernel_count && found.node < 0; i++) {
+      found.of_derivative = pass;
+      search_kernel(function, i, count, x, k, &found);
+    }
+  *span = DVI__NOWHERE;
+  if (found.node >= 0)
+    describe(&found, source, text, size, span);
+  else
+    (void)snprintf(text, size, "the sum of all terms");
+  pthread_mutex_unlock(&function->lock);
+  free(found.input);
+}

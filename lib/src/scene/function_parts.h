@@ -1,0 +1,148 @@
+/* What a function is made of; shared by function*.c.
+ *
+ * Elements go through programs in tiles: some units of elements times some points are the lanes of a row, the points of an element side by side. Results
+ * are added up unit by unit, in a unit output by output, and in an output by the elements' order, or, where all elements of a unit add to one entry, by
+ * halves: the order is a matter of the elements alone. */
+#ifndef DVI_SCENE_FUNCTION_PARTS_H
+#define DVI_SCENE_FUNCTION_PARTS_H
+#include <pthread.h>
+#include <stdatomic.h>
+
+#include "scene/function.h"
+#include "scene/program.h"
+
+enum {
+  DVI__UNIT = 32,                  /* elements */
+  DVI__IRREGULAR = -2147483647 - 1 /* a stride of numbers that have none */
+};
+
+/* A place for each element: start + stride*e, or start + list[e]. */
+typedef struct dvi__places {
+  const int *list;      /* NULL: none */
+  const int *stride_of; /* [units] with a list: its stride within a unit, or DVI__IRREGULAR */
+  int start, stride;
+} dvi__places;
+
+/* Entries of a result: minor + scale * major. With scale 0 there is no major. */
+typedef struct dvi__entries {
+  dvi__places minor, major;
+  int scale;
+} dvi__entries;
+
+/* Where an output is added: to entries of an array of the result, and, if it stands for both triangles, to their mirror images. */
+typedef struct dvi__target {
+  int array, mirrored;
+  dvi__entries entry, mirror;
+} dvi__target;
+
+/* A kernel's share in a sum. Its program reads a row for each of the variables (inputs of the kernel), then one for each column. */
+typedef struct dvi__part {
+  const dvi__kernel *kernel;
+  dvi__program program;
+  int variable_count, column_count;
+  dvi__block *block;     /* [variable_count] */
+  dvi__places *variable; /* [variable_count] */
+  const double **column; /* [column_count], [elements] each: what depends on no variable */
+  dvi__target *target;   /* [output_count] */
+} dvi__part;
+
+/* A value, a gradient by some blocks, or second derivatives by some pairs. */
+typedef struct dvi__sum {
+  int part_count;
+  dvi__part *part;
+  struct dvi__sum *before; /* made before this one */
+} dvi__sum;
+
+/* A column that was computed, for whatever else needs it. */
+typedef struct dvi__column {
+  dvi__node node;
+  const double *value; /* [elements] */
+  struct dvi__column *before;
+} dvi__column;
+
+/* What is known of a kernel beyond the kernel. */
+typedef struct dvi__derivatives {
+  dvi__places *place;  /* [input_count], of variables */
+  dvi__node *gradient; /* [input_count], or NULL: not derived yet */
+  int pair_count;      /* of inputs; -1: not found yet */
+  int (*pair)[2];
+  dvi__node *second;   /* [pair_count], or -1: not derived yet; or NULL */
+  dvi__column *column; /* the last one */
+} dvi__derivatives;
+
+typedef struct dvi__pair_pattern {
+  int found, full, entries;
+  dvi_pattern pattern;
+} dvi__pair_pattern;
+
+struct dvi__function {
+  int kernel_count, block_size[DVI__BLOCKS];
+  dvi__kernel *kernel;
+  dvi__derivatives *derivatives; /* of each kernel */
+  pthread_mutex_t lock;          /* of all below, and of the kernels' graphs */
+  dvi__arena arena;
+  dvi__sum *last; /* that was made */
+  dvi__pair_pattern pattern[DVI__PAIRS];
+  dvi__function_counters counters; /* of operations and entries */
+  _Atomic(dvi__sum *) value, gradient[1 << DVI__BLOCKS], second[1 << DVI__PAIRS];
+  atomic_long value_points, gradient_points, second_points;
+};
+
+/* A unit's places: start + stride*i for i = 0, 1, .., or start + list[i]. */
+typedef struct dvi__track {
+  const int *list;
+  int start, stride;
+} dvi__track;
+
+static inline dvi__track dvi__track_of(const dvi__places *places, int first)
+{
+  if (places->list == NULL) return (dvi__track){NULL, places->start + places->stride * first, places->stride};
+  const int stride = places->stride_of[first / DVI__UNIT];
+  if (stride == DVI__IRREGULAR) return (dvi__track){places->list + first, places->start, 0};
+  return (dvi__track){NULL, places->start + places->list[first], stride};
+}
+
+/* The place of element e. */
+static inline int dvi__place_at(const dvi__places *places, int e)
+{
+  return places->start + (places->list != NULL ? places->list[e] : places->stride * e);
+}
+
+/* Whether a tile of the part has room for a unit. */
+int dvi__part_fits(const dvi__part *part);
+
+/* The blocks of a pair: of its rows and of its columns. */
+void dvi__pair_blocks(dvi__pair pair, dvi__block *rows, dvi__block *columns);
+/* The pair of two blocks, in either order; DVI__PAIRS: there is none. */
+dvi__pair dvi__pair_of(dvi__block a, dvi__block b);
+
+/* The strides of a list of numbers, unit by unit, from the arena; NULL: no memory. */
+const int *dvi__strides(dvi__arena *arena, int elements, const int *list);
+
+/* Add the sum at `count` points to result[array], [entries * count]. */
+void dvi__sum_add(const dvi__sum *sum, int count, const double *const *x, double *const *result);
+
+/* The following want the lock. */
+
+/* An empty sum with room for a part of each kernel; NULL: no memory. */
+dvi__sum *dvi__sum_new(dvi__function *function);
+/* Add the part of kernel k: root[i] goes to target[i], which is kept. */
+dvi_status dvi__sum_extend(dvi__function *function, dvi__sum *sum, int k, int root_count, const dvi__node *root,
+                           dvi__target *target);
+
+/* Find which second derivatives of kernel k there are; and the pattern of a pair. */
+dvi_status dvi__find_pairs(dvi__function *function, int k);
+dvi_status dvi__find_pattern(dvi__function *function, dvi__pair pair);
+/* The index of an entry that is in the pattern. */
+int dvi__pattern_entry(const dvi_pattern *pattern, int row, int column);
+
+/* Derivatives as nodes: gradient[], and second[] of the pairs in the mask. */
+dvi_status dvi__derive_first(dvi__function *function, int k);
+dvi_status dvi__derive_pairs(dvi__function *function, int k, unsigned pairs);
+
+/* `mask`: of blocks, or of pairs. */
+dvi_status dvi__derive_value(dvi__function *function, unsigned mask, dvi__sum **sum);
+dvi_status dvi__derive_gradient(dvi__function *function, unsigned mask, dvi__sum **sum);
+dvi_status dvi__derive_second(dvi__function *function, unsigned mask, dvi__sum **sum);
+
+#endif

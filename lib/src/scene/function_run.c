@@ -1,0 +1,263 @@
+/* Evaluation: tiles of elements and points are gathered into rows, go through the kernel's program, and are added up. */
+#include <string.h>
+
+#include "scene/function_parts.h"
+#include "scene/lanes.h"
+
+enum {
+  SMALL = 4096,   /* numbers that stay in the nearest cache */
+  MIDDLE = 32768, /* that stay in the next one */
+  LARGE = DVI__ROWS_MAX * DVI__LANES
+};
+
+/* Elements first .. first + elements - 1 at points point .. point + points - 1 of count; so many elements a unit has. */
+typedef struct tile {
+  int first, elements, point, points, count;
+} tile;
+
+/* --- Gather. --- */
+
+DVI__SCENE_INLINE void copy_run(int points, const double *restrict from, double *restrict to)
+{
+  int k = 0;
+  for (; k + DVI__LANES <= points; k += DVI__LANES) memcpy(to + k, from + k, DVI__LANES * sizeof *to);
+  for (; k < points; k++) to[k] = from[k];
+}
+
+/* The numbers of one unit; x is at the tile's first point. */
+DVI__SCENE_LANES static void gather_unit(dvi__track track, int elements, int points, int count, const double *restrict x,
+                                         double *restrict row)
+{
+  const ptrdiff_t step = (ptrdiff_t)track.stride * count;
+  const double *restrict from = x + (ptrdiff_t)track.start * count;
+  if (track.list != NULL && points == 1)
+    for (int e = 0; e < elements; e++) row[e] = from[(ptrdiff_t)track.list[e] * count];
+  else if (track.list != NULL)
+    for (int e = 0; e < elements; e++) copy_run(points, from + (ptrdiff_t)track.list[e] * count, row + (ptrdiff_t)e * points);
+  else if (points == 1)
+    for (int e = 0; e < elements; e++) row[e] = from[e * step];
+  else if (track.stride == 1 && points == count)
+    memcpy(row, from, (size_t)elements * (size_t)points * sizeof *row);
+  else
+    for (int e = 0; e < elements; e++) copy_run(points, from + e * step, row + (ptrdiff_t)e * points);
+}
+
+/* Where the tile's numbers of a variable stand in a row already, or NULL. */
+static const double *standing(const dvi__places *places, const tile *at, const double *x)
+{
+  if (places->list != NULL && at->elements > DVI__UNIT) return NULL;
+  const dvi__track track = dvi__track_of(places, at->first);
+  if (track.list != NULL || (at->elements > 1 && (track.stride != 1 || at->points != at->count))) return NULL;
+  return x + (ptrdiff_t)track.start * at->count;
+}
+
+static void gather_variable(const dvi__places *places, const tile *at, const double *x, double *row)
+{
+  for (int e = 0; e < at->elements; e += DVI__UNIT) {
+    const int left = at->elements - e, elements = left < DVI__UNIT ? left : DVI__UNIT;
+    gather_unit(dvi__track_of(places, at->first + e), elements, at->points, at->count, x, row + (ptrdiff_t)e * at->points);
+  }
+}
+
+static void gather_column(const double *column, const tile *at, double *row)
+{
+  for (int e = 0; e < at->elements; e++)
+    for (int p = 0; p < at->points; p++) row[e * at->points + p] = column[at->first + e];
+}
+
+/* Point input[] at the rows that the program reads. What does not stand ready is put into `rows`. */
+static void gather(const dvi__part *part, const tile *at, const double *const *x, const double **input, double *rows)
+{
+  const int lanes = at->elements * at->points, width = dvi__row_width(lanes), whole = lanes == width;
+  for (int i = 0; i < part->variable_count + part->column_count; i++, rows += width) {
+    const int c = i - part->variable_count;
+    if (c < 0) {
+      const double *from = x[part->block[i]] + at->point;
+      input[i] = whole ? standing(&part->variable[i], at, from) : NULL;
+      if (input[i] != NULL) continue;
+      gather_variable(&part->variable[i], at, from, rows);
+    } else {
+      input[i] = whole && at->points == 1 ? part->column[c] + at->first : NULL;
+      if (input[i] != NULL) continue;
+      gather_column(part->column[c], at, rows);
+    }
+    for (int k = lanes; k < width; k++) rows[k] = rows[lanes - 1];
+    input[i] = rows;
+  }
+}
+
+/* --- Scatter. --- */
+
+DVI__SCENE_INLINE void add_run(int points, const double *restrict row, double *restrict to)
+{
+  int k = 0;
+  for (; k + DVI__LANES <= points; k += DVI__LANES)
+    for (int i = k; i < k + DVI__LANES; i++) to[i] += row[i];
+  for (; k < points; k++) to[k] += row[k];
+}
+
+/* Add all elements' numbers to the first one's, by halves. */
+DVI__SCENE_LANES static void fold(int elements, int points, double *row)
+{
+  for (int left = elements; left > 1; left = (left + 1) / 2) {
+    const int half = (left + 1) / 2, numbers = (left - half) * points;
+    const double *restrict upper = row + (ptrdiff_t)half * points;
+    double *restrict lower = row;
+    for (int k = 0; k < numbers; k++) lower[k] += upper[k];
+  }
+}
+
+DVI__SCENE_LANES static void scatter_unit(dvi__track track, int elements, int points, int count, const double *restrict row,
+                                          double *restrict result)
+{
+  const ptrdiff_t step = (ptrdiff_t)track.stride * count;
+  double *restrict to = result + (ptrdiff_t)track.start * count;
+  if (track.list != NULL && points == 1)
+    for (int e = 0; e < elements; e++) to[(ptrdiff_t)track.list[e] * count] += row[e];
+  else if (track.list != NULL)
+    for (int e = 0; e < elements; e++) add_run(points, row + (ptrdiff_t)e * points, to + (ptrdiff_t)track.list[e] * count);
+  else if (track.stride == 1 && points == count)
+    for (int k = 0; k < elements * points; k++) to[k] += row[k];
+  else if (points == 1)
+    for (int e = 0; e < elements; e++) to[e * step] += row[e];
+  else
+    for (int e = 0; e < elements; e++) add_run(points, row + (ptrdiff_t)e * points, to + e * step);
+}
+
+static int place_in(const dvi__track *track, int e)
+{
+  return track->start + (track->list != NULL ? track->list[e] : track->stride * e);
+}
+
+/* The track of entries minor + scale * major; `list` [DVI__UNIT] is for those that have no stride. */
+static dvi__track entry_track(const dvi__entries *entries, int first, int elements, int *list)
+{
+  const dvi__track minor = dvi__track_of(&entries->minor, first);
+  if (entries->scale == 0) return minor;
+  const dvi__track major = dvi__track_of(&entries->major, first);
+  if (minor.list == NULL && major.list == NULL)
+    return (dvi__track){NULL, minor.start + entries->scale * major.start, minor.stride + entries->scale * major.stride};
+  for (int e = 0; e < elements; e++) list[e] = place_in(&minor, e) + entries->scale * place_in(&major, e);
+  return (dvi__track){list, 0, 0};
+}
+
+/* Add a unit's row to its entries. Returns how many elements are left in the row: 1 if they have been added to each other. */
+static int add_unit(const dvi__entries *entries, int first, int elements, const tile *at, double *row, double *result)
+{
+  int list[DVI__UNIT];
+  const dvi__track track = entry_track(entries, first, elements, list);
+  if (track.list == NULL && track.stride == 0) {
+    fold(elements, at->points, row);
+    elements = 1;
+  }
+  scatter_unit(track, elements, at->points, at->count, row, result);
+  return elements;
+}
+
+static void scatter(const dvi__part *part, const tile *at, double *outputs, double *const *result)
+{
+  const int width = dvi__row_width(at->elements * at->points);
+  for (int e = 0; e < at->elements; e += DVI__UNIT)
+    for (int k = 0; k < part->program.output_count; k++) {
+      const dvi__target *target = &part->target[k];
+      double *row = outputs + (ptrdiff_t)k * width + (ptrdiff_t)e * at->points, *to = result[target->array] + at->point;
+      const int all = at->elements - e < DVI__UNIT ? at->elements - e : DVI__UNIT;
+      const int left = add_unit(&target->entry, at->first + e, all, at, row, to);
+      if (target->mirrored) add_unit(&target->mirror, at->first + e, left, at, row, to);
+    }
+}
+
+/* --- Tiles. --- */
+
+/* The shape of tiles with at most so many lanes. */
+static tile shape_of(const dvi__part *part, int lanes, int count)
+{
+  const int all = part->kernel->elements, unit = all < DVI__UNIT ? all : DVI__UNIT;
+  tile shape = {.elements = unit, .points = lanes / unit, .count = count};
+  if (shape.points >= count) {
+    shape.points = count;
+    if (unit == DVI__UNIT) shape.elements = lanes / (unit * count) * unit;
+    return shape;
+  }
+  const int chunks = (count + shape.points - 1) / shape.points, even = (count + chunks - 1) / chunks;
+  if (shape.points >= DVI__LANES)
+    shape.points = dvi__row_width(even) <= shape.points ? dvi__row_width(even) : shape.points / DVI__LANES * DVI__LANES;
+  else
+    shape.points = even;
+  return shape;
+}
+
+static int rows_of(const dvi__part *part)
+{
+  return part->program.row_count + part->program.input_count;
+}
+
+static void run_tile(const dvi__part *part, const tile *at, const double *const *x, double *const *result, const double **input,
+                     double *memory)
+{
+  const int lanes = at->elements * at->points, width = dvi__row_width(lanes), outputs = part->program.output_count;
+  double *registers = memory + (ptrdiff_t)part->program.input_count * width;
+  gather(part, at, x, input, memory);
+  dvi__program_run(&part->program, lanes, input, registers);
+  scatter(part, at, registers + (ptrdiff_t)(part->program.row_count - outputs) * width, result);
+}
+
+static void run_tiles(const dvi__part *part, const tile *shape, const double *const *x, double *const *result, const double **input,
+                      double *memory)
+{
+  const int all = part->kernel->elements;
+  tile at = *shape;
+  for (at.point = 0; at.point < at.count; at.point += shape->points) {
+    at.points = at.count - at.point < shape->points ? at.count - at.point : shape->points;
+    for (at.first = 0; at.first < all; at.first += at.elements) {
+      at.elements = all - at.first < shape->elements ? all - at.first : shape->elements;
+      run_tile(part, &at, x, result, input, memory);
+    }
+  }
+}
+
+static void run_small(const dvi__part *part, const tile *shape, const double *const *x, double *const *result)
+{
+  _Alignas(64) double memory[SMALL];
+  const double *input[SMALL / DVI__LANES];
+  run_tiles(part, shape, x, result, input, memory);
+}
+
+static void run_large(const dvi__part *part, const tile *shape, const double *const *x, double *const *result)
+{
+  _Alignas(64) double memory[LARGE];
+  const double *input[DVI__ROWS_MAX];
+  run_tiles(part, shape, x, result, input, memory);
+}
+
+/* Lanes of a tile of which so many numbers are wanted at most. */
+static int lanes_for(const dvi__part *part, int numbers)
+{
+  const int lanes = numbers / rows_of(part) / DVI__LANES * DVI__LANES;
+  return lanes < DVI__LANES_MAX ? lanes : DVI__LANES_MAX;
+}
+
+int dvi__part_fits(const dvi__part *part)
+{
+  const int all = part->kernel->elements;
+  return lanes_for(part, LARGE) >= (all < DVI__UNIT ? all : DVI__UNIT);
+}
+
+static void run_part(const dvi__part *part, int count, const double *const *x, double *const *result)
+{
+  const int all = part->kernel->elements, unit = dvi__row_width(all < DVI__UNIT ? all : DVI__UNIT);
+  const int lanes = lanes_for(part, SMALL);
+  if (lanes >= unit) {
+    const tile shape = shape_of(part, lanes, count);
+    run_small(part, &shape, x, result);
+    return;
+  }
+  const int more = lanes_for(part, MIDDLE);
+  const tile shape = shape_of(part, more > unit ? more : unit, count);
+  run_large(part, &shape, x, result);
+}
+
+void dvi__sum_add(const dvi__sum *sum, int count, const double *const *x, double *const *result)
+{
+  for (int k = 0; k < sum->part_count; k++) run_part(&sum->part[k], count, x, result);
+}

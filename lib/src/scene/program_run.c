@@ -1,0 +1,167 @@
+/* Running: one switch, each case a loop over whole blocks of lanes. Functions of the C library are called for the lanes in use alone. */
+#include <float.h>
+#include <math.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "scene/lanes.h"
+#include "scene/program.h"
+#include "scene/program_codes.h"
+
+/* x^(-1/2), right to two ulp, of a block. A square root and a division take longer: the exponent's bits halved and negated are right to 3.5 % (Lomont
+ * 2003), then e = 1 - x y^2 shrinks by the series of (1 - e)^(-1/2). Numbers near the ends of the range, and those that have no root, take the long way. */
+DVI__SCENE_INLINE void inverse_roots(const double *restrict x, double *restrict y)
+{
+  double e[DVI__LANES];
+  int plain = 0;
+  for (int k = 0; k < DVI__LANES; k++) plain += x[k] >= DBL_MIN && x[k] <= 1e300;
+  for (int k = 0; k < DVI__LANES; k++) {
+    uint64_t bits;
+    memcpy(&bits, x + k, sizeof bits);
+    bits = UINT64_C(0x5fe6eb50c7b537a9) - (bits >> 1);
+    memcpy(y + k, &bits, sizeof bits);
+  }
+  for (int k = 0; k < DVI__LANES; k++) e[k] = 1.0 - x[k] * (y[k] * y[k]);
+  for (int k = 0; k < DVI__LANES; k++) y[k] += y[k] * (e[k] * (0.5 + e[k] * (0.375 + e[k] * 0.3125)));
+  for (int k = 0; k < DVI__LANES; k++) e[k] = 1.0 - x[k] * (y[k] * y[k]);
+  for (int k = 0; k < DVI__LANES; k++) y[k] += y[k] * (e[k] * (0.5 + e[k] * 0.375));
+  for (int k = 0; plain < DVI__LANES && k < DVI__LANES; k++)
+    if (!(x[k] >= DBL_MIN && x[k] <= 1e300)) y[k] = 1.0 / sqrt(x[k]);
+}
+
+/* x^n, n = 1, 2, .. or x^-n. */
+DVI__SCENE_INLINE void whole_powers(int width, double exponent, const double *restrict x, double *restrict to)
+{
+  const unsigned power = (unsigned)fabs(exponent);
+  for (int at = 0; at < width; at += DVI__LANES) {
+    double base[DVI__LANES], product[DVI__LANES];
+    for (int k = 0; k < DVI__LANES; k++) base[k] = x[at + k];
+    for (int k = 0; k < DVI__LANES; k++) product[k] = 1.0;
+    for (unsigned left = power; left != 0; left /= 2) {
+      if (left % 2 != 0)
+        for (int k = 0; k < DVI__LANES; k++) product[k] *= base[k];
+      for (int k = 0; k < DVI__LANES; k++) base[k] *= base[k];
+    }
+    for (int k = 0; k < DVI__LANES; k++) to[at + k] = exponent < 0.0 ? 1.0 / product[k] : product[k];
+  }
+}
+
+/* x^(n + 1/2), n = 1, 2, .. */
+DVI__SCENE_INLINE void root_powers(int width, double exponent, const double *restrict x, double *restrict to)
+{
+  const int factors = (int)exponent;
+  for (int at = 0; at < width; at += DVI__LANES) {
+    double product[DVI__LANES];
+    for (int k = 0; k < DVI__LANES; k++) product[k] = sqrt(x[at + k]);
+    for (int i = 0; i < factors; i++)
+      for (int k = 0; k < DVI__LANES; k++) product[k] *= x[at + k];
+    for (int k = 0; k < DVI__LANES; k++) to[at + k] = product[k];
+  }
+}
+
+/* x^-(n + 1/2), n = 0, 1, .. */
+DVI__SCENE_INLINE void inverse_root_powers(int width, double exponent, const double *restrict x, double *restrict to)
+{
+  const int factors = (int)-exponent;
+  for (int at = 0; at < width; at += DVI__LANES) {
+    double root[DVI__LANES], square[DVI__LANES];
+    inverse_roots(x + at, root);
+    for (int k = 0; k < DVI__LANES; k++) square[k] = root[k] * root[k];
+    for (int i = 0; i < factors; i++)
+      for (int k = 0; k < DVI__LANES; k++) root[k] *= square[k];
+    for (int k = 0; k < DVI__LANES; k++) to[at + k] = root[k];
+  }
+}
+
+/* Idle lanes of results of the C library hold what the last lane holds. */
+DVI__SCENE_INLINE void fill_up(int lanes, int width, double *to)
+{
+  for (int k = lanes; k < width; k++) to[k] = to[lanes - 1];
+}
+
+static void sines_and_cosines(int lanes, int width, const double *restrict angle, double *restrict sine, double *restrict cosine)
+{
+  for (int k = 0; k < lanes; k++) {
+    sine[k] = sin(angle[k]);
+    cosine[k] = cos(angle[k]);
+  }
+  fill_up(lanes, width, sine);
+  fill_up(lanes, width, cosine);
+}
+
+/* One case of the switches below: all lanes, in whole blocks, or those in use. */
+#define BLOCKS(code, expression)                                             \
+  case code:                                                                 \
+    for (int first = 0; first < width; first += DVI__LANES)                  \
+      for (int k = first; k < first + DVI__LANES; k++) to[k] = (expression); \
+    break;
+#define CALLS(code, expression)                           \
+  case code:                                              \
+    for (int k = 0; k < lanes; k++) to[k] = (expression); \
+    break;
+
+/* Operations that the C library does. */
+static void call_library(int op, int lanes, int width, const double *restrict a, const double *restrict b, double *restrict to)
+{
+  switch (op) {
+    CALLS(DVI__OP_EXP, exp(a[k]))
+    CALLS(DVI__OP_LOG, log(a[k]))
+    CALLS(DVI__OP_SIN, sin(a[k]))
+    CALLS(DVI__OP_COS, cos(a[k]))
+    CALLS(DVI__OP_TAN, tan(a[k]))
+    CALLS(DVI__OP_ASIN, asin(a[k]))
+    CALLS(DVI__OP_ACOS, acos(a[k]))
+    CALLS(DVI__OP_ATAN, atan(a[k]))
+    CALLS(DVI__OP_SINH, sinh(a[k]))
+    CALLS(DVI__OP_COSH, cosh(a[k]))
+    CALLS(DVI__OP_TANH, tanh(a[k]))
+    CALLS(DVI__OP_ASINH, asinh(a[k]))
+    CALLS(DVI__OP_ACOSH, acosh(a[k]))
+    CALLS(DVI__OP_ATANH, atanh(a[k]))
+    CALLS(DVI__OP_RAISE, pow(a[k], b[k]))
+    CALLS(DVI__OP_ATAN2, atan2(a[k], b[k]))
+    CALLS(DVI__OP_HYPOT, hypot(a[k], b[k]))
+  default: break;
+  }
+  fill_up(lanes, width, to);
+}
+
+DVI__SCENE_LANES void dvi__program_run(const dvi__program *program, int lanes, const double *const *input, double *registers)
+{
+  const int width = dvi__row_width(lanes);
+  const dvi__instruction *const end = program->instruction + program->instruction_count;
+#define ROW(i) ((i) >= 0 ? registers + (ptrdiff_t)(i)*width : input[~(i)])
+  for (const dvi__instruction *at = program->instruction; at < end; at++) {
+    double *restrict const to = registers + (ptrdiff_t)at->to * width;
+    const double *restrict const a = ROW(at->a), *restrict const b = ROW(at->b), *restrict const c = ROW(at->c);
+    const double value = at->value;
+    switch (at->op) {
+      BLOCKS(DVI__CODE_COPY, a[k])
+      BLOCKS(DVI__CODE_FILL, value)
+      BLOCKS(DVI__CODE_ADD_VALUE, a[k] + value)
+      BLOCKS(DVI__CODE_SUBTRACT_FROM, value - a[k])
+      BLOCKS(DVI__CODE_MULTIPLY_BY, a[k] * value)
+      BLOCKS(DVI__CODE_DIVIDE_BY, a[k] / value)
+      BLOCKS(DVI__CODE_DIVIDE_INTO, value / a[k])
+      BLOCKS(DVI__CODE_MULTIPLY_ADD, a[k] * b[k] + c[k])
+      BLOCKS(DVI__CODE_MULTIPLY_LESS, a[k] * b[k] - c[k])
+      BLOCKS(DVI__CODE_LESS_PRODUCT, c[k] - a[k] * b[k])
+      BLOCKS(DVI__OP_ADD, a[k] + b[k])
+      BLOCKS(DVI__OP_SUBTRACT, a[k] - b[k])
+      BLOCKS(DVI__OP_MULTIPLY, a[k] * b[k])
+      BLOCKS(DVI__OP_DIVIDE, a[k] / b[k])
+      BLOCKS(DVI__OP_NEGATE, -a[k])
+      BLOCKS(DVI__OP_SQUARE, a[k] * a[k])
+      BLOCKS(DVI__OP_SQRT, sqrt(a[k]))
+      BLOCKS(DVI__OP_ABS, fabs(a[k]))
+      BLOCKS(DVI__OP_SIGN, a[k] > 0.0 ? 1.0 : a[k] < 0.0 ? -1.0 : a[k])
+    case DVI__CODE_WHOLE_POWER: whole_powers(width, value, a, to); break;
+    case DVI__CODE_ROOT_POWER: root_powers(width, value, a, to); break;
+    case DVI__CODE_INVERSE_ROOT_POWER: inverse_root_powers(width, value, a, to); break;
+    case DVI__CODE_SINE_AND_COSINE: sines_and_cosines(lanes, width, a, to, registers + (ptrdiff_t)at->b * width); break;
+    default: call_library(at->op, lanes, width, a, b, to);
+    }
+  }
+#undef ROW
+}
