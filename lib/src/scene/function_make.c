@@ -243,6 +243,23 @@ static dvi_status find_outputs(const maker *m, dvi__node *root, int *output_coun
   return DVI_OK;
 }
 
+/* Whether the target after this one is always added beside it. */
+static int is_beside(const dvi__target *target)
+{
+  const dvi__places *own = &target[0].entry.minor, *next = &target[1].entry.minor;
+  return target[0].entry.scale == 0 && target[1].entry.scale == 0 && target[0].array == target[1].array &&
+         target[0].negative == target[1].negative && !target[0].mirrored && !target[1].mirrored && own->list == next->list &&
+         own->stride == next->stride && next->start == own->start + 1 && target[1].output == target[0].output + 1;
+}
+
+static void find_groups(const dvi__part *part)
+{
+  for (int k = 0, group; k < part->target_count; k += group) {
+    for (group = 1; group < 3 && k + group < part->target_count && is_beside(&part->target[k + group - 1]);) group++;
+    for (int i = 0; i < group; i++) part->target[k + i].group = group - i;
+  }
+}
+
 dvi_status dvi__sum_extend(dvi__function *function, dvi__sum *sum, int k, int root_count, dvi__node *root, dvi__target *target)
 {
   const dvi__kernel *kernel = &function->kernel[k];
@@ -257,6 +274,7 @@ dvi_status dvi__sum_extend(dvi__function *function, dvi__sum *sum, int k, int ro
   dvi_status status = m.mark != NULL && m.given != NULL ? DVI_OK : DVI_NO_MEMORY;
   int output_count = 0;
   if (status == DVI_OK) status = find_outputs(&m, root, &output_count);
+  if (status == DVI_OK) find_groups(part);
   if (status == DVI_OK) status = make(&m, output_count, root);
   free(m.mark);
   free(m.given);

@@ -32,6 +32,7 @@ typedef struct dvi__entries {
 /* Where an output is added, or subtracted: to entries of an array of the result, and, if it stands for both triangles, to their mirror images. */
 typedef struct dvi__target {
   int output, negative;
+  int group; /* so many targets, from this one on, are added side by side: the coordinates of a point; 1, 2 or 3 */
   int array, mirrored;
   dvi__entries entry, mirror;
 } dvi__target;

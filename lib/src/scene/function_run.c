@@ -114,6 +114,15 @@ DVI__SCENE_INLINE void add_run(int points, double sign, const double *restrict r
   for (; k < points; k++) to[k] += sign * row[k];
 }
 
+/* Eight at a time: the ends of longer loops are foreseen more often. */
+DVI__SCENE_INLINE void add_strided(int elements, double sign, ptrdiff_t step, const double *restrict row, double *restrict to)
+{
+  int e = 0;
+  for (; e + DVI__LANES <= elements; e += DVI__LANES, to += DVI__LANES * step)
+    for (int i = 0; i < DVI__LANES; i++) to[i * step] += sign * row[e + i];
+  for (; e < elements; e++, to += step) *to += sign * row[e];
+}
+
 /* An entry that follows itself in the list, as that of the first body of pairs does, waits in a register. */
 DVI__SCENE_INLINE void add_listed(int elements, double sign, const int *restrict list, ptrdiff_t count, const double *restrict row,
                                   double *to)
@@ -143,7 +152,7 @@ DVI__SCENE_INLINE void add_unit(dvi__track track, int elements, int points, int 
   else if (track.stride == 1 && points == count)
     for (int k = 0; k < elements * points; k++) to[k] += sign * row[k];
   else if (points == 1)
-    for (int e = 0; e < elements; e++) to[e * step] += sign * row[e];
+    add_strided(elements, sign, step, row, to);
   else
     for (int e = 0; e < elements; e++) add_run(points, sign, row + (ptrdiff_t)e * points, to + e * step);
 }
@@ -160,6 +169,17 @@ DVI__SCENE_INLINE void fold(int elements, int points, const double *restrict row
     others = (left - half) * points;
     DVI__SCENE_INDEPENDENT
     for (int k = 0; k < others; k++) lower[k] += upper[k];
+  }
+}
+
+/* A unit of points of two or three coordinates, which stand side by side; rows are `pitch` apart. */
+DVI__SCENE_INLINE void add_points(const int group, double sign, ptrdiff_t pitch, const double *row, double *restrict to)
+{
+  const double *restrict x = row, *restrict y = row + pitch, *restrict z = row + (group - 1) * pitch;
+  for (int e = 0; e < DVI__UNIT; e++) {
+    to[group * e] += sign * x[e];
+    if (group == 3) to[3 * e + 1] += sign * y[e];
+    to[group * e + group - 1] += sign * z[e];
   }
 }
 
@@ -201,18 +221,36 @@ DVI__SCENE_INLINE void scatter_unit(const dvi__entries *entries, int first, int 
     add_unit(track, elements, at->points, at->count, 1.0, row, result);
 }
 
+/* Add a full unit of a group of targets at one point, if they lie so. Returns how many targets that were. */
+DVI__SCENE_INLINE int scatter_points(const dvi__target *target, int first, ptrdiff_t pitch, const double *row, double *result)
+{
+  const dvi__track track = dvi__track_of(&target->entry.minor, first);
+  const int group = target->group;
+  if (group < 2 || track.list != NULL || track.stride != group) return 0;
+  const double sign = target->negative ? -1.0 : 1.0;
+  if (group == 3)
+    add_points(3, sign, pitch, row, result + track.start);
+  else
+    add_points(2, sign, pitch, row, result + track.start);
+  return group;
+}
+
 DVI__SCENE_LANES static void scatter(const dvi__part *part, const tile *at, const double *outputs, double *const *result)
 {
   const int width = dvi__row_width(at->elements * at->points);
-  for (int e = 0; e < at->elements; e += DVI__UNIT)
-    for (int k = 0; k < part->target_count; k++) {
+  for (int e = 0; e < at->elements; e += DVI__UNIT) {
+    const int elements = at->elements - e < DVI__UNIT ? at->elements - e : DVI__UNIT;
+    for (int k = 0, added; k < part->target_count; k += added) {
       const dvi__target *target = &part->target[k];
       const double *row = outputs + (ptrdiff_t)target->output * width + (ptrdiff_t)e * at->points;
       double *to = result[target->array] + at->point;
-      const int elements = at->elements - e < DVI__UNIT ? at->elements - e : DVI__UNIT;
-      for (int side = 0; side <= target->mirrored; side++)
-        scatter_unit(side == 0 ? &target->entry : &target->mirror, at->first + e, elements, at, target->negative, row, to);
+      added = at->count == 1 && elements == DVI__UNIT ? scatter_points(target, at->first + e, width, row, to) : 0;
+      if (added > 0) continue;
+      scatter_unit(&target->entry, at->first + e, elements, at, target->negative, row, to);
+      if (target->mirrored) scatter_unit(&target->mirror, at->first + e, elements, at, target->negative, row, to);
+      added = 1;
     }
+  }
 }
 
 /* --- Tiles. --- */
