@@ -91,10 +91,10 @@ static void sines_and_cosines(int lanes, int width, const double *restrict angle
 }
 
 /* One case of the switches below: all lanes, in whole blocks, or those in use. */
-#define BLOCKS(code, expression)                                             \
-  case code:                                                                 \
-    for (int first = 0; first < width; first += DVI__LANES)                  \
-      for (int k = first; k < first + DVI__LANES; k++) to[k] = (expression); \
+#define BLOCKS(code, expression)                                                                    \
+  case code:                                                                                        \
+    for (int first = 0; first < width; first += DVI__LANES)                                         \
+      DVI__SCENE_INDEPENDENT for (int k = first; k < first + DVI__LANES; k++) to[k] = (expression); \
     break;
 #define CALLS(code, expression)                           \
   case code:                                              \
