@@ -1,0 +1,39 @@
+/* Functions as C: the programs of their kernels written as loops that a compiler sees through, in the order of the byte code's sums, so that digits are the
+ * same. The text is C11 with no word in it but ours. */
+#ifndef DVI_SCENE_EMIT_H
+#define DVI_SCENE_EMIT_H
+#include "scene/function.h"
+
+/* Where text goes. Fill in write and user; the rest starts at zero. Once write returned not 0, or memory ran out, nothing more is written. */
+typedef struct dvi__emitter {
+  int (*write)(const char *text, size_t size, void *user); /* as in dvi_scene_emit_c */
+  void *user;
+  dvi_status failed; /* DVI_IO_ERROR, DVI_NO_MEMORY */
+  int array_count;   /* static arrays so far */
+  struct dvi__emitted_array *array;
+} dvi__emitter;
+
+/* Write as printf does, at most 500 characters; doubles by dvi__emit_number alone: they shall not depend on the locale. */
+void dvi__emit(dvi__emitter *out, const char *format, ...) DVI__SCENE_PRINTF(2, 3);
+void dvi__emit_number(dvi__emitter *out, double value);
+
+/* Static arrays of a file: the number n of `static const int dvi_list_n[]` or `static const double dvi_row_n[]`, written now unless this array (by its address) was
+ * written before. */
+int dvi__emit_ints(dvi__emitter *out, int count, const int *value);
+int dvi__emit_doubles(dvi__emitter *out, int count, const double *value);
+
+/* What the functions below need: headers and small functions. First in a file. */
+void dvi__emit_begin(dvi__emitter *out);
+
+/* Write a function
+ *     static void NAME(int count, const double *const *x, double *const *result)
+ * that does what dvi__function_value does (result[0]), dvi__function_gradient (result[b] for the blocks in the mask), or dvi__function_second (result[pair]);
+ * but what is not finite is not looked for. Its x and the order of blocks and pairs are those of function.h. `name` is an identifier. */
+dvi_status dvi__emit_value(dvi__emitter *out, dvi__function *function, const char *name);
+dvi_status dvi__emit_gradient(dvi__emitter *out, dvi__function *function, unsigned blocks, const char *name);
+dvi_status dvi__emit_second(dvi__emitter *out, dvi__function *function, unsigned pairs, const char *name);
+
+/* Free what the emitter remembers; returns what went wrong, DVI_OK if nothing did. */
+dvi_status dvi__emit_end(dvi__emitter *out);
+
+#endif
