@@ -15,7 +15,7 @@ DVI__SCENE_INLINE int is_plain(double x)
   return (x >= DBL_MIN) & (x <= 1e300);
 }
 
-/* x^-(1/2 + factors) of plain numbers, right to 2 + 2 factors ulp. A square root and a division take longer: the exponent's bits halved and negated are
+/* x^-(1/2 + factors) of plain numbers, right to two roundings for each root in it. A square root and a division take longer: the exponent's bits halved and negated are
  * right to 3.5 % (Lomont 2003), then e = 1 - x y^2 shrinks by the series of (1 - e)^(-1/2). */
 DVI__SCENE_INLINE void inverse_powers(int width, const int factors, const double *restrict x, double *restrict to)
 {
@@ -28,7 +28,7 @@ DVI__SCENE_INLINE void inverse_powers(int width, const int factors, const double
     const double wide = 1.0 - x[k] * (y * y);
     y += y * (wide * (0.5 + wide * (0.375 + wide * 0.3125)));
     const double e = 1.0 - x[k] * (y * y);
-    y += y * (e * (0.5 + e * 0.375));
+    y += y * (e * (0.5 + e * (0.375 + e * 0.3125)));
     const double square = y * y;
     for (int i = 0; i < factors; i++) y *= square;
     to[k] = y;
