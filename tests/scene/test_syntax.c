@@ -261,7 +261,7 @@ END_TEST
 
 START_TEST(chains_may_be_as_long_as_the_file)
 {
-  const dvi__expression *e = repeated(200000, "x+", "*x");
+  const dvi__expression *e = repeated(200000, "x'+", "*x");
   ck_assert_ptr_nonnull(e);
   int terms = 1;
   for (; e->form == DVI__FORM_ADD; e = e->part[0]) terms++;
