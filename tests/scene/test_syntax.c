@@ -192,6 +192,7 @@ END_TEST
 START_TEST(usual_slips_get_a_remedy)
 {
   check_refused("2x", "s.yaml:1:2: an operator is missing here; write 2*x for a product\n  2x\n   ^");
+  check_refused("2e", "s.yaml:1:2: an operator is missing here; write 2*e for a product\n  2e\n   ^");
   check_refused("2(x)", "s.yaml:1:2: an operator is missing here; write 2*(..) for a product\n  2(x)\n   ^");
   check_refused("sin x",
                 "s.yaml:1:5: an operator is missing here; write sin*x for a product, sin(x) for a function\n  sin x\n      ^");
