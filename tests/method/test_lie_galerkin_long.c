@@ -16,7 +16,7 @@ static const struct {
   double h;
 } runs[] = {{PENDULUM_3D, "lie-galerkin:degree=2", 0.05},
             {FREE_BODY, "euler-poincare:degree=2", 0.2},
-            {DIRECTIONS, "sphere-galerkin:degree=1", 0.005}};
+            {DIRECTIONS, "sphere-galerkin:degree=2", 0.005}};
 
 /* Of 1e6 steps the roundings of q and p leave 1e3 ulp, and no trend; the distance is the sum of as many roundings of the group's product: from 1e4 to 1e6
  * steps it grows by sqrt(100), here taken three times. */
