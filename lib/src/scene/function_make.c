@@ -203,7 +203,7 @@ static dvi_status make(maker *m, int root_count, const dvi__node *root)
   if (status != DVI_OK) return status;
   status = dvi__program_make(m->kernel->graph, m->part->variable_count + m->part->column_count, m->given, root_count, root,
                              &m->part->program);
-  return status == DVI_OK && !dvi__part_fits(m->part) ? DVI_BAD_SIZE : status;
+  return status == DVI_OK ? dvi__part_plan(m->part) : status;
 }
 
 dvi__sum *dvi__sum_new(dvi__function *function)

@@ -42,10 +42,11 @@ typedef struct dvi__part {
   const dvi__kernel *kernel;
   dvi__program program;
   int variable_count, column_count, target_count;
-  dvi__block *block;     /* [variable_count] */
-  dvi__places *variable; /* [variable_count] */
-  const double **column; /* [column_count], [elements] each: what depends on no variable */
-  dvi__target *target;   /* [target_count] */
+  int unit, lanes, large; /* elements of a unit; most lanes of a tile; 1: not in the nearest cache */
+  dvi__block *block;      /* [variable_count] */
+  dvi__places *variable;  /* [variable_count] */
+  const double **column;  /* [column_count], [elements] each: what depends on no variable */
+  dvi__target *target;    /* [target_count] */
 } dvi__part;
 
 /* A value, a gradient by some blocks, or second derivatives by some pairs. */
@@ -110,8 +111,8 @@ static inline int dvi__place_at(const dvi__places *places, int e)
   return places->start + (places->list != NULL ? places->list[e] : places->stride * e);
 }
 
-/* Whether a tile of the part has room for a unit. */
-int dvi__part_fits(const dvi__part *part);
+/* Choose the size of a part's tiles; DVI_BAD_SIZE: its rows leave no room for a unit. */
+dvi_status dvi__part_plan(dvi__part *part);
 
 /* The blocks of a pair: of its rows and of its columns. */
 void dvi__pair_blocks(dvi__pair pair, dvi__block *rows, dvi__block *columns);
