@@ -1,3 +1,4 @@
+/* labels: unit slow */
 /* Functions as C against their byte code: the text is compiled by the compiler of the build, with a main function that prints all results, which must be the same
  * numbers to the last bit. */
 #include <check.h>
@@ -10,7 +11,7 @@
 #include "support/files.h"
 #include "support/suite.h"
 
-enum { INPUTS_MAX = 8, ELEMENTS_MAX = 100, N = 120, POINTS_MAX = 13, RESULTS_MAX = 40000 };
+enum { INPUTS_MAX = 8, ELEMENTS_MAX = 100, N = 120, POINTS_MAX = 13, RESULTS_MAX = 80000 };
 
 static int list[3][ELEMENTS_MAX];
 static double row[2][ELEMENTS_MAX];
@@ -84,8 +85,14 @@ static void teardown(void)
 static const unsigned BLOCKS = 1U << DVI__COORDINATES | 1U << DVI__VELOCITIES;
 static const unsigned PAIRS = 1U << DVI__PAIR_QQ | 1U << DVI__PAIR_QV | 1U << DVI__PAIR_VV;
 
+enum { KINDS = 3 }; /* value, gradient, second derivatives */
+
+/* So many points at a time: one alone, some that are no whole row, a row and more. */
+static const int counts[] = {1, 6, 13};
+enum { COUNTS = sizeof counts / sizeof *counts };
+
 typedef struct results {
-  int count, size[3][DVI__PAIRS]; /* of value, gradient and second derivatives: entries of each array, 0 if it is not asked for */
+  int count, size[KINDS][DVI__PAIRS]; /* entries of each array; 0: it is not asked for */
   double number[RESULTS_MAX];
 } results;
 
@@ -103,7 +110,7 @@ static void find_sizes(dvi__function *function, results *all)
   }
 }
 
-/* Room for the next results of `kind`, which are taken. */
+/* Point array[] at room for the next results of `kind`. */
 static void take_arrays(results *all, int kind, int count, double **array)
 {
   for (int a = 0; a < DVI__PAIRS; a++) {
@@ -113,65 +120,68 @@ static void take_arrays(results *all, int kind, int count, double **array)
   }
 }
 
-static void evaluate(dvi__function *function, int count, const double *const *x, results *all)
+static void evaluate(dvi__function *function, const double *const *x, results *all)
 {
   double *array[DVI__PAIRS];
   find_sizes(function, all);
-  take_arrays(all, 0, count, array);
-  ck_assert_int_eq(dvi__function_value(function, count, x, array[0]), 0);
-  take_arrays(all, 1, count, array);
-  ck_assert_int_eq(dvi__function_gradient(function, count, x, array), 0);
-  take_arrays(all, 2, count, array);
-  ck_assert_int_eq(dvi__function_second(function, count, x, array), 0);
+  for (int i = 0; i < COUNTS; i++) {
+    take_arrays(all, 0, counts[i], array);
+    ck_assert_int_eq(dvi__function_value(function, counts[i], x, array[0]), 0);
+    take_arrays(all, 1, counts[i], array);
+    ck_assert_int_eq(dvi__function_gradient(function, counts[i], x, array), 0);
+    take_arrays(all, 2, counts[i], array);
+    ck_assert_int_eq(dvi__function_second(function, counts[i], x, array), 0);
+  }
 }
 
 /* --- The program. --- */
+
+static const char *const names[KINDS] = {"value", "gradient", "second"};
 
 static int write_text(const char *text, size_t size, void *user)
 {
   return fwrite(text, 1, size, user) != size;
 }
 
-static void emit_call(dvi__emitter *out, const results *all, int kind, int count, const char *name)
+static void emit_call(dvi__emitter *out, const results *all, int kind, int count)
 {
   dvi__emit(out, "  {\n    double *result[%d] = {0};\n", DVI__PAIRS);
   for (int a = 0; a < DVI__PAIRS; a++)
     if (all->size[kind][a] > 0) dvi__emit(out, "    result[%d] = at, at += %d;\n", a, all->size[kind][a] * count);
-  dvi__emit(out, "    %s(%d, x, result);\n  }\n", name, count);
+  dvi__emit(out, "    %s(%d, x, result);\n  }\n", names[kind], count);
 }
 
-static void emit_main(dvi__emitter *out, const results *all, int count, const double *const *x)
+static void emit_main(dvi__emitter *out, const results *all, const double *const *x)
 {
-  const int coordinates = dvi__emit_doubles(out, N * count, x[1]), velocities = dvi__emit_doubles(out, N * count, x[2]);
+  const int coordinates = dvi__emit_doubles(out, N * POINTS_MAX, x[1]), velocities = dvi__emit_doubles(out, N * POINTS_MAX, x[2]);
   dvi__emit(out, "#include <stdio.h>\nint main(void)\n{\n  static double number[%d];\n  double *at = number;\n", all->count + 1);
   dvi__emit(out, "  const double *const x[] = {0, dvi_row_%d, dvi_row_%d, 0};\n", coordinates, velocities);
-  emit_call(out, all, 0, count, "value");
-  emit_call(out, all, 1, count, "gradient");
-  emit_call(out, all, 2, count, "second");
+  for (int i = 0; i < COUNTS; i++)
+    for (int kind = 0; kind < KINDS; kind++) emit_call(out, all, kind, counts[i]);
   dvi__emit(out, "  for (const double *y = number; y < at; y++) printf(\"%%a\\n\", *y);\n  return 0;\n}\n");
 }
 
-static void write_program(dvi__function *function, const results *all, int count, const double *const *x)
+static void write_program(dvi__function *function, const results *all, const double *const *x)
 {
   FILE *file = fopen(in_folder("emitted.c"), "w");
   ck_assert_ptr_nonnull(file);
   dvi__emitter out = {.write = write_text, .user = file};
   dvi__emit_begin(&out);
-  ck_assert_int_eq(dvi__emit_value(&out, function, "value"), DVI_OK);
-  ck_assert_int_eq(dvi__emit_gradient(&out, function, BLOCKS, "gradient"), DVI_OK);
-  ck_assert_int_eq(dvi__emit_second(&out, function, PAIRS, "second"), DVI_OK);
-  emit_main(&out, all, count, x);
+  ck_assert_int_eq(dvi__emit_value(&out, function, names[0]), DVI_OK);
+  ck_assert_int_eq(dvi__emit_gradient(&out, function, BLOCKS, names[1]), DVI_OK);
+  ck_assert_int_eq(dvi__emit_second(&out, function, PAIRS, names[2]), DVI_OK);
+  emit_main(&out, all, x);
   ck_assert_int_eq(dvi__emit_end(&out), DVI_OK);
   ck_assert_int_eq(fclose(file), 0);
 }
 
-/* Run the program and compare. */
+/* Compile and run the program and compare. */
 static void check_output(const results *all)
 {
   char command[1000];
-  (void)snprintf(command, sizeof command, "%s -std=c11 -O2 -Wall -Wextra -Werror -Wno-unknown-pragmas %s -o %s -lm && %s >%s",
+  (void)snprintf(command, sizeof command, "%s -std=c11 -O2 -Wall -Wextra -Wno-unknown-pragmas -Werror %s -o %s -lm && %s >%s",
                  DVI_C_COMPILER, in_folder("emitted.c"), in_folder("emitted"), in_folder("emitted"), in_folder("numbers"));
-  ck_assert_int_eq(system(command), 0); // NOLINT(cert-env33-c): the compiler of the build
+  ck_assert_int_eq(system(command), 0); /* NOLINT(cert-env33-c): the compiler of the build */
   FILE *file = fopen(in_folder("numbers"), "r");
   ck_assert_ptr_nonnull(file);
   char line[80];
@@ -182,25 +192,19 @@ static void check_output(const results *all)
   (void)fclose(file);
 }
 
-/* All three, at so many points around `scale`. */
-static void check_emitted(dvi__function *function, int count, double scale)
+/* At points of this scale; the function is destroyed. */
+static void check_emitted(dvi__function *function, double scale)
 {
   static double q[N * POINTS_MAX], v[N * POINTS_MAX];
   static results all;
-  for (int i = 0; i < N * count; i++) {
+  for (int i = 0; i < N * POINTS_MAX; i++) {
     q[i] = scale * (0.5 + sin(0.7 * i));
     v[i] = cos(0.3 * i);
   }
   const double *const x[DVI__BLOCKS] = {NULL, q, v, NULL};
-  evaluate(function, count, x, &all);
-  write_program(function, &all, count, x);
+  evaluate(function, x, &all);
+  write_program(function, &all, x);
   check_output(&all);
-}
-
-static void check_at_few_and_many_points(dvi__function *function, double scale)
-{
-  static const int counts[] = {1, 6, 13};
-  for (int i = 0; i < 3; i++) check_emitted(function, counts[i], scale);
   dvi__function_destroy(&function);
 }
 
@@ -223,7 +227,7 @@ START_TEST(straight_lines_have_the_digits_of_the_byte_code)
   input[1][1] = along(DVI__VELOCITIES, 9, 0);
   make_kernel(1, apply(1, DVI__OP_MULTIPLY, dvi__power(&graph[1], variable(1, 0), 2), apply(1, DVI__OP_EXP, variable(1, 1), 0)), 1,
               2);
-  check_at_few_and_many_points(make_function(2), 1);
+  check_emitted(make_function(2), 1);
 }
 END_TEST
 
@@ -246,26 +250,22 @@ static dvi__function *attraction(int count)
 /* 6 pairs are written out, 45 go by lists. */
 START_TEST(pairs_have_the_digits_of_the_byte_code)
 {
-  check_at_few_and_many_points(attraction(4), 1);
+  check_emitted(attraction(4), 1);
   memset(graph, 0, sizeof graph);
-  check_at_few_and_many_points(attraction(10), 1);
+  check_emitted(attraction(10), 1);
 }
 END_TEST
 
 /* Squares of such distances have fewer digits, or are beyond what the quick root takes. */
 START_TEST(numbers_at_the_ends_of_the_range_are_taken_with_care)
 {
-  dvi__function *function = attraction(4);
-  check_emitted(function, 6, 1e153);
-  dvi__function_destroy(&function);
+  check_emitted(attraction(4), 1e153);
   memset(graph, 0, sizeof graph);
   input[0][0] = along(DVI__COORDINATES, 0, 1);
   make_kernel(0, dvi__power(&graph[0], apply(0, DVI__OP_ABS, variable(0, 0), 0), -0.5), 40, 1);
   input[1][0] = along(DVI__COORDINATES, 0, 0);
   make_kernel(1, variable(1, 0), 1, 1);
-  function = make_function(2);
-  check_emitted(function, 5, 1e-100);
-  dvi__function_destroy(&function);
+  check_emitted(make_function(2), 1e-100);
 }
 END_TEST
 
@@ -277,7 +277,7 @@ START_TEST(chains_have_the_digits_of_the_byte_code)
   for (int i = 0; i < 4; i++) input[1][i] = along(i < 2 ? DVI__COORDINATES : DVI__VELOCITIES, i % 2, 2);
   const dvi__node work = apply(1, DVI__OP_MULTIPLY, difference(1, 2, 3), dvi__power(&graph[1], difference(1, 0, 1), 2));
   make_kernel(1, work, 50, 4);
-  check_at_few_and_many_points(make_function(2), 1);
+  check_emitted(make_function(2), 1);
 }
 END_TEST
 
@@ -293,7 +293,7 @@ START_TEST(sums_into_one_entry_have_the_digits_of_the_byte_code)
   input[1][0] = from(list[2], 0);
   input[1][1] = along(DVI__VELOCITIES, 0, 1);
   make_kernel(1, apply(1, DVI__OP_MULTIPLY, dvi__power(&graph[1], variable(1, 0), 3), variable(1, 1)), 100, 2);
-  check_at_few_and_many_points(make_function(2), 1);
+  check_emitted(make_function(2), 1);
 }
 END_TEST
 

@@ -27,6 +27,18 @@ static int find_folds(const dvi__entries *entries, int elements, int *flag)
   return folds == 0 ? NEVER : folds == units ? ALWAYS : SOMETIMES;
 }
 
+/* Whether all elements are one unit, of which every entry's sum is written out. */
+static int is_short(const dvi__part *part)
+{
+  const int elements = part->kernel->elements;
+  int few = elements <= DVI__UNIT && elements * part->target_count <= TERMS_MAX;
+  for (int k = 0; k < part->target_count && elements > 1; k++) {
+    const dvi__target *target = &part->target[k];
+    few = few && !is_one_entry(&target->entry, 0) && !(target->mirrored && is_one_entry(&target->mirror, 0));
+  }
+  return few;
+}
+
 /* How a row is added to entries; the array of flags that this wants is written if it is not there yet. NO_MEMORY: there is none. */
 static int declare_fold(dvi__emitter *out, const dvi__entries *entries, int elements, int *list)
 {
@@ -59,7 +71,7 @@ static dvi_status declare_arrays(dvi__emitter *out, const dvi__part *part)
   dvi_status status = DVI_OK;
   for (int i = 0; i < part->variable_count; i++) declare_places(out, &part->variable[i], elements);
   for (int c = 0; c < part->column_count; c++) (void)dvi__emit_doubles(out, elements, part->column[c]);
-  for (int k = 0; k < part->target_count && status == DVI_OK; k++) {
+  for (int k = 0; k < part->target_count && status == DVI_OK && !is_short(part); k++) {
     status = declare_entries(out, &part->target[k].entry, elements);
     if (status == DVI_OK && part->target[k].mirrored) status = declare_entries(out, &part->target[k].mirror, elements);
   }
@@ -138,19 +150,7 @@ static dvi_status emit_additions(dvi__emitter *out, const dvi__part *part)
   return status;
 }
 
-/* --- Few elements: one unit, of which every entry's sum is written out. --- */
-
-static int is_short(const dvi__part *part)
-{
-  const int elements = part->kernel->elements;
-  int few = elements <= DVI__UNIT && elements * part->target_count <= TERMS_MAX;
-  for (int k = 0; k < part->target_count && elements > 1; k++) {
-    const dvi__target *target = &part->target[k];
-    few = few && !is_one_entry(&target->entry, 0) && !(target->mirrored && is_one_entry(&target->mirror, 0));
-  }
-  return few;
-}
-
+/* All entries of a short part, each with the sum of what is added to it. */
 static dvi_status emit_entries(dvi__emitter *out, const dvi__part *part)
 {
   dvi__contributions all;
