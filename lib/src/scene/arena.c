@@ -51,6 +51,15 @@ char *dvi__arena_text(dvi__arena *arena, const char *text, size_t length)
   return copy;
 }
 
+void *dvi__arena_grow(dvi__arena *arena, void *items, size_t count, size_t size)
+{
+  const int full = (count & (count - 1)) == 0; /* the room is the least power of two that is not below the count */
+  if (!full) return items;
+  void *more = dvi__arena_take(arena, count == 0 ? 1 : 2 * count, size);
+  if (more != NULL && count > 0) memcpy(more, items, count * size);
+  return more;
+}
+
 void dvi__arena_free(dvi__arena *arena)
 {
   while (arena->last != NULL) {

@@ -152,12 +152,16 @@ static const char *const beginning[] = {
     "  *unusual |= (x >= DBL_MIN ? 0 : 1) | (x <= 1e300 ? 0 : 1);\n"
     "  return y;\n"
     "}\n\n",
-    "/* Add all elements' numbers to the first one's, by halves. */\n"
-    "DVI_INLINE void dvi_fold(int elements, const int points, double *y)\n"
+    "/* The sum of all elements' numbers, by halves. */\n"
+    "DVI_INLINE void dvi_fold(int elements, const int points, const double *row, double *sum)\n"
     "{\n"
-    "  for (int left = elements; left > 1; left = (left + 1) / 2) {\n"
-    "    const int half = (left + 1) / 2, numbers = (left - half) * points;\n"
-    "    for (int k = 0; k < numbers; k++) y[k] += y[half * points + k];\n"
+    "  int left = (elements + 1) / 2, others = (elements - left) * points;\n"
+    "  for (int k = 0; k < left * points; k++) sum[k] = k < others ? row[k] + row[left * points + k] : row[k];\n"
+    "  for (; left > 1; left = (left + 1) / 2) {\n"
+    "    const int half = (left + 1) / 2;\n"
+    "    others = (left - half) * points;\n"
+    "    DVI_INDEPENDENT\n"
+    "    for (int k = 0; k < others; k++) sum[k] += sum[half * points + k];\n"
     "  }\n"
     "}\n\n"};
 

@@ -17,8 +17,9 @@ typedef struct dvi__tree {
   struct dvi__tree *const *child; /* [count] */
 } dvi__tree;
 
-/* Read the one document. Refused: anchors, aliases, tags, directives, more documents, keys that are no scalars, duplicate keys, no UTF-8, NUL,
- * quoted scalars in which an escape makes value and source differ, more than 64 levels or 1 MiB. */
+/* Read the one document. A list [x, y] may be a key: it is a plain scalar then, with its text as it stands in the source. Refused: anchors, aliases, tags, directives, more
+ * documents, other keys that are no scalars, duplicate keys, no UTF-8, NUL, quoted scalars in which an escape makes value and source differ, more than 64 levels or
+ * 1 MiB. */
 bool dvi__tree_read(const dvi__source *source, dvi__arena *arena, dvi__complaint *complaint, const dvi__tree **root);
 
 /* The child of a key, or NULL. */

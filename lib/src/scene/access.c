@@ -1,0 +1,230 @@
+/* Names, and the elements of what they stand for. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "scene/elaborate.h"
+
+/* ---- names ---- */
+
+static dvi__value index_number(dvi__context *c, const dvi__index *index)
+{
+  if (index->each == NULL) return dvi__number_value(dvi__constant(c->graph, index->all));
+  double *row = malloc((size_t)c->elements * sizeof *row);
+  if (row == NULL) return dvi__refused(dvi__scene_no_memory(c->scene));
+  for (int e = 0; e < c->elements; e++) row[e] = index->each[e];
+  const dvi__value value = dvi__number_value(dvi__data_node(c, row));
+  free(row);
+  return value;
+}
+
+static dvi__value parameter_value(dvi__context *c, const dvi__parameter *p)
+{
+  dvi__value value = dvi__value_make(c, p->shape.rank, p->shape.rows, p->shape.columns);
+  if (dvi__failed(value)) return value;
+  if (p->shape.rank == 0) return dvi__number_value(dvi__constant(c->graph, p->value[0]));
+  for (int i = 0; i < dvi__value_size(value); i++) value.node[i] = dvi__constant(c->graph, p->value[i]);
+  return value;
+}
+
+/* The numbers of a coordinate, or of a member of a family. */
+static dvi__value coordinate_value(dvi__context *c, const dvi__coordinate *x, dvi__numbering numbering)
+{
+  dvi__value value = dvi__value_make(c, x->shape.rank, x->shape.rows, x->shape.columns);
+  if (dvi__failed(value)) return value;
+  if (x->shape.rank == 0) return dvi__number_value(dvi__variable_node(c, DVI__COORDINATES, numbering, 0));
+  for (int i = 0; i < dvi__value_size(value); i++) value.node[i] = dvi__variable_node(c, DVI__COORDINATES, numbering, i);
+  return value;
+}
+
+/* A definition is elaborated once in a context, without the indices around its use. */
+static dvi__value definition_value(dvi__context *c, int number)
+{
+  if (c->definition[number].shape.rank >= 0) return c->definition[number];
+  const int bound = c->index_count;
+  c->index_count = 0;
+  const dvi__value value = dvi__elaborate(c, c->scene->definition[number].is);
+  c->index_count = bound;
+  if (!dvi__failed(value)) c->definition[number] = value;
+  return value;
+}
+
+dvi__value dvi__name_value(dvi__context *c, const dvi__expression *e)
+{
+  const dvi__index *index = dvi__index_find(c, e->name);
+  if (index != NULL) return index_number(c, index);
+  if (strcmp(e->name, "pi") == 0) return dvi__number_value(dvi__constant(c->graph, 3.14159265358979323846));
+  if (strcmp(e->name, "t") == 0) {
+    if (!dvi__may_stand(c, DVI__SAYS_T, e->span)) return DVI__NO_VALUE;
+    return dvi__number_value(dvi__variable_node(c, DVI__TIME, (dvi__numbering){0}, 0));
+  }
+  const dvi__name *name = dvi__names_find(&c->scene->names, e->name);
+  if (name == NULL)
+    return dvi__refused(dvi__names_unknown(&c->scene->names, &c->scene->arena, c->scene->complaint, e->name, e->span));
+  if (name->sort == DVI__PARAMETER) return parameter_value(c, &c->scene->parameter[name->number]);
+  if (name->sort == DVI__DEFINITION) return definition_value(c, name->number);
+  const dvi__coordinate *x = &c->scene->coordinate[name->number];
+  if (!dvi__may_stand(c, DVI__SAYS_Q, e->span)) return DVI__NO_VALUE;
+  if (x->family)
+    return dvi__refused(dvi__refuse(c, e->span, "%s is a family of %d; take one of it, as %s[1]", x->name, x->size, x->name));
+  return coordinate_value(c, x, (dvi__numbering){.base = x->first});
+}
+
+/* ---- indices ---- */
+
+/* The values of the indices around an element, as ", where i = 3, j = 4". */
+static const char *circumstances(const dvi__context *c, int element_number, char *text, size_t size)
+{
+  size_t used = 0;
+  text[0] = '\0';
+  for (int i = 0; i < c->index_count && used < size; i++) {
+    const dvi__index *index = &c->index[i];
+    used += (size_t)snprintf(text + used, size - used, "%s%s = %d", i == 0 ? ", where " : ", ", index->name,
+                             index->each != NULL ? index->each[element_number] : index->all);
+  }
+  return text;
+}
+
+/* An index for every element, between 1 and `count`. */
+static bool index_of(const dvi__context *c, const dvi__expression *e, int count, int **each, int *all)
+{
+  char text[120];
+  const dvi__index *index = e->form == DVI__FORM_NAME ? dvi__index_find(c, e->name) : NULL;
+  *each = NULL;
+  if (index != NULL && index->each != NULL) {
+    *each = malloc((size_t)c->elements * sizeof **each);
+    if (*each == NULL) return dvi__scene_no_memory(c->scene);
+    memcpy(*each, index->each, (size_t)c->elements * sizeof **each);
+  } else if (index != NULL)
+    *all = index->all;
+  else if (!dvi__whole_numbers_of(c, e, "an index", each, all))
+    return false;
+  for (int k = 0; k < c->elements; k++) {
+    const int i = *each != NULL ? (*each)[k] : *all;
+    if (i >= 1 && i <= count) continue;
+    free(*each);
+    *each = NULL;
+    return dvi__refuse(c, e->span, "the index %d is not between 1 and %d%s", i, count, circumstances(c, k, text, sizeof text));
+  }
+  return true;
+}
+
+/* One element of a list for every element: value[position]. */
+static dvi__node listed(dvi__context *c, const double *value, const int *position, int all, int shift)
+{
+  if (position == NULL) return dvi__constant(c->graph, value[all + shift]);
+  double *row = malloc((size_t)c->elements * sizeof *row);
+  if (row == NULL) {
+    (void)dvi__scene_no_memory(c->scene);
+    return dvi__constant(c->graph, 0);
+  }
+  for (int e = 0; e < c->elements; e++) row[e] = value[position[e] + shift];
+  const dvi__node node = dvi__data_node(c, row);
+  free(row);
+  return node;
+}
+
+/* position <- position * stride + (index - 1), for a next index. */
+static bool advance(const dvi__context *c, int **position, int *all, int stride, int *each, int index)
+{
+  if (*position == NULL && each == NULL) {
+    *all = *all * stride + index - 1;
+    return true;
+  }
+  if (each == NULL || *position == NULL) {
+    int *list = malloc((size_t)c->elements * sizeof *list);
+    if (list == NULL) return dvi__scene_no_memory(c->scene);
+    for (int e = 0; e < c->elements; e++) list[e] = each == NULL ? index : *all;
+    if (each == NULL)
+      each = list;
+    else
+      *position = list;
+    for (int e = 0; e < c->elements; e++) (*position)[e] = (*position)[e] * stride + each[e] - 1;
+    if (each == list) free(list);
+    return true;
+  }
+  for (int e = 0; e < c->elements; e++) (*position)[e] = (*position)[e] * stride + each[e] - 1;
+  return true;
+}
+
+/* What is left of a list after indices that are the same or not for all elements. */
+static dvi__value parameter_element(dvi__context *c, const dvi__parameter *p, int count, const dvi__expression *const *index,
+                                    dvi__span span)
+{
+  int *position = NULL, all = 0;
+  if (count > p->shape.rank)
+    return dvi__refused(
+        dvi__refuse(c, span, "%s has %d ind%s, not %d", p->name, p->shape.rank, p->shape.rank == 1 ? "ex" : "ices", count));
+  bool good = true;
+  for (int k = 0; k < count && good; k++) {
+    int *each = NULL, same = 0;
+    const int size = k == 0 ? p->shape.rows : p->shape.columns;
+    good = index_of(c, index[k], size, &each, &same) && advance(c, &position, &all, size, each, same);
+    free(each);
+  }
+  const int rest = p->shape.rank - count, size = rest == 0 ? 1 : p->shape.columns;
+  dvi__value value = good ? dvi__value_make(c, rest, size, 1) : DVI__NO_VALUE;
+  if (position != NULL)
+    for (int e = 0; e < c->elements; e++) position[e] *= size;
+  if (good && rest == 0) value.one = listed(c, p->value, position, all, 0);
+  for (int k = 0; good && rest > 0 && k < size && !dvi__failed(value); k++)
+    value.node[k] = listed(c, p->value, position, all * size, k);
+  free(position);
+  return value;
+}
+
+static dvi__value family_member(dvi__context *c, const dvi__coordinate *x, const dvi__expression *index)
+{
+  int *each = NULL, all = 0;
+  dvi__numbering numbering;
+  if (!dvi__may_stand(c, DVI__SAYS_Q, index->span) || !index_of(c, index, x->size, &each, &all)) return DVI__NO_VALUE;
+  const bool made = dvi__numbering_of(c, each, all, x->first - x->components, x->components, &numbering);
+  free(each);
+  return made ? coordinate_value(c, x, numbering) : DVI__NO_VALUE;
+}
+
+/* Elements of a value; the indices must be the same for all elements. */
+static dvi__value part_of_value(dvi__context *c, dvi__value value, int count, const dvi__expression *const *index, dvi__span span)
+{
+  char shape[48];
+  for (int k = 0; k < count && !dvi__failed(value); k++) {
+    int *each = NULL, i = 0;
+    if (value.shape.rank == 0)
+      return dvi__refused(dvi__refuse(c, span, "%s has no elements", dvi__shape_text(value.shape, shape, sizeof shape)));
+    if (!index_of(c, index[k], value.shape.rows, &each, &i)) return DVI__NO_VALUE;
+    if (each != NULL) {
+      free(each);
+      c->uneven = 1;
+      return DVI__NO_VALUE;
+    }
+    if (value.shape.rank == 1)
+      value = dvi__number_value(value.node[i - 1]);
+    else
+      value = (dvi__value){.shape = {1, value.shape.columns, 1}, .node = value.node + (i - 1) * value.shape.columns};
+  }
+  return value;
+}
+
+enum { INDICES_OF_ONE = 3 };
+
+dvi__value dvi__index_value(dvi__context *c, const dvi__expression *e)
+{
+  const dvi__expression *index[INDICES_OF_ONE], *base = e;
+  int count = 0;
+  for (; base->form == DVI__FORM_INDEX; base = base->part[0]) {
+    if (count + base->count - 1 > INDICES_OF_ONE)
+      return dvi__refused(dvi__refuse(c, e->span, "more than %d indices", INDICES_OF_ONE));
+    memmove(index + base->count - 1, index, (size_t)count * sizeof *index);
+    for (int k = 1; k < base->count; k++) index[k - 1] = base->part[k];
+    count += base->count - 1;
+  }
+  const dvi__name *name = base->form == DVI__FORM_NAME ? dvi__names_find(&c->scene->names, base->name) : NULL;
+  if (name != NULL && name->sort == DVI__PARAMETER)
+    return parameter_element(c, &c->scene->parameter[name->number], count, index, e->span);
+  if (name != NULL && name->sort == DVI__COORDINATE && c->scene->coordinate[name->number].family) {
+    const dvi__value member = family_member(c, &c->scene->coordinate[name->number], index[0]);
+    return dvi__failed(member) ? member : part_of_value(c, member, count - 1, index + 1, e->span);
+  }
+  const dvi__value value = dvi__elaborate(c, base);
+  return dvi__failed(value) ? value : part_of_value(c, value, count, index, e->span);
+}

@@ -1,0 +1,206 @@
+/* Parameters, coordinates and definitions. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "scene/sections.h"
+#include "scene/shape.h"
+
+enum { COORDINATES_MAX = 100000000 };
+
+/* ---- parameters ---- */
+
+static int setting_of(dvi_scene *scene, const char *name, const dvi__settings *settings)
+{
+  const size_t length = strlen(name);
+  int found = -1;
+  for (int i = 0; i < settings->count; i++) {
+    const char *text = settings->text[i];
+    if (strncmp(text, name, length) != 0 || text[length] != '=') continue;
+    if (found >= 0) (void)dvi__complain(scene->complaint, DVI_BAD_OPTION, DVI__NOWHERE, "%s is set twice", name);
+    found = i;
+  }
+  return found;
+}
+
+/* The value that a setting gives to a number. */
+static bool apply_setting(dvi_scene *scene, dvi__parameter *p, const char *text)
+{
+  const char *number = text + strlen(p->name) + 1;
+  char *end;
+  const double value = strtod(number, &end);
+  if (!p->settable)
+    return dvi__complain(scene->complaint, DVI_BAD_OPTION, p->span, "%s: '%s' is a list, and only numbers can be set", text,
+                         p->name);
+  if (end == number || *end != '\0' || !isfinite(value))
+    return dvi__complain(scene->complaint, DVI_BAD_OPTION, DVI__NOWHERE, "%s: '%s' is no finite number", text, number);
+  p->value[0] = value;
+  return true;
+}
+
+static bool evaluate(dvi_scene *scene, const dvi__expression *e, dvi__parameter *p)
+{
+  dvi__context c;
+  if (!dvi__context_make(&c, scene, 0, "a parameter")) return false;
+  const dvi__value value = dvi__elaborate(&c, e);
+  bool good = !dvi__failed(value);
+  if (good) {
+    p->shape = value.shape;
+    p->settable = value.shape.rank == 0;
+    p->value = dvi__arena_take(&scene->arena, (size_t)dvi__value_size(value), sizeof *p->value);
+    good = p->value != NULL ? dvi__constants_of(&c, e, value, p->value) : dvi__scene_no_memory(scene);
+  }
+  dvi__context_free(&c);
+  return good;
+}
+
+static bool read_parameter(dvi_scene *scene, const dvi__tree *key, const dvi__tree *tree, dvi__settings *settings)
+{
+  const dvi__expression *e;
+  dvi__parameter *p = &scene->parameter[scene->parameter_count];
+  *p = (dvi__parameter){.name = key->text, .span = key->span};
+  if (!dvi__tree_expression(scene, tree, &e) || !evaluate(scene, e, p)) return false;
+  const int set = setting_of(scene, p->name, settings);
+  if (scene->complaint->status != DVI_OK) return false;
+  if (set >= 0) {
+    settings->used[set] = 1;
+    if (!apply_setting(scene, p, settings->text[set])) return false;
+  }
+  return dvi__names_add(&scene->names, &scene->arena, scene->complaint, p->name, key->span, DVI__PARAMETER,
+                        scene->parameter_count++);
+}
+
+/* A setting that no parameter took. */
+static bool refuse_setting(dvi_scene *scene, const char *text)
+{
+  char hint[96] = "";
+  const char *equals = strchr(text, '=');
+  if (equals == NULL)
+    return dvi__complain(scene->complaint, DVI_BAD_OPTION, DVI__NOWHERE, "the setting '%s' is not of the form name=value", text);
+  const char *name = dvi__arena_text(&scene->arena, text, (size_t)(equals - text));
+  const char **known = dvi__arena_take(&scene->arena, (size_t)scene->parameter_count + 1, sizeof *known);
+  if (name == NULL || known == NULL) return dvi__scene_no_memory(scene);
+  for (int i = 0; i < scene->parameter_count; i++) known[i] = scene->parameter[i].name;
+  return dvi__complain(scene->complaint, DVI_BAD_OPTION, DVI__NOWHERE, "%s: there is no parameter '%s'%s", text, name,
+                       dvi__nearest(name, scene->parameter_count, known, hint, sizeof hint));
+}
+
+bool dvi__read_parameters(dvi_scene *scene, const dvi__tree *section, dvi__settings *settings)
+{
+  if (section != NULL && !dvi__want_mapping(scene, section, "parameters")) return false;
+  const int count = section == NULL ? 0 : section->count;
+  scene->parameter = dvi__arena_take(&scene->arena, (size_t)count + 1, sizeof *scene->parameter);
+  if (scene->parameter == NULL) return dvi__scene_no_memory(scene);
+  for (int i = 0; i < count; i++)
+    if (!read_parameter(scene, section->key[i], section->child[i], settings)) return false;
+  for (int i = 0; i < settings->count; i++)
+    if (!settings->used[i]) return refuse_setting(scene, settings->text[i]);
+  return true;
+}
+
+/* ---- coordinates ---- */
+
+/* The kind: scalar, vector(d); the others are known but not yet possible. */
+static bool read_kind(dvi_scene *scene, const dvi__tree *tree, dvi__shape *shape)
+{
+  static const char *const known[] = {"scalar", "vector", "rotation", "motion", "direction", "angle"};
+  const dvi__expression *e;
+  char hint[96];
+  if (!dvi__tree_expression(scene, tree, &e)) return false;
+  const char *name = e->form == DVI__FORM_NAME || e->form == DVI__FORM_CALL ? e->name : "";
+  if (strcmp(name, "scalar") == 0 && e->form == DVI__FORM_NAME) {
+    *shape = (dvi__shape){0, 1, 1};
+    return true;
+  }
+  if (strcmp(name, "vector") == 0 && e->form == DVI__FORM_CALL && e->count == 1) {
+    dvi__tree size = {.kind = DVI__SCALAR, .span = e->part[0]->span};
+    *shape = (dvi__shape){1, 0, 1};
+    return dvi__tree_whole(scene, &size, "the size of a vector", 1, &shape->rows);
+  }
+  for (int k = 2; k < 6; k++)
+    if (strcmp(name, known[k]) == 0)
+      return dvi__scene_refuse(scene, tree->span, "a %s is not yet possible in a scene; declare it in C, by dvi_factor", name);
+  return dvi__scene_refuse(scene, tree->span, "a kind is scalar or vector(d)%s", dvi__nearest(name, 2, known, hint, sizeof hint));
+}
+
+static bool add_coordinate(dvi_scene *scene, const char *name, dvi__span span, int family, int size, dvi__shape shape)
+{
+  const int number = scene->coordinate_count;
+  dvi__coordinate *x = &scene->coordinate[number];
+  *x = (dvi__coordinate){
+      .name = name, .span = span, .family = family, .size = size, .shape = shape, .components = shape.rows, .first = scene->n};
+  if ((long)size * shape.rows > COORDINATES_MAX - scene->n)
+    return dvi__complain(scene->complaint, DVI_BAD_SIZE, span, "more than %d coordinates", COORDINATES_MAX);
+  scene->n += size * shape.rows;
+  scene->coordinate_count++;
+  return dvi__names_add(&scene->names, &scene->arena, scene->complaint, name, span, DVI__COORDINATE, number);
+}
+
+/* x or x[N]. */
+static bool declare(dvi_scene *scene, const dvi__expression *key, dvi__shape shape)
+{
+  int size = 1;
+  if (key->form == DVI__FORM_NAME) return add_coordinate(scene, key->name, key->span, 0, 1, shape);
+  if (key->form != DVI__FORM_INDEX || key->count != 2 || key->part[0]->form != DVI__FORM_NAME)
+    return dvi__scene_refuse(scene, key->span, "a coordinate is declared as x, or as x[N] for a family of N");
+  const dvi__tree how_many = {.kind = DVI__SCALAR, .span = key->part[1]->span};
+  return dvi__tree_whole(scene, &how_many, "the size of a family", 1, &size) &&
+         add_coordinate(scene, key->part[0]->name, key->part[0]->span, 1, size, shape);
+}
+
+bool dvi__read_coordinates(dvi_scene *scene, const dvi__tree *section)
+{
+  int count = 0;
+  if (!dvi__want_mapping(scene, section, "coordinates")) return false;
+  const dvi__expression **key = dvi__arena_take(&scene->arena, (size_t)section->count + 1, sizeof(*key));
+  if (key == NULL) return dvi__scene_no_memory(scene);
+  for (int i = 0; i < section->count; i++) {
+    if (!dvi__tree_expression(scene, section->key[i], &key[i])) return false;
+    count += key[i]->form == DVI__FORM_LIST ? key[i]->count : 1;
+  }
+  scene->coordinate = dvi__arena_take(&scene->arena, (size_t)count + 1, sizeof *scene->coordinate);
+  if (scene->coordinate == NULL) return dvi__scene_no_memory(scene);
+  for (int i = 0; i < section->count; i++) {
+    dvi__shape shape;
+    if (!read_kind(scene, section->child[i], &shape)) return false;
+    if (key[i]->form != DVI__FORM_LIST && !declare(scene, key[i], shape)) return false;
+    for (int k = 0; key[i]->form == DVI__FORM_LIST && k < key[i]->count; k++)
+      if (!declare(scene, key[i]->part[k], shape)) return false;
+  }
+  if (scene->n == 0) return dvi__scene_refuse(scene, section->span, "there are no coordinates");
+  scene->zeros = dvi__arena_take(&scene->arena, 2 * (size_t)scene->n, sizeof *scene->zeros);
+  return scene->zeros != NULL || dvi__scene_no_memory(scene);
+}
+
+/* ---- definitions ---- */
+
+/* Its shape, and the first error in it; sums are tried at their ends. */
+static bool try_definition(dvi_scene *scene, dvi__definition *d)
+{
+  dvi__context c;
+  if (!dvi__context_make(&c, scene, DVI__SAYS_Q | DVI__SAYS_V | DVI__SAYS_P | DVI__SAYS_T, "a definition")) return false;
+  c.sample = 1;
+  const dvi__value value = dvi__elaborate(&c, d->is);
+  d->shape = value.shape;
+  d->says = dvi__says(scene, d->is);
+  const dvi_status made = c.graph->failed;
+  dvi__context_free(&c);
+  if (made != DVI_OK) return dvi__complain(scene->complaint, made, d->span, "the definition is too long");
+  return !dvi__failed(value);
+}
+
+bool dvi__read_definitions(dvi_scene *scene, const dvi__tree *section)
+{
+  if (!dvi__want_mapping(scene, section, "definitions")) return false;
+  scene->definition = dvi__arena_take(&scene->arena, (size_t)section->count + 1, sizeof *scene->definition);
+  if (scene->definition == NULL) return dvi__scene_no_memory(scene);
+  for (int i = 0; i < section->count; i++) {
+    dvi__definition *d = &scene->definition[i];
+    d->name = section->key[i]->text;
+    d->span = section->key[i]->span;
+    if (!dvi__tree_expression(scene, section->child[i], &d->is) || !try_definition(scene, d)) return false;
+    scene->definition_count++;
+    if (!dvi__names_add(&scene->names, &scene->arena, scene->complaint, d->name, d->span, DVI__DEFINITION, i)) return false;
+  }
+  return true;
+}

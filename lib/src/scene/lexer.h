@@ -1,0 +1,22 @@
+/* The words of expressions. */
+#ifndef DVI_SCENE_LEXER_H
+#define DVI_SCENE_LEXER_H
+#include "scene/complaint.h"
+
+/* Marks of one character are tokens of that character's code. */
+typedef enum dvi__token_kind {
+  DVI__TOKEN_END = 0,
+  DVI__TOKEN_NUMBER = 256, /* not read yet: digits, point, exponent */
+  DVI__TOKEN_NAME,
+  DVI__TOKEN_RANGE /* .. */
+} dvi__token_kind;
+
+typedef struct dvi__token {
+  int kind; /* a dvi__token_kind, or one of + - * / ^ ( ) [ ] , . ' < = */
+  dvi__span span;
+} dvi__token;
+
+/* The token at `offset` or behind blanks and comments (# to the end of the line), before `end`; false, with a complaint, if there is something else. */
+bool dvi__token_read(const dvi__source *source, size_t offset, size_t end, dvi__complaint *complaint, dvi__token *token);
+
+#endif

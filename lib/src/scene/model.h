@@ -1,0 +1,64 @@
+/* A scene while it is read, and afterwards: one object that the parts of the reader fill in turn. */
+#ifndef DVI_SCENE_MODEL_H
+#define DVI_SCENE_MODEL_H
+#include <dvi/scene.h>
+#include <pthread.h>
+
+#include "scene/function.h"
+#include "scene/names.h"
+#include "scene/tree.h"
+
+/* What a function is for: the motion; symmetries and invariants; events and constant masses, which the system does not evaluate. */
+typedef enum dvi__role { DVI__MOVES, DVI__WATCHES, DVI__STANDS_BESIDE } dvi__role;
+
+/* The functions that callbacks evaluate, in a list that the scene frees. */
+typedef struct dvi__term {
+  dvi__function *function;
+  const dvi_scene *scene;
+  int n, count;       /* coordinates; multipliers */
+  const double *none; /* zeros, as many as the longest block has */
+  dvi_pattern qw, vw; /* of constraints: d phi/dq and d phi/dp, of which the gradients are made */
+  dvi__role role;
+  struct dvi__term *next;
+} dvi__term;
+
+struct dvi_scene {
+  dvi__arena arena;
+  dvi__source source; /* a copy, for messages of callbacks */
+  dvi__complaint *complaint;
+  const dvi__tree *tree;
+  dvi__names names;
+  dvi__parameter *parameter;
+  dvi__coordinate *coordinate;
+  dvi__definition *definition;
+  int parameter_count, coordinate_count, definition_count;
+  int n;     /* numbers of q */
+  long work; /* parts of expressions that were elaborated */
+
+  const double *mass_diagonal; /* [n] or NULL: what velocities are made of momenta by, in invariants */
+  dvi_system_terms terms;
+  dvi_lagrangian lagrangian;
+  dvi_one_form one_form;
+  dvi_hamiltonian hamiltonian;
+  dvi_constraint constraint;
+  dvi__term *functions;
+  dvi_system *system;
+  double *q, *v, *p;
+  double *zeros; /* [2 n] */
+  int depends_on_time, momenta_given;
+
+  dvi_scene_plan plan;
+  dvi_scene_parameter *shown; /* [parameter_count] */
+  dvi_scene_event *event;
+  dvi_scene_range *range;
+  int event_count, range_count, bodies;
+  const char *form, *mass;
+  pthread_mutex_t labels_mutex;
+  char **label[3]; /* of q, v, p; made when first asked for */
+  dvi__arena label_arena;
+};
+
+/* Refuse something for which there is no memory; false. */
+bool dvi__scene_no_memory(dvi_scene *scene);
+
+#endif

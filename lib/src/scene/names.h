@@ -1,0 +1,74 @@
+/* The names of a scene: parameters, coordinates and definitions, and what each of them is. */
+#ifndef DVI_SCENE_NAMES_H
+#define DVI_SCENE_NAMES_H
+#include "scene/arena.h"
+#include "scene/complaint.h"
+#include "scene/syntax.h"
+
+/* rank 0: a number; 1: a vector of `rows`; 2: a matrix. rank -1: none, an error was told. */
+typedef struct dvi__shape {
+  int rank, rows, columns;
+} dvi__shape;
+
+typedef struct dvi__parameter {
+  const char *name;
+  dvi__span span;
+  dvi__shape shape;
+  double *value; /* [rows * columns], row by row */
+  int settable;
+} dvi__parameter;
+
+typedef struct dvi__coordinate {
+  const char *name;
+  dvi__span span;
+  int family;       /* 1: it is indexed */
+  int size;         /* members of the family; 1 */
+  dvi__shape shape; /* of a member */
+  int components;   /* numbers of a member */
+  int first;        /* number of its first number in q, v and p */
+} dvi__coordinate;
+
+/* What an expression mentions, definitions seen through. */
+enum { DVI__SAYS_Q = 1, DVI__SAYS_V = 2, DVI__SAYS_P = 4, DVI__SAYS_T = 8, DVI__SAYS_SUM = 16 };
+
+typedef struct dvi__definition {
+  const char *name;
+  dvi__span span;
+  const dvi__expression *is;
+  dvi__shape shape;
+  unsigned says;
+} dvi__definition;
+
+typedef enum dvi__sort { DVI__PARAMETER, DVI__COORDINATE, DVI__DEFINITION } dvi__sort;
+
+typedef struct dvi__name {
+  const char *text;
+  dvi__sort sort;
+  int number; /* in the list of its sort */
+} dvi__name;
+
+/* Zero: empty. Its memory is the arena's. */
+typedef struct dvi__names {
+  dvi__name *name;
+  int count, room;
+  int *table; /* hash table of places + 1 */
+  int table_size;
+} dvi__names;
+
+/* The name of this text, or NULL. */
+const dvi__name *dvi__names_find(const dvi__names *names, const char *text);
+
+/* Add a name; refused if it is no identifier, a word of the language, or there already. */
+bool dvi__names_add(dvi__names *names, dvi__arena *arena, dvi__complaint *complaint, const char *text, dvi__span span,
+                    dvi__sort sort, int number);
+
+/* Complain of an unknown name, with the nearest known one. */
+bool dvi__names_unknown(const dvi__names *names, dvi__arena *arena, dvi__complaint *complaint, const char *text, dvi__span span);
+
+/* "parameter", "coordinate" or "definition". */
+const char *dvi__sort_name(dvi__sort sort);
+
+/* "a number", "a vector of 3" or "a 3 x 3 matrix", into text [size], which is returned. */
+const char *dvi__shape_text(dvi__shape shape, char *text, size_t size);
+
+#endif

@@ -1,0 +1,240 @@
+/* The public API of scenes: reading, what was found, names, and the end. */
+#include <limits.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "scene/callbacks.h"
+#include "scene/sections.h"
+#include "scene/start.h"
+
+enum { SIZE_MAX_OF_FILE = 1 << 20 };
+
+/* ---- reading ---- */
+
+/* Whether the time occurs in a function. */
+static int has_time(const dvi__term *term)
+{
+  for (int k = 0; k < dvi__function_kernel_count(term->function); k++) {
+    const dvi__kernel *kernel = dvi__function_kernel(term->function, k);
+    for (int i = 0; i < kernel->input_count; i++)
+      if (!kernel->input[i].is_data && kernel->input[i].block == DVI__TIME) return 1;
+  }
+  return 0;
+}
+
+/* An autonomous system has no rates. */
+static void find_time(dvi_scene *scene)
+{
+  int timed = 0;
+  for (const dvi__term *term = scene->functions; term != NULL; term = term->next)
+    timed = timed || (term->role != DVI__STANDS_BESIDE && has_time(term));
+  scene->terms.autonomous = !timed;
+  if (timed) return;
+  scene->lagrangian.rate_batch = NULL;
+  for (int k = 0; k < scene->terms.potential_count; k++) ((dvi_potential *)scene->terms.potentials)[k].rate_batch = NULL;
+}
+
+static bool make_system(dvi_scene *scene)
+{
+  find_time(scene);
+  scene->terms.dimension = scene->n;
+  if (scene->terms.potential_count == 0) scene->terms.potentials = NULL;
+  if (scene->terms.symmetry_count == 0) scene->terms.symmetries = NULL;
+  if (scene->terms.invariant_count == 0) scene->terms.invariants = NULL;
+  const dvi_status status = dvi_system_create(&scene->terms, &scene->system);
+  return status == DVI_OK || dvi__complain(scene->complaint, status, DVI__NOWHERE, "%s", dvi_last_error());
+}
+
+static bool show_parameters(dvi_scene *scene)
+{
+  scene->shown = dvi__arena_take(&scene->arena, (size_t)scene->parameter_count + 1, sizeof *scene->shown);
+  if (scene->shown == NULL) return dvi__scene_no_memory(scene);
+  for (int i = 0; i < scene->parameter_count; i++) {
+    const dvi__parameter *p = &scene->parameter[i];
+    scene->shown[i] = (dvi_scene_parameter){p->name, p->settable ? p->value[0] : (double)NAN, p->settable};
+  }
+  return true;
+}
+
+static void find_bodies(dvi_scene *scene)
+{
+  const dvi__coordinate *x = scene->coordinate;
+  if (scene->coordinate_count == 1 && x->shape.rank == 1 && (x->components == 2 || x->components == 3)) scene->bodies = x->size;
+}
+
+static bool read_scene(dvi_scene *scene, dvi__settings *settings)
+{
+  if (!dvi__tree_read(&scene->source, &scene->arena, scene->complaint, &scene->tree)) return false;
+  if (!dvi__scene_read_tree(scene, settings) || !make_system(scene) || !dvi__scene_complete_start(scene)) return false;
+  find_bodies(scene);
+  return show_parameters(scene);
+}
+
+/* Fill in a scene; its texts are copied. */
+static dvi_status fill(dvi_scene *scene, const char *name, const char *text, size_t length, dvi__settings *settings,
+                       dvi__complaint *complaint)
+{
+  const char *name_copy = dvi__arena_text(&scene->arena, name, strlen(name)), *copy = dvi__arena_text(&scene->arena, text, length);
+  scene->complaint = complaint;
+  scene->source = (dvi__source){name_copy, copy, length};
+  complaint->source = &scene->source;
+  settings->used = dvi__arena_take(&scene->arena, (size_t)settings->count + 1, 1);
+  if (name_copy == NULL || copy == NULL || settings->used == NULL) {
+    complaint->status = DVI_NO_MEMORY;
+    return DVI_NO_MEMORY;
+  }
+  const bool read = read_scene(scene, settings);
+  const dvi_status status = complaint->status;
+  complaint->source = NULL;
+  scene->complaint = NULL;
+  return read ? DVI_OK : status != DVI_OK ? status : DVI_BAD_FILE;
+}
+
+static dvi_status tell(char *message, size_t size, dvi_status status, const char *name)
+{
+  if (message != NULL && size > 0) (void)snprintf(message, size, "%s: %s", name, dvi_status_meaning(status));
+  return status;
+}
+
+dvi_status dvi_scene_parse(const char *name, const char *text, size_t length, int setting_count, const char *const *settings,
+                           dvi_scene **scene, char *message, size_t size)
+{
+  if (scene == NULL) return DVI_BAD_ARGUMENT;
+  *scene = NULL;
+  if (message != NULL && size > 0) message[0] = '\0';
+  if (name == NULL || text == NULL || setting_count < 0 || (setting_count > 0 && settings == NULL))
+    return tell(message, size, DVI_BAD_ARGUMENT, "scene");
+  dvi_scene *made = calloc(1, sizeof *made);
+  if (made == NULL || pthread_mutex_init(&made->labels_mutex, NULL) != 0) {
+    free(made);
+    return tell(message, size, DVI_NO_MEMORY, name);
+  }
+  dvi__settings given = {.count = setting_count, .text = settings};
+  dvi__complaint complaint = {.message = message, .size = message != NULL ? size : 0};
+  const dvi_status status = fill(made, name, text, length, &given, &complaint);
+  if (status == DVI_OK) {
+    *scene = made;
+    return DVI_OK;
+  }
+  dvi_scene_destroy(&made);
+  if (message != NULL && size > 0 && message[0] == '\0') return tell(message, size, status, name);
+  return status;
+}
+
+/* The text of a file, one character more than is allowed if it is longer; to be freed. */
+static dvi_status read_file(const char *path, char **text, size_t *length)
+{
+  FILE *file = fopen(path, "rb");
+  if (file == NULL) return DVI_IO_ERROR;
+  *text = malloc(SIZE_MAX_OF_FILE + 1);
+  *length = *text != NULL ? fread(*text, 1, SIZE_MAX_OF_FILE + 1, file) : 0;
+  const int failed = ferror(file);
+  (void)fclose(file);
+  return *text == NULL ? DVI_NO_MEMORY : failed ? DVI_IO_ERROR : DVI_OK;
+}
+
+dvi_status dvi_scene_read(const char *path, int setting_count, const char *const *settings, dvi_scene **scene, char *message,
+                          size_t size)
+{
+  char *text = NULL;
+  size_t length = 0;
+  if (scene == NULL) return DVI_BAD_ARGUMENT;
+  *scene = NULL;
+  if (path == NULL) return tell(message, size, DVI_BAD_ARGUMENT, "scene");
+  dvi_status status = read_file(path, &text, &length);
+  if (status == DVI_OK)
+    status = dvi_scene_parse(path, text, length, setting_count, settings, scene, message, size);
+  else
+    (void)tell(message, size, status, path);
+  free(text);
+  return status;
+}
+
+void dvi_scene_destroy(dvi_scene **scene)
+{
+  if (scene == NULL || *scene == NULL) return;
+  dvi_scene *own = *scene;
+  *scene = NULL;
+  dvi_system_destroy(&own->system);
+  for (dvi__term *term = own->functions; term != NULL; term = term->next) dvi__function_destroy(&term->function);
+  pthread_mutex_destroy(&own->labels_mutex);
+  dvi__arena_free(&own->label_arena);
+  dvi__arena_free(&own->arena);
+  free(own);
+}
+
+/* ---- what there is ---- */
+
+const dvi_system *dvi_scene_system(const dvi_scene *scene)
+{
+  return scene == NULL ? NULL : scene->system;
+}
+
+const dvi_system_terms *dvi_scene_terms(const dvi_scene *scene)
+{
+  return scene == NULL ? NULL : &scene->terms;
+}
+
+void dvi_scene_start(const dvi_scene *scene, const double **q, const double **v, const double **p)
+{
+  *q = scene->q;
+  *v = scene->v;
+  *p = scene->p;
+}
+
+int dvi_scene_bodies(const dvi_scene *scene)
+{
+  return scene == NULL ? 0 : scene->bodies;
+}
+
+const dvi_scene_plan *dvi_scene_plan_of(const dvi_scene *scene)
+{
+  return scene == NULL ? NULL : &scene->plan;
+}
+
+const dvi_scene_parameter *dvi_scene_parameter_at(const dvi_scene *scene, int i)
+{
+  return scene == NULL || i < 0 || i >= scene->parameter_count ? NULL : &scene->shown[i];
+}
+
+const dvi_scene_event *dvi_scene_event_at(const dvi_scene *scene, int i)
+{
+  return scene == NULL || i < 0 || i >= scene->event_count ? NULL : &scene->event[i];
+}
+
+const dvi_scene_range *dvi_scene_range_at(const dvi_scene *scene, int i)
+{
+  return scene == NULL || i < 0 || i >= scene->range_count ? NULL : &scene->range[i];
+}
+
+static void add_facts(const dvi__term *term, dvi_scene_facts *facts)
+{
+  dvi__function_counters counters;
+  dvi__function_count(term->function, &counters);
+  facts->value_operations += counters.value_operations;
+  facts->gradient_operations += counters.gradient_operations;
+  facts->hessian_operations += counters.second_operations;
+  facts->hessian_entries += counters.second_entries;
+  facts->value_points += counters.value_points;
+  facts->gradient_points += counters.gradient_points;
+  facts->hessian_points += counters.second_points;
+  for (int k = 0; k < dvi__function_kernel_count(term->function); k++) {
+    const dvi__kernel *kernel = dvi__function_kernel(term->function, k);
+    facts->kernels++;
+    facts->elements += kernel->elements;
+    facts->nodes += kernel->root + 1;
+  }
+}
+
+void dvi_scene_facts_of(const dvi_scene *scene, dvi_scene_facts *facts)
+{
+  *facts = (dvi_scene_facts){.form = scene->form, .mass = scene->mass};
+  for (const dvi__term *term = scene->functions; term != NULL; term = term->next)
+    if (term->role == DVI__MOVES) add_facts(term, facts);
+  for (int k = 0; k < scene->terms.potential_count; k++) {
+    dvi__term *term = scene->terms.potentials[k].user;
+    facts->quadratic_potentials += dvi__function_second_constant(term->function, DVI__PAIR_QQ) == 1;
+  }
+}

@@ -1,0 +1,294 @@
+#include "scene/sections.h"
+
+#include <limits.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- what readers share ---- */
+
+bool dvi__scene_refuse(dvi_scene *scene, dvi__span span, const char *format, ...)
+{
+  char text[400];
+  va_list arguments;
+  va_start(arguments, format);
+  (void)vsnprintf(text, sizeof text, format, arguments);
+  va_end(arguments);
+  return dvi__complain(scene->complaint, DVI_BAD_FILE, span, "%s", text);
+}
+
+bool dvi__scene_no_memory(dvi_scene *scene)
+{
+  return dvi__complain(scene->complaint, DVI_NO_MEMORY, DVI__NOWHERE,
+                       scene->arena.failed ? "memory ran out, or the scene needs more than 1 GiB" : "memory ran out");
+}
+
+bool dvi__want_mapping(dvi_scene *scene, const dvi__tree *tree, const char *what)
+{
+  return tree->kind == DVI__MAPPING || dvi__scene_refuse(scene, tree->span, "%s is a mapping, as in 'name: value'", what);
+}
+
+bool dvi__want_text(dvi_scene *scene, const dvi__tree *tree, const char *what)
+{
+  return tree->kind == DVI__SCALAR || dvi__scene_refuse(scene, tree->span, "%s is one line", what);
+}
+
+bool dvi__want_keys(dvi_scene *scene, const dvi__tree *mapping, const char *what, int count, const char *const *known)
+{
+  char hint[96];
+  for (int i = 0; i < mapping->count; i++) {
+    int k = 0;
+    while (k < count && strcmp(known[k], mapping->key[i]->text) != 0) k++;
+    if (k == count)
+      return dvi__scene_refuse(scene, mapping->key[i]->span, "%s has no '%s'%s", what, mapping->key[i]->text,
+                               dvi__nearest(mapping->key[i]->text, count, known, hint, sizeof hint));
+  }
+  return true;
+}
+
+/* A list in block style, or with comments in it: item by item. */
+static bool list_expression(dvi_scene *scene, const dvi__tree *tree, const dvi__expression **e)
+{
+  const dvi__expression **part = dvi__arena_take(&scene->arena, (size_t)tree->count + 1, sizeof(*part));
+  dvi__expression *list = dvi__arena_take(&scene->arena, 1, sizeof *list);
+  if (part == NULL || list == NULL) return dvi__scene_no_memory(scene);
+  for (int i = 0; i < tree->count; i++)
+    if (!dvi__tree_expression(scene, tree->child[i], &part[i])) return false;
+  *list = (dvi__expression){
+      .form = DVI__FORM_LIST, .span = tree->span, .count = tree->count, .part = (dvi__expression *const *)part};
+  *e = list;
+  return true;
+}
+
+/* Whether a list can be read as an expression as it stands: commas inside of parentheses are then no ends of items. */
+static bool stands_as_expression(const dvi_scene *scene, const dvi__tree *tree)
+{
+  const char *text = scene->source.text + tree->span.first;
+  return tree->span.size > 0 && text[0] == '[' && memchr(text, '#', tree->span.size) == NULL;
+}
+
+bool dvi__tree_expression(dvi_scene *scene, const dvi__tree *tree, const dvi__expression **e)
+{
+  if (tree->kind == DVI__MAPPING) return dvi__scene_refuse(scene, tree->span, "an expression belongs here");
+  if (tree->kind == DVI__SEQUENCE && !stands_as_expression(scene, tree)) return list_expression(scene, tree, e);
+  return dvi__expression_parse(&scene->source, tree->span, &scene->arena, scene->complaint, e);
+}
+
+bool dvi__tree_number(dvi_scene *scene, const dvi__tree *tree, const char *what, double *number)
+{
+  const dvi__expression *e;
+  dvi__context c;
+  double *each;
+  if (!dvi__tree_expression(scene, tree, &e) || !dvi__context_make(&c, scene, 0, what)) return false;
+  const bool good = dvi__numbers_of(&c, e, &each, number);
+  dvi__context_free(&c);
+  return good;
+}
+
+bool dvi__tree_whole(dvi_scene *scene, const dvi__tree *tree, const char *what, int least, int *number)
+{
+  double x;
+  if (!dvi__tree_number(scene, tree, what, &x)) return false;
+  if (!(x >= least && x <= INT_MAX) || (double)(int)x < x)
+    return dvi__scene_refuse(scene, tree->span, "%s is a whole number from %d on, not %.17g", what, least, x);
+  *number = (int)x;
+  return true;
+}
+
+/* ---- the plan ---- */
+
+static bool read_text(dvi_scene *scene, const char *section, const char **text)
+{
+  const dvi__tree *tree = dvi__tree_find(scene->tree, section);
+  if (tree == NULL) return true;
+  *text = tree->text;
+  return dvi__want_text(scene, tree, section);
+}
+
+static bool read_number(dvi_scene *scene, const char *section, double *number)
+{
+  const dvi__tree *tree = dvi__tree_find(scene->tree, section);
+  if (!dvi__tree_number(scene, tree, section, number)) return false;
+  return *number > 0 || dvi__scene_refuse(scene, tree->span, "%s must be positive, and is %.17g", section, *number);
+}
+
+static bool read_plan(dvi_scene *scene)
+{
+  dvi_scene_plan *plan = &scene->plan;
+  return read_text(scene, "title", &plan->title) && read_text(scene, "method", &plan->method) &&
+         read_number(scene, "step", &plan->h) && read_number(scene, "until", &plan->t_end);
+}
+
+static bool read_columns(dvi_scene *scene, const dvi__tree *columns)
+{
+  const char **column = dvi__arena_take(&scene->arena, (size_t)columns->count + 1, sizeof *column);
+  if (column == NULL) return dvi__scene_no_memory(scene);
+  if (columns->kind != DVI__SEQUENCE) return dvi__scene_refuse(scene, columns->span, "columns is a list of names, as in [x, y]");
+  for (int i = 0; i < columns->count; i++) {
+    if (!dvi__want_text(scene, columns->child[i], "the name of a column")) return false;
+    column[i] = columns->child[i]->text;
+  }
+  scene->plan.column = column;
+  scene->plan.column_count = columns->count;
+  return true;
+}
+
+bool dvi__read_report(dvi_scene *scene, const dvi__tree *section)
+{
+  static const char *const known[] = {"every", "columns"};
+  int every = 0;
+  if (!dvi__want_mapping(scene, section, "report") || !dvi__want_keys(scene, section, "report", 2, known)) return false;
+  const dvi__tree *often = dvi__tree_find(section, "every"), *columns = dvi__tree_find(section, "columns");
+  if (often != NULL && !dvi__tree_whole(scene, often, "every", 1, &every)) return false;
+  scene->plan.every = every;
+  return columns == NULL || read_columns(scene, columns);
+}
+
+/* ---- sweeps ---- */
+
+static bool read_values(dvi_scene *scene, const dvi__tree *list, dvi_scene_range *range)
+{
+  double *value = dvi__arena_take(&scene->arena, (size_t)list->count + 1, sizeof *value);
+  if (value == NULL) return dvi__scene_no_memory(scene);
+  if (list->count == 0) return dvi__scene_refuse(scene, list->span, "there is no value to sweep over");
+  for (int i = 0; i < list->count; i++)
+    if (!dvi__tree_number(scene, list->child[i], "a value", &value[i])) return false;
+  range->count = list->count;
+  range->value = value;
+  return true;
+}
+
+/* from, to and count: values in even steps, both ends included. */
+static bool read_steps(dvi_scene *scene, const dvi__tree *steps, dvi_scene_range *range)
+{
+  static const char *const known[] = {"from", "to", "count"};
+  enum { COUNT_MAX = 1000000 };
+  double end[2];
+  int count = 0;
+  if (!dvi__want_keys(scene, steps, "a range", 3, known)) return false;
+  for (int k = 0; k < 3; k++)
+    if (dvi__tree_find(steps, known[k]) == NULL) return dvi__scene_refuse(scene, steps->span, "a range needs '%s'", known[k]);
+  const dvi__tree *how_many = dvi__tree_find(steps, "count");
+  if (!dvi__tree_number(scene, dvi__tree_find(steps, "from"), "from", &end[0]) ||
+      !dvi__tree_number(scene, dvi__tree_find(steps, "to"), "to", &end[1]) || !dvi__tree_whole(scene, how_many, "count", 2, &count))
+    return false;
+  if (count > COUNT_MAX) return dvi__scene_refuse(scene, how_many->span, "at most %d values", COUNT_MAX);
+  double *value = dvi__arena_take(&scene->arena, (size_t)count, sizeof *value);
+  if (value == NULL) return dvi__scene_no_memory(scene);
+  for (int i = 0; i < count; i++) value[i] = end[0] + (end[1] - end[0]) * i / (count - 1);
+  value[count - 1] = end[1];
+  range->count = count;
+  range->value = value;
+  return true;
+}
+
+static bool read_range(dvi_scene *scene, const dvi__tree *key, const dvi__tree *values, dvi_scene_range *range)
+{
+  const dvi__name *name = dvi__names_find(&scene->names, key->text);
+  if (name == NULL) return dvi__names_unknown(&scene->names, &scene->arena, scene->complaint, key->text, key->span);
+  if (name->sort != DVI__PARAMETER || !scene->parameter[name->number].settable)
+    return dvi__scene_refuse(scene, key->span, "'%s' is no parameter that is a number", key->text);
+  range->name = key->text;
+  if (values->kind == DVI__SEQUENCE) return read_values(scene, values, range);
+  if (values->kind == DVI__MAPPING) return read_steps(scene, values, range);
+  return dvi__scene_refuse(scene, values->span, "a list of values belongs here, or {from: .., to: .., count: ..}");
+}
+
+bool dvi__read_sweep(dvi_scene *scene, const dvi__tree *section)
+{
+  if (!dvi__want_mapping(scene, section, "sweep")) return false;
+  scene->range = dvi__arena_take(&scene->arena, (size_t)section->count + 1, sizeof *scene->range);
+  if (scene->range == NULL) return dvi__scene_no_memory(scene);
+  scene->range_count = section->count;
+  for (int i = 0; i < section->count; i++)
+    if (!read_range(scene, section->key[i], section->child[i], &scene->range[i])) return false;
+  return true;
+}
+
+/* ---- the order of reading ---- */
+
+/* All sections: in the order in which they are read, which is not that of the file. Without a reader they are read with another one. */
+typedef struct section {
+  const char *name;
+  bool (*read)(dvi_scene *scene, const dvi__tree *section);
+  int needed;
+  const char *refusal;
+} section;
+
+static const section sections[] = {
+    {.name = "forces", .refusal = "no method here takes forces without a potential"},
+    {.name = "inertia", .refusal = "bodies that turn are not yet from a scene; declare them in C (docs/api.md)"},
+    {.name = "title"},
+    {.name = "method"},
+    {.name = "parameters"},
+    {.name = "step", .needed = 1},
+    {.name = "until", .needed = 1},
+    {.name = "coordinates", .read = dvi__read_coordinates, .needed = 1},
+    {.name = "definitions", .read = dvi__read_definitions},
+    {.name = "lagrangian", .read = dvi__read_lagrangian},
+    {.name = "kinetic", .read = dvi__read_kinetic},
+    {.name = "potentials"},
+    {.name = "one_form", .read = dvi__read_one_form},
+    {.name = "hamiltonian"},
+    {.name = "constraints", .read = dvi__read_constraints},
+    {.name = "symmetries", .read = dvi__read_symmetries},
+    {.name = "invariants", .read = dvi__read_invariants},
+    {.name = "events", .read = dvi__read_events},
+    {.name = "initial", .read = dvi__read_initial, .needed = 1},
+    {.name = "report", .read = dvi__read_report},
+    {.name = "sweep", .read = dvi__read_sweep},
+};
+
+enum { SECTIONS = sizeof sections / sizeof *sections };
+
+static bool all_known(dvi_scene *scene)
+{
+  const char *known[SECTIONS];
+  for (int k = 0; k < SECTIONS; k++) known[k] = sections[k].name;
+  if (!dvi__want_mapping(scene, scene->tree, "a scene") || !dvi__want_keys(scene, scene->tree, "a scene", SECTIONS, known))
+    return false;
+  for (int k = 0; k < SECTIONS; k++) {
+    const dvi__tree *found = dvi__tree_find(scene->tree, sections[k].name);
+    if (found != NULL && sections[k].refusal != NULL) return dvi__scene_refuse(scene, found->span, "%s", sections[k].refusal);
+    if (found == NULL && sections[k].needed)
+      return dvi__scene_refuse(scene, DVI__NOWHERE, "the section '%s' is missing", sections[k].name);
+  }
+  return true;
+}
+
+/* A scene says what it is in one of four ways. */
+static bool one_form_of_system(dvi_scene *scene)
+{
+  static const char *const ways =
+      "one of these: lagrangian; kinetic and potentials; one_form and hamiltonian; hamiltonian and constraints";
+  const char *const name[] = {"lagrangian", "kinetic", "one_form", "constraints"};
+  const dvi__tree *found = NULL;
+  int count = 0, which = 0;
+  for (int k = 0; k < 4; k++) {
+    const dvi__tree *tree = dvi__tree_find(scene->tree, name[k]);
+    if (tree == NULL) continue;
+    found = tree;
+    which = k;
+    count++;
+  }
+  if (count == 0) return dvi__scene_refuse(scene, DVI__NOWHERE, "what moves it is missing: %s", ways);
+  if (count > 1) return dvi__scene_refuse(scene, found->span, "there must be %s", ways);
+  const dvi__tree *H = dvi__tree_find(scene->tree, "hamiltonian"), *V = dvi__tree_find(scene->tree, "potentials");
+  if ((H != NULL) != (which >= 2))
+    return dvi__scene_refuse(scene, (H != NULL ? H : found)->span,
+                             H != NULL ? "beside %s there is no hamiltonian" : "%s needs a hamiltonian", name[which]);
+  return V == NULL || which == 1 ||
+         dvi__scene_refuse(scene, V->span, "potentials stand beside kinetic, not beside %s", name[which]);
+}
+
+bool dvi__scene_read_tree(dvi_scene *scene, dvi__settings *settings)
+{
+  if (!all_known(scene) || !one_form_of_system(scene)) return false;
+  if (!dvi__read_parameters(scene, dvi__tree_find(scene->tree, "parameters"), settings) || !read_plan(scene)) return false;
+  for (int k = 0; k < SECTIONS; k++) {
+    const dvi__tree *found = dvi__tree_find(scene->tree, sections[k].name);
+    if (found != NULL && sections[k].read != NULL && !sections[k].read(scene, found)) return false;
+  }
+  return true;
+}

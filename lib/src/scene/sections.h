@@ -1,0 +1,67 @@
+/* The sections of a scene and who reads them. */
+#ifndef DVI_SCENE_SECTIONS_H
+#define DVI_SCENE_SECTIONS_H
+#include "scene/context.h"
+
+/* Settings "name=value" from outside. */
+typedef struct dvi__settings {
+  int count;
+  const char *const *text;
+  char *used; /* [count] */
+} dvi__settings;
+
+/* Read the whole scene from its tree: names, terms, start, plan. Its system is made later. */
+bool dvi__scene_read_tree(dvi_scene *scene, dvi__settings *settings);
+
+bool dvi__read_parameters(dvi_scene *scene, const dvi__tree *section, dvi__settings *settings);
+bool dvi__read_coordinates(dvi_scene *scene, const dvi__tree *section);
+bool dvi__read_definitions(dvi_scene *scene, const dvi__tree *section);
+bool dvi__read_lagrangian(dvi_scene *scene, const dvi__tree *section);
+bool dvi__read_kinetic(dvi_scene *scene, const dvi__tree *section);
+bool dvi__read_one_form(dvi_scene *scene, const dvi__tree *section);
+bool dvi__read_constraints(dvi_scene *scene, const dvi__tree *section);
+bool dvi__read_symmetries(dvi_scene *scene, const dvi__tree *section);
+bool dvi__read_invariants(dvi_scene *scene, const dvi__tree *section);
+bool dvi__read_events(dvi_scene *scene, const dvi__tree *section);
+bool dvi__read_initial(dvi_scene *scene, const dvi__tree *section);
+bool dvi__read_report(dvi_scene *scene, const dvi__tree *section);
+bool dvi__read_sweep(dvi_scene *scene, const dvi__tree *section);
+
+/* ---- what readers share ---- */
+
+/* Refuse with a place; false. */
+bool dvi__scene_refuse(dvi_scene *scene, dvi__span span, const char *format, ...) DVI__SCENE_PRINTF(3, 4);
+
+/* A section that must be a mapping, or a text. */
+bool dvi__want_mapping(dvi_scene *scene, const dvi__tree *tree, const char *what);
+bool dvi__want_text(dvi_scene *scene, const dvi__tree *tree, const char *what);
+
+/* Refuse keys of a mapping that are none of known[count], and name the nearest one. */
+bool dvi__want_keys(dvi_scene *scene, const dvi__tree *mapping, const char *what, int count, const char *const *known);
+
+/* The expression that a part of the file holds: a scalar, or a list. */
+bool dvi__tree_expression(dvi_scene *scene, const dvi__tree *tree, const dvi__expression **e);
+
+/* A number, or a whole one of at least `least`, made of parameters. */
+bool dvi__tree_number(dvi_scene *scene, const dvi__tree *tree, const char *what, double *number);
+bool dvi__tree_whole(dvi_scene *scene, const dvi__tree *tree, const char *what, int least, int *number);
+
+/* ---- coordinates as keys ---- */
+
+/* x, x[3] or x[i], and of these the numbers, the rates x' or the momenta p(x). */
+typedef struct dvi__target {
+  const dvi__coordinate *x;
+  unsigned says;                /* DVI__SAYS_Q, _V or _P */
+  const dvi__expression *index; /* one member; NULL: all */
+  const char *each;             /* the index of a formula for all members, or NULL */
+  dvi__span span;
+} dvi__target;
+
+bool dvi__read_target(dvi_scene *scene, const dvi__tree *key, dvi__target *target);
+
+/* In a context that dvi__context_make has made, elaborate what stands at a target: as many numbers as it has, or as each of its members has, and where these
+ * are in q. */
+bool dvi__target_value(dvi__context *c, const dvi__target *target, const dvi__tree *tree, dvi__value *value,
+                       dvi__numbering *numbering, const dvi__expression **e);
+
+#endif

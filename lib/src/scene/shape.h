@@ -1,0 +1,37 @@
+/* Arithmetic of numbers, vectors and matrices of nodes. */
+#ifndef DVI_SCENE_SHAPE_H
+#define DVI_SCENE_SHAPE_H
+#include "scene/context.h"
+
+#define DVI__NO_VALUE ((dvi__value){.shape = {-1, 0, 0}})
+
+/* No value, after an error was told; and whether a value is none. */
+static inline dvi__value dvi__refused(bool told)
+{
+  (void)told;
+  return DVI__NO_VALUE;
+}
+
+static inline bool dvi__failed(dvi__value value)
+{
+  return value.shape.rank < 0;
+}
+
+/* How many numbers a value has; the i-th of them. */
+int dvi__value_size(dvi__value value);
+dvi__node dvi__value_at(dvi__value value, int i);
+
+dvi__value dvi__number_value(dvi__node node);
+/* A value with room for its nodes. */
+dvi__value dvi__value_make(dvi__context *c, int rank, int rows, int columns);
+
+/* Operations; `span` is told about if shapes do not fit. */
+dvi__value dvi__value_negate(dvi__context *c, dvi__value a);
+dvi__value dvi__value_add(dvi__context *c, dvi__op op, dvi__value a, dvi__value b, dvi__span span);
+dvi__value dvi__value_multiply(dvi__context *c, dvi__value a, dvi__value b, dvi__span span);
+dvi__value dvi__value_divide(dvi__context *c, dvi__value a, dvi__value b, dvi__span span);
+dvi__value dvi__value_power(dvi__context *c, dvi__value a, dvi__value b, dvi__span span);
+/* A function of the language that is no operator. */
+dvi__value dvi__value_call(dvi__context *c, const dvi__expression *call, const dvi__value *argument);
+
+#endif

@@ -1,0 +1,330 @@
+/* What a Lagrangian is: a constant mass and potentials, a one-form and a Hamiltonian, or neither.
+ *
+ * Each kernel's degree in the velocities is found by one pass over its graph. If all are polynomials of degree 2 whose velocities have constant coefficients,
+ * the mass is their second derivatives; what is left at rest is minus the potential. If all are of degree 1, they are alpha(q).v. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "scene/callbacks.h"
+#include "scene/sections.h"
+#include "scene/shape.h"
+
+/* What all kernels together are. */
+static bool degree_of(dvi_scene *scene, const dvi__kernels *list, dvi__degree *whole)
+{
+  *whole = (dvi__degree){0, 1, 0};
+  for (int k = 0; k < list->count; k++) {
+    dvi__degree one;
+    if (!dvi__kernel_degree(scene, &list->kernel[k], DVI__VELOCITIES, &one)) return false;
+    if (one.degree > whole->degree) whole->degree = one.degree;
+    whole->pure = whole->pure && one.pure;
+  }
+  return true;
+}
+
+/* ---- potentials ---- */
+
+/* Add a potential of these kernels, none if they are none. */
+static bool add_potential(dvi_scene *scene, const char *name, dvi__kernels *list)
+{
+  dvi__term *term;
+  if (list->count == 0) return true;
+  dvi_potential *potentials = (dvi_potential *)scene->terms.potentials;
+  return dvi__kernels_function(scene, list, 0, &term) &&
+         dvi__make_potential(scene, name, term, &potentials[scene->terms.potential_count++]);
+}
+
+/* Room for the potentials of a section, and one more. */
+static bool room_for_potentials(dvi_scene *scene, int count)
+{
+  scene->terms.potentials = dvi__arena_take(&scene->arena, (size_t)count + 1, sizeof *scene->terms.potentials);
+  return scene->terms.potentials != NULL || dvi__scene_no_memory(scene);
+}
+
+static bool read_potential(dvi_scene *scene, const dvi__tree *tree, const char *name)
+{
+  const dvi__expression *e;
+  dvi__kernels V = {0};
+  const bool good = dvi__tree_expression(scene, tree, &e) &&
+                    dvi__kernels_add(scene, DVI__SAYS_Q | DVI__SAYS_T, "a potential", e, 0, &V) && add_potential(scene, name, &V);
+  dvi__kernels_free(&V);
+  return good;
+}
+
+static bool read_potentials(dvi_scene *scene, const dvi__tree *section)
+{
+  if (section == NULL) return room_for_potentials(scene, 0);
+  if (!dvi__want_mapping(scene, section, "potentials") || !room_for_potentials(scene, section->count)) return false;
+  for (int i = 0; i < section->count; i++)
+    if (!read_potential(scene, section->child[i], section->key[i]->text)) return false;
+  return true;
+}
+
+/* ---- the constant mass ---- */
+
+/* The second derivatives by velocities, which are the same everywhere. */
+static bool mass_values(dvi_scene *scene, dvi__term *T, dvi_pattern *pattern, double **values)
+{
+  int full;
+  if (!dvi__term_pattern(scene, T, DVI__PAIR_VV, pattern, &full)) return false;
+  const size_t n = (size_t)scene->n, entries = full ? n * n : (size_t)pattern->start[n];
+  *values = dvi__arena_take(&scene->arena, entries + 1, sizeof **values);
+  if (*values == NULL) return dvi__scene_no_memory(scene);
+  const double *x[DVI__BLOCKS] = {scene->zeros, scene->zeros, scene->zeros, scene->zeros};
+  double *second[DVI__PAIRS] = {[DVI__PAIR_VV] = *values};
+  return dvi__function_second(T->function, 1, x, second) == 0 ||
+         dvi__scene_refuse(scene, DVI__NOWHERE, "the mass is not finite, or it could not be derived");
+}
+
+static int row_of(const dvi_pattern *pattern, int n, int entry)
+{
+  return pattern->start == NULL ? entry % n : pattern->row[entry];
+}
+
+/* The diagonal; false if there is anything beside it. */
+static int diagonal_of(int n, const dvi_pattern *pattern, const double *values, double *diagonal)
+{
+  int alone = 1;
+  for (int j = 0; j < n; j++) {
+    const int first = pattern->start == NULL ? j * n : pattern->start[j],
+              end = pattern->start == NULL ? first + n : pattern->start[j + 1];
+    for (int e = first; e < end; e++) {
+      if (row_of(pattern, n, e) == j)
+        diagonal[j] = values[e];
+      else if (values[e] < 0 || values[e] > 0)
+        alone = 0;
+    }
+  }
+  return alone;
+}
+
+static const dvi__coordinate *owner(const dvi_scene *scene, int number)
+{
+  int k = 0;
+  while (k + 1 < scene->coordinate_count && scene->coordinate[k + 1].first <= number) k++;
+  return &scene->coordinate[k];
+}
+
+/* The mass in the plainest form that it has. */
+static bool set_mass(dvi_scene *scene, const dvi_pattern *pattern, const double *values)
+{
+  double *diagonal = dvi__arena_take(&scene->arena, (size_t)scene->n, sizeof *diagonal);
+  if (diagonal == NULL) return dvi__scene_no_memory(scene);
+  if (!diagonal_of(scene->n, pattern, values, diagonal)) {
+    scene->terms.mass = (dvi_mass){.values = values, .pattern = *pattern};
+    scene->mass = "sparse";
+    return true;
+  }
+  int same = 1;
+  for (int i = 0; i < scene->n; i++) {
+    same = same && !(diagonal[i] < diagonal[0]) && !(diagonal[i] > diagonal[0]);
+    if (!(diagonal[i] < 0) && !(diagonal[i] > 0))
+      return dvi__scene_refuse(scene, owner(scene, i)->span, "the rate of %s has no mass: L has no square of it",
+                               owner(scene, i)->name);
+  }
+  scene->mass_diagonal = diagonal;
+  scene->mass = !same ? "diagonal" : diagonal[0] < 1 || diagonal[0] > 1 ? "scalar" : "identity";
+  scene->terms.mass = same ? (dvi_mass){.scalar = diagonal[0]} : (dvi_mass){.diagonal = diagonal};
+  return true;
+}
+
+/* Whether no velocity stands alone: the momenta at rest are zero. */
+static bool rests(dvi_scene *scene, dvi__term *T, int *at_rest)
+{
+  const double *x[DVI__BLOCKS] = {scene->zeros, scene->zeros, scene->zeros, scene->zeros};
+  double *momentum = malloc((size_t)scene->n * sizeof *momentum);
+  double *gradient[DVI__BLOCKS] = {[DVI__VELOCITIES] = momentum};
+  if (momentum == NULL) return dvi__scene_no_memory(scene);
+  *at_rest = dvi__function_gradient(T->function, 1, x, gradient) == 0;
+  for (int i = 0; i < scene->n && *at_rest; i++) *at_rest = !(momentum[i] < 0) && !(momentum[i] > 0);
+  free(momentum);
+  return true;
+}
+
+/* ---- the three forms ---- */
+
+static bool make_general(dvi_scene *scene, dvi__kernels *L)
+{
+  dvi__term *term;
+  if (!dvi__kernels_function(scene, L, 0, &term) || !dvi__make_lagrangian(scene, term, &scene->lagrangian)) return false;
+  scene->terms.lagrangian = &scene->lagrangian;
+  scene->form = "general Lagrangian";
+  return true;
+}
+
+static bool make_separable(dvi_scene *scene, dvi__kernels *L, const char *rest)
+{
+  dvi__kernels moving = {0}, V = {0};
+  dvi__term *T = NULL;
+  dvi_pattern pattern;
+  double *values;
+  int at_rest = 0;
+  bool good = dvi__kernels_moving(scene, L, DVI__VELOCITIES, DVI__VELOCITIES, &moving) &&
+              dvi__kernels_function(scene, &moving, 0, &T) && rests(scene, T, &at_rest);
+  dvi__kernels_free(&moving);
+  if (T != NULL) T->role = DVI__STANDS_BESIDE;
+  if (good && !at_rest) return make_general(scene, L);
+  good = good && mass_values(scene, T, &pattern, &values) && set_mass(scene, &pattern, values) &&
+         dvi__kernels_at_rest(scene, L, DVI__VELOCITIES, 1, &V) && add_potential(scene, rest, &V);
+  dvi__kernels_free(&V);
+  scene->form = "separable";
+  return good;
+}
+
+/* alpha(q).w, and H. */
+static bool make_degenerate(dvi_scene *scene, dvi__kernels *L, const char *rest)
+{
+  dvi__kernels alpha = {0}, H = {0};
+  dvi__term *term = NULL;
+  const bool good = dvi__kernels_moving(scene, L, DVI__VELOCITIES, DVI__MULTIPLIERS, &alpha) &&
+                    dvi__kernels_function(scene, &alpha, scene->n, &term) && dvi__make_one_form(scene, term, &scene->one_form) &&
+                    dvi__kernels_at_rest(scene, L, DVI__VELOCITIES, 1, &H) && add_potential(scene, rest, &H);
+  dvi__kernels_free(&alpha);
+  dvi__kernels_free(&H);
+  scene->terms.one_form = &scene->one_form;
+  scene->form = "one-form";
+  return good;
+}
+
+/* Whether a kernel of L has both the time and velocities. */
+static int drives_velocities(const dvi__kernels *L)
+{
+  for (int k = 0; k < L->count; k++) {
+    int velocity = 0, time = 0;
+    for (int i = 0; i < L->kernel[k].input_count; i++) {
+      const dvi__kernel_input *input = &L->kernel[k].input[i];
+      velocity = velocity || (!input->is_data && input->block == DVI__VELOCITIES);
+      time = time || (!input->is_data && input->block == DVI__TIME);
+    }
+    if (velocity && time) return 1;
+  }
+  return 0;
+}
+
+static bool make_form(dvi_scene *scene, const dvi__expression *e, dvi__kernels *L, const char *rest)
+{
+  dvi__degree degree;
+  if (!degree_of(scene, L, &degree)) return false;
+  if (degree.degree == 0) return dvi__scene_refuse(scene, e->span, "there is no velocity in it, so nothing would move");
+  if (degree.degree == 1 && !drives_velocities(L)) return make_degenerate(scene, L, rest);
+  return degree.degree == 2 && degree.pure ? make_separable(scene, L, rest) : make_general(scene, L);
+}
+
+static bool read_moving(dvi_scene *scene, const dvi__tree *section, const char *where, const char *rest)
+{
+  const dvi__expression *e;
+  dvi__kernels L = {0};
+  const bool good = dvi__tree_expression(scene, section, &e) &&
+                    dvi__kernels_add(scene, DVI__SAYS_Q | DVI__SAYS_V | DVI__SAYS_T, where, e, 0, &L) &&
+                    make_form(scene, e, &L, rest);
+  dvi__kernels_free(&L);
+  return good;
+}
+
+bool dvi__read_lagrangian(dvi_scene *scene, const dvi__tree *section)
+{
+  return room_for_potentials(scene, 0) && read_moving(scene, section, "a Lagrangian", "potential");
+}
+
+bool dvi__read_kinetic(dvi_scene *scene, const dvi__tree *section)
+{
+  return read_potentials(scene, dvi__tree_find(scene->tree, "potentials")) &&
+         read_moving(scene, section, "a kinetic energy", "kinetic at rest");
+}
+
+/* ---- one-forms and Hamiltonians that are given as such ---- */
+
+/* value.w for the numbers of a target, added to a total. */
+static void add_product(dvi__context *c, dvi__value value, dvi__numbering numbering, dvi__node *total)
+{
+  for (int k = 0; k < dvi__value_size(value); k++) {
+    const dvi__node w = dvi__variable_node(c, DVI__MULTIPLIERS, numbering, k);
+    *total = dvi__apply(c->graph, DVI__OP_ADD, *total, dvi__apply(c->graph, DVI__OP_MULTIPLY, dvi__value_at(value, k), w));
+  }
+}
+
+static bool add_component(dvi_scene *scene, const dvi__tree *key, const dvi__tree *tree, const char *where, dvi__kernels *list)
+{
+  dvi__context c;
+  dvi__target target;
+  dvi__value value;
+  dvi__numbering numbering;
+  const dvi__expression *e;
+  if (!dvi__read_target(scene, key, &target)) return false;
+  if (target.says != DVI__SAYS_Q)
+    return dvi__scene_refuse(scene, key->span, "%s is given by coordinate, neither by rate nor by momentum", where);
+  if (!dvi__context_make(&c, scene, DVI__SAYS_Q, where)) return false;
+  bool good = dvi__target_value(&c, &target, tree, &value, &numbering, &e);
+  if (good) {
+    dvi__node total = dvi__constant(c.graph, 0);
+    add_product(&c, value, numbering, &total);
+    good = dvi__kernels_add_node(&c, total, list);
+  }
+  dvi__context_free(&c);
+  return good;
+}
+
+bool dvi__read_field(dvi_scene *scene, const dvi__tree *field, const char *where, dvi__term **term)
+{
+  dvi__kernels list = {0};
+  bool good = dvi__want_mapping(scene, field, where);
+  for (int i = 0; good && i < field->count; i++) good = add_component(scene, field->key[i], field->child[i], where, &list);
+  good = good && dvi__kernels_function(scene, &list, scene->n, term);
+  dvi__kernels_free(&list);
+  return good;
+}
+
+bool dvi__read_one_form(dvi_scene *scene, const dvi__tree *section)
+{
+  dvi__term *term;
+  if (!dvi__read_field(scene, section, "a one-form", &term) || !dvi__make_one_form(scene, term, &scene->one_form)) return false;
+  scene->terms.one_form = &scene->one_form;
+  scene->form = "one-form";
+  return room_for_potentials(scene, 0) && read_potential(scene, dvi__tree_find(scene->tree, "hamiltonian"), "H");
+}
+
+/* The function phi.w. */
+static bool constraints_function(dvi_scene *scene, const dvi__tree *section, dvi__term **term)
+{
+  dvi__context c;
+  dvi__kernels list = {0};
+  if (!dvi__context_make(&c, scene, DVI__SAYS_Q | DVI__SAYS_P, "a constraint")) return false;
+  dvi__node total = dvi__constant(c.graph, 0);
+  bool good = true;
+  for (int a = 0; a < section->count && good; a++) {
+    const dvi__expression *e;
+    dvi__node phi;
+    good = dvi__tree_expression(scene, section->child[a], &e) && dvi__elaborate_number(&c, e, &phi);
+    if (good) add_product(&c, (dvi__value){.one = phi}, (dvi__numbering){.base = a}, &total);
+  }
+  good = good && dvi__kernels_add_node(&c, total, &list) && dvi__kernels_function(scene, &list, section->count, term);
+  dvi__context_free(&c);
+  dvi__kernels_free(&list);
+  return good;
+}
+
+static bool read_hamiltonian(dvi_scene *scene, const dvi__tree *tree)
+{
+  const dvi__expression *e;
+  dvi__kernels H = {0};
+  dvi__term *term;
+  const bool good = dvi__tree_expression(scene, tree, &e) &&
+                    dvi__kernels_add(scene, DVI__SAYS_Q | DVI__SAYS_P | DVI__SAYS_T, "a Hamiltonian", e, 0, &H) &&
+                    dvi__kernels_function(scene, &H, 0, &term) && dvi__make_hamiltonian(scene, term, &scene->hamiltonian);
+  dvi__kernels_free(&H);
+  scene->terms.hamiltonian = &scene->hamiltonian;
+  return good;
+}
+
+bool dvi__read_constraints(dvi_scene *scene, const dvi__tree *section)
+{
+  dvi__term *term;
+  if (!dvi__want_mapping(scene, section, "constraints")) return false;
+  if (section->count == 0 || section->count % 2 != 0 || section->count > 2 * scene->n)
+    return dvi__scene_refuse(scene, section->span,
+                             "there are %d constraints; an even number is needed, at most 2 for each coordinate", section->count);
+  if (!constraints_function(scene, section, &term) || !dvi__make_constraint(scene, term, &scene->constraint)) return false;
+  scene->terms.constraint = &scene->constraint;
+  scene->form = "Hamiltonian with constraints";
+  return read_hamiltonian(scene, dvi__tree_find(scene->tree, "hamiltonian"));
+}
