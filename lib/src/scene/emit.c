@@ -147,7 +147,7 @@ static const char *const beginning[] = {
     "  double e = 1.0 - x * (y * y);\n"
     "  y += y * (e * (0.5 + e * (0.375 + e * 0.3125)));\n"
     "  e = 1.0 - x * (y * y);\n"
-    "  y += y * (e * (0.5 + e * 0.375));\n"
+    "  y += y * (e * (0.5 + e * (0.375 + e * 0.3125)));\n"
     "  if (careful) return x >= DBL_MIN && x <= 1e300 ? y : 1.0 / sqrt(x);\n"
     "  *unusual |= (x >= DBL_MIN ? 0 : 1) | (x <= 1e300 ? 0 : 1);\n"
     "  return y;\n"
