@@ -5,7 +5,7 @@
 
 #include "scene/emit_parts.h"
 
-enum { POINTS = 8, ROOM = 8192, ROOM_MAX = 131072 };
+enum { POINTS = 8, ROOM = 8192, ROOM_MAX = 131072, TERMS_MAX = 2048 };
 
 /* --- Which units add all their elements to one entry. --- */
 
@@ -17,7 +17,7 @@ static int is_one_entry(const dvi__entries *entries, int first)
   return minor.list == NULL && major.list == NULL && minor.stride + entries->scale * major.stride == 0;
 }
 
-enum { NEVER, ALWAYS, SOMETIMES };
+enum { NEVER, ALWAYS, SOMETIMES, NO_MEMORY };
 
 /* In which units; `flag` [units] has them. */
 static int find_folds(const dvi__entries *entries, int elements, int *flag)
@@ -27,19 +27,27 @@ static int find_folds(const dvi__entries *entries, int elements, int *flag)
   return folds == 0 ? NEVER : folds == units ? ALWAYS : SOMETIMES;
 }
 
-/* Fold the row of output k where it belongs to one entry; k < 0: only write the array of flags that this wants. */
-static dvi_status emit_fold(dvi__emitter *out, const dvi__entries *entries, int elements, int k)
+/* Whether all elements are one unit, of which every entry's sum is written out. */
+static int is_short(const dvi__part *part)
+{
+  const int elements = part->kernel->elements;
+  int few = elements <= DVI__UNIT && elements * part->target_count <= TERMS_MAX;
+  for (int k = 0; k < part->target_count && elements > 1; k++) {
+    const dvi__target *target = &part->target[k];
+    few = few && !is_one_entry(&target->entry, 0) && !(target->mirrored && is_one_entry(&target->mirror, 0));
+  }
+  return few;
+}
+
+/* How a row is added to entries; the array of flags that this wants is written if it is not there yet. NO_MEMORY: there is none. */
+static int declare_fold(dvi__emitter *out, const dvi__entries *entries, int elements, int *list)
 {
   int *flag = calloc((size_t)elements / DVI__UNIT + 1, sizeof *flag);
-  if (flag == NULL) return DVI_NO_MEMORY;
+  if (flag == NULL) return NO_MEMORY;
   const int folds = find_folds(entries, elements, flag), units = (elements + DVI__UNIT - 1) / DVI__UNIT;
-  const int list = folds == SOMETIMES ? dvi__emit_ints_of(out, entries, units, flag) : -1;
+  if (folds == SOMETIMES) *list = dvi__emit_ints_of(out, entries, units, flag);
   free(flag);
-  if (k < 0 || folds == NEVER) return DVI_OK;
-  dvi__emit(out, "    ");
-  if (folds == SOMETIMES) dvi__emit(out, "if (dvi_list_%d[first / %d]) ", list, DVI__UNIT);
-  dvi__emit(out, "dvi_fold(left, points, y[%d]), left = 1;\n", k);
-  return DVI_OK;
+  return folds;
 }
 
 /* --- Arrays, before the functions. --- */
@@ -53,7 +61,8 @@ static dvi_status declare_entries(dvi__emitter *out, const dvi__entries *entries
 {
   declare_places(out, &entries->minor, elements);
   if (entries->scale != 0) declare_places(out, &entries->major, elements);
-  return emit_fold(out, entries, elements, -1);
+  int list;
+  return declare_fold(out, entries, elements, &list) == NO_MEMORY ? DVI_NO_MEMORY : DVI_OK;
 }
 
 static dvi_status declare_arrays(dvi__emitter *out, const dvi__part *part)
@@ -62,7 +71,7 @@ static dvi_status declare_arrays(dvi__emitter *out, const dvi__part *part)
   dvi_status status = DVI_OK;
   for (int i = 0; i < part->variable_count; i++) declare_places(out, &part->variable[i], elements);
   for (int c = 0; c < part->column_count; c++) (void)dvi__emit_doubles(out, elements, part->column[c]);
-  for (int k = 0; k < part->program.output_count && status == DVI_OK; k++) {
+  for (int k = 0; k < part->target_count && status == DVI_OK && !is_short(part); k++) {
     status = declare_entries(out, &part->target[k].entry, elements);
     if (status == DVI_OK && part->target[k].mirrored) status = declare_entries(out, &part->target[k].mirror, elements);
   }
@@ -106,26 +115,55 @@ static void emit_inputs(dvi__emitter *out, const dvi__part *part, const int *nam
               dvi__emit_doubles(out, elements, part->column[c]));
 }
 
-/* Add the row of output k to its entries. */
-static dvi_status emit_addition(dvi__emitter *out, const dvi__part *part, int k, const dvi__entries *entries)
+/* Add the row of a target to its entries, or subtract it. */
+static dvi_status emit_addition(dvi__emitter *out, const dvi__part *part, const dvi__target *target, const dvi__entries *entries)
 {
   const int elements = part->kernel->elements;
-  const dvi_status status = emit_fold(out, entries, elements, k);
-  dvi__emit(out, "    for (int e = 0; e < left; e++)\n      for (int p = 0; p < points; p++) y%d[", part->target[k].array);
+  int list = 0;
+  const int folds = declare_fold(out, entries, elements, &list);
+  if (folds == NO_MEMORY) return DVI_NO_MEMORY;
+  if (folds == ALWAYS) dvi__emit(out, "  dvi_fold(elements, points, y[%d], sum);\n", target->output);
+  if (folds == SOMETIMES) {
+    dvi__emit(out, "  row = y[%d], left = elements;\n  if (dvi_list_%d[first / %d])", target->output, list, DVI__UNIT);
+    dvi__emit(out, " dvi_fold(elements, points, row, sum), row = sum, left = 1;\n");
+  }
+  dvi__emit(out, "  for (int e = 0; e < %s; e++) {\n", folds == NEVER ? "elements" : folds == ALWAYS ? "1" : "left");
+  dvi__emit(out, "    DVI_INDEPENDENT\n    for (int p = 0; p < points; p++) y%d[", target->array);
   emit_entry(out, entries, elements);
-  dvi__emit(out, " * n + p] += y[%d][e * points + p];\n", k);
-  return status;
+  dvi__emit(out, " * n + p] %s ", target->negative ? "-=" : "+=");
+  if (folds == NEVER)
+    dvi__emit(out, "y[%d]", target->output);
+  else
+    dvi__emit(out, folds == ALWAYS ? "sum" : "row");
+  dvi__emit(out, "[e * points + p];\n  }\n");
+  return DVI_OK;
 }
 
 static dvi_status emit_additions(dvi__emitter *out, const dvi__part *part)
 {
   dvi_status status = DVI_OK;
-  for (int k = 0; k < part->program.output_count && status == DVI_OK; k++) {
-    dvi__emit(out, "  {\n    int left = elements;\n");
-    status = emit_addition(out, part, k, &part->target[k].entry);
-    if (status == DVI_OK && part->target[k].mirrored) status = emit_addition(out, part, k, &part->target[k].mirror);
-    dvi__emit(out, "  }\n");
+  for (int k = 0; k < part->target_count && status == DVI_OK; k++) {
+    const dvi__target *target = &part->target[k];
+    status = emit_addition(out, part, target, &target->entry);
+    if (status == DVI_OK && target->mirrored) status = emit_addition(out, part, target, &target->mirror);
   }
+  return status;
+}
+
+/* All entries of a short part, each with the sum of what is added to it. */
+static dvi_status emit_entries(dvi__emitter *out, const dvi__part *part)
+{
+  dvi__contributions all;
+  const dvi_status status = dvi__contributions_find(1, part, &all);
+  dvi__emit(out, "  DVI_INDEPENDENT\n  for (int p = 0; p < points; p++) {\n");
+  for (int i = 0; i < all.count; i++) {
+    const dvi__contribution *own = &all.list[i];
+    if (dvi__contribution_is_first(&all, i))
+      dvi__emit(out, "%s    y%d[%d * n + p] = y%d[%d * n + p]", i > 0 ? ";\n" : "", own->array, own->entry, own->array, own->entry);
+    dvi__emit(out, " %c y[%d][%d * points + p]", own->negative ? '-' : '+', own->output, own->element);
+  }
+  dvi__emit(out, "%s  }\n", all.count > 0 ? ";\n" : "");
+  free(all.list);
   return status;
 }
 
@@ -152,8 +190,10 @@ static dvi_status emit_unit(dvi__emitter *out, const dvi__emitted_sum *own, int 
             k);
   dvi__emit(out, "    const double *const *x, double *const *result, ptrdiff_t k)\n{\n");
   dvi__emit_pointers(out, own, k, k + 1, " + k");
-  dvi__emit(out, "  double y[%d][%d];\n", program->output_count, unit_of(part) * points_of(part));
-  dvi__emit(out, "  int64_t unusual = 0;\n  (void)careful, (void)first, (void)x;\n");
+  const int lanes = unit_of(part) * points_of(part);
+  dvi__emit(out, "  double y[%d][%d], sum[%d];\n", program->output_count, lanes, lanes);
+  dvi__emit(out, "  const double *row;\n  int64_t unusual = 0;\n  int left;\n");
+  dvi__emit(out, "  (void)careful, (void)first, (void)x, (void)sum, (void)row, (void)left;\n");
   dvi__emit(
       out,
       "  DVI_INDEPENDENT\n  for (int e = 0; e < elements; e++) {\n    DVI_INDEPENDENT\n    for (int p = 0; p < points; p++) {\n");
@@ -163,7 +203,7 @@ static dvi_status emit_unit(dvi__emitter *out, const dvi__emitted_sum *own, int 
     dvi__emit(out, "      y[%d][e * points + p] = r%d;\n", i, name[program->row_count - program->output_count + i]);
   dvi__emit(out, "    }\n  }\n");
   free(name);
-  const dvi_status status = emit_additions(out, part);
+  const dvi_status status = is_short(part) ? emit_entries(out, part) : emit_additions(out, part);
   dvi__emit(out, "  return unusual;\n}\n");
   return status;
 }
@@ -178,9 +218,9 @@ static int is_row(const dvi__places *places)
 /* Whether elements are neighbours in all that they read and write. */
 static int is_flat(const dvi__part *part)
 {
-  int flat = part->column_count == 0;
+  int flat = part->column_count == 0 && !is_short(part);
   for (int i = 0; i < part->variable_count; i++) flat &= is_row(&part->variable[i]);
-  for (int k = 0; k < part->program.output_count; k++) {
+  for (int k = 0; k < part->target_count; k++) {
     const dvi__target *target = &part->target[k];
     flat &= target->entry.scale == 0 && is_row(&target->entry.minor);
     flat &= !target->mirrored || (target->mirror.scale == 0 && is_row(&target->mirror.minor));

@@ -18,7 +18,7 @@ void dvi__emit_pointers(dvi__emitter *out, const dvi__emitted_sum *own, int firs
   for (int k = first; k < last; k++) {
     const dvi__part *part = &own->sum->part[k];
     for (int i = 0; i < part->variable_count; i++) blocks |= 1U << part->block[i];
-    for (int i = 0; i < part->program.output_count; i++) arrays |= 1U << part->target[i].array;
+    for (int i = 0; i < part->target_count; i++) arrays |= 1U << part->target[i].array;
   }
   for (int b = 0; blocks >> b != 0; b++)
     if ((blocks >> b & 1U) != 0) dvi__emit(out, "  const double *restrict const x%d = x[%d]%s;\n", b, b, shift);

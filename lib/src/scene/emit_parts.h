@@ -19,6 +19,21 @@ typedef struct dvi__emitted_sum {
   unsigned mask;
 } dvi__emitted_sum;
 
+/* An output of the sum's parts, counted over all of them, of an element, that is added to an entry of a result, or subtracted. */
+typedef struct dvi__contribution {
+  int array, entry, order, output, element, negative;
+} dvi__contribution;
+
+typedef struct dvi__contributions {
+  int count, output_count;
+  dvi__contribution *list; /* by array, entry and order */
+} dvi__contributions;
+
+/* All contributions of some parts; the list is to be freed. */
+dvi_status dvi__contributions_find(int part_count, const dvi__part *part, dvi__contributions *all);
+/* Whether contribution i is the first one to its entry. */
+int dvi__contribution_is_first(const dvi__contributions *all, int i);
+
 /* As dvi__emit_ints, for numbers that have no lasting address: `key` stands for it. */
 int dvi__emit_ints_of(dvi__emitter *out, const void *key, int count, const int *value);
 

@@ -203,15 +203,13 @@ static dvi_status make(maker *m, int root_count, const dvi__node *root)
   if (status != DVI_OK) return status;
   status = dvi__program_make(m->kernel->graph, m->part->variable_count + m->part->column_count, m->given, root_count, root,
                              &m->part->program);
-  return status == DVI_OK && !dvi__part_fits(m->part) ? DVI_BAD_SIZE : status;
+  return status == DVI_OK ? dvi__part_plan(m->part) : status;
 }
 
 dvi__sum *dvi__sum_new(dvi__function *function)
 {
   dvi__sum *sum = dvi__arena_take(&function->arena, 1, sizeof *sum);
   if (sum == NULL) return NULL;
-  sum->part = dvi__arena_take(&function->arena, (size_t)function->kernel_count, sizeof *sum->part);
-  if (sum->part == NULL) return NULL;
   sum->before = function->last;
   function->last = sum;
   return sum;
@@ -260,11 +258,26 @@ static void find_groups(const dvi__part *part)
   }
 }
 
+/* A place for another part; NULL: no memory. */
+static dvi__part *next_part(dvi__function *function, dvi__sum *sum)
+{
+  if (sum->part_count == sum->room) {
+    const int room = 2 * sum->room + 4;
+    dvi__part *part = dvi__arena_take(&function->arena, (size_t)room, sizeof *part);
+    if (part == NULL) return NULL;
+    if (sum->part_count > 0) memcpy(part, sum->part, (size_t)sum->part_count * sizeof *part);
+    sum->part = part;
+    sum->room = room;
+  }
+  return &sum->part[sum->part_count++];
+}
+
 dvi_status dvi__sum_extend(dvi__function *function, dvi__sum *sum, int k, int root_count, dvi__node *root, dvi__target *target)
 {
   const dvi__kernel *kernel = &function->kernel[k];
   if (root_count == 0 || kernel->elements == 0) return DVI_OK;
-  dvi__part *part = &sum->part[sum->part_count++];
+  dvi__part *part = next_part(function, sum);
+  if (part == NULL) return DVI_NO_MEMORY;
   *part = (dvi__part){.kernel = kernel, .target_count = root_count, .target = target};
   maker m = {.function = function, .kernel = kernel, .derivatives = &function->derivatives[k], .part = part};
   for (int i = 0; i < root_count; i++)

@@ -5,6 +5,7 @@
 #include "scene/lanes.h"
 
 enum {
+  HALF = DVI__LANES / 2,
   SMALL = 4096,   /* numbers that stay in the nearest cache */
   MIDDLE = 32768, /* that stay in the next one */
   LARGE = DVI__ROWS_MAX * DVI__LANES
@@ -21,6 +22,7 @@ DVI__SCENE_INLINE void copy_run(int points, const double *restrict from, double 
 {
   int k = 0;
   for (; k + DVI__LANES <= points; k += DVI__LANES) memcpy(to + k, from + k, DVI__LANES * sizeof *to);
+  for (; k + HALF <= points; k += HALF) memcpy(to + k, from + k, HALF * sizeof *to);
   for (; k < points; k++) to[k] = from[k];
 }
 
@@ -111,6 +113,8 @@ DVI__SCENE_INLINE void add_run(int points, double sign, const double *restrict r
   int k = 0;
   for (; k + DVI__LANES <= points; k += DVI__LANES)
     for (int i = k; i < k + DVI__LANES; i++) to[i] += sign * row[i];
+  for (; k + HALF <= points; k += HALF)
+    for (int i = k; i < k + HALF; i++) to[i] += sign * row[i];
   for (; k < points; k++) to[k] += sign * row[k];
 }
 
@@ -255,27 +259,21 @@ DVI__SCENE_LANES static void scatter(const dvi__part *part, const tile *at, cons
 
 /* --- Tiles. --- */
 
-/* The shape of tiles with at most so many lanes. */
-static tile shape_of(const dvi__part *part, int lanes, int count)
+/* The shape of tiles at so many points: as many points as fit beside a unit, then as many units as fit. */
+static tile shape_of(const dvi__part *part, int count)
 {
-  const int all = part->kernel->elements, unit = all < DVI__UNIT ? all : DVI__UNIT;
-  tile shape = {.elements = unit, .points = lanes / unit, .count = count};
-  if (shape.points >= count) {
-    shape.points = count;
-    if (unit == DVI__UNIT) shape.elements = lanes / (unit * count) * unit;
+  const int unit = part->unit;
+  tile shape = {.elements = unit, .points = count, .count = count};
+  if ((ptrdiff_t)unit * count <= part->lanes) {
+    if (unit < part->kernel->elements) shape.elements = part->lanes / (unit * count) * unit;
     return shape;
   }
-  const int chunks = (count + shape.points - 1) / shape.points, even = (count + chunks - 1) / chunks;
-  if (shape.points >= DVI__LANES)
-    shape.points = dvi__row_width(even) <= shape.points ? dvi__row_width(even) : shape.points / DVI__LANES * DVI__LANES;
-  else
+  const int most = part->lanes / unit, chunks = (count + most - 1) / most, even = (count + chunks - 1) / chunks;
+  if (most < DVI__LANES)
     shape.points = even;
+  else
+    shape.points = dvi__row_width(even) <= most ? dvi__row_width(even) : most / DVI__LANES * DVI__LANES;
   return shape;
-}
-
-static int rows_of(const dvi__part *part)
-{
-  return part->program.row_count + part->program.input_count;
 }
 
 static void run_tile(const dvi__part *part, const tile *at, const double *const *x, double *const *result, const double **input,
@@ -319,31 +317,31 @@ static void run_large(const dvi__part *part, const tile *shape, const double *co
 /* Lanes of a tile of which so many numbers are wanted at most. */
 static int lanes_for(const dvi__part *part, int numbers)
 {
-  const int lanes = numbers / rows_of(part) / DVI__LANES * DVI__LANES;
+  const int lanes = numbers / (part->program.row_count + part->program.input_count) / DVI__LANES * DVI__LANES;
   return lanes < DVI__LANES_MAX ? lanes : DVI__LANES_MAX;
 }
 
-int dvi__part_fits(const dvi__part *part)
+dvi_status dvi__part_plan(dvi__part *part)
 {
-  const int all = part->kernel->elements;
-  return lanes_for(part, LARGE) >= (all < DVI__UNIT ? all : DVI__UNIT);
-}
-
-static void run_part(const dvi__part *part, int count, const double *const *x, double *const *result)
-{
-  const int all = part->kernel->elements, unit = dvi__row_width(all < DVI__UNIT ? all : DVI__UNIT);
-  const int lanes = lanes_for(part, SMALL);
-  if (lanes >= unit) {
-    const tile shape = shape_of(part, lanes, count);
-    run_small(part, &shape, x, result);
-    return;
-  }
-  const int more = lanes_for(part, MIDDLE);
-  const tile shape = shape_of(part, more > unit ? more : unit, count);
-  run_large(part, &shape, x, result);
+  const int all = part->kernel->elements, large = lanes_for(part, LARGE);
+  part->unit = all < DVI__UNIT ? all : DVI__UNIT;
+  part->lanes = lanes_for(part, SMALL);
+  part->large = part->lanes < part->unit;
+  if (!part->large) return DVI_OK;
+  part->lanes = lanes_for(part, MIDDLE);
+  const int least = dvi__row_width(part->unit);
+  if (part->lanes < least) part->lanes = least;
+  return least <= large ? DVI_OK : DVI_BAD_SIZE;
 }
 
 void dvi__sum_add(const dvi__sum *sum, int count, const double *const *x, double *const *result)
 {
-  for (int k = 0; k < sum->part_count; k++) run_part(&sum->part[k], count, x, result);
+  for (int k = 0; k < sum->part_count; k++) {
+    const dvi__part *part = &sum->part[k];
+    const tile shape = shape_of(part, count);
+    if (part->large)
+      run_large(part, &shape, x, result);
+    else
+      run_small(part, &shape, x, result);
+  }
 }
