@@ -7,6 +7,19 @@
 
 /* ---- names ---- */
 
+/* Complain of a name that is not known, or not yet. */
+static dvi__value unknown(dvi__context *c, const dvi__expression *e)
+{
+  static const char *const section[] = {"parameters", "coordinates", "definitions"};
+  for (int k = 0; k < 3; k++) {
+    const dvi__tree *names = dvi__tree_find(c->scene->tree, section[k]);
+    if (names != NULL && names->kind == DVI__MAPPING && dvi__tree_find(names, e->name) != NULL)
+      return dvi__refused(
+          dvi__refuse(c, e->span, "'%s' cannot stand in %s: it is not known yet, for it comes later", e->name, c->where));
+  }
+  return dvi__refused(dvi__names_unknown(&c->scene->names, &c->scene->arena, c->scene->complaint, e->name, e->span));
+}
+
 static dvi__value index_number(dvi__context *c, const dvi__index *index)
 {
   if (index->each == NULL) return dvi__number_value(dvi__constant(c->graph, index->all));
@@ -59,8 +72,7 @@ dvi__value dvi__name_value(dvi__context *c, const dvi__expression *e)
     return dvi__number_value(dvi__variable_node(c, DVI__TIME, (dvi__numbering){0}, 0));
   }
   const dvi__name *name = dvi__names_find(&c->scene->names, e->name);
-  if (name == NULL)
-    return dvi__refused(dvi__names_unknown(&c->scene->names, &c->scene->arena, c->scene->complaint, e->name, e->span));
+  if (name == NULL) return unknown(c, e);
   if (name->sort == DVI__PARAMETER) return parameter_value(c, &c->scene->parameter[name->number]);
   if (name->sort == DVI__DEFINITION) return definition_value(c, name->number);
   const dvi__coordinate *x = &c->scene->coordinate[name->number];
