@@ -149,6 +149,21 @@ START_TEST(folding_makes_no_infinities)
 }
 END_TEST
 
+/* Factors near the ends of the range stay where they were written. */
+START_TEST(gathering_factors_makes_no_infinities)
+{
+  const dvi__node x = input(0), y = input(1), large = multiply(constant(1e308), x);
+  const dvi__node roots[2] = {multiply(multiply(constant(1e150), x), multiply(constant(1e150), y)), add(large, large)};
+  const double at[2] = {1e10, 1e-300}, at_small[2] = {1e-10, 0};
+  double value[2];
+  dvi__node not_finite;
+  ck_assert_int_eq(dvi__evaluate(&graph, at, 1, roots, value, &not_finite), DVI_OK);
+  ck_assert_double_eq_tol(value[0], 1e10, 1e-4);
+  ck_assert_int_eq(dvi__evaluate(&graph, at_small, 2, roots, value, &not_finite), DVI_OK);
+  ck_assert_double_eq_tol(value[1], 2e298, 1e284);
+}
+END_TEST
+
 START_TEST(powers_of_one_base_are_one_power)
 {
   const dvi__node x = input(0), y = input(1);
@@ -430,6 +445,7 @@ int main(void)
   tcase_add_test(tests, zeros_ones_and_signs_vanish);
   tcase_add_test(tests, constants_are_folded_and_gathered);
   tcase_add_test(tests, folding_makes_no_infinities);
+  tcase_add_test(tests, gathering_factors_makes_no_infinities);
   tcase_add_test(tests, powers_of_one_base_are_one_power);
   tcase_add_test(tests, domains_are_kept);
   tcase_add_test(tests, the_pull_of_two_bodies_costs_one_power);

@@ -104,8 +104,8 @@ static int is_inside(dvi__op op, double number, quad a, quad b)
   case DVI__OP_POWER: return a > (quad)SMALLEST || (number == floor(number) && a < -(quad)SMALLEST);
   case DVI__OP_ASIN:
   case DVI__OP_ACOS:
-  case DVI__OP_ATANH: return fabsq(a) < 0.9Q;
-  case DVI__OP_ACOSH: return a > 1.1Q;
+  case DVI__OP_ATANH: return fabsq(a) < (quad)0.9;
+  case DVI__OP_ACOSH: return a > (quad)1.1;
   case DVI__OP_ABS:
   case DVI__OP_SIGN: return fabsq(a) > (quad)SMALLEST;
   case DVI__OP_DIVIDE: return fabsq(b) > (quad)SMALLEST;
@@ -216,7 +216,7 @@ static quad value_at(const expression *e, const quad *x)
 }
 
 /* With this step central differences of moderate functions are right to 1e-18 at least. */
-static const quad STEP = 1e-10Q;
+static const quad STEP = (quad)1e-10;
 
 static quad difference(const expression *e, int i)
 {
@@ -231,7 +231,7 @@ static quad difference(const expression *e, int i)
 /* Of the second order, from values: with a longer step, for the difference is divided by its square. */
 static quad second_difference(const expression *e, int i, int j)
 {
-  const quad h = 1e-9Q;
+  const quad h = (quad)1e-9;
   quad sum = 0;
   for (int corner = 0; corner < 4; corner++) {
     quad x[INPUTS];

@@ -192,6 +192,7 @@ END_TEST
 START_TEST(usual_slips_get_a_remedy)
 {
   check_refused("2x", "s.yaml:1:2: an operator is missing here; write 2*x for a product\n  2x\n   ^");
+  check_refused("2e", "s.yaml:1:2: an operator is missing here; write 2*e for a product\n  2e\n   ^");
   check_refused("2(x)", "s.yaml:1:2: an operator is missing here; write 2*(..) for a product\n  2(x)\n   ^");
   check_refused("sin x",
                 "s.yaml:1:5: an operator is missing here; write sin*x for a product, sin(x) for a function\n  sin x\n      ^");
@@ -261,7 +262,7 @@ END_TEST
 
 START_TEST(chains_may_be_as_long_as_the_file)
 {
-  const dvi__expression *e = repeated(200000, "x+", "*x");
+  const dvi__expression *e = repeated(200000, "x'+", "*x");
   ck_assert_ptr_nonnull(e);
   int terms = 1;
   for (; e->form == DVI__FORM_ADD; e = e->part[0]) terms++;

@@ -110,6 +110,10 @@ START_TEST(spans_of_collections_end_with_what_they_hold)
   check_span(&scene, dvi__tree_find(root, "a")->child[1]->span, "{b: c}");
   check_span(&scene, dvi__tree_find(root, "b")->span, "c: 1\n  d: 'e'");
   check_span(&scene, dvi__tree_find(root, "f")->span, "- g\n- |\n  h");
+  root = tree_of("a:\n  b: 1\n  c:\nd:\n-\ne: []\n");
+  check_span(&scene, dvi__tree_find(root, "a")->span, "b: 1\n  c:");
+  check_span(&scene, dvi__tree_find(root, "d")->span, "-");
+  check_span(&scene, dvi__tree_find(root, "e")->span, "[]");
 }
 END_TEST
 

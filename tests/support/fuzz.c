@@ -44,19 +44,22 @@ static size_t below(size_t bound)
   return (size_t)((z ^ (z >> 31)) % bound);
 }
 
+/* A full corpus gives up any other text for a new one. */
 static void remember(const char *at, size_t size)
 {
-  if (corpus.count == POOL_MAX) return;
+  const size_t place = corpus.count < POOL_MAX ? corpus.count++ : below(POOL_MAX);
   char *copy = malloc(size + 1);
   fuzz_requires(copy != NULL);
   memcpy(copy, at, size);
-  corpus.at[corpus.count] = copy;
-  corpus.size[corpus.count++] = size;
+  free(corpus.at[place]);
+  corpus.at[place] = copy;
+  corpus.size[place] = size;
 }
 
 static void forget_all(void)
 {
-  while (corpus.count > 0) free(corpus.at[--corpus.count]);
+  for (size_t k = 0; k < corpus.count; k++) free(corpus.at[k]);
+  corpus = (pool){0};
 }
 
 /* Put `size` bytes in the place of `gone` others, if there is room. */

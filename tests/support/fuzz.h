@@ -17,7 +17,7 @@ typedef struct fuzz_target {
  * file alone. Returns how many were tried. */
 long fuzz(const fuzz_target *target);
 
-/* As ck_assert, which writes a line each time. */
+/* As ck_assert, which writes a line each time: far too many in `one`. */
 #define fuzz_requires(condition)                      \
   do {                                                \
     if (!(condition)) ck_abort_msg("%s", #condition); \

@@ -16,8 +16,8 @@ void *dvi__arena_take(dvi__arena *arena, size_t count, size_t size);
 /* A copy of so many characters, ended by NUL. */
 char *dvi__arena_text(dvi__arena *arena, const char *text, size_t length);
 
-/* Room for one more than `count` things of `size` bytes: `items` if it has room, else a copy of them with twice as much. NULL as above. For rows that grow by one at a
- * time from none, with NULL. */
+/* Room for one more than `count` things of `size` bytes: `items` if it has room, else a copy of them with twice as much. NULL as above.
+ * For rows that grow by one at a time, from NULL. */
 void *dvi__arena_grow(dvi__arena *arena, void *items, size_t count, size_t size);
 
 /* Free everything; the arena is empty again. */

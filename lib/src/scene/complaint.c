@@ -1,5 +1,5 @@
-/* Errors as compilers print them: the place, the sentence, the line and a caret. Whatever a hostile file holds, what is shown is printable and of bounded
- * length. */
+/* Errors as compilers print them: the place, the sentence, the line and a caret. Whatever a hostile file holds, what is shown can be
+ * printed and is of bounded length. */
 #include "scene/complaint.h"
 #include "scene/utf8.h"
 
@@ -43,7 +43,7 @@ static size_t width_of(const char *text, size_t size)
   return width == 0 ? 1 : width;
 }
 
-/* One character of the source, as it is shown: tabs stay, since the line of the caret has them too. The character's bytes are returned. */
+/* One character as it is shown: tabs stay, since the line of the caret has them too. Returns how many bytes it takes. */
 static size_t put_shown(writer *w, const char *text, size_t size)
 {
   unsigned code = 0;
@@ -166,7 +166,7 @@ static int least(int a, int b)
   return a < b ? a : b;
 }
 
-/* Insertions, deletions, replacements and exchanges of neighbours between two words, in halves; three rows of the table at a time. */
+/* Insertions, deletions, replacements and exchanges of neighbours between two words, in halves; three rows of the table. */
 static int edits(const char *from, const char *to)
 {
   const int columns = (int)strlen(to);

@@ -48,6 +48,9 @@ static dvi_status make_room(dvi__function *function, int most, roots *own)
   return own->target != NULL && own->node != NULL ? DVI_OK : DVI_NO_MEMORY;
 }
 
+/* Most roots of a part: the second derivatives of a large expression do not all fit into one. */
+enum { SLICE = 1024 };
+
 /* A sum to which every kernel gives its roots. */
 typedef dvi_status part_roots(dvi__function *function, int k, unsigned mask, roots *own);
 
@@ -58,7 +61,10 @@ static dvi_status make_sum(dvi__function *function, part_roots *roots_of, unsign
   for (int k = 0; k < function->kernel_count && status == DVI_OK; k++) {
     roots own = {0};
     status = roots_of(function, k, mask, &own);
-    if (status == DVI_OK) status = dvi__sum_extend(function, made, k, own.count, own.node, own.target);
+    for (int first = 0; first < own.count && status == DVI_OK; first += SLICE) {
+      const int count = own.count - first < SLICE ? own.count - first : SLICE;
+      status = dvi__sum_extend(function, made, k, count, own.node + first, own.target + first);
+    }
     free(own.node);
   }
   if (status == DVI_OK) *sum = made;

@@ -203,33 +203,92 @@ static dvi_status make(maker *m, int root_count, const dvi__node *root)
   if (status != DVI_OK) return status;
   status = dvi__program_make(m->kernel->graph, m->part->variable_count + m->part->column_count, m->given, root_count, root,
                              &m->part->program);
-  return status == DVI_OK && !dvi__part_fits(m->part) ? DVI_BAD_SIZE : status;
+  return status == DVI_OK ? dvi__part_plan(m->part) : status;
 }
 
 dvi__sum *dvi__sum_new(dvi__function *function)
 {
   dvi__sum *sum = dvi__arena_take(&function->arena, 1, sizeof *sum);
   if (sum == NULL) return NULL;
-  sum->part = dvi__arena_take(&function->arena, (size_t)function->kernel_count, sizeof *sum->part);
-  if (sum->part == NULL) return NULL;
   sum->before = function->last;
   function->last = sum;
   return sum;
 }
 
-dvi_status dvi__sum_extend(dvi__function *function, dvi__sum *sum, int k, int root_count, const dvi__node *root,
-                           dvi__target *target)
+/* Drop the sign of a root. */
+static dvi__node without_sign(const maker *m, dvi__node root, int *negative)
+{
+  *negative = node_of(m, root)->op == DVI__OP_NEGATE;
+  return *negative ? node_of(m, root)->a : root;
+}
+
+/* Point targets at outputs; equal roots share one. Leaves the different ones, signs left out, in `root`. */
+static dvi_status find_outputs(const maker *m, dvi__node *root, int *output_count)
+{
+  int *output = calloc((size_t)m->count, sizeof *output); /* of a node, plus 1 */
+  *output_count = 0;
+  if (output == NULL) return DVI_NO_MEMORY;
+  for (int k = 0; k < m->part->target_count; k++) {
+    dvi__target *target = &m->part->target[k];
+    const dvi__node node = without_sign(m, root[k], &target->negative);
+    if (output[node] == 0) {
+      root[*output_count] = node;
+      output[node] = ++*output_count;
+    }
+    target->output = output[node] - 1;
+  }
+  free(output);
+  return DVI_OK;
+}
+
+/* Whether the target after this one is always added beside it. */
+static int is_beside(const dvi__target *target)
+{
+  const dvi__places *own = &target[0].entry.minor, *next = &target[1].entry.minor;
+  return target[0].entry.scale == 0 && target[1].entry.scale == 0 && target[0].array == target[1].array &&
+         target[0].negative == target[1].negative && !target[0].mirrored && !target[1].mirrored && own->list == next->list &&
+         own->stride == next->stride && next->start == own->start + 1 && target[1].output == target[0].output + 1;
+}
+
+static void find_groups(const dvi__part *part)
+{
+  for (int k = 0, group; k < part->target_count; k += group) {
+    for (group = 1; group < 3 && k + group < part->target_count && is_beside(&part->target[k + group - 1]);) group++;
+    for (int i = 0; i < group; i++) part->target[k + i].group = group - i;
+  }
+}
+
+/* A place for another part; NULL: no memory. */
+static dvi__part *next_part(dvi__function *function, dvi__sum *sum)
+{
+  if (sum->part_count == sum->room) {
+    const int room = 2 * sum->room + 4;
+    dvi__part *part = dvi__arena_take(&function->arena, (size_t)room, sizeof *part);
+    if (part == NULL) return NULL;
+    if (sum->part_count > 0) memcpy(part, sum->part, (size_t)sum->part_count * sizeof *part);
+    sum->part = part;
+    sum->room = room;
+  }
+  return &sum->part[sum->part_count++];
+}
+
+dvi_status dvi__sum_extend(dvi__function *function, dvi__sum *sum, int k, int root_count, dvi__node *root, dvi__target *target)
 {
   const dvi__kernel *kernel = &function->kernel[k];
   if (root_count == 0 || kernel->elements == 0) return DVI_OK;
-  dvi__part *part = &sum->part[sum->part_count++];
-  *part = (dvi__part){.kernel = kernel, .target = target};
+  dvi__part *part = next_part(function, sum);
+  if (part == NULL) return DVI_NO_MEMORY;
+  *part = (dvi__part){.kernel = kernel, .target_count = root_count, .target = target};
   maker m = {.function = function, .kernel = kernel, .derivatives = &function->derivatives[k], .part = part};
   for (int i = 0; i < root_count; i++)
     if (root[i] >= m.count) m.count = root[i] + 1;
   m.mark = calloc((size_t)m.count, sizeof *m.mark);
   m.given = calloc((size_t)m.count, sizeof *m.given);
-  const dvi_status status = m.mark != NULL && m.given != NULL ? make(&m, root_count, root) : DVI_NO_MEMORY;
+  dvi_status status = m.mark != NULL && m.given != NULL ? DVI_OK : DVI_NO_MEMORY;
+  int output_count = 0;
+  if (status == DVI_OK) status = find_outputs(&m, root, &output_count);
+  if (status == DVI_OK) find_groups(part);
+  if (status == DVI_OK) status = make(&m, output_count, root);
   free(m.mark);
   free(m.given);
   return status;

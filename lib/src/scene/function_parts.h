@@ -29,27 +29,30 @@ typedef struct dvi__entries {
   int scale;
 } dvi__entries;
 
-/* Where an output is added: to entries of an array of the result, and, if it stands for both triangles, to their mirror images. */
+/* Where an output is added, or subtracted: to entries of an array of the result, and, if it stands for both triangles, to their mirror images. */
 typedef struct dvi__target {
+  int output, negative;
+  int group; /* so many targets, from this one on, are added side by side: the coordinates of a point; 1, 2 or 3 */
   int array, mirrored;
   dvi__entries entry, mirror;
 } dvi__target;
 
-/* A kernel's share in a sum. Its program reads a row for each of the variables (inputs of the kernel), then one for each column. */
+/* A kernel's share in a sum, or some of it. Its program reads a row for each of the variables (inputs of the kernel), then one for each column. */
 typedef struct dvi__part {
   const dvi__kernel *kernel;
   dvi__program program;
-  int variable_count, column_count;
-  dvi__block *block;     /* [variable_count] */
-  dvi__places *variable; /* [variable_count] */
-  const double **column; /* [column_count], [elements] each: what depends on no variable */
-  dvi__target *target;   /* [output_count] */
+  int variable_count, column_count, target_count;
+  int unit, lanes, large; /* elements of a unit; most lanes of a tile; 1: not in the nearest cache */
+  dvi__block *block;      /* [variable_count] */
+  dvi__places *variable;  /* [variable_count] */
+  const double **column;  /* [column_count], [elements] each: what depends on no variable */
+  dvi__target *target;    /* [target_count] */
 } dvi__part;
 
 /* A value, a gradient by some blocks, or second derivatives by some pairs. */
 typedef struct dvi__sum {
-  int part_count;
-  dvi__part *part;
+  int part_count, room;
+  dvi__part *part;         /* [room] */
   struct dvi__sum *before; /* made before this one */
 } dvi__sum;
 
@@ -108,8 +111,8 @@ static inline int dvi__place_at(const dvi__places *places, int e)
   return places->start + (places->list != NULL ? places->list[e] : places->stride * e);
 }
 
-/* Whether a tile of the part has room for a unit. */
-int dvi__part_fits(const dvi__part *part);
+/* Choose the size of a part's tiles; DVI_BAD_SIZE: its rows leave no room for a unit. */
+dvi_status dvi__part_plan(dvi__part *part);
 
 /* The blocks of a pair: of its rows and of its columns. */
 void dvi__pair_blocks(dvi__pair pair, dvi__block *rows, dvi__block *columns);
@@ -124,11 +127,10 @@ void dvi__sum_add(const dvi__sum *sum, int count, const double *const *x, double
 
 /* The following want the lock. */
 
-/* An empty sum with room for a part of each kernel; NULL: no memory. */
+/* An empty sum; NULL: no memory. */
 dvi__sum *dvi__sum_new(dvi__function *function);
-/* Add the part of kernel k: root[i] goes to target[i], which is kept. */
-dvi_status dvi__sum_extend(dvi__function *function, dvi__sum *sum, int k, int root_count, const dvi__node *root,
-                           dvi__target *target);
+/* Add a part of kernel k: root[i] goes to target[i], which are kept; roots that are equal, but for the sign, become one output. */
+dvi_status dvi__sum_extend(dvi__function *function, dvi__sum *sum, int k, int root_count, dvi__node *root, dvi__target *target);
 
 /* Find which second derivatives of kernel k there are; and the pattern of a pair. */
 dvi_status dvi__find_pairs(dvi__function *function, int k);

@@ -76,7 +76,7 @@ static void read_bits(const bits *all, int columns, int *start, int *row)
     start[j + 1] = start[j];
     for (size_t i = 0; i < all->rows; i++) {
       const size_t at = (size_t)j * all->rows + i;
-      if ((all->bit[at / 8] >> at % 8 & 1U) != 0) row[start[j + 1]++] = (int)i;
+      if (((unsigned)all->bit[at / 8] >> at % 8 & 1U) != 0) row[start[j + 1]++] = (int)i;
     }
   }
 }

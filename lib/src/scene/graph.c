@@ -23,12 +23,17 @@ int dvi__operands(dvi__op op)
   return count[op];
 }
 
+static uint64_t bits_of(double x)
+{
+  uint64_t bits;
+  memcpy(&bits, &x, sizeof bits);
+  return bits;
+}
+
 /* Where the search for an equal node begins. */
 static unsigned slot_of(const dvi__graph_node *node, int table_size)
 {
-  uint64_t bits;
-  memcpy(&bits, &node->value, sizeof bits);
-  uint64_t hash = bits * UINT64_C(0x9e3779b97f4a7c15) + (uint64_t)node->op;
+  uint64_t hash = bits_of(node->value) * UINT64_C(0x9e3779b97f4a7c15) + (uint64_t)node->op;
   hash = (hash ^ (hash >> 29)) * UINT64_C(0xbf58476d1ce4e5b9) + (uint64_t)node->a;
   hash = (hash ^ (hash >> 32)) * UINT64_C(0x94d049bb133111eb) + (uint64_t)node->b;
   hash = (hash ^ (hash >> 29)) * UINT64_C(0x9e3779b97f4a7c15);
@@ -37,7 +42,7 @@ static unsigned slot_of(const dvi__graph_node *node, int table_size)
 
 static bool equal(const dvi__graph_node *x, const dvi__graph_node *y)
 {
-  return x->op == y->op && x->a == y->a && x->b == y->b && memcmp(&x->value, &y->value, sizeof x->value) == 0;
+  return x->op == y->op && x->a == y->a && x->b == y->b && bits_of(x->value) == bits_of(y->value);
 }
 
 /* The slot of an equal node, or the free one where it belongs. Slots hold numbers from 1. */

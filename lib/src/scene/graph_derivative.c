@@ -98,8 +98,8 @@ static void keep_dependent(const dvi__graph *graph, int count, int only, int siz
     const dvi__graph_node *node = graph->node + n;
     const int operands = dvi__operands(node->op);
     int depends = node->op == DVI__OP_INPUT && (only == NONE ? node->a < count : node->a == only);
-    if (operands > 0) depends = part[node->a];
-    if (operands > 1) depends = depends || part[node->b];
+    if (operands > 0) depends = part[node->a] != 0;
+    if (operands > 1) depends |= part[node->b] != 0;
     part[n] = part[n] && depends;
   }
 }

@@ -49,6 +49,12 @@ static int is_whole(double x)
   return x == floor(x);
 }
 
+/* Factors that are gathered: far from the ends of the range, so that partial products stay far from them as well. */
+static int is_moderate(double c)
+{
+  return fabs(c) >= 1e-100 && fabs(c) <= 1e100;
+}
+
 /* Exponents that a power may have. */
 static int is_exponent(double x)
 {
@@ -81,8 +87,8 @@ static dvi__node scale_rest(dvi__graph *graph, double c, dvi__node n)
   const dvi__graph_node node = *at(graph, n);
   if (node.op == DVI__OP_MULTIPLY) {
     const scaled a = scaled_of(graph, node.a), b = scaled_of(graph, node.b);
-    if (a.factor != 1 && isnormal(c * a.factor)) return dvi__multiply(graph, dvi__scale(graph, c * a.factor, a.rest), node.b);
-    if (b.factor != 1 && isnormal(c * b.factor)) return dvi__multiply(graph, node.a, dvi__scale(graph, c * b.factor, b.rest));
+    if (a.factor != 1 && is_moderate(c * a.factor)) return dvi__multiply(graph, dvi__scale(graph, c * a.factor, a.rest), node.b);
+    if (b.factor != 1 && is_moderate(c * b.factor)) return dvi__multiply(graph, node.a, dvi__scale(graph, c * b.factor, b.rest));
   }
   return make_product(graph, dvi__constant(graph, c), n);
 }
@@ -97,7 +103,7 @@ dvi__node dvi__scale(dvi__graph *graph, double c, dvi__node n)
   if (dvi__is_constant(graph, n, &constant) && isfinite(c * constant)) return dvi__constant(graph, c * constant);
   const scaled own = scaled_of(graph, n);
   if (own.factor == 1) return scale_rest(graph, c, n);
-  if (!isnormal(c * own.factor)) return make_product(graph, dvi__constant(graph, c), n);
+  if (!is_moderate(c * own.factor)) return make_product(graph, dvi__constant(graph, c), n);
   return dvi__scale(graph, c * own.factor, own.rest);
 }
 
@@ -117,7 +123,7 @@ static dvi__node add(dvi__graph *graph, dvi__node a, dvi__node b)
   double c;
   if (dvi__is_constant(graph, a, &c) && c == 0) return b;
   if (dvi__is_constant(graph, b, &c) && c == 0) return a;
-  if (x.rest == y.rest) return dvi__scale(graph, x.factor + y.factor, x.rest);
+  if (x.rest == y.rest && isfinite(x.factor + y.factor)) return dvi__scale(graph, x.factor + y.factor, x.rest);
   if (y.factor < 0) return dvi__subtract(graph, a, dvi__scale(graph, -y.factor, y.rest));
   if (x.factor < 0) return dvi__subtract(graph, b, dvi__scale(graph, -x.factor, x.rest));
   return make_sum(graph, a, b);
@@ -129,7 +135,7 @@ static dvi__node subtract(dvi__graph *graph, dvi__node a, dvi__node b)
   double c;
   if (dvi__is_constant(graph, a, &c) && c == 0) return dvi__negate(graph, b);
   if (dvi__is_constant(graph, b, &c) && c == 0) return a;
-  if (x.rest == y.rest) return dvi__scale(graph, x.factor - y.factor, x.rest);
+  if (x.rest == y.rest && isfinite(x.factor - y.factor)) return dvi__scale(graph, x.factor - y.factor, x.rest);
   if (y.factor < 0) return dvi__add(graph, a, dvi__scale(graph, -y.factor, y.rest));
   if (x.factor == -1) return dvi__negate(graph, dvi__add(graph, x.rest, b));
   return dvi__make(graph, DVI__OP_SUBTRACT, a, b, 0);
@@ -164,7 +170,7 @@ static dvi__node multiply(dvi__graph *graph, dvi__node a, dvi__node b)
   if (a == b) return dvi__power(graph, a, 2);
   const scaled x = scaled_of(graph, a), y = scaled_of(graph, b);
   const double factor = x.factor * y.factor;
-  if (!isnormal(factor)) return make_product(graph, a, b);
+  if (!is_moderate(factor)) return make_product(graph, a, b);
   const powered p = powered_of(graph, x.rest), q = powered_of(graph, y.rest);
   if (p.base == q.base && joins(graph, p.base, p.exponent, q.exponent))
     return dvi__scale(graph, factor, dvi__power(graph, p.base, p.exponent + q.exponent));
@@ -188,7 +194,7 @@ static dvi__node divide(dvi__graph *graph, dvi__node a, dvi__node b)
   const scaled x = scaled_of(graph, a), y = scaled_of(graph, b);
   const powered p = powered_of(graph, x.rest), q = powered_of(graph, y.rest);
   const double factor = x.factor / y.factor;
-  if (p.base == q.base && isnormal(factor) && joins(graph, p.base, p.exponent, -q.exponent))
+  if (p.base == q.base && is_moderate(factor) && joins(graph, p.base, p.exponent, -q.exponent))
     return dvi__scale(graph, factor, dvi__power(graph, p.base, p.exponent - q.exponent));
   if (q.exponent != 1) {
     const dvi__node numerator = dvi__divide(graph, a, dvi__constant(graph, y.factor));
@@ -196,7 +202,7 @@ static dvi__node divide(dvi__graph *graph, dvi__node a, dvi__node b)
   }
   if (y.factor == -1) return dvi__negate(graph, dvi__divide(graph, a, y.rest));
   if (x.factor == -1) return dvi__negate(graph, dvi__divide(graph, x.rest, b));
-  if (!dvi__is_constant(graph, a, &c) || !isnormal(c / y.factor)) return dvi__make(graph, DVI__OP_DIVIDE, a, b, 0);
+  if (!dvi__is_constant(graph, a, &c) || !is_moderate(c / y.factor)) return dvi__make(graph, DVI__OP_DIVIDE, a, b, 0);
   return dvi__scale(graph, c / y.factor, dvi__make(graph, DVI__OP_DIVIDE, dvi__constant(graph, 1), y.rest, 0));
 }
 
@@ -211,11 +217,11 @@ static dvi__node make_power(dvi__graph *graph, dvi__node a, double exponent)
 /* (x^k)^exponent for a node that is a power: one power, if it has the same domain. */
 static dvi__node power_of_power(dvi__graph *graph, dvi__node n, powered x, double exponent)
 {
-  const double product = x.exponent * exponent;
-  const int keeps_domain = is_whole(x.exponent) || !is_whole(product) || at(graph, x.base)->never_negative;
-  if (!is_exponent(product) || !keeps_domain) return make_power(graph, n, exponent);
+  const double total = x.exponent * exponent;
+  const int keeps_domain = is_whole(x.exponent) || !is_whole(total) || at(graph, x.base)->never_negative;
+  if (!is_exponent(total) || !keeps_domain) return make_power(graph, n, exponent);
   const int even = is_whole(x.exponent / 2) && !is_whole(exponent);
-  return dvi__power(graph, even ? dvi__apply(graph, DVI__OP_ABS, x.base, 0) : x.base, product);
+  return dvi__power(graph, even ? dvi__apply(graph, DVI__OP_ABS, x.base, 0) : x.base, total);
 }
 
 dvi__node dvi__power(dvi__graph *graph, dvi__node a, double exponent)
@@ -228,7 +234,7 @@ dvi__node dvi__power(dvi__graph *graph, dvi__node a, double exponent)
   if (!is_exponent(exponent)) return dvi__make(graph, DVI__OP_RAISE, a, dvi__constant(graph, exponent), 0);
   const scaled x = scaled_of(graph, a);
   const double factor = pow(x.factor, exponent);
-  if (x.factor != 1 && is_whole(exponent) && isnormal(factor))
+  if (x.factor != 1 && is_whole(exponent) && is_moderate(factor))
     return dvi__scale(graph, factor, dvi__power(graph, x.rest, exponent));
   const powered p = powered_of(graph, a);
   if (p.exponent != 1) return power_of_power(graph, a, p, exponent);

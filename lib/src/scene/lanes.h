@@ -9,6 +9,13 @@
 #define DVI__SCENE_LANES
 #endif
 
+/* Before a loop of which no step writes what another one reads: restrict inside of functions does not convince gcc. */
+#if defined(__GNUC__) && !defined(__clang__)
+#define DVI__SCENE_INDEPENDENT _Pragma("GCC ivdep")
+#else
+#define DVI__SCENE_INDEPENDENT
+#endif
+
 /* Compiled into its callers, once for each of their instruction sets. */
 #define DVI__SCENE_INLINE static inline __attribute__((always_inline))
 

@@ -63,12 +63,18 @@ static int count_uses(compiler *c, int root_count, const dvi__node *root)
   return needed;
 }
 
+/* The factors of a product, or square. */
+static dvi__node second_factor(const dvi__graph_node *node)
+{
+  return node->op == DVI__OP_SQUARE ? node->a : node->b;
+}
+
 /* A product of two variables that is used once, here, can be computed here. */
 static int joins(const compiler *c, dvi__node product, dvi__node other)
 {
   const dvi__graph_node *node = node_of(c, product);
-  return node->op == DVI__OP_MULTIPLY && c->uses[product] == 1 && !c->given[product] && product != other &&
-         !is_constant(c, node->a) && !is_constant(c, node->b) && !is_constant(c, other);
+  return (node->op == DVI__OP_MULTIPLY || node->op == DVI__OP_SQUARE) && c->uses[product] == 1 && !c->given[product] &&
+         product != other && !is_constant(c, node->a) && !is_constant(c, second_factor(node)) && !is_constant(c, other);
 }
 
 /* Sines and cosines of the same angle meet at it. `seen` [count] is filled with -1. */
@@ -115,7 +121,7 @@ static void release_operands(compiler *c, dvi__node n)
   for (int i = 0; i < operands; i++)
     if (c->joined[operand[i]]) {
       release(c, node_of(c, operand[i])->a);
-      release(c, node_of(c, operand[i])->b);
+      if (node_of(c, operand[i])->op == DVI__OP_MULTIPLY) release(c, node_of(c, operand[i])->b);
     } else {
       release(c, operand[i]);
     }
@@ -147,7 +153,7 @@ static int power_code(double exponent)
 static dvi__instruction of_product(compiler *c, dvi__code code, dvi__node product, dvi__node other)
 {
   const dvi__graph_node *node = node_of(c, product);
-  return (dvi__instruction){.op = (int)code, .a = row_of(c, node->a), .b = row_of(c, node->b), .c = row_of(c, other)};
+  return (dvi__instruction){.op = (int)code, .a = row_of(c, node->a), .b = row_of(c, second_factor(node)), .c = row_of(c, other)};
 }
 
 static dvi__instruction of_value(compiler *c, dvi__code code, dvi__node a, double value)
@@ -196,11 +202,16 @@ static dvi__instruction instruction_of(compiler *c, dvi__node n)
   return plain;
 }
 
-/* Where node n goes: to its output, if it is nothing but that, or to a register. */
+/* Rows of outputs are numbered when registers are: until then they are these. */
+static int output_row(int k)
+{
+  return INT_MIN + k;
+}
+
+/* Where node n goes: to its output, if it is one, or to a register. */
 static int destination(compiler *c, dvi__node n)
 {
-  if (c->uses[n] == 1 && c->first_root[n] >= 0) return INT_MIN + c->first_root[n]; /* outputs are numbered when registers are */
-  c->row[n] = take_register(c);
+  c->row[n] = c->first_root[n] >= 0 ? output_row(c->first_root[n]) : take_register(c);
   return c->row[n];
 }
 
@@ -223,15 +234,14 @@ static void emit(compiler *c, dvi__node n)
   release_operands(c, n);
 }
 
-/* Copy node n to the outputs that it is, unless it was computed there. */
+/* Copy node n to the outputs that it is, but the one where it was computed. */
 static void write_roots(compiler *c, dvi__node n)
 {
-  const int in_place = c->row[n] == NOWHERE && node_of(c, n)->op != DVI__OP_CONSTANT;
   for (int k = c->first_root[n]; k >= 0; k = c->next_root[k]) {
-    if (!in_place && is_constant(c, n))
-      append(c, (dvi__instruction){.op = DVI__CODE_FILL, .to = INT_MIN + k, .value = node_of(c, n)->value});
-    else if (!in_place)
-      append(c, (dvi__instruction){.op = DVI__CODE_COPY, .to = INT_MIN + k, .a = c->row[n]});
+    if (is_constant(c, n))
+      append(c, (dvi__instruction){.op = DVI__CODE_FILL, .to = output_row(k), .value = node_of(c, n)->value});
+    else if (c->row[n] != output_row(k))
+      append(c, (dvi__instruction){.op = DVI__CODE_COPY, .to = output_row(k), .a = c->row[n]});
     release(c, n);
   }
 }
@@ -252,8 +262,9 @@ static void number_outputs(compiler *c, int root_count)
   program->row_count = c->register_count + root_count;
   for (int i = 0; i < program->instruction_count; i++) {
     dvi__instruction *at = &program->instruction[i];
-    if (at->to < INT_MIN + root_count) at->to = c->register_count + (at->to - INT_MIN);
-    if (at->op == DVI__CODE_SINE_AND_COSINE && at->b < INT_MIN + root_count) at->b = c->register_count + (at->b - INT_MIN);
+    int *const row[] = {&at->to, &at->a, &at->b, &at->c};
+    for (int r = 0; r < 4; r++)
+      if (*row[r] < INT_MIN + root_count) *row[r] = c->register_count + (*row[r] - INT_MIN);
   }
 }
 

@@ -9,25 +9,30 @@
 #include "scene/program.h"
 #include "scene/program_codes.h"
 
-/* x^(-1/2), right to two ulp, of a block. A square root and a division take longer: the exponent's bits halved and negated are right to 3.5 % (Lomont
- * 2003), then e = 1 - x y^2 shrinks by the series of (1 - e)^(-1/2). Numbers near the ends of the range, and those that have no root, take the long way. */
-DVI__SCENE_INLINE void inverse_roots(const double *restrict x, double *restrict y)
+/* Numbers of which inverse_powers finds the root: not near the ends of the range, and not those that have none. */
+DVI__SCENE_INLINE int is_plain(double x)
 {
-  double e[DVI__LANES];
-  int plain = 0;
-  for (int k = 0; k < DVI__LANES; k++) plain += x[k] >= DBL_MIN && x[k] <= 1e300;
-  for (int k = 0; k < DVI__LANES; k++) {
+  return (x >= DBL_MIN) & (x <= 1e300);
+}
+
+/* x^-(1/2 + factors) of plain numbers, right to two roundings for each root in it. A square root and a division take longer: the exponent's bits halved and negated are
+ * right to 3.5 % (Lomont 2003), then e = 1 - x y^2 shrinks by the series of (1 - e)^(-1/2). */
+DVI__SCENE_INLINE void inverse_powers(int width, const int factors, const double *restrict x, double *restrict to)
+{
+  for (int k = 0; k < width; k++) {
     uint64_t bits;
+    double y;
     memcpy(&bits, x + k, sizeof bits);
     bits = UINT64_C(0x5fe6eb50c7b537a9) - (bits >> 1);
-    memcpy(y + k, &bits, sizeof bits);
+    memcpy(&y, &bits, sizeof y);
+    const double wide = 1.0 - x[k] * (y * y);
+    y += y * (wide * (0.5 + wide * (0.375 + wide * 0.3125)));
+    const double e = 1.0 - x[k] * (y * y);
+    y += y * (e * (0.5 + e * (0.375 + e * 0.3125)));
+    const double square = y * y;
+    for (int i = 0; i < factors; i++) y *= square;
+    to[k] = y;
   }
-  for (int k = 0; k < DVI__LANES; k++) e[k] = 1.0 - x[k] * (y[k] * y[k]);
-  for (int k = 0; k < DVI__LANES; k++) y[k] += y[k] * (e[k] * (0.5 + e[k] * (0.375 + e[k] * 0.3125)));
-  for (int k = 0; k < DVI__LANES; k++) e[k] = 1.0 - x[k] * (y[k] * y[k]);
-  for (int k = 0; k < DVI__LANES; k++) y[k] += y[k] * (e[k] * (0.5 + e[k] * 0.375));
-  for (int k = 0; plain < DVI__LANES && k < DVI__LANES; k++)
-    if (!(x[k] >= DBL_MIN && x[k] <= 1e300)) y[k] = 1.0 / sqrt(x[k]);
 }
 
 /* x^n, n = 1, 2, .. or x^-n. */
@@ -64,13 +69,18 @@ DVI__SCENE_INLINE void root_powers(int width, double exponent, const double *res
 DVI__SCENE_INLINE void inverse_root_powers(int width, double exponent, const double *restrict x, double *restrict to)
 {
   const int factors = (int)-exponent;
-  for (int at = 0; at < width; at += DVI__LANES) {
-    double root[DVI__LANES], square[DVI__LANES];
-    inverse_roots(x + at, root);
-    for (int k = 0; k < DVI__LANES; k++) square[k] = root[k] * root[k];
-    for (int i = 0; i < factors; i++)
-      for (int k = 0; k < DVI__LANES; k++) root[k] *= square[k];
-    for (int k = 0; k < DVI__LANES; k++) to[at + k] = root[k];
+  int plain = 0;
+  for (int k = 0; k < width; k++) plain += is_plain(x[k]);
+  switch (factors) {
+  case 0: inverse_powers(width, 0, x, to); break;
+  case 1: inverse_powers(width, 1, x, to); break;
+  case 2: inverse_powers(width, 2, x, to); break;
+  default: inverse_powers(width, factors, x, to);
+  }
+  for (int k = 0; plain < width && k < width; k++) {
+    if (is_plain(x[k])) continue;
+    to[k] = 1.0 / sqrt(x[k]);
+    for (int i = 0; i < factors; i++) to[k] /= x[k];
   }
 }
 
@@ -91,10 +101,10 @@ static void sines_and_cosines(int lanes, int width, const double *restrict angle
 }
 
 /* One case of the switches below: all lanes, in whole blocks, or those in use. */
-#define BLOCKS(code, expression)                                             \
-  case code:                                                                 \
-    for (int first = 0; first < width; first += DVI__LANES)                  \
-      for (int k = first; k < first + DVI__LANES; k++) to[k] = (expression); \
+#define BLOCKS(code, expression)                                                                    \
+  case code:                                                                                        \
+    for (int first = 0; first < width; first += DVI__LANES)                                         \
+      DVI__SCENE_INDEPENDENT for (int k = first; k < first + DVI__LANES; k++) to[k] = (expression); \
     break;
 #define CALLS(code, expression)                           \
   case code:                                              \

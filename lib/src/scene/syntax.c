@@ -8,7 +8,8 @@
  *     atom     = number | name | name ( sum_of {, sum_of} ) | sum ( range , sum_of ) | ( sum_of ) | [ sum_of {, sum_of} ]
  *     range    = name [< name] [= sum_of .. sum_of]
  *
- * Chains of + and *, however long, are loops; what nests is counted, so that neither this nor what reads the tree can be driven deep. */
+ * Chains of + and *, however long, are loops; what nests is counted, so that neither this nor what reads the tree can be driven
+ * deep. */
 #define _POSIX_C_SOURCE 200809L /* newlocale */
 #include "scene/syntax.h"
 #include "scene/lexer.h"

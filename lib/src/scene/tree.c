@@ -1,7 +1,8 @@
-/* The tree is built from libyaml's events. What YAML has beyond scalars, sequences and mappings is refused: it would make a scene mean what does not stand in it.
+/* The tree is built from libyaml's events. What YAML has beyond scalars, sequences and mappings is refused: it would make a scene mean
+ * what does not stand in it.
  *
- * libyaml counts characters, and spans count bytes: a place is carried along the text. The text is looked through before libyaml sees it, so that what it
- * complains of is YAML and not letters. */
+ * libyaml counts characters, and spans count bytes: a place is carried along the text. The text is looked through before libyaml sees
+ * it, so that what it complains of is YAML and not letters. */
 #include "scene/tree.h"
 #include "scene/utf8.h"
 
@@ -134,7 +135,7 @@ static bool add_scalar(reader *r, const yaml_event_t *event)
   if (node == NULL || text == NULL) return no_memory(r);
   const int plain = event->data.scalar.style == YAML_PLAIN_SCALAR_STYLE;
   *node = (dvi__tree){.kind = DVI__SCALAR, .span = inside, .text = text, .plain = plain};
-  if (span.size > 0) r->last = span.first + span.size;
+  r->last = span.first + span.size;
   bool is_key = false;
   return attach(r, node, &is_key);
 }
@@ -152,7 +153,6 @@ static bool open_collection(reader *r, dvi__tree_kind kind, const yaml_event_t *
   bool is_key = false;
   if (!attach(r, node, &is_key)) return false;
   if (is_key && !list) return complain(r, where, "a key is a name, or a list of names, and no mapping or sequence");
-  r->last = span.first + span.size;
   r->open[r->depth++] = (level){.tree = node, .is_key = is_key};
   return true;
 }

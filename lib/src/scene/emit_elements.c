@@ -1,0 +1,275 @@
+/* Sums with kernels of many elements: for each of them a function of one unit of elements, whose results are kept until the unit is done and then added output by
+ * output, as the byte code does. It is compiled for eight, four, two and one point, and for the flat rows of a chain: neighbours in a row, whose points
+ * follow each other. */
+#include <stdlib.h>
+
+#include "scene/emit_parts.h"
+
+enum { POINTS = 8, ROOM = 8192, ROOM_MAX = 131072, TERMS_MAX = 2048 };
+
+/* --- Which units add all their elements to one entry. --- */
+
+static int is_one_entry(const dvi__entries *entries, int first)
+{
+  const dvi__track minor = dvi__track_of(&entries->minor, first);
+  if (entries->scale == 0) return minor.list == NULL && minor.stride == 0;
+  const dvi__track major = dvi__track_of(&entries->major, first);
+  return minor.list == NULL && major.list == NULL && minor.stride + entries->scale * major.stride == 0;
+}
+
+enum { NEVER, ALWAYS, SOMETIMES, NO_MEMORY };
+
+/* In which units; `flag` [units] has them. */
+static int find_folds(const dvi__entries *entries, int elements, int *flag)
+{
+  int folds = 0, units = 0;
+  for (int first = 0; first < elements; first += DVI__UNIT, units++) folds += flag[units] = is_one_entry(entries, first);
+  return folds == 0 ? NEVER : folds == units ? ALWAYS : SOMETIMES;
+}
+
+/* Whether all elements are one unit, of which every entry's sum is written out. */
+static int is_short(const dvi__part *part)
+{
+  const int elements = part->kernel->elements;
+  int few = elements <= DVI__UNIT && elements * part->target_count <= TERMS_MAX;
+  for (int k = 0; k < part->target_count && elements > 1; k++) {
+    const dvi__target *target = &part->target[k];
+    few = few && !is_one_entry(&target->entry, 0) && !(target->mirrored && is_one_entry(&target->mirror, 0));
+  }
+  return few;
+}
+
+/* How a row is added to entries; the array of flags that this wants is written if it is not there yet. NO_MEMORY: there is none. */
+static int declare_fold(dvi__emitter *out, const dvi__entries *entries, int elements, int *list)
+{
+  int *flag = calloc((size_t)elements / DVI__UNIT + 1, sizeof *flag);
+  if (flag == NULL) return NO_MEMORY;
+  const int folds = find_folds(entries, elements, flag), units = (elements + DVI__UNIT - 1) / DVI__UNIT;
+  if (folds == SOMETIMES) *list = dvi__emit_ints_of(out, entries, units, flag);
+  free(flag);
+  return folds;
+}
+
+/* --- Arrays, before the functions. --- */
+
+static void declare_places(dvi__emitter *out, const dvi__places *places, int elements)
+{
+  if (places->list != NULL) (void)dvi__emit_ints(out, elements, places->list);
+}
+
+static dvi_status declare_entries(dvi__emitter *out, const dvi__entries *entries, int elements)
+{
+  declare_places(out, &entries->minor, elements);
+  if (entries->scale != 0) declare_places(out, &entries->major, elements);
+  int list;
+  return declare_fold(out, entries, elements, &list) == NO_MEMORY ? DVI_NO_MEMORY : DVI_OK;
+}
+
+static dvi_status declare_arrays(dvi__emitter *out, const dvi__part *part)
+{
+  const int elements = part->kernel->elements;
+  dvi_status status = DVI_OK;
+  for (int i = 0; i < part->variable_count; i++) declare_places(out, &part->variable[i], elements);
+  for (int c = 0; c < part->column_count; c++) (void)dvi__emit_doubles(out, elements, part->column[c]);
+  for (int k = 0; k < part->target_count && status == DVI_OK && !is_short(part); k++) {
+    status = declare_entries(out, &part->target[k].entry, elements);
+    if (status == DVI_OK && part->target[k].mirrored) status = declare_entries(out, &part->target[k].mirror, elements);
+  }
+  return status;
+}
+
+/* --- A unit. --- */
+
+/* The place of element first + e. */
+static void emit_place(dvi__emitter *out, const dvi__places *places, int elements)
+{
+  if (places->list != NULL)
+    dvi__emit(out, "(%d + dvi_list_%d[first + e])", places->start, dvi__emit_ints(out, elements, places->list));
+  else if (places->stride == 0)
+    dvi__emit(out, "%d", places->start);
+  else
+    dvi__emit(out, "(%d + %d * (first + e))", places->start, places->stride);
+}
+
+static void emit_entry(dvi__emitter *out, const dvi__entries *entries, int elements)
+{
+  dvi__emit(out, "(");
+  emit_place(out, &entries->minor, elements);
+  if (entries->scale != 0) {
+    dvi__emit(out, " + %d * ", entries->scale);
+    emit_place(out, &entries->major, elements);
+  }
+  dvi__emit(out, ")");
+}
+
+static void emit_inputs(dvi__emitter *out, const dvi__part *part, const int *name)
+{
+  const int elements = part->kernel->elements;
+  for (int i = 0; i < part->variable_count; i++) {
+    dvi__emit(out, "      const double r%d = x%d[", name[i], (int)part->block[i]);
+    emit_place(out, &part->variable[i], elements);
+    dvi__emit(out, " * n + p];\n");
+  }
+  for (int c = 0; c < part->column_count; c++)
+    dvi__emit(out, "      const double r%d = dvi_row_%d[first + e];\n", name[part->variable_count + c],
+              dvi__emit_doubles(out, elements, part->column[c]));
+}
+
+/* Add the row of a target to its entries, or subtract it. */
+static dvi_status emit_addition(dvi__emitter *out, const dvi__part *part, const dvi__target *target, const dvi__entries *entries)
+{
+  const int elements = part->kernel->elements;
+  int list = 0;
+  const int folds = declare_fold(out, entries, elements, &list);
+  if (folds == NO_MEMORY) return DVI_NO_MEMORY;
+  if (folds == ALWAYS) dvi__emit(out, "  dvi_fold(elements, points, y[%d], sum);\n", target->output);
+  if (folds == SOMETIMES) {
+    dvi__emit(out, "  row = y[%d], left = elements;\n  if (dvi_list_%d[first / %d])", target->output, list, DVI__UNIT);
+    dvi__emit(out, " dvi_fold(elements, points, row, sum), row = sum, left = 1;\n");
+  }
+  dvi__emit(out, "  for (int e = 0; e < %s; e++) {\n", folds == NEVER ? "elements" : folds == ALWAYS ? "1" : "left");
+  dvi__emit(out, "    DVI_INDEPENDENT\n    for (int p = 0; p < points; p++) y%d[", target->array);
+  emit_entry(out, entries, elements);
+  dvi__emit(out, " * n + p] %s ", target->negative ? "-=" : "+=");
+  if (folds == NEVER)
+    dvi__emit(out, "y[%d]", target->output);
+  else
+    dvi__emit(out, folds == ALWAYS ? "sum" : "row");
+  dvi__emit(out, "[e * points + p];\n  }\n");
+  return DVI_OK;
+}
+
+static dvi_status emit_additions(dvi__emitter *out, const dvi__part *part)
+{
+  dvi_status status = DVI_OK;
+  for (int k = 0; k < part->target_count && status == DVI_OK; k++) {
+    const dvi__target *target = &part->target[k];
+    status = emit_addition(out, part, target, &target->entry);
+    if (status == DVI_OK && target->mirrored) status = emit_addition(out, part, target, &target->mirror);
+  }
+  return status;
+}
+
+/* All entries of a short part, each with the sum of what is added to it. */
+static dvi_status emit_entries(dvi__emitter *out, const dvi__part *part)
+{
+  dvi__contributions all;
+  const dvi_status status = dvi__contributions_find(1, part, &all);
+  dvi__emit(out, "  DVI_INDEPENDENT\n  for (int p = 0; p < points; p++) {\n");
+  for (int i = 0; i < all.count; i++) {
+    const dvi__contribution *own = &all.list[i];
+    if (dvi__contribution_is_first(&all, i))
+      dvi__emit(out, "%s    y%d[%d * n + p] = y%d[%d * n + p]", i > 0 ? ";\n" : "", own->array, own->entry, own->array, own->entry);
+    dvi__emit(out, " %c y[%d][%d * points + p]", own->negative ? '-' : '+', own->output, own->element);
+  }
+  dvi__emit(out, "%s  }\n", all.count > 0 ? ";\n" : "");
+  free(all.list);
+  return status;
+}
+
+/* Elements of a unit, and how many points are taken at once, so that all results of a unit stay in a near cache. */
+static int unit_of(const dvi__part *part)
+{
+  return part->kernel->elements < DVI__UNIT ? part->kernel->elements : DVI__UNIT;
+}
+
+static int points_of(const dvi__part *part)
+{
+  int points = POINTS;
+  while (points > 1 && part->program.output_count * unit_of(part) * points > ROOM) points /= 2;
+  return points;
+}
+
+static dvi_status emit_unit(dvi__emitter *out, const dvi__emitted_sum *own, int k)
+{
+  const dvi__part *part = &own->sum->part[k];
+  const dvi__program *program = &part->program;
+  int next = 0, *name = dvi__name_rows(part, &next);
+  if (name == NULL) return DVI_NO_MEMORY;
+  dvi__emit(out, "DVI_INLINE int64_t %s_%d(const int careful, const int points, int first, int elements, ptrdiff_t n,\n", own->name,
+            k);
+  dvi__emit(out, "    const double *const *x, double *const *result, ptrdiff_t k)\n{\n");
+  dvi__emit_pointers(out, own, k, k + 1, " + k");
+  const int lanes = unit_of(part) * points_of(part);
+  dvi__emit(out, "  double y[%d][%d], sum[%d];\n", program->output_count, lanes, lanes);
+  dvi__emit(out, "  const double *row;\n  int64_t unusual = 0;\n  int left;\n");
+  dvi__emit(out, "  (void)careful, (void)first, (void)x, (void)sum, (void)row, (void)left;\n");
+  dvi__emit(
+      out,
+      "  DVI_INDEPENDENT\n  for (int e = 0; e < elements; e++) {\n    DVI_INDEPENDENT\n    for (int p = 0; p < points; p++) {\n");
+  emit_inputs(out, part, name + program->row_count);
+  dvi__emit_program(out, program, "      ", name, &next);
+  for (int i = 0; i < program->output_count; i++)
+    dvi__emit(out, "      y[%d][e * points + p] = r%d;\n", i, name[program->row_count - program->output_count + i]);
+  dvi__emit(out, "    }\n  }\n");
+  free(name);
+  const dvi_status status = is_short(part) ? emit_entries(out, part) : emit_additions(out, part);
+  dvi__emit(out, "  return unusual;\n}\n");
+  return status;
+}
+
+/* --- All units, at all points. --- */
+
+static int is_row(const dvi__places *places)
+{
+  return places->list == NULL && places->stride == 1;
+}
+
+/* Whether elements are neighbours in all that they read and write. */
+static int is_flat(const dvi__part *part)
+{
+  int flat = part->column_count == 0 && !is_short(part);
+  for (int i = 0; i < part->variable_count; i++) flat &= is_row(&part->variable[i]);
+  for (int k = 0; k < part->target_count; k++) {
+    const dvi__target *target = &part->target[k];
+    flat &= target->entry.scale == 0 && is_row(&target->entry.minor);
+    flat &= !target->mirrored || (target->mirror.scale == 0 && is_row(&target->mirror.minor));
+  }
+  return flat;
+}
+
+static void emit_calls(dvi__emitter *out, const dvi__emitted_sum *own, int k)
+{
+  const dvi__part *part = &own->sum->part[k];
+  const int all = part->kernel->elements, most = points_of(part);
+  dvi__emit(out, "  for (int first = 0; first < %d; first += %d) {\n", all, DVI__UNIT);
+  if (all <= DVI__UNIT)
+    dvi__emit(out, "    const int elements = %d;\n", all);
+  else
+    dvi__emit(out, "    const int elements = %d - first < %d ? %d - first : %d;\n", all, DVI__UNIT, all, DVI__UNIT);
+  dvi__emit(out, "    ptrdiff_t k = 0;\n");
+  if (is_flat(part)) {
+    dvi__emit(out, "    if (n <= %d) {\n", most);
+    dvi__emit(out, "      unusual |= %s_%d(careful, elements * count, first, 1, n, x, result, 0);\n      continue;\n    }\n",
+              own->name, k);
+  }
+  for (int points = most; points > 1; points /= 2)
+    dvi__emit(out,
+              "    for (; !careful && k + %d <= n; k += %d) unusual |= %s_%d(careful, %d, first, elements, n, x, result, k);\n",
+              points, points, own->name, k, points);
+  dvi__emit(out, "    for (; k < n; k++) unusual |= %s_%d(careful, 1, first, elements, n, x, result, k);\n  }\n", own->name, k);
+}
+
+static int is_too_large(const dvi__part *part)
+{
+  return (long)part->program.output_count * unit_of(part) > ROOM_MAX;
+}
+
+dvi_status dvi__emit_elements(dvi__emitter *out, const dvi__emitted_sum *own)
+{
+  dvi_status status = DVI_OK;
+  for (int k = 0; k < own->sum->part_count && status == DVI_OK; k++) {
+    status = is_too_large(&own->sum->part[k]) ? DVI_BAD_SIZE : declare_arrays(out, &own->sum->part[k]);
+    if (status == DVI_OK) status = emit_unit(out, own, k);
+  }
+  if (status != DVI_OK) return status;
+  dvi__emit(out, "DVI_INLINE int %s_at(const int careful, int count, const double *const *x, double *const *result)\n{\n",
+            own->name);
+  dvi__emit(out, "  const ptrdiff_t n = count;\n  int64_t unusual = 0;\n");
+  for (int a = 0; own->mask >> a != 0; a++)
+    if (own->mask >> a & 1U)
+      dvi__emit(out, "  memset(result[%d], 0, (size_t)%d * (size_t)count * sizeof *result[%d]);\n", a, own->size[a], a);
+  for (int k = 0; k < own->sum->part_count; k++) emit_calls(out, own, k);
+  dvi__emit(out, "  return unusual != 0;\n}\n");
+  return DVI_OK;
+}

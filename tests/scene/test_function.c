@@ -1,0 +1,552 @@
+#include <float.h>
+#include <math.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "problem.h"
+#include "scene/function.h"
+#include "support/suite.h"
+
+/* A function that is being put together: kernels of at most INPUTS inputs. */
+enum { INPUTS = 8, KERNELS = 4 };
+
+typedef struct draft {
+  dvi__graph graph[KERNELS];
+  dvi__kernel kernel[KERNELS];
+  dvi__kernel_input input[KERNELS][INPUTS];
+  int kernel_count, block_size[DVI__BLOCKS];
+  int *list[2];
+  double *values;
+} draft;
+
+static dvi__graph *graph_of(draft *own)
+{
+  return &own->graph[own->kernel_count];
+}
+
+static void reset(draft *own, int n)
+{
+  *own = (draft){.block_size = {1, n, n, 0}};
+}
+
+static dvi__node apply(draft *own, dvi__op op, dvi__node a, dvi__node b)
+{
+  return dvi__apply(graph_of(own), op, a, b);
+}
+
+static dvi__node variable(draft *own, int input)
+{
+  return dvi__input(graph_of(own), input);
+}
+
+static dvi__node number(draft *own, double value)
+{
+  return dvi__constant(graph_of(own), value);
+}
+
+static dvi__node times(draft *own, double value, dvi__node a)
+{
+  return apply(own, DVI__OP_MULTIPLY, number(own, value), a);
+}
+
+/* Close the kernel on which the draft is at work. */
+static void finish(draft *own, dvi__node root, int elements, int input_count)
+{
+  const int k = own->kernel_count++;
+  ck_assert_int_eq(own->graph[k].failed, DVI_OK);
+  own->kernel[k] = (dvi__kernel){&own->graph[k], root, elements, input_count, own->input[k]};
+}
+
+static void affine(draft *own, int input, dvi__block block, int base, int stride)
+{
+  own->input[own->kernel_count][input] = (dvi__kernel_input){.block = block, .base = base, .stride = stride};
+}
+
+static dvi__function *made(draft *own)
+{
+  dvi__function *function;
+  ck_assert_int_eq(dvi__function_create(own->kernel_count, own->kernel, own->block_size, &function), DVI_OK);
+  return function;
+}
+
+static void drop(draft *own, dvi__function *function)
+{
+  dvi__function_destroy(&function);
+  free(own->list[0]);
+  free(own->list[1]);
+  free(own->values);
+}
+
+/* --- The systems. --- */
+
+/* -G m_a m_b/|x_a - x_b| for all pairs of bodies in `dimension` dimensions. */
+static dvi__function *gravity(draft *own, int bodies, int dimension, double G, const double *mass)
+{
+  const int pairs = bodies * (bodies - 1) / 2;
+  reset(own, dimension * bodies);
+  for (int i = 0; i < 2; i++) own->list[i] = malloc((size_t)pairs * sizeof **own->list);
+  own->values = malloc(2 * (size_t)pairs * sizeof *own->values);
+  for (int a = 0, e = 0; a < bodies; a++)
+    for (int b = a + 1; b < bodies; b++, e++) {
+      own->list[0][e] = dimension * a;
+      own->list[1][e] = dimension * b;
+      own->values[e] = mass[a];
+      own->values[pairs + e] = mass[b];
+    }
+  dvi__node sum = number(own, 0.0);
+  for (int i = 0; i < dimension; i++) {
+    for (int side = 0; side < 2; side++)
+      own->input[0][2 * i + side] = (dvi__kernel_input){.block = DVI__COORDINATES, .number = own->list[side], .offset = i};
+    const dvi__node d = apply(own, DVI__OP_SUBTRACT, variable(own, 2 * i), variable(own, 2 * i + 1));
+    sum = apply(own, DVI__OP_ADD, sum, apply(own, DVI__OP_SQUARE, d, d));
+  }
+  for (int side = 0; side < 2; side++)
+    own->input[0][2 * dimension + side] = (dvi__kernel_input){.is_data = 1, .data = own->values + side * pairs};
+  const dvi__node product = apply(own, DVI__OP_MULTIPLY, variable(own, 2 * dimension), variable(own, 2 * dimension + 1));
+  finish(own, apply(own, DVI__OP_DIVIDE, times(own, -G, product), apply(own, DVI__OP_SQRT, sum, sum)), pairs, 2 * dimension + 2);
+  return made(own);
+}
+
+static const double solar_mass[6] = {0.000954786104043,  0.000285583733151, 0.0000437273164546,
+                                     0.0000517759138449, 1.0 / 1.3e8,       1.00000597682};
+
+static dvi__function *solar(draft *own)
+{
+  return gravity(own, 6, 3, 2.95912208286e-4, solar_mass);
+}
+
+/* 0.64 exp(q_i - q_(i+1)), and the bond that closes the ring. */
+static dvi__function *toda(draft *own, int n)
+{
+  reset(own, n);
+  for (int ring = 0; ring < 2; ring++) {
+    const dvi__node d = apply(own, DVI__OP_SUBTRACT, variable(own, 0), variable(own, 1));
+    affine(own, 0, DVI__COORDINATES, ring == 0 ? 0 : n - 1, 1);
+    affine(own, 1, DVI__COORDINATES, ring == 0 ? 1 : 0, 1);
+    finish(own, times(own, 0.64, apply(own, DVI__OP_EXP, d, d)), ring == 0 ? n - 1 : 1, 2);
+  }
+  return made(own);
+}
+
+/* d^4/4 of d = right - left end; inputs: x0, x1 of the left spring, x0, x1 of the right one. */
+static dvi__node quartic(draft *own, dvi__node left, dvi__node right)
+{
+  const dvi__node d = apply(own, DVI__OP_SUBTRACT, right, left);
+  return times(own, 0.25, dvi__power(graph_of(own), d, 4.0));
+}
+
+/* The soft springs of Fermi, Pasta and Ulam's chain: inside, and at both ends. */
+static dvi__function *fpu(draft *own, int ell)
+{
+  reset(own, 2 * ell);
+  for (int i = 0; i < 4; i++) affine(own, i, DVI__COORDINATES, i / 2 + (i % 2) * ell, 1);
+  const dvi__node left = apply(own, DVI__OP_ADD, variable(own, 0), variable(own, 1));
+  const dvi__node right = apply(own, DVI__OP_SUBTRACT, variable(own, 2), variable(own, 3));
+  finish(own, quartic(own, left, right), ell - 1, 4);
+  for (int end = 0; end < 2; end++) {
+    affine(own, 0, DVI__COORDINATES, end == 0 ? 0 : ell - 1, 0);
+    affine(own, 1, DVI__COORDINATES, end == 0 ? ell : 2 * ell - 1, 0);
+    const dvi__node x0 = variable(own, 0), x1 = variable(own, 1), zero = number(own, 0.0);
+    finish(own,
+           end == 0 ? quartic(own, zero, apply(own, DVI__OP_SUBTRACT, x0, x1))
+                    : quartic(own, apply(own, DVI__OP_ADD, x0, x1), zero),
+           1, 2);
+  }
+  return made(own);
+}
+
+/* The double pendulum of the catalogue with its default parameters. */
+static dvi__function *double_pendulum(draft *own)
+{
+  const double l1 = 2.0, l2 = 3.0, m1 = 1.0, m2 = 2.0, g = 9.80665;
+  reset(own, 2);
+  for (int i = 0; i < 4; i++) affine(own, i, i < 2 ? DVI__COORDINATES : DVI__VELOCITIES, i % 2, 0);
+  const dvi__node q1 = variable(own, 0), q2 = variable(own, 1), v1 = variable(own, 2), v2 = variable(own, 3);
+  const dvi__node d = apply(own, DVI__OP_SUBTRACT, q1, q2), vv = apply(own, DVI__OP_MULTIPLY, v1, v2);
+  dvi__node L = times(own, 0.5 * (m1 + m2) * l1 * l1, apply(own, DVI__OP_SQUARE, v1, v1));
+  L = apply(own, DVI__OP_ADD, L, times(own, 0.5 * m2 * l2 * l2, apply(own, DVI__OP_SQUARE, v2, v2)));
+  L = apply(own, DVI__OP_ADD, L, times(own, m2 * l1 * l2, apply(own, DVI__OP_MULTIPLY, apply(own, DVI__OP_COS, d, d), vv)));
+  L = apply(own, DVI__OP_ADD, L, times(own, (m1 + m2) * g * l1, apply(own, DVI__OP_COS, q1, q1)));
+  L = apply(own, DVI__OP_ADD, L, times(own, m2 * g * l2, apply(own, DVI__OP_COS, q2, q2)));
+  finish(own, L, 1, 4);
+  return made(own);
+}
+
+/* --- Against the callbacks of the catalogue. --- */
+
+static problem *catalogue(const char *name, const char *setting)
+{
+  problem *found = NULL;
+  char message[200];
+  ck_assert_int_eq(problem_create(name, setting != NULL, &setting, &found, message, sizeof message), DVI_OK);
+  return found;
+}
+
+/* Points near the start of a problem. */
+static double *points(const double *start, int n, int count)
+{
+  double *x = malloc((size_t)n * (size_t)count * sizeof *x);
+  ck_assert_ptr_nonnull(x);
+  for (int i = 0; i < n; i++)
+    for (int k = 0; k < count; k++) x[i * count + k] = start[i] + 0.1 * sin(1.0 + i + 3.0 * k) * (1.0 + fabs(start[i]));
+  return x;
+}
+
+static double *room(int size)
+{
+  double *x = malloc(((size_t)size + 1) * sizeof *x);
+  ck_assert_ptr_nonnull(x);
+  return x;
+}
+
+/* Equal to some rounding of the largest number. */
+static void check_equal(int size, const double *found, const double *expected)
+{
+  double largest = 0.0;
+  for (int i = 0; i < size; i++) largest = fmax(largest, fabs(expected[i]));
+  for (int i = 0; i < size; i++) ck_assert_double_le(fabs(found[i] - expected[i]), 40.0 * DBL_EPSILON * largest);
+}
+
+static void check_patterns(const dvi_pattern *found, int full, const dvi_pattern *expected, int n)
+{
+  ck_assert_int_eq(full, expected->start == NULL);
+  if (full) return;
+  ck_assert_mem_eq(found->start, expected->start, ((size_t)n + 1) * sizeof(int));
+  ck_assert_mem_eq(found->row, expected->row, (size_t)found->start[n] * sizeof(int));
+}
+
+static void check_potential(dvi__function *function, const char *name, const char *setting, int count)
+{
+  problem *made_by_hand = catalogue(name, setting);
+  const dvi_potential *potential = &made_by_hand->terms->potentials[0];
+  const int n = made_by_hand->nq;
+  double *q = points(made_by_hand->q, n, count), *t = calloc((size_t)count, sizeof *t);
+  double *V = room(count), *V_q = room(n * count), *V_qq = room(n * n * count);
+  double *value = room(count), *gradient = room(n * count), *hessian = room(n * n * count);
+  const double *const x[DVI__BLOCKS] = {[DVI__COORDINATES] = q};
+  dvi_pattern pattern;
+  int full;
+  ck_assert_int_eq(dvi__function_value(function, count, x, V), 0);
+  ck_assert_int_eq(dvi__function_gradient(function, count, x, (double *const[DVI__BLOCKS]){[DVI__COORDINATES] = V_q}), 0);
+  ck_assert_int_eq(dvi__function_second(function, count, x, (double *const[DVI__PAIRS]){[DVI__PAIR_QQ] = V_qq}), 0);
+  ck_assert_int_eq(dvi__function_pattern(function, DVI__PAIR_QQ, &pattern, &full), DVI_OK);
+  ck_assert_int_eq(potential->value_batch(count, t, q, value, potential->user), 0);
+  ck_assert_int_eq(potential->gradient_batch(count, t, q, gradient, potential->user), 0);
+  ck_assert_int_eq(potential->hessian_batch(count, t, q, hessian, potential->user), 0);
+  check_equal(count, V, value);
+  check_equal(n * count, V_q, gradient);
+  check_patterns(&pattern, full, &potential->qq, n);
+  check_equal((full ? n * n : pattern.start[n]) * count, V_qq, hessian);
+  double *const owned[] = {q, t, V, V_q, V_qq, value, gradient, hessian};
+  for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
+  problem_destroy(&made_by_hand);
+}
+
+START_TEST(planets_pull_as_in_the_catalogue)
+{
+  draft own;
+  dvi__function *function = solar(&own);
+  for (int count = 1; count <= 9; count++) check_potential(function, "outer-solar", NULL, count);
+  check_potential(function, "outer-solar", NULL, 100);
+  drop(&own, function);
+}
+END_TEST
+
+START_TEST(todas_lattice_is_that_of_the_catalogue)
+{
+  draft own;
+  dvi__function *function = toda(&own, 100);
+  for (int count = 1; count <= 40; count += 3) check_potential(function, "toda", "N=100", count);
+  drop(&own, function);
+}
+END_TEST
+
+START_TEST(soft_springs_are_those_of_the_catalogue)
+{
+  draft own;
+  dvi__function *function = fpu(&own, 50);
+  for (int count = 1; count <= 40; count += 3) check_potential(function, "fpu", "ell=50", count);
+  drop(&own, function);
+}
+END_TEST
+
+START_TEST(the_double_pendulum_is_that_of_the_catalogue)
+{
+  enum { COUNT = 11 };
+  draft own;
+  dvi__function *function = double_pendulum(&own);
+  problem *made_by_hand = catalogue("double-pendulum", NULL);
+  const dvi_lagrangian *L = made_by_hand->terms->lagrangian;
+  double *q = points(made_by_hand->q, 2, COUNT), *v = points(made_by_hand->v, 2, COUNT);
+  double t[COUNT] = {0}, value[2][COUNT], gradient[2][2][2 * COUNT], second[2][3][4 * COUNT];
+  const double *const x[DVI__BLOCKS] = {[DVI__COORDINATES] = q, [DVI__VELOCITIES] = v};
+  ck_assert_int_eq(dvi__function_value(function, COUNT, x, value[0]), 0);
+  ck_assert_int_eq(dvi__function_gradient(function, COUNT, x, (double *const[DVI__BLOCKS]){NULL, gradient[0][0], gradient[0][1]}),
+                   0);
+  ck_assert_int_eq(dvi__function_second(function, COUNT, x, (double *const[DVI__PAIRS]){second[0][0], second[0][1], second[0][2]}),
+                   0);
+  ck_assert_int_eq(L->value_batch(COUNT, t, q, v, value[1], L->user), 0);
+  ck_assert_int_eq(L->gradient_batch(COUNT, t, q, v, gradient[1][0], gradient[1][1], L->user), 0);
+  ck_assert_int_eq(L->hessian_batch(COUNT, t, q, v, second[1][0], second[1][1], second[1][2], L->user), 0);
+  check_equal(COUNT, value[0], value[1]);
+  check_equal(4 * COUNT, gradient[0][0], gradient[1][0]);
+  check_equal(12 * COUNT, second[0][0], second[1][0]);
+  free(q);
+  free(v);
+  problem_destroy(&made_by_hand);
+  drop(&own, function);
+}
+END_TEST
+
+/* --- What else is promised. --- */
+
+/* 90 bodies: 4005 pairs, in many tiles. */
+static dvi__function *many(draft *own)
+{
+  double mass[90];
+  for (int a = 0; a < 90; a++) mass[a] = 1.0 + 0.01 * a;
+  return gravity(own, 90, 3, 1.0, mass);
+}
+
+/* Points of 90 bodies, all different. */
+static double *many_points(int count)
+{
+  double start[270];
+  for (int i = 0; i < 270; i++) start[i] = 10.0 * sin(1.7 * i);
+  return points(start, 270, count);
+}
+
+START_TEST(bits_do_not_depend_on_the_number_of_points)
+{
+  enum { N = 270, MOST = 300 };
+  draft own;
+  dvi__function *function = many(&own);
+  double *all = many_points(MOST), *q = room(N * MOST), *V_q = room(N * MOST), *one = room(N * MOST), V, value[MOST];
+  for (int k = 0; k < MOST; k++) {
+    for (int i = 0; i < N; i++) q[i] = all[i * MOST + k];
+    const double *const x[DVI__BLOCKS] = {[DVI__COORDINATES] = q};
+    ck_assert_int_eq(dvi__function_gradient(function, 1, x, (double *const[DVI__BLOCKS]){NULL, V_q}), 0);
+    for (int i = 0; i < N; i++) one[i * MOST + k] = V_q[i];
+  }
+  for (int count = 2; count <= MOST; count = count < 20 ? count + 1 : count + 93) {
+    for (int i = 0; i < N; i++) memcpy(q + i * count, all + i * MOST, (size_t)count * sizeof *q);
+    const double *const x[DVI__BLOCKS] = {[DVI__COORDINATES] = q};
+    ck_assert_int_eq(dvi__function_gradient(function, count, x, (double *const[DVI__BLOCKS]){NULL, V_q}), 0);
+    ck_assert_int_eq(dvi__function_value(function, count, x, value), 0);
+    for (int i = 0; i < N; i++) ck_assert_mem_eq(V_q + i * count, one + i * MOST, (size_t)count * sizeof *q);
+    if (count == 2) V = value[0];
+    ck_assert_double_eq(value[0], V);
+  }
+  double *const owned[] = {all, q, V_q, one};
+  for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
+  drop(&own, function);
+}
+END_TEST
+
+typedef struct worker {
+  dvi__function *function;
+  const double *q;
+  double *V_q;
+  int failed;
+} worker;
+
+static void *work(void *user)
+{
+  worker *own = user;
+  const double *const x[DVI__BLOCKS] = {[DVI__COORDINATES] = own->q};
+  for (int turn = 0; turn < 20; turn++)
+    own->failed |= dvi__function_gradient(own->function, 3, x, (double *const[DVI__BLOCKS]){NULL, own->V_q});
+  return NULL;
+}
+
+START_TEST(threads_may_ask_first_at_one_time)
+{
+  enum { THREADS = 4, N = 270 };
+  draft own;
+  dvi__function *function = many(&own);
+  double *q = many_points(3);
+  pthread_t thread[THREADS];
+  worker workers[THREADS];
+  for (int i = 0; i < THREADS; i++) {
+    workers[i] = (worker){function, q, room(3 * N), 0};
+    ck_assert_int_eq(pthread_create(&thread[i], NULL, work, &workers[i]), 0);
+  }
+  for (int i = 0; i < THREADS; i++) ck_assert_int_eq(pthread_join(thread[i], NULL), 0);
+  for (int i = 0; i < THREADS; i++) {
+    ck_assert_int_eq(workers[i].failed, 0);
+    ck_assert_mem_eq(workers[i].V_q, workers[0].V_q, 3 * N * sizeof(double));
+  }
+  for (int i = 0; i < THREADS; i++) free(workers[i].V_q);
+  free(q);
+  dvi__function_counters counters;
+  dvi__function_count(function, &counters);
+  ck_assert_int_eq(counters.gradient_points, THREADS * 20 * 3);
+  drop(&own, function);
+}
+END_TEST
+
+START_TEST(counters_count_points_and_what_was_derived)
+{
+  draft own;
+  dvi__function *function = solar(&own);
+  dvi__function_counters counters;
+  double q[18 * 4], V[4];
+  for (int i = 0; i < 72; i++) q[i] = sin(1.0 + 2.0 * i);
+  const double *const x[DVI__BLOCKS] = {[DVI__COORDINATES] = q};
+  dvi__function_count(function, &counters);
+  ck_assert_int_eq(counters.value_operations + counters.gradient_operations + counters.second_operations, 0);
+  ck_assert_int_eq(dvi__function_value(function, 4, x, V), 0);
+  dvi__function_count(function, &counters);
+  ck_assert_int_eq(counters.value_points, 4);
+  ck_assert_int_eq(counters.value_operations, 15 * 11); /* three differences and squares, two sums, a power, two factors */
+  ck_assert_int_eq(counters.gradient_operations, 0);
+  ck_assert_int_eq(counters.second_operations, 0);
+  ck_assert_int_eq(dvi__function_prepare(function, 0, 1U << DVI__COORDINATES, 1U << DVI__PAIR_QQ), DVI_OK);
+  dvi__function_count(function, &counters);
+  ck_assert_int_gt(counters.gradient_operations, counters.value_operations);
+  ck_assert_int_gt(counters.second_operations, counters.gradient_operations);
+  ck_assert_int_eq(counters.second_entries, 18 * 18);
+  ck_assert_int_eq(counters.gradient_points + counters.second_points, 0);
+  drop(&own, function);
+}
+END_TEST
+
+/* x^2 t + 3 x v: rates of momenta, and which second derivatives are constants. */
+START_TEST(time_is_a_block_and_constants_are_known)
+{
+  draft own;
+  reset(&own, 1);
+  affine(&own, 0, DVI__TIME, 0, 0);
+  affine(&own, 1, DVI__COORDINATES, 0, 0);
+  affine(&own, 2, DVI__VELOCITIES, 0, 0);
+  const dvi__node t = variable(&own, 0), q = variable(&own, 1), v = variable(&own, 2);
+  const dvi__node first = apply(&own, DVI__OP_MULTIPLY, apply(&own, DVI__OP_SQUARE, q, q), t);
+  finish(&own, apply(&own, DVI__OP_ADD, first, times(&own, 3.0, apply(&own, DVI__OP_MULTIPLY, q, v))), 1, 3);
+  dvi__function *function = made(&own);
+  const double at[3] = {2.0, 5.0, 7.0}, *const x[DVI__BLOCKS] = {&at[0], &at[1], &at[2]};
+  double rate, by_q, by_v, qq, qv, vv, tq, tv;
+  ck_assert_int_eq(dvi__function_gradient(function, 1, x, (double *const[DVI__BLOCKS]){&rate, &by_q, &by_v}), 0);
+  ck_assert_double_eq(rate, 25.0);
+  ck_assert_double_eq(by_q, 20.0 + 21.0);
+  ck_assert_double_eq(by_v, 15.0);
+  double *const second[DVI__PAIRS] = {[DVI__PAIR_QQ] = &qq, [DVI__PAIR_QV] = &qv, [DVI__PAIR_TQ] = &tq};
+  ck_assert_int_eq(dvi__function_second(function, 1, x, second), 0);
+  ck_assert_double_eq(qq, 4.0);
+  ck_assert_double_eq(qv, 3.0);
+  ck_assert_double_eq(tq, 10.0);
+  ck_assert_int_eq(dvi__function_second(function, 1, x, (double *const[DVI__PAIRS]){[DVI__PAIR_VV] = &vv, [DVI__PAIR_TV] = &tv}),
+                   0);
+  ck_assert_int_eq(dvi__function_second_constant(function, DVI__PAIR_QQ), 0);
+  ck_assert_int_eq(dvi__function_second_constant(function, DVI__PAIR_QV), 1);
+  ck_assert_int_eq(dvi__function_second_constant(function, DVI__PAIR_VV), 1);
+  drop(&own, function);
+}
+END_TEST
+
+/* x_i x_j summed over all i and j, i = j among them: (sum x)^2, of which all second derivatives are 2. */
+START_TEST(an_element_may_read_a_variable_twice)
+{
+  enum { N = 9 };
+  draft own;
+  double x[N], qq[N * N], by_q[N];
+  reset(&own, N);
+  for (int i = 0; i < 2; i++) {
+    own.list[i] = malloc(N * N * sizeof **own.list);
+    for (int e = 0; e < N * N; e++) own.list[i][e] = i == 0 ? e / N : e % N;
+    own.input[0][i] = (dvi__kernel_input){.block = DVI__COORDINATES, .number = own.list[i]};
+  }
+  finish(&own, apply(&own, DVI__OP_MULTIPLY, variable(&own, 0), variable(&own, 1)), N * N, 2);
+  dvi__function *function = made(&own);
+  for (int i = 0; i < N; i++) x[i] = 1.0 + i;
+  const double *const at[DVI__BLOCKS] = {[DVI__COORDINATES] = x};
+  ck_assert_int_eq(dvi__function_gradient(function, 1, at, (double *const[DVI__BLOCKS]){NULL, by_q}), 0);
+  ck_assert_int_eq(dvi__function_second(function, 1, at, (double *const[DVI__PAIRS]){qq}), 0);
+  for (int i = 0; i < N; i++) ck_assert_double_eq(by_q[i], 90.0);
+  for (int i = 0; i < N * N; i++) ck_assert_double_eq(qq[i], 2.0);
+  drop(&own, function);
+}
+END_TEST
+
+START_TEST(a_function_without_kernels_is_zero)
+{
+  draft own;
+  reset(&own, 3);
+  dvi__function *function = made(&own);
+  double q[3] = {1.0, 2.0, 3.0}, V = 5.0, V_q[3] = {5.0, 5.0, 5.0};
+  const double *const x[DVI__BLOCKS] = {[DVI__COORDINATES] = q};
+  dvi_pattern pattern;
+  int full;
+  ck_assert_int_eq(dvi__function_value(function, 1, x, &V), 0);
+  ck_assert_int_eq(dvi__function_gradient(function, 1, x, (double *const[DVI__BLOCKS]){NULL, V_q}), 0);
+  ck_assert_int_eq(dvi__function_pattern(function, DVI__PAIR_QQ, &pattern, &full), DVI_OK);
+  ck_assert_double_eq(V + V_q[0] + V_q[1] + V_q[2], 0.0);
+  ck_assert_int_eq(full, 0);
+  ck_assert_int_eq(pattern.start[3], 0);
+  drop(&own, function);
+}
+END_TEST
+
+/* A chain of a million links: 3e6 entries, found at once. */
+START_TEST(the_pattern_of_a_long_chain_is_found)
+{
+  enum { N = 1000000 };
+  draft own;
+  dvi__function *function = toda(&own, N);
+  dvi_pattern pattern;
+  int full;
+  ck_assert_int_eq(dvi__function_pattern(function, DVI__PAIR_QQ, &pattern, &full), DVI_OK);
+  ck_assert_int_eq(full, 0);
+  ck_assert_int_eq(pattern.start[N], 3 * N);
+  ck_assert_mem_eq(pattern.row + pattern.start[1], ((int[]){0, 1, 2}), 3 * sizeof(int));
+  ck_assert_mem_eq(pattern.row, ((int[]){0, 1, N - 1}), 3 * sizeof(int));
+  drop(&own, function);
+}
+END_TEST
+
+/* log(x - 1) at x = 0.8 in the source "log(x - 1)". */
+START_TEST(what_is_not_finite_is_blamed)
+{
+  static const dvi__source source = {"scene", "log(x - 1)", 10};
+  draft own;
+  char text[100];
+  dvi__span span;
+  double V, V_q;
+  reset(&own, 1);
+  affine(&own, 0, DVI__COORDINATES, 0, 0);
+  graph_of(&own)->here = (dvi__span){4, 5};
+  const dvi__node difference = apply(&own, DVI__OP_SUBTRACT, variable(&own, 0), number(&own, 1.0));
+  graph_of(&own)->here = (dvi__span){0, 10};
+  finish(&own, apply(&own, DVI__OP_LOG, difference, difference), 1, 1);
+  dvi__function *function = made(&own);
+  const double q[2] = {2.0, 0.8}, *const x[DVI__BLOCKS] = {[DVI__COORDINATES] = q};
+  const double *const bad[DVI__BLOCKS] = {[DVI__COORDINATES] = q + 1},
+                      one = 1.0, *const pole[DVI__BLOCKS] = {[DVI__COORDINATES] = &one};
+  ck_assert_int_eq(dvi__function_value(function, 1, x, &V), 0);
+  ck_assert_int_eq(dvi__function_value(function, 1, bad, &V), 1);
+  ck_assert_int_eq(dvi__function_gradient(function, 1, pole, (double *const[DVI__BLOCKS]){NULL, &V_q}), 1);
+  dvi__function_blame(function, &source, 2, x, 1, text, sizeof text, &span);
+  ck_assert_str_eq(text, "log(x - 1), x - 1 = -0.2");
+  ck_assert_uint_eq(span.size, 10);
+  drop(&own, function);
+}
+END_TEST
+
+int main(void)
+{
+  TCase *tests = tcase_create("function");
+  tcase_add_test(tests, planets_pull_as_in_the_catalogue);
+  tcase_add_test(tests, todas_lattice_is_that_of_the_catalogue);
+  tcase_add_test(tests, soft_springs_are_those_of_the_catalogue);
+  tcase_add_test(tests, the_double_pendulum_is_that_of_the_catalogue);
+  tcase_add_test(tests, bits_do_not_depend_on_the_number_of_points);
+  tcase_add_test(tests, threads_may_ask_first_at_one_time);
+  tcase_add_test(tests, counters_count_points_and_what_was_derived);
+  tcase_add_test(tests, time_is_a_block_and_constants_are_known);
+  tcase_add_test(tests, an_element_may_read_a_variable_twice);
+  tcase_add_test(tests, a_function_without_kernels_is_zero);
+  tcase_add_test(tests, the_pattern_of_a_long_chain_is_found);
+  tcase_add_test(tests, what_is_not_finite_is_blamed);
+  return run_tests("scene/function", tests);
+}
