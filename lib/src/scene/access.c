@@ -7,6 +7,19 @@
 
 /* ---- names ---- */
 
+/* Complain of a name that is not known, or not yet. */
+static dvi__value unknown(dvi__context *c, const dvi__expression *e)
+{
+  static const char *const section[] = {"parameters", "coordinates", "definitions"};
+  for (int k = 0; k < 3; k++) {
+    const dvi__tree *names = dvi__tree_find(c->scene->tree, section[k]);
+    if (names != NULL && names->kind == DVI__MAPPING && dvi__tree_find(names, e->name) != NULL)
+      return dvi__refused(
+          dvi__refuse(c, e->span, "'%s' cannot stand in %s: it is not known yet, for it comes later", e->name, c->where));
+  }
+  return dvi__refused(dvi__names_unknown(&c->scene->names, &c->scene->arena, c->scene->complaint, e->name, e->span));
+}
+
 static dvi__value index_number(dvi__context *c, const dvi__index *index)
 {
   if (index->each == NULL) return dvi__number_value(dvi__constant(c->graph, index->all));
@@ -59,8 +72,7 @@ dvi__value dvi__name_value(dvi__context *c, const dvi__expression *e)
     return dvi__number_value(dvi__variable_node(c, DVI__TIME, (dvi__numbering){0}, 0));
   }
   const dvi__name *name = dvi__names_find(&c->scene->names, e->name);
-  if (name == NULL)
-    return dvi__refused(dvi__names_unknown(&c->scene->names, &c->scene->arena, c->scene->complaint, e->name, e->span));
+  if (name == NULL) return unknown(c, e);
   if (name->sort == DVI__PARAMETER) return parameter_value(c, &c->scene->parameter[name->number]);
   if (name->sort == DVI__DEFINITION) return definition_value(c, name->number);
   const dvi__coordinate *x = &c->scene->coordinate[name->number];
@@ -109,66 +121,51 @@ static bool index_of(const dvi__context *c, const dvi__expression *e, int count,
   return true;
 }
 
-/* One element of a list for every element: value[position]. */
-static dvi__node listed(dvi__context *c, const double *value, const int *position, int all, int shift)
+/* One number of a list for every element: value[position + shift]. */
+static dvi__node listed(dvi__context *c, const double *value, const int *position, int shift)
 {
-  if (position == NULL) return dvi__constant(c->graph, value[all + shift]);
-  double *row = malloc((size_t)c->elements * sizeof *row);
+  double *row = calloc((size_t)c->elements, sizeof *row);
   if (row == NULL) {
     (void)dvi__scene_no_memory(c->scene);
     return dvi__constant(c->graph, 0);
   }
-  for (int e = 0; e < c->elements; e++) row[e] = value[position[e] + shift];
-  const dvi__node node = dvi__data_node(c, row);
+  int even = 1;
+  for (int e = 0; e < c->elements; e++) {
+    row[e] = value[position[e] + shift];
+    even = even && !(row[e] < row[0]) && !(row[e] > row[0]);
+  }
+  const dvi__node node = even ? dvi__constant(c->graph, row[0]) : dvi__data_node(c, row);
   free(row);
   return node;
 }
 
-/* position <- position * stride + (index - 1), for a next index. */
-static bool advance(const dvi__context *c, int **position, int *all, int stride, int *each, int index)
+/* The positions, for every element, that indices say: those of a matrix row by row; of a row its begin. */
+static bool positions(const dvi__context *c, const dvi__parameter *p, int count, const dvi__expression *const *index, int *position)
 {
-  if (*position == NULL && each == NULL) {
-    *all = *all * stride + index - 1;
-    return true;
+  for (int k = 0; k < count; k++) {
+    int *each = NULL, all = 0;
+    if (!index_of(c, index[k], k == 0 ? p->shape.rows : p->shape.columns, &each, &all)) return false;
+    const int stride = k == 0 && p->shape.rank == 2 ? p->shape.columns : 1;
+    for (int e = 0; e < c->elements; e++) position[e] += ((each != NULL ? each[e] : all) - 1) * stride;
+    free(each);
   }
-  if (each == NULL || *position == NULL) {
-    int *list = malloc((size_t)c->elements * sizeof *list);
-    if (list == NULL) return dvi__scene_no_memory(c->scene);
-    for (int e = 0; e < c->elements; e++) list[e] = each == NULL ? index : *all;
-    if (each == NULL)
-      each = list;
-    else
-      *position = list;
-    for (int e = 0; e < c->elements; e++) (*position)[e] = (*position)[e] * stride + each[e] - 1;
-    if (each == list) free(list);
-    return true;
-  }
-  for (int e = 0; e < c->elements; e++) (*position)[e] = (*position)[e] * stride + each[e] - 1;
   return true;
 }
 
-/* What is left of a list after indices that are the same or not for all elements. */
+/* A number of a list, or a row of a matrix. */
 static dvi__value parameter_element(dvi__context *c, const dvi__parameter *p, int count, const dvi__expression *const *index,
                                     dvi__span span)
 {
-  int *position = NULL, all = 0;
-  if (count > p->shape.rank)
+  const int rest = p->shape.rank - count;
+  if (rest < 0)
     return dvi__refused(
         dvi__refuse(c, span, "%s has %d ind%s, not %d", p->name, p->shape.rank, p->shape.rank == 1 ? "ex" : "ices", count));
-  bool good = true;
-  for (int k = 0; k < count && good; k++) {
-    int *each = NULL, same = 0;
-    const int size = k == 0 ? p->shape.rows : p->shape.columns;
-    good = index_of(c, index[k], size, &each, &same) && advance(c, &position, &all, size, each, same);
-    free(each);
-  }
-  const int rest = p->shape.rank - count, size = rest == 0 ? 1 : p->shape.columns;
-  dvi__value value = good ? dvi__value_make(c, rest, size, 1) : DVI__NO_VALUE;
-  if (position != NULL)
-    for (int e = 0; e < c->elements; e++) position[e] *= size;
-  if (good && rest == 0) value.one = listed(c, p->value, position, all, 0);
-  for (int k = 0; good && rest > 0 && k < size && !dvi__failed(value); k++)
-    value.node[k] = listed(c, p->value, position, all * size, k);
+  int *position = calloc((size_t)c->elements, sizeof *position);
+  if (position == NULL) return dvi__refused(dvi__scene_no_memory(c->scene));
+  dvi__value value = positions(c, p, count, index, position) ? dvi__value_make(c, rest, rest == 0 ? 1 : p->shape.columns, 1)
+                                                             : DVI__NO_VALUE;
+  if (!dvi__failed(value) && rest == 0) value.one = listed(c, p->value, position, 0);
+  for (int k = 0; value.node != NULL && k < value.shape.rows; k++) value.node[k] = listed(c, p->value, position, k);
   free(position);
   return value;
 }
@@ -209,7 +206,7 @@ enum { INDICES_OF_ONE = 3 };
 
 dvi__value dvi__index_value(dvi__context *c, const dvi__expression *e)
 {
-  const dvi__expression *index[INDICES_OF_ONE], *base = e;
+  const dvi__expression *index[INDICES_OF_ONE] = {e, e, e}, *base = e;
   int count = 0;
   for (; base->form == DVI__FORM_INDEX; base = base->part[0]) {
     if (count + base->count - 1 > INDICES_OF_ONE)

@@ -10,7 +10,7 @@
 enum { DEPTH_MAX = 512 };
 static const long work_max = 50000000;
 
-bool dvi__refuse(const dvi__context *c, dvi__span span, const char *format, ...)
+bool(dvi__refuse)(const dvi__context *c, dvi__span span, const char *format, ...)
 {
   char text[400];
   va_list arguments;

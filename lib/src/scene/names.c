@@ -34,12 +34,12 @@ const dvi__name *dvi__names_find(const dvi__names *names, const char *text)
 /* Room for one more, and a table that is at most half full. */
 static bool grow(dvi__names *names, dvi__arena *arena)
 {
-  if (names->count < names->room) return true;
+  if (names->name != NULL && names->count < names->room) return true;
   const int room = names->room == 0 ? 32 : 2 * names->room;
   dvi__name *moved = dvi__arena_take(arena, (size_t)room, sizeof *moved);
   int *table = dvi__arena_take(arena, 2 * (size_t)room, sizeof *table);
   if (moved == NULL || table == NULL) return false;
-  if (names->count > 0) memcpy(moved, names->name, (size_t)names->count * sizeof *moved);
+  if (names->name != NULL) memcpy(moved, names->name, (size_t)names->count * sizeof *moved);
   names->name = moved;
   names->room = room;
   names->table = table;
@@ -72,7 +72,7 @@ bool dvi__names_add(dvi__names *names, dvi__arena *arena, dvi__complaint *compla
   return true;
 }
 
-bool dvi__names_unknown(const dvi__names *names, dvi__arena *arena, dvi__complaint *complaint, const char *text, dvi__span span)
+bool(dvi__names_unknown)(const dvi__names *names, dvi__arena *arena, dvi__complaint *complaint, const char *text, dvi__span span)
 {
   char hint[96] = "";
   const int words = dvi__word_count(), count = words + names->count;

@@ -20,7 +20,7 @@ static dvi__node from_momentum(dvi__context *c, int input, dvi__span span)
   }
   if (of.number == NULL && of.stride == 0)
     return dvi__apply(c->graph, DVI__OP_DIVIDE, p, dvi__constant(c->graph, mass[of.base + of.offset]));
-  double *row = malloc((size_t)c->elements * sizeof *row);
+  double *row = calloc((size_t)c->elements, sizeof *row);
   if (row == NULL) {
     (void)dvi__scene_no_memory(c->scene);
     return p;

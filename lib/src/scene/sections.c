@@ -8,7 +8,7 @@
 
 /* ---- what readers share ---- */
 
-bool dvi__scene_refuse(dvi_scene *scene, dvi__span span, const char *format, ...)
+bool(dvi__scene_refuse)(dvi_scene *scene, dvi__span span, const char *format, ...)
 {
   char text[400];
   va_list arguments;
@@ -18,7 +18,7 @@ bool dvi__scene_refuse(dvi_scene *scene, dvi__span span, const char *format, ...
   return dvi__complain(scene->complaint, DVI_BAD_FILE, span, "%s", text);
 }
 
-bool dvi__scene_no_memory(dvi_scene *scene)
+bool(dvi__scene_no_memory)(dvi_scene *scene)
 {
   return dvi__complain(scene->complaint, DVI_NO_MEMORY, DVI__NOWHERE,
                        scene->arena.failed ? "memory ran out, or the scene needs more than 1 GiB" : "memory ran out");

@@ -124,7 +124,10 @@ static bool set_mass(dvi_scene *scene, const dvi_pattern *pattern, const double 
   }
   scene->mass_diagonal = diagonal;
   scene->mass = !same ? "diagonal" : diagonal[0] < 1 || diagonal[0] > 1 ? "scalar" : "identity";
-  scene->terms.mass = same ? (dvi_mass){.scalar = diagonal[0]} : (dvi_mass){.diagonal = diagonal};
+  if (same)
+    scene->terms.mass.scalar = diagonal[0];
+  else
+    scene->terms.mass.diagonal = diagonal;
   return true;
 }
 

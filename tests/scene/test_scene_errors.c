@@ -1,0 +1,215 @@
+/* What is wrong with a scene is told with its place and in words that help. */
+#include <dvi/dvi.h>
+#include <dvi/scene.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "support/suite.h"
+
+enum { MESSAGE_SIZE = 1024, TEXT_SIZE = 1024 };
+
+static char message[MESSAGE_SIZE];
+static dvi_scene *scene;
+
+static void release(void)
+{
+  dvi_scene_destroy(&scene);
+}
+
+static dvi_status parse(const char *text, int setting_count, const char *const *settings)
+{
+  dvi_scene_destroy(&scene);
+  return dvi_scene_parse("test.yaml", text, strlen(text), setting_count, settings, &scene, message, sizeof message);
+}
+
+/* The message names the place and has these words. */
+static void refused_as(const char *text, dvi_status status, const char *place, const char *words)
+{
+  const dvi_status found = parse(text, 0, NULL);
+  ck_assert_msg(found == status, "status %d instead of %d for\n%s\n%s", found, status, text, message);
+  ck_assert_ptr_null(scene);
+  ck_assert_msg(strncmp(message, "test.yaml", 9) == 0 && strncmp(message + 9, place, strlen(place)) == 0, "not at %s: %s", place,
+                message);
+  ck_assert_msg(strstr(message, words) != NULL, "\"%s\" is not in \"%s\"", words, message);
+}
+
+static void refused(const char *text, const char *place, const char *words)
+{
+  refused_as(text, DVI_BAD_FILE, place, words);
+}
+
+#define X "coordinates: {x: scalar}\n"
+#define RUN "initial: {x: 1}\nstep: 0.1\nuntil: 1\n"
+
+/* A Lagrangian in line 2 of a scene with the coordinates x, u in R^3 and y_1 .. y_3; it begins in column 13. */
+static void lagrangian_refused(const char *L, int column, const char *words)
+{
+  char text[TEXT_SIZE], place[32];
+  (void)snprintf(
+      text, sizeof text,
+      "parameters: {N: 3, m: [1, 2, 3], A: [[1, 2], [3, 4]]}\nlagrangian: %s\ncoordinates:\n  x: scalar\n  u: vector(3)\n"
+      "  y[N]: scalar\n" RUN,
+      L);
+  (void)snprintf(place, sizeof place, ":2:%d:", column);
+  refused(text, place, words);
+}
+
+START_TEST(unknown_names_are_told_with_the_nearest)
+{
+  lagrangian_refused("x'^2 + yy[1]", 20, "'yy'; did you mean y?");
+  lagrangian_refused("x'^2 + sqr(x)", 20, "'sqr'; did you mean sqrt?");
+  refused("kinetc: 1\n" X RUN, ":1:1:", "'kinetc'; did you mean kinetic?");
+  refused(X "lagrangian: x'^2\nreport: {evry: 2}\n" RUN, ":3:10:", "'evry'; did you mean every?");
+  refused(X "lagrangian: x'^2\ninitial: {x: 1, xx: 2}\nstep: 1\nuntil: 1\n", ":3:17:", "'xx'; did you mean x?");
+}
+END_TEST
+
+START_TEST(shapes_that_do_not_fit_are_told)
+{
+  lagrangian_refused("x'^2 + u", 13, "a number plus a vector of 3");
+  lagrangian_refused("u - [1, 2]", 13, "a vector of 3 minus a vector of 2");
+  lagrangian_refused("u*u", 13, "say dot(a,b) or cross(a,b)");
+  lagrangian_refused("u^2", 13, "say dot(a,a), or norm(a)");
+  lagrangian_refused("x'^2 + A*u", 20, "a 2 x 2 matrix times a vector of 3");
+  lagrangian_refused("x/u", 13, "a number by a vector of 3");
+  lagrangian_refused("sin(u)", 17, "sin is taken of a number, not of a vector of 3");
+  lagrangian_refused("dot(u, m[1])", 13, "dot takes two vectors of one size");
+  lagrangian_refused("cross(A, u)", 13, "cross takes two vectors of 2, or of 3");
+  lagrangian_refused("atan2(x)", 13, "atan2 takes 2 arguments, not 1");
+  lagrangian_refused("u'", 13, "a vector of 3 where a number is needed");
+  lagrangian_refused("dot([x, u], u)", 21, "a list holds numbers, or vectors of one size");
+}
+END_TEST
+
+START_TEST(indices_are_checked_for_every_element)
+{
+  lagrangian_refused("sum(i, y[i]'^2) - sum(i=1..N, y[i+1]^2)", 45, "the index 4 is not between 1 and 3, where i = 3");
+  lagrangian_refused("y[0]'^2", 15, "the index 0 is not between 1 and 3");
+  lagrangian_refused("y[1/2]'^2", 15, "must be a whole number, and is 0.5");
+  lagrangian_refused("y[x]'^2", 15, "coordinates cannot stand in an index or a bound");
+  lagrangian_refused("m[1, 2]*x'^2", 13, "m has 1 index, not 2");
+  lagrangian_refused("y'^2", 13, "y is a family of 3; take one of it, as y[1]");
+  lagrangian_refused("x[1]'^2", 13, "a number has no elements");
+  lagrangian_refused("sum(i, A[1,i]*y[i]'^2)", 20, "i runs over the 3 of y, but A has 2");
+  lagrangian_refused("sum(i, x'^2)", 13, "nothing is indexed by i alone");
+  lagrangian_refused("sum(x=1..2, x)", 13, "the index 'x' is a coordinate, too");
+  lagrangian_refused("sum(i=1..2, sum(i=1..2, y[i]))", 25, "'i' is an index around this sum already");
+  lagrangian_refused("i*sum(i=1..2, y[i]'^2)", 13, "there is no 'i'");
+}
+END_TEST
+
+START_TEST(velocities_and_momenta_stand_where_they_make_sense)
+{
+  refused(X "kinetic: x'^2\npotentials: {V: x*x'}\n" RUN, ":3:19:", "velocities cannot stand in a potential");
+  refused(X "lagrangian: x'^2 + p(x)\n" RUN, ":2:20:", "momenta cannot stand in a Lagrangian");
+  refused(X "lagrangian: x'^2\nevents: {up: {zero: p(x)}}\n" RUN, ":3:21:", "momenta cannot stand in an event");
+  refused("parameters: {a: t}\n" X "lagrangian: x'^2\n" RUN, ":1:17:", "the time cannot stand in a parameter");
+  refused(X "definitions: {w: x'^2}\nlagrangian: w'\n" RUN, ":3:13:", "there are no accelerations");
+  refused(X "lagrangian: x^2\n" RUN, ":2:13:", "no velocity in it");
+  refused("coordinates: {x: scalar, y: scalar}\nlagrangian: x'^2 + y^2\ninitial: {x: 1, y: 1}\nstep: 1\nuntil: 1\n",
+          ":1:26:", "the rate of y has no mass");
+}
+END_TEST
+
+START_TEST(names_are_declared_once_and_before_their_use)
+{
+  refused("parameters: {a: b, b: 1}\n" X "lagrangian: x'^2\n" RUN, ":1:17:", "it is not known yet");
+  refused(X "definitions: {a: b, b: x}\nlagrangian: x'^2\n" RUN, ":2:18:", "it is not known yet");
+  refused("parameters: {x: 1}\n" X "lagrangian: x'^2\n" RUN, ":2:15:", "there is a parameter 'x' already");
+  refused("parameters: {sin: 1}\n" X "lagrangian: x'^2\n" RUN, ":1:14:", "'sin' is a word of the language");
+  refused("parameters: {2a: 1}\n" X "lagrangian: x'^2\n" RUN, ":1:14:", "'2a' is no name");
+}
+END_TEST
+
+START_TEST(sections_that_are_missing_or_do_not_go_together_are_told)
+{
+  refused(X "lagrangian: x'^2\ninitial: {x: 1}\nuntil: 1\n", ":", "the section 'step' is missing");
+  refused(X RUN, ":", "what moves it is missing");
+  refused(X "lagrangian: x'^2\nkinetic: x'^2\n" RUN, ":3:10:", "there must be one of these");
+  refused(X "lagrangian: x'^2\nhamiltonian: 1\n" RUN, ":3:14:", "beside lagrangian there is no hamiltonian");
+  refused(X "lagrangian: x'^2\npotentials: {a: 1}\n" RUN, ":3:13:", "potentials stand beside kinetic");
+  refused(X "one_form: {x: 1}\n" RUN, ":2:11:", "one_form needs a hamiltonian");
+  refused(X "hamiltonian: x\nconstraints: {a: x}\n" RUN, ":3:14:", "an even number is needed");
+  refused(X "lagrangian: x'^2\nforces: {x: 1}\n" RUN, ":3:9:", "no method here takes forces");
+  refused("coordinates: {R: rotation}\nlagrangian: 1\n" RUN, ":1:18:", "declare it in C, by dvi_factor");
+  refused("coordinates: {x: skalar}\nlagrangian: 1\n" RUN, ":1:18:", "did you mean scalar?");
+}
+END_TEST
+
+#define MOVES "lagrangian: x'^2\nstep: 1\nuntil: 1\n" X
+
+START_TEST(starts_are_complete_and_fit)
+{
+  refused(MOVES "initial: {x': 1}\n", ":5:10:", "the start of x is not given");
+  refused(MOVES "initial: {x: [1, 2]}\n", ":5:14:", "a vector of 2 for x, which is a number");
+  refused(MOVES "initial: {x: 1, x': 2, p(x): 3}\n", ":5:10:", "give velocities or momenta, not both");
+  refused(MOVES "initial:\n  x[1]: 1\n", ":6:3:", "'x' is no family");
+  refused(MOVES "initial: {x: 1/0}\n", ":5:14:", "not a finite number");
+  refused(MOVES "initial: {x: t}\n", ":5:14:", "the time cannot stand in a start");
+}
+END_TEST
+
+START_TEST(settings_replace_numbers_and_nothing_else)
+{
+  static const char text[] = "parameters: {speed: 1, list: [1, 2], twice: 2*speed}\n" X "lagrangian: x'^2\n"
+                             "initial: {x: twice}\nstep: 1\nuntil: 1\n";
+  static const char *const wrong[] = {"sped=1", "list=1", "speed=fast", "speed", "speed=inf"};
+  static const char *const words[] = {"did you mean speed?", "'list' is a list", "'fast' is no finite number",
+                                      "not of the form name=value", "'inf' is no finite number"};
+  const double *q, *v, *p;
+  for (int k = 0; k < 5; k++) {
+    ck_assert_int_eq(parse(text, 1, &wrong[k]), DVI_BAD_OPTION);
+    ck_assert_msg(strstr(message, words[k]) != NULL, "%s", message);
+  }
+  ck_assert_int_eq(parse(text, 2, (const char *const[]){"speed=1", "speed=2"}), DVI_BAD_OPTION);
+  ck_assert_int_eq(parse(text, 1, &(const char *){"speed=3"}), DVI_OK);
+  dvi_scene_start(scene, &q, &v, &p);
+  ck_assert(fabs(q[0] - 6) < 1e-15);
+  ck_assert(dvi_scene_parameter_at(scene, 0)->settable && !dvi_scene_parameter_at(scene, 1)->settable);
+}
+END_TEST
+
+START_TEST(limits_are_told)
+{
+  refused_as("coordinates:\n  x[100000001]: scalar\n" RUN "lagrangian: 1\n", DVI_BAD_SIZE,
+             ":2:3:", "more than 100000000 coordinates");
+  refused_as("parameters: {N: 100000}\n" X "lagrangian: x'^2 + sum(i<j=1..N, i*j*x)\n" RUN, DVI_BAD_SIZE,
+             ":3:20:", "a sum of more than");
+  refused_as(X "lagrangian: x'^2 + sqrt(sum(i=1..100000000, sin(i*x)))\n" RUN, DVI_BAD_SIZE, ":2:", "2000000 parts");
+}
+END_TEST
+
+START_TEST(what_is_not_finite_is_told_with_its_place)
+{
+  double L;
+  ck_assert_int_eq(parse(X "lagrangian: x'^2 - log(x - 1)\n" RUN, 0, NULL), DVI_OK);
+  ck_assert_int_ne(dvi_system_lagrangian(dvi_scene_system(scene), 2.5, &(double){0.75}, &(double){0}, &L), DVI_OK);
+  ck_assert_str_eq(dvi_scene_blame(), "test.yaml:2:20: log(x - 1), x - 1 = -0.25 is not finite, at t = 2.5");
+}
+END_TEST
+
+START_TEST(a_file_that_is_not_there_is_told)
+{
+  ck_assert_int_eq(dvi_scene_read("/nowhere/a.yaml", 0, NULL, &scene, message, sizeof message), DVI_IO_ERROR);
+  ck_assert_ptr_nonnull(strstr(message, "/nowhere/a.yaml"));
+}
+END_TEST
+
+int main(void)
+{
+  TCase *tests = tcase_create("scene errors");
+  tcase_add_checked_fixture(tests, NULL, release);
+  tcase_add_test(tests, unknown_names_are_told_with_the_nearest);
+  tcase_add_test(tests, shapes_that_do_not_fit_are_told);
+  tcase_add_test(tests, indices_are_checked_for_every_element);
+  tcase_add_test(tests, velocities_and_momenta_stand_where_they_make_sense);
+  tcase_add_test(tests, names_are_declared_once_and_before_their_use);
+  tcase_add_test(tests, sections_that_are_missing_or_do_not_go_together_are_told);
+  tcase_add_test(tests, starts_are_complete_and_fit);
+  tcase_add_test(tests, settings_replace_numbers_and_nothing_else);
+  tcase_add_test(tests, limits_are_told);
+  tcase_add_test(tests, what_is_not_finite_is_told_with_its_place);
+  tcase_add_test(tests, a_file_that_is_not_there_is_told);
+  return run_tests("scene errors", tests);
+}
