@@ -109,12 +109,13 @@ static dvi_status run_columns(const maker *m, const dvi__program *program, const
   double *registers = rows + (ptrdiff_t)inputs * width;
   const double *outputs = registers + (ptrdiff_t)(program->row_count - count) * width;
   for (int first = 0; first < m->kernel->elements; first += width) {
-    const int left = m->kernel->elements - first, lanes = left < width ? left : width;
+    const int left = m->kernel->elements - first;
     for (int i = 0; i < inputs; i++)
       for (int k = 0; k < width; k++)
-        rows[i * width + k] = m->kernel->input[node_of(m, data[i])->a].data[first + (k < lanes ? k : lanes - 1)];
-    dvi__program_run(program, lanes, input, registers);
-    for (int c = 0; c < count; c++) memcpy(column[c] + first, outputs + (ptrdiff_t)c * width, (size_t)lanes * sizeof **column);
+        rows[i * width + k] = m->kernel->input[node_of(m, data[i])->a].data[k < left ? first + k : m->kernel->elements - 1];
+    dvi__program_run(program, width, input, registers);
+    for (int c = 0; c < count; c++)
+      memcpy(column[c] + first, outputs + (ptrdiff_t)c * width, (size_t)(left < width ? left : width) * sizeof **column);
   }
   free(rows);
   free((void *)input);
