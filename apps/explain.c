@@ -6,6 +6,7 @@
 #include "command.h"
 #include "open.h"
 #include "options.h"
+#include "scene.h"
 
 enum { NAMES_SHOWN = 12 };
 
@@ -62,6 +63,9 @@ static int explain(const problem *scene, const char *method, const pacing *how)
   if (code != DONE) return code;
   const dvi_status status = dvi_integrator_start(integrator, 0.0, scene->q, scene->p);
   code = status == DVI_OK ? print_method(integrator) : library_error(status);
+  /* A scene derives what is asked for: one step asks for all that the method wants. Whether it succeeds does not matter. */
+  if (code == DONE && scene->scene != NULL) (void)dvi_integrator_step(integrator, scene->h);
+  if (code == DONE) scene_tell(scene);
   dvi_integrator_destroy(&integrator);
   return code;
 }
@@ -70,7 +74,8 @@ static const char *const details[] = {
     "Examples:\n"
     "  dvi explain kepler --method galerkin:degree=4\n"
     "  dvi explain fpu --method midpoint --set ell=1000\n"
-    "  dvi explain kepler --method galerkin:degree=4 --time-transform distance:power=1.5\n",
+    "  dvi explain kepler --method galerkin:degree=4 --time-transform distance:power=1.5\n"
+    "  dvi explain cart.yaml\n",
     NULL,
 };
 
@@ -94,7 +99,7 @@ int explain_command(int argc, char **argv)
   };
   const command_line command = {
       .name = "explain",
-      .synopsis = "PROBLEM --method SPEC [OPTIONS]",
+      .synopsis = "PROBLEM|SCENE.yaml --method SPEC [OPTIONS]",
       .operand = "PROBLEM",
       .summary = "Say which terms a problem has, and which kernel, solver and sparsity a method chooses for it, and why.\n",
       .options = options,
@@ -103,15 +108,14 @@ int explain_command(int argc, char **argv)
   const char *name;
   int code;
   if (!options_parse(&command, argc, argv, &name, &code)) return code;
-  if (method == NULL)
-    return usage_error("explain: --method is missing, for example --method galerkin:degree=4; see dvi list methods");
   code = pacing_check("explain", &how);
   if (code != DONE) return code;
   problem *scene;
   code = open_problem(name, &settings, &scene);
   if (code != DONE) return code;
-  print_problem(scene, &settings);
-  code = explain(scene, method, &how);
+  code = open_wish("explain", scene, &method);
+  if (code == DONE) print_problem(scene, &settings);
+  if (code == DONE) code = explain(scene, method, &how);
   problem_destroy(&scene);
   return code;
 }

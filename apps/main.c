@@ -15,8 +15,8 @@ typedef struct subcommand {
 } subcommand;
 
 static const subcommand subcommands[] = {
-    {"list", list_command},   {"explain", explain_command}, {"run", run_command}, {"order", order_command},
-    {"bench", bench_command}, {"path", path_command},       {NULL, NULL},
+    {"list", list_command},   {"explain", explain_command}, {"run", run_command},     {"order", order_command},
+    {"bench", bench_command}, {"path", path_command},       {"check", check_command}, {NULL, NULL},
 };
 
 static const char help[] =
@@ -28,9 +28,13 @@ static const char help[] =
     "  list methods|problems   what there is to choose from\n"
     "  explain PROBLEM ...     which kernel, solver and sparsity a method chooses for a problem, and why\n"
     "  run PROBLEM ...         compute a trajectory and its invariants as CSV\n"
+    "  check PROBLEM           compare all derivatives with differences, and take one step\n"
     "  path PROBLEM ...        find a path between given ends, or a periodic one, all its steps at once\n"
     "  order PROBLEM ...       measure the order of methods against an independent judge\n"
     "  bench PROBLEM ...       measure speed against error, also beside SUNDIALS' integrators\n"
+    "\n"
+    "  A PROBLEM is a name of the catalogue or the path of a scene, a file that ends in .yaml or .yml: a Lagrangian as\n"
+    "  it stands on paper, a start, a method (docs/scenes.md).\n"
     "\n"
     "  dvi COMMAND --help      options, columns and examples of a command\n"
     "  dvi --version           versions of dvi and of SUNDIALS\n"

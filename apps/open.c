@@ -104,6 +104,13 @@ int open_shaped(const char *name, const words *settings, bool one_point, problem
   return library_error(status);
 }
 
+int open_wish(const char *command, const problem *scene, const char **method)
+{
+  if (*method == NULL) *method = scene->method;
+  if (*method != NULL) return DONE;
+  return usage_error("%s: --method is missing, for example --method galerkin:degree=4; see dvi list methods", command);
+}
+
 const char *start_setting(const char *name, const words *settings)
 {
   const int index = problem_find(name);

@@ -12,6 +12,9 @@ int open_problem(const char *name, const words *settings, problem **scene);
 /** The same; `one_point`: with callbacks of the one-point shape. */
 int open_shaped(const char *name, const words *settings, bool one_point, problem **scene);
 
+/** If no method is asked for, take the one that the scene wants. Returns DONE, or complains that there is none: `command` wants one. */
+int open_wish(const char *command, const problem *scene, const char **method);
+
 /** The first setting of a parameter that only places the start; NULL if there is none, or no such problem. */
 const char *start_setting(const char *name, const words *settings);
 

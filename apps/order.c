@@ -209,6 +209,16 @@ static int study_all(const order_request *request, const problem *scene)
   return code;
 }
 
+/* None asked for: the one that the scene wants. */
+static int wish_method(order_request *request, const problem *scene)
+{
+  const char *wish = NULL;
+  if (request->methods.count > 0) return DONE;
+  const int code = open_wish("order", scene, &wish);
+  if (code == DONE) request->methods.word[request->methods.count++] = wish;
+  return code;
+}
+
 /* Refuse a wrong method before the judge starts to work. */
 static int check_methods(const order_request *request, const problem *scene)
 {
@@ -223,8 +233,6 @@ static int check_methods(const order_request *request, const problem *scene)
 
 static int check_request(order_request *request)
 {
-  if (request->methods.count == 0)
-    return usage_error("order: --method is missing, for example --method galerkin:degree=2; see dvi list methods");
   if (request->levels > LEVELS_MAX)
     return usage_error("order: --levels %ld is too many, %d are possible", request->levels, (int)LEVELS_MAX);
   if (request->t_end == 0.0) return usage_error("order: --t-end 0 leaves nothing to do");
@@ -314,6 +322,7 @@ int order_command(int argc, char **argv)
   code = open_problem(name, &r.settings, &scene);
   if (code != DONE) return code;
   code = axes_read("order", &r.asked, r.plot, "h:error", order_columns(scene), &r.axes);
+  if (code == DONE) code = wish_method(&r, scene);
   if (code == DONE) code = check_step(&r, scene);
   if (code == DONE) code = check_methods(&r, scene);
   if (code == DONE) code = study_all(&r, scene);

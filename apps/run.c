@@ -283,7 +283,7 @@ static double way_to_end(double t, double t_end)
 /* Fill in what was left out, and refuse a step that cannot lead to the end. */
 static int complete(run_request *request, const problem *scene, double t)
 {
-  if (request->every == 0) request->every = 1;
+  if (request->every == 0) request->every = scene->every > 0 ? scene->every : 1;
   if (isnan(request->t_end)) request->t_end = scene->t_end;
   const double way = way_to_end(t, request->t_end);
   if (isnan(request->h)) request->h = way < 0.0 ? -scene->h : scene->h;
@@ -346,8 +346,6 @@ static int check_files(const run_request *request)
 
 static int check_request(const run_request *request)
 {
-  if (request->method == NULL)
-    return usage_error("run: --method is missing, for example --method galerkin:degree=4; see dvi list methods");
   if (request->checkpoint_every > 0 && request->checkpoint == NULL)
     return usage_error("run: --checkpoint-every needs --checkpoint FILE");
   if (request->resume != NULL && (request->momenta != NULL || request->project))
@@ -380,7 +378,8 @@ static int run_problem(run_request *request, const char *name)
   signals_end(true, ended_before);
   int code = open_problem(name, &request->settings, &scene);
   if (code != DONE) return code;
-  code = place_momenta(request, scene);
+  code = open_wish("run", scene, &request->method);
+  if (code == DONE) code = place_momenta(request, scene);
   if (code == DONE) code = run(request, scene);
   problem_destroy(&scene);
   return code;
@@ -461,11 +460,11 @@ int run_command(int argc, char **argv)
   };
   const command_line command = {
       .name = "run",
-      .synopsis = "PROBLEM --method SPEC [--h H] [--t-end T] [OPTIONS]",
+      .synopsis = "PROBLEM|SCENE.yaml --method SPEC [--h H] [--t-end T] [OPTIONS]",
       .operand = "PROBLEM",
       .summary = "Compute a trajectory with fixed steps, with those that sem chooses, or with steps that follow the motion; write "
                  "it and its\n"
-                 "invariants as CSV.\n",
+                 "invariants as CSV. A scene may say which method it wants, and after how many steps a row.\n",
       .options = options,
       .details = details,
   };

@@ -117,3 +117,29 @@ int scene_open(const char *path, const words *settings, problem **scene)
   if (*scene == NULL) complain("out of memory");
   return *scene != NULL ? DONE : FAILED;
 }
+
+static void tell_operations(const char *of, int operations, long points)
+{
+  if (operations == 0)
+    (void)printf(", %s not derived", of);
+  else
+    (void)printf(", %s %d (%ld point%s)", of, operations, points, points == 1 ? "" : "s");
+}
+
+void scene_tell(const problem *scene)
+{
+  dvi_scene_facts facts;
+  if (scene->scene == NULL) return;
+  dvi_scene_facts_of(scene->scene, &facts);
+  (void)printf("scene: %s", facts.form);
+  if (facts.mass != NULL) (void)printf(", mass %s", facts.mass);
+  if (facts.quadratic_potentials > 0) (void)printf(", quadratic potentials %d", facts.quadratic_potentials);
+  (void)printf("; %d kernel%s, %ld element%s, %d nodes\n", facts.kernels, facts.kernels == 1 ? "" : "s", facts.elements,
+               facts.elements == 1 ? "" : "s", facts.nodes);
+  (void)printf("operations a point: value %d (%ld point%s)", facts.value_operations, facts.value_points,
+               facts.value_points == 1 ? "" : "s");
+  tell_operations("gradient", facts.gradient_operations, facts.gradient_points);
+  tell_operations("Hessian", facts.hessian_operations, facts.hessian_points);
+  if (facts.hessian_operations > 0) (void)printf(", %ld entries", facts.hessian_entries);
+  (void)printf("\n");
+}
