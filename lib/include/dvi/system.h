@@ -141,7 +141,7 @@ typedef struct dvi_potential {
   int (*rate_batch)(int count, const double *t, const double *q, double *V_t, void *user);
 } dvi_potential;
 
-/** A constant mass matrix: exactly one of the three forms. */
+/** A constant mass matrix: exactly one of the three forms. It must be regular, and may be indefinite: a Lagrangian with -M and -V moves as that with M and V. */
 typedef struct dvi_mass {
   double scalar;          /**< M = scalar times the identity; 0 if another form is used */
   const double *diagonal; /**< [n] */
