@@ -1,5 +1,6 @@
 /* labels: unit */
 #include <check.h>
+#include <dvi/group.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -289,6 +290,24 @@ START_TEST(a_negative_mass_moves_against_the_force)
 }
 END_TEST
 
+/* L = y1'.y2' = a' b' cos(a - b) of two angles. At rest b stays, and sin(a - b) grows by a'(0) cos(a(0) - b) t, without any kinetic energy. */
+START_TEST(a_motion_without_kinetic_energy_is_solved)
+{
+  static const int start[] = {0, 1, 2, 3, 4}, row[] = {2, 3, 0, 1};
+  static const double mass[] = {1, 1, 1, 1};
+  const dvi_factor factors[] = {{.kind = DVI_U1}, {.kind = DVI_U1}};
+  body angles = {.name = "angles", .nq = 4, .nv = 2, .q = {1, 0, cos(.7), sin(.7)}, .v = {1, 0}};
+  const dvi_system_terms terms = {
+      .factors = factors, .factor_count = 2, .mass = {.values = mass, .pattern = {start, row}}, .autonomous = 1};
+  ck_assert_int_eq(dvi_system_create(&terms, &angles.system), DVI_OK);
+  dvi_integrator *integrator = body_integrator(&angles, "lie-verlet");
+  advance(integrator, .1, 4);
+  ck_assert_double_eq_tol(dvi_u1_log(dvi_integrator_q(integrator)), .7 + asin(.4 * cos(.7) - sin(.7)), 1e-15);
+  dvi_integrator_destroy(&integrator);
+  destroy_body(&angles);
+}
+END_TEST
+
 /* ---- cost ---- */
 
 START_TEST(a_step_costs_one_gradient_and_no_memory)
@@ -412,6 +431,7 @@ int main(void)
   tcase_add_loop_test(tests, thin_and_fast_bodies_keep_energy_and_momentum, 0, 3);
   tcase_add_loop_test(tests, a_step_beyond_the_bound_is_refused, 0, 6);
   tcase_add_test(tests, coupled_cells_refuse_steps_too_large);
+  tcase_add_test(tests, a_motion_without_kinetic_energy_is_solved);
   tcase_add_loop_test(tests, a_negative_mass_moves_against_the_force, 0, 4);
   tcase_add_loop_test(tests, a_step_costs_one_gradient_and_no_memory, 0, PRODUCTS);
   tcase_add_test(tests, hundreds_of_bodies_leap_one_by_one);

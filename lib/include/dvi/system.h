@@ -162,7 +162,9 @@ typedef enum dvi_factor_kind {
  *
  *  The Lagrangian is one of the stored coordinates of all factors in a row, q [nq]: L = q'.M q'/2 - V(t,q) with a constant M, made of what the
  *  factors say of themselves and of the system's mass, if it has one. Potentials have ordinary gradients and Hessians in the nq numbers, of any
- *  smooth continuation of V off the manifold (for a body's weight m g (R rho)_3 those of this formula): only what is tangent counts. */
+ *  smooth continuation of V off the manifold (for a body's weight m g (R rho)_3 those of this formula): only what is tangent counts.
+ *
+ *  Of an inertia J the mass has tr(J)/2 I - J, where a principal moment below 1e-16 of the others is rounded away: the mass is singular, and nothing starts. */
 typedef struct dvi_factor {
   dvi_factor_kind kind;
   int size; /**< of R^n: n; of others 0 */
