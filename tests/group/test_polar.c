@@ -106,6 +106,20 @@ START_TEST(what_was_refused_is_taken_after_its_projection)
 }
 END_TEST
 
+START_TEST(matrices_up_to_the_bound_are_read_as_rotations)
+{
+  static const int entries[][2] = {{0, 0}, {4, 4}, {8, 8}, {0, 8}}; /* which are moved */
+  const double bound = 1e-8, part = entries[_i][0] == entries[_i][1] ? 1 : sqrt(.5);
+  for (int off = 0; off < 2; off++) {
+    const double s = (off ? 1.001 : .999) * bound * part;
+    double R[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, w[3], q[4];
+    R[entries[_i][0]] = R[entries[_i][1]] = 1 + s;
+    ck_assert_int_eq(dvi_so3_log(R, w), off ? DVI_BAD_ARGUMENT : DVI_OK);
+    ck_assert_int_eq(dvi_so3_quaternion(R, q), off ? DVI_BAD_ARGUMENT : DVI_OK);
+  }
+}
+END_TEST
+
 int main(void)
 {
   TCase *tests = tcase_create("polar");
@@ -117,5 +131,6 @@ int main(void)
   tcase_add_test(tests, singular_matrices_and_reflections_are_projected);
   tcase_add_test(tests, any_matrix_has_a_rotation);
   tcase_add_test(tests, what_was_refused_is_taken_after_its_projection);
+  tcase_add_loop_test(tests, matrices_up_to_the_bound_are_read_as_rotations, 0, 4);
   return run_tests("group/polar", tests);
 }

@@ -1,5 +1,6 @@
 /* labels: unit */
 #include <check.h>
+#include <dvi/group.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -235,6 +236,78 @@ START_TEST(coupled_cells_refuse_steps_too_large)
 }
 END_TEST
 
+/* ---- masses ---- */
+
+static int height(double t, const double *q, double *V, void *user)
+{
+  (void)t;
+  *V = *(double *)user * q[8];
+  return 0;
+}
+
+static int weight(double t, const double *q, double *V_q, void *user)
+{
+  (void)t, (void)q;
+  memset(V_q, 0, 9 * sizeof *V_q);
+  V_q[8] = *(double *)user;
+  return 0;
+}
+
+/* A ball under a weight along an axis of its own; as a system of its own with -L: the scalar mass -1 makes I of J into -I. */
+static dvi_integrator *ball(const char *method, double sign, body *of)
+{
+  static const double J[] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  static double signs[2];
+  double *own = &signs[sign < 0];
+  *own = sign;
+  const dvi_factor factor = {.kind = DVI_SO3, .inertia = J};
+  const dvi_potential potential = {.name = "weight", .value = height, .gradient = weight, .user = own};
+  *of = (body){.name = "ball", .nq = 9, .nv = 3, .q = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .v = {1, .5, .2}};
+  const dvi_system_terms terms = {.factors = &factor,
+                                  .factor_count = 1,
+                                  .potentials = &potential,
+                                  .potential_count = 1,
+                                  .mass = {.scalar = sign < 0 ? -1 : 0},
+                                  .autonomous = 1};
+  ck_assert_int_eq(dvi_system_create(&terms, &of->system), DVI_OK);
+  return body_integrator(of, method);
+}
+
+/* -L has the same motions as L. */
+START_TEST(a_negative_mass_moves_against_the_force)
+{
+  static const char *const methods[] = {"lie-verlet", "lie-verlet:solve=cayley", "lie-galerkin:degree=2", "lie-rk"};
+  body plus, minus;
+  dvi_integrator *one = ball(methods[_i], 1, &plus), *other = ball(methods[_i], -1, &minus);
+  advance(one, .05, 100);
+  advance(other, .05, 100);
+  ck_assert_double_le(distance(9, dvi_integrator_q(one), dvi_integrator_q(other)), 1e-13);
+  for (int i = 0; i < 3; i++) ck_assert_double_eq_tol(dvi_integrator_p(one)[i], -dvi_integrator_p(other)[i], 1e-13);
+  dvi_integrator_destroy(&one);
+  dvi_integrator_destroy(&other);
+  destroy_body(&plus);
+  destroy_body(&minus);
+}
+END_TEST
+
+/* L = y1'.y2' = a' b' cos(a - b) of two angles. At rest b stays, and sin(a - b) grows by a'(0) cos(a(0) - b) t, without any kinetic energy. */
+START_TEST(a_motion_without_kinetic_energy_is_solved)
+{
+  static const int start[] = {0, 1, 2, 3, 4}, row[] = {2, 3, 0, 1};
+  static const double mass[] = {1, 1, 1, 1};
+  const dvi_factor factors[] = {{.kind = DVI_U1}, {.kind = DVI_U1}};
+  body angles = {.name = "angles", .nq = 4, .nv = 2, .q = {1, 0, cos(.7), sin(.7)}, .v = {1, 0}};
+  const dvi_system_terms terms = {
+      .factors = factors, .factor_count = 2, .mass = {.values = mass, .pattern = {start, row}}, .autonomous = 1};
+  ck_assert_int_eq(dvi_system_create(&terms, &angles.system), DVI_OK);
+  dvi_integrator *integrator = body_integrator(&angles, "lie-verlet");
+  advance(integrator, .1, 4);
+  ck_assert_double_eq_tol(dvi_u1_log(dvi_integrator_q(integrator)), .7 + asin(.4 * cos(.7) - sin(.7)), 1e-15);
+  dvi_integrator_destroy(&integrator);
+  destroy_body(&angles);
+}
+END_TEST
+
 /* ---- cost ---- */
 
 START_TEST(a_step_costs_one_gradient_and_no_memory)
@@ -358,6 +431,8 @@ int main(void)
   tcase_add_loop_test(tests, thin_and_fast_bodies_keep_energy_and_momentum, 0, 3);
   tcase_add_loop_test(tests, a_step_beyond_the_bound_is_refused, 0, 6);
   tcase_add_test(tests, coupled_cells_refuse_steps_too_large);
+  tcase_add_test(tests, a_motion_without_kinetic_energy_is_solved);
+  tcase_add_loop_test(tests, a_negative_mass_moves_against_the_force, 0, 4);
   tcase_add_loop_test(tests, a_step_costs_one_gradient_and_no_memory, 0, PRODUCTS);
   tcase_add_test(tests, hundreds_of_bodies_leap_one_by_one);
   tcase_add_test(tests, a_centre_of_mass_goes_straight);

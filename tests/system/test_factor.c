@@ -1,6 +1,7 @@
 /* Configuration spaces with factors: layout, mass, what is refused, and points off the manifold. */
 #include <math.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "core/memory.h"
@@ -112,11 +113,11 @@ static const struct {
     {{.kind = DVI_U1, .mass = INFINITY}, DVI_BAD_ARGUMENT, "has mass inf"},
     {{.kind = DVI_U1, .mass = NAN}, DVI_BAD_ARGUMENT, "has mass nan"},
     {{.kind = DVI_SO3}, DVI_SINGULAR, "factor 0 has no mass at coordinates 0 to 8"},
-    {{.kind = DVI_SE3}, DVI_SINGULAR, "factor 0 has no mass at coordinates 0 to 8"},
-    {{.kind = DVI_SE3, .inertia = inertia}, DVI_SINGULAR, "factor 0 has no mass at coordinates 9 to 9"},
+    {{.kind = DVI_SE3}, DVI_SINGULAR, "factor 0 has no mass at coordinates 0 to 11"},
+    {{.kind = DVI_SE3, .inertia = inertia}, DVI_SINGULAR, "factor 0 has no mass at coordinates 9 to 11"},
     {{.kind = DVI_S2}, DVI_SINGULAR, "factor 0 has no mass at coordinates 0 to 2"},
     {{.kind = DVI_U1}, DVI_SINGULAR, "factor 0 has no mass at coordinates 0 to 1"},
-    {{.kind = DVI_RN, .size = 2}, DVI_SINGULAR, "factor 0 has no mass at coordinates 0 to 0"},
+    {{.kind = DVI_RN, .size = 2}, DVI_SINGULAR, "factor 0 has no mass at coordinates 0 to 1"},
     {{.kind = DVI_RN, .mass = 1}, DVI_BAD_SIZE, "has size 0"},
     {{.kind = DVI_S2, .size = 3, .mass = 1}, DVI_BAD_SIZE, "has size 3"},
     {{.kind = (dvi_factor_kind)17}, DVI_BAD_ARGUMENT, "is of no known kind (17)"},
@@ -284,6 +285,17 @@ START_TEST(singular_masses_cannot_start)
 }
 END_TEST
 
+START_TEST(a_success_leaves_the_last_error_as_it_is)
+{
+  const dvi_factor factor = {.kind = DVI_SO3, .inertia = inertia};
+  char before[256];
+  ck_assert_int_eq(dvi_system_create(NULL, &made), DVI_BAD_ARGUMENT);
+  (void)snprintf(before, sizeof before, "%s", dvi_last_error());
+  ck_assert_int_eq(create(&factor, 1), DVI_OK);
+  ck_assert_str_eq(dvi_last_error(), before);
+}
+END_TEST
+
 START_TEST(systems_with_factors_survive_every_failure)
 {
   const dvi_factor factors[] = {{.kind = DVI_SE3, .mass = 2, .inertia = inertia, .centre = centre}, {.kind = DVI_S2, .mass = 1}};
@@ -322,6 +334,7 @@ int main(void)
   tcase_add_test(tests, distances_are_those_of_the_nearest_point);
   tcase_add_test(tests, massless_factors_may_be_coupled);
   tcase_add_test(tests, singular_masses_cannot_start);
+  tcase_add_test(tests, a_success_leaves_the_last_error_as_it_is);
   tcase_add_test(tests, systems_with_factors_survive_every_failure);
   return run_tests("system/factor", tests);
 }

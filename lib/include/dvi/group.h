@@ -27,7 +27,7 @@ extern "C" {
  *  @param[out] R  [9] orthogonal to 1 ulp, without bias: of N factors the product leaves the group by about sqrt(N) ulp */
 void dvi_so3_exp(const double w[3], double R[9]);
 
-/** The shortest w with exp(hat(w)) = R, |w| <= pi. At a half turn, where w and -w are as short: the one whose largest component is positive.
+/** The shortest w with exp(hat(w)) = R, |w| <= pi but for rounding. At a half turn, where w and -w are as short: the one whose largest component is positive.
  *
  *  @param      R  [9] a rotation
  *  @param[out] w  [3] radians
@@ -135,7 +135,7 @@ double dvi_u1_log(const double y[2]);
  *  @param[out] z  [3] of length 1 to 1 ulp, though y and t may have roundoff */
 void dvi_s2_exp(const double y[3], const double t[3], double z[3]);
 
-/** The shortest tangent vector t at y that leads to z, |t| <= pi. For z = -y, where every direction does, the one towards the coordinate axis of the smallest
+/** The shortest tangent vector t at y that leads to z, |t| <= pi but for rounding. For z = -y, where every direction does, the one towards the coordinate axis of the smallest
  *  |y_i|, the first of equals.
  *
  *  @param      y, z  [3] of length 1

@@ -141,7 +141,7 @@ typedef struct dvi_potential {
   int (*rate_batch)(int count, const double *t, const double *q, double *V_t, void *user);
 } dvi_potential;
 
-/** A constant mass matrix: exactly one of the three forms. */
+/** A constant mass matrix: exactly one of the three forms. It must be regular, and may be indefinite: a Lagrangian with -M and -V moves as that with M and V. */
 typedef struct dvi_mass {
   double scalar;          /**< M = scalar times the identity; 0 if another form is used */
   const double *diagonal; /**< [n] */
@@ -162,7 +162,9 @@ typedef enum dvi_factor_kind {
  *
  *  The Lagrangian is one of the stored coordinates of all factors in a row, q [nq]: L = q'.M q'/2 - V(t,q) with a constant M, made of what the
  *  factors say of themselves and of the system's mass, if it has one. Potentials have ordinary gradients and Hessians in the nq numbers, of any
- *  smooth continuation of V off the manifold (for a body's weight m g (R rho)_3 those of this formula): only what is tangent counts. */
+ *  smooth continuation of V off the manifold (for a body's weight m g (R rho)_3 those of this formula): only what is tangent counts.
+ *
+ *  Of an inertia J the mass has tr(J)/2 I - J, where a principal moment below 1e-16 of the others is rounded away: the mass is singular, and nothing starts. */
 typedef struct dvi_factor {
   dvi_factor_kind kind;
   int size; /**< of R^n: n; of others 0 */

@@ -2,8 +2,9 @@
  *
  *     h p - T0^T M (y(xi) - y0) = 0,     with the derivative  -T0^T M T(xi).
  *
- * From xi = 0 the first correction is h v. As long as each is much shorter than the one before, in the norm of the kinetic energy, the same holds for all shorter
- * steps: the solution is on their branch (Kantorovich's theorem; Deuflhard 2004, sec. 2.1). Where it ends corrections shrink by one half only.
+ * From xi = 0 the first correction is h v. As long as each is much shorter than the one before, the same holds for all shorter steps: the solution is on their
+ * branch (Kantorovich's theorem; Deuflhard 2004, sec. 2.1). Where it ends corrections shrink by one half only. Their length is that of T0 xi with the weights
+ * sum_j |M_ij|: at least the kinetic energy's, and a length where that is not, for the mass may be indefinite.
  *
  * With a = M (y1 - y0)/h the angular momentum y x a of a cell changes by (y1 - y0) x a, what the other cells do to it: all these together are 0 if the mass has
  * the symmetry. */
@@ -37,6 +38,7 @@ struct dvi__coupled_leaps {
   dvi__linear *linear;
   double *T0, *T;                /* [3 n] as dvi__chart_tangents has them */
   double *moved, *force;         /* [n] y(xi) - y0, and M times that */
+  double *weight;                /* [n] of coordinates in the length of a correction */
   double *unwanted;              /* [3 n] */
   double *values;                /* [entries] */
   double *xi, *impulse, *change; /* [unknowns] */
@@ -104,16 +106,24 @@ static dvi_status allocate(dvi__coupled_leaps *l)
   const size_t n = (size_t)l->system->n, unknowns = (size_t)l->unknowns;
   l->first = DVI_NEW(int, dvi__pattern_entries(&l->system->vv));
   l->values = DVI_NEW(double, dvi__pattern_entries(&l->pattern));
-  l->T0 = DVI_NEW(double, 11 * n + 3 * unknowns);
+  l->T0 = DVI_NEW(double, 12 * n + 3 * unknowns);
   if (l->first == NULL || l->values == NULL || l->T0 == NULL) return dvi__fail(DVI_NO_MEMORY, "leaps: no memory");
   l->T = l->T0 + 3 * n;
   l->unwanted = l->T + 3 * n;
   l->moved = l->unwanted + 3 * n;
   l->force = l->moved + n;
-  l->xi = l->force + n;
+  l->weight = l->force + n;
+  l->xi = l->weight + n;
   l->impulse = l->xi + unknowns;
   l->change = l->impulse + unknowns;
   return DVI_OK;
+}
+
+static void find_weights(dvi__coupled_leaps *l)
+{
+  const dvi__pattern *vv = &l->system->vv;
+  for (int j = 0; j < vv->columns; j++)
+    for (int e = vv->start[j]; e < vv->start[j + 1]; e++) l->weight[j] += fabs(l->system->mass_values[e]);
 }
 
 static dvi_status fill(dvi__coupled_leaps *l, const int *together)
@@ -125,6 +135,7 @@ static dvi_status fill(dvi__coupled_leaps *l, const int *together)
   DVI_TRY(make_pattern(l));
   DVI_TRY(allocate(l));
   find_blocks(l);
+  find_weights(l);
   return dvi__linear_create(&l->pattern, DVI__LINEAR_AUTO, l->counters, &l->linear);
 }
 
@@ -167,21 +178,20 @@ static void multiply(dvi__coupled_leaps *l)
       l->force[vv->row[e]] += l->system->mass_values[e] * l->moved[j];
 }
 
-/* The squared length of a change of xi at q0, in the kinetic energy. */
-static double energy_of(dvi__coupled_leaps *l, const double *change)
+/* Of a change of xi at q0. */
+static double length_of(const dvi__coupled_leaps *l, const double *change)
 {
   double sum = 0;
   for (int u = 0; u < l->count; u++) {
     const dvi__cell *cell = l->unit[u].cell;
     const int size = dvi__chart_size(cell->kind);
     for (int i = 0; i < dvi__chart_stored(cell->kind); i++) {
-      l->moved[cell->q + i] = 0;
-      for (int a = 0; a < size; a++) l->moved[cell->q + i] += l->T0[3 * cell->q + i * size + a] * change[l->unit[u].x + a];
+      double moved = 0;
+      for (int a = 0; a < size; a++) moved += l->T0[3 * cell->q + i * size + a] * change[l->unit[u].x + a];
+      sum += l->weight[cell->q + i] * moved * moved;
     }
   }
-  multiply(l);
-  for (int i = 0; i < l->system->n; i++) sum += l->owner[i] >= 0 ? l->moved[i] * l->force[i] : 0;
-  return fabs(sum);
+  return sqrt(sum);
 }
 
 /* ---- Newton's method ---- */
@@ -268,7 +278,7 @@ static dvi_status newton(dvi__coupled_leaps *l)
     const dvi_status status = correct(l);
     if (status == DVI_SINGULAR && iteration > 0) return too_large(1);
     DVI_TRY(status);
-    const double length = sqrt(energy_of(l, l->change));
+    const double length = length_of(l, l->change);
     if (!(length <= 0.6 * last)) return too_large(length / last);
     for (int i = 0; i < l->unknowns; i++) l->xi[i] += l->change[i];
     if (iteration == 0) first = length;

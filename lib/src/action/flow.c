@@ -181,13 +181,12 @@ void dvi__flow_plain(const dvi__flow *f, const double *q, const double *p, const
   for (int c = 0; c < f->system->cell_count; c++) {
     const dvi__cell *cell = &f->system->cells[c];
     const double *y = q + cell->q;
-    double mu[3], given[3], moved[3];
+    double given[3], turned[3];
     move_rate(cell->kind, y, omega + cell->v, q_rate + cell->q);
     if (cell->kind != DVI__SPHERE) continue;
-    dvi__cross(y, p + cell->v, mu);
     dvi__cross(m_rate + cell->v, y, given);
-    dvi__cross(mu, q_rate + cell->q, moved);
-    for (int i = 0; i < 3; i++) p_rate[cell->v + i] = given[i] + moved[i];
+    dvi__cross(omega + cell->v, p + cell->v, turned);
+    for (int i = 0; i < 3; i++) p_rate[cell->v + i] = given[i] + turned[i];
   }
 }
 

@@ -21,7 +21,8 @@ void dvi__flow_leave(const dvi__flow *flow, const double *q, const double *m, do
 /* omega and the rate of m at (t,q,p). One gradient. */
 dvi_status dvi__flow_rates(dvi__flow *flow, double t, const double *q, const double *p, double *omega, double *m_rate);
 
-/* The rates of q [nq] and p [nv] as plain numbers. */
+/* The rates of q [nq] and p [nv] as plain numbers. At every y and p, on the manifold or off it, they leave the lengths of the vectors in y as they are, and a
+ * direction's y.p: y and p are turned alike, and what is added to p is orthogonal to y. */
 void dvi__flow_plain(const dvi__flow *flow, const double *q, const double *p, const double *omega, const double *m_rate,
                      double *q_rate, double *p_rate);
 

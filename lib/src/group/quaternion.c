@@ -10,7 +10,7 @@
 #include "core/status.h"
 #include "group/vector.h"
 
-/* How far from orthogonal a matrix may be that is read as a rotation: what a long run or a file of ten digits leaves, and no more. */
+/* How far from a rotation a matrix may be that is read as a rotation: what a long run or a file of ten digits leaves, and no more. */
 #define TOLERANCE 1e-8
 
 void dvi_so3_from_quaternion(const double q[4], double R[9])
@@ -21,15 +21,6 @@ void dvi_so3_from_quaternion(const double q[4], double R[9])
   const double length = sqrt(unit[0] * unit[0] + dvi__dot(unit + 1, unit + 1));
   for (int i = 0; i < 4; i++) unit[i] /= length;
   dvi__rotation(unit, R);
-}
-
-/* The first two rows are of length 1 and at a right angle, the third one is their product. NaN if an entry is. */
-static double defect(const double R[9])
-{
-  double third[3];
-  dvi__cross(R, R + 3, third);
-  return fabs(dvi__dot(R, R) - 1) + fabs(dvi__dot(R + 3, R + 3) - 1) + fabs(dvi__dot(R, R + 3)) + fabs(third[0] - R[6]) +
-         fabs(third[1] - R[7]) + fabs(third[2] - R[8]);
 }
 
 /* row[j] = 4 q_k q_j for the k of the largest |q_k|. */
@@ -53,10 +44,10 @@ static void largest_row(const double R[9], double row[4])
 dvi_status dvi_so3_quaternion(const double R[9], double q[4])
 {
   double row[4];
-  const double found = defect(R);
-  if (!(found <= TOLERANCE))
+  const double distance = dvi_so3_distance(R);
+  if (!(distance <= TOLERANCE))
     return dvi__fail(DVI_BAD_ARGUMENT,
-                     "rotation: the matrix is %.1e from orthogonal and right-handed, %.0e is allowed; see dvi_so3_project", found,
+                     "rotation: the matrix is %.1e from the nearest rotation, %.0e is allowed; see dvi_so3_project", distance,
                      TOLERANCE);
   largest_row(R, row);
   const double length = sqrt(row[0] * row[0] + dvi__dot(row + 1, row + 1)), sign = row[0] < 0 ? -length : length;

@@ -220,20 +220,19 @@ static void join(const entries *list, const int *sorted, dvi_system *s)
 
 static dvi_status compress(const entries *list, dvi_system *s)
 {
-  dvi_status status = dvi__fail(DVI_NO_MEMORY, "system: no memory for its mass");
   int *start = DVI_NEW(int, (size_t)s->n + 1), *by_row = DVI_NEW(int, list->count), *sorted = DVI_NEW(int, list->count);
   s->vv = (dvi__pattern){s->n, s->n, DVI_NEW(int, (size_t)s->n + 1), DVI_NEW(int, list->count)};
   s->mass_values = DVI_NEW(double, list->count);
-  if (start && by_row && sorted && s->vv.start && s->vv.row && s->mass_values) {
+  const int possible = start && by_row && sorted && s->vv.start && s->vv.row && s->mass_values;
+  if (possible) {
     sort_by(list->row, s->n, list->count, NULL, start, by_row);
     sort_by(list->column, s->n, list->count, by_row, start, sorted);
     join(list, sorted, s);
-    status = DVI_OK;
   }
   dvi__release(start);
   dvi__release(by_row);
   dvi__release(sorted);
-  return status;
+  return possible ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "system: no memory for its mass");
 }
 
 /* Whether no mass concerns a cell: wherever it stands, its momentum says nothing of its velocity. */
@@ -250,11 +249,13 @@ static dvi_status check_massive(const dvi_system_terms *terms, const dvi_system 
   for (int f = 0, c = 0; f < terms->factor_count; f++) {
     dvi__chart_kind kind;
     const int end = c + has_cell(&terms->factors[f], &kind) + lines_of(&terms->factors[f]);
-    for (; c < end; c++)
-      if (is_massless(s, &s->cells[c]))
-        return dvi__fail(DVI_SINGULAR,
-                         "system: factor %d has no mass at coordinates %d to %d; give it one of its own, or in the system's mass",
-                         f, s->cells[c].q, s->cells[c].q + dvi__chart_stored(s->cells[c].kind) - 1);
+    while (c < end && !is_massless(s, &s->cells[c])) c++;
+    const int first = c;
+    while (c < end && is_massless(s, &s->cells[c])) c++;
+    if (c > first)
+      return dvi__fail(DVI_SINGULAR,
+                       "system: factor %d has no mass at coordinates %d to %d; give it one of its own, or in the system's mass", f,
+                       s->cells[first].q, s->cells[c - 1].q + dvi__chart_stored(s->cells[c - 1].kind) - 1);
   }
   return DVI_OK;
 }
