@@ -80,7 +80,8 @@ DVI__SCENE_INLINE void inverse_root_powers(int width, double exponent, const dou
   for (int k = 0; plain < width && k < width; k++) {
     if (is_plain(x[k])) continue;
     to[k] = 1.0 / sqrt(x[k]);
-    for (int i = 0; i < factors; i++) to[k] /= x[k];
+    const double square = to[k] * to[k];
+    for (int i = 0; i < factors; i++) to[k] *= square;
   }
 }
 
