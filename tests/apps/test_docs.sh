@@ -7,10 +7,14 @@ top=$here/../..
 PATH=$(dirname "$dvi"):$PATH
 export PATH
 
-# split PAGE: the commands of its console fences into command.N, what follows each into shown.N.
+# split PAGE: the commands of its console fences into command.N, what follows each into shown.N; scenes that begin with "# NAME.yaml: " into that file.
 split() {
   rm -f command.* shown.*
-  awk '$0 == "```console" { inside = 1; next }
+  awk '$0 == "```yaml" { scene = 1; next }
+       /^```$/ { scene = 0 }
+       scene == 1 { scene = 0; if ($2 ~ /^[a-z-]+\.yaml:$/) { scene = 2; file = substr($2, 1, length($2) - 1); printf "" > file } }
+       scene == 2 { print > file }
+       $0 == "```console" { inside = 1; next }
        /^```$/ { inside = 0 }
        inside && /^\$ / { n++; print substr($0, 3) > ("command." n); printf "" > ("shown." n); next }
        inside { print > ("shown." n) }' "$1"
@@ -20,7 +24,7 @@ split() {
 words() { sed -e 's/^\(processor\): .*/\1/; s/^\(compiler\): .*/\1/; s/, GSL .*//; s/  at most  /  interpolated  /' -e 's/-\{0,1\}[0-9][0-9.]*\(e[-+]\{0,1\}[0-9][0-9]*\)\{0,1\}/N/g; s/  */ /g; s/ $//' "$1"; }
 
 commands=0
-for page in README.md docs/guide.md docs/theory.md docs/problems.md docs/adaptive.md docs/paths.md $(cd "$top" && ls docs/methods/*.md); do
+for page in README.md docs/guide.md docs/theory.md docs/problems.md docs/adaptive.md docs/paths.md docs/scenes.md $(cd "$top" && ls docs/methods/*.md); do
   split "$top/$page"
   n=1
   while [ -e command.$n ]; do
