@@ -135,9 +135,10 @@ void dvi__chart_point(const dvi__chart *chart, const dvi__functions *c, const do
 void dvi__chart_place(const dvi__chart *chart, const double *xi, double *y)
 {
   static const double rest[DVI__CHART_SIZE] = {0};
-  double E[9], v[DVI__CHART_POINT];
+  double v[DVI__CHART_POINT];
   dvi__functions c;
   if (chart->kind == DVI__ROTATION) {
+    double E[9];
     dvi_so3_exp(xi, E);
     turn(chart->y0, E, y);
     return;
