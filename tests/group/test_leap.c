@@ -29,7 +29,7 @@ static double residual(const double Jd[9], const double w[3], const double g[3])
 {
   double F[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, carry[9] = {0}, A[9] = {0};
   const dvi__turn turn = dvi__turn_of(w);
-  dvi__turn_frame(&turn, F, carry);
+  dvi__turn_rows(&turn, 9, F, carry);
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++)
       for (int k = 0; k < 3; k++) A[3 * i + j] += F[3 * i + k] * Jd[3 * k + j];
@@ -110,7 +110,7 @@ START_TEST(a_million_equal_turns_keep_to_the_group)
   static const double turns[][3] = {{.025, -.03, .035}, {0, .41, 0}, {.31, .12, -.43}};
   double R[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, carry[9] = {0};
   const dvi__turn turn = dvi__turn_of(turns[_i]);
-  for (int i = 0; i < 1000000; i++) dvi__turn_frame(&turn, R, carry);
+  for (int i = 0; i < 1000000; i++) dvi__turn_rows(&turn, 9, R, carry);
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) ck_assert_double_eq_tol(R[i] * R[j] + R[3 + i] * R[3 + j] + R[6 + i] * R[6 + j], i == j, 1e-12);
 }
