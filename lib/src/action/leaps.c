@@ -143,17 +143,26 @@ static void leap_place(const dvi__piece *own, double h, const dvi__phase *state,
   dvi__add_compensated_all(3, state->q + x, state->q_carry + x, leap + v + 3);
 }
 
+/* Pi += sign rho x R^T p_x, of a rigid motion: -1 makes it that about the centre of mass. */
+static void shift(const dvi__piece *own, double sign, const dvi__phase *state)
+{
+  const int v = own->cell->v;
+  double moment[3];
+  dvi__piece_moment(own, state->q, state->p, moment);
+  for (int i = 0; i < 3; i++) dvi__add_compensated(state->p + v + i, state->p_carry + v + i, sign * moment[i]);
+}
+
 static dvi_status leap_body(const dvi__piece *own, dvi__leap_by by, double h, const dvi__phase *state, double *leap)
 {
   double *p = state->p + own->cell->v, *p_carry = state->p_carry + own->cell->v, *w = leap + own->cell->v;
-  if (own->rigid) dvi__piece_shift(own, -1, state->q, state->p);
+  if (own->rigid) shift(own, -1, state);
   const double impulse[] = {h * p[0], h * p[1], h * p[2]};
   if (!dvi__body_leap(own->body, by, impulse, w)) return too_large(own, sqrt(dvi__dot(impulse, impulse)), own->body->largest);
   if (own->rigid) leap_place(own, h, state, leap);
   const dvi__turn turn = dvi__turn_of(w);
   dvi__turn_rows(&turn, 9, state->q + own->cell->q, state->q_carry + own->cell->q);
   dvi__turn_rows(&turn, 3, p, p_carry);
-  if (own->rigid) dvi__piece_shift(own, 1, state->q, state->p);
+  if (own->rigid) shift(own, 1, state);
   return DVI_OK;
 }
 
