@@ -8,14 +8,14 @@
 #include "group/vector.h"
 #include "num/compensated.h"
 
-/* tan(x)/x - 1 = x^2 (c_2 - c_3)/c_0 at x = |f|/2 is small: its rounding, the same in all steps of a steady turn, is too. At half a turn, where cos(x) may be 0, it is
- * within a rounding of it. */
+/* tan(x)/x - 1 = x^2 (c_2 - c_3)/c_0 at x = |f|/2 is small: its rounding, the same in all steps of a steady turn, is too. At half a turn cos(x) may be rounded to 0.
+ * An angle whose square overflows has no digits: no turn then. */
 void dvi__turn_tangent(const double f[3], double w[3])
 {
   double c[4];
   const double square = 0.25 * dvi__dot(f, f);
   dvi__stumpff_four(square, c);
-  const double more = square * (c[2] - c[3]) / (c[0] != 0 ? c[0] : 0.5 * DBL_EPSILON);
+  const double more = isinf(square) ? -1 : square * (c[2] - c[3]) / (c[0] != 0 ? c[0] : 0.5 * DBL_EPSILON);
   for (int i = 0; i < 3; i++) w[i] = 0.5 * f[i] + more * (0.5 * f[i]);
 }
 
