@@ -114,7 +114,7 @@ static void straighten(const dvi__twofold mu[3], double most, dvi__twofold y[3])
 {
   const double square = mu[0].head * mu[0].head + mu[1].head * mu[1].head + mu[2].head * mu[2].head, along = dot(mu, y, 0);
   if (!(fabs(along) < most * sqrt(square))) return;
-  for (int i = 0; i < 3; i++) y[i] = dvi__exact_sum(y[i].head, y[i].tail - along / square * mu[i].head);
+  for (int i = 0; i < 3; i++) y[i].tail -= along / square * mu[i].head;
 }
 
 void dvi__turn_momentum(const dvi__twofold mu[3], double most, double *y, double *y_carry, double *p, double *p_carry)
@@ -123,7 +123,6 @@ void dvi__turn_momentum(const dvi__twofold mu[3], double most, double *y, double
   dvi__twofold_get(3, y, y_carry, at);
   straighten(mu, most, at);
   cross(mu, at, momentum);
-  for (int i = 0; i < 3; i++) momentum[i] = dvi__exact_sum(momentum[i].head, momentum[i].tail);
   dvi__twofold_put(3, at, y, y_carry);
   dvi__twofold_put(3, momentum, p, p_carry);
 }

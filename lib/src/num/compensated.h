@@ -35,7 +35,14 @@ static inline dvi__twofold dvi__exact_product(double a, double b)
   return (dvi__twofold){head, __builtin_fma(a, b, -head)};
 }
 
-/* Sums with their carries as such numbers, and back. */
+/* The tail may be as large as a few roundings of the head. */
+static inline dvi__twofold dvi__twofold_sum(dvi__twofold a, dvi__twofold b)
+{
+  const dvi__twofold sum = dvi__exact_sum(a.head, b.head);
+  return (dvi__twofold){sum.head, sum.tail + (a.tail + b.tail)};
+}
+
+/* Sums with their carries as such numbers, and back, where the tail is at most half a rounding. */
 static inline void dvi__twofold_get(int count, const double *sum, const double *carry, dvi__twofold *x)
 {
   for (int i = 0; i < count; i++) x[i] = (dvi__twofold){sum[i], -carry[i]};
@@ -44,15 +51,10 @@ static inline void dvi__twofold_get(int count, const double *sum, const double *
 static inline void dvi__twofold_put(int count, const dvi__twofold *x, double *sum, double *carry)
 {
   for (int i = 0; i < count; i++) {
-    sum[i] = x[i].head;
-    carry[i] = -x[i].tail;
+    const dvi__twofold rounded = dvi__exact_sum(x[i].head, x[i].tail);
+    sum[i] = rounded.head;
+    carry[i] = -rounded.tail;
   }
-}
-
-static inline dvi__twofold dvi__twofold_sum(dvi__twofold a, dvi__twofold b)
-{
-  const dvi__twofold sum = dvi__exact_sum(a.head, b.head);
-  return dvi__exact_sum(sum.head, sum.tail + (a.tail + b.tail));
 }
 
 #endif
