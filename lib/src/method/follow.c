@@ -1,6 +1,6 @@
 /* The rows of a step that turns by a radian have several solutions, and on thin bodies, which turn fast as soon as their path errs, they stand close. Which one
  * Newton's method finds is chance, unless the guess is near. The one that is meant becomes the state itself as h goes to 0; it is followed from there, by longer
- * and longer steps, each guess the last path continued (natural continuation: Allgower and Georg 1990, sec. 2.1). */
+ * and longer steps, each guess the last path continued: continuation in h. */
 #include "method/follow.h"
 
 #include <math.h>
@@ -8,9 +8,9 @@
 
 #include "core/status.h"
 
-/* Radians between a guess and its solution. Other solutions are by a third and more away; where the smallest moment of inertia is 1e-5 of the others, by a
- * fortieth. Steps below half a radian are nearer to their guess. */
-static const double near_by = 0.03;
+/* Radians between a guess and its solution. Other solutions were found by a third of a radian and more away, but by a fortieth where the smallest moment of
+ * inertia is 1e-5 of the others. Steps below half a radian are nearer to their guess, those that are followed go on in such parts that they are. */
+static const double near_by = 0.03, follows_by = 0.01;
 
 /* In parts of the step: the first one, and the least by which it grows. */
 static const double first_part = 1.0 / 8, least_part = 1.0 / 512;
@@ -67,7 +67,7 @@ dvi_status dvi__follow_path(const dvi__follow *own, double *Y, dvi__solve_report
     memcpy(own->guess, own->ahead, bytes);
     const dvi_status status = dvi__solve(own->solver, DVI__NEWTON, 0, 1, 0, own->ahead, report);
     if (status < 0) return status;
-    const int follows = status == DVI_OK && dvi__follow_is_near(own->action, own->guess, own->ahead);
+    const int follows = status == DVI_OK && dvi__action_turn(own->action, own->guess, own->ahead) <= follows_by;
     part *= follows ? 2 : 0.5;
     if (!follows) continue;
     memcpy(Y, own->ahead, bytes);
