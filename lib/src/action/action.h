@@ -62,6 +62,9 @@ void dvi__action_magnitudes(const dvi__action *action, double *magnitude);
 double dvi__action_turn(const dvi__action *action, const double *from, const double *Y);
 double dvi__action_turned(const dvi__action *action, const double *xi);
 
+/* Whether the sign of its Jacobian's determinant tells of folds (system/centring.h). */
+int dvi__action_signs(const dvi__action *action);
+
 /* dR/dY in the order of the pattern. */
 dvi_status dvi__action_jacobian(dvi__action *action, const double *Y, double *values);
 

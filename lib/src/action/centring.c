@@ -52,6 +52,11 @@ double dvi__action_turn(const dvi__action *a, const double *from, const double *
   return a->centring.turn(a->centring.of, a->s, Y, from);
 }
 
+int dvi__action_signs(const dvi__action *a)
+{
+  return a->centring.signs;
+}
+
 double dvi__action_turned(const dvi__action *a, const double *xi)
 {
   return a->centring.turn(a->centring.of, 1, xi, NULL);

@@ -447,7 +447,7 @@ dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h)
   dvi__solve_report report = {0};
   const place at = place_of(self, state, h);
   dvi_status status = solve_at(self, &at, own->Y, &report);
-  const int strayed = status == DVI_OK && own->centred && !dvi__follow_is_near(own->action, own->offset, own->Y);
+  const int strayed = status == DVI_OK && own->centred && !dvi__follow_is_meant(own->action, own->solver, h, own->offset, own->Y);
   if (status > 0 || strayed) status = (own->centred ? follow : rescue)(self, &at, own->Y, &report);
   if (status == DVI_OK) {
     dvi__action_ends(own->action, own->Y, own->dq, own->dq_low, own->dp);

@@ -13,11 +13,13 @@
 static const double near_by = 0.03, follows_by = 0.01;
 
 /* In parts of the step: the first one, and the least by which it grows. */
-static const double first_part = 1.0 / 8, least_part = 1.0 / 512;
+static const double first_part = 1.0 / 8, least_part = 1.0 / 4096;
 
-int dvi__follow_is_near(const dvi__action *action, const double *guess, const double *Y)
+/* As h goes to 0 the Jacobian is the mass times a positive matrix over h. On the way to another solution beyond a fold its determinant is 0. */
+int dvi__follow_is_meant(const dvi__action *action, const dvi__solver *solver, double h, const double *guess, const double *Y)
 {
-  return dvi__action_turn(action, guess, Y) <= near_by;
+  const int sign = h < 0 && dvi__action_unknowns(action) % 2 != 0 ? -1 : 1;
+  return (!dvi__action_signs(action) || dvi__solver_sign(solver) == sign) && dvi__action_turn(action, guess, Y) <= near_by;
 }
 
 /* The path continued over a step `ratio` times as long. */
@@ -61,16 +63,19 @@ dvi_status dvi__follow_path(const dvi__follow *own, double *Y, dvi__solve_report
 {
   const size_t bytes = (size_t)dvi__action_unknowns(own->action) * sizeof(double);
   double done = 0, part = first_part;
+  int sign = 0;
   while (done < 1 && part >= least_part) {
     const double next = fmin(1, done + part);
     DVI_TRY(guess(own, done, next, Y, own->ahead));
     memcpy(own->guess, own->ahead, bytes);
     const dvi_status status = dvi__solve(own->solver, DVI__NEWTON, 0, 1, 0, own->ahead, report);
     if (status < 0) return status;
-    const int follows = status == DVI_OK && dvi__action_turn(own->action, own->guess, own->ahead) <= follows_by;
+    const int folded = done > 0 && dvi__action_signs(own->action) && dvi__solver_sign(own->solver) != sign;
+    const int follows = status == DVI_OK && !folded && dvi__action_turn(own->action, own->guess, own->ahead) <= follows_by;
     part *= follows ? 2 : 0.5;
     if (!follows) continue;
     memcpy(Y, own->ahead, bytes);
+    sign = dvi__solver_sign(own->solver);
     done = next;
   }
   return done < 1 ? lost(own, done, Y) : DVI_OK;

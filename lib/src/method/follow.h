@@ -4,8 +4,9 @@
 #include "action/action.h"
 #include "solve/nonlinear.h"
 
-/* Whether a solution [unknowns] turns so little away from its guess that it is thought to be that which the guess is near to. */
-int dvi__follow_is_near(const dvi__action *action, const double *guess, const double *Y);
+/* Whether the solution Y [unknowns] that was found last, for a step h, is thought to be the one that is meant: it turns little away from its guess, and the
+ * determinant of the rows' Jacobian has the sign that it has for short steps with a positive mass. */
+int dvi__follow_is_meant(const dvi__action *action, const dvi__solver *solver, double h, const double *guess, const double *Y);
 
 /* A step's start, an action with a centring and the solver of its rows; work: a velocity [n], and paths [unknowns]. */
 typedef struct dvi__follow {

@@ -8,6 +8,7 @@
 
 typedef struct dvi__centring {
   void *of;
+  int signs; /* along paths the determinant of the rows' Jacobian changes its sign at folds alone; on a sphere it does at a quarter turn, too, where paths cross */
   /* Before the Lagrangian's derivatives at the nodes are asked for: where the path starts and ends, [n]. */
   void (*place)(void *of, const double *q0, const double *q1);
   /* After its gradients: C [n]. dp: h sum_j b_j L_q_j. */

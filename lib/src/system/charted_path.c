@@ -252,7 +252,10 @@ static dvi_status reserve(dvi__charted *x, int nodes)
 
 dvi_status dvi__charted_centring(dvi__charted *x, int nodes, dvi__centring *centring)
 {
+  int signs = 1;
+  for (int c = 0; c < x->base->cell_count; c++) signs &= x->base->cells[c].kind != DVI__SPHERE;
   *centring = (dvi__centring){x,
+                              signs,
                               place_path,
                               x->reduced.bodies != NULL ? correct_reduced : correct_path,
                               mix_magnitudes,
