@@ -161,8 +161,8 @@ dvi_status dvi__charted_check(const dvi__charted *x, const double *xi)
 dvi_status dvi__charted_explain(const dvi__charted *x, dvi_status status)
 {
   const int by_callback = status == DVI_CALLBACK_RETRY || status == DVI_CALLBACK_FAILED;
-  const int too_large = status > 0 && x->failure == DVI_STEP_TOO_LARGE;
-  if (x->failure != DVI_OK && (by_callback || too_large)) return dvi__fail(x->failure, "%s", x->sentence);
+  const int behind = status == DVI_STEP_TOO_LARGE && x->failure != DVI_STEP_TOO_LARGE;
+  if (x->failure != DVI_OK && (by_callback || behind)) return dvi__fail(x->failure, "%s", x->sentence);
   if (x->failure == DVI_OK && status == DVI_NOT_FINITE)
     return dvi__fail(
         DVI_NOT_FINITE,

@@ -176,6 +176,21 @@ static void mix_magnitudes(void *of, int s, double *magnitude)
   }
 }
 
+static double largest_turn(void *of, int s, const double *points, const double *others)
+{
+  const dvi__charted *x = of;
+  double largest = 0;
+  for (int c = 0; c < x->base->cell_count; c++) {
+    const dvi__cell *cell = &x->base->cells[c];
+    for (int k = cell->x * s; k < (cell->x + 1) * s && cell->kind != DVI__LINE; k++) {
+      double turn[DVI__CHART_SIZE];
+      for (int i = 0; i < dvi__chart_size(cell->kind); i++) turn[i] = points[k + i * s] - (others != NULL ? others[k + i * s] : 0);
+      largest = fmax(largest, dvi__chart_angle(cell->kind, turn));
+    }
+  }
+  return largest;
+}
+
 /* Into the diagonal block of C_q1. */
 static void derive_cell(const dvi__charted *x, int c, const double *p0, const double *impulse)
 {
@@ -241,7 +256,14 @@ static dvi_status reserve(dvi__charted *x, int nodes)
 
 dvi_status dvi__charted_centring(dvi__charted *x, int nodes, dvi__centring *centring)
 {
-  *centring = (dvi__centring){x, place_path, x->reduced.bodies != NULL ? correct_reduced : correct_path, mix_magnitudes,
+  int signs = 1;
+  for (int c = 0; c < x->base->cell_count; c++) signs &= x->base->cells[c].kind != DVI__SPHERE;
+  *centring = (dvi__centring){x,
+                              signs,
+                              place_path,
+                              x->reduced.bodies != NULL ? correct_reduced : correct_path,
+                              mix_magnitudes,
+                              largest_turn,
                               x->reduced.bodies != NULL ? derive_reduced : derive_path};
   return reserve(x, nodes);
 }
