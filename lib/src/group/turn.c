@@ -7,6 +7,7 @@
 #include "group/stumpff.h"
 #include "group/vector.h"
 #include "num/compensated.h"
+#include "num/fused.h"
 
 /* tan(x)/x - 1 = x^2 (c_2 - c_3)/c_0 at x = |f|/2 is small: its rounding, the same in all steps of a steady turn, is too. At half a turn cos(x) may be rounded to 0.
  * An angle whose square overflows has no digits: no turn then. */
@@ -19,7 +20,7 @@ void dvi__turn_tangent(const double f[3], double w[3])
   for (int i = 0; i < 3; i++) w[i] = 0.5 * f[i] + more * (0.5 * f[i]);
 }
 
-dvi__turn dvi__turn_of(const double w[3])
+FUSED dvi__turn dvi__turn_of(const double w[3])
 {
   dvi__twofold n = {1, 0};
   for (int i = 0; i < 3; i++) n = dvi__twofold_sum(n, dvi__exact_product(w[i], w[i]));
@@ -43,7 +44,7 @@ void dvi__turn_change(const dvi__turn *turn, const double x[3], double change[3]
   }
 }
 
-static void cross(const dvi__twofold a[3], const dvi__twofold b[3], dvi__twofold product[3])
+FUSED_INLINE void cross(const dvi__twofold a[3], const dvi__twofold b[3], dvi__twofold product[3])
 {
   for (int i = 0; i < 3; i++) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -55,7 +56,7 @@ static void cross(const dvi__twofold a[3], const dvi__twofold b[3], dvi__twofold
 }
 
 /* x^T F = x^T + s z^T w^,  z^T = x^T (I + w^). */
-static void turn_row(const dvi__turn *turn, dvi__twofold x[3])
+FUSED_INLINE void turn_row(const dvi__turn *turn, dvi__twofold x[3])
 {
   static const double none[3] = {0};
   dvi__twofold w[3], z[3], moved[3];
@@ -70,7 +71,7 @@ static void turn_row(const dvi__turn *turn, dvi__twofold x[3])
   }
 }
 
-void dvi__turn_rows(const dvi__turn *turn, int count, double *x, double *carry)
+FUSED void dvi__turn_rows(const dvi__turn *turn, int count, double *x, double *carry)
 {
   for (int at = 0; at < count; at += 3) {
     double head[3] = {0}, low[3] = {0};
@@ -87,7 +88,7 @@ void dvi__turn_rows(const dvi__turn *turn, int count, double *x, double *carry)
 }
 
 /* a.b + c, right to a rounding of its own size even where almost nothing is left. */
-static double dot(const dvi__twofold a[3], const dvi__twofold b[3], double c)
+FUSED_INLINE double dot(const dvi__twofold a[3], const dvi__twofold b[3], double c)
 {
   dvi__twofold sum = {c, 0};
   for (int i = 0; i < 3; i++) {
@@ -99,7 +100,7 @@ static double dot(const dvi__twofold a[3], const dvi__twofold b[3], double c)
 }
 
 /* y is a unit vector but for rounding: 1/|y|^2 is 1 less what |y|^2 is above it. */
-void dvi__turn_angular(const double *y, const double *y_carry, const double *p, const double *p_carry, dvi__twofold mu[3])
+FUSED void dvi__turn_angular(const double *y, const double *y_carry, const double *p, const double *p_carry, dvi__twofold mu[3])
 {
   dvi__twofold at[3], momentum[3];
   dvi__twofold_get(3, y, y_carry, at);
@@ -110,14 +111,14 @@ void dvi__turn_angular(const double *y, const double *y_carry, const double *p, 
 }
 
 /* mu is at a right angle to y but for the rounding of both. mu x y would lose what it has along y, in a steady turn the same in all steps: y takes it. */
-static void straighten(const dvi__twofold mu[3], double most, dvi__twofold y[3])
+FUSED_INLINE void straighten(const dvi__twofold mu[3], double most, dvi__twofold y[3])
 {
   const double square = mu[0].head * mu[0].head + mu[1].head * mu[1].head + mu[2].head * mu[2].head, along = dot(mu, y, 0);
   if (!(fabs(along) < most * sqrt(square))) return;
   for (int i = 0; i < 3; i++) y[i].tail -= along / square * mu[i].head;
 }
 
-void dvi__turn_momentum(const dvi__twofold mu[3], double most, double *y, double *y_carry, double *p, double *p_carry)
+FUSED void dvi__turn_momentum(const dvi__twofold mu[3], double most, double *y, double *y_carry, double *p, double *p_carry)
 {
   dvi__twofold at[3], momentum[3];
   dvi__twofold_get(3, y, y_carry, at);
