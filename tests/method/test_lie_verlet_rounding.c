@@ -8,7 +8,7 @@
 #include "support/suite.h"
 
 /* What is the same in every step adds up: a defect of 1e-18 a step is 1e-12 after these. Roundings that differ from step to step are a random walk, of 1000 times
- * one of them. */
+ * one of them: those of the leaps, which change the energy. Turns have none. */
 enum { STEPS = 1000000 };
 
 static const double rounding = 1.1e-16, walk = 1000;
@@ -19,20 +19,18 @@ static void momentum_in_space(const dvi_integrator *integrator, double *momentum
   for (int i = 0; i < 3; i++) momentum[i] = R[3 * i] * Pi[0] + R[3 * i + 1] * Pi[1] + R[3 * i + 2] * Pi[2];
 }
 
-/* The same rotation in all steps: R goes by `angle` times a rounding. */
+/* The same rotation in all steps. */
 START_TEST(a_steady_rotation_stays_on_the_group)
 {
   static const double J[] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, Omega[][3] = {{.5, -.6, .7}, {0, 0, 1}, {0, 7, 0}};
-  const double h = .1,
-               angle = asin(h * sqrt(Omega[_i][0] * Omega[_i][0] + Omega[_i][1] * Omega[_i][1] + Omega[_i][2] * Omega[_i][2]));
   double space[3];
   body top;
   make_free_body(J, Omega[_i], &top);
   dvi_integrator *integrator = body_integrator(&top, "lie-verlet");
-  advance(integrator, h, STEPS);
-  ck_assert_double_le(dvi_system_distance(top.system, dvi_integrator_q(integrator)), 4 * walk * rounding * angle);
+  advance(integrator, .1, STEPS);
+  ck_assert_double_le(dvi_system_distance(top.system, dvi_integrator_q(integrator)), 4 * rounding);
   momentum_in_space(integrator, space);
-  ck_assert_double_le(distance(3, space, Omega[_i]), walk * rounding * magnitude(3, Omega[_i]));
+  ck_assert_double_le(distance(3, space, Omega[_i]), 4 * rounding * magnitude(3, Omega[_i]));
   dvi_integrator_destroy(&integrator);
   destroy_body(&top);
 }
@@ -72,14 +70,13 @@ START_TEST(tumbling_bodies_keep_energy_and_momentum)
   advance(integrator, cases[_i].h, STEPS);
   momentum_in_space(integrator, space[1]);
   ck_assert_int_eq(dvi_integrator_invariants(integrator, &last), DVI_OK);
-  ck_assert_double_le(distance(3, space[0], space[1]), 4 * walk * rounding * magnitude(3, space[0]));
+  ck_assert_double_le(distance(3, space[0], space[1]), 4 * rounding * magnitude(3, space[0]));
   ck_assert_double_le(fabs(last - first), 4 * walk * rounding * first);
   dvi_integrator_destroy(&integrator);
   destroy_body(&top);
 }
 END_TEST
 
-/* A chord of a direction or an angle is made for the length that they have: what rounding adds to it does not even walk. */
 START_TEST(directions_and_angles_keep_their_length)
 {
   static const dvi_factor factors[] = {{.kind = DVI_S2, .mass = 1}, {.kind = DVI_U1, .mass = 1}};

@@ -72,6 +72,25 @@ START_TEST(a_known_system_has_its_known_solution)
 }
 END_TEST
 
+/* By cofactors; exchanged rows change it, a scale does not. */
+START_TEST(determinants_have_their_sign)
+{
+  static const double a[][16] = {{0, 2, 0, 1, 0, 0, 3, 0, 1},
+                                 {1, 0, 0, 0, 2, 1, 3, 0, 1},
+                                 {0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0},
+                                 {4e9, 1, 0, 0, 1, 4e-9, 1, 0, 0, 1, -4, 1, 0, 0, 1, -4}};
+  static const int size[] = {3, 3, 4, 4}, sign[] = {-1, 1, -1, 1};
+  matrix m;
+  const int k = _i / 2;
+  compress(size[k], a[k], &m);
+  dvi__linear *linear = make(&m, kinds[_i % 2], NULL);
+  ck_assert_msg(dvi__linear_factor(linear, m.values) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_int_eq(dvi__linear_sign(linear), sign[k]);
+  dvi__linear_destroy(&linear);
+  dvi__pattern_clear(&m.pattern);
+}
+END_TEST
+
 START_TEST(one_unknown_is_a_division)
 {
   double b = 3;
@@ -333,6 +352,7 @@ END_TEST
 int main(void)
 {
   TCase *tests = tcase_create("linear");
+  tcase_add_loop_test(tests, determinants_have_their_sign, 0, 8);
   tcase_add_loop_test(tests, a_known_system_has_its_known_solution, 0, 2);
   tcase_add_loop_test(tests, one_unknown_is_a_division, 0, 2);
   tcase_add_loop_test(tests, dense_and_sparse_agree_with_the_solution_that_made_the_right_side, 0, 3);

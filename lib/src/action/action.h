@@ -58,6 +58,13 @@ dvi_status dvi__action_residual(dvi__action *action, const double *Y, double *R)
 /* Sums of the magnitudes of what was summed in each row of the last residual. */
 void dvi__action_magnitudes(const dvi__action *action, double *magnitude);
 
+/* The largest turn from the coefficients of one path in a chart to those of another, in radians, and that to a point [n] of it; of actions with a centring. */
+double dvi__action_turn(const dvi__action *action, const double *from, const double *Y);
+double dvi__action_turned(const dvi__action *action, const double *xi);
+
+/* Whether the sign of its Jacobian's determinant tells of folds (system/centring.h). */
+int dvi__action_signs(const dvi__action *action);
+
 /* dR/dY in the order of the pattern. */
 dvi_status dvi__action_jacobian(dvi__action *action, const double *Y, double *values);
 

@@ -47,6 +47,21 @@ void dvi__action_centre_magnitudes(const dvi__action *a, double *magnitude)
   a->centring.mix(a->centring.of, a->s, magnitude);
 }
 
+double dvi__action_turn(const dvi__action *a, const double *from, const double *Y)
+{
+  return a->centring.turn(a->centring.of, a->s, Y, from);
+}
+
+int dvi__action_signs(const dvi__action *a)
+{
+  return a->centring.signs;
+}
+
+double dvi__action_turned(const dvi__action *a, const double *xi)
+{
+  return a->centring.turn(a->centring.of, 1, xi, NULL);
+}
+
 /* dC/dY_l for one entry of the joint pattern. */
 static double change(const dvi__action *a, const dvi__block *block, int l, const double *C_q1, const double *C_qq,
                      const double *C_qv)

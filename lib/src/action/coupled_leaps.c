@@ -302,45 +302,22 @@ static void moment_of(const dvi__coupled_leaps *l, const unit *of, double h, dou
   for (int i = 0; i < 3; i++) moment[i] /= h;
 }
 
-static void turn_body(const unit *of, const double *xi, const double *moment, const dvi__phase *state, double *leap)
-{
-  const int v = of->cell->v;
-  const double *R = of->chart.y0;
-  double *p = state->p + v, change[3];
-  for (int i = 0; i < 3; i++) p[i] += R[i] * moment[0] + R[3 + i] * moment[1] + R[6 + i] * moment[2];
-  dvi__turn_tangent(xi, leap);
-  const dvi__turn turn = dvi__turn_of(leap);
-  dvi__turn_change(&turn, p, change);
-  dvi__add_compensated_all(3, p, state->p_carry + v, change);
-}
-
-static void turn_direction(const unit *of, const double *moved, const double *moment, const dvi__phase *state)
-{
-  const double *y0 = of->chart.y0;
-  double *p = state->p + of->cell->v, mu[3], given[3];
-  dvi__cross(y0, p, mu);
-  dvi__cross(moment, y0, given);
-  for (int i = 0; i < 3; i++) {
-    mu[i] += moment[i];
-    p[i] += given[i];
-  }
-  dvi__swing_momentum(mu, moved, state->q + of->cell->q, p);
-}
-
 static void arrive(const dvi__coupled_leaps *l, const unit *of, double h, const dvi__phase *state, double *leap)
 {
   const int q = of->cell->q, v = of->cell->v;
-  const double *xi = l->xi + of->x, *moved = l->moved + q;
-  double moment[3];
+  const double *xi = l->xi + of->x;
+  double *y = state->q + q, *y_carry = state->q_carry + q, *p = state->p + v, *p_carry = state->p_carry + v, moment[3],
+         added[3] = {0};
   moment_of(l, of, h, moment);
-  dvi__add_compensated_all(dvi__chart_stored(of->cell->kind), state->q + q, state->q_carry + q, moved);
   dvi__chart_store(&of->chart, xi, leap + v);
-  switch (of->cell->kind) {
-  case DVI__LINE: return;
-  case DVI__CIRCLE: state->p[v] += moment[0]; return;
-  case DVI__SPHERE: turn_direction(of, moved, moment, state); return;
-  case DVI__ROTATION: turn_body(of, xi, moment, state, leap + v); return;
+  if (of->cell->kind == DVI__LINE || of->cell->kind == DVI__CIRCLE) {
+    dvi__chart_move(&of->chart, xi, y, y_carry);
+    if (of->cell->kind == DVI__CIRCLE) dvi__add_compensated(p, p_carry, moment[0]);
+    return;
   }
+  dvi__chart_add_impulse(&of->chart, moment, added);
+  dvi__chart_carry(&of->chart, xi, added, y, y_carry, p, p_carry);
+  if (of->cell->kind == DVI__ROTATION) dvi__turn_tangent(xi, leap + v);
 }
 
 static dvi_status check_turns(const dvi__coupled_leaps *l)

@@ -3,14 +3,15 @@
 #include "action/flow.h"
 
 #include <dvi/group.h>
-#include <math.h>
 #include <string.h>
 
 #include "action/coupled_leaps.h"
 #include "action/pieces.h"
 #include "core/memory.h"
 #include "core/status.h"
+#include "group/turn.h"
 #include "group/vector.h"
+#include "num/compensated.h"
 
 struct dvi__flow {
   const dvi_system *system;
@@ -64,27 +65,36 @@ void dvi__flow_destroy(dvi__flow **flow)
 
 /* ---- momenta ---- */
 
-void dvi__flow_enter(const dvi__flow *f, const double *q, const double *p, double *m)
+/* mu = y x p of a direction, and p of it. */
+static void enter_direction(const double *y, const double *y_carry, double *p, double *p_carry)
 {
-  memmove(m, p, (size_t)f->system->nv * sizeof *m);
+  dvi__twofold mu[3];
+  dvi__turn_angular(y, y_carry, p, p_carry, mu);
+  dvi__twofold_put(3, mu, p, p_carry);
+}
+
+static void leave_direction(double *y, double *y_carry, double *m, double *m_carry)
+{
+  dvi__twofold mu[3];
+  dvi__twofold_get(3, m, m_carry, mu);
+  dvi__turn_momentum(mu, DVI__TURN_ROUNDINGS, y, y_carry, m, m_carry);
+}
+
+void dvi__flow_enter(const dvi__flow *f, const dvi__phase *state)
+{
   for (int c = 0; c < f->system->cell_count; c++) {
     const dvi__cell *cell = &f->system->cells[c];
-    double own[3];
-    if (cell->kind != DVI__SPHERE) continue;
-    memcpy(own, m + cell->v, sizeof own);
-    dvi__cross(q + cell->q, own, m + cell->v);
+    const int q = cell->q, v = cell->v;
+    if (cell->kind == DVI__SPHERE) enter_direction(state->q + q, state->q_carry + q, state->p + v, state->p_carry + v);
   }
 }
 
-void dvi__flow_leave(const dvi__flow *f, const double *q, const double *m, double *p)
+void dvi__flow_leave(const dvi__flow *f, const dvi__phase *state)
 {
-  memmove(p, m, (size_t)f->system->nv * sizeof *p);
   for (int c = 0; c < f->system->cell_count; c++) {
     const dvi__cell *cell = &f->system->cells[c];
-    double own[3];
-    if (cell->kind != DVI__SPHERE) continue;
-    memcpy(own, p + cell->v, sizeof own);
-    dvi__cross(own, q + cell->q, p + cell->v);
+    const int q = cell->q, v = cell->v;
+    if (cell->kind == DVI__SPHERE) leave_direction(state->q + q, state->q_carry + q, state->p + v, state->p_carry + v);
   }
 }
 
@@ -192,33 +202,26 @@ void dvi__flow_plain(const dvi__flow *f, const double *q, const double *p, const
 
 /* ---- points ---- */
 
-static void turn_vector(const double *theta, const double *y0, double *y)
+/* A direction and an angle are turned from the left. */
+static void turn_cell(dvi__chart_kind kind, const double *theta, double *y, double *carry)
 {
-  double E[9];
-  dvi_so3_exp(theta, E);
-  for (int i = 0; i < 3; i++) y[i] = dvi__dot(E + 3 * i, y0);
+  double w[3] = {0};
+  for (int i = 0; i < 3 && kind != DVI__CIRCLE; i++) w[i] = kind == DVI__SPHERE ? -theta[i] : theta[i];
+  if (kind == DVI__CIRCLE) w[2] = -*theta;
+  dvi__turn_tangent(w, w);
+  const dvi__turn turn = dvi__turn_of(w);
+  dvi__turn_rows(&turn, dvi__chart_stored(kind), y, carry);
 }
 
-static void turn_body(const double *theta, const double *R0, double *R)
-{
-  double E[9];
-  dvi_so3_exp(theta, E);
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) R[3 * i + j] = R0[3 * i] * E[j] + R0[3 * i + 1] * E[3 + j] + R0[3 * i + 2] * E[6 + j];
-}
-
-void dvi__flow_move(const dvi__flow *f, const double *q0, const double *theta, double *q)
+void dvi__flow_move(const dvi__flow *f, const double *theta, const dvi__phase *state)
 {
   for (int c = 0; c < f->system->cell_count; c++) {
     const dvi__cell *cell = &f->system->cells[c];
-    const double *y0 = q0 + cell->q, *by = theta + cell->v;
-    double *y = q + cell->q;
-    if (cell->kind == DVI__LINE) *y = *y0 + *by;
-    if (cell->kind == DVI__SPHERE) turn_vector(by, y0, y);
-    if (cell->kind == DVI__ROTATION) turn_body(by, y0, y);
-    if (cell->kind != DVI__CIRCLE) continue;
-    y[0] = cos(*by) * y0[0] - sin(*by) * y0[1];
-    y[1] = sin(*by) * y0[0] + cos(*by) * y0[1];
+    double *y = state->q + cell->q, *carry = state->q_carry + cell->q;
+    if (cell->kind == DVI__LINE)
+      dvi__add_compensated(y, carry, theta[cell->v]);
+    else
+      turn_cell(cell->kind, theta + cell->v, y, carry);
   }
 }
 

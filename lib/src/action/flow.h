@@ -1,11 +1,12 @@
 /* The equations of motion on a configuration space with factors, as those of a group that acts on it: each cell is moved by its own turns. */
 #ifndef DVI_ACTION_FLOW_H
 #define DVI_ACTION_FLOW_H
+#include "num/lanes.h"
 #include "system/evaluator.h"
 
 /* With a velocity omega and a momentum m, both [nv], and what moves a point y0 by theta:
  *
- *     line, circle   omega = v, m = p;                 y0 + theta, y0 turned by theta
+ *     line, circle   omega = v, m = p;                     y0 + theta, y0 turned by theta
  *     direction      omega = y x v, m = y x p, in space;   exp(theta^) y0
  *     body           omega = Omega, m = Pi, in the body's frame;   R0 exp(theta^) */
 typedef struct dvi__flow dvi__flow;
@@ -14,9 +15,9 @@ typedef struct dvi__flow dvi__flow;
 dvi_status dvi__flow_create(const dvi_system *system, dvi_counters *counters, dvi__flow **flow);
 void dvi__flow_destroy(dvi__flow **flow);
 
-/* m of p, and p of m, at q; the two may be one array. */
-void dvi__flow_enter(const dvi__flow *flow, const double *q, const double *p, double *m);
-void dvi__flow_leave(const dvi__flow *flow, const double *q, const double *m, double *p);
+/* What stands in p becomes m, at q; and back. All with carries. */
+void dvi__flow_enter(const dvi__flow *flow, const dvi__phase *state);
+void dvi__flow_leave(const dvi__flow *flow, const dvi__phase *state);
 
 /* omega and the rate of m at (t,q,p). One gradient. */
 dvi_status dvi__flow_rates(dvi__flow *flow, double t, const double *q, const double *p, double *omega, double *m_rate);
@@ -26,8 +27,8 @@ dvi_status dvi__flow_rates(dvi__flow *flow, double t, const double *q, const dou
 void dvi__flow_plain(const dvi__flow *flow, const double *q, const double *p, const double *omega, const double *m_rate,
                      double *q_rate, double *p_rate);
 
-/* q = q0 moved by theta; theta' of omega, by the inverse of dexp, which may overwrite it. */
-void dvi__flow_move(const dvi__flow *flow, const double *q0, const double *theta, double *q);
+/* q moved by theta, with its carry; theta' of omega, by the inverse of dexp, which may overwrite it. */
+void dvi__flow_move(const dvi__flow *flow, const double *theta, const dvi__phase *state);
 void dvi__flow_theta_rate(const dvi__flow *flow, const double *theta, const double *omega, double *theta_rate);
 
 #endif

@@ -48,17 +48,18 @@ void dvi__leaps_count(const dvi__leaps *l, int *alone, int *coupled)
 
 /* ---- kicks ---- */
 
-static void kick_body(double h, const double *V_q, const double *R, double *p)
+static void kick_body(double h, const double *V_q, const double *R, double *p, double *carry)
 {
   double moment[3] = {0};
   dvi__chart_add_moment(DVI__ROTATION, R, V_q, moment);
-  for (int i = 0; i < 3; i++) p[i] -= h * (R[i] * moment[0] + R[3 + i] * moment[1] + R[6 + i] * moment[2]);
+  for (int i = 0; i < 3; i++)
+    dvi__add_compensated(p + i, carry + i, -h * (R[i] * moment[0] + R[3 + i] * moment[1] + R[6 + i] * moment[2]));
 }
 
-static void kick_direction(double h, const double *V_q, const double *y, double *p)
+static void kick_direction(double h, const double *V_q, const double *y, double *p, double *carry)
 {
   const double radial = dvi__dot(y, V_q) / dvi__dot(y, y);
-  for (int i = 0; i < 3; i++) p[i] -= h * (V_q[i] - radial * y[i]);
+  for (int i = 0; i < 3; i++) dvi__add_compensated(p + i, carry + i, -h * (V_q[i] - radial * y[i]));
 }
 
 void dvi__leaps_kick(const dvi__leaps *l, double h, const double *V_q, const dvi__phase *state)
@@ -68,9 +69,9 @@ void dvi__leaps_kick(const dvi__leaps *l, double h, const double *V_q, const dvi
     const double *V = V_q + cell->q, *y = state->q + cell->q;
     double *p = state->p + cell->v;
     if (cell->kind == DVI__LINE) dvi__add_compensated(p, state->p_carry + cell->v, -h * *V);
-    if (cell->kind == DVI__CIRCLE) *p -= h * (y[0] * V[1] - y[1] * V[0]);
-    if (cell->kind == DVI__SPHERE) kick_direction(h, V, y, p);
-    if (cell->kind == DVI__ROTATION) kick_body(h, V, y, p);
+    if (cell->kind == DVI__CIRCLE) dvi__add_compensated(p, state->p_carry + cell->v, -h * (y[0] * V[1] - y[1] * V[0]));
+    if (cell->kind == DVI__SPHERE) kick_direction(h, V, y, p, state->p_carry + cell->v);
+    if (cell->kind == DVI__ROTATION) kick_body(h, V, y, p, state->p_carry + cell->v);
   }
 }
 
@@ -94,30 +95,39 @@ static void leap_line(const dvi__piece *own, double h, const dvi__phase *state, 
   dvi__add_compensated(state->q + q, state->q_carry + q, leap[v]);
 }
 
+/* sin(a)/tan(a/2), up to a quarter turn. */
+static double one_and_cosine(double sine)
+{
+  return 1 + sqrt((1 - sine) * (1 + sine));
+}
+
 static dvi_status leap_circle(const dvi__piece *own, double h, const dvi__phase *state, double *leap)
 {
   const int q = own->cell->q, v = own->cell->v;
-  const double sine = h * (state->p[v] / own->mass), *y = state->q + q;
-  double u[] = {-sine * y[1], sine * y[0]};
+  const double sine = h * (state->p[v] / own->mass);
   if (!(fabs(sine) < 1)) return too_large(own, fabs(h * state->p[v]), own->mass);
   leap[v] = asin(sine);
-  dvi__swing(2, dvi__swing_cosine(2, u), u, y, u);
-  dvi__add_compensated_all(2, state->q + q, state->q_carry + q, u);
+  const dvi__turn turn = dvi__turn_of((const double[]){0, 0, -sine / one_and_cosine(sine)});
+  dvi__turn_rows(&turn, 2, state->q + q, state->q_carry + q);
   return DVI_OK;
 }
 
+/* By a, sin(a) = |h mu/m|, about mu, which it keeps. */
 static dvi_status leap_sphere(const dvi__piece *own, double h, const dvi__phase *state, double *leap)
 {
-  double *y = state->q + own->cell->q, *p = state->p + own->cell->v, mu[3], u[3];
-  dvi__cross(y, p, mu);
-  dvi__cross(mu, y, u);
-  for (int i = 0; i < 3; i++) u[i] *= h / own->mass;
-  const double sine = sqrt(dvi__dot(u, u)), stretch = sine > 0 ? asin(sine) / sine : 1;
+  const int q = own->cell->q, v = own->cell->v;
+  double *y = state->q + q, *y_carry = state->q_carry + q, *p = state->p + v, *p_carry = state->p_carry + v, w[3];
+  dvi__twofold mu[3];
+  dvi__turn_angular(y, y_carry, p, p_carry, mu);
+  for (int i = 0; i < 3; i++) w[i] = h * (mu[i].head / own->mass);
+  const double sine = sqrt(dvi__dot(w, w)), stretch = sine > 0 ? asin(sine) / sine : 1;
   if (!(sine < 1)) return too_large(own, sine * own->mass, own->mass);
-  for (int i = 0; i < 3; i++) leap[own->cell->v + i] = stretch * u[i];
-  dvi__swing(3, dvi__swing_cosine(3, u), u, y, u);
-  dvi__add_compensated_all(3, y, state->q_carry + own->cell->q, u);
-  dvi__swing_momentum(mu, u, y, p);
+  dvi__cross(w, y, leap + v);
+  for (int i = 0; i < 3; i++) leap[v + i] *= stretch;
+  for (int i = 0; i < 3; i++) w[i] /= -one_and_cosine(sine);
+  const dvi__turn turn = dvi__turn_of(w);
+  dvi__turn_rows(&turn, 3, y, y_carry);
+  dvi__turn_momentum(mu, DVI__TURN_ANY, y, y_carry, p, p_carry);
   return DVI_OK;
 }
 
@@ -133,18 +143,26 @@ static void leap_place(const dvi__piece *own, double h, const dvi__phase *state,
   dvi__add_compensated_all(3, state->q + x, state->q_carry + x, leap + v + 3);
 }
 
+/* Pi += sign rho x R^T p_x, of a rigid motion: -1 makes it that about the centre of mass. */
+static void shift(const dvi__piece *own, double sign, const dvi__phase *state)
+{
+  const int v = own->cell->v;
+  double moment[3];
+  dvi__piece_moment(own, state->q, state->p, moment);
+  for (int i = 0; i < 3; i++) dvi__add_compensated(state->p + v + i, state->p_carry + v + i, sign * moment[i]);
+}
+
 static dvi_status leap_body(const dvi__piece *own, dvi__leap_by by, double h, const dvi__phase *state, double *leap)
 {
-  double *p = state->p + own->cell->v, *w = leap + own->cell->v, change[3];
-  if (own->rigid) dvi__piece_shift(own, -1, state->q, state->p);
+  double *p = state->p + own->cell->v, *p_carry = state->p_carry + own->cell->v, *w = leap + own->cell->v;
+  if (own->rigid) shift(own, -1, state);
   const double impulse[] = {h * p[0], h * p[1], h * p[2]};
   if (!dvi__body_leap(own->body, by, impulse, w)) return too_large(own, sqrt(dvi__dot(impulse, impulse)), own->body->largest);
   if (own->rigid) leap_place(own, h, state, leap);
   const dvi__turn turn = dvi__turn_of(w);
-  dvi__turn_frame(&turn, state->q + own->cell->q, state->q_carry + own->cell->q);
-  dvi__turn_change(&turn, p, change);
-  dvi__add_compensated_all(3, p, state->p_carry + own->cell->v, change);
-  if (own->rigid) dvi__piece_shift(own, 1, state->q, state->p);
+  dvi__turn_rows(&turn, 9, state->q + own->cell->q, state->q_carry + own->cell->q);
+  dvi__turn_rows(&turn, 3, p, p_carry);
+  if (own->rigid) shift(own, 1, state);
   return DVI_OK;
 }
 

@@ -134,20 +134,20 @@ static void into_body(const double *R, const double *x, double *inside)
   for (int i = 0; i < 3; i++) inside[i] = R[i] * x[0] + R[3 + i] * x[1] + R[6 + i] * x[2];
 }
 
-void dvi__piece_shift(const dvi__piece *piece, double sign, const double *q, double *p)
+void dvi__piece_moment(const dvi__piece *piece, const double *q, const double *p, double moment[3])
 {
-  double turned[3], moment[3];
+  double turned[3];
   into_body(q + piece->cell->q, p + piece->cell->v + 3, turned);
   dvi__cross(piece->centre, turned, moment);
-  for (int i = 0; i < 3; i++) p[piece->cell->v + i] += sign * moment[i];
 }
 
 static void body_velocity(const dvi__piece *piece, const double *q, const double *p, double *v)
 {
   const double *R = q + piece->cell->q;
-  double *own = v + piece->cell->v, moved[3];
+  double *own = v + piece->cell->v, moment[3] = {0}, moved[3];
   memcpy(own, p + piece->cell->v, (piece->rigid ? 6 : 3) * sizeof *own);
-  if (piece->rigid) dvi__piece_shift(piece, -1, q, v);
+  if (piece->rigid) dvi__piece_moment(piece, q, p, moment);
+  for (int i = 0; i < 3; i++) own[i] -= moment[i];
   dvi__body_velocity(piece->body, own, own);
   dvi__cross(own, piece->centre, moved);
   for (int i = 0; i < 3 && piece->rigid; i++) own[3 + i] = own[3 + i] / piece->mass - dvi__dot(R + 3 * i, moved);

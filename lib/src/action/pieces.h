@@ -25,8 +25,8 @@ typedef struct dvi__pieces {
 dvi_status dvi__pieces_create(const dvi_system *system, dvi__pieces *pieces);
 void dvi__pieces_clear(dvi__pieces *pieces);
 
-/* Pi += sign rho x R^T p_x in the momenta p [nv] at q [nq], for a rigid motion: -1 makes it that about the centre of mass. */
-void dvi__piece_shift(const dvi__piece *piece, double sign, const double *q, double *p);
+/* rho x R^T p_x of the momenta p [nv] at q [nq], for a rigid motion: what Pi has more than the momentum about the centre of mass. */
+void dvi__piece_moment(const dvi__piece *piece, const double *q, const double *p, double moment[3]);
 
 /* The velocities of a piece in v [nv]. */
 void dvi__piece_velocity(const dvi__piece *piece, const double *q, const double *p, double *v);

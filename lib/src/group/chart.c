@@ -6,8 +6,8 @@
 
 #include "group/chart_functions.h"
 #include "group/stumpff.h"
-#include "group/turn.h"
 #include "group/vector.h"
+#include "num/compensated.h"
 
 double dvi__chart_bound(dvi__chart_kind kind)
 {
@@ -147,28 +147,42 @@ void dvi__chart_place(const dvi__chart *chart, const double *xi, double *y)
   dvi__chart_point(chart, &c, xi, rest, y, v);
 }
 
-static void rotation_leap(const dvi__chart *chart, const double *xi, double *leap)
+dvi__turn dvi__chart_turn(const dvi__chart *chart, const double *xi)
 {
-  double w[3];
-  dvi__turn_tangent(xi, w);
-  const dvi__turn turn = dvi__turn_of(w);
-  for (int i = 0; i < 9; i += 3) dvi__turn_change(&turn, chart->y0 + i, leap + i);
+  double w[3] = {0}, x[3];
+  if (chart->kind == DVI__ROTATION) memcpy(w, xi, sizeof w);
+  if (chart->kind == DVI__CIRCLE) w[2] = -*xi;
+  if (chart->kind == DVI__SPHERE) {
+    dvi__chart_lift(chart, xi, x);
+    dvi__cross(x, chart->y0, w);
+  }
+  dvi__turn_tangent(w, w);
+  return dvi__turn_of(w);
 }
 
 void dvi__chart_leap(const dvi__chart *chart, const double *xi, double *leap)
 {
   const int stored = dvi__chart_stored(chart->kind);
-  double square, c[4];
-  switch (chart->kind) {
-  case DVI__LINE: *leap = *xi; return;
-  case DVI__ROTATION: rotation_leap(chart, xi, leap); return;
-  default:
-    square = dvi__inner(dvi__chart_size(chart->kind), xi, xi);
-    dvi__stumpff_four(square, c);
-    dvi__chart_lift(chart, xi, leap);
-    for (int i = 0; i < stored; i++) leap[i] *= c[1];
-    dvi__swing(stored, -square * c[2], leap, chart->y0, leap);
+  if (chart->kind == DVI__LINE) {
+    *leap = *xi;
+    return;
   }
+  const dvi__turn turn = dvi__chart_turn(chart, xi);
+  for (int i = 0; i < stored; i += 3) {
+    double change[3];
+    dvi__turn_change(&turn, chart->y0 + i, change);
+    memcpy(leap + i, change, (size_t)(stored < 3 ? stored : 3) * sizeof *leap);
+  }
+}
+
+void dvi__chart_move(const dvi__chart *chart, const double *xi, double *y, double *carry)
+{
+  if (chart->kind == DVI__LINE) {
+    dvi__add_compensated(y, carry, *xi);
+    return;
+  }
+  const dvi__turn turn = dvi__chart_turn(chart, xi);
+  dvi__turn_rows(&turn, dvi__chart_stored(chart->kind), y, carry);
 }
 
 /* ---- tangents ---- */

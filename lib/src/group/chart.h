@@ -59,8 +59,11 @@ void dvi__chart_place(const dvi__chart *chart, const double *xi, double *y);
 /* y(xi), and v = dy/dt for dxi/dt = rate. */
 void dvi__chart_point(const dvi__chart *chart, const dvi__functions *c, const double *xi, const double *rate, double *y, double *v);
 
-/* y(xi) - y0, right to a rounding of its own size: what is added to y0 with a carry does not leave the manifold, however many steps there are. */
+/* y(xi) - y0, right to a rounding of its own size. */
 void dvi__chart_leap(const dvi__chart *chart, const double *xi, double *leap);
+
+/* y, where the chart is centred, to y(xi), with its carry: it does not leave the manifold, however many steps there are. */
+void dvi__chart_move(const dvi__chart *chart, const double *xi, double *y, double *carry);
 
 /* The gradient of a.y(xi) + b.v(xi,rate), in xi and in rate. */
 void dvi__chart_gradient(const dvi__chart *chart, const dvi__functions *c, const double *xi, const double *rate, const double *a,
@@ -89,16 +92,19 @@ void dvi__chart_turns(dvi__chart_kind kind, const double *y, double *turns);
 /* The moment a.(w x y) = w.moment, added. */
 void dvi__chart_add_moment(dvi__chart_kind kind, const double *y, const double *a, double *moment);
 
-/* The angular momentum in space of a direction's stored momentum at the centre. That of a rotation is taken in the centre's frame, where it is p. What moments
- * in space add to either. */
-void dvi__chart_angular_momentum(const dvi__chart *chart, const double *stored, double *angular);
+/* The angular momentum: that of a direction is in space; that of a rotation in the centre's frame, where it is p. What it is of the chart's
+ * momentum at the centre, and what moments in space add to it. */
+void dvi__chart_angular_momentum(const dvi__chart *chart, const double *p, double *angular);
 void dvi__chart_add_impulse(const dvi__chart *chart, const double *impulse, double *angular);
 
-/* From it: the chart's momentum at xi, and its derivative in xi [size*size]; the stored momentum at y(xi),
- * which may be y rounded otherwise. */
+/* From it: the chart's momentum at xi, and its derivative in xi [size*size]. */
 void dvi__chart_momentum(const dvi__chart *chart, const double *xi, const double *angular, double *p);
 void dvi__chart_momentum_derivative(const dvi__chart *chart, const double *xi, const double *angular, double *derivative);
-void dvi__chart_stored_momentum(const dvi__chart *chart, const double *xi, const double *y, const double *angular, double *stored);
+
+/* y to y(xi), and the stored momentum p, to whose angular momentum this is added first: both with their carries, to twice the digits, so that what is not added
+ * to is conserved. */
+void dvi__chart_carry(const dvi__chart *chart, const double *xi, const double *added, double *y, double *y_carry, double *p,
+                      double *p_carry);
 
 /* W [size*3]: the chart's momentum at xi of a moment in space. */
 void dvi__chart_moments(const dvi__chart *chart, const double *xi, double *W);

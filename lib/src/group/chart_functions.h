@@ -2,9 +2,13 @@
 #ifndef DVI_GROUP_CHART_FUNCTIONS_H
 #define DVI_GROUP_CHART_FUNCTIONS_H
 #include "group/chart.h"
+#include "group/turn.h"
 
 /* B x: from the tangent plane's coordinates. */
 void dvi__chart_lift(const dvi__chart *chart, const double *x, double *out);
+
+/* Rows of y(xi) are rows of y0 times this; a direction and an angle are one row. Not of a line. */
+dvi__turn dvi__chart_turn(const dvi__chart *chart, const double *xi);
 
 static inline double dvi__inner(int n, const double *a, const double *b)
 {

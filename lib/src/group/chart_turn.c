@@ -4,8 +4,8 @@
 
 #include "group/chart_functions.h"
 #include "group/stumpff.h"
-#include "group/turn.h"
 #include "group/vector.h"
+#include "num/compensated.h"
 
 /* Vectors in a stored point: the columns of a rotation, or the direction itself. */
 static int vectors_of(dvi__chart_kind kind)
@@ -43,14 +43,14 @@ void dvi__chart_add_moment(dvi__chart_kind kind, const double *y, const double *
   }
 }
 
-void dvi__chart_angular_momentum(const dvi__chart *chart, const double *stored, double *angular)
+void dvi__chart_angular_momentum(const dvi__chart *chart, const double *p, double *angular)
 {
-  const double *y = chart->y0;
-  dvi__cross(y, stored, angular);
-  /* A direction's length is 1 but for rounding; what it differs by must not add up in p (dvi__chart_stored_momentum has angular x y). In this order the sum is
-   * not rounded near 1, where numbers above are coarser than those below. */
-  const double excess = (y[0] * y[0] - 1) + y[1] * y[1] + y[2] * y[2];
-  for (int i = 0; i < 3; i++) angular[i] -= excess * angular[i];
+  double stored[3];
+  dvi__chart_store(chart, p, stored);
+  if (chart->kind == DVI__SPHERE)
+    dvi__cross(chart->y0, stored, angular);
+  else
+    memcpy(angular, stored, sizeof stored);
 }
 
 void dvi__chart_add_impulse(const dvi__chart *chart, const double *impulse, double *angular)
@@ -82,17 +82,27 @@ void dvi__chart_momentum(const dvi__chart *chart, const double *xi, const double
     direction_momentum(chart, c, xi, angular, p);
 }
 
-void dvi__chart_stored_momentum(const dvi__chart *chart, const double *xi, const double *y, const double *angular, double *stored)
+static void carry_direction(const dvi__chart *chart, const double *xi, const double *added, double *y, double *y_carry, double *p,
+                            double *p_carry)
 {
-  double w[3], change[3];
+  dvi__twofold mu[3];
+  dvi__turn_angular(y, y_carry, p, p_carry, mu);
+  for (int i = 0; i < 3; i++) mu[i] = dvi__twofold_sum(mu[i], (dvi__twofold){added[i], 0});
+  dvi__chart_move(chart, xi, y, y_carry);
+  dvi__turn_momentum(mu, dvi__dot(added, added) == 0 ? DVI__TURN_ANY : DVI__TURN_ROUNDINGS, y, y_carry, p, p_carry);
+}
+
+void dvi__chart_carry(const dvi__chart *chart, const double *xi, const double *added, double *y, double *y_carry, double *p,
+                      double *p_carry)
+{
   if (chart->kind == DVI__SPHERE) {
-    dvi__cross(angular, y, stored);
+    carry_direction(chart, xi, added, y, y_carry, p, p_carry);
     return;
   }
-  dvi__turn_tangent(xi, w);
-  const dvi__turn turn = dvi__turn_of(w);
-  dvi__turn_change(&turn, angular, change);
-  for (int i = 0; i < 3; i++) stored[i] = angular[i] + change[i];
+  const dvi__turn turn = dvi__chart_turn(chart, xi);
+  dvi__add_compensated_all(3, p, p_carry, added);
+  dvi__turn_rows(&turn, 9, y, y_carry);
+  dvi__turn_rows(&turn, 3, p, p_carry);
 }
 
 void dvi__chart_moments(const dvi__chart *chart, const double *xi, double *W)

@@ -1,37 +1,31 @@
 #include "group/turn.h"
 
+#include <float.h>
 #include <math.h>
+#include <string.h>
 
 #include "group/stumpff.h"
 #include "group/vector.h"
 #include "num/compensated.h"
+#include "num/fused.h"
 
-/* sum of x_i^2 onto *sum, what rounding drops onto *low (Ogita, Rump and Oishi 2005). */
-static void add_squares(int count, const double *x, double *sum, double *low)
-{
-  for (int i = 0; i < count; i++) {
-    const double square = x[i] * x[i], next = *sum + square, added = next - *sum;
-    *low += __builtin_fma(x[i], x[i], -square) + ((*sum - (next - added)) + (square - added));
-    *sum = next;
-  }
-}
-
-/* tan(x)/x - 1 = x^2 (c_2 - c_3)/c_0 at x = |f|/2 is small: its rounding, the same in all steps of a steady turn, is too. */
+/* tan(x)/x - 1 = x^2 (c_2 - c_3)/c_0 at x = |f|/2 is small: its rounding, the same in all steps of a steady turn, is too. At half a turn cos(x) may be rounded to 0.
+ * An angle whose square overflows has no digits: no turn then. */
 void dvi__turn_tangent(const double f[3], double w[3])
 {
   double c[4];
   const double square = 0.25 * dvi__dot(f, f);
   dvi__stumpff_four(square, c);
-  const double more = square * (c[2] - c[3]) / c[0];
+  const double more = isinf(square) ? -1 : square * (c[2] - c[3]) / (c[0] != 0 ? c[0] : 0.5 * DBL_EPSILON);
   for (int i = 0; i < 3; i++) w[i] = 0.5 * f[i] + more * (0.5 * f[i]);
 }
 
-dvi__turn dvi__turn_of(const double w[3])
+FUSED dvi__turn dvi__turn_of(const double w[3])
 {
-  double n = 1, n_low = 0;
-  add_squares(3, w, &n, &n_low);
-  const double s = (double)(float)(2 / n);
-  return (dvi__turn){{w[0], w[1], w[2]}, s, (__builtin_fma(-s, n, 2) - s * n_low) / n};
+  dvi__twofold n = {1, 0};
+  for (int i = 0; i < 3; i++) n = dvi__twofold_sum(n, dvi__exact_product(w[i], w[i]));
+  const double s = (double)(float)(2 / n.head);
+  return (dvi__turn){{w[0], w[1], w[2]}, s, (__builtin_fma(-s, n.head, 2) - s * n.tail) / n.head};
 }
 
 dvi__turn dvi__turn_back(const dvi__turn *turn)
@@ -50,39 +44,86 @@ void dvi__turn_change(const dvi__turn *turn, const double x[3], double change[3]
   }
 }
 
-void dvi__turn_frame(const dvi__turn *turn, double *R, double *carry)
+FUSED_INLINE void cross(const dvi__twofold a[3], const dvi__twofold b[3], dvi__twofold product[3])
 {
   for (int i = 0; i < 3; i++) {
-    double change[3];
-    dvi__turn_change(turn, R + 3 * i, change);
-    dvi__add_compensated_all(3, R + 3 * i, carry + 3 * i, change);
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    const dvi__twofold ahead = dvi__exact_product(a[j].head, b[k].head), back = dvi__exact_product(-a[k].head, b[j].head);
+    const double tails = (a[j].tail * b[k].head - a[k].tail * b[j].head) + (a[j].head * b[k].tail - a[k].head * b[j].tail);
+    product[i] = dvi__twofold_sum(ahead, back);
+    product[i].tail += tails;
   }
 }
 
-double dvi__swing_cosine(int count, const double *u)
+/* x^T F = x^T + s z^T w^,  z^T = x^T (I + w^). */
+FUSED_INLINE void turn_row(const dvi__turn *turn, dvi__twofold x[3])
 {
-  double square = 0;
-  for (int i = 0; i < count; i++) square += u[i] * u[i];
-  return -square / (1 + sqrt(1 - square));
+  static const double none[3] = {0};
+  dvi__twofold w[3], z[3], moved[3];
+  dvi__twofold_get(3, turn->w, none, w);
+  cross(x, w, z);
+  for (int i = 0; i < 3; i++) z[i] = dvi__twofold_sum(x[i], z[i]);
+  cross(z, w, moved);
+  for (int i = 0; i < 3; i++) {
+    dvi__twofold change = dvi__exact_product(turn->s, moved[i].head);
+    change.tail += turn->s * moved[i].tail + turn->s_low * moved[i].head;
+    x[i] = dvi__twofold_sum(x[i], change);
+  }
 }
 
-/* (1 + d)^2 + |u|^2 - 1 = 2 d + d^2 + |u|^2 is made 0 to twice the digits, by the larger of both. */
-void dvi__swing(int count, double d, const double *u, const double *y, double *change)
+FUSED void dvi__turn_rows(const dvi__turn *turn, int count, double *x, double *carry)
 {
-  double square = 0, low = 0;
-  add_squares(count, u, &square, &low);
-  const double d_square = d * d, excess = ((2 * d + square) + d_square) + (__builtin_fma(d, d, -d_square) + low);
-  const int along = (1 + d) * (1 + d) > square;
-  const double more_d = along ? -0.5 * excess / (1 + d) : 0, more_u = along ? 0 : -0.5 * excess / square;
-  for (int i = 0; i < count; i++) change[i] = (d * y[i] + u[i]) + (more_d * y[i] + more_u * u[i]);
+  for (int at = 0; at < count; at += 3) {
+    double head[3] = {0}, low[3] = {0};
+    const size_t bytes = (size_t)(count - at < 3 ? count - at : 3) * sizeof(double);
+    dvi__twofold row[3];
+    memcpy(head, x + at, bytes);
+    memcpy(low, carry + at, bytes);
+    dvi__twofold_get(3, head, low, row);
+    turn_row(turn, row);
+    dvi__twofold_put(3, row, head, low);
+    memcpy(x + at, head, bytes);
+    memcpy(carry + at, low, bytes);
+  }
 }
 
-/* mu x y has changed by mu x change; what rounding leaves along y would grow. */
-void dvi__swing_momentum(const double mu[3], const double change[3], const double y[3], double p[3])
+/* a.b + c, right to a rounding of its own size even where almost nothing is left. */
+FUSED_INLINE double dot(const dvi__twofold a[3], const dvi__twofold b[3], double c)
 {
-  double turned[3];
-  dvi__cross(mu, change, turned);
-  for (int i = 0; i < 3; i++) p[i] += turned[i];
-  const double along = dvi__dot(p, y) / dvi__dot(y, y);
-  for (int i = 0; i < 3; i++) p[i] -= along * y[i];
+  dvi__twofold sum = {c, 0};
+  for (int i = 0; i < 3; i++) {
+    dvi__twofold product = dvi__exact_product(a[i].head, b[i].head);
+    product.tail += a[i].head * b[i].tail + a[i].tail * b[i].head;
+    sum = dvi__twofold_sum(sum, product);
+  }
+  return sum.head + sum.tail;
+}
+
+/* y is a unit vector but for rounding: 1/|y|^2 is 1 less what |y|^2 is above it. */
+FUSED void dvi__turn_angular(const double *y, const double *y_carry, const double *p, const double *p_carry, dvi__twofold mu[3])
+{
+  dvi__twofold at[3], momentum[3];
+  dvi__twofold_get(3, y, y_carry, at);
+  dvi__twofold_get(3, p, p_carry, momentum);
+  cross(at, momentum, mu);
+  const double above = dot(at, at, -1);
+  for (int i = 0; i < 3; i++) mu[i] = dvi__exact_sum(mu[i].head, mu[i].tail - above * mu[i].head);
+}
+
+/* mu is at a right angle to y but for the rounding of both. mu x y would lose what it has along y, in a steady turn the same in all steps: y takes it. */
+FUSED_INLINE void straighten(const dvi__twofold mu[3], double most, dvi__twofold y[3])
+{
+  const double square = mu[0].head * mu[0].head + mu[1].head * mu[1].head + mu[2].head * mu[2].head, along = dot(mu, y, 0);
+  if (!(fabs(along) < most * sqrt(square))) return;
+  for (int i = 0; i < 3; i++) y[i].tail -= along / square * mu[i].head;
+}
+
+FUSED void dvi__turn_momentum(const dvi__twofold mu[3], double most, double *y, double *y_carry, double *p, double *p_carry)
+{
+  dvi__twofold at[3], momentum[3];
+  dvi__twofold_get(3, y, y_carry, at);
+  straighten(mu, most, at);
+  cross(mu, at, momentum);
+  dvi__twofold_put(3, at, y, y_carry);
+  dvi__twofold_put(3, momentum, p, p_carry);
 }

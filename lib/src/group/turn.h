@@ -1,7 +1,10 @@
-/* Moving a point of a group or a sphere by increments whose defect is known to the square of the rounding, into compensated sums: a thousand steps of the same
- * rotation leave the group by no more than a thousand of different ones. */
+/* Turning points and momenta of groups and spheres. The rotation is orthogonal, and what it turns is turned with its carry, to twice the digits: a million turns, even by
+ * the same rotation, change no length and no momentum in space by more than the last rounding. */
 #ifndef DVI_GROUP_TURN_H
 #define DVI_GROUP_TURN_H
+#include <float.h>
+
+#include "num/compensated.h"
 
 /* F = I + s (w^ + w^^2), s = 2/(1 + |w|^2): the rotation by 2 atan|w| about w. Any w is that of a rotation; s, which makes it one, has twice the digits: s is a
  * float, lest s_low be lost in the rounding of what s gives. */
@@ -14,22 +17,22 @@ dvi__turn dvi__turn_of(const double w[3]);
 /* F^T */
 dvi__turn dvi__turn_back(const dvi__turn *turn);
 
-/* w of the rotation exp(f^), |f| below half a turn; both may be one array. */
+/* w of the rotation exp(f^); both may be one array. */
 void dvi__turn_tangent(const double f[3], double w[3]);
 
 /* x^T (F - I): what a row of R, or a body momentum, changes by when R becomes R F. */
 void dvi__turn_change(const dvi__turn *turn, const double x[3], double change[3]);
 
-/* R [9] <- R F with its carries. */
-void dvi__turn_frame(const dvi__turn *turn, double *R, double *carry);
+/* Rows x^T <- x^T F with their carries; [count] numbers, by threes; 2 are a vector in the plane of the first axes. */
+void dvi__turn_rows(const dvi__turn *turn, int count, double *x, double *carry);
 
-/* What y [count] changes by when it becomes (1 + d) y + u, for a unit vector y and u orthogonal to it of length sin(a), d = cos(a) - 1. change [count] may be u. */
-void dvi__swing(int count, double d, const double *u, const double *y, double *change);
+/* Of a direction y [3] and its momentum p [3], all with carries: the angular momentum mu = y x p / |y|^2. */
+void dvi__turn_angular(const double *y, const double *y_carry, const double *p, const double *p_carry, dvi__twofold mu[3]);
 
-/* cos(a) - 1 for |u| = sin(a), up to a quarter turn. */
-double dvi__swing_cosine(int count, const double *u);
-
-/* The momentum p of a direction that has changed to y with the angular momentum mu kept. */
-void dvi__swing_momentum(const double mu[3], const double change[3], const double y[3], double p[3]);
+/* And p = mu x y of a mu that is at a right angle to y, but for rounding: y is moved to be so, up to this angle, not mu, which is conserved. Beyond the angle the rounding
+ * is that of a small mu, to which something was added. */
+#define DVI__TURN_ROUNDINGS (64 * DBL_EPSILON)
+#define DVI__TURN_ANY 1.0
+void dvi__turn_momentum(const dvi__twofold mu[3], double most, double *y, double *y_carry, double *p, double *p_carry);
 
 #endif

@@ -140,6 +140,7 @@ static dvi_status solve(dvi__stepper *self, const dvi__state *state, double h, d
                         .q_carry = own->local + 2 * nx,
                         .p_carry = own->local + 3 * nx};
   dvi__charted_enter(own->charted, state->p, local->p);
+  dvi__charted_enter(own->charted, state->p_carry, local->p_carry);
   own->inner.memory = self->memory;
   const dvi_status status = own->inner.method->step(&own->inner, local, h);
   return status == DVI_OK ? dvi__charted_check(own->charted, local->q) : dvi__charted_explain(own->charted, status);
@@ -155,7 +156,8 @@ dvi_status dvi__charted_step(dvi__stepper *self, dvi__state *state, double h)
   memcpy(own_path, path, unknowns * sizeof(double));
   memcpy(own->seen + n * (unknowns / (size_t)self->system->nx), state->q, n * sizeof(double));
   look_back(own, n, own_path);
-  dvi__charted_arrive(own->charted, local.q, local.p, state->q, state->q_carry, state->p);
+  dvi__charted_arrive(own->charted, &(dvi__phase){local.q, local.p, local.q_carry, local.p_carry},
+                      &(dvi__phase){state->q, state->p, state->q_carry, state->p_carry});
   dvi__charted_centre(own->charted, state->q);
   turn_path(own, n, path);
   state->t = local.t;

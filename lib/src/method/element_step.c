@@ -9,6 +9,7 @@
 #include "action/sweep.h"
 #include "core/memory.h"
 #include "core/status.h"
+#include "method/follow.h"
 #include "num/compensated.h"
 #include "num/finite.h"
 #include "solve/nonlinear.h"
@@ -38,16 +39,16 @@ typedef struct place {
 typedef struct element {
   dvi__action *action;
   dvi__decoupled *decoupled; /* simplified Newton's method takes the Jacobian apart; NULL: it does not */
+  int centred;               /* in charts at its start; there a path that is not near its guess is followed */
   int keeps_whole;           /* it keeps the whole one */
   dvi__solver *solver;
   int choice;     /* of the solver */
-  double *Y;      /* the unknowns */
+  double *Y;      /* the unknowns; the arrays below lie behind */
   double *frozen; /* in the memory: FROZEN_H (0: nothing is), FROZEN_ITERATIONS that it took when it was new, and the Jacobian */
   int keeps;      /* the Jacobian is not frozen anew */
   const place *forces_of; /* the place whose iteration starts from the last step's forces; NULL: from Y */
   double *dq, *dq_low, *dp;
-  /* Shorter steps that build a guess. */
-  double *part_q, *part_p, *part_v, *part_Y, *offset;
+  double *part_q, *part_p, *part_v, *part_Y, *offset; /* of shorter steps that build a guess */
 } element;
 
 /* Whether the rungs follow one after the other. */
@@ -140,16 +141,17 @@ static int allocate(dvi__stepper *self, element *own)
 {
   const size_t n = (size_t)self->system->n, unknowns = (size_t)dvi__action_unknowns(own->action);
   count_memory(self, own);
-  own->Y = DVI_NEW(double, unknowns);
-  own->dq = DVI_NEW(double, n);
-  own->dq_low = DVI_NEW(double, n);
-  own->dp = DVI_NEW(double, n);
-  own->part_q = DVI_NEW(double, n);
-  own->part_p = DVI_NEW(double, n);
-  own->part_v = DVI_NEW(double, n);
-  own->part_Y = DVI_NEW(double, unknowns);
-  own->offset = DVI_NEW(double, unknowns);
-  return own->Y && own->dq && own->dq_low && own->dp && own->part_q && own->part_p && own->part_v && own->part_Y && own->offset;
+  own->Y = DVI_NEW(double, 3 * unknowns + 6 * n);
+  if (own->Y == NULL) return 0;
+  own->part_Y = own->Y + unknowns;
+  own->offset = own->part_Y + unknowns;
+  own->dq = own->offset + unknowns;
+  own->dq_low = own->dq + n;
+  own->dp = own->dq_low + n;
+  own->part_q = own->dp + n;
+  own->part_p = own->part_q + n;
+  own->part_v = own->part_p + n;
+  return 1;
 }
 
 /* Simplified Newton's method is for those who may use it; in a space without a full set of eigenvectors the ladder goes without it. */
@@ -203,20 +205,13 @@ void dvi__element_destroy(dvi__stepper *self)
   dvi__decoupled_destroy(&own->decoupled);
   dvi__action_destroy(&own->action);
   dvi__release(own->Y);
-  dvi__release(own->dq);
-  dvi__release(own->dq_low);
-  dvi__release(own->dp);
-  dvi__release(own->part_q);
-  dvi__release(own->part_p);
-  dvi__release(own->part_v);
-  dvi__release(own->part_Y);
-  dvi__release(own->offset);
   dvi__release(own);
 }
 
 dvi_status dvi__element_centre(dvi__stepper *self, const dvi__centring *centring)
 {
   element *own = self->own;
+  own->centred = 1;
   own->keeps_whole = is_ladder(own) || own->choice == DVI__SOLVER_SIMPLIFIED;
   dvi__decoupled_destroy(&own->decoupled);
   count_memory(self, own);
@@ -268,6 +263,7 @@ static dvi_status solve_by(dvi__stepper *self, const place *at, dvi__rung rung, 
   const int patient = own->choice == DVI__SOLVER_FIXED_POINT;
   own->forces_of = rung == DVI__FIXED_POINT && at->last_g != NULL ? at : NULL;
   if (own->forces_of == NULL) DVI_TRY(guess(self, at, Y));
+  if (own->centred) memcpy(own->offset, Y, (size_t)dvi__action_unknowns(own->action) * sizeof(double));
   const dvi_status status = dvi__solve(own->solver, rung, size, 1, patient, Y, report);
   if (status == DVI_OK && rung == DVI__FIXED_POINT) self->counters->fixed_points++;
   if (status == DVI_OK && rung == DVI__SIMPLIFIED) self->counters->simplified++;
@@ -395,6 +391,15 @@ static dvi_status rescue(dvi__stepper *self, const place *at, double *Y, dvi__so
                       report->iterations, report->residual);
 }
 
+static dvi_status follow(dvi__stepper *self, const place *at, double *Y, dvi__solve_report *report)
+{
+  const element *own = self->own;
+  self->counters->halvings++;
+  const dvi__follow from = {own->action, own->solver,     at->t,   at->h,       at->q,
+                            at->p,       self->system->n, own->dq, own->offset, own->part_Y};
+  return dvi__follow_path(&from, Y, report);
+}
+
 /* ---- the step ---- */
 
 static dvi_status advance(dvi__stepper *self, dvi__state *state, double h)
@@ -440,13 +445,13 @@ dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h)
 {
   element *own = self->own;
   dvi__solve_report report = {0};
-  double *forces = self->memory + dvi__element_forces(self);
   const place at = place_of(self, state, h);
   dvi_status status = solve_at(self, &at, own->Y, &report);
-  if (status > 0) status = rescue(self, &at, own->Y, &report);
+  const int strayed = status == DVI_OK && own->centred && !dvi__follow_is_meant(own->action, own->solver, h, own->offset, own->Y);
+  if (status > 0 || strayed) status = (own->centred ? follow : rescue)(self, &at, own->Y, &report);
   if (status == DVI_OK) {
     dvi__action_ends(own->action, own->Y, own->dq, own->dq_low, own->dp);
-    dvi__action_forces(own->action, forces);
+    dvi__action_forces(own->action, self->memory + dvi__element_forces(self));
   }
   if (status == DVI_OK && own->choice == DVI__SOLVER_CERTIFIED) status = certify(self, &at, own->Y, &report);
   return status == DVI_OK ? advance(self, state, h) : status;
@@ -461,9 +466,10 @@ void dvi__element_path(const dvi__stepper *self, const double *q0, double h, dou
 
 static void explain_solver(const element *own, dvi__text *text)
 {
-  const char *name = dvi__solver_choice(own->choice);
+  const char *name = dvi__solver_choice(own->choice),
+             *last = own->centred ? "a path followed from shorter steps" : "KINSOL with line search";
   if (!is_ladder(own)) {
-    dvi__text_add(text, "solver: %s, as asked; what it cannot solve goes on to KINSOL with line search\n", name);
+    dvi__text_add(text, "solver: %s, as asked; what it cannot solve goes on to %s\n", name, last);
     return;
   }
   dvi__text_add(text, "solver: %s: %ssimplified Newton's method (%s), ", name,
@@ -471,7 +477,7 @@ static void explain_solver(const element *own, dvi__text *text)
                 own->keeps_whole         ? "its Jacobian kept over steps"
                 : own->decoupled != NULL ? "decoupled systems of n unknowns"
                                          : "not in this space");
-  dvi__text_add(text, "Newton's method, last KINSOL with line search%s\n",
+  dvi__text_add(text, "Newton's method, last %s%s\n", last,
                 own->choice == DVI__SOLVER_CERTIFIED ? "; KINSOL certifies each solution" : "");
 }
 

@@ -35,12 +35,12 @@ static const dvi__key keys[] = {
 
 typedef struct lie_rk {
   dvi__flow *flow;
-  double *numbers;                                  /* where the arrays lie: */
-  double *q0, *p0;                                  /* [n] the step's start; m0 in p0 for the schemes with exponentials */
-  double *omega, *m_rate, *sum, *m_sum, *theta, *m; /* [n] */
+  double *numbers;                              /* where the arrays lie: */
+  dvi__phase start;                             /* [n] the step's; m0 in p for the schemes with exponentials */
+  double *omega, *m_rate, *sum, *m_sum, *theta; /* [n] */
 } lie_rk;
 
-enum { ARRAYS = 8, MOST_ITERATIONS = 200 };
+enum { ARRAYS = 9, MOST_ITERATIONS = 200 };
 
 static dvi_status create(dvi__stepper *self)
 {
@@ -52,7 +52,8 @@ static dvi_status create(dvi__stepper *self)
   if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "lie-rk: no memory");
   double *at = own->numbers = DVI_NEW(double, ARRAYS *n);
   if (at == NULL) return dvi__fail(DVI_NO_MEMORY, "lie-rk: no memory");
-  double **const array[ARRAYS] = {&own->q0, &own->p0, &own->omega, &own->m_rate, &own->sum, &own->m_sum, &own->theta, &own->m};
+  double **const array[ARRAYS] = {&own->start.q, &own->start.p, &own->start.q_carry, &own->start.p_carry, &own->omega,
+                                  &own->m_rate,  &own->sum,     &own->m_sum,         &own->theta};
   for (int i = 0; i < ARRAYS; i++) *array[i] = at + (size_t)i * n;
   return dvi__flow_create(self->system, self->counters, &own->flow);
 }
@@ -71,6 +72,20 @@ static void start(dvi__stepper *self, const double *v)
   (void)self, (void)v;
 }
 
+static dvi__phase phase_of(const dvi__state *state)
+{
+  return (dvi__phase){state->q, state->p, state->q_carry, state->p_carry};
+}
+
+static void copy(const dvi_system *system, const dvi__phase *from, const dvi__phase *to)
+{
+  const size_t points = (size_t)system->n * sizeof(double), momenta = (size_t)system->nv * sizeof(double);
+  memcpy(to->q, from->q, points);
+  memcpy(to->q_carry, from->q_carry, points);
+  memcpy(to->p, from->p, momenta);
+  memcpy(to->p_carry, from->p_carry, momenta);
+}
+
 /* ---- in the coordinates that contain the group ---- */
 
 /* The rates of the state's plain numbers, in sum and m_sum. */
@@ -82,22 +97,28 @@ static dvi_status plain_rates(dvi__stepper *self, double t, const dvi__state *st
   return DVI_OK;
 }
 
+/* x = x0 + h rate, with carries; how far that moved it. */
+static double move_numbers(int count, const double *x0, const double *carry0, double h, const double *rate, double *x,
+                           double *carry)
+{
+  double moved = 0;
+  for (int i = 0; i < count; i++) {
+    const double last = x[i];
+    x[i] = x0[i];
+    carry[i] = carry0[i];
+    dvi__add_compensated(x + i, carry + i, h * rate[i]);
+    moved = fmax(moved, fabs(x[i] - last));
+  }
+  return moved;
+}
+
 /* The state = the start + h times the rates; how far that moved it. */
 static double move_plainly(dvi__stepper *self, dvi__state *state, double h)
 {
   const lie_rk *own = self->own;
-  double moved = 0;
-  for (int i = 0; i < self->system->n; i++) {
-    const double q = own->q0[i] + h * own->sum[i];
-    moved = fmax(moved, fabs(q - state->q[i]));
-    state->q[i] = q;
-  }
-  for (int i = 0; i < self->system->nv; i++) {
-    const double p = own->p0[i] + h * own->m_sum[i];
-    moved = fmax(moved, fabs(p - state->p[i]));
-    state->p[i] = p;
-  }
-  return moved;
+  const dvi__phase *from = &own->start;
+  return fmax(move_numbers(self->system->n, from->q, from->q_carry, h, own->sum, state->q, state->q_carry),
+              move_numbers(self->system->nv, from->p, from->p_carry, h, own->m_sum, state->p, state->p_carry));
 }
 
 static dvi_status explicit_midpoint(dvi__stepper *self, dvi__state *state, double h)
@@ -145,16 +166,18 @@ static dvi_status implicit_midpoint(dvi__stepper *self, dvi__state *state, doubl
 static void move_state(dvi__stepper *self, dvi__state *state, const double *theta, double h, const double *m_rate)
 {
   const lie_rk *own = self->own;
-  dvi__flow_move(own->flow, own->q0, theta, state->q);
-  for (int i = 0; i < self->system->nv; i++) own->m[i] = own->p0[i] + h * m_rate[i];
-  dvi__flow_leave(own->flow, state->q, own->m, state->p);
+  const dvi__phase phase = phase_of(state);
+  copy(self->system, &own->start, &phase);
+  dvi__flow_move(own->flow, theta, &phase);
+  for (int i = 0; i < self->system->nv; i++) dvi__add_compensated(phase.p + i, phase.p_carry + i, h * m_rate[i]);
+  dvi__flow_leave(own->flow, &phase);
 }
 
 static dvi_status crouch_grossman(dvi__stepper *self, dvi__state *state, double h)
 {
   const lie_rk *own = self->own;
   const double part[] = {0.5 * h, h};
-  dvi__flow_enter(own->flow, own->q0, state->p, own->p0);
+  dvi__flow_enter(own->flow, &own->start);
   for (int stage = 0; stage < 2; stage++) {
     DVI_TRY(dvi__flow_rates(own->flow, state->t + 0.5 * h * stage, state->q, state->p, own->omega, own->m_rate));
     for (int i = 0; i < self->system->nv; i++) own->theta[i] = part[stage] * own->omega[i];
@@ -168,7 +191,7 @@ static dvi_status munthe_kaas(dvi__stepper *self, dvi__state *state, double h)
   static const double c[] = {0, 0.5, 0.5, 1}, b[] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
   const lie_rk *own = self->own;
   const size_t bytes = (size_t)self->system->nv * sizeof(double);
-  dvi__flow_enter(own->flow, own->q0, state->p, own->p0);
+  dvi__flow_enter(own->flow, &own->start);
   memset(own->sum, 0, bytes);
   memset(own->m_sum, 0, bytes);
   memset(own->theta, 0, bytes);
@@ -197,8 +220,8 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
   static dvi_status (*const scheme[])(dvi__stepper *, dvi__state *, double) = {explicit_midpoint, implicit_midpoint,
                                                                                crouch_grossman, munthe_kaas};
   const lie_rk *own = self->own;
-  memcpy(own->q0, state->q, (size_t)self->system->n * sizeof(double));
-  memcpy(own->p0, state->p, (size_t)self->system->nv * sizeof(double));
+  const dvi__phase phase = phase_of(state);
+  copy(self->system, &phase, &own->start);
   const dvi_status status = scheme[self->settings.value[SCHEME]](self, state, h);
   if (status != DVI_OK && status != DVI_NOT_CONVERGED && !is_finite(self->system, state))
     return dvi__fail(DVI_NOT_FINITE, "a state inside the step is not finite");

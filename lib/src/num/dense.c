@@ -82,4 +82,13 @@ static void solve(void *factor, const dvi__pattern *pattern, double *b)
   dgetrs_("N", &n, &one, d->lu, &n, d->pivot, b, &n, &status, 1);
 }
 
-const dvi__factor_operations dvi__dense_factor = {create, refactor, solve, destroy};
+static int sign(const void *factor, const dvi__pattern *pattern)
+{
+  const dense *d = factor;
+  const int n = pattern->rows;
+  int negative = 0;
+  for (int i = 0; i < n; i++) negative ^= (d->pivot[i] != i + 1) ^ (d->lu[(size_t)i * (size_t)n + (size_t)i] < 0);
+  return negative ? -1 : 1;
+}
+
+const dvi__factor_operations dvi__dense_factor = {create, refactor, solve, destroy, sign};

@@ -15,6 +15,7 @@ typedef struct dvi__factor_operations {
   dvi_status (*refactor)(void *factor, const dvi__pattern *pattern, const double *values);
   void (*solve)(void *factor, const dvi__pattern *pattern, double *b);
   void (*destroy)(void *factor);
+  int (*sign)(const void *factor, const dvi__pattern *pattern); /* of the determinant; real factors without a border have it */
 } dvi__factor_operations;
 
 extern const dvi__factor_operations dvi__dense_factor;   /* dense.c */

@@ -3,6 +3,7 @@
  * same bits. */
 #include <klu.h>
 #include <stdint.h>
+#include <string.h>
 
 #include "core/memory.h"
 #include "core/status.h"
@@ -36,6 +37,7 @@ typedef struct sparse {
   klu_numeric *standing; /* in the order chosen at create; NULL if the pattern has no such order */
   klu_numeric *own;      /* of one matrix that needed an order of its own */
   klu_numeric *current;  /* one of the two */
+  char *seen;            /* [n] work */
 } sparse;
 
 static void destroy(void *factor)
@@ -45,6 +47,7 @@ static void destroy(void *factor)
   s->of->forget(&s->standing, &s->common);
   s->of->forget(&s->own, &s->common);
   if (s->owns_symbolic) klu_free_symbolic(&s->symbolic, &s->common);
+  dvi__release(s->seen);
   dvi__release(s);
 }
 
@@ -86,7 +89,9 @@ static dvi_status create(const dvi__pattern *pattern, const arithmetic *of, cons
   sparse *s = *factor = DVI_NEW(sparse, 1);
   if (s == NULL) return dvi__fail(DVI_NO_MEMORY, "KLU: no memory");
   s->of = of;
-  const dvi_status status = analyse(s, pattern, like);
+  s->seen = DVI_NEW(char, (size_t)pattern->columns);
+  const dvi_status status = s->seen != NULL ? analyse(s, pattern, like)
+                                            : dvi__fail(DVI_NO_MEMORY, "KLU: no memory for %d columns", pattern->columns);
   if (status == DVI_OK) return DVI_OK;
   destroy(s);
   *factor = NULL;
@@ -139,5 +144,27 @@ static void solve(void *factor, const dvi__pattern *pattern, double *b)
   s->of->solve(s->symbolic, s->current, pattern->rows, 1, b, &s->common);
 }
 
-const dvi__factor_operations dvi__sparse_factor = {create_real, refactor, solve, destroy};
-const dvi__factor_operations dvi__complex_factor = {create_complex, refactor, solve, destroy};
+/* Whether the permutation takes an odd number of exchanges: a cycle takes one less than it has members. */
+static int is_odd(int n, const int *permutation, char *seen)
+{
+  int odd = 0;
+  memset(seen, 0, (size_t)n);
+  for (int i = 0; i < n; i++)
+    for (int j = i; !seen[j]; j = permutation[j]) {
+      seen[j] = 1;
+      odd ^= permutation[j] != i;
+    }
+  return odd;
+}
+
+static int sign(const void *factor, const dvi__pattern *pattern)
+{
+  const sparse *s = factor;
+  const double *pivot = s->current->Udiag;
+  int negative = is_odd(pattern->columns, s->current->Pnum, s->seen) ^ is_odd(pattern->columns, s->symbolic->Q, s->seen);
+  for (int i = 0; i < pattern->columns; i++) negative ^= pivot[i] < 0;
+  return negative ? -1 : 1;
+}
+
+const dvi__factor_operations dvi__sparse_factor = {create_real, refactor, solve, destroy, sign};
+const dvi__factor_operations dvi__complex_factor = {create_complex, refactor, solve, destroy, NULL};

@@ -170,6 +170,12 @@ dvi_status dvi__linear_factor(dvi__linear *linear, const double *values)
   return linear->operations->refactor(linear->factor, linear->pattern, linear->scaled);
 }
 
+/* The scales are positive. */
+int dvi__linear_sign(const dvi__linear *linear)
+{
+  return linear->operations->sign(linear->factor, linear->pattern);
+}
+
 static void scale(int n, int parts, const double *by, double *b)
 {
   for (int i = 0; i < n; i++) scale_entry(parts, by[i], b + (ptrdiff_t)parts * i);

@@ -37,6 +37,9 @@ dvi__linear_kind dvi__linear_kind_of(const dvi__linear *linear);
  * singular to working precision, DVI_NOT_FINITE, DVI_NO_MEMORY (KLU's own); the old factor is lost then. */
 dvi_status dvi__linear_factor(dvi__linear *linear, const double *values);
 
+/* The sign of the determinant of the matrix that was factored last, 1 or -1; it must be real, and without a border. */
+int dvi__linear_sign(const dvi__linear *linear);
+
 /* Overwrite b [rows, or pairs of them] by the solution. Needs a factor. */
 void dvi__linear_solve(dvi__linear *linear, double *b);
 

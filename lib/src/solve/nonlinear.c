@@ -107,6 +107,11 @@ void dvi__solver_apply_factor(dvi__solver *solver, double *b)
   dvi__linear_solve(solver->linear, b);
 }
 
+int dvi__solver_sign(const dvi__solver *solver)
+{
+  return solver->factored ? dvi__linear_sign(solver->linear) : 1;
+}
+
 dvi__linear_kind dvi__solver_linear_kind(const dvi__solver *solver)
 {
   return dvi__linear_kind_of(solver->linear);

@@ -69,6 +69,9 @@ dvi_status dvi__solver_take_jacobian(dvi__solver *solver, const double *values);
 /* Solve with the Jacobian that was factored last: b [unknowns] becomes J^{-1} b. */
 void dvi__solver_apply_factor(dvi__solver *solver, double *b);
 
+/* The sign of the determinant of the Jacobian that was factored last, and is near that of the solution if the iteration went by it; 1 if there is none. */
+int dvi__solver_sign(const dvi__solver *solver);
+
 /* Which linear solver the Newton rungs use. */
 dvi__linear_kind dvi__solver_linear_kind(const dvi__solver *solver);
 

@@ -6,7 +6,6 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "num/compensated.h"
 
 /* ---- create, destroy ---- */
 
@@ -78,8 +77,8 @@ void dvi__charted_destroy(dvi__charted **charted)
   void *const own[] = {x->functions,  x->chart,      x->cell,       x->cell_of_x,  x->t,         x->y,         x->rate,
                        x->L_y,        x->w,          x->L_yy,       x->T,          x->S,         x->curved,    x->mixed,
                        x->in_qq,      x->mass_in_qq, x->mass_in_qv, x->mass_in_vv, x->own_in_qq, x->own_in_qv, x->own_in_vv,
-                       x->coupled_in, x->W,          x->end,        x->moment,     x->departure, x->angular,   x->turned_T,
-                       x->turned_S,   x->C_q1,       x->C_qq,       x->C_qv};
+                       x->coupled_in, x->W,          x->end,        x->moment,     x->impulse,   x->turned_T,  x->turned_S,
+                       x->C_q1,       x->C_qq,       x->C_qv};
   for (size_t i = 0; i < sizeof own / sizeof *own; i++) dvi__release(own[i]);
   dvi__release(x);
   *charted = NULL;
@@ -102,9 +101,6 @@ void dvi__charted_enter(const dvi__charted *x, const double *stored, double *loc
 {
   for (int c = 0; c < x->base->cell_count; c++)
     dvi__chart_enter(&x->chart[c], stored + x->base->cells[c].v, local + x->base->cells[c].x);
-  for (int c = 0; c < x->base->cell_count && x->departure != NULL; c++)
-    if (x->base->cells[c].kind == DVI__SPHERE)
-      dvi__chart_angular_momentum(&x->chart[c], stored + x->base->cells[c].v, x->departure + 3 * c);
 }
 
 void dvi__charted_store(const dvi__charted *x, const double *local, double *stored)
@@ -113,17 +109,18 @@ void dvi__charted_store(const dvi__charted *x, const double *local, double *stor
     dvi__chart_store(&x->chart[c], local + x->base->cells[c].x, stored + x->base->cells[c].v);
 }
 
-void dvi__charted_arrive(const dvi__charted *x, const double *xi, const double *p, double *q, double *q_carry, double *stored)
+void dvi__charted_arrive(const dvi__charted *x, const dvi__phase *local, const dvi__phase *state)
 {
   for (int c = 0; c < x->base->cell_count; c++) {
     const dvi__cell *at = &x->base->cells[c];
-    double leap[DVI__CHART_POINT];
-    dvi__chart_leap(&x->chart[c], xi + at->x, leap);
-    dvi__add_compensated_all(dvi__chart_stored(at->kind), q + at->q, q_carry + at->q, leap);
-    if (dvi__turns(at))
-      dvi__chart_stored_momentum(&x->chart[c], xi + at->x, q + at->q, x->angular + 3 * c, stored + at->v);
-    else
-      stored[at->v] = p[at->x];
+    double *y = state->q + at->q, *y_carry = state->q_carry + at->q, *p = state->p + at->v, *p_carry = state->p_carry + at->v;
+    if (dvi__turns(at)) {
+      dvi__chart_carry(&x->chart[c], local->q + at->x, x->impulse + 3 * c, y, y_carry, p, p_carry);
+    } else {
+      dvi__chart_move(&x->chart[c], local->q + at->x, y, y_carry);
+      *p = local->p[at->x];
+      *p_carry = local->p_carry[at->x];
+    }
   }
 }
 
@@ -164,8 +161,8 @@ dvi_status dvi__charted_check(const dvi__charted *x, const double *xi)
 dvi_status dvi__charted_explain(const dvi__charted *x, dvi_status status)
 {
   const int by_callback = status == DVI_CALLBACK_RETRY || status == DVI_CALLBACK_FAILED;
-  const int too_large = status > 0 && x->failure == DVI_STEP_TOO_LARGE;
-  if (x->failure != DVI_OK && (by_callback || too_large)) return dvi__fail(x->failure, "%s", x->sentence);
+  const int behind = status == DVI_STEP_TOO_LARGE && x->failure != DVI_STEP_TOO_LARGE;
+  if (x->failure != DVI_OK && (by_callback || behind)) return dvi__fail(x->failure, "%s", x->sentence);
   if (x->failure == DVI_OK && status == DVI_NOT_FINITE)
     return dvi__fail(
         DVI_NOT_FINITE,

@@ -5,6 +5,7 @@
  * for everything that knows R^n alone. It belongs to one user, who moves its centre, and has work memory, so it is not shared. */
 #ifndef DVI_SYSTEM_CHARTED_H
 #define DVI_SYSTEM_CHARTED_H
+#include "num/lanes.h"
 #include "system/centring.h"
 #include "system/evaluator.h"
 
@@ -36,10 +37,9 @@ dvi_status dvi__charted_explain(const dvi__charted *charted, dvi_status status);
 void dvi__charted_enter(const dvi__charted *charted, const double *stored, double *local);
 void dvi__charted_store(const dvi__charted *charted, const double *local, double *stored);
 
-/* Move q [nq], where the charts are centred, with its carry to the end of the last path from there, xi [nx]; and the stored momentum [nv] there: that of the angular momentum in space where there is one, to
- * the last bit of its conservation, else the chart's p [nx]. */
-void dvi__charted_arrive(const dvi__charted *charted, const double *xi, const double *p, double *q, double *q_carry,
-                         double *stored);
+/* Move a state where the charts are centred to the end of the last path from there, xi and p in the charts, all with carries: the momentum by what the path
+ * adds to the angular momentum in space where there is one, else as the chart's. */
+void dvi__charted_arrive(const dvi__charted *charted, const dvi__phase *local, const dvi__phase *state);
 
 /* The point q [nq] of xi, and the stored velocity v [nv] of the rate [nx]; either may be NULL. */
 void dvi__charted_point(const dvi__charted *charted, const double *xi, const double *rate, double *q, double *v);

@@ -103,6 +103,16 @@ static void pull_back(const dvi__charted *x, int count, int first, int group, co
   }
 }
 
+/* w -= m y' of each vector of a cell, m its own mass: v x m v is 0, but not when it is rounded, and always to one side. */
+static void take_own(const dvi__charted *x, const dvi__cell *cell, const double *rate, double *w)
+{
+  const int stored = dvi__chart_stored(cell->kind), vectors = stored / 3;
+  for (int i = 0; i < stored; i++) {
+    const int j = cell->q + i % vectors, e = dvi__pattern_find(&x->base->vv, j, j);
+    if (e >= 0) w[i] -= x->base->mass_values[e] * rate[i];
+  }
+}
+
 /* N at the nodes of a group. */
 void dvi__charted_find_moments(dvi__charted *x, int first, int group)
 {
@@ -113,6 +123,7 @@ void dvi__charted_find_moments(dvi__charted *x, int first, int group)
       dvi__charted_pair(cell, group, k, x->y, x->rate, y, v);
       dvi__charted_pair(cell, group, k, x->L_y, x->w, a, b);
       dvi__chart_add_moment(cell->kind, y, a, N);
+      take_own(x, cell, v, b);
       dvi__chart_add_moment(cell->kind, v, b, N);
       for (int i = 0; i < 3; i++) x->moment[(3 * c + i) * x->capacity + first + k] = N[i];
     }

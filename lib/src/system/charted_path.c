@@ -110,25 +110,30 @@ static void place_path(void *of, const double *q0, const double *q1)
   memcpy(x->end, q1, (size_t)x->base->nx * sizeof *q1);
 }
 
-/* mu1 = mu0 + h sum_j b_j N_j of cell c. */
-static void angular_momentum(const dvi__charted *x, int c, int nodes, double h, const double *weight, const double *p0, double *mu)
+/* mu1 - mu0 = h sum_j b_j N_j of cell c. */
+static void impulse_of(const dvi__charted *x, int c, int nodes, double h, const double *weight, double *impulse)
 {
-  double impulse[3] = {0};
+  double in_space[3] = {0};
   for (int i = 0; i < 3; i++)
-    for (int j = 0; j < nodes; j++) impulse[i] += h * weight[j] * x->moment[(3 * c + i) * x->capacity + j];
-  if (x->base->cells[c].kind == DVI__SPHERE)
-    memcpy(mu, x->departure + 3 * c, 3 * sizeof *mu);
-  else
-    memcpy(mu, p0 + x->base->cells[c].x, 3 * sizeof *mu);
-  dvi__chart_add_impulse(&x->chart[c], impulse, mu);
+    for (int j = 0; j < nodes; j++) in_space[i] += h * weight[j] * x->moment[(3 * c + i) * x->capacity + j];
+  memset(impulse, 0, 3 * sizeof *impulse);
+  dvi__chart_add_impulse(&x->chart[c], in_space, impulse);
 }
 
-/* C of cell c, whose angular momentum at the end is known. */
+/* mu1 */
+static void angular_momentum(const dvi__charted *x, int c, const double *p0, const double *impulse, double *mu)
+{
+  dvi__chart_angular_momentum(&x->chart[c], p0 + x->base->cells[c].x, mu);
+  for (int i = 0; i < 3; i++) mu[i] += impulse[i];
+}
+
+/* C of cell c, whose impulse is known. */
 static void correct_cell(const dvi__charted *x, int c, const double *p0, const double *dp, double *C)
 {
   const dvi__cell *cell = &x->base->cells[c];
-  double p1[DVI__CHART_SIZE];
-  dvi__chart_momentum(&x->chart[c], x->end + cell->x, x->angular + 3 * c, p1);
+  double mu[3], p1[DVI__CHART_SIZE];
+  angular_momentum(x, c, p0, x->impulse + 3 * c, mu);
+  dvi__chart_momentum(&x->chart[c], x->end + cell->x, mu, p1);
   for (int i = 0; i < dvi__chart_size(cell->kind); i++) C[cell->x + i] = p1[i] - p0[cell->x + i] - dp[cell->x + i];
 }
 
@@ -138,7 +143,7 @@ static void correct_path(void *of, int nodes, double h, const double *weight, co
   memset(C, 0, (size_t)x->base->nx * sizeof *C);
   for (int c = 0; c < x->base->cell_count && x->from_centre; c++)
     if (dvi__turns(&x->base->cells[c])) {
-      angular_momentum(x, c, nodes, h, weight, p0, x->angular + 3 * c);
+      impulse_of(x, c, nodes, h, weight, x->impulse + 3 * c);
       correct_cell(x, c, p0, dp, C);
     }
 }
@@ -151,7 +156,7 @@ static void correct_reduced(void *of, int nodes, double h, const double *weight,
   memset(C, 0, (size_t)x->base->nx * sizeof *C);
   for (int b = 0; b < x->reduced.count && x->from_centre; b++) {
     const int c = x->reduced.bodies[b].cell;
-    dvi__reduced_angular(x, &x->reduced.bodies[b], p0, x->angular + 3 * c);
+    dvi__reduced_impulse(x, &x->reduced.bodies[b], p0, x->impulse + 3 * c);
     correct_cell(x, c, p0, dp, C);
   }
 }
@@ -171,12 +176,28 @@ static void mix_magnitudes(void *of, int s, double *magnitude)
   }
 }
 
+static double largest_turn(void *of, int s, const double *points, const double *others)
+{
+  const dvi__charted *x = of;
+  double largest = 0;
+  for (int c = 0; c < x->base->cell_count; c++) {
+    const dvi__cell *cell = &x->base->cells[c];
+    for (int k = cell->x * s; k < (cell->x + 1) * s && cell->kind != DVI__LINE; k++) {
+      double turn[DVI__CHART_SIZE];
+      for (int i = 0; i < dvi__chart_size(cell->kind); i++) turn[i] = points[k + i * s] - (others != NULL ? others[k + i * s] : 0);
+      largest = fmax(largest, dvi__chart_angle(cell->kind, turn));
+    }
+  }
+  return largest;
+}
+
 /* Into the diagonal block of C_q1. */
-static void derive_cell(const dvi__charted *x, int c, const double *mu)
+static void derive_cell(const dvi__charted *x, int c, const double *p0, const double *impulse)
 {
   const dvi__cell *cell = &x->base->cells[c];
   const int size = dvi__chart_size(cell->kind);
-  double derivative[9];
+  double mu[3], derivative[9];
+  angular_momentum(x, c, p0, impulse, mu);
   dvi__chart_momentum_derivative(&x->chart[c], x->end + cell->x, mu, derivative);
   dvi__charted_add_block(&x->own_in_qq[c], size, size, derivative, 1, 0, x->C_q1);
 }
@@ -193,12 +214,12 @@ static void derive_path(void *of, int nodes, double h, const double *weight, con
                         const double **C_qq, const double **C_qv)
 {
   dvi__charted *x = of;
-  double mu[3];
+  double impulse[3];
   name_changes(x, C_q1, C_qq, C_qv);
   for (int c = 0; c < x->base->cell_count && x->from_centre; c++)
     if (dvi__turns(&x->base->cells[c])) {
-      angular_momentum(x, c, nodes, h, weight, p0, mu);
-      derive_cell(x, c, mu);
+      impulse_of(x, c, nodes, h, weight, impulse);
+      derive_cell(x, c, p0, impulse);
     }
 }
 
@@ -206,12 +227,12 @@ static void derive_reduced(void *of, int nodes, double h, const double *weight, 
                            const double **C_qq, const double **C_qv)
 {
   dvi__charted *x = of;
-  double mu[3];
+  double impulse[3];
   (void)nodes, (void)h, (void)weight;
   name_changes(x, C_q1, C_qq, C_qv);
   for (int b = 0; b < x->reduced.count && x->from_centre; b++) {
-    dvi__reduced_angular(x, &x->reduced.bodies[b], p0, mu);
-    derive_cell(x, x->reduced.bodies[b].cell, mu);
+    dvi__reduced_impulse(x, &x->reduced.bodies[b], p0, impulse);
+    derive_cell(x, x->reduced.bodies[b].cell, p0, impulse);
     dvi__reduced_derive(x, &x->reduced.bodies[b], &x->coupled_in[b], p0, x->C_q1);
   }
 }
@@ -222,22 +243,27 @@ static dvi_status reserve(dvi__charted *x, int nodes)
   x->capacity = nodes;
   x->W = DVI_NEW(double, 9 * cells);
   x->end = DVI_NEW(double, x->base->nx);
-  x->departure = DVI_NEW(double, 3 * cells);
-  x->angular = DVI_NEW(double, 3 * cells);
+  x->impulse = DVI_NEW(double, 3 * cells);
   x->moment = DVI_NEW(double, 3 * cells * (size_t)nodes);
   x->turned_T = DVI_NEW(double, 3 * n);
   x->turned_S = DVI_NEW(double, 3 * n);
   x->C_q1 = DVI_NEW(double, qq);
   x->C_qq = DVI_NEW(double, qq *(size_t)nodes);
   x->C_qv = DVI_NEW(double, (size_t)dvi__pattern_entries(&x->qv) * (size_t)nodes);
-  if (x->W && x->end && x->departure && x->angular && x->moment && x->turned_T && x->turned_S && x->C_q1 && x->C_qq && x->C_qv)
-    return DVI_OK;
+  if (x->W && x->end && x->impulse && x->moment && x->turned_T && x->turned_S && x->C_q1 && x->C_qq && x->C_qv) return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "charts: no memory for %d nodes", nodes);
 }
 
 dvi_status dvi__charted_centring(dvi__charted *x, int nodes, dvi__centring *centring)
 {
-  *centring = (dvi__centring){x, place_path, x->reduced.bodies != NULL ? correct_reduced : correct_path, mix_magnitudes,
+  int signs = 1;
+  for (int c = 0; c < x->base->cell_count; c++) signs &= x->base->cells[c].kind != DVI__SPHERE;
+  *centring = (dvi__centring){x,
+                              signs,
+                              place_path,
+                              x->reduced.bodies != NULL ? correct_reduced : correct_path,
+                              mix_magnitudes,
+                              largest_turn,
                               x->reduced.bodies != NULL ? derive_reduced : derive_path};
   return reserve(x, nodes);
 }

@@ -247,15 +247,14 @@ static void turn_back(const double *R0, const double *v, double *turned)
   for (int j = 0; j < 3; j++) turned[j] = R0[j] * v[0] + R0[3 + j] * v[1] + R0[6 + j] * v[2];
 }
 
-void dvi__reduced_angular(const dvi__charted *x, const dvi__body *body, const double *p0, double *mu)
+void dvi__reduced_impulse(const dvi__charted *x, const dvi__body *body, const double *p0, double *impulse)
 {
-  double moment[3], turned[3];
-  memcpy(mu, p0 + x->base->cells[body->cell].x, 3 * sizeof *mu);
+  double moment[3];
+  memset(impulse, 0, 3 * sizeof *impulse);
   if (body->line < 0) return;
   const int line = x->base->cells[body->line].x;
-  dvi__cross(x->end + line, p0 + line, moment);
-  turn_back(x->chart[body->cell].y0, moment, turned);
-  for (int i = 0; i < 3; i++) mu[i] -= turned[i];
+  dvi__cross(p0 + line, x->end + line, moment);
+  turn_back(x->chart[body->cell].y0, moment, impulse);
 }
 
 void dvi__reduced_derive(const dvi__charted *x, const dvi__body *body, const dvi__coupling *at, const double *p0, double *C_q1)

@@ -42,8 +42,7 @@ struct dvi__charted {
   /* Paths from the centre (dvi__charted_centring): not 0 for those; N [cells*3*capacity], at node j of a batch [(3 c + a)*capacity + j]. */
   int from_centre, capacity;
   double *W, *end, *moment;    /* W [cells*9], xi1 [nx] */
-  double *departure;           /* [cells*3] mu0 of directions, from the stored momentum, which the chart's rounds once more */
-  double *angular;             /* [cells*3] mu1 of the last path */
+  double *impulse;             /* [cells*3] mu1 - mu0 of the last path, of a rotation in the centre's frame */
   double *turned_T, *turned_S; /* [nq*3] y x and y' x, times W, of one point */
   double *C_q1, *C_qq, *C_qv;  /* [entries], [entries*capacity] */
 };
@@ -85,8 +84,8 @@ int dvi__reduced_hessian(int count, const double *t, const double *xi, const dou
                          void *user);
 dvi_status dvi__reduced_place(dvi__charted *charted);
 
-/* Angular momentum of a body at the end of a path, in the frame of the centre: where x goes with momentum, that of Ad*. */
-void dvi__reduced_angular(const dvi__charted *charted, const dvi__body *body, const double *p0, double *mu);
+/* What the angular momentum of a body changes by on a path, in the frame of the centre: where x goes with momentum, by Ad*. */
+void dvi__reduced_impulse(const dvi__charted *charted, const dvi__body *body, const double *p0, double *impulse);
 
 /* What the charted momentum there changes by with the end of x, added in the blocks of qq. */
 void dvi__reduced_derive(const dvi__charted *charted, const dvi__body *body, const dvi__coupling *at, const double *p0,
