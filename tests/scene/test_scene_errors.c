@@ -196,6 +196,32 @@ START_TEST(a_file_that_is_not_there_is_told)
 }
 END_TEST
 
+/* Counts what is written, and refuses it once `left` is 0. */
+typedef struct paper {
+  long written, left;
+} paper;
+
+static int take(const char *text, size_t size, void *user)
+{
+  paper *own = user;
+  (void)text;
+  own->written += (long)size;
+  return own->left-- == 0;
+}
+
+START_TEST(c_is_written_under_a_name_and_to_its_end)
+{
+  paper whole = {0, -1}, cut = {0, 3};
+  ck_assert_int_eq(parse(X "lagrangian: x'^2 - x^4\n" RUN, 0, NULL), DVI_OK);
+  ck_assert_int_eq(dvi_scene_emit_c(scene, "no name", take, &whole), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_scene_emit_c(scene, "", take, &whole), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(whole.written, 0);
+  ck_assert_int_eq(dvi_scene_emit_c(scene, "quartic", take, &cut), DVI_IO_ERROR);
+  ck_assert_int_eq(dvi_scene_emit_c(scene, "quartic", take, &whole), DVI_OK);
+  ck_assert_int_gt(whole.written, cut.written);
+}
+END_TEST
+
 int main(void)
 {
   TCase *tests = tcase_create("scene errors");
@@ -211,5 +237,6 @@ int main(void)
   tcase_add_test(tests, limits_are_told);
   tcase_add_test(tests, what_is_not_finite_is_told_with_its_place);
   tcase_add_test(tests, a_file_that_is_not_there_is_told);
+  tcase_add_test(tests, c_is_written_under_a_name_and_to_its_end);
   return run_tests("scene errors", tests);
 }

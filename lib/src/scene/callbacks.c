@@ -36,6 +36,9 @@ static void blame(const dvi__term *term, int count, const double *const *x)
 static int verdict(const dvi__term *term, int count, const double *const *x, int returned)
 {
   if (returned > 0) blame(term, count, x);
+  if (returned < 0)
+    (void)snprintf(blame_text, sizeof blame_text, "%s: its derivatives are too long to be compiled, or memory ran out",
+                   term->scene->source.name);
   return returned;
 }
 

@@ -183,9 +183,7 @@ static bool try_definition(dvi_scene *scene, dvi__definition *d)
   const dvi__value value = dvi__elaborate(&c, d->is);
   d->shape = value.shape;
   d->says = dvi__says(scene, d->is);
-  const dvi_status made = c.graph->failed;
   dvi__context_free(&c);
-  if (made != DVI_OK) return dvi__complain(scene->complaint, made, d->span, "the definition is too long");
   return !dvi__failed(value);
 }
 

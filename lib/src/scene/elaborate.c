@@ -68,7 +68,7 @@ static bool add_body(dvi__context *c, const dvi__expression *e, int first, int s
   c->index[base].all = first;
   if (e->name2 != NULL) c->index[base + 1].all = second;
   const dvi__value next = dvi__elaborate(c, e->part[0]);
-  if (dvi__failed(next) || c->graph->failed != DVI_OK) return false;
+  if (dvi__failed(next)) return false;
   *total = dvi__failed(*total) ? next : dvi__value_add(c, DVI__OP_ADD, *total, next, e->span);
   return !dvi__failed(*total);
 }
@@ -183,9 +183,18 @@ static dvi__value element(dvi__context *c, const dvi__expression *e)
   }
 }
 
+/* Whether the graph took all nodes so far. */
+static bool has_room(const dvi__context *c, dvi__span span)
+{
+  if (c->graph->failed == DVI_OK) return true;
+  if (c->graph->failed == DVI_NO_MEMORY) return dvi__scene_no_memory(c->scene);
+  return dvi__complain(c->scene->complaint, DVI_BAD_SIZE, span,
+                       "more than 2000000 parts of expressions, with all sums written out");
+}
+
 dvi__value dvi__elaborate(dvi__context *c, const dvi__expression *e)
 {
-  if (c->graph->failed != DVI_OK || c->scene->complaint->status != DVI_OK) return DVI__NO_VALUE;
+  if (c->scene->complaint->status != DVI_OK) return DVI__NO_VALUE;
   if (++c->scene->work > work_max)
     return dvi__refused(dvi__complain(c->scene->complaint, DVI_BAD_SIZE, e->span,
                                       "more than %ld parts of expressions, with all sums written out", work_max));
@@ -194,7 +203,7 @@ dvi__value dvi__elaborate(dvi__context *c, const dvi__expression *e)
   c->graph->here = e->span;
   const dvi__value value = element(c, e);
   c->depth--;
-  return value;
+  return has_room(c, e->span) ? value : DVI__NO_VALUE;
 }
 
 bool dvi__elaborate_number(dvi__context *c, const dvi__expression *e, dvi__node *node)
@@ -202,9 +211,6 @@ bool dvi__elaborate_number(dvi__context *c, const dvi__expression *e, dvi__node 
   char shape[48];
   const dvi__value value = dvi__elaborate(c, e);
   *node = value.one;
-  if (c->graph->failed == DVI_NO_MEMORY) return dvi__scene_no_memory(c->scene);
-  if (c->graph->failed != DVI_OK)
-    return dvi__complain(c->scene->complaint, DVI_BAD_SIZE, e->span, "more than 2000000 parts, with all sums written out");
   if (dvi__failed(value)) return false;
   return value.shape.rank == 0 ||
          dvi__refuse(c, e->span, "%s where a number is needed", dvi__shape_text(value.shape, shape, sizeof shape));
@@ -215,7 +221,6 @@ bool dvi__constants_of(dvi__context *c, const dvi__expression *e, dvi__value val
   for (int i = 0; i < dvi__value_size(value); i++) {
     const dvi__node node = dvi__value_at(value, i);
     dvi__node bad = -1;
-    if (c->graph->failed != DVI_OK) return dvi__scene_no_memory(c->scene);
     if (dvi__is_constant(c->graph, node, &number[i]) && isfinite(number[i])) continue;
     if (dvi__evaluate(c->graph, NULL, 1, &node, &number[i], &bad) != DVI_OK) return dvi__scene_no_memory(c->scene);
     if (bad >= 0) return dvi__refuse(c, c->graph->node[bad].span, "this is not a finite number");

@@ -16,7 +16,7 @@ const int *dvi__strides(dvi__arena *arena, int elements, const int *list)
   const int units = (elements + DVI__UNIT - 1) / DVI__UNIT;
   int *stride_of = dvi__arena_take(arena, (size_t)units, sizeof *stride_of);
   for (int u = 0; stride_of != NULL && u < units; u++) {
-    const int left = elements - u * DVI__UNIT, count = left < DVI__UNIT ? left : DVI__UNIT;
+    const int count = dvi__unit_size(elements, u * DVI__UNIT);
     const int *number = list + (ptrdiff_t)u * DVI__UNIT;
     stride_of[u] = count > 1 ? number[1] - number[0] : 0;
     for (int e = 2; e < count; e++)

@@ -164,9 +164,10 @@ static int is_wanted(const dvi__kernel *kernel, const int *input, unsigned pairs
 static dvi_status derive_column(const dvi__kernel *kernel, dvi__derivatives *own, unsigned pairs, int first, int last)
 {
   const size_t most = (size_t)(last - first);
-  dvi__node *of = calloc(2 * most, sizeof *of), *tangent = of + most;
+  dvi__node *of = calloc(2 * most, sizeof *of);
   int count = 0;
   if (of == NULL) return DVI_NO_MEMORY;
+  dvi__node *tangent = of + most;
   for (int e = first; e < last; e++)
     if (own->second[e] < 0 && is_wanted(kernel, own->pair[e], pairs)) of[count++] = own->gradient[own->pair[e][0]];
   if (count > 0) dvi__tangents(kernel->graph, own->pair[first][1], count, of, tangent);

@@ -95,10 +95,10 @@ static const double *column_of(const maker *m, dvi__node n)
 }
 
 /* Run a program of data inputs (nodes `data`) for all elements, a few at a time; its outputs go to columns. */
-static dvi_status run_columns(const maker *m, const dvi__program *program, const dvi__node *data, double *const *column)
+static dvi_status run_columns(const maker *m, const dvi__program *program, const dvi__node *data, int count, double *const *column)
 {
   const int width = DVI__LANES, inputs = program->input_count;
-  double *rows = calloc((size_t)(program->row_count + inputs), (size_t)width * sizeof *rows);
+  double *rows = calloc((size_t)program->row_count + (size_t)inputs, (size_t)width * sizeof *rows);
   const double **input = calloc((size_t)inputs + 1, sizeof *input);
   if (rows == NULL || input == NULL) {
     free(rows);
@@ -107,15 +107,15 @@ static dvi_status run_columns(const maker *m, const dvi__program *program, const
   }
   for (int i = 0; i < inputs; i++) input[i] = rows + (ptrdiff_t)i * width;
   double *registers = rows + (ptrdiff_t)inputs * width;
-  const double *outputs = registers + (ptrdiff_t)(program->row_count - program->output_count) * width;
+  const double *outputs = registers + (ptrdiff_t)(program->row_count - count) * width;
   for (int first = 0; first < m->kernel->elements; first += width) {
-    const int left = m->kernel->elements - first, lanes = left < width ? left : width;
+    const int left = m->kernel->elements - first;
     for (int i = 0; i < inputs; i++)
       for (int k = 0; k < width; k++)
-        rows[i * width + k] = m->kernel->input[node_of(m, data[i])->a].data[first + (k < lanes ? k : lanes - 1)];
-    dvi__program_run(program, lanes, input, registers);
-    for (int c = 0; c < program->output_count; c++)
-      memcpy(column[c] + first, outputs + (ptrdiff_t)c * width, (size_t)lanes * sizeof **column);
+        rows[i * width + k] = m->kernel->input[node_of(m, data[i])->a].data[k < left ? first + k : m->kernel->elements - 1];
+    dvi__program_run(program, width, input, registers);
+    for (int c = 0; c < count; c++)
+      memcpy(column[c] + first, outputs + (ptrdiff_t)c * width, (size_t)(left < width ? left : width) * sizeof **column);
   }
   free(rows);
   free((void *)input);
@@ -153,7 +153,7 @@ static dvi_status compute_columns(maker *m, int count, const dvi__node *node)
   if (status == DVI_OK) status = dvi__program_make(m->kernel->graph, data_nodes(m, data), data, count, node, &program);
   dvi__column *const before = m->derivatives->column;
   if (status == DVI_OK) status = keep_columns(m, count, node, value);
-  if (status == DVI_OK) status = run_columns(m, &program, data, value);
+  if (status == DVI_OK) status = run_columns(m, &program, data, count, value);
   if (status != DVI_OK) m->derivatives->column = before;
   dvi__program_free(&program);
   free((void *)value);
@@ -225,7 +225,7 @@ static dvi__node without_sign(const maker *m, dvi__node root, int *negative)
 /* Point targets at outputs; equal roots share one. Leaves the different ones, signs left out, in `root`. */
 static dvi_status find_outputs(const maker *m, dvi__node *root, int *output_count)
 {
-  int *output = calloc((size_t)m->count, sizeof *output); /* of a node, plus 1 */
+  int *output = calloc((size_t)m->count + 1, sizeof *output); /* of a node, plus 1 */
   *output_count = 0;
   if (output == NULL) return DVI_NO_MEMORY;
   for (int k = 0; k < m->part->target_count; k++) {
@@ -282,13 +282,15 @@ dvi_status dvi__sum_extend(dvi__function *function, dvi__sum *sum, int k, int ro
   maker m = {.function = function, .kernel = kernel, .derivatives = &function->derivatives[k], .part = part};
   for (int i = 0; i < root_count; i++)
     if (root[i] >= m.count) m.count = root[i] + 1;
-  m.mark = calloc((size_t)m.count, sizeof *m.mark);
-  m.given = calloc((size_t)m.count, sizeof *m.given);
+  m.mark = calloc((size_t)m.count + 1, sizeof *m.mark);
+  m.given = calloc((size_t)m.count + 1, sizeof *m.given);
   dvi_status status = m.mark != NULL && m.given != NULL ? DVI_OK : DVI_NO_MEMORY;
   int output_count = 0;
   if (status == DVI_OK) status = find_outputs(&m, root, &output_count);
-  if (status == DVI_OK) find_groups(part);
-  if (status == DVI_OK) status = make(&m, output_count, root);
+  if (status == DVI_OK) {
+    find_groups(part);
+    status = make(&m, output_count, root);
+  }
   free(m.mark);
   free(m.given);
   return status;

@@ -91,6 +91,12 @@ struct dvi__function {
   atomic_long value_points, gradient_points, second_points;
 };
 
+/* Elements of the unit that starts at `first`. */
+static inline int dvi__unit_size(int elements, int first)
+{
+  return elements - first < DVI__UNIT ? elements - first : DVI__UNIT;
+}
+
 /* A unit's places: start + stride*i for i = 0, 1, .., or start + list[i]. */
 typedef struct dvi__track {
   const int *list;

@@ -73,7 +73,7 @@ DVI__SCENE_INLINE const double *standing(const dvi__places *places, const tile *
 DVI__SCENE_INLINE void gather_variable(const dvi__places *places, const tile *at, const double *x, double *row)
 {
   for (int e = 0; e < at->elements; e += DVI__UNIT) {
-    const int left = at->elements - e, elements = left < DVI__UNIT ? left : DVI__UNIT;
+    const int elements = dvi__unit_size(at->elements, e);
     gather_unit(dvi__track_of(places, at->first + e), elements, at->points, at->count, x, row + (ptrdiff_t)e * at->points);
   }
 }
@@ -172,7 +172,7 @@ DVI__SCENE_INLINE void fold(int elements, int points, const double *restrict row
     double *restrict lower = sum;
     others = (left - half) * points;
     DVI__SCENE_INDEPENDENT
-    for (int k = 0; k < others; k++) lower[k] += upper[k];
+    for (int k = 0; k < others; k++) lower[k] += upper[k]; /* NOLINT(clang-analyzer-core.uninitialized.Assign): filled above */
   }
 }
 
@@ -243,7 +243,7 @@ DVI__SCENE_LANES static void scatter(const dvi__part *part, const tile *at, cons
 {
   const int width = dvi__row_width(at->elements * at->points);
   for (int e = 0; e < at->elements; e += DVI__UNIT) {
-    const int elements = at->elements - e < DVI__UNIT ? at->elements - e : DVI__UNIT;
+    const int elements = dvi__unit_size(at->elements, e);
     for (int k = 0, added; k < part->target_count; k += added) {
       const dvi__target *target = &part->target[k];
       const double *row = outputs + (ptrdiff_t)target->output * width + (ptrdiff_t)e * at->points;
@@ -324,7 +324,7 @@ static int lanes_for(const dvi__part *part, int numbers)
 dvi_status dvi__part_plan(dvi__part *part)
 {
   const int all = part->kernel->elements, large = lanes_for(part, LARGE);
-  part->unit = all < DVI__UNIT ? all : DVI__UNIT;
+  part->unit = dvi__unit_size(all, 0);
   part->lanes = lanes_for(part, SMALL);
   part->large = part->lanes < part->unit;
   if (!part->large) return DVI_OK;

@@ -118,7 +118,7 @@ static void release_operands(compiler *c, dvi__node n)
   const dvi__graph_node *node = node_of(c, n);
   const int operands = operand_count(node->op);
   const dvi__node operand[2] = {node->a, node->b};
-  for (int i = 0; i < operands; i++)
+  for (int i = 0; i < 2 && i < operands; i++)
     if (c->joined[operand[i]]) {
       release(c, node_of(c, operand[i])->a);
       if (node_of(c, operand[i])->op == DVI__OP_MULTIPLY) release(c, node_of(c, operand[i])->b);
@@ -279,7 +279,7 @@ static int *filled(int count, int value)
 
 static dvi_status allocate(compiler *c, int root_count)
 {
-  c->uses = filled(c->count, 0);
+  c->uses = calloc((size_t)c->count + 1, sizeof *c->uses);
   c->row = filled(c->count, NOWHERE);
   c->mate = filled(c->count, -1);
   c->first_root = filled(c->count, -1);
@@ -316,7 +316,7 @@ static dvi_status compile(compiler *c, int input_count, const dvi__node *input, 
   }
   const size_t needed = (size_t)count_uses(c, root_count, root);
   if (c->failed != DVI_OK) return c->failed;
-  c->program->instruction = malloc((needed + (size_t)root_count + 1) * sizeof *c->program->instruction);
+  c->program->instruction = calloc(needed + (size_t)root_count + 1, sizeof *c->program->instruction);
   if (c->program->instruction == NULL) return DVI_NO_MEMORY;
   combine(c, c->free_register); /* no register is free yet */
   emit_all(c);

@@ -101,38 +101,64 @@ static void sines_and_cosines(int lanes, int width, const double *restrict angle
   fill_up(lanes, width, cosine);
 }
 
-/* One case of the switches below: all lanes, in whole blocks, or those in use. */
-#define BLOCKS(code, expression)                                                                    \
-  case code:                                                                                        \
-    for (int first = 0; first < width; first += DVI__LANES)                                         \
-      DVI__SCENE_INDEPENDENT for (int k = first; k < first + DVI__LANES; k++) to[k] = (expression); \
-    break;
-#define CALLS(code, expression)                           \
+/* Operations that are loops over whole blocks: X(name, code, result of lane k). */
+#define LOOPS(X)                                                \
+  X(copy, DVI__CODE_COPY, a[k])                                 \
+  X(fill, DVI__CODE_FILL, value)                                \
+  X(add_value, DVI__CODE_ADD_VALUE, a[k] + value)               \
+  X(subtract_from, DVI__CODE_SUBTRACT_FROM, value - a[k])       \
+  X(multiply_by, DVI__CODE_MULTIPLY_BY, a[k] * value)           \
+  X(divide_by, DVI__CODE_DIVIDE_BY, a[k] / value)               \
+  X(divide_into, DVI__CODE_DIVIDE_INTO, value / a[k])           \
+  X(multiply_add, DVI__CODE_MULTIPLY_ADD, a[k] * b[k] + c[k])   \
+  X(multiply_less, DVI__CODE_MULTIPLY_LESS, a[k] * b[k] - c[k]) \
+  X(less_product, DVI__CODE_LESS_PRODUCT, c[k] - a[k] * b[k])   \
+  X(add, DVI__OP_ADD, a[k] + b[k])                              \
+  X(subtract, DVI__OP_SUBTRACT, a[k] - b[k])                    \
+  X(multiply, DVI__OP_MULTIPLY, a[k] * b[k])                    \
+  X(divide, DVI__OP_DIVIDE, a[k] / b[k])                        \
+  X(negate, DVI__OP_NEGATE, -a[k])                              \
+  X(square, DVI__OP_SQUARE, a[k] * a[k])                        \
+  X(root, DVI__OP_SQRT, sqrt(a[k]))                             \
+  X(magnitude, DVI__OP_ABS, fabs(a[k]))                         \
+  X(sign, DVI__OP_SIGN, a[k] > 0.0 ? 1.0 : a[k] < 0.0 ? -1.0 : a[k])
+
+#define LOOP(name, code, expression)                                                                              \
+  DVI__SCENE_INLINE void name##_rows(int width, double value, const double *restrict a, const double *restrict b, \
+                                     const double *restrict c, double *restrict to)                               \
+  {                                                                                                               \
+    (void)value, (void)a, (void)b, (void)c;                                                                       \
+    for (int first = 0; first < width; first += DVI__LANES)                                                       \
+      DVI__SCENE_INDEPENDENT for (int k = first; k < first + DVI__LANES; k++) to[k] = (expression);               \
+  }
+LOOPS(LOOP)
+#undef LOOP
+
+/* Operations that the C library does. */
+#define CALL(code, expression)                            \
   case code:                                              \
     for (int k = 0; k < lanes; k++) to[k] = (expression); \
     break;
-
-/* Operations that the C library does. */
 static void call_library(int op, int lanes, int width, const double *restrict a, const double *restrict b, double *restrict to)
 {
   switch (op) {
-    CALLS(DVI__OP_EXP, exp(a[k]))
-    CALLS(DVI__OP_LOG, log(a[k]))
-    CALLS(DVI__OP_SIN, sin(a[k]))
-    CALLS(DVI__OP_COS, cos(a[k]))
-    CALLS(DVI__OP_TAN, tan(a[k]))
-    CALLS(DVI__OP_ASIN, asin(a[k]))
-    CALLS(DVI__OP_ACOS, acos(a[k]))
-    CALLS(DVI__OP_ATAN, atan(a[k]))
-    CALLS(DVI__OP_SINH, sinh(a[k]))
-    CALLS(DVI__OP_COSH, cosh(a[k]))
-    CALLS(DVI__OP_TANH, tanh(a[k]))
-    CALLS(DVI__OP_ASINH, asinh(a[k]))
-    CALLS(DVI__OP_ACOSH, acosh(a[k]))
-    CALLS(DVI__OP_ATANH, atanh(a[k]))
-    CALLS(DVI__OP_RAISE, pow(a[k], b[k]))
-    CALLS(DVI__OP_ATAN2, atan2(a[k], b[k]))
-    CALLS(DVI__OP_HYPOT, hypot(a[k], b[k]))
+    CALL(DVI__OP_EXP, exp(a[k]))
+    CALL(DVI__OP_LOG, log(a[k]))
+    CALL(DVI__OP_SIN, sin(a[k]))
+    CALL(DVI__OP_COS, cos(a[k]))
+    CALL(DVI__OP_TAN, tan(a[k]))
+    CALL(DVI__OP_ASIN, asin(a[k]))
+    CALL(DVI__OP_ACOS, acos(a[k]))
+    CALL(DVI__OP_ATAN, atan(a[k]))
+    CALL(DVI__OP_SINH, sinh(a[k]))
+    CALL(DVI__OP_COSH, cosh(a[k]))
+    CALL(DVI__OP_TANH, tanh(a[k]))
+    CALL(DVI__OP_ASINH, asinh(a[k]))
+    CALL(DVI__OP_ACOSH, acosh(a[k]))
+    CALL(DVI__OP_ATANH, atanh(a[k]))
+    CALL(DVI__OP_RAISE, pow(a[k], b[k]))
+    CALL(DVI__OP_ATAN2, atan2(a[k], b[k]))
+    CALL(DVI__OP_HYPOT, hypot(a[k], b[k]))
   default: break;
   }
   fill_up(lanes, width, to);
@@ -148,25 +174,10 @@ DVI__SCENE_LANES void dvi__program_run(const dvi__program *program, int lanes, c
     const double *restrict const a = ROW(at->a), *restrict const b = ROW(at->b), *restrict const c = ROW(at->c);
     const double value = at->value;
     switch (at->op) {
-      BLOCKS(DVI__CODE_COPY, a[k])
-      BLOCKS(DVI__CODE_FILL, value)
-      BLOCKS(DVI__CODE_ADD_VALUE, a[k] + value)
-      BLOCKS(DVI__CODE_SUBTRACT_FROM, value - a[k])
-      BLOCKS(DVI__CODE_MULTIPLY_BY, a[k] * value)
-      BLOCKS(DVI__CODE_DIVIDE_BY, a[k] / value)
-      BLOCKS(DVI__CODE_DIVIDE_INTO, value / a[k])
-      BLOCKS(DVI__CODE_MULTIPLY_ADD, a[k] * b[k] + c[k])
-      BLOCKS(DVI__CODE_MULTIPLY_LESS, a[k] * b[k] - c[k])
-      BLOCKS(DVI__CODE_LESS_PRODUCT, c[k] - a[k] * b[k])
-      BLOCKS(DVI__OP_ADD, a[k] + b[k])
-      BLOCKS(DVI__OP_SUBTRACT, a[k] - b[k])
-      BLOCKS(DVI__OP_MULTIPLY, a[k] * b[k])
-      BLOCKS(DVI__OP_DIVIDE, a[k] / b[k])
-      BLOCKS(DVI__OP_NEGATE, -a[k])
-      BLOCKS(DVI__OP_SQUARE, a[k] * a[k])
-      BLOCKS(DVI__OP_SQRT, sqrt(a[k]))
-      BLOCKS(DVI__OP_ABS, fabs(a[k]))
-      BLOCKS(DVI__OP_SIGN, a[k] > 0.0 ? 1.0 : a[k] < 0.0 ? -1.0 : a[k])
+#define CASE(name, code, expression) \
+  case code: name##_rows(width, value, a, b, c, to); break;
+      LOOPS(CASE)
+#undef CASE
     case DVI__CODE_WHOLE_POWER: whole_powers(width, value, a, to); break;
     case DVI__CODE_ROOT_POWER: root_powers(width, value, a, to); break;
     case DVI__CODE_INVERSE_ROOT_POWER: inverse_root_powers(width, value, a, to); break;

@@ -111,7 +111,7 @@ dvi__value dvi__rate_value(dvi__context *c, const dvi__expression *e)
     return dvi__refused(dvi__refuse(c, e->span, "the rate of a rate: there are no accelerations here"));
   if (!dvi__may_stand(c, DVI__SAYS_V, e->span)) return DVI__NO_VALUE;
   const dvi__value value = dvi__elaborate(c, e->part[0]);
-  if (dvi__failed(value) || c->graph->failed != DVI_OK) return DVI__NO_VALUE;
+  if (dvi__failed(value)) return DVI__NO_VALUE;
   if ((c->may & DVI__SAYS_P) == 0 && siblings(c, value, DVI__VELOCITIES, &result)) return result;
   return chain_rule(c, value, e->span);
 }
@@ -122,7 +122,7 @@ dvi__value dvi__momentum_value(dvi__context *c, const dvi__expression *e)
   if (!dvi__may_stand(c, DVI__SAYS_P, e->span)) return DVI__NO_VALUE;
   if (e->count != 1) return dvi__refused(dvi__refuse(c, e->span, "p takes 1 argument, not %d", e->count));
   const dvi__value value = dvi__elaborate(c, e->part[0]);
-  if (dvi__failed(value) || c->graph->failed != DVI_OK) return DVI__NO_VALUE;
+  if (dvi__failed(value)) return DVI__NO_VALUE;
   if (siblings(c, value, DVI__VELOCITIES, &result)) return result;
   return dvi__refused(dvi__refuse(c, e->part[0]->span, "p is taken of a coordinate"));
 }

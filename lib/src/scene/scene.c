@@ -89,7 +89,7 @@ static dvi_status fill(dvi_scene *scene, const char *name, const char *text, siz
   const dvi_status status = complaint->status;
   complaint->source = NULL;
   scene->complaint = NULL;
-  return read ? DVI_OK : status != DVI_OK ? status : DVI_BAD_FILE;
+  return read ? DVI_OK : status != DVI_OK ? status : DVI_NO_MEMORY;
 }
 
 static dvi_status tell(char *message, size_t size, dvi_status status, const char *name)

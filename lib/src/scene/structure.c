@@ -72,8 +72,7 @@ static bool mass_values(dvi_scene *scene, dvi__term *T, dvi_pattern *pattern, do
   if (*values == NULL) return dvi__scene_no_memory(scene);
   const double *x[DVI__BLOCKS] = {scene->zeros, scene->zeros, scene->zeros, scene->zeros};
   double *second[DVI__PAIRS] = {[DVI__PAIR_VV] = *values};
-  return dvi__function_second(T->function, 1, x, second) == 0 ||
-         dvi__scene_refuse(scene, DVI__NOWHERE, "the mass is not finite, or it could not be derived");
+  return dvi__function_second(T->function, 1, x, second) == 0 || dvi__scene_refuse(scene, DVI__NOWHERE, "the mass is not finite");
 }
 
 static int row_of(const dvi_pattern *pattern, int n, int entry)
@@ -131,6 +130,13 @@ static bool set_mass(dvi_scene *scene, const dvi_pattern *pattern, const double 
   return true;
 }
 
+/* Derive what the mass is read from. */
+static bool derive_mass(dvi_scene *scene, dvi__term *T)
+{
+  const dvi_status status = dvi__function_prepare(T->function, 0, 1U << DVI__VELOCITIES, 1U << DVI__PAIR_VV);
+  return status == DVI_OK || dvi__complain(scene->complaint, status, DVI__NOWHERE, "the mass could not be derived");
+}
+
 /* Whether no velocity stands alone: the momenta at rest are zero. */
 static bool rests(dvi_scene *scene, dvi__term *T, int *at_rest)
 {
@@ -163,7 +169,7 @@ static bool make_separable(dvi_scene *scene, dvi__kernels *L, const char *rest)
   double *values;
   int at_rest = 0;
   bool good = dvi__kernels_moving(scene, L, DVI__VELOCITIES, DVI__VELOCITIES, &moving) &&
-              dvi__kernels_function(scene, &moving, 0, &T) && rests(scene, T, &at_rest);
+              dvi__kernels_function(scene, &moving, 0, &T) && derive_mass(scene, T) && rests(scene, T, &at_rest);
   dvi__kernels_free(&moving);
   if (T != NULL) T->role = DVI__STANDS_BESIDE;
   if (good && !at_rest) return make_general(scene, L);
