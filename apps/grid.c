@@ -159,31 +159,20 @@ static int take_range(const dvi_scene_range *range, grid_axis *axis)
   return DONE;
 }
 
-/* Put an axis at place i, and those from there on behind it. */
-static int insert_axis(grid *all, int i, const grid_axis *axis)
-{
-  if (all->axes == WORDS_MAX) return usage_error("sweep: more than %d parameters", (int)WORDS_MAX);
-  memmove(&all->axis[i + 1], &all->axis[i], (size_t)(all->axes - i) * sizeof *axis);
-  all->axis[i] = *axis;
-  all->axes++;
-  return DONE;
-}
-
-/* The scene's range i becomes axis i; one of the options is moved there. */
+/* The scene's range becomes axis i, or that of the options with its name does. */
 static int place_range(const dvi_scene_range *range, int i, grid *all)
 {
-  grid_axis axis = {.count = 0};
-  const int given = find_axis(all, range->name);
-  if (given >= 0) {
-    axis = all->axis[given];
-    memmove(&all->axis[i + 1], &all->axis[i], (size_t)(given - i) * sizeof axis);
-    all->axis[i] = axis;
-    return DONE;
+  int at = find_axis(all, range->name);
+  if (at < 0) {
+    if (all->axes == WORDS_MAX) return usage_error("sweep: more than %d parameters", (int)WORDS_MAX);
+    const int code = take_range(range, &all->axis[all->axes]);
+    if (code != DONE) return code;
+    at = all->axes++;
   }
-  int code = take_range(range, &axis);
-  if (code == DONE) code = insert_axis(all, i, &axis);
-  if (code != DONE) free(axis.value);
-  return code;
+  const grid_axis placed = all->axis[at];
+  memmove(&all->axis[i + 1], &all->axis[i], (size_t)(at - i) * sizeof placed);
+  all->axis[i] = placed;
+  return DONE;
 }
 
 int grid_complete(const problem *scene, grid *all)
