@@ -96,5 +96,6 @@ int emit_c_command(int argc, char **argv)
     return usage_error("emit-c: --out is missing: where the C file goes, or - "
                        "for standard output");
   if (!scene_is_path(path)) return usage_error("emit-c: '%s' is no scene; the problems of the catalogue are C already", path);
-  return emit(&r, path);
+  code = scene_spared("emit-c", path, r.out);
+  return code == DONE ? emit(&r, path) : code;
 }

@@ -10,6 +10,7 @@
 
 #include "command.h"
 #include "entry.h"
+#include "file.h"
 
 /* A scene's error has its line and a caret below it. */
 enum { MESSAGE_SIZE = 2048 };
@@ -152,6 +153,12 @@ int scene_load(const char *path, scene_text *text)
   if (!good) complain("cannot read '%s': %s", path, strerror(errno));
   if (stream != NULL) (void)fclose(stream);
   return good ? DONE : FAILED;
+}
+
+int scene_spared(const char *command, const char *path, const char *out)
+{
+  if (!scene_is_path(path) || !file_same(path, out)) return DONE;
+  return usage_error("%s: --out %s would write over the scene", command, out);
 }
 
 static void tell_operations(const char *of, int operations, long points)

@@ -22,6 +22,9 @@ int scene_load(const char *path, scene_text *text);
 /** scene_open for such a text. */
 int scene_parse(const char *path, const scene_text *text, const words *settings, problem **scene);
 
+/** Refuse to write over the scene itself. Returns DONE, or complains and returns USAGE. */
+int scene_spared(const char *command, const char *path, const char *out);
+
 /** Print what was found in a problem's scene and what has been derived from it by now; nothing for a problem of the catalogue. */
 void scene_tell(const problem *scene);
 #endif

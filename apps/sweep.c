@@ -231,6 +231,7 @@ int sweep_command(int argc, char **argv)
   int code;
   if (!options_parse(&command, argc, argv, &task.operand, &code)) return code;
   code = check_request(&r);
+  if (code == DONE) code = scene_spared("sweep", task.operand, r.out);
   if (code != DONE) return code;
   signals_end(true, ended);
   return run_request(&r, &task);

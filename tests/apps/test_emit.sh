@@ -54,6 +54,7 @@ expect 2 'an unknown parameter' emit-c swinging-cart.yaml --set ll=1 --out kept.
 expect 2 'a problem of the catalogue' emit-c kepler --out kept.c
 expect 1 'no scene' emit-c none.yaml --out kept.c
 [ "$(cat kept.c)" = mine ] || fail 'the file was overwritten'
+expect 2 'over the scene' emit-c swinging-cart.yaml --out ./swinging-cart.yaml
 expect 2 'no file' emit-c swinging-cart.yaml
 no_trace 'emit-c'
 finish

@@ -65,25 +65,25 @@ says err 'N=3: with these values the problem has other coordinates' 'the reason'
 # Interrupted sweeps: rows that are there are taken, whatever became of the last one.
 long='sweep cart.yaml --set l=0.5 --set m=0.2 --set g=9:10:30 --t-end 400'
 expect 0 'all at once' $long --out whole.csv
-for signal in TERM KILL; do
+for signal in 15 9; do
   "$dvi" $long --threads 2 --out cut.csv 2>err &
   for _ in $(seq 200); do
     [ "$(cat cut.csv.part 2>/dev/null | wc -l)" -ge 4 ] && break
     sleep 0.02
   done
-  kill -s "$signal" $!
-  wait $! && fail "$signal ended no sweep"
-  [ -e cut.csv ] && fail "$signal: an unfinished sweep is not in place"
+  kill "-$signal" $!
+  ends $((128 + signal)) "signal $signal"
+  [ -e cut.csv ] && fail "signal $signal: an unfinished sweep is not in place"
   printf '17 0 00' >>cut.csv.part
-  expect 2 "$signal: another method" $long --method verlets --out cut.csv
-  expect 1 "$signal: another step" $long --h 0.01 --out cut.csv
+  expect 2 "signal $signal: another method" $long --method verlets --out cut.csv
+  expect 1 "signal $signal: another step" $long --h 0.01 --out cut.csv
   says err 'was begun with another scene or other settings' 'the reason'
   sed 's/theta: 1$/theta: 1.5/' cart.yaml >other.yaml
-  expect 1 "$signal: another scene" sweep other.yaml --set l=0.5 --set m=0.2 --set g=9:10:30 --t-end 400 --out cut.csv
-  expect 0 "$signal: the same" $long --threads 1 --out cut.csv
+  expect 1 "signal $signal: another scene" sweep other.yaml --set l=0.5 --set m=0.2 --set g=9:10:30 --t-end 400 --out cut.csv
+  expect 0 "signal $signal: the same" $long --threads 1 --out cut.csv
   says err 'points are in .cut.csv.part. already' 'it went on'
-  same cut.csv whole.csv "$signal: as if nothing had happened"
-  alone cut.csv "$signal: the end"
+  same cut.csv whole.csv "signal $signal: as if nothing had happened"
+  alone cut.csv "signal $signal: the end"
   rm cut.csv
 done
 
@@ -92,7 +92,20 @@ echo 'my notes' >notes.csv.part
 expect 1 'a foreign file' $cart --out notes.csv
 [ "$(cat notes.csv.part)" = 'my notes' ] || fail 'a foreign file was changed'
 
+# A full disk: what was found stays, and the sweep goes on when there is room.
+(
+  failures=0
+  ulimit -f 2
+  expect 1 'no room' $long --out full.csv
+  says err 'cannot write .full.csv.part.' 'the reason'
+  [ "$failures" -eq 0 ]
+) || fail 'no room'
+[ ! -e full.csv ] || fail 'an unfinished sweep is not in place'
+expect 0 'room again' $long --out full.csv
+same full.csv whole.csv 'after a full disk'
+
 # Command lines that make no sense.
+expect 2 'over the scene' $cart --out ./cart.yaml
 expect 2 'no file' $cart
 expect 2 'standard output' $cart --out -
 expect 2 'no method' sweep kepler --set e=0,0.1 --out no.csv
