@@ -19,6 +19,9 @@ int order_command(int argc, char **argv);
 int bench_command(int argc, char **argv);
 int path_command(int argc, char **argv);
 int check_command(int argc, char **argv);
+int init_command(int argc, char **argv);
+int sweep_command(int argc, char **argv);
+int emit_c_command(int argc, char **argv);
 
 /** Print "dvi: <sentence>" to standard error. */
 void complain(const char *format, ...) __attribute__((format(printf, 1, 2)));

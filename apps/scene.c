@@ -2,6 +2,7 @@
 #include "scene.h"
 
 #include <dvi/scene.h>
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,9 +10,13 @@
 
 #include "command.h"
 #include "entry.h"
+#include "file.h"
 
 /* A scene's error has its line and a caret below it. */
 enum { MESSAGE_SIZE = 2048 };
+
+/* Characters of a scene, as docs/scenes.md has it. */
+enum { TEXT_MAX = 1 << 20 };
 
 /* Steps of an order study that begins where the scene's own step is. */
 enum { STUDY_STEPS = 200 };
@@ -103,12 +108,10 @@ static problem *problem_of(dvi_scene *scene, const char *path)
   return made;
 }
 
-int scene_open(const char *path, const words *settings, problem **scene)
+/* What came of reading a scene. */
+static int read_as(const char *path, dvi_status status, const char *message, dvi_scene *read, problem **scene)
 {
-  char message[MESSAGE_SIZE] = "";
-  dvi_scene *read = NULL;
   *scene = NULL;
-  const dvi_status status = dvi_scene_read(path, settings->count, settings->word, &read, message, sizeof message);
   if (status != DVI_OK) {
     complain("%s", message);
     return status == DVI_NO_MEMORY || status == DVI_IO_ERROR ? FAILED : USAGE;
@@ -116,6 +119,46 @@ int scene_open(const char *path, const words *settings, problem **scene)
   *scene = problem_of(read, path);
   if (*scene == NULL) complain("out of memory");
   return *scene != NULL ? DONE : FAILED;
+}
+
+int scene_open(const char *path, const words *settings, problem **scene)
+{
+  char message[MESSAGE_SIZE] = "";
+  dvi_scene *read = NULL;
+  const dvi_status status = dvi_scene_read(path, settings->count, settings->word, &read, message, sizeof message);
+  return read_as(path, status, message, read, scene);
+}
+
+int scene_parse(const char *path, const scene_text *text, const words *settings, problem **scene)
+{
+  char message[MESSAGE_SIZE] = "";
+  dvi_scene *read = NULL;
+  const dvi_status status = dvi_scene_parse(path, text->text, text->length, settings->count, settings->word, &read, message,
+                                            sizeof message);
+  return read_as(path, status, message, read, scene);
+}
+
+/* One character more than a scene may have: dvi_scene_parse tells of that. */
+int scene_load(const char *path, scene_text *text)
+{
+  *text = (scene_text){.text = malloc(TEXT_MAX + 1)};
+  if (text->text == NULL) {
+    complain("out of memory");
+    return FAILED;
+  }
+  errno = 0;
+  FILE *stream = fopen(path, "r");
+  if (stream != NULL) text->length = fread(text->text, 1, TEXT_MAX + 1, stream);
+  const bool good = stream != NULL && !ferror(stream);
+  if (!good) complain("cannot read '%s': %s", path, strerror(errno));
+  if (stream != NULL) (void)fclose(stream);
+  return good ? DONE : FAILED;
+}
+
+int scene_spared(const char *command, const char *path, const char *out)
+{
+  if (!scene_is_path(path) || !file_same(path, out)) return DONE;
+  return usage_error("%s: --out %s would write over the scene", command, out);
 }
 
 static void tell_operations(const char *of, int operations, long points)

@@ -10,6 +10,21 @@ bool scene_is_path(const char *name);
 /** Read a scene as a problem, with its "name=value" settings. Returns DONE, or complains and returns the exit code. */
 int scene_open(const char *path, const words *settings, problem **scene);
 
+/** The text of a scene's file, to be read many times with different settings. */
+typedef struct scene_text {
+  char *text; /**< [length] to be freed, also after a failure */
+  size_t length;
+} scene_text;
+
+/** Take the text from the file. Returns DONE, or complains and returns the exit code. */
+int scene_load(const char *path, scene_text *text);
+
+/** scene_open for such a text. */
+int scene_parse(const char *path, const scene_text *text, const words *settings, problem **scene);
+
+/** Refuse to write over the scene itself. Returns DONE, or complains and returns USAGE. */
+int scene_spared(const char *command, const char *path, const char *out);
+
 /** Print what was found in a problem's scene and what has been derived from it by now; nothing for a problem of the catalogue. */
 void scene_tell(const problem *scene);
 #endif
