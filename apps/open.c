@@ -93,7 +93,7 @@ int open_problem(const char *name, const words *settings, problem **scene)
 int open_shaped(const char *name, const words *settings, bool one_point, problem **scene)
 {
   const int code = open_problem(name, settings, scene);
-  if (code != DONE || !one_point) return code;
+  if (code != DONE || !one_point || *scene == NULL) return code;
   if ((*scene)->scene != NULL) {
     problem_destroy(scene);
     return usage_error("--one-point: %s is a scene, and those evaluate batches", name);

@@ -16,7 +16,7 @@ static int entry_of(const dvi__entries *entries, int e)
   return dvi__place_at(&entries->minor, e) + (entries->scale != 0 ? entries->scale * dvi__place_at(&entries->major, e) : 0);
 }
 
-static void append(dvi__contributions *all, const dvi__part *part, const dvi__target *target, const dvi__entries *entries)
+static void append(dvi__contributions *all, const dvi__part *part, const dvi__destination *target, const dvi__entries *entries)
 {
   const int output = all->output_count + target->output;
   for (int e = 0; e < part->kernel->elements; e++, all->count++)

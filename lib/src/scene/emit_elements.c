@@ -33,7 +33,7 @@ static int is_short(const dvi__part *part)
   const int elements = part->kernel->elements;
   int few = elements <= DVI__UNIT && elements * part->target_count <= TERMS_MAX;
   for (int k = 0; k < part->target_count && elements > 1; k++) {
-    const dvi__target *target = &part->target[k];
+    const dvi__destination *target = &part->target[k];
     few = few && !is_one_entry(&target->entry, 0) && !(target->mirrored && is_one_entry(&target->mirror, 0));
   }
   return few;
@@ -116,7 +116,8 @@ static void emit_inputs(dvi__emitter *out, const dvi__part *part, const int *nam
 }
 
 /* Add the row of a target to its entries, or subtract it. */
-static dvi_status emit_addition(dvi__emitter *out, const dvi__part *part, const dvi__target *target, const dvi__entries *entries)
+static dvi_status emit_addition(dvi__emitter *out, const dvi__part *part, const dvi__destination *target,
+                                const dvi__entries *entries)
 {
   const int elements = part->kernel->elements;
   int list = 0;
@@ -143,7 +144,7 @@ static dvi_status emit_additions(dvi__emitter *out, const dvi__part *part)
 {
   dvi_status status = DVI_OK;
   for (int k = 0; k < part->target_count && status == DVI_OK; k++) {
-    const dvi__target *target = &part->target[k];
+    const dvi__destination *target = &part->target[k];
     status = emit_addition(out, part, target, &target->entry);
     if (status == DVI_OK && target->mirrored) status = emit_addition(out, part, target, &target->mirror);
   }
@@ -221,7 +222,7 @@ static int is_flat(const dvi__part *part)
   int flat = part->column_count == 0 && !is_short(part);
   for (int i = 0; i < part->variable_count; i++) flat &= is_row(&part->variable[i]);
   for (int k = 0; k < part->target_count; k++) {
-    const dvi__target *target = &part->target[k];
+    const dvi__destination *target = &part->target[k];
     flat &= target->entry.scale == 0 && is_row(&target->entry.minor);
     flat &= !target->mirrored || (target->mirror.scale == 0 && is_row(&target->mirror.minor));
   }

@@ -36,7 +36,7 @@ static int is_zero(const dvi__graph *graph, dvi__node n)
 typedef struct roots {
   int count;
   dvi__node *node;
-  dvi__target *target;
+  dvi__destination *target;
 } roots;
 
 /* Room for so many; the nodes are to be freed. */
@@ -126,7 +126,7 @@ static dvi_status gradient_roots(dvi__function *function, int k, unsigned blocks
   for (int i = 0; i < kernel->input_count && status == DVI_OK; i++) {
     const dvi__kernel_input *input = &kernel->input[i];
     if (input->is_data || (blocks >> input->block & 1U) == 0 || is_zero(kernel->graph, known->gradient[i])) continue;
-    own->target[own->count] = (dvi__target){.array = (int)input->block, .entry = {.minor = known->place[i]}};
+    own->target[own->count] = (dvi__destination){.array = (int)input->block, .entry = {.minor = known->place[i]}};
     own->node[own->count++] = known->gradient[i];
   }
   return status;
@@ -209,12 +209,12 @@ static dvi_status map_entries(dvi__function *function, const dvi_pattern *patter
 }
 
 /* Where a pair's derivative by inputs `row` and `column` of kernel k is added. */
-static dvi_status find_target(dvi__function *function, int k, dvi__pair pair, int row, int column, dvi__target *target)
+static dvi_status find_target(dvi__function *function, int k, dvi__pair pair, int row, int column, dvi__destination *target)
 {
   const dvi__places *place = function->derivatives[k].place;
   const dvi__pair_pattern *known = &function->pattern[pair];
   const int elements = function->kernel[k].elements, mirrored = row != column && pair_blocks[pair][0] == pair_blocks[pair][1];
-  *target = (dvi__target){.array = (int)pair, .mirrored = mirrored};
+  *target = (dvi__destination){.array = (int)pair, .mirrored = mirrored};
   if (known->full) {
     const int rows = function->block_size[pair_blocks[pair][0]];
     target->entry = (dvi__entries){place[row], place[column], rows};

@@ -229,7 +229,7 @@ static dvi_status find_outputs(const maker *m, dvi__node *root, int *output_coun
   *output_count = 0;
   if (output == NULL) return DVI_NO_MEMORY;
   for (int k = 0; k < m->part->target_count; k++) {
-    dvi__target *target = &m->part->target[k];
+    dvi__destination *target = &m->part->target[k];
     const dvi__node node = without_sign(m, root[k], &target->negative);
     if (output[node] == 0) {
       root[*output_count] = node;
@@ -242,7 +242,7 @@ static dvi_status find_outputs(const maker *m, dvi__node *root, int *output_coun
 }
 
 /* Whether the target after this one is always added beside it. */
-static int is_beside(const dvi__target *target)
+static int is_beside(const dvi__destination *target)
 {
   const dvi__places *own = &target[0].entry.minor, *next = &target[1].entry.minor;
   return target[0].entry.scale == 0 && target[1].entry.scale == 0 && target[0].array == target[1].array &&
@@ -272,7 +272,7 @@ static dvi__part *next_part(dvi__function *function, dvi__sum *sum)
   return &sum->part[sum->part_count++];
 }
 
-dvi_status dvi__sum_extend(dvi__function *function, dvi__sum *sum, int k, int root_count, dvi__node *root, dvi__target *target)
+dvi_status dvi__sum_extend(dvi__function *function, dvi__sum *sum, int k, int root_count, dvi__node *root, dvi__destination *target)
 {
   const dvi__kernel *kernel = &function->kernel[k];
   if (root_count == 0 || kernel->elements == 0) return DVI_OK;

@@ -30,23 +30,23 @@ typedef struct dvi__entries {
 } dvi__entries;
 
 /* Where an output is added, or subtracted: to entries of an array of the result, and, if it stands for both triangles, to their mirror images. */
-typedef struct dvi__target {
+typedef struct dvi__destination {
   int output, negative;
   int group; /* so many targets, from this one on, are added side by side: the coordinates of a point; 1, 2 or 3 */
   int array, mirrored;
   dvi__entries entry, mirror;
-} dvi__target;
+} dvi__destination;
 
 /* A kernel's share in a sum, or some of it. Its program reads a row for each of the variables (inputs of the kernel), then one for each column. */
 typedef struct dvi__part {
   const dvi__kernel *kernel;
   dvi__program program;
   int variable_count, column_count, target_count;
-  int unit, lanes, large; /* elements of a unit; most lanes of a tile; 1: not in the nearest cache */
-  dvi__block *block;      /* [variable_count] */
-  dvi__places *variable;  /* [variable_count] */
-  const double **column;  /* [column_count], [elements] each: what depends on no variable */
-  dvi__target *target;    /* [target_count] */
+  int unit, lanes, large;   /* elements of a unit; most lanes of a tile; 1: not in the nearest cache */
+  dvi__block *block;        /* [variable_count] */
+  dvi__places *variable;    /* [variable_count] */
+  const double **column;    /* [column_count], [elements] each: what depends on no variable */
+  dvi__destination *target; /* [target_count] */
 } dvi__part;
 
 /* A value, a gradient by some blocks, or second derivatives by some pairs. */
@@ -136,7 +136,8 @@ void dvi__sum_add(const dvi__sum *sum, int count, const double *const *x, double
 /* An empty sum; NULL: no memory. */
 dvi__sum *dvi__sum_new(dvi__function *function);
 /* Add a part of kernel k: root[i] goes to target[i], which are kept; roots that are equal, but for the sign, become one output. */
-dvi_status dvi__sum_extend(dvi__function *function, dvi__sum *sum, int k, int root_count, dvi__node *root, dvi__target *target);
+dvi_status dvi__sum_extend(dvi__function *function, dvi__sum *sum, int k, int root_count, dvi__node *root,
+                           dvi__destination *target);
 
 /* Find which second derivatives of kernel k there are; and the pattern of a pair. */
 dvi_status dvi__find_pairs(dvi__function *function, int k);

@@ -226,7 +226,7 @@ DVI__SCENE_INLINE void scatter_unit(const dvi__entries *entries, int first, int 
 }
 
 /* Add a full unit of a group of targets at one point, if they lie so. Returns how many targets that were. */
-DVI__SCENE_INLINE int scatter_points(const dvi__target *target, int first, ptrdiff_t pitch, const double *row, double *result)
+DVI__SCENE_INLINE int scatter_points(const dvi__destination *target, int first, ptrdiff_t pitch, const double *row, double *result)
 {
   const dvi__track track = dvi__track_of(&target->entry.minor, first);
   const int group = target->group;
@@ -245,7 +245,7 @@ DVI__SCENE_LANES static void scatter(const dvi__part *part, const tile *at, cons
   for (int e = 0; e < at->elements; e += DVI__UNIT) {
     const int elements = dvi__unit_size(at->elements, e);
     for (int k = 0, added; k < part->target_count; k += added) {
-      const dvi__target *target = &part->target[k];
+      const dvi__destination *target = &part->target[k];
       const double *row = outputs + (ptrdiff_t)target->output * width + (ptrdiff_t)e * at->points;
       double *to = result[target->array] + at->point;
       added = at->count == 1 && elements == DVI__UNIT ? scatter_points(target, at->first + e, width, row, to) : 0;

@@ -1,0 +1,9 @@
+/* The same for the library of scenes: dvi__complain and its like return false. */
+#include "scene/complaint.h"
+#include "scene/sections.h"
+
+#define dvi__complain(...) ((void)(dvi__complain)(__VA_ARGS__), false)
+#define dvi__refuse(...) ((void)(dvi__refuse)(__VA_ARGS__), false)
+#define dvi__scene_refuse(...) ((void)(dvi__scene_refuse)(__VA_ARGS__), false)
+#define dvi__scene_no_memory(...) ((void)(dvi__scene_no_memory)(__VA_ARGS__), false)
+#define dvi__names_unknown(...) ((void)(dvi__names_unknown)(__VA_ARGS__), false)
