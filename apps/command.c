@@ -1,5 +1,6 @@
 #include "command.h"
 
+#include <dvi/scene.h>
 #include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -33,10 +34,17 @@ int usage_error(const char *format, ...)
   return USAGE;
 }
 
+void blame_scene(void)
+{
+  const char *part = dvi_scene_blame();
+  if (part[0] != '\0') complain("%s", part);
+}
+
 int library_error(dvi_status status)
 {
   const char *sentence = status == DVI_NO_MEMORY ? "" : dvi_last_error(); /* the command's own shortage left none */
   complain("%s", sentence[0] != '\0' ? sentence : dvi_status_meaning(status));
+  if (status > DVI_OK || status == DVI_CALLBACK_FAILED || status == DVI_REFERENCE_FAILED) blame_scene();
   return status == DVI_BAD_OPTION || status == DVI_UNSUPPORTED ? USAGE : FAILED;
 }
 

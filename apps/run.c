@@ -105,6 +105,7 @@ static bool measure(recorder *r, dvi_integrator *integrator)
   if (status == DVI_OK && has_constraint(r->scene)) status = dvi_integrator_constraint(integrator, &r->constraint);
   if (status != DVI_OK) {
     complain("run: no row at t = %.17g: %s; try a smaller --h", r->t, dvi_last_error());
+    blame_scene();
     return false;
   }
   if (finite_numbers(dvi_system_invariant_count(r->scene->system), r->invariant)) return true;

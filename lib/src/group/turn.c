@@ -20,7 +20,7 @@ void dvi__turn_tangent(const double f[3], double w[3])
   for (int i = 0; i < 3; i++) w[i] = 0.5 * f[i] + more * (0.5 * f[i]);
 }
 
-FUSED dvi__turn dvi__turn_of(const double w[3])
+FUSED static dvi__turn turn_of(const double w[3])
 {
   dvi__twofold n = {1, 0};
   for (int i = 0; i < 3; i++) n = dvi__twofold_sum(n, dvi__exact_product(w[i], w[i]));
@@ -71,7 +71,7 @@ FUSED_INLINE void turn_row(const dvi__turn *turn, dvi__twofold x[3])
   }
 }
 
-FUSED void dvi__turn_rows(const dvi__turn *turn, int count, double *x, double *carry)
+FUSED static void turn_rows(const dvi__turn *turn, int count, double *x, double *carry)
 {
   for (int at = 0; at < count; at += 3) {
     double head[3] = {0}, low[3] = {0};
@@ -100,7 +100,7 @@ FUSED_INLINE double dot(const dvi__twofold a[3], const dvi__twofold b[3], double
 }
 
 /* y is a unit vector but for rounding: 1/|y|^2 is 1 less what |y|^2 is above it. */
-FUSED void dvi__turn_angular(const double *y, const double *y_carry, const double *p, const double *p_carry, dvi__twofold mu[3])
+FUSED static void angular(const double *y, const double *y_carry, const double *p, const double *p_carry, dvi__twofold mu[3])
 {
   dvi__twofold at[3], momentum[3];
   dvi__twofold_get(3, y, y_carry, at);
@@ -118,7 +118,7 @@ FUSED_INLINE void straighten(const dvi__twofold mu[3], double most, dvi__twofold
   for (int i = 0; i < 3; i++) y[i].tail -= along / square * mu[i].head;
 }
 
-FUSED void dvi__turn_momentum(const dvi__twofold mu[3], double most, double *y, double *y_carry, double *p, double *p_carry)
+FUSED static void momentum_of(const dvi__twofold mu[3], double most, double *y, double *y_carry, double *p, double *p_carry)
 {
   dvi__twofold at[3], momentum[3];
   dvi__twofold_get(3, y, y_carry, at);
@@ -126,4 +126,25 @@ FUSED void dvi__turn_momentum(const dvi__twofold mu[3], double most, double *y, 
   cross(mu, at, momentum);
   dvi__twofold_put(3, at, y, y_carry);
   dvi__twofold_put(3, momentum, p, p_carry);
+}
+
+/* clang does not export a function that is compiled more than once. */
+dvi__turn dvi__turn_of(const double w[3])
+{
+  return turn_of(w);
+}
+
+void dvi__turn_rows(const dvi__turn *turn, int count, double *x, double *carry)
+{
+  turn_rows(turn, count, x, carry);
+}
+
+void dvi__turn_angular(const double *y, const double *y_carry, const double *p, const double *p_carry, dvi__twofold mu[3])
+{
+  angular(y, y_carry, p, p_carry, mu);
+}
+
+void dvi__turn_momentum(const dvi__twofold mu[3], double most, double *y, double *y_carry, double *p, double *p_carry)
+{
+  momentum_of(mu, most, y, y_carry, p, p_carry);
 }

@@ -177,7 +177,7 @@ static dvi_status make_solver(dvi__stepper *self, element *own)
                                     .sweep_from = sweeps ? sweep_from_of : NULL,
                                     .sweep = sweeps ? sweep_of : NULL,
                                     .sweep_to = sweeps ? sweep_to_of : NULL,
-                                    .magnitudes = magnitudes_of,
+                                    .magnitudes = own->centred ? magnitudes_of : NULL,
                                     .freeze = freeze_of,
                                     .frozen = frozen_of};
   return dvi__solver_create(&equations, self->counters, &own->solver);
@@ -215,7 +215,10 @@ dvi_status dvi__element_centre(dvi__stepper *self, const dvi__centring *centring
   own->keeps_whole = is_ladder(own) || own->choice == DVI__SOLVER_SIMPLIFIED;
   dvi__decoupled_destroy(&own->decoupled);
   count_memory(self, own);
-  return dvi__action_centre(own->action, centring);
+  DVI_TRY(dvi__action_centre(own->action, centring));
+  /* Rows in a chart sum more than what is left of them; elsewhere an iteration that ended with their rounding would err in one direction. */
+  dvi__solver_destroy(&own->solver);
+  return make_solver(self, own);
 }
 
 dvi__action *dvi__element_action(const dvi__stepper *self)

@@ -1,5 +1,5 @@
 /* Functions full of fused multiply-adds, compiled also for processors that have them as an instruction: elsewhere each is a call. The bits are the same.
- * The processor chooses when the program starts; gcc's thread sanitizer cannot watch that yet. */
+ * For static functions. The processor chooses when the program starts; gcc's thread sanitizer cannot watch that yet. */
 #ifndef DVI_NUM_FUSED_H
 #define DVI_NUM_FUSED_H
 

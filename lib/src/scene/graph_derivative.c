@@ -25,6 +25,20 @@ static dvi__node inverse_root(dvi__graph *graph, dvi__node n)
   return dvi__power(graph, dvi__negate(graph, square_less_one(graph, n)), -0.5);
 }
 
+/* 1/n where n is positive, and no number where it is not: a function that ends at 0 shall not go on in its derivative. */
+static dvi__node inside(dvi__graph *graph, dvi__node n)
+{
+  return dvi__power(graph, dvi__power(graph, n, -0.5), 2);
+}
+
+/* ((n - 1)(n + 1))^(-1/2) for n > 1 alone. */
+static dvi__node inverse_roots(dvi__graph *graph, dvi__node n)
+{
+  const dvi__node one = dvi__constant(graph, 1);
+  return dvi__multiply(graph, dvi__power(graph, dvi__subtract(graph, n, one), -0.5),
+                       dvi__power(graph, dvi__add(graph, n, one), -0.5));
+}
+
 /* The derivative of node n, a function of one operand, by it. */
 static dvi__node slope(dvi__graph *graph, dvi__node n)
 {
@@ -36,7 +50,7 @@ static dvi__node slope(dvi__graph *graph, dvi__node n)
   case DVI__OP_SQRT: return dvi__scale(graph, 0.5, dvi__power(graph, a, -0.5));
   case DVI__OP_POWER: return dvi__scale(graph, node.value, dvi__power(graph, a, node.value - 1));
   case DVI__OP_EXP: return n;
-  case DVI__OP_LOG: return dvi__power(graph, a, -1);
+  case DVI__OP_LOG: return inside(graph, a);
   case DVI__OP_SIN: return dvi__apply(graph, DVI__OP_COS, a, 0);
   case DVI__OP_COS: return dvi__negate(graph, dvi__apply(graph, DVI__OP_SIN, a, 0));
   case DVI__OP_TAN: return one_and_square(graph, n);
@@ -47,8 +61,8 @@ static dvi__node slope(dvi__graph *graph, dvi__node n)
   case DVI__OP_COSH: return dvi__apply(graph, DVI__OP_SINH, a, 0);
   case DVI__OP_TANH: return dvi__power(graph, dvi__apply(graph, DVI__OP_COSH, a, 0), -2);
   case DVI__OP_ASINH: return dvi__power(graph, one_and_square(graph, a), -0.5);
-  case DVI__OP_ACOSH: return dvi__power(graph, square_less_one(graph, a), -0.5);
-  case DVI__OP_ATANH: return dvi__negate(graph, dvi__power(graph, square_less_one(graph, a), -1));
+  case DVI__OP_ACOSH: return inverse_roots(graph, a);
+  case DVI__OP_ATANH: return inside(graph, dvi__negate(graph, square_less_one(graph, a)));
   case DVI__OP_ABS: return dvi__apply(graph, DVI__OP_SIGN, a, 0);
   default: return dvi__constant(graph, 0); /* of SIGN */
   }

@@ -164,7 +164,7 @@ static void call_library(int op, int lanes, int width, const double *restrict a,
   fill_up(lanes, width, to);
 }
 
-DVI__SCENE_LANES void dvi__program_run(const dvi__program *program, int lanes, const double *const *input, double *registers)
+DVI__SCENE_LANES static void run(const dvi__program *program, int lanes, const double *const *input, double *registers)
 {
   const int width = dvi__row_width(lanes);
   const dvi__instruction *const end = program->instruction + program->instruction_count;
@@ -186,4 +186,10 @@ DVI__SCENE_LANES void dvi__program_run(const dvi__program *program, int lanes, c
     }
   }
 #undef ROW
+}
+
+/* clang does not export a function that is compiled more than once. */
+void dvi__program_run(const dvi__program *program, int lanes, const double *const *input, double *registers)
+{
+  run(program, lanes, input, registers);
 }
