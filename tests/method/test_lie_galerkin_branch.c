@@ -1,3 +1,4 @@
+/* labels: invariant */
 /* Long steps of thin bodies, whose equations have several solutions: the one that is found continues those of shorter steps, and is the motion's. Or the step is
  * refused. */
 #include <dvi/integrator.h>
