@@ -149,10 +149,11 @@ void dvi__chart_place(const dvi__chart *chart, const double *xi, double *y)
 
 dvi__turn dvi__chart_turn(const dvi__chart *chart, const double *xi)
 {
-  double w[3] = {0}, x[3];
+  double w[3] = {0};
   if (chart->kind == DVI__ROTATION) memcpy(w, xi, sizeof w);
   if (chart->kind == DVI__CIRCLE) w[2] = -*xi;
   if (chart->kind == DVI__SPHERE) {
+    double x[3];
     dvi__chart_lift(chart, xi, x);
     dvi__cross(x, chart->y0, w);
   }

@@ -20,8 +20,7 @@ enum { FROZEN_H, FROZEN_ITERATIONS, FROZEN_POINT };
 /* A kept factor may cost this many iterations more than a new one: about as much as making one. */
 enum { MORE_ITERATIONS = 2 };
 
-/* After an iteration failed, the next better one takes over: for one step, and for twice as many each time it fails again, up to this many. A close encounter
- * is over soon; a stiff system stays stiff. */
+/* After an iteration failed, the next better one takes over: for one step, and for twice as many each time it fails again, up to this many. */
 static const double longest_wait = 64;
 
 /* A guess is made from at most 2^5 shorter steps. */
@@ -39,8 +38,8 @@ typedef struct place {
 typedef struct element {
   dvi__action *action;
   dvi__decoupled *decoupled; /* simplified Newton's method takes the Jacobian apart; NULL: it does not */
-  int centred;               /* in charts at its start; there a path that is not near its guess is followed */
-  int keeps_whole;           /* it keeps the whole one */
+  int centred,
+      keeps_whole; /* in charts at its start, where a path that is not near its guess is followed; it keeps the whole Jacobian */
   dvi__solver *solver;
   int choice;     /* of the solver */
   double *Y;      /* the unknowns; the arrays below lie behind */
@@ -216,8 +215,7 @@ dvi_status dvi__element_centre(dvi__stepper *self, const dvi__centring *centring
   dvi__decoupled_destroy(&own->decoupled);
   count_memory(self, own);
   DVI_TRY(dvi__action_centre(own->action, centring));
-  /* Rows in a chart sum more than what is left of them; elsewhere an iteration that ended with their rounding would err in one direction. */
-  dvi__solver_destroy(&own->solver);
+  dvi__solver_destroy(&own->solver); /* to end with the rounding of rows: elsewhere that would err to one side */
   return make_solver(self, own);
 }
 
