@@ -1,4 +1,6 @@
 /* The same for the library of scenes: dvi__complain and its like return false. */
+/* As syntax.c says, before any header. */
+#define _POSIX_C_SOURCE 200809L
 #include "scene/complaint.h"
 #include "scene/sections.h"
 
