@@ -73,8 +73,7 @@ int emit_c_command(int argc, char **argv)
       {.name = NULL},
   };
   static const char *const details[] = {
-      "The file needs <dvi/dvi.h> and libdvi alone. Parameters are numbers in "
-      "it, as they are set here.\n",
+      "The file needs <dvi/dvi.h> and libdvi alone. Parameters are numbers in it, as they are set here.\n",
       "Examples:\n"
       "  dvi init cart.yaml\n"
       "  dvi emit-c cart.yaml --out cart.c\n",
@@ -84,17 +83,14 @@ int emit_c_command(int argc, char **argv)
       .name = "emit-c",
       .synopsis = "SCENE.yaml --out FILE.c [OPTIONS]",
       .operand = "SCENE",
-      .summary = "Write a C file that declares the same system by callbacks, "
-                 "with its start.\n",
+      .summary = "Write a C file that declares the same system by callbacks, with its start.\n",
       .options = options,
       .details = details,
   };
   const char *path;
   int code;
   if (!options_parse(&command, argc, argv, &path, &code)) return code;
-  if (r.out == NULL)
-    return usage_error("emit-c: --out is missing: where the C file goes, or - "
-                       "for standard output");
+  if (r.out == NULL) return usage_error("emit-c: --out is missing: where the C file goes, or - for standard output");
   if (!scene_is_path(path)) return usage_error("emit-c: '%s' is no scene; the problems of the catalogue are C already", path);
   code = scene_spared("emit-c", path, r.out);
   return code == DONE ? emit(&r, path) : code;

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "scene/syntax.h"
+#include "support/files.h"
 #include "support/scene_text.h"
 #include "support/suite.h"
 
@@ -141,18 +142,18 @@ END_TEST
 /* A locale with a decimal comma, made on the spot because none need be installed; false where there is no localedef. */
 static bool set_comma(void)
 {
-  char folder[] = "/tmp/dvi-locale-XXXXXX";
   char command[512];
-  ck_assert_ptr_nonnull(mkdtemp(folder));
+  make_folder();
   (void)snprintf(command, sizeof command,
                  "cd %s && printf 'LC_NUMERIC\ndecimal_point \",\"\nthousands_sep \".\"\ngrouping -1\nEND LC_NUMERIC\n' >source && "
                  "localedef -c -i ./source ./comma >made 2>&1",
-                 folder);
+                 in_folder(""));
   (void)!system(command);
-  ck_assert_int_eq(setenv("LOCPATH", folder, 1), 0);
+  ck_assert_int_eq(setenv("LOCPATH", in_folder(""), 1), 0);
   const bool set = setlocale(LC_NUMERIC, "comma") != NULL;
-  (void)snprintf(command, sizeof command, "rm -r %s", folder);
+  (void)snprintf(command, sizeof command, "rm -rf %s", in_folder("comma"));
   ck_assert_int_eq(system(command), 0);
+  remove_folder();
   return set;
 }
 

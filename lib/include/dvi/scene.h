@@ -79,25 +79,37 @@ dvi_status dvi_scene_parse(const char *name, const char *text, size_t length, in
 /** Free a scene, its system and all that was asked of it, and set the pointer to NULL; NULL is allowed. */
 void dvi_scene_destroy(dvi_scene **scene);
 
-/** The system, owned by the scene; and the terms that it was made of. */
+/** The system, owned by the scene; NULL for NULL. */
 const dvi_system *dvi_scene_system(const dvi_scene *scene);
+
+/** The terms that the system was made of, owned by the scene; NULL for NULL. */
 const dvi_system_terms *dvi_scene_terms(const dvi_scene *scene);
 
 /** The start at t = 0: q [nq], v [nv], p [nv]. */
 void dvi_scene_start(const dvi_scene *scene, const double **q, const double **v, const double **p);
 
-/** Names for columns: of q [nq], v [nv], p [nv]; NULL if i is out of range. */
+/** The name of coordinate i of q [nq], for columns: "x", "q_1_x"; NULL if i is out of range. */
 const char *dvi_scene_coordinate(const dvi_scene *scene, int i);
+
+/** The name of entry i of v [nv]; NULL if i is out of range. */
 const char *dvi_scene_velocity(const dvi_scene *scene, int i);
+
+/** The name of entry i of p [nv]: "p_x"; NULL if i is out of range. */
 const char *dvi_scene_momentum(const dvi_scene *scene, int i);
 
 /** If the state is bodies of a plane or of space, how many: one family of vectors of 2 or 3; else 0. */
 int dvi_scene_bodies(const dvi_scene *scene);
 
-/** What it says of itself; parameter, event and range i, NULL if i is out of range. Owned by the scene. */
+/** How the scene wants to be run; owned by the scene. */
 const dvi_scene_plan *dvi_scene_plan_of(const dvi_scene *scene);
+
+/** Parameter i, in the order of the file; NULL if i is out of range. Owned by the scene. */
 const dvi_scene_parameter *dvi_scene_parameter_at(const dvi_scene *scene, int i);
+
+/** Event i; NULL if i is out of range. Owned by the scene. */
 const dvi_scene_event *dvi_scene_event_at(const dvi_scene *scene, int i);
+
+/** What section `sweep` says of its parameter i; NULL if i is out of range. Owned by the scene. */
 const dvi_scene_range *dvi_scene_range_at(const dvi_scene *scene, int i);
 
 /** Counts of evaluations so far, and what was derived. */
