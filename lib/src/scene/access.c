@@ -1,9 +1,9 @@
 /* Names, and the elements of what they stand for. */
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "scene/elaborate.h"
+#include "scene/heap.h"
 
 /* ---- names ---- */
 
@@ -23,11 +23,11 @@ static dvi__value unknown(dvi__context *c, const dvi__expression *e)
 static dvi__value index_number(dvi__context *c, const dvi__index *index)
 {
   if (index->each == NULL) return dvi__number_value(dvi__constant(c->graph, index->all));
-  double *row = malloc((size_t)c->elements * sizeof *row);
+  double *row = dvi__heap_take((size_t)c->elements, sizeof *row);
   if (row == NULL) return dvi__refused(dvi__scene_no_memory(c->scene));
   for (int e = 0; e < c->elements; e++) row[e] = index->each[e];
   const dvi__value value = dvi__number_value(dvi__data_node(c, row));
-  free(row);
+  dvi__heap_free(row);
   return value;
 }
 
@@ -104,7 +104,7 @@ static bool index_of(const dvi__context *c, const dvi__expression *e, int count,
   const dvi__index *index = e->form == DVI__FORM_NAME ? dvi__index_find(c, e->name) : NULL;
   *each = NULL;
   if (index != NULL && index->each != NULL) {
-    *each = malloc((size_t)c->elements * sizeof **each);
+    *each = dvi__heap_take((size_t)c->elements, sizeof **each);
     if (*each == NULL) return dvi__scene_no_memory(c->scene);
     memcpy(*each, index->each, (size_t)c->elements * sizeof **each);
   } else if (index != NULL)
@@ -114,7 +114,7 @@ static bool index_of(const dvi__context *c, const dvi__expression *e, int count,
   for (int k = 0; k < c->elements; k++) {
     const int i = *each != NULL ? (*each)[k] : *all;
     if (i >= 1 && i <= count) continue;
-    free(*each);
+    dvi__heap_free(*each);
     *each = NULL;
     return dvi__refuse(c, e->span, "the index %d is not between 1 and %d%s", i, count, circumstances(c, k, text, sizeof text));
   }
@@ -124,7 +124,7 @@ static bool index_of(const dvi__context *c, const dvi__expression *e, int count,
 /* One number of a list for every element: value[position + shift]. */
 static dvi__node listed(dvi__context *c, const double *value, const int *position, int shift)
 {
-  double *row = calloc((size_t)c->elements, sizeof *row);
+  double *row = dvi__heap_take((size_t)c->elements, sizeof *row);
   if (row == NULL) {
     (void)dvi__scene_no_memory(c->scene);
     return dvi__constant(c->graph, 0);
@@ -135,7 +135,7 @@ static dvi__node listed(dvi__context *c, const double *value, const int *positio
     even = even && !(row[e] < row[0]) && !(row[e] > row[0]);
   }
   const dvi__node node = even ? dvi__constant(c->graph, row[0]) : dvi__data_node(c, row);
-  free(row);
+  dvi__heap_free(row);
   return node;
 }
 
@@ -147,7 +147,7 @@ static bool positions(const dvi__context *c, const dvi__parameter *p, int count,
     if (!index_of(c, index[k], k == 0 ? p->shape.rows : p->shape.columns, &each, &all)) return false;
     const int stride = k == 0 && p->shape.rank == 2 ? p->shape.columns : 1;
     for (int e = 0; e < c->elements; e++) position[e] += ((each != NULL ? each[e] : all) - 1) * stride;
-    free(each);
+    dvi__heap_free(each);
   }
   return true;
 }
@@ -160,13 +160,13 @@ static dvi__value parameter_element(dvi__context *c, const dvi__parameter *p, in
   if (rest < 0)
     return dvi__refused(
         dvi__refuse(c, span, "%s has %d ind%s, not %d", p->name, p->shape.rank, p->shape.rank == 1 ? "ex" : "ices", count));
-  int *position = calloc((size_t)c->elements, sizeof *position);
+  int *position = dvi__heap_take((size_t)c->elements, sizeof *position);
   if (position == NULL) return dvi__refused(dvi__scene_no_memory(c->scene));
   dvi__value value = positions(c, p, count, index, position) ? dvi__value_make(c, rest, rest == 0 ? 1 : p->shape.columns, 1)
                                                              : DVI__NO_VALUE;
   if (!dvi__failed(value) && rest == 0) value.one = listed(c, p->value, position, 0);
   for (int k = 0; value.node != NULL && k < value.shape.rows; k++) value.node[k] = listed(c, p->value, position, k);
-  free(position);
+  dvi__heap_free(position);
   return value;
 }
 
@@ -176,7 +176,7 @@ static dvi__value family_member(dvi__context *c, const dvi__coordinate *x, const
   dvi__numbering numbering;
   if (!dvi__may_stand(c, DVI__SAYS_Q, index->span) || !index_of(c, index, x->size, &each, &all)) return DVI__NO_VALUE;
   const bool made = dvi__numbering_of(c, each, all, x->first - x->components, x->components, &numbering);
-  free(each);
+  dvi__heap_free(each);
   return made ? coordinate_value(c, x, numbering) : DVI__NO_VALUE;
 }
 
@@ -190,7 +190,7 @@ static dvi__value part_of_value(dvi__context *c, dvi__value value, int count, co
       return dvi__refused(dvi__refuse(c, span, "%s has no elements", dvi__shape_text(value.shape, shape, sizeof shape)));
     if (!index_of(c, index[k], value.shape.rows, &each, &i)) return DVI__NO_VALUE;
     if (each != NULL) {
-      free(each);
+      dvi__heap_free(each);
       c->uneven = 1;
       return DVI__NO_VALUE;
     }

@@ -1,7 +1,8 @@
 #include "scene/arena.h"
 
-#include <stdlib.h>
 #include <string.h>
+
+#include "scene/heap.h"
 
 enum { BLOCK_SIZE = 1 << 16, ALIGNMENT = 16 };
 static const size_t LIMIT = (size_t)1 << 30;
@@ -17,7 +18,7 @@ static struct dvi__arena_block *new_block(dvi__arena *arena, size_t wanted)
 {
   const size_t size = wanted > BLOCK_SIZE ? wanted : BLOCK_SIZE;
   if (size > LIMIT - arena->total) return NULL;
-  struct dvi__arena_block *block = calloc(1, sizeof *block + size);
+  struct dvi__arena_block *block = dvi__heap_take(1, sizeof *block + size);
   if (block == NULL) return NULL;
   block->before = arena->last;
   block->size = size;
@@ -64,7 +65,7 @@ void dvi__arena_free(dvi__arena *arena)
 {
   while (arena->last != NULL) {
     struct dvi__arena_block *before = arena->last->before;
-    free(arena->last);
+    dvi__heap_free(arena->last);
     arena->last = before;
   }
   *arena = (dvi__arena){0};

@@ -38,9 +38,9 @@ typedef struct dvi__context {
   dvi__index index[DVI__INDICES_MAX];
   int index_count;
   dvi__kernel_input *input;
-  int input_count, input_room;
+  int input_count;
   dvi__numbering *numbering;
-  int numbering_count, numbering_room;
+  int numbering_count;
   int *of_number[DVI__BLOCKS]; /* input + 1 of a variable that is the same for all elements */
   dvi__value *definition;      /* [definition_count] values, rank -1: not elaborated yet */
   int depth;

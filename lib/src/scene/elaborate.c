@@ -1,11 +1,12 @@
 /* From syntax to graphs: operators, calls, lists and sums. Names are in access.c, rates in rates.c, arithmetic in shape.c. */
+#include "scene/elaborate.h"
+
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "scene/elaborate.h"
+#include "scene/heap.h"
 
 enum { DEPTH_MAX = 512 };
 static const long work_max = 50000000;
@@ -80,8 +81,8 @@ static dvi__value sum_value(dvi__context *c, const dvi__expression *e)
   const int bound = c->index_count;
   if (!dvi__sum_bounds(c, e, &bounds)) return DVI__NO_VALUE;
   const int uneven = bounds.first != NULL || bounds.last != NULL;
-  free(bounds.first);
-  free(bounds.last);
+  dvi__heap_free(bounds.first);
+  dvi__heap_free(bounds.last);
   if (uneven) {
     c->uneven = 1;
     return DVI__NO_VALUE;

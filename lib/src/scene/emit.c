@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "scene/emit_parts.h"
+#include "scene/heap.h"
 
 enum { TEXT_MAX = 500, A_LINE = 16 };
 
@@ -58,7 +59,7 @@ static int find_array(const dvi__emitter *out, const void *address)
 /* A number for a new array. */
 static int new_array(dvi__emitter *out, const void *address)
 {
-  struct dvi__emitted_array *array = realloc(out->array, ((size_t)out->array_count + 1) * sizeof *array);
+  struct dvi__emitted_array *array = dvi__heap_grow(out->array, (size_t)out->array_count, sizeof *array);
   if (array == NULL) {
     out->failed = DVI_NO_MEMORY;
     return 0;
@@ -100,7 +101,7 @@ int dvi__emit_doubles(dvi__emitter *out, int count, const double *value)
 
 dvi_status dvi__emit_end(dvi__emitter *out)
 {
-  free(out->array);
+  dvi__heap_free(out->array);
   out->array = NULL;
   out->array_count = 0;
   return out->failed;

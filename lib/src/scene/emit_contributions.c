@@ -2,6 +2,7 @@
 #include <stdlib.h>
 
 #include "scene/emit_parts.h"
+#include "scene/heap.h"
 
 static int by_entry(const void *first, const void *second)
 {
@@ -36,7 +37,7 @@ dvi_status dvi__contributions_find(int part_count, const dvi__part *part, dvi__c
 {
   size_t most = 1;
   for (int k = 0; k < part_count; k++) most += 2 * (size_t)part[k].target_count * (size_t)part[k].kernel->elements;
-  *all = (dvi__contributions){.list = calloc(most, sizeof *all->list)};
+  *all = (dvi__contributions){.list = dvi__heap_take(most, sizeof *all->list)};
   if (all->list == NULL) return DVI_NO_MEMORY;
   for (int k = 0; k < part_count; k++) collect(&part[k], all);
   qsort(all->list, (size_t)all->count, sizeof *all->list, by_entry);

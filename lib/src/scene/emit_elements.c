@@ -1,9 +1,9 @@
 /* Sums with kernels of many elements: for each of them a function of one unit of elements, whose results are kept until the unit is done and then added output by
  * output, as the byte code does. It is compiled for eight, four, two and one point, and for the flat rows of a chain: neighbours in a row, whose points
  * follow each other. */
-#include <stdlib.h>
 
 #include "scene/emit_parts.h"
+#include "scene/heap.h"
 
 enum { POINTS = 8, ROOM = 8192, ROOM_MAX = 131072, TERMS_MAX = 2048 };
 
@@ -42,11 +42,11 @@ static int is_short(const dvi__part *part)
 /* How a row is added to entries; the array of flags that this wants is written if it is not there yet. NO_MEMORY: there is none. */
 static int declare_fold(dvi__emitter *out, const dvi__entries *entries, int elements, int *list)
 {
-  int *flag = calloc((size_t)elements / DVI__UNIT + 1, sizeof *flag);
+  int *flag = dvi__heap_take((size_t)elements / DVI__UNIT + 1, sizeof *flag);
   if (flag == NULL) return NO_MEMORY;
   const int folds = find_folds(entries, elements, flag), units = (elements + DVI__UNIT - 1) / DVI__UNIT;
   if (folds == SOMETIMES) *list = dvi__emit_ints_of(out, entries, units, flag);
-  free(flag);
+  dvi__heap_free(flag);
   return folds;
 }
 
@@ -164,7 +164,7 @@ static dvi_status emit_entries(dvi__emitter *out, const dvi__part *part)
     dvi__emit(out, " %c y[%d][%d * points + p]", own->negative ? '-' : '+', own->output, own->element);
   }
   dvi__emit(out, "%s  }\n", all.count > 0 ? ";\n" : "");
-  free(all.list);
+  dvi__heap_free(all.list);
   return status;
 }
 
@@ -203,7 +203,7 @@ static dvi_status emit_unit(dvi__emitter *out, const dvi__emitted_sum *own, int 
   for (int i = 0; i < program->output_count; i++)
     dvi__emit(out, "      y[%d][e * points + p] = r%d;\n", i, name[program->row_count - program->output_count + i]);
   dvi__emit(out, "    }\n  }\n");
-  free(name);
+  dvi__heap_free(name);
   const dvi_status status = is_short(part) ? emit_entries(out, part) : emit_additions(out, part);
   dvi__emit(out, "  return unusual;\n}\n");
   return status;

@@ -1,7 +1,7 @@
 /* Sums whose kernels have one element each: one straight line, in a loop over points. */
-#include <stdlib.h>
 
 #include "scene/emit_parts.h"
+#include "scene/heap.h"
 
 /* How many entries of an array are written. */
 static int entries_written(const dvi__contributions *all, int array)
@@ -31,7 +31,7 @@ static dvi_status emit_part(dvi__emitter *out, const dvi__part *part, int *next,
   emit_inputs(out, part, name + program->row_count);
   dvi__emit_program(out, program, "    ", name, next);
   for (int i = 0; i < program->output_count; i++) made[i] = name[program->row_count - program->output_count + i];
-  free(name);
+  dvi__heap_free(name);
   return DVI_OK;
 }
 
@@ -77,10 +77,10 @@ dvi_status dvi__emit_expressions(dvi__emitter *out, const dvi__emitted_sum *own)
 {
   dvi__contributions all;
   dvi_status status = dvi__contributions_find(own->sum->part_count, own->sum->part, &all);
-  int *name = calloc((size_t)all.output_count + 1, sizeof *name);
+  int *name = dvi__heap_take((size_t)all.output_count + 1, sizeof *name);
   if (name == NULL) status = DVI_NO_MEMORY;
   if (status == DVI_OK) status = emit_body(out, own, &all, name);
-  free(all.list);
-  free(name);
+  dvi__heap_free(all.list);
+  dvi__heap_free(name);
   return status;
 }

@@ -1,13 +1,13 @@
 /* Sums of kernels as C functions. */
 #include <stdatomic.h>
-#include <stdlib.h>
 
 #include "scene/emit_parts.h"
+#include "scene/heap.h"
 
 int *dvi__name_rows(const dvi__part *part, int *next)
 {
   const dvi__program *program = &part->program;
-  int *name = calloc((size_t)program->row_count + (size_t)program->input_count + 1, sizeof *name);
+  int *name = dvi__heap_take((size_t)program->row_count + (size_t)program->input_count + 1, sizeof *name);
   for (int i = 0; i < program->input_count && name != NULL; i++) name[program->row_count + i] = (*next)++;
   return name;
 }

@@ -3,10 +3,10 @@
 
 #include <limits.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "scene/function_parts.h"
+#include "scene/heap.h"
 #include "scene/lanes.h"
 
 /* --- Creation. --- */
@@ -63,10 +63,10 @@ static dvi_status fill(dvi__function *function, int kernel_count, const dvi__ker
 dvi_status dvi__function_create(int kernel_count, const dvi__kernel *kernels, const int *block_size, dvi__function **function)
 {
   *function = NULL;
-  dvi__function *made = calloc(1, sizeof *made);
+  dvi__function *made = dvi__heap_take(1, sizeof *made);
   if (made == NULL) return DVI_NO_MEMORY;
   if (pthread_mutex_init(&made->lock, NULL) != 0) {
-    free(made);
+    dvi__heap_free(made);
     return DVI_NO_MEMORY;
   }
   memcpy(made->block_size, block_size, sizeof made->block_size);
@@ -88,7 +88,7 @@ void dvi__function_destroy(dvi__function **function)
   for (int k = 0; k < own->kernel_count; k++) dvi__graph_free(own->kernel[k].graph);
   dvi__arena_free(&own->arena);
   pthread_mutex_destroy(&own->lock);
-  free(own);
+  dvi__heap_free(own);
 }
 
 /* --- Evaluation. --- */

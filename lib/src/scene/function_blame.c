@@ -1,10 +1,10 @@
 /* Which part of an expression is not finite: for messages. */
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "scene/function_parts.h"
+#include "scene/heap.h"
 
 /* A node of a kernel at one of its elements. */
 typedef struct culprit {
@@ -25,15 +25,15 @@ static void read_inputs(const dvi__kernel *kernel, const dvi__places *place, int
 /* The first node that is not finite below roots of which one is not; -1: all are. */
 static dvi__node first_below(const dvi__kernel *kernel, const double *input, int root_count, const dvi__node *root)
 {
-  double *value = calloc((size_t)root_count + 1, sizeof *value);
+  double *value = dvi__heap_take((size_t)root_count + 1, sizeof *value);
   dvi__node node = -1;
   int finite = 1;
   if (value == NULL || dvi__evaluate(kernel->graph, input, root_count, root, value, &node) != DVI_OK) {
-    free(value);
+    dvi__heap_free(value);
     return -1;
   }
   for (int r = 0; r < root_count; r++) finite &= isfinite(value[r]) != 0;
-  free(value);
+  dvi__heap_free(value);
   return finite ? -1 : node;
 }
 
@@ -43,7 +43,7 @@ static dvi__node *known_derivatives(const dvi__function *function, int k, int *c
   const dvi__kernel *kernel = &function->kernel[k];
   const dvi__derivatives *own = &function->derivatives[k];
   const int pairs = own->second != NULL ? own->pair_count : 0;
-  dvi__node *root = calloc((size_t)kernel->input_count + (size_t)pairs + 1, sizeof *root);
+  dvi__node *root = dvi__heap_take((size_t)kernel->input_count + (size_t)pairs + 1, sizeof *root);
   *count = 0;
   if (root == NULL) return NULL;
   for (int i = 0; i < kernel->input_count && own->gradient != NULL; i++)
@@ -60,17 +60,17 @@ static void search_kernel(const dvi__function *function, int k, int count, const
   int root_count = 1;
   dvi__node *derivatives = found->of_derivative ? known_derivatives(function, k, &root_count) : NULL;
   const dvi__node *root = found->of_derivative ? derivatives : &kernel->root;
-  double *input = calloc((size_t)kernel->input_count + 1, sizeof *input);
+  double *input = dvi__heap_take((size_t)kernel->input_count + 1, sizeof *input);
   for (int e = 0; e < kernel->elements && found->node < 0 && root != NULL && input != NULL; e++) {
     read_inputs(kernel, function->derivatives[k].place, e, count, x, point, input);
     found->node = first_below(kernel, input, root_count, root);
   }
-  free(derivatives);
+  dvi__heap_free(derivatives);
   found->kernel = kernel;
   if (found->node >= 0)
     found->input = input;
   else
-    free(input);
+    dvi__heap_free(input);
 }
 
 /* --- The words. --- */
@@ -142,5 +142,5 @@ void dvi__function_blame(dvi__function *function, const dvi__source *source, int
   else
     (void)snprintf(text, size, "the sum of all terms");
   pthread_mutex_unlock(&function->lock);
-  free(found.input);
+  dvi__heap_free(found.input);
 }

@@ -1,8 +1,8 @@
 /* Derivatives of kernels, and where they are added. */
 #include <limits.h>
-#include <stdlib.h>
 
 #include "scene/function_parts.h"
+#include "scene/heap.h"
 
 static const dvi__block pair_blocks[DVI__PAIRS][2] = {
     [DVI__PAIR_QQ] = {DVI__COORDINATES, DVI__COORDINATES}, [DVI__PAIR_QV] = {DVI__COORDINATES, DVI__VELOCITIES},
@@ -44,7 +44,7 @@ static dvi_status make_room(dvi__function *function, int most, roots *own)
 {
   own->count = 0;
   own->target = dvi__arena_take(&function->arena, (size_t)most, sizeof *own->target);
-  own->node = calloc((size_t)most + 1, sizeof *own->node);
+  own->node = dvi__heap_take((size_t)most + 1, sizeof *own->node);
   return own->target != NULL && own->node != NULL ? DVI_OK : DVI_NO_MEMORY;
 }
 
@@ -65,7 +65,7 @@ static dvi_status make_sum(dvi__function *function, part_roots *roots_of, unsign
       const int count = own.count - first < SLICE ? own.count - first : SLICE;
       status = dvi__sum_extend(function, made, k, count, own.node + first, own.target + first);
     }
-    free(own.node);
+    dvi__heap_free(own.node);
   }
   if (status == DVI_OK) *sum = made;
   return status;
@@ -164,7 +164,7 @@ static int is_wanted(const dvi__kernel *kernel, const int *input, unsigned pairs
 static dvi_status derive_column(const dvi__kernel *kernel, dvi__derivatives *own, unsigned pairs, int first, int last)
 {
   const size_t most = (size_t)(last - first);
-  dvi__node *of = calloc(2 * most, sizeof *of);
+  dvi__node *of = dvi__heap_take(2 * most, sizeof *of);
   int count = 0;
   if (of == NULL) return DVI_NO_MEMORY;
   dvi__node *tangent = of + most;
@@ -174,7 +174,7 @@ static dvi_status derive_column(const dvi__kernel *kernel, dvi__derivatives *own
   count = 0;
   for (int e = first; e < last && kernel->graph->failed == DVI_OK; e++)
     if (own->second[e] < 0 && is_wanted(kernel, own->pair[e], pairs)) own->second[e] = tangent[count++];
-  free(of);
+  dvi__heap_free(of);
   return kernel->graph->failed;
 }
 

@@ -1,9 +1,9 @@
 /* Parts of sums: the program of a kernel's roots, what it reads, and columns of what depends on no variable, computed once for every element. */
 #include <limits.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "scene/function_parts.h"
+#include "scene/heap.h"
 
 /* What the nodes of a kernel are to the roots of a part. */
 enum { NEEDED = 1, VARIES = 2 };
@@ -98,11 +98,11 @@ static const double *column_of(const maker *m, dvi__node n)
 static dvi_status run_columns(const maker *m, const dvi__program *program, const dvi__node *data, int count, double *const *column)
 {
   const int width = DVI__LANES, inputs = program->input_count;
-  double *rows = calloc((size_t)program->row_count + (size_t)inputs, (size_t)width * sizeof *rows);
-  const double **input = calloc((size_t)inputs + 1, sizeof *input);
+  double *rows = dvi__heap_take((size_t)program->row_count + (size_t)inputs, (size_t)width * sizeof *rows);
+  const double **input = dvi__heap_take((size_t)inputs + 1, sizeof *input);
   if (rows == NULL || input == NULL) {
-    free(rows);
-    free((void *)input);
+    dvi__heap_free(rows);
+    dvi__heap_free((void *)input);
     return DVI_NO_MEMORY;
   }
   for (int i = 0; i < inputs; i++) input[i] = rows + (ptrdiff_t)i * width;
@@ -117,8 +117,8 @@ static dvi_status run_columns(const maker *m, const dvi__program *program, const
     for (int c = 0; c < count; c++)
       memcpy(column[c] + first, outputs + (ptrdiff_t)c * width, (size_t)(left < width ? left : width) * sizeof **column);
   }
-  free(rows);
-  free((void *)input);
+  dvi__heap_free(rows);
+  dvi__heap_free((void *)input);
   return DVI_OK;
 }
 
@@ -146,8 +146,8 @@ static int data_nodes(const maker *m, dvi__node *data)
 
 static dvi_status compute_columns(maker *m, int count, const dvi__node *node)
 {
-  dvi__node *data = calloc((size_t)m->count + 1, sizeof *data);
-  double **value = calloc((size_t)count + 1, sizeof *value);
+  dvi__node *data = dvi__heap_take((size_t)m->count + 1, sizeof *data);
+  double **value = dvi__heap_take((size_t)count + 1, sizeof *value);
   dvi__program program = {0};
   dvi_status status = data != NULL && value != NULL ? DVI_OK : DVI_NO_MEMORY;
   if (status == DVI_OK) status = dvi__program_make(m->kernel->graph, data_nodes(m, data), data, count, node, &program);
@@ -156,8 +156,8 @@ static dvi_status compute_columns(maker *m, int count, const dvi__node *node)
   if (status == DVI_OK) status = run_columns(m, &program, data, count, value);
   if (status != DVI_OK) m->derivatives->column = before;
   dvi__program_free(&program);
-  free((void *)value);
-  free(data);
+  dvi__heap_free((void *)value);
+  dvi__heap_free(data);
   return status;
 }
 
@@ -166,13 +166,13 @@ static dvi_status make_columns(maker *m)
 {
   const int count = m->part->column_count;
   const dvi__node *given = m->given + m->part->variable_count;
-  dvi__node *missing = calloc((size_t)count + 1, sizeof *missing);
+  dvi__node *missing = dvi__heap_take((size_t)count + 1, sizeof *missing);
   if (missing == NULL) return DVI_NO_MEMORY;
   int absent = 0;
   for (int c = 0; c < count; c++)
     if (column_of(m, given[c]) == NULL) missing[absent++] = given[c];
   const dvi_status status = absent > 0 ? compute_columns(m, absent, missing) : DVI_OK;
-  free(missing);
+  dvi__heap_free(missing);
   return status;
 }
 
@@ -225,7 +225,7 @@ static dvi__node without_sign(const maker *m, dvi__node root, int *negative)
 /* Point targets at outputs; equal roots share one. Leaves the different ones, signs left out, in `root`. */
 static dvi_status find_outputs(const maker *m, dvi__node *root, int *output_count)
 {
-  int *output = calloc((size_t)m->count + 1, sizeof *output); /* of a node, plus 1 */
+  int *output = dvi__heap_take((size_t)m->count + 1, sizeof *output); /* of a node, plus 1 */
   *output_count = 0;
   if (output == NULL) return DVI_NO_MEMORY;
   for (int k = 0; k < m->part->target_count; k++) {
@@ -237,7 +237,7 @@ static dvi_status find_outputs(const maker *m, dvi__node *root, int *output_coun
     }
     target->output = output[node] - 1;
   }
-  free(output);
+  dvi__heap_free(output);
   return DVI_OK;
 }
 
@@ -261,14 +261,9 @@ static void find_groups(const dvi__part *part)
 /* A place for another part; NULL: no memory. */
 static dvi__part *next_part(dvi__function *function, dvi__sum *sum)
 {
-  if (sum->part_count == sum->room) {
-    const int room = 2 * sum->room + 4;
-    dvi__part *part = dvi__arena_take(&function->arena, (size_t)room, sizeof *part);
-    if (part == NULL) return NULL;
-    if (sum->part_count > 0) memcpy(part, sum->part, (size_t)sum->part_count * sizeof *part);
-    sum->part = part;
-    sum->room = room;
-  }
+  dvi__part *part = dvi__arena_grow(&function->arena, sum->part, (size_t)sum->part_count, sizeof *part);
+  if (part == NULL) return NULL;
+  sum->part = part;
   return &sum->part[sum->part_count++];
 }
 
@@ -282,8 +277,8 @@ dvi_status dvi__sum_extend(dvi__function *function, dvi__sum *sum, int k, int ro
   maker m = {.function = function, .kernel = kernel, .derivatives = &function->derivatives[k], .part = part};
   for (int i = 0; i < root_count; i++)
     if (root[i] >= m.count) m.count = root[i] + 1;
-  m.mark = calloc((size_t)m.count + 1, sizeof *m.mark);
-  m.given = calloc((size_t)m.count + 1, sizeof *m.given);
+  m.mark = dvi__heap_take((size_t)m.count + 1, sizeof *m.mark);
+  m.given = dvi__heap_take((size_t)m.count + 1, sizeof *m.given);
   dvi_status status = m.mark != NULL && m.given != NULL ? DVI_OK : DVI_NO_MEMORY;
   int output_count = 0;
   if (status == DVI_OK) status = find_outputs(&m, root, &output_count);
@@ -291,7 +286,7 @@ dvi_status dvi__sum_extend(dvi__function *function, dvi__sum *sum, int k, int ro
     find_groups(part);
     status = make(&m, output_count, root);
   }
-  free(m.mark);
-  free(m.given);
+  dvi__heap_free(m.mark);
+  dvi__heap_free(m.given);
   return status;
 }

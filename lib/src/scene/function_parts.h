@@ -51,8 +51,8 @@ typedef struct dvi__part {
 
 /* A value, a gradient by some blocks, or second derivatives by some pairs. */
 typedef struct dvi__sum {
-  int part_count, room;
-  dvi__part *part;         /* [room] */
+  int part_count;
+  dvi__part *part;         /* [part_count] */
   struct dvi__sum *before; /* made before this one */
 } dvi__sum;
 

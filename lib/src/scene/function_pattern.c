@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "scene/function_parts.h"
+#include "scene/heap.h"
 
 dvi_status dvi__find_pairs(dvi__function *function, int k)
 {
@@ -17,7 +18,7 @@ dvi_status dvi__find_pairs(dvi__function *function, int k)
   if (own->pair == NULL) status = DVI_NO_MEMORY;
   if (status == DVI_OK && count > 0) memcpy(own->pair, found, (size_t)count * sizeof *found);
   if (status == DVI_OK) own->pair_count = count;
-  free(found);
+  dvi__heap_free(found);
   return status;
 }
 
@@ -101,13 +102,13 @@ static dvi_status take_pattern(dvi__function *function, size_t cells, size_t ent
 static dvi_status pattern_by_bits(dvi__function *function, dvi__pair pair, size_t rows, int columns, dvi__pair_pattern *known)
 {
   const size_t cells = rows * (size_t)columns;
-  bits all = {rows, calloc(cells / 8 + 1, 1)};
+  bits all = {rows, dvi__heap_take(cells / 8 + 1, 1)};
   int *start, *row;
   if (all.bit == NULL) return DVI_NO_MEMORY;
   visit_all(function, pair, set_bit, &all);
   const dvi_status status = take_pattern(function, cells, count_bits(&all, cells), columns, &start, &row, known);
   if (status == DVI_OK && start != NULL) read_bits(&all, columns, start, row);
-  free(all.bit);
+  dvi__heap_free(all.bit);
   return status;
 }
 
@@ -156,7 +157,7 @@ static int sort_columns(const lists *all, int columns)
 static dvi_status pattern_by_lists(dvi__function *function, dvi__pair pair, size_t rows, int columns, size_t visits,
                                    dvi__pair_pattern *known)
 {
-  lists all = {calloc((size_t)columns + 2, sizeof *all.start), malloc((visits + 1) * sizeof *all.row)};
+  lists all = {dvi__heap_take((size_t)columns + 2, sizeof *all.start), dvi__heap_take(visits + 1, sizeof *all.row)};
   dvi_status status = all.start != NULL && all.row != NULL ? DVI_OK : DVI_NO_MEMORY;
   int *start = NULL, *row = NULL;
   if (status == DVI_OK) {
@@ -170,8 +171,8 @@ static dvi_status pattern_by_lists(dvi__function *function, dvi__pair pair, size
     memcpy(start, all.start, ((size_t)columns + 1) * sizeof *start);
     memcpy(row, all.row, (size_t)known->entries * sizeof *row);
   }
-  free(all.start);
-  free(all.row);
+  dvi__heap_free(all.start);
+  dvi__heap_free(all.row);
   return status;
 }
 

@@ -1,17 +1,17 @@
 #include "scene/graph.h"
 
 #include <stdint.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "scene/graph_make.h"
+#include "scene/heap.h"
 
-enum { LIMIT = 2000000, FIRST_ROOM = 64 };
+enum { LIMIT = 2000000 };
 
 void dvi__graph_free(dvi__graph *graph)
 {
-  free(graph->node);
-  free(graph->table);
+  dvi__heap_free(graph->node);
+  dvi__heap_free(graph->table);
   *graph = (dvi__graph){0};
 }
 
@@ -57,16 +57,15 @@ static int *find(const dvi__graph *graph, const dvi__graph_node *wanted)
 /* Twice the room; the table stays at most half full. */
 static dvi_status grow(dvi__graph *graph)
 {
-  const int room = graph->room == 0 ? FIRST_ROOM : 2 * graph->room;
-  dvi__graph_node *node = realloc(graph->node, (size_t)room * sizeof *node);
+  const int room = graph->count == 0 ? 1 : 2 * graph->count;
+  dvi__graph_node *node = dvi__heap_grow(graph->node, (size_t)graph->count, sizeof *node);
   if (node == NULL) return DVI_NO_MEMORY;
   graph->node = node;
-  int *table = calloc(2 * (size_t)room, sizeof *table);
+  int *table = dvi__heap_take(2 * (size_t)room, sizeof *table);
   if (table == NULL) return DVI_NO_MEMORY;
-  free(graph->table);
+  dvi__heap_free(graph->table);
   graph->table = table;
   graph->table_size = 2 * room;
-  graph->room = room;
   for (int n = 0; n < graph->count; n++) *find(graph, graph->node + n) = n + 1;
   return DVI_OK;
 }
@@ -96,14 +95,14 @@ static int never_negative(const dvi__graph *graph, const dvi__graph_node *node)
 /* An equal node or -1. */
 static dvi__node known(const dvi__graph *graph, const dvi__graph_node *wanted)
 {
-  return graph->room == 0 ? -1 : *find(graph, wanted) - 1;
+  return graph->table_size == 0 ? -1 : *find(graph, wanted) - 1;
 }
 
 /* Room for one more node. */
 static dvi_status make_room(dvi__graph *graph)
 {
   if (graph->count >= (graph->limit == 0 ? LIMIT : graph->limit)) return DVI_BAD_SIZE;
-  return graph->count < graph->room ? DVI_OK : grow(graph);
+  return 2 * graph->count < graph->table_size ? DVI_OK : grow(graph);
 }
 
 dvi__node dvi__make(dvi__graph *graph, dvi__op op, dvi__node a, dvi__node b, double value)

@@ -63,7 +63,7 @@ typedef struct dvi__graph_node {
  * the limit) every call returns node 0 and nothing grows: ask once, at the end. */
 typedef struct dvi__graph {
   dvi__graph_node *node;
-  int count, room;
+  int count;
   int *table; /* hash table of node numbers */
   int table_size;
   int limit;      /* most nodes; 0: 2000000 */

@@ -1,8 +1,8 @@
 /* Derivatives, by the reverse mode (of one number by everything) and by the forward mode (of everything by one number). Both take a node's derivatives by its
  * operands from one table; parts that do not depend on what is asked for are not visited. */
-#include <stdlib.h>
 
 #include "scene/graph_make.h"
+#include "scene/heap.h"
 
 enum { NONE = -1 }; /* no node: a derivative that is zero */
 
@@ -126,7 +126,7 @@ static void fail(dvi__graph *graph)
 /* [size] nodes, none yet. */
 static dvi__node *new_derivatives(int size)
 {
-  dvi__node *derivative = malloc(((size_t)size + 1) * sizeof *derivative);
+  dvi__node *derivative = dvi__heap_take((size_t)size + 1, sizeof *derivative);
   for (int n = 0; n < size && derivative != NULL; n++) derivative[n] = NONE;
   return derivative;
 }
@@ -189,8 +189,8 @@ void dvi__gradient(dvi__graph *graph, dvi__node root, int count, dvi__node *grad
     keep_dependent(graph, count, NONE, size, part);
     pull_back_all(graph, root, count, part, adjoint, gradient);
   }
-  free(part);
-  free(adjoint);
+  dvi__heap_free(part);
+  dvi__heap_free(adjoint);
 }
 
 /* The derivative of node n, when those of its operands are known. */
@@ -238,8 +238,8 @@ static void forward(dvi__graph *graph, int only, int count, const dvi__node *rat
     push_forward_all(graph, size, part, rate, tangent);
     for (int k = 0; k < root_count; k++) result[k] = is_zero(graph, tangent[root[k]]) ? zero : tangent[root[k]];
   }
-  free(part);
-  free(tangent);
+  dvi__heap_free(part);
+  dvi__heap_free(tangent);
 }
 
 void dvi__tangents(dvi__graph *graph, int input, int count, const dvi__node *of, dvi__node *tangent)

@@ -1,8 +1,8 @@
 /* Values of nodes, one operation after the other: for constants, and to find what went wrong where. */
 #include <math.h>
-#include <stdlib.h>
 
 #include "scene/graph_make.h"
+#include "scene/heap.h"
 
 static double sign(double x)
 {
@@ -51,7 +51,7 @@ char *dvi__parts(const dvi__graph *graph, int root_count, const dvi__node *root,
   int last = -1;
   for (int k = 0; k < root_count; k++) last = root[k] > last ? root[k] : last;
   *size = last + 1;
-  char *part = calloc((size_t)*size + 1, 1);
+  char *part = dvi__heap_take((size_t)*size + 1, 1);
   if (part == NULL) return NULL;
   for (int k = 0; k < root_count; k++) part[root[k]] = 1;
   for (int n = last; n >= 0; n--) {
@@ -69,7 +69,7 @@ void dvi__inputs_used(const dvi__graph *graph, int root_count, const dvi__node *
   for (int i = 0; i < count; i++) used[i] = part == NULL; /* without memory: all may be used */
   for (int n = 0; n < size && part != NULL; n++)
     if (part[n] && graph->node[n].op == DVI__OP_INPUT && graph->node[n].a < count) used[graph->node[n].a] = 1;
-  free(part);
+  dvi__heap_free(part);
 }
 
 /* The value of a node whose operands have theirs. */
@@ -86,7 +86,7 @@ dvi_status dvi__evaluate(const dvi__graph *graph, const double *x, int root_coun
   if (graph->failed != DVI_OK) return graph->failed;
   int size;
   char *part = dvi__parts(graph, root_count, root, &size);
-  double *at = part == NULL ? NULL : calloc((size_t)size + 1, sizeof *at);
+  double *at = part == NULL ? NULL : dvi__heap_take((size_t)size + 1, sizeof *at);
   *not_finite = -1;
   for (int n = 0; n < size && at != NULL; n++) {
     if (!part[n]) continue;
@@ -95,7 +95,7 @@ dvi_status dvi__evaluate(const dvi__graph *graph, const double *x, int root_coun
   }
   for (int k = 0; k < root_count && at != NULL; k++) value[k] = at[root[k]];
   const dvi_status status = at == NULL ? DVI_NO_MEMORY : DVI_OK;
-  free(part);
-  free(at);
+  dvi__heap_free(part);
+  dvi__heap_free(at);
   return status;
 }

@@ -4,11 +4,11 @@
  * So the pattern is the union, over all nodes that are not linear, of products of the sets of inputs of their operands (Walther 2008). Sets
  * are sorted lists, equal ones mostly shared, made only for what stands below a node that is not linear. */
 #include <stdint.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "scene/arena.h"
 #include "scene/graph_make.h"
+#include "scene/heap.h"
 
 typedef struct set {
   int count;
@@ -117,12 +117,12 @@ static int make_room(pairs *p, size_t more)
   size_t room = p->room == 0 ? 64 : p->room;
   while (room < 2 * (p->count + more)) room *= 2;
   if (room == p->room) return 0;
-  pairs grown = {.key = malloc(room * sizeof *grown.key), .room = room, .count = p->count};
+  pairs grown = {.key = dvi__heap_take(room, sizeof *grown.key), .room = room, .count = p->count};
   if (grown.key == NULL) return 1;
   for (size_t k = 0; k < room; k++) grown.key[k] = FREE;
   for (size_t k = 0; k < p->room; k++)
     if (p->key[k] != FREE) grown.key[slot_of(&grown, p->key[k])] = p->key[k];
-  free(p->key);
+  dvi__heap_free(p->key);
   *p = grown;
   return 0;
 }
@@ -176,9 +176,9 @@ static void sort_by(int shift, int count, size_t size, const uint64_t *key, uint
 static int list_pairs(pairs *found, int count, int (**list)[2])
 {
   const size_t size = found->count;
-  uint64_t *by_row = malloc((size + 1) * sizeof *by_row);
-  size_t *start = malloc(((size_t)count + 2) * sizeof *start);
-  *list = malloc((size + 1) * sizeof **list);
+  uint64_t *by_row = dvi__heap_take(size + 1, sizeof *by_row);
+  size_t *start = dvi__heap_take((size_t)count + 2, sizeof *start);
+  *list = dvi__heap_take(size + 1, sizeof **list);
   const int failed = by_row == NULL || start == NULL || *list == NULL;
   if (!failed) {
     size_t used = 0;
@@ -188,8 +188,8 @@ static int list_pairs(pairs *found, int count, int (**list)[2])
     sort_by(32, count, size, by_row, found->key, start);
     for (size_t k = 0; k < size; k++) (*list)[k][0] = (int)(uint32_t)found->key[k], (*list)[k][1] = (int)(found->key[k] >> 32);
   }
-  free(by_row);
-  free(start);
+  dvi__heap_free(by_row);
+  dvi__heap_free(start);
   return failed;
 }
 
@@ -200,21 +200,21 @@ dvi_status dvi__second_pattern(const dvi__graph *graph, dvi__node root, int coun
   if (graph->failed != DVI_OK) return graph->failed;
   dvi__arena arena = {0};
   pairs found = {0};
-  char *mark = calloc((size_t)root + 1, 1);
-  set *sets = calloc((size_t)root + 1, sizeof *sets);
-  int *work = malloc(((size_t)count + 1) * sizeof *work);
+  char *mark = dvi__heap_take((size_t)root + 1, 1);
+  set *sets = dvi__heap_take((size_t)root + 1, sizeof *sets);
+  int *work = dvi__heap_take((size_t)count + 1, sizeof *work);
   int failed = mark == NULL || sets == NULL || work == NULL;
   if (!failed) mark_parts(graph, root, mark);
   failed = failed || find_pairs(graph, root, count, mark, sets, &arena, work, &found) || list_pairs(&found, count, list);
   if (failed) {
-    free(*list);
+    dvi__heap_free(*list);
     *list = NULL;
   }
   *pair_count = failed ? 0 : (int)found.count;
-  free(mark);
-  free(sets);
-  free(work);
-  free(found.key);
+  dvi__heap_free(mark);
+  dvi__heap_free(sets);
+  dvi__heap_free(work);
+  dvi__heap_free(found.key);
   dvi__arena_free(&arena);
   return failed ? DVI_NO_MEMORY : DVI_OK;
 }

@@ -1,10 +1,10 @@
 /* Indices of sums: where they run, and expressions of them. */
 #include <limits.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "scene/context.h"
+#include "scene/heap.h"
 #include "scene/program.h"
 #include "scene/shape.h"
 
@@ -38,8 +38,8 @@ static void copy_row(const dvi__kernel_input *input, int first, int lanes, doubl
 static bool run_rows(const dvi__context *c, const dvi__program *program, double *each)
 {
   const size_t rows = (size_t)c->input_count + (size_t)program->row_count;
-  const double **row = malloc(((size_t)c->input_count + 1) * sizeof *row);
-  double *numbers = malloc(rows * DVI__LANES_MAX * sizeof *numbers);
+  const double **row = dvi__heap_take((size_t)c->input_count + 1, sizeof *row);
+  double *numbers = dvi__heap_take(rows * DVI__LANES_MAX, sizeof *numbers);
   const bool made = row != NULL && numbers != NULL;
   double *registers = made ? numbers + (size_t)c->input_count * DVI__LANES_MAX : NULL;
   for (int first = 0; made && first < c->elements; first += DVI__LANES_MAX) {
@@ -52,8 +52,8 @@ static bool run_rows(const dvi__context *c, const dvi__program *program, double 
     const double *out = registers + (size_t)(program->row_count - 1) * (size_t)dvi__row_width(lanes);
     memcpy(each + first, out, (size_t)lanes * sizeof *each);
   }
-  free(row);
-  free(numbers);
+  dvi__heap_free(row);
+  dvi__heap_free(numbers);
   return made || dvi__scene_no_memory(c->scene);
 }
 
@@ -61,16 +61,16 @@ static bool run_rows(const dvi__context *c, const dvi__program *program, double 
 static bool all_rows(const dvi__context *c, dvi__node node, double **each)
 {
   dvi__program program = {0};
-  dvi__node *input = malloc((size_t)c->input_count * sizeof *input);
-  *each = malloc((size_t)c->elements * sizeof **each);
+  dvi__node *input = dvi__heap_take((size_t)c->input_count, sizeof *input);
+  *each = dvi__heap_take((size_t)c->elements, sizeof **each);
   bool made = *each != NULL && input != NULL;
   for (int i = 0; made && i < c->input_count; i++) input[i] = dvi__input(c->graph, i);
   made = made && dvi__program_make(c->graph, c->input_count, input, 1, &node, &program) == DVI_OK;
   made = made ? run_rows(c, &program, *each) : dvi__scene_no_memory(c->scene);
   dvi__program_free(&program);
-  free(input);
+  dvi__heap_free(input);
   if (made) return true;
-  free(*each);
+  dvi__heap_free(*each);
   *each = NULL;
   return false;
 }
@@ -81,7 +81,7 @@ static void join(const dvi__context *c, double **each, double *all)
   for (int e = 1; e < c->elements; e++)
     if ((*each)[e] < (*each)[0] || (*each)[e] > (*each)[0] || isnan((*each)[e])) return;
   *all = (*each)[0];
-  free(*each);
+  dvi__heap_free(*each);
   *each = NULL;
 }
 
@@ -135,12 +135,12 @@ bool dvi__whole_numbers_of(const dvi__context *c, const dvi__expression *e, cons
   *all = 0;
   if (!dvi__numbers_of(c, e, &number, &same)) return false;
   if (number == NULL) return whole(c, e, what, same, all);
-  *each = malloc((size_t)c->elements * sizeof **each);
+  *each = dvi__heap_take((size_t)c->elements, sizeof **each);
   bool made = *each != NULL || dvi__scene_no_memory(c->scene);
   for (int k = 0; k < c->elements && made; k++) made = whole(c, e, what, number[k], *each + k);
-  free(number);
+  dvi__heap_free(number);
   if (made) return true;
-  free(*each);
+  dvi__heap_free(*each);
   *each = NULL;
   return false;
 }
@@ -224,7 +224,7 @@ bool dvi__sum_bounds(const dvi__context *c, const dvi__expression *sum, dvi__bou
   if (sum->count == 1) return bounds_of_families(c, sum, bounds);
   if (!dvi__whole_numbers_of(c, sum->part[1], "a bound", &bounds->first, &bounds->all_first)) return false;
   if (dvi__whole_numbers_of(c, sum->part[2], "a bound", &bounds->last, &bounds->all_last)) return true;
-  free(bounds->first);
+  dvi__heap_free(bounds->first);
   bounds->first = NULL;
   return false;
 }

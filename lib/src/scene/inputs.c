@@ -1,9 +1,8 @@
 /* Inputs of kernels: variables by their numbers, and rows of data. Each is there once. */
-#include <limits.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "scene/context.h"
+#include "scene/heap.h"
 
 static int block_size(const dvi_scene *scene, dvi__block block)
 {
@@ -13,8 +12,8 @@ static int block_size(const dvi_scene *scene, dvi__block block)
 bool dvi__context_make(dvi__context *c, dvi_scene *scene, unsigned may, const char *where)
 {
   *c = (dvi__context){.scene = scene, .may = may, .where = where, .elements = 1};
-  c->graph = calloc(1, sizeof *c->graph);
-  c->definition = calloc((size_t)scene->definition_count + 1, sizeof *c->definition);
+  c->graph = dvi__heap_take(1, sizeof *c->graph);
+  c->definition = dvi__heap_take((size_t)scene->definition_count + 1, sizeof *c->definition);
   if (c->graph == NULL || c->definition == NULL) {
     dvi__context_free(c);
     return dvi__scene_no_memory(scene);
@@ -26,29 +25,18 @@ bool dvi__context_make(dvi__context *c, dvi_scene *scene, unsigned may, const ch
 void dvi__context_free(dvi__context *c)
 {
   if (c->graph != NULL) dvi__graph_free(c->graph);
-  free(c->graph);
-  free(c->definition);
-  free(c->input);
-  free(c->numbering);
-  for (int b = 0; b < DVI__BLOCKS; b++) free(c->of_number[b]);
+  dvi__heap_free(c->graph);
+  dvi__heap_free(c->definition);
+  dvi__heap_free(c->input);
+  dvi__heap_free(c->numbering);
+  for (int b = 0; b < DVI__BLOCKS; b++) dvi__heap_free(c->of_number[b]);
   *c = (dvi__context){0};
-}
-
-/* A longer copy of a list if it is full; NULL without memory, and the list stays. */
-static void *with_room(void *list, int count, int *room, size_t size)
-{
-  if (count < *room) return list;
-  if (*room > INT_MAX / 2) return NULL;
-  const int wanted = *room == 0 ? 16 : 2 * *room;
-  void *longer = realloc(list, (size_t)wanted * size);
-  if (longer != NULL) *room = wanted;
-  return longer;
 }
 
 /* The node of a new input. */
 static dvi__node add_input(dvi__context *c, const dvi__kernel_input *input)
 {
-  dvi__kernel_input *list = with_room(c->input, c->input_count, &c->input_room, sizeof *list);
+  dvi__kernel_input *list = dvi__heap_grow(c->input, (size_t)c->input_count, sizeof *list);
   if (list == NULL) {
     (void)dvi__scene_no_memory(c->scene);
     return dvi__constant(c->graph, 0);
@@ -61,7 +49,7 @@ static dvi__node add_input(dvi__context *c, const dvi__kernel_input *input)
 /* A variable that is the same for all elements: found by a table, for there may be as many as coordinates. */
 static dvi__node fixed_variable(dvi__context *c, dvi__block block, int number)
 {
-  if (c->of_number[block] == NULL) c->of_number[block] = calloc((size_t)block_size(c->scene, block), sizeof **c->of_number);
+  if (c->of_number[block] == NULL) c->of_number[block] = dvi__heap_take((size_t)block_size(c->scene, block), sizeof **c->of_number);
   if (c->of_number[block] == NULL) {
     (void)dvi__scene_no_memory(c->scene);
     return dvi__constant(c->graph, 0);
@@ -119,7 +107,7 @@ static bool keep(dvi__context *c, const int *number, dvi__numbering *numbering)
       *numbering = c->numbering[i];
       return true;
     }
-  dvi__numbering *list = with_room(c->numbering, c->numbering_count, &c->numbering_room, sizeof *list);
+  dvi__numbering *list = dvi__heap_grow(c->numbering, (size_t)c->numbering_count, sizeof *list);
   int *copy = dvi__arena_take(&c->scene->arena, (size_t)c->elements, sizeof *copy);
   if (list != NULL) c->numbering = list;
   if (list == NULL || copy == NULL) return dvi__scene_no_memory(c->scene);
@@ -132,7 +120,7 @@ bool dvi__numbering_of(dvi__context *c, const int *each, int all, int shift, int
 {
   *numbering = (dvi__numbering){.base = scale * all + shift};
   if (each == NULL) return true;
-  int *number = malloc((size_t)c->elements * sizeof *number);
+  int *number = dvi__heap_take((size_t)c->elements, sizeof *number);
   if (number == NULL) return dvi__scene_no_memory(c->scene);
   for (int e = 0; e < c->elements; e++) number[e] = scale * each[e] + shift;
   const int stride = c->elements > 1 ? number[1] - number[0] : 0;
@@ -140,6 +128,6 @@ bool dvi__numbering_of(dvi__context *c, const int *each, int all, int shift, int
   for (int e = 1; e < c->elements && even; e++) even = number[e] - number[e - 1] == stride;
   *numbering = (dvi__numbering){.base = number[0], .stride = stride};
   const bool kept = even || keep(c, number, numbering);
-  free(number);
+  dvi__heap_free(number);
   return kept;
 }

@@ -3,8 +3,9 @@
  * What is found are leaves, each in the group of the sums around it. A group becomes one kernel: its elements are the values that the indices of these sums take. */
 #include "scene/kernels.h"
 
-#include <stdlib.h>
 #include <string.h>
+
+#include "scene/heap.h"
 
 enum { LEAVES_MAX = 100000, LEVELS_MAX = 512 };
 static const long elements_max = 200000000;
@@ -235,8 +236,8 @@ static bool enter(dvi__context *c, const group *g)
     dvi__bounds bounds;
     const dvi__expression *sum = chain[--depth]->sum;
     good = dvi__sum_bounds(c, sum, &bounds) && widen(c, sum, &bounds);
-    free(bounds.first);
-    free(bounds.last);
+    dvi__heap_free(bounds.first);
+    dvi__heap_free(bounds.last);
   }
   for (int i = 0; i < c->index_count && c->elements == 1; i++) {
     if (c->index[i].each != NULL) c->index[i].all = c->index[i].each[0];
@@ -332,7 +333,7 @@ bool dvi__kernels_function(dvi_scene *scene, dvi__kernels *list, int count, dvi_
   if (made == NULL) return dvi__scene_no_memory(scene);
   const dvi_status status = dvi__function_create(list->count, list->kernel, size, &made->function);
   if (status != DVI_OK) return dvi__complain(scene->complaint, status, DVI__NOWHERE, "the expressions could not be compiled");
-  free(list->kernel);
+  dvi__heap_free(list->kernel);
   *list = (dvi__kernels){0};
   made->scene = scene;
   made->n = scene->n;

@@ -6,7 +6,7 @@
 /* A list of kernels that owns the nodes of their graphs; dvi__kernels_free. All else is the arena's. */
 typedef struct dvi__kernels {
   dvi__kernel *kernel;
-  int count, room;
+  int count;
 } dvi__kernels;
 
 void dvi__kernels_free(dvi__kernels *list);

@@ -34,14 +34,12 @@ const dvi__name *dvi__names_find(const dvi__names *names, const char *text)
 /* Room for one more, and a table that is at most half full. */
 static bool grow(dvi__names *names, dvi__arena *arena)
 {
-  if (names->name != NULL && names->count < names->room) return true;
-  const int room = names->room == 0 ? 32 : 2 * names->room;
-  dvi__name *moved = dvi__arena_take(arena, (size_t)room, sizeof *moved);
+  if (2 * names->count < names->table_size) return true;
+  const int room = names->count == 0 ? 1 : 2 * names->count;
+  dvi__name *moved = dvi__arena_grow(arena, names->name, (size_t)names->count, sizeof *moved);
   int *table = dvi__arena_take(arena, 2 * (size_t)room, sizeof *table);
   if (moved == NULL || table == NULL) return false;
-  if (names->name != NULL) memcpy(moved, names->name, (size_t)names->count * sizeof *moved);
   names->name = moved;
-  names->room = room;
   names->table = table;
   names->table_size = 2 * room;
   for (int i = 0; i < names->count; i++) table[slot_of(names, moved[i].text)] = i + 1;

@@ -50,7 +50,7 @@ typedef struct dvi__name {
 /* Zero: empty. Its memory is the arena's. */
 typedef struct dvi__names {
   dvi__name *name;
-  int count, room;
+  int count;
   int *table; /* hash table of places + 1 */
   int table_size;
 } dvi__names;

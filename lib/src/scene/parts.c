@@ -1,10 +1,10 @@
 /* Copies of kernels: of what their root needs, and of their parts by degree in a block of variables.
  *
  * A node f is split into Z, where the block's variables are zero, and P = f - Z, by f's own rule: (Z_a + P_a)(Z_b + P_b) has P = P_a Z_b + Z_a P_b + P_a P_b. */
-#include <stdlib.h>
 #include <string.h>
 
 #include "scene/graph_make.h"
+#include "scene/heap.h"
 #include "scene/kernels.h"
 
 typedef struct copy {
@@ -112,23 +112,23 @@ static void copy_nodes(copy *c, const char *needed)
 
 static void free_work(copy *c, char *needed)
 {
-  free(c->of_input);
-  free(c->rest);
-  free(c->moving);
-  free(needed);
+  dvi__heap_free(c->of_input);
+  dvi__heap_free(c->rest);
+  dvi__heap_free(c->moving);
+  dvi__heap_free(needed);
 }
 
 /* Z of a kernel, or P, into a kernel of its own, in the arena but for the nodes of its graph. */
 static bool copy_part(dvi_scene *scene, const dvi__kernel *from, dvi__block block, dvi__block as, int moving, dvi__kernel *to)
 {
   const size_t nodes = (size_t)from->root + 1, inputs = (size_t)from->input_count + 1;
-  char *needed = calloc(nodes, 1);
+  char *needed = dvi__heap_take(nodes, 1);
   copy c = {.from = from, .block = block, .as = as};
   c.graph = dvi__arena_take(&scene->arena, 1, sizeof *c.graph);
   c.input = dvi__arena_take(&scene->arena, inputs, sizeof *c.input);
-  c.of_input = calloc(inputs, sizeof *c.of_input);
-  c.rest = calloc(nodes, sizeof *c.rest);
-  if (moving) c.moving = calloc(nodes, sizeof *c.moving);
+  c.of_input = dvi__heap_take(inputs, sizeof *c.of_input);
+  c.rest = dvi__heap_take(nodes, sizeof *c.rest);
+  if (moving) c.moving = dvi__heap_take(nodes, sizeof *c.moving);
   const int made = needed != NULL && c.graph != NULL && c.input != NULL && c.of_input != NULL && c.rest != NULL &&
                    (!moving || c.moving != NULL);
   if (made) {
@@ -149,7 +149,7 @@ static bool copy_part(dvi_scene *scene, const dvi__kernel *from, dvi__block bloc
 void dvi__kernels_free(dvi__kernels *list)
 {
   for (int k = 0; k < list->count; k++) dvi__graph_free(list->kernel[k].graph);
-  free(list->kernel);
+  dvi__heap_free(list->kernel);
   *list = (dvi__kernels){0};
 }
 
@@ -161,16 +161,12 @@ static bool append(dvi_scene *scene, dvi__kernels *list, const dvi__kernel *kern
     dvi__graph_free(kernel->graph);
     return true;
   }
-  if (list->count == list->room) {
-    const int room = list->room == 0 ? 8 : 2 * list->room;
-    dvi__kernel *longer = realloc(list->kernel, (size_t)room * sizeof *longer);
-    if (longer == NULL) {
-      dvi__graph_free(kernel->graph);
-      return dvi__scene_no_memory(scene);
-    }
-    list->kernel = longer;
-    list->room = room;
+  dvi__kernel *longer = dvi__heap_grow(list->kernel, (size_t)list->count, sizeof *longer);
+  if (longer == NULL) {
+    dvi__graph_free(kernel->graph);
+    return dvi__scene_no_memory(scene);
   }
+  list->kernel = longer;
   list->kernel[list->count++] = *kernel;
   return true;
 }
@@ -266,10 +262,10 @@ static dvi__degree of_node(const dvi__kernel *kernel, dvi__block block, const dv
 
 bool dvi__kernel_degree(dvi_scene *scene, const dvi__kernel *kernel, dvi__block block, dvi__degree *degree)
 {
-  dvi__degree *known = calloc((size_t)kernel->root + 1, sizeof *known);
+  dvi__degree *known = dvi__heap_take((size_t)kernel->root + 1, sizeof *known);
   if (known == NULL) return dvi__scene_no_memory(scene);
   for (int i = 0; i <= kernel->root; i++) known[i] = of_node(kernel, block, known, i);
   *degree = known[kernel->root];
-  free(known);
+  dvi__heap_free(known);
   return true;
 }

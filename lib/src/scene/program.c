@@ -3,9 +3,9 @@
 
 #include <limits.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "scene/heap.h"
 #include "scene/program_codes.h"
 
 enum { NOWHERE = INT_MAX };
@@ -272,19 +272,19 @@ static void number_outputs(compiler *c, int root_count)
 
 static int *filled(int count, int value)
 {
-  int *made = malloc(((size_t)count + 1) * sizeof *made);
+  int *made = dvi__heap_take((size_t)count + 1, sizeof *made);
   for (int i = 0; made != NULL && i < count; i++) made[i] = value;
   return made;
 }
 
 static dvi_status allocate(compiler *c, int root_count)
 {
-  c->uses = calloc((size_t)c->count + 1, sizeof *c->uses);
+  c->uses = dvi__heap_take((size_t)c->count + 1, sizeof *c->uses);
   c->row = filled(c->count, NOWHERE);
   c->mate = filled(c->count, -1);
   c->first_root = filled(c->count, -1);
   c->next_root = filled(root_count, -1);
-  c->given = calloc((size_t)c->count + 1, 2);
+  c->given = dvi__heap_take((size_t)c->count + 1, 2);
   c->free_register = filled(c->count, -1);
   if (!c->uses || !c->row || !c->mate || !c->first_root || !c->next_root || !c->given || !c->free_register) return DVI_NO_MEMORY;
   c->joined = c->given + c->count;
@@ -293,13 +293,13 @@ static dvi_status allocate(compiler *c, int root_count)
 
 static void clear(compiler *c)
 {
-  free(c->uses);
-  free(c->row);
-  free(c->mate);
-  free(c->first_root);
-  free(c->next_root);
-  free(c->given);
-  free(c->free_register);
+  dvi__heap_free(c->uses);
+  dvi__heap_free(c->row);
+  dvi__heap_free(c->mate);
+  dvi__heap_free(c->first_root);
+  dvi__heap_free(c->next_root);
+  dvi__heap_free(c->given);
+  dvi__heap_free(c->free_register);
 }
 
 static dvi_status compile(compiler *c, int input_count, const dvi__node *input, int root_count, const dvi__node *root)
@@ -316,7 +316,7 @@ static dvi_status compile(compiler *c, int input_count, const dvi__node *input, 
   }
   const size_t needed = (size_t)count_uses(c, root_count, root);
   if (c->failed != DVI_OK) return c->failed;
-  c->program->instruction = calloc(needed + (size_t)root_count + 1, sizeof *c->program->instruction);
+  c->program->instruction = dvi__heap_take(needed + (size_t)root_count + 1, sizeof *c->program->instruction);
   if (c->program->instruction == NULL) return DVI_NO_MEMORY;
   combine(c, c->free_register); /* no register is free yet */
   emit_all(c);
@@ -341,7 +341,7 @@ dvi_status dvi__program_make(const dvi__graph *graph, int input_count, const dvi
 
 void dvi__program_free(dvi__program *program)
 {
-  free(program->instruction);
+  dvi__heap_free(program->instruction);
   *program = (dvi__program){0};
 }
 

@@ -1,7 +1,7 @@
 /* Rates by the chain rule, and momenta. */
-#include <stdlib.h>
 
 #include "scene/elaborate.h"
+#include "scene/heap.h"
 
 /* ---- rates and momenta ---- */
 
@@ -20,7 +20,7 @@ static dvi__node from_momentum(dvi__context *c, int input, dvi__span span)
   }
   if (of.number == NULL && of.stride == 0)
     return dvi__apply(c->graph, DVI__OP_DIVIDE, p, dvi__constant(c->graph, mass[of.base + of.offset]));
-  double *row = calloc((size_t)c->elements, sizeof *row);
+  double *row = dvi__heap_take((size_t)c->elements, sizeof *row);
   if (row == NULL) {
     (void)dvi__scene_no_memory(c->scene);
     return p;
@@ -31,7 +31,7 @@ static dvi__node from_momentum(dvi__context *c, int input, dvi__span span)
     even = even && !(row[e] < row[0]) && !(row[e] > row[0]);
   }
   const dvi__node m = even ? dvi__constant(c->graph, row[0]) : dvi__data_node(c, row);
-  free(row);
+  dvi__heap_free(row);
   return dvi__apply(c->graph, DVI__OP_DIVIDE, p, m);
 }
 
@@ -56,11 +56,11 @@ static bool input_rate(dvi__context *c, int input, dvi__span span, dvi__node *ra
 static bool input_rates(dvi__context *c, dvi__value value, dvi__span span, int count, char *used, dvi__node *rate)
 {
   const int size = dvi__value_size(value);
-  dvi__node *root = malloc((size_t)size * sizeof *root);
+  dvi__node *root = dvi__heap_take((size_t)size, sizeof *root);
   if (root == NULL) return dvi__scene_no_memory(c->scene);
   for (int i = 0; i < size; i++) root[i] = dvi__value_at(value, i);
   dvi__inputs_used(c->graph, size, root, count, used);
-  free(root);
+  dvi__heap_free(root);
   const dvi__node zero = dvi__constant(c->graph, 0);
   for (int i = 0; i < count; i++) {
     rate[i] = zero;
@@ -72,16 +72,16 @@ static bool input_rates(dvi__context *c, dvi__value value, dvi__span span, int c
 static dvi__value chain_rule(dvi__context *c, dvi__value value, dvi__span span)
 {
   const int count = c->input_count;
-  char *used = calloc((size_t)count + 1, 1);
-  dvi__node *rate = calloc((size_t)count + 1, sizeof *rate);
+  char *used = dvi__heap_take((size_t)count + 1, 1);
+  dvi__node *rate = dvi__heap_take((size_t)count + 1, sizeof *rate);
   dvi__value result = dvi__value_make(c, value.shape.rank, value.shape.rows, value.shape.columns);
   if (used == NULL || rate == NULL) result = dvi__refused(dvi__scene_no_memory(c->scene));
   if (!dvi__failed(result) && !input_rates(c, value, span, count, used, rate)) result = DVI__NO_VALUE;
   if (!dvi__failed(result) && result.shape.rank == 0) result.one = dvi__rate(c->graph, value.one, count, rate);
   for (int i = 0; !dvi__failed(result) && result.shape.rank > 0 && i < dvi__value_size(value); i++)
     result.node[i] = dvi__rate(c->graph, value.node[i], count, rate);
-  free(used);
-  free(rate);
+  dvi__heap_free(used);
+  dvi__heap_free(rate);
   return result;
 }
 

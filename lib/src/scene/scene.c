@@ -2,10 +2,10 @@
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "scene/callbacks.h"
+#include "scene/heap.h"
 #include "scene/sections.h"
 #include "scene/start.h"
 
@@ -106,9 +106,9 @@ dvi_status dvi_scene_parse(const char *name, const char *text, size_t length, in
   if (message != NULL && size > 0) message[0] = '\0';
   if (name == NULL || text == NULL || setting_count < 0 || (setting_count > 0 && settings == NULL))
     return tell(message, size, DVI_BAD_ARGUMENT, "scene");
-  dvi_scene *made = calloc(1, sizeof *made);
+  dvi_scene *made = dvi__heap_take(1, sizeof *made);
   if (made == NULL || pthread_mutex_init(&made->labels_mutex, NULL) != 0) {
-    free(made);
+    dvi__heap_free(made);
     return tell(message, size, DVI_NO_MEMORY, name);
   }
   dvi__settings given = {.count = setting_count, .text = settings};
@@ -128,7 +128,7 @@ static dvi_status read_file(const char *path, char **text, size_t *length)
 {
   FILE *file = fopen(path, "rb");
   if (file == NULL) return DVI_IO_ERROR;
-  *text = malloc(SIZE_MAX_OF_FILE + 1);
+  *text = dvi__heap_take(SIZE_MAX_OF_FILE + 1, 1);
   *length = *text != NULL ? fread(*text, 1, SIZE_MAX_OF_FILE + 1, file) : 0;
   const int failed = ferror(file);
   (void)fclose(file);
@@ -148,7 +148,7 @@ dvi_status dvi_scene_read(const char *path, int setting_count, const char *const
     status = dvi_scene_parse(path, text, length, setting_count, settings, scene, message, size);
   else
     (void)tell(message, size, status, path);
-  free(text);
+  dvi__heap_free(text);
   return status;
 }
 
@@ -162,7 +162,7 @@ void dvi_scene_destroy(dvi_scene **scene)
   pthread_mutex_destroy(&own->labels_mutex);
   dvi__arena_free(&own->label_arena);
   dvi__arena_free(&own->arena);
-  free(own);
+  dvi__heap_free(own);
 }
 
 /* ---- what there is ---- */

@@ -1,7 +1,7 @@
 /* The start: initial values by coordinate, and what follows from them. */
-#include <stdlib.h>
 #include <string.h>
 
+#include "scene/heap.h"
 #include "scene/sections.h"
 #include "scene/shape.h"
 #include "scene/start.h"
@@ -36,7 +36,7 @@ static bool put_component(dvi__context *c, const dvi__target *target, const dvi_
     const int number = numbering.number != NULL ? numbering.number[i] : numbering.base + numbering.stride * i;
     good = put(c->scene, target, number + k, each != NULL ? each[i] : all, to, mark);
   }
-  free(each);
+  dvi__heap_free(each);
   return good;
 }
 
@@ -93,13 +93,13 @@ bool dvi__read_initial(dvi_scene *scene, const dvi__tree *section)
   scene->q = numbers;
   scene->v = numbers + n;
   scene->p = numbers + 2 * n;
-  char *marks = calloc(3 * n, 1);
+  char *marks = dvi__heap_take(3 * n, 1);
   if (marks == NULL) return dvi__scene_no_memory(scene);
   given g = {.q = marks, .v = marks + n, .p = marks + 2 * n};
   bool good = true;
   for (int i = 0; i < section->count && good; i++) good = read_entry(scene, section->key[i], section->child[i], &g);
   good = good && complete(scene, section, &g);
-  free(marks);
+  dvi__heap_free(marks);
   return good;
 }
 

@@ -2,10 +2,10 @@
  *
  * Each kernel's degree in the velocities is found by one pass over its graph. If all are polynomials of degree 2 whose velocities have constant coefficients,
  * the mass is their second derivatives; what is left at rest is minus the potential. If all are of degree 1, they are alpha(q).v. */
-#include <stdlib.h>
 #include <string.h>
 
 #include "scene/callbacks.h"
+#include "scene/heap.h"
 #include "scene/sections.h"
 #include "scene/shape.h"
 
@@ -141,12 +141,12 @@ static bool derive_mass(dvi_scene *scene, dvi__term *T)
 static bool rests(dvi_scene *scene, dvi__term *T, int *at_rest)
 {
   const double *x[DVI__BLOCKS] = {scene->zeros, scene->zeros, scene->zeros, scene->zeros};
-  double *momentum = malloc((size_t)scene->n * sizeof *momentum);
+  double *momentum = dvi__heap_take((size_t)scene->n, sizeof *momentum);
   double *gradient[DVI__BLOCKS] = {[DVI__VELOCITIES] = momentum};
   if (momentum == NULL) return dvi__scene_no_memory(scene);
   *at_rest = dvi__function_gradient(T->function, 1, x, gradient) == 0;
   for (int i = 0; i < scene->n && *at_rest; i++) *at_rest = !(momentum[i] < 0) && !(momentum[i] > 0);
-  free(momentum);
+  dvi__heap_free(momentum);
   return true;
 }
 
