@@ -85,7 +85,10 @@ int explain_command(int argc, char **argv)
   words settings = {0};
   pacing how = {0};
   const option options[] = {
-      {.name = "method", .word = &method, .value = "SPEC", .help = "the method: name[:key=value,...], see dvi list methods"},
+      {.name = "method",
+       .word = &method,
+       .value = "SPEC",
+       .help = "the method: name[:key=value,...], see dvi list methods; left out: the scene's"},
       {.name = "time-transform",
        .word = &how.transform,
        .value = "MONITOR",

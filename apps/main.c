@@ -57,6 +57,12 @@ static const char help[] =
     "  dvi order kepler --method galerkin:degree=2 --method verlet --plot order.svg\n"
     "  dvi bench kepler --against cvode,ida --plot bench.svg\n"
     "\n"
+    "A scene of one's own:\n"
+    "  dvi init cart.yaml\n"
+    "  dvi check cart.yaml\n"
+    "  dvi run cart.yaml --final --plot cart.svg\n"
+    "  dvi order cart.yaml --plot order.svg\n"
+    "\n"
     "Exit codes: 0 done; 1 a numerical failure, or a file that cannot be read or written; 2 a wrong command line;\n"
     "3 a check failed; 129, 130 or 143: SIGHUP, Ctrl-C or SIGTERM ended it.\n";
 

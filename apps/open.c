@@ -2,6 +2,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "command.h"
 #include "scene.h"
@@ -72,6 +73,15 @@ static void hint_at_setting(const words *settings, const problem_parameter *para
   }
 }
 
+/* A scene without its ending. */
+static bool scene_beside(const char *name, char *hint)
+{
+  char path[HINT_SIZE / 2];
+  if (snprintf(path, sizeof path, "%s.yaml", name) >= (int)sizeof path || access(path, R_OK) != 0) return false;
+  (void)snprintf(hint, HINT_SIZE, " (did you mean '%s'?)", path);
+  return true;
+}
+
 int open_problem(const char *name, const words *settings, problem **scene)
 {
   char message[MESSAGE_SIZE] = "";
@@ -81,7 +91,7 @@ int open_problem(const char *name, const words *settings, problem **scene)
   const int index = problem_find(name);
   if (index < 0)
     return usage_error("unknown problem '%s'%s; see dvi list problems", name,
-                       suggestion(name, problem_at, NULL, hint, sizeof hint));
+                       scene_beside(name, hint) ? hint : suggestion(name, problem_at, NULL, hint, sizeof hint));
   const dvi_status status = problem_create(name, settings->count, settings->word, scene, message, sizeof message);
   if (status == DVI_OK) return DONE;
   if (status != DVI_BAD_OPTION && message[0] == '\0') return library_error(status);

@@ -274,6 +274,7 @@ static const char *const details[] = {
     "number of steps is what that span gives, and the last one is shortened to end at t_end.\n",
     "Examples:\n"
     "  dvi order kepler --method galerkin:degree=2\n"
+    "  dvi order cart.yaml --plot order.svg\n"
     "  dvi order pendulum --method verlet --method composition:order=6,base=verlet --plot order.svg\n"
     "  dvi order kepler --set e=0.9 --method galerkin:degree=2 --time-transform distance\n"
     "  dvi order pendulum-3d --method lie-verlet --method lie-rk --plot lie.svg --axes h:energy_error --axes h:distance\n"
@@ -285,7 +286,10 @@ int order_command(int argc, char **argv)
 {
   order_request r = {.h = (double)NAN, .t_end = (double)NAN, .ratio = (double)NAN};
   const option options[] = {
-      {.name = "method", .words = &r.methods, .value = "SPEC", .help = "a method: name[:key=value,...]; may be repeated"},
+      {.name = "method",
+       .words = &r.methods,
+       .value = "SPEC",
+       .help = "a method: name[:key=value,...]; may be repeated; left out: the scene's"},
       {.name = "h", .number = &r.h, .value = "H", .help = "first step (T/H is rounded to whole steps); left out: searched"},
       {.name = "levels", .count = &r.levels, .value = "N", .help = "how many step sizes; left out: 6, or 12 from order 8"},
       {.name = "ratio", .number = &r.ratio, .value = "R", .help = "of neighbouring steps; left out: 2, or less for high orders"},
@@ -307,7 +311,7 @@ int order_command(int argc, char **argv)
   };
   const command_line command = {
       .name = "order",
-      .synopsis = "PROBLEM --method SPEC [--method SPEC ...] [OPTIONS]",
+      .synopsis = "PROBLEM|SCENE.yaml --method SPEC [--method SPEC ...] [OPTIONS]",
       .operand = "PROBLEM",
       .summary = "Measure the order of methods: the error at the end for a sequence of steps, and the slope fitted to it.\n",
       .options = options,

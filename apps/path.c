@@ -453,7 +453,7 @@ int path_command(int argc, char **argv)
   };
   const command_line command = {
       .name = "path",
-      .synopsis = "PROBLEM --method SPEC --ends KIND --steps N [OPTIONS]",
+      .synopsis = "PROBLEM|SCENE.yaml --method SPEC --ends KIND --steps N [OPTIONS]",
       .operand = "PROBLEM",
       .summary = "Make the action of a whole path stationary: boundary value problems and periodic orbits.\n",
       .options = options,

@@ -24,7 +24,7 @@ split() {
 words() { sed -e 's/^\(processor\): .*/\1/; s/^\(compiler\): .*/\1/; s/, GSL .*//; s/  at most  /  interpolated  /' -e 's/-\{0,1\}[0-9][0-9.]*\(e[-+]\{0,1\}[0-9][0-9]*\)\{0,1\}/N/g; s/  */ /g; s/ $//' "$1"; }
 
 commands=0
-for page in README.md docs/guide.md docs/theory.md docs/problems.md docs/adaptive.md docs/paths.md docs/scenes.md $(cd "$top" && ls docs/methods/*.md); do
+for page in README.md docs/guide.md docs/theory.md docs/problems.md docs/adaptive.md docs/paths.md docs/scenes.md docs/scene-errors.md $(cd "$top" && ls docs/methods/*.md); do
   split "$top/$page"
   n=1
   while [ -e command.$n ]; do

@@ -65,6 +65,19 @@ START_TEST(unknown_names_are_told_with_the_nearest)
 }
 END_TEST
 
+START_TEST(words_from_elsewhere_are_told_with_those_of_scenes)
+{
+  lagrangian_refused("x'^2 + ln(x)", 20, "there is no 'ln'; write log(x)");
+  lagrangian_refused("xdot^2", 13, "there is no 'xdot'; write x'");
+  lagrangian_refused("x_dot^2", 13, "there is no 'x_dot'; write x'");
+  lagrangian_refused("x'^2 + p_x", 20, "there is no 'p_x'; write p(x)");
+  lagrangian_refused("v_N^2", 13, "there is no 'v_N'"); /* N is no coordinate */
+  refused(X "L: x'^2\n" RUN, ":2:1:", "a scene has no 'L'; the section is lagrangian");
+  refused(X "lagrangian: x'^2\ndt: 1\n" RUN, ":3:1:", "a scene has no 'dt'; the section is step");
+  refused(X "lagrangian: x'^2\nreport: {dt: 1}\n" RUN, ":3:10:", "report has no 'dt'");
+}
+END_TEST
+
 START_TEST(shapes_that_do_not_fit_are_told)
 {
   lagrangian_refused("x'^2 + u", 13, "a number plus a vector of 3");
@@ -124,12 +137,13 @@ END_TEST
 
 START_TEST(sections_that_are_missing_or_do_not_go_together_are_told)
 {
-  refused(X "lagrangian: x'^2\ninitial: {x: 1}\nuntil: 1\n", ":", "the section 'step' is missing");
+  refused(X "lagrangian: x'^2\ninitial: {x: 1}\nuntil: 1\n", ":", "the section 'step' is missing, as in 'step: 0.01'");
   refused(X RUN, ":", "what moves it is missing");
   refused(X "lagrangian: x'^2\nkinetic: x'^2\n" RUN, ":3:10:", "there must be one of these");
   refused(X "lagrangian: x'^2\nhamiltonian: 1\n" RUN, ":3:14:", "beside lagrangian there is no hamiltonian");
   refused(X "lagrangian: x'^2\npotentials: {a: 1}\n" RUN, ":3:13:", "potentials stand beside kinetic");
   refused(X "one_form: {x: 1}\n" RUN, ":2:11:", "one_form needs a hamiltonian");
+  refused(X "hamiltonian: p(x)^2\n" RUN, ":2:14:", "a hamiltonian stands with constraints or a one_form");
   refused(X "hamiltonian: x\nconstraints: {a: x}\n" RUN, ":3:14:", "an even number is needed");
   refused(X "lagrangian: x'^2\nforces: {x: 1}\n" RUN, ":3:9:", "no method here takes forces");
   refused("coordinates: {R: rotation}\nlagrangian: 1\n" RUN, ":1:18:", "declare it in C, by dvi_factor");
@@ -227,6 +241,7 @@ int main(void)
   TCase *tests = tcase_create("scene errors");
   tcase_add_checked_fixture(tests, NULL, release);
   tcase_add_test(tests, unknown_names_are_told_with_the_nearest);
+  tcase_add_test(tests, words_from_elsewhere_are_told_with_those_of_scenes);
   tcase_add_test(tests, shapes_that_do_not_fit_are_told);
   tcase_add_test(tests, indices_are_checked_for_every_element);
   tcase_add_test(tests, velocities_and_momenta_stand_where_they_make_sense);

@@ -1,4 +1,5 @@
 /* The public API of scenes: reading, what was found, names, and the end. */
+#include <errno.h>
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>
@@ -126,6 +127,7 @@ dvi_status dvi_scene_parse(const char *name, const char *text, size_t length, in
 /* The text of a file, one character more than is allowed if it is longer; to be freed. */
 static dvi_status read_file(const char *path, char **text, size_t *length)
 {
+  errno = 0;
   FILE *file = fopen(path, "rb");
   if (file == NULL) return DVI_IO_ERROR;
   *text = dvi__heap_take(SIZE_MAX_OF_FILE + 1, 1);
@@ -146,6 +148,8 @@ dvi_status dvi_scene_read(const char *path, int setting_count, const char *const
   dvi_status status = read_file(path, &text, &length);
   if (status == DVI_OK)
     status = dvi_scene_parse(path, text, length, setting_count, settings, scene, message, size);
+  else if (status == DVI_IO_ERROR && message != NULL && size > 0)
+    (void)snprintf(message, size, "cannot read '%s': %s", path, strerror(errno));
   else
     (void)tell(message, size, status, path);
   dvi__heap_free(text);

@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "scene/slips.h"
+
 /* ---- what readers share ---- */
 
 bool(dvi__scene_refuse)(dvi_scene *scene, dvi__span span, const char *format, ...)
@@ -212,7 +214,7 @@ bool dvi__read_sweep(dvi_scene *scene, const dvi__tree *section)
 typedef struct section {
   const char *name;
   bool (*read)(dvi_scene *scene, const dvi__tree *section);
-  int needed;
+  const char *needed; /* an example of what a scene cannot do without */
   const char *refusal;
 } section;
 
@@ -222,9 +224,9 @@ static const section sections[] = {
     {.name = "title"},
     {.name = "method"},
     {.name = "parameters"},
-    {.name = "step", .needed = 1},
-    {.name = "until", .needed = 1},
-    {.name = "coordinates", .read = dvi__read_coordinates, .needed = 1},
+    {.name = "step", .needed = "step: 0.01"},
+    {.name = "until", .needed = "until: 10"},
+    {.name = "coordinates", .read = dvi__read_coordinates, .needed = "coordinates: {x: scalar}"},
     {.name = "definitions", .read = dvi__read_definitions},
     {.name = "lagrangian", .read = dvi__read_lagrangian},
     {.name = "kinetic", .read = dvi__read_kinetic},
@@ -235,24 +237,37 @@ static const section sections[] = {
     {.name = "symmetries", .read = dvi__read_symmetries},
     {.name = "invariants", .read = dvi__read_invariants},
     {.name = "events", .read = dvi__read_events},
-    {.name = "initial", .read = dvi__read_initial, .needed = 1},
+    {.name = "initial", .read = dvi__read_initial, .needed = "initial: {x: 1, x': 0}"},
     {.name = "report", .read = dvi__read_report},
     {.name = "sweep", .read = dvi__read_sweep},
 };
 
 enum { SECTIONS = sizeof sections / sizeof *sections };
 
+/* A section that is called otherwise elsewhere; the keys below sections have no such names. */
+static bool refuse_slips(dvi_scene *scene)
+{
+  for (int i = 0; i < scene->tree->count; i++) {
+    const dvi__tree *key = scene->tree->key[i];
+    const char *here = dvi__section_elsewhere(key->text);
+    if (here != NULL) return dvi__scene_refuse(scene, key->span, "a scene has no '%s'; the section is %s", key->text, here);
+  }
+  return true;
+}
+
 static bool all_known(dvi_scene *scene)
 {
   const char *known[SECTIONS];
   for (int k = 0; k < SECTIONS; k++) known[k] = sections[k].name;
-  if (!dvi__want_mapping(scene, scene->tree, "a scene") || !dvi__want_keys(scene, scene->tree, "a scene", SECTIONS, known))
+  if (!dvi__want_mapping(scene, scene->tree, "a scene") || !refuse_slips(scene) ||
+      !dvi__want_keys(scene, scene->tree, "a scene", SECTIONS, known))
     return false;
   for (int k = 0; k < SECTIONS; k++) {
     const dvi__tree *found = dvi__tree_find(scene->tree, sections[k].name);
     if (found != NULL && sections[k].refusal != NULL) return dvi__scene_refuse(scene, found->span, "%s", sections[k].refusal);
-    if (found == NULL && sections[k].needed)
-      return dvi__scene_refuse(scene, DVI__NOWHERE, "the section '%s' is missing", sections[k].name);
+    if (found == NULL && sections[k].needed != NULL)
+      return dvi__scene_refuse(scene, DVI__NOWHERE, "the section '%s' is missing, as in '%s'", sections[k].name,
+                               sections[k].needed);
   }
   return true;
 }
@@ -272,9 +287,12 @@ static bool one_form_of_system(dvi_scene *scene)
     which = k;
     count++;
   }
+  const dvi__tree *H = dvi__tree_find(scene->tree, "hamiltonian"), *V = dvi__tree_find(scene->tree, "potentials");
+  if (count == 0 && H != NULL)
+    return dvi__scene_refuse(scene, H->span,
+                             "a hamiltonian stands with constraints or a one_form; without them give the lagrangian");
   if (count == 0) return dvi__scene_refuse(scene, DVI__NOWHERE, "what moves it is missing: %s", ways);
   if (count > 1) return dvi__scene_refuse(scene, found->span, "there must be %s", ways);
-  const dvi__tree *H = dvi__tree_find(scene->tree, "hamiltonian"), *V = dvi__tree_find(scene->tree, "potentials");
   if ((H != NULL) != (which >= 2))
     return dvi__scene_refuse(scene, (H != NULL ? H : found)->span,
                              H != NULL ? "beside %s there is no hamiltonian" : "%s needs a hamiltonian", name[which]);
