@@ -146,7 +146,6 @@ START_TEST(sections_that_are_missing_or_do_not_go_together_are_told)
   refused(X "hamiltonian: p(x)^2\n" RUN, ":2:14:", "a hamiltonian stands with constraints or a one_form");
   refused(X "hamiltonian: x\nconstraints: {a: x}\n" RUN, ":3:14:", "an even number is needed");
   refused(X "lagrangian: x'^2\nforces: {x: 1}\n" RUN, ":3:9:", "no method here takes forces");
-  refused("coordinates: {R: rotation}\nlagrangian: 1\n" RUN, ":1:18:", "declare it in C, by dvi_factor");
   refused("coordinates: {x: skalar}\nlagrangian: 1\n" RUN, ":1:18:", "did you mean scalar?");
 }
 END_TEST

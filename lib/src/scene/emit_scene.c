@@ -268,7 +268,7 @@ dvi_status dvi_scene_emit_c(const dvi_scene *scene, const char *name, int (*writ
                             void *user)
 {
   if (scene == NULL || name == NULL || write == NULL || !is_identifier(name)) return DVI_BAD_ARGUMENT;
-  if (scene->terms.hamiltonian != NULL) return DVI_UNSUPPORTED;
+  if (scene->terms.hamiltonian != NULL || scene->terms.factors != NULL) return DVI_UNSUPPORTED;
   dvi__emitter out = {.write = write, .user = user};
   emit_head(&out, scene, name);
   const dvi_status status = emit_all_callbacks(&out, scene);
