@@ -264,6 +264,26 @@ static dvi__degree of_node(const dvi__kernel *kernel, dvi__block block, const dv
   }
 }
 
+static int is_quadratic(dvi__degree degree)
+{
+  return degree.degree == 0 || (degree.degree == 2 && degree.pure);
+}
+
+bool dvi__kernel_other_term(dvi_scene *scene, const dvi__kernel *kernel, dvi__block block, dvi__span *span, int *found)
+{
+  const dvi__graph_node *node = kernel->graph->node;
+  dvi__degree *known = calloc((size_t)kernel->root + 1, sizeof *known);
+  if (known == NULL) return dvi__scene_no_memory(scene);
+  for (int i = 0; i <= kernel->root; i++) known[i] = of_node(kernel, block, known, i);
+  int at = kernel->root;
+  *found = !is_quadratic(known[at]);
+  while (node[at].op == DVI__OP_ADD || node[at].op == DVI__OP_SUBTRACT)
+    at = is_quadratic(known[node[at].a]) ? node[at].b : node[at].a;
+  *span = node[at].span;
+  free(known);
+  return true;
+}
+
 bool dvi__kernel_degree(dvi_scene *scene, const dvi__kernel *kernel, dvi__block block, dvi__degree *degree)
 {
   dvi__degree *known = calloc((size_t)kernel->root + 1, sizeof *known);
