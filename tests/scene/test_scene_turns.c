@@ -251,6 +251,8 @@ START_TEST(lagrangians_without_a_constant_mass_are_refused)
   lagrangian_refused("x'^2 + t*rate(u)^2", ":2:20:", form);
   lagrangian_refused("x'^2 + exp(x')", ":2:20:", form);
   lagrangian_refused("u[1]*x'", ":2:13:", form);
+  lagrangian_refused("x'^2 + rate(u)^2 - 3*rate(u) - x", ":2:32:", form);
+  lagrangian_refused("x'^2 + rate(u)^2 - rate(u) - x", ":2:13:", form);
   lagrangian_refused("(x' + 1)^2", ":2:13:", "no velocity stands alone");
   lagrangian_refused("omega(R)[1]*x' + x'^2", ":1:15:", "omega(R) is multiplied by the velocity of x");
   lagrangian_refused("dot(omega(R), omega(B))", ":1:15:", "omega(R) is multiplied by the velocity of B");
