@@ -45,39 +45,27 @@ static dvi_factor *lay_out(dvi_scene *scene, int *of)
 
 /* ---- velocities of the state: inertias ---- */
 
-/* The coordinate that a number of v, or of q, belongs to. */
-static int owner(const dvi_scene *scene, int number, int of_v)
-{
-  int low = 0, high = scene->coordinate_count;
-  while (high - low > 1) {
-    const int middle = low + (high - low) / 2;
-    if ((of_v ? scene->coordinate[middle].v.first : scene->coordinate[middle].q.first) <= number)
-      low = middle;
-    else
-      high = middle;
-  }
-  return low;
-}
-
-/* What is couped beside rates: "omega(R) and x'" cannot be of constant coefficients in both. */
+/* omega(R)[1]*x' has no constant mass: what is constant in omega(R) is not so in the rates of R, and the other way round. */
 static bool refuse_coupling(dvi_scene *scene, int state, int other)
 {
   const int n = scene->n;
-  const dvi__coordinate *a = &scene->coordinate[owner(scene, state - n, 1)],
-                        *b = &scene->coordinate[other < n ? owner(scene, other, 0) : owner(scene, other - n, 1)];
-  return dvi__scene_refuse(scene, a->span,
-                           "in L %s(%s) is multiplied by the velocity of %s: the mass that couples what turns is constant in the "
-                           "rates of points, as in dot(x', (R*c)')",
-                           a->kind == DVI__ANGLE ? "rate" : "omega", a->name, b->name);
+  const dvi__coordinate
+      *a = &scene->coordinate[dvi__coordinate_at(scene, state - n, 1)],
+      *b = &scene->coordinate[other < n ? dvi__coordinate_at(scene, other, 0) : dvi__coordinate_at(scene, other - n, 1)];
+  return dvi__scene_refuse(
+      scene, a->span,
+      "in L %s(%s) is multiplied by the velocity of %s: what couples must have constant coefficients in rates of "
+      "what is stored; say it by points, as (R*c)', of an angle (l*u)'",
+      a->kind == DVI__ANGLE ? "rate" : "omega", a->name, b->name);
 }
 
 /* An entry of an inertia: numbers `row` and `column` of v. */
 static bool add_inertia(dvi_scene *scene, dvi_factor *factors, const int *of, int row, int column, double value)
 {
-  const int k = owner(scene, row, 1);
+  const int k = dvi__coordinate_at(scene, row, 1);
   const dvi__coordinate *x = &scene->coordinate[k];
   const int member = (row - x->v.first) / x->v.stride, start = x->v.first + member * x->v.stride;
-  if (column < start || column >= start + x->v.stride) return refuse_coupling(scene, scene->n + row, scene->n + column);
+  if (column < start || column >= start + x->v.stride) return refuse_coupling(scene, scene->n + column, scene->n + row);
   dvi_factor *factor = &factors[of[k] + member];
   if (x->kind == DVI__ANGLE) {
     factor->mass = value;
@@ -94,14 +82,14 @@ static bool add_inertia(dvi_scene *scene, dvi_factor *factors, const int *of, in
 /* ---- the form, entry by entry ---- */
 
 /* Where an entry of the mass goes. */
-typedef struct places {
+typedef struct parts {
   dvi_factor *factors;
   int *of, *start, *row, count; /* of what is stored: columns */
   double *value;
   char *heavy; /* [n + nv] columns that are not zero */
-} places;
+} parts;
 
-static bool add_entry(dvi_scene *scene, places *to, int row, int column, double value)
+static bool add_entry(dvi_scene *scene, parts *to, int row, int column, double value)
 {
   const int n = scene->n;
   if (!(value < 0) && !(value > 0)) return true;
@@ -113,7 +101,7 @@ static bool add_entry(dvi_scene *scene, places *to, int row, int column, double 
   return true;
 }
 
-static bool add_columns(dvi_scene *scene, places *to, const dvi_pattern *pattern, const double *values)
+static bool add_columns(dvi_scene *scene, parts *to, const dvi_pattern *pattern, const double *values)
 {
   const int all = scene->velocities, full = pattern->start == NULL;
   bool good = true;
@@ -164,11 +152,11 @@ bool dvi__make_factors(dvi_scene *scene, const dvi_pattern *pattern, const doubl
 {
   const size_t n = (size_t)scene->n, all = (size_t)scene->velocities;
   const size_t entries = pattern->start == NULL ? all * all : (size_t)pattern->start[all];
-  places to = {.of = dvi__arena_take(&scene->arena, (size_t)scene->coordinate_count, sizeof *to.of),
-               .start = dvi__arena_take(&scene->arena, n + 1, sizeof *to.start),
-               .row = dvi__arena_take(&scene->arena, entries + 1, sizeof *to.row),
-               .value = dvi__arena_take(&scene->arena, entries + 1, sizeof *to.value),
-               .heavy = dvi__arena_take(&scene->arena, all, 1)};
+  parts to = {.of = dvi__arena_take(&scene->arena, (size_t)scene->coordinate_count, sizeof *to.of),
+              .start = dvi__arena_take(&scene->arena, n + 1, sizeof *to.start),
+              .row = dvi__arena_take(&scene->arena, entries + 1, sizeof *to.row),
+              .value = dvi__arena_take(&scene->arena, entries + 1, sizeof *to.value),
+              .heavy = dvi__arena_take(&scene->arena, all, 1)};
   if (to.of == NULL || to.start == NULL || to.row == NULL || to.value == NULL || to.heavy == NULL)
     return dvi__scene_no_memory(scene);
   to.factors = lay_out(scene, to.of);

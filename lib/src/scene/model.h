@@ -65,6 +65,9 @@ static inline bool dvi__has_factors(const dvi_scene *scene)
   return scene->velocities > scene->n;
 }
 
+/* The number of the coordinate to which a number of q, or of v, belongs. */
+int dvi__coordinate_at(const dvi_scene *scene, int number, int of_v);
+
 /* Refuse something for which there is no memory; false. */
 bool dvi__scene_no_memory(dvi_scene *scene);
 

@@ -98,13 +98,6 @@ static int diagonal_of(int n, const dvi_pattern *pattern, const double *values, 
   return alone;
 }
 
-static const dvi__coordinate *owner(const dvi_scene *scene, int number)
-{
-  int k = 0;
-  while (k + 1 < scene->coordinate_count && scene->coordinate[k + 1].q.first <= number) k++;
-  return &scene->coordinate[k];
-}
-
 /* The mass in the plainest form that it has. */
 static bool set_mass(dvi_scene *scene, const dvi_pattern *pattern, const double *values)
 {
@@ -118,9 +111,9 @@ static bool set_mass(dvi_scene *scene, const dvi_pattern *pattern, const double 
   int same = 1;
   for (int i = 0; i < scene->n; i++) {
     same = same && !(diagonal[i] < diagonal[0]) && !(diagonal[i] > diagonal[0]);
-    if (!(diagonal[i] < 0) && !(diagonal[i] > 0))
-      return dvi__scene_refuse(scene, owner(scene, i)->span, "the rate of %s has no mass: L has no square of it",
-                               owner(scene, i)->name);
+    if (diagonal[i] < 0 || diagonal[i] > 0) continue;
+    const dvi__coordinate *x = &scene->coordinate[dvi__coordinate_at(scene, i, 0)];
+    return dvi__scene_refuse(scene, x->span, "the rate of %s has no mass: L has no square of it", x->name);
   }
   scene->mass_diagonal = diagonal;
   scene->mass = !same ? "diagonal" : diagonal[0] < 1 || diagonal[0] > 1 ? "scalar" : "identity";
@@ -157,14 +150,15 @@ static bool rests(dvi_scene *scene, dvi__term *T, int *at_rest)
 static bool refuse_moving(dvi_scene *scene, const dvi__kernels *L)
 {
   for (int k = 0; k < L->count; k++) {
-    dvi__degree degree;
-    const dvi__kernel *kernel = &L->kernel[k];
-    if (!dvi__kernel_degree(scene, kernel, DVI__VELOCITIES, &degree)) return false;
-    if (degree.degree == 0 || (degree.degree == 2 && degree.pure)) continue;
-    return dvi__scene_refuse(
-        scene, kernel->graph->node[kernel->root].span,
-        "beside rotations, motions, directions and angles velocities stand in L as squares and products with "
-        "constant coefficients, in rates of what is stored or in omega(R) and rate(u); this term is of another form");
+    dvi__span span;
+    int found;
+    if (!dvi__kernel_other_term(scene, &L->kernel[k], DVI__VELOCITIES, &span, &found)) return false;
+    if (found)
+      return dvi__scene_refuse(
+          scene, span,
+          "this term is of another form: beside rotations, motions, directions and angles velocities stand in L "
+          "as squares and products with constant coefficients, of rates of what is stored, or of omega(R) and "
+          "rate(u)");
   }
   const dvi__kernel *first = &L->kernel[0];
   return dvi__scene_refuse(

@@ -55,6 +55,19 @@ dvi__value dvi__member_value(dvi__context *c, const dvi__expression *e)
       dvi__refuse(c, e->span, "the parts of %s are %s.R, its rotation, and %s.x, its place", x->name, x->name, x->name));
 }
 
+int dvi__coordinate_at(const dvi_scene *scene, int number, int of_v)
+{
+  int low = 0, high = scene->coordinate_count;
+  while (high - low > 1) {
+    const int middle = low + (high - low) / 2;
+    if ((of_v ? scene->coordinate[middle].v.first : scene->coordinate[middle].q.first) <= number)
+      low = middle;
+    else
+      high = middle;
+  }
+  return low;
+}
+
 /* ---- velocities and momenta of a state ---- */
 
 /* Where an input is: number k of members of a coordinate, one for each element or `all`. */
@@ -63,18 +76,10 @@ typedef struct whereabouts {
   int k, *each, all;
 } whereabouts;
 
-/* The coordinate that a stored number belongs to. */
-static const dvi__coordinate *owner(const dvi_scene *scene, int number)
+/* The coordinate, or the part of a motion, that a stored number belongs to. */
+static const dvi__coordinate *part_at(const dvi_scene *scene, int number)
 {
-  int low = 0, high = scene->coordinate_count;
-  while (high - low > 1) {
-    const int middle = low + (high - low) / 2;
-    if (scene->coordinate[middle].q.first <= number)
-      low = middle;
-    else
-      high = middle;
-  }
-  const dvi__coordinate *x = &scene->coordinate[low];
+  const dvi__coordinate *x = &scene->coordinate[dvi__coordinate_at(scene, number, 0)];
   if (x->kind != DVI__MOTION) return x;
   return &x->part[(number - x->q.first) % x->q.stride >= x->part[0].q.components];
 }
@@ -83,7 +88,7 @@ static bool locate(dvi__context *c, int input, whereabouts *w)
 {
   const dvi__kernel_input of = c->input[input];
   const int number = (of.number != NULL ? of.number[0] : of.base) + of.offset;
-  const dvi__coordinate *x = owner(c->scene, number);
+  const dvi__coordinate *x = part_at(c->scene, number);
   *w = (whereabouts){.x = x, .k = (number - x->q.first) % x->q.stride, .all = (number - x->q.first) / x->q.stride};
   if (of.number == NULL && of.stride == 0) return true;
   w->each = dvi__heap_take((size_t)c->elements, sizeof *w->each);
