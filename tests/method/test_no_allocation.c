@@ -47,6 +47,8 @@ static const char *const methods[] = {
     "composition:order=4,base=midpoint",
     "composition:order=6,base=galerkin,degree=2,solver=newton",
     "verlet",
+    "imex",
+    "imex:solver=newton",
     "composition:order=8,base=verlet",
     "verlet:threads=3",
     "composition:order=6,base=verlet,threads=2",

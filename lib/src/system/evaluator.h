@@ -96,6 +96,9 @@ dvi_status dvi__legendre_regular(dvi__evaluator *e, double t, const double *q, c
 /* x [n*count, component-major] = M^{-1} y for the constant mass; x may be y. Only for systems with DVI__CONSTANT_MASS. */
 void dvi__mass_solve(dvi__evaluator *e, int count, const double *y, double *x);
 
+/* The sign of its determinant, 1 or -1. */
+int dvi__mass_sign(const dvi__evaluator *e);
+
 /* One state: all invariants; v is the velocity that belongs to p. */
 dvi_status dvi__invariants(dvi__evaluator *e, double t, const double *q, const double *v, const double *p, double *value);
 

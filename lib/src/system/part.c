@@ -41,9 +41,9 @@ dvi_status dvi__system_fast_part(const dvi_system *whole, dvi_system **part)
   return make(whole, 1, mass_of(whole), part);
 }
 
-int dvi__system_is_quadratic(const dvi_system *part)
+int dvi__system_fast_is_quadratic(const dvi_system *whole)
 {
-  for (int k = 0; k < part->potential_count; k++)
-    if (!part->potentials[k].callbacks.quadratic) return 0;
+  for (int k = 0; k < whole->potential_count; k++)
+    if (whole->potentials[k].callbacks.fast && !whole->potentials[k].callbacks.quadratic) return 0;
   return 1;
 }

@@ -8,7 +8,7 @@
 dvi_status dvi__system_slow_part(const dvi_system *whole, dvi_system **part);
 dvi_status dvi__system_fast_part(const dvi_system *whole, dvi_system **part);
 
-/* Whether all of its potentials are declared quadratic. */
-int dvi__system_is_quadratic(const dvi_system *part);
+/* Whether all potentials that are declared fast are declared quadratic, too. */
+int dvi__system_fast_is_quadratic(const dvi_system *whole);
 
 #endif
