@@ -9,6 +9,7 @@
 #include <stdlib.h>
 
 #include "scene/graph.h"
+#include "scene/heap.h"
 #include "support/suite.h"
 
 #ifdef DVI_HAVE_QUADMATH
@@ -332,7 +333,7 @@ START_TEST(patterns_hold_all_second_derivatives_but_zeros)
     int(*pair)[2], count, inside[INPUTS][INPUTS] = {{0}};
     ck_assert_int_eq(dvi__second_pattern(&graph, root, INPUTS, &pair, &count), DVI_OK);
     for (int k = 0; k < count; k++) inside[pair[k][0]][pair[k][1]] = inside[pair[k][1]][pair[k][0]] = 1;
-    free(pair);
+    dvi__heap_free(pair);
     quad first[INPUTS], second[INPUTS * INPUTS];
     differentiate(&graph, &e, root, first, second);
     for (int i = 0; i < INPUTS; i++)

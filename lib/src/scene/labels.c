@@ -35,6 +35,7 @@ static char **labels_of(dvi_scene *scene, int which)
 {
   static const char *const prefix[] = {"", "v_", "p_"};
   pthread_mutex_lock(&scene->labels_mutex);
+  dvi__ledger *const other = dvi__heap_charge(&scene->ledger);
   if (scene->label[which] == NULL) {
     char **made = dvi__arena_take(&scene->label_arena, (size_t)scene->n, sizeof *made);
     for (int k = 0; k < scene->coordinate_count && made != NULL; k++)
@@ -42,6 +43,7 @@ static char **labels_of(dvi_scene *scene, int which)
     scene->label[which] = made;
   }
   char **label = scene->label[which];
+  (void)dvi__heap_charge(other);
   pthread_mutex_unlock(&scene->labels_mutex);
   return label;
 }
