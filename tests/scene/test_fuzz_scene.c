@@ -1,4 +1,4 @@
-/* labels: slow */
+/* labels: invariant */
 /* Any text is a scene whose callbacks give finite numbers or say what is not finite, and which can be written as C; or a sentence that can be printed.  Texts are
  * made of the scenes of the catalogue. */
 #define _POSIX_C_SOURCE 200809L /* glob */

@@ -1,4 +1,4 @@
-/* labels: unit slow */
+/* labels: invariant */
 /* Wherever memory runs out while a scene is read, derived, named or written as C, that is said, nothing leaks, and with memory the same call succeeds. */
 #include <dvi/scene.h>
 #include <stdio.h>
