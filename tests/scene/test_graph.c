@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "scene/graph.h"
+#include "scene/heap.h"
 #include "support/suite.h"
 
 enum { INPUTS_MAX = 100 };
@@ -306,7 +307,7 @@ static void check_pattern(dvi__node root, int count, const char *expected)
     text[3 * k + 3] = '\0';
   }
   ck_assert_str_eq(text, expected);
-  free(pair);
+  dvi__heap_free(pair);
 }
 
 START_TEST(patterns_are_exact)
@@ -338,7 +339,7 @@ START_TEST(the_pattern_of_a_chain_is_a_band)
     ck_assert_int_eq(pair[k][1], k / 2);
     ck_assert_int_eq(pair[k][0], (k + 1) / 2);
   }
-  free(pair);
+  dvi__heap_free(pair);
 }
 END_TEST
 
@@ -358,7 +359,7 @@ START_TEST(expressions_may_be_a_hundred_thousand_levels_deep)
   ck_assert_double_eq_tol(value[0], value[1], 1e-9 * fabs(value[1]));
   ck_assert_int_eq(dvi__second_pattern(&graph, root, 1, &pair, &found), DVI_OK);
   ck_assert_int_eq(found, 1);
-  free(pair);
+  dvi__heap_free(pair);
 }
 END_TEST
 

@@ -9,12 +9,12 @@
 #include <stdlib.h>
 
 #include "scene/graph.h"
+#include "scene/graph_make.h"
+#include "scene/heap.h"
+#include "support/quad_graph.h"
 #include "support/suite.h"
 
 #ifdef DVI_HAVE_QUADMATH
-#include <quadmath.h>
-
-typedef __float128 quad;
 
 enum { EXPRESSIONS = 10000, INPUTS = 3, DEPTH = 6, PARTS_MAX = 128 };
 
@@ -49,51 +49,6 @@ static int random_below(uint64_t *seed, int count)
   return (int)(random_bits(seed) % (uint64_t)count);
 }
 
-static quad operate(dvi__op op, double number, quad a, quad b)
-{
-  switch (op) {
-  case DVI__OP_CONSTANT:
-  case DVI__OP_INPUT: return (quad)number;
-  case DVI__OP_NEGATE: return -a;
-  case DVI__OP_SQUARE: return a * a;
-  case DVI__OP_POWER: return powq(a, (quad)number);
-  case DVI__OP_SQRT: return sqrtq(a);
-  case DVI__OP_EXP: return expq(a);
-  case DVI__OP_LOG: return logq(a);
-  case DVI__OP_SIN: return sinq(a);
-  case DVI__OP_COS: return cosq(a);
-  case DVI__OP_TAN: return tanq(a);
-  case DVI__OP_ASIN: return asinq(a);
-  case DVI__OP_ACOS: return acosq(a);
-  case DVI__OP_ATAN: return atanq(a);
-  case DVI__OP_SINH: return sinhq(a);
-  case DVI__OP_COSH: return coshq(a);
-  case DVI__OP_TANH: return tanhq(a);
-  case DVI__OP_ASINH: return asinhq(a);
-  case DVI__OP_ACOSH: return acoshq(a);
-  case DVI__OP_ATANH: return atanhq(a);
-  case DVI__OP_ABS: return fabsq(a);
-  case DVI__OP_SIGN: return (quad)((a > 0) - (a < 0));
-  case DVI__OP_ADD: return a + b;
-  case DVI__OP_SUBTRACT: return a - b;
-  case DVI__OP_MULTIPLY: return a * b;
-  case DVI__OP_DIVIDE: return a / b;
-  case DVI__OP_RAISE: return powq(a, b);
-  case DVI__OP_ATAN2: return atan2q(a, b);
-  case DVI__OP_HYPOT: return hypotq(a, b);
-  case DVI__OP_COUNT: break;
-  }
-  return 0;
-}
-
-static int operands_of(dvi__op op)
-{
-#define OPERANDS(name, operands, spelling) operands,
-  static const int count[] = {DVI__OP_LIST(OPERANDS)};
-#undef OPERANDS
-  return count[op];
-}
-
 /* Whether an operation is smooth at its operands, with room around them. */
 static int is_inside(dvi__op op, double number, quad a, quad b)
 {
@@ -115,14 +70,13 @@ static int is_inside(dvi__op op, double number, quad a, quad b)
   }
 }
 
-/* What the errors of the operands make of the value, and half a unit of it in the last place, with room for libm. */
+/* What the errors of the operands make of the value, with room for libm. */
 static quad error_of(const part *all, const part *own)
 {
-  if (operands_of(own->op) == 0) return 0;
   const part *a = all + own->a, *b = all + own->b;
-  const quad by_a = operate(own->op, own->number, a->value + a->error, b->value) - own->value;
-  const quad by_b = operands_of(own->op) == 2 ? operate(own->op, own->number, a->value, b->value + b->error) - own->value : 0;
-  return fabsq(by_a) + fabsq(by_b) + 2 * (quad)DBL_EPSILON * fabsq(own->value);
+  return dvi__operands(own->op) == 0
+             ? 0
+             : quad_error(own->op, own->number, a->value, a->error, b->value, b->error, 2 * (quad)DBL_EPSILON);
 }
 
 /* Draw an operation for these operands until one is inside of its domain and its value of a moderate size; sums and sines always are. */
@@ -134,7 +88,7 @@ static part draw(uint64_t *seed, const expression *e, int a, int b)
     if (own.op == DVI__OP_POWER) own.number = exponents[random_below(seed, (int)(sizeof exponents / sizeof *exponents))];
     const quad x = e->part[a].value, y = e->part[b].value;
     if (!is_inside(own.op, own.number, x, y)) continue;
-    own.value = operate(own.op, own.number, x, y);
+    own.value = quad_operate(own.op, own.number, x, y);
     if (fabsq(own.value) < (quad)LARGEST) return own;
   }
   return (part){.op = DVI__OP_SIN, .a = a, .b = a, .value = sinq(e->part[a].value)};
@@ -187,30 +141,17 @@ static dvi__node build(dvi__graph *graph, const expression *e)
   return node[e->count - 1];
 }
 
-/* Values of all nodes of a graph, [count]. */
-static void evaluate(const dvi__graph *graph, const quad *x, quad *value)
-{
-  for (int n = 0; n < graph->count; n++) {
-    const dvi__graph_node *node = graph->node + n;
-    const int operands = operands_of(node->op);
-    if (node->op == DVI__OP_INPUT)
-      value[n] = x[node->a];
-    else
-      value[n] = operate(node->op, node->value, operands > 0 ? value[node->a] : 0, operands > 1 ? value[node->b] : 0);
-  }
-}
-
 /* The value of the expression as it was drawn. */
 static quad value_at(const expression *e, const quad *x)
 {
   quad value[PARTS_MAX];
   for (int i = 0; i < e->count; i++) {
     const part *own = e->part + i;
-    const int operands = operands_of(own->op);
+    const int operands = dvi__operands(own->op);
     if (own->op == DVI__OP_INPUT)
       value[i] = x[own->a];
     else
-      value[i] = operate(own->op, own->number, operands > 0 ? value[own->a] : 0, operands > 1 ? value[own->b] : 0);
+      value[i] = quad_operate(own->op, own->number, operands > 0 ? value[own->a] : 0, operands > 1 ? value[own->b] : 0);
   }
   return value[e->count - 1];
 }
@@ -294,7 +235,7 @@ static void differentiate(dvi__graph *graph, const expression *e, dvi__node root
   ck_assert_int_eq(graph->failed, DVI_OK);
   quad *value = calloc((size_t)graph->count, sizeof *value);
   ck_assert_ptr_nonnull(value);
-  evaluate(graph, e->x, value);
+  quad_evaluate(graph, graph->count, e->x, value, NULL, 0);
   for (int i = 0; i < INPUTS; i++) {
     first[i] = value[gradient[i]];
     for (int j = 0; j < INPUTS; j++) second[INPUTS * j + i] = value[hessian[j][i]];
@@ -332,7 +273,7 @@ START_TEST(patterns_hold_all_second_derivatives_but_zeros)
     int(*pair)[2], count, inside[INPUTS][INPUTS] = {{0}};
     ck_assert_int_eq(dvi__second_pattern(&graph, root, INPUTS, &pair, &count), DVI_OK);
     for (int k = 0; k < count; k++) inside[pair[k][0]][pair[k][1]] = inside[pair[k][1]][pair[k][0]] = 1;
-    free(pair);
+    dvi__heap_free(pair);
     quad first[INPUTS], second[INPUTS * INPUTS];
     differentiate(&graph, &e, root, first, second);
     for (int i = 0; i < INPUTS; i++)

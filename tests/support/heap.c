@@ -14,7 +14,12 @@
 #endif
 #endif
 
-static atomic_long calls, bytes;
+static atomic_long calls, bytes, successes_left = -1;
+
+void heap_fail_after(long successes)
+{
+  successes_left = successes;
+}
 
 long heap_calls(void)
 {
@@ -45,6 +50,11 @@ extern void __libc_free(void *memory);
 
 int posix_memalign(void **memory, size_t alignment, size_t size);
 
+static int may_succeed(void)
+{
+  return successes_left < 0 || successes_left-- > 0;
+}
+
 static void *taken(void *memory)
 {
   calls++;
@@ -54,25 +64,25 @@ static void *taken(void *memory)
 
 void *malloc(size_t size)
 {
-  return taken(__libc_malloc(size));
+  return may_succeed() ? taken(__libc_malloc(size)) : NULL;
 }
 
 void *calloc(size_t count, size_t size)
 {
-  return taken(__libc_calloc(count, size));
+  return may_succeed() ? taken(__libc_calloc(count, size)) : NULL;
 }
 
 void *realloc(void *memory, size_t size)
 {
   const long before = (long)malloc_usable_size(memory);
-  void *moved = __libc_realloc(memory, size);
+  void *moved = may_succeed() ? __libc_realloc(memory, size) : NULL;
   if (moved != NULL || size == 0) bytes -= before;
   return taken(moved);
 }
 
 void *memalign(size_t alignment, size_t size)
 {
-  return taken(__libc_memalign(alignment, size));
+  return may_succeed() ? taken(__libc_memalign(alignment, size)) : NULL;
 }
 
 void *aligned_alloc(size_t alignment, size_t size)

@@ -1,11 +1,11 @@
 #include "scene/arena.h"
 
+#include <stdint.h>
 #include <string.h>
 
 #include "scene/heap.h"
 
 enum { BLOCK_SIZE = 1 << 16, ALIGNMENT = 16 };
-static const size_t LIMIT = (size_t)1 << 30;
 
 struct dvi__arena_block {
   struct dvi__arena_block *before;
@@ -17,23 +17,18 @@ struct dvi__arena_block {
 static struct dvi__arena_block *new_block(dvi__arena *arena, size_t wanted)
 {
   const size_t size = wanted > BLOCK_SIZE ? wanted : BLOCK_SIZE;
-  if (size > LIMIT - arena->total) return NULL;
   struct dvi__arena_block *block = dvi__heap_take(1, sizeof *block + size);
   if (block == NULL) return NULL;
   block->before = arena->last;
   block->size = size;
   arena->last = block;
-  arena->total += size;
   return block;
 }
 
 void *dvi__arena_take(dvi__arena *arena, size_t count, size_t size)
 {
-  if (size != 0 && count > LIMIT / size) {
-    arena->failed = 1;
-    return NULL;
-  }
-  const size_t wanted = (count * size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
+  const size_t most = SIZE_MAX / 2; /* as much as is refused */
+  const size_t wanted = size != 0 && count > most / size ? most : (count * size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
   struct dvi__arena_block *block = arena->last;
   if (block == NULL || wanted > block->size - block->used) block = new_block(arena, wanted);
   if (block == NULL) {

@@ -6,8 +6,7 @@
 /* Zero: empty. It owns its blocks. */
 typedef struct dvi__arena {
   struct dvi__arena_block *last;
-  size_t total; /* bytes taken from the heap */
-  int failed;   /* not 0: memory, or the limit of 1 GiB, ran out once */
+  int failed; /* not 0: memory ran out once */
 } dvi__arena;
 
 /* Zeroed memory for `count` things of `size` bytes, aligned for any of them; NULL if there is none left, or the product overflows. */

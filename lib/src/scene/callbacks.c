@@ -7,6 +7,18 @@
 
 enum { BLAME_SIZE = 512 };
 static _Thread_local char blame_text[BLAME_SIZE];
+static _Thread_local dvi_status blame_status;
+
+void dvi__blame_nobody(void)
+{
+  blame_text[0] = '\0';
+  blame_status = DVI_OK;
+}
+
+dvi_status dvi__blame_status(void)
+{
+  return blame_status;
+}
 
 const char *dvi_scene_blame(void)
 {
@@ -33,13 +45,29 @@ static void blame(const dvi__term *term, int count, const double *const *x)
     (void)snprintf(blame_text + used, sizeof blame_text - (size_t)used, ", at t = %.6g", x[DVI__TIME][k - 1]);
 }
 
+/* Why there is no program. */
+static const char *too_large(dvi_status status)
+{
+  return status == DVI_NO_MEMORY
+             ? "memory ran out"
+             : "too large to be compiled: 1 GiB of memory, 2000000 parts, or 16384 numbers in use at a time do not "
+               "hold it with its derivatives";
+}
+
 static int verdict(const dvi__term *term, int count, const double *const *x, int returned)
 {
-  if (returned > 0) blame(term, count, x);
-  if (returned < 0)
-    (void)snprintf(blame_text, sizeof blame_text, "%s: its derivatives are too long to be compiled, or memory ran out",
-                   term->scene->source.name);
+  if (returned == 0) return 0;
+  blame_status = returned > 0 ? DVI_NOT_FINITE : (dvi_status)returned;
+  if (returned > 0)
+    blame(term, count, x);
+  else
+    (void)snprintf(blame_text, sizeof blame_text, "%s: %s", term->scene->source.name, too_large(blame_status));
   return returned;
+}
+
+bool dvi__scene_too_large(dvi_scene *scene, const char *what, dvi_status status)
+{
+  return dvi__complain(scene->complaint, status, DVI__NOWHERE, "%s: %s", what, too_large(status));
 }
 
 /* ---- evaluations ---- */
@@ -97,8 +125,7 @@ static int potential_rate(int count, const double *t, const double *q, double *V
 bool dvi__term_pattern(dvi_scene *scene, dvi__term *term, dvi__pair pair, dvi_pattern *pattern, int *full)
 {
   const dvi_status status = dvi__function_pattern(term->function, pair, pattern, full);
-  if (status != DVI_OK)
-    return dvi__complain(scene->complaint, status, DVI__NOWHERE, "there is no room for the pattern of second derivatives");
+  if (status != DVI_OK) return dvi__scene_too_large(scene, "the pattern of the second derivatives", status);
   if (*full) *pattern = (dvi_pattern){0};
   return true;
 }

@@ -19,6 +19,13 @@ int dvi__term_value(double t, const double *q, const double *velocity_or_momentu
 /* The function xi(q).w of a vector field that is given by coordinate; `where` for messages. */
 bool dvi__read_field(dvi_scene *scene, const dvi__tree *field, const char *where, dvi__term **term);
 
+/* Forget what dvi_scene_blame says; and the status that it speaks of, DVI_OK after that. */
+void dvi__blame_nobody(void);
+dvi_status dvi__blame_status(void);
+
+/* Refuse what there is no program or pattern for, for that status; false. */
+bool dvi__scene_too_large(dvi_scene *scene, const char *what, dvi_status status);
+
 /* A pattern of a function; told if there is none. */
 bool dvi__term_pattern(dvi_scene *scene, dvi__term *term, dvi__pair pair, dvi_pattern *pattern, int *full);
 

@@ -1,6 +1,7 @@
 /* Errors as compilers print them: the place, the sentence, the line and a caret. Whatever a hostile file holds, what is shown can be
  * printed and is of bounded length. */
 #include "scene/complaint.h"
+#include "scene/heap.h"
 #include "scene/utf8.h"
 
 #include <stdarg.h>
@@ -148,6 +149,13 @@ bool(dvi__complain)(dvi__complaint *complaint, dvi_status status, dvi__span wher
   put_sentence(&w, sentence);
   if (where.first <= source->size) put_excerpt(&w, source, where);
   return false;
+}
+
+bool dvi__complain_of_memory(dvi__complaint *complaint)
+{
+  if (dvi__heap_refusal() == DVI_BAD_SIZE)
+    return dvi__complain(complaint, DVI_BAD_SIZE, DVI__NOWHERE, "more than 1 GiB of memory is needed");
+  return dvi__complain(complaint, DVI_NO_MEMORY, DVI__NOWHERE, "memory ran out");
 }
 
 static int lower(char c)

@@ -39,6 +39,9 @@ typedef struct dvi__complaint {
  * Returns false, always. */
 bool dvi__complain(dvi__complaint *complaint, dvi_status status, dvi__span where, const char *format, ...) DVI__SCENE_PRINTF(4, 5);
 
+/* The same for memory that was refused: DVI_BAD_SIZE if it was too much, else DVI_NO_MEMORY. Returns false. */
+bool dvi__complain_of_memory(dvi__complaint *complaint);
+
 /* The line and the column of a place, from 1; columns count characters of UTF-8. */
 void dvi__source_place(const dvi__source *source, size_t offset, int *line, int *column);
 

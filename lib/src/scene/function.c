@@ -60,6 +60,14 @@ static dvi_status fill(dvi__function *function, int kernel_count, const dvi__ker
   return status;
 }
 
+/* The ledger that is charged now. */
+static dvi__ledger *current_ledger(void)
+{
+  dvi__ledger *ledger = dvi__heap_charge(NULL);
+  (void)dvi__heap_charge(ledger);
+  return ledger;
+}
+
 dvi_status dvi__function_create(int kernel_count, const dvi__kernel *kernels, const int *block_size, dvi__function **function)
 {
   *function = NULL;
@@ -69,6 +77,7 @@ dvi_status dvi__function_create(int kernel_count, const dvi__kernel *kernels, co
     dvi__heap_free(made);
     return DVI_NO_MEMORY;
   }
+  made->ledger = current_ledger();
   memcpy(made->block_size, block_size, sizeof made->block_size);
   const dvi_status status = fill(made, kernel_count, kernels);
   if (status == DVI_OK)
@@ -93,6 +102,22 @@ void dvi__function_destroy(dvi__function **function)
 
 /* --- Evaluation. --- */
 
+void dvi__function_enter(dvi__function *function)
+{
+  pthread_mutex_lock(&function->lock);
+  function->other = dvi__heap_charge(function->ledger);
+}
+
+dvi_status dvi__function_leave(dvi__function *function, dvi_status status)
+{
+  if (status == DVI_NO_MEMORY) status = dvi__heap_refusal();
+  for (int k = 0; k < function->kernel_count; k++) /* there may be memory the next time */
+    if (function->kernel[k].graph->failed == DVI_NO_MEMORY) function->kernel[k].graph->failed = DVI_OK;
+  (void)dvi__heap_charge(function->other);
+  pthread_mutex_unlock(&function->lock);
+  return status;
+}
+
 typedef dvi_status derivation(dvi__function *function, unsigned mask, dvi__sum **sum);
 
 /* The sum in a slot, derived now if it is not there. */
@@ -100,13 +125,12 @@ static dvi_status ask(dvi__function *function, _Atomic(dvi__sum *) *slot, deriva
 {
   *sum = atomic_load_explicit(slot, memory_order_acquire);
   if (*sum != NULL) return DVI_OK;
-  pthread_mutex_lock(&function->lock);
+  dvi__function_enter(function);
   dvi__sum *made = atomic_load_explicit(slot, memory_order_relaxed);
   const dvi_status status = made != NULL ? DVI_OK : derive(function, mask, &made);
   if (status == DVI_OK) atomic_store_explicit(slot, made, memory_order_release);
-  pthread_mutex_unlock(&function->lock);
   *sum = made;
-  return status;
+  return dvi__function_leave(function, status);
 }
 
 DVI__SCENE_LANES static int all_finite(size_t size, const double *restrict x)
@@ -144,7 +168,8 @@ static void count_points(atomic_long *points, int count)
 int dvi__function_value(dvi__function *function, int count, const double *const *x, double *value)
 {
   const dvi__sum *sum;
-  if (ask(function, &function->value, dvi__derive_value, 0, &sum) != DVI_OK) return -1;
+  const dvi_status status = ask(function, &function->value, dvi__derive_value, 0, &sum);
+  if (status != DVI_OK) return (int)status;
   count_points(&function->value_points, count);
   return evaluate(sum, count, x, 1, &(int){1}, &value);
 }
@@ -153,7 +178,8 @@ int dvi__function_gradient(dvi__function *function, int count, const double *con
 {
   const unsigned blocks = mask_of(DVI__BLOCKS, gradient);
   const dvi__sum *sum;
-  if (ask(function, &function->gradient[blocks], dvi__derive_gradient, blocks, &sum) != DVI_OK) return -1;
+  const dvi_status status = ask(function, &function->gradient[blocks], dvi__derive_gradient, blocks, &sum);
+  if (status != DVI_OK) return (int)status;
   count_points(&function->gradient_points, count);
   return evaluate(sum, count, x, DVI__BLOCKS, function->block_size, gradient);
 }
@@ -163,7 +189,8 @@ int dvi__function_second(dvi__function *function, int count, const double *const
   const unsigned pairs = mask_of(DVI__PAIRS, values);
   const dvi__sum *sum;
   int size[DVI__PAIRS];
-  if (ask(function, &function->second[pairs], dvi__derive_second, pairs, &sum) != DVI_OK) return -1;
+  const dvi_status status = ask(function, &function->second[pairs], dvi__derive_second, pairs, &sum);
+  if (status != DVI_OK) return (int)status;
   for (int pair = 0; pair < DVI__PAIRS; pair++) size[pair] = function->pattern[pair].entries;
   count_points(&function->second_points, count);
   return evaluate(sum, count, x, DVI__PAIRS, size, values);
@@ -183,12 +210,11 @@ dvi_status dvi__function_prepare(dvi__function *function, int value, unsigned bl
 
 dvi_status dvi__function_pattern(dvi__function *function, dvi__pair pair, dvi_pattern *pattern, int *full)
 {
-  pthread_mutex_lock(&function->lock);
+  dvi__function_enter(function);
   const dvi_status status = dvi__find_pattern(function, pair);
   *pattern = function->pattern[pair].pattern;
   *full = function->pattern[pair].full;
-  pthread_mutex_unlock(&function->lock);
-  return status;
+  return dvi__function_leave(function, status);
 }
 
 void dvi__function_count(dvi__function *function, dvi__function_counters *counters)

@@ -46,8 +46,8 @@ dvi_status dvi__function_create(int kernel_count, const dvi__kernel *kernels, co
 void dvi__function_destroy(dvi__function **function);
 
 /* x[b] are the blocks' variables, [block_size[b] * count]; blocks that do not occur may be NULL.
- * All return 0, 1 if a result is not finite (then dvi__function_blame tells where), or -1 if the program could not be made: dvi__function_prepare tells
- * why. Each is derived for the blocks or pairs that are asked for, at the first call or by _prepare. */
+ * All return 0, 1 if a result is not finite (then dvi__function_blame tells where), or a status below zero if the program could not be made, as
+ * dvi__function_prepare says. Each is derived for the blocks or pairs that are asked for, at the first call or by _prepare. */
 int dvi__function_value(dvi__function *function, int count, const double *const *x, double *value);
 /* The derivatives by all variables of the blocks for which gradient[b] is not NULL, [block_size[b] * count]. */
 int dvi__function_gradient(dvi__function *function, int count, const double *const *x, double *const *gradient);

@@ -270,11 +270,11 @@ static int are_constants(const dvi__kernel *kernel, const dvi__derivatives *know
 int dvi__function_second_constant(dvi__function *function, dvi__pair pair)
 {
   int constant = 1;
-  pthread_mutex_lock(&function->lock);
+  dvi__function_enter(function);
   for (int k = 0; k < function->kernel_count && constant == 1; k++)
     constant = dvi__derive_pairs(function, k, 1U << pair) == DVI_OK
                    ? are_constants(&function->kernel[k], &function->derivatives[k], pair)
                    : -1;
-  pthread_mutex_unlock(&function->lock);
+  (void)dvi__function_leave(function, DVI_OK);
   return constant;
 }

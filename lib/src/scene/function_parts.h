@@ -9,6 +9,7 @@
 #include <stdatomic.h>
 
 #include "scene/function.h"
+#include "scene/heap.h"
 #include "scene/program.h"
 
 enum {
@@ -82,7 +83,9 @@ struct dvi__function {
   int kernel_count, block_size[DVI__BLOCKS];
   dvi__kernel *kernel;
   dvi__derivatives *derivatives; /* of each kernel */
+  dvi__ledger *ledger;           /* that was charged for it */
   pthread_mutex_t lock;          /* of all below, and of the kernels' graphs */
+  dvi__ledger *other;            /* what the holder of the lock else charges */
   dvi__arena arena;
   dvi__sum *last; /* that was made */
   dvi__pair_pattern pattern[DVI__PAIRS];
@@ -130,6 +133,10 @@ const int *dvi__strides(dvi__arena *arena, int elements, const int *list);
 
 /* Add the sum at `count` points to result[array], [entries * count]. */
 void dvi__sum_add(const dvi__sum *sum, int count, const double *const *x, double *const *result);
+
+/* Take the lock, and charge the function's ledger; the reverse, which tells memory that ran out from a full ledger: returns the status. */
+void dvi__function_enter(dvi__function *function);
+dvi_status dvi__function_leave(dvi__function *function, dvi_status status);
 
 /* The following want the lock. */
 

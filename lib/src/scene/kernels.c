@@ -332,7 +332,7 @@ bool dvi__kernels_function(dvi_scene *scene, dvi__kernels *list, int count, dvi_
   *term = made;
   if (made == NULL) return dvi__scene_no_memory(scene);
   const dvi_status status = dvi__function_create(list->count, list->kernel, size, &made->function);
-  if (status != DVI_OK) return dvi__complain(scene->complaint, status, DVI__NOWHERE, "the expressions could not be compiled");
+  if (status != DVI_OK) return dvi__scene_no_memory(scene);
   dvi__heap_free(list->kernel);
   *list = (dvi__kernels){0};
   made->scene = scene;

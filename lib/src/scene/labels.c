@@ -62,12 +62,14 @@ static void label_coordinate(dvi_scene *scene, const dvi__coordinate *x, which o
 static char **labels_of(dvi_scene *scene, which of)
 {
   pthread_mutex_lock(&scene->labels_mutex);
+  dvi__ledger *const other = dvi__heap_charge(&scene->ledger);
   if (scene->label[of] == NULL) {
     char **made = dvi__arena_take(&scene->label_arena, (size_t)(of == OF_Q ? scene->n : scene->nv), sizeof *made);
     for (int k = 0; k < scene->coordinate_count && made != NULL; k++) label_coordinate(scene, &scene->coordinate[k], of, made);
     scene->label[of] = made;
   }
   char **label = scene->label[of];
+  (void)dvi__heap_charge(other);
   pthread_mutex_unlock(&scene->labels_mutex);
   return label;
 }

@@ -5,6 +5,7 @@
 #include <pthread.h>
 
 #include "scene/function.h"
+#include "scene/heap.h"
 #include "scene/names.h"
 #include "scene/tree.h"
 
@@ -23,6 +24,7 @@ typedef struct dvi__term {
 } dvi__term;
 
 struct dvi_scene {
+  dvi__ledger ledger;
   dvi__arena arena;
   dvi__source source; /* a copy, for messages of callbacks */
   dvi__complaint *complaint;

@@ -65,7 +65,7 @@ bool dvi__names_add(dvi__names *names, dvi__arena *arena, dvi__complaint *compla
   const dvi__name *other = dvi__names_find(names, text);
   if (other != NULL)
     return dvi__complain(complaint, DVI_BAD_FILE, span, "there is a %s '%s' already", dvi__sort_name(other->sort), text);
-  if (!grow(names, arena)) return dvi__complain(complaint, DVI_NO_MEMORY, span, "no memory for names");
+  if (!grow(names, arena)) return dvi__complain_of_memory(complaint);
   names->name[names->count] = (dvi__name){text, sort, number};
   names->table[slot_of(names, text)] = ++names->count;
   return true;

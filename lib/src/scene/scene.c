@@ -82,12 +82,12 @@ static dvi_status fill(dvi_scene *scene, const char *name, const char *text, siz
 {
   const char *name_copy = dvi__arena_text(&scene->arena, name, strlen(name)), *copy = dvi__arena_text(&scene->arena, text, length);
   scene->complaint = complaint;
-  scene->source = (dvi__source){name_copy, copy, length};
+  scene->source = (dvi__source){name_copy != NULL ? name_copy : name, copy != NULL ? copy : text, length};
   complaint->source = &scene->source;
   settings->used = dvi__arena_take(&scene->arena, (size_t)settings->count + 1, 1);
   if (name_copy == NULL || copy == NULL || settings->used == NULL) {
-    complaint->status = DVI_NO_MEMORY;
-    return DVI_NO_MEMORY;
+    (void)dvi__complain_of_memory(complaint);
+    return complaint->status;
   }
   const bool read = read_scene(scene, settings);
   const dvi_status status = complaint->status;
@@ -117,7 +117,9 @@ dvi_status dvi_scene_parse(const char *name, const char *text, size_t length, in
   }
   dvi__settings given = {.count = setting_count, .text = settings};
   dvi__complaint complaint = {.message = message, .size = message != NULL ? size : 0};
+  dvi__ledger *const other = dvi__heap_charge(&made->ledger);
   const dvi_status status = fill(made, name, text, length, &given, &complaint);
+  (void)dvi__heap_charge(other);
   if (status == DVI_OK) {
     *scene = made;
     return DVI_OK;

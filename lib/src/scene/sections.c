@@ -22,8 +22,7 @@ bool(dvi__scene_refuse)(dvi_scene *scene, dvi__span span, const char *format, ..
 
 bool(dvi__scene_no_memory)(dvi_scene *scene)
 {
-  return dvi__complain(scene->complaint, DVI_NO_MEMORY, DVI__NOWHERE,
-                       scene->arena.failed ? "memory ran out, or the scene needs more than 1 GiB" : "memory ran out");
+  return dvi__complain_of_memory(scene->complaint);
 }
 
 bool dvi__want_mapping(dvi_scene *scene, const dvi__tree *tree, const char *what)

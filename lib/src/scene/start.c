@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "scene/callbacks.h"
 #include "scene/heap.h"
 #include "scene/sections.h"
 #include "scene/shape.h"
@@ -193,10 +194,12 @@ bool dvi__read_initial(dvi_scene *scene, const dvi__tree *section)
 bool dvi__scene_complete_start(dvi_scene *scene)
 {
   dvi_status status = DVI_OK;
+  dvi__blame_nobody();
   if (scene->terms.one_form != NULL || scene->momenta_given)
     status = dvi_system_velocity(scene->system, 0.0, scene->q, scene->p, scene->v);
   if (status == DVI_OK && !scene->momenta_given) status = dvi_system_momentum(scene->system, 0.0, scene->q, scene->v, scene->p);
   if (status == DVI_OK) return true;
+  if (status == DVI_CALLBACK_FAILED) status = dvi__blame_status();
   const char *blame = dvi_scene_blame();
   return dvi__complain(scene->complaint, status, DVI__NOWHERE, "at the start: %s%s%s", dvi_last_error(), *blame != '\0' ? "; " : "",
                        blame);

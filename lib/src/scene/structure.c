@@ -128,7 +128,7 @@ static bool set_mass(dvi_scene *scene, const dvi_pattern *pattern, const double 
 static bool derive_mass(dvi_scene *scene, dvi__term *T)
 {
   const dvi_status status = dvi__function_prepare(T->function, 0, 1U << DVI__VELOCITIES, 1U << DVI__PAIR_VV);
-  return status == DVI_OK || dvi__complain(scene->complaint, status, DVI__NOWHERE, "the mass could not be derived");
+  return status == DVI_OK || dvi__scene_too_large(scene, "the mass", status);
 }
 
 /* Whether no velocity stands alone: the momenta at rest are zero. */

@@ -43,7 +43,7 @@ static bool sum_of(parser *p, node **result);
 
 static bool no_memory(const parser *p)
 {
-  return dvi__complain(p->complaint, DVI_NO_MEMORY, DVI__NOWHERE, "no memory is left for the expressions; at most 1 GiB is taken");
+  return dvi__complain_of_memory(p->complaint);
 }
 
 static bool next(parser *p)

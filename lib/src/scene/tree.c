@@ -32,7 +32,7 @@ typedef struct reader {
 
 static bool no_memory(const reader *r)
 {
-  return dvi__complain(r->complaint, DVI_NO_MEMORY, DVI__NOWHERE, "no memory is left for the file; at most 1 GiB is taken");
+  return dvi__complain_of_memory(r->complaint);
 }
 
 static bool complain(const reader *r, dvi__span where, const char *sentence)
