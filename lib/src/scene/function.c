@@ -145,7 +145,8 @@ static int evaluate(const dvi__sum *sum, int count, const double *const *x, int 
 {
   int finite = 1;
   for (int i = 0; i < arrays; i++)
-    if (result[i] != NULL && size[i] > 0) memset(result[i], 0, (size_t)size[i] * (size_t)count * sizeof **result);
+    if ((sum->clear >> i & 1U) != 0 && result[i] != NULL && size[i] > 0)
+      memset(result[i], 0, (size_t)size[i] * (size_t)count * sizeof **result);
   dvi__sum_add(sum, count, x, result);
   for (int i = 0; i < arrays && finite; i++)
     if (result[i] != NULL) finite = all_finite((size_t)size[i] * (size_t)count, result[i]);

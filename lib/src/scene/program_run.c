@@ -164,11 +164,12 @@ static void call_library(int op, int lanes, int width, const double *restrict a,
   fill_up(lanes, width, to);
 }
 
-DVI__SCENE_LANES static void run(const dvi__program *program, int lanes, const double *const *input, double *registers)
+/* `below`: rows of inputs stand below the registers. */
+DVI__SCENE_INLINE void run_rows(const int below, const dvi__program *program, int lanes, int width, const double *const *input,
+                                double *registers)
 {
-  const int width = dvi__row_width(lanes);
   const dvi__instruction *const end = program->instruction + program->instruction_count;
-#define ROW(i) ((i) >= 0 ? registers + (ptrdiff_t)(i)*width : input[~(i)])
+#define ROW(i) (below || (i) >= 0 ? registers + (ptrdiff_t)(i)*width : input[~(i)])
   for (const dvi__instruction *at = program->instruction; at < end; at++) {
     double *restrict const to = registers + (ptrdiff_t)at->to * width;
     const double *restrict const a = ROW(at->a), *restrict const b = ROW(at->b), *restrict const c = ROW(at->c);
@@ -188,8 +189,23 @@ DVI__SCENE_LANES static void run(const dvi__program *program, int lanes, const d
 #undef ROW
 }
 
+DVI__SCENE_LANES static void run(const dvi__program *program, int lanes, const double *const *input, double *registers)
+{
+  run_rows(0, program, lanes, dvi__row_width(lanes), input, registers);
+}
+
+DVI__SCENE_LANES static void run_block(const dvi__program *program, int lanes, double *registers)
+{
+  run_rows(1, program, lanes, DVI__LANES, NULL, registers);
+}
+
 /* clang does not export a function that is compiled more than once. */
 void dvi__program_run(const dvi__program *program, int lanes, const double *const *input, double *registers)
 {
   run(program, lanes, input, registers);
+}
+
+void dvi__program_run_block(const dvi__program *program, int lanes, double *registers)
+{
+  run_block(program, lanes, registers);
 }
