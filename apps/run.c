@@ -401,12 +401,7 @@ static const char *const details[] = {
 
 int run_command(int argc, char **argv)
 {
-  run_request r = {
-      .out = "-",
-      .h = (double)NAN,
-      .t_end = (double)NAN,
-      .tolerance = (double)NAN,
-  };
+  run_request r = {.out = "-", .h = (double)NAN, .t_end = (double)NAN, .tolerance = (double)NAN};
   const option options[] = {
       {.name = "method", .word = &r.method, .value = "SPEC", .help = "the method: name[:key=value,...], see dvi list methods"},
       {.name = "h", .number = &r.h, .value = "H", .help = "the step, for sem the first one; left out: the problem's"},
@@ -428,15 +423,9 @@ int run_command(int argc, char **argv)
        .value = "P1,P2,...",
        .help = "the momenta of the start, in the order of their columns; left out: the problem's"},
       {.name = "project", .flag = &r.project, .help = "if the start is off a problem's constraint: project it; left out: refuse"},
-      {.name = "columns",
-       .word = &r.columns,
-       .value = "A,B,...",
-       .help = "the columns behind t; left out: those of the scene's report, or all"},
+      {.name = "columns", .word = &r.columns, .value = "A,B,...", .help = "columns behind t; left out: the scene's, or all"},
       {.name = "out", .word = &r.out, .value = "FILE", .help = "where the rows go; left out, or -: standard output"},
-      {.name = "events",
-       .word = &r.events,
-       .value = "FILE.csv",
-       .help = "list the scene's events there; left out: they are counted alone"},
+      {.name = "events", .word = &r.events, .value = "FILE.csv", .help = "list the scene's events there; left out: count them"},
       {.name = "checkpoint",
        .word = &r.checkpoint,
        .value = "FILE",
