@@ -90,6 +90,23 @@ says err 'chosen by verlet.* has no column .h.' 'which method'
 expect 0 'a column that the method has' run chosen.yaml --method sem
 [ "$(head -n 1 out)" = t,h ] || fail 'the steps that sem chose'
 
+# What no column shows is not evaluated: from x = 1.8 on the potential overflows, but its derivative is 1.
+cat >overflow.yaml <<'END'
+coordinates: {x: scalar}
+lagrangian: x'^2/2 - 1e308*x/1e308
+symmetries: {growth: {x: x}}
+invariants: {square: x^2}
+initial: {x: 1, x': 20}
+method: verlet
+step: 0.1
+until: 1
+END
+expect 1 'no energy' run overflow.yaml
+says err '1e308.x, x = 2.995 is not finite, at t = 0.1' 'why'
+expect 0 'columns without energy' run overflow.yaml --columns x,growth,square
+expect 1 'columns with it' run overflow.yaml --columns x,energy
+expect 1 'a plot shows it, too' run overflow.yaml --columns x --plot overflow.svg
+
 # No command writes over its scene.
 cp ball.yaml kept.yaml
 ln -s ball.yaml link.svg
