@@ -97,6 +97,6 @@ int emit_c_command(int argc, char **argv)
   if (!options_parse(&command, argc, argv, &path, &code)) return code;
   if (r.out == NULL) return usage_error("emit-c: --out is missing: where the C file goes, or - for standard output");
   if (!scene_is_path(path)) return usage_error("emit-c: '%s' is no scene; the problems of the catalogue are C already", path);
-  code = scene_spared("emit-c", path, r.out);
+  code = scene_spared("emit-c", path, 1, &(named_file){"out", r.out});
   return code == DONE ? emit(&r, path) : code;
 }

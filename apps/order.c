@@ -6,6 +6,7 @@
 
 #include "axes.h"
 #include "command.h"
+#include "events.h"
 #include "file.h"
 #include "levels.h"
 #include "open.h"
@@ -13,6 +14,7 @@
 #include "order_report.h"
 #include "outputs.h"
 #include "progress.h"
+#include "scene.h"
 #include "study.h"
 #include "table.h"
 #include "window.h"
@@ -231,7 +233,7 @@ static int check_methods(const order_request *request, const problem *scene)
   return code;
 }
 
-static int check_request(order_request *request)
+static int check_request(order_request *request, const char *name)
 {
   if (request->levels > LEVELS_MAX)
     return usage_error("order: --levels %ld is too many, %d are possible", request->levels, (int)LEVELS_MAX);
@@ -244,6 +246,7 @@ static int check_request(order_request *request)
   const named_file files[] = {{"csv", request->csv}, {"plot", request->plot}};
   int code = request->judged_by != NULL ? judge_read("order: --judge", request->judged_by, &request->judge) : DONE;
   if (code == DONE) code = outputs_plot("order", request->plot);
+  if (code == DONE) code = scene_spared("order", name, 2, files);
   if (code == DONE) code = outputs_distinct("order", 2, files);
   if (code != DONE) return code;
   if (request->csv != NULL && !file_writable(request->csv)) return FAILED;
@@ -320,7 +323,7 @@ int order_command(int argc, char **argv)
   const char *name;
   int code;
   if (!options_parse(&command, argc, argv, &name, &code)) return code;
-  code = check_request(&r);
+  code = check_request(&r, name);
   if (code != DONE) return code;
   problem *scene;
   code = open_problem(name, &r.settings, &scene);
@@ -329,6 +332,7 @@ int order_command(int argc, char **argv)
   if (code == DONE) code = wish_method(&r, scene);
   if (code == DONE) code = check_step(&r, scene);
   if (code == DONE) code = check_methods(&r, scene);
+  if (code == DONE) events_passed("order", scene);
   if (code == DONE) code = study_all(&r, scene);
   problem_destroy(&scene);
   return code;

@@ -81,6 +81,8 @@ static bool describe(dvi_scene *scene, problem *made)
   made->summary = plan->title != NULL ? plan->title : "a scene";
   made->method = plan->method;
   made->every = plan->every;
+  made->column_count = plan->column_count;
+  made->column = plan->column;
   made->h = plan->h;
   made->t_end = plan->t_end;
   made->order_h = plan->h;
@@ -155,10 +157,12 @@ int scene_load(const char *path, scene_text *text)
   return good ? DONE : FAILED;
 }
 
-int scene_spared(const char *command, const char *path, const char *out)
+int scene_spared(const char *command, const char *path, int count, const named_file *files)
 {
-  if (!scene_is_path(path) || !file_same(path, out)) return DONE;
-  return usage_error("%s: --out %s would write over the scene", command, out);
+  for (int i = 0; i < count && scene_is_path(path); i++)
+    if (files[i].path != NULL && strcmp(files[i].path, "-") != 0 && file_same(path, files[i].path))
+      return usage_error("%s: --%s %s would write over the scene", command, files[i].option, files[i].path);
+  return DONE;
 }
 
 static void tell_operations(const char *of, int operations, long points)

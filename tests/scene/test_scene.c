@@ -165,6 +165,46 @@ START_TEST(verlet_asks_for_one_gradient_a_step_and_nothing_else)
 }
 END_TEST
 
+/* Neither are there multipliers where nothing is constrained, nor second derivatives where nothing is solved. */
+START_TEST(explicit_methods_derive_nothing_twice_and_have_no_multiplier)
+{
+  static const char *const method[] = {"verlet", "composition:order=4,base=verlet"};
+  dvi_counters counters;
+  open_both(kepler, "kepler");
+  ck_assert_int_eq(dvi_system_constraint_count(dvi_scene_system(scene)), 0);
+  for (int k = 0; k < 2; k++) {
+    dvi_integrator *integrator = started(dvi_scene_system(scene), method[k]);
+    for (int i = 0; i < STEPS; i++) ck_assert_int_eq(dvi_integrator_step(integrator, 0.05), DVI_OK);
+    dvi_integrator_counters(integrator, &counters);
+    ck_assert_int_eq(counters.residuals + counters.jacobians + counters.factorizations + counters.symbolic, 0);
+    ck_assert_ptr_null(dvi_integrator_multiplier(integrator));
+    dvi_integrator_destroy(&integrator);
+  }
+  ck_assert_int_eq(facts()->hessian_operations, 0);
+  ck_assert_int_eq(facts()->hessian_points, 0);
+}
+END_TEST
+
+START_TEST(the_energy_is_evaluated_where_it_is_asked_for)
+{
+  static const char *const method[] = {"verlet", "galerkin:degree=2", "midpoint"};
+  double value[4], one;
+  open_both(kepler, "kepler");
+  for (int k = 0; k < 3; k++) {
+    dvi_integrator *integrator = started(dvi_scene_system(scene), method[k]);
+    const long before = facts()->value_points;
+    for (int i = 0; i < STEPS; i++) ck_assert_int_eq(dvi_integrator_step(integrator, 0.05), DVI_OK);
+    for (int i = 1; i < 4; i++) ck_assert_int_eq(dvi_integrator_invariant(integrator, i, &one), DVI_OK);
+    ck_assert_int_eq(facts()->value_points, before);
+    ck_assert_int_eq(dvi_integrator_invariant(integrator, 0, &one), DVI_OK);
+    ck_assert_int_eq(facts()->value_points, before + 1);
+    ck_assert_int_eq(dvi_integrator_invariants(integrator, value), DVI_OK);
+    ck_assert_double_eq(value[0], one);
+    dvi_integrator_destroy(&integrator);
+  }
+}
+END_TEST
+
 START_TEST(pendulum_is_that_of_the_catalogue)
 {
   open_both("coordinates: {q: scalar}\nlagrangian: q'^2/2 - cos(q)\ninitial: {q: 2.5}\n" RUN, "pendulum");
@@ -301,6 +341,8 @@ int main(void)
   tcase_add_test(tests, kepler_is_that_of_the_catalogue);
   tcase_add_test(tests, invariants_are_those_of_the_catalogue);
   tcase_add_test(tests, verlet_asks_for_one_gradient_a_step_and_nothing_else);
+  tcase_add_test(tests, explicit_methods_derive_nothing_twice_and_have_no_multiplier);
+  tcase_add_test(tests, the_energy_is_evaluated_where_it_is_asked_for);
   tcase_add_test(tests, pendulum_is_that_of_the_catalogue);
   tcase_add_test(tests, fpu_is_that_of_the_catalogue);
   tcase_add_test(tests, outer_solar_is_that_of_the_catalogue);
