@@ -278,8 +278,8 @@ static void find_fits(const dvi__kernel *kernel, dvi__block block, dvi__degree *
 bool dvi__kernel_other_term(dvi_scene *scene, const dvi__kernel *kernel, dvi__block block, dvi__span *span, int *found)
 {
   const dvi__graph_node *node = kernel->graph->node;
-  dvi__degree *known = calloc((size_t)kernel->root + 1, sizeof *known);
-  char *fits = calloc((size_t)kernel->root + 1, 1);
+  dvi__degree *known = dvi__heap_take((size_t)kernel->root + 1, sizeof *known);
+  char *fits = dvi__heap_take((size_t)kernel->root + 1, 1);
   const bool good = (known != NULL && fits != NULL) || dvi__scene_no_memory(scene);
   if (good) {
     int at = kernel->root, sum = at;
@@ -288,8 +288,8 @@ bool dvi__kernel_other_term(dvi_scene *scene, const dvi__kernel *kernel, dvi__bl
     for (; is_sum(node[at].op); at = fits[node[at].a] ? node[at].b : node[at].a) sum = at;
     *span = node[node[at].op == DVI__OP_INPUT ? sum : at].span; /* inputs are where they stand first */
   }
-  free(known);
-  free(fits);
+  dvi__heap_free(known);
+  dvi__heap_free(fits);
   return good;
 }
 
