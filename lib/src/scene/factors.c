@@ -117,7 +117,7 @@ static bool add_columns(dvi_scene *scene, parts *to, const dvi_pattern *pattern,
 static int any(const char *heavy, int count)
 {
   int found = 0;
-  for (int i = 0; i < count && !found; i++) found = heavy[i];
+  for (int i = 0; i < count && !found; i++) found = heavy[i] != 0;
   return found;
 }
 

@@ -38,10 +38,10 @@ static bool find_coordinate(dvi_scene *scene, const dvi__tree *key, const dvi__e
   target->x = &scene->coordinate[known->number];
   if (target->index != NULL && !target->x->family)
     return dvi__scene_refuse(scene, whole->span, "'%s' is no family, and is given as a whole", name->name);
-  const dvi__coordinate *x = target->x;
-  if (e->form == DVI__FORM_MEMBER) target->x = dvi__part_of_motion(x, e->name);
+  if (e->form != DVI__FORM_MEMBER) return true;
+  target->x = dvi__part_of_motion(target->x, e->name);
   return target->x != NULL ||
-         dvi__scene_refuse(scene, e->span, "'%s' has no part %s; rigid motions have R and x", x->name, e->name);
+         dvi__scene_refuse(scene, e->span, "'%s' has no part %s; rigid motions have R and x", name->name, e->name);
 }
 
 /* Whether the key is the right one for the kind: x', omega(R), rate(u); of a motion its parts. */

@@ -98,7 +98,7 @@ static bool locate(dvi__context *c, int input, whereabouts *w)
   return true;
 }
 
-static bool number(dvi__context *c, const whereabouts *w, const dvi__places *places, dvi__numbering *numbering)
+static bool first_numbers(dvi__context *c, const whereabouts *w, const dvi__places *places, dvi__numbering *numbering)
 {
   return dvi__numbering_of(c, w->each, w->all, places->first, places->stride, numbering);
 }
@@ -131,7 +131,7 @@ bool dvi__input_velocity(dvi__context *c, int input, dvi__node *rate)
   whereabouts w;
   dvi__numbering q, v;
   if (!locate(c, input, &w)) return false;
-  const bool good = number(c, &w, &w.x->q, &q) && number(c, &w, &w.x->v, &v);
+  const bool good = first_numbers(c, &w, &w.x->q, &q) && first_numbers(c, &w, &w.x->v, &v);
   if (good) *rate = rate_of(c, &w, q, v);
   dvi__heap_free(w.each);
   return good;
@@ -142,7 +142,7 @@ bool dvi__input_momentum(dvi__context *c, int input, dvi__node *momentum)
   whereabouts w;
   dvi__numbering v;
   if (!locate(c, input, &w)) return false;
-  const bool good = w.x->kind != DVI__ROTATION && w.x->kind != DVI__ANGLE && number(c, &w, &w.x->v, &v);
+  const bool good = w.x->kind != DVI__ROTATION && w.x->kind != DVI__ANGLE && first_numbers(c, &w, &w.x->v, &v);
   if (good) *momentum = dvi__variable_node(c, DVI__VELOCITIES, v, w.k);
   dvi__heap_free(w.each);
   return good;
