@@ -37,6 +37,7 @@ typedef struct dvi__destination {
   int array, mirrored;
   int sets; /* 1: the first and only thing that is added so far to where it goes: it is stored */
   dvi__entries entry, mirror;
+  ptrdiff_t single, single_mirror; /* these entries, of the only element */
 } dvi__destination;
 
 /* A kernel's share in a sum, or some of it. Its program reads a row for each of the variables (inputs of the kernel), then one for each column. */
