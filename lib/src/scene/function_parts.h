@@ -135,6 +135,9 @@ void dvi__pair_blocks(dvi__pair pair, dvi__block *rows, dvi__block *columns);
 /* The pair of two blocks, in either order; DVI__PAIRS: there is none. */
 dvi__pair dvi__pair_of(dvi__block a, dvi__block b);
 
+/* Write short kernels out into one, which takes their place; inputs are the arena's. */
+dvi_status dvi__merge_kernels(dvi__arena *arena, int *kernel_count, dvi__kernel *kernels);
+
 /* The strides of a list of numbers, unit by unit, from the arena; NULL: no memory. */
 const int *dvi__strides(dvi__arena *arena, int elements, const int *list);
 
