@@ -53,10 +53,9 @@ static dvi_status fill(dvi__function *function, int kernel_count, const dvi__ker
   function->derivatives = dvi__arena_take(&function->arena, (size_t)kernel_count, sizeof *function->derivatives);
   if (function->kernel == NULL || function->derivatives == NULL) return DVI_NO_MEMORY;
   if (kernel_count > 0) memcpy(function->kernel, kernels, (size_t)kernel_count * sizeof *kernels);
-  dvi_status status = DVI_OK;
   function->kernel_count = kernel_count;
-  for (int k = 0; k < kernel_count && status == DVI_OK; k++) status = find_places(function, k);
-  if (status != DVI_OK) function->kernel_count = 0; /* the kernels stay with the caller */
+  dvi_status status = dvi__merge_kernels(&function->arena, &function->kernel_count, function->kernel);
+  for (int k = 0; k < function->kernel_count && status == DVI_OK; k++) status = find_places(function, k);
   return status;
 }
 

@@ -1,5 +1,7 @@
 /* Evaluation of kernels of one element at a few points: each row is a block of lanes. The number of points is a constant to what follows: loops of known length need
  * no preparation, which would cost more than their work. */
+#include <string.h>
+
 #include "scene/function_parts.h"
 #include "scene/lanes.h"
 
@@ -9,27 +11,38 @@ DVI__SCENE_INLINE void gather(const int points, const dvi__part *part, const dou
   for (int i = 0; i < part->variable_count; i++) {
     const double *from = x[part->block[i]] + (ptrdiff_t)dvi__place_at(&part->variable[i], 0) * points;
     row -= DVI__LANES;
-    for (int k = 0; k < points; k++) row[k] = from[k];
-    for (int k = points; k < DVI__LANES; k++) row[k] = from[points - 1];
+    const double last = from[points - 1];
+    memcpy(row, from, (size_t)points * sizeof *row);
+    for (int k = points; k < DVI__LANES; k++) row[k] = last;
   }
   for (int c = 0; c < part->column_count; c++) {
+    const double value = part->column[c][0];
     row -= DVI__LANES;
-    for (int k = 0; k < DVI__LANES; k++) row[k] = part->column[c][0];
+    for (int k = 0; k < DVI__LANES; k++) row[k] = value;
   }
+}
+
+/* Results pass through memory of their own: the compiler need not ask what else they might overwrite. */
+DVI__SCENE_INLINE void put(const int points, int sets, double sign, const double *row, double *to)
+{
+  const size_t size = (size_t)points * sizeof *to;
+  double sum[DVI__LANES], before[DVI__LANES];
+  memcpy(sum, row, size);
+  for (int k = 0; k < points; k++) sum[k] *= sign;
+  if (!sets) {
+    memcpy(before, to, size);
+    for (int k = 0; k < points; k++) sum[k] += before[k];
+  }
+  memcpy(to, sum, size);
 }
 
 DVI__SCENE_INLINE void scatter(const int points, const dvi__part *part, const double *outputs, double *const *result)
 {
-  for (const dvi__destination *target = part->target; target < part->target + part->target_count; target++) {
-    const double sign = target->negative ? -1.0 : 1.0, *restrict row = outputs + (ptrdiff_t)target->output * DVI__LANES;
-    for (int m = 0; m <= target->mirrored; m++) {
-      const ptrdiff_t entry = dvi__entry_at(m == 0 ? &target->entry : &target->mirror, 0);
-      double *restrict to = result[target->array] + entry * points;
-      if (target->sets)
-        for (int k = 0; k < points; k++) to[k] = sign * row[k];
-      else
-        for (int k = 0; k < points; k++) to[k] += sign * row[k];
-    }
+  const dvi__destination *const end = part->target + part->target_count;
+  for (const dvi__destination *target = part->target; target < end; target++) {
+    const double sign = target->negative ? -1.0 : 1.0, *row = outputs + (ptrdiff_t)target->output * DVI__LANES;
+    put(points, target->sets, sign, row, result[target->array] + target->single * points);
+    if (target->mirrored) put(points, target->sets, sign, row, result[target->array] + target->single_mirror * points);
   }
 }
 

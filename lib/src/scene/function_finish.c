@@ -14,7 +14,7 @@ typedef struct array {
 /* The target stores if nothing is there yet. */
 static void touch(array *own, dvi__destination *target)
 {
-  const ptrdiff_t entry = dvi__entry_at(&target->entry, 0), mirror = target->mirrored ? dvi__entry_at(&target->mirror, 0) : entry;
+  const ptrdiff_t entry = target->single, mirror = target->mirrored ? target->single_mirror : entry;
   target->sets = !own->touched[entry] && !own->touched[mirror];
   own->left -= !own->touched[entry];
   own->touched[entry] = 1;
@@ -40,9 +40,20 @@ static void touch_all(const dvi__sum *sum, array *own)
       if (sum->part[k].target[i].array == own->number) touch(own, &sum->part[k].target[i]);
 }
 
+static void find_singles(const dvi__sum *sum)
+{
+  for (int k = 0; k < sum->part_count; k++)
+    for (int i = 0; i < sum->part[k].target_count; i++) {
+      dvi__destination *target = &sum->part[k].target[i];
+      target->single = dvi__entry_at(&target->entry, 0);
+      target->single_mirror = dvi__entry_at(&target->mirror, 0);
+    }
+}
+
 dvi_status dvi__sum_finish(dvi__sum *sum, int arrays, const int *entries)
 {
   sum->clear = UINT_MAX;
+  find_singles(sum);
   for (int a = 0; a < arrays; a++) {
     if (!has_singles_alone(sum, a)) continue;
     array own = {a, entries[a], entries[a], dvi__heap_take((size_t)entries[a], 1)};

@@ -38,6 +38,7 @@ typedef struct dvi__destination {
   int array, mirrored;
   int sets; /* 1: the first and only thing that is added so far to where it goes: it is stored */
   dvi__entries entry, mirror;
+  ptrdiff_t single, single_mirror; /* these entries, of the only element */
 } dvi__destination;
 
 /* A kernel's share in a sum, or some of it. Its program reads a row for each of the variables (inputs of the kernel), then one for each column. */
@@ -136,6 +137,9 @@ dvi_status dvi__part_plan(dvi__part *part);
 void dvi__pair_blocks(dvi__pair pair, dvi__block *rows, dvi__block *columns);
 /* The pair of two blocks, in either order; DVI__PAIRS: there is none. */
 dvi__pair dvi__pair_of(dvi__block a, dvi__block b);
+
+/* Write short kernels out into one, which takes their place; inputs are the arena's. */
+dvi_status dvi__merge_kernels(dvi__arena *arena, int *kernel_count, dvi__kernel *kernels);
 
 /* The strides of a list of numbers, unit by unit, from the arena; NULL: no memory. */
 const int *dvi__strides(dvi__arena *arena, int elements, const int *list);

@@ -23,13 +23,9 @@ typedef struct tile {
 /* More than a block of points end with a block that overlaps the one before. */
 DVI__SCENE_INLINE void copy_points(const int points, const double *restrict from, double *restrict to)
 {
-  const int last = points - DVI__LANES;
-  if (last <= 0) {
-    memcpy(to, from, (size_t)points * sizeof *to);
-    return;
-  }
+  const int size = points < DVI__LANES ? points : DVI__LANES, last = points - size;
   for (int k = 0; k < last; k += DVI__LANES) memcpy(to + k, from + k, DVI__LANES * sizeof *to);
-  memcpy(to + last, from + last, DVI__LANES * sizeof *to);
+  memcpy(to + last, from + last, (size_t)size * sizeof *to);
 }
 
 /* Numbers of one point that follow each other by `step`. The compiler makes vectors of the steps that it knows. */
@@ -125,16 +121,12 @@ DVI__SCENE_LANES static void gather(const dvi__part *part, const tile *at, const
 
 DVI__SCENE_INLINE void add_points(const int points, double sign, const double *restrict row, double *restrict to)
 {
+  const int size = points < DVI__LANES ? points : DVI__LANES, last = points - size;
   double end[DVI__LANES];
-  const int last = points - DVI__LANES;
-  if (last <= 0) {
-    for (int k = 0; k < points; k++) to[k] += sign * row[k];
-    return;
-  }
-  for (int k = 0; k < DVI__LANES; k++) end[k] = to[last + k] + sign * row[last + k];
+  for (int k = 0; k < size; k++) end[k] = to[last + k] + sign * row[last + k];
   for (int k = 0; k < last; k += DVI__LANES)
     for (int i = k; i < k + DVI__LANES; i++) to[i] += sign * row[i];
-  memcpy(to + last, end, sizeof end);
+  memcpy(to + last, end, (size_t)size * sizeof *to);
 }
 
 /* Eight at a time: the ends of longer loops are foreseen more often. */
@@ -372,10 +364,8 @@ dvi_status dvi__part_plan(dvi__part *part)
 static void clear(const dvi__part *part, int count, double *const *result)
 {
   for (const dvi__destination *target = part->target; target < part->target + part->target_count; target++)
-    for (int m = 0; target->sets && m <= target->mirrored; m++) {
-      const ptrdiff_t entry = dvi__entry_at(m == 0 ? &target->entry : &target->mirror, 0);
-      memset(result[target->array] + entry * count, 0, (size_t)count * sizeof **result);
-    }
+    for (int m = 0; target->sets && m <= target->mirrored; m++)
+      memset(result[target->array] + (m ? target->single_mirror : target->single) * count, 0, (size_t)count * sizeof **result);
 }
 
 static void run_part(const dvi__part *part, int count, const double *const *x, double *const *result)

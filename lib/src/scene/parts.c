@@ -254,8 +254,7 @@ static dvi__degree of_node(const dvi__kernel *kernel, dvi__block block, const dv
   case DVI__OP_DIVIDE:
     return known[node->b].degree > 0 ? of_other(known[node->a], known[node->b]) : of_product(known[node->a], known[node->b]);
   case DVI__OP_RAISE:
-  case DVI__OP_ATAN2:
-  case DVI__OP_HYPOT: return of_other(known[node->a], known[node->b]);
+  case DVI__OP_ATAN2: return of_other(known[node->a], known[node->b]);
   default: return of_other(known[node->a], none);
   }
 }

@@ -158,7 +158,6 @@ static void call_library(int op, int lanes, int width, const double *restrict a,
     CALL(DVI__OP_ATANH, atanh(a[k]))
     CALL(DVI__OP_RAISE, pow(a[k], b[k]))
     CALL(DVI__OP_ATAN2, atan2(a[k], b[k]))
-    CALL(DVI__OP_HYPOT, hypot(a[k], b[k]))
   default: break;
   }
   fill_up(lanes, width, to);
