@@ -6,6 +6,9 @@
 
 #include "command.h"
 
+/* Characters of a header in a message. */
+enum { SHOWN = 200 };
+
 static int ask(const char *pair, int panel, curve_list *list)
 {
   if (list->curves == WORDS_MAX) return usage_error("plot: more than %d curves", (int)WORDS_MAX);
@@ -36,19 +39,23 @@ static int find_columns(row_file *file, curve_list *list)
 {
   char title[FIELD_SIZE];
   if (!rows_next(file)) return rows_complete(file) ? usage_error("plot: '%s' is empty", file->path) : FAILED;
+  const char *text = file->line;
   int column = 0;
-  for (const char *text = file->line; text != NULL; column++) {
+  do {
     rows_field(&text, title);
     for (int k = 0; k < list->curves; k++) {
       if (strcmp(title, list->curve[k].x_name) == 0) list->curve[k].x_column = column;
       if (strcmp(title, list->curve[k].y_name) == 0) list->curve[k].y_column = column;
     }
-  }
+    column++;
+  } while (text != NULL);
   for (int k = 0; k < list->curves; k++) {
     const curve_points *curve = &list->curve[k];
     if (curve->x_column >= 0 && curve->y_column >= 0) continue;
-    return usage_error("plot: '%s' has no column '%s'; it has %.*s", file->path,
-                       curve->x_column < 0 ? curve->x_name : curve->y_name, (int)strcspn(file->line, "\r\n"), file->line);
+    const int length = (int)strcspn(file->line, "\r\n");
+    return usage_error("plot: '%s' has no column '%s'; it has %.*s%s", file->path,
+                       curve->x_column < 0 ? curve->x_name : curve->y_name, length < SHOWN ? length : SHOWN, file->line,
+                       length < SHOWN ? "" : "..");
   }
   return DONE;
 }

@@ -152,6 +152,7 @@ static void write_panel(FILE *script, int index, const plot_panel *panel)
   (void)fputs(panel->logarithmic ? "set logscale xy 10\nset format x '10^{%L}'\nset format y '10^{%L}'\n"
                                  : "unset logscale\nset format '%g'\n",
               script);
+  (void)fputs(panel->logarithmic ? "unset offsets\n" : "set offsets graph 0, 0, graph 0.03, graph 0.03\n", script);
   fix_range(script, panel);
   (void)fputs(panel->equal ? "set size ratio -1\n" : "set size noratio\n", script);
   const char *joint = "plot ";
