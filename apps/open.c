@@ -137,9 +137,20 @@ static int method_index(const char *name)
   return -1;
 }
 
+/* Keys behind a blank: they stand behind a colon. */
+static bool hint_at_colon(const char *method, char *hint)
+{
+  char name[WORD_SIZE];
+  const char *keys = take_word(method, " ", name);
+  if (keys == NULL || method_index(name) < 0) return false;
+  (void)snprintf(hint, HINT_SIZE, " (did you mean '%s:%.*s'?)", name, (int)strcspn(keys, " "), keys);
+  return true;
+}
+
 static void hint_at_method(const char *method, char *hint)
 {
   char word[WORD_SIZE];
+  if (hint_at_colon(method, hint)) return;
   const char *rest = take_word(method, ":", word);
   const int index = method_index(word);
   hint[0] = '\0';

@@ -233,6 +233,18 @@ START_TEST(fpu_is_that_of_the_catalogue)
 }
 END_TEST
 
+/* 0/0 for the first member, which is given by itself; the others have their own values. */
+START_TEST(one_member_may_stand_beside_a_formula_that_is_no_number_there)
+{
+  const double *q, *v, *p, expected[] = {5, 1, 1, 2, 3, 4.5};
+  open_scene("coordinates: {\"x[3]\": scalar}\nlagrangian: sum(i, x[i]'^2/2)\n"
+             "initial: {\"x[1]\": 5, \"x[i]\": \"(i - 1)/(i - 1)\", \"x[1]'\": 2, \"x[i]'\": \"3/2*i*(i - 1)/(i - 1)\"}\n" RUN);
+  dvi_scene_start(scene, &q, &v, &p);
+  same(3, q, expected, 1, "q");
+  same(3, v, expected + 3, 1, "v");
+}
+END_TEST
+
 START_TEST(outer_solar_is_that_of_the_catalogue)
 {
   open_both("parameters:\n"
@@ -345,6 +357,7 @@ int main(void)
   tcase_add_test(tests, the_energy_is_evaluated_where_it_is_asked_for);
   tcase_add_test(tests, pendulum_is_that_of_the_catalogue);
   tcase_add_test(tests, fpu_is_that_of_the_catalogue);
+  tcase_add_test(tests, one_member_may_stand_beside_a_formula_that_is_no_number_there);
   tcase_add_test(tests, outer_solar_is_that_of_the_catalogue);
   tcase_add_test(tests, double_pendulum_is_that_of_the_catalogue);
   tcase_add_test(tests, driven_pendulum_is_that_of_the_catalogue);
