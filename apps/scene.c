@@ -173,6 +173,13 @@ static void tell_operations(const char *of, int operations, long points)
     (void)printf(", %s %d (%ld point%s)", of, operations, points, points == 1 ? "" : "s");
 }
 
+static int fast_potentials(const dvi_system_terms *terms)
+{
+  int count = 0;
+  for (int k = 0; k < terms->potential_count; k++) count += terms->potentials[k].fast != 0;
+  return count;
+}
+
 void scene_tell(const problem *scene)
 {
   dvi_scene_facts facts;
@@ -181,6 +188,7 @@ void scene_tell(const problem *scene)
   (void)printf("scene: %s", facts.form);
   if (facts.mass != NULL) (void)printf(", mass %s", facts.mass);
   if (facts.quadratic_potentials > 0) (void)printf(", quadratic potentials %d", facts.quadratic_potentials);
+  if (fast_potentials(scene->terms) > 0) (void)printf(", fast potentials %d", fast_potentials(scene->terms));
   (void)printf("; %d kernel%s, %ld element%s, %d nodes\n", facts.kernels, facts.kernels == 1 ? "" : "s", facts.elements,
                facts.elements == 1 ? "" : "s", facts.nodes);
   (void)printf("operations a point: value %d (%ld point%s)", facts.value_operations, facts.value_points,

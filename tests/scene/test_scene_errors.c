@@ -61,6 +61,8 @@ START_TEST(unknown_names_are_told_with_the_nearest)
   lagrangian_refused("x'^2 + sqr(x)", 20, "'sqr'; did you mean sqrt?");
   refused("kinetc: 1\n" X RUN, ":1:1:", "'kinetc'; did you mean kinetic?");
   refused(X "lagrangian: x'^2\nreport: {evry: 2}\n" RUN, ":3:10:", "'evry'; did you mean every?");
+  refused("lagrangian: x'^2\nreport: {columns: [x, energi]}\n" X RUN, ":2:23:", "no column 'energi'; did you mean energy?");
+  refused(X "lagrangian: x'^2\nreport: {columns: [x, p_x, x]}\n" RUN, ":3:28:", "column 'x' stands here twice");
   refused(X "lagrangian: x'^2\ninitial: {x: 1, xx: 2}\nstep: 1\nuntil: 1\n", ":3:17:", "'xx'; did you mean x?");
 }
 END_TEST
@@ -116,6 +118,8 @@ START_TEST(velocities_and_momenta_stand_where_they_make_sense)
 {
   refused(X "kinetic: x'^2\npotentials: {V: x*x'}\n" RUN, ":3:19:", "velocities cannot stand in a potential");
   refused(X "lagrangian: x'^2 + p(x)\n" RUN, ":2:20:", "momenta cannot stand in a Lagrangian");
+  refused(X "kinetic: x'^2\npotentials: {stiff: {V: x}}\n" RUN, ":3:14:", "only slow and fast hold some by name");
+  refused(X "kinetic: x'^2\npotentials: {fast: {slow: {V: x}}}\n" RUN, ":3:27:", "an expression belongs here");
   refused(X "lagrangian: x'^2\nevents: {up: {zero: p(x)}}\n" RUN, ":3:21:", "momenta cannot stand in an event");
   refused("parameters: {a: t}\n" X "lagrangian: x'^2\n" RUN, ":1:17:", "the time cannot stand in a parameter");
   refused(X "definitions: {w: x'^2}\nlagrangian: w'\n" RUN, ":3:13:", "there are no accelerations");

@@ -169,6 +169,8 @@ static void emit_potential(dvi__emitter *out, const dvi_scene *scene, int k)
   emit_text(out, V->name);
   dvi__emit(out, ",\n");
   emit_fields(out, scene, name, 4, potential_callbacks);
+  if (V->fast) dvi__emit(out, "    .fast = 1,\n");
+  if (V->quadratic) dvi__emit(out, "    .quadratic = 1,\n");
   emit_pattern(out, "qq", qq);
   dvi__emit(out, "};\n\n");
 }

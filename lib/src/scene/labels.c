@@ -41,21 +41,20 @@ static void write_label(const dvi__coordinate *x, which of, int i, int k, char *
   (void)snprintf(text, size, "%s%s%s%s%s", prefix_of(x, of), x->name, member, part, component);
 }
 
-static void label_coordinate(dvi_scene *scene, const dvi__coordinate *x, which of, char **label)
+static bool label_coordinate(dvi_scene *scene, const dvi__coordinate *x, which of, char **label)
 {
   const dvi__places *places = of == OF_Q ? &x->q : &x->v;
   const size_t size = strlen(x->name) + ROOM;
-  if (x->kind == DVI__MOTION) {
-    for (int k = 0; k < 2; k++) label_coordinate(scene, &x->part[k], of, label);
-    return;
-  }
+  if (x->kind == DVI__MOTION)
+    return label_coordinate(scene, &x->part[0], of, label) && label_coordinate(scene, &x->part[1], of, label);
   char *text = dvi__arena_take(&scene->label_arena, (size_t)x->size * (size_t)places->components, size);
-  if (text == NULL) return;
+  if (text == NULL) return false;
   for (int i = 0; i < x->size; i++)
     for (int k = 0; k < places->components; k++, text += size) {
       write_label(x, of, i, k, text, size);
       label[places->first + i * places->stride + k] = text;
     }
+  return true;
 }
 
 /* Labels of q, v or p; NULL if there is no memory for them. */
@@ -65,7 +64,8 @@ static char **labels_of(dvi_scene *scene, which of)
   dvi__ledger *const other = dvi__heap_charge(&scene->ledger);
   if (scene->label[of] == NULL) {
     char **made = dvi__arena_take(&scene->label_arena, (size_t)(of == OF_Q ? scene->n : scene->nv), sizeof *made);
-    for (int k = 0; k < scene->coordinate_count && made != NULL; k++) label_coordinate(scene, &scene->coordinate[k], of, made);
+    for (int k = 0; k < scene->coordinate_count && made != NULL; k++)
+      if (!label_coordinate(scene, &scene->coordinate[k], of, made)) made = NULL;
     scene->label[of] = made;
   }
   char **label = scene->label[of];

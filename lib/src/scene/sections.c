@@ -146,10 +146,12 @@ static int list_columns(const dvi_scene *scene, const char **known)
 
 static bool all_columns(dvi_scene *scene, const dvi__tree *columns)
 {
+  char hint[96];
+  if (dvi_scene_coordinate(scene, 0) == NULL || dvi_scene_velocity(scene, 0) == NULL || dvi_scene_momentum(scene, 0) == NULL)
+    return dvi__scene_no_memory(scene);
   const int count = list_columns(scene, NULL);
   const char **known = dvi__arena_take(&scene->arena, (size_t)count, sizeof *known);
-  char hint[96];
-  if (known == NULL || dvi_scene_coordinate(scene, 0) == NULL) return dvi__scene_no_memory(scene);
+  if (known == NULL) return dvi__scene_no_memory(scene);
   (void)list_columns(scene, known);
   for (int i = 0; i < columns->count; i++) {
     const char *name = columns->child[i]->text;

@@ -10,13 +10,13 @@
 #include "scene/sections.h"
 #include "scene/shape.h"
 
-/* What all kernels together are. */
-static bool degree_of(dvi_scene *scene, const dvi__kernels *list, dvi__degree *whole)
+/* What all kernels together are in the variables of a block. */
+static bool degree_of(dvi_scene *scene, const dvi__kernels *list, dvi__block block, dvi__degree *whole)
 {
   *whole = (dvi__degree){0, 1, 0};
   for (int k = 0; k < list->count; k++) {
     dvi__degree one;
-    if (!dvi__kernel_degree(scene, &list->kernel[k], DVI__VELOCITIES, &one)) return false;
+    if (!dvi__kernel_degree(scene, &list->kernel[k], block, &one)) return false;
     if (one.degree > whole->degree) whole->degree = one.degree;
     whole->pure = whole->pure && one.pure;
   }
@@ -26,38 +26,59 @@ static bool degree_of(dvi_scene *scene, const dvi__kernels *list, dvi__degree *w
 /* ---- potentials ---- */
 
 /* Add a potential of these kernels, none if they are none. */
-static bool add_potential(dvi_scene *scene, const char *name, dvi__kernels *list)
+static bool add_potential(dvi_scene *scene, const char *name, int fast, dvi__kernels *list)
 {
   dvi__term *term;
+  dvi__degree degree;
   if (list->count == 0) return true;
-  dvi_potential *potentials = (dvi_potential *)scene->terms.potentials;
-  return dvi__kernels_function(scene, list, 0, &term) &&
-         dvi__make_potential(scene, name, term, &potentials[scene->terms.potential_count++]);
+  dvi_potential *potential = (dvi_potential *)&scene->terms.potentials[scene->terms.potential_count++];
+  if (!degree_of(scene, list, DVI__COORDINATES, &degree) || !dvi__kernels_function(scene, list, 0, &term) ||
+      !dvi__make_potential(scene, name, term, potential))
+    return false;
+  potential->fast = fast;
+  potential->quadratic = degree.degree <= 2 && degree.pure;
+  return true;
 }
 
-/* Room for the potentials of a section, and one more. */
+/* Room for so many potentials, and one more. */
 static bool room_for_potentials(dvi_scene *scene, int count)
 {
   scene->terms.potentials = dvi__arena_take(&scene->arena, (size_t)count + 1, sizeof *scene->terms.potentials);
   return scene->terms.potentials != NULL || dvi__scene_no_memory(scene);
 }
 
-static bool read_potential(dvi_scene *scene, const dvi__tree *tree, const char *name)
+static bool read_potential(dvi_scene *scene, const dvi__tree *tree, const char *name, int fast)
 {
   const dvi__expression *e;
   dvi__kernels V = {0};
   const bool good = dvi__tree_expression(scene, tree, &e) &&
-                    dvi__kernels_add(scene, DVI__SAYS_Q | DVI__SAYS_T, "a potential", e, 0, &V) && add_potential(scene, name, &V);
+                    dvi__kernels_add(scene, DVI__SAYS_Q | DVI__SAYS_T, "a potential", e, 0, &V) &&
+                    add_potential(scene, name, fast, &V);
   dvi__kernels_free(&V);
   return good;
+}
+
+/* What stands under slow or fast may be a potential itself, or some by name; all others are slow. */
+static bool read_speed(dvi_scene *scene, const dvi__tree *key, const dvi__tree *tree)
+{
+  const int fast = strcmp(key->text, "fast") == 0;
+  if (tree->kind != DVI__MAPPING) return read_potential(scene, tree, key->text, fast);
+  if (!fast && strcmp(key->text, "slow") != 0)
+    return dvi__scene_refuse(scene, key->span, "a potential is an expression; only slow and fast hold some by name");
+  for (int i = 0; i < tree->count; i++)
+    if (!read_potential(scene, tree->child[i], tree->key[i]->text, fast)) return false;
+  return true;
 }
 
 static bool read_potentials(dvi_scene *scene, const dvi__tree *section)
 {
   if (section == NULL) return room_for_potentials(scene, 0);
-  if (!dvi__want_mapping(scene, section, "potentials") || !room_for_potentials(scene, section->count)) return false;
+  if (!dvi__want_mapping(scene, section, "potentials")) return false;
+  int count = section->count;
+  for (int i = 0; i < section->count; i++) count += section->child[i]->count;
+  if (!room_for_potentials(scene, count)) return false;
   for (int i = 0; i < section->count; i++)
-    if (!read_potential(scene, section->child[i], section->key[i]->text)) return false;
+    if (!read_speed(scene, section->key[i], section->child[i])) return false;
   return true;
 }
 
@@ -190,7 +211,7 @@ static bool make_separable(dvi_scene *scene, dvi__kernels *L, const char *rest)
   if (good && !at_rest) return make_general(scene, L);
   good = good && mass_values(scene, T, &pattern, &values) &&
          (dvi__has_factors(scene) ? dvi__make_factors(scene, &pattern, values) : set_mass(scene, &pattern, values)) &&
-         dvi__kernels_at_rest(scene, L, DVI__VELOCITIES, 1, &V) && add_potential(scene, rest, &V);
+         dvi__kernels_at_rest(scene, L, DVI__VELOCITIES, 1, &V) && add_potential(scene, rest, 0, &V);
   dvi__kernels_free(&V);
   scene->form = "separable";
   return good;
@@ -203,7 +224,7 @@ static bool make_degenerate(dvi_scene *scene, dvi__kernels *L, const char *rest)
   dvi__term *term = NULL;
   const bool good = dvi__kernels_moving(scene, L, DVI__VELOCITIES, DVI__MULTIPLIERS, &alpha) &&
                     dvi__kernels_function(scene, &alpha, scene->n, &term) && dvi__make_one_form(scene, term, &scene->one_form) &&
-                    dvi__kernels_at_rest(scene, L, DVI__VELOCITIES, 1, &H) && add_potential(scene, rest, &H);
+                    dvi__kernels_at_rest(scene, L, DVI__VELOCITIES, 1, &H) && add_potential(scene, rest, 0, &H);
   dvi__kernels_free(&alpha);
   dvi__kernels_free(&H);
   scene->terms.one_form = &scene->one_form;
@@ -229,7 +250,7 @@ static int drives_velocities(const dvi__kernels *L)
 static bool make_form(dvi_scene *scene, const dvi__expression *e, dvi__kernels *L, const char *rest)
 {
   dvi__degree degree;
-  if (!degree_of(scene, L, &degree)) return false;
+  if (!degree_of(scene, L, DVI__VELOCITIES, &degree)) return false;
   if (degree.degree == 0) return dvi__scene_refuse(scene, e->span, "there is no velocity in it, so nothing would move");
   if (degree.degree == 1 && dvi__has_factors(scene)) return refuse_moving(scene, L);
   if (degree.degree == 1 && !drives_velocities(L)) return make_degenerate(scene, L, rest);
@@ -330,7 +351,7 @@ bool dvi__read_one_form(dvi_scene *scene, const dvi__tree *section)
   if (!dvi__read_field(scene, section, "a one-form", &term) || !dvi__make_one_form(scene, term, &scene->one_form)) return false;
   scene->terms.one_form = &scene->one_form;
   scene->form = "one-form";
-  return room_for_potentials(scene, 0) && read_potential(scene, dvi__tree_find(scene->tree, "hamiltonian"), "H");
+  return room_for_potentials(scene, 0) && read_potential(scene, dvi__tree_find(scene->tree, "hamiltonian"), "H", 0);
 }
 
 /* The function phi.w. */
