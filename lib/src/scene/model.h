@@ -32,8 +32,9 @@ struct dvi_scene {
   dvi__coordinate *coordinate;
   dvi__definition *definition;
   int parameter_count, coordinate_count, definition_count;
-  int n;     /* numbers of q */
-  long work; /* parts of expressions that were elaborated */
+  unsigned reads; /* where parameters that are met stand */
+  int n;          /* numbers of q */
+  long work;      /* parts of expressions that were elaborated */
 
   const double *mass_diagonal; /* [n] or NULL: what velocities are made of momenta by, in invariants */
   dvi_system_terms terms;
