@@ -12,8 +12,10 @@ typedef struct dvi_scene dvi_scene;
 /** A parameter of a scene. */
 typedef struct dvi_scene_parameter {
   const char *name;
-  double value; /**< as it is set; NaN if it is not one number */
-  int settable; /**< 1: a number that a setting may replace */
+  double value;   /**< as it is set; NaN if it is not one number */
+  int settable;   /**< 1: a number that a setting may replace */
+  int start_only; /**< 1: of all sections it stands in `initial` alone, and so does what is made of it */
+  int used;       /**< 0: nothing in the scene mentions it */
 } dvi_scene_parameter;
 
 /** How a scene wants to be run. Strings are NULL and numbers 0 where it does not say. */

@@ -349,10 +349,14 @@ static bool one_form_of_system(dvi_scene *scene)
 bool dvi__scene_read_tree(dvi_scene *scene, dvi__settings *settings)
 {
   if (!all_known(scene) || !one_form_of_system(scene)) return false;
-  if (!dvi__read_parameters(scene, dvi__tree_find(scene->tree, "parameters"), settings) || !read_plan(scene)) return false;
+  scene->reads = DVI__IN_PARAMETERS;
+  if (!dvi__read_parameters(scene, dvi__tree_find(scene->tree, "parameters"), settings)) return false;
+  scene->reads = DVI__ELSEWHERE;
+  if (!read_plan(scene)) return false;
   for (int k = 0; k < SECTIONS; k++) {
     const dvi__tree *found = dvi__tree_find(scene->tree, sections[k].name);
+    scene->reads = sections[k].read == dvi__read_initial ? DVI__IN_START : DVI__ELSEWHERE;
     if (found != NULL && sections[k].read != NULL && !sections[k].read(scene, found)) return false;
   }
-  return true;
+  return dvi__read_uses(scene, settings);
 }
