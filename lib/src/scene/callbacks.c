@@ -66,7 +66,7 @@ static int verdict(const dvi__term *term, int count, const double *const *x, int
   return returned;
 }
 
-bool dvi__scene_too_large(dvi_scene *scene, const char *what, dvi_status status)
+bool(dvi__scene_too_large)(dvi_scene *scene, const char *what, dvi_status status)
 {
   return dvi__complain(scene->complaint, status, DVI__NOWHERE, "%s: %s", what, too_large(status));
 }
