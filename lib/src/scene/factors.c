@@ -1,6 +1,5 @@
 #include "scene/factors.h"
 
-#include <stdlib.h>
 
 #include "scene/sections.h"
 
