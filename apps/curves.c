@@ -1,5 +1,6 @@
 #include "curves.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -52,10 +53,10 @@ static int find_columns(row_file *file, curve_list *list)
   for (int k = 0; k < list->curves; k++) {
     const curve_points *curve = &list->curve[k];
     if (curve->x_column >= 0 && curve->y_column >= 0) continue;
-    const int length = (int)strcspn(file->line, "\r\n");
+    int length = 0;
+    while (length < SHOWN && isprint((unsigned char)file->line[length])) length++;
     return usage_error("plot: '%s' has no column '%s'; it has %.*s%s", file->path,
-                       curve->x_column < 0 ? curve->x_name : curve->y_name, length < SHOWN ? length : SHOWN, file->line,
-                       length < SHOWN ? "" : "..");
+                       curve->x_column < 0 ? curve->x_name : curve->y_name, length, file->line, length < SHOWN ? "" : "..");
   }
   return DONE;
 }

@@ -34,7 +34,7 @@ bool rows_next(row_file *file)
     }
     if (fgets(file->line + length, (int)(file->size - length), file->stream) == NULL) break;
     length += strlen(file->line + length);
-    if (file->line[length - 1] == '\n') break;
+    if (length > 0 && file->line[length - 1] == '\n') break; /* a NUL makes a line look empty */
   }
   file->row++;
   return length > 0;

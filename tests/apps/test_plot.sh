@@ -36,6 +36,8 @@ expect 1 'nothing to read' plot nowhere.csv --axes x:y --out x.svg
 : >empty.csv
 expect 2 'an empty file' plot empty.csv --axes x:y --out x.svg
 says err 'is empty' 'an empty file'
+printf '\0\0t,a\n1,2\n' >nul.csv
+expect 2 'a file that is no text' plot nul.csv --axes a --out x.svg
 [ ! -e x.svg ] || fail 'a picture without a reason'
 no_trace 'plot'
 finish
