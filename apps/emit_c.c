@@ -78,7 +78,8 @@ int emit_c_command(int argc, char **argv)
       {.name = NULL},
   };
   static const char *const details[] = {
-      "The file needs <dvi/dvi.h> and libdvi alone. Parameters are numbers in it, as they are set here.\n",
+      "The file needs <dvi/dvi.h> and libdvi alone. Parameters are numbers in it, as they are set here. Compiled with\n"
+      "-DDVI_MAIN it is a program that runs the scene.\n",
       "Examples:\n"
       "  dvi init cart.yaml\n"
       "  dvi emit-c cart.yaml --out cart.c\n",

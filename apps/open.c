@@ -121,11 +121,10 @@ int open_wish(const char *command, const problem *scene, const char **method)
   return usage_error("%s: --method is missing, for example --method galerkin:degree=4; see dvi list methods", command);
 }
 
-const char *start_setting(const char *name, const words *settings)
+const char *start_setting(const problem *scene, const words *settings)
 {
-  const int index = problem_find(name);
-  for (int i = 0; i < settings->count && index >= 0; i++)
-    for (const problem_parameter *k = problem_parameters(index); k->name != NULL; k++)
+  for (int i = 0; i < settings->count; i++)
+    for (const problem_parameter *k = scene->parameter; k->name != NULL; k++)
       if (k->start_only && is_value_of(settings->word[i], k->name)) return settings->word[i];
   return NULL;
 }

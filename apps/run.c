@@ -342,10 +342,10 @@ static int check_request(const run_request *request, const char *name)
 }
 
 /* A setting that a resumed run would not heed. */
-static int check_settings(const char *name, const words *settings)
+static int check_settings(const run_request *request, const problem *scene)
 {
-  const char *setting = start_setting(name, settings);
-  if (setting == NULL) return DONE;
+  const char *setting = start_setting(scene, &request->settings);
+  if (setting == NULL || request->resume == NULL) return DONE;
   return usage_error("run: --set %s places the start, which --resume replaces; leave out one of them", setting);
 }
 
@@ -359,6 +359,7 @@ static int run_problem(run_request *request, const char *name)
   code = open_wish("run", scene, &request->method);
   if (code == DONE) code = place_momenta(request, scene);
   if (code == DONE) code = check_events(request, scene);
+  if (code == DONE) code = check_settings(request, scene);
   if (code == DONE) code = run(request, scene);
   problem_destroy(&scene);
   return code;
@@ -455,6 +456,5 @@ int run_command(int argc, char **argv)
   int code;
   if (!options_parse(&command, argc, argv, &name, &code)) return code;
   code = check_request(&r, name);
-  if (code == DONE && r.resume != NULL) code = check_settings(name, &r.settings);
   return code == DONE ? run_problem(&r, name) : code;
 }

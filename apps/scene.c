@@ -61,8 +61,12 @@ static bool list_parameters(const dvi_scene *scene, problem *made)
   made->parameter = list;
   for (int i = 0; (p = dvi_scene_parameter_at(scene, i)) != NULL; i++)
     if (p->settable)
-      *list++ = (problem_parameter){
-          .name = p->name, .value = p->value, .least = -HUGE_VAL, .most = HUGE_VAL, .help = "of the scene"};
+      *list++ = (problem_parameter){.name = p->name,
+                                    .value = p->value,
+                                    .least = -HUGE_VAL,
+                                    .most = HUGE_VAL,
+                                    .start_only = p->start_only,
+                                    .help = "of the scene"};
   return true;
 }
 

@@ -107,6 +107,47 @@ expect 0 'columns without energy' run overflow.yaml --columns x,growth,square
 expect 1 'columns with it' run overflow.yaml --columns x,energy
 expect 1 'a plot shows it, too' run overflow.yaml --columns x --plot overflow.svg
 
+# Every option of dvi run is used or refused; what the sections say is tried by test_scene_sections.sh.
+cat >spring.yaml <<'END'
+parameters: {k: 1, x0: 1, far: 2*x0, idle: 1}
+coordinates: {x: scalar, y: scalar}
+lagrangian: (x'^2 + y'^2)/2 - k*(x^2 + y^2)/2
+initial: {x: far, y: 0, y': 1}
+method: midpoint
+step: 0.1
+until: 1
+END
+expect 0 'as it stands' run spring.yaml
+cp out base.csv
+for option in '--method verlet' '--h 0.05' '--t-end 2' '--time-transform arclength' '--step-control arclength' '--every 3' '--final' '--set k=2' '--set x0=2' \
+  '--momenta 0,2' '--columns y' '--checkpoint spring.state --columns x'; do
+  # shellcheck disable=SC2086
+  expect 0 "$option" run spring.yaml $option
+  cmp -s out base.csv && fail "$option does not show"
+done
+expect 0 'a checkpoint' run spring.yaml --checkpoint-every 3 --checkpoint spring.state --t-end 0.5 --final
+expect 0 'and on from there' run spring.yaml --resume spring.state --final
+tail -n 1 base.csv >last.csv
+tail -n 1 out | cmp -s - last.csv || fail 'two parts are one run'
+refuses() { # PATTERN OPTIONS
+  pattern=$1
+  shift
+  expect 2 "$*" run spring.yaml "$@"
+  says err "$pattern" "why not $*"
+}
+refuses 'neither symplectic' --tolerance 1e-6
+refuses 'spring has none' --project
+refuses 'spring has none' --events no.csv
+refuses 'wants 2 finite numbers' --momenta 1
+refuses 'has no column' --columns z
+refuses "no parameter 'kk'; did you mean k" --set kk=1
+refuses "'idle' is set, but nothing in the scene mentions it" --set idle=2
+refuses "'x' is no finite number" --set far=x
+refuses 'x0=3 places the start, which --resume replaces' --resume spring.state --set x0=3
+expect 1 'another system' run spring.yaml --resume spring.state --set k=2
+expect 0 'check' check spring.yaml
+says out 'parameter idle: nothing in the scene mentions it' 'what has no use is told'
+
 # No command writes over its scene.
 cp ball.yaml kept.yaml
 ln -s ball.yaml link.svg

@@ -1,6 +1,7 @@
 /* The same for the library of scenes: dvi__complain and its like return false. */
 /* As syntax.c says, before any header. */
 #define _POSIX_C_SOURCE 200809L
+#include "scene/callbacks.h"
 #include "scene/complaint.h"
 #include "scene/sections.h"
 
@@ -8,4 +9,6 @@
 #define dvi__refuse(...) ((void)(dvi__refuse)(__VA_ARGS__), false)
 #define dvi__scene_refuse(...) ((void)(dvi__scene_refuse)(__VA_ARGS__), false)
 #define dvi__scene_no_memory(...) ((void)(dvi__scene_no_memory)(__VA_ARGS__), false)
+#define dvi__complain_of_memory(...) ((void)(dvi__complain_of_memory)(__VA_ARGS__), false)
+#define dvi__scene_too_large(...) ((void)(dvi__scene_too_large)(__VA_ARGS__), false)
 #define dvi__names_unknown(...) ((void)(dvi__names_unknown)(__VA_ARGS__), false)

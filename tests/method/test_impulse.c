@@ -10,8 +10,9 @@
 #include "support/bond.h"
 
 /* The first ones take any fast potential, all take quadratic ones. */
-static const char *const methods[] = {"imex"};
-enum { METHODS = sizeof methods / sizeof *methods, ANY_POTENTIAL = 1 };
+static const char *const methods[] = {"imex", "respa:substeps=20", "respa:substeps=exact", "mollified",
+                                      "mollified:filter=projection"};
+enum { METHODS = sizeof methods / sizeof *methods, ANY_POTENTIAL = 2 };
 
 static void check_symplectic(const bond *of, const char *method, double h)
 {

@@ -5,7 +5,8 @@
 #include "support/order.h"
 #include "support/suite.h"
 
-static const char *const methods[] = {"imex", "imex:solver=newton"};
+static const char *const methods[] = {"imex",      "imex:solver=newton",         "respa:substeps=3", "respa:substeps=exact",
+                                      "mollified", "mollified:filter=projection"};
 enum { METHODS = sizeof methods / sizeof *methods };
 
 START_TEST(they_have_order_2_on_the_chain_of_soft_and_stiff_springs)

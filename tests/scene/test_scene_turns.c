@@ -265,6 +265,7 @@ START_TEST(what_has_no_mass_and_no_body_is_told)
   lagrangian_refused("x'^2 + dot(omega(R), omega(R)) + dot(omega(B), omega(B)) + dot(d', d') + rate(u)^2",
                      ":1:28:", "the velocity of B.x has no mass");
   lagrangian_refused("x'^2", ":1:15:", "the velocity of R has no mass");
+  lagrangian_refused("x'^2 - rate(u)^2", ":1:53:", "the moment of inertia of u is -2, and must be positive");
   refused("coordinates: {x: scalar, R: rotation}\nlagrangian: x'^2 + omega(R)[1]^2 + omega(R)[2]^2 - omega(R)[3]^2\n"
           "initial: {x: 1, R: \"turn([0, 0, 1], 0)\"}\n" RUN,
           ":1:26:", "the inertia of R is that of no body");

@@ -1,6 +1,5 @@
 #include "support/order.h"
 
-#include <check.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,6 +7,7 @@
 
 #include "support/quad.h"
 #include "support/runs.h"
+#include "support/suite.h"
 
 enum { N = QUAD_N_MAX, MOST_GLOBAL_ORDER = 6 };
 

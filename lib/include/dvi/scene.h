@@ -12,8 +12,10 @@ typedef struct dvi_scene dvi_scene;
 /** A parameter of a scene. */
 typedef struct dvi_scene_parameter {
   const char *name;
-  double value; /**< as it is set; NaN if it is not one number */
-  int settable; /**< 1: a number that a setting may replace */
+  double value;   /**< as it is set; NaN if it is not one number */
+  int settable;   /**< 1: a number that a setting may replace */
+  int start_only; /**< 1: of all sections it stands in `initial` alone, and so does what is made of it */
+  int used;       /**< 0: nothing in the scene mentions it */
 } dvi_scene_parameter;
 
 /** How a scene wants to be run. Strings are NULL and numbers 0 where it does not say. */
@@ -119,13 +121,15 @@ void dvi_scene_facts_of(const dvi_scene *scene, dvi_scene_facts *facts);
 /** The part of an expression that was not finite when a callback of this scene's system last failed on this thread, with the time; "" if none did. */
 const char *dvi_scene_blame(void);
 
-/** Write a C file that declares the same system by callbacks of the C API: a function `dvi_status NAME_create(dvi_system **system)` and the start,
- *  `const double NAME_q[], NAME_v[], NAME_p[]`.
+/** Write a C file that declares the same system by callbacks of the C API: a function `dvi_status NAME_create(dvi_system **system)`; the start,
+ *  `const double NAME_q[], NAME_v[], NAME_p[]`; the plan, `const double NAME_h, NAME_t_end` and, if the scene has one, `const char NAME_method[]`; and its
+ *  events, if it has any, `const dvi_event NAME_events[]`. With a method and the macro DVI_MAIN it is a program that runs the scene.
  *
  *  @param name   a C identifier, in front of every external name
  *  @param write  gets the text, piece by piece; not 0 ends it with DVI_IO_ERROR
  *  @retval DVI_BAD_ARGUMENT  name is no identifier of at most 63 letters, or an argument is NULL
- *  @retval DVI_UNSUPPORTED   the scene is a Hamiltonian with constraints, or has rotations, motions, directions or angles
+ *  @retval DVI_UNSUPPORTED   the scene has rotations, motions, directions or angles
+ *  @retval DVI_BAD_SIZE      a kernel, or the gradients of constraints, have more numbers than a stack has room for
  *  @retval DVI_NO_MEMORY */
 dvi_status dvi_scene_emit_c(const dvi_scene *scene, const char *name, int (*write)(const char *text, size_t size, void *user),
                             void *user);

@@ -31,8 +31,9 @@ static dvi__value index_number(dvi__context *c, const dvi__index *index)
   return value;
 }
 
-static dvi__value parameter_value(dvi__context *c, const dvi__parameter *p)
+static dvi__value parameter_value(dvi__context *c, dvi__parameter *p)
 {
+  if (!dvi__note_parameter(c->scene, p)) return DVI__NO_VALUE;
   dvi__value value = dvi__value_make(c, p->shape.rank, p->shape.rows, p->shape.columns);
   if (dvi__failed(value)) return value;
   if (p->shape.rank == 0) return dvi__number_value(dvi__constant(c->graph, p->value[0]));
@@ -170,10 +171,11 @@ static bool positions(const dvi__context *c, const dvi__parameter *p, int count,
 }
 
 /* A number of a list, or a row of a matrix. */
-static dvi__value parameter_element(dvi__context *c, const dvi__parameter *p, int count, const dvi__expression *const *index,
+static dvi__value parameter_element(dvi__context *c, dvi__parameter *p, int count, const dvi__expression *const *index,
                                     dvi__span span)
 {
   const int rest = p->shape.rank - count;
+  if (!dvi__note_parameter(c->scene, p)) return DVI__NO_VALUE;
   if (rest < 0)
     return dvi__refused(
         dvi__refuse(c, span, "%s has %d ind%s, not %d", p->name, p->shape.rank, p->shape.rank == 1 ? "ex" : "ices", count));

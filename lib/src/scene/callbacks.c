@@ -3,6 +3,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "scene/program.h"
+
 /* ---- blame ---- */
 
 enum { BLAME_SIZE = 512 };
@@ -45,13 +47,12 @@ static void blame(const dvi__term *term, int count, const double *const *x)
     (void)snprintf(blame_text + used, sizeof blame_text - (size_t)used, ", at t = %.6g", x[DVI__TIME][k - 1]);
 }
 
-/* Why there is no program. */
+/* Why there is no program, or no pattern. */
 static const char *too_large(dvi_status status)
 {
   return status == DVI_NO_MEMORY
              ? "memory ran out"
-             : "too large to be compiled: 1 GiB of memory, 2000000 parts, or 16384 numbers in use at a time do not "
-               "hold it with its derivatives";
+             : "too large: its derivatives need more than 2000000 parts, 20000000 pairs, 16384 numbers at a time, or 1 GiB";
 }
 
 static int verdict(const dvi__term *term, int count, const double *const *x, int returned)
@@ -65,7 +66,7 @@ static int verdict(const dvi__term *term, int count, const double *const *x, int
   return returned;
 }
 
-bool dvi__scene_too_large(dvi_scene *scene, const char *what, dvi_status status)
+bool(dvi__scene_too_large)(dvi_scene *scene, const char *what, dvi_status status)
 {
   return dvi__complain(scene->complaint, status, DVI__NOWHERE, "%s: %s", what, too_large(status));
 }
@@ -130,6 +131,21 @@ bool dvi__term_pattern(dvi_scene *scene, dvi__term *term, dvi__pair pair, dvi_pa
   return true;
 }
 
+/* Programs of large expressions are made now, for they may be refused: the value's, and the gradient's by these blocks. */
+static bool prepare_large(dvi_scene *scene, const dvi__term *term, unsigned blocks)
+{
+  enum { ALWAYS_FIT = DVI__ROWS_MAX / 32 }; /* parts, whatever is derived of them */
+  const dvi__kernel *largest = NULL;
+  for (int k = 0; k < dvi__function_kernel_count(term->function); k++) {
+    const dvi__kernel *kernel = dvi__function_kernel(term->function, k);
+    if (kernel->root >= ALWAYS_FIT && (largest == NULL || kernel->root > largest->root)) largest = kernel;
+  }
+  if (largest == NULL) return true;
+  const dvi_status status = dvi__function_prepare(term->function, 1, blocks, 0);
+  return status == DVI_OK ||
+         dvi__complain(scene->complaint, status, largest->graph->node[largest->root].span, "%s", too_large(status));
+}
+
 bool dvi__make_potential(dvi_scene *scene, const char *name, dvi__term *term, dvi_potential *potential)
 {
   int full;
@@ -139,7 +155,7 @@ bool dvi__make_potential(dvi_scene *scene, const char *name, dvi__term *term, dv
                                .hessian_batch = potential_hessian,
                                .rate_batch = potential_rate,
                                .user = term};
-  return dvi__term_pattern(scene, term, DVI__PAIR_QQ, &potential->qq, &full);
+  return prepare_large(scene, term, 1U << DVI__COORDINATES) && dvi__term_pattern(scene, term, DVI__PAIR_QQ, &potential->qq, &full);
 }
 
 /* ---- Lagrangians ---- */
@@ -180,7 +196,8 @@ bool dvi__make_lagrangian(dvi_scene *scene, dvi__term *term, dvi_lagrangian *lag
                                  .hessian_batch = lagrangian_hessian,
                                  .rate_batch = lagrangian_rate,
                                  .user = term};
-  return dvi__term_pattern(scene, term, DVI__PAIR_QQ, &lagrangian->qq, &full) &&
+  return prepare_large(scene, term, 1U << DVI__COORDINATES | 1U << DVI__VELOCITIES) &&
+         dvi__term_pattern(scene, term, DVI__PAIR_QQ, &lagrangian->qq, &full) &&
          dvi__term_pattern(scene, term, DVI__PAIR_QV, &lagrangian->qv, &full) &&
          dvi__term_pattern(scene, term, DVI__PAIR_VV, &lagrangian->vv, &full);
 }
@@ -219,7 +236,8 @@ bool dvi__make_one_form(dvi_scene *scene, dvi__term *term, dvi_one_form *form)
 {
   int full;
   *form = (dvi_one_form){.value = dvi__term_generator, .gradient = form_gradient, .hessian = form_hessian, .user = term};
-  return dvi__term_pattern(scene, term, DVI__PAIR_QW, &form->gradients, &full) &&
+  return prepare_large(scene, term, 1U << DVI__MULTIPLIERS) &&
+         dvi__term_pattern(scene, term, DVI__PAIR_QW, &form->gradients, &full) &&
          dvi__term_pattern(scene, term, DVI__PAIR_QQ, &form->qq, &full);
 }
 
@@ -244,7 +262,8 @@ bool dvi__make_hamiltonian(dvi_scene *scene, dvi__term *term, dvi_hamiltonian *h
   int full;
   *hamiltonian = (dvi_hamiltonian){
       .value = dvi__term_value, .gradient = hamiltonian_gradient, .hessian = hamiltonian_hessian, .user = term};
-  return dvi__term_pattern(scene, term, DVI__PAIR_QQ, &hamiltonian->qq, &full) &&
+  return prepare_large(scene, term, 1U << DVI__COORDINATES | 1U << DVI__VELOCITIES) &&
+         dvi__term_pattern(scene, term, DVI__PAIR_QQ, &hamiltonian->qq, &full) &&
          dvi__term_pattern(scene, term, DVI__PAIR_QV, &hamiltonian->qp, &full) &&
          dvi__term_pattern(scene, term, DVI__PAIR_VV, &hamiltonian->pp, &full);
 }
@@ -330,8 +349,8 @@ bool dvi__make_constraint(dvi_scene *scene, dvi__term *term, dvi_constraint *con
   int full;
   *constraint = (dvi_constraint){
       .count = term->count, .value = multiplied, .gradient = constraint_gradient, .hessian = constraint_hessian, .user = term};
-  return explicit_pattern(scene, term, DVI__PAIR_QW, &term->qw) && explicit_pattern(scene, term, DVI__PAIR_VW, &term->vw) &&
-         join_patterns(scene, term, &constraint->gradients) &&
+  return prepare_large(scene, term, 1U << DVI__MULTIPLIERS) && explicit_pattern(scene, term, DVI__PAIR_QW, &term->qw) &&
+         explicit_pattern(scene, term, DVI__PAIR_VW, &term->vw) && join_patterns(scene, term, &constraint->gradients) &&
          dvi__term_pattern(scene, term, DVI__PAIR_QQ, &constraint->qq, &full) &&
          dvi__term_pattern(scene, term, DVI__PAIR_QV, &constraint->qp, &full) &&
          dvi__term_pattern(scene, term, DVI__PAIR_VV, &constraint->pp, &full);

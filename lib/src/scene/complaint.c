@@ -151,7 +151,7 @@ bool(dvi__complain)(dvi__complaint *complaint, dvi_status status, dvi__span wher
   return false;
 }
 
-bool dvi__complain_of_memory(dvi__complaint *complaint)
+bool(dvi__complain_of_memory)(dvi__complaint *complaint)
 {
   if (dvi__heap_refusal() == DVI_BAD_SIZE)
     return dvi__complain(complaint, DVI_BAD_SIZE, DVI__NOWHERE, "more than 1 GiB of memory is needed");

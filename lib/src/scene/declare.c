@@ -98,6 +98,32 @@ bool dvi__read_parameters(dvi_scene *scene, const dvi__tree *section, dvi__setti
   return true;
 }
 
+/* The parameter that is being read is the one behind those that were. */
+bool dvi__note_parameter(dvi_scene *scene, dvi__parameter *parameter)
+{
+  parameter->stands |= scene->reads;
+  if (scene->reads != DVI__IN_PARAMETERS || parameter->last_made == scene->parameter_count + 1) return true;
+  dvi__source_of *source = dvi__arena_take(&scene->arena, 1, sizeof *source);
+  if (source == NULL) return dvi__scene_no_memory(scene);
+  dvi__parameter *made = &scene->parameter[scene->parameter_count];
+  *source = (dvi__source_of){parameter, made->source};
+  made->source = source;
+  parameter->last_made = scene->parameter_count + 1;
+  return true;
+}
+
+/* Parameters are made of those above them: from the last one on, all that mention one are known when it is met. */
+bool dvi__read_uses(dvi_scene *scene, const dvi__settings *settings)
+{
+  for (int i = scene->parameter_count - 1; i >= 0; i--) {
+    const dvi__parameter *p = &scene->parameter[i];
+    for (const dvi__source_of *source = p->source; source != NULL; source = source->next) source->parameter->stands |= p->stands;
+    if (p->stands == 0 && setting_of(scene, p->name, settings) >= 0)
+      return dvi__complain(scene->complaint, DVI_BAD_OPTION, p->span, "'%s' is set, but nothing in the scene mentions it", p->name);
+  }
+  return true;
+}
+
 /* ---- coordinates ---- */
 
 /* What is declared of a coordinate: its kind, what a member is as a value, and how many numbers it has in q and in v. */

@@ -9,7 +9,7 @@
 #include "scene/heap.h"
 
 enum { DEPTH_MAX = 512 };
-static const long work_max = 50000000;
+static const long work_max = 10000000;
 
 bool(dvi__refuse)(const dvi__context *c, dvi__span span, const char *format, ...)
 {

@@ -69,7 +69,8 @@ static bool add_inertia(dvi_scene *scene, dvi_factor *factors, const int *of, in
   dvi_factor *factor = &factors[of[k] + member];
   if (x->kind == DVI__ANGLE) {
     factor->mass = value;
-    return true;
+    return value > 0 ||
+           dvi__scene_refuse(scene, x->span, "the moment of inertia of %s is %g, and must be positive", x->name, value);
   }
   double *J = (double *)factor->inertia;
   if (J == NULL) J = dvi__arena_take(&scene->arena, 9, sizeof *J);

@@ -98,7 +98,7 @@ dvi__node dvi__rate(dvi__graph *graph, dvi__node root, int count, const dvi__nod
 
 /* Which second derivatives of `root` by inputs (i,j), 0 <= j <= i < count, may differ from zero, without making them: by the first and second order
  * dependences of each node.
- * pairs: (i,j) column by column; *pair_count of them; owned by the caller (dvi__heap_free). Returns DVI_OK or DVI_NO_MEMORY. */
+ * pairs: (i,j) column by column; *pair_count of them; owned by the caller (dvi__heap_free). DVI_BAD_SIZE: more than 20000000; DVI_NO_MEMORY. */
 dvi_status dvi__second_pattern(const dvi__graph *graph, dvi__node root, int count, int (**pairs)[2], int *pair_count);
 
 /* Mark [count], 1: the input occurs in one of the roots. */

@@ -22,6 +22,7 @@ typedef struct pairs {
 } pairs;
 
 static const uint64_t FREE = UINT64_MAX;
+static const size_t PAIRS_MAX = 20000000;
 
 enum { CURVED_AA = 1, CURVED_AB = 2, CURVED_BB = 4 };
 enum { REACHED = 1, SET_NEEDED = 2 };
@@ -110,20 +111,21 @@ static size_t slot_of(const pairs *p, uint64_t key)
   return at;
 }
 
-/* Room for `more` pairs. Returns 1 if there is no memory. */
-static int make_room(pairs *p, size_t more)
+/* Room for `more` pairs. */
+static dvi_status make_room(pairs *p, size_t more)
 {
   size_t room = p->room == 0 ? 64 : p->room;
+  if (p->count > PAIRS_MAX) return DVI_BAD_SIZE;
   while (room < 2 * (p->count + more)) room *= 2;
-  if (room == p->room) return 0;
+  if (room == p->room) return DVI_OK;
   pairs grown = {.key = dvi__heap_take(room, sizeof *grown.key), .room = room, .count = p->count};
-  if (grown.key == NULL) return 1;
+  if (grown.key == NULL) return DVI_NO_MEMORY;
   for (size_t k = 0; k < room; k++) grown.key[k] = FREE;
   for (size_t k = 0; k < p->room; k++)
     if (p->key[k] != FREE) grown.key[slot_of(&grown, p->key[k])] = p->key[k];
   dvi__heap_free(p->key);
   *p = grown;
-  return 0;
+  return DVI_OK;
 }
 
 static void put(pairs *p, int i, int j)
@@ -135,31 +137,32 @@ static void put(pairs *p, int i, int j)
   p->count++;
 }
 
-/* All pairs of an input of one set and one of the other. Returns 1 if there is no memory. */
-static int put_all(pairs *p, set a, set b)
+/* All pairs of an input of one set and one of the other. */
+static dvi_status put_all(pairs *p, set a, set b)
 {
-  for (int i = 0; i < a.count; i++) {
-    if (make_room(p, (size_t)b.count)) return 1;
-    for (int j = 0; j < b.count; j++) put(p, a.input[i], b.input[j]);
+  dvi_status status = DVI_OK;
+  for (int i = 0; i < a.count && status == DVI_OK; i++) {
+    status = make_room(p, (size_t)b.count);
+    for (int j = 0; j < b.count && status == DVI_OK; j++) put(p, a.input[i], b.input[j]);
   }
-  return 0;
+  return status;
 }
 
 /* The pairs of all parts, in `found`. */
-static int find_pairs(const dvi__graph *graph, dvi__node root, int count, const char *mark, set *sets, dvi__arena *arena, int *work,
-                      pairs *found)
+static dvi_status find_pairs(const dvi__graph *graph, dvi__node root, int count, const char *mark, set *sets, dvi__arena *arena,
+                             int *work, pairs *found)
 {
-  int failed = 0;
-  for (int n = 0; n <= root && !failed; n++) {
+  dvi_status status = DVI_OK;
+  for (int n = 0; n <= root && status == DVI_OK; n++) {
     const dvi__graph_node *node = graph->node + n;
     if (!mark[n]) continue;
     if (mark[n] & SET_NEEDED) sets[n] = set_of(node, count, sets, arena, work);
     const int curved = curvature(graph, node);
-    if (curved & CURVED_AA) failed |= put_all(found, sets[node->a], sets[node->a]);
-    if (curved & CURVED_AB) failed |= put_all(found, sets[node->a], sets[node->b]);
-    if (curved & CURVED_BB) failed |= put_all(found, sets[node->b], sets[node->b]);
+    if (curved & CURVED_AA) status = put_all(found, sets[node->a], sets[node->a]);
+    if ((curved & CURVED_AB) && status == DVI_OK) status = put_all(found, sets[node->a], sets[node->b]);
+    if ((curved & CURVED_BB) && status == DVI_OK) status = put_all(found, sets[node->b], sets[node->b]);
   }
-  return failed || arena->failed;
+  return status == DVI_OK && arena->failed ? DVI_NO_MEMORY : status;
 }
 
 /* Sort keys by the 32 bits from `shift` on, which are below `count`, keeping the order of equal ones; start [count + 1]. */
@@ -171,8 +174,8 @@ static void sort_by(int shift, int count, size_t size, const uint64_t *key, uint
   for (size_t k = 0; k < size; k++) sorted[start[(uint32_t)(key[k] >> shift)]++] = key[k];
 }
 
-/* The pairs in their order. Returns 1 if there is no memory. */
-static int list_pairs(pairs *found, int count, int (**list)[2])
+/* The pairs in their order. */
+static dvi_status list_pairs(pairs *found, int count, int (**list)[2])
 {
   const size_t size = found->count;
   uint64_t *by_row = dvi__heap_take(size + 1, sizeof *by_row);
@@ -189,7 +192,7 @@ static int list_pairs(pairs *found, int count, int (**list)[2])
   }
   dvi__heap_free(by_row);
   dvi__heap_free(start);
-  return failed;
+  return failed ? DVI_NO_MEMORY : DVI_OK;
 }
 
 dvi_status dvi__second_pattern(const dvi__graph *graph, dvi__node root, int count, int (**list)[2], int *pair_count)
@@ -202,18 +205,21 @@ dvi_status dvi__second_pattern(const dvi__graph *graph, dvi__node root, int coun
   char *mark = dvi__heap_take((size_t)root + 1, 1);
   set *sets = dvi__heap_take((size_t)root + 1, sizeof *sets);
   int *work = dvi__heap_take((size_t)count + 1, sizeof *work);
-  int failed = mark == NULL || sets == NULL || work == NULL;
-  if (!failed) mark_parts(graph, root, mark);
-  failed = failed || find_pairs(graph, root, count, mark, sets, &arena, work, &found) || list_pairs(&found, count, list);
-  if (failed) {
+  dvi_status status = mark == NULL || sets == NULL || work == NULL ? DVI_NO_MEMORY : DVI_OK;
+  if (status == DVI_OK) {
+    mark_parts(graph, root, mark);
+    status = find_pairs(graph, root, count, mark, sets, &arena, work, &found);
+  }
+  if (status == DVI_OK) status = list_pairs(&found, count, list);
+  if (status != DVI_OK) {
     dvi__heap_free(*list);
     *list = NULL;
   }
-  *pair_count = failed ? 0 : (int)found.count;
+  *pair_count = status == DVI_OK ? (int)found.count : 0;
   dvi__heap_free(mark);
   dvi__heap_free(sets);
   dvi__heap_free(work);
   dvi__heap_free(found.key);
   dvi__arena_free(&arena);
-  return failed ? DVI_NO_MEMORY : DVI_OK;
+  return status;
 }

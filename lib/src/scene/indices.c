@@ -123,7 +123,8 @@ bool dvi__numbers_of(const dvi__context *c, const dvi__expression *e, double **e
 
 static bool whole(const dvi__context *c, const dvi__expression *e, const char *what, double x, int *number)
 {
-  if (!(x >= -1e9 && x <= 1e9) || floor(x) < x) return dvi__refuse(c, e->span, "%s must be a whole number, and is %.17g", what, x);
+  if (floor(x) < x) return dvi__refuse(c, e->span, "%s must be a whole number, and is %.17g", what, x);
+  if (!(x >= -1e9 && x <= 1e9)) return dvi__refuse(c, e->span, "%s must be between -1e9 and 1e9, and is %.17g", what, x);
   *number = (int)x;
   return true;
 }

@@ -34,6 +34,7 @@ struct dvi_scene {
   dvi__coordinate *coordinate;
   dvi__definition *definition;
   int parameter_count, coordinate_count, definition_count;
+  unsigned reads; /* where parameters that are met stand */
   int n, nv;      /* numbers of q; of v and p */
   int velocities; /* in the block of velocities: n, or with factors n rates of q and nv velocities after them */
   long work;      /* parts of expressions that were elaborated */

@@ -35,7 +35,7 @@ const dvi__name *dvi__names_find(const dvi__names *names, const char *text)
 /* Room for one more, and a table that is at most half full. */
 static bool grow(dvi__names *names, dvi__arena *arena)
 {
-  if (2 * names->count < names->table_size) return true;
+  if (names->name != NULL && 2 * names->count < names->table_size) return true;
   const int room = names->count == 0 ? 1 : 2 * names->count;
   dvi__name *moved = dvi__arena_grow(arena, names->name, (size_t)names->count, sizeof *moved);
   int *table = dvi__arena_take(arena, 2 * (size_t)room, sizeof *table);

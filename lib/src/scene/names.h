@@ -10,12 +10,24 @@ typedef struct dvi__shape {
   int rank, rows, columns;
 } dvi__shape;
 
+/* Where a parameter stands: in an initial value, or in any other section but `parameters`. */
+enum { DVI__IN_PARAMETERS = 0, DVI__IN_START = 1, DVI__ELSEWHERE = 2 };
+
+/* The parameters that another one is made of. */
+typedef struct dvi__source_of {
+  struct dvi__parameter *parameter;
+  const struct dvi__source_of *next;
+} dvi__source_of;
+
 typedef struct dvi__parameter {
   const char *name;
   dvi__span span;
   dvi__shape shape;
   double *value; /* [rows * columns], row by row */
   int settable;
+  unsigned stands;              /* DVI__IN_START, DVI__ELSEWHERE: complete when the scene is read */
+  const dvi__source_of *source; /* what it is made of */
+  int last_made;                /* the number + 1 of the last parameter that is made of it */
 } dvi__parameter;
 
 typedef enum dvi__kind { DVI__LINES, DVI__ROTATION, DVI__MOTION, DVI__DIRECTION, DVI__ANGLE } dvi__kind;

@@ -36,9 +36,9 @@ DVI__SCENE_INLINE void inverse_powers(int width, const int factors, const double
 }
 
 /* x^n, n = 1, 2, .. or x^-n. */
-DVI__SCENE_INLINE void whole_powers(int width, double exponent, const double *restrict x, double *restrict to)
+DVI__SCENE_INLINE void powers(int width, const int exponent, const double *restrict x, double *restrict to)
 {
-  const unsigned power = (unsigned)fabs(exponent);
+  const unsigned power = exponent < 0 ? 0U - (unsigned)exponent : (unsigned)exponent;
   for (int at = 0; at < width; at += DVI__LANES) {
     double base[DVI__LANES], product[DVI__LANES];
     for (int k = 0; k < DVI__LANES; k++) base[k] = x[at + k];
@@ -48,7 +48,19 @@ DVI__SCENE_INLINE void whole_powers(int width, double exponent, const double *re
         for (int k = 0; k < DVI__LANES; k++) product[k] *= base[k];
       for (int k = 0; k < DVI__LANES; k++) base[k] *= base[k];
     }
-    for (int k = 0; k < DVI__LANES; k++) to[at + k] = exponent < 0.0 ? 1.0 / product[k] : product[k];
+    for (int k = 0; k < DVI__LANES; k++) to[at + k] = exponent < 0 ? 1.0 / product[k] : product[k];
+  }
+}
+
+/* The compiler makes vectors of the powers that it knows. */
+DVI__SCENE_INLINE void whole_powers(int width, double exponent, const double *restrict x, double *restrict to)
+{
+  switch ((int)exponent) {
+  case 3: powers(width, 3, x, to); break;
+  case 4: powers(width, 4, x, to); break;
+  case -2: powers(width, -2, x, to); break;
+  case -3: powers(width, -3, x, to); break;
+  default: powers(width, (int)exponent, x, to);
   }
 }
 

@@ -56,7 +56,11 @@ static bool show_parameters(dvi_scene *scene)
   if (scene->shown == NULL) return dvi__scene_no_memory(scene);
   for (int i = 0; i < scene->parameter_count; i++) {
     const dvi__parameter *p = &scene->parameter[i];
-    scene->shown[i] = (dvi_scene_parameter){p->name, p->settable ? p->value[0] : (double)NAN, p->settable};
+    scene->shown[i] = (dvi_scene_parameter){.name = p->name,
+                                            .value = p->settable ? p->value[0] : (double)NAN,
+                                            .settable = p->settable,
+                                            .start_only = p->stands == DVI__IN_START,
+                                            .used = p->stands != 0};
   }
   return true;
 }

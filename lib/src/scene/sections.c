@@ -92,7 +92,7 @@ bool dvi__tree_whole(dvi_scene *scene, const dvi__tree *tree, const char *what, 
   double x;
   if (!dvi__tree_number(scene, tree, what, &x)) return false;
   if (!(x >= least && x <= INT_MAX) || (double)(int)x < x)
-    return dvi__scene_refuse(scene, tree->span, "%s is a whole number from %d on, not %.17g", what, least, x);
+    return dvi__scene_refuse(scene, tree->span, "%s is a whole number from %d to %d, not %.17g", what, least, INT_MAX, x);
   *number = (int)x;
   return true;
 }
@@ -114,11 +114,20 @@ static bool read_number(dvi_scene *scene, const char *section, double *number)
   return *number > 0 || dvi__scene_refuse(scene, tree->span, "%s must be positive, and is %.17g", section, *number);
 }
 
+/* With more steps than a double can count the time would stand still. */
+static bool few_steps(dvi_scene *scene)
+{
+  static const double steps_max = 9007199254740992.0; /* 2^53 */
+  const double steps = scene->plan.t_end / scene->plan.h;
+  return steps <= steps_max || dvi__complain(scene->complaint, DVI_BAD_SIZE, dvi__tree_find(scene->tree, "step")->span,
+                                             "a run of %.3g steps; at most %.16g (2^53) are possible", steps, steps_max);
+}
+
 static bool read_plan(dvi_scene *scene)
 {
   dvi_scene_plan *plan = &scene->plan;
   return read_text(scene, "title", &plan->title) && read_text(scene, "method", &plan->method) &&
-         read_number(scene, "step", &plan->h) && read_number(scene, "until", &plan->t_end);
+         read_number(scene, "step", &plan->h) && read_number(scene, "until", &plan->t_end) && few_steps(scene);
 }
 
 /* Each is sought among all that there are. */
@@ -349,10 +358,14 @@ static bool one_form_of_system(dvi_scene *scene)
 bool dvi__scene_read_tree(dvi_scene *scene, dvi__settings *settings)
 {
   if (!all_known(scene) || !one_form_of_system(scene)) return false;
-  if (!dvi__read_parameters(scene, dvi__tree_find(scene->tree, "parameters"), settings) || !read_plan(scene)) return false;
+  scene->reads = DVI__IN_PARAMETERS;
+  if (!dvi__read_parameters(scene, dvi__tree_find(scene->tree, "parameters"), settings)) return false;
+  scene->reads = DVI__ELSEWHERE;
+  if (!read_plan(scene)) return false;
   for (int k = 0; k < SECTIONS; k++) {
     const dvi__tree *found = dvi__tree_find(scene->tree, sections[k].name);
+    scene->reads = sections[k].read == dvi__read_initial ? DVI__IN_START : DVI__ELSEWHERE;
     if (found != NULL && sections[k].read != NULL && !sections[k].read(scene, found)) return false;
   }
-  return true;
+  return dvi__read_uses(scene, settings);
 }

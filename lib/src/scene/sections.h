@@ -46,6 +46,9 @@ bool dvi__tree_expression(dvi_scene *scene, const dvi__tree *tree, const dvi__ex
 bool dvi__tree_number(dvi_scene *scene, const dvi__tree *tree, const char *what, double *number);
 bool dvi__tree_whole(dvi_scene *scene, const dvi__tree *tree, const char *what, int least, int *number);
 
+/* After all sections: tell parameters where what is made of them stands, and refuse settings of those that stand nowhere. */
+bool dvi__read_uses(dvi_scene *scene, const dvi__settings *settings);
+
 /* ---- coordinates as keys ---- */
 
 /* x, x[3] or x[i], of a motion B.R or B.x; and of these the numbers, the velocities x', omega(R) or rate(u), or the momenta p(x). */
