@@ -396,7 +396,9 @@ static const char *const details[] = {
     "  dvi run kepler --set e=0.99 --method galerkin:degree=4 --time-transform distance --h 0.3 --t-end 63\n"
     "  dvi run kepler --method sem:degree=2 --h 0.05 --t-end 100 --set e=0.5 --out orbit.csv\n"
     "  dvi run fpu --method midpoint --h 0.01 --t-end 100 --checkpoint fpu.state --out part1.csv\n"
-    "  dvi run fpu --method midpoint --h 0.01 --t-end 200 --resume fpu.state --out part2.csv\n",
+    "  dvi run fpu --method midpoint --h 0.01 --t-end 200 --resume fpu.state --out part2.csv\n"
+    "  dvi run cart.yaml --final --plot cart.svg\n"
+    "  dvi run cart.yaml | dvi plot - --axes x:theta --out path.svg\n",
     NULL,
 };
 

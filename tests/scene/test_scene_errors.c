@@ -98,6 +98,18 @@ START_TEST(words_from_elsewhere_are_told_with_those_of_scenes)
 }
 END_TEST
 
+START_TEST(a_start_that_is_no_number_is_told)
+{
+  const char *const L = "coordinates: {\"x[2]\": scalar, y: scalar}\nlagrangian: y'^2 + sum(i, x[i]'^2)\nstep: 1\nuntil: 1\n";
+  char text[TEXT_SIZE];
+  (void)snprintf(text, sizeof text, "%sinitial: {y: 1, \"x[i]\": 1/(i - 1)}\n", L);
+  refused(text, ":5:10:", "the start of x is not finite");
+  (void)snprintf(text, sizeof text, "%sinitial: {y: 1, \"x[i]\": 1, \"x[i]'\": sqrt(1 - i)}\n", L);
+  refused(text, ":5:10:", "the start of x is not finite");
+  refused(X "lagrangian: x'^2\ninitial: {x: 1/0}\nstep: 1\nuntil: 1\n", ":3:14:", "this is not a finite number");
+}
+END_TEST
+
 START_TEST(shapes_that_do_not_fit_are_told)
 {
   lagrangian_refused("x'^2 + u", 13, "a number plus a vector of 3");
@@ -264,6 +276,7 @@ int main(void)
   tcase_add_test(tests, parameters_know_where_they_stand);
   tcase_add_test(tests, unknown_names_are_told_with_the_nearest);
   tcase_add_test(tests, words_from_elsewhere_are_told_with_those_of_scenes);
+  tcase_add_test(tests, a_start_that_is_no_number_is_told);
   tcase_add_test(tests, shapes_that_do_not_fit_are_told);
   tcase_add_test(tests, indices_are_checked_for_every_element);
   tcase_add_test(tests, velocities_and_momenta_stand_where_they_make_sense);

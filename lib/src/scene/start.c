@@ -157,6 +157,18 @@ static bool are_across(dvi_scene *scene, const dvi__tree *section, const double 
   return true;
 }
 
+/* Formulas may have no value for a member that is given by itself, so numbers are looked at when all are there. */
+static bool all_finite(dvi_scene *scene, const dvi__tree *section)
+{
+  for (int i = 0; i < scene->n + 2 * scene->nv; i++) {
+    if (isfinite(scene->q[i])) continue;
+    const int of_v = i >= scene->n, number = of_v ? (i - scene->n) % scene->nv : i;
+    return dvi__scene_refuse(scene, section->span, "the start of %s is not finite",
+                             scene->coordinate[dvi__coordinate_at(scene, number, of_v)].name);
+  }
+  return true;
+}
+
 /* What must be given, and what may not. */
 static bool complete(dvi_scene *scene, const dvi__tree *section, const given *g)
 {
@@ -169,7 +181,7 @@ static bool complete(dvi_scene *scene, const dvi__tree *section, const given *g)
   if (g->velocities && g->momenta) return dvi__scene_refuse(scene, section->span, "give velocities or momenta, not both");
   scene->momenta_given = g->momenta || scene->terms.hamiltonian != NULL;
   if (scene->momenta_given && !all_given(scene, section, DVI__SAYS_P, g->p)) return false;
-  return are_across(scene, section, scene->momenta_given ? scene->p : scene->v);
+  return all_finite(scene, section) && are_across(scene, section, scene->momenta_given ? scene->p : scene->v);
 }
 
 bool dvi__read_initial(dvi_scene *scene, const dvi__tree *section)
