@@ -89,9 +89,9 @@ static int check_step(const problem *scene, const char *method)
 /* What is declared and has no use is told: it may be a name that was changed elsewhere. */
 static void tell_unused(const problem *scene)
 {
-  const dvi_scene_parameter *p;
-  for (int i = 0; scene->scene != NULL && (p = dvi_scene_parameter_at(scene->scene, i)) != NULL; i++)
-    if (!p->used) (void)printf("parameter %s: nothing in the scene mentions it\n", p->name);
+  const char *name;
+  for (int i = 0; scene->scene != NULL && (name = dvi_scene_unused(scene->scene, i)) != NULL; i++)
+    (void)printf("%s: nothing in the scene mentions it\n", name);
 }
 
 static const char *const details[] = {

@@ -146,7 +146,7 @@ refuses "'x' is no finite number" --set far=x
 refuses 'x0=3 places the start, which --resume replaces' --resume spring.state --set x0=3
 expect 1 'another system' run spring.yaml --resume spring.state --set k=2
 expect 0 'check' check spring.yaml
-says out 'parameter idle: nothing in the scene mentions it' 'what has no use is told'
+says out '^idle: nothing in the scene mentions it' 'what has no use is told'
 
 # No command writes over its scene.
 cp ball.yaml kept.yaml

@@ -57,17 +57,19 @@ static void lagrangian_refused(const char *L, int column, const char *words)
 
 /* b is made of a and stands in no section, nor does the list c. */
 #define PARAMETERS "parameters: {a: 1, b: 2*a, c: [a, b], start: 2, twice: 2*start, size: 3, both: 1}\n"
-#define USES "lagrangian: x'^2 - size*both*x\ninitial: {x: twice + both}\nstep: 0.1\nuntil: 1\n"
+#define USES                                                                                                              \
+  "definitions: {V: size*both*x, rest: x^2, twice_V: 2*V}\nlagrangian: x'^2 - V\ninitial: {x: twice + both}\nstep: 0.1\n" \
+  "until: 1\n"
 
-START_TEST(parameters_know_where_they_stand)
+START_TEST(what_nothing_mentions_is_known)
 {
-  static const int used[] = {0, 0, 0, 1, 1, 1, 1}, start_only[] = {0, 0, 0, 1, 1, 0, 0};
-  static const char *const idle[] = {"a=2"};
+  static const int start_only[] = {0, 0, 0, 1, 1, 0, 0};
+  static const char *const unused[] = {"a", "b", "c", "rest", "twice_V"}, *const idle[] = {"a=2"};
   ck_assert_msg(parse(PARAMETERS X USES, 0, NULL) == DVI_OK, "%s", message);
-  for (int i = 0; i < 7; i++) {
-    ck_assert_int_eq(dvi_scene_parameter_at(scene, i)->used, used[i]);
-    ck_assert_int_eq(dvi_scene_parameter_at(scene, i)->start_only, start_only[i]);
-  }
+  for (int i = 0; i < 7; i++) ck_assert_int_eq(dvi_scene_parameter_at(scene, i)->start_only, start_only[i]);
+  for (int i = 0; i < 5; i++) ck_assert_str_eq(dvi_scene_unused(scene, i), unused[i]);
+  ck_assert_ptr_null(dvi_scene_unused(scene, 5));
+  ck_assert_ptr_null(dvi_scene_unused(scene, -1));
   ck_assert_int_eq(parse(PARAMETERS X USES, 1, idle), DVI_BAD_OPTION);
   ck_assert_ptr_nonnull(strstr(message, "'a' is set, but nothing in the scene mentions it"));
 }
@@ -273,7 +275,7 @@ int main(void)
 {
   TCase *tests = tcase_create("scene errors");
   tcase_add_checked_fixture(tests, NULL, release);
-  tcase_add_test(tests, parameters_know_where_they_stand);
+  tcase_add_test(tests, what_nothing_mentions_is_known);
   tcase_add_test(tests, unknown_names_are_told_with_the_nearest);
   tcase_add_test(tests, words_from_elsewhere_are_told_with_those_of_scenes);
   tcase_add_test(tests, a_start_that_is_no_number_is_told);

@@ -15,7 +15,6 @@ typedef struct dvi_scene_parameter {
   double value;   /**< as it is set; NaN if it is not one number */
   int settable;   /**< 1: a number that a setting may replace */
   int start_only; /**< 1: of all sections it stands in `initial` alone, and so does what is made of it */
-  int used;       /**< 0: nothing in the scene mentions it */
 } dvi_scene_parameter;
 
 /** How a scene wants to be run. Strings are NULL and numbers 0 where it does not say. */
@@ -108,6 +107,9 @@ const dvi_scene_plan *dvi_scene_plan_of(const dvi_scene *scene);
 
 /** Parameter i, in the order of the file; NULL if i is out of range. Owned by the scene. */
 const dvi_scene_parameter *dvi_scene_parameter_at(const dvi_scene *scene, int i);
+
+/** Parameter or definition i of those that nothing in the scene mentions; NULL if i is out of range. Owned by the scene. */
+const char *dvi_scene_unused(const dvi_scene *scene, int i);
 
 /** Event i; NULL if i is out of range. Owned by the scene. */
 const dvi_scene_event *dvi_scene_event_at(const dvi_scene *scene, int i);

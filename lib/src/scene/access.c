@@ -93,7 +93,10 @@ dvi__value dvi__name_value(dvi__context *c, const dvi__expression *e)
   const dvi__name *name = dvi__names_find(&c->scene->names, e->name);
   if (name == NULL) return unknown(c, e);
   if (name->sort == DVI__PARAMETER) return parameter_value(c, &c->scene->parameter[name->number]);
-  if (name->sort == DVI__DEFINITION) return definition_value(c, name->number);
+  if (name->sort == DVI__DEFINITION) {
+    c->scene->definition[name->number].stands = 1;
+    return definition_value(c, name->number);
+  }
   const dvi__coordinate *x = &c->scene->coordinate[name->number];
   if (!dvi__may_stand(c, DVI__SAYS_Q, e->span)) return DVI__NO_VALUE;
   if (x->family)

@@ -143,8 +143,10 @@ static bool gather_form(walk *w, const dvi__expression *e, place at)
     return at.group != NULL && gather(w, e->part[0], at);
   }
   const dvi__name *name = e->form == DVI__FORM_NAME ? dvi__names_find(&w->scene->names, e->name) : NULL;
-  if (name != NULL && name->sort == DVI__DEFINITION && at.group->sum == NULL)
+  if (name != NULL && name->sort == DVI__DEFINITION && at.group->sum == NULL) {
+    w->scene->definition[name->number].stands = 1;
     return gather(w, w->scene->definition[name->number].is, at);
+  }
   return add_leaf(w, e, at);
 }
 

@@ -55,7 +55,8 @@ struct dvi_scene {
   dvi_scene_parameter *shown; /* [parameter_count] */
   dvi_scene_event *event;
   dvi_scene_range *range;
-  int event_count, range_count, bodies;
+  const char **unused; /* [unused_count] */
+  int event_count, range_count, unused_count, bodies;
   const char *form, *mass;
   pthread_mutex_t labels_mutex;
   char **label[3]; /* of q, v, p; made when first asked for */

@@ -61,6 +61,7 @@ typedef struct dvi__definition {
   const dvi__expression *is;
   dvi__shape shape;
   unsigned says;
+  int stands; /* 1: something mentions it */
 } dvi__definition;
 
 typedef enum dvi__sort { DVI__PARAMETER, DVI__COORDINATE, DVI__DEFINITION } dvi__sort;

@@ -59,9 +59,20 @@ static bool show_parameters(dvi_scene *scene)
     scene->shown[i] = (dvi_scene_parameter){.name = p->name,
                                             .value = p->settable ? p->value[0] : (double)NAN,
                                             .settable = p->settable,
-                                            .start_only = p->stands == DVI__IN_START,
-                                            .used = p->stands != 0};
+                                            .start_only = p->stands == DVI__IN_START};
   }
+  return true;
+}
+
+static bool list_unused(dvi_scene *scene)
+{
+  const size_t most = (size_t)scene->parameter_count + (size_t)scene->definition_count;
+  scene->unused = dvi__arena_take(&scene->arena, most + 1, sizeof *scene->unused);
+  if (scene->unused == NULL) return dvi__scene_no_memory(scene);
+  for (int i = 0; i < scene->parameter_count; i++)
+    if (scene->parameter[i].stands == 0) scene->unused[scene->unused_count++] = scene->parameter[i].name;
+  for (int i = 0; i < scene->definition_count; i++)
+    if (!scene->definition[i].stands) scene->unused[scene->unused_count++] = scene->definition[i].name;
   return true;
 }
 
@@ -77,7 +88,7 @@ static bool read_scene(dvi_scene *scene, dvi__settings *settings)
   if (!dvi__tree_read(&scene->source, &scene->arena, scene->complaint, &scene->tree)) return false;
   if (!dvi__scene_read_tree(scene, settings) || !make_system(scene) || !dvi__scene_complete_start(scene)) return false;
   find_bodies(scene);
-  return show_parameters(scene);
+  return show_parameters(scene) && list_unused(scene);
 }
 
 /* Fill in a scene; its texts are copied. */
@@ -210,6 +221,11 @@ const dvi_scene_plan *dvi_scene_plan_of(const dvi_scene *scene)
 const dvi_scene_parameter *dvi_scene_parameter_at(const dvi_scene *scene, int i)
 {
   return scene == NULL || i < 0 || i >= scene->parameter_count ? NULL : &scene->shown[i];
+}
+
+const char *dvi_scene_unused(const dvi_scene *scene, int i)
+{
+  return scene == NULL || i < 0 || i >= scene->unused_count ? NULL : scene->unused[i];
 }
 
 const dvi_scene_event *dvi_scene_event_at(const dvi_scene *scene, int i)
