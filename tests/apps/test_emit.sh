@@ -40,14 +40,13 @@ compiles() {
 
 # A program without a sanitizer does not run with a library that has one.
 if command -v "$compiler" >/dev/null && ! grep -q '__[at]san_init\|__ubsan_handle' "$libraries/libdvi.so"; then
-  for each in kepler oscillator driven-pendulum double-pendulum guiding-centre circle-dirac magnetic-pair fpu vortices; do
-    compiles "$top/apps/scenes/$each.yaml"
-    expect 0 "$each" run "$top/apps/scenes/$each.yaml" --final
+  cp "$top"/apps/scenes/*.yaml .
+  for each in drop kepler oscillator driven-pendulum double-pendulum guiding-centre circle-dirac magnetic-pair fpu vortices; do
+    compiles $each.yaml
+    expect 0 "$each" run $each.yaml --final
     [ "$(cat compiled)" = "$(sed -n 2p out | cut -d, -f"1-$(tr , '\n' <compiled | wc -l)")" ] ||
       fail "the run of $each as C is another one: $(cat compiled) and $(sed -n 2p out)"
   done
-  compiles drop.yaml
-  says compiled '^0\.6' 'an event ends the run'
 fi
 
 # What is refused, and what was there stays.

@@ -1,6 +1,5 @@
 #include "scene/factors.h"
 
-
 #include "scene/sections.h"
 
 /* ---- which factors there are ---- */
