@@ -57,13 +57,15 @@ static const char *name_at(int k, const void *list)
 /* t is in front of every row. */
 static int show_name(run_columns *c, const char *method, const char *name)
 {
-  char hint[HINT_SIZE];
+  const char *there;
   int k = 0;
   if (strcmp(name, "t") == 0) return DONE;
-  while (k < c->there && strcmp(c->all[k].name, name) != 0) k++;
-  if (k == c->there)
+  while ((there = name_at(k, c)) != NULL && strcmp(there, name) != 0) k++;
+  if (there == NULL) {
+    char hint[HINT_SIZE];
     return usage_error("run: %s by %s has no column '%s'%s", c->scene->name, method, name,
                        suggestion(name, name_at, c, hint, sizeof hint));
+  }
   if (c->shown[k]) return usage_error("run: column '%s' is asked for twice", name);
   show(c, k);
   return DONE;
