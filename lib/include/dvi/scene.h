@@ -115,7 +115,8 @@ const dvi_scene_range *dvi_scene_range_at(const dvi_scene *scene, int i);
 /** Counts of evaluations so far, and what was derived. */
 void dvi_scene_facts_of(const dvi_scene *scene, dvi_scene_facts *facts);
 
-/** The part of an expression that was not finite when a callback of this scene's system last failed on this thread, with the time; "" if none did. */
+/** The part of an expression that was not finite when a callback of a scene's system last failed on this thread, with the time; or the limit that its derivatives
+ *  passed; "" if none failed since a scene was last read. */
 const char *dvi_scene_blame(void);
 
 /** Write a C file that declares the same system by callbacks of the C API: a function `dvi_status NAME_create(dvi_system **system)` and the start,
@@ -125,6 +126,7 @@ const char *dvi_scene_blame(void);
  *  @param write  gets the text, piece by piece; not 0 ends it with DVI_IO_ERROR
  *  @retval DVI_BAD_ARGUMENT  name is no identifier of at most 63 letters, or an argument is NULL
  *  @retval DVI_UNSUPPORTED   the scene is a Hamiltonian with constraints
+ *  @retval DVI_BAD_SIZE      a limit of docs/scenes.md is passed by what is derived
  *  @retval DVI_NO_MEMORY */
 dvi_status dvi_scene_emit_c(const dvi_scene *scene, const char *name, int (*write)(const char *text, size_t size, void *user),
                             void *user);
