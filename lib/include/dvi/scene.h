@@ -126,7 +126,6 @@ const char *dvi_scene_blame(void);
  *  @param write  gets the text, piece by piece; not 0 ends it with DVI_IO_ERROR
  *  @retval DVI_BAD_ARGUMENT  name is no identifier of at most 63 letters, or an argument is NULL
  *  @retval DVI_UNSUPPORTED   the scene is a Hamiltonian with constraints
- *  @retval DVI_BAD_SIZE      a limit of docs/scenes.md is passed by what is derived
  *  @retval DVI_NO_MEMORY */
 dvi_status dvi_scene_emit_c(const dvi_scene *scene, const char *name, int (*write)(const char *text, size_t size, void *user),
                             void *user);
