@@ -152,7 +152,7 @@ static unsigned one(const char *text, size_t size)
     return kind;
   }
   check_message();
-  return fuzz_hash(message);
+  return 0; /* what is no scene leads to no other scene */
 }
 
 static char *read_text(const char *path)

@@ -120,7 +120,8 @@ const dvi_scene_range *dvi_scene_range_at(const dvi_scene *scene, int i);
 /** Counts of evaluations so far, and what was derived. */
 void dvi_scene_facts_of(const dvi_scene *scene, dvi_scene_facts *facts);
 
-/** The part of an expression that was not finite when a callback of this scene's system last failed on this thread, with the time; "" if none did. */
+/** The part of an expression that was not finite when a callback of a scene's system last failed on this thread, with the time; or the limit that its derivatives
+ *  passed; "" if none failed since a scene was last read. */
 const char *dvi_scene_blame(void);
 
 /** Write a C file that declares the same system by callbacks of the C API: a function `dvi_status NAME_create(dvi_system **system)`; the start,
