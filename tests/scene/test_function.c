@@ -109,6 +109,21 @@ START_TEST(soft_springs_are_those_of_the_catalogue)
 }
 END_TEST
 
+START_TEST(short_kernels_are_written_out)
+{
+  draft own;
+  dvi__function *function = gravity(&own, 3, 2, 1.0, (const double[]){1.0, 1.0, 1.0});
+  ck_assert_int_eq(dvi__function_kernel(function, 0)->elements, 1);
+  ck_assert_int_eq(dvi__function_kernel(function, 0)->input_count, 6);
+  for (int count = 1; count <= 9; count++) check_potential(function, "figure-eight", NULL, count);
+  check_potential(function, "figure-eight", NULL, 300);
+  drop(&own, function);
+  function = fpu(&own, 50);
+  ck_assert_int_eq(dvi__function_kernel_count(function), 2); /* the inner springs; both ends */
+  drop(&own, function);
+}
+END_TEST
+
 START_TEST(the_double_pendulum_is_that_of_the_catalogue)
 {
   enum { COUNT = 11 };
@@ -155,29 +170,44 @@ static double *many_points(int count)
   return points(start, 270, count);
 }
 
-START_TEST(bits_do_not_depend_on_the_number_of_points)
+enum { MOST = 300 };
+
+/* At `all` points of n variables, [n * MOST]. */
+static void check_bits(dvi__function *function, int n, const double *all)
 {
-  enum { N = 270, MOST = 300 };
-  draft own;
-  dvi__function *function = many(&own);
-  double *all = many_points(MOST), *q = room(N * MOST), *V_q = room(N * MOST), *one = room(N * MOST), V, value[MOST];
+  double *q = room(n * MOST), *V_q = room(n * MOST), *one = room(n * MOST), V, value[MOST];
   for (int k = 0; k < MOST; k++) {
-    for (int i = 0; i < N; i++) q[i] = all[i * MOST + k];
+    for (int i = 0; i < n; i++) q[i] = all[i * MOST + k];
     const double *const x[DVI__BLOCKS] = {[DVI__COORDINATES] = q};
     ck_assert_int_eq(dvi__function_gradient(function, 1, x, (double *const[DVI__BLOCKS]){NULL, V_q}), 0);
-    for (int i = 0; i < N; i++) one[i * MOST + k] = V_q[i];
+    for (int i = 0; i < n; i++) one[i * MOST + k] = V_q[i];
   }
   for (int count = 2; count <= MOST; count = count < 20 ? count + 1 : count + 93) {
-    for (int i = 0; i < N; i++) memcpy(q + i * count, all + i * MOST, (size_t)count * sizeof *q);
+    for (int i = 0; i < n; i++) memcpy(q + i * count, all + i * MOST, (size_t)count * sizeof *q);
     const double *const x[DVI__BLOCKS] = {[DVI__COORDINATES] = q};
     ck_assert_int_eq(dvi__function_gradient(function, count, x, (double *const[DVI__BLOCKS]){NULL, V_q}), 0);
     ck_assert_int_eq(dvi__function_value(function, count, x, value), 0);
-    for (int i = 0; i < N; i++) ck_assert_mem_eq(V_q + i * count, one + i * MOST, (size_t)count * sizeof *q);
+    for (int i = 0; i < n; i++) ck_assert_mem_eq(V_q + i * count, one + i * MOST, (size_t)count * sizeof *q);
     if (count == 2) V = value[0];
     ck_assert_double_eq(value[0], V);
   }
-  double *const owned[] = {all, q, V_q, one};
-  for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
+  free(q);
+  free(V_q);
+  free(one);
+}
+
+START_TEST(bits_do_not_depend_on_the_number_of_points)
+{
+  draft own;
+  dvi__function *function = many(&own);
+  double *all = many_points(MOST), start[6] = {1.0, 0.1, -0.2, 0.02, 0.03, 0.0};
+  check_bits(function, 270, all);
+  free(all);
+  drop(&own, function);
+  function = fpu(&own, 3);
+  all = points(start, 6, MOST);
+  check_bits(function, 6, all);
+  free(all);
   drop(&own, function);
 }
 END_TEST
@@ -395,6 +425,7 @@ int main(void)
   tcase_add_test(tests, planets_pull_as_in_the_catalogue);
   tcase_add_test(tests, todas_lattice_is_that_of_the_catalogue);
   tcase_add_test(tests, soft_springs_are_those_of_the_catalogue);
+  tcase_add_test(tests, short_kernels_are_written_out);
   tcase_add_test(tests, the_double_pendulum_is_that_of_the_catalogue);
   tcase_add_test(tests, bits_do_not_depend_on_the_number_of_points);
   tcase_add_test(tests, threads_may_ask_first_at_one_time);

@@ -22,17 +22,14 @@ DVI__SCENE_INLINE void gather(const int points, const dvi__part *part, const dou
   }
 }
 
-/* Results pass through memory of their own: the compiler need not ask what else they might overwrite. */
+/* Results pass through memory of their own: the compiler need not ask what else they might overwrite. What is stored is added to zero: bits are those of tiles. */
 DVI__SCENE_INLINE void put(const int points, int sets, double sign, const double *row, double *to)
 {
   const size_t size = (size_t)points * sizeof *to;
-  double sum[DVI__LANES], before[DVI__LANES];
+  double before[DVI__LANES] = {0}, sum[DVI__LANES];
+  if (!sets) memcpy(before, to, size);
   memcpy(sum, row, size);
-  for (int k = 0; k < points; k++) sum[k] *= sign;
-  if (!sets) {
-    memcpy(before, to, size);
-    for (int k = 0; k < points; k++) sum[k] += before[k];
-  }
+  for (int k = 0; k < points; k++) sum[k] = before[k] + sign * sum[k];
   memcpy(to, sum, size);
 }
 

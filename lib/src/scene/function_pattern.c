@@ -24,14 +24,17 @@ dvi_status dvi__find_pairs(dvi__function *function, int k)
 
 /* --- All entries of a pair of blocks, once for every element that adds to them. --- */
 
-typedef void visitor(void *user, int row, int column);
+/* Returns whether more are wanted. */
+typedef bool visitor(void *user, int row, int column);
 
-static void visit_elements(int elements, const dvi__places *row, const dvi__places *column, visitor *visit, void *user)
+static inline bool visit_elements(int elements, const dvi__places *row, const dvi__places *column, visitor *visit, void *user)
 {
-  for (int e = 0; e < elements; e++) visit(user, dvi__place_at(row, e), dvi__place_at(column, e));
+  for (int e = 0; e < elements; e++)
+    if (!visit(user, dvi__place_at(row, e), dvi__place_at(column, e))) return false;
+  return true;
 }
 
-static void visit_all(const dvi__function *function, dvi__pair pair, visitor *visit, void *user)
+static inline bool visit_all(const dvi__function *function, dvi__pair pair, visitor *visit, void *user)
 {
   dvi__block rows, columns;
   dvi__pair_blocks(pair, &rows, &columns);
@@ -42,33 +45,30 @@ static void visit_all(const dvi__function *function, dvi__pair pair, visitor *vi
       const int i = own->pair[e][0], j = own->pair[e][1];
       if (kernel->input[i].is_data || kernel->input[j].is_data) continue;
       const dvi__block first = kernel->input[i].block, second = kernel->input[j].block;
-      if (first == rows && second == columns) visit_elements(kernel->elements, &own->place[i], &own->place[j], visit, user);
-      if (second == rows && first == columns && i != j)
-        visit_elements(kernel->elements, &own->place[j], &own->place[i], visit, user);
+      bool more = true;
+      if (first == rows && second == columns) more = visit_elements(kernel->elements, &own->place[i], &own->place[j], visit, user);
+      if (more && second == rows && first == columns && i != j)
+        more = visit_elements(kernel->elements, &own->place[j], &own->place[i], visit, user);
+      if (!more) return false;
     }
   }
+  return true;
 }
 
 /* --- By bits, for matrices that are not much larger than what is added to them. --- */
 
 typedef struct bits {
-  size_t rows;
-  unsigned char *bit; /* [rows * columns / 8] column by column */
+  size_t rows, count, enough; /* count: of bits that are set; enough: a pattern with more of them is full */
+  unsigned char *bit;         /* [rows * columns / 8] column by column */
 } bits;
 
-static void set_bit(void *user, int row, int column)
+static bool set_bit(void *user, int row, int column)
 {
-  const bits *all = user;
+  bits *all = user;
   const size_t at = (size_t)column * all->rows + (size_t)row;
+  all->count += (~(unsigned)all->bit[at / 8] >> at % 8) & 1U;
   all->bit[at / 8] |= (unsigned char)(1U << at % 8);
-}
-
-static size_t count_bits(const bits *all, size_t cells)
-{
-  size_t count = 0;
-  for (size_t at = 0; at <= cells / 8; at++)
-    for (unsigned left = all->bit[at]; left != 0; left &= left - 1) count++;
-  return count;
+  return all->count <= all->enough;
 }
 
 static void read_bits(const bits *all, int columns, int *start, int *row)
@@ -102,11 +102,11 @@ static dvi_status take_pattern(dvi__function *function, size_t cells, size_t ent
 static dvi_status pattern_by_bits(dvi__function *function, dvi__pair pair, size_t rows, int columns, dvi__pair_pattern *known)
 {
   const size_t cells = rows * (size_t)columns;
-  bits all = {rows, dvi__heap_take(cells / 8 + 1, 1)};
+  bits all = {rows, 0, cells / 2, dvi__heap_take(cells / 8 + 1, 1)};
   int *start, *row;
   if (all.bit == NULL) return DVI_NO_MEMORY;
-  visit_all(function, pair, set_bit, &all);
-  const dvi_status status = take_pattern(function, cells, count_bits(&all, cells), columns, &start, &row, known);
+  (void)visit_all(function, pair, set_bit, &all);
+  const dvi_status status = take_pattern(function, cells, all.count, columns, &start, &row, known);
   if (status == DVI_OK && start != NULL) read_bits(&all, columns, start, row);
   dvi__heap_free(all.bit);
   return status;
@@ -119,17 +119,19 @@ typedef struct lists {
   int *row;
 } lists;
 
-static void count_entry(void *user, int row, int column)
+static bool count_entry(void *user, int row, int column)
 {
   const lists *all = user;
   (void)row;
   all->start[column + 2]++;
+  return true;
 }
 
-static void append_entry(void *user, int row, int column)
+static bool append_entry(void *user, int row, int column)
 {
   const lists *all = user;
   all->row[all->start[column + 1]++] = row;
+  return true;
 }
 
 static int by_number(const void *a, const void *b)
@@ -161,9 +163,9 @@ static dvi_status pattern_by_lists(dvi__function *function, dvi__pair pair, size
   dvi_status status = all.start != NULL && all.row != NULL ? DVI_OK : DVI_NO_MEMORY;
   int *start = NULL, *row = NULL;
   if (status == DVI_OK) {
-    visit_all(function, pair, count_entry, &all);
+    (void)visit_all(function, pair, count_entry, &all);
     for (int j = 0; j < columns; j++) all.start[j + 2] += all.start[j + 1];
-    visit_all(function, pair, append_entry, &all);
+    (void)visit_all(function, pair, append_entry, &all);
     const int entries = sort_columns(&all, columns);
     status = take_pattern(function, rows * (size_t)columns, (size_t)entries, columns, &start, &row, known);
   }
