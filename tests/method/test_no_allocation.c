@@ -51,7 +51,7 @@ static const char *const methods[] = {
     "imex:solver=newton",
     "respa",
     "respa:substeps=exact",
-    "mollified",
+    "trig",
     "composition:order=8,base=verlet",
     "verlet:threads=3",
     "composition:order=6,base=verlet,threads=2",

@@ -5,8 +5,17 @@
 #include "support/order.h"
 #include "support/suite.h"
 
-static const char *const methods[] = {"imex",      "imex:solver=newton",         "respa:substeps=3", "respa:substeps=exact",
-                                      "mollified", "mollified:filter=projection"};
+static const char *const methods[] = {"imex",
+                                      "imex:solver=newton",
+                                      "respa:substeps=3",
+                                      "respa:substeps=exact",
+                                      "mollified",
+                                      "mollified:filter=projection",
+                                      "trig:filter=exact",
+                                      "trig:filter=gautschi",
+                                      "trig:filter=hochbruck-lubich",
+                                      "trig:filter=grimm-hochbruck",
+                                      "trig:filter=hairer-lubich"};
 enum { METHODS = sizeof methods / sizeof *methods };
 
 START_TEST(they_have_order_2_on_the_chain_of_soft_and_stiff_springs)

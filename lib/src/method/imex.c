@@ -100,10 +100,8 @@ const dvi__method dvi__imex = {
     .summary = "implicit midpoint rule for fast potentials, explicit kicks by the slow ones; order 2; constant mass",
     .cite = "Stern2009",
     .keys = keys,
-    DVI__IMPULSE_NEEDS,
+    DVI__IMPULSE_OPERATIONS,
     .create = create,
     .destroy = destroy,
-    .start = dvi__impulse_start,
-    .step = dvi__impulse_step,
     .explain = explain,
 };

@@ -31,7 +31,9 @@ dvi_status dvi__impulse_step(dvi__stepper *self, dvi__state *state, double h);
 
 dvi__phase dvi__impulse_phase(const dvi__state *state);
 
-/* The terms of all such methods. */
-#define DVI__IMPULSE_NEEDS .needs = DVI__CONSTANT_MASS | DVI__FAST, .uses = DVI__CONSTANT_MASS | DVI__POTENTIAL
+/* What all such methods have in their initialisers. */
+#define DVI__IMPULSE_OPERATIONS                                                                                      \
+  .needs = DVI__CONSTANT_MASS | DVI__FAST, .uses = DVI__CONSTANT_MASS | DVI__POTENTIAL, .start = dvi__impulse_start, \
+  .step = dvi__impulse_step
 
 #endif

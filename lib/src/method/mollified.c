@@ -48,10 +48,8 @@ const dvi__method dvi__mollified = {
     .summary = "mollified impulse method, to compare with: filtered kicks, exact motion of quadratic fast potentials; order 2",
     .cite = "GarciaArchillaSanzSernaSkeel1999",
     .keys = keys,
-    DVI__IMPULSE_NEEDS,
+    DVI__IMPULSE_OPERATIONS,
     .create = create,
     .destroy = dvi__oscillation_destroy,
-    .start = dvi__impulse_start,
-    .step = dvi__impulse_step,
     .explain = dvi__oscillation_explain,
 };

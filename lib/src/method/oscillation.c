@@ -26,7 +26,7 @@ static dvi_status make_filters(dvi__oscillation *own, int n, double h)
     if (!own->pair(own->number, h * h * square[k], &own->filter[k]))
       return dvi__fail(
           DVI_NOT_CONVERGED,
-          "h omega = %.4g of a fast mode, where this filter does not exist: it needs sinc(h omega) > 0, which is so below pi",
+          "h omega = %.6g of a fast mode, where this filter does not exist: it divides by sinc(h omega), or by its root",
           fabs(h) * sqrt(fabs(square[k])));
   own->h = h;
   return DVI_OK;

@@ -63,10 +63,8 @@ const dvi__method dvi__respa = {
         "impulse method, to compare with: kicks by slow potentials, substeps or exact motion of the fast ones; order 2; resonates",
     .cite = "TuckermanBerneMartyna1992",
     .keys = keys,
-    DVI__IMPULSE_NEEDS,
+    DVI__IMPULSE_OPERATIONS,
     .create = create,
     .destroy = destroy,
-    .start = dvi__impulse_start,
-    .step = dvi__impulse_step,
     .explain = explain,
 };

@@ -6,7 +6,8 @@
 static dvi_mass mass_of(const dvi_system *whole)
 {
   if (whole->mass_values != NULL) return (dvi_mass){.values = whole->mass_values, .pattern = {whole->vv.start, whole->vv.row}};
-  return whole->mass_scalar != 0 ? (dvi_mass){.scalar = whole->mass_scalar} : (dvi_mass){.diagonal = whole->mass_diagonal};
+  if (whole->mass_scalar != 0) return (dvi_mass){.scalar = whole->mass_scalar};
+  return (dvi_mass){.diagonal = whole->mass_diagonal};
 }
 
 /* The user's own pattern may be gone; a left-out one may be completed by another thread at this time. */
