@@ -132,7 +132,6 @@ START_TEST(sections_that_are_missing_or_do_not_go_together_are_told)
   refused(X "one_form: {x: 1}\n" RUN, ":2:11:", "one_form needs a hamiltonian");
   refused(X "hamiltonian: x\nconstraints: {a: x}\n" RUN, ":3:14:", "an even number is needed");
   refused(X "lagrangian: x'^2\nforces: {x: 1}\n" RUN, ":3:9:", "no method here takes forces");
-  refused("coordinates: {R: rotation}\nlagrangian: 1\n" RUN, ":1:18:", "declare it in C, by dvi_factor");
   refused("coordinates: {x: skalar}\nlagrangian: 1\n" RUN, ":1:18:", "did you mean scalar?");
 }
 END_TEST

@@ -44,10 +44,11 @@ typedef struct dvi_scene_range {
 /** What was found in a scene, for people and for tests. */
 typedef struct dvi_scene_facts {
   const char *form; /**< "separable", "general Lagrangian", "one-form", "Hamiltonian with constraints" */
-  const char *mass; /**< "identity", "scalar", "diagonal", "sparse"; NULL without a constant mass */
-  int kernels;      /**< expressions that are summed over elements */
-  long elements;    /**< of all kernels */
-  int nodes;        /**< of all expressions, before derivatives */
+  const char *
+      mass; /**< "identity", "scalar", "diagonal", "sparse", "inertias" (of rotations and angles, and no more); NULL without a constant mass */
+  int kernels;                                                   /**< expressions that are summed over elements */
+  long elements;                                                 /**< of all kernels */
+  int nodes;                                                     /**< of all expressions, before derivatives */
   int value_operations, gradient_operations, hessian_operations; /**< a point; 0: never derived */
   long hessian_entries;
   long value_points, gradient_points, hessian_points; /**< evaluated so far */
@@ -88,10 +89,10 @@ const dvi_system_terms *dvi_scene_terms(const dvi_scene *scene);
 /** The start at t = 0: q [nq], v [nv], p [nv]. */
 void dvi_scene_start(const dvi_scene *scene, const double **q, const double **v, const double **p);
 
-/** The name of coordinate i of q [nq], for columns: "x", "q_1_x"; NULL if i is out of range. */
+/** The name of coordinate i of q [nq], for columns: "x", "q_1_x", "R_11", "u_cos"; NULL if i is out of range. */
 const char *dvi_scene_coordinate(const dvi_scene *scene, int i);
 
-/** The name of entry i of v [nv]; NULL if i is out of range. */
+/** The name of entry i of v [nv]: "v_x", "omega_R_x", "rate_u"; NULL if i is out of range. */
 const char *dvi_scene_velocity(const dvi_scene *scene, int i);
 
 /** The name of entry i of p [nv]: "p_x"; NULL if i is out of range. */

@@ -326,7 +326,7 @@ bool dvi__kernels_add(dvi_scene *scene, unsigned may, const char *where, const d
 
 bool dvi__kernels_function(dvi_scene *scene, dvi__kernels *list, int count, dvi__term **term)
 {
-  const int size[DVI__BLOCKS] = {1, scene->n, scene->n, count};
+  const int size[DVI__BLOCKS] = {1, scene->n, scene->velocities, count};
   dvi__term *made = dvi__arena_take(&scene->arena, 1, sizeof *made);
   *term = made;
   if (made == NULL) return dvi__scene_no_memory(scene);

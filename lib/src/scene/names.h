@@ -18,18 +18,30 @@ typedef struct dvi__parameter {
   int settable;
 } dvi__parameter;
 
+typedef enum dvi__kind { DVI__LINES, DVI__ROTATION, DVI__MOTION, DVI__DIRECTION, DVI__ANGLE } dvi__kind;
+
+/* The numbers of a coordinate in q, or in v and p: member m has `components` from first + m * stride on. */
+typedef struct dvi__places {
+  int first, stride, components;
+} dvi__places;
+
 typedef struct dvi__coordinate {
   const char *name;
   dvi__span span;
+  dvi__kind kind;
   int family;       /* 1: it is indexed */
   int size;         /* members of the family; 1 */
   dvi__shape shape; /* of a member */
-  int components;   /* numbers of a member */
-  int first;        /* number of its first number in q, v and p */
+  dvi__places q, v;
+  const struct dvi__coordinate *part; /* of a motion: [2], its rotation and its place */
+  char part_name;                     /* of such a part: R or x; else 0 */
 } dvi__coordinate;
 
 /* What an expression mentions, definitions seen through. */
 enum { DVI__SAYS_Q = 1, DVI__SAYS_V = 2, DVI__SAYS_P = 4, DVI__SAYS_T = 8, DVI__SAYS_SUM = 16 };
+
+/* Beside what may stand somewhere: velocities there are those of a state, v, and not the rates of what is stored. */
+enum { DVI__OF_STATE = 32 };
 
 typedef struct dvi__definition {
   const char *name;

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "scene/callbacks.h"
+#include "scene/factors.h"
 #include "scene/sections.h"
 #include "scene/start.h"
 
@@ -39,11 +40,12 @@ static void find_time(dvi_scene *scene)
 static bool make_system(dvi_scene *scene)
 {
   find_time(scene);
-  scene->terms.dimension = scene->n;
+  scene->terms.dimension = dvi__has_factors(scene) ? 0 : scene->n;
   if (scene->terms.potential_count == 0) scene->terms.potentials = NULL;
   if (scene->terms.symmetry_count == 0) scene->terms.symmetries = NULL;
   if (scene->terms.invariant_count == 0) scene->terms.invariants = NULL;
   const dvi_status status = dvi_system_create(&scene->terms, &scene->system);
+  if (status == DVI_BAD_ARGUMENT && dvi__has_factors(scene) && !dvi__inertias_are_of_bodies(scene)) return false;
   return status == DVI_OK || dvi__complain(scene->complaint, status, DVI__NOWHERE, "%s", dvi_last_error());
 }
 
@@ -61,7 +63,8 @@ static bool show_parameters(dvi_scene *scene)
 static void find_bodies(dvi_scene *scene)
 {
   const dvi__coordinate *x = scene->coordinate;
-  if (scene->coordinate_count == 1 && x->shape.rank == 1 && (x->components == 2 || x->components == 3)) scene->bodies = x->size;
+  if (scene->coordinate_count == 1 && x->kind == DVI__LINES && x->shape.rank == 1 && (x->q.components == 2 || x->q.components == 3))
+    scene->bodies = x->size;
 }
 
 static bool read_scene(dvi_scene *scene, dvi__settings *settings)

@@ -218,7 +218,6 @@ typedef struct section {
 
 static const section sections[] = {
     {.name = "forces", .refusal = "no method here takes forces without a potential"},
-    {.name = "inertia", .refusal = "bodies that turn are not yet from a scene; declare them in C (docs/api.md)"},
     {.name = "title"},
     {.name = "method"},
     {.name = "parameters"},
