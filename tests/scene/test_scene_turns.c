@@ -350,19 +350,6 @@ START_TEST(declarations_that_do_not_go_together_are_told)
 }
 END_TEST
 
-static int write_nothing(const char *text, size_t size, void *user)
-{
-  (void)text, (void)size, (void)user;
-  return 0;
-}
-
-START_TEST(a_scene_that_turns_is_not_written_as_c)
-{
-  (void)open_scene(ZOO);
-  ck_assert_int_eq(dvi_scene_emit_c(scene, "zoo", write_nothing, NULL), DVI_UNSUPPORTED);
-}
-END_TEST
-
 int main(void)
 {
   TCase *tests = tcase_create("scene_turns");
@@ -378,6 +365,5 @@ int main(void)
   tcase_add_test(tests, velocities_are_asked_of_the_right_kind);
   tcase_add_test(tests, starts_are_rotations_directions_and_across_them);
   tcase_add_test(tests, declarations_that_do_not_go_together_are_told);
-  tcase_add_test(tests, a_scene_that_turns_is_not_written_as_c);
   return run_tests("scene_turns", tests);
 }

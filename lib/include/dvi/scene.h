@@ -131,7 +131,6 @@ const char *dvi_scene_blame(void);
  *  @param name   a C identifier, in front of every external name
  *  @param write  gets the text, piece by piece; not 0 ends it with DVI_IO_ERROR
  *  @retval DVI_BAD_ARGUMENT  name is no identifier of at most 63 letters, or an argument is NULL
- *  @retval DVI_UNSUPPORTED   the scene has rotations, motions, directions or angles
  *  @retval DVI_BAD_SIZE      a kernel, or the gradients of constraints, have more numbers than a stack has room for
  *  @retval DVI_NO_MEMORY */
 dvi_status dvi_scene_emit_c(const dvi_scene *scene, const char *name, int (*write)(const char *text, size_t size, void *user),

@@ -59,6 +59,34 @@ static void emit_list(dvi__emitter *out, const char *type, const char *term, con
   dvi__emit(out, "};\n  terms.%s = %s;\n  terms.%s_count = %d;\n", list, list, term, length);
 }
 
+/* The arrays of factors, before the function. */
+static void emit_inertias(dvi__emitter *out, const dvi_system_terms *terms)
+{
+  for (int k = 0; k < terms->factor_count; k++) {
+    if (terms->factors[k].inertia != NULL) (void)dvi__emit_doubles(out, 9, terms->factors[k].inertia);
+    if (terms->factors[k].centre != NULL) (void)dvi__emit_doubles(out, 3, terms->factors[k].centre);
+  }
+}
+
+static void emit_factor(dvi__emitter *out, const dvi_factor *factor)
+{
+  static const char *const kind[] = {
+      [DVI_RN] = "DVI_RN", [DVI_SO3] = "DVI_SO3", [DVI_SE3] = "DVI_SE3", [DVI_S2] = "DVI_S2", [DVI_U1] = "DVI_U1"};
+  dvi__emit(out, "      {.kind = %s, .size = %d, .mass = ", kind[factor->kind], factor->size);
+  dvi__emit_number(out, factor->mass);
+  if (factor->inertia != NULL) dvi__emit(out, ", .inertia = dvi_row_%d", dvi__emit_doubles(out, 9, factor->inertia));
+  if (factor->centre != NULL) dvi__emit(out, ", .centre = dvi_row_%d", dvi__emit_doubles(out, 3, factor->centre));
+  dvi__emit(out, "},\n");
+}
+
+static void emit_factors(dvi__emitter *out, const dvi_system_terms *terms)
+{
+  if (terms->factor_count == 0) return;
+  dvi__emit(out, "  const dvi_factor factors[] = {\n");
+  for (int k = 0; k < terms->factor_count; k++) emit_factor(out, &terms->factors[k]);
+  dvi__emit(out, "  };\n  terms.factors = factors;\n  terms.factor_count = %d;\n", terms->factor_count);
+}
+
 static void emit_create(dvi__emitter *out, const dvi_scene *scene, const char *name)
 {
   const dvi_system_terms *terms = &scene->terms;
@@ -69,8 +97,10 @@ static void emit_create(dvi__emitter *out, const dvi_scene *scene, const char *n
     dvi__emit_pattern_arrays(out, scene->n, &mass->pattern, pattern);
     row = dvi__emit_doubles(out, mass->pattern.start == NULL ? scene->n * scene->n : mass->pattern.start[scene->n], mass->values);
   }
+  emit_inertias(out, terms);
   dvi__emit(out, "dvi_status %s_create(dvi_system **system)\n{\n  dvi_system_terms terms = {.dimension = %d, .autonomous = %d};\n",
-            name, scene->n, terms->autonomous);
+            name, terms->dimension, terms->autonomous);
+  emit_factors(out, terms);
   emit_list(out, "dvi_potential", "potential", "potentials", terms->potential_count);
   emit_list(out, "dvi_symmetry", "symmetry", "symmetries", terms->symmetry_count);
   emit_list(out, "dvi_invariant", "invariant", "invariants", terms->invariant_count);
@@ -151,7 +181,7 @@ static void emit_main(dvi__emitter *out, const dvi_scene *scene, const char *nam
   dvi__emit(out, "  if (status == DVI_OK) status = dvi_integrator_start(integrator, 0.0, %s_q, %s_p);\n%s", name, name, run[1]);
   for (const char *x = "qp"; *x != '\0'; x++)
     dvi__emit(out, "  for (int i = 0; status == DVI_OK && i < %d; i++) printf(\",%%.17g\", dvi_integrator_%c(integrator)[i]);\n",
-              scene->n, *x);
+              *x == 'q' ? scene->n : scene->nv, *x);
   dvi__emit(out, "%s", run[2]);
 }
 
@@ -162,7 +192,7 @@ static void emit_head(dvi__emitter *out, const dvi_scene *scene, const char *nam
   dvi__emit_begin(out);
   dvi__emit(out, "#include <dvi/dvi.h>\n\n/* The system, and its start; how it wants to be run. */\n");
   dvi__emit(out, "dvi_status %s_create(dvi_system **system);\n", name);
-  dvi__emit(out, "extern const double %s_q[%d], %s_v[%d], %s_p[%d];\n", name, scene->n, name, scene->n, name, scene->n);
+  dvi__emit(out, "extern const double %s_q[%d], %s_v[%d], %s_p[%d];\n", name, scene->n, name, scene->nv, name, scene->nv);
   if (scene->plan.method != NULL) dvi__emit(out, "extern const char %s_method[];\n", name);
   dvi__emit(out, "extern const double %s_h, %s_t_end;\n", name, name);
   if (scene->event_count > 0) dvi__emit(out, "extern const dvi_event %s_events[%d];\n", name, scene->event_count);
@@ -184,7 +214,6 @@ dvi_status dvi_scene_emit_c(const dvi_scene *scene, const char *name, int (*writ
                             void *user)
 {
   if (scene == NULL || name == NULL || write == NULL || !is_identifier(name)) return DVI_BAD_ARGUMENT;
-  if (scene->terms.factors != NULL) return DVI_UNSUPPORTED;
   dvi__emitter out = {.write = write, .user = user};
   emit_head(&out, scene, name);
   dvi_status status = emit_motion(&out, scene);
@@ -192,8 +221,8 @@ dvi_status dvi_scene_emit_c(const dvi_scene *scene, const char *name, int (*writ
   if (status == DVI_OK) {
     emit_create(&out, scene, name);
     emit_start(&out, name, "q", scene->n, scene->q);
-    emit_start(&out, name, "v", scene->n, scene->v);
-    emit_start(&out, name, "p", scene->n, scene->p);
+    emit_start(&out, name, "v", scene->nv, scene->v);
+    emit_start(&out, name, "p", scene->nv, scene->p);
     emit_plan(&out, scene, name);
     if (scene->plan.method != NULL) emit_main(&out, scene, name);
   }
