@@ -104,7 +104,7 @@ START_TEST(no_step_allocates_not_even_the_first)
     const long created = allocations_of(integrator);
     ck_assert_int_gt(created, 0);
     const long first = calls_of_steps(integrator, at->h, 1);
-    const long later = calls_of_steps(integrator, at->h, STEPS);
+    const long later = calls_of_steps(integrator, at->h, repeats(STEPS));
     const long back = calls_of_steps(integrator, -at->h, 2);
     ck_assert_msg(first == 0 && later + back <= calls_of_messages(integrator), "%s, %s: %ld, %ld and %ld heap calls", at->name,
                   methods[_i % METHODS], first, later, back);
