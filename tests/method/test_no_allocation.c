@@ -132,8 +132,9 @@ START_TEST(steps_of_chosen_lengths_do_not_allocate)
 {
   problem *of = made_problem(chosen[_i].name, chosen[_i].setting);
   dvi_integrator *integrator = ready(of, chosen[_i].method);
+  const int steps = repeats(4 * STEPS);
   const long created = allocations_of(integrator), before = heap_calls();
-  for (int i = 0; i < 4 * STEPS; i++)
+  for (int i = 0; i < steps; i++)
     if (dvi_integrator_step(integrator, chosen[_i].h) != DVI_OK) ck_abort_msg("%s", dvi_last_error());
   ck_assert_int_le(heap_calls() - before, calls_of_messages(integrator));
   ck_assert_int_eq(allocations_of(integrator), created);
