@@ -183,6 +183,12 @@ static const char *const methods[] = {
     "sphere-galerkin:degree=1",
     "lie-verlet",
     "lie-rk",
+    "imex",
+    "imex:solver=newton",
+    "respa:substeps=5",
+    "respa:substeps=exact",
+    "mollified:filter=projection",
+    "trig:filter=gautschi",
 };
 enum { PLACES = sizeof places / sizeof *places, METHODS = sizeof methods / sizeof *methods, STEPS = 12 };
 

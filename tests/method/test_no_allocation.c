@@ -109,7 +109,7 @@ START_TEST(no_step_allocates_not_even_the_first)
     const long created = allocations_of(integrator);
     ck_assert_int_gt(created, 0);
     const long first = calls_of_steps(integrator, at->h, 1);
-    const long later = calls_of_steps(integrator, at->h, STEPS);
+    const long later = calls_of_steps(integrator, at->h, repeats(STEPS));
     const long back = calls_of_steps(integrator, -at->h, 2);
     ck_assert_msg(first == 0 && later + back <= calls_of_messages(integrator), "%s, %s: %ld, %ld and %ld heap calls", at->name,
                   methods[_i % METHODS], first, later, back);
@@ -137,8 +137,9 @@ START_TEST(steps_of_chosen_lengths_do_not_allocate)
 {
   problem *of = made_problem(chosen[_i].name, chosen[_i].setting);
   dvi_integrator *integrator = ready(of, chosen[_i].method);
+  const int steps = repeats(4 * STEPS);
   const long created = allocations_of(integrator), before = heap_calls();
-  for (int i = 0; i < 4 * STEPS; i++)
+  for (int i = 0; i < steps; i++)
     if (dvi_integrator_step(integrator, chosen[_i].h) != DVI_OK) ck_abort_msg("%s", dvi_last_error());
   ck_assert_int_le(heap_calls() - before, calls_of_messages(integrator));
   ck_assert_int_eq(allocations_of(integrator), created);

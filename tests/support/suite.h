@@ -10,6 +10,10 @@
 /* Run one suite of one case; what main returns. Frees both. */
 int run_tests(const char *name, TCase *tests);
 
+/* How often to do what is done `often` times for the sake of its numbers. Where memory is watched, by sanitizers or
+ * valgrind, a tenth of it: there each time takes up to fifty times as long, and numbers are judged in the other builds (DVI_TEST_FEWER). */
+int repeats(int often);
+
 /* dvi_last_error() must hold these words. */
 void check_words(const char *words);
 
