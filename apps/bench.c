@@ -8,6 +8,7 @@
 #include "bench_report.h"
 #include "bench_request.h"
 #include "command.h"
+#include "events.h"
 #include "levels.h"
 #include "machine.h"
 #include "members.h"
@@ -314,6 +315,7 @@ static int bench_problem(bench_request *request, const problem *scene)
   if (isnan(request->t_end)) request->t_end = scene->order_t_end;
   bench b = {.request = request, .scene = scene};
   const int code = choose_methods(&b);
+  if (code == DONE) events_passed("bench", scene);
   return code == DONE ? measure(&b) : code;
 }
 

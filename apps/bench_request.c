@@ -7,15 +7,17 @@
 #include "command.h"
 #include "file.h"
 #include "outputs.h"
+#include "scene.h"
 
 enum { ROUNDS_DEFAULT = 5 };
 
-static int check_outputs(const bench_outputs *outputs)
+static int check_outputs(const bench_outputs *outputs, const char *name)
 {
   const char *const paths[] = {outputs->csv, outputs->plot, outputs->at_csv};
   const named_file files[] = {{"csv", outputs->csv}, {"plot", outputs->plot}, {"at-csv", outputs->at_csv}};
   enum { FILES = sizeof files / sizeof *files };
   int code = outputs_plot("bench", outputs->plot);
+  if (code == DONE) code = scene_spared("bench", name, FILES, files);
   if (code == DONE) code = outputs_distinct("bench", FILES, files);
   if (code != DONE) return code;
   if (outputs->csv != NULL && outputs->at_csv != NULL && strcmp(outputs->csv, "-") == 0 && strcmp(outputs->at_csv, "-") == 0)
@@ -61,7 +63,7 @@ static int check_request(bench_request *request)
   if (code == DONE)
     code = axes_read("bench", &request->axes, request->outputs.plot, "error:cpu_seconds", bench_columns, &request->outputs.axes);
   if (code == DONE) code = peers_read(&request->against, &request->peers);
-  return code == DONE ? check_outputs(&request->outputs) : code;
+  return code == DONE ? check_outputs(&request->outputs, request->name) : code;
 }
 
 static const char *const details[] = {

@@ -1,4 +1,5 @@
 /* dvi check: are the derivatives those of the values, and does the method take the problem? */
+#include <dvi/scene.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -85,6 +86,14 @@ static int check_step(const problem *scene, const char *method)
   return code;
 }
 
+/* What is declared and has no use is told: it may be a name that was changed elsewhere. */
+static void tell_unused(const problem *scene)
+{
+  const char *name;
+  for (int i = 0; scene->scene != NULL && (name = dvi_scene_unused(scene->scene, i)) != NULL; i++)
+    (void)printf("%s: nothing in the scene mentions it\n", name);
+}
+
 static const char *const details[] = {
     "Exit codes: 0 all is well; 2 the scene makes no sense, and where; 3 a derivative is wrong, and which.\n",
     "Examples:\n"
@@ -120,6 +129,7 @@ int check_command(int argc, char **argv)
   code = check_all_derivatives(scene);
   if (code == DONE && method != NULL) code = check_step(scene, method);
   if (code == DONE) scene_tell(scene);
+  tell_unused(scene);
   problem_destroy(&scene);
   return code;
 }

@@ -22,6 +22,7 @@ int check_command(int argc, char **argv);
 int init_command(int argc, char **argv);
 int sweep_command(int argc, char **argv);
 int emit_c_command(int argc, char **argv);
+int plot_command(int argc, char **argv);
 
 /** Print "dvi: <sentence>" to standard error. */
 void complain(const char *format, ...) __attribute__((format(printf, 1, 2)));

@@ -39,6 +39,11 @@ static int write_code(const problem *scene, const char *name, const char *path)
   int code = DONE;
   if (status == DVI_BAD_ARGUMENT)
     code = usage_error("emit-c: '%s' is no name in C; give one by --name", name);
+  else if (status == DVI_UNSUPPORTED)
+    code = usage_error(
+        "emit-c: %s: Hamiltonians with constraints, and rotations, motions, directions and angles, are not written as C; "
+        "declare them there by the C API",
+        scene->name);
   else if (status != DVI_OK && status != DVI_IO_ERROR) /* that one is said by file_keep, which knows
                                       the reason */
     code = library_error(status);
@@ -73,7 +78,8 @@ int emit_c_command(int argc, char **argv)
       {.name = NULL},
   };
   static const char *const details[] = {
-      "The file needs <dvi/dvi.h> and libdvi alone. Parameters are numbers in it, as they are set here.\n",
+      "The file needs <dvi/dvi.h> and libdvi alone. Parameters are numbers in it, as they are set here. Compiled with\n"
+      "-DDVI_MAIN it is a program that runs the scene.\n",
       "Examples:\n"
       "  dvi init cart.yaml\n"
       "  dvi emit-c cart.yaml --out cart.c\n",
@@ -92,6 +98,6 @@ int emit_c_command(int argc, char **argv)
   if (!options_parse(&command, argc, argv, &path, &code)) return code;
   if (r.out == NULL) return usage_error("emit-c: --out is missing: where the C file goes, or - for standard output");
   if (!scene_is_path(path)) return usage_error("emit-c: '%s' is no scene; the problems of the catalogue are C already", path);
-  code = scene_spared("emit-c", path, r.out);
+  code = scene_spared("emit-c", path, 1, &(named_file){"out", r.out});
   return code == DONE ? emit(&r, path) : code;
 }

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "command.h"
+#include "events.h"
 #include "open.h"
 #include "options.h"
 #include "scene.h"
@@ -36,6 +37,8 @@ static void print_problem(const problem *scene, const words *settings)
   (void)printf("%s\n  watched      ", scene->nq > NAMES_SHOWN ? " ..." : "");
   for (int i = 0; i < dvi_system_invariant_count(scene->system); i++)
     (void)printf("%s%s", i > 0 ? ", " : "", dvi_system_invariant_name(scene->system, i));
+  if (events_count(scene) > 0) (void)printf("\n  events       ");
+  events_print(scene);
   (void)printf("\n  first run    --h %g --t-end %g\n", scene->h, scene->t_end);
   (void)printf("  judged by    %s\n", scene->exact != NULL      ? "its exact solution"
                                       : scene->digits_q != NULL ? "its stored quadruple-precision result, or IDA"
@@ -85,7 +88,10 @@ int explain_command(int argc, char **argv)
   words settings = {0};
   pacing how = {0};
   const option options[] = {
-      {.name = "method", .word = &method, .value = "SPEC", .help = "the method: name[:key=value,...], see dvi list methods"},
+      {.name = "method",
+       .word = &method,
+       .value = "SPEC",
+       .help = "the method: name[:key=value,...], see dvi list methods; left out: the scene's"},
       {.name = "time-transform",
        .word = &how.transform,
        .value = "MONITOR",

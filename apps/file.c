@@ -11,11 +11,19 @@
 
 #include "command.h"
 
-enum { LINK_SIZE = 4096, LINKS_MAX = 40 };
+enum { LINK_SIZE = 4096, LINKS_MAX = 40, UNFINISHED_MAX = 4 };
 
-/* The temporary file that there is, for a signal handler to remove: the command writes one file at a time. Its name stands here
- * from before it is made until after it is gone. */
-static _Atomic(const char *) unfinished;
+/* The temporary files that there are, for a signal handler to remove: a command writes no more than some at a time. Their names stand here
+ * from before they are made until after they are gone. */
+static _Atomic(const char *) unfinished[UNFINISHED_MAX];
+
+/* Put the name `by` in the place of another one, or of none: NULL. */
+static void replace_unfinished(const char *name, const char *by)
+{
+  int k = 0;
+  while (k < UNFINISHED_MAX && unfinished[k] != name) k++;
+  if (k < UNFINISHED_MAX) unfinished[k] = by;
+}
 
 static bool refuse(const char *path)
 {
@@ -76,7 +84,7 @@ static bool open_temporary(whole_file *file, const struct stat *old)
   (void)snprintf(tail, sizeof tail, ".part-%ld", (long)getpid());
   file->temporary = join(file->path, strlen(file->path), tail);
   if (file->temporary == NULL) return false;
-  unfinished = file->temporary;
+  replace_unfinished(NULL, file->temporary);
   (void)unlink(file->temporary); /* left over from a killed process of the same number */
   const int descriptor = open(file->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor < 0) return false;
@@ -189,7 +197,7 @@ bool file_keep(whole_file *file)
   if (good && file->temporary != NULL) {
     good = rename(file->temporary, file->path) == 0;
     if (good) {
-      unfinished = NULL;
+      replace_unfinished(file->temporary, NULL);
       free(file->temporary);
       file->temporary = NULL;
       sync_folder(file->path);
@@ -205,7 +213,7 @@ void file_discard(whole_file *file)
   if (file->stream != NULL && file->path != NULL) (void)fclose(file->stream);
   if (file->temporary != NULL) {
     (void)unlink(file->temporary);
-    unfinished = NULL;
+    replace_unfinished(file->temporary, NULL);
   }
   free(file->temporary);
   free(file->path);
@@ -214,8 +222,10 @@ void file_discard(whole_file *file)
 
 void file_remove_unfinished(void)
 {
-  const char *temporary = unfinished;
-  if (temporary != NULL) (void)unlink(temporary);
+  for (int k = 0; k < UNFINISHED_MAX; k++) {
+    const char *temporary = unfinished[k];
+    if (temporary != NULL) (void)unlink(temporary);
+  }
 }
 
 bool file_writable(const char *path)

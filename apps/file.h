@@ -23,7 +23,7 @@ bool file_same(const char *path, const char *other);
 /** Forget the content; what was at the path stays. Allowed after file_keep, and on a file that is all zero. */
 void file_discard(whole_file *file);
 
-/** Remove the temporary file of the file being written, if there is one: for a signal handler that ends the process. */
+/** Remove the temporary files of the files being written: for a signal handler that ends the process. */
 void file_remove_unfinished(void);
 
 /** Whether file_open is likely to succeed later: asked before long work. Complains if not. */

@@ -57,7 +57,8 @@ static void print_problems(void)
                    k->start_only ? "; only places the start" : "");
     }
   }
-  (void)printf("\nParameters are set with --set name=value, for example dvi run kepler --method verlet --set e=0.9\n");
+  (void)printf("\nParameters are set with --set name=value, for example dvi run kepler --method verlet --set e=0.9\n"
+               "A problem of one's own is a scene, FILE.yaml in place of a name: dvi init FILE.yaml writes one to begin with\n");
 }
 
 static result_table *problems_table(void)

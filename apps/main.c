@@ -15,17 +15,9 @@ typedef struct subcommand {
 } subcommand;
 
 static const subcommand subcommands[] = {
-    {"list", list_command},
-    {"explain", explain_command},
-    {"run", run_command},
-    {"order", order_command},
-    {"bench", bench_command},
-    {"path", path_command},
-    {"check", check_command},
-    {"init", init_command},
-    {"sweep", sweep_command},
-    {"emit-c", emit_c_command},
-    {NULL, NULL},
+    {"list", list_command},   {"explain", explain_command}, {"run", run_command},     {"order", order_command},
+    {"bench", bench_command}, {"path", path_command},       {"check", check_command}, {"init", init_command},
+    {"sweep", sweep_command}, {"emit-c", emit_c_command},   {"plot", plot_command},   {NULL, NULL},
 };
 
 static const char help[] =
@@ -40,6 +32,7 @@ static const char help[] =
     "  init FILE.yaml          write an example of a scene, to be changed into one's own\n"
     "  check PROBLEM           compare all derivatives with differences, and take one step\n"
     "  sweep PROBLEM ...       one run at each point of a grid of parameters, on all cores, as CSV\n"
+    "  plot FILE.csv ...       draw columns of a CSV file against each other: orbits, phase portraits\n"
     "  emit-c SCENE.yaml ...   write a C file that declares a scene's system by callbacks\n"
     "  path PROBLEM ...        find a path between given ends, or a periodic one, all its steps at once\n"
     "  order PROBLEM ...       measure the order of methods against an independent judge\n"
@@ -56,6 +49,12 @@ static const char help[] =
     "  dvi run kepler --method galerkin:degree=4 --h 0.1 --t-end 10 --out orbit.csv\n"
     "  dvi order kepler --method galerkin:degree=2 --method verlet --plot order.svg\n"
     "  dvi bench kepler --against cvode,ida --plot bench.svg\n"
+    "\n"
+    "A scene of one's own:\n"
+    "  dvi init cart.yaml\n"
+    "  dvi check cart.yaml\n"
+    "  dvi run cart.yaml --final --plot cart.svg\n"
+    "  dvi order cart.yaml --plot order.svg\n"
     "\n"
     "Exit codes: 0 done; 1 a numerical failure, or a file that cannot be read or written; 2 a wrong command line;\n"
     "3 a check failed; 129, 130 or 143: SIGHUP, Ctrl-C or SIGTERM ended it.\n";

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "command.h"
+#include "events.h"
 #include "machine.h"
 #include "numbers.h"
 #include "open.h"
@@ -348,6 +349,7 @@ int members_run(const scale_request *request)
   }
   c.h = isnan(request->h) ? c.scene->h : request->h;
   code = check_methods(&c);
+  if (code == DONE) events_passed("bench", c.scene);
   if (code == DONE && !make_room(&c)) {
     complain("out of memory");
     code = FAILED;

@@ -2,6 +2,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "command.h"
 #include "scene.h"
@@ -72,6 +73,15 @@ static void hint_at_setting(const words *settings, const problem_parameter *para
   }
 }
 
+/* A scene without its ending. */
+static bool scene_beside(const char *name, char *hint)
+{
+  char path[HINT_SIZE / 2];
+  if (snprintf(path, sizeof path, "%s.yaml", name) >= (int)sizeof path || access(path, R_OK) != 0) return false;
+  (void)snprintf(hint, HINT_SIZE, " (did you mean '%s'?)", path);
+  return true;
+}
+
 int open_problem(const char *name, const words *settings, problem **scene)
 {
   char message[MESSAGE_SIZE] = "";
@@ -81,7 +91,7 @@ int open_problem(const char *name, const words *settings, problem **scene)
   const int index = problem_find(name);
   if (index < 0)
     return usage_error("unknown problem '%s'%s; see dvi list problems", name,
-                       suggestion(name, problem_at, NULL, hint, sizeof hint));
+                       scene_beside(name, hint) ? hint : suggestion(name, problem_at, NULL, hint, sizeof hint));
   const dvi_status status = problem_create(name, settings->count, settings->word, scene, message, sizeof message);
   if (status == DVI_OK) return DONE;
   if (status != DVI_BAD_OPTION && message[0] == '\0') return library_error(status);
@@ -111,11 +121,10 @@ int open_wish(const char *command, const problem *scene, const char **method)
   return usage_error("%s: --method is missing, for example --method galerkin:degree=4; see dvi list methods", command);
 }
 
-const char *start_setting(const char *name, const words *settings)
+const char *start_setting(const problem *scene, const words *settings)
 {
-  const int index = problem_find(name);
-  for (int i = 0; i < settings->count && index >= 0; i++)
-    for (const problem_parameter *k = problem_parameters(index); k->name != NULL; k++)
+  for (int i = 0; i < settings->count; i++)
+    for (const problem_parameter *k = scene->parameter; k->name != NULL; k++)
       if (k->start_only && is_value_of(settings->word[i], k->name)) return settings->word[i];
   return NULL;
 }
@@ -127,9 +136,20 @@ static int method_index(const char *name)
   return -1;
 }
 
+/* Keys behind a blank: they stand behind a colon. */
+static bool hint_at_colon(const char *method, char *hint)
+{
+  char name[WORD_SIZE];
+  const char *keys = take_word(method, " ", name);
+  if (keys == NULL || method_index(name) < 0) return false;
+  (void)snprintf(hint, HINT_SIZE, " (did you mean '%s:%.*s'?)", name, (int)strcspn(keys, " "), keys);
+  return true;
+}
+
 static void hint_at_method(const char *method, char *hint)
 {
   char word[WORD_SIZE];
+  if (hint_at_colon(method, hint)) return;
   const char *rest = take_word(method, ":", word);
   const int index = method_index(word);
   hint[0] = '\0';

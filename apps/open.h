@@ -15,8 +15,8 @@ int open_shaped(const char *name, const words *settings, bool one_point, problem
 /** If no method is asked for, take the one that the scene wants. Returns DONE, or complains that there is none: `command` wants one. */
 int open_wish(const char *command, const problem *scene, const char **method);
 
-/** The first setting of a parameter that only places the start; NULL if there is none, or no such problem. */
-const char *start_setting(const char *name, const words *settings);
+/** The first setting of a parameter that only places the start; NULL if there is none. */
+const char *start_setting(const problem *scene, const words *settings);
 
 /** Read the monitor that `how` names, if it names one. A distance is that of the problem's bodies. Returns DONE, or complains. */
 int open_monitor(const problem *scene, const pacing *how, dvi_monitor *monitor);

@@ -6,6 +6,7 @@
 
 #include "axes.h"
 #include "command.h"
+#include "events.h"
 #include "file.h"
 #include "levels.h"
 #include "open.h"
@@ -13,6 +14,7 @@
 #include "order_report.h"
 #include "outputs.h"
 #include "progress.h"
+#include "scene.h"
 #include "study.h"
 #include "table.h"
 #include "window.h"
@@ -231,7 +233,7 @@ static int check_methods(const order_request *request, const problem *scene)
   return code;
 }
 
-static int check_request(order_request *request)
+static int check_request(order_request *request, const char *name)
 {
   if (request->levels > LEVELS_MAX)
     return usage_error("order: --levels %ld is too many, %d are possible", request->levels, (int)LEVELS_MAX);
@@ -244,6 +246,7 @@ static int check_request(order_request *request)
   const named_file files[] = {{"csv", request->csv}, {"plot", request->plot}};
   int code = request->judged_by != NULL ? judge_read("order: --judge", request->judged_by, &request->judge) : DONE;
   if (code == DONE) code = outputs_plot("order", request->plot);
+  if (code == DONE) code = scene_spared("order", name, 2, files);
   if (code == DONE) code = outputs_distinct("order", 2, files);
   if (code != DONE) return code;
   if (request->csv != NULL && !file_writable(request->csv)) return FAILED;
@@ -274,6 +277,7 @@ static const char *const details[] = {
     "number of steps is what that span gives, and the last one is shortened to end at t_end.\n",
     "Examples:\n"
     "  dvi order kepler --method galerkin:degree=2\n"
+    "  dvi order cart.yaml --plot order.svg\n"
     "  dvi order pendulum --method verlet --method composition:order=6,base=verlet --plot order.svg\n"
     "  dvi order kepler --set e=0.9 --method galerkin:degree=2 --time-transform distance\n"
     "  dvi order pendulum-3d --method lie-verlet --method lie-rk --plot lie.svg --axes h:energy_error --axes h:distance\n"
@@ -285,7 +289,10 @@ int order_command(int argc, char **argv)
 {
   order_request r = {.h = (double)NAN, .t_end = (double)NAN, .ratio = (double)NAN};
   const option options[] = {
-      {.name = "method", .words = &r.methods, .value = "SPEC", .help = "a method: name[:key=value,...]; may be repeated"},
+      {.name = "method",
+       .words = &r.methods,
+       .value = "SPEC",
+       .help = "a method: name[:key=value,...]; may be repeated; left out: the scene's"},
       {.name = "h", .number = &r.h, .value = "H", .help = "first step (T/H is rounded to whole steps); left out: searched"},
       {.name = "levels", .count = &r.levels, .value = "N", .help = "how many step sizes; left out: 6, or 12 from order 8"},
       {.name = "ratio", .number = &r.ratio, .value = "R", .help = "of neighbouring steps; left out: 2, or less for high orders"},
@@ -307,7 +314,7 @@ int order_command(int argc, char **argv)
   };
   const command_line command = {
       .name = "order",
-      .synopsis = "PROBLEM --method SPEC [--method SPEC ...] [OPTIONS]",
+      .synopsis = "PROBLEM|SCENE.yaml --method SPEC [--method SPEC ...] [OPTIONS]",
       .operand = "PROBLEM",
       .summary = "Measure the order of methods: the error at the end for a sequence of steps, and the slope fitted to it.\n",
       .options = options,
@@ -316,7 +323,7 @@ int order_command(int argc, char **argv)
   const char *name;
   int code;
   if (!options_parse(&command, argc, argv, &name, &code)) return code;
-  code = check_request(&r);
+  code = check_request(&r, name);
   if (code != DONE) return code;
   problem *scene;
   code = open_problem(name, &r.settings, &scene);
@@ -325,6 +332,7 @@ int order_command(int argc, char **argv)
   if (code == DONE) code = wish_method(&r, scene);
   if (code == DONE) code = check_step(&r, scene);
   if (code == DONE) code = check_methods(&r, scene);
+  if (code == DONE) events_passed("order", scene);
   if (code == DONE) code = study_all(&r, scene);
   problem_destroy(&scene);
   return code;

@@ -6,11 +6,13 @@
 #include <string.h>
 
 #include "command.h"
+#include "events.h"
 #include "file.h"
 #include "open.h"
 #include "options.h"
 #include "outputs.h"
 #include "points.h"
+#include "scene.h"
 #include "table.h"
 
 enum { VALUES_MOST = 10000, NAME_SIZE = 64, SETTING_SIZE = 128 };
@@ -377,7 +379,7 @@ static int check_uses(const path_request *r)
   return DONE;
 }
 
-static int check_request(const path_request *r)
+static int check_request(const path_request *r, const char *name)
 {
   if (r->method == NULL)
     return usage_error("path: --method is missing, for example --method galerkin:degree=4; see dvi list methods");
@@ -387,7 +389,8 @@ static int check_request(const path_request *r)
   if (r->steps > 0x7fffffff) return usage_error("path: --steps %ld are too many", r->steps);
   const double span = !isnan(r->period) ? r->period : r->t_end;
   if (span <= 0.0) return usage_error("path: --%s %g is not a positive time", !isnan(r->period) ? "period" : "t-end", span);
-  return check_uses(r);
+  const int code = scene_spared("path", name, 1, &(named_file){"out", r->out});
+  return code == DONE ? check_uses(r) : code;
 }
 
 static const char *const details[] = {
@@ -416,11 +419,12 @@ static int run(const char *name, const path_request *request)
 {
   family values = {.parts = 0};
   member found = {0};
-  int code = check_request(request);
+  int code = check_request(request, name);
   if (code == DONE) code = read_family(request, &values);
   if (code == DONE && request->out != NULL && strcmp(request->out, "-") != 0 && !file_writable(request->out)) return FAILED;
   if (code == DONE) code = solve_family(name, request, &values, &found);
   const bool rows_on_output = request->out != NULL && strcmp(request->out, "-") == 0;
+  if (code == DONE) events_passed("path", found.scene);
   if (code == DONE) print_report(&found, request, rows_on_output ? stderr : stdout);
   if (code == DONE && request->out != NULL) code = write_path(&found, request->out);
   destroy(&found);
@@ -453,7 +457,7 @@ int path_command(int argc, char **argv)
   };
   const command_line command = {
       .name = "path",
-      .synopsis = "PROBLEM --method SPEC --ends KIND --steps N [OPTIONS]",
+      .synopsis = "PROBLEM|SCENE.yaml --method SPEC --ends KIND --steps N [OPTIONS]",
       .operand = "PROBLEM",
       .summary = "Make the action of a whole path stationary: boundary value problems and periodic orbits.\n",
       .options = options,

@@ -2,19 +2,25 @@
 #include "plot.h"
 
 #include <errno.h>
+#include <float.h>
 #include <math.h>
 #include <spawn.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "command.h"
 #include "file.h"
+#include "thin.h"
 
 extern char **environ;
 
 enum { WIDTH = 860, PANEL_HEIGHT = 560, COLOURS = 8 };
+
+/* Pixels: less is not seen. */
+static const double SEEN = 0.2;
 
 /* Okabe and Ito's colours, which the colour-blind can tell apart; their yellow is too pale for lines. */
 static const char *const colour[COLOURS] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000", "#7F3C8D"};
@@ -51,15 +57,58 @@ static int points(const plot_panel *panel, const plot_curve *curve)
   return count;
 }
 
+/* The range of the drawable points of all curves: [least, most] of x, then of y. Whether y stays where it is, up to what its labels could show; the
+ * range is then wider. */
+static bool find_range(const plot_panel *panel, double range[4])
+{
+  range[0] = range[2] = HUGE_VAL;
+  range[1] = range[3] = -HUGE_VAL;
+  for (int k = 0; k < panel->curves; k++)
+    for (int i = 0; i < panel->curve[k].count; i++) {
+      if (!drawable(panel, &panel->curve[k], i)) continue;
+      range[0] = fmin(range[0], panel->curve[k].x[i]);
+      range[1] = fmax(range[1], panel->curve[k].x[i]);
+      range[2] = fmin(range[2], panel->curve[k].y[i]);
+      range[3] = fmax(range[3], panel->curve[k].y[i]);
+    }
+  const double size = fmax(fabs(range[2]), fabs(range[3]));
+  const bool stays = !(range[3] - range[2] > 1e-9 * size);
+  if (stays) {
+    range[2] -= fmax(0.01 * size, 1e-16);
+    range[3] += fmax(0.01 * size, 1e-16);
+  }
+  return stays;
+}
+
+/* The points of a smooth curve without which it would look different, to be freed; NULL: all. */
+static bool *needed_points(const plot_panel *panel, const plot_curve *curve)
+{
+  const size_t count = (size_t)curve->count;
+  double range[4];
+  bool *needed = calloc(count + 1, sizeof *needed);
+  double *x = calloc(2 * count + 1, sizeof *x), *y = x != NULL ? x + count : NULL;
+  (void)find_range(panel, range);
+  for (int i = 0; i < curve->count && needed != NULL && x != NULL; i++) {
+    needed[i] = drawable(panel, curve, i);
+    x[i] = (curve->x[i] - range[0]) / fmax(range[1] - range[0], DBL_MIN) * WIDTH;
+    y[i] = (curve->y[i] - range[2]) / fmax(range[3] - range[2], DBL_MIN) * PANEL_HEIGHT;
+  }
+  if (needed != NULL && x != NULL) thin_curve(curve->count, x, y, SEEN, needed);
+  free(x);
+  return needed;
+}
+
 /* Each curve's points as a block of numbers, named by panel and curve. */
 static void write_blocks(FILE *script, int index, const plot_panel *panel)
 {
   for (int k = 0; k < panel->curves; k++) {
     const plot_curve *curve = &panel->curve[k];
     (void)fprintf(script, "$panel%d_curve%d << END\n", index, k);
+    bool *needed = panel->smooth && !panel->dots ? needed_points(panel, curve) : NULL;
     for (int i = 0; i < curve->count; i++)
-      if (drawable(panel, curve, i)) (void)fprintf(script, "%.9g %.9g\n", curve->x[i], curve->y[i]);
+      if (needed != NULL ? needed[i] : drawable(panel, curve, i)) (void)fprintf(script, "%.9g %.9g\n", curve->x[i], curve->y[i]);
     (void)fputs("END\n", script);
+    free(needed);
   }
 }
 
@@ -76,10 +125,22 @@ static void write_curve(FILE *script, int index, const plot_panel *panel, int k,
   }
   if (curve->guide)
     (void)fputs("lines lw 1 dt 2 lc rgb '#808080'", script);
+  else if (panel->dots)
+    (void)fprintf(script, "points pt 7 ps 0.25 lc rgb '%s'", colour[style % COLOURS]);
   else if (panel->smooth)
     (void)fprintf(script, "lines lw 1.2 lc rgb '%s'", colour[style % COLOURS]);
   else
     (void)fprintf(script, "linespoints lw 1.6 ps 0.7 pt %d lc rgb '%s'", 4 + style, colour[style % COLOURS]);
+}
+
+/* gnuplot would warn of a curve that stays at one number, and guess. */
+static void fix_range(FILE *script, const plot_panel *panel)
+{
+  double range[4];
+  if (find_range(panel, range) && !panel->logarithmic)
+    (void)fprintf(script, "set yrange [%.17g:%.17g]\n", range[2], range[3]);
+  else
+    (void)fputs("set autoscale y\n", script);
 }
 
 static void write_panel(FILE *script, int index, const plot_panel *panel)
@@ -91,6 +152,9 @@ static void write_panel(FILE *script, int index, const plot_panel *panel)
   (void)fputs(panel->logarithmic ? "set logscale xy 10\nset format x '10^{%L}'\nset format y '10^{%L}'\n"
                                  : "unset logscale\nset format '%g'\n",
               script);
+  (void)fputs(panel->logarithmic ? "unset offsets\n" : "set offsets graph 0, 0, graph 0.03, graph 0.03\n", script);
+  fix_range(script, panel);
+  (void)fputs(panel->equal ? "set size ratio -1\n" : "set size noratio\n", script);
   const char *joint = "plot ";
   for (int k = 0, style = 0; k < panel->curves; k++) {
     if (points(panel, &panel->curve[k]) == 0) continue;
@@ -110,7 +174,7 @@ static void write_script(FILE *script, int panels, const plot_panel *panel)
               "2 Left reverse samplen 3\n",
               script);
   for (int i = 0; i < panels; i++) write_blocks(script, i, &panel[i]);
-  if (panels > 1) (void)fprintf(script, "set multiplot layout %d,1\n", panels);
+  if (panels > 1) (void)fprintf(script, "set lmargin 12\nset multiplot layout %d,1\n", panels);
   for (int i = 0; i < panels; i++) write_panel(script, i, &panel[i]);
   if (panels > 1) (void)fputs("unset multiplot\n", script);
 }

@@ -16,6 +16,8 @@ typedef struct plot_panel {
   const char *title, *x_label, *y_label;
   bool logarithmic; /**< both axes */
   bool smooth;      /**< many points: lines alone */
+  bool dots;        /**< many points: dots alone */
+  bool equal;       /**< the same scale on both axes */
   int curves;
   const plot_curve *curve;
 } plot_panel;

@@ -1,14 +1,12 @@
 #include "points.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "command.h"
 #include "options.h"
-
-enum { WORD_SIZE = 64, LINE_START = 256 };
+#include "rows.h"
 
 void points_clear(points *list)
 {
@@ -40,21 +38,13 @@ bool points_add(points *to, int n, double t, const double *q)
 
 /* ---- lists ---- */
 
-/* The next field of a line; *text moves behind its comma, or becomes NULL at the end. */
-static void take_field(const char **text, char *field)
-{
-  const size_t length = strcspn(*text, ",\r\n");
-  (void)snprintf(field, WORD_SIZE, "%.*s", (int)length, *text);
-  *text = (*text)[length] == ',' ? *text + length + 1 : NULL;
-}
-
 int list_read(const char *where, const char *text, const problem *scene, double *number)
 {
-  char field[WORD_SIZE];
+  char field[FIELD_SIZE];
   int count = 0;
   while (text != NULL) {
     double read;
-    take_field(&text, field);
+    rows_field(&text, field);
     if (!parse_number(field, &read)) return usage_error("%s: '%s' is no number", where, field);
     if (count < scene->nq) number[count] = read;
     count++;
@@ -68,42 +58,12 @@ int list_read(const char *where, const char *text, const problem *scene, double 
 
 /* A CSV file being read. */
 typedef struct reader {
-  const char *path;
+  row_file file;
   const problem *scene;
-  FILE *stream;
-  char *line;
-  size_t size;
-  int row;
   int columns;
   int *coordinate; /* [columns] of each column: -1 for t, -2 for one that is passed over */
   double *q;       /* [n] the row's point */
 } reader;
-
-/* The next line, however long. False at the end. */
-static bool next_line(reader *r)
-{
-  size_t length = 0;
-  while (true) {
-    if (length + 1 >= r->size) {
-      const size_t size = r->size > 0 ? 2 * r->size : LINE_START;
-      char *line = realloc(r->line, size);
-      if (line == NULL) return false;
-      r->line = line;
-      r->size = size;
-    }
-    if (fgets(r->line + length, (int)(r->size - length), r->stream) == NULL) break;
-    length += strlen(r->line + length);
-    if (r->line[length - 1] == '\n') break;
-  }
-  r->row++;
-  return length > 0;
-}
-
-static int unreadable(const char *path)
-{
-  complain("cannot read '%s': %s", path, strerror(errno));
-  return FAILED;
-}
 
 static int column_of(const problem *scene, const char *title)
 {
@@ -115,62 +75,58 @@ static int column_of(const problem *scene, const char *title)
 
 static int read_header(reader *r)
 {
-  char title[WORD_SIZE];
+  char title[FIELD_SIZE];
   int known = 0;
-  if (!next_line(r)) return ferror(r->stream) ? unreadable(r->path) : usage_error("path: '%s' is empty", r->path);
-  for (const char *text = r->line; text != NULL; r->columns++) {
+  if (!rows_next(&r->file)) return rows_complete(&r->file) ? usage_error("path: '%s' is empty", r->file.path) : FAILED;
+  for (const char *text = r->file.line; text != NULL; r->columns++) {
     int *grown = realloc(r->coordinate, ((size_t)r->columns + 1) * sizeof *grown);
     if (grown == NULL) return complain("out of memory"), FAILED;
     r->coordinate = grown;
-    take_field(&text, title);
+    rows_field(&text, title);
     r->coordinate[r->columns] = column_of(r->scene, title);
     known += r->coordinate[r->columns] >= -1;
   }
   if (known == r->scene->nq + 1) return DONE;
-  return usage_error("path: '%s' has %d of the %d columns t and coordinates of %s, as dvi run writes them", r->path, known,
+  return usage_error("path: '%s' has %d of the %d columns t and coordinates of %s, as dvi run writes them", r->file.path, known,
                      r->scene->nq + 1, r->scene->name);
 }
 
 static int read_row(reader *r, points *read)
 {
-  char field[WORD_SIZE];
+  char field[FIELD_SIZE];
   double t = 0.0;
   int column = 0;
-  const char *text = r->line;
+  const char *text = r->file.line;
   for (; text != NULL && column < r->columns; column++) {
-    take_field(&text, field);
+    rows_field(&text, field);
     const int coordinate = r->coordinate[column];
     if (coordinate >= -1 && !parse_number(field, coordinate == -1 ? &t : &r->q[coordinate]))
-      return usage_error("path: '%s': line %d: '%s' is no number", r->path, r->row, field);
+      return usage_error("path: '%s': line %d: '%s' is no number", r->file.path, r->file.row, field);
   }
   if (text != NULL || column < r->columns)
-    return usage_error("path: '%s': line %d does not have the header's %d fields", r->path, r->row, r->columns);
+    return usage_error("path: '%s': line %d does not have the header's %d fields", r->file.path, r->file.row, r->columns);
   if (read->count > 0 && !(t > read->t[read->count - 1]))
-    return usage_error("path: '%s': line %d: the time %g does not come after %g", r->path, r->row, t, read->t[read->count - 1]);
+    return usage_error("path: '%s': line %d: the time %g does not come after %g", r->file.path, r->file.row, t,
+                       read->t[read->count - 1]);
   return points_add(read, r->scene->nq, t, r->q) ? DONE : FAILED;
 }
 
 static int read_all(reader *r, points *read)
 {
   int code = read_header(r);
-  while (code == DONE && next_line(r)) code = read_row(r, read);
-  if (code == DONE && ferror(r->stream)) code = unreadable(r->path);
-  if (code == DONE && read->count < 2) code = usage_error("path: '%s' has %d points; at least 2 are needed", r->path, read->count);
+  while (code == DONE && rows_next(&r->file)) code = read_row(r, read);
+  if (code == DONE && !rows_complete(&r->file)) code = FAILED;
+  if (code == DONE && read->count < 2)
+    code = usage_error("path: '%s' has %d points; at least 2 are needed", r->file.path, read->count);
   return code;
 }
 
 int points_read(const char *path, const problem *scene, points *read)
 {
-  int code;
-  reader r = {.path = path, .scene = scene, .q = calloc((size_t)scene->nq, sizeof(double))};
+  reader r = {.scene = scene, .q = calloc((size_t)scene->nq, sizeof(double))};
   if (r.q == NULL) return complain("out of memory"), FAILED;
-  r.stream = fopen(path, "r");
-  if (r.stream == NULL)
-    code = unreadable(path);
-  else
-    code = read_all(&r, read);
-  if (r.stream != NULL) (void)fclose(r.stream);
-  free(r.line);
+  const int code = rows_open(&r.file, path) ? read_all(&r, read) : FAILED;
+  rows_close(&r.file);
   free(r.coordinate);
   free(r.q);
   return code;

@@ -6,20 +6,21 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "columns.h"
 #include "command.h"
+#include "events.h"
 #include "file.h"
 #include "open.h"
 #include "options.h"
 #include "outputs.h"
 #include "progress.h"
+#include "scene.h"
 #include "signals.h"
-#include "table.h"
 #include "trace.h"
-#include "velocity.h"
 
 /* What the command line asks for. */
 typedef struct run_request {
-  const char *method, *momenta, *out, *checkpoint, *resume, *plot;
+  const char *method, *momenta, *columns, *out, *events, *checkpoint, *resume, *plot;
   double h, t_end, tolerance; /* tolerance: NaN, or refused */
   pacing how;
   long every, checkpoint_every; /* 0: not given */
@@ -31,20 +32,17 @@ typedef struct run_request {
 typedef struct recorder {
   const run_request *request;
   const problem *scene;
-  whole_file out;
+  whole_file out, events_out;
+  run_columns columns;
+  event_list events;
   run_trace trace;
   progress_line progress;
-  double *invariant;
-  double *velocity;         /* [nv] with factors; else NULL */
-  double *room;             /* [nq + nv] likewise */
-  double constraint;        /* with a one-form: |p - alpha(q)| */
   double t_start, t;        /* where the run began; where the last observed step ended */
   double shortest, longest; /* steps, of methods that choose them; 0: none yet */
   long steps_taken, given_steps;
   long step;    /* counted from t = 0, so that a resumed run writes the rows of an uninterrupted one */
   bool chooses; /* the method chooses its steps */
   bool begun, row_written, stop_silently;
-  bool jumps;                          /* the method's trajectories jump between elements */
   const volatile sig_atomic_t *caught; /* the signal that ends the run after its step; 0: none yet */
 } recorder;
 
@@ -57,81 +55,29 @@ static bool has_constraint(const problem *scene)
   return scene->terms->one_form != NULL || scene->terms->constraint != NULL;
 }
 
-static void write_names(FILE *stream, int count, char *const *name)
+/* main complains about standard output. */
+static bool written(const whole_file *file)
 {
-  for (int i = 0; i < count; i++) {
-    (void)fputc(',', stream);
-    csv_text(stream, name[i]);
-  }
-}
-
-static void write_header(recorder *r)
-{
-  FILE *stream = r->out.stream;
-  const problem *scene = r->scene;
-  (void)fputs("t", stream);
-  write_names(stream, scene->nq, scene->coordinate);
-  if (scene->velocity != NULL) write_names(stream, scene->nv, scene->velocity);
-  write_names(stream, scene->nv, scene->momentum);
-  for (int i = 0; i < dvi_system_invariant_count(scene->system); i++) {
-    (void)fputc(',', stream);
-    csv_text(stream, dvi_system_invariant_name(scene->system, i));
-  }
-  if (r->chooses) (void)fputs(",h", stream);
-  if (scene->velocity != NULL) (void)fputs(",distance", stream);
-  if (has_constraint(scene)) (void)fputs(",constraint", stream);
-  if (r->jumps) (void)fputs(",jump", stream);
-  (void)fputc('\n', stream);
-}
-
-static bool finite_numbers(int count, const double *number)
-{
-  for (int i = 0; i < count; i++)
-    if (!isfinite(number[i])) return false;
-  return true;
-}
-
-static void write_numbers(FILE *stream, int count, const double *number)
-{
-  for (int i = 0; i < count; i++) (void)fprintf(stream, ",%.17g", number[i]);
-}
-
-/* Fetch the invariants of the current state. False, with a complaint, if they are no numbers. */
-static bool measure(recorder *r, dvi_integrator *integrator)
-{
-  dvi_status status = dvi_integrator_invariants(integrator, r->invariant);
-  if (status == DVI_OK && r->velocity != NULL)
-    status = velocity_near(r->scene, r->t, dvi_integrator_q(integrator), dvi_integrator_p(integrator), r->room, r->velocity);
-  if (status == DVI_OK && has_constraint(r->scene)) status = dvi_integrator_constraint(integrator, &r->constraint);
-  if (status != DVI_OK) {
-    complain("run: no row at t = %.17g: %s; try a smaller --h", r->t, dvi_last_error());
-    blame_scene();
-    return false;
-  }
-  if (finite_numbers(dvi_system_invariant_count(r->scene->system), r->invariant)) return true;
-  complain("an invariant is not a finite number at t = %.17g; try a smaller --h", r->t);
+  if (!ferror(file->stream)) return true;
+  if (file->path != NULL) complain("cannot write '%s': %s", file->path, strerror(errno));
   return false;
 }
 
 static bool write_row(recorder *r, dvi_integrator *integrator)
 {
-  FILE *stream = r->out.stream;
-  (void)fprintf(stream, "%.17g", r->t);
-  const problem *scene = r->scene;
-  write_numbers(stream, scene->nq, dvi_integrator_q(integrator));
-  if (scene->velocity != NULL) write_numbers(stream, scene->nv, r->velocity);
-  write_numbers(stream, scene->nv, dvi_integrator_p(integrator));
-  write_numbers(stream, dvi_system_invariant_count(scene->system), r->invariant);
-  if (r->chooses) write_numbers(stream, 1, (double[]){dvi_integrator_last_step(integrator)});
-  if (scene->velocity != NULL)
-    write_numbers(stream, 1, (double[]){dvi_system_distance(scene->system, dvi_integrator_q(integrator))});
-  if (has_constraint(scene)) write_numbers(stream, 1, &r->constraint);
-  if (r->jumps) (void)fprintf(stream, ",%.17g", dvi_integrator_jump(integrator, NULL));
-  (void)fputc('\n', stream);
+  columns_row(&r->columns, integrator, r->out.stream);
   r->row_written = true;
-  if (!ferror(stream)) return true;
-  if (r->out.path != NULL) complain("cannot write '%s': %s", r->out.path, strerror(errno));
-  return false; /* main complains about standard output */
+  return written(&r->out);
+}
+
+/* An event was found. */
+static int write_event(int index, double t, const double *q, const double *v, void *user)
+{
+  recorder *r = user;
+  if (r->events_out.stream == NULL) return 0;
+  events_row(r->scene, index, t, q, v, r->events_out.stream);
+  r->stop_silently = !written(&r->events_out);
+  return r->stop_silently ? -1 : 0;
 }
 
 static bool row_is_due(const recorder *r)
@@ -167,9 +113,9 @@ static int observe(dvi_integrator *integrator, void *user)
   const bool row = row_is_due(r);
   r->begun = true;
   bool good = true;
-  if (row || r->trace.t != NULL) good = measure(r, integrator);
+  if (row || r->trace.t != NULL) good = columns_measure(&r->columns, integrator);
   if (good && row) good = write_row(r, integrator);
-  if (good && r->trace.t != NULL) trace_add(&r->trace, t, dvi_integrator_q(integrator), r->invariant[0]);
+  if (good && r->trace.t != NULL) trace_add(&r->trace, t, dvi_integrator_q(integrator), r->columns.invariant[0]);
   if (r->progress.shown) progress_show(&r->progress, (t - r->t_start) / (r->request->t_end - r->t_start), "dvi run");
   r->stop_silently = !good;
   return good ? 0 : -1;
@@ -178,7 +124,7 @@ static int observe(dvi_integrator *integrator, void *user)
 /* The last state is always a row, whatever --every says. */
 static bool write_last_row(recorder *r, dvi_integrator *integrator)
 {
-  return r->row_written || (measure(r, integrator) && write_row(r, integrator));
+  return r->row_written || (columns_measure(&r->columns, integrator) && write_row(r, integrator));
 }
 
 /* The number of the step that ends at t on the grid 0, h, 2h, ...; 0 if t is not on it. In another time there is no such grid, but a count. */
@@ -225,24 +171,28 @@ static int advance(recorder *r, dvi_integrator *integrator)
                                    .t_end = request->t_end,
                                    .observe = observe,
                                    .user = r,
+                                   .events = r->events.event,
+                                   .event_count = r->events.count,
                                    .checkpoint = request->checkpoint,
                                    .checkpoint_every = request->checkpoint_every,
                                    .cancel = r->caught};
   r->t_start = dvi_integrator_time(integrator);
   r->step = step_number(integrator, r->t_start, request->h);
-  r->jumps = !isnan(dvi_integrator_jump(integrator, NULL));
-  write_header(r);
+  columns_header(&r->columns, r->out.stream);
+  if (r->events_out.stream != NULL) events_header(r->scene, r->events_out.stream);
   progress_start(&r->progress, request->final || r->out.path != NULL);
-  const dvi_status status = dvi_run(integrator, &options, NULL);
+  dvi_run_report report;
+  const dvi_status status = dvi_run(integrator, &options, &report);
   progress_end(&r->progress);
   /* Said at once: what is asked below may leave a sentence of its own. */
   const int code = status == DVI_OK ? DONE : r->stop_silently ? FAILED : library_error(status);
   say_steps(r, integrator);
+  events_tell(&r->events, "run", &report);
   if (r->stop_silently) return FAILED;
-  const bool written = (status != DVI_OK && request->final) || write_last_row(r, integrator);
+  const bool complete = (status != DVI_OK && request->final) || write_last_row(r, integrator);
   if (status != DVI_OK) return code;
   if (*r->caught != 0) say_interrupted(r);
-  return !written ? FAILED : *r->caught != 0 ? 128 + (int)*r->caught : DONE;
+  return !complete ? FAILED : *r->caught != 0 ? 128 + (int)*r->caught : DONE;
 }
 
 /* The start's momenta, "P1,P2,...". */
@@ -263,6 +213,12 @@ static int place_momenta(const run_request *request, problem *scene)
     return usage_error("run: --project is for problems with a constraint, p = alpha(q) or phi(q,p) = 0; %s has none", scene->name);
   if (request->momenta == NULL || parse_momenta(request->momenta, scene->nv, scene->p)) return DONE;
   return usage_error("run: --momenta wants %d finite numbers with commas between them, not '%s'", scene->nv, request->momenta);
+}
+
+static int check_events(const run_request *request, const problem *scene)
+{
+  if (request->events == NULL || events_count(scene) > 0) return DONE;
+  return usage_error("run: --events: %s has none; a scene declares them in its section events", scene->name);
 }
 
 static bool place(const run_request *request, const problem *scene, dvi_integrator *integrator)
@@ -296,29 +252,38 @@ static int complete(run_request *request, const problem *scene, double t)
   return DONE;
 }
 
+/* Whether what was written is to stay: all but what a failure has cut short. */
+static bool to_be_kept(int code)
+{
+  return code == DONE || code > CHECK_FAILED;
+}
+
+static int write_files(recorder *r, dvi_integrator *integrator)
+{
+  const run_request *request = r->request;
+  int code = FAILED;
+  if (request->plot != NULL && !trace_init(&r->trace, r->scene->nq)) return FAILED;
+  if (file_open(&r->out, request->out) && (request->events == NULL || file_open(&r->events_out, request->events)))
+    code = advance(r, integrator);
+  if (to_be_kept(code) && !file_keep(&r->out)) code = FAILED;
+  if (to_be_kept(code) && request->events != NULL && !file_keep(&r->events_out)) code = FAILED;
+  if (to_be_kept(code) && request->plot != NULL && !trace_plot(&r->trace, r->scene->name, r->scene->coordinate, request->plot))
+    code = FAILED;
+  file_discard(&r->out);
+  file_discard(&r->events_out);
+  trace_clear(&r->trace);
+  return code;
+}
+
 static int record(run_request *request, const problem *scene, dvi_integrator *integrator)
 {
   recorder r = {.request = request, .scene = scene, .chooses = dvi_integrator_chooses_steps(integrator)};
-  const size_t invariants = (size_t)dvi_system_invariant_count(scene->system);
-  const size_t nq = (size_t)scene->nq, nv = (size_t)scene->nv;
-  r.invariant = calloc(invariants + nq + 2 * nv, sizeof *r.invariant);
-  if (r.invariant != NULL && scene->velocity != NULL) {
-    r.velocity = r.invariant + invariants;
-    r.room = r.velocity + nv;
-  }
-  int code = FAILED;
+  int code = columns_choose(&r.columns, scene, integrator, request->columns);
+  r.columns.energy = request->plot != NULL;
   r.caught = signals_note(ended_again);
-  if (r.invariant == NULL)
-    complain("out of memory");
-  else if ((request->plot == NULL || trace_init(&r.trace, scene->nq)) && file_open(&r.out, request->out))
-    code = advance(&r, integrator);
-  if ((code == DONE || code > CHECK_FAILED) && !file_keep(&r.out)) code = FAILED;
-  if ((code == DONE || code > CHECK_FAILED) && request->plot != NULL &&
-      !trace_plot(&r.trace, scene->name, scene->coordinate, request->plot))
-    code = FAILED;
-  file_discard(&r.out);
-  trace_clear(&r.trace);
-  free(r.invariant);
+  if (code == DONE) code = events_list(&r.events, scene, write_event, &r) ? write_files(&r, integrator) : FAILED;
+  events_clear(&r.events);
+  columns_clear(&r.columns);
   return code;
 }
 
@@ -333,19 +298,30 @@ static int run(run_request *request, const problem *scene)
   return code;
 }
 
-/* A run may go on in its own checkpoint; no two other files may be the same. */
-static int check_files(const run_request *request)
+static bool is_stream(const char *path)
 {
-  const named_file written[] = {{"out", request->out}, {"checkpoint", request->checkpoint}, {"plot", request->plot}};
-  const named_file kept[] = {{"resume", request->resume}, {"out", request->out}, {"plot", request->plot}};
-  if (request->checkpoint != NULL && strcmp(request->checkpoint, "-") == 0)
-    return usage_error("run: --checkpoint -: a checkpoint goes to a file, not to standard output");
-  int code = outputs_plot("run", request->plot);
-  if (code == DONE) code = outputs_distinct("run", 3, written);
-  return code == DONE ? outputs_distinct("run", 3, kept) : code;
+  return path != NULL && strcmp(path, "-") == 0;
 }
 
-static int check_request(const run_request *request)
+/* A run may go on in its own checkpoint; no two other files may be the same. */
+static int check_files(const run_request *request, const char *name)
+{
+  const named_file files[] = {{"resume", request->resume},
+                              {"out", request->out},
+                              {"events", request->events},
+                              {"plot", request->plot},
+                              {"checkpoint", request->checkpoint}};
+  if (is_stream(request->checkpoint))
+    return usage_error("run: --checkpoint -: a checkpoint goes to a file, not to standard output");
+  if (is_stream(request->events) && is_stream(request->out))
+    return usage_error("run: --events -: standard output has the rows; give --out FILE, too");
+  int code = outputs_plot("run", request->plot);
+  if (code == DONE) code = scene_spared("run", name, 4, files + 1);
+  if (code == DONE) code = outputs_distinct("run", 4, files + 1);
+  return code == DONE ? outputs_distinct("run", 4, files) : code;
+}
+
+static int check_request(const run_request *request, const char *name)
 {
   if (request->checkpoint_every > 0 && request->checkpoint == NULL)
     return usage_error("run: --checkpoint-every needs --checkpoint FILE");
@@ -358,17 +334,18 @@ static int check_request(const run_request *request)
         "run: --tolerance: steps chosen by estimates of their errors make any of these methods neither symplectic nor "
         "symmetric, and its energy drifts; --time-transform or --step-control adapt steps without that");
   if (pacing_check("run", &request->how) != DONE) return USAGE;
-  const int code = check_files(request);
+  const int code = check_files(request, name);
   if (code != DONE) return code;
   if (request->checkpoint != NULL && !file_writable(request->checkpoint)) return FAILED;
+  if (request->events != NULL && !file_writable(request->events)) return FAILED;
   return request->plot == NULL || file_writable(request->plot) ? DONE : FAILED;
 }
 
 /* A setting that a resumed run would not heed. */
-static int check_settings(const char *name, const words *settings)
+static int check_settings(const run_request *request, const problem *scene)
 {
-  const char *setting = start_setting(name, settings);
-  if (setting == NULL) return DONE;
+  const char *setting = start_setting(scene, &request->settings);
+  if (setting == NULL || request->resume == NULL) return DONE;
   return usage_error("run: --set %s places the start, which --resume replaces; leave out one of them", setting);
 }
 
@@ -381,6 +358,8 @@ static int run_problem(run_request *request, const char *name)
   if (code != DONE) return code;
   code = open_wish("run", scene, &request->method);
   if (code == DONE) code = place_momenta(request, scene);
+  if (code == DONE) code = check_events(request, scene);
+  if (code == DONE) code = check_settings(request, scene);
   if (code == DONE) code = run(request, scene);
   problem_destroy(&scene);
   return code;
@@ -395,6 +374,10 @@ static const char *const details[] = {
     "constraint |p - alpha(q)|, and dg and dg-phase add jump, the largest one; 17 digits, so that every number is read\n"
     "back as it was. The first row is the start (with --resume: the checkpoint), the last one is the end, wherever\n"
     "--every puts the rows between.\n",
+    "What no column shows is not evaluated: --columns x,y wants no energy.\n",
+    "Events of a scene are looked for in every step. One with 'stop: yes' ends the run at its time: the last row is the state\n"
+    "there, and the exit code 0. The columns of --events are event, its name, t, the coordinates and their velocities (v_), on\n"
+    "the step's path; how often each was found is told at the end.\n",
     "FILEs are written whole or not at all: a run that fails leaves what was there. Rows on standard output come\n"
     "as they are computed. Ctrl-C, SIGTERM and SIGHUP end a run after the current step, with the output complete, the\n"
     "checkpoint written, and exit code 130, 143 or 129; before the first step they end it at once, and nothing is\n"
@@ -413,18 +396,15 @@ static const char *const details[] = {
     "  dvi run kepler --set e=0.99 --method galerkin:degree=4 --time-transform distance --h 0.3 --t-end 63\n"
     "  dvi run kepler --method sem:degree=2 --h 0.05 --t-end 100 --set e=0.5 --out orbit.csv\n"
     "  dvi run fpu --method midpoint --h 0.01 --t-end 100 --checkpoint fpu.state --out part1.csv\n"
-    "  dvi run fpu --method midpoint --h 0.01 --t-end 200 --resume fpu.state --out part2.csv\n",
+    "  dvi run fpu --method midpoint --h 0.01 --t-end 200 --resume fpu.state --out part2.csv\n"
+    "  dvi run cart.yaml --final --plot cart.svg\n"
+    "  dvi run cart.yaml | dvi plot - --axes x:theta --out path.svg\n",
     NULL,
 };
 
 int run_command(int argc, char **argv)
 {
-  run_request r = {
-      .out = "-",
-      .h = (double)NAN,
-      .t_end = (double)NAN,
-      .tolerance = (double)NAN,
-  };
+  run_request r = {.out = "-", .h = (double)NAN, .t_end = (double)NAN, .tolerance = (double)NAN};
   const option options[] = {
       {.name = "method", .word = &r.method, .value = "SPEC", .help = "the method: name[:key=value,...], see dvi list methods"},
       {.name = "h", .number = &r.h, .value = "H", .help = "the step, for sem the first one; left out: the problem's"},
@@ -446,7 +426,9 @@ int run_command(int argc, char **argv)
        .value = "P1,P2,...",
        .help = "the momenta of the start, in the order of their columns; left out: the problem's"},
       {.name = "project", .flag = &r.project, .help = "if the start is off a problem's constraint: project it; left out: refuse"},
+      {.name = "columns", .word = &r.columns, .value = "A,B,...", .help = "columns behind t; left out: the scene's, or all"},
       {.name = "out", .word = &r.out, .value = "FILE", .help = "where the rows go; left out, or -: standard output"},
+      {.name = "events", .word = &r.events, .value = "FILE.csv", .help = "list the scene's events there; left out: count them"},
       {.name = "checkpoint",
        .word = &r.checkpoint,
        .value = "FILE",
@@ -465,14 +447,14 @@ int run_command(int argc, char **argv)
       .operand = "PROBLEM",
       .summary = "Compute a trajectory with fixed steps, with those that sem chooses, or with steps that follow the motion; write "
                  "it and its\n"
-                 "invariants as CSV. A scene may say which method it wants, and after how many steps a row.\n",
+                 "invariants as CSV. A scene may say which method it wants, after how many steps a row, which columns, and which\n"
+                 "events end the run.\n",
       .options = options,
       .details = details,
   };
   const char *name;
   int code;
   if (!options_parse(&command, argc, argv, &name, &code)) return code;
-  code = check_request(&r);
-  if (code == DONE && r.resume != NULL) code = check_settings(name, &r.settings);
+  code = check_request(&r, name);
   return code == DONE ? run_problem(&r, name) : code;
 }

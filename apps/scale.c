@@ -7,6 +7,7 @@
 
 #include "axis.h"
 #include "command.h"
+#include "events.h"
 #include "machine.h"
 #include "open.h"
 #include "plot.h"
@@ -337,6 +338,7 @@ static int check_values(const scaling *s)
     if (code != DONE) return code;
     n[k] = scene->nq;
     if (k == 0 || s->axis.kind != AXIS_PARAMETER) code = check_methods(s, scene, k);
+    if (k == 0 && code == DONE) events_passed("bench", scene);
     problem_destroy(&scene);
     if (code == DONE) code = check_growth(s, n, k);
   }

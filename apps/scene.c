@@ -61,8 +61,12 @@ static bool list_parameters(const dvi_scene *scene, problem *made)
   made->parameter = list;
   for (int i = 0; (p = dvi_scene_parameter_at(scene, i)) != NULL; i++)
     if (p->settable)
-      *list++ = (problem_parameter){
-          .name = p->name, .value = p->value, .least = -HUGE_VAL, .most = HUGE_VAL, .help = "of the scene"};
+      *list++ = (problem_parameter){.name = p->name,
+                                    .value = p->value,
+                                    .least = -HUGE_VAL,
+                                    .most = HUGE_VAL,
+                                    .start_only = p->start_only,
+                                    .help = "of the scene"};
   return true;
 }
 
@@ -81,6 +85,8 @@ static bool describe(dvi_scene *scene, problem *made)
   made->summary = plan->title != NULL ? plan->title : "a scene";
   made->method = plan->method;
   made->every = plan->every;
+  made->column_count = plan->column_count;
+  made->column = plan->column;
   made->h = plan->h;
   made->t_end = plan->t_end;
   made->order_h = plan->h;
@@ -155,10 +161,12 @@ int scene_load(const char *path, scene_text *text)
   return good ? DONE : FAILED;
 }
 
-int scene_spared(const char *command, const char *path, const char *out)
+int scene_spared(const char *command, const char *path, int count, const named_file *files)
 {
-  if (!scene_is_path(path) || !file_same(path, out)) return DONE;
-  return usage_error("%s: --out %s would write over the scene", command, out);
+  for (int i = 0; i < count && scene_is_path(path); i++)
+    if (files[i].path != NULL && strcmp(files[i].path, "-") != 0 && file_same(path, files[i].path))
+      return usage_error("%s: --%s %s would write over the scene", command, files[i].option, files[i].path);
+  return DONE;
 }
 
 static void tell_operations(const char *of, int operations, long points)
@@ -169,6 +177,13 @@ static void tell_operations(const char *of, int operations, long points)
     (void)printf(", %s %d (%ld point%s)", of, operations, points, points == 1 ? "" : "s");
 }
 
+static int fast_potentials(const dvi_system_terms *terms)
+{
+  int count = 0;
+  for (int k = 0; k < terms->potential_count; k++) count += terms->potentials[k].fast != 0;
+  return count;
+}
+
 void scene_tell(const problem *scene)
 {
   dvi_scene_facts facts;
@@ -177,6 +192,7 @@ void scene_tell(const problem *scene)
   (void)printf("scene: %s", facts.form);
   if (facts.mass != NULL) (void)printf(", mass %s", facts.mass);
   if (facts.quadratic_potentials > 0) (void)printf(", quadratic potentials %d", facts.quadratic_potentials);
+  if (fast_potentials(scene->terms) > 0) (void)printf(", fast potentials %d", fast_potentials(scene->terms));
   (void)printf("; %d kernel%s, %ld element%s, %d nodes\n", facts.kernels, facts.kernels == 1 ? "" : "s", facts.elements,
                facts.elements == 1 ? "" : "s", facts.nodes);
   (void)printf("operations a point: value %d (%ld point%s)", facts.value_operations, facts.value_points,

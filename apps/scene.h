@@ -2,6 +2,7 @@
 #ifndef SCENE_H
 #define SCENE_H
 #include "options.h"
+#include "outputs.h"
 #include "problem.h"
 
 /** Whether a problem's name is the path of a scene: it ends in .yaml or .yml. */
@@ -22,8 +23,8 @@ int scene_load(const char *path, scene_text *text);
 /** scene_open for such a text. */
 int scene_parse(const char *path, const scene_text *text, const words *settings, problem **scene);
 
-/** Refuse to write over the scene itself. Returns DONE, or complains and returns USAGE. */
-int scene_spared(const char *command, const char *path, const char *out);
+/** Refuse to write any of the files over the scene itself. Returns DONE, or complains and returns USAGE. */
+int scene_spared(const char *command, const char *path, int count, const named_file *files);
 
 /** Print what was found in a problem's scene and what has been derived from it by now; nothing for a problem of the catalogue. */
 void scene_tell(const problem *scene);

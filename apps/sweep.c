@@ -189,8 +189,9 @@ static int run_request(const sweep_request *request, sweep_task *task)
 static const char *const details[] = {
     "Points: all combinations of the values of the scene's section sweep and of --set, the last one's changes first;\n"
     "--set of a parameter replaces its values in the section. Each point reads the scene anew.\n",
-    "Columns: the parameters; status, DVI_OK, or why the run ended early, or refused where the problem cannot be made; steps;\n"
-    "t, the coordinates, the momenta and the invariants at the end, or where the run ended; energy_error, the largest change\n"
+    "Columns: the parameters; status, DVI_OK, 'event NAME' where an event of the scene ended the run, why it failed, or refused\n"
+    "where the problem cannot be made; steps; t, the coordinates, the momenta and the invariants at the end, or where the run "
+    "ended; energy_error, the largest change\n"
     "of the energy since the start. 17 digits; cells without a number are empty. Rows stand in the order of the points and\n"
     "do not depend on the number of threads. If points failed, all others are there, and the exit code is 1.\n",
     "Rows are kept in FILE.csv.part as they are found. A sweep that was interrupted, however it was, goes on from there when\n"
@@ -231,7 +232,7 @@ int sweep_command(int argc, char **argv)
   int code;
   if (!options_parse(&command, argc, argv, &task.operand, &code)) return code;
   code = check_request(&r);
-  if (code == DONE) code = scene_spared("sweep", task.operand, r.out);
+  if (code == DONE) code = scene_spared("sweep", task.operand, 1, &(named_file){"out", r.out});
   if (code != DONE) return code;
   signals_end(true, ended);
   return run_request(&r, &task);

@@ -6,13 +6,11 @@
 #include <string.h>
 
 #include "command.h"
+#include "events.h"
 #include "open.h"
 #include "table.h"
 
-enum { LABEL_SIZE = 1024 };
-
-/* The word for a point whose problem could not be made; else its status stands there. */
-static const char refused[] = "refused";
+enum { LABEL_SIZE = 1024, WORD_SIZE = 256 };
 
 /* A run under way. */
 typedef struct watch {
@@ -24,7 +22,8 @@ typedef struct watch {
 
 /* What becomes of a point. */
 typedef struct outcome {
-  const char *word;
+  char word[WORD_SIZE]; /* of its column status */
+  bool failed;
   long steps;
   double t;
   const double *q, *p, *invariant; /* NULL: none */
@@ -80,7 +79,8 @@ static void write_row(const sweep_task *task, const grid_point *point, const out
     csv_text(stream, strchr(point->settings.word[i], '=') + 1);
     (void)fputc(',', stream);
   }
-  (void)fprintf(stream, "%s,%ld", end->word, end->steps);
+  csv_text(stream, end->word);
+  (void)fprintf(stream, ",%ld", end->steps);
   write_numbers(stream, 1, &end->t);
   write_numbers(stream, model->nq, end->q);
   write_numbers(stream, model->nv, end->p);
@@ -90,7 +90,7 @@ static void write_row(const sweep_task *task, const grid_point *point, const out
 
 static sweep_row make_row(const sweep_task *task, const grid_point *point, const outcome *end)
 {
-  sweep_row row = {.failed = strcmp(end->word, dvi_status_name(DVI_OK)) != 0};
+  sweep_row row = {.failed = end->failed};
   size_t size;
   FILE *stream = open_memstream(&row.text, &size);
   if (stream == NULL) return row;
@@ -126,13 +126,16 @@ static int observe(dvi_integrator *integrator, void *user)
   return 0;
 }
 
-static dvi_status advance(const sweep_task *task, const problem *scene, dvi_integrator *integrator, watch *w, outcome *end)
+static dvi_status advance(const sweep_task *task, const problem *scene, const event_list *events, dvi_integrator *integrator,
+                          watch *w, outcome *end)
 {
   const double t_end = isnan(task->t_end) ? scene->t_end : task->t_end;
   const double h = isnan(task->h) ? copysign(scene->h, t_end) : task->h;
-  const dvi_run_options options = {.h = h, .t_end = t_end, .observe = observe, .user = w};
+  const dvi_run_options options = {
+      .h = h, .t_end = t_end, .observe = observe, .user = w, .events = events->event, .event_count = events->count};
   dvi_run_report report = {.steps = 0};
   const dvi_status status = dvi_run(integrator, &options, &report);
+  if (report.end == DVI_RUN_EVENT) (void)snprintf(end->word, sizeof end->word, "event %s", events->event[report.event].name);
   end->steps = report.steps;
   end->t = dvi_integrator_time(integrator);
   end->q = dvi_integrator_q(integrator);
@@ -146,11 +149,17 @@ static dvi_status advance(const sweep_task *task, const problem *scene, dvi_inte
 static void run(const sweep_task *task, const problem *scene, const grid_point *point, dvi_integrator **integrator, watch *w,
                 outcome *end)
 {
-  dvi_status status = dvi_integrator_create(scene->system, task->method != NULL ? task->method : scene->method, integrator);
+  event_list events;
+  dvi_status status = events_list(&events, scene, NULL, NULL) ? DVI_OK : DVI_NO_MEMORY;
+  if (status == DVI_OK)
+    status = dvi_integrator_create(scene->system, task->method != NULL ? task->method : scene->method, integrator);
   if (status == DVI_OK) status = dvi_integrator_start(*integrator, 0.0, scene->q, scene->p);
-  if (status == DVI_OK) status = advance(task, scene, *integrator, w, end);
-  end->word = dvi_status_name(status);
+  (void)snprintf(end->word, sizeof end->word, "%s", dvi_status_name(DVI_OK));
+  if (status == DVI_OK) status = advance(task, scene, &events, *integrator, w, end);
+  events_clear(&events);
+  end->failed = status != DVI_OK;
   if (status == DVI_OK) return;
+  (void)snprintf(end->word, sizeof end->word, "%s", dvi_status_name(status));
   const char *sentence = status == DVI_NO_MEMORY || w->status == DVI_NOT_FINITE ? "" : dvi_last_error();
   say(point, sentence[0] != '\0' ? sentence : dvi_status_meaning(status));
 }
@@ -164,7 +173,7 @@ static bool has_columns(const problem *scene, const problem *model)
 sweep_row sweep_run(const sweep_task *task, long k)
 {
   grid_point point;
-  outcome end = {.word = refused, .t = (double)NAN, .energy_error = (double)NAN};
+  outcome end = {.word = "refused", .failed = true, .t = (double)NAN, .energy_error = (double)NAN};
   watch w = {.status = DVI_OK};
   problem *scene = NULL;
   dvi_integrator *integrator = NULL;

@@ -3,7 +3,7 @@
 #define TRACE_H
 #include <stdbool.h>
 
-enum { TRACE_MAX = 4096, TRACE_COORDINATES = 6 };
+enum { TRACE_MAX = 2048, TRACE_COORDINATES = 6 };
 
 /** Times, some coordinates, and the energy. */
 typedef struct run_trace {

@@ -199,7 +199,9 @@ static dvi_status make_system(problem *made, chain *own)
        .gradient_batch = fast_gradient,
        .hessian_batch = fast_hessian,
        .qq = {own->fast_start, own->fast_row},
-       .user = own},
+       .user = own,
+       .fast = 1,
+       .quadratic = 1},
   };
   dvi_invariant energies[WATCHED_MAX];
   const int watched = own->ell <= WATCHED_MAX ? own->ell : 0;

@@ -58,7 +58,13 @@ static dvi_status make(const double *setting, problem *made)
 
   dvi_potential springs[2] = {
       {.name = "slow", .value_batch = value, .gradient_batch = gradient, .hessian_batch = hessian, .user = &own->slow},
-      {.name = "fast", .value_batch = value, .gradient_batch = gradient, .hessian_batch = hessian, .user = &own->fast},
+      {.name = "fast",
+       .value_batch = value,
+       .gradient_batch = gradient,
+       .hessian_batch = hessian,
+       .user = &own->fast,
+       .fast = 1,
+       .quadratic = 1},
   };
   const dvi_system_terms terms = {
       .dimension = 1, .mass = {.scalar = 1.0}, .potentials = springs, .potential_count = 2, .autonomous = 1};

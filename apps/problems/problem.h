@@ -22,6 +22,8 @@ typedef struct problem {
   const problem_parameter *parameter; /**< ended by one without a name */
   const char *method;                 /**< the specification that it wants to be run with; NULL: none */
   long every;                         /**< a row after so many steps; 0: it does not say */
+  int column_count;                   /**< how many names of columns it wants to be shown; 0: it does not say */
+  const char *const *column;          /**< [column_count] */
   dvi_system *system;
   const dvi_system_terms *terms; /**< what the system was made of */
   int nq;                        /**< numbers of q */

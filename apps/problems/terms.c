@@ -103,7 +103,9 @@ static dvi_potential one_point_potential(const dvi_potential *declared)
                          .gradient_range = declared->gradient_range ? gradient_range : NULL,
                          .reach = declared->reach,
                          .rate = declared->rate || declared->rate_batch ? rate : NULL,
-                         .user = (void *)declared};
+                         .user = (void *)declared,
+                         .fast = declared->fast,
+                         .quadratic = declared->quadratic};
 }
 
 static dvi_lagrangian one_point_lagrangian(const dvi_lagrangian *declared)

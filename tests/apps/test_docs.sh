@@ -23,8 +23,23 @@ split() {
 # Processor, compiler and the presence of GSL are those of the machine; the clock decides which settings lie on a frontier.
 words() { sed -e 's/^\(processor\): .*/\1/; s/^\(compiler\): .*/\1/; s/, GSL .*//; s/  at most  /  interpolated  /' -e 's/-\{0,1\}[0-9][0-9.]*\(e[-+]\{0,1\}[0-9][0-9]*\)\{0,1\}/N/g; s/  */ /g; s/ $//' "$1"; }
 
+# The words in a picture, which are titles and labels.
+words_in() { sed -n 's/.*<tspan[^>]*>\(.*\)<\/tspan>.*/\1/p' "$1" >texts; words texts | sort -u; }
+
+# pictures PAGE: its commands have drawn those that it shows, with the same words; they are small.
+pictures() {
+  for picture in $(grep -o '](pictures/[a-z-]*\.svg)' "$top/$1" | sed 's/](\(.*\))/\1/'); do
+    drawn=$(basename "$picture") kept=$top/docs/$picture
+    [ -s "$drawn" ] || { fail "$1: no command draws $drawn"; continue; }
+    words_in "$drawn" >drawn.words
+    words_in "$kept" >kept.words
+    cmp -s drawn.words kept.words || { fail "$1: $picture is not what its command draws"; diff kept.words drawn.words | sed 's/^/    /'; }
+    [ "$(wc -c <"$kept")" -le 60000 ] || fail "$picture is larger than 60 kB"
+  done
+}
+
 commands=0
-for page in README.md docs/guide.md docs/theory.md docs/problems.md docs/adaptive.md docs/paths.md docs/scenes.md $(cd "$top" && ls docs/methods/*.md); do
+for page in README.md docs/guide.md docs/theory.md docs/problems.md docs/adaptive.md docs/paths.md docs/scenes.md docs/cookbook.md docs/scene-errors.md $(cd "$top" && ls docs/methods/*.md); do
   split "$top/$page"
   n=1
   while [ -e command.$n ]; do
@@ -35,6 +50,7 @@ for page in README.md docs/guide.md docs/theory.md docs/problems.md docs/adaptiv
     cmp -s printed.words shown.words || { fail "$page: $(cat command.$n)"; diff shown.words printed.words | sed 's/^/    /'; }
     n=$((n + 1))
   done
+  pictures "$page"
 done
 [ "$commands" -ge 20 ] || fail "only $commands commands were found in the pages"
 finish

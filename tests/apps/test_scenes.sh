@@ -29,5 +29,5 @@ for scene in "$here"/../../apps/scenes/*.yaml; do
     }' || rc=1
   count=$((count + 1))
 done
-[ $count -ge 23 ] || fail "only $count scenes"
+[ $count -ge 31 ] || fail "only $count scenes"
 exit $rc

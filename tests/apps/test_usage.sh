@@ -31,6 +31,13 @@ says err "did you mean '--t-end'" 'nearest option'
 expect 2 'short option' run kepler -m verlet
 expect 2 'unknown problem' run keppler --method verlet
 says err "did you mean 'kepler'" 'nearest problem'
+expect 2 'keys behind a blank' run kepler --method 'galerkin degree=2'
+says err "did you mean 'galerkin:degree=2'" 'keys behind a blank'
+: >beside.yaml
+expect 2 'a scene without its ending' run beside --method verlet
+says err "did you mean 'beside.yaml'" 'a scene without its ending'
+expect 1 'no such scene' run nowhere.yaml
+says err "cannot read 'nowhere.yaml': No such file" 'no such scene'
 expect 2 'unknown method' run kepler --method verlett
 says err "verlet" 'nearest method'
 expect 2 'unknown key' run kepler --method galerkin:degre=4

@@ -1,8 +1,8 @@
-#include <check.h>
 #include <math.h>
-#include <stdlib.h>
 
 #include <dvi/diagnostics.h>
+
+#include "support/suite.h"
 
 static const double two_pi = 6.283185307179586;
 
@@ -203,9 +203,7 @@ END_TEST
 
 int main(void)
 {
-  Suite *suite = suite_create("diagnostics/drift");
   TCase *tests = tcase_create("drift");
-  tcase_set_timeout(tests, 60);
   tcase_add_test(tests, a_constant_has_no_drift_and_no_nan);
   tcase_add_test(tests, a_line_gives_its_slope_whatever_the_number_of_samples);
   tcase_add_test(tests, change_is_the_slope_times_the_time_between_the_first_and_the_last_sample);
@@ -219,10 +217,5 @@ int main(void)
   tcase_add_test(tests, samples_at_one_time_have_no_slope);
   tcase_add_test(tests, a_nan_in_the_record_is_not_hidden);
   tcase_add_test(tests, no_sample_is_lost_when_blocks_are_joined);
-  suite_add_tcase(suite, tests);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+  return run_tests("diagnostics/drift", tests);
 }

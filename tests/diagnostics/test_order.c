@@ -1,8 +1,8 @@
-#include <check.h>
 #include <math.h>
-#include <stdlib.h>
 
 #include <dvi/diagnostics.h>
+
+#include "support/suite.h"
 
 static void halve(int count, double *h)
 {
@@ -86,19 +86,12 @@ END_TEST
 
 int main(void)
 {
-  Suite *suite = suite_create("diagnostics/order");
   TCase *tests = tcase_create("order");
-  tcase_set_timeout(tests, 60);
   tcase_add_test(tests, a_power_law_gives_its_exponent);
   tcase_add_test(tests, the_floor_and_the_ceiling_are_left_out);
   tcase_add_test(tests, an_error_equal_to_the_floor_is_left_out);
   tcase_add_test(tests, the_longest_window_is_taken_and_the_last_of_equal_ones);
   tcase_add_test(tests, no_window_of_two_errors_is_reported);
   tcase_add_test(tests, steps_that_do_not_descend_and_missing_arrays_are_refused);
-  suite_add_tcase(suite, tests);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+  return run_tests("diagnostics/order", tests);
 }

@@ -47,4 +47,8 @@ if pkg-config --exists 'dvi >= 99'; then fail "pkg-config has version 99"; fi
 say "the command"
 "$prefix/bin/dvi" --help >"$work/log" || { cat "$work/log"; fail "dvi --help does not work"; }
 "$prefix/bin/dvi" list methods >"$work/log" || { cat "$work/log"; fail "dvi list does not work"; }
+
+say "scenes and pages"
+"$prefix/bin/dvi" check "$prefix/share/dvi/scenes/kepler.yaml" >"$work/log" 2>&1 || { cat "$work/log"; fail "an installed scene does not run"; }
+[ -s "$prefix/share/doc/dvi/pictures/cart.svg" ] || fail "the pages are not there"
 say "all is well"

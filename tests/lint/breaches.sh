@@ -21,6 +21,8 @@ clean() {
   printf '@book{Euler1744,\n}\n' >docs/references.bib
   printf 'int main(void)\n{\n  return 0;\n}\n' >apps/examples/pendulum.c
   { echo '# One'; echo '```c'; cat apps/examples/pendulum.c; echo '```'; echo 'See [the guide](docs/guide.md#two-words), Euler1744.'; } >README.md
+  printf 'int told = refuse("there is no \047%%s\047\\n", "a name"); /* "not this" */\n' >lib/src/scene/one.c
+  printf '# Errors\n\n- `there is no \047<name>\047`\n  A slip.\n  - `a name`\n' >docs/scene-errors.md
   { echo '# Two words'; echo '```c'; echo '#include <dvi/one.h>'; echo 'int two(void);'; echo '```'; } >docs/guide.md
 }
 
@@ -31,6 +33,7 @@ text() { sh "$lint/sources.sh" "$work" "$lint/text.awk"; }
 documented() { awk -f "$lint/documented.awk" lib/include/dvi/*.h; }
 docs() { sh "$lint/docs.sh" "$work" "$compiler"; }
 methods() { sh "$lint/methods.sh" "$work" leap; }
+messages() { sh "$lint/messages.sh" "$work"; }
 headers() { sh "$lint/headers.sh" "$work/lib/include" c "$compiler" -std=c11; }
 symbols() {
   "$compiler" -shared -fPIC -I lib/include lib/src/core/*.c -o libone.so && "$compiler" -c -I lib/include lib/src/core/one.c -o one.o &&
@@ -47,7 +50,7 @@ sees() {
 }
 
 clean
-for gate in layers text documented methods docs headers symbols; do passes $gate; done
+for gate in layers text documented methods messages docs headers symbols; do passes $gate; done
 
 sees layers lib/src/core/one.c '#include "num/linear.h"'
 sees layers lib/src/num/one.c '#include "system/system.h"'
@@ -80,6 +83,9 @@ sees text lib/src/core/long.c "$(awk 'BEGIN { for (i = 0; i < 501; i++) printf "
 sees documented lib/include/dvi/one.h '\nint dvi_two(int a);'
 sees documented lib/include/dvi/one.h '\ntypedef struct dvi_two { int a; } dvi_two;'
 sees methods docs/methods/other.md 'a page without a method'
+sees messages lib/src/scene/one.c 'int two = refuse("there are %d of them");'
+sees messages docs/scene-errors.md '- `there is no <name>`'
+sees messages docs/scene-errors.md '- `a name`'
 sees docs README.md '[nowhere](docs/nowhere.md)'
 sees docs README.md '[no heading](docs/guide.md#three-words)'
 sees docs README.md 'Nobody1900 says so.'

@@ -75,7 +75,12 @@ FNR == 1 {
   if (zone == "user") check_user(quoted, header)
 }
 
-zone == "library" && /(^|[^A-Za-z0-9_])(printf|puts|putchar|exit|abort|assert)\(|std(out|err)/ { breach("the library never prints, exits or aborts") }
+# What stands in quotes is text: the library writes C, too.
+zone == "library" {
+  code = $0
+  gsub(/"([^"\\]|\\.)*"/, "\"\"", code)
+  if (code ~ /(^|[^A-Za-z0-9_])(printf|puts|putchar|exit|abort|assert)\(|std(out|err)/) breach("the library never prints, exits or aborts")
+}
 # Scenes are a library of their own, with a door of their own.
 zone == "library" && FILENAME != "lib/src/core/memory.c" && FILENAME != "lib/src/scene/heap.c" && /(^|[^A-Za-z0-9_])(malloc|calloc|realloc|strdup)\(/ {
   breach("the heap is behind core/memory.h, and scene/heap.h")

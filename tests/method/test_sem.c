@@ -281,6 +281,7 @@ START_TEST(events_are_found_in_steps_of_any_length)
                    DVI_OK);
   ck_assert_int_eq(report.end, DVI_RUN_EVENT);
   ck_assert_double_eq_tol(report.event_time, 6.283185307179586, 1e-4); /* the path's own order, s + 1 */
+  ck_assert_double_eq_tol(dvi_integrator_time(integrator), report.event_time, 1e-14);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&of);
 }

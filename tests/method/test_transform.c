@@ -169,6 +169,21 @@ START_TEST(an_event_at_the_end_is_seen)
 }
 END_TEST
 
+START_TEST(a_terminal_event_ends_the_run_at_its_time)
+{
+  problem *of = scene(_i);
+  dvi_integrator *integrator = way(of, _i);
+  dvi_run_report report;
+  const dvi_event end = {.value = clock_value, .terminal = 1};
+  const dvi_run_options options = {.h = ways[_i].h, .t_end = 5, .events = &end, .event_count = 1};
+  ck_assert_msg(dvi_run(integrator, &options, &report) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_int_eq(report.end, DVI_RUN_EVENT);
+  ck_assert_double_eq_tol(dvi_integrator_time(integrator), 3, 1e-12);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&of);
+}
+END_TEST
+
 /* From the exact solution: degree 8 with short steps has no error to speak of, at the ends or inside. */
 START_TEST(dense_output_is_in_physical_time)
 {
@@ -320,6 +335,7 @@ int main(void)
   tcase_add_loop_test(tests, a_step_takes_no_memory, 0, WAYS);
   tcase_add_loop_test(tests, a_run_ends_at_its_physical_time, 0, WAYS);
   tcase_add_loop_test(tests, an_event_at_the_end_is_seen, 0, WAYS);
+  tcase_add_loop_test(tests, a_terminal_event_ends_the_run_at_its_time, 0, WAYS);
   tcase_add_test(tests, dense_output_is_in_physical_time);
   tcase_add_loop_test(tests, dense_output_meets_the_ends_of_a_step, 0, WAYS);
   tcase_add_loop_test(tests, a_restored_run_continues_bit_for_bit, 0, WAYS);

@@ -64,11 +64,37 @@ START_TEST(lacking_memory_is_a_status)
 }
 END_TEST
 
+/* K = ((2,-1),(-1,2)), M = diag(1,4): lambda^2 - 5/2 lambda + 3/4 = 0. */
+START_TEST(two_symmetric_matrices_are_made_diagonal_together)
+{
+  const double K[] = {2, -1, -1, 2}, M[] = {1, 0, 0, 4}, root = sqrt(13) / 4;
+  double lambda[2], X[4];
+  ck_assert_int_eq(dvi__eigen_symmetric(2, K, M, lambda, X), DVI_OK);
+  ck_assert_double_eq_tol(lambda[0], 1.25 - root, 4e-15);
+  ck_assert_double_eq_tol(lambda[1], 1.25 + root, 4e-15);
+  for (int k = 0; k < 2; k++) {
+    const double *x = X + 2 * k;
+    ck_assert_double_eq_tol(x[0] * x[0] + 4 * x[1] * x[1], 1, 4e-15);
+    ck_assert_double_eq_tol(2 * x[0] - x[1], lambda[k] * x[0], 4e-15);
+    ck_assert_double_eq_tol(2 * x[1] - x[0], lambda[k] * 4 * x[1], 4e-15);
+  }
+  ck_assert_double_eq_tol(X[0] * X[2] + 4 * X[1] * X[3], 0, 4e-15);
+  ck_assert_int_eq(dvi__eigen_symmetric(2, K, (const double[]){1, 0, 0, -4}, lambda, X), DVI_SINGULAR);
+  for (long successes = 0; successes < 2; successes++) {
+    dvi__fail_allocations_after(successes);
+    const dvi_status status = dvi__eigen_symmetric(2, K, M, lambda, X);
+    dvi__fail_allocations_after(-1);
+    ck_assert_int_eq(status, DVI_NO_MEMORY);
+  }
+}
+END_TEST
+
 int main(void)
 {
   TCase *tests = tcase_create("eigen");
   tcase_add_loop_test(tests, a_matrix_is_made_again_from_its_eigen_structure, 0, MOST);
   tcase_add_test(tests, of_a_pair_the_one_above_the_real_axis_stands_first);
   tcase_add_test(tests, lacking_memory_is_a_status);
+  tcase_add_test(tests, two_symmetric_matrices_are_made_diagonal_together);
   return run_tests("num/eigen", tests);
 }

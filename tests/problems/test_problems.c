@@ -1,5 +1,4 @@
 /* The catalogue: every derivative and pattern against differences, every start, every refusal. */
-#include <check.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,6 +6,7 @@
 
 #include "problem.h"
 #include "system/evaluator.h"
+#include "support/suite.h"
 
 /* Differences of the value are good to about 1e-10 at these points; a wrong term shows at 1. */
 #define TOLERANCE 1e-7
@@ -390,7 +390,6 @@ END_TEST
 
 int main(void)
 {
-  Suite *suite = suite_create("problems");
   TCase *tests = tcase_create("catalogue");
   const int count = problem_count();
   tcase_add_loop_test(tests, derivatives_and_patterns_agree_with_differences, 0, count);
@@ -407,10 +406,5 @@ int main(void)
   tcase_add_test(tests, kepler_in_the_singularity_gives_no_finite_number);
   tcase_add_loop_test(tests, symmetries_and_invariants_have_their_names, 0, 8);
   tcase_add_loop_test(tests, invariants_hold_between_start_and_digits, 0, count);
-  suite_add_tcase(suite, tests);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return run_tests("problems/problems", tests);
 }

@@ -1,6 +1,5 @@
 /* labels: reference */
 /* The quadruple-precision judge, the digits that the problems store, and the catalogue's printed digits: all three agree. */
-#include <check.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,6 +8,7 @@
 #include "problem.h"
 #include "support/quad.h"
 #include "support/quad_real.h"
+#include "support/suite.h"
 
 /* What the judge may say about itself where 1e-17 is wanted: 1e-20 leaves three digits. */
 #define JUDGE_ERROR 1e-20
@@ -168,9 +168,7 @@ END_TEST
 
 int main(void)
 {
-  Suite *suite = suite_create("digits");
   TCase *tests = tcase_create("digits");
-  tcase_set_timeout(tests, 60);
   tcase_add_loop_test(tests, stored_digits_are_those_of_the_judge, 0, problem_count());
   tcase_add_loop_test(tests, the_judge_agrees_with_itself_from_the_rounded_start, 0, problem_count());
   tcase_add_loop_test(tests, printed_digits_are_right_to_the_last_one, 0, 6);
@@ -179,10 +177,5 @@ int main(void)
   tcase_add_test(tests, the_figure_eight_closes);
   tcase_add_test(tests, the_judge_reads_settings_and_goes_backward);
   tcase_add_test(tests, the_judge_refuses_what_it_does_not_know);
-  suite_add_tcase(suite, tests);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return run_tests("reference/digits", tests);
 }

@@ -1,10 +1,9 @@
 /* labels: reference slow */
 /* Long runs of the quadruple-precision judge. */
-#include <check.h>
 #include <math.h>
-#include <stdlib.h>
 
 #include "support/quad.h"
+#include "support/suite.h"
 
 /* fpu at T = 200 is sensitive: from 1/50 rounded to a double, as here, x0_1 differs by 5e-14 from what exact 1/50 gives. The printed
  * digits are those of the rounded start. */
@@ -22,14 +21,8 @@ END_TEST
 
 int main(void)
 {
-  Suite *suite = suite_create("digits_long");
   TCase *tests = tcase_create("digits");
   tcase_set_timeout(tests, 600);
   tcase_add_test(tests, fpu_has_the_printed_state_at_200);
-  suite_add_tcase(suite, tests);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return run_tests("reference/digits_long", tests);
 }

@@ -1,6 +1,5 @@
 /* labels: reference */
 /* The SUNDIALS codes against exact solutions and printed digits. */
-#include <check.h>
 #include <dvi/dvi.h>
 #include <math.h>
 #include <stdio.h>
@@ -8,6 +7,7 @@
 #include <string.h>
 
 #include "reference/catalogue.h"
+#include "support/suite.h"
 
 static double distance(int n, const double *a, const double *b)
 {
@@ -371,38 +371,26 @@ START_TEST(tolerances_down_to_1e_14_work_or_are_refused_in_words)
 }
 END_TEST
 
-static Suite *reference(void)
-{
-  Suite *suite = suite_create("reference");
-  TCase *answers = tcase_create("answers"), *edges = tcase_create("edges");
-  tcase_add_loop_test(answers, each_code_meets_the_exact_oscillator, 0, CODES);
-  tcase_add_loop_test(answers, each_code_meets_the_exact_kepler, 0, CODES);
-  tcase_add_loop_test(answers, each_code_goes_backward, 0, CODES);
-  tcase_add_loop_test(answers, the_error_follows_the_tolerance, 0, CODES);
-  tcase_add_loop_test(answers, each_code_meets_the_digits_of_the_double_pendulum, 0, CODES);
-  tcase_add_loop_test(answers, each_code_meets_the_exact_motion_in_a_magnetic_field, 0, CODES);
-  tcase_add_test(answers, ida_has_the_right_jacobian);
-  tcase_add_test(answers, bdf_has_the_right_jacobian);
-  tcase_add_loop_test(answers, sparse_systems_agree_with_the_explicit_code, 0, CODES);
-  tcase_add_loop_test(answers, each_code_takes_a_lagrangian_with_time_and_without_derivatives, 0, CODES);
-  tcase_add_test(answers, the_judge_at_its_defaults_takes_a_lagrangian_without_derivatives);
-  tcase_add_test(answers, ida_bounds_its_own_error);
-  tcase_add_loop_test(answers, the_judge_is_two_runs, 0, CODES);
-  tcase_add_loop_test(edges, no_time_leaves_the_state, 0, CODES);
-  tcase_add_loop_test(edges, the_report_says_what_was_done, 0, CODES);
-  tcase_add_test(edges, left_out_options_are_ida_at_1e_12);
-  tcase_add_test(edges, codes_have_names_and_sundials_a_version);
-  tcase_add_loop_test(edges, tolerances_down_to_1e_14_work_or_are_refused_in_words, 0, CODES);
-  suite_add_tcase(suite, answers);
-  suite_add_tcase(suite, edges);
-  return suite;
-}
-
 int main(void)
 {
-  SRunner *runner = srunner_create(reference());
-  srunner_run_all(runner, CK_NORMAL);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  TCase *tests = tcase_create("reference");
+  tcase_add_loop_test(tests, each_code_meets_the_exact_oscillator, 0, CODES);
+  tcase_add_loop_test(tests, each_code_meets_the_exact_kepler, 0, CODES);
+  tcase_add_loop_test(tests, each_code_goes_backward, 0, CODES);
+  tcase_add_loop_test(tests, the_error_follows_the_tolerance, 0, CODES);
+  tcase_add_loop_test(tests, each_code_meets_the_digits_of_the_double_pendulum, 0, CODES);
+  tcase_add_loop_test(tests, each_code_meets_the_exact_motion_in_a_magnetic_field, 0, CODES);
+  tcase_add_test(tests, ida_has_the_right_jacobian);
+  tcase_add_test(tests, bdf_has_the_right_jacobian);
+  tcase_add_loop_test(tests, sparse_systems_agree_with_the_explicit_code, 0, CODES);
+  tcase_add_loop_test(tests, each_code_takes_a_lagrangian_with_time_and_without_derivatives, 0, CODES);
+  tcase_add_test(tests, the_judge_at_its_defaults_takes_a_lagrangian_without_derivatives);
+  tcase_add_test(tests, ida_bounds_its_own_error);
+  tcase_add_loop_test(tests, the_judge_is_two_runs, 0, CODES);
+  tcase_add_loop_test(tests, no_time_leaves_the_state, 0, CODES);
+  tcase_add_loop_test(tests, the_report_says_what_was_done, 0, CODES);
+  tcase_add_test(tests, left_out_options_are_ida_at_1e_12);
+  tcase_add_test(tests, codes_have_names_and_sundials_a_version);
+  tcase_add_loop_test(tests, tolerances_down_to_1e_14_work_or_are_refused_in_words, 0, CODES);
+  return run_tests("reference/reference", tests);
 }

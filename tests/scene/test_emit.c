@@ -145,17 +145,21 @@ static int write_text(const char *text, size_t size, void *user)
 
 static void emit_call(dvi__emitter *out, const results *all, int kind, int count)
 {
-  dvi__emit(out, "  {\n    double *result[%d] = {0};\n", DVI__PAIRS);
-  for (int a = 0; a < DVI__PAIRS; a++)
-    if (all->size[kind][a] > 0) dvi__emit(out, "    result[%d] = at, at += %d;\n", a, all->size[kind][a] * count);
-  dvi__emit(out, "    %s(%d, x, result);\n  }\n", names[kind], count);
+  int at = 0;
+  dvi__emit(out, "  %s(%d, 0, x[0], x[1], 0", names[kind], count);
+  for (int a = 0; a < DVI__PAIRS; a++) {
+    if (kind == 0 ? a == 0 : (kind == 1 ? BLOCKS : PAIRS) >> a & 1U)
+      dvi__emit(out, all->size[kind][a] > 0 ? ", at + %d" : ", 0", at);
+    at += all->size[kind][a] * count;
+  }
+  dvi__emit(out, ");\n  at += %d;\n", at);
 }
 
 static void emit_main(dvi__emitter *out, const results *all, const double *const *x)
 {
   const int coordinates = dvi__emit_doubles(out, N * POINTS_MAX, x[1]), velocities = dvi__emit_doubles(out, N * POINTS_MAX, x[2]);
   dvi__emit(out, "#include <stdio.h>\nint main(void)\n{\n  static double number[%d];\n  double *at = number;\n", all->count + 1);
-  dvi__emit(out, "  const double *const x[] = {0, dvi_row_%d, dvi_row_%d, 0};\n", coordinates, velocities);
+  dvi__emit(out, "  const double *const x[] = {dvi_row_%d, dvi_row_%d};\n", coordinates, velocities);
   for (int i = 0; i < COUNTS; i++)
     for (int kind = 0; kind < KINDS; kind++) emit_call(out, all, kind, counts[i]);
   dvi__emit(out, "  for (const double *y = number; y < at; y++) printf(\"%%a\\n\", *y);\n  return 0;\n}\n");
@@ -168,8 +172,8 @@ static void write_program(dvi__function *function, const results *all, const dou
   dvi__emitter out = {.write = write_text, .user = file};
   dvi__emit_begin(&out);
   ck_assert_int_eq(dvi__emit_value(&out, function, names[0]), DVI_OK);
-  ck_assert_int_eq(dvi__emit_gradient(&out, function, BLOCKS, names[1]), DVI_OK);
-  ck_assert_int_eq(dvi__emit_second(&out, function, PAIRS, names[2]), DVI_OK);
+  ck_assert_int_eq(dvi__emit_gradient(&out, function, BLOCKS, 1, names[1]), DVI_OK);
+  ck_assert_int_eq(dvi__emit_second(&out, function, PAIRS, 1, names[2]), DVI_OK);
   emit_main(&out, all, x);
   ck_assert_int_eq(dvi__emit_end(&out), DVI_OK);
   ck_assert_int_eq(fclose(file), 0);
@@ -179,7 +183,8 @@ static void write_program(dvi__function *function, const results *all, const dou
 static void check_output(const results *all)
 {
   char command[1000];
-  (void)snprintf(command, sizeof command, "%s -std=c11 -O2 -Wall -Wextra -Wno-unknown-pragmas -Werror %s -o %s -lm && %s >%s",
+  (void)snprintf(command, sizeof command,
+                 "%s -std=c11 -O2 -Wall -Wextra -Wconversion -Wpedantic -Wno-unknown-pragmas -Werror %s -o %s -lm && %s >%s",
                  DVI_C_COMPILER, in_folder("emitted.c"), in_folder("emitted"), in_folder("emitted"), in_folder("numbers"));
   ck_assert_int_eq(system(command), 0); /* NOLINT(cert-env33-c): the compiler of the build */
   FILE *file = fopen(in_folder("numbers"), "r");
@@ -309,7 +314,7 @@ START_TEST(a_writer_that_refuses_ends_it)
   int left = 20;
   dvi__emitter out = {.write = refuse, .user = &left};
   dvi__emit_begin(&out);
-  ck_assert_int_eq(dvi__emit_second(&out, function, PAIRS, "second"), DVI_IO_ERROR);
+  ck_assert_int_eq(dvi__emit_second(&out, function, PAIRS, 1, "second"), DVI_IO_ERROR);
   ck_assert_int_eq(left, -1);
   ck_assert_int_eq(dvi__emit_end(&out), DVI_IO_ERROR);
   dvi__function_destroy(&function);

@@ -132,8 +132,8 @@ static unsigned kind_of(const dvi_scene *scene)
 static unsigned try_scene(const dvi_scene *scene)
 {
   size_t written = 0;
-  const int n = dvi_system_nq(dvi_scene_system(scene));
-  fuzz_requires(dvi_scene_coordinate(scene, 0) != NULL && dvi_scene_momentum(scene, n - 1) != NULL);
+  const int n = dvi_system_nq(dvi_scene_system(scene)), nv = dvi_system_nv(dvi_scene_system(scene));
+  fuzz_requires(dvi_scene_coordinate(scene, n - 1) != NULL && dvi_scene_momentum(scene, nv - 1) != NULL);
   if (n > COORDINATES_MAX) return (unsigned)n % 16;
   const int code = call_all(scene);
   const dvi_status status = dvi_scene_emit_c(scene, "s", count_bytes, &written);

@@ -165,6 +165,46 @@ START_TEST(verlet_asks_for_one_gradient_a_step_and_nothing_else)
 }
 END_TEST
 
+/* Neither are there multipliers where nothing is constrained, nor second derivatives where nothing is solved. */
+START_TEST(explicit_methods_derive_nothing_twice_and_have_no_multiplier)
+{
+  static const char *const method[] = {"verlet", "composition:order=4,base=verlet"};
+  dvi_counters counters;
+  open_both(kepler, "kepler");
+  ck_assert_int_eq(dvi_system_constraint_count(dvi_scene_system(scene)), 0);
+  for (int k = 0; k < 2; k++) {
+    dvi_integrator *integrator = started(dvi_scene_system(scene), method[k]);
+    for (int i = 0; i < STEPS; i++) ck_assert_int_eq(dvi_integrator_step(integrator, 0.05), DVI_OK);
+    dvi_integrator_counters(integrator, &counters);
+    ck_assert_int_eq(counters.residuals + counters.jacobians + counters.factorizations + counters.symbolic, 0);
+    ck_assert_ptr_null(dvi_integrator_multiplier(integrator));
+    dvi_integrator_destroy(&integrator);
+  }
+  ck_assert_int_eq(facts()->hessian_operations, 0);
+  ck_assert_int_eq(facts()->hessian_points, 0);
+}
+END_TEST
+
+START_TEST(the_energy_is_evaluated_where_it_is_asked_for)
+{
+  static const char *const method[] = {"verlet", "galerkin:degree=2", "midpoint"};
+  double value[4], one;
+  open_both(kepler, "kepler");
+  for (int k = 0; k < 3; k++) {
+    dvi_integrator *integrator = started(dvi_scene_system(scene), method[k]);
+    const long before = facts()->value_points;
+    for (int i = 0; i < STEPS; i++) ck_assert_int_eq(dvi_integrator_step(integrator, 0.05), DVI_OK);
+    for (int i = 1; i < 4; i++) ck_assert_int_eq(dvi_integrator_invariant(integrator, i, &one), DVI_OK);
+    ck_assert_int_eq(facts()->value_points, before);
+    ck_assert_int_eq(dvi_integrator_invariant(integrator, 0, &one), DVI_OK);
+    ck_assert_int_eq(facts()->value_points, before + 1);
+    ck_assert_int_eq(dvi_integrator_invariants(integrator, value), DVI_OK);
+    ck_assert_double_eq(value[0], one);
+    dvi_integrator_destroy(&integrator);
+  }
+}
+END_TEST
+
 START_TEST(pendulum_is_that_of_the_catalogue)
 {
   open_both("coordinates: {q: scalar}\nlagrangian: q'^2/2 - cos(q)\ninitial: {q: 2.5}\n" RUN, "pendulum");
@@ -188,8 +228,72 @@ START_TEST(fpu_is_that_of_the_catalogue)
   steps_agree("verlet", 0.005);
   steps_agree("galerkin:degree=2", 0.005);
   ck_assert_int_eq(facts()->quadratic_potentials, 1);
+  for (int k = 0; k < 2; k++) {
+    ck_assert_int_eq(dvi_scene_terms(scene)->potentials[k].fast, k);
+    ck_assert_int_eq(dvi_scene_terms(scene)->potentials[k].quadratic, k);
+  }
   ck_assert_str_eq(dvi_scene_coordinate(scene, 3), "x1_1");
   ck_assert_str_eq(dvi_scene_momentum(scene, 2), "p_x0_3");
+}
+END_TEST
+
+/* 0/0 for the first member, which is given by itself; the others have their own values. */
+START_TEST(one_member_may_stand_beside_a_formula_that_is_no_number_there)
+{
+  const double *q, *v, *p, expected[] = {5, 1, 1, 2, 3, 4.5};
+  open_scene("coordinates: {\"x[3]\": scalar}\nlagrangian: sum(i, x[i]'^2/2)\n"
+             "initial: {\"x[1]\": 5, \"x[i]\": \"(i - 1)/(i - 1)\", \"x[1]'\": 2, \"x[i]'\": \"3/2*i*(i - 1)/(i - 1)\"}\n" RUN);
+  dvi_scene_start(scene, &q, &v, &p);
+  same(3, q, expected, 1, "q");
+  same(3, v, expected + 3, 1, "v");
+}
+END_TEST
+
+#define CHAIN "coordinates: {x: scalar, y: scalar}\nkinetic: (x'^2 + y'^2)/2\ninitial: {x: 1, y: 0.5}\n" RUN "potentials:\n"
+
+/* Which are fast, and which have constant second derivatives, in the order of the file. */
+static void check_speeds(const char *text, int count, const int *fast, const int *quadratic)
+{
+  open_scene(text);
+  const dvi_system_terms *terms = dvi_scene_terms(scene);
+  ck_assert_int_eq(terms->potential_count, count);
+  for (int k = 0; k < count; k++) {
+    ck_assert_int_eq(terms->potentials[k].fast, fast[k]);
+    ck_assert_int_eq(terms->potentials[k].quadratic, quadratic[k]);
+  }
+}
+
+START_TEST(potentials_are_fast_as_they_are_tagged)
+{
+  static const int of_groups[] = {1, 1, 0, 0}, quadratic[] = {1, 0, 1, 1}, one[] = {0, 1}, neither[] = {0, 0};
+  check_speeds(CHAIN "  fast: {bond: 50*(x - y)^2, bend: (x - y)^2*x}\n  slow: {weight: x + y}\n  well: 3*x*y - y^2/2 + t^3\n", 4,
+               of_groups, quadratic);
+  check_speeds(CHAIN "  slow: x^4\n  fast: t*x^2\n", 2, one, neither);
+  check_speeds(CHAIN "  bond: sqrt(x)^2\n  bend: cos(y)\n", 2, neither, neither);
+}
+END_TEST
+
+/* What only splitting methods tell apart is one potential to all others. */
+START_TEST(tags_do_not_change_what_other_methods_do)
+{
+  static const char *const text[] = {CHAIN "  fast: {bond: 50*(x - y)^2}\n  slow: {well: x^4}\n",
+                                     CHAIN "  bond: 50*(x - y)^2\n  well: x^4\n"};
+  static const char *const method[] = {"verlet", "galerkin:degree=2", "midpoint", "sem"};
+  for (int m = 0; m < 4; m++) {
+    double end[2][2];
+    for (int k = 0; k < 2; k++) {
+      const double *q, *v, *p;
+      dvi_integrator *integrator;
+      open_scene(text[k]);
+      dvi_scene_start(scene, &q, &v, &p);
+      ck_assert_int_eq(dvi_integrator_create(dvi_scene_system(scene), method[m], &integrator), DVI_OK);
+      ck_assert_int_eq(dvi_integrator_start(integrator, 0, q, p), DVI_OK);
+      for (int i = 0; i < 10; i++) ck_assert_msg(dvi_integrator_step(integrator, 0.02) == DVI_OK, "%s", dvi_last_error());
+      memcpy(end[k], dvi_integrator_q(integrator), sizeof end[k]);
+      dvi_integrator_destroy(&integrator);
+    }
+    ck_assert_mem_eq(end[0], end[1], sizeof end[0]);
+  }
 }
 END_TEST
 
@@ -301,8 +405,13 @@ int main(void)
   tcase_add_test(tests, kepler_is_that_of_the_catalogue);
   tcase_add_test(tests, invariants_are_those_of_the_catalogue);
   tcase_add_test(tests, verlet_asks_for_one_gradient_a_step_and_nothing_else);
+  tcase_add_test(tests, explicit_methods_derive_nothing_twice_and_have_no_multiplier);
+  tcase_add_test(tests, the_energy_is_evaluated_where_it_is_asked_for);
   tcase_add_test(tests, pendulum_is_that_of_the_catalogue);
   tcase_add_test(tests, fpu_is_that_of_the_catalogue);
+  tcase_add_test(tests, one_member_may_stand_beside_a_formula_that_is_no_number_there);
+  tcase_add_test(tests, potentials_are_fast_as_they_are_tagged);
+  tcase_add_test(tests, tags_do_not_change_what_other_methods_do);
   tcase_add_test(tests, outer_solar_is_that_of_the_catalogue);
   tcase_add_test(tests, double_pendulum_is_that_of_the_catalogue);
   tcase_add_test(tests, driven_pendulum_is_that_of_the_catalogue);

@@ -55,13 +55,60 @@ static void lagrangian_refused(const char *L, int column, const char *words)
   refused(text, place, words);
 }
 
+/* b is made of a and stands in no section, nor does the list c. */
+#define PARAMETERS "parameters: {a: 1, b: 2*a, c: [a, b], start: 2, twice: 2*start, size: 3, both: 1}\n"
+#define USES                                                                                                              \
+  "definitions: {V: size*both*x, rest: x^2, twice_V: 2*V}\nlagrangian: x'^2 - V\ninitial: {x: twice + both}\nstep: 0.1\n" \
+  "until: 1\n"
+
+START_TEST(what_nothing_mentions_is_known)
+{
+  static const int start_only[] = {0, 0, 0, 1, 1, 0, 0};
+  static const char *const unused[] = {"a", "b", "c", "rest", "twice_V"}, *const idle[] = {"a=2"};
+  ck_assert_msg(parse(PARAMETERS X USES, 0, NULL) == DVI_OK, "%s", message);
+  for (int i = 0; i < 7; i++) ck_assert_int_eq(dvi_scene_parameter_at(scene, i)->start_only, start_only[i]);
+  for (int i = 0; i < 5; i++) ck_assert_str_eq(dvi_scene_unused(scene, i), unused[i]);
+  ck_assert_ptr_null(dvi_scene_unused(scene, 5));
+  ck_assert_ptr_null(dvi_scene_unused(scene, -1));
+  ck_assert_int_eq(parse(PARAMETERS X USES, 1, idle), DVI_BAD_OPTION);
+  ck_assert_ptr_nonnull(strstr(message, "'a' is set, but nothing in the scene mentions it"));
+}
+END_TEST
+
 START_TEST(unknown_names_are_told_with_the_nearest)
 {
   lagrangian_refused("x'^2 + yy[1]", 20, "'yy'; did you mean y?");
   lagrangian_refused("x'^2 + sqr(x)", 20, "'sqr'; did you mean sqrt?");
   refused("kinetc: 1\n" X RUN, ":1:1:", "'kinetc'; did you mean kinetic?");
   refused(X "lagrangian: x'^2\nreport: {evry: 2}\n" RUN, ":3:10:", "'evry'; did you mean every?");
+  refused("lagrangian: x'^2\nreport: {columns: [x, energi]}\n" X RUN, ":2:23:", "no column 'energi'; did you mean energy?");
+  refused(X "lagrangian: x'^2\nreport: {columns: [x, p_x, x]}\n" RUN, ":3:28:", "column 'x' stands here twice");
   refused(X "lagrangian: x'^2\ninitial: {x: 1, xx: 2}\nstep: 1\nuntil: 1\n", ":3:17:", "'xx'; did you mean x?");
+}
+END_TEST
+
+START_TEST(words_from_elsewhere_are_told_with_those_of_scenes)
+{
+  lagrangian_refused("x'^2 + ln(x)", 20, "there is no 'ln'; write log(x)");
+  lagrangian_refused("xdot^2", 13, "there is no 'xdot'; write x'");
+  lagrangian_refused("x_dot^2", 13, "there is no 'x_dot'; write x'");
+  lagrangian_refused("x'^2 + p_x", 20, "there is no 'p_x'; write p(x)");
+  lagrangian_refused("v_N^2", 13, "there is no 'v_N'"); /* N is no coordinate */
+  refused(X "L: x'^2\n" RUN, ":2:1:", "a scene has no 'L'; the section is lagrangian");
+  refused(X "lagrangian: x'^2\ndt: 1\n" RUN, ":3:1:", "a scene has no 'dt'; the section is step");
+  refused(X "lagrangian: x'^2\nreport: {dt: 1}\n" RUN, ":3:10:", "report has no 'dt'");
+}
+END_TEST
+
+START_TEST(a_start_that_is_no_number_is_told)
+{
+  const char *const L = "coordinates: {\"x[2]\": scalar, y: scalar}\nlagrangian: y'^2 + sum(i, x[i]'^2)\nstep: 1\nuntil: 1\n";
+  char text[TEXT_SIZE];
+  (void)snprintf(text, sizeof text, "%sinitial: {y: 1, \"x[i]\": 1/(i - 1)}\n", L);
+  refused(text, ":5:10:", "the start of x is not finite");
+  (void)snprintf(text, sizeof text, "%sinitial: {y: 1, \"x[i]\": 1, \"x[i]'\": sqrt(1 - i)}\n", L);
+  refused(text, ":5:10:", "the start of x is not finite");
+  refused(X "lagrangian: x'^2\ninitial: {x: 1/0}\nstep: 1\nuntil: 1\n", ":3:14:", "this is not a finite number");
 }
 END_TEST
 
@@ -103,6 +150,8 @@ START_TEST(velocities_and_momenta_stand_where_they_make_sense)
 {
   refused(X "kinetic: x'^2\npotentials: {V: x*x'}\n" RUN, ":3:19:", "velocities cannot stand in a potential");
   refused(X "lagrangian: x'^2 + p(x)\n" RUN, ":2:20:", "momenta cannot stand in a Lagrangian");
+  refused(X "kinetic: x'^2\npotentials: {stiff: {V: x}}\n" RUN, ":3:14:", "only slow and fast hold some by name");
+  refused(X "kinetic: x'^2\npotentials: {fast: {slow: {V: x}}}\n" RUN, ":3:27:", "an expression belongs here");
   refused(X "lagrangian: x'^2\nevents: {up: {zero: p(x)}}\n" RUN, ":3:21:", "momenta cannot stand in an event");
   refused("parameters: {a: t}\n" X "lagrangian: x'^2\n" RUN, ":1:17:", "the time cannot stand in a parameter");
   refused(X "definitions: {w: x'^2}\nlagrangian: w'\n" RUN, ":3:13:", "there are no accelerations");
@@ -124,15 +173,15 @@ END_TEST
 
 START_TEST(sections_that_are_missing_or_do_not_go_together_are_told)
 {
-  refused(X "lagrangian: x'^2\ninitial: {x: 1}\nuntil: 1\n", ":", "the section 'step' is missing");
+  refused(X "lagrangian: x'^2\ninitial: {x: 1}\nuntil: 1\n", ":", "the section 'step' is missing, as in 'step: 0.01'");
   refused(X RUN, ":", "what moves it is missing");
   refused(X "lagrangian: x'^2\nkinetic: x'^2\n" RUN, ":3:10:", "there must be one of these");
   refused(X "lagrangian: x'^2\nhamiltonian: 1\n" RUN, ":3:14:", "beside lagrangian there is no hamiltonian");
   refused(X "lagrangian: x'^2\npotentials: {a: 1}\n" RUN, ":3:13:", "potentials stand beside kinetic");
   refused(X "one_form: {x: 1}\n" RUN, ":2:11:", "one_form needs a hamiltonian");
+  refused(X "hamiltonian: p(x)^2\n" RUN, ":2:14:", "a hamiltonian stands with constraints or a one_form");
   refused(X "hamiltonian: x\nconstraints: {a: x}\n" RUN, ":3:14:", "an even number is needed");
   refused(X "lagrangian: x'^2\nforces: {x: 1}\n" RUN, ":3:9:", "no method here takes forces");
-  refused("coordinates: {R: rotation}\nlagrangian: 1\n" RUN, ":1:18:", "declare it in C, by dvi_factor");
   refused("coordinates: {x: skalar}\nlagrangian: 1\n" RUN, ":1:18:", "did you mean scalar?");
 }
 END_TEST
@@ -226,7 +275,10 @@ int main(void)
 {
   TCase *tests = tcase_create("scene errors");
   tcase_add_checked_fixture(tests, NULL, release);
+  tcase_add_test(tests, what_nothing_mentions_is_known);
   tcase_add_test(tests, unknown_names_are_told_with_the_nearest);
+  tcase_add_test(tests, words_from_elsewhere_are_told_with_those_of_scenes);
+  tcase_add_test(tests, a_start_that_is_no_number_is_told);
   tcase_add_test(tests, shapes_that_do_not_fit_are_told);
   tcase_add_test(tests, indices_are_checked_for_every_element);
   tcase_add_test(tests, velocities_and_momenta_stand_where_they_make_sense);

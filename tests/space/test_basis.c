@@ -1,14 +1,13 @@
-#include <check.h>
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 #include <dvi/basis.h>
 
 #include "space/basis.h"
 #include "quad.h"
 #include "roundoff.h"
+#include "support/suite.h"
 
 #define MODAL DVI_LEGENDRE
 #define BASES (DVI_CHEBYSHEV + 1)
@@ -234,9 +233,7 @@ END_TEST
 
 int main(void)
 {
-  Suite *suite = suite_create("space/basis");
   TCase *tests = tcase_create("basis");
-  tcase_set_timeout(tests, 60);
 #ifdef DVI_HAVE_QUADMATH
   tcase_add_loop_test(tests, values_and_derivatives_are_right_to_2_units_of_the_largest_against_quadruple_precision, 0, BASES);
 #else
@@ -250,10 +247,5 @@ int main(void)
   tcase_add_loop_test(tests, either_output_may_be_left_out, 0, BASES);
   tcase_add_test(tests, bad_arguments_are_refused_and_nothing_is_written);
   tcase_add_test(tests, every_basis_has_a_name_of_its_own);
-  suite_add_tcase(suite, tests);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+  return run_tests("space/basis", tests);
 }

@@ -1,8 +1,6 @@
-#include <check.h>
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include <dvi/quadrature.h>
@@ -10,6 +8,7 @@
 #include "space/quadrature.h"
 #include "quad.h"
 #include "roundoff.h"
+#include "support/suite.h"
 
 enum { RULES = DVI_SIMPSON + 1 };
 
@@ -201,9 +200,7 @@ END_TEST
 
 int main(void)
 {
-  Suite *suite = suite_create("space/quadrature");
   TCase *tests = tcase_create("quadrature");
-  tcase_set_timeout(tests, 60);
 #ifdef DVI_HAVE_QUADMATH
   tcase_add_loop_test(tests, nodes_and_weights_are_right_to_2_ulp_against_quadruple_precision, 0, RULES);
 #else
@@ -217,10 +214,5 @@ int main(void)
   tcase_add_test(tests, bad_sizes_are_refused_and_nothing_is_written);
   tcase_add_test(tests, unknown_rules_and_missing_arrays_are_refused_and_nothing_is_written);
   tcase_add_test(tests, every_rule_has_a_name_of_its_own);
-  suite_add_tcase(suite, tests);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+  return run_tests("space/quadrature", tests);
 }

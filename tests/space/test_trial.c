@@ -1,11 +1,10 @@
-#include <check.h>
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 
 #include "space/quadrature.h"
 #include "space/trial.h"
 #include "roundoff.h"
+#include "support/suite.h"
 
 enum { BASES = DVI_CHEBYSHEV + 1, MOST = DVI_DEGREE_MAX };
 
@@ -211,9 +210,7 @@ END_TEST
 
 int main(void)
 {
-  Suite *suite = suite_create("space/trial");
   TCase *tests = tcase_create("trial");
-  tcase_set_timeout(tests, 60);
   tcase_add_loop_test(tests, psi_vanishes_at_0_and_bar_at_1, 0, BASES);
   tcase_add_loop_test(tests, psi_and_bar_are_the_basis_less_its_ends, 0, BASES);
   tcase_add_loop_test(tests, psi_keeps_its_digits_near_0, 0, BASES);
@@ -225,10 +222,5 @@ int main(void)
   tcase_add_loop_test(tests, shift_continues_a_polynomial_of_the_kept_degree, 0, BASES);
   tcase_add_loop_test(tests, shift_backward_by_the_whole_step_returns_the_step, 0, BASES);
   tcase_add_loop_test(tests, shift_drops_derivatives_orthogonal_to_the_kept_degree, 0, BASES);
-  suite_add_tcase(suite, tests);
-  SRunner *runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+  return run_tests("space/trial", tests);
 }

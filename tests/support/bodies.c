@@ -1,9 +1,10 @@
 #include "support/bodies.h"
 
-#include <check.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "support/suite.h"
 
 /* ---- potentials: V = sum c q_i q_j, or c q_i where there is no j ---- */
 

@@ -1,10 +1,10 @@
 /* The symplectic form of bodies, before and after a step. */
-#include <check.h>
 #include <dvi/group.h>
 #include <math.h>
 #include <string.h>
 
 #include "support/bodies.h"
+#include "support/suite.h"
 
 enum { DIRECTIONS_MOST = 2 * BODY_V, POINTS = 4 };
 

@@ -1,8 +1,9 @@
 #include "support/cells.h"
 
-#include <check.h>
 #include <math.h>
 #include <string.h>
+
+#include "support/suite.h"
 
 /* ---- V = sum_i a_i q_i + q_i^2/2 + b_i q_i q_(i+3) ---- */
 

@@ -1,9 +1,10 @@
 #include "support/equations.h"
 
-#include <check.h>
 #include <float.h>
 #include <math.h>
 #include <string.h>
+
+#include "support/suite.h"
 
 const dvi__rung rungs[3] = {DVI__FIXED_POINT, DVI__NEWTON, DVI__KINSOL};
 

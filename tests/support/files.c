@@ -1,12 +1,13 @@
 #define _XOPEN_SOURCE 700 /* mkdtemp */
 #include "support/files.h"
 
-#include <check.h>
 #include <dirent.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+
+#include "support/suite.h"
 
 static char folder[256];
 

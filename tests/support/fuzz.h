@@ -1,8 +1,9 @@
 /* Hostile texts for readers: made by mutation of good ones, the same in every run, so that a failure comes again. */
 #ifndef TESTS_SUPPORT_FUZZ_H
 #define TESTS_SUPPORT_FUZZ_H
-#include <check.h>
 #include <stddef.h>
+
+#include "support/suite.h"
 
 typedef struct fuzz_target {
   const char *name;          /* the text on trial is kept in the file fuzz-NAME.txt, which stays where the trial fails */

@@ -1,6 +1,5 @@
 #include "support/order.h"
 
-#include <check.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,6 +7,7 @@
 
 #include "support/quad.h"
 #include "support/runs.h"
+#include "support/suite.h"
 
 enum { N = QUAD_N_MAX, MOST_GLOBAL_ORDER = 6 };
 
@@ -140,9 +140,8 @@ static void check_global_order_by_quad(const place *at, const char *method, int 
   problem_destroy(&of);
 }
 
-void check_order_by_ida(int index, const char *method, int order)
+static void check_global_order_by_ida(const place *at, const char *method, int order)
 {
-  const place *at = &places[index];
   problem *of = made_problem(at->over.problem, at->over.setting);
   state exact = start_of(of);
   dvi_reference_report report;
@@ -152,6 +151,21 @@ void check_order_by_ida(int index, const char *method, int order)
   const double floor = 100 * report.error / magnitude(of->nq, exact.q);
   check_global_order(at, method, order, of, &exact, 1.4, floor);
   problem_destroy(&of);
+}
+
+void check_order_by_ida(int index, const char *method, int order)
+{
+  check_global_order_by_ida(&places[index], method, order);
+}
+
+void check_order_over(const char *problem_name, const char *setting, double length, int first, const char *method, int order)
+{
+  check_global_order_by_quad(&(place){.over = {problem_name, setting, length}, .first = first}, method, order);
+}
+
+void check_order_by_ida_over(const char *problem_name, const char *setting, double length, int first, const char *method, int order)
+{
+  check_global_order_by_ida(&(place){.over = {problem_name, setting, length}, .first = first}, method, order);
 }
 
 /* ---- of one step ----

@@ -8,7 +8,11 @@ enum { ORDER_PLACES = 5, DOUBLE_PENDULUM = 3 };
  * by the error of one step (see order.c). With DVI_SHOW_ORDERS in the environment the errors are printed. */
 void check_order(int place, const char *method, int order);
 
+/* The same on another problem over another span, by the error at its end, from `first` steps on. */
+void check_order_over(const char *problem, const char *setting, double length, int first, const char *method, int order);
+
 /* The same for orders that IDA's own error of about 1e-10 allows to be seen: 2 and 4. */
 void check_order_by_ida(int place, const char *method, int order);
+void check_order_by_ida_over(const char *problem, const char *setting, double length, int first, const char *method, int order);
 
 #endif

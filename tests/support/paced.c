@@ -1,6 +1,6 @@
 #include "support/paced.h"
 
-#include <check.h>
+#include "support/suite.h"
 
 dvi_monitor monitor_of(const char *specification)
 {

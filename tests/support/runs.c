@@ -1,9 +1,10 @@
 #include "support/runs.h"
 
-#include <check.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+
+#include "support/suite.h"
 
 const char *spec(const char *format, ...)
 {

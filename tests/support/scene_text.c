@@ -2,8 +2,8 @@
 
 #include "scene/heap.h"
 #include "scene/utf8.h"
+#include "support/suite.h"
 
-#include <check.h>
 #include <string.h>
 
 void open_text(scene_text *scene, const char *text, size_t size)

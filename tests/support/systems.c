@@ -1,8 +1,9 @@
 #include "support/systems.h"
 
-#include <check.h>
 #include <math.h>
 #include <stddef.h>
+
+#include "support/suite.h"
 
 static const int diagonal_start[SITES + 1] = {0, 1, 2, 3, 4, 5, 6};
 static const int diagonal_row[SITES] = {0, 1, 2, 3, 4, 5};

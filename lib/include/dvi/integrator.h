@@ -189,6 +189,15 @@ const char *dvi_integrator_method(const dvi_integrator *integrator);
  *  @param[out] value  [dvi_system_invariant_count] */
 dvi_status dvi_integrator_invariants(dvi_integrator *integrator, double *value);
 
+/** Invariant i at the current state, without an allocation: no other one is evaluated. 0 is the energy; dvi_system_invariant_name names them.
+ *
+ *  @param[out] value  one number
+ *  @retval DVI_BAD_ARGUMENT  there is no such invariant, or an argument is NULL
+ *  @retval DVI_BAD_STATE     before dvi_integrator_start
+ *  @retval DVI_NOT_FINITE    it is not finite at the state
+ *  @retval (others)          as its callback fails, or the inverse Legendre map, which the energy needs */
+dvi_status dvi_integrator_invariant(dvi_integrator *integrator, int i, double *value);
+
 /** How far the state is from the constraint of a system with a one-form, the largest |p_i - alpha_i(q)|, or of a Hamiltonian, the largest |phi_a(q,p)|,
  *  without an allocation.
  *

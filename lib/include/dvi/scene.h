@@ -12,8 +12,9 @@ typedef struct dvi_scene dvi_scene;
 /** A parameter of a scene. */
 typedef struct dvi_scene_parameter {
   const char *name;
-  double value; /**< as it is set; NaN if it is not one number */
-  int settable; /**< 1: a number that a setting may replace */
+  double value;   /**< as it is set; NaN if it is not one number */
+  int settable;   /**< 1: a number that a setting may replace */
+  int start_only; /**< 1: of all sections it stands in `initial` alone, and so does what is made of it */
 } dvi_scene_parameter;
 
 /** How a scene wants to be run. Strings are NULL and numbers 0 where it does not say. */
@@ -44,10 +45,11 @@ typedef struct dvi_scene_range {
 /** What was found in a scene, for people and for tests. */
 typedef struct dvi_scene_facts {
   const char *form; /**< "separable", "general Lagrangian", "one-form", "Hamiltonian with constraints" */
-  const char *mass; /**< "identity", "scalar", "diagonal", "sparse"; NULL without a constant mass */
-  int kernels;      /**< expressions that are summed over elements */
-  long elements;    /**< of all kernels */
-  int nodes;        /**< of all expressions, before derivatives */
+  const char *
+      mass; /**< "identity", "scalar", "diagonal", "sparse", "inertias" (of rotations and angles, and no more); NULL without a constant mass */
+  int kernels;                                                   /**< expressions that are summed over elements */
+  long elements;                                                 /**< of all kernels */
+  int nodes;                                                     /**< of all expressions, before derivatives */
   int value_operations, gradient_operations, hessian_operations; /**< a point; 0: never derived */
   long hessian_entries;
   long value_points, gradient_points, hessian_points; /**< evaluated so far */
@@ -88,10 +90,10 @@ const dvi_system_terms *dvi_scene_terms(const dvi_scene *scene);
 /** The start at t = 0: q [nq], v [nv], p [nv]. */
 void dvi_scene_start(const dvi_scene *scene, const double **q, const double **v, const double **p);
 
-/** The name of coordinate i of q [nq], for columns: "x", "q_1_x"; NULL if i is out of range. */
+/** The name of coordinate i of q [nq], for columns: "x", "q_1_x", "R_11", "u_cos"; NULL if i is out of range. */
 const char *dvi_scene_coordinate(const dvi_scene *scene, int i);
 
-/** The name of entry i of v [nv]; NULL if i is out of range. */
+/** The name of entry i of v [nv]: "v_x", "omega_R_x", "rate_u"; NULL if i is out of range. */
 const char *dvi_scene_velocity(const dvi_scene *scene, int i);
 
 /** The name of entry i of p [nv]: "p_x"; NULL if i is out of range. */
@@ -106,6 +108,9 @@ const dvi_scene_plan *dvi_scene_plan_of(const dvi_scene *scene);
 /** Parameter i, in the order of the file; NULL if i is out of range. Owned by the scene. */
 const dvi_scene_parameter *dvi_scene_parameter_at(const dvi_scene *scene, int i);
 
+/** Parameter or definition i of those that nothing in the scene mentions; NULL if i is out of range. Owned by the scene. */
+const char *dvi_scene_unused(const dvi_scene *scene, int i);
+
 /** Event i; NULL if i is out of range. Owned by the scene. */
 const dvi_scene_event *dvi_scene_event_at(const dvi_scene *scene, int i);
 
@@ -119,13 +124,15 @@ void dvi_scene_facts_of(const dvi_scene *scene, dvi_scene_facts *facts);
  *  passed; "" if none failed since a scene was last read. */
 const char *dvi_scene_blame(void);
 
-/** Write a C file that declares the same system by callbacks of the C API: a function `dvi_status NAME_create(dvi_system **system)` and the start,
- *  `const double NAME_q[], NAME_v[], NAME_p[]`.
+/** Write a C file that declares the same system by callbacks of the C API: a function `dvi_status NAME_create(dvi_system **system)`; the start,
+ *  `const double NAME_q[], NAME_v[], NAME_p[]`; the plan, `const double NAME_h, NAME_t_end` and, if the scene has one, `const char NAME_method[]`; and its
+ *  events, if it has any, `const dvi_event NAME_events[]`. With a method and the macro DVI_MAIN it is a program that runs the scene.
  *
  *  @param name   a C identifier, in front of every external name
  *  @param write  gets the text, piece by piece; not 0 ends it with DVI_IO_ERROR
  *  @retval DVI_BAD_ARGUMENT  name is no identifier of at most 63 letters, or an argument is NULL
- *  @retval DVI_UNSUPPORTED   the scene is a Hamiltonian with constraints
+ *  @retval DVI_UNSUPPORTED   the scene has rotations, motions, directions or angles
+ *  @retval DVI_BAD_SIZE      a kernel, or the gradients of constraints, have more numbers than a stack has room for
  *  @retval DVI_NO_MEMORY */
 dvi_status dvi_scene_emit_c(const dvi_scene *scene, const char *name, int (*write)(const char *text, size_t size, void *user),
                             void *user);

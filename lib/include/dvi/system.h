@@ -139,6 +139,8 @@ typedef struct dvi_potential {
   /** The rate V_t, the derivative in time alone. Needed by methods for which time is an unknown, unless the system is autonomous. */
   int (*rate)(double t, const double *q, double *V_t, void *user);
   int (*rate_batch)(int count, const double *t, const double *q, double *V_t, void *user);
+  int fast; /**< not 0: its forces are stiff. Methods that split take it apart from the others (docs/methods/imex.md); to all others it is one of them */
+  int quadratic; /**< not 0: V = q.Kq/2 + b(t).q + c(t) with a constant K, so that its Hessian is asked for once. dvi_system_check tests it */
 } dvi_potential;
 
 /** A constant mass matrix: exactly one of the three forms. It must be regular, and may be indefinite: a Lagrangian with -M and -V moves as that with M and V. */
@@ -316,11 +318,12 @@ typedef struct dvi_derivative_check {
   int range_row;         /**< the first coordinate for which a gradient_range breaks its promise; -1: none does */
   double rate_error;     /**< largest difference of given and differenced rate, relative to the rate */
   int depends_on_time;   /**< 1: the system is declared autonomous, but a callback's results change with t */
+  int not_quadratic;     /**< 1: a potential is declared quadratic, but its Hessian changes with q or t */
 } dvi_derivative_check;
 
 /** Compare every gradient, Hessian, pattern and rate of the system with differences of the values at one point, and every gradient_range, bit
  *  for bit, with the whole gradient: over short and long ranges, with NaN wherever it may not look. Of an autonomous system every callback must
- *  give the same numbers at two other times.
+ *  give the same numbers at two other times, and the gradient of a quadratic potential must be linear in q.
  *
  *  Uses 6th order central differences; n^2 gradient calls: meant for tests and for moderate n.
  *  @param      q, v       [nq], [nv]: a point in general position; with a Hamiltonian v stands for p

@@ -404,6 +404,17 @@ dvi_status dvi_integrator_invariants(dvi_integrator *I, double *value)
   return dvi__invariants(I->evaluator, I->now.t, I->now.q, I->v, I->now.p, value);
 }
 
+dvi_status dvi_integrator_invariant(dvi_integrator *I, int i, double *value)
+{
+  if (I == NULL || value == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "invariant: an argument is NULL");
+  if (!I->started) return dvi__fail(DVI_BAD_STATE, "invariant: the integrator has no state yet; call dvi_integrator_start first");
+  if (i < 0 || i >= dvi_system_invariant_count(I->system))
+    return dvi__fail(DVI_BAD_ARGUMENT, "invariant: there is none of index %d; there are %d", i,
+                     dvi_system_invariant_count(I->system));
+  if (i == 0) DVI_TRY(velocity(I, &I->now, I->v));
+  return dvi__invariant(I->evaluator, I->now.t, I->now.q, I->v, I->now.p, i, value);
+}
+
 dvi_status dvi_integrator_constraint(dvi_integrator *I, double *distance)
 {
   if (I == NULL || distance == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "constraint: an argument is NULL");

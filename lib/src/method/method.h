@@ -23,7 +23,8 @@ typedef struct dvi__members {
   long *residuals, *gradients, *fixed; /* [count] what the step took, as dvi_counters has it: residuals, gradients, fixed_points */
 } dvi__members;
 
-/* A key of a method's specification: a whole number, one of a list of names, or a positive number that "auto" leaves to the method. */
+/* A key of a method's specification: a whole number, one of a list of names (or a number from `least` on, above the names' indices, where `most` is not 0), or
+ * a positive number that "auto" leaves to the method. */
 typedef struct dvi__key {
   const char *name;
   const char *(*choice)(int index); /* name of a choice, NULL past the last one; NULL: a number */

@@ -92,6 +92,19 @@ static dvi_status take_step(dvi_integrator *I, const dvi_run_options *options, d
   return dvi__integrator_step_exactly(I, left);
 }
 
+/* A terminal event ends the run at its own time: the step that holds it is taken again, up to there. */
+static dvi_status end_at(dvi_integrator *I, const dvi_run_options *options, dvi_run_report *report)
+{
+  dvi_run_options there = *options;
+  there.t_end = report->event_time;
+  if (next_step(I, &there) == 0) return DVI_OK;
+  dvi__integrator_take_back(I);
+  const double h = next_step(I, &there);
+  if (h != 0) return take_step(I, &there, h);
+  report->steps--;
+  return DVI_OK;
+}
+
 static dvi_status one_step(dvi_integrator *I, const dvi_run_options *options, double h, dvi__watch *watch, dvi_run_report *report,
                            int *stop)
 {
@@ -102,6 +115,7 @@ static dvi_status one_step(dvi_integrator *I, const dvi_run_options *options, do
   if (found != DVI_OK) return dvi__integrator_undo(I, found);
   report->steps++;
   DVI_TRY(dvi__watch_report(watch, I, options, report, stop));
+  if (report->end == DVI_RUN_EVENT) DVI_TRY(end_at(I, options, report));
   if (options->cancel != NULL && *options->cancel && !*stop) {
     report->end = DVI_RUN_CANCELLED;
     *stop = 1;

@@ -110,7 +110,14 @@ static dvi_status parse_choice(const dvi__method *method, const dvi__key *key, p
     }
     dvi__text_add(&text, "%s%s", c > 0 ? ", " : "", key->choice(c));
   }
+  if (key->most > 0) dvi__text_add(&text, " and %d to %d", key->least, key->most);
   return dvi__fail(DVI_BAD_OPTION, "%s: %s=%.*s; possible are %s", method->name, key->name, value.length, value.text, known);
+}
+
+/* A key may take names beside numbers. */
+static int is_number(const dvi__key *key, piece value)
+{
+  return key->choice == NULL || (key->most > 0 && value.length > 0 && value.text[0] >= '0' && value.text[0] <= '9');
 }
 
 /* strtod takes more spellings than digits, point and exponent: they are refused. */
@@ -142,8 +149,8 @@ static dvi_status assign(const dvi__method *method, piece name, piece value, dvi
     if (*given & 1U << k) return dvi__fail(DVI_BAD_OPTION, "%s: %s is given twice", method->name, key->name);
     *given |= 1U << k;
     if (key->least == DVI__POSITIVE) return parse_real(method, key, value, &settings->number[k]);
-    return key->choice == NULL ? parse_number(method, key, value, &settings->value[k])
-                               : parse_choice(method, key, value, &settings->value[k]);
+    return is_number(key, value) ? parse_number(method, key, value, &settings->value[k])
+                                 : parse_choice(method, key, value, &settings->value[k]);
   }
   if (method->list != NULL && same(name, method->list)) return parse_list(method, value, settings);
   return method->takes_rest ? keep_for_others(method, name, value, settings) : unknown_key(method, name);
@@ -196,7 +203,7 @@ void dvi__spell_out(const dvi__method *method, const dvi__settings *settings, dv
     dvi__text_add(text, "%c%s=", k == 0 ? ':' : ',', key->name);
     if (key->least == DVI__POSITIVE)
       spell_real(settings->number[k], text);
-    else if (key->choice != NULL)
+    else if (key->choice != NULL && key->choice(settings->value[k]) != NULL)
       dvi__text_add(text, "%s", key->choice(settings->value[k]));
     else
       dvi__text_add(text, "%d", settings->value[k]);

@@ -15,6 +15,7 @@ static const char *term_name(unsigned term)
   case DVI__HAMILTONIAN: return "a Hamiltonian with constraints";
   case DVI__ROTATIONS: return "rotations";
   case DVI__DIRECTIONS: return "directions (S^2)";
+  case DVI__FAST: return "a fast potential (one that is declared `fast`)";
   default: return "potentials";
   }
 }

@@ -9,6 +9,9 @@
 extern void dgeev_(const char *left, const char *right, const int *n, double *a, const int *lda, double *wr, double *wi, double *vl,
                    const int *ldvl, double *vr, const int *ldvr, double *work, const int *lwork, int *info, size_t left_length,
                    size_t right_length);
+extern void dsygv_(const int *type, const char *vectors, const char *triangle, const int *n, double *a, const int *lda, double *b,
+                   const int *ldb, double *lambda, double *work, const int *lwork, int *info, size_t vectors_length,
+                   size_t triangle_length);
 extern void dgesv_(const int *n, const int *sides, double *a, const int *lda, int *pivot, double *b, const int *ldb, int *info);
 
 /* LAPACK keeps Re and Im of a pair's vector in two columns: T (x + iy) = (a + ib)(x + iy), so that T x = a x - b y, T y = b x + a y. */
@@ -41,5 +44,25 @@ dvi_status dvi__eigen(int n, const double *T, double *real_part, double *imagina
   dvi__release(copy);
   dvi__release(work);
   dvi__release(pivot);
+  return status;
+}
+
+dvi_status dvi__eigen_symmetric(int n, const double *K, const double *M, double *lambda, double *X)
+{
+  const size_t entries = (size_t)n * (size_t)n;
+  const int type = 1, length = 8 * n;
+  int info = 0;
+  double *copy = dvi__duplicate(M, entries, sizeof(double)), *work = DVI_NEW(double, 8 * (size_t)n);
+  dvi_status status = DVI_OK;
+  if (copy == NULL || work == NULL) {
+    status = dvi__fail(DVI_NO_MEMORY, "eigenvalues: no memory for a matrix of %d columns", n);
+  } else {
+    memcpy(X, K, entries * sizeof(double));
+    dsygv_(&type, "V", "L", &n, X, &n, copy, &n, lambda, work, &length, &info, 1, 1);
+    if (info != 0)
+      status = dvi__fail(DVI_SINGULAR, "eigenvalues: the second of two matrices of %d columns is not positive definite", n);
+  }
+  dvi__release(copy);
+  dvi__release(work);
   return status;
 }

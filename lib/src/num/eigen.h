@@ -9,4 +9,8 @@
  * of eigenvectors, DVI_NO_MEMORY. */
 dvi_status dvi__eigen(int n, const double *T, double *real_part, double *imaginary_part, double *X, double *inverse);
 
+/* K X = M X diag(lambda) with X^T M X = 1, for symmetric K and positive definite M, both [n*n] by columns; lambda [n] ascending. DVI_SINGULAR if M is not
+ * positive definite, DVI_NO_MEMORY. */
+dvi_status dvi__eigen_symmetric(int n, const double *K, const double *M, double *lambda, double *X);
+
 #endif

@@ -31,8 +31,9 @@ static dvi__value index_number(dvi__context *c, const dvi__index *index)
   return value;
 }
 
-static dvi__value parameter_value(dvi__context *c, const dvi__parameter *p)
+static dvi__value parameter_value(dvi__context *c, dvi__parameter *p)
 {
+  if (!dvi__note_parameter(c->scene, p)) return DVI__NO_VALUE;
   dvi__value value = dvi__value_make(c, p->shape.rank, p->shape.rows, p->shape.columns);
   if (dvi__failed(value)) return value;
   if (p->shape.rank == 0) return dvi__number_value(dvi__constant(c->graph, p->value[0]));
@@ -40,9 +41,27 @@ static dvi__value parameter_value(dvi__context *c, const dvi__parameter *p)
   return value;
 }
 
-/* The numbers of a coordinate, or of a member of a family. */
-static dvi__value coordinate_value(dvi__context *c, const dvi__coordinate *x, dvi__numbering numbering)
+/* An index for every element, between 1 and `count`. */
+static bool index_of(const dvi__context *c, const dvi__expression *e, int count, int **each, int *all);
+
+bool dvi__member_numbering(dvi__context *c, const dvi__coordinate *x, const dvi__expression *index, const dvi__places *places,
+                           dvi__numbering *numbering)
 {
+  int *each = NULL, all = 1;
+  if (index != NULL && !index_of(c, index, x->size, &each, &all)) return false;
+  const bool made = dvi__numbering_of(c, each, all, places->first - places->stride, places->stride, numbering);
+  dvi__heap_free(each);
+  return made;
+}
+
+dvi__value dvi__coordinate_value(dvi__context *c, const dvi__coordinate *x, const dvi__expression *index, dvi__span span)
+{
+  dvi__numbering numbering;
+  if (!dvi__may_stand(c, DVI__SAYS_Q, index != NULL ? index->span : span)) return DVI__NO_VALUE;
+  if (x->kind == DVI__MOTION)
+    return dvi__refused(
+        dvi__refuse(c, span, "%s is a rigid motion; take its rotation, %s.R, or its place, %s.x", x->name, x->name, x->name));
+  if (!dvi__member_numbering(c, x, index, &x->q, &numbering)) return DVI__NO_VALUE;
   dvi__value value = dvi__value_make(c, x->shape.rank, x->shape.rows, x->shape.columns);
   if (dvi__failed(value)) return value;
   if (x->shape.rank == 0) return dvi__number_value(dvi__variable_node(c, DVI__COORDINATES, numbering, 0));
@@ -74,12 +93,15 @@ dvi__value dvi__name_value(dvi__context *c, const dvi__expression *e)
   const dvi__name *name = dvi__names_find(&c->scene->names, e->name);
   if (name == NULL) return unknown(c, e);
   if (name->sort == DVI__PARAMETER) return parameter_value(c, &c->scene->parameter[name->number]);
-  if (name->sort == DVI__DEFINITION) return definition_value(c, name->number);
+  if (name->sort == DVI__DEFINITION) {
+    c->scene->definition[name->number].stands = 1;
+    return definition_value(c, name->number);
+  }
   const dvi__coordinate *x = &c->scene->coordinate[name->number];
   if (!dvi__may_stand(c, DVI__SAYS_Q, e->span)) return DVI__NO_VALUE;
   if (x->family)
     return dvi__refused(dvi__refuse(c, e->span, "%s is a family of %d; take one of it, as %s[1]", x->name, x->size, x->name));
-  return coordinate_value(c, x, (dvi__numbering){.base = x->first});
+  return dvi__coordinate_value(c, x, NULL, e->span);
 }
 
 /* ---- indices ---- */
@@ -97,7 +119,6 @@ static const char *circumstances(const dvi__context *c, int element_number, char
   return text;
 }
 
-/* An index for every element, between 1 and `count`. */
 static bool index_of(const dvi__context *c, const dvi__expression *e, int count, int **each, int *all)
 {
   char text[120];
@@ -153,10 +174,11 @@ static bool positions(const dvi__context *c, const dvi__parameter *p, int count,
 }
 
 /* A number of a list, or a row of a matrix. */
-static dvi__value parameter_element(dvi__context *c, const dvi__parameter *p, int count, const dvi__expression *const *index,
+static dvi__value parameter_element(dvi__context *c, dvi__parameter *p, int count, const dvi__expression *const *index,
                                     dvi__span span)
 {
   const int rest = p->shape.rank - count;
+  if (!dvi__note_parameter(c->scene, p)) return DVI__NO_VALUE;
   if (rest < 0)
     return dvi__refused(
         dvi__refuse(c, span, "%s has %d ind%s, not %d", p->name, p->shape.rank, p->shape.rank == 1 ? "ex" : "ices", count));
@@ -168,16 +190,6 @@ static dvi__value parameter_element(dvi__context *c, const dvi__parameter *p, in
   for (int k = 0; value.node != NULL && k < value.shape.rows; k++) value.node[k] = listed(c, p->value, position, k);
   dvi__heap_free(position);
   return value;
-}
-
-static dvi__value family_member(dvi__context *c, const dvi__coordinate *x, const dvi__expression *index)
-{
-  int *each = NULL, all = 0;
-  dvi__numbering numbering;
-  if (!dvi__may_stand(c, DVI__SAYS_Q, index->span) || !index_of(c, index, x->size, &each, &all)) return DVI__NO_VALUE;
-  const bool made = dvi__numbering_of(c, each, all, x->first - x->components, x->components, &numbering);
-  dvi__heap_free(each);
-  return made ? coordinate_value(c, x, numbering) : DVI__NO_VALUE;
 }
 
 /* Elements of a value; the indices must be the same for all elements. */
@@ -219,7 +231,7 @@ dvi__value dvi__index_value(dvi__context *c, const dvi__expression *e)
   if (name != NULL && name->sort == DVI__PARAMETER)
     return parameter_element(c, &c->scene->parameter[name->number], count, index, e->span);
   if (name != NULL && name->sort == DVI__COORDINATE && c->scene->coordinate[name->number].family) {
-    const dvi__value member = family_member(c, &c->scene->coordinate[name->number], index[0]);
+    const dvi__value member = dvi__coordinate_value(c, &c->scene->coordinate[name->number], index[0], e->span);
     return dvi__failed(member) ? member : part_of_value(c, member, count - 1, index + 1, e->span);
   }
   const dvi__value value = dvi__elaborate(c, base);

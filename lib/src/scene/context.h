@@ -52,6 +52,9 @@ typedef struct dvi__context {
 bool dvi__context_make(dvi__context *c, dvi_scene *scene, unsigned may, const char *where);
 void dvi__context_free(dvi__context *c);
 
+/* Note that a parameter stands in what is read now. */
+bool dvi__note_parameter(dvi_scene *scene, dvi__parameter *parameter);
+
 /* Elaborate; rank -1 if it makes no sense, which was told, or c->uneven was set. */
 dvi__value dvi__elaborate(dvi__context *c, const dvi__expression *e);
 /* The same, where a number is needed. */

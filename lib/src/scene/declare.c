@@ -98,59 +98,126 @@ bool dvi__read_parameters(dvi_scene *scene, const dvi__tree *section, dvi__setti
   return true;
 }
 
+/* The parameter that is being read is the one behind those that were. */
+bool dvi__note_parameter(dvi_scene *scene, dvi__parameter *parameter)
+{
+  parameter->stands |= scene->reads;
+  if (scene->reads != DVI__IN_PARAMETERS || parameter->last_made == scene->parameter_count + 1) return true;
+  dvi__source_of *source = dvi__arena_take(&scene->arena, 1, sizeof *source);
+  if (source == NULL) return dvi__scene_no_memory(scene);
+  dvi__parameter *made = &scene->parameter[scene->parameter_count];
+  *source = (dvi__source_of){parameter, made->source};
+  made->source = source;
+  parameter->last_made = scene->parameter_count + 1;
+  return true;
+}
+
+/* Parameters are made of those above them: from the last one on, all that mention one are known when it is met. */
+bool dvi__read_uses(dvi_scene *scene, const dvi__settings *settings)
+{
+  for (int i = scene->parameter_count - 1; i >= 0; i--) {
+    const dvi__parameter *p = &scene->parameter[i];
+    for (const dvi__source_of *source = p->source; source != NULL; source = source->next) source->parameter->stands |= p->stands;
+    if (p->stands == 0 && setting_of(scene, p->name, settings) >= 0)
+      return dvi__complain(scene->complaint, DVI_BAD_OPTION, p->span, "'%s' is set, but nothing in the scene mentions it", p->name);
+  }
+  return true;
+}
+
 /* ---- coordinates ---- */
 
-/* The kind: scalar, vector(d); the others are known but not yet possible. */
-static bool read_kind(dvi_scene *scene, const dvi__tree *tree, dvi__shape *shape)
+/* What is declared of a coordinate: its kind, what a member is as a value, and how many numbers it has in q and in v. */
+typedef struct declared {
+  dvi__kind kind;
+  dvi__shape shape;
+  int stored, velocities;
+} declared;
+
+static bool read_vector(dvi_scene *scene, const dvi__expression *e, declared *as)
 {
-  static const char *const known[] = {"scalar", "vector", "rotation", "motion", "direction", "angle"};
+  const dvi__tree size = {.kind = DVI__SCALAR, .span = e->part[0]->span};
+  if (!dvi__tree_whole(scene, &size, "the size of a vector", 1, &as->shape.rows)) return false;
+  as->stored = as->velocities = as->shape.rows;
+  return true;
+}
+
+static bool read_kind(dvi_scene *scene, const dvi__tree *tree, declared *as)
+{
+  static const char *const known[] = {"scalar", "rotation", "motion", "direction", "angle", "vector"};
+  static const declared meaning[] = {{DVI__LINES, {0, 1, 1}, 1, 1},   {DVI__ROTATION, {2, 3, 3}, 9, 3},
+                                     {DVI__MOTION, {0, 1, 1}, 12, 6}, {DVI__DIRECTION, {1, 3, 1}, 3, 3},
+                                     {DVI__ANGLE, {1, 2, 1}, 2, 1},   {DVI__LINES, {1, 0, 1}, 0, 0}};
+  enum { KINDS = sizeof known / sizeof *known, VECTOR = KINDS - 1 };
   const dvi__expression *e;
   char hint[96];
   if (!dvi__tree_expression(scene, tree, &e)) return false;
-  const char *name = e->form == DVI__FORM_NAME || e->form == DVI__FORM_CALL ? e->name : "";
-  if (strcmp(name, "scalar") == 0 && e->form == DVI__FORM_NAME) {
-    *shape = (dvi__shape){0, 1, 1};
-    return true;
+  const int called = e->form == DVI__FORM_CALL && e->count == 1;
+  const char *name = called || e->form == DVI__FORM_NAME ? e->name : "";
+  for (int k = 0; k < KINDS; k++) {
+    if (strcmp(name, known[k]) != 0 || called != (k == VECTOR)) continue;
+    *as = meaning[k];
+    return k != VECTOR || read_vector(scene, e, as);
   }
-  if (strcmp(name, "vector") == 0 && e->form == DVI__FORM_CALL && e->count == 1) {
-    dvi__tree size = {.kind = DVI__SCALAR, .span = e->part[0]->span};
-    *shape = (dvi__shape){1, 0, 1};
-    return dvi__tree_whole(scene, &size, "the size of a vector", 1, &shape->rows);
-  }
-  for (int k = 2; k < 6; k++)
-    if (strcmp(name, known[k]) == 0)
-      return dvi__scene_refuse(scene, tree->span, "a %s is not yet possible in a scene; declare it in C, by dvi_factor", name);
-  return dvi__scene_refuse(scene, tree->span, "a kind is scalar or vector(d)%s", dvi__nearest(name, 2, known, hint, sizeof hint));
+  return dvi__scene_refuse(scene, tree->span, "a kind is scalar, vector(d), rotation, motion, direction or angle%s",
+                           dvi__nearest(name, KINDS, known, hint, sizeof hint));
 }
 
-static bool add_coordinate(dvi_scene *scene, const char *name, dvi__span span, int family, int size, dvi__shape shape)
+/* The rotation and the place of a motion. */
+static bool make_parts(dvi_scene *scene, dvi__coordinate *x)
+{
+  dvi__coordinate *part = dvi__arena_take(&scene->arena, 2, sizeof *part);
+  if (part == NULL) return dvi__scene_no_memory(scene);
+  part[0] = part[1] = *x;
+  part[0].kind = DVI__ROTATION;
+  part[0].part_name = 'R';
+  part[0].shape = (dvi__shape){2, 3, 3};
+  part[0].q.components = 9;
+  part[0].v.components = 3;
+  part[1].kind = DVI__LINES;
+  part[1].part_name = 'x';
+  part[1].shape = (dvi__shape){1, 3, 1};
+  part[1].q = (dvi__places){x->q.first + 9, x->q.stride, 3};
+  part[1].v = (dvi__places){x->v.first + 3, x->v.stride, 3};
+  x->part = part;
+  return true;
+}
+
+static bool add_coordinate(dvi_scene *scene, const char *name, dvi__span span, int family, int size, const declared *as)
 {
   const int number = scene->coordinate_count;
   dvi__coordinate *x = &scene->coordinate[number];
-  *x = (dvi__coordinate){
-      .name = name, .span = span, .family = family, .size = size, .shape = shape, .components = shape.rows, .first = scene->n};
-  if ((long)size * shape.rows > COORDINATES_MAX - scene->n)
+  *x = (dvi__coordinate){.name = name,
+                         .span = span,
+                         .kind = as->kind,
+                         .family = family,
+                         .size = size,
+                         .shape = as->shape,
+                         .q = {scene->n, as->stored, as->stored},
+                         .v = {scene->nv, as->velocities, as->velocities}};
+  if ((long)size * as->stored > COORDINATES_MAX - scene->n)
     return dvi__complain(scene->complaint, DVI_BAD_SIZE, span, "more than %d coordinates", COORDINATES_MAX);
-  scene->n += size * shape.rows;
+  scene->n += size * as->stored;
+  scene->nv += size * as->velocities;
   scene->coordinate_count++;
-  return dvi__names_add(&scene->names, &scene->arena, scene->complaint, name, span, DVI__COORDINATE, number);
+  return (x->kind != DVI__MOTION || make_parts(scene, x)) &&
+         dvi__names_add(&scene->names, &scene->arena, scene->complaint, name, span, DVI__COORDINATE, number);
 }
 
 /* x or x[N]. */
-static bool declare(dvi_scene *scene, const dvi__expression *key, dvi__shape shape)
+static bool declare(dvi_scene *scene, const dvi__expression *key, const declared *as)
 {
   int size = 1;
-  if (key->form == DVI__FORM_NAME) return add_coordinate(scene, key->name, key->span, 0, 1, shape);
+  if (key->form == DVI__FORM_NAME) return add_coordinate(scene, key->name, key->span, 0, 1, as);
   if (key->form != DVI__FORM_INDEX || key->count != 2 || key->part[0]->form != DVI__FORM_NAME)
     return dvi__scene_refuse(scene, key->span, "a coordinate is declared as x, or as x[N] for a family of N");
   const dvi__tree how_many = {.kind = DVI__SCALAR, .span = key->part[1]->span};
   return dvi__tree_whole(scene, &how_many, "the size of a family", 1, &size) &&
-         add_coordinate(scene, key->part[0]->name, key->part[0]->span, 1, size, shape);
+         add_coordinate(scene, key->part[0]->name, key->part[0]->span, 1, size, as);
 }
 
 bool dvi__read_coordinates(dvi_scene *scene, const dvi__tree *section)
 {
-  int count = 0;
+  int count = 0, turns = 0;
   if (!dvi__want_mapping(scene, section, "coordinates")) return false;
   const dvi__expression **key = dvi__arena_take(&scene->arena, (size_t)section->count + 1, sizeof(*key));
   if (key == NULL) return dvi__scene_no_memory(scene);
@@ -161,13 +228,15 @@ bool dvi__read_coordinates(dvi_scene *scene, const dvi__tree *section)
   scene->coordinate = dvi__arena_take(&scene->arena, (size_t)count + 1, sizeof *scene->coordinate);
   if (scene->coordinate == NULL) return dvi__scene_no_memory(scene);
   for (int i = 0; i < section->count; i++) {
-    dvi__shape shape;
-    if (!read_kind(scene, section->child[i], &shape)) return false;
-    if (key[i]->form != DVI__FORM_LIST && !declare(scene, key[i], shape)) return false;
+    declared as;
+    if (!read_kind(scene, section->child[i], &as)) return false;
+    turns = turns || as.kind != DVI__LINES;
+    if (key[i]->form != DVI__FORM_LIST && !declare(scene, key[i], &as)) return false;
     for (int k = 0; key[i]->form == DVI__FORM_LIST && k < key[i]->count; k++)
-      if (!declare(scene, key[i]->part[k], shape)) return false;
+      if (!declare(scene, key[i]->part[k], &as)) return false;
   }
   if (scene->n == 0) return dvi__scene_refuse(scene, section->span, "there are no coordinates");
+  scene->velocities = turns ? scene->n + scene->nv : scene->n;
   scene->zeros = dvi__arena_take(&scene->arena, 2 * (size_t)scene->n, sizeof *scene->zeros);
   return scene->zeros != NULL || dvi__scene_no_memory(scene);
 }

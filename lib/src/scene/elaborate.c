@@ -32,9 +32,16 @@ bool dvi__may_stand(const dvi__context *c, unsigned says, dvi__span span)
 
 /* ---- calls, lists, sums ---- */
 
+/* omega(R), rate(u) */
+static int is_velocity(const dvi__expression *call)
+{
+  return strcmp(call->name, "omega") == 0 || strcmp(call->name, "rate") == 0;
+}
+
 static dvi__value call_value(dvi__context *c, const dvi__expression *e)
 {
   if (strcmp(e->name, "p") == 0) return dvi__momentum_value(c, e);
+  if (is_velocity(e)) return dvi__turn_value(c, e);
   dvi__value *argument = dvi__arena_take(&c->scene->arena, (size_t)e->count + 1, sizeof *argument);
   if (argument == NULL) return dvi__refused(dvi__scene_no_memory(c->scene));
   for (int k = 0; k < e->count; k++) {
@@ -171,9 +178,7 @@ static dvi__value element(dvi__context *c, const dvi__expression *e)
   case DVI__FORM_NUMBER: return dvi__number_value(dvi__constant(c->graph, e->number));
   case DVI__FORM_NAME: return dvi__name_value(c, e);
   case DVI__FORM_INDEX: return dvi__index_value(c, e);
-  case DVI__FORM_MEMBER:
-    return dvi__refused(dvi__refuse(c, e->span, "%s has no parts of its own: rigid motions are declared in C so far",
-                                    e->part[0]->form == DVI__FORM_NAME ? e->part[0]->name : "this"));
+  case DVI__FORM_MEMBER: return dvi__member_value(c, e);
   case DVI__FORM_RATE: return dvi__rate_value(c, e);
   case DVI__FORM_NEGATIVE: return negative_value(c, e);
   case DVI__FORM_POWER: return power_value(c, e);
@@ -245,7 +250,7 @@ unsigned dvi__says(const dvi_scene *scene, const dvi__expression *e)
   unsigned says = 0;
   for (; e != NULL; e = e->count > 0 ? e->part[0] : NULL) {
     if (e->form == DVI__FORM_NAME) says |= says_name(scene, e->name);
-    if (e->form == DVI__FORM_RATE) says |= DVI__SAYS_V;
+    if (e->form == DVI__FORM_RATE || (e->form == DVI__FORM_CALL && is_velocity(e))) says |= DVI__SAYS_V;
     if (e->form == DVI__FORM_SUM) says |= DVI__SAYS_SUM;
     if (e->form == DVI__FORM_CALL && strcmp(e->name, "p") == 0) says |= DVI__SAYS_P;
     for (int k = 1; k < e->count; k++) says |= dvi__says(scene, e->part[k]);

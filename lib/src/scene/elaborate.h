@@ -11,5 +11,23 @@ dvi__value dvi__name_value(dvi__context *c, const dvi__expression *e);
 dvi__value dvi__index_value(dvi__context *c, const dvi__expression *e);
 dvi__value dvi__rate_value(dvi__context *c, const dvi__expression *e);
 dvi__value dvi__momentum_value(dvi__context *c, const dvi__expression *e);
+dvi__value dvi__member_value(dvi__context *c, const dvi__expression *e);
+dvi__value dvi__turn_value(dvi__context *c, const dvi__expression *e);
+
+/* The part R or x of a motion; NULL if x is none, or has no such part. */
+const dvi__coordinate *dvi__part_of_motion(const dvi__coordinate *x, const char *name);
+/* The coordinate that x, x[i], B.R or B[i].x names, and its index or NULL; NULL, and nothing is told, if it is of another form. */
+const dvi__coordinate *dvi__member_named(const dvi_scene *scene, const dvi__expression *e, const dvi__expression **index);
+/* The first number, for every element, of a coordinate (index NULL) or of a member of a family. */
+bool dvi__member_numbering(dvi__context *c, const dvi__coordinate *x, const dvi__expression *index, const dvi__places *places,
+                           dvi__numbering *numbering);
+/* Its numbers. */
+dvi__value dvi__coordinate_value(dvi__context *c, const dvi__coordinate *x, const dvi__expression *index, dvi__span span);
+
+/* The rate of an input, a stored number, by the velocities of the state; its momentum, false if it has none of its own. */
+bool dvi__input_velocity(dvi__context *c, int input, dvi__node *rate);
+bool dvi__input_momentum(dvi__context *c, int input, dvi__node *momentum);
+/* The momenta p(x) of a whole coordinate; none, and nothing is told, if the argument is of another form. */
+dvi__value dvi__whole_momentum(dvi__context *c, const dvi__expression *e);
 
 #endif

@@ -21,17 +21,20 @@ void dvi__emit_number(dvi__emitter *out, double value);
  * written before. */
 int dvi__emit_ints(dvi__emitter *out, int count, const int *value);
 int dvi__emit_doubles(dvi__emitter *out, int count, const double *value);
+/* As dvi__emit_ints, for numbers that have no lasting address: `key` stands for it. */
+int dvi__emit_ints_of(dvi__emitter *out, const void *key, int count, const int *value);
 
 /* What the functions below need: headers and small functions. First in a file. */
 void dvi__emit_begin(dvi__emitter *out);
 
 /* Write a function
- *     static void NAME(int count, const double *const *x, double *const *result)
- * that does what dvi__function_value does (result[0]), dvi__function_gradient (result[b] for the blocks in the mask), or dvi__function_second (result[pair]);
- * but what is not finite is not looked for. Its x and the order of blocks and pairs are those of function.h. `name` is an identifier. */
+ *     static void NAME(int count, const double *t, const double *q, const double *v, const double *w, double *f_.., ..)
+ * that does what dvi__function_value does, dvi__function_gradient (an array for each of the blocks in the mask), or dvi__function_second (of the pairs);
+ * but what is not finite is not looked for. The order of blocks and pairs is that of function.h; what does not occur may be NULL. `name` is an identifier.
+ * `lanes`: 1 if it is for many points, and worth being compiled for several instruction sets; 0: it may be called for many, too. */
 dvi_status dvi__emit_value(dvi__emitter *out, dvi__function *function, const char *name);
-dvi_status dvi__emit_gradient(dvi__emitter *out, dvi__function *function, unsigned blocks, const char *name);
-dvi_status dvi__emit_second(dvi__emitter *out, dvi__function *function, unsigned pairs, const char *name);
+dvi_status dvi__emit_gradient(dvi__emitter *out, dvi__function *function, unsigned blocks, int lanes, const char *name);
+dvi_status dvi__emit_second(dvi__emitter *out, dvi__function *function, unsigned pairs, int lanes, const char *name);
 
 /* Free what the emitter remembers; returns what went wrong, DVI_OK if nothing did. */
 dvi_status dvi__emit_end(dvi__emitter *out);

@@ -1,11 +1,12 @@
 /* Sums with kernels of many elements: for each of them a function of one unit of elements, whose results are kept until the unit is done and then added output by
  * output, as the byte code does. It is compiled for eight, four, two and one point, and for the flat rows of a chain: neighbours in a row, whose points
  * follow each other. */
+#include <stdio.h>
 
 #include "scene/emit_parts.h"
 #include "scene/heap.h"
 
-enum { POINTS = 8, ROOM = 8192, ROOM_MAX = 131072, TERMS_MAX = 2048 };
+enum { ROOM = 8192, ROOM_MAX = 131072, TERMS_MAX = 2048 };
 
 /* --- Which units add all their elements to one entry. --- */
 
@@ -106,7 +107,7 @@ static void emit_inputs(dvi__emitter *out, const dvi__part *part, const int *nam
 {
   const int elements = part->kernel->elements;
   for (int i = 0; i < part->variable_count; i++) {
-    dvi__emit(out, "      const double r%d = x%d[", name[i], (int)part->block[i]);
+    dvi__emit(out, "      const double r%d = %s[", name[i], dvi__block_name[part->block[i]]);
     emit_place(out, &part->variable[i], elements);
     dvi__emit(out, " * n + p];\n");
   }
@@ -116,8 +117,8 @@ static void emit_inputs(dvi__emitter *out, const dvi__part *part, const int *nam
 }
 
 /* Add the row of a target to its entries, or subtract it. */
-static dvi_status emit_addition(dvi__emitter *out, const dvi__part *part, const dvi__destination *target,
-                                const dvi__entries *entries)
+static dvi_status emit_addition(dvi__emitter *out, const dvi__emitted_sum *own, const dvi__part *part,
+                                const dvi__destination *target, const dvi__entries *entries)
 {
   const int elements = part->kernel->elements;
   int list = 0;
@@ -129,7 +130,7 @@ static dvi_status emit_addition(dvi__emitter *out, const dvi__part *part, const 
     dvi__emit(out, " dvi_fold(elements, points, row, sum), row = sum, left = 1;\n");
   }
   dvi__emit(out, "  for (int e = 0; e < %s; e++) {\n", folds == NEVER ? "elements" : folds == ALWAYS ? "1" : "left");
-  dvi__emit(out, "    DVI_INDEPENDENT\n    for (int p = 0; p < points; p++) y%d[", target->array);
+  dvi__emit(out, "    DVI_INDEPENDENT\n    for (int p = 0; p < points; p++) %s[", own->array[target->array]);
   emit_entry(out, entries, elements);
   dvi__emit(out, " * n + p] %s ", target->negative ? "-=" : "+=");
   if (folds == NEVER)
@@ -140,27 +141,28 @@ static dvi_status emit_addition(dvi__emitter *out, const dvi__part *part, const 
   return DVI_OK;
 }
 
-static dvi_status emit_additions(dvi__emitter *out, const dvi__part *part)
+static dvi_status emit_additions(dvi__emitter *out, const dvi__emitted_sum *own, const dvi__part *part)
 {
   dvi_status status = DVI_OK;
   for (int k = 0; k < part->target_count && status == DVI_OK; k++) {
     const dvi__destination *target = &part->target[k];
-    status = emit_addition(out, part, target, &target->entry);
-    if (status == DVI_OK && target->mirrored) status = emit_addition(out, part, target, &target->mirror);
+    status = emit_addition(out, own, part, target, &target->entry);
+    if (status == DVI_OK && target->mirrored) status = emit_addition(out, own, part, target, &target->mirror);
   }
   return status;
 }
 
 /* All entries of a short part, each with the sum of what is added to it. */
-static dvi_status emit_entries(dvi__emitter *out, const dvi__part *part)
+static dvi_status emit_entries(dvi__emitter *out, const dvi__emitted_sum *sum, const dvi__part *part)
 {
   dvi__contributions all;
   const dvi_status status = dvi__contributions_find(1, part, &all);
   dvi__emit(out, "  DVI_INDEPENDENT\n  for (int p = 0; p < points; p++) {\n");
   for (int i = 0; i < all.count; i++) {
     const dvi__contribution *own = &all.list[i];
+    const char *array = sum->array[own->array];
     if (dvi__contribution_is_first(&all, i))
-      dvi__emit(out, "%s    y%d[%d * n + p] = y%d[%d * n + p]", i > 0 ? ";\n" : "", own->array, own->entry, own->array, own->entry);
+      dvi__emit(out, "%s    %s[%d * n + p] = %s[%d * n + p]", i > 0 ? ";\n" : "", array, own->entry, array, own->entry);
     dvi__emit(out, " %c y[%d][%d * points + p]", own->negative ? '-' : '+', own->output, own->element);
   }
   dvi__emit(out, "%s  }\n", all.count > 0 ? ";\n" : "");
@@ -174,9 +176,9 @@ static int unit_of(const dvi__part *part)
   return part->kernel->elements < DVI__UNIT ? part->kernel->elements : DVI__UNIT;
 }
 
-static int points_of(const dvi__part *part)
+static int points_of(const dvi__emitted_sum *own, const dvi__part *part)
 {
-  int points = POINTS;
+  int points = own->points;
   while (points > 1 && part->program.output_count * unit_of(part) * points > ROOM) points /= 2;
   return points;
 }
@@ -187,14 +189,16 @@ static dvi_status emit_unit(dvi__emitter *out, const dvi__emitted_sum *own, int 
   const dvi__program *program = &part->program;
   int next = 0, *name = dvi__name_rows(part, &next);
   if (name == NULL) return DVI_NO_MEMORY;
-  dvi__emit(out, "DVI_INLINE int64_t %s_%d(const int careful, const int points, int first, int elements, ptrdiff_t n,\n", own->name,
-            k);
-  dvi__emit(out, "    const double *const *x, double *const *result, ptrdiff_t k)\n{\n");
-  dvi__emit_pointers(out, own, k, k + 1, " + k");
-  const int lanes = unit_of(part) * points_of(part);
+  dvi__emit(out, "DVI_INLINE int64_t %s_%d(const int careful, const int points, int first, int elements,\n", own->name, k);
+  dvi__emit(out, "    const ptrdiff_t n, ptrdiff_t k");
+  dvi__emit_parameters(out, own);
+  dvi__emit(out, ")\n{\n");
+  const int lanes = unit_of(part) * points_of(own, part);
   dvi__emit(out, "  double y[%d][%d], sum[%d];\n", program->output_count, lanes, lanes);
   dvi__emit(out, "  const double *row;\n  int64_t unusual = 0;\n  int left;\n");
-  dvi__emit(out, "  (void)careful, (void)first, (void)x, (void)sum, (void)row, (void)left;\n");
+  dvi__emit(out, "  (void)careful, (void)first, (void)sum, (void)row, (void)left");
+  dvi__emit_mentions(out, own);
+  dvi__emit_shifts(out, own, part);
   dvi__emit(
       out,
       "  DVI_INDEPENDENT\n  for (int e = 0; e < elements; e++) {\n    DVI_INDEPENDENT\n    for (int p = 0; p < points; p++) {\n");
@@ -204,7 +208,7 @@ static dvi_status emit_unit(dvi__emitter *out, const dvi__emitted_sum *own, int 
     dvi__emit(out, "      y[%d][e * points + p] = r%d;\n", i, name[program->row_count - program->output_count + i]);
   dvi__emit(out, "    }\n  }\n");
   dvi__heap_free(name);
-  const dvi_status status = is_short(part) ? emit_entries(out, part) : emit_additions(out, part);
+  const dvi_status status = is_short(part) ? emit_entries(out, own, part) : emit_additions(out, own, part);
   dvi__emit(out, "  return unusual;\n}\n");
   return status;
 }
@@ -229,10 +233,17 @@ static int is_flat(const dvi__part *part)
   return flat;
 }
 
+static void emit_call(dvi__emitter *out, const dvi__emitted_sum *own, int k, const char *first_arguments)
+{
+  dvi__emit(out, "unusual |= %s_%d(careful, %s", own->name, k, first_arguments);
+  dvi__emit_arguments(out, own);
+  dvi__emit(out, ");\n");
+}
+
 static void emit_calls(dvi__emitter *out, const dvi__emitted_sum *own, int k)
 {
   const dvi__part *part = &own->sum->part[k];
-  const int all = part->kernel->elements, most = points_of(part);
+  const int all = part->kernel->elements, most = points_of(own, part);
   dvi__emit(out, "  for (int first = 0; first < %d; first += %d) {\n", all, DVI__UNIT);
   if (all <= DVI__UNIT)
     dvi__emit(out, "    const int elements = %d;\n", all);
@@ -240,15 +251,19 @@ static void emit_calls(dvi__emitter *out, const dvi__emitted_sum *own, int k)
     dvi__emit(out, "    const int elements = %d - first < %d ? %d - first : %d;\n", all, DVI__UNIT, all, DVI__UNIT);
   dvi__emit(out, "    ptrdiff_t k = 0;\n");
   if (is_flat(part)) {
-    dvi__emit(out, "    if (n <= %d) {\n", most);
-    dvi__emit(out, "      unusual |= %s_%d(careful, elements * count, first, 1, n, x, result, 0);\n      continue;\n    }\n",
-              own->name, k);
+    dvi__emit(out, "    if (n <= %d) {\n      ", most);
+    emit_call(out, own, k, "elements * (int)n, first, 1, n, 0");
+    dvi__emit(out, "      continue;\n    }\n");
   }
-  for (int points = most; points > 1; points /= 2)
-    dvi__emit(out,
-              "    for (; !careful && k + %d <= n; k += %d) unusual |= %s_%d(careful, %d, first, elements, n, x, result, k);\n",
-              points, points, own->name, k, points);
-  dvi__emit(out, "    for (; k < n; k++) unusual |= %s_%d(careful, 1, first, elements, n, x, result, k);\n  }\n", own->name, k);
+  for (int points = most; points > 1; points /= 2) {
+    char arguments[40];
+    (void)snprintf(arguments, sizeof arguments, "%d, first, elements, n, k", points);
+    dvi__emit(out, "    for (; !careful && k + %d <= n; k += %d) ", points, points);
+    emit_call(out, own, k, arguments);
+  }
+  dvi__emit(out, "    for (; k < n; k++) ");
+  emit_call(out, own, k, "1, first, elements, n, k");
+  dvi__emit(out, "  }\n");
 }
 
 static int is_too_large(const dvi__part *part)
@@ -264,12 +279,11 @@ dvi_status dvi__emit_elements(dvi__emitter *out, const dvi__emitted_sum *own)
     if (status == DVI_OK) status = emit_unit(out, own, k);
   }
   if (status != DVI_OK) return status;
-  dvi__emit(out, "DVI_INLINE int %s_at(const int careful, int count, const double *const *x, double *const *result)\n{\n",
-            own->name);
-  dvi__emit(out, "  const ptrdiff_t n = count;\n  int64_t unusual = 0;\n");
+  dvi__emit(out, "DVI_INLINE int %s_at(const int careful, const ptrdiff_t n", own->name);
+  dvi__emit_parameters(out, own);
+  dvi__emit(out, ")\n{\n  int64_t unusual = 0;\n");
   for (int a = 0; own->mask >> a != 0; a++)
-    if (own->mask >> a & 1U)
-      dvi__emit(out, "  memset(result[%d], 0, (size_t)%d * (size_t)count * sizeof *result[%d]);\n", a, own->size[a], a);
+    if ((own->mask >> a & 1U) != 0) dvi__emit_zeros(out, own, a);
   for (int k = 0; k < own->sum->part_count; k++) emit_calls(out, own, k);
   dvi__emit(out, "  return unusual != 0;\n}\n");
   return DVI_OK;

@@ -14,7 +14,8 @@ static int entries_written(const dvi__contributions *all, int array)
 static void emit_inputs(dvi__emitter *out, const dvi__part *part, const int *name)
 {
   for (int i = 0; i < part->variable_count; i++)
-    dvi__emit(out, "    const double r%d = x%d[%d * n + k];\n", name[i], (int)part->block[i], dvi__place_at(&part->variable[i], 0));
+    dvi__emit(out, "    const double r%d = %s[%d * n + k];\n", name[i], dvi__block_name[part->block[i]],
+              dvi__place_at(&part->variable[i], 0));
   for (int c = 0; c < part->column_count; c++) {
     dvi__emit(out, "    const double r%d = ", name[part->variable_count + c]);
     dvi__emit_number(out, part->column[c][0]);
@@ -36,12 +37,12 @@ static dvi_status emit_part(dvi__emitter *out, const dvi__part *part, int *next,
 }
 
 /* The entries, each the sum of what is added to it; `name` are the outputs'. */
-static void emit_entries(dvi__emitter *out, const dvi__contributions *all, const int *name)
+static void emit_entries(dvi__emitter *out, const dvi__emitted_sum *sum, const dvi__contributions *all, const int *name)
 {
   for (int i = 0; i < all->count; i++) {
     const dvi__contribution *own = &all->list[i];
     const int first = dvi__contribution_is_first(all, i);
-    if (first) dvi__emit(out, "%s    y%d[%d * n + k] =", i > 0 ? ";\n" : "", own->array, own->entry);
+    if (first) dvi__emit(out, "%s    %s[%d * n + k] =", i > 0 ? ";\n" : "", sum->array[own->array], own->entry);
     dvi__emit(out, "%sr%d", own->negative ? " - " : first ? " " : " + ", name[own->output]);
   }
   if (all->count > 0) dvi__emit(out, ";\n");
@@ -51,8 +52,7 @@ static void emit_entries(dvi__emitter *out, const dvi__contributions *all, const
 static void emit_zeros(dvi__emitter *out, const dvi__emitted_sum *own, const dvi__contributions *all)
 {
   for (int a = 0; own->mask >> a != 0; a++)
-    if ((own->mask >> a & 1U) != 0 && entries_written(all, a) < own->size[a])
-      dvi__emit(out, "  memset(result[%d], 0, (size_t)%d * (size_t)count * sizeof *result[%d]);\n", a, own->size[a], a);
+    if ((own->mask >> a & 1U) != 0 && entries_written(all, a) < own->size[a]) dvi__emit_zeros(out, own, a);
 }
 
 static dvi_status emit_body(dvi__emitter *out, const dvi__emitted_sum *own, const dvi__contributions *all, int *name)
@@ -60,15 +60,15 @@ static dvi_status emit_body(dvi__emitter *out, const dvi__emitted_sum *own, cons
   const dvi__sum *sum = own->sum;
   dvi_status status = DVI_OK;
   int next = 0, *made = name;
-  dvi__emit(out, "DVI_INLINE int %s_at(const int careful, int count, const double *const *x, double *const *result)\n{\n",
-            own->name);
-  dvi__emit(out, "  const ptrdiff_t n = count;\n  int64_t unusual = 0;\n  (void)careful, (void)x, (void)result, (void)n;\n");
-  dvi__emit_pointers(out, own, 0, sum->part_count, "");
+  dvi__emit(out, "DVI_INLINE int %s_at(const int careful, const ptrdiff_t n", own->name);
+  dvi__emit_parameters(out, own);
+  dvi__emit(out, ")\n{\n  int64_t unusual = 0;\n  (void)careful");
+  dvi__emit_mentions(out, own);
   emit_zeros(out, own, all);
   dvi__emit(out, "  DVI_INDEPENDENT\n  for (ptrdiff_t k = 0; k < n; k++) {\n");
   for (int k = 0; k < sum->part_count && status == DVI_OK; made += sum->part[k++].program.output_count)
     status = emit_part(out, &sum->part[k], &next, made);
-  emit_entries(out, all, name);
+  emit_entries(out, own, all, name);
   dvi__emit(out, "  }\n  return unusual != 0;\n}\n");
   return status;
 }

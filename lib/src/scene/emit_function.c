@@ -4,6 +4,10 @@
 #include "scene/emit_parts.h"
 #include "scene/heap.h"
 
+const char *const dvi__block_name[DVI__BLOCKS] = {"t", "q", "v", "w"};
+static const char *const value_name[] = {"f"}, *const gradient_name[DVI__BLOCKS] = {"f_t", "f_q", "f_v", "f_w"},
+                         *const second_name[DVI__PAIRS] = {"f_qq", "f_qv", "f_vv", "f_qw", "f_vw", "f_tq", "f_tv"};
+
 int *dvi__name_rows(const dvi__part *part, int *next)
 {
   const dvi__program *program = &part->program;
@@ -12,19 +16,52 @@ int *dvi__name_rows(const dvi__part *part, int *next)
   return name;
 }
 
-void dvi__emit_pointers(dvi__emitter *out, const dvi__emitted_sum *own, int first, int last, const char *shift)
+/* --- Parameters. --- */
+
+/* Blocks and arrays, with something in front of each. */
+static void emit_names(dvi__emitter *out, const dvi__emitted_sum *own, const char *before)
+{
+  for (int b = 0; b < DVI__BLOCKS; b++) dvi__emit(out, "%s%s", before, dvi__block_name[b]);
+  for (int a = 0; own->mask >> a != 0; a++)
+    if ((own->mask >> a & 1U) != 0) dvi__emit(out, "%s%s", before, own->array[a]);
+}
+
+void dvi__emit_parameters(dvi__emitter *out, const dvi__emitted_sum *own)
+{
+  dvi__emit(out, ",\n    ");
+  for (int b = 0; b < DVI__BLOCKS; b++) dvi__emit(out, "const double *restrict %s, ", dvi__block_name[b]);
+  for (int a = 0, more = 0; own->mask >> a != 0; a++)
+    if ((own->mask >> a & 1U) != 0) dvi__emit(out, "%sdouble *restrict %s", more++ > 0 ? ", " : "", own->array[a]);
+}
+
+void dvi__emit_arguments(dvi__emitter *out, const dvi__emitted_sum *own)
+{
+  emit_names(out, own, ", ");
+}
+
+void dvi__emit_mentions(dvi__emitter *out, const dvi__emitted_sum *own)
+{
+  emit_names(out, own, ", (void)");
+  dvi__emit(out, ";\n");
+}
+
+void dvi__emit_shifts(dvi__emitter *out, const dvi__emitted_sum *own, const dvi__part *part)
 {
   unsigned blocks = 0, arrays = 0;
-  for (int k = first; k < last; k++) {
-    const dvi__part *part = &own->sum->part[k];
-    for (int i = 0; i < part->variable_count; i++) blocks |= 1U << part->block[i];
-    for (int i = 0; i < part->target_count; i++) arrays |= 1U << part->target[i].array;
-  }
-  for (int b = 0; blocks >> b != 0; b++)
-    if ((blocks >> b & 1U) != 0) dvi__emit(out, "  const double *restrict const x%d = x[%d]%s;\n", b, b, shift);
+  for (int i = 0; i < part->variable_count; i++) blocks |= 1U << part->block[i];
+  for (int i = 0; i < part->target_count; i++) arrays |= 1U << part->target[i].array;
+  for (int b = 0; b < DVI__BLOCKS; b++)
+    if ((blocks >> b & 1U) != 0) dvi__emit(out, "  %s += k;\n", dvi__block_name[b]);
   for (int a = 0; arrays >> a != 0; a++)
-    if ((arrays >> a & 1U) != 0) dvi__emit(out, "  double *restrict const y%d = result[%d]%s;\n", a, a, shift);
+    if ((arrays >> a & 1U) != 0) dvi__emit(out, "  %s += k;\n", own->array[a]);
 }
+
+void dvi__emit_zeros(dvi__emitter *out, const dvi__emitted_sum *own, int array)
+{
+  dvi__emit(out, "  memset(%s, 0, sizeof *%s * (size_t)n * %d);\n", own->array[array], own->array[array], own->size[array]);
+}
+
+/* --- Functions. --- */
 
 static int has_one_element(const dvi__sum *sum)
 {
@@ -40,15 +77,39 @@ static int has_inverse_roots(const dvi__sum *sum)
   return 0;
 }
 
+static void emit_head(dvi__emitter *out, const dvi__emitted_sum *own, const char *kind, const char *ending)
+{
+  dvi__emit(out, "%sstatic void %s%s(int count", kind, own->name, ending);
+  dvi__emit_parameters(out, own);
+  dvi__emit(out, ")\n{\n");
+}
+
+static void emit_call(dvi__emitter *out, const dvi__emitted_sum *own, const char *function)
+{
+  dvi__emit(out, "%s%s", own->name, function);
+  dvi__emit_arguments(out, own);
+  dvi__emit(out, ")");
+}
+
 static dvi_status emit_sum(dvi__emitter *out, const dvi__emitted_sum *own)
 {
+  const int may_be_unusual = has_inverse_roots(own->sum);
   const dvi_status status = has_one_element(own->sum) ? dvi__emit_expressions(out, own) : dvi__emit_elements(out, own);
   if (status != DVI_OK) return status;
-  dvi__emit(out, "DVI_LANES static void %s(int count, const double *const *x, double *const *result)\n{\n", own->name);
-  if (has_inverse_roots(own->sum))
-    dvi__emit(out, "  if (%s_at(0, count, x, result)) (void)%s_at(1, count, x, result);\n}\n\n", own->name, own->name);
-  else
-    dvi__emit(out, "  (void)%s_at(0, count, x, result);\n}\n\n", own->name);
+  if (may_be_unusual) {
+    emit_head(out, own, "DVI_SELDOM ", "_careful");
+    dvi__emit(out, "  ");
+    emit_call(out, own, "_at(1, count");
+    dvi__emit(out, ";\n}\n");
+  }
+  emit_head(out, own, own->points > 1 ? "DVI_LANES " : "", "");
+  dvi__emit(out, may_be_unusual ? "  if (" : "  ");
+  emit_call(out, own, "_at(0, count");
+  if (may_be_unusual) {
+    dvi__emit(out, ") ");
+    emit_call(out, own, "_careful(count");
+  }
+  dvi__emit(out, ";\n}\n\n");
   return out->failed;
 }
 
@@ -56,24 +117,25 @@ dvi_status dvi__emit_value(dvi__emitter *out, dvi__function *function, const cha
 {
   const dvi_status status = dvi__function_prepare(function, 1, 0, 0);
   if (status != DVI_OK) return status;
-  const dvi__emitted_sum own = {atomic_load(&function->value), name, &(int){1}, 1};
+  const dvi__emitted_sum own = {atomic_load(&function->value), name, &(int){1}, value_name, 1, 1};
   return emit_sum(out, &own);
 }
 
-dvi_status dvi__emit_gradient(dvi__emitter *out, dvi__function *function, unsigned blocks, const char *name)
+dvi_status dvi__emit_gradient(dvi__emitter *out, dvi__function *function, unsigned blocks, int lanes, const char *name)
 {
   const dvi_status status = dvi__function_prepare(function, 0, blocks, 0);
   if (status != DVI_OK) return status;
-  const dvi__emitted_sum own = {atomic_load(&function->gradient[blocks]), name, function->block_size, blocks};
+  const dvi__emitted_sum own = {
+      atomic_load(&function->gradient[blocks]), name, function->block_size, gradient_name, blocks, lanes ? 8 : 1};
   return emit_sum(out, &own);
 }
 
-dvi_status dvi__emit_second(dvi__emitter *out, dvi__function *function, unsigned pairs, const char *name)
+dvi_status dvi__emit_second(dvi__emitter *out, dvi__function *function, unsigned pairs, int lanes, const char *name)
 {
   int size[DVI__PAIRS];
   const dvi_status status = dvi__function_prepare(function, 0, 0, pairs);
   if (status != DVI_OK) return status;
   for (int pair = 0; pair < DVI__PAIRS; pair++) size[pair] = function->pattern[pair].entries;
-  const dvi__emitted_sum own = {atomic_load(&function->second[pairs]), name, size, pairs};
+  const dvi__emitted_sum own = {atomic_load(&function->second[pairs]), name, size, second_name, pairs, lanes ? 4 : 1};
   return emit_sum(out, &own);
 }

@@ -11,12 +11,14 @@ void dvi__emit_program(dvi__emitter *out, const dvi__program *program, const cha
 /* 1 if the program takes inverse roots, so that it wants `careful` and `unusual`. */
 int dvi__program_has_inverse_roots(const dvi__program *program);
 
-/* A sum as a function: result[a] has size[a] entries for the arrays in `mask`. */
+/* A sum as a function: array a has a name and size[a] entries for the arrays in `mask`. */
 typedef struct dvi__emitted_sum {
   const dvi__sum *sum;
   const char *name;
   const int *size;
+  const char *const *array;
   unsigned mask;
+  int points; /* most that are taken at once: a power of two; 1: it is compiled for one instruction set */
 } dvi__emitted_sum;
 
 /* An output of the sum's parts, counted over all of them, of an element, that is added to an entry of a result, or subtracted. */
@@ -34,15 +36,21 @@ dvi_status dvi__contributions_find(int part_count, const dvi__part *part, dvi__c
 /* Whether contribution i is the first one to its entry. */
 int dvi__contribution_is_first(const dvi__contributions *all, int i);
 
-/* As dvi__emit_ints, for numbers that have no lasting address: `key` stands for it. */
-int dvi__emit_ints_of(dvi__emitter *out, const void *key, int count, const int *value);
-
-/* The name's parts: NAME_at(careful, count, x, result), which returns 1 if it wants to be called again, carefully. Of kernels with one element, or any. */
+/* The name's parts: NAME_at(careful, n, ..), which returns 1 if it wants to be called again, carefully. Of kernels with one element, or any. */
 dvi_status dvi__emit_expressions(dvi__emitter *out, const dvi__emitted_sum *own);
 dvi_status dvi__emit_elements(dvi__emitter *out, const dvi__emitted_sum *own);
 
-/* Declare x0, .. for the blocks that parts first .. last-1 read, and y0, .. for the arrays that they add to, shifted by this. */
-void dvi__emit_pointers(dvi__emitter *out, const dvi__emitted_sum *own, int first, int last, const char *shift);
+/* The blocks' names. */
+extern const char *const dvi__block_name[DVI__BLOCKS];
+
+/* The function's last parameters, the blocks and the arrays; the same as arguments; mentioned, for those that are not used; and statements that shift those
+ * which a part uses. */
+void dvi__emit_parameters(dvi__emitter *out, const dvi__emitted_sum *own);
+void dvi__emit_arguments(dvi__emitter *out, const dvi__emitted_sum *own);
+void dvi__emit_mentions(dvi__emitter *out, const dvi__emitted_sum *own);
+void dvi__emit_shifts(dvi__emitter *out, const dvi__emitted_sum *own, const dvi__part *part);
+/* Zeros in an array. */
+void dvi__emit_zeros(dvi__emitter *out, const dvi__emitted_sum *own, int array);
 
 /* Names for a part's rows, to be freed: its variables and columns have *next and following. NULL: no memory. */
 int *dvi__name_rows(const dvi__part *part, int *next);

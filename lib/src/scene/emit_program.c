@@ -75,7 +75,7 @@ static int emit_formula(const emission *e, const dvi__instruction *at, const cha
 
 static int emit_function(const emission *e, const dvi__instruction *at)
 {
-  const int two = at->op == DVI__OP_RAISE || at->op == DVI__OP_ATAN2 || at->op == DVI__OP_HYPOT;
+  const int two = at->op == DVI__OP_RAISE || at->op == DVI__OP_ATAN2;
   const int made = define(e);
   dvi__emit(e->out, "%s(r%d", function_of(at->op), name_of(e, at->a));
   if (two) dvi__emit(e->out, ", r%d", name_of(e, at->b));

@@ -53,10 +53,9 @@ static dvi_status fill(dvi__function *function, int kernel_count, const dvi__ker
   function->derivatives = dvi__arena_take(&function->arena, (size_t)kernel_count, sizeof *function->derivatives);
   if (function->kernel == NULL || function->derivatives == NULL) return DVI_NO_MEMORY;
   if (kernel_count > 0) memcpy(function->kernel, kernels, (size_t)kernel_count * sizeof *kernels);
-  dvi_status status = DVI_OK;
   function->kernel_count = kernel_count;
-  for (int k = 0; k < kernel_count && status == DVI_OK; k++) status = find_places(function, k);
-  if (status != DVI_OK) function->kernel_count = 0; /* the kernels stay with the caller */
+  dvi_status status = dvi__merge_kernels(&function->arena, &function->kernel_count, function->kernel);
+  for (int k = 0; k < function->kernel_count && status == DVI_OK; k++) status = find_places(function, k);
   return status;
 }
 
@@ -145,7 +144,8 @@ static int evaluate(const dvi__sum *sum, int count, const double *const *x, int 
 {
   int finite = 1;
   for (int i = 0; i < arrays; i++)
-    if (result[i] != NULL && size[i] > 0) memset(result[i], 0, (size_t)size[i] * (size_t)count * sizeof **result);
+    if ((sum->clear >> i & 1U) != 0 && result[i] != NULL && size[i] > 0)
+      memset(result[i], 0, (size_t)size[i] * (size_t)count * sizeof **result);
   dvi__sum_add(sum, count, x, result);
   for (int i = 0; i < arrays && finite; i++)
     if (result[i] != NULL) finite = all_finite((size_t)size[i] * (size_t)count, result[i]);

@@ -40,8 +40,8 @@ typedef struct dvi__function_counters {
   int second_entries;
 } dvi__function_counters;
 
-/* Make a function of its kernels (none: zero). They are moved into it: graphs are freed with it; index lists and data stay with their owner and must
- * outlive it. block_size[b]: how many variables a block has. Nothing is derived yet. */
+/* Make a function of its kernels (none: zero). They are moved into it, even if it fails: graphs are freed with it, short ones at once; index lists and data
+ * stay with their owner and must outlive it. block_size[b]: how many variables a block has. Nothing is derived yet. */
 dvi_status dvi__function_create(int kernel_count, const dvi__kernel *kernels, const int *block_size, dvi__function **function);
 void dvi__function_destroy(dvi__function **function);
 

@@ -54,7 +54,8 @@ enum { SLICE = 1024 };
 /* A sum to which every kernel gives its roots. */
 typedef dvi_status part_roots(dvi__function *function, int k, unsigned mask, roots *own);
 
-static dvi_status make_sum(dvi__function *function, part_roots *roots_of, unsigned mask, dvi__sum **sum)
+static dvi_status make_sum(dvi__function *function, part_roots *roots_of, unsigned mask, int arrays, const int *entries,
+                           dvi__sum **sum)
 {
   dvi__sum *made = dvi__sum_new(function);
   dvi_status status = made != NULL ? DVI_OK : DVI_NO_MEMORY;
@@ -67,6 +68,7 @@ static dvi_status make_sum(dvi__function *function, part_roots *roots_of, unsign
     }
     dvi__heap_free(own.node);
   }
+  if (status == DVI_OK) status = dvi__sum_finish(made, arrays, entries);
   if (status == DVI_OK) *sum = made;
   return status;
 }
@@ -98,7 +100,7 @@ static dvi_status value_roots(dvi__function *function, int k, unsigned mask, roo
 
 dvi_status dvi__derive_value(dvi__function *function, unsigned mask, dvi__sum **sum)
 {
-  const dvi_status status = make_sum(function, value_roots, mask, sum);
+  const dvi_status status = make_sum(function, value_roots, mask, 1, &(int){1}, sum);
   if (status == DVI_OK) raise_to(&function->counters.value_operations, operations_of(*sum));
   return status;
 }
@@ -134,7 +136,7 @@ static dvi_status gradient_roots(dvi__function *function, int k, unsigned blocks
 
 dvi_status dvi__derive_gradient(dvi__function *function, unsigned mask, dvi__sum **sum)
 {
-  const dvi_status status = make_sum(function, gradient_roots, mask, sum);
+  const dvi_status status = make_sum(function, gradient_roots, mask, DVI__BLOCKS, function->block_size, sum);
   if (status == DVI_OK) raise_to(&function->counters.gradient_operations, operations_of(*sum));
   return status;
 }
@@ -246,16 +248,17 @@ static dvi_status second_roots(dvi__function *function, int k, unsigned pairs, r
 dvi_status dvi__derive_second(dvi__function *function, unsigned mask, dvi__sum **sum)
 {
   dvi_status status = DVI_OK;
-  int entries = 0;
+  int entries[DVI__PAIRS] = {0}, all = 0;
   for (int pair = 0; pair < DVI__PAIRS && status == DVI_OK; pair++) {
     if ((mask >> pair & 1U) == 0) continue;
     status = dvi__find_pattern(function, (dvi__pair)pair);
-    entries = function->pattern[pair].entries < INT_MAX - entries ? entries + function->pattern[pair].entries : INT_MAX;
+    entries[pair] = function->pattern[pair].entries;
+    all = entries[pair] < INT_MAX - all ? all + entries[pair] : INT_MAX;
   }
-  if (status == DVI_OK) status = make_sum(function, second_roots, mask, sum);
+  if (status == DVI_OK) status = make_sum(function, second_roots, mask, DVI__PAIRS, entries, sum);
   if (status != DVI_OK) return status;
   raise_to(&function->counters.second_operations, operations_of(*sum));
-  raise_to(&function->counters.second_entries, entries);
+  raise_to(&function->counters.second_entries, all);
   return DVI_OK;
 }
 

@@ -14,6 +14,7 @@
 
 enum {
   DVI__UNIT = 32,                  /* elements */
+  DVI__BLOCK_ROWS = 512,           /* rows of one block of lanes that stay in the nearest cache */
   DVI__IRREGULAR = -2147483647 - 1 /* a stride of numbers that have none */
 };
 
@@ -35,7 +36,9 @@ typedef struct dvi__destination {
   int output, negative;
   int group; /* so many targets, from this one on, are added side by side: the coordinates of a point; 1, 2 or 3 */
   int array, mirrored;
+  int sets; /* 1: the first and only thing that is added so far to where it goes: it is stored */
   dvi__entries entry, mirror;
+  ptrdiff_t single, single_mirror; /* these entries, of the only element */
 } dvi__destination;
 
 /* A kernel's share in a sum, or some of it. Its program reads a row for each of the variables (inputs of the kernel), then one for each column. */
@@ -54,6 +57,7 @@ typedef struct dvi__part {
 typedef struct dvi__sum {
   int part_count;
   dvi__part *part;         /* [part_count] */
+  unsigned clear;          /* bits 1 << array: those that are to be zero before anything is added */
   struct dvi__sum *before; /* made before this one */
 } dvi__sum;
 
@@ -120,6 +124,12 @@ static inline int dvi__place_at(const dvi__places *places, int e)
   return places->start + (places->list != NULL ? places->list[e] : places->stride * e);
 }
 
+/* The entry of element e. */
+static inline ptrdiff_t dvi__entry_at(const dvi__entries *entries, int e)
+{
+  return dvi__place_at(&entries->minor, e) + (ptrdiff_t)entries->scale * dvi__place_at(&entries->major, e);
+}
+
 /* Choose the size of a part's tiles; DVI_BAD_SIZE: its rows leave no room for a unit. */
 dvi_status dvi__part_plan(dvi__part *part);
 
@@ -127,6 +137,9 @@ dvi_status dvi__part_plan(dvi__part *part);
 void dvi__pair_blocks(dvi__pair pair, dvi__block *rows, dvi__block *columns);
 /* The pair of two blocks, in either order; DVI__PAIRS: there is none. */
 dvi__pair dvi__pair_of(dvi__block a, dvi__block b);
+
+/* Write short kernels out into one, which takes their place; inputs are the arena's. */
+dvi_status dvi__merge_kernels(dvi__arena *arena, int *kernel_count, dvi__kernel *kernels);
 
 /* The strides of a list of numbers, unit by unit, from the arena; NULL: no memory. */
 const int *dvi__strides(dvi__arena *arena, int elements, const int *list);
@@ -138,6 +151,9 @@ void dvi__sum_add(const dvi__sum *sum, int count, const double *const *x, double
 void dvi__function_enter(dvi__function *function);
 dvi_status dvi__function_leave(dvi__function *function, dvi_status status);
 
+/* The same for a part of one element, not large, at DVI__LANES points or fewer. */
+void dvi__part_run_block(const dvi__part *part, int points, const double *const *x, double *const *result);
+
 /* The following want the lock. */
 
 /* An empty sum; NULL: no memory. */
@@ -145,6 +161,9 @@ dvi__sum *dvi__sum_new(dvi__function *function);
 /* Add a part of kernel k: root[i] goes to target[i], which are kept; roots that are equal, but for the sign, become one output. */
 dvi_status dvi__sum_extend(dvi__function *function, dvi__sum *sum, int k, int root_count, dvi__node *root,
                            dvi__destination *target);
+
+/* Find what need not be zero before the sum is added to arrays of so many entries a point, since it is stored there first. */
+dvi_status dvi__sum_finish(dvi__sum *sum, int arrays, const int *entries);
 
 /* Find which second derivatives of kernel k there are; and the pattern of a pair. */
 dvi_status dvi__find_pairs(dvi__function *function, int k);

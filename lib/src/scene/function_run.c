@@ -5,9 +5,8 @@
 #include "scene/lanes.h"
 
 enum {
-  HALF = DVI__LANES / 2,
-  SMALL = 4096,   /* numbers that stay in the nearest cache */
-  MIDDLE = 32768, /* that stay in the next one */
+  SMALL = DVI__BLOCK_ROWS * DVI__LANES, /* numbers that stay in the nearest cache */
+  MIDDLE = 32768,                       /* that stay in the next one */
   LARGE = DVI__ROWS_MAX * DVI__LANES
 };
 
@@ -16,14 +15,17 @@ typedef struct tile {
   int first, elements, point, points, count;
 } tile;
 
+/* Up to a block of points their number is a constant to what follows: loops of known length need no preparation, which would cost more than their work. */
+#define FEW_POINTS(X) X(1) X(2) X(3) X(4) X(5) X(6) X(7) X(8)
+
 /* --- Gather. --- */
 
-DVI__SCENE_INLINE void copy_run(int points, const double *restrict from, double *restrict to)
+/* More than a block of points end with a block that overlaps the one before. */
+DVI__SCENE_INLINE void copy_points(const int points, const double *restrict from, double *restrict to)
 {
-  int k = 0;
-  for (; k + DVI__LANES <= points; k += DVI__LANES) memcpy(to + k, from + k, DVI__LANES * sizeof *to);
-  for (; k + HALF <= points; k += HALF) memcpy(to + k, from + k, HALF * sizeof *to);
-  for (; k < points; k++) to[k] = from[k];
+  const int size = points < DVI__LANES ? points : DVI__LANES, last = points - size;
+  for (int k = 0; k < last; k += DVI__LANES) memcpy(to + k, from + k, DVI__LANES * sizeof *to);
+  memcpy(to + last, from + last, (size_t)size * sizeof *to);
 }
 
 /* Numbers of one point that follow each other by `step`. The compiler makes vectors of the steps that it knows. */
@@ -44,25 +46,35 @@ DVI__SCENE_INLINE void gather_strided(int elements, ptrdiff_t step, const double
 }
 
 /* The numbers of one unit; x is at the tile's first point. */
-DVI__SCENE_INLINE void gather_unit(dvi__track track, int elements, int points, int count, const double *restrict x,
+DVI__SCENE_INLINE void gather_unit(const int points, dvi__track track, int elements, ptrdiff_t count, const double *restrict x,
                                    double *restrict row)
 {
-  const ptrdiff_t step = (ptrdiff_t)track.stride * count;
-  const double *restrict from = x + (ptrdiff_t)track.start * count;
-  if (track.list != NULL && points == 1)
-    for (int e = 0; e < elements; e++) row[e] = from[(ptrdiff_t)track.list[e] * count];
-  else if (track.list != NULL)
-    for (int e = 0; e < elements; e++) copy_run(points, from + (ptrdiff_t)track.list[e] * count, row + (ptrdiff_t)e * points);
-  else if (points == 1)
+  const ptrdiff_t step = track.stride * count;
+  const double *restrict from = x + track.start * count;
+  if (track.list != NULL)
+    for (int e = 0; e < elements; e++) copy_points(points, from + track.list[e] * count, row + (ptrdiff_t)e * points);
+  else if (points == 1 && elements > 1)
     gather_strided(elements, step, from, row);
-  else if (track.stride == 1 && points == count)
-    memcpy(row, from, (size_t)elements * (size_t)points * sizeof *row);
   else
-    for (int e = 0; e < elements; e++) copy_run(points, from + e * step, row + (ptrdiff_t)e * points);
+    for (int e = 0; e < elements; e++) copy_points(points, from + e * step, row + (ptrdiff_t)e * points);
+}
+
+DVI__SCENE_INLINE void gather_variable(const int points, const dvi__places *places, const tile *at, const double *x, double *row)
+{
+  for (int e = 0; e < at->elements; e += DVI__UNIT) {
+    const int elements = dvi__unit_size(at->elements, e);
+    gather_unit(points, dvi__track_of(places, at->first + e), elements, at->count, x, row + (ptrdiff_t)e * points);
+  }
+}
+
+DVI__SCENE_INLINE void gather_column(const int points, const double *restrict column, int elements, double *restrict row)
+{
+  for (int e = 0; e < elements; e++)
+    for (int p = 0; p < points; p++) row[e * points + p] = column[e];
 }
 
 /* Where the tile's numbers of a variable stand in a row already, or NULL. */
-DVI__SCENE_INLINE const double *standing(const dvi__places *places, const tile *at, const double *x)
+static const double *standing(const dvi__places *places, const tile *at, const double *x)
 {
   if (places->list != NULL && at->elements > DVI__UNIT) return NULL;
   const dvi__track track = dvi__track_of(places, at->first);
@@ -70,52 +82,51 @@ DVI__SCENE_INLINE const double *standing(const dvi__places *places, const tile *
   return x + (ptrdiff_t)track.start * at->count;
 }
 
-DVI__SCENE_INLINE void gather_variable(const dvi__places *places, const tile *at, const double *x, double *row)
+/* Point input[] at the rows that the program reads. What does not stand ready as whole blocks is put below the registers, the last one first: the idle lanes of each
+ * are filled by one block too many. */
+DVI__SCENE_INLINE void gather_points(const int points, const dvi__part *part, const tile *at, const double *const *x,
+                                     const double **input, double *registers)
 {
-  for (int e = 0; e < at->elements; e += DVI__UNIT) {
-    const int elements = dvi__unit_size(at->elements, e);
-    gather_unit(dvi__track_of(places, at->first + e), elements, at->points, at->count, x, row + (ptrdiff_t)e * at->points);
+  const int lanes = at->elements * points, width = dvi__row_width(lanes), whole = lanes == width && lanes > DVI__LANES;
+  double *row = registers - (ptrdiff_t)part->program.input_count * width;
+  for (int i = part->program.input_count - 1; i >= 0; i--, row += width) {
+    const int c = i - part->variable_count;
+    if (c >= 0) {
+      input[i] = whole && points == 1 ? part->column[c] + at->first : NULL;
+      if (input[i] == NULL) gather_column(points, part->column[c] + at->first, at->elements, row);
+    } else {
+      const double *from = x[part->block[i]] + at->point;
+      input[i] = whole ? standing(&part->variable[i], at, from) : NULL;
+      if (input[i] == NULL) gather_variable(points, &part->variable[i], at, from, row);
+    }
+    if (input[i] != NULL) continue;
+    input[i] = row;
+    for (int k = lanes; lanes < width && k < lanes + DVI__LANES; k++) row[k] = row[lanes - 1];
   }
 }
 
-DVI__SCENE_INLINE void gather_column(const double *column, const tile *at, double *row)
-{
-  for (int e = 0; e < at->elements; e++)
-    for (int p = 0; p < at->points; p++) row[e * at->points + p] = column[at->first + e];
-}
-
-/* Point input[] at the rows that the program reads. What does not stand ready is put into `rows`. */
 DVI__SCENE_LANES static void gather(const dvi__part *part, const tile *at, const double *const *x, const double **input,
-                                    double *rows)
+                                    double *registers)
 {
-  const int lanes = at->elements * at->points, width = dvi__row_width(lanes), whole = lanes == width;
-  for (int i = 0; i < part->variable_count + part->column_count; i++, rows += width) {
-    const int c = i - part->variable_count;
-    if (c < 0) {
-      const double *from = x[part->block[i]] + at->point;
-      input[i] = whole ? standing(&part->variable[i], at, from) : NULL;
-      if (input[i] != NULL) continue;
-      gather_variable(&part->variable[i], at, from, rows);
-    } else {
-      input[i] = whole && at->points == 1 ? part->column[c] + at->first : NULL;
-      if (input[i] != NULL) continue;
-      gather_column(part->column[c], at, rows);
-    }
-    for (int k = lanes; k < width; k++) rows[k] = rows[lanes - 1];
-    input[i] = rows;
+  switch (at->points) {
+#define GATHER(points) \
+  case points: gather_points(points, part, at, x, input, registers); break;
+    FEW_POINTS(GATHER)
+#undef GATHER
+  default: gather_points(at->points, part, at, x, input, registers);
   }
 }
 
 /* --- Scatter: `sign` is 1 or -1. --- */
 
-DVI__SCENE_INLINE void add_run(int points, double sign, const double *restrict row, double *restrict to)
+DVI__SCENE_INLINE void add_points(const int points, double sign, const double *restrict row, double *restrict to)
 {
-  int k = 0;
-  for (; k + DVI__LANES <= points; k += DVI__LANES)
+  const int size = points < DVI__LANES ? points : DVI__LANES, last = points - size;
+  double end[DVI__LANES];
+  for (int k = 0; k < size; k++) end[k] = to[last + k] + sign * row[last + k];
+  for (int k = 0; k < last; k += DVI__LANES)
     for (int i = k; i < k + DVI__LANES; i++) to[i] += sign * row[i];
-  for (; k + HALF <= points; k += HALF)
-    for (int i = k; i < k + HALF; i++) to[i] += sign * row[i];
-  for (; k < points; k++) to[k] += sign * row[k];
+  memcpy(to + last, end, (size_t)size * sizeof *to);
 }
 
 /* Eight at a time: the ends of longer loops are foreseen more often. */
@@ -144,21 +155,21 @@ DVI__SCENE_INLINE void add_listed(int elements, double sign, const int *restrict
   to[at] = sum;
 }
 
-DVI__SCENE_INLINE void add_unit(dvi__track track, int elements, int points, int count, double sign, const double *restrict row,
-                                double *restrict result)
+DVI__SCENE_INLINE void add_unit(const int points, dvi__track track, int elements, ptrdiff_t count, double sign,
+                                const double *restrict row, double *restrict result)
 {
-  const ptrdiff_t step = (ptrdiff_t)track.stride * count;
-  double *restrict to = result + (ptrdiff_t)track.start * count;
+  const ptrdiff_t step = track.stride * count;
+  double *restrict to = result + track.start * count;
   if (track.list != NULL && points == 1)
     add_listed(elements, sign, track.list, count, row, to);
   else if (track.list != NULL)
-    for (int e = 0; e < elements; e++) add_run(points, sign, row + (ptrdiff_t)e * points, to + (ptrdiff_t)track.list[e] * count);
-  else if (track.stride == 1 && points == count)
+    for (int e = 0; e < elements; e++) add_points(points, sign, row + (ptrdiff_t)e * points, to + track.list[e] * count);
+  else if (track.stride == 1 && points == count && elements > 1)
     for (int k = 0; k < elements * points; k++) to[k] += sign * row[k];
   else if (points == 1)
     add_strided(elements, sign, step, row, to);
   else
-    for (int e = 0; e < elements; e++) add_run(points, sign, row + (ptrdiff_t)e * points, to + e * step);
+    for (int e = 0; e < elements; e++) add_points(points, sign, row + (ptrdiff_t)e * points, to + e * step);
 }
 
 /* The sum of all elements' numbers, by halves; `sum` [DVI__LANES_MAX] has room for half of them. */
@@ -177,7 +188,7 @@ DVI__SCENE_INLINE void fold(int elements, int points, const double *restrict row
 }
 
 /* A unit of points of two or three coordinates, which stand side by side; rows are `pitch` apart. */
-DVI__SCENE_INLINE void add_points(const int group, double sign, ptrdiff_t pitch, const double *row, double *restrict to)
+DVI__SCENE_INLINE void add_coordinates(const int group, double sign, ptrdiff_t pitch, const double *row, double *restrict to)
 {
   const double *restrict x = row, *restrict y = row + pitch, *restrict z = row + (group - 1) * pitch;
   for (int e = 0; e < DVI__UNIT; e++) {
@@ -200,60 +211,72 @@ DVI__SCENE_INLINE dvi__track entry_track(const dvi__entries *entries, int first,
   const dvi__track major = dvi__track_of(&entries->major, first);
   if (minor.list == NULL && major.list == NULL)
     return (dvi__track){NULL, minor.start + entries->scale * major.start, minor.stride + entries->scale * major.stride};
-  for (int e = 0; e < elements; e++) list[e] = place_in(&minor, e) + entries->scale * place_in(&major, e);
+  int e = 0;
+  do list[e] = place_in(&minor, e) + entries->scale * place_in(&major, e);
+  while (++e < elements);
   return (dvi__track){list, 0, 0};
 }
 
 /* Add a unit's row to its entries. */
-DVI__SCENE_INLINE void scatter_unit(const dvi__entries *entries, int first, int elements, const tile *at, int negative,
+DVI__SCENE_INLINE void scatter_unit(const int points, const dvi__entries *entries, int first, int elements, int count, double sign,
                                     const double *row, double *result)
 {
   int list[DVI__UNIT];
   double sum[DVI__LANES_MAX];
   const dvi__track track = entry_track(entries, first, elements, list);
   if (track.list == NULL && track.stride == 0 && elements > 1) {
-    if (elements == DVI__UNIT && at->points == 1)
+    if (elements == DVI__UNIT && points == 1)
       fold(DVI__UNIT, 1, row, sum);
     else
-      fold(elements, at->points, row, sum);
+      fold(elements, points, row, sum);
     elements = 1;
     row = sum;
   }
-  if (negative)
-    add_unit(track, elements, at->points, at->count, -1.0, row, result);
-  else
-    add_unit(track, elements, at->points, at->count, 1.0, row, result);
+  add_unit(points, track, elements, count, sign, row, result);
 }
 
 /* Add a full unit of a group of targets at one point, if they lie so. Returns how many targets that were. */
-DVI__SCENE_INLINE int scatter_points(const dvi__destination *target, int first, ptrdiff_t pitch, const double *row, double *result)
+DVI__SCENE_INLINE int scatter_group(const dvi__destination *target, int first, ptrdiff_t pitch, double sign, const double *row,
+                                    double *result)
 {
   const dvi__track track = dvi__track_of(&target->entry.minor, first);
   const int group = target->group;
   if (group < 2 || track.list != NULL || track.stride != group) return 0;
-  const double sign = target->negative ? -1.0 : 1.0;
   if (group == 3)
-    add_points(3, sign, pitch, row, result + track.start);
+    add_coordinates(3, sign, pitch, row, result + track.start);
   else
-    add_points(2, sign, pitch, row, result + track.start);
+    add_coordinates(2, sign, pitch, row, result + track.start);
   return group;
+}
+
+DVI__SCENE_INLINE void scatter_points(const int points, const dvi__part *part, const tile *at, const double *outputs,
+                                      double *const *result)
+{
+  const int width = dvi__row_width(at->elements * points);
+  for (int e = 0; e < at->elements; e += DVI__UNIT) {
+    const int elements = dvi__unit_size(at->elements, e), first = at->first + e;
+    for (int k = 0, added; k < part->target_count; k += added) {
+      const dvi__destination *target = &part->target[k];
+      const double *row = outputs + (ptrdiff_t)target->output * width + (ptrdiff_t)e * points;
+      const double sign = target->negative ? -1.0 : 1.0;
+      double *to = result[target->array] + at->point;
+      added = points == 1 && at->count == 1 && elements == DVI__UNIT ? scatter_group(target, first, width, sign, row, to) : 0;
+      if (added > 0) continue;
+      for (int m = 0; m <= target->mirrored; m++)
+        scatter_unit(points, m ? &target->mirror : &target->entry, first, elements, at->count, sign, row, to);
+      added = 1;
+    }
+  }
 }
 
 DVI__SCENE_LANES static void scatter(const dvi__part *part, const tile *at, const double *outputs, double *const *result)
 {
-  const int width = dvi__row_width(at->elements * at->points);
-  for (int e = 0; e < at->elements; e += DVI__UNIT) {
-    const int elements = dvi__unit_size(at->elements, e);
-    for (int k = 0, added; k < part->target_count; k += added) {
-      const dvi__destination *target = &part->target[k];
-      const double *row = outputs + (ptrdiff_t)target->output * width + (ptrdiff_t)e * at->points;
-      double *to = result[target->array] + at->point;
-      added = at->count == 1 && elements == DVI__UNIT ? scatter_points(target, at->first + e, width, row, to) : 0;
-      if (added > 0) continue;
-      scatter_unit(&target->entry, at->first + e, elements, at, target->negative, row, to);
-      if (target->mirrored) scatter_unit(&target->mirror, at->first + e, elements, at, target->negative, row, to);
-      added = 1;
-    }
+  switch (at->points) {
+#define SCATTER(points) \
+  case points: scatter_points(points, part, at, outputs, result); break;
+    FEW_POINTS(SCATTER)
+#undef SCATTER
+  default: scatter_points(at->points, part, at, outputs, result);
   }
 }
 
@@ -281,8 +304,11 @@ static void run_tile(const dvi__part *part, const tile *at, const double *const 
 {
   const int lanes = at->elements * at->points, width = dvi__row_width(lanes), outputs = part->program.output_count;
   double *registers = memory + (ptrdiff_t)part->program.input_count * width;
-  gather(part, at, x, input, memory);
-  dvi__program_run(&part->program, lanes, input, registers);
+  gather(part, at, x, input, registers);
+  if (width == DVI__LANES)
+    dvi__program_run_block(&part->program, lanes, registers);
+  else
+    dvi__program_run(&part->program, lanes, input, registers);
   scatter(part, at, registers + (ptrdiff_t)(part->program.row_count - outputs) * width, result);
 }
 
@@ -334,14 +360,31 @@ dvi_status dvi__part_plan(dvi__part *part)
   return least <= large ? DVI_OK : DVI_BAD_SIZE;
 }
 
+/* Tiles are added: what is to be stored is added to zero. */
+static void clear(const dvi__part *part, int count, double *const *result)
+{
+  for (const dvi__destination *target = part->target; target < part->target + part->target_count; target++)
+    for (int m = 0; target->sets && m <= target->mirrored; m++)
+      memset(result[target->array] + (m ? target->single_mirror : target->single) * count, 0, (size_t)count * sizeof **result);
+}
+
+static void run_part(const dvi__part *part, int count, const double *const *x, double *const *result)
+{
+  const tile shape = shape_of(part, count);
+  if (part->kernel->elements == 1) clear(part, count, result);
+  if (part->large)
+    run_large(part, &shape, x, result);
+  else
+    run_small(part, &shape, x, result);
+}
+
 void dvi__sum_add(const dvi__sum *sum, int count, const double *const *x, double *const *result)
 {
   for (int k = 0; k < sum->part_count; k++) {
     const dvi__part *part = &sum->part[k];
-    const tile shape = shape_of(part, count);
-    if (part->large)
-      run_large(part, &shape, x, result);
+    if (part->kernel->elements == 1 && count <= DVI__LANES && !part->large)
+      dvi__part_run_block(part, count, x, result);
     else
-      run_small(part, &shape, x, result);
+      run_part(part, count, x, result);
   }
 }

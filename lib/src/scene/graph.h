@@ -42,7 +42,7 @@ typedef int dvi__node;
   X(DIVIDE, 2, "/")                                                                        \
   X(RAISE, 2, "pow") /* by anything else */                                                \
   X(ATAN2, 2, "atan2")                                                                     \
-  X(HYPOT, 2, "hypot")
+  X(HYPOT, 2, "hypot") /* of constants; else a square root, whose powers join others */
 
 typedef enum dvi__op {
 #define DVI__OP_ENUM(name, operands, spelling) DVI__OP_##name,

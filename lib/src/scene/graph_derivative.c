@@ -79,7 +79,6 @@ static dvi__node slope_by_first(dvi__graph *graph, dvi__node n)
   case DVI__OP_RAISE:
     return dvi__multiply(graph, node.b, dvi__apply(graph, DVI__OP_RAISE, node.a, dvi__subtract(graph, node.b, one)));
   case DVI__OP_ATAN2: return dvi__divide(graph, node.b, dvi__add(graph, dvi__square(graph, node.a), dvi__square(graph, node.b)));
-  case DVI__OP_HYPOT: return dvi__divide(graph, node.a, n);
   default: return one; /* of ADD and SUBTRACT */
   }
 }
@@ -94,7 +93,6 @@ static dvi__node slope_by_second(dvi__graph *graph, dvi__node n)
   case DVI__OP_RAISE: return dvi__multiply(graph, n, dvi__apply(graph, DVI__OP_LOG, node.a, 0));
   case DVI__OP_ATAN2:
     return dvi__negate(graph, dvi__divide(graph, node.a, dvi__add(graph, dvi__square(graph, node.a), dvi__square(graph, node.b))));
-  case DVI__OP_HYPOT: return dvi__divide(graph, node.b, n);
   default: return dvi__constant(graph, 1); /* of ADD */
   }
 }

@@ -42,8 +42,7 @@ static int curvature(const dvi__graph *graph, const dvi__graph_node *node)
     return graph->node[node->a].op == DVI__OP_CONSTANT || graph->node[node->b].op == DVI__OP_CONSTANT ? 0 : CURVED_AB;
   case DVI__OP_DIVIDE: return graph->node[node->b].op == DVI__OP_CONSTANT ? 0 : CURVED_AB | CURVED_BB;
   case DVI__OP_RAISE:
-  case DVI__OP_ATAN2:
-  case DVI__OP_HYPOT: return CURVED_AA | CURVED_AB | CURVED_BB;
+  case DVI__OP_ATAN2: return CURVED_AA | CURVED_AB | CURVED_BB;
   default: return CURVED_AA;
   }
 }

@@ -296,8 +296,8 @@ dvi__node dvi__apply(dvi__graph *graph, dvi__op op, dvi__node a, dvi__node b)
   case DVI__OP_MULTIPLY: return multiply(graph, a, b);
   case DVI__OP_DIVIDE: return divide(graph, a, b);
   case DVI__OP_RAISE: return dvi__is_constant(graph, b, &c) ? dvi__power(graph, a, c) : dvi__make(graph, op, a, b, 0);
-  case DVI__OP_ATAN2:
-  case DVI__OP_HYPOT: return dvi__make(graph, op, a, b, 0);
+  case DVI__OP_ATAN2: return dvi__make(graph, op, a, b, 0);
+  case DVI__OP_HYPOT: return dvi__power(graph, dvi__add(graph, dvi__square(graph, a), dvi__square(graph, b)), 0.5);
   default: return function(graph, op, a);
   }
 }

@@ -75,11 +75,11 @@ static bool all_rows(const dvi__context *c, dvi__node node, double **each)
   return false;
 }
 
-/* One number if all are the same. */
+/* One number if all are the same; one that is none is not the same as any. */
 static void join(const dvi__context *c, double **each, double *all)
 {
   for (int e = 1; e < c->elements; e++)
-    if ((*each)[e] < (*each)[0] || (*each)[e] > (*each)[0] || isnan((*each)[e])) return;
+    if (!((*each)[e] >= (*each)[0] && (*each)[e] <= (*each)[0])) return;
   *all = (*each)[0];
   dvi__heap_free(*each);
   *each = NULL;

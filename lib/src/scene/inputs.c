@@ -6,7 +6,10 @@
 
 static int block_size(const dvi_scene *scene, dvi__block block)
 {
-  return block == DVI__TIME ? 1 : block == DVI__MULTIPLIERS ? 2 * scene->n : scene->n; /* at most 2 n constraints */
+  if (block == DVI__TIME) return 1;
+  return block == DVI__MULTIPLIERS  ? 2 * scene->n
+         : block == DVI__VELOCITIES ? scene->velocities
+                                    : scene->n; /* at most 2 n constraints */
 }
 
 bool dvi__context_make(dvi__context *c, dvi_scene *scene, unsigned may, const char *where)

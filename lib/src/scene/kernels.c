@@ -143,8 +143,10 @@ static bool gather_form(walk *w, const dvi__expression *e, place at)
     return at.group != NULL && gather(w, e->part[0], at);
   }
   const dvi__name *name = e->form == DVI__FORM_NAME ? dvi__names_find(&w->scene->names, e->name) : NULL;
-  if (name != NULL && name->sort == DVI__DEFINITION && at.group->sum == NULL)
+  if (name != NULL && name->sort == DVI__DEFINITION && at.group->sum == NULL) {
+    w->scene->definition[name->number].stands = 1;
     return gather(w, w->scene->definition[name->number].is, at);
+  }
   return add_leaf(w, e, at);
 }
 
@@ -327,7 +329,7 @@ bool dvi__kernels_add(dvi_scene *scene, unsigned may, const char *where, const d
 
 bool dvi__kernels_function(dvi_scene *scene, dvi__kernels *list, int count, dvi__term **term)
 {
-  const int size[DVI__BLOCKS] = {1, scene->n, scene->n, count};
+  const int size[DVI__BLOCKS] = {1, scene->n, scene->velocities, count};
   dvi__term *made = dvi__arena_take(&scene->arena, 1, sizeof *made);
   *term = made;
   if (made == NULL) return dvi__scene_no_memory(scene);

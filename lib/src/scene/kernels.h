@@ -30,6 +30,9 @@ typedef struct dvi__degree {
 
 bool dvi__kernel_degree(dvi_scene *scene, const dvi__kernel *kernel, dvi__block block, dvi__degree *degree);
 
+/* Whether a term of a kernel is neither of degree 0 nor of degree 2 and pure, and where the first of them is. */
+bool dvi__kernel_other_term(dvi_scene *scene, const dvi__kernel *kernel, dvi__block block, dvi__span *span, int *found);
+
 /* Add the part of degree 0 of each kernel (velocities are zero) or its negative; or the rest, for degree at most 2, with the block's variables taken from
  * the block `as`. */
 bool dvi__kernels_at_rest(dvi_scene *scene, const dvi__kernels *of, dvi__block block, int negative, dvi__kernels *list);

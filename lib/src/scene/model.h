@@ -34,8 +34,10 @@ struct dvi_scene {
   dvi__coordinate *coordinate;
   dvi__definition *definition;
   int parameter_count, coordinate_count, definition_count;
-  int n;     /* numbers of q */
-  long work; /* parts of expressions that were elaborated */
+  unsigned reads; /* where parameters that are met stand */
+  int n, nv;      /* numbers of q; of v and p */
+  int velocities; /* in the block of velocities: n, or with factors n rates of q and nv velocities after them */
+  long work;      /* parts of expressions that were elaborated */
 
   const double *mass_diagonal; /* [n] or NULL: what velocities are made of momenta by, in invariants */
   dvi_system_terms terms;
@@ -53,12 +55,22 @@ struct dvi_scene {
   dvi_scene_parameter *shown; /* [parameter_count] */
   dvi_scene_event *event;
   dvi_scene_range *range;
-  int event_count, range_count, bodies;
+  const char **unused; /* [unused_count] */
+  int event_count, range_count, unused_count, bodies;
   const char *form, *mass;
   pthread_mutex_t labels_mutex;
   char **label[3]; /* of q, v, p; made when first asked for */
   dvi__arena label_arena;
 };
+
+/* Whether a coordinate is neither a number nor a vector. */
+static inline bool dvi__has_factors(const dvi_scene *scene)
+{
+  return scene->velocities > scene->n;
+}
+
+/* The number of the coordinate to which a number of q, or of v, belongs. */
+int dvi__coordinate_at(const dvi_scene *scene, int number, int of_v);
 
 /* Refuse something for which there is no memory; false. */
 bool dvi__scene_no_memory(dvi_scene *scene);

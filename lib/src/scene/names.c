@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "scene/slips.h"
 #include "scene/words.h"
 
 static uint32_t hash_of(const char *text)
@@ -77,7 +78,8 @@ bool(dvi__names_unknown)(const dvi__names *names, dvi__arena *arena, dvi__compla
   const char **candidate = dvi__arena_take(arena, (size_t)count, sizeof *candidate);
   for (int i = 0; candidate != NULL && i < count; i++)
     candidate[i] = i < names->count ? names->name[i].text : dvi__word(i - names->count);
-  if (candidate != NULL) dvi__nearest(text, count, candidate, hint, sizeof hint);
+  (void)dvi__name_elsewhere(names, text, hint, sizeof hint);
+  if (hint[0] == '\0' && candidate != NULL) (void)dvi__nearest(text, count, candidate, hint, sizeof hint);
   return dvi__complain(complaint, DVI_BAD_FILE, span, "there is no '%s'%s", text, hint);
 }
 

@@ -10,26 +10,50 @@ typedef struct dvi__shape {
   int rank, rows, columns;
 } dvi__shape;
 
+/* Where a parameter stands: in an initial value, or in any other section but `parameters`. */
+enum { DVI__IN_PARAMETERS = 0, DVI__IN_START = 1, DVI__ELSEWHERE = 2 };
+
+/* The parameters that another one is made of. */
+typedef struct dvi__source_of {
+  struct dvi__parameter *parameter;
+  const struct dvi__source_of *next;
+} dvi__source_of;
+
 typedef struct dvi__parameter {
   const char *name;
   dvi__span span;
   dvi__shape shape;
   double *value; /* [rows * columns], row by row */
   int settable;
+  unsigned stands;              /* DVI__IN_START, DVI__ELSEWHERE: complete when the scene is read */
+  const dvi__source_of *source; /* what it is made of */
+  int last_made;                /* the number + 1 of the last parameter that is made of it */
 } dvi__parameter;
+
+typedef enum dvi__kind { DVI__LINES, DVI__ROTATION, DVI__MOTION, DVI__DIRECTION, DVI__ANGLE } dvi__kind;
+
+/* The numbers of a coordinate in q, or in v and p: member m has `components` from first + m * stride on. */
+typedef struct dvi__places {
+  int first, stride, components;
+} dvi__places;
 
 typedef struct dvi__coordinate {
   const char *name;
   dvi__span span;
+  dvi__kind kind;
   int family;       /* 1: it is indexed */
   int size;         /* members of the family; 1 */
   dvi__shape shape; /* of a member */
-  int components;   /* numbers of a member */
-  int first;        /* number of its first number in q, v and p */
+  dvi__places q, v;
+  const struct dvi__coordinate *part; /* of a motion: [2], its rotation and its place */
+  char part_name;                     /* of such a part: R or x; else 0 */
 } dvi__coordinate;
 
 /* What an expression mentions, definitions seen through. */
 enum { DVI__SAYS_Q = 1, DVI__SAYS_V = 2, DVI__SAYS_P = 4, DVI__SAYS_T = 8, DVI__SAYS_SUM = 16 };
+
+/* Beside what may stand somewhere: velocities there are those of a state, v, and not the rates of what is stored. */
+enum { DVI__OF_STATE = 32 };
 
 typedef struct dvi__definition {
   const char *name;
@@ -37,6 +61,7 @@ typedef struct dvi__definition {
   const dvi__expression *is;
   dvi__shape shape;
   unsigned says;
+  int stands; /* 1: something mentions it */
 } dvi__definition;
 
 typedef enum dvi__sort { DVI__PARAMETER, DVI__COORDINATE, DVI__DEFINITION } dvi__sort;

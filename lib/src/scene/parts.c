@@ -254,10 +254,42 @@ static dvi__degree of_node(const dvi__kernel *kernel, dvi__block block, const dv
   case DVI__OP_DIVIDE:
     return known[node->b].degree > 0 ? of_other(known[node->a], known[node->b]) : of_product(known[node->a], known[node->b]);
   case DVI__OP_RAISE:
-  case DVI__OP_ATAN2:
-  case DVI__OP_HYPOT: return of_other(known[node->a], known[node->b]);
+  case DVI__OP_ATAN2: return of_other(known[node->a], known[node->b]);
   default: return of_other(known[node->a], none);
   }
+}
+
+static int is_sum(dvi__op op)
+{
+  return op == DVI__OP_ADD || op == DVI__OP_SUBTRACT;
+}
+
+/* fits[i]: whether a node, of a sum all of its terms, is of degree 0, or of degree 2 and pure. */
+static void find_fits(const dvi__kernel *kernel, dvi__block block, dvi__degree *known, char *fits)
+{
+  for (int i = 0; i <= kernel->root; i++) {
+    const dvi__graph_node *node = &kernel->graph->node[i];
+    known[i] = of_node(kernel, block, known, i);
+    fits[i] = is_sum(node->op) ? fits[node->a] && fits[node->b] : known[i].degree == 0 || (known[i].degree == 2 && known[i].pure);
+  }
+}
+
+bool dvi__kernel_other_term(dvi_scene *scene, const dvi__kernel *kernel, dvi__block block, dvi__span *span, int *found)
+{
+  const dvi__graph_node *node = kernel->graph->node;
+  dvi__degree *known = dvi__heap_take((size_t)kernel->root + 1, sizeof *known);
+  char *fits = dvi__heap_take((size_t)kernel->root + 1, 1);
+  const bool good = (known != NULL && fits != NULL) || dvi__scene_no_memory(scene);
+  if (good) {
+    int at = kernel->root, sum = at;
+    find_fits(kernel, block, known, fits);
+    *found = !fits[at];
+    for (; is_sum(node[at].op); at = fits[node[at].a] ? node[at].b : node[at].a) sum = at;
+    *span = node[node[at].op == DVI__OP_INPUT ? sum : at].span; /* inputs are where they stand first */
+  }
+  dvi__heap_free(known);
+  dvi__heap_free(fits);
+  return good;
 }
 
 bool dvi__kernel_degree(dvi_scene *scene, const dvi__kernel *kernel, dvi__block block, dvi__degree *degree)

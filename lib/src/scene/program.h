@@ -44,4 +44,7 @@ static inline int dvi__row_width(int lanes)
 /* Run on 1 to DVI__LANES_MAX lanes. input[i]: rows [dvi__row_width(lanes)]; registers: row_count rows. */
 void dvi__program_run(const dvi__program *program, int lanes, const double *const *input, double *registers);
 
+/* The same for one block of lanes at most, with input i below the registers, at registers - (i+1) DVI__LANES: then where a row is takes no decision. */
+void dvi__program_run_block(const dvi__program *program, int lanes, double *registers);
+
 #endif

@@ -36,9 +36,9 @@ DVI__SCENE_INLINE void inverse_powers(int width, const int factors, const double
 }
 
 /* x^n, n = 1, 2, .. or x^-n. */
-DVI__SCENE_INLINE void whole_powers(int width, double exponent, const double *restrict x, double *restrict to)
+DVI__SCENE_INLINE void powers(int width, const int exponent, const double *restrict x, double *restrict to)
 {
-  const unsigned power = (unsigned)fabs(exponent);
+  const unsigned power = exponent < 0 ? 0U - (unsigned)exponent : (unsigned)exponent;
   for (int at = 0; at < width; at += DVI__LANES) {
     double base[DVI__LANES], product[DVI__LANES];
     for (int k = 0; k < DVI__LANES; k++) base[k] = x[at + k];
@@ -48,7 +48,19 @@ DVI__SCENE_INLINE void whole_powers(int width, double exponent, const double *re
         for (int k = 0; k < DVI__LANES; k++) product[k] *= base[k];
       for (int k = 0; k < DVI__LANES; k++) base[k] *= base[k];
     }
-    for (int k = 0; k < DVI__LANES; k++) to[at + k] = exponent < 0.0 ? 1.0 / product[k] : product[k];
+    for (int k = 0; k < DVI__LANES; k++) to[at + k] = exponent < 0 ? 1.0 / product[k] : product[k];
+  }
+}
+
+/* The compiler makes vectors of the powers that it knows. */
+DVI__SCENE_INLINE void whole_powers(int width, double exponent, const double *restrict x, double *restrict to)
+{
+  switch ((int)exponent) {
+  case 3: powers(width, 3, x, to); break;
+  case 4: powers(width, 4, x, to); break;
+  case -2: powers(width, -2, x, to); break;
+  case -3: powers(width, -3, x, to); break;
+  default: powers(width, (int)exponent, x, to);
   }
 }
 
@@ -158,17 +170,17 @@ static void call_library(int op, int lanes, int width, const double *restrict a,
     CALL(DVI__OP_ATANH, atanh(a[k]))
     CALL(DVI__OP_RAISE, pow(a[k], b[k]))
     CALL(DVI__OP_ATAN2, atan2(a[k], b[k]))
-    CALL(DVI__OP_HYPOT, hypot(a[k], b[k]))
   default: break;
   }
   fill_up(lanes, width, to);
 }
 
-DVI__SCENE_LANES static void run(const dvi__program *program, int lanes, const double *const *input, double *registers)
+/* `below`: rows of inputs stand below the registers. */
+DVI__SCENE_INLINE void run_rows(const int below, const dvi__program *program, int lanes, int width, const double *const *input,
+                                double *registers)
 {
-  const int width = dvi__row_width(lanes);
   const dvi__instruction *const end = program->instruction + program->instruction_count;
-#define ROW(i) ((i) >= 0 ? registers + (ptrdiff_t)(i)*width : input[~(i)])
+#define ROW(i) (below || (i) >= 0 ? registers + (ptrdiff_t)(i)*width : input[~(i)])
   for (const dvi__instruction *at = program->instruction; at < end; at++) {
     double *restrict const to = registers + (ptrdiff_t)at->to * width;
     const double *restrict const a = ROW(at->a), *restrict const b = ROW(at->b), *restrict const c = ROW(at->c);
@@ -188,8 +200,23 @@ DVI__SCENE_LANES static void run(const dvi__program *program, int lanes, const d
 #undef ROW
 }
 
+DVI__SCENE_LANES static void run(const dvi__program *program, int lanes, const double *const *input, double *registers)
+{
+  run_rows(0, program, lanes, dvi__row_width(lanes), input, registers);
+}
+
+DVI__SCENE_LANES static void run_block(const dvi__program *program, int lanes, double *registers)
+{
+  run_rows(1, program, lanes, DVI__LANES, NULL, registers);
+}
+
 /* clang does not export a function that is compiled more than once. */
 void dvi__program_run(const dvi__program *program, int lanes, const double *const *input, double *registers)
 {
   run(program, lanes, input, registers);
+}
+
+void dvi__program_run_block(const dvi__program *program, int lanes, double *registers)
+{
+  run_block(program, lanes, registers);
 }

@@ -47,6 +47,8 @@ static bool input_rate(dvi__context *c, int input, dvi__span span, dvi__node *ra
     return dvi__refuse(c, span, "the rate of a rate: there are no accelerations here");
   else if ((c->may & DVI__SAYS_P) != 0)
     *rate = from_momentum(c, input, span);
+  else if ((c->may & DVI__OF_STATE) != 0 && dvi__has_factors(c->scene))
+    return dvi__input_velocity(c, input, rate);
   else
     *rate = dvi__sibling_node(c, input, DVI__VELOCITIES);
   return true;
@@ -85,21 +87,18 @@ static dvi__value chain_rule(dvi__context *c, dvi__value value, dvi__span span)
   return result;
 }
 
-/* Every number of a coordinate, in another block; false if one is no coordinate. */
-static bool siblings(dvi__context *c, dvi__value value, dvi__block block, dvi__value *result)
+/* The momentum, or in Lagrangians the rate, of every number of a value; false if one is no coordinate, or has none of its own. */
+static bool siblings(dvi__context *c, dvi__value value, dvi__value *result)
 {
-  const int size = dvi__value_size(value);
-  for (int i = 0; i < size; i++) {
-    const dvi__graph_node *node = &c->graph->node[dvi__value_at(value, i)];
-    if (node->op != DVI__OP_INPUT || c->input[node->a].is_data || c->input[node->a].block != DVI__COORDINATES) return false;
-  }
+  const int size = dvi__value_size(value), of_state = (c->may & (DVI__SAYS_P | DVI__OF_STATE)) != 0 && dvi__has_factors(c->scene);
   *result = dvi__value_make(c, value.shape.rank, value.shape.rows, value.shape.columns);
   for (int i = 0; i < size && !dvi__failed(*result); i++) {
-    const dvi__node node = dvi__sibling_node(c, c->graph->node[dvi__value_at(value, i)].a, block);
-    if (result->node == NULL)
-      result->one = node;
-    else
-      result->node[i] = node;
+    const dvi__graph_node *node = &c->graph->node[dvi__value_at(value, i)];
+    if (node->op != DVI__OP_INPUT || c->input[node->a].is_data || c->input[node->a].block != DVI__COORDINATES) return false;
+    dvi__node *to = result->node == NULL ? &result->one : &result->node[i];
+    const int input = node->a;
+    if (of_state && !dvi__input_momentum(c, input, to)) return false;
+    if (!of_state) *to = dvi__sibling_node(c, input, DVI__VELOCITIES);
   }
   return true;
 }
@@ -112,7 +111,7 @@ dvi__value dvi__rate_value(dvi__context *c, const dvi__expression *e)
   if (!dvi__may_stand(c, DVI__SAYS_V, e->span)) return DVI__NO_VALUE;
   const dvi__value value = dvi__elaborate(c, e->part[0]);
   if (dvi__failed(value)) return DVI__NO_VALUE;
-  if ((c->may & DVI__SAYS_P) == 0 && siblings(c, value, DVI__VELOCITIES, &result)) return result;
+  if ((c->may & DVI__SAYS_P) == 0 && siblings(c, value, &result)) return result;
   return chain_rule(c, value, e->span);
 }
 
@@ -120,9 +119,10 @@ dvi__value dvi__momentum_value(dvi__context *c, const dvi__expression *e)
 {
   dvi__value result;
   if (!dvi__may_stand(c, DVI__SAYS_P, e->span)) return DVI__NO_VALUE;
-  if (e->count != 1) return dvi__refused(dvi__refuse(c, e->span, "p takes 1 argument, not %d", e->count));
+  result = dvi__whole_momentum(c, e);
+  if (!dvi__failed(result) || c->scene->complaint->status != DVI_OK) return result;
   const dvi__value value = dvi__elaborate(c, e->part[0]);
   if (dvi__failed(value)) return DVI__NO_VALUE;
-  if (siblings(c, value, DVI__VELOCITIES, &result)) return result;
+  if (siblings(c, value, &result)) return result;
   return dvi__refused(dvi__refuse(c, e->part[0]->span, "p is taken of a coordinate"));
 }

@@ -1,10 +1,12 @@
 /* The public API of scenes: reading, what was found, names, and the end. */
+#include <errno.h>
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "scene/callbacks.h"
+#include "scene/factors.h"
 #include "scene/heap.h"
 #include "scene/sections.h"
 #include "scene/start.h"
@@ -39,11 +41,12 @@ static void find_time(dvi_scene *scene)
 static bool make_system(dvi_scene *scene)
 {
   find_time(scene);
-  scene->terms.dimension = scene->n;
+  scene->terms.dimension = dvi__has_factors(scene) ? 0 : scene->n;
   if (scene->terms.potential_count == 0) scene->terms.potentials = NULL;
   if (scene->terms.symmetry_count == 0) scene->terms.symmetries = NULL;
   if (scene->terms.invariant_count == 0) scene->terms.invariants = NULL;
   const dvi_status status = dvi_system_create(&scene->terms, &scene->system);
+  if (status == DVI_BAD_ARGUMENT && dvi__has_factors(scene) && !dvi__inertias_are_of_bodies(scene)) return false;
   return status == DVI_OK || dvi__complain(scene->complaint, status, DVI__NOWHERE, "%s", dvi_last_error());
 }
 
@@ -53,15 +56,31 @@ static bool show_parameters(dvi_scene *scene)
   if (scene->shown == NULL) return dvi__scene_no_memory(scene);
   for (int i = 0; i < scene->parameter_count; i++) {
     const dvi__parameter *p = &scene->parameter[i];
-    scene->shown[i] = (dvi_scene_parameter){p->name, p->settable ? p->value[0] : (double)NAN, p->settable};
+    scene->shown[i] = (dvi_scene_parameter){.name = p->name,
+                                            .value = p->settable ? p->value[0] : (double)NAN,
+                                            .settable = p->settable,
+                                            .start_only = p->stands == DVI__IN_START};
   }
+  return true;
+}
+
+static bool list_unused(dvi_scene *scene)
+{
+  const size_t most = (size_t)scene->parameter_count + (size_t)scene->definition_count;
+  scene->unused = dvi__arena_take(&scene->arena, most + 1, sizeof *scene->unused);
+  if (scene->unused == NULL) return dvi__scene_no_memory(scene);
+  for (int i = 0; i < scene->parameter_count; i++)
+    if (scene->parameter[i].stands == 0) scene->unused[scene->unused_count++] = scene->parameter[i].name;
+  for (int i = 0; i < scene->definition_count; i++)
+    if (!scene->definition[i].stands) scene->unused[scene->unused_count++] = scene->definition[i].name;
   return true;
 }
 
 static void find_bodies(dvi_scene *scene)
 {
   const dvi__coordinate *x = scene->coordinate;
-  if (scene->coordinate_count == 1 && x->shape.rank == 1 && (x->components == 2 || x->components == 3)) scene->bodies = x->size;
+  if (scene->coordinate_count == 1 && x->kind == DVI__LINES && x->shape.rank == 1 && (x->q.components == 2 || x->q.components == 3))
+    scene->bodies = x->size;
 }
 
 static bool read_scene(dvi_scene *scene, dvi__settings *settings)
@@ -69,7 +88,7 @@ static bool read_scene(dvi_scene *scene, dvi__settings *settings)
   if (!dvi__tree_read(&scene->source, &scene->arena, scene->complaint, &scene->tree)) return false;
   if (!dvi__scene_read_tree(scene, settings) || !make_system(scene) || !dvi__scene_complete_start(scene)) return false;
   find_bodies(scene);
-  return show_parameters(scene);
+  return show_parameters(scene) && list_unused(scene);
 }
 
 /* Fill in a scene; its texts are copied. */
@@ -128,6 +147,7 @@ dvi_status dvi_scene_parse(const char *name, const char *text, size_t length, in
 /* The text of a file, one character more than is allowed if it is longer; to be freed. */
 static dvi_status read_file(const char *path, char **text, size_t *length)
 {
+  errno = 0;
   FILE *file = fopen(path, "rb");
   if (file == NULL) return DVI_IO_ERROR;
   *text = dvi__heap_take(SIZE_MAX_OF_FILE + 1, 1);
@@ -148,6 +168,8 @@ dvi_status dvi_scene_read(const char *path, int setting_count, const char *const
   dvi_status status = read_file(path, &text, &length);
   if (status == DVI_OK)
     status = dvi_scene_parse(path, text, length, setting_count, settings, scene, message, size);
+  else if (status == DVI_IO_ERROR && message != NULL && size > 0)
+    (void)snprintf(message, size, "cannot read '%s': %s", path, strerror(errno));
   else
     (void)tell(message, size, status, path);
   dvi__heap_free(text);
@@ -199,6 +221,11 @@ const dvi_scene_plan *dvi_scene_plan_of(const dvi_scene *scene)
 const dvi_scene_parameter *dvi_scene_parameter_at(const dvi_scene *scene, int i)
 {
   return scene == NULL || i < 0 || i >= scene->parameter_count ? NULL : &scene->shown[i];
+}
+
+const char *dvi_scene_unused(const dvi_scene *scene, int i)
+{
+  return scene == NULL || i < 0 || i >= scene->unused_count ? NULL : scene->unused[i];
 }
 
 const dvi_scene_event *dvi_scene_event_at(const dvi_scene *scene, int i)

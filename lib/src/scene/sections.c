@@ -3,8 +3,9 @@
 #include <limits.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
+
+#include "scene/slips.h"
 
 /* ---- what readers share ---- */
 
@@ -128,18 +129,66 @@ static bool read_plan(dvi_scene *scene)
          read_number(scene, "step", &plan->h) && read_number(scene, "until", &plan->t_end) && few_steps(scene);
 }
 
+/* Each is sought among all that there are. */
+enum { COLUMNS_MAX = 1000 };
+
+/* All that dvi run may show of the scene, if `known` is not NULL; how many they are. The last of them some methods alone have. */
+static int list_columns(const dvi_scene *scene, const char **known)
+{
+  static const char *const others[] = {"t", "energy", "constraint", "distance", "h", "jump"};
+  enum { OTHERS = sizeof others / sizeof *others };
+  const char *(*const label[])(const dvi_scene *, int) = {dvi_scene_coordinate, dvi_scene_velocity, dvi_scene_momentum};
+  const char *name;
+  int count = 0;
+  for (int k = 0; k < 3; k++)
+    for (int i = 0; (k != 1 || scene->terms.factors != NULL) && (name = label[k](scene, i)) != NULL; i++, count++)
+      if (known != NULL) known[count] = name;
+  for (int i = 0; i < scene->terms.symmetry_count; i++, count++)
+    if (known != NULL) known[count] = scene->terms.symmetries[i].name;
+  for (int i = 0; i < scene->terms.invariant_count; i++, count++)
+    if (known != NULL) known[count] = scene->terms.invariants[i].name;
+  for (int i = 0; i < OTHERS; i++, count++)
+    if (known != NULL) known[count] = others[i];
+  return count;
+}
+
+static bool all_columns(dvi_scene *scene, const dvi__tree *columns)
+{
+  char hint[96];
+  if (dvi_scene_coordinate(scene, 0) == NULL || dvi_scene_velocity(scene, 0) == NULL || dvi_scene_momentum(scene, 0) == NULL)
+    return dvi__scene_no_memory(scene);
+  const int count = list_columns(scene, NULL);
+  const char **known = dvi__arena_take(&scene->arena, (size_t)count, sizeof *known);
+  if (known == NULL) return dvi__scene_no_memory(scene);
+  (void)list_columns(scene, known);
+  for (int i = 0; i < columns->count; i++) {
+    const char *name = columns->child[i]->text;
+    int k = 0;
+    while (k < count && strcmp(known[k], name) != 0) k++;
+    if (k == count)
+      return dvi__scene_refuse(scene, columns->child[i]->span, "there is no column '%s'%s", name,
+                               dvi__nearest(name, count, known, hint, sizeof hint));
+    for (k = 0; k < i; k++)
+      if (strcmp(columns->child[k]->text, name) == 0)
+        return dvi__scene_refuse(scene, columns->child[i]->span, "column '%s' stands here twice", name);
+  }
+  return true;
+}
+
 static bool read_columns(dvi_scene *scene, const dvi__tree *columns)
 {
   const char **column = dvi__arena_take(&scene->arena, (size_t)columns->count + 1, sizeof *column);
   if (column == NULL) return dvi__scene_no_memory(scene);
   if (columns->kind != DVI__SEQUENCE) return dvi__scene_refuse(scene, columns->span, "columns is a list of names, as in [x, y]");
+  if (columns->count > COLUMNS_MAX)
+    return dvi__scene_refuse(scene, columns->span, "at most %d columns; without a list all are shown", (int)COLUMNS_MAX);
   for (int i = 0; i < columns->count; i++) {
     if (!dvi__want_text(scene, columns->child[i], "the name of a column")) return false;
     column[i] = columns->child[i]->text;
   }
   scene->plan.column = column;
   scene->plan.column_count = columns->count;
-  return true;
+  return all_columns(scene, columns);
 }
 
 bool dvi__read_report(dvi_scene *scene, const dvi__tree *section)
@@ -220,19 +269,18 @@ bool dvi__read_sweep(dvi_scene *scene, const dvi__tree *section)
 typedef struct section {
   const char *name;
   bool (*read)(dvi_scene *scene, const dvi__tree *section);
-  int needed;
+  const char *needed; /* an example of what a scene cannot do without */
   const char *refusal;
 } section;
 
 static const section sections[] = {
     {.name = "forces", .refusal = "no method here takes forces without a potential"},
-    {.name = "inertia", .refusal = "bodies that turn are not yet from a scene; declare them in C (docs/api.md)"},
     {.name = "title"},
     {.name = "method"},
     {.name = "parameters"},
-    {.name = "step", .needed = 1},
-    {.name = "until", .needed = 1},
-    {.name = "coordinates", .read = dvi__read_coordinates, .needed = 1},
+    {.name = "step", .needed = "step: 0.01"},
+    {.name = "until", .needed = "until: 10"},
+    {.name = "coordinates", .read = dvi__read_coordinates, .needed = "coordinates: {x: scalar}"},
     {.name = "definitions", .read = dvi__read_definitions},
     {.name = "lagrangian", .read = dvi__read_lagrangian},
     {.name = "kinetic", .read = dvi__read_kinetic},
@@ -243,24 +291,37 @@ static const section sections[] = {
     {.name = "symmetries", .read = dvi__read_symmetries},
     {.name = "invariants", .read = dvi__read_invariants},
     {.name = "events", .read = dvi__read_events},
-    {.name = "initial", .read = dvi__read_initial, .needed = 1},
+    {.name = "initial", .read = dvi__read_initial, .needed = "initial: {x: 1, x': 0}"},
     {.name = "report", .read = dvi__read_report},
     {.name = "sweep", .read = dvi__read_sweep},
 };
 
 enum { SECTIONS = sizeof sections / sizeof *sections };
 
+/* A section that is called otherwise elsewhere; the keys below sections have no such names. */
+static bool refuse_slips(dvi_scene *scene)
+{
+  for (int i = 0; i < scene->tree->count; i++) {
+    const dvi__tree *key = scene->tree->key[i];
+    const char *here = dvi__section_elsewhere(key->text);
+    if (here != NULL) return dvi__scene_refuse(scene, key->span, "a scene has no '%s'; the section is %s", key->text, here);
+  }
+  return true;
+}
+
 static bool all_known(dvi_scene *scene)
 {
   const char *known[SECTIONS];
   for (int k = 0; k < SECTIONS; k++) known[k] = sections[k].name;
-  if (!dvi__want_mapping(scene, scene->tree, "a scene") || !dvi__want_keys(scene, scene->tree, "a scene", SECTIONS, known))
+  if (!dvi__want_mapping(scene, scene->tree, "a scene") || !refuse_slips(scene) ||
+      !dvi__want_keys(scene, scene->tree, "a scene", SECTIONS, known))
     return false;
   for (int k = 0; k < SECTIONS; k++) {
     const dvi__tree *found = dvi__tree_find(scene->tree, sections[k].name);
     if (found != NULL && sections[k].refusal != NULL) return dvi__scene_refuse(scene, found->span, "%s", sections[k].refusal);
-    if (found == NULL && sections[k].needed)
-      return dvi__scene_refuse(scene, DVI__NOWHERE, "the section '%s' is missing", sections[k].name);
+    if (found == NULL && sections[k].needed != NULL)
+      return dvi__scene_refuse(scene, DVI__NOWHERE, "the section '%s' is missing, as in '%s'", sections[k].name,
+                               sections[k].needed);
   }
   return true;
 }
@@ -280,9 +341,12 @@ static bool one_form_of_system(dvi_scene *scene)
     which = k;
     count++;
   }
+  const dvi__tree *H = dvi__tree_find(scene->tree, "hamiltonian"), *V = dvi__tree_find(scene->tree, "potentials");
+  if (count == 0 && H != NULL)
+    return dvi__scene_refuse(scene, H->span,
+                             "a hamiltonian stands with constraints or a one_form; without them give the lagrangian");
   if (count == 0) return dvi__scene_refuse(scene, DVI__NOWHERE, "what moves it is missing: %s", ways);
   if (count > 1) return dvi__scene_refuse(scene, found->span, "there must be %s", ways);
-  const dvi__tree *H = dvi__tree_find(scene->tree, "hamiltonian"), *V = dvi__tree_find(scene->tree, "potentials");
   if ((H != NULL) != (which >= 2))
     return dvi__scene_refuse(scene, (H != NULL ? H : found)->span,
                              H != NULL ? "beside %s there is no hamiltonian" : "%s needs a hamiltonian", name[which]);
@@ -293,10 +357,14 @@ static bool one_form_of_system(dvi_scene *scene)
 bool dvi__scene_read_tree(dvi_scene *scene, dvi__settings *settings)
 {
   if (!all_known(scene) || !one_form_of_system(scene)) return false;
-  if (!dvi__read_parameters(scene, dvi__tree_find(scene->tree, "parameters"), settings) || !read_plan(scene)) return false;
+  scene->reads = DVI__IN_PARAMETERS;
+  if (!dvi__read_parameters(scene, dvi__tree_find(scene->tree, "parameters"), settings)) return false;
+  scene->reads = DVI__ELSEWHERE;
+  if (!read_plan(scene)) return false;
   for (int k = 0; k < SECTIONS; k++) {
     const dvi__tree *found = dvi__tree_find(scene->tree, sections[k].name);
+    scene->reads = sections[k].read == dvi__read_initial ? DVI__IN_START : DVI__ELSEWHERE;
     if (found != NULL && sections[k].read != NULL && !sections[k].read(scene, found)) return false;
   }
-  return true;
+  return dvi__read_uses(scene, settings);
 }

@@ -46,22 +46,30 @@ bool dvi__tree_expression(dvi_scene *scene, const dvi__tree *tree, const dvi__ex
 bool dvi__tree_number(dvi_scene *scene, const dvi__tree *tree, const char *what, double *number);
 bool dvi__tree_whole(dvi_scene *scene, const dvi__tree *tree, const char *what, int least, int *number);
 
+/* After all sections: tell parameters where what is made of them stands, and refuse settings of those that stand nowhere. */
+bool dvi__read_uses(dvi_scene *scene, const dvi__settings *settings);
+
 /* ---- coordinates as keys ---- */
 
-/* x, x[3] or x[i], and of these the numbers, the rates x' or the momenta p(x). */
+/* x, x[3] or x[i], of a motion B.R or B.x; and of these the numbers, the velocities x', omega(R) or rate(u), or the momenta p(x). */
 typedef struct dvi__target {
   const dvi__coordinate *x;
   unsigned says;                /* DVI__SAYS_Q, _V or _P */
   const dvi__expression *index; /* one member; NULL: all */
   const char *each;             /* the index of a formula for all members, or NULL */
+  const char *call;             /* "omega" or "rate", or NULL */
+  const dvi__places *places;    /* in q, or in v and p */
   dvi__span span;
 } dvi__target;
 
 bool dvi__read_target(dvi_scene *scene, const dvi__tree *key, dvi__target *target);
 
 /* In a context that dvi__context_make has made, elaborate what stands at a target: as many numbers as it has, or as each of its members has, and where these
- * are in q. */
+ * are in q, v or p. */
 bool dvi__target_value(dvi__context *c, const dvi__target *target, const dvi__tree *tree, dvi__value *value,
                        dvi__numbering *numbering, const dvi__expression **e);
+
+/* How far number k of that value is from the first one. */
+int dvi__target_place(const dvi__target *target, int k);
 
 #endif

@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "scene/elaborate.h"
 #include "scene/words.h"
 
 int dvi__value_size(dvi__value value)
@@ -212,6 +213,14 @@ static bool right_count(const dvi__context *c, const dvi__expression *call, int 
   return dvi__refuse(c, call->span, "%s takes %d argument%s, not %d", call->name, wanted, wanted == 1 ? "" : "s", call->count);
 }
 
+/* An angle is (cos, sin). */
+static const char *hint_of_angle(const dvi__context *c, const dvi__expression *e)
+{
+  const dvi__expression *index;
+  const dvi__coordinate *x = dvi__member_named(c->scene, e, &index);
+  return x != NULL && x->kind == DVI__ANGLE ? ": the cosine of an angle u is u[1], its sine u[2]" : "";
+}
+
 /* A function of numbers. */
 static dvi__value number_call(dvi__context *c, const dvi__expression *call, const dvi__function_word *word, const dvi__value *a)
 {
@@ -219,8 +228,8 @@ static dvi__value number_call(dvi__context *c, const dvi__expression *call, cons
   if (!right_count(c, call, word->arguments)) return DVI__NO_VALUE;
   for (int k = 0; k < call->count; k++)
     if (a[k].shape.rank != 0) {
-      (void)dvi__refuse(c, call->part[k]->span, "%s is taken of a number, not of %s", call->name,
-                        dvi__shape_text(a[k].shape, shape, sizeof shape));
+      (void)dvi__refuse(c, call->part[k]->span, "%s is taken of a number, not of %s%s", call->name,
+                        dvi__shape_text(a[k].shape, shape, sizeof shape), hint_of_angle(c, call->part[k]));
       return DVI__NO_VALUE;
     }
   return dvi__number_value(dvi__apply(c->graph, word->op, a[0].one, call->count == 2 ? a[1].one : 0));

@@ -5,17 +5,18 @@
 #include <string.h>
 
 #include "scene/callbacks.h"
+#include "scene/factors.h"
 #include "scene/heap.h"
 #include "scene/sections.h"
 #include "scene/shape.h"
 
-/* What all kernels together are. */
-static bool degree_of(dvi_scene *scene, const dvi__kernels *list, dvi__degree *whole)
+/* What all kernels together are in the variables of a block. */
+static bool degree_of(dvi_scene *scene, const dvi__kernels *list, dvi__block block, dvi__degree *whole)
 {
   *whole = (dvi__degree){0, 1, 0};
   for (int k = 0; k < list->count; k++) {
     dvi__degree one;
-    if (!dvi__kernel_degree(scene, &list->kernel[k], DVI__VELOCITIES, &one)) return false;
+    if (!dvi__kernel_degree(scene, &list->kernel[k], block, &one)) return false;
     if (one.degree > whole->degree) whole->degree = one.degree;
     whole->pure = whole->pure && one.pure;
   }
@@ -25,38 +26,59 @@ static bool degree_of(dvi_scene *scene, const dvi__kernels *list, dvi__degree *w
 /* ---- potentials ---- */
 
 /* Add a potential of these kernels, none if they are none. */
-static bool add_potential(dvi_scene *scene, const char *name, dvi__kernels *list)
+static bool add_potential(dvi_scene *scene, const char *name, int fast, dvi__kernels *list)
 {
   dvi__term *term;
+  dvi__degree degree;
   if (list->count == 0) return true;
-  dvi_potential *potentials = (dvi_potential *)scene->terms.potentials;
-  return dvi__kernels_function(scene, list, 0, &term) &&
-         dvi__make_potential(scene, name, term, &potentials[scene->terms.potential_count++]);
+  dvi_potential *potential = (dvi_potential *)&scene->terms.potentials[scene->terms.potential_count++];
+  if (!degree_of(scene, list, DVI__COORDINATES, &degree) || !dvi__kernels_function(scene, list, 0, &term) ||
+      !dvi__make_potential(scene, name, term, potential))
+    return false;
+  potential->fast = fast;
+  potential->quadratic = degree.degree <= 2 && degree.pure;
+  return true;
 }
 
-/* Room for the potentials of a section, and one more. */
+/* Room for so many potentials, and one more. */
 static bool room_for_potentials(dvi_scene *scene, int count)
 {
   scene->terms.potentials = dvi__arena_take(&scene->arena, (size_t)count + 1, sizeof *scene->terms.potentials);
   return scene->terms.potentials != NULL || dvi__scene_no_memory(scene);
 }
 
-static bool read_potential(dvi_scene *scene, const dvi__tree *tree, const char *name)
+static bool read_potential(dvi_scene *scene, const dvi__tree *tree, const char *name, int fast)
 {
   const dvi__expression *e;
   dvi__kernels V = {0};
   const bool good = dvi__tree_expression(scene, tree, &e) &&
-                    dvi__kernels_add(scene, DVI__SAYS_Q | DVI__SAYS_T, "a potential", e, 0, &V) && add_potential(scene, name, &V);
+                    dvi__kernels_add(scene, DVI__SAYS_Q | DVI__SAYS_T, "a potential", e, 0, &V) &&
+                    add_potential(scene, name, fast, &V);
   dvi__kernels_free(&V);
   return good;
+}
+
+/* What stands under slow or fast may be a potential itself, or some by name; all others are slow. */
+static bool read_speed(dvi_scene *scene, const dvi__tree *key, const dvi__tree *tree)
+{
+  const int fast = strcmp(key->text, "fast") == 0;
+  if (tree->kind != DVI__MAPPING) return read_potential(scene, tree, key->text, fast);
+  if (!fast && strcmp(key->text, "slow") != 0)
+    return dvi__scene_refuse(scene, key->span, "a potential is an expression; only slow and fast hold some by name");
+  for (int i = 0; i < tree->count; i++)
+    if (!read_potential(scene, tree->child[i], tree->key[i]->text, fast)) return false;
+  return true;
 }
 
 static bool read_potentials(dvi_scene *scene, const dvi__tree *section)
 {
   if (section == NULL) return room_for_potentials(scene, 0);
-  if (!dvi__want_mapping(scene, section, "potentials") || !room_for_potentials(scene, section->count)) return false;
+  if (!dvi__want_mapping(scene, section, "potentials")) return false;
+  int count = section->count;
+  for (int i = 0; i < section->count; i++) count += section->child[i]->count;
+  if (!room_for_potentials(scene, count)) return false;
   for (int i = 0; i < section->count; i++)
-    if (!read_potential(scene, section->child[i], section->key[i]->text)) return false;
+    if (!read_speed(scene, section->key[i], section->child[i])) return false;
   return true;
 }
 
@@ -67,7 +89,7 @@ static bool mass_values(dvi_scene *scene, dvi__term *T, dvi_pattern *pattern, do
 {
   int full;
   if (!dvi__term_pattern(scene, T, DVI__PAIR_VV, pattern, &full)) return false;
-  const size_t n = (size_t)scene->n, entries = full ? n * n : (size_t)pattern->start[n];
+  const size_t n = (size_t)scene->velocities, entries = full ? n * n : (size_t)pattern->start[n];
   *values = dvi__arena_take(&scene->arena, entries + 1, sizeof **values);
   if (*values == NULL) return dvi__scene_no_memory(scene);
   const double *x[DVI__BLOCKS] = {scene->zeros, scene->zeros, scene->zeros, scene->zeros};
@@ -97,13 +119,6 @@ static int diagonal_of(int n, const dvi_pattern *pattern, const double *values, 
   return alone;
 }
 
-static const dvi__coordinate *owner(const dvi_scene *scene, int number)
-{
-  int k = 0;
-  while (k + 1 < scene->coordinate_count && scene->coordinate[k + 1].first <= number) k++;
-  return &scene->coordinate[k];
-}
-
 /* The mass in the plainest form that it has. */
 static bool set_mass(dvi_scene *scene, const dvi_pattern *pattern, const double *values)
 {
@@ -117,9 +132,9 @@ static bool set_mass(dvi_scene *scene, const dvi_pattern *pattern, const double 
   int same = 1;
   for (int i = 0; i < scene->n; i++) {
     same = same && !(diagonal[i] < diagonal[0]) && !(diagonal[i] > diagonal[0]);
-    if (!(diagonal[i] < 0) && !(diagonal[i] > 0))
-      return dvi__scene_refuse(scene, owner(scene, i)->span, "the rate of %s has no mass: L has no square of it",
-                               owner(scene, i)->name);
+    if (diagonal[i] < 0 || diagonal[i] > 0) continue;
+    const dvi__coordinate *x = &scene->coordinate[dvi__coordinate_at(scene, i, 0)];
+    return dvi__scene_refuse(scene, x->span, "the rate of %s has no mass: L has no square of it", x->name);
   }
   scene->mass_diagonal = diagonal;
   scene->mass = !same ? "diagonal" : diagonal[0] < 1 || diagonal[0] > 1 ? "scalar" : "identity";
@@ -141,20 +156,41 @@ static bool derive_mass(dvi_scene *scene, dvi__term *T)
 static bool rests(dvi_scene *scene, dvi__term *T, int *at_rest)
 {
   const double *x[DVI__BLOCKS] = {scene->zeros, scene->zeros, scene->zeros, scene->zeros};
-  double *momentum = dvi__heap_take((size_t)scene->n, sizeof *momentum);
+  double *momentum = dvi__heap_take((size_t)scene->velocities, sizeof *momentum);
   double *gradient[DVI__BLOCKS] = {[DVI__VELOCITIES] = momentum};
   if (momentum == NULL) return dvi__scene_no_memory(scene);
   *at_rest = dvi__function_gradient(T->function, 1, x, gradient) == 0;
-  for (int i = 0; i < scene->n && *at_rest; i++) *at_rest = !(momentum[i] < 0) && !(momentum[i] > 0);
+  for (int i = 0; i < scene->velocities && *at_rest; i++) *at_rest = !(momentum[i] < 0) && !(momentum[i] > 0);
   dvi__heap_free(momentum);
   return true;
 }
 
 /* ---- the three forms ---- */
 
+/* With rotations, directions or angles the mass is constant: name the first term that is of another form. */
+static bool refuse_moving(dvi_scene *scene, const dvi__kernels *L)
+{
+  for (int k = 0; k < L->count; k++) {
+    dvi__span span;
+    int found;
+    if (!dvi__kernel_other_term(scene, &L->kernel[k], DVI__VELOCITIES, &span, &found)) return false;
+    if (found)
+      return dvi__scene_refuse(
+          scene, span,
+          "this term is of another form: beside rotations, motions, directions and angles velocities stand in L "
+          "as squares and products with constant coefficients, of rates of what is stored, or of omega(R) and "
+          "rate(u)");
+  }
+  const dvi__kernel *first = &L->kernel[0];
+  return dvi__scene_refuse(
+      scene, first->graph->node[first->root].span,
+      "beside rotations, motions, directions and angles no velocity stands alone in L, but in squares and products");
+}
+
 static bool make_general(dvi_scene *scene, dvi__kernels *L)
 {
   dvi__term *term;
+  if (dvi__has_factors(scene)) return refuse_moving(scene, L);
   if (!dvi__kernels_function(scene, L, 0, &term) || !dvi__make_lagrangian(scene, term, &scene->lagrangian)) return false;
   scene->terms.lagrangian = &scene->lagrangian;
   scene->form = "general Lagrangian";
@@ -173,8 +209,9 @@ static bool make_separable(dvi_scene *scene, dvi__kernels *L, const char *rest)
   dvi__kernels_free(&moving);
   if (T != NULL) T->role = DVI__STANDS_BESIDE;
   if (good && !at_rest) return make_general(scene, L);
-  good = good && mass_values(scene, T, &pattern, &values) && set_mass(scene, &pattern, values) &&
-         dvi__kernels_at_rest(scene, L, DVI__VELOCITIES, 1, &V) && add_potential(scene, rest, &V);
+  good = good && mass_values(scene, T, &pattern, &values) &&
+         (dvi__has_factors(scene) ? dvi__make_factors(scene, &pattern, values) : set_mass(scene, &pattern, values)) &&
+         dvi__kernels_at_rest(scene, L, DVI__VELOCITIES, 1, &V) && add_potential(scene, rest, 0, &V);
   dvi__kernels_free(&V);
   scene->form = "separable";
   return good;
@@ -187,7 +224,7 @@ static bool make_degenerate(dvi_scene *scene, dvi__kernels *L, const char *rest)
   dvi__term *term = NULL;
   const bool good = dvi__kernels_moving(scene, L, DVI__VELOCITIES, DVI__MULTIPLIERS, &alpha) &&
                     dvi__kernels_function(scene, &alpha, scene->n, &term) && dvi__make_one_form(scene, term, &scene->one_form) &&
-                    dvi__kernels_at_rest(scene, L, DVI__VELOCITIES, 1, &H) && add_potential(scene, rest, &H);
+                    dvi__kernels_at_rest(scene, L, DVI__VELOCITIES, 1, &H) && add_potential(scene, rest, 0, &H);
   dvi__kernels_free(&alpha);
   dvi__kernels_free(&H);
   scene->terms.one_form = &scene->one_form;
@@ -213,8 +250,9 @@ static int drives_velocities(const dvi__kernels *L)
 static bool make_form(dvi_scene *scene, const dvi__expression *e, dvi__kernels *L, const char *rest)
 {
   dvi__degree degree;
-  if (!degree_of(scene, L, &degree)) return false;
+  if (!degree_of(scene, L, DVI__VELOCITIES, &degree)) return false;
   if (degree.degree == 0) return dvi__scene_refuse(scene, e->span, "there is no velocity in it, so nothing would move");
+  if (degree.degree == 1 && dvi__has_factors(scene)) return refuse_moving(scene, L);
   if (degree.degree == 1 && !drives_velocities(L)) return make_degenerate(scene, L, rest);
   return degree.degree == 2 && degree.pure ? make_separable(scene, L, rest) : make_general(scene, L);
 }
@@ -243,13 +281,27 @@ bool dvi__read_kinetic(dvi_scene *scene, const dvi__tree *section)
 
 /* ---- one-forms and Hamiltonians that are given as such ---- */
 
-/* value.w for the numbers of a target, added to a total. */
-static void add_product(dvi__context *c, dvi__value value, dvi__numbering numbering, dvi__node *total)
+/* value.w for the numbers of a target, or of one number, added to a total. */
+static void add_product(dvi__context *c, dvi__value value, const dvi__target *target, dvi__numbering numbering, dvi__node *total)
 {
   for (int k = 0; k < dvi__value_size(value); k++) {
-    const dvi__node w = dvi__variable_node(c, DVI__MULTIPLIERS, numbering, k);
+    const int place = target != NULL ? dvi__target_place(target, k) : k;
+    const dvi__node w = dvi__variable_node(c, DVI__MULTIPLIERS, numbering, place);
     *total = dvi__apply(c->graph, DVI__OP_ADD, *total, dvi__apply(c->graph, DVI__OP_MULTIPLY, dvi__value_at(value, k), w));
   }
+}
+
+/* A field is given by coordinate; where these turn, by omega(R) and rate(u). */
+static bool is_of_field(dvi_scene *scene, const dvi__tree *key, const char *where, dvi__target *target)
+{
+  const dvi__kind kind = target->x->kind;
+  const int turns = kind == DVI__ROTATION || kind == DVI__ANGLE;
+  target->places = &target->x->v;
+  if (turns ? target->says == DVI__SAYS_V : target->says == DVI__SAYS_Q) return true;
+  if (turns)
+    return dvi__scene_refuse(scene, key->span, "%s is given of what turns by its velocity, %s(%s)", where,
+                             kind == DVI__ANGLE ? "rate" : "omega", target->x->name);
+  return dvi__scene_refuse(scene, key->span, "%s is given by coordinate, neither by rate nor by momentum", where);
 }
 
 static bool add_component(dvi_scene *scene, const dvi__tree *key, const dvi__tree *tree, const char *where, dvi__kernels *list)
@@ -259,14 +311,13 @@ static bool add_component(dvi_scene *scene, const dvi__tree *key, const dvi__tre
   dvi__value value;
   dvi__numbering numbering;
   const dvi__expression *e;
-  if (!dvi__read_target(scene, key, &target)) return false;
-  if (target.says != DVI__SAYS_Q)
-    return dvi__scene_refuse(scene, key->span, "%s is given by coordinate, neither by rate nor by momentum", where);
-  if (!dvi__context_make(&c, scene, DVI__SAYS_Q, where)) return false;
+  if (!dvi__read_target(scene, key, &target) || !is_of_field(scene, key, where, &target) ||
+      !dvi__context_make(&c, scene, DVI__SAYS_Q, where))
+    return false;
   bool good = dvi__target_value(&c, &target, tree, &value, &numbering, &e);
   if (good) {
     dvi__node total = dvi__constant(c.graph, 0);
-    add_product(&c, value, numbering, &total);
+    add_product(&c, value, &target, numbering, &total);
     good = dvi__kernels_add_node(&c, total, list);
   }
   dvi__context_free(&c);
@@ -278,18 +329,29 @@ bool dvi__read_field(dvi_scene *scene, const dvi__tree *field, const char *where
   dvi__kernels list = {0};
   bool good = dvi__want_mapping(scene, field, where);
   for (int i = 0; good && i < field->count; i++) good = add_component(scene, field->key[i], field->child[i], where, &list);
-  good = good && dvi__kernels_function(scene, &list, scene->n, term);
+  good = good && dvi__kernels_function(scene, &list, scene->nv, term);
   dvi__kernels_free(&list);
   return good;
+}
+
+/* Rotations, directions and angles need a kinetic energy. */
+static bool refuse_factors(dvi_scene *scene, const dvi__tree *section, const char *name)
+{
+  return !dvi__has_factors(scene) ||
+         dvi__scene_refuse(
+             scene, section->span,
+             "beside %s there are no rotations, motions, directions and angles; they go with lagrangian, or kinetic and potentials",
+             name);
 }
 
 bool dvi__read_one_form(dvi_scene *scene, const dvi__tree *section)
 {
   dvi__term *term;
+  if (!refuse_factors(scene, section, "one_form")) return false;
   if (!dvi__read_field(scene, section, "a one-form", &term) || !dvi__make_one_form(scene, term, &scene->one_form)) return false;
   scene->terms.one_form = &scene->one_form;
   scene->form = "one-form";
-  return room_for_potentials(scene, 0) && read_potential(scene, dvi__tree_find(scene->tree, "hamiltonian"), "H");
+  return room_for_potentials(scene, 0) && read_potential(scene, dvi__tree_find(scene->tree, "hamiltonian"), "H", 0);
 }
 
 /* The function phi.w. */
@@ -304,7 +366,7 @@ static bool constraints_function(dvi_scene *scene, const dvi__tree *section, dvi
     const dvi__expression *e;
     dvi__node phi;
     good = dvi__tree_expression(scene, section->child[a], &e) && dvi__elaborate_number(&c, e, &phi);
-    if (good) add_product(&c, (dvi__value){.one = phi}, (dvi__numbering){.base = a}, &total);
+    if (good) add_product(&c, (dvi__value){.one = phi}, NULL, (dvi__numbering){.base = a}, &total);
   }
   good = good && dvi__kernels_add_node(&c, total, &list) && dvi__kernels_function(scene, &list, section->count, term);
   dvi__context_free(&c);
@@ -328,7 +390,7 @@ static bool read_hamiltonian(dvi_scene *scene, const dvi__tree *tree)
 bool dvi__read_constraints(dvi_scene *scene, const dvi__tree *section)
 {
   dvi__term *term;
-  if (!dvi__want_mapping(scene, section, "constraints")) return false;
+  if (!dvi__want_mapping(scene, section, "constraints") || !refuse_factors(scene, section, "constraints")) return false;
   if (section->count == 0 || section->count % 2 != 0 || section->count > 2 * scene->n)
     return dvi__scene_refuse(scene, section->span,
                              "there are %d constraints; an even number is needed, at most 2 for each coordinate", section->count);

@@ -250,8 +250,8 @@ static bool refuse_syntax(reader *r, const yaml_parser_t *parser)
   for (size_t k = 0; k < sizeof remedy / sizeof *remedy && help[0] == '\0'; k++)
     if (strstr(problem, remedy[k][0]) != NULL) help = remedy[k][1];
   dvi__span where = {place(r, &parser->problem_mark), 1};
-  const bool never_ends = where.first == r->source->size && parser->context != NULL;
-  if (never_ends) where.first = place(r, &parser->context_mark); /* where it begins says more */
+  const bool begins_before = where.first == r->source->size || strstr(problem, "expected ':'") != NULL;
+  if (begins_before && parser->context != NULL) where.first = place(r, &parser->context_mark); /* where it begins says more */
   return dvi__complain(r->complaint, DVI_BAD_FILE, where, "this is no YAML: %s%s%s%s", problem, context[0] != '\0' ? " " : "",
                        context, help);
 }

@@ -71,7 +71,7 @@ static bool read_event(dvi_scene *scene, const char *name, const dvi__tree *tree
   if (zero == NULL) return dvi__scene_refuse(scene, tree->span, "an event needs 'zero', the expression that changes its sign");
   if (falls != NULL && !read_word(scene, falls, "direction", 3, direction_word, &direction)) return false;
   if (stops != NULL && !read_word(scene, stops, "stop", 2, stop_word, &stop)) return false;
-  if (!read_function(scene, zero, DVI__SAYS_Q | DVI__SAYS_V | DVI__SAYS_T, "an event", &term)) return false;
+  if (!read_function(scene, zero, DVI__SAYS_Q | DVI__SAYS_V | DVI__SAYS_T | DVI__OF_STATE, "an event", &term)) return false;
   term->role = DVI__STANDS_BESIDE;
   *event = (dvi_scene_event){.name = name, .value = dvi__term_value, .user = term, .direction = sign[direction], .terminal = stop};
   return true;

@@ -10,9 +10,10 @@ static const dvi__function_word functions[] = {
     {"atan2", DVI__OP_ATAN2, 2}, {"hypot", DVI__OP_HYPOT, 2},
 };
 
-static const char *const others[] = {"t", "pi", "p", "dot", "cross", "norm", "transpose", "sum"};
+/* The last FREE of them may be names, too: of a frequency, say. */
+static const char *const others[] = {"t", "pi", "p", "dot", "cross", "norm", "transpose", "sum", "turn", "omega", "rate"};
 
-enum { FUNCTIONS = sizeof functions / sizeof *functions, OTHERS = sizeof others / sizeof *others };
+enum { FUNCTIONS = sizeof functions / sizeof *functions, OTHERS = sizeof others / sizeof *others, FREE = 3 };
 
 const dvi__function_word *dvi__function_word_of(const char *name)
 {
@@ -33,7 +34,7 @@ const char *dvi__word(int i)
 
 bool dvi__is_word(const char *text)
 {
-  for (int i = 0; i < FUNCTIONS + OTHERS; i++)
+  for (int i = 0; i < FUNCTIONS + OTHERS - FREE; i++)
     if (strcmp(dvi__word(i), text) == 0) return true;
   return false;
 }

@@ -13,7 +13,7 @@ typedef struct dvi__function_word {
 /* The function of this name, or NULL. */
 const dvi__function_word *dvi__function_word_of(const char *name);
 
-/* All words, for messages; and whether a text is one. */
+/* All words, for messages; and whether a text is one that no name may be. */
 int dvi__word_count(void);
 const char *dvi__word(int i);
 bool dvi__is_word(const char *text);

@@ -49,8 +49,9 @@ dvi_status dvi__system_alike(const dvi_system *a, const dvi_system *b)
 {
   /* The sizes stand before what they say how much of there is. */
   if (a->n != b->n || a->terms != b->terms || a->potential_count != b->potential_count || a->hash != b->hash)
-    return dvi__fail(DVI_BAD_ARGUMENT,
-                     "the systems declare different terms, masses, inertias, patterns or names; integrate such systems one by one");
+    return dvi__fail(
+        DVI_BAD_ARGUMENT,
+        "the systems declare different terms, masses, inertias, patterns, names or speeds; integrate such systems one by one");
   if (a->autonomous != b->autonomous)
     return dvi__fail(DVI_BAD_ARGUMENT, "one of the systems is declared autonomous, the other is not");
   if (!same_ranges(a, b))

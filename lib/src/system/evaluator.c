@@ -138,6 +138,15 @@ void dvi__mass_solve(dvi__evaluator *e, int count, const double *y, double *x)
   }
 }
 
+int dvi__mass_sign(const dvi__evaluator *e)
+{
+  const dvi_system *s = e->system;
+  int negative = 0;
+  if (s->mass_diagonal == NULL) return dvi__linear_sign(e->velocity);
+  for (int i = 0; i < s->n; i++) negative ^= s->mass_diagonal[i] < 0;
+  return negative ? -1 : 1;
+}
+
 void dvi__count_differences(dvi__evaluator *e)
 {
   e->counters->values += e->scratch.of_value.points;

@@ -96,7 +96,11 @@ dvi_status dvi__legendre_regular(dvi__evaluator *e, double t, const double *q, c
 /* x [n*count, component-major] = M^{-1} y for the constant mass; x may be y. Only for systems with DVI__CONSTANT_MASS. */
 void dvi__mass_solve(dvi__evaluator *e, int count, const double *y, double *x);
 
-/* One state: all invariants; v is the velocity that belongs to p. */
+/* The sign of its determinant, 1 or -1. */
+int dvi__mass_sign(const dvi__evaluator *e);
+
+/* One state: invariant i, or all of them; v is the velocity that belongs to p, and is read by the energy (i = 0) alone. */
+dvi_status dvi__invariant(dvi__evaluator *e, double t, const double *q, const double *v, const double *p, int i, double *value);
 dvi_status dvi__invariants(dvi__evaluator *e, double t, const double *q, const double *v, const double *p, double *value);
 
 #endif

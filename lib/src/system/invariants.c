@@ -1,8 +1,8 @@
 /* Energy, momentum maps of the declared symmetries, and declared invariants. */
+#include <math.h>
 #include <string.h>
 
 #include "core/status.h"
-#include "num/finite.h"
 #include "system/evaluator_struct.h"
 
 static dvi_status callback(int returned, const char *name)
@@ -35,17 +35,23 @@ static dvi_status energy(dvi__evaluator *e, double t, const double *q, const dou
   return DVI_OK;
 }
 
-dvi_status dvi__invariants(dvi__evaluator *e, double t, const double *q, const double *v, const double *p, double *value)
+dvi_status dvi__invariant(dvi__evaluator *e, double t, const double *q, const double *v, const double *p, int i, double *value)
 {
   const dvi_system *s = e->system;
-  DVI_TRY(energy(e, t, q, v, p, value));
-  for (int i = 0; i < s->symmetry_count; i++) DVI_TRY(momentum_map(e, &s->symmetries[i], q, p, value + 1 + i));
-  for (int i = 0; i < s->invariant_count; i++) {
-    const dvi_invariant *invariant = &s->invariants[i];
-    double *I = value + 1 + s->symmetry_count + i;
-    DVI_TRY(callback(invariant->value(t, q, p, I, invariant->user), s->invariant_names[1 + s->symmetry_count + i]));
-  }
-  const ptrdiff_t bad = dvi__first_not_finite((size_t)dvi_system_invariant_count(s), value);
-  if (bad < 0) return DVI_OK;
-  return dvi__fail(DVI_NOT_FINITE, "invariant '%s' is %g at t = %.6g", s->invariant_names[bad], value[bad], t);
+  const char *name = s->invariant_names[i];
+  const int declared = i - 1 - s->symmetry_count;
+  if (i == 0)
+    DVI_TRY(energy(e, t, q, v, p, value));
+  else if (declared < 0)
+    DVI_TRY(momentum_map(e, &s->symmetries[i - 1], q, p, value));
+  else
+    DVI_TRY(callback(s->invariants[declared].value(t, q, p, value, s->invariants[declared].user), name));
+  return isfinite(*value) ? DVI_OK : dvi__fail(DVI_NOT_FINITE, "invariant '%s' is %g at t = %.6g", name, *value, t);
+}
+
+dvi_status dvi__invariants(dvi__evaluator *e, double t, const double *q, const double *v, const double *p, double *value)
+{
+  const int count = dvi_system_invariant_count(e->system);
+  for (int i = 0; i < count; i++) DVI_TRY(dvi__invariant(e, t, q, v, p, i, &value[i]));
+  return DVI_OK;
 }

@@ -158,6 +158,7 @@ static dvi_status copy_potential(dvi_system *s, const dvi_potential *given, dvi_
                        given->hessian && given->hessian_batch, given->rate && given->rate_batch));
   DVI_TRY(check_rate(s, name, given->rate || given->rate_batch));
   DVI_TRY(check_range(given, name));
+  if (given->fast) s->terms |= DVI__FAST;
   term->callbacks = *given;
   term->name = copy_text(name);
   if (term->name == NULL) return no_memory();
@@ -324,6 +325,14 @@ static uint64_t add_pattern(uint64_t hash, const dvi__pattern *pattern)
   return dvi__hash(hash, (size_t)dvi__pattern_entries(pattern) * sizeof(int), pattern->row);
 }
 
+/* What is not said changes nothing: files of systems that say nothing of speeds are known as before. */
+static uint64_t add_potential(uint64_t hash, const dvi__potential_term *term)
+{
+  const int speed[] = {term->callbacks.fast != 0, term->callbacks.quadratic != 0};
+  hash = dvi__hash(add_pattern(hash, &term->qq), strlen(term->name) + 1, term->name);
+  return speed[0] || speed[1] ? dvi__hash(hash, sizeof speed, speed) : hash;
+}
+
 static uint64_t hash_of(const dvi_system *s)
 {
   uint64_t hash = dvi__hash(DVI__HASH_START, sizeof s->n, &s->n);
@@ -334,8 +343,7 @@ static uint64_t hash_of(const dvi_system *s)
   if (s->mass_values != NULL) hash = dvi__hash(hash, (size_t)dvi__pattern_entries(&s->vv) * sizeof(double), s->mass_values);
   if (s->lagrangian != NULL) hash = add_pattern(hash, &s->lagrangian->qq);
   if (s->constraint != NULL) hash = add_pattern(hash, &s->constraint->gradients);
-  for (int k = 0; k < s->potential_count; k++)
-    hash = dvi__hash(add_pattern(hash, &s->potentials[k].qq), strlen(s->potentials[k].name) + 1, s->potentials[k].name);
+  for (int k = 0; k < s->potential_count; k++) hash = add_potential(hash, &s->potentials[k]);
   for (int i = 0; i < dvi_system_invariant_count(s); i++)
     hash = dvi__hash(hash, strlen(s->invariant_names[i]) + 1, s->invariant_names[i]);
   return hash;

@@ -18,8 +18,9 @@ typedef enum dvi__term {
   DVI__FACTORS = 32,
   DVI__ROTATIONS = 64, /* among the factors */
   DVI__DIRECTIONS = 128,
-  DVI__KINDS = DVI__ROTATIONS | DVI__DIRECTIONS,
-  DVI__LAST_TERM = DVI__DIRECTIONS
+  DVI__FAST = 256, /* among the potentials */
+  DVI__KINDS = DVI__ROTATIONS | DVI__DIRECTIONS | DVI__FAST,
+  DVI__LAST_TERM = DVI__FAST
 } dvi__term;
 
 /* How to difference a missing Hessian block: columns of a group are moved together. */
@@ -106,7 +107,7 @@ int dvi__system_has_gradients(const dvi_system *system);
 /* DVI_OK if L_t is known: the system is autonomous, or all terms give their rates. Else the sentence names the term without. */
 dvi_status dvi__system_has_rates(const dvi_system *system);
 
-/* DVI_OK if one may stand in for the other in all that is made for it: they declare the same terms, masses, patterns, names, derivatives and reaches, and
+/* DVI_OK if one may stand in for the other in all that is made for it: they declare the same terms, masses, patterns, names, speeds, derivatives and reaches, and
  * differ in what their callbacks compute alone. */
 dvi_status dvi__system_alike(const dvi_system *a, const dvi_system *b);
 

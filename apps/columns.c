@@ -1,0 +1,181 @@
+#define _POSIX_C_SOURCE 200809L
+#include "columns.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "command.h"
+#include "spelling.h"
+#include "table.h"
+#include "velocity.h"
+
+enum { HINT_SIZE = 128 };
+
+/* ---- what there is ---- */
+
+static void add(run_columns *c, const char *name, column_kind kind, int index)
+{
+  c->all[c->there++] = (shown_column){name, kind, index};
+}
+
+static void add_all(run_columns *c, int count, char *const *name, column_kind kind)
+{
+  for (int i = 0; i < count; i++) add(c, name[i], kind, i);
+}
+
+static void list_all(run_columns *c, const dvi_integrator *integrator)
+{
+  const problem *scene = c->scene;
+  add_all(c, scene->nq, scene->coordinate, COLUMN_COORDINATE);
+  if (scene->velocity != NULL) add_all(c, scene->nv, scene->velocity, COLUMN_VELOCITY);
+  add_all(c, scene->nv, scene->momentum, COLUMN_MOMENTUM);
+  for (int i = 0; i < dvi_system_invariant_count(scene->system); i++)
+    add(c, dvi_system_invariant_name(scene->system, i), COLUMN_INVARIANT, i);
+  if (dvi_integrator_chooses_steps(integrator)) add(c, "h", COLUMN_STEP, 0);
+  if (scene->velocity != NULL) add(c, "distance", COLUMN_DISTANCE, 0);
+  if (scene->terms->one_form != NULL || scene->terms->constraint != NULL) add(c, "constraint", COLUMN_CONSTRAINT, 0);
+  if (!isnan(dvi_integrator_jump(integrator, NULL))) add(c, "jump", COLUMN_JUMP, 0);
+}
+
+/* ---- what is shown ---- */
+
+static void show(run_columns *c, int k)
+{
+  c->column[c->count++] = c->all[k];
+  c->shown[k] = true;
+  c->shows[c->all[k].kind] = true;
+}
+
+/* All words that a column may be named by, for the nearest one. */
+static const char *name_at(int k, const void *list)
+{
+  const run_columns *c = list;
+  return k < c->there ? c->all[k].name : NULL;
+}
+
+/* t is in front of every row. */
+static int show_name(run_columns *c, const char *method, const char *name)
+{
+  char hint[HINT_SIZE];
+  int k = 0;
+  if (strcmp(name, "t") == 0) return DONE;
+  while (k < c->there && strcmp(c->all[k].name, name) != 0) k++;
+  if (k == c->there)
+    return usage_error("run: %s by %s has no column '%s'%s", c->scene->name, method, name,
+                       suggestion(name, name_at, c, hint, sizeof hint));
+  if (c->shown[k]) return usage_error("run: column '%s' is asked for twice", name);
+  show(c, k);
+  return DONE;
+}
+
+static int show_asked(run_columns *c, const char *method, const char *asked)
+{
+  int code = DONE;
+  char *names = strdup(asked);
+  if (names == NULL) return library_error(DVI_NO_MEMORY);
+  for (char *name = names, *next; name != NULL && code == DONE; name = next) {
+    next = strchr(name, ',');
+    if (next != NULL) *next++ = '\0';
+    code = show_name(c, method, name);
+  }
+  free(names);
+  return code;
+}
+
+static int show_wanted(run_columns *c, const char *method)
+{
+  int code = DONE;
+  for (int i = 0; i < c->scene->column_count && code == DONE; i++) code = show_name(c, method, c->scene->column[i]);
+  return code;
+}
+
+static bool make_room(run_columns *c)
+{
+  const size_t nq = (size_t)c->scene->nq, nv = (size_t)c->scene->nv;
+  const size_t invariants = (size_t)dvi_system_invariant_count(c->scene->system), most = nq + 2 * nv + invariants + COLUMN_KINDS;
+  c->all = calloc(most, sizeof *c->all);
+  c->column = calloc(most, sizeof *c->column);
+  c->shown = calloc(most, sizeof *c->shown);
+  c->invariant = calloc(invariants, sizeof *c->invariant);
+  c->velocity = calloc(nv, sizeof *c->velocity);
+  c->room = calloc(nq + nv, sizeof *c->room);
+  return c->all != NULL && c->column != NULL && c->shown != NULL && c->invariant != NULL && c->velocity != NULL && c->room != NULL;
+}
+
+int columns_choose(run_columns *c, const problem *scene, const dvi_integrator *integrator, const char *asked)
+{
+  *c = (run_columns){.scene = scene};
+  if (!make_room(c)) return library_error(DVI_NO_MEMORY);
+  list_all(c, integrator);
+  if (asked != NULL) return show_asked(c, dvi_integrator_method(integrator), asked);
+  if (scene->column != NULL) return show_wanted(c, dvi_integrator_method(integrator));
+  for (int k = 0; k < c->there; k++) show(c, k);
+  return DONE;
+}
+
+void columns_clear(run_columns *c)
+{
+  free(c->all);
+  free(c->column);
+  free(c->shown);
+  free(c->invariant);
+  free(c->velocity);
+  free(c->room);
+  *c = (run_columns){.count = 0};
+}
+
+/* ---- rows ---- */
+
+void columns_header(const run_columns *c, FILE *stream)
+{
+  (void)fputs("t", stream);
+  for (int k = 0; k < c->count; k++) {
+    (void)fputc(',', stream);
+    csv_text(stream, c->column[k].name);
+  }
+  (void)fputc('\n', stream);
+}
+
+static dvi_status measure(run_columns *c, dvi_integrator *integrator)
+{
+  const double t = dvi_integrator_time(integrator), *q = dvi_integrator_q(integrator), *p = dvi_integrator_p(integrator);
+  dvi_status status = c->energy ? dvi_integrator_invariant(integrator, 0, c->invariant) : DVI_OK;
+  for (int k = 0; k < c->count && status == DVI_OK && c->shows[COLUMN_INVARIANT]; k++) {
+    const shown_column *column = &c->column[k];
+    if (column->kind == COLUMN_INVARIANT && !(c->energy && column->index == 0))
+      status = dvi_integrator_invariant(integrator, column->index, &c->invariant[column->index]);
+  }
+  if (status == DVI_OK && c->shows[COLUMN_VELOCITY]) status = velocity_near(c->scene, t, q, p, c->room, c->velocity);
+  if (status == DVI_OK && c->shows[COLUMN_CONSTRAINT]) status = dvi_integrator_constraint(integrator, &c->constraint);
+  return status;
+}
+
+bool columns_measure(run_columns *c, dvi_integrator *integrator)
+{
+  if (measure(c, integrator) == DVI_OK) return true;
+  complain("run: no row at t = %.17g: %s; try a smaller --h", dvi_integrator_time(integrator), dvi_last_error());
+  blame_scene();
+  return false;
+}
+
+static double number_of(const run_columns *c, const dvi_integrator *integrator, const shown_column *column)
+{
+  switch (column->kind) {
+  case COLUMN_COORDINATE: return dvi_integrator_q(integrator)[column->index];
+  case COLUMN_VELOCITY: return c->velocity[column->index];
+  case COLUMN_MOMENTUM: return dvi_integrator_p(integrator)[column->index];
+  case COLUMN_INVARIANT: return c->invariant[column->index];
+  case COLUMN_STEP: return dvi_integrator_last_step(integrator);
+  case COLUMN_DISTANCE: return dvi_system_distance(c->scene->system, dvi_integrator_q(integrator));
+  case COLUMN_CONSTRAINT: return c->constraint;
+  default: return dvi_integrator_jump(integrator, NULL);
+  }
+}
+
+void columns_row(const run_columns *c, const dvi_integrator *integrator, FILE *stream)
+{
+  (void)fprintf(stream, "%.17g", dvi_integrator_time(integrator));
+  for (int k = 0; k < c->count; k++) (void)fprintf(stream, ",%.17g", number_of(c, integrator, &c->column[k]));
+  (void)fputc('\n', stream);
+}

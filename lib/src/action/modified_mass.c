@@ -1,0 +1,77 @@
+#include "action/modified_mass.h"
+
+#include "action/quadratic.h"
+#include "core/memory.h"
+#include "core/status.h"
+
+struct dvi__modified_mass {
+  dvi__evaluator *evaluator;
+  dvi__quadratic parts;
+  double *matrix; /* in the order of their pattern */
+  dvi__linear *linear;
+  double square; /* h^2 of the matrix that is factored; 0: none is */
+};
+
+static dvi_status fill(dvi__modified_mass *m, const dvi_system *system, dvi_counters *counters)
+{
+  DVI_TRY(dvi__evaluator_create(system, 1, DVI__HESSIANS, counters, &m->evaluator));
+  DVI_TRY(dvi__quadratic_fill(system, m->evaluator, &m->parts));
+  m->matrix = DVI_NEW(double, dvi__pattern_entries(&m->parts.pattern));
+  if (m->matrix == NULL) return dvi__fail(DVI_NO_MEMORY, "modified mass: no memory");
+  return dvi__linear_create(&m->parts.pattern, DVI__LINEAR_AUTO, counters, &m->linear);
+}
+
+dvi_status dvi__modified_mass_create(const dvi_system *system, dvi_counters *counters, dvi__modified_mass **mass)
+{
+  dvi__modified_mass *made = *mass = DVI_NEW(dvi__modified_mass, 1);
+  if (made == NULL) return dvi__fail(DVI_NO_MEMORY, "modified mass: no memory");
+  const dvi_status status = fill(made, system, counters);
+  if (status != DVI_OK) dvi__modified_mass_destroy(mass);
+  return status;
+}
+
+void dvi__modified_mass_destroy(dvi__modified_mass **mass)
+{
+  dvi__modified_mass *m = *mass;
+  if (m == NULL) return;
+  dvi__linear_destroy(&m->linear);
+  dvi__quadratic_clear(&m->parts);
+  dvi__release(m->matrix);
+  dvi__evaluator_destroy(&m->evaluator);
+  dvi__release(m);
+  *mass = NULL;
+}
+
+/* The determinant keeps the sign that it has at h = 0 until the matrix is singular; longer steps would jump through infinity. */
+static dvi_status factor(dvi__modified_mass *m, double square)
+{
+  m->square = 0;
+  for (int e = 0; e < dvi__pattern_entries(&m->parts.pattern); e++)
+    m->matrix[e] = m->parts.mass[e] + 0.25 * square * m->parts.stiffness[e];
+  const dvi_status status = dvi__linear_factor(m->linear, m->matrix);
+  if (status != DVI_OK && status != DVI_SINGULAR) return status;
+  if (status == DVI_SINGULAR || dvi__linear_sign(m->linear) != dvi__mass_sign(m->evaluator))
+    return dvi__fail(
+        DVI_NOT_CONVERGED,
+        "M + h^2/4 K is singular at this length or at a shorter one: the Hessian K of the fast potentials is indefinite, and "
+        "their motion grows too much in a step");
+  m->square = square;
+  return DVI_OK;
+}
+
+dvi_status dvi__modified_mass_solve(dvi__modified_mass *m, double h, double *x)
+{
+  if (m->square != h * h) DVI_TRY(factor(m, h * h));
+  dvi__linear_solve(m->linear, x);
+  return DVI_OK;
+}
+
+const dvi__pattern *dvi__modified_mass_pattern(const dvi__modified_mass *m)
+{
+  return &m->parts.pattern;
+}
+
+dvi__linear_kind dvi__modified_mass_kind(const dvi__modified_mass *m)
+{
+  return dvi__linear_kind_of(m->linear);
+}

@@ -1,0 +1,37 @@
+/* Kicks by the slow potentials, and between them the exact motion of quadratic fast ones, mode by mode (action/modes.h). What kicks is the slow gradient at a place
+ * near the state, and comes through a filter:
+ *
+ *     p <- p - h/2 Psi_1 U'(A(q)),      A(q) the filter Phi of a state at rest: q - X diag((1 - phi)/lambda) X^T W'(q).
+ *
+ * Phi and Psi_1 are functions of the modes' x = h omega. The method is symplectic where they are one. */
+#ifndef DVI_METHOD_OSCILLATION_H
+#define DVI_METHOD_OSCILLATION_H
+#include "action/modes.h"
+#include "method/impulse.h"
+
+/* What the filters do to a mode: phi, (1 - phi)/x^2 and psi_1. */
+typedef struct dvi__filter {
+  double phi, shift, psi;
+} dvi__filter;
+
+/* The filters by their number at s = x^2, which is negative where the fast potentials push. 0: there is none at this s. */
+typedef int dvi__filter_pair(int number, double s, dvi__filter *filter);
+
+/* A stepper's own struct. */
+typedef struct dvi__oscillation {
+  dvi__impulse impulse;
+  dvi__modes *modes;
+  dvi__evaluator *fast_forces;
+  dvi__filter_pair *pair; /* NULL: kicks as they are */
+  int number;
+  double h;                 /* of the filters below; 0: of none */
+  dvi__filter *filter;      /* [n] of the modes */
+  double *V_q, *y, *nearby; /* [n] work */
+} dvi__oscillation;
+
+/* DVI_UNSUPPORTED if a fast potential is not declared quadratic, and `remedy` says what else can be done; DVI_SINGULAR if a mass is not positive. */
+dvi_status dvi__oscillation_create(dvi__stepper *self, dvi__filter_pair *pair, int number, const char *remedy);
+void dvi__oscillation_destroy(dvi__stepper *self);
+void dvi__oscillation_explain(const dvi__stepper *self, dvi__text *text);
+
+#endif

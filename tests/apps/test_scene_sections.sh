@@ -1,0 +1,128 @@
+#!/bin/sh
+# What a scene declares is used or refused: each form of a scene with each method, and each section of those that a method takes, whose change must show.
+# Usage: test_scene_sections.sh DVI
+. "$(dirname "$0")/check.sh"
+
+common() {
+  cat <<'END'
+title: first
+parameters: {k: 2}
+coordinates: {x: scalar, y: scalar}
+definitions: {r2: x^2 + y^2}
+symmetries: {turn: {x: -y, y: x}}
+invariants: {size: r2}
+events: {pass: {zero: y + 0.1}}
+step: 0.1
+until: 0.5
+report: {every: 1}
+sweep: {k: [1, 2]}
+END
+}
+{ common; cat <<'END'
+kinetic: (x'^2 + 2*y'^2)/2
+potentials: {spring: k*r2/2, well: x^4/4}
+initial: {x: 1, y: 0, x': -0.3, y': -1}
+END
+} >separable.yaml
+{ common; cat <<'END'
+lagrangian: x'^2/2 + (1 + x^2)*y'^2/2 - k*r2/2
+initial: {x: 1, y: 0, x': -0.3, y': -1}
+END
+} >general.yaml
+{ common; cat <<'END'
+one_form: {x: y}
+hamiltonian: k*r2/2
+initial: {x: 1, y: 0.3}
+END
+} >oneform.yaml
+{ common; cat <<'END'
+hamiltonian: (p(x)^2 + p(y)^2)/2 + k*y
+constraints: {circle: r2 - 1, tangent: x*p(x) + y*p(y)}
+initial: {x: 1, y: 0, p(x): 0, p(y): -0.5}
+END
+} >dirac.yaml
+# Form, section, and a change of it, by sed.
+cat >changes <<'END'
+all parameters s/k: 2/k: 3/
+all coordinates s/{x: scalar, y: scalar}/{y: scalar, x: scalar}/
+all definitions s/r2: x^2/r2: 2*x^2/
+all symmetries s/x: -y/x: -2*y/
+all symmetries s/turn:/twist:/
+all invariants s/size: r2/size: r2^2/
+all events s/y + 0.1/y + 50/
+all events s/0.1}/0.1, direction: rising}/
+all events s/0.1}/0.1, stop: yes}/
+all step s/step: 0.1/step: 0.05/
+all until s/until: 0.5/until: 0.4/
+all report s/every: 1/every: 2/
+all report s/every: 1/columns: [turn, y]/
+separable kinetic s/2\*y'^2/3*y'^2/
+separable potentials s/well: x^4/well: 2*x^4/
+separable initial s/x': -0.3/x': 0/
+separable initial s/y': -1/p(x): 1, p(y): -2/;s/x': -0.3, //
+general lagrangian s/1 + x^2/2 + x^2/
+general initial s/x': -0.3/x': 0/
+oneform one_form s/x: y}/x: 2*y}/
+oneform hamiltonian s/k\*r2/k*(x + r2)/
+oneform initial s/y: 0.3/y: 0.2/
+dirac hamiltonian s/k\*y/2*k*y/
+dirac constraints s/r2 - 1/x^2 + 2*y^2 - 1/;s/x\*p(x) + y/x*p(x) + 2*y/
+dirac initial s/p(y): -0.5/p(y): -0.4/
+END
+while read -r form section change; do
+  for scene in separable general oneform dirac; do
+    [ "$form" = all ] || [ "$form" = $scene ] || continue
+    sed "$change" $scene.yaml >"$scene-$section-$((changes += 1)).yaml"
+    cmp -s $scene.yaml "$scene-$section-$changes.yaml" && fail "$scene: '$change' changes nothing"
+  done
+done <changes
+
+# show SCENE METHOD: what a run shows, all together.
+show() { "$dvi" run "$1" --method "$2" 2>&1; }
+
+# used SCENE METHOD: the method takes the scene, and all its sections.
+used() {
+  show "$1.yaml" "$2" >base
+  for changed in "$1"-*.yaml; do
+    show "$changed" "$2" >shown
+    [ -s shown ] || fail "$2: $changed: neither rows nor a reason"
+    cmp -s base shown && fail "$2: the change in $changed does not show"
+  done
+  { cat "$1.yaml"; echo "method: $2"; } >wish.yaml
+  "$dvi" run wish.yaml >shown 2>&1
+  same shown base "$2: the scene's own method"
+  expect 0 "$2: a sweep over $1" sweep "$1.yaml" --method "$2" --threads 1 --out sweep.csv
+  [ "$(cut -d, -f1,2 sweep.csv | tr '\n' ' ')" = 'k,status 1,DVI_OK 2,DVI_OK ' ] || fail "$2: the section sweep of $1"
+}
+
+# Every method takes a form, or refuses it by a sentence that names those that do.
+refused=0
+"$dvi" list methods --csv - | tail -n +2 | cut -d, -f1 >methods
+echo composition:order=4,base=midpoint >>methods
+for scene in separable general oneform dirac; do
+  taken=
+  while read -r method; do
+    if "$dvi" check $scene.yaml --method "$method" >out 2>err; then
+      taken="$taken $method"
+      says out "^$scene: first$" "$method: the title of $scene"
+      used $scene "$method"
+    else
+      refused=$((refused + 1))
+      expect 2 "$method refuses $scene" run $scene.yaml --method "$method"
+      says err 'methods for this system: [a-z]\| can$' "$method: what to take for $scene"
+    fi
+  done <methods
+  echo "$scene:$taken"
+  [ -n "$taken" ] || fail "no method takes $scene"
+done
+[ $refused -gt 0 ] || fail 'no method refuses anything'
+
+# Sections that no scene may have, or not beside others.
+for pair in 'forces: {x: 1}|takes forces' 'lagrangian: x'"'"'^2|one of these' 'hamiltonian: x|no hamiltonian' 'one_form: {x: y}|one of these' \
+  'constraints: {a: x, b: y}|one of these' 'friction: 1|has no .friction.'; do
+  { cat separable.yaml; echo "${pair%%|*}"; } >odd.yaml
+  expect 2 "${pair%%|*}" run odd.yaml --method verlet
+  says err "${pair#*|}" "why not ${pair%%|*}"
+done
+no_trace 'sections'
+finish

@@ -1,0 +1,200 @@
+/* labels: unit */
+#include <math.h>
+
+#include "support/bond.h"
+#include "support/oscillators.h"
+#include "support/runs.h"
+#include "support/suite.h"
+#include "support/systems.h"
+
+static dvi_counters counters_of(const dvi_integrator *integrator)
+{
+  dvi_counters counters;
+  dvi_integrator_counters(integrator, &counters);
+  return counters;
+}
+
+/* Both take the same step; they differ by roundings of forces that are as large as 25 times the momenta. */
+START_TEST(one_linear_system_a_step_does_what_newtons_method_does)
+{
+  problem *chain = made_problem("fpu", NULL);
+  dvi_integrator *linear = started(chain, "imex"), *newton = started(chain, "imex:solver=newton");
+  advance(linear, 0.1, 100);
+  advance(newton, 0.1, 100);
+  ck_assert_double_le(distance(6, dvi_integrator_q(linear), dvi_integrator_q(newton)), 1e-13);
+  ck_assert_double_le(distance(6, dvi_integrator_p(linear), dvi_integrator_p(newton)), 1e-12);
+  dvi_integrator_destroy(&linear);
+  dvi_integrator_destroy(&newton);
+  problem_destroy(&chain);
+}
+END_TEST
+
+START_TEST(a_quadratic_fast_potential_takes_one_factorisation_a_run_and_one_gradient_a_step)
+{
+  problem *chain = made_problem("fpu", "ell=100");
+  dvi_integrator *integrator = started(chain, "imex");
+  advance(integrator, 0.1, 500);
+  const dvi_counters c = counters_of(integrator);
+  ck_assert_int_eq(c.factorizations, 1);
+  ck_assert_int_eq(c.symbolic, 1);
+  ck_assert_int_eq(c.solves, 500);
+  ck_assert_int_eq(c.gradients, 1 + 1 + 500); /* the start asks for forces, too */
+  ck_assert_int_eq(c.hessians, 1);
+  ck_assert_int_eq(c.jacobians + c.residuals + c.newtons, 0);
+  advance(integrator, 0.05, 1);
+  ck_assert_int_eq(counters_of(integrator).factorizations, 2);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&chain);
+}
+END_TEST
+
+START_TEST(another_fast_potential_goes_to_the_midpoint_rules_solvers)
+{
+  bond of;
+  make_bond(2500, 0.5, &of);
+  dvi_integrator *integrator = bond_integrator(&of, "imex");
+  advance(integrator, 0.1, 50);
+  const dvi_counters c = counters_of(integrator);
+  ck_assert_int_ge(c.fixed_points + c.simplified + c.newtons, 50);
+  ck_assert_int_gt(c.jacobians, 0);
+  dvi_integrator_destroy(&integrator);
+  destroy_bond(&of);
+}
+END_TEST
+
+/* ---- a saddle: V = -k q^2/2 in one direction, k = 4 ---- */
+
+static int saddle(double t, const double *q, double *V, void *user)
+{
+  (void)t, (void)user;
+  *V = 50 * q[0] * q[0] - 2 * q[1] * q[1];
+  return 0;
+}
+
+static int saddle_gradient(double t, const double *q, double *V_q, void *user)
+{
+  (void)t, (void)user;
+  V_q[0] = 100 * q[0];
+  V_q[1] = -4 * q[1];
+  return 0;
+}
+
+/* The midpoint rule turns e^{2h} into (1 + h)/(1 - h). */
+START_TEST(along_a_saddle_the_motion_grows_and_steps_beyond_its_pole_are_refused)
+{
+  const dvi_potential potential = {.name = "saddle", .value = saddle, .gradient = saddle_gradient, .fast = 1, .quadratic = 1};
+  dvi_system *system = make_system(
+      &(dvi_system_terms){.dimension = 2, .mass.scalar = 1, .potentials = &potential, .potential_count = 1});
+  dvi_integrator *integrator = made_integrator(system, "imex");
+  const double q[] = {0, 1}, p[] = {0, 2};
+  ck_assert_int_eq(dvi_integrator_start(integrator, 0, q, p), DVI_OK);
+  advance(integrator, 0.5, 1);
+  ck_assert_double_eq_tol(dvi_integrator_q(integrator)[1], 3, 1e-14);
+  ck_assert_double_eq_tol(dvi_integrator_p(integrator)[1], 6, 1e-14);
+  for (int k = 0; k < 2; k++) {
+    ck_assert_int_eq(dvi_integrator_step(integrator, k == 0 ? 1.0 : 1.5), DVI_NOT_CONVERGED);
+    check_words("imex: step 2 from t = 0.5 with h = 1");
+    check_words("the state is unchanged, try a smaller step: M + h^2/4 K is singular at this length or at a shorter one");
+    check_words("indefinite");
+    ck_assert_double_eq_tol(dvi_integrator_q(integrator)[1], 3, 1e-14);
+  }
+  advance(integrator, 0.5, 1);
+  ck_assert_double_eq_tol(dvi_integrator_q(integrator)[1], 9, 1e-13);
+  dvi_integrator_destroy(&integrator);
+  dvi_system_destroy(&system);
+}
+END_TEST
+
+/* q'' = 1 + q^2 runs to infinity. From rest at 0 the midpoint rule asks for x = h^2/2 (1 + x^2/4), which has no real solution for h > sqrt(2). */
+static int runaway(double t, const double *q, double *V, void *user)
+{
+  (void)t, (void)user;
+  *V = -q[0] - q[0] * q[0] * q[0] / 3;
+  return 0;
+}
+
+static int runaway_gradient(double t, const double *q, double *V_q, void *user)
+{
+  (void)t, (void)user;
+  V_q[0] = -1 - q[0] * q[0];
+  return 0;
+}
+
+START_TEST(a_step_without_a_solution_says_how_far_it_came)
+{
+  const dvi_potential potential = {.name = "runaway", .value = runaway, .gradient = runaway_gradient, .fast = 1};
+  dvi_system *system = make_system(
+      &(dvi_system_terms){.dimension = 1, .mass.scalar = 1, .potentials = &potential, .potential_count = 1});
+  dvi_integrator *integrator = made_integrator(system, "imex");
+  ck_assert_int_eq(dvi_integrator_start(integrator, 0, &(double){0}, &(double){0}), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_step(integrator, 1.5), DVI_NOT_CONVERGED);
+  const char *const words[] = {"imex: step 1 from t = 0 with h = 1.5 failed", "the state is unchanged, try a smaller step",
+                               "iterations", "residual "};
+  for (int k = 0; k < 4; k++) check_words(words[k]);
+  ck_assert_double_eq(dvi_integrator_q(integrator)[0], 0);
+  advance(integrator, 0.7, 1);
+  dvi_integrator_destroy(&integrator);
+  dvi_system_destroy(&system);
+}
+END_TEST
+
+/* ---- oscillators: slow q^2/2, fast omega^2 q^2/2 ---- */
+
+/* Where substeps resonate (tests/method/test_respa.c), and in between. */
+START_TEST(no_fast_frequency_resonates)
+{
+  const double peak[] = {.99945, 1.99942, 2.99872, 3.99724};
+  for (int k = 1; k <= 45; k++) ck_assert_double_le(oscillators_energy_error("imex", 0.1, 0.1 * k, 10000), 3e-3);
+  for (int k = 0; k < 4; k++) ck_assert_double_le(oscillators_energy_error("imex", 0.1, peak[k], 10000), 3e-3);
+  for (int k = 1; k <= 450; k++) ck_assert_double_eq(oscillators_growth("imex", 0.1, 0.01 * k), 1);
+}
+END_TEST
+
+START_TEST(steps_are_stable_exactly_below_the_slow_limit_of_2)
+{
+  const double x[] = {0.1, 1, 10, 100};
+  for (int k = 0; k < 4; k++) {
+    ck_assert_double_eq(oscillators_growth("imex", 1.999, x[k]), 1);
+    ck_assert_double_gt(oscillators_growth("imex", 2.001, x[k]), 1 + 1e-5);
+  }
+}
+END_TEST
+
+/* ---- fpu ---- */
+
+/* The largest |I - 1| of the stiff springs' energies until then. */
+static double exchange_error(double t_end)
+{
+  problem *chain = made_problem("fpu", NULL);
+  dvi_integrator *integrator = started(chain, "imex");
+  double worst = 0, value[4];
+  for (long step = 0; step < lround(t_end / 0.1); step++) {
+    advance(integrator, 0.1, 1);
+    ck_assert_int_eq(dvi_integrator_invariants(integrator, value), DVI_OK);
+    worst = fmax(worst, fabs(value[1] + value[2] + value[3] - 1));
+  }
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&chain);
+  return worst;
+}
+
+START_TEST(the_stiff_springs_keep_their_energy_over_long_times_at_steps_beyond_their_period)
+{
+  ck_assert_double_le(exchange_error(200), 0.08);
+  ck_assert_double_le(exchange_error(4000), 0.11);
+}
+END_TEST
+
+int main(void)
+{
+  TCase *tests = tcase_create("imex");
+  tcase_add_test(tests, one_linear_system_a_step_does_what_newtons_method_does);
+  tcase_add_test(tests, a_quadratic_fast_potential_takes_one_factorisation_a_run_and_one_gradient_a_step);
+  tcase_add_test(tests, another_fast_potential_goes_to_the_midpoint_rules_solvers);
+  tcase_add_test(tests, along_a_saddle_the_motion_grows_and_steps_beyond_its_pole_are_refused);
+  tcase_add_test(tests, a_step_without_a_solution_says_how_far_it_came);
+  tcase_add_test(tests, no_fast_frequency_resonates);
+  tcase_add_test(tests, steps_are_stable_exactly_below_the_slow_limit_of_2);
+  tcase_add_test(tests, the_stiff_springs_keep_their_energy_over_long_times_at_steps_beyond_their_period);
+  return run_tests("imex", tests);
+}

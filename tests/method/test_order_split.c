@@ -1,0 +1,38 @@
+/* labels: order reference */
+/* Orders of methods that split, at fixed frequencies. */
+#include <check.h>
+
+#include "support/order.h"
+#include "support/suite.h"
+
+static const char *const methods[] = {"imex",      "imex:solver=newton",         "respa:substeps=3", "respa:substeps=exact",
+                                      "mollified", "mollified:filter=projection"};
+enum { METHODS = sizeof methods / sizeof *methods };
+
+START_TEST(they_have_order_2_on_the_chain_of_soft_and_stiff_springs)
+{
+  check_order_over("fpu", NULL, 1, 100, methods[_i], 2);
+}
+END_TEST
+
+START_TEST(they_have_order_2_on_oscillators)
+{
+  check_order_over("oscillators", "omega=10", 2, 40, methods[_i], 2);
+}
+END_TEST
+
+START_TEST(ida_finds_their_order_2)
+{
+  check_order_by_ida_over("fpu", "omega=20", 1, 40, methods[_i], 2);
+}
+END_TEST
+
+int main(void)
+{
+  TCase *tests = tcase_create("order");
+  tcase_set_timeout(tests, 0);
+  tcase_add_loop_test(tests, they_have_order_2_on_the_chain_of_soft_and_stiff_springs, 0, METHODS);
+  tcase_add_loop_test(tests, they_have_order_2_on_oscillators, 0, METHODS);
+  tcase_add_loop_test(tests, ida_finds_their_order_2, 0, METHODS);
+  return run_tests("order_split", tests);
+}
