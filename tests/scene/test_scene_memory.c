@@ -29,7 +29,13 @@ static const char *const texts[] = {
     "coordinates: {x: scalar, y: scalar}\nlagrangian: (1 + x^2)*y'^2/2 + x'^2*cos(y)/2 - x*y\ninitial: {x: 1, y: 0.2, x': 1}\n" RUN,
     "coordinates: {x: scalar, y: scalar}\none_form: {x: y + y^3, y: 0}\nhamiltonian: x^2 + y^2\ninitial: {x: 1, y: 2}\n" RUN,
     "coordinates: {x: scalar, y: scalar}\nhamiltonian: (p(x)^2 + p(y)^2)/2 + y\n"
-    "constraints: {on: (x^2 + y^2 - 1)/2, along: x*p(x) + y*p(y)}\ninitial: {x: 0.8, y: 0.6, p(x): 0.6, p(y): -0.8}\n" RUN};
+    "constraints: {on: (x^2 + y^2 - 1)/2, along: x*p(x) + y*p(y)}\ninitial: {x: 0.8, y: 0.6, p(x): 0.6, p(y): -0.8}\n" RUN,
+    "coordinates: {R: rotation, B: motion, \"u[2]\": direction}\n"
+    "lagrangian: >-\n  omega(R)[1]^2 + omega(R)[2]^2/2 + omega(R)[3]^2/2 + dot(omega(B), omega(B))/2 + dot(B.x', B.x')/2\n"
+    "  + sum(i, dot(u[i]', u[i]')/2) - dot(R*[0, 0, 1], u[1]) - norm(B.x + B.R*u[2])^4\n"
+    "symmetries: {about: {omega(R): \"transpose(R)*[0, 0, 1]\"}}\n"
+    "initial:\n  R: turn([0, 0, 1], 1)\n  omega(R): [0, 1, 2]\n  B.R: turn([1, 0, 0], 1)\n  B.x: [1, 2, 3]\n  u[i]: '[0, 0, "
+    "1]'\n" RUN};
 
 enum { TEXTS = sizeof texts / sizeof *texts, MESSAGE_SIZE = 512, MOST = 20000 };
 
