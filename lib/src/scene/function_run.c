@@ -326,9 +326,10 @@ static void run_tiles(const dvi__part *part, const tile *shape, const double *co
   }
 }
 
+/* Aligned to pages: the processor compares addresses within a page first, and times would depend on where the stack happens to begin. */
 static void run_small(const dvi__part *part, const tile *shape, const double *const *x, double *const *result)
 {
-  _Alignas(64) double memory[SMALL];
+  _Alignas(4096) double memory[SMALL];
   const double *input[SMALL / DVI__LANES];
   run_tiles(part, shape, x, result, input, memory);
 }
