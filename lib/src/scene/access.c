@@ -44,7 +44,7 @@ static dvi__value parameter_value(dvi__context *c, dvi__parameter *p)
 /* An index for every element, between 1 and `count`. */
 static bool index_of(const dvi__context *c, const dvi__expression *e, int count, int **each, int *all);
 
-bool dvi__member_numbering(dvi__context *c, const dvi__coordinate *x, const dvi__expression *index, const dvi__places *places,
+bool dvi__member_numbering(dvi__context *c, const dvi__coordinate *x, const dvi__expression *index, const dvi__slots *places,
                            dvi__numbering *numbering)
 {
   int *each = NULL, all = 1;

@@ -19,7 +19,7 @@ const dvi__coordinate *dvi__part_of_motion(const dvi__coordinate *x, const char 
 /* The coordinate that x, x[i], B.R or B[i].x names, and its index or NULL; NULL, and nothing is told, if it is of another form. */
 const dvi__coordinate *dvi__member_named(const dvi_scene *scene, const dvi__expression *e, const dvi__expression **index);
 /* The first number, for every element, of a coordinate (index NULL) or of a member of a family. */
-bool dvi__member_numbering(dvi__context *c, const dvi__coordinate *x, const dvi__expression *index, const dvi__places *places,
+bool dvi__member_numbering(dvi__context *c, const dvi__coordinate *x, const dvi__expression *index, const dvi__slots *places,
                            dvi__numbering *numbering);
 /* Its numbers. */
 dvi__value dvi__coordinate_value(dvi__context *c, const dvi__coordinate *x, const dvi__expression *index, dvi__span span);

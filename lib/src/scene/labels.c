@@ -43,7 +43,7 @@ static void write_label(const dvi__coordinate *x, which of, int i, int k, char *
 
 static bool label_coordinate(dvi_scene *scene, const dvi__coordinate *x, which of, char **label)
 {
-  const dvi__places *places = of == OF_Q ? &x->q : &x->v;
+  const dvi__slots *places = of == OF_Q ? &x->q : &x->v;
   const size_t size = strlen(x->name) + ROOM;
   if (x->kind == DVI__MOTION)
     return label_coordinate(scene, &x->part[0], of, label) && label_coordinate(scene, &x->part[1], of, label);

@@ -33,9 +33,9 @@ typedef struct dvi__parameter {
 typedef enum dvi__kind { DVI__LINES, DVI__ROTATION, DVI__MOTION, DVI__DIRECTION, DVI__ANGLE } dvi__kind;
 
 /* The numbers of a coordinate in q, or in v and p: member m has `components` from first + m * stride on. */
-typedef struct dvi__places {
+typedef struct dvi__slots {
   int first, stride, components;
-} dvi__places;
+} dvi__slots;
 
 typedef struct dvi__coordinate {
   const char *name;
@@ -44,7 +44,7 @@ typedef struct dvi__coordinate {
   int family;       /* 1: it is indexed */
   int size;         /* members of the family; 1 */
   dvi__shape shape; /* of a member */
-  dvi__places q, v;
+  dvi__slots q, v;
   const struct dvi__coordinate *part; /* of a motion: [2], its rotation and its place */
   char part_name;                     /* of such a part: R or x; else 0 */
 } dvi__coordinate;

@@ -58,7 +58,7 @@ typedef struct dvi__target {
   const dvi__expression *index; /* one member; NULL: all */
   const char *each;             /* the index of a formula for all members, or NULL */
   const char *call;             /* "omega" or "rate", or NULL */
-  const dvi__places *places;    /* in q, or in v and p */
+  const dvi__slots *places;     /* in q, or in v and p */
   dvi__span span;
 } dvi__target;
 

@@ -113,7 +113,7 @@ static bool read_entry(dvi_scene *scene, const dvi__tree *key, const dvi__tree *
 }
 
 /* A number of a coordinate that was not given. */
-static const dvi__coordinate *missing(const dvi__coordinate *x, const dvi__places *places, const char *mark)
+static const dvi__coordinate *missing(const dvi__coordinate *x, const dvi__slots *places, const char *mark)
 {
   for (int i = 0; i < x->size; i++)
     for (int k = 0; k < places->components; k++)

@@ -98,7 +98,7 @@ static bool locate(dvi__context *c, int input, whereabouts *w)
   return true;
 }
 
-static bool first_numbers(dvi__context *c, const whereabouts *w, const dvi__places *places, dvi__numbering *numbering)
+static bool first_numbers(dvi__context *c, const whereabouts *w, const dvi__slots *places, dvi__numbering *numbering)
 {
   return dvi__numbering_of(c, w->each, w->all, places->first, places->stride, numbering);
 }
@@ -152,7 +152,7 @@ bool dvi__input_momentum(dvi__context *c, int input, dvi__node *momentum)
 static dvi__value state_value(dvi__context *c, const dvi__coordinate *x, const dvi__expression *index, int before)
 {
   dvi__numbering numbering;
-  dvi__places places = x->v;
+  dvi__slots places = x->v;
   places.first += before;
   if (!dvi__member_numbering(c, x, index, &places, &numbering)) return DVI__NO_VALUE;
   if (x->v.components == 1) return dvi__number_value(dvi__variable_node(c, DVI__VELOCITIES, numbering, 0));
