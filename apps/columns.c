@@ -38,6 +38,19 @@ static void list_all(run_columns *c, const dvi_integrator *integrator)
   if (!isnan(dvi_integrator_jump(integrator, NULL))) add(c, "jump", COLUMN_JUMP, 0);
 }
 
+/* A method's own column must not be called as one of the problem's. */
+static int distinct(const run_columns *c, const char *method)
+{
+  for (int k = 0; k < c->there; k++) {
+    const bool own = c->all[k].kind == COLUMN_STEP || c->all[k].kind == COLUMN_JUMP;
+    for (int i = 0; i < k && own; i++)
+      if (strcmp(c->all[i].name, c->all[k].name) == 0)
+        return usage_error("run: %s by %s has two columns '%s', one of them the method's; rename the other", c->scene->name, method,
+                           c->all[k].name);
+  }
+  return DONE;
+}
+
 /* ---- what is shown ---- */
 
 static void show(run_columns *c, int k)
@@ -110,6 +123,8 @@ int columns_choose(run_columns *c, const problem *scene, const dvi_integrator *i
   *c = (run_columns){.scene = scene};
   if (!make_room(c)) return library_error(DVI_NO_MEMORY);
   list_all(c, integrator);
+  const int code = distinct(c, dvi_integrator_method(integrator));
+  if (code != DONE) return code;
   if (asked != NULL) return show_asked(c, dvi_integrator_method(integrator), asked);
   if (scene->column != NULL) return show_wanted(c, dvi_integrator_method(integrator));
   for (int k = 0; k < c->there; k++) show(c, k);

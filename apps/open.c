@@ -1,5 +1,6 @@
 #include "open.h"
 
+#include <dvi/scene.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -177,19 +178,28 @@ static int read_monitor(const problem *scene, const char *asked, const char *spe
   return DONE;
 }
 
-/* The exit code for what came of making an integrator. */
-static int opened(dvi_status status, const char *method)
+/* Refuse a method where it stands: in the scene, or on the command line. */
+static int refuse_method(const problem *scene, const char *method)
 {
-  if (status != DVI_BAD_OPTION) return status == DVI_OK ? DONE : library_error(status);
-  char hint[HINT_SIZE];
+  char hint[HINT_SIZE], sentence[MESSAGE_SIZE], message[2 * MESSAGE_SIZE];
   hint_at_method(method, hint);
   const bool said = strstr(dvi_last_error(), "did you mean") != NULL;
-  return usage_error("--method %s: %s%s", method, dvi_last_error(), said ? "" : hint);
+  (void)snprintf(sentence, sizeof sentence, "%s: %s%s", method, dvi_last_error(), said ? "" : hint);
+  if (scene->scene == NULL || method != scene->method) return usage_error("--method %s", sentence);
+  dvi_scene_tell(scene->scene, "method", sentence, message, sizeof message);
+  return usage_error("%s", message);
+}
+
+/* The exit code for what came of making an integrator. */
+static int opened(dvi_status status, const problem *scene, const char *method)
+{
+  if (status != DVI_BAD_OPTION) return status == DVI_OK ? DONE : library_error(status);
+  return refuse_method(scene, method);
 }
 
 int open_integrator(const problem *scene, const char *method, dvi_integrator **integrator)
 {
-  return opened(dvi_integrator_create(scene->system, method, integrator), method);
+  return opened(dvi_integrator_create(scene->system, method, integrator), scene, method);
 }
 
 int open_monitor(const problem *scene, const pacing *how, dvi_monitor *monitor)
@@ -211,5 +221,5 @@ int open_paced(const problem *scene, const char *method, const pacing *how, dvi_
   dvi_monitor monitor = {0};
   *integrator = NULL;
   const int code = open_monitor(scene, how, &monitor);
-  return code == DONE ? opened(create_paced(scene, method, how, &monitor, integrator), method) : code;
+  return code == DONE ? opened(create_paced(scene, method, how, &monitor, integrator), scene, method) : code;
 }

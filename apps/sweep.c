@@ -156,8 +156,10 @@ static int check_task(const sweep_task *task)
 
 static int check_request(const sweep_request *request)
 {
-  if (request->out == NULL || strcmp(request->out, "-") == 0)
+  if (request->out == NULL)
     return usage_error("sweep: --out FILE.csv is missing: where the rows go, and from where an interrupted sweep goes on");
+  if (strcmp(request->out, "-") == 0)
+    return usage_error("sweep: --out -: rows go to a file, not to standard output, for an interrupted sweep goes on from there");
   if (request->threads > THREADS_MAX) return usage_error("sweep: at most %d threads", (int)THREADS_MAX);
   return file_writable(request->out) ? DONE : FAILED;
 }

@@ -87,6 +87,15 @@ expect 2 'a column twice in a scene' run wrong.yaml
 sed 's/push, y/h/' two.yaml >chosen.yaml
 expect 2 'a column that the method has not' run chosen.yaml
 says err 'chosen by verlet.* has no column .h.' 'which method'
+printf "coordinates: {h: scalar}\nlagrangian: h'^2/2 - h^2/2\ninitial: {h: 1}\nmethod: verlet\nstep: 0.1\nuntil: 1\n" >height.yaml
+expect 0 'a coordinate h' run height.yaml
+expect 2 'and the steps of sem' run height.yaml --method sem
+says err 'two columns .h., one of them the method' 'which columns'
+sed 's/^method: .*/method: verlot/' chosen.yaml >verlot.yaml
+expect 2 'a method that is not there' run verlot.yaml
+says err '^dvi: verlot.yaml:[0-9]*:9: verlot: unknown method .*verlet' 'where it stands'
+expect 2 'the same on the command line' run verlot.yaml --method vorlet
+says err '^dvi: --method vorlet: unknown method' 'where it stands there'
 expect 0 'a column that the method has' run chosen.yaml --method sem
 [ "$(head -n 1 out)" = t,h ] || fail 'the steps that sem chose'
 

@@ -111,6 +111,7 @@ same full.csv whole.csv 'after a full disk'
 expect 2 'over the scene' $cart --out ./cart.yaml
 expect 2 'no file' $cart
 expect 2 'standard output' $cart --out -
+says err 'rows go to a file' 'why not standard output'
 expect 2 'no method' sweep kepler --set e=0,0.1 --out no.csv
 expect 2 'nothing to sweep' sweep kepler --method midpoint --out no.csv
 expect 2 'an unknown name' $cart --set ll=1,2 --out no.csv

@@ -65,6 +65,13 @@ static dvi__node power(dvi__node a, double exponent)
   return dvi__power(&graph, a, exponent);
 }
 
+static dvi__node rate_of(dvi__node root, int count, const dvi__node *rate)
+{
+  dvi__node result;
+  dvi__rates(&graph, 1, &root, count, rate, &result);
+  return result;
+}
+
 /* How many operations the roots take, equal parts counted once. */
 static int operations(int count, const dvi__node *root)
 {
@@ -232,7 +239,7 @@ static dvi__node pendulum(int links)
   for (int i = 0; i < links; i++) {
     x = add(x, multiply(constant(0.3), apply(DVI__OP_SIN, input(i), 0)));
     y = subtract(y, multiply(constant(0.3), apply(DVI__OP_COS, input(i), 0)));
-    const dvi__node u = dvi__rate(&graph, x, links, rate), v = dvi__rate(&graph, y, links, rate);
+    const dvi__node u = rate_of(x, links, rate), v = rate_of(y, links, rate);
     const dvi__node kinetic = multiply(constant(0.25), add(power(u, 2), power(v, 2)));
     lagrangian = add(lagrangian, subtract(kinetic, multiply(constant(4.905), y)));
   }
@@ -289,8 +296,8 @@ START_TEST(rates_follow_the_chain_rule)
 {
   const dvi__node rate[2] = {input(2), constant(0)};
   const dvi__node root = multiply(input(1), apply(DVI__OP_SIN, input(0), 0));
-  ck_assert_int_eq(dvi__rate(&graph, root, 2, rate), multiply(input(1), multiply(apply(DVI__OP_COS, input(0), 0), input(2))));
-  ck_assert_int_eq(dvi__rate(&graph, input(1), 2, rate), constant(0));
+  ck_assert_int_eq(rate_of(root, 2, rate), multiply(input(1), multiply(apply(DVI__OP_COS, input(0), 0), input(2))));
+  ck_assert_int_eq(rate_of(input(1), 2, rate), constant(0));
 }
 END_TEST
 
@@ -349,7 +356,7 @@ START_TEST(expressions_may_be_a_hundred_thousand_levels_deep)
   dvi__node root = input(0), gradient, rate = constant(1);
   for (int i = 0; i < 100000; i++) root = apply(DVI__OP_SIN, root, 0);
   dvi__gradient(&graph, root, 1, &gradient);
-  const dvi__node along = dvi__rate(&graph, root, 1, &rate);
+  const dvi__node along = rate_of(root, 1, &rate);
   const dvi__node roots[2] = {gradient, along};
   const double x = 0.5;
   double value[2];
@@ -373,6 +380,22 @@ START_TEST(the_first_part_that_is_not_finite_is_told)
   ck_assert_int_eq(dvi__evaluate(&graph, x, 1, &root, &value, &not_finite), DVI_OK);
   ck_assert_int_eq(not_finite, logarithm);
   ck_assert(isnan(value));
+}
+END_TEST
+
+/* Each takes as long as its own parts: if each went through all of the graph, they would take minutes. */
+START_TEST(second_derivatives_of_a_long_sum_are_found_one_by_one)
+{
+  enum { TERMS = 100000 };
+  dvi__node *gradient = calloc(TERMS, sizeof *gradient), second, root = constant(0);
+  ck_assert_ptr_nonnull(gradient);
+  for (int i = 0; i < TERMS; i++) root = add(root, apply(DVI__OP_SIN, input(i), 0));
+  dvi__gradient(&graph, root, TERMS, gradient);
+  for (int i = 0; i < TERMS; i++) {
+    dvi__tangents(&graph, i, 1, &gradient[i], &second);
+    ck_assert_int_eq(second, negate(apply(DVI__OP_SIN, input(i), 0)));
+  }
+  free(gradient);
 }
 END_TEST
 
@@ -457,6 +480,7 @@ int main(void)
   tcase_add_test(tests, rates_follow_the_chain_rule);
   tcase_add_test(tests, patterns_are_exact);
   tcase_add_test(tests, the_pattern_of_a_chain_is_a_band);
+  tcase_add_test(tests, second_derivatives_of_a_long_sum_are_found_one_by_one);
   tcase_add_test(tests, expressions_may_be_a_hundred_thousand_levels_deep);
   tcase_add_test(tests, the_first_part_that_is_not_finite_is_told);
   tcase_add_test(tests, inputs_of_roots_are_known);

@@ -87,6 +87,34 @@ START_TEST(unknown_names_are_told_with_the_nearest)
 }
 END_TEST
 
+/* Of two columns with one name none could be asked for. */
+START_TEST(columns_have_one_name_each)
+{
+  static const char *const taken[] = {"x", "t", "energy", "p_x"}, *const free_name[] = {"v_x", "x_1", "distance", "constraint"};
+  static const char *const twice[] = {"energy: scalar",
+                                      "x_1: scalar, 'x[2]': scalar",
+                                      "p_x: scalar, x: scalar",
+                                      "R_11: scalar, R: rotation",
+                                      "B_R: rotation, B: motion",
+                                      "B_x_x: scalar, B: motion",
+                                      "omega_R_y: scalar, R: rotation",
+                                      "x_2_19: scalar, 'x[3]': vector(20)"};
+  char text[TEXT_SIZE];
+  for (int k = 0; k < 4; k++) {
+    (void)snprintf(text, sizeof text, "invariants: {%s: 1}\n" X "lagrangian: x'^2\n" RUN, taken[k]);
+    refused(text, ":1:14:", "already; choose another name");
+    (void)snprintf(text, sizeof text, "invariants: {%s: 1}\n" X "lagrangian: x'^2\n" RUN, free_name[k]);
+    ck_assert_msg(parse(text, 0, NULL) == DVI_OK, "%s", message);
+  }
+  for (size_t k = 0; k < sizeof twice / sizeof *twice; k++) {
+    (void)snprintf(text, sizeof text, "coordinates: {%s}\nlagrangian: 1\n" RUN, twice[k]);
+    refused(text, ":1:", "there is a column");
+  }
+  refused("coordinates: {x_2_21: scalar, x_4_1: scalar, 'x[3]': vector(20)}\nlagrangian: 1\n" RUN, ":2:", "no velocity in it");
+  refused("symmetries: {a: {x: 1}}\ninvariants: {a: x}\n" X "lagrangian: x'^2\n" RUN, ":2:14:", "a symmetry 'a' already");
+}
+END_TEST
+
 START_TEST(words_from_elsewhere_are_told_with_those_of_scenes)
 {
   lagrangian_refused("x'^2 + ln(x)", 20, "there is no 'ln'; write log(x)");
@@ -94,6 +122,10 @@ START_TEST(words_from_elsewhere_are_told_with_those_of_scenes)
   lagrangian_refused("x_dot^2", 13, "there is no 'x_dot'; write x'");
   lagrangian_refused("x'^2 + p_x", 20, "there is no 'p_x'; write p(x)");
   lagrangian_refused("v_N^2", 13, "there is no 'v_N'"); /* N is no coordinate */
+  lagrangian_refused("x'^2 + x(3)", 20, "'x' is a coordinate, no function");
+  lagrangian_refused("x'^2 + t(3)", 20, "'t' is a number, no function");
+  lagrangian_refused("x'^2 + omega", 20, "'omega' is a function; write omega(..)");
+  lagrangian_refused("x'^2#-x^2", 17, "'#' has no meaning in expressions; a blank stands before a comment");
   refused(X "L: x'^2\n" RUN, ":2:1:", "a scene has no 'L'; the section is lagrangian");
   refused(X "lagrangian: x'^2\ndt: 1\n" RUN, ":3:1:", "a scene has no 'dt'; the section is step");
   refused(X "lagrangian: x'^2\nreport: {dt: 1}\n" RUN, ":3:10:", "report has no 'dt'");
@@ -141,6 +173,8 @@ START_TEST(indices_are_checked_for_every_element)
   lagrangian_refused("sum(i, A[1,i]*y[i]'^2)", 20, "i runs over the 3 of y, but A has 2");
   lagrangian_refused("sum(i, x'^2)", 13, "nothing is indexed by i alone");
   lagrangian_refused("sum(x=1..2, x)", 13, "the index 'x' is a coordinate, too");
+  lagrangian_refused("sum(t=1..2, t)", 13, "'t' is a word of the language");
+  lagrangian_refused("sum(sin=1..2, sin(sin))", 13, "'sin' is a word of the language");
   lagrangian_refused("sum(i=1..2, sum(i=1..2, y[i]))", 25, "'i' is an index around this sum already");
   lagrangian_refused("i*sum(i=1..2, y[i]'^2)", 13, "there is no 'i'");
 }
@@ -163,6 +197,11 @@ END_TEST
 
 START_TEST(names_are_declared_once_and_before_their_use)
 {
+  refused(X "lagrangian: x'^2\ninitial: {x: 1}\nstep: x\nuntil: 1\n", ":4:7:", "coordinates cannot stand in step");
+  refused(X "definitions: {d: 1}\nlagrangian: x'^2\ninitial: {x: 1}\nstep: d\nuntil: 1\n",
+          ":5:7:", "definitions cannot stand in step");
+  refused(X "lagrangian: x'^2\ninitial: {t: 1}\nstep: 1\nuntil: 1\n", ":3:11:", "'t' is a word of the language, no coordinate");
+  refused(X "lagrangian: x'^2\nsweep: {t: [1]}\n" RUN, ":3:9:", "'t' is no parameter that is a number");
   refused("parameters: {a: b, b: 1}\n" X "lagrangian: x'^2\n" RUN, ":1:17:", "it is not known yet");
   refused(X "definitions: {a: b, b: x}\nlagrangian: x'^2\n" RUN, ":2:18:", "it is not known yet");
   refused("parameters: {x: 1}\n" X "lagrangian: x'^2\n" RUN, ":2:15:", "there is a parameter 'x' already");
@@ -203,11 +242,12 @@ START_TEST(settings_replace_numbers_and_nothing_else)
 {
   static const char text[] = "parameters: {speed: 1, list: [1, 2], twice: 2*speed}\n" X "lagrangian: x'^2\n"
                              "initial: {x: twice}\nstep: 1\nuntil: 1\n";
-  static const char *const wrong[] = {"sped=1", "list=1", "speed=fast", "speed", "speed=inf"};
-  static const char *const words[] = {"did you mean speed?", "'list' is a list", "'fast' is no finite number",
-                                      "not of the form name=value", "'inf' is no finite number"};
+  static const char *const wrong[] = {"sped=1", "list=1", "speed=fast", "speed", "speed=inf", "x=1"};
+  static const char *const words[] = {"did you mean speed?",        "'list' is a list",
+                                      "'fast' is no finite number", "not of the form name=value",
+                                      "'inf' is no finite number",  "a start is set through a parameter"};
   const double *q, *v, *p;
-  for (int k = 0; k < 5; k++) {
+  for (int k = 0; k < 6; k++) {
     ck_assert_int_eq(parse(text, 1, &wrong[k]), DVI_BAD_OPTION);
     ck_assert_msg(strstr(message, words[k]) != NULL, "%s", message);
   }
@@ -277,6 +317,7 @@ int main(void)
   tcase_add_checked_fixture(tests, NULL, release);
   tcase_add_test(tests, what_nothing_mentions_is_known);
   tcase_add_test(tests, unknown_names_are_told_with_the_nearest);
+  tcase_add_test(tests, columns_have_one_name_each);
   tcase_add_test(tests, words_from_elsewhere_are_told_with_those_of_scenes);
   tcase_add_test(tests, a_start_that_is_no_number_is_told);
   tcase_add_test(tests, shapes_that_do_not_fit_are_told);

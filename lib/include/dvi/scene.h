@@ -124,6 +124,13 @@ void dvi_scene_facts_of(const dvi_scene *scene, dvi_scene_facts *facts);
  *  passed; "" if none failed since a scene was last read. */
 const char *dvi_scene_blame(void);
 
+/** A sentence about a section of the scene, in the form of its own errors: file, line and column in front, the line and a caret below.
+ *
+ *  @param      section   its name, as "method"; if there is none, the place is the file
+ *  @param      sentence  what is to be said
+ *  @param[out] message   [size] */
+void dvi_scene_tell(const dvi_scene *scene, const char *section, const char *sentence, char *message, size_t size);
+
 /** Write a C file that declares the same system by callbacks of the C API: a function `dvi_status NAME_create(dvi_system **system)`; the start,
  *  `const double NAME_q[], NAME_v[], NAME_p[]`; the plan, `const double NAME_h, NAME_t_end` and, if the scene has one, `const char NAME_method[]`; and its
  *  events, if it has any, `const dvi_event NAME_events[]`. With a method and the macro DVI_MAIN it is a program that runs the scene.

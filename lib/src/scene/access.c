@@ -4,18 +4,29 @@
 
 #include "scene/elaborate.h"
 #include "scene/heap.h"
+#include "scene/words.h"
 
 /* ---- names ---- */
 
-/* Complain of a name that is not known, or not yet. */
+static bool is_function(const char *name)
+{
+  int k = 0;
+  while (k < dvi__word_count() && strcmp(dvi__word(k), name) != 0) k++;
+  return k < dvi__word_count();
+}
+
+/* Complain of a name that is not known, or not yet: what is made of parameters is read before there are coordinates and definitions. */
 static dvi__value unknown(dvi__context *c, const dvi__expression *e)
 {
   static const char *const section[] = {"parameters", "coordinates", "definitions"};
+  const bool there[] = {true, c->scene->coordinate != NULL, c->scene->definition != NULL};
+  if (is_function(e->name)) return dvi__refused(dvi__refuse(c, e->span, "'%s' is a function; write %s(..)", e->name, e->name));
   for (int k = 0; k < 3; k++) {
     const dvi__tree *names = dvi__tree_find(c->scene->tree, section[k]);
-    if (names != NULL && names->kind == DVI__MAPPING && dvi__tree_find(names, e->name) != NULL)
-      return dvi__refused(
-          dvi__refuse(c, e->span, "'%s' cannot stand in %s: it is not known yet, for it comes later", e->name, c->where));
+    if (names == NULL || names->kind != DVI__MAPPING || dvi__tree_find(names, e->name) == NULL) continue;
+    if (!there[k]) return dvi__refused(dvi__refuse(c, e->span, "%s cannot stand in %s", section[k], c->where));
+    return dvi__refused(
+        dvi__refuse(c, e->span, "'%s' cannot stand in %s: it is not known yet, for it comes later", e->name, c->where));
   }
   return dvi__refused(dvi__names_unknown(&c->scene->names, &c->scene->arena, c->scene->complaint, e->name, e->span));
 }

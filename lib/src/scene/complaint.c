@@ -203,7 +203,7 @@ const char *dvi__nearest(const char *word, int count, const char *const *candida
   int best = 2 * least((int)length, length < 6 ? 3 : 4); /* this many edits make another word, not a slip */
   const char *nearest = NULL;
   for (int k = 0; k < count; k++) {
-    if (strlen(candidate[k]) > WORD_MAX) continue;
+    if (strlen(candidate[k]) > WORD_MAX || strcmp(candidate[k], word) == 0) continue; /* known, but not there */
     const int begun = length > 1 && strncmp(candidate[k], word, length) == 0;
     const int distance = begun ? 2 : edits(word, candidate[k]);
     if (distance >= best) continue;

@@ -81,6 +81,10 @@ static bool refuse_setting(dvi_scene *scene, const char *text)
   const char **known = dvi__arena_take(&scene->arena, (size_t)scene->parameter_count + 1, sizeof *known);
   if (name == NULL || known == NULL) return dvi__scene_no_memory(scene);
   for (int i = 0; i < scene->parameter_count; i++) known[i] = scene->parameter[i].name;
+  const dvi__tree *coordinates = dvi__tree_find(scene->tree, "coordinates");
+  if (dvi__tree_find(coordinates, name) != NULL)
+    return dvi__complain(scene->complaint, DVI_BAD_OPTION, DVI__NOWHERE,
+                         "%s: '%s' is a coordinate; a start is set through a parameter that initial names", text, name);
   return dvi__complain(scene->complaint, DVI_BAD_OPTION, DVI__NOWHERE, "%s: there is no parameter '%s'%s", text, name,
                        dvi__nearest(name, scene->parameter_count, known, hint, sizeof hint));
 }
@@ -238,7 +242,7 @@ bool dvi__read_coordinates(dvi_scene *scene, const dvi__tree *section)
   if (scene->n == 0) return dvi__scene_refuse(scene, section->span, "there are no coordinates");
   scene->velocities = turns ? scene->n + scene->nv : scene->n;
   scene->zeros = dvi__arena_take(&scene->arena, 2 * (size_t)scene->n, sizeof *scene->zeros);
-  return scene->zeros != NULL || dvi__scene_no_memory(scene);
+  return scene->zeros != NULL ? dvi__labels_differ(scene) : dvi__scene_no_memory(scene);
 }
 
 /* ---- definitions ---- */

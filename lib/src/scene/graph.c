@@ -8,8 +8,17 @@
 
 enum { LIMIT = 2000000 };
 
+void dvi__tangent_room_free(dvi__tangent_room *room)
+{
+  dvi__heap_free(room->part);
+  dvi__heap_free(room->tangent);
+  dvi__heap_free(room->list);
+  *room = (dvi__tangent_room){0};
+}
+
 void dvi__graph_free(dvi__graph *graph)
 {
+  dvi__tangent_room_free(&graph->room);
   dvi__heap_free(graph->node);
   dvi__heap_free(graph->table);
   *graph = (dvi__graph){0};

@@ -59,6 +59,13 @@ typedef struct dvi__graph_node {
   dvi__span span;     /* the part of the source that first made it; derivatives point to what they are derivatives of */
 } dvi__graph_node;
 
+/* Room in which dvi__tangents works, for as many nodes; between its calls marks are 0 and tangents -1. */
+typedef struct dvi__tangent_room {
+  int size;
+  char *part;
+  dvi__node *tangent, *list;
+} dvi__tangent_room;
+
 /* Zero: empty, but for `limit`. Grown in memory of its own, freed by dvi__graph_free. Once `failed` is not DVI_OK (DVI_NO_MEMORY, DVI_BAD_SIZE: more nodes than
  * the limit) every call returns node 0 and nothing grows: ask once, at the end. */
 typedef struct dvi__graph {
@@ -69,6 +76,7 @@ typedef struct dvi__graph {
   int limit;      /* most nodes; 0: 2000000 */
   dvi__span here; /* the span that new nodes get */
   dvi_status failed;
+  dvi__tangent_room room;
 } dvi__graph;
 
 /* Of POWER: products are faster than pow so far, and as exact. */
@@ -90,11 +98,12 @@ bool dvi__is_constant(const dvi__graph *graph, dvi__node node, double *value);
 /* Derivatives of `root` by inputs 0 .. count-1, by the reverse mode: at most four times the operations of the root. New nodes in the same graph. */
 void dvi__gradient(dvi__graph *graph, dvi__node root, int count, dvi__node *gradient);
 
-/* The derivatives of the nodes of[count] by one input, by the forward mode. Nodes of `of` that do not depend on it give the constant 0. */
+/* The derivatives of the nodes of[count] by one input, by the forward mode. Nodes of `of` that do not depend on it give the constant 0. Takes as long as
+ * what they are made of, however large the graph is. */
 void dvi__tangents(dvi__graph *graph, int input, int count, const dvi__node *of, dvi__node *tangent);
 
-/* The total rate of `root`: sum over inputs of its derivative times rate[input] (nodes), by the forward mode. */
-dvi__node dvi__rate(dvi__graph *graph, dvi__node root, int count, const dvi__node *rate);
+/* The total rates of roots, result [root_count]: sum over inputs of a root's derivative times rate[input] (nodes), by the forward mode. */
+void dvi__rates(dvi__graph *graph, int root_count, const dvi__node *root, int count, const dvi__node *rate, dvi__node *result);
 
 /* Which second derivatives of `root` by inputs (i,j), 0 <= j <= i < count, may differ from zero, without making them: by the first and second order
  * dependences of each node.

@@ -1,5 +1,6 @@
 /* Derivatives, by the reverse mode (of one number by everything) and by the forward mode (of everything by one number). Both take a node's derivatives by its
  * operands from one table; parts that do not depend on what is asked for are not visited. */
+#include <stdlib.h>
 
 #include "scene/graph_make.h"
 #include "scene/heap.h"
@@ -103,17 +104,13 @@ static int is_quotient(const dvi__graph *graph, dvi__node n)
   return graph->node[n].op == DVI__OP_DIVIDE && graph->node[graph->node[n].a].op != DVI__OP_CONSTANT;
 }
 
-/* Mark what depends on inputs below `count` (or on input `only`, if that is not NONE) among the marked parts. */
-static void keep_dependent(const dvi__graph *graph, int count, int only, int size, char *part)
+/* Whether a node depends on inputs below `count` (or on input `only`, if that is not NONE), when it is known of its operands. */
+static int depends(const dvi__graph *graph, int count, int only, const char *part, dvi__node n)
 {
-  for (int n = 0; n < size; n++) {
-    const dvi__graph_node *node = graph->node + n;
-    const int operands = dvi__operands(node->op);
-    int depends = node->op == DVI__OP_INPUT && (only == NONE ? node->a < count : node->a == only);
-    if (operands > 0) depends = part[node->a] != 0;
-    if (operands > 1) depends |= part[node->b] != 0;
-    part[n] = part[n] && depends;
-  }
+  const dvi__graph_node *node = graph->node + n;
+  const int operands = dvi__operands(node->op);
+  if (node->op == DVI__OP_INPUT) return only == NONE ? node->a < count : node->a == only;
+  return (operands > 0 && part[node->a] != 0) || (operands > 1 && part[node->b] != 0);
 }
 
 static void fail(dvi__graph *graph)
@@ -184,7 +181,7 @@ void dvi__gradient(dvi__graph *graph, dvi__node root, int count, dvi__node *grad
   if (part == NULL || adjoint == NULL) {
     fail(graph);
   } else {
-    keep_dependent(graph, count, NONE, size, part);
+    for (int n = 0; n < size; n++) part[n] = part[n] && depends(graph, count, NONE, part, n);
     pull_back_all(graph, root, count, part, adjoint, gradient);
   }
   dvi__heap_free(part);
@@ -206,17 +203,70 @@ static dvi__node push_forward(dvi__graph *graph, const dvi__node *tangent, dvi__
 }
 
 /* All parts' derivatives, from those of the inputs; to parts that do not depend on these NONE is given. */
-static void push_forward_all(dvi__graph *graph, int size, const char *part, const dvi__node *rate, dvi__node *tangent)
+static void push_forward_all(dvi__graph *graph, int count, const dvi__node *rate)
 {
   const dvi__span here = graph->here;
-  for (int n = 0; n < size && graph->failed == DVI_OK; n++) {
-    if (!part[n]) continue;
+  const dvi__tangent_room *room = &graph->room;
+  for (int k = 0; k < count && graph->failed == DVI_OK; k++) {
+    const dvi__node n = room->list[k];
+    if (!room->part[n]) continue;
     graph->here = graph->node[n].span;
-    tangent[n] = graph->node[n].op != DVI__OP_INPUT ? push_forward(graph, tangent, n)
-                 : rate == NULL                     ? dvi__constant(graph, 1)
-                                                    : rate[graph->node[n].a];
+    room->tangent[n] = graph->node[n].op != DVI__OP_INPUT ? push_forward(graph, room->tangent, n)
+                       : rate == NULL                     ? dvi__constant(graph, 1)
+                                                          : rate[graph->node[n].a];
   }
   graph->here = here;
+}
+
+/* ---- the parts of some nodes ---- */
+
+/* Room for all nodes there are. */
+static bool make_room(dvi__graph *graph, int size)
+{
+  dvi__tangent_room *room = &graph->room;
+  if (size <= room->size) return true;
+  dvi__tangent_room_free(room);
+  room->part = dvi__heap_take((size_t)graph->count, 1);
+  room->tangent = new_derivatives(graph->count);
+  room->list = dvi__heap_take((size_t)graph->count, sizeof *room->list);
+  if (room->part == NULL || room->tangent == NULL || room->list == NULL) return false;
+  room->size = graph->count;
+  return true;
+}
+
+static void reach(const dvi__tangent_room *room, dvi__node n, int *count)
+{
+  if (room->part[n]) return;
+  room->part[n] = 1;
+  room->list[(*count)++] = n;
+}
+
+static int by_number(const void *a, const void *b)
+{
+  return *(const dvi__node *)a - *(const dvi__node *)b;
+}
+
+/* List and mark what the roots are made of, operands before what is made of them. Where the roots are a small part of the graph, all of it is not passed over: of a
+ * long sum there are as many roots as there are inputs. */
+static int list_parts(const dvi__graph *graph, int root_count, const dvi__node *root, int size)
+{
+  enum { SMALL = 32 };
+  const dvi__tangent_room *room = &graph->room;
+  int count = 0, listed = 0;
+  for (int k = 0; k < root_count; k++) reach(room, root[k], &count);
+  for (int k = 0; k < count; k++) {
+    const dvi__graph_node *node = graph->node + room->list[k];
+    const int operands = dvi__operands(node->op);
+    if (operands > 0) reach(room, node->a, &count);
+    if (operands > 1) reach(room, node->b, &count);
+  }
+  if (count < size / SMALL) {
+    qsort(room->list, (size_t)count, sizeof *room->list, by_number);
+    return count;
+  }
+  for (int n = 0; n < size; n++)
+    if (room->part[n]) room->list[listed++] = n;
+  return count;
 }
 
 /* The derivatives of nodes by the one input, or along the rates of inputs 0 .. count-1. */
@@ -224,20 +274,23 @@ static void forward(dvi__graph *graph, int only, int count, const dvi__node *rat
                     dvi__node *result)
 {
   const dvi__node zero = dvi__constant(graph, 0);
+  int size = 0;
   for (int k = 0; k < root_count; k++) result[k] = zero;
+  for (int k = 0; k < root_count; k++) size = root[k] < size ? size : root[k] + 1;
   if (graph->failed != DVI_OK) return;
-  int size;
-  char *part = dvi__parts(graph, root_count, root, &size);
-  dvi__node *tangent = new_derivatives(size);
-  if (part == NULL || tangent == NULL) {
+  if (!make_room(graph, size)) {
     fail(graph);
-  } else {
-    keep_dependent(graph, count, only, size, part);
-    push_forward_all(graph, size, part, rate, tangent);
-    for (int k = 0; k < root_count; k++) result[k] = is_zero(graph, tangent[root[k]]) ? zero : tangent[root[k]];
+    return;
   }
-  dvi__heap_free(part);
-  dvi__heap_free(tangent);
+  const dvi__tangent_room *room = &graph->room;
+  const int parts = list_parts(graph, root_count, root, size);
+  for (int k = 0; k < parts; k++) room->part[room->list[k]] = (char)depends(graph, count, only, room->part, room->list[k]);
+  push_forward_all(graph, parts, rate);
+  for (int k = 0; k < root_count; k++) result[k] = is_zero(graph, room->tangent[root[k]]) ? zero : room->tangent[root[k]];
+  for (int k = 0; k < parts; k++) {
+    room->part[room->list[k]] = 0;
+    room->tangent[room->list[k]] = NONE;
+  }
 }
 
 void dvi__tangents(dvi__graph *graph, int input, int count, const dvi__node *of, dvi__node *tangent)
@@ -245,9 +298,7 @@ void dvi__tangents(dvi__graph *graph, int input, int count, const dvi__node *of,
   forward(graph, input, 0, NULL, count, of, tangent);
 }
 
-dvi__node dvi__rate(dvi__graph *graph, dvi__node root, int count, const dvi__node *rate)
+void dvi__rates(dvi__graph *graph, int root_count, const dvi__node *root, int count, const dvi__node *rate, dvi__node *result)
 {
-  dvi__node result;
-  forward(graph, NONE, count, rate, 1, &root, &result);
-  return result;
+  forward(graph, NONE, count, rate, root_count, root, result);
 }

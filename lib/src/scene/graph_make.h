@@ -15,6 +15,8 @@ int dvi__operands(dvi__op op);
 /* The value of an operation on numbers, by libm; `value` is the exponent of a power. */
 double dvi__operate(dvi__op op, double value, double a, double b);
 
+void dvi__tangent_room_free(dvi__tangent_room *room);
+
 /* Mark, 1, what the roots are made of: [*size], up to the last root; owned by the caller. NULL: no memory. */
 char *dvi__parts(const dvi__graph *graph, int root_count, const dvi__node *root, int *size);
 

@@ -7,6 +7,7 @@
 #include "scene/heap.h"
 #include "scene/program.h"
 #include "scene/shape.h"
+#include "scene/words.h"
 
 const dvi__index *dvi__index_find(const dvi__context *c, const char *name)
 {
@@ -18,6 +19,7 @@ const dvi__index *dvi__index_find(const dvi__context *c, const char *name)
 bool dvi__index_bind(dvi__context *c, dvi__span span, const char *name)
 {
   const dvi__name *other = dvi__names_find(&c->scene->names, name);
+  if (dvi__is_word(name)) return dvi__refuse(c, span, "'%s' is a word of the language; choose another name", name);
   if (other != NULL)
     return dvi__refuse(c, span, "the index '%s' is a %s, too; choose another name", name, dvi__sort_name(other->sort));
   if (dvi__index_find(c, name) != NULL) return dvi__refuse(c, span, "'%s' is an index around this sum already", name);

@@ -47,9 +47,15 @@ static size_t name_end(const text *t, size_t k)
   return k;
 }
 
+/* A comment begins behind a blank, as in YAML, to which x#y is one text. */
+static bool begins_comment(const text *t, size_t k)
+{
+  return t->at[k] == '#' && (k == 0 || dvi__is_blank(t->at[k - 1]));
+}
+
 static size_t skip_blanks(const text *t, size_t k)
 {
-  while (k < t->end && (dvi__is_blank(t->at[k]) || t->at[k] == '#')) {
+  while (k < t->end && (dvi__is_blank(t->at[k]) || begins_comment(t, k))) {
     if (t->at[k] == '#')
       while (k < t->end && t->at[k] != '\n' && t->at[k] != '\r') k++;
     else
@@ -105,6 +111,7 @@ static bool refuse(const text *t, size_t k, dvi__complaint *complaint)
                {'}', "; write parentheses"},
                {'\\', "; write sin(x), without a backslash"},
                {'>', "; the pairs of a sum are i<j"},
+               {'#', "; a blank stands before a comment"},
                {'&', "; a scene has no conditions"},
                {'?', "; a scene has no conditions"},
                {'!', "; a scene has no conditions"}};

@@ -79,9 +79,9 @@ static dvi__value chain_rule(dvi__context *c, dvi__value value, dvi__span span)
   dvi__value result = dvi__value_make(c, value.shape.rank, value.shape.rows, value.shape.columns);
   if (used == NULL || rate == NULL) result = dvi__refused(dvi__scene_no_memory(c->scene));
   if (!dvi__failed(result) && !input_rates(c, value, span, count, used, rate)) result = DVI__NO_VALUE;
-  if (!dvi__failed(result) && result.shape.rank == 0) result.one = dvi__rate(c->graph, value.one, count, rate);
-  for (int i = 0; !dvi__failed(result) && result.shape.rank > 0 && i < dvi__value_size(value); i++)
-    result.node[i] = dvi__rate(c->graph, value.node[i], count, rate);
+  if (!dvi__failed(result) && result.shape.rank == 0) dvi__rates(c->graph, 1, &value.one, count, rate, &result.one);
+  if (!dvi__failed(result) && result.shape.rank > 0)
+    dvi__rates(c->graph, dvi__value_size(value), value.node, count, rate, result.node);
   dvi__heap_free(used);
   dvi__heap_free(rate);
   return result;

@@ -228,6 +228,13 @@ const char *dvi_scene_unused(const dvi_scene *scene, int i)
   return scene == NULL || i < 0 || i >= scene->unused_count ? NULL : scene->unused[i];
 }
 
+void dvi_scene_tell(const dvi_scene *scene, const char *section, const char *sentence, char *message, size_t size)
+{
+  const dvi__tree *tree = dvi__tree_find(scene->tree, section);
+  dvi__complaint complaint = {.source = &scene->source, .message = message, .size = size};
+  (void)dvi__complain(&complaint, DVI_BAD_FILE, tree != NULL ? tree->span : DVI__NOWHERE, "%s", sentence);
+}
+
 const dvi_scene_event *dvi_scene_event_at(const dvi_scene *scene, int i)
 {
   return scene == NULL || i < 0 || i >= scene->event_count ? NULL : &scene->event[i];

@@ -5,7 +5,9 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "scene/shape.h"
 #include "scene/slips.h"
+#include "scene/words.h"
 
 /* ---- what readers share ---- */
 
@@ -79,9 +81,9 @@ bool dvi__tree_number(dvi_scene *scene, const dvi__tree *tree, const char *what,
 {
   const dvi__expression *e;
   dvi__context c;
-  double *each;
+  dvi__node node;
   if (!dvi__tree_expression(scene, tree, &e) || !dvi__context_make(&c, scene, 0, what)) return false;
-  const bool good = dvi__numbers_of(&c, e, &each, number);
+  const bool good = dvi__elaborate_number(&c, e, &node) && dvi__constants_of(&c, e, dvi__number_value(node), number);
   dvi__context_free(&c);
   return good;
 }
@@ -243,8 +245,9 @@ static bool read_steps(dvi_scene *scene, const dvi__tree *steps, dvi_scene_range
 static bool read_range(dvi_scene *scene, const dvi__tree *key, const dvi__tree *values, dvi_scene_range *range)
 {
   const dvi__name *name = dvi__names_find(&scene->names, key->text);
-  if (name == NULL) return dvi__names_unknown(&scene->names, &scene->arena, scene->complaint, key->text, key->span);
-  if (name->sort != DVI__PARAMETER || !scene->parameter[name->number].settable)
+  if (name == NULL && !dvi__is_word(key->text))
+    return dvi__names_unknown(&scene->names, &scene->arena, scene->complaint, key->text, key->span);
+  if (name == NULL || name->sort != DVI__PARAMETER || !scene->parameter[name->number].settable)
     return dvi__scene_refuse(scene, key->span, "'%s' is no parameter that is a number", key->text);
   range->name = key->text;
   if (values->kind == DVI__SEQUENCE) return read_values(scene, values, range);

@@ -49,6 +49,12 @@ bool dvi__tree_whole(dvi_scene *scene, const dvi__tree *tree, const char *what, 
 /* After all sections: tell parameters where what is made of them stands, and refuse settings of those that stand nowhere. */
 bool dvi__read_uses(dvi_scene *scene, const dvi__settings *settings);
 
+/* ---- columns ---- */
+
+/* Refuse a name that dvi run has as a column already, but for those of a coordinate (or NULL); and coordinates whose columns are called alike. */
+bool dvi__column_is_new(dvi_scene *scene, const char *text, dvi__span span, const dvi__coordinate *of);
+bool dvi__labels_differ(dvi_scene *scene);
+
 /* ---- coordinates as keys ---- */
 
 /* x, x[3] or x[i], of a motion B.R or B.x; and of these the numbers, the velocities x', omega(R) or rate(u), or the momenta p(x). */

@@ -235,6 +235,18 @@ static dvi__value number_call(dvi__context *c, const dvi__expression *call, cons
   return dvi__number_value(dvi__apply(c->graph, word->op, a[0].one, call->count == 2 ? a[1].one : 0));
 }
 
+/* What is called and cannot be: a coordinate before a parenthesis, or a name that is not known. */
+static dvi__value no_function(const dvi__context *c, const dvi__expression *call)
+{
+  const dvi__span where = {call->span.first, strlen(call->name)};
+  const dvi__name *name = dvi__names_find(&c->scene->names, call->name);
+  const char *what = name != NULL ? dvi__sort_name(name->sort) : "number"; /* t, pi, an index */
+  if (name == NULL && !dvi__is_word(call->name) && dvi__index_find(c, call->name) == NULL)
+    return dvi__refused(dvi__names_unknown(&c->scene->names, &c->scene->arena, c->scene->complaint, call->name, where));
+  return dvi__refused(
+      dvi__refuse(c, where, "'%s' is a %s, no function; write * for a product, [..] for an element", call->name, what));
+}
+
 dvi__value dvi__value_call(dvi__context *c, const dvi__expression *call, const dvi__value *argument)
 {
   const dvi__function_word *word = dvi__function_word_of(call->name);
@@ -246,7 +258,5 @@ dvi__value dvi__value_call(dvi__context *c, const dvi__expression *call, const d
     (void)dvi__refuse(c, call->span, "%s takes %s", call->name, vector_words[i].wants);
     return DVI__NO_VALUE;
   }
-  (void)dvi__names_unknown(&c->scene->names, &c->scene->arena, c->scene->complaint, call->name,
-                           (dvi__span){call->span.first, strlen(call->name)});
-  return DVI__NO_VALUE;
+  return no_function(c, call);
 }

@@ -5,6 +5,7 @@
 #include "scene/elaborate.h"
 #include "scene/sections.h"
 #include "scene/shape.h"
+#include "scene/words.h"
 
 /* Take x', omega(R), rate(u) or p(x) apart. */
 static const dvi__expression *bare(const dvi__expression *e, dvi__target *target)
@@ -32,9 +33,11 @@ static bool find_coordinate(dvi_scene *scene, const dvi__tree *key, const dvi__e
   }
   if (name->form != DVI__FORM_NAME) return dvi__scene_refuse(scene, key->span, "this is no coordinate, as x, x[3] or x[i] are");
   const dvi__name *known = dvi__names_find(&scene->names, name->name);
-  if (known == NULL) return dvi__names_unknown(&scene->names, &scene->arena, scene->complaint, name->name, name->span);
-  if (known->sort != DVI__COORDINATE)
-    return dvi__scene_refuse(scene, name->span, "'%s' is a %s, no coordinate", name->name, dvi__sort_name(known->sort));
+  const bool word = known == NULL && dvi__is_word(name->name);
+  if (known == NULL && !word) return dvi__names_unknown(&scene->names, &scene->arena, scene->complaint, name->name, name->span);
+  if (word || known->sort != DVI__COORDINATE)
+    return dvi__scene_refuse(scene, name->span, "'%s' is a %s, no coordinate", name->name,
+                             word ? "word of the language" : dvi__sort_name(known->sort));
   target->x = &scene->coordinate[known->number];
   if (target->index != NULL && !target->x->family)
     return dvi__scene_refuse(scene, whole->span, "'%s' is no family, and is given as a whole", name->name);

@@ -11,6 +11,7 @@ bool dvi__read_symmetries(dvi_scene *scene, const dvi__tree *section)
   if (list == NULL) return dvi__scene_no_memory(scene);
   for (int i = 0; i < section->count; i++) {
     dvi__term *term;
+    if (!dvi__column_is_new(scene, section->key[i]->text, section->key[i]->span, NULL)) return false;
     if (!dvi__read_field(scene, section->child[i], "a symmetry", &term)) return false;
     term->role = DVI__WATCHES;
     list[i] = (dvi_symmetry){.name = section->key[i]->text, .generator = dvi__term_generator, .user = term};
@@ -32,6 +33,15 @@ static bool read_function(dvi_scene *scene, const dvi__tree *tree, unsigned may,
   return good;
 }
 
+/* Symmetries have columns, too. */
+static bool invariant_is_new(dvi_scene *scene, const dvi__tree *key)
+{
+  const dvi__tree *symmetries = dvi__tree_find(scene->tree, "symmetries");
+  if (symmetries == NULL || dvi__tree_find(symmetries, key->text) == NULL)
+    return dvi__column_is_new(scene, key->text, key->span, NULL);
+  return dvi__scene_refuse(scene, key->span, "there is a symmetry '%s' already; choose another name", key->text);
+}
+
 bool dvi__read_invariants(dvi_scene *scene, const dvi__tree *section)
 {
   const unsigned may = DVI__SAYS_Q | DVI__SAYS_P | DVI__SAYS_T | (scene->terms.hamiltonian == NULL ? DVI__SAYS_V : 0U);
@@ -40,6 +50,7 @@ bool dvi__read_invariants(dvi_scene *scene, const dvi__tree *section)
   if (list == NULL) return dvi__scene_no_memory(scene);
   for (int i = 0; i < section->count; i++) {
     dvi__term *term;
+    if (!invariant_is_new(scene, section->key[i])) return false;
     if (!read_function(scene, section->child[i], may, "an invariant", &term)) return false;
     list[i] = (dvi_invariant){.name = section->key[i]->text, .value = dvi__term_value, .user = term};
   }
