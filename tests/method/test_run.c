@@ -334,6 +334,8 @@ static const struct {
     {{.h = 0.1, .t_end = HUGE_VAL}, "t_end = inf is not finite"},
     {{.h = -0.1, .t_end = 1}, "h = -0.1 leads away from t_end = 1; the time is 0"},
     {{.h = 0.1, .t_end = -1}, "leads away"},
+    {{.h = 1e-16, .t_end = 1}, "1e+16 steps to t_end = 1; at most 2^53"},
+    {{.h = 1e-300, .t_end = 1e300}, "inf steps"},
     {{.h = 1e-300, .t_end = -1e-300}, "leads away"}, /* the product of the two is rounded to zero */
     {{.h = 0.1, .t_end = 1, .every = -1}, "every = -1"},
     {{.h = 0.1, .t_end = 1, .checkpoint_every = -5}, "checkpoint_every = -5"},
@@ -388,7 +390,7 @@ START_TEST(a_step_that_time_does_not_feel_fails_the_run)
 {
   dvi_run_report report;
   ck_assert_int_eq(dvi_integrator_start(integrator, 1e9, of->q, of->p), DVI_OK);
-  ck_assert_int_eq(dvi_run(integrator, &(dvi_run_options){.h = 1e-9, .t_end = 2e9}, &report), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_run(integrator, &(dvi_run_options){.h = 1e-9, .t_end = 1e9 + 1}, &report), DVI_BAD_ARGUMENT);
   check_words("does not move the time");
   ck_assert_int_eq(report.end, DVI_RUN_FAILED);
 }

@@ -61,7 +61,7 @@ extern "C" {
  *  If an event's function fails in a step, the step is taken back before any event of it is reported.
  *  @param[out] report  filled on success and on failure; may be NULL
  *  @retval DVI_OK            the run ended as `report->end` says (not DVI_RUN_FAILED)
- *  @retval DVI_BAD_ARGUMENT  h is zero, not finite or leads away from t_end; a count is negative; a direction is none;
+ *  @retval DVI_BAD_ARGUMENT  h is zero, not finite, leads away from t_end or is less than 2^-53 of the way; a count is negative; a direction is none;
  *                            checkpoint_every without a file
  *  @retval DVI_BAD_STATE     before dvi_integrator_start, or the observer has moved the integrator
  *  @retval (others)          as dvi_integrator_step, for the step that failed; the state is the last good one */

@@ -10,6 +10,8 @@
 
 /* The last step may be longer than h by this part of it. */
 static const double stretch = 1e-9;
+/* Of more steps a number of double precision does not know how many they are. */
+static const double steps_max = 0x1p53;
 
 static dvi_status check_events(const dvi_run_options *options)
 {
@@ -44,6 +46,9 @@ static dvi_status check(const dvi_integrator *I, const dvi_run_options *options)
   if (fabs(way) > clock_error(I, options) && (way > 0) != (options->h > 0))
     return dvi__fail(DVI_BAD_ARGUMENT, "run: h = %g leads away from t_end = %g; the time is %g", options->h, options->t_end,
                      dvi_integrator_time(I));
+  if (I->pace == NULL && !(fabs(way / options->h) <= steps_max))
+    return dvi__fail(DVI_BAD_ARGUMENT, "run: h = %g makes %.3g steps to t_end = %g; at most 2^53 can be counted", options->h,
+                     way / options->h, options->t_end);
   if (options->every < 0 || options->checkpoint_every < 0)
     return dvi__fail(DVI_BAD_ARGUMENT, "run: every = %ld, checkpoint_every = %ld; 0 or more are possible", options->every,
                      options->checkpoint_every);
