@@ -6,15 +6,23 @@
 #include "scene/emit_parts.h"
 #include "scene/heap.h"
 
-enum { ROOM = 8192, ROOM_MAX = 131072, TERMS_MAX = 2048 };
+enum { ROOM = 8192, ROOM_MAX = 131072, TERMS_MAX = 1024 };
 
 /* --- Arrays, before the functions. --- */
+
+/* How many terms the sums of a short part have. */
+static int terms_of(const dvi__part *part)
+{
+  int additions = 0;
+  for (int k = 0; k < part->target_count; k++) additions += 1 + part->target[k].mirrored;
+  return additions * part->kernel->elements;
+}
 
 /* Whether all elements are one unit, of which every entry's sum is written out. */
 static int is_short(const dvi__part *part)
 {
   const int elements = part->kernel->elements;
-  int few = elements <= DVI__UNIT && elements * part->target_count <= TERMS_MAX;
+  int few = elements <= DVI__UNIT && terms_of(part) <= TERMS_MAX;
   for (int k = 0; k < part->target_count && elements > 1; k++) {
     const dvi__destination *target = &part->target[k];
     few = few && !dvi__is_one_entry(&target->entry, 0) && !(target->mirrored && dvi__is_one_entry(&target->mirror, 0));
@@ -82,7 +90,7 @@ static dvi_status emit_entries(dvi__emitter *out, const dvi__emitted_sum *sum, c
   return status;
 }
 
-/* Elements of a unit, and how many points are taken at once, so that all results of a unit stay in a near cache. */
+/* Elements of a unit, and how many points are taken at once, so that all results of a unit stay in a near cache, and sums that are written out are compiled soon. */
 static int unit_of(const dvi__part *part)
 {
   return part->kernel->elements < DVI__UNIT ? part->kernel->elements : DVI__UNIT;
@@ -92,6 +100,7 @@ static int points_of(const dvi__emitted_sum *own, const dvi__part *part)
 {
   int points = own->points;
   while (points > 1 && part->program.output_count * unit_of(part) * points > ROOM) points /= 2;
+  while (points > 1 && is_short(part) && terms_of(part) * points > TERMS_MAX) points /= 2;
   return points;
 }
 
