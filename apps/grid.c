@@ -38,6 +38,7 @@ static int read_range(const char *setting, const char *text, grid_axis *axis)
   text = take_number(take_number(take_number(text, ':', &from), ':', &to), '\0', &count);
   if (text == NULL || !(count >= 2.0 && count <= POINTS_MAX) || floor(count) < count)
     return usage_error("sweep: --set %s: two numbers and a count from 2 to %d are wanted, FROM:TO:COUNT", setting, (int)POINTS_MAX);
+  if (!isfinite((to - from) * count)) return usage_error("sweep: --set %s: the range is too wide", setting);
   if (!make_values(axis, (long)count)) return FAILED;
   for (long k = 0; k < axis->count; k++) axis->value[k] = from + (to - from) * (double)k / (double)(axis->count - 1);
   axis->value[axis->count - 1] = to;

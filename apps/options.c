@@ -15,7 +15,7 @@ bool parse_number(const char *text, double *number)
 {
   char *end;
   const double value = strtod(text, &end);
-  if (end == text || *end != '\0' || !isfinite(value)) return false;
+  if (end == text || *end != '\0' || text[strspn(text, "+-.0123456789eE")] != '\0' || !isfinite(value)) return false;
   *number = value;
   return true;
 }

@@ -110,6 +110,8 @@ same full.csv whole.csv 'after a full disk'
 # Command lines that make no sense.
 expect 2 'over the scene' $cart --out ./cart.yaml
 expect 2 'no file' $cart
+expect 2 'too wide' $cart --set l=-1e308:1e308:3 --out no.csv
+says err 'l=-1e308:1e308:3: the range is too wide' 'which range'
 expect 2 'standard output' $cart --out -
 says err 'rows go to a file' 'why not standard output'
 expect 2 'no method' sweep kepler --set e=0,0.1 --out no.csv

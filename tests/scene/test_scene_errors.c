@@ -111,6 +111,8 @@ START_TEST(columns_have_one_name_each)
     refused(text, ":1:", "there is a column");
   }
   refused("coordinates: {x_2_21: scalar, x_4_1: scalar, 'x[3]': vector(20)}\nlagrangian: 1\n" RUN, ":2:", "no velocity in it");
+  refused("invariants: {'a,b': x}\n" X "lagrangian: x'^2\n" RUN, ":1:15:", "'a,b' is no name");
+  refused("symmetries: {'': {x: 1}}\n" X "lagrangian: x'^2\n" RUN, ":1:15:", "'' is no name");
   refused("symmetries: {a: {x: 1}}\ninvariants: {a: x}\n" X "lagrangian: x'^2\n" RUN, ":2:14:", "a symmetry 'a' already");
 }
 END_TEST
@@ -201,6 +203,8 @@ START_TEST(names_are_declared_once_and_before_their_use)
   refused(X "definitions: {d: 1}\nlagrangian: x'^2\ninitial: {x: 1}\nstep: d\nuntil: 1\n",
           ":5:7:", "definitions cannot stand in step");
   refused(X "lagrangian: x'^2\ninitial: {t: 1}\nstep: 1\nuntil: 1\n", ":3:11:", "'t' is a word of the language, no coordinate");
+  refused("parameters: {a: 1}\nsweep: {a: {from: -1e308, to: 1e308, count: 3}}\n" X "lagrangian: a*x'^2\n" RUN,
+          ":2:12:", "is too wide");
   refused(X "lagrangian: x'^2\nsweep: {t: [1]}\n" RUN, ":3:9:", "'t' is no parameter that is a number");
   refused("parameters: {a: b, b: 1}\n" X "lagrangian: x'^2\n" RUN, ":1:17:", "it is not known yet");
   refused(X "definitions: {a: b, b: x}\nlagrangian: x'^2\n" RUN, ":2:18:", "it is not known yet");
@@ -242,12 +246,13 @@ START_TEST(settings_replace_numbers_and_nothing_else)
 {
   static const char text[] = "parameters: {speed: 1, list: [1, 2], twice: 2*speed}\n" X "lagrangian: x'^2\n"
                              "initial: {x: twice}\nstep: 1\nuntil: 1\n";
-  static const char *const wrong[] = {"sped=1", "list=1", "speed=fast", "speed", "speed=inf", "x=1"};
+  static const char *const wrong[] = {"sped=1", "list=1", "speed=fast", "speed", "speed=inf", "x=1", "speed=0x10"};
   static const char *const words[] = {"did you mean speed?",        "'list' is a list",
                                       "'fast' is no finite number", "not of the form name=value",
-                                      "'inf' is no finite number",  "a start is set through a parameter"};
+                                      "'inf' is no finite number",  "a start is set through a parameter",
+                                      "'0x10' is no finite number"};
   const double *q, *v, *p;
-  for (int k = 0; k < 6; k++) {
+  for (int k = 0; k < 7; k++) {
     ck_assert_int_eq(parse(text, 1, &wrong[k]), DVI_BAD_OPTION);
     ck_assert_msg(strstr(message, words[k]) != NULL, "%s", message);
   }
@@ -275,6 +280,18 @@ START_TEST(what_is_not_finite_is_told_with_its_place)
   ck_assert_int_eq(parse(X "lagrangian: x'^2 - log(x - 1)\n" RUN, 0, NULL), DVI_OK);
   ck_assert_int_ne(dvi_system_lagrangian(dvi_scene_system(scene), 2.5, &(double){0.75}, &(double){0}, &L), DVI_OK);
   ck_assert_str_eq(dvi_scene_blame(), "test.yaml:2:20: log(x - 1), x - 1 = -0.25 is not finite, at t = 2.5");
+}
+END_TEST
+
+START_TEST(null_is_no_scene_and_no_setting)
+{
+  const double *q, *v, *p;
+  dvi_scene_facts facts;
+  dvi_scene_start(NULL, &q, &v, &p);
+  ck_assert(q == NULL && v == NULL && p == NULL);
+  dvi_scene_facts_of(NULL, &facts);
+  ck_assert(facts.form == NULL && facts.kernels == 0);
+  ck_assert_int_eq(parse(X "lagrangian: x'^2\n" RUN, 1, &(const char *){NULL}), DVI_BAD_ARGUMENT);
 }
 END_TEST
 
@@ -329,6 +346,7 @@ int main(void)
   tcase_add_test(tests, settings_replace_numbers_and_nothing_else);
   tcase_add_test(tests, limits_are_told);
   tcase_add_test(tests, what_is_not_finite_is_told_with_its_place);
+  tcase_add_test(tests, null_is_no_scene_and_no_setting);
   tcase_add_test(tests, a_file_that_is_not_there_is_told);
   tcase_add_test(tests, c_is_written_under_a_name_and_to_its_end);
   return run_tests("scene errors", tests);

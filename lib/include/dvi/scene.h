@@ -87,7 +87,7 @@ const dvi_system *dvi_scene_system(const dvi_scene *scene);
 /** The terms that the system was made of, owned by the scene; NULL for NULL. */
 const dvi_system_terms *dvi_scene_terms(const dvi_scene *scene);
 
-/** The start at t = 0: q [nq], v [nv], p [nv]. */
+/** The start at t = 0: q [nq], v [nv], p [nv]; NULL for NULL. */
 void dvi_scene_start(const dvi_scene *scene, const double **q, const double **v, const double **p);
 
 /** The name of coordinate i of q [nq], for columns: "x", "q_1_x", "R_11", "u_cos"; NULL if i is out of range. */
@@ -117,7 +117,7 @@ const dvi_scene_event *dvi_scene_event_at(const dvi_scene *scene, int i);
 /** What section `sweep` says of its parameter i; NULL if i is out of range. Owned by the scene. */
 const dvi_scene_range *dvi_scene_range_at(const dvi_scene *scene, int i);
 
-/** Counts of evaluations so far, and what was derived. */
+/** Counts of evaluations so far, and what was derived; zeros for NULL. */
 void dvi_scene_facts_of(const dvi_scene *scene, dvi_scene_facts *facts);
 
 /** The part of an expression that was not finite when a callback of a scene's system last failed on this thread, with the time; or the limit that its derivatives
@@ -128,7 +128,7 @@ const char *dvi_scene_blame(void);
  *
  *  @param      section   its name, as "method"; if there is none, the place is the file
  *  @param      sentence  what is to be said
- *  @param[out] message   [size] */
+ *  @param[out] message   [size]; untouched if the scene is NULL */
 void dvi_scene_tell(const dvi_scene *scene, const char *section, const char *sentence, char *message, size_t size);
 
 /** Write a C file that declares the same system by callbacks of the C API: a function `dvi_status NAME_create(dvi_system **system)`; the start,

@@ -32,7 +32,7 @@ static bool apply_setting(dvi_scene *scene, dvi__parameter *p, const char *text)
   if (!p->settable)
     return dvi__complain(scene->complaint, DVI_BAD_OPTION, p->span, "%s: '%s' is a list, and only numbers can be set", text,
                          p->name);
-  if (end == number || *end != '\0' || !isfinite(value))
+  if (end == number || *end != '\0' || number[strspn(number, "+-.0123456789eE")] != '\0' || !isfinite(value))
     return dvi__complain(scene->complaint, DVI_BAD_OPTION, DVI__NOWHERE, "%s: '%s' is no finite number", text, number);
   p->value[0] = value;
   return true;

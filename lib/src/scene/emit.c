@@ -71,7 +71,7 @@ static int new_array(dvi__emitter *out, const void *address)
 
 int dvi__emit_ints_of(dvi__emitter *out, const void *key, int count, const int *value)
 {
-  const int known = find_array(out, key);
+  const int known = key != NULL ? find_array(out, key) : -1;
   if (known >= 0) return known;
   const int number = new_array(out, key);
   dvi__emit(out, "static const int dvi_list_%d[] = {", number);
@@ -83,6 +83,15 @@ int dvi__emit_ints_of(dvi__emitter *out, const void *key, int count, const int *
 int dvi__emit_ints(dvi__emitter *out, int count, const int *value)
 {
   return dvi__emit_ints_of(out, value, count, value);
+}
+
+int dvi__emit_lists(dvi__emitter *out, int count, const int *list)
+{
+  const int number = new_array(out, NULL);
+  dvi__emit(out, "static const int *const dvi_lists_%d[] = {", number);
+  for (int i = 0; i < count; i++) dvi__emit(out, "%sdvi_list_%d", i == 0 ? "" : i % A_LINE == 0 ? ",\n  " : ", ", list[i]);
+  dvi__emit(out, "};\n");
+  return number;
 }
 
 int dvi__emit_doubles(dvi__emitter *out, int count, const double *value)

@@ -21,8 +21,10 @@ void dvi__emit_number(dvi__emitter *out, double value);
  * written before. */
 int dvi__emit_ints(dvi__emitter *out, int count, const int *value);
 int dvi__emit_doubles(dvi__emitter *out, int count, const double *value);
-/* As dvi__emit_ints, for numbers that have no lasting address: `key` stands for it. */
+/* As dvi__emit_ints, for numbers that have no lasting address: `key` stands for it; NULL: it is always written. */
 int dvi__emit_ints_of(dvi__emitter *out, const void *key, int count, const int *value);
+/* The number n of `static const int *const dvi_lists_n[]`, that points to the lists of these numbers. */
+int dvi__emit_lists(dvi__emitter *out, int count, const int *list);
 
 /* What the functions below need: headers and small functions. First in a file. */
 void dvi__emit_begin(dvi__emitter *out);

@@ -6,76 +6,43 @@
 #include "scene/emit_parts.h"
 #include "scene/heap.h"
 
-enum { ROOM = 8192, ROOM_MAX = 131072, TERMS_MAX = 2048 };
+enum { ROOM = 8192, ROOM_MAX = 131072, TERMS_MAX = 1024 };
 
-/* --- Which units add all their elements to one entry. --- */
+/* --- Arrays, before the functions. --- */
 
-static int is_one_entry(const dvi__entries *entries, int first)
+/* How many terms the sums of a short part have. */
+static int terms_of(const dvi__part *part)
 {
-  const dvi__track minor = dvi__track_of(&entries->minor, first);
-  if (entries->scale == 0) return minor.list == NULL && minor.stride == 0;
-  const dvi__track major = dvi__track_of(&entries->major, first);
-  return minor.list == NULL && major.list == NULL && minor.stride + entries->scale * major.stride == 0;
-}
-
-enum { NEVER, ALWAYS, SOMETIMES, NO_MEMORY };
-
-/* In which units; `flag` [units] has them. */
-static int find_folds(const dvi__entries *entries, int elements, int *flag)
-{
-  int folds = 0, units = 0;
-  for (int first = 0; first < elements; first += DVI__UNIT, units++) folds += flag[units] = is_one_entry(entries, first);
-  return folds == 0 ? NEVER : folds == units ? ALWAYS : SOMETIMES;
+  int additions = 0;
+  for (int k = 0; k < part->target_count; k++) additions += 1 + part->target[k].mirrored;
+  return additions * part->kernel->elements;
 }
 
 /* Whether all elements are one unit, of which every entry's sum is written out. */
 static int is_short(const dvi__part *part)
 {
   const int elements = part->kernel->elements;
-  int few = elements <= DVI__UNIT && elements * part->target_count <= TERMS_MAX;
+  int few = elements <= DVI__UNIT && terms_of(part) <= TERMS_MAX;
   for (int k = 0; k < part->target_count && elements > 1; k++) {
     const dvi__destination *target = &part->target[k];
-    few = few && !is_one_entry(&target->entry, 0) && !(target->mirrored && is_one_entry(&target->mirror, 0));
+    few = few && !dvi__is_one_entry(&target->entry, 0) && !(target->mirrored && dvi__is_one_entry(&target->mirror, 0));
   }
   return few;
 }
-
-/* How a row is added to entries; the array of flags that this wants is written if it is not there yet. NO_MEMORY: there is none. */
-static int declare_fold(dvi__emitter *out, const dvi__entries *entries, int elements, int *list)
-{
-  int *flag = dvi__heap_take((size_t)elements / DVI__UNIT + 1, sizeof *flag);
-  if (flag == NULL) return NO_MEMORY;
-  const int folds = find_folds(entries, elements, flag), units = (elements + DVI__UNIT - 1) / DVI__UNIT;
-  if (folds == SOMETIMES) *list = dvi__emit_ints_of(out, entries, units, flag);
-  dvi__heap_free(flag);
-  return folds;
-}
-
-/* --- Arrays, before the functions. --- */
 
 static void declare_places(dvi__emitter *out, const dvi__places *places, int elements)
 {
   if (places->list != NULL) (void)dvi__emit_ints(out, elements, places->list);
 }
 
-static dvi_status declare_entries(dvi__emitter *out, const dvi__entries *entries, int elements)
-{
-  declare_places(out, &entries->minor, elements);
-  if (entries->scale != 0) declare_places(out, &entries->major, elements);
-  int list;
-  return declare_fold(out, entries, elements, &list) == NO_MEMORY ? DVI_NO_MEMORY : DVI_OK;
-}
-
-static dvi_status declare_arrays(dvi__emitter *out, const dvi__part *part)
+static dvi_status declare_arrays(dvi__emitter *out, const dvi__emitted_sum *own, const dvi__part *part, dvi__additions *additions)
 {
   const int elements = part->kernel->elements;
   dvi_status status = DVI_OK;
   for (int i = 0; i < part->variable_count; i++) declare_places(out, &part->variable[i], elements);
   for (int c = 0; c < part->column_count; c++) (void)dvi__emit_doubles(out, elements, part->column[c]);
-  for (int k = 0; k < part->target_count && status == DVI_OK && !is_short(part); k++) {
-    status = declare_entries(out, &part->target[k].entry, elements);
-    if (status == DVI_OK && part->target[k].mirrored) status = declare_entries(out, &part->target[k].mirror, elements);
-  }
+  for (int a = 0; own->mask >> a != 0 && status == DVI_OK && !is_short(part); a++)
+    status = dvi__additions_declare(out, part, a, &additions[a]);
   return status;
 }
 
@@ -92,17 +59,6 @@ static void emit_place(dvi__emitter *out, const dvi__places *places, int element
     dvi__emit(out, "(%d + %d * (first + e))", places->start, places->stride);
 }
 
-static void emit_entry(dvi__emitter *out, const dvi__entries *entries, int elements)
-{
-  dvi__emit(out, "(");
-  emit_place(out, &entries->minor, elements);
-  if (entries->scale != 0) {
-    dvi__emit(out, " + %d * ", entries->scale);
-    emit_place(out, &entries->major, elements);
-  }
-  dvi__emit(out, ")");
-}
-
 static void emit_inputs(dvi__emitter *out, const dvi__part *part, const int *name)
 {
   const int elements = part->kernel->elements;
@@ -114,42 +70,6 @@ static void emit_inputs(dvi__emitter *out, const dvi__part *part, const int *nam
   for (int c = 0; c < part->column_count; c++)
     dvi__emit(out, "      const double r%d = dvi_row_%d[first + e];\n", name[part->variable_count + c],
               dvi__emit_doubles(out, elements, part->column[c]));
-}
-
-/* Add the row of a target to its entries, or subtract it. */
-static dvi_status emit_addition(dvi__emitter *out, const dvi__emitted_sum *own, const dvi__part *part,
-                                const dvi__destination *target, const dvi__entries *entries)
-{
-  const int elements = part->kernel->elements;
-  int list = 0;
-  const int folds = declare_fold(out, entries, elements, &list);
-  if (folds == NO_MEMORY) return DVI_NO_MEMORY;
-  if (folds == ALWAYS) dvi__emit(out, "  dvi_fold(elements, points, y[%d], sum);\n", target->output);
-  if (folds == SOMETIMES) {
-    dvi__emit(out, "  row = y[%d], left = elements;\n  if (dvi_list_%d[first / %d])", target->output, list, DVI__UNIT);
-    dvi__emit(out, " dvi_fold(elements, points, row, sum), row = sum, left = 1;\n");
-  }
-  dvi__emit(out, "  for (int e = 0; e < %s; e++) {\n", folds == NEVER ? "elements" : folds == ALWAYS ? "1" : "left");
-  dvi__emit(out, "    DVI_INDEPENDENT\n    for (int p = 0; p < points; p++) %s[", own->array[target->array]);
-  emit_entry(out, entries, elements);
-  dvi__emit(out, " * n + p] %s ", target->negative ? "-=" : "+=");
-  if (folds == NEVER)
-    dvi__emit(out, "y[%d]", target->output);
-  else
-    dvi__emit(out, folds == ALWAYS ? "sum" : "row");
-  dvi__emit(out, "[e * points + p];\n  }\n");
-  return DVI_OK;
-}
-
-static dvi_status emit_additions(dvi__emitter *out, const dvi__emitted_sum *own, const dvi__part *part)
-{
-  dvi_status status = DVI_OK;
-  for (int k = 0; k < part->target_count && status == DVI_OK; k++) {
-    const dvi__destination *target = &part->target[k];
-    status = emit_addition(out, own, part, target, &target->entry);
-    if (status == DVI_OK && target->mirrored) status = emit_addition(out, own, part, target, &target->mirror);
-  }
-  return status;
 }
 
 /* All entries of a short part, each with the sum of what is added to it. */
@@ -170,7 +90,7 @@ static dvi_status emit_entries(dvi__emitter *out, const dvi__emitted_sum *sum, c
   return status;
 }
 
-/* Elements of a unit, and how many points are taken at once, so that all results of a unit stay in a near cache. */
+/* Elements of a unit, and how many points are taken at once, so that all results of a unit stay in a near cache, and sums that are written out are compiled soon. */
 static int unit_of(const dvi__part *part)
 {
   return part->kernel->elements < DVI__UNIT ? part->kernel->elements : DVI__UNIT;
@@ -180,10 +100,11 @@ static int points_of(const dvi__emitted_sum *own, const dvi__part *part)
 {
   int points = own->points;
   while (points > 1 && part->program.output_count * unit_of(part) * points > ROOM) points /= 2;
+  while (points > 1 && is_short(part) && terms_of(part) * points > TERMS_MAX) points /= 2;
   return points;
 }
 
-static dvi_status emit_unit(dvi__emitter *out, const dvi__emitted_sum *own, int k)
+static dvi_status emit_unit(dvi__emitter *out, const dvi__emitted_sum *own, int k, const dvi__additions *additions)
 {
   const dvi__part *part = &own->sum->part[k];
   const dvi__program *program = &part->program;
@@ -195,8 +116,7 @@ static dvi_status emit_unit(dvi__emitter *out, const dvi__emitted_sum *own, int 
   dvi__emit(out, ")\n{\n");
   const int lanes = unit_of(part) * points_of(own, part);
   dvi__emit(out, "  double y[%d][%d], sum[%d];\n", program->output_count, lanes, lanes);
-  dvi__emit(out, "  const double *row;\n  int64_t unusual = 0;\n  int left;\n");
-  dvi__emit(out, "  (void)careful, (void)first, (void)sum, (void)row, (void)left");
+  dvi__emit(out, "  int64_t unusual = 0;\n  (void)careful, (void)first, (void)sum");
   dvi__emit_mentions(out, own);
   dvi__emit_shifts(out, own, part);
   dvi__emit(
@@ -208,7 +128,10 @@ static dvi_status emit_unit(dvi__emitter *out, const dvi__emitted_sum *own, int 
     dvi__emit(out, "      y[%d][e * points + p] = r%d;\n", i, name[program->row_count - program->output_count + i]);
   dvi__emit(out, "    }\n  }\n");
   dvi__heap_free(name);
-  const dvi_status status = is_short(part) ? emit_entries(out, own, part) : emit_additions(out, own, part);
+  dvi_status status = DVI_OK;
+  if (is_short(part)) status = emit_entries(out, own, part);
+  for (int a = 0; own->mask >> a != 0 && !is_short(part); a++)
+    dvi__additions_emit(out, &additions[a], own->array[a], part->kernel->elements);
   dvi__emit(out, "  return unusual;\n}\n");
   return status;
 }
@@ -275,8 +198,9 @@ dvi_status dvi__emit_elements(dvi__emitter *out, const dvi__emitted_sum *own)
 {
   dvi_status status = DVI_OK;
   for (int k = 0; k < own->sum->part_count && status == DVI_OK; k++) {
-    status = is_too_large(&own->sum->part[k]) ? DVI_BAD_SIZE : declare_arrays(out, &own->sum->part[k]);
-    if (status == DVI_OK) status = emit_unit(out, own, k);
+    dvi__additions additions[DVI__PAIRS];
+    status = is_too_large(&own->sum->part[k]) ? DVI_BAD_SIZE : declare_arrays(out, own, &own->sum->part[k], additions);
+    if (status == DVI_OK) status = emit_unit(out, own, k, additions);
   }
   if (status != DVI_OK) return status;
   dvi__emit(out, "DVI_INLINE int %s_at(const int careful, const ptrdiff_t n", own->name);

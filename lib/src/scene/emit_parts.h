@@ -36,6 +36,26 @@ dvi_status dvi__contributions_find(int part_count, const dvi__part *part, dvi__c
 /* Whether contribution i is the first one to its entry. */
 int dvi__contribution_is_first(const dvi__contributions *all, int i);
 
+/* Whether the unit of elements that starts at `first` adds them all to one entry. */
+int dvi__is_one_entry(const dvi__entries *entries, int first);
+
+/* A number for each of many: a list, or -1 and the one number of all. */
+typedef struct dvi__numbers {
+  int list, value;
+} dvi__numbers;
+
+/* What a part adds to an array: each time a row, with a sign, to entries start + step * e, or, listed, start + the list `step` at e. */
+typedef struct dvi__additions {
+  int count, listed;
+  dvi__numbers row, sign, start, step;
+  enum { DVI__NEVER, DVI__SOMETIMES, DVI__ALWAYS } folds; /* in units that have one entry */
+  int flags;                                              /* if sometimes: the list that says in which */
+} dvi__additions;
+
+/* Write the tables, before a function; and in it the loop. */
+dvi_status dvi__additions_declare(dvi__emitter *out, const dvi__part *part, int array, dvi__additions *all);
+void dvi__additions_emit(dvi__emitter *out, const dvi__additions *all, const char *array, int elements);
+
 /* The name's parts: NAME_at(careful, n, ..), which returns 1 if it wants to be called again, carefully. Of kernels with one element, or any. */
 dvi_status dvi__emit_expressions(dvi__emitter *out, const dvi__emitted_sum *own);
 dvi_status dvi__emit_elements(dvi__emitter *out, const dvi__emitted_sum *own);

@@ -47,7 +47,7 @@ static bool grow(dvi__names *names, dvi__arena *arena)
   return true;
 }
 
-static bool is_identifier(const char *text)
+bool dvi__is_identifier(const char *text)
 {
   if (!isalpha((unsigned char)*text) && *text != '_') return false;
   for (; *text != '\0'; text++)
@@ -58,7 +58,7 @@ static bool is_identifier(const char *text)
 bool dvi__names_add(dvi__names *names, dvi__arena *arena, dvi__complaint *complaint, const char *text, dvi__span span,
                     dvi__sort sort, int number)
 {
-  if (!is_identifier(text))
+  if (!dvi__is_identifier(text))
     return dvi__complain(complaint, DVI_BAD_FILE, span, "'%s' is no name: letters, digits and _, a letter first", text);
   if (dvi__is_word(text))
     return dvi__complain(complaint, DVI_BAD_FILE, span, "'%s' is a word of the language; choose another name", text);

@@ -87,6 +87,9 @@ const dvi__name *dvi__names_find(const dvi__names *names, const char *text);
 bool dvi__names_add(dvi__names *names, dvi__arena *arena, dvi__complaint *complaint, const char *text, dvi__span span,
                     dvi__sort sort, int number);
 
+/* Letters, digits and _, a letter first. */
+bool dvi__is_identifier(const char *text);
+
 /* Complain of an unknown name, with the nearest known one. */
 bool dvi__names_unknown(const dvi__names *names, dvi__arena *arena, dvi__complaint *complaint, const char *text, dvi__span span);
 

@@ -117,14 +117,21 @@ static dvi_status tell(char *message, size_t size, dvi_status status, const char
   return status;
 }
 
+static bool are_there(int count, const char *const *text)
+{
+  if (count < 0 || (count > 0 && text == NULL)) return false;
+  for (int i = 0; i < count; i++)
+    if (text[i] == NULL) return false;
+  return true;
+}
+
 dvi_status dvi_scene_parse(const char *name, const char *text, size_t length, int setting_count, const char *const *settings,
                            dvi_scene **scene, char *message, size_t size)
 {
   if (scene == NULL) return DVI_BAD_ARGUMENT;
   *scene = NULL;
   if (message != NULL && size > 0) message[0] = '\0';
-  if (name == NULL || text == NULL || setting_count < 0 || (setting_count > 0 && settings == NULL))
-    return tell(message, size, DVI_BAD_ARGUMENT, "scene");
+  if (name == NULL || text == NULL || !are_there(setting_count, settings)) return tell(message, size, DVI_BAD_ARGUMENT, "scene");
   dvi_scene *made = dvi__heap_take(1, sizeof *made);
   if (made == NULL || pthread_mutex_init(&made->labels_mutex, NULL) != 0) {
     dvi__heap_free(made);
@@ -203,9 +210,9 @@ const dvi_system_terms *dvi_scene_terms(const dvi_scene *scene)
 
 void dvi_scene_start(const dvi_scene *scene, const double **q, const double **v, const double **p)
 {
-  *q = scene->q;
-  *v = scene->v;
-  *p = scene->p;
+  *q = scene != NULL ? scene->q : NULL;
+  *v = scene != NULL ? scene->v : NULL;
+  *p = scene != NULL ? scene->p : NULL;
 }
 
 int dvi_scene_bodies(const dvi_scene *scene)
@@ -230,6 +237,7 @@ const char *dvi_scene_unused(const dvi_scene *scene, int i)
 
 void dvi_scene_tell(const dvi_scene *scene, const char *section, const char *sentence, char *message, size_t size)
 {
+  if (scene == NULL) return;
   const dvi__tree *tree = dvi__tree_find(scene->tree, section);
   dvi__complaint complaint = {.source = &scene->source, .message = message, .size = size};
   (void)dvi__complain(&complaint, DVI_BAD_FILE, tree != NULL ? tree->span : DVI__NOWHERE, "%s", sentence);
@@ -266,7 +274,10 @@ static void add_facts(const dvi__term *term, dvi_scene_facts *facts)
 
 void dvi_scene_facts_of(const dvi_scene *scene, dvi_scene_facts *facts)
 {
-  *facts = (dvi_scene_facts){.form = scene->form, .mass = scene->mass};
+  *facts = (dvi_scene_facts){0};
+  if (scene == NULL) return;
+  facts->form = scene->form;
+  facts->mass = scene->mass;
   for (const dvi__term *term = scene->functions; term != NULL; term = term->next)
     if (term->role == DVI__MOVES) add_facts(term, facts);
   for (int k = 0; k < scene->terms.potential_count; k++) {

@@ -1,6 +1,7 @@
 #include "scene/sections.h"
 
 #include <limits.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -233,6 +234,8 @@ static bool read_steps(dvi_scene *scene, const dvi__tree *steps, dvi_scene_range
       !dvi__tree_number(scene, dvi__tree_find(steps, "to"), "to", &end[1]) || !dvi__tree_whole(scene, how_many, "count", 2, &count))
     return false;
   if (count > COUNT_MAX) return dvi__scene_refuse(scene, how_many->span, "at most %d values", COUNT_MAX);
+  if (!isfinite((end[1] - end[0]) * count))
+    return dvi__scene_refuse(scene, steps->span, "the range from %g to %g is too wide", end[0], end[1]);
   double *value = dvi__arena_take(&scene->arena, (size_t)count, sizeof *value);
   if (value == NULL) return dvi__scene_no_memory(scene);
   for (int i = 0; i < count; i++) value[i] = end[0] + (end[1] - end[0]) * i / (count - 1);
