@@ -22,7 +22,7 @@ static void write_component(const dvi__coordinate *x, which of, int k, char *tex
   const int components = of == OF_Q ? x->q.components : x->v.components;
   text[0] = '\0';
   if (x->kind == DVI__ROTATION && of == OF_Q)
-    (void)snprintf(text, size, "_%d%d", k / 3 + 1, k % 3 + 1);
+    (void)snprintf(text, size, "_%c%c", "123"[k / 3], "123"[k % 3]);
   else if (x->kind == DVI__ANGLE)
     (void)snprintf(text, size, "%s", of != OF_Q ? "" : k == 0 ? "_cos" : "_sin");
   else if (x->shape.rank > 0 && components <= 3)
