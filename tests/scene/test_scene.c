@@ -297,6 +297,25 @@ START_TEST(tags_do_not_change_what_other_methods_do)
 }
 END_TEST
 
+START_TEST(imex_factorises_a_quadratic_fast_potential_once_a_run)
+{
+  double state[2] = {1, 0.5};
+  const double momenta[2] = {0};
+  dvi_counters counters;
+  dvi_integrator *integrator;
+  open_scene(CHAIN "  fast: {bond: 50*(x - y)^2}\n  slow: {well: x^4/4}\n");
+  ck_assert_msg(dvi_integrator_create(dvi_scene_system(scene), "imex", &integrator) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_int_eq(dvi_integrator_start(integrator, 0, state, momenta), DVI_OK);
+  for (int k = 0; k < STEPS; k++) ck_assert_int_eq(dvi_integrator_step(integrator, 0.1), DVI_OK);
+  dvi_integrator_counters(integrator, &counters);
+  ck_assert_int_eq(counters.factorizations, 1);
+  ck_assert_int_eq(counters.hessians, 1);
+  ck_assert_int_eq(counters.solves, STEPS);
+  ck_assert_int_eq(counters.jacobians + counters.residuals + counters.newtons + counters.fixed_points, 0);
+  dvi_integrator_destroy(&integrator);
+}
+END_TEST
+
 START_TEST(outer_solar_is_that_of_the_catalogue)
 {
   open_both("parameters:\n"
@@ -412,6 +431,7 @@ int main(void)
   tcase_add_test(tests, one_member_may_stand_beside_a_formula_that_is_no_number_there);
   tcase_add_test(tests, potentials_are_fast_as_they_are_tagged);
   tcase_add_test(tests, tags_do_not_change_what_other_methods_do);
+  tcase_add_test(tests, imex_factorises_a_quadratic_fast_potential_once_a_run);
   tcase_add_test(tests, outer_solar_is_that_of_the_catalogue);
   tcase_add_test(tests, double_pendulum_is_that_of_the_catalogue);
   tcase_add_test(tests, driven_pendulum_is_that_of_the_catalogue);
