@@ -8,7 +8,7 @@
 
 enum { ROOM = 8192, ROOM_MAX = 131072, TERMS_MAX = 1024 };
 
-/* --- Arrays, before the functions. --- */
+/* --- Sums that are written out. --- */
 
 /* How many terms the sums of a short part have. */
 static int terms_of(const dvi__part *part)
@@ -29,6 +29,8 @@ static int is_short(const dvi__part *part)
   }
   return few;
 }
+
+/* --- Arrays, before the functions. --- */
 
 static void declare_places(dvi__emitter *out, const dvi__places *places, int elements)
 {
@@ -90,7 +92,7 @@ static dvi_status emit_entries(dvi__emitter *out, const dvi__emitted_sum *sum, c
   return status;
 }
 
-/* Elements of a unit, and how many points are taken at once, so that all results of a unit stay in a near cache, and sums that are written out are compiled soon. */
+/* Elements of a unit, and how many points are taken at once: all results of a unit stay in a near cache, and what is written out is soon compiled. */
 static int unit_of(const dvi__part *part)
 {
   return part->kernel->elements < DVI__UNIT ? part->kernel->elements : DVI__UNIT;
