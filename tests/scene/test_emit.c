@@ -13,6 +13,7 @@
 
 enum { INPUTS_MAX = 8, ELEMENTS_MAX = 100, N = 120, POINTS_MAX = 13, RESULTS_MAX = 80000 };
 
+static int n; /* coordinates, N but for some */
 static int list[3][ELEMENTS_MAX];
 static double row[2][ELEMENTS_MAX];
 
@@ -49,7 +50,7 @@ static void make_kernel(int k, dvi__node root, int elements, int input_count)
 
 static dvi__function *make_function(int kernel_count)
 {
-  const int block_size[DVI__BLOCKS] = {1, N, N, 0};
+  const int block_size[DVI__BLOCKS] = {1, n, n, 0};
   dvi__function *function = NULL;
   ck_assert_int_eq(dvi__function_create(kernel_count, kernel, block_size, &function), DVI_OK);
   return function;
@@ -69,6 +70,7 @@ static void setup(void)
 {
   make_folder();
   memset(graph, 0, sizeof graph);
+  n = N;
   for (int e = 0; e < ELEMENTS_MAX; e++) {
     row[0][e] = 1 + 0.1 * e;
     row[1][e] = sin(e);
@@ -100,13 +102,13 @@ static void find_sizes(dvi__function *function, results *all)
 {
   memset(all, 0, sizeof *all);
   all->size[0][0] = 1;
-  for (int b = 0; b < DVI__BLOCKS; b++) all->size[1][b] = BLOCKS >> b & 1U ? N : 0;
+  for (int b = 0; b < DVI__BLOCKS; b++) all->size[1][b] = BLOCKS >> b & 1U ? n : 0;
   for (int pair = 0; pair < DVI__PAIRS; pair++) {
     if ((PAIRS >> pair & 1U) == 0) continue;
     dvi_pattern pattern;
     int full;
     ck_assert_int_eq(dvi__function_pattern(function, (dvi__pair)pair, &pattern, &full), DVI_OK);
-    all->size[2][pair] = full ? N * N : pattern.start[N];
+    all->size[2][pair] = full ? n * n : pattern.start[n];
   }
 }
 
@@ -252,11 +254,14 @@ static dvi__function *attraction(int count)
   return make_function(1);
 }
 
-/* 6 pairs are written out, 45 go by lists. */
+/* 6 pairs are written out, 45 go by lists: of entries of a pattern, or of rows and columns of a full matrix. */
 START_TEST(pairs_have_the_digits_of_the_byte_code)
 {
   check_emitted(attraction(4), 1);
   memset(graph, 0, sizeof graph);
+  check_emitted(attraction(10), 1);
+  memset(graph, 0, sizeof graph);
+  n = 20;
   check_emitted(attraction(10), 1);
 }
 END_TEST

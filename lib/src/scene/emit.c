@@ -117,7 +117,7 @@ dvi_status dvi__emit_end(dvi__emitter *out)
 }
 
 /* Results shall not depend on the machine, hence no contraction of products and sums; loops with roots become vectors only if roots leave errno alone, and
- * with gcc 12 at -O2 if they are asked to. DVI_LANES may be defined, as nothing, for a program that is compiled sooner and runs on one instruction set. */
+ * with gcc 12 at -O2 if they are asked to. Clang shall not take several vectors at once, which is more than the few points there are. DVI_LANES may be defined, as nothing, for a program that is compiled sooner and runs on one instruction set. */
 static const char *const beginning[] = {
     "#include <float.h>\n"
     "#include <math.h>\n"
@@ -128,7 +128,7 @@ static const char *const beginning[] = {
     "#if defined(__clang__)\n"
     "#pragma STDC FP_CONTRACT OFF\n"
     "#pragma clang diagnostic ignored \"-Wpass-failed\"\n"
-    "#define DVI_INDEPENDENT _Pragma(\"clang loop vectorize(assume_safety)\")\n"
+    "#define DVI_INDEPENDENT _Pragma(\"clang loop vectorize(assume_safety) interleave(disable)\")\n"
     "#elif defined(__GNUC__)\n"
     "#pragma GCC optimize(\"fp-contract=off\", \"no-math-errno\")\n"
     "#if defined(__OPTIMIZE__)\n"

@@ -48,3 +48,10 @@ int dvi__contribution_is_first(const dvi__contributions *all, int i)
 {
   return i == 0 || all->list[i].array != all->list[i - 1].array || all->list[i].entry != all->list[i - 1].entry;
 }
+
+int dvi__entries_written(const dvi__contributions *all, int array)
+{
+  int entries = 0;
+  for (int i = 0; i < all->count; i++) entries += all->list[i].array == array && dvi__contribution_is_first(all, i);
+  return entries;
+}

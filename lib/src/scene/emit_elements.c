@@ -8,7 +8,7 @@
 
 enum { ROOM = 8192, ROOM_MAX = 131072, TERMS_MAX = 1024 };
 
-/* --- Arrays, before the functions. --- */
+/* --- Sums that are written out. --- */
 
 /* How many terms the sums of a short part have. */
 static int terms_of(const dvi__part *part)
@@ -29,6 +29,8 @@ static int is_short(const dvi__part *part)
   }
   return few;
 }
+
+/* --- Arrays, before the functions. --- */
 
 static void declare_places(dvi__emitter *out, const dvi__places *places, int elements)
 {
@@ -72,8 +74,8 @@ static void emit_inputs(dvi__emitter *out, const dvi__part *part, const int *nam
               dvi__emit_doubles(out, elements, part->column[c]));
 }
 
-/* All entries of a short part, each with the sum of what is added to it. */
-static dvi_status emit_entries(dvi__emitter *out, const dvi__emitted_sum *sum, const dvi__part *part)
+/* All entries of a short part, each with the sum of what is added to it, or to zero in arrays that the part stores. */
+static dvi_status emit_entries(dvi__emitter *out, const dvi__emitted_sum *sum, const dvi__part *part, unsigned stored)
 {
   dvi__contributions all;
   const dvi_status status = dvi__contributions_find(1, part, &all);
@@ -81,8 +83,13 @@ static dvi_status emit_entries(dvi__emitter *out, const dvi__emitted_sum *sum, c
   for (int i = 0; i < all.count; i++) {
     const dvi__contribution *own = &all.list[i];
     const char *array = sum->array[own->array];
-    if (dvi__contribution_is_first(&all, i))
-      dvi__emit(out, "%s    %s[%d * n + p] = %s[%d * n + p]", i > 0 ? ";\n" : "", array, own->entry, array, own->entry);
+    if (dvi__contribution_is_first(&all, i)) {
+      dvi__emit(out, "%s    %s[%d * n + p] = ", i > 0 ? ";\n" : "", array, own->entry);
+      if ((stored >> own->array & 1U) != 0)
+        dvi__emit(out, "0.0");
+      else
+        dvi__emit(out, "%s[%d * n + p]", array, own->entry);
+    }
     dvi__emit(out, " %c y[%d][%d * points + p]", own->negative ? '-' : '+', own->output, own->element);
   }
   dvi__emit(out, "%s  }\n", all.count > 0 ? ";\n" : "");
@@ -90,7 +97,7 @@ static dvi_status emit_entries(dvi__emitter *out, const dvi__emitted_sum *sum, c
   return status;
 }
 
-/* Elements of a unit, and how many points are taken at once, so that all results of a unit stay in a near cache, and sums that are written out are compiled soon. */
+/* Elements of a unit, and how many points are taken at once: all results of a unit stay in a near cache, and what is written out is soon compiled. */
 static int unit_of(const dvi__part *part)
 {
   return part->kernel->elements < DVI__UNIT ? part->kernel->elements : DVI__UNIT;
@@ -104,7 +111,7 @@ static int points_of(const dvi__emitted_sum *own, const dvi__part *part)
   return points;
 }
 
-static dvi_status emit_unit(dvi__emitter *out, const dvi__emitted_sum *own, int k, const dvi__additions *additions)
+static dvi_status emit_unit(dvi__emitter *out, const dvi__emitted_sum *own, int k, const dvi__additions *additions, unsigned stored)
 {
   const dvi__part *part = &own->sum->part[k];
   const dvi__program *program = &part->program;
@@ -129,7 +136,7 @@ static dvi_status emit_unit(dvi__emitter *out, const dvi__emitted_sum *own, int 
   dvi__emit(out, "    }\n  }\n");
   dvi__heap_free(name);
   dvi_status status = DVI_OK;
-  if (is_short(part)) status = emit_entries(out, own, part);
+  if (is_short(part)) status = emit_entries(out, own, part, k == 0 ? stored : 0);
   for (int a = 0; own->mask >> a != 0 && !is_short(part); a++)
     dvi__additions_emit(out, &additions[a], own->array[a], part->kernel->elements);
   dvi__emit(out, "  return unusual;\n}\n");
@@ -189,6 +196,19 @@ static void emit_calls(dvi__emitter *out, const dvi__emitted_sum *own, int k)
   dvi__emit(out, "  }\n");
 }
 
+/* The arrays that the first part stores, so that they need not be zero before. */
+static dvi_status find_stored(const dvi__emitted_sum *own, unsigned *stored)
+{
+  dvi__contributions all;
+  *stored = 0;
+  if (own->sum->part_count == 0 || !is_short(own->sum->part)) return DVI_OK;
+  const dvi_status status = dvi__contributions_find(1, own->sum->part, &all);
+  for (int a = 0; own->mask >> a != 0 && status == DVI_OK; a++)
+    if ((own->mask >> a & 1U) != 0 && dvi__entries_written(&all, a) == own->size[a]) *stored |= 1U << a;
+  dvi__heap_free(all.list);
+  return status;
+}
+
 static int is_too_large(const dvi__part *part)
 {
   return (long)part->program.output_count * unit_of(part) > ROOM_MAX;
@@ -196,18 +216,19 @@ static int is_too_large(const dvi__part *part)
 
 dvi_status dvi__emit_elements(dvi__emitter *out, const dvi__emitted_sum *own)
 {
-  dvi_status status = DVI_OK;
+  unsigned stored;
+  dvi_status status = find_stored(own, &stored);
   for (int k = 0; k < own->sum->part_count && status == DVI_OK; k++) {
     dvi__additions additions[DVI__PAIRS];
     status = is_too_large(&own->sum->part[k]) ? DVI_BAD_SIZE : declare_arrays(out, own, &own->sum->part[k], additions);
-    if (status == DVI_OK) status = emit_unit(out, own, k, additions);
+    if (status == DVI_OK) status = emit_unit(out, own, k, additions, stored);
   }
   if (status != DVI_OK) return status;
   dvi__emit(out, "DVI_INLINE int %s_at(const int careful, const ptrdiff_t n", own->name);
   dvi__emit_parameters(out, own);
   dvi__emit(out, ")\n{\n  int64_t unusual = 0;\n");
   for (int a = 0; own->mask >> a != 0; a++)
-    if ((own->mask >> a & 1U) != 0) dvi__emit_zeros(out, own, a);
+    if (((own->mask & ~stored) >> a & 1U) != 0) dvi__emit_zeros(out, own, a);
   for (int k = 0; k < own->sum->part_count; k++) emit_calls(out, own, k);
   dvi__emit(out, "  return unusual != 0;\n}\n");
   return DVI_OK;

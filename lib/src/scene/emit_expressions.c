@@ -3,14 +3,6 @@
 #include "scene/emit_parts.h"
 #include "scene/heap.h"
 
-/* How many entries of an array are written. */
-static int entries_written(const dvi__contributions *all, int array)
-{
-  int entries = 0;
-  for (int i = 0; i < all->count; i++) entries += all->list[i].array == array && dvi__contribution_is_first(all, i);
-  return entries;
-}
-
 static void emit_inputs(dvi__emitter *out, const dvi__part *part, const int *name)
 {
   for (int i = 0; i < part->variable_count; i++)
@@ -52,7 +44,7 @@ static void emit_entries(dvi__emitter *out, const dvi__emitted_sum *sum, const d
 static void emit_zeros(dvi__emitter *out, const dvi__emitted_sum *own, const dvi__contributions *all)
 {
   for (int a = 0; own->mask >> a != 0; a++)
-    if ((own->mask >> a & 1U) != 0 && entries_written(all, a) < own->size[a]) dvi__emit_zeros(out, own, a);
+    if ((own->mask >> a & 1U) != 0 && dvi__entries_written(all, a) < own->size[a]) dvi__emit_zeros(out, own, a);
 }
 
 static dvi_status emit_body(dvi__emitter *out, const dvi__emitted_sum *own, const dvi__contributions *all, int *name)

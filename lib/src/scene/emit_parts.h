@@ -35,6 +35,8 @@ typedef struct dvi__contributions {
 dvi_status dvi__contributions_find(int part_count, const dvi__part *part, dvi__contributions *all);
 /* Whether contribution i is the first one to its entry. */
 int dvi__contribution_is_first(const dvi__contributions *all, int i);
+/* How many entries of an array there are contributions to. */
+int dvi__entries_written(const dvi__contributions *all, int array);
 
 /* Whether the unit of elements that starts at `first` adds them all to one entry. */
 int dvi__is_one_entry(const dvi__entries *entries, int first);
