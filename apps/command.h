@@ -21,6 +21,7 @@ int path_command(int argc, char **argv);
 int check_command(int argc, char **argv);
 int init_command(int argc, char **argv);
 int sweep_command(int argc, char **argv);
+int resonance_command(int argc, char **argv);
 int emit_c_command(int argc, char **argv);
 int plot_command(int argc, char **argv);
 

@@ -15,9 +15,19 @@ typedef struct subcommand {
 } subcommand;
 
 static const subcommand subcommands[] = {
-    {"list", list_command},   {"explain", explain_command}, {"run", run_command},     {"order", order_command},
-    {"bench", bench_command}, {"path", path_command},       {"check", check_command}, {"init", init_command},
-    {"sweep", sweep_command}, {"emit-c", emit_c_command},   {"plot", plot_command},   {NULL, NULL},
+    {"list", list_command},
+    {"explain", explain_command},
+    {"run", run_command},
+    {"order", order_command},
+    {"bench", bench_command},
+    {"path", path_command},
+    {"check", check_command},
+    {"init", init_command},
+    {"sweep", sweep_command},
+    {"resonance", resonance_command},
+    {"emit-c", emit_c_command},
+    {"plot", plot_command},
+    {NULL, NULL},
 };
 
 static const char help[] =
@@ -32,6 +42,7 @@ static const char help[] =
     "  init FILE.yaml          write an example of a scene, to be changed into one's own\n"
     "  check PROBLEM           compare all derivatives with differences, and take one step\n"
     "  sweep PROBLEM ...       one run at each point of a grid of parameters, on all cores, as CSV\n"
+    "  resonance PROBLEM ...   find the values of a parameter at which a method lets an invariant grow\n"
     "  plot FILE.csv ...       draw columns of a CSV file against each other: orbits, phase portraits\n"
     "  emit-c SCENE.yaml ...   write a C file that declares a scene's system by callbacks\n"
     "  path PROBLEM ...        find a path between given ends, or a periodic one, all its steps at once\n"

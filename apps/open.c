@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include "command.h"
-#include "scene.h"
 #include "spelling.h"
 
 enum { MESSAGE_SIZE = 1024, WORD_SIZE = 64, HINT_SIZE = 128 };
@@ -99,6 +98,11 @@ int open_problem(const char *name, const words *settings, problem **scene)
   hint_at_setting(settings, problem_parameters(index), hint);
   complain("%s%s", message, hint);
   return status == DVI_BAD_OPTION ? USAGE : FAILED;
+}
+
+int open_text(const char *name, const scene_text *text, const words *settings, problem **scene)
+{
+  return text->text == NULL ? open_problem(name, settings, scene) : scene_parse(name, text, settings, scene);
 }
 
 int open_shaped(const char *name, const words *settings, bool one_point, problem **scene)

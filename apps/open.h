@@ -4,12 +4,16 @@
 #include "options.h"
 #include "pacing.h"
 #include "problem.h"
+#include "scene.h"
 
 /** Make the problem, with its "name=value" settings. Returns DONE, or complains (with the nearest known name) and returns the
  *  exit code. */
 int open_problem(const char *name, const words *settings, problem **scene);
 
-/** The same; `one_point`: with callbacks of the one-point shape. */
+/** The same, of a scene whose text was loaded before; without a text, of the catalogue. */
+int open_text(const char *name, const scene_text *text, const words *settings, problem **scene);
+
+/** As open_problem; `one_point`: with callbacks of the one-point shape. */
 int open_shaped(const char *name, const words *settings, bool one_point, problem **scene);
 
 /** If no method is asked for, take the one that the scene wants. Returns DONE, or complains that there is none: `command` wants one. */

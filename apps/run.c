@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "alarms.h"
 #include "columns.h"
 #include "command.h"
 #include "events.h"
@@ -25,7 +26,7 @@ typedef struct run_request {
   pacing how;
   long every, checkpoint_every; /* 0: not given */
   bool project, final;
-  words settings;
+  words settings, alarms;
 } run_request;
 
 /* A run under way. */
@@ -35,6 +36,7 @@ typedef struct recorder {
   whole_file out, events_out;
   run_columns columns;
   event_list events;
+  alarm_list alarms;
   run_trace trace;
   progress_line progress;
   double t_start, t;        /* where the run began; where the last observed step ended */
@@ -115,6 +117,7 @@ static int observe(dvi_integrator *integrator, void *user)
   bool good = true;
   if (row || r->trace.t != NULL) good = columns_measure(&r->columns, integrator);
   if (good && row) good = write_row(r, integrator);
+  if (good) good = alarms_look(&r->alarms, integrator);
   if (good && r->trace.t != NULL) trace_add(&r->trace, t, dvi_integrator_q(integrator), r->columns.invariant[0]);
   if (r->progress.shown) progress_show(&r->progress, (t - r->t_start) / (r->request->t_end - r->t_start), "dvi run");
   r->stop_silently = !good;
@@ -188,6 +191,7 @@ static int advance(recorder *r, dvi_integrator *integrator)
   const int code = status == DVI_OK ? DONE : r->stop_silently ? FAILED : library_error(status);
   say_steps(r, integrator);
   events_tell(&r->events, "run", &report);
+  alarms_tell(&r->alarms);
   if (r->stop_silently) return FAILED;
   const bool complete = (status != DVI_OK && request->final) || write_last_row(r, integrator);
   if (status != DVI_OK) return code;
@@ -280,6 +284,7 @@ static int record(run_request *request, const problem *scene, dvi_integrator *in
   recorder r = {.request = request, .scene = scene, .chooses = dvi_integrator_chooses_steps(integrator)};
   int code = columns_choose(&r.columns, scene, integrator, request->columns);
   r.columns.energy = request->plot != NULL;
+  if (code == DONE) code = alarms_read(&r.alarms, scene, &request->alarms);
   r.caught = signals_note(ended_again);
   if (code == DONE) code = events_list(&r.events, scene, write_event, &r) ? write_files(&r, integrator) : FAILED;
   events_clear(&r.events);
@@ -378,6 +383,9 @@ static const char *const details[] = {
     "Events of a scene are looked for in every step. One with 'stop: yes' ends the run at its time: the last row is the state\n"
     "there, and the exit code 0. The columns of --events are event, its name, t, the coordinates and their velocities (v_), on\n"
     "the step's path; how often each was found is told at the end.\n",
+    "An alarm changes nothing in the run: standard error says at the end when the invariant's size first passed the bound, and "
+    "how\n"
+    "large it was at most; the exit code is 0.\n",
     "FILEs are written whole or not at all: a run that fails leaves what was there. Rows on standard output come\n"
     "as they are computed. Ctrl-C, SIGTERM and SIGHUP end a run after the current step, with the output complete, the\n"
     "checkpoint written, and exit code 130, 143 or 129; before the first step they end it at once, and nothing is\n"
@@ -427,6 +435,7 @@ int run_command(int argc, char **argv)
        .help = "the momenta of the start, in the order of their columns; left out: the problem's"},
       {.name = "project", .flag = &r.project, .help = "if the start is off a problem's constraint: project it; left out: refuse"},
       {.name = "columns", .word = &r.columns, .value = "A,B,...", .help = "columns behind t; left out: the scene's, or all"},
+      {.name = "alarm", .words = &r.alarms, .value = "NAME=BOUND", .help = "say when an invariant passes this; may be repeated"},
       {.name = "out", .word = &r.out, .value = "FILE", .help = "where the rows go; left out, or -: standard output"},
       {.name = "events", .word = &r.events, .value = "FILE.csv", .help = "list the scene's events there; left out: count them"},
       {.name = "checkpoint",

@@ -5,9 +5,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "command.h"
+#include "crew.h"
 #include "file.h"
 #include "open.h"
 #include "options.h"
@@ -15,8 +15,6 @@
 #include "signals.h"
 #include "sweep_part.h"
 #include "sweep_point.h"
-
-enum { THREADS_MAX = 1024 };
 
 /* A sweep under way; the lock guards what stands below it. */
 typedef struct sweep {
@@ -67,16 +65,11 @@ static void *work(void *user)
   return NULL;
 }
 
-/* This thread works, too; where others cannot be had it goes on without them. */
 static void run_points(sweep *s, long threads)
 {
-  pthread_t other[THREADS_MAX];
-  int count = 0;
   const long left = s->points - s->there;
   progress_start(&s->progress, true);
-  while (count + 1 < threads && count + 1 < left && pthread_create(&other[count], NULL, work, s) == 0) count++;
-  (void)work(s);
-  while (count > 0) (void)pthread_join(other[--count], NULL);
+  crew_work(threads < left ? threads : left, work, s);
   progress_end(&s->progress);
 }
 
@@ -160,14 +153,8 @@ static int check_request(const sweep_request *request)
     return usage_error("sweep: --out FILE.csv is missing: where the rows go, and from where an interrupted sweep goes on");
   if (strcmp(request->out, "-") == 0)
     return usage_error("sweep: --out -: rows go to a file, not to standard output, for an interrupted sweep goes on from there");
-  if (request->threads > THREADS_MAX) return usage_error("sweep: at most %d threads", (int)THREADS_MAX);
+  if (request->threads > CREW_MAX) return usage_error("sweep: at most %d threads", (int)CREW_MAX);
   return file_writable(request->out) ? DONE : FAILED;
-}
-
-static long cores(void)
-{
-  const long count = sysconf(_SC_NPROCESSORS_ONLN);
-  return count < 1 ? 1 : count > THREADS_MAX ? THREADS_MAX : count;
 }
 
 static int run_request(const sweep_request *request, sweep_task *task)
@@ -177,11 +164,11 @@ static int run_request(const sweep_request *request, sweep_task *task)
   int code = scene_is_path(task->operand) ? scene_load(task->operand, &task->text) : DONE;
   if (code == DONE) code = grid_read(&request->settings, &task->grid);
   grid_fixed(&task->grid, &fixed);
-  if (code == DONE) code = sweep_open(task, &fixed.settings, &model);
+  if (code == DONE) code = open_text(task->operand, &task->text, &fixed.settings, &model);
   task->model = model;
   if (code == DONE) code = grid_complete(model, &task->grid);
   if (code == DONE) code = check_task(task);
-  if (code == DONE) code = sweep_all(task, request->threads > 0 ? request->threads : cores(), request->out);
+  if (code == DONE) code = sweep_all(task, request->threads > 0 ? request->threads : crew_cores(), request->out);
   problem_destroy(&model);
   grid_clear(&task->grid);
   free(task->text.text);

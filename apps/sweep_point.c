@@ -30,12 +30,6 @@ typedef struct outcome {
   double energy_error;
 } outcome;
 
-int sweep_open(const sweep_task *task, const words *settings, problem **scene)
-{
-  if (task->text.text == NULL) return open_problem(task->operand, settings, scene);
-  return scene_parse(task->operand, &task->text, settings, scene);
-}
-
 /* ---- columns ---- */
 
 static void write_names(FILE *stream, int count, char *const *name)
@@ -181,7 +175,7 @@ sweep_row sweep_run(const sweep_task *task, long k)
   grid_at(&task->grid, k, &point);
   w.invariant = calloc((size_t)dvi_system_invariant_count(task->model->system), sizeof *w.invariant);
   if (w.invariant == NULL) return row;
-  if (sweep_open(task, &point.settings, &scene) != DONE)
+  if (open_text(task->operand, &task->text, &point.settings, &scene) != DONE)
     say(&point, "the problem cannot be made with these values");
   else if (!has_columns(scene, task->model))
     say(&point, "with these values the problem has other coordinates than without; sweep over sizes by runs of their own");

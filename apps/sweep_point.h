@@ -23,9 +23,6 @@ typedef struct sweep_row {
   bool failed; /**< the point's run did not come to its end */
 } sweep_row;
 
-/** Make the problem with settings. Returns DONE, or complains and returns the exit code. */
-int sweep_open(const sweep_task *task, const words *settings, problem **scene);
-
 /** The names of the columns, with commas between them. */
 void sweep_header(const sweep_task *task, FILE *stream);
 

@@ -10,7 +10,7 @@
 
 #include "entry.h"
 
-/* The stiff energies are watched up to this many springs. */
+/* The stiff energies are watched up to this many springs, their sum always. */
 #define WATCHED_MAX 8
 
 struct chain;
@@ -149,6 +149,20 @@ static int stiff_energy(double t, const double *q, const double *p, double *I, v
   return 0;
 }
 
+/* Their sum, which `user`, the chain, takes over all springs. */
+static int all_stiff_energy(double t, const double *q, const double *p, double *I, void *user)
+{
+  chain *own = user;
+  double sum = 0.0;
+  for (int i = 0; i < own->ell; i++) {
+    stiff_spring spring = {own, i};
+    (void)stiff_energy(t, q, p, I, &spring);
+    sum += *I;
+  }
+  *I = sum;
+  return 0;
+}
+
 static dvi_status make_patterns(problem *made, chain *own)
 {
   const int ell = own->ell, n = 2 * ell;
@@ -203,18 +217,19 @@ static dvi_status make_system(problem *made, chain *own)
        .fast = 1,
        .quadratic = 1},
   };
-  dvi_invariant energies[WATCHED_MAX];
+  dvi_invariant energies[WATCHED_MAX + 1];
+  energies[0] = (dvi_invariant){.name = "I", .value = all_stiff_energy, .user = own};
   const int watched = own->ell <= WATCHED_MAX ? own->ell : 0;
   for (int i = 0; i < watched; i++) {
     own->watched[i] = (stiff_spring){own, i};
-    energies[i] = (dvi_invariant){.name = energy_names[i], .value = stiff_energy, .user = &own->watched[i]};
+    energies[i + 1] = (dvi_invariant){.name = energy_names[i], .value = stiff_energy, .user = &own->watched[i]};
   }
   const dvi_system_terms terms = {.dimension = 2 * own->ell,
                                   .mass = {.scalar = 1.0},
                                   .potentials = springs,
                                   .potential_count = 2,
-                                  .invariants = watched > 0 ? energies : NULL,
-                                  .invariant_count = watched,
+                                  .invariants = energies,
+                                  .invariant_count = watched + 1,
                                   .autonomous = 1};
   return problem_system(made, &terms);
 }

@@ -1,7 +1,7 @@
 #!/bin/sh
 # The commands in the pages run, and print what the pages show; numbers are left aside, for they may differ in the last digits and
 # times do.  Usage: test_docs.sh DVI
-# With DVI_TEST_FEWER, where memory is watched, what takes the time of others is left to apps/bench: half of all the time, and none of it true there.
+# With DVI_TEST_FEWER, where memory is watched, what takes the time of others is left to apps/bench and apps/resonance: half of all the time, and none of it true there.
 here=$(cd "$(dirname "$0")" && pwd)
 . "$here/check.sh"
 top=$here/../..
@@ -39,7 +39,7 @@ pictures() {
   done
 }
 
-left_out() { [ -n "${DVI_TEST_FEWER:-}" ] && grep -q '^dvi bench' "$1"; }
+left_out() { [ -n "${DVI_TEST_FEWER:-}" ] && grep -q '^dvi bench\|^dvi resonance.* respa:substeps=100 ' "$1"; }
 
 # replay N: of the page.
 replay() {
@@ -50,7 +50,7 @@ replay() {
 }
 
 commands=0
-for page in README.md docs/guide.md docs/theory.md docs/problems.md docs/adaptive.md docs/paths.md docs/scenes.md docs/cookbook.md docs/scene-errors.md $(cd "$top" && ls docs/methods/*.md); do
+for page in README.md docs/guide.md docs/theory.md docs/problems.md docs/adaptive.md docs/oscillations.md docs/paths.md docs/scenes.md docs/cookbook.md docs/scene-errors.md $(cd "$top" && ls docs/methods/*.md); do
   split "$top/$page"
   n=1
   while [ -e command.$n ]; do

@@ -227,6 +227,21 @@ for name in big.csv big.state; do [ ! -e "$name" ] || fail "signal during the se
 no_trace 'signal during the set-up'
 }
 
+# An alarm says when a bound was passed, and changes nothing else.
+long_steps='run fpu --method imex --h 0.3 --t-end 20 --columns I'
+# shellcheck disable=SC2086
+{
+expect 0 'no alarm' $long_steps --out quiet.csv
+[ -s err ] && fail 'no alarm: nothing is said'
+expect 0 'alarms' $long_steps --alarm I=1.2 --alarm energy=100 --out loud.csv
+same quiet.csv loud.csv 'an alarm changes no row'
+[ "$(wc -l <err)" -eq 1 ] || fail 'the energy does not pass its bound'
+first=$(awk -F, 'NR > 1 && $2 > 1.2 { printf "%.6g", $1; exit }' loud.csv)
+most=$(awk -F, 'NR > 1 && $2 > most { most = $2 } END { printf "%.6g", most }' loud.csv)
+says err "^dvi: run: alarm: I passed 1.2 at t = $first; at most it was $most, at t = " 'when, and how far'
+for wrong in I I= I=0 I=-1 I=x =1 J=1 I_=1; do expect 2 "alarm $wrong" $long_steps --alarm "$wrong"; done
+}
+
 # A plot is drawn if gnuplot is there; without it the run says so and is done.
 expect 0 'plot' run kepler --method verlet --t-end 5 --final --plot orbit.svg
 if command -v gnuplot >/dev/null; then says orbit.svg '</svg>' 'the plot is whole'; else says err gnuplot 'gnuplot is missed'; fi

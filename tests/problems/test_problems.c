@@ -352,7 +352,7 @@ START_TEST(symmetries_and_invariants_have_their_names)
       {"oscillator", {"energy"}},
       {"kepler", {"energy", "angular_momentum", "laplace_x", "laplace_y"}},
       {"toda", {"energy", "momentum"}},
-      {"fpu", {"energy", "I_1", "I_2", "I_3"}},
+      {"fpu", {"energy", "I", "I_1", "I_2", "I_3"}},
       {"pendulum-3d", {"energy", "angular_momentum_z"}},
       {"kovalevskaya", {"energy", "angular_momentum_z", "kovalevskaya"}},
       {"figure-eight", {"energy", "momentum_x", "momentum_y", "angular_momentum"}},
@@ -380,7 +380,7 @@ START_TEST(invariants_hold_between_start_and_digits)
   for (int i = 0; i < count; i++) {
     const char *name = dvi_system_invariant_name(made->system, i);
     /* roundoff of the digits, times the largest force or speed: 1e3 in stiff-pendulum, q p ~ 1e-4 in outer-solar */
-    if (strncmp(name, "I_", 2) != 0 && (i > 0 || dvi_system_autonomous(made->system)))
+    if (name[0] != 'I' && (i > 0 || dvi_system_autonomous(made->system)))
       ck_assert_msg(fabs(end[i] - start[i]) <= 4e-15 * fmax(size_of(count, start), 1e-7), "%s: %s changes by %g of %g", made->name,
                     name, end[i] - start[i], start[i]);
   }

@@ -1,0 +1,56 @@
+#include "alarms.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "command.h"
+
+static int read_alarm(const problem *scene, const char *text, alarm_bound *alarm)
+{
+  const size_t length = strcspn(text, "=");
+  *alarm = (alarm_bound){.passed = (double)NAN};
+  if (text[length] != '=' || !parse_number(text + length + 1, &alarm->bound) || !(alarm->bound > 0.0))
+    return usage_error("run: --alarm wants NAME=BOUND with a positive number, not '%s'", text);
+  for (; alarm->invariant < dvi_system_invariant_count(scene->system); alarm->invariant++) {
+    alarm->name = dvi_system_invariant_name(scene->system, alarm->invariant);
+    if (strncmp(alarm->name, text, length) == 0 && alarm->name[length] == '\0') return DONE;
+  }
+  return usage_error("run: --alarm %s: %s has no invariant '%.*s'", text, scene->name, (int)length, text);
+}
+
+int alarms_read(alarm_list *list, const problem *scene, const words *asked)
+{
+  int code = DONE;
+  for (list->count = 0; list->count < asked->count && code == DONE; list->count++)
+    code = read_alarm(scene, asked->word[list->count], &list->alarm[list->count]);
+  return code;
+}
+
+bool alarms_look(alarm_list *list, dvi_integrator *integrator)
+{
+  const double t = dvi_integrator_time(integrator);
+  for (int i = 0; i < list->count; i++) {
+    alarm_bound *alarm = &list->alarm[i];
+    double value = 0.0;
+    const dvi_status status = dvi_integrator_invariant(integrator, alarm->invariant, &value);
+    if (status != DVI_OK) {
+      (void)library_error(status);
+      return false;
+    }
+    if (isnan(alarm->passed) && fabs(value) > alarm->bound) alarm->passed = t;
+    if (!(fabs(value) > fabs(alarm->largest))) continue;
+    alarm->largest = value;
+    alarm->largest_t = t;
+  }
+  return true;
+}
+
+void alarms_tell(const alarm_list *list)
+{
+  for (int i = 0; i < list->count; i++) {
+    const alarm_bound *alarm = &list->alarm[i];
+    if (isnan(alarm->passed)) continue;
+    complain("run: alarm: %s passed %g at t = %.6g; at most it was %.6g, at t = %.6g", alarm->name, alarm->bound, alarm->passed,
+             alarm->largest, alarm->largest_t);
+  }
+}
