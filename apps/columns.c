@@ -142,6 +142,13 @@ void columns_clear(run_columns *c)
   *c = (run_columns){.count = 0};
 }
 
+bool columns_energy(const run_columns *c)
+{
+  for (int k = 0; k < c->count; k++)
+    if (c->column[k].kind == COLUMN_INVARIANT && c->column[k].index == 0) return true;
+  return false;
+}
+
 /* ---- rows ---- */
 
 void columns_header(const run_columns *c, FILE *stream)
