@@ -178,7 +178,10 @@ static dvi_status measure(run_columns *c, dvi_integrator *integrator)
 bool columns_measure(run_columns *c, dvi_integrator *integrator)
 {
   if (measure(c, integrator) == DVI_OK) return true;
-  complain("run: no row at t = %.17g: %s; try a smaller --h", dvi_integrator_time(integrator), dvi_last_error());
+  dvi_counters counters;
+  dvi_integrator_counters(integrator, &counters);
+  complain("run: no row at t = %.17g: %s%s", dvi_integrator_time(integrator), dvi_last_error(),
+           counters.steps > 0 ? "; try a smaller --h" : "");
   blame_scene();
   return false;
 }

@@ -111,6 +111,13 @@ sed "s/x^2.2/x^2*(1 + t)/; s/until: 50/until: 500/" wild.yaml >driven.yaml
 expect 0 'a drive' run driven.yaml --final --h 0.01
 [ ! -s err ] || fail 'a drive changes the energy'
 
+# An invariant that has no value at the start.
+printf "coordinates: {x: scalar}\nlagrangian: x'^2/2 - x^2/2\ninvariants: {a: log(x - 1)}\ninitial: {x: 1}\nmethod: verlet\nstep: 0.1\nuntil: 1\n" >root.yaml
+expect 1 'dvi check' check root.yaml
+says err 'root.yaml:3:17: log(x - 1).* is not finite' 'which one'
+expect 1 'dvi run' run root.yaml
+grep -q 'smaller --h' err && fail 'no step is to blame'
+
 # What no column shows is not evaluated: from x = 1.8 on the potential overflows, but its derivative is 1.
 cat >overflow.yaml <<'END'
 coordinates: {x: scalar}
