@@ -72,6 +72,19 @@ static int check_all_derivatives(const problem *scene)
   return code;
 }
 
+/* What is watched has values at the start. */
+static int check_invariants(const problem *scene)
+{
+  double *value = calloc((size_t)dvi_system_invariant_count(scene->system), sizeof *value);
+  if (value == NULL) {
+    complain("out of memory");
+    return FAILED;
+  }
+  const dvi_status status = dvi_system_invariants(scene->system, 0.0, scene->q, scene->p, value);
+  free(value);
+  return status == DVI_OK ? DONE : library_error(status);
+}
+
 /* One step of the method from the start. */
 static int check_step(const problem *scene, const char *method)
 {
@@ -117,7 +130,8 @@ int check_command(int argc, char **argv)
       .name = "check",
       .synopsis = "PROBLEM|SCENE.yaml [OPTIONS]",
       .operand = "PROBLEM",
-      .summary = "Read a problem, compare all its derivatives with differences of its values, and take one step.\n",
+      .summary = "Read a problem, compare all its derivatives with differences of its values, evaluate what is watched, and take "
+                 "one step.\n",
       .options = options,
       .details = details,
   };
@@ -127,6 +141,7 @@ int check_command(int argc, char **argv)
   if (method == NULL) method = scene->method;
   (void)printf("%s: %s\n", scene->name, scene->summary);
   code = check_all_derivatives(scene);
+  if (code == DONE) code = check_invariants(scene);
   if (code == DONE && method != NULL) code = check_step(scene, method);
   if (code == DONE) scene_tell(scene);
   tell_unused(scene);

@@ -142,6 +142,13 @@ void columns_clear(run_columns *c)
   *c = (run_columns){.count = 0};
 }
 
+bool columns_energy(const run_columns *c)
+{
+  for (int k = 0; k < c->count; k++)
+    if (c->column[k].kind == COLUMN_INVARIANT && c->column[k].index == 0) return true;
+  return false;
+}
+
 /* ---- rows ---- */
 
 void columns_header(const run_columns *c, FILE *stream)
@@ -171,7 +178,10 @@ static dvi_status measure(run_columns *c, dvi_integrator *integrator)
 bool columns_measure(run_columns *c, dvi_integrator *integrator)
 {
   if (measure(c, integrator) == DVI_OK) return true;
-  complain("run: no row at t = %.17g: %s; try a smaller --h", dvi_integrator_time(integrator), dvi_last_error());
+  dvi_counters counters;
+  dvi_integrator_counters(integrator, &counters);
+  complain("run: no row at t = %.17g: %s%s", dvi_integrator_time(integrator), dvi_last_error(),
+           counters.steps > 0 ? "; try a smaller --h" : "");
   blame_scene();
   return false;
 }

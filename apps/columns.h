@@ -46,6 +46,9 @@ void columns_clear(run_columns *columns);
 
 void columns_header(const run_columns *columns, FILE *stream);
 
+/** Whether one of the columns is the energy. */
+bool columns_energy(const run_columns *columns);
+
 /** Fetch what must be evaluated for a row. False, with a complaint, if any of it is no number. */
 bool columns_measure(run_columns *columns, dvi_integrator *integrator);
 

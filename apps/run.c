@@ -41,6 +41,7 @@ typedef struct recorder {
   progress_line progress;
   double t_start, t;        /* where the run began; where the last observed step ended */
   double shortest, longest; /* steps, of methods that choose them; 0: none yet */
+  double energy;            /* of the start, if a column shows it; else NaN */
   long steps_taken, given_steps;
   long step;    /* counted from t = 0, so that a resumed run writes the rows of an uninterrupted one */
   bool chooses; /* the method chooses its steps */
@@ -166,6 +167,21 @@ static void say_steps(const recorder *r, const dvi_integrator *integrator)
              energy.given_steps == 1 ? "" : "s", energy.given_jumps);
 }
 
+static double energy_now(const recorder *r, dvi_integrator *integrator)
+{
+  double energy;
+  return columns_energy(&r->columns) && dvi_integrator_invariant(integrator, 0, &energy) == DVI_OK ? energy : (double)NAN;
+}
+
+/* What no time drives keeps its energy, near enough, unless the step is too large for the method. */
+static void say_energy(const recorder *r, dvi_integrator *integrator)
+{
+  static const double growth = 100;
+  const double energy = energy_now(r, integrator), change = fabs(energy - r->energy);
+  if (fabs(r->energy) > 0.0 && change > growth * fabs(r->energy) && dvi_system_autonomous(r->scene->system))
+    complain("run: the energy went from %.3g to %.3g; is --h %g too large?", r->energy, energy, r->request->h);
+}
+
 /* Drive the integrator to the end and write all rows. */
 static int advance(recorder *r, dvi_integrator *integrator)
 {
@@ -181,6 +197,7 @@ static int advance(recorder *r, dvi_integrator *integrator)
                                    .cancel = r->caught};
   r->t_start = dvi_integrator_time(integrator);
   r->step = step_number(integrator, r->t_start, request->h);
+  r->energy = energy_now(r, integrator);
   columns_header(&r->columns, r->out.stream);
   if (r->events_out.stream != NULL) events_header(r->scene, r->events_out.stream);
   progress_start(&r->progress, request->final || r->out.path != NULL);
@@ -195,6 +212,7 @@ static int advance(recorder *r, dvi_integrator *integrator)
   if (r->stop_silently) return FAILED;
   const bool complete = (status != DVI_OK && request->final) || write_last_row(r, integrator);
   if (status != DVI_OK) return code;
+  say_energy(r, integrator);
   if (*r->caught != 0) say_interrupted(r);
   return !complete ? FAILED : *r->caught != 0 ? 128 + (int)*r->caught : DONE;
 }
@@ -379,7 +397,8 @@ static const char *const details[] = {
     "constraint |p - alpha(q)|, and dg and dg-phase add jump, the largest one; 17 digits, so that every number is read\n"
     "back as it was. The first row is the start (with --resume: the checkpoint), the last one is the end, wherever\n"
     "--every puts the rows between.\n",
-    "What no column shows is not evaluated: --columns x,y wants no energy.\n",
+    "What no column shows is not evaluated: --columns x,y wants no energy. Where it is shown, and changes by more than hundred\n"
+    "times what it was at the start without a drive, that is told at the end: the step is too large.\n",
     "Events of a scene are looked for in every step. One with 'stop: yes' ends the run at its time: the last row is the state\n"
     "there, and the exit code 0. The columns of --events are event, its name, t, the coordinates and their velocities (v_), on\n"
     "the step's path; how often each was found is told at the end.\n",

@@ -99,6 +99,25 @@ says err '^dvi: --method vorlet: unknown method' 'where it stands there'
 expect 0 'a column that the method has' run chosen.yaml --method sem
 [ "$(head -n 1 out)" = t,h ] || fail 'the steps that sem chose'
 
+# A step that is too large shows in the energy, which is told; where nothing is wrong nothing is said.
+printf "coordinates: {x: scalar}\nlagrangian: x'^2/2 - x^2/2\ninitial: {x: 1}\nmethod: verlet\nstep: 2.5\nuntil: 50\n" >wild.yaml
+expect 0 'a step that is too large' run wild.yaml --final
+says err 'run: the energy went from 0.5 to [0-9.]*e[+0-9]*; is --h 2.5 too large' 'how it shows'
+expect 0 'without the energy' run wild.yaml --final --columns x
+[ ! -s err ] || fail 'what is not shown is not evaluated'
+expect 0 'a step in its bounds' run wild.yaml --final --h 1
+[ ! -s err ] || fail 'nothing is wrong'
+sed "s/x^2.2/x^2*(1 + t)/; s/until: 50/until: 500/" wild.yaml >driven.yaml
+expect 0 'a drive' run driven.yaml --final --h 0.01
+[ ! -s err ] || fail 'a drive changes the energy'
+
+# An invariant that has no value at the start.
+printf "coordinates: {x: scalar}\nlagrangian: x'^2/2 - x^2/2\ninvariants: {a: log(x - 1)}\ninitial: {x: 1}\nmethod: verlet\nstep: 0.1\nuntil: 1\n" >root.yaml
+expect 1 'dvi check' check root.yaml
+says err 'root.yaml:3:17: log(x - 1).* is not finite' 'which one'
+expect 1 'dvi run' run root.yaml
+grep -q 'smaller --h' err && fail 'no step is to blame'
+
 # What no column shows is not evaluated: from x = 1.8 on the potential overflows, but its derivative is 1.
 cat >overflow.yaml <<'END'
 coordinates: {x: scalar}

@@ -316,6 +316,20 @@ START_TEST(imex_factorises_a_quadratic_fast_potential_once_a_run)
 }
 END_TEST
 
+/* Derivatives that are right are not called wrong: of terms that cancel, and of a power that bends within the differences' steps. */
+START_TEST(right_derivatives_are_found_right)
+{
+  static const char *const right[] = {"(x*x')^2/x^2", "x'^2/2 + x^100*x' - x^100", "x'^2/2 + (x^100)'^2/2"};
+  const double q = 1.3, v = 0.5;
+  char text[256];
+  for (int k = 0; k < 3; k++) {
+    (void)snprintf(text, sizeof text, "coordinates: {x: scalar}\nlagrangian: %s\ninitial: {x: 1}\n" RUN, right[k]);
+    open_scene(text);
+    ck_assert_msg(dvi_system_check(dvi_scene_system(scene), 0, &q, &v, 0, NULL) == DVI_OK, "%s: %s", right[k], dvi_last_error());
+  }
+}
+END_TEST
+
 START_TEST(outer_solar_is_that_of_the_catalogue)
 {
   open_both("parameters:\n"
@@ -432,6 +446,7 @@ int main(void)
   tcase_add_test(tests, potentials_are_fast_as_they_are_tagged);
   tcase_add_test(tests, tags_do_not_change_what_other_methods_do);
   tcase_add_test(tests, imex_factorises_a_quadratic_fast_potential_once_a_run);
+  tcase_add_test(tests, right_derivatives_are_found_right);
   tcase_add_test(tests, outer_solar_is_that_of_the_catalogue);
   tcase_add_test(tests, double_pendulum_is_that_of_the_catalogue);
   tcase_add_test(tests, driven_pendulum_is_that_of_the_catalogue);

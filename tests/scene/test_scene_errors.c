@@ -191,6 +191,7 @@ START_TEST(velocities_and_momenta_stand_where_they_make_sense)
   refused(X "lagrangian: x'^2\nevents: {up: {zero: p(x)}}\n" RUN, ":3:21:", "momenta cannot stand in an event");
   refused("parameters: {a: t}\n" X "lagrangian: x'^2\n" RUN, ":1:17:", "the time cannot stand in a parameter");
   refused(X "definitions: {w: x'^2}\nlagrangian: w'\n" RUN, ":3:13:", "there are no accelerations");
+  refused("coordinates: {x: scalar, y: scalar}\nlagrangian: x'*y*(1 + t) - x^2 - y^2\n" RUN, ":2:13:", "this is a one-form");
   refused(X "lagrangian: x^2\n" RUN, ":2:13:", "no velocity in it");
   refused("coordinates: {x: scalar, y: scalar}\nlagrangian: x'^2 + y^2\ninitial: {x: 1, y: 1}\nstep: 1\nuntil: 1\n",
           ":1:26:", "the rate of y has no mass");

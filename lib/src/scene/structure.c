@@ -217,34 +217,34 @@ static bool make_separable(dvi_scene *scene, dvi__kernels *L, const char *rest)
   return good;
 }
 
+static int has_time(const dvi__kernels *list)
+{
+  for (int k = 0; k < list->count; k++)
+    for (int i = 0; i < list->kernel[k].input_count; i++) {
+      const dvi__kernel_input *input = &list->kernel[k].input[i];
+      if (!input->is_data && input->block == DVI__TIME) return 1;
+    }
+  return 0;
+}
+
 /* alpha(q).w, and H. */
-static bool make_degenerate(dvi_scene *scene, dvi__kernels *L, const char *rest)
+static bool make_degenerate(dvi_scene *scene, const dvi__expression *e, dvi__kernels *L, const char *rest)
 {
   dvi__kernels alpha = {0}, H = {0};
   dvi__term *term = NULL;
-  const bool good = dvi__kernels_moving(scene, L, DVI__VELOCITIES, DVI__MULTIPLIERS, &alpha) &&
-                    dvi__kernels_function(scene, &alpha, scene->n, &term) && dvi__make_one_form(scene, term, &scene->one_form) &&
-                    dvi__kernels_at_rest(scene, L, DVI__VELOCITIES, 1, &H) && add_potential(scene, rest, 0, &H);
+  bool good = dvi__kernels_moving(scene, L, DVI__VELOCITIES, DVI__MULTIPLIERS, &alpha);
+  if (good && has_time(&alpha))
+    good = dvi__scene_refuse(
+        scene, e->span,
+        "of first degree in the velocities this is a one-form, alpha(q).q' - H(t,q); beside the velocities the "
+        "time cannot stand");
+  good = good && dvi__kernels_function(scene, &alpha, scene->n, &term) && dvi__make_one_form(scene, term, &scene->one_form) &&
+         dvi__kernels_at_rest(scene, L, DVI__VELOCITIES, 1, &H) && add_potential(scene, rest, 0, &H);
   dvi__kernels_free(&alpha);
   dvi__kernels_free(&H);
   scene->terms.one_form = &scene->one_form;
   scene->form = "one-form";
   return good;
-}
-
-/* Whether a kernel of L has both the time and velocities. */
-static int drives_velocities(const dvi__kernels *L)
-{
-  for (int k = 0; k < L->count; k++) {
-    int velocity = 0, time = 0;
-    for (int i = 0; i < L->kernel[k].input_count; i++) {
-      const dvi__kernel_input *input = &L->kernel[k].input[i];
-      velocity = velocity || (!input->is_data && input->block == DVI__VELOCITIES);
-      time = time || (!input->is_data && input->block == DVI__TIME);
-    }
-    if (velocity && time) return 1;
-  }
-  return 0;
 }
 
 static bool make_form(dvi_scene *scene, const dvi__expression *e, dvi__kernels *L, const char *rest)
@@ -253,7 +253,7 @@ static bool make_form(dvi_scene *scene, const dvi__expression *e, dvi__kernels *
   if (!degree_of(scene, L, DVI__VELOCITIES, &degree)) return false;
   if (degree.degree == 0) return dvi__scene_refuse(scene, e->span, "there is no velocity in it, so nothing would move");
   if (degree.degree == 1 && dvi__has_factors(scene)) return refuse_moving(scene, L);
-  if (degree.degree == 1 && !drives_velocities(L)) return make_degenerate(scene, L, rest);
+  if (degree.degree == 1) return make_degenerate(scene, e, L, rest);
   return degree.degree == 2 && degree.pure ? make_separable(scene, L, rest) : make_general(scene, L);
 }
 

@@ -137,7 +137,7 @@ dvi_status dvi__difference_column(dvi__batch_gradient gradient, const void *func
                                   const double *x, double *first, double *second)
 {
   const size_t size = (size_t)n * sizeof(double);
-  choose_steps(n, 1, x, sixth_order_step(), d->step);
+  choose_steps(n, 1, x, sixth_order_step() / (d->shorter ? 16 : 1), d->step);
   memcpy(d->moved, x, size);
   memset(first, 0, size);
   memset(second, 0, size);

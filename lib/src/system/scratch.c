@@ -49,6 +49,7 @@ int dvi__differences_allocate(size_t numbers, dvi__differences *d)
                           DVI_NEW(double, numbers),
                           DVI_NEW(double, numbers),
                           DVI_NEW(double, numbers),
+                          0,
                           0};
   return d->moved && d->step && d->plus && d->minus && d->plus_v && d->minus_v;
 }

@@ -10,6 +10,7 @@
 typedef struct dvi__differences {
   double *moved, *step, *plus, *minus, *plus_v, *minus_v;
   long points; /* at which the function was asked for */
+  int shorter; /* 1: columns are differenced over steps a sixteenth as long */
 } dvi__differences;
 
 typedef struct dvi__scratch {
