@@ -27,7 +27,7 @@ static void replace_unfinished(const char *name, const char *by)
 
 static bool refuse(const char *path)
 {
-  complain("cannot write '%s': %s", path, strerror(errno));
+  complain("cannot write '%s': %s", path, errno != 0 ? strerror(errno) : "an earlier write failed");
   return false;
 }
 

@@ -111,6 +111,12 @@ sed "s/x^2.2/x^2*(1 + t)/; s/until: 50/until: 500/" wild.yaml >driven.yaml
 expect 0 'a drive' run driven.yaml --final --h 0.01
 [ ! -s err ] || fail 'a drive changes the energy'
 
+# A pole is no zero.
+sed 's/zero: y,/zero: 1\/(y - 1.1234),/' ball.yaml >pole.yaml
+expect 0 'a pole' run pole.yaml --final
+cmp -s pole.yaml ball.yaml && fail 'there is a pole'
+says err "event 'ground': found 0 times" 'no zero'
+
 # An invariant that has no value at the start.
 printf "coordinates: {x: scalar}\nlagrangian: x'^2/2 - x^2/2\ninvariants: {a: log(x - 1)}\ninitial: {x: 1}\nmethod: verlet\nstep: 0.1\nuntil: 1\n" >root.yaml
 expect 1 'dvi check' check root.yaml

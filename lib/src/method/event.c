@@ -129,6 +129,15 @@ static dvi_status report_event(dvi__watch *w, dvi_integrator *I, const dvi_event
   return DVI_OK;
 }
 
+/* Whether g passes from one sign to the other through infinity: near a zero it is less than at the ends of the bracket. */
+static dvi_status drop_pole(dvi__watch *w, dvi_integrator *I, const dvi_event *event, const bracket *at, double *zero)
+{
+  double g;
+  DVI_TRY(evaluate(w, I, event, *zero, &g));
+  if (fabs(g) > fmax(fabs(at->ga), fabs(at->gb))) *zero = (double)NAN;
+  return DVI_OK;
+}
+
 /* Look at one event between a and b: it has at most one zero there. */
 static dvi_status find_zero(dvi__watch *w, dvi_integrator *I, const dvi_event *event, double a, double b, double *before,
                             double *zero)
@@ -137,7 +146,9 @@ static dvi_status find_zero(dvi__watch *w, dvi_integrator *I, const dvi_event *e
   *zero = (double)NAN;
   DVI_TRY(evaluate(w, I, event, b, &at.gb));
   *before = at.gb;
-  return crosses(event, &at) ? locate(w, I, event, at, zero) : DVI_OK;
+  if (!crosses(event, &at)) return DVI_OK;
+  DVI_TRY(locate(w, I, event, at, zero));
+  return drop_pole(w, I, event, &at, zero);
 }
 
 dvi_status dvi__watch_find(dvi__watch *w, dvi_integrator *I, const dvi_run_options *options, double from)
