@@ -1,7 +1,7 @@
 /* Multiscale variational integrators: steps beyond fast periods, which shape functions resolve.
  *
  * Space: q(t) = p(t) + r(t) sin(omega t) + s(t) cos(omega t) in fast coordinates, p(t) in slow ones; p of degree d, r and s of degree m.
- * Quadrature: Filon-Lobatto with d+m+2 nodes, for harmonics up to 2 omega; where as many points resolve the oscillation by themselves, Gauss (space/oscillating.h).
+ * Quadrature: Filon-Lobatto with d+m+1 nodes, for harmonics up to 2 omega; where as many points resolve the oscillation by themselves, Gauss (space/oscillating.h).
  *     Ld(q0,q1) = ext over such paths q from q0 to q1 of the quadrature of L,      p0 = -D1 Ld, p1 = D2 Ld.
  * The rows are those of action/action.h in another space (action/shaped.h). The path of a linear oscillator of frequency omega is in the space, and its action is
  * exact: so are its steps, whatever h omega is.
@@ -123,7 +123,7 @@ static void explain(const dvi__stepper *self, dvi__text *text)
                 dvi__oscillating_shapes(own->space).points, dvi__oscillating_resolved(own->space) / self->settings.number[OMEGA]);
 }
 
-DVI__STEP_KIND(shaped, explain);
+DVI__STEP_KIND(shaped, explain, .renewed = 1);
 
 static dvi_status make_step(const dvi__stepper *self, const dvi__shapes *shapes, const char *fast, dvi__shaped **shaped)
 {

@@ -25,10 +25,9 @@ static void bessel_down(int count, long double a, long double *j)
   value[top + 1] = 0;
   value[top] = 1;
   for (int k = top; k > 0; k--) {
-    /* a/(2k+1) of the next one: it stays finite however small a is */
     value[k - 1] = value[k] * ((long double)(2 * k + 1) / a) - value[k + 1];
-    if (fabsl(value[k - 1]) < 1e1000L) continue;
-    for (int i = k - 1; i <= top; i++) value[i] *= 1e-2000L;
+    if (fabsl(value[k - 1]) < 1e200L) continue;
+    for (int i = k - 1; i <= top; i++) value[i] *= 1e-200L;
   }
   const long double first = sinl(a) / a;
   const int by_first = fabsl(value[0]) >= fabsl(value[1]);

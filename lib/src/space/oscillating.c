@@ -6,20 +6,19 @@
 #include "core/memory.h"
 #include "space/basis.h"
 #include "space/filon.h"
+#include "space/legendre.h"
 #include "space/quadrature.h"
 
-enum { FUNCTIONS = DVI__OSCILLATING_FUNCTIONS, GRID = 64 };
+/* An oscillation that the points resolve is a sum of so many Legendre polynomials, and the grid has all of their products. */
+enum { FUNCTIONS = DVI__OSCILLATING_FUNCTIONS, GRID = 64, TERMS = 48 };
 
 /* A Lagrangian that is quadratic in the oscillation has these harmonics. */
 enum { HARMONICS = 2, SAMPLES = 2 * HARMONICS + 1, POINTS = DVI__FILON_NODES_MOST * SAMPLES };
 
 static const long double least_part = 1e-8L;
 
-/* So much of h omega to each point, and Gauss's rule on the path is exact but for rounding, of products of two oscillations as well. */
-static const double resolved_by_point = 0.4;
-
 /* Beyond this h omega the functions are far from dependent, and from what the grid resolves. */
-static const long double orthogonal_up_to = 20;
+static const long double orthogonal_up_to = 30;
 
 struct dvi__oscillating {
   int degree, amplitude, nodes, functions;
@@ -30,6 +29,7 @@ struct dvi__oscillating {
   long double grid[GRID], grid_weight[GRID], on_grid[FUNCTIONS][GRID];
   long double matrix[FUNCTIONS][FUNCTIONS]; /* psi_k = sum_i matrix[k][i] (f_i - f_i(0)), i <= k */
   long double start[FUNCTIONS];             /* f_i(0) */
+  long double term[FUNCTIONS][TERMS];       /* on the path, where the points are: psi_k' = sum_i term[k][i] P_i */
   double next[FUNCTIONS][FUNCTIONS];
 };
 
@@ -96,13 +96,40 @@ static void make_functions(dvi__oscillating *o)
     for (int k = 0; k < o->functions; k++) o->matrix[k][k] = k < o->degree ? 0.5L : 1 / o->nu;
 }
 
+/* Where sin and cos are nearly polynomials, psi_k from the f_i would be a small difference of large numbers. */
+static void expand(dvi__oscillating *o)
+{
+  long double P[TERMS], difference[TERMS];
+  memset(o->term, 0, sizeof o->term);
+  for (int g = 0; g < GRID; g++) {
+    dvi__legendre(TERMS - 1, 1 - o->grid[g], P, difference);
+    for (int k = 0; k < o->functions; k++)
+      for (int i = 0; i < TERMS; i++) o->term[k][i] += o->grid_weight[g] * (long double)(2 * i + 1) * P[i] * o->on_grid[k][g];
+  }
+}
+
+static void resolved_at(const dvi__oscillating *o, long double tau, double *psi, double *dpsi)
+{
+  long double P[TERMS + 1], difference[TERMS + 1];
+  dvi__legendre(TERMS, 1 - tau, P, difference);
+  for (int k = 0; k < o->functions; k++) {
+    long double value = o->term[k][0] * tau, slope = o->term[k][0];
+    for (int i = 1; i < TERMS; i++) {
+      value += o->term[k][i] * (P[i + 1] - P[i - 1]) / (long double)(4 * i + 2);
+      slope += o->term[k][i] * P[i];
+    }
+    psi[k] = (double)value;
+    if (dpsi != NULL) dpsi[k] = (double)slope;
+  }
+}
+
 static int present(const void *of, int k)
 {
   const dvi__oscillating *o = of;
   return o->matrix[k][k] != 0;
 }
 
-static void functions_at(const dvi__oscillating *o, long double tau, long double phi, double *psi, double *dpsi)
+static void oscillating_at(const dvi__oscillating *o, long double tau, long double phi, double *psi, double *dpsi)
 {
   long double value[FUNCTIONS], slope[FUNCTIONS];
   evaluate(o, tau, phi, value, slope);
@@ -187,7 +214,9 @@ static int points(const dvi__oscillating *o)
 
 double dvi__oscillating_resolved(const dvi__oscillating *space)
 {
-  return resolved_by_point * points(space);
+  return 0.5 *
+         (points(space) -
+          SAMPLES); /* two points a radian, and some for the amplitudes: products of two oscillations are exact but for rounding */
 }
 
 static void set_rule(dvi__oscillating *o)
@@ -207,6 +236,7 @@ static void set(void *of, double h)
   set_rule(o);
   evaluate(o, 0, -0.5L * o->nu, o->start, slope);
   make_functions(o);
+  if (o->on_path) expand(o);
   make_next(o);
 }
 
@@ -217,13 +247,19 @@ static void point(const void *of, int j, double *tau, double *weight, double *ps
   const long double node = o->node[j / samples], turn = 8 * atanl(1);
   *tau = (double)node;
   *weight = (double)o->weight[j];
-  functions_at(o, node, o->nu * (node - 0.5L) + turn * (long double)sample / (long double)samples, psi, dpsi);
+  if (o->on_path)
+    resolved_at(o, node, psi, dpsi);
+  else
+    oscillating_at(o, node, o->nu * (node - 0.5L) + turn * (long double)sample / (long double)samples, psi, dpsi);
 }
 
 static void path(const void *of, double tau, double *psi, double *dpsi)
 {
   const dvi__oscillating *o = of;
-  functions_at(o, (long double)tau, o->nu * ((long double)tau - 0.5L), psi, dpsi);
+  if (o->on_path)
+    resolved_at(o, (long double)tau, psi, dpsi);
+  else
+    oscillating_at(o, (long double)tau, o->nu * ((long double)tau - 0.5L), psi, dpsi);
 }
 
 dvi__oscillating *dvi__oscillating_create(int degree, int amplitude, double omega)
@@ -232,7 +268,7 @@ dvi__oscillating *dvi__oscillating_create(int degree, int amplitude, double omeg
   if (o == NULL) return NULL;
   o->degree = degree;
   o->amplitude = amplitude;
-  o->nodes = degree + amplitude + 2;
+  o->nodes = degree + amplitude + 1;
   o->functions = degree + 2 * (amplitude + 1);
   o->omega = (long double)omega;
   dvi__space_init(&o->legendre, DVI_LEGENDRE, degree);

@@ -1,6 +1,6 @@
 /* Paths with a fast oscillation, p(t) + r(t) sin(omega t) + s(t) cos(omega t) with p of a degree, r and s of another one, and a quadrature for Lagrangians of them.
  *
- * The points are degree + amplitude + 2 Lobatto nodes with five phases each (space/filon.h): amplitudes of products of two functions are of lower degree, so that
+ * The points are degree + amplitude + 1 Lobatto nodes with five phases each (space/filon.h): amplitudes of products of two functions are of lower degree, so that
  * quadratic Lagrangians are integrated exactly. While as many points resolve the oscillation, they are Gauss's on the path, which asks nothing of the Lagrangian.
  *
  * The functions are made orthonormal, in the integral of psi_k' psi_l' over a step: sin and cos are polynomials but for rounding as h omega goes to 0. One of which
