@@ -14,7 +14,6 @@ END_TEST
 START_TEST(and_at_a_frequency_that_is_not_the_motions)
 {
   check_order_over("pendulum", NULL, 2, 4, "multiscale:degree=1,amplitude=0,fast=0,omega=3", 6);
-  check_order_over("pendulum", NULL, 2, 2, "multiscale:degree=2,amplitude=0,fast=0,omega=3", 8);
 }
 END_TEST
 

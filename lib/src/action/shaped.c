@@ -13,6 +13,7 @@ struct dvi__shaped {
   double h;           /* that the tables are for; 0: none */
   double *psi, *dpsi; /* [functions] work */
   double *rest;       /* [n] zeros: the velocity at which rows are scaled */
+  double *dq_low;     /* [n] */
 };
 
 static int is_there(const dvi__shaped *s, int i, int k)
@@ -29,7 +30,8 @@ static int allocate(dvi__shaped *s, const int *functions)
   s->psi = DVI_NEW(double, count);
   s->dpsi = DVI_NEW(double, count);
   s->rest = DVI_NEW(double, n);
-  if (!s->functions || !s->psi || !s->dpsi || !s->rest) return 0;
+  s->dq_low = DVI_NEW(double, n);
+  if (!s->functions || !s->psi || !s->dpsi || !s->rest || !s->dq_low) return 0;
   memcpy(s->functions, functions, n * sizeof *functions);
   return 1;
 }
@@ -61,6 +63,7 @@ void dvi__shaped_destroy(dvi__shaped **shaped)
   dvi__release(s->psi);
   dvi__release(s->dpsi);
   dvi__release(s->rest);
+  dvi__release(s->dq_low);
   dvi__release(s);
   *shaped = NULL;
 }
@@ -167,7 +170,7 @@ void dvi__shaped_continue(dvi__shaped *shaped, double ratio, const double *last,
 
 void dvi__shaped_ends(const dvi__shaped *shaped, const double *Y, double *dq, double *dp)
 {
-  dvi__action_ends(shaped->action, Y, dq, shaped->psi, dp);
+  dvi__action_ends(shaped->action, Y, dq, shaped->dq_low, dp); /* 0 without sweeps */
 }
 
 void dvi__shaped_path(dvi__shaped *shaped, const double *Y, double h, double tau, double *offset, double *v)

@@ -5,7 +5,7 @@
  *     f = sum_k f_k(x) e^{i k phi},      integral of f = sum_k sum_j f_k(c_j) m_j(k nu),      m_j(nu) = integral of l_j(x) e^{i nu (x - 1/2)} over [0,1].
  *
  * Put together, the weights of the samples are real numbers. Exact for amplitudes of degree n-1, and of degree 2n-3 for k = 0.
- * Source: Iserles 2004; Leok 2004, sec. 5.7.2. Samples in the phase are ours: they make the method one for any Lagrangian. */
+ * Source: Leok 2004, sec. 5.7.2, after Iserles. Samples in the phase are ours: they make the method one for any Lagrangian. */
 #ifndef DVI_SPACE_FILON_H
 #define DVI_SPACE_FILON_H
 
