@@ -1,4 +1,4 @@
-/* labels: unit invariant */
+/* labels: invariant */
 #include <math.h>
 
 #include "support/runs.h"
