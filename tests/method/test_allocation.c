@@ -30,6 +30,7 @@ static const struct {
     {"fpu", "ell=40", "respa:substeps=exact"},
     {"fpu", "ell=40", "mollified"},
     {"fpu", "ell=40", "trig"},
+    {"fpu", NULL, "multiscale"},
     {"chain", NULL, "verlet:sweep=wave"},
     {"chain", NULL, "composition:order=8,sweep=wave,threads=2"},
     {"fpu", "ell=40", "midpoint:solver=kinsol"},

@@ -52,6 +52,7 @@ static const char *const methods[] = {
     "respa",
     "respa:substeps=exact",
     "trig",
+    "multiscale:fast=0,omega=5",
     "composition:order=8,base=verlet",
     "verlet:threads=3",
     "composition:order=6,base=verlet,threads=2",

@@ -40,12 +40,13 @@ static dvi_status fill(dvi__action *a, dvi_counters *counters)
   const int capacity = a->r > a->s ? a->r : a->s; /* a batch of s is solved for at once in the chord */
   DVI_TRY(dvi__evaluator_create(a->system, capacity, DVI__HESSIANS, counters, &a->evaluator));
   if (!allocate_batches(a)) return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d nodes in %d dimensions", a->r, a->n);
+  if (a->shaped) return DVI_OK;
   DVI_TRY(dvi__action_prepare_sweep(a));
   return allocate_chord(a, counters);
 }
 
-dvi_status dvi__action_create(const dvi_system *system, const dvi__action_space *space, dvi_counters *counters,
-                              dvi__action **action)
+static dvi_status create(const dvi_system *system, const dvi__action_space *space, int shaped, dvi_counters *counters,
+                         dvi__action **action)
 {
   *action = NULL;
   dvi__action *a = DVI_NEW(dvi__action, 1);
@@ -55,10 +56,23 @@ dvi_status dvi__action_create(const dvi_system *system, const dvi__action_space 
   a->n = system->n;
   a->s = space->degree;
   a->r = space->nodes;
+  a->shaped = shaped;
   const dvi_status status = fill(a, counters);
   if (status != DVI_OK) dvi__action_destroy(&a);
   *action = a;
   return status;
+}
+
+dvi_status dvi__action_create(const dvi_system *system, const dvi__action_space *space, dvi_counters *counters,
+                              dvi__action **action)
+{
+  return create(system, space, 0, counters, action);
+}
+
+dvi_status dvi__action_create_shaped(const dvi_system *system, int functions, int points, dvi_counters *counters,
+                                     dvi__action **action)
+{
+  return create(system, &(dvi__action_space){.degree = functions, .nodes = points}, 1, counters, action);
 }
 
 void dvi__action_destroy(dvi__action **action)

@@ -20,6 +20,7 @@ struct dvi__action {
   dvi__evaluator *evaluator;
   dvi__action_space space;
   int n, s, r;      /* coordinates, degree, quadrature nodes */
+  int shaped;       /* s functions and r points of any kind: the tables are filled by shaped.c; what needs a basis is not there */
   dvi__space trial; /* the basis, ready for evaluation anywhere */
   /* Length of a row over the nodes and over the functions, padded for products in lanes (num/lanes.h). */
   int lanes, path_lanes;
@@ -94,6 +95,13 @@ void dvi__action_centre_jacobian(dvi__action *action, double *values);
 
 /* Free what dvi__action_prepare_energy has made. */
 void dvi__action_clear_energy(dvi__action *action);
+
+/* An element whose tables shaped.c fills, at every new length: of it there are place, residual, magnitudes, Jacobian and ends. */
+dvi_status dvi__action_create_shaped(const dvi_system *system, int functions, int points, dvi_counters *counters,
+                                     dvi__action **action);
+
+/* Row scales by the velocity Hessian in the order of vv; NULL: the constant mass. */
+void dvi__action_scale_by(const dvi__action *action, const double *L_vv, double *scale);
 
 /* What sweeps need that depends on h alone. */
 void dvi__action_set_step(dvi__action *action);

@@ -146,17 +146,20 @@ int dvi__action_row_scale(dvi__action *a, double *scale)
 {
   if (a->chord == NULL && a->scaled_h == a->h) return 0;
   a->scaled_h = a->h;
+  dvi__action_scale_by(a, a->middle_vv, scale);
+  return 1;
+}
+
+void dvi__action_scale_by(const dvi__action *a, const double *L_vv, double *scale)
+{
   const dvi__pattern *vv = &a->system->vv;
-  const double *values = a->chord != NULL                   ? a->middle_vv
-                         : a->system->mass_diagonal != NULL ? a->system->mass_diagonal
-                                                            : a->system->mass_values;
+  const double *values = L_vv != NULL ? L_vv : a->system->mass_diagonal != NULL ? a->system->mass_diagonal : a->system->mass_values;
   for (int i = 0; i < a->n; i++) {
     double size = 0;
     for (int e = vv->start[i]; e < vv->start[i + 1]; e++) size = fmax(size, fabs(values[e]));
     const double row = (size > 0 ? size : 1.0) / fabs(a->h);
     for (int k = 0; k < a->s; k++) scale[i * a->s + k] = row;
   }
-  return 1;
 }
 
 dvi_status dvi__action_scale(dvi__action *a, double *scale)

@@ -128,6 +128,7 @@ static void fill_rows(dvi__action *a)
 dvi_status dvi__action_fill_tables(dvi__action *a)
 {
   if (!allocate(a)) return dvi__fail(DVI_NO_MEMORY, "action: no memory for tables of degree %d", a->s);
+  if (a->shaped) return DVI_OK;
   dvi__space_init(&a->trial, a->space.basis, a->s);
   DVI_TRY(fill_nodes(a));
   fill_stiffness(a);

@@ -23,6 +23,7 @@ typedef struct dvi__step_kind {
   dvi__evaluator *(*evaluator)(const void *of);
   void (*destroy)(void *of);
   void (*explain)(const dvi__stepper *self, dvi__text *text); /* what is its own */
+  int renewed; /* Newton's method factors each Jacobian: forces cost more than factors */
 } dvi__step_kind;
 
 /* A stepper's own struct begins with it. */
@@ -54,43 +55,50 @@ void dvi__one_step_explain(const dvi__stepper *self, dvi__text *text);
 
 #define DVI__ONE_STEP_OPERATIONS .destroy = dvi__one_step_destroy, .start = dvi__one_step_start, .explain = dvi__one_step_explain
 
-/* The kind whose functions are dvi__foo_..., as `kind`. */
-#define DVI__STEP_KIND(foo, explain_own)                                                                  \
-  static dvi_status residual_of(void *of, const double *x, double *R)                                     \
-  {                                                                                                       \
-    return dvi__##foo##_residual(of, x, R);                                                               \
-  }                                                                                                       \
-  static dvi_status jacobian_of(void *of, const double *x, double *values)                                \
-  {                                                                                                       \
-    return dvi__##foo##_jacobian(of, x, values);                                                          \
-  }                                                                                                       \
-  static dvi_status row_scale_of(void *of, double *scale, int *unchanged)                                 \
-  {                                                                                                       \
-    (void)unchanged;                                                                                      \
-    return dvi__##foo##_scale(of, scale);                                                                 \
-  }                                                                                                       \
-  static void straight_of(const void *of, const double *v, double *x)                                     \
-  {                                                                                                       \
-    dvi__##foo##_straight(of, v, x);                                                                      \
-  }                                                                                                       \
-  static void continued_of(void *of, double ratio, const double *last, double *x)                         \
-  {                                                                                                       \
-    dvi__##foo##_continue(of, ratio, last, x);                                                            \
-  }                                                                                                       \
-  static const dvi__pattern *pattern_of(const void *of)                                                   \
-  {                                                                                                       \
-    return dvi__##foo##_pattern(of);                                                                      \
-  }                                                                                                       \
-  static dvi__evaluator *evaluator_of(const void *of)                                                     \
-  {                                                                                                       \
-    return dvi__##foo##_evaluator(of);                                                                    \
-  }                                                                                                       \
-  static void destroy_of(void *of)                                                                        \
-  {                                                                                                       \
-    dvi__##foo *step = of;                                                                                \
-    dvi__##foo##_destroy(&step);                                                                          \
-  }                                                                                                       \
-  static const dvi__step_kind kind = {residual_of, jacobian_of,  row_scale_of, straight_of, continued_of, \
-                                      pattern_of,  evaluator_of, destroy_of,   explain_own}
+/* The kind whose functions are dvi__foo_..., as `kind`; then its `explain`, and what else it wants to set. */
+#define DVI__STEP_KIND(foo, ...)                                                  \
+  static dvi_status residual_of(void *of, const double *x, double *R)             \
+  {                                                                               \
+    return dvi__##foo##_residual(of, x, R);                                       \
+  }                                                                               \
+  static dvi_status jacobian_of(void *of, const double *x, double *values)        \
+  {                                                                               \
+    return dvi__##foo##_jacobian(of, x, values);                                  \
+  }                                                                               \
+  static dvi_status row_scale_of(void *of, double *scale, int *unchanged)         \
+  {                                                                               \
+    (void)unchanged;                                                              \
+    return dvi__##foo##_scale(of, scale);                                         \
+  }                                                                               \
+  static void straight_of(const void *of, const double *v, double *x)             \
+  {                                                                               \
+    dvi__##foo##_straight(of, v, x);                                              \
+  }                                                                               \
+  static void continued_of(void *of, double ratio, const double *last, double *x) \
+  {                                                                               \
+    dvi__##foo##_continue(of, ratio, last, x);                                    \
+  }                                                                               \
+  static const dvi__pattern *pattern_of(const void *of)                           \
+  {                                                                               \
+    return dvi__##foo##_pattern(of);                                              \
+  }                                                                               \
+  static dvi__evaluator *evaluator_of(const void *of)                             \
+  {                                                                               \
+    return dvi__##foo##_evaluator(of);                                            \
+  }                                                                               \
+  static void destroy_of(void *of)                                                \
+  {                                                                               \
+    dvi__##foo *step = of;                                                        \
+    dvi__##foo##_destroy(&step);                                                  \
+  }                                                                               \
+  static const dvi__step_kind kind = {.residual = residual_of,                    \
+                                      .jacobian = jacobian_of,                    \
+                                      .row_scale = row_scale_of,                  \
+                                      .straight = straight_of,                    \
+                                      .continued = continued_of,                  \
+                                      .pattern = pattern_of,                      \
+                                      .evaluator = evaluator_of,                  \
+                                      .destroy = destroy_of,                      \
+                                      .explain = __VA_ARGS__}
 
 #endif

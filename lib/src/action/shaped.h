@@ -1,0 +1,34 @@
+/* One element of the discrete action (action.h) in a space of given shapes (space/shapes.h), as a step: the same rows, from other tables.
+ *
+ * A coordinate may have the first functions alone, as slow ones have the polynomials. Unknowns of functions that it does not have, or that are not present at this
+ * h, stay 0: their rows say so. */
+#ifndef DVI_ACTION_SHAPED_H
+#define DVI_ACTION_SHAPED_H
+#include "action/action.h"
+#include "space/shapes.h"
+
+typedef struct dvi__shaped dvi__shaped;
+
+/* functions [n]: how many of the shapes each coordinate has; copied, as the shapes are. */
+dvi_status dvi__shaped_create(const dvi_system *system, const dvi__shapes *shapes, const int *functions, dvi_counters *counters,
+                              dvi__shaped **shaped);
+void dvi__shaped_destroy(dvi__shaped **shaped);
+
+const dvi__pattern *dvi__shaped_pattern(const dvi__shaped *shaped);
+dvi__evaluator *dvi__shaped_evaluator(const dvi__shaped *shaped);
+
+/* As dvi__action_place. */
+void dvi__shaped_place(dvi__shaped *shaped, double t0, double h, const double *q0, const double *p0);
+
+/* What a step asks for (method/one_step.h). */
+dvi_status dvi__shaped_residual(dvi__shaped *shaped, const double *Y, double *R);
+dvi_status dvi__shaped_jacobian(dvi__shaped *shaped, const double *Y, double *values);
+dvi_status dvi__shaped_scale(dvi__shaped *shaped, double *scale);
+void dvi__shaped_straight(const dvi__shaped *shaped, const double *v, double *Y);
+void dvi__shaped_continue(dvi__shaped *shaped, double ratio, const double *last, double *Y);
+
+/* As dvi__action_ends and dvi__action_path; the residual was asked for at Y. */
+void dvi__shaped_ends(const dvi__shaped *shaped, const double *Y, double *dq, double *dp);
+void dvi__shaped_path(dvi__shaped *shaped, const double *Y, double h, double tau, double *offset, double *v);
+
+#endif

@@ -1,0 +1,218 @@
+/* Multiscale variational integrators: steps beyond fast periods, which shape functions resolve.
+ *
+ * Space: q(t) = p(t) + r(t) sin(omega t) + s(t) cos(omega t) in fast coordinates, p(t) in slow ones; p of degree d, r and s of degree m.
+ * Quadrature: Filon-Lobatto with d+m+1 nodes, for harmonics up to 2 omega; where as many points resolve the oscillation by themselves, Gauss (space/oscillating.h).
+ *     Ld(q0,q1) = ext over such paths q from q0 to q1 of the quadrature of L,      p0 = -D1 Ld, p1 = D2 Ld.
+ * The rows are those of action/action.h in another space (action/shaped.h). The path of a linear oscillator of frequency omega is in the space, and its action is
+ * exact: so are its steps, whatever h omega is.
+ * Symmetric, symplectic. As h goes to 0 with fixed omega the space is as good as polynomials of degree d+2m+2, while these are more than roundoff: order twice that.
+ * Source: Leok 2004, sec. 5.7. The path there is a product, p(t) (1 + r sin + s cos), singular where the amplitude is 0; the sum is ours, and so is the
+ * quadrature of any Lagrangian by samples of the phase. */
+#include <math.h>
+
+#include "action/modes.h"
+#include "action/shaped.h"
+#include "core/memory.h"
+#include "method/one_step.h"
+#include "num/compensated.h"
+#include "space/oscillating.h"
+#include "system/part.h"
+
+enum { DEGREE, AMPLITUDE, OMEGA };
+
+static const dvi__key keys[] = {
+    {"degree", NULL, 1, DVI__OSCILLATING_DEGREE_MOST, 3, "degree of the path without its oscillation, 1 to 6; left out: 3"},
+    {"amplitude", NULL, 0, DVI__OSCILLATING_DEGREE_MOST, DVI__LEFT_OUT,
+     "degree of the oscillation's amplitudes, 0 to degree; left out: 1"},
+    {"omega", NULL, DVI__POSITIVE, 0, 0, "the fast frequency; left out, or auto: that of the fast potentials"},
+    {0},
+};
+
+typedef struct multiscale {
+  dvi__one_step one;
+  dvi__oscillating *space;
+  int fast; /* how many coordinates are */
+} multiscale;
+
+/* ---- which coordinates are fast, and how fast ---- */
+
+static dvi_status mark_listed(const dvi__stepper *self, char *fast)
+{
+  const int n = self->system->n;
+  for (int k = 0; k < self->settings.listed; k++) {
+    const double number = self->settings.list[k];
+    if (number != floor(number) || number >= n)
+      return dvi__fail(DVI_BAD_OPTION, "multiscale: fast=%s: there is no coordinate %g; they are counted from 0 to %d",
+                       self->settings.list_text, number, n - 1);
+    fast[(int)number] = 1;
+  }
+  return DVI_OK;
+}
+
+static dvi_status mark_moved(const dvi_system *part, char *fast)
+{
+  DVI_TRY(dvi__system_prepare_hessian(part));
+  for (int i = 0; i < part->n; i++) fast[i] = part->qq.start[i] < part->qq.start[i + 1];
+  return DVI_OK;
+}
+
+/* One frequency is what the space has. Modes that do not oscillate are none of its business. */
+static dvi_status frequency_of(const dvi__stepper *self, const dvi_system *part, double *omega)
+{
+  dvi__modes *modes;
+  double least = INFINITY, most = 0;
+  DVI_TRY(dvi__modes_create(part, self->counters, &modes));
+  const double *square = dvi__modes_squares(modes);
+  for (int k = 0; k < part->n; k++) most = fmax(most, square[k]);
+  for (int k = 0; k < part->n; k++)
+    if (square[k] > 1e-10 * most) least = fmin(least, square[k]);
+  dvi__modes_destroy(&modes);
+  *omega = sqrt(most);
+  if (most > 0 && least > (1 - 1e-6) * most) return DVI_OK;
+  if (most == 0) return dvi__fail(DVI_BAD_OPTION, "multiscale: nothing oscillates in the fast potentials; give omega");
+  return dvi__fail(DVI_BAD_OPTION,
+                   "multiscale: the fast potentials have frequencies from %.6g to %.6g; give the one that matters as omega",
+                   sqrt(least), *omega);
+}
+
+static dvi_status refuse_unknown(void)
+{
+  return dvi__fail(DVI_BAD_OPTION,
+                   "multiscale: the frequency is not known: give omega; it can be left out where potentials that are "
+                   "declared fast and quadratic, and a constant mass, tell it");
+}
+
+/* What is left out comes from the part of the system that is declared fast. */
+static dvi_status ask_fast_part(dvi__stepper *self, char *fast)
+{
+  const dvi_system *system = self->system;
+  double *omega = &self->settings.number[OMEGA];
+  dvi_system *part;
+  if (!(system->terms & DVI__FAST) && self->settings.listed == 0)
+    return dvi__fail(DVI_BAD_OPTION,
+                     "multiscale: no coordinate is known to be fast: list them, as fast=0:1, or declare a fast potential");
+  if (*omega == 0 &&
+      (!(system->terms & DVI__FAST) || !(system->terms & DVI__CONSTANT_MASS) || !dvi__system_fast_is_quadratic(system)))
+    return refuse_unknown();
+  if (!(system->terms & DVI__CONSTANT_MASS))
+    return dvi__fail(DVI_BAD_OPTION, "multiscale: the fast coordinates must be listed where the mass is not constant, as fast=0:1");
+  DVI_TRY(dvi__system_fast_part(system, &part));
+  dvi_status status = self->settings.listed == 0 ? mark_moved(part, fast) : DVI_OK;
+  if (status == DVI_OK && *omega == 0) status = frequency_of(self, part, omega);
+  dvi_system_destroy(&part);
+  return status;
+}
+
+static dvi_status find_fast(dvi__stepper *self, char *fast)
+{
+  DVI_TRY(mark_listed(self, fast));
+  return self->settings.listed == 0 || self->settings.number[OMEGA] == 0 ? ask_fast_part(self, fast) : DVI_OK;
+}
+
+/* ---- making it ---- */
+
+static void explain(const dvi__stepper *self, dvi__text *text)
+{
+  const multiscale *own = self->own;
+  const int *value = self->settings.value;
+  dvi__text_add(
+      text,
+      "space: polynomials of degree %d, and in %d fast coordinate%s of degree %d times sin and cos of omega t, omega = %.6g\n",
+      value[DEGREE], own->fast, own->fast == 1 ? "" : "s", value[AMPLITUDE], self->settings.number[OMEGA]);
+  dvi__text_add(text, "quadrature: %d points; up to h = %.3g Gauss's, for longer steps Filon-Lobatto's\n",
+                dvi__oscillating_shapes(own->space).points, dvi__oscillating_resolved(own->space) / self->settings.number[OMEGA]);
+}
+
+DVI__STEP_KIND(shaped, explain, .renewed = 1);
+
+static dvi_status make_step(const dvi__stepper *self, const dvi__shapes *shapes, const char *fast, dvi__shaped **shaped)
+{
+  const int n = self->system->n;
+  int *functions = DVI_NEW(int, n);
+  if (functions == NULL) return dvi__fail(DVI_NO_MEMORY, "multiscale: no memory");
+  for (int i = 0; i < n; i++) functions[i] = fast[i] ? shapes->functions : self->settings.value[DEGREE];
+  const dvi_status status = dvi__shaped_create(self->system, shapes, functions, self->counters, shaped);
+  dvi__release(functions);
+  return status;
+}
+
+/* The space is owned by the stepper from the moment there is one. */
+static dvi_status make(dvi__stepper *self, const char *fast)
+{
+  const int *value = self->settings.value;
+  dvi__shaped *shaped;
+  dvi__oscillating *space = dvi__oscillating_create(value[DEGREE], value[AMPLITUDE], self->settings.number[OMEGA]);
+  if (space == NULL) return dvi__fail(DVI_NO_MEMORY, "multiscale: no memory");
+  const dvi__shapes shapes = dvi__oscillating_shapes(space);
+  dvi_status status = make_step(self, &shapes, fast, &shaped);
+  if (status == DVI_OK) status = dvi__one_step_create(self, sizeof(multiscale), &kind, shaped, 0);
+  multiscale *own = self->own;
+  if (own == NULL) {
+    dvi__oscillating_destroy(&space);
+    return status;
+  }
+  own->space = space;
+  for (int i = 0; i < self->system->n; i++) own->fast += fast[i];
+  self->order = 2 * shapes.functions;
+  self->symmetric = 1;
+  return status;
+}
+
+static dvi_status create(dvi__stepper *self)
+{
+  int *value = self->settings.value;
+  if (value[AMPLITUDE] == DVI__LEFT_OUT) value[AMPLITUDE] = 1;
+  if (value[AMPLITUDE] > value[DEGREE])
+    return dvi__fail(DVI_BAD_OPTION, "multiscale: amplitude=%d is above degree=%d; 0 to degree are possible", value[AMPLITUDE],
+                     value[DEGREE]);
+  char *fast = DVI_NEW(char, self->system->n);
+  if (fast == NULL) return dvi__fail(DVI_NO_MEMORY, "multiscale: no memory");
+  dvi_status status = find_fast(self, fast);
+  if (status == DVI_OK) status = make(self, fast);
+  dvi__release(fast);
+  return status;
+}
+
+static void destroy(dvi__stepper *self)
+{
+  multiscale *own = self->own;
+  if (own == NULL) return;
+  dvi__oscillating *space = own->space;
+  dvi__one_step_destroy(self);
+  dvi__oscillating_destroy(&space);
+}
+
+static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
+{
+  const dvi__one_step *one = self->own;
+  dvi__shaped_place(one->of, state->t, h, state->q, state->p);
+  DVI_TRY(dvi__one_step_solve(self, state, h));
+  DVI_TRY(dvi__shaped_residual(one->of, one->x, one->guess));
+  dvi__shaped_ends(one->of, one->x, one->dq, one->dp);
+  dvi__one_step_move(self, state, h, one->x);
+  dvi__add_compensated_all(self->system->n, state->p, state->p_carry, one->dp);
+  return DVI_OK;
+}
+
+static void path(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v)
+{
+  const dvi__one_step *one = self->own;
+  dvi__shaped_path(one->of, self->memory + one->last, h, tau, q, v);
+  for (int i = 0; q != NULL && i < self->system->n; i++) q[i] += q0[i];
+}
+
+const dvi__method dvi__multiscale = {
+    .name = "multiscale",
+    .summary = "polynomials and oscillations of a given frequency, Filon-Lobatto quadrature; steps beyond fast periods; symplectic",
+    .cite = "Leok2004",
+    .keys = keys,
+    .list = "fast",
+    .list_help = "the fast coordinates, by their numbers from 0, such as 0:2; left out: those of the fast potentials",
+    .uses = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL,
+    .create = create,
+    .destroy = destroy,
+    .start = dvi__one_step_start,
+    .step = step,
+    .path = path,
+    .explain = dvi__one_step_explain,
+};

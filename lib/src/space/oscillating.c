@@ -1,0 +1,295 @@
+#include "space/oscillating.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "space/basis.h"
+#include "space/filon.h"
+#include "space/legendre.h"
+#include "space/quadrature.h"
+
+/* An oscillation that the points resolve is a sum of so many Legendre polynomials, and the grid has all of their products. */
+enum { FUNCTIONS = DVI__OSCILLATING_FUNCTIONS, GRID = 64, TERMS = 48 };
+
+/* A Lagrangian that is quadratic in the oscillation has these harmonics. */
+enum { HARMONICS = 2, SAMPLES = 2 * HARMONICS + 1, POINTS = DVI__FILON_NODES_MOST * SAMPLES };
+
+static const long double least_part = 1e-8L;
+
+/* Beyond this h omega the functions are far from dependent, and from what the grid resolves. */
+static const long double orthogonal_up_to = 30;
+
+struct dvi__oscillating {
+  int degree, amplitude, nodes, functions;
+  long double omega, nu;
+  dvi__space legendre;
+  int on_path; /* the points are Gauss's */
+  long double node[POINTS], weight[POINTS];
+  long double grid[GRID], grid_weight[GRID], on_grid[FUNCTIONS][GRID];
+  long double matrix[FUNCTIONS][FUNCTIONS]; /* psi_k = sum_i matrix[k][i] (f_i - f_i(0)), i <= k */
+  long double start[FUNCTIONS];             /* f_i(0) */
+  long double term[FUNCTIONS][TERMS];       /* on the path, where the points are: psi_k' = sum_i term[k][i] P_i */
+  double next[FUNCTIONS][FUNCTIONS];
+};
+
+/* f_i and its derivative along the path, for the phase phi at tau: P_1 to P_degree, then P_0 sin, P_0 cos, P_1 sin ... */
+static void evaluate(const dvi__oscillating *o, long double tau, long double phi, long double *value, long double *slope)
+{
+  long double P[DVI__TRIAL_MAX], dP[DVI__TRIAL_MAX];
+  const long double sine = sinl(phi), cosine = cosl(phi);
+  dvi__space_evaluate(&o->legendre, tau, P, dP);
+  for (int k = 0; k < o->degree; k++) value[k] = P[k + 1], slope[k] = dP[k + 1];
+  for (int i = 0, k = o->degree; i <= o->amplitude; i++, k += 2) {
+    value[k] = P[i] * sine;
+    slope[k] = dP[i] * sine + o->nu * P[i] * cosine;
+    value[k + 1] = P[i] * cosine;
+    slope[k + 1] = dP[i] * cosine - o->nu * P[i] * sine;
+  }
+}
+
+/* ---- the functions ---- */
+
+static long double inner(const dvi__oscillating *o, int k, int l)
+{
+  long double sum = 0;
+  for (int g = 0; g < GRID; g++) sum += o->grid_weight[g] * o->on_grid[k][g] * o->on_grid[l][g];
+  return sum;
+}
+
+static void multiply(dvi__oscillating *o, int k, long double factor)
+{
+  for (int g = 0; g < GRID; g++) o->on_grid[k][g] *= factor;
+  for (int i = 0; i <= k; i++) o->matrix[k][i] *= factor;
+}
+
+static void subtract(dvi__oscillating *o, int k, long double factor, int l)
+{
+  for (int g = 0; g < GRID; g++) o->on_grid[k][g] -= factor * o->on_grid[l][g];
+  for (int i = 0; i <= l; i++) o->matrix[k][i] -= factor * o->matrix[l][i];
+}
+
+/* Gram and Schmidt's, in the derivatives, each function three times. */
+static void orthogonalize(dvi__oscillating *o)
+{
+  long double value[FUNCTIONS], slope[FUNCTIONS];
+  for (int g = 0; g < GRID; g++) {
+    evaluate(o, o->grid[g], o->nu * (o->grid[g] - 0.5L), value, slope);
+    for (int k = 0; k < o->functions; k++) o->on_grid[k][g] = slope[k];
+  }
+  for (int k = 0; k < o->functions; k++) {
+    const long double size = sqrtl(inner(o, k, k));
+    for (int pass = 0; pass < 3; pass++)
+      for (int l = 0; l < k; l++) subtract(o, k, inner(o, k, l), l);
+    const long double left = sqrtl(inner(o, k, k));
+    multiply(o, k, left > least_part * size ? 1 / left : 0);
+  }
+}
+
+static void make_functions(dvi__oscillating *o)
+{
+  memset(o->matrix, 0, sizeof o->matrix);
+  for (int k = 0; k < o->functions; k++) o->matrix[k][k] = 1;
+  if (fabsl(o->nu) <= orthogonal_up_to)
+    orthogonalize(o);
+  else
+    for (int k = 0; k < o->functions; k++) o->matrix[k][k] = k < o->degree ? 0.5L : 1 / o->nu;
+}
+
+/* Where sin and cos are nearly polynomials, psi_k from the f_i would be a small difference of large numbers. */
+static void expand(dvi__oscillating *o)
+{
+  long double P[TERMS], difference[TERMS];
+  memset(o->term, 0, sizeof o->term);
+  for (int g = 0; g < GRID; g++) {
+    dvi__legendre(TERMS - 1, 1 - o->grid[g], P, difference);
+    for (int k = 0; k < o->functions; k++)
+      for (int i = 0; i < TERMS; i++) o->term[k][i] += o->grid_weight[g] * (long double)(2 * i + 1) * P[i] * o->on_grid[k][g];
+  }
+}
+
+static void resolved_at(const dvi__oscillating *o, long double tau, double *psi, double *dpsi)
+{
+  long double P[TERMS + 1], difference[TERMS + 1];
+  dvi__legendre(TERMS, 1 - tau, P, difference);
+  for (int k = 0; k < o->functions; k++) {
+    long double value = o->term[k][0] * tau, slope = o->term[k][0];
+    for (int i = 1; i < TERMS; i++) {
+      value += o->term[k][i] * (P[i + 1] - P[i - 1]) / (long double)(4 * i + 2);
+      slope += o->term[k][i] * P[i];
+    }
+    psi[k] = (double)value;
+    if (dpsi != NULL) dpsi[k] = (double)slope;
+  }
+}
+
+static int present(const void *of, int k)
+{
+  const dvi__oscillating *o = of;
+  return o->matrix[k][k] != 0;
+}
+
+static void oscillating_at(const dvi__oscillating *o, long double tau, long double phi, double *psi, double *dpsi)
+{
+  long double value[FUNCTIONS], slope[FUNCTIONS];
+  evaluate(o, tau, phi, value, slope);
+  for (int k = 0; k < o->functions; k++) {
+    long double sum[2] = {0, 0};
+    for (int i = 0; i <= k; i++) {
+      sum[0] += o->matrix[k][i] * (value[i] - o->start[i]);
+      sum[1] += o->matrix[k][i] * slope[i];
+    }
+    psi[k] = (double)sum[0];
+    if (dpsi != NULL) dpsi[k] = (double)sum[1];
+  }
+}
+
+/* ---- the last path, continued: amplitudes by their polynomials, phases by nu ---- */
+
+/* P_k(tau + 1) = sum_i shift[i][k] P_i(tau) */
+static void shift_polynomials(const dvi__oscillating *o, long double shift[DVI__TRIAL_MAX][DVI__TRIAL_MAX])
+{
+  long double here[DVI__TRIAL_MAX], beyond[DVI__TRIAL_MAX];
+  memset(shift, 0, DVI__TRIAL_MAX * sizeof *shift);
+  for (int g = 0; g < GRID; g++) {
+    dvi__space_evaluate(&o->legendre, o->grid[g], here, NULL);
+    dvi__space_evaluate(&o->legendre, o->grid[g] + 1, beyond, NULL);
+    for (int k = 0; k <= o->degree; k++)
+      for (int i = 0; i <= k; i++) shift[i][k] += o->grid_weight[g] * (long double)(2 * i + 1) * here[i] * beyond[k];
+  }
+}
+
+/* The f of the step before, at tau + 1, as a combination of the f at tau: [FUNCTIONS], without the constant. */
+static void shift_function(const dvi__oscillating *o, long double shift[DVI__TRIAL_MAX][DVI__TRIAL_MAX], int k, long double factor,
+                           long double *f)
+{
+  if (k < o->degree) {
+    for (int i = 1; i <= k + 1; i++) f[i - 1] += factor * shift[i][k + 1];
+    return;
+  }
+  const int p = (k - o->degree) / 2, is_cosine = (k - o->degree) % 2;
+  const long double by_sine = is_cosine ? -sinl(o->nu) : cosl(o->nu), by_cosine = is_cosine ? cosl(o->nu) : sinl(o->nu);
+  for (int i = 0; i <= p; i++) {
+    f[o->degree + 2 * i] += factor * shift[i][p] * by_sine;
+    f[o->degree + 2 * i + 1] += factor * shift[i][p] * by_cosine;
+  }
+}
+
+/* Coefficients of the psi from those of the f: sum_k Y_k matrix[k][i] = f_i. */
+static void solve_coefficients(const dvi__oscillating *o, long double *f)
+{
+  for (int k = o->functions - 1; k >= 0; k--) {
+    f[k] = present(o, k) ? f[k] / o->matrix[k][k] : 0;
+    for (int i = 0; i < k; i++) f[i] -= f[k] * o->matrix[k][i];
+  }
+}
+
+static void make_next(dvi__oscillating *o)
+{
+  long double shift[DVI__TRIAL_MAX][DVI__TRIAL_MAX];
+  shift_polynomials(o, shift);
+  for (int l = 0; l < o->functions; l++) {
+    long double f[FUNCTIONS] = {0};
+    for (int k = 0; k <= l; k++) shift_function(o, shift, k, o->matrix[l][k], f);
+    solve_coefficients(o, f);
+    for (int k = 0; k < o->functions; k++) o->next[k][l] = (double)f[k];
+  }
+}
+
+static void next(const void *of, const double *last, double *Y)
+{
+  const dvi__oscillating *o = of;
+  for (int k = 0; k < o->functions; k++) {
+    Y[k] = 0;
+    for (int l = 0; l < o->functions; l++) Y[k] += o->next[k][l] * last[l];
+  }
+}
+
+/* ---- shapes ---- */
+
+static int points(const dvi__oscillating *o)
+{
+  return o->nodes * SAMPLES;
+}
+
+double dvi__oscillating_resolved(const dvi__oscillating *space)
+{
+  return 0.5 *
+         (points(space) -
+          SAMPLES); /* two points a radian, and some for the amplitudes: products of two oscillations are exact but for rounding */
+}
+
+static void set_rule(dvi__oscillating *o)
+{
+  o->on_path = fabsl(o->nu) <= (long double)dvi__oscillating_resolved(o);
+  if (o->on_path)
+    (void)dvi__quadrature_long(DVI_GAUSS, points(o), o->node, o->weight);
+  else
+    dvi__filon_rule(o->nodes, HARMONICS, o->nu, o->node, o->weight);
+}
+
+static void set(void *of, double h)
+{
+  dvi__oscillating *o = of;
+  long double slope[FUNCTIONS];
+  o->nu = o->omega * (long double)h;
+  set_rule(o);
+  evaluate(o, 0, -0.5L * o->nu, o->start, slope);
+  make_functions(o);
+  if (o->on_path) expand(o);
+  make_next(o);
+}
+
+static void point(const void *of, int j, double *tau, double *weight, double *psi, double *dpsi)
+{
+  const dvi__oscillating *o = of;
+  const int samples = o->on_path ? 1 : SAMPLES, sample = j % samples;
+  const long double node = o->node[j / samples], turn = 8 * atanl(1);
+  *tau = (double)node;
+  *weight = (double)o->weight[j];
+  if (o->on_path)
+    resolved_at(o, node, psi, dpsi);
+  else
+    oscillating_at(o, node, o->nu * (node - 0.5L) + turn * (long double)sample / (long double)samples, psi, dpsi);
+}
+
+static void path(const void *of, double tau, double *psi, double *dpsi)
+{
+  const dvi__oscillating *o = of;
+  if (o->on_path)
+    resolved_at(o, (long double)tau, psi, dpsi);
+  else
+    oscillating_at(o, (long double)tau, o->nu * ((long double)tau - 0.5L), psi, dpsi);
+}
+
+dvi__oscillating *dvi__oscillating_create(int degree, int amplitude, double omega)
+{
+  dvi__oscillating *o = DVI_NEW(dvi__oscillating, 1);
+  if (o == NULL) return NULL;
+  o->degree = degree;
+  o->amplitude = amplitude;
+  o->nodes = degree + amplitude + 1;
+  o->functions = degree + 2 * (amplitude + 1);
+  o->omega = (long double)omega;
+  dvi__space_init(&o->legendre, DVI_LEGENDRE, degree);
+  (void)dvi__quadrature_long(DVI_GAUSS, GRID, o->grid, o->grid_weight);
+  return o;
+}
+
+void dvi__oscillating_destroy(dvi__oscillating **space)
+{
+  dvi__release(*space);
+  *space = NULL;
+}
+
+dvi__shapes dvi__oscillating_shapes(dvi__oscillating *space)
+{
+  return (dvi__shapes){.functions = space->functions,
+                       .points = points(space),
+                       .of = space,
+                       .set = set,
+                       .point = point,
+                       .path = path,
+                       .present = present,
+                       .next = next};
+}

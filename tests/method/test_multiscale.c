@@ -1,0 +1,228 @@
+/* labels: invariant */
+#include <math.h>
+
+#include "support/runs.h"
+#include "support/suite.h"
+#include "support/systems.h"
+
+/* stiff-pendulum at k: the path as oscillations of the spring's frequency in both coordinates. */
+static const char *spring(double k)
+{
+  return spec("multiscale:fast=0:1,omega=%.17g", sqrt(k));
+}
+
+/* ---- linear oscillators ---- */
+
+START_TEST(a_linear_oscillator_is_exact_whatever_h_omega)
+{
+  static const double h[] = {1e-9, 1e-5, 1e-3, 0.01, 0.05, 0.19, 0.2, 0.21, 0.6, 1, 3.3, 20};
+  problem *of = made_problem("oscillators", NULL);
+  dvi_integrator *integrator = started(of, spec("multiscale:fast=0,omega=%.17g", sqrt(2501)));
+  advance(integrator, h[_i], 10);
+  double q, p;
+  ck_assert_int_eq(of->exact(of, dvi_integrator_time(integrator), &q, &p), 0);
+  const double phase = sqrt(2501) * dvi_integrator_time(integrator), error = 1e-12 + 1e-15 * phase;
+  ck_assert_double_eq_tol(dvi_integrator_q(integrator)[0], q, error);
+  ck_assert_double_eq_tol(dvi_integrator_p(integrator)[0], p, 50 * error);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&of);
+}
+END_TEST
+
+START_TEST(between_its_steps_too)
+{
+  problem *of = made_problem("oscillators", NULL);
+  dvi_integrator *integrator = started(of, spec("multiscale:fast=0,omega=%.17g", sqrt(2501)));
+  advance(integrator, 0.7, 3);
+  double q, p, path, v;
+  for (int k = 1; k < 8; k++) {
+    ck_assert_int_eq(of->exact(of, 1.4 + 0.7 * k / 8, &q, &p), 0);
+    ck_assert_int_eq(dvi_integrator_interpolate(integrator, 1.4 + 0.7 * k / 8, &path, &v), DVI_OK);
+    ck_assert_double_eq_tol(path, q, 1e-12);
+    ck_assert_double_eq_tol(v, p, 1e-10);
+  }
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&of);
+}
+END_TEST
+
+/* ---- far below the period it is galerkin ---- */
+
+START_TEST(where_the_oscillation_is_a_polynomial_it_is_galerkin_with_as_many_nodes)
+{
+  problem *of = made_problem("kepler", NULL);
+  dvi_integrator *multiscale = started(of, "multiscale:fast=0:1,omega=1e-7"), *galerkin = started(of, "galerkin:degree=3,nodes=25");
+  advance(multiscale, 0.1, 50);
+  advance(galerkin, 0.1, 50);
+  ck_assert_double_le(distance(2, dvi_integrator_q(multiscale), dvi_integrator_q(galerkin)), 1e-12);
+  ck_assert_double_le(distance(2, dvi_integrator_p(multiscale), dvi_integrator_p(galerkin)), 1e-12);
+  dvi_integrator_destroy(&multiscale);
+  dvi_integrator_destroy(&galerkin);
+  problem_destroy(&of);
+}
+END_TEST
+
+/* ---- the pendulum on a stiff spring ---- */
+
+static double error_of_theta(double k, double theta, double h, dvi_counters *counters)
+{
+  problem *of = made_problem("stiff-pendulum", spec("k=%.17g", k));
+  dvi_integrator *integrator = started(of, spring(k));
+  advance(integrator, h, lround(10 / h));
+  const double error = fabs(dvi_integrator_q(integrator)[1] - theta);
+  dvi_integrator_counters(integrator, counters);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&of);
+  return error;
+}
+
+/* galerkin:degree=8 with h omega = 1, which for k = 1e4 is 3e-12 from the runs of h omega = 0.5. */
+static const struct stiffness {
+  double k, theta;
+} stiffnesses[] = {{1e2, 0.029870602158808268}, {1e3, -0.67372586093096465}, {1e4, -0.44519819285370654},
+                   {1e5, -0.41672294313293817}, {1e6, -0.41315619234509354}, {1e7, -0.41295298776305340},
+                   {1e8, -0.41296487524618558}};
+
+START_TEST(steps_of_a_tenth_have_four_digits_at_every_stiffness)
+{
+  dvi_counters counters;
+  ck_assert_double_le(error_of_theta(stiffnesses[_i].k, stiffnesses[_i].theta, 0.1, &counters), 1.2e-4);
+  ck_assert_int_le(counters.gradients, 100 * 25 * 8); /* 25 points, about 6 iterations, whatever k */
+}
+END_TEST
+
+START_TEST(steps_of_several_periods_have_an_error_below_one_in_ten_thousand)
+{
+  const struct stiffness *of = &stiffnesses[2];
+  static const double h[] = {0.1, 0.125, 0.2};
+  for (int k = 0; k < 3; k++) {
+    dvi_counters counters;
+    ck_assert_double_le(error_of_theta(of->k, of->theta, h[k], &counters), 1e-4);
+  }
+}
+END_TEST
+
+START_TEST(no_length_of_steps_resonates)
+{
+  const struct stiffness *of = &stiffnesses[2];
+  for (int steps = 50; steps <= 200; steps += 10) {
+    dvi_counters counters;
+    ck_assert_double_le(error_of_theta(of->k, of->theta, 10.0 / steps, &counters), 3e-4);
+  }
+}
+END_TEST
+
+START_TEST(small_and_vanishing_amplitudes_are_starts_like_any_other)
+{
+  static const double a[] = {0, 1e-300, 1e-12, 1e-4};
+  problem *of = made_problem("stiff-pendulum", NULL);
+  dvi_integrator *integrator = made_integrator(of->system, spring(1e4));
+  for (int k = 0; k < 4; k++) {
+    const double q[] = {a[k], 1}, p[] = {0, 0};
+    double before, after;
+    ck_assert_int_eq(dvi_integrator_start(integrator, 0, q, p), DVI_OK);
+    ck_assert_int_eq(dvi_integrator_invariants(integrator, &before), DVI_OK);
+    advance(integrator, 0.1, 50);
+    ck_assert_int_eq(dvi_integrator_invariants(integrator, &after), DVI_OK);
+    ck_assert_double_eq_tol(after, before, 1e-5);
+  }
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&of);
+}
+END_TEST
+
+START_TEST(the_step_is_symplectic_and_reversible)
+{
+  static const double h[] = {0.01, 0.1, 0.2};
+  problem *of = made_problem("stiff-pendulum", NULL);
+  dvi_integrator *integrator = started(of, spring(1e4));
+  for (int k = 0; k < 3; k++) {
+    double defect;
+    ck_assert_int_eq(dvi_symplecticity(integrator, 0, of->q, of->p, h[k], &defect), DVI_OK);
+    ck_assert_double_le(defect, 1e-10);
+    ck_assert_int_eq(dvi_reversibility(integrator, 0, of->q, of->p, h[k], 10, &defect), DVI_OK);
+    ck_assert_double_le(defect, 1e-10);
+  }
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&of);
+}
+END_TEST
+
+/* ---- what is fast ---- */
+
+static void check_spelled(const char *name, const char *given, const char *spelled)
+{
+  problem *of = made_problem(name, NULL);
+  dvi_integrator *integrator = made_integrator(of->system, given);
+  ck_assert_str_eq(dvi_integrator_method(integrator), spelled);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&of);
+}
+
+START_TEST(fast_potentials_tell_the_frequency)
+{
+  check_spelled("fpu", "multiscale", "multiscale:degree=3,amplitude=1,omega=5e+01");
+  check_spelled("fpu", "multiscale:omega=auto,fast=3:4:5", "multiscale:degree=3,amplitude=1,omega=5e+01,fast=3:4:5");
+}
+END_TEST
+
+static void check_refused(const char *name, const char *method, const char *words)
+{
+  problem *of = made_problem(name, NULL);
+  dvi_integrator *integrator;
+  ck_assert_int_eq(dvi_integrator_create(of->system, method, &integrator), DVI_BAD_OPTION);
+  check_words(words);
+  problem_destroy(&of);
+}
+
+START_TEST(what_is_not_known_is_asked_for)
+{
+  check_refused("stiff-pendulum", "multiscale",
+                "no coordinate is known to be fast: list them, as fast=0:1, or declare a fast potential");
+  check_refused("stiff-pendulum", "multiscale:omega=100", "no coordinate is known to be fast");
+  check_refused("stiff-pendulum", "multiscale:fast=0", "the frequency is not known: give omega");
+  check_refused("stiff-pendulum", "multiscale:fast=0,omega=0", "omega=0; a positive number is possible, or auto");
+  check_refused("stiff-pendulum", "multiscale:fast=0:2,omega=1", "there is no coordinate 2; they are counted from 0 to 1");
+  check_refused("stiff-pendulum", "multiscale:fast=0.5,omega=1", "there is no coordinate 0.5");
+  check_refused("stiff-pendulum", "multiscale:fast=0,omega=1,amplitude=4",
+                "amplitude=4 is above degree=3; 0 to degree are possible");
+}
+END_TEST
+
+static int two_springs(double t, const double *q, double *V, void *user)
+{
+  (void)t, (void)user;
+  *V = 50 * q[0] * q[0] + 200 * q[1] * q[1];
+  return 0;
+}
+
+START_TEST(of_two_fast_frequencies_one_must_be_chosen)
+{
+  const dvi_potential potential = {.name = "springs", .value = two_springs, .fast = 1, .quadratic = 1};
+  dvi_system *system = make_system(
+      &(dvi_system_terms){.dimension = 2, .mass.scalar = 1, .potentials = &potential, .potential_count = 1});
+  dvi_integrator *integrator;
+  ck_assert_int_eq(dvi_integrator_create(system, "multiscale", &integrator), DVI_BAD_OPTION);
+  check_words("the fast potentials have frequencies from 10 to 20; give the one that matters as omega");
+  integrator = made_integrator(system, "multiscale:omega=20");
+  dvi_integrator_destroy(&integrator);
+  dvi_system_destroy(&system);
+}
+END_TEST
+
+int main(void)
+{
+  TCase *tests = tcase_create("multiscale");
+  tcase_add_loop_test(tests, a_linear_oscillator_is_exact_whatever_h_omega, 0, 12);
+  tcase_add_test(tests, between_its_steps_too);
+  tcase_add_test(tests, where_the_oscillation_is_a_polynomial_it_is_galerkin_with_as_many_nodes);
+  tcase_add_loop_test(tests, steps_of_a_tenth_have_four_digits_at_every_stiffness, 0, 7);
+  tcase_add_test(tests, steps_of_several_periods_have_an_error_below_one_in_ten_thousand);
+  tcase_add_test(tests, no_length_of_steps_resonates);
+  tcase_add_test(tests, small_and_vanishing_amplitudes_are_starts_like_any_other);
+  tcase_add_test(tests, the_step_is_symplectic_and_reversible);
+  tcase_add_test(tests, fast_potentials_tell_the_frequency);
+  tcase_add_test(tests, what_is_not_known_is_asked_for);
+  tcase_add_test(tests, of_two_fast_frequencies_one_must_be_chosen);
+  return run_tests("method/multiscale", tests);
+}
