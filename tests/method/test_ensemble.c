@@ -191,6 +191,7 @@ static const char *const methods[] = {
     "lie-rk",
     "imex",
     "imex:solver=newton",
+    "multiscale:fast=0,omega=5",
     "respa:substeps=5",
     "respa:substeps=exact",
     "mollified:filter=projection",

@@ -45,7 +45,8 @@ END_TEST
 
 START_TEST(moments_add_up_to_the_integral_of_the_wave_at_frequencies_that_no_grid_resolves)
 {
-  for (long double nu = 100; nu < 1e9L; nu *= 7.3L) {
+  long double nu = 100;
+  for (int k = 0; k < 8; k++, nu *= 7.3L) {
     long double real[NODES], imaginary[NODES], sum = 0;
     dvi__filon_moments(NODES, nu, real, imaginary);
     for (int j = 0; j < NODES; j++) sum += real[j];

@@ -49,7 +49,8 @@ static double product_error(const dvi__shapes *shapes, int k, int l)
     sum += by * (dpsi[k] * dpsi[l] + psi[k] * psi[l]);
   }
   for (int g = 0; g < 16 * DVI_QUADRATURE_MAX; g++) {
-    shapes->path(shapes->of, (g / DVI_QUADRATURE_MAX + node[g % DVI_QUADRATURE_MAX]) / 16, psi, dpsi);
+    const int piece = g / DVI_QUADRATURE_MAX;
+    shapes->path(shapes->of, (piece + node[g % DVI_QUADRATURE_MAX]) / 16, psi, dpsi);
     sum -= weight[g % DVI_QUADRATURE_MAX] / 16 * (dpsi[k] * dpsi[l] + psi[k] * psi[l]);
   }
   return fabs(sum);

@@ -140,7 +140,7 @@ static dvi_status make_step(const dvi__stepper *self, const dvi__shapes *shapes,
 static dvi_status make(dvi__stepper *self, const char *fast)
 {
   const int *value = self->settings.value;
-  dvi__shaped *shaped;
+  dvi__shaped *shaped = NULL;
   dvi__oscillating *space = dvi__oscillating_create(value[DEGREE], value[AMPLITUDE], self->settings.number[OMEGA]);
   if (space == NULL) return dvi__fail(DVI_NO_MEMORY, "multiscale: no memory");
   const dvi__shapes shapes = dvi__oscillating_shapes(space);

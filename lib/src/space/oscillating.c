@@ -131,7 +131,7 @@ static int present(const void *of, int k)
 
 static void oscillating_at(const dvi__oscillating *o, long double tau, long double phi, double *psi, double *dpsi)
 {
-  long double value[FUNCTIONS], slope[FUNCTIONS];
+  long double value[FUNCTIONS] = {0}, slope[FUNCTIONS] = {0};
   evaluate(o, tau, phi, value, slope);
   for (int k = 0; k < o->functions; k++) {
     long double sum[2] = {0, 0};
