@@ -69,10 +69,8 @@ static int new_array(dvi__emitter *out, const void *address)
   return out->array_count++;
 }
 
-int dvi__emit_ints_of(dvi__emitter *out, const void *key, int count, const int *value)
+static int emit_list(dvi__emitter *out, const void *key, int count, const int *value)
 {
-  const int known = key != NULL ? find_array(out, key) : -1;
-  if (known >= 0) return known;
   const int number = new_array(out, key);
   dvi__emit(out, "static const int dvi_list_%d[] = {", number);
   for (int i = 0; i < count; i++) dvi__emit(out, "%s%d", i == 0 ? "" : i % A_LINE == 0 ? ",\n  " : ", ", value[i]);
@@ -80,9 +78,16 @@ int dvi__emit_ints_of(dvi__emitter *out, const void *key, int count, const int *
   return number;
 }
 
+int dvi__emit_ints_of(dvi__emitter *out, const void *key, int count, const int *value)
+{
+  const int known = key != NULL ? find_array(out, key) : -1;
+  return known >= 0 ? known : emit_list(out, key, count, value);
+}
+
 int dvi__emit_ints(dvi__emitter *out, int count, const int *value)
 {
-  return dvi__emit_ints_of(out, value, count, value);
+  const int known = find_array(out, value);
+  return known >= 0 ? known : emit_list(out, value, count, value);
 }
 
 int dvi__emit_lists(dvi__emitter *out, int count, const int *list)

@@ -139,7 +139,7 @@ static bool is_label(const dvi_scene *scene, const char *prefix, const char *tex
     name[end] = '\0';
     const dvi__name *known = dvi__names_find(&scene->names, name);
     const dvi__coordinate *x = known != NULL && known->sort == DVI__COORDINATE ? &scene->coordinate[known->number] : but;
-    for (int of = OF_Q; x != but && of <= OF_P; of++)
+    for (which of = OF_Q; x != but && of <= OF_P; of++)
       if ((of != OF_V || dvi__has_factors(scene)) && strcmp(prefix_of(x, of), prefix) == 0 && has_ending(x, of, text + end))
         return true;
   }
