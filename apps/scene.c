@@ -201,4 +201,6 @@ void scene_tell(const problem *scene)
   tell_operations("Hessian", facts.hessian_operations, facts.hessian_points);
   if (facts.hessian_operations > 0) (void)printf(", %ld entries", facts.hessian_entries);
   (void)printf("\n");
+  char kept[512];
+  if (dvi_scene_invariance(scene->scene, kept, sizeof kept) > 0) (void)printf("invariant under %s\n", kept);
 }

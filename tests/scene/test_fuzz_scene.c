@@ -144,6 +144,9 @@ static unsigned try_scene(const dvi_scene *scene)
   const int n = dvi_system_nq(dvi_scene_system(scene)), nv = dvi_system_nv(dvi_scene_system(scene));
   fuzz_requires(dvi_scene_coordinate(scene, n - 1) != NULL && dvi_scene_momentum(scene, nv - 1) != NULL);
   if (n > COORDINATES_MAX) return (unsigned)n % 16;
+  char kept[32];
+  (void)dvi_scene_invariance(scene, kept, sizeof kept);
+  fuzz_requires(strlen(kept) < sizeof kept);
   const int code = call_all(scene);
   const dvi_status status = dvi_scene_emit_c(scene, "s", count_bytes, &written);
   fuzz_requires(status == DVI_OK || status == DVI_UNSUPPORTED || status == DVI_BAD_SIZE);

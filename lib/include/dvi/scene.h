@@ -120,6 +120,14 @@ const dvi_scene_range *dvi_scene_range_at(const dvi_scene *scene, int i);
 /** Counts of evaluations so far, and what was derived; zeros for NULL. */
 void dvi_scene_facts_of(const dvi_scene *scene, dvi_scene_facts *facts);
 
+/** Translations and rotations under which the Lagrangian stays as it is (or the Hamiltonian and its constraints), of each coordinate and of all that have
+ *  one shape, proved on the expressions; declared as symmetries, their momenta are watched. What is not found may still be one: of functions
+ *  nothing is known but that equal arguments give equal values, and of large scenes not all is tried. Allocates.
+ *
+ *  @param[out] text  [size] "translation of x, rotation of q about z"; cut off if it is longer
+ *  @return how many; -1 for scenes with rotations, motions, directions or angles, for more than 2e8 parts of all elements, without memory, and for NULL */
+int dvi_scene_invariance(const dvi_scene *scene, char *text, size_t size);
+
 /** The part of an expression that was not finite when a callback of a scene's system last failed on this thread, with the time; or the limit that its derivatives
  *  passed; "" if none failed since a scene was last read. */
 const char *dvi_scene_blame(void);

@@ -46,6 +46,7 @@ struct dvi_scene {
   dvi_hamiltonian hamiltonian;
   dvi_constraint constraint;
   dvi__term *functions;
+  const dvi__term *kinetic; /* what a constant mass was read from; NULL */
   dvi_system *system;
   double *q, *v, *p;
   double *zeros; /* [2 n] */

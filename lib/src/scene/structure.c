@@ -209,6 +209,7 @@ static bool make_separable(dvi_scene *scene, dvi__kernels *L, const char *rest)
   dvi__kernels_free(&moving);
   if (T != NULL) T->role = DVI__STANDS_BESIDE;
   if (good && !at_rest) return make_general(scene, L);
+  scene->kinetic = T;
   good = good && mass_values(scene, T, &pattern, &values) &&
          (dvi__has_factors(scene) ? dvi__make_factors(scene, &pattern, values) : set_mass(scene, &pattern, values)) &&
          dvi__kernels_at_rest(scene, L, DVI__VELOCITIES, 1, &V) && add_potential(scene, rest, 0, &V);
