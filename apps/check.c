@@ -108,7 +108,8 @@ static void tell_unused(const problem *scene)
 }
 
 static const char *const details[] = {
-    "Exit codes: 0 all is well; 2 the scene makes no sense, and where; 3 a derivative is wrong, and which.\n",
+    "Exit codes: 0 all is well; 1 a file cannot be read, or the step fails; 2 the scene makes no sense, and where; 3 a derivative "
+    "is wrong, and which.\n",
     "Examples:\n"
     "  dvi check cart.yaml\n"
     "  dvi check cart.yaml --set l=2 --method verlet\n",

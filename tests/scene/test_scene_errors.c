@@ -112,6 +112,9 @@ START_TEST(columns_have_one_name_each)
   }
   refused("coordinates: {x_2_21: scalar, x_4_1: scalar, 'x[3]': vector(20)}\nlagrangian: 1\n" RUN, ":2:", "no velocity in it");
   refused("invariants: {'a,b': x}\n" X "lagrangian: x'^2\n" RUN, ":1:15:", "'a,b' is no name");
+  refused(X "kinetic: x'^2\npotentials: {a b: x}\n" RUN, ":3:14:", "'a b' is no name");
+  refused(X "kinetic: x'^2\npotentials: {fast: {'': x}}\n" RUN, ":3:22:", "'' is no name");
+  refused(X "lagrangian: x'^2\nevents: {a b: {zero: x}}\n" RUN, ":3:10:", "'a b' is no name");
   refused("symmetries: {'': {x: 1}}\n" X "lagrangian: x'^2\n" RUN, ":1:15:", "'' is no name");
   refused("symmetries: {a: {x: 1}}\ninvariants: {a: x}\n" X "lagrangian: x'^2\n" RUN, ":2:14:", "a symmetry 'a' already");
 }
@@ -211,6 +214,7 @@ START_TEST(names_are_declared_once_and_before_their_use)
   refused(X "definitions: {a: b, b: x}\nlagrangian: x'^2\n" RUN, ":2:18:", "it is not known yet");
   refused("parameters: {x: 1}\n" X "lagrangian: x'^2\n" RUN, ":2:15:", "there is a parameter 'x' already");
   refused("parameters: {sin: 1}\n" X "lagrangian: x'^2\n" RUN, ":1:14:", "'sin' is a word of the language");
+  refused(X "definitions: {d: dot(x, x)/2}\nlagrangian: x'^2\n" RUN, ":2:21:", "a text with commas needs quotes");
   refused("parameters: {2a: 1}\n" X "lagrangian: x'^2\n" RUN, ":1:14:", "'2a' is no name");
 }
 END_TEST
@@ -218,6 +222,7 @@ END_TEST
 START_TEST(sections_that_are_missing_or_do_not_go_together_are_told)
 {
   refused(X "lagrangian: x'^2\ninitial: {x: 1}\nuntil: 1\n", ":", "the section 'step' is missing, as in 'step: 0.01'");
+  refused("step: 1\ncoordinates: {x: \n\n", ":2:17:", "this is no YAML");
   refused(X RUN, ":", "what moves it is missing");
   refused(X "lagrangian: x'^2\nkinetic: x'^2\n" RUN, ":3:10:", "there must be one of these");
   refused(X "lagrangian: x'^2\nhamiltonian: 1\n" RUN, ":3:14:", "beside lagrangian there is no hamiltonian");
@@ -227,10 +232,27 @@ START_TEST(sections_that_are_missing_or_do_not_go_together_are_told)
   refused(X "hamiltonian: x\nconstraints: {a: x}\n" RUN, ":3:14:", "an even number is needed");
   refused(X "lagrangian: x'^2\nforces: {x: 1}\n" RUN, ":3:9:", "no method here takes forces");
   refused("coordinates: {x: skalar}\nlagrangian: 1\n" RUN, ":1:18:", "did you mean scalar?");
+  refused("coordinates: {x: vector}\nlagrangian: 1\n" RUN, ":1:18:", "a vector has its size, as in vector(3)");
 }
 END_TEST
 
 #define MOVES "lagrangian: x'^2\nstep: 1\nuntil: 1\n" X
+
+START_TEST(what_no_system_can_be_made_of_has_its_place)
+{
+  const char *const two = "coordinates: {x: scalar, y: scalar}\n", *const three =
+                                                                       "coordinates: {x: scalar, y: scalar, z: scalar}\n";
+  char text[TEXT_SIZE];
+  (void)snprintf(text, sizeof text, "%slagrangian: (x' + y')^2/2\ninitial: {x: 1, y: 1}\nstep: 1\nuntil: 1\n", two);
+  refused_as(text, DVI_SINGULAR, ":2:13:", "singular");
+  (void)snprintf(text, sizeof text, "%sone_form: {x: y, z: x}\nhamiltonian: x\ninitial: {x: 1, y: 1, z: 1}\nstep: 1\nuntil: 1\n",
+                 three);
+  refused_as(text, DVI_BAD_SIZE, ":2:11:", "even");
+  refused_as(X "lagrangian: x'^2*log(x)\ninitial: {x: 0}\nstep: 1\nuntil: 1\n", DVI_CALLBACK_RETRY, ":3:10:", "at the start");
+  refused_as("coordinates: {R: rotation}\nlagrangian: R[1,1]'^2\nstep: 1\nuntil: 1\ninitial: {R: \"turn([1, 0, 0], 1)\"}\n",
+             DVI_SINGULAR, ":2:13:", "the Lagrangian is degenerate");
+}
+END_TEST
 
 START_TEST(starts_are_complete_and_fit)
 {
@@ -267,6 +289,12 @@ END_TEST
 
 START_TEST(limits_are_told)
 {
+  static char chain[8192] = "coordinates: {x: scalar}\nlagrangian: x'^2\n" RUN "definitions:\n  a0: x\n";
+  for (int k = 1; k < 300; k++) {
+    const size_t used = strlen(chain);
+    (void)snprintf(chain + used, sizeof chain - used, "  a%d: a%d + 1\n", k, k - 1);
+  }
+  refused(chain, ":263:9:", "definitions of definitions, more than 512 levels deep");
   refused_as("coordinates:\n  x[100000001]: scalar\n" RUN "lagrangian: 1\n", DVI_BAD_SIZE,
              ":2:3:", "more than 100000000 coordinates");
   refused_as("parameters: {N: 100000}\n" X "lagrangian: x'^2 + sum(i<j=1..N, i*j*x)\n" RUN, DVI_BAD_SIZE,
@@ -343,6 +371,7 @@ int main(void)
   tcase_add_test(tests, velocities_and_momenta_stand_where_they_make_sense);
   tcase_add_test(tests, names_are_declared_once_and_before_their_use);
   tcase_add_test(tests, sections_that_are_missing_or_do_not_go_together_are_told);
+  tcase_add_test(tests, what_no_system_can_be_made_of_has_its_place);
   tcase_add_test(tests, starts_are_complete_and_fit);
   tcase_add_test(tests, settings_replace_numbers_and_nothing_else);
   tcase_add_test(tests, limits_are_told);

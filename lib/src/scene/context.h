@@ -44,8 +44,9 @@ typedef struct dvi__context {
   int *of_number[DVI__BLOCKS]; /* input + 1 of a variable that is the same for all elements */
   dvi__value *definition;      /* [definition_count] values, rank -1: not elaborated yet */
   int depth;
-  int sample; /* 1: sums take their first and last index only, to learn shapes */
-  int uneven; /* the expression is not the same for all elements: elaborate them one by one */
+  dvi__span whole; /* of the expression at depth 1 */
+  int sample;      /* 1: sums take their first and last index only, to learn shapes */
+  int uneven;      /* the expression is not the same for all elements: elaborate them one by one */
 } dvi__context;
 
 /* One element and no indices; dvi__context_free. */

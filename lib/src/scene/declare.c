@@ -162,6 +162,7 @@ static bool read_kind(dvi_scene *scene, const dvi__tree *tree, declared *as)
     *as = meaning[k];
     return k != VECTOR || read_vector(scene, e, as);
   }
+  if (strcmp(name, known[VECTOR]) == 0) return dvi__scene_refuse(scene, tree->span, "a vector has its size, as in vector(3)");
   return dvi__scene_refuse(scene, tree->span, "a kind is scalar, vector(d), rotation, motion, direction or angle%s",
                            dvi__nearest(name, KINDS, known, hint, sizeof hint));
 }

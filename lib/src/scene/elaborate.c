@@ -204,8 +204,9 @@ dvi__value dvi__elaborate(dvi__context *c, const dvi__expression *e)
   if (++c->scene->work > work_max)
     return dvi__refused(dvi__complain(c->scene->complaint, DVI_BAD_SIZE, e->span,
                                       "more than %ld parts of expressions, with all sums written out", work_max));
+  if (c->depth == 0) c->whole = e->span;
   if (++c->depth > DEPTH_MAX)
-    return dvi__refused(dvi__refuse(c, e->span, "definitions of definitions, more than %d levels deep", DEPTH_MAX));
+    return dvi__refused(dvi__refuse(c, c->whole, "definitions of definitions, more than %d levels deep", DEPTH_MAX));
   c->graph->here = e->span;
   const dvi__value value = element(c, e);
   c->depth--;

@@ -156,8 +156,7 @@ static bool is_reserved(const dvi_scene *scene, const char *text)
 bool dvi__column_is_new(dvi_scene *scene, const char *text, dvi__span span, const dvi__coordinate *of)
 {
   static const char *const prefix[] = {"", "p_", "v_", "omega_", "rate_"};
-  if (!dvi__is_identifier(text))
-    return dvi__scene_refuse(scene, span, "'%s' is no name: letters, digits and _, a letter first", text);
+  if (!dvi__want_name(scene, text, span)) return false;
   char *room = dvi__heap_take(strlen(text) + 1, 1);
   if (room == NULL) return dvi__scene_no_memory(scene);
   bool there = is_reserved(scene, text);

@@ -47,7 +47,7 @@ static bool make_system(dvi_scene *scene)
   if (scene->terms.invariant_count == 0) scene->terms.invariants = NULL;
   const dvi_status status = dvi_system_create(&scene->terms, &scene->system);
   if (status == DVI_BAD_ARGUMENT && dvi__has_factors(scene) && !dvi__inertias_are_of_bodies(scene)) return false;
-  return status == DVI_OK || dvi__complain(scene->complaint, status, DVI__NOWHERE, "%s", dvi_last_error());
+  return status == DVI_OK || dvi__complain(scene->complaint, status, dvi__what_moves(scene)->span, "%s", dvi_last_error());
 }
 
 static bool show_parameters(dvi_scene *scene)

@@ -37,6 +37,11 @@ bool dvi__want_text(dvi_scene *scene, const dvi__tree *tree, const char *what)
   return tree->kind == DVI__SCALAR || dvi__scene_refuse(scene, tree->span, "%s is one line", what);
 }
 
+bool dvi__want_name(dvi_scene *scene, const char *text, dvi__span span)
+{
+  return dvi__is_identifier(text) || dvi__scene_refuse(scene, span, "'%s' is no name: letters, digits and _, a letter first", text);
+}
+
 bool dvi__want_keys(dvi_scene *scene, const dvi__tree *mapping, const char *what, int count, const char *const *known)
 {
   char hint[96];
@@ -332,16 +337,24 @@ static bool all_known(dvi_scene *scene)
   return true;
 }
 
+static const char *const ways_to_move[] = {"lagrangian", "kinetic", "one_form", "constraints"};
+
+const dvi__tree *dvi__what_moves(const dvi_scene *scene)
+{
+  const dvi__tree *found = NULL;
+  for (int k = 0; k < 4 && found == NULL; k++) found = dvi__tree_find(scene->tree, ways_to_move[k]);
+  return found;
+}
+
 /* A scene says what it is in one of four ways. */
 static bool one_form_of_system(dvi_scene *scene)
 {
   static const char *const ways =
       "one of these: lagrangian; kinetic and potentials; one_form and hamiltonian; hamiltonian and constraints";
-  const char *const name[] = {"lagrangian", "kinetic", "one_form", "constraints"};
   const dvi__tree *found = NULL;
   int count = 0, which = 0;
   for (int k = 0; k < 4; k++) {
-    const dvi__tree *tree = dvi__tree_find(scene->tree, name[k]);
+    const dvi__tree *tree = dvi__tree_find(scene->tree, ways_to_move[k]);
     if (tree == NULL) continue;
     found = tree;
     which = k;
@@ -355,9 +368,9 @@ static bool one_form_of_system(dvi_scene *scene)
   if (count > 1) return dvi__scene_refuse(scene, found->span, "there must be %s", ways);
   if ((H != NULL) != (which >= 2))
     return dvi__scene_refuse(scene, (H != NULL ? H : found)->span,
-                             H != NULL ? "beside %s there is no hamiltonian" : "%s needs a hamiltonian", name[which]);
+                             H != NULL ? "beside %s there is no hamiltonian" : "%s needs a hamiltonian", ways_to_move[which]);
   return V == NULL || which == 1 ||
-         dvi__scene_refuse(scene, V->span, "potentials stand beside kinetic, not beside %s", name[which]);
+         dvi__scene_refuse(scene, V->span, "potentials stand beside kinetic, not beside %s", ways_to_move[which]);
 }
 
 bool dvi__scene_read_tree(dvi_scene *scene, dvi__settings *settings)

@@ -36,6 +36,12 @@ bool dvi__scene_refuse(dvi_scene *scene, dvi__span span, const char *format, ...
 bool dvi__want_mapping(dvi_scene *scene, const dvi__tree *tree, const char *what);
 bool dvi__want_text(dvi_scene *scene, const dvi__tree *tree, const char *what);
 
+/* The section that says what moves: lagrangian, kinetic, one_form or constraints; NULL if none does. */
+const dvi__tree *dvi__what_moves(const dvi_scene *scene);
+
+/* Refuse what is no identifier: names of columns, potentials and events. */
+bool dvi__want_name(dvi_scene *scene, const char *text, dvi__span span);
+
 /* Refuse keys of a mapping that are none of known[count], and name the nearest one. */
 bool dvi__want_keys(dvi_scene *scene, const dvi__tree *mapping, const char *what, int count, const char *const *known);
 

@@ -203,6 +203,16 @@ bool dvi__read_initial(dvi_scene *scene, const dvi__tree *section)
   return good;
 }
 
+/* Whether each turn has a mass: (R[1,1]')^2 has velocities of all numbers, but not of all turns. */
+static dvi_status try_mass(dvi_scene *scene)
+{
+  double *v = dvi__heap_take((size_t)scene->nv, sizeof *v);
+  if (v == NULL) return DVI_NO_MEMORY;
+  const dvi_status status = dvi_system_velocity(scene->system, 0.0, scene->q, scene->p, v);
+  dvi__heap_free(v);
+  return status == DVI_SINGULAR ? status : DVI_OK;
+}
+
 bool dvi__scene_complete_start(dvi_scene *scene)
 {
   dvi_status status = DVI_OK;
@@ -210,9 +220,12 @@ bool dvi__scene_complete_start(dvi_scene *scene)
   if (scene->terms.one_form != NULL || scene->momenta_given)
     status = dvi_system_velocity(scene->system, 0.0, scene->q, scene->p, scene->v);
   if (status == DVI_OK && !scene->momenta_given) status = dvi_system_momentum(scene->system, 0.0, scene->q, scene->v, scene->p);
+  if (status == DVI_OK && !scene->momenta_given && dvi__has_factors(scene)) status = try_mass(scene);
   if (status == DVI_OK) return true;
+  if (status == DVI_NO_MEMORY) return dvi__scene_no_memory(scene);
   if (status == DVI_CALLBACK_FAILED) status = dvi__blame_status();
   const char *blame = dvi_scene_blame();
-  return dvi__complain(scene->complaint, status, DVI__NOWHERE, "at the start: %s%s%s", dvi_last_error(), *blame != '\0' ? "; " : "",
+  const dvi__tree *cause = status == DVI_SINGULAR ? dvi__what_moves(scene) : dvi__tree_find(scene->tree, "initial");
+  return dvi__complain(scene->complaint, status, cause->span, "at the start: %s%s%s", dvi_last_error(), *blame != '\0' ? "; " : "",
                        blame);
 }

@@ -62,11 +62,14 @@ static bool read_potential(dvi_scene *scene, const dvi__tree *tree, const char *
 static bool read_speed(dvi_scene *scene, const dvi__tree *key, const dvi__tree *tree)
 {
   const int fast = strcmp(key->text, "fast") == 0;
+  if (!dvi__want_name(scene, key->text, key->span)) return false;
   if (tree->kind != DVI__MAPPING) return read_potential(scene, tree, key->text, fast);
   if (!fast && strcmp(key->text, "slow") != 0)
     return dvi__scene_refuse(scene, key->span, "a potential is an expression; only slow and fast hold some by name");
   for (int i = 0; i < tree->count; i++)
-    if (!read_potential(scene, tree->child[i], tree->key[i]->text, fast)) return false;
+    if (!dvi__want_name(scene, tree->key[i]->text, tree->key[i]->span) ||
+        !read_potential(scene, tree->child[i], tree->key[i]->text, fast))
+      return false;
   return true;
 }
 

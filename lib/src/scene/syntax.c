@@ -12,7 +12,9 @@
  * deep. */
 #define _POSIX_C_SOURCE 200809L /* newlocale */
 #include "scene/syntax.h"
+
 #include "scene/lexer.h"
+#include "scene/utf8.h"
 
 #include <locale.h>
 #include <math.h>
@@ -91,12 +93,21 @@ static bool begins_operand(const parser *p)
   return p->token.kind == DVI__TOKEN_NUMBER || p->token.kind == DVI__TOKEN_NAME || p->token.kind == '(';
 }
 
+/* Whether YAML ended the text at a comma, as it does in {..} and [..]. */
+static bool ends_at_comma(const parser *p)
+{
+  size_t at = p->end;
+  while (at < p->source->size && dvi__is_blank(p->source->text[at])) at++;
+  return at < p->source->size && p->source->text[at] == ',';
+}
+
 /* One token of this kind; `open` is the bracket that it closes, or nowhere. */
 static bool expect(parser *p, int kind, const char *spelling, dvi__span open)
 {
   if (p->token.kind == kind) return next(p);
   if (p->token.kind == DVI__TOKEN_END && open.size == 1)
-    return dvi__complain(p->complaint, DVI_BAD_FILE, open, "this '%c' is never closed", p->source->text[open.first]);
+    return dvi__complain(p->complaint, DVI_BAD_FILE, open, "this '%c' is never closed%s", p->source->text[open.first],
+                         ends_at_comma(p) ? "; within {..} or [..] a text with commas needs quotes" : "");
   return dvi__complain(p->complaint, DVI_BAD_FILE, p->token.span, "found " FOUND_FORMAT " where %s is expected", FOUND(p),
                        spelling);
 }

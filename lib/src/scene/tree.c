@@ -231,6 +231,14 @@ static bool take_event(reader *r, const yaml_event_t *event)
   }
 }
 
+/* Behind the last word: what a file lacks at its end is shown in its last line. */
+static size_t end_of_text(const dvi__source *source)
+{
+  size_t end = source->size;
+  while (end > 0 && dvi__is_blank(source->text[end - 1])) end--;
+  return end;
+}
+
 /* libyaml's sentence, with what helps against the usual slips. */
 static bool refuse_syntax(reader *r, const yaml_parser_t *parser)
 {
@@ -252,6 +260,7 @@ static bool refuse_syntax(reader *r, const yaml_parser_t *parser)
   dvi__span where = {place(r, &parser->problem_mark), 1};
   const bool begins_before = where.first == r->source->size || strstr(problem, "expected ':'") != NULL;
   if (begins_before && parser->context != NULL) where.first = place(r, &parser->context_mark); /* where it begins says more */
+  if (where.first == r->source->size) where.first = end_of_text(r->source);
   return dvi__complain(r->complaint, DVI_BAD_FILE, where, "this is no YAML: %s%s%s%s", problem, context[0] != '\0' ? " " : "",
                        context, help);
 }
@@ -292,9 +301,7 @@ bool dvi__tree_read(const dvi__source *source, dvi__arena *arena, dvi__complaint
 {
   *root = NULL;
   reader r = {.source = source, .arena = arena, .complaint = complaint};
-  if (source->size > SIZE_MAX_BYTES)
-    return dvi__complain(complaint, DVI_BAD_SIZE, DVI__NOWHERE, "a file of %zu bytes; at most %d (1 MiB) are possible",
-                         source->size, SIZE_MAX_BYTES);
+  if (source->size > SIZE_MAX_BYTES) return dvi__complain(complaint, DVI_BAD_SIZE, DVI__NOWHERE, "the file has more than 1 MiB");
   if (!check_characters(&r)) return false;
   yaml_parser_t parser;
   if (!yaml_parser_initialize(&parser)) return no_memory(&r);

@@ -95,6 +95,8 @@ bool dvi__read_events(dvi_scene *scene, const dvi__tree *section)
   if (scene->event == NULL) return dvi__scene_no_memory(scene);
   scene->event_count = section->count;
   for (int i = 0; i < section->count; i++)
-    if (!read_event(scene, section->key[i]->text, section->child[i], &scene->event[i])) return false;
+    if (!dvi__want_name(scene, section->key[i]->text, section->key[i]->span) ||
+        !read_event(scene, section->key[i]->text, section->child[i], &scene->event[i]))
+      return false;
   return true;
 }
