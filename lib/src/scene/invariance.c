@@ -226,15 +226,17 @@ static void say(search *s, const char *text)
 }
 
 /* "translation of q and r along x" */
-static void say_found(search *s, const char *what, int count, const dvi__coordinate *const *group, const char *how)
+static void say_found(search *s, const char *what, int count, const dvi__coordinate *const *group, const char *way, int axis)
 {
+  const char end[] = {' ', "xyz"[axis], '\0'};
   say(s, s->found++ > 0 ? ", " : "");
   say(s, what);
   for (int k = 0; k < count; k++) {
     say(s, k == 0 ? " of " : k + 1 < count ? ", " : " and ");
     say(s, group[k]->name);
   }
-  say(s, how);
+  say(s, way);
+  say(s, way[0] != '\0' ? end : "");
 }
 
 /* Component `from` of all members turns towards `to`; from = to: moves on. */
@@ -247,24 +249,26 @@ static void move(search *s, const dvi__coordinate *x, int from, int to)
   }
 }
 
-static bool try_group(search *s, const char *what, int count, const dvi__coordinate *const *group, int from, int to,
-                      const char *how)
+static bool try_group(search *s, const char *what, int count, const dvi__coordinate *const *group, int from, int to)
 {
   memset(s->to, 0, (size_t)s->scene->n * sizeof *s->to);
   for (int k = 0; k < count; k++) move(s, group[k], from, to);
   if (!is_kept(s)) return false;
-  say_found(s, what, count, group, how);
+  const int rows = group[0]->shape.rows;
+  if (from == to)
+    say_found(s, what, count, group, rows > 1 ? " along" : "", from);
+  else
+    say_found(s, what, count, group, rows > 2 ? " about" : "", 3 - from - to);
   return true;
 }
 
 /* All that coordinates of one shape can do together. */
 static bool try_shape(search *s, int count, const dvi__coordinate *const *group)
 {
-  static const char *const along[] = {" along x", " along y", " along z"}, *const about[] = {" about x", " about y", " about z"};
   const int rows = group[0]->shape.rows, before = s->found;
-  for (int k = 0; k < rows && rows <= 3; k++) (void)try_group(s, "translation", count, group, k, k, rows > 1 ? along[k] : "");
-  if (rows == 2) (void)try_group(s, "rotation", count, group, 0, 1, "");
-  for (int k = 0; k < 3 && rows == 3; k++) (void)try_group(s, "rotation", count, group, (k + 1) % 3, (k + 2) % 3, about[k]);
+  for (int k = 0; k < rows && rows <= 3; k++) (void)try_group(s, "translation", count, group, k, k);
+  if (rows == 2) (void)try_group(s, "rotation", count, group, 0, 1);
+  for (int k = 0; k < 3 && rows == 3; k++) (void)try_group(s, "rotation", count, group, (k + 1) % 3, (k + 2) % 3);
   return s->found > before;
 }
 
@@ -277,7 +281,7 @@ static void try_planes(search *s, int count, const dvi__coordinate *const *group
       memset(s->to, 0, (size_t)s->scene->n * sizeof *s->to);
       s->to[pair[0]->q.first] = pair[1]->q.first + 1;
       s->to[pair[1]->q.first] = -(pair[0]->q.first + 1);
-      if (is_kept(s)) say_found(s, "rotation", 2, pair, "");
+      if (is_kept(s)) say_found(s, "rotation", 2, pair, "", 0);
     }
 }
 
