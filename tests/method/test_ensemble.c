@@ -1,4 +1,4 @@
-/* labels: unit */
+/* labels: invariant */
 /* Every member of an ensemble has the bits of an integrator of its own, at every level of instructions, for every number of threads and every
  * grouping; and what it counts is what they count together. */
 #include <math.h>
