@@ -125,7 +125,7 @@ void dvi_scene_facts_of(const dvi_scene *scene, dvi_scene_facts *facts);
  *  nothing is known but that equal arguments give equal values, and of large scenes not all is tried. Allocates.
  *
  *  @param[out] text  [size] "translation of x, rotation of q about z"; cut off if it is longer
- *  @return how many; -1 for scenes with rotations, motions, directions or angles, for more than 2e8 parts of all elements, without memory, and for NULL */
+ *  @return how many; -1 for scenes with rotations, motions, directions or angles, for more than 2e6 parts of all elements, without memory, and for NULL */
 int dvi_scene_invariance(const dvi_scene *scene, char *text, size_t size);
 
 /** The part of an expression that was not finite when a callback of a scene's system last failed on this thread, with the time; or the limit that its derivatives

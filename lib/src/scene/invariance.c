@@ -13,7 +13,8 @@
 #include "scene/heap.h"
 #include "scene/model.h"
 
-enum { TRIALS = 3, WORK_MAX = 200000000, GROUP_MAX = 8 }; /* WORK_MAX: nodes evaluated in all, a second or two */
+/* Nodes of a trial over all elements; and in all trials, which take a second. */
+enum { TRIALS = 3, WORK_MAX = 2000000, ALL_WORK_MAX = 40000000, GROUP_MAX = 8 };
 
 /* ---- numbers modulo a prime, with slopes ---- */
 
@@ -212,7 +213,7 @@ static bool is_kept(search *s)
 {
   for (uint64_t trial = 0; trial < TRIALS; trial++) {
     s->spent += s->work;
-    if (s->spent > WORK_MAX || slope_of_scene(s->scene, &(motion){s->scene->n, s->to, trial}, s->at) != 0) return false;
+    if (s->spent > ALL_WORK_MAX || slope_of_scene(s->scene, &(motion){s->scene->n, s->to, trial}, s->at) != 0) return false;
   }
   return true;
 }
