@@ -397,14 +397,13 @@ static const char *const details[] = {
     "constraint |p - alpha(q)|, and dg and dg-phase add jump, the largest one; 17 digits, so that every number is read\n"
     "back as it was. The first row is the start (with --resume: the checkpoint), the last one is the end, wherever\n"
     "--every puts the rows between.\n",
-    "What no column shows is not evaluated: --columns x,y wants no energy. Where it is shown, and changes by more than hundred\n"
+    "What no column shows is not evaluated: --columns x,y wants no energy. Where it is shown, and changes by more than a hundred\n"
     "times what it was at the start without a drive, that is told at the end: the step is too large.\n",
     "Events of a scene are looked for in every step. One with 'stop: yes' ends the run at its time: the last row is the state\n"
     "there, and the exit code 0. The columns of --events are event, its name, t, the coordinates and their velocities (v_), on\n"
     "the step's path; how often each was found is told at the end.\n",
-    "An alarm changes nothing in the run: standard error says at the end when the invariant's size first passed the bound, and "
-    "how\n"
-    "large it was at most; the exit code is 0.\n",
+    "An alarm changes nothing in the run: standard error says at the end when the invariant's size first passed the bound,\n"
+    "and how large it was at most; the exit code is 0.\n",
     "FILEs are written whole or not at all: a run that fails leaves what was there. Rows on standard output come\n"
     "as they are computed. Ctrl-C, SIGTERM and SIGHUP end a run after the current step, with the output complete, the\n"
     "checkpoint written, and exit code 130, 143 or 129; before the first step they end it at once, and nothing is\n"

@@ -25,8 +25,7 @@ static const char *filter_name(int index)
 static const dvi__key keys[] = {
     {"filter", filter_name, 0, 0, GARCIA_ARCHILLA,
      "the filters of the slow forces: exact, deuflhard or garcia-archilla (variational); gautschi, hochbruck-lubich, "
-     "grimm-hochbruck or "
-     "hairer-lubich (not symplectic); left out: garcia-archilla"},
+     "grimm-hochbruck or hairer-lubich (not symplectic); left out: garcia-archilla"},
     {0},
 };
 

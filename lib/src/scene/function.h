@@ -24,6 +24,12 @@ typedef struct dvi__kernel_input {
   const double *data; /* [elements] */
 } dvi__kernel_input;
 
+/* The variable that an input is for element e. */
+static inline int dvi__input_number(const dvi__kernel_input *input, int e)
+{
+  return input->offset + (input->number != NULL ? input->number[e] : input->base + input->stride * e);
+}
+
 typedef struct dvi__kernel {
   dvi__graph *graph; /* its inputs 0 .. input_count-1 are `input` */
   dvi__node root;

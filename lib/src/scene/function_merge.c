@@ -23,11 +23,6 @@ static int is_short(const dvi__kernel *kernel)
   return kernel->elements >= 1 && kernel->elements <= FEW && kernel->root < NODES_MAX / kernel->elements;
 }
 
-static int place_of(const dvi__kernel_input *input, int e)
-{
-  return input->offset + (input->number != NULL ? input->number[e] : input->base + input->stride * e);
-}
-
 /* The input that reads this variable, found or made. */
 static dvi__node variable(merger *m, dvi__block block, int place)
 {
@@ -51,7 +46,7 @@ static dvi__node copy(merger *m, const dvi__kernel *kernel, int e, const dvi__gr
   if (node->op != DVI__OP_INPUT)
     return dvi__apply(m->graph, node->op, copied[node->a], dvi__operands(node->op) > 1 ? copied[node->b] : 0);
   const dvi__kernel_input *input = &kernel->input[node->a];
-  return input->is_data ? dvi__constant(m->graph, input->data[e]) : variable(m, input->block, place_of(input, e));
+  return input->is_data ? dvi__constant(m->graph, input->data[e]) : variable(m, input->block, dvi__input_number(input, e));
 }
 
 /* Add element e of a short kernel. */

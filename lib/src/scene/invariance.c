@@ -122,8 +122,7 @@ static dual variable(const motion *m, unsigned turning, dvi__block block, int nu
 static dual input_of(const motion *m, unsigned turning, const dvi__kernel_input *input, int e)
 {
   if (input->is_data) return (dual){residue(input->data[e]), 0};
-  const int number = input->number != NULL ? input->number[e] : input->base + input->stride * e;
-  return variable(m, turning, input->block, number + input->offset);
+  return variable(m, turning, input->block, dvi__input_number(input, e));
 }
 
 static dual operate(const dvi__graph_node *node, const dual *at)
@@ -142,7 +141,7 @@ static dual operate(const dvi__graph_node *node, const dual *at)
   case DVI__OP_ATAN2:
   case DVI__OP_HYPOT: return unknown(node, a, b);
   case DVI__OP_POWER:
-    if (trunc(node->value) < node->value || trunc(node->value) > node->value) return unknown(node, a, none);
+    if (floor(node->value) < node->value) return unknown(node, a, none);
     return power(a, (int64_t)node->value);
   default: return unknown(node, a, none);
   }

@@ -19,7 +19,7 @@ static dvi__node from_momentum(dvi__context *c, int input, dvi__span span)
     return p;
   }
   if (of.number == NULL && of.stride == 0)
-    return dvi__apply(c->graph, DVI__OP_DIVIDE, p, dvi__constant(c->graph, mass[of.base + of.offset]));
+    return dvi__apply(c->graph, DVI__OP_DIVIDE, p, dvi__constant(c->graph, mass[dvi__input_number(&of, 0)]));
   double *row = dvi__heap_take((size_t)c->elements, sizeof *row);
   if (row == NULL) {
     (void)dvi__scene_no_memory(c->scene);
@@ -27,7 +27,7 @@ static dvi__node from_momentum(dvi__context *c, int input, dvi__span span)
   }
   int even = 1;
   for (int e = 0; e < c->elements; e++) {
-    row[e] = mass[(of.number != NULL ? of.number[e] : of.base + of.stride * e) + of.offset];
+    row[e] = mass[dvi__input_number(&of, e)];
     even = even && !(row[e] < row[0]) && !(row[e] > row[0]);
   }
   const dvi__node m = even ? dvi__constant(c->graph, row[0]) : dvi__data_node(c, row);

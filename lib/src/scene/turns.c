@@ -87,14 +87,13 @@ static const dvi__coordinate *part_at(const dvi_scene *scene, int number)
 static bool locate(dvi__context *c, int input, whereabouts *w)
 {
   const dvi__kernel_input of = c->input[input];
-  const int number = (of.number != NULL ? of.number[0] : of.base) + of.offset;
+  const int number = dvi__input_number(&of, 0);
   const dvi__coordinate *x = part_at(c->scene, number);
   *w = (whereabouts){.x = x, .k = (number - x->q.first) % x->q.stride, .all = (number - x->q.first) / x->q.stride};
   if (of.number == NULL && of.stride == 0) return true;
   w->each = dvi__heap_take((size_t)c->elements, sizeof *w->each);
   if (w->each == NULL) return dvi__scene_no_memory(c->scene);
-  for (int e = 0; e < c->elements; e++)
-    w->each[e] = ((of.number != NULL ? of.number[e] : of.base + of.stride * e) + of.offset - x->q.first) / x->q.stride;
+  for (int e = 0; e < c->elements; e++) w->each[e] = (dvi__input_number(&of, e) - x->q.first) / x->q.stride;
   return true;
 }
 
