@@ -78,6 +78,22 @@ START_TEST(two_of_them_are_known_by_other_names)
 }
 END_TEST
 
+/* The filter and the motion ask for the fast gradient at one place. */
+START_TEST(a_step_has_one_slow_gradient_and_one_fast_one)
+{
+  problem *chain = made_problem("fpu", NULL);
+  dvi_integrator *integrator = started(chain, _i < FILTERS ? spec("trig:filter=%s", filters[_i]) : "mollified");
+  dvi_counters first, after;
+  advance(integrator, 0.02, 1);
+  dvi_integrator_counters(integrator, &first);
+  advance(integrator, 0.02, 50);
+  dvi_integrator_counters(integrator, &after);
+  ck_assert_int_eq(after.gradients - first.gradients, 50 * 2);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&chain);
+}
+END_TEST
+
 /* exact needs sinc x > 0; gautschi divides by it. */
 START_TEST(a_step_at_which_a_filter_does_not_exist_fails_and_a_smaller_one_goes_on)
 {
@@ -104,6 +120,7 @@ int main(void)
   tcase_add_loop_test(tests, two_steps_have_the_filters_of_their_name, 0, FILTERS);
   tcase_add_loop_test(tests, methods_with_one_filter_are_symplectic_and_the_others_are_not, 0, FILTERS);
   tcase_add_loop_test(tests, two_of_them_are_known_by_other_names, 0, 2);
+  tcase_add_loop_test(tests, a_step_has_one_slow_gradient_and_one_fast_one, 0, FILTERS + 1);
   tcase_add_loop_test(tests, a_step_at_which_a_filter_does_not_exist_fails_and_a_smaller_one_goes_on, 0, 3);
   return run_tests("trig", tests);
 }

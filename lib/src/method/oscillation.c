@@ -8,13 +8,19 @@
 
 /* ---- the step ---- */
 
+/* In the memory, behind the impulse's: the fast gradient at the state, which the filter wanted, and the next move wants. */
+static double *kept_gradient(const dvi__stepper *self)
+{
+  return self->memory + self->system->n + 1;
+}
+
 static dvi_status move(dvi__stepper *self, dvi__state *state, double h)
 {
   const dvi__oscillation *own = self->own;
   const double middle = state->t + 0.5 * h;
   const dvi__phase phase = dvi__impulse_phase(state);
-  DVI_TRY(dvi__potentials_gradient(own->fast_forces, 1, &middle, state->q, own->V_q));
-  dvi__modes_move(own->modes, h, own->V_q, &phase);
+  if (!own->keeps) DVI_TRY(dvi__potentials_gradient(own->fast_forces, 1, &middle, state->q, own->V_q));
+  dvi__modes_move(own->modes, h, own->keeps ? kept_gradient(self) : own->V_q, &phase);
   return DVI_OK;
 }
 
@@ -37,8 +43,9 @@ static dvi_status filtered_gradient(dvi__stepper *self, const dvi__state *state,
   dvi__oscillation *own = self->own;
   const int n = self->system->n;
   if (own->h != h) DVI_TRY(make_filters(own, n, h));
-  DVI_TRY(dvi__potentials_gradient(own->fast_forces, 1, &state->t, state->q, own->V_q));
-  dvi__modes_of_forces(own->modes, own->V_q, own->y);
+  double *fast = own->keeps ? kept_gradient(self) : own->V_q;
+  DVI_TRY(dvi__potentials_gradient(own->fast_forces, 1, &state->t, state->q, fast));
+  dvi__modes_of_forces(own->modes, fast, own->y);
   for (int k = 0; k < n; k++) own->y[k] *= -h * h * own->filter[k].shift;
   dvi__modes_to_coordinates(own->modes, own->y, own->nearby);
   for (int i = 0; i < n; i++) own->nearby[i] += state->q[i];
@@ -74,6 +81,8 @@ dvi_status dvi__oscillation_create(dvi__stepper *self, dvi__filter_pair *pair, i
   own->number = number;
   own->impulse.move = move;
   own->impulse.gradient = pair != NULL ? filtered_gradient : NULL;
+  own->keeps = pair != NULL && self->system->autonomous;
+  if (own->keeps) self->memory_count += (size_t)self->system->n;
   const dvi_status status = fill(self, own);
   return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "%s", self->method->name);
 }

@@ -24,6 +24,7 @@ typedef struct dvi__oscillation {
   dvi__evaluator *fast_forces;
   dvi__filter_pair *pair; /* NULL: kicks as they are */
   int number;
+  int keeps;                /* not 0: the fast gradient serves a filter and the next move, for it does not depend on t */
   double h;                 /* of the filters below; 0: of none */
   dvi__filter *filter;      /* [n] of the modes */
   double *V_q, *y, *nearby; /* [n] work */
