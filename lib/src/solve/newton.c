@@ -40,6 +40,14 @@ static int small_ones_settled(dvi__solver *s, const double *x, double *last)
   return settled;
 }
 
+/* The errors of all unknowns are squared together: each correction is followed by the same part of itself. */
+static int next_is_unseen(const dvi__solver *s, double correction, const dvi__trail *trail, double whole, const double *x)
+{
+  const double part = dvi__squared(correction, trail);
+  return s->equations.ahead && dvi__unseen(part * correction, whole) &&
+         part * relative_change(s->equations.unknowns, s->residual, x) <= 64 * DBL_EPSILON;
+}
+
 dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__solve_report *report)
 {
   dvi__trail trail = {0};
@@ -51,6 +59,7 @@ dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__so
     dvi__linear_solve(s->linear, s->residual);
     dvi__correct(s->equations.unknowns, s->residual, x, &report->correction, &whole);
     const dvi__progress progress = dvi__judge(report->correction, &trail, &pace, whole, size);
+    if (progress != DVI__STALLED && !converged && next_is_unseen(s, report->correction, &trail, whole, x)) return DVI_OK;
     int at_floor = 0;
     if (progress != DVI__CONVERGED && report->correction >= pace.stagnant * trail.before)
       DVI_TRY(dvi__solver_at_floor(s, x, &at_floor));

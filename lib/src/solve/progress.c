@@ -33,6 +33,17 @@ dvi__progress dvi__judge(double correction, dvi__trail *trail, const dvi__pace *
   return (dvi__progress)verdict[0];
 }
 
+double dvi__squared(double correction, const dvi__trail *trail)
+{
+  const double ratio = trail->before > 0 ? correction / trail->before : 1;
+  return ratio < 1 ? ratio * ratio : 1;
+}
+
+int dvi__unseen(double next, double unknown)
+{
+  return next <= settled * unknown;
+}
+
 /* ---- many problems ---- */
 
 typedef void judge_many(int count, const double *correction, const double *unknown, const dvi__pace *pace,
