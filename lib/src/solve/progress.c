@@ -33,15 +33,14 @@ dvi__progress dvi__judge(double correction, dvi__trail *trail, const dvi__pace *
   return (dvi__progress)verdict[0];
 }
 
-double dvi__squared(double correction, const dvi__trail *trail)
+double dvi__ratio(double correction, const dvi__trail *trail)
 {
-  const double ratio = trail->before > 0 ? correction / trail->before : 1;
-  return ratio < 1 ? ratio * ratio : 1;
+  return correction < trail->before ? correction / trail->before : 1;
 }
 
-int dvi__unseen(double next, double unknown)
+int dvi__unseen(double expected, double unknown)
 {
-  return next <= settled * unknown;
+  return expected <= settled * unknown;
 }
 
 /* ---- many problems ---- */

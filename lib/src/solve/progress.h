@@ -27,10 +27,9 @@ typedef struct dvi__trail {
  * the unknowns and of what they are added to. */
 dvi__progress dvi__judge(double correction, dvi__trail *trail, const dvi__pace *pace, double unknown, double size);
 
-/* Of Newton's method with a new Jacobian at each point, after the verdict: the part of a correction that is expected of the next one, the square of their ratio as
- * errors are squared; 1 if there is no telling. And whether that next correction would be below the roundoff floor. */
-double dvi__squared(double correction, const dvi__trail *trail);
-int dvi__unseen(double next, double unknown);
+/* The ratio of a correction to the one before, after the verdict; 1 if there is none, or it grows. Whether one that is expected would be below the roundoff floor. */
+double dvi__ratio(double correction, const dvi__trail *trail);
+int dvi__unseen(double expected, double unknown);
 
 /* Iterations of many problems, [count] each: what they have gone through, as a dvi__trail has it (without `before`), and their sizes. */
 typedef struct dvi__trails {
