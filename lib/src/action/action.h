@@ -78,6 +78,9 @@ void dvi__action_chord(dvi__action *action, double *R);
  * residual. dq_low is what dq alone would lack: rounded in each step by the same velocity, it adds up (energy drift of 5e-20 a step of kepler). */
 void dvi__action_ends(const dvi__action *action, const double *Y, double *dq, double *dq_low, double *dp);
 
+/* dp [n] += what it changes by, to first order, where the unknowns change by dY: with the Hessians of the last Jacobian, and the batches as work. */
+void dvi__action_move_ends(dvi__action *action, const double *dY, double *dp);
+
 /* How much time passes over the element with the path Y: h; of a time-transformed system h sum_j b_j g(Q_j). */
 dvi_status dvi__action_duration(dvi__action *action, const double *Y, double *duration);
 

@@ -2,6 +2,7 @@
 #include "action/action_struct.h"
 #include "core/memory.h"
 #include "core/status.h"
+#include "num/lanes.h"
 
 const dvi__pattern *dvi__action_pattern(const dvi__action *action)
 {
@@ -69,4 +70,17 @@ dvi_status dvi__action_jacobian(dvi__action *a, const double *Y, double *values)
   }
   dvi__action_centre_jacobian(a, values);
   return DVI_OK;
+}
+
+void dvi__action_move_ends(dvi__action *a, const double *dY, double *dp)
+{
+  const size_t r = (size_t)a->r;
+  double *in_q = a->line, *in_v = a->line + r;
+  dvi__lanes_product(a->n, a->s, a->lanes, a->r, a->psi, dY, a->Q);
+  dvi__lanes_product(a->n, a->s, a->lanes, a->r, a->dpsi, dY, a->V);
+  for (int k = 0; k < a->n; k++)
+    for (int e = a->joint.start[k]; e < a->joint.start[k + 1]; e++) {
+      dvi__action_weigh_hessian(a, &a->block[e], a->Q + (size_t)k * r, a->V + (size_t)k * r, in_q, in_v);
+      for (size_t j = 0; j < r; j++) dp[a->joint.row[e]] += in_q[j];
+    }
 }

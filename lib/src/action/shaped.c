@@ -14,6 +14,7 @@ struct dvi__shaped {
   double *psi, *dpsi; /* [functions] work */
   double *rest;       /* [n] zeros: the velocity at which rows are scaled */
   double *dq_low;     /* [n] */
+  double *at;         /* [unknowns] of the last residual */
 };
 
 static int is_there(const dvi__shaped *s, int i, int k)
@@ -31,7 +32,8 @@ static int allocate(dvi__shaped *s, const int *functions)
   s->dpsi = DVI_NEW(double, count);
   s->rest = DVI_NEW(double, n);
   s->dq_low = DVI_NEW(double, n);
-  if (!s->functions || !s->psi || !s->dpsi || !s->rest || !s->dq_low) return 0;
+  s->at = DVI_NEW(double, n *count);
+  if (!s->functions || !s->psi || !s->dpsi || !s->rest || !s->dq_low || !s->at) return 0;
   memcpy(s->functions, functions, n * sizeof *functions);
   return 1;
 }
@@ -64,6 +66,7 @@ void dvi__shaped_destroy(dvi__shaped **shaped)
   dvi__release(s->dpsi);
   dvi__release(s->rest);
   dvi__release(s->dq_low);
+  dvi__release(s->at);
   dvi__release(s);
   *shaped = NULL;
 }
@@ -113,6 +116,7 @@ void dvi__shaped_place(dvi__shaped *shaped, double t0, double h, const double *q
 dvi_status dvi__shaped_residual(dvi__shaped *shaped, const double *Y, double *R)
 {
   const dvi__action *a = shaped->action;
+  memcpy(shaped->at, Y, (size_t)dvi__action_unknowns(a) * sizeof *Y);
   DVI_TRY(dvi__action_residual(shaped->action, Y, R));
   for (int i = 0; i < a->n; i++)
     for (int k = 0; k < a->s; k++)
@@ -168,9 +172,11 @@ void dvi__shaped_continue(dvi__shaped *shaped, double ratio, const double *last,
   }
 }
 
-void dvi__shaped_ends(const dvi__shaped *shaped, const double *Y, double *dq, double *dp)
+void dvi__shaped_ends(dvi__shaped *shaped, const double *Y, double *dq, double *dp)
 {
   dvi__action_ends(shaped->action, Y, dq, shaped->dq_low, dp); /* 0 without sweeps */
+  for (int k = 0; k < dvi__action_unknowns(shaped->action); k++) shaped->at[k] = Y[k] - shaped->at[k];
+  dvi__action_move_ends(shaped->action, shaped->at, dp);
 }
 
 void dvi__shaped_path(dvi__shaped *shaped, const double *Y, double h, double tau, double *offset, double *v)

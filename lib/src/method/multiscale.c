@@ -18,12 +18,13 @@
 #include "space/oscillating.h"
 #include "system/part.h"
 
-enum { DEGREE, AMPLITUDE, OMEGA };
+enum { DEGREE, AMPLITUDE, HARMONICS, OMEGA };
 
 static const dvi__key keys[] = {
     {"degree", NULL, 1, DVI__OSCILLATING_DEGREE_MOST, 3, "degree of the path without its oscillation, 1 to 6; left out: 3"},
     {"amplitude", NULL, 0, DVI__OSCILLATING_DEGREE_MOST, DVI__LEFT_OUT,
      "degree of the oscillation's amplitudes, 0 to degree; left out: 1"},
+    {"harmonics", NULL, 1, 2, 1, "harmonics of the oscillation, 1 or 2; the second one has constant amplitudes; left out: 1"},
     {"omega", NULL, DVI__POSITIVE, 0, 0, "the fast frequency; left out, or auto: that of the fast potentials"},
     {0},
 };
@@ -117,8 +118,9 @@ static void explain(const dvi__stepper *self, dvi__text *text)
   const int *value = self->settings.value;
   dvi__text_add(
       text,
-      "space: polynomials of degree %d, and in %d fast coordinate%s of degree %d times sin and cos of omega t, omega = %.6g\n",
-      value[DEGREE], own->fast, own->fast == 1 ? "" : "s", value[AMPLITUDE], self->settings.number[OMEGA]);
+      "space: polynomials of degree %d, and in %d fast coordinate%s of degree %d times sin and cos of omega t%s, omega = %.6g\n",
+      value[DEGREE], own->fast, own->fast == 1 ? "" : "s", value[AMPLITUDE],
+      value[HARMONICS] == 2 ? ", and these of 2 omega t" : "", self->settings.number[OMEGA]);
   dvi__text_add(text, "quadrature: %d points; up to h = %.3g Gauss's, for longer steps Filon-Lobatto's\n",
                 dvi__oscillating_shapes(own->space).points, dvi__oscillating_resolved(own->space) / self->settings.number[OMEGA]);
 }
@@ -141,7 +143,8 @@ static dvi_status make(dvi__stepper *self, const char *fast)
 {
   const int *value = self->settings.value;
   dvi__shaped *shaped = NULL;
-  dvi__oscillating *space = dvi__oscillating_create(value[DEGREE], value[AMPLITUDE], self->settings.number[OMEGA]);
+  dvi__oscillating *space = dvi__oscillating_create(value[DEGREE], value[AMPLITUDE], value[HARMONICS],
+                                                    self->settings.number[OMEGA]);
   if (space == NULL) return dvi__fail(DVI_NO_MEMORY, "multiscale: no memory");
   const dvi__shapes shapes = dvi__oscillating_shapes(space);
   dvi_status status = make_step(self, &shapes, fast, &shaped);
@@ -165,6 +168,9 @@ static dvi_status create(dvi__stepper *self)
   if (value[AMPLITUDE] > value[DEGREE])
     return dvi__fail(DVI_BAD_OPTION, "multiscale: amplitude=%d is above degree=%d; 0 to degree are possible", value[AMPLITUDE],
                      value[DEGREE]);
+  if (value[HARMONICS] == 2 && value[DEGREE] + value[AMPLITUDE] > DVI__OSCILLATING_TWICE_MOST)
+    return dvi__fail(DVI_BAD_OPTION, "multiscale: degree=%d and amplitude=%d with harmonics=2; together they can be up to %d then",
+                     value[DEGREE], value[AMPLITUDE], DVI__OSCILLATING_TWICE_MOST);
   char *fast = DVI_NEW(char, self->system->n);
   if (fast == NULL) return dvi__fail(DVI_NO_MEMORY, "multiscale: no memory");
   dvi_status status = find_fast(self, fast);
@@ -187,7 +193,6 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
   const dvi__one_step *one = self->own;
   dvi__shaped_place(one->of, state->t, h, state->q, state->p);
   DVI_TRY(dvi__one_step_solve(self, state, h));
-  DVI_TRY(dvi__shaped_residual(one->of, one->x, one->guess));
   dvi__shaped_ends(one->of, one->x, one->dq, one->dp);
   dvi__one_step_move(self, state, h, one->x);
   dvi__add_compensated_all(self->system->n, state->p, state->p_carry, one->dp);

@@ -41,7 +41,8 @@ dvi_status dvi__one_step_create(dvi__stepper *self, size_t size, const dvi__step
                               .residual = kind->residual,
                               .jacobian = kind->jacobian,
                               .row_scale = kind->row_scale,
-                              .renewed = kind->renewed};
+                              .renewed = kind->renewed,
+                              .ahead = kind->renewed};
   return dvi__stationary_create(&equations, self->counters, &one->solver);
 }
 

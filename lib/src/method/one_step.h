@@ -23,7 +23,7 @@ typedef struct dvi__step_kind {
   dvi__evaluator *(*evaluator)(const void *of);
   void (*destroy)(void *of);
   void (*explain)(const dvi__stepper *self, dvi__text *text); /* what is its own */
-  int renewed; /* Newton's method factors each Jacobian: forces cost more than factors */
+  int renewed; /* Newton's method factors each Jacobian: forces cost more than factors; and the step corrects what it takes from the last point */
 } dvi__step_kind;
 
 /* A stepper's own struct begins with it. */

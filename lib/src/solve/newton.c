@@ -40,6 +40,14 @@ static int small_ones_settled(dvi__solver *s, const double *x, double *last)
   return settled;
 }
 
+/* Where errors are squared, a correction's ratio to the last one is squared, too, and is the same for all unknowns, small ones as well. A kept Jacobian only keeps
+ * the ratio. Whether a part of the correction does not count any more: */
+static int is_unseen(const dvi__solver *s, double part, double correction, double whole, const double *x)
+{
+  return s->equations.ahead && dvi__unseen(part * correction, whole) &&
+         part * relative_change(s->equations.unknowns, s->residual, x) <= 64 * DBL_EPSILON;
+}
+
 dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__solve_report *report)
 {
   dvi__trail trail = {0};
@@ -51,6 +59,8 @@ dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__so
     dvi__linear_solve(s->linear, s->residual);
     dvi__correct(s->equations.unknowns, s->residual, x, &report->correction, &whole);
     const dvi__progress progress = dvi__judge(report->correction, &trail, &pace, whole, size);
+    const double ratio = dvi__ratio(report->correction, &trail), next = fresh ? ratio : ratio * ratio;
+    if (progress != DVI__STALLED && !converged && is_unseen(s, next, report->correction, whole, x)) return DVI_OK;
     int at_floor = 0;
     if (progress != DVI__CONVERGED && report->correction >= pace.stagnant * trail.before)
       DVI_TRY(dvi__solver_at_floor(s, x, &at_floor));
@@ -60,7 +70,8 @@ dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__so
     growing = progress == DVI__STALLED ? growing + 1 : 0;
     if (growing == 2 || report->correction > 1e300) break;
     if (wary && report->iterations == 2 && !converged && dvi__misleading(&trail, whole)) break;
-    fresh = converged || (!s->equations.renewed && (trail.before == 0 || trail.last < keep_below * trail.before));
+    fresh = converged || is_unseen(s, next * next, report->correction, whole, x) ||
+            (!s->equations.renewed && (trail.before == 0 || trail.last < keep_below * trail.before));
   }
   if (converged) return DVI_OK;
   return dvi__fail(DVI_NOT_CONVERGED, "Newton's method does not settle (change %.1e after %.1e)", trail.last, trail.before);

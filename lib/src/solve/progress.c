@@ -33,6 +33,16 @@ dvi__progress dvi__judge(double correction, dvi__trail *trail, const dvi__pace *
   return (dvi__progress)verdict[0];
 }
 
+double dvi__ratio(double correction, const dvi__trail *trail)
+{
+  return correction < trail->before ? correction / trail->before : 1;
+}
+
+int dvi__unseen(double expected, double unknown)
+{
+  return expected <= settled * unknown;
+}
+
 /* ---- many problems ---- */
 
 typedef void judge_many(int count, const double *correction, const double *unknown, const dvi__pace *pace,

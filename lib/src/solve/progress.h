@@ -27,6 +27,10 @@ typedef struct dvi__trail {
  * the unknowns and of what they are added to. */
 dvi__progress dvi__judge(double correction, dvi__trail *trail, const dvi__pace *pace, double unknown, double size);
 
+/* The ratio of a correction to the one before, after the verdict; 1 if there is none, or it grows. Whether one that is expected would be below the roundoff floor. */
+double dvi__ratio(double correction, const dvi__trail *trail);
+int dvi__unseen(double expected, double unknown);
+
 /* Iterations of many problems, [count] each: what they have gone through, as a dvi__trail has it (without `before`), and their sizes. */
 typedef struct dvi__trails {
   double *last, *ratio, *contraction, *own;

@@ -12,16 +12,16 @@
 /* An oscillation that the points resolve is a sum of so many Legendre polynomials, and the grid has all of their products. */
 enum { FUNCTIONS = DVI__OSCILLATING_FUNCTIONS, GRID = 64, TERMS = 48 };
 
-/* A Lagrangian that is quadratic in the oscillation has these harmonics. */
-enum { HARMONICS = 2, SAMPLES = 2 * HARMONICS + 1, POINTS = DVI__FILON_NODES_MOST * SAMPLES };
+/* A Lagrangian that is quadratic in the oscillation has twice its harmonics. */
+enum { POINTS = DVI__FILON_NODES_MOST * (2 * DVI__FILON_HARMONICS_MOST + 1) };
 
 static const long double least_part = 1e-8L;
 
-/* Beyond this h omega the functions are far from dependent, and from what the grid resolves. */
+/* Beyond this h omega of the last harmonic the functions are far from dependent, and from what the grid resolves. */
 static const long double orthogonal_up_to = 30;
 
 struct dvi__oscillating {
-  int degree, amplitude, nodes, functions;
+  int degree, amplitude, harmonics, nodes, functions;
   long double omega, nu;
   dvi__space legendre;
   int on_path; /* the points are Gauss's */
@@ -33,18 +33,30 @@ struct dvi__oscillating {
   double next[FUNCTIONS][FUNCTIONS];
 };
 
-/* f_i and its derivative along the path, for the phase phi at tau: P_1 to P_degree, then P_0 sin, P_0 cos, P_1 sin ... */
+/* The sines and cosines are P_i of a harmonic: wave w is P_w of the first one, up to the amplitudes' degree, and then P_0 of the second one. */
+static int harmonic_of(const dvi__oscillating *o, int wave)
+{
+  return wave <= o->amplitude ? 1 : wave - o->amplitude + 1;
+}
+
+static int power_of(const dvi__oscillating *o, int wave)
+{
+  return wave <= o->amplitude ? wave : 0;
+}
+
+/* f_i and its derivative along the path, for the phase phi at tau: P_1 to P_degree, then P_0 sin, P_0 cos, P_1 sin ..., sin 2, cos 2. */
 static void evaluate(const dvi__oscillating *o, long double tau, long double phi, long double *value, long double *slope)
 {
   long double P[DVI__TRIAL_MAX], dP[DVI__TRIAL_MAX];
-  const long double sine = sinl(phi), cosine = cosl(phi);
   dvi__space_evaluate(&o->legendre, tau, P, dP);
   for (int k = 0; k < o->degree; k++) value[k] = P[k + 1], slope[k] = dP[k + 1];
-  for (int i = 0, k = o->degree; i <= o->amplitude; i++, k += 2) {
+  for (int k = o->degree; k < o->functions; k += 2) {
+    const int wave = (k - o->degree) / 2, i = power_of(o, wave);
+    const long double times = harmonic_of(o, wave), sine = sinl(times * phi), cosine = cosl(times * phi);
     value[k] = P[i] * sine;
-    slope[k] = dP[i] * sine + o->nu * P[i] * cosine;
+    slope[k] = dP[i] * sine + times * o->nu * P[i] * cosine;
     value[k + 1] = P[i] * cosine;
-    slope[k + 1] = dP[i] * cosine - o->nu * P[i] * sine;
+    slope[k + 1] = dP[i] * cosine - times * o->nu * P[i] * sine;
   }
 }
 
@@ -90,10 +102,11 @@ static void make_functions(dvi__oscillating *o)
 {
   memset(o->matrix, 0, sizeof o->matrix);
   for (int k = 0; k < o->functions; k++) o->matrix[k][k] = 1;
-  if (fabsl(o->nu) <= orthogonal_up_to)
+  if (o->harmonics * fabsl(o->nu) <= orthogonal_up_to)
     orthogonalize(o);
   else
-    for (int k = 0; k < o->functions; k++) o->matrix[k][k] = k < o->degree ? 0.5L : 1 / o->nu;
+    for (int k = 0; k < o->functions; k++)
+      o->matrix[k][k] = k < o->degree ? 0.5L : 1 / (harmonic_of(o, (k - o->degree) / 2) * o->nu);
 }
 
 /* Where sin and cos are nearly polynomials, psi_k from the f_i would be a small difference of large numbers. */
@@ -167,11 +180,13 @@ static void shift_function(const dvi__oscillating *o, long double shift[DVI__TRI
     for (int i = 1; i <= k + 1; i++) f[i - 1] += factor * shift[i][k + 1];
     return;
   }
-  const int p = (k - o->degree) / 2, is_cosine = (k - o->degree) % 2;
-  const long double by_sine = is_cosine ? -sinl(o->nu) : cosl(o->nu), by_cosine = is_cosine ? cosl(o->nu) : sinl(o->nu);
+  const int wave = (k - o->degree) / 2, is_cosine = (k - o->degree) % 2, p = power_of(o, wave);
+  const long double turn = harmonic_of(o, wave) * o->nu;
+  const long double by_sine = is_cosine ? -sinl(turn) : cosl(turn), by_cosine = is_cosine ? cosl(turn) : sinl(turn);
   for (int i = 0; i <= p; i++) {
-    f[o->degree + 2 * i] += factor * shift[i][p] * by_sine;
-    f[o->degree + 2 * i + 1] += factor * shift[i][p] * by_cosine;
+    const int sine = o->degree + 2 * (wave - p + i);
+    f[sine] += factor * shift[i][p] * by_sine;
+    f[sine + 1] += factor * shift[i][p] * by_cosine;
   }
 }
 
@@ -207,16 +222,20 @@ static void next(const void *of, const double *last, double *Y)
 
 /* ---- shapes ---- */
 
-static int points(const dvi__oscillating *o)
+static int samples(const dvi__oscillating *o)
 {
-  return o->nodes * SAMPLES;
+  return 4 * o->harmonics + 1;
 }
 
+static int points(const dvi__oscillating *o)
+{
+  return o->nodes * samples(o);
+}
+
+/* Two points a radian, and some for the amplitudes: products of two oscillations are exact but for rounding. */
 double dvi__oscillating_resolved(const dvi__oscillating *space)
 {
-  return 0.5 *
-         (points(space) -
-          SAMPLES); /* two points a radian, and some for the amplitudes: products of two oscillations are exact but for rounding */
+  return fmin(0.5 * (points(space) - samples(space)), (double)orthogonal_up_to) / space->harmonics;
 }
 
 static void set_rule(dvi__oscillating *o)
@@ -225,7 +244,7 @@ static void set_rule(dvi__oscillating *o)
   if (o->on_path)
     (void)dvi__quadrature_long(DVI_GAUSS, points(o), o->node, o->weight);
   else
-    dvi__filon_rule(o->nodes, HARMONICS, o->nu, o->node, o->weight);
+    dvi__filon_rule(o->nodes, 2 * o->harmonics, o->nu, o->node, o->weight);
 }
 
 static void set(void *of, double h)
@@ -243,14 +262,14 @@ static void set(void *of, double h)
 static void point(const void *of, int j, double *tau, double *weight, double *psi, double *dpsi)
 {
   const dvi__oscillating *o = of;
-  const int samples = o->on_path ? 1 : SAMPLES, sample = j % samples;
-  const long double node = o->node[j / samples], turn = 8 * atanl(1);
+  const int count = o->on_path ? 1 : samples(o), sample = j % count;
+  const long double node = o->node[j / count], turn = 8 * atanl(1);
   *tau = (double)node;
   *weight = (double)o->weight[j];
   if (o->on_path)
     resolved_at(o, node, psi, dpsi);
   else
-    oscillating_at(o, node, o->nu * (node - 0.5L) + turn * (long double)sample / (long double)samples, psi, dpsi);
+    oscillating_at(o, node, o->nu * (node - 0.5L) + turn * (long double)sample / (long double)count, psi, dpsi);
 }
 
 static void path(const void *of, double tau, double *psi, double *dpsi)
@@ -262,14 +281,15 @@ static void path(const void *of, double tau, double *psi, double *dpsi)
     oscillating_at(o, (long double)tau, o->nu * ((long double)tau - 0.5L), psi, dpsi);
 }
 
-dvi__oscillating *dvi__oscillating_create(int degree, int amplitude, double omega)
+dvi__oscillating *dvi__oscillating_create(int degree, int amplitude, int harmonics, double omega)
 {
   dvi__oscillating *o = DVI_NEW(dvi__oscillating, 1);
   if (o == NULL) return NULL;
   o->degree = degree;
   o->amplitude = amplitude;
+  o->harmonics = harmonics;
   o->nodes = degree + amplitude + 1;
-  o->functions = degree + 2 * (amplitude + 1);
+  o->functions = degree + 2 * (amplitude + harmonics);
   o->omega = (long double)omega;
   dvi__space_init(&o->legendre, DVI_LEGENDRE, degree);
   (void)dvi__quadrature_long(DVI_GAUSS, GRID, o->grid, o->grid_weight);
