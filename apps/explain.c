@@ -1,4 +1,5 @@
 /* dvi explain: what a method makes of a problem before a single step is taken. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,6 +11,8 @@
 #include "scene.h"
 
 enum { NAMES_SHOWN = 12 };
+
+static const double pi = 3.14159265358979323846;
 
 /* The value that a parameter has: its setting, else the default. */
 static void print_parameter(const problem_parameter *parameter, const words *settings)
@@ -59,13 +62,38 @@ static int print_method(const dvi_integrator *integrator)
   return DONE;
 }
 
-static int explain(const problem *scene, const char *method, const pacing *how)
+/* What a step of length h does to a fast frequency. */
+static void print_turn(const char *method, double h, double omega)
+{
+  double turn, rate;
+  (void)printf("fast motion: omega = %g, h omega = %g; ", omega, h * omega);
+  if (dvi_exchange(method, h * omega, &turn, &rate) == DVI_OK)
+    (void)printf(
+        "a step turns it by %.4f (exactly by %.4f), modulo 2 pi; energy goes from mode to mode at %.4f of the exact rate\n", turn,
+        fmod(h * omega, 2 * pi), rate);
+  else
+    (void)printf("%s\n", dvi_last_error());
+}
+
+static void print_fast_motion(const problem *scene, const char *method, double h)
+{
+  double least, most;
+  if (dvi_fast_frequencies(scene->system, &least, &most) != DVI_OK) {
+    (void)printf("fast motion: %s\n", dvi_last_error());
+    return;
+  }
+  print_turn(method, h, most);
+  if (least < (1 - 1e-6) * most) print_turn(method, h, least);
+}
+
+static int explain(const problem *scene, const char *method, const pacing *how, double h)
 {
   dvi_integrator *integrator = NULL;
   int code = open_paced(scene, method, how, &integrator);
   if (code != DONE) return code;
   const dvi_status status = dvi_integrator_start(integrator, 0.0, scene->q, scene->p);
   code = status == DVI_OK ? print_method(integrator) : library_error(status);
+  if (code == DONE && !isnan(h)) print_fast_motion(scene, method, fabs(h));
   /* A scene derives what is asked for: one step asks for all that the method wants. Whether it succeeds does not matter. */
   if (code == DONE && scene->scene != NULL) (void)dvi_integrator_step(integrator, scene->h);
   if (code == DONE) scene_tell(scene);
@@ -77,8 +105,12 @@ static const char *const details[] = {
     "Examples:\n"
     "  dvi explain kepler --method galerkin:degree=4\n"
     "  dvi explain fpu --method midpoint --set ell=1000\n"
+    "  dvi explain fpu --method imex --h 0.1\n"
     "  dvi explain kepler --method galerkin:degree=4 --time-transform distance:power=1.5\n"
     "  dvi explain cart.yaml\n",
+    "With --h: by which angle a step turns the largest frequency of the potentials that are declared fast and quadratic\n"
+    "(and the least one, if there are several), and how fast slow forces carry energy from one mode to another of the same\n"
+    "frequency. An angle over the step is the frequency that the method gives to the mode.\n",
     NULL,
 };
 
@@ -87,6 +119,7 @@ int explain_command(int argc, char **argv)
   const char *method = NULL;
   words settings = {0};
   pacing how = {0};
+  double h = NAN;
   const option options[] = {
       {.name = "method",
        .word = &method,
@@ -100,6 +133,7 @@ int explain_command(int argc, char **argv)
        .word = &how.control,
        .value = "MONITOR",
        .help = "steps that follow a monitor reversibly: cheaper, symmetric, not symplectic"},
+      {.name = "h", .number = &h, .value = "H", .help = "say what steps of this length do to fast frequencies, too"},
       {.name = "set", .words = &settings, .value = "NAME=VALUE", .help = "set a parameter of the problem; may be repeated"},
       {.name = NULL},
   };
@@ -121,7 +155,7 @@ int explain_command(int argc, char **argv)
   if (code != DONE) return code;
   code = open_wish("explain", scene, &method);
   if (code == DONE) print_problem(scene, &settings);
-  if (code == DONE) code = explain(scene, method, &how);
+  if (code == DONE) code = explain(scene, method, &how, h);
   problem_destroy(&scene);
   return code;
 }

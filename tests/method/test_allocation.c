@@ -25,6 +25,7 @@ static const struct {
     {"kepler", NULL, "composition:order=8,base=galerkin,degree=2"},
     {"fpu", "ell=40", "verlet"},
     {"fpu", "ell=40", "imex"},
+    {"fpu", "ell=40", "composition:order=6,base=imex"},
     {"fpu", "ell=40", "imex:solver=newton"},
     {"fpu", "ell=40", "respa"},
     {"fpu", "ell=40", "respa:substeps=exact"},

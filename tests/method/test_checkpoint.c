@@ -34,6 +34,7 @@ static const struct {
     {"kepler", NULL, "trapezoidal", 0.05, 30},
     {"kepler", NULL, "verlet", 0.05, 30},
     {"fpu", NULL, "imex", 0.1, 30},
+    {"fpu", NULL, "composition:order=6,base=imex", 0.05, 30},
     {"fpu", NULL, "imex:solver=newton", 0.1, 30},
     {"fpu", NULL, "respa", 0.1, 30},
     {"fpu", NULL, "mollified", 0.1, 30},

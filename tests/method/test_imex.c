@@ -48,6 +48,29 @@ START_TEST(a_quadratic_fast_potential_takes_one_factorisation_a_run_and_one_grad
 }
 END_TEST
 
+/* Suzuki's 5 substeps have 2 lengths, Kahan and Li's 9 and 17 have 5 and 9. */
+START_TEST(a_composition_takes_one_factorisation_for_each_length_of_its_substeps)
+{
+  static const struct {
+    const char *method;
+    long lengths, substeps;
+  } of[] = {
+      {"composition:order=4,base=imex", 2, 5}, {"composition:order=6,base=imex", 5, 9}, {"composition:order=8,base=imex", 9, 17}};
+  problem *chain = made_problem("fpu", "ell=100");
+  dvi_integrator *integrator = started(chain, of[_i].method);
+  advance(integrator, 0.05, 100);
+  dvi_counters c = counters_of(integrator);
+  ck_assert_int_eq(c.factorizations, of[_i].lengths);
+  ck_assert_int_eq(c.symbolic, 1);
+  ck_assert_int_eq(c.solves, 100 * of[_i].substeps);
+  advance(integrator, 0.04, 100);
+  c = counters_of(integrator);
+  ck_assert_int_eq(c.factorizations, 2 * of[_i].lengths);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&chain);
+}
+END_TEST
+
 START_TEST(another_fast_potential_goes_to_the_midpoint_rules_solvers)
 {
   bond of;
@@ -59,6 +82,44 @@ START_TEST(another_fast_potential_goes_to_the_midpoint_rules_solvers)
   ck_assert_int_gt(c.jacobians, 0);
   dvi_integrator_destroy(&integrator);
   destroy_bond(&of);
+}
+END_TEST
+
+/* ---- a full matrix, for LAPACK: V = 50 (sum q)^2 ---- */
+
+enum { MASSES = 80 };
+
+static int pull(double t, const double *q, double *V, void *user)
+{
+  (void)t, (void)user;
+  double sum = 0;
+  for (int i = 0; i < MASSES; i++) sum += q[i];
+  *V = 50 * sum * sum;
+  return 0;
+}
+
+static int pull_gradient(double t, const double *q, double *V_q, void *user)
+{
+  (void)t, (void)user;
+  double sum = 0;
+  for (int i = 0; i < MASSES; i++) sum += q[i];
+  for (int i = 0; i < MASSES; i++) V_q[i] = 100 * sum;
+  return 0;
+}
+
+START_TEST(full_matrices_are_kept_too)
+{
+  const dvi_potential potential = {.name = "pull", .value = pull, .gradient = pull_gradient, .fast = 1, .quadratic = 1};
+  dvi_system *system = make_system(
+      &(dvi_system_terms){.dimension = MASSES, .mass.scalar = 1, .potentials = &potential, .potential_count = 1});
+  dvi_integrator *integrator = made_integrator(system, "composition:order=4,base=imex");
+  const double q[MASSES] = {1}, p[MASSES] = {0};
+  ck_assert_int_eq(dvi_integrator_start(integrator, 0, q, p), DVI_OK);
+  advance(integrator, 0.01, 50);
+  ck_assert_int_eq(counters_of(integrator).factorizations, 2);
+  ck_assert_int_eq(counters_of(integrator).symbolic, 0);
+  dvi_integrator_destroy(&integrator);
+  dvi_system_destroy(&system);
 }
 END_TEST
 
@@ -105,26 +166,9 @@ START_TEST(along_a_saddle_the_motion_grows_and_steps_beyond_its_pole_are_refused
 }
 END_TEST
 
-/* q'' = 1 + q^2 runs to infinity. From rest at 0 the midpoint rule asks for x = h^2/2 (1 + x^2/4), which has no real solution for h > sqrt(2). */
-static int runaway(double t, const double *q, double *V, void *user)
-{
-  (void)t, (void)user;
-  *V = -q[0] - q[0] * q[0] * q[0] / 3;
-  return 0;
-}
-
-static int runaway_gradient(double t, const double *q, double *V_q, void *user)
-{
-  (void)t, (void)user;
-  V_q[0] = -1 - q[0] * q[0];
-  return 0;
-}
-
 START_TEST(a_step_without_a_solution_says_how_far_it_came)
 {
-  const dvi_potential potential = {.name = "runaway", .value = runaway, .gradient = runaway_gradient, .fast = 1};
-  dvi_system *system = make_system(
-      &(dvi_system_terms){.dimension = 1, .mass.scalar = 1, .potentials = &potential, .potential_count = 1});
+  dvi_system *system = runaway(1);
   dvi_integrator *integrator = made_integrator(system, "imex");
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, &(double){0}, &(double){0}), DVI_OK);
   ck_assert_int_eq(dvi_integrator_step(integrator, 1.5), DVI_NOT_CONVERGED);
@@ -190,6 +234,8 @@ int main(void)
   TCase *tests = tcase_create("imex");
   tcase_add_test(tests, one_linear_system_a_step_does_what_newtons_method_does);
   tcase_add_test(tests, a_quadratic_fast_potential_takes_one_factorisation_a_run_and_one_gradient_a_step);
+  tcase_add_loop_test(tests, a_composition_takes_one_factorisation_for_each_length_of_its_substeps, 0, 3);
+  tcase_add_test(tests, full_matrices_are_kept_too);
   tcase_add_test(tests, another_fast_potential_goes_to_the_midpoint_rules_solvers);
   tcase_add_test(tests, along_a_saddle_the_motion_grows_and_steps_beyond_its_pole_are_refused);
   tcase_add_test(tests, a_step_without_a_solution_says_how_far_it_came);

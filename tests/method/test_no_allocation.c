@@ -49,6 +49,7 @@ static const char *const methods[] = {
     "verlet",
     "imex",
     "imex:solver=newton",
+    "composition:order=8,base=imex",
     "respa",
     "respa:substeps=exact",
     "trig",

@@ -3,6 +3,7 @@
 #include <check.h>
 
 #include "support/order.h"
+#include "support/runs.h"
 #include "support/suite.h"
 
 static const char *const methods[] = {"imex",
@@ -24,6 +25,13 @@ START_TEST(they_have_order_2_on_the_chain_of_soft_and_stiff_springs)
 }
 END_TEST
 
+START_TEST(compositions_of_imex_have_theirs)
+{
+  const int order = 4 + 2 * _i;
+  check_order_over("fpu", NULL, 1, 400 / order, spec("composition:order=%d,base=imex", order), order);
+}
+END_TEST
+
 START_TEST(they_have_order_2_on_oscillators)
 {
   check_order_over("oscillators", "omega=10", 2, 40, methods[_i], 2);
@@ -41,6 +49,7 @@ int main(void)
   TCase *tests = tcase_create("order");
   tcase_set_timeout(tests, 0);
   tcase_add_loop_test(tests, they_have_order_2_on_the_chain_of_soft_and_stiff_springs, 0, METHODS);
+  tcase_add_loop_test(tests, compositions_of_imex_have_theirs, 0, 3);
   tcase_add_loop_test(tests, they_have_order_2_on_oscillators, 0, METHODS);
   tcase_add_loop_test(tests, ida_finds_their_order_2, 0, METHODS);
   return run_tests("order_split", tests);

@@ -309,3 +309,23 @@ dvi_lagrangian rotors(behaviour *user, callback_shape shape)
   }
   return l;
 }
+
+static int runaway_value(double t, const double *q, double *V, void *user)
+{
+  (void)t, (void)user;
+  *V = -q[0] - q[0] * q[0] * q[0] / 3;
+  return 0;
+}
+
+static int runaway_gradient(double t, const double *q, double *V_q, void *user)
+{
+  (void)t, (void)user;
+  V_q[0] = -1 - q[0] * q[0];
+  return 0;
+}
+
+dvi_system *runaway(int fast)
+{
+  const dvi_potential potential = {.name = "runaway", .value = runaway_value, .gradient = runaway_gradient, .fast = fast};
+  return make_system(&(dvi_system_terms){.dimension = 1, .mass.scalar = 1, .potentials = &potential, .potential_count = 1});
+}

@@ -36,4 +36,7 @@ extern const double generic_q[SITES], generic_v[SITES];
 /* A system that must be made; fails the test otherwise. */
 dvi_system *make_system(const dvi_system_terms *terms);
 
+/* q'' = 1 + q^2 runs to infinity. From rest at 0 the midpoint rule asks for x = h^2/2 (1 + x^2/4), which has no real solution for h > sqrt(2). */
+dvi_system *runaway(int fast);
+
 #endif

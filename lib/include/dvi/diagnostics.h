@@ -1,4 +1,4 @@
-/** Diagnostics: drift of an invariant, fitted orders, symplecticity and reversibility of a step, loop integrals. */
+/** Diagnostics: drift of an invariant, fitted orders, symplecticity and reversibility of a step, loop integrals; stiff springs. */
 #ifndef DVI_DIAGNOSTICS_H
 #define DVI_DIAGNOSTICS_H
 #include <dvi/integrator.h>
@@ -130,6 +130,36 @@ dvi_status dvi_reversibility(dvi_integrator *integrator, double t, const double 
  *
  *  Source: Fornberg 1996 (the derivative); Marsden and Ratiu 1999 (the invariant). */
 dvi_status dvi_loop_integral(int n, int count, const double *q, const double *p, double *integral);
+
+/** How far a step turns a stiff spring, and how fast it lets slow forces carry energy from one such spring to another.
+ *
+ *  Springs of frequency omega that slow forces couple exchange their energies slowly, over times of omega. Where a method turns them by theta a step, their
+ *  frequency is theta/h: that of the implicit midpoint step is (2/h) atan(h omega/2). The exchange is right where
+ *  the slow forces change theta as they should, whether theta itself is right or not. It is measured by steps of x'' = -omega^2 x - kappa x, whose first part is
+ *  declared fast, for small kappa: the rate is that of the phases that part, with the exact one as the unit. It leaves aside what errors of the slow
+ *  motion change, and assumes that h omega is the same for all springs that exchange energy.
+ *
+ *  @param      method   a specification, of a method that takes potentials
+ *  @param      h_omega  from 1e-3 to 1e5
+ *  @param[out] turn     the angle, between 0 and 2 pi: what exceeds a turn is lost
+ *  @param[out] rate     of the exchange, over the exact one; both are not written on failure
+ *  @retval DVI_BAD_ARGUMENT  a pointer is NULL, h_omega is out of range, or the step does not turn, or by a multiple of pi: there the method is unstable, or
+ *                            resonates
+ *  @retval others            as dvi_integrator_create, dvi_integrator_start and dvi_integrator_step
+ *
+ *  Source: Hairer, Lubich and Wanner 2006, sec. XIII.4; Stern 2009, sec. 2.2.5. */
+dvi_status dvi_exchange(const char *method, double h_omega, double *turn, double *rate);
+
+/** The least and the largest frequency of a system's fast potentials: of those declared `fast`, which must be `quadratic`, too, with a constant mass. Modes that do
+ *  not oscillate do not count.
+ *
+ *  @param[out] least, most  not written on failure
+ *  @retval DVI_BAD_ARGUMENT  a pointer is NULL
+ *  @retval DVI_UNSUPPORTED   no potential is declared fast, one that is is not quadratic, the mass is not constant, or nothing oscillates
+ *  @retval DVI_BAD_SIZE      more coordinates are coupled than modes can be had of
+ *  @retval DVI_SINGULAR      the mass is not positive
+ *  @retval others            of the Hessian's callback; DVI_NO_MEMORY */
+dvi_status dvi_fast_frequencies(const dvi_system *system, double *least, double *most);
 
 #ifdef __cplusplus
 }

@@ -231,6 +231,16 @@ const double *dvi__modes_squares(const dvi__modes *m)
   return m->square;
 }
 
+void dvi__modes_range(const dvi__modes *m, double *least, double *most)
+{
+  double low = INFINITY, high = 0;
+  for (int k = 0; k < m->n; k++) high = fmax(high, m->square[k]);
+  for (int k = 0; k < m->n; k++)
+    if (m->square[k] > 1e-10 * high) low = fmin(low, m->square[k]);
+  *most = sqrt(high);
+  *least = high > 0 ? sqrt(low) : 0;
+}
+
 /* ---- from coordinates to modes and back ---- */
 
 void dvi__modes_of_forces(const dvi__modes *m, const double *f, double *y)

@@ -22,6 +22,9 @@ int dvi__modes_largest_block(const dvi__modes *modes);
 /* lambda [n], the squared frequencies of the modes. */
 const double *dvi__modes_squares(const dvi__modes *modes);
 
+/* The least and the largest frequency. Modes that do not oscillate do not count; both are 0 if none does. */
+void dvi__modes_range(const dvi__modes *modes, double *least, double *most);
+
 /* y = X^T f of forces, or momenta, f; q = X y; f = M X y. All [n], none may be another. */
 void dvi__modes_of_forces(const dvi__modes *modes, const double *f, double *y);
 void dvi__modes_to_coordinates(const dvi__modes *modes, const double *y, double *q);

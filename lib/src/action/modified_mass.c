@@ -4,12 +4,18 @@
 #include "core/memory.h"
 #include "core/status.h"
 
-struct dvi__modified_mass {
-  dvi__evaluator *evaluator;
-  dvi__quadratic parts;
-  double *matrix; /* in the order of their pattern */
+typedef struct kept_factor {
   dvi__linear *linear;
   double square; /* h^2 of the matrix that is factored; 0: none is */
+} kept_factor;
+
+struct dvi__modified_mass {
+  dvi__evaluator *evaluator;
+  dvi_counters *counters;
+  dvi__quadratic parts;
+  double *matrix; /* in the order of their pattern */
+  kept_factor kept[DVI__LENGTHS_MOST];
+  int count, oldest; /* of those */
 };
 
 static dvi_status fill(dvi__modified_mass *m, const dvi_system *system, dvi_counters *counters)
@@ -18,7 +24,9 @@ static dvi_status fill(dvi__modified_mass *m, const dvi_system *system, dvi_coun
   DVI_TRY(dvi__quadratic_fill(system, m->evaluator, &m->parts));
   m->matrix = DVI_NEW(double, dvi__pattern_entries(&m->parts.pattern));
   if (m->matrix == NULL) return dvi__fail(DVI_NO_MEMORY, "modified mass: no memory");
-  return dvi__linear_create(&m->parts.pattern, DVI__LINEAR_AUTO, counters, &m->linear);
+  m->counters = counters;
+  m->count = 1;
+  return dvi__linear_create(&m->parts.pattern, DVI__LINEAR_AUTO, counters, &m->kept[0].linear);
 }
 
 dvi_status dvi__modified_mass_create(const dvi_system *system, dvi_counters *counters, dvi__modified_mass **mass)
@@ -34,7 +42,7 @@ void dvi__modified_mass_destroy(dvi__modified_mass **mass)
 {
   dvi__modified_mass *m = *mass;
   if (m == NULL) return;
-  dvi__linear_destroy(&m->linear);
+  for (int k = 0; k < m->count; k++) dvi__linear_destroy(&m->kept[k].linear);
   dvi__quadratic_clear(&m->parts);
   dvi__release(m->matrix);
   dvi__evaluator_destroy(&m->evaluator);
@@ -42,27 +50,45 @@ void dvi__modified_mass_destroy(dvi__modified_mass **mass)
   *mass = NULL;
 }
 
-/* The determinant keeps the sign that it has at h = 0 until the matrix is singular; longer steps would jump through infinity. */
-static dvi_status factor(dvi__modified_mass *m, double square)
+dvi_status dvi__modified_mass_keep(dvi__modified_mass *m, int count)
 {
-  m->square = 0;
+  const dvi__linear *first = m->kept[0].linear;
+  const dvi__linear_kind kind = dvi__linear_kind_of(first);
+  for (; m->count < count; m->count++) {
+    dvi__linear **linear = &m->kept[m->count].linear;
+    DVI_TRY(kind == DVI__LINEAR_DENSE ? dvi__linear_create(&m->parts.pattern, kind, m->counters, linear)
+                                      : dvi__linear_create_like(first, kind, m->counters, linear));
+  }
+  return DVI_OK;
+}
+
+/* The determinant keeps the sign that it has at h = 0 until the matrix is singular; longer steps would jump through infinity. */
+static dvi_status factor(dvi__modified_mass *m, double square, kept_factor *kept)
+{
+  kept->square = 0;
   for (int e = 0; e < dvi__pattern_entries(&m->parts.pattern); e++)
     m->matrix[e] = m->parts.mass[e] + 0.25 * square * m->parts.stiffness[e];
-  const dvi_status status = dvi__linear_factor(m->linear, m->matrix);
+  const dvi_status status = dvi__linear_factor(kept->linear, m->matrix);
   if (status != DVI_OK && status != DVI_SINGULAR) return status;
-  if (status == DVI_SINGULAR || dvi__linear_sign(m->linear) != dvi__mass_sign(m->evaluator))
+  if (status == DVI_SINGULAR || dvi__linear_sign(kept->linear) != dvi__mass_sign(m->evaluator))
     return dvi__fail(
         DVI_NOT_CONVERGED,
         "M + h^2/4 K is singular at this length or at a shorter one: the Hessian K of the fast potentials is indefinite, and "
         "their motion grows too much in a step");
-  m->square = square;
+  kept->square = square;
   return DVI_OK;
 }
 
 dvi_status dvi__modified_mass_solve(dvi__modified_mass *m, double h, double *x)
 {
-  if (m->square != h * h) DVI_TRY(factor(m, h * h));
-  dvi__linear_solve(m->linear, x);
+  int k = 0;
+  while (k < m->count && m->kept[k].square != h * h) k++;
+  if (k == m->count) {
+    k = m->oldest;
+    DVI_TRY(factor(m, h * h, &m->kept[k]));
+    m->oldest = (k + 1) % m->count;
+  }
+  dvi__linear_solve(m->kept[k].linear, x);
   return DVI_OK;
 }
 
@@ -73,5 +99,5 @@ const dvi__pattern *dvi__modified_mass_pattern(const dvi__modified_mass *m)
 
 dvi__linear_kind dvi__modified_mass_kind(const dvi__modified_mass *m)
 {
-  return dvi__linear_kind_of(m->linear);
+  return dvi__linear_kind_of(m->kept[0].linear);
 }

@@ -10,7 +10,11 @@ typedef struct dvi__modified_mass dvi__modified_mass;
 dvi_status dvi__modified_mass_create(const dvi_system *system, dvi_counters *counters, dvi__modified_mass **mass);
 void dvi__modified_mass_destroy(dvi__modified_mass **mass);
 
-/* x [n] <- (M + h^2/4 K)^-1 x. The matrix is factored if h^2 is not that of the last time. DVI_NOT_CONVERGED: it is singular, or has another sign than M, which an
+/* Keep the factors of the last `count` lengths, 1 to DVI__LENGTHS_MOST; without this call, of the last one. Once. */
+enum { DVI__LENGTHS_MOST = 9 };
+dvi_status dvi__modified_mass_keep(dvi__modified_mass *mass, int count);
+
+/* x [n] <- (M + h^2/4 K)^-1 x. The matrix is factored if its factor is not kept. DVI_NOT_CONVERGED: it is singular, or has another sign than M, which an
  * indefinite K alone can do. */
 dvi_status dvi__modified_mass_solve(dvi__modified_mass *mass, double h, double *x);
 

@@ -20,37 +20,45 @@ static const char *order_name(int index)
   return index >= 0 && index < 3 ? name[index] : NULL;
 }
 
-enum { VERLET, MIDPOINT, TRAPEZOIDAL, GALERKIN, LIE_VERLET, BASES };
+enum { VERLET, MIDPOINT, TRAPEZOIDAL, GALERKIN, IMEX, LIE_VERLET, BASES };
 
 static const char *base_name(int index)
 {
-  static const char *const name[] = {"verlet", "midpoint", "trapezoidal", "galerkin", "lie-verlet"};
+  static const char *const name[] = {"verlet", "midpoint", "trapezoidal", "galerkin", "imex", "lie-verlet"};
   return index >= 0 && index < BASES ? name[index] : NULL;
 }
 
 static const dvi__key keys[] = {
     {"order", order_name, 0, 0, 0, "4, 6 or 8; left out: 4"},
     {"base", base_name, 0, 0, DVI__LEFT_OUT,
-     "the symmetric method that is composed: verlet, midpoint, trapezoidal, galerkin or lie-verlet; all other keys are its own; "
-     "left out: verlet, on groups lie-verlet"},
+     "the symmetric method that is composed: verlet, midpoint, trapezoidal, galerkin, imex or lie-verlet; all other keys are its "
+     "own; left out: verlet, on groups lie-verlet"},
     {0},
 };
 
 enum { SUBSTEPS_MOST = 17 };
 
-/* The first half of the weights and the middle one; the rest mirrors them. */
+/* The first half of the weights and the middle one; the rest mirrors them. `lengths` of them differ. */
 typedef struct scheme {
-  int substeps;
+  int substeps, lengths;
   double weight[(SUBSTEPS_MOST + 1) / 2];
 } scheme;
 
 static const scheme schemes[] = {
-    {5, {0.41449077179437573714, 0.41449077179437573714, -0.65796308717750294857}},
-    {9, {0.39216144400731413928, 0.33259913678935943860, -0.70624617255763935981, 0.08221359629355080023, 0.79854399093482996340}},
+    {5, 2, {0.41449077179437573714, 0.41449077179437573714, -0.65796308717750294857}},
+    {9,
+     5,
+     {0.39216144400731413928, 0.33259913678935943860, -0.70624617255763935981, 0.08221359629355080023, 0.79854399093482996340}},
     {17,
+     9,
      {0.13020248308889008088, 0.56116298177510838456, -0.38947496264484728641, 0.15884190655515560090, -0.39590389413323757734,
       0.18453964097831570709, 0.25837438768632204729, 0.29501172360931029887, -0.60550853383003451170}},
 };
+
+static const scheme *scheme_of(const dvi__stepper *self)
+{
+  return &schemes[self->settings.value[ORDER]];
+}
 
 /* The rest of the specification becomes the base's own, with every key: one method, one spelling. */
 static void spell_out_base(dvi__stepper *self, const dvi__stepper *base)
@@ -70,7 +78,8 @@ static dvi_status create(dvi__stepper *self)
   dvi__text_add(&text, "%s%s%s", base_name(*chosen), rest[0] != 0 ? ":" : "", rest);
   dvi__stepper *base = self->own = DVI_NEW(dvi__stepper, 1);
   if (base == NULL) return dvi__fail(DVI_NO_MEMORY, "composition: no memory");
-  const dvi_status status = dvi__stepper_create(self->system, specification, self->counters, base);
+  dvi_status status = dvi__stepper_create(self->system, specification, self->counters, base);
+  if (status == DVI_OK && base->method->keep_lengths != NULL) status = base->method->keep_lengths(base, scheme_of(self)->lengths);
   if (status != DVI_OK) return dvi__fail_in(status, "composition");
   if (!base->symmetric)
     return dvi__fail(DVI_BAD_OPTION, "composition: %s is not symmetric; choose a symmetric quadrature", base->specification);
@@ -120,7 +129,7 @@ static void move_clock(double t, double t_carry, double h, double *moved, double
 static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
 {
   dvi__stepper *base = base_of(self);
-  const scheme *s = &schemes[self->settings.value[ORDER]];
+  const scheme *s = scheme_of(self);
   const double t = state->t, t_carry = state->t_carry;
   for (int i = 0; i < s->substeps; i++) DVI_TRY(base->method->step(base, state, substep(s, i, h)));
   if (dvi__transformed_of(self->system) == NULL) move_clock(t, t_carry, h, &state->t, &state->t_carry);
@@ -130,7 +139,7 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
 static int pass(dvi__stepper *self, const dvi__state *now, const double *before, dvi__state *next, const double *h, int count)
 {
   dvi__stepper *base = base_of(self);
-  const scheme *s = &schemes[self->settings.value[ORDER]];
+  const scheme *s = scheme_of(self);
   double substeps[SUBSTEPS_MOST];
   if (base->method->pass == NULL || count != 1) return 0;
   for (int i = 0; i < s->substeps; i++) substeps[i] = substep(s, i, h[0]);
@@ -142,8 +151,7 @@ static int pass(dvi__stepper *self, const dvi__state *now, const double *before,
 static double traffic(const dvi__stepper *self, int count)
 {
   const dvi__stepper *base = self->own;
-  return base->method->traffic != NULL && count == 1 ? base->method->traffic(base, schemes[self->settings.value[ORDER]].substeps)
-                                                     : 0;
+  return base->method->traffic != NULL && count == 1 ? base->method->traffic(base, scheme_of(self)->substeps) : 0;
 }
 
 /* ---- members side by side ---- */
@@ -166,7 +174,7 @@ static void clear_lanes(dvi__stepper *self)
 static void step_lanes(dvi__stepper *self, dvi__members *m, double h)
 {
   dvi__stepper *base = self->own;
-  const scheme *s = &schemes[self->settings.value[ORDER]];
+  const scheme *s = scheme_of(self);
   const size_t bytes = (size_t)m->count * sizeof(double);
   double *t = self->lanes, *t_carry = t + m->count;
   memcpy(t, m->t, bytes);
@@ -178,8 +186,7 @@ static void step_lanes(dvi__stepper *self, dvi__members *m, double h)
 static void explain(const dvi__stepper *self, dvi__text *text)
 {
   const dvi__stepper *base = self->own;
-  dvi__text_add(text, "composition: %d substeps a step, each by %s\n", schemes[self->settings.value[ORDER]].substeps,
-                base->specification);
+  dvi__text_add(text, "composition: %d substeps a step, each by %s\n", scheme_of(self)->substeps, base->specification);
   base->method->explain(base, text);
 }
 

@@ -68,6 +68,12 @@ static dvi_status create(dvi__stepper *self)
   return create_nonlinear(self, solver);
 }
 
+static dvi_status keep_lengths(dvi__stepper *self, int count)
+{
+  const imex *own = self->own;
+  return own->mass != NULL ? dvi__modified_mass_keep(own->mass, count) : DVI_OK;
+}
+
 static void destroy(dvi__stepper *self)
 {
   imex *own = self->own;
@@ -103,5 +109,6 @@ const dvi__method dvi__imex = {
     DVI__IMPULSE_OPERATIONS,
     .create = create,
     .destroy = destroy,
+    .keep_lengths = keep_lengths,
     .explain = explain,
 };

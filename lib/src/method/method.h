@@ -92,6 +92,8 @@ struct dvi__method {
   /* Set order, symmetric, memory_count, own. On failure destroy is called. */
   dvi_status (*create)(dvi__stepper *self);
   void (*destroy)(dvi__stepper *self);
+  /* Steps will have `count` lengths in turn, those of a composition: keep what is made for each. Once. NULL: nothing is made for a length alone. */
+  dvi_status (*keep_lengths)(dvi__stepper *self, int count);
   /* Forget earlier steps: the state is new, and its velocity is v [n]. */
   void (*start)(dvi__stepper *self, const double *v);
   /* Advance the state. On failure the driver throws state and memory away. */

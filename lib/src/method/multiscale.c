@@ -61,19 +61,15 @@ static dvi_status mark_moved(const dvi_system *part, char *fast)
 static dvi_status frequency_of(const dvi__stepper *self, const dvi_system *part, double *omega)
 {
   dvi__modes *modes;
-  double least = INFINITY, most = 0;
+  double least;
   DVI_TRY(dvi__modes_create(part, self->counters, &modes));
-  const double *square = dvi__modes_squares(modes);
-  for (int k = 0; k < part->n; k++) most = fmax(most, square[k]);
-  for (int k = 0; k < part->n; k++)
-    if (square[k] > 1e-10 * most) least = fmin(least, square[k]);
+  dvi__modes_range(modes, &least, omega);
   dvi__modes_destroy(&modes);
-  *omega = sqrt(most);
-  if (most > 0 && least > (1 - 1e-6) * most) return DVI_OK;
-  if (most == 0) return dvi__fail(DVI_BAD_OPTION, "multiscale: nothing oscillates in the fast potentials; give omega");
+  if (*omega > 0 && least > (1 - 5e-7) * *omega) return DVI_OK;
+  if (*omega == 0) return dvi__fail(DVI_BAD_OPTION, "multiscale: nothing oscillates in the fast potentials; give omega");
   return dvi__fail(DVI_BAD_OPTION,
-                   "multiscale: the fast potentials have frequencies from %.6g to %.6g; give the one that matters as omega",
-                   sqrt(least), *omega);
+                   "multiscale: the fast potentials have frequencies from %.6g to %.6g; give the one that matters as omega", least,
+                   *omega);
 }
 
 static dvi_status refuse_unknown(void)
