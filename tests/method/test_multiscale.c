@@ -1,5 +1,6 @@
 /* labels: invariant */
 #include <math.h>
+#include <string.h>
 
 #include "support/runs.h"
 #include "support/suite.h"
@@ -188,6 +189,22 @@ static void check_spelled(const char *name, const char *given, const char *spell
   problem_destroy(&of);
 }
 
+/* 3 slow coordinates of degree 3, 3 fast ones with 4 functions more. */
+START_TEST(slow_coordinates_have_the_unknowns_of_their_polynomials)
+{
+  char text[1024];
+  double defect;
+  problem *of = made_problem("fpu", NULL);
+  dvi_integrator *integrator = started(of, "multiscale");
+  ck_assert_uint_lt(dvi_integrator_explain(integrator, text, sizeof text), sizeof text);
+  ck_assert_ptr_nonnull(strstr(text, "30 unknowns a step"));
+  ck_assert_int_eq(dvi_symplecticity(integrator, 0, of->q, of->p, 0.3, &defect), DVI_OK);
+  ck_assert_double_le(defect, 1e-10);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&of);
+}
+END_TEST
+
 START_TEST(fast_potentials_tell_the_frequency)
 {
   check_spelled("fpu", "multiscale", "multiscale:degree=3,amplitude=1,harmonics=1,omega=5e+01");
@@ -254,6 +271,7 @@ int main(void)
   tcase_add_test(tests, no_length_of_steps_resonates);
   tcase_add_test(tests, small_and_vanishing_amplitudes_are_starts_like_any_other);
   tcase_add_loop_test(tests, the_step_is_symplectic_and_reversible, 0, 2);
+  tcase_add_test(tests, slow_coordinates_have_the_unknowns_of_their_polynomials);
   tcase_add_test(tests, fast_potentials_tell_the_frequency);
   tcase_add_test(tests, what_is_not_known_is_asked_for);
   tcase_add_test(tests, of_two_fast_frequencies_one_must_be_chosen);

@@ -96,7 +96,7 @@ void dvi__action_centre_jacobian(dvi__action *action, double *values);
 /* Free what dvi__action_prepare_energy has made. */
 void dvi__action_clear_energy(dvi__action *action);
 
-/* An element whose tables shaped.c fills, at every new length: of it there are place, residual, magnitudes, Jacobian and ends. */
+/* An element whose tables shaped.c fills, at every new length: of it there are place, residual, Hessians and ends. */
 dvi_status dvi__action_create_shaped(const dvi_system *system, int functions, int points, dvi_counters *counters,
                                      dvi__action **action);
 
@@ -105,6 +105,13 @@ void dvi__action_scale_by(const dvi__action *action, const double *L_vv, double 
 
 /* What sweeps need that depends on h alone. */
 void dvi__action_set_step(dvi__action *action);
+
+/* The joint pattern, and memory for Hessians; the Hessians along the path Y, for what follows. */
+dvi_status dvi__action_prepare_hessians(dvi__action *action);
+dvi_status dvi__action_hessians(dvi__action *action, const double *Y);
+
+/* Column l of a block, its first `rows` rows: sum_j b_j [ (psi_k - psi_k(1)) (h L_qq psi_l + L_qv psi_l') + psi_k' (L_vq psi_l + L_vv psi_l'/h) ]. */
+void dvi__action_block_column(const dvi__action *action, const dvi__block *block, int l, int rows, double *column);
 
 /* in_q and in_v [r], which may stand in `line`: b_j (h L_qq f + L_qv f') and b_j (L_vq f + L_vv f'/h) for one entry of the joint pattern and a function f of
  * which f and f' [r] are given at the nodes. */

@@ -9,17 +9,22 @@ const dvi__pattern *dvi__action_pattern(const dvi__action *action)
   return &action->pattern;
 }
 
-dvi_status dvi__action_prepare_jacobian(dvi__action *a)
+dvi_status dvi__action_prepare_hessians(dvi__action *a)
 {
   const dvi_system *system = a->system;
   const size_t r = (size_t)a->r;
   DVI_TRY(dvi__joint_create(system, &a->joint, &a->block));
-  DVI_TRY(dvi__pattern_blocks(&a->joint, a->s, &a->pattern));
   a->H_qq = DVI_NEW(double, (size_t)dvi__pattern_entries(&system->qq) * r);
   a->H_qv = DVI_NEW(double, (size_t)dvi__pattern_entries(&system->qv) * r);
   a->H_vv = DVI_NEW(double, (size_t)dvi__pattern_entries(&system->vv) * r);
   if (a->H_qq && a->H_qv && a->H_vv) return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "action: no memory for Hessians at %d nodes", a->r);
+}
+
+dvi_status dvi__action_prepare_jacobian(dvi__action *a)
+{
+  DVI_TRY(dvi__action_prepare_hessians(a));
+  return dvi__pattern_blocks(&a->joint, a->s, &a->pattern);
 }
 
 /* x[j] += factor * H[j] * table[j], where the Hessian has this entry. */
@@ -42,13 +47,12 @@ void dvi__action_weigh_hessian(const dvi__action *a, const dvi__block *block, co
   for (int j = 0; j < r; j++) in_q[j] *= a->weight[j], in_v[j] *= a->weight[j];
 }
 
-/* Column l of a block: sum_j b_j [ (psi_k - psi_k(1)) (h L_qq psi_l + L_qv psi_l') + psi_k' (L_vq psi_l + L_vv psi_l'/h) ]. */
-static void block_column(const dvi__action *a, const dvi__block *block, int l, double *column)
+void dvi__action_block_column(const dvi__action *a, const dvi__block *block, int l, int rows, double *column)
 {
   const int r = a->r;
   double *in_q = a->line, *in_v = a->line + r;
   dvi__action_weigh_hessian(a, block, a->psi + l * a->lanes, a->dpsi + l * a->lanes, in_q, in_v);
-  for (int k = 0; k < a->s; k++) {
+  for (int k = 0; k < rows; k++) {
     const double *bar = a->bar + k * a->lanes, *slope = a->dpsi + k * a->lanes;
     double sum = 0;
     for (int j = 0; j < r; j++) sum += bar[j] * in_q[j] + slope[j] * in_v[j];
@@ -56,17 +60,22 @@ static void block_column(const dvi__action *a, const dvi__block *block, int l, d
   }
 }
 
+dvi_status dvi__action_hessians(dvi__action *a, const double *Y)
+{
+  dvi__action_stages(a, Y);
+  dvi__action_centre_path(a, Y);
+  return dvi__lagrangian_hessian(a->evaluator, a->r, a->t, a->Q, a->V, a->H_qq, a->H_qv, a->H_vv);
+}
+
 dvi_status dvi__action_jacobian(dvi__action *a, const double *Y, double *values)
 {
   const size_t s = (size_t)a->s;
-  dvi__action_stages(a, Y);
-  dvi__action_centre_path(a, Y);
-  DVI_TRY(dvi__lagrangian_hessian(a->evaluator, a->r, a->t, a->Q, a->V, a->H_qq, a->H_qv, a->H_vv));
+  DVI_TRY(dvi__action_hessians(a, Y));
   for (int j = 0; j < a->n; j++) {
     const int first = a->joint.start[j], length = a->joint.start[j + 1] - first;
     double *column = values + s * s * (size_t)first;
     for (int l = 0; l < a->s; l++)
-      for (int e = first; e < first + length; e++, column += s) block_column(a, &a->block[e], l, column);
+      for (int e = first; e < first + length; e++, column += s) dvi__action_block_column(a, &a->block[e], l, a->s, column);
   }
   dvi__action_centre_jacobian(a, values);
   return DVI_OK;

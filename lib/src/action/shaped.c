@@ -7,19 +7,26 @@
 #include "core/status.h"
 
 struct dvi__shaped {
-  dvi__action *action;
+  dvi__action *action; /* in which every coordinate has all functions: those that it has not got stay 0 */
   dvi__shapes shapes;
-  int *functions;     /* [n] */
-  double h;           /* that the tables are for; 0: none */
-  double *psi, *dpsi; /* [functions] work */
-  double *rest;       /* [n] zeros: the velocity at which rows are scaled */
-  double *dq_low;     /* [n] */
-  double *at;         /* [unknowns] of the last residual */
+  int *first;           /* [n+1] of a coordinate's unknowns */
+  dvi__pattern pattern; /* of the Jacobian */
+  double h;             /* that the tables are for; 0: none */
+  double *psi, *dpsi;   /* [functions] work */
+  double *rest;         /* [n] zeros: the velocity at which rows are scaled */
+  double *dq_low;       /* [n] */
+  double *at;           /* [n*functions] of the last residual */
+  double *whole;        /* [n*functions] work */
 };
 
-static int is_there(const dvi__shaped *s, int i, int k)
+static int functions_of(const dvi__shaped *s, int i)
 {
-  return k < s->functions[i] && s->shapes.present(s->shapes.of, k);
+  return s->first[i + 1] - s->first[i];
+}
+
+static int is_present(const dvi__shaped *s, int k)
+{
+  return s->shapes.present(s->shapes.of, k);
 }
 
 /* ---- making it ---- */
@@ -27,14 +34,15 @@ static int is_there(const dvi__shaped *s, int i, int k)
 static int allocate(dvi__shaped *s, const int *functions)
 {
   const size_t n = (size_t)s->action->n, count = (size_t)s->shapes.functions;
-  s->functions = DVI_NEW(int, n);
+  s->first = DVI_NEW(int, n + 1);
   s->psi = DVI_NEW(double, count);
   s->dpsi = DVI_NEW(double, count);
   s->rest = DVI_NEW(double, n);
   s->dq_low = DVI_NEW(double, n);
   s->at = DVI_NEW(double, n *count);
-  if (!s->functions || !s->psi || !s->dpsi || !s->rest || !s->dq_low || !s->at) return 0;
-  memcpy(s->functions, functions, n * sizeof *functions);
+  s->whole = DVI_NEW(double, n *count);
+  if (!s->first || !s->psi || !s->dpsi || !s->rest || !s->dq_low || !s->at || !s->whole) return 0;
+  for (size_t i = 0; i < n; i++) s->first[i + 1] = s->first[i] + functions[i];
   return 1;
 }
 
@@ -42,7 +50,8 @@ static dvi_status fill(dvi__shaped *s, const dvi_system *system, const int *func
 {
   DVI_TRY(dvi__action_create_shaped(system, s->shapes.functions, s->shapes.points, counters, &s->action));
   if (!allocate(s, functions)) return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d shapes", s->shapes.functions);
-  return dvi__action_prepare_jacobian(s->action);
+  DVI_TRY(dvi__action_prepare_hessians(s->action));
+  return dvi__pattern_uneven_blocks(&s->action->joint, s->first, &s->pattern);
 }
 
 dvi_status dvi__shaped_create(const dvi_system *system, const dvi__shapes *shapes, const int *functions, dvi_counters *counters,
@@ -61,19 +70,21 @@ void dvi__shaped_destroy(dvi__shaped **shaped)
   dvi__shaped *s = *shaped;
   if (s == NULL) return;
   dvi__action_destroy(&s->action);
-  dvi__release(s->functions);
+  dvi__pattern_clear(&s->pattern);
+  dvi__release(s->first);
   dvi__release(s->psi);
   dvi__release(s->dpsi);
   dvi__release(s->rest);
   dvi__release(s->dq_low);
   dvi__release(s->at);
+  dvi__release(s->whole);
   dvi__release(s);
   *shaped = NULL;
 }
 
 const dvi__pattern *dvi__shaped_pattern(const dvi__shaped *shaped)
 {
-  return dvi__action_pattern(shaped->action);
+  return &shaped->pattern;
 }
 
 dvi__evaluator *dvi__shaped_evaluator(const dvi__shaped *shaped)
@@ -113,26 +124,45 @@ void dvi__shaped_place(dvi__shaped *shaped, double t0, double h, const double *q
 
 /* ---- the step ---- */
 
+/* All coordinates' coefficients [n*functions] from the unknowns. */
+static void widen(const dvi__shaped *s, const double *Y, double *whole)
+{
+  const size_t count = (size_t)s->shapes.functions;
+  memset(whole, 0, (size_t)s->action->n * count * sizeof *whole);
+  for (int i = 0; i < s->action->n; i++) memcpy(whole + (size_t)i * count, Y + s->first[i], (size_t)functions_of(s, i) * sizeof *Y);
+}
+
 dvi_status dvi__shaped_residual(dvi__shaped *shaped, const double *Y, double *R)
 {
   const dvi__action *a = shaped->action;
-  memcpy(shaped->at, Y, (size_t)dvi__action_unknowns(a) * sizeof *Y);
-  DVI_TRY(dvi__action_residual(shaped->action, Y, R));
+  widen(shaped, Y, shaped->at);
+  DVI_TRY(dvi__action_residual(shaped->action, shaped->at, shaped->whole));
   for (int i = 0; i < a->n; i++)
-    for (int k = 0; k < a->s; k++)
-      if (!is_there(shaped, i, k)) R[i * a->s + k] = Y[i * a->s + k];
+    for (int k = 0, row = shaped->first[i]; row < shaped->first[i + 1]; k++, row++)
+      R[row] = is_present(shaped, k) ? shaped->whole[i * a->s + k] : Y[row];
   return DVI_OK;
+}
+
+/* Rows and columns of functions that are not present become those of the identity. */
+static void mask_block(const dvi__shaped *s, int i, int j, int l, double *column)
+{
+  for (int k = 0; k < functions_of(s, i); k++)
+    if (!is_present(s, k) || !is_present(s, l)) column[k] = i == j && k == l;
 }
 
 dvi_status dvi__shaped_jacobian(dvi__shaped *shaped, const double *Y, double *values)
 {
   const dvi__action *a = shaped->action;
-  DVI_TRY(dvi__action_jacobian(shaped->action, Y, values));
-  for (int column = 0; column < a->pattern.columns; column++)
-    for (int e = a->pattern.start[column]; e < a->pattern.start[column + 1]; e++) {
-      const int row = a->pattern.row[e];
-      if (!is_there(shaped, column / a->s, column % a->s) || !is_there(shaped, row / a->s, row % a->s)) values[e] = row == column;
-    }
+  widen(shaped, Y, shaped->whole);
+  DVI_TRY(dvi__action_hessians(shaped->action, shaped->whole));
+  for (int j = 0; j < a->n; j++)
+    for (int l = 0; l < functions_of(shaped, j); l++)
+      for (int e = a->joint.start[j]; e < a->joint.start[j + 1]; e++) {
+        const int i = a->joint.row[e];
+        dvi__action_block_column(a, &a->block[e], l, functions_of(shaped, i), values);
+        mask_block(shaped, i, j, l, values);
+        values += functions_of(shaped, i);
+      }
   return DVI_OK;
 }
 
@@ -141,41 +171,44 @@ dvi_status dvi__shaped_scale(dvi__shaped *shaped, double *scale)
   const dvi__action *a = shaped->action;
   const double *L_vv = NULL;
   if (a->system->lagrangian != NULL) DVI_TRY(dvi__velocity_hessian(a->evaluator, a->t0, a->q0, shaped->rest, &L_vv));
-  dvi__action_scale_by(a, L_vv, scale);
+  dvi__action_scale_by(a, L_vv, shaped->whole);
   for (int i = 0; i < a->n; i++)
-    for (int k = 0; k < a->s; k++)
-      if (!is_there(shaped, i, k)) scale[i * a->s + k] = 1;
+    for (int k = 0, row = shaped->first[i]; row < shaped->first[i + 1]; k++, row++)
+      scale[row] = is_present(shaped, k) ? shaped->whole[i * a->s] : 1;
   return DVI_OK;
 }
 
 void dvi__shaped_straight(const dvi__shaped *shaped, const double *v, double *Y)
 {
   const dvi__action *a = shaped->action;
-  memset(Y, 0, (size_t)dvi__action_unknowns(a) * sizeof *Y);
-  for (int i = 0; i < a->n; i++) Y[i * a->s] = a->h * v[i];
+  memset(Y, 0, (size_t)shaped->pattern.columns * sizeof *Y);
+  for (int i = 0; i < a->n; i++) Y[shaped->first[i]] = a->h * v[i];
 }
 
 /* After a step of another length its mean velocity is all that is taken over. */
 void dvi__shaped_continue(dvi__shaped *shaped, double ratio, const double *last, double *Y)
 {
   const dvi__action *a = shaped->action;
-  memset(Y, 0, (size_t)dvi__action_unknowns(a) * sizeof *Y);
+  const size_t count = (size_t)a->s;
+  memset(Y, 0, (size_t)shaped->pattern.columns * sizeof *Y);
+  widen(shaped, last, shaped->whole);
   for (int i = 0; i < a->n; i++) {
-    const double *from = last + i * a->s;
-    double *to = Y + i * a->s;
+    const double *from = shaped->whole + (size_t)i * count;
+    double *to = Y + shaped->first[i];
     if (ratio == 1)
-      shaped->shapes.next(shaped->shapes.of, from, to);
+      shaped->shapes.next(shaped->shapes.of, from, shaped->psi);
     else
       to[0] = ratio * from[0];
-    for (int k = 0; k < a->s; k++)
-      if (!is_there(shaped, i, k)) to[k] = 0;
+    for (int k = 0; ratio == 1 && k < functions_of(shaped, i); k++) to[k] = is_present(shaped, k) ? shaped->psi[k] : 0;
   }
 }
 
 void dvi__shaped_ends(dvi__shaped *shaped, const double *Y, double *dq, double *dp)
 {
-  dvi__action_ends(shaped->action, Y, dq, shaped->dq_low, dp); /* 0 without sweeps */
-  for (int k = 0; k < dvi__action_unknowns(shaped->action); k++) shaped->at[k] = Y[k] - shaped->at[k];
+  const size_t count = (size_t)shaped->action->n * (size_t)shaped->action->s;
+  widen(shaped, Y, shaped->whole);
+  dvi__action_ends(shaped->action, shaped->whole, dq, shaped->dq_low, dp); /* 0 without sweeps */
+  for (size_t k = 0; k < count; k++) shaped->at[k] = shaped->whole[k] - shaped->at[k];
   dvi__action_move_ends(shaped->action, shaped->at, dp);
 }
 
@@ -185,10 +218,11 @@ void dvi__shaped_path(dvi__shaped *shaped, const double *Y, double h, double tau
   set_length(shaped, h);
   shaped->shapes.path(shaped->shapes.of, tau, shaped->psi, shaped->dpsi);
   for (int i = 0; i < a->n; i++) {
+    const double *own = Y + shaped->first[i];
     double sum[2] = {0, 0};
-    for (int k = 0; k < a->s; k++) {
-      sum[0] += shaped->psi[k] * Y[i * a->s + k];
-      sum[1] += shaped->dpsi[k] * Y[i * a->s + k];
+    for (int k = 0; k < functions_of(shaped, i); k++) {
+      sum[0] += shaped->psi[k] * own[k];
+      sum[1] += shaped->dpsi[k] * own[k];
     }
     if (offset != NULL) offset[i] = sum[0];
     if (v != NULL) v[i] = sum[1] / h;

@@ -1,7 +1,7 @@
 /* One element of the discrete action (action.h) in a space of given shapes (space/shapes.h), as a step: the same rows, from other tables.
  *
- * A coordinate may have the first functions alone, as slow ones have the polynomials. Unknowns of functions that it does not have, or that are not present at this
- * h, stay 0: their rows say so. */
+ * A coordinate may have the first functions alone, as slow ones have the polynomials: the unknowns are those of its own functions, coordinate by coordinate.
+ * Unknowns of functions that are not present at this h stay 0: their rows say so. */
 #ifndef DVI_ACTION_SHAPED_H
 #define DVI_ACTION_SHAPED_H
 #include "action/action.h"

@@ -132,10 +132,26 @@ dvi_status dvi__pattern_transpose(const dvi__pattern *pattern, dvi__pattern *tra
   return DVI_OK;
 }
 
-dvi_status dvi__pattern_blocks(const dvi__pattern *pattern, int size, dvi__pattern *blocks)
+static void fill_blocks(const dvi__pattern *pattern, const int *first, dvi__pattern *blocks)
 {
-  const int columns = pattern->columns * size;
-  const size_t entries = (size_t)dvi__pattern_entries(pattern) * (size_t)size * (size_t)size;
+  int at = 0;
+  for (int j = 0; j < pattern->columns; j++)
+    for (int column = first[j]; column < first[j + 1]; column++) {
+      for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++)
+        for (int row = first[pattern->row[e]]; row < first[pattern->row[e] + 1]; row++) blocks->row[at++] = row;
+      blocks->start[column + 1] = at;
+    }
+}
+
+dvi_status dvi__pattern_uneven_blocks(const dvi__pattern *pattern, const int *first, dvi__pattern *blocks)
+{
+  const int columns = first[pattern->columns];
+  size_t entries = 0;
+  for (int j = 0; j < pattern->columns; j++)
+    for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++) {
+      const int i = pattern->row[e];
+      entries += (size_t)(first[j + 1] - first[j]) * (size_t)(first[i + 1] - first[i]);
+    }
   *blocks = (dvi__pattern){0};
   if (entries > INT_MAX)
     return dvi__fail(DVI_BAD_SIZE, "action: the Jacobian would have %zu entries; declare sparse Hessians", entries);
@@ -144,14 +160,19 @@ dvi_status dvi__pattern_blocks(const dvi__pattern *pattern, int size, dvi__patte
     dvi__pattern_clear(blocks);
     return dvi__fail(DVI_NO_MEMORY, "action: no memory for a Jacobian of %zu entries", entries);
   }
-  int at = 0;
-  for (int j = 0; j < pattern->columns; j++)
-    for (int l = 0; l < size; l++) {
-      for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++)
-        for (int k = 0; k < size; k++) blocks->row[at++] = pattern->row[e] * size + k;
-      blocks->start[j * size + l + 1] = at;
-    }
+  fill_blocks(pattern, first, blocks);
   return DVI_OK;
+}
+
+dvi_status dvi__pattern_blocks(const dvi__pattern *pattern, int size, dvi__pattern *blocks)
+{
+  int *first = DVI_NEW(int, pattern->columns + 1);
+  *blocks = (dvi__pattern){0};
+  if (first == NULL) return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d blocks", pattern->columns);
+  for (int j = 0; j <= pattern->columns; j++) first[j] = j * size;
+  const dvi_status status = dvi__pattern_uneven_blocks(pattern, first, blocks);
+  dvi__release(first);
+  return status;
 }
 
 int dvi__pattern_find(const dvi__pattern *pattern, int row, int column)

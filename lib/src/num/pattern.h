@@ -38,6 +38,9 @@ dvi_status dvi__pattern_transpose(const dvi__pattern *pattern, dvi__pattern *tra
 /* Every entry becomes a full size x size block: entry (i,j) the rows i*size+k and columns j*size+l. DVI_BAD_SIZE if an int cannot count the entries. */
 dvi_status dvi__pattern_blocks(const dvi__pattern *pattern, int size, dvi__pattern *blocks);
 
+/* The same of a square pattern with blocks of several sizes: entry (i,j) becomes the rows first[i] .. first[i+1]-1 and columns first[j] .. first[j+1]-1; first [columns+1]. */
+dvi_status dvi__pattern_uneven_blocks(const dvi__pattern *pattern, const int *first, dvi__pattern *blocks);
+
 /* Index of entry (row, column), or -1. */
 int dvi__pattern_find(const dvi__pattern *pattern, int row, int column);
 
