@@ -67,7 +67,7 @@ static dvi_status make(dvi__given *g, dvi_rule rule)
   if (g->shapes->point == NULL) DVI_TRY(dvi_quadrature(rule, g->points, g->node, g->weight));
   DVI_TRY(dvi__given_prepare(g, g->shapes->h));
   DVI_TRY(dvi__given_check(g));
-  g->order = dvi__given_integrates(g);
+  g->order = g->now.order;
   g->symmetric = dvi__given_mirrors(g);
   return DVI_OK;
 }
@@ -194,7 +194,7 @@ static long double inner(const dvi__given *g, const dvi__given_tables *t, int k,
 {
   const long double *a = g->slope + k * g->points, *b = g->slope + l * g->points;
   long double sum = 0;
-  for (int j = 0; j < g->points; j++) sum += fabsl((long double)t->weight[j]) * a[j] * b[j];
+  for (int j = 0; j < g->points; j++) sum += dvi__given_measure(g, t, j, l) * a[j] * b[j];
   return sum;
 }
 
@@ -216,32 +216,77 @@ static void subtract(const dvi__given *g, const dvi__given_tables *t, int k, lon
   for (int i = 0; i <= l; i++) t->matrix[k * g->count + i] -= factor * t->matrix[l * g->count + i];
 }
 
-/* Gram and Schmidt's, in the derivatives, each function three times. The first, tau, stays as it is. */
+/* Gram and Schmidt's, in the derivatives, each function three times. The first, tau, stays as it is: the weights sum to 1. */
 static void orthogonalize(const dvi__given *g, const dvi__given_tables *t)
 {
-  const long double whole = inner(g, t, 0, 0);
   memset(t->matrix, 0, (size_t)g->count * (size_t)g->count * sizeof *t->matrix);
-  t->matrix[0] = 1;
-  for (int k = 1; k < g->count; k++) {
-    const long double size = sqrtl(inner(g, t, k, k));
+  for (int k = 0; k < g->count; k++) {
+    const long double size = inner(g, t, k, k);
     t->matrix[k * g->count + k] = 1;
     for (int pass = 0; pass < 3; pass++)
-      for (int l = 0; l < k; l++) subtract(g, t, k, inner(g, t, k, l) / (l == 0 ? whole : 1), l);
-    const long double left = sqrtl(inner(g, t, k, k));
-    multiply(g, t, k, left > least_part * size ? 1 / left : 0);
+      for (int l = 0; l < k; l++) subtract(g, t, k, inner(g, t, k, l), l);
+    const long double left = inner(g, t, k, k);
+    if (k > 0) multiply(g, t, k, left > least_part * least_part * size ? 1 / sqrtl(left) : 0);
   }
 }
 
-static void write_points(const dvi__given *g, const dvi__given_tables *t)
+/* The derivatives at the points, which are final. */
+static void write_slopes(const dvi__given *g, const dvi__given_tables *t)
 {
   for (int k = 0; k < g->count; k++) {
     long double lean = 0;
     for (int j = 0; j < g->points; j++) {
-      t->psi[j * g->count + k] = (double)g->value[k * g->points + j];
       t->dpsi[j * g->count + k] = (double)g->slope[k * g->points + j];
-      lean += fabsl((long double)t->weight[j]) * g->slope[k * g->points + j] * (long double)t->node[j];
+      lean += dvi__given_measure(g, t, j, k) * g->slope[k * g->points + j] * (long double)t->node[j];
     }
-    t->lean[k] = (double)(k == 0 ? lean / inner(g, t, 0, 0) : lean);
+    t->lean[k] = (double)lean;
+  }
+}
+
+/* The quadrature's order, as far as the polynomials ask for it. */
+static int order_of(const dvi__given *g, const dvi__given_tables *t)
+{
+  for (int power = 0; power < 2 * g->degree; power++) {
+    double sum = 0;
+    for (int j = 0; j < g->points; j++) sum += t->weight[j] * pow(t->node[j], power);
+    if (fabs(sum - 1.0 / (power + 1)) > 1e-12) return power;
+  }
+  return 2 * g->degree;
+}
+
+/* psi_k(1), from the e_k(1) in at_value. */
+static long double end_of(const dvi__given *g, const dvi__given_tables *t, int k)
+{
+  long double sum = 0;
+  for (int i = 0; i <= k; i++) sum += t->matrix[k * g->count + i] * (g->at_value[i] - t->start[i]);
+  return sum;
+}
+
+/* sum_j b_j psi_k psi_l' */
+static long double mixed(const dvi__given *g, const dvi__given_tables *t, int k, int l)
+{
+  long double sum = 0;
+  for (int j = 0; j < g->points; j++) sum += (long double)t->weight[j] * g->value[k * g->points + j] * g->slope[l * g->points + j];
+  return sum;
+}
+
+/* A stationary path of polynomials must stay one, or there is no order: sum_j b_j (psi_k f)' = psi_k(1) f(1) for f of degree less than d and every function. The
+ * integrals of derivatives are 0 already. What the quadrature errs by in the others is taken from the values, as a polynomial of degree d: it is as small as that
+ * error, 0 where functions are integrated exactly. psi_m meets psi_{m-1}' and psi_{m+1}' alone, so that one is taken after the other. */
+static void match(const dvi__given *g, const dvi__given_tables *t, int k)
+{
+  for (int m = 0; m < g->degree && 2 * m < t->order; m++) {
+    const long double part = m == 0 ? end_of(g, t, k) : mixed(g, t, k, m - 1) / mixed(g, t, m, m - 1);
+    for (int j = 0; j < g->points; j++) g->value[k * g->points + j] -= part * g->value[m * g->points + j];
+    for (int i = 0; i <= m; i++) t->matrix[k * g->count + i] -= part * t->matrix[m * g->count + i];
+  }
+}
+
+static void write_values(const dvi__given *g, const dvi__given_tables *t)
+{
+  for (int k = 0; k < g->count; k++) {
+    if (k >= g->degree && t->matrix[k * g->count + k] != 0) match(g, t, k);
+    for (int j = 0; j < g->points; j++) t->psi[j * g->count + k] = (double)g->value[k * g->points + j];
   }
 }
 
@@ -269,8 +314,11 @@ dvi_status dvi__given_fill(const dvi__given *g, double h, dvi__given_tables *t)
   memcpy(t->start, g->at_value, (size_t)g->count * sizeof *t->start);
   DVI_TRY(ask_points(g, t->h, t));
   portray(g, &t->portrait);
+  t->order = order_of(g, t);
   orthogonalize(g, t);
-  write_points(g, t);
+  write_slopes(g, t);
+  DVI_TRY(dvi__given_evaluate(g, t->h, 1));
+  write_values(g, t);
   DVI_TRY(evaluate_basis(g, t, 0, t->end, t->slopes[0]));
   return evaluate_basis(g, t, 1, t->end, t->slopes[1]);
 }

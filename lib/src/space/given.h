@@ -1,6 +1,6 @@
 /* A user's function space (dvi/shapes.h) as shapes: polynomials of a degree, then the user's functions, made orthonormal.
  *
- * The inner product is the quadrature's, sum_j |b_j| psi_k' psi_l'; psi_0 = tau. What the points do not tell apart cannot be solved for: a function of which less than
+ * The inner product is the quadrature's, sum_j b_j psi_k' psi_l', with |b_j| between functions; psi_0 = tau. What the points do not tell apart cannot be solved for: a function of which less than
  * 1e-8 of itself is left is not present, as in space/oscillating.h. */
 #ifndef DVI_SPACE_GIVEN_H
 #define DVI_SPACE_GIVEN_H

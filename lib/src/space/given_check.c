@@ -127,17 +127,7 @@ dvi_status dvi__given_check(const dvi__given *g)
   return check_independence(g);
 }
 
-/* ---- order and symmetry ---- */
-
-int dvi__given_integrates(const dvi__given *g)
-{
-  for (int power = 0; power < 2 * g->degree; power++) {
-    double sum = 0;
-    for (int j = 0; j < g->points; j++) sum += g->now.weight[j] * pow(g->now.node[j], power);
-    if (fabs(sum - 1.0 / (power + 1)) > 1e-12) return power;
-  }
-  return 2 * g->degree;
-}
+/* ---- symmetry ---- */
 
 static int points_mirror(const dvi__given *g, const dvi__given_tables *a, const dvi__given_tables *b)
 {
@@ -148,18 +138,19 @@ static int points_mirror(const dvi__given *g, const dvi__given_tables *a, const 
   return 1;
 }
 
-/* Coefficients [count] in b of the mirrored function, tau to psi_k(1 - tau) - psi_k(1), in at_value. */
-static void project_mirrored(const dvi__given *g, const dvi__given_tables *a, const dvi__given_tables *b, int k)
+/* The mirrored function, tau to psi_k(1 - tau) - psi_k(1), in the basis b: coefficients [count] in at_value, and what is left of the derivatives, its largest. */
+static long double project_mirrored(const dvi__given *g, const dvi__given_tables *a, const dvi__given_tables *b, int k)
 {
-  long double whole = 0;
-  memset(g->at_value, 0, (size_t)g->count * sizeof *g->at_value);
-  for (int j = 0; j < g->points; j++) {
-    const long double weight = fabsl((long double)b->weight[j]);
-    whole += weight;
-    for (int l = 0; l < g->count; l++)
-      g->at_value[l] -= weight * (long double)a->dpsi[(g->points - 1 - j) * g->count + k] * (long double)b->dpsi[j * g->count + l];
+  long double *left = g->slope, most = 0;
+  for (int j = 0; j < g->points; j++) left[j] = -(long double)a->dpsi[(g->points - 1 - j) * g->count + k];
+  for (int l = 0; l < g->count; l++) {
+    g->at_value[l] = 0;
+    for (int j = 0; j < g->points; j++)
+      g->at_value[l] += dvi__given_measure(g, b, j, l) * left[j] * (long double)b->dpsi[j * g->count + l];
+    for (int j = 0; j < g->points; j++) left[j] -= g->at_value[l] * (long double)b->dpsi[j * g->count + l];
   }
-  g->at_value[0] /= whole;
+  for (int j = 0; j < g->points; j++) most = fmaxl(most, fabsl(left[j]));
+  return most;
 }
 
 static long double combine(const dvi__given *g, const double *function)
@@ -171,11 +162,11 @@ static long double combine(const dvi__given *g, const double *function)
 
 static int function_mirrors(const dvi__given *g, const dvi__given_tables *a, const dvi__given_tables *b, int k)
 {
-  long double most = fabsl((long double)a->end[k] + combine(g, b->end));
+  long double most = project_mirrored(g, a, b, k);
+  most = fmaxl(most, fabsl((long double)a->end[k] + combine(g, b->end)));
   for (int j = 0; j < g->points; j++) {
-    const int other = (g->points - 1 - j) * g->count + k;
-    most = fmaxl(most, fabsl((long double)a->psi[other] - (long double)a->end[k] - combine(g, b->psi + j * g->count)));
-    most = fmaxl(most, fabsl((long double)a->dpsi[other] + combine(g, b->dpsi + j * g->count)));
+    const double value = a->psi[(g->points - 1 - j) * g->count + k];
+    most = fmaxl(most, fabsl((long double)value - (long double)a->end[k] - combine(g, b->psi + j * g->count)));
   }
   return most <= 1e-9L;
 }
@@ -185,9 +176,7 @@ int dvi__given_mirrors(dvi__given *g)
 {
   if (dvi__given_fill(g, -g->shapes->h, &g->spare) != DVI_OK) return 0;
   if (!points_mirror(g, &g->now, &g->spare)) return 0;
-  for (int k = 0; k < g->count; k++) {
-    project_mirrored(g, &g->now, &g->spare, k);
+  for (int k = 0; k < g->count; k++)
     if (!function_mirrors(g, &g->now, &g->spare, k)) return 0;
-  }
   return 1;
 }
