@@ -62,6 +62,25 @@ static int evaluate_decay(double h, double tau, double *value, double *derivativ
 const dvi_shapes decay = {.name = "decay", .functions = 1, .evaluate = evaluate_decay, .h = 0.5};
 const dvi_shapes lopsided = {.name = "lopsided", .functions = 1, .evaluate = evaluate_decay};
 
+static int evaluate_steep(double h, double tau, double *value, double *derivative, void *user)
+{
+  (void)h, (void)user;
+  *value = tanh(20 * tau - 8);
+  *derivative = 20 * (1 - *value * *value);
+  return 0;
+}
+
+const dvi_shapes steep = {.name = "steep", .functions = 1, .evaluate = evaluate_steep};
+
+static int point_of_milne(double h, int j, double *tau, double *weight, double *value, double *derivative, void *user)
+{
+  *tau = 0.25 * (j + 1);
+  *weight = j == 1 ? -1.0 / 3 : 2.0 / 3;
+  return evaluate_decay(h, *tau, value, derivative, user);
+}
+
+const dvi_shapes milne = {.name = "milne", .functions = 1, .evaluate = evaluate_decay, .point = point_of_milne, .points = 3};
+
 static int evaluate_spline(double h, double tau, double *value, double *derivative, void *user)
 {
   (void)h, (void)user;

@@ -18,6 +18,12 @@ dvi_shapes oscillation(const double *omega);
 /* exp(-h tau): with steps back its space is its mirror image. exp(-tau): it is not. */
 extern const dvi_shapes decay, lopsided;
 
+/* tanh(20 tau - 8), which few points integrate badly. */
+extern const dvi_shapes steep;
+
+/* exp(-tau) by Milne's rule, whose middle weight is negative. */
+extern const dvi_shapes milne;
+
 /* max(0, tau - 1/2)^3 by a Gauss rule of four points on either half: with degree=3, cubic splines with a knot in the middle. */
 extern const dvi_shapes spline;
 
