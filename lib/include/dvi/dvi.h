@@ -11,6 +11,7 @@
 #include <dvi/quadrature.h>
 #include <dvi/reference.h>
 #include <dvi/run.h>
+#include <dvi/shapes.h>
 #include <dvi/status.h>
 #include <dvi/system.h>
 #include <dvi/taylor.h>

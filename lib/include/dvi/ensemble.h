@@ -2,6 +2,7 @@
 #ifndef DVI_ENSEMBLE_H
 #define DVI_ENSEMBLE_H
 #include <dvi/integrator.h>
+#include <dvi/shapes.h>
 
 /** Members differ in their initial states, or in the parameters of their systems. Each has the digits of a dvi_integrator that runs it alone,
  *  bit for bit, on every processor, for every number of threads and however the members are grouped.
@@ -22,6 +23,9 @@ typedef struct dvi_ensemble_options {
    *  the system that dvi_ensemble_create is given. They must declare the same terms, masses, patterns, names, derivatives and reaches, and differ in
    *  what their callbacks compute. Only neighbours with the same system are worked on side by side. */
   const dvi_system *const *systems;
+  /** Functions of your own for `shaped-galerkin`, as dvi_integrator_create_shaped has them; copied. With more threads than one their callbacks run at the same time,
+   *  too. NULL: none. */
+  const dvi_shapes *shapes;
 } dvi_ensemble_options;
 
 #ifdef __cplusplus

@@ -228,7 +228,8 @@ const double *dvi_integrator_multiplier(const dvi_integrator *integrator);
  *  @param[out] q  [nq], or NULL
  *  @param[out] v  [nv], or NULL
  *  @retval DVI_BAD_STATE     no step was taken yet
- *  @retval DVI_BAD_ARGUMENT  t is outside of the last step */
+ *  @retval DVI_BAD_ARGUMENT  t is outside of the last step
+ *  @retval DVI_NOT_FINITE    functions of your own (dvi/shapes.h) cannot be evaluated there */
 dvi_status dvi_integrator_interpolate(dvi_integrator *integrator, double t, double *q, double *v);
 
 /** What was done so far; all 0 for NULL. */

@@ -74,7 +74,8 @@ dvi_status dvi__charted_step_create(dvi__stepper *self, int reduced)
   dvi__text_add(&text, "galerkin%s%s", self->settings.rest[0] != 0 ? ":" : "", self->settings.rest);
   const dvi_status made = dvi__charted_create(self->system, reduced, self->counters, &own->charted);
   if (made != DVI_OK) return dvi__fail_in(made, "%s", self->method->name);
-  const dvi_status status = dvi__stepper_create(dvi__charted_system(own->charted), specification, self->counters, &own->inner);
+  const dvi_status status = dvi__stepper_create(dvi__charted_system(own->charted), specification, NULL, self->counters,
+                                                &own->inner);
   if (status != DVI_OK) return dvi__fail_in(status, "%s, by the keys of galerkin", self->method->name);
   take_over(self, &own->inner);
   DVI_TRY(centre_paths(own));

@@ -232,6 +232,14 @@ static dvi_status check_system(const dvi_integrator *I, const char *path, const 
       path, head.system.distance, here.distance);
 }
 
+static dvi_status check_space(const dvi_integrator *I, const char *path, const unsigned char *file)
+{
+  const double *numbers = (const double *)(const void *)(file + sizeof(header));
+  const dvi__method *method = I->stepper.method;
+  if (method->recognizes == NULL || method->recognizes(&I->stepper, numbers + 8 * (size_t)I->system->n)) return DVI_OK;
+  return dvi__fail(DVI_BAD_FILE, "checkpoint %s: of another function space of the same name, or for other coordinates", path);
+}
+
 static dvi_status check(const dvi_integrator *I, const char *path, const unsigned char *file, size_t got)
 {
   header head;
@@ -253,7 +261,8 @@ static dvi_status check(const dvi_integrator *I, const char *path, const unsigne
   memcpy(&sum, file + size - sizeof sum, sizeof sum);
   if (sum != dvi__hash(DVI__HASH_START, size - sizeof sum, file))
     return dvi__fail(DVI_BAD_FILE, "checkpoint %s: damaged (its checksum is wrong)", path);
-  return check_system(I, path, file);
+  DVI_TRY(check_system(I, path, file));
+  return check_space(I, path, file);
 }
 
 static void unpack(dvi_integrator *I, const unsigned char *file)

@@ -20,19 +20,19 @@ static const char *order_name(int index)
   return index >= 0 && index < 3 ? name[index] : NULL;
 }
 
-enum { VERLET, MIDPOINT, TRAPEZOIDAL, GALERKIN, IMEX, LIE_VERLET, BASES };
+enum { VERLET, MIDPOINT, TRAPEZOIDAL, GALERKIN, IMEX, LIE_VERLET, SHAPED_GALERKIN, BASES };
 
 static const char *base_name(int index)
 {
-  static const char *const name[] = {"verlet", "midpoint", "trapezoidal", "galerkin", "imex", "lie-verlet"};
+  static const char *const name[] = {"verlet", "midpoint", "trapezoidal", "galerkin", "imex", "lie-verlet", "shaped-galerkin"};
   return index >= 0 && index < BASES ? name[index] : NULL;
 }
 
 static const dvi__key keys[] = {
     {"order", order_name, 0, 0, 0, "4, 6 or 8; left out: 4"},
     {"base", base_name, 0, 0, DVI__LEFT_OUT,
-     "the symmetric method that is composed: verlet, midpoint, trapezoidal, galerkin, imex or lie-verlet; all other keys are its "
-     "own; left out: verlet, on groups lie-verlet"},
+     "the symmetric method that is composed: verlet, midpoint, trapezoidal, galerkin, imex, lie-verlet, or a program's "
+     "shaped-galerkin; all other keys are its own; left out: verlet, on groups lie-verlet"},
     {0},
 };
 
@@ -78,7 +78,7 @@ static dvi_status create(dvi__stepper *self)
   dvi__text_add(&text, "%s%s%s", base_name(*chosen), rest[0] != 0 ? ":" : "", rest);
   dvi__stepper *base = self->own = DVI_NEW(dvi__stepper, 1);
   if (base == NULL) return dvi__fail(DVI_NO_MEMORY, "composition: no memory");
-  dvi_status status = dvi__stepper_create(self->system, specification, self->counters, base);
+  dvi_status status = dvi__stepper_create(self->system, specification, self->shapes, self->counters, base);
   if (status == DVI_OK && base->method->keep_lengths != NULL) status = base->method->keep_lengths(base, scheme_of(self)->lengths);
   if (status != DVI_OK) return dvi__fail_in(status, "composition");
   if (!base->symmetric)
@@ -183,6 +183,12 @@ static void step_lanes(dvi__stepper *self, dvi__members *m, double h)
   for (int k = 0; k < m->count; k++) move_clock(t[k], t_carry[k], h, m->t + k, m->t_carry + k);
 }
 
+static int recognizes(const dvi__stepper *self, const double *memory)
+{
+  const dvi__stepper *base = self->own;
+  return base->method->recognizes == NULL || base->method->recognizes(base, memory);
+}
+
 static void explain(const dvi__stepper *self, dvi__text *text)
 {
   const dvi__stepper *base = self->own;
@@ -196,6 +202,7 @@ const dvi__method dvi__composition = {
     .cite = "KahanLi1997",
     .keys = keys,
     .takes_rest = 1,
+    .takes_shapes = 1,
     .uses = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL | DVI__FACTORS,
     .create = create,
     .destroy = destroy,
@@ -203,6 +210,7 @@ const dvi__method dvi__composition = {
     .step = step,
     .pass = pass,
     .traffic = traffic,
+    .recognizes = recognizes,
     .explain = explain,
     .prepare_lanes = prepare_lanes,
     .clear_lanes = clear_lanes,

@@ -40,7 +40,7 @@ dvi_status dvi__element_space(const dvi_system *system, const char *specificatio
 {
   dvi_counters counters = {0};
   dvi__stepper stepper;
-  dvi_status status = dvi__stepper_create(system, specification, &counters, &stepper);
+  dvi_status status = dvi__stepper_create(system, specification, NULL, &counters, &stepper);
   if (status != DVI_OK) return dvi__fail_in(status, "%s", user);
   if (stepper.method->step != dvi__element_step)
     status = dvi__fail(DVI_BAD_OPTION,

@@ -4,6 +4,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "method/ensemble_struct.h"
+#include "space/given.h"
 
 enum { THREADS_MOST = 1024, BLOCK_MOST = 65536 };
 
@@ -37,6 +38,7 @@ static dvi_status check(const dvi_system *system, const char *method, const dvi_
   if ((system == NULL) == (o->systems == NULL))
     return dvi__fail(DVI_BAD_ARGUMENT, "ensemble: %s; give one system, or options.systems",
                      system == NULL ? "there is no system" : "two ways to name the systems are used");
+  if (o->shapes != NULL) DVI_TRY(dvi__shapes_check(o->shapes));
   return o->systems != NULL ? check_systems(o) : DVI_OK;
 }
 
@@ -48,7 +50,7 @@ static dvi_status prepare_systems(const dvi_ensemble_options *o, const char *met
 {
   dvi_integrator *first = NULL;
   if (o->systems == NULL) return DVI_OK;
-  DVI_TRY(dvi_integrator_create(o->systems[0], method, &first));
+  DVI_TRY(dvi__integrator_make(o->systems[0], method, o->shapes, NULL, DVI__TRANSFORM, &first));
   dvi_integrator_destroy(&first);
   for (int k = 0; k < o->members && o->systems[0]->qq.start != NULL; k++) DVI_TRY(dvi__system_prepare_hessian(o->systems[k]));
   return DVI_OK;
@@ -67,7 +69,7 @@ static dvi_status make_integrator(dvi__worker *w, const dvi_system *system, cons
 {
   if (o->systems != NULL) w->scene = dvi__duplicate(o->systems[0], 1, sizeof *w->scene);
   if (o->systems != NULL && w->scene == NULL) return dvi__fail(DVI_NO_MEMORY, "ensemble: no memory");
-  DVI_TRY(dvi_integrator_create(w->scene != NULL ? w->scene : system, method, &w->integrator));
+  DVI_TRY(dvi__integrator_make(w->scene != NULL ? w->scene : system, method, o->shapes, NULL, DVI__TRANSFORM, &w->integrator));
   if (dvi_integrator_chooses_steps(w->integrator))
     return dvi__fail(DVI_UNSUPPORTED, "ensemble: %s chooses its steps, so that members would part in time; use single integrators",
                      w->integrator->stepper.method->name);

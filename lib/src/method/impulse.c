@@ -46,7 +46,7 @@ dvi_status dvi__impulse_take_inner(dvi__stepper *self, const char *specification
   dvi__impulse *own = self->own;
   own->inner = DVI_NEW(dvi__stepper, 1);
   if (own->inner == NULL) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
-  const dvi_status status = dvi__stepper_create(own->fast, specification, self->counters, own->inner);
+  const dvi_status status = dvi__stepper_create(own->fast, specification, NULL, self->counters, own->inner);
   if (status != DVI_OK) return dvi__fail_in(status, "%s", self->method->name);
   self->memory_count += own->inner->memory_count;
   return DVI_OK;

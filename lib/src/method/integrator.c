@@ -7,6 +7,7 @@
 #include "core/status.h"
 #include "method/integrator_struct.h"
 #include "num/finite.h"
+#include "space/given.h"
 #include "system/dirac.h"
 
 /* ---- create, destroy ---- */
@@ -33,8 +34,18 @@ static dvi_status allocate(dvi_integrator *I)
   return dvi__evaluator_create(I->system, 1, DVI__STATES, &I->counters, &I->evaluator);
 }
 
-dvi_status dvi__integrator_make(const dvi_system *system, const char *method, const dvi_monitor *monitor, dvi__pacing pacing,
-                                dvi_integrator **integrator)
+static dvi_status fill(dvi_integrator *I, const char *method, const dvi_shapes *shapes, const dvi_monitor *monitor,
+                       dvi__pacing pacing)
+{
+  if (shapes != NULL) I->shapes = dvi__shapes_copy(shapes);
+  if (shapes != NULL && I->shapes == NULL) return dvi__fail(DVI_NO_MEMORY, "integrator: no memory for the shapes %s", shapes->name);
+  if (monitor != NULL) DVI_TRY(dvi__pace_create(I->system, monitor, pacing, &I->counters, &I->pace));
+  DVI_TRY(dvi__stepper_create(dvi__pace_system(I->pace, I->system), method, I->shapes, &I->counters, &I->stepper));
+  return allocate(I);
+}
+
+dvi_status dvi__integrator_make(const dvi_system *system, const char *method, const dvi_shapes *shapes, const dvi_monitor *monitor,
+                                dvi__pacing pacing, dvi_integrator **integrator)
 {
   if (integrator == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "integrator: no place for the result");
   *integrator = NULL;
@@ -43,9 +54,7 @@ dvi_status dvi__integrator_make(const dvi_system *system, const char *method, co
   dvi_integrator *I = DVI_NEW(dvi_integrator, 1);
   if (I == NULL) return dvi__fail(DVI_NO_MEMORY, "integrator: no memory");
   I->system = system;
-  dvi_status status = monitor != NULL ? dvi__pace_create(system, monitor, pacing, &I->counters, &I->pace) : DVI_OK;
-  if (status == DVI_OK) status = dvi__stepper_create(dvi__pace_system(I->pace, system), method, &I->counters, &I->stepper);
-  if (status == DVI_OK) status = allocate(I);
+  const dvi_status status = fill(I, method, shapes, monitor, pacing);
   I->counters.allocations = dvi__allocation_count() - before;
   if (status != DVI_OK) dvi_integrator_destroy(&I);
   *integrator = I;
@@ -54,7 +63,7 @@ dvi_status dvi__integrator_make(const dvi_system *system, const char *method, co
 
 dvi_status dvi_integrator_create(const dvi_system *system, const char *method, dvi_integrator **integrator)
 {
-  return dvi__integrator_make(system, method, NULL, DVI__TRANSFORM, integrator);
+  return dvi__integrator_make(system, method, NULL, NULL, DVI__TRANSFORM, integrator);
 }
 
 void dvi_integrator_destroy(dvi_integrator **integrator)
@@ -67,6 +76,7 @@ void dvi_integrator_destroy(dvi_integrator **integrator)
   dvi__evaluator_destroy(&I->evaluator);
   dvi__release(I->numbers);
   dvi__release(I->memory_before);
+  dvi__release(I->shapes);
   dvi__release(I);
   *integrator = NULL;
 }
@@ -478,5 +488,7 @@ dvi_status dvi_integrator_interpolate(dvi_integrator *I, double t, double *q, do
   if (I->stepper.method->path == NULL) return hermite(I, tau, q, v);
   if (I->pace != NULL && I->pace->pacing == DVI__TRANSFORM) return dvi__pace_path(I, tau, q, v);
   I->stepper.method->path(&I->stepper, I->last.q, I->last_h, tau, q, v);
-  return DVI_OK;
+  const size_t n = (size_t)I->system->n, nv = (size_t)I->system->nv;
+  if ((q == NULL || dvi__first_not_finite(n, q) < 0) && (v == NULL || dvi__first_not_finite(nv, v) < 0)) return DVI_OK;
+  return dvi__fail(DVI_NOT_FINITE, "interpolate: the path is not finite at t = %.17g", t);
 }

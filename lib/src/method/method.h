@@ -3,6 +3,8 @@
  * To add a method foo: foo.c defines `const dvi__method dvi__foo`, methods.def gets the line METHOD(foo). */
 #ifndef DVI_METHOD_METHOD_H
 #define DVI_METHOD_METHOD_H
+#include <dvi/shapes.h>
+
 #include "system/evaluator.h"
 
 /* The state that a step advances. Sums are compensated: what a carry holds, its number is too large by. */
@@ -55,6 +57,7 @@ typedef struct dvi__method dvi__method;
 typedef struct dvi__stepper {
   const dvi__method *method;
   const dvi_system *system;
+  const dvi_shapes *shapes; /* the program's function space, for methods that take one; NULL: there is none. Outlives the stepper */
   dvi_counters *counters;
   dvi__settings settings;
   char specification[DVI__SPECIFICATION_SIZE]; /* every key spelled out */
@@ -85,6 +88,7 @@ struct dvi__method {
   const char *list;     /* the key of a list of decimal numbers, c1:c2:..., not one of the above; NULL: none */
   const char *list_help;
   int takes_rest;    /* keys of others are collected in settings.rest */
+  int takes_shapes;  /* its space, or that of a method that it is made of, may be the program's */
   unsigned needs;    /* dvi__term bits that the system must declare */
   unsigned uses;     /* bits that it may declare; with DVI__FACTORS of every kind, but for */
   unsigned refuses;  /* these kinds */
@@ -104,8 +108,10 @@ struct dvi__method {
   int (*pass)(dvi__stepper *self, const dvi__state *now, const double *before, dvi__state *next, const double *h, int count);
   /* Bytes that this moves (dvi_integrator_traffic); 0: there is no pass with these settings. NULL: not known. */
   double (*traffic)(const dvi__stepper *self, int count);
-  /* q [n] and v [n] at tau in [0,1] of the last step, which started at q0 [n] with length h. NULL: Hermite's cubic. */
+  /* q [n] and v [n] at tau in [0,1] of the last step, which started at q0 [n] with length h; not finite where it cannot be had. NULL: Hermite's cubic. */
   void (*path)(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v);
+  /* Whether a memory that a checkpoint holds is of the same space. NULL: the specification tells. */
+  int (*recognizes)(const dvi__stepper *self, const double *memory);
   /* The multiplier [n] of the last step, in the memory; NULL if there is none. NULL: never. */
   const double *(*multiplier)(const dvi__stepper *self);
   /* The jump [n] between the last element and the next, in the stepper's memory. NULL: the method's trajectories do not jump. */
@@ -120,8 +126,9 @@ struct dvi__method {
   void (*step_lanes)(dvi__stepper *self, dvi__members *members, double h);
 };
 
-/* Make a stepper from a specification; it owns all that destroy frees. */
-dvi_status dvi__stepper_create(const dvi_system *system, const char *specification, dvi_counters *counters, dvi__stepper *stepper);
+/* Make a stepper from a specification; it owns all that destroy frees. shapes: NULL, or what the method must take. */
+dvi_status dvi__stepper_create(const dvi_system *system, const char *specification, const dvi_shapes *shapes,
+                               dvi_counters *counters, dvi__stepper *stepper);
 void dvi__stepper_destroy(dvi__stepper *stepper);
 
 /* Let a stepper serve up to `capacity` members side by side, if its method can: lanes stays NULL if not. Once. */

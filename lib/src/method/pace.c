@@ -95,7 +95,7 @@ static dvi_status create(const dvi_system *system, const dvi_monitor *monitor, d
     return dvi__fail(DVI_UNSUPPORTED,
                      "%s: the system has factors, and monitors are functions of coordinates of R^n; take steps of equal length",
                      what);
-  dvi_status status = dvi__integrator_make(system, method, monitor, pacing, integrator);
+  dvi_status status = dvi__integrator_make(system, method, NULL, monitor, pacing, integrator);
   if (status == DVI_OK) status = check_method(*integrator);
   if (status == DVI_UNSUPPORTED) (void)dvi__fail_in(status, "%s", what);
   if (status != DVI_OK) dvi_integrator_destroy(integrator);
@@ -117,7 +117,8 @@ dvi_status dvi_integrator_create_controlled(const dvi_system *system, const dvi_
 dvi_status dvi_integrator_create_like(const dvi_integrator *I, dvi_integrator **integrator)
 {
   if (I == NULL || integrator == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "integrator: an argument is NULL");
-  if (I->pace == NULL) return dvi_integrator_create(I->system, I->stepper.specification, integrator);
+  if (I->pace == NULL)
+    return dvi__integrator_make(I->system, I->stepper.specification, I->shapes, NULL, DVI__TRANSFORM, integrator);
   DVI_TRY(create(I->system, &I->pace->given, I->pace->pacing, I->stepper.specification, integrator));
   (*integrator)->pace->holds = I->pace->holds || I->started;
   dvi__pace_set_energy((*integrator)->pace, I->pace->energy);

@@ -56,11 +56,21 @@ static dvi_status check_terms(const dvi__method *method, const dvi_system *syste
   return DVI_OK;
 }
 
-dvi_status dvi__stepper_create(const dvi_system *system, const char *specification, dvi_counters *counters, dvi__stepper *stepper)
+static dvi_status check_shapes(const dvi__method *method, const dvi_shapes *shapes)
 {
-  *stepper = (dvi__stepper){.system = system, .counters = counters};
+  if (shapes == NULL || method->takes_shapes) return DVI_OK;
+  return dvi__fail(DVI_BAD_OPTION,
+                   "%s: its space is its own, and not the shapes %s; shaped-galerkin takes them, and a composition of it",
+                   method->name, shapes->name);
+}
+
+dvi_status dvi__stepper_create(const dvi_system *system, const char *specification, const dvi_shapes *shapes,
+                               dvi_counters *counters, dvi__stepper *stepper)
+{
+  *stepper = (dvi__stepper){.system = system, .shapes = shapes, .counters = counters};
   dvi_status status = dvi__parse(specification, &stepper->method, &stepper->settings);
   if (status == DVI_OK) status = check_terms(stepper->method, system);
+  if (status == DVI_OK) status = check_shapes(stepper->method, shapes);
   if (status != DVI_OK) {
     stepper->method = NULL;
     return status;
