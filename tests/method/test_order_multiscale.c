@@ -6,7 +6,7 @@
 #include "support/runs.h"
 #include "support/suite.h"
 
-enum { KEPLER, PENDULUM, HENON_HEILES };
+enum { PENDULUM = 1, HENON_HEILES };
 
 START_TEST(it_has_twice_the_order_of_its_functions_on_the_stiff_pendulum)
 {
@@ -23,9 +23,8 @@ END_TEST
 /* Above 6 by one step's errors at six lengths or more, from 1e-9 to 1e-14. */
 static const struct {
   int place, degree, amplitude, harmonics, order;
-} cases[] = {{PENDULUM, 1, 0, 1, 6},  {PENDULUM, 2, 0, 1, 8},        {PENDULUM, 3, 0, 1, 10}, {PENDULUM, 1, 1, 1, 10},
-             {PENDULUM, 2, 1, 1, 12}, {PENDULUM, 3, 1, 1, 14},       {PENDULUM, 2, 2, 1, 16}, {HENON_HEILES, 3, 2, 1, 18},
-             {KEPLER, 2, 1, 1, 12},   {DOUBLE_PENDULUM, 2, 0, 1, 8}, {PENDULUM, 1, 0, 2, 10}, {KEPLER, 2, 0, 2, 12}};
+} cases[] = {{PENDULUM, 2, 0, 1, 8},  {PENDULUM, 3, 0, 1, 10}, {PENDULUM, 1, 1, 1, 10},     {PENDULUM, 2, 1, 1, 12},
+             {PENDULUM, 3, 1, 1, 14}, {PENDULUM, 2, 2, 1, 16}, {HENON_HEILES, 3, 2, 1, 18}, {PENDULUM, 1, 0, 2, 10}};
 
 START_TEST(at_every_degree_of_path_and_amplitudes)
 {
