@@ -20,7 +20,9 @@ clean() {
   touch tests/method/test_leap.c docs/methods/leap.md
   printf '@book{Euler1744,\n}\n' >docs/references.bib
   printf 'int main(void)\n{\n  return 0;\n}\n' >apps/examples/pendulum.c
+  printf 'int main(void)\n{\n  return 0;\n}\n' >apps/examples/shapes.c
   { echo '# One'; echo '```c'; cat apps/examples/pendulum.c; echo '```'; echo 'See [the guide](docs/guide.md#two-words), Euler1744.'; } >README.md
+  { echo '# Shapes'; echo '```c'; cat apps/examples/shapes.c; echo '```'; } >docs/shapes.md
   printf 'int told = refuse("there is no \047%%s\047\\n", "a name"); /* "not this" */\n' >lib/src/scene/one.c
   printf '# Errors\n\n- `there is no \047<name>\047`\n  A slip.\n  - `a name`\n' >docs/scene-errors.md
   { echo '# Two words'; echo '```c'; echo '#include <dvi/one.h>'; echo 'int two(void);'; echo '```'; } >docs/guide.md
@@ -90,6 +92,7 @@ sees docs README.md '[nowhere](docs/nowhere.md)'
 sees docs README.md '[no heading](docs/guide.md#three-words)'
 sees docs README.md 'Nobody1900 says so.'
 sees docs apps/examples/pendulum.c 'int other;'
+sees docs docs/shapes.md '```c\nint other;\n```'
 sees docs docs/guide.md '```c\nint unfinished\n```'
 sees headers lib/include/dvi/one.h 'size_t dvi_size(void);'
 sees symbols lib/src/core/one.c 'int dvi_two;'

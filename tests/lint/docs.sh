@@ -1,6 +1,6 @@
 #!/bin/sh
-# The pages hold together: links lead somewhere, cited sources are in the bibliography, the README's program is the example that it names,
-# the guide's program compiles.  Usage: docs.sh TOP C_COMPILER
+# The pages hold together: links lead somewhere, cited sources are in the bibliography, the programs of the README and of docs/shapes.md
+# are the examples that they name, the guide's program compiles.  Usage: docs.sh TOP C_COMPILER
 set -u
 cd "$1" || exit 1
 compiler=$2
@@ -39,6 +39,8 @@ done
 
 fences c README.md >"$work/readme.c"
 cmp -s "$work/readme.c" apps/examples/pendulum.c || breach "README.md: its program is not apps/examples/pendulum.c"
+fences c docs/shapes.md >"$work/shapes.c"
+cmp -s "$work/shapes.c" apps/examples/shapes.c || breach "docs/shapes.md: its program is not apps/examples/shapes.c"
 fences c docs/guide.md >"$work/guide.c"
 "$compiler" -std=c11 -Wall -Wextra -Wpedantic -Werror -I lib/include -fsyntax-only "$work/guide.c" || breach "docs/guide.md: its program does not compile"
 exit $rc

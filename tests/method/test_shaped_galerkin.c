@@ -277,6 +277,22 @@ START_TEST(cubic_splines_have_order_6)
 }
 END_TEST
 
+START_TEST(a_basis_of_b_splines_has_the_same_paths)
+{
+  problem *of = made_problem("kepler", NULL);
+  dvi_integrator *powers_of_it = shaped_started(of, &spline, "shaped-galerkin:degree=3"),
+                 *basis = shaped_started(of, &b_splines, "shaped-galerkin");
+  ck_assert_int_eq(dvi_integrator_order(basis), dvi_integrator_order(powers_of_it));
+  advance(powers_of_it, 0.1, 50);
+  advance(basis, 0.1, 50);
+  ck_assert_double_le(distance(2, dvi_integrator_q(powers_of_it), dvi_integrator_q(basis)), 1e-12);
+  ck_assert_double_le(distance(2, dvi_integrator_p(powers_of_it), dvi_integrator_p(basis)), 1e-12);
+  dvi_integrator_destroy(&powers_of_it);
+  dvi_integrator_destroy(&basis);
+  problem_destroy(&of);
+}
+END_TEST
+
 /* Sine and cosine are worth two degrees. */
 START_TEST(an_order_of_ones_own_may_be_claimed)
 {
@@ -303,6 +319,7 @@ int main(void)
   tcase_add_loop_test(tests, the_order_is_that_of_the_polynomials, 0, 8);
   tcase_add_test(tests, straight_motion_is_exact);
   tcase_add_test(tests, cubic_splines_have_order_6);
+  tcase_add_test(tests, a_basis_of_b_splines_has_the_same_paths);
   tcase_add_test(tests, an_order_of_ones_own_may_be_claimed);
   return run_tests("method/shaped_galerkin", tests);
 }

@@ -92,14 +92,52 @@ static int evaluate_spline(double h, double tau, double *value, double *derivati
 
 enum { EACH = 4 };
 
-static int point_of_spline(double h, int j, double *tau, double *weight, double *value, double *derivative, void *user)
+/* B-spline i of a degree, 0 to 3, by de Boor's recursion. */
+static double b_spline(int degree, int i, double tau)
+{
+  static const double knot[] = {0, 0, 0, 0, 0.5, 1, 1, 1, 1};
+  if (degree == 0) return knot[i] < knot[i + 1] && tau >= knot[i] && (tau < knot[i + 1] || knot[i + 1] == 1);
+  const double rises = knot[i + degree] - knot[i], falls = knot[i + degree + 1] - knot[i + 1];
+  return (rises > 0 ? (tau - knot[i]) / rises * b_spline(degree - 1, i, tau) : 0) +
+         (falls > 0 ? (knot[i + degree + 1] - tau) / falls * b_spline(degree - 1, i + 1, tau) : 0);
+}
+
+static int evaluate_b_splines(double h, double tau, double *value, double *derivative, void *user)
+{
+  static const double rises[] = {0.5, 1, 1}, falls[] = {1, 1, 0.5};
+  (void)h, (void)user;
+  for (int k = 0; k < 3; k++) {
+    value[k] = b_spline(3, k + 1, tau);
+    derivative[k] = 3 * (b_spline(2, k + 1, tau) / rises[k] - b_spline(2, k + 2, tau) / falls[k]);
+  }
+  return 0;
+}
+
+static int place_of_point(int j, double *tau, double *weight)
 {
   double node[EACH], weights[EACH];
   if (dvi_quadrature(DVI_GAUSS, EACH, node, weights) != DVI_OK) return -1;
   *tau = 0.5 * (j / EACH + node[j % EACH]);
   *weight = 0.5 * weights[j % EACH];
-  return evaluate_spline(h, *tau, value, derivative, user);
+  return 0;
+}
+
+static int point_of_spline(double h, int j, double *tau, double *weight, double *value, double *derivative, void *user)
+{
+  return place_of_point(j, tau, weight) != 0 ? -1 : evaluate_spline(h, *tau, value, derivative, user);
+}
+
+static int point_of_b_splines(double h, int j, double *tau, double *weight, double *value, double *derivative, void *user)
+{
+  return place_of_point(j, tau, weight) != 0 ? -1 : evaluate_b_splines(h, *tau, value, derivative, user);
 }
 
 const dvi_shapes spline = {
     .name = "spline", .functions = 1, .evaluate = evaluate_spline, .point = point_of_spline, .points = 2 * EACH};
+
+const dvi_shapes b_splines = {.name = "b-splines",
+                              .functions = 3,
+                              .evaluate = evaluate_b_splines,
+                              .point = point_of_b_splines,
+                              .points = 2 * EACH,
+                              .order = 6};

@@ -27,4 +27,7 @@ extern const dvi_shapes milne;
 /* max(0, tau - 1/2)^3 by a Gauss rule of four points on either half: with degree=3, cubic splines with a knot in the middle. */
 extern const dvi_shapes spline;
 
+/* The cubic B-splines of that knot that vanish at both ends: with degree=1 the same space. */
+extern const dvi_shapes b_splines;
+
 #endif

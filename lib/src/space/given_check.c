@@ -115,8 +115,8 @@ static dvi_status check_independence(const dvi__given *g)
     return dvi__fail(
         DVI_BAD_ARGUMENT,
         "shapes %s: at the %d points function %d is a combination of a constant, polynomials up to degree %d and the functions "
-        "before it; leave it out, or take more points",
-        g->shapes->name, g->points, k - g->degree, g->degree);
+        "before it, but for 1e-8 of itself; leave it out, or take more points%s",
+        g->shapes->name, g->points, k - g->degree, g->degree, g->shapes->h != 0 ? ", or a longer h" : "");
   }
   return DVI_OK;
 }
