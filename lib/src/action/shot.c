@@ -22,7 +22,7 @@ struct dvi__shot {
   double *point, *turned; /* [2n] */
   double *lambda;         /* [2n] without `end` */
   double *Gamma;          /* [2n*stages] */
-  double *kappa;          /* [2n*stages] h f_z^T Gamma */
+  double *kappa;          /* [2n*stages] h f_z^T Gamma; room for 2n motions of the stages */
 };
 
 /* ---- making it ---- */
@@ -36,7 +36,7 @@ static double **owned(dvi__shot *s, int i)
 static dvi_status allocate(dvi__shot *s)
 {
   const size_t z = 2 * (size_t)s->n, stages = (size_t)s->method.stages, pieces = (size_t)s->course.pieces;
-  const size_t size[] = {z, z * (pieces + 1), z * stages * pieces, z, z, z, z * stages, z * stages};
+  const size_t size[] = {z, z * (pieces + 1), z * stages * pieces, z, z, z, z * stages, z * stages * z};
   for (int i = 0; owned(s, i) != NULL; i++) {
     *owned(s, i) = DVI_NEW(double, size[i]);
     if (*owned(s, i) == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory for %d stages in %d dimensions", s->method.stages, s->n);
@@ -166,12 +166,16 @@ static dvi_status coupled_stages(dvi__shot *s, int piece, double t, double h)
   return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "the stages of the one-step method from node %d on", piece + 1);
 }
 
-/* Nodes that no stage stands for. */
+/* Nodes of the quadrature that no stage stands for. */
+static int stands_alone(const dvi__shot *s, int m)
+{
+  return s->course.b[m] != 0 && node_point(s, m) >= s->course.pieces * s->method.stages;
+}
+
 static dvi_status place_nodes(dvi__shot *s)
 {
-  const int last = s->course.pieces;
-  for (int m = s->first_is_node ? last : 0; m <= last; m++)
-    DVI_TRY(place(s, node_point(s, m), s->t0 + s->course.c[m] * s->h, at(s, s->node, m), s->turned));
+  for (int m = 0; m <= s->course.pieces; m++)
+    if (stands_alone(s, m)) DVI_TRY(place(s, node_point(s, m), s->t0 + s->course.c[m] * s->h, at(s, s->node, m), s->turned));
   return DVI_OK;
 }
 
@@ -196,7 +200,10 @@ dvi_status dvi__shot_fire(dvi__shot *s, const double *p, double *reach)
 
 dvi_status dvi__shot_trace(dvi__shot *s)
 {
-  return dvi__field_differentiate(s->field, 0, node_point(s, s->course.pieces) + 1);
+  DVI_TRY(dvi__field_differentiate(s->field, 0, s->course.pieces * s->method.stages));
+  for (int m = 0; m <= s->course.pieces; m++)
+    if (stands_alone(s, m)) DVI_TRY(dvi__field_differentiate(s->field, node_point(s, m), 1));
+  return DVI_OK;
 }
 
 /* image = h f_z^T Gamma at the selected point: f_z^T (a,b) = H_zz (-b,a). */
@@ -274,39 +281,44 @@ static void push(dvi__shot *s, double h, const double *motion, double *image)
   }
 }
 
-/* One column through the stages of an explicit method: kappa_j becomes the motion of W_j. */
-static dvi_status move_stages(dvi__shot *s, int piece, double h, const double *motion)
+/* kappa of a column: what its stages' increments become. */
+static double *column_of(const dvi__shot *s, int column)
+{
+  return at(s, s->kappa, column * s->method.stages);
+}
+
+/* Each stage's point is taken once for all columns. */
+static dvi_status move_stages(dvi__shot *s, int piece, double h, int columns, double *motion)
 {
   const dvi__runge_kutta *m = &s->method;
   for (int j = 0; j < m->stages; j++) {
-    memcpy(s->point, motion, 2 * (size_t)s->n * sizeof *s->point);
-    for (int k = 0; k < j; k++) add(s, m->a[j][k], at(s, s->kappa, k), s->point);
     DVI_TRY(dvi__field_select(s->field, stage_point(s, piece, j)));
-    push(s, h, s->point, at(s, s->kappa, j));
+    for (int i = 0; i < columns; i++) {
+      memcpy(s->point, at(s, motion, i), 2 * (size_t)s->n * sizeof *s->point);
+      for (int k = 0; k < j && m->is_explicit; k++) add(s, m->a[j][k], at(s, column_of(s, i), k), s->point);
+      push(s, h, s->point, at(s, column_of(s, i), j));
+    }
   }
   return DVI_OK;
 }
 
-static dvi_status move_coupled(dvi__shot *s, int piece, double h, const double *motion)
+static dvi_status couple(dvi__shot *s, int piece, double h, int columns)
 {
-  for (int j = 0; j < s->method.stages; j++) {
-    DVI_TRY(dvi__field_select(s->field, stage_point(s, piece, j)));
-    push(s, h, motion, at(s, s->kappa, j));
-  }
-  dvi__stages_apply(s->coupled, s->kappa);
+  if (s->coupled == NULL) return DVI_OK;
+  DVI_TRY(dvi__stages_factor(s->coupled, stage_point(s, piece, 0), h));
+  for (int i = 0; i < columns; i++) dvi__stages_apply(s->coupled, column_of(s, i));
   return DVI_OK;
 }
 
-dvi_status dvi__shot_move(dvi__shot *s, int columns, double *motion)
+dvi_status dvi__shot_move(dvi__shot *s, double *motion)
 {
+  const int columns = 2 * s->n;
   for (int piece = 0; piece < s->course.pieces; piece++) {
     const double h = length_of(s, piece);
-    if (s->coupled != NULL) DVI_TRY(dvi__stages_factor(s->coupled, stage_point(s, piece, 0), h));
-    for (int i = 0; i < columns; i++) {
-      double *column = at(s, motion, i);
-      DVI_TRY(s->method.is_explicit ? move_stages(s, piece, h, column) : move_coupled(s, piece, h, column));
-      for (int j = 0; j < s->method.stages; j++) add(s, s->method.b[j], at(s, s->kappa, j), column);
-    }
+    DVI_TRY(move_stages(s, piece, h, columns, motion));
+    DVI_TRY(couple(s, piece, h, columns));
+    for (int i = 0; i < columns; i++)
+      for (int j = 0; j < s->method.stages; j++) add(s, s->method.b[j], at(s, column_of(s, i), j), at(s, motion, i));
   }
   return DVI_OK;
 }

@@ -12,7 +12,7 @@
 #include "action/field.h"
 #include "action/runge_kutta.h"
 
-enum { DVI__PIECES_MOST = 255 };
+enum { DVI__PIECES_MOST = 256 };
 
 /* Nodes in the order of the shot, and weights; a weight of 0 leaves the Lagrangian out. */
 typedef struct dvi__course {
@@ -38,7 +38,7 @@ dvi_status dvi__shot_fire(dvi__shot *shot, const double *p, double *reach);
 dvi_status dvi__shot_trace(dvi__shot *shot);
 dvi_status dvi__shot_costate(dvi__shot *shot, const double *end, double *gain);
 
-/* What a motion [2n] of the start becomes at the end; `columns` of them, one after the other, in place. */
-dvi_status dvi__shot_move(dvi__shot *shot, int columns, double *motion);
+/* What 2n motions [2n] of the start, one after the other, become at the end, in place. */
+dvi_status dvi__shot_move(dvi__shot *shot, double *motion);
 
 #endif

@@ -130,7 +130,7 @@ static dvi_status motions(dvi__shot_step *s)
   const size_t z = 2 * (size_t)s->n;
   memset(s->motion, 0, z * z * sizeof *s->motion);
   for (size_t k = 0; k < z; k++) s->motion[k * z + k] = k < (size_t)s->n ? 1 : s->unit[k - (size_t)s->n];
-  return dvi__shot_move(s->shot, (int)z, s->motion);
+  return dvi__shot_move(s->shot, s->motion);
 }
 
 /* dQ_l/dq0_i, or over unit_i dQ_l/dx_i with i - n for i. */

@@ -12,11 +12,12 @@
 #include "action/shot_step.h"
 #include "core/memory.h"
 #include "core/status.h"
+#include "method/scheme.h"
 #include "method/stationary.h"
 #include "num/compensated.h"
 #include "num/finite.h"
 
-enum { ONE_STEP, STAGES, TABLEAU, QUADRATURE, NODES, TOLERANCE };
+enum { ONE_STEP, STAGES, TABLEAU, COMPOSITION, QUADRATURE, NODES, TOLERANCE };
 enum { NODES_MOST = 16, FROM_FILE = DVI__RK_NAMED };
 
 static const char *one_step_name(int index)
@@ -29,6 +30,11 @@ static const char *rule_name(int index)
   return dvi_rule_name((dvi_rule)index);
 }
 
+static const char *composition_name(int index)
+{
+  return index == 0 ? "none" : dvi__scheme_name(index - 1);
+}
+
 static const dvi__key keys[] = {
     {"onestep", one_step_name, 0, 0, DVI__LEFT_OUT,
      "euler, explicit-midpoint, heun, kutta3, rk4, three-eighths, dormand-prince, butcher6, cooper-verner, backward-euler, "
@@ -36,6 +42,8 @@ static const dvi__key keys[] = {
     {"stages", NULL, 1, DVI__RK_STAGES_MOST, DVI__LEFT_OUT,
      "of gauss, radau-iia, lobatto-iiia (2 to 8) and sdirk (2 or 3); left out: 2"},
     {"tableau", NULL, DVI__TEXT, 0, 0, "the file of the one-step method's tableau"},
+    {"composition", composition_name, 0, 0, 0,
+     "none, 4, 6 or 8: the order to which a symmetric one-step method is composed; left out: none"},
     {"quadrature", rule_name, 0, 0, DVI_SIMPSON, "trapezoid, simpson, lobatto or clenshaw-curtis; left out: simpson"},
     {"nodes", NULL, 2, NODES_MOST, DVI__LEFT_OUT,
      "of lobatto and clenshaw-curtis, 2 to 16; left out: the fewest whose order reaches that of the one-step method"},
@@ -84,6 +92,21 @@ static dvi_status choose_one_step(dvi__settings *settings, dvi__runge_kutta *met
   return DVI_OK;
 }
 
+/* The composition's order takes the place of a lower one. */
+static dvi_status choose_composition(const dvi__settings *settings, dvi__runge_kutta *method)
+{
+  const int choice = settings->value[COMPOSITION];
+  if (choice == 0) return DVI_OK;
+  if (!method->symmetric)
+    return dvi__fail(DVI_BAD_OPTION,
+                     "shooting: composition=%s raises the order of symmetric one-step methods alone, and onestep=%s is none; "
+                     "implicit-midpoint, gauss and lobatto-iiia are",
+                     composition_name(choice), one_step_name(settings->value[ONE_STEP]));
+  const int order = dvi__scheme_at(choice - 1)->order;
+  method->order = method->order < order ? order : method->order;
+  return DVI_OK;
+}
+
 static dvi_status choose_nodes(dvi__settings *settings, int order)
 {
   int *nodes = &settings->value[NODES];
@@ -98,6 +121,31 @@ static dvi_status choose_nodes(dvi__settings *settings, int order)
     for (*nodes = fixed ? fixed : 2; !fixed && dvi_quadrature_order(rule, *nodes) < order && *nodes < NODES_MOST;) ++*nodes;
   if (fixed && *nodes != fixed)
     return dvi__fail(DVI_BAD_OPTION, "shooting: quadrature=%s has %d nodes, not nodes=%d", rule_name((int)rule), fixed, *nodes);
+  return DVI_OK;
+}
+
+/* A piece from node to node, in the substeps of the composition; nothing is summed at the points between them. */
+static void add_piece(const dvi__settings *settings, double from, double to, double weight, dvi__course *course)
+{
+  const int choice = settings->value[COMPOSITION];
+  const dvi__scheme *scheme = choice > 0 ? dvi__scheme_at(choice - 1) : NULL;
+  double gone = 0;
+  for (int i = 0; scheme != NULL && i + 1 < scheme->substeps; i++) {
+    gone += dvi__scheme_part(scheme, i);
+    course->c[++course->pieces] = from + gone * (to - from);
+  }
+  course->c[++course->pieces] = to;
+  course->b[course->pieces] = weight;
+}
+
+static dvi_status plot(const dvi__settings *settings, dvi__course *course)
+{
+  double c[NODES_MOST], b[NODES_MOST];
+  const int nodes = settings->value[NODES];
+  DVI_TRY(dvi_quadrature((dvi_rule)settings->value[QUADRATURE], nodes, c, b));
+  *course = (dvi__course){0};
+  course->b[0] = b[0];
+  for (int i = 1; i < nodes; i++) add_piece(settings, c[i - 1], c[i], b[i], course);
   return DVI_OK;
 }
 
@@ -141,17 +189,17 @@ static dvi_status make(dvi__stepper *self, const dvi__runge_kutta *method, const
 
 static dvi_status create(dvi__stepper *self)
 {
+  dvi__settings *settings = &self->settings;
   dvi__runge_kutta method;
-  dvi__course course = {0};
-  DVI_TRY(choose_one_step(&self->settings, &method));
-  DVI_TRY(choose_nodes(&self->settings, method.order));
-  const dvi_rule rule = (dvi_rule)self->settings.value[QUADRATURE];
-  const int nodes = self->settings.value[NODES], order = dvi_quadrature_order(rule, nodes);
-  DVI_TRY(dvi_quadrature(rule, nodes, course.c, course.b));
-  course.pieces = nodes - 1;
+  dvi__course course;
+  DVI_TRY(choose_one_step(settings, &method));
+  DVI_TRY(choose_composition(settings, &method));
+  DVI_TRY(choose_nodes(settings, method.order));
+  DVI_TRY(plot(settings, &course));
+  const int order = dvi_quadrature_order((dvi_rule)settings->value[QUADRATURE], settings->value[NODES]);
   shooter *own = self->own = DVI_NEW(shooter, 1);
   if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "shooting: no memory");
-  own->tolerance = self->settings.number[TOLERANCE];
+  own->tolerance = settings->number[TOLERANCE];
   own->order = method.order;
   self->order = method.order < order ? method.order : order;
   self->symmetric = method.symmetric;
@@ -233,9 +281,9 @@ static void explain(const dvi__stepper *self, dvi__text *text)
 {
   const shooter *own = self->own;
   const dvi__settings *set = &self->settings;
-  dvi__text_add(text, "one-step method: %s of order %d, %d stage%s\nquadrature: %s of %d nodes\n",
-                one_step_name(set->value[ONE_STEP]), own->order, set->value[STAGES], set->value[STAGES] == 1 ? "" : "s",
-                rule_name(set->value[QUADRATURE]), set->value[NODES]);
+  dvi__text_add(text, "one-step method: %s%s of order %d, %d stage%s\nquadrature: %s of %d nodes\n",
+                one_step_name(set->value[ONE_STEP]), set->value[COMPOSITION] > 0 ? ", composed," : "", own->order,
+                set->value[STAGES], set->value[STAGES] == 1 ? "" : "s", rule_name(set->value[QUADRATURE]), set->value[NODES]);
   dvi__text_add(text, "kernel: shots from the start, their derivatives by costates; %d unknowns a step, full Jacobian\n",
                 own->unknowns);
   dvi__text_add(text, "solver: Newton's method, last KINSOL with line search\n");
