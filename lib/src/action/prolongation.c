@@ -19,6 +19,8 @@ struct dvi__prolongation {
   double weight[COEFFICIENTS];            /* w_j */
   dvi__pattern full, transposed;          /* of the Jacobian; of dR/d(v0,v1)^T */
   dvi__linear *multipliers;               /* factors the latter */
+  double *at;                             /* [3 n] the unknowns to which all below belongs, if `known` */
+  int known;
   /* The step. */
   double t0, h;
   const double *q0, *p0;
@@ -51,6 +53,7 @@ static size_t lay_out(dvi__prolongation *d, double *block)
       d->by_v[row][end] = at, at += n * n;
     }
   }
+  d->at = at, at += UNKNOWNS * n;
   d->L = at, at += m;
   d->L_q = at, at += m * n;
   d->L_v = at, at += m * n;
@@ -133,6 +136,7 @@ dvi__evaluator *dvi__prolongation_evaluator(const dvi__prolongation *d)
 void dvi__prolongation_place(dvi__prolongation *d, double t0, double h, const double *q0, const double *p0)
 {
   double power = 1; /* h^j */
+  d->known = 0;
   d->t0 = t0;
   d->h = h;
   d->q0 = q0;
@@ -197,6 +201,20 @@ static dvi_status vary(dvi__prolongation *d)
   return DVI_OK;
 }
 
+/* The solver asks for the Jacobian and for the residual at one point. */
+static dvi_status collocate(dvi__prolongation *d, const double *x)
+{
+  const size_t size = UNKNOWNS * (size_t)d->n * sizeof *x;
+  if (d->known && memcmp(d->at, x, size) == 0) return DVI_OK;
+  d->known = 0;
+  DVI_TRY(expand(d, x));
+  mismatches(d, x);
+  DVI_TRY(vary(d));
+  memcpy(d->at, x, size);
+  d->known = 1;
+  return DVI_OK;
+}
+
 /* ---- the discrete Lagrangian's derivatives ---- */
 
 /* dG/dq of an end, and dG/d(h v) into the right-hand side of the multipliers. */
@@ -243,18 +261,11 @@ static double pulled(const dvi__prolongation *d, int end, size_t i)
   return sum;
 }
 
-static dvi_status evaluate(dvi__prolongation *d, const double *x)
-{
-  DVI_TRY(expand(d, x));
-  mismatches(d, x);
-  DVI_TRY(vary(d));
-  return solve_multipliers(d);
-}
-
 dvi_status dvi__prolongation_residual(dvi__prolongation *d, const double *x, double *R)
 {
   const size_t n = (size_t)d->n;
-  DVI_TRY(evaluate(d, x));
+  DVI_TRY(collocate(d, x));
+  DVI_TRY(solve_multipliers(d));
   for (size_t i = 0; i < n; i++, R += UNKNOWNS) {
     const double identity = d->plain[START][START][0] * d->lambda[i] + d->plain[END][START][0] * d->lambda[n + i];
     R[0] = d->R[START][i];
@@ -270,7 +281,8 @@ dvi_status dvi__prolongation_end(dvi__prolongation *d, const double *x, double *
   const size_t n = (size_t)d->n;
   double *const A = path, *const B = path + (size_t)(d->m - 1) * n;
   double power = d->h;
-  DVI_TRY(evaluate(d, x));
+  DVI_TRY(collocate(d, x));
+  DVI_TRY(solve_multipliers(d));
   for (size_t i = 0; i < n; i++) {
     dq[i] = B[i] = x[UNKNOWNS * i];
     dp[i] = d->G_q[START][i] + d->G_q[END][i] - pulled(d, START, i) - pulled(d, END, i);
@@ -291,22 +303,23 @@ void dvi__prolongation_path(const dvi__prolongation *d, const double *path, doub
   dvi__hermite_functions(d->m, tau, here, slope);
   dvi__hermite_functions(d->m, 1 - tau, there, there_slope);
   for (size_t i = 0; i < n; i++) {
-    offset[i] = v[i] = 0;
+    double sum = 0, rate = 0;
     for (size_t j = 0; j < m; j++) {
       const double a = j > 0 ? A[(j - 1) * n + i] : 0, b = (j % 2 ? -1 : 1) * B[j * n + i];
-      offset[i] += here[j] * a + there[j] * b;
-      v[i] += (slope[j] * a - there_slope[j] * b) / h;
+      sum += here[j] * a + there[j] * b;
+      rate += slope[j] * a - there_slope[j] * b;
     }
+    if (offset != NULL) offset[i] = sum;
+    if (v != NULL) v[i] = rate / h;
   }
 }
 
 /* ---- Jacobian ---- */
 
-/* L_vv at the start. */
-static dvi_status kinetic(dvi__prolongation *d, const double **L_vv)
+static dvi_status kinetic(dvi__prolongation *d, const double *v, const double **L_vv)
 {
   const dvi_system *s = d->system;
-  if (s->lagrangian != NULL) return dvi__velocity_hessian(d->evaluator, d->t0, d->q[START], d->v[START], L_vv);
+  if (s->lagrangian != NULL) return dvi__velocity_hessian(d->evaluator, d->t0, d->q0, v, L_vv);
   *L_vv = s->mass_diagonal != NULL ? s->mass_diagonal : s->mass_values;
   return DVI_OK;
 }
@@ -329,9 +342,8 @@ dvi_status dvi__prolongation_jacobian(dvi__prolongation *d, const double *x, dou
   const size_t height = UNKNOWNS * (size_t)d->n;
   const dvi__pattern *vv = &d->system->vv;
   const double *L_vv;
-  DVI_TRY(expand(d, x));
-  DVI_TRY(vary(d));
-  DVI_TRY(kinetic(d, &L_vv));
+  DVI_TRY(collocate(d, x));
+  DVI_TRY(kinetic(d, dvi__flow_series_v(d->motion[START]), &L_vv));
   memset(values, 0, height * height * sizeof *values);
   fill_collocation(d, values);
   for (int j = 0; j < vv->columns; j++)
@@ -340,13 +352,13 @@ dvi_status dvi__prolongation_jacobian(dvi__prolongation *d, const double *x, dou
   return DVI_OK;
 }
 
-/* The rows of the momentum by the diagonal of L_vv along the straight line to which the motion is close. */
+/* The rows of the momentum by the diagonal of L_vv, at rest. */
 dvi_status dvi__prolongation_scale(dvi__prolongation *d, double *scale)
 {
   const dvi__pattern *vv = &d->system->vv;
   const double *L_vv;
-  memcpy(d->q[START], d->q0, (size_t)d->n * sizeof(double));
-  DVI_TRY(kinetic(d, &L_vv));
+  memset(d->v[START], 0, (size_t)d->n * sizeof(double));
+  DVI_TRY(kinetic(d, d->v[START], &L_vv));
   for (int i = 0; i < d->n; i++, scale += UNKNOWNS) {
     const int e = dvi__pattern_find(vv, i, i);
     scale[0] = scale[1] = d->plain[START][END][0];
@@ -367,6 +379,7 @@ void dvi__prolongation_straight(const dvi__prolongation *d, const double *v, dou
 void dvi__prolongation_continue(dvi__prolongation *d, double ratio, const double *last, double *x)
 {
   const size_t n = (size_t)d->n;
+  d->known = 0;
   for (size_t i = 0; i < n; i++) d->v[START][i] = ratio * last[UNKNOWNS * i + 2] / d->h;
   dvi__prolongation_straight(d, d->v[START], x);
   if (dvi__flow_series_expand(d->motion[START], d->t0, d->q0, d->v[START]) != DVI_OK) return;

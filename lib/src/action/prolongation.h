@@ -45,7 +45,7 @@ dvi_status dvi__prolongation_scale(dvi__prolongation *prolongation, double *scal
 /* Of a solution: the increments dq and dp [n], and the coefficients A_1 .. A_{m-1}, B_0 - q0, B_1 .. B_{m-1} of its path, [(2m-1)*n]. */
 dvi_status dvi__prolongation_end(dvi__prolongation *prolongation, const double *x, double *dq, double *dp, double *path);
 
-/* At tau of that path: q - q0, and the velocity of a step of length h; [n] each. */
+/* At tau of that path: q - q0, and the velocity of a step of length h; [n] each; either may be NULL. */
 void dvi__prolongation_path(const dvi__prolongation *prolongation, const double *path, double h, double tau, double *offset,
                             double *v);
 

@@ -56,7 +56,7 @@ static void path(const dvi__stepper *self, const double *q0, double h, double ta
 {
   const dvi__one_step *one = self->own;
   dvi__prolongation_path(one->of, self->memory + DVI__CARRIED, h, tau, q, v);
-  for (int i = 0; i < self->system->n; i++) q[i] += q0[i];
+  for (int i = 0; q != NULL && i < self->system->n; i++) q[i] += q0[i];
 }
 
 const dvi__method dvi__prolongation_collocation = {
