@@ -135,6 +135,9 @@ static const struct {
     {"henon-heiles", NULL, "sem:degree=2,quadrature=lobatto,solver=kinsol", 0.1},
     {"driven-pendulum", NULL, "sem:degree=2,hmax=0.3", 0.1},
     {"fpu", "ell=40", "sem:degree=2", 0.01},
+    {"kepler", "e=0.6", "shooting", 0.1},
+    {"pendulum", NULL, "shooting:onestep=heun,tolerance=1e-9", 0.1},
+    {"double-pendulum", NULL, "shooting:onestep=gauss", 0.05},
 };
 
 START_TEST(steps_of_chosen_lengths_do_not_allocate)

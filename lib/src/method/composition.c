@@ -2,23 +2,17 @@
  *
  *     Psi_h = Phi_{g_m h} o ... o Phi_{g_2 h} o Phi_{g_1 h},    g_i = g_{m+1-i},   sum g_i = 1
  * The discrete Lagrangian is the sum of those of the substeps, stationary in the points between them (Marsden and West 2001, sec. 2.5.1).
- * Order 4: Suzuki 1990, 5 substeps. Order 6: Kahan and Li 1997, 9 substeps. Order 8: Kahan and Li 1997, 17 substeps.
- * All three as collected by Hairer, Lubich and Wanner 2006, eqs. II.4.5, V.3.12 and V.3.14. */
+ * The g_i are those of method/scheme.h. */
 #include <string.h>
 
 #include "core/memory.h"
 #include "core/status.h"
 #include "method/method.h"
+#include "method/scheme.h"
 #include "num/compensated.h"
 #include "system/transformed.h"
 
 enum { ORDER, BASE };
-
-static const char *order_name(int index)
-{
-  static const char *const name[] = {"4", "6", "8"};
-  return index >= 0 && index < 3 ? name[index] : NULL;
-}
 
 enum { VERLET, MIDPOINT, TRAPEZOIDAL, GALERKIN, LIE_VERLET, BASES };
 
@@ -29,28 +23,17 @@ static const char *base_name(int index)
 }
 
 static const dvi__key keys[] = {
-    {"order", order_name, 0, 0, 0, "4, 6 or 8; left out: 4"},
+    {"order", dvi__scheme_name, 0, 0, 0, "4, 6 or 8; left out: 4"},
     {"base", base_name, 0, 0, DVI__LEFT_OUT,
      "the symmetric method that is composed: verlet, midpoint, trapezoidal, galerkin or lie-verlet; all other keys are its own; "
      "left out: verlet, on groups lie-verlet"},
     {0},
 };
 
-enum { SUBSTEPS_MOST = 17 };
-
-/* The first half of the weights and the middle one; the rest mirrors them. */
-typedef struct scheme {
-  int substeps;
-  double weight[(SUBSTEPS_MOST + 1) / 2];
-} scheme;
-
-static const scheme schemes[] = {
-    {5, {0.41449077179437573714, 0.41449077179437573714, -0.65796308717750294857}},
-    {9, {0.39216144400731413928, 0.33259913678935943860, -0.70624617255763935981, 0.08221359629355080023, 0.79854399093482996340}},
-    {17,
-     {0.13020248308889008088, 0.56116298177510838456, -0.38947496264484728641, 0.15884190655515560090, -0.39590389413323757734,
-      0.18453964097831570709, 0.25837438768632204729, 0.29501172360931029887, -0.60550853383003451170}},
-};
+static const dvi__scheme *scheme_of(const dvi__stepper *self)
+{
+  return dvi__scheme_at(self->settings.value[ORDER]);
+}
 
 /* The rest of the specification becomes the base's own, with every key: one method, one spelling. */
 static void spell_out_base(dvi__stepper *self, const dvi__stepper *base)
@@ -75,7 +58,7 @@ static dvi_status create(dvi__stepper *self)
   if (!base->symmetric)
     return dvi__fail(DVI_BAD_OPTION, "composition: %s is not symmetric; choose a symmetric quadrature", base->specification);
   spell_out_base(self, base);
-  self->order = 4 + 2 * self->settings.value[ORDER];
+  self->order = scheme_of(self)->order;
   self->order = base->order > self->order ? base->order : self->order;
   self->symmetric = 1;
   self->memory_count = base->memory_count;
@@ -103,12 +86,6 @@ static void start(dvi__stepper *self, const double *v)
   base->method->start(base, v);
 }
 
-static double substep(const scheme *s, int i, double h)
-{
-  const int mirrored = i < s->substeps - 1 - i ? i : s->substeps - 1 - i;
-  return s->weight[mirrored] * h;
-}
-
 /* The rounded weights sum to 1 but for a rounding, which would add up over many steps: the clock moves by h. */
 static void move_clock(double t, double t_carry, double h, double *moved, double *moved_carry)
 {
@@ -120,9 +97,9 @@ static void move_clock(double t, double t_carry, double h, double *moved, double
 static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
 {
   dvi__stepper *base = base_of(self);
-  const scheme *s = &schemes[self->settings.value[ORDER]];
+  const dvi__scheme *s = scheme_of(self);
   const double t = state->t, t_carry = state->t_carry;
-  for (int i = 0; i < s->substeps; i++) DVI_TRY(base->method->step(base, state, substep(s, i, h)));
+  for (int i = 0; i < s->substeps; i++) DVI_TRY(base->method->step(base, state, h * dvi__scheme_part(s, i)));
   if (dvi__transformed_of(self->system) == NULL) move_clock(t, t_carry, h, &state->t, &state->t_carry);
   return DVI_OK;
 }
@@ -130,10 +107,10 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
 static int pass(dvi__stepper *self, const dvi__state *now, const double *before, dvi__state *next, const double *h, int count)
 {
   dvi__stepper *base = base_of(self);
-  const scheme *s = &schemes[self->settings.value[ORDER]];
-  double substeps[SUBSTEPS_MOST];
+  const dvi__scheme *s = scheme_of(self);
+  double substeps[DVI__SUBSTEPS_MOST];
   if (base->method->pass == NULL || count != 1) return 0;
-  for (int i = 0; i < s->substeps; i++) substeps[i] = substep(s, i, h[0]);
+  for (int i = 0; i < s->substeps; i++) substeps[i] = h[0] * dvi__scheme_part(s, i);
   if (!base->method->pass(base, now, before, next, substeps, s->substeps)) return 0;
   move_clock(now->t, now->t_carry, h[0], &next->t, &next->t_carry);
   return 1;
@@ -142,8 +119,7 @@ static int pass(dvi__stepper *self, const dvi__state *now, const double *before,
 static double traffic(const dvi__stepper *self, int count)
 {
   const dvi__stepper *base = self->own;
-  return base->method->traffic != NULL && count == 1 ? base->method->traffic(base, schemes[self->settings.value[ORDER]].substeps)
-                                                     : 0;
+  return base->method->traffic != NULL && count == 1 ? base->method->traffic(base, scheme_of(self)->substeps) : 0;
 }
 
 /* ---- members side by side ---- */
@@ -166,20 +142,19 @@ static void clear_lanes(dvi__stepper *self)
 static void step_lanes(dvi__stepper *self, dvi__members *m, double h)
 {
   dvi__stepper *base = self->own;
-  const scheme *s = &schemes[self->settings.value[ORDER]];
+  const dvi__scheme *s = scheme_of(self);
   const size_t bytes = (size_t)m->count * sizeof(double);
   double *t = self->lanes, *t_carry = t + m->count;
   memcpy(t, m->t, bytes);
   memcpy(t_carry, m->t_carry, bytes);
-  for (int i = 0; i < s->substeps; i++) base->method->step_lanes(base, m, substep(s, i, h));
+  for (int i = 0; i < s->substeps; i++) base->method->step_lanes(base, m, h * dvi__scheme_part(s, i));
   for (int k = 0; k < m->count; k++) move_clock(t[k], t_carry[k], h, m->t + k, m->t_carry + k);
 }
 
 static void explain(const dvi__stepper *self, dvi__text *text)
 {
   const dvi__stepper *base = self->own;
-  dvi__text_add(text, "composition: %d substeps a step, each by %s\n", schemes[self->settings.value[ORDER]].substeps,
-                base->specification);
+  dvi__text_add(text, "composition: %d substeps a step, each by %s\n", scheme_of(self)->substeps, base->specification);
   base->method->explain(base, text);
 }
 

@@ -34,8 +34,8 @@ typedef struct dvi__key {
 } dvi__key;
 
 /* As `least`: the key is a positive number, or auto, which it is if it is not given; the key is a choice of what is said of the steps, and does not
- * change them. */
-enum { DVI__POSITIVE = -2, DVI__SAID = -3 };
+ * change them; it is a text, of which a method may have one, but not as its first key. */
+enum { DVI__POSITIVE = -2, DVI__SAID = -3, DVI__TEXT = -4 };
 
 enum { DVI__KEYS_MOST = 8, DVI__LIST_MOST = 16, DVI__SPECIFICATION_SIZE = 256, DVI__LEFT_OUT = -1 };
 
@@ -46,6 +46,7 @@ typedef struct dvi__settings {
   double list[DVI__LIST_MOST];             /* numbers of the key that is a list */
   int listed;                              /* how many; 0: it is not given */
   char list_text[DVI__SPECIFICATION_SIZE]; /* as they were written */
+  char text[DVI__SPECIFICATION_SIZE];      /* of the key that is DVI__TEXT; empty: it is not given */
   char rest[DVI__SPECIFICATION_SIZE];      /* "key=value,..." that are not the method's own; only for methods that take them */
 } dvi__settings;
 

@@ -133,6 +133,13 @@ static dvi_status parse_real(const dvi__method *method, const dvi__key *key, pie
                    value.text);
 }
 
+static dvi_status keep_text(const dvi__method *method, piece value, dvi__settings *settings)
+{
+  dvi__text text = {settings->text, sizeof settings->text, 0};
+  dvi__text_add(&text, "%.*s", value.length, value.text);
+  return text.length < text.size ? DVI_OK : dvi__fail(DVI_BAD_OPTION, "%s: the specification is too long", method->name);
+}
+
 static dvi_status keep_for_others(const dvi__method *method, piece name, piece value, dvi__settings *settings)
 {
   dvi__text rest = {settings->rest, sizeof settings->rest, strlen(settings->rest)};
@@ -149,6 +156,7 @@ static dvi_status assign(const dvi__method *method, piece name, piece value, dvi
     if (*given & 1U << k) return dvi__fail(DVI_BAD_OPTION, "%s: %s is given twice", method->name, key->name);
     *given |= 1U << k;
     if (key->least == DVI__POSITIVE) return parse_real(method, key, value, &settings->number[k]);
+    if (key->least == DVI__TEXT) return keep_text(method, value, settings);
     return is_number(key, value) ? parse_number(method, key, value, &settings->value[k])
                                  : parse_choice(method, key, value, &settings->value[k]);
   }
@@ -200,9 +208,12 @@ void dvi__spell_out(const dvi__method *method, const dvi__settings *settings, dv
   dvi__text_add(text, "%s", method->name);
   for (int k = 0; k < dvi__key_count(method); k++) {
     const dvi__key *key = &method->keys[k];
+    if (key->least == DVI__TEXT && settings->text[0] == 0) continue;
     dvi__text_add(text, "%c%s=", k == 0 ? ':' : ',', key->name);
     if (key->least == DVI__POSITIVE)
       spell_real(settings->number[k], text);
+    else if (key->least == DVI__TEXT)
+      dvi__text_add(text, "%s", settings->text);
     else if (key->choice != NULL && key->choice(settings->value[k]) != NULL)
       dvi__text_add(text, "%s", key->choice(settings->value[k]));
     else

@@ -1,0 +1,159 @@
+#include "action/shot_step.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+
+struct dvi__shot_step {
+  dvi__shot *shot;
+  dvi__evaluator *evaluator;
+  dvi__pattern pattern; /* full */
+  int n;
+  double t0;
+  const double *q0, *p0;
+  double *unit;               /* [n] the momentum of a unit of q a step */
+  double *p;                  /* [n] pi0 */
+  double *end, *reach, *gain; /* [2n] */
+  double *motion;             /* [2n*2n] */
+};
+
+/* ---- making it ---- */
+
+static dvi_status allocate(dvi__shot_step *s)
+{
+  const size_t n = (size_t)s->n;
+  double **const all[] = {&s->unit, &s->p, &s->end, &s->reach, &s->gain, &s->motion};
+  const size_t size[] = {n, n, 2 * n, 2 * n, 2 * n, 4 * n * n};
+  for (int i = 0; i < 6; i++) {
+    *all[i] = DVI_NEW(double, size[i]);
+    if (*all[i] == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory for %d dimensions", s->n);
+  }
+  return DVI_OK;
+}
+
+static dvi_status fill(dvi__shot_step *s, const dvi_system *system, const dvi__runge_kutta *method, const dvi__course *course,
+                       dvi_counters *counters)
+{
+  DVI_TRY(allocate(s));
+  DVI_TRY(dvi__pattern_copy(&(dvi_pattern){0}, 2 * s->n, "shooting", &s->pattern));
+  DVI_TRY(dvi__evaluator_create(system, 1, DVI__GRADIENTS, counters, &s->evaluator));
+  return dvi__shot_create(system, method, course, counters, &s->shot);
+}
+
+dvi_status dvi__shot_step_create(const dvi_system *system, const dvi__runge_kutta *method, const dvi__course *course,
+                                 dvi_counters *counters, dvi__shot_step **step)
+{
+  *step = NULL;
+  dvi__shot_step *s = DVI_NEW(dvi__shot_step, 1);
+  if (s == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory");
+  s->n = system->n;
+  const dvi_status status = fill(s, system, method, course, counters);
+  if (status != DVI_OK) dvi__shot_step_destroy(&s);
+  *step = s;
+  return status;
+}
+
+void dvi__shot_step_destroy(dvi__shot_step **step)
+{
+  dvi__shot_step *s = *step;
+  if (s == NULL) return;
+  dvi__shot_destroy(&s->shot);
+  dvi__evaluator_destroy(&s->evaluator);
+  dvi__pattern_clear(&s->pattern);
+  dvi__release(s->unit);
+  dvi__release(s->p);
+  dvi__release(s->end);
+  dvi__release(s->reach);
+  dvi__release(s->gain);
+  dvi__release(s->motion);
+  dvi__release(s);
+  *step = NULL;
+}
+
+const dvi__pattern *dvi__shot_step_pattern(const dvi__shot_step *s)
+{
+  return &s->pattern;
+}
+
+/* ---- the step ---- */
+
+dvi_status dvi__shot_step_place(dvi__shot_step *s, double t0, double h, const double *q0, const double *p0, double *v, double *x)
+{
+  s->q0 = q0;
+  s->p0 = p0;
+  DVI_TRY(dvi__legendre_inverse(s->evaluator, t0, q0, p0, v));
+  DVI_TRY(dvi__field_mass(dvi__shot_field(s->shot), t0, q0, v, s->unit));
+  for (int i = 0; i < s->n; i++) s->unit[i] /= fabs(h);
+  dvi__shot_aim(s->shot, t0, h, q0, s->unit);
+  dvi__field_guess(dvi__shot_field(s->shot), v);
+  DVI_TRY(dvi__shot_fire(s->shot, p0, s->reach));
+  for (int i = 0; i < s->n; i++) {
+    x[i] = p0[i] / s->unit[i];
+    x[s->n + i] = (p0[i] + s->reach[s->n + i]) / s->unit[i];
+  }
+  return DVI_OK;
+}
+
+static dvi_status fire(dvi__shot_step *s, const double *x)
+{
+  for (int i = 0; i < s->n; i++) s->p[i] = s->unit[i] * x[i];
+  DVI_TRY(dvi__shot_fire(s->shot, s->p, s->reach));
+  return dvi__shot_trace(s->shot);
+}
+
+dvi_status dvi__shot_step_residual(void *step, const double *x, double *R)
+{
+  dvi__shot_step *s = step;
+  const int n = s->n;
+  DVI_TRY(fire(s, x));
+  memset(s->end, 0, 2 * (size_t)n * sizeof *s->end);
+  for (int i = 0; i < n; i++) s->end[i] = -s->unit[i] * x[n + i];
+  DVI_TRY(dvi__shot_costate(s->shot, s->end, s->gain));
+  for (int i = 0; i < n; i++) {
+    R[i] = s->gain[n + i];
+    R[n + i] = (s->gain[i] + (s->p0[i] + s->end[i])) / s->unit[i];
+  }
+  return DVI_OK;
+}
+
+void dvi__shot_step_ends(const dvi__shot_step *s, double *dq, double *dp)
+{
+  memcpy(dq, s->reach, (size_t)s->n * sizeof *dq);
+  memcpy(dp, s->gain, (size_t)s->n * sizeof *dp);
+}
+
+/* Columns: motions of the start along q, then along p by its units. */
+static dvi_status motions(dvi__shot_step *s)
+{
+  const size_t z = 2 * (size_t)s->n;
+  memset(s->motion, 0, z * z * sizeof *s->motion);
+  for (size_t k = 0; k < z; k++) s->motion[k * z + k] = k < (size_t)s->n ? 1 : s->unit[k - (size_t)s->n];
+  return dvi__shot_move(s->shot, s->motion);
+}
+
+/* dQ_l/dq0_i, or over unit_i dQ_l/dx_i with i - n for i. */
+static double moved(const dvi__shot_step *s, int l, int i)
+{
+  const double *column = s->motion + (size_t)i * 2 * (size_t)s->n;
+  return i < s->n ? column[l] : column[l] / s->unit[i - s->n];
+}
+
+dvi_status dvi__shot_step_jacobian(void *step, const double *x, double *values)
+{
+  dvi__shot_step *s = step;
+  const int n = s->n, z = 2 * n;
+  DVI_TRY(fire(s, x));
+  DVI_TRY(motions(s));
+  for (int k = 0; k < n; k++)
+    for (int i = 0; i < z; i++) {
+      const int along = i < n ? n + i : i - n; /* the motion that row i is about */
+      const double row = i < n ? 1 : 1 / s->unit[i - n];
+      double sum = 0;
+      for (int l = 0; l < n; l++) sum += moved(s, l, along) * s->motion[(n + k) * z + n + l];
+      values[k * z + i] = row * sum - (i == n + k);
+      values[(n + k) * z + i] = -row * moved(s, k, along) * s->unit[k];
+    }
+  return DVI_OK;
+}

@@ -1,0 +1,34 @@
+/* The step whose discrete Lagrangian is the sum along a shot (action/shot.h) from q0 to q1.
+ *
+ *     Ld(q0,q1) = S(q0,pi0)  with the pi0 for which the shot ends at q1 = Q(q0,pi0),
+ *     p1 = D2 Ld = S_pi Q_pi^-1,     p0 = -D1 Ld = -S_q + p1.Q_q
+ * With G = S - p1.Q these are G_pi = 0 and G_q = -p0, which the costates give without an inverse. Near a solution, with the end's momentum Pi(q0,pi0) of the
+ * shot, S_z = Pi.Q_z - (pi0,0) to the order of the step, and that is what Newton's method goes by: G_pi = Q_pi^T (Pi - p1), G_q + pi0 = Q_q^T (Pi - p1).
+ *
+ * Source: Marsden and West 2001, sec. 1.6; Leok and Shingel 2012, sec. 3.
+ *
+ * Unknowns, in units of q: pi0, then p1. Rows: G_pi, then G_q + p0. */
+#ifndef DVI_ACTION_SHOT_STEP_H
+#define DVI_ACTION_SHOT_STEP_H
+#include "action/shot.h"
+
+typedef struct dvi__shot_step dvi__shot_step;
+
+dvi_status dvi__shot_step_create(const dvi_system *system, const dvi__runge_kutta *method, const dvi__course *course,
+                                 dvi_counters *counters, dvi__shot_step **step);
+void dvi__shot_step_destroy(dvi__shot_step **step);
+
+const dvi__pattern *dvi__shot_step_pattern(const dvi__shot_step *step);
+
+/* Put the step at (t0, q0, p0), and x at the shot from the inverse Legendre map; v [n], a guess, becomes the velocity there. The arrays must stay as
+ * they are. */
+dvi_status dvi__shot_step_place(dvi__shot_step *step, double t0, double h, const double *q0, const double *p0, double *v,
+                                double *x);
+
+dvi_status dvi__shot_step_residual(void *step, const double *x, double *R);
+dvi_status dvi__shot_step_jacobian(void *step, const double *x, double *values);
+
+/* Increments of q and p, [n] each, of the last residual. */
+void dvi__shot_step_ends(const dvi__shot_step *step, double *dq, double *dp);
+
+#endif

@@ -1,0 +1,303 @@
+/* Shooting: the discrete Lagrangian of a one-step method and a quadrature.
+ *
+ *     Ld(q0,q1) = h sum_i b_i L(q^i, v^i),   (q^{i+1},v^{i+1}) = Psi_{(c_{i+1}-c_i)h}(q^i,v^i),   q^0 = q0, q^n = q1,
+ * p0 = -D1 Ld, p1 = D2 Ld: the v^0 is sought for which the shot meets both (action/shot_step.h). The one-step method may be explicit: the step is symplectic
+ * and has the symmetries that it is equivariant under. The quadrature has both ends among its nodes.
+ * Order min(p,q) of the one-step method's and the quadrature's; symmetric if both are.
+ * Source: Leok and Shingel 2012, sec. 3; Patrick and Cuell 2009. */
+#include <dvi/quadrature.h>
+#include <math.h>
+#include <string.h>
+
+#include "action/shot_step.h"
+#include "core/memory.h"
+#include "core/status.h"
+#include "method/scheme.h"
+#include "method/stationary.h"
+#include "num/compensated.h"
+#include "num/finite.h"
+
+enum { ONE_STEP, STAGES, TABLEAU, COMPOSITION, QUADRATURE, NODES, TOLERANCE };
+enum { NODES_MOST = 16, FROM_FILE = DVI__RK_NAMED };
+
+static const char *one_step_name(int index)
+{
+  return index == FROM_FILE ? "file" : dvi__runge_kutta_name(index);
+}
+
+static const char *rule_name(int index)
+{
+  return dvi_rule_name((dvi_rule)index);
+}
+
+static const char *composition_name(int index)
+{
+  return index == 0 ? "none" : dvi__scheme_name(index - 1);
+}
+
+static const dvi__key keys[] = {
+    {"onestep", one_step_name, 0, 0, DVI__LEFT_OUT,
+     "euler, explicit-midpoint, heun, kutta3, rk4, three-eighths, dormand-prince, butcher6, cooper-verner, backward-euler, "
+     "implicit-midpoint, gauss, radau-iia, lobatto-iiia, sdirk, or file; left out: rk4"},
+    {"stages", NULL, 1, DVI__RK_STAGES_MOST, DVI__LEFT_OUT,
+     "of gauss, radau-iia, lobatto-iiia (2 to 8) and sdirk (2 or 3); left out: 2"},
+    {"tableau", NULL, DVI__TEXT, 0, 0, "the file of the one-step method's tableau"},
+    {"composition", composition_name, 0, 0, 0,
+     "none, 4, 6 or 8: the order to which a symmetric one-step method is composed; left out: none"},
+    {"quadrature", rule_name, 0, 0, DVI_SIMPSON, "trapezoid, simpson, lobatto or clenshaw-curtis; left out: simpson"},
+    {"nodes", NULL, 2, NODES_MOST, DVI__LEFT_OUT,
+     "of lobatto and clenshaw-curtis, 2 to 16; left out: the fewest whose order reaches that of the one-step method"},
+    {"tolerance", NULL, DVI__POSITIVE, 0, 0,
+     "the residual, relative to the coordinates, at which the search for v ends: to see what a loose one does; left out: roundoff"},
+    {0},
+};
+
+typedef struct shooter {
+  dvi__shot_step *step;
+  dvi__solver *solver;
+  int unknowns, order;   /* of the one-step method */
+  double tolerance;      /* 0: roundoff */
+  double *guess, *x, *R; /* [unknowns] */
+  double *values;        /* [unknowns^2] of the Jacobian; NULL without a tolerance */
+  double *v, *dq, *dp;   /* [n] */
+} shooter;
+
+/* ---- what is asked for ---- */
+
+static dvi_status choose_built_in(dvi__settings *settings, dvi__runge_kutta *method)
+{
+  int fewest, most, *stages = &settings->value[STAGES];
+  const int choice = settings->value[ONE_STEP];
+  dvi__runge_kutta_range(choice, &fewest, &most);
+  if (*stages == DVI__LEFT_OUT) *stages = fewest;
+  if (*stages >= fewest && *stages <= most) return dvi__runge_kutta_named(choice, *stages, method);
+  return dvi__fail(DVI_BAD_OPTION, "shooting: onestep=%s has %d%s stage%s, not stages=%d", one_step_name(choice), fewest,
+                   most > fewest ? " or more" : "", most == 1 ? "" : "s", *stages);
+}
+
+static dvi_status choose_one_step(dvi__settings *settings, dvi__runge_kutta *method)
+{
+  int *choice = &settings->value[ONE_STEP];
+  const int has_file = settings->text[0] != 0;
+  if (*choice == DVI__LEFT_OUT) *choice = has_file ? FROM_FILE : DVI__RK_4;
+  if (has_file != (*choice == FROM_FILE))
+    return dvi__fail(DVI_BAD_OPTION,
+                     has_file ? "shooting: onestep=%s is built in; with tableau=%s only onestep=file is possible"
+                              : "shooting: onestep=%s needs the name of the file, tableau=%s",
+                     one_step_name(*choice), has_file ? settings->text : "...");
+  if (!has_file) return choose_built_in(settings, method);
+  const dvi_status status = dvi__runge_kutta_read(settings->text, method);
+  if (status != DVI_OK) return dvi__fail_in(status, "shooting");
+  settings->value[STAGES] = method->stages;
+  return DVI_OK;
+}
+
+/* The composition's order takes the place of a lower one. */
+static dvi_status choose_composition(const dvi__settings *settings, dvi__runge_kutta *method)
+{
+  const int choice = settings->value[COMPOSITION];
+  if (choice == 0) return DVI_OK;
+  if (!method->symmetric)
+    return dvi__fail(DVI_BAD_OPTION,
+                     "shooting: composition=%s raises the order of symmetric one-step methods alone, and onestep=%s is none; "
+                     "implicit-midpoint, gauss and lobatto-iiia are",
+                     composition_name(choice), one_step_name(settings->value[ONE_STEP]));
+  const int order = dvi__scheme_at(choice - 1)->order;
+  method->order = method->order < order ? order : method->order;
+  return DVI_OK;
+}
+
+static dvi_status choose_nodes(dvi__settings *settings, int order)
+{
+  int *nodes = &settings->value[NODES];
+  const dvi_rule rule = (dvi_rule)settings->value[QUADRATURE];
+  const int fixed = rule == DVI_TRAPEZOID ? 2 : rule == DVI_SIMPSON ? 3 : 0;
+  if (!fixed && rule != DVI_LOBATTO && rule != DVI_CLENSHAW_CURTIS)
+    return dvi__fail(DVI_BAD_OPTION,
+                     "shooting: quadrature=%s does not have both ends of the step among its nodes, where the shot starts and meets "
+                     "q1; possible are trapezoid, simpson, lobatto and clenshaw-curtis",
+                     rule_name((int)rule));
+  if (*nodes == DVI__LEFT_OUT)
+    for (*nodes = fixed ? fixed : 2; !fixed && dvi_quadrature_order(rule, *nodes) < order && *nodes < NODES_MOST;) ++*nodes;
+  if (fixed && *nodes != fixed)
+    return dvi__fail(DVI_BAD_OPTION, "shooting: quadrature=%s has %d nodes, not nodes=%d", rule_name((int)rule), fixed, *nodes);
+  return DVI_OK;
+}
+
+/* A piece from node to node, in the substeps of the composition; nothing is summed at the points between them. */
+static void add_piece(const dvi__settings *settings, double from, double to, double weight, dvi__course *course)
+{
+  const int choice = settings->value[COMPOSITION];
+  const dvi__scheme *scheme = choice > 0 ? dvi__scheme_at(choice - 1) : NULL;
+  double gone = 0;
+  for (int i = 0; scheme != NULL && i + 1 < scheme->substeps; i++) {
+    gone += dvi__scheme_part(scheme, i);
+    course->c[++course->pieces] = from + gone * (to - from);
+  }
+  course->c[++course->pieces] = to;
+  course->b[course->pieces] = weight;
+}
+
+static dvi_status plot(const dvi__settings *settings, dvi__course *course)
+{
+  double c[NODES_MOST], b[NODES_MOST];
+  const int nodes = settings->value[NODES];
+  DVI_TRY(dvi_quadrature((dvi_rule)settings->value[QUADRATURE], nodes, c, b));
+  *course = (dvi__course){0};
+  course->b[0] = b[0];
+  for (int i = 1; i < nodes; i++) add_piece(settings, c[i - 1], c[i], b[i], course);
+  return DVI_OK;
+}
+
+/* ---- making it ---- */
+
+static int allocate(shooter *own, size_t n)
+{
+  const size_t z = (size_t)own->unknowns;
+  own->guess = DVI_NEW(double, z);
+  own->x = DVI_NEW(double, z);
+  own->R = DVI_NEW(double, z);
+  own->v = DVI_NEW(double, n);
+  own->dq = DVI_NEW(double, n);
+  own->dp = DVI_NEW(double, n);
+  if (own->tolerance > 0) own->values = DVI_NEW(double, z *z);
+  return own->guess && own->x && own->R && own->v && own->dq && own->dp && (own->values || own->tolerance == 0);
+}
+
+static dvi_status row_scale(void *of, double *scale, int *unchanged)
+{
+  for (int i = 0; i < dvi__shot_step_pattern(of)->columns; i++) scale[i] = 1;
+  *unchanged = 1;
+  return DVI_OK;
+}
+
+static dvi_status make(dvi__stepper *self, const dvi__runge_kutta *method, const dvi__course *course)
+{
+  shooter *own = self->own;
+  DVI_TRY(dvi__shot_step_create(self->system, method, course, self->counters, &own->step));
+  const dvi__pattern *pattern = dvi__shot_step_pattern(own->step);
+  dvi__equations equations = {.unknowns = pattern->columns,
+                              .pattern = pattern,
+                              .of = own->step,
+                              .residual = dvi__shot_step_residual,
+                              .jacobian = dvi__shot_step_jacobian,
+                              .row_scale = row_scale};
+  own->unknowns = pattern->columns;
+  DVI_TRY(dvi__stationary_create(&equations, self->counters, &own->solver));
+  return allocate(own, (size_t)self->system->n) ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "no memory");
+}
+
+static dvi_status create(dvi__stepper *self)
+{
+  dvi__settings *settings = &self->settings;
+  dvi__runge_kutta method;
+  dvi__course course;
+  DVI_TRY(choose_one_step(settings, &method));
+  DVI_TRY(choose_composition(settings, &method));
+  DVI_TRY(choose_nodes(settings, method.order));
+  DVI_TRY(plot(settings, &course));
+  const int order = dvi_quadrature_order((dvi_rule)settings->value[QUADRATURE], settings->value[NODES]);
+  shooter *own = self->own = DVI_NEW(shooter, 1);
+  if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "shooting: no memory");
+  own->tolerance = settings->number[TOLERANCE];
+  own->order = method.order;
+  self->order = method.order < order ? method.order : order;
+  self->symmetric = method.symmetric;
+  self->memory_count = (size_t)self->system->n;
+  const dvi_status status = make(self, &method, &course);
+  return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "shooting");
+}
+
+static void destroy(dvi__stepper *self)
+{
+  shooter *own = self->own;
+  if (own == NULL) return;
+  dvi__solver_destroy(&own->solver);
+  dvi__shot_step_destroy(&own->step);
+  dvi__release(own->guess);
+  dvi__release(own->x);
+  dvi__release(own->R);
+  dvi__release(own->values);
+  dvi__release(own->v);
+  dvi__release(own->dq);
+  dvi__release(own->dp);
+  dvi__release(own);
+}
+
+/* ---- the step ---- */
+
+/* The memory is a guess for the velocity. */
+static void start(dvi__stepper *self, const double *v)
+{
+  memcpy(self->memory, v, self->memory_count * sizeof *v);
+}
+
+/* Newton's method until the residual is as small as was asked for. */
+static dvi_status solve_loosely(const shooter *own, double size)
+{
+  enum { MOST = 40 };
+  double whole, correction = 0;
+  memcpy(own->x, own->guess, (size_t)own->unknowns * sizeof *own->x);
+  DVI_TRY(dvi__solver_jacobian(own->solver, own->x, own->values));
+  DVI_TRY(dvi__solver_take_jacobian(own->solver, own->values));
+  for (int i = 0; i < MOST; i++) {
+    DVI_TRY(dvi__shot_step_residual(own->step, own->x, own->R));
+    if (dvi__largest((size_t)own->unknowns, own->R) <= own->tolerance * size) return DVI_OK;
+    dvi__solver_apply_factor(own->solver, own->R);
+    whole = 0;
+    for (int k = 0; k < own->unknowns; k++) {
+      own->x[k] -= own->R[k];
+      whole = fmax(whole, fabs(own->R[k]));
+    }
+    correction = whole;
+  }
+  return dvi__fail(DVI_NOT_CONVERGED, "Newton's method does not reach the tolerance (change %.1e)", correction);
+}
+
+static dvi_status solve(dvi__stepper *self, double size)
+{
+  const shooter *own = self->own;
+  if (own->tolerance > 0) return solve_loosely(own, size);
+  DVI_TRY(dvi__stationary_solve(own->solver, self->counters, size, own->unknowns, own->guess, own->x));
+  return dvi__shot_step_residual(own->step, own->x, own->R);
+}
+
+static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
+{
+  const shooter *own = self->own;
+  const int n = self->system->n;
+  memcpy(own->v, self->memory, (size_t)n * sizeof *own->v);
+  DVI_TRY(dvi__shot_step_place(own->step, state->t, h, state->q, state->p, own->v, own->guess));
+  DVI_TRY(solve(self, dvi__largest((size_t)n, state->q)));
+  dvi__shot_step_ends(own->step, own->dq, own->dp);
+  for (int i = 0; i < n; i++) self->memory[i] = own->v[i];
+  dvi__add_compensated_all(n, state->q, state->q_carry, own->dq);
+  dvi__add_compensated_all(n, state->p, state->p_carry, own->dp);
+  dvi__add_compensated(&state->t, &state->t_carry, h);
+  return DVI_OK;
+}
+
+static void explain(const dvi__stepper *self, dvi__text *text)
+{
+  const shooter *own = self->own;
+  const dvi__settings *set = &self->settings;
+  dvi__text_add(text, "one-step method: %s%s of order %d, %d stage%s\nquadrature: %s of %d nodes\n",
+                one_step_name(set->value[ONE_STEP]), set->value[COMPOSITION] > 0 ? ", composed," : "", own->order,
+                set->value[STAGES], set->value[STAGES] == 1 ? "" : "s", rule_name(set->value[QUADRATURE]), set->value[NODES]);
+  dvi__text_add(text, "kernel: shots from the start, their derivatives by costates; %d unknowns a step, full Jacobian\n",
+                own->unknowns);
+  dvi__text_add(text, "solver: Newton's method, last KINSOL with line search\n");
+}
+
+const dvi__method dvi__shooting = {
+    .name = "shooting",
+    .summary = "any one-step method and a quadrature with both ends; order that of the lower of both",
+    .cite = "LeokShingel2012",
+    .keys = keys,
+    .uses = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL,
+    .create = create,
+    .destroy = destroy,
+    .start = start,
+    .step = step,
+    .explain = explain,
+};

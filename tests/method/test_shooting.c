@@ -1,0 +1,339 @@
+/* labels: invariant */
+/* Shooting: tableaus and their conditions, structure of the steps, refusals. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "action/runge_kutta.h"
+#include "support/runs.h"
+#include "support/suite.h"
+
+/* ---- tableaus ---- */
+
+START_TEST(tableaus_have_the_order_that_they_claim_and_no_more)
+{
+  int fewest, most;
+  dvi__runge_kutta method;
+  dvi__runge_kutta_range(_i, &fewest, &most);
+  for (int stages = fewest; stages <= most; stages++) {
+    ck_assert_int_eq(dvi__runge_kutta_named(_i, stages, &method), DVI_OK);
+    ck_assert_int_eq(dvi__runge_kutta_check(&method, method.order), DVI_OK);
+    if (method.order < DVI__TREES_MOST) ck_assert_int_eq(dvi__runge_kutta_check(&method, method.order + 1), DVI_BAD_OPTION);
+  }
+}
+END_TEST
+
+/* A coefficient that is off by 1e-6 breaks a condition whichever it is. */
+START_TEST(every_coefficient_counts)
+{
+  dvi__runge_kutta method;
+  ck_assert_int_eq(dvi__runge_kutta_named(8, 11, &method), DVI_OK);
+  ck_assert_int_eq(method.order, 8);
+  for (int i = 0; i < method.stages; i++)
+    for (int j = 0; j < i; j++) {
+      const double exact = method.a[i][j];
+      method.a[i][j] += 1e-6;
+      method.c[i] += 1e-6;
+      ck_assert_int_eq(dvi__runge_kutta_check(&method, 8), DVI_BAD_OPTION);
+      method.a[i][j] = exact;
+      method.c[i] -= 1e-6;
+    }
+}
+END_TEST
+
+static const char *written(const char *text)
+{
+  static const char *const path = "shooting.tableau";
+  FILE *file = fopen(path, "w");
+  ck_assert_ptr_nonnull(file);
+  ck_assert_int_ge(fputs(text, file), 0);
+  ck_assert_int_eq(fclose(file), 0);
+  return path;
+}
+
+START_TEST(a_tableau_in_a_file_is_the_built_in_one)
+{
+  problem *of = made_problem("kepler", NULL);
+  const char *path = written(
+      "# Kutta 1901\norder 4\nc 0 1/2 1/2 1\na\na 1/2\na 0 0.5\na 0 0 1 # the last one\nb 1/6 1/3 1/3 1/6\n");
+  dvi_integrator *file = started(of, spec("shooting:tableau=%s", path)), *built_in = started(of, "shooting:onestep=rk4");
+  ck_assert_int_eq(dvi_integrator_order(file), 4);
+  ck_assert_str_eq(
+      dvi_integrator_method(file),
+      "shooting:onestep=file,stages=4,tableau=shooting.tableau,composition=none,quadrature=simpson,nodes=3,tolerance=auto");
+  advance(file, 0.05, 20);
+  advance(built_in, 0.05, 20);
+  ck_assert_mem_eq(dvi_integrator_q(file), dvi_integrator_q(built_in), 2 * sizeof(double));
+  ck_assert_mem_eq(dvi_integrator_p(file), dvi_integrator_p(built_in), 2 * sizeof(double));
+  dvi_integrator_destroy(&file);
+  dvi_integrator_destroy(&built_in);
+  problem_destroy(&of);
+  ck_assert_int_eq(remove(path), 0);
+}
+END_TEST
+
+static const struct {
+  const char *text, *words;
+} broken[] = {
+    {"order 4\na\na 1/2\nb 0 1\n", "has not order 3: the sum of its condition for the tree [[[]]] is 0, not 1/6"},
+    {"order 2\na\na 1/2\nb 0 1\nc 0 1\n", "row 2 of a has the sum 0.5, but c is 1 there"},
+    {"order 2\na\na 1/x\nb 0 1\n", "shooting.tableau:3:5: a number other than 0 is expected behind the stroke"},
+    {"order 2\na\na 1/2,0\n", "shooting.tableau:3:6: a blank is expected behind the number"},
+    {"order 2\na\n a half\n", "shooting.tableau:3:4: a number is expected"},
+    {"order two\n", "shooting.tableau:1:7: a number is expected"},
+    {"order 2.5\n", "shooting.tableau:1:7: the order is one whole number"},
+    {"order 1\norder 1\n", "shooting.tableau:2:1: the order is given twice"},
+    {"weights 1\n", "shooting.tableau:1:1: order, a, b or c is expected"},
+    {"b 1\nb 1\n", "shooting.tableau:2:1: this row is given twice"},
+    {"a\nb 1\n", "the order is missing"},
+    {"order 1\na\na\nb 1\n", "there are 2 rows of a, 1 numbers of b and 0 of c"},
+    {"order 1\na 0 1\nb 1\n", "row 1 of a has more numbers than there are stages"},
+    {"order 1\na\nb 1e999\n", "shooting.tableau:3:3: the number is not finite"},
+    {"order 1\nb 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1\n", "methods of up to 16 stages are possible"},
+};
+enum { BROKEN = sizeof broken / sizeof *broken };
+
+START_TEST(broken_files_are_refused)
+{
+  problem *of = made_problem("pendulum", NULL);
+  dvi_integrator *none = NULL;
+  const char *path = written(broken[_i].text);
+  ck_assert_int_eq(dvi_integrator_create(of->system, spec("shooting:tableau=%s", path), &none), DVI_BAD_OPTION);
+  check_words(broken[_i].words);
+  ck_assert_ptr_null(none);
+  problem_destroy(&of);
+  ck_assert_int_eq(remove(path), 0);
+}
+END_TEST
+
+/* ---- structure ---- */
+
+/* Of high orders what is not symmetric cannot be told from roundoff. */
+enum { UNSYMMETRIC, SYMMETRIC, NEARLY };
+
+static const struct {
+  const char *setting;
+  int symmetric;
+} pairs[] = {{"onestep=euler,quadrature=trapezoid", UNSYMMETRIC},
+             {"onestep=heun,quadrature=trapezoid", UNSYMMETRIC},
+             {"onestep=rk4", UNSYMMETRIC},
+             {"onestep=cooper-verner,quadrature=lobatto", NEARLY},
+             {"onestep=backward-euler", UNSYMMETRIC},
+             {"onestep=sdirk,stages=3", UNSYMMETRIC},
+             {"onestep=radau-iia,quadrature=clenshaw-curtis", UNSYMMETRIC},
+             {"onestep=implicit-midpoint,quadrature=trapezoid", SYMMETRIC},
+             {"onestep=gauss,quadrature=lobatto", SYMMETRIC},
+             {"onestep=lobatto-iiia,stages=3", SYMMETRIC},
+             {"onestep=implicit-midpoint,composition=4", SYMMETRIC},
+             {"onestep=gauss,stages=4,quadrature=clenshaw-curtis", SYMMETRIC}};
+enum { PAIRS = sizeof pairs / sizeof *pairs };
+
+static const struct {
+  const char *problem;
+  double h;
+} places[] = {{"pendulum", 0.2}, {"kepler", 0.1}, {"double-pendulum", 0.02}, {"driven-pendulum", 0.1}, {"henon-heiles", 0.2}};
+enum { PLACES = sizeof places / sizeof *places };
+
+/* 1e-10 is the floor of differences, see dvi_symplecticity. */
+START_TEST(steps_are_symplectic_and_symmetric_pairs_symmetric)
+{
+  const char *method = spec("shooting:%s", pairs[_i].setting);
+  for (int place = 0; place < PLACES; place++) {
+    problem *of = made_problem(places[place].problem, NULL);
+    dvi_integrator *integrator = started(of, method);
+    double defect;
+    ck_assert_int_eq(dvi_symplecticity(integrator, 0, of->q, of->p, places[place].h, &defect), DVI_OK);
+    ck_assert_msg(defect <= 1e-10, "%s %s: symplectic to %g", of->name, method, defect);
+    ck_assert_int_eq(dvi_reversibility(integrator, 0, of->q, of->p, places[place].h, 20, &defect), DVI_OK);
+    if (pairs[_i].symmetric != NEARLY)
+      ck_assert_msg((pairs[_i].symmetric == SYMMETRIC) == (defect <= 1e-12), "%s %s: reversible to %g", of->name, method, defect);
+    dvi_integrator_destroy(&integrator);
+    problem_destroy(&of);
+  }
+}
+END_TEST
+
+/* ---- momenta ---- */
+
+/* Kepler's problem where x = q0, y = q1 + q0^2: a rotation is no affine map of q, and no Runge-Kutta method is equivariant under it. */
+typedef struct bent {
+  double x, y, vx, vy, r3;
+} bent;
+
+static bent bent_at(const double *q, const double *v)
+{
+  const double y = q[1] + q[0] * q[0], r = hypot(q[0], y);
+  return (bent){q[0], y, v[0], v[1] + 2 * q[0] * v[0], r * r * r};
+}
+
+static int bent_value(double t, const double *q, const double *v, double *L, void *user)
+{
+  (void)t, (void)user;
+  const bent b = bent_at(q, v);
+  *L = (b.vx * b.vx + b.vy * b.vy) / 2 + 1 / cbrt(b.r3);
+  return 0;
+}
+
+static int bent_gradient(double t, const double *q, const double *v, double *L_q, double *L_v, void *user)
+{
+  (void)t, (void)user;
+  const bent b = bent_at(q, v);
+  L_v[0] = b.vx + 2 * b.x * b.vy;
+  L_v[1] = b.vy;
+  L_q[0] = 2 * v[0] * b.vy - (b.x + 2 * b.x * b.y) / b.r3;
+  L_q[1] = -b.y / b.r3;
+  return 0;
+}
+
+static int bent_hessian(double t, const double *q, const double *v, double *L_qq, double *L_qv, double *L_vv, void *user)
+{
+  (void)t, (void)user;
+  const bent b = bent_at(q, v);
+  const double rr = b.x * b.x + b.y * b.y, r5 = b.r3 * rr, s = 2 * b.x, xx = (3 * b.x * b.x - rr) / r5, xy = 3 * b.x * b.y / r5,
+               yy = (3 * b.y * b.y - rr) / r5;
+  L_qq[0] = 4 * v[0] * v[0] + xx + 2 * s * xy + s * s * yy - 2 * b.y / b.r3;
+  L_qq[1] = L_qq[2] = xy + s * yy;
+  L_qq[3] = yy;
+  L_qv[0] = 2 * b.vy + s * 2 * v[0]; /* column by column: row q, column v */
+  L_qv[1] = 0;
+  L_qv[2] = 2 * v[0];
+  L_qv[3] = 0;
+  L_vv[0] = 1 + s * s;
+  L_vv[1] = L_vv[2] = s;
+  L_vv[3] = 1;
+  return 0;
+}
+
+static int bent_angular_momentum(double t, const double *q, const double *p, double *J, void *user)
+{
+  (void)t, (void)user;
+  *J = q[0] * p[1] - (q[1] + q[0] * q[0]) * (p[0] - 2 * q[0] * p[1]);
+  return 0;
+}
+
+/* The largest change of the angular momentum, invariant 1. */
+static double momentum_error(dvi_integrator *integrator, double h, int steps)
+{
+  double value[8], first, largest = 0;
+  ck_assert_int_eq(dvi_integrator_invariants(integrator, value), DVI_OK);
+  first = value[1];
+  for (int step = 0; step < steps; step += 100) {
+    advance(integrator, h, 100);
+    ck_assert_int_eq(dvi_integrator_invariants(integrator, value), DVI_OK);
+    largest = fmax(largest, fabs(value[1] - first));
+  }
+  return largest;
+}
+
+/* 1e5 steps of a compensated sum; the bound is some tens of roundings of one. */
+START_TEST(momenta_of_equivariant_one_step_methods_stay_at_roundoff)
+{
+  static const char *const method[] = {"shooting:onestep=heun,quadrature=trapezoid", "shooting",
+                                       "shooting:onestep=implicit-midpoint"};
+  problem *of = made_problem("kepler", "e=0.3");
+  dvi_integrator *integrator = started(of, method[_i]);
+  ck_assert_double_le(momentum_error(integrator, 0.05, repeats(_i < 2 ? 100000 : 10000)), 1e-13);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&of);
+}
+END_TEST
+
+START_TEST(momenta_of_other_one_step_methods_do_not)
+{
+  const dvi_lagrangian L = {.value = bent_value, .gradient = bent_gradient, .hessian = bent_hessian};
+  const dvi_invariant J = {.name = "angular momentum", .value = bent_angular_momentum};
+  const dvi_system_terms terms = {.dimension = 2, .lagrangian = &L, .invariants = &J, .invariant_count = 1, .autonomous = 1};
+  const double e = 0.3, q[] = {1 - e, -(1 - e) * (1 - e)}, vy = sqrt((1 + e) / (1 - e)), v[] = {0, vy};
+  dvi_system *system;
+  ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
+  ck_assert_msg(dvi_system_check(system, 0, q, (double[]){0.3, vy}, 0, NULL) == DVI_OK, "%s", dvi_last_error());
+  dvi_integrator *integrator = made_integrator(system, "shooting");
+  double defect;
+  ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, q, v), DVI_OK);
+  ck_assert_double_ge(momentum_error(integrator, 0.05, repeats(10000)), 1e-6);
+  ck_assert_int_eq(dvi_symplecticity(integrator, 0, q, (double[]){2 * (1 - e) * vy, vy}, 0.05, &defect), DVI_OK);
+  ck_assert_double_le(defect, 1e-10);
+  dvi_integrator_destroy(&integrator);
+  dvi_system_destroy(&system);
+}
+END_TEST
+
+/* ---- failures ---- */
+
+static const struct {
+  const char *method;
+  const char *words;
+} refused[] = {
+    {"shooting:quadrature=gauss", "does not have both ends of the step among its nodes"},
+    {"shooting:quadrature=midpoint", "does not have both ends of the step among its nodes"},
+    {"shooting:quadrature=radau-left", "does not have both ends of the step among its nodes"},
+    {"shooting:quadrature=simpson,nodes=5", "quadrature=simpson has 3 nodes, not nodes=5"},
+    {"shooting:onestep=rk4,stages=5", "onestep=rk4 has 4 stages, not stages=5"},
+    {"shooting:onestep=gauss,stages=9", "onestep=gauss has 2 or more stages, not stages=9"},
+    {"shooting:onestep=rk5", "possible are euler"},
+    {"shooting:onestep=file", "onestep=file needs the name of the file"},
+    {"shooting:onestep=rk4,tableau=x", "onestep=rk4 is built in"},
+    {"shooting:composition=4", "raises the order of symmetric one-step methods alone, and onestep=rk4 is none"},
+    {"shooting:tableau=no/such/file", "no/such/file cannot be read"},
+};
+enum { REFUSED = sizeof refused / sizeof *refused };
+
+START_TEST(what_does_not_go_is_refused)
+{
+  problem *of = made_problem("kepler", NULL);
+  dvi_integrator *none = NULL;
+  ck_assert_int_eq(dvi_integrator_create(of->system, refused[_i].method, &none), DVI_BAD_OPTION);
+  check_words(refused[_i].words);
+  ck_assert_ptr_null(none);
+  problem_destroy(&of);
+}
+END_TEST
+
+static int wall(double t, const double *q, double *V, void *user)
+{
+  (void)t, (void)user;
+  *V = q[0] < 1 ? -log(1 - q[0]) : 0;
+  return q[0] < 1 ? 0 : 1;
+}
+
+static int wall_gradient(double t, const double *q, double *V_q, void *user)
+{
+  (void)t, (void)user;
+  *V_q = 1 / (1 - q[0]);
+  return q[0] < 1 ? 0 : 1;
+}
+
+START_TEST(a_one_step_method_that_fails_inside_a_step_leaves_the_state)
+{
+  const dvi_potential potential = {.name = "wall", .value = wall, .gradient = wall_gradient};
+  const dvi_system_terms terms = {.dimension = 1, .mass = {.scalar = 1}, .potentials = &potential, .potential_count = 1};
+  const double q = 0, p = 4;
+  dvi_system *system;
+  ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
+  dvi_integrator *integrator = made_integrator(system, _i == 0 ? "shooting" : "shooting:onestep=gauss");
+  ck_assert_int_eq(dvi_integrator_start(integrator, 0, &q, &p), DVI_OK);
+  ck_assert_int_gt(dvi_integrator_step(integrator, 2), 0);
+  check_words(_i == 0 ? "stage 2 of the one-step method from node 1 on" : "the stages of the one-step method from node 1 on");
+  check_words("the state is unchanged, try a smaller step");
+  ck_assert_double_eq(dvi_integrator_q(integrator)[0], q);
+  ck_assert_double_eq(dvi_integrator_p(integrator)[0], p);
+  advance(integrator, 0.01, 10);
+  dvi_integrator_destroy(&integrator);
+  dvi_system_destroy(&system);
+}
+END_TEST
+
+int main(void)
+{
+  TCase *tests = tcase_create("shooting");
+  tcase_add_loop_test(tests, tableaus_have_the_order_that_they_claim_and_no_more, 0, DVI__RK_NAMED);
+  tcase_add_test(tests, every_coefficient_counts);
+  tcase_add_test(tests, a_tableau_in_a_file_is_the_built_in_one);
+  tcase_add_loop_test(tests, broken_files_are_refused, 0, BROKEN);
+  tcase_add_loop_test(tests, steps_are_symplectic_and_symmetric_pairs_symmetric, 0, PAIRS);
+  tcase_add_loop_test(tests, momenta_of_equivariant_one_step_methods_stay_at_roundoff, 0, 3);
+  tcase_add_test(tests, momenta_of_other_one_step_methods_do_not);
+  tcase_add_loop_test(tests, what_does_not_go_is_refused, 0, REFUSED);
+  tcase_add_loop_test(tests, a_one_step_method_that_fails_inside_a_step_leaves_the_state, 0, 2);
+  return run_tests("method/shooting", tests);
+}
