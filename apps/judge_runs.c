@@ -23,11 +23,12 @@ typedef struct runner {
 } runner;
 
 static const runner galerkin = {"galerkin", "degree", {16, 12}}, lie_galerkin = {"lie-galerkin", "degree", {16, 12}},
-                    vprk = {"vprk", "nodes", {6, 5}}, dg_phase = {"dg-phase", "degree", {6, 5}};
+                    vprk = {"vprk", "nodes", {6, 5}}, dg_phase = {"dg-phase", "degree", {6, 5}},
+                    hamiltonian = {"hamiltonian", "degree", {6, 5}};
 
 static const runner *runner_for(const dvi_system_terms *terms)
 {
-  if (terms->hamiltonian != NULL) return &dg_phase;
+  if (terms->hamiltonian != NULL) return terms->constraint != NULL ? &dg_phase : &hamiltonian;
   if (terms->factors != NULL) return &lie_galerkin;
   return terms->one_form != NULL ? &vprk : &galerkin;
 }

@@ -48,6 +48,7 @@ static const struct {
     {"vortices", NULL, "dg", 0.05, 30},
     {"vortices", NULL, "dg-phase", 0.02, 30},
     {"circle-dirac", NULL, "dg-phase:degree=2", 0.1, 30},
+    {"elastica", NULL, "hamiltonian:degree=3", 0.1, 30},
     {"massless-particle", NULL, "dg:degree=1,stiffness=1:2", 0.1, 30},
     {"massless-particle", NULL, "vprk:projection=symplectic", 0.1, 30},
     {"massless-particle", "gauge=singular", "dvi-a", 0.1, 30},

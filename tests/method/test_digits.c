@@ -19,7 +19,7 @@ static problem *with_digits(int index)
 static const char *good_method(const problem *of)
 {
   const dvi_system_terms *terms = of->terms;
-  if (terms->hamiltonian != NULL) return "dg-phase:degree=6";
+  if (terms->hamiltonian != NULL) return terms->constraint != NULL ? "dg-phase:degree=6" : "hamiltonian:degree=6";
   if (terms->factors != NULL) return "lie-galerkin:degree=8";
   return terms->one_form != NULL ? "vprk:nodes=6" : "galerkin:degree=8";
 }

@@ -29,6 +29,7 @@ static const place places[] = {
     {"vortices", NULL, 0.05},
     {"massless-particle", "gauge=singular", 0.1},
     {"magnetic-pair", NULL, 0.1},
+    {"elastica", NULL, 0.1},
 };
 
 static const char *const methods[] = {
@@ -63,6 +64,8 @@ static const char *const methods[] = {
     "hp:type=3,quadrature=gauss",
     "dg:stiffness=1",
     "dg-phase",
+    "hamiltonian:degree=3",
+    "hamiltonian:type=3,degree=2,quadrature=radau-right",
 };
 enum { PLACES = sizeof places / sizeof *places, METHODS = sizeof methods / sizeof *methods };
 

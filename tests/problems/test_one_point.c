@@ -11,7 +11,7 @@ enum { STEPS = 10 };
 static const char *method_for(const problem *of)
 {
   const dvi_system_terms *terms = of->terms;
-  if (terms->hamiltonian != NULL) return "dg-phase:degree=3";
+  if (terms->hamiltonian != NULL) return terms->constraint != NULL ? "dg-phase:degree=3" : "hamiltonian:degree=3";
   if (terms->factors != NULL) return "lie-galerkin:degree=5";
   return terms->one_form != NULL ? "vprk:nodes=3" : "galerkin:degree=5";
 }

@@ -431,6 +431,21 @@ START_TEST(circle_dirac_is_that_of_the_catalogue)
 }
 END_TEST
 
+START_TEST(elastica_is_that_of_the_catalogue)
+{
+  double q[3] = {0.7, 0.4, -1.1}, p[3] = {0.3, -0.2, 0.5};
+  open_both("coordinates: {x: scalar, y: scalar, theta: scalar}\n"
+            "hamiltonian: p(x)*cos(theta) + p(y)*sin(theta) + p(theta)^2/2\n"
+            "initial: {x: 0, y: 0, theta: 0, p(x): -1, p(y): 0, p(theta): 1}\n" RUN,
+            "elastica");
+  starts_agree();
+  ck_assert_int_eq(dvi_system_check(dvi_scene_system(scene), 0, q, p, 0, NULL), DVI_OK);
+  ck_assert_int_eq(dvi_system_constraint_count(dvi_scene_system(scene)), 0);
+  ck_assert_str_eq(facts()->form, "Hamiltonian");
+  steps_agree("hamiltonian:type=3", 0.1);
+}
+END_TEST
+
 int main(void)
 {
   TCase *tests = tcase_create("scene");
@@ -453,5 +468,6 @@ int main(void)
   tcase_add_test(tests, toda_is_that_of_the_catalogue);
   tcase_add_test(tests, lotka_volterra_is_that_of_the_catalogue_in_both_spellings);
   tcase_add_test(tests, circle_dirac_is_that_of_the_catalogue);
+  tcase_add_test(tests, elastica_is_that_of_the_catalogue);
   return run_tests("scene", tests);
 }

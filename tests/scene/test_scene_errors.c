@@ -228,7 +228,8 @@ START_TEST(sections_that_are_missing_or_do_not_go_together_are_told)
   refused(X "lagrangian: x'^2\nhamiltonian: 1\n" RUN, ":3:14:", "beside lagrangian there is no hamiltonian");
   refused(X "lagrangian: x'^2\npotentials: {a: 1}\n" RUN, ":3:13:", "potentials stand beside kinetic");
   refused(X "one_form: {x: 1}\n" RUN, ":2:11:", "one_form needs a hamiltonian");
-  refused(X "hamiltonian: p(x)^2\n" RUN, ":2:14:", "a hamiltonian stands with constraints or a one_form");
+  refused(X "hamiltonian: p(x)^2\n" RUN, ":3:10:", "the momentum p(x) is not given");
+  refused(X "hamiltonian: p(x)^2\npotentials: {a: x}\n" RUN, ":3:13:", "not beside hamiltonian");
   refused(X "hamiltonian: x\nconstraints: {a: x}\n" RUN, ":3:14:", "an even number is needed");
   refused(X "lagrangian: x'^2\nforces: {x: 1}\n" RUN, ":3:9:", "no method here takes forces");
   refused("coordinates: {x: skalar}\nlagrangian: 1\n" RUN, ":1:18:", "did you mean scalar?");

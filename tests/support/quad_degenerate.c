@@ -308,6 +308,38 @@ static void pair_momentum(const quad_system *system, const quad *q, const quad *
   p[2] = 0;
 }
 
+/* x' = cos theta, y' = sin theta, theta'' = p_x sin theta with p_x = -1; the first two differentiated. */
+static void elastica_velocity(const quad_system *system, const quad *q, const quad *p, quad *v)
+{
+  (void)system;
+  v[0] = quad_cos(q[2]);
+  v[1] = quad_sin(q[2]);
+  v[2] = p[2];
+}
+
+static void elastica_prepare(quad_system *system)
+{
+  system->n = 3;
+  system->v[0] = 1;
+  system->v[2] = system->value[0];
+}
+
+static void elastica_acceleration(const quad_system *system, const quad *q, const quad *v, quad *a)
+{
+  (void)system;
+  a[0] = -quad_sin(q[2]) * v[2];
+  a[1] = quad_cos(q[2]) * v[2];
+  a[2] = -quad_sin(q[2]);
+}
+
+static void elastica_momentum(const quad_system *system, const quad *q, const quad *v, quad *p)
+{
+  (void)system, (void)q;
+  p[0] = -1;
+  p[1] = 0;
+  p[2] = v[2];
+}
+
 #define DEGENERATE(name) .prepare = name##_prepare, .rate = name##_rate, .momentum = name##_momentum
 
 const quad_problem quad_degenerate[] = {
@@ -328,5 +360,12 @@ const quad_problem quad_degenerate[] = {
      .acceleration = pair_acceleration,
      .momentum = pair_momentum,
      .velocity = pair_velocity},
+    {.name = "elastica",
+     .parameter = {"kappa"},
+     .standard = {"1"},
+     .prepare = elastica_prepare,
+     .acceleration = elastica_acceleration,
+     .momentum = elastica_momentum,
+     .velocity = elastica_velocity},
     {.name = NULL},
 };

@@ -91,7 +91,7 @@ void dvi_integrator_destroy(dvi_integrator **integrator);
  *
  *  A general Lagrangian's velocity is sought by Newton's method from v = 0 and from velocities along p. Where several velocities have one
  *  momentum, say which one is meant: dvi_integrator_start_velocity.
- *  With a one-form p must be alpha(q) up to rounding, and with a Hamiltonian phi(q,p) must be 0; dvi_integrator_start_with can project another start.
+ *  With a one-form p must be alpha(q) up to rounding, and with constraints phi(q,p) must be 0; dvi_integrator_start_with can project another start.
  *  On any failure the old state stays.
  *  @retval DVI_BAD_ARGUMENT   a pointer is NULL; or the state is off the constraint, p = alpha(q) of a one-form or phi(q,p) = 0 of a Hamiltonian
  *  @retval DVI_NOT_FINITE     an argument, the energy or the forces are not finite there

@@ -9,11 +9,11 @@
  *  the momenta: rotations and unit vectors are found on the manifold to rounding. IDA's Jacobian is differenced then, and dense: up to 2000 unknowns. */
 typedef enum dvi_reference_code {
   DVI_IDA, /**< variable-order BDF on the implicit Euler-Lagrange equations: qdot = v, pdot = L_q, 0 = p - L_v (index 1); with a one-form on
-                        Omega(q) qdot = H_q; with a Hamiltonian on its equations with the multiplier eliminated; with factors as above */
+                        Omega(q) qdot = H_q; with a Hamiltonian on its equations, the multiplier of constraints eliminated; with factors as above */
   DVI_CVODE_ADAMS, /**< on qdot = v(q,p), pdot = L_q; with a one-form on qdot = v(q) alone */
   DVI_CVODE_BDF,
   DVI_ARKODE, /**< explicit Runge-Kutta, order 8 (Fehlberg 13-7-8) */
-  DVI_IDA_INDEX_2 /**< for one-forms: IDA on qdot = v, pdot = L_q, 0 = p - alpha(q), of index 2, without v in the error test; for Hamiltonians
+  DVI_IDA_INDEX_2 /**< for one-forms: IDA on qdot = v, pdot = L_q, 0 = p - alpha(q), of index 2, without v in the error test; for constraints
                         on qdot = H_p + phi_p^T lambda, pdot = -H_q - phi_q^T lambda, 0 = phi, without lambda in it */
 } dvi_reference_code;
 
@@ -44,7 +44,7 @@ extern "C" {
  *  @param         options NULL: IDA at its defaults
  *  @param[out]    report  may be NULL
  *  @retval DVI_REFERENCE_FAILED  the code stopped early; the error sentence has its reason and time
- *  @retval DVI_UNSUPPORTED       DVI_IDA_INDEX_2 for a system without a one-form or a Hamiltonian; DVI_IDA for factors with too many unknowns
+ *  @retval DVI_UNSUPPORTED       DVI_IDA_INDEX_2 for a system without a one-form or constraints; DVI_IDA for factors with too many unknowns
  *  @retval DVI_BAD_ARGUMENT      with factors: q is not on their manifold, or p not tangent to it, up to rounding */
 dvi_status dvi_reference_solve(const dvi_system *system, double t, double t_end, double *q, double *p,
                                const dvi_reference_options *options, dvi_reference_report *report);

@@ -44,7 +44,7 @@ typedef struct dvi_scene_range {
 
 /** What was found in a scene, for people and for tests. */
 typedef struct dvi_scene_facts {
-  const char *form; /**< "separable", "general Lagrangian", "one-form", "Hamiltonian with constraints" */
+  const char *form; /**< "separable", "general Lagrangian", "one-form", "Hamiltonian", "Hamiltonian with constraints" */
   const char *
       mass; /**< "identity", "scalar", "diagonal", "sparse", "inertias" (of rotations and angles, and no more); NULL without a constant mass */
   int kernels;                                                   /**< expressions that are summed over elements */

@@ -1,11 +1,11 @@
-/** The mechanical system: a Lagrangian, or a Hamiltonian with constraints, declared as terms.
+/** The mechanical system: a Lagrangian, or a Hamiltonian, with constraints or without, declared as terms.
  *
  *      L(t,q,v) = v.M v/2  or  a general Lagrangian  or  a one-form alpha(q).v,  minus the sum of the potentials V_k(t,q),     q, v in R^n.
  *
  *  With a one-form the Lagrangian is degenerate: it is linear in v, the potentials' sum is the Hamiltonian H(t,q), the momenta are p = alpha(q), and the
  *  equations of motion are of first order, Omega(q) v = dH/dq with the two-form Omega_ij = d alpha_j/dq_i - d alpha_i/dq_j.
  *
- *  A Hamiltonian H(t,q,p) comes with an even number of constraints phi(q,p) = 0 (of second class: their bracket matrix {phi_a, phi_b} is regular).
+ *  A Hamiltonian H(t,q,p) alone moves by q' = H_p, p' = -H_q; no derivative of it need be regular. It may come with an even number of constraints phi(q,p) = 0 (of second class: their bracket matrix {phi_a, phi_b} is regular).
  *  The equations of motion are q' = H_p + phi_p^T lambda, p' = -H_q - phi_q^T lambda with the multipliers that keep phi = 0 (Dirac 1964).
  *
  *  Callbacks return 0 for success, a positive number if a smaller step might help (the step fails, the state stays, unless it can be taken
@@ -84,7 +84,7 @@ typedef struct dvi_gauge {
   void *user;
 } dvi_gauge;
 
-/** A Hamiltonian H(t,q,p) on phase space, all of it: potentials are no terms beside it. Its motion is constrained (dvi_constraint).
+/** A Hamiltonian H(t,q,p) on phase space, all of it: potentials are no terms beside it. Its motion may be constrained (dvi_constraint).
  *
  *  Its callbacks have the one-point shape alone. */
 typedef struct dvi_hamiltonian {
@@ -215,9 +215,9 @@ typedef struct dvi_system_terms {
   const dvi_invariant *invariants;
   int invariant_count;
   int autonomous; /**< not 0: no callback depends on t (dvi_system_check tests it), and no rates are given; 0: one may */
-  const dvi_hamiltonian *hamiltonian; /**< without potentials, and with: */
-  const dvi_constraint *constraint;
-  const dvi_factor *factors; /**< NULL: R^n */
+  const dvi_hamiltonian *hamiltonian; /**< without potentials */
+  const dvi_constraint *constraint;   /**< of the Hamiltonian; NULL: there is none */
+  const dvi_factor *factors;          /**< NULL: R^n */
   int factor_count;
 } dvi_system_terms;
 
@@ -235,7 +235,7 @@ extern "C" {
  *  @retval DVI_BAD_ARGUMENT  a term is missing, given twice, or without its value callback; a reach has no gradient_range; a pattern is not
  *                            sorted; an autonomous system has a rate; a gauge has no one-form; an inertia is that of no body (its principal moments must be positive, none above the
  *                            sum of the others);
- *                            of a Hamiltonian and a constraint one is missing, or there are potentials beside them
+ *                            a constraint has no Hamiltonian, or a Hamiltonian potentials beside it
  *  @retval DVI_SINGULAR      the constant mass is singular or not finite; with factors: not finite, or none at all at a factor's coordinates
  *  @retval DVI_UNSUPPORTED   factors beside a general Lagrangian or a one-form
  *  @retval DVI_NO_MEMORY */
@@ -259,14 +259,14 @@ int dvi_system_constraint_count(const dvi_system *system);
 /** The Lagrangian's value at (t, q [nq], v [nv]). Allocates; fails as the callbacks do; DVI_UNSUPPORTED for a Hamiltonian. */
 dvi_status dvi_system_lagrangian(const dvi_system *system, double t, const double *q, const double *v, double *L);
 
-/** The Legendre map p = L_v(t,q,v) [nv] (Marsden and West 2001, sec. 1.2.5). Allocates. DVI_UNSUPPORTED for a Hamiltonian: its constraints may leave
+/** The Legendre map p = L_v(t,q,v) [nv] (Marsden and West 2001, sec. 1.2.5). Allocates. DVI_UNSUPPORTED for a Hamiltonian: there may be
  *  more than one p to a v, or none. */
 dvi_status dvi_system_momentum(const dvi_system *system, double t, const double *q, const double *v, double *p);
 
 /** The inverse Legendre map: the v [nv] with L_v(t,q,v) = p, by Newton's method from v as given.
  *
  *  If that does not settle, velocities along p are tried as guesses. A degenerate Lagrangian alpha.v - H has no such map; there v is that of the
- *  equations of motion, Omega(q) v = dH/dq, and p does not matter. Of a Hamiltonian v = H_p + phi_p^T lambda.
+ *  equations of motion, Omega(q) v = dH/dq, and p does not matter. Of a Hamiltonian v = H_p, with constraints H_p + phi_p^T lambda.
  *  @param[in,out] v  [nv]; a starting guess (read for general Lagrangians only), then the velocity; unchanged on failure
  *  @retval DVI_SINGULAR       L_vv is singular at every guess; or Omega is; or the constraints' bracket matrix
  *  @retval DVI_NOT_CONVERGED  Newton's method did not settle from any guess

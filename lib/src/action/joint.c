@@ -5,17 +5,19 @@
 
 static dvi_status join(const dvi_system *system, dvi__pattern *joint)
 {
-  dvi__pattern vq = {0}, mixed = {0}, own = {0}, diagonal = {0};
+  dvi__pattern vq = {0}, mixed = {0}, own = {0}, second = {0}, diagonal = {0};
   dvi_status status = dvi__pattern_transpose(&system->qv, &vq);
   if (status == DVI_OK) status = dvi__pattern_union(&system->qv, &vq, &mixed);
   if (status == DVI_OK)
-    status = system->terms & DVI__ONE_FORM ? dvi__pattern_diagonal(system->n, &own)
-                                           : dvi__pattern_union(&system->vv, &system->vv, &own);
-  if (status == DVI_OK) status = dvi__pattern_union(&system->qq, &own, &diagonal);
+    status = system->terms & (DVI__ONE_FORM | DVI__CANONICAL) ? dvi__pattern_diagonal(system->n, &own)
+                                                              : dvi__pattern_empty(system->n, &own);
+  if (status == DVI_OK) status = dvi__pattern_union(&system->vv, &own, &second);
+  if (status == DVI_OK) status = dvi__pattern_union(&system->qq, &second, &diagonal);
   if (status == DVI_OK) status = dvi__pattern_union(&mixed, &diagonal, joint);
   dvi__pattern_clear(&vq);
   dvi__pattern_clear(&mixed);
   dvi__pattern_clear(&own);
+  dvi__pattern_clear(&second);
   dvi__pattern_clear(&diagonal);
   return status;
 }

@@ -1,4 +1,5 @@
-/* The joint pattern of a Lagrangian's Hessian: which coordinates meet in any of L_qq, L_qv, L_vq and L_vv; of a one-form with the diagonal. */
+/* The joint pattern of a Lagrangian's Hessian: which coordinates meet in any of L_qq, L_qv, L_vq and L_vv; of a one-form, and of a Hamiltonian, with
+ * the diagonal. */
 #ifndef DVI_ACTION_JOINT_H
 #define DVI_ACTION_JOINT_H
 #include "system/system.h"

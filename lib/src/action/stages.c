@@ -1,19 +1,19 @@
 #include "action/stages.h"
 
+#include <float.h>
+#include <math.h>
 #include <string.h>
 
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/finite.h"
-#include "solve/nonlinear.h"
 
 struct dvi__stages {
   dvi__field *field;
   const dvi__runge_kutta *method;
   int n, unknowns;
   dvi__pattern pattern; /* full */
-  dvi__solver *solver;
-  dvi__linear *transposed;
+  dvi__linear *linear, *transposed;
   const double *unit;
   int first;
   double t, h;
@@ -21,7 +21,7 @@ struct dvi__stages {
   double *slope;         /* [2n*2n*s] h f_z at the stages, column by column */
   double *values;        /* [unknowns^2] */
   double *point, *image; /* [2n] */
-  double *x;             /* [unknowns] increments, those of momenta over `unit` */
+  double *x, *R;         /* [unknowns] increments, those of momenta over `unit`; the residual, then the correction */
 };
 
 /* ---- equations ---- */
@@ -43,9 +43,8 @@ static void scale(const dvi__stages *s, int over, double *x)
     for (int i = s->n; i < 2 * s->n; i++) at(s, x, j)[i] *= over ? 1 / unit_of(s, i) : unit_of(s, i);
 }
 
-static dvi_status residual(void *of, const double *x, double *R)
+static dvi_status residual(dvi__stages *s, const double *x, double *R)
 {
-  dvi__stages *s = of;
   const dvi__runge_kutta *m = s->method;
   for (int j = 0; j < m->stages; j++) {
     const size_t row = (size_t)j * 2 * (size_t)s->n;
@@ -100,28 +99,6 @@ static dvi_status matrix(dvi__stages *s, double h, int transposed, double *value
   return DVI_OK;
 }
 
-static dvi_status jacobian(void *of, const double *x, double *values)
-{
-  dvi__stages *s = of;
-  DVI_TRY(residual(of, x, s->values));
-  DVI_TRY(dvi__field_differentiate(s->field, s->first, s->method->stages));
-  return matrix(s, s->h, 0, values);
-}
-
-static dvi_status no_chord(void *of, const double *x)
-{
-  (void)of, (void)x;
-  return DVI_OK;
-}
-
-static dvi_status row_scale(void *of, double *scale_of, int *unchanged)
-{
-  const dvi__stages *s = of;
-  for (int i = 0; i < s->unknowns; i++) scale_of[i] = 1;
-  *unchanged = 1;
-  return DVI_OK;
-}
-
 /* ---- making it ---- */
 
 static dvi_status allocate(dvi__stages *s)
@@ -132,24 +109,17 @@ static dvi_status allocate(dvi__stages *s)
   s->point = DVI_NEW(double, z);
   s->image = DVI_NEW(double, z);
   s->x = DVI_NEW(double, all);
-  if (s->slope && s->values && s->point && s->image && s->x) return DVI_OK;
+  s->R = DVI_NEW(double, all);
+  if (s->slope && s->values && s->point && s->image && s->x && s->R) return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "no memory for %d stages in %d dimensions", s->method->stages, s->n);
 }
 
 static dvi_status fill(dvi__stages *s, dvi_counters *counters)
 {
-  dvi__equations equations = {.unknowns = s->unknowns,
-                              .pattern = &s->pattern,
-                              .linear = DVI__LINEAR_DENSE,
-                              .of = s,
-                              .residual = residual,
-                              .jacobian = jacobian,
-                              .prepare_chord = no_chord,
-                              .row_scale = row_scale};
   DVI_TRY(allocate(s));
   DVI_TRY(dvi__pattern_copy(&(dvi_pattern){0}, s->unknowns, "stages", &s->pattern));
   DVI_TRY(dvi__linear_create(&s->pattern, DVI__LINEAR_DENSE, counters, &s->transposed));
-  return dvi__solver_create(&equations, counters, &s->solver);
+  return dvi__linear_create(&s->pattern, DVI__LINEAR_DENSE, counters, &s->linear);
 }
 
 dvi_status dvi__stages_create(dvi__field *field, int n, const dvi__runge_kutta *method, dvi_counters *counters,
@@ -172,7 +142,7 @@ void dvi__stages_destroy(dvi__stages **stages)
 {
   dvi__stages *s = *stages;
   if (s == NULL) return;
-  dvi__solver_destroy(&s->solver);
+  dvi__linear_destroy(&s->linear);
   dvi__linear_destroy(&s->transposed);
   dvi__pattern_clear(&s->pattern);
   dvi__release(s->slope);
@@ -180,6 +150,7 @@ void dvi__stages_destroy(dvi__stages **stages)
   dvi__release(s->point);
   dvi__release(s->image);
   dvi__release(s->x);
+  dvi__release(s->R);
   dvi__release(s);
   *stages = NULL;
 }
@@ -191,10 +162,46 @@ void dvi__stages_unit(dvi__stages *s, const double *unit)
 
 /* ---- solving ---- */
 
+dvi_status dvi__stages_factor(dvi__stages *s, int first, double h)
+{
+  s->first = first;
+  DVI_TRY(matrix(s, h, 0, s->values));
+  return dvi__linear_factor(s->linear, s->values);
+}
+
+/* At the points of the last residual. */
+static dvi_status renew(dvi__stages *s)
+{
+  DVI_TRY(dvi__field_differentiate(s->field, s->first, s->method->stages));
+  const dvi_status status = dvi__stages_factor(s, s->first, s->h);
+  return status == DVI_SINGULAR ? dvi__fail_in(DVI_NOT_CONVERGED, "the stages' Jacobian cannot be factored") : status;
+}
+
+/* Newton's method to roundoff: to corrections of a few roundings, or to noise that shrinks no more. The Jacobian is kept while they shrink fast. */
+static dvi_status newton(dvi__stages *s)
+{
+  enum { MOST = 40 };
+  const size_t all = (size_t)s->unknowns;
+  const double few = 2 * DBL_EPSILON, noise = 1e4 * DBL_EPSILON, fast = 0.05;
+  double last = HUGE_VAL;
+  int fresh = 0;
+  for (int iteration = 0; iteration < MOST; iteration++) {
+    DVI_TRY(residual(s, s->x, s->R));
+    if (!fresh) DVI_TRY(renew(s));
+    dvi__linear_solve(s->linear, s->R);
+    for (size_t i = 0; i < all; i++) s->x[i] -= s->R[i];
+    const double correction = dvi__largest(all, s->R), whole = dvi__largest(all, s->x);
+    if (correction <= few * whole || (correction <= noise * whole && correction >= 0.5 * last)) return DVI_OK;
+    if (!(correction <= 1e300)) break;
+    fresh = correction <= fast * last;
+    last = correction;
+  }
+  return dvi__fail(DVI_NOT_CONVERGED, "Newton's method does not settle (change %.1e)", last);
+}
+
 /* From stages that all move as z does. */
 dvi_status dvi__stages_solve(dvi__stages *s, int first, double t, double h, const double *z, double *W)
 {
-  dvi__solve_report report;
   s->first = first;
   s->t = t;
   s->h = h;
@@ -202,8 +209,8 @@ dvi_status dvi__stages_solve(dvi__stages *s, int first, double t, double h, cons
   DVI_TRY(dvi__field_place(s->field, first, t, z, z + s->n, s->image));
   for (int j = 0; j < s->method->stages; j++)
     for (int i = 0; i < 2 * s->n; i++) at(s, s->x, j)[i] = h / unit_of(s, i) * s->image[i];
-  DVI_TRY(dvi__solve(s->solver, DVI__NEWTON, dvi__largest((size_t)s->n, z), 0, 0, s->x, &report));
-  DVI_TRY(residual(s, s->x, s->values));
+  DVI_TRY(newton(s));
+  DVI_TRY(residual(s, s->x, s->R));
   memcpy(W, s->x, (size_t)s->unknowns * sizeof *W);
   scale(s, 0, W);
   return DVI_OK;
@@ -220,16 +227,9 @@ dvi_status dvi__stages_solve_transposed(dvi__stages *s, int first, double h, dou
   return DVI_OK;
 }
 
-dvi_status dvi__stages_factor(dvi__stages *s, int first, double h)
-{
-  s->first = first;
-  DVI_TRY(matrix(s, h, 0, s->values));
-  return dvi__solver_take_jacobian(s->solver, s->values);
-}
-
 void dvi__stages_apply(dvi__stages *s, double *x)
 {
   scale(s, 1, x);
-  dvi__solver_apply_factor(s->solver, x);
+  dvi__linear_solve(s->linear, x);
   scale(s, 0, x);
 }

@@ -3,7 +3,7 @@
  * Units. A mass of 1 beside one of 1e-8 makes momenta differ as much, so each coordinate gets a length a_i of its own and each
  * momentum a size b_i = m_i w_i, where m_i is the slope of the Legendre map at the point and w_i the velocity that crosses a_i in
  * one step, halved until the Legendre map is nearly linear over it: momenta that turn it over would leave the part of the phase
- * space that a derivative at the point speaks of. The defect is measured in the coordinates
+ * space that a derivative at the point speaks of. The momenta of a Hamiltonian have sizes as the coordinates have. The defect is measured in the coordinates
  *
  *     q_i sqrt(b_i / a_i),   p_i sqrt(a_i / b_i),
  *
@@ -114,7 +114,10 @@ static dvi_status choose_scales(const step_map *map)
   dvi_status status = v ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "symplecticity: no memory for %d velocities", n);
   if (status == DVI_OK) status = dvi_system_velocity(dvi_integrator_system(map->probe), map->t, q, p, v);
   if (status == DVI_OK) coordinate_scales(n, q, v, map->h, map->scale);
-  for (int i = 0; status == DVI_OK && i < n; i++) status = momentum_scale(map, v, i, &map->scale[n + i]);
+  if (dvi_integrator_system(map->probe)->terms & DVI__CANONICAL)
+    coordinate_scales(n, p, v, 0, map->scale + n);
+  else
+    for (int i = 0; status == DVI_OK && i < n; i++) status = momentum_scale(map, v, i, &map->scale[n + i]);
   dvi__release(v);
   return status;
 }

@@ -80,7 +80,7 @@ static portrait portray(const dvi_integrator *I, double t, const double *now, co
   const int n = I->system->n;
   const double *q = now, *p_now = now + n;
   double *v = I->v, *forces = I->last_v;
-  const double *second = I->system->terms & DVI__HAMILTONIAN ? p_now : v;
+  const double *second = I->system->terms & DVI__PHASE_SPACE ? p_now : v;
   portrait p = {0};
   if (I->system->cells == NULL) dvi__guess_velocity(n, q, last, last + n, last_h, v);
   if (dvi__legendre_inverse(I->evaluator, t, q, p_now, v) != DVI_OK ||

@@ -97,7 +97,7 @@ static dvi_status check_start(const dvi_integrator *I, double t, const double *q
 static dvi_status start(dvi_integrator *I, double t, const double *q, const double *v, const double *p)
 {
   const size_t bytes = (size_t)I->system->n * sizeof(double), v_bytes = (size_t)I->system->nv * sizeof(double);
-  const double *w = I->pace != NULL ? I->last_v : v, *second = I->system->terms & DVI__HAMILTONIAN ? p : v;
+  const double *w = I->pace != NULL ? I->last_v : v, *second = I->system->terms & DVI__PHASE_SPACE ? p : v;
   double L, density = 0;
   DVI_TRY(dvi__state_lagrangian(I->evaluator, t, q, second, &L));
   DVI_TRY(dvi__state_forces(I->evaluator, t, q, second, I->next.p_carry));
@@ -165,7 +165,7 @@ dvi_status dvi_integrator_start_velocity(dvi_integrator *I, double t, const doub
   if (I == NULL || q == NULL || v == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "start: an argument is NULL");
   double *p = I->next.p;
   dvi_status status = check_start(I, t, q, v, 'v');
-  if (status == DVI_OK && I->system->terms & DVI__HAMILTONIAN)
+  if (status == DVI_OK && I->system->terms & DVI__PHASE_SPACE)
     status = dvi__fail(DVI_UNSUPPORTED, "the system declares a Hamiltonian; start with q and p");
   if (status == DVI_OK) status = dvi__state_momentum(I->evaluator, t, q, v, p);
   if (status == DVI_OK && dvi__first_not_finite((size_t)I->system->nv, p) >= 0)

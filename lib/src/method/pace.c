@@ -155,7 +155,7 @@ void dvi__pace_set_energy(dvi__pace *pace, double energy)
 static dvi_status energy_at(dvi_integrator *I, double t, const double *q, const double *v, const double *momenta, double *energy)
 {
   double L, *p = I->pace->g_q;
-  if (I->system->terms & DVI__HAMILTONIAN) return dvi__lagrangian_value(I->evaluator, 1, &t, q, momenta, energy);
+  if (I->system->terms & DVI__PHASE_SPACE) return dvi__lagrangian_value(I->evaluator, 1, &t, q, momenta, energy);
   DVI_TRY(dvi__lagrangian_value(I->evaluator, 1, &t, q, v, &L));
   DVI_TRY(dvi__lagrangian_gradient(I->evaluator, 1, &t, q, v, NULL, p));
   *energy = -L;

@@ -40,7 +40,7 @@ static dvi_status check(const dvi_system *system, const dvi_path_options *o)
 {
   if (o->ends < DVI_ENDS_FIXED || o->ends > DVI_ENDS_PERIODIC)
     return dvi__fail(DVI_BAD_ARGUMENT, "path: unknown ends %d", (int)o->ends);
-  if (system->terms & (DVI__ONE_FORM | DVI__HAMILTONIAN))
+  if (system->terms & (DVI__ONE_FORM | DVI__PHASE_SPACE))
     return dvi__fail(DVI_UNSUPPORTED, "path: the system declares a %s: its equations are of first order, and two ends are too many",
                      system->lagrangian->name);
   if (system->terms & DVI__FACTORS)

@@ -1,8 +1,8 @@
-/* IDA on the equations of a Hamiltonian with constraints of second class.
+/* IDA on the equations of a Hamiltonian, with constraints of second class or without any.
  *
  * DVI_IDA: unknowns y = (q, p), the multiplier eliminated by the bracket matrix,
- *     F = ydot - X(t, y) = 0,    X = (H_p + phi_p^T lambda, -H_q - phi_q^T lambda),   {phi, phi} lambda = -{phi, H}.
- * DVI_IDA_INDEX_2: unknowns y = (q, p, lambda),
+ *     F = ydot - X(t, y) = 0,    X = (H_p + phi_p^T lambda, -H_q - phi_q^T lambda),   {phi, phi} lambda = -{phi, H};
+ * without constraints X = (H_p, -H_q). DVI_IDA_INDEX_2: unknowns y = (q, p, lambda),
  *     F = ( (qdot, pdot) - X(t, q, p, lambda),  phi(q,p) ) = 0,
  * of index 2, with lambda in neither the error test nor that of the iteration's convergence. Its Jacobian dF/dy + c dF/dydot is written down, for IDA's
  * differences move lambda by what its tolerance says; that of the first has derivatives of lambda, and is differenced.
@@ -134,17 +134,23 @@ static dvi_status integrate(const judge *self)
   return DVI_OK;
 }
 
-static dvi_status reserve(judge *self)
+static dvi_status reserve_whole(judge *self, const dvi__constraint_term *c)
 {
-  dvi__reference_run *run = self->run;
-  const dvi__constraint_term *c = run->system->constraint;
-  const int size = 2 * run->n + (self->whole ? c->callbacks.count : 0);
   self->phi_z = DVI_NEW(double, dvi__pattern_entries(&c->gradients));
   self->phi_qq = DVI_NEW(double, dvi__pattern_entries(&c->weighted.qq));
   self->phi_qp = DVI_NEW(double, dvi__pattern_entries(&c->weighted.qv));
   self->phi_pp = DVI_NEW(double, dvi__pattern_entries(&c->weighted.vv));
   if (self->phi_z == NULL || self->phi_qq == NULL || self->phi_qp == NULL || self->phi_pp == NULL)
-    return dvi__reference_no_setup(run);
+    return dvi__reference_no_setup(self->run);
+  return DVI_OK;
+}
+
+static dvi_status reserve(judge *self)
+{
+  dvi__reference_run *run = self->run;
+  const dvi__constraint_term *c = run->system->constraint;
+  const int size = 2 * run->n + (self->whole ? c->callbacks.count : 0);
+  if (self->whole) DVI_TRY(reserve_whole(self, c));
   return dvi__ida_run_create(run, size, SUNDenseMatrix(size, size, run->context), &self->ida);
 }
 

@@ -196,11 +196,11 @@ static void clear(judge *self)
 dvi_status dvi__reference_ida(dvi__reference_run *run)
 {
   const int form = (run->system->terms & DVI__ONE_FORM) != 0;
-  if (run->system->terms & DVI__HAMILTONIAN) return dvi__reference_dirac(run);
-  if (!form && run->options.code == DVI_IDA_INDEX_2)
+  if (!form && !(run->system->terms & DVI__HAMILTONIAN) && run->options.code == DVI_IDA_INDEX_2)
     return dvi__fail(
         DVI_UNSUPPORTED,
         "ida-index-2: the system declares neither a one-form nor a Hamiltonian with constraints; its equations are of index 1");
+  if (run->system->terms & DVI__PHASE_SPACE) return dvi__reference_dirac(run);
   if (run->system->terms & DVI__FACTORS) return dvi__reference_ida_lift(run);
   judge self = {.run = run, .reduced = form && run->options.code == DVI_IDA};
   dvi_status status = reserve(&self);

@@ -36,7 +36,7 @@ typedef struct flow {
 
 static dvi_status rate(dvi__reference_run *run, double t, const double *q, const double *p, double *qdot, double *pdot)
 {
-  if (run->system->terms & DVI__HAMILTONIAN) return dvi__dirac_motion(run->evaluator, t, q, p, qdot, pdot, NULL);
+  if (run->system->terms & DVI__PHASE_SPACE) return dvi__dirac_motion(run->evaluator, t, q, p, qdot, pdot, NULL);
   DVI_TRY(dvi__legendre_inverse(run->evaluator, t, q, p, run->v));
   if (has_momenta(run)) DVI_TRY(dvi__lagrangian_gradient(run->evaluator, 1, &t, q, run->v, pdot, NULL));
   memcpy(qdot, run->v, (size_t)run->n * sizeof *qdot);

@@ -153,8 +153,8 @@ static dvi_status prepare(dvi__reference_run *run, const double *q, const double
   if (status == DVI_OK) status = reserve(run, q, p);
   if (status == DVI_OK) status = dvi__state_check(run->evaluator, run->q, run->p);
   if (status == DVI_OK && run->system->terms & DVI__ONE_FORM) status = dvi__form_constraint(run->evaluator, run->q, run->p);
-  if (run->system->terms & DVI__HAMILTONIAN) {
-    if (status == DVI_OK) status = dvi__dirac_constraint(run->evaluator, run->q, run->p);
+  if (status == DVI_OK && run->system->terms & DVI__HAMILTONIAN) status = dvi__dirac_constraint(run->evaluator, run->q, run->p);
+  if (run->system->terms & DVI__PHASE_SPACE) {
     if (status == DVI_OK) status = dvi__dirac_motion(run->evaluator, run->t, run->q, run->p, run->v, run->force, run->multiplier);
   } else {
     if (status == DVI_OK) status = dvi__legendre_inverse(run->evaluator, run->t, run->q, run->p, run->v);

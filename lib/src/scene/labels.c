@@ -150,7 +150,8 @@ static bool is_label(const dvi_scene *scene, const char *prefix, const char *tex
 static bool is_reserved(const dvi_scene *scene, const char *text)
 {
   return strcmp(text, "t") == 0 || strcmp(text, "energy") == 0 || (strcmp(text, "distance") == 0 && dvi__has_factors(scene)) ||
-         (strcmp(text, "constraint") == 0 && dvi__tree_find(scene->tree, "hamiltonian") != NULL);
+         (strcmp(text, "constraint") == 0 &&
+          (dvi__tree_find(scene->tree, "constraints") != NULL || dvi__tree_find(scene->tree, "one_form") != NULL));
 }
 
 bool dvi__column_is_new(dvi_scene *scene, const char *text, dvi__span span, const dvi__coordinate *of)

@@ -297,7 +297,7 @@ static const section sections[] = {
     {.name = "kinetic", .read = dvi__read_kinetic},
     {.name = "potentials"},
     {.name = "one_form", .read = dvi__read_one_form},
-    {.name = "hamiltonian"},
+    {.name = "hamiltonian", .read = dvi__read_hamiltonian},
     {.name = "constraints", .read = dvi__read_constraints},
     {.name = "symmetries", .read = dvi__read_symmetries},
     {.name = "invariants", .read = dvi__read_invariants},
@@ -337,23 +337,26 @@ static bool all_known(dvi_scene *scene)
   return true;
 }
 
-static const char *const ways_to_move[] = {"lagrangian", "kinetic", "one_form", "constraints"};
+static const char *const ways_to_move[] = {"lagrangian", "kinetic", "one_form", "constraints", "hamiltonian"};
+
+/* The last one stands with the two before it, too. */
+enum { WAYS = sizeof ways_to_move / sizeof *ways_to_move, HAMILTONIAN = WAYS - 1 };
 
 const dvi__tree *dvi__what_moves(const dvi_scene *scene)
 {
   const dvi__tree *found = NULL;
-  for (int k = 0; k < 4 && found == NULL; k++) found = dvi__tree_find(scene->tree, ways_to_move[k]);
+  for (int k = 0; k < WAYS && found == NULL; k++) found = dvi__tree_find(scene->tree, ways_to_move[k]);
   return found;
 }
 
-/* A scene says what it is in one of four ways. */
+/* A scene says what it is in one of these ways. */
 static bool one_form_of_system(dvi_scene *scene)
 {
   static const char *const ways =
-      "one of these: lagrangian; kinetic and potentials; one_form and hamiltonian; hamiltonian and constraints";
+      "one of these: lagrangian; kinetic and potentials; one_form and hamiltonian; hamiltonian, alone or with constraints";
   const dvi__tree *found = NULL;
-  int count = 0, which = 0;
-  for (int k = 0; k < 4; k++) {
+  int count = 0, which = HAMILTONIAN;
+  for (int k = 0; k < HAMILTONIAN; k++) {
     const dvi__tree *tree = dvi__tree_find(scene->tree, ways_to_move[k]);
     if (tree == NULL) continue;
     found = tree;
@@ -361,10 +364,7 @@ static bool one_form_of_system(dvi_scene *scene)
     count++;
   }
   const dvi__tree *H = dvi__tree_find(scene->tree, "hamiltonian"), *V = dvi__tree_find(scene->tree, "potentials");
-  if (count == 0 && H != NULL)
-    return dvi__scene_refuse(scene, H->span,
-                             "a hamiltonian stands with constraints or a one_form; without them give the lagrangian");
-  if (count == 0) return dvi__scene_refuse(scene, DVI__NOWHERE, "what moves it is missing: %s", ways);
+  if (count == 0 && H == NULL) return dvi__scene_refuse(scene, DVI__NOWHERE, "what moves it is missing: %s", ways);
   if (count > 1) return dvi__scene_refuse(scene, found->span, "there must be %s", ways);
   if ((H != NULL) != (which >= 2))
     return dvi__scene_refuse(scene, (H != NULL ? H : found)->span,

@@ -19,6 +19,7 @@ bool dvi__read_definitions(dvi_scene *scene, const dvi__tree *section);
 bool dvi__read_lagrangian(dvi_scene *scene, const dvi__tree *section);
 bool dvi__read_kinetic(dvi_scene *scene, const dvi__tree *section);
 bool dvi__read_one_form(dvi_scene *scene, const dvi__tree *section);
+bool dvi__read_hamiltonian(dvi_scene *scene, const dvi__tree *section); /* alone; the next reads one with constraints */
 bool dvi__read_constraints(dvi_scene *scene, const dvi__tree *section);
 bool dvi__read_symmetries(dvi_scene *scene, const dvi__tree *section);
 bool dvi__read_invariants(dvi_scene *scene, const dvi__tree *section);
@@ -36,7 +37,7 @@ bool dvi__scene_refuse(dvi_scene *scene, dvi__span span, const char *format, ...
 bool dvi__want_mapping(dvi_scene *scene, const dvi__tree *tree, const char *what);
 bool dvi__want_text(dvi_scene *scene, const dvi__tree *tree, const char *what);
 
-/* The section that says what moves: lagrangian, kinetic, one_form or constraints; NULL if none does. */
+/* The section that says what moves: lagrangian, kinetic, one_form, constraints or hamiltonian; NULL if none does. */
 const dvi__tree *dvi__what_moves(const dvi_scene *scene);
 
 /* Refuse what is no identifier: names of columns, potentials and events. */

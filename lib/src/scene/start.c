@@ -177,7 +177,7 @@ static bool complete(dvi_scene *scene, const dvi__tree *section, const given *g)
     return dvi__scene_refuse(scene, section->span,
                              "with a one-form velocities and momenta follow from the coordinates, and are not given");
   if (scene->terms.hamiltonian != NULL && g->velocities)
-    return dvi__scene_refuse(scene, section->span, "with constraints momenta are given, p(x), and no velocities");
+    return dvi__scene_refuse(scene, section->span, "with a hamiltonian momenta are given, p(x), and no velocities");
   if (g->velocities && g->momenta) return dvi__scene_refuse(scene, section->span, "give velocities or momenta, not both");
   scene->momenta_given = g->momenta || scene->terms.hamiltonian != NULL;
   if (scene->momenta_given && !all_given(scene, section, DVI__SAYS_P, g->p)) return false;

@@ -378,7 +378,7 @@ static bool constraints_function(dvi_scene *scene, const dvi__tree *section, dvi
   return good;
 }
 
-static bool read_hamiltonian(dvi_scene *scene, const dvi__tree *tree)
+static bool read_H(dvi_scene *scene, const dvi__tree *tree)
 {
   const dvi__expression *e;
   dvi__kernels H = {0};
@@ -391,6 +391,13 @@ static bool read_hamiltonian(dvi_scene *scene, const dvi__tree *tree)
   return good;
 }
 
+bool dvi__read_hamiltonian(dvi_scene *scene, const dvi__tree *section)
+{
+  if (dvi__what_moves(scene) != section) return true;
+  scene->form = "Hamiltonian";
+  return refuse_factors(scene, section, "hamiltonian") && read_H(scene, section);
+}
+
 bool dvi__read_constraints(dvi_scene *scene, const dvi__tree *section)
 {
   dvi__term *term;
@@ -401,5 +408,5 @@ bool dvi__read_constraints(dvi_scene *scene, const dvi__tree *section)
   if (!constraints_function(scene, section, &term) || !dvi__make_constraint(scene, term, &scene->constraint)) return false;
   scene->terms.constraint = &scene->constraint;
   scene->form = "Hamiltonian with constraints";
-  return read_hamiltonian(scene, dvi__tree_find(scene->tree, "hamiltonian"));
+  return read_H(scene, dvi__tree_find(scene->tree, "hamiltonian"));
 }

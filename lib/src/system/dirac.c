@@ -225,15 +225,23 @@ dvi_status dvi__dirac_side(dvi__evaluator *e, const double *q, const double *p, 
   return DVI_OK;
 }
 
+/* Hamilton's equations. */
+static dvi_status field_of_H(dvi__evaluator *e, double t, const double *q, const double *p, double *qdot, double *pdot)
+{
+  DVI_TRY(dvi__lagrangian_gradient(e, 1, &t, q, p, pdot, qdot));
+  for (int i = 0; i < e->system->n; i++) pdot[i] = -pdot[i];
+  return DVI_OK;
+}
+
 dvi_status dvi__dirac_motion(dvi__evaluator *e, double t, const double *q, const double *p, double *qdot, double *pdot,
                              double *multiplier)
 {
   const dvi__constraint_term *c = e->system->constraint;
   const dvi__dirac *d = e->dirac;
   const size_t n = (size_t)e->system->n;
+  if (c == NULL) return field_of_H(e, t, q, p, qdot, pdot);
   const int m = c->callbacks.count;
-  DVI_TRY(dvi__lagrangian_gradient(e, 1, &t, q, p, d->field + n, d->field));
-  for (size_t i = n; i < 2 * n; i++) d->field[i] = -d->field[i];
+  DVI_TRY(field_of_H(e, t, q, p, d->field, d->field + n));
   DVI_TRY(factor_bracket(e, q, p));
   for (int a = 0; a < m; a++) d->multiplier[a] = -along(&c->gradients, d->weighted.phi_z, a, d->field);
   dvi__linear_solve(e->velocity, d->multiplier);

@@ -1,4 +1,4 @@
-/* Hamiltonians with constraints phi(q,p) = 0 of second class: their motion, and their parts at one point.
+/* Hamiltonians with constraints phi(q,p) = 0 of second class, or without any: their motion, and their parts at one point.
  *
  *     q' = H_p + phi_p^T lambda,   p' = -H_q - phi_q^T lambda,   sum_b {phi_a, phi_b} lambda_b = -{phi_a, H}.
  *
@@ -44,7 +44,7 @@ dvi_status dvi__constraint_hessian(dvi__evaluator *e, const double *q, const dou
 /* z [2n] += factor (phi_p^T w, -phi_q^T w). */
 void dvi__constraint_push(const dvi__constraint_term *c, const double *phi_z, const double *w, double factor, double *z);
 
-/* The motion at a point: q' and p' [n] each, the multiplier [m] if it is not NULL. DVI_SINGULAR where the bracket matrix is. */
+/* The motion at a point, with constraints or without: q' and p' [n] each, the multiplier [m] if it is not NULL. DVI_SINGULAR where the bracket matrix is. */
 dvi_status dvi__dirac_motion(dvi__evaluator *e, double t, const double *q, const double *p, double *qdot, double *pdot,
                              double *multiplier);
 

@@ -38,7 +38,7 @@ static dvi_status allocate(dvi__evaluator *e, int hessians)
 static dvi_status prepare_velocity(dvi__evaluator *e)
 {
   const dvi_system *system = e->system;
-  if (system->mass_diagonal != NULL || system->cells != NULL) return DVI_OK;
+  if (system->mass_diagonal != NULL || system->cells != NULL || system->terms & DVI__CANONICAL) return DVI_OK;
   if (system->terms & DVI__HAMILTONIAN) {
     const dvi__pattern *bracket = &system->constraint->bracket;
     DVI_TRY(dvi__dirac_create(system, &e->dirac));
@@ -178,7 +178,7 @@ dvi_status dvi__lagrangian_value(dvi__evaluator *e, int count, const double *t, 
     for (int k = 0; k < count; k++) L[k] -= e->term[k];
   }
   if (dvi__first_not_finite((size_t)count, L) >= 0)
-    return dvi__fail(DVI_NOT_FINITE, "the %s's value is not finite", s->terms & DVI__HAMILTONIAN ? "Hamiltonian" : "Lagrangian");
+    return dvi__fail(DVI_NOT_FINITE, "the %s's value is not finite", s->terms & DVI__PHASE_SPACE ? "Hamiltonian" : "Lagrangian");
   return DVI_OK;
 }
 

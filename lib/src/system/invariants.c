@@ -27,7 +27,7 @@ static dvi_status energy(dvi__evaluator *e, double t, const double *q, const dou
 {
   double L, pv = 0, *rest = e->point[2];
   const int degenerate = (e->system->terms & DVI__ONE_FORM) != 0;
-  if (e->system->terms & DVI__HAMILTONIAN) return dvi__lagrangian_value(e, 1, &t, q, p, E);
+  if (e->system->terms & DVI__PHASE_SPACE) return dvi__lagrangian_value(e, 1, &t, q, p, E);
   memset(rest, 0, (size_t)e->system->n * sizeof(double));
   DVI_TRY(dvi__state_lagrangian(e, t, q, degenerate ? rest : v, &L));
   for (int i = 0; i < e->system->nv && !degenerate; i++) pv += p[i] * v[i];

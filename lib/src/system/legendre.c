@@ -155,7 +155,7 @@ dvi_status dvi__legendre_inverse(dvi__evaluator *e, double t, const double *q, c
     if (dvi__first_not_finite(n, found) >= 0) return not_finite(t);
   } else if (e->system->terms & DVI__ONE_FORM) {
     DVI_TRY(dvi__two_form_velocity(e, t, q, found));
-  } else if (e->system->terms & DVI__HAMILTONIAN) {
+  } else if (e->system->terms & DVI__PHASE_SPACE) {
     DVI_TRY(dvi__dirac_motion(e, t, q, p, found, found + n, NULL));
   } else {
     search s = {e, t, q, p, found, found + n, found + 2 * n, found + 3 * n, found + 4 * n, found + 5 * n};

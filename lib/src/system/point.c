@@ -18,7 +18,7 @@ static dvi_status check_point(const dvi_system *system, double t, const double *
 
 static dvi_status needs_lagrangian(const dvi_system *system)
 {
-  if (!(system->terms & DVI__HAMILTONIAN)) return DVI_OK;
+  if (!(system->terms & DVI__PHASE_SPACE)) return DVI_OK;
   return dvi__fail(DVI_UNSUPPORTED,
                    "system: a Hamiltonian is declared, no Lagrangian; ask at q and p: dvi_system_invariants, dvi_system_velocity");
 }

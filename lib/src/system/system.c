@@ -102,9 +102,9 @@ static dvi_status copy_hamiltonian(dvi_system *s, const dvi_hamiltonian *given, 
                                    .user = given->user};
   if (given->value == NULL || given->gradient == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "system: the Hamiltonian has no %s callback", given->value == NULL ? "value" : "gradient");
-  s->terms |= DVI__HAMILTONIAN;
+  s->terms |= constraint != NULL ? DVI__HAMILTONIAN : DVI__CANONICAL;
   DVI_TRY(copy_general(s, &function, "Hamiltonian", part));
-  return dvi__constraint_copy(constraint, s->n, &s->constraint);
+  return constraint != NULL ? dvi__constraint_copy(constraint, s->n, &s->constraint) : DVI_OK;
 }
 
 static dvi_status join_two_form(dvi__lagrangian_term *term)
@@ -276,9 +276,8 @@ static dvi_status check_list(const char *what, int count, const void *list)
 
 static dvi_status check_hamiltonian(const dvi_system_terms *terms)
 {
-  if ((terms->hamiltonian != NULL) != (terms->constraint != NULL))
-    return dvi__fail(DVI_BAD_ARGUMENT, "system: %s; both or none are possible",
-                     terms->constraint != NULL ? "constraints without a Hamiltonian" : "a Hamiltonian without constraints");
+  if (terms->hamiltonian == NULL && terms->constraint != NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "system: constraints without a Hamiltonian; declare it, too");
   if (terms->hamiltonian != NULL && terms->potential_count > 0)
     return dvi__fail(DVI_BAD_ARGUMENT, "system: %d potentials beside a Hamiltonian; add them to it", terms->potential_count);
   return DVI_OK;

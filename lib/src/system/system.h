@@ -18,9 +18,11 @@ typedef enum dvi__term {
   DVI__FACTORS = 32,
   DVI__ROTATIONS = 64, /* among the factors */
   DVI__DIRECTIONS = 128,
-  DVI__FAST = 256, /* among the potentials */
+  DVI__FAST = 256,      /* among the potentials */
+  DVI__CANONICAL = 512, /* a Hamiltonian without constraints */
+  DVI__PHASE_SPACE = DVI__HAMILTONIAN | DVI__CANONICAL,
   DVI__KINDS = DVI__ROTATIONS | DVI__DIRECTIONS | DVI__FAST,
-  DVI__LAST_TERM = DVI__FAST
+  DVI__LAST_TERM = DVI__CANONICAL
 } dvi__term;
 
 /* How to difference a missing Hessian block: columns of a group are moved together. */

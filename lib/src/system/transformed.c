@@ -114,7 +114,7 @@ static dvi_status fill(dvi__transformed *x, const dvi_system *system, const dvi_
     return dvi__fail(DVI_UNSUPPORTED,
                      "the system is not declared autonomous: its energy need not be conserved, and no function of q "
                      "alone can stand for its time");
-  if (system->terms & (DVI__ONE_FORM | DVI__HAMILTONIAN))
+  if (system->terms & (DVI__ONE_FORM | DVI__PHASE_SPACE))
     return dvi__fail(DVI_UNSUPPORTED, "the system declares a %s: its Lagrangian has no mass that could be divided by the monitor",
                      system->lagrangian->name);
   DVI_TRY(dvi__system_prepare_hessian(system));
