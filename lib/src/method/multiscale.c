@@ -61,7 +61,7 @@ static dvi_status frequency_of(const dvi__stepper *self, const dvi_system *part,
 {
   dvi__modes *modes;
   double least = INFINITY, most = 0;
-  DVI_TRY(dvi__modes_create(part, self->counters, &modes));
+  DVI_TRY(dvi__modes_create(part, DVI__MODES_BLOCK_MOST, self->counters, &modes));
   const double *square = dvi__modes_squares(modes);
   for (int k = 0; k < part->n; k++) most = fmax(most, square[k]);
   for (int k = 0; k < part->n; k++)
