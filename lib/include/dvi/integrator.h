@@ -28,6 +28,8 @@ typedef struct dvi_counters {
   long jump_alarms;    /**< steps that ended in a jump large against the motion (dg, dg-phase with alarm=warn) */
   long certified;      /**< solutions of other iterations that KINSOL's own test of the residual accepted (solver=certified) */
   long energy_fallbacks; /**< steps of sem whose energy equation has no solution: least-squares steps */
+  long
+      products; /**< products of a sparse matrix with a vector, for functions of that matrix by polynomials (trig, mollified, respa) */
 } dvi_counters;
 
 /** The energy of a run by a method whose discrete energy is conserved (sem): E+ of each step is E- of the next, but for jumps.

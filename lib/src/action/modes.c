@@ -74,7 +74,7 @@ static void list_blocks(dvi__modes *m, int *first)
   }
 }
 
-static dvi_status find_blocks(dvi__modes *m, const dvi__pattern *pattern)
+static dvi_status find_blocks(dvi__modes *m, const dvi__pattern *pattern, int most)
 {
   int *first = DVI_NEW(int, m->n);
   m->blocks = DVI_NEW(block, m->n);
@@ -86,9 +86,8 @@ static dvi_status find_blocks(dvi__modes *m, const dvi__pattern *pattern)
   }
   dvi__release(first);
   if (!complete) return no_memory();
-  if (m->largest <= DVI__MODES_BLOCK_MOST) return DVI_OK;
-  return dvi__fail(DVI_BAD_SIZE, "normal modes: %d coordinates are coupled; %d at most are possible", m->largest,
-                   (int)DVI__MODES_BLOCK_MOST);
+  if (m->largest <= most) return DVI_OK;
+  return dvi__fail(DVI_BAD_SIZE, "normal modes: %d coordinates are coupled; %d at most are possible", m->largest, most);
 }
 
 /* ---- the modes of a block ---- */
@@ -171,7 +170,7 @@ static dvi_status find_all_modes(dvi__modes *m, const dvi__quadratic *q)
 
 /* ---- making them ---- */
 
-static dvi_status fill(dvi__modes *m, const dvi_system *system, dvi__evaluator *evaluator, dvi__quadratic *q)
+static dvi_status fill(dvi__modes *m, const dvi_system *system, int most, dvi__evaluator *evaluator, dvi__quadratic *q)
 {
   const size_t n = (size_t)m->n;
   DVI_TRY(dvi__quadratic_fill(system, evaluator, q));
@@ -181,11 +180,11 @@ static dvi_status fill(dvi__modes *m, const dvi_system *system, dvi__evaluator *
   m->force = DVI_NEW(double, n);
   m->change = DVI_NEW(double, n);
   if (!m->square || !m->factor || !m->w || !m->force || !m->change) return no_memory();
-  DVI_TRY(find_blocks(m, &q->pattern));
+  DVI_TRY(find_blocks(m, &q->pattern, most));
   return find_all_modes(m, q);
 }
 
-dvi_status dvi__modes_create(const dvi_system *system, dvi_counters *counters, dvi__modes **modes)
+dvi_status dvi__modes_create(const dvi_system *system, int most, dvi_counters *counters, dvi__modes **modes)
 {
   dvi__evaluator *evaluator;
   dvi__quadratic quadratic = {.mass = NULL};
@@ -193,7 +192,7 @@ dvi_status dvi__modes_create(const dvi_system *system, dvi_counters *counters, d
   DVI_TRY(dvi__evaluator_create(system, 1, DVI__HESSIANS, counters, &evaluator));
   dvi__modes *made = *modes = DVI_NEW(dvi__modes, 1);
   if (made != NULL) made->n = system->n;
-  const dvi_status status = made != NULL ? fill(made, system, evaluator, &quadratic) : no_memory();
+  const dvi_status status = made != NULL ? fill(made, system, most, evaluator, &quadratic) : no_memory();
   dvi__quadratic_clear(&quadratic);
   dvi__evaluator_destroy(&evaluator);
   if (status != DVI_OK) dvi__modes_destroy(modes);

@@ -11,9 +11,9 @@
 typedef struct dvi__modes dvi__modes;
 
 /* Of a system whose potentials are all declared quadratic, and whose mass is positive. K is asked for here, at t = 0 and q = 0. Neither the system nor the counters
- * need outlive it. DVI_SINGULAR: the mass is not positive definite; DVI_BAD_SIZE: a block has more than DVI__MODES_BLOCK_MOST coordinates. */
+ * need outlive it. DVI_SINGULAR: the mass is not positive definite; DVI_BAD_SIZE: a block has more than `most` coordinates. */
 enum { DVI__MODES_BLOCK_MOST = 2000 };
-dvi_status dvi__modes_create(const dvi_system *system, dvi_counters *counters, dvi__modes **modes);
+dvi_status dvi__modes_create(const dvi_system *system, int most, dvi_counters *counters, dvi__modes **modes);
 void dvi__modes_destroy(dvi__modes **modes);
 
 int dvi__modes_block_count(const dvi__modes *modes);

@@ -10,7 +10,7 @@ static dvi_status find(const dvi_system *part, double *least, double *most)
   dvi_counters counters = {0};
   dvi__modes *modes;
   double low, high;
-  DVI_TRY(dvi__modes_create(part, &counters, &modes));
+  DVI_TRY(dvi__modes_create(part, DVI__MODES_BLOCK_MOST, &counters, &modes));
   dvi__modes_range(modes, &low, &high);
   dvi__modes_destroy(&modes);
   if (high == 0) return dvi__fail(DVI_UNSUPPORTED, "nothing oscillates in the fast potentials");

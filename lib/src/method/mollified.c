@@ -37,9 +37,15 @@ static int pair(int number, double s, dvi__filter *filter)
   return 1;
 }
 
+static const dvi__filters filters[] = {
+    {.at = pair, .number = AVERAGE, .phi = {1, 1, 0}, .psi = {1, 1, 0}},
+    {.at = pair, .number = PROJECTION},
+};
+
 static dvi_status create(dvi__stepper *self)
 {
-  return dvi__oscillation_create(self, pair, self->settings.value[FILTER], "imex and respa:substeps=k take any");
+  return dvi__oscillation_create(self, &filters[self->settings.value[FILTER]], DVI__MOTION_AUTO,
+                                 "imex and respa:substeps=k take any");
 }
 
 const dvi__method dvi__mollified = {

@@ -62,7 +62,7 @@ static dvi_status frequency_of(const dvi__stepper *self, const dvi_system *part,
 {
   dvi__modes *modes;
   double least;
-  DVI_TRY(dvi__modes_create(part, self->counters, &modes));
+  DVI_TRY(dvi__modes_create(part, DVI__MODES_BLOCK_MOST, self->counters, &modes));
   dvi__modes_range(modes, &least, omega);
   dvi__modes_destroy(&modes);
   if (*omega > 0 && least > (1 - 5e-7) * *omega) return DVI_OK;

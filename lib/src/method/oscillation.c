@@ -1,6 +1,7 @@
 #include "method/oscillation.h"
 
 #include <math.h>
+#include <stdio.h>
 
 #include "core/memory.h"
 #include "core/status.h"
@@ -17,51 +18,147 @@ static double *kept_gradient(const dvi__stepper *self)
 static dvi_status move(dvi__stepper *self, dvi__state *state, double h)
 {
   const dvi__oscillation *own = self->own;
-  const double middle = state->t + 0.5 * h;
+  const double middle = state->t + 0.5 * h, *V_q = own->keeps ? kept_gradient(self) : own->V_q;
   const dvi__phase phase = dvi__impulse_phase(state);
   if (!own->keeps) DVI_TRY(dvi__potentials_gradient(own->fast_forces, 1, &middle, state->q, own->V_q));
-  dvi__modes_move(own->modes, h, own->keeps ? kept_gradient(self) : own->V_q, &phase);
+  if (own->polynomials != NULL) return dvi__polynomials_move(own->polynomials, h, V_q, &phase);
+  dvi__modes_move(own->modes, h, V_q, &phase);
   return DVI_OK;
 }
 
-static dvi_status make_filters(dvi__oscillation *own, int n, double h)
+/* ---- filters ---- */
+
+/* The polynomials' slots. */
+enum { SHIFT, PSI };
+
+static int is_one(const dvi__growth *growth)
+{
+  return growth->type == 0 && growth->poles == 0 && growth->mass == 1;
+}
+
+static dvi_status list_filters(dvi__oscillation *own, int n, double h)
 {
   const double *square = dvi__modes_squares(own->modes);
-  own->h = 0;
   for (int k = 0; k < n; k++)
-    if (!own->pair(own->number, h * h * square[k], &own->filter[k]))
+    if (!own->filters->at(own->filters->number, h * h * square[k], &own->filter[k]))
       return dvi__fail(
           DVI_NOT_CONVERGED,
           "h omega = %.6g of a fast mode, where this filter does not exist: it divides by sinc(h omega), or by its root",
           fabs(h) * sqrt(fabs(square[k])));
+  return DVI_OK;
+}
+
+static double shift_at(const void *user, double s)
+{
+  const dvi__filters *filters = user;
+  dvi__filter at = {0, 0, 0};
+  (void)filters->at(filters->number, s, &at);
+  return at.shift;
+}
+
+static double psi_at(const void *user, double s)
+{
+  const dvi__filters *filters = user;
+  dvi__filter at = {0, 0, 0};
+  (void)filters->at(filters->number, s, &at);
+  return at.psi;
+}
+
+static dvi_status expand_filters(dvi__oscillation *own, double h)
+{
+  const dvi__filters *filters = own->filters;
+  if (!is_one(&filters->phi)) DVI_TRY(dvi__polynomials_expand(own->polynomials, SHIFT, h, &filters->phi, 1, shift_at, filters));
+  if (is_one(&filters->psi)) return DVI_OK;
+  return dvi__polynomials_expand(own->polynomials, PSI, h, &filters->psi, 0, psi_at, filters);
+}
+
+static dvi_status prepare(dvi__oscillation *own, int n, double h)
+{
+  if (own->h == h) return DVI_OK;
+  own->h = 0;
+  DVI_TRY(own->modes != NULL ? list_filters(own, n, h) : expand_filters(own, h));
   own->h = h;
   return DVI_OK;
+}
+
+/* nearby = A(q), of the fast gradient at q. */
+static void approach(dvi__oscillation *own, int n, double h, const double *q, const double *fast)
+{
+  if (own->modes != NULL) {
+    dvi__modes_of_forces(own->modes, fast, own->y);
+    for (int k = 0; k < n; k++) own->y[k] *= -h * h * own->filter[k].shift;
+    dvi__modes_to_coordinates(own->modes, own->y, own->nearby);
+  } else {
+    dvi__polynomials_to_coordinates(own->polynomials, SHIFT, fast, own->nearby);
+    for (int i = 0; i < n; i++) own->nearby[i] *= -h * h;
+  }
+  for (int i = 0; i < n; i++) own->nearby[i] += q[i];
+}
+
+static void soften(dvi__oscillation *own, int n, const double *slow, double *softened)
+{
+  if (own->modes != NULL) {
+    dvi__modes_of_forces(own->modes, slow, own->y);
+    for (int k = 0; k < n; k++) own->y[k] *= own->filter[k].psi;
+    dvi__modes_to_forces(own->modes, own->y, softened);
+  } else {
+    dvi__polynomials_to_forces(own->polynomials, PSI, slow, softened);
+  }
 }
 
 static dvi_status filtered_gradient(dvi__stepper *self, const dvi__state *state, double h, double *V_q)
 {
   dvi__oscillation *own = self->own;
-  const int n = self->system->n;
-  if (own->h != h) DVI_TRY(make_filters(own, n, h));
-  double *fast = own->keeps ? kept_gradient(self) : own->V_q;
-  DVI_TRY(dvi__potentials_gradient(own->fast_forces, 1, &state->t, state->q, fast));
-  dvi__modes_of_forces(own->modes, fast, own->y);
-  for (int k = 0; k < n; k++) own->y[k] *= -h * h * own->filter[k].shift;
-  dvi__modes_to_coordinates(own->modes, own->y, own->nearby);
-  for (int i = 0; i < n; i++) own->nearby[i] += state->q[i];
-  DVI_TRY(dvi__potentials_gradient(own->impulse.forces, 1, &state->t, own->nearby, own->V_q));
-  dvi__modes_of_forces(own->modes, own->V_q, own->y);
-  for (int k = 0; k < n; k++) own->y[k] *= own->filter[k].psi;
-  dvi__modes_to_forces(own->modes, own->y, V_q);
+  const int n = self->system->n, here = is_one(&own->filters->phi), hard = is_one(&own->filters->psi);
+  double *fast = own->keeps ? kept_gradient(self) : own->V_q, *slow = hard ? V_q : own->V_q;
+  DVI_TRY(prepare(own, n, h));
+  if (!here) {
+    DVI_TRY(dvi__potentials_gradient(own->fast_forces, 1, &state->t, state->q, fast));
+    approach(own, n, h, state->q, fast);
+  }
+  DVI_TRY(dvi__potentials_gradient(own->impulse.forces, 1, &state->t, here ? state->q : own->nearby, slow));
+  if (!hard) soften(own, n, slow, V_q);
   return DVI_OK;
 }
 
 /* ---- create, destroy ---- */
 
-static dvi_status fill(dvi__stepper *self, dvi__oscillation *own)
+/* Larger blocks are left to polynomials, where these serve as well: products with so many modes take longer. */
+enum { MODES_BLOCK_QUICK = 64 };
+
+static int has_polynomials(const dvi__filters *filters)
+{
+  return filters == NULL || (filters->phi.mass > 0 && filters->psi.mass > 0);
+}
+
+static dvi_status make_polynomials(dvi__oscillation *own, dvi_counters *counters)
+{
+  if (has_polynomials(own->filters)) return dvi__polynomials_create(own->impulse.fast, counters, &own->polynomials);
+  return dvi__fail(DVI_UNSUPPORTED, "polynomials: the filter jumps, they cannot follow it; take another one");
+}
+
+/* Modes of small blocks, else polynomials; filters with poles want modes, which may lie between these, as long as there can be some. */
+static dvi_status choose(dvi__oscillation *own, dvi_counters *counters)
+{
+  const dvi__filters *filters = own->filters;
+  const int poles = filters != NULL && (filters->phi.poles > 0 || filters->psi.poles > 0);
+  const int most = poles || !has_polynomials(filters) ? DVI__MODES_BLOCK_MOST : MODES_BLOCK_QUICK;
+  dvi_status status = dvi__modes_create(own->impulse.fast, most, counters, &own->modes);
+  if (status != DVI_BAD_SIZE) return status;
+  status = make_polynomials(own, counters);
+  if (status != DVI_UNSUPPORTED) return status;
+  char because[256];
+  (void)snprintf(because, sizeof because, "%s", dvi_last_error());
+  status = dvi__modes_create(own->impulse.fast, DVI__MODES_BLOCK_MOST, counters, &own->modes);
+  return status == DVI_BAD_SIZE ? dvi__fail_in(status, "%s", because) : status;
+}
+
+static dvi_status fill(dvi__stepper *self, dvi__oscillation *own, dvi__motion motion)
 {
   const size_t n = (size_t)self->system->n;
-  DVI_TRY(dvi__modes_create(own->impulse.fast, self->counters, &own->modes));
+  DVI_TRY(motion == DVI__MOTION_MODES ? dvi__modes_create(own->impulse.fast, DVI__MODES_BLOCK_MOST, self->counters, &own->modes)
+          : motion == DVI__MOTION_POLYNOMIALS ? make_polynomials(own, self->counters)
+                                              : choose(own, self->counters));
   own->filter = DVI_NEW(dvi__filter, n);
   own->V_q = DVI_NEW(double, n);
   own->y = DVI_NEW(double, n);
@@ -70,20 +167,19 @@ static dvi_status fill(dvi__stepper *self, dvi__oscillation *own)
   return dvi__evaluator_create(own->impulse.fast, 1, DVI__GRADIENTS, self->counters, &own->fast_forces);
 }
 
-dvi_status dvi__oscillation_create(dvi__stepper *self, dvi__filter_pair *pair, int number, const char *remedy)
+dvi_status dvi__oscillation_create(dvi__stepper *self, const dvi__filters *filters, dvi__motion motion, const char *remedy)
 {
   if (!dvi__system_fast_is_quadratic(self->system))
     return dvi__fail(DVI_UNSUPPORTED, "%s: a fast potential is not declared `quadratic`, and only such ones have modes; %s",
                      self->method->name, remedy);
   DVI_TRY(dvi__impulse_create(self, sizeof(dvi__oscillation), 0));
   dvi__oscillation *own = self->own;
-  own->pair = pair;
-  own->number = number;
+  own->filters = filters;
   own->impulse.move = move;
-  own->impulse.gradient = pair != NULL ? filtered_gradient : NULL;
-  own->keeps = pair != NULL && self->system->autonomous;
+  own->impulse.gradient = filters != NULL ? filtered_gradient : NULL;
+  own->keeps = filters != NULL && !is_one(&filters->phi) && self->system->autonomous;
   if (own->keeps) self->memory_count += (size_t)self->system->n;
-  const dvi_status status = fill(self, own);
+  const dvi_status status = fill(self, own, motion);
   return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "%s", self->method->name);
 }
 
@@ -92,6 +188,7 @@ void dvi__oscillation_destroy(dvi__stepper *self)
   dvi__oscillation *own = self->own;
   if (own == NULL) return;
   dvi__modes_destroy(&own->modes);
+  dvi__polynomials_destroy(&own->polynomials);
   dvi__evaluator_destroy(&own->fast_forces);
   dvi__release(own->filter);
   dvi__release(own->V_q);
@@ -100,12 +197,29 @@ void dvi__oscillation_destroy(dvi__stepper *self)
   dvi__impulse_destroy(self);
 }
 
+/* ---- explain ---- */
+
+static void explain_polynomials(const dvi__polynomials *polynomials, dvi__text *text)
+{
+  double low, high, bound[3];
+  int degree[3];
+  dvi__polynomials_interval(polynomials, &low, &high);
+  for (int k = 0; k < 3; k++) degree[k] = dvi__polynomials_degree(polynomials, pow(10, k) / sqrt(high), &bound[k]);
+  dvi__text_add(
+      text,
+      "solver: none; Chebyshev polynomials of M^-1 K, whose omega^2 lie between %.6g and %.6g: for steps with h omega = 1, 10, 100 "
+      "of degree %d, %d, %d, which leave out at most %.2g, %.2g, %.2g of the motion\n",
+      low, high, degree[0], degree[1], degree[2], bound[0], bound[1], bound[2]);
+}
+
 void dvi__oscillation_explain(const dvi__stepper *self, dvi__text *text)
 {
   const dvi__oscillation *own = self->own;
-  dvi__text_add(
-      text,
-      "kernel: kicks by the slow potentials, one gradient of them a step; the fast ones move exactly, by their normal modes\n");
-  dvi__text_add(text, "solver: none; modes of %d blocks of coordinates, the largest of %d, found once\n",
-                dvi__modes_block_count(own->modes), dvi__modes_largest_block(own->modes));
+  dvi__text_add(text, "kernel: kicks by the slow potentials, one gradient of them a step; the fast ones move exactly, by %s\n",
+                own->modes != NULL ? "their normal modes" : "polynomials");
+  if (own->modes != NULL)
+    dvi__text_add(text, "solver: none; modes of %d blocks of coordinates, the largest of %d, found once\n",
+                  dvi__modes_block_count(own->modes), dvi__modes_largest_block(own->modes));
+  else
+    explain_polynomials(own->polynomials, text);
 }

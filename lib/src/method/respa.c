@@ -34,7 +34,7 @@ static int is_exact(const dvi__stepper *self)
 
 static dvi_status create(dvi__stepper *self)
 {
-  if (is_exact(self)) return dvi__oscillation_create(self, NULL, 0, "substeps=k takes any");
+  if (is_exact(self)) return dvi__oscillation_create(self, NULL, DVI__MOTION_AUTO, "substeps=k takes any");
   DVI_TRY(dvi__impulse_create(self, sizeof(dvi__impulse), 0));
   ((dvi__impulse *)self->own)->move = substeps;
   return dvi__impulse_take_inner(self, "verlet:sweep=plain");

@@ -11,7 +11,7 @@
 
 #include "method/oscillation.h"
 
-enum { FILTER };
+enum { FILTER, MOTION };
 
 enum { EXACT, DEUFLHARD, GARCIA_ARCHILLA, GAUTSCHI, HOCHBRUCK_LUBICH, GRIMM_HOCHBRUCK, HAIRER_LUBICH, FILTERS };
 
@@ -22,15 +22,35 @@ static const char *filter_name(int index)
   return index >= 0 && index < FILTERS ? name[index] : NULL;
 }
 
+static const char *motion_name(int index)
+{
+  static const char *const name[] = {"auto", "modes", "polynomials"};
+  return index >= 0 && index < 3 ? name[index] : NULL;
+}
+
 static const dvi__key keys[] = {
     {"filter", filter_name, 0, 0, GARCIA_ARCHILLA,
      "the filters of the slow forces: exact, deuflhard or garcia-archilla (variational); gautschi, hochbruck-lubich, "
      "grimm-hochbruck or hairer-lubich (not symplectic); left out: garcia-archilla"},
+    {"motion", motion_name, 0, 0, DVI__MOTION_AUTO,
+     "how the fast motion is found: by normal modes, in blocks of up to 2000 coupled coordinates, or by polynomials, for sparse "
+     "springs of any "
+     "size; left out: auto"},
     {0},
 };
 
 /* A sinc this small is one that rounding made. */
 static const double least_sinc = 1e-12;
+
+/* (1 - phi)/s of `exact`, phi = a/sqrt(b) with a = sinc(x/2), b = sinc x. Where that cancels it is (b - a^2)/s over b + a sqrt(b), and
+ * (b - a^2)/s = -sum_j (-s)^j (2j + 2)/(2j + 4)!. */
+static double exact_shift(double s, double a, double b)
+{
+  double sum = 0;
+  if (fabs(s) > 1) return (1 - a / sqrt(b)) / s;
+  for (int j = 8; j >= 0; j--) sum = (2 * j + 2) - s / ((2 * j + 5) * (2 * j + 6)) * sum;
+  return -sum / 24 / (b + a * sqrt(b));
+}
 
 /* With sinc x = c_1, sinc^2(x/2) = 2 c_2, (1 - sinc x)/x^2 = c_3, and psi_1 = psi/sinc x. */
 static int pair(int number, double s, dvi__filter *filter)
@@ -44,7 +64,7 @@ static int pair(int number, double s, dvi__filter *filter)
   case EXACT:
     dvi__modes_functions(s / 4, half);
     filter->phi = filter->psi = half[1] / sqrt(c[1]);
-    filter->shift = s != 0 ? (1 - filter->phi) / s : -1.0 / 24;
+    filter->shift = exact_shift(s, half[1], c[1]);
     return 1;
   case GARCIA_ARCHILLA: *filter = (dvi__filter){c[1], c[3], c[1]}; return 1;
   case GAUTSCHI: filter->psi = 2 * c[2] / c[1]; return 1;
@@ -55,9 +75,21 @@ static int pair(int number, double s, dvi__filter *filter)
   }
 }
 
+/* As means of cos(tau x), of c_1 over |tau| <= 1, of 2 c_2 too; 1 + s c_2/6 = (7 - cos x)/6. */
+static const dvi__filters filters[] = {
+    [EXACT] = {pair, EXACT, {0.5, 1, 0.5}, {0.5, 1, 0.5}},
+    [DEUFLHARD] = {pair, DEUFLHARD, {0, 1, 0}, {0, 1, 0}},
+    [GARCIA_ARCHILLA] = {pair, GARCIA_ARCHILLA, {1, 1, 0}, {1, 1, 0}},
+    [GAUTSCHI] = {pair, GAUTSCHI, {0, 1, 0}, {1, 1, 1}},
+    [HOCHBRUCK_LUBICH] = {pair, HOCHBRUCK_LUBICH, {2, 4.0 / 3, 0}, {1, 1, 1}},
+    [GRIMM_HOCHBRUCK] = {pair, GRIMM_HOCHBRUCK, {1, 1, 0}, {2, 1, 0}},
+    [HAIRER_LUBICH] = {pair, HAIRER_LUBICH, {0, 1, 0}, {1, 1, 0}},
+};
+
 static dvi_status create(dvi__stepper *self)
 {
-  return dvi__oscillation_create(self, pair, self->settings.value[FILTER], "imex and respa:substeps=k take any");
+  const int *value = self->settings.value;
+  return dvi__oscillation_create(self, &filters[value[FILTER]], (dvi__motion)value[MOTION], "imex and respa:substeps=k take any");
 }
 
 const dvi__method dvi__trig = {
