@@ -42,7 +42,8 @@ static const double tolerances[] = {1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-13, 1e-14
 enum {
   TOLERANCES = sizeof tolerances / sizeof *tolerances,
   FREE_TOLERANCES = 5,
-  JOBS_MAX = WORDS_MAX * LEVELS_MAX + PEERS_MAX * TOLERANCES
+  LONGER_MAX = 8,
+  JOBS_MAX = WORDS_MAX * (LONGER_MAX + LEVELS_MAX) + PEERS_MAX * TOLERANCES
 };
 
 static const double error_of_judge = 1e-10; /* that is good enough if no errors are asked for */
@@ -149,6 +150,26 @@ static dvi_status extend_levels(bench *b, const entry *of, order_study *study, i
   return status;
 }
 
+/* Add longer steps, twice as long each, as long as their errors are about that of the first level: those of fast phases do not fall with the step before it resolves
+ * them. */
+static dvi_status add_longer(bench *b, const entry *of, order_study *study, long steps)
+{
+  static const double as_good = 1.5;
+  long longer[LONGER_MAX];
+  int count = 0;
+  level_trial first, trial;
+  dvi_status status = study_run(study, steps, &first);
+  while (status == DVI_OK && steps > 1 && count < LONGER_MAX) {
+    steps /= 2;
+    status = study_run(study, steps, &trial);
+    if (status != DVI_OK || !(trial.error <= as_good * first.error)) break;
+    longer[count++] = steps;
+  }
+  if (status > 0) status = DVI_OK;
+  while (status == DVI_OK && count > 0) status = add_level(b, of, study, longer[--count]);
+  return status;
+}
+
 /* Add a method's levels. */
 static int add_method(bench *b, const entry *of)
 {
@@ -159,13 +180,14 @@ static int add_method(bench *b, const entry *of)
   study.method = of->name;
   const bool extend = b->request->levels == 0;
   const int levels = extend ? LEVELS_DEFAULT : (int)b->request->levels;
-  const int first_job = b->jobs;
   bool room;
   study.first_error = first_error_of(b, &study);
   study.progress = &b->progress;
   dvi_status status = choose_levels(&study, 0.0, 0.0, levels, steps, &room);
   const bool lost = status == DVI_OK && steps[0] == 0;
   if (lost) code = study_refuse(&study);
+  if (status == DVI_OK && !lost && extend) status = add_longer(b, of, &study, steps[0]);
+  const int first_job = b->jobs;
   for (int k = 0; k < levels && status == DVI_OK && !lost; k++) status = add_level(b, of, &study, steps[k]);
   if (status == DVI_OK && !lost && extend) status = extend_levels(b, of, &study, first_job);
   study_clear(&study);

@@ -94,9 +94,10 @@ static const char *const details[] = {
     "IDA as their witness. The report names the judge and its error.\n",
     "--at: for each integrator, seconds and evaluations at these errors. Of its settings those count that no other one\n"
     "beats in both error and cost; between two neighbours the logarithms are interpolated, beyond the ends nothing is.\n"
-    "Unless --levels is given, smaller steps follow until the smallest of these errors is met, and while they get\n"
-    "cheaper, 20 levels at most. Columns of --at-csv: asked_error,problem,judged,integrator,cpu_seconds,ratio,evaluations,\n"
-    "answer,create_seconds,calibration_seconds,calibration_least.\n"
+    "Unless --levels is given, longer steps come first, as far as they are about as good, and smaller ones follow until the\n"
+    "smallest of these errors is met, and while they get cheaper, 20 levels at most. Columns of --at-csv:\n"
+    "asked_error,problem,judged,integrator,cpu_seconds,ratio,evaluations,answer,create_seconds,calibration_seconds,\n"
+    "calibration_least.\n"
     "  judged        yes; no if the judge's own error is above a tenth of the asked one\n"
     "  ratio         seconds over those of the fastest integrator at this error\n"
     "  answer        interpolated; at most (the cheapest setting is already better); not reached\n",
