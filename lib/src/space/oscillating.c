@@ -302,6 +302,11 @@ void dvi__oscillating_destroy(dvi__oscillating **space)
   *space = NULL;
 }
 
+void dvi__oscillating_tune(dvi__oscillating *space, double omega)
+{
+  space->omega = (long double)omega;
+}
+
 dvi__shapes dvi__oscillating_shapes(dvi__oscillating *space)
 {
   return (dvi__shapes){.functions = space->functions,

@@ -23,6 +23,9 @@ enum {
 dvi__oscillating *dvi__oscillating_create(int degree, int amplitude, int harmonics, double omega);
 void dvi__oscillating_destroy(dvi__oscillating **space);
 
+/* Another omega: what the shapes were set to is to be set again. */
+void dvi__oscillating_tune(dvi__oscillating *space, double omega);
+
 /* The same as shapes: the first `degree` of them are polynomials. They live as long as the space. */
 dvi__shapes dvi__oscillating_shapes(dvi__oscillating *space);
 
