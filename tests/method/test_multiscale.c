@@ -19,8 +19,8 @@ START_TEST(a_linear_oscillator_is_exact_whatever_h_omega)
 {
   static const double h[] = {1e-9, 1e-5, 1e-3, 0.01, 0.05, 0.19, 0.2, 0.21, 0.6, 1, 3.3, 20};
   problem *of = made_problem("oscillators", NULL);
-  dvi_integrator *integrator = started(of, spec("multiscale:fast=0,omega=%.17g", sqrt(2501)));
-  advance(integrator, h[_i], 10);
+  dvi_integrator *integrator = started(of, spec("multiscale:fast=0,amplitude=%d,omega=%.17g", _i / 12, sqrt(2501)));
+  advance(integrator, h[_i % 12], 10);
   double q, p;
   ck_assert_int_eq(of->exact(of, dvi_integrator_time(integrator), &q, &p), 0);
   const double phase = sqrt(2501) * dvi_integrator_time(integrator), error = 1e-12 + 1e-15 * phase;
@@ -293,8 +293,6 @@ START_TEST(what_is_not_known_is_asked_for)
   check_refused("stiff-pendulum", "multiscale:fast=0.5,omega=1", "there is no coordinate 0.5");
   check_refused("stiff-pendulum", "multiscale:fast=0,omega=1,amplitude=4",
                 "amplitude=4 is above degree=3; 0 to degree are possible");
-  check_refused("stiff-pendulum", "multiscale:fast=0,omega=1,degree=6,amplitude=2,harmonics=2",
-                "degree=6 and amplitude=2 with harmonics=2; together they can be up to 7 then");
 }
 END_TEST
 
@@ -344,7 +342,7 @@ END_TEST
 int main(void)
 {
   TCase *tests = tcase_create("multiscale");
-  tcase_add_loop_test(tests, a_linear_oscillator_is_exact_whatever_h_omega, 0, 12);
+  tcase_add_loop_test(tests, a_linear_oscillator_is_exact_whatever_h_omega, 0, 36);
   tcase_add_test(tests, between_its_steps_too);
   tcase_add_test(tests, where_the_oscillation_is_a_polynomial_it_is_galerkin_with_as_many_nodes);
   tcase_add_loop_test(tests, steps_of_a_tenth_have_four_digits_at_every_stiffness, 0, 7);

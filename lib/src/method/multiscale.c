@@ -1,7 +1,8 @@
 /* Multiscale variational integrators: steps beyond fast periods, which shape functions resolve.
  *
- * Space: q(t) = p(t) + r(t) sin(omega t) + s(t) cos(omega t) in fast coordinates, p(t) in slow ones; p of degree d, r and s of degree m.
- * Quadrature: Filon-Lobatto with d+m+1 nodes, for harmonics up to 2 omega; where as many points resolve the oscillation by themselves, Gauss (space/oscillating.h).
+ * Space: q(t) = p(t) + r(t) sin(omega t) + s(t) cos(omega t) in fast coordinates, p(t) in slow ones; p of degree d, r and s of degree m. With harmonics=2 also
+ *     sin(2 omega t) and cos(2 omega t) times constants, which a nonlinear motion has.
+ * Quadrature: Filon-Lobatto with d+1 nodes for m=0, else d+2, for twice the space's harmonics; where as many points resolve the oscillation by themselves, Gauss (space/oscillating.h).
  *     Ld(q0,q1) = ext over such paths q from q0 to q1 of the quadrature of L,      p0 = -D1 Ld, p1 = D2 Ld.
  * The rows are those of action/action.h in another space (action/shaped.h). The path of a linear oscillator of frequency omega is in the space, and its action is
  * exact: so are its steps, whatever h omega is.
@@ -186,9 +187,6 @@ static dvi_status create(dvi__stepper *self)
   if (value[AMPLITUDE] > value[DEGREE])
     return dvi__fail(DVI_BAD_OPTION, "multiscale: amplitude=%d is above degree=%d; 0 to degree are possible", value[AMPLITUDE],
                      value[DEGREE]);
-  if (value[HARMONICS] == 2 && value[DEGREE] + value[AMPLITUDE] > DVI__OSCILLATING_TWICE_MOST)
-    return dvi__fail(DVI_BAD_OPTION, "multiscale: degree=%d and amplitude=%d with harmonics=2; together they can be up to %d then",
-                     value[DEGREE], value[AMPLITUDE], DVI__OSCILLATING_TWICE_MOST);
   char *fast = DVI_NEW(char, self->system->n);
   if (fast == NULL) return dvi__fail(DVI_NO_MEMORY, "multiscale: no memory");
   dvi_status status = find_fast(self, fast);

@@ -288,7 +288,7 @@ dvi__oscillating *dvi__oscillating_create(int degree, int amplitude, int harmoni
   o->degree = degree;
   o->amplitude = amplitude;
   o->harmonics = harmonics;
-  o->nodes = degree + amplitude + 1;
+  o->nodes = degree + 1 + (amplitude > 0);
   o->functions = degree + 2 * (amplitude + harmonics);
   o->omega = (long double)omega;
   dvi__space_init(&o->legendre, DVI_LEGENDRE, degree);
