@@ -107,7 +107,7 @@ END_TEST
 /* sum_k psi_k(tau) Y'_k = path(1 + tau) - path(1) */
 START_TEST(a_path_is_continued_into_the_next_step)
 {
-  dvi__oscillating *space = made(1 + _i, 12);
+  dvi__oscillating *space = made(1 + _i, 20);
   const dvi__shapes shapes = dvi__oscillating_shapes(space);
   double last[FUNCTIONS], Y[FUNCTIONS], here[FUNCTIONS], beyond[FUNCTIONS], end[FUNCTIONS];
   for (int k = 0; k < shapes.functions; k++) last[k] = 1.0 / (k + 2);
