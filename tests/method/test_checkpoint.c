@@ -39,6 +39,7 @@ static const struct {
     {"fpu", NULL, "respa", 0.1, 30},
     {"fpu", NULL, "mollified", 0.1, 30},
     {"fpu", NULL, "multiscale", 0.1, 30},
+    {"stiff-pendulum", NULL, "multiscale:fast=0:1", 0.1, 30},
     {"kepler", NULL, "composition:order=8,base=verlet", 0.05, 30},
     {"double-pendulum", NULL, "galerkin:degree=3", 0.02, 30},
     {"double-pendulum", NULL, "trapezoidal:solver=newton", 0.02, 30},

@@ -40,6 +40,24 @@ START_TEST(all_functions_vanish_at_the_start_and_the_first_one_is_the_straight_l
 }
 END_TEST
 
+START_TEST(of_every_degree_and_amplitude)
+{
+  for (int harmonics = 1; harmonics <= 2; harmonics++)
+    for (int amplitude = 0; amplitude <= _i; amplitude++) {
+      dvi__oscillating *space = dvi__oscillating_create(_i, amplitude, harmonics, 1);
+      const dvi__shapes shapes = dvi__oscillating_shapes(space);
+      ck_assert_int_le(shapes.functions, FUNCTIONS);
+      shapes.set(shapes.of, 1);
+      check_start_and_first_function(&shapes);
+      shapes.set(shapes.of, dvi__oscillating_resolved(space));
+      check_start_and_first_function(&shapes);
+      shapes.set(shapes.of, 100);
+      check_start_and_first_function(&shapes);
+      dvi__oscillating_destroy(&space);
+    }
+}
+END_TEST
+
 /* psi_k psi_l + psi_k' psi_l' by a point of a weight, added. */
 static void add_products(int count, double weight, const double *psi, const double *dpsi, double sum[FUNCTIONS][FUNCTIONS])
 {
@@ -89,7 +107,7 @@ END_TEST
 /* sum_k psi_k(tau) Y'_k = path(1 + tau) - path(1) */
 START_TEST(a_path_is_continued_into_the_next_step)
 {
-  dvi__oscillating *space = made(1 + _i, 12);
+  dvi__oscillating *space = made(1 + _i, 20);
   const dvi__shapes shapes = dvi__oscillating_shapes(space);
   double last[FUNCTIONS], Y[FUNCTIONS], here[FUNCTIONS], beyond[FUNCTIONS], end[FUNCTIONS];
   for (int k = 0; k < shapes.functions; k++) last[k] = 1.0 / (k + 2);
@@ -111,6 +129,7 @@ int main(void)
   TCase *tests = tcase_create("oscillating");
   tcase_add_loop_test(tests, all_functions_vanish_at_the_start_and_the_first_one_is_the_straight_line, 0,
                       2 * sizeof lengths / sizeof *lengths);
+  tcase_add_loop_test(tests, of_every_degree_and_amplitude, 1, DVI__OSCILLATING_DEGREE_MOST + 1);
   tcase_add_loop_test(tests, the_quadrature_is_exact_for_products_of_two_functions, 0, 2 * sizeof lengths / sizeof *lengths);
   tcase_add_test(tests, where_steps_are_far_below_the_period_polynomials_are_left);
   tcase_add_loop_test(tests, a_path_is_continued_into_the_next_step, 0, 2);

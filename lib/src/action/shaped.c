@@ -116,6 +116,11 @@ static void set_length(dvi__shaped *s, double h)
   }
 }
 
+void dvi__shaped_renew(dvi__shaped *shaped)
+{
+  shaped->h = 0;
+}
+
 void dvi__shaped_place(dvi__shaped *shaped, double t0, double h, const double *q0, const double *p0)
 {
   set_length(shaped, h);

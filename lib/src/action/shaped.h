@@ -20,6 +20,9 @@ dvi__evaluator *dvi__shaped_evaluator(const dvi__shaped *shaped);
 /* As dvi__action_place. */
 void dvi__shaped_place(dvi__shaped *shaped, double t0, double h, const double *q0, const double *p0);
 
+/* The shapes have changed: ask them anew at the next place. */
+void dvi__shaped_renew(dvi__shaped *shaped);
+
 /* What a step asks for (method/one_step.h). */
 dvi_status dvi__shaped_residual(dvi__shaped *shaped, const double *Y, double *R);
 dvi_status dvi__shaped_jacobian(dvi__shaped *shaped, const double *Y, double *values);

@@ -1,7 +1,8 @@
 /* Multiscale variational integrators: steps beyond fast periods, which shape functions resolve.
  *
- * Space: q(t) = p(t) + r(t) sin(omega t) + s(t) cos(omega t) in fast coordinates, p(t) in slow ones; p of degree d, r and s of degree m.
- * Quadrature: Filon-Lobatto with d+m+1 nodes, for harmonics up to 2 omega; where as many points resolve the oscillation by themselves, Gauss (space/oscillating.h).
+ * Space: q(t) = p(t) + r(t) sin(omega t) + s(t) cos(omega t) in fast coordinates, p(t) in slow ones; p of degree d, r and s of degree m. With harmonics=2 also
+ *     sin(2 omega t) and cos(2 omega t) times constants, which a nonlinear motion has.
+ * Quadrature: Filon-Lobatto with d+1 nodes for m=0, else d+2, for twice the space's harmonics; where as many points resolve the oscillation by themselves, Gauss (space/oscillating.h).
  *     Ld(q0,q1) = ext over such paths q from q0 to q1 of the quadrature of L,      p0 = -D1 Ld, p1 = D2 Ld.
  * The rows are those of action/action.h in another space (action/shaped.h). The path of a linear oscillator of frequency omega is in the space, and its action is
  * exact: so are its steps, whatever h omega is.
@@ -10,6 +11,7 @@
  * quadrature of any Lagrangian by samples of the phase. */
 #include <math.h>
 
+#include "action/fastest.h"
 #include "action/modes.h"
 #include "action/shaped.h"
 #include "core/memory.h"
@@ -25,14 +27,20 @@ static const dvi__key keys[] = {
     {"amplitude", NULL, 0, DVI__OSCILLATING_DEGREE_MOST, DVI__LEFT_OUT,
      "degree of the oscillation's amplitudes, 0 to degree; left out: 1"},
     {"harmonics", NULL, 1, 2, 1, "harmonics of the oscillation, 1 or 2; the second one has constant amplitudes; left out: 1"},
-    {"omega", NULL, DVI__POSITIVE, 0, 0, "the fast frequency; left out, or auto: that of the fast potentials"},
+    {"omega", NULL, DVI__POSITIVE, 0, 0,
+     "the fast frequency; left out, or auto: that of quadratic fast potentials, else found at the first step"},
     {0},
 };
+
+/* In the memory, where omega is not known: what was found for it at the first step. */
+enum { FOUND = DVI__CARRIED };
 
 typedef struct multiscale {
   dvi__one_step one;
   dvi__oscillating *space;
-  int fast; /* how many coordinates are */
+  dvi__fastest *fastest; /* NULL: omega is known */
+  double omega;          /* of the space; 0: not yet known */
+  int fast;              /* how many coordinates are */
 } multiscale;
 
 /* ---- which coordinates are fast, and how fast ---- */
@@ -72,30 +80,23 @@ static dvi_status frequency_of(const dvi__stepper *self, const dvi_system *part,
                    *omega);
 }
 
-static dvi_status refuse_unknown(void)
-{
-  return dvi__fail(DVI_BAD_OPTION,
-                   "multiscale: the frequency is not known: give omega; it can be left out where potentials that are "
-                   "declared fast and quadratic, and a constant mass, tell it");
-}
-
-/* What is left out comes from the part of the system that is declared fast. */
+/* What is left out comes from the part of the system that is declared fast; a frequency that it does not tell is found at the first step. */
 static dvi_status ask_fast_part(dvi__stepper *self, char *fast)
 {
   const dvi_system *system = self->system;
+  const int listed = self->settings.listed > 0;
   double *omega = &self->settings.number[OMEGA];
   dvi_system *part;
-  if (!(system->terms & DVI__FAST) && self->settings.listed == 0)
+  if (!(system->terms & DVI__FAST) && !listed)
     return dvi__fail(DVI_BAD_OPTION,
                      "multiscale: no coordinate is known to be fast: list them, as fast=0:1, or declare a fast potential");
-  if (*omega == 0 &&
-      (!(system->terms & DVI__FAST) || !(system->terms & DVI__CONSTANT_MASS) || !dvi__system_fast_is_quadratic(system)))
-    return refuse_unknown();
-  if (!(system->terms & DVI__CONSTANT_MASS))
+  if (!(system->terms & DVI__CONSTANT_MASS) && !listed)
     return dvi__fail(DVI_BAD_OPTION, "multiscale: the fast coordinates must be listed where the mass is not constant, as fast=0:1");
+  const int told = system->terms & DVI__FAST && system->terms & DVI__CONSTANT_MASS && dvi__system_fast_is_quadratic(system);
+  if (listed && !told) return DVI_OK;
   DVI_TRY(dvi__system_fast_part(system, &part));
-  dvi_status status = self->settings.listed == 0 ? mark_moved(part, fast) : DVI_OK;
-  if (status == DVI_OK && *omega == 0) status = frequency_of(self, part, omega);
+  dvi_status status = listed ? DVI_OK : mark_moved(part, fast);
+  if (status == DVI_OK && told && *omega == 0) status = frequency_of(self, part, omega);
   dvi_system_destroy(&part);
   return status;
 }
@@ -108,17 +109,26 @@ static dvi_status find_fast(dvi__stepper *self, char *fast)
 
 /* ---- making it ---- */
 
+static void explain_omega(const dvi__stepper *self, dvi__text *text)
+{
+  const multiscale *own = self->own;
+  const double omega = own->fastest == NULL ? own->omega : self->memory == NULL ? 0 : self->memory[FOUND];
+  if (omega == 0)
+    dvi__text_add(text, "omega: found at the first step, as the highest frequency of small oscillations about the start\n");
+  else
+    dvi__text_add(text, "omega: %.6g%s\n", omega, own->fastest == NULL ? "" : ", found at the first step");
+}
+
 static void explain(const dvi__stepper *self, dvi__text *text)
 {
   const multiscale *own = self->own;
   const int *value = self->settings.value;
-  dvi__text_add(
-      text,
-      "space: polynomials of degree %d, and in %d fast coordinate%s of degree %d times sin and cos of omega t%s, omega = %.6g\n",
-      value[DEGREE], own->fast, own->fast == 1 ? "" : "s", value[AMPLITUDE],
-      value[HARMONICS] == 2 ? ", and these of 2 omega t" : "", self->settings.number[OMEGA]);
-  dvi__text_add(text, "quadrature: %d points; up to h = %.3g Gauss's, for longer steps Filon-Lobatto's\n",
-                dvi__oscillating_shapes(own->space).points, dvi__oscillating_resolved(own->space) / self->settings.number[OMEGA]);
+  dvi__text_add(text, "space: polynomials of degree %d, and in %d fast coordinate%s of degree %d times sin and cos of omega t%s\n",
+                value[DEGREE], own->fast, own->fast == 1 ? "" : "s", value[AMPLITUDE],
+                value[HARMONICS] == 2 ? ", and these of 2 omega t" : "");
+  explain_omega(self, text);
+  dvi__text_add(text, "quadrature: %d points; up to h omega = %.3g Gauss's, for longer steps Filon-Lobatto's\n",
+                dvi__oscillating_shapes(own->space).points, dvi__oscillating_resolved(own->space));
 }
 
 DVI__STEP_KIND(shaped, explain, .renewed = 1);
@@ -134,27 +144,36 @@ static dvi_status make_step(const dvi__stepper *self, const dvi__shapes *shapes,
   return status;
 }
 
-/* The space is owned by the stepper from the moment there is one. */
+static dvi_status prepare_to_find(dvi__stepper *self, const char *fast)
+{
+  multiscale *own = self->own;
+  if (own->fast <= DVI__FASTEST_MOST) return dvi__fastest_create(self->system, fast, self->counters, &own->fastest);
+  return dvi__fail(DVI_BAD_OPTION, "multiscale: of %d fast coordinates the frequency is not found, of up to %d it is: give omega",
+                   own->fast, DVI__FASTEST_MOST);
+}
+
+/* The space is owned by the stepper from the moment there is one; it waits for an omega that is not known. */
 static dvi_status make(dvi__stepper *self, const char *fast)
 {
   const int *value = self->settings.value;
+  const double omega = self->settings.number[OMEGA];
   dvi__shaped *shaped = NULL;
-  dvi__oscillating *space = dvi__oscillating_create(value[DEGREE], value[AMPLITUDE], value[HARMONICS],
-                                                    self->settings.number[OMEGA]);
+  dvi__oscillating *space = dvi__oscillating_create(value[DEGREE], value[AMPLITUDE], value[HARMONICS], omega);
   if (space == NULL) return dvi__fail(DVI_NO_MEMORY, "multiscale: no memory");
   const dvi__shapes shapes = dvi__oscillating_shapes(space);
   dvi_status status = make_step(self, &shapes, fast, &shaped);
-  if (status == DVI_OK) status = dvi__one_step_create(self, sizeof(multiscale), &kind, shaped, 0);
+  if (status == DVI_OK) status = dvi__one_step_create(self, sizeof(multiscale), &kind, shaped, omega == 0);
   multiscale *own = self->own;
   if (own == NULL) {
     dvi__oscillating_destroy(&space);
     return status;
   }
   own->space = space;
+  own->omega = omega;
   for (int i = 0; i < self->system->n; i++) own->fast += fast[i];
   self->order = 2 * shapes.functions;
   self->symmetric = 1;
-  return status;
+  return status == DVI_OK && omega == 0 ? prepare_to_find(self, fast) : status;
 }
 
 static dvi_status create(dvi__stepper *self)
@@ -164,9 +183,6 @@ static dvi_status create(dvi__stepper *self)
   if (value[AMPLITUDE] > value[DEGREE])
     return dvi__fail(DVI_BAD_OPTION, "multiscale: amplitude=%d is above degree=%d; 0 to degree are possible", value[AMPLITUDE],
                      value[DEGREE]);
-  if (value[HARMONICS] == 2 && value[DEGREE] + value[AMPLITUDE] > DVI__OSCILLATING_TWICE_MOST)
-    return dvi__fail(DVI_BAD_OPTION, "multiscale: degree=%d and amplitude=%d with harmonics=2; together they can be up to %d then",
-                     value[DEGREE], value[AMPLITUDE], DVI__OSCILLATING_TWICE_MOST);
   char *fast = DVI_NEW(char, self->system->n);
   if (fast == NULL) return dvi__fail(DVI_NO_MEMORY, "multiscale: no memory");
   dvi_status status = find_fast(self, fast);
@@ -180,13 +196,35 @@ static void destroy(dvi__stepper *self)
   multiscale *own = self->own;
   if (own == NULL) return;
   dvi__oscillating *space = own->space;
+  dvi__fastest_destroy(&own->fastest);
   dvi__one_step_destroy(self);
   dvi__oscillating_destroy(&space);
+}
+
+/* ---- the step ---- */
+
+/* Tables are made for the omega that the run goes by: another run, or a restored one, may have used this stepper in between. */
+static void tune(const dvi__stepper *self)
+{
+  multiscale *own = self->own;
+  if (own->fastest == NULL || own->omega == self->memory[FOUND]) return;
+  own->omega = self->memory[FOUND];
+  dvi__oscillating_tune(own->space, own->omega);
+  dvi__shaped_renew(own->one.of);
+}
+
+static dvi_status find_omega(const dvi__stepper *self, const dvi__state *state)
+{
+  const multiscale *own = self->own;
+  if (own->fastest == NULL || self->memory[FOUND] != 0) return DVI_OK;
+  return dvi__fastest_frequency(own->fastest, state->t, state->q, self->memory + own->one.last, &self->memory[FOUND]);
 }
 
 static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
 {
   const dvi__one_step *one = self->own;
+  DVI_TRY(find_omega(self, state));
+  tune(self);
   dvi__shaped_place(one->of, state->t, h, state->q, state->p);
   DVI_TRY(dvi__one_step_solve(self, state, h));
   dvi__shaped_ends(one->of, one->x, one->dq, one->dp);
@@ -198,6 +236,7 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
 static void path(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v)
 {
   const dvi__one_step *one = self->own;
+  tune(self);
   dvi__shaped_path(one->of, self->memory + one->last, h, tau, q, v);
   for (int i = 0; q != NULL && i < self->system->n; i++) q[i] += q0[i];
 }

@@ -26,7 +26,7 @@ typedef struct dvi__equations {
    * rounding of it, and a correction cannot be smaller than what the Jacobian makes of that. */
   void (*magnitudes)(void *of, double *magnitude);
   int renewed; /* Newton's method factors the Jacobian at each of its points: the equations are nearly singular, and an old factor leads astray */
-  int ahead;   /* and what is taken from the last residual's point is corrected to first order: the next correction need not be seen to be small */
+  int ahead; /* and what is taken from the last residual's point is corrected to first order: the next correction need not be seen to be small */
   /* The same fixed point iteration in variables of the equations' own, where that is cheaper; NULL: residual and chord do it. */
   void (*sweep_from)(void *of, const double *x);
   dvi_status (*sweep)(void *of, double *change, double *largest);

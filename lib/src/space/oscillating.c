@@ -232,10 +232,12 @@ static int points(const dvi__oscillating *o)
   return o->nodes * samples(o);
 }
 
-/* Two points a radian, and some for the amplitudes: products of two oscillations are exact but for rounding. */
+/* Products of two oscillations are then exact but for rounding: of e^{iax} on [-1,1], a = nu for the first harmonic's square, Gauss's rule misses what is beyond Taylor's term
+ * of degree k = 2 points - 2 degree, about (e a/2k)^k. */
 double dvi__oscillating_resolved(const dvi__oscillating *space)
 {
-  return fmin(0.5 * (points(space) - samples(space)), (double)orthogonal_up_to) / space->harmonics;
+  const double k = 2 * (points(space) - space->degree);
+  return fmin(2 * k / exp(1) * pow(1e-14, 1 / k), (double)orthogonal_up_to) / space->harmonics;
 }
 
 static void set_rule(dvi__oscillating *o)
@@ -288,7 +290,7 @@ dvi__oscillating *dvi__oscillating_create(int degree, int amplitude, int harmoni
   o->degree = degree;
   o->amplitude = amplitude;
   o->harmonics = harmonics;
-  o->nodes = degree + amplitude + 1;
+  o->nodes = degree + 1 + (amplitude > 0);
   o->functions = degree + 2 * (amplitude + harmonics);
   o->omega = (long double)omega;
   dvi__space_init(&o->legendre, DVI_LEGENDRE, degree);
@@ -300,6 +302,11 @@ void dvi__oscillating_destroy(dvi__oscillating **space)
 {
   dvi__release(*space);
   *space = NULL;
+}
+
+void dvi__oscillating_tune(dvi__oscillating *space, double omega)
+{
+  space->omega = (long double)omega;
 }
 
 dvi__shapes dvi__oscillating_shapes(dvi__oscillating *space)
