@@ -2,7 +2,7 @@
  *
  *     L = v.v/2 - q.q/2 - (q1^2 q2 - q2^3/3)
  *
- * A function space of one's own, its order, its error beside that of as many polynomials, and what every such space keeps. */
+ * A function space of one's own, its error beside that of as many polynomials, and what every such space keeps. */
 #include <dvi/dvi.h>
 #include <math.h>
 #include <stdio.h>

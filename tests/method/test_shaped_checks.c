@@ -20,12 +20,14 @@ typedef struct fault {
   int leave_out;       /* the derivative */
   double node, weight; /* are added, at the middle point */
   double from;         /* the fault begins with steps of this length */
+  long calls;
 } fault;
 
 static int evaluate(double h, double tau, double *value, double *derivative, void *user)
 {
-  const fault *wrong = user;
+  fault *wrong = user;
   const int is_wrong = fabs(h) >= wrong->from;
+  wrong->calls++;
   *value = tau * tau + (is_wrong ? wrong->value : 0);
   if (!wrong->leave_out) *derivative = 2 * tau + (is_wrong ? wrong->slope : 0);
   return is_wrong ? wrong->answer : 0;
@@ -277,6 +279,25 @@ START_TEST(dense_output_says_where_a_function_fails)
 }
 END_TEST
 
+/* ---- cost ---- */
+
+START_TEST(a_step_of_the_same_length_asks_no_function)
+{
+  problem *of = made_problem("kepler", NULL);
+  fault none = {0};
+  const dvi_shapes shapes = {.name = "square", .functions = 1, .evaluate = evaluate, .h = 0.1, .user = &none};
+  dvi_integrator *integrator = shaped_started(of, &shapes, "shaped-galerkin:nodes=5");
+  advance(integrator, 0.1, 1);
+  const long before = none.calls;
+  advance(integrator, 0.1, 10);
+  ck_assert_int_eq(none.calls, before);
+  advance(integrator, 0.2, 10);
+  ck_assert_int_le(none.calls, before + 5 + 5); /* the points, and ends */
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&of);
+}
+END_TEST
+
 /* ---- memory ---- */
 
 START_TEST(a_step_takes_no_memory)
@@ -442,6 +463,7 @@ int main(void)
   tcase_add_test(tests, terms_that_it_cannot_use_are_refused);
   tcase_add_loop_test(tests, a_failing_callback_leaves_the_state, 0, 7);
   tcase_add_test(tests, dense_output_says_where_a_function_fails);
+  tcase_add_test(tests, a_step_of_the_same_length_asks_no_function);
   tcase_add_loop_test(tests, a_step_takes_no_memory, 0, 2);
   tcase_add_test(tests, creation_survives_every_failure_of_memory);
   tcase_add_test(tests, checkpoints_know_the_space);
