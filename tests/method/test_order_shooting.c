@@ -120,9 +120,12 @@ END_TEST
 static const struct {
   const char *setting;
   int order;
-} series[] = {{"taylor,stages=2,quadrature=trapezoid", 2},       {"taylor", 4},
-              {"taylor,stages=6,quadrature=euler-maclaurin", 6}, {"rk4,quadrature=euler-maclaurin,terms=2", 4},
-              {"butcher6,quadrature=gauss-hermite", 6},          {"cooper-verner,quadrature=gauss-hermite,terms=2", 4}};
+} series[] = {{"taylor,stages=2,quadrature=trapezoid", 2},
+              {"taylor", 4},
+              {"taylor,stages=8,quadrature=euler-maclaurin,terms=2", 6},
+              {"rk4,quadrature=euler-maclaurin,terms=2", 4},
+              {"butcher6,quadrature=gauss-hermite", 6},
+              {"cooper-verner,quadrature=gauss-hermite,terms=2", 4}};
 enum { SERIES = sizeof series / sizeof *series };
 
 START_TEST(series_have_the_order_of_their_degree)
