@@ -223,7 +223,6 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
   DVI_TRY(dvi__given_prepare(own->space, h));
   dvi__shaped_place(one->of, state->t, h, state->q, state->p);
   DVI_TRY(dvi__one_step_solve(self, state, h));
-  DVI_TRY(dvi__shaped_residual(one->of, one->x, one->guess));
   dvi__shaped_ends(one->of, one->x, one->dq, one->dp);
   dvi__one_step_move(self, state, h, one->x);
   dvi__add_compensated_all(self->system->n, state->p, state->p_carry, one->dp);
