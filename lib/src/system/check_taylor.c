@@ -99,6 +99,16 @@ static double largest_of(size_t count, const double *x)
   return largest;
 }
 
+/* What roundoff does to coefficients up to k: terms may cancel in a block, so all of them count. */
+static double noise_of(const subject *s, int k)
+{
+  double largest = 0;
+  const double *at = s->here;
+  for (int b = 0; b < BLOCKS; at += COEFFICIENTS * s->length[b++])
+    largest = fmax(largest, largest_of((size_t)(k + 1) * s->length[b], at));
+  return 64 * DBL_EPSILON * largest;
+}
+
 /* Coefficient k of one block as it is given and as it is found otherwise, with the noise of the latter. */
 static dvi_status compare(const subject *s, int b, int k, const double *given, const double *found, double noise, double tolerance,
                           dvi_derivative_check *result)
@@ -125,7 +135,7 @@ static dvi_status compare_points(const subject *s, double tolerance, dvi_derivat
   const double *given = s->here, *found = s->there;
   DVI_TRY(points_at(s, s->there));
   for (int b = 0; b < BLOCKS; given += COEFFICIENTS * s->length[b], found += COEFFICIENTS * s->length[b], b++)
-    DVI_TRY(compare(s, b, 0, given, found, 64 * DBL_EPSILON * largest_of(s->length[b], given), tolerance, result));
+    DVI_TRY(compare(s, b, 0, given, found, noise_of(s, 0), tolerance, result));
   return DVI_OK;
 }
 
@@ -145,7 +155,7 @@ static dvi_status compare_differences(const subject *s, double tolerance, dvi_de
   for (int b = 0; b < BLOCKS; at += COEFFICIENTS * s->length[b++])
     for (int k = 0; k < DEGREE; k++) {
       double *below = s->sum + at + (size_t)k * s->length[b], *given = s->here + at + (size_t)(k + 1) * s->length[b];
-      const double noise = 64 * DBL_EPSILON * largest_of(s->length[b], given - s->length[b]) / sigma / (k + 1);
+      const double noise = noise_of(s, k) / sigma / (k + 1);
       for (size_t e = 0; e < s->length[b]; e++) below[e] /= k + 1;
       DVI_TRY(compare(s, b, k + 1, given, below, noise, tolerance, result));
     }
@@ -170,6 +180,10 @@ static dvi_status check_term(subject s, double tolerance, dvi_derivative_check *
   s.there = s.here + length;
   s.sum = s.there + length;
   dvi_status status = series_at(&s, s.t, s.q, s.v, s.here);
+  if (status > 0) { /* there need be no series: |x|^3 has two derivatives at 0 */
+    dvi__release(s.here);
+    return DVI_OK;
+  }
   if (status == DVI_OK) status = compare_points(&s, tolerance, result);
   if (status == DVI_OK) status = compare_differences(&s, tolerance, result);
   dvi__release(s.here);
