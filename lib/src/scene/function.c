@@ -233,7 +233,7 @@ int dvi__function_series(dvi__function *function, int degree, const double *cons
 {
   const int count = degree + 1;
   const dvi__sum *sum;
-  int size[DVI__PAIRS], returned = 0;
+  int returned = 0;
   if (value != NULL) {
     returned = (int)ask_value(function, count, &sum);
     if (returned == 0) returned = expand(function, sum, count, x, 1, &(int){1}, &value);
@@ -243,6 +243,7 @@ int dvi__function_series(dvi__function *function, int degree, const double *cons
     if (returned == 0) returned = expand(function, sum, count, x, DVI__BLOCKS, function->block_size, gradient);
   }
   if (returned == 0 && values != NULL && mask_of(DVI__PAIRS, values) != 0) {
+    int size[DVI__PAIRS];
     returned = (int)ask_second(function, count, values, &sum, size);
     if (returned == 0) returned = expand(function, sum, count, x, DVI__PAIRS, size, values);
   }

@@ -11,8 +11,8 @@ enum { LENGTH = DVI_TAYLOR_MAX + 1 };
 /* value + sign a */
 static void shift(int degree, double value, double sign, const double *a, double *to)
 {
-  for (int k = 0; k <= degree; k++) to[k] = sign * a[k];
-  to[0] += value;
+  to[0] = value + sign * a[0];
+  for (int k = 1; k <= degree; k++) to[k] = sign * a[k];
 }
 
 static void fill(int degree, double value, double *to)

@@ -17,6 +17,7 @@ enum { DEGREE = 4, COEFFICIENTS = DEGREE + 1, CURVE = 3, SIDES = 3, BLOCKS = 6 }
 typedef struct subject {
   const dvi__potential_term *potential; /* or: */
   const dvi__lagrangian_term *lagrangian;
+  char owner[48]; /* for messages */
   dvi__scratch *scratch;
   int n;
   const double *t, *q, *v;    /* [COEFFICIENTS], and times n */
@@ -114,18 +115,15 @@ static dvi_status compare(const subject *s, int b, int k, const double *given, c
                           dvi_derivative_check *result)
 {
   const double largest = fmax(largest_of(s->length[b], given), largest_of(s->length[b], found));
-  char owner[48];
   for (size_t e = 0; e < s->length[b]; e++) {
     const double wrong = fabs(given[e] - found[e]) - noise;
     if (wrong > 0) result->taylor_error = fmax(result->taylor_error, wrong / largest);
     if (!(wrong > tolerance * largest)) continue;
-    const char *name = names[s->lagrangian != NULL][b];
-    (void)snprintf(owner, sizeof owner, s->potential != NULL ? "potential '%.24s'" : "%s",
-                   s->potential != NULL ? s->potential->name : s->lagrangian->name);
-    (void)snprintf(result->where, sizeof result->where, "%s: Taylor coefficient %d of %s is wrong", owner, k, name);
+    const char *name = names[s->potential == NULL][b];
+    (void)snprintf(result->where, sizeof result->where, "%s: Taylor coefficient %d of %s is wrong", s->owner, k, name);
     return dvi__fail(DVI_BAD_ARGUMENT,
-                     "system check: %s: Taylor coefficient %d of %s (entry %zu) is %.15g from the callback, %.15g from %s", owner,
-                     k, name, e, given[e], found[e], k == 0 ? "the one-point callback" : "differences");
+                     "system check: %s: Taylor coefficient %d of %s (entry %zu) is %.15g from the callback, %.15g from %s",
+                     s->owner, k, name, e, given[e], found[e], k == 0 ? "the one-point callback" : "differences");
   }
   return DVI_OK;
 }
@@ -219,11 +217,13 @@ dvi_status dvi__check_taylor(const dvi_system *system, dvi__scratch *scratch, do
   t[1] = 1;
   if (system->lagrangian != NULL && dvi__general_has_taylor(system->lagrangian)) {
     s.lagrangian = system->lagrangian;
+    (void)snprintf(s.owner, sizeof s.owner, "%s", s.lagrangian->name);
     status = check_term(s, tolerance, result);
     s.lagrangian = NULL;
   }
   for (int k = 0; status == DVI_OK && k < system->potential_count; k++) {
     s.potential = &system->potentials[k];
+    (void)snprintf(s.owner, sizeof s.owner, "potential '%.24s'", s.potential->name);
     if (dvi__potential_has_taylor(s.potential)) status = check_term(s, tolerance, result);
   }
   dvi__release(curve);
