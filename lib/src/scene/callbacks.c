@@ -123,6 +123,15 @@ static int potential_rate(int count, const double *t, const double *q, double *V
   return gradient_at(user, count, x, gradient);
 }
 
+/* Of the curve's coefficients the first ones are its point. */
+static int potential_taylor(int degree, const double *t, const double *q, double *V, double *V_q, double *V_qq, void *user)
+{
+  const dvi__term *term = user;
+  const double *x[DVI__BLOCKS] = {t, q, NULL, NULL};
+  double *gradient[DVI__BLOCKS] = {[DVI__COORDINATES] = V_q}, *values[DVI__PAIRS] = {[DVI__PAIR_QQ] = V_qq};
+  return verdict(term, 1, x, dvi__function_series(term->function, degree, x, V, gradient, values));
+}
+
 bool dvi__term_pattern(dvi_scene *scene, dvi__term *term, dvi__pair pair, dvi_pattern *pattern, int *full)
 {
   const dvi_status status = dvi__function_pattern(term->function, pair, pattern, full);
@@ -154,6 +163,7 @@ bool dvi__make_potential(dvi_scene *scene, const char *name, dvi__term *term, dv
                                .gradient_batch = potential_gradient,
                                .hessian_batch = potential_hessian,
                                .rate_batch = potential_rate,
+                               .taylor = potential_taylor,
                                .user = term};
   return prepare_large(scene, term, 1U << DVI__COORDINATES) && dvi__term_pattern(scene, term, DVI__PAIR_QQ, &potential->qq, &full);
 }
@@ -188,6 +198,16 @@ static int lagrangian_rate(int count, const double *t, const double *q, const do
   return gradient_at(user, count, x, gradient);
 }
 
+static int lagrangian_taylor(int degree, const double *t, const double *q, const double *v, double *L, double *L_q, double *L_v,
+                             double *L_qq, double *L_qv, double *L_vv, void *user)
+{
+  const dvi__term *term = user;
+  const double *x[DVI__BLOCKS] = {t, q, v, NULL};
+  double *gradient[DVI__BLOCKS] = {[DVI__COORDINATES] = L_q, [DVI__VELOCITIES] = L_v};
+  double *values[DVI__PAIRS] = {[DVI__PAIR_QQ] = L_qq, [DVI__PAIR_QV] = L_qv, [DVI__PAIR_VV] = L_vv};
+  return verdict(term, 1, x, dvi__function_series(term->function, degree, x, L, gradient, values));
+}
+
 bool dvi__make_lagrangian(dvi_scene *scene, dvi__term *term, dvi_lagrangian *lagrangian)
 {
   int full;
@@ -195,6 +215,7 @@ bool dvi__make_lagrangian(dvi_scene *scene, dvi__term *term, dvi_lagrangian *lag
                                  .gradient_batch = lagrangian_gradient,
                                  .hessian_batch = lagrangian_hessian,
                                  .rate_batch = lagrangian_rate,
+                                 .taylor = lagrangian_taylor,
                                  .user = term};
   return prepare_large(scene, term, 1U << DVI__COORDINATES | 1U << DVI__VELOCITIES) &&
          dvi__term_pattern(scene, term, DVI__PAIR_QQ, &lagrangian->qq, &full) &&

@@ -165,35 +165,89 @@ static void count_points(atomic_long *points, int count)
   atomic_fetch_add_explicit(points, count, memory_order_relaxed);
 }
 
+/* The sums that are wanted, and the sizes of their arrays. */
+static dvi_status ask_value(dvi__function *function, int count, const dvi__sum **sum)
+{
+  const dvi_status status = ask(function, &function->value, dvi__derive_value, 0, sum);
+  if (status == DVI_OK) count_points(&function->value_points, count);
+  return status;
+}
+
+static dvi_status ask_gradient(dvi__function *function, int count, double *const *gradient, const dvi__sum **sum)
+{
+  const unsigned blocks = mask_of(DVI__BLOCKS, gradient);
+  const dvi_status status = ask(function, &function->gradient[blocks], dvi__derive_gradient, blocks, sum);
+  if (status == DVI_OK) count_points(&function->gradient_points, count);
+  return status;
+}
+
+static dvi_status ask_second(dvi__function *function, int count, double *const *values, const dvi__sum **sum, int *size)
+{
+  const unsigned pairs = mask_of(DVI__PAIRS, values);
+  const dvi_status status = ask(function, &function->second[pairs], dvi__derive_second, pairs, sum);
+  if (status != DVI_OK) return status;
+  for (int pair = 0; pair < DVI__PAIRS; pair++) size[pair] = function->pattern[pair].entries;
+  count_points(&function->second_points, count);
+  return DVI_OK;
+}
+
 int dvi__function_value(dvi__function *function, int count, const double *const *x, double *value)
 {
   const dvi__sum *sum;
-  const dvi_status status = ask(function, &function->value, dvi__derive_value, 0, &sum);
-  if (status != DVI_OK) return (int)status;
-  count_points(&function->value_points, count);
-  return evaluate(sum, count, x, 1, &(int){1}, &value);
+  const dvi_status status = ask_value(function, count, &sum);
+  return status != DVI_OK ? (int)status : evaluate(sum, count, x, 1, &(int){1}, &value);
 }
 
 int dvi__function_gradient(dvi__function *function, int count, const double *const *x, double *const *gradient)
 {
-  const unsigned blocks = mask_of(DVI__BLOCKS, gradient);
   const dvi__sum *sum;
-  const dvi_status status = ask(function, &function->gradient[blocks], dvi__derive_gradient, blocks, &sum);
-  if (status != DVI_OK) return (int)status;
-  count_points(&function->gradient_points, count);
-  return evaluate(sum, count, x, DVI__BLOCKS, function->block_size, gradient);
+  const dvi_status status = ask_gradient(function, count, gradient, &sum);
+  return status != DVI_OK ? (int)status : evaluate(sum, count, x, DVI__BLOCKS, function->block_size, gradient);
 }
 
 int dvi__function_second(dvi__function *function, int count, const double *const *x, double *const *values)
 {
-  const unsigned pairs = mask_of(DVI__PAIRS, values);
   const dvi__sum *sum;
   int size[DVI__PAIRS];
-  const dvi_status status = ask(function, &function->second[pairs], dvi__derive_second, pairs, &sum);
-  if (status != DVI_OK) return (int)status;
-  for (int pair = 0; pair < DVI__PAIRS; pair++) size[pair] = function->pattern[pair].entries;
-  count_points(&function->second_points, count);
-  return evaluate(sum, count, x, DVI__PAIRS, size, values);
+  const dvi_status status = ask_second(function, count, values, &sum, size);
+  return status != DVI_OK ? (int)status : evaluate(sum, count, x, DVI__PAIRS, size, values);
+}
+
+/* --- Along a curve. --- */
+
+/* As evaluate, of so many coefficients. */
+static int expand(const dvi__function *function, const dvi__sum *sum, int count, const double *const *x, int arrays,
+                  const int *size, double *const *result)
+{
+  int finite = 1;
+  for (int i = 0; i < arrays; i++)
+    if (result[i] != NULL && size[i] > 0) memset(result[i], 0, (size_t)size[i] * (size_t)count * sizeof **result);
+  const dvi_status status = dvi__sum_add_series(sum, count, function->block_size, x, size, result);
+  for (int i = 0; i < arrays && finite; i++)
+    if (result[i] != NULL) finite = all_finite((size_t)size[i] * (size_t)count, result[i]);
+  return status != DVI_OK ? (int)status : !finite;
+}
+
+int dvi__function_series(dvi__function *function, int degree, const double *const *x, double *value, double *const *gradient,
+                         double *const *values)
+{
+  const int count = degree + 1;
+  const dvi__sum *sum;
+  int returned = 0;
+  if (value != NULL) {
+    returned = (int)ask_value(function, count, &sum);
+    if (returned == 0) returned = expand(function, sum, count, x, 1, &(int){1}, &value);
+  }
+  if (returned == 0 && gradient != NULL && mask_of(DVI__BLOCKS, gradient) != 0) {
+    returned = (int)ask_gradient(function, count, gradient, &sum);
+    if (returned == 0) returned = expand(function, sum, count, x, DVI__BLOCKS, function->block_size, gradient);
+  }
+  if (returned == 0 && values != NULL && mask_of(DVI__PAIRS, values) != 0) {
+    int size[DVI__PAIRS];
+    returned = (int)ask_second(function, count, values, &sum, size);
+    if (returned == 0) returned = expand(function, sum, count, x, DVI__PAIRS, size, values);
+  }
+  return returned;
 }
 
 dvi_status dvi__function_prepare(dvi__function *function, int value, unsigned blocks, unsigned pairs)

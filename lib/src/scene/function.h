@@ -70,6 +70,11 @@ typedef enum dvi__pair {
 } dvi__pair;
 int dvi__function_second(dvi__function *function, int count, const double *const *x, double *const *values);
 
+/* The same along a curve: Taylor coefficients 0 to `degree`, at most DVI_TAYLOR_MAX, of what is NULL in none of value, gradient[] and values[]; the latter two may be
+ * NULL themselves. Coefficient k of variable i of a block is x[block][k*block_size + i], and results are stored likewise. DVI_BAD_SIZE: too large for that. */
+int dvi__function_series(dvi__function *function, int degree, const double *const *x, double *value, double *const *gradient,
+                         double *const *values);
+
 /* The pattern of a pair of blocks, whose first one has the rows (tq is one row): sorted columns, both triangles of qq and vv; *full = 1 and no pattern if it
  * would hold more than half of all entries. Found without deriving; owned by the function. DVI_BAD_SIZE if an int cannot count the entries. */
 dvi_status dvi__function_pattern(dvi__function *function, dvi__pair pair, dvi_pattern *pattern, int *full);

@@ -147,6 +147,11 @@ const int *dvi__strides(dvi__arena *arena, int elements, const int *list);
 /* Add the sum at `count` points to result[array], [entries * count]. */
 void dvi__sum_add(const dvi__sum *sum, int count, const double *const *x, double *const *result);
 
+/* Add its Taylor coefficients, `count` of them, along a curve: coefficient k of a block's variable i is at x[block][k*block_size[block] + i], that of entry e of an array
+ * at result[array][k*size[array] + e]. DVI_BAD_SIZE: the rows of a program do not fit. */
+dvi_status dvi__sum_add_series(const dvi__sum *sum, int count, const int *block_size, const double *const *x, const int *size,
+                               double *const *result);
+
 /* Take the lock, and charge the function's ledger; the reverse, which tells memory that ran out from a full ledger: returns the status. */
 void dvi__function_enter(dvi__function *function);
 dvi_status dvi__function_leave(dvi__function *function, dvi_status status);

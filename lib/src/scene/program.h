@@ -47,4 +47,7 @@ void dvi__program_run(const dvi__program *program, int lanes, const double *cons
 /* The same for one block of lanes at most, with input i below the registers, at registers - (i+1) DVI__LANES: then where a row is takes no decision. */
 void dvi__program_run_block(const dvi__program *program, int lanes, double *registers);
 
+/* Run on truncated power series of a degree up to DVI_TAYLOR_MAX: rows are of degree + 1 coefficients, input i at registers - (i+1) (degree+1). */
+void dvi__program_run_series(const dvi__program *program, int degree, double *registers);
+
 #endif

@@ -162,7 +162,7 @@ static dvi_status general(dvi__jet *jet, int degree, const double *t, const doub
   dvi__jets own = *wanted;
   if (own.L_qq != NULL) own.L_qq = jet->term;
   DVI_TRY(dvi__general_taylor(s->lagrangian, s->n, degree, t, q, v, &own));
-  if (own.L_qq != NULL) embed(degree, &s->lagrangian->qq, s->lagrangian->in_qq, &s->qq, 1, own.L_qq, wanted->L_qq);
+  if (wanted->L_qq != NULL) embed(degree, &s->lagrangian->qq, s->lagrangian->in_qq, &s->qq, 1, jet->term, wanted->L_qq);
   return DVI_OK;
 }
 
