@@ -152,6 +152,7 @@ static const struct {
               {"chain", "n=40", 0.1, 0.1},
               {"vortices", NULL, 0.05, 0.01},
               {"massless-particle", "gauge=singular", 0.1, 0.01},
+              {"elastica", NULL, 0.1, 0.01},
               {"free-body", NULL, 0.1, 0.01},
               {"spherical-double-pendulum", NULL, 0.01, 0.01}};
 
@@ -183,6 +184,7 @@ static const char *const methods[] = {
     "dvrk",
     "vprk:projection=none",
     "hp:type=3",
+    "hamiltonian:degree=3",
     "hp:type=4",
     "lie-galerkin",
     "euler-poincare",

@@ -305,9 +305,9 @@ START_TEST(other_methods_refuse_a_hamiltonian_and_name_this_one)
   problem *of = made_problem("elastica", NULL);
   for (int i = 0; i < dvi_method_count(); i++) {
     const char *name = dvi_method_name(i);
-    if (strcmp(name, "hamiltonian") == 0) continue;
+    if (strcmp(name, "hamiltonian") == 0 || strcmp(name, "shooting") == 0) continue;
     check_refused(of->system, name, DVI_UNSUPPORTED, "declares a Hamiltonian without constraints, and this method needs ");
-    check_words("methods for this system: hamiltonian");
+    check_words("methods for this system: hamiltonian, shooting");
   }
   check_refused(of->system, "verlet", DVI_UNSUPPORTED, "needs a constant mass; methods");
   problem_destroy(&of);

@@ -5,15 +5,16 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "system/dirac.h"
 
 struct dvi__field {
   const dvi_system *system;
   dvi__evaluator *evaluator;
-  int n, points, at;
+  int n, points, at, is_H; /* is_H: the system declares a Hamiltonian, whose derivatives stand in the place of L's */
   /* Point by point: [points], [n*points], [entries*points]. */
   double *t, *q, *v, *p, *H_q, *L_qq, *L_qv, *L_vv;
   double *velocity, *w, *motion; /* [n], [n], [2n] */
-  dvi__linear *linear;           /* the factor of L_vv at the selected point; NULL: the mass is constant */
+  dvi__linear *linear;           /* the factor of L_vv at the selected point; NULL: the mass is constant, or there is H */
 };
 
 static double **owned(dvi__field *f, int i)
@@ -39,7 +40,8 @@ static dvi_status fill(dvi__field *f, dvi_counters *counters)
 {
   DVI_TRY(dvi__evaluator_create(f->system, 1, DVI__HESSIANS, counters, &f->evaluator));
   DVI_TRY(allocate(f));
-  return f->system->lagrangian != NULL ? dvi__linear_create(&f->system->vv, DVI__LINEAR_AUTO, counters, &f->linear) : DVI_OK;
+  return f->system->lagrangian != NULL && !f->is_H ? dvi__linear_create(&f->system->vv, DVI__LINEAR_AUTO, counters, &f->linear)
+                                                   : DVI_OK;
 }
 
 dvi_status dvi__field_create(const dvi_system *system, int points, dvi_counters *counters, dvi__field **field)
@@ -50,6 +52,7 @@ dvi_status dvi__field_create(const dvi_system *system, int points, dvi_counters 
   f->system = system;
   f->n = system->n;
   f->points = points;
+  f->is_H = (system->terms & DVI__CANONICAL) != 0;
   const dvi_status status = fill(f, counters);
   if (status != DVI_OK) dvi__field_destroy(&f);
   *field = f;
@@ -74,11 +77,18 @@ void dvi__field_guess(dvi__field *f, const double *v)
 
 /* ---- points ---- */
 
+/* The velocity, and p'. */
+static dvi_status motion_at(dvi__field *f, double t, const double *q, const double *p, double *pdot)
+{
+  if (f->is_H) return dvi__dirac_motion(f->evaluator, t, q, p, f->velocity, pdot, NULL);
+  DVI_TRY(dvi__legendre_inverse(f->evaluator, t, q, p, f->velocity));
+  return dvi__lagrangian_gradient(f->evaluator, 1, &t, q, f->velocity, pdot, NULL);
+}
+
 dvi_status dvi__field_place(dvi__field *f, int k, double t, const double *q, const double *p, double *rate)
 {
   const size_t n = (size_t)f->n, at = (size_t)k * n, bytes = n * sizeof *q;
-  DVI_TRY(dvi__legendre_inverse(f->evaluator, t, q, p, f->velocity));
-  DVI_TRY(dvi__lagrangian_gradient(f->evaluator, 1, &t, q, f->velocity, rate + n, NULL));
+  DVI_TRY(motion_at(f, t, q, p, rate + n));
   memcpy(rate, f->velocity, bytes);
   f->t[k] = t;
   memcpy(f->q + at, q, bytes);
@@ -99,9 +109,9 @@ dvi_status dvi__field_differentiate(dvi__field *f, int first, int count)
   const dvi_system *s = f->system;
   for (int k = first; k < first + count; k++) {
     const size_t at = (size_t)k * (size_t)f->n;
-    double *L_vv = f->linear != NULL ? f->L_vv + first_of(&s->vv, k) : NULL;
-    DVI_TRY(dvi__lagrangian_hessian(f->evaluator, 1, f->t + k, f->q + at, f->v + at, f->L_qq + first_of(&s->qq, k),
-                                    f->L_qv + first_of(&s->qv, k), L_vv));
+    double *L_vv = f->linear != NULL || f->is_H ? f->L_vv + first_of(&s->vv, k) : NULL;
+    DVI_TRY(dvi__lagrangian_hessian(f->evaluator, 1, f->t + k, f->q + at, (f->is_H ? f->p : f->v) + at,
+                                    f->L_qq + first_of(&s->qq, k), f->L_qv + first_of(&s->qv, k), L_vv));
   }
   return DVI_OK;
 }
@@ -122,12 +132,27 @@ static void add_times(const dvi__pattern *of, const double *values, int transpos
     }
 }
 
+static void product_of_H(const dvi__field *f, const double *motion, double *product)
+{
+  const dvi_system *s = f->system;
+  const int n = f->n;
+  memset(product, 0, 2 * (size_t)n * sizeof *product);
+  add_times(f, &s->qq, f->L_qq, 0, 1, motion, product);
+  add_times(f, &s->qv, f->L_qv, 0, 1, motion + n, product);
+  add_times(f, &s->qv, f->L_qv, 1, 1, motion, product + n);
+  add_times(f, &s->vv, f->L_vv, 0, 1, motion + n, product + n);
+}
+
 void dvi__field_product(dvi__field *f, const double *motion, double *product)
 {
   const dvi_system *s = f->system;
   const int n = f->n;
   const double *L_qv = f->L_qv + first_of(&s->qv, f->at);
   double *w = product + n;
+  if (f->is_H) {
+    product_of_H(f, motion, product);
+    return;
+  }
   memcpy(f->w, motion + n, (size_t)n * sizeof *w);
   add_times(&s->qv, L_qv, 1, -1, motion, f->w);
   if (f->linear != NULL)

@@ -1,8 +1,9 @@
-/* The Hamiltonian vector field of a Lagrangian on phase space, z = (q,p), with its first derivatives, at a number of points.
+/* The Hamiltonian vector field of a Lagrangian, or of a Hamiltonian, on phase space, z = (q,p), with its first derivatives, at a number of points.
  *
  *     q' = H_p = v,     p' = -H_q = L_q(t,q,v),     v from p = L_v(t,q,v)
  * Second derivatives of L are all that H's need: for a motion (a,b) of (q,p) that of v is w = L_vv^-1 (b - L_vq a), and
- *     H_qq a + H_qp b = -(L_qq a + L_qv w),     H_pq a + H_pp b = w. */
+ *     H_qq a + H_qp b = -(L_qq a + L_qv w),     H_pq a + H_pp b = w.
+ * A Hamiltonian gives its own. */
 #ifndef DVI_ACTION_FIELD_H
 #define DVI_ACTION_FIELD_H
 #include "system/evaluator.h"
@@ -44,7 +45,7 @@ dvi_status dvi__field_impulse(dvi__field *field, int k, double t, const double *
 void dvi__field_lift(dvi__field *field, int k, const double *motion, double *dp);
 void dvi__field_lower(dvi__field *field, int k, const double *covector, double *image);
 
-/* size [n]: the momentum of a unit of velocity at (t,q,v). */
+/* With a Lagrangian: size [n], the momentum of a unit of velocity at (t,q,v). */
 dvi_status dvi__field_mass(dvi__field *field, double t, const double *q, const double *v, double *size);
 
 #endif

@@ -5,16 +5,19 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "num/finite.h"
+#include "system/dirac.h"
 
 struct dvi__shot_step {
   dvi__shot *shot;
   dvi__evaluator *evaluator;
   dvi__pattern pattern; /* full */
-  int n;
+  int n, type, on_H;    /* on_H: the system declares a Hamiltonian */
   double t0;
   const double *q0, *p0;
   double *unit;               /* [n] the momentum of a unit of q a step */
-  double *p;                  /* [n] pi0 */
+  double *q, *p;              /* [n] where the shot starts: k0, pi0 */
+  double *shift;              /* [n] mu, or k0 - q0 */
   double *end, *reach, *gain; /* [2n] */
   double *motion;             /* [2n*2n] */
 };
@@ -24,9 +27,9 @@ struct dvi__shot_step {
 static dvi_status allocate(dvi__shot_step *s)
 {
   const size_t n = (size_t)s->n;
-  double **const all[] = {&s->unit, &s->p, &s->end, &s->reach, &s->gain, &s->motion};
-  const size_t size[] = {n, n, 2 * n, 2 * n, 2 * n, 4 * n * n};
-  for (int i = 0; i < 6; i++) {
+  double **const all[] = {&s->unit, &s->q, &s->p, &s->shift, &s->end, &s->reach, &s->gain, &s->motion};
+  const size_t size[] = {n, n, n, n, 2 * n, 2 * n, 2 * n, 4 * n * n};
+  for (int i = 0; i < 8; i++) {
     *all[i] = DVI_NEW(double, size[i]);
     if (*all[i] == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory for %d dimensions", s->n);
   }
@@ -42,13 +45,15 @@ static dvi_status fill(dvi__shot_step *s, const dvi_system *system, const dvi__r
   return dvi__shot_create(system, method, course, counters, &s->shot);
 }
 
-dvi_status dvi__shot_step_create(const dvi_system *system, const dvi__runge_kutta *method, const dvi__course *course,
+dvi_status dvi__shot_step_create(const dvi_system *system, int type, const dvi__runge_kutta *method, const dvi__course *course,
                                  dvi_counters *counters, dvi__shot_step **step)
 {
   *step = NULL;
   dvi__shot_step *s = DVI_NEW(dvi__shot_step, 1);
   if (s == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory");
   s->n = system->n;
+  s->type = type;
+  s->on_H = (system->terms & DVI__CANONICAL) != 0;
   const dvi_status status = fill(s, system, method, course, counters);
   if (status != DVI_OK) dvi__shot_step_destroy(&s);
   *step = s;
@@ -63,7 +68,9 @@ void dvi__shot_step_destroy(dvi__shot_step **step)
   dvi__evaluator_destroy(&s->evaluator);
   dvi__pattern_clear(&s->pattern);
   dvi__release(s->unit);
+  dvi__release(s->q);
   dvi__release(s->p);
+  dvi__release(s->shift);
   dvi__release(s->end);
   dvi__release(s->reach);
   dvi__release(s->gain);
@@ -79,26 +86,49 @@ const dvi__pattern *dvi__shot_step_pattern(const dvi__shot_step *s)
 
 /* ---- the step ---- */
 
+/* The momentum by which a unit of q is moved in a step; of a Hamiltonian, whose momenta may move no q, their sizes beside those of q. */
+static dvi_status choose_units(dvi__shot_step *s, double t0, double h, const double *v)
+{
+  const size_t n = (size_t)s->n;
+  if (!s->on_H) {
+    DVI_TRY(dvi__field_mass(dvi__shot_field(s->shot), t0, s->q0, v, s->unit));
+    for (size_t i = 0; i < n; i++) s->unit[i] /= fabs(h);
+    return DVI_OK;
+  }
+  DVI_TRY(dvi__dirac_motion(s->evaluator, t0, s->q0, s->p0, s->q, s->p, NULL));
+  const double of_q = fmax(dvi__largest(n, s->q0), fabs(h) * dvi__largest(n, s->q));
+  const double least = 0x1p-40 * fmax(dvi__largest(n, s->p0), fabs(h) * dvi__largest(n, s->p));
+  for (size_t i = 0; i < n; i++) {
+    const double unit = fmax(fmax(fabs(s->p0[i]), fabs(h * s->p[i])), least) / of_q;
+    s->unit[i] = isnormal(unit) && isnormal(1 / unit) ? unit : 1;
+  }
+  return DVI_OK;
+}
+
 dvi_status dvi__shot_step_place(dvi__shot_step *s, double t0, double h, const double *q0, const double *p0, double *v, double *x)
 {
   s->q0 = q0;
   s->p0 = p0;
   DVI_TRY(dvi__legendre_inverse(s->evaluator, t0, q0, p0, v));
-  DVI_TRY(dvi__field_mass(dvi__shot_field(s->shot), t0, q0, v, s->unit));
-  for (int i = 0; i < s->n; i++) s->unit[i] /= fabs(h);
-  dvi__shot_aim(s->shot, t0, h, q0, s->unit);
+  DVI_TRY(choose_units(s, t0, h, v));
+  memcpy(s->q, q0, (size_t)s->n * sizeof *q0);
+  dvi__shot_aim(s->shot, t0, h, s->q, s->unit);
   dvi__field_guess(dvi__shot_field(s->shot), v);
   DVI_TRY(dvi__shot_fire(s->shot, p0, s->reach));
   for (int i = 0; i < s->n; i++) {
-    x[i] = p0[i] / s->unit[i];
-    x[s->n + i] = (p0[i] + s->reach[s->n + i]) / s->unit[i];
+    x[i] = s->type == 3 ? 0 : p0[i] / s->unit[i];
+    x[s->n + i] = s->type == 2 ? 0 : (p0[i] + s->reach[s->n + i]) / s->unit[i];
   }
   return DVI_OK;
 }
 
 static dvi_status fire(dvi__shot_step *s, const double *x)
 {
-  for (int i = 0; i < s->n; i++) s->p[i] = s->unit[i] * x[i];
+  for (int i = 0; i < s->n; i++) {
+    s->shift[i] = s->type == 1 ? 0 : s->type == 2 ? x[s->n + i] : x[i];
+    s->q[i] = s->q0[i] + (s->type == 3 ? x[i] : 0);
+    s->p[i] = s->type == 3 ? s->p0[i] : s->unit[i] * x[i];
+  }
   DVI_TRY(dvi__shot_fire(s->shot, s->p, s->reach));
   return dvi__shot_trace(s->shot);
 }
@@ -108,11 +138,13 @@ dvi_status dvi__shot_step_residual(void *step, const double *x, double *R)
   dvi__shot_step *s = step;
   const int n = s->n;
   DVI_TRY(fire(s, x));
-  memset(s->end, 0, 2 * (size_t)n * sizeof *s->end);
-  for (int i = 0; i < n; i++) s->end[i] = -s->unit[i] * x[n + i];
+  for (int i = 0; i < n; i++) {
+    s->end[i] = s->type == 2 ? -(s->p[i] + s->reach[n + i]) : -s->unit[i] * x[n + i];
+    s->end[n + i] = s->type == 2 ? s->shift[i] : 0;
+  }
   DVI_TRY(dvi__shot_costate(s->shot, s->end, s->gain));
   for (int i = 0; i < n; i++) {
-    R[i] = s->gain[n + i];
+    R[i] = s->gain[n + i] + s->shift[i];
     R[n + i] = (s->gain[i] + (s->p0[i] + s->end[i])) / s->unit[i];
   }
   return DVI_OK;
@@ -120,7 +152,7 @@ dvi_status dvi__shot_step_residual(void *step, const double *x, double *R)
 
 void dvi__shot_step_ends(const dvi__shot_step *s, double *dq, double *dp)
 {
-  memcpy(dq, s->reach, (size_t)s->n * sizeof *dq);
+  for (int i = 0; i < s->n; i++) dq[i] = s->reach[i] + s->shift[i];
   memcpy(dp, s->gain, (size_t)s->n * sizeof *dp);
 }
 
@@ -133,11 +165,20 @@ static dvi_status motions(dvi__shot_step *s)
   return dvi__shot_move(s->shot, s->motion);
 }
 
-/* dQ_l/dq0_i, or over unit_i dQ_l/dx_i with i - n for i. */
+/* The derivative of number l of the shot's end in direction i of its start: of q, or over unit_i of p. */
 static double moved(const dvi__shot_step *s, int l, int i)
 {
   const double *column = s->motion + (size_t)i * 2 * (size_t)s->n;
   return i < s->n ? column[l] : column[l] / s->unit[i - s->n];
+}
+
+/* What unknown k of those that move the start does to the row of direction `along`: Q^T Pi, and what stands beside G in the row. */
+static double of_start(const dvi__shot_step *s, int k, int along, int own)
+{
+  const int n = s->n;
+  double sum = s->type == 3 ? own : 0;
+  for (int l = 0; l < n && s->type != 2; l++) sum += moved(s, l, along) * s->motion[(s->type == 3 ? k : n + k) * 2 * n + n + l];
+  return sum;
 }
 
 dvi_status dvi__shot_step_jacobian(void *step, const double *x, double *values)
@@ -150,10 +191,8 @@ dvi_status dvi__shot_step_jacobian(void *step, const double *x, double *values)
     for (int i = 0; i < z; i++) {
       const int along = i < n ? n + i : i - n; /* the motion that row i is about */
       const double row = i < n ? 1 : 1 / s->unit[i - n];
-      double sum = 0;
-      for (int l = 0; l < n; l++) sum += moved(s, l, along) * s->motion[(n + k) * z + n + l];
-      values[k * z + i] = row * sum - (i == n + k);
-      values[(n + k) * z + i] = -row * moved(s, k, along) * s->unit[k];
+      values[k * z + i] = row * of_start(s, k, along, i == k) - (s->type != 3 && i == n + k);
+      values[(n + k) * z + i] = row * (s->type == 2 ? moved(s, n + k, along) : -moved(s, k, along) * s->unit[k]);
     }
   return DVI_OK;
 }

@@ -1,10 +1,12 @@
-/* Shooting: the discrete Lagrangian of a one-step method and a quadrature.
+/* Shooting: the discrete Lagrangian, or Hamiltonian, of a one-step method and a quadrature.
  *
  *     Ld(q0,q1) = h sum_i b_i L(q^i, v^i),   (q^{i+1},v^{i+1}) = Psi_{(c_{i+1}-c_i)h}(q^i,v^i),   q^0 = q0, q^n = q1,
  * p0 = -D1 Ld, p1 = D2 Ld: the v^0 is sought for which the shot meets both (action/shot_step.h). The one-step method may be explicit: the step is symplectic
  * and has the symmetries that it is equivariant under. The quadrature has both ends among its nodes.
- * Order min(p,q) of the one-step method's and the quadrature's; symmetric if both are.
- * Source: Leok and Shingel 2012, sec. 3; Patrick and Cuell 2009. */
+ * Of type 2 and 3 the discrete Hamiltonians H+(q0,p1) = p1.Q - S, of the shot that ends with the momentum p1, and H-(p0,q1) = -p0.k0 - S, of the one that
+ * starts with p0, generate the step: for Hamiltonians, which may be degenerate, too.
+ * Order min(p,q) of the one-step method's and the quadrature's; type 1 is symmetric if both are, types 2 and 3 are each other's adjoint then.
+ * Source: Leok and Shingel 2012, sec. 3; Patrick and Cuell 2009; Leok and Zhang 2011 (types 2 and 3). */
 #include <dvi/quadrature.h>
 #include <math.h>
 #include <string.h>
@@ -18,7 +20,7 @@
 #include "num/finite.h"
 #include "space/osculation.h"
 
-enum { ONE_STEP, STAGES, TABLEAU, COMPOSITION, QUADRATURE, NODES, TERMS, TOLERANCE };
+enum { ONE_STEP, STAGES, TABLEAU, COMPOSITION, QUADRATURE, NODES, TERMS, TOLERANCE, TYPE };
 enum { NODES_MOST = 16, STAGES_MOST = 20, TAYLOR = DVI__RK_NAMED, FROM_FILE };
 
 /* Quadratures: those of the core; Euler-Maclaurin and Gauss-Hermite. */
@@ -58,6 +60,8 @@ static const dvi__key keys[] = {
      "of euler-maclaurin, beside the trapezoid, and of gauss-hermite, at each end, up to 20; left out: as nodes"},
     {"tolerance", NULL, DVI__POSITIVE, 0, 0,
      "the residual, relative to the coordinates, at which the search for v ends: to see what a loose one does; left out: roundoff"},
+    {"type", NULL, 1, 3, DVI__LEFT_OUT,
+     "of generating functions: 1 (q0,q1), 2 (q0,p1) or 3 (p0,q1); left out: 1, with a Hamiltonian 2"},
     {0},
 };
 
@@ -242,7 +246,7 @@ static dvi_status row_scale(void *of, double *scale, int *unchanged)
 static dvi_status make(dvi__stepper *self, const dvi__runge_kutta *method, const dvi__course *course)
 {
   shooter *own = self->own;
-  DVI_TRY(dvi__shot_step_create(self->system, method, course, self->counters, &own->step));
+  DVI_TRY(dvi__shot_step_create(self->system, self->settings.value[TYPE], method, course, self->counters, &own->step));
   const dvi__pattern *pattern = dvi__shot_step_pattern(own->step);
   dvi__equations equations = {.unknowns = pattern->columns,
                               .pattern = pattern,
@@ -255,11 +259,22 @@ static dvi_status make(dvi__stepper *self, const dvi__runge_kutta *method, const
   return allocate(own, (size_t)self->system->n) ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "no memory");
 }
 
+static dvi_status choose_type(const dvi_system *system, int *type)
+{
+  const int on_H = (system->terms & DVI__CANONICAL) != 0;
+  if (*type == DVI__LEFT_OUT) *type = on_H ? 2 : 1;
+  if (*type != 1 || !on_H) return DVI_OK;
+  return dvi__fail(DVI_UNSUPPORTED,
+                   "shooting: type=1 shoots for a discrete Lagrangian, and the system declares a Hamiltonian, which may have none; "
+                   "type=2 and 3 can, and hamiltonian:type=1");
+}
+
 static dvi_status create(dvi__stepper *self)
 {
   dvi__settings *settings = &self->settings;
   dvi__runge_kutta method;
   dvi__course course;
+  DVI_TRY(choose_type(self->system, &settings->value[TYPE]));
   DVI_TRY(choose_one_step(self, &method));
   DVI_TRY(choose_composition(settings, &method));
   DVI_TRY(choose_quadrature(self->system, settings, method.order));
@@ -270,7 +285,7 @@ static dvi_status create(dvi__stepper *self)
   own->tolerance = settings->number[TOLERANCE];
   own->order = method.order;
   self->order = method.order < order ? method.order : order;
-  self->symmetric = method.symmetric;
+  self->symmetric = method.symmetric && settings->value[TYPE] == 1;
   self->memory_count = (size_t)self->system->n;
   const dvi_status status = make(self, &method, &course);
   return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "shooting");
@@ -362,7 +377,7 @@ const dvi__method dvi__shooting = {
     .summary = "any one-step method and a quadrature with both ends; order that of the lower of both",
     .cite = "LeokShingel2012",
     .keys = keys,
-    .uses = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL,
+    .uses = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL | DVI__CANONICAL,
     .create = create,
     .destroy = destroy,
     .start = start,
