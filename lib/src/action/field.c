@@ -137,10 +137,10 @@ static void product_of_H(const dvi__field *f, const double *motion, double *prod
   const dvi_system *s = f->system;
   const int n = f->n;
   memset(product, 0, 2 * (size_t)n * sizeof *product);
-  add_times(f, &s->qq, f->L_qq, 0, 1, motion, product);
-  add_times(f, &s->qv, f->L_qv, 0, 1, motion + n, product);
-  add_times(f, &s->qv, f->L_qv, 1, 1, motion, product + n);
-  add_times(f, &s->vv, f->L_vv, 0, 1, motion + n, product + n);
+  add_times(&s->qq, f->L_qq + first_of(&s->qq, f->at), 0, 1, motion, product);
+  add_times(&s->qv, f->L_qv + first_of(&s->qv, f->at), 0, 1, motion + n, product);
+  add_times(&s->qv, f->L_qv + first_of(&s->qv, f->at), 1, 1, motion, product + n);
+  add_times(&s->vv, f->L_vv + first_of(&s->vv, f->at), 0, 1, motion + n, product + n);
 }
 
 void dvi__field_product(dvi__field *f, const double *motion, double *product)
