@@ -17,8 +17,9 @@ static const struct {
               {"fpu", {"omega=50", "omega=10", "omega=20", "omega=5"}},
               {"henon-heiles", {NULL, NULL, NULL, NULL}},
               {"double-pendulum", {"m1=1", "m1=2", "m1=3", "m1=4"}},
-              {"chain", {"beta=0.1", "beta=0.2", "beta=0.3", "beta=0"}}};
-enum { SWEEPS = sizeof sweeps / sizeof *sweeps };
+              {"chain", {"beta=0.1", "beta=0.2", "beta=0.3", "beta=0"}},
+              {"oscillators", {"omega=10", "omega=20", "omega=40", "omega=5"}}};
+enum { OSCILLATOR, FPU, HENON_HEILES, DOUBLE_PENDULUM, CHAIN, OSCILLATORS, SWEEPS };
 
 static const char *const methods[] = {"verlet", "galerkin", "galerkin:degree=8", "galerkin:degree=3,solver=newton",
                                       "composition:order=6,base=midpoint"};
@@ -67,10 +68,9 @@ static void same_as_alone(dvi_ensemble *e, const char *method, double h, int ste
   }
 }
 
-START_TEST(members_with_systems_of_their_own_have_the_bits_of_runs_alone)
+/* Whether the method can be used. */
+static int has_the_bits_of_runs_alone(int which, int interleaved, const char *method)
 {
-  const int which = _i / METHODS % SWEEPS, interleaved = _i / METHODS / SWEEPS;
-  const char *method = methods[_i % METHODS];
   dvi_ensemble *e = NULL;
   make_sweep(which, interleaved);
   const dvi_ensemble_options options = {.members = MEMBERS, .threads = 2, .systems = systems};
@@ -81,6 +81,51 @@ START_TEST(members_with_systems_of_their_own_have_the_bits_of_runs_alone)
     ck_assert_msg(dvi_ensemble_advance(e, 0.02, 10) == DVI_OK, "%s", dvi_last_error());
     same_as_alone(e, method, 0.02, 10);
   }
+  dvi_ensemble_destroy(&e);
+  clear_sweep();
+  return status == DVI_OK;
+}
+
+START_TEST(members_with_systems_of_their_own_have_the_bits_of_runs_alone)
+{
+  (void)has_the_bits_of_runs_alone(_i / METHODS % SWEEPS, _i / METHODS / SWEEPS, methods[_i % METHODS]);
+}
+END_TEST
+
+/* Parts, modes and factors belong to one system. */
+static const struct {
+  int sweep;
+  const char *method;
+} splits[] = {{OSCILLATORS, "imex"},
+              {OSCILLATORS, "imex:solver=newton"},
+              {OSCILLATORS, "respa:substeps=7"},
+              {OSCILLATORS, "respa:substeps=exact"},
+              {OSCILLATORS, "mollified"},
+              {OSCILLATORS, "trig"},
+              {OSCILLATORS, "multiscale"},
+              {OSCILLATORS, "multiscale:omega=10"},
+              {OSCILLATORS, "composition:base=imex"},
+              {FPU, "imex"},
+              {FPU, "trig:filter=gautschi"},
+              {FPU, "multiscale"}};
+enum { SPLITS = sizeof splits / sizeof *splits };
+
+START_TEST(methods_that_split_have_the_parts_of_each_members_system)
+{
+  ck_assert(has_the_bits_of_runs_alone(splits[_i / 2].sweep, _i % 2, splits[_i / 2].method));
+}
+END_TEST
+
+/* A block has an integrator of its own: each member's system is asked for its Hessian once. */
+START_TEST(neighbours_with_one_system_share_its_modes)
+{
+  make_sweep(OSCILLATORS, 0);
+  dvi_ensemble *e = NULL;
+  dvi_counters counters;
+  const dvi_ensemble_options options = {.members = MEMBERS, .systems = systems};
+  ck_assert_int_eq(dvi_ensemble_create(NULL, "trig", &options, &e), DVI_OK);
+  dvi_ensemble_counters(e, &counters);
+  ck_assert_int_eq(counters.hessians, SYSTEMS);
   dvi_ensemble_destroy(&e);
   clear_sweep();
 }
@@ -130,6 +175,52 @@ START_TEST(a_derivative_that_only_one_system_gives_is_refused)
   check_words("a derivative is given in one");
   dvi_system_destroy(&with);
   dvi_system_destroy(&without);
+}
+END_TEST
+
+static int spring(double t, const double *x, double *V, void *user)
+{
+  (void)t, (void)user;
+  *V = 50 * x[0] * x[0];
+  return 0;
+}
+
+static int spring_gradient(double t, const double *x, double *V_q, void *user)
+{
+  (void)t, (void)user;
+  V_q[0] = 100 * x[0];
+  return 0;
+}
+
+START_TEST(slow_potentials_are_those_of_each_member)
+{
+  static const char *const split[] = {"imex", "respa",      "respa:substeps=exact", "mollified",
+                                      "trig", "multiscale", "composition:base=imex"};
+  static double strength[2] = {1, 5};
+  dvi_system *made[2];
+  const double x[] = {1, 1}, rest[] = {0, 0};
+  double end[2];
+  for (int s = 0; s < 2; s++) {
+    const dvi_potential pair[] = {{.value = spring, .gradient = spring_gradient, .fast = 1, .quadratic = 1},
+                                  {.value = quartic, .gradient = quartic_gradient, .user = &strength[s]}};
+    const dvi_system_terms terms = {.dimension = 1, .mass.scalar = 1, .potentials = pair, .potential_count = 2};
+    ck_assert_int_eq(dvi_system_create(&terms, &made[s]), DVI_OK);
+  }
+  const dvi_system *const both[] = {made[0], made[1]};
+  dvi_ensemble *e = NULL;
+  ck_assert_int_eq(dvi_ensemble_create(NULL, split[_i], &(dvi_ensemble_options){.members = 2, .systems = both}, &e), DVI_OK);
+  ck_assert_int_eq(dvi_ensemble_start(e, 0, x, rest), DVI_OK);
+  ck_assert_int_eq(dvi_ensemble_advance(e, 0.05, 10), DVI_OK);
+  ck_assert_int_eq(dvi_ensemble_state(e, NULL, end, NULL), DVI_OK);
+  for (int s = 0; s < 2; s++) {
+    dvi_integrator *alone = made_integrator(made[s], split[_i]);
+    ck_assert_int_eq(dvi_integrator_start(alone, 0, x, rest), DVI_OK);
+    advance(alone, 0.05, 10);
+    ck_assert_mem_eq(&end[s], dvi_integrator_q(alone), sizeof(double));
+    dvi_integrator_destroy(&alone);
+  }
+  dvi_ensemble_destroy(&e);
+  for (int s = 0; s < 2; s++) dvi_system_destroy(&made[s]);
 }
 END_TEST
 
@@ -201,6 +292,77 @@ START_TEST(neighbours_with_one_system_share_a_call)
 }
 END_TEST
 
+/* ---- constraints ---- */
+
+/* H = |p|^2/2 + y on a circle of radius r: phi = (|q|^2 - r^2)/2 and q.p. */
+static int H(double t, const double *x, const double *momentum, double *value, void *user)
+{
+  (void)t, (void)user;
+  *value = (momentum[0] * momentum[0] + momentum[1] * momentum[1]) / 2 + x[1];
+  return 0;
+}
+
+static int H_gradient(double t, const double *x, const double *momentum, double *H_q, double *H_p, void *user)
+{
+  (void)t, (void)x, (void)user;
+  H_q[0] = 0;
+  H_q[1] = 1;
+  H_p[0] = momentum[0];
+  H_p[1] = momentum[1];
+  return 0;
+}
+
+static int circle(const double *x, const double *momentum, double *value, void *user)
+{
+  const double r = *(const double *)user;
+  value[0] = (x[0] * x[0] + x[1] * x[1] - r * r) / 2;
+  value[1] = x[0] * momentum[0] + x[1] * momentum[1];
+  return 0;
+}
+
+static int circle_gradient(const double *x, const double *momentum, double *phi_z, void *user)
+{
+  (void)user;
+  for (int i = 0; i < 2; i++) {
+    phi_z[i] = phi_z[4 + i] = x[i];
+    phi_z[2 + i] = momentum[i];
+  }
+  return 0;
+}
+
+START_TEST(circles_of_different_radii_hold_their_own_particles)
+{
+  static const int start[] = {0, 2, 6}, row[] = {0, 1, 0, 1, 2, 3};
+  static double radius[2] = {1, 2};
+  const double x[] = {1, 2, 0, 0}, momentum[] = {0, 0, 0.3, 0.3};
+  dvi_system *made[2];
+  double end[4];
+  const dvi_hamiltonian hamiltonian = {.value = H, .gradient = H_gradient};
+  for (int s = 0; s < 2; s++) {
+    const dvi_constraint constraint = {
+        .count = 2, .value = circle, .gradient = circle_gradient, .gradients = {start, row}, .user = &radius[s]};
+    const dvi_system_terms terms = {.dimension = 2, .autonomous = 1, .hamiltonian = &hamiltonian, .constraint = &constraint};
+    ck_assert_msg(dvi_system_create(&terms, &made[s]) == DVI_OK, "%s", dvi_last_error());
+  }
+  const dvi_system *const pair[] = {made[0], made[1]};
+  dvi_ensemble *e = NULL;
+  ck_assert_msg(dvi_ensemble_create(NULL, "dg-phase", &(dvi_ensemble_options){.members = 2, .systems = pair}, &e) == DVI_OK, "%s",
+                dvi_last_error());
+  ck_assert_msg(dvi_ensemble_start(e, 0, x, momentum) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi_ensemble_advance(e, 0.1, 5) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_int_eq(dvi_ensemble_state(e, NULL, end, NULL), DVI_OK);
+  for (int s = 0; s < 2; s++) {
+    dvi_integrator *alone = made_integrator(made[s], "dg-phase");
+    ck_assert_int_eq(dvi_integrator_start(alone, 0, (double[]){x[s], 0}, (double[]){0, 0.3}), DVI_OK);
+    advance(alone, 0.1, 5);
+    for (int i = 0; i < 2; i++) ck_assert_mem_eq(&end[2 * i + s], dvi_integrator_q(alone) + i, sizeof(double));
+    dvi_integrator_destroy(&alone);
+  }
+  dvi_ensemble_destroy(&e);
+  for (int s = 0; s < 2; s++) dvi_system_destroy(&made[s]);
+}
+END_TEST
+
 /* ---- a parameter as a coordinate ---- */
 
 /* V = x[1] x[0]^2 / 2, with no force on x[1]: it rests, and each member has its own. */
@@ -257,6 +419,10 @@ int main(void)
 {
   TCase *tests = tcase_create("ensemble_systems");
   tcase_add_loop_test(tests, members_with_systems_of_their_own_have_the_bits_of_runs_alone, 0, 2 * SWEEPS * METHODS);
+  tcase_add_loop_test(tests, methods_that_split_have_the_parts_of_each_members_system, 0, 2 * SPLITS);
+  tcase_add_test(tests, neighbours_with_one_system_share_its_modes);
+  tcase_add_loop_test(tests, slow_potentials_are_those_of_each_member, 0, 7);
+  tcase_add_test(tests, circles_of_different_radii_hold_their_own_particles);
   tcase_add_test(tests, systems_that_are_not_alike_are_refused);
   tcase_add_test(tests, a_derivative_that_only_one_system_gives_is_refused);
   tcase_add_test(tests, a_reach_of_its_own_is_refused);

@@ -156,11 +156,90 @@ START_TEST(along_a_saddle_the_motion_grows_and_steps_beyond_its_pole_are_refused
     ck_assert_int_eq(dvi_integrator_step(integrator, k == 0 ? 1.0 : 1.5), DVI_NOT_CONVERGED);
     check_words("imex: step 2 from t = 0.5 with h = 1");
     check_words("the state is unchanged, try a smaller step: M + h^2/4 K is singular at this length or at a shorter one");
-    check_words("indefinite");
+    check_words("K of the fast potentials has negative directions");
     ck_assert_double_eq_tol(dvi_integrator_q(integrator)[1], 3, 1e-14);
   }
   advance(integrator, 0.5, 1);
   ck_assert_double_eq_tol(dvi_integrator_q(integrator)[1], 9, 1e-13);
+  dvi_integrator_destroy(&integrator);
+  dvi_system_destroy(&system);
+}
+END_TEST
+
+static int cup(double t, const double *q, double *V, void *user)
+{
+  (void)t, (void)user;
+  *V = 2 * q[0] * q[0] + 2 * q[1] * q[1];
+  return 0;
+}
+
+static int cup_gradient(double t, const double *q, double *V_q, void *user)
+{
+  (void)t, (void)user;
+  V_q[0] = 4 * q[0];
+  V_q[1] = 4 * q[1];
+  return 0;
+}
+
+/* V = -k |q|^2/2 for any number of coordinates: the determinant changes its sign as often as there are of them, at h = 1. */
+
+enum { HILLS = 80 };
+
+static int hill(double t, const double *q, double *V, void *user)
+{
+  (void)t;
+  *V = 0;
+  for (int i = 0; i < *(const int *)user; i++) *V -= 2 * q[i] * q[i];
+  return 0;
+}
+
+static int hill_gradient(double t, const double *q, double *V_q, void *user)
+{
+  (void)t;
+  for (int i = 0; i < *(const int *)user; i++) V_q[i] = -4 * q[i];
+  return 0;
+}
+
+START_TEST(steps_beyond_two_poles_are_refused_too)
+{
+  static const int start[] = {0, 1, 2}, row[] = {0, 1}, sizes[] = {2, 2, HILLS};
+  int n = sizes[_i];
+  const double q[HILLS] = {1, 1}, p[HILLS] = {2, 2}, mass[] = {1, 1};
+  const dvi_potential potential = {.name = "hill",
+                                   .value = hill,
+                                   .gradient = hill_gradient,
+                                   .user = &n,
+                                   .fast = 1,
+                                   .quadratic = 1,
+                                   .qq = _i == 0 ? (dvi_pattern){start, row} : (dvi_pattern){0}};
+  const dvi_mass scalar = {.scalar = 1}, sparse = {.values = mass, .pattern = {start, row}};
+  dvi_system *system = make_system(
+      &(dvi_system_terms){.dimension = n, .mass = _i == 0 ? sparse : scalar, .potentials = &potential, .potential_count = 1});
+  dvi_integrator *integrator = made_integrator(system, "imex");
+  ck_assert_int_eq(dvi_integrator_start(integrator, 0, q, p), DVI_OK);
+  for (int k = 0; k < 2; k++) {
+    ck_assert_int_eq(dvi_integrator_step(integrator, k == 0 ? 1.0 : -1.5), DVI_NOT_CONVERGED);
+    check_words("K of the fast potentials has negative directions");
+  }
+  advance(integrator, 0.5, 1);
+  ck_assert_double_eq_tol(dvi_integrator_q(integrator)[1], 3, 1e-13);
+  dvi_integrator_destroy(&integrator);
+  dvi_system_destroy(&system);
+}
+END_TEST
+
+START_TEST(of_an_indefinite_mass_the_sentence_says_so)
+{
+  const double mass[] = {1, -1};
+  const dvi_potential potential = {.name = "cup", .value = cup, .gradient = cup_gradient, .fast = 1, .quadratic = 1};
+  dvi_system *system = make_system(
+      &(dvi_system_terms){.dimension = 2, .mass.diagonal = mass, .potentials = &potential, .potential_count = 1});
+  dvi_integrator *integrator = made_integrator(system, "imex");
+  ck_assert_int_eq(dvi_integrator_start(integrator, 0, (double[]){0, 1}, (double[]){0, -2}), DVI_OK);
+  advance(integrator, 0.5, 1);
+  ck_assert_double_eq_tol(dvi_integrator_q(integrator)[1], 3, 1e-13);
+  ck_assert_int_eq(dvi_integrator_step(integrator, 1.5), DVI_NOT_CONVERGED);
+  check_words("the mass M is indefinite");
   dvi_integrator_destroy(&integrator);
   dvi_system_destroy(&system);
 }
@@ -237,6 +316,8 @@ int main(void)
   tcase_add_loop_test(tests, a_composition_takes_one_factorisation_for_each_length_of_its_substeps, 0, 3);
   tcase_add_test(tests, full_matrices_are_kept_too);
   tcase_add_test(tests, another_fast_potential_goes_to_the_midpoint_rules_solvers);
+  tcase_add_loop_test(tests, steps_beyond_two_poles_are_refused_too, 0, 3);
+  tcase_add_test(tests, of_an_indefinite_mass_the_sentence_says_so);
   tcase_add_test(tests, along_a_saddle_the_motion_grows_and_steps_beyond_its_pole_are_refused);
   tcase_add_test(tests, a_step_without_a_solution_says_how_far_it_came);
   tcase_add_test(tests, no_fast_frequency_resonates);

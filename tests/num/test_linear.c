@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "num/eigen.h"
 #include "num/linear.h"
 #include "support/suite.h"
 
@@ -88,6 +89,46 @@ START_TEST(determinants_have_their_sign)
   ck_assert_int_eq(dvi__linear_sign(linear), sign[k]);
   dvi__linear_destroy(&linear);
   dvi__pattern_clear(&m.pattern);
+}
+END_TEST
+
+/* A = S L D L^T S with entries of L in (-1,1), some of them 0, and powers of two S, which differ by 2^40; D is 1 but for two rows of -1 or none. */
+static void product(unsigned *state, int negative, double *a)
+{
+  enum { N = 8 };
+  double l[N][N] = {{0}}, s[N];
+  for (int i = 0; i < N; i++) {
+    s[i] = ldexp(1.0, (int)((*state = *state * 1664525u + 1013904223u) >> 16) % 41 - 20);
+    l[i][i] = 1;
+    for (int j = 0; j < i; j++) {
+      *state = *state * 1664525u + 1013904223u;
+      l[i][j] = *state >> 31 ? (double)(*state >> 8) / (1 << 22) - 3 : 0;
+    }
+  }
+  for (int i = 0; i < N; i++)
+    for (int j = 0; j < N; j++) {
+      double sum = 0;
+      for (int k = 0; k < N; k++) sum += (negative && (k == 2 || k == 5) ? -1 : 1) * l[i][k] * l[j][k];
+      a[i * N + j] = s[i] * s[j] * sum;
+    }
+}
+
+START_TEST(pivots_tell_whether_a_symmetric_matrix_is_positive)
+{
+  enum { N = 8 };
+  unsigned state = 1;
+  for (int k = 0; k < 200; k++) {
+    double a[N * N];
+    matrix m;
+    product(&state, k % 2, a);
+    compress(N, a, &m);
+    dvi__linear *linear = make(&m, DVI__LINEAR_SPARSE, NULL);
+    ck_assert_msg(dvi__linear_factor(linear, m.values) == DVI_OK, "%s", dvi_last_error());
+    ck_assert_int_eq(dvi__linear_is_positive(linear), k % 2 == 0);
+    ck_assert_int_eq(dvi__is_positive_definite(N, a), k % 2 == 0);
+    dvi__linear_destroy(&linear);
+    dvi__pattern_clear(&m.pattern);
+  }
 }
 END_TEST
 
@@ -353,6 +394,7 @@ int main(void)
 {
   TCase *tests = tcase_create("linear");
   tcase_add_loop_test(tests, determinants_have_their_sign, 0, 8);
+  tcase_add_test(tests, pivots_tell_whether_a_symmetric_matrix_is_positive);
   tcase_add_loop_test(tests, a_known_system_has_its_known_solution, 0, 2);
   tcase_add_loop_test(tests, one_unknown_is_a_division, 0, 2);
   tcase_add_loop_test(tests, dense_and_sparse_agree_with_the_solution_that_made_the_right_side, 0, 3);

@@ -21,7 +21,9 @@ typedef struct dvi_ensemble_options {
   int block; /**< members that are worked on together, side by side; 1: none are; 0: chosen by the system's size. It changes speed alone */
   /** [members] the system of each member, for sweeps of parameters; the array is copied, the systems must outlive the ensemble. NULL: all have
    *  the system that dvi_ensemble_create is given. They must declare the same terms, masses, patterns, names, derivatives and reaches, and differ in
-   *  what their callbacks compute. Only neighbours with the same system are worked on side by side. */
+   *  what their callbacks compute. Only neighbours with the same system are worked on side by side. Methods that take the fast potentials apart (imex, respa,
+   *  mollified, trig, multiscale that finds what is fast, compositions of imex) keep parts, modes or factors of a system: an integrator is made for each such
+   *  group of neighbours then, so put members of one system next to each other. */
   const dvi_system *const *systems;
   /** Functions of your own for `shaped-galerkin`, as dvi_integrator_create_shaped has them; copied. With more threads than one their callbacks run at the same time,
    *  too. NULL: none. */
@@ -100,7 +102,8 @@ dvi_status dvi_ensemble_invariants(dvi_ensemble *ensemble, int member, double *v
 /** Number of members; 0 for NULL. */
 int dvi_ensemble_members(const dvi_ensemble *ensemble);
 
-/** The method's full specification, every key spelled out; owned by the ensemble; NULL for NULL. */
+/** The method's full specification, every key spelled out, as member 0 has it (a frequency that multiscale finds may differ from system to system); owned by
+ *  the ensemble; NULL for NULL. */
 const char *dvi_ensemble_method(const dvi_ensemble *ensemble);
 
 /** The sum of what the members' own integrators would count, however they are grouped: members side by side are counted as if each were alone.

@@ -71,7 +71,11 @@ extern "C" {
  *                           sentence gives the reason
  *  @retval DVI_UNSUPPORTED  the method cannot use a term of the system (verlet with a general Lagrangian, say), or, of dvrk and its kin, not this
  *                           one-form
- *  @retval DVI_BAD_SIZE     the Jacobian has more entries than an int can count: a pattern was left out, or the degree is too high
+ *  @retval DVI_BAD_SIZE     the Jacobian has more entries than an int can count: a pattern was left out, or the degree is too high; or the fast
+ *                           potentials couple more coordinates than a method with normal modes can take
+ *  @retval DVI_SINGULAR     a method with normal modes (trig, mollified, respa:substeps=exact, multiscale that finds omega) wants a positive definite mass
+ *  @retval DVI_NOT_FINITE, DVI_CALLBACK_RETRY, DVI_CALLBACK_FAILED  the same methods and imex ask for the Hessian of quadratic fast potentials at
+ *                           t = 0 and q = 0, and that is not finite, or the callback failed
  *  @retval DVI_NO_MEMORY */
 dvi_status dvi_integrator_create(const dvi_system *system, const char *method, dvi_integrator **integrator);
 

@@ -1,8 +1,11 @@
 #include "action/modified_mass.h"
 
+#include <string.h>
+
 #include "action/quadratic.h"
 #include "core/memory.h"
 #include "core/status.h"
+#include "num/eigen.h"
 
 typedef struct kept_factor {
   dvi__linear *linear;
@@ -13,10 +16,35 @@ struct dvi__modified_mass {
   dvi__evaluator *evaluator;
   dvi_counters *counters;
   dvi__quadratic parts;
-  double *matrix; /* in the order of their pattern */
+  double *matrix;  /* in the order of their pattern */
+  double *full;    /* [n*n] the same, where a full matrix is factored; else NULL */
+  int is_positive; /* the mass */
   kept_factor kept[DVI__LENGTHS_MOST];
   int count, oldest; /* of those */
 };
+
+/* Of a matrix in the order of the pattern. */
+static int full_is_positive(const dvi__modified_mass *m, const double *values)
+{
+  const dvi__pattern *pattern = &m->parts.pattern;
+  const size_t n = (size_t)pattern->columns;
+  memset(m->full, 0, n * n * sizeof *m->full);
+  for (size_t j = 0; j < n; j++)
+    for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++) m->full[j * n + (size_t)pattern->row[e]] = values[e];
+  return dvi__is_positive_definite(pattern->columns, m->full);
+}
+
+/* A mass with fewer entries than a sparse matrix is sparse, too. */
+static dvi_status look_at_mass(dvi__modified_mass *m)
+{
+  const size_t n = (size_t)m->parts.pattern.columns;
+  if (dvi__linear_kind_of(m->kept[0].linear) == DVI__LINEAR_DENSE) {
+    m->full = DVI_NEW(double, n *n);
+    if (m->full == NULL) return dvi__fail(DVI_NO_MEMORY, "modified mass: no memory for %zu x %zu numbers", n, n);
+  }
+  m->is_positive = m->full != NULL ? full_is_positive(m, m->parts.mass) : dvi__mass_is_positive(m->evaluator);
+  return DVI_OK;
+}
 
 static dvi_status fill(dvi__modified_mass *m, const dvi_system *system, dvi_counters *counters)
 {
@@ -26,7 +54,8 @@ static dvi_status fill(dvi__modified_mass *m, const dvi_system *system, dvi_coun
   if (m->matrix == NULL) return dvi__fail(DVI_NO_MEMORY, "modified mass: no memory");
   m->counters = counters;
   m->count = 1;
-  return dvi__linear_create(&m->parts.pattern, DVI__LINEAR_AUTO, counters, &m->kept[0].linear);
+  DVI_TRY(dvi__linear_create(&m->parts.pattern, DVI__LINEAR_AUTO, counters, &m->kept[0].linear));
+  return look_at_mass(m);
 }
 
 dvi_status dvi__modified_mass_create(const dvi_system *system, dvi_counters *counters, dvi__modified_mass **mass)
@@ -45,6 +74,7 @@ void dvi__modified_mass_destroy(dvi__modified_mass **mass)
   for (int k = 0; k < m->count; k++) dvi__linear_destroy(&m->kept[k].linear);
   dvi__quadratic_clear(&m->parts);
   dvi__release(m->matrix);
+  dvi__release(m->full);
   dvi__evaluator_destroy(&m->evaluator);
   dvi__release(m);
   *mass = NULL;
@@ -62,7 +92,13 @@ dvi_status dvi__modified_mass_keep(dvi__modified_mass *m, int count)
   return DVI_OK;
 }
 
-/* The determinant keeps the sign that it has at h = 0 until the matrix is singular; longer steps would jump through infinity. */
+/* From h = 0 on the matrix keeps what it is until it is singular; longer steps would jump through infinity. */
+static int is_as_the_mass(const dvi__modified_mass *m, const dvi__linear *linear)
+{
+  if (!m->is_positive) return dvi__linear_sign(linear) == dvi__mass_sign(m->evaluator);
+  return m->full != NULL ? full_is_positive(m, m->matrix) : dvi__linear_is_positive(linear);
+}
+
 static dvi_status factor(dvi__modified_mass *m, double square, kept_factor *kept)
 {
   kept->square = 0;
@@ -70,11 +106,11 @@ static dvi_status factor(dvi__modified_mass *m, double square, kept_factor *kept
     m->matrix[e] = m->parts.mass[e] + 0.25 * square * m->parts.stiffness[e];
   const dvi_status status = dvi__linear_factor(kept->linear, m->matrix);
   if (status != DVI_OK && status != DVI_SINGULAR) return status;
-  if (status == DVI_SINGULAR || dvi__linear_sign(kept->linear) != dvi__mass_sign(m->evaluator))
+  if (status == DVI_SINGULAR || !is_as_the_mass(m, kept->linear))
     return dvi__fail(
-        DVI_NOT_CONVERGED,
-        "M + h^2/4 K is singular at this length or at a shorter one: the Hessian K of the fast potentials is indefinite, and "
-        "their motion grows too much in a step");
+        DVI_NOT_CONVERGED, "M + h^2/4 K is singular at this length or at a shorter one: %s",
+        m->is_positive ? "the Hessian K of the fast potentials has negative directions, along which motion grows too much in a step"
+                       : "the mass M is indefinite, and K outweighs it along some direction");
   kept->square = square;
   return DVI_OK;
 }

@@ -14,8 +14,8 @@ void dvi__modified_mass_destroy(dvi__modified_mass **mass);
 enum { DVI__LENGTHS_MOST = 9 };
 dvi_status dvi__modified_mass_keep(dvi__modified_mass *mass, int count);
 
-/* x [n] <- (M + h^2/4 K)^-1 x. The matrix is factored if its factor is not kept. DVI_NOT_CONVERGED: it is singular, or has another sign than M, which an
- * indefinite K alone can do. */
+/* x [n] <- (M + h^2/4 K)^-1 x. The matrix is factored if its factor is not kept. DVI_NOT_CONVERGED: it is singular at this length or at a shorter one.
+ * Of a positive M that is known, for then the matrix is not positive; of an indefinite one only if its determinant has another sign than that of M. */
 dvi_status dvi__modified_mass_solve(dvi__modified_mass *mass, double h, double *x);
 
 const dvi__pattern *dvi__modified_mass_pattern(const dvi__modified_mass *mass);

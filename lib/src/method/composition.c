@@ -62,6 +62,7 @@ static dvi_status create(dvi__stepper *self)
   self->order = scheme_of(self)->order;
   self->order = base->order > self->order ? base->order : self->order;
   self->symmetric = 1;
+  self->bound = base->bound;
   self->memory_count = base->memory_count;
   return DVI_OK;
 }

@@ -114,7 +114,7 @@ static void start_block(void *of, int thread, int item)
   const dvi__departure *from = &e->departure;
   const size_t n = (size_t)e->n, nv = (size_t)block.system->nv, members = (size_t)e->members;
   block.numbers = from->numbers + (size_t)block.first * e->member_numbers;
-  dvi__worker_bind(w, block.system);
+  dvi__worker_bind(w, &block);
   for (int k = 0; k < block.count; k++) {
     const int member = block.first + k;
     load_rows(n, from->q + member, members, w->point[0]);
@@ -209,7 +209,7 @@ dvi_status dvi_ensemble_invariants(dvi_ensemble *e, int member, double *value)
   if (!e->started) return dvi__fail(DVI_BAD_STATE, "ensemble: its members have no state yet; call dvi_ensemble_start first");
   const dvi__block *block = block_of(e, member);
   dvi__worker *w = &e->workers[0];
-  dvi__worker_bind(w, block->system);
+  dvi__worker_bind(w, block);
   dvi__member_load(e, w, block, member - block->first);
   const dvi_status status = dvi_integrator_invariants(w->integrator, value);
   return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "ensemble: member %d", member);
@@ -222,7 +222,7 @@ int dvi_ensemble_members(const dvi_ensemble *e)
 
 const char *dvi_ensemble_method(const dvi_ensemble *e)
 {
-  return e != NULL ? dvi_integrator_method(e->workers[0].integrator) : NULL;
+  return e != NULL ? dvi_integrator_method(e->integrators[0]) : NULL;
 }
 
 static void add_counters(const dvi_counters *some, dvi_counters *sum)
@@ -253,10 +253,8 @@ void dvi_ensemble_counters(const dvi_ensemble *e, dvi_counters *counters)
   if (counters == NULL) return;
   *counters = (dvi_counters){0};
   if (e == NULL) return;
-  for (int i = 0; i < e->threads; i++) {
-    add_counters(&e->workers[i].integrator->counters, counters);
-    counters->steps += e->workers[i].steps;
-  }
+  for (int i = 0; i < e->integrator_count; i++) add_counters(&e->integrators[i]->counters, counters);
+  for (int i = 0; i < e->threads; i++) counters->steps += e->workers[i].steps;
   counters->allocations += e->allocations;
 }
 
@@ -265,9 +263,10 @@ size_t dvi_ensemble_explain(const dvi_ensemble *e, char *text, size_t size)
   dvi__text out = {text, size, 0};
   if (size > 0) text[0] = 0;
   if (e == NULL) return 0;
-  const int lanes = e->workers[0].integrator->stepper.lanes != NULL && e->block_count < e->members;
-  dvi__text_add(&out, "ensemble: %d members in %d blocks, %s, %d thread%s\n", e->members, e->block_count,
-                lanes ? "side by side as lanes" : "one after the other", e->threads, e->threads == 1 ? "" : "s");
+  const int lanes = e->integrators[0]->stepper.lanes != NULL && e->block_count < e->members;
+  dvi__text_add(&out, "ensemble: %d members in %d blocks%s, %s, %d thread%s\n", e->members, e->block_count,
+                e->bound ? " with integrators of their own" : "", lanes ? "side by side as lanes" : "one after the other",
+                e->threads, e->threads == 1 ? "" : "s");
   const size_t room = out.length < size ? size - out.length : 0;
-  return out.length + dvi_integrator_explain(e->workers[0].integrator, room > 0 ? text + out.length : NULL, room);
+  return out.length + dvi_integrator_explain(e->integrators[0], room > 0 ? text + out.length : NULL, room);
 }

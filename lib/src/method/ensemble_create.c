@@ -1,4 +1,4 @@
-/* Making an ensemble: an integrator for each thread, and blocks of members that share a system. */
+/* Making an ensemble: blocks of members that share a system, and an integrator for each thread, or for each block. */
 #include <string.h>
 
 #include "core/memory.h"
@@ -42,40 +42,79 @@ static dvi_status check(const dvi_system *system, const char *method, const dvi_
   return o->systems != NULL ? check_systems(o) : DVI_OK;
 }
 
-/* ---- workers ---- */
+/* ---- integrators ---- */
 
-/* Systems that differ in their callbacks share a thread's integrator: it is made for a copy, which takes the terms of each. The patterns of their
- * Hessians, if the method needs them, must be complete before that: a first integrator tells. */
-static dvi_status prepare_systems(const dvi_ensemble_options *o, const char *method)
+void dvi__worker_bind(dvi__worker *w, const dvi__block *block)
 {
-  dvi_integrator *first = NULL;
-  if (o->systems == NULL) return DVI_OK;
-  DVI_TRY(dvi__integrator_make(o->systems[0], method, o->shapes, NULL, DVI__TRANSFORM, &first));
-  dvi_integrator_destroy(&first);
-  for (int k = 0; k < o->members && o->systems[0]->qq.start != NULL; k++) DVI_TRY(dvi__system_prepare_hessian(o->systems[k]));
-  return DVI_OK;
-}
-
-void dvi__worker_bind(dvi__worker *w, const dvi_system *system)
-{
+  const dvi_system *system = block->system;
+  if (block->integrator != NULL) w->integrator = block->integrator;
   if (w->scene == NULL) return;
   w->scene->potentials = system->potentials;
   w->scene->lagrangian = system->lagrangian;
+  w->scene->constraint = system->constraint;
   w->scene->symmetries = system->symmetries;
   w->scene->invariants = system->invariants;
 }
 
-static dvi_status make_integrator(dvi__worker *w, const dvi_system *system, const char *method, const dvi_ensemble_options *o)
+/* One more. */
+static dvi_status add_integrator(dvi_ensemble *e, const dvi_system *system, const char *method, const dvi_shapes *shapes)
 {
-  if (o->systems != NULL) w->scene = dvi__duplicate(o->systems[0], 1, sizeof *w->scene);
-  if (o->systems != NULL && w->scene == NULL) return dvi__fail(DVI_NO_MEMORY, "ensemble: no memory");
-  DVI_TRY(dvi__integrator_make(w->scene != NULL ? w->scene : system, method, o->shapes, NULL, DVI__TRANSFORM, &w->integrator));
-  if (dvi_integrator_chooses_steps(w->integrator))
+  dvi_integrator **place = &e->integrators[e->integrator_count];
+  DVI_TRY(dvi__integrator_make(system, method, shapes, NULL, DVI__TRANSFORM, place));
+  e->integrator_count++;
+  if (dvi_integrator_chooses_steps(*place))
     return dvi__fail(DVI_UNSUPPORTED, "ensemble: %s chooses its steps, so that members would part in time; use single integrators",
-                     w->integrator->stepper.method->name);
-  w->integrator->counters.allocations = 0; /* the ensemble counts those of its creation */
-  w->integrator->started = 1;              /* once the ensemble is */
+                     (*place)->stepper.method->name);
+  (*place)->counters.allocations = 0; /* the ensemble counts those of its creation */
+  (*place)->started = 1;              /* once the ensemble is */
   return DVI_OK;
+}
+
+/* Systems that differ share the threads' integrators, or not: a first integrator tells. Those of threads are made for a copy of a system, which takes the terms of
+ * each; the patterns of their Hessians, if the method needs them, must be complete before that. */
+static dvi_status look_at_systems(dvi_ensemble *e, const char *method, const dvi_ensemble_options *o)
+{
+  DVI_TRY(add_integrator(e, o->systems[0], method, o->shapes));
+  e->bound = e->integrators[0]->stepper.bound;
+  if (e->bound) return DVI_OK;
+  dvi_integrator_destroy(&e->integrators[--e->integrator_count]);
+  for (int k = 0; k < o->members && o->systems[0]->qq.start != NULL; k++) DVI_TRY(dvi__system_prepare_hessian(o->systems[k]));
+  for (int i = 0; i < e->threads; i++) {
+    e->workers[i].scene = dvi__duplicate(o->systems[0], 1, sizeof *o->systems[0]);
+    if (e->workers[i].scene == NULL) return dvi__fail(DVI_NO_MEMORY, "ensemble: no memory");
+  }
+  return DVI_OK;
+}
+
+/* What creation has counted is counted once, for any number of threads. */
+static dvi_status add_those_of_threads(dvi_ensemble *e, const dvi_system *system, const char *method, const dvi_shapes *shapes)
+{
+  for (int i = 0; i < e->threads; i++) {
+    dvi__worker *w = &e->workers[i];
+    DVI_TRY(add_integrator(e, w->scene != NULL ? w->scene : system, method, shapes));
+    w->integrator = e->integrators[i];
+    if (i > 0) w->integrator->counters = (dvi_counters){0};
+  }
+  return DVI_OK;
+}
+
+/* Alike systems give integrators with memories of one length. The first one is there. */
+static dvi_status add_those_of_blocks(dvi_ensemble *e, const char *method, const dvi_shapes *shapes)
+{
+  for (int k = 0; k < e->block_count; k++) {
+    dvi__block *block = &e->blocks[k];
+    const dvi_status status = k > 0 ? add_integrator(e, block->system, method, shapes) : DVI_OK;
+    if (status != DVI_OK) return dvi__fail_in(status, "ensemble: member %d", block->first);
+    block->integrator = e->integrators[k];
+  }
+  return DVI_OK;
+}
+
+/* ---- workers ---- */
+
+static int has_lanes(const dvi_ensemble *e)
+{
+  return e->integrators[0]->stepper.lanes != NULL;
 }
 
 /* What a block's step needs. */
@@ -86,7 +125,7 @@ static dvi_status make_room(const dvi_ensemble *e, dvi__worker *w)
   w->point[0] = DVI_NEW(double, e->n);
   w->point[1] = DVI_NEW(double, e->n);
   if (w->point[0] == NULL || w->point[1] == NULL) return dvi__fail(DVI_NO_MEMORY, "ensemble: no memory");
-  if (w->integrator->stepper.lanes == NULL) return DVI_OK;
+  if (!has_lanes(e)) return DVI_OK;
   w->numbers = DVI_NEW(double, e->state_numbers *capacity);
   w->ahead = DVI_NEW(long, capacity);
   w->absence = DVI_NEW(int, capacity);
@@ -100,7 +139,6 @@ static dvi_status make_room(const dvi_ensemble *e, dvi__worker *w)
 
 static void clear_worker(dvi__worker *w)
 {
-  dvi_integrator_destroy(&w->integrator);
   dvi__release(w->scene);
   dvi__release(w->numbers);
   dvi__release(w->ahead);
@@ -113,17 +151,14 @@ static void clear_worker(dvi__worker *w)
   dvi__release(w->point[1]);
 }
 
-/* What creation has counted is counted once, for any number of threads. */
 static dvi_status make_workers(dvi_ensemble *e, const dvi_system *system, const char *method, const dvi_ensemble_options *o)
 {
-  DVI_TRY(prepare_systems(o, method));
   e->workers = DVI_NEW(dvi__worker, e->threads);
-  if (e->workers == NULL) return dvi__fail(DVI_NO_MEMORY, "ensemble: no memory for %d threads", e->threads);
-  for (int i = 0; i < e->threads; i++) {
-    DVI_TRY(make_integrator(&e->workers[i], system, method, o));
-    if (i > 0) e->workers[i].integrator->counters = (dvi_counters){0};
-  }
-  return DVI_OK;
+  e->integrators = DVI_NEW(dvi_integrator *, e->members);
+  if (e->workers == NULL || e->integrators == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "ensemble: no memory for %d threads", e->threads);
+  if (o->systems != NULL) DVI_TRY(look_at_systems(e, method, o));
+  return e->bound ? DVI_OK : add_those_of_threads(e, system, method, o->shapes);
 }
 
 /* ---- blocks ---- */
@@ -133,11 +168,13 @@ static int smaller(int a, int b)
   return a < b ? a : b;
 }
 
-/* A share for every thread, in whole vectors. */
+/* A share for every thread, in whole vectors; whole, where it is to have few integrators. */
 static int choose_capacity(const dvi_ensemble *e, const dvi_ensemble_options *o)
 {
   if (o->block > 0) return smaller(o->block, o->members);
-  const int share = (o->members - 1) / e->threads + 1, room = (int)(NUMBERS_SIDE_BY_SIDE / e->state_numbers) / 8 * 8;
+  const int share = (o->members - 1) / e->threads + 1;
+  if (e->bound) return share;
+  const int room = (int)(NUMBERS_SIDE_BY_SIDE / e->state_numbers) / 8 * 8;
   const int chosen = room > SIDE_BY_SIDE_LEAST ? smaller(room, SIDE_BY_SIDE_MOST) : SIDE_BY_SIDE_LEAST;
   return smaller(smaller(chosen, (share - 1) / 8 * 8 + 8), o->members);
 }
@@ -149,7 +186,7 @@ static int cut_blocks(const dvi_ensemble *e, const dvi_system *system, const dvi
   for (int first = 0, end; first < o->members; first = end, count++) {
     const dvi_system *of = system_of(system, o, first);
     for (end = first + 1; end < o->members && end - first < e->capacity && system_of(system, o, end) == of;) end++;
-    if (blocks != NULL) blocks[count] = (dvi__block){first, end - first, of, e->numbers + (size_t)first * e->member_numbers};
+    if (blocks != NULL) blocks[count] = (dvi__block){first, end - first, of, NULL, e->numbers + (size_t)first * e->member_numbers};
   }
   return count;
 }
@@ -157,7 +194,7 @@ static int cut_blocks(const dvi_ensemble *e, const dvi_system *system, const dvi
 static void measure_member(dvi_ensemble *e)
 {
   const size_t n = (size_t)e->n;
-  e->state_numbers = DVI__MEMBER_Q + 4 * n + e->workers[0].integrator->stepper.memory_count;
+  e->state_numbers = DVI__MEMBER_Q + 4 * n + e->integrators[0]->stepper.memory_count;
   e->member_numbers = e->state_numbers + DVI__MEMBER_LAST + (e->system_is_general ? n : 0);
 }
 
@@ -165,8 +202,8 @@ static void measure_member(dvi_ensemble *e)
 static dvi_status make_lanes(dvi_ensemble *e, const dvi_ensemble_options *o)
 {
   e->capacity = choose_capacity(e, o);
-  for (int i = 0; i < e->threads; i++) DVI_TRY(dvi__stepper_prepare_lanes(&e->workers[i].integrator->stepper, e->capacity));
-  if (e->workers[0].integrator->stepper.lanes == NULL && o->block == 0) e->capacity = 1;
+  for (int i = 0; i < e->integrator_count; i++) DVI_TRY(dvi__stepper_prepare_lanes(&e->integrators[i]->stepper, e->capacity));
+  if (!has_lanes(e) && !e->bound && o->block == 0) e->capacity = 1;
   for (int i = 0; i < e->threads; i++) DVI_TRY(make_room(e, &e->workers[i]));
   return DVI_OK;
 }
@@ -189,6 +226,7 @@ static dvi_status fill(dvi_ensemble *e, const dvi_system *system, const char *me
   measure_member(e);
   DVI_TRY(make_lanes(e, o));
   DVI_TRY(make_blocks(e, system, o));
+  if (e->bound) DVI_TRY(add_those_of_blocks(e, method, o->shapes));
   return dvi__team_create(e->threads, &e->team);
 }
 
@@ -218,6 +256,8 @@ void dvi_ensemble_destroy(dvi_ensemble **ensemble)
   dvi_ensemble *e = *ensemble;
   dvi__team_destroy(&e->team);
   for (int i = 0; i < e->threads && e->workers != NULL; i++) clear_worker(&e->workers[i]);
+  for (int i = 0; i < e->integrator_count; i++) dvi_integrator_destroy(&e->integrators[i]);
+  dvi__release(e->integrators);
   dvi__release(e->workers);
   dvi__release(e->blocks);
   dvi__release(e->numbers);

@@ -142,7 +142,7 @@ static void march_block(void *of, int thread, int item)
   dvi_ensemble *e = of;
   dvi__worker *w = &e->workers[thread];
   const dvi__block *block = &e->blocks[item];
-  dvi__worker_bind(w, block->system);
+  dvi__worker_bind(w, block);
   for (int k = 0; k < block->count; k++) e->status[block->first + k] = DVI_OK;
   if (w->integrator->stepper.lanes != NULL && block->count > 1)
     march_lanes(e, w, block);

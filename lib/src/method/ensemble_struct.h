@@ -1,6 +1,7 @@
 /* The inside of an ensemble, for ensemble.c, ensemble_create.c and ensemble_step.c.
  *
- * A member is what a checkpoint of its integrator would hold: numbers that one of the threads' integrators can be put to. A block holds those of
+ * A member is what a checkpoint of its integrator would hold: numbers that an integrator can be put to. There is one for each thread, which takes the
+ * terms of the block at hand; or one for each block, if systems differ and the method is bound to its own (dvi__stepper). A block holds the numbers of
  * neighbours side by side: number i of member k is [i*count + k]. */
 #ifndef DVI_METHOD_ENSEMBLE_STRUCT_H
 #define DVI_METHOD_ENSEMBLE_STRUCT_H
@@ -15,9 +16,10 @@ enum { DVI__MISFORTUNE_SENTENCE = 900 };
 enum { DVI__MEMBER_T, DVI__MEMBER_T_CARRY, DVI__MEMBER_Q };
 
 typedef struct dvi__block {
-  int first, count;         /* members */
-  const dvi_system *system; /* of all of them */
-  double *numbers;          /* [numbers of a member * count] */
+  int first, count;           /* members */
+  const dvi_system *system;   /* of all of them */
+  dvi_integrator *integrator; /* its own; NULL: it is the thread's */
+  double *numbers;            /* [numbers of a member * count] */
 } dvi__block;
 
 /* The worst failure that a thread has met. */
@@ -29,9 +31,9 @@ typedef struct dvi__misfortune {
 
 /* What a thread works with. */
 typedef struct dvi__worker {
-  dvi_integrator *integrator;
-  dvi_system
-      *scene; /* the integrator's system, if systems differ: it takes the terms of the block at hand. NULL: they do not differ */
+  dvi_integrator *integrator; /* the thread's, or that of the block at hand */
+  dvi_system *
+      scene; /* the thread's integrator's system, if systems differ: it takes the terms of the block at hand. NULL: there is no such thing */
   dvi__members members; /* a block's state */
   double *numbers;      /* what it was before a step */
   long *ahead;          /* [capacity] steps of this march that a member has taken when it last went alone */
@@ -59,6 +61,7 @@ struct dvi_ensemble {
   int members, threads;
   int n;
   int system_is_general; /* it declares a general Lagrangian */
+  int bound;             /* systems differ, and the method's steppers are bound to them: blocks have integrators of their own */
   size_t state_numbers;  /* of a member: those that a step changes */
   size_t member_numbers; /* all */
   int capacity;          /* members of a block at most */
@@ -68,6 +71,8 @@ struct dvi_ensemble {
   dvi_status *status;
   dvi__team *team;
   dvi__worker *workers; /* [threads] */
+  dvi_integrator **integrators;
+  int integrator_count; /* threads, or blocks; the first one is the first member's */
   int started;
   long allocations;
   dvi__march march;
@@ -93,8 +98,8 @@ static inline double *dvi__driver_row(const dvi_ensemble *e, const dvi__block *b
 void dvi__member_load(const dvi_ensemble *e, dvi__worker *w, const dvi__block *block, int k);
 void dvi__member_store(const dvi_ensemble *e, const dvi__worker *w, const dvi__block *block, int k);
 
-/* Let a worker's integrator see this system's terms. */
-void dvi__worker_bind(dvi__worker *w, const dvi_system *system);
+/* Let a worker have an integrator of this block's system. */
+void dvi__worker_bind(dvi__worker *w, const dvi__block *block);
 
 /* Forget earlier failures; note one, with the thread's error sentence; the worst of all workers as the status of the call. */
 void dvi__ensemble_clear_failures(dvi_ensemble *e);

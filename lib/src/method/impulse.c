@@ -23,6 +23,7 @@ dvi_status dvi__impulse_create(dvi__stepper *self, size_t size, int all)
   dvi__impulse *own = self->own = dvi__allocate(1, size);
   self->order = 2;
   self->symmetric = 1;
+  self->bound = 1;
   self->memory_count = (size_t)self->system->n + 1;
   if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
   if (!all) DVI_TRY(dvi__system_slow_part(self->system, &own->slow));

@@ -64,6 +64,7 @@ typedef struct dvi__stepper {
   char specification[DVI__SPECIFICATION_SIZE]; /* every key spelled out */
   int order;                                   /* what theory claims */
   int symmetric;                               /* a step of -h undoes a step of h */
+  int bound; /* it keeps callbacks of the system, or what they gave at create, and so cannot take the terms of another system that is alike */
   /* What the method carries from step to step beside the state: saved in checkpoints, restored when a step fails. The method sets the count at
    * create; the memory is the driver's, who has two and exchanges them, and is there from the first start on. */
   double *memory;

@@ -87,6 +87,7 @@ static dvi_status ask_fast_part(dvi__stepper *self, char *fast)
   const int listed = self->settings.listed > 0;
   double *omega = &self->settings.number[OMEGA];
   dvi_system *part;
+  self->bound = 1;
   if (!(system->terms & DVI__FAST) && !listed)
     return dvi__fail(DVI_BAD_OPTION,
                      "multiscale: no coordinate is known to be fast: list them, as fast=0:1, or declare a fast potential");

@@ -152,4 +152,4 @@ static void solve(void *factor, const dvi__pattern *pattern, double *b)
   memcpy(b, s->b, size * sizeof *b);
 }
 
-const dvi__factor_operations dvi__bordered_factor = {NULL, refactor, solve, destroy, NULL};
+const dvi__factor_operations dvi__bordered_factor = {NULL, refactor, solve, destroy, NULL, NULL};

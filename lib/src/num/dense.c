@@ -91,4 +91,4 @@ static int sign(const void *factor, const dvi__pattern *pattern)
   return negative ? -1 : 1;
 }
 
-const dvi__factor_operations dvi__dense_factor = {create, refactor, solve, destroy, sign};
+const dvi__factor_operations dvi__dense_factor = {create, refactor, solve, destroy, sign, NULL};

@@ -14,6 +14,8 @@ extern void dsygv_(const int *type, const char *vectors, const char *triangle, c
                    size_t triangle_length);
 extern void dgesv_(const int *n, const int *sides, double *a, const int *lda, int *pivot, double *b, const int *ldb, int *info);
 
+extern void dpotrf_(const char *triangle, const int *n, double *a, const int *lda, int *info, size_t triangle_length);
+
 /* LAPACK keeps Re and Im of a pair's vector in two columns: T (x + iy) = (a + ib)(x + iy), so that T x = a x - b y, T y = b x + a y. */
 static int vectors(int n, double *copy, double *real_part, double *imaginary_part, double *X, double *work)
 {
@@ -59,10 +61,16 @@ dvi_status dvi__eigen_symmetric(int n, const double *K, const double *M, double 
   } else {
     memcpy(X, K, entries * sizeof(double));
     dsygv_(&type, "V", "L", &n, X, &n, copy, &n, lambda, work, &length, &info, 1, 1);
-    if (info != 0)
-      status = dvi__fail(DVI_SINGULAR, "eigenvalues: the second of two matrices of %d columns is not positive definite", n);
+    if (info != 0) status = dvi__fail(DVI_SINGULAR, "eigenvalues: the mass of %d coordinates is not positive definite", n);
   }
   dvi__release(copy);
   dvi__release(work);
   return status;
+}
+
+int dvi__is_positive_definite(int n, double *A)
+{
+  int info = 0;
+  dpotrf_("L", &n, A, &n, &info, 1);
+  return info == 0;
 }

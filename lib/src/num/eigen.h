@@ -1,4 +1,4 @@
-/* The real eigen-structure of a small matrix. */
+/* The real eigen-structure of a full matrix. */
 #ifndef DVI_NUM_EIGEN_H
 #define DVI_NUM_EIGEN_H
 #include <dvi/status.h>
@@ -9,8 +9,11 @@
  * of eigenvectors, DVI_NO_MEMORY. */
 dvi_status dvi__eigen(int n, const double *T, double *real_part, double *imaginary_part, double *X, double *inverse);
 
-/* K X = M X diag(lambda) with X^T M X = 1, for symmetric K and positive definite M, both [n*n] by columns; lambda [n] ascending. DVI_SINGULAR if M is not
- * positive definite, DVI_NO_MEMORY. */
+/* K X = M X diag(lambda) with X^T M X = 1, for symmetric K and positive definite M, both [n*n] by columns; lambda [n] ascending. DVI_SINGULAR if M, the
+ * mass, is not positive definite, DVI_NO_MEMORY. */
 dvi_status dvi__eigen_symmetric(int n, const double *K, const double *M, double *lambda, double *X);
+
+/* Whether a symmetric A [n*n], whose lower triangle is overwritten, is positive definite. */
+int dvi__is_positive_definite(int n, double *A);
 
 #endif

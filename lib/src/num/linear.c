@@ -176,6 +176,11 @@ int dvi__linear_sign(const dvi__linear *linear)
   return linear->operations->sign(linear->factor, linear->pattern);
 }
 
+int dvi__linear_is_positive(const dvi__linear *linear)
+{
+  return linear->operations->is_positive(linear->factor, linear->pattern);
+}
+
 static void scale(int n, int parts, const double *by, double *b)
 {
   for (int i = 0; i < n; i++) scale_entry(parts, by[i], b + (ptrdiff_t)parts * i);

@@ -147,6 +147,15 @@ int dvi__mass_sign(const dvi__evaluator *e)
   return negative ? -1 : 1;
 }
 
+int dvi__mass_is_positive(const dvi__evaluator *e)
+{
+  const dvi_system *s = e->system;
+  if (s->mass_diagonal == NULL) return dvi__linear_is_positive(e->velocity);
+  for (int i = 0; i < s->n; i++)
+    if (s->mass_diagonal[i] < 0) return 0;
+  return 1;
+}
+
 void dvi__count_differences(dvi__evaluator *e)
 {
   e->counters->values += e->scratch.of_value.points;

@@ -96,8 +96,9 @@ dvi_status dvi__legendre_regular(dvi__evaluator *e, double t, const double *q, c
 /* x [n*count, component-major] = M^{-1} y for the constant mass; x may be y. Only for systems with DVI__CONSTANT_MASS. */
 void dvi__mass_solve(dvi__evaluator *e, int count, const double *y, double *x);
 
-/* The sign of its determinant, 1 or -1. */
+/* The sign of its determinant, 1 or -1; whether it is positive definite, of one that is not factored as a full matrix. */
 int dvi__mass_sign(const dvi__evaluator *e);
+int dvi__mass_is_positive(const dvi__evaluator *e);
 
 /* One state: invariant i, or all of them; v is the velocity that belongs to p, and is read by the energy (i = 0) alone. */
 dvi_status dvi__invariant(dvi__evaluator *e, double t, const double *q, const double *v, const double *p, int i, double *value);
