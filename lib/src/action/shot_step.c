@@ -16,23 +16,33 @@ struct dvi__shot_step {
   double t0;
   const double *q0, *p0;
   double *unit;               /* [n] the momentum of a unit of q a step */
-  double *q, *p;              /* [n] where the shot starts: k0, pi0 */
+  double *start, *q, *p;      /* [2n], and its halves: where the last shot started, k0 and pi0 */
+  int known;                  /* of that shot, see below */
   double *shift;              /* [n] mu, or k0 - q0 */
   double *end, *reach, *gain; /* [2n] */
-  double *motion;             /* [2n*2n] */
+  double *x;                  /* [2n] of the last residual */
+  double *motion, *values;    /* [2n*2n] of the last Jacobian */
 };
+
+enum { NOTHING, REACH, DERIVATIVES };
 
 /* ---- making it ---- */
 
+static double **owned(dvi__shot_step *s, int i)
+{
+  double **const all[] = {&s->unit, &s->start, &s->shift, &s->end, &s->reach, &s->gain, &s->x, &s->motion, &s->values};
+  return i < (int)(sizeof all / sizeof *all) ? all[i] : NULL;
+}
+
 static dvi_status allocate(dvi__shot_step *s)
 {
-  const size_t n = (size_t)s->n;
-  double **const all[] = {&s->unit, &s->q, &s->p, &s->shift, &s->end, &s->reach, &s->gain, &s->motion};
-  const size_t size[] = {n, n, n, n, 2 * n, 2 * n, 2 * n, 4 * n * n};
-  for (int i = 0; i < 8; i++) {
-    *all[i] = DVI_NEW(double, size[i]);
-    if (*all[i] == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory for %d dimensions", s->n);
+  const size_t n = (size_t)s->n, size[] = {n, 2 * n, n, 2 * n, 2 * n, 2 * n, 2 * n, 4 * n * n, 4 * n * n};
+  for (int i = 0; owned(s, i) != NULL; i++) {
+    *owned(s, i) = DVI_NEW(double, size[i]);
+    if (*owned(s, i) == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory for %d dimensions", s->n);
   }
+  s->q = s->start;
+  s->p = s->start + n;
   return DVI_OK;
 }
 
@@ -67,14 +77,7 @@ void dvi__shot_step_destroy(dvi__shot_step **step)
   dvi__shot_destroy(&s->shot);
   dvi__evaluator_destroy(&s->evaluator);
   dvi__pattern_clear(&s->pattern);
-  dvi__release(s->unit);
-  dvi__release(s->q);
-  dvi__release(s->p);
-  dvi__release(s->shift);
-  dvi__release(s->end);
-  dvi__release(s->reach);
-  dvi__release(s->gain);
-  dvi__release(s->motion);
+  for (int i = 0; owned(s, i) != NULL; i++) dvi__release(*owned(s, i));
   dvi__release(s);
   *step = NULL;
 }
@@ -105,39 +108,61 @@ static dvi_status choose_units(dvi__shot_step *s, double t0, double h, const dou
   return DVI_OK;
 }
 
+/* Where the shot of x starts; if that is where the last one did, all that is known of it stays so. */
+static void put(dvi__shot_step *s, const double *x)
+{
+  for (int i = 0; i < s->n; i++) {
+    const double q = s->q0[i] + (s->type == 3 ? x[i] : 0), p = s->type == 3 ? s->p0[i] : s->unit[i] * x[i];
+    if (q != s->q[i] || p != s->p[i]) s->known = NOTHING;
+    s->shift[i] = s->type == 1 ? 0 : s->type == 2 ? x[s->n + i] : x[i];
+    s->q[i] = q;
+    s->p[i] = p;
+  }
+}
+
+static dvi_status fire(dvi__shot_step *s)
+{
+  if (s->known >= REACH) return DVI_OK;
+  DVI_TRY(dvi__shot_fire(s->shot, s->p, s->reach));
+  s->known = REACH;
+  return DVI_OK;
+}
+
+static dvi_status trace(dvi__shot_step *s)
+{
+  if (s->known == DERIVATIVES) return DVI_OK;
+  DVI_TRY(fire(s));
+  DVI_TRY(dvi__shot_trace(s->shot));
+  s->known = DERIVATIVES;
+  return DVI_OK;
+}
+
 dvi_status dvi__shot_step_place(dvi__shot_step *s, double t0, double h, const double *q0, const double *p0, double *v, double *x)
 {
   s->q0 = q0;
   s->p0 = p0;
   DVI_TRY(dvi__legendre_inverse(s->evaluator, t0, q0, p0, v));
   DVI_TRY(choose_units(s, t0, h, v));
-  memcpy(s->q, q0, (size_t)s->n * sizeof *q0);
   dvi__shot_aim(s->shot, t0, h, s->q, s->unit);
   dvi__field_guess(dvi__shot_field(s->shot), v);
-  DVI_TRY(dvi__shot_fire(s->shot, p0, s->reach));
   for (int i = 0; i < s->n; i++) {
     x[i] = s->type == 3 ? 0 : p0[i] / s->unit[i];
-    x[s->n + i] = s->type == 2 ? 0 : (p0[i] + s->reach[s->n + i]) / s->unit[i];
+    x[s->n + i] = 0;
   }
+  put(s, x);
+  s->known = NOTHING;
+  DVI_TRY(fire(s));
+  for (int i = 0; i < s->n && s->type != 2; i++) x[s->n + i] = (s->p[i] + s->reach[s->n + i]) / s->unit[i];
   return DVI_OK;
-}
-
-static dvi_status fire(dvi__shot_step *s, const double *x)
-{
-  for (int i = 0; i < s->n; i++) {
-    s->shift[i] = s->type == 1 ? 0 : s->type == 2 ? x[s->n + i] : x[i];
-    s->q[i] = s->q0[i] + (s->type == 3 ? x[i] : 0);
-    s->p[i] = s->type == 3 ? s->p0[i] : s->unit[i] * x[i];
-  }
-  DVI_TRY(dvi__shot_fire(s->shot, s->p, s->reach));
-  return dvi__shot_trace(s->shot);
 }
 
 dvi_status dvi__shot_step_residual(void *step, const double *x, double *R)
 {
   dvi__shot_step *s = step;
   const int n = s->n;
-  DVI_TRY(fire(s, x));
+  put(s, x);
+  DVI_TRY(trace(s));
+  memcpy(s->x, x, 2 * (size_t)n * sizeof *x);
   for (int i = 0; i < n; i++) {
     s->end[i] = s->type == 2 ? -(s->p[i] + s->reach[n + i]) : -s->unit[i] * x[n + i];
     s->end[n + i] = s->type == 2 ? s->shift[i] : 0;
@@ -148,12 +173,6 @@ dvi_status dvi__shot_step_residual(void *step, const double *x, double *R)
     R[n + i] = (s->gain[i] + (s->p0[i] + s->end[i])) / s->unit[i];
   }
   return DVI_OK;
-}
-
-void dvi__shot_step_ends(const dvi__shot_step *s, double *dq, double *dp)
-{
-  for (int i = 0; i < s->n; i++) dq[i] = s->reach[i] + s->shift[i];
-  memcpy(dp, s->gain, (size_t)s->n * sizeof *dp);
 }
 
 /* Columns: motions of the start along q, then along p by its units. */
@@ -185,7 +204,8 @@ dvi_status dvi__shot_step_jacobian(void *step, const double *x, double *values)
 {
   dvi__shot_step *s = step;
   const int n = s->n, z = 2 * n;
-  DVI_TRY(fire(s, x));
+  put(s, x);
+  DVI_TRY(trace(s));
   DVI_TRY(motions(s));
   for (int k = 0; k < n; k++)
     for (int i = 0; i < z; i++) {
@@ -194,5 +214,24 @@ dvi_status dvi__shot_step_jacobian(void *step, const double *x, double *values)
       values[k * z + i] = row * of_start(s, k, along, i == k) - (s->type != 3 && i == n + k);
       values[(n + k) * z + i] = row * (s->type == 2 ? moved(s, n + k, along) : -moved(s, k, along) * s->unit[k]);
     }
+  memcpy(s->values, values, (size_t)z * (size_t)z * sizeof *values);
   return DVI_OK;
+}
+
+/* Increments are small numbers: their changes come from those of x, not from the rows, whose p1 is rounded. */
+void dvi__shot_step_ends(const dvi__shot_step *s, const double *x, double *dq, double *dp)
+{
+  const int n = s->n, z = 2 * n;
+  for (int i = 0; i < n; i++) {
+    const double change = x[n + i] - s->x[n + i];
+    dq[i] = s->reach[i] + s->shift[i] + (s->type == 2 ? change : 0);
+    dp[i] = s->gain[i] + (s->type == 2 ? 0 : s->unit[i] * change);
+  }
+  for (int k = 0; k < z; k++)
+    for (int i = 0; i < n; i++) dp[i] += s->unit[i] * s->values[k * z + n + i] * (x[k] - s->x[k]);
+  for (int k = 0; k < n; k++) {
+    const double change = x[k] - s->x[k], *motion = s->motion + (s->type == 3 ? k : n + k) * z;
+    for (int i = 0; i < n; i++) dq[i] += motion[i] * change;
+    for (int i = 0; i < n && s->type == 2; i++) dp[i] += motion[n + i] * change;
+  }
 }

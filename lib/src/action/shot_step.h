@@ -34,7 +34,7 @@ dvi_status dvi__shot_step_place(dvi__shot_step *step, double t0, double h, const
 dvi_status dvi__shot_step_residual(void *step, const double *x, double *R);
 dvi_status dvi__shot_step_jacobian(void *step, const double *x, double *values);
 
-/* Increments of q and p, [n] each, of the last residual. */
-void dvi__shot_step_ends(const dvi__shot_step *step, double *dq, double *dp);
+/* Increments of q and p, [n] each, at x: from the point of the last residual to first order, by the last Jacobian. */
+void dvi__shot_step_ends(const dvi__shot_step *step, const double *x, double *dq, double *dp);
 
 #endif

@@ -253,7 +253,8 @@ static dvi_status make(dvi__stepper *self, const dvi__runge_kutta *method, const
                               .of = own->step,
                               .residual = dvi__shot_step_residual,
                               .jacobian = dvi__shot_step_jacobian,
-                              .row_scale = row_scale};
+                              .row_scale = row_scale,
+                              .ahead = 1};
   own->unknowns = pattern->columns;
   DVI_TRY(dvi__stationary_create(&equations, self->counters, &own->solver));
   return allocate(own, (size_t)self->system->n) ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "no memory");
@@ -341,8 +342,7 @@ static dvi_status solve(dvi__stepper *self, double size)
 {
   const shooter *own = self->own;
   if (own->tolerance > 0) return solve_loosely(own, size);
-  DVI_TRY(dvi__stationary_solve(own->solver, self->counters, size, own->unknowns, own->guess, own->x));
-  return dvi__shot_step_residual(own->step, own->x, own->R);
+  return dvi__stationary_solve(own->solver, self->counters, size, own->unknowns, own->guess, own->x);
 }
 
 static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
@@ -352,7 +352,7 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
   memcpy(own->v, self->memory, (size_t)n * sizeof *own->v);
   DVI_TRY(dvi__shot_step_place(own->step, state->t, h, state->q, state->p, own->v, own->guess));
   DVI_TRY(solve(self, dvi__largest((size_t)n, state->q)));
-  dvi__shot_step_ends(own->step, own->dq, own->dp);
+  dvi__shot_step_ends(own->step, own->x, own->dq, own->dp);
   for (int i = 0; i < n; i++) self->memory[i] = own->v[i];
   dvi__add_compensated_all(n, state->q, state->q_carry, own->dq);
   dvi__add_compensated_all(n, state->p, state->p_carry, own->dp);
