@@ -319,8 +319,8 @@ static dvi_status make(dvi__stepper *self, const dvi__runge_kutta *method, const
 static dvi_status create(dvi__stepper *self)
 {
   dvi__settings *settings = &self->settings;
-  dvi__runge_kutta method;
-  dvi__course course;
+  dvi__runge_kutta method = {0};
+  dvi__course course = {0};
   DVI_TRY(choose_one_step(self, &method));
   DVI_TRY(choose_composition(settings, &method));
   DVI_TRY(choose_quadrature(self->system, settings, method.order));
