@@ -157,13 +157,13 @@ static void run(const necklace *of, const char *method, double h, double *q)
 
 START_TEST(the_order_is_2)
 {
-  enum { N = 400 };
+  enum { N = 150 };
   static double coarse[N], fine[N], finest[N];
   necklace of;
   make_necklace(N, HELD, 1, &of);
   run(&of, spec("trig:filter=%s,motion=polynomials", filters[_i]), 0.1, coarse);
   run(&of, spec("trig:filter=%s,motion=polynomials", filters[_i]), 0.05, fine);
-  run(&of, "trig:motion=polynomials", 0.00125, finest);
+  run(&of, "trig:motion=polynomials", 0.005, finest);
   ck_assert_double_eq_tol(log2(distance(N, coarse, finest) / distance(N, fine, finest)), 2, 0.05);
   destroy_necklace(&of);
 }
