@@ -2,6 +2,7 @@
  *
  *     L = A v1^2/2 + B v2^2/2 + C cos(q1 - q2) v1 v2 + G1 cos q1 + G2 cos q2,
  *     A = (m1+m2) l1^2,  B = m2 l2^2,  C = m2 l1 l2,  G1 = (m1+m2) g l1,  G2 = m2 g l2. */
+#include <dvi/taylor.h>
 #include <math.h>
 
 #include "entry.h"
@@ -62,6 +63,81 @@ static int hessian(int count, const double *t, const double *q, const double *v,
   return 0;
 }
 
+/* The series that L and its derivatives along a curve are sums of. */
+typedef struct series {
+  double v1[DVI_TAYLOR_MAX + 1], v2[DVI_TAYLOR_MAX + 1];
+  double sine_1[DVI_TAYLOR_MAX + 1], cosine_1[DVI_TAYLOR_MAX + 1]; /* of q1 */
+  double sine_2[DVI_TAYLOR_MAX + 1], cosine_2[DVI_TAYLOR_MAX + 1];
+  double s[DVI_TAYLOR_MAX + 1], c[DVI_TAYLOR_MAX + 1]; /* C times those of q1 - q2 */
+  double v1_v2[DVI_TAYLOR_MAX + 1];
+} series;
+
+static void expand(const coefficients *own, int degree, const double *q, const double *v, series *of)
+{
+  double q1[DVI_TAYLOR_MAX + 1], q2[DVI_TAYLOR_MAX + 1], between[DVI_TAYLOR_MAX + 1];
+  dvi_taylor_get(degree, 2, q, 0, q1);
+  dvi_taylor_get(degree, 2, q, 1, q2);
+  dvi_taylor_get(degree, 2, v, 0, of->v1);
+  dvi_taylor_get(degree, 2, v, 1, of->v2);
+  dvi_taylor_sin_cos(degree, q1, of->sine_1, of->cosine_1);
+  dvi_taylor_sin_cos(degree, q2, of->sine_2, of->cosine_2);
+  dvi_taylor_combine(degree, 1.0, q1, -1.0, q2, between);
+  dvi_taylor_sin_cos(degree, between, of->s, of->c);
+  for (int k = 0; k <= degree; k++) {
+    of->s[k] *= own->C;
+    of->c[k] *= own->C;
+  }
+  dvi_taylor_multiply(degree, of->v1, of->v2, of->v1_v2);
+}
+
+/* Coefficient k of the Hessian. */
+static void series_hessian(const coefficients *own, const series *of, int k, double *L_qq, double *L_qv, double *L_vv)
+{
+  const double c_v1_v2 = dvi_taylor_product(k, of->c, of->v1_v2);
+  const double s_v1 = dvi_taylor_product(k, of->s, of->v1), s_v2 = dvi_taylor_product(k, of->s, of->v2);
+  if (L_qq) {
+    L_qq[4 * k] = -c_v1_v2 - own->G1 * of->cosine_1[k];
+    L_qq[4 * k + 1] = L_qq[4 * k + 2] = c_v1_v2;
+    L_qq[4 * k + 3] = -c_v1_v2 - own->G2 * of->cosine_2[k];
+  }
+  if (L_qv) {
+    L_qv[4 * k] = -s_v2;
+    L_qv[4 * k + 1] = s_v2;
+    L_qv[4 * k + 2] = -s_v1;
+    L_qv[4 * k + 3] = s_v1;
+  }
+  if (L_vv) {
+    L_vv[4 * k] = k == 0 ? own->A : 0.0;
+    L_vv[4 * k + 1] = L_vv[4 * k + 2] = of->c[k];
+    L_vv[4 * k + 3] = k == 0 ? own->B : 0.0;
+  }
+}
+
+static int taylor(int degree, const double *t, const double *q, const double *v, double *L, double *L_q, double *L_v, double *L_qq,
+                  double *L_qv, double *L_vv, void *user)
+{
+  const coefficients own = *(const coefficients *)user;
+  series of;
+  (void)t;
+  expand(&own, degree, q, v, &of);
+  for (int k = 0; k <= degree; k++) {
+    const double s_v1_v2 = dvi_taylor_product(k, of.s, of.v1_v2);
+    if (L)
+      L[k] = 0.5 * own.A * dvi_taylor_product(k, of.v1, of.v1) + 0.5 * own.B * dvi_taylor_product(k, of.v2, of.v2) +
+             dvi_taylor_product(k, of.c, of.v1_v2) + own.G1 * of.cosine_1[k] + own.G2 * of.cosine_2[k];
+    if (L_q) {
+      L_q[2 * k] = -s_v1_v2 - own.G1 * of.sine_1[k];
+      L_q[2 * k + 1] = s_v1_v2 - own.G2 * of.sine_2[k];
+    }
+    if (L_v) {
+      L_v[2 * k] = own.A * of.v1[k] + dvi_taylor_product(k, of.c, of.v2);
+      L_v[2 * k + 1] = own.B * of.v2[k] + dvi_taylor_product(k, of.c, of.v1);
+    }
+    if (L_qq || L_qv || L_vv) series_hessian(&own, &of, k, L_qq, L_qv, L_vv);
+  }
+  return 0;
+}
+
 static dvi_status make(const double *setting, problem *made)
 {
   const dvi_status status = problem_room(made, 2, sizeof(coefficients));
@@ -76,7 +152,8 @@ static dvi_status make(const double *setting, problem *made)
   made->q[1] = pi / 2.0;
   made->v[1] = pi / 8.0;
 
-  const dvi_lagrangian lagrangian = {.value_batch = value, .gradient_batch = gradient, .hessian_batch = hessian, .user = own};
+  const dvi_lagrangian lagrangian = {
+      .value_batch = value, .gradient_batch = gradient, .hessian_batch = hessian, .user = own, .taylor = taylor};
   const dvi_system_terms terms = {.dimension = 2, .lagrangian = &lagrangian, .autonomous = 1};
   return problem_system(made, &terms);
 }

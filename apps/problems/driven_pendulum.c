@@ -3,6 +3,7 @@
  *     L = v^2/2 + a omega cos(omega t) v cos q - cos q        (without the pivot's own energy, which moves nothing)
  *
  * A general Lagrangian that depends on time, and its momentum p = v + a omega cos(omega t) cos q, too. */
+#include <dvi/taylor.h>
 #include <math.h>
 
 #include "entry.h"
@@ -49,6 +50,29 @@ static int hessian(int count, const double *t, const double *q, const double *v,
   return 0;
 }
 
+/* The same along a curve, on which t is a series, too. */
+static int taylor(int degree, const double *t, const double *q, const double *v, double *L, double *L_q, double *L_v, double *L_qq,
+                  double *L_qv, double *L_vv, void *user)
+{
+  const drive own = *(const drive *)user;
+  double phase[DVI_TAYLOR_MAX + 1], unwanted[DVI_TAYLOR_MAX + 1], pivot[DVI_TAYLOR_MAX + 1], factor[DVI_TAYLOR_MAX + 1];
+  double sine[DVI_TAYLOR_MAX + 1], cosine[DVI_TAYLOR_MAX + 1];
+  dvi_taylor_combine(degree, own.omega, t, 0.0, t, phase);
+  dvi_taylor_sin_cos(degree, phase, unwanted, pivot);
+  for (int k = 0; k <= degree; k++) pivot[k] *= own.speed;
+  dvi_taylor_sin_cos(degree, q, sine, cosine);
+  for (int k = 0; k <= degree; k++) factor[k] = (k == 0) - dvi_taylor_product(k, pivot, v);
+  for (int k = 0; k <= degree; k++) {
+    if (L) L[k] = 0.5 * dvi_taylor_product(k, v, v) - dvi_taylor_product(k, factor, cosine);
+    if (L_q) L_q[k] = dvi_taylor_product(k, factor, sine);
+    if (L_v) L_v[k] = v[k] + dvi_taylor_product(k, pivot, cosine);
+    if (L_qq) L_qq[k] = dvi_taylor_product(k, factor, cosine);
+    if (L_qv) L_qv[k] = -dvi_taylor_product(k, pivot, sine);
+    if (L_vv) L_vv[k] = k == 0;
+  }
+  return 0;
+}
+
 static dvi_status make(const double *setting, problem *made)
 {
   const dvi_status status = problem_room(made, 1, sizeof(drive));
@@ -58,8 +82,12 @@ static dvi_status make(const double *setting, problem *made)
   problem_label(made, 0, "q");
   made->q[0] = 2.0;
 
-  const dvi_lagrangian lagrangian = {
-      .value_batch = value, .gradient_batch = gradient, .hessian_batch = hessian, .rate_batch = rate, .user = own};
+  const dvi_lagrangian lagrangian = {.value_batch = value,
+                                     .gradient_batch = gradient,
+                                     .hessian_batch = hessian,
+                                     .rate_batch = rate,
+                                     .user = own,
+                                     .taylor = taylor};
   const dvi_system_terms terms = {.dimension = 1, .lagrangian = &lagrangian};
   return problem_system(made, &terms);
 }

@@ -1,4 +1,5 @@
 /* The Henon-Heiles system, V = (x^2+y^2)/2 + lambda (x^2 y - y^3/3): a star in the meridian plane of a galaxy. */
+#include <dvi/taylor.h>
 #include <float.h>
 
 #include "entry.h"
@@ -40,6 +41,32 @@ static int hessian(int count, const double *t, const double *q, double *V_qq, vo
   return 0;
 }
 
+/* The same along a curve. */
+static int taylor(int degree, const double *t, const double *q, double *V, double *V_q, double *V_qq, void *user)
+{
+  const double lambda = *(const double *)user;
+  double x[DVI_TAYLOR_MAX + 1], y[DVI_TAYLOR_MAX + 1], xx[DVI_TAYLOR_MAX + 1], xy[DVI_TAYLOR_MAX + 1], yy[DVI_TAYLOR_MAX + 1];
+  (void)t;
+  dvi_taylor_get(degree, 2, q, 0, x);
+  dvi_taylor_get(degree, 2, q, 1, y);
+  dvi_taylor_multiply(degree, x, x, xx);
+  dvi_taylor_multiply(degree, x, y, xy);
+  dvi_taylor_multiply(degree, y, y, yy);
+  for (int k = 0; k <= degree; k++) {
+    if (V) V[k] = 0.5 * (xx[k] + yy[k]) + lambda * (dvi_taylor_product(k, xx, y) - dvi_taylor_product(k, yy, y) / 3.0);
+    if (V_q) {
+      V_q[2 * k] = x[k] + 2.0 * lambda * xy[k];
+      V_q[2 * k + 1] = y[k] + lambda * (xx[k] - yy[k]);
+    }
+    if (V_qq) {
+      V_qq[4 * k] = (k == 0) + 2.0 * lambda * y[k];
+      V_qq[4 * k + 1] = V_qq[4 * k + 2] = 2.0 * lambda * x[k];
+      V_qq[4 * k + 3] = (k == 0) - 2.0 * lambda * y[k];
+    }
+  }
+  return 0;
+}
+
 static dvi_status make(const double *setting, problem *made)
 {
   const dvi_status status = problem_room(made, 2, sizeof(double));
@@ -52,7 +79,7 @@ static dvi_status make(const double *setting, problem *made)
   made->v[0] = made->v[1] = 0.3;
 
   const dvi_potential well = {
-      .name = "well", .value_batch = value, .gradient_batch = gradient, .hessian_batch = hessian, .user = lambda};
+      .name = "well", .value_batch = value, .gradient_batch = gradient, .hessian_batch = hessian, .user = lambda, .taylor = taylor};
   const dvi_system_terms terms = {
       .dimension = 2, .mass = {.scalar = 1.0}, .potentials = &well, .potential_count = 1, .autonomous = 1};
   return problem_system(made, &terms);

@@ -1,4 +1,5 @@
 /* The planar Kepler problem, L = |v|^2/2 + 1/|q|, from the pericentre of an orbit with semi-major axis 1. */
+#include <dvi/taylor.h>
 #include <float.h>
 #include <math.h>
 
@@ -47,6 +48,39 @@ static int hessian(int count, const double *t, const double *q, double *V_qq, vo
     V_xy[k] = V_yx[k];
     V_yy[k] = inverse - curvature * y[k] * y[k];
   }
+  return 0;
+}
+
+/* The Hessian's part of what follows; cube is r^-3. */
+static void curvature(int degree, double q_i[2][DVI_TAYLOR_MAX + 1], const double *square, const double *cube, double *V_qq)
+{
+  double fifth[DVI_TAYLOR_MAX + 1], slope[DVI_TAYLOR_MAX + 1], entry[DVI_TAYLOR_MAX + 1];
+  dvi_taylor_divide(degree, cube, square, fifth);
+  for (int i = 0; i < 2; i++) {
+    dvi_taylor_multiply(degree, q_i[i], fifth, slope);
+    for (int j = 0; j < 2; j++) {
+      dvi_taylor_multiply(degree, slope, q_i[j], entry);
+      for (int k = 0; k <= degree; k++) V_qq[4 * k + 2 * i + j] = (i == j ? cube[k] : 0.0) - 3.0 * entry[k];
+    }
+  }
+}
+
+/* V = -1/r along a curve: V_x = x/r^3, V_xy = -3 x y/r^5 + (1/r^3 on the diagonal). */
+static int taylor(int degree, const double *t, const double *q, double *V, double *V_q, double *V_qq, void *user)
+{
+  double q_i[2][DVI_TAYLOR_MAX + 1], square[DVI_TAYLOR_MAX + 1], power[DVI_TAYLOR_MAX + 1], product[DVI_TAYLOR_MAX + 1];
+  (void)t, (void)user;
+  for (int i = 0; i < 2; i++) dvi_taylor_get(degree, 2, q, i, q_i[i]);
+  dvi_taylor_multiply(degree, q_i[0], q_i[0], square);
+  dvi_taylor_add_product(degree, q_i[1], q_i[1], square);
+  dvi_taylor_power(degree, square, -0.5, power);
+  dvi_taylor_put(degree, 1, power, -1.0, 0, V);
+  dvi_taylor_power(degree, square, -1.5, power);
+  for (int i = 0; i < 2; i++) {
+    dvi_taylor_multiply(degree, q_i[i], power, product);
+    dvi_taylor_put(degree, 2, product, 1.0, i, V_q);
+  }
+  if (V_qq) curvature(degree, q_i, square, power, V_qq);
   return 0;
 }
 
@@ -133,7 +167,8 @@ static dvi_status make(const double *setting, problem *made)
   made->q[0] = 1.0 - *e;
   made->v[1] = sqrt((1.0 + *e) / (1.0 - *e));
 
-  const dvi_potential gravity = {.name = "gravity", .value_batch = value, .gradient_batch = gradient, .hessian_batch = hessian};
+  const dvi_potential gravity = {
+      .name = "gravity", .value_batch = value, .gradient_batch = gradient, .hessian_batch = hessian, .taylor = taylor};
   const dvi_symmetry symmetry = {.name = "angular_momentum", .generator = rotation};
   const dvi_invariant laplace[2] = {{.name = "laplace_x", .value = laplace_x}, {.name = "laplace_y", .value = laplace_y}};
   const dvi_system_terms terms = {.dimension = 2,

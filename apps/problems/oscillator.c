@@ -1,4 +1,5 @@
 /* One harmonic oscillator, L = v^2/2 - k q^2/2, with one-point callbacks. */
+#include <dvi/taylor.h>
 #include <float.h>
 #include <math.h>
 
@@ -27,6 +28,20 @@ static int hessian(double t, const double *q, double *V_qq, void *user)
   return 0;
 }
 
+/* V = k q^2/2 along a curve. */
+static int taylor(int degree, const double *t, const double *q, double *V, double *V_q, double *V_qq, void *user)
+{
+  const double k = *(const double *)user;
+  const double one[DVI_TAYLOR_MAX + 1] = {1.0};
+  double square[DVI_TAYLOR_MAX + 1];
+  (void)t;
+  dvi_taylor_multiply(degree, q, q, square);
+  dvi_taylor_put(degree, 1, square, 0.5 * k, 0, V);
+  dvi_taylor_put(degree, 1, q, k, 0, V_q);
+  dvi_taylor_put(degree, 1, one, k, 0, V_qq);
+  return 0;
+}
+
 /* q = q0 cos(w t), p = -w q0 sin(w t), w^2 = k. */
 static int exact(const problem *made, double t, double *q, double *p)
 {
@@ -47,7 +62,8 @@ static dvi_status make(const double *setting, problem *made)
   problem_label(made, 0, "q");
   made->q[0] = 0.5;
 
-  const dvi_potential spring = {.name = "spring", .value = value, .gradient = gradient, .hessian = hessian, .user = k};
+  const dvi_potential spring = {
+      .name = "spring", .value = value, .gradient = gradient, .hessian = hessian, .user = k, .taylor = taylor};
   const dvi_system_terms terms = {
       .dimension = 1, .mass = {.scalar = 1.0}, .potentials = &spring, .potential_count = 1, .autonomous = 1};
   return problem_system(made, &terms);

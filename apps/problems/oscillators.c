@@ -1,5 +1,6 @@
 /* A stiff and a soft spring on one unit mass: slow potential q^2/2, fast potential omega^2 q^2/2. Splitting methods meet their
  * resonances here. */
+#include <dvi/taylor.h>
 #include <float.h>
 #include <math.h>
 
@@ -30,6 +31,20 @@ static int hessian(int count, const double *t, const double *q, double *V_qq, vo
   return 0;
 }
 
+/* The same along a curve. */
+static int taylor(int degree, const double *t, const double *q, double *V, double *V_q, double *V_qq, void *user)
+{
+  const double stiffness = *(const double *)user;
+  const double one[DVI_TAYLOR_MAX + 1] = {1.0};
+  double square[DVI_TAYLOR_MAX + 1];
+  (void)t;
+  dvi_taylor_multiply(degree, q, q, square);
+  dvi_taylor_put(degree, 1, square, 0.5 * stiffness, 0, V);
+  dvi_taylor_put(degree, 1, q, stiffness, 0, V_q);
+  dvi_taylor_put(degree, 1, one, stiffness, 0, V_qq);
+  return 0;
+}
+
 typedef struct stiffnesses {
   double slow, fast;
 } stiffnesses;
@@ -57,14 +72,20 @@ static dvi_status make(const double *setting, problem *made)
   made->q[0] = 1.0;
 
   dvi_potential springs[2] = {
-      {.name = "slow", .value_batch = value, .gradient_batch = gradient, .hessian_batch = hessian, .user = &own->slow},
+      {.name = "slow",
+       .value_batch = value,
+       .gradient_batch = gradient,
+       .hessian_batch = hessian,
+       .user = &own->slow,
+       .taylor = taylor},
       {.name = "fast",
        .value_batch = value,
        .gradient_batch = gradient,
        .hessian_batch = hessian,
        .user = &own->fast,
        .fast = 1,
-       .quadratic = 1},
+       .quadratic = 1,
+       .taylor = taylor},
   };
   const dvi_system_terms terms = {
       .dimension = 1, .mass = {.scalar = 1.0}, .potentials = springs, .potential_count = 2, .autonomous = 1};

@@ -1,5 +1,6 @@
 /* A pendulum in a plane, L = v^2/2 - cos q: the angle is measured from the top, so that a start near q = 0 stays near the
  * separatrix. */
+#include <dvi/taylor.h>
 #include <float.h>
 #include <math.h>
 
@@ -26,6 +27,18 @@ static int hessian(int count, const double *t, const double *q, double *V_qq, vo
   return 0;
 }
 
+/* V = cos q along a curve. */
+static int taylor(int degree, const double *t, const double *q, double *V, double *V_q, double *V_qq, void *user)
+{
+  double sine[DVI_TAYLOR_MAX + 1], cosine[DVI_TAYLOR_MAX + 1];
+  (void)t, (void)user;
+  dvi_taylor_sin_cos(degree, q, sine, cosine);
+  dvi_taylor_put(degree, 1, cosine, 1.0, 0, V);
+  dvi_taylor_put(degree, 1, sine, -1.0, 0, V_q);
+  dvi_taylor_put(degree, 1, cosine, -1.0, 0, V_qq);
+  return 0;
+}
+
 static dvi_status make(const double *setting, problem *made)
 {
   const dvi_status status = problem_room(made, 1, 1);
@@ -33,7 +46,8 @@ static dvi_status make(const double *setting, problem *made)
   problem_label(made, 0, "q");
   made->q[0] = setting[0];
 
-  const dvi_potential gravity = {.name = "gravity", .value_batch = value, .gradient_batch = gradient, .hessian_batch = hessian};
+  const dvi_potential gravity = {
+      .name = "gravity", .value_batch = value, .gradient_batch = gradient, .hessian_batch = hessian, .taylor = taylor};
   const dvi_system_terms terms = {
       .dimension = 1, .mass = {.scalar = 1.0}, .potentials = &gravity, .potential_count = 1, .autonomous = 1};
   return problem_system(made, &terms);

@@ -93,6 +93,19 @@ static int lagrangian_rate(double t, const double *q, const double *v, double *L
   return own->rate_batch ? own->rate_batch(1, &t, q, v, L_t, own->user) : own->rate(t, q, v, L_t, own->user);
 }
 
+static int taylor(int degree, const double *t, const double *q, double *V, double *V_q, double *V_qq, void *user)
+{
+  const dvi_potential *own = user;
+  return own->taylor(degree, t, q, V, V_q, V_qq, own->user);
+}
+
+static int lagrangian_taylor(int degree, const double *t, const double *q, const double *v, double *L, double *L_q, double *L_v,
+                             double *L_qq, double *L_qv, double *L_vv, void *user)
+{
+  const dvi_lagrangian *own = user;
+  return own->taylor(degree, t, q, v, L, L_q, L_v, L_qq, L_qv, L_vv, own->user);
+}
+
 static dvi_potential one_point_potential(const dvi_potential *declared)
 {
   return (dvi_potential){.name = declared->name,
@@ -105,7 +118,8 @@ static dvi_potential one_point_potential(const dvi_potential *declared)
                          .rate = declared->rate || declared->rate_batch ? rate : NULL,
                          .user = (void *)declared,
                          .fast = declared->fast,
-                         .quadratic = declared->quadratic};
+                         .quadratic = declared->quadratic,
+                         .taylor = declared->taylor ? taylor : NULL};
 }
 
 static dvi_lagrangian one_point_lagrangian(const dvi_lagrangian *declared)
@@ -117,7 +131,8 @@ static dvi_lagrangian one_point_lagrangian(const dvi_lagrangian *declared)
                           .qv = declared->qv,
                           .vv = declared->vv,
                           .rate = declared->rate || declared->rate_batch ? lagrangian_rate : NULL,
-                          .user = (void *)declared};
+                          .user = (void *)declared,
+                          .taylor = declared->taylor ? lagrangian_taylor : NULL};
 }
 
 dvi_status problem_one_point(problem *made)

@@ -1,4 +1,5 @@
 /* The periodic Toda lattice, V = 0.64 sum_i exp(q_i - q_{i+1}), q_N = q_0, from a bump at rest. */
+#include <dvi/taylor.h>
 #include <math.h>
 
 #include "entry.h"
@@ -55,6 +56,42 @@ static int hessian(int count, const double *t, const double *q, double *V_qq, vo
       V_qq[own->own[next] * count + k] += curvature;
       V_qq[own->above[i] * count + k] -= curvature;
       V_qq[own->below[i] * count + k] -= curvature;
+    }
+  }
+  return 0;
+}
+
+/* One bond's curvature to the Hessian of one coefficient. */
+static void add_bond(const lattice *own, int i, double curvature, double *V_qq)
+{
+  V_qq[own->own[i]] += curvature;
+  V_qq[own->own[(i + 1) % own->N]] += curvature;
+  V_qq[own->above[i]] -= curvature;
+  V_qq[own->below[i]] -= curvature;
+}
+
+/* The same along a curve, bond by bond. */
+static int taylor(int degree, const double *t, const double *q, double *V, double *V_q, double *V_qq, void *user)
+{
+  const lattice *own = user;
+  const int N = own->N, entries = own->start[N];
+  double here[DVI_TAYLOR_MAX + 1], there[DVI_TAYLOR_MAX + 1], stretch[DVI_TAYLOR_MAX + 1], bond[DVI_TAYLOR_MAX + 1];
+  (void)t;
+  for (int k = 0; V && k <= degree; k++) V[k] = 0.0;
+  for (int j = 0; V_q && j < (degree + 1) * N; j++) V_q[j] = 0.0;
+  for (int j = 0; V_qq && j < (degree + 1) * entries; j++) V_qq[j] = 0.0;
+  for (int i = 0; i < N; i++) {
+    const int next = (i + 1) % N;
+    dvi_taylor_get(degree, N, q, i, here);
+    dvi_taylor_get(degree, N, q, next, there);
+    dvi_taylor_combine(degree, 1.0, here, -1.0, there, stretch);
+    dvi_taylor_exp(degree, stretch, bond);
+    for (int k = 0; k <= degree; k++) {
+      const double force = strength * bond[k];
+      if (V) V[k] += force;
+      if (V_q) V_q[k * N + i] += force;
+      if (V_q) V_q[k * N + next] -= force;
+      if (V_qq) add_bond(own, i, force, V_qq + (ptrdiff_t)k * entries);
     }
   }
   return 0;
@@ -139,7 +176,8 @@ static dvi_status make(const double *setting, problem *made)
                                .gradient_batch = gradient,
                                .hessian_batch = hessian,
                                .qq = {own->start, own->row},
-                               .user = own};
+                               .user = own,
+                               .taylor = taylor};
   const dvi_symmetry symmetry = {.name = "momentum", .generator = translation, .user = own};
   const dvi_system_terms terms = {.dimension = N,
                                   .mass = {.scalar = 1.0},

@@ -19,7 +19,7 @@ BEGIN {
   # Single headers that are open to a room beyond that.
   also["reference solve/sundials_compat.h"] = 1
   # Standard headers that a public header may need.
-  split("stddef.h", open_headers)
+  split("math.h stddef.h", open_headers)
   for (i in open_headers) standard[open_headers[i]] = 1
   count = split(methods, names, " ")
   for (i = 1; i <= count; i++) method["method/" names[i] ".h"] = 1
@@ -47,7 +47,7 @@ function check_library(quoted, header,   target) {
 }
 
 function check_public(quoted, header) {
-  if (quoted || (header !~ /^dvi\// && !(header in standard))) breach("a public header includes only <dvi/...> and <stddef.h>")
+  if (quoted || (header !~ /^dvi\// && !(header in standard))) breach("a public header includes only <dvi/...>, <math.h> and <stddef.h>")
 }
 
 # The command, the problems and the examples are users of the library.

@@ -42,6 +42,8 @@ static const struct {
     {"kepler", NULL, "sem:degree=2"},
     {"fpu", "ell=40", "sem:solver=kinsol"},
     {"driven-pendulum", NULL, "sem:degree=2,quadrature=lobatto"},
+    {"kepler", NULL, "prolongation-collocation"},
+    {"double-pendulum", NULL, "prolongation-collocation:derivatives=3"},
     {"vortices", NULL, "vprk"},
     {"tokamak", NULL, "dg-phase"},
     {"magnetic-pair", NULL, "dg-phase:degree=3"},

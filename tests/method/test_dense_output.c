@@ -21,6 +21,8 @@ static const char *const methods[] = {
     "verlet",
     "composition:order=4,base=verlet",
     "composition:order=6,base=galerkin,degree=2",
+    "prolongation-collocation:derivatives=1",
+    "prolongation-collocation:derivatives=4",
 };
 enum { METHODS = sizeof methods / sizeof *methods };
 
@@ -124,6 +126,9 @@ static const struct {
     {"galerkin:degree=4,quadrature=clenshaw-curtis,nodes=4", 2, 0.05},
     {"trapezoidal", 2, 0.1},
     {"verlet", 3, 0.1},
+    {"prolongation-collocation:derivatives=1", 2, 0.1},
+    {"prolongation-collocation", 4, 0.1},
+    {"prolongation-collocation:derivatives=4", 7, 0.2},
     {"composition:order=4,base=verlet", 4, 0.1},
     {"composition:order=8,base=midpoint", 4, 0.1},
 };

@@ -198,6 +198,7 @@ static const char *const methods[] = {
     "respa:substeps=exact",
     "mollified:filter=projection",
     "trig:filter=gautschi",
+    "prolongation-collocation:derivatives=3",
 };
 enum { PLACES = sizeof places / sizeof *places, METHODS = sizeof methods / sizeof *methods, STEPS = 12 };
 

@@ -60,7 +60,7 @@ START_TEST(a_tableau_in_a_file_is_the_built_in_one)
   ck_assert_int_eq(dvi_integrator_order(file), 4);
   ck_assert_str_eq(
       dvi_integrator_method(file),
-      "shooting:onestep=file,stages=4,tableau=shooting.tableau,composition=none,quadrature=simpson,nodes=3,tolerance=auto");
+      "shooting:onestep=file,stages=4,tableau=shooting.tableau,composition=none,quadrature=simpson,nodes=3,terms=0,tolerance=auto,type=1");
   advance(file, 0.05, 20);
   advance(built_in, 0.05, 20);
   ck_assert_mem_eq(dvi_integrator_q(file), dvi_integrator_q(built_in), 2 * sizeof(double));
@@ -125,6 +125,10 @@ static const struct {
              {"onestep=gauss,quadrature=lobatto", SYMMETRIC},
              {"onestep=lobatto-iiia,stages=3", SYMMETRIC},
              {"onestep=implicit-midpoint,composition=4", SYMMETRIC},
+             {"onestep=taylor,stages=3", UNSYMMETRIC},
+             {"onestep=rk4,quadrature=euler-maclaurin,terms=2", UNSYMMETRIC},
+             {"onestep=taylor,stages=8,quadrature=euler-maclaurin", NEARLY},
+             {"onestep=gauss,quadrature=gauss-hermite", SYMMETRIC},
              {"onestep=gauss,stages=4,quadrature=clenshaw-curtis", SYMMETRIC}};
 enum { PAIRS = sizeof pairs / sizeof *pairs };
 
@@ -273,6 +277,9 @@ static const struct {
     {"shooting:onestep=rk5", "possible are euler"},
     {"shooting:onestep=file", "onestep=file needs the name of the file"},
     {"shooting:onestep=rk4,tableau=x", "onestep=rk4 is built in"},
+    {"shooting:quadrature=gauss-hermite,nodes=3", "has its 2 nodes at the ends, not nodes=3"},
+    {"shooting:quadrature=euler-maclaurin,terms=0", "terms=1 to 20 are possible"},
+    {"shooting:terms=2", "quadrature=simpson has no terms"},
     {"shooting:composition=4", "raises the order of symmetric one-step methods alone, and onestep=rk4 is none"},
     {"shooting:tableau=no/such/file", "no/such/file cannot be read"},
 };
@@ -285,6 +292,31 @@ START_TEST(what_does_not_go_is_refused)
   ck_assert_int_eq(dvi_integrator_create(of->system, refused[_i].method, &none), DVI_BAD_OPTION);
   check_words(refused[_i].words);
   ck_assert_ptr_null(none);
+  problem_destroy(&of);
+}
+END_TEST
+
+/* Of the catalogue all have them that have a mass and few coordinates. */
+START_TEST(what_needs_taylor_coefficients_says_who_lacks_them)
+{
+  problem *of = made_problem("kepler", NULL);
+  const dvi_potential plain = {.name = "plain",
+                               .value = of->terms->potentials[0].value,
+                               .gradient = of->terms->potentials[0].gradient,
+                               .value_batch = of->terms->potentials[0].value_batch,
+                               .gradient_batch = of->terms->potentials[0].gradient_batch,
+                               .user = of->terms->potentials[0].user};
+  const dvi_system_terms terms = {.dimension = 2, .mass = {.scalar = 1}, .potentials = &plain, .potential_count = 1};
+  dvi_system *system;
+  dvi_integrator *none = NULL;
+  ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_create(system, "shooting:quadrature=euler-maclaurin", &none), DVI_UNSUPPORTED);
+  check_words("shooting: quadrature=euler-maclaurin");
+  check_words("'plain'");
+  ck_assert_int_eq(dvi_integrator_create(system, "shooting:onestep=taylor", &none), DVI_UNSUPPORTED);
+  check_words("shooting: onestep=taylor");
+  ck_assert_ptr_null(none);
+  dvi_system_destroy(&system);
   problem_destroy(&of);
 }
 END_TEST
@@ -334,6 +366,7 @@ int main(void)
   tcase_add_loop_test(tests, momenta_of_equivariant_one_step_methods_stay_at_roundoff, 0, 3);
   tcase_add_test(tests, momenta_of_other_one_step_methods_do_not);
   tcase_add_loop_test(tests, what_does_not_go_is_refused, 0, REFUSED);
+  tcase_add_test(tests, what_needs_taylor_coefficients_says_who_lacks_them);
   tcase_add_loop_test(tests, a_one_step_method_that_fails_inside_a_step_leaves_the_state, 0, 2);
   return run_tests("method/shooting", tests);
 }

@@ -19,6 +19,10 @@ static const char *const methods[] = {
     "composition:order=4,base=verlet",
     "composition:order=6,base=midpoint",
     "composition:order=8,base=galerkin,degree=1,quadrature=trapezoid",
+    "prolongation-collocation:derivatives=1",
+    "prolongation-collocation",
+    "prolongation-collocation:derivatives=3",
+    "prolongation-collocation:derivatives=6",
 };
 enum { METHODS = sizeof methods / sizeof *methods, RADAU = 5 };
 

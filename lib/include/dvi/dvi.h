@@ -13,6 +13,7 @@
 #include <dvi/run.h>
 #include <dvi/status.h>
 #include <dvi/system.h>
+#include <dvi/taylor.h>
 #include <dvi/transform.h>
 #include <dvi/version.h>
 #endif

@@ -49,6 +49,10 @@ typedef struct dvi_lagrangian {
   /** The rate L_t, the derivative in time alone. Needed by methods for which time is an unknown, unless the system is autonomous. */
   int (*rate)(double t, const double *q, const double *v, double *L_t, void *user);
   int (*rate_batch)(int count, const double *t, const double *q, const double *v, double *L_t, void *user);
+  /** Taylor coefficients along a curve, as dvi_potential's; v has its own coefficients [(degree+1)*n], which need not be those of q's rate. L [degree+1],
+   *  L_q and L_v [(degree+1)*n], L_qq, L_qv and L_vv [(degree+1)*entries of the pattern]; each may be NULL. */
+  int (*taylor)(int degree, const double *t, const double *q, const double *v, double *L, double *L_q, double *L_v, double *L_qq,
+                double *L_qv, double *L_vv, void *user);
 } dvi_lagrangian;
 
 /** A one-form alpha(q), for degenerate Lagrangians alpha(q).v - H: magnetic field lines, guiding centres, point vortices, predators and their prey.
@@ -141,6 +145,11 @@ typedef struct dvi_potential {
   int (*rate_batch)(int count, const double *t, const double *q, double *V_t, void *user);
   int fast; /**< not 0: its forces are stiff. Methods that split take it apart from the others (docs/methods/imex.md); to all others it is one of them */
   int quadratic; /**< not 0: V = q.Kq/2 + b(t).q + c(t) with a constant K, so that its Hessian is asked for once. dvi_system_check tests it */
+  /** Taylor coefficients along a curve t(s) = sum_k t[k] s^k, q_i(s) = sum_k q[k*n + i] s^k, k from 0 to the degree (at most DVI_TAYLOR_MAX): those of V,
+   *  V_q and V_qq there, V [degree+1], V_q [(degree+1)*n], V_qq [(degree+1)*entries of the pattern], coefficient k of entry e at [k*entries + e];
+   *  each may be NULL. Needed by methods that use higher derivatives than the second; dvi/taylor.h has the arithmetic of series to write it with.
+   *  One shape, beside either of the others'. */
+  int (*taylor)(int degree, const double *t, const double *q, double *V, double *V_q, double *V_qq, void *user);
 } dvi_potential;
 
 /** A constant mass matrix: exactly one of the three forms. It must be regular, and may be indefinite: a Lagrangian with -M and -V moves as that with M and V. */
@@ -319,11 +328,14 @@ typedef struct dvi_derivative_check {
   double rate_error;     /**< largest difference of given and differenced rate, relative to the rate */
   int depends_on_time;   /**< 1: the system is declared autonomous, but a callback's results change with t */
   int not_quadratic;     /**< 1: a potential is declared quadratic, but its Hessian changes with q or t */
+  double
+      taylor_error; /**< largest difference of a Taylor coefficient and the one-point callbacks, or differences of the coefficient below it, relative */
 } dvi_derivative_check;
 
 /** Compare every gradient, Hessian, pattern and rate of the system with differences of the values at one point, and every gradient_range, bit
  *  for bit, with the whole gradient: over short and long ranges, with NaN wherever it may not look. Of an autonomous system every callback must
- *  give the same numbers at two other times, and the gradient of a quadratic potential must be linear in q.
+ *  give the same numbers at two other times, and the gradient of a quadratic potential must be linear in q. Taylor coefficients are compared with the other
+ *  callbacks, and each with differences of the one below it along a curve through the point.
  *
  *  Uses 6th order central differences; n^2 gradient calls: meant for tests and for moderate n.
  *  @param      q, v       [nq], [nv]: a point in general position; with a Hamiltonian v stands for p

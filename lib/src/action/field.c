@@ -122,11 +122,9 @@ dvi_status dvi__field_select(dvi__field *f, int k)
   return f->linear != NULL ? dvi__linear_factor(f->linear, f->L_vv + first_of(&f->system->vv, k)) : DVI_OK;
 }
 
-/* y += sign A x at the selected point, or with the transpose of A. */
-static void add_times(const dvi__field *f, const dvi__pattern *of, const double *values, int transposed, double sign,
-                      const double *x, double *y)
+/* y += sign A x, or with the transpose of A. */
+static void add_times(const dvi__pattern *of, const double *values, int transposed, double sign, const double *x, double *y)
 {
-  values += first_of(of, f->at);
   for (int j = 0; j < of->columns; j++)
     for (int e = of->start[j]; e < of->start[j + 1]; e++) {
       const int i = of->row[e];
@@ -138,31 +136,33 @@ static void product_of_H(const dvi__field *f, const double *motion, double *prod
 {
   const dvi_system *s = f->system;
   const int n = f->n;
+  const double *H_qp = f->L_qv + first_of(&s->qv, f->at);
   memset(product, 0, 2 * (size_t)n * sizeof *product);
-  add_times(f, &s->qq, f->L_qq, 0, 1, motion, product);
-  add_times(f, &s->qv, f->L_qv, 0, 1, motion + n, product);
-  add_times(f, &s->qv, f->L_qv, 1, 1, motion, product + n);
-  add_times(f, &s->vv, f->L_vv, 0, 1, motion + n, product + n);
+  add_times(&s->qq, f->L_qq + first_of(&s->qq, f->at), 0, 1, motion, product);
+  add_times(&s->qv, H_qp, 0, 1, motion + n, product);
+  add_times(&s->qv, H_qp, 1, 1, motion, product + n);
+  add_times(&s->vv, f->L_vv + first_of(&s->vv, f->at), 0, 1, motion + n, product + n);
 }
 
 void dvi__field_product(dvi__field *f, const double *motion, double *product)
 {
   const dvi_system *s = f->system;
   const int n = f->n;
+  const double *L_qv = f->L_qv + first_of(&s->qv, f->at);
   double *w = product + n;
   if (f->is_H) {
     product_of_H(f, motion, product);
     return;
   }
   memcpy(f->w, motion + n, (size_t)n * sizeof *w);
-  add_times(f, &s->qv, f->L_qv, 1, -1, motion, f->w);
+  add_times(&s->qv, L_qv, 1, -1, motion, f->w);
   if (f->linear != NULL)
     dvi__linear_solve(f->linear, f->w);
   else
     dvi__mass_solve(f->evaluator, 1, f->w, f->w);
   memset(product, 0, (size_t)n * sizeof *product);
-  add_times(f, &s->qq, f->L_qq, 0, -1, motion, product);
-  add_times(f, &s->qv, f->L_qv, 0, -1, f->w, product);
+  add_times(&s->qq, f->L_qq + first_of(&s->qq, f->at), 0, -1, motion, product);
+  add_times(&s->qv, L_qv, 0, -1, f->w, product);
   memcpy(w, f->w, (size_t)n * sizeof *w);
 }
 
@@ -176,12 +176,62 @@ void dvi__field_lagrangian(dvi__field *f, double *gradient)
   for (size_t i = 0; i < n; i++) gradient[i] -= f->H_q[at + i];
 }
 
+/* ---- velocities ---- */
+
+dvi__field_point dvi__field_point_at(const dvi__field *f, int k)
+{
+  const size_t at = (size_t)k * (size_t)f->n;
+  return (dvi__field_point){f->t[k], f->q + at, f->v + at};
+}
+
+dvi__field_point dvi__field_selected(const dvi__field *f)
+{
+  return dvi__field_point_at(f, f->at);
+}
+
+/* For a constant mass L_v is linear, and nothing is lost to p. */
+dvi_status dvi__field_impulse(dvi__field *f, int k, double t, const double *q, const double *dv, double *dp)
+{
+  const size_t n = (size_t)f->n, at = (size_t)k * n;
+  if (f->linear == NULL) return dvi__lagrangian_gradient(f->evaluator, 1, &t, q, dv, NULL, dp);
+  for (size_t i = 0; i < n; i++) f->w[i] = f->v[at + i] + dv[i];
+  DVI_TRY(dvi__lagrangian_gradient(f->evaluator, 1, &t, q, f->w, NULL, dp));
+  for (size_t i = 0; i < n; i++) dp[i] -= f->p[at + i];
+  return DVI_OK;
+}
+
+static const double *constant_mass(const dvi__field *f)
+{
+  return f->system->mass_diagonal != NULL ? f->system->mass_diagonal : f->system->mass_values;
+}
+
+static const double *mass_of(const dvi__field *f, int k)
+{
+  return f->linear != NULL ? f->L_vv + first_of(&f->system->vv, k) : constant_mass(f);
+}
+
+void dvi__field_lift(dvi__field *f, int k, const double *motion, double *dp)
+{
+  const dvi_system *s = f->system;
+  memset(dp, 0, (size_t)f->n * sizeof *dp);
+  add_times(&s->qv, f->L_qv + first_of(&s->qv, k), 1, 1, motion, dp);
+  add_times(&s->vv, mass_of(f, k), 0, 1, motion + f->n, dp);
+}
+
+void dvi__field_lower(dvi__field *f, int k, const double *covector, double *image)
+{
+  const dvi_system *s = f->system;
+  memset(image, 0, 2 * (size_t)f->n * sizeof *image);
+  add_times(&s->qv, f->L_qv + first_of(&s->qv, k), 0, 1, covector, image);
+  add_times(&s->vv, mass_of(f, k), 0, 1, covector, image + f->n);
+}
+
 /* ---- sizes ---- */
 
 static dvi_status mass_at(dvi__field *f, double t, const double *q, const double *v, const double **values)
 {
   if (f->linear != NULL) return dvi__velocity_hessian(f->evaluator, t, q, v, values);
-  *values = f->system->mass_diagonal != NULL ? f->system->mass_diagonal : f->system->mass_values;
+  *values = constant_mass(f);
   return DVI_OK;
 }
 

@@ -11,6 +11,7 @@ typedef struct dvi__runge_kutta {
   int stages, order;
   int is_explicit; /* a_ij = 0 for j >= i */
   int symmetric;   /* self-adjoint: a step of -h undoes one of h */
+  int series;      /* not 0: the motion's Taylor series to this degree, and no tableau; it counts as one stage with b = 1 */
   double a[DVI__RK_STAGES_MOST][DVI__RK_STAGES_MOST], b[DVI__RK_STAGES_MOST], c[DVI__RK_STAGES_MOST];
 } dvi__runge_kutta;
 

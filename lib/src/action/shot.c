@@ -1,18 +1,20 @@
 #include "action/shot.h"
 
-#include <math.h>
 #include <string.h>
 
+#include "action/ends.h"
+#include "action/stages.h"
+#include "action/taylor.h"
 #include "core/memory.h"
 #include "core/status.h"
-#include "num/finite.h"
-#include "action/stages.h"
 
 struct dvi__shot {
   dvi__runge_kutta method;
   dvi__course course;
   dvi__field *field;
   dvi__stages *coupled; /* NULL: the method is explicit */
+  dvi__taylor *series;  /* NULL: it has a tableau */
+  dvi__ends *ends;      /* NULL: the quadrature has values of L alone */
   int n, first_is_node; /* a node is the first stage of the piece behind it */
   double t0, h;
   const double *q0;
@@ -68,6 +70,8 @@ static dvi_status fill(dvi__shot *s, const dvi_system *system, dvi_counters *cou
 {
   DVI_TRY(allocate(s));
   DVI_TRY(dvi__field_create(system, node_point(s, s->course.pieces) + 1, counters, &s->field));
+  if (s->method.series > 0) DVI_TRY(dvi__taylor_create(system, s->field, s->method.series, s->course.pieces, counters, &s->series));
+  if (s->course.count > 0) DVI_TRY(dvi__ends_create(system, s->course.count, s->course.weight, counters, &s->ends));
   return s->method.is_explicit ? DVI_OK : dvi__stages_create(s->field, s->n, &s->method, counters, &s->coupled);
 }
 
@@ -93,6 +97,8 @@ void dvi__shot_destroy(dvi__shot **shot)
   if (s == NULL) return;
   for (int i = 0; owned(s, i) != NULL; i++) dvi__release(*owned(s, i));
   dvi__stages_destroy(&s->coupled);
+  dvi__taylor_destroy(&s->series);
+  dvi__ends_destroy(&s->ends);
   dvi__field_destroy(&s->field);
   dvi__release(s);
   *shot = NULL;
@@ -154,6 +160,15 @@ static dvi_status explicit_stages(dvi__shot *s, int piece, double t, double h)
   return DVI_OK;
 }
 
+/* The one stage is where the piece starts. */
+static dvi_status series_stage(dvi__shot *s, int piece, double t, double h)
+{
+  const int point = stage_point(s, piece, 0);
+  dvi_status status = place(s, point, t, at(s, s->node, piece), s->turned);
+  if (status == DVI_OK) status = dvi__taylor_advance(s->series, point, h, at(s, s->W, piece));
+  return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "the Taylor series of the motion at node %d", piece + 1);
+}
+
 static dvi_status coupled_stages(dvi__shot *s, int piece, double t, double h)
 {
   const double *node = at(s, s->node, piece);
@@ -164,6 +179,13 @@ static dvi_status coupled_stages(dvi__shot *s, int piece, double t, double h)
   const dvi_status status = dvi__stages_solve(s->coupled, stage_point(s, piece, 0), t, h, s->point,
                                               at(s, s->W, piece * s->method.stages));
   return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "the stages of the one-step method from node %d on", piece + 1);
+}
+
+static dvi_status stages(dvi__shot *s, int piece)
+{
+  const double t = s->t0 + s->course.c[piece] * s->h, h = length_of(s, piece);
+  if (s->series != NULL) return series_stage(s, piece, t, h);
+  return s->coupled != NULL ? coupled_stages(s, piece, t, h) : explicit_stages(s, piece, t, h);
 }
 
 /* Nodes of the quadrature that no stage stands for. */
@@ -186,8 +208,7 @@ dvi_status dvi__shot_fire(dvi__shot *s, const double *p, double *reach)
   memcpy(s->p0, p, (size_t)s->n * sizeof *p);
   memset(s->node, 0, z * sizeof *s->node);
   for (int piece = 0; piece < s->course.pieces; piece++) {
-    const double t = s->t0 + s->course.c[piece] * s->h, h = length_of(s, piece);
-    DVI_TRY(m->is_explicit ? explicit_stages(s, piece, t, h) : coupled_stages(s, piece, t, h));
+    DVI_TRY(stages(s, piece));
     double *next = at(s, s->node, piece + 1);
     memcpy(next, at(s, s->node, piece), z * sizeof *next);
     for (int j = 0; j < m->stages; j++) add(s, m->b[j], at(s, s->W, piece * m->stages + j), next);
@@ -203,6 +224,8 @@ dvi_status dvi__shot_trace(dvi__shot *s)
   DVI_TRY(dvi__field_differentiate(s->field, 0, s->course.pieces * s->method.stages));
   for (int m = 0; m <= s->course.pieces; m++)
     if (stands_alone(s, m)) DVI_TRY(dvi__field_differentiate(s->field, node_point(s, m), 1));
+  for (int piece = 0; s->series != NULL && piece < s->course.pieces; piece++)
+    DVI_TRY(dvi__taylor_trace(s->series, piece, length_of(s, piece)));
   return DVI_OK;
 }
 
@@ -244,12 +267,23 @@ static dvi_status coupled_costates(dvi__shot *s, int piece, double h, const doub
   return DVI_OK;
 }
 
+/* kappa of all stages, from the costate `end` behind them. */
+static dvi_status costates(dvi__shot *s, int piece, const double *end)
+{
+  const double h = length_of(s, piece);
+  if (s->series != NULL) return dvi__taylor_pull(s->series, piece, end, s->kappa);
+  return s->coupled != NULL ? coupled_costates(s, piece, h, end) : explicit_costates(s, piece, h, end);
+}
+
 static dvi_status add_lagrangian(dvi__shot *s, int m)
 {
   if (s->course.b[m] == 0) return DVI_OK;
   DVI_TRY(dvi__field_select(s->field, node_point(s, m)));
   dvi__field_lagrangian(s->field, s->point);
   add(s, s->h * s->course.b[m], s->point, s->lambda);
+  if (s->ends == NULL || (m > 0 && m < s->course.pieces)) return DVI_OK;
+  DVI_TRY(dvi__ends_gradient(s->ends, s->field, m == 0 ? s->h : -s->h, s->point));
+  add(s, s->h, s->point, s->lambda);
   return DVI_OK;
 }
 
@@ -259,9 +293,8 @@ dvi_status dvi__shot_costate(dvi__shot *s, const double *end, double *gain)
   memset(s->lambda, 0, (size_t)z * sizeof *s->lambda);
   DVI_TRY(add_lagrangian(s, s->course.pieces));
   for (int piece = s->course.pieces - 1; piece >= 0; piece--) {
-    const double h = length_of(s, piece);
     for (int i = 0; i < z; i++) s->point[i] = end[i] + s->lambda[i];
-    DVI_TRY(s->method.is_explicit ? explicit_costates(s, piece, h, s->point) : coupled_costates(s, piece, h, s->point));
+    DVI_TRY(costates(s, piece, s->point));
     for (int j = 0; j < s->method.stages; j++) add(s, 1, at(s, s->kappa, j), s->lambda);
     DVI_TRY(add_lagrangian(s, piece));
   }
@@ -302,6 +335,13 @@ static dvi_status move_stages(dvi__shot *s, int piece, double h, int columns, do
   return DVI_OK;
 }
 
+static dvi_status move_series(dvi__shot *s, int piece, int columns, const double *motion)
+{
+  for (int i = 0; i < columns; i++)
+    DVI_TRY(dvi__taylor_push(s->series, piece, motion + (size_t)i * 2 * (size_t)s->n, column_of(s, i)));
+  return DVI_OK;
+}
+
 static dvi_status couple(dvi__shot *s, int piece, double h, int columns)
 {
   if (s->coupled == NULL) return DVI_OK;
@@ -315,7 +355,7 @@ dvi_status dvi__shot_move(dvi__shot *s, double *motion)
   const int columns = 2 * s->n;
   for (int piece = 0; piece < s->course.pieces; piece++) {
     const double h = length_of(s, piece);
-    DVI_TRY(move_stages(s, piece, h, columns, motion));
+    DVI_TRY(s->series != NULL ? move_series(s, piece, columns, motion) : move_stages(s, piece, h, columns, motion));
     DVI_TRY(couple(s, piece, h, columns));
     for (int i = 0; i < columns; i++)
       for (int j = 0; j < s->method.stages; j++) add(s, s->method.b[j], at(s, column_of(s, i), j), at(s, motion, i));

@@ -9,15 +9,19 @@
  * Source: Leok and Shingel 2012, sec. 3; Hager 2000 (the costates of a Runge-Kutta method). */
 #ifndef DVI_ACTION_SHOT_H
 #define DVI_ACTION_SHOT_H
+#include <dvi/taylor.h>
+
 #include "action/field.h"
 #include "action/runge_kutta.h"
 
 enum { DVI__PIECES_MOST = 256 };
 
-/* Nodes in the order of the shot, and weights; a weight of 0 leaves the Lagrangian out. */
+/* Nodes in the order of the shot, and weights; a weight of 0 leaves the Lagrangian out, but not at the ends. */
 typedef struct dvi__course {
   int pieces;
   double c[DVI__PIECES_MOST + 1], b[DVI__PIECES_MOST + 1];
+  int count; /* of Taylor coefficients of L at both ends (action/ends.h), with their weights; 0: none beside the values */
+  double weight[DVI_TAYLOR_MAX + 1];
 } dvi__course;
 
 typedef struct dvi__shot dvi__shot;

@@ -18,18 +18,24 @@
 #include "method/stationary.h"
 #include "num/compensated.h"
 #include "num/finite.h"
+#include "space/osculation.h"
 
-enum { ONE_STEP, STAGES, TABLEAU, COMPOSITION, QUADRATURE, NODES, TOLERANCE, TYPE };
-enum { NODES_MOST = 16, FROM_FILE = DVI__RK_NAMED };
+enum { ONE_STEP, STAGES, TABLEAU, COMPOSITION, QUADRATURE, NODES, TERMS, TOLERANCE, TYPE };
+enum { NODES_MOST = 16, STAGES_MOST = 20, TAYLOR = DVI__RK_NAMED, FROM_FILE };
+
+/* Quadratures: those of the core; Euler-Maclaurin and Gauss-Hermite. */
+enum { EULER_MACLAURIN = DVI_SIMPSON + 1, GAUSS_HERMITE };
 
 static const char *one_step_name(int index)
 {
+  if (index == TAYLOR) return "taylor";
   return index == FROM_FILE ? "file" : dvi__runge_kutta_name(index);
 }
 
 static const char *rule_name(int index)
 {
-  return dvi_rule_name((dvi_rule)index);
+  if (index == EULER_MACLAURIN) return "euler-maclaurin";
+  return index == GAUSS_HERMITE ? "gauss-hermite" : dvi_rule_name((dvi_rule)index);
 }
 
 static const char *composition_name(int index)
@@ -40,15 +46,18 @@ static const char *composition_name(int index)
 static const dvi__key keys[] = {
     {"onestep", one_step_name, 0, 0, DVI__LEFT_OUT,
      "euler, explicit-midpoint, heun, kutta3, rk4, three-eighths, dormand-prince, butcher6, cooper-verner, backward-euler, "
-     "implicit-midpoint, gauss, radau-iia, lobatto-iiia, sdirk, or file; left out: rk4"},
-    {"stages", NULL, 1, DVI__RK_STAGES_MOST, DVI__LEFT_OUT,
-     "of gauss, radau-iia, lobatto-iiia (2 to 8) and sdirk (2 or 3); left out: 2"},
+     "implicit-midpoint, gauss, radau-iia, lobatto-iiia, sdirk, taylor, or file; left out: rk4"},
+    {"stages", NULL, 1, STAGES_MOST, DVI__LEFT_OUT,
+     "of gauss, radau-iia, lobatto-iiia (2 to 8) and sdirk (2 or 3); of taylor the degree, 1 to 20; left out: 2, of taylor 4"},
     {"tableau", NULL, DVI__TEXT, 0, 0, "the file of the one-step method's tableau"},
     {"composition", composition_name, 0, 0, 0,
      "none, 4, 6 or 8: the order to which a symmetric one-step method is composed; left out: none"},
-    {"quadrature", rule_name, 0, 0, DVI_SIMPSON, "trapezoid, simpson, lobatto or clenshaw-curtis; left out: simpson"},
+    {"quadrature", rule_name, 0, 0, DVI_SIMPSON,
+     "trapezoid, simpson, lobatto, clenshaw-curtis, euler-maclaurin or gauss-hermite; left out: simpson"},
     {"nodes", NULL, 2, NODES_MOST, DVI__LEFT_OUT,
      "of lobatto and clenshaw-curtis, 2 to 16; left out: the fewest whose order reaches that of the one-step method"},
+    {"terms", NULL, 0, STAGES_MOST, DVI__LEFT_OUT,
+     "of euler-maclaurin, beside the trapezoid, and of gauss-hermite, at each end, up to 20; left out: as nodes"},
     {"tolerance", NULL, DVI__POSITIVE, 0, 0,
      "the residual, relative to the coordinates, at which the search for v ends: to see what a loose one does; left out: roundoff"},
     {"type", NULL, 1, 3, DVI__LEFT_OUT,
@@ -79,8 +88,18 @@ static dvi_status choose_built_in(dvi__settings *settings, dvi__runge_kutta *met
                    most > fewest ? " or more" : "", most == 1 ? "" : "s", *stages);
 }
 
-static dvi_status choose_one_step(dvi__settings *settings, dvi__runge_kutta *method)
+/* Order 4 at its default degree, as rk4. */
+static dvi_status choose_taylor(const dvi__stepper *self, int *degree, dvi__runge_kutta *method)
 {
+  if (*degree == DVI__LEFT_OUT) *degree = 4;
+  *method = (dvi__runge_kutta){.stages = 1, .order = *degree, .is_explicit = 1, .series = *degree, .b = {1}};
+  const dvi_status status = dvi__system_has_taylor(self->system);
+  return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "shooting: onestep=taylor");
+}
+
+static dvi_status choose_one_step(dvi__stepper *self, dvi__runge_kutta *method)
+{
+  dvi__settings *settings = &self->settings;
   int *choice = &settings->value[ONE_STEP];
   const int has_file = settings->text[0] != 0;
   if (*choice == DVI__LEFT_OUT) *choice = has_file ? FROM_FILE : DVI__RK_4;
@@ -89,6 +108,7 @@ static dvi_status choose_one_step(dvi__settings *settings, dvi__runge_kutta *met
                      has_file ? "shooting: onestep=%s is built in; with tableau=%s only onestep=file is possible"
                               : "shooting: onestep=%s needs the name of the file, tableau=%s",
                      one_step_name(*choice), has_file ? settings->text : "...");
+  if (*choice == TAYLOR) return choose_taylor(self, &settings->value[STAGES], method);
   if (!has_file) return choose_built_in(settings, method);
   const dvi_status status = dvi__runge_kutta_read(settings->text, method);
   if (status != DVI_OK) return dvi__fail_in(status, "shooting");
@@ -111,7 +131,7 @@ static dvi_status choose_composition(const dvi__settings *settings, dvi__runge_k
   return DVI_OK;
 }
 
-static dvi_status choose_nodes(dvi__settings *settings, int order)
+static dvi_status choose_rule(dvi__settings *settings, int order)
 {
   int *nodes = &settings->value[NODES];
   const dvi_rule rule = (dvi_rule)settings->value[QUADRATURE];
@@ -119,13 +139,57 @@ static dvi_status choose_nodes(dvi__settings *settings, int order)
   if (!fixed && rule != DVI_LOBATTO && rule != DVI_CLENSHAW_CURTIS)
     return dvi__fail(DVI_BAD_OPTION,
                      "shooting: quadrature=%s does not have both ends of the step among its nodes, where the shot starts and meets "
-                     "q1; possible are trapezoid, simpson, lobatto and clenshaw-curtis",
+                     "q1; possible are trapezoid, simpson, lobatto, clenshaw-curtis, euler-maclaurin and gauss-hermite",
                      rule_name((int)rule));
   if (*nodes == DVI__LEFT_OUT)
     for (*nodes = fixed ? fixed : 2; !fixed && dvi_quadrature_order(rule, *nodes) < order && *nodes < NODES_MOST;) ++*nodes;
   if (fixed && *nodes != fixed)
     return dvi__fail(DVI_BAD_OPTION, "shooting: quadrature=%s has %d nodes, not nodes=%d", rule_name((int)rule), fixed, *nodes);
   return DVI_OK;
+}
+
+static dvi__osculation osculation_of(const dvi__settings *settings)
+{
+  return settings->value[QUADRATURE] == EULER_MACLAURIN ? DVI__EULER_MACLAURIN : DVI__HERMITE;
+}
+
+static int is_osculation(const dvi__settings *settings)
+{
+  return settings->value[QUADRATURE] >= EULER_MACLAURIN;
+}
+
+static dvi_status choose_osculation(const dvi_system *system, dvi__settings *settings, int order)
+{
+  int *terms = &settings->value[TERMS], *nodes = &settings->value[NODES];
+  const char *name = rule_name(settings->value[QUADRATURE]);
+  if (*nodes != DVI__LEFT_OUT && *nodes != 2)
+    return dvi__fail(DVI_BAD_OPTION, "shooting: quadrature=%s has its 2 nodes at the ends, not nodes=%d", name, *nodes);
+  *nodes = 2;
+  if (*terms == DVI__LEFT_OUT)
+    for (*terms = 1; dvi__osculation_order(osculation_of(settings), *terms) < order;) ++*terms;
+  if (*terms == 0)
+    return dvi__fail(DVI_BAD_OPTION,
+                     "shooting: quadrature=%s without terms is the trapezoid, if anything; terms=1 to %d are possible", name,
+                     STAGES_MOST);
+  const dvi_status status = dvi__system_has_taylor(system);
+  return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "shooting: quadrature=%s", name);
+}
+
+static dvi_status choose_quadrature(const dvi_system *system, dvi__settings *settings, int order)
+{
+  int *terms = &settings->value[TERMS];
+  if (is_osculation(settings)) return choose_osculation(system, settings, order);
+  if (*terms > 0)
+    return dvi__fail(DVI_BAD_OPTION, "shooting: quadrature=%s has no terms; euler-maclaurin and gauss-hermite have",
+                     rule_name(settings->value[QUADRATURE]));
+  *terms = 0;
+  return choose_rule(settings, order);
+}
+
+static int order_of_quadrature(const dvi__settings *settings)
+{
+  if (is_osculation(settings)) return dvi__osculation_order(osculation_of(settings), settings->value[TERMS]);
+  return dvi_quadrature_order((dvi_rule)settings->value[QUADRATURE], settings->value[NODES]);
 }
 
 /* A piece from node to node, in the substeps of the composition; nothing is summed at the points between them. */
@@ -146,8 +210,12 @@ static dvi_status plot(const dvi__settings *settings, dvi__course *course)
 {
   double c[NODES_MOST], b[NODES_MOST];
   const int nodes = settings->value[NODES];
-  DVI_TRY(dvi_quadrature((dvi_rule)settings->value[QUADRATURE], nodes, c, b));
   *course = (dvi__course){0};
+  if (is_osculation(settings)) {
+    dvi__osculation_weights(osculation_of(settings), settings->value[TERMS], course->weight);
+    course->count = dvi__osculation_count(osculation_of(settings), settings->value[TERMS]);
+  }
+  DVI_TRY(dvi_quadrature(course->count > 0 ? DVI_TRAPEZOID : (dvi_rule)settings->value[QUADRATURE], nodes, c, b));
   course->b[0] = b[0];
   for (int i = 1; i < nodes; i++) add_piece(settings, c[i - 1], c[i], b[i], course);
   return DVI_OK;
@@ -207,11 +275,11 @@ static dvi_status create(dvi__stepper *self)
   dvi__runge_kutta method;
   dvi__course course;
   DVI_TRY(choose_type(self->system, &settings->value[TYPE]));
-  DVI_TRY(choose_one_step(settings, &method));
+  DVI_TRY(choose_one_step(self, &method));
   DVI_TRY(choose_composition(settings, &method));
-  DVI_TRY(choose_nodes(settings, method.order));
+  DVI_TRY(choose_quadrature(self->system, settings, method.order));
   DVI_TRY(plot(settings, &course));
-  const int order = dvi_quadrature_order((dvi_rule)settings->value[QUADRATURE], settings->value[NODES]);
+  const int order = order_of_quadrature(settings);
   shooter *own = self->own = DVI_NEW(shooter, 1);
   if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "shooting: no memory");
   own->tolerance = settings->number[TOLERANCE];

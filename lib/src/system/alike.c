@@ -1,5 +1,6 @@
 /* What a system's terms have in common, and which systems may stand in for one another. */
 #include "core/status.h"
+#include "system/jet.h"
 #include "system/term.h"
 
 int dvi__system_has_gradients(const dvi_system *system)
@@ -23,6 +24,21 @@ dvi_status dvi__system_has_rates(const dvi_system *system)
       without);
 }
 
+dvi_status dvi__system_has_taylor(const dvi_system *system)
+{
+  const dvi__lagrangian_term *l = system->lagrangian;
+  const char *without = l != NULL && !dvi__general_has_taylor(l) ? l->name : NULL;
+  for (int p = 0; p < system->potential_count && without == NULL; p++)
+    if (!dvi__potential_has_taylor(&system->potentials[p])) without = system->potentials[p].name;
+  if (without == NULL) return DVI_OK;
+  if (system->terms & DVI__PHASE_SPACE)
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "a Hamiltonian has no taylor callback, and derivatives beyond the second are needed; take a tableau, and a "
+                     "quadrature by values");
+  return dvi__fail(DVI_UNSUPPORTED,
+                   "'%s' has no taylor callback, and derivatives beyond the second are needed; give it (dvi/taylor.h)", without);
+}
+
 static int same_ranges(const dvi_system *a, const dvi_system *b)
 {
   for (int p = 0; p < a->potential_count; p++) {
@@ -37,12 +53,14 @@ static int same_derivatives(const dvi_system *a, const dvi_system *b)
   for (int p = 0; p < a->potential_count; p++)
     if (dvi__potential_has_gradient(&a->potentials[p]) != dvi__potential_has_gradient(&b->potentials[p]) ||
         dvi__potential_has_hessian(&a->potentials[p]) != dvi__potential_has_hessian(&b->potentials[p]) ||
-        dvi__potential_has_rate(&a->potentials[p]) != dvi__potential_has_rate(&b->potentials[p]))
+        dvi__potential_has_rate(&a->potentials[p]) != dvi__potential_has_rate(&b->potentials[p]) ||
+        dvi__potential_has_taylor(&a->potentials[p]) != dvi__potential_has_taylor(&b->potentials[p]))
       return 0;
   if (a->constraint != NULL && (a->constraint->callbacks.hessian != NULL) != (b->constraint->callbacks.hessian != NULL)) return 0;
   return a->lagrangian == NULL || (dvi__general_has_gradient(a->lagrangian) == dvi__general_has_gradient(b->lagrangian) &&
                                    dvi__general_has_hessian(a->lagrangian) == dvi__general_has_hessian(b->lagrangian) &&
-                                   dvi__general_has_rate(a->lagrangian) == dvi__general_has_rate(b->lagrangian));
+                                   dvi__general_has_rate(a->lagrangian) == dvi__general_has_rate(b->lagrangian) &&
+                                   dvi__general_has_taylor(a->lagrangian) == dvi__general_has_taylor(b->lagrangian));
 }
 
 dvi_status dvi__system_alike(const dvi_system *a, const dvi_system *b)

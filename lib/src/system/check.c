@@ -10,6 +10,7 @@
 #include "core/status.h"
 #include "num/finite.h"
 #include "system/check_quadratic.h"
+#include "system/check_taylor.h"
 #include "system/check_time.h"
 #include "system/difference.h"
 #include "system/dirac.h"
@@ -474,6 +475,7 @@ dvi_status dvi_system_check(const dvi_system *system, double t, const double *q,
   if (status == DVI_OK) status = report(&c, accepted, kept);
   if (status == DVI_OK) status = dvi__check_quadratic(system, &c.scratch, t, q, accepted, kept);
   if (status == DVI_OK) status = dvi__check_time(system, &c.scratch, &c.differences, t, q, v, accepted, kept);
+  if (status == DVI_OK) status = dvi__check_taylor(system, &c.scratch, t, q, v, accepted, kept);
   clear(&c);
   return status;
 }

@@ -109,6 +109,9 @@ int dvi__system_has_gradients(const dvi_system *system);
 /* DVI_OK if L_t is known: the system is autonomous, or all terms give their rates. Else the sentence names the term without. */
 dvi_status dvi__system_has_rates(const dvi_system *system);
 
+/* DVI_OK if the Taylor coefficients of L are known: all terms give them. Else the sentence names the term without. */
+dvi_status dvi__system_has_taylor(const dvi_system *system);
+
 /* DVI_OK if one may stand in for the other in all that is made for it: they declare the same terms, masses, patterns, names, speeds, derivatives and reaches, and
  * differ in what their callbacks compute alone. */
 dvi_status dvi__system_alike(const dvi_system *a, const dvi_system *b);
