@@ -58,9 +58,8 @@ START_TEST(a_tableau_in_a_file_is_the_built_in_one)
       "# Kutta 1901\norder 4\nc 0 1/2 1/2 1\na\na 1/2\na 0 0.5\na 0 0 1 # the last one\nb 1/6 1/3 1/3 1/6\n");
   dvi_integrator *file = started(of, spec("shooting:tableau=%s", path)), *built_in = started(of, "shooting:onestep=rk4");
   ck_assert_int_eq(dvi_integrator_order(file), 4);
-  ck_assert_str_eq(
-      dvi_integrator_method(file),
-      "shooting:onestep=file,stages=4,tableau=shooting.tableau,composition=none,quadrature=simpson,nodes=3,terms=0,tolerance=auto,type=1");
+  ck_assert_str_eq(dvi_integrator_method(file), "shooting:onestep=file,stages=4,tableau=shooting.tableau,composition=none,"
+                                                "quadrature=simpson,nodes=3,terms=0,tolerance=auto,type=1");
   advance(file, 0.05, 20);
   advance(built_in, 0.05, 20);
   ck_assert_mem_eq(dvi_integrator_q(file), dvi_integrator_q(built_in), 2 * sizeof(double));
