@@ -272,7 +272,7 @@ static dvi_status choose_type(const dvi_system *system, int *type)
 static dvi_status create(dvi__stepper *self)
 {
   dvi__settings *settings = &self->settings;
-  dvi__runge_kutta method;
+  dvi__runge_kutta method = {0};
   dvi__course course;
   DVI_TRY(choose_type(self->system, &settings->value[TYPE]));
   DVI_TRY(choose_one_step(self, &method));
