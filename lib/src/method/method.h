@@ -37,7 +37,7 @@ typedef struct dvi__key {
  * change them; it is a text, of which a method may have one, but not as its first key. */
 enum { DVI__POSITIVE = -2, DVI__SAID = -3, DVI__TEXT = -4 };
 
-enum { DVI__KEYS_MOST = 9, DVI__LIST_MOST = 16, DVI__SPECIFICATION_SIZE = 256, DVI__LEFT_OUT = -1 };
+enum { DVI__KEYS_MOST = 10, DVI__LIST_MOST = 16, DVI__SPECIFICATION_SIZE = 256, DVI__LEFT_OUT = -1 };
 
 /* Values of the keys, in the order of the method's table. A method may replace DVI__LEFT_OUT by what it chose. */
 typedef struct dvi__settings {

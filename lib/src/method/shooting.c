@@ -12,6 +12,7 @@
 #include <string.h>
 
 #include "action/shot_step.h"
+#include "action/stacked_shot.h"
 #include "core/memory.h"
 #include "core/status.h"
 #include "method/scheme.h"
@@ -20,7 +21,7 @@
 #include "num/finite.h"
 #include "space/osculation.h"
 
-enum { ONE_STEP, STAGES, TABLEAU, COMPOSITION, QUADRATURE, NODES, TERMS, TOLERANCE, TYPE };
+enum { ONE_STEP, STAGES, TABLEAU, COMPOSITION, QUADRATURE, NODES, TERMS, SOLVE, TOLERANCE, TYPE };
 enum { NODES_MOST = 16, STAGES_MOST = 20, TAYLOR = DVI__RK_NAMED, FROM_FILE };
 
 /* Quadratures: those of the core; Euler-Maclaurin and Gauss-Hermite. */
@@ -43,6 +44,14 @@ static const char *composition_name(int index)
   return index == 0 ? "none" : dvi__scheme_name(index - 1);
 }
 
+enum { SHOT, STAGES_TOO };
+
+static const char *solve_name(int index)
+{
+  static const char *const name[] = {"shot", "stages"};
+  return index >= 0 && index < 2 ? name[index] : NULL;
+}
+
 static const dvi__key keys[] = {
     {"onestep", one_step_name, 0, 0, DVI__LEFT_OUT,
      "euler, explicit-midpoint, heun, kutta3, rk4, three-eighths, dormand-prince, butcher6, cooper-verner, backward-euler, "
@@ -58,6 +67,8 @@ static const dvi__key keys[] = {
      "of lobatto and clenshaw-curtis, 2 to 16; left out: the fewest whose order reaches that of the one-step method"},
     {"terms", NULL, 0, STAGES_MOST, DVI__LEFT_OUT,
      "of euler-maclaurin, beside the trapezoid, and of gauss-hermite, at each end, up to 20; left out: as nodes"},
+    {"solve", solve_name, 0, 0, SHOT,
+     "shot: for the start, by dense derivatives of the shot; stages: for all stages, as one sparse system; left out: shot"},
     {"tolerance", NULL, DVI__POSITIVE, 0, 0,
      "the residual, relative to the coordinates, at which the search for v ends: to see what a loose one does; left out: roundoff"},
     {"type", NULL, 1, 3, DVI__LEFT_OUT,
@@ -65,15 +76,35 @@ static const dvi__key keys[] = {
     {0},
 };
 
+/* Both ways to solve a step, by the operations of action/shot_step.h. */
+typedef struct way {
+  dvi_status (*residual)(void *step, const double *x, double *R);
+  dvi_status (*jacobian)(void *step, const double *x, double *values);
+} way;
+
+static const way ways[] = {
+    {dvi__shot_step_residual, dvi__shot_step_jacobian},
+    {dvi__stacked_shot_residual, dvi__stacked_shot_jacobian},
+};
+
 typedef struct shooter {
-  dvi__shot_step *step;
+  /* One of them; the other is NULL. */
+  dvi__shot_step *shot;
+  dvi__stacked_shot *stacked;
+  const way *way;
+  const dvi__pattern *pattern;
   dvi__solver *solver;
   int unknowns, order;   /* of the one-step method */
   double tolerance;      /* 0: roundoff */
   double *guess, *x, *R; /* [unknowns] */
-  double *values;        /* [unknowns^2] of the Jacobian; NULL without a tolerance */
+  double *values;        /* [entries] of the Jacobian; NULL without a tolerance */
   double *v, *dq, *dp;   /* [n] */
 } shooter;
+
+static void *step_of(const shooter *own)
+{
+  return own->stacked != NULL ? (void *)own->stacked : (void *)own->shot;
+}
 
 /* ---- what is asked for ---- */
 
@@ -232,29 +263,60 @@ static int allocate(shooter *own, size_t n)
   own->v = DVI_NEW(double, n);
   own->dq = DVI_NEW(double, n);
   own->dp = DVI_NEW(double, n);
-  if (own->tolerance > 0) own->values = DVI_NEW(double, z *z);
+  if (own->tolerance > 0) own->values = DVI_NEW(double, dvi__pattern_entries(own->pattern));
   return own->guess && own->x && own->R && own->v && own->dq && own->dp && (own->values || own->tolerance == 0);
 }
 
+/* Unknowns and rows come in units of q. */
 static dvi_status row_scale(void *of, double *scale, int *unchanged)
 {
-  for (int i = 0; i < dvi__shot_step_pattern(of)->columns; i++) scale[i] = 1;
+  const shooter *own = of;
+  for (int i = 0; i < own->unknowns; i++) scale[i] = 1;
   *unchanged = 1;
+  return DVI_OK;
+}
+
+static dvi_status residual(void *of, const double *x, double *R)
+{
+  const shooter *own = of;
+  return own->way->residual(step_of(own), x, R);
+}
+
+static dvi_status jacobian(void *of, const double *x, double *values)
+{
+  const shooter *own = of;
+  return own->way->jacobian(step_of(own), x, values);
+}
+
+static dvi_status make_step(dvi__stepper *self, const dvi__runge_kutta *method, const dvi__course *course)
+{
+  shooter *own = self->own;
+  const int choice = self->settings.value[SOLVE];
+  own->way = &ways[choice];
+  if (choice == SHOT) {
+    DVI_TRY(dvi__shot_step_create(self->system, self->settings.value[TYPE], method, course, self->counters, &own->shot));
+    own->pattern = dvi__shot_step_pattern(own->shot);
+    return DVI_OK;
+  }
+  if (self->settings.value[TYPE] != 1) return dvi__fail(DVI_BAD_OPTION, "solve=stages is for type=1; leave it out");
+  if (method->series > 0 || course->count > 0)
+    return dvi__fail(DVI_BAD_OPTION, "solve=stages is for one-step methods with a tableau and quadratures by values; leave it out");
+  DVI_TRY(dvi__stacked_shot_create(self->system, method, course, self->counters, &own->stacked));
+  own->pattern = dvi__stacked_shot_pattern(own->stacked);
   return DVI_OK;
 }
 
 static dvi_status make(dvi__stepper *self, const dvi__runge_kutta *method, const dvi__course *course)
 {
   shooter *own = self->own;
-  DVI_TRY(dvi__shot_step_create(self->system, self->settings.value[TYPE], method, course, self->counters, &own->step));
-  const dvi__pattern *pattern = dvi__shot_step_pattern(own->step);
-  dvi__equations equations = {.unknowns = pattern->columns,
-                              .pattern = pattern,
-                              .of = own->step,
-                              .residual = dvi__shot_step_residual,
-                              .jacobian = dvi__shot_step_jacobian,
+  DVI_TRY(make_step(self, method, course));
+  own->unknowns = own->pattern->columns;
+  dvi__equations equations = {.unknowns = own->unknowns,
+                              .pattern = own->pattern,
+                              .of = own,
+                              .residual = residual,
+                              .jacobian = jacobian,
                               .row_scale = row_scale};
-  own->unknowns = pattern->columns;
   DVI_TRY(dvi__stationary_create(&equations, self->counters, &own->solver));
   return allocate(own, (size_t)self->system->n) ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "no memory");
 }
@@ -273,7 +335,7 @@ static dvi_status create(dvi__stepper *self)
 {
   dvi__settings *settings = &self->settings;
   dvi__runge_kutta method = {0};
-  dvi__course course;
+  dvi__course course = {0};
   DVI_TRY(choose_type(self->system, &settings->value[TYPE]));
   DVI_TRY(choose_one_step(self, &method));
   DVI_TRY(choose_composition(settings, &method));
@@ -296,7 +358,8 @@ static void destroy(dvi__stepper *self)
   shooter *own = self->own;
   if (own == NULL) return;
   dvi__solver_destroy(&own->solver);
-  dvi__shot_step_destroy(&own->step);
+  dvi__shot_step_destroy(&own->shot);
+  dvi__stacked_shot_destroy(&own->stacked);
   dvi__release(own->guess);
   dvi__release(own->x);
   dvi__release(own->R);
@@ -316,7 +379,7 @@ static void start(dvi__stepper *self, const double *v)
 }
 
 /* Newton's method until the residual is as small as was asked for. */
-static dvi_status solve_loosely(const shooter *own, double size)
+static dvi_status solve_loosely(shooter *own, double size)
 {
   enum { MOST = 40 };
   double whole, correction = 0;
@@ -324,7 +387,7 @@ static dvi_status solve_loosely(const shooter *own, double size)
   DVI_TRY(dvi__solver_jacobian(own->solver, own->x, own->values));
   DVI_TRY(dvi__solver_take_jacobian(own->solver, own->values));
   for (int i = 0; i < MOST; i++) {
-    DVI_TRY(dvi__shot_step_residual(own->step, own->x, own->R));
+    DVI_TRY(residual(own, own->x, own->R));
     if (dvi__largest((size_t)own->unknowns, own->R) <= own->tolerance * size) return DVI_OK;
     dvi__solver_apply_factor(own->solver, own->R);
     whole = 0;
@@ -339,10 +402,25 @@ static dvi_status solve_loosely(const shooter *own, double size)
 
 static dvi_status solve(dvi__stepper *self, double size)
 {
-  const shooter *own = self->own;
+  shooter *own = self->own;
   if (own->tolerance > 0) return solve_loosely(own, size);
   DVI_TRY(dvi__stationary_solve(own->solver, self->counters, size, own->unknowns, own->guess, own->x));
-  return dvi__shot_step_residual(own->step, own->x, own->R);
+  return residual(own, own->x, own->R);
+}
+
+/* The guess. */
+static dvi_status place(const shooter *own, const dvi__state *state, double h)
+{
+  if (own->stacked != NULL) return dvi__stacked_shot_place(own->stacked, state->t, h, state->q, state->p, own->v, own->guess);
+  return dvi__shot_step_place(own->shot, state->t, h, state->q, state->p, own->v, own->guess);
+}
+
+static void find_ends(const shooter *own)
+{
+  if (own->stacked != NULL)
+    dvi__stacked_shot_ends(own->stacked, own->dq, own->dp);
+  else
+    dvi__shot_step_ends(own->shot, own->dq, own->dp);
 }
 
 static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
@@ -350,9 +428,9 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
   const shooter *own = self->own;
   const int n = self->system->n;
   memcpy(own->v, self->memory, (size_t)n * sizeof *own->v);
-  DVI_TRY(dvi__shot_step_place(own->step, state->t, h, state->q, state->p, own->v, own->guess));
+  DVI_TRY(place(own, state, h));
   DVI_TRY(solve(self, dvi__largest((size_t)n, state->q)));
-  dvi__shot_step_ends(own->step, own->dq, own->dp);
+  find_ends(own);
   for (int i = 0; i < n; i++) self->memory[i] = own->v[i];
   dvi__add_compensated_all(n, state->q, state->q_carry, own->dq);
   dvi__add_compensated_all(n, state->p, state->p_carry, own->dp);
@@ -367,8 +445,13 @@ static void explain(const dvi__stepper *self, dvi__text *text)
   dvi__text_add(text, "one-step method: %s%s of order %d, %d stage%s\nquadrature: %s of %d nodes\n",
                 one_step_name(set->value[ONE_STEP]), set->value[COMPOSITION] > 0 ? ", composed," : "", own->order,
                 set->value[STAGES], set->value[STAGES] == 1 ? "" : "s", rule_name(set->value[QUADRATURE]), set->value[NODES]);
-  dvi__text_add(text, "kernel: shots from the start, their derivatives by costates; %d unknowns a step, full Jacobian\n",
-                own->unknowns);
+  if (own->stacked != NULL)
+    dvi__text_add(text, "kernel: stages and their costates; %d unknowns a step, Jacobian with %d entries (%.3g %% of a full one)\n",
+                  own->unknowns, dvi__pattern_entries(own->pattern),
+                  100.0 * dvi__pattern_entries(own->pattern) / own->unknowns / own->unknowns);
+  else
+    dvi__text_add(text, "kernel: shots from the start, their derivatives by costates; %d unknowns a step, full Jacobian\n",
+                  own->unknowns);
   dvi__text_add(text, "solver: Newton's method, last KINSOL with line search\n");
 }
 
