@@ -195,6 +195,7 @@ static const char *const methods[] = {
     "imex",
     "imex:solver=newton",
     "multiscale:fast=0,omega=5",
+    "shooting",
     "respa:substeps=5",
     "respa:substeps=exact",
     "mollified:filter=projection",

@@ -70,21 +70,29 @@ static void add_all(dvi__stacked_shot *s)
 
 /* ---- entries ---- */
 
-/* Of a diagonal mass the pattern of L_qq with the diagonal, in each quarter; of others all. */
+/* The same pattern in each quarter. */
+static dvi_status repeat(const dvi__pattern *quarter, dvi__pattern *whole)
+{
+  const int n = quarter->columns, entries = dvi__pattern_entries(quarter);
+  int *start = DVI_NEW(int, 2 * (size_t)n + 1), *row = DVI_NEW(int, 4 * (size_t)entries + 1), e = 0;
+  *whole = (dvi__pattern){2 * n, 2 * n, start, row};
+  if (start == NULL || row == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory");
+  for (int c = 0; c < 2 * n; c++) {
+    for (int half = 0; half < 2; half++)
+      for (int k = quarter->start[c % n]; k < quarter->start[c % n + 1]; k++) row[e++] = quarter->row[k] + half * n;
+    start[c + 1] = e;
+  }
+  return DVI_OK;
+}
+
+/* Of a diagonal mass that of L_qq with the diagonal; of others all. */
 static dvi_status join(dvi__stacked_shot *s, const dvi_system *system)
 {
   dvi__pattern diagonal = {0}, quarter = {0};
   if (system->mass_diagonal == NULL) return dvi__pattern_copy(&(dvi_pattern){0}, 2 * s->n, "stages", &s->joint);
   dvi_status status = dvi__pattern_diagonal(s->n, &diagonal);
   if (status == DVI_OK) status = dvi__pattern_union(&system->qq, &diagonal, &quarter);
-  const int entries = status == DVI_OK ? dvi__pattern_entries(&quarter) : 0;
-  s->joint = (dvi__pattern){2 * s->n, 2 * s->n, DVI_NEW(int, 2 * (size_t)s->n + 1), DVI_NEW(int, 4 * (size_t)entries + 1)};
-  if (status == DVI_OK && (s->joint.start == NULL || s->joint.row == NULL)) status = dvi__fail(DVI_NO_MEMORY, "no memory");
-  for (int c = 0, e = 0; status == DVI_OK && c < 2 * s->n; c++) {
-    for (int half = 0; half < 2; half++)
-      for (int k = quarter.start[c % s->n]; k < quarter.start[c % s->n + 1]; k++) s->joint.row[e++] = quarter.row[k] + half * s->n;
-    s->joint.start[c + 1] = e;
-  }
+  if (status == DVI_OK) status = repeat(&quarter, &s->joint);
   dvi__pattern_clear(&diagonal);
   dvi__pattern_clear(&quarter);
   return status;
@@ -108,6 +116,14 @@ static dvi_status turn(dvi__stacked_shot *s)
   return DVI_OK;
 }
 
+/* The rows (lambda_0)_p = 0 and that of lambda_0 itself change places: then no entry of the diagonal is 0. */
+static int row_of(const dvi__stacked_shot *s, int block, int i)
+{
+  const int z = 2 * s->n, lambda = dvi__stack_lambda(s, 0), start = dvi__stack_start(s);
+  if (i >= s->n && (block == lambda || block == start)) block = lambda + start - block;
+  return block * z + i;
+}
+
 /* Entries of a block, column by column: how many, or the first row and column of each. */
 static int entries_of(const dvi__stacked_shot *s, const dvi__stack_block *b, int *row, int *column)
 {
@@ -116,7 +132,7 @@ static int entries_of(const dvi__stacked_shot *s, const dvi__stack_block *b, int
   for (int c = from; c < to; c++)
     for (int e = b->stuff == DVI__ONE ? -1 : s->joint.start[c]; e < (b->stuff == DVI__ONE ? 0 : s->joint.start[c + 1]); e++) {
       if (row != NULL) {
-        row[count] = b->row * z + (b->stuff == DVI__ONE ? c : s->joint.row[e]);
+        row[count] = row_of(s, b->row, b->stuff == DVI__ONE ? c : s->joint.row[e]);
         column[count] = b->column * z + c;
       }
       count++;

@@ -216,6 +216,17 @@ static void piece_rows(dvi__stacked_shot *s, int m, double *R)
   }
 }
 
+/* As in stacked_pattern.c. */
+static void exchange(dvi__stacked_shot *s, double *R)
+{
+  double *lambda_row = at(s, R, dvi__stack_lambda(s, 0)), *start_row = at(s, R, dvi__stack_start(s));
+  for (int i = s->n; i < 2 * s->n; i++) {
+    const double kept = lambda_row[i];
+    lambda_row[i] = start_row[i];
+    start_row[i] = kept;
+  }
+}
+
 dvi_status dvi__stacked_shot_residual(void *step, const double *x, double *R)
 {
   dvi__stacked_shot *s = step;
@@ -229,6 +240,7 @@ dvi_status dvi__stacked_shot_residual(void *step, const double *x, double *R)
   for (int i = 0; i < s->n; i++) at(s, R, start)[i] += s->p0[i] - at(s, s->x, start)[i];
   for (int b = 0; b < s->blocks; b++)
     for (int i = 0; i < z; i++) at(s, R, b)[i] /= unit_of_row(s, b, i);
+  exchange(s, R);
   return DVI_OK;
 }
 
