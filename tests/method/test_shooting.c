@@ -59,7 +59,7 @@ START_TEST(a_tableau_in_a_file_is_the_built_in_one)
   dvi_integrator *file = started(of, spec("shooting:tableau=%s", path)), *built_in = started(of, "shooting:onestep=rk4");
   ck_assert_int_eq(dvi_integrator_order(file), 4);
   ck_assert_str_eq(dvi_integrator_method(file), "shooting:onestep=file,stages=4,tableau=shooting.tableau,composition=none,"
-                                                "quadrature=simpson,nodes=3,terms=0,tolerance=auto,type=1");
+                                                "quadrature=simpson,nodes=3,terms=0,solve=shot,tolerance=auto,type=1");
   advance(file, 0.05, 20);
   advance(built_in, 0.05, 20);
   ck_assert_mem_eq(dvi_integrator_q(file), dvi_integrator_q(built_in), 2 * sizeof(double));
