@@ -120,12 +120,9 @@ END_TEST
 static const struct {
   const char *setting;
   int order;
-} series[] = {{"taylor,stages=2,quadrature=trapezoid", 2},
-              {"taylor", 4},
-              {"taylor,stages=8,quadrature=euler-maclaurin,terms=2", 6},
-              {"rk4,quadrature=euler-maclaurin,terms=2", 4},
-              {"butcher6,quadrature=gauss-hermite", 6},
-              {"cooper-verner,quadrature=gauss-hermite,terms=2", 4}};
+} series[] = {{"taylor,stages=2,quadrature=trapezoid", 2},        {"taylor", 4},
+              {"butcher6,quadrature=euler-maclaurin,terms=1", 4}, {"rk4,quadrature=euler-maclaurin,terms=2", 4},
+              {"butcher6,quadrature=gauss-hermite", 6},           {"cooper-verner,quadrature=gauss-hermite,terms=2", 4}};
 enum { SERIES = sizeof series / sizeof *series };
 
 START_TEST(series_have_the_order_of_their_degree)
@@ -138,6 +135,7 @@ END_TEST
 int main(void)
 {
   TCase *tests = tcase_create("order");
+  tcase_set_timeout(tests, 120);
   tcase_add_loop_test(tests, the_order_is_the_lower_of_both, 0, ONE_STEPS * RULES);
   tcase_add_loop_test(tests, odd_orders_are_no_lower_than_claimed, 0, 4);
   tcase_add_loop_test(tests, compositions_have_the_order_of_the_scheme, 0, 2);

@@ -357,6 +357,7 @@ END_TEST
 int main(void)
 {
   TCase *tests = tcase_create("shooting");
+  tcase_set_timeout(tests, 60);
   tcase_add_loop_test(tests, tableaus_have_the_order_that_they_claim_and_no_more, 0, DVI__RK_NAMED);
   tcase_add_test(tests, every_coefficient_counts);
   tcase_add_test(tests, a_tableau_in_a_file_is_the_built_in_one);

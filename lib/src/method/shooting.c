@@ -8,7 +8,6 @@
  * Order min(p,q) of the one-step method's and the quadrature's; type 1 is symmetric if both are, types 2 and 3 are each other's adjoint then.
  * Source: Leok and Shingel 2012, sec. 3; Patrick and Cuell 2009; Leok and Zhang 2011 (types 2 and 3). */
 #include <dvi/quadrature.h>
-#include <math.h>
 #include <string.h>
 
 #include "action/shot_step.h"
@@ -382,7 +381,7 @@ static void start(dvi__stepper *self, const double *v)
 static dvi_status solve_loosely(shooter *own, double size)
 {
   enum { MOST = 40 };
-  double whole, correction = 0;
+  double correction = 0;
   memcpy(own->x, own->guess, (size_t)own->unknowns * sizeof *own->x);
   DVI_TRY(dvi__solver_jacobian(own->solver, own->x, own->values));
   DVI_TRY(dvi__solver_take_jacobian(own->solver, own->values));
@@ -390,12 +389,8 @@ static dvi_status solve_loosely(shooter *own, double size)
     DVI_TRY(residual(own, own->x, own->R));
     if (dvi__largest((size_t)own->unknowns, own->R) <= own->tolerance * size) return DVI_OK;
     dvi__solver_apply_factor(own->solver, own->R);
-    whole = 0;
-    for (int k = 0; k < own->unknowns; k++) {
-      own->x[k] -= own->R[k];
-      whole = fmax(whole, fabs(own->R[k]));
-    }
-    correction = whole;
+    for (int k = 0; k < own->unknowns; k++) own->x[k] -= own->R[k];
+    correction = dvi__largest((size_t)own->unknowns, own->R);
   }
   return dvi__fail(DVI_NOT_CONVERGED, "Newton's method does not reach the tolerance (change %.1e)", correction);
 }
