@@ -289,6 +289,7 @@ START_TEST(what_is_not_known_is_asked_for)
   check_refused("stiff-pendulum", "multiscale:omega=100", "no coordinate is known to be fast");
   check_refused("stiff-pendulum", "multiscale:fast=0,omega=0", "omega=0; a positive number is possible, or auto");
   check_refused("stiff-pendulum", "multiscale:fast=0:2,omega=1", "there is no coordinate 2; they are counted from 0 to 1");
+  check_refused("stiff-pendulum", "multiscale:fast=1:0:1,omega=1", "coordinate 1 is listed twice");
   check_refused("stiff-pendulum", "multiscale:fast=0.5,omega=1", "there is no coordinate 0.5");
   check_refused("stiff-pendulum", "multiscale:fast=0,omega=1,amplitude=4",
                 "amplitude=4 is above degree=3; 0 to degree are possible");
