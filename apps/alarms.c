@@ -18,11 +18,22 @@ static int read_alarm(const problem *scene, const char *text, alarm_bound *alarm
   return usage_error("run: --alarm %s: %s has no invariant '%.*s'", text, scene->name, (int)length, text);
 }
 
+static int check_new(const alarm_list *list, const alarm_bound *alarm)
+{
+  for (int i = 0; i < list->count; i++)
+    if (list->alarm[i].invariant == alarm->invariant)
+      return usage_error("run: --alarm %s is given twice; an invariant has one bound", alarm->name);
+  return DONE;
+}
+
 int alarms_read(alarm_list *list, const problem *scene, const words *asked)
 {
   int code = DONE;
-  for (list->count = 0; list->count < asked->count && code == DONE; list->count++)
-    code = read_alarm(scene, asked->word[list->count], &list->alarm[list->count]);
+  for (list->count = 0; list->count < asked->count && code == DONE; list->count++) {
+    alarm_bound *alarm = &list->alarm[list->count];
+    code = read_alarm(scene, asked->word[list->count], alarm);
+    if (code == DONE) code = check_new(list, alarm);
+  }
   return code;
 }
 

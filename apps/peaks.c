@@ -87,7 +87,7 @@ static bool add_middles(const peaks_search *search, peaks_found *found, double *
   }
   const int wanted = hills_gaps(count, x, y, search->width, found->top, halve);
   for (int i = 0; i + 1 < count && found->count < search->most; i++)
-    if (halve[i]) add_point(found, 0.5 * (x[i] + x[i + 1]));
+    if (halve[i]) add_point(found, 0.5 * x[i] + 0.5 * x[i + 1]);
   return found->count == count + wanted;
 }
 

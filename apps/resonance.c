@@ -225,6 +225,7 @@ static int complete_search(resonance_request *request)
   search->grid = request->grid > 0 ? request->grid : GRID_DEFAULT;
   search->most = request->points > 0 ? request->points : POINTS_DEFAULT;
   search->threads = request->threads > 0 ? request->threads : crew_cores();
+  if (!isfinite(range * (double)search->grid)) return usage_error("resonance: --sweep %s: the range is too wide", request->varied);
   search->width = isnan(request->width) ? width_default * range : request->width;
   if (search->grid < 3) return usage_error("resonance: --grid %ld is too few, a peak needs 3", search->grid);
   if (search->most > POINTS_MAX) return usage_error("resonance: --points: %d at most", (int)POINTS_MAX);

@@ -40,7 +40,7 @@ static int observe(dvi_integrator *integrator, void *user)
   w->steps++;
   const double scale = fabs(w->first) > 0.0 ? fabs(w->first) : 1.0;
   w->largest = fmax(w->largest, fabs(value - w->first) / scale);
-  if (isnan(value)) w->largest = (double)INFINITY;
+  if (!isfinite(value)) w->largest = (double)INFINITY;
   set_mark(w, dvi_integrator_time(integrator));
   return !(w->largest < RESONANCE_LIMIT);
 }
@@ -66,7 +66,7 @@ static dvi_status advance(const resonance_task *task, const problem *scene, dvi_
   if (status == DVI_OK) status = dvi_run(integrator, &options, &report);
   point->steps = report.steps;
   point->t = dvi_integrator_time(integrator);
-  point->error = w.steps >= 0 ? fmin(w.largest, RESONANCE_LIMIT) : (double)NAN;
+  point->error = w.steps > 0 ? fmin(w.largest, RESONANCE_LIMIT) : (double)NAN;
   point->growth = rate(&w, point->t);
   point->unbounded = report.end == DVI_RUN_STOPPED;
   if (point->unbounded) point->status = "unbounded";

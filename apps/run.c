@@ -453,7 +453,7 @@ int run_command(int argc, char **argv)
        .help = "the momenta of the start, in the order of their columns; left out: the problem's"},
       {.name = "project", .flag = &r.project, .help = "if the start is off a problem's constraint: project it; left out: refuse"},
       {.name = "columns", .word = &r.columns, .value = "A,B,...", .help = "columns behind t; left out: the scene's, or all"},
-      {.name = "alarm", .words = &r.alarms, .value = "NAME=BOUND", .help = "say when an invariant passes this; may be repeated"},
+      {.name = "alarm", .words = &r.alarms, .value = "NAME=BOUND", .help = "say when an invariant passes this; once for each"},
       {.name = "out", .word = &r.out, .value = "FILE", .help = "where the rows go; left out, or -: standard output"},
       {.name = "events", .word = &r.events, .value = "FILE.csv", .help = "list the scene's events there; left out: count them"},
       {.name = "checkpoint",

@@ -58,6 +58,11 @@ says err '40 points do not find all peaks' 'the reason'
 expect 1 'points that fail' resonance kepler --method midpoint --sweep e=0.5:1.5 --grid 5 --t-end 1 --csv kepler.csv
 says kepler.csv ',refused,0,,,$' 'the word for it'
 says err 'e=1.5: the problem cannot be made' 'which'
+expect 1 'a run that fails at once has no error' resonance oscillator --method verlet --h 0.1 --t-end 1 --sweep k=1e305:1e306 --grid 3 --points 5 --csv wide.csv
+says wide.csv '^1e+306,DVI_NOT_FINITE,0,0,,$' 'its row'
+[ "$(grep -c 'the largest error' out)" -eq 0 ] || fail 'there is no largest error'
+expect 2 'a range that overflows' resonance oscillator --method verlet --h 0.1 --t-end 1 --sweep k=1:1e308
+says err 'the range is too wide' 'why'
 expect 2 'no range' resonance oscillators --method imex
 says err '\-\-sweep NAME=FROM:TO is missing' 'what is missing'
 for wrong in omega omega= omega=1 omega=1:2:3 omega=2:1 omega=1:inf =1:2 omega=a:b; do

@@ -239,6 +239,7 @@ same quiet.csv loud.csv 'an alarm changes no row'
 first=$(awk -F, 'NR > 1 && $2 > 1.2 { printf "%.6g", $1; exit }' loud.csv)
 most=$(awk -F, 'NR > 1 && $2 > most { most = $2 } END { printf "%.6g", most }' loud.csv)
 says err "^dvi: run: alarm: I passed 1.2 at t = $first; at most it was $most, at t = " 'when, and how far'
+expect 2 'two bounds of one invariant' $long_steps --alarm I=1.2 --alarm I=1.2
 for wrong in I I= I=0 I=-1 I=x =1 J=1 I_=1; do expect 2 "alarm $wrong" $long_steps --alarm "$wrong"; done
 }
 

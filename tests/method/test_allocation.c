@@ -52,6 +52,7 @@ static const struct {
     {"tokamak", NULL, "dg-phase"},
     {"magnetic-pair", NULL, "dg-phase:degree=3"},
     {"elastica", NULL, "hamiltonian:type=3,degree=3"},
+    {"elastica", NULL, "shooting:type=3,onestep=gauss"},
     {"vortices", NULL, "dg:degree=1,flux=path,stiffness=1"},
     {"tokamak", NULL, "vprk:nodes=3,tableau=lobatto-iiie,projection=symplectic"},
     {"massless-particle", "gauge=singular", "dvi-a"},

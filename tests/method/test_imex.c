@@ -228,6 +228,19 @@ START_TEST(steps_beyond_two_poles_are_refused_too)
 }
 END_TEST
 
+START_TEST(a_pattern_that_is_too_large_is_that_of_a_potential)
+{
+  int n = 50000;
+  const dvi_potential potential = {.name = "hill", .value = hill, .gradient = hill_gradient, .user = &n, .fast = 1, .quadratic = 1};
+  dvi_system *system = make_system(
+      &(dvi_system_terms){.dimension = n, .mass.scalar = 1, .potentials = &potential, .potential_count = 1});
+  dvi_integrator *integrator;
+  ck_assert_int_eq(dvi_integrator_create(system, "imex", &integrator), DVI_BAD_SIZE);
+  check_words("the Hessian of 'hill': pattern: 2500000000 entries are too many; declare a sparse pattern");
+  dvi_system_destroy(&system);
+}
+END_TEST
+
 START_TEST(of_an_indefinite_mass_the_sentence_says_so)
 {
   const double mass[] = {1, -1};
@@ -317,6 +330,7 @@ int main(void)
   tcase_add_test(tests, full_matrices_are_kept_too);
   tcase_add_test(tests, another_fast_potential_goes_to_the_midpoint_rules_solvers);
   tcase_add_loop_test(tests, steps_beyond_two_poles_are_refused_too, 0, 3);
+  tcase_add_test(tests, a_pattern_that_is_too_large_is_that_of_a_potential);
   tcase_add_test(tests, of_an_indefinite_mass_the_sentence_says_so);
   tcase_add_test(tests, along_a_saddle_the_motion_grows_and_steps_beyond_its_pole_are_refused);
   tcase_add_test(tests, a_step_without_a_solution_says_how_far_it_came);

@@ -156,44 +156,6 @@ START_TEST(steps_are_symplectic_and_symmetric_pairs_symmetric)
 }
 END_TEST
 
-static const char *const solved[] = {"rk4", "gauss", "sdirk,stages=3", "implicit-midpoint,composition=4",
-                                     "cooper-verner,quadrature=clenshaw-curtis"};
-enum { SOLVED = sizeof solved / sizeof *solved, STEPS = 20 };
-
-/* The same equations, in other unknowns: some roundings a step. */
-START_TEST(all_stages_at_once_give_the_same_steps)
-{
-  for (int place = 0; place < PLACES; place++) {
-    problem *of = made_problem(places[place].problem, NULL);
-    dvi_integrator *shot = started(of, spec("shooting:onestep=%s", solved[_i])),
-                   *stages = started(of, spec("shooting:onestep=%s,solve=stages", solved[_i]));
-    advance(shot, places[place].h, STEPS);
-    advance(stages, places[place].h, STEPS);
-    const double apart = fmax(distance(of->nq, dvi_integrator_q(shot), dvi_integrator_q(stages)) / magnitude(of->nq, of->q),
-                              distance(of->nq, dvi_integrator_p(shot), dvi_integrator_p(stages)) /
-                                  fmax(magnitude(of->nq, dvi_integrator_p(shot)), magnitude(of->nq, of->p)));
-    ck_assert_msg(apart <= 2e-13, "%s %s: apart by %g", of->name, solved[_i], apart);
-    dvi_integrator_destroy(&shot);
-    dvi_integrator_destroy(&stages);
-    problem_destroy(&of);
-  }
-}
-END_TEST
-
-/* A chain's neighbours alone meet: the factors stay sparse, where those of the shot would take 2000 x 2000 numbers. */
-START_TEST(long_chains_are_solved_by_all_stages_at_once)
-{
-  problem *of = made_problem("chain", "n=1000");
-  dvi_integrator *integrator = started(of, "shooting:onestep=heun,quadrature=trapezoid,solve=stages");
-  dvi_counters counters;
-  advance(integrator, 0.1, 2);
-  dvi_integrator_counters(integrator, &counters);
-  ck_assert_int_eq(counters.newtons, 2);
-  dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
-}
-END_TEST
-
 /* ---- momenta ---- */
 
 /* Kepler's problem where x = q0, y = q1 + q0^2: a rotation is no affine map of q, and no Runge-Kutta method is equivariant under it. */
@@ -316,7 +278,6 @@ static const struct {
     {"shooting:onestep=rk4,tableau=x", "onestep=rk4 is built in"},
     {"shooting:quadrature=gauss-hermite,nodes=3", "has its 2 nodes at the ends, not nodes=3"},
     {"shooting:quadrature=euler-maclaurin,terms=0", "terms=1 to 20 are possible"},
-    {"shooting:onestep=taylor,solve=stages", "solve=stages is for one-step methods with a tableau"},
     {"shooting:terms=2", "quadrature=simpson has no terms"},
     {"shooting:composition=4", "raises the order of symmetric one-step methods alone, and onestep=rk4 is none"},
     {"shooting:tableau=no/such/file", "no/such/file cannot be read"},
@@ -402,8 +363,6 @@ int main(void)
   tcase_add_test(tests, a_tableau_in_a_file_is_the_built_in_one);
   tcase_add_loop_test(tests, broken_files_are_refused, 0, BROKEN);
   tcase_add_loop_test(tests, steps_are_symplectic_and_symmetric_pairs_symmetric, 0, PAIRS);
-  tcase_add_loop_test(tests, all_stages_at_once_give_the_same_steps, 0, SOLVED);
-  tcase_add_test(tests, long_chains_are_solved_by_all_stages_at_once);
   tcase_add_loop_test(tests, momenta_of_equivariant_one_step_methods_stay_at_roundoff, 0, 3);
   tcase_add_test(tests, momenta_of_other_one_step_methods_do_not);
   tcase_add_loop_test(tests, what_does_not_go_is_refused, 0, REFUSED);

@@ -103,8 +103,8 @@ END_TEST
 START_TEST(where_the_matrix_vanishes_rows_stay_alike)
 {
   static const double zeros[3] = {1, 2, 3}, even[3] = {1, 1, 1};
-  static const int three[] = {0, 1, 2, 3}, own[] = {0, 1, 2};
-  const dvi__pattern pattern = {.rows = 3, .columns = 3, .start = (int *)three, .row = (int *)own};
+  static int three[] = {0, 1, 2, 3}, own[] = {0, 1, 2};
+  const dvi__pattern pattern = {.rows = 3, .columns = 3, .start = three, .row = own};
   dvi__stripes G;
   for (int k = 0; k <= DEGREE; k++) c[k] = k % 2 == 0 ? 1 : 0.5;
   memset(room, 0, sizeof room);

@@ -265,10 +265,12 @@ static void check_speeds(const char *text, int count, const int *fast, const int
 
 START_TEST(potentials_are_fast_as_they_are_tagged)
 {
-  static const int of_groups[] = {1, 1, 0, 0}, quadratic[] = {1, 0, 1, 1}, one[] = {0, 1}, neither[] = {0, 0};
+  static const int of_groups[] = {1, 1, 0, 0}, quadratic[] = {1, 0, 1, 1}, moved[] = {1, 1, 0}, one[] = {0, 1}, neither[] = {0, 0};
   check_speeds(CHAIN "  fast: {bond: 50*(x - y)^2, bend: (x - y)^2*x}\n  slow: {weight: x + y}\n  well: 3*x*y - y^2/2 + t^3\n", 4,
                of_groups, quadratic);
   check_speeds(CHAIN "  slow: x^4\n  fast: t*x^2\n", 2, one, neither);
+  check_speeds(CHAIN "  fast: {drive: 50*(x - y)^2 - x*sin(t) + t^2, weight: 3*y*t}\n  slow: {tide: x^2*cos(t)}\n", 3, of_groups,
+               moved);
   check_speeds(CHAIN "  bond: sqrt(x)^2\n  bend: cos(y)\n", 2, neither, neither);
 }
 END_TEST

@@ -75,7 +75,8 @@ static void product_errors(const dvi__shapes *shapes, double error[FUNCTIONS][FU
     add_products(shapes->functions, by, psi, dpsi, error);
   }
   for (int g = 0; g < 16 * DVI_QUADRATURE_MAX; g++) {
-    shapes->path(shapes->of, (g / DVI_QUADRATURE_MAX + node[g % DVI_QUADRATURE_MAX]) / 16, psi, dpsi);
+    const int piece = g / DVI_QUADRATURE_MAX;
+    shapes->path(shapes->of, (piece + node[g % DVI_QUADRATURE_MAX]) / 16, psi, dpsi);
     add_products(shapes->functions, -weight[g % DVI_QUADRATURE_MAX] / 16, psi, dpsi, error);
   }
 }

@@ -198,15 +198,17 @@ static int transform_gradient(double t, const double *q, const double *p, double
 {
   const problem *of = user;
   const dvi_lagrangian *L = of->terms->lagrangian;
-  double forces[TRANSFORMED_MOST], momenta[TRANSFORMED_MOST];
+  double forces[TRANSFORMED_MOST];
   int returned = 0;
   memset(H_p, 0, (size_t)of->nq * sizeof *H_p);
   memset(H_q, 0, (size_t)of->nq * sizeof *H_q);
   if (dvi_system_velocity(of->system, t, q, p, H_p) != DVI_OK) return 1;
-  if (L != NULL)
+  if (L != NULL) {
+    double momenta[TRANSFORMED_MOST];
     returned = L->gradient != NULL ? L->gradient(t, q, H_p, forces, momenta, L->user)
                                    : L->gradient_batch(1, &t, q, H_p, forces, momenta, L->user);
-  for (int i = 0; L != NULL && i < of->nq; i++) H_q[i] -= forces[i];
+    for (int i = 0; i < of->nq; i++) H_q[i] -= forces[i];
+  }
   for (int k = 0; k < of->terms->potential_count && returned == 0; k++) {
     const dvi_potential *V = &of->terms->potentials[k];
     returned = V->gradient != NULL ? V->gradient(t, q, forces, V->user) : V->gradient_batch(1, &t, q, forces, V->user);

@@ -225,7 +225,7 @@ dvi_status dvi__canonical_jacobian(dvi__canonical *c, const double *x, double *v
     const int first = c->joint.start[j], height = (c->joint.start[j + 1] - first) * m;
     for (int b = 0; b < height / m; b++) {
       const int i = c->joint.row[first + b];
-      entry e;
+      entry e = {0};
       gather_entry(c, &c->block[first + b], &e);
       for (int l = 0; l < m; l++) {
         double *column = values + l * height + b * m;

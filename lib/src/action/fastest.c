@@ -99,13 +99,14 @@ static void square(int n, long double *A)
   const long double trace = trace_of_product(n, A, A);
   for (int k = 0; k < n; k++)
     for (int l = 0; l < n; l++) {
-      product[k * n + l] = 0;
-      for (int m = 0; m < n; m++) product[k * n + l] += A[k * n + m] * A[m * n + l] / trace;
+      long double sum = 0;
+      for (int m = 0; m < n; m++) sum += A[k * n + m] * A[m * n + l];
+      product[k * n + l] = sum / trace;
     }
   memcpy(A, product, (size_t)(n * n) * sizeof *A);
 }
 
-/* The eigenvalue of the largest magnitude; a power of K has traces of its projection alone. */
+/* The eigenvalue of the largest magnitude, from a high power of K: but for its scale that is the projection on the eigenvectors. */
 static double largest_eigenvalue(int n, const long double *K)
 {
   long double power[MOST * MOST], trace = 0;

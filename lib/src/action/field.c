@@ -136,10 +136,11 @@ static void product_of_H(const dvi__field *f, const double *motion, double *prod
 {
   const dvi_system *s = f->system;
   const int n = f->n;
+  const double *H_qp = f->L_qv + first_of(&s->qv, f->at);
   memset(product, 0, 2 * (size_t)n * sizeof *product);
   add_times(&s->qq, f->L_qq + first_of(&s->qq, f->at), 0, 1, motion, product);
-  add_times(&s->qv, f->L_qv + first_of(&s->qv, f->at), 0, 1, motion + n, product);
-  add_times(&s->qv, f->L_qv + first_of(&s->qv, f->at), 1, 1, motion, product + n);
+  add_times(&s->qv, H_qp, 0, 1, motion + n, product);
+  add_times(&s->qv, H_qp, 1, 1, motion, product + n);
   add_times(&s->vv, f->L_vv + first_of(&s->vv, f->at), 0, 1, motion + n, product + n);
 }
 

@@ -38,14 +38,14 @@ typedef struct dvi__field_point {
 dvi__field_point dvi__field_point_at(const dvi__field *field, int k);
 dvi__field_point dvi__field_selected(const dvi__field *field);
 
-/* From point k to (t, q [n]) with the velocity changed by dv [n]: dp [n]. */
+/* The rest is for Lagrangians. From point k to (t, q [n]) with the velocity changed by dv [n]: dp [n]. */
 dvi_status dvi__field_impulse(dvi__field *field, int k, double t, const double *q, const double *dv, double *dp);
 
 /* At point k: what a motion [2n] of (q,v) makes of p = L_v, [n]; the transpose of that, covector [n] to [2n]. */
 void dvi__field_lift(dvi__field *field, int k, const double *motion, double *dp);
 void dvi__field_lower(dvi__field *field, int k, const double *covector, double *image);
 
-/* With a Lagrangian: size [n], the momentum of a unit of velocity at (t,q,v). */
+/* size [n]: the momentum of a unit of velocity at (t,q,v). */
 dvi_status dvi__field_mass(dvi__field *field, double t, const double *q, const double *v, double *size);
 
 #endif

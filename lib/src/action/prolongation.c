@@ -38,28 +38,36 @@ struct dvi__prolongation {
 
 /* ---- making it ---- */
 
-/* Each is a part of one block. */
+/* The next `count` numbers of a block; of none yet, only what is used is counted. */
+static double *take(double *block, size_t *used, size_t count)
+{
+  double *const at = block != NULL ? block + *used : NULL;
+  *used += count;
+  return at;
+}
+
+/* Lay all arrays into one block; returns its size. */
 static size_t lay_out(dvi__prolongation *d, double *block)
 {
   const size_t n = (size_t)d->n, m = (size_t)d->m;
-  double *at = block;
+  size_t used = 0;
   for (int end = 0; end < ENDS; end++) {
-    d->q[end] = at, at += n;
-    d->v[end] = at, at += n;
-    d->R[end] = at, at += n;
-    d->G_q[end] = at, at += n;
+    d->q[end] = take(block, &used, n);
+    d->v[end] = take(block, &used, n);
+    d->R[end] = take(block, &used, n);
+    d->G_q[end] = take(block, &used, n);
     for (int row = 0; row < ENDS; row++) {
-      d->by_q[row][end] = at, at += n * n;
-      d->by_v[row][end] = at, at += n * n;
+      d->by_q[row][end] = take(block, &used, n * n);
+      d->by_v[row][end] = take(block, &used, n * n);
     }
   }
-  d->at = at, at += UNKNOWNS * n;
-  d->L = at, at += m;
-  d->L_q = at, at += m * n;
-  d->L_v = at, at += m * n;
-  d->lambda = at, at += 2 * n;
-  d->values = at, at += 4 * n * n;
-  return (size_t)(at - block);
+  d->at = take(block, &used, UNKNOWNS * n);
+  d->L = take(block, &used, m);
+  d->L_q = take(block, &used, m * n);
+  d->L_v = take(block, &used, m * n);
+  d->lambda = take(block, &used, 2 * n);
+  d->values = take(block, &used, 4 * n * n);
+  return used;
 }
 
 static void fill_weights(dvi__prolongation *d)

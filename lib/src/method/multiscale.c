@@ -53,6 +53,8 @@ static dvi_status mark_listed(const dvi__stepper *self, char *fast)
     if (number != floor(number) || number >= n)
       return dvi__fail(DVI_BAD_OPTION, "multiscale: fast=%s: there is no coordinate %g; they are counted from 0 to %d",
                        self->settings.list_text, number, n - 1);
+    if (fast[(int)number])
+      return dvi__fail(DVI_BAD_OPTION, "multiscale: fast=%s: coordinate %g is listed twice", self->settings.list_text, number);
     fast[(int)number] = 1;
   }
   return DVI_OK;

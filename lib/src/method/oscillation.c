@@ -170,8 +170,11 @@ static dvi_status fill(dvi__stepper *self, dvi__oscillation *own, dvi__motion mo
 dvi_status dvi__oscillation_create(dvi__stepper *self, const dvi__filters *filters, dvi__motion motion, const char *remedy)
 {
   if (!dvi__system_fast_is_quadratic(self->system))
-    return dvi__fail(DVI_UNSUPPORTED, "%s: a fast potential is not declared `quadratic`, and only such ones have modes; %s",
-                     self->method->name, remedy);
+    return dvi__fail(
+        DVI_UNSUPPORTED,
+        "%s: a fast potential is not declared `quadratic`, and only such ones have modes; %s (it is '%s'; those of scenes are "
+        "declared if their second derivatives are constant)",
+        self->method->name, remedy, dvi__system_fast_not_quadratic(self->system));
   DVI_TRY(dvi__impulse_create(self, sizeof(dvi__oscillation), 0));
   dvi__oscillation *own = self->own;
   own->filters = filters;

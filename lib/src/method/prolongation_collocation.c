@@ -11,6 +11,8 @@
 
 enum { DERIVATIVES };
 
+enum { COORDINATES_MOST = 500 };
+
 static const dvi__key keys[] = {
     {"derivatives", NULL, 1, DVI__PROLONGATION_MOST, 2,
      "m: the highest derivative of q that is matched at both ends, 1 to 10; left out: 2"},
@@ -34,6 +36,9 @@ static dvi_status create(dvi__stepper *self)
 {
   const int m = self->settings.value[DERIVATIVES];
   dvi__prolongation *of;
+  if (self->system->n > COORDINATES_MOST)
+    return dvi__fail(DVI_UNSUPPORTED, "%s: %d coordinates, and its matrices are full: at most %d are possible; take galerkin",
+                     self->method->name, self->system->n, COORDINATES_MOST);
   self->symmetric = 1;
   self->order = 2 * (m / 2) + 2;
   const dvi_status status = dvi__prolongation_create(self->system, m, self->counters, &of);

@@ -290,16 +290,16 @@ static dvi_status jacobian(void *of, const double *x, double *values)
 static dvi_status make_step(dvi__stepper *self, const dvi__runge_kutta *method, const dvi__course *course)
 {
   shooter *own = self->own;
-  const int choice = self->settings.value[SOLVE], type = self->settings.value[TYPE];
+  const int choice = self->settings.value[SOLVE];
   own->way = &ways[choice];
   if (choice == SHOT) {
-    DVI_TRY(dvi__shot_step_create(self->system, type, method, course, self->counters, &own->shot));
+    DVI_TRY(dvi__shot_step_create(self->system, self->settings.value[TYPE], method, course, self->counters, &own->shot));
     own->pattern = dvi__shot_step_pattern(own->shot);
     return DVI_OK;
   }
-  if (method->series > 0 || course->count > 0 || type != 1)
-    return dvi__fail(DVI_BAD_OPTION,
-                     "solve=stages is for one-step methods with a tableau, quadratures by values and type=1; leave it out");
+  if (self->settings.value[TYPE] != 1) return dvi__fail(DVI_BAD_OPTION, "solve=stages is for type=1; leave it out");
+  if (method->series > 0 || course->count > 0)
+    return dvi__fail(DVI_BAD_OPTION, "solve=stages is for one-step methods with a tableau and quadratures by values; leave it out");
   DVI_TRY(dvi__stacked_shot_create(self->system, method, course, self->counters, &own->stacked));
   own->pattern = dvi__stacked_shot_pattern(own->stacked);
   return DVI_OK;

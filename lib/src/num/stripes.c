@@ -18,13 +18,12 @@
 /* Four rows' entries, in ascending order of their diagonals. */
 typedef struct merge {
   const dvi__pattern *pattern;
-  int first;            /* row */
   int at[4], beyond[4]; /* the next entry of each row, and where it ends */
 } merge;
 
 static merge begin(const dvi__pattern *pattern, int first)
 {
-  merge m = {.pattern = pattern, .first = first};
+  merge m = {.pattern = pattern};
   for (int l = 0; l < 4 && first + l < pattern->columns; l++) {
     m.at[l] = pattern->start[first + l];
     m.beyond[l] = pattern->start[first + l + 1];

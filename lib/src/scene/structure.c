@@ -25,6 +25,12 @@ static bool degree_of(dvi_scene *scene, const dvi__kernels *list, dvi__block blo
 
 /* ---- potentials ---- */
 
+/* Whether the Hessian is constant: that shows in the degree, or, beside terms that move a linear part in time, in its formulas. */
+static int is_quadratic(const dvi__degree *degree, const dvi__term *term)
+{
+  return degree->degree <= 2 && (degree->pure || dvi__function_second_constant(term->function, DVI__PAIR_QQ) == 1);
+}
+
 /* Add a potential of these kernels, none if they are none. */
 static bool add_potential(dvi_scene *scene, const char *name, int fast, dvi__kernels *list)
 {
@@ -36,7 +42,7 @@ static bool add_potential(dvi_scene *scene, const char *name, int fast, dvi__ker
       !dvi__make_potential(scene, name, term, potential))
     return false;
   potential->fast = fast;
-  potential->quadratic = degree.degree <= 2 && degree.pure;
+  potential->quadratic = is_quadratic(&degree, term);
   return true;
 }
 

@@ -31,6 +31,10 @@ dvi_status dvi__system_has_taylor(const dvi_system *system)
   for (int p = 0; p < system->potential_count && without == NULL; p++)
     if (!dvi__potential_has_taylor(&system->potentials[p])) without = system->potentials[p].name;
   if (without == NULL) return DVI_OK;
+  if (system->terms & DVI__PHASE_SPACE)
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "a Hamiltonian has no taylor callback, and derivatives beyond the second are needed; take a tableau, and a "
+                     "quadrature by values");
   return dvi__fail(DVI_UNSUPPORTED,
                    "'%s' has no taylor callback, and derivatives beyond the second are needed; give it (dvi/taylor.h)", without);
 }

@@ -42,9 +42,14 @@ dvi_status dvi__system_fast_part(const dvi_system *whole, dvi_system **part)
   return make(whole, 1, mass_of(whole), part);
 }
 
-int dvi__system_fast_is_quadratic(const dvi_system *whole)
+const char *dvi__system_fast_not_quadratic(const dvi_system *whole)
 {
   for (int k = 0; k < whole->potential_count; k++)
-    if (whole->potentials[k].callbacks.fast && !whole->potentials[k].callbacks.quadratic) return 0;
-  return 1;
+    if (whole->potentials[k].callbacks.fast && !whole->potentials[k].callbacks.quadratic) return whole->potentials[k].name;
+  return NULL;
+}
+
+int dvi__system_fast_is_quadratic(const dvi_system *whole)
+{
+  return dvi__system_fast_not_quadratic(whole) == NULL;
 }

@@ -8,7 +8,8 @@
 dvi_status dvi__system_slow_part(const dvi_system *whole, dvi_system **part);
 dvi_status dvi__system_fast_part(const dvi_system *whole, dvi_system **part);
 
-/* Whether all potentials that are declared fast are declared quadratic, too. */
+/* Whether all potentials that are declared fast are declared quadratic, too; the name of the first one that is not, or NULL. */
 int dvi__system_fast_is_quadratic(const dvi_system *whole);
+const char *dvi__system_fast_not_quadratic(const dvi_system *whole);
 
 #endif

@@ -202,7 +202,8 @@ static dvi_status embed(const dvi__pattern *part, const dvi__pattern *whole, int
 static dvi_status complete_potential(const dvi_system *s, dvi__potential_term *term)
 {
   const int differenced = term->callbacks.hessian == NULL && term->callbacks.hessian_batch == NULL;
-  if (term->qq.start == NULL) DVI_TRY(dvi__pattern_copy(&(dvi_pattern){0}, s->n, term->name, &term->qq));
+  const dvi_status status = term->qq.start == NULL ? dvi__pattern_copy(&(dvi_pattern){0}, s->n, term->name, &term->qq) : DVI_OK;
+  if (status != DVI_OK) return dvi__fail_in(status, "the Hessian of '%s'", term->name);
   return differenced ? make_groups(&term->qq, &term->groups) : DVI_OK;
 }
 
