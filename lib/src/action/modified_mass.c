@@ -122,7 +122,7 @@ dvi_status dvi__modified_mass_solve(dvi__modified_mass *m, double h, double *x)
   if (k == m->count) {
     k = m->oldest;
     DVI_TRY(factor(m, h * h, &m->kept[k]));
-    m->oldest = (k + 1) % m->count;
+    m->oldest = k + 1 < m->count ? k + 1 : 0;
   }
   dvi__linear_solve(m->kept[k].linear, x);
   return DVI_OK;
