@@ -6,7 +6,8 @@
  *     Ld(q0,q1) = ext over such paths q from q0 to q1 of the quadrature of L,      p0 = -D1 Ld, p1 = D2 Ld.
  * The rows are those of action/action.h in another space (action/shaped.h). The path of a linear oscillator of frequency omega is in the space, and its action is
  * exact: so are its steps, whatever h omega is.
- * Symmetric, symplectic. As h goes to 0 with fixed omega the space is as good as polynomials of degree d+2m+2, while these are more than roundoff: order twice that.
+ * Symmetric, symplectic. As h goes to 0 with fixed omega the space is as good as polynomials of degree d+2m+2, while these are more than roundoff: order twice that; with a slow
+ * coordinate, which has polynomials of degree d, 2d.
  * Source: Leok 2004, sec. 5.7. The path there is a product, p(t) (1 + r sin + s cos), singular where the amplitude is 0; the sum is ours, and so is the
  * quadrature of any Lagrangian by samples of the phase. */
 #include <math.h>
@@ -174,7 +175,7 @@ static dvi_status make(dvi__stepper *self, const char *fast)
   own->space = space;
   own->omega = omega;
   for (int i = 0; i < self->system->n; i++) own->fast += fast[i];
-  self->order = 2 * shapes.functions;
+  self->order = 2 * (own->fast < self->system->n ? value[DEGREE] : shapes.functions);
   self->symmetric = 1;
   return status == DVI_OK && omega == 0 ? prepare_to_find(self, fast) : status;
 }
