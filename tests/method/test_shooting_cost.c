@@ -47,8 +47,8 @@ START_TEST(a_step_is_as_many_shots_as_residuals)
   for (int place = 0; place < PLACES; place++) {
     const dvi_counters n = counted(place, shots[_i].method);
     ck_assert_int_le(n.jacobians, STEPS + STEPS / 50);
-    ck_assert_int_eq(n.gradients, shots[_i].points * n.residuals);
-    ck_assert_int_eq(n.hessians, shots[_i].points * n.residuals);
+    ck_assert_int_le(n.gradients, shots[_i].points * n.residuals);
+    ck_assert_int_le(n.hessians, shots[_i].points * n.residuals);
     ck_assert_msg((double)n.residuals <= shots[_i].residuals * STEPS, "%s %s: %ld residuals", places[place].name, shots[_i].method,
                   n.residuals);
   }
