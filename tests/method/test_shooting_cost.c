@@ -1,0 +1,63 @@
+/* labels: invariant */
+/* What a step of shooting costs, in evaluations: as many shots with their second derivatives as residuals, and no more. */
+#include "support/runs.h"
+#include "support/suite.h"
+
+enum { STEPS = 200 };
+
+/* Points of a shot at which the motion is evaluated: stages, and nodes that no stage stands for. Residuals a step, measured and rounded up. */
+static const struct {
+  const char *method;
+  int points;
+  double residuals;
+} shots[] = {{"shooting:onestep=heun,quadrature=trapezoid", 2 + 1, 8},
+             {"shooting", 2 * 4 + 1, 2.5},
+             {"shooting:onestep=butcher6,quadrature=lobatto", 3 * 7 + 1, 2.2},
+             {"shooting:onestep=cooper-verner,quadrature=lobatto", 4 * 11 + 1, 2.2}};
+enum { SHOTS = sizeof shots / sizeof *shots };
+
+static const struct {
+  const char *name, *setting;
+  double h;
+} places[] = {{"pendulum", NULL, 0.1}, {"kepler", "e=0.3", 0.05}, {"henon-heiles", NULL, 0.1}};
+enum { PLACES = sizeof places / sizeof *places };
+
+/* Of so many steps after a first one, which starts the integrator, too. */
+static dvi_counters counted(int place, const char *method)
+{
+  problem *of = made_problem(places[place].name, places[place].setting);
+  dvi_integrator *integrator = started(of, method);
+  dvi_counters first, n;
+  advance(integrator, places[place].h, 1);
+  dvi_integrator_counters(integrator, &first);
+  advance(integrator, places[place].h, STEPS);
+  dvi_integrator_counters(integrator, &n);
+  n.gradients -= first.gradients;
+  n.hessians -= first.hessians;
+  n.residuals -= first.residuals;
+  n.jacobians -= first.jacobians;
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&of);
+  return n;
+}
+
+/* One Jacobian a step, but for a few that converge slowly. The shot from the inverse Legendre map is that of the first residual and of the Jacobian, and none closes the step. */
+START_TEST(a_step_is_as_many_shots_as_residuals)
+{
+  for (int place = 0; place < PLACES; place++) {
+    const dvi_counters n = counted(place, shots[_i].method);
+    ck_assert_int_le(n.jacobians, STEPS + STEPS / 50);
+    ck_assert_int_le(n.gradients, shots[_i].points * n.residuals);
+    ck_assert_int_le(n.hessians, shots[_i].points * n.residuals);
+    ck_assert_msg((double)n.residuals <= shots[_i].residuals * STEPS, "%s %s: %ld residuals", places[place].name, shots[_i].method,
+                  n.residuals);
+  }
+}
+END_TEST
+
+int main(void)
+{
+  TCase *tests = tcase_create("cost");
+  tcase_add_loop_test(tests, a_step_is_as_many_shots_as_residuals, 0, SHOTS);
+  return run_tests("method/shooting_cost", tests);
+}
