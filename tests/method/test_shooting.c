@@ -241,14 +241,20 @@ START_TEST(momenta_of_equivariant_one_step_methods_stay_at_roundoff)
 }
 END_TEST
 
-START_TEST(momenta_of_other_one_step_methods_do_not)
+static dvi_system *bent_system(void)
 {
   const dvi_lagrangian L = {.value = bent_value, .gradient = bent_gradient, .hessian = bent_hessian};
   const dvi_invariant J = {.name = "angular momentum", .value = bent_angular_momentum};
   const dvi_system_terms terms = {.dimension = 2, .lagrangian = &L, .invariants = &J, .invariant_count = 1, .autonomous = 1};
-  const double e = 0.3, q[] = {1 - e, -(1 - e) * (1 - e)}, vy = sqrt((1 + e) / (1 - e)), v[] = {0, vy};
   dvi_system *system;
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
+  return system;
+}
+
+START_TEST(momenta_of_other_one_step_methods_do_not)
+{
+  const double e = 0.3, q[] = {1 - e, -(1 - e) * (1 - e)}, vy = sqrt((1 + e) / (1 - e)), v[] = {0, vy};
+  dvi_system *system = bent_system();
   ck_assert_msg(dvi_system_check(system, 0, q, (double[]){0.3, vy}, 0, NULL) == DVI_OK, "%s", dvi_last_error());
   dvi_integrator *integrator = made_integrator(system, "shooting");
   double defect;
@@ -258,6 +264,42 @@ START_TEST(momenta_of_other_one_step_methods_do_not)
   ck_assert_double_le(defect, 1e-10);
   dvi_integrator_destroy(&integrator);
   dvi_system_destroy(&system);
+}
+END_TEST
+
+/* Where twenty steps lead from the pericentre, all turned by an angle, in Cartesian coordinates. */
+static void end_of_turned(dvi_integrator *integrator, int is_bent, double angle, double *x)
+{
+  const double e = 0.3, r = 1 - e, speed = sqrt((1 + e) / (1 - e)), c = cos(angle), s = sin(angle);
+  const double q[] = {r * c, r * s - is_bent * r * c * r * c}, v[] = {-speed * s, speed * c + is_bent * 2 * r * c * speed * s};
+  ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, q, v), DVI_OK);
+  advance(integrator, 0.05, 20);
+  x[0] = dvi_integrator_q(integrator)[0];
+  x[1] = dvi_integrator_q(integrator)[1] + is_bent * x[0] * x[0];
+}
+
+/* How far turning comes from commuting with the steps. */
+static double turning_error(dvi_integrator *integrator, int is_bent)
+{
+  const double angle = 1, c = cos(angle), s = sin(angle);
+  double x[2], turned[2];
+  end_of_turned(integrator, is_bent, 0, x);
+  end_of_turned(integrator, is_bent, angle, turned);
+  return hypot(turned[0] - (c * x[0] - s * x[1]), turned[1] - (s * x[0] + c * x[1]));
+}
+
+/* 20 steps, each of which rounds numbers of size 1. */
+START_TEST(steps_are_equivariant_where_the_one_step_method_is)
+{
+  problem *of = made_problem("kepler", "e=0.3");
+  dvi_system *other = bent_system();
+  dvi_integrator *straight_steps = made_integrator(of->system, "shooting"), *bent_steps = made_integrator(other, "shooting");
+  ck_assert_double_le(turning_error(straight_steps, 0), 1e-14);
+  ck_assert_double_ge(turning_error(bent_steps, 1), 1e-7);
+  dvi_integrator_destroy(&straight_steps);
+  dvi_integrator_destroy(&bent_steps);
+  dvi_system_destroy(&other);
+  problem_destroy(&of);
 }
 END_TEST
 
@@ -365,6 +407,7 @@ int main(void)
   tcase_add_loop_test(tests, steps_are_symplectic_and_symmetric_pairs_symmetric, 0, PAIRS);
   tcase_add_loop_test(tests, momenta_of_equivariant_one_step_methods_stay_at_roundoff, 0, 3);
   tcase_add_test(tests, momenta_of_other_one_step_methods_do_not);
+  tcase_add_test(tests, steps_are_equivariant_where_the_one_step_method_is);
   tcase_add_loop_test(tests, what_does_not_go_is_refused, 0, REFUSED);
   tcase_add_test(tests, what_needs_taylor_coefficients_says_who_lacks_them);
   tcase_add_loop_test(tests, a_one_step_method_that_fails_inside_a_step_leaves_the_state, 0, 2);
