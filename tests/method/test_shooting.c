@@ -127,6 +127,8 @@ static const struct {
              {"onestep=taylor,stages=3", UNSYMMETRIC},
              {"onestep=rk4,quadrature=euler-maclaurin,terms=2", UNSYMMETRIC},
              {"onestep=taylor,stages=8,quadrature=euler-maclaurin", NEARLY},
+             {"onestep=taylor,stages=6,quadrature=euler-maclaurin,terms=3", NEARLY},
+             {"onestep=gauss,quadrature=euler-maclaurin,terms=3", SYMMETRIC},
              {"onestep=gauss,quadrature=gauss-hermite", SYMMETRIC},
              {"onestep=gauss,stages=4,quadrature=clenshaw-curtis", SYMMETRIC}};
 enum { PAIRS = sizeof pairs / sizeof *pairs };
