@@ -19,6 +19,9 @@ static const struct {
     {"kepler", "e=0.9", "distance", "galerkin:degree=4", dvi_integrator_create_transformed, 0.4},
     {"kepler", "e=0.9", "distance", "galerkin:degree=4,solver=newton", dvi_integrator_create_transformed, 0.6},
     {"kepler", "e=0.9", "distance", "composition:order=4,base=midpoint", dvi_integrator_create_transformed, 0.3},
+    {"kepler", "e=0.9", "distance", "shooting:onestep=gauss", dvi_integrator_create_transformed, 0.1},
+    {"kepler", "e=0.9", "distance", "shooting:onestep=gauss,solve=stages", dvi_integrator_create_transformed, 0.1},
+    {"kepler", "e=0.9", "distance", "multiscale:fast=0:1,omega=1", dvi_integrator_create_transformed, 0.2},
     {"kepler", NULL, "arclength", "galerkin", dvi_integrator_create_transformed, 0.2},
     {"kepler", NULL, "acceleration", "galerkin", dvi_integrator_create_transformed, 0.2},
     {"pythagorean", NULL, "distance:bodies=3", "galerkin:degree=8", dvi_integrator_create_transformed, 0.2},
@@ -44,8 +47,15 @@ static dvi_integrator *way(const problem *of, int i)
 /* 16 to 27 n steps; what differences can not resolve is the floor. */
 START_TEST(a_step_in_tau_is_symplectic)
 {
-  static const char *const methods[] = {"midpoint", "trapezoidal", "galerkin:degree=3", "galerkin:degree=2,quadrature=radau-left",
-                                        "composition:order=4,base=midpoint"};
+  static const char *const methods[] = {"midpoint",
+                                        "trapezoidal",
+                                        "galerkin:degree=3",
+                                        "galerkin:degree=2,quadrature=radau-left",
+                                        "composition:order=4,base=midpoint",
+                                        "shooting",
+                                        "shooting:type=2",
+                                        "shooting:type=3",
+                                        "multiscale:fast=0:1,omega=1"};
   static const char *const monitors[] = {"distance", "distance:power=1", "arclength", "acceleration"};
   problem *kepler = made_problem("kepler", "e=0.6");
   for (int m = 0; m < 4; m++) {
@@ -328,7 +338,7 @@ int main(void)
 {
   TCase *tests = tcase_create("transform");
   tcase_add_checked_fixture(tests, make_folder, remove_folder);
-  tcase_add_loop_test(tests, a_step_in_tau_is_symplectic, 0, 5);
+  tcase_add_loop_test(tests, a_step_in_tau_is_symplectic, 0, 9);
   tcase_add_test(tests, a_controlled_step_is_not_symplectic);
   tcase_add_loop_test(tests, steps_back_undo_steps, 0, WAYS);
   tcase_add_test(tests, angular_momentum_is_conserved);

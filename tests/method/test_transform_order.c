@@ -1,8 +1,10 @@
 /* labels: order */
 /* Time-transformed methods have their own order in q, p and physical time. */
+#include <dvi/method.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "support/quad.h"
 #include "support/runs.h"
@@ -89,12 +91,63 @@ static const struct {
     {"galerkin:degree=4", 8, 4},
     {"composition:order=4,base=midpoint", 4, 20},
     {"composition:order=6,base=galerkin,degree=2", 6, 12},
+    {"hp", 2, 100},
+    {"hp:type=2", 1, 200},
+    {"hp:type=3", 1, 200},
+    {"hamiltonian", 4, 40},
+    {"hamiltonian:type=3", 4, 40},
+    {"multiscale:degree=1,amplitude=0,fast=0:1,omega=0.5", 6, 6},
+    {"multiscale:degree=2,amplitude=0,fast=0,omega=0.5", 4, 40},
+    {"shooting", 4, 60},
+    {"shooting:onestep=heun,quadrature=trapezoid", 2, 100},
+    {"shooting:onestep=gauss,type=2", 4, 60},
+    {"shooting:onestep=gauss,type=3", 4, 60},
+    {"shooting:onestep=gauss,stages=3,quadrature=lobatto", 6, 6},
+    {"shooting:onestep=gauss,solve=stages", 4, 60},
 };
 enum { METHODS = sizeof methods / sizeof *methods };
 
 START_TEST(coordinates_momenta_and_time_have_the_order_of_the_method)
 {
   check_on_kepler(methods[_i].method, methods[_i].order, methods[_i].first, 4.0);
+}
+END_TEST
+
+/* Whether the method is among those above. */
+static int is_measured(const char *name)
+{
+  for (int i = 0; i < METHODS; i++)
+    if (strncmp(methods[i].method, name, strlen(name)) == 0 && strchr(":", methods[i].method[strlen(name)]) != NULL) return 1;
+  return 0;
+}
+
+/* So that no method takes transformed systems and forgets their time. */
+START_TEST(every_method_is_measured_or_refuses)
+{
+  const dvi_monitor monitor = {.kind = DVI_MONITOR_DISTANCE};
+  problem *kepler = made_problem("kepler", NULL);
+  for (int i = 0; i < dvi_method_count(); i++) {
+    dvi_integrator *none = NULL;
+    if (is_measured(dvi_method_name(i))) continue;
+    const dvi_status status = dvi_integrator_create_transformed(kepler->system, &monitor, dvi_method_name(i), &none);
+    ck_assert_msg(status == DVI_UNSUPPORTED, "%s is not in the list above", dvi_method_name(i));
+    ck_assert_ptr_null(none);
+  }
+  problem_destroy(&kepler);
+}
+END_TEST
+
+START_TEST(a_method_of_higher_derivatives_says_why_not)
+{
+  const dvi_monitor monitor = {.kind = DVI_MONITOR_DISTANCE};
+  const char *const of_derivatives[] = {"prolongation-collocation", "shooting:onestep=taylor"};
+  problem *kepler = made_problem("kepler", NULL);
+  for (int i = 0; i < 2; i++) {
+    dvi_integrator *none = NULL;
+    ck_assert_int_eq(dvi_integrator_create_transformed(kepler->system, &monitor, of_derivatives[i], &none), DVI_UNSUPPORTED);
+    check_words("a time-transformed system has no Taylor coefficients");
+  }
+  problem_destroy(&kepler);
 }
 END_TEST
 
@@ -156,6 +209,8 @@ int main(void)
 {
   TCase *tests = tcase_create("transform order");
   tcase_add_loop_test(tests, coordinates_momenta_and_time_have_the_order_of_the_method, 0, METHODS);
+  tcase_add_test(tests, every_method_is_measured_or_refuses);
+  tcase_add_test(tests, a_method_of_higher_derivatives_says_why_not);
   tcase_add_test(tests, a_mass_that_depends_on_the_coordinates_may_be_transformed);
   tcase_add_test(tests, arc_lengths_and_accelerations_keep_the_order);
   return run_tests("transform order", tests);

@@ -217,6 +217,12 @@ void dvi__shaped_ends(dvi__shaped *shaped, const double *Y, double *dq, double *
   dvi__action_move_ends(shaped->action, shaped->at, dp);
 }
 
+dvi_status dvi__shaped_duration(dvi__shaped *shaped, const double *Y, double *duration)
+{
+  widen(shaped, Y, shaped->whole);
+  return dvi__action_duration(shaped->action, shaped->whole, duration);
+}
+
 void dvi__shaped_path(dvi__shaped *shaped, const double *Y, double h, double tau, double *offset, double *v)
 {
   const dvi__action *a = shaped->action;

@@ -30,8 +30,9 @@ dvi_status dvi__shaped_scale(dvi__shaped *shaped, double *scale);
 void dvi__shaped_straight(const dvi__shaped *shaped, const double *v, double *Y);
 void dvi__shaped_continue(dvi__shaped *shaped, double ratio, const double *last, double *Y);
 
-/* As dvi__action_ends and dvi__action_path; the last residual and the last Jacobian were asked for near Y: what is left to it counts to first order. Once. */
+/* As dvi__action_ends, dvi__action_duration and dvi__action_path. The ends come first: the last residual and the last Jacobian were asked for near Y: what is left to it counts to first order. Once. */
 void dvi__shaped_ends(dvi__shaped *shaped, const double *Y, double *dq, double *dp);
+dvi_status dvi__shaped_duration(dvi__shaped *shaped, const double *Y, double *duration);
 void dvi__shaped_path(dvi__shaped *shaped, const double *Y, double h, double tau, double *offset, double *v);
 
 #endif

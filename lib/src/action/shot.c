@@ -7,8 +7,10 @@
 #include "action/taylor.h"
 #include "core/memory.h"
 #include "core/status.h"
+#include "system/transformed.h"
 
 struct dvi__shot {
+  const dvi_system *system;
   dvi__runge_kutta method;
   dvi__course course;
   dvi__field *field;
@@ -81,6 +83,7 @@ dvi_status dvi__shot_create(const dvi_system *system, const dvi__runge_kutta *me
   *shot = NULL;
   dvi__shot *s = DVI_NEW(dvi__shot, 1);
   if (s == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory");
+  s->system = system;
   s->method = *method;
   s->course = *course;
   s->n = system->n;
@@ -215,6 +218,20 @@ dvi_status dvi__shot_fire(dvi__shot *s, const double *p, double *reach)
   }
   memcpy(reach, at(s, s->node, s->course.pieces), z * sizeof *reach);
   return place_nodes(s);
+}
+
+dvi_status dvi__shot_duration(dvi__shot *s, double *duration)
+{
+  dvi__monitor *monitor = dvi__transformed_monitor(dvi__transformed_of(s->system));
+  double g;
+  *duration = 0;
+  for (int m = 0; m <= s->course.pieces; m++) {
+    if (s->course.b[m] == 0) continue;
+    for (int i = 0; i < s->n; i++) s->point[i] = s->q0[i] + at(s, s->node, m)[i];
+    DVI_TRY(dvi__monitor_value(monitor, 1, s->point, &g));
+    *duration += s->h * s->course.b[m] * g;
+  }
+  return DVI_OK;
 }
 
 /* ---- back ---- */

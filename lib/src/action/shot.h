@@ -37,6 +37,9 @@ void dvi__shot_aim(dvi__shot *shot, double t0, double h, const double *q, const 
 /* Shoot from (q, p [n]); reach [2n] is how far z moves. */
 dvi_status dvi__shot_fire(dvi__shot *shot, const double *p, double *reach);
 
+/* Of a time-transformed system: how much time passes along the last shot, h sum_m b_m g(q_m). */
+dvi_status dvi__shot_duration(dvi__shot *shot, double *duration);
+
 /* Of the last shot, after dvi__shot_trace, which takes second derivatives along it: the gradient [2n] of S + end.z_pieces at its start, end [2n] not
  * counted. */
 dvi_status dvi__shot_trace(dvi__shot *shot);

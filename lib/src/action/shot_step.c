@@ -235,3 +235,10 @@ void dvi__shot_step_ends(const dvi__shot_step *s, const double *x, double *dq, d
     for (int i = 0; i < n && s->type == 2; i++) dp[i] += motion[n + i] * change;
   }
 }
+
+dvi_status dvi__shot_step_duration(dvi__shot_step *s, const double *x, double *duration)
+{
+  put(s, x);
+  DVI_TRY(fire(s));
+  return dvi__shot_duration(s->shot, duration);
+}

@@ -37,4 +37,7 @@ dvi_status dvi__shot_step_jacobian(void *step, const double *x, double *values);
 /* Increments of q and p, [n] each, at x: from the point of the last residual to first order, by the last Jacobian. */
 void dvi__shot_step_ends(const dvi__shot_step *step, const double *x, double *dq, double *dp);
 
+/* Of a time-transformed system: how much time passes in the step with the solution x. After the ends are taken. */
+dvi_status dvi__shot_step_duration(dvi__shot_step *step, const double *x, double *duration);
+
 #endif

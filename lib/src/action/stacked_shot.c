@@ -6,6 +6,7 @@
 #include "action/stacked_struct.h"
 #include "core/memory.h"
 #include "core/status.h"
+#include "system/transformed.h"
 
 /* ---- making it ---- */
 
@@ -40,6 +41,7 @@ dvi_status dvi__stacked_shot_create(const dvi_system *system, const dvi__runge_k
   *step = NULL;
   dvi__stacked_shot *s = DVI_NEW(dvi__stacked_shot, 1);
   if (s == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory");
+  s->system = system;
   s->method = *method;
   s->course = *course;
   s->n = system->n;
@@ -260,6 +262,21 @@ void dvi__stacked_shot_ends(const dvi__stacked_shot *s, double *dq, double *dp)
     }
   for (int m = 0; m <= s->course.pieces; m++)
     for (int i = 0; i < n; i++) dp[i] += at(s, s->slope, m)[i];
+}
+
+dvi_status dvi__stacked_shot_duration(dvi__stacked_shot *s, double *duration)
+{
+  dvi__monitor *monitor = dvi__transformed_monitor(dvi__transformed_of(s->system));
+  double g;
+  *duration = 0;
+  for (int m = 0; m <= s->course.pieces; m++) {
+    if (s->course.b[m] == 0) continue;
+    go_to_node(s, m);
+    for (int i = 0; i < s->n; i++) s->point[i] += s->q0[i];
+    DVI_TRY(dvi__monitor_value(monitor, 1, s->point, &g));
+    *duration += s->h * s->course.b[m] * g;
+  }
+  return DVI_OK;
 }
 
 /* ---- Jacobian ---- */

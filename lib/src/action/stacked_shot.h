@@ -24,5 +24,6 @@ dvi_status dvi__stacked_shot_place(dvi__stacked_shot *step, double t0, double h,
 dvi_status dvi__stacked_shot_residual(void *step, const double *x, double *R);
 dvi_status dvi__stacked_shot_jacobian(void *step, const double *x, double *values);
 void dvi__stacked_shot_ends(const dvi__stacked_shot *step, double *dq, double *dp);
+dvi_status dvi__stacked_shot_duration(dvi__stacked_shot *step, double *duration);
 
 #endif

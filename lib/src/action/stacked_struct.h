@@ -16,6 +16,7 @@ typedef struct dvi__stack_block {
 } dvi__stack_block;
 
 struct dvi__stacked_shot {
+  const dvi_system *system;
   dvi__runge_kutta method;
   dvi__course course;
   dvi__field *field;

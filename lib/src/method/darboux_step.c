@@ -29,6 +29,6 @@ dvi_status dvi__darboux_step(dvi__stepper *self, dvi__state *state, double h)
   dvi__darboux_place(one->of, state->t, h, state->q, state->p);
   DVI_TRY(dvi__one_step_solve(self, state, h));
   dvi__darboux_end(one->of, one->x, one->dq);
-  dvi__one_step_move(self, state, h, one->x);
+  DVI_TRY(dvi__one_step_move(self, state, h, one->x));
   return dvi__one_step_constrain(self, state);
 }

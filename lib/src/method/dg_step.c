@@ -119,7 +119,7 @@ dvi_status dvi__dg_step(dvi__stepper *self, dvi__state *state, double h)
   DVI_TRY(solve(self, state, h));
   DVI_TRY(dvi__discontinuous_end(one->of, one->x, one->dq, jump(self), offset(self), coefficients));
   DVI_TRY(watch(self, state->q, one->dq));
-  dvi__one_step_move(self, state, h, coefficients);
+  DVI_TRY(dvi__one_step_move(self, state, h, coefficients));
   return dvi__one_step_constrain(self, state);
 }
 

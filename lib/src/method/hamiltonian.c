@@ -113,7 +113,7 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
   DVI_TRY(dvi__canonical_residual(one->of, one->x, one->guess));
   dvi__canonical_ends(one->of, one->x, one->dq, one->dp);
   dvi__canonical_keep(one->of, one->x, one->guess);
-  dvi__one_step_move(self, state, h, one->guess);
+  DVI_TRY(dvi__one_step_move(self, state, h, one->guess));
   dvi__add_compensated_all(self->system->n, state->p, state->p_carry, one->dp);
   return DVI_OK;
 }

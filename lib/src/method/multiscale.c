@@ -135,7 +135,12 @@ static void explain(const dvi__stepper *self, dvi__text *text)
                 dvi__oscillating_shapes(own->space).points, dvi__oscillating_resolved(own->space));
 }
 
-DVI__STEP_KIND(shaped, explain, .renewed = 1);
+static dvi_status duration_of(void *of, const double *x, double *duration)
+{
+  return dvi__shaped_duration(of, x, duration);
+}
+
+DVI__STEP_KIND(shaped, explain, .duration = duration_of, .renewed = 1);
 
 static dvi_status make_step(const dvi__stepper *self, const dvi__shapes *shapes, const char *fast, dvi__shaped **shaped)
 {
@@ -232,7 +237,7 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
   dvi__shaped_place(one->of, state->t, h, state->q, state->p);
   DVI_TRY(dvi__one_step_solve(self, state, h));
   dvi__shaped_ends(one->of, one->x, one->dq, one->dp);
-  dvi__one_step_move(self, state, h, one->x);
+  DVI_TRY(dvi__one_step_move(self, state, h, one->x));
   dvi__add_compensated_all(self->system->n, state->p, state->p_carry, one->dp);
   return DVI_OK;
 }

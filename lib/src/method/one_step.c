@@ -80,13 +80,16 @@ dvi_status dvi__one_step_solve(dvi__stepper *self, const dvi__state *state, doub
                                one->guess, one->x);
 }
 
-void dvi__one_step_move(dvi__stepper *self, dvi__state *state, double h, const double *last)
+dvi_status dvi__one_step_move(dvi__stepper *self, dvi__state *state, double h, const double *last)
 {
   const dvi__one_step *one = self->own;
+  double duration = h;
+  if (one->kind->duration != NULL) DVI_TRY(one->kind->duration(one->of, one->x, &duration));
   dvi__add_compensated_all(self->system->n, state->q, state->q_carry, one->dq);
-  dvi__add_compensated(&state->t, &state->t_carry, h);
+  dvi__add_compensated(&state->t, &state->t_carry, duration);
   self->memory[DVI__LENGTH] = h;
   memcpy(self->memory + one->last, last, unknowns(one) * sizeof(double));
+  return DVI_OK;
 }
 
 dvi_status dvi__one_step_constrain(dvi__stepper *self, dvi__state *state)

@@ -23,6 +23,8 @@ typedef struct dvi__step_kind {
   dvi__evaluator *(*evaluator)(const void *of);
   void (*destroy)(void *of);
   void (*explain)(const dvi__stepper *self, dvi__text *text); /* what is its own */
+  /* How much time passes in the step with the solution x, of kinds that time-transformed systems may have; NULL: h. */
+  dvi_status (*duration)(void *of, const double *x, double *duration);
   int renewed; /* Newton's method factors each Jacobian: forces cost more than factors; and the step corrects what it takes from the last point */
 } dvi__step_kind;
 
@@ -42,8 +44,8 @@ dvi_status dvi__one_step_create(dvi__stepper *self, size_t size, const dvi__step
  * start, and later what was remembered, continued. */
 dvi_status dvi__one_step_solve(dvi__stepper *self, const dvi__state *state, double h);
 
-/* Move q by dq and t by h, and remember `last` [unknowns]. */
-void dvi__one_step_move(dvi__stepper *self, dvi__state *state, double h, const double *last);
+/* Move q by dq and t by the duration at x, and remember `last` [unknowns]. After the ends are taken. */
+dvi_status dvi__one_step_move(dvi__stepper *self, dvi__state *state, double h, const double *last);
 
 /* p = alpha(q), to the last bit. */
 dvi_status dvi__one_step_constrain(dvi__stepper *self, dvi__state *state);

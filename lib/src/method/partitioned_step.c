@@ -47,7 +47,7 @@ dvi_status dvi__partitioned_step(dvi__stepper *self, dvi__state *state, double h
   DVI_TRY(dvi__partitioned_residual(one->of, one->x, one->guess));
   dvi__partitioned_ends(one->of, one->dq, one->dp);
   keep_multiplier(self);
-  dvi__one_step_move(self, state, h, one->x);
+  DVI_TRY(dvi__one_step_move(self, state, h, one->x));
   if (own->projection != DVI__NO_PROJECTION) return dvi__one_step_constrain(self, state);
   dvi__add_compensated_all(self->system->n, state->p, state->p_carry, one->dp);
   return DVI_OK;

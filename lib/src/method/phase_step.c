@@ -97,7 +97,7 @@ dvi_status dvi__phase_step(dvi__stepper *self, dvi__state *state, double h)
   DVI_TRY(solve(self, state, h));
   dvi__phase_end(one->of, one->x, one->dq, one->dp, multiplier(self));
   DVI_TRY(watch(self));
-  dvi__one_step_move(self, state, h, one->x);
+  DVI_TRY(dvi__one_step_move(self, state, h, one->x));
   dvi__add_compensated_all(self->system->n, state->p, state->p_carry, one->dp);
   return DVI_OK;
 }

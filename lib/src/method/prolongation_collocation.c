@@ -53,7 +53,7 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
   DVI_TRY(dvi__one_step_solve(self, state, h));
   DVI_TRY(dvi__prolongation_end(one->of, one->x, one->dq, one->dp, self->memory + DVI__CARRIED));
   dvi__add_compensated_all(self->system->n, state->p, state->p_carry, one->dp);
-  dvi__one_step_move(self, state, h, one->x);
+  DVI_TRY(dvi__one_step_move(self, state, h, one->x));
   return DVI_OK;
 }
 

@@ -224,7 +224,7 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
   dvi__shaped_place(one->of, state->t, h, state->q, state->p);
   DVI_TRY(dvi__one_step_solve(self, state, h));
   dvi__shaped_ends(one->of, one->x, one->dq, one->dp);
-  dvi__one_step_move(self, state, h, one->x);
+  DVI_TRY(dvi__one_step_move(self, state, h, one->x));
   dvi__add_compensated_all(self->system->n, state->p, state->p_carry, one->dp);
   self->memory[PORTRAIT] = dvi__given_portray(own->space).sum;
   self->memory[COORDINATES] = own->mark;

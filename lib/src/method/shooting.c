@@ -19,6 +19,7 @@
 #include "num/compensated.h"
 #include "num/finite.h"
 #include "space/osculation.h"
+#include "system/transformed.h"
 
 enum { ONE_STEP, STAGES, TABLEAU, COMPOSITION, QUADRATURE, NODES, TERMS, SOLVE, TOLERANCE, TYPE };
 enum { NODES_MOST = 16, STAGES_MOST = 20, TAYLOR = DVI__RK_NAMED, FROM_FILE };
@@ -419,18 +420,29 @@ static void find_ends(const shooter *own)
     dvi__shot_step_ends(own->shot, own->x, own->dq, own->dp);
 }
 
+static dvi_status find_duration(const dvi__stepper *self, double h, double *duration)
+{
+  const shooter *own = self->own;
+  *duration = h;
+  if (dvi__transformed_of(self->system) == NULL) return DVI_OK;
+  if (own->stacked != NULL) return dvi__stacked_shot_duration(own->stacked, duration);
+  return dvi__shot_step_duration(own->shot, own->x, duration);
+}
+
 static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
 {
   const shooter *own = self->own;
   const int n = self->system->n;
+  double duration;
   memcpy(own->v, self->memory, (size_t)n * sizeof *own->v);
   DVI_TRY(place(own, state, h));
   DVI_TRY(solve(self, dvi__largest((size_t)n, state->q)));
   find_ends(own);
+  DVI_TRY(find_duration(self, h, &duration));
   for (int i = 0; i < n; i++) self->memory[i] = own->v[i];
   dvi__add_compensated_all(n, state->q, state->q_carry, own->dq);
   dvi__add_compensated_all(n, state->p, state->p_carry, own->dp);
-  dvi__add_compensated(&state->t, &state->t_carry, h);
+  dvi__add_compensated(&state->t, &state->t_carry, duration);
   return DVI_OK;
 }
 

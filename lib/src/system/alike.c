@@ -31,6 +31,11 @@ dvi_status dvi__system_has_taylor(const dvi_system *system)
   for (int p = 0; p < system->potential_count && without == NULL; p++)
     if (!dvi__potential_has_taylor(&system->potentials[p])) without = system->potentials[p].name;
   if (without == NULL) return DVI_OK;
+  if (l != NULL && l->transformed != NULL)
+    return dvi__fail(
+        DVI_UNSUPPORTED,
+        "a time-transformed system has no Taylor coefficients, and derivatives beyond the second are needed; take step "
+        "control, or a method by values, as galerkin");
   if (system->terms & DVI__PHASE_SPACE)
     return dvi__fail(DVI_UNSUPPORTED,
                      "a Hamiltonian has no taylor callback, and derivatives beyond the second are needed; take a tableau, and a "
