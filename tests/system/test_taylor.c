@@ -205,10 +205,12 @@ static struct {
   dvi_lagrangian lagrangian;
   int block, coefficient, entries; /* which coefficient of its first entry is wrong, by: */
   double by;
+  int degree, alone, returned; /* if that degree is asked for, 0: if any is; if the value is not wanted; and always returns this */
 } lie;
 
-static void lie_in(double *block, int degree)
+static void lie_in(double *block, const double *value, int degree)
 {
+  if ((lie.degree != 0 && lie.degree != degree) || (lie.alone && value != NULL)) return;
   if (block != NULL && lie.coefficient <= degree) block[lie.coefficient * lie.entries] += lie.by;
 }
 
@@ -216,8 +218,8 @@ static int lying_potential(int degree, const double *t, const double *q, double 
 {
   double *const block[] = {V, V_q, V_qq};
   const int returned = lie.potential.taylor(degree, t, q, V, V_q, V_qq, user);
-  lie_in(block[lie.block], degree);
-  return returned;
+  lie_in(block[lie.block], block[0], degree);
+  return lie.returned != 0 ? lie.returned : returned;
 }
 
 static int lying_lagrangian(int degree, const double *t, const double *q, const double *v, double *L, double *L_q, double *L_v,
@@ -225,8 +227,8 @@ static int lying_lagrangian(int degree, const double *t, const double *q, const 
 {
   double *const block[] = {L, L_q, L_v, L_qq, L_qv, L_vv};
   const int returned = lie.lagrangian.taylor(degree, t, q, v, L, L_q, L_v, L_qq, L_qv, L_vv, user);
-  lie_in(block[lie.block], degree);
-  return returned;
+  lie_in(block[lie.block], block[0], degree);
+  return lie.returned != 0 ? lie.returned : returned;
 }
 
 /* The system of a problem with one potential or a Lagrangian alone, which lies. */
@@ -278,6 +280,105 @@ START_TEST(a_wrong_coefficient_of_a_lagrangian_is_named)
 {
   static const char *const what[] = {"L", "L_q", "L_v", "L_qq", "L_qv", "L_vv"};
   check_named("driven-pendulum", "Lagrangian", _i / 4, _i % 4, 1, what[_i / 4]);
+}
+END_TEST
+
+static dvi_status check_lying(const char *name, int block, int coefficient, int entries, double by)
+{
+  dvi_derivative_check found;
+  problem *of = made_problem(name, NULL);
+  dvi_system *system = lying_system(of, block, coefficient, entries, by);
+  const dvi_status status = dvi_system_check(system, 0.4, of->q, of->v, 0, &found);
+  dvi_system_destroy(&system);
+  problem_destroy(&of);
+  return status;
+}
+
+/* The planet passes in a fifth of a unit of time: coefficients grow by 5 or so each, and rounding hides none. */
+START_TEST(a_wrong_coefficient_of_any_degree_is_found)
+{
+  for (int coefficient = 5; coefficient <= DVI_TAYLOR_MAX; coefficient += 5) {
+    ck_assert_int_eq(check_lying("kepler", 1, coefficient, 2, 0.1 * pow(5, coefficient)), DVI_BAD_ARGUMENT);
+    check_words(spec("Taylor coefficient %d of V_q", coefficient));
+  }
+}
+END_TEST
+
+START_TEST(a_callback_that_gives_no_number_or_refuses_is_no_good_one)
+{
+  for (int coefficient = 1; coefficient <= DVI_TAYLOR_MAX; coefficient += 13) {
+    ck_assert_int_eq(check_lying("kepler", 1, coefficient, 2, (double)NAN), DVI_NOT_FINITE);
+    check_words(spec("gave nan for coefficient %d of V_q", coefficient));
+  }
+  lie.returned = 1;
+  ck_assert_int_eq(check_lying("kepler", 1, 0, 2, 0), DVI_CALLBACK_RETRY);
+  lie.returned = -1;
+  ck_assert_int_eq(check_lying("kepler", 1, 0, 2, 0), DVI_CALLBACK_FAILED);
+  lie.returned = 0;
+}
+END_TEST
+
+START_TEST(results_that_depend_on_what_else_is_asked_are_found)
+{
+  for (lie.degree = 1; lie.degree < DVI_TAYLOR_MAX; lie.degree++) {
+    ck_assert_int_eq(check_lying("kepler", 1, 1, 2, 0.1), DVI_BAD_ARGUMENT);
+    check_words(spec("if degree %d is asked for", lie.degree));
+  }
+  lie.degree = 0;
+  lie.alone = 1;
+  ck_assert_int_eq(check_lying("kepler", 1, 3, 2, 0.1), DVI_BAD_ARGUMENT);
+  check_words("Taylor coefficient 3 of V_q (entry 0)");
+  check_words("and other results are NULL");
+  ck_assert_int_eq(check_lying("driven-pendulum", 5, 12, 1, 0.1), DVI_BAD_ARGUMENT);
+  check_words("Taylor coefficient 12 of L_vv (entry 0)");
+  lie.alone = 0;
+}
+END_TEST
+
+/* V = x^3/6, whose callback for series takes roots that there are not at 0. */
+static int cube_value(double t, const double *q, double *V, void *user)
+{
+  (void)t, (void)user;
+  *V = *q * *q * *q / 6;
+  return 0;
+}
+
+static int cube_gradient(double t, const double *q, double *V_q, void *user)
+{
+  (void)t, (void)user;
+  *V_q = *q * *q / 2;
+  return 0;
+}
+
+static int cube_hessian(double t, const double *q, double *V_qq, void *user)
+{
+  (void)t, (void)user;
+  *V_qq = *q;
+  return 0;
+}
+
+static int cube_taylor(int degree, const double *t, const double *q, double *V, double *V_q, double *V_qq, void *user)
+{
+  double square[DVI_TAYLOR_MAX + 1], cube[DVI_TAYLOR_MAX + 1];
+  (void)t, (void)user;
+  dvi_taylor_multiply(degree, q, q, square);
+  dvi_taylor_multiply(degree, square, q, cube);
+  dvi_taylor_put(degree, 1, cube, 1.0 / 6, 0, V);
+  dvi_taylor_put(degree, 1, square, 0.5, 0, V_q);
+  dvi_taylor_put(degree, 1, q, 1, 0, V_qq);
+  return q[0] > 0 || q[0] < 0 ? 0 : 1;
+}
+
+START_TEST(where_a_callback_has_no_series_one_beside_is_checked)
+{
+  const dvi_potential potential = {
+      .name = "cube", .value = cube_value, .gradient = cube_gradient, .hessian = cube_hessian, .taylor = cube_taylor};
+  const dvi_system_terms terms = {.dimension = 1, .mass.scalar = 1, .potentials = &potential, .potential_count = 1};
+  const double zero = 0, v = 0.7;
+  dvi_system *system = NULL;
+  ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
+  ck_assert_msg(dvi_system_check(system, 0, &zero, &v, 0, NULL) == DVI_OK, "%s", dvi_last_error());
+  dvi_system_destroy(&system);
 }
 END_TEST
 
@@ -352,6 +453,10 @@ int main(void)
   tcase_add_test(tests, wanting_less_gives_the_same_numbers);
   tcase_add_loop_test(tests, a_wrong_coefficient_of_a_potential_is_named, 0, 12);
   tcase_add_loop_test(tests, a_wrong_coefficient_of_a_lagrangian_is_named, 0, 24);
+  tcase_add_test(tests, a_wrong_coefficient_of_any_degree_is_found);
+  tcase_add_test(tests, a_callback_that_gives_no_number_or_refuses_is_no_good_one);
+  tcase_add_test(tests, results_that_depend_on_what_else_is_asked_are_found);
+  tcase_add_test(tests, where_a_callback_has_no_series_one_beside_is_checked);
   tcase_add_test(tests, a_coefficient_that_is_not_finite_is_named);
   tcase_add_test(tests, a_term_without_coefficients_is_named);
   tcase_add_test(tests, every_failure_of_memory_is_survived);

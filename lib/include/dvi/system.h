@@ -334,8 +334,9 @@ typedef struct dvi_derivative_check {
 
 /** Compare every gradient, Hessian, pattern and rate of the system with differences of the values at one point, and every gradient_range, bit
  *  for bit, with the whole gradient: over short and long ranges, with NaN wherever it may not look. Of an autonomous system every callback must
- *  give the same numbers at two other times, and the gradient of a quadratic potential must be linear in q. Taylor coefficients are compared with the other
- *  callbacks, and each with differences of the one below it along a curve through the point.
+ *  give the same numbers at two other times, and the gradient of a quadratic potential must be linear in q. Taylor coefficients, up to
+ *  DVI_TAYLOR_MAX of them, are compared with the other callbacks, and each with differences of the one below it along a curve through the point, as far as rounding
+ *  lets it be seen; they may not depend on the degree that is asked for, nor on which results are NULL.
  *
  *  Uses 6th order central differences; n^2 gradient calls: meant for tests and for moderate n.
  *  @param      q, v       [nq], [nv]: a point in general position; with a Hamiltonian v stands for p
