@@ -322,6 +322,7 @@ static const struct {
     {"shooting:onestep=rk4,tableau=x", "onestep=rk4 is built in"},
     {"shooting:quadrature=gauss-hermite,nodes=3", "has its 2 nodes at the ends, not nodes=3"},
     {"shooting:quadrature=euler-maclaurin,terms=0", "terms=1 to 20 are possible"},
+    {"shooting:onestep=taylor,solve=stages", "solve=stages is for one-step methods with a tableau"},
     {"shooting:terms=2", "quadrature=simpson has no terms"},
     {"shooting:composition=4", "raises the order of symmetric one-step methods alone, and onestep=rk4 is none"},
     {"shooting:tableau=no/such/file", "no/such/file cannot be read"},

@@ -22,7 +22,7 @@
 #include "system/transformed.h"
 
 enum { ONE_STEP, STAGES, TABLEAU, COMPOSITION, QUADRATURE, NODES, TERMS, SOLVE, TOLERANCE, TYPE };
-enum { NODES_MOST = 16, STAGES_MOST = 20, TAYLOR = DVI__RK_NAMED, FROM_FILE };
+enum { NODES_MOST = 16, STAGES_MOST = 20, SHOT_MOST = 2000 /* 128 MB a matrix */, TAYLOR = DVI__RK_NAMED, FROM_FILE };
 
 /* Quadratures: those of the core; Euler-Maclaurin and Gauss-Hermite. */
 enum { EULER_MACLAURIN = DVI_SIMPSON + 1, GAUSS_HERMITE };
@@ -44,12 +44,12 @@ static const char *composition_name(int index)
   return index == 0 ? "none" : dvi__scheme_name(index - 1);
 }
 
-enum { SHOT, STAGES_TOO };
+enum { AUTO, SHOT, STAGES_TOO, SOLVES };
 
 static const char *solve_name(int index)
 {
-  static const char *const name[] = {"shot", "stages"};
-  return index >= 0 && index < 2 ? name[index] : NULL;
+  static const char *const name[] = {"auto", "shot", "stages"};
+  return index >= 0 && index < SOLVES ? name[index] : NULL;
 }
 
 static const dvi__key keys[] = {
@@ -67,8 +67,9 @@ static const dvi__key keys[] = {
      "of lobatto and clenshaw-curtis, 2 to 16; left out: the fewest whose order reaches that of the one-step method"},
     {"terms", NULL, 0, STAGES_MOST, DVI__LEFT_OUT,
      "of euler-maclaurin, beside the trapezoid, and of gauss-hermite, at each end, up to 20; left out: as nodes"},
-    {"solve", solve_name, 0, 0, SHOT,
-     "shot: for the start, by dense derivatives of the shot; stages: for all stages, as one sparse system; left out: shot"},
+    {"solve", solve_name, 0, 0, AUTO,
+     "shot: for the start, by dense derivatives of the shot; stages: for all stages, as one sparse system; auto: the cheaper; left "
+     "out: auto"},
     {"tolerance", NULL, DVI__POSITIVE, 0, 0,
      "the residual, relative to the coordinates, at which the search for v ends: to see what a loose one does; left out: roundoff"},
     {"type", NULL, 1, 3, DVI__LEFT_OUT,
@@ -82,7 +83,8 @@ typedef struct way {
   dvi_status (*jacobian)(void *step, const double *x, double *values);
 } way;
 
-static const way ways[] = {
+static const way ways[SOLVES] = {
+    {0},
     {dvi__shot_step_residual, dvi__shot_step_jacobian},
     {dvi__stacked_shot_residual, dvi__stacked_shot_jacobian},
 };
@@ -288,12 +290,40 @@ static dvi_status jacobian(void *of, const double *x, double *values)
   return own->way->jacobian(step_of(own), x, values);
 }
 
+/* Sparse, and of more coordinates than the system of all stages has blocks of 2n: six times as many of an explicit method, whose shot solves nothing (measured
+ * with chains of masses). */
+static int stages_are_cheaper(const dvi_system *system, const dvi__runge_kutta *method, const dvi__course *course)
+{
+  enum { EXPLICIT_GAIN = 6, LEAST_EMPTY = 4 };
+  const int blocks = 2 * (method->stages + 1) * course->pieces + 1;
+  if (system->n > SHOT_MOST) return 1;
+  return system->mass_diagonal != NULL && system->n > (method->is_explicit ? EXPLICIT_GAIN : 1) * blocks &&
+         (double)LEAST_EMPTY * dvi__pattern_entries(&system->qq) <= (double)system->n * system->n;
+}
+
+static dvi_status choose_solve(dvi__stepper *self, const dvi__runge_kutta *method, const dvi__course *course)
+{
+  int *choice = &self->settings.value[SOLVE];
+  const int possible = self->settings.value[TYPE] == 1 && method->series == 0 && course->count == 0;
+  if (*choice != AUTO) return DVI_OK;
+  DVI_TRY(dvi__system_prepare_hessian(self->system));
+  *choice = possible && stages_are_cheaper(self->system, method, course) ? STAGES_TOO : SHOT;
+  return DVI_OK;
+}
+
 static dvi_status make_step(dvi__stepper *self, const dvi__runge_kutta *method, const dvi__course *course)
 {
   shooter *own = self->own;
+  DVI_TRY(choose_solve(self, method, course));
   const int choice = self->settings.value[SOLVE];
   own->way = &ways[choice];
   if (choice == SHOT) {
+    if (self->system->n > SHOT_MOST)
+      return dvi__fail(
+          DVI_UNSUPPORTED,
+          "solve=shot has full matrices of 2n = %d unknowns, and is for up to %d coordinates; solve=stages, with type=1, a "
+          "tableau and a quadrature by values, is sparse",
+          2 * self->system->n, SHOT_MOST);
     DVI_TRY(dvi__shot_step_create(self->system, self->settings.value[TYPE], method, course, self->counters, &own->shot));
     own->pattern = dvi__shot_step_pattern(own->shot);
     return DVI_OK;
