@@ -1,6 +1,7 @@
 /* labels: invariant order reference */
 /* Long strings of fast springs: trig, mollified and respa by polynomials. */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "support/necklace.h"
@@ -300,6 +301,26 @@ START_TEST(a_filter_that_jumps_has_no_polynomial)
 }
 END_TEST
 
+/* Beads that are pushed away grow: the longest step is named, it is one, and no longer one is told of. */
+START_TEST(steps_are_explained_as_far_as_they_are_possible)
+{
+  static const char words[] = " of the motion; steps are at most ";
+  necklace of;
+  char text[2000];
+  make_necklace(90, PUSHED, 1, &of);
+  dvi_integrator *integrator = necklace_integrator(&of, "trig:motion=polynomials");
+  (void)dvi_integrator_explain(integrator, text, sizeof text);
+  ck_assert_ptr_nonnull(strstr(text, ": for steps with h omega = 1 of degree"));
+  const char *found = strstr(text, words);
+  ck_assert_ptr_nonnull(found);
+  const double longest = strtod(found + strlen(words), NULL);
+  ck_assert_int_eq(dvi_integrator_step(integrator, 0.99 * longest), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_step(integrator, 1.01 * longest), DVI_NOT_CONVERGED);
+  dvi_integrator_destroy(&integrator);
+  destroy_necklace(&of);
+}
+END_TEST
+
 /* Filters with poles by modes, which may lie between them. */
 START_TEST(blocks_of_more_than_64_go_by_polynomials_where_they_serve)
 {
@@ -327,6 +348,7 @@ int main(void)
   tcase_add_loop_test(tests, a_step_back_undoes_a_step, 0, FILTERS);
   tcase_add_loop_test(tests, a_step_depends_on_its_state_and_its_length_alone, 0, FILTERS);
   tcase_add_loop_test(tests, a_step_of_a_long_string_takes_two_gradients_and_few_products, 0, 3);
+  tcase_add_test(tests, steps_are_explained_as_far_as_they_are_possible);
   tcase_add_test(tests, steps_for_which_there_is_no_polynomial_fail_and_those_that_are_named_do_not);
   tcase_add_test(tests, a_filter_that_jumps_has_no_polynomial);
   tcase_add_loop_test(tests, blocks_of_more_than_64_go_by_polynomials_where_they_serve, 0, 4);

@@ -186,6 +186,31 @@ START_TEST(what_the_points_do_not_tell_apart_is_refused)
 }
 END_TEST
 
+static int evaluate_step(double h, double tau, double *value, double *derivative, void *user)
+{
+  const double steepness = *(const double *)user;
+  (void)h;
+  *value = tanh(steepness * (tau - 0.37));
+  *derivative = steepness * (1 - *value * *value);
+  return 0;
+}
+
+/* All of a step of 200 is between two of 8 points; 80 points see it, and 8 see one of 20. */
+START_TEST(points_that_do_not_see_a_function_are_refused)
+{
+  static double steepness = 200;
+  const dvi_shapes step = {.name = "step", .functions = 1, .evaluate = evaluate_step, .user = &steepness};
+  problem *of = made_problem("kepler", NULL);
+  check_refused(&step, "shaped-galerkin:nodes=8", DVI_BAD_ARGUMENT, "the 8 points are much too coarse for function 0");
+  dvi_integrator *fine = shaped_integrator(of->system, &step, "shaped-galerkin:nodes=80");
+  dvi_integrator_destroy(&fine);
+  steepness = 20;
+  dvi_integrator *flat = shaped_integrator(of->system, &step, "shaped-galerkin:nodes=8");
+  dvi_integrator_destroy(&flat);
+  problem_destroy(&of);
+}
+END_TEST
+
 START_TEST(without_shapes_there_is_no_such_method)
 {
   problem *of = made_problem("kepler", NULL);
@@ -459,6 +484,7 @@ int main(void)
   tcase_add_test(tests, functions_that_are_wrong_are_refused);
   tcase_add_test(tests, points_that_are_wrong_are_refused);
   tcase_add_test(tests, what_the_points_do_not_tell_apart_is_refused);
+  tcase_add_test(tests, points_that_do_not_see_a_function_are_refused);
   tcase_add_test(tests, without_shapes_there_is_no_such_method);
   tcase_add_test(tests, terms_that_it_cannot_use_are_refused);
   tcase_add_loop_test(tests, a_failing_callback_leaves_the_state, 0, 7);

@@ -56,8 +56,9 @@ extern "C" {
  *  functions and degrees; more of them pay, for functions that are no polynomials), or a composition: "composition:order=6,base=shaped-galerkin,nodes=4".
  *
  *  Creation checks the functions: each number is written and finite; derivatives agree with differences of values; no function is a combination of those before it, of
- *  polynomials and a constant, as the quadrature sees it; nodes lie in [0,1], weights sum to 1. Whether the step is symmetric is found out. At another length of the
- *  step numbers, nodes and weights are checked again; a function of which less than 1e-8 of itself is left, as of sin(omega h tau) at a tiny omega h, is left out there.
+ *  polynomials and a constant, as the quadrature sees it, nor changes by 100 times what the derivatives that it sees allow; nodes lie in [0,1], weights sum to 1. Whether the
+ *  step is symmetric is found out. At another length of the step numbers, nodes and weights are checked again; a function of which less than 1e-8 of itself is left, as of
+ *  sin(omega h tau) at a tiny omega h, is left out there.
  *
  *  @param      system   as for galerkin, without factors, one-form or constraints; must outlive the integrator
  *  @param      shapes   copied, but for what `user` points to

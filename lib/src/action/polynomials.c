@@ -242,6 +242,11 @@ static dvi_status prepare(dvi__polynomials *p, double h)
   return DVI_OK;
 }
 
+double dvi__polynomials_longest(const dvi__polynomials *p)
+{
+  return p->low < 0 ? growth_most / sqrt(-p->low) : HUGE_VAL;
+}
+
 int dvi__polynomials_degree(const dvi__polynomials *p, double h, double *bound)
 {
   return dvi__expansion_degree(&of_motion, 0, h * h * p->low, h * h * p->high, tolerance, bound);

@@ -36,7 +36,10 @@ void dvi__polynomials_to_forces(dvi__polynomials *polynomials, int slot, const d
 /* The motion over h, exactly where b does not move: V_q [n] is the gradient at its start. DVI_NOT_CONVERGED as above; then nothing moved. */
 dvi_status dvi__polynomials_move(dvi__polynomials *polynomials, double h, const double *V_q, const dvi__phase *phase);
 
-/* The degree that the motion over h has, or would have, and the bound of what is left out. */
+/* The longest step in which no mode that grows grows too much for digits; HUGE_VAL: none grows. */
+double dvi__polynomials_longest(const dvi__polynomials *polynomials);
+
+/* The degree that the motion over h has, or would have if it is too high, and the bound of what is left out. h is not above the longest. */
 int dvi__polynomials_degree(const dvi__polynomials *polynomials, double h, double *bound);
 
 #endif

@@ -202,17 +202,33 @@ void dvi__oscillation_destroy(dvi__stepper *self)
 
 /* ---- explain ---- */
 
+static void explain_steps(const dvi__polynomials *polynomials, int count, const double *h, dvi__text *text)
+{
+  double bound[3];
+  dvi__text_add(text, " for steps with h omega =");
+  for (int k = 0; k < count; k++) dvi__text_add(text, "%s %g", k > 0 ? "," : "", pow(10, k));
+  dvi__text_add(text, " of degree");
+  for (int k = 0; k < count; k++)
+    dvi__text_add(text, "%s %d", k > 0 ? "," : "", dvi__polynomials_degree(polynomials, h[k], &bound[k]));
+  dvi__text_add(text, ", which leave out at most");
+  for (int k = 0; k < count; k++) dvi__text_add(text, "%s %.2g", k > 0 ? "," : "", bound[k]);
+  dvi__text_add(text, " of the motion");
+}
+
 static void explain_polynomials(const dvi__polynomials *polynomials, dvi__text *text)
 {
-  double low, high, bound[3];
-  int degree[3];
+  const double longest = dvi__polynomials_longest(polynomials);
+  double low, high, h[3];
+  int count = 0;
   dvi__polynomials_interval(polynomials, &low, &high);
-  for (int k = 0; k < 3; k++) degree[k] = dvi__polynomials_degree(polynomials, pow(10, k) / sqrt(high), &bound[k]);
-  dvi__text_add(
-      text,
-      "solver: none; Chebyshev polynomials of M^-1 K, whose omega^2 lie between %.6g and %.6g: for steps with h omega = 1, 10, 100 "
-      "of degree %d, %d, %d, which leave out at most %.2g, %.2g, %.2g of the motion\n",
-      low, high, degree[0], degree[1], degree[2], bound[0], bound[1], bound[2]);
+  for (; count < 3; count++) {
+    h[count] = pow(10, count) / sqrt(high);
+    if (h[count] > longest) break;
+  }
+  dvi__text_add(text, "solver: none; Chebyshev polynomials of M^-1 K, whose omega^2 lie between %.6g and %.6g:", low, high);
+  if (count > 0) explain_steps(polynomials, count, h, text);
+  if (count < 3) dvi__text_add(text, "%s steps are at most %.3g long, for modes may grow", count > 0 ? ";" : "", longest);
+  dvi__text_add(text, "\n");
 }
 
 void dvi__oscillation_explain(const dvi__stepper *self, dvi__text *text)

@@ -121,10 +121,28 @@ static dvi_status check_independence(const dvi__given *g)
   return DVI_OK;
 }
 
+/* Functions are orthonormal, sum_j |b_j| psi'^2 = 1, and by Schwarz' inequality no value is above 1 but for the quadrature's error. One that is has almost all of its
+ * slope between the points: it would be corrected (space/given.c) by as much as it is large, and orders show only at steps that are shorter by as much. */
+static dvi_status check_resolution(const dvi__given *g)
+{
+  enum { LARGEST = 100 };
+  for (int k = g->degree; k < g->count; k++) {
+    double largest = fabs(g->now.end[k]);
+    for (int j = 0; j < g->points; j++) largest = fmax(largest, fabs(g->now.psi[j * g->count + k]));
+    if (largest > LARGEST)
+      return dvi__fail(DVI_BAD_ARGUMENT,
+                       "shapes %s: the %d points are much too coarse for function %d: it changes by %.3g times as much as its "
+                       "derivatives there allow; take more points, or place them where it changes",
+                       g->shapes->name, g->points, k - g->degree, largest);
+  }
+  return DVI_OK;
+}
+
 dvi_status dvi__given_check(const dvi__given *g)
 {
   for (int k = 0; k < g->shapes->functions; k++) DVI_TRY(check_derivative(g, k, g->now.h));
-  return check_independence(g);
+  DVI_TRY(check_independence(g));
+  return check_resolution(g);
 }
 
 /* ---- symmetry ---- */
