@@ -171,10 +171,10 @@ int scene_spared(const char *command, const char *path, int count, const named_f
 
 static void tell_operations(const char *of, int operations, long points)
 {
-  if (operations == 0)
-    (void)printf(", %s not derived", of);
+  if (operations < 0)
+    (void)printf("%s not derived", of);
   else
-    (void)printf(", %s %d (%ld point%s)", of, operations, points, points == 1 ? "" : "s");
+    (void)printf("%s %d (%ld point%s)", of, operations, points, points == 1 ? "" : "s");
 }
 
 static int fast_potentials(const dvi_system_terms *terms)
@@ -195,11 +195,10 @@ void scene_tell(const problem *scene)
   if (fast_potentials(scene->terms) > 0) (void)printf(", fast potentials %d", fast_potentials(scene->terms));
   (void)printf("; %d kernel%s, %ld element%s, %d nodes\n", facts.kernels, facts.kernels == 1 ? "" : "s", facts.elements,
                facts.elements == 1 ? "" : "s", facts.nodes);
-  (void)printf("operations a point: value %d (%ld point%s)", facts.value_operations, facts.value_points,
-               facts.value_points == 1 ? "" : "s");
-  tell_operations("gradient", facts.gradient_operations, facts.gradient_points);
-  tell_operations("Hessian", facts.hessian_operations, facts.hessian_points);
-  if (facts.hessian_operations > 0) (void)printf(", %ld entries", facts.hessian_entries);
+  tell_operations("operations a point: value", facts.value_operations, facts.value_points);
+  tell_operations(", gradient", facts.gradient_operations, facts.gradient_points);
+  tell_operations(", Hessian", facts.hessian_operations, facts.hessian_points);
+  if (facts.hessian_operations >= 0) (void)printf(", %ld entr%s", facts.hessian_entries, facts.hessian_entries == 1 ? "y" : "ies");
   (void)printf("\n");
   char kept[512];
   if (dvi_scene_invariance(scene->scene, kept, sizeof kept) > 0) (void)printf("invariant under %s\n", kept);

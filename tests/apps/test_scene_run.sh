@@ -124,6 +124,11 @@ says err 'root.yaml:3:17: log(x - 1).* is not finite' 'which one'
 expect 1 'dvi run' run root.yaml
 grep -q 'smaller --h' err && fail 'no step is to blame'
 
+# Derivatives without an operation are derived all the same.
+printf "coordinates: {x: scalar}\nhamiltonian: p(x)*x\ninitial: {x: 1, p(x): 0.5}\nstep: 0.1\nuntil: 1\n" >linear.yaml
+expect 0 'derivatives without an operation' check linear.yaml --method hamiltonian
+says out 'gradient 0 ([1-9][0-9]* points), Hessian 0 ([1-9][0-9]* points), 1 entry' 'that they are evaluated'
+
 # What no column shows is not evaluated: from x = 1.8 on the potential overflows, but its derivative is 1.
 cat >overflow.yaml <<'END'
 coordinates: {x: scalar}

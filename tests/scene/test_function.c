@@ -282,13 +282,13 @@ START_TEST(counters_count_points_and_what_was_derived)
   for (int i = 0; i < 72; i++) q[i] = sin(1.0 + 2.0 * i);
   const double *const x[DVI__BLOCKS] = {[DVI__COORDINATES] = q};
   dvi__function_count(function, &counters);
-  ck_assert_int_eq(counters.value_operations + counters.gradient_operations + counters.second_operations, 0);
+  ck_assert_int_eq(counters.value_operations, -1);
   ck_assert_int_eq(dvi__function_value(function, 4, x, V), 0);
   dvi__function_count(function, &counters);
   ck_assert_int_eq(counters.value_points, 4);
   ck_assert_int_eq(counters.value_operations, 15 * 11); /* three differences and squares, two sums, a power, two factors */
-  ck_assert_int_eq(counters.gradient_operations, 0);
-  ck_assert_int_eq(counters.second_operations, 0);
+  ck_assert_int_eq(counters.gradient_operations, -1);
+  ck_assert_int_eq(counters.second_operations, -1);
   ck_assert_int_eq(dvi__function_prepare(function, 0, 1U << DVI__COORDINATES, 1U << DVI__PAIR_QQ), DVI_OK);
   dvi__function_count(function, &counters);
   ck_assert_int_gt(counters.gradient_operations, counters.value_operations);

@@ -1,8 +1,9 @@
 /** The table of methods, and what each method's specification may say.
  *
- *  A specification is `name[:key=value,...]`, for example "galerkin:degree=4,quadrature=lobatto,nodes=5". Keys that every method
- *  takes: `solver` (auto, certified, fixed-point, simplified, newton, kinsol) for the implicit ones (sem: newton, kinsol). A composition hands the keys that are not its own to its
- *  base method: "composition:order=6,base=galerkin,degree=1". */
+ *  A specification is `name[:key=value,...]`, for example "galerkin:degree=4,quadrature=lobatto,nodes=5". Which keys a method takes is asked below. `solver`, how the
+ *  equations of a step are solved, is a key of galerkin, midpoint, trapezoidal and imex (auto, certified, fixed-point, simplified, newton, kinsol), of lie-galerkin,
+ *  euler-poincare and sphere-galerkin, which take the keys of galerkin, and of sem (newton, kinsol); all other implicit methods choose themselves. A composition hands the keys
+ *  that are not its own to its base method: "composition:order=6,base=galerkin,degree=1". */
 #ifndef DVI_METHOD_H
 #define DVI_METHOD_H
 #include <dvi/status.h>

@@ -50,7 +50,7 @@ typedef struct dvi_scene_facts {
   int kernels;                                                   /**< expressions that are summed over elements */
   long elements;                                                 /**< of all kernels */
   int nodes;                                                     /**< of all expressions, before derivatives */
-  int value_operations, gradient_operations, hessian_operations; /**< a point; 0: never derived */
+  int value_operations, gradient_operations, hessian_operations; /**< a point; -1: never derived */
   long hessian_entries;
   long value_points, gradient_points, hessian_points; /**< evaluated so far */
   int quadratic_potentials;                           /**< how many potentials have constant Hessians */

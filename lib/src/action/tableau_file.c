@@ -9,22 +9,25 @@
  *     a 0 0 1
  *     b 1/6 1/3 1/3 1/6
  * `order` and `b` stand once, `a` once for each stage, in their order; what a row of a leaves out is 0. Without `c` it is the sums of a's rows. */
+#define _POSIX_C_SOURCE 200809L /* S_ISREG */
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "action/runge_kutta.h"
+#include "core/memory.h"
 #include "core/status.h"
 
-enum { LINE_MOST = 2048, ORDER_MOST = 32 };
+enum { FILE_MOST = 65536, ORDER_MOST = 32 };
 
 typedef struct reader {
   const char *path;
   dvi__runge_kutta *method;
   int line, rows, c_count, b_count;
-  char text[LINE_MOST];
+  char *text; /* the line */
 } reader;
 
 static dvi_status complain(const reader *r, const char *at, const char *sentence)
@@ -106,8 +109,8 @@ static dvi_status finish(const reader *r)
   m->stages = r->rows;
   if (m->order == 0) return dvi__fail(DVI_BAD_OPTION, "%s: the order is missing", r->path);
   if (r->rows == 0 || r->b_count != r->rows || (r->c_count != 0 && r->c_count != r->rows))
-    return dvi__fail(DVI_BAD_OPTION, "%s: there are %d rows of a, %d numbers of b and %d of c; as many of each are needed", r->path,
-                     r->rows, r->b_count, r->c_count);
+    return dvi__fail(DVI_BAD_OPTION, "%s: rows of a: %d, numbers of b: %d, of c: %d; as many of each are needed, or none of c",
+                     r->path, r->rows, r->b_count, r->c_count);
   for (int i = 0; i < m->stages; i++) {
     for (int j = m->stages; j < DVI__RK_STAGES_MOST; j++)
       if (m->a[i][j] != 0)
@@ -119,17 +122,45 @@ static dvi_status finish(const reader *r)
   return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "%s", r->path);
 }
 
+/* Line after line; the text is cut into them. */
+static dvi_status read_lines(reader *r, size_t length)
+{
+  for (char *end = r->text + length; r->text < end; r->line++) {
+    char *stop = memchr(r->text, '\n', (size_t)(end - r->text));
+    if (stop == NULL) stop = end;
+    *stop = 0;
+    if (strlen(r->text) < (size_t)(stop - r->text)) return complain(r, r->text + strlen(r->text), "a byte of 0; no text has it");
+    DVI_TRY(read_line(r));
+    r->text = stop + 1;
+  }
+  return finish(r);
+}
+
+/* The whole file, at most one character more than it may have. What is no file, as a pipe, may never end, or never begin. */
+static dvi_status load(const char *path, char *text, size_t *length)
+{
+  struct stat about;
+  if (stat(path, &about) == 0 && !S_ISREG(about.st_mode))
+    return dvi__fail(DVI_BAD_OPTION, "%s cannot be read: it is no regular file", path);
+  errno = 0;
+  FILE *file = fopen(path, "r");
+  if (file != NULL) *length = fread(text, 1, FILE_MOST + 1, file);
+  const int broken = file == NULL || ferror(file), reason = errno;
+  if (file != NULL) (void)fclose(file);
+  if (broken) return dvi__fail(DVI_BAD_OPTION, "%s cannot be read: %s", path, strerror(reason));
+  if (*length > FILE_MOST)
+    return dvi__fail(DVI_BAD_OPTION, "%s has more than %d characters; a tableau needs no more", path, FILE_MOST);
+  return DVI_OK;
+}
+
 dvi_status dvi__runge_kutta_read(const char *path, dvi__runge_kutta *method)
 {
-  reader r = {.path = path, .method = method};
+  size_t length = 0;
+  char *text = DVI_NEW(char, FILE_MOST + 2);
+  reader r = {.path = path, .method = method, .line = 1, .text = text};
   *method = (dvi__runge_kutta){0};
-  FILE *file = fopen(path, "r");
-  if (file == NULL) return dvi__fail(DVI_BAD_OPTION, "%s cannot be read: %s", path, strerror(errno));
-  dvi_status status = DVI_OK;
-  for (r.line = 1; status == DVI_OK && fgets(r.text, sizeof r.text, file) != NULL; r.line++)
-    status = strlen(r.text) + 1 < sizeof r.text ? read_line(&r) : complain(&r, r.text, "the line is too long");
-  const int broken = ferror(file);
-  (void)fclose(file);
-  if (status != DVI_OK) return status;
-  return broken ? dvi__fail(DVI_BAD_OPTION, "%s cannot be read", path) : finish(&r);
+  dvi_status status = text != NULL ? load(path, text, &length) : dvi__fail(DVI_NO_MEMORY, "no memory");
+  if (status == DVI_OK) status = read_lines(&r, length);
+  dvi__release(text);
+  return status;
 }

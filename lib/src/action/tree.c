@@ -62,6 +62,12 @@ static void draw(const tree *t, char text[TEXT])
 /* Roundings of coefficients that may be given as decimals of a double's digits. */
 static const double rounding = 1e-12;
 
+/* What a sum that is off by this little hints at. */
+static const char *hint(double off)
+{
+  return fabs(off) < 1e-3 ? ", to 1e-12; are the decimals cut off? fractions and 15 digits are exact enough" : "";
+}
+
 static dvi_status check_tree(const dvi__runge_kutta *m, const tree *t)
 {
   double g[DVI__RK_STAGES_MOST], density = 1, sum = 0, size = 0;
@@ -73,8 +79,8 @@ static dvi_status check_tree(const dvi__runge_kutta *m, const tree *t)
   if (fabs(sum - 1 / density) <= rounding * (1 + size)) return DVI_OK;
   char text[TEXT];
   draw(t, text);
-  return dvi__fail(DVI_BAD_OPTION, "the tableau has not order %d: the sum of its condition for the tree %s is %.6g, not 1/%.0f",
-                   t->order, text, sum, density);
+  return dvi__fail(DVI_BAD_OPTION, "the tableau has not order %d: the sum of its condition for the tree %s is %.15g, not %s%.0f%s",
+                   t->order, text, sum, density > 1 ? "1/" : "", density, hint(sum - 1 / density));
 }
 
 dvi_status dvi__runge_kutta_check(const dvi__runge_kutta *method, int order)
@@ -83,7 +89,8 @@ dvi_status dvi__runge_kutta_check(const dvi__runge_kutta *method, int order)
     double sum = 0;
     for (int j = 0; j < method->stages; j++) sum += method->a[i][j];
     if (!(fabs(sum - method->c[i]) <= rounding * (1 + fabs(sum))))
-      return dvi__fail(DVI_BAD_OPTION, "the tableau's row %d of a has the sum %.6g, but c is %.6g there", i + 1, sum, method->c[i]);
+      return dvi__fail(DVI_BAD_OPTION, "the tableau's row %d of a has the sum %.15g, but c is %.15g there%s", i + 1, sum,
+                       method->c[i], hint(sum - method->c[i]));
   }
   for (int n = 1; n <= order && n <= DVI__TREES_MOST; n++) {
     tree t = {.order = n};

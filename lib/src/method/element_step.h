@@ -4,7 +4,7 @@
 #include "action/action.h"
 #include "method/method.h"
 
-/* The `solver` key of every implicit method; its index in the method's own table goes to dvi__element_create. */
+/* The `solver` key of methods that step so; its index in the method's own table goes to dvi__element_create. */
 #define DVI__SOLVER_KEY                                                              \
   {                                                                                  \
     "solver", dvi__solver_choice, 0, 0, DVI__SOLVER_AUTO,                            \

@@ -77,6 +77,7 @@ dvi_status dvi__function_create(int kernel_count, const dvi__kernel *kernels, co
     return DVI_NO_MEMORY;
   }
   made->ledger = current_ledger();
+  made->counters = (dvi__function_counters){.value_operations = -1, .gradient_operations = -1, .second_operations = -1};
   memcpy(made->block_size, block_size, sizeof made->block_size);
   const dvi_status status = fill(made, kernel_count, kernels);
   if (status == DVI_OK)

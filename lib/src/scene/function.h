@@ -42,7 +42,7 @@ typedef struct dvi__function dvi__function;
 /* What the evaluations of a function have cost so far, and what was made for them. */
 typedef struct dvi__function_counters {
   long value_points, gradient_points, second_points;            /* points evaluated */
-  int value_operations, gradient_operations, second_operations; /* a point; 0: not derived */
+  int value_operations, gradient_operations, second_operations; /* a point; -1: not derived */
   int second_entries;
 } dvi__function_counters;
 

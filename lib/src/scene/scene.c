@@ -253,13 +253,19 @@ const dvi_scene_range *dvi_scene_range_at(const dvi_scene *scene, int i)
   return scene == NULL || i < 0 || i >= scene->range_count ? NULL : &scene->range[i];
 }
 
+/* -1: never derived. */
+static void add_operations(int operations, int *all)
+{
+  if (operations >= 0) *all = operations + (*all > 0 ? *all : 0);
+}
+
 static void add_facts(const dvi__term *term, dvi_scene_facts *facts)
 {
   dvi__function_counters counters;
   dvi__function_count(term->function, &counters);
-  facts->value_operations += counters.value_operations;
-  facts->gradient_operations += counters.gradient_operations;
-  facts->hessian_operations += counters.second_operations;
+  add_operations(counters.value_operations, &facts->value_operations);
+  add_operations(counters.gradient_operations, &facts->gradient_operations);
+  add_operations(counters.second_operations, &facts->hessian_operations);
   facts->hessian_entries += counters.second_entries;
   facts->value_points += counters.value_points;
   facts->gradient_points += counters.gradient_points;
@@ -274,7 +280,7 @@ static void add_facts(const dvi__term *term, dvi_scene_facts *facts)
 
 void dvi_scene_facts_of(const dvi_scene *scene, dvi_scene_facts *facts)
 {
-  *facts = (dvi_scene_facts){0};
+  *facts = (dvi_scene_facts){.value_operations = -1, .gradient_operations = -1, .hessian_operations = -1};
   if (scene == NULL) return;
   facts->form = scene->form;
   facts->mass = scene->mass;
