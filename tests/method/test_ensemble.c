@@ -185,7 +185,6 @@ static const char *const methods[] = {
     "vprk:projection=none",
     "hp:type=3",
     "hamiltonian:degree=3",
-    "shooting",
     "hp:type=4",
     "lie-galerkin",
     "euler-poincare",

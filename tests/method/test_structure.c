@@ -84,19 +84,19 @@ static void momentum_sizes(const problem *solar, double size[6])
  * times more. A walk has a fitted slope, too, so the distance is what tells the two apart. Three deviations are allowed. */
 static void check_momenta(const char *method, double h)
 {
-  enum { STEPS = 100000 };
+  const int steps = repeats(100000);
   problem *solar = made_problem("outer-solar", NULL);
   dvi_integrator *integrator = started(solar, method);
   double start[7], now[7], size[6], largest[6] = {0};
   momentum_sizes(solar, size);
   ck_assert_int_eq(dvi_integrator_invariants(integrator, start), DVI_OK);
-  for (int step = 0; step < STEPS; step += 10) {
+  for (int step = 0; step < steps; step += 10) {
     advance(integrator, h, 10);
     ck_assert_int_eq(dvi_integrator_invariants(integrator, now), DVI_OK);
     for (int i = 0; i < 6; i++) largest[i] = fmax(largest[i], fabs(now[1 + i] - start[1 + i]));
   }
   for (int i = 0; i < 6; i++)
-    ck_assert_msg(largest[i] <= 3 * sqrt((double)STEPS) / 2 * DBL_EPSILON * size[i], "%s: %s strayed by %g of %g", method,
+    ck_assert_msg(largest[i] <= 3 * sqrt((double)steps) / 2 * DBL_EPSILON * size[i], "%s: %s strayed by %g of %g", method,
                   dvi_system_invariant_name(solar->system, 1 + i), largest[i], size[i]);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&solar);
