@@ -77,23 +77,10 @@ static const dvi__key keys[] = {
     {0},
 };
 
-/* Both ways to solve a step, by the operations of action/shot_step.h. */
-typedef struct way {
-  dvi_status (*residual)(void *step, const double *x, double *R);
-  dvi_status (*jacobian)(void *step, const double *x, double *values);
-} way;
-
-static const way ways[SOLVES] = {
-    {0},
-    {dvi__shot_step_residual, dvi__shot_step_jacobian},
-    {dvi__stacked_shot_residual, dvi__stacked_shot_jacobian},
-};
-
 typedef struct shooter {
-  /* One of them; the other is NULL. */
+  /* The shot from the start, or all its stages: one of them; the other is NULL. */
   dvi__shot_step *shot;
   dvi__stacked_shot *stacked;
-  const way *way;
   const dvi__pattern *pattern;
   dvi__solver *solver;
   int unknowns, order;   /* of the one-step method */
@@ -102,11 +89,6 @@ typedef struct shooter {
   double *values;        /* [entries] of the Jacobian; NULL without a tolerance */
   double *v, *dq, *dp;   /* [n] */
 } shooter;
-
-static void *step_of(const shooter *own)
-{
-  return own->stacked != NULL ? (void *)own->stacked : (void *)own->shot;
-}
 
 /* ---- what is asked for ---- */
 
@@ -281,13 +263,13 @@ static dvi_status row_scale(void *of, double *scale, int *unchanged)
 static dvi_status residual(void *of, const double *x, double *R)
 {
   const shooter *own = of;
-  return own->way->residual(step_of(own), x, R);
+  return own->stacked != NULL ? dvi__stacked_shot_residual(own->stacked, x, R) : dvi__shot_step_residual(own->shot, x, R);
 }
 
 static dvi_status jacobian(void *of, const double *x, double *values)
 {
   const shooter *own = of;
-  return own->way->jacobian(step_of(own), x, values);
+  return own->stacked != NULL ? dvi__stacked_shot_jacobian(own->stacked, x, values) : dvi__shot_step_jacobian(own->shot, x, values);
 }
 
 /* Sparse, and of more coordinates than the system of all stages has blocks of 2n: six times as many of an explicit method, whose shot solves nothing (measured
@@ -316,7 +298,6 @@ static dvi_status make_step(dvi__stepper *self, const dvi__runge_kutta *method, 
   shooter *own = self->own;
   DVI_TRY(choose_solve(self, method, course));
   const int choice = self->settings.value[SOLVE];
-  own->way = &ways[choice];
   if (choice == SHOT) {
     if (self->system->n > SHOT_MOST)
       return dvi__fail(
