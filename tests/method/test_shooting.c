@@ -10,6 +10,7 @@
 #include "action/runge_kutta.h"
 #include "support/runs.h"
 #include "support/suite.h"
+#include "support/systems.h"
 
 /* ---- tableaus ---- */
 
@@ -431,6 +432,36 @@ static int wall_gradient(double t, const double *q, double *V_q, void *user)
   return q[0] < 1 ? 0 : 1;
 }
 
+/* Steps of a system whose callbacks `given` says: values alone, gradients too, or all; q goes to where they end. */
+static void step_rotors(const char *method, int given, double *q)
+{
+  behaviour calls = {0};
+  dvi_lagrangian lagrangian = rotors(&calls, ONE_POINT);
+  if (given < 2) lagrangian.hessian = NULL;
+  if (given < 1) lagrangian.gradient = NULL;
+  dvi_system *system = make_system(&(dvi_system_terms){.dimension = SITES, .lagrangian = &lagrangian});
+  dvi_integrator *integrator = made_integrator(system, method);
+  ck_assert_int_eq(dvi_integrator_start(integrator, 0, generic_q, generic_v), DVI_OK);
+  advance(integrator, 0.1, 40);
+  memcpy(q, dvi_integrator_q(integrator), SITES * sizeof *q);
+  dvi_integrator_destroy(&integrator);
+  dvi_system_destroy(&system);
+}
+
+static const char *const noisy[] = {"shooting", "shooting:type=2", "shooting:type=3", "shooting:onestep=gauss",
+                                    "shooting:solve=stages"};
+enum { NOISY = sizeof noisy / sizeof *noisy };
+
+/* The residual holds second derivatives: their noise is its floor, and that of the steps. */
+START_TEST(derivatives_that_are_left_out_are_differenced)
+{
+  double q[3][SITES];
+  for (int given = 0; given < 3; given++) step_rotors(noisy[_i], given, q[given]);
+  ck_assert_double_le(distance(SITES, q[1], q[2]), 1e-8);
+  ck_assert_double_le(distance(SITES, q[0], q[2]), 1e-5);
+}
+END_TEST
+
 START_TEST(a_one_step_method_that_fails_inside_a_step_leaves_the_state)
 {
   const dvi_potential potential = {.name = "wall", .value = wall, .gradient = wall_gradient};
@@ -467,6 +498,7 @@ int main(void)
   tcase_add_test(tests, steps_are_equivariant_where_the_one_step_method_is);
   tcase_add_loop_test(tests, what_does_not_go_is_refused, 0, REFUSED);
   tcase_add_test(tests, what_needs_taylor_coefficients_says_who_lacks_them);
+  tcase_add_loop_test(tests, derivatives_that_are_left_out_are_differenced, 0, NOISY);
   tcase_add_loop_test(tests, a_one_step_method_that_fails_inside_a_step_leaves_the_state, 0, 2);
   return run_tests("method/shooting", tests);
 }

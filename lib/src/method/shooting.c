@@ -328,6 +328,7 @@ static dvi_status make(dvi__stepper *self, const dvi__runge_kutta *method, const
                               .residual = residual,
                               .jacobian = jacobian,
                               .row_scale = row_scale,
+                              .noise = dvi__hessian_noise(self->system),
                               .ahead = own->shot != NULL};
   DVI_TRY(dvi__stationary_create(&equations, self->counters, &own->solver));
   return allocate(own, (size_t)self->system->n) ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "no memory");

@@ -12,7 +12,15 @@ static const double keep_below = 0.05;
 
 /* Newton's corrections shrink fast until rounding noise of the residual, amplified by a stiff Jacobian, keeps them; one that doubles is a bad
  * sign, two are the end. */
-static const dvi__pace pace = {0.5, 1e4 * DBL_EPSILON, 2.0, 0, 0};
+static const dvi__pace roundoff = {0.5, 1e4 * DBL_EPSILON, 2.0, 0, 0};
+
+/* Corrections of noisy residuals may be noise from larger ones on. */
+static dvi__pace pace_of(const dvi__solver *s)
+{
+  dvi__pace pace = roundoff;
+  pace.noise = fmax(pace.noise, s->equations.noise);
+  return pace;
+}
 
 /* A guess is as likely to lead to another solution as to the wanted one if the second correction is larger than the first, or if the first one is a
  * large part of the unknowns and does not shrink fast. */
@@ -50,6 +58,7 @@ static int is_unseen(const dvi__solver *s, double part, double correction, doubl
 
 dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__solve_report *report)
 {
+  const dvi__pace pace = pace_of(s);
   dvi__trail trail = {0};
   double whole, last_relative = HUGE_VAL;
   int fresh = 0, growing = 0, converged = 0;

@@ -25,6 +25,7 @@ typedef struct dvi__equations {
   /* [unknowns] sums of the magnitudes of what is summed in each row at the last residual's point; NULL: not known. A row cannot be told from 0 to better than a
    * rounding of it, and a correction cannot be smaller than what the Jacobian makes of that. */
   void (*magnitudes)(void *of, double *magnitude);
+  double noise; /* of the residual beyond roundoff, relative to the unknowns: it holds differences; 0: none */
   int renewed; /* Newton's method factors the Jacobian at each of its points: the equations are nearly singular, and an old factor leads astray */
   int ahead; /* and what is taken from the last residual's point is corrected to first order: the next correction need not be seen to be small */
   /* The same fixed point iteration in variables of the equations' own, where that is cheaper; NULL: residual and chord do it. */

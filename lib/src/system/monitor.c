@@ -162,6 +162,11 @@ void dvi__monitor_destroy(dvi__monitor **monitor)
   *monitor = NULL;
 }
 
+double dvi__monitor_noise(const dvi__monitor *monitor)
+{
+  return dvi__hessian_noise(monitor->system);
+}
+
 const char *dvi__monitor_name(const dvi__monitor *monitor)
 {
   return monitor->name;

@@ -16,6 +16,9 @@ void dvi__monitor_destroy(dvi__monitor **monitor);
 
 const char *dvi__monitor_name(const dvi__monitor *monitor);
 
+/* dvi__hessian_noise of g. */
+double dvi__monitor_noise(const dvi__monitor *monitor);
+
 /* E0, for the monitor of arc lengths. */
 void dvi__monitor_set_energy(dvi__monitor *monitor, double energy);
 

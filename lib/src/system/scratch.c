@@ -41,6 +41,14 @@ static int lacks_hessian(const dvi_system *system, int hessians)
   return lacks;
 }
 
+double dvi__hessian_noise(const dvi_system *system)
+{
+  const dvi__transformed *transformed = dvi__transformed_of(system);
+  if (transformed != NULL) return dvi__transformed_noise(transformed);
+  if (!lacks_hessian(system, 1)) return 0;
+  return lacks_gradient(system) ? 1e-7 : 1e-10;
+}
+
 int dvi__differences_allocate(size_t numbers, dvi__differences *d)
 {
   *d = (dvi__differences){DVI_NEW(double, numbers),

@@ -161,6 +161,11 @@ dvi__monitor *dvi__transformed_monitor(const dvi__transformed *x)
   return x->monitor;
 }
 
+double dvi__transformed_noise(const dvi__transformed *x)
+{
+  return fmax(dvi__hessian_noise(x->base), dvi__monitor_noise(x->monitor));
+}
+
 void dvi__transformed_set_energy(dvi__transformed *x, double energy)
 {
   x->energy = energy;

@@ -24,6 +24,9 @@ dvi__transformed *dvi__transformed_of(const dvi_system *system);
 /* Valid until room is made for larger batches. */
 dvi__monitor *dvi__transformed_monitor(const dvi__transformed *transformed);
 
+/* As dvi__hessian_noise: of the system and of the monitor. */
+double dvi__transformed_noise(const dvi__transformed *transformed);
+
 /* E0; NaN until it is set. */
 void dvi__transformed_set_energy(dvi__transformed *transformed, double energy);
 
