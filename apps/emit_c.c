@@ -39,6 +39,9 @@ static int write_code(const problem *scene, const char *name, const char *path)
   int code = DONE;
   if (status == DVI_BAD_ARGUMENT)
     code = usage_error("emit-c: '%s' is no name in C; give one by --name", name);
+  else if (status == DVI_UNSUPPORTED)
+    code = usage_error(
+        "emit-c: the scene's method needs Taylor coefficients, and C files have none; take another method, or `dvi run` the scene");
   else if (status != DVI_OK && status != DVI_IO_ERROR) /* that one is said by file_keep, which knows
                                       the reason */
     code = library_error(status);

@@ -59,6 +59,10 @@ echo mine >kept.c
 expect 2 'no C name' emit-c swinging-cart.yaml --name 1st --out kept.c
 says err 'no name in C' 'the reason'
 expect 2 'an unknown parameter' emit-c swinging-cart.yaml --set ll=1 --out kept.c
+cp "$top/apps/scenes/kepler.yaml" .
+sed 's/^method:.*/method: prolongation-collocation/' kepler.yaml >series.yaml
+expect 2 'Taylor coefficients' emit-c series.yaml --out kept.c
+says err "the scene's method needs Taylor coefficients, and C files have none" 'the reason'
 expect 2 'a problem of the catalogue' emit-c kepler --out kept.c
 expect 1 'no scene' emit-c none.yaml --out kept.c
 [ "$(cat kept.c)" = mine ] || fail 'the file was overwritten'

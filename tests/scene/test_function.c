@@ -412,9 +412,11 @@ START_TEST(what_is_not_finite_is_blamed)
   ck_assert_int_eq(dvi__function_value(function, 1, x, &V), 0);
   ck_assert_int_eq(dvi__function_value(function, 1, bad, &V), 1);
   ck_assert_int_eq(dvi__function_gradient(function, 1, pole, (double *const[DVI__BLOCKS]){NULL, &V_q}), 1);
-  dvi__function_blame(function, &source, 2, x, 1, text, sizeof text, &span);
-  ck_assert_str_eq(text, "log(x - 1), x - 1 = -0.2");
+  dvi__function_blame(function, &source, 2, x, 1, 0, text, sizeof text, &span);
+  ck_assert_str_eq(text, "log(x - 1), x - 1 = -0.2 is not finite");
   ck_assert_uint_eq(span.size, 10);
+  dvi__function_blame(function, &source, 2, x, 0, 1, text, sizeof text, &span);
+  ck_assert_str_eq(text, "");
   drop(&own, function);
 }
 END_TEST

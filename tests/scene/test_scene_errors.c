@@ -313,6 +313,33 @@ START_TEST(what_is_not_finite_is_told_with_its_place)
 }
 END_TEST
 
+/* Where there are two derivatives, but no series; there is one of the last, but it is as large as no number. */
+START_TEST(what_has_no_series_is_told_with_its_place)
+{
+  static const char *const texts[] = {
+      X "lagrangian: x'^2/2 - (x^2)^2.25\n" RUN,
+      X "lagrangian: x'^2/2 - x^4 - (x^2 + x^4)^2.5\n" RUN,
+      X "lagrangian: x'^2/2 + x^2*hypot(x, x^2)^3\n" RUN,
+      X "lagrangian: x'^2/2 - 1e-290*sin(1e90*x)\n" RUN,
+  };
+  static const char *const words[] = {
+      "test.yaml:2:22: (x^2)^2.25, (x^2) = 0 has no Taylor series, at t = 0",
+      "test.yaml:2:28: (x^2 + x^4)^2.5, (x^2 + x^4) = 0 has no Taylor series, at t = 0",
+      "test.yaml:2:26: hypot(x, x^2)^3, hypot(x, x^2) = 0 has no Taylor series, at t = 0",
+      "test.yaml: the Taylor series of all terms is not finite",
+  };
+  for (size_t k = 0; k < sizeof words / sizeof *words; k++) {
+    dvi_integrator *integrator = NULL;
+    ck_assert_int_eq(parse(texts[k], 0, NULL), DVI_OK);
+    ck_assert_int_eq(dvi_integrator_create(dvi_scene_system(scene), "prolongation-collocation:derivatives=6", &integrator), DVI_OK);
+    ck_assert_int_eq(dvi_integrator_start(integrator, 0, &(double){0}, &(double){1}), DVI_OK);
+    ck_assert_int_ne(dvi_integrator_step(integrator, 0.01), DVI_OK);
+    ck_assert_str_eq(dvi_scene_blame(), words[k]);
+    dvi_integrator_destroy(&integrator);
+  }
+}
+END_TEST
+
 START_TEST(null_is_no_scene_and_no_setting)
 {
   const double *q, *v, *p;
@@ -377,6 +404,7 @@ int main(void)
   tcase_add_test(tests, settings_replace_numbers_and_nothing_else);
   tcase_add_test(tests, limits_are_told);
   tcase_add_test(tests, what_is_not_finite_is_told_with_its_place);
+  tcase_add_test(tests, what_has_no_series_is_told_with_its_place);
   tcase_add_test(tests, null_is_no_scene_and_no_setting);
   tcase_add_test(tests, a_file_that_is_not_there_is_told);
   tcase_add_test(tests, c_is_written_under_a_name_and_to_its_end);

@@ -128,7 +128,7 @@ void dvi_scene_facts_of(const dvi_scene *scene, dvi_scene_facts *facts);
  *  @return how many; -1 for scenes with rotations, motions, directions or angles, for more than 2e6 parts of all elements, without memory, and for NULL */
 int dvi_scene_invariance(const dvi_scene *scene, char *text, size_t size);
 
-/** The part of an expression that was not finite when a callback of a scene's system last failed on this thread, with the time; or the limit that its derivatives
+/** The part of an expression that was not finite, or had no Taylor series, when a callback of a scene's system last failed on this thread, with the time; or the limit that its derivatives
  *  passed; "" if none failed since a scene was last read. */
 const char *dvi_scene_blame(void);
 
@@ -146,6 +146,7 @@ void dvi_scene_tell(const dvi_scene *scene, const char *section, const char *sen
  *  @param name   a C identifier, in front of every external name
  *  @param write  gets the text, piece by piece; not 0 ends it with DVI_IO_ERROR
  *  @retval DVI_BAD_ARGUMENT  name is no identifier of at most 63 letters, or an argument is NULL
+ *  @retval DVI_UNSUPPORTED   the scene's method needs Taylor coefficients, which the file does not have
  *  @retval DVI_BAD_SIZE      a kernel, or the gradients of constraints, have more numbers than a stack has room for
  *  @retval DVI_NO_MEMORY */
 dvi_status dvi_scene_emit_c(const dvi_scene *scene, const char *name, int (*write)(const char *text, size_t size, void *user),

@@ -27,22 +27,22 @@ const char *dvi_scene_blame(void)
   return blame_text;
 }
 
-/* Keep which part was not finite, at the first of the points where one was not. */
-static void blame(const dvi__term *term, int count, const double *const *x)
+/* Keep which part was not finite, or has no series, at the first of the points where one is. */
+static void blame(const dvi__term *term, int count, const double *const *x, int of_series)
 {
+  const dvi__source *source = &term->scene->source;
   char part[BLAME_SIZE / 2] = "";
   dvi__span span = DVI__NOWHERE;
-  int k = 0;
+  int k = 0, line = 0, column = 0;
   for (; k < count && part[0] == '\0'; k++)
-    dvi__function_blame(term->function, &term->scene->source, count, x, k, part, sizeof part, &span);
-  int line = 0, column = 0;
+    dvi__function_blame(term->function, source, count, x, k, of_series, part, sizeof part, &span);
   if (part[0] == '\0') {
-    (void)snprintf(blame_text, sizeof blame_text, "a derivative is not finite");
+    (void)snprintf(blame_text, sizeof blame_text, "%s: the %s of all terms is not finite", source->name,
+                   of_series ? "Taylor series" : "sum");
     return;
   }
-  dvi__source_place(&term->scene->source, span.first, &line, &column);
-  const int used = snprintf(blame_text, sizeof blame_text, "%s:%d:%d: %s is not finite", term->scene->source.name, line, column,
-                            part);
+  dvi__source_place(source, span.first, &line, &column);
+  const int used = snprintf(blame_text, sizeof blame_text, "%s:%d:%d: %s", source->name, line, column, part);
   if (x[DVI__TIME] != NULL && used > 0 && used < BLAME_SIZE)
     (void)snprintf(blame_text + used, sizeof blame_text - (size_t)used, ", at t = %.6g", x[DVI__TIME][k - 1]);
 }
@@ -55,12 +55,12 @@ static const char *too_large(dvi_status status)
              : "too large: its derivatives need more than 2000000 parts, 20000000 pairs, 16384 numbers at a time, or 1 GiB";
 }
 
-static int verdict(const dvi__term *term, int count, const double *const *x, int returned)
+static int verdict(const dvi__term *term, int count, const double *const *x, int of_series, int returned)
 {
   if (returned == 0) return 0;
   blame_status = returned > 0 ? DVI_NOT_FINITE : (dvi_status)returned;
   if (returned > 0)
-    blame(term, count, x);
+    blame(term, count, x, of_series);
   else
     (void)snprintf(blame_text, sizeof blame_text, "%s: %s", term->scene->source.name, too_large(blame_status));
   return returned;
@@ -75,17 +75,17 @@ bool(dvi__scene_too_large)(dvi_scene *scene, const char *what, dvi_status status
 
 static int value_at(dvi__term *term, int count, const double *const *x, double *value)
 {
-  return verdict(term, count, x, dvi__function_value(term->function, count, x, value));
+  return verdict(term, count, x, 0, dvi__function_value(term->function, count, x, value));
 }
 
 static int gradient_at(dvi__term *term, int count, const double *const *x, double *const *gradient)
 {
-  return verdict(term, count, x, dvi__function_gradient(term->function, count, x, gradient));
+  return verdict(term, count, x, 0, dvi__function_gradient(term->function, count, x, gradient));
 }
 
 static int second_at(dvi__term *term, int count, const double *const *x, double *const *values)
 {
-  return verdict(term, count, x, dvi__function_second(term->function, count, x, values));
+  return verdict(term, count, x, 0, dvi__function_second(term->function, count, x, values));
 }
 
 int dvi__term_value(double t, const double *q, const double *velocity_or_momentum, double *value, void *user)
@@ -129,7 +129,7 @@ static int potential_taylor(int degree, const double *t, const double *q, double
   const dvi__term *term = user;
   const double *x[DVI__BLOCKS] = {t, q, NULL, NULL};
   double *gradient[DVI__BLOCKS] = {[DVI__COORDINATES] = V_q}, *values[DVI__PAIRS] = {[DVI__PAIR_QQ] = V_qq};
-  return verdict(term, 1, x, dvi__function_series(term->function, degree, x, V, gradient, values));
+  return verdict(term, 1, x, 1, dvi__function_series(term->function, degree, x, V, gradient, values));
 }
 
 bool dvi__term_pattern(dvi_scene *scene, dvi__term *term, dvi__pair pair, dvi_pattern *pattern, int *full)
@@ -205,7 +205,7 @@ static int lagrangian_taylor(int degree, const double *t, const double *q, const
   const double *x[DVI__BLOCKS] = {t, q, v, NULL};
   double *gradient[DVI__BLOCKS] = {[DVI__COORDINATES] = L_q, [DVI__VELOCITIES] = L_v};
   double *values[DVI__PAIRS] = {[DVI__PAIR_QQ] = L_qq, [DVI__PAIR_QV] = L_qv, [DVI__PAIR_VV] = L_vv};
-  return verdict(term, 1, x, dvi__function_series(term->function, degree, x, L, gradient, values));
+  return verdict(term, 1, x, 1, dvi__function_series(term->function, degree, x, L, gradient, values));
 }
 
 bool dvi__make_lagrangian(dvi_scene *scene, dvi__term *term, dvi_lagrangian *lagrangian)

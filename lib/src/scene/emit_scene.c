@@ -1,7 +1,9 @@
 /* A scene as a C file: what a program declares of it, its terms, a function that makes the system, its start and its plan, and a program that runs it. */
 #include <ctype.h>
+#include <dvi/integrator.h>
 
 #include "scene/emit_scene.h"
+#include "scene/heap.h"
 
 /* ---- terms ---- */
 
@@ -210,13 +212,41 @@ static int is_identifier(const char *name)
   return length <= 63;
 }
 
+/* DVI_UNSUPPORTED if the method runs the scene, but not a system without Taylor coefficients, as the file's is. */
+static dvi_status check_method(const dvi_scene *scene)
+{
+  dvi_system_terms terms = scene->terms;
+  dvi_lagrangian lagrangian = scene->lagrangian;
+  dvi_potential *potential = dvi__heap_take((size_t)terms.potential_count + 1, sizeof *potential);
+  dvi_system *system = NULL;
+  dvi_integrator *integrator = NULL;
+  if (potential == NULL) return DVI_NO_MEMORY;
+  for (int k = 0; k < terms.potential_count; k++) {
+    potential[k] = terms.potentials[k];
+    potential[k].taylor = NULL;
+  }
+  lagrangian.taylor = NULL;
+  if (terms.potential_count > 0) terms.potentials = potential;
+  if (terms.lagrangian != NULL) terms.lagrangian = &lagrangian;
+  dvi_status status = dvi_system_create(&terms, &system);
+  if (status == DVI_OK) status = dvi_integrator_create(system, scene->plan.method, &integrator);
+  dvi_integrator_destroy(&integrator);
+  dvi_system_destroy(&system);
+  dvi__heap_free(potential);
+  if (status == DVI_UNSUPPORTED && dvi_integrator_create(scene->system, scene->plan.method, &integrator) != DVI_OK) status = DVI_OK;
+  dvi_integrator_destroy(&integrator);
+  return status == DVI_UNSUPPORTED || status == DVI_NO_MEMORY ? status : DVI_OK;
+}
+
 dvi_status dvi_scene_emit_c(const dvi_scene *scene, const char *name, int (*write)(const char *text, size_t size, void *user),
                             void *user)
 {
   if (scene == NULL || name == NULL || write == NULL || !is_identifier(name)) return DVI_BAD_ARGUMENT;
+  dvi_status status = scene->plan.method != NULL ? check_method(scene) : DVI_OK;
+  if (status != DVI_OK) return status;
   dvi__emitter out = {.write = write, .user = user};
   emit_head(&out, scene, name);
-  dvi_status status = emit_motion(&out, scene);
+  status = emit_motion(&out, scene);
   if (status == DVI_OK) status = emit_watched(&out, scene);
   if (status == DVI_OK) {
     emit_create(&out, scene, name);

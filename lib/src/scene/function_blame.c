@@ -4,14 +4,18 @@
 #include <string.h>
 
 #include "scene/function_parts.h"
+#include "scene/graph_make.h"
 #include "scene/heap.h"
+
+/* What a node is looked for in: that it has no value, no derivative, or, where it has both, no series. */
+typedef enum failing { VALUE, DERIVATIVE, SERIES } failing;
 
 /* A node of a kernel at one of its elements. */
 typedef struct culprit {
   const dvi__kernel *kernel;
   dvi__node node; /* -1: nobody */
   double *input;  /* [input_count], to be freed */
-  int of_derivative;
+  failing of;
 } culprit;
 
 static void read_inputs(const dvi__kernel *kernel, const dvi__places *place, int e, int count, const double *const *x, int k,
@@ -53,17 +57,55 @@ static dvi__node *known_derivatives(const dvi__function *function, int k, int *c
   return root;
 }
 
-/* Look at kernel k, its value or its derivatives, element by element. */
+/* Whether an operation that has a value has a series, too. */
+static int has_series(const dvi__graph_node *node, double a, double b)
+{
+  const int is_zero = !(a > 0.0) && !(a < 0.0), whole = node->value - floor(node->value) < 0.25;
+  switch (node->op) {
+  case DVI__OP_SQRT:
+  case DVI__OP_RAISE: return !is_zero;
+  case DVI__OP_POWER: return !is_zero || whole;
+  case DVI__OP_ATAN2: return !is_zero || b > 0.0 || b < 0.0;
+  case DVI__OP_ASIN:
+  case DVI__OP_ACOS: return fabs(a) < 1.0;
+  case DVI__OP_ACOSH: return a > 1.0;
+  default: return 1;
+  }
+}
+
+/* The first operation below the root that has no series; -1: all have one. */
+static dvi__node first_without_series(const dvi__kernel *kernel, const double *input)
+{
+  const dvi__graph *graph = kernel->graph;
+  int count = 0;
+  char *part = dvi__parts(graph, 1, &kernel->root, &count);
+  dvi__node *operand = dvi__heap_take(2 * (size_t)count + 1, sizeof *operand), unused = -1, found = -1;
+  double *value = dvi__heap_take(2 * (size_t)count + 1, sizeof *value);
+  for (int n = 0; n < count && operand != NULL; n++) {
+    const int operands = part != NULL && part[n] ? dvi__operands(graph->node[n].op) : 0;
+    operand[2 * n] = operands > 0 ? graph->node[n].a : kernel->root;
+    operand[2 * n + 1] = operands > 1 ? graph->node[n].b : kernel->root;
+  }
+  if (part != NULL && operand != NULL && value != NULL && dvi__evaluate(graph, input, 2 * count, operand, value, &unused) == DVI_OK)
+    for (int n = count - 1; n >= 0; n--)
+      if (part[n] && !has_series(&graph->node[n], value[2 * n], value[2 * n + 1])) found = n;
+  dvi__heap_free(part);
+  dvi__heap_free(operand);
+  dvi__heap_free(value);
+  return found;
+}
+
+/* Look at kernel k, element by element. */
 static void search_kernel(const dvi__function *function, int k, int count, const double *const *x, int point, culprit *found)
 {
   const dvi__kernel *kernel = &function->kernel[k];
   int root_count = 1;
-  dvi__node *derivatives = found->of_derivative ? known_derivatives(function, k, &root_count) : NULL;
-  const dvi__node *root = found->of_derivative ? derivatives : &kernel->root;
+  dvi__node *derivatives = found->of == DERIVATIVE ? known_derivatives(function, k, &root_count) : NULL;
+  const dvi__node *root = found->of == DERIVATIVE ? derivatives : &kernel->root;
   double *input = dvi__heap_take((size_t)kernel->input_count + 1, sizeof *input);
   for (int e = 0; e < kernel->elements && found->node < 0 && root != NULL && input != NULL; e++) {
     read_inputs(kernel, function->derivatives[k].place, e, count, x, point, input);
-    found->node = first_below(kernel, input, root_count, root);
+    found->node = found->of == SERIES ? first_without_series(kernel, input) : first_below(kernel, input, root_count, root);
   }
   dvi__heap_free(derivatives);
   found->kernel = kernel;
@@ -117,30 +159,29 @@ static void describe(const culprit *found, const dvi__source *source, char *text
     copy_part(source, graph->node[operand].span, operand_part);
   if (operand < 0) (void)dvi__evaluate(graph, found->input, 1, &found->node, &value, &unused);
   if (operand >= 0) (void)dvi__evaluate(graph, found->input, 1, &operand, &value, &unused);
-  const char *prefix = found->of_derivative ? "the derivative of " : "";
+  const char *prefix = found->of == DERIVATIVE ? "the derivative of " : "";
+  const char *what = found->of == SERIES ? "has no Taylor series" : "is not finite";
   if (operand < 0)
-    (void)snprintf(text, size, "%s%s = %.6g", prefix, part, value);
+    (void)snprintf(text, size, "%s%s = %.6g %s", prefix, part, value, what);
   else if (operand_part[0] != '\0')
-    (void)snprintf(text, size, "%s%s, %s = %.6g", prefix, part, operand_part, value);
+    (void)snprintf(text, size, "%s%s, %s = %.6g %s", prefix, part, operand_part, value, what);
   else
-    (void)snprintf(text, size, "%s%s", prefix, part);
+    (void)snprintf(text, size, "%s%s %s", prefix, part, what);
 }
 
-void dvi__function_blame(dvi__function *function, const dvi__source *source, int count, const double *const *x, int k, char *text,
-                         size_t size, dvi__span *span)
+void dvi__function_blame(dvi__function *function, const dvi__source *source, int count, const double *const *x, int k,
+                         int of_series, char *text, size_t size, dvi__span *span)
 {
   culprit found = {.node = -1};
+  const int passes = of_series ? SERIES + 1 : SERIES;
   pthread_mutex_lock(&function->lock);
-  for (int pass = 0; pass < 2 && found.node < 0; pass++)
+  for (int pass = 0; pass < passes && found.node < 0; pass++)
     for (int i = 0; i < function->kernel_count && found.node < 0; i++) {
-      found.of_derivative = pass;
+      found.of = (failing)pass;
       search_kernel(function, i, count, x, k, &found);
     }
-  *span = DVI__NOWHERE;
-  if (found.node >= 0)
-    describe(&found, source, text, size, span);
-  else
-    (void)snprintf(text, size, "the sum of all terms");
+  text[0] = '\0';
+  if (found.node >= 0) describe(&found, source, text, size, span);
   pthread_mutex_unlock(&function->lock);
   dvi__heap_free(found.input);
 }
