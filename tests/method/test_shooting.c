@@ -378,6 +378,7 @@ static const struct {
     {"shooting:onestep=taylor,solve=stages", "solve=stages is for one-step methods with a tableau"},
     {"shooting:terms=2", "quadrature=simpson has no terms"},
     {"shooting:composition=4", "raises the order of symmetric one-step methods alone, and onestep=rk4 is none"},
+    {"shooting:tableau=", "tableau= is empty; give it a text, or leave it out"},
     {"shooting:tableau=no/such/file", "no/such/file cannot be read"},
 };
 enum { REFUSED = sizeof refused / sizeof *refused };

@@ -81,7 +81,7 @@ static dvi_status check_method(const dvi_integrator *I)
                    "choose %s",
                    I->stepper.specification,
                    I->system->terms & DVI__ONE_FORM ? "dg, dg-phase, dvrk, or vprk with its symmetric projection"
-                                                    : "a symmetric quadrature, or the time transform");
+                                                    : "a symmetric quadrature, one-step method or type, or the time transform");
 }
 
 static dvi_status create(const dvi_system *system, const dvi_monitor *monitor, dvi__pacing pacing, const char *method,

@@ -133,8 +133,10 @@ static dvi_status parse_real(const dvi__method *method, const dvi__key *key, pie
                    value.text);
 }
 
-static dvi_status keep_text(const dvi__method *method, piece value, dvi__settings *settings)
+static dvi_status keep_text(const dvi__method *method, const dvi__key *key, piece value, dvi__settings *settings)
 {
+  if (value.length == 0)
+    return dvi__fail(DVI_BAD_OPTION, "%s: %s= is empty; give it a text, or leave it out", method->name, key->name);
   dvi__text text = {settings->text, sizeof settings->text, 0};
   dvi__text_add(&text, "%.*s", value.length, value.text);
   return text.length < text.size ? DVI_OK : dvi__fail(DVI_BAD_OPTION, "%s: the specification is too long", method->name);
@@ -156,7 +158,7 @@ static dvi_status assign(const dvi__method *method, piece name, piece value, dvi
     if (*given & 1U << k) return dvi__fail(DVI_BAD_OPTION, "%s: %s is given twice", method->name, key->name);
     *given |= 1U << k;
     if (key->least == DVI__POSITIVE) return parse_real(method, key, value, &settings->number[k]);
-    if (key->least == DVI__TEXT) return keep_text(method, value, settings);
+    if (key->least == DVI__TEXT) return keep_text(method, key, value, settings);
     return is_number(key, value) ? parse_number(method, key, value, &settings->value[k])
                                  : parse_choice(method, key, value, &settings->value[k]);
   }
