@@ -37,8 +37,9 @@ static void blame(const dvi__term *term, int count, const double *const *x, int 
   for (; k < count && part[0] == '\0'; k++)
     dvi__function_blame(term->function, source, count, x, k, of_series, part, sizeof part, &span);
   if (part[0] == '\0') {
-    (void)snprintf(blame_text, sizeof blame_text, "%s: the %s of all terms is not finite", source->name,
-                   of_series ? "Taylor series" : "sum");
+    (void)snprintf(blame_text, sizeof blame_text,
+                   of_series ? "%s: the Taylor series of all terms is not finite" : "%s: the sum of all terms is not finite",
+                   source->name);
     return;
   }
   dvi__source_place(source, span.first, &line, &column);
