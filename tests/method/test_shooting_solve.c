@@ -1,4 +1,4 @@
-/* labels: unit */
+/* labels: invariant */
 /* Both ways to solve a step of shooting, by the shot and by all stages at once, and which of them is taken. */
 #include <math.h>
 #include <string.h>
