@@ -93,4 +93,7 @@ void problem_label(problem *made, int i, const char *format, ...);
  * carried along. */
 void problem_oscillation(double square, double t, double *cosine, double *sine);
 
+/* V = k q^2/2 of one coordinate, as dvi_potential's taylor. */
+void problem_spring_taylor(double k, int degree, const double *q, double *V, double *V_q, double *V_qq);
+
 #endif

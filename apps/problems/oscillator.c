@@ -1,5 +1,4 @@
 /* One harmonic oscillator, L = v^2/2 - k q^2/2, with one-point callbacks. */
-#include <dvi/taylor.h>
 #include <float.h>
 #include <math.h>
 
@@ -31,14 +30,8 @@ static int hessian(double t, const double *q, double *V_qq, void *user)
 /* V = k q^2/2 along a curve. */
 static int taylor(int degree, const double *t, const double *q, double *V, double *V_q, double *V_qq, void *user)
 {
-  const double k = *(const double *)user;
-  const double one[DVI_TAYLOR_MAX + 1] = {1.0};
-  double square[DVI_TAYLOR_MAX + 1];
   (void)t;
-  dvi_taylor_multiply(degree, q, q, square);
-  dvi_taylor_put(degree, 1, square, 0.5 * k, 0, V);
-  dvi_taylor_put(degree, 1, q, k, 0, V_q);
-  dvi_taylor_put(degree, 1, one, k, 0, V_qq);
+  problem_spring_taylor(*(const double *)user, degree, q, V, V_q, V_qq);
   return 0;
 }
 

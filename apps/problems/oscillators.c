@@ -1,6 +1,5 @@
 /* A stiff and a soft spring on one unit mass: slow potential q^2/2, fast potential omega^2 q^2/2. Splitting methods meet their
  * resonances here. */
-#include <dvi/taylor.h>
 #include <float.h>
 #include <math.h>
 
@@ -34,14 +33,8 @@ static int hessian(int count, const double *t, const double *q, double *V_qq, vo
 /* The same along a curve. */
 static int taylor(int degree, const double *t, const double *q, double *V, double *V_q, double *V_qq, void *user)
 {
-  const double stiffness = *(const double *)user;
-  const double one[DVI_TAYLOR_MAX + 1] = {1.0};
-  double square[DVI_TAYLOR_MAX + 1];
   (void)t;
-  dvi_taylor_multiply(degree, q, q, square);
-  dvi_taylor_put(degree, 1, square, 0.5 * stiffness, 0, V);
-  dvi_taylor_put(degree, 1, q, stiffness, 0, V_q);
-  dvi_taylor_put(degree, 1, one, stiffness, 0, V_qq);
+  problem_spring_taylor(*(const double *)user, degree, q, V, V_q, V_qq);
   return 0;
 }
 

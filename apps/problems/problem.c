@@ -1,4 +1,5 @@
 /* The table of problems: finding one, reading its settings, making it. */
+#include <dvi/taylor.h>
 #include <float.h>
 #include <math.h>
 #include <stdarg.h>
@@ -284,4 +285,14 @@ void problem_oscillation(double square, double t, double *cosine, double *sine)
   const double c_rest = cos(rest), s_rest = sin(rest);
   *cosine = c * c_rest - s * s_rest;
   *sine = s * c_rest + c * s_rest;
+}
+
+void problem_spring_taylor(double k, int degree, const double *q, double *V, double *V_q, double *V_qq)
+{
+  const double one[DVI_TAYLOR_MAX + 1] = {1.0};
+  double square[DVI_TAYLOR_MAX + 1];
+  dvi_taylor_multiply(degree, q, q, square);
+  dvi_taylor_put(degree, 1, square, 0.5 * k, 0, V);
+  dvi_taylor_put(degree, 1, q, k, 0, V_q);
+  dvi_taylor_put(degree, 1, one, k, 0, V_qq);
 }

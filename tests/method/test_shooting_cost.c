@@ -55,9 +55,22 @@ START_TEST(a_step_is_as_many_shots_as_residuals)
 }
 END_TEST
 
+/* All stages at once: a sweep makes the guess, points serve the Jacobian and the residual that are asked for there, and one residual closes the step. */
+START_TEST(all_stages_are_evaluated_once_a_point)
+{
+  enum { STAGES = 2 * 4, POINTS = STAGES + 3 };
+  for (int place = 0; place < PLACES; place++) {
+    const dvi_counters n = counted(place, "shooting:solve=stages");
+    ck_assert_int_le(n.hessians, POINTS * (n.residuals + STEPS));
+    ck_assert_int_le(n.gradients, POINTS * (n.residuals + STEPS) + STAGES * STEPS);
+  }
+}
+END_TEST
+
 int main(void)
 {
   TCase *tests = tcase_create("cost");
   tcase_add_loop_test(tests, a_step_is_as_many_shots_as_residuals, 0, SHOTS);
+  tcase_add_test(tests, all_stages_are_evaluated_once_a_point);
   return run_tests("method/shooting_cost", tests);
 }

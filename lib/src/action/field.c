@@ -176,6 +176,27 @@ void dvi__field_lagrangian(dvi__field *f, double *gradient)
   for (size_t i = 0; i < n; i++) gradient[i] -= f->H_q[at + i];
 }
 
+void dvi__field_push(dvi__field *f, double h, const double *motion, double *image)
+{
+  const int n = f->n;
+  dvi__field_product(f, motion, f->motion);
+  for (int i = 0; i < n; i++) {
+    image[i] = h * f->motion[n + i];
+    image[n + i] = -h * f->motion[i];
+  }
+}
+
+/* f_z^T (a,b) = H_zz (-b,a). */
+void dvi__field_pull(dvi__field *f, double h, const double *costate, double *image)
+{
+  const int n = f->n;
+  for (int i = 0; i < n; i++) {
+    f->motion[i] = -h * costate[n + i];
+    f->motion[n + i] = h * costate[i];
+  }
+  dvi__field_product(f, f->motion, image);
+}
+
 /* ---- velocities ---- */
 
 dvi__field_point dvi__field_point_at(const dvi__field *f, int k)

@@ -29,6 +29,10 @@ dvi_status dvi__field_select(dvi__field *field, int k);
 void dvi__field_product(dvi__field *field, const double *motion, double *product);
 void dvi__field_lagrangian(dvi__field *field, double *gradient);
 
+/* There, with f = (H_p, -H_q): image [2n] = h f_z motion; h f_z^T costate. */
+void dvi__field_push(dvi__field *field, double h, const double *motion, double *image);
+void dvi__field_pull(dvi__field *field, double h, const double *costate, double *image);
+
 /* What point k was placed at; v is the velocity there. */
 typedef struct dvi__field_point {
   double t;

@@ -31,7 +31,7 @@ static int is_present(const dvi__shaped *s, int k)
 
 /* ---- making it ---- */
 
-static int allocate(dvi__shaped *s, const int *functions)
+static int allocate(dvi__shaped *s, const char *has_all, int fewest)
 {
   const size_t n = (size_t)s->action->n, count = (size_t)s->shapes.functions;
   s->first = DVI_NEW(int, n + 1);
@@ -42,25 +42,25 @@ static int allocate(dvi__shaped *s, const int *functions)
   s->at = DVI_NEW(double, n *count);
   s->whole = DVI_NEW(double, n *count);
   if (!s->first || !s->psi || !s->dpsi || !s->rest || !s->dq_low || !s->at || !s->whole) return 0;
-  for (size_t i = 0; i < n; i++) s->first[i + 1] = s->first[i] + functions[i];
+  for (size_t i = 0; i < n; i++) s->first[i + 1] = s->first[i] + (has_all[i] ? s->shapes.functions : fewest);
   return 1;
 }
 
-static dvi_status fill(dvi__shaped *s, const dvi_system *system, const int *functions, dvi_counters *counters)
+static dvi_status fill(dvi__shaped *s, const dvi_system *system, const char *has_all, int fewest, dvi_counters *counters)
 {
   DVI_TRY(dvi__action_create_shaped(system, s->shapes.functions, s->shapes.points, counters, &s->action));
-  if (!allocate(s, functions)) return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d shapes", s->shapes.functions);
+  if (!allocate(s, has_all, fewest)) return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d shapes", s->shapes.functions);
   DVI_TRY(dvi__action_prepare_hessians(s->action));
   return dvi__pattern_uneven_blocks(&s->action->joint, s->first, &s->pattern);
 }
 
-dvi_status dvi__shaped_create(const dvi_system *system, const dvi__shapes *shapes, const int *functions, dvi_counters *counters,
-                              dvi__shaped **shaped)
+dvi_status dvi__shaped_create(const dvi_system *system, const dvi__shapes *shapes, const char *has_all, int fewest,
+                              dvi_counters *counters, dvi__shaped **shaped)
 {
   dvi__shaped *s = *shaped = DVI_NEW(dvi__shaped, 1);
   if (s == NULL) return dvi__fail(DVI_NO_MEMORY, "action: no memory");
   s->shapes = *shapes;
-  const dvi_status status = fill(s, system, functions, counters);
+  const dvi_status status = fill(s, system, has_all, fewest, counters);
   if (status != DVI_OK) dvi__shaped_destroy(shaped);
   return status;
 }

@@ -9,9 +9,9 @@
 
 typedef struct dvi__shaped dvi__shaped;
 
-/* functions [n]: how many of the shapes each coordinate has; copied, as the shapes are. */
-dvi_status dvi__shaped_create(const dvi_system *system, const dvi__shapes *shapes, const int *functions, dvi_counters *counters,
-                              dvi__shaped **shaped);
+/* has_all [n]: which coordinates have all shapes; the others have the first `fewest`. Shapes are copied. */
+dvi_status dvi__shaped_create(const dvi_system *system, const dvi__shapes *shapes, const char *has_all, int fewest,
+                              dvi_counters *counters, dvi__shaped **shaped);
 void dvi__shaped_destroy(dvi__shaped **shaped);
 
 const dvi__pattern *dvi__shaped_pattern(const dvi__shaped *shaped);

@@ -246,16 +246,6 @@ dvi_status dvi__shot_trace(dvi__shot *s)
   return DVI_OK;
 }
 
-/* image = h f_z^T Gamma at the selected point: f_z^T (a,b) = H_zz (-b,a). */
-static void pull(dvi__shot *s, double h, const double *Gamma, double *image)
-{
-  for (int i = 0; i < s->n; i++) {
-    s->turned[i] = -h * Gamma[s->n + i];
-    s->turned[s->n + i] = h * Gamma[i];
-  }
-  dvi__field_product(s->field, s->turned, image);
-}
-
 static dvi_status explicit_costates(dvi__shot *s, int piece, double h, const double *end)
 {
   const dvi__runge_kutta *m = &s->method;
@@ -265,7 +255,7 @@ static dvi_status explicit_costates(dvi__shot *s, int piece, double h, const dou
     add(s, m->b[j], end, Gamma);
     for (int k = j + 1; k < m->stages; k++) add(s, m->a[k][j], at(s, s->kappa, k), Gamma);
     DVI_TRY(dvi__field_select(s->field, stage_point(s, piece, j)));
-    pull(s, h, Gamma, at(s, s->kappa, j));
+    dvi__field_pull(s->field, h, Gamma, at(s, s->kappa, j));
   }
   return DVI_OK;
 }
@@ -279,7 +269,7 @@ static dvi_status coupled_costates(dvi__shot *s, int piece, double h, const doub
   DVI_TRY(dvi__stages_solve_transposed(s->coupled, stage_point(s, piece, 0), h, s->Gamma));
   for (int j = 0; j < s->method.stages; j++) {
     DVI_TRY(dvi__field_select(s->field, stage_point(s, piece, j)));
-    pull(s, h, at(s, s->Gamma, j), at(s, s->kappa, j));
+    dvi__field_pull(s->field, h, at(s, s->Gamma, j), at(s, s->kappa, j));
   }
   return DVI_OK;
 }
@@ -321,16 +311,6 @@ dvi_status dvi__shot_costate(dvi__shot *s, const double *end, double *gain)
 
 /* ---- motions ---- */
 
-/* image = h f_z motion at the selected point: f_z (a,b) = (H_pz, -H_qz). */
-static void push(dvi__shot *s, double h, const double *motion, double *image)
-{
-  dvi__field_product(s->field, motion, s->turned);
-  for (int i = 0; i < s->n; i++) {
-    image[i] = h * s->turned[s->n + i];
-    image[s->n + i] = -h * s->turned[i];
-  }
-}
-
 /* kappa of a column: what its stages' increments become. */
 static double *column_of(const dvi__shot *s, int column)
 {
@@ -346,7 +326,7 @@ static dvi_status move_stages(dvi__shot *s, int piece, double h, int columns, do
     for (int i = 0; i < columns; i++) {
       memcpy(s->point, at(s, motion, i), 2 * (size_t)s->n * sizeof *s->point);
       for (int k = 0; k < j && m->is_explicit; k++) add(s, m->a[j][k], at(s, column_of(s, i), k), s->point);
-      push(s, h, s->point, at(s, column_of(s, i), j));
+      dvi__field_push(s->field, h, s->point, at(s, column_of(s, i), j));
     }
   }
   return DVI_OK;

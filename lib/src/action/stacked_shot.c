@@ -90,10 +90,15 @@ static double *at(const dvi__stacked_shot *s, double *numbers, int index)
   return numbers + (size_t)index * 2 * (size_t)s->n;
 }
 
+/* If all numbers are those of last time, all that is known of them stays so. */
 static void take(dvi__stacked_shot *s, const double *x)
 {
   for (int b = 0; b < s->blocks; b++)
-    for (int i = 0; i < 2 * s->n; i++) at(s, s->x, b)[i] = x[b * 2 * s->n + i] * unit_of(s, b, i);
+    for (int i = 0; i < 2 * s->n; i++) {
+      const double number = x[b * 2 * s->n + i] * unit_of(s, b, i);
+      if (number != at(s, s->x, b)[i]) s->known = 0;
+      at(s, s->x, b)[i] = number;
+    }
 }
 
 static void give(dvi__stacked_shot *s, double *x)
@@ -147,8 +152,10 @@ static dvi_status place_stage(dvi__stacked_shot *s, int m, int j)
   return DVI_OK;
 }
 
+/* The solver asks for the Jacobian and for the residual at one place. */
 static dvi_status place_all(dvi__stacked_shot *s)
 {
+  if (s->known) return DVI_OK;
   for (int m = 0; m < s->course.pieces; m++)
     for (int j = 0; j < s->method.stages; j++) DVI_TRY(place_stage(s, m, j));
   DVI_TRY(dvi__field_differentiate(s->field, 0, s->course.pieces * s->method.stages));
@@ -158,6 +165,7 @@ static dvi_status place_all(dvi__stacked_shot *s)
     DVI_TRY(place(s, dvi__stack_node_point(s, m), s->t0 + s->course.c[m] * s->h, s->turned));
     DVI_TRY(dvi__field_differentiate(s->field, dvi__stack_node_point(s, m), 1));
   }
+  s->known = 1;
   return DVI_OK;
 }
 
@@ -169,14 +177,10 @@ static dvi_status pull(dvi__stacked_shot *s)
   const int n = s->n;
   for (int m = 0; m < s->course.pieces; m++)
     for (int j = 0; j < s->method.stages; j++) {
-      const double *Gamma = at(s, s->x, dvi__stack_Gamma(s, m, j)), h = length_of(s, m);
+      const double *Gamma = at(s, s->x, dvi__stack_Gamma(s, m, j));
       const int point = dvi__stack_stage_point(s, m, j);
-      for (int i = 0; i < n; i++) {
-        s->turned[i] = -h * Gamma[n + i];
-        s->turned[n + i] = h * Gamma[i];
-      }
       DVI_TRY(dvi__field_select(s->field, point));
-      dvi__field_product(s->field, s->turned, at(s, s->kappa, point));
+      dvi__field_pull(s->field, length_of(s, m), Gamma, at(s, s->kappa, point));
     }
   memset(s->slope, 0, 2 * (size_t)n * ((size_t)s->course.pieces + 1) * sizeof *s->slope);
   for (int m = 0; m <= s->course.pieces; m++) {
@@ -373,6 +377,7 @@ dvi_status dvi__stacked_shot_place(dvi__stacked_shot *s, double t0, double h, co
   s->h = h;
   s->q0 = q0;
   s->p0 = p0;
+  s->known = 0;
   DVI_TRY(dvi__legendre_inverse(s->evaluator, t0, q0, p0, v));
   DVI_TRY(dvi__field_mass(s->field, t0, q0, v, s->unit));
   for (int i = 0; i < n; i++) s->unit[i] /= fabs(h);

@@ -32,6 +32,7 @@ struct dvi__stacked_shot {
   /* The step. */
   double t0, h;
   const double *q0, *p0;
+  int known;              /* all points of x are placed and differentiated */
   double *unit;           /* [n] */
   double *x;              /* [unknowns] in their own units */
   double *rate;           /* [2n * pieces*stages] h f there */

@@ -142,17 +142,6 @@ static dvi_status duration_of(void *of, const double *x, double *duration)
 
 DVI__STEP_KIND(shaped, explain, .duration = duration_of, .renewed = 1);
 
-static dvi_status make_step(const dvi__stepper *self, const dvi__shapes *shapes, const char *fast, dvi__shaped **shaped)
-{
-  const int n = self->system->n;
-  int *functions = DVI_NEW(int, n);
-  if (functions == NULL) return dvi__fail(DVI_NO_MEMORY, "multiscale: no memory");
-  for (int i = 0; i < n; i++) functions[i] = fast[i] ? shapes->functions : self->settings.value[DEGREE];
-  const dvi_status status = dvi__shaped_create(self->system, shapes, functions, self->counters, shaped);
-  dvi__release(functions);
-  return status;
-}
-
 static dvi_status prepare_to_find(dvi__stepper *self, const char *fast)
 {
   multiscale *own = self->own;
@@ -170,7 +159,7 @@ static dvi_status make(dvi__stepper *self, const char *fast)
   dvi__oscillating *space = dvi__oscillating_create(value[DEGREE], value[AMPLITUDE], value[HARMONICS], omega);
   if (space == NULL) return dvi__fail(DVI_NO_MEMORY, "multiscale: no memory");
   const dvi__shapes shapes = dvi__oscillating_shapes(space);
-  dvi_status status = make_step(self, &shapes, fast, &shaped);
+  dvi_status status = dvi__shaped_create(self->system, &shapes, fast, value[DEGREE], self->counters, &shaped);
   if (status == DVI_OK) status = dvi__one_step_create(self, sizeof(multiscale), &kind, shaped, omega == 0);
   multiscale *own = self->own;
   if (own == NULL) {

@@ -133,17 +133,6 @@ static void explain(const dvi__stepper *self, dvi__text *text)
 
 DVI__STEP_KIND(shaped, explain, .renewed = 1);
 
-static dvi_status make_step(dvi__stepper *self, const dvi__shapes *shapes, const char *has, dvi__shaped **shaped)
-{
-  const int n = self->system->n;
-  int *functions = DVI_NEW(int, n);
-  if (functions == NULL) return dvi__fail(DVI_NO_MEMORY, "shaped-galerkin: no memory");
-  for (int i = 0; i < n; i++) functions[i] = has[i] ? shapes->functions : self->settings.value[DEGREE];
-  const dvi_status status = dvi__shaped_create(self->system, shapes, functions, self->counters, shaped);
-  dvi__release(functions);
-  return status;
-}
-
 static int smaller(int a, int b)
 {
   return a < b ? a : b;
@@ -165,7 +154,7 @@ static dvi_status make(dvi__stepper *self, const char *has)
   dvi__given *space = NULL;
   DVI_TRY(dvi__given_create(self->shapes, value[DEGREE], (dvi_rule)value[QUADRATURE], value[NODES], &space));
   const dvi__shapes shapes = dvi__given_shapes(space);
-  dvi_status status = make_step(self, &shapes, has, &shaped);
+  dvi_status status = dvi__shaped_create(self->system, &shapes, has, value[DEGREE], self->counters, &shaped);
   if (status == DVI_OK) status = dvi__one_step_create(self, sizeof(shaped_galerkin), &kind, shaped, CARRIED);
   shaped_galerkin *own = self->own;
   if (own == NULL) {
