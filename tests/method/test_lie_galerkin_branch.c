@@ -159,7 +159,7 @@ START_TEST(usual_steps_are_not_followed)
   ck_assert_int_eq(dvi_integrator_start_velocity(made, 0, unit, v), DVI_OK);
   advance(made, _i == 2 ? -.4 : .4, 2000);
   dvi_integrator_counters(made, &counters);
-  ck_assert_msg(counters.halvings <= 1, "%ld", (long)counters.halvings); /* the first one, whose guess is a straight line */
+  ck_assert_msg(counters.followed <= 1, "%ld", (long)counters.followed); /* the first one, whose guess is a straight line */
   dvi_integrator_destroy(&made);
   dvi_system_destroy(&system);
 }

@@ -22,7 +22,7 @@ typedef struct dvi_counters {
   long fixed_points;   /**< solves by fixed point iteration: steps, and parts of steps that build a starting path */
   long newtons;        /**< the same by Newton's method */
   long kinsols;        /**< solves handed to KINSOL */
-  long halvings;       /**< starting paths that were built from shorter steps, or followed from them */
+  long followed;       /**< solutions that were followed from those of shorter steps */
   long allocations;    /**< blocks of memory that its creation and its steps took; a step takes none */
   long simplified;     /**< solves by simplified Newton's method: the Jacobian of one point, decoupled into systems of n unknowns */
   long jump_alarms;    /**< steps that ended in a jump large against the motion (dg, dg-phase with alarm=warn) */

@@ -18,7 +18,15 @@ static void explain(const dvi__stepper *self, dvi__text *text)
   dvi__text_add(text, "constraint: p = alpha(q), which the steps leave; %s\n", gauge[own->sign + 1]);
 }
 
-DVI__STEP_KIND(action, explain);
+static dvi_status place(dvi__stepper *self, const dvi__state *state, double h, double part)
+{
+  const dvi__one_step *one = self->own;
+  (void)part;
+  dvi__action_place(one->of, state->t, h, state->q, state->p);
+  return DVI_OK;
+}
+
+DVI__STEP_KIND(action, place, explain);
 
 static dvi_status make_action(const dvi__stepper *self, const dvi__action_space *space, dvi__action **action)
 {
@@ -52,9 +60,8 @@ dvi_status dvi__carried_step(dvi__stepper *self, dvi__state *state, double h)
 {
   const carried *own = self->own;
   const dvi__one_step *one = &own->one;
-  double *rows = one->guess, *dq_low = one->guess;
+  double *rows = one->work, *dq_low = one->work;
   if (own->sign != 0) DVI_TRY(dvi__form_definite(dvi__action_evaluator(one->of), state->q, own->sign, own->room));
-  dvi__action_place(one->of, state->t, h, state->q, state->p);
   DVI_TRY(dvi__one_step_solve(self, state, h));
   DVI_TRY(dvi__action_residual(one->of, one->x, rows));
   dvi__action_ends(one->of, one->x, one->dq, dq_low, one->dp);

@@ -63,6 +63,7 @@ static dvi_status create(dvi__stepper *self)
   self->order = base->order > self->order ? base->order : self->order;
   self->symmetric = 1;
   self->bound = base->bound;
+  self->follows = base->follows;
   self->memory_count = base->memory_count;
   return DVI_OK;
 }
@@ -101,7 +102,7 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
   dvi__stepper *base = base_of(self);
   const dvi__scheme *s = scheme_of(self);
   const double t = state->t, t_carry = state->t_carry;
-  for (int i = 0; i < s->substeps; i++) DVI_TRY(base->method->step(base, state, h * dvi__scheme_part(s, i)));
+  for (int i = 0; i < s->substeps; i++) DVI_TRY(dvi__inner_step(self, base, state, h * dvi__scheme_part(s, i)));
   if (dvi__transformed_of(self->system) == NULL) move_clock(t, t_carry, h, &state->t, &state->t_carry);
   return DVI_OK;
 }

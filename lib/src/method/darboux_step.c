@@ -10,7 +10,15 @@ static void explain(const dvi__stepper *self, dvi__text *text)
   dvi__text_add(text, "constraint: p = alpha(q), to the last bit after every step\n");
 }
 
-DVI__STEP_KIND(darboux, explain);
+static dvi_status place(dvi__stepper *self, const dvi__state *state, double h, double part)
+{
+  const dvi__one_step *one = self->own;
+  (void)part;
+  dvi__darboux_place(one->of, state->t, h, state->q, state->p);
+  return DVI_OK;
+}
+
+DVI__STEP_KIND(darboux, place, explain);
 
 dvi_status dvi__darboux_step_create(dvi__stepper *self, dvi__darboux_rule rule, int stages)
 {
@@ -26,7 +34,6 @@ dvi_status dvi__darboux_step_create(dvi__stepper *self, dvi__darboux_rule rule, 
 dvi_status dvi__darboux_step(dvi__stepper *self, dvi__state *state, double h)
 {
   const dvi__one_step *one = self->own;
-  dvi__darboux_place(one->of, state->t, h, state->q, state->p);
   DVI_TRY(dvi__one_step_solve(self, state, h));
   dvi__darboux_end(one->of, one->x, one->dq);
   DVI_TRY(dvi__one_step_move(self, state, h, one->x));

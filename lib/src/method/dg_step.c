@@ -43,7 +43,17 @@ static void explain(const dvi__stepper *self, dvi__text *text)
   dvi__explain_jumps(((const dg_step *)self->own)->alarm, text);
 }
 
-DVI__STEP_KIND(discontinuous, explain);
+/* A jump belongs to the length of a step: without one there would be no rates. */
+static dvi_status place(dvi__stepper *self, const dvi__state *state, double h, double part)
+{
+  const dvi__one_step *one = self->own;
+  const size_t n = (size_t)self->system->n;
+  for (size_t i = 0; i < 2 * n; i++) one->carried[i] = part * jump(self)[i];
+  const dvi__dg_node node = {state->q, state->p, one->carried, one->carried + n};
+  return dvi__discontinuous_place(one->of, state->t, h, &node);
+}
+
+DVI__STEP_KIND(discontinuous, place, explain);
 
 dvi_status dvi__dg_create(dvi__stepper *self, const dvi__dg_space *space, int alarm, const char *remedy)
 {
@@ -90,20 +100,13 @@ static dvi_status watch(const dvi__stepper *self, const double *q, const double 
   return dvi__ring_alarm(self, own->alarm, "the jump", size, *motion, own->remedy);
 }
 
-static dvi_status solve(dvi__stepper *self, const dvi__state *state, double h)
-{
-  const dvi__one_step *one = self->own;
-  DVI_TRY(dvi__discontinuous_place(one->of, state->t, h, &(dvi__dg_node){state->q, state->p, jump(self), offset(self)}));
-  return dvi__one_step_solve(self, state, h);
-}
-
 /* Each time the parasite's part of the jump at the start falls by a factor of h; the second time to the order at which it no longer matters. */
 static dvi_status settle(dvi__stepper *self, const dvi__state *state, double h)
 {
   const dvi__one_step *one = self->own;
   if (!dvi__discontinuous_can_settle(one->of)) return DVI_OK;
   for (int k = 0; k < 2; k++) {
-    DVI_TRY(solve(self, state, h));
+    DVI_TRY(dvi__one_step_solve(self, state, h));
     DVI_TRY(dvi__discontinuous_settle(one->of, one->x, jump(self), offset(self)));
   }
   return DVI_OK;
@@ -113,10 +116,10 @@ dvi_status dvi__dg_step(dvi__stepper *self, dvi__state *state, double h)
 {
   const dvi__one_step *one = self->own;
   const double last_h = self->memory[DVI__LENGTH];
-  double *coefficients = one->guess;
+  double *coefficients = one->work;
   if (last_h != 0 && signbit(last_h) != signbit(h)) turn(self);
   if (last_h == 0) DVI_TRY(settle(self, state, h));
-  DVI_TRY(solve(self, state, h));
+  DVI_TRY(dvi__one_step_solve(self, state, h));
   DVI_TRY(dvi__discontinuous_end(one->of, one->x, one->dq, jump(self), offset(self), coefficients));
   DVI_TRY(watch(self, state->q, one->dq));
   DVI_TRY(dvi__one_step_move(self, state, h, coefficients));

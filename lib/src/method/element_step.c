@@ -1,4 +1,5 @@
-/* Solving one element: a guess, the ladder of solvers, a better guess if that fails, and the new state. */
+/* Solving one element: a guess, the ladder of solvers, the branch from shorter steps if that fails,
+ * and the new state. */
 #include "method/element_step.h"
 
 #include <float.h>
@@ -9,10 +10,9 @@
 #include "action/sweep.h"
 #include "core/memory.h"
 #include "core/status.h"
-#include "method/follow.h"
 #include "num/compensated.h"
 #include "num/finite.h"
-#include "solve/nonlinear.h"
+#include "solve/branch.h"
 
 /* What is frozen, in the memory: the Jacobian at a point, by that, or as it is. */
 enum { FROZEN_H, FROZEN_ITERATIONS, FROZEN_POINT };
@@ -23,8 +23,13 @@ enum { MORE_ITERATIONS = 2 };
 /* After an iteration failed, the next better one takes over: for one step, and for twice as many each time it fails again, up to this many. */
 static const double longest_wait = 64;
 
-/* A guess is made from at most 2^5 shorter steps. */
-enum { MOST_HALVINGS = 5 };
+/* Radians between a guess and its solution in charts. Other solutions were found by a third of a
+ * radian and more away, but by a fortieth where the smallest moment of inertia is 1e-5 of the
+ * others. Steps below half a radian are nearer to their guess. */
+static const double near_in_charts = 0.03;
+
+/* The same between an extrapolated guess and the next solution of a branch. */
+static const double follows_in_charts = 0.01;
 
 /* One step's worth of arguments: where it starts and what is known of the step before. */
 typedef struct place {
@@ -42,12 +47,14 @@ typedef struct element {
       keeps_whole; /* in charts at its start, where a path that is not near its guess is followed; it keeps the whole Jacobian */
   dvi__solver *solver;
   int choice;     /* of the solver */
+  dvi__rung rung; /* that was tried last */
   double *Y;      /* the unknowns; the arrays below lie behind */
   double *frozen; /* in the memory: FROZEN_H (0: nothing is), FROZEN_ITERATIONS that it took when it was new, and the Jacobian */
   int keeps;      /* the Jacobian is not frozen anew */
   const place *forces_of; /* the place whose iteration starts from the last step's forces; NULL: from Y */
   double *dq, *dq_low, *dp;
-  double *part_q, *part_p, *part_v, *part_Y, *offset; /* of shorter steps that build a guess */
+  double *guess; /* [unknowns] of the iteration, in charts */
+  double *branch; /* [DVI__BRANCH_ROOM * unknowns] room to follow one */
 } element;
 
 /* Whether the rungs follow one after the other. */
@@ -140,16 +147,13 @@ static int allocate(dvi__stepper *self, element *own)
 {
   const size_t n = (size_t)self->system->n, unknowns = (size_t)dvi__action_unknowns(own->action);
   count_memory(self, own);
-  own->Y = DVI_NEW(double, 3 * unknowns + 6 * n);
+  own->Y = DVI_NEW(double, (DVI__BRANCH_ROOM + 2) * unknowns + 3 * n);
   if (own->Y == NULL) return 0;
-  own->part_Y = own->Y + unknowns;
-  own->offset = own->part_Y + unknowns;
-  own->dq = own->offset + unknowns;
+  own->guess = own->Y + unknowns;
+  own->branch = own->guess + unknowns;
+  own->dq = own->branch + DVI__BRANCH_ROOM * unknowns;
   own->dq_low = own->dq + n;
   own->dp = own->dq_low + n;
-  own->part_q = own->dp + n;
-  own->part_p = own->part_q + n;
-  own->part_v = own->part_p + n;
   return 1;
 }
 
@@ -188,6 +192,7 @@ dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *spac
   if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
   self->order = dvi__element_order(space);
   self->symmetric = dvi__symmetric_rule(space->rule);
+  self->follows = 1;
   own->choice = solver;
   DVI_TRY(dvi__action_create(self->system, space, self->counters, &own->action));
   DVI_TRY(dvi__action_prepare_jacobian(own->action));
@@ -242,17 +247,25 @@ void dvi__element_start(dvi__stepper *self, const double *v)
 
 /* ---- guesses ---- */
 
-/* The last path continued; without one, a straight line along the starting velocity. */
+/* A straight line along the velocity at the start, which is sought from that of the last path. */
+static dvi_status straight(dvi__stepper *self, const place *at, double *Y)
+{
+  element *own = self->own;
+  if (at->last_h != 0)
+    dvi__action_path(own->action, at->last_Y, at->last_h, 1.0, NULL, own->dq);
+  else
+    memcpy(own->dq, at->last_Y, (size_t)self->system->n * sizeof(double));
+  DVI_TRY(dvi__legendre_inverse(dvi__action_evaluator(own->action), at->t, at->q, at->p, own->dq));
+  dvi__action_straight(own->action, own->dq, Y);
+  return DVI_OK;
+}
+
+/* The last path continued; without one, a straight line. */
 static dvi_status guess(dvi__stepper *self, const place *at, double *Y)
 {
   element *own = self->own;
-  if (at->last_h != 0) {
-    dvi__action_continue(own->action, at->h / at->last_h, at->last_Y, Y);
-    return DVI_OK;
-  }
-  memcpy(own->dq, at->last_Y, (size_t)self->system->n * sizeof(double));
-  DVI_TRY(dvi__legendre_inverse(dvi__action_evaluator(own->action), at->t, at->q, at->p, own->dq));
-  dvi__action_straight(own->action, own->dq, Y);
+  if (at->last_h == 0) return straight(self, at, Y);
+  dvi__action_continue(own->action, at->h / at->last_h, at->last_Y, Y);
   return DVI_OK;
 }
 
@@ -264,8 +277,9 @@ static dvi_status solve_by(dvi__stepper *self, const place *at, dvi__rung rung, 
   const int patient = own->choice == DVI__SOLVER_FIXED_POINT;
   own->forces_of = rung == DVI__FIXED_POINT && at->last_g != NULL ? at : NULL;
   if (own->forces_of == NULL) DVI_TRY(guess(self, at, Y));
-  if (own->centred) memcpy(own->offset, Y, (size_t)dvi__action_unknowns(own->action) * sizeof(double));
+  if (own->centred) memcpy(own->guess, Y, (size_t)dvi__action_unknowns(own->action) * sizeof(double));
   const dvi_status status = dvi__solve(own->solver, rung, size, 1, patient, Y, report);
+  own->rung = rung;
   if (status == DVI_OK && rung == DVI__FIXED_POINT) self->counters->fixed_points++;
   if (status == DVI_OK && rung == DVI__SIMPLIFIED) self->counters->simplified++;
   if (status == DVI_OK && rung == DVI__NEWTON) self->counters->newtons++;
@@ -325,80 +339,111 @@ static dvi_status solve_at(dvi__stepper *self, const place *at, double *Y, dvi__
   return solve_by(self, at, own->choice == DVI__SOLVER_KINSOL ? DVI__KINSOL : DVI__NEWTON, Y, report);
 }
 
-/* Offsets from `start` of the path of one part, at the fitting points of the whole that lie in it. */
-static void sample(const dvi__stepper *self, const double *start, int part, int parts, double part_h)
-{
-  const element *own = self->own;
-  const double *tau = dvi__action_fit_points(own->action);
-  const size_t n = (size_t)self->system->n, s = (size_t)dvi__action_unknowns(own->action) / n;
-  for (size_t m = 0; m < s; m++) {
-    const double inside = tau[m] * parts - part;
-    if (inside <= 0 || inside > 1) continue;
-    dvi__action_path(own->action, own->part_Y, part_h, inside, own->dq, NULL);
-    for (size_t i = 0; i < n; i++) own->offset[i * s + m] = (own->part_q[i] - start[i]) + own->dq[i];
-  }
-}
+/* ---- the branch of shorter steps ---- */
 
-/* A guess from `parts` shorter steps by the same method: right to the method's own accuracy at that step. */
-static dvi_status guess_by_parts(dvi__stepper *self, const place *whole, int parts, double *Y, dvi__solve_report *report)
+/* What a branch is followed for. */
+typedef struct pursuit {
+  dvi__stepper *self;
+  const place *at;
+  double part; /* of the step, that the equations are placed at */
+} pursuit;
+
+static dvi_status place_part(void *of, double part)
 {
-  element *own = self->own;
-  const size_t bytes = (size_t)self->system->n * sizeof(double);
-  place at = {whole->t, whole->h / parts, own->part_q, own->part_p, 0, own->part_v, NULL};
-  if (whole->last_h != 0)
-    dvi__action_path(own->action, whole->last_Y, whole->last_h, 1.0, NULL, own->part_v);
-  else
-    memcpy(own->part_v, whole->last_Y, bytes);
-  memcpy(own->part_q, whole->q, bytes);
-  memcpy(own->part_p, whole->p, bytes);
-  for (int part = 0; part < parts; part++) {
-    DVI_TRY(solve_at(self, &at, own->part_Y, report));
-    sample(self, whole->q, part, parts, at.h);
-    dvi__action_ends(own->action, own->part_Y, own->dq, own->dq_low, own->dp);
-    for (int i = 0; i < self->system->n; i++) own->part_q[i] += own->dq[i] + own->dq_low[i], own->part_p[i] += own->dp[i];
-    memcpy(Y, own->part_Y, (size_t)dvi__action_unknowns(own->action) * sizeof(double));
-    at.t += at.h;
-    at.last_h = at.h;
-    at.last_Y = Y;
-  }
-  dvi__action_fit(own->action, own->offset, Y);
-  dvi__action_place(own->action, whole->t, whole->h, whole->q, whole->p);
+  pursuit *own = of;
+  const place *at = own->at;
+  own->part = part;
+  dvi__action_place(((element *)own->self->own)->action, at->t, part * at->h, at->q, at->p);
   return DVI_OK;
 }
 
-/* The cheap guess was not good enough: better and better ones, and at last KINSOL's line search. */
-static dvi_status rescue(dvi__stepper *self, const place *at, double *Y, dvi__solve_report *report)
+/* A straight line along the velocity at the start. */
+static dvi_status guess_part(void *of, double part, double *Y)
 {
-  element *own = self->own;
-  const double size = dvi__largest((size_t)self->system->n, at->q);
-  dvi_status guessed = DVI_NOT_CONVERGED;
-  for (int halvings = 1; halvings <= MOST_HALVINGS; halvings++) {
-    guessed = guess_by_parts(self, at, 1 << halvings, Y, report);
-    if (guessed < 0) return guessed;
-    if (guessed != DVI_OK) continue;
-    self->counters->halvings++;
-    const dvi_status status = dvi__solve(own->solver, DVI__NEWTON, size, 0, 0, Y, report);
-    if (status == DVI_OK) self->counters->newtons++;
-    if (status <= 0) return status;
-  }
-  dvi__action_place(own->action, at->t, at->h, at->q, at->p);
-  DVI_TRY(guessed == DVI_OK ? guess_by_parts(self, at, 1 << MOST_HALVINGS, Y, report) : guess(self, at, Y));
-  const dvi_status status = dvi__solve(own->solver, DVI__KINSOL, size, 0, 0, Y, report);
-  if (status <= 0) return status;
-  /* A callback's failure speaks for itself; there may be no residual to tell of. */
-  if (status != DVI_NOT_CONVERGED) return dvi__fail_in(status, "not solved, even by KINSOL with line search");
-  return dvi__fail_in(status,
-                      "not solved, neither by Newton's method nor by KINSOL with line search (%d iterations, residual %.1e)",
-                      report->iterations, report->residual);
+  const pursuit *own = of;
+  const place *at = own->at;
+  const place short_one = {at->t, part * at->h, at->q, at->p, at->last_h, at->last_Y, NULL};
+  return straight(own->self, &short_one, Y);
 }
 
-static dvi_status follow(dvi__stepper *self, const place *at, double *Y, dvi__solve_report *report)
+static double turn_between(void *of, const double *from, const double *Y)
+{
+  const pursuit *own = of;
+  return dvi__action_turn(((element *)own->self->own)->action, from, Y);
+}
+
+/* In charts the sentence tells how far the path turns, too. */
+static dvi_status branch_ends(const dvi__stepper *self, const place *at, const double *Y,
+                              const dvi__branch_end *end, const dvi__branch_failure *whole)
 {
   const element *own = self->own;
-  self->counters->halvings++;
-  const dvi__follow from = {own->action, own->solver,     at->t,   at->h,       at->q,
-                            at->p,       self->system->n, own->dq, own->offset, own->part_Y};
-  return dvi__follow_path(&from, Y, report);
+  const dvi_status status = dvi__branch_tell(end, at->h, whole);
+  if (!own->centred) return status;
+  if (end->reached == 0)
+    return dvi__fail(DVI_STEP_TOO_LARGE, "a step too large: not even that of h = %.3g has a path",
+                     at->h / DVI__BRANCH_PARTS);
+  dvi__action_path(own->action, Y, 1.0, 1.0, own->dq, NULL);
+  return dvi__fail(DVI_STEP_TOO_LARGE,
+                   "a step too large: its path continues those of shorter steps up to h = %.3g, "
+                   "where it turns by %.3g; the bound of a chart is half a turn",
+                   end->reached * at->h, dvi__action_turned(own->action, own->dq));
+}
+
+static dvi_status follow(dvi__stepper *self, const place *at, const dvi__branch_failure *whole, double *Y)
+{
+  const element *own = self->own;
+  pursuit of = {self, at, 0};
+  const dvi__branch branch = {.of = &of,
+                              .place = place_part,
+                              .guess = guess_part,
+                              .distance = own->centred ? turn_between : NULL,
+                              .near = own->centred ? follows_in_charts : DVI__BRANCH_NEAR,
+                              .parts = self->follow,
+                              .signs = !own->centred || dvi__action_signs(own->action),
+                              .from_zero = 1,
+                              .size = dvi__largest((size_t)self->system->n, at->q),
+                              .room = own->branch};
+  dvi__branch_end end;
+  self->counters->followed++;
+  self->counters->newtons += !self->follow;
+  const dvi_status status = dvi__branch_follow(&branch, own->solver, Y, &end);
+  return status <= 0 ? status : branch_ends(self, at, Y, &end, whole);
+}
+
+/* As h goes to 0 the Jacobian is L_vv times a positive matrix over h. On the way to another
+ * solution beyond a fold its determinant is 0. */
+static int sign_of_short_steps(const dvi__stepper *self, const place *at)
+{
+  const element *own = self->own;
+  dvi__evaluator *evaluator = dvi__action_evaluator(own->action);
+  const int unknowns = dvi__action_unknowns(own->action), degree = unknowns / self->system->n;
+  const int turns = (at->h < 0 && unknowns % 2 != 0);
+  if (own->centred) return turns ? -1 : 1;
+  dvi__action_path(own->action, own->Y, at->h, 0.0, NULL, own->guess);
+  if (dvi__legendre_regular(evaluator, at->t, at->q, own->guess) != DVI_OK) return 0;
+  return ((dvi__mass_sign(evaluator) < 0 && degree % 2 != 0) != turns) ? -1 : 1;
+}
+
+/* What the solution itself tells of its branch; the rest is for its energy to say. */
+static dvi__doubt doubt_of(const dvi__stepper *self, const place *at, const dvi__solve_report *report)
+{
+  const element *own = self->own;
+  const int by_newton = own->rung == DVI__NEWTON || own->rung == DVI__KINSOL;
+  if (own->rung == DVI__FIXED_POINT) return DVI__SURE;
+  if (own->rung == DVI__NEWTON && dvi__branch_is_sure(report, dvi__action_unknowns(own->action), own->Y))
+    return DVI__SURE;
+  if (by_newton && dvi__solver_sign(own->solver) != sign_of_short_steps(self, at)) return DVI__ASTRAY;
+  return DVI__DOUBTED;
+}
+
+/* Whether a solution in charts is not the one that continues shorter steps: it turns far away from
+ * its guess, or the sign of the determinant is another. */
+static int strays_in_charts(const dvi__stepper *self, const place *at)
+{
+  const element *own = self->own;
+  if (dvi__action_signs(own->action) && dvi__solver_sign(own->solver) != sign_of_short_steps(self, at))
+    return 1;
+  return !(dvi__action_turn(own->action, own->guess, own->Y) <= near_in_charts);
 }
 
 /* ---- the step ---- */
@@ -442,20 +487,31 @@ static place place_of(const dvi__stepper *self, const dvi__state *state, double 
                  continues ? self->memory + dvi__element_forces(self) : NULL};
 }
 
+/* By the ladder, and where that fails, or is not to be trusted, along the branch. */
+static dvi_status find_path(dvi__stepper *self, const place *at, dvi__solve_report *report)
+{
+  element *own = self->own;
+  dvi__branch_failure whole = {0};
+  if (self->follow) return follow(self, at, &whole, own->Y);
+  const dvi_status status = solve_at(self, at, own->Y, report);
+  if (status < 0) return status;
+  dvi__branch_note(status, &whole);
+  if (status != DVI_OK || (own->centred && strays_in_charts(self, at)))
+    return follow(self, at, &whole, own->Y);
+  if (!own->centred) self->doubt = doubt_of(self, at, report);
+  return DVI_OK;
+}
+
 dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h)
 {
   element *own = self->own;
   dvi__solve_report report = {0};
   const place at = place_of(self, state, h);
-  dvi_status status = solve_at(self, &at, own->Y, &report);
-  const int strayed = status == DVI_OK && own->centred && !dvi__follow_is_meant(own->action, own->solver, h, own->offset, own->Y);
-  if (status > 0 || strayed) status = (own->centred ? follow : rescue)(self, &at, own->Y, &report);
-  if (status == DVI_OK) {
-    dvi__action_ends(own->action, own->Y, own->dq, own->dq_low, own->dp);
-    dvi__action_forces(own->action, self->memory + dvi__element_forces(self));
-  }
-  if (status == DVI_OK && own->choice == DVI__SOLVER_CERTIFIED) status = certify(self, &at, own->Y, &report);
-  return status == DVI_OK ? advance(self, state, h) : status;
+  DVI_TRY(find_path(self, &at, &report));
+  dvi__action_ends(own->action, own->Y, own->dq, own->dq_low, own->dp);
+  dvi__action_forces(own->action, self->memory + dvi__element_forces(self));
+  if (own->choice == DVI__SOLVER_CERTIFIED) DVI_TRY(certify(self, &at, own->Y, &report));
+  return advance(self, state, h);
 }
 
 void dvi__element_path(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v)
@@ -468,7 +524,7 @@ void dvi__element_path(const dvi__stepper *self, const double *q0, double h, dou
 static void explain_solver(const element *own, dvi__text *text)
 {
   const char *name = dvi__solver_choice(own->choice),
-             *last = own->centred ? "a path followed from shorter steps" : "KINSOL with line search";
+             *last = "a path followed from shorter steps";
   if (!is_ladder(own)) {
     dvi__text_add(text, "solver: %s, as asked; what it cannot solve goes on to %s\n", name, last);
     return;

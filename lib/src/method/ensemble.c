@@ -239,7 +239,7 @@ static void add_counters(const dvi_counters *some, dvi_counters *sum)
   sum->fixed_points += some->fixed_points;
   sum->newtons += some->newtons;
   sum->kinsols += some->kinsols;
-  sum->halvings += some->halvings;
+  sum->followed += some->followed;
   sum->jump_alarms += some->jump_alarms;
   sum->allocations += some->allocations;
   sum->simplified += some->simplified;

@@ -58,7 +58,15 @@ static void explain(const dvi__stepper *self, dvi__text *text)
                 own->second != NULL ? "; H_pp must be regular, which each step checks" : "; H may be degenerate");
 }
 
-DVI__STEP_KIND(canonical, explain);
+static dvi_status place(dvi__stepper *self, const dvi__state *state, double h, double part)
+{
+  const canonical *own = self->own;
+  (void)part;
+  dvi__canonical_place(own->one.of, state->t, h, state->q, state->p, own->unit);
+  return DVI_OK;
+}
+
+DVI__STEP_KIND(canonical, place, explain);
 
 static dvi_status refuse(const dvi__stepper *self, dvi_status status)
 {
@@ -108,12 +116,11 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
   const dvi__one_step *one = &own->one;
   DVI_TRY(check_regular(self, state));
   choose_units(self, state, h);
-  dvi__canonical_place(one->of, state->t, h, state->q, state->p, own->unit);
   DVI_TRY(dvi__one_step_solve(self, state, h));
-  DVI_TRY(dvi__canonical_residual(one->of, one->x, one->guess));
+  DVI_TRY(dvi__canonical_residual(one->of, one->x, one->work));
   dvi__canonical_ends(one->of, one->x, one->dq, one->dp);
-  dvi__canonical_keep(one->of, one->x, one->guess);
-  DVI_TRY(dvi__one_step_move(self, state, h, one->guess));
+  dvi__canonical_keep(one->of, one->x, one->work);
+  DVI_TRY(dvi__one_step_move(self, state, h, one->work));
   dvi__add_compensated_all(self->system->n, state->p, state->p_carry, one->dp);
   return DVI_OK;
 }

@@ -50,6 +50,7 @@ dvi_status dvi__impulse_take_inner(dvi__stepper *self, const char *specification
   const dvi_status status = dvi__stepper_create(own->fast, specification, NULL, self->counters, own->inner);
   if (status != DVI_OK) return dvi__fail_in(status, "%s", self->method->name);
   self->memory_count += own->inner->memory_count;
+  self->follows = own->inner->follows;
   return DVI_OK;
 }
 
@@ -74,7 +75,7 @@ dvi_status dvi__impulse_inner_steps(dvi__stepper *self, dvi__state *state, doubl
 {
   dvi__stepper *inner = inner_of(self);
   const double t = state->t, t_carry = state->t_carry;
-  for (int k = 0; k < count; k++) DVI_TRY(inner->method->step(inner, state, h / count));
+  for (int k = 0; k < count; k++) DVI_TRY(dvi__inner_step(self, inner, state, h / count));
   state->t = t;
   state->t_carry = t_carry;
   return DVI_OK;

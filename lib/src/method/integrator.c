@@ -5,14 +5,14 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "method/integrator_struct.h"
+#include "method/attempt.h"
 #include "num/finite.h"
 #include "space/given.h"
 #include "system/dirac.h"
 
 /* ---- create, destroy ---- */
 
-static void lay_out(dvi__state *state, double **at, size_t n)
+void dvi__state_lay_out(dvi__state *state, double **at, size_t n)
 {
   double **const part[] = {&state->q, &state->p, &state->q_carry, &state->p_carry};
   for (int i = 0; i < 4; i++, *at += n) *part[i] = *at;
@@ -26,11 +26,12 @@ static dvi_status allocate(dvi_integrator *I)
   I->memory_before = DVI_NEW(double, I->stepper.memory_count);
   if (I->numbers == NULL || I->stepper.memory == NULL || I->memory_before == NULL)
     return dvi__fail(DVI_NO_MEMORY, "integrator: no memory for %zu coordinates", n);
-  lay_out(&I->now, &at, n);
-  lay_out(&I->last, &at, n);
-  lay_out(&I->next, &at, n);
+  dvi__state_lay_out(&I->now, &at, n);
+  dvi__state_lay_out(&I->last, &at, n);
+  dvi__state_lay_out(&I->next, &at, n);
   I->v = at;
   I->last_v = at + n;
+  DVI_TRY(dvi__attempt_allocate(I));
   return dvi__evaluator_create(I->system, 1, DVI__STATES, &I->counters, &I->evaluator);
 }
 
@@ -76,6 +77,7 @@ void dvi_integrator_destroy(dvi_integrator **integrator)
   dvi__evaluator_destroy(&I->evaluator);
   dvi__release(I->numbers);
   dvi__release(I->memory_before);
+  dvi__attempt_clear(I);
   dvi__release(I->shapes);
   dvi__release(I);
   *integrator = NULL;
@@ -177,7 +179,7 @@ dvi_status dvi_integrator_start_velocity(dvi_integrator *I, double t, const doub
 
 /* ---- step ---- */
 
-static void copy_state(size_t n, const dvi__state *from, dvi__state *to)
+void dvi__state_copy(size_t n, const dvi__state *from, dvi__state *to)
 {
   to->t = from->t;
   to->t_carry = from->t_carry;
@@ -290,10 +292,7 @@ static dvi_status advance(dvi_integrator *I, double h)
   const double density = I->next.density;
   if (method->pass != NULL && method->pass(&I->stepper, &I->now, I->memory_before, &I->next, &length, 1) && isfinite(I->next.t))
     return dvi__control_end(I, h);
-  copy_state((size_t)I->system->n, &I->now, &I->next);
-  memcpy(I->stepper.memory, I->memory_before, I->stepper.memory_count * sizeof(double));
-  I->next.density = density;
-  const dvi_status status = method->step(&I->stepper, &I->next, length);
+  const dvi_status status = dvi__attempt(I, length, density);
   if (status != DVI_OK) return name_end(I, length, status);
   DVI_TRY(check_state(I));
   DVI_TRY(check_side(I));

@@ -17,10 +17,15 @@ struct dvi_integrator {
   double *numbers;       /* the memory of all three */
   double *memory_before; /* the stepper's memory before the last step: the two change places with every step */
   double *v, *last_v;    /* [n] */
+  struct dvi__attempt *first; /* of a step that is taken again (attempt.h); NULL: none is */
   int started;
   double last_h;        /* in time; 0: no step was taken yet */
   double last_h_before; /* before the last step */
 };
+
+/* Lay the arrays of a state from *at on, which moves behind them; copy a state with its arrays. */
+void dvi__state_lay_out(dvi__state *state, double **at, size_t n);
+void dvi__state_copy(size_t n, const dvi__state *from, dvi__state *to);
 
 /* A guess of the velocity, for general Lagrangians: the last step's mean velocity, or the start's. It depends on nothing that a checkpoint does not
  * hold, so that a restored run gives the same digits. last_q [n], last_p [n]. */

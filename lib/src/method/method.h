@@ -54,6 +54,10 @@ typedef struct dvi__settings {
 
 typedef struct dvi__method dvi__method;
 
+/* Whether the solution that a step takes is that of the branch from h = 0 (solve/branch.h): known to
+ * be; for its energy to say; known not to be. */
+typedef enum dvi__doubt { DVI__SURE, DVI__DOUBTED, DVI__ASTRAY } dvi__doubt;
+
 /* A method on a system. */
 typedef struct dvi__stepper {
   const dvi__method *method;
@@ -72,6 +76,9 @@ typedef struct dvi__stepper {
   /* Of methods that choose their steps: the length of the last one, set by `step`; and what the driver sets, not 0: the next one is as long as it says. */
   double taken;
   int exact;
+  int follows;      /* it solves equations, and can follow their branch from h = 0 */
+  int follow;       /* set by the driver: the step does so, in at least so many parts; 0: it does not */
+  dvi__doubt doubt; /* set by `step`, reset by the driver */
   void *own;   /* the method's struct */
   void *lanes; /* its struct for members side by side; NULL: each member steps on its own */
 } dvi__stepper;
@@ -132,6 +139,9 @@ struct dvi__method {
 dvi_status dvi__stepper_create(const dvi_system *system, const char *specification, const dvi_shapes *shapes,
                                dvi_counters *counters, dvi__stepper *stepper);
 void dvi__stepper_destroy(dvi__stepper *stepper);
+
+/* A step of a stepper that the method itself is made of. */
+dvi_status dvi__inner_step(dvi__stepper *self, dvi__stepper *inner, dvi__state *state, double h);
 
 /* Let a stepper serve up to `capacity` members side by side, if its method can: lanes stays NULL if not. Once. */
 dvi_status dvi__stepper_prepare_lanes(dvi__stepper *stepper, int capacity);

@@ -140,7 +140,15 @@ static dvi_status duration_of(void *of, const double *x, double *duration)
   return dvi__shaped_duration(of, x, duration);
 }
 
-DVI__STEP_KIND(shaped, explain, .duration = duration_of, .renewed = 1);
+static dvi_status place(dvi__stepper *self, const dvi__state *state, double h, double part)
+{
+  const dvi__one_step *one = self->own;
+  (void)part;
+  dvi__shaped_place(one->of, state->t, h, state->q, state->p);
+  return DVI_OK;
+}
+
+DVI__STEP_KIND(shaped, place, explain, .duration = duration_of, .renewed = 1);
 
 static dvi_status prepare_to_find(dvi__stepper *self, const char *fast)
 {
@@ -223,7 +231,6 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
   const dvi__one_step *one = self->own;
   DVI_TRY(find_omega(self, state));
   tune(self);
-  dvi__shaped_place(one->of, state->t, h, state->q, state->p);
   DVI_TRY(dvi__one_step_solve(self, state, h));
   dvi__shaped_ends(one->of, one->x, one->dq, one->dp);
   DVI_TRY(dvi__one_step_move(self, state, h, one->x));

@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "method/stationary.h"
 #include "num/compensated.h"
 #include "num/finite.h"
 
@@ -16,11 +15,11 @@ static size_t unknowns(const dvi__one_step *one)
 
 static int allocate(dvi__one_step *one, size_t n)
 {
-  one->guess = DVI_NEW(double, unknowns(one));
-  one->x = DVI_NEW(double, unknowns(one));
+  one->work = DVI_NEW(double, unknowns(one));
   one->dq = DVI_NEW(double, n);
   one->dp = DVI_NEW(double, n);
-  return one->guess && one->x && one->dq && one->dp;
+  one->carried = DVI_NEW(double, 2 * n);
+  return one->work && one->dq && one->dp && one->carried;
 }
 
 dvi_status dvi__one_step_create(dvi__stepper *self, size_t size, const dvi__step_kind *kind, void *of, size_t carried)
@@ -43,19 +42,21 @@ dvi_status dvi__one_step_create(dvi__stepper *self, size_t size, const dvi__step
                               .row_scale = kind->row_scale,
                               .renewed = kind->renewed,
                               .ahead = kind->renewed};
-  return dvi__stationary_create(&equations, self->counters, &one->solver);
+  DVI_TRY(dvi__stationary_create(self, &equations, &one->equations));
+  one->x = one->equations.x;
+  return DVI_OK;
 }
 
 void dvi__one_step_destroy(dvi__stepper *self)
 {
   dvi__one_step *one = self->own;
   if (one == NULL) return;
-  dvi__solver_destroy(&one->solver);
+  dvi__stationary_clear(&one->equations);
   one->kind->destroy(one->of);
-  dvi__release(one->guess);
-  dvi__release(one->x);
+  dvi__release(one->work);
   dvi__release(one->dq);
   dvi__release(one->dp);
+  dvi__release(one->carried);
   dvi__release(one);
 }
 
@@ -68,16 +69,22 @@ void dvi__one_step_start(dvi__stepper *self, const double *v)
 
 /* ---- the step ---- */
 
-dvi_status dvi__one_step_solve(dvi__stepper *self, const dvi__state *state, double h)
+static dvi_status guess(dvi__stepper *self, double h, double *x)
 {
   const dvi__one_step *one = self->own;
   const double last_h = self->memory[DVI__LENGTH], *last = self->memory + one->last;
   if (last_h != 0)
-    one->kind->continued(one->of, h / last_h, last, one->guess);
+    one->kind->continued(one->of, h / last_h, last, x);
   else
-    one->kind->straight(one->of, last, one->guess);
-  return dvi__stationary_solve(one->solver, self->counters, dvi__largest((size_t)self->system->n, state->q), (int)unknowns(one),
-                               one->guess, one->x);
+    one->kind->straight(one->of, last, x);
+  return DVI_OK;
+}
+
+dvi_status dvi__one_step_solve(dvi__stepper *self, const dvi__state *state, double h)
+{
+  const dvi__one_step *one = self->own;
+  const dvi__stationary_step step = {self, state, h, one->kind->place, guess};
+  return dvi__stationary_solve(&one->equations, &step);
 }
 
 dvi_status dvi__one_step_move(dvi__stepper *self, dvi__state *state, double h, const double *last)
@@ -106,5 +113,5 @@ void dvi__one_step_explain(const dvi__stepper *self, dvi__text *text)
   dvi__text_add(text, "kernel: implicit; %d unknowns a step, Jacobian with %d entries (%.3g %% of a full one)\n", pattern->columns,
                 dvi__pattern_entries(pattern), 100.0 * dvi__pattern_entries(pattern) / pattern->columns / pattern->columns);
   one->kind->explain(self, text);
-  dvi__text_add(text, "solver: Newton's method, last KINSOL with line search\n");
+  dvi__text_add(text, "solver: Newton's method, last a path followed from shorter steps\n");
 }

@@ -1,13 +1,12 @@
 /* A step by the stationarity conditions of a kind of step that is not one element of the action (element_step.h has those): the vectors, the guess, the
  * solution, the new state and what is remembered for the next guess.
  *
- * The kind (action/partitioned.h and its neighbours) has the equations. To add one: DVI__STEP_KIND(foo, explain), a step of four lines (darboux_step.c), and
- * the operations below in the methods' initialiser. */
+ * The kind (action/partitioned.h and its neighbours) has the equations. To add one: `place`, DVI__STEP_KIND(foo, place, explain), a step of four lines
+ * (darboux_step.c), and the operations below in the methods' initialiser. */
 #ifndef DVI_METHOD_ONE_STEP_H
 #define DVI_METHOD_ONE_STEP_H
 #include "core/status.h"
-#include "method/method.h"
-#include "solve/nonlinear.h"
+#include "method/stationary.h"
 
 /* The memory: the length of the last step (0: none); what the method carries of its own; what the guess continues, as many numbers as unknowns (before
  * the first step, the start's velocity in their place). */
@@ -23,6 +22,8 @@ typedef struct dvi__step_kind {
   dvi__evaluator *(*evaluator)(const void *of);
   void (*destroy)(void *of);
   void (*explain)(const dvi__stepper *self, dvi__text *text); /* what is its own */
+  /* dvi__stationary_step's. */
+  dvi_status (*place)(dvi__stepper *self, const dvi__state *state, double h, double part);
   /* How much time passes in the step with the solution x, of kinds that time-transformed systems may have; NULL: h. */
   dvi_status (*duration)(void *of, const double *x, double *duration);
   int renewed; /* Newton's method factors each Jacobian: forces cost more than factors; and the step corrects what it takes from the last point */
@@ -32,16 +33,18 @@ typedef struct dvi__step_kind {
 typedef struct dvi__one_step {
   const dvi__step_kind *kind;
   void *of; /* the step, of this kind */
-  dvi__solver *solver;
-  size_t last;                 /* where in the memory stands what the guess continues */
-  double *guess, *x, *dq, *dp; /* [unknowns], [unknowns], [n], [n] */
+  dvi__stationary equations;
+  size_t last;           /* where in the memory stands what the guess continues */
+  double *x, *work;      /* [unknowns] the solution; room for the kind */
+  double *dq, *dp;       /* [n] */
+  double *carried;       /* [2 n] of the node, in a part of the step */
 } dvi__one_step;
 
 /* Make self->own, `size` bytes, and the memory with `carried` numbers of the method's own. The step is owned from here on, also on failure. */
 dvi_status dvi__one_step_create(dvi__stepper *self, size_t size, const dvi__step_kind *kind, void *of, size_t carried);
 
-/* Solve the step that was placed at the state, by Newton's method, else by KINSOL: x, from the guess that is a straight line along the velocity at the
- * start, and later what was remembered, continued. */
+/* Solve a step of length h from the state: x, from the guess that is a straight line along the
+ * velocity at the start, and later what was remembered, continued. */
 dvi_status dvi__one_step_solve(dvi__stepper *self, const dvi__state *state, double h);
 
 /* Move q by dq and t by the duration at x, and remember `last` [unknowns]. After the ends are taken. */
@@ -57,8 +60,9 @@ void dvi__one_step_explain(const dvi__stepper *self, dvi__text *text);
 
 #define DVI__ONE_STEP_OPERATIONS .destroy = dvi__one_step_destroy, .start = dvi__one_step_start, .explain = dvi__one_step_explain
 
-/* The kind whose functions are dvi__foo_..., as `kind`; then its `explain`, and what else it wants to set. */
-#define DVI__STEP_KIND(foo, ...)                                                  \
+/* The kind whose functions are dvi__foo_..., as `kind`; then its `place` and `explain`, and what else it wants to
+ * set. */
+#define DVI__STEP_KIND(foo, placed, ...)                                              \
   static dvi_status residual_of(void *of, const double *x, double *R)             \
   {                                                                               \
     return dvi__##foo##_residual(of, x, R);                                       \
@@ -101,6 +105,7 @@ void dvi__one_step_explain(const dvi__stepper *self, dvi__text *text);
                                       .pattern = pattern_of,                      \
                                       .evaluator = evaluator_of,                  \
                                       .destroy = destroy_of,                      \
+                                      .place = placed,                            \
                                       .explain = __VA_ARGS__}
 
 #endif

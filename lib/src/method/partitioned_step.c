@@ -18,7 +18,15 @@ static void explain(const dvi__stepper *self, dvi__text *text)
                   own->projection == DVI__NO_PROJECTION ? "which the steps leave" : "to the last bit after every step");
 }
 
-DVI__STEP_KIND(partitioned, explain);
+static dvi_status place(dvi__stepper *self, const dvi__state *state, double h, double part)
+{
+  const dvi__one_step *one = self->own;
+  (void)part;
+  dvi__partitioned_place(one->of, state->t, h, state->q, state->p, self->memory + MULTIPLIER);
+  return DVI_OK;
+}
+
+DVI__STEP_KIND(partitioned, place, explain);
 
 dvi_status dvi__partitioned_step_create(dvi__stepper *self, dvi__tableau tableau, int stages, dvi__projection projection)
 {
@@ -42,9 +50,8 @@ dvi_status dvi__partitioned_step(dvi__stepper *self, dvi__state *state, double h
 {
   const partitioned *own = self->own;
   const dvi__one_step *one = &own->one;
-  dvi__partitioned_place(one->of, state->t, h, state->q, state->p, self->memory + MULTIPLIER);
   DVI_TRY(dvi__one_step_solve(self, state, h));
-  DVI_TRY(dvi__partitioned_residual(one->of, one->x, one->guess));
+  DVI_TRY(dvi__partitioned_residual(one->of, one->x, one->work));
   dvi__partitioned_ends(one->of, one->dq, one->dp);
   keep_multiplier(self);
   DVI_TRY(dvi__one_step_move(self, state, h, one->x));

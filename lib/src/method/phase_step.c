@@ -28,7 +28,14 @@ static void explain(const dvi__stepper *self, dvi__text *text)
   dvi__explain_jumps(own->alarm, text);
 }
 
-DVI__STEP_KIND(phase, explain);
+static dvi_status place(dvi__stepper *self, const dvi__state *state, double h, double part)
+{
+  const dvi__one_step *one = self->own;
+  (void)part;
+  return dvi__phase_place(one->of, state->t, h, state->q, state->p, multiplier(self));
+}
+
+DVI__STEP_KIND(phase, place, explain);
 
 dvi_status dvi__phase_step_create(dvi__stepper *self, int degree, int moments, int alarm)
 {
@@ -44,24 +51,17 @@ dvi_status dvi__phase_step_create(dvi__stepper *self, int degree, int moments, i
   return DVI_OK;
 }
 
-static dvi_status solve(dvi__stepper *self, const dvi__state *state, double h)
-{
-  const dvi__one_step *one = self->own;
-  DVI_TRY(dvi__phase_place(one->of, state->t, h, state->q, state->p, multiplier(self)));
-  return dvi__one_step_solve(self, state, h);
-}
-
 /* The parasite of the multiplier changes its sign from node to node. A step forth and one back tell the smooth branch from it, up to its second
  * difference: lambda <- (lambda(h) + 2 lambda + lambda(-h))/4. */
 static dvi_status settle(dvi__stepper *self, const dvi__state *state, double h)
 {
   const dvi__one_step *one = self->own;
   const int m = dvi_system_constraint_count(self->system);
-  double *there = one->guess;
+  double *there = one->work;
   for (int k = 0; k < 2; k++) {
-    DVI_TRY(solve(self, state, h));
+    DVI_TRY(dvi__one_step_solve(self, state, h));
     dvi__phase_end(one->of, one->x, one->dq, one->dp, self->memory + JUMP);
-    DVI_TRY(solve(self, state, -h));
+    DVI_TRY(dvi__one_step_solve(self, state, -h));
     dvi__phase_end(one->of, one->x, one->dq, one->dp, there);
     for (int a = 0; a < m; a++) multiplier(self)[a] = 0.25 * (self->memory[JUMP + a] + 2 * multiplier(self)[a] + there[a]);
   }
@@ -75,10 +75,10 @@ static dvi_status watch(dvi__stepper *self)
   const phase_step *own = self->own;
   const dvi__one_step *one = &own->one;
   const size_t n = (size_t)self->system->n;
-  const double *const moved[] = {one->dq, one->dp}, *change = one->guess, rounding = 1e-10;
+  const double *const moved[] = {one->dq, one->dp}, *change = one->work, rounding = 1e-10;
   double *motion = self->memory + MOTION, *largest = self->memory + LARGEST_JUMP, *jump = self->memory + JUMP, size[2], changed[2];
   int rings = -1;
-  DVI_TRY(dvi__phase_jump(one->of, one->x, jump, one->guess));
+  DVI_TRY(dvi__phase_jump(one->of, one->x, jump, one->work));
   dvi__phase_sizes(one->of, one->x, size);
   for (int i = 0; i < 2; i++, jump += n, change += n) {
     changed[i] = dvi__largest(n, change);
@@ -94,7 +94,7 @@ dvi_status dvi__phase_step(dvi__stepper *self, dvi__state *state, double h)
 {
   const dvi__one_step *one = self->own;
   if (self->memory[DVI__LENGTH] == 0) DVI_TRY(settle(self, state, h));
-  DVI_TRY(solve(self, state, h));
+  DVI_TRY(dvi__one_step_solve(self, state, h));
   dvi__phase_end(one->of, one->x, one->dq, one->dp, multiplier(self));
   DVI_TRY(watch(self));
   DVI_TRY(dvi__one_step_move(self, state, h, one->x));

@@ -30,7 +30,15 @@ static void explain(const dvi__stepper *self, dvi__text *text)
   dvi__text_add(text, "quadrature: Euler-Maclaurin, the trapezoid and %d term%s\n", m / 2, m / 2 == 1 ? "" : "s");
 }
 
-DVI__STEP_KIND(prolongation, explain);
+static dvi_status place(dvi__stepper *self, const dvi__state *state, double h, double part)
+{
+  const dvi__one_step *one = self->own;
+  (void)part;
+  dvi__prolongation_place(one->of, state->t, h, state->q, state->p);
+  return DVI_OK;
+}
+
+DVI__STEP_KIND(prolongation, place, explain);
 
 static dvi_status create(dvi__stepper *self)
 {
@@ -49,7 +57,6 @@ static dvi_status create(dvi__stepper *self)
 static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
 {
   const dvi__one_step *one = self->own;
-  dvi__prolongation_place(one->of, state->t, h, state->q, state->p);
   DVI_TRY(dvi__one_step_solve(self, state, h));
   DVI_TRY(dvi__prolongation_end(one->of, one->x, one->dq, one->dp, self->memory + DVI__CARRIED));
   dvi__add_compensated_all(self->system->n, state->p, state->p_carry, one->dp);

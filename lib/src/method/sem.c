@@ -85,6 +85,7 @@ static dvi_status create(dvi__stepper *self)
   DVI_TRY(dvi__bordered_create(self, &space, &own->bordered));
   DVI_TRY(dvi__energy_search_create(&own->bordered, &own->search));
   self->order = own->bordered.element.order;
+  self->follows = 1;
   self->memory_count = OWN + own->bordered.element.memory_count;
   return DVI_OK;
 }
@@ -273,7 +274,13 @@ static dvi_status chosen_step(dvi__stepper *self, dvi__state *state)
 
 static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
 {
-  return self->exact || self->memory[FIRST_H] != h ? given_step(self, state, h) : chosen_step(self, state);
+  dvi__stepper *element = element_of(self);
+  element->follow = self->follow;
+  element->doubt = DVI__SURE;
+  const int given = self->exact || self->memory[FIRST_H] != h;
+  const dvi_status status = given ? given_step(self, state, h) : chosen_step(self, state);
+  self->doubt = element->doubt;
+  return status;
 }
 
 static void path(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v)

@@ -131,7 +131,16 @@ static void explain(const dvi__stepper *self, dvi__text *text)
   dvi__text_add(text, "quadrature: %s, %d points\n", rule_name(value[QUADRATURE]), value[NODES]);
 }
 
-DVI__STEP_KIND(shaped, explain, .renewed = 1);
+static dvi_status place(dvi__stepper *self, const dvi__state *state, double h, double part)
+{
+  const shaped_galerkin *own = self->own;
+  (void)part;
+  DVI_TRY(dvi__given_prepare(own->space, h));
+  dvi__shaped_place(own->one.of, state->t, h, state->q, state->p);
+  return DVI_OK;
+}
+
+DVI__STEP_KIND(shaped, place, explain, .renewed = 1);
 
 static int smaller(int a, int b)
 {
@@ -209,8 +218,6 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
 {
   const shaped_galerkin *own = self->own;
   const dvi__one_step *one = &own->one;
-  DVI_TRY(dvi__given_prepare(own->space, h));
-  dvi__shaped_place(one->of, state->t, h, state->q, state->p);
   DVI_TRY(dvi__one_step_solve(self, state, h));
   dvi__shaped_ends(one->of, one->x, one->dq, one->dp);
   DVI_TRY(dvi__one_step_move(self, state, h, one->x));

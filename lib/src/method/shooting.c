@@ -82,10 +82,10 @@ typedef struct shooter {
   dvi__shot_step *shot;
   dvi__stacked_shot *stacked;
   const dvi__pattern *pattern;
-  dvi__solver *solver;
-  int unknowns, order;   /* of the one-step method */
-  double tolerance;      /* 0: roundoff */
-  double *guess, *x, *R; /* [unknowns] */
+  dvi__stationary equations;
+  int unknowns, order; /* of the one-step method */
+  double tolerance;    /* 0: roundoff */
+  double *guess, *R;   /* [unknowns] */
   double *values;        /* [entries] of the Jacobian; NULL without a tolerance */
   double *v, *dq, *dp;   /* [n] */
 } shooter;
@@ -242,13 +242,12 @@ static int allocate(shooter *own, size_t n)
 {
   const size_t z = (size_t)own->unknowns;
   own->guess = DVI_NEW(double, z);
-  own->x = DVI_NEW(double, z);
   own->R = DVI_NEW(double, z);
   own->v = DVI_NEW(double, n);
   own->dq = DVI_NEW(double, n);
   own->dp = DVI_NEW(double, n);
   if (own->tolerance > 0) own->values = DVI_NEW(double, dvi__pattern_entries(own->pattern));
-  return own->guess && own->x && own->R && own->v && own->dq && own->dp && (own->values || own->tolerance == 0);
+  return own->guess && own->R && own->v && own->dq && own->dp && (own->values || own->tolerance == 0);
 }
 
 /* Unknowns and rows come in units of q. */
@@ -330,7 +329,7 @@ static dvi_status make(dvi__stepper *self, const dvi__runge_kutta *method, const
                               .row_scale = row_scale,
                               .noise = dvi__hessian_noise(self->system),
                               .ahead = own->shot != NULL};
-  DVI_TRY(dvi__stationary_create(&equations, self->counters, &own->solver));
+  DVI_TRY(dvi__stationary_create(self, &equations, &own->equations));
   return allocate(own, (size_t)self->system->n) ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "no memory");
 }
 
@@ -370,11 +369,10 @@ static void destroy(dvi__stepper *self)
 {
   shooter *own = self->own;
   if (own == NULL) return;
-  dvi__solver_destroy(&own->solver);
+  dvi__stationary_clear(&own->equations);
   dvi__shot_step_destroy(&own->shot);
   dvi__stacked_shot_destroy(&own->stacked);
   dvi__release(own->guess);
-  dvi__release(own->x);
   dvi__release(own->R);
   dvi__release(own->values);
   dvi__release(own->v);
@@ -395,33 +393,48 @@ static void start(dvi__stepper *self, const double *v)
 static dvi_status solve_loosely(shooter *own, double size)
 {
   enum { MOST = 40 };
-  double correction = 0;
-  memcpy(own->x, own->guess, (size_t)own->unknowns * sizeof *own->x);
-  DVI_TRY(dvi__solver_jacobian(own->solver, own->x, own->values));
-  DVI_TRY(dvi__solver_take_jacobian(own->solver, own->values));
+  double correction = 0, *x = own->equations.x;
+  memcpy(x, own->guess, (size_t)own->unknowns * sizeof *x);
+  DVI_TRY(dvi__solver_jacobian(own->equations.solver, x, own->values));
+  DVI_TRY(dvi__solver_take_jacobian(own->equations.solver, own->values));
   for (int i = 0; i < MOST; i++) {
-    DVI_TRY(residual(own, own->x, own->R));
+    DVI_TRY(residual(own, x, own->R));
     if (dvi__largest((size_t)own->unknowns, own->R) <= own->tolerance * size) return DVI_OK;
-    dvi__solver_apply_factor(own->solver, own->R);
-    for (int k = 0; k < own->unknowns; k++) own->x[k] -= own->R[k];
+    dvi__solver_apply_factor(own->equations.solver, own->R);
+    for (int k = 0; k < own->unknowns; k++) x[k] -= own->R[k];
     correction = dvi__largest((size_t)own->unknowns, own->R);
   }
   return dvi__fail(DVI_NOT_CONVERGED, "Newton's method does not reach the tolerance (change %.1e)", correction);
 }
 
-static dvi_status solve(dvi__stepper *self, double size)
+/* And the guess, which shots give. */
+static dvi_status place(dvi__stepper *self, const dvi__state *state, double h, double part)
 {
-  shooter *own = self->own;
-  if (own->tolerance > 0) return solve_loosely(own, size);
-  DVI_TRY(dvi__stationary_solve(own->solver, self->counters, size, own->unknowns, own->guess, own->x));
-  return own->stacked != NULL ? residual(own, own->x, own->R) : DVI_OK; /* a shot's ends are taken from its last one */
-}
-
-/* The guess. */
-static dvi_status place(const shooter *own, const dvi__state *state, double h)
-{
+  const shooter *own = self->own;
+  (void)part;
   if (own->stacked != NULL) return dvi__stacked_shot_place(own->stacked, state->t, h, state->q, state->p, own->v, own->guess);
   return dvi__shot_step_place(own->shot, state->t, h, state->q, state->p, own->v, own->guess);
+}
+
+static dvi_status guess(dvi__stepper *self, double h, double *x)
+{
+  const shooter *own = self->own;
+  (void)h;
+  memcpy(x, own->guess, (size_t)own->unknowns * sizeof *x);
+  return DVI_OK;
+}
+
+static dvi_status solve(dvi__stepper *self, const dvi__state *state, double h)
+{
+  shooter *own = self->own;
+  if (own->tolerance > 0) {
+    DVI_TRY(place(self, state, h, 1));
+    return solve_loosely(own, dvi__largest((size_t)self->system->n, state->q));
+  }
+  const dvi__stationary_step step = {self, state, h, place, guess};
+  DVI_TRY(dvi__stationary_solve(&own->equations, &step));
+  /* A shot's ends are taken from its last one. */
+  return own->stacked != NULL ? residual(own, own->equations.x, own->R) : DVI_OK;
 }
 
 static void find_ends(const shooter *own)
@@ -429,7 +442,7 @@ static void find_ends(const shooter *own)
   if (own->stacked != NULL)
     dvi__stacked_shot_ends(own->stacked, own->dq, own->dp);
   else
-    dvi__shot_step_ends(own->shot, own->x, own->dq, own->dp);
+    dvi__shot_step_ends(own->shot, own->equations.x, own->dq, own->dp);
 }
 
 static dvi_status find_duration(const dvi__stepper *self, double h, double *duration)
@@ -438,7 +451,7 @@ static dvi_status find_duration(const dvi__stepper *self, double h, double *dura
   *duration = h;
   if (dvi__transformed_of(self->system) == NULL) return DVI_OK;
   if (own->stacked != NULL) return dvi__stacked_shot_duration(own->stacked, duration);
-  return dvi__shot_step_duration(own->shot, own->x, duration);
+  return dvi__shot_step_duration(own->shot, own->equations.x, duration);
 }
 
 static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
@@ -447,8 +460,7 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
   const int n = self->system->n;
   double duration;
   memcpy(own->v, self->memory, (size_t)n * sizeof *own->v);
-  DVI_TRY(place(own, state, h));
-  DVI_TRY(solve(self, dvi__largest((size_t)n, state->q)));
+  DVI_TRY(solve(self, state, h));
   find_ends(own);
   DVI_TRY(find_duration(self, h, &duration));
   for (int i = 0; i < n; i++) self->memory[i] = own->v[i];
@@ -472,7 +484,7 @@ static void explain(const dvi__stepper *self, dvi__text *text)
   else
     dvi__text_add(text, "kernel: shots from the start, their derivatives by costates; %d unknowns a step, full Jacobian\n",
                   own->unknowns);
-  dvi__text_add(text, "solver: Newton's method, last KINSOL with line search\n");
+  dvi__text_add(text, "solver: Newton's method, last a path followed from shorter steps\n");
 }
 
 const dvi__method dvi__shooting = {

@@ -1,8 +1,13 @@
 #include "method/stationary.h"
 
+#include <math.h>
 #include <string.h>
 
+#include "core/memory.h"
 #include "core/status.h"
+#include "num/finite.h"
+
+/* ---- making it ---- */
 
 static dvi_status no_chord(void *of, const double *x)
 {
@@ -10,26 +15,85 @@ static dvi_status no_chord(void *of, const double *x)
   return DVI_OK;
 }
 
-dvi_status dvi__stationary_create(dvi__equations *equations, dvi_counters *counters, dvi__solver **solver)
+dvi_status dvi__stationary_create(dvi__stepper *self, dvi__equations *equations,
+                                  dvi__stationary *stationary)
 {
+  const size_t unknowns = (size_t)equations->unknowns;
+  self->follows = 1;
+  stationary->unknowns = equations->unknowns;
+  stationary->x = DVI_NEW(double, unknowns);
+  stationary->room = DVI_NEW(double, DVI__BRANCH_ROOM * unknowns);
+  if (stationary->x == NULL || stationary->room == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "%s: no memory for %zu unknowns", self->method->name, unknowns);
   equations->linear = dvi__linear_for_exchanges(equations->pattern);
   equations->prepare_chord = no_chord; /* KINSOL's rung asks for it; the chord itself belongs to fixed point iteration */
-  return dvi__solver_create(equations, counters, solver);
+  return dvi__solver_create(equations, self->counters, &stationary->solver);
 }
 
-dvi_status dvi__stationary_solve(dvi__solver *solver, dvi_counters *counters, double size, int unknowns, const double *guess,
-                                 double *x)
+void dvi__stationary_clear(dvi__stationary *stationary)
+{
+  dvi__solver_destroy(&stationary->solver);
+  dvi__release(stationary->x);
+  dvi__release(stationary->room);
+}
+
+/* ---- solving ---- */
+
+static dvi_status place_part(void *of, double part)
+{
+  const dvi__stationary_step *step = of;
+  return step->place(step->stepper, step->state, part * step->h, part);
+}
+
+static dvi_status guess_part(void *of, double part, double *x)
+{
+  const dvi__stationary_step *step = of;
+  return step->guess(step->stepper, part * step->h, x);
+}
+
+static double size_of(const dvi__stationary_step *step)
+{
+  return dvi__largest((size_t)step->stepper->system->n, step->state->q);
+}
+
+static dvi_status follow(const dvi__stationary *s, const dvi__stationary_step *step,
+                         const dvi__branch_failure *whole)
+{
+  dvi__stationary_step of = *step;
+  const dvi__branch branch = {.of = &of,
+                              .place = place_part,
+                              .guess = guess_part,
+                              .near = DVI__BRANCH_NEAR,
+                              .parts = step->stepper->follow,
+                              .signs = 1,
+                              .size = size_of(step),
+                              .room = s->room};
+  dvi__branch_end end;
+  step->stepper->counters->followed++;
+  step->stepper->counters->newtons += !step->stepper->follow;
+  const dvi_status status = dvi__branch_follow(&branch, s->solver, s->x, &end);
+  return status <= 0 ? status : dvi__branch_tell(&end, step->h, whole);
+}
+
+static dvi_status solve_at_once(const dvi__stationary *s, const dvi__stationary_step *step)
 {
   dvi__solve_report report;
-  memcpy(x, guess, (size_t)unknowns * sizeof *x);
-  const dvi_status found = dvi__solve(solver, DVI__NEWTON, size, 1, 0, x, &report);
-  if (found == DVI_OK) counters->newtons++;
-  if (found <= 0) return found;
-  memcpy(x, guess, (size_t)unknowns * sizeof *x);
-  const dvi_status status = dvi__solve(solver, DVI__KINSOL, size, 0, 0, x, &report);
-  if (status <= 0) return status;
-  if (status != DVI_NOT_CONVERGED) return dvi__fail_in(status, "not solved, even by KINSOL with line search");
-  return dvi__fail_in(status,
-                      "not solved, neither by Newton's method nor by KINSOL with line search (%d iterations, residual %.1e)",
-                      report.iterations, report.residual);
+  DVI_TRY(step->place(step->stepper, step->state, step->h, 1));
+  DVI_TRY(step->guess(step->stepper, step->h, s->x));
+  DVI_TRY(dvi__solve(s->solver, DVI__NEWTON, size_of(step), 1, 0, s->x, &report));
+  step->stepper->counters->newtons++;
+  if (!dvi__branch_is_sure(&report, s->unknowns, s->x) && step->stepper->doubt == DVI__SURE)
+    step->stepper->doubt = DVI__DOUBTED;
+  return DVI_OK;
+}
+
+dvi_status dvi__stationary_solve(const dvi__stationary *s, const dvi__stationary_step *step)
+{
+  dvi__branch_failure whole = {0};
+  if (!step->stepper->follow) {
+    const dvi_status status = solve_at_once(s, step);
+    if (status <= 0) return status;
+    dvi__branch_note(status, &whole);
+  }
+  return follow(s, step, &whole);
 }

@@ -102,6 +102,15 @@ dvi_status dvi__stepper_create(const dvi_system *system, const char *specificati
   return DVI_OK;
 }
 
+dvi_status dvi__inner_step(dvi__stepper *self, dvi__stepper *inner, dvi__state *state, double h)
+{
+  inner->follow = self->follow;
+  inner->doubt = DVI__SURE;
+  const dvi_status status = inner->method->step(inner, state, h);
+  if (inner->doubt > self->doubt) self->doubt = inner->doubt;
+  return status;
+}
+
 dvi_status dvi__stepper_prepare_lanes(dvi__stepper *stepper, int capacity)
 {
   return stepper->method->prepare_lanes != NULL ? stepper->method->prepare_lanes(stepper, capacity) : DVI_OK;

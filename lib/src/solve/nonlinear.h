@@ -42,8 +42,10 @@ typedef enum dvi__rung { DVI__FIXED_POINT, DVI__SIMPLIFIED, DVI__NEWTON, DVI__KI
 /* How a solve went; on failure, for the sentence. */
 typedef struct dvi__solve_report {
   int iterations;
-  double correction; /* largest change of an unknown in the last iteration */
-  double residual;   /* largest |R_i| / row_scale_i at the last point */
+  double first;       /* largest change of an unknown in the first iteration of Newton's method */
+  double contraction; /* that of the second one over it; 0: there was no second one */
+  double correction;  /* largest change of an unknown in the last iteration */
+  double residual;    /* largest |R_i| / row_scale_i at the last point */
 } dvi__solve_report;
 
 typedef struct dvi__solver dvi__solver;

@@ -104,4 +104,17 @@ int dvi__mass_is_positive(const dvi__evaluator *e);
 dvi_status dvi__invariant(dvi__evaluator *e, double t, const double *q, const double *v, const double *p, int i, double *value);
 dvi_status dvi__invariants(dvi__evaluator *e, double t, const double *q, const double *v, const double *p, double *value);
 
+/* A state at a time; v [n]: room, with a guess of the velocity for general Lagrangians. */
+typedef struct dvi__instant {
+  double t;
+  const double *q, *p;
+  double *v;
+} dvi__instant;
+
+/* Two states of a step: by how much the energy changes, and what that is measured by: the larger
+ * kinetic energy p.v/2; of a one-form, which has none, and of phase space sum |H_q dq| + |H_p dp|,
+ * what the step moves between the coordinates. Not with factors. */
+dvi_status dvi__energy_change(dvi__evaluator *e, const dvi__instant *before, const dvi__instant *after,
+                              double *change, double *exchanged);
+
 #endif

@@ -1,4 +1,5 @@
 /* Energy, momentum maps of the declared symmetries, and declared invariants. */
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -54,4 +55,72 @@ dvi_status dvi__invariants(dvi__evaluator *e, double t, const double *q, const d
   const int count = dvi_system_invariant_count(e->system);
   for (int i = 0; i < count; i++) DVI_TRY(dvi__invariant(e, t, q, v, p, i, &value[i]));
   return DVI_OK;
+}
+
+/* ---- over a step ---- */
+
+/* Of a difference of energies no more is known than a rounding of what they are summed from. */
+static const double rounding = 64 * DBL_EPSILON;
+
+static dvi_status kinetic(dvi__evaluator *e, const dvi__instant *at, double *E, double *T, double *size)
+{
+  double pv = 0;
+  DVI_TRY(dvi__legendre_inverse(e, at->t, at->q, at->p, at->v));
+  DVI_TRY(energy(e, at->t, at->q, at->v, at->p, E));
+  for (int i = 0; i < e->system->n; i++) pv += at->p[i] * at->v[i];
+  *T = 0.5 * fabs(pv);
+  *size = fabs(pv) + fabs(*E);
+  return DVI_OK;
+}
+
+static dvi_status change_of_lagrangian(dvi__evaluator *e, const dvi__instant *before,
+                                       const dvi__instant *after, double *change, double *exchanged)
+{
+  double E0, E1, T0, T1, size0, size1;
+  DVI_TRY(kinetic(e, before, &E0, &T0, &size0));
+  DVI_TRY(kinetic(e, after, &E1, &T1, &size1));
+  *change = fmax(fabs(E1 - E0) - rounding * fmax(size0, size1), 0);
+  *exchanged = fmax(T0, T1);
+  return DVI_OK;
+}
+
+/* sum |L_q dq| + |L_v dp| with L = -H(q) of a one-form at v = 0, and L = H(q,p) on phase space. */
+static dvi_status exchange(dvi__evaluator *e, const dvi__instant *at, const dvi__instant *before,
+                           const dvi__instant *after, int with_p, double *sum)
+{
+  const size_t n = (size_t)e->system->n;
+  double *in_q = before->v, *in_p = e->point[2];
+  const double *second = at->p;
+  if (!with_p) {
+    memset(e->point[1], 0, n * sizeof(double));
+    second = e->point[1];
+  }
+  DVI_TRY(dvi__lagrangian_gradient(e, 1, &at->t, at->q, second, in_q, in_p));
+  *sum = 0;
+  for (size_t i = 0; i < n; i++) {
+    *sum += fabs(in_q[i] * (after->q[i] - before->q[i]));
+    if (with_p) *sum += fabs(in_p[i] * (after->p[i] - before->p[i]));
+  }
+  return DVI_OK;
+}
+
+static dvi_status change_of_hamiltonian(dvi__evaluator *e, const dvi__instant *before,
+                                        const dvi__instant *after, double *change, double *exchanged)
+{
+  const int with_p = (e->system->terms & DVI__PHASE_SPACE) != 0;
+  double E0, E1, sum0, sum1;
+  DVI_TRY(energy(e, before->t, before->q, before->v, before->p, &E0));
+  DVI_TRY(energy(e, after->t, after->q, after->v, after->p, &E1));
+  DVI_TRY(exchange(e, before, before, after, with_p, &sum0));
+  DVI_TRY(exchange(e, after, before, after, with_p, &sum1));
+  *change = fmax(fabs(E1 - E0) - rounding * fmax(fabs(E0), fabs(E1)), 0);
+  *exchanged = fmax(sum0, sum1);
+  return DVI_OK;
+}
+
+dvi_status dvi__energy_change(dvi__evaluator *e, const dvi__instant *before, const dvi__instant *after,
+                              double *change, double *exchanged)
+{
+  const int has_kinetic = !(e->system->terms & (DVI__ONE_FORM | DVI__PHASE_SPACE));
+  return (has_kinetic ? change_of_lagrangian : change_of_hamiltonian)(e, before, after, change, exchanged);
 }

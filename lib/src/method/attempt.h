@@ -1,0 +1,13 @@
+/* One step of the method from `now` to `next`, and the same again where its solution is doubted. */
+#ifndef DVI_METHOD_ATTEMPT_H
+#define DVI_METHOD_ATTEMPT_H
+#include "method/integrator_struct.h"
+
+/* Make room for a step that is taken again; for methods that can follow a branch. */
+dvi_status dvi__attempt_allocate(dvi_integrator *integrator);
+void dvi__attempt_clear(dvi_integrator *integrator);
+
+/* A step of `length` with this density (dvi__state). On failure `next` and the memory are spoilt. */
+dvi_status dvi__attempt(dvi_integrator *integrator, double length, double density);
+
+#endif
