@@ -104,9 +104,12 @@ static int is_same(size_t n, const double *one, const double *other, const doubl
 dvi_status dvi__attempt(dvi_integrator *I, double length, double density)
 {
   const size_t n = (size_t)I->system->n;
+  const dvi_counters before = I->counters;
   DVI_TRY(step(I, length, density));
   if (!is_doubted(I)) return DVI_OK;
   keep_first(I);
+  I->counters.jump_alarms = before.jump_alarms;
+  I->counters.energy_fallbacks = before.energy_fallbacks;
   I->stepper.follow = 1;
   const dvi_status status = step(I, length, density);
   I->stepper.follow = 0;

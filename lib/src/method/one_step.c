@@ -87,6 +87,21 @@ dvi_status dvi__one_step_solve(dvi__stepper *self, const dvi__state *state, doub
   return dvi__stationary_solve(&one->equations, &step);
 }
 
+dvi_status dvi__one_step_momentum(dvi__stepper *self, const dvi__state *state, double part,
+                                  const double **p)
+{
+  const dvi__one_step *one = self->own;
+  const size_t n = (size_t)self->system->n;
+  double *alpha = one->carried, *unwanted = alpha + n;
+  *p = state->p;
+  if (part == 1 || !(self->system->terms & DVI__ONE_FORM)) return DVI_OK;
+  memset(one->dq, 0, n * sizeof(double));
+  DVI_TRY(dvi__form_gradient(one->kind->evaluator(one->of), state->q, one->dq, unwanted, alpha));
+  for (size_t i = 0; i < n; i++) alpha[i] += part * (state->p[i] - alpha[i]);
+  *p = alpha;
+  return DVI_OK;
+}
+
 dvi_status dvi__one_step_move(dvi__stepper *self, dvi__state *state, double h, const double *last)
 {
   const dvi__one_step *one = self->own;

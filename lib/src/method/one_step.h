@@ -47,6 +47,11 @@ dvi_status dvi__one_step_create(dvi__stepper *self, size_t size, const dvi__step
  * velocity at the start, and later what was remembered, continued. */
 dvi_status dvi__one_step_solve(dvi__stepper *self, const dvi__state *state, double h);
 
+/* The momentum [n] from which a part of the step starts: where a method leaves p = alpha(q), what
+ * keeps them apart belongs to the length of its steps, and without it there are no velocities. */
+dvi_status dvi__one_step_momentum(dvi__stepper *self, const dvi__state *state, double part,
+                                  const double **p);
+
 /* Move q by dq and t by the duration at x, and remember `last` [unknowns]. After the ends are taken. */
 dvi_status dvi__one_step_move(dvi__stepper *self, dvi__state *state, double h, const double *last);
 

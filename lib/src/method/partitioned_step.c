@@ -21,8 +21,9 @@ static void explain(const dvi__stepper *self, dvi__text *text)
 static dvi_status place(dvi__stepper *self, const dvi__state *state, double h, double part)
 {
   const dvi__one_step *one = self->own;
-  (void)part;
-  dvi__partitioned_place(one->of, state->t, h, state->q, state->p, self->memory + MULTIPLIER);
+  const double *p;
+  DVI_TRY(dvi__one_step_momentum(self, state, part, &p));
+  dvi__partitioned_place(one->of, state->t, h, state->q, p, self->memory + MULTIPLIER);
   return DVI_OK;
 }
 

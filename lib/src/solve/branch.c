@@ -10,11 +10,11 @@
 #include "solve/solver_struct.h"
 
 /* In parts of the step: the first one, and the least by which the branch goes on. */
-static const double first_part = 1.0 / 8, least_part = 1.0 / DVI__BRANCH_PARTS;
+static const double first_part = 1.0 / 16, least_part = 1.0 / DVI__BRANCH_PARTS;
 
-/* A guess is in the domain of Newton's method if the second correction is this part of the first;
- * corrections smaller than the second number tell of rounding alone. */
-static const double contraction = 0.5, negligible = 1e-6;
+/* A guess is in the domain of Newton's method if the second correction is this part of the first.
+ * Elsewhere, and where the Jacobian is not exact, solutions have to be closer to their guesses. */
+static const double contraction = 0.5, closer = 0.1;
 
 /* The solutions found last, the latest first. */
 typedef struct history {
@@ -65,10 +65,10 @@ static double distance(const dvi__branch *branch, const history *past, size_t un
 static int is_near(const dvi__branch *branch, const history *past, size_t unknowns, const double *guess,
                    const double *x, const dvi__solve_report *report)
 {
-  const double whole = dvi__largest(unknowns, x);
-  const int contracts = report->contraction <= contraction || report->first <= negligible * whole;
   const int measurable = branch->distance != NULL || past->solved >= 2;
-  return contracts && (!measurable || distance(branch, past, unknowns, guess, x) <= branch->near);
+  const double away = measurable ? distance(branch, past, unknowns, guess, x) : 0;
+  const double near = report->contraction <= contraction ? branch->near : closer * branch->near;
+  return measurable ? away <= near : near == branch->near;
 }
 
 /* From the caller's guess until there are two points. */
@@ -117,8 +117,11 @@ dvi_status dvi__branch_follow(const dvi__branch *branch, dvi__solver *solver, do
     if (end->status < 0) return end->status;
     const int folded = branch->signs && past.solved > 0 && dvi__solver_sign(solver) != sign;
     const int follows = end->status == DVI_OK && !folded;
-    part = fmin(follows ? 2 * part : 0.5 * part, most_part);
-    if (!follows) continue;
+    if (!follows) {
+      part *= 0.5;
+      continue;
+    }
+    if (past.solved > 0) part = fmin(2 * part, most_part); /* the first part is taken twice */
     sign = dvi__solver_sign(solver);
     if (past.count == 0) memcpy(past.first, x, unknowns * sizeof *x);
     remember(&past, unknowns, next, x);
