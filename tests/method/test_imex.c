@@ -251,7 +251,7 @@ START_TEST(of_an_indefinite_mass_the_sentence_says_so)
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, (double[]){0, 1}, (double[]){0, -2}), DVI_OK);
   advance(integrator, 0.5, 1);
   ck_assert_double_eq_tol(dvi_integrator_q(integrator)[1], 3, 1e-13);
-  ck_assert_int_eq(dvi_integrator_step(integrator, 1.5), DVI_NOT_CONVERGED);
+  ck_assert_int_eq(dvi_integrator_step(integrator, 1.5), DVI_STEP_TOO_LARGE);
   check_words("the mass M is indefinite");
   dvi_integrator_destroy(&integrator);
   dvi_system_destroy(&system);
@@ -263,9 +263,9 @@ START_TEST(a_step_without_a_solution_says_how_far_it_came)
   dvi_system *system = runaway(1);
   dvi_integrator *integrator = made_integrator(system, "imex");
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, &(double){0}, &(double){0}), DVI_OK);
-  ck_assert_int_eq(dvi_integrator_step(integrator, 1.5), DVI_NOT_CONVERGED);
+  ck_assert_int_eq(dvi_integrator_step(integrator, 1.5), DVI_STEP_TOO_LARGE);
   const char *const words[] = {"imex: step 1 from t = 0 with h = 1.5 failed", "the state is unchanged, try a smaller step",
-                               "iterations", "residual "};
+                               "iterations", "ends at h = 1.41"};
   for (int k = 0; k < 4; k++) check_words(words[k]);
   ck_assert_double_eq(dvi_integrator_q(integrator)[0], 0);
   advance(integrator, 0.7, 1);

@@ -5,15 +5,16 @@
 
 enum { STEPS = 200 };
 
-/* Points of a shot at which the motion is evaluated: stages, and nodes that no stage stands for. Residuals a step, measured and rounded up. */
+/* Points of a shot at which the motion is evaluated: stages, and nodes that no stage stands for. Residuals and Jacobians a step, measured and rounded up:
+ * heun changes the energy so much, near pericentres and turning points, that some of its steps are followed. */
 static const struct {
   const char *method;
   int points;
-  double residuals;
-} shots[] = {{"shooting:onestep=heun,quadrature=trapezoid", 2 + 1, 8},
-             {"shooting", 2 * 4 + 1, 2.5},
-             {"shooting:onestep=butcher6,quadrature=lobatto", 3 * 7 + 1, 2.2},
-             {"shooting:onestep=cooper-verner,quadrature=lobatto", 4 * 11 + 1, 2.2}};
+  double residuals, jacobians;
+} shots[] = {{"shooting:onestep=heun,quadrature=trapezoid", 2 + 1, 8, 1.2},
+             {"shooting", 2 * 4 + 1, 2.5, 1.02},
+             {"shooting:onestep=butcher6,quadrature=lobatto", 3 * 7 + 1, 2.2, 1.02},
+             {"shooting:onestep=cooper-verner,quadrature=lobatto", 4 * 11 + 1, 2.2, 1.02}};
 enum { SHOTS = sizeof shots / sizeof *shots };
 
 static const struct {
@@ -46,7 +47,7 @@ START_TEST(a_step_is_as_many_shots_as_residuals)
 {
   for (int place = 0; place < PLACES; place++) {
     const dvi_counters n = counted(place, shots[_i].method);
-    ck_assert_int_le(n.jacobians, STEPS + STEPS / 50);
+    ck_assert_double_le((double)n.jacobians, shots[_i].jacobians * STEPS);
     ck_assert_int_le(n.gradients, shots[_i].points * n.residuals);
     ck_assert_int_le(n.hessians, shots[_i].points * n.residuals);
     ck_assert_msg((double)n.residuals <= shots[_i].residuals * STEPS, "%s %s: %ld residuals", places[place].name, shots[_i].method,

@@ -6,24 +6,24 @@
  *
  *  0 is success; a positive status says that this step failed and another one may succeed, for most a smaller one; a negative one
  *  says that the call cannot succeed as it stands. */
-#define DVI_STATUS_LIST(X)                                                           \
-  X(DVI_OK, 0, "success")                                                            \
-  X(DVI_NOT_CONVERGED, 1, "the step's equations could not be solved")                \
-  X(DVI_NOT_FINITE, 2, "NaN or Inf where a finite number is needed")                 \
-  X(DVI_CALLBACK_RETRY, 3, "a callback asked for a smaller step")                    \
-  X(DVI_JUMP, 4, "the jump between two elements is large against the motion")        \
-  X(DVI_STEP_TOO_LARGE, 5, "a rotation in one step is too large")                    \
-  X(DVI_BAD_ARGUMENT, -1, "an argument is missing or out of range")                  \
-  X(DVI_BAD_SIZE, -2, "a count or size is out of range")                             \
-  X(DVI_BAD_OPTION, -3, "an unknown option, or a value that it cannot take")         \
-  X(DVI_NO_MEMORY, -4, "memory could not be allocated")                              \
-  X(DVI_CALLBACK_FAILED, -5, "a callback failed for good")                           \
-  X(DVI_SINGULAR, -6, "a mass, a velocity Hessian or an action's is singular")       \
-  X(DVI_UNSUPPORTED, -7, "the method cannot use a term that the system declares")    \
-  X(DVI_BAD_STATE, -8, "the call is out of order")                                   \
-  X(DVI_IO_ERROR, -9, "a file could not be read or written")                         \
-  X(DVI_BAD_FILE, -10, "a file is cut short, corrupt, or belongs to another system") \
-  X(DVI_REFERENCE_FAILED, -11, "a reference integrator stopped before the end")      \
+#define DVI_STATUS_LIST(X)                                                               \
+  X(DVI_OK, 0, "success")                                                                \
+  X(DVI_NOT_CONVERGED, 1, "the step's equations could not be solved")                    \
+  X(DVI_NOT_FINITE, 2, "NaN or Inf where a finite number is needed")                     \
+  X(DVI_CALLBACK_RETRY, 3, "a callback asked for a smaller step")                        \
+  X(DVI_JUMP, 4, "the jump between two elements is large against the motion")            \
+  X(DVI_STEP_TOO_LARGE, 5, "the step is beyond where its solution, or a rotation, goes") \
+  X(DVI_BAD_ARGUMENT, -1, "an argument is missing or out of range")                      \
+  X(DVI_BAD_SIZE, -2, "a count or size is out of range")                                 \
+  X(DVI_BAD_OPTION, -3, "an unknown option, or a value that it cannot take")             \
+  X(DVI_NO_MEMORY, -4, "memory could not be allocated")                                  \
+  X(DVI_CALLBACK_FAILED, -5, "a callback failed for good")                               \
+  X(DVI_SINGULAR, -6, "a mass, a velocity Hessian or an action's is singular")           \
+  X(DVI_UNSUPPORTED, -7, "the method cannot use a term that the system declares")        \
+  X(DVI_BAD_STATE, -8, "the call is out of order")                                       \
+  X(DVI_IO_ERROR, -9, "a file could not be read or written")                             \
+  X(DVI_BAD_FILE, -10, "a file is cut short, corrupt, or belongs to another system")     \
+  X(DVI_REFERENCE_FAILED, -11, "a reference integrator stopped before the end")          \
   X(DVI_SOLVER_FAILED, -12, "a solver library failed in a way that no smaller step mends")
 
 /** What a fallible function returns. */

@@ -1,18 +1,16 @@
 /* Solving one element: a guess, the ladder of solvers, the branch from shorter steps if that fails,
  * and the new state. */
-#include "method/element_step.h"
+#include "method/element_struct.h"
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
-#include "action/decoupled.h"
 #include "action/sweep.h"
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/compensated.h"
 #include "num/finite.h"
-#include "solve/branch.h"
 
 /* What is frozen, in the memory: the Jacobian at a point, by that, or as it is. */
 enum { FROZEN_H, FROZEN_ITERATIONS, FROZEN_POINT };
@@ -23,42 +21,8 @@ enum { MORE_ITERATIONS = 2 };
 /* After an iteration failed, the next better one takes over: for one step, and for twice as many each time it fails again, up to this many. */
 static const double longest_wait = 64;
 
-/* Radians between a guess and its solution in charts. Other solutions were found by a third of a
- * radian and more away, but by a fortieth where the smallest moment of inertia is 1e-5 of the
- * others. Steps below half a radian are nearer to their guess. */
-static const double near_in_charts = 0.03;
-
-/* The same between an extrapolated guess and the next solution of a branch. */
-static const double follows_in_charts = 0.01;
-
-/* One step's worth of arguments: where it starts and what is known of the step before. */
-typedef struct place {
-  double t, h;
-  const double *q, *p;
-  double last_h;        /* 0: there was none */
-  const double *last_Y; /* its unknowns; without a step before, a guess of the velocity [n] */
-  const double *last_g; /* its forces; NULL: not known */
-} place;
-
-typedef struct element {
-  dvi__action *action;
-  dvi__decoupled *decoupled; /* simplified Newton's method takes the Jacobian apart; NULL: it does not */
-  int centred,
-      keeps_whole; /* in charts at its start, where a path that is not near its guess is followed; it keeps the whole Jacobian */
-  dvi__solver *solver;
-  int choice;     /* of the solver */
-  dvi__rung rung; /* that was tried last */
-  double *Y;      /* the unknowns; the arrays below lie behind */
-  double *frozen; /* in the memory: FROZEN_H (0: nothing is), FROZEN_ITERATIONS that it took when it was new, and the Jacobian */
-  int keeps;      /* the Jacobian is not frozen anew */
-  const place *forces_of; /* the place whose iteration starts from the last step's forces; NULL: from Y */
-  double *dq, *dq_low, *dp;
-  double *guess; /* [unknowns] of the iteration, in charts */
-  double *branch; /* [DVI__BRANCH_ROOM * unknowns] room to follow one */
-} element;
-
 /* Whether the rungs follow one after the other. */
-static int is_ladder(const element *own)
+static int is_ladder(const dvi__element *own)
 {
   return own->choice == DVI__SOLVER_AUTO || own->choice == DVI__SOLVER_CERTIFIED;
 }
@@ -67,38 +31,38 @@ static int is_ladder(const element *own)
 
 static dvi_status residual_of(void *of, const double *Y, double *R)
 {
-  return dvi__action_residual(((const element *)of)->action, Y, R);
+  return dvi__action_residual(((const dvi__element *)of)->action, Y, R);
 }
 
 static dvi_status jacobian_of(void *of, const double *Y, double *values)
 {
-  return dvi__action_jacobian(((const element *)of)->action, Y, values);
+  return dvi__action_jacobian(((const dvi__element *)of)->action, Y, values);
 }
 
 static dvi_status prepare_chord_of(void *of, const double *Y)
 {
-  return dvi__action_prepare_chord(((const element *)of)->action, Y);
+  return dvi__action_prepare_chord(((const dvi__element *)of)->action, Y);
 }
 
 static void chord_of(void *of, double *R)
 {
-  dvi__action_chord(((const element *)of)->action, R);
+  dvi__action_chord(((const dvi__element *)of)->action, R);
 }
 
 static dvi_status row_scale_of(void *of, double *scale, int *unchanged)
 {
-  *unchanged = !dvi__action_row_scale(((const element *)of)->action, scale);
+  *unchanged = !dvi__action_row_scale(((const dvi__element *)of)->action, scale);
   return DVI_OK;
 }
 
 static void magnitudes_of(void *of, double *magnitude)
 {
-  dvi__action_magnitudes(((const element *)of)->action, magnitude);
+  dvi__action_magnitudes(((const dvi__element *)of)->action, magnitude);
 }
 
 static void sweep_from_of(void *of, const double *Y)
 {
-  const element *own = of;
+  const dvi__element *own = of;
   if (own->forces_of != NULL)
     dvi__action_sweep_continue(own->action, own->forces_of->h / own->forces_of->last_h, own->forces_of->last_g);
   else
@@ -107,17 +71,17 @@ static void sweep_from_of(void *of, const double *Y)
 
 static dvi_status sweep_of(void *of, double *change, double *largest)
 {
-  return dvi__action_sweep(((const element *)of)->action, change, largest);
+  return dvi__action_sweep(((const dvi__element *)of)->action, change, largest);
 }
 
 static void sweep_to_of(void *of, double *Y)
 {
-  dvi__action_sweep_to(((const element *)of)->action, Y);
+  dvi__action_sweep_to(((const dvi__element *)of)->action, Y);
 }
 
 static dvi_status freeze_of(void *of, const double *Y)
 {
-  const element *own = of;
+  const dvi__element *own = of;
   double *point = own->frozen + FROZEN_POINT;
   if (own->keeps_whole) {
     if (!own->keeps) DVI_TRY(dvi__solver_jacobian(own->solver, Y, point));
@@ -129,21 +93,21 @@ static dvi_status freeze_of(void *of, const double *Y)
 
 static void frozen_of(void *of, double *R)
 {
-  const element *own = of;
+  const dvi__element *own = of;
   if (own->keeps_whole)
     dvi__solver_apply_factor(own->solver, R);
   else
     dvi__decoupled_solve(own->decoupled, R);
 }
 
-static void count_memory(dvi__stepper *self, const element *own)
+static void count_memory(dvi__stepper *self, const dvi__element *own)
 {
   self->memory_count = dvi__element_forces(self) + (size_t)dvi__action_forces_count(own->action);
   if (own->decoupled != NULL) self->memory_count += FROZEN_POINT + (size_t)dvi__decoupled_point_size(own->decoupled);
   if (own->keeps_whole) self->memory_count += FROZEN_POINT + (size_t)dvi__pattern_entries(dvi__action_pattern(own->action));
 }
 
-static int allocate(dvi__stepper *self, element *own)
+static int allocate(dvi__stepper *self, dvi__element *own)
 {
   const size_t n = (size_t)self->system->n, unknowns = (size_t)dvi__action_unknowns(own->action);
   count_memory(self, own);
@@ -158,7 +122,7 @@ static int allocate(dvi__stepper *self, element *own)
 }
 
 /* Simplified Newton's method is for those who may use it; in a space without a full set of eigenvectors the ladder goes without it. */
-static dvi_status make_decoupled(dvi__stepper *self, element *own)
+static dvi_status make_decoupled(dvi__stepper *self, dvi__element *own)
 {
   if (!is_ladder(own) && own->choice != DVI__SOLVER_SIMPLIFIED) return DVI_OK;
   const dvi_status status = dvi__decoupled_create(own->action, self->counters, &own->decoupled);
@@ -166,7 +130,7 @@ static dvi_status make_decoupled(dvi__stepper *self, element *own)
   return is_ladder(own) ? DVI_OK : dvi__fail_in(DVI_BAD_OPTION, "%s: solver=simplified", self->method->name);
 }
 
-static dvi_status make_solver(dvi__stepper *self, element *own)
+static dvi_status make_solver(dvi__stepper *self, dvi__element *own)
 {
   const int sweeps = dvi__action_can_sweep(own->action);
   const dvi__equations equations = {.unknowns = dvi__action_unknowns(own->action),
@@ -188,7 +152,7 @@ static dvi_status make_solver(dvi__stepper *self, element *own)
 
 dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *space, int solver)
 {
-  element *own = self->own = DVI_NEW(element, 1);
+  dvi__element *own = self->own = DVI_NEW(dvi__element, 1);
   if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
   self->order = dvi__element_order(space);
   self->symmetric = dvi__symmetric_rule(space->rule);
@@ -203,7 +167,7 @@ dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *spac
 
 void dvi__element_destroy(dvi__stepper *self)
 {
-  element *own = self->own;
+  dvi__element *own = self->own;
   if (own == NULL) return;
   dvi__solver_destroy(&own->solver);
   dvi__decoupled_destroy(&own->decoupled);
@@ -214,7 +178,7 @@ void dvi__element_destroy(dvi__stepper *self)
 
 dvi_status dvi__element_centre(dvi__stepper *self, const dvi__centring *centring)
 {
-  element *own = self->own;
+  dvi__element *own = self->own;
   own->centred = 1;
   own->keeps_whole = is_ladder(own) || own->choice == DVI__SOLVER_SIMPLIFIED;
   dvi__decoupled_destroy(&own->decoupled);
@@ -226,7 +190,7 @@ dvi_status dvi__element_centre(dvi__stepper *self, const dvi__centring *centring
 
 dvi__action *dvi__element_action(const dvi__stepper *self)
 {
-  return ((const element *)self->own)->action;
+  return ((const dvi__element *)self->own)->action;
 }
 
 size_t dvi__element_forces(const dvi__stepper *self)
@@ -236,7 +200,7 @@ size_t dvi__element_forces(const dvi__stepper *self)
 
 int dvi__element_solver(const dvi__stepper *self)
 {
-  return ((const element *)self->own)->choice;
+  return ((const dvi__element *)self->own)->choice;
 }
 
 void dvi__element_start(dvi__stepper *self, const double *v)
@@ -247,32 +211,19 @@ void dvi__element_start(dvi__stepper *self, const double *v)
 
 /* ---- guesses ---- */
 
-/* A straight line along the velocity at the start, which is sought from that of the last path. */
-static dvi_status straight(dvi__stepper *self, const place *at, double *Y)
-{
-  element *own = self->own;
-  if (at->last_h != 0)
-    dvi__action_path(own->action, at->last_Y, at->last_h, 1.0, NULL, own->dq);
-  else
-    memcpy(own->dq, at->last_Y, (size_t)self->system->n * sizeof(double));
-  DVI_TRY(dvi__legendre_inverse(dvi__action_evaluator(own->action), at->t, at->q, at->p, own->dq));
-  dvi__action_straight(own->action, own->dq, Y);
-  return DVI_OK;
-}
-
 /* The last path continued; without one, a straight line. */
-static dvi_status guess(dvi__stepper *self, const place *at, double *Y)
+static dvi_status guess(dvi__stepper *self, const dvi__element_place *at, double *Y)
 {
-  element *own = self->own;
-  if (at->last_h == 0) return straight(self, at, Y);
+  dvi__element *own = self->own;
+  if (at->last_h == 0) return dvi__element_straight(self, at, Y);
   dvi__action_continue(own->action, at->h / at->last_h, at->last_Y, Y);
   return DVI_OK;
 }
 
 /* One rung from the guess. Whether it counts is for its own counter. */
-static dvi_status solve_by(dvi__stepper *self, const place *at, dvi__rung rung, double *Y, dvi__solve_report *report)
+static dvi_status solve_by(dvi__stepper *self, const dvi__element_place *at, dvi__rung rung, double *Y, dvi__solve_report *report)
 {
-  element *own = self->own;
+  dvi__element *own = self->own;
   const double size = dvi__largest((size_t)self->system->n, at->q);
   const int patient = own->choice == DVI__SOLVER_FIXED_POINT;
   own->forces_of = rung == DVI__FIXED_POINT && at->last_g != NULL ? at : NULL;
@@ -287,7 +238,7 @@ static dvi_status solve_by(dvi__stepper *self, const place *at, dvi__rung rung, 
 }
 
 /* Whether the user, or the steps before, want this iteration; a step that does without it is counted down. */
-static int is_due(const element *own, int choice, double *steps_without)
+static int is_due(const dvi__element *own, int choice, double *steps_without)
 {
   if (own->choice != choice && !is_ladder(own)) return 0;
   if (*steps_without == 0 || own->choice == choice) return 1;
@@ -305,9 +256,9 @@ static void learn(dvi__stepper *self, dvi_status status, int steps, int wait)
 
 /* With the factor of earlier steps as long as that is as good as a new one. All that this depends on is in the memory: a restored run finds the same
  * digits. */
-static dvi_status solve_simplified(dvi__stepper *self, const place *at, double *Y, dvi__solve_report *report)
+static dvi_status solve_simplified(dvi__stepper *self, const dvi__element_place *at, double *Y, dvi__solve_report *report)
 {
-  element *own = self->own;
+  dvi__element *own = self->own;
   double *frozen = own->frozen = self->memory + dvi__element_forces(self) + dvi__action_forces_count(own->action);
   own->keeps = frozen[FROZEN_H] == at->h;
   dvi_status status = solve_by(self, at, DVI__SIMPLIFIED, Y, report);
@@ -322,9 +273,9 @@ static dvi_status solve_simplified(dvi__stepper *self, const place *at, double *
 }
 
 /* Solve the element at its place, from a first guess, by the rung that the user or the measured contraction chooses. */
-static dvi_status solve_at(dvi__stepper *self, const place *at, double *Y, dvi__solve_report *report)
+static dvi_status solve_at(dvi__stepper *self, const dvi__element_place *at, double *Y, dvi__solve_report *report)
 {
-  element *own = self->own;
+  dvi__element *own = self->own;
   dvi__action_place(own->action, at->t, at->h, at->q, at->p);
   if ((!own->keeps_whole || !is_ladder(own)) && is_due(own, DVI__SOLVER_FIXED_POINT, &self->memory[DVI__NEWTON_STEPS])) {
     const dvi_status status = solve_by(self, at, DVI__FIXED_POINT, Y, report);
@@ -339,118 +290,11 @@ static dvi_status solve_at(dvi__stepper *self, const place *at, double *Y, dvi__
   return solve_by(self, at, own->choice == DVI__SOLVER_KINSOL ? DVI__KINSOL : DVI__NEWTON, Y, report);
 }
 
-/* ---- the branch of shorter steps ---- */
-
-/* What a branch is followed for. */
-typedef struct pursuit {
-  dvi__stepper *self;
-  const place *at;
-  double part; /* of the step, that the equations are placed at */
-} pursuit;
-
-static dvi_status place_part(void *of, double part)
-{
-  pursuit *own = of;
-  const place *at = own->at;
-  own->part = part;
-  dvi__action_place(((element *)own->self->own)->action, at->t, part * at->h, at->q, at->p);
-  return DVI_OK;
-}
-
-/* A straight line along the velocity at the start. */
-static dvi_status guess_part(void *of, double part, double *Y)
-{
-  const pursuit *own = of;
-  const place *at = own->at;
-  const place short_one = {at->t, part * at->h, at->q, at->p, at->last_h, at->last_Y, NULL};
-  return straight(own->self, &short_one, Y);
-}
-
-static double turn_between(void *of, const double *from, const double *Y)
-{
-  const pursuit *own = of;
-  return dvi__action_turn(((element *)own->self->own)->action, from, Y);
-}
-
-/* In charts the sentence tells how far the path turns, too. */
-static dvi_status branch_ends(const dvi__stepper *self, const place *at, const double *Y,
-                              const dvi__branch_end *end, const dvi__branch_failure *whole)
-{
-  const element *own = self->own;
-  const dvi_status status = dvi__branch_tell(end, at->h, whole);
-  if (!own->centred) return status;
-  if (end->reached == 0)
-    return dvi__fail(DVI_STEP_TOO_LARGE, "a step too large: not even that of h = %.3g has a path",
-                     at->h / DVI__BRANCH_PARTS);
-  dvi__action_path(own->action, Y, 1.0, 1.0, own->dq, NULL);
-  return dvi__fail(DVI_STEP_TOO_LARGE,
-                   "a step too large: its path continues those of shorter steps up to h = %.3g, "
-                   "where it turns by %.3g; the bound of a chart is half a turn",
-                   end->reached * at->h, dvi__action_turned(own->action, own->dq));
-}
-
-static dvi_status follow(dvi__stepper *self, const place *at, const dvi__branch_failure *whole, double *Y)
-{
-  const element *own = self->own;
-  pursuit of = {self, at, 0};
-  const dvi__branch branch = {.of = &of,
-                              .place = place_part,
-                              .guess = guess_part,
-                              .distance = own->centred ? turn_between : NULL,
-                              .near = own->centred ? follows_in_charts : DVI__BRANCH_NEAR,
-                              .parts = self->follow,
-                              .signs = !own->centred || dvi__action_signs(own->action),
-                              .from_zero = 1,
-                              .size = dvi__largest((size_t)self->system->n, at->q),
-                              .room = own->branch};
-  dvi__branch_end end;
-  self->counters->followed++;
-  self->counters->newtons += !self->follow;
-  const dvi_status status = dvi__branch_follow(&branch, own->solver, Y, &end);
-  return status <= 0 ? status : branch_ends(self, at, Y, &end, whole);
-}
-
-/* As h goes to 0 the Jacobian is L_vv times a positive matrix over h. On the way to another
- * solution beyond a fold its determinant is 0. */
-static int sign_of_short_steps(const dvi__stepper *self, const place *at)
-{
-  const element *own = self->own;
-  dvi__evaluator *evaluator = dvi__action_evaluator(own->action);
-  const int unknowns = dvi__action_unknowns(own->action), degree = unknowns / self->system->n;
-  const int turns = (at->h < 0 && unknowns % 2 != 0);
-  if (own->centred) return turns ? -1 : 1;
-  dvi__action_path(own->action, own->Y, at->h, 0.0, NULL, own->guess);
-  if (dvi__legendre_regular(evaluator, at->t, at->q, own->guess) != DVI_OK) return 0;
-  return ((dvi__mass_sign(evaluator) < 0 && degree % 2 != 0) != turns) ? -1 : 1;
-}
-
-/* What the solution itself tells of its branch; the rest is for its energy to say. */
-static dvi__doubt doubt_of(const dvi__stepper *self, const place *at, const dvi__solve_report *report)
-{
-  const element *own = self->own;
-  const int by_newton = own->rung == DVI__NEWTON || own->rung == DVI__KINSOL;
-  if (own->rung == DVI__FIXED_POINT) return DVI__SURE;
-  if (own->rung == DVI__NEWTON && dvi__branch_is_sure(report, dvi__action_unknowns(own->action), own->Y))
-    return DVI__SURE;
-  if (by_newton && dvi__solver_sign(own->solver) != sign_of_short_steps(self, at)) return DVI__ASTRAY;
-  return DVI__DOUBTED;
-}
-
-/* Whether a solution in charts is not the one that continues shorter steps: it turns far away from
- * its guess, or the sign of the determinant is another. */
-static int strays_in_charts(const dvi__stepper *self, const place *at)
-{
-  const element *own = self->own;
-  if (dvi__action_signs(own->action) && dvi__solver_sign(own->solver) != sign_of_short_steps(self, at))
-    return 1;
-  return !(dvi__action_turn(own->action, own->guess, own->Y) <= near_in_charts);
-}
-
 /* ---- the step ---- */
 
 static dvi_status advance(dvi__stepper *self, dvi__state *state, double h)
 {
-  const element *own = self->own;
+  const dvi__element *own = self->own;
   const int n = self->system->n;
   double duration;
   DVI_TRY(dvi__action_duration(own->action, own->Y, &duration));
@@ -464,9 +308,9 @@ static dvi_status advance(dvi__stepper *self, dvi__state *state, double h)
 }
 
 /* KINSOL judges, but what the step takes stays what the iteration found; what does not pass is solved by KINSOL itself. */
-static dvi_status certify(dvi__stepper *self, const place *at, double *Y, dvi__solve_report *report)
+static dvi_status certify(dvi__stepper *self, const dvi__element_place *at, double *Y, dvi__solve_report *report)
 {
-  element *own = self->own;
+  dvi__element *own = self->own;
   const double size = dvi__largest((size_t)self->system->n, at->q);
   const dvi_status status = dvi__certify(own->solver, size, Y, report);
   if (status != DVI_NOT_CONVERGED) return status;
@@ -475,38 +319,37 @@ static dvi_status certify(dvi__stepper *self, const place *at, double *Y, dvi__s
   return DVI_OK;
 }
 
-static place place_of(const dvi__stepper *self, const dvi__state *state, double h)
+static dvi__element_place place_of(const dvi__stepper *self, const dvi__state *state, double h)
 {
   const int continues = self->memory[DVI__LAST_H] != 0 && dvi__action_can_sweep(dvi__element_action(self));
-  return (place){state->t,
-                 h,
-                 state->q,
-                 state->p,
-                 self->memory[DVI__LAST_H],
-                 self->memory + DVI__LAST_Y,
-                 continues ? self->memory + dvi__element_forces(self) : NULL};
+  return (dvi__element_place){state->t,
+                              h,
+                              state->q,
+                              state->p,
+                              self->memory[DVI__LAST_H],
+                              self->memory + DVI__LAST_Y,
+                              continues ? self->memory + dvi__element_forces(self) : NULL};
 }
 
 /* By the ladder, and where that fails, or is not to be trusted, along the branch. */
-static dvi_status find_path(dvi__stepper *self, const place *at, dvi__solve_report *report)
+static dvi_status find_path(dvi__stepper *self, const dvi__element_place *at, dvi__solve_report *report)
 {
-  element *own = self->own;
+  dvi__element *own = self->own;
   dvi__branch_failure whole = {0};
-  if (self->follow) return follow(self, at, &whole, own->Y);
+  if (self->follow) return dvi__element_follow(self, at, &whole, own->Y);
   const dvi_status status = solve_at(self, at, own->Y, report);
   if (status < 0) return status;
   dvi__branch_note(status, &whole);
-  if (status != DVI_OK || (own->centred && strays_in_charts(self, at)))
-    return follow(self, at, &whole, own->Y);
-  if (!own->centred) self->doubt = doubt_of(self, at, report);
+  if (status != DVI_OK || (own->centred && dvi__element_strays(self, at))) return dvi__element_follow(self, at, &whole, own->Y);
+  if (!own->centred) self->doubt = dvi__element_doubt(self, at, report);
   return DVI_OK;
 }
 
 dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h)
 {
-  element *own = self->own;
+  dvi__element *own = self->own;
   dvi__solve_report report = {0};
-  const place at = place_of(self, state, h);
+  const dvi__element_place at = place_of(self, state, h);
   DVI_TRY(find_path(self, &at, &report));
   dvi__action_ends(own->action, own->Y, own->dq, own->dq_low, own->dp);
   dvi__action_forces(own->action, self->memory + dvi__element_forces(self));
@@ -516,15 +359,14 @@ dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h)
 
 void dvi__element_path(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v)
 {
-  const element *own = self->own;
+  const dvi__element *own = self->own;
   dvi__action_path(own->action, self->memory + DVI__LAST_Y, h, tau, q, v);
   for (int i = 0; q != NULL && i < self->system->n; i++) q[i] += q0[i];
 }
 
-static void explain_solver(const element *own, dvi__text *text)
+static void explain_solver(const dvi__element *own, dvi__text *text)
 {
-  const char *name = dvi__solver_choice(own->choice),
-             *last = "a path followed from shorter steps";
+  const char *name = dvi__solver_choice(own->choice), *last = "a path followed from shorter steps";
   if (!is_ladder(own)) {
     dvi__text_add(text, "solver: %s, as asked; what it cannot solve goes on to %s\n", name, last);
     return;
@@ -540,7 +382,7 @@ static void explain_solver(const element *own, dvi__text *text)
 
 void dvi__element_explain(const dvi__stepper *self, dvi__text *text)
 {
-  const element *own = self->own;
+  const dvi__element *own = self->own;
   const dvi__pattern *pattern = dvi__action_pattern(own->action);
   const int general = (self->system->terms & DVI__LAGRANGIAN) != 0,
             dense = dvi__solver_linear_kind(own->solver) == DVI__LINEAR_DENSE;
