@@ -10,7 +10,7 @@
 #include "table.h"
 #include "velocity.h"
 
-enum { HINT_SIZE = 128 };
+enum { HINT_SIZE = 512, NAMED_MOST = 12 };
 
 /* ---- what there is ---- */
 
@@ -67,6 +67,18 @@ static const char *name_at(int k, const void *list)
   return k < c->there ? c->all[k].name : NULL;
 }
 
+/* The nearest name; without one the first of all names. */
+static const char *hint_at_name(const run_columns *c, const char *name, char hint[HINT_SIZE])
+{
+  if (suggestion(name, name_at, c, hint, HINT_SIZE)[0] != '\0') return hint;
+  size_t length = 0;
+  for (int k = 0; k < c->there && k < NAMED_MOST && length < HINT_SIZE; k++)
+    length += (size_t)snprintf(hint + length, HINT_SIZE - length, "%s%s", k > 0 ? ", " : "; it has ", c->all[k].name);
+  if (c->there > NAMED_MOST && length < HINT_SIZE)
+    (void)snprintf(hint + length, HINT_SIZE - length, " and %d others", c->there - NAMED_MOST);
+  return hint;
+}
+
 /* t is in front of every row. */
 static int show_name(run_columns *c, const char *method, const char *name)
 {
@@ -76,8 +88,7 @@ static int show_name(run_columns *c, const char *method, const char *name)
   while ((there = name_at(k, c)) != NULL && strcmp(there, name) != 0) k++;
   if (there == NULL) {
     char hint[HINT_SIZE];
-    return usage_error("run: %s by %s has no column '%s'%s", c->scene->name, method, name,
-                       suggestion(name, name_at, c, hint, sizeof hint));
+    return usage_error("run: %s by %s has no column '%s'%s", c->scene->name, method, name, hint_at_name(c, name, hint));
   }
   if (c->shown[k]) return usage_error("run: column '%s' is asked for twice", name);
   show(c, k);
