@@ -197,8 +197,9 @@ bool columns_measure(run_columns *c, dvi_integrator *integrator)
   return false;
 }
 
-static double number_of(const run_columns *c, const dvi_integrator *integrator, const shown_column *column)
+double columns_number(const run_columns *c, const dvi_integrator *integrator, int k)
 {
+  const shown_column *column = &c->column[k];
   switch (column->kind) {
   case COLUMN_COORDINATE: return dvi_integrator_q(integrator)[column->index];
   case COLUMN_VELOCITY: return c->velocity[column->index];
@@ -214,6 +215,6 @@ static double number_of(const run_columns *c, const dvi_integrator *integrator, 
 void columns_row(const run_columns *c, const dvi_integrator *integrator, FILE *stream)
 {
   (void)fprintf(stream, "%.17g", dvi_integrator_time(integrator));
-  for (int k = 0; k < c->count; k++) (void)fprintf(stream, ",%.17g", number_of(c, integrator, &c->column[k]));
+  for (int k = 0; k < c->count; k++) (void)fprintf(stream, ",%.17g", columns_number(c, integrator, k));
   (void)fputc('\n', stream);
 }

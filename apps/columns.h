@@ -52,6 +52,9 @@ bool columns_energy(const run_columns *columns);
 /** Fetch what must be evaluated for a row. False, with a complaint, if any of it is no number. */
 bool columns_measure(run_columns *columns, dvi_integrator *integrator);
 
+/** The number of shown column k at the state, as measured. */
+double columns_number(const run_columns *columns, const dvi_integrator *integrator, int k);
+
 /** Write the row of the state, as measured. */
 void columns_row(const run_columns *columns, const dvi_integrator *integrator, FILE *stream);
 #endif
