@@ -23,13 +23,13 @@ typedef struct energy_look {
 typedef struct energy_watch {
   const problem *scene;
   dvi_integrator *integrator;
-  bool blind;                 /**< the energy is not conserved, or cannot be evaluated */
-  long steps;                 /**< seen */
-  double *room;               /**< [nq + nv] a velocity, or a point with one number set back; owned */
-  const double *start;        /**< [nq + nv] q and p of the start; owned by room */
-  double t_start, first;      /**< when it began, and the energy then */
-  double t, exchanged;        /**< the last look, and the integral of the kinetic energy up to there */
-  int looks, next;            /**< kept; the number that is set back at the next look */
+  bool blind;            /**< the energy is not conserved, or cannot be evaluated */
+  long steps;            /**< seen */
+  double *room;          /**< [nq + nv] a velocity, or a point with one number set back; owned */
+  const double *start;   /**< [nq + nv] q and p of the start; owned by room */
+  double t_start, first; /**< when it began, and the energy then */
+  double t, exchanged;   /**< the last look, and the integral of the kinetic energy up to there */
+  int looks, next;       /**< kept; the number that is set back at the next look */
   energy_look look[ENERGY_LOOKS_MAX];
 } energy_watch;
 

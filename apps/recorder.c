@@ -219,4 +219,3 @@ int record(const run_request *request, const problem *scene, dvi_integrator *int
   columns_clear(&r.columns);
   return code;
 }
-

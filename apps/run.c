@@ -119,8 +119,11 @@ static int check_files(const run_request *request, const char *name)
 /* A verification writes one table, and stands at no other state than the start. */
 static int check_verify(const run_request *request)
 {
-  const named_file others[] = {{"out", request->out},       {"events", request->events}, {"checkpoint", request->checkpoint},
-                               {"resume", request->resume}, {"plot", request->plot}};
+  const named_file others[] = {{"out", request->out},
+                               {"events", request->events},
+                               {"checkpoint", request->checkpoint},
+                               {"resume", request->resume},
+                               {"plot", request->plot}};
   if (!request->verify) {
     if (request->digits > 0) return usage_error("run: --digits %ld is for --verify, which finds digits", request->digits);
     return request->csv != NULL ? usage_error("run: --csv is for the table of --verify; rows go to --out FILE") : DONE;
@@ -129,7 +132,8 @@ static int check_verify(const run_request *request)
     if (others[k].path != NULL && !is_stream(others[k].path))
       return usage_error("run: --verify runs the job several times and writes its own table; leave out --%s", others[k].option);
   if (request->every > 0 || request->alarms.count > 0)
-    return usage_error("run: --verify has one row, the last one, and no alarms; leave out --%s", request->every > 0 ? "every" : "alarm");
+    return usage_error("run: --verify has one row, the last one, and no alarms; leave out --%s",
+                       request->every > 0 ? "every" : "alarm");
   return request->digits <= TRUST_DIGITS_MOST ? DONE
                                               : usage_error("run: --digits %ld: at most %d can be found in double precision",
                                                             request->digits, (int)TRUST_DIGITS_MOST);

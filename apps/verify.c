@@ -71,10 +71,10 @@ static int observe(dvi_integrator *integrator, void *user)
   return 0;
 }
 
-static dvi_status drive(verifier *v, double h, double t_end, dvi_run_report *report)
+static dvi_status drive(verifier *v, dvi_run_report *report)
 {
-  const dvi_run_options options = {.h = h,
-                                   .t_end = t_end,
+  const dvi_run_options options = {.h = ldexp(v->request->h, -v->level),
+                                   .t_end = v->request->t_end,
                                    .observe = observe,
                                    .user = v,
                                    .events = v->events.event,
@@ -83,23 +83,11 @@ static dvi_status drive(verifier *v, double h, double t_end, dvi_run_report *rep
   return dvi_run(v->integrator, &options, report);
 }
 
-/* Steps of h/2^level. A last shorter step of the job is divided as the others are, or its error would not fall with theirs. */
-static dvi_status drive_level(verifier *v, dvi_run_report *report)
-{
-  const double t_end = v->request->t_end, h = v->request->h, whole = floor(t_end / h * (1.0 + 1e-12)) * h;
-  const double part = ldexp(h, -v->level), rest = ldexp(t_end - whole, -v->level);
-  const bool split = v->level > 0 && !dvi_integrator_chooses_steps(v->integrator) && fabs(rest) > 1e-9 * fabs(h);
-  if (!split) return drive(v, part, t_end, report);
-  dvi_status status = whole / h > 0.0 ? drive(v, part, whole, report) : DVI_OK;
-  if (status == DVI_OK && (whole / h <= 0.0 || report->end == DVI_RUN_COMPLETE)) status = drive(v, rest, t_end, report);
-  return status;
-}
-
 static int run_level(verifier *v)
 {
   dvi_run_report report = {0};
   if (!start(v)) return FAILED;
-  const dvi_status status = drive_level(v, &report);
+  const dvi_status status = drive(v, &report);
   if (status != DVI_OK) {
     const int code = library_error(status);
     complain("run: --verify: that was the run with --h %g", ldexp(v->request->h, -v->level));
@@ -161,8 +149,7 @@ static void hear_witness(verifier *v)
   const double relative = unsure / fmax(judge_largest(nq, v->size + 1), DBL_MIN);
   verdict->apart = judge_distance(nq, v->number[0] + 1, v->witness + 1);
   verdict->contradicted = verdict->apart > 2.0 * own + unsure;
-  for (int i = 0; i < v->count; i++)
-    v->error[i] = fmax(v->error[i], fabs(v->number[0][i] - v->witness[i]) - relative * v->size[i]);
+  for (int i = 0; i < v->count; i++) v->error[i] = fmax(v->error[i], fabs(v->number[0][i] - v->witness[i]) - relative * v->size[i]);
 }
 
 static int examine(verifier *v)

@@ -11,8 +11,8 @@
 
 enum { ROWS_MOST = 64 };
 
-static const table_column titles[] = {{"column", NULL}, {"value", "%.15g"}, {"error", "%.1e"},
-                                      {"digits", "%.0f"}, {"size", ""},     {NULL, NULL}};
+static const table_column titles[] = {{"column", NULL},   {"value", "%.15g"}, {"error", "%.1e"},
+                                      {"digits", "%.0f"}, {"size", ""},       {NULL, NULL}};
 
 static void add_row(result_table *table, const char *name, double value, double error, double size)
 {
