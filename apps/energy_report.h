@@ -4,7 +4,11 @@
 #include "energy_watch.h"
 #include "run_request.h"
 
-/** Judge the watch's energy; complain, once, if its error went past 1 % of its scale. */
+/** The part of its scale above which an energy error is told: 1 %; of a method whose steps go beyond the periods of fast
+ *  potentials 10 %. */
+double energy_bound(const problem *scene, const char *method);
+
+/** Judge the watch's energy; complain, once, if its error went past the bound. */
 void energy_tell(energy_watch *watch, const run_request *request);
 
 /** The step that theory expects to bring an error down to `part` of it; no longer than `most`, in absolute value, and of two

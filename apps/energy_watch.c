@@ -95,7 +95,9 @@ static void halve(energy_watch *w)
   const double scale = mean(w);
   for (int k = 0; k < ENERGY_LOOKS_MAX / 2; k++) {
     const energy_look *one = &w->look[2 * k], *other = one + 1;
+    const double passed = ratio_of(one, scale) > w->bound ? one->passed : other->passed;
     w->look[k] = ratio_of(one, scale) < ratio_of(other, scale) ? *other : *one;
+    w->look[k].passed = passed;
   }
   w->looks = ENERGY_LOOKS_MAX / 2;
 }
@@ -112,7 +114,7 @@ static void look(energy_watch *w)
   w->exchanged += T * fabs(t - w->t);
   w->t = t;
   if (w->looks == ENERGY_LOOKS_MAX) halve(w);
-  w->look[w->looks++] = (energy_look){t, fabs(energy - w->first), kinetic ? T : 0.0};
+  w->look[w->looks++] = (energy_look){t, fabs(energy - w->first), kinetic ? T : 0.0, t};
 }
 
 bool energy_look_due(long steps)
@@ -120,10 +122,10 @@ bool energy_look_due(long steps)
   return steps <= EVERY_STEP || steps % STRIDE == 0;
 }
 
-bool energy_watch_start(energy_watch *w, const problem *scene, dvi_integrator *integrator)
+bool energy_watch_start(energy_watch *w, const problem *scene, dvi_integrator *integrator, double bound)
 {
   const size_t nq = (size_t)scene->nq, nv = (size_t)scene->nv;
-  *w = (energy_watch){.scene = scene, .integrator = integrator, .blind = true};
+  *w = (energy_watch){.scene = scene, .integrator = integrator, .bound = bound, .blind = true};
   if (!dvi_system_autonomous(scene->system)) return true;
   w->room = calloc(2 * (nq + nv), sizeof *w->room);
   if (w->room == NULL) return library_error(DVI_NO_MEMORY) == DONE;
@@ -148,7 +150,7 @@ void energy_watch_step(energy_watch *w)
   if (!w->blind && energy_look_due(w->steps)) look(w);
 }
 
-energy_verdict energy_watch_end(energy_watch *w, double bound)
+energy_verdict energy_watch_end(energy_watch *w)
 {
   energy_verdict verdict = {.ratio = (double)NAN, .passed = (double)NAN};
   if (!w->blind && dvi_integrator_time(w->integrator) != w->t) look(w);
@@ -156,7 +158,7 @@ energy_verdict energy_watch_end(energy_watch *w, double bound)
   for (int k = 0; k < w->looks; k++) {
     const energy_look *seen = &w->look[k];
     const double ratio = ratio_of(seen, scale);
-    if (ratio > bound && isnan(verdict.passed)) verdict.passed = seen->t;
+    if (ratio > w->bound && isnan(verdict.passed)) verdict.passed = seen->passed;
     if (ratio <= verdict.ratio) continue;
     verdict.ratio = ratio;
     verdict.t = seen->t;

@@ -1,7 +1,7 @@
 /** Watches the energy of a conservative system along a run, and says at its end when the step is too large.
  *
  *  The error is |E(t) - E(0)|. Its scale does not depend on the constant that a potential may hold: of a Lagrangian system
- *  it is the mean kinetic energy of the run so far, or the kinetic energy at that time if it is larger (near a pericentre
+ *  it is the mean kinetic energy of the run, or the kinetic energy at that time if it is larger (near a pericentre
  *  both terms of the energy are large, and so is what a good method exchanges between them). A Hamiltonian or a one-form
  *  has no kinetic energy; there the scale is by how much the energy would change, on average, if coordinates and momenta
  *  went back, one at a time, to where they started.
@@ -18,11 +18,13 @@ enum { ENERGY_LOOKS_MAX = 256 };
 /** The energy at one time. */
 typedef struct energy_look {
   double t, error, local; /**< local: the kinetic energy there; 0 where there is none */
+  double passed;          /**< when the bound was passed first, of the times that this one stands for; t itself if it was not */
 } energy_look;
 
 typedef struct energy_watch {
   const problem *scene;
   dvi_integrator *integrator;
+  double bound;
   bool blind;            /**< the energy is not conserved, or cannot be evaluated */
   long steps;            /**< seen */
   double *room;          /**< [nq + nv] a velocity, or a point with one number set back; owned */
@@ -43,8 +45,8 @@ typedef struct energy_verdict {
  *  shows, then so rarely that it costs little. */
 bool energy_look_due(long steps);
 
-/** Begin at the integrator's state. False without memory, with a complaint. */
-bool energy_watch_start(energy_watch *watch, const problem *scene, dvi_integrator *integrator);
+/** Begin at the integrator's state; an error is to be told if it is above `bound` times its scale. False without memory, with a complaint. */
+bool energy_watch_start(energy_watch *watch, const problem *scene, dvi_integrator *integrator, double bound);
 void energy_watch_clear(energy_watch *watch);
 
 /** What the scale is, in words: "kinetic energy". */
@@ -53,6 +55,6 @@ const char *energy_scale_name(const problem *scene);
 /** A step was taken. */
 void energy_watch_step(energy_watch *watch);
 
-/** Look at the end of the run, and judge: `passed` is when the error first exceeded `bound` times its scale. */
-energy_verdict energy_watch_end(energy_watch *watch, double bound);
+/** Look at the end of the run, and judge. */
+energy_verdict energy_watch_end(energy_watch *watch);
 #endif

@@ -211,7 +211,7 @@ int record(const run_request *request, const problem *scene, dvi_integrator *int
   int code = columns_choose(&r.columns, scene, integrator, request->columns);
   r.columns.energy = request->plot != NULL;
   if (code == DONE) code = alarms_read(&r.alarms, scene, &request->alarms);
-  if (code == DONE && !energy_watch_start(&r.watch, scene, integrator)) code = FAILED;
+  if (code == DONE && !energy_watch_start(&r.watch, scene, integrator, energy_bound(scene, request->method))) code = FAILED;
   r.caught = signals_note(ended_again);
   if (code == DONE) code = events_list(&r.events, scene, write_event, &r) ? write_files(&r, integrator) : FAILED;
   events_clear(&r.events);
