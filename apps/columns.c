@@ -153,13 +153,6 @@ void columns_clear(run_columns *c)
   *c = (run_columns){.count = 0};
 }
 
-bool columns_energy(const run_columns *c)
-{
-  for (int k = 0; k < c->count; k++)
-    if (c->column[k].kind == COLUMN_INVARIANT && c->column[k].index == 0) return true;
-  return false;
-}
-
 /* ---- rows ---- */
 
 void columns_header(const run_columns *c, FILE *stream)
@@ -175,10 +168,10 @@ void columns_header(const run_columns *c, FILE *stream)
 static dvi_status measure(run_columns *c, dvi_integrator *integrator)
 {
   const double t = dvi_integrator_time(integrator), *q = dvi_integrator_q(integrator), *p = dvi_integrator_p(integrator);
-  dvi_status status = c->energy ? dvi_integrator_invariant(integrator, 0, c->invariant) : DVI_OK;
+  dvi_status status = DVI_OK;
   for (int k = 0; k < c->count && status == DVI_OK && c->shows[COLUMN_INVARIANT]; k++) {
     const shown_column *column = &c->column[k];
-    if (column->kind == COLUMN_INVARIANT && !(c->energy && column->index == 0))
+    if (column->kind == COLUMN_INVARIANT)
       status = dvi_integrator_invariant(integrator, column->index, &c->invariant[column->index]);
   }
   if (status == DVI_OK && c->shows[COLUMN_VELOCITY]) status = velocity_near(c->scene, t, q, p, c->room, c->velocity);

@@ -100,7 +100,7 @@ static int observe(dvi_integrator *integrator, void *user)
   if (row || r->trace.t != NULL) good = columns_measure(&r->columns, integrator);
   if (good && row) good = write_row(r, integrator);
   if (good) good = alarms_look(&r->alarms, integrator);
-  if (good && r->trace.t != NULL) trace_add(&r->trace, t, dvi_integrator_q(integrator), r->columns.invariant[0]);
+  if (good && r->trace.t != NULL) trace_add(&r->trace, integrator);
   if (r->progress.shown) progress_show(&r->progress, (t - r->t_start) / (r->request->t_end - r->t_start), "dvi run");
   r->stop_silently = !good;
   return good ? 0 : -1;
@@ -192,13 +192,16 @@ static int write_files(recorder *r, dvi_integrator *integrator)
 {
   const run_request *request = r->request;
   int code = FAILED;
-  if (request->plot != NULL && !trace_init(&r->trace, r->scene->nq)) return FAILED;
+  const bool chosen = request->columns != NULL || r->scene->column != NULL;
+  if (request->plot != NULL && !trace_init(&r->trace, &r->columns, chosen)) {
+    trace_clear(&r->trace);
+    return FAILED;
+  }
   if (file_open(&r->out, request->out) && (request->events == NULL || file_open(&r->events_out, request->events)))
     code = advance(r, integrator);
   if (to_be_kept(code) && !file_keep(&r->out)) code = FAILED;
   if (to_be_kept(code) && request->events != NULL && !file_keep(&r->events_out)) code = FAILED;
-  if (to_be_kept(code) && request->plot != NULL && !trace_plot(&r->trace, r->scene->name, r->scene->coordinate, request->plot))
-    code = FAILED;
+  if (to_be_kept(code) && request->plot != NULL && !trace_plot(&r->trace, request->plot)) code = FAILED;
   file_discard(&r->out);
   file_discard(&r->events_out);
   trace_clear(&r->trace);
@@ -209,7 +212,6 @@ int record(const run_request *request, const problem *scene, dvi_integrator *int
 {
   recorder r = {.request = request, .scene = scene, .chooses = dvi_integrator_chooses_steps(integrator)};
   int code = columns_choose(&r.columns, scene, integrator, request->columns);
-  r.columns.energy = request->plot != NULL;
   if (code == DONE) code = alarms_read(&r.alarms, scene, &request->alarms);
   if (code == DONE && !energy_watch_start(&r.watch, scene, integrator, energy_bound(scene, request->method))) code = FAILED;
   r.caught = signals_note(ended_again);

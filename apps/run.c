@@ -264,7 +264,10 @@ int run_command(int argc, char **argv)
       {.name = "verify", .flag = &r.verify, .help = "run with half the step, and a quarter, too: how many digits are right?"},
       {.name = "digits", .count = &r.digits, .value = "N", .help = "with --verify: exit code 3 if fewer than N are"},
       {.name = "csv", .word = &r.csv, .value = "-|FILE", .help = "with --verify: its table as CSV"},
-      {.name = "plot", .word = &r.plot, .value = "FILE.svg", .help = "draw coordinates and energy error over time"},
+      {.name = "plot",
+       .word = &r.plot,
+       .value = "FILE.svg",
+       .help = "draw columns over time, and the invariants' errors; it says which"},
       {.name = NULL},
   };
   const command_line command = {

@@ -144,7 +144,8 @@ expect 1 'no energy' run overflow.yaml
 says err '1e308.x, x = 2.995 is not finite, at t = 0.1' 'why'
 expect 0 'columns without energy' run overflow.yaml --columns x,growth,square
 expect 1 'columns with it' run overflow.yaml --columns x,energy
-expect 1 'a plot shows it, too' run overflow.yaml --columns x --plot overflow.svg
+expect 0 'nor does a plot show it' run overflow.yaml --columns x --plot overflow.svg
+expect 1 'a plot that shows it' run overflow.yaml --columns x,energy --plot overflow.svg
 
 # Every option of dvi run is used or refused; what the sections say is tried by test_scene_sections.sh.
 cat >spring.yaml <<'END'
