@@ -107,5 +107,6 @@ int verify_tell(const run_request *request, const problem *scene, const dvi_inte
   const int digits = good ? fewest_digits(table, request->columns != NULL) : 0;
   table_destroy(&table);
   if (!good) return FAILED;
-  return digits < request->digits ? say_fewer(request, integrator, digits, verdict) : DONE;
+  if (digits >= request->digits) return DONE;
+  return output_flushed() ? say_fewer(request, integrator, digits, verdict) : FAILED;
 }
