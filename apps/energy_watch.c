@@ -95,9 +95,7 @@ static void halve(energy_watch *w)
   const double scale = mean(w);
   for (int k = 0; k < ENERGY_LOOKS_MAX / 2; k++) {
     const energy_look *one = &w->look[2 * k], *other = one + 1;
-    const double passed = ratio_of(one, scale) > w->bound ? one->passed : other->passed;
     w->look[k] = ratio_of(one, scale) < ratio_of(other, scale) ? *other : *one;
-    w->look[k].passed = passed;
   }
   w->looks = ENERGY_LOOKS_MAX / 2;
 }
@@ -114,7 +112,8 @@ static void look(energy_watch *w)
   w->exchanged += T * fabs(t - w->t);
   w->t = t;
   if (w->looks == ENERGY_LOOKS_MAX) halve(w);
-  w->look[w->looks++] = (energy_look){t, fabs(energy - w->first), kinetic ? T : 0.0, t};
+  w->look[w->looks++] = (energy_look){t, fabs(energy - w->first), kinetic ? T : 0.0};
+  if (isnan(w->passed) && ratio_of(&w->look[w->looks - 1], mean(w)) > w->bound) w->passed = t;
 }
 
 bool energy_look_due(long steps)
@@ -125,7 +124,7 @@ bool energy_look_due(long steps)
 bool energy_watch_start(energy_watch *w, const problem *scene, dvi_integrator *integrator, double bound)
 {
   const size_t nq = (size_t)scene->nq, nv = (size_t)scene->nv;
-  *w = (energy_watch){.scene = scene, .integrator = integrator, .bound = bound, .blind = true};
+  *w = (energy_watch){.scene = scene, .integrator = integrator, .bound = bound, .passed = (double)NAN, .blind = true};
   if (!dvi_system_autonomous(scene->system)) return true;
   w->room = calloc(2 * (nq + nv), sizeof *w->room);
   if (w->room == NULL) return library_error(DVI_NO_MEMORY) == DONE;
@@ -158,11 +157,10 @@ energy_verdict energy_watch_end(energy_watch *w)
   for (int k = 0; k < w->looks; k++) {
     const energy_look *seen = &w->look[k];
     const double ratio = ratio_of(seen, scale);
-    if (ratio > w->bound && isnan(verdict.passed)) verdict.passed = seen->passed;
     if (ratio <= verdict.ratio) continue;
     verdict.ratio = ratio;
     verdict.t = seen->t;
-    verdict.scale = fmax(scale, seen->local);
   }
+  if (verdict.ratio > w->bound) verdict.passed = isnan(w->passed) ? verdict.t : w->passed;
   return verdict;
 }

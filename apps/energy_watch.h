@@ -18,7 +18,6 @@ enum { ENERGY_LOOKS_MAX = 256 };
 /** The energy at one time. */
 typedef struct energy_look {
   double t, error, local; /**< local: the kinetic energy there; 0 where there is none */
-  double passed;          /**< when the bound was passed first, of the times that this one stands for; t itself if it was not */
 } energy_look;
 
 typedef struct energy_watch {
@@ -32,13 +31,14 @@ typedef struct energy_watch {
   double t_start, first; /**< when it began, and the energy then */
   double t, exchanged;   /**< the last look, and the integral of the kinetic energy up to there */
   int looks, next;       /**< kept; the number that is set back at the next look */
+  double passed;         /**< when the bound was first passed, in the scale of the run so far; NaN: not yet */
   energy_look look[ENERGY_LOOKS_MAX];
 } energy_watch;
 
 /** What a run was like. */
 typedef struct energy_verdict {
-  double scale, ratio; /**< of the largest error in its scale; NaN: nothing was seen */
-  double t, passed;    /**< when that was, and when the bound was passed first; NaN: never */
+  double ratio;     /**< of the largest error to its scale; NaN: nothing was seen */
+  double t, passed; /**< when that was; when the bound was passed first, NaN: the largest error is below it */
 } energy_verdict;
 
 /** Whether a run is to be looked at after so many steps: after every one in the beginning, where a step that is far too large

@@ -184,6 +184,11 @@ static int run_problem(run_request *request, const char *name)
   return code;
 }
 
+static const char summary[] =
+    "Compute a trajectory with fixed steps, with those that sem chooses, or with steps that follow the motion; write it and its\n"
+    "invariants as CSV. A scene may say which method it wants, after how many steps a row, which columns, and which\n"
+    "events end the run.\n";
+
 static const char *const details[] = {
     "Columns: t, the coordinates, their momenta (p_ and the coordinate's name), energy, the other invariants. Problems with\n"
     "rotations and directions have velocities, too, before the momenta, and after all the distance of the coordinates from\n"
@@ -194,7 +199,8 @@ static const char *const details[] = {
     "back as it was. The first row is the start (with --resume: the checkpoint), the last one is the end, wherever\n"
     "--every puts the rows between.\n",
     "What no column shows is not evaluated for the rows. The energy of a system that does not depend on time is looked at all the\n"
-    "same, in the first 64 steps, in every 16th later on, and at the end; an error above 1 % of the mean kinetic energy (or of that\n"
+    "same, in the first 64 steps, in every 16th later on, and at the end; an error above 1 % of the mean kinetic energy (or of "
+    "that\n"
     "at its time, if it is larger) is told at the end, with what helps. With a one-form or a Hamiltonian the scale is by how much\n"
     "the energy would change if coordinates and momenta went back to the start, one at a time. Of methods that step over fast\n"
     "potentials 10 % are told. The exit code is 0 all the same.\n",
@@ -286,10 +292,7 @@ int run_command(int argc, char **argv)
       .name = "run",
       .synopsis = "PROBLEM|SCENE.yaml --method SPEC [--h H] [--t-end T] [OPTIONS]",
       .operand = "PROBLEM",
-      .summary = "Compute a trajectory with fixed steps, with those that sem chooses, or with steps that follow the motion; write "
-                 "it and its\n"
-                 "invariants as CSV. A scene may say which method it wants, after how many steps a row, which columns, and which\n"
-                 "events end the run.\n",
+      .summary = summary,
       .options = options,
       .details = details,
   };
