@@ -8,8 +8,9 @@
 
 enum { ADVICE_SIZE = 128, GOOD_ORDER = 4 };
 
-/* Of the scale: what is told; the same of methods whose steps go beyond the periods of fast potentials on purpose, and let their
- * energy oscillate; what a better step aims at; and errors of steps that do not resolve the motion at all. */
+/* Of the scale: what is told; the same of methods whose steps go beyond the periods of fast
+ * potentials on purpose, and let their energy oscillate; what a better step aims at; and errors
+ * of steps that do not resolve the motion at all. */
 static const double bound_of_most = 0.01, bound_of_splitting = 0.1, target = 0.001, unresolved = 0.3;
 
 /* Down to a number of two digits. */
@@ -39,15 +40,16 @@ static double longest_step(const energy_watch *watch, const run_request *request
   return dvi_integrator_monitor(watch->integrator) == NULL ? fmin(fabs(watch->scene->h), fabs(request->h)) : fabs(request->h);
 }
 
-/* An error that has forgotten how it grew tells no step, but the problem's own one does: it suits an order of 4. At an order of 2
- * a fifth of it has about the same error. */
+/* An error that has forgotten how it grew tells no step, but the problem's own one does: it
+ * suits an order of 4. At an order of 2 a fifth of it has about the same error. */
 static double better_step(const run_request *request, int order, double ratio, double most)
 {
   const bool known = ratio < unresolved;
   return energy_shorter_step(request->h, order, target / fmin(ratio, 1.0), known || order > 2 ? most : 0.2 * most);
 }
 
-/* What is better than a shorter step: more order, once the steps resolve the motion; near collisions steps that follow it. */
+/* What is better than a shorter step: more order, once the steps resolve the motion; near
+ * collisions steps that follow it. */
 static void advise(const energy_watch *watch, const run_request *request, double ratio, double most, char advice[ADVICE_SIZE])
 {
   const problem *scene = watch->scene;

@@ -37,7 +37,8 @@ static bool potential_energy(const dvi_system_terms *terms, double t, const doub
   return good;
 }
 
-/* Of a constant mass T = E - V; of a general Lagrangian p.v/2, which is T where it is quadratic in v. */
+/* Of a constant mass T = E - V; of a general Lagrangian p.v/2, which is T where it is quadratic
+ * in v. */
 static bool kinetic_energy(energy_watch *w, double t, double energy, double *T)
 {
   const problem *scene = w->scene;
@@ -62,8 +63,8 @@ static bool plain_energy(const dvi_system_terms *terms, double t, const double *
   return potential_energy(terms, t, q, H);
 }
 
-/* By how much the energy changes if one number goes back to the start, times how many numbers there are: each look takes the
- * next one. */
+/* By how much the energy changes if one number goes back to the start, times how many numbers
+ * there are: each look takes the next one. */
 static bool exchange(energy_watch *w, double t, double energy, double *change)
 {
   const problem *scene = w->scene;

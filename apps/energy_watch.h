@@ -1,12 +1,15 @@
-/** Watches the energy of a conservative system along a run, and says at its end when the step is too large.
+/** Watches the energy of a conservative system along a run, and says at its end when the step is
+ *  too large.
  *
- *  The error is |E(t) - E(0)|. Its scale does not depend on the constant that a potential may hold: of a Lagrangian system
- *  it is the mean kinetic energy of the run, or the kinetic energy at that time if it is larger (near a pericentre
- *  both terms of the energy are large, and so is what a good method exchanges between them). A Hamiltonian or a one-form
- *  has no kinetic energy; there the scale is by how much the energy would change, on average, if coordinates and momenta
- *  went back, one at a time, to where they started.
+ *  The error is |E(t) - E(0)|. Its scale does not depend on the constant that a potential may
+ *  hold: of a Lagrangian system it is the mean kinetic energy of the run, or the kinetic energy
+ *  at that time if it is larger (near a pericentre both terms of the energy are large, and so is
+ *  what a good method exchanges between them). A Hamiltonian or a one-form has no kinetic
+ *  energy; there the scale is by how much the energy would change, on average, if coordinates
+ *  and momenta went back, one at a time, to where they started.
  *
- *  Systems that depend on time have no such watch. The first 64 steps are looked at, every 16th later on, and the last. */
+ *  Systems that depend on time have no such watch. The first 64 steps are looked at, every 16th
+ *  later on, and the last. */
 #ifndef ENERGY_WATCH_H
 #define ENERGY_WATCH_H
 #include <stdbool.h>
@@ -31,21 +34,22 @@ typedef struct energy_watch {
   double t_start, first; /**< when it began, and the energy then */
   double t, exchanged;   /**< the last look, and the integral of the kinetic energy up to there */
   int looks, next;       /**< kept; the number that is set back at the next look */
-  double passed;         /**< when the bound was first passed, in the scale of the run so far; NaN: not yet */
+  double passed;         /**< when the bound was first passed, in the scale up to there; NaN: not yet */
   energy_look look[ENERGY_LOOKS_MAX];
 } energy_watch;
 
 /** What a run was like. */
 typedef struct energy_verdict {
   double ratio;     /**< of the largest error to its scale; NaN: nothing was seen */
-  double t, passed; /**< when that was; when the bound was passed first, NaN: the largest error is below it */
+  double t, passed; /**< when that was; when the bound was first passed, NaN: it was not */
 } energy_verdict;
 
-/** Whether a run is to be looked at after so many steps: after every one in the beginning, where a step that is far too large
- *  shows, then so rarely that it costs little. */
+/** Whether a run is to be looked at after so many steps: after every one in the beginning, where
+ *  a step that is far too large shows, then so rarely that it costs little. */
 bool energy_look_due(long steps);
 
-/** Begin at the integrator's state; an error is to be told if it is above `bound` times its scale. False without memory, with a complaint. */
+/** Begin at the integrator's state; an error is to be told if it is above `bound` times its
+ *  scale. False without memory, with a complaint. */
 bool energy_watch_start(energy_watch *watch, const problem *scene, dvi_integrator *integrator, double bound);
 void energy_watch_clear(energy_watch *watch);
 

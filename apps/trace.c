@@ -10,7 +10,8 @@
 enum { MOTION, ENERGY, INVARIANTS };
 enum { USUAL_CURVES = 6, NAMES_SIZE = 512 };
 
-/* What is drawn first: places and angles, then directions; entries of matrices, of which nine say what three angles do, last. */
+/* What is drawn first: places and angles, then directions; entries of matrices, of which nine
+ * say what three angles do, last. */
 typedef enum coordinate_rank { PLACE, DIRECTION, ENTRY } coordinate_rank;
 
 /* ---- the choice ---- */

@@ -23,16 +23,17 @@ typedef struct run_trace {
 
 /** Choose what is drawn of the columns that a run shows.
  *
- *  Columns that were chosen, by --columns or the scene, are drawn, up to TRACE_CURVES in a panel. Else it is the first six
- *  coordinates, places and angles before directions; entries of rotation matrices never: of a body that only turns, its
- *  velocities. False without memory, with a complaint. */
+ *  Columns that were chosen, by --columns or the scene, are drawn, up to TRACE_CURVES in a
+ *  panel. Else it is the first six coordinates, places and angles before directions; entries of
+ *  rotation matrices never: of a body that only turns, its velocities. False without memory,
+ *  with a complaint. */
 bool trace_init(run_trace *trace, const run_columns *columns, bool chosen);
 void trace_clear(run_trace *trace);
 
 /** Keep the columns as they were measured, unless they are thinned out. */
 void trace_add(run_trace *trace, const dvi_integrator *integrator);
 
-/** The columns over time, and the invariants' change since the start, as an SVG file; say what is drawn. False, with a complaint, if it
- *  cannot be written. */
+/** The columns over time, and the invariants' change since the start, as an SVG file; say what
+ *  is drawn. False, with a complaint, if it cannot be written. */
 bool trace_plot(const run_trace *trace, const char *path);
 #endif

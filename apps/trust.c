@@ -22,8 +22,9 @@ double trust_error(double first, double second, double third, double ratio)
   return whole + ratio / (1.0 - ratio) * fmax(fine, ratio * coarse);
 }
 
+/* A number that is 0 without an error is all that it can be. */
 int trust_digits(double error, double size)
 {
-  if (!(error < size)) return error > 0.0 || isnan(error) ? 0 : TRUST_DIGITS_MOST; /* 0 without an error is all that it can be */
+  if (!(error < size)) return error > 0.0 || isnan(error) ? 0 : TRUST_DIGITS_MOST;
   return error > 0.0 ? (int)fmin(floor(-log10(error / size)), TRUST_DIGITS_MOST) : TRUST_DIGITS_MOST;
 }

@@ -16,7 +16,8 @@
 #include "trust.h"
 #include "verify_report.h"
 
-/* IDA is asked for spans that it crosses in about a second. Its two runs tell its own error up to such a factor. */
+/* IDA is asked for spans that it crosses in about a second. Its two runs tell its own error up
+ * to such a factor. */
 enum { WITNESS_STEPS = 200000 };
 static const double doubt = 10.0;
 
@@ -59,7 +60,8 @@ static bool read_numbers(verifier *v, double *number)
   return true;
 }
 
-/* How large the numbers become is seen in the first run; its end is their room until it is there. */
+/* How large the numbers become is seen in the first run; its end is their room until it is
+ * there. */
 static int observe(dvi_integrator *integrator, void *user)
 {
   verifier *v = user;
@@ -121,7 +123,8 @@ static void estimate(verifier *v)
   }
 }
 
-/* IDA shares no code with the methods. It is asked from the start as the integrator has it, projected if it was off. */
+/* IDA shares no code with the methods. It is asked from the start as the integrator has it,
+ * projected if it was off. */
 static dvi_status ask_witness(verifier *v, double *error)
 {
   const int nq = v->scene->nq, nv = v->scene->nv;

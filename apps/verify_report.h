@@ -20,7 +20,8 @@ typedef struct trust_verdict {
   bool contradicted;    /**< and that is too far */
 } trust_verdict;
 
-/** Print the table, or write it as CSV, and the verdict. Returns DONE, CHECK_FAILED for fewer digits than are asked for, or FAILED. */
+/** Print the table, or write it as CSV, and the verdict. Returns DONE, CHECK_FAILED for fewer
+ *  digits than are asked for, or FAILED. */
 int verify_tell(const run_request *request, const problem *scene, const dvi_integrator *integrator, const run_columns *columns,
                 const trust_numbers *numbers, const trust_verdict *verdict);
 #endif
