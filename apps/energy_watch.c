@@ -6,7 +6,9 @@
 
 #include "command.h"
 
-enum { EVERY_STEP = 64, STRIDE = 16 };
+/* A prime number of steps: a motion whose period is a whole number of them is seen at all its
+ * phases. */
+enum { EVERY_STEP = 32, STRIDE = 61 };
 
 /* The scale is at least this part of the energy itself: of a system at rest there is no other. */
 static const double least_scale = 1e-8;

@@ -8,7 +8,7 @@
  *  energy; there the scale is by how much the energy would change, on average, if coordinates
  *  and momenta went back, one at a time, to where they started.
  *
- *  Systems that depend on time have no such watch. The first 64 steps are looked at, every 16th
+ *  Systems that depend on time have no such watch. The first 32 steps are looked at, every 61st
  *  later on, and the last. */
 #ifndef ENERGY_WATCH_H
 #define ENERGY_WATCH_H

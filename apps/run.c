@@ -199,7 +199,7 @@ static const char *const details[] = {
     "back as it was. The first row is the start (with --resume: the checkpoint), the last one is the end, wherever\n"
     "--every puts the rows between.\n",
     "What no column shows is not evaluated for the rows. The energy of a system that does not depend on time is looked at all the\n"
-    "same, in the first 64 steps, in every 16th later on, and at the end; an error above 1 % of the mean kinetic energy (or of "
+    "same, in the first 32 steps, in every 61st later on, and at the end; an error above 1 % of the mean kinetic energy (or of "
     "that\n"
     "at its time, if it is larger) is told at the end, with what helps. With a one-form or a Hamiltonian the scale is by how much\n"
     "the energy would change if coordinates and momenta went back to the start, one at a time. Of methods that step over fast\n"
