@@ -1,9 +1,18 @@
 #include "alarms.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "command.h"
+#include "spelling.h"
+
+enum { NAME_SIZE = 64, HINT_SIZE = 128 };
+
+static const char *invariant_at(int k, const void *list)
+{
+  return dvi_system_invariant_name(((const problem *)list)->system, k);
+}
 
 static int read_alarm(const problem *scene, const char *text, alarm_bound *alarm)
 {
@@ -15,7 +24,10 @@ static int read_alarm(const problem *scene, const char *text, alarm_bound *alarm
     alarm->name = dvi_system_invariant_name(scene->system, alarm->invariant);
     if (strncmp(alarm->name, text, length) == 0 && alarm->name[length] == '\0') return DONE;
   }
-  return usage_error("run: --alarm %s: %s has no invariant '%.*s'", text, scene->name, (int)length, text);
+  char name[NAME_SIZE], hint[HINT_SIZE];
+  (void)snprintf(name, sizeof name, "%.*s", (int)length, text);
+  return usage_error("run: --alarm %s: %s has no invariant '%s'%s", text, scene->name, name,
+                     suggestion(name, invariant_at, scene, hint, sizeof hint));
 }
 
 static int check_new(const alarm_list *list, const alarm_bound *alarm)

@@ -10,7 +10,7 @@
 #include "table.h"
 #include "velocity.h"
 
-enum { HINT_SIZE = 128 };
+enum { HINT_SIZE = 512, NAMED_MOST = 12 };
 
 /* ---- what there is ---- */
 
@@ -67,6 +67,18 @@ static const char *name_at(int k, const void *list)
   return k < c->there ? c->all[k].name : NULL;
 }
 
+/* The nearest name; without one the first of all names. */
+static const char *hint_at_name(const run_columns *c, const char *name, char hint[HINT_SIZE])
+{
+  if (suggestion(name, name_at, c, hint, HINT_SIZE)[0] != '\0') return hint;
+  size_t length = 0;
+  for (int k = 0; k < c->there && k < NAMED_MOST && length < HINT_SIZE; k++)
+    length += (size_t)snprintf(hint + length, HINT_SIZE - length, "%s%s", k > 0 ? ", " : "; it has ", c->all[k].name);
+  if (c->there > NAMED_MOST && length < HINT_SIZE)
+    (void)snprintf(hint + length, HINT_SIZE - length, " and %d others", c->there - NAMED_MOST);
+  return hint;
+}
+
 /* t is in front of every row. */
 static int show_name(run_columns *c, const char *method, const char *name)
 {
@@ -76,8 +88,7 @@ static int show_name(run_columns *c, const char *method, const char *name)
   while ((there = name_at(k, c)) != NULL && strcmp(there, name) != 0) k++;
   if (there == NULL) {
     char hint[HINT_SIZE];
-    return usage_error("run: %s by %s has no column '%s'%s", c->scene->name, method, name,
-                       suggestion(name, name_at, c, hint, sizeof hint));
+    return usage_error("run: %s by %s has no column '%s'%s", c->scene->name, method, name, hint_at_name(c, name, hint));
   }
   if (c->shown[k]) return usage_error("run: column '%s' is asked for twice", name);
   show(c, k);
@@ -142,13 +153,6 @@ void columns_clear(run_columns *c)
   *c = (run_columns){.count = 0};
 }
 
-bool columns_energy(const run_columns *c)
-{
-  for (int k = 0; k < c->count; k++)
-    if (c->column[k].kind == COLUMN_INVARIANT && c->column[k].index == 0) return true;
-  return false;
-}
-
 /* ---- rows ---- */
 
 void columns_header(const run_columns *c, FILE *stream)
@@ -164,10 +168,10 @@ void columns_header(const run_columns *c, FILE *stream)
 static dvi_status measure(run_columns *c, dvi_integrator *integrator)
 {
   const double t = dvi_integrator_time(integrator), *q = dvi_integrator_q(integrator), *p = dvi_integrator_p(integrator);
-  dvi_status status = c->energy ? dvi_integrator_invariant(integrator, 0, c->invariant) : DVI_OK;
+  dvi_status status = DVI_OK;
   for (int k = 0; k < c->count && status == DVI_OK && c->shows[COLUMN_INVARIANT]; k++) {
     const shown_column *column = &c->column[k];
-    if (column->kind == COLUMN_INVARIANT && !(c->energy && column->index == 0))
+    if (column->kind == COLUMN_INVARIANT)
       status = dvi_integrator_invariant(integrator, column->index, &c->invariant[column->index]);
   }
   if (status == DVI_OK && c->shows[COLUMN_VELOCITY]) status = velocity_near(c->scene, t, q, p, c->room, c->velocity);
@@ -186,8 +190,9 @@ bool columns_measure(run_columns *c, dvi_integrator *integrator)
   return false;
 }
 
-static double number_of(const run_columns *c, const dvi_integrator *integrator, const shown_column *column)
+double columns_number(const run_columns *c, const dvi_integrator *integrator, int k)
 {
+  const shown_column *column = &c->column[k];
   switch (column->kind) {
   case COLUMN_COORDINATE: return dvi_integrator_q(integrator)[column->index];
   case COLUMN_VELOCITY: return c->velocity[column->index];
@@ -203,6 +208,6 @@ static double number_of(const run_columns *c, const dvi_integrator *integrator, 
 void columns_row(const run_columns *c, const dvi_integrator *integrator, FILE *stream)
 {
   (void)fprintf(stream, "%.17g", dvi_integrator_time(integrator));
-  for (int k = 0; k < c->count; k++) (void)fprintf(stream, ",%.17g", number_of(c, integrator, &c->column[k]));
+  for (int k = 0; k < c->count; k++) (void)fprintf(stream, ",%.17g", columns_number(c, integrator, k));
   (void)fputc('\n', stream);
 }

@@ -30,8 +30,7 @@ typedef struct run_columns {
   int there, count; /**< how many columns the run has; how many are shown, behind t */
   shown_column *all, *column;
   bool *shown;       /**< [there] */
-  bool energy;       /**< needed beside the table */
-  double *invariant; /**< [invariants] those that are shown, and the energy if it is needed: set by columns_measure */
+  double *invariant; /**< [invariants] those that are shown: set by columns_measure */
   double *velocity;  /**< [nv] with factors */
   double *room;      /**< [nq + nv] likewise */
   double constraint;
@@ -46,11 +45,11 @@ void columns_clear(run_columns *columns);
 
 void columns_header(const run_columns *columns, FILE *stream);
 
-/** Whether one of the columns is the energy. */
-bool columns_energy(const run_columns *columns);
-
 /** Fetch what must be evaluated for a row. False, with a complaint, if any of it is no number. */
 bool columns_measure(run_columns *columns, dvi_integrator *integrator);
+
+/** The number of shown column k at the state, as measured. */
+double columns_number(const run_columns *columns, const dvi_integrator *integrator, int k);
 
 /** Write the row of the state, as measured. */
 void columns_row(const run_columns *columns, const dvi_integrator *integrator, FILE *stream);

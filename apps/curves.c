@@ -6,9 +6,16 @@
 #include <string.h>
 
 #include "command.h"
+#include "spelling.h"
 
 /* Characters of a header in a message. */
-enum { SHOWN = 200 };
+enum { SHOWN = 200, HINT_SIZE = 128 };
+
+/* The names of a header's columns. */
+typedef struct title_list {
+  int count;
+  char (*title)[FIELD_SIZE];
+} title_list;
 
 static int ask(const char *pair, int panel, curve_list *list)
 {
@@ -35,6 +42,28 @@ int curves_ask(const words *asked, curve_list *list)
   return DONE;
 }
 
+static const char *title_at(int k, const void *list)
+{
+  const title_list *titles = list;
+  return k < titles->count ? titles->title[k] : NULL;
+}
+
+/* Refuse a column that the header lacks: with the nearest that it has, or with all of them, as far as a line holds them. */
+static int refuse_column(const row_file *file, int columns, const char *name)
+{
+  char hint[HINT_SIZE] = "";
+  title_list titles = {.title = calloc((size_t)columns, sizeof *titles.title)};
+  const char *text = file->line;
+  while (titles.title != NULL && text != NULL && titles.count < columns) rows_field(&text, titles.title[titles.count++]);
+  (void)suggestion(name, title_at, &titles, hint, sizeof hint);
+  free(titles.title);
+  if (hint[0] != '\0') return usage_error("plot: '%s' has no column '%s'%s", file->path, name, hint);
+  int length = 0;
+  while (length < SHOWN && isprint((unsigned char)file->line[length])) length++;
+  return usage_error("plot: '%s' has no column '%s'; it has %.*s%s", file->path, name, length, file->line,
+                     length < SHOWN ? "" : "..");
+}
+
 /* The columns by name; the first one that is not there is told. */
 static int find_columns(row_file *file, curve_list *list)
 {
@@ -53,10 +82,7 @@ static int find_columns(row_file *file, curve_list *list)
   for (int k = 0; k < list->curves; k++) {
     const curve_points *curve = &list->curve[k];
     if (curve->x_column >= 0 && curve->y_column >= 0) continue;
-    int length = 0;
-    while (length < SHOWN && isprint((unsigned char)file->line[length])) length++;
-    return usage_error("plot: '%s' has no column '%s'; it has %.*s%s", file->path,
-                       curve->x_column < 0 ? curve->x_name : curve->y_name, length, file->line, length < SHOWN ? "" : "..");
+    return refuse_column(file, column, curve->x_column < 0 ? curve->x_name : curve->y_name);
   }
   return DONE;
 }

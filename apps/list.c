@@ -7,12 +7,19 @@
 #include "file.h"
 #include "options.h"
 #include "problem.h"
+#include "spelling.h"
 #include "table.h"
 
-enum { NAMES_SIZE = 1024, NAME_COLUMN = 17, KEY_COLUMN = 12 };
+enum { NAMES_SIZE = 1024, NAME_COLUMN = 17, KEY_COLUMN = 12, HINT_SIZE = 64 };
 
 static const table_column method_columns[] = {{"method", NULL}, {"summary", NULL}, {"source", NULL}, {"keys", NULL}, {NULL, NULL}};
 static const table_column problem_columns[] = {{"problem", NULL}, {"summary", NULL}, {"parameters", NULL}, {NULL, NULL}};
+
+static const char *list_at(int k, const void *list)
+{
+  (void)list;
+  return k == 0 ? "methods" : k == 1 ? "problems" : NULL;
+}
 
 /* Append a word to a list of words; one that does not fit is left out. */
 static void append(char *text, const char *word)
@@ -112,7 +119,10 @@ int list_command(int argc, char **argv)
   int code;
   if (!options_parse(&command, argc, argv, &what, &code)) return code;
   const bool methods = strcmp(what, "methods") == 0;
-  if (!methods && strcmp(what, "problems") != 0) return usage_error("list: there are methods and problems to list, not '%s'", what);
+  char hint[HINT_SIZE];
+  if (!methods && strcmp(what, "problems") != 0)
+    return usage_error("list: there are methods and problems to list, not '%s'%s", what,
+                       suggestion(what, list_at, NULL, hint, sizeof hint));
   if (csv == NULL) {
     (methods ? print_methods : print_problems)();
     return DONE;

@@ -9,7 +9,7 @@
 #include "command.h"
 #include "spelling.h"
 
-enum { OPTIONS_MAX = 32, HELP_COLUMN = 26 };
+enum { OPTIONS_MAX = 32, HELP_COLUMN = 26, WORD_SIZE = 64 };
 
 bool parse_number(const char *text, double *number)
 {
@@ -46,9 +46,30 @@ static void print_help(const command_line *command)
   for (const char *const *paragraph = command->details; *paragraph != NULL; paragraph++) (void)printf("\n%s", *paragraph);
 }
 
-static int unknown_option(const command_line *command, const char *name)
+/* The option that argument --name or --name=value names; -1 if there is none. */
+static int find_option(const command_line *command, const char *name, size_t length)
 {
-  const char *near = nearest_word(name, option_name, command->options);
+  for (int k = 0; command->options[k].name != NULL; k++)
+    if (strlen(command->options[k].name) == length && strncmp(command->options[k].name, name, length) == 0) return k;
+  return -1;
+}
+
+/* What other programs, and scenes, call some options. */
+static const struct {
+  const char *other, *name;
+} other_names[] = {{"step", "h"},      {"steps", "h"},   {"dt", "h"},          {"step-size", "h"}, {"timestep", "h"},
+                   {"until", "t-end"}, {"end", "t-end"}, {"tmax", "t-end"},    {"time", "t-end"},  {"duration", "t-end"},
+                   {"output", "out"},  {"param", "set"}, {"parameter", "set"}, {"grid", "set"}};
+
+static int unknown_option(const command_line *command, const char *text, size_t length)
+{
+  char name[WORD_SIZE];
+  (void)snprintf(name, sizeof name, "%.*s", (int)length, text);
+  const char *near = NULL;
+  for (size_t k = 0; k < sizeof other_names / sizeof *other_names && near == NULL; k++)
+    if (strcmp(name, other_names[k].other) == 0 && find_option(command, other_names[k].name, strlen(other_names[k].name)) >= 0)
+      near = other_names[k].name;
+  if (near == NULL) near = nearest_word(name, option_name, command->options);
   if (near != NULL)
     return usage_error("%s: unknown option '--%s' (did you mean '--%s'?); see dvi %s --help", command->name, name, near,
                        command->name);
@@ -76,21 +97,13 @@ static int store(const command_line *command, const option *o, const char *text)
   return DONE;
 }
 
-/* The option that argument --name or --name=value names; -1 if there is none. */
-static int find_option(const command_line *command, const char *name, size_t length)
-{
-  for (int k = 0; command->options[k].name != NULL; k++)
-    if (strlen(command->options[k].name) == length && strncmp(command->options[k].name, name, length) == 0) return k;
-  return -1;
-}
-
 /* Take the option at argv[*i], and its value from there or from the next argument. */
 static int take_option(const command_line *command, int argc, char **argv, int *i, bool *given)
 {
   const char *name = argv[*i] + 2;
   const size_t length = strcspn(name, "=");
   const int k = find_option(command, name, length);
-  if (k < 0) return unknown_option(command, name);
+  if (k < 0) return unknown_option(command, name, length);
   const option *o = &command->options[k];
   if (given[k] && o->words == NULL) return usage_error("%s: --%s is given twice", command->name, o->name);
   given[k] = true;

@@ -435,7 +435,10 @@ int path_command(int argc, char **argv)
 {
   path_request r = {.t_end = (double)NAN, .period = (double)NAN, .energy = (double)NAN};
   const option options[] = {
-      {.name = "method", .word = &r.method, .value = "SPEC", .help = "galerkin, midpoint or trapezoidal: name[:key=value,...]"},
+      {.name = "method",
+       .word = &r.method,
+       .value = "SPEC",
+       .help = "galerkin, midpoint, trapezoidal, or hp or hamiltonian of types 1 to 3"},
       {.name = "ends", .word = &r.ends, .value = "KIND", .help = "fixed, periodic or initial"},
       {.name = "steps", .count = &r.steps, .value = "N", .help = "how many steps the path has"},
       {.name = "t-end", .number = &r.t_end, .value = "T", .help = "the end, from t = 0; left out: the problem's"},

@@ -1,220 +1,28 @@
 /* dvi run: one trajectory with its invariants, as CSV. */
-#include <errno.h>
 #include <float.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "alarms.h"
-#include "columns.h"
 #include "command.h"
 #include "events.h"
 #include "file.h"
 #include "open.h"
 #include "options.h"
 #include "outputs.h"
-#include "progress.h"
+#include "recorder.h"
+#include "run_request.h"
 #include "scene.h"
 #include "signals.h"
-#include "trace.h"
-
-/* What the command line asks for. */
-typedef struct run_request {
-  const char *method, *momenta, *columns, *out, *events, *checkpoint, *resume, *plot;
-  double h, t_end, tolerance; /* tolerance: NaN, or refused */
-  pacing how;
-  long every, checkpoint_every; /* 0: not given */
-  bool project, final;
-  words settings, alarms;
-} run_request;
-
-/* A run under way. */
-typedef struct recorder {
-  const run_request *request;
-  const problem *scene;
-  whole_file out, events_out;
-  run_columns columns;
-  event_list events;
-  alarm_list alarms;
-  run_trace trace;
-  progress_line progress;
-  double t_start, t;        /* where the run began; where the last observed step ended */
-  double shortest, longest; /* steps, of methods that choose them; 0: none yet */
-  double energy;            /* of the start, if a column shows it; else NaN */
-  long steps_taken, given_steps;
-  long step;    /* counted from t = 0, so that a resumed run writes the rows of an uninterrupted one */
-  bool chooses; /* the method chooses its steps */
-  bool begun, row_written, stop_silently;
-  const volatile sig_atomic_t *caught; /* the signal that ends the run after its step; 0: none yet */
-} recorder;
+#include "trust.h"
+#include "verify.h"
 
 /* Before the first step no file is open: a signal ends the process at once. */
 static const char ended_before[] = "dvi: run: a signal ended the run before its first step; nothing was written\n";
-static const char ended_again[] = "dvi: run: a second Ctrl-C ended the run at once; FILEs not yet complete stay as they were\n";
 
 static bool has_constraint(const problem *scene)
 {
   return scene->terms->one_form != NULL || scene->terms->constraint != NULL;
-}
-
-/* main complains about standard output. */
-static bool written(const whole_file *file)
-{
-  if (!ferror(file->stream)) return true;
-  if (file->path != NULL) complain("cannot write '%s': %s", file->path, strerror(errno));
-  return false;
-}
-
-static bool write_row(recorder *r, dvi_integrator *integrator)
-{
-  columns_row(&r->columns, integrator, r->out.stream);
-  r->row_written = true;
-  return written(&r->out);
-}
-
-/* An event was found. */
-static int write_event(int index, double t, const double *q, const double *v, void *user)
-{
-  recorder *r = user;
-  if (r->events_out.stream == NULL) return 0;
-  events_row(r->scene, index, t, q, v, r->events_out.stream);
-  r->stop_silently = !written(&r->events_out);
-  return r->stop_silently ? -1 : 0;
-}
-
-static bool row_is_due(const recorder *r)
-{
-  return !r->request->final && (!r->begun || r->step % r->request->every == 0);
-}
-
-/* The lengths that the method chose: not that of the step that ends the run on time. */
-static void note_step(recorder *r, const dvi_integrator *integrator)
-{
-  const double length = fabs(dvi_integrator_last_step(integrator));
-  dvi_energy_balance energy = {0};
-  (void)dvi_integrator_energy_balance(integrator, &energy);
-  if (energy.given_steps > r->given_steps) {
-    r->given_steps = energy.given_steps;
-    return;
-  }
-  r->shortest = r->steps_taken == 0 ? length : fmin(r->shortest, length);
-  r->longest = fmax(r->longest, length);
-  r->steps_taken++;
-}
-
-/* The driver calls this at the start, after each step, and once more at the end. */
-static int observe(dvi_integrator *integrator, void *user)
-{
-  recorder *r = user;
-  const double t = dvi_integrator_time(integrator);
-  if (r->begun && t == r->t) return 0;
-  r->t = t;
-  r->step += r->begun;
-  if (r->chooses && r->begun) note_step(r, integrator);
-  r->row_written = false;
-  const bool row = row_is_due(r);
-  r->begun = true;
-  bool good = true;
-  if (row || r->trace.t != NULL) good = columns_measure(&r->columns, integrator);
-  if (good && row) good = write_row(r, integrator);
-  if (good) good = alarms_look(&r->alarms, integrator);
-  if (good && r->trace.t != NULL) trace_add(&r->trace, t, dvi_integrator_q(integrator), r->columns.invariant[0]);
-  if (r->progress.shown) progress_show(&r->progress, (t - r->t_start) / (r->request->t_end - r->t_start), "dvi run");
-  r->stop_silently = !good;
-  return good ? 0 : -1;
-}
-
-/* The last state is always a row, whatever --every says. */
-static bool write_last_row(recorder *r, dvi_integrator *integrator)
-{
-  return r->row_written || (columns_measure(&r->columns, integrator) && write_row(r, integrator));
-}
-
-/* The number of the step that ends at t on the grid 0, h, 2h, ...; 0 if t is not on it. In another time there is no such grid, but a count. */
-static long step_number(const dvi_integrator *integrator, double t, double h)
-{
-  dvi_counters counters;
-  dvi_integrator_counters(integrator, &counters);
-  if (dvi_integrator_monitor(integrator) != NULL) return counters.steps;
-  const double steps = t / h;
-  return steps > 0.0 && steps < 1e15 && fabs(steps - round(steps)) < 1e-6 ? lround(steps) : 0;
-}
-
-static void say_interrupted(const recorder *r)
-{
-  complain("run: signal %d ended the run at t = %.17g of %g; the output is complete up to there", (int)*r->caught, r->t,
-           r->request->t_end);
-  if (r->request->checkpoint != NULL) complain("run: continue with --resume %s", r->request->checkpoint);
-}
-
-/* Of methods that choose their steps: what they chose, and where the energy jumped. */
-static void say_steps(const recorder *r, const dvi_integrator *integrator)
-{
-  dvi_energy_balance energy;
-  if (!r->chooses || r->steps_taken == 0) return;
-  complain("run: %ld step%s of %.3g to %.3g", r->steps_taken, r->steps_taken == 1 ? "" : "s", r->shortest, r->longest);
-  if (dvi_integrator_energy_balance(integrator, &energy) != DVI_OK) return;
-  if (energy.fallbacks == 0)
-    complain("run: no step was a fallback: the discrete energy is that of the start%s",
-             energy.work != 0 ? " and the drive's work" : "");
-  else
-    complain("run: %ld fallback%s to the least-squares step; the largest energy jump is %.3g, the last %.3g, all together %.3g",
-             energy.fallbacks, energy.fallbacks == 1 ? "" : "s", energy.largest_jump, energy.last_jump,
-             energy.jumps - energy.given_jumps);
-  if (energy.given_steps > 0)
-    complain("run: %ld ordinary step%s of given length, to end on time: energy jump %.3g", energy.given_steps,
-             energy.given_steps == 1 ? "" : "s", energy.given_jumps);
-}
-
-static double energy_now(const recorder *r, dvi_integrator *integrator)
-{
-  double energy;
-  return columns_energy(&r->columns) && dvi_integrator_invariant(integrator, 0, &energy) == DVI_OK ? energy : (double)NAN;
-}
-
-/* What no time drives keeps its energy, near enough, unless the step is too large for the method. */
-static void say_energy(const recorder *r, dvi_integrator *integrator)
-{
-  static const double growth = 100;
-  const double energy = energy_now(r, integrator), change = fabs(energy - r->energy);
-  if (fabs(r->energy) > 0.0 && change > growth * fabs(r->energy) && dvi_system_autonomous(r->scene->system))
-    complain("run: the energy went from %.3g to %.3g; is --h %g too large?", r->energy, energy, r->request->h);
-}
-
-/* Drive the integrator to the end and write all rows. */
-static int advance(recorder *r, dvi_integrator *integrator)
-{
-  const run_request *request = r->request;
-  const dvi_run_options options = {.h = request->h,
-                                   .t_end = request->t_end,
-                                   .observe = observe,
-                                   .user = r,
-                                   .events = r->events.event,
-                                   .event_count = r->events.count,
-                                   .checkpoint = request->checkpoint,
-                                   .checkpoint_every = request->checkpoint_every,
-                                   .cancel = r->caught};
-  r->t_start = dvi_integrator_time(integrator);
-  r->step = step_number(integrator, r->t_start, request->h);
-  r->energy = energy_now(r, integrator);
-  columns_header(&r->columns, r->out.stream);
-  if (r->events_out.stream != NULL) events_header(r->scene, r->events_out.stream);
-  progress_start(&r->progress, request->final || r->out.path != NULL);
-  dvi_run_report report;
-  const dvi_status status = dvi_run(integrator, &options, &report);
-  progress_end(&r->progress);
-  /* Said at once: what is asked below may leave a sentence of its own. */
-  const int code = status == DVI_OK ? DONE : r->stop_silently ? FAILED : library_error(status);
-  say_steps(r, integrator);
-  events_tell(&r->events, "run", &report);
-  alarms_tell(&r->alarms);
-  if (r->stop_silently) return FAILED;
-  const bool complete = (status != DVI_OK && request->final) || write_last_row(r, integrator);
-  if (status != DVI_OK) return code;
-  say_energy(r, integrator);
-  if (*r->caught != 0) say_interrupted(r);
-  return !complete ? FAILED : *r->caught != 0 ? 128 + (int)*r->caught : DONE;
 }
 
 /* The start's momenta, "P1,P2,...". */
@@ -274,49 +82,13 @@ static int complete(run_request *request, const problem *scene, double t)
   return DONE;
 }
 
-/* Whether what was written is to stay: all but what a failure has cut short. */
-static bool to_be_kept(int code)
-{
-  return code == DONE || code > CHECK_FAILED;
-}
-
-static int write_files(recorder *r, dvi_integrator *integrator)
-{
-  const run_request *request = r->request;
-  int code = FAILED;
-  if (request->plot != NULL && !trace_init(&r->trace, r->scene->nq)) return FAILED;
-  if (file_open(&r->out, request->out) && (request->events == NULL || file_open(&r->events_out, request->events)))
-    code = advance(r, integrator);
-  if (to_be_kept(code) && !file_keep(&r->out)) code = FAILED;
-  if (to_be_kept(code) && request->events != NULL && !file_keep(&r->events_out)) code = FAILED;
-  if (to_be_kept(code) && request->plot != NULL && !trace_plot(&r->trace, r->scene->name, r->scene->coordinate, request->plot))
-    code = FAILED;
-  file_discard(&r->out);
-  file_discard(&r->events_out);
-  trace_clear(&r->trace);
-  return code;
-}
-
-static int record(run_request *request, const problem *scene, dvi_integrator *integrator)
-{
-  recorder r = {.request = request, .scene = scene, .chooses = dvi_integrator_chooses_steps(integrator)};
-  int code = columns_choose(&r.columns, scene, integrator, request->columns);
-  r.columns.energy = request->plot != NULL;
-  if (code == DONE) code = alarms_read(&r.alarms, scene, &request->alarms);
-  r.caught = signals_note(ended_again);
-  if (code == DONE) code = events_list(&r.events, scene, write_event, &r) ? write_files(&r, integrator) : FAILED;
-  events_clear(&r.events);
-  columns_clear(&r.columns);
-  return code;
-}
-
 static int run(run_request *request, const problem *scene)
 {
   dvi_integrator *integrator = NULL;
   int code = open_paced(scene, request->method, &request->how, &integrator);
   if (code == DONE && !place(request, scene, integrator)) code = FAILED;
   if (code == DONE) code = complete(request, scene, dvi_integrator_time(integrator));
-  if (code == DONE) code = record(request, scene, integrator);
+  if (code == DONE) code = (request->verify ? verify : record)(request, scene, integrator);
   dvi_integrator_destroy(&integrator);
   return code;
 }
@@ -344,8 +116,32 @@ static int check_files(const run_request *request, const char *name)
   return code == DONE ? outputs_distinct("run", 4, files) : code;
 }
 
+/* A verification writes one table, and stands at no other state than the start. */
+static int check_verify(const run_request *request)
+{
+  const named_file others[] = {{"out", request->out},
+                               {"events", request->events},
+                               {"checkpoint", request->checkpoint},
+                               {"resume", request->resume},
+                               {"plot", request->plot}};
+  if (!request->verify) {
+    if (request->digits > 0) return usage_error("run: --digits %ld is for --verify, which finds digits", request->digits);
+    return request->csv != NULL ? usage_error("run: --csv is for the table of --verify; rows go to --out FILE") : DONE;
+  }
+  for (size_t k = 0; k < sizeof others / sizeof *others; k++)
+    if (others[k].path != NULL && !is_stream(others[k].path))
+      return usage_error("run: --verify runs the job several times and writes its own table; leave out --%s", others[k].option);
+  if (request->every > 0 || request->alarms.count > 0)
+    return usage_error("run: --verify has one row, the last one, and no alarms; leave out --%s",
+                       request->every > 0 ? "every" : "alarm");
+  return request->digits <= TRUST_DIGITS_MOST ? DONE
+                                              : usage_error("run: --digits %ld: at most %d can be found in double precision",
+                                                            request->digits, (int)TRUST_DIGITS_MOST);
+}
+
 static int check_request(const run_request *request, const char *name)
 {
+  if (check_verify(request) != DONE) return USAGE;
   if (request->checkpoint_every > 0 && request->checkpoint == NULL)
     return usage_error("run: --checkpoint-every needs --checkpoint FILE");
   if (request->resume != NULL && (request->momenta != NULL || request->project))
@@ -388,6 +184,11 @@ static int run_problem(run_request *request, const char *name)
   return code;
 }
 
+static const char summary[] =
+    "Compute a trajectory with fixed steps, with those that sem chooses, or with steps that follow the motion; write it and its\n"
+    "invariants as CSV. A scene may say which method it wants, after how many steps a row, which columns, and which\n"
+    "events end the run.\n";
+
 static const char *const details[] = {
     "Columns: t, the coordinates, their momenta (p_ and the coordinate's name), energy, the other invariants. Problems with\n"
     "rotations and directions have velocities, too, before the momenta, and after all the distance of the coordinates from\n"
@@ -397,8 +198,20 @@ static const char *const details[] = {
     "constraint |p - alpha(q)|, and dg and dg-phase add jump, the largest one; 17 digits, so that every number is read\n"
     "back as it was. The first row is the start (with --resume: the checkpoint), the last one is the end, wherever\n"
     "--every puts the rows between.\n",
-    "What no column shows is not evaluated: --columns x,y wants no energy. Where it is shown, and changes by more than a hundred\n"
-    "times what it was at the start without a drive, that is told at the end: the step is too large.\n",
+    "What no column shows is not evaluated for the rows. The energy of a system that does not depend on time is looked at all the\n"
+    "same, in the first 32 steps, in every 61st later on, and at the end; an error above 1 % of the mean kinetic energy (or of "
+    "that\n"
+    "at its time, if it is larger) is told at the end, with what helps. With a one-form or a Hamiltonian the scale is by how much\n"
+    "the energy would change if coordinates and momenta went back to the start, one at a time. Of methods that step over fast\n"
+    "potentials 10 % are told. The exit code is 0 all the same.\n",
+    "--verify runs the whole job with h, h/2 and h/4, and by IDA, where that takes a second or so, and prints for each column its\n"
+    "value at the end with h, an estimate of its error, and how many digits of its largest magnitude on the way are right; a\n"
+    "column in which nothing is right has 0. --digits N judges all coordinates and all momenta, each in the maximum norm, and\n"
+    "the columns that --columns names: fewer end with exit code 3, and with a step that would do. It costs seven times the run.\n"
+    "It takes every method, --time-transform, --step-control and events; not --out, --events, --plot, --alarm, --every or\n"
+    "checkpoints.\n",
+    "--plot draws the columns of --columns, or of the scene; left out: six coordinates, places and angles before directions, of a\n"
+    "body that only turns its angular velocity; and how energy and other invariants change. Standard error says what is drawn.\n",
     "Events of a scene are looked for in every step. One with 'stop: yes' ends the run at its time: the last row is the state\n"
     "there, and the exit code 0. The columns of --events are event, its name, t, the coordinates and their velocities (v_), on\n"
     "the step's path; how often each was found is told at the end.\n",
@@ -424,6 +237,7 @@ static const char *const details[] = {
     "  dvi run fpu --method midpoint --h 0.01 --t-end 100 --checkpoint fpu.state --out part1.csv\n"
     "  dvi run fpu --method midpoint --h 0.01 --t-end 200 --resume fpu.state --out part2.csv\n"
     "  dvi run cart.yaml --final --plot cart.svg\n"
+    "  dvi run kepler --method galerkin:degree=4 --h 0.1 --t-end 10 --verify --digits 6\n"
     "  dvi run cart.yaml | dvi plot - --axes x:theta --out path.svg\n",
     NULL,
 };
@@ -465,17 +279,20 @@ int run_command(int argc, char **argv)
        .word = &r.resume,
        .value = "FILE",
        .help = "start from a checkpoint of the same problem and method; may be the file of --checkpoint"},
-      {.name = "plot", .word = &r.plot, .value = "FILE.svg", .help = "draw coordinates and energy error over time"},
+      {.name = "verify", .flag = &r.verify, .help = "run with half the step, and a quarter, too: how many digits are right?"},
+      {.name = "digits", .count = &r.digits, .value = "N", .help = "with --verify: exit code 3 if fewer than N are"},
+      {.name = "csv", .word = &r.csv, .value = "-|FILE", .help = "with --verify: its table as CSV"},
+      {.name = "plot",
+       .word = &r.plot,
+       .value = "FILE.svg",
+       .help = "draw columns over time, and the invariants' errors; it says which"},
       {.name = NULL},
   };
   const command_line command = {
       .name = "run",
       .synopsis = "PROBLEM|SCENE.yaml --method SPEC [--h H] [--t-end T] [OPTIONS]",
       .operand = "PROBLEM",
-      .summary = "Compute a trajectory with fixed steps, with those that sem chooses, or with steps that follow the motion; write "
-                 "it and its\n"
-                 "invariants as CSV. A scene may say which method it wants, after how many steps a row, which columns, and which\n"
-                 "events end the run.\n",
+      .summary = summary,
       .options = options,
       .details = details,
   };

@@ -10,6 +10,9 @@
 
 #include "entry.h"
 
+/* Room for the names of all parameters of a problem. */
+enum { NAMES_SIZE = 1024 };
+
 #define PROBLEM_ENTRY(name) &problem_entry_##name,
 static const problem_entry *const table[] = {
 #include "problems.def"
@@ -80,7 +83,7 @@ refuse(const report *r, dvi_status status, const char *format, ...)
 /* Refuse a parameter's name, and list those that there are. */
 static dvi_status refuse_name(const report *r, const problem_entry *entry, const char *setting, size_t length)
 {
-  char names[256] = "none";
+  char names[NAMES_SIZE] = "none";
   size_t used = 0;
   for (const problem_parameter *p = parameters_of(entry); p->name && used < sizeof names; p++)
     used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "", p->name);

@@ -73,7 +73,11 @@ expect 2 'a free period between fixed ends' $kepler --from 1,0 --to 0,1 --free-p
 expect 2 'a coordinate that is none' $eight --steps 8 --symmetry 3,4,5,6,1,7
 expect 2 'a coordinate twice' $eight --steps 8 --symmetry 3,4,5,6,1,1
 expect 2 'verlet' path kepler --method verlet --ends fixed --to 0,1 --steps 9
-says err 'galerkin, midpoint and trapezoidal' 'what is possible'
+says err 'galerkin, midpoint, trapezoidal, and hp and hamiltonian of types 1 to 3 are' 'what is possible'
+for method in hp:type=1,degree=4 hamiltonian:type=2,degree=4; do
+  expect 0 "a path by $method" path figure-eight --method $method --ends periodic --steps 24
+  says out '^energy            -1.28714' "a path by $method"
+done
 expect 2 'a family without values' $kepler --from 1,0 --to 0,1 --continue e=0.1
 expect 2 'a family of an unknown parameter' $kepler --from 1,0 --to 0,1 --continue g=0.1:0.2:3
 

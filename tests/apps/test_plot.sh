@@ -29,6 +29,8 @@ expect 2 'no file' plot orbit.csv --axes x:y
 says err '\-\-out FILE.svg is missing' 'no file'
 expect 2 'no column' plot orbit.csv --axes x:z --out x.svg
 says err "no column 'z'; it has t,x,y" 'no column'
+expect 2 'nearest column' plot orbit.csv --axes t:enrgy --out x.svg
+says err "no column 'enrgy' (did you mean 'energy'?)" 'nearest column'
 expect 2 'half a pair' plot orbit.csv --axes x: --out x.svg
 says err 'wants columns' 'half a pair'
 expect 2 'no SVG' plot orbit.csv --axes x:y --out x.png

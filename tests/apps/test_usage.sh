@@ -28,6 +28,32 @@ expect 2 'unknown command' rnu
 says err "did you mean 'run'" 'nearest command'
 expect 2 'unknown option' run kepler --method verlet --tend 5
 says err "did you mean '--t-end'" 'nearest option'
+while read -r typed meant; do
+  expect 2 "--$typed" run kepler --method verlet "--$typed" 5
+  says err "unknown option '--$typed' (did you mean '--$meant'?)" "--$typed: the option that is meant"
+  expect 2 "--$typed=5" run kepler --method verlet "--$typed=5"
+  says err "unknown option '--$typed' (did you mean '--$meant'?)" "--$typed=5: the option that is meant"
+done <<'END'
+step h
+dt h
+until t-end
+end t-end
+output out
+END
+expect 2 'a step where there is none' list methods --step 1
+grep -q 'did you mean' err && fail 'no option is suggested that the command lacks'
+expect 2 'list of one' list method
+says err "did you mean 'methods'" 'nearest list'
+expect 2 'unknown column' run kepler --method verlet --columns enrgy
+says err "did you mean 'energy'" 'nearest column'
+expect 2 'a column far from all' run kepler --method verlet --columns temperature
+says err "no column 'temperature'; it has x, y, .*, laplace_y$" 'all columns'
+expect 2 'a column far from a body' run two-body --method lie-verlet --columns temperature
+says err "it has R11_1, .* and 44 others$" 'some columns, and how many more'
+expect 2 'unknown invariant' run kepler --method verlet --alarm enrgy=1
+says err "did you mean 'energy'" 'nearest invariant'
+expect 2 'a method of no name near' run kepler --method foo
+says err "galerkin, verlet, .*, $("$dvi" list methods --csv - | tail -n 1 | cut -d, -f1)$" 'all methods'
 expect 2 'short option' run kepler -m verlet
 expect 2 'unknown problem' run keppler --method verlet
 says err "did you mean 'kepler'" 'nearest problem'
@@ -39,9 +65,9 @@ says err "did you mean 'beside.yaml'" 'a scene without its ending'
 expect 1 'no such scene' run nowhere.yaml
 says err "cannot read 'nowhere.yaml': No such file" 'no such scene'
 expect 2 'unknown method' run kepler --method verlett
-says err "verlet" 'nearest method'
+says err "did you mean 'verlet'" 'nearest method'
 expect 2 'unknown key' run kepler --method galerkin:degre=4
-says err "degree" 'nearest key'
+says err "did you mean 'degree'" 'nearest key'
 expect 2 'unknown parameter' run kepler --method verlet --set ee=0.5
 expect 2 'parameter out of range' run kepler --method verlet --set e=1.5
 expect 2 'setting that is no pair' run kepler --method verlet --set e

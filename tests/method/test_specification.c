@@ -1,5 +1,6 @@
 /* labels: unit */
 /* A specification that cannot be is refused with a sentence that says why. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -90,11 +91,42 @@ START_TEST(a_specification_without_end_is_refused)
 }
 END_TEST
 
+/* Whether the list that ends a sentence ends with that word, behind a comma. */
+static void check_list_end(const char *method, const problem *of, dvi_status status, const char *last)
+{
+  char end[64];
+  dvi_integrator *integrator = NULL;
+  ck_assert_int_eq(dvi_integrator_create(of->system, method, &integrator), status);
+  const char *sentence = dvi_last_error();
+  (void)snprintf(end, sizeof end, ", %s", last);
+  ck_assert_uint_ge(strlen(sentence), strlen(end));
+  ck_assert_str_eq(sentence + strlen(sentence) - strlen(end), end);
+}
+
+START_TEST(no_list_of_a_sentence_is_cut_short)
+{
+  char longest[600];
+  problem *of = made_problem("kepler", NULL);
+  const char *last = dvi_method_name(dvi_method_count() - 1);
+  memset(longest, 'x', sizeof longest);
+  longest[sizeof longest - 1] = '\0';
+  check_list_end("unheard-of", of, DVI_BAD_OPTION, last);
+  for (int i = 0; i < dvi_method_count(); i++) check_words(dvi_method_name(i));
+  check_list_end(longest, of, DVI_BAD_OPTION, last);
+  check_list_end("lie-verlet", of, DVI_UNSUPPORTED, "prolongation-collocation");
+  check_list_end("shooting:onestep=unheard-of", of, DVI_BAD_OPTION, "file");
+  check_list_end("trig:filter=unheard-of", of, DVI_BAD_OPTION, "hairer-lubich");
+  check_list_end("shooting:unheard-of=1", of, DVI_BAD_OPTION, "type");
+  problem_destroy(&of);
+}
+END_TEST
+
 int main(void)
 {
   TCase *tests = tcase_create("specification");
   tcase_add_loop_test(tests, verlet_is_refused_on_a_general_lagrangian_by_name, 0, 2);
   tcase_add_loop_test(tests, a_wrong_specification_is_refused_with_its_reason, 0, REFUSED);
   tcase_add_loop_test(tests, a_specification_without_end_is_refused, 0, 6);
+  tcase_add_test(tests, no_list_of_a_sentence_is_cut_short);
   return run_tests("method/specification", tests);
 }

@@ -147,7 +147,7 @@ END_TEST
 START_TEST(methods_are_elements_of_an_action)
 {
   refused(good, "verlet", DVI_BAD_OPTION, "verlet is no discrete action with a polynomial path");
-  refused(good, "composition", DVI_BAD_OPTION, "galerkin, midpoint and trapezoidal are");
+  refused(good, "composition", DVI_BAD_OPTION, "galerkin, midpoint, trapezoidal, and hp and hamiltonian of types 1 to 3 are");
   refused(good, "sem", DVI_BAD_OPTION, "sem is no discrete action");
   refused(good, "galerkin:solver=newton", DVI_BAD_OPTION, "solver=newton is for steps");
   refused(good, "galerkin:degree=0", DVI_BAD_OPTION, "degree=0");

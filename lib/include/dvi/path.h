@@ -2,7 +2,8 @@
  *
  *      S(q_0, .. , q_N) = sum_k Ld(t_k, q_k, q_(k+1)),      t_k = start + k h,   h = span/N,
  *
- *  with the discrete Lagrangian Ld of a method that is one element of the action: galerkin, midpoint, trapezoidal. Which q_k may be varied is what
+ *  with the discrete Lagrangian Ld of a method that is one element of the action: galerkin, midpoint, trapezoidal, and hp and
+ *  hamiltonian of types 1 to 3. Which q_k may be varied is what
  *  `ends` says; the stationarity conditions are the steps of that method, joined: p_k = -D1 Ld(q_k, q_(k+1)) = D2 Ld(q_(k-1), q_k). They are one
  *  sparse system with the bands of a chain, solved by Newton's method with line search (KINSOL) and KLU: work and memory in proportion to N.
  *  Source: Marsden and West 2001, sec. 1.3 and 2.2. */
@@ -65,7 +66,8 @@ extern "C" {
 /** Make a path; its first guess is the straight line between fixed ends, else a path at rest: at q0, or at 0 for periodic ends.
  *
  *  The system must outlive it. One symbolic analysis of the whole Jacobian happens here.
- *  @param      method  specification of galerkin, midpoint or trapezoidal, see dvi/method.h; without `solver`
+ *  @param      method  specification of galerkin, midpoint or trapezoidal, or of hp or hamiltonian of types 1 to 3, see
+ *                      dvi/method.h; without `solver`
  *  @param[out] path    owned by the caller; NULL on failure
  *  @retval DVI_BAD_OPTION    the method is none of these, or its specification makes no sense
  *  @retval DVI_UNSUPPORTED   the system declares a one-form: its equations are of first order

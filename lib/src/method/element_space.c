@@ -44,8 +44,9 @@ dvi_status dvi__element_space(const dvi_system *system, const char *specificatio
   if (status != DVI_OK) return dvi__fail_in(status, "%s", user);
   if (stepper.method->step != dvi__element_step)
     status = dvi__fail(DVI_BAD_OPTION,
-                       "%s: %s is no discrete action with a polynomial path; galerkin, midpoint and trapezoidal are", user,
-                       stepper.method->name);
+                       "%s: %s is no discrete action with a polynomial path; galerkin, midpoint, trapezoidal, and hp and "
+                       "hamiltonian of types 1 to 3 are",
+                       user, stepper.method->name);
   else if (dvi__element_solver(&stepper) != DVI__SOLVER_AUTO)
     status = dvi__fail(DVI_BAD_OPTION, "%s: solver=%s is for steps; a path is solved as a whole, leave it out", user,
                        dvi__solver_choice(dvi__element_solver(&stepper)));

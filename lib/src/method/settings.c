@@ -37,7 +37,7 @@ static const char *end_of(const char *text, const char *stops)
 
 static dvi_status unknown_key(const dvi__method *method, piece name)
 {
-  char known[DVI__SPECIFICATION_SIZE] = "";
+  char known[DVI__SENTENCE_SIZE] = "";
   dvi__text text = {known, sizeof known, 0};
   for (int k = 0; k < dvi__key_count(method); k++) dvi__text_add(&text, "%s%s", k > 0 ? ", " : "", method->keys[k].name);
   if (method->list != NULL) dvi__text_add(&text, ", %s", method->list);
@@ -101,7 +101,7 @@ static dvi_status parse_list(const dvi__method *method, piece value, dvi__settin
 
 static dvi_status parse_choice(const dvi__method *method, const dvi__key *key, piece value, int *choice)
 {
-  char known[DVI__SPECIFICATION_SIZE] = "";
+  char known[DVI__SENTENCE_SIZE] = "";
   dvi__text text = {known, sizeof known, 0};
   for (int c = 0; key->choice(c) != NULL; c++) {
     if (same(value, key->choice(c))) {
@@ -166,12 +166,16 @@ static dvi_status assign(const dvi__method *method, piece name, piece value, dvi
   return method->takes_rest ? keep_for_others(method, name, value, settings) : unknown_key(method, name);
 }
 
+/* A text that is no name shall not push the names that there are out of the sentence. */
+enum { LONGEST_SHOWN = 80 };
+
 static dvi_status unknown_method(piece name)
 {
-  char known[DVI__SPECIFICATION_SIZE] = "";
+  char known[DVI__SENTENCE_SIZE] = "";
   dvi__text text = {known, sizeof known, 0};
   for (int i = 0; i < dvi_method_count(); i++) dvi__text_add(&text, "%s%s", i > 0 ? ", " : "", dvi_method_name(i));
-  return dvi__fail(DVI_BAD_OPTION, "unknown method '%.*s'; there are %s", name.length, name.text, known);
+  const int shown = name.length < LONGEST_SHOWN ? name.length : LONGEST_SHOWN;
+  return dvi__fail(DVI_BAD_OPTION, "unknown method '%.*s'; there are %s", shown, name.text, known);
 }
 
 dvi_status dvi__parse(const char *specification, const dvi__method **method, dvi__settings *settings)

@@ -51,7 +51,7 @@ static void name_motions(const dvi__method *method, dvi__text *names)
 
 static dvi_status refuse_canonical(const dvi__method *method, const char *others)
 {
-  char motions[DVI__SPECIFICATION_SIZE] = "";
+  char motions[DVI__SENTENCE_SIZE] = "";
   name_motions(method, &(dvi__text){motions, sizeof motions, 0});
   return dvi__fail(DVI_UNSUPPORTED, "%s: the system declares %s, and this method needs %s; methods for this system: %s",
                    method->name, term_name(DVI__CANONICAL), motions, others);
@@ -59,7 +59,7 @@ static dvi_status refuse_canonical(const dvi__method *method, const char *others
 
 static dvi_status check_terms(const dvi__method *method, const dvi_system *system)
 {
-  char names[DVI__SPECIFICATION_SIZE] = "";
+  char names[DVI__SENTENCE_SIZE] = "";
   if (can_use(method, system)) return DVI_OK;
   name_others(system, &(dvi__text){names, sizeof names, 0});
   if (surplus(method, system) & DVI__CANONICAL) return refuse_canonical(method, names);

@@ -1,0 +1,134 @@
+#!/bin/sh
+# dvi run --verify: no more digits are claimed than there are; what it refuses.  Usage: test_verify.sh DVI
+# It prints the table of docs/trust.md: ctest -V -R apps/verify.
+. "$(dirname "$0")/check.sh"
+
+# Each problem by three methods or more, of which the last ones come near roundoff. The judge of dvi order is the exact solution or the
+# stored digits of quadruple precision.
+sed '/^#/d' >jobs <<'END'
+oscillator 50 0.05 verlet
+oscillator 50 0.25 galerkin:degree=2
+oscillator 50 0.5 galerkin:degree=4
+pendulum 20 0.02 verlet
+pendulum 20 0.1 galerkin:degree=2
+pendulum 20 0.1 composition:order=6
+kepler 10 0.01 verlet
+kepler 10 0.02 hp:type=1,degree=2
+kepler 10 0.1 galerkin:degree=4
+henon-heiles 20 0.05 verlet
+henon-heiles 20 0.2 galerkin:degree=3
+henon-heiles 20 0.1 galerkin:degree=6
+double-pendulum 1 0.005 midpoint
+double-pendulum 1 0.02 galerkin:degree=2
+double-pendulum 1 0.05 galerkin:degree=4,quadrature=lobatto
+double-pendulum 20 0.05 midpoint
+driven-pendulum 5 0.02 midpoint
+driven-pendulum 5 0.05 galerkin:degree=2
+driven-pendulum 5 0.1 galerkin:degree=4
+fpu 1 0.001 imex
+fpu 1 0.001 verlet
+fpu 1 0.02 galerkin:degree=4
+toda 10 0.02 verlet
+toda 10 0.1 galerkin:degree=2
+toda 10 0.1 galerkin:degree=8
+figure-eight 10 0.01 verlet
+figure-eight 10 0.02 sem
+figure-eight 10 0.05 galerkin:degree=3
+pythagorean 1.5 0.005 verlet
+pythagorean 1.5 0.025 galerkin:degree=3
+pythagorean 1.5 0.05 galerkin:degree=6
+stiff-pendulum 1 0.002 midpoint
+stiff-pendulum 1 0.005 galerkin:degree=2
+stiff-pendulum 1 0.02 galerkin:degree=6
+lotka-volterra 1 0.05 vprk:nodes=1
+lotka-volterra 1 0.1 vprk:nodes=2
+lotka-volterra 1 0.1 vprk:nodes=4
+circle-dirac 2 0.02 dg-phase
+circle-dirac 2 0.05 dg-phase:degree=2
+circle-dirac 2 0.1 dg-phase:degree=4
+elastica 2 0.02 hamiltonian:type=3,degree=1
+elastica 2 0.1 hamiltonian:type=2,degree=2
+elastica 2 0.2 hamiltonian:type=2,degree=4
+two-body 5 0.02 lie-verlet
+two-body 5 0.05 composition:order=4,base=lie-verlet
+two-body 5 0.1 lie-galerkin:degree=2
+END
+
+# claimed PROBLEM T H METHOD: the second row, of all coordinates: its error, digits and size.
+claimed() { "$dvi" run "$1" --method "$4" --h "$3" --t-end "$2" --verify --csv - 2>err | sed -n 's/^all coordinates,,//p' | tr ',' ' '; }
+
+# actual PROBLEM T H METHOD: the error by the judge.
+actual() {
+  "$dvi" order "$1" --method "$4" --h "$3" --t-end "$2" --levels 1 --csv - 2>err |
+    awk -F, 'NR == 1 { for (i = NF; i > 0 && $i != "error"; i--) back++ } NR == 2 { print $(NF - back) }'
+}
+
+echo '| problem | t | method | h | digits claimed | digits that are right |'
+echo '|---|---|---|---|---|---|'
+judged=0
+while read -r problem t h method; do
+  # shellcheck disable=SC2046
+  set -- $(claimed "$problem" "$t" "$h" "$method") $(actual "$problem" "$t" "$h" "$method")
+  [ $# -eq 4 ] || { fail "$problem by $method: no digits"; cat err; continue; }
+  right=$(awk -v error="$4" -v size="$3" 'BEGIN { printf "%.1f", (error > 0 ? -log(error / size) / log(10) : 16) }')
+  echo "| $problem | $t | \`$method\` | $h | $2 | $right |"
+  # One digit of 17 may be lost in the spelling of the figures; less than two are given away where there are errors to see.
+  awk -v claimed="$2" -v right="$right" 'BEGIN { exit !(claimed <= right + 0.05) }' || [ "$2" -eq 0 ] || fail "$problem by $method: $2 claimed, $right right"
+  awk -v claimed="$2" -v right="$right" 'BEGIN { exit !(claimed > right - 2) }' || fail "$problem by $method: only $2 claimed of $right"
+  judged=$((judged + 1))
+done <jobs
+[ "$judged" -eq "$(wc -l <jobs)" ] || fail 'every job is judged'
+
+# What it prints, and its exit code.
+expect 0 'enough digits' run kepler --method galerkin:degree=4 --h 0.1 --t-end 10 --verify --digits 6
+says out '^  all coordinates  *[0-9.]*e-08 *7$' 'the state'
+says out '^  y  *-0.2836685002[0-9]* *[0-9.]*e-08 *6$' 'a column, its value, its error and its digits'
+says out '^halving the step divides the error by [0-9]*; order 8 makes that 256$' 'the errors fall'
+says out '^second method: IDA, .* ends [0-9.]*e-08 away' 'another method'
+expect 3 'too few digits' run kepler --method galerkin:degree=4 --h 0.1 --t-end 10 --verify --digits 9
+says err 'run: --digits 9: 7 can be trusted' 'how many there are'
+step=$(sed -n 's/.*try --h //p' err)
+expect 0 'the step that is advised' run kepler --method galerkin:degree=4 --h "$step" --t-end 10 --verify --digits 9
+expect 3 'columns that are asked for count' run kepler --method galerkin:degree=4 --h 0.1 --t-end 10 --verify --digits 7 --columns x,y
+expect 0 'others do not' run kepler --method galerkin:degree=4 --h 0.1 --t-end 10 --verify --digits 7
+expect 3 'nothing is right' run kepler --method midpoint --h 30 --t-end 60 --verify --digits 1
+says out '^  all coordinates .* 0$' 'no digit'
+says out '^halving the step does not halve the error' 'why'
+expect 3 'chaos' run pendulum-3d --method lie-verlet --h 0.01 --t-end 60 --verify --digits 1
+says out '^  all coordinates .* 0$' 'no digit of a chaotic motion'
+expect 0 'csv' run kepler --method verlet --h 0.01 --t-end 1 --verify --csv digits.csv
+says digits.csv '^column,value,error,digits,size$' 'the header'
+says digits.csv '^x,-0\.[0-9]*,[0-9.e-]*,3,' 'a row'
+"$dvi" run kepler --method verlet --h 0.01 --t-end 1 --final | tail -n 1 | cut -d, -f2 >value
+says digits.csv "^x,$(cat value)," 'the value is that of the run, to the last bit'
+expect 0 'a step that does not divide the way' run kepler --method galerkin:degree=3 --h 0.3 --t-end 1 --verify --digits 3
+says out '^halving the step divides the error by [0-9.]*; order 6 makes that 64$' 'the errors fall'
+expect 0 'in another time' run kepler --set e=0.9 --method galerkin:degree=4 --time-transform distance --h 0.2 --t-end 10 --verify --digits 5
+expect 0 'controlled' run kepler --method verlet --step-control distance --h 0.01 --t-end 10 --verify
+says out '^second method: IDA' 'controlled: compared'
+expect 0 'backward' run kepler --method galerkin:degree=4 --h -0.1 --t-end -10 --verify --digits 6
+for refused in '--out rows.csv' '--plot x.svg' '--checkpoint a' '--resume a' '--every 3' '--alarm energy=1'; do
+  # shellcheck disable=SC2086
+  expect 2 "--verify with $refused" run kepler --method verlet --verify $refused
+  says err "leave out ${refused%% *}" "--verify with $refused: which option"
+done
+expect 2 'digits alone' run kepler --method verlet --digits 3
+says err '\-\-digits 3 is for --verify' 'digits alone'
+expect 2 'csv alone' run kepler --method verlet --csv -
+expect 2 'more digits than there are' run kepler --method verlet --verify --digits 17
+
+# A scene whose event ends the run: when it does has digits, too.
+cat >fall.yaml <<'END'
+parameters: {m: 2, g: 9.81}
+coordinates: {y: scalar}
+lagrangian: m/2*y'^2 - m*g*y - y^4/100
+initial: {y: 3}
+events: {ground: {zero: y, direction: falling, stop: yes}}
+method: galerkin:degree=2
+step: 0.1
+until: 5
+END
+expect 0 'an event' run fall.yaml --verify --digits 4
+says out '^  t  *0.768[0-9]* ' 'the time of the end'
+says out '^no second method: an event ended the run$' 'no second method'
+finish
