@@ -1,4 +1,5 @@
 /* dvi run: one trajectory with its invariants, as CSV. */
+#include <dvi/number.h>
 #include <errno.h>
 #include <float.h>
 #include <math.h>
@@ -221,8 +222,7 @@ static int advance(recorder *r, dvi_integrator *integrator)
 static bool parse_momenta(const char *text, int n, double *p)
 {
   for (int i = 0; i < n; i++) {
-    char *end;
-    p[i] = strtod(text, &end);
+    const char *end = dvi_number_read(text, &p[i]);
     if (end == text || !isfinite(p[i]) || *end != (i < n - 1 ? ',' : '\0')) return false;
     text = end + 1;
   }

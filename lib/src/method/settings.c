@@ -1,8 +1,8 @@
 /* Specifications: name[:key=value,...]. */
 #include <dvi/method.h>
+#include <dvi/number.h>
 #include <math.h>
 #include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,7 +14,7 @@ void dvi__text_add(dvi__text *text, const char *format, ...)
   va_list arguments;
   va_start(arguments, format);
   const size_t room = text->length < text->size ? text->size - text->length : 0;
-  const int length = vsnprintf(room > 0 ? text->text + text->length : NULL, room, format, arguments);
+  const int length = dvi_number_vprint(room > 0 ? text->text + text->length : NULL, room, format, arguments);
   va_end(arguments);
   if (length > 0) text->length += (size_t)length;
 }
@@ -90,7 +90,7 @@ static dvi_status parse_list(const dvi__method *method, piece value, dvi__settin
     if (settings->listed == DVI__LIST_MOST)
       return dvi__fail(DVI_BAD_OPTION, "%s: %s has more than %d numbers; 1 to %d are possible", method->name, method->list,
                        DVI__LIST_MOST, DVI__LIST_MOST);
-    settings->list[settings->listed++] = strtod(at, NULL);
+    (void)dvi_number_read(at, &settings->list[settings->listed++]);
     at += length;
     if (at == end) break;
   }
@@ -120,15 +120,12 @@ static int is_number(const dvi__key *key, piece value)
   return key->choice == NULL || (key->most > 0 && value.length > 0 && value.text[0] >= '0' && value.text[0] <= '9');
 }
 
-/* strtod takes more spellings than digits, point and exponent: they are refused. */
 static dvi_status parse_real(const dvi__method *method, const dvi__key *key, piece value, double *number)
 {
-  char *end = NULL;
   *number = 0;
   if (same(value, "auto")) return DVI_OK;
-  const int plain = value.length > 0 && (int)strspn(value.text, "0123456789.eE+-") == value.length;
-  if (plain) *number = strtod(value.text, &end);
-  if (plain && end == value.text + value.length && isfinite(*number) && *number > 0) return DVI_OK;
+  const char *end = dvi_number_read(value.text, number);
+  if (value.length > 0 && end == value.text + value.length && isfinite(*number) && *number > 0) return DVI_OK;
   return dvi__fail(DVI_BAD_OPTION, "%s: %s=%.*s; a positive number is possible, or auto", method->name, key->name, value.length,
                    value.text);
 }
@@ -194,14 +191,10 @@ dvi_status dvi__parse(const char *specification, const dvi__method **method, dvi
   return DVI_OK;
 }
 
-/* The fewest digits that are read back as the number. */
 static void spell_real(double number, dvi__text *text)
 {
-  char spelled[32] = "auto";
-  for (int digits = 1; digits <= 17 && number != 0; digits++) {
-    (void)snprintf(spelled, sizeof spelled, "%.*g", digits, number);
-    if (strtod(spelled, NULL) == number) break;
-  }
+  char spelled[DVI_NUMBER_SIZE] = "auto";
+  if (number != 0) dvi_number_write(number, spelled);
   dvi__text_add(text, "%s", spelled);
 }
 

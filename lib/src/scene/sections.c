@@ -1,5 +1,6 @@
 #include "scene/sections.h"
 
+#include <dvi/number.h>
 #include <limits.h>
 #include <math.h>
 #include <stdarg.h>
@@ -17,7 +18,7 @@ bool(dvi__scene_refuse)(dvi_scene *scene, dvi__span span, const char *format, ..
   char text[400];
   va_list arguments;
   va_start(arguments, format);
-  (void)vsnprintf(text, sizeof text, format, arguments);
+  (void)dvi_number_vprint(text, sizeof text, format, arguments);
   va_end(arguments);
   return dvi__complain(scene->complaint, DVI_BAD_FILE, span, "%s", text);
 }
