@@ -171,6 +171,46 @@ static dvi_status unknown_method(piece name)
   return dvi__fail(DVI_BAD_OPTION, "unknown method '%.*s'; there are %s", name.length, name.text, known);
 }
 
+/* The key and the value behind a colon or comma; a value without text if there is none. Returns where they end. */
+static const char *take_pair(const char *at, piece *name, piece *value)
+{
+  const char *start = at + 1, *equals = end_of(start, "=,"), *end = end_of(equals, ",");
+  *name = (piece){start, (int)(equals - start)};
+  *value = *equals == '=' && equals > start ? (piece){equals + 1, (int)(end - equals - 1)} : (piece){0};
+  return end;
+}
+
+static int names_file(const dvi__method *method, piece name)
+{
+  for (int k = 0; k < dvi__key_count(method); k++)
+    if (same(name, method->keys[k].name)) return method->keys[k].least == DVI__TEXT;
+  return 0;
+}
+
+/* Keys that a method hands on may be those of any other one. */
+static int may_name_file(const dvi__method *method, piece name)
+{
+  int found = names_file(method, name);
+  for (int i = 0; method->takes_rest && i < dvi_method_count(); i++)
+    found |= names_file(dvi__find_method(dvi_method_name(i), strlen(dvi_method_name(i))), name);
+  return found;
+}
+
+const char *dvi_method_file(const char *specification, size_t *length)
+{
+  const char *at = specification != NULL ? end_of(specification, ":") : "";
+  const dvi__method *method = *at != 0 ? dvi__find_method(specification, (size_t)(at - specification)) : NULL;
+  *length = 0;
+  while (method != NULL && *at != 0) {
+    piece name, value;
+    at = take_pair(at, &name, &value);
+    if (value.length == 0 || !may_name_file(method, name)) continue;
+    *length = (size_t)value.length;
+    return value.text;
+  }
+  return NULL;
+}
+
 dvi_status dvi__parse(const char *specification, const dvi__method **method, dvi__settings *settings)
 {
   unsigned given = 0;
@@ -181,11 +221,11 @@ dvi_status dvi__parse(const char *specification, const dvi__method **method, dvi
   *settings = (dvi__settings){0};
   for (int k = 0; k < dvi__key_count(*method); k++) settings->value[k] = (*method)->keys[k].left_out;
   while (*at != 0) {
-    const char *name = at + 1, *equals = end_of(name, "=,"), *end = end_of(equals, ",");
-    if (*equals != '=' || equals == name)
-      return dvi__fail(DVI_BAD_OPTION, "%s: '%.*s' is not key=value", (*method)->name, (int)(end - name), name);
-    const piece key_name = {name, (int)(equals - name)}, value = {equals + 1, (int)(end - equals - 1)};
-    DVI_TRY(assign(*method, key_name, value, settings, &given));
+    piece name, value;
+    const char *end = take_pair(at, &name, &value);
+    if (value.text == NULL)
+      return dvi__fail(DVI_BAD_OPTION, "%s: '%.*s' is not key=value", (*method)->name, (int)(end - name.text), name.text);
+    DVI_TRY(assign(*method, name, value, settings, &given));
     at = end;
   }
   return DVI_OK;
