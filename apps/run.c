@@ -19,6 +19,7 @@
 #include "scene.h"
 #include "signals.h"
 #include "trace.h"
+#include "way.h"
 
 /* What the command line asks for. */
 typedef struct run_request {
@@ -266,12 +267,9 @@ static int complete(run_request *request, const problem *scene, double t)
   if (isnan(request->t_end)) request->t_end = scene->t_end;
   const double way = way_to_end(t, request->t_end);
   if (isnan(request->h)) request->h = way < 0.0 ? -scene->h : scene->h;
-  if (request->h == 0.0) return usage_error("run: --h 0 leads nowhere");
   if (request->resume != NULL && way * scene->h < 0.0 && request->h > 0.0)
     return usage_error("run: '%s' stands at t = %.17g, past --t-end %g", request->resume, t, request->t_end);
-  if (way * request->h < 0.0)
-    return usage_error("run: --h %g leads away from --t-end %g; change the sign of one", request->h, request->t_end);
-  return DONE;
+  return way_check("run", request->h, way, request->t_end, request->how.transform == NULL && request->how.control == NULL);
 }
 
 /* Whether what was written is to stay: all but what a failure has cut short. */
