@@ -18,7 +18,8 @@ static void write_file(const char *name, const char *text)
   write_bytes(in_folder(name), (const unsigned char *)text, strlen(text));
 }
 
-/* The folder holds: outside.tableau; scenes/ with ralston.tableau, links and below/, which holds ralston.tableau, too. */
+/* The folder holds outside.tableau, and scenes/ with ralston.tableau, links and below/, which holds
+ * ralston.tableau, too. */
 static void make_files(void)
 {
   static const char tableau[] = "order 2\nc 0 2/3\na\na 2/3\nb 1/4 3/4\n";

@@ -8,8 +8,8 @@
 #include "support/files.h"
 #include "support/suite.h"
 
-/* Characters and numbers, which are all that the locale has: localedef alone is on every Debian, not the
- * files that the package locales brings along for it. */
+/* Characters and numbers, which are all that the locale has: localedef is on every Debian, but not
+ * the files that the package locales brings along for it. */
 static void write_sources(void)
 {
   FILE *characters = fopen(in_folder("characters"), "w"), *numbers = fopen(in_folder("numbers"), "w");

@@ -18,7 +18,7 @@ extern "C" {
  *  @return what follows the number; the text itself if there is none */
 const char *dvi_number_read(const char *text, double *number);
 
-/** Write a number with the fewest digits, from 15 on, that dvi_number_read reads as the same number.
+/** Write a number with the fewest digits, from 15 on, that dvi_number_read reads as the same one.
  *
  *  @param[out] text  [DVI_NUMBER_SIZE] */
 void dvi_number_write(double number, char *text);

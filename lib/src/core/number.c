@@ -1,5 +1,5 @@
-/* The program that uses the library may have set a locale with a decimal comma: what is read and written
- * here is in the C locale, which is this thread's for as long. */
+/* The program that uses the library may have set a locale with a decimal comma: what is read and
+ * written here is in the C locale, which is this thread's for as long. */
 #define _POSIX_C_SOURCE 200809L /* newlocale */
 #include <dvi/number.h>
 #include <locale.h>

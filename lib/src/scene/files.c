@@ -1,5 +1,5 @@
-/* Files that a scene names: in its own folder or below, so that whoever runs a scene of somebody else knows
- * what it can read. */
+/* Files that a scene names: in its own folder or below, so that whoever runs a scene of another
+ * person knows what it can read. */
 #define _XOPEN_SOURCE 700 /* realpath */
 #include <dvi/method.h>
 #include <errno.h>
@@ -10,7 +10,7 @@
 
 #include "scene/sections.h"
 
-/* How many characters of a scene's path are its folder, with the stroke at the end; 0: it is here. */
+/* How many characters of a scene's path are its folder and the stroke behind it; 0: it is here. */
 static int folder_size(const char *path)
 {
   const char *slash = strrchr(path, '/');
