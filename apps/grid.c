@@ -1,5 +1,6 @@
 #include "grid.h"
 
+#include <dvi/number.h>
 #include <dvi/scene.h>
 #include <math.h>
 #include <stdio.h>
@@ -25,9 +26,8 @@ static bool make_values(grid_axis *axis, long count)
 /* The number that ends with the character `stop`. Returns what follows it; NULL if there is none. */
 static const char *take_number(const char *text, char stop, double *number)
 {
-  char *end;
   if (text == NULL) return NULL;
-  *number = strtod(text, &end);
+  const char *end = dvi_number_read(text, number);
   return end != text && *end == stop && isfinite(*number) ? end + 1 : NULL;
 }
 
@@ -89,20 +89,12 @@ int grid_read(const words *settings, grid *read)
 
 /* ---- points ---- */
 
-/* The shortest spelling that is read back as the number. */
-static void spell_number(double number, char *text, size_t size)
-{
-  for (int digits = 15; digits <= 17; digits++) {
-    (void)snprintf(text, size, "%.*g", digits, number);
-    const double back = strtod(text, NULL);
-    if (!(back < number) && !(back > number)) return;
-  }
-}
-
 static void spell(const grid_axis *axis, long k, char *text, size_t size)
 {
   if (axis->list == NULL) {
-    spell_number(axis->value[k], text, size);
+    char number[DVI_NUMBER_SIZE];
+    dvi_number_write(axis->value[k], number);
+    (void)snprintf(text, size, "%s", number);
     return;
   }
   const char *at = axis->list;

@@ -1,5 +1,6 @@
 #include "options.h"
 
+#include <dvi/number.h>
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -13,9 +14,9 @@ enum { OPTIONS_MAX = 32, HELP_COLUMN = 26, WORD_SIZE = 64 };
 
 bool parse_number(const char *text, double *number)
 {
-  char *end;
-  const double value = strtod(text, &end);
-  if (end == text || *end != '\0' || text[strspn(text, "+-.0123456789eE")] != '\0' || !isfinite(value)) return false;
+  double value;
+  const char *end = dvi_number_read(text, &value);
+  if (end == text || *end != '\0' || !isfinite(value)) return false;
   *number = value;
   return true;
 }

@@ -1,6 +1,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "plot.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <float.h>
 #include <math.h>
@@ -25,13 +26,20 @@ static const double SEEN = 0.2;
 /* Okabe and Ito's colours, which the colour-blind can tell apart; their yellow is too pale for lines. */
 static const char *const colour[COLOURS] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000", "#7F3C8D"};
 
-/* A gnuplot string: in double quotes, with what is special there escaped. */
+/* A gnuplot string in double quotes. What stands between backquotes there would be run as a command,
+ * and more characters mean something: of ASCII all but letters, digits and blanks are written by their
+ * numbers. No control character can be in an SVG file. */
 static void quoted(FILE *script, const char *text)
 {
   (void)fputc('"', script);
-  for (; *text != '\0'; text++) {
-    if (*text == '"' || *text == '\\') (void)fputc('\\', script);
-    (void)fputc(*text == '\n' ? ' ' : *text, script);
+  for (const char *c = text; *c != '\0'; c++) {
+    const unsigned char byte = (unsigned char)*c;
+    if (byte < ' ' || byte == 0x7f)
+      (void)fputc(' ', script);
+    else if (byte == ' ' || isalnum(byte) || byte >= 0x80)
+      (void)fputc(byte, script);
+    else
+      (void)fprintf(script, "\\%03o", byte);
   }
   (void)fputc('"', script);
 }
@@ -179,42 +187,83 @@ static void write_script(FILE *script, int panels, const plot_panel *panel)
   if (panels > 1) (void)fputs("unset multiplot\n", script);
 }
 
-/* Start gnuplot with the script as its input and the picture as its output. Returns 0 or an error number. */
-static int start_gnuplot(FILE *script, FILE *picture, pid_t *process)
+/* In the child the script is the input, the pipe's end to write to is the output, and the pipe has no
+ * other descriptors. */
+static int redirect(posix_spawn_file_actions_t *actions, int script, const int ends[2])
 {
+  int failure = posix_spawn_file_actions_adddup2(actions, script, STDIN_FILENO);
+  if (failure == 0) failure = posix_spawn_file_actions_adddup2(actions, ends[1], STDOUT_FILENO);
+  for (int k = 0; k < 2 && failure == 0; k++)
+    if (ends[k] > STDERR_FILENO) failure = posix_spawn_file_actions_addclose(actions, ends[k]);
+  return failure;
+}
+
+/* Start gnuplot, without the start-up files of the user. Returns 0 or an error number. */
+static int spawn(int script, const int ends[2], pid_t *process)
+{
+  char name[] = "gnuplot";
+  char alone[] = "--default-settings";
+  char *arguments[] = {name, alone, NULL};
   posix_spawn_file_actions_t actions;
   int failure = posix_spawn_file_actions_init(&actions);
   if (failure != 0) return failure;
-  failure = posix_spawn_file_actions_adddup2(&actions, fileno(script), STDIN_FILENO);
-  if (failure == 0) failure = posix_spawn_file_actions_adddup2(&actions, fileno(picture), STDOUT_FILENO);
-  if (failure == 0) {
-    char name[] = "gnuplot";
-    char *arguments[] = {name, NULL};
-    failure = posix_spawnp(process, name, &actions, NULL, arguments, environ);
-  }
+  failure = redirect(&actions, script, ends);
+  if (failure == 0) failure = posix_spawnp(process, name, &actions, NULL, arguments, environ);
   (void)posix_spawn_file_actions_destroy(&actions);
   return failure;
+}
+
+/* Start gnuplot with the script as its input. Returns the descriptor to read the picture from, or -1
+ * with errno set. */
+static int start_gnuplot(FILE *script, pid_t *process)
+{
+  int ends[2];
+  if (pipe(ends) != 0) return -1;
+  const int failure = spawn(fileno(script), ends, process);
+  (void)close(ends[1]);
+  if (failure == 0) return ends[0];
+  (void)close(ends[0]);
+  errno = failure;
+  return -1;
+}
+
+/* gnuplot does not tell when a disk is full: its picture comes through a pipe, and file_keep tells.
+ * False if there is no picture. */
+static bool copy_picture(int from, FILE *picture)
+{
+  char part[4096];
+  bool any = false;
+  ssize_t length;
+  while ((length = read(from, part, sizeof part)) > 0 || (length < 0 && errno == EINTR)) {
+    any = any || length > 0;
+    if (length > 0) (void)fwrite(part, 1, (size_t)length, picture);
+  }
+  return any && length == 0;
+}
+
+static bool succeeded(pid_t process)
+{
+  int result = 0;
+  pid_t ended;
+  do ended = waitpid(process, &result, 0);
+  while (ended < 0 && errno == EINTR);
+  return ended == process && WIFEXITED(result) && WEXITSTATUS(result) == 0;
 }
 
 /* True if gnuplot drew the picture. */
 static bool draw(FILE *script, FILE *picture, const char *path)
 {
   pid_t process;
-  const int failure = start_gnuplot(script, picture, &process);
-  if (failure != 0) {
-    complain("no plot in '%s': gnuplot cannot be started (%s); install the package gnuplot-nox", path, strerror(failure));
+  const int from = start_gnuplot(script, &process);
+  if (from < 0) {
+    complain("no plot in '%s': gnuplot cannot be started (%s); install the package gnuplot-nox", path, strerror(errno));
     return false;
   }
-  int result = 0;
-  pid_t ended;
-  do ended = waitpid(process, &result, 0);
-  while (ended < 0 && errno == EINTR);
-  if (WIFEXITED(result) && WEXITSTATUS(result) == 127) {
-    complain("no plot in '%s': gnuplot is not installed (package gnuplot-nox)", path);
-    return false;
-  }
-  if (!WIFEXITED(result) || WEXITSTATUS(result) != 0) complain("no plot in '%s': gnuplot failed", path);
-  return WIFEXITED(result) && WEXITSTATUS(result) == 0;
+  const bool copied = copy_picture(from, picture);
+  (void)close(from);
+  if (succeeded(process) && copied) return true;
+  complain("no plot in '%s': gnuplot failed", path);
+  return false;
 }
 
 static bool anything_to_draw(int panels, const plot_panel *panel)
@@ -227,26 +276,31 @@ static bool anything_to_draw(int panels, const plot_panel *panel)
   return true;
 }
 
+/* A temporary file with the script, to be read from its start; NULL, with a complaint, without room. */
+static FILE *make_script(const char *path, int panels, const plot_panel *panel)
+{
+  FILE *script = tmpfile();
+  if (script != NULL) {
+    write_script(script, panels, panel);
+    if (fflush(script) == 0 && !ferror(script) && fseek(script, 0, SEEK_SET) == 0) return script;
+  }
+  complain("no plot in '%s': no temporary file for gnuplot: %s", path, strerror(errno));
+  if (script != NULL) (void)fclose(script);
+  return NULL;
+}
+
 bool plot_write(const char *path, int panels, const plot_panel *panel)
 {
+  whole_file picture = {0};
   if (!anything_to_draw(panels, panel)) {
     complain("no plot in '%s': there is no point that its axes can show", path);
-    return true;
+    return false;
   }
-  FILE *script = tmpfile();
-  if (script == NULL) {
-    complain("no plot in '%s': no temporary file for gnuplot: %s", path, strerror(errno));
-    return true;
-  }
-  write_script(script, panels, panel);
-  whole_file picture;
-  bool good = fflush(script) == 0 && fseek(script, 0, SEEK_SET) == 0 && file_open(&picture, path);
-  if (good) {
-    if (draw(script, picture.stream, path))
-      good = file_keep(&picture);
-    else
-      file_discard(&picture);
-  }
+  FILE *script = make_script(path, panels, panel);
+  if (script == NULL) return false;
+  bool good = file_open(&picture, path) && draw(script, picture.stream, path);
+  if (good) good = file_keep(&picture);
+  file_discard(&picture);
   (void)fclose(script);
   return good;
 }

@@ -24,7 +24,7 @@ typedef struct plot_panel {
 
 /** Draw panels, one above the other, into an SVG file that is whole or not there.
  *
- *  Without gnuplot it says so on standard error and returns true: a missing plot spoils no result.
- *  @return false, with a complaint, if the file cannot be written */
+ *  @return false, with a complaint, if there is no picture: gnuplot is missing or failed, there is
+ *          nothing to draw, or the file cannot be written. What was at the path is then still there. */
 bool plot_write(const char *path, int panels, const plot_panel *panel);
 #endif

@@ -17,6 +17,7 @@
 #include "signals.h"
 #include "spelling.h"
 #include "table.h"
+#include "way.h"
 
 enum { GRID_DEFAULT = 65, POINTS_DEFAULT = 2000, POINTS_MAX = 1000000, NAME_SIZE = 128, TEXT_SIZE = 256 };
 
@@ -291,8 +292,11 @@ static int complete_task(const resonance_request *request, const problem *model,
   if (isnan(task->t_end)) task->t_end = model->t_end;
   if (task->steps_vary && !isnan(task->h)) return usage_error("resonance: --h is what --sweep h varies; leave out one of them");
   if (isnan(task->h)) task->h = copysign(model->h, task->t_end);
-  const double h = task->steps_vary ? request->search.from : task->h;
-  if (!(h * task->t_end > 0.0)) return usage_error("resonance: steps of %g do not lead to --t-end %g", h, task->t_end);
+  const double t_end = task->t_end;
+  if (t_end == 0.0) return usage_error("resonance: --t-end 0 leaves nothing to run");
+  code = way_check("resonance", task->steps_vary ? request->search.from : task->h, t_end, t_end, true);
+  if (code == DONE && task->steps_vary) code = way_check("resonance", request->search.to, t_end, t_end, true);
+  if (code != DONE) return code;
   events_passed("resonance", model);
   return DONE;
 }

@@ -1,4 +1,5 @@
 /* dvi run: one trajectory with its invariants, as CSV. */
+#include <dvi/number.h>
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -16,6 +17,7 @@
 #include "signals.h"
 #include "trust.h"
 #include "verify.h"
+#include "way.h"
 
 /* Before the first step no file is open: a signal ends the process at once. */
 static const char ended_before[] = "dvi: run: a signal ended the run before its first step; nothing was written\n";
@@ -29,8 +31,7 @@ static bool has_constraint(const problem *scene)
 static bool parse_momenta(const char *text, int n, double *p)
 {
   for (int i = 0; i < n; i++) {
-    char *end;
-    p[i] = strtod(text, &end);
+    const char *end = dvi_number_read(text, &p[i]);
     if (end == text || !isfinite(p[i]) || *end != (i < n - 1 ? ',' : '\0')) return false;
     text = end + 1;
   }
@@ -74,12 +75,9 @@ static int complete(run_request *request, const problem *scene, double t)
   if (isnan(request->t_end)) request->t_end = scene->t_end;
   const double way = way_to_end(t, request->t_end);
   if (isnan(request->h)) request->h = way < 0.0 ? -scene->h : scene->h;
-  if (request->h == 0.0) return usage_error("run: --h 0 leads nowhere");
   if (request->resume != NULL && way * scene->h < 0.0 && request->h > 0.0)
     return usage_error("run: '%s' stands at t = %.17g, past --t-end %g", request->resume, t, request->t_end);
-  if (way * request->h < 0.0)
-    return usage_error("run: --h %g leads away from --t-end %g; change the sign of one", request->h, request->t_end);
-  return DONE;
+  return way_check("run", request->h, way, request->t_end, request->how.transform == NULL && request->how.control == NULL);
 }
 
 static int run(run_request *request, const problem *scene)

@@ -15,6 +15,7 @@
 #include "signals.h"
 #include "sweep_part.h"
 #include "sweep_point.h"
+#include "way.h"
 
 /* A sweep under way; the lock guards what stands below it. */
 typedef struct sweep {
@@ -142,9 +143,7 @@ static int check_task(const sweep_task *task)
   dvi_integrator_destroy(&integrator);
   if (code != DONE) return code;
   const double t_end = isnan(task->t_end) ? model->t_end : task->t_end;
-  if (task->h == 0.0) return usage_error("sweep: --h 0 leads nowhere");
-  if (task->h * t_end < 0.0) return usage_error("sweep: --h %g leads away from --t-end %g; change the sign of one", task->h, t_end);
-  return DONE;
+  return way_check("sweep", isnan(task->h) ? copysign(model->h, t_end) : task->h, t_end, t_end, true);
 }
 
 static int check_request(const sweep_request *request)

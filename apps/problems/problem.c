@@ -1,4 +1,5 @@
 /* The table of problems: finding one, reading its settings, making it. */
+#include <dvi/number.h>
 #include <dvi/taylor.h>
 #include <float.h>
 #include <math.h>
@@ -92,12 +93,9 @@ static dvi_status refuse_name(const report *r, const problem_entry *entry, const
 
 void problem_spell(const problem_parameter *parameter, double x, char *text, size_t size)
 {
-  if (parameter->choice) (void)snprintf(text, size, "%s", parameter->choice[(int)x]);
-  for (int digits = 6; !parameter->choice && digits <= DBL_DECIMAL_DIG; digits++) {
-    (void)snprintf(text, size, "%.*g", digits, x);
-    const double read = strtod(text, NULL);
-    if (!(read < x) && !(read > x)) return;
-  }
+  char number[DVI_NUMBER_SIZE];
+  dvi_number_write(x, number);
+  (void)snprintf(text, size, "%s", parameter->choice ? parameter->choice[(int)x] : number);
 }
 
 /* Refuse a number outside of a parameter's range, and say where that ends. */
@@ -137,8 +135,8 @@ static dvi_status read_setting(const report *r, const problem_entry *entry, cons
   given[i] = 1;
 
   if (parameters[i].choice) return read_choice(r, entry, setting, &parameters[i], equals + 1, value + i);
-  char *end = NULL;
-  const double x = strtod(equals + 1, &end);
+  double x = 0;
+  const char *end = dvi_number_read(equals + 1, &x);
   const int number = end != equals + 1 && *end == '\0' && isfinite(x);
   if (!number || (parameters[i].whole && floor(x) != x))
     return refuse(r, DVI_BAD_OPTION, "%s: %s is no %s; %s is %s", entry->name, setting,

@@ -243,9 +243,9 @@ expect 2 'two bounds of one invariant' $long_steps --alarm I=1.2 --alarm I=1.2
 for wrong in I I= I=0 I=-1 I=x =1 J=1 I_=1; do expect 2 "alarm $wrong" $long_steps --alarm "$wrong"; done
 }
 
-# A plot is drawn if gnuplot is there; without it the run says so and is done.
+# A plot is drawn whole.
 expect 0 'plot' run kepler --method verlet --t-end 5 --final --plot orbit.svg
-if command -v gnuplot >/dev/null; then says orbit.svg '</svg>' 'the plot is whole'; else says err gnuplot 'gnuplot is missed'; fi
+says orbit.svg '</svg>' 'the plot is whole'
 says err '^dvi: run: --plot orbit.svg draws over t: x, y; change since the start: energy, angular_momentum, laplace_x, laplace_y$' 'what is drawn'
 
 # draws NAME PATTERN ARGUMENTS...: what a plot draws, by its sentence and by its labels, of which there are at most eight in a panel.
@@ -253,7 +253,6 @@ draws() {
   # shellcheck disable=SC2086
   expect 0 "$1" run $3 --final --plot drawn.svg
   says err "^dvi: run: --plot drawn.svg draws over t: $2" "$1"
-  command -v gnuplot >/dev/null || return 0
   says drawn.svg "${2%%[,;]*}" "$1: the first curve is named"
   grep -q 'R11\|R33' drawn.svg && fail "$1: entries of a matrix"
 }
@@ -265,11 +264,5 @@ draws 'columns that are asked for' 'x, p_x; change since the start: laplace_x$' 
 draws 'columns, not all of them' 'q_9, q_8, q_7, q_6, q_5, q_4, q_3, q_2; --columns chooses others$' 'chain --method verlet --t-end 5 --columns q_9,q_8,q_7,q_6,q_5,q_4,q_3,q_2,q_1'
 expect 0 'no columns' run kepler --method verlet --t-end 5 --final --columns t --plot none.svg
 says err "no plot in 'none.svg': --columns names nothing to draw" 'no columns'
-rm -f orbit.svg
-code=0
-PATH=/nowhere "$dvi" run kepler --method verlet --t-end 5 --final --plot orbit.svg >out 2>err || code=$?
-[ "$code" -eq 0 ] || fail "without gnuplot: exit code $code"
-says err 'gnuplot' 'without gnuplot it says so'
-[ -e orbit.svg ] && fail 'without gnuplot there is no plot'
 no_trace 'plots'
 finish

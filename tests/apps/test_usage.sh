@@ -150,6 +150,31 @@ says out 'e=0.6' 'explain says the parameters'
 expect 0 'explain with setting' explain kepler --method verlet --set e=0.25
 says out 'e=0.25' 'explain says what was set'
 
+# More steps than can be counted are refused before the first one, in all commands that take h and t-end;
+# the step that is recommended is then taken.
+for command in 'run kepler --method verlet' 'sweep kepler --method verlet --set e=0.1,0.2 --out many.csv' \
+               'resonance oscillators --method imex --sweep omega=1:10 --csv many.csv' \
+               'run kepler --method sem' 'run kepler --method verlet --plot many.svg --checkpoint many.state'; do
+  for ends in '--h 1e-12 --t-end 1e9' '--h -1e-12 --t-end -1e9'; do
+    # shellcheck disable=SC2086
+    expect 2 "many steps: $command $ends" $command $ends
+    says err '1e+21 steps' "many steps: $command"
+    [ -s out ] && fail "many steps: $command $ends writes something"
+    [ -z "$(find . -name 'many.*')" ] || fail "many steps: $command $ends leaves a file"
+  done
+done
+expect 2 'many steps of a study' order kepler --method verlet --h 1e-12 --t-end 1e9 --csv many.csv
+expect 2 'many steps of a range' resonance oscillators --method imex --sweep h=1e-12:1 --t-end 1e9
+expect 2 'many steps to a far end' sweep kepler --method verlet --set e=0.1,0.2 --t-end 1e30 --out many.csv
+expect 2 'many steps' run kepler --method verlet --h 1e-12 --t-end 1e9
+says err 'dvi: run: --t-end 1e+09 is 1e+21 steps of 1e-12 away, and at most 2^53 (9e15) can be counted' 'many steps'
+h=$(sed 's/.*give an --h of \([^ ]*\).*/\1/' err)
+"$dvi" run kepler --method verlet --h "$h" --t-end 1e9 >out 2>err &
+sleep 1
+kill -INT $!
+ends 130 "a run of $h"
+says out '^0,0.4' "a run of $h begins"
+
 if [ -w /dev/full ]; then
   for line in '--help' '--version' 'list methods' 'explain kepler --method verlet'; do
     code=0

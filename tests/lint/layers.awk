@@ -19,7 +19,7 @@ BEGIN {
   # Single headers that are open to a room beyond that.
   also["reference solve/sundials_compat.h"] = 1
   # Standard headers that a public header may need.
-  split("math.h stddef.h", open_headers)
+  split("math.h stdarg.h stddef.h", open_headers)
   for (i in open_headers) standard[open_headers[i]] = 1
   count = split(methods, names, " ")
   for (i = 1; i <= count; i++) method["method/" names[i] ".h"] = 1
@@ -47,7 +47,7 @@ function check_library(quoted, header,   target) {
 }
 
 function check_public(quoted, header) {
-  if (quoted || (header !~ /^dvi\// && !(header in standard))) breach("a public header includes only <dvi/...>, <math.h> and <stddef.h>")
+  if (quoted || (header !~ /^dvi\// && !(header in standard))) breach("a public header includes only <dvi/...>, <math.h>, <stdarg.h> and <stddef.h>")
 }
 
 # The command, the problems and the examples are users of the library.
@@ -80,6 +80,10 @@ zone == "library" {
   code = $0
   gsub(/"([^"\\]|\\.)*"/, "\"\"", code)
   if (code ~ /(^|[^A-Za-z0-9_])(printf|puts|putchar|exit|abort|assert)\(|std(out|err)/) breach("the library never prints, exits or aborts")
+}
+# A program may have set a locale with a decimal comma.
+FILENAME != "lib/src/core/number.c" && (zone == "library" && /[^A-Za-z0-9_]vsnprintf\(/ || (zone == "library" || zone == "user") && /[^A-Za-z0-9_](strtod|strtof|strtold|atof|setlocale)\(/) {
+  breach("numbers are read and written by dvi/number.h, the same in every locale")
 }
 # Scenes are a library of their own, with a door of their own.
 zone == "library" && FILENAME != "lib/src/core/memory.c" && FILENAME != "lib/src/scene/heap.c" && /(^|[^A-Za-z0-9_])(malloc|calloc|realloc|strdup)\(/ {

@@ -208,8 +208,8 @@ END_TEST
 
 START_TEST(fast_potentials_tell_the_frequency)
 {
-  check_spelled("fpu", "multiscale", "multiscale:degree=3,amplitude=1,harmonics=1,omega=5e+01");
-  check_spelled("fpu", "multiscale:omega=auto,fast=3:4:5", "multiscale:degree=3,amplitude=1,harmonics=1,omega=5e+01,fast=3:4:5");
+  check_spelled("fpu", "multiscale", "multiscale:degree=3,amplitude=1,harmonics=1,omega=50");
+  check_spelled("fpu", "multiscale:omega=auto,fast=3:4:5", "multiscale:degree=3,amplitude=1,harmonics=1,omega=50,fast=3:4:5");
 }
 END_TEST
 

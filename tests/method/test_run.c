@@ -334,7 +334,7 @@ static const struct {
     {{.h = 0.1, .t_end = HUGE_VAL}, "t_end = inf is not finite"},
     {{.h = -0.1, .t_end = 1}, "h = -0.1 leads away from t_end = 1; the time is 0"},
     {{.h = 0.1, .t_end = -1}, "leads away"},
-    {{.h = 1e-16, .t_end = 1}, "1e+16 steps to t_end = 1; at most 2^53"},
+    {{.h = 1e-16, .t_end = 1}, "1e+16 steps to t_end = 1; at most 2^53 can be counted; take a longer step or a nearer end"},
     {{.h = 1e-300, .t_end = 1e300}, "inf steps"},
     {{.h = 1e-300, .t_end = -1e-300}, "leads away"}, /* the product of the two is rounded to zero */
     {{.h = 0.1, .t_end = 1, .every = -1}, "every = -1"},

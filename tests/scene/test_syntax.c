@@ -1,11 +1,8 @@
-#define _XOPEN_SOURCE 700 /* mkdtemp, setenv */
-#include <locale.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "scene/syntax.h"
-#include "support/files.h"
 #include "support/scene_text.h"
 #include "support/suite.h"
 
@@ -136,33 +133,6 @@ START_TEST(numbers_are_right_to_the_last_bit)
   ck_assert(expression_of("2.2250738585072011e-308")->number == 0x0.fffffffffffffp-1022);
   ck_assert(expression_of("1.7976931348623157e308")->number == 0x1.fffffffffffffp1023);
   ck_assert(expression_of("1e-400")->number == 0.0);
-}
-END_TEST
-
-/* A locale with a decimal comma, made on the spot because none need be installed; false where there is no localedef. */
-static bool set_comma(void)
-{
-  char command[512];
-  make_folder();
-  (void)snprintf(command, sizeof command,
-                 "cd %s && printf 'LC_NUMERIC\ndecimal_point \",\"\nthousands_sep \".\"\ngrouping -1\nEND LC_NUMERIC\n' >source && "
-                 "localedef -c -i ./source ./comma >made 2>&1",
-                 in_folder(""));
-  (void)!system(command);
-  ck_assert_int_eq(setenv("LOCPATH", in_folder(""), 1), 0);
-  const bool set = setlocale(LC_NUMERIC, "comma") != NULL;
-  (void)snprintf(command, sizeof command, "rm -rf %s", in_folder("comma"));
-  ck_assert_int_eq(system(command), 0);
-  remove_folder();
-  return set;
-}
-
-START_TEST(numbers_do_not_depend_on_the_locale)
-{
-  if (!set_comma()) return;
-  ck_assert_str_eq(localeconv()->decimal_point, ",");
-  ck_assert(expression_of("0.5")->number == 0.5);
-  ck_assert_str_eq(localeconv()->decimal_point, ","); /* the locale is as it was */
 }
 END_TEST
 
@@ -304,7 +274,6 @@ int main(void)
   tcase_add_test(tests, blanks_breaks_and_comments_are_nothing);
   tcase_add_test(tests, numbers_have_digits_a_fraction_and_an_exponent);
   tcase_add_test(tests, numbers_are_right_to_the_last_bit);
-  tcase_add_test(tests, numbers_do_not_depend_on_the_locale);
   tcase_add_test(tests, spans_are_where_the_parts_stand);
   tcase_add_test(tests, a_part_of_the_source_is_all_that_is_read);
   tcase_add_test(tests, usual_slips_get_a_remedy);

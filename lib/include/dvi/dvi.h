@@ -7,6 +7,7 @@
 #include <dvi/group.h>
 #include <dvi/integrator.h>
 #include <dvi/method.h>
+#include <dvi/number.h>
 #include <dvi/path.h>
 #include <dvi/quadrature.h>
 #include <dvi/reference.h>

@@ -7,6 +7,7 @@
 #ifndef DVI_METHOD_H
 #define DVI_METHOD_H
 #include <dvi/status.h>
+#include <stddef.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -32,6 +33,13 @@ const char *dvi_method_key_name(int i, int k);
 
 /** The key's values, its default and its meaning, in one line; NULL if out of range. */
 const char *dvi_method_key_help(int i, int k);
+
+/** The path of the file that a specification names, such as the one of a tableau: where it begins in the
+ *  specification. A program may look at it before an integrator opens the file.
+ *
+ *  @param[out] length  of the path; 0 if there is none
+ *  @return NULL if the specification names no file, or no method */
+const char *dvi_method_file(const char *specification, size_t *length);
 
 #ifdef __cplusplus
 }

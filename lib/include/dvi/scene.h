@@ -62,6 +62,8 @@ extern "C" {
 
 /** Read a scene from a file.
  *
+ *  The one other file that is opened for it is the tableau that its method may name, in the scene's folder or below; the plan's method then has the
+ *  way to it.
  *  @param      settings  [setting_count] texts "name=value" that replace parameters
  *  @param[out] scene     owned by the caller; NULL on failure
  *  @param[out] message   [size] on failure: file, line, column, what is wrong, the line itself and a caret; may be NULL
@@ -74,7 +76,7 @@ extern "C" {
 dvi_status dvi_scene_read(const char *path, int setting_count, const char *const *settings, dvi_scene **scene, char *message,
                           size_t size);
 
-/** The same from a text of `length` characters; `name` stands for the path in messages. */
+/** The same from a text of `length` characters; `name` stands for the path, in messages and for the folder that the scene is in. */
 dvi_status dvi_scene_parse(const char *name, const char *text, size_t length, int setting_count, const char *const *settings,
                            dvi_scene **scene, char *message, size_t size);
 

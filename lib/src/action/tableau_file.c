@@ -10,10 +10,10 @@
  *     b 1/6 1/3 1/3 1/6
  * `order` and `b` stand once, `a` once for each stage, in their order; what a row of a leaves out is 0. Without `c` it is the sums of a's rows. */
 #define _POSIX_C_SOURCE 200809L /* S_ISREG */
+#include <dvi/number.h>
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -43,14 +43,12 @@ static const char *skip_blanks(const char *at)
 /* Decimal, or one over another. */
 static dvi_status read_number(const reader *r, const char **at, double *number)
 {
-  char *end;
   double denominator = 1;
-  const char *start = *at;
-  *number = strtod(start, &end);
+  const char *start = *at, *end = dvi_number_read(start, number);
   if (end == start) return complain(r, start, "a number is expected, such as 0.25 or 1/4");
   if (*end == '/') {
     const char *below = end + 1;
-    denominator = strtod(below, &end);
+    end = dvi_number_read(below, &denominator);
     if (end == below || denominator == 0) return complain(r, below, "a number other than 0 is expected behind the stroke");
   }
   *number /= denominator;

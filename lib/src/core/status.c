@@ -1,5 +1,6 @@
 #include "core/status.h"
 
+#include <dvi/number.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -39,7 +40,7 @@ dvi_status dvi__fail(dvi_status status, const char *format, ...)
   char text[DVI__SENTENCE_SIZE];
   va_list arguments;
   va_start(arguments, format);
-  (void)vsnprintf(text, sizeof text, format, arguments);
+  (void)dvi_number_vprint(text, sizeof text, format, arguments);
   va_end(arguments);
   memcpy(sentence, text, sizeof text);
   return status;
@@ -50,7 +51,7 @@ dvi_status dvi__fail_in(dvi_status status, const char *format, ...)
   char text[DVI__SENTENCE_SIZE] = "";
   va_list arguments;
   va_start(arguments, format);
-  const int length = vsnprintf(text, sizeof text, format, arguments);
+  const int length = dvi_number_vprint(text, sizeof text, format, arguments);
   va_end(arguments);
   if (length >= 0 && length < DVI__SENTENCE_SIZE - 3 && sentence[0] != '\0')
     (void)snprintf(text + length, sizeof text - (size_t)length, ": %.*s", DVI__SENTENCE_SIZE - 3 - length, sentence);

@@ -47,8 +47,9 @@ static dvi_status check(const dvi_integrator *I, const dvi_run_options *options)
     return dvi__fail(DVI_BAD_ARGUMENT, "run: h = %g leads away from t_end = %g; the time is %g", options->h, options->t_end,
                      dvi_integrator_time(I));
   if (I->pace == NULL && !(fabs(way / options->h) <= steps_max))
-    return dvi__fail(DVI_BAD_ARGUMENT, "run: h = %g makes %.3g steps to t_end = %g; at most 2^53 can be counted", options->h,
-                     way / options->h, options->t_end);
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "run: h = %g makes %.3g steps to t_end = %g; at most 2^53 can be counted; take a longer step or a nearer end",
+                     options->h, way / options->h, options->t_end);
   if (options->every < 0 || options->checkpoint_every < 0)
     return dvi__fail(DVI_BAD_ARGUMENT, "run: every = %ld, checkpoint_every = %ld; 0 or more are possible", options->every,
                      options->checkpoint_every);

@@ -1,8 +1,8 @@
 /* Specifications: name[:key=value,...]. */
 #include <dvi/method.h>
+#include <dvi/number.h>
 #include <math.h>
 #include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,7 +14,7 @@ void dvi__text_add(dvi__text *text, const char *format, ...)
   va_list arguments;
   va_start(arguments, format);
   const size_t room = text->length < text->size ? text->size - text->length : 0;
-  const int length = vsnprintf(room > 0 ? text->text + text->length : NULL, room, format, arguments);
+  const int length = dvi_number_vprint(room > 0 ? text->text + text->length : NULL, room, format, arguments);
   va_end(arguments);
   if (length > 0) text->length += (size_t)length;
 }
@@ -90,7 +90,7 @@ static dvi_status parse_list(const dvi__method *method, piece value, dvi__settin
     if (settings->listed == DVI__LIST_MOST)
       return dvi__fail(DVI_BAD_OPTION, "%s: %s has more than %d numbers; 1 to %d are possible", method->name, method->list,
                        DVI__LIST_MOST, DVI__LIST_MOST);
-    settings->list[settings->listed++] = strtod(at, NULL);
+    (void)dvi_number_read(at, &settings->list[settings->listed++]);
     at += length;
     if (at == end) break;
   }
@@ -120,15 +120,12 @@ static int is_number(const dvi__key *key, piece value)
   return key->choice == NULL || (key->most > 0 && value.length > 0 && value.text[0] >= '0' && value.text[0] <= '9');
 }
 
-/* strtod takes more spellings than digits, point and exponent: they are refused. */
 static dvi_status parse_real(const dvi__method *method, const dvi__key *key, piece value, double *number)
 {
-  char *end = NULL;
   *number = 0;
   if (same(value, "auto")) return DVI_OK;
-  const int plain = value.length > 0 && (int)strspn(value.text, "0123456789.eE+-") == value.length;
-  if (plain) *number = strtod(value.text, &end);
-  if (plain && end == value.text + value.length && isfinite(*number) && *number > 0) return DVI_OK;
+  const char *end = dvi_number_read(value.text, number);
+  if (value.length > 0 && end == value.text + value.length && isfinite(*number) && *number > 0) return DVI_OK;
   return dvi__fail(DVI_BAD_OPTION, "%s: %s=%.*s; a positive number is possible, or auto", method->name, key->name, value.length,
                    value.text);
 }
@@ -178,6 +175,46 @@ static dvi_status unknown_method(piece name)
   return dvi__fail(DVI_BAD_OPTION, "unknown method '%.*s'; there are %s", shown, name.text, known);
 }
 
+/* The key and the value behind a colon or comma; a value without text if there is none. Returns where they end. */
+static const char *take_pair(const char *at, piece *name, piece *value)
+{
+  const char *start = at + 1, *equals = end_of(start, "=,"), *end = end_of(equals, ",");
+  *name = (piece){start, (int)(equals - start)};
+  *value = *equals == '=' && equals > start ? (piece){equals + 1, (int)(end - equals - 1)} : (piece){0};
+  return end;
+}
+
+static int names_file(const dvi__method *method, piece name)
+{
+  for (int k = 0; k < dvi__key_count(method); k++)
+    if (same(name, method->keys[k].name)) return method->keys[k].least == DVI__TEXT;
+  return 0;
+}
+
+/* Keys that a method hands on may be those of any other one. */
+static int may_name_file(const dvi__method *method, piece name)
+{
+  int found = names_file(method, name);
+  for (int i = 0; method->takes_rest && i < dvi_method_count(); i++)
+    found |= names_file(dvi__find_method(dvi_method_name(i), strlen(dvi_method_name(i))), name);
+  return found;
+}
+
+const char *dvi_method_file(const char *specification, size_t *length)
+{
+  const char *at = specification != NULL ? end_of(specification, ":") : "";
+  const dvi__method *method = *at != 0 ? dvi__find_method(specification, (size_t)(at - specification)) : NULL;
+  *length = 0;
+  while (method != NULL && *at != 0) {
+    piece name, value;
+    at = take_pair(at, &name, &value);
+    if (value.length == 0 || !may_name_file(method, name)) continue;
+    *length = (size_t)value.length;
+    return value.text;
+  }
+  return NULL;
+}
+
 dvi_status dvi__parse(const char *specification, const dvi__method **method, dvi__settings *settings)
 {
   unsigned given = 0;
@@ -188,24 +225,20 @@ dvi_status dvi__parse(const char *specification, const dvi__method **method, dvi
   *settings = (dvi__settings){0};
   for (int k = 0; k < dvi__key_count(*method); k++) settings->value[k] = (*method)->keys[k].left_out;
   while (*at != 0) {
-    const char *name = at + 1, *equals = end_of(name, "=,"), *end = end_of(equals, ",");
-    if (*equals != '=' || equals == name)
-      return dvi__fail(DVI_BAD_OPTION, "%s: '%.*s' is not key=value", (*method)->name, (int)(end - name), name);
-    const piece key_name = {name, (int)(equals - name)}, value = {equals + 1, (int)(end - equals - 1)};
-    DVI_TRY(assign(*method, key_name, value, settings, &given));
+    piece name, value;
+    const char *end = take_pair(at, &name, &value);
+    if (value.text == NULL)
+      return dvi__fail(DVI_BAD_OPTION, "%s: '%.*s' is not key=value", (*method)->name, (int)(end - name.text), name.text);
+    DVI_TRY(assign(*method, name, value, settings, &given));
     at = end;
   }
   return DVI_OK;
 }
 
-/* The fewest digits that are read back as the number. */
 static void spell_real(double number, dvi__text *text)
 {
-  char spelled[32] = "auto";
-  for (int digits = 1; digits <= 17 && number != 0; digits++) {
-    (void)snprintf(spelled, sizeof spelled, "%.*g", digits, number);
-    if (strtod(spelled, NULL) == number) break;
-  }
+  char spelled[DVI_NUMBER_SIZE] = "auto";
+  if (number != 0) dvi_number_write(number, spelled);
   dvi__text_add(text, "%s", spelled);
 }
 

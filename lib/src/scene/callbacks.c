@@ -45,7 +45,7 @@ static void blame(const dvi__term *term, int count, const double *const *x, int 
   dvi__source_place(source, span.first, &line, &column);
   const int used = snprintf(blame_text, sizeof blame_text, "%s:%d:%d: %s", source->name, line, column, part);
   if (x[DVI__TIME] != NULL && used > 0 && used < BLAME_SIZE)
-    (void)snprintf(blame_text + used, sizeof blame_text - (size_t)used, ", at t = %.6g", x[DVI__TIME][k - 1]);
+    (void)dvi__print(blame_text + used, sizeof blame_text - (size_t)used, ", at t = %.6g", x[DVI__TIME][k - 1]);
 }
 
 /* Why there is no program, or no pattern. */

@@ -4,6 +4,7 @@
 #include "scene/heap.h"
 #include "scene/utf8.h"
 
+#include <dvi/number.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -14,6 +15,15 @@ enum {
   WORD_MAX = 63,  /* letters of words that are compared */
   SENTENCE = 1024 /* bytes */
 };
+
+int dvi__print(char *text, size_t size, const char *format, ...)
+{
+  va_list arguments;
+  va_start(arguments, format);
+  const int length = dvi_number_vprint(text, size, format, arguments);
+  va_end(arguments);
+  return length;
+}
 
 /* A message that is being written: whole characters only, as many as fit. */
 typedef struct writer {
@@ -144,7 +154,7 @@ bool(dvi__complain)(dvi__complaint *complaint, dvi_status status, dvi__span wher
   char sentence[SENTENCE];
   va_list arguments;
   va_start(arguments, format);
-  (void)vsnprintf(sentence, sizeof sentence, format, arguments);
+  (void)dvi_number_vprint(sentence, sizeof sentence, format, arguments);
   va_end(arguments);
   put_sentence(&w, sentence);
   if (where.first <= source->size) put_excerpt(&w, source, where);

@@ -1,6 +1,6 @@
 /* Parameters, coordinates and definitions. */
+#include <dvi/number.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "scene/sections.h"
@@ -27,12 +27,12 @@ static int setting_of(dvi_scene *scene, const char *name, const dvi__settings *s
 static bool apply_setting(dvi_scene *scene, dvi__parameter *p, const char *text)
 {
   const char *number = text + strlen(p->name) + 1;
-  char *end;
-  const double value = strtod(number, &end);
+  double value = 0.0;
+  const char *end = dvi_number_read(number, &value);
   if (!p->settable)
     return dvi__complain(scene->complaint, DVI_BAD_OPTION, p->span, "%s: '%s' is a list, and only numbers can be set", text,
                          p->name);
-  if (end == number || *end != '\0' || number[strspn(number, "+-.0123456789eE")] != '\0' || !isfinite(value))
+  if (end == number || *end != '\0' || !isfinite(value))
     return dvi__complain(scene->complaint, DVI_BAD_OPTION, DVI__NOWHERE, "%s: '%s' is no finite number", text, number);
   p->value[0] = value;
   return true;

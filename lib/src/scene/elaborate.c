@@ -1,6 +1,7 @@
 /* From syntax to graphs: operators, calls, lists and sums. Names are in access.c, rates in rates.c, arithmetic in shape.c. */
 #include "scene/elaborate.h"
 
+#include <dvi/number.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -16,7 +17,7 @@ bool(dvi__refuse)(const dvi__context *c, dvi__span span, const char *format, ...
   char text[400];
   va_list arguments;
   va_start(arguments, format);
-  (void)vsnprintf(text, sizeof text, format, arguments);
+  (void)dvi_number_vprint(text, sizeof text, format, arguments);
   va_end(arguments);
   return dvi__complain(c->scene->complaint, DVI_BAD_FILE, span, "%s", text);
 }

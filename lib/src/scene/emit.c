@@ -1,6 +1,7 @@
 /* Text, numbers and arrays of emitted files, and what they begin with. */
 #include "scene/emit.h"
 
+#include <dvi/number.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -27,7 +28,7 @@ void dvi__emit(dvi__emitter *out, const char *format, ...)
   char text[TEXT_MAX + 1];
   va_list arguments;
   va_start(arguments, format);
-  const int length = vsnprintf(text, sizeof text, format, arguments);
+  const int length = dvi_number_vprint(text, sizeof text, format, arguments);
   va_end(arguments);
   if (length > 0) put(out, text, length < TEXT_MAX ? (size_t)length : TEXT_MAX);
 }
@@ -35,16 +36,12 @@ void dvi__emit(dvi__emitter *out, const char *format, ...)
 /* The fewest digits that give the same number; a point or an exponent makes it a double. */
 void dvi__emit_number(dvi__emitter *out, double value)
 {
-  char text[40];
+  char text[DVI_NUMBER_SIZE];
   if (!isfinite(value)) {
     dvi__emit(out, "%s", isnan(value) ? "NAN" : value > 0 ? "INFINITY" : "-INFINITY");
     return;
   }
-  int digits = 15;
-  do (void)snprintf(text, sizeof text, "%.*g", digits++, value);
-  while (digits <= 17 && strtod(text, NULL) != value);
-  for (char *c = text; *c != '\0'; c++)
-    if (*c == ',') *c = '.';
+  dvi_number_write(value, text);
   dvi__emit(out, "%s%s", text, strpbrk(text, ".e") == NULL ? ".0" : "");
 }
 

@@ -13,7 +13,7 @@ typedef struct dvi__emitter {
   struct dvi__emitted_array *array;
 } dvi__emitter;
 
-/* Write as printf does, at most 500 characters; doubles by dvi__emit_number alone: they shall not depend on the locale. */
+/* Write as printf does, at most 500 characters; doubles by dvi__emit_number alone: they are read again. */
 void dvi__emit(dvi__emitter *out, const char *format, ...) DVI__SCENE_PRINTF(2, 3);
 void dvi__emit_number(dvi__emitter *out, double value);
 

@@ -1,9 +1,12 @@
 /* A scene as a C file: what a program declares of it, its terms, a function that makes the system, its start and its plan, and a program that runs it. */
-#include <ctype.h>
 #include <dvi/integrator.h>
+#include <string.h>
 
 #include "scene/emit_scene.h"
 #include "scene/heap.h"
+#include "scene/names.h"
+
+enum { IDENTIFIER_MAX = 63 }; /* as many letters of a name are sure to count in C */
 
 /* ---- terms ---- */
 
@@ -203,15 +206,6 @@ static void emit_head(dvi__emitter *out, const dvi_scene *scene, const char *nam
     dvi__emit(out, "static const double dvi_zeros[%d] = {0};\n\n", 2 * scene->n);
 }
 
-static int is_identifier(const char *name)
-{
-  int length = 0;
-  if (!isalpha((unsigned char)*name) && *name != '_') return 0;
-  for (; name[length] != '\0'; length++)
-    if (!isalnum((unsigned char)name[length]) && name[length] != '_') return 0;
-  return length <= 63;
-}
-
 /* DVI_UNSUPPORTED if the method runs the scene, but not a system without Taylor coefficients, as the file's is. */
 static dvi_status check_method(const dvi_scene *scene)
 {
@@ -241,7 +235,8 @@ static dvi_status check_method(const dvi_scene *scene)
 dvi_status dvi_scene_emit_c(const dvi_scene *scene, const char *name, int (*write)(const char *text, size_t size, void *user),
                             void *user)
 {
-  if (scene == NULL || name == NULL || write == NULL || !is_identifier(name)) return DVI_BAD_ARGUMENT;
+  if (scene == NULL || name == NULL || write == NULL) return DVI_BAD_ARGUMENT;
+  if (!dvi__is_identifier(name) || strlen(name) > IDENTIFIER_MAX) return DVI_BAD_ARGUMENT;
   dvi_status status = scene->plan.method != NULL ? check_method(scene) : DVI_OK;
   if (status != DVI_OK) return status;
   dvi__emitter out = {.write = write, .user = user};

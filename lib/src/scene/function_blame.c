@@ -162,9 +162,9 @@ static void describe(const culprit *found, const dvi__source *source, char *text
   const char *prefix = found->of == DERIVATIVE ? "the derivative of " : "";
   const char *what = found->of == SERIES ? "has no Taylor series" : "is not finite";
   if (operand < 0)
-    (void)snprintf(text, size, "%s%s = %.6g %s", prefix, part, value, what);
+    (void)dvi__print(text, size, "%s%s = %.6g %s", prefix, part, value, what);
   else if (operand_part[0] != '\0')
-    (void)snprintf(text, size, "%s%s, %s = %.6g %s", prefix, part, operand_part, value, what);
+    (void)dvi__print(text, size, "%s%s, %s = %.6g %s", prefix, part, operand_part, value, what);
   else
     (void)snprintf(text, size, "%s%s %s", prefix, part, what);
 }

@@ -1,7 +1,6 @@
 /* Names by a hash table: a scene of 1 MiB may hold 100000 of them. */
 #include "scene/names.h"
 
-#include <ctype.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
@@ -49,10 +48,8 @@ static bool grow(dvi__names *names, dvi__arena *arena)
 
 bool dvi__is_identifier(const char *text)
 {
-  if (!isalpha((unsigned char)*text) && *text != '_') return false;
-  for (; *text != '\0'; text++)
-    if (!isalnum((unsigned char)*text) && *text != '_') return false;
-  return true;
+  static const char mark[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789";
+  return *text != '\0' && (*text < '0' || *text > '9') && text[strspn(text, mark)] == '\0';
 }
 
 bool dvi__names_add(dvi__names *names, dvi__arena *arena, dvi__complaint *complaint, const char *text, dvi__span span,

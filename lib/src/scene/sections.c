@@ -1,5 +1,6 @@
 #include "scene/sections.h"
 
+#include <dvi/number.h>
 #include <limits.h>
 #include <math.h>
 #include <stdarg.h>
@@ -17,7 +18,7 @@ bool(dvi__scene_refuse)(dvi_scene *scene, dvi__span span, const char *format, ..
   char text[400];
   va_list arguments;
   va_start(arguments, format);
-  (void)vsnprintf(text, sizeof text, format, arguments);
+  (void)dvi_number_vprint(text, sizeof text, format, arguments);
   va_end(arguments);
   return dvi__complain(scene->complaint, DVI_BAD_FILE, span, "%s", text);
 }
@@ -114,6 +115,12 @@ static bool read_text(dvi_scene *scene, const char *section, const char **text)
   return dvi__want_text(scene, tree, section);
 }
 
+static bool read_method(dvi_scene *scene, const char **method)
+{
+  const dvi__tree *tree = dvi__tree_find(scene->tree, "method");
+  return read_text(scene, "method", method) && (tree == NULL || dvi__scene_place_file(scene, tree->span, method));
+}
+
 static bool read_number(dvi_scene *scene, const char *section, double *number)
 {
   const dvi__tree *tree = dvi__tree_find(scene->tree, section);
@@ -133,8 +140,8 @@ static bool few_steps(dvi_scene *scene)
 static bool read_plan(dvi_scene *scene)
 {
   dvi_scene_plan *plan = &scene->plan;
-  return read_text(scene, "title", &plan->title) && read_text(scene, "method", &plan->method) &&
-         read_number(scene, "step", &plan->h) && read_number(scene, "until", &plan->t_end) && few_steps(scene);
+  return read_text(scene, "title", &plan->title) && read_method(scene, &plan->method) && read_number(scene, "step", &plan->h) &&
+         read_number(scene, "until", &plan->t_end) && few_steps(scene);
 }
 
 /* Each is sought among all that there are. */

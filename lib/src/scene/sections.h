@@ -34,6 +34,10 @@ bool dvi__read_sweep(dvi_scene *scene, const dvi__tree *section);
 bool dvi__scene_refuse(dvi_scene *scene, dvi__span span, const char *format, ...) DVI__SCENE_PRINTF(3, 4);
 
 /* A section that must be a mapping, or a text. */
+/* The file that a method's specification names: it must lie in the scene's folder or below, and the
+ * specification then has the way to it from here. */
+bool dvi__scene_place_file(dvi_scene *scene, dvi__span span, const char **method);
+
 bool dvi__want_mapping(dvi_scene *scene, const dvi__tree *tree, const char *what);
 bool dvi__want_text(dvi_scene *scene, const dvi__tree *tree, const char *what);
 

@@ -10,15 +10,13 @@
  *
  * Chains of + and *, however long, are loops; what nests is counted, so that neither this nor what reads the tree can be driven
  * deep. */
-#define _POSIX_C_SOURCE 200809L /* newlocale */
 #include "scene/syntax.h"
 
 #include "scene/lexer.h"
 #include "scene/utf8.h"
 
-#include <locale.h>
+#include <dvi/number.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { LEVELS_MAX = 64 };
@@ -173,7 +171,8 @@ static bool number(parser *p, node **result)
   const dvi__span where = p->token.span;
   const char *digits = copy_of_token(p);
   if (digits == NULL) return false;
-  const double value = strtod(digits, NULL); /* in the C locale: see dvi__expression_parse */
+  double value = 0.0;
+  (void)dvi_number_read(digits, &value);
   if (!isfinite(value)) return dvi__complain(p->complaint, DVI_BAD_FILE, where, "this number is too large; numbers end at 1.8e308");
   if (!next(p) || !make(p, DVI__FORM_NUMBER, where.first, NULL, result)) return false;
   (*result)->number = value;
@@ -362,14 +361,8 @@ bool dvi__expression_parse(const dvi__source *source, dvi__span span, dvi__arena
               .depth = -1,
               .token = {.span = {span.first, 0}}};
   if (!next(&p)) return false;
-  /* The program that uses the library may have set a locale with a decimal comma. */
-  const locale_t plain = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-  if (plain == (locale_t)0) return no_memory(&p);
-  const locale_t before = uselocale(plain);
   node *result = NULL;
   const bool fine = whole(&p, &result);
-  (void)uselocale(before);
-  freelocale(plain);
   *expression = fine ? result : NULL;
   return fine;
 }

@@ -1,5 +1,6 @@
 #include "system/monitor.h"
 
+#include <dvi/number.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -31,7 +32,9 @@ static dvi_status read_distance(const dvi_system *system, const dvi_monitor *giv
   if (own->bodies < 1 || own->dimension < 1 || system->n % own->bodies != 0 || system->n / own->bodies != own->dimension)
     return dvi__fail(DVI_BAD_ARGUMENT, "monitor distance: %d points of %d coordinates are not the %d coordinates of the system",
                      own->bodies, own->dimension, system->n);
-  (void)snprintf(name, DVI__MONITOR_NAME, "distance:power=%g,bodies=%d,dimension=%d", own->power, own->bodies, own->dimension);
+  char power[DVI_NUMBER_SIZE];
+  dvi_number_write(own->power, power);
+  (void)snprintf(name, DVI__MONITOR_NAME, "distance:power=%s,bodies=%d,dimension=%d", power, own->bodies, own->dimension);
   return check_power("distance", given->power);
 }
 
@@ -46,10 +49,9 @@ static dvi_status read_motion(const dvi_system *system, const dvi_monitor *given
     return dvi__fail(DVI_UNSUPPORTED,
                      "monitor arclength: the system is not declared autonomous, and has no energy to take the speed from");
   own->power = given->power > 0 ? given->power : 0.75;
-  if (arclength)
-    (void)snprintf(name, DVI__MONITOR_NAME, "%s", what);
-  else
-    (void)snprintf(name, DVI__MONITOR_NAME, "%s:power=%g", what, own->power);
+  char power[DVI_NUMBER_SIZE];
+  dvi_number_write(own->power, power);
+  (void)snprintf(name, DVI__MONITOR_NAME, "%s%s%s", what, arclength ? "" : ":power=", arclength ? "" : power);
   return check_power(what, given->power);
 }
 

@@ -1,6 +1,6 @@
 /* Specifications of the built-in monitors: name[:key=value,...]. */
+#include <dvi/number.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "core/status.h"
@@ -31,8 +31,7 @@ static dvi_status read_name(const char *specification, dvi_monitor *monitor)
 /* A number up to the next comma. */
 static int read_number(const char *text, double *number)
 {
-  char *end;
-  *number = strtod(text, &end);
+  const char *end = dvi_number_read(text, number);
   return end != text && (*end == 0 || *end == ',') && isfinite(*number) && *number > 0;
 }
 
