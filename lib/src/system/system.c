@@ -291,6 +291,8 @@ static dvi_status check_terms(const dvi_system_terms *terms)
   DVI_TRY(check_list("factors", terms->factor_count, terms->factors));
   if (terms->factors == NULL && terms->dimension < 1)
     return dvi__fail(DVI_BAD_SIZE, "system: dimension %d; at least 1 is needed", terms->dimension);
+  if (terms->factors == NULL && terms->dimension > DVI__DIMENSION_MOST)
+    return dvi__fail(DVI_BAD_SIZE, "system: dimension %d; at most %d is possible", terms->dimension, DVI__DIMENSION_MOST);
   if (terms->factors != NULL && (terms->lagrangian != NULL || terms->one_form != NULL || terms->hamiltonian != NULL))
     return dvi__fail(DVI_UNSUPPORTED, "system: factors go with a constant mass, not with %s",
                      terms->lagrangian != NULL ? "a general Lagrangian"

@@ -2,6 +2,7 @@
 #ifndef DVI_SYSTEM_SYSTEM_H
 #define DVI_SYSTEM_SYSTEM_H
 #include <dvi/system.h>
+#include <limits.h>
 #include <stdint.h>
 
 #include "group/chart.h"
@@ -72,6 +73,9 @@ typedef struct dvi__constraint_term {
   dvi__pattern bracket;          /* full, m x m */
   dvi__lagrangian_term weighted; /* patterns and groups of phi.w, a function of q and p; without callbacks */
 } dvi__constraint_term;
+
+/* Ints count coordinates, and up to four numbers of each. */
+enum { DVI__DIMENSION_MOST = INT_MAX / 4 };
 
 /* Hashes of all that is declared, but for what callbacks compute: terms, masses, patterns, potentials, invariants. */
 enum { DVI__DECLARED_PARTS = 5 };
