@@ -12,7 +12,6 @@
 
 #include "action/shot_step.h"
 #include "action/stacked_shot.h"
-#include "core/hash.h"
 #include "core/memory.h"
 #include "core/status.h"
 #include "method/scheme.h"
@@ -113,16 +112,6 @@ static dvi_status choose_taylor(const dvi__stepper *self, int *degree, dvi__rung
   return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "shooting: onestep=taylor");
 }
 
-/* A tableau is known by its coefficients, wherever its file is. */
-static uint64_t fingerprint_of(const dvi__runge_kutta *method)
-{
-  const size_t row = (size_t)method->stages * sizeof(double);
-  uint64_t hash = dvi__hash(DVI__HASH_START, row, method->b);
-  hash = dvi__hash(hash, row, method->c);
-  for (int i = 0; i < method->stages; i++) hash = dvi__hash(hash, row, method->a[i]);
-  return hash;
-}
-
 static dvi_status choose_one_step(dvi__stepper *self, dvi__runge_kutta *method)
 {
   dvi__settings *settings = &self->settings;
@@ -139,7 +128,7 @@ static dvi_status choose_one_step(dvi__stepper *self, dvi__runge_kutta *method)
   const dvi_status status = dvi__runge_kutta_read(settings->file, method);
   if (status != DVI_OK) return dvi__fail_in(status, "shooting");
   settings->value[STAGES] = method->stages;
-  self->fingerprint = fingerprint_of(method);
+  self->fingerprint = dvi__runge_kutta_fingerprint(method);
   self->fingerprinted = "coefficients of the tableau";
   return DVI_OK;
 }
