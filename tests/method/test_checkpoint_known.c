@@ -345,6 +345,36 @@ START_TEST(no_method_takes_the_checkpoint_of_another)
 }
 END_TEST
 
+/* ---- files that are not whole ---- */
+
+/* Write a file that differs in one byte, or ends before it; neither is taken. */
+static void check_byte(dvi_integrator *by, bytes of, size_t at, unsigned char damage)
+{
+  write_bytes(in_folder("cut"), of.at, at);
+  ck_assert_int_eq(dvi_integrator_restore(by, in_folder("cut")), DVI_BAD_FILE);
+  of.at[at] ^= damage;
+  write_bytes(in_folder("flipped"), of.at, of.count);
+  ck_assert_int_eq(dvi_integrator_restore(by, in_folder("flipped")), DVI_BAD_FILE);
+  of.at[at] ^= damage;
+}
+
+START_TEST(no_method_takes_what_is_cut_or_damaged_at_any_byte)
+{
+  static const unsigned char damages[] = {0x01, 0x10, 0x80, 0xff};
+  const size_t stride = (size_t)(10 / repeats(10)); /* every tenth where memory is watched */
+  problem *of = made_problem(families[_i].problem, NULL);
+  for (int k = 0; k < 20 && families[_i].methods[k] != NULL; k++) {
+    dvi_integrator *integrator = started(of, families[_i].methods[k]);
+    advance(integrator, families[_i].h, 3);
+    const bytes good = state_of(integrator);
+    for (size_t at = 0; at < good.count; at += stride) check_byte(integrator, good, at, damages[(at + (size_t)k) % 4]);
+    check_state(integrator, good);
+    dvi_integrator_destroy(&integrator);
+  }
+  problem_destroy(&of);
+}
+END_TEST
+
 /* ---- forged files ---- */
 
 /* Numbers that no checksum defends: a step from them may fail, but it ends, and no status but DVI_OK goes with finite numbers alone. */
@@ -405,6 +435,7 @@ int main(void)
   tcase_add_test(tests, a_system_that_fails_where_the_saved_one_did_not_is_another);
   tcase_add_test(tests, what_a_system_declares_is_named);
   tcase_add_loop_test(tests, no_method_takes_the_checkpoint_of_another, 0, FAMILIES);
+  tcase_add_loop_test(tests, no_method_takes_what_is_cut_or_damaged_at_any_byte, 0, FAMILIES);
   tcase_add_loop_test(tests, forged_numbers_do_no_harm, 0, FAMILIES);
   return run_tests("method/checkpoint_known", tests);
 }

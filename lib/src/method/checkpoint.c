@@ -9,6 +9,7 @@
  * all that precedes it. The header ends with one of its own, that of header and specification. */
 #include <errno.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -187,8 +188,8 @@ static dvi_status check_numbers(const dvi_integrator *I, const file *f)
   if (f->size != size)
     return dvi__fail(DVI_BAD_FILE, "checkpoint %s: cut short or too long, %zu bytes instead of %zu", f->path, f->size, size);
   memcpy(&sum, f->bytes + size - sizeof sum, sizeof sum);
-  if (sum != dvi__hash(DVI__HASH_START, size - sizeof sum, f->bytes)) return damaged(f);
-  return DVI_OK;
+  const int whole = sum == dvi__hash(DVI__HASH_START, size - sizeof sum, f->bytes);
+  return whole && isfinite(f->head.t) && dvi__first_not_finite(8 * (size_t)I->system->n, f->numbers) < 0 ? DVI_OK : damaged(f);
 }
 
 /* ---- restore: is it of this method and this system? ---- */
