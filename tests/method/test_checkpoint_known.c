@@ -64,6 +64,10 @@ START_TEST(a_long_specification_is_kept_whole)
   ck_assert_ptr_nonnull(strstr(dvi_integrator_method(one), ",type=1"));
   check_taken(one, same);
   check_refused(one, other, "type=1 there, type=2 here");
+  write_text("same", kutta);
+  dvi_integrator *elsewhere = started(of, spec("shooting:tableau=%s,type=2", in_folder("same")));
+  check_refused(one, elsewhere, "type=1 there, type=2 here"); /* and not the path, which may be any */
+  dvi_integrator_destroy(&elsewhere);
   ck_assert_msg(dvi_integrator_create_like(other, &like) == DVI_OK, "%s", dvi_last_error());
   ck_assert_str_eq(dvi_integrator_method(like), dvi_integrator_method(other));
   dvi_integrator_destroy(&one);

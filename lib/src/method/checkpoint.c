@@ -194,31 +194,42 @@ static dvi_status check_numbers(const dvi_integrator *I, const file *f)
 
 /* ---- restore: is it of this method and this system? ---- */
 
-/* The first key, or name, in which two specifications differ. */
-static void find_difference(const char *one, const char *other, int length[2], const char *at[2])
+/* Whether "key=value" or a name is one of what determines the steps. */
+static int matters(const dvi__method *method, const char *piece)
 {
-  at[0] = one, at[1] = other;
+  const size_t length = strcspn(piece, "=:,");
+  for (int k = 0; k < dvi__key_count(method); k++) {
+    const dvi__key *key = &method->keys[k];
+    if (strlen(key->name) == length && strncmp(key->name, piece, length) == 0)
+      return key->least != DVI__SAID && key->least != DVI__FILE;
+  }
+  return 1;
+}
+
+/* The first of those in which two specifications differ. */
+static void find_difference(const dvi__method *method, const char *at[2], int length[2])
+{
   for (;;) {
     length[0] = (int)strcspn(at[0], ":,");
     length[1] = (int)strcspn(at[1], ":,");
-    if (length[0] != length[1] || memcmp(at[0], at[1], (size_t)length[0]) != 0) return;
-    if (at[0][length[0]] == 0 || at[1][length[1]] == 0) return;
+    const int same = length[0] == length[1] && memcmp(at[0], at[1], (size_t)length[0]) == 0;
+    if ((!same && matters(method, at[1])) || at[0][length[0]] == 0 || at[1][length[1]] == 0) return;
     at[0] += length[0] + 1, at[1] += length[1] + 1;
   }
 }
 
 static dvi_status check_method(const dvi_integrator *I, const file *f)
 {
-  const char *here = I->stepper.specification, *at[2];
+  const char *here = I->stepper.specification, *at[2] = {f->specification, here};
   int length[2];
   if (f->head.steps != I->stepper.steps) {
-    find_difference(f->specification, here, length, at);
+    find_difference(I->stepper.method, at, length);
     return dvi__fail(DVI_BAD_FILE, "checkpoint %s: %.*s there, %.*s here: written by %s, not by %s", f->path, length[0], at[0],
                      length[1], at[1], f->specification, here);
   }
   if (f->head.fingerprint == I->stepper.fingerprint) return DVI_OK;
-  return dvi__fail(DVI_BAD_FILE, "checkpoint %s: written by %s, but with other %s", f->path, f->specification,
-                   I->stepper.fingerprinted);
+  return dvi__fail(DVI_BAD_FILE, "checkpoint %s: written with other %s, by %s", f->path, I->stepper.fingerprinted,
+                   f->specification);
 }
 
 static const char *name_of(int64_t pacing)
