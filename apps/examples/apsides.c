@@ -67,6 +67,7 @@ int main(void)
   if (status != DVI_OK) fprintf(stderr, "%s: %s\n", dvi_status_name(status), dvi_last_error());
   dvi_integrator_destroy(&integrator);
   dvi_system_destroy(&system);
-  /* Five passages; an event is right to a few roundings of its time, about 30, and a period is the difference of two. */
+  /* Five passages; an event is right to a few roundings of its time, about 30, and a period is
+   * the difference of two. */
   return status == DVI_OK && seen.count == 5 && seen.worst < 6e-11 ? 0 : 1;
 }

@@ -1,5 +1,6 @@
 /* labels: unit */
-/* How a checkpoint gets to the disk: the file, then its name, then the folder; and what a save that fails leaves behind. */
+/* How a checkpoint gets to the disk: the file, then its name, then the folder; and what a save
+ * that fails leaves behind. */
 #define _GNU_SOURCE /* syscall */
 #include <errno.h>
 #include <fcntl.h>

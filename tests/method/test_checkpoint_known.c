@@ -1,5 +1,6 @@
 /* labels: unit */
-/* A checkpoint is taken by whoever takes the same steps, and by nobody else: a refusal says what differs. */
+/* A checkpoint is taken by whoever takes the same steps, and by nobody else: a refusal says what
+ * differs. */
 #include <dvi/dvi.h>
 #include <math.h>
 #include <stdio.h>
@@ -41,7 +42,8 @@ static void write_text(const char *name, const char *text)
   write_bytes(in_folder(name), (const unsigned char *)text, strlen(text));
 }
 
-/* "shooting:tableau=<path>,<rest>", where the path takes a thousand characters to get to the file. */
+/* "shooting:tableau=<path>,<rest>", where the path takes a thousand characters to get to the
+ * file. */
 static const char *by_a_long_way(const char *name, const char *rest)
 {
   static char texts[2][2 * LONG];
@@ -215,7 +217,8 @@ static dvi_system *made_springs(springs *s)
 
 static const springs nine = {{1, 2, 3, 4, 5, 6, 7, 8, 9}, 0, 0};
 
-/* All q are 1, so that exchanged springs and forces that differ and balance leave the energy as it is. */
+/* All q are 1, so that exchanged springs and forces that differ and balance leave the energy as
+ * it is. */
 static void check_springs(const springs *changed, const char *words)
 {
   const double q[SPRINGS] = {1, 1, 1, 1, 1, 1, 1, 1, 1}, p[SPRINGS] = {0};
@@ -381,7 +384,8 @@ END_TEST
 
 /* ---- forged files ---- */
 
-/* Numbers that no checksum defends: a step from them may fail, but it ends, and no status but DVI_OK goes with finite numbers alone. */
+/* Numbers that no checksum defends: a step from them may fail, but it ends, and no status but
+ * DVI_OK goes with finite numbers alone. */
 static void check_survives(dvi_integrator *integrator, double h)
 {
   if (dvi_integrator_restore(integrator, in_folder("forged")) != DVI_OK) return;

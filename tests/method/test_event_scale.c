@@ -1,5 +1,6 @@
 /* labels: unit */
-/* Events are located to a part of the step, in whatever unit time is measured and wherever the clock stands. */
+/* Events are located to a part of the step, in whatever unit time is measured and wherever the
+ * clock stands. */
 #include <float.h>
 #include <math.h>
 
@@ -71,7 +72,8 @@ START_TEST(femtoseconds_are_located_as_well_as_years)
 }
 END_TEST
 
-/* Far from t = 0 times themselves are rounded, by half an ulp: what is found is a few of them off. */
+/* Far from t = 0 times themselves are rounded, by half an ulp: what is found is a few of them
+ * off. */
 START_TEST(late_events_are_located_to_the_rounding_of_the_clock)
 {
   static const double begins[] = {1e3, 1e5, 1e8, -1e5};

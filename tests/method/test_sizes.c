@@ -1,5 +1,6 @@
 /* labels: unit */
-/* What is too large is refused at once, before memory is taken, with the numbers that are too large. */
+/* What is too large is refused at once, before memory is taken, with the numbers that are too
+ * large. */
 #include <dvi/dvi.h>
 #include <limits.h>
 #include <stdlib.h>

@@ -1,4 +1,5 @@
-/* Hashes of bytes, FNV-1a, and weights of numbers, for telling files and systems apart, not for security. */
+/* Hashes of bytes, FNV-1a, and weights of numbers, for telling files and systems apart, not for
+ * security. */
 #ifndef DVI_CORE_HASH_H
 #define DVI_CORE_HASH_H
 #include <math.h>
@@ -14,8 +15,8 @@ static inline uint64_t dvi__hash(uint64_t hash, size_t count, const void *bytes)
   return hash;
 }
 
-/* Where numbers are computed and may be rounded otherwise, sums tell them apart: with weights in [1,2), no two of which
- * are equal, so that numbers that change places change the sum, too. */
+/* Where numbers are computed and may be rounded otherwise, sums tell them apart: with weights in
+ * [1,2), no two of which are equal, so that numbers that change places change the sum, too. */
 static inline double dvi__weight(size_t place)
 {
   const double golden = 0.61803398874989485;

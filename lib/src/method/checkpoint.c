@@ -1,12 +1,14 @@
 /* Checkpoints: everything that the next step depends on, in one file with checksums.
  *
- * Callbacks cannot be saved, but the system can be known again: by what it declares (hashes), and by what they compute at
- * the saved state (fingerprint.h), which other parameters would change. So can the method: by its keys, of which all but
- * the name of a file are hashed, and by what no key spells, a tableau's coefficients or a program's own functions.
+ * Callbacks cannot be saved, but the system can be known again: by what it declares (hashes),
+ * and by what they compute at the saved state (fingerprint.h), which other parameters would
+ * change. So can the method: by its keys, of which all but the name of a file are hashed, and by
+ * what no key spells, a tableau's coefficients or a program's own functions.
  *
- * Layout, in the machine's own byte order (a mark tells a foreign one): the header; the specification, with zeros to a
- * multiple of 8 bytes; then numbers: the state and the one before it with their carries, the method's memory; the checksum of
- * all that precedes it. The header ends with one of its own, that of header and specification. */
+ * Layout, in the machine's own byte order (a mark tells a foreign one): the header; the
+ * specification, with zeros to a multiple of 8 bytes; then numbers: the state and the one before
+ * it with their carries, the method's memory; the checksum of all that precedes it. The header
+ * ends with one of its own, that of header and specification. */
 #include <errno.h>
 #include <inttypes.h>
 #include <math.h>
@@ -152,8 +154,8 @@ static dvi_status check_header(const file *f, size_t got)
   return size > 0 && size % UNIT == 0 && size <= DVI__SPECIFICATION_MOST + UNIT ? DVI_OK : damaged(f);
 }
 
-/* The header, then as much more as a file of this integrator with this specification may have, and one byte, which shows a
- * file that is too long. */
+/* The header, then as much more as a file of this integrator with this specification may have,
+ * and one byte, which shows a file that is too long. */
 static dvi_status read_stream(const dvi_integrator *I, FILE *stream, file *f)
 {
   f->size = fread(&f->head, 1, sizeof f->head, stream);
@@ -283,7 +285,8 @@ static dvi_status check_space(const dvi_integrator *I, const file *f)
   return dvi__fail(DVI_BAD_FILE, "checkpoint %s: of another function space of the same name", f->path);
 }
 
-/* What the header tells is compared first: of another method or system the numbers are of another count, too. */
+/* What the header tells is compared first: of another method or system the numbers are of
+ * another count, too. */
 static dvi_status check(const dvi_integrator *I, const file *f)
 {
   DVI_TRY(check_method(I, f));

@@ -9,8 +9,8 @@
 /* Each step is looked at in this many parts: a function may cross zero and come back within one. */
 enum { PARTS = 4, MOST_ITERATIONS = 200 };
 
-/* A bracket on one step: times, g at both, and how narrow it is to become: a part of the step, whatever its unit is, but not less
- * than times are rounded by. */
+/* A bracket on one step: times, g at both, and how narrow it is to become: a part of the step,
+ * whatever its unit is, but not less than times are rounded by. */
 typedef struct bracket {
   double a, b, ga, gb, tolerance;
 } bracket;

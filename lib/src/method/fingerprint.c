@@ -7,7 +7,8 @@
 #include "method/integrator_struct.h"
 #include "system/dirac.h"
 
-/* Another machine's mathematical functions differ by a few roundings; other parameters by more than this. */
+/* Another machine's mathematical functions differ by a few roundings; other parameters by more
+ * than this. */
 static const double same_number = 1e-9;
 
 static dvi__sum weighted(int count, const double *numbers)

@@ -36,9 +36,10 @@ typedef struct dvi__key {
   const char *help;
 } dvi__key;
 
-/* As `least`: the key is a positive number, or auto, which it is if it is not given; the key is a
- * choice of what is said of the steps, and does not change them; it is the name of a file, of which a
- * method may have one, but not as its first key: what the file holds is in the fingerprint. */
+/* As `least`: the key is a positive number, or auto, which it is if it is not given; the key is
+ * a choice of what is said of the steps, and does not change them; it is the name of a file, of
+ * which a method may have one, but not as its first key: what the file holds is in the
+ * fingerprint. */
 enum { DVI__POSITIVE = -2, DVI__SAID = -3, DVI__FILE = -4 };
 
 enum { DVI__KEYS_MOST = 10, DVI__LIST_MOST = 16, DVI__LEFT_OUT = -1 };
@@ -69,8 +70,8 @@ typedef struct dvi__stepper {
   dvi__settings settings;
   char *specification; /* every key spelled out; owned */
   uint64_t steps;      /* hash of the keys that determine the steps */
-  /* A hash of what determines the steps beside keys, system and functions of the program, and what that is, in the plural:
-   * set by create. */
+  /* A hash of what determines the steps beside keys, system and functions of the program, and
+   * what that is, in the plural: set by create. */
   uint64_t fingerprint;
   const char *fingerprinted;
   int order;     /* what theory claims */
@@ -147,8 +148,8 @@ dvi_status dvi__stepper_create(const dvi_system *system, const char *specificati
                                dvi_counters *counters, dvi__stepper *stepper);
 void dvi__stepper_destroy(dvi__stepper *stepper);
 
-/* The stepper of another method, by the keys in self's settings.rest, which becomes the other's keys
- * spelled out: one method, one spelling. */
+/* The stepper of another method, by the keys in self's settings.rest, which becomes the other's
+ * keys spelled out: one method, one spelling. */
 dvi_status dvi__stepper_create_inner(dvi__stepper *self, const char *method, const dvi_system *system, const dvi_shapes *shapes,
                                      dvi__stepper *inner);
 
@@ -162,7 +163,8 @@ void dvi__settings_clear(dvi__settings *settings);
 /* The specification with every key spelled out, to be released; NULL: no memory. */
 char *dvi__spell_out(const dvi__method *method, const dvi__settings *settings);
 
-/* The same of the keys that determine the steps: without what is said of them, and the name of a file. */
+/* The same of the keys that determine the steps: without what is said of them, and the name of a
+ * file. */
 char *dvi__spell_steps(const dvi__method *method, const dvi__settings *settings);
 
 /* The method of a name, or NULL (table.c). */

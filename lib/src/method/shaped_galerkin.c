@@ -36,7 +36,8 @@ static const dvi__key keys[] = {
     {0},
 };
 
-/* What it carries beside its step: the space's fingerprint at the last step's length, or its own before the first. */
+/* What it carries beside its step: the space's fingerprint at the last step's length, or its own
+ * before the first. */
 enum { FINGERPRINT = DVI__CARRIED, CARRIED = 1 };
 
 typedef struct shaped_galerkin {

@@ -13,8 +13,9 @@
 
 #include "core/status.h"
 
-/* A new file beside path, of a name that nobody else takes: other processes by its number, other threads by the count. One
- * that a killed process of the same number has left behind is passed over. -1, and errno, if there is no such file. */
+/* A new file beside path, of a name that nobody else takes: other processes by its number, other
+ * threads by the count. One that a killed process of the same number has left behind is passed
+ * over. -1, and errno, if there is no such file. */
 static int create_beside(const char *path, size_t size, char *beside)
 {
   enum { MOST_NAMES = 1000 };
@@ -63,7 +64,8 @@ static int fill(int descriptor, const unsigned char *bytes, size_t count)
   return reason;
 }
 
-/* The new name is on the disk, too, where the file system can tell, and the folder may be opened. 0, or what failed. */
+/* The new name is on the disk, too, where the file system can tell, and the folder may be
+ * opened. 0, or what failed. */
 static int flush_folder(const char *path)
 {
   char folder[PATH_MAX + 2];

@@ -11,8 +11,8 @@
 
 typedef struct dvi__given dvi__given;
 
-/* A sum over the points, the functions' values and derivatives there and their values at the end, and over their sizes:
- * two spaces of one name are told apart by it. */
+/* A sum over the points, the functions' values and derivatives there and their values at the
+ * end, and over their sizes: two spaces of one name are told apart by it. */
 typedef struct dvi__given_fingerprint {
   double sum, size;
   size_t count; /* of numbers */

@@ -77,7 +77,8 @@ typedef struct dvi__constraint_term {
 /* Ints count coordinates, and up to four numbers of each. */
 enum { DVI__DIMENSION_MOST = INT_MAX / 4 };
 
-/* Hashes of all that is declared, but for what callbacks compute: terms, masses, patterns, potentials, invariants. */
+/* Hashes of all that is declared, but for what callbacks compute: terms, masses, patterns,
+ * potentials, invariants. */
 enum { DVI__DECLARED_PARTS = 5 };
 typedef struct dvi__declared {
   uint64_t hash[DVI__DECLARED_PARTS];
