@@ -1,5 +1,6 @@
 #include "points.h"
 
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,6 +19,7 @@ void points_clear(points *list)
 static bool make_room(points *to, int n)
 {
   if (to->count < to->capacity) return true;
+  if (to->capacity > INT_MAX / 2) return complain("%d points are too many", to->count + 1), false;
   const int capacity = to->capacity > 0 ? 2 * to->capacity : 64;
   double *t = realloc(to->t, (size_t)capacity * sizeof *t);
   if (t != NULL) to->t = t;
@@ -62,6 +64,7 @@ typedef struct reader {
   const problem *scene;
   int columns;
   int *coordinate; /* [columns] of each column: -1 for t, -2 for one that is passed over */
+  bool *seen;      /* [1+n] t, then the coordinates */
   double *q;       /* [n] the row's point */
 } reader;
 
@@ -83,8 +86,12 @@ static int read_header(reader *r)
     if (grown == NULL) return complain("out of memory"), FAILED;
     r->coordinate = grown;
     rows_field(&text, title);
-    r->coordinate[r->columns] = column_of(r->scene, title);
-    known += r->coordinate[r->columns] >= -1;
+    const int coordinate = r->coordinate[r->columns] = column_of(r->scene, title);
+    if (coordinate < -1) continue;
+    if (r->seen[1 + coordinate])
+      return usage_error("path: '%s' has two columns '%s'; one for each coordinate is needed", r->file.path, title);
+    r->seen[1 + coordinate] = true;
+    known++;
   }
   if (known == r->scene->nq + 1) return DONE;
   return usage_error("path: '%s' has %d of the %d columns t and coordinates of %s, as dvi run writes them", r->file.path, known,
@@ -123,10 +130,13 @@ static int read_all(reader *r, points *read)
 
 int points_read(const char *path, const problem *scene, points *read)
 {
-  reader r = {.scene = scene, .q = calloc((size_t)scene->nq, sizeof(double))};
-  if (r.q == NULL) return complain("out of memory"), FAILED;
-  const int code = rows_open(&r.file, path) ? read_all(&r, read) : FAILED;
+  const size_t n = (size_t)scene->nq;
+  reader r = {.scene = scene, .q = calloc(n, sizeof(double)), .seen = calloc(n + 1, sizeof(bool))};
+  const bool good = r.q != NULL && r.seen != NULL;
+  if (!good) complain("out of memory");
+  const int code = good && rows_open(&r.file, path) ? read_all(&r, read) : FAILED;
   rows_close(&r.file);
+  free(r.seen);
   free(r.coordinate);
   free(r.q);
   return code;

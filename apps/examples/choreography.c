@@ -58,7 +58,7 @@ static dvi_status make_system(dvi_system **system)
   const dvi_symmetry symmetries[] = {
       {"momentum_x", shift_x, NULL}, {"momentum_y", shift_y, NULL}, {"angular_momentum", rotate, NULL}};
   const dvi_system_terms terms = {.dimension = N,
-                                  .mass.scalar = 1,
+                                  .mass = {.scalar = 1},
                                   .potentials = &gravity,
                                   .potential_count = 1,
                                   .symmetries = symmetries,
@@ -88,7 +88,7 @@ static dvi_status make_path(const dvi_system *system, dvi_path **path)
 static dvi_status turn_once(const dvi_system *system, const dvi_path *path, double *gap)
 {
   dvi_integrator *integrator = NULL;
-  const double h = (dvi_path_time(path, STEPS) - dvi_path_time(path, 0)) / STEPS;
+  const double h = (dvi_path_time(path, STEPS) - dvi_path_time(path, 0)) / (double)STEPS;
   dvi_status status = dvi_integrator_create(system, dvi_path_method(path), &integrator);
   if (status == DVI_OK) status = dvi_integrator_start(integrator, 0, dvi_path_q(path, 0), dvi_path_p(path, 0));
   for (int k = 0; k < BODIES * STEPS && status == DVI_OK; k++) status = dvi_integrator_step(integrator, h);

@@ -32,7 +32,7 @@ static int radial(double t, const double *q, const double *v, double *g, void *u
 /* From the aphelion, the k-th perihelion is at (k + 1/2) periods. */
 static int perihelion(double t, const double *q, const double *v, void *user)
 {
-  int *passages = user;
+  int *passages = (int *)user;
   (void)v;
   printf("perihelion %3d at t = %.9f, error %8.1e, r = %.12f\n", *passages, t, t - (*passages + 0.5) * period, hypot(q[0], q[1]));
   ++*passages;
@@ -52,11 +52,12 @@ static dvi_status orbits(dvi_integrator *integrator, int count, dvi_run_report *
 int main(void)
 {
   const dvi_potential gravity = {.name = "gravity", .value = value, .gradient = gradient};
-  const dvi_system_terms terms = {.dimension = 2, .mass.scalar = 1, .potentials = &gravity, .potential_count = 1, .autonomous = 1};
+  const dvi_system_terms terms = {
+      .dimension = 2, .mass = {.scalar = 1}, .potentials = &gravity, .potential_count = 1, .autonomous = 1};
   const dvi_monitor distance = {.kind = DVI_MONITOR_DISTANCE, .power = 1.5}; /* dt = r^1.5 dtau */
   dvi_system *system = NULL;
   dvi_integrator *integrator = NULL;
-  dvi_run_report report = {0};
+  dvi_run_report report = {.end = DVI_RUN_FAILED};
   double energy = 0;
   dvi_status status = dvi_system_create(&terms, &system);
   if (status == DVI_OK) status = dvi_integrator_create_transformed(system, &distance, "galerkin:degree=4", &integrator);

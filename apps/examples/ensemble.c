@@ -36,7 +36,7 @@ static double exact_period(double amplitude)
 
 static double amplitude_of(int k)
 {
-  return 3.0 * (k + 1) / MEMBERS;
+  return 3.0 * (k + 1) / (double)MEMBERS;
 }
 
 /* A quarter of the period is over when q changes sign; from the step before, the velocity tells when. */
@@ -65,7 +65,7 @@ int main(void)
 {
   static double period[MEMBERS];
   const dvi_potential gravity = {.name = "gravity", .value_batch = value, .gradient_batch = gradient};
-  const dvi_system_terms terms = {.dimension = 1, .mass.scalar = 1, .potentials = &gravity, .potential_count = 1};
+  const dvi_system_terms terms = {.dimension = 1, .mass = {.scalar = 1}, .potentials = &gravity, .potential_count = 1};
   const dvi_ensemble_options options = {.members = MEMBERS, .threads = 2};
   dvi_system *system = NULL;
   dvi_ensemble *ensemble = NULL;

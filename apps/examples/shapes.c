@@ -86,9 +86,9 @@ static dvi_status study(const dvi_system *system, findings *found)
 int main(void)
 {
   const dvi_potential modes = {.name = "modes", .value = value, .gradient = gradient};
-  const dvi_system_terms terms = {.dimension = 2, .mass.scalar = 1, .potentials = &modes, .potential_count = 1};
+  const dvi_system_terms terms = {.dimension = 2, .mass = {.scalar = 1}, .potentials = &modes, .potential_count = 1};
   dvi_system *system = NULL;
-  findings found = {0};
+  findings found = {.exact = {0}};
   dvi_status status = dvi_system_create(&terms, &system);
   if (status == DVI_OK) status = study(system, &found);
   dvi_system_destroy(&system);

@@ -86,6 +86,12 @@ expect 1 'no such file' $eight --steps 9 --guess missing.csv
 cut -d, -f1-6 sketch.csv >narrow.csv
 expect 2 'a column is missing' $eight --steps 9 --guess narrow.csv
 says err '6 of the 7 columns' 'what is missing'
+sed '1s/,y_1,/,x_1,/' sketch.csv >repeated.csv
+expect 2 'a column twice in the place of another' $eight --steps 9 --guess repeated.csv
+says err "'repeated.csv' has two columns 'x_1'" 'which one'
+sed '1s/,y_1,/,t,/' sketch.csv >clocks.csv
+expect 2 'the time twice' $eight --steps 9 --guess clocks.csv
+says err "has two columns 't'" 'which one'
 head -n 2 sketch.csv >short.csv
 expect 2 'one point' $eight --steps 9 --guess short.csv
 sed 's/^1,0.9/1,word/' sketch.csv >word.csv

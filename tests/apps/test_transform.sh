@@ -31,7 +31,7 @@ for way in '--time-transform distance' '--step-control distance:power=1.2'; do
   tail -n 1 second.csv | grep -q '^20,' || fail 'the resumed run ends at t = 20'
   # shellcheck disable=SC2086
   expect 1 'resume without it' run kepler --method galerkin:degree=4 --h 0.3 --t-end 20 --resume half.state
-  says err 'steps in another time' 'why it is not resumed'
+  says err 'not of steps of time' 'why it is not resumed'
 done
 
 # The same orders as without.

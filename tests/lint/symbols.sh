@@ -9,23 +9,7 @@ trap 'rm -rf "$work"' EXIT
 rc=0
 
 nm -D --defined-only "$shared" | awk 'NF == 3 { print $3 }' | sort -u >"$work/exported"
-# Comments are cut out; what is left before an opening parenthesis at a prototype's start is its name.
-cat "$@" | awk '
-  { text = text " " $0 "\n" }
-  END {
-    while ((start = index(text, "/*")) > 0) {
-      rest = substr(text, start + 2)
-      text = substr(text, 1, start - 1) substr(rest, index(rest, "*/") + 2)
-    }
-    count = split(text, line, "\n")
-    for (i = 1; i <= count; i++)
-      if (line[i] ~ /^ (const |unsigned )*[a-z][a-z_]* \**dvi_[a-z_0-9]+\(/) {
-        name = line[i]
-        sub(/\(.*/, "", name)
-        sub(/.*[ *]/, "", name)
-        print name
-      }
-  }' | sort -u >"$work/declared"
+awk -f "$(dirname "$0")/declared.awk" "$@" | sort -u >"$work/declared"
 
 [ -s "$work/declared" ] || { echo "no declarations found in $*"; rc=1; }
 comm -23 "$work/exported" "$work/declared" | sed 's/^/exported, but in no public header: /' >"$work/report"

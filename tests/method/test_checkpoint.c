@@ -269,7 +269,7 @@ START_TEST(a_checkpoint_of_another_system_or_other_parameters_is_refused)
 {
   scene s = made_scene();
   ck_assert_int_eq(dvi_integrator_save(s.integrator, in_folder("other")), DVI_OK);
-  refused_by("henon-heiles", NULL, "galerkin:degree=2", "declares other terms, masses, patterns or names");
+  refused_by("henon-heiles", NULL, "galerkin:degree=2", "of a system that declares other names or speeds of potentials");
   problem *stiff = made_problem("fpu", "omega=50"), *softer = made_problem("fpu", "omega=49.9999");
   dvi_integrator *first = started(stiff, "verlet"), *second = started(softer, "verlet");
   for (int steps = 0; steps < 2; steps++) { /* at the start the velocity is the start's, later the step's */

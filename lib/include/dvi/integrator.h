@@ -246,18 +246,26 @@ void dvi_integrator_counters(const dvi_integrator *integrator, dvi_counters *cou
  *  @return the length of the whole text (without the 0 at its end); text holds as much of it as fits, always ended by 0. */
 size_t dvi_integrator_explain(const dvi_integrator *integrator, char *text, size_t size);
 
-/** Write the state to a file: the file is whole or, on failure, as before.
+/** Write the state to a file: the file is whole or, on failure, as before, and nothing else is
+ *  left in its folder. It is on the disk, under its name, when the call returns.
  *
- *  @retval DVI_IO_ERROR  the file cannot be written (disk full, no permission); the error sentence has the system's reason */
+ *  @retval DVI_IO_ERROR  the file cannot be written (disk full, no permission), or the folder
+ *                        cannot be flushed; the error sentence has the system's reason */
 dvi_status dvi_integrator_save(const dvi_integrator *integrator, const char *path);
 
 /** Read a state that dvi_integrator_save wrote; a run then continues bit for bit.
  *
- *  On any failure the state stays. Callbacks are not in the file; the system is known again by what it declares and by the Lagrangian's value
- *  and forces, and the distance from phi(q,p) = 0 or p = alpha(q), at the saved state, which must agree to nine digits. Other parameters that show in neither (a drive's frequency at t = 0) are
- *  not noticed.
+ *  On any failure the state stays. The method must have the same keys, but for those that do
+ *  not change the steps (an alarm, the path of a tableau, whose coefficients must be the same),
+ *  and the same function space and monitor. Callbacks are not in the file; the system is known
+ *  again by what it declares and by the Lagrangian's value and forces, the distance from
+ *  phi(q,p) = 0 or p = alpha(q), and the monitor and its gradient, at the saved state, which
+ *  must agree to nine digits; functions of the program's own (dvi/shapes.h) by their values at
+ *  the quadrature points. Other parameters that show in none of these (a drive's frequency at
+ *  t = 0) are not noticed.
  *  @retval DVI_IO_ERROR  the file cannot be read
- *  @retval DVI_BAD_FILE  it is cut short, damaged, or from another method or system */
+ *  @retval DVI_BAD_FILE  it is cut short, damaged, or from another method or system; the error
+ *                        sentence says what differs */
 dvi_status dvi_integrator_restore(dvi_integrator *integrator, const char *path);
 
 #ifdef __cplusplus

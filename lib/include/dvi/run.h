@@ -9,7 +9,8 @@ typedef struct dvi_event {
   int (*value)(double t, const double *q, const double *v, double *g, void *user);
   int direction; /**< +1: g rises through zero, -1: falls, 0: both; in the direction of the run */
   int terminal;  /**< not 0: the run ends at the event: its step is taken again, up to there */
-  /** Called at each event, at the time where the step's polynomial has g = 0, right to 1e-12 max(1,|t|); may be NULL.
+  /** Called at each event, at the time where the step's polynomial has g = 0, right to 1e-12 of
+   *  the step and a few roundings of t; may be NULL.
    *  Return 0 to go on, >0 to end the run, <0 to fail. */
   int (*occurred)(double t, const double *q, const double *v, void *user);
   void *user;

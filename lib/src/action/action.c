@@ -36,6 +36,7 @@ static dvi_status allocate_chord(dvi__action *a, dvi_counters *counters)
 
 static dvi_status fill(dvi__action *a, dvi_counters *counters)
 {
+  if (!a->shaped) DVI_TRY(dvi__joint_check(a->system, a->s, a->r));
   DVI_TRY(dvi__action_fill_tables(a));
   const int capacity = a->r > a->s ? a->r : a->s; /* a batch of s is solved for at once in the chord */
   DVI_TRY(dvi__evaluator_create(a->system, capacity, DVI__HESSIANS, counters, &a->evaluator));

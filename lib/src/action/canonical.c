@@ -68,6 +68,7 @@ static dvi_status allocate(dvi__canonical *c)
 
 static dvi_status fill(dvi__canonical *c, const dvi__action_space *space, dvi_counters *counters)
 {
+  DVI_TRY(dvi__joint_check(c->system, c->m, c->r));
   dvi__space_init(&c->space, space->basis, c->s);
   DVI_TRY(dvi_quadrature(space->rule, c->r, c->c, c->b));
   fill_tables(c);

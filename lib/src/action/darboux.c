@@ -91,6 +91,7 @@ static dvi_status allocate(dvi__darboux *d)
 
 static dvi_status fill(dvi__darboux *d, dvi__darboux_rule rule, dvi_counters *counters)
 {
+  DVI_TRY(dvi__joint_check(d->system, d->m, d->m));
   d->is_x = DVI_NEW(int, d->n);
   if (d->is_x == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory");
   DVI_TRY(dvi__form_half(d->system, d->is_x));

@@ -96,6 +96,7 @@ static dvi_status allocate(dvi__discontinuous *e)
 
 static dvi_status fill(dvi__discontinuous *e, const dvi__dg_space *space, dvi_counters *counters)
 {
+  DVI_TRY(dvi__joint_check(e->system, e->S, e->r));
   DVI_TRY(fill_basis(e));
   DVI_TRY(fill_path(e, space));
   DVI_TRY(dvi__evaluator_create(e->system, e->r, DVI__HESSIANS, counters, &e->evaluator));

@@ -1,5 +1,7 @@
 #include "action/joint.h"
 
+#include <limits.h>
+
 #include "core/memory.h"
 #include "core/status.h"
 
@@ -20,6 +22,24 @@ static dvi_status join(const dvi_system *system, dvi__pattern *joint)
   dvi__pattern_clear(&second);
   dvi__pattern_clear(&diagonal);
   return status;
+}
+
+dvi_status dvi__joint_check(const dvi_system *system, int size, int most)
+{
+  const size_t numbers = (size_t)system->n * (size_t)(most > size ? most : size), block = (size_t)size * (size_t)size;
+  if (numbers >= INT_MAX)
+    return dvi__fail(DVI_BAD_SIZE,
+                     "action: %d coordinates with %zu numbers each make %zu, more than an int can count; take a lower degree, or "
+                     "fewer nodes or stages",
+                     system->n, numbers / (size_t)system->n, numbers);
+  DVI_TRY(dvi__system_prepare_hessian(system));
+  const int qq = dvi__pattern_entries(&system->qq), vv = dvi__pattern_entries(&system->vv);
+  const size_t least = (size_t)(qq > vv ? qq : vv) * block;
+  if (least < INT_MAX) return DVI_OK;
+  return dvi__fail(DVI_BAD_SIZE,
+                   "action: the Jacobian would have %zu entries or more, which an int cannot count; declare sparse Hessians, or "
+                   "take a lower degree",
+                   least);
 }
 
 dvi_status dvi__joint_create(const dvi_system *system, dvi__pattern *joint, dvi__block **block)

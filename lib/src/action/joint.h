@@ -9,6 +9,11 @@ typedef struct dvi__block {
   int qq, qv, vq, vv;
 } dvi__block;
 
+/* DVI_BAD_SIZE unless an int can count `most` numbers for each coordinate, and the entries of a
+ * Jacobian with a block of size x size for each one of the Hessian's: to be called before memory
+ * is taken. Completes the Hessian's pattern. */
+dvi_status dvi__joint_check(const dvi_system *system, int size, int most);
+
 /* The pattern, and a block [entries] for each of its entries, from the heap; what a failure leaves belongs to the caller, too. The system must be
  * prepared for Hessians. */
 dvi_status dvi__joint_create(const dvi_system *system, dvi__pattern *joint, dvi__block **block);

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "action/phase_struct.h"
+#include "action/joint.h"
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/finite.h"
@@ -65,6 +66,7 @@ static dvi_status fill_tables(dvi__phase *f)
 
 static dvi_status fill(dvi__phase *f, dvi_counters *counters)
 {
+  DVI_TRY(dvi__joint_check(f->system, f->d + 1, 2 * (f->d + 1)));
   DVI_TRY(fill_tables(f));
   DVI_TRY(dvi__evaluator_create(f->system, f->d, DVI__HESSIANS, counters, &f->evaluator));
   DVI_TRY(dvi__phase_lay_out(f));

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "action/collocation.h"
+#include "core/hash.h"
 #include "core/status.h"
 
 #define ROOT_3 1.73205080756887729353
@@ -235,4 +236,13 @@ dvi_status dvi__runge_kutta_named(int i, int stages, dvi__runge_kutta *method)
     DVI_TRY(fill_collocation(of->rule, method));
   dvi__runge_kutta_classify(method);
   return DVI_OK;
+}
+
+uint64_t dvi__runge_kutta_fingerprint(const dvi__runge_kutta *m)
+{
+  const size_t row = (size_t)m->stages * sizeof(double);
+  uint64_t hash = dvi__hash(DVI__HASH_START, row, m->b);
+  hash = dvi__hash(hash, row, m->c);
+  for (int i = 0; i < m->stages; i++) hash = dvi__hash(hash, row, m->a[i]);
+  return hash;
 }

@@ -4,6 +4,7 @@
 #ifndef DVI_ACTION_RUNGE_KUTTA_H
 #define DVI_ACTION_RUNGE_KUTTA_H
 #include <dvi/status.h>
+#include <stdint.h>
 
 enum { DVI__RK_STAGES_MOST = 16 };
 
@@ -29,6 +30,9 @@ dvi_status dvi__runge_kutta_named(int i, int stages, dvi__runge_kutta *method);
 
 /* The tableau in a file (docs/methods/shooting.md has the format). DVI_BAD_OPTION, with line and column; also if it has not the order that it claims. */
 dvi_status dvi__runge_kutta_read(const char *path, dvi__runge_kutta *method);
+
+/* A hash of the coefficients, by which a tableau is known wherever its file is. */
+uint64_t dvi__runge_kutta_fingerprint(const dvi__runge_kutta *method);
 
 /* Set is_explicit and symmetric from the coefficients. */
 void dvi__runge_kutta_classify(dvi__runge_kutta *method);

@@ -48,6 +48,8 @@ static int allocate(dvi__shaped *s, const char *has_all, int fewest)
 
 static dvi_status fill(dvi__shaped *s, const dvi_system *system, const char *has_all, int fewest, dvi_counters *counters)
 {
+  const int functions = s->shapes.functions, points = s->shapes.points;
+  DVI_TRY(dvi__joint_check(system, fewest, functions > points ? functions : points));
   DVI_TRY(dvi__action_create_shaped(system, s->shapes.functions, s->shapes.points, counters, &s->action));
   if (!allocate(s, has_all, fewest)) return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d shapes", s->shapes.functions);
   DVI_TRY(dvi__action_prepare_hessians(s->action));

@@ -1,4 +1,5 @@
 /* Which blocks the Jacobian of a stacked shot has, and where their entries go. */
+#include <limits.h>
 #include <string.h>
 
 #include "action/stacked_struct.h"
@@ -184,15 +185,17 @@ static dvi_status fill(dvi__stacked_shot *s, int count)
 
 dvi_status dvi__stacked_shot_lay_out(dvi__stacked_shot *s, const dvi_system *system)
 {
-  int count = 0;
+  size_t count = 0;
   DVI_TRY(join(s, system));
   DVI_TRY(turn(s));
   add_all(s);
   s->block = DVI_NEW(dvi__stack_block, s->block_count);
   if (s->block == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory");
   add_all(s);
-  for (int b = 0; b < s->block_count; b++) count += entries_of(s, &s->block[b], NULL, NULL);
-  return fill(s, count);
+  for (int b = 0; b < s->block_count; b++) count += (size_t)entries_of(s, &s->block[b], NULL, NULL);
+  if (count < INT_MAX) return fill(s, (int)count);
+  return dvi__fail(DVI_BAD_SIZE,
+                   "the stages' Jacobian would have %zu entries, more than an int can count; take fewer stages or nodes", count);
 }
 
 void dvi__stacked_shot_clear_layout(dvi__stacked_shot *s)

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "action/stacked_struct.h"
+#include "action/joint.h"
 #include "core/memory.h"
 #include "core/status.h"
 #include "system/transformed.h"
@@ -29,6 +30,7 @@ static dvi_status allocate(dvi__stacked_shot *s)
 
 static dvi_status fill(dvi__stacked_shot *s, const dvi_system *system, dvi_counters *counters)
 {
+  DVI_TRY(dvi__joint_check(system, 2, 2 * s->blocks));
   DVI_TRY(dvi__field_create(system, dvi__stack_node_point(s, s->course.pieces) + 1, counters, &s->field));
   DVI_TRY(dvi__evaluator_create(system, 1, DVI__GRADIENTS, counters, &s->evaluator));
   DVI_TRY(dvi__stacked_shot_lay_out(s, system));

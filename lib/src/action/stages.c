@@ -116,8 +116,8 @@ static dvi_status allocate(dvi__stages *s)
 
 static dvi_status fill(dvi__stages *s, dvi_counters *counters)
 {
-  DVI_TRY(allocate(s));
   DVI_TRY(dvi__pattern_copy(&(dvi_pattern){0}, s->unknowns, "stages", &s->pattern));
+  DVI_TRY(allocate(s));
   DVI_TRY(dvi__linear_create(&s->pattern, DVI__LINEAR_DENSE, counters, &s->transposed));
   return dvi__linear_create(&s->pattern, DVI__LINEAR_DENSE, counters, &s->linear);
 }

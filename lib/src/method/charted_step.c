@@ -49,15 +49,6 @@ static int has_two_ends(const dvi_system *system, const dvi__stepper *inner)
   return !turns || dvi__action_space_of(dvi__element_action(inner)).degree == 1;
 }
 
-/* The inner method spells its keys out. */
-static void take_over(dvi__stepper *self, const dvi__stepper *inner)
-{
-  dvi__text rest = {self->settings.rest, sizeof self->settings.rest, 0};
-  dvi__text_add(&rest, "%s", strchr(inner->specification, ':') + 1);
-  self->order = inner->order;
-  self->symmetric = inner->symmetric && has_two_ends(self->system, inner);
-}
-
 static dvi_status centre_paths(charted_step *own)
 {
   dvi__centring centring;
@@ -67,17 +58,14 @@ static dvi_status centre_paths(charted_step *own)
 
 dvi_status dvi__charted_step_create(dvi__stepper *self, int reduced)
 {
-  char specification[2 * DVI__SPECIFICATION_SIZE] = "";
-  dvi__text text = {specification, sizeof specification, 0};
   charted_step *own = self->own = DVI_NEW(charted_step, 1);
   if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
-  dvi__text_add(&text, "galerkin%s%s", self->settings.rest[0] != 0 ? ":" : "", self->settings.rest);
   const dvi_status made = dvi__charted_create(self->system, reduced, self->counters, &own->charted);
   if (made != DVI_OK) return dvi__fail_in(made, "%s", self->method->name);
-  const dvi_status status = dvi__stepper_create(dvi__charted_system(own->charted), specification, NULL, self->counters,
-                                                &own->inner);
+  const dvi_status status = dvi__stepper_create_inner(self, "galerkin", dvi__charted_system(own->charted), NULL, &own->inner);
   if (status != DVI_OK) return dvi__fail_in(status, "%s, by the keys of galerkin", self->method->name);
-  take_over(self, &own->inner);
+  self->order = own->inner.order;
+  self->symmetric = own->inner.symmetric && has_two_ends(self->system, &own->inner);
   DVI_TRY(centre_paths(own));
   return allocate(self, own);
 }

@@ -1,312 +1,330 @@
-/* Checkpoints: everything that the next step depends on, in one file with a checksum.
+/* Checkpoints: everything that the next step depends on, in one file with checksums.
  *
- * Callbacks cannot be saved, but the system can be known again: by what it declares (a hash), and by the Lagrangian's value and forces, and the
- * distance from the constraint, at the saved state, which other parameters would change.
+ * Callbacks cannot be saved, but the system can be known again: by what it declares (hashes),
+ * and by what they compute at the saved state (fingerprint.h), which other parameters would
+ * change. So can the method: by its keys, of which all but the name of a file are hashed, and by
+ * what no key spells, a tableau's coefficients or a program's own functions.
  *
- * Layout, in the machine's own byte order (a mark tells a foreign one): the header, the specification, then numbers: the state and the one before it
- * with their carries, the method's memory. The checksum is FNV-1a over all that precedes it. */
-#define _XOPEN_SOURCE 700 /* fsync, fileno, realpath */
+ * Layout, in the machine's own byte order (a mark tells a foreign one): the header; the
+ * specification, with zeros to a multiple of 8 bytes; then numbers: the state and the one before
+ * it with their carries, the method's memory; the checksum of all that precedes it. The header
+ * ends with one of its own, that of header and specification. */
 #include <errno.h>
-#include <fcntl.h>
-#include <limits.h>
+#include <inttypes.h>
 #include <math.h>
-#include <stdatomic.h>
-#include <stdint.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "core/hash.h"
 #include "core/memory.h"
 #include "core/status.h"
+#include "method/fingerprint.h"
 #include "method/integrator_struct.h"
+#include "method/whole_file.h"
 #include "num/finite.h"
-#include "system/dirac.h"
-
-/* The Lagrangian, or the Hamiltonian, at a state: its value, and one sum over its forces; the largest |phi| or |p - alpha(q)|; the sizes of the
- * summands tell rounding from difference. NaN if a callback fails there. */
-typedef struct portrait {
-  double value, value_size, force, force_size, distance, distance_size;
-} portrait;
 
 typedef struct header {
   char magic[8];
   uint32_t order_mark, version;
-  uint64_t declared; /* hash of the system's terms */
-  portrait system;
-  int64_t n, memory_count, steps;
+  uint64_t steps, fingerprint; /* the stepper's */
+  dvi__declared declared;
+  dvi__fingerprint system;
+  int64_t n, memory_count, count;
   double t, t_carry, last_t, last_t_carry, last_h;
-  double density, energy; /* of steps in another time: z, E0 */
-  char specification[DVI__SPECIFICATION_SIZE];
+  int64_t pacing; /* of steps in another time: which one, and z, E0 and the monitor */
+  double density, energy;
+  char monitor[DVI__MONITOR_NAME];
+  int64_t specification_size; /* with its zeros */
+  uint64_t sum;
 } header;
 
 static const char magic[8] = {'d', 'v', 'i', 's', 't', 'a', 't', 'e'};
-enum { ORDER_MARK = 0x01020304, VERSION = 4, MOST_NAMES = 1000 };
+enum { ORDER_MARK = 0x01020304, VERSION = 5, STEPS_OF_TIME = 0, UNIT = 8 };
 
-/* Another machine's mathematical functions differ by a few roundings; other parameters by more than this. */
-static const double same_number = 1e-9;
+/* A file in memory; what `numbers` points to is where the integrator's numbers begin. */
+typedef struct file {
+  const char *path;
+  unsigned char *bytes;
+  size_t size;
+  header head;
+  const char *specification;
+  const double *numbers;
+} file;
 
-static size_t file_size(const dvi_integrator *I)
+static size_t padded(const char *specification)
 {
-  const size_t numbers = 8 * (size_t)I->system->n + I->stepper.memory_count;
-  return sizeof(header) + numbers * sizeof(double) + sizeof(uint64_t);
+  return (strlen(specification) / UNIT + 1) * UNIT;
 }
 
-/* ---- the system ---- */
-
-/* What the system declares, and the monitor. */
-static uint64_t declared(const dvi_integrator *I)
+static size_t numbers_size(const dvi_integrator *I)
 {
-  if (I->pace == NULL) return I->system->hash;
-  const uint64_t hash = dvi__hash(I->system->hash, sizeof I->pace->pacing, &I->pace->pacing);
-  return dvi__hash(hash, strlen(I->pace->name), I->pace->name);
+  return (8 * (size_t)I->system->n + I->stepper.memory_count) * sizeof(double);
 }
 
-static dvi_status portray_constraint(const dvi_integrator *I, const double *q, const double *p, portrait *of)
+static int64_t pacing_of(const dvi_integrator *I)
 {
-  if (I->system->terms & DVI__HAMILTONIAN) {
-    DVI_TRY(dvi__dirac_size(I->evaluator, q, p, &of->distance_size));
-    return dvi__dirac_distance(I->evaluator, q, p, &of->distance);
-  }
-  if (!(I->system->terms & DVI__ONE_FORM)) return DVI_OK;
-  DVI_TRY(dvi__form_size(I->evaluator, q, &of->distance_size));
-  return dvi__form_distance(I->evaluator, q, p, &of->distance);
-}
-
-static portrait portray(const dvi_integrator *I, double t, const double *now, const double *last, double last_h)
-{
-  const int n = I->system->n;
-  const double *q = now, *p_now = now + n;
-  double *v = I->v, *forces = I->last_v;
-  const double *second = I->system->terms & DVI__PHASE_SPACE ? p_now : v;
-  portrait p = {0};
-  if (I->system->cells == NULL) dvi__guess_velocity(n, q, last, last + n, last_h, v);
-  if (dvi__legendre_inverse(I->evaluator, t, q, p_now, v) != DVI_OK ||
-      dvi__state_lagrangian(I->evaluator, t, q, second, &p.value) != DVI_OK ||
-      dvi__state_forces(I->evaluator, t, q, second, forces) != DVI_OK || portray_constraint(I, q, p_now, &p) != DVI_OK)
-    return (portrait){(double)NAN, (double)NAN, (double)NAN, (double)NAN, (double)NAN, (double)NAN};
-  p.value_size = fabs(p.value);
-  for (int i = 0; i < n; i++) {
-    p.value_size += fabs(p_now[i] * v[i]);
-    p.force += (1 + i % 7) * forces[i];
-    p.force_size += (1 + i % 7) * fabs(forces[i]);
-  }
-  return p;
-}
-
-/* What cannot be computed on one side does not speak against the other. */
-static int same_lagrangian(const portrait *a, const portrait *b)
-{
-  return !(fabs(a->value - b->value) > same_number * (a->value_size + b->value_size)) &&
-         !(fabs(a->force - b->force) > same_number * (a->force_size + b->force_size));
-}
-
-static int same_constraint(const portrait *a, const portrait *b)
-{
-  return !(fabs(a->distance - b->distance) > same_number * (a->distance_size + b->distance_size));
+  return I->pace != NULL ? 1 + (int64_t)I->pace->pacing : STEPS_OF_TIME;
 }
 
 /* ---- save ---- */
 
-static void pack(const dvi_integrator *I, unsigned char *file)
+/* The sum itself is left out: it comes last. */
+static uint64_t header_sum(const header *head, const char *specification)
 {
-  const size_t n = (size_t)I->system->n, size = file_size(I) - sizeof(uint64_t);
-  header head = {.order_mark = ORDER_MARK,
-                 .version = VERSION,
-                 .declared = declared(I),
-                 .system = portray(I, I->now.t, I->now.q, I->last.q, I->last_h),
-                 .n = I->system->n,
-                 .memory_count = (int64_t)I->stepper.memory_count,
-                 .steps = I->counters.steps,
-                 .t = I->now.t,
-                 .t_carry = I->now.t_carry,
-                 .last_t = I->last.t,
-                 .last_t_carry = I->last.t_carry,
-                 .last_h = I->last_h,
-                 .density = I->now.density,
-                 .energy = I->pace != NULL ? I->pace->energy : 0};
-  memcpy(head.magic, magic, sizeof magic);
-  memcpy(head.specification, I->stepper.specification, sizeof head.specification);
-  memcpy(file, &head, sizeof head);
-  unsigned char *at = file + sizeof head;
-  const size_t state = 4 * n * sizeof(double);
+  const uint64_t hash = dvi__hash(DVI__HASH_START, offsetof(header, sum), head);
+  return dvi__hash(hash, (size_t)head->specification_size, specification);
+}
+
+static void fill_header(const dvi_integrator *I, header *head)
+{
+  const dvi__moment now = {I->now.t, I->last_h, I->now.q, I->now.p, I->last.q, I->last.p};
+  *head = (header){.order_mark = ORDER_MARK,
+                   .version = VERSION,
+                   .steps = I->stepper.steps,
+                   .fingerprint = I->stepper.fingerprint,
+                   .declared = I->system->declared,
+                   .n = I->system->n,
+                   .memory_count = (int64_t)I->stepper.memory_count,
+                   .count = I->counters.steps,
+                   .t = I->now.t,
+                   .t_carry = I->now.t_carry,
+                   .last_t = I->last.t,
+                   .last_t_carry = I->last.t_carry,
+                   .last_h = I->last_h,
+                   .pacing = pacing_of(I),
+                   .density = I->now.density,
+                   .energy = I->pace != NULL ? I->pace->energy : 0,
+                   .specification_size = (int64_t)padded(I->stepper.specification)};
+  memcpy(head->magic, magic, sizeof magic);
+  if (I->pace != NULL) memcpy(head->monitor, I->pace->name, sizeof head->monitor);
+  (void)dvi__fingerprint_take(I, &now, &head->system);
+}
+
+static void pack(const dvi_integrator *I, unsigned char *bytes, size_t size)
+{
+  const size_t state = 4 * (size_t)I->system->n * sizeof(double);
+  header head;
+  fill_header(I, &head);
+  unsigned char *at = bytes + sizeof head;
+  memcpy(at, I->stepper.specification, strlen(I->stepper.specification));
+  head.sum = header_sum(&head, (const char *)at);
+  memcpy(bytes, &head, sizeof head);
+  at += head.specification_size;
   memcpy(at, I->now.q, state);
   memcpy(at + state, I->last.q, state);
   memcpy(at + 2 * state, I->stepper.memory, I->stepper.memory_count * sizeof(double));
-  const uint64_t sum = dvi__hash(DVI__HASH_START, size, file);
-  memcpy(file + size, &sum, sizeof sum);
-}
-
-/* A new file beside path, of a name that nobody else takes: other processes by its number, other threads by the count. One that a killed process of
- * the same number has left behind is passed over. -1, and errno, if there is no such file. */
-static int create_beside(const char *path, size_t size, char *beside)
-{
-  static atomic_ulong count;
-  for (int i = 0; i < MOST_NAMES; i++) {
-    const int length = snprintf(beside, size, "%s.part-%ld-%lu", path, (long)getpid(), atomic_fetch_add(&count, 1));
-    if (length < 0 || (size_t)length >= size) {
-      errno = ENAMETOOLONG;
-      return -1;
-    }
-    const int descriptor = open(beside, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (descriptor >= 0 || errno != EEXIST) return descriptor;
-  }
-  return -1;
-}
-
-static FILE *open_beside(const char *path, size_t size, char *beside)
-{
-  const int descriptor = create_beside(path, size, beside);
-  if (descriptor < 0) return NULL;
-  struct stat old;
-  if (stat(path, &old) == 0) (void)fchmod(descriptor, old.st_mode & 07777);
-  FILE *stream = fdopen(descriptor, "wb");
-  if (stream == NULL) (void)close(descriptor);
-  return stream;
-}
-
-/* A device or a pipe would be replaced by a file of its name. */
-static int is_no_file(const char *path)
-{
-  struct stat old;
-  return stat(path, &old) == 0 && !S_ISREG(old.st_mode);
-}
-
-/* The file is written beside its place and then moved there: a full disk leaves the old one alone. A link is followed, not replaced. */
-static dvi_status write_whole(const char *link, const unsigned char *file, size_t size)
-{
-  char beside[PATH_MAX + 64], real[PATH_MAX];
-  const char *path = realpath(link, real) != NULL ? real : link;
-  if (is_no_file(path)) return dvi__fail(DVI_IO_ERROR, "checkpoint: cannot write %s: it is not a regular file", link);
-  FILE *stream = open_beside(path, sizeof beside, beside);
-  if (stream == NULL) return dvi__fail(DVI_IO_ERROR, "checkpoint: cannot write a file beside %.256s: %s", link, strerror(errno));
-  int failed = fwrite(file, 1, size, stream) != size || fflush(stream) != 0 || fsync(fileno(stream)) != 0;
-  int reason = failed ? errno : 0;
-  if (fclose(stream) != 0 && !failed) failed = 1, reason = errno;
-  if (!failed && rename(beside, path) != 0) failed = 1, reason = errno;
-  if (!failed) return DVI_OK;
-  (void)remove(beside);
-  return dvi__fail(DVI_IO_ERROR, "checkpoint: cannot write %s: %s", link, strerror(reason));
+  const uint64_t sum = dvi__hash(DVI__HASH_START, size - sizeof sum, bytes);
+  memcpy(bytes + size - sizeof sum, &sum, sizeof sum);
 }
 
 dvi_status dvi_integrator_save(const dvi_integrator *I, const char *path)
 {
   if (I == NULL || path == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "checkpoint: an argument is NULL");
   if (!I->started) return dvi__fail(DVI_BAD_STATE, "checkpoint: the integrator has no state yet; call dvi_integrator_start first");
-  const size_t size = file_size(I);
-  unsigned char *file = DVI_NEW(unsigned char, size);
-  if (file == NULL) return dvi__fail(DVI_NO_MEMORY, "checkpoint: no memory for %zu bytes", size);
-  pack(I, file);
-  const dvi_status status = write_whole(path, file, size);
-  dvi__release(file);
+  const size_t size = sizeof(header) + padded(I->stepper.specification) + numbers_size(I) + sizeof(uint64_t);
+  unsigned char *bytes = DVI_NEW(unsigned char, size);
+  if (bytes == NULL) return dvi__fail(DVI_NO_MEMORY, "checkpoint: no memory for %zu bytes", size);
+  pack(I, bytes, size);
+  const dvi_status status = dvi__write_whole(path, bytes, size);
+  dvi__release(bytes);
+  return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "checkpoint");
+}
+
+/* ---- restore: is it whole? ---- */
+
+static dvi_status cut_short(const file *f)
+{
+  return dvi__fail(DVI_BAD_FILE, "checkpoint %s: cut short, %zu bytes", f->path, f->size);
+}
+
+static dvi_status damaged(const file *f)
+{
+  return dvi__fail(DVI_BAD_FILE, "checkpoint %s: damaged (its checksum is wrong)", f->path);
+}
+
+static dvi_status check_header(const file *f, size_t got)
+{
+  if (got >= sizeof magic && memcmp(f->head.magic, magic, sizeof magic) != 0)
+    return dvi__fail(DVI_BAD_FILE, "%s is not a checkpoint", f->path);
+  if (got < offsetof(header, steps)) return cut_short(f);
+  if (f->head.order_mark != ORDER_MARK || f->head.version != VERSION)
+    return dvi__fail(DVI_BAD_FILE, "checkpoint %s: written on another kind of machine or by another version", f->path);
+  if (got < sizeof f->head) return cut_short(f);
+  const int64_t size = f->head.specification_size;
+  return size > 0 && size % UNIT == 0 && size <= DVI__SPECIFICATION_MOST + UNIT ? DVI_OK : damaged(f);
+}
+
+/* The header, then as much more as a file of this integrator with this specification may have,
+ * and one byte, which shows a file that is too long. */
+static dvi_status read_stream(const dvi_integrator *I, FILE *stream, file *f)
+{
+  f->size = fread(&f->head, 1, sizeof f->head, stream);
+  if (ferror(stream)) return dvi__fail(DVI_IO_ERROR, "checkpoint: cannot read %s: %s", f->path, strerror(errno));
+  DVI_TRY(check_header(f, f->size));
+  const size_t rest = (size_t)f->head.specification_size + numbers_size(I) + sizeof(uint64_t) + 1;
+  f->bytes = DVI_NEW(unsigned char, sizeof f->head + rest);
+  if (f->bytes == NULL) return dvi__fail(DVI_NO_MEMORY, "checkpoint: no memory for %zu bytes", sizeof f->head + rest);
+  memcpy(f->bytes, &f->head, sizeof f->head);
+  f->size += fread(f->bytes + sizeof f->head, 1, rest, stream);
+  return ferror(stream) ? dvi__fail(DVI_IO_ERROR, "checkpoint: cannot read %s: %s", f->path, strerror(errno)) : DVI_OK;
+}
+
+static dvi_status read_file(const dvi_integrator *I, file *f)
+{
+  FILE *stream = fopen(f->path, "rb");
+  if (stream == NULL) return dvi__fail(DVI_IO_ERROR, "checkpoint: cannot read %s: %s", f->path, strerror(errno));
+  const dvi_status status = read_stream(I, stream, f);
+  (void)fclose(stream);
+  if (status != DVI_OK) return status;
+  const size_t told = sizeof f->head + (size_t)f->head.specification_size;
+  if (f->size < told) return cut_short(f);
+  f->specification = (const char *)f->bytes + sizeof f->head;
+  f->numbers = (const double *)(const void *)(f->bytes + told);
+  return header_sum(&f->head, f->specification) == f->head.sum && f->bytes[told - 1] == 0 ? DVI_OK : damaged(f);
+}
+
+static dvi_status check_numbers(const dvi_integrator *I, const file *f)
+{
+  uint64_t sum;
+  const size_t size = sizeof f->head + (size_t)f->head.specification_size + numbers_size(I) + sizeof sum;
+  if (f->size != size)
+    return dvi__fail(DVI_BAD_FILE, "checkpoint %s: cut short or too long, %zu bytes instead of %zu", f->path, f->size, size);
+  memcpy(&sum, f->bytes + size - sizeof sum, sizeof sum);
+  const int whole = sum == dvi__hash(DVI__HASH_START, size - sizeof sum, f->bytes);
+  return whole && isfinite(f->head.t) && dvi__first_not_finite(8 * (size_t)I->system->n, f->numbers) < 0 ? DVI_OK : damaged(f);
+}
+
+/* ---- restore: is it of this method and this system? ---- */
+
+/* Whether "key=value" or a name is one of what determines the steps. */
+static int matters(const dvi__method *method, const char *piece)
+{
+  const size_t length = strcspn(piece, "=:,");
+  for (int k = 0; k < dvi__key_count(method); k++) {
+    const dvi__key *key = &method->keys[k];
+    if (strlen(key->name) == length && strncmp(key->name, piece, length) == 0)
+      return key->least != DVI__SAID && key->least != DVI__FILE;
+  }
+  return 1;
+}
+
+/* The first of those in which two specifications differ. */
+static void find_difference(const dvi__method *method, const char *at[2], int length[2])
+{
+  for (;;) {
+    length[0] = (int)strcspn(at[0], ":,");
+    length[1] = (int)strcspn(at[1], ":,");
+    const int same = length[0] == length[1] && memcmp(at[0], at[1], (size_t)length[0]) == 0;
+    if ((!same && matters(method, at[1])) || at[0][length[0]] == 0 || at[1][length[1]] == 0) return;
+    at[0] += length[0] + 1, at[1] += length[1] + 1;
+  }
+}
+
+static dvi_status check_method(const dvi_integrator *I, const file *f)
+{
+  const char *here = I->stepper.specification, *at[2] = {f->specification, here};
+  int length[2];
+  if (f->head.steps != I->stepper.steps) {
+    find_difference(I->stepper.method, at, length);
+    return dvi__fail(DVI_BAD_FILE, "checkpoint %s: %.*s there, %.*s here: written by %s, not by %s", f->path, length[0], at[0],
+                     length[1], at[1], f->specification, here);
+  }
+  if (f->head.fingerprint == I->stepper.fingerprint) return DVI_OK;
+  return dvi__fail(DVI_BAD_FILE, "checkpoint %s: written with other %s, by %s", f->path, I->stepper.fingerprinted,
+                   f->specification);
+}
+
+static const char *name_of(int64_t pacing)
+{
+  return pacing == STEPS_OF_TIME ? "of time" : pacing == 1 + DVI__TRANSFORM ? "in another time, by " : "controlled by ";
+}
+
+static dvi_status check_time(const dvi_integrator *I, const file *f)
+{
+  const char *monitor = I->pace != NULL ? I->pace->name : "";
+  if (f->head.pacing == pacing_of(I) && strncmp(f->head.monitor, monitor, sizeof f->head.monitor) == 0) return DVI_OK;
+  return dvi__fail(DVI_BAD_FILE, "checkpoint %s: of steps %s%.*s, not of steps %s%s", f->path, name_of(f->head.pacing),
+                   (int)sizeof f->head.monitor, f->head.monitor, name_of(pacing_of(I)), monitor);
+}
+
+static dvi_status check_declared(const dvi_integrator *I, const file *f)
+{
+  if (f->head.n != I->system->n)
+    return dvi__fail(DVI_BAD_FILE, "checkpoint %s: %" PRId64 " coordinates, not %d", f->path, f->head.n, I->system->n);
+  const char *difference = dvi__declared_difference(&f->head.declared, &I->system->declared);
+  if (difference == NULL) return DVI_OK;
+  return dvi__fail(DVI_BAD_FILE, "checkpoint %s: of a system that declares other %s", f->path, difference);
+}
+
+/* A monitor may depend on the energy of the start. */
+static dvi_status take_fingerprint(const dvi_integrator *I, const file *f, dvi__fingerprint *here)
+{
+  const size_t n = (size_t)I->system->n;
+  const double *now = f->numbers, *last = now + 4 * n, before = I->pace != NULL ? I->pace->energy : 0;
+  const dvi__moment at = {f->head.t, f->head.last_h, now, now + n, last, last + n};
+  if (I->pace != NULL) dvi__pace_set_energy(I->pace, f->head.energy);
+  const dvi_status status = dvi__fingerprint_take(I, &at, here);
+  if (I->pace != NULL) dvi__pace_set_energy(I->pace, before);
   return status;
+}
+
+static dvi_status check_system(const dvi_integrator *I, const file *f)
+{
+  dvi__fingerprint here;
+  const dvi_status taken = take_fingerprint(I, f, &here);
+  if (taken != DVI_OK && !isnan(f->head.system.lagrangian.value))
+    return dvi__fail_in(DVI_BAD_FILE, "checkpoint %s: of another system or other parameters; at its state this one fails", f->path);
+  const dvi_status status = dvi__fingerprint_compare(&f->head.system, &here);
+  return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "checkpoint %s", f->path);
+}
+
+static dvi_status check_space(const dvi_integrator *I, const file *f)
+{
+  const dvi__method *method = I->stepper.method;
+  if (method->recognizes == NULL || method->recognizes(&I->stepper, f->numbers + 8 * (size_t)I->system->n)) return DVI_OK;
+  return dvi__fail(DVI_BAD_FILE, "checkpoint %s: of another function space of the same name", f->path);
+}
+
+/* What the header tells is compared first: of another method or system the numbers are of
+ * another count, too. */
+static dvi_status check(const dvi_integrator *I, const file *f)
+{
+  DVI_TRY(check_method(I, f));
+  DVI_TRY(check_declared(I, f));
+  DVI_TRY(check_time(I, f));
+  DVI_TRY(check_numbers(I, f));
+  DVI_TRY(check_system(I, f));
+  return check_space(I, f);
 }
 
 /* ---- restore ---- */
 
-static dvi_status other_system(const char *path)
+static void unpack(dvi_integrator *I, const file *f)
 {
-  return dvi__fail(DVI_BAD_FILE,
-                   "checkpoint %s: of a system that declares other terms, masses, patterns or names, or of steps in another time",
-                   path);
-}
-
-static dvi_status check_system(const dvi_integrator *I, const char *path, const unsigned char *file)
-{
-  const double *numbers = (const double *)(const void *)(file + sizeof(header));
-  header head;
-  memcpy(&head, file, sizeof head);
-  if (head.declared != declared(I)) return other_system(path);
-  const portrait here = portray(I, head.t, numbers, numbers + 4 * (size_t)I->system->n, head.last_h);
-  if (!same_lagrangian(&here, &head.system))
-    return dvi__fail(DVI_BAD_FILE,
-                     "checkpoint %s: of another system or other parameters; at its state the Lagrangian was %.9g, here it is %.9g",
-                     path, head.system.value, here.value);
-  if (same_constraint(&here, &head.system)) return DVI_OK;
-  return dvi__fail(
-      DVI_BAD_FILE,
-      "checkpoint %s: of a system with another constraint or other parameters; its state was %.2g away from it, here it "
-      "is %.2g away",
-      path, head.system.distance, here.distance);
-}
-
-static dvi_status check_space(const dvi_integrator *I, const char *path, const unsigned char *file)
-{
-  const double *numbers = (const double *)(const void *)(file + sizeof(header));
-  const dvi__method *method = I->stepper.method;
-  if (method->recognizes == NULL || method->recognizes(&I->stepper, numbers + 8 * (size_t)I->system->n)) return DVI_OK;
-  return dvi__fail(DVI_BAD_FILE, "checkpoint %s: of another function space of the same name, or for other coordinates", path);
-}
-
-static dvi_status check(const dvi_integrator *I, const char *path, const unsigned char *file, size_t got)
-{
-  header head;
-  uint64_t sum;
-  const size_t size = file_size(I);
-  if (got < sizeof head) return dvi__fail(DVI_BAD_FILE, "checkpoint %s: cut short, %zu bytes", path, got);
-  memcpy(&head, file, sizeof head);
-  head.specification[DVI__SPECIFICATION_SIZE - 1] = 0;
-  if (memcmp(head.magic, magic, sizeof magic) != 0) return dvi__fail(DVI_BAD_FILE, "%s is not a checkpoint", path);
-  if (head.order_mark != ORDER_MARK || head.version != VERSION)
-    return dvi__fail(DVI_BAD_FILE, "checkpoint %s: written on another kind of machine or by another version", path);
-  if (!dvi__same_steps(head.specification, I->stepper.specification))
-    return dvi__fail(DVI_BAD_FILE, "checkpoint %s: written by %s, not by %s", path, head.specification, I->stepper.specification);
-  if (head.n != I->system->n)
-    return dvi__fail(DVI_BAD_FILE, "checkpoint %s: %lld coordinates, not %d", path, (long long)head.n, I->system->n);
-  if (got != size && head.declared != declared(I)) return other_system(path); /* what the method remembers differs, too */
-  if (got != size)
-    return dvi__fail(DVI_BAD_FILE, "checkpoint %s: cut short or too long, %zu bytes instead of %zu", path, got, size);
-  memcpy(&sum, file + size - sizeof sum, sizeof sum);
-  if (sum != dvi__hash(DVI__HASH_START, size - sizeof sum, file))
-    return dvi__fail(DVI_BAD_FILE, "checkpoint %s: damaged (its checksum is wrong)", path);
-  DVI_TRY(check_system(I, path, file));
-  return check_space(I, path, file);
-}
-
-static void unpack(dvi_integrator *I, const unsigned char *file)
-{
-  const size_t n = (size_t)I->system->n;
-  header head;
-  memcpy(&head, file, sizeof head);
-  I->now.t = head.t;
-  I->now.t_carry = head.t_carry;
-  I->last.t = head.last_t;
-  I->last.t_carry = head.last_t_carry;
-  I->last_h = head.last_h;
-  I->now.density = head.density;
+  const header *head = &f->head;
+  const size_t count = 4 * (size_t)I->system->n, state = count * sizeof(double);
+  I->now.t = head->t;
+  I->now.t_carry = head->t_carry;
+  I->last.t = head->last_t;
+  I->last.t_carry = head->last_t_carry;
+  I->last_h = head->last_h;
+  I->now.density = head->density;
   I->now.side = 0;
-  if (I->pace != NULL) dvi__pace_set_energy(I->pace, head.energy);
-  I->counters.steps = (long)head.steps;
-  const unsigned char *at = file + sizeof head;
-  const size_t state = 4 * n * sizeof(double);
-  memcpy(I->now.q, at, state);
-  memcpy(I->last.q, at + state, state);
-  memcpy(I->stepper.memory, at + 2 * state, I->stepper.memory_count * sizeof(double));
+  if (I->pace != NULL) dvi__pace_set_energy(I->pace, head->energy);
+  I->counters.steps = (long)head->count;
+  memcpy(I->now.q, f->numbers, state);
+  memcpy(I->last.q, f->numbers + count, state);
+  memcpy(I->stepper.memory, f->numbers + 2 * count, I->stepper.memory_count * sizeof(double));
   I->started = 1;
-}
-
-static dvi_status read_into(const char *path, unsigned char *file, size_t most, size_t *got)
-{
-  FILE *stream = fopen(path, "rb");
-  if (stream == NULL) return dvi__fail(DVI_IO_ERROR, "checkpoint: cannot read %s: %s", path, strerror(errno));
-  *got = fread(file, 1, most, stream);
-  const int failed = ferror(stream), reason = errno;
-  (void)fclose(stream);
-  return failed ? dvi__fail(DVI_IO_ERROR, "checkpoint: cannot read %s: %s", path, strerror(reason)) : DVI_OK;
 }
 
 dvi_status dvi_integrator_restore(dvi_integrator *I, const char *path)
 {
   if (I == NULL || path == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "checkpoint: an argument is NULL");
-  const size_t room = file_size(I) + 1; /* one more byte shows a file that is too long */
-  size_t got = 0;
-  unsigned char *file = DVI_NEW(unsigned char, room);
-  if (file == NULL) return dvi__fail(DVI_NO_MEMORY, "checkpoint: no memory for %zu bytes", room);
-  dvi_status status = read_into(path, file, room, &got);
-  if (status == DVI_OK) status = check(I, path, file, got);
-  if (status == DVI_OK) unpack(I, file);
-  dvi__release(file);
+  file f = {.path = path};
+  dvi_status status = read_file(I, &f);
+  if (status == DVI_OK) status = check(I, &f);
+  if (status == DVI_OK) unpack(I, &f);
+  dvi__release(f.bytes);
   return status;
 }

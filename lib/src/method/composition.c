@@ -35,35 +35,24 @@ static const dvi__scheme *scheme_of(const dvi__stepper *self)
   return dvi__scheme_at(self->settings.value[ORDER]);
 }
 
-/* The rest of the specification becomes the base's own, with every key: one method, one spelling. */
-static void spell_out_base(dvi__stepper *self, const dvi__stepper *base)
-{
-  const char *keys_of_base = strchr(base->specification, ':');
-  dvi__text rest = {self->settings.rest, sizeof self->settings.rest, 0};
-  if (keys_of_base != NULL) dvi__text_add(&rest, "%s", keys_of_base + 1);
-}
-
 static dvi_status create(dvi__stepper *self)
 {
-  char specification[2 * DVI__SPECIFICATION_SIZE] = "";
-  const char *rest = self->settings.rest;
   int *chosen = &self->settings.value[BASE];
   if (*chosen == DVI__LEFT_OUT) *chosen = self->system->terms & DVI__FACTORS ? LIE_VERLET : VERLET;
-  dvi__text text = {specification, sizeof specification, 0};
-  dvi__text_add(&text, "%s%s%s", base_name(*chosen), rest[0] != 0 ? ":" : "", rest);
   dvi__stepper *base = self->own = DVI_NEW(dvi__stepper, 1);
   if (base == NULL) return dvi__fail(DVI_NO_MEMORY, "composition: no memory");
-  dvi_status status = dvi__stepper_create(self->system, specification, self->shapes, self->counters, base);
+  dvi_status status = dvi__stepper_create_inner(self, base_name(*chosen), self->system, self->shapes, base);
   if (status == DVI_OK && base->method->keep_lengths != NULL) status = base->method->keep_lengths(base, scheme_of(self)->lengths);
   if (status != DVI_OK) return dvi__fail_in(status, "composition");
   if (!base->symmetric)
     return dvi__fail(DVI_BAD_OPTION, "composition: %s is not symmetric; choose a symmetric quadrature", base->specification);
-  spell_out_base(self, base);
   self->order = scheme_of(self)->order;
   self->order = base->order > self->order ? base->order : self->order;
   self->symmetric = 1;
   self->bound = base->bound;
   self->follows = base->follows;
+  self->fingerprint = base->fingerprint;
+  self->fingerprinted = base->fingerprinted;
   self->memory_count = base->memory_count;
   return DVI_OK;
 }

@@ -101,6 +101,11 @@ static dvi_status add_those_of_threads(dvi_ensemble *e, const dvi_system *system
 /* Alike systems give integrators with memories of one length. The first one is there. */
 static dvi_status add_those_of_blocks(dvi_ensemble *e, const char *method, const dvi_shapes *shapes)
 {
+  dvi_integrator **all = DVI_NEW(dvi_integrator *, e->block_count);
+  if (all == NULL) return dvi__fail(DVI_NO_MEMORY, "ensemble: no memory for %d integrators", e->block_count);
+  all[0] = e->integrators[0];
+  dvi__release(e->integrators);
+  e->integrators = all;
   for (int k = 0; k < e->block_count; k++) {
     dvi__block *block = &e->blocks[k];
     const dvi_status status = k > 0 ? add_integrator(e, block->system, method, shapes) : DVI_OK;
@@ -154,7 +159,7 @@ static void clear_worker(dvi__worker *w)
 static dvi_status make_workers(dvi_ensemble *e, const dvi_system *system, const char *method, const dvi_ensemble_options *o)
 {
   e->workers = DVI_NEW(dvi__worker, e->threads);
-  e->integrators = DVI_NEW(dvi_integrator *, e->members);
+  e->integrators = DVI_NEW(dvi_integrator *, e->threads);
   if (e->workers == NULL || e->integrators == NULL)
     return dvi__fail(DVI_NO_MEMORY, "ensemble: no memory for %d threads", e->threads);
   if (o->systems != NULL) DVI_TRY(look_at_systems(e, method, o));
@@ -176,7 +181,7 @@ static int choose_capacity(const dvi_ensemble *e, const dvi_ensemble_options *o)
   if (e->bound) return share;
   const int room = (int)(NUMBERS_SIDE_BY_SIDE / e->state_numbers) / 8 * 8;
   const int chosen = room > SIDE_BY_SIDE_LEAST ? smaller(room, SIDE_BY_SIDE_MOST) : SIDE_BY_SIDE_LEAST;
-  return smaller(smaller(chosen, (share - 1) / 8 * 8 + 8), o->members);
+  return share < chosen ? smaller((share - 1) / 8 * 8 + 8, o->members) : chosen;
 }
 
 /* The number of blocks; with `blocks`, they are written. */
@@ -191,11 +196,16 @@ static int cut_blocks(const dvi_ensemble *e, const dvi_system *system, const dvi
   return count;
 }
 
-static void measure_member(dvi_ensemble *e)
+/* The most that an ensemble takes, and first: too many members are refused at once. */
+static dvi_status make_members(dvi_ensemble *e)
 {
   const size_t n = (size_t)e->n;
   e->state_numbers = DVI__MEMBER_Q + 4 * n + e->integrators[0]->stepper.memory_count;
   e->member_numbers = e->state_numbers + DVI__MEMBER_LAST + (e->system_is_general ? n : 0);
+  e->numbers = DVI_NEW(double, (size_t)e->members * e->member_numbers);
+  if (e->numbers != NULL) return DVI_OK;
+  return dvi__fail(DVI_NO_MEMORY, "ensemble: no memory for %d members, %zu bytes each", e->members,
+                   e->member_numbers * sizeof(double));
 }
 
 /* Where members go one after the other, what is one member's should stand together: a block for each. */
@@ -211,11 +221,9 @@ static dvi_status make_lanes(dvi_ensemble *e, const dvi_ensemble_options *o)
 static dvi_status make_blocks(dvi_ensemble *e, const dvi_system *system, const dvi_ensemble_options *o)
 {
   e->block_count = cut_blocks(e, system, o, NULL);
-  e->numbers = DVI_NEW(double, (size_t)e->members * e->member_numbers);
   e->blocks = DVI_NEW(dvi__block, e->block_count);
   e->status = DVI_NEW(dvi_status, e->members);
-  if (e->numbers == NULL || e->blocks == NULL || e->status == NULL)
-    return dvi__fail(DVI_NO_MEMORY, "ensemble: no memory for %d members", e->members);
+  if (e->blocks == NULL || e->status == NULL) return dvi__fail(DVI_NO_MEMORY, "ensemble: no memory for %d members", e->members);
   (void)cut_blocks(e, system, o, e->blocks);
   return DVI_OK;
 }
@@ -223,7 +231,7 @@ static dvi_status make_blocks(dvi_ensemble *e, const dvi_system *system, const d
 static dvi_status fill(dvi_ensemble *e, const dvi_system *system, const char *method, const dvi_ensemble_options *o)
 {
   DVI_TRY(make_workers(e, system, method, o));
-  measure_member(e);
+  DVI_TRY(make_members(e));
   DVI_TRY(make_lanes(e, o));
   DVI_TRY(make_blocks(e, system, o));
   if (e->bound) DVI_TRY(add_those_of_blocks(e, method, o->shapes));

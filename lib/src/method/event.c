@@ -1,5 +1,6 @@
 #include "method/event.h"
 
+#include <float.h>
 #include <math.h>
 
 #include "core/memory.h"
@@ -8,9 +9,10 @@
 /* Each step is looked at in this many parts: a function may cross zero and come back within one. */
 enum { PARTS = 4, MOST_ITERATIONS = 200 };
 
-/* A bracket on one step: times, and g at both. */
+/* A bracket on one step: times, g at both, and how narrow it is to become: a part of the step,
+ * whatever its unit is, but not less than times are rounded by. */
 typedef struct bracket {
-  double a, b, ga, gb;
+  double a, b, ga, gb, tolerance;
 } bracket;
 
 static const char *name_of(const dvi_event *event)
@@ -85,13 +87,13 @@ static dvi_status locate(dvi__watch *w, dvi_integrator *I, const dvi_event *even
   double looked_at = HUGE_VAL; /* the width when the bracket was looked at last */
   *zero = at.b;
   for (int i = 0; i < MOST_ITERATIONS && at.gb != 0; i++) {
-    const double width = at.b - at.a, tolerance = 1e-13 * fmax(1, fabs(at.b));
+    const double width = at.b - at.a;
     const int lingers = i % 3 == 0 && fabs(width) > 0.5 * looked_at;
     double g, middle = at.a + width * (at.ga / (at.ga - at.gb));
     if (lingers || middle == at.a || middle == at.b) middle = at.a + 0.5 * width; /* g's values may be of very different size */
     if (i % 3 == 0) looked_at = fabs(width);
     *zero = middle;
-    if (fabs(width) <= tolerance) break;
+    if (fabs(width) <= at.tolerance) break;
     DVI_TRY(evaluate(w, I, event, middle, &g));
     if (g == 0) break;
     if ((g > 0) == (at.gb > 0)) {
@@ -142,7 +144,7 @@ static dvi_status drop_pole(dvi__watch *w, dvi_integrator *I, const dvi_event *e
 static dvi_status find_zero(dvi__watch *w, dvi_integrator *I, const dvi_event *event, double a, double b, double *before,
                             double *zero)
 {
-  bracket at = {a, b, *before, 0};
+  bracket at = {a, b, *before, 0, 1e-13 * PARTS * fabs(b - a) + DBL_EPSILON * fabs(b)};
   *zero = (double)NAN;
   DVI_TRY(evaluate(w, I, event, b, &at.gb));
   *before = at.gb;

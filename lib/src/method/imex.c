@@ -53,7 +53,7 @@ static dvi_status create_linear(dvi__stepper *self)
 
 static dvi_status create_nonlinear(dvi__stepper *self, int solver)
 {
-  char specification[DVI__SPECIFICATION_SIZE] = "";
+  char specification[64] = "";
   dvi__text text = {specification, sizeof specification, 0};
   dvi__text_add(&text, "midpoint:solver=%s", dvi__solver_choice(solver));
   DVI_TRY(dvi__impulse_create(self, sizeof(imex), 0));

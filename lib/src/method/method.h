@@ -4,6 +4,7 @@
 #ifndef DVI_METHOD_METHOD_H
 #define DVI_METHOD_METHOD_H
 #include <dvi/shapes.h>
+#include <stdint.h>
 
 #include "system/evaluator.h"
 
@@ -35,21 +36,27 @@ typedef struct dvi__key {
   const char *help;
 } dvi__key;
 
-/* As `least`: the key is a positive number, or auto, which it is if it is not given; the key is a choice of what is said of the steps, and does not
- * change them; it is a text, of which a method may have one, but not as its first key. */
-enum { DVI__POSITIVE = -2, DVI__SAID = -3, DVI__TEXT = -4 };
+/* As `least`: the key is a positive number, or auto, which it is if it is not given; the key is
+ * a choice of what is said of the steps, and does not change them; it is the name of a file, of
+ * which a method may have one, but not as its first key: what the file holds is in the
+ * fingerprint. */
+enum { DVI__POSITIVE = -2, DVI__SAID = -3, DVI__FILE = -4 };
 
-enum { DVI__KEYS_MOST = 10, DVI__LIST_MOST = 16, DVI__SPECIFICATION_SIZE = 256, DVI__LEFT_OUT = -1 };
+enum { DVI__KEYS_MOST = 10, DVI__LIST_MOST = 16, DVI__LEFT_OUT = -1 };
+
+/* Characters of a specification; and of a list of names in a sentence, with its end. */
+enum { DVI__SPECIFICATION_MOST = 8191 };
 
 /* Values of the keys, in the order of the method's table. A method may replace DVI__LEFT_OUT by what it chose. */
 typedef struct dvi__settings {
   int value[DVI__KEYS_MOST];
-  double number[DVI__KEYS_MOST];           /* of keys that are DVI__POSITIVE; 0: auto */
-  double list[DVI__LIST_MOST];             /* numbers of the key that is a list */
-  int listed;                              /* how many; 0: it is not given */
-  char list_text[DVI__SPECIFICATION_SIZE]; /* as they were written */
-  char text[DVI__SPECIFICATION_SIZE];      /* of the key that is DVI__TEXT; empty: it is not given */
-  char rest[DVI__SPECIFICATION_SIZE];      /* "key=value,..." that are not the method's own; only for methods that take them */
+  double number[DVI__KEYS_MOST]; /* of keys that are DVI__POSITIVE; 0: auto */
+  double list[DVI__LIST_MOST];   /* numbers of the key that is a list */
+  int listed;                    /* how many; 0: it is not given */
+  /* Owned; NULL: not given. */
+  char *list_text; /* the list as it was written */
+  char *file;      /* of the key that is DVI__FILE */
+  char *rest;      /* "key=value,..." that are not the method's own; only for methods that take them */
 } dvi__settings;
 
 typedef struct dvi__method dvi__method;
@@ -65,9 +72,14 @@ typedef struct dvi__stepper {
   const dvi_shapes *shapes; /* the program's function space, for methods that take one; NULL: there is none. Outlives the stepper */
   dvi_counters *counters;
   dvi__settings settings;
-  char specification[DVI__SPECIFICATION_SIZE]; /* every key spelled out */
-  int order;                                   /* what theory claims */
-  int symmetric;                               /* a step of -h undoes a step of h */
+  char *specification; /* every key spelled out; owned */
+  uint64_t steps;      /* hash of the keys that determine the steps */
+  /* A hash of what determines the steps beside keys, system and functions of the program, and
+   * what that is, in the plural: set by create. */
+  uint64_t fingerprint;
+  const char *fingerprinted;
+  int order;     /* what theory claims */
+  int symmetric; /* a step of -h undoes a step of h */
   int bound; /* it keeps callbacks of the system, or what they gave at create, and so cannot take the terms of another system that is alike */
   /* What the method carries from step to step beside the state: saved in checkpoints, restored when a step fails. The method sets the count at
    * create; the memory is the driver's, who has two and exchanges them, and is there from the first start on. */
@@ -90,6 +102,9 @@ typedef struct dvi__text {
 } dvi__text;
 
 void dvi__text_add(dvi__text *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* A text in memory of its own, to be released; NULL: there is none left. */
+char *dvi__written(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 struct dvi__method {
   const char *name, *summary, *cite;
@@ -143,17 +158,24 @@ void dvi__stepper_destroy(dvi__stepper *stepper);
 /* A step of a stepper that the method itself is made of. */
 dvi_status dvi__inner_step(dvi__stepper *self, dvi__stepper *inner, dvi__state *state, double h);
 
+/* The stepper of another method, by the keys in self's settings.rest, which becomes the other's
+ * keys spelled out: one method, one spelling. */
+dvi_status dvi__stepper_create_inner(dvi__stepper *self, const char *method, const dvi_system *system, const dvi_shapes *shapes,
+                                     dvi__stepper *inner);
+
 /* Let a stepper serve up to `capacity` members side by side, if its method can: lanes stays NULL if not. Once. */
 dvi_status dvi__stepper_prepare_lanes(dvi__stepper *stepper, int capacity);
 
-/* Parse a specification (settings.c). */
+/* Parse a specification (settings.c); settings are to be cleared, whatever the status. */
 dvi_status dvi__parse(const char *specification, const dvi__method **method, dvi__settings *settings);
+void dvi__settings_clear(dvi__settings *settings);
 
-/* Write it with every key spelled out. */
-void dvi__spell_out(const dvi__method *method, const dvi__settings *settings, dvi__text *text);
+/* The specification with every key spelled out, to be released; NULL: no memory. */
+char *dvi__spell_out(const dvi__method *method, const dvi__settings *settings);
 
-/* Whether two specifications with every key spelled out have the same steps: in what is said of them they may differ. */
-int dvi__same_steps(const char *one, const char *other);
+/* The same of the keys that determine the steps: without what is said of them, and the name of a
+ * file. */
+char *dvi__spell_steps(const dvi__method *method, const dvi__settings *settings);
 
 /* The method of a name, or NULL (table.c). */
 const dvi__method *dvi__find_method(const char *name, size_t length);

@@ -71,6 +71,11 @@ dvi_status dvi__pace_monitor(dvi__pace *pace, const double *q, double *g)
   return dvi__monitor_value(monitor_of(pace), 1, q, g);
 }
 
+dvi_status dvi__pace_slope(dvi__pace *pace, const double *q, double *g_q)
+{
+  return dvi__monitor_gradient(monitor_of(pace), 1, q, g_q);
+}
+
 static dvi_status check_method(const dvi_integrator *I)
 {
   if (I->stepper.method->chooses_steps)

@@ -31,8 +31,9 @@ void dvi__pace_destroy(dvi__pace **pace);
 /* The system that the steps are taken of. */
 const dvi_system *dvi__pace_system(const dvi__pace *pace, const dvi_system *system);
 
-/* The monitor at one point. */
+/* The monitor at one point, and its gradient [n]. */
 dvi_status dvi__pace_monitor(dvi__pace *pace, const double *q, double *g);
+dvi_status dvi__pace_slope(dvi__pace *pace, const double *q, double *g_q);
 
 void dvi__pace_set_energy(dvi__pace *pace, double energy);
 

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/memory.h"
 #include "core/status.h"
 #include "method/method.h"
 
@@ -17,6 +18,33 @@ void dvi__text_add(dvi__text *text, const char *format, ...)
   const int length = dvi_number_vprint(room > 0 ? text->text + text->length : NULL, room, format, arguments);
   va_end(arguments);
   if (length > 0) text->length += (size_t)length;
+}
+
+char *dvi__written(const char *format, ...)
+{
+  va_list arguments;
+  va_start(arguments, format);
+  const int length = dvi_number_vprint(NULL, 0, format, arguments);
+  va_end(arguments);
+  char *text = DVI_NEW(char, (size_t)length + 1);
+  if (text == NULL) return NULL;
+  va_start(arguments, format);
+  (void)dvi_number_vprint(text, (size_t)length + 1, format, arguments);
+  va_end(arguments);
+  return text;
+}
+
+void dvi__settings_clear(dvi__settings *settings)
+{
+  dvi__release(settings->list_text);
+  dvi__release(settings->file);
+  dvi__release(settings->rest);
+  settings->list_text = settings->file = settings->rest = NULL;
+}
+
+static dvi_status no_memory(const dvi__method *method)
+{
+  return dvi__fail(DVI_NO_MEMORY, "%s: no memory for its specification", method->name);
 }
 
 /* A piece of a specification, not ended by 0. */
@@ -94,9 +122,8 @@ static dvi_status parse_list(const dvi__method *method, piece value, dvi__settin
     at += length;
     if (at == end) break;
   }
-  /* It fits: at most DVI__LIST_MOST numbers of LONGEST_DECIMAL characters, and their colons. */
-  memcpy(settings->list_text, value.text, (size_t)value.length);
-  return DVI_OK;
+  settings->list_text = dvi__written("%.*s", value.length, value.text);
+  return settings->list_text != NULL ? DVI_OK : no_memory(method);
 }
 
 static dvi_status parse_choice(const dvi__method *method, const dvi__key *key, piece value, int *choice)
@@ -130,21 +157,21 @@ static dvi_status parse_real(const dvi__method *method, const dvi__key *key, pie
                    value.text);
 }
 
-static dvi_status keep_text(const dvi__method *method, const dvi__key *key, piece value, dvi__settings *settings)
+static dvi_status keep_file(const dvi__method *method, const dvi__key *key, piece value, dvi__settings *settings)
 {
   if (value.length == 0)
     return dvi__fail(DVI_BAD_OPTION, "%s: %s= is empty; give it a text, or leave it out", method->name, key->name);
-  dvi__text text = {settings->text, sizeof settings->text, 0};
-  dvi__text_add(&text, "%.*s", value.length, value.text);
-  return text.length < text.size ? DVI_OK : dvi__fail(DVI_BAD_OPTION, "%s: the specification is too long", method->name);
+  settings->file = dvi__written("%.*s", value.length, value.text);
+  return settings->file != NULL ? DVI_OK : no_memory(method);
 }
 
 static dvi_status keep_for_others(const dvi__method *method, piece name, piece value, dvi__settings *settings)
 {
-  dvi__text rest = {settings->rest, sizeof settings->rest, strlen(settings->rest)};
-  dvi__text_add(&rest, "%s%.*s=%.*s", rest.length > 0 ? "," : "", name.length, name.text, value.length, value.text);
-  if (rest.length < rest.size) return DVI_OK;
-  return dvi__fail(DVI_BAD_OPTION, "%s: the specification is too long", method->name);
+  char *before = settings->rest;
+  settings->rest = dvi__written("%s%s%.*s=%.*s", before != NULL ? before : "", before != NULL ? "," : "", name.length, name.text,
+                                value.length, value.text);
+  dvi__release(before);
+  return settings->rest != NULL ? DVI_OK : no_memory(method);
 }
 
 static dvi_status assign(const dvi__method *method, piece name, piece value, dvi__settings *settings, unsigned *given)
@@ -155,7 +182,7 @@ static dvi_status assign(const dvi__method *method, piece name, piece value, dvi
     if (*given & 1U << k) return dvi__fail(DVI_BAD_OPTION, "%s: %s is given twice", method->name, key->name);
     *given |= 1U << k;
     if (key->least == DVI__POSITIVE) return parse_real(method, key, value, &settings->number[k]);
-    if (key->least == DVI__TEXT) return keep_text(method, key, value, settings);
+    if (key->least == DVI__FILE) return keep_file(method, key, value, settings);
     return is_number(key, value) ? parse_number(method, key, value, &settings->value[k])
                                  : parse_choice(method, key, value, &settings->value[k]);
   }
@@ -187,7 +214,7 @@ static const char *take_pair(const char *at, piece *name, piece *value)
 static int names_file(const dvi__method *method, piece name)
 {
   for (int k = 0; k < dvi__key_count(method); k++)
-    if (same(name, method->keys[k].name)) return method->keys[k].least == DVI__TEXT;
+    if (same(name, method->keys[k].name)) return method->keys[k].least == DVI__FILE;
   return 0;
 }
 
@@ -215,14 +242,24 @@ const char *dvi_method_file(const char *specification, size_t *length)
   return NULL;
 }
 
+/* All that follows counts characters by ints. */
+static dvi_status check_length(const char *specification)
+{
+  const size_t length = strlen(specification);
+  if (length <= DVI__SPECIFICATION_MOST) return DVI_OK;
+  return dvi__fail(DVI_BAD_OPTION, "the method '%.40s...' has %zu characters; at most %d are possible", specification, length,
+                   DVI__SPECIFICATION_MOST);
+}
+
 dvi_status dvi__parse(const char *specification, const dvi__method **method, dvi__settings *settings)
 {
   unsigned given = 0;
+  *settings = (dvi__settings){0};
+  DVI_TRY(check_length(specification));
   const char *at = end_of(specification, ":");
   const piece method_name = {specification, (int)(at - specification)};
   *method = dvi__find_method(specification, (size_t)(at - specification));
   if (*method == NULL) return unknown_method(method_name);
-  *settings = (dvi__settings){0};
   for (int k = 0; k < dvi__key_count(*method); k++) settings->value[k] = (*method)->keys[k].left_out;
   while (*at != 0) {
     piece name, value;
@@ -242,40 +279,47 @@ static void spell_real(double number, dvi__text *text)
   dvi__text_add(text, "%s", spelled);
 }
 
-void dvi__spell_out(const dvi__method *method, const dvi__settings *settings, dvi__text *text)
+/* The value of key k, in the words of a specification. */
+static void spell_value(const dvi__method *method, const dvi__settings *settings, int k, dvi__text *text)
+{
+  const dvi__key *key = &method->keys[k];
+  if (key->least == DVI__POSITIVE)
+    spell_real(settings->number[k], text);
+  else if (key->least == DVI__FILE)
+    dvi__text_add(text, "%s", settings->file);
+  else if (key->choice != NULL && key->choice(settings->value[k]) != NULL)
+    dvi__text_add(text, "%s", key->choice(settings->value[k]));
+  else
+    dvi__text_add(text, "%d", settings->value[k]);
+}
+
+static void spell(const dvi__method *method, const dvi__settings *settings, dvi__text *text)
 {
   dvi__text_add(text, "%s", method->name);
   for (int k = 0; k < dvi__key_count(method); k++) {
-    const dvi__key *key = &method->keys[k];
-    if (key->least == DVI__TEXT && settings->text[0] == 0) continue;
-    dvi__text_add(text, "%c%s=", k == 0 ? ':' : ',', key->name);
-    if (key->least == DVI__POSITIVE)
-      spell_real(settings->number[k], text);
-    else if (key->least == DVI__TEXT)
-      dvi__text_add(text, "%s", settings->text);
-    else if (key->choice != NULL && key->choice(settings->value[k]) != NULL)
-      dvi__text_add(text, "%s", key->choice(settings->value[k]));
-    else
-      dvi__text_add(text, "%d", settings->value[k]);
+    if (method->keys[k].least == DVI__FILE && settings->file == NULL) continue;
+    dvi__text_add(text, "%c%s=", k == 0 ? ':' : ',', method->keys[k].name);
+    spell_value(method, settings, k, text);
   }
-  if (settings->listed > 0) dvi__text_add(text, ",%s=%s", method->list, settings->list_text);
-  if (settings->rest[0] != 0) dvi__text_add(text, "%c%s", dvi__key_count(method) == 0 ? ':' : ',', settings->rest);
+  if (settings->list_text != NULL) dvi__text_add(text, ",%s=%s", method->list, settings->list_text);
+  if (settings->rest != NULL) dvi__text_add(text, "%c%s", dvi__key_count(method) == 0 ? ':' : ',', settings->rest);
 }
 
-static dvi_status spell_steps(const char *specification, dvi__text *text)
+/* The first time only the length is found. */
+char *dvi__spell_out(const dvi__method *method, const dvi__settings *settings)
 {
-  const dvi__method *method;
-  dvi__settings settings;
-  DVI_TRY(dvi__parse(specification, &method, &settings));
+  dvi__text text = {NULL, 0, 0};
+  spell(method, settings, &text);
+  text = (dvi__text){DVI_NEW(char, text.length + 1), text.length + 1, 0};
+  if (text.text != NULL) spell(method, settings, &text);
+  return text.text;
+}
+
+char *dvi__spell_steps(const dvi__method *method, const dvi__settings *settings)
+{
+  dvi__settings steps = *settings;
+  steps.file = NULL;
   for (int k = 0; k < dvi__key_count(method); k++)
-    if (method->keys[k].least == DVI__SAID) settings.value[k] = method->keys[k].left_out;
-  dvi__spell_out(method, &settings, text);
-  return DVI_OK;
-}
-
-int dvi__same_steps(const char *one, const char *other)
-{
-  char spelled[2][DVI__SPECIFICATION_SIZE] = {"", ""};
-  return spell_steps(one, &(dvi__text){spelled[0], DVI__SPECIFICATION_SIZE, 0}) == DVI_OK &&
-         spell_steps(other, &(dvi__text){spelled[1], DVI__SPECIFICATION_SIZE, 0}) == DVI_OK && strcmp(spelled[0], spelled[1]) == 0;
+    if (method->keys[k].least == DVI__SAID) steps.value[k] = method->keys[k].left_out;
+  return dvi__spell_out(method, &steps);
 }

@@ -36,14 +36,15 @@ static const dvi__key keys[] = {
     {0},
 };
 
-/* What it carries beside its step: the space at the last step's length, and which coordinates have the functions. */
-enum { PORTRAIT = DVI__CARRIED, COORDINATES, CARRIED = 2 };
+/* What it carries beside its step: the space's fingerprint at the last step's length, or its own
+ * before the first. */
+enum { FINGERPRINT = DVI__CARRIED, CARRIED = 1 };
 
 typedef struct shaped_galerkin {
   dvi__one_step one;
   dvi__given *space;
-  int coordinates; /* that have the functions */
-  double mark;     /* of which ones */
+  int coordinates;    /* that have the functions */
+  double fingerprint; /* of the space at its own length */
 } shaped_galerkin;
 
 /* ---- which coordinates have the functions ---- */
@@ -67,15 +68,18 @@ static dvi_status mark_listed(const dvi_shapes *shapes, int n, char *has)
 /* The space's name is a key that the program's struct gives: what is written of it must be that. */
 static dvi_status take_name(dvi__stepper *self)
 {
-  char wanted[DVI__SPECIFICATION_SIZE] = "";
-  char *rest = self->settings.rest;
-  dvi__text_add(&(dvi__text){wanted, sizeof wanted, 0}, "space=%s", self->shapes->name);
-  if (rest[0] != 0 && strcmp(rest, wanted) != 0)
+  char **rest = &self->settings.rest;
+  char *wanted = dvi__written("space=%s", self->shapes->name);
+  if (wanted == NULL) return dvi__fail(DVI_NO_MEMORY, "shaped-galerkin: no memory for its specification");
+  if (*rest != NULL && strcmp(*rest, wanted) != 0) {
+    dvi__release(wanted);
     return dvi__fail(
         DVI_BAD_OPTION,
-        "shaped-galerkin: '%s' is not possible; it takes degree, quadrature, nodes, and as space the name of its shapes, %s", rest,
+        "shaped-galerkin: '%s' is not possible; it takes degree, quadrature, nodes, and as space the name of its shapes, %s", *rest,
         self->shapes->name);
-  memcpy(rest, wanted, sizeof wanted);
+  }
+  dvi__release(*rest);
+  *rest = wanted;
   return DVI_OK;
 }
 
@@ -172,7 +176,9 @@ static dvi_status make(dvi__stepper *self, const char *has)
   }
   own->space = space;
   for (int i = 0; i < self->system->n; i++) own->coordinates += has[i];
-  own->mark = (double)(dvi__hash(DVI__HASH_START, (size_t)self->system->n, has) >> 12);
+  own->fingerprint = dvi__given_fingerprint_of(space).sum;
+  self->fingerprint = dvi__hash(DVI__HASH_START, (size_t)self->system->n, has);
+  self->fingerprinted = "coordinates that have the functions of its space";
   self->order = order_of(self, space);
   self->symmetric = dvi__given_symmetric(space);
   return status;
@@ -214,6 +220,13 @@ dvi_status dvi_integrator_create_shaped(const dvi_system *system, const dvi_shap
 
 /* ---- the step ---- */
 
+static void start(dvi__stepper *self, const double *v)
+{
+  const shaped_galerkin *own = self->own;
+  dvi__one_step_start(self, v);
+  self->memory[FINGERPRINT] = own->fingerprint;
+}
+
 static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
 {
   const shaped_galerkin *own = self->own;
@@ -222,8 +235,7 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
   dvi__shaped_ends(one->of, one->x, one->dq, one->dp);
   DVI_TRY(dvi__one_step_move(self, state, h, one->x));
   dvi__add_compensated_all(self->system->n, state->p, state->p_carry, one->dp);
-  self->memory[PORTRAIT] = dvi__given_portray(own->space).sum;
-  self->memory[COORDINATES] = own->mark;
+  self->memory[FINGERPRINT] = dvi__given_fingerprint_of(own->space).sum;
   return DVI_OK;
 }
 
@@ -248,10 +260,9 @@ static int recognizes(const dvi__stepper *self, const double *memory)
 {
   const shaped_galerkin *own = self->own;
   const double h = memory[DVI__LENGTH];
-  if (h == 0) return 1;
-  if (memory[COORDINATES] != own->mark || dvi__given_prepare(own->space, h) != DVI_OK) return 0;
-  const dvi__given_portrait here = dvi__given_portray(own->space);
-  return fabs(here.sum - memory[PORTRAIT]) <= 1e-9 * here.size;
+  if (dvi__given_prepare(own->space, h != 0 ? h : self->shapes->h) != DVI_OK) return 0;
+  const dvi__given_fingerprint here = dvi__given_fingerprint_of(own->space);
+  return fabs(here.sum - memory[FINGERPRINT]) <= 1e-9 * here.size;
 }
 
 const dvi__method dvi__shaped_galerkin = {
@@ -264,7 +275,7 @@ const dvi__method dvi__shaped_galerkin = {
     .uses = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL,
     .create = create,
     .destroy = destroy,
-    .start = dvi__one_step_start,
+    .start = start,
     .step = step,
     .path = path,
     .recognizes = recognizes,

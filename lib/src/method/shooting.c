@@ -58,7 +58,7 @@ static const dvi__key keys[] = {
      "implicit-midpoint, gauss, radau-iia, lobatto-iiia, sdirk, taylor, or file; left out: rk4"},
     {"stages", NULL, 1, STAGES_MOST, DVI__LEFT_OUT,
      "of gauss, radau-iia, lobatto-iiia (2 to 8) and sdirk (2 or 3); of taylor the degree, 1 to 20; left out: 2, of taylor 4"},
-    {"tableau", NULL, DVI__TEXT, 0, 0, "the file of the one-step method's tableau"},
+    {"tableau", NULL, DVI__FILE, 0, 0, "the file of the one-step method's tableau"},
     {"composition", composition_name, 0, 0, 0,
      "none, 4, 6 or 8: the order to which a symmetric one-step method is composed; left out: none"},
     {"quadrature", rule_name, 0, 0, DVI_SIMPSON,
@@ -116,18 +116,20 @@ static dvi_status choose_one_step(dvi__stepper *self, dvi__runge_kutta *method)
 {
   dvi__settings *settings = &self->settings;
   int *choice = &settings->value[ONE_STEP];
-  const int has_file = settings->text[0] != 0;
+  const int has_file = settings->file != NULL;
   if (*choice == DVI__LEFT_OUT) *choice = has_file ? FROM_FILE : DVI__RK_4;
   if (has_file != (*choice == FROM_FILE))
     return dvi__fail(DVI_BAD_OPTION,
                      has_file ? "shooting: onestep=%s is built in; with tableau=%s only onestep=file is possible"
                               : "shooting: onestep=%s needs the name of the file, tableau=%s",
-                     one_step_name(*choice), has_file ? settings->text : "...");
+                     one_step_name(*choice), has_file ? settings->file : "...");
   if (*choice == TAYLOR) return choose_taylor(self, &settings->value[STAGES], method);
   if (!has_file) return choose_built_in(settings, method);
-  const dvi_status status = dvi__runge_kutta_read(settings->text, method);
+  const dvi_status status = dvi__runge_kutta_read(settings->file, method);
   if (status != DVI_OK) return dvi__fail_in(status, "shooting");
   settings->value[STAGES] = method->stages;
+  self->fingerprint = dvi__runge_kutta_fingerprint(method);
+  self->fingerprinted = "coefficients of the tableau";
   return DVI_OK;
 }
 

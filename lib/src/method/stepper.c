@@ -2,6 +2,8 @@
 #include <dvi/method.h>
 #include <string.h>
 
+#include "core/hash.h"
+#include "core/memory.h"
 #include "core/status.h"
 #include "method/method.h"
 
@@ -82,24 +84,43 @@ static dvi_status check_shapes(const dvi__method *method, const dvi_shapes *shap
                    method->name, shapes->name);
 }
 
+static dvi_status spell_out(dvi__stepper *stepper)
+{
+  char *steps = dvi__spell_steps(stepper->method, &stepper->settings);
+  stepper->specification = dvi__spell_out(stepper->method, &stepper->settings);
+  if (steps != NULL) stepper->steps = dvi__hash(DVI__HASH_START, strlen(steps), steps);
+  const int spelled = steps != NULL && stepper->specification != NULL;
+  dvi__release(steps);
+  return spelled ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "%s: no memory for its specification", stepper->method->name);
+}
+
 dvi_status dvi__stepper_create(const dvi_system *system, const char *specification, const dvi_shapes *shapes,
                                dvi_counters *counters, dvi__stepper *stepper)
 {
-  *stepper = (dvi__stepper){.system = system, .shapes = shapes, .counters = counters};
+  *stepper = (dvi__stepper){.system = system, .shapes = shapes, .counters = counters, .fingerprinted = "contents"};
   dvi_status status = dvi__parse(specification, &stepper->method, &stepper->settings);
   if (status == DVI_OK) status = check_terms(stepper->method, system);
   if (status == DVI_OK) status = check_shapes(stepper->method, shapes);
-  if (status != DVI_OK) {
-    stepper->method = NULL;
-    return status;
-  }
-  status = stepper->method->create(stepper);
-  if (status != DVI_OK) {
-    dvi__stepper_destroy(stepper);
-    return status;
-  }
-  dvi__spell_out(stepper->method, &stepper->settings, &(dvi__text){stepper->specification, sizeof stepper->specification, 0});
-  return DVI_OK;
+  if (status != DVI_OK) stepper->method = NULL; /* nothing of it is there to be destroyed */
+  if (status == DVI_OK) status = stepper->method->create(stepper);
+  if (status == DVI_OK) status = spell_out(stepper);
+  if (status != DVI_OK) dvi__stepper_destroy(stepper);
+  return status;
+}
+
+dvi_status dvi__stepper_create_inner(dvi__stepper *self, const char *method, const dvi_system *system, const dvi_shapes *shapes,
+                                     dvi__stepper *inner)
+{
+  char **rest = &self->settings.rest;
+  char *specification = dvi__written("%s%s%s", method, *rest != NULL ? ":" : "", *rest != NULL ? *rest : "");
+  if (specification == NULL) return dvi__fail(DVI_NO_MEMORY, "%s: no memory for its specification", method);
+  const dvi_status status = dvi__stepper_create(system, specification, shapes, self->counters, inner);
+  dvi__release(specification);
+  if (status != DVI_OK) return status;
+  const char *keys = strchr(inner->specification, ':');
+  dvi__release(*rest);
+  *rest = keys != NULL ? dvi__written("%s", keys + 1) : NULL;
+  return keys == NULL || *rest != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "%s: no memory for its specification", method);
 }
 
 dvi_status dvi__inner_step(dvi__stepper *self, dvi__stepper *inner, dvi__state *state, double h)
@@ -120,5 +141,7 @@ void dvi__stepper_destroy(dvi__stepper *stepper)
 {
   if (stepper->lanes != NULL) stepper->method->clear_lanes(stepper);
   if (stepper->method != NULL) stepper->method->destroy(stepper);
+  dvi__settings_clear(&stepper->settings);
+  dvi__release(stepper->specification);
   *stepper = (dvi__stepper){0};
 }

@@ -155,7 +155,7 @@ dvi_status dvi__pattern_uneven_blocks(const dvi__pattern *pattern, const int *fi
   *blocks = (dvi__pattern){0};
   if (entries > INT_MAX)
     return dvi__fail(DVI_BAD_SIZE, "action: the Jacobian would have %zu entries; declare sparse Hessians", entries);
-  *blocks = (dvi__pattern){columns, columns, DVI_NEW(int, columns + 1), DVI_NEW(int, entries)};
+  *blocks = (dvi__pattern){columns, columns, DVI_NEW(int, (size_t)columns + 1), DVI_NEW(int, entries)};
   if (blocks->start == NULL || blocks->row == NULL) {
     dvi__pattern_clear(blocks);
     return dvi__fail(DVI_NO_MEMORY, "action: no memory for a Jacobian of %zu entries", entries);
@@ -166,7 +166,9 @@ dvi_status dvi__pattern_uneven_blocks(const dvi__pattern *pattern, const int *fi
 
 dvi_status dvi__pattern_blocks(const dvi__pattern *pattern, int size, dvi__pattern *blocks)
 {
-  int *first = DVI_NEW(int, pattern->columns + 1);
+  if ((size_t)pattern->columns * (size_t)size > INT_MAX)
+    return dvi__fail(DVI_BAD_SIZE, "action: %d blocks of %d rows are more than an int can count", pattern->columns, size);
+  int *first = DVI_NEW(int, (size_t)pattern->columns + 1);
   *blocks = (dvi__pattern){0};
   if (first == NULL) return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d blocks", pattern->columns);
   for (int j = 0; j <= pattern->columns; j++) first[j] = j * size;

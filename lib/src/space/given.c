@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/hash.h"
 #include "core/memory.h"
 #include "core/status.h"
 #include "space/given_struct.h"
@@ -177,14 +178,24 @@ static dvi_status ask_points(const dvi__given *g, double h, const dvi__given_tab
                    g->shapes->name, sum, h);
 }
 
-/* Of the user's numbers as they are: an orthonormal basis would amplify what other machines round otherwise. */
-static void portray(const dvi__given *g, dvi__given_portrait *portrait)
+static void add(double number, dvi__given_fingerprint *to)
 {
-  *portrait = (dvi__given_portrait){0, 0};
+  const double part = dvi__weight(to->count++) * number;
+  to->sum += part;
+  to->size += fabs(part);
+}
+
+/* Of the user's numbers as they are: an orthonormal basis would amplify what other machines round otherwise. */
+static void fingerprint(const dvi__given *g, dvi__given_tables *t)
+{
+  t->fingerprint = (dvi__given_fingerprint){0};
+  for (int j = 0; j < g->points; j++) {
+    add(t->node[j], &t->fingerprint);
+    add(t->weight[j], &t->fingerprint);
+  }
   for (int e = g->degree * g->points; e < g->count * g->points; e++) {
-    const double value = (double)g->value[e], slope = (double)g->slope[e];
-    portrait->sum += (1 + e % 7) * (value + slope);
-    portrait->size += (1 + e % 7) * (fabs(value) + fabs(slope));
+    add((double)g->value[e], &t->fingerprint);
+    add((double)g->slope[e], &t->fingerprint);
   }
 }
 
@@ -313,11 +324,12 @@ dvi_status dvi__given_fill(const dvi__given *g, double h, dvi__given_tables *t)
   DVI_TRY(dvi__given_evaluate(g, t->h, 0));
   memcpy(t->start, g->at_value, (size_t)g->count * sizeof *t->start);
   DVI_TRY(ask_points(g, t->h, t));
-  portray(g, &t->portrait);
+  fingerprint(g, t);
   t->order = order_of(g, t);
   orthogonalize(g, t);
   write_slopes(g, t);
   DVI_TRY(dvi__given_evaluate(g, t->h, 1));
+  for (int k = g->degree; k < g->count; k++) add((double)(g->at_value[k] - t->start[k]), &t->fingerprint);
   write_values(g, t);
   DVI_TRY(evaluate_basis(g, t, 0, t->end, t->slopes[0]));
   return evaluate_basis(g, t, 1, t->end, t->slopes[1]);
@@ -405,7 +417,7 @@ int dvi__given_quadrature_order(const dvi__given *given)
   return given->order;
 }
 
-dvi__given_portrait dvi__given_portray(const dvi__given *given)
+dvi__given_fingerprint dvi__given_fingerprint_of(const dvi__given *given)
 {
-  return given->now.portrait;
+  return given->now.fingerprint;
 }

@@ -11,10 +11,12 @@
 
 typedef struct dvi__given dvi__given;
 
-/* A sum over the functions' values and derivatives at the points, and over their sizes: two spaces of one name are told apart by it. */
-typedef struct dvi__given_portrait {
+/* A sum over the points, the functions' values and derivatives there and their values at the
+ * end, and over their sizes: two spaces of one name are told apart by it. */
+typedef struct dvi__given_fingerprint {
   double sum, size;
-} dvi__given_portrait;
+  size_t count; /* of numbers */
+} dvi__given_fingerprint;
 
 /* A copy of the user's struct, with its name and its coordinates, in one block of memory. NULL: there is none left. */
 dvi_shapes *dvi__shapes_copy(const dvi_shapes *shapes);
@@ -37,6 +39,6 @@ int dvi__given_symmetric(const dvi__given *given);
 int dvi__given_quadrature_order(const dvi__given *given);
 
 /* Of the length prepared. */
-dvi__given_portrait dvi__given_portray(const dvi__given *given);
+dvi__given_fingerprint dvi__given_fingerprint_of(const dvi__given *given);
 
 #endif

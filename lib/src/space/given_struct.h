@@ -14,7 +14,7 @@ typedef struct dvi__given_tables {
   double *end, *slopes[2];     /* [count] psi_k(1); psi_k' at both ends */
   double *lean;                /* [count] of the function with psi' = tau */
   int order;                   /* the quadrature's, 2 degree at most */
-  dvi__given_portrait portrait;
+  dvi__given_fingerprint fingerprint;
 } dvi__given_tables;
 
 struct dvi__given {

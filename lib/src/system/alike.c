@@ -70,11 +70,9 @@ static int same_derivatives(const dvi_system *a, const dvi_system *b)
 
 dvi_status dvi__system_alike(const dvi_system *a, const dvi_system *b)
 {
-  /* The sizes stand before what they say how much of there is. */
-  if (a->n != b->n || a->terms != b->terms || a->potential_count != b->potential_count || a->hash != b->hash)
-    return dvi__fail(
-        DVI_BAD_ARGUMENT,
-        "the systems declare different terms, masses, inertias, patterns, names or speeds; integrate such systems one by one");
+  const char *difference = dvi__declared_difference(&a->declared, &b->declared);
+  if (difference != NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "the systems declare different %s; integrate such systems one by one", difference);
   if (a->autonomous != b->autonomous)
     return dvi__fail(DVI_BAD_ARGUMENT, "one of the systems is declared autonomous, the other is not");
   if (!same_ranges(a, b))

@@ -52,13 +52,18 @@ static void add_cell(dvi_system *s, dvi__chart_kind kind)
 
 static dvi_status count_cells(const dvi_system_terms *terms, size_t *cells)
 {
+  size_t coordinates = 0;
   *cells = 0;
   for (int f = 0; f < terms->factor_count; f++) {
     dvi__chart_kind kind;
     DVI_TRY(check_factor(f, &terms->factors[f]));
-    *cells += (size_t)has_cell(&terms->factors[f], &kind) + (size_t)lines_of(&terms->factors[f]);
+    const size_t lines = (size_t)lines_of(&terms->factors[f]), others = (size_t)has_cell(&terms->factors[f], &kind);
+    *cells += others + lines;
+    coordinates += others * (size_t)dvi__chart_stored(kind) + lines;
   }
-  return *cells <= 100000000 ? DVI_OK : dvi__fail(DVI_BAD_SIZE, "system: its factors have %zu coordinates, too many", *cells);
+  if (coordinates <= DVI__DIMENSION_MOST) return DVI_OK;
+  return dvi__fail(DVI_BAD_SIZE, "system: its factors have %zu coordinates; at most %d are possible", coordinates,
+                   DVI__DIMENSION_MOST);
 }
 
 dvi_status dvi__factors_lay_out(const dvi_system_terms *terms, dvi_system *s)

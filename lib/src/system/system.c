@@ -4,7 +4,6 @@
 #include <pthread.h>
 #include <string.h>
 
-#include "core/hash.h"
 #include "core/memory.h"
 #include "core/status.h"
 #include "system/dirac.h"
@@ -292,6 +291,8 @@ static dvi_status check_terms(const dvi_system_terms *terms)
   DVI_TRY(check_list("factors", terms->factor_count, terms->factors));
   if (terms->factors == NULL && terms->dimension < 1)
     return dvi__fail(DVI_BAD_SIZE, "system: dimension %d; at least 1 is needed", terms->dimension);
+  if (terms->factors == NULL && terms->dimension > DVI__DIMENSION_MOST)
+    return dvi__fail(DVI_BAD_SIZE, "system: dimension %d; at most %d is possible", terms->dimension, DVI__DIMENSION_MOST);
   if (terms->factors != NULL && (terms->lagrangian != NULL || terms->one_form != NULL || terms->hamiltonian != NULL))
     return dvi__fail(DVI_UNSUPPORTED, "system: factors go with a constant mass, not with %s",
                      terms->lagrangian != NULL ? "a general Lagrangian"
@@ -316,39 +317,6 @@ static dvi_status check_terms(const dvi_system_terms *terms)
   return check_watched(terms);
 }
 
-/* ---- knowing it again ---- */
-
-static uint64_t add_pattern(uint64_t hash, const dvi__pattern *pattern)
-{
-  if (pattern->start == NULL) return dvi__hash(hash, 1, "");
-  hash = dvi__hash(hash, ((size_t)pattern->columns + 1) * sizeof(int), pattern->start);
-  return dvi__hash(hash, (size_t)dvi__pattern_entries(pattern) * sizeof(int), pattern->row);
-}
-
-/* What is not said changes nothing: files of systems that say nothing of speeds are known as before. */
-static uint64_t add_potential(uint64_t hash, const dvi__potential_term *term)
-{
-  const int speed[] = {term->callbacks.fast != 0, term->callbacks.quadratic != 0};
-  hash = dvi__hash(add_pattern(hash, &term->qq), strlen(term->name) + 1, term->name);
-  return speed[0] || speed[1] ? dvi__hash(hash, sizeof speed, speed) : hash;
-}
-
-static uint64_t hash_of(const dvi_system *s)
-{
-  uint64_t hash = dvi__hash(DVI__HASH_START, sizeof s->n, &s->n);
-  hash = dvi__hash(hash, sizeof s->terms, &s->terms);
-  hash = add_pattern(add_pattern(hash, &s->qv), &s->vv);
-  for (int c = 0; c < s->cell_count; c++) hash = dvi__hash(hash, sizeof s->cells[c].kind, &s->cells[c].kind);
-  if (s->mass_diagonal != NULL) hash = dvi__hash(hash, (size_t)s->n * sizeof(double), s->mass_diagonal);
-  if (s->mass_values != NULL) hash = dvi__hash(hash, (size_t)dvi__pattern_entries(&s->vv) * sizeof(double), s->mass_values);
-  if (s->lagrangian != NULL) hash = add_pattern(hash, &s->lagrangian->qq);
-  if (s->constraint != NULL) hash = add_pattern(hash, &s->constraint->gradients);
-  for (int k = 0; k < s->potential_count; k++) hash = add_potential(hash, &s->potentials[k]);
-  for (int i = 0; i < dvi_system_invariant_count(s); i++)
-    hash = dvi__hash(hash, strlen(s->invariant_names[i]) + 1, s->invariant_names[i]);
-  return hash;
-}
-
 static dvi_status fill(dvi_system *s, const dvi_system_terms *terms)
 {
   DVI_TRY(dvi__factors_lay_out(terms, s));
@@ -363,7 +331,7 @@ static dvi_status fill(dvi_system *s, const dvi_system_terms *terms)
     DVI_TRY(terms->one_form != NULL ? copy_one_form(s, terms->one_form, terms->gauge) : dvi__mass_copy(terms, s));
   DVI_TRY(copy_potentials(s, terms));
   DVI_TRY(copy_invariants(s, terms));
-  s->hash = hash_of(s);
+  dvi__system_declared(s, &s->declared);
   return DVI_OK;
 }
 

@@ -2,6 +2,7 @@
 #ifndef DVI_SYSTEM_SYSTEM_H
 #define DVI_SYSTEM_SYSTEM_H
 #include <dvi/system.h>
+#include <limits.h>
 #include <stdint.h>
 
 #include "group/chart.h"
@@ -73,6 +74,16 @@ typedef struct dvi__constraint_term {
   dvi__lagrangian_term weighted; /* patterns and groups of phi.w, a function of q and p; without callbacks */
 } dvi__constraint_term;
 
+/* Ints count coordinates, and up to four numbers of each. */
+enum { DVI__DIMENSION_MOST = INT_MAX / 4 };
+
+/* Hashes of all that is declared, but for what callbacks compute: terms, masses, patterns,
+ * potentials, invariants. */
+enum { DVI__DECLARED_PARTS = 5 };
+typedef struct dvi__declared {
+  uint64_t hash[DVI__DECLARED_PARTS];
+} dvi__declared;
+
 struct dvi_system {
   int n;          /* stored coordinates */
   int nv;         /* numbers of a velocity: n without factors */
@@ -80,7 +91,7 @@ struct dvi_system {
   int cell_count; /* 0: no factors */
   dvi__cell *cells;
   int autonomous; /* declared so */
-  uint64_t hash;  /* of all that is declared, but for what callbacks compute */
+  dvi__declared declared;
   unsigned terms; /* dvi__term bits */
   double mass_scalar;
   double *mass_diagonal;
@@ -114,6 +125,10 @@ dvi_status dvi__system_has_rates(const dvi_system *system);
 
 /* DVI_OK if the Taylor coefficients of L are known: all terms give them. Else the sentence names the term without. */
 dvi_status dvi__system_has_taylor(const dvi_system *system);
+
+/* The hashes; and in which part they differ first, in words. NULL: in none. */
+void dvi__system_declared(const dvi_system *system, dvi__declared *declared);
+const char *dvi__declared_difference(const dvi__declared *one, const dvi__declared *other);
 
 /* DVI_OK if one may stand in for the other in all that is made for it: they declare the same terms, masses, patterns, names, speeds, derivatives and reaches, and
  * differ in what their callbacks compute alone. */

@@ -1,0 +1,17 @@
+# The functions that public headers declare, a line each: comments are cut out; what is left before an opening parenthesis at a
+# prototype's start is its name.
+{ text = text " " $0 "\n" }
+END {
+  while ((start = index(text, "/*")) > 0) {
+    rest = substr(text, start + 2)
+    text = substr(text, 1, start - 1) substr(rest, index(rest, "*/") + 2)
+  }
+  count = split(text, line, "\n")
+  for (i = 1; i <= count; i++)
+    if (line[i] ~ /^ (const |unsigned )*[a-z][a-z_]* \**dvi_[a-z_0-9]+\(/) {
+      name = line[i]
+      sub(/\(.*/, "", name)
+      sub(/.*[ *]/, "", name)
+      print name
+    }
+}
