@@ -138,6 +138,18 @@ static int study_until(hearing *ask, const char *method, double t_end, bool *roo
   return FAILED;
 }
 
+/* Where the span does not show the claimed order, single steps are asked: they are measured in more
+ * digits. With fewer levels than a verdict needs none is wanted, and with a monitor a step has no
+ * length of its own. */
+static int study_single_steps(hearing *ask, const char *method, order_result *result)
+{
+  const order_request *request = ask->request;
+  const bool few = request->levels > 0 && request->levels < WINDOW_LEVELS;
+  if (order_holds(result) || few || request->how.transform != NULL || request->how.control != NULL) return DONE;
+  const dvi_status status = single_steps_measure(ask->scene, &request->settings, method, result->t_end, &ask->progress, &result->single);
+  return status == DVI_OK ? DONE : library_error(status);
+}
+
 /* The end of the study, unless it is lengthened. */
 static double study_end(const order_request *request, const problem *scene)
 {
@@ -156,7 +168,8 @@ static int study_method(hearing *ask, const char *method, order_result *result)
     bool room = !fixed && i < LENGTHENINGS;
     const bool must_fit = room;
     const int code = study_until(ask, method, t_end, &room, result);
-    if (code != DONE || room || !must_fit) return code;
+    if (code != DONE) return code;
+    if (room || !must_fit) return study_single_steps(ask, method, result);
     t_end *= lengthening;
   }
 }

@@ -31,9 +31,33 @@ double order_local_slope(const order_result *result, int k)
   return log(result->error[k - 1] / result->error[k]) / log(result->h[k - 1] / result->h[k]);
 }
 
+static bool is_claimed(const order_result *result, double slope)
+{
+  return fabs(slope - result->claimed) <= order_tolerance;
+}
+
+/* Whether single steps have the last word. */
+static bool decided_by_steps(const order_result *result)
+{
+  return result->single.asked && result->single.missing == NULL && result->single.settled;
+}
+
 bool order_holds(const order_result *result)
 {
-  return result->settled && fabs(result->fit.slope - result->claimed) <= order_tolerance;
+  if (decided_by_steps(result)) return is_claimed(result, result->single.fit.slope);
+  return result->settled && is_claimed(result, result->fit.slope);
+}
+
+static void print_steps(FILE *stream, const order_result *result)
+{
+  const single_steps *s = &result->single;
+  (void)fprintf(stream, "  single steps in quadruple precision, each from %d points of the motion\n", (int)SINGLE_POINTS);
+  for (int k = 0; k < SINGLE_LEVELS; k++) {
+    (void)fprintf(stream, "  h = %-10.4g error %.3e", s->h[k], s->error[k]);
+    if (k > 0) (void)fprintf(stream, "  order %.2f", log(s->error[k - 1] / s->error[k]) / log(s->h[k - 1] / s->h[k]) - 1.0);
+    (void)fputc('\n', stream);
+  }
+  (void)fprintf(stream, "  judge %.1e apart %.1e fit %.3f settled %d\n", s->judge_error, s->apart, s->fit.slope, s->settled);
 }
 
 void order_print_tables(const char *name, const result_table *rows, int results, const order_result *result)
@@ -78,6 +102,8 @@ void order_print_verdict(FILE *stream, const order_result *result)
   else
     (void)fprintf(stream, "fitted %.2f to levels %d to %d: %s\n", result->fit.slope, result->fit.first + 1, result->fit.last + 1,
                   order_holds(result) ? "ok" : "MISSED");
+  if (result->single.asked && result->single.missing == NULL) print_steps(stream, result);
+  if (result->single.asked && result->single.missing != NULL) (void)fprintf(stream, "no single steps: %s\n", result->single.missing);
   (void)fprintf(stream, "  judge at t = %g: %s, error %.1e; errors up to %.1e are not fitted\n", result->t_end, result->judge,
                 result->judge_error, result->floor);
 }

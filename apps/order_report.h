@@ -8,6 +8,7 @@
 #include "judge.h"
 #include "pacing.h"
 #include "problem.h"
+#include "single_steps.h"
 #include "table.h"
 
 enum { LEVELS_MAX = 40 };
@@ -25,6 +26,7 @@ typedef struct order_result {
   double floor, ceiling; /**< errors outside are not fitted */
   dvi_order_fit fit;
   bool settled; /**< the slope is the same all over the fitted levels */
+  single_steps single; /**< asked where the span does not show the claimed order */
 } order_result;
 
 /** The order that level k and the one before it show; NaN if there is none. */
