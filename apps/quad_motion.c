@@ -7,19 +7,20 @@
 #include <string.h>
 
 #ifdef QUAD_EXISTS
-enum { COLUMNS = 12, ITERATIONS = 200, PARTS_MAX = 64, ROOM = 2 * COLUMNS + 14 };
-static const double last_place = 1e-32;   /* of a change of the velocity, relative: two roundings */
-static const double noise = 1e-26;        /* of one that shrinks no more */
-static const double difference = 1e-12;   /* of velocities: exact for energies quadratic in them */
-static const double least_error = 3e-31;  /* of a flow: more steps would gain nothing */
+enum { COLUMNS = 12, ITERATIONS = 200, PARTS_MAX = 64, ROOM = 2 * COLUMNS + 16 };
+static const double last_place = 1e-32;  /* of a change of the velocity, relative: two roundings */
+static const double noise = 1e-26;       /* of one that shrinks no more */
+static const double difference = 1e-12;  /* of velocities: exact for energies quadratic in them */
+static const double least_error = 3e-30; /* of a flow: more steps would gain little */
 
 bool quad_motion_init(quad_motion *motion, const dvi_scene *scene, int n)
 {
   const size_t count = (size_t)n;
-  *motion = (quad_motion){.scene = scene, .n = n};
-  motion->inverse = calloc(2 * count * count, sizeof *motion->inverse);
+  *motion = (quad_motion){.scene = scene, .n = n, .q_size = 1.0, .p_size = 1.0};
+  motion->inverse = calloc(3 * count * count, sizeof *motion->inverse);
   motion->room = calloc(ROOM * count, sizeof *motion->room);
   motion->pair = calloc(4 * count, sizeof *motion->pair);
+  if (motion->inverse != NULL) motion->tracked = motion->inverse + 2 * count * count;
   return motion->inverse != NULL && motion->room != NULL && motion->pair != NULL;
 }
 
@@ -64,24 +65,64 @@ bool quad_motion_settle(quad_motion *motion, quad t, const quad *q, const quad *
   return quad_invert(n, mass, motion->inverse);
 }
 
-/* Newton's method with the inverse of a place near by. */
-bool quad_motion_velocity(quad_motion *motion, quad t, const quad *q, const quad *p, quad *v, quad *L_q)
+/* change = tracked * rest. */
+static void multiply(const quad_motion *motion, const quad *rest, quad *change)
 {
   const int n = motion->n;
-  quad *L_v = motion->room, *change = L_v + n;
+  for (int i = 0; i < n; i++) {
+    change[i] = 0;
+    for (int j = 0; j < n; j++) change[i] += motion->tracked[i * n + j] * rest[j];
+  }
+}
+
+/* After a change s = B^-1 r of the velocity that left the residual r', with w = B^-1 r':
+ * B^-1 += w (s^T B^-1) / s.(s - w). */
+static void update(quad_motion *motion, const quad *s, const quad *w, quad *row)
+{
+  const int n = motion->n;
+  quad divisor = 0;
+  for (int i = 0; i < n; i++) divisor += s[i] * (s[i] - w[i]);
+  if (!(fabs((double)divisor) > 0.0)) return;
+  for (int j = 0; j < n; j++) {
+    row[j] = 0;
+    for (int i = 0; i < n; i++) row[j] += s[i] * motion->tracked[i * n + j] / divisor;
+  }
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < n; j++) motion->tracked[i * n + j] += w[i] * row[j];
+}
+
+/* Broyden's method. L_q [n] belongs to the velocity before the last change, of a rounding. */
+static bool solve_velocity(quad_motion *motion, quad t, const quad *q, const quad *p, quad *v, quad *L_q)
+{
+  const int n = motion->n;
+  quad *rest = motion->room, *change = rest + n, *before = change + n, *row = before + n;
   double last = HUGE_VAL;
   for (int k = 0; k < ITERATIONS; k++) {
-    if (!quad_motion_gradient(motion, t, q, v, L_q, L_v)) return false;
-    for (int i = 0; i < n; i++) {
-      change[i] = 0;
-      for (int j = 0; j < n; j++) change[i] += motion->inverse[i * n + j] * (p[j] - L_v[j]);
+    if (!quad_motion_gradient(motion, t, q, v, L_q, rest)) return false;
+    for (int i = 0; i < n; i++) rest[i] = p[i] - rest[i];
+    multiply(motion, rest, change);
+    const double moved = quad_largest(n, change), size = quad_largest(n, v);
+    if (k > 0 && moved > noise * size) {
+      update(motion, before, change, row);
+      multiply(motion, rest, change);
     }
     for (int i = 0; i < n; i++) v[i] += change[i];
-    const double moved = quad_largest(n, change), size = quad_largest(n, v);
     if (moved <= last_place * size || (moved <= noise * size && moved >= 0.5 * last)) return true;
+    memcpy(before, change, (size_t)n * sizeof *before);
     last = moved;
   }
   return false;
+}
+
+static void track(quad_motion *motion)
+{
+  memcpy(motion->tracked, motion->inverse, (size_t)(motion->n * motion->n) * sizeof *motion->inverse);
+}
+
+bool quad_motion_velocity(quad_motion *motion, quad t, const quad *q, const quad *p, quad *v)
+{
+  track(motion);
+  return solve_velocity(motion, t, q, p, v, motion->room + 4 * motion->n);
 }
 
 /* What a flow works in, [n] or [2 n] each. */
@@ -92,7 +133,7 @@ typedef struct flow {
 static bool rate_at(quad_motion *motion, quad t, const quad *z, flow *f)
 {
   const int n = motion->n;
-  const bool good = quad_motion_velocity(motion, t, z, z + n, f->v, f->rate + n);
+  const bool good = solve_velocity(motion, t, z, z + n, f->v, f->rate + n);
   memcpy(f->rate, f->v, (size_t)n * sizeof *f->v);
   return good;
 }
@@ -136,17 +177,18 @@ static bool extrapolate(quad_motion *motion, quad t, quad span, flow *f, quad *z
 double quad_motion_distance(const quad_motion *motion, const quad *z, const quad *other)
 {
   const int n = motion->n;
-  const double q = quad_largest(n, other), p = quad_largest(n, other + n);
-  return hypot(quad_distance(n, z, other) / (q > 0.0 ? q : 1.0), quad_distance(n, z + n, other + n) / (p > 0.0 ? p : 1.0));
+  return hypot(quad_distance(n, z, other) / motion->q_size, quad_distance(n, z + n, other + n) / motion->p_size);
 }
 
 bool quad_motion_flow(quad_motion *motion, quad t, quad span, const quad *v, quad *z, double *error)
 {
   const size_t n = (size_t)motion->n;
-  quad *last = motion->room + 2 * n, *now = last + 2 * n;
+  quad *last = motion->room + 4 * n, *now = last + 2 * n;
   flow f = {.v = now + 2 * n, .rate = now + 3 * n, .before = now + 5 * n, .column = now + 7 * n};
+  const double wanted = fmax(*error, least_error);
   *error = HUGE_VAL;
-  for (int parts = 1; parts <= PARTS_MAX && *error > least_error; parts *= 2) {
+  track(motion);
+  for (int parts = 1; parts <= PARTS_MAX && *error > wanted; parts *= 2) {
     memcpy(now, z, 2 * n * sizeof *now);
     memcpy(f.v, v, n * sizeof *f.v);
     for (int k = 0; k < parts; k++)

@@ -79,25 +79,38 @@ static dvi_status place_centres(study *s, double t_end)
   return status;
 }
 
+/* Sizes of q and p over all centres: at one of them either may vanish. */
+static void measure_sizes(study *s)
+{
+  const int n = s->scene->nq;
+  double q = 0.0, p = 0.0;
+  for (int k = 0; k < SINGLE_POINTS; k++) {
+    q = fmax(q, quad_largest(n, s->centre[k].z));
+    p = fmax(p, quad_largest(n, s->centre[k].z + n));
+  }
+  s->motion.q_size = q > 0.0 ? q : 1.0;
+  s->motion.p_size = p > 0.0 ? p : 1.0;
+}
+
 /* Find the mass and the velocity at a centre: once with the velocity of the start, once with its own. */
 static bool settle(study *s, const centre *c)
 {
   const int n = s->scene->nq;
-  quad *L_q = s->room + 3 * n * SINGLE_POINTS;
   for (int i = 0; i < 2; i++)
     if (!quad_motion_settle(&s->motion, (quad)c->t, c->z, c->v) ||
-        !quad_motion_velocity(&s->motion, (quad)c->t, c->z, c->z + n, c->v, L_q))
+        !quad_motion_velocity(&s->motion, (quad)c->t, c->z, c->z + n, c->v))
       return false;
   return true;
 }
 
-/* The error of the step of h about a centre; `start` [2 n]: where it begins. */
+/* The error of the step of h about a centre; `start` [2 n]: where it begins. *judge_error: what is
+ * wanted, then what it is. */
 static bool step_error(study *s, const centre *c, double h, quad *start, double *error, double *judge_error)
 {
   const size_t n = (size_t)s->scene->nq;
   quad *end = start + 2 * n, *step = end + 2 * n;
   const quad half = (quad)(0.5 * h), t = (quad)c->t;
-  double of_start, of_end;
+  double of_start = *judge_error, of_end = *judge_error;
   memcpy(start, c->z, 2 * n * sizeof *start);
   memcpy(end, c->z, 2 * n * sizeof *end);
   if (!settle(s, c) || !quad_motion_flow(&s->motion, t, -half, c->v, start, &of_start) ||
@@ -106,21 +119,24 @@ static bool step_error(study *s, const centre *c, double h, quad *start, double 
   memcpy(step, start, 2 * n * sizeof *step);
   if (!quad_step_take(s->step, &s->motion, t - half, 2 * half, c->v, step)) return false;
   *error = quad_motion_distance(&s->motion, step, end);
-  *judge_error = fmax(*judge_error, fmax(of_start, of_end));
+  *judge_error = fmax(of_start, of_end);
   return true;
 }
 
-/* The error of a step of h, over all points. */
-static bool error_at(study *s, double h, double *error, double *judge_error)
+/* The error of a step of h, over all points. It will be about `foreseen`, of which the judge's own
+ * error is to be a small part. */
+static bool error_at(study *s, double h, double foreseen, double *error, double *judge_error)
 {
+  static const double part = 1e-4;
   double squares = 0.0;
-  quad *start = s->room + 3 * s->scene->nq * (SINGLE_POINTS + 1);
+  quad *start = s->room + 3 * s->scene->nq * SINGLE_POINTS;
   *judge_error = 0.0;
   for (int k = 0; k < SINGLE_POINTS; k++) {
-    double one;
+    double one, of_judge = part * foreseen;
     progress_show(s->progress, -1.0, "single steps");
-    if (!step_error(s, &s->centre[k], h, start, &one, judge_error)) return false;
+    if (!step_error(s, &s->centre[k], h, start, &one, &of_judge)) return false;
     squares += one * one;
+    *judge_error = fmax(*judge_error, of_judge);
   }
   *error = sqrt(squares / SINGLE_POINTS);
   return isfinite(*error);
@@ -131,7 +147,7 @@ static double find_first(study *s)
 {
   double h = copysign(s->scene->order_h, s->centre[0].t), error = 0.0, judge_error = 0.0;
   for (int i = 0; i < SEARCH_TRIES; i++) {
-    if (!error_at(s, h, &error, &judge_error))
+    if (!error_at(s, h, first_error, &error, &judge_error))
       h *= 0.5;
     else if (error > 0.1 * first_error && error < 10.0 * first_error)
       return h;
@@ -145,10 +161,10 @@ static double find_first(study *s)
 static bool compare(study *s, const centre *c, double h, double *apart)
 {
   const int n = s->scene->nq;
-  quad *start = s->room + 3 * n * (SINGLE_POINTS + 1), *mine = start + 2 * n;
-  double ignored, *z = s->state;
+  quad *start = s->room + 3 * n * SINGLE_POINTS, *mine = start + 2 * n;
+  double error, judge_error = first_error, *z = s->state;
   const double t = c->t - 0.5 * h;
-  if (!step_error(s, c, h, start, &ignored, &ignored)) return false;
+  if (!step_error(s, c, h, start, &error, &judge_error)) return false;
   for (int i = 0; i < 2 * n; i++) z[i] = (double)start[i], start[i] = (quad)z[i];
   if (!quad_step_take(s->step, &s->motion, (quad)t, (quad)h, c->v, start)) return false;
   if (dvi_integrator_start(s->integrator, t, z, z + n) != DVI_OK || dvi_integrator_step(s->integrator, h) != DVI_OK) return false;
@@ -163,15 +179,14 @@ static bool compare(study *s, const centre *c, double h, double *apart)
 static const char *measure_levels(study *s, single_steps *found)
 {
   double of_unit[SINGLE_LEVELS]; /* the error of a step over its length: its slope is the order */
+  measure_sizes(s);
   const double first = find_first(s);
   if (!(fabs(first) > 0.0)) return "no step was found that can be solved and has an error near 1e-10";
-  const double decades = log10(first_error / last_error) / (s->order + 1.0), ratio = pow(10.0, decades / (SINGLE_LEVELS - 1));
+  const double fall = pow(last_error / first_error, 1.0 / (SINGLE_LEVELS - 1));
   for (int k = 0; k < SINGLE_LEVELS; k++) {
-    double judge_error;
-    const double h = first * pow(ratio, -k);
-    if (!error_at(s, h, &found->error[k], &judge_error)) return "their equations could not be solved";
+    const double foreseen = first_error * pow(fall, k), h = first * pow(fall, k / (s->order + 1.0));
+    if (!error_at(s, h, foreseen, &found->error[k], &found->judge_error)) return "their equations could not be solved";
     found->h[k] = fabs(h);
-    found->judge_error = fmax(found->judge_error, judge_error);
     of_unit[k] = found->error[k] / found->h[k];
   }
   for (int k = 0; k < SINGLE_POINTS; k++)
@@ -194,7 +209,7 @@ static dvi_status prepare(study *s, const words *settings, double t_end, single_
   if (s->step != NULL && expressions == NULL)
     found->missing = "they are there for Lagrangians of R^n with expressions, of up to 64 coordinates";
   if (found->missing != NULL) return DVI_OK;
-  s->room = calloc(3 * n * (SINGLE_POINTS + 1) + 6 * n, sizeof *s->room);
+  s->room = calloc(3 * n * SINGLE_POINTS + 6 * n, sizeof *s->room);
   s->state = calloc(2 * n, sizeof *s->state);
   if (s->room == NULL || s->state == NULL || !quad_motion_init(&s->motion, expressions, (int)n)) return DVI_NO_MEMORY;
   return place_centres(s, t_end);

@@ -17,7 +17,7 @@ typedef struct single_steps {
   bool asked;
   const char *missing; /**< why there are none; NULL: they are below */
   double h[SINGLE_LEVELS], error[SINGLE_LEVELS];
-  double judge_error; /**< the largest of the solutions that steps are compared with */
+  double judge_error; /**< the largest of the solutions that the smallest steps are compared with */
   double apart;       /**< the largest distance of the library's own step of h[0] from that in quadruple precision */
   dvi_order_fit fit;  /**< of the order: one less than the slope of these errors */
   bool settled;

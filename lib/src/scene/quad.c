@@ -58,17 +58,21 @@ static quad logarithm(quad x)
   return y;
 }
 
+#define INVERSES(n) (quad)1 / (n), (quad)1 / ((n) + 1), (quad)1 / ((n) + 2), (quad)1 / ((n) + 3)
+static const quad inverse_number[] = {INVERSES(1),  INVERSES(5),  INVERSES(9),  INVERSES(13), INVERSES(17),
+                                      INVERSES(21), INVERSES(25), INVERSES(29), INVERSES(33)};
+enum { TERMS = sizeof inverse_number / sizeof *inverse_number };
+
 /* Sine and cosine by their series, after whole quarters of a turn are taken off. */
 static void turn(quad x, quad *sine, quad *cosine)
 {
   const quad quarter = constant(0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54, -0x1.f1976b7ed8fbcp-110);
-  enum { TERMS = 34 };
-  const double quarters = nearbyint((double)(x / quarter));
+  const double quarters = nearbyint((double)(x / quarter)), least = 1e-36;
   const quad r = x - (quad)quarters * quarter;
   quad term = 1, sum[2] = {0, 0};
-  for (int k = 0; k < TERMS; k++) {
+  for (int k = 0; k < TERMS && fabs((double)term) > least; k++) {
     sum[k % 2] += k / 2 % 2 == 0 ? term : -term;
-    term *= r / (k + 1);
+    term = term * r * inverse_number[k];
   }
   const double left = fmod(quarters, 4);
   const int whole = isfinite(left) ? ((int)left + 4) % 4 : 0;
