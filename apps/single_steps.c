@@ -18,7 +18,8 @@
 
 #ifdef QUAD_EXISTS
 enum { SEARCH_TRIES = 60, N_MAX = 64 };
-static const double first_error = 1e-10, last_error = 1e-28; /* of steps: between doubles and quadruple precision */
+static const double common_error = 1e-10; /* of the steps that are compared with the library's: above its roundings */
+static const double first_error = 1e-18, last_error = 1e-28; /* of the levels: to 100 roundings of the judge */
 static const double guide_method_steps = 4.0;                /* of the run to the points, for one of the problem's */
 static const double sameness = 0.01;                         /* of the first error: how far the library's step may be off */
 
@@ -142,17 +143,18 @@ static bool error_at(study *s, double h, double foreseen, double *error, double 
   return isfinite(*error);
 }
 
-/* Search for the largest step; 0: there is none. The claimed order is but a guess of how errors fall. */
-static double find_first(study *s)
+/* Search for the step that is compared with the library's; 0: there is none. The claimed order is but
+ * a guess of how errors fall. */
+static double find_common(study *s, double *of_common)
 {
   double h = copysign(s->scene->order_h, s->centre[0].t), error = 0.0, judge_error = 0.0;
   for (int i = 0; i < SEARCH_TRIES; i++) {
-    if (!error_at(s, h, first_error, &error, &judge_error))
-      h *= 0.5;
-    else if (error > 0.1 * first_error && error < 10.0 * first_error)
+    const bool good = error_at(s, h, common_error, &error, &judge_error);
+    if (good && error > 0.1 * common_error && error < 10.0 * common_error) {
+      *of_common = error;
       return h;
-    else
-      h *= fmin(fmax(pow(first_error / error, 1.0 / (s->order + 1.0)), 0.25), 2.0);
+    }
+    h *= !good ? 0.5 : fmin(fmax(pow(common_error / error, 1.0 / (s->order + 1.0)), 0.25), 2.0);
   }
   return 0.0;
 }
@@ -162,7 +164,7 @@ static bool compare(study *s, const centre *c, double h, double *apart)
 {
   const int n = s->scene->nq;
   quad *start = s->room + 3 * n * SINGLE_POINTS, *mine = start + 2 * n;
-  double error, judge_error = first_error, *z = s->state;
+  double error, judge_error = common_error, *z = s->state;
   const double t = c->t - 0.5 * h;
   if (!step_error(s, c, h, start, &error, &judge_error)) return false;
   for (int i = 0; i < 2 * n; i++) z[i] = (double)start[i], start[i] = (quad)z[i];
@@ -179,19 +181,21 @@ static bool compare(study *s, const centre *c, double h, double *apart)
 static const char *measure_levels(study *s, single_steps *found)
 {
   double of_unit[SINGLE_LEVELS]; /* the error of a step over its length: its slope is the order */
+  double of_common = 0.0;
   measure_sizes(s);
-  const double first = find_first(s);
-  if (!(fabs(first) > 0.0)) return "no step was found that can be solved and has an error near 1e-10";
-  const double fall = pow(last_error / first_error, 1.0 / (SINGLE_LEVELS - 1));
+  const double common = find_common(s, &of_common), fall = pow(last_error / first_error, 1.0 / (SINGLE_LEVELS - 1));
+  if (!(fabs(common) > 0.0)) return "no step was found that can be solved and has an error near 1e-10";
   for (int k = 0; k < SINGLE_LEVELS; k++) {
-    const double foreseen = first_error * pow(fall, k), h = first * pow(fall, k / (s->order + 1.0));
+    const double foreseen = first_error * pow(fall, k), h = common * pow(foreseen / of_common, 1.0 / (s->order + 1.0));
     if (!error_at(s, h, foreseen, &found->error[k], &found->judge_error)) return "their equations could not be solved";
     found->h[k] = fabs(h);
     of_unit[k] = found->error[k] / found->h[k];
   }
   for (int k = 0; k < SINGLE_POINTS; k++)
-    if (!compare(s, &s->centre[k], first, &found->apart)) return "the library's own step of that length fails";
-  if (!(found->apart <= sameness * found->error[0])) return "the library's own steps are not those in quadruple precision";
+    if (!compare(s, &s->centre[k], common, &found->apart)) return "the library's own step of that length fails";
+  if (!(found->apart <= sameness * of_common)) return "the library's own steps are not those in quadruple precision";
+  found->common_error = of_common;
+  found->common_h = fabs(common);
   const double floor = 10.0 * found->judge_error / found->h[SINGLE_LEVELS - 1];
   found->settled = window_fit(SINGLE_LEVELS, found->h, of_unit, floor, HUGE_VAL, &found->fit);
   return NULL;

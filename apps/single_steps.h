@@ -9,7 +9,7 @@
 #include "problem.h"
 #include "progress.h"
 
-enum { SINGLE_LEVELS = 8, SINGLE_POINTS = 4 };
+enum { SINGLE_LEVELS = 8, SINGLE_POINTS = 5 };
 
 /** What they show. Errors are those of q and of p, relative to each, and the root of the mean of their
  *  squares over the points from which steps are taken. */
@@ -18,7 +18,8 @@ typedef struct single_steps {
   const char *missing; /**< why there are none; NULL: they are below */
   double h[SINGLE_LEVELS], error[SINGLE_LEVELS];
   double judge_error; /**< the largest of the solutions that the smallest steps are compared with */
-  double apart;       /**< the largest distance of the library's own step of h[0] from that in quadruple precision */
+  double common_h, common_error; /**< of larger steps, which doubles show, too */
+  double apart; /**< the largest distance of the library's own steps of that length from these */
   dvi_order_fit fit;  /**< of the order: one less than the slope of these errors */
   bool settled;
 } single_steps;
