@@ -131,7 +131,10 @@ bool bench_request_read(int argc, char **argv, bench_request *r, int *exit_code)
 {
   *r = (bench_request){.t_end = (double)NAN, .h = (double)NAN, .rounds = ROUNDS_DEFAULT};
   const option options[] = {
-      {.name = "method", .words = &r->methods, .value = "SPEC", .help = "a method; may be repeated; left out: the scene's, else a selection"},
+      {.name = "method",
+       .words = &r->methods,
+       .value = "SPEC",
+       .help = "a method; may be repeated; left out: the scene's, else a selection"},
       {.name = "time-transform",
        .words = &r->transforms,
        .value = "MONITOR",

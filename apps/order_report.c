@@ -93,7 +93,7 @@ static int count_above(const order_result *result, double bound)
 static const char *floor_cause(const order_result *result)
 {
   const bool of_judge = result->floor <= 1.01 * STUDY_FLOOR_MARGIN * result->judge_error;
-  return of_judge ? "the judge's own error" : "roundoff, what a change of the start in its last digit does to the end";
+  return of_judge ? "the judge's own error" : "roundoff (what a change of the start in its last digit does to the end)";
 }
 
 /* Too few levels between the floor and the ceiling. */
@@ -101,17 +101,17 @@ static void print_missing(FILE *stream, const order_result *result)
 {
   const int above = count_above(result, result->ceiling), below = result->levels - count_above(result, result->floor);
   if (result->levels < WINDOW_LEVELS)
-    (void)fprintf(stream, "not decided: %d of them are too few, %d are needed; ask for --levels 6\n", result->levels,
+    (void)fprintf(stream, "not decided: %d levels are too few, %d are needed; ask for --levels 6\n", result->levels,
                   (int)WINDOW_LEVELS);
   else if (above > below)
     (void)fprintf(stream,
-                  "not decided: steps are too large: %d of %d levels have errors above 1 %% of the solution (%.1e); begin with a "
-                  "smaller step, --h %.3g\n",
-                  above, result->levels, result->ceiling, result->h[result->levels - 1]);
+                  "not decided: steps are too large: %d of %d levels have errors above 1 %% of the solution (%.1e); leave --h to "
+                  "the search, or shorten the span, --t-end %g\n",
+                  above, result->levels, result->ceiling, shorter * result->t_end);
   else
     (void)fprintf(stream,
-                  "not decided: %d of %d levels have errors below %.1e, ten times %s; leave --h and --levels to the search, or "
-                  "set a longer --t-end %g\n",
+                  "not decided: %d of %d levels have errors below %.1e, ten times %s; leave --h to the search, or lengthen the "
+                  "span, --t-end %g\n",
                   below, result->levels, result->floor, floor_cause(result), result->t_end / shorter);
 }
 
@@ -130,10 +130,13 @@ static void print_remedy(FILE *stream, const order_result *result)
 {
   if (result->single.asked && result->single.missing != NULL)
     (void)fprintf(stream, "  no single steps in quadruple precision: %s\n", result->single.missing);
-  if (result->claimed < HIDDEN_ORDER)
+  if (result->chooses_steps)
+    (void)fprintf(stream, "  the method chooses its steps, and an error is no power of the first one; galerkin of this degree has "
+                          "steps of one length\n");
+  else if (result->claimed < HIDDEN_ORDER)
     (void)fprintf(stream, "  try a shorter span, --t-end %g\n", shorter * result->t_end);
   else
-    (void)fprintf(stream, "  spans show orders up to about 10 in doubles: try a lower degree of this method\n");
+    (void)fprintf(stream, "  spans show orders up to about 10 in doubles: try a method of a lower one\n");
 }
 
 static void print_unsettled(FILE *stream, const order_result *result)
@@ -159,15 +162,26 @@ static void print_span(FILE *stream, const order_result *result)
   }
 }
 
+/* Why the span was not enough. */
+static void print_hidden(FILE *stream, const order_result *result)
+{
+  double least, most;
+  slopes_between(result, &least, &most);
+  (void)fprintf(stream, "  the span to t = %g does not show it: %d of %d levels lie between floor and ceiling", result->t_end,
+                fitted_levels(result), result->levels);
+  if (fitted_levels(result) > 1) (void)fprintf(stream, ", with slopes of %.2f to %.2f between neighbours", least, most);
+  (void)fputc('\n', stream);
+}
+
 static void print_of_steps(FILE *stream, const order_result *result)
 {
   const single_steps *s = &result->single;
   (void)fprintf(stream, "fitted %.2f to single steps %d to %d: %s\n", s->fit.slope, s->fit.first + 1, s->fit.last + 1,
                 order_holds(result) ? "ok" : "MISSED");
-  (void)fprintf(stream, "  over the span to t = %g errors show no order: they reach the floor before they are in line\n",
-                result->t_end);
-  (void)fprintf(stream, "  judge of the steps: extrapolation, error %.1e; with h = %.3g and an error of %.1e the library's own "
-                        "steps are %.1e from these\n",
+  print_hidden(stream, result);
+  (void)fprintf(stream,
+                "  judge of the steps: extrapolation, error %.1e; with h = %.3g and an error of %.1e the library's own "
+                "steps are %.1e from these\n",
                 s->judge_error, s->common_h, s->common_error, s->apart);
 }
 

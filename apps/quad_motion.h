@@ -10,11 +10,11 @@
 typedef struct quad_motion {
   const dvi_scene *scene;
   int n;
-  quad *inverse;  /**< [n][n] of L_vv where quad_motion_settle was last called, to a dozen digits */
-  quad *tracked;  /**< [n][n] the same, as Broyden's method follows it along a flow */
+  quad *inverse;         /**< [n][n] of L_vv where quad_motion_settle was last called, to a dozen digits */
+  quad *tracked;         /**< [n][n] the same, as Broyden's method follows it along a flow */
   double q_size, p_size; /**< what distances of q and of p are relative to; 1 at first */
-  quad *room;     /**< what is worked in */
-  dvi_pair *pair; /**< [4 n] */
+  quad *room;            /**< what is worked in */
+  dvi_pair *pair;        /**< [4 n] */
 } quad_motion;
 
 /** Take the Lagrangian of a scene of n coordinates. False: no memory. To be cleared either way. */

@@ -17,10 +17,10 @@ typedef struct single_steps {
   bool asked;
   const char *missing; /**< why there are none; NULL: they are below */
   double h[SINGLE_LEVELS], error[SINGLE_LEVELS];
-  double judge_error; /**< the largest of the solutions that the smallest steps are compared with */
+  double judge_error;            /**< the largest of the solutions that the smallest steps are compared with */
   double common_h, common_error; /**< of larger steps, which doubles show, too */
-  double apart; /**< the largest distance of the library's own steps of that length from these */
-  dvi_order_fit fit;  /**< of the order: one less than the slope of these errors */
+  double apart;                  /**< the largest distance of the library's own steps of that length from these */
+  dvi_order_fit fit;             /**< of the order: one less than the slope of these errors */
   bool settled;
 } single_steps;
 

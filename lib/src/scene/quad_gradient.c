@@ -40,10 +40,9 @@ static void evaluate(const dvi__kernel *kernel, int e, const blocks *x, quad *va
   const dvi__graph_node *node = kernel->graph->node;
   for (int n = 0; n <= kernel->root; n++) {
     const int operands = dvi__operands(node[n].op);
-    value[n] = node[n].op == DVI__OP_INPUT
-                   ? input_at(kernel, node[n].a, e, x)
-                   : dvi__quad_operate(node[n].op, node[n].value, operands > 0 ? value[node[n].a] : 0,
-                                       operands > 1 ? value[node[n].b] : 0);
+    value[n] = node[n].op == DVI__OP_INPUT ? input_at(kernel, node[n].a, e, x)
+                                           : dvi__quad_operate(node[n].op, node[n].value, operands > 0 ? value[node[n].a] : 0,
+                                                               operands > 1 ? value[node[n].b] : 0);
   }
 }
 
