@@ -37,10 +37,24 @@ static bool is_claimed(const order_result *result, double slope)
   return fabs(slope - result->claimed) <= order_tolerance;
 }
 
+static bool steps_settled(const order_result *result)
+{
+  return result->single.asked && result->single.missing == NULL && result->single.settled;
+}
+
+/* Whether the span's errors fall about as single steps foretell. Those that fall far slower, as behind a
+ * kink of the forces which no single step met, are not on their way to that order. */
+static bool span_agrees(const order_result *result)
+{
+  static const double unsettled = 0.7, settled = 0.9; /* of the order */
+  if (fitted_levels(result) < 2) return true;
+  return result->fit.slope >= (result->settled ? settled : unsettled) * result->single.fit.slope;
+}
+
 /* Whether single steps have the last word. */
 static bool decided_by_steps(const order_result *result)
 {
-  return result->single.asked && result->single.missing == NULL && result->single.settled;
+  return steps_settled(result) && span_agrees(result);
 }
 
 bool order_holds(const order_result *result)
@@ -110,8 +124,8 @@ static void print_missing(FILE *stream, const order_result *result)
                   above, result->levels, result->ceiling, shorter * result->t_end);
   else
     (void)fprintf(stream,
-                  "not decided: %d of %d levels have errors below %.1e, ten times %s; leave --h to the search, or lengthen the "
-                  "span, --t-end %g\n",
+                  "not decided: %d of %d levels have errors below %.1e, ten times %s; leave --h and --judge to the search, or "
+                  "lengthen the span, --t-end %g\n",
                   below, result->levels, result->floor, floor_cause(result), result->t_end / shorter);
 }
 
@@ -130,7 +144,12 @@ static void print_remedy(FILE *stream, const order_result *result)
 {
   if (result->single.asked && result->single.missing != NULL)
     (void)fprintf(stream, "  no single steps in quadruple precision: %s\n", result->single.missing);
-  if (result->chooses_steps)
+  if (steps_settled(result))
+    (void)fprintf(stream,
+                  "  single steps have the order %.2f, but over the span errors fall far slower: is the Lagrangian smooth "
+                  "all along the motion? (abs and roots of 0 are not)\n",
+                  result->single.fit.slope);
+  else if (result->chooses_steps)
     (void)fprintf(stream, "  the method chooses its steps, and an error is no power of the first one; galerkin of this degree has "
                           "steps of one length\n");
   else if (result->claimed < HIDDEN_ORDER)
@@ -158,7 +177,7 @@ static void print_span(FILE *stream, const order_result *result)
   } else {
     (void)fprintf(stream, "fitted %.2f to levels %d to %d: %s\n", result->fit.slope, result->fit.first + 1, result->fit.last + 1,
                   order_holds(result) ? "ok" : "MISSED");
-    if (!order_holds(result) && result->claimed >= SLOW_ORDER) print_remedy(stream, result);
+    if (!order_holds(result) && (result->claimed >= SLOW_ORDER || steps_settled(result))) print_remedy(stream, result);
   }
 }
 
@@ -169,7 +188,8 @@ static void print_hidden(FILE *stream, const order_result *result)
   slopes_between(result, &least, &most);
   (void)fprintf(stream, "  the span to t = %g does not show it: %d of %d levels lie between floor and ceiling", result->t_end,
                 fitted_levels(result), result->levels);
-  if (fitted_levels(result) > 1) (void)fprintf(stream, ", with slopes of %.2f to %.2f between neighbours", least, most);
+  if (fitted_levels(result) > 1)
+    (void)fprintf(stream, ", slope %.2f, %.2f to %.2f between neighbours", result->fit.slope, least, most);
   (void)fputc('\n', stream);
 }
 

@@ -64,7 +64,7 @@ static const quad inverse_number[] = {INVERSES(1),  INVERSES(5),  INVERSES(9),  
 enum { TERMS = sizeof inverse_number / sizeof *inverse_number };
 
 /* Sine and cosine by their series, after whole quarters of a turn are taken off. */
-static void turn(quad x, quad *sine, quad *cosine)
+static void find_turn(quad x, quad *sine, quad *cosine)
 {
   const quad quarter = constant(0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54, -0x1.f1976b7ed8fbcp-110);
   const double quarters = nearbyint((double)(x / quarter)), least = 1e-36;
@@ -79,6 +79,18 @@ static void turn(quad x, quad *sine, quad *cosine)
   const quad c = whole % 2 == 0 ? sum[0] : sum[1], s = whole % 2 == 0 ? sum[1] : sum[0];
   *sine = whole >= 2 ? -s : s;
   *cosine = whole == 1 || whole == 2 ? -c : c;
+}
+
+/* The last angle is kept: an angle's sine, cosine and slopes are asked for one after the other. */
+static void turn(quad x, quad *sine, quad *cosine)
+{
+  static _Thread_local quad angle, angle_sine, angle_cosine = 1;
+  if (!(x >= angle && x <= angle)) {
+    find_turn(x, &angle_sine, &angle_cosine);
+    angle = x;
+  }
+  *sine = angle_sine;
+  *cosine = angle_cosine;
 }
 
 static quad sine_of(quad x)
