@@ -20,7 +20,8 @@
 
 enum { LEVELS_DEFAULT = 6 };
 
-/* What runs if no --method is given; those that the problem's structure excludes are left out. */
+/* What runs if neither the command line nor the scene names a method; those that the problem's
+ * structure excludes are left out. For every kind of system there is one at least. */
 static const char *const selection[] = {"verlet",
                                         "composition:order=8,base=verlet",
                                         "midpoint",
@@ -31,6 +32,11 @@ static const char *const selection[] = {"verlet",
                                         "lie-galerkin:degree=2",
                                         "lie-galerkin:degree=4",
                                         "lie-galerkin:degree=8",
+                                        "vprk:nodes=2",
+                                        "vprk:nodes=4",
+                                        "dg-phase:degree=2",
+                                        "hamiltonian:degree=2",
+                                        "hamiltonian:degree=4",
                                         NULL};
 
 static const double first_error = 1e-2; /* of each method, relative to the solution */
@@ -335,6 +341,7 @@ static int choose_methods(bench *b)
 static int bench_problem(bench_request *request, const problem *scene)
 {
   if (isnan(request->t_end)) request->t_end = scene->order_t_end;
+  if (request->methods.count == 0 && scene->method != NULL) request->methods.word[request->methods.count++] = scene->method;
   bench b = {.request = request, .scene = scene};
   const int code = choose_methods(&b);
   if (code == DONE) events_passed("bench", scene);

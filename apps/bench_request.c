@@ -131,7 +131,10 @@ bool bench_request_read(int argc, char **argv, bench_request *r, int *exit_code)
 {
   *r = (bench_request){.t_end = (double)NAN, .h = (double)NAN, .rounds = ROUNDS_DEFAULT};
   const option options[] = {
-      {.name = "method", .words = &r->methods, .value = "SPEC", .help = "a method; may be repeated; left out: a selection"},
+      {.name = "method",
+       .words = &r->methods,
+       .value = "SPEC",
+       .help = "a method; may be repeated; left out: the scene's, else a selection"},
       {.name = "time-transform",
        .words = &r->transforms,
        .value = "MONITOR",
@@ -170,7 +173,7 @@ bool bench_request_read(int argc, char **argv, bench_request *r, int *exit_code)
   };
   const command_line command = {
       .name = "bench",
-      .synopsis = "PROBLEM [--method SPEC ...] [--against cvode,arkode,ida,gsl] [OPTIONS]",
+      .synopsis = "PROBLEM|SCENE.yaml [--method SPEC ...] [--against cvode,arkode,ida,gsl] [OPTIONS]",
       .operand = "PROBLEM",
       .summary =
           "Measure speed against error, of methods and of other codes, all in one run; or the cost of a step against size.\n",

@@ -44,8 +44,8 @@ static void print_problem(const problem *scene, const words *settings)
   events_print(scene);
   (void)printf("\n  first run    --h %g --t-end %g\n", scene->h, scene->t_end);
   (void)printf("  judged by    %s\n", scene->exact != NULL      ? "its exact solution"
-                                      : scene->digits_q != NULL ? "its stored quadruple-precision result, or IDA"
-                                                                : "IDA");
+                                      : scene->digits_q != NULL ? "its stored quadruple-precision result, or IDA or two runs"
+                                                                : "IDA or two runs");
 }
 
 static int print_method(const dvi_integrator *integrator)

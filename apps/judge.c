@@ -87,8 +87,8 @@ static dvi_status ask_ida(judgement *judge, const problem *scene, double t_end, 
   return DVI_OK;
 }
 
-/* The runs took the place of IDA, whose answer is `ida`: IDA remains as their witness, and if it contradicts them their error is not what they
- * say. */
+/* The runs took the place of IDA, whose answer is `ida`: IDA remains as their witness, and if it
+ * contradicts them their error is not what they say. */
 static void add_witness(judgement *judge, int n, const double *ida, double ida_error)
 {
   const double apart = judge_distance(n, judge->q, ida);
@@ -97,17 +97,22 @@ static void add_witness(judgement *judge, int n, const double *ida, double ida_e
   (void)snprintf(judge->words + length, sizeof judge->words - length, " (IDA, of error %.1e, is %.1e away)", ida_error, apart);
 }
 
-/* IDA shares no code with the methods, so it is asked first. ida [n]: room for its answer. */
+/* IDA shares no code with the methods, so it is asked first; of its answer and that of the runs the
+ * one with the smaller error is taken. ida [n]: room for its answer. */
 static dvi_status ask_ida_then_runs(judgement *judge, const problem *scene, double t_end, const judge_request *request, double *p,
                                     double *ida)
 {
   const int n = scene->nq;
   const dvi_status of_ida = ask_ida(judge, scene, t_end, p);
-  if (request->wanted <= 0.0 || (of_ida == DVI_OK && judge->error <= request->wanted)) return of_ida;
+  if (of_ida == DVI_OK && judge->error <= request->wanted) return of_ida;
   const double ida_error = judge->error;
   memcpy(ida, judge->q, (size_t)n * sizeof *ida);
   const dvi_status status = judge_by_runs(judge, scene, t_end, request->progress);
-  if (of_ida != DVI_OK) return status;
+  if (of_ida != DVI_OK) {
+    const size_t length = strlen(judge->words);
+    (void)snprintf(judge->words + length, sizeof judge->words - length, " (IDA fails: they have no witness)");
+    return status;
+  }
   if (status == DVI_OK) add_witness(judge, n, ida, ida_error);
   if (status == DVI_OK && judge->error < ida_error) return DVI_OK;
   free(judge->other);

@@ -8,17 +8,17 @@ enum { JUDGE_WORDS = 256 };
 
 /** Who is asked. */
 typedef enum judge_kind {
-  JUDGE_AUTO,   /**< the first of these that is there; of IDA and the runs the more independent that is good enough */
+  JUDGE_AUTO,   /**< the first of these that is there; of IDA and the runs the one of the smaller error */
   JUDGE_EXACT,  /**< the exact solution */
   JUDGE_STORED, /**< the catalogue's digits, for the problem's own parameters and end */
   JUDGE_IDA,    /**< IDA at two tolerances */
   JUDGE_RUNS    /**< two Galerkin runs of high degree, different in degree and step */
 } judge_kind;
 
-/** What is asked for; all zero: the exact solution, the stored digits or IDA. */
+/** What is asked for; all zero: the best judge that there is. */
 typedef struct judge_request {
   judge_kind kind;
-  double wanted;           /**< auto: if IDA's error is above this, the runs are asked too; 0: they are not */
+  double wanted;           /**< auto: with an error of IDA up to this the runs are not asked */
   progress_line *progress; /**< shown while the judge works; NULL: none */
 } judge_request;
 

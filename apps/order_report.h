@@ -8,6 +8,7 @@
 #include "judge.h"
 #include "pacing.h"
 #include "problem.h"
+#include "single_steps.h"
 #include "table.h"
 
 enum { LEVELS_MAX = 40 };
@@ -16,6 +17,7 @@ enum { LEVELS_MAX = 40 };
 typedef struct order_result {
   char method[PACED_NAME]; /**< with what its steps follow */
   int claimed;             /**< its order */
+  bool chooses_steps;      /**< so that h is that of the first one alone */
   double t_end;            /**< where it was judged */
   char judge[JUDGE_WORDS]; /**< by whom, in words */
   double judge_error;
@@ -24,7 +26,8 @@ typedef struct order_result {
   double error[LEVELS_MAX];
   double floor, ceiling; /**< errors outside are not fitted */
   dvi_order_fit fit;
-  bool settled; /**< the slope is the same all over the fitted levels */
+  bool settled;        /**< the slope is the same all over the fitted levels */
+  single_steps single; /**< asked where the span does not show the claimed order */
 } order_result;
 
 /** The order that level k and the one before it show; NaN if there is none. */

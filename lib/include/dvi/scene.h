@@ -56,6 +56,11 @@ typedef struct dvi_scene_facts {
   int quadratic_potentials;                           /**< how many potentials have constant Hessians */
 } dvi_scene_facts;
 
+/** A number of more digits than a double has: high + low, with high the double nearest to it. */
+typedef struct dvi_pair {
+  double high, low;
+} dvi_pair;
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -129,6 +134,19 @@ void dvi_scene_facts_of(const dvi_scene *scene, dvi_scene_facts *facts);
  *  @param[out] text  [size] "translation of x, rotation of q about z"; cut off if it is longer
  *  @return how many; -1 for scenes with rotations, motions, directions or angles, for more than 2e6 parts of all elements, without memory, and for NULL */
 int dvi_scene_invariance(const dvi_scene *scene, char *text, size_t size);
+
+/** The derivatives of the Lagrangian in quadruple precision, for the errors of steps that lie below
+ *  the rounding of a double. Slow; allocates.
+ *
+ *  @param      t, q, v   the point, q and v [n]
+ *  @param[out] L_q, L_v  [n] right to about 1e-31; undefined on failure
+ *  @retval DVI_UNSUPPORTED   no Lagrangian of R^n (a one-form, a Hamiltonian, rotations, directions or
+ *                            angles), or no arithmetic of 113 bits on this machine
+ *  @retval DVI_BAD_ARGUMENT  a pointer is NULL
+ *  @retval DVI_NOT_FINITE
+ *  @retval DVI_NO_MEMORY */
+dvi_status dvi_scene_quad_gradient(const dvi_scene *scene, dvi_pair t, const dvi_pair *q, const dvi_pair *v, dvi_pair *L_q,
+                                   dvi_pair *L_v);
 
 /** The part of an expression that was not finite, or had no Taylor series, when a callback of a scene's system last failed on this thread, with the time; or the limit that its derivatives
  *  passed; "" if none failed since a scene was last read. */
