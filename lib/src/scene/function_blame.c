@@ -65,6 +65,10 @@ static int has_series(const dvi__graph_node *node, double a, double b)
   case DVI__OP_SQRT:
   case DVI__OP_RAISE: return !is_zero;
   case DVI__OP_POWER: return !is_zero || whole;
+  case DVI__OP_ABS:
+  case DVI__OP_SIGN:
+  case DVI__OP_POSITIVE: return !is_zero;
+  case DVI__OP_FLOOR: return a > floor(a);
   case DVI__OP_ATAN2: return !is_zero || b > 0.0 || b < 0.0;
   case DVI__OP_ASIN:
   case DVI__OP_ACOS: return fabs(a) < 1.0;
@@ -73,12 +77,40 @@ static int has_series(const dvi__graph_node *node, double a, double b)
   }
 }
 
+/* Mark the nodes that depend on a variable. */
+static void mark_moving(const dvi__kernel *kernel, int count, char *moves)
+{
+  for (int n = 0; n < count; n++) {
+    const dvi__graph_node *node = &kernel->graph->node[n];
+    const int operands = dvi__operands(node->op);
+    moves[n] = (char)(node->op == DVI__OP_INPUT ? !kernel->input[node->a].is_data
+                                                : (operands > 0 && moves[node->a]) || (operands > 1 && moves[node->b]));
+  }
+}
+
+/* The first of the operations that the root is made of at this point and that moves without a series; -1: there is none.
+ * value [2 count]: of their operands. */
+static dvi__node first_to_stop(const dvi__graph *graph, int count, const double *value, const char *moves, char *part)
+{
+  dvi__node found = -1;
+  memset(part, 0, (size_t)count);
+  part[count - 1] = 1;
+  for (int n = count - 1; n >= 0; n--) {
+    const dvi__graph_node *node = &graph->node[n];
+    const int operands = part[n] ? dvi__operands(node->op) : 0, off = node->op == DVI__OP_WHERE && value[2 * n] <= 0;
+    if (operands > 0) part[node->a] = 1;
+    if (operands > 1 && !off) part[node->b] = 1;
+    if (part[n] && moves[n] && !has_series(node, value[2 * n], value[2 * n + 1])) found = n;
+  }
+  return found;
+}
+
 /* The first operation below the root that has no series; -1: all have one. */
 static dvi__node first_without_series(const dvi__kernel *kernel, const double *input)
 {
   const dvi__graph *graph = kernel->graph;
   int count = 0;
-  char *part = dvi__parts(graph, 1, &kernel->root, &count);
+  char *part = dvi__parts(graph, 1, &kernel->root, &count), *moves = dvi__heap_take((size_t)count + 1, 1);
   dvi__node *operand = dvi__heap_take(2 * (size_t)count + 1, sizeof *operand), unused = -1, found = -1;
   double *value = dvi__heap_take(2 * (size_t)count + 1, sizeof *value);
   for (int n = 0; n < count && operand != NULL; n++) {
@@ -86,10 +118,13 @@ static dvi__node first_without_series(const dvi__kernel *kernel, const double *i
     operand[2 * n] = operands > 0 ? graph->node[n].a : kernel->root;
     operand[2 * n + 1] = operands > 1 ? graph->node[n].b : kernel->root;
   }
-  if (part != NULL && operand != NULL && value != NULL && dvi__evaluate(graph, input, 2 * count, operand, value, &unused) == DVI_OK)
-    for (int n = count - 1; n >= 0; n--)
-      if (part[n] && !has_series(&graph->node[n], value[2 * n], value[2 * n + 1])) found = n;
+  const int made = part != NULL && moves != NULL && operand != NULL && value != NULL;
+  if (made && dvi__evaluate(graph, input, 2 * count, operand, value, &unused) == DVI_OK) {
+    mark_moving(kernel, count, moves);
+    found = first_to_stop(graph, count, value, moves, part);
+  }
   dvi__heap_free(part);
+  dvi__heap_free(moves);
   dvi__heap_free(operand);
   dvi__heap_free(value);
   return found;
