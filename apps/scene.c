@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "command.h"
 #include "entry.h"
@@ -127,10 +128,24 @@ static int read_as(const char *path, dvi_status status, const char *message, dvi
   return *scene != NULL ? DONE : FAILED;
 }
 
+/* A folder can be opened, and not read. */
+static bool is_folder(const char *path)
+{
+  struct stat there;
+  return stat(path, &there) == 0 && S_ISDIR(there.st_mode);
+}
+
+static int refuse_folder(const char *path)
+{
+  return usage_error("'%s' is a folder, and no scene: that is a file; dvi init NAME.yaml writes one", path);
+}
+
 int scene_open(const char *path, const words *settings, problem **scene)
 {
   char message[MESSAGE_SIZE] = "";
   dvi_scene *read = NULL;
+  *scene = NULL;
+  if (is_folder(path)) return refuse_folder(path);
   const dvi_status status = dvi_scene_read(path, settings->count, settings->word, &read, message, sizeof message);
   return read_as(path, status, message, read, scene);
 }
@@ -147,7 +162,9 @@ int scene_parse(const char *path, const scene_text *text, const words *settings,
 /* One character more than a scene may have: dvi_scene_parse tells of that. */
 int scene_load(const char *path, scene_text *text)
 {
-  *text = (scene_text){.text = malloc(TEXT_MAX + 1)};
+  *text = (scene_text){.text = NULL};
+  if (is_folder(path)) return refuse_folder(path);
+  text->text = malloc(TEXT_MAX + 1);
   if (text->text == NULL) {
     complain("out of memory");
     return FAILED;

@@ -42,6 +42,9 @@ bool dvi__complain(dvi__complaint *complaint, dvi_status status, dvi__span where
 /* The same for memory that was refused: DVI_BAD_SIZE if it was too much, else DVI_NO_MEMORY. Returns false. */
 bool dvi__complain_of_memory(dvi__complaint *complaint);
 
+/* The same for a file that is no scene: what it is instead, if that is known, and what a scene is. Returns false. */
+bool dvi__complain_of_file(dvi__complaint *complaint, dvi__span where, const char *is);
+
 /* The line and the column of a place, from 1; columns count characters of UTF-8. */
 void dvi__source_place(const dvi__source *source, size_t offset, int *line, int *column);
 

@@ -14,7 +14,8 @@ typedef enum failing { VALUE, DERIVATIVE, SERIES } failing;
 typedef struct culprit {
   const dvi__kernel *kernel;
   dvi__node node; /* -1: nobody */
-  double *input;  /* [input_count], to be freed */
+  int element;
+  double *input; /* [input_count], to be freed */
   failing of;
 } culprit;
 
@@ -139,6 +140,7 @@ static void search_kernel(const dvi__function *function, int k, int count, const
   const dvi__node *root = found->of == DERIVATIVE ? derivatives : &kernel->root;
   double *input = dvi__heap_take((size_t)kernel->input_count + 1, sizeof *input);
   for (int e = 0; e < kernel->elements && found->node < 0 && root != NULL && input != NULL; e++) {
+    found->element = e;
     read_inputs(kernel, function->derivatives[k].place, e, count, x, point, input);
     found->node = found->of == SERIES ? first_without_series(kernel, input) : first_below(kernel, input, root_count, root);
   }
@@ -180,7 +182,24 @@ static dvi__node operand_of(const dvi__graph_node *node)
   return node->op == DVI__OP_DIVIDE ? node->b : node->a;
 }
 
-static void describe(const culprit *found, const dvi__source *source, char *text, size_t size, dvi__span *span)
+/* The variables that the node depends on, but for its operand, which is shown if it is one. */
+static void list_variables(const culprit *found, dvi__node operand, dvi__fault *fault)
+{
+  const dvi__kernel *kernel = found->kernel;
+  const dvi__graph_node *shown = operand >= 0 ? &kernel->graph->node[operand] : NULL;
+  char *used = dvi__heap_take((size_t)kernel->input_count + 1, 1);
+  if (used == NULL) return;
+  dvi__inputs_used(kernel->graph, 1, &found->node, kernel->input_count, used);
+  for (int i = 0; i < kernel->input_count && fault->count < DVI__FAULT_VARIABLES; i++) {
+    if (!used[i] || kernel->input[i].is_data || (shown != NULL && shown->op == DVI__OP_INPUT && shown->a == i)) continue;
+    fault->variable[fault->count].block = kernel->input[i].block;
+    fault->variable[fault->count].number = dvi__input_number(&kernel->input[i], found->element);
+    fault->variable[fault->count++].value = found->input[i];
+  }
+  dvi__heap_free(used);
+}
+
+static void describe(const culprit *found, const dvi__source *source, char *text, size_t size, dvi__fault *fault)
 {
   const dvi__graph *graph = found->kernel->graph;
   const dvi__graph_node *node = &graph->node[found->node];
@@ -189,7 +208,8 @@ static void describe(const culprit *found, const dvi__source *source, char *text
   double value = 0.0;
   dvi__node unused = -1;
   copy_part(source, node->span, part);
-  *span = node->span;
+  *fault = (dvi__fault){.span = node->span};
+  list_variables(found, operand, fault);
   if (operand >= 0 && graph->node[operand].span.first + graph->node[operand].span.size != node->span.first + node->span.size)
     copy_part(source, graph->node[operand].span, operand_part);
   if (operand < 0) (void)dvi__evaluate(graph, found->input, 1, &found->node, &value, &unused);
@@ -205,7 +225,7 @@ static void describe(const culprit *found, const dvi__source *source, char *text
 }
 
 void dvi__function_blame(dvi__function *function, const dvi__source *source, int count, const double *const *x, int k,
-                         int of_series, char *text, size_t size, dvi__span *span)
+                         int of_series, char *text, size_t size, dvi__fault *fault)
 {
   culprit found = {.node = -1};
   const int passes = of_series ? SERIES + 1 : SERIES;
@@ -216,7 +236,7 @@ void dvi__function_blame(dvi__function *function, const dvi__source *source, int
       search_kernel(function, i, count, x, k, &found);
     }
   text[0] = '\0';
-  if (found.node >= 0) describe(&found, source, text, size, span);
+  if (found.node >= 0) describe(&found, source, text, size, fault);
   pthread_mutex_unlock(&function->lock);
   dvi__heap_free(found.input);
 }

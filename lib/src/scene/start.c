@@ -224,8 +224,11 @@ bool dvi__scene_complete_start(dvi_scene *scene)
   if (status == DVI_OK) return true;
   if (status == DVI_NO_MEMORY) return dvi__scene_no_memory(scene);
   if (status == DVI_CALLBACK_FAILED) status = dvi__blame_status();
-  const char *blame = dvi_scene_blame();
+  const char *words;
+  dvi__span span;
+  if (status == DVI_CALLBACK_RETRY && dvi__blame_place(&span, &words))
+    return dvi__complain(scene->complaint, status, span, "at the start: %s", words);
   const dvi__tree *cause = status == DVI_SINGULAR ? dvi__what_moves(scene) : dvi__tree_find(scene->tree, "initial");
-  return dvi__complain(scene->complaint, status, cause->span, "at the start: %s%s%s", dvi_last_error(), *blame != '\0' ? "; " : "",
-                       blame);
+  return dvi__complain(scene->complaint, status, cause->span, "at the start: %s%s%s", dvi_last_error(),
+                       dvi_scene_blame()[0] != '\0' ? "; " : "", dvi_scene_blame());
 }
