@@ -216,7 +216,7 @@ static bool right_count(const dvi__context *c, const dvi__expression *call, int 
 /* An angle is (cos, sin). */
 static const char *hint_of_angle(const dvi__context *c, const dvi__expression *e)
 {
-  const dvi__expression *index;
+  dvi__subscripts index;
   const dvi__coordinate *x = dvi__member_named(c->scene, e, &index);
   return x != NULL && x->kind == DVI__ANGLE ? ": the cosine of an angle u is u[1], its sine u[2]" : "";
 }
