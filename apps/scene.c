@@ -19,6 +19,8 @@ enum { MESSAGE_SIZE = 2048 };
 /* Characters of a scene, as docs/scenes.md has it. */
 enum { TEXT_MAX = 1 << 20 };
 
+enum { KINK_SIZE = 512 };
+
 /* Steps of an order study that begins where the scene's own step is. */
 enum { STUDY_STEPS = 200 };
 
@@ -186,6 +188,12 @@ int scene_spared(const char *command, const char *path, int count, const named_f
   return DONE;
 }
 
+void scene_warn(const char *command, const problem *scene)
+{
+  char kink[KINK_SIZE];
+  if (dvi_scene_kink(scene->scene, kink, sizeof kink) >= 0) complain("%s: %s", command, kink);
+}
+
 static void tell_operations(const char *of, int operations, long points)
 {
   if (operations < 0)
@@ -217,6 +225,7 @@ void scene_tell(const problem *scene)
   tell_operations(", Hessian", facts.hessian_operations, facts.hessian_points);
   if (facts.hessian_operations >= 0) (void)printf(", %ld entr%s", facts.hessian_entries, facts.hessian_entries == 1 ? "y" : "ies");
   (void)printf("\n");
-  char kept[512];
+  char kept[KINK_SIZE];
+  if (dvi_scene_kink(scene->scene, kept, sizeof kept) >= 0) (void)printf("kink: %s\n", kept);
   if (dvi_scene_invariance(scene->scene, kept, sizeof kept) > 0) (void)printf("invariant under %s\n", kept);
 }

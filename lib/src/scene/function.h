@@ -104,6 +104,13 @@ typedef struct dvi__fault {
 void dvi__function_blame(dvi__function *function, const dvi__source *source, int count, const double *const *x, int k,
                          int of_series, char *text, size_t size, dvi__fault *fault);
 
+/* A part of the source on one line, cut if it is long; "" if it is nowhere. text [DVI__PART_SIZE] */
+enum { DVI__PART_SIZE = 64 };
+void dvi__copy_part(const dvi__source *source, dvi__span span, char *text);
+
+/* Mark, 1, which of the first `count` nodes of a kernel depend on a variable. */
+void dvi__mark_moving(const dvi__kernel *kernel, int count, char *moves);
+
 void dvi__function_count(dvi__function *function, dvi__function_counters *counters);
 
 /* What kernels have in common, for whoever looks for structure. */

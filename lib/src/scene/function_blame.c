@@ -78,8 +78,7 @@ static int has_series(const dvi__graph_node *node, double a, double b)
   }
 }
 
-/* Mark the nodes that depend on a variable. */
-static void mark_moving(const dvi__kernel *kernel, int count, char *moves)
+void dvi__mark_moving(const dvi__kernel *kernel, int count, char *moves)
 {
   for (int n = 0; n < count; n++) {
     const dvi__graph_node *node = &kernel->graph->node[n];
@@ -121,7 +120,7 @@ static dvi__node first_without_series(const dvi__kernel *kernel, const double *i
   }
   const int made = part != NULL && moves != NULL && operand != NULL && value != NULL;
   if (made && dvi__evaluate(graph, input, 2 * count, operand, value, &unused) == DVI_OK) {
-    mark_moving(kernel, count, moves);
+    dvi__mark_moving(kernel, count, moves);
     found = first_to_stop(graph, count, value, moves, part);
   }
   dvi__heap_free(part);
@@ -154,20 +153,17 @@ static void search_kernel(const dvi__function *function, int k, int count, const
 
 /* --- The words. --- */
 
-enum { PART_SIZE = 64 };
-
-/* A part of the source on one line, cut if it is long; "" if it is nowhere. */
-static void copy_part(const dvi__source *source, dvi__span span, char *text)
+void dvi__copy_part(const dvi__source *source, dvi__span span, char *text)
 {
   int length = 0;
   text[0] = '\0';
   if (span.first >= source->size || span.size > source->size - span.first) return;
-  for (size_t i = 0; i < span.size && length < PART_SIZE - 4; i++) {
+  for (size_t i = 0; i < span.size && length < DVI__PART_SIZE - 4; i++) {
     const char letter = source->text[span.first + i];
     const int blank = letter == ' ' || letter == '\n' || letter == '\r' || letter == '\t';
     if (!blank) text[length++] = letter;
     if (blank && length > 0 && text[length - 1] != ' ') text[length++] = ' ';
-    if (length == PART_SIZE - 4 && i + 1 < span.size) {
+    if (length == DVI__PART_SIZE - 4 && i + 1 < span.size) {
       memcpy(text + length, "..", 2);
       length += 2;
     }
@@ -204,14 +200,14 @@ static void describe(const culprit *found, const dvi__source *source, char *text
   const dvi__graph *graph = found->kernel->graph;
   const dvi__graph_node *node = &graph->node[found->node];
   const dvi__node operand = operand_of(node);
-  char part[PART_SIZE], operand_part[PART_SIZE] = "";
+  char part[DVI__PART_SIZE], operand_part[DVI__PART_SIZE] = "";
   double value = 0.0;
   dvi__node unused = -1;
-  copy_part(source, node->span, part);
+  dvi__copy_part(source, node->span, part);
   *fault = (dvi__fault){.span = node->span};
   list_variables(found, operand, fault);
   if (operand >= 0 && graph->node[operand].span.first + graph->node[operand].span.size != node->span.first + node->span.size)
-    copy_part(source, graph->node[operand].span, operand_part);
+    dvi__copy_part(source, graph->node[operand].span, operand_part);
   if (operand < 0) (void)dvi__evaluate(graph, found->input, 1, &found->node, &value, &unused);
   if (operand >= 0) (void)dvi__evaluate(graph, found->input, 1, &operand, &value, &unused);
   const char *prefix = found->of == DERIVATIVE ? "the derivative of " : "";
