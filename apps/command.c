@@ -34,14 +34,16 @@ int usage_error(const char *format, ...)
   return USAGE;
 }
 
-/* Whether a callback's failure is what a sentence tells of, and not one that a method has got over before. */
+/* Whether a callback's failure is what a sentence tells of, and not one that a method has got
+ * over before. */
 static bool is_of_callback(dvi_status status, const char *sentence)
 {
   return status == DVI_CALLBACK_RETRY || status == DVI_CALLBACK_FAILED ||
          (status == DVI_REFERENCE_FAILED && strstr(sentence, " callback ") != NULL);
 }
 
-/* The library's sentence without its last words, of what a callback returned: the scene has told why. */
+/* The library's sentence without its last words, of what a callback returned: the scene has told
+ * why. */
 static void without_callback(char *sentence)
 {
   static const char without[] = " has no value there";

@@ -185,8 +185,8 @@ static quad second_difference_of(const expression *e, int i, int j, quad h)
   return sum / (4 * h * h);
 }
 
-/* Of the second order, from values: with a longer step, for the difference is divided by its square; extrapolated, for the
- * step is long for functions of large derivatives. */
+/* Of the second order, from values: with a longer step, for the difference is divided by its
+ * square; extrapolated, for the step is long for functions of large derivatives. */
 static quad second_difference(const expression *e, int i, int j)
 {
   const quad h = (quad)1e-9;

@@ -69,7 +69,8 @@ START_TEST(every_operation_does_what_the_graph_says)
 }
 END_TEST
 
-/* On both sides of a jump, and at it; what is off may be no number, and a condition that is none makes none. */
+/* On both sides of a jump, and at it; what is off may be no number, and a condition that is none
+ * makes none. */
 START_TEST(conditions_take_a_side_in_every_lane)
 {
   dvi__graph graph = {0};

@@ -1,4 +1,5 @@
-/* max, min, sign, floor and if(..) in scenes: values, derivatives of one side, what is off, and the kinks that lower orders. */
+/* max, min, sign, floor and if(..) in scenes: values, derivatives of one side, what is off, and
+ * the kinks that lower orders. */
 #include <dvi/dvi.h>
 #include <dvi/scene.h>
 #include <math.h>
@@ -91,7 +92,8 @@ START_TEST(values_and_derivatives_are_those_of_the_side)
 }
 END_TEST
 
-/* docs/scenes.md: of equal arguments max and min take the last, a condition with < or > is false, and abs and sign have the slope 0. */
+/* docs/scenes.md: of equal arguments max and min take the last, a condition with < or > is
+ * false, and abs and sign have the slope 0. */
 START_TEST(at_a_kink_the_derivative_is_that_of_the_side_that_is_documented)
 {
   check("max(x, 0)", 0, 0, 0, 0, 0, 0);
@@ -105,7 +107,8 @@ START_TEST(at_a_kink_the_derivative_is_that_of_the_side_that_is_documented)
 }
 END_TEST
 
-/* The root of a negative number, a division by zero: neither value nor derivatives see what is off. */
+/* The root of a negative number, a division by zero: neither value nor derivatives see what is
+ * off. */
 START_TEST(what_is_off_need_not_exist)
 {
   check("if(x > 0, sqrt(x), y)", -1, 2, 2, 0, 1, 0);
@@ -160,8 +163,8 @@ START_TEST(what_is_no_condition_is_told)
 }
 END_TEST
 
-/* What order is left: of the first derivative that jumps; 1 more where time alone decides; -1 where nothing jumps. Orders that are
- * measured are in tests/method/test_kinks.c. */
+/* What order is left: of the first derivative that jumps; 1 more where time alone decides; -1
+ * where nothing jumps. Orders that are measured are in tests/method/test_kinks.c. */
 START_TEST(kinks_are_found_with_the_order_that_they_leave)
 {
   static const struct {

@@ -128,19 +128,20 @@ void dvi_scene_facts_of(const dvi_scene *scene, dvi_scene_facts *facts);
  *  @return how many; -1 for scenes with rotations, motions, directions or angles, for more than 2e6 parts of all elements, without memory, and for NULL */
 int dvi_scene_invariance(const dvi_scene *scene, char *text, size_t size);
 
-/** Where the Lagrangian (or the Hamiltonian) is not smooth: max, min, abs, sign, floor and if(..) that the state decides. Where
- *  the motion crosses such a place no method is of higher order than the lowest derivative that jumps there, one more if time alone
- *  decides. Looked for along some lines
+/** Where the Lagrangian (or the Hamiltonian) is not smooth: max, min, abs, sign, floor and if(..) that
+ *  the state decides. Where the motion crosses such a place no method is of higher order than the
+ *  lowest derivative that jumps there, one more if time alone decides. Looked for along some lines
  *  from the start, at most 64 places; compares Taylor series on both sides. Allocates.
  *
- *  @param[out] text  [size] a sentence on the worst place, with file, line and column; "" if none was found
- *  @return the order that it leaves, 0 (the function itself jumps) to 5; -1 if none was found, and for NULL */
+ *  @param[out] text  [size] a sentence on the worst place, with file, line and column; "" without one
+ *  @return the order that it leaves, 0 (the function itself jumps) to 5; -1 if none was found, or NULL */
 int dvi_scene_kink(const dvi_scene *scene, char *text, size_t size);
 
-/** The part of an expression that was not finite, or had no Taylor series, when a callback of a scene's system last failed on
- *  this thread, with the time and the coordinates that it depends on; or the limit that its derivatives passed; "" if none failed
- *  since a scene was last read. A method may have got over it since: it is the cause of an error only if that has the status
- *  DVI_CALLBACK_RETRY or DVI_CALLBACK_FAILED. */
+/** The part of an expression that was not finite, or had no Taylor series, when a callback of a
+ *  scene's system last failed on this thread, with the time and the coordinates that it depends on; or
+ *  the limit that its derivatives passed; "" if none failed since a scene was last read. A method may
+ *  have got over it since: it is the cause of an error only if that has the status DVI_CALLBACK_RETRY
+ *  or DVI_CALLBACK_FAILED. */
 const char *dvi_scene_blame(void);
 
 /** A sentence about a section of the scene, in the form of its own errors: file, line and column in front, the line and a caret below.

@@ -42,7 +42,8 @@ bool dvi__complain(dvi__complaint *complaint, dvi_status status, dvi__span where
 /* The same for memory that was refused: DVI_BAD_SIZE if it was too much, else DVI_NO_MEMORY. Returns false. */
 bool dvi__complain_of_memory(dvi__complaint *complaint);
 
-/* The same for a file that is no scene: what it is instead, if that is known, and what a scene is. Returns false. */
+/* The same for a file that is no scene: what it is instead, if that is known, and what a scene
+ * is. Returns false. */
 bool dvi__complain_of_file(dvi__complaint *complaint, dvi__span where, const char *is);
 
 /* The line and the column of a place, from 1; columns count characters of UTF-8. */

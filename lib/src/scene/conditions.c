@@ -1,5 +1,5 @@
-/* if(condition, a, b). A condition is a node that is 1 or 0. One that is known when the scene is read takes its side at once, so that
- * the other one need not make sense: if(n > 1, x[2], 0). */
+/* if(condition, a, b). A condition is a node that is 1 or 0. One that is known when the scene is
+ * read takes its side at once, so that the other one need not make sense: if(n > 1, x[2], 0). */
 #include <string.h>
 
 #include "scene/elaborate.h"

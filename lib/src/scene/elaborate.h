@@ -17,7 +17,8 @@ dvi__value dvi__if_value(dvi__context *c, const dvi__expression *e);
 
 /* The part R or x of a motion; NULL if x is none, or has no such part. */
 const dvi__coordinate *dvi__part_of_motion(const dvi__coordinate *x, const char *name);
-/* The coordinate that x, x[i], u[i,j], B.R or B[i].x names, and its indices; NULL, and nothing is told, if it is of another form. */
+/* The coordinate that x, x[i], u[i,j], B.R or B[i].x names, and its indices; NULL, and nothing
+ * is told, if it is of another form. */
 const dvi__coordinate *dvi__member_named(const dvi_scene *scene, const dvi__expression *e, dvi__subscripts *index);
 /* The indices of x[i] or u[i,j]; false if these are more. */
 bool dvi__subscripts_of(const dvi__expression *e, dvi__subscripts *index);

@@ -88,8 +88,8 @@ void dvi__mark_moving(const dvi__kernel *kernel, int count, char *moves)
   }
 }
 
-/* The first of the operations that the root is made of at this point and that moves without a series; -1: there is none.
- * value [2 count]: of their operands. */
+/* The first of the operations that the root is made of at this point and that moves without a
+ * series; -1: there is none. value [2 count]: of their operands. */
 static dvi__node first_to_stop(const dvi__graph *graph, int count, const double *value, const char *moves, char *part)
 {
   dvi__node found = -1;

@@ -1,13 +1,16 @@
 /* Expressions as a directed graph in which equal parts are one node.
  *
- * A node's operands have smaller numbers than itself, so a loop over numbers visits operands first. Nodes are made only if there is no equal one, after
- * simplifications that keep values up to rounding: constants folded, x+0, x*1, x*0, x-x, -(-x), x^0, x^1; powers of one base joined where the domain
- * is the same, so that 1/norm^3 is one power of the sum of squares; equal terms of a sum or difference joined, 3*x - x; constant factors gathered
- * at one factor of a product, and signs taken out of it; x/c = x*(1/c) for powers of two. Commutative operands are ordered by number; sums of
- * different terms are not reassociated.
+ * A node's operands have smaller numbers than itself, so a loop over numbers visits operands
+ * first. Nodes are made only if there is no equal one, after simplifications that keep values up
+ * to rounding: constants folded, x+0, x*1, x*0, x-x, -(-x), x^0, x^1; powers of one base joined
+ * where the domain is the same, so that 1/norm^3 is one power of the sum of squares; equal terms
+ * of a sum or difference joined, 3*x - x; constant factors gathered at one factor of a product,
+ * and signs taken out of it; x/c = x*(1/c) for powers of two. Commutative operands are ordered
+ * by number; sums of different terms are not reassociated.
  *
- * A condition is a number, 1 or 0, and never negative. What it guards with WHERE stands in front of products, powers and
- * equal guards, so that derivatives are guarded, too: if(x > 0, sqrt(x), 0) has the derivative 0 at x < 0, and not 0 * NaN. */
+ * A condition is a number, 1 or 0, and never negative. What it guards with WHERE stands in front
+ * of products, powers and equal guards, so that derivatives are guarded, too: if(x > 0, sqrt(x),
+ * 0) has the derivative 0 at x < 0, and not 0 * NaN. */
 #ifndef DVI_SCENE_GRAPH_H
 #define DVI_SCENE_GRAPH_H
 #include "scene/arena.h"

@@ -140,8 +140,8 @@ static bool is_guarded(const dvi__graph *graph, dvi__node n)
   return graph->failed == DVI_OK && graph->node[n].op == DVI__OP_WHERE;
 }
 
-/* The sum of two shares in the derivative by a node. Where no condition takes the node its slopes need not exist: what all
- * shares are guarded by guards their sum. */
+/* The sum of two shares in the derivative by a node. Where no condition takes the node its
+ * slopes need not exist: what all shares are guarded by guards their sum. */
 static dvi__node add_shares(dvi__graph *graph, dvi__node to, dvi__node a, dvi__node b)
 {
   const dvi__node sum = dvi__add(graph, a, b);

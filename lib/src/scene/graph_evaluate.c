@@ -84,7 +84,8 @@ static double value_of(const dvi__graph_node *node, const double *x, const doubl
   return dvi__operate(node->op, node->value, operands > 0 ? at[node->a] : 0, operands > 1 ? at[node->b] : 0);
 }
 
-/* The first node that is not finite and that a root is made of there: what a condition turns off is not. `part` is used up. */
+/* The first node that is not finite and that a root is made of there: what a condition turns off
+ * is not. `part` is used up. */
 static dvi__node first_not_finite(const dvi__graph *graph, int size, const double *at, int root_count, const dvi__node *root,
                                   char *part)
 {

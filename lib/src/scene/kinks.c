@@ -1,8 +1,10 @@
-/* Kinks: where an expression is put together of two sides, as max(x, 0) is, and which of its derivatives jumps there.
+/* Kinks: where an expression is put together of two sides, as max(x, 0) is, and which of its
+ * derivatives jumps there.
  *
- * The place is looked for along lines from the start on, by the sign of what decides. There the Taylor series of the whole kernel
- * along the line are compared, those from just before and from just behind: whatever the sides are made of, their first
- * coefficient that differs is that of the derivative that jumps. */
+ * The place is looked for along lines from the start on, by the sign of what decides. There the
+ * Taylor series of the whole kernel along the line are compared, those from just before and from
+ * just behind: whatever the sides are made of, their first coefficient that differs is that of
+ * the derivative that jumps. */
 #include <dvi/taylor.h>
 #include <math.h>
 #include <stdint.h>
@@ -18,7 +20,8 @@
 static const double WORK_MAX = 3e7;
 enum { LINES = 4, DECIDERS_MAX = 64, MARKS = 60, HALVINGS = 60, DEGREE = 8, JUMPS = 4, SMOOTH = JUMPS + 1 };
 
-/* Half the distance of the two points; and what is too small to be no rounding, of numbers and of the place. */
+/* Half the distance of the two points; and what is too small to be no rounding, of numbers and
+ * of the place. */
 static const double apart = 1e-3, alike = 1e-8, rounding = 1e-13, displaced = 1e-14;
 
 /* A kernel at one of its elements, along a line: input i is base[i] + s direction[i]. */
@@ -129,8 +132,9 @@ static double series_at(const line *l, const dvi__program *program, int count, c
   return size;
 }
 
-/* The first derivative that jumps at s, from 0 on; SMOOTH: none that is looked at. What series leave out shrinks with the distance,
- * and a jump does not; roundings are those of the terms, and of s. */
+/* The first derivative that jumps at s, from 0 on; SMOOTH: none that is looked at. What series
+ * leave out shrinks with the distance, and a jump does not; roundings are those of the terms,
+ * and of s. */
 static int first_jump(const line *l, const dvi__program *program, int count, const int *number, double *rows, double s)
 {
   double before[2][DEGREE + 1], behind[2][DEGREE + 1], noise = 0;
@@ -164,8 +168,9 @@ static int try_lines(const dvi_scene *scene, line *l, const dvi__program *progra
   return least;
 }
 
-/* Of all that decides, what makes the lowest derivative jump. What time alone decides has no force by itself: forces are as smooth
- * there as what they are derivatives of, and `order`, which methods keep, is one more than the derivative that jumps. */
+/* Of all that decides, what makes the lowest derivative jump. What time alone decides has no
+ * force by itself: forces are as smooth there as what they are derivatives of, and `order`,
+ * which methods keep, is one more than the derivative that jumps. */
 typedef struct found {
   int jump, order, tried;
   double work;
@@ -229,23 +234,27 @@ static void try_kernel(const dvi_scene *scene, const dvi__kernel *kernel, found 
 
 static void say(const dvi_scene *scene, const found *worst, char *text, size_t size)
 {
-  static const char *const ordinal[] = {"", "first derivative of the ", "second derivative of the ", "third derivative of the ",
-                                        "fourth derivative of the "};
+  static const char *const ordinal[] = {"", "first", "second", "third", "fourth"};
   const dvi__span span = worst->kernel->graph->node[worst->node].span;
   const char *what = scene->terms.hamiltonian != NULL ? "Hamiltonian" : "Lagrangian";
-  char part[DVI__PART_SIZE];
+  char part[DVI__PART_SIZE], place[DVI__PART_SIZE];
   int row = 0, column = 0;
   dvi__source_place(&scene->source, span.first, &row, &column);
   dvi__copy_part(&scene->source, span, part);
+  (void)snprintf(place, sizeof place, ":%d:%d: ", row, column);
+  const int used = snprintf(text, size, "%s%s%s", scene->source.name, place, part);
+  if (used < 0 || (size_t)used >= size) return;
+  text += used;
+  size -= (size_t)used;
   if (worst->order == 0)
-    (void)snprintf(
-        text, size,
-        "%s:%d:%d: %s: the %s itself jumps here, which methods do not see: where the motion crosses it they have no order",
-        scene->source.name, row, column, part, what);
-  else
-    (void)snprintf(text, size, "%s:%d:%d: %s: the %s%s%s jumps here: where the motion crosses it orders above %d are lost",
-                   scene->source.name, row, column, part, ordinal[worst->jump], what, worst->jump == 0 ? " itself" : "",
+    (void)snprintf(text, size,
+                   ": the %s itself jumps here, which methods do not see: where the motion crosses it they have no order", what);
+  else if (worst->jump == 0)
+    (void)snprintf(text, size, ": the %s itself jumps here: where the motion crosses it orders above %d are lost", what,
                    worst->order);
+  else
+    (void)snprintf(text, size, ": the %s derivative of the %s jumps here: where the motion crosses it orders above %d are lost",
+                   ordinal[worst->jump], what, worst->order);
 }
 
 int dvi_scene_kink(const dvi_scene *scene, char *text, size_t size)

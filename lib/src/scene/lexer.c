@@ -107,7 +107,7 @@ static bool refuse(const text *t, size_t k, dvi__complaint *complaint)
                {':', "; a range is a..b"},
                {';', "; elements of a list are separated by commas, rows are lists: [[a, b], [c, d]]"},
                {'"', "; quotes stand around the whole expression, and the rate of x is x'"},
-               {'%', "; there is no remainder"},
+               {'%', "; a remainder is x - n*floor(x/n)"},
                {'{', "; write parentheses"},
                {'}', "; write parentheses"},
                {'\\', "; write sin(x), without a backslash"},

@@ -57,7 +57,8 @@ static int is_constant(int degree, const double *a)
   return constant;
 }
 
-/* The value of a function that is constant between its jumps: at a jump through which the argument moves there is no series. */
+/* The value of a function that is constant between its jumps: at a jump through which the
+ * argument moves there is no series. */
 static void step(int degree, double value, int jumps, const double *a, double *to)
 {
   fill(degree, jumps && !is_constant(degree, a) ? (double)NAN : value, to);

@@ -320,7 +320,8 @@ static bool refuse_slips(dvi_scene *scene)
   return true;
 }
 
-/* What is no mapping, or a mapping of several keys of which none is known, was meant for something else. */
+/* What is no mapping, or a mapping of several keys of which none is known, was meant for
+ * something else. */
 static bool is_scene(dvi_scene *scene, const char *const *known)
 {
   const dvi__tree *tree = scene->tree;

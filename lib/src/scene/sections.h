@@ -64,7 +64,8 @@ bool dvi__labels_differ(dvi_scene *scene);
 
 /* ---- coordinates as keys ---- */
 
-/* x, x[3] or x[i], u[i,3], of a motion B.R or B.x; and of these the numbers, the velocities x', omega(R) or rate(u), or the momenta p(x). */
+/* x, x[3] or x[i], u[i,3], of a motion B.R or B.x; and of these the numbers, the velocities x',
+ * omega(R) or rate(u), or the momenta p(x). */
 typedef struct dvi__target {
   const dvi__coordinate *x;
   unsigned says;            /* DVI__SAYS_Q, _V or _P */

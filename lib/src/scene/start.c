@@ -15,8 +15,8 @@ typedef struct given {
   int velocities, momenta;
 } given;
 
-/* A mark is 1 for a number that was given by a formula or a list, and 1 more for every index that was a number: what says more
- * of a member comes before what says less. */
+/* A mark is 1 for a number that was given by a formula or a list, and 1 more for every index
+ * that was a number: what says more of a member comes before what says less. */
 static bool put(dvi_scene *scene, const dvi__target *target, int number, double value, double *to, char *mark)
 {
   const char how = (char)(1 + target->fixed);

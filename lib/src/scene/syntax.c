@@ -5,14 +5,15 @@
  *     signed   = { + | - } power
  *     power    = postfix [ ^ signed ]
  *     postfix  = atom { ' | [ sum_of {, sum_of} ] | . name }
- *     atom     = number | name | name ( sum_of {, sum_of} ) | sum ( range , sum_of ) | if ( any_of , sum_of , sum_of )
- *              | ( any_of ) | [ sum_of {, sum_of} ]
+ *     atom     = number | name | name ( sum_of {, sum_of} ) | sum ( range , sum_of )
+ *              | if ( any_of , sum_of , sum_of ) | ( any_of ) | [ sum_of {, sum_of} ]
  *     range    = name [< name] [= sum_of .. sum_of]
  *     any_of   = all_of { or all_of }
  *     all_of   = denial { and denial }
  *     denial   = not denial | sum_of { (<|<=|>|>=|==|!=) sum_of }
  *
- * A number may stand wherever a condition may, and the other way round within parentheses: elaboration tells them apart.
+ * A number may stand wherever a condition may, and the other way round within parentheses:
+ * elaboration tells them apart.
  *
  * Chains of + and *, however long, are loops; what nests is counted, so that neither this nor what reads the tree can be driven
  * deep. */
