@@ -117,12 +117,18 @@ static void shifted(const quad *x, int i, quad step, quad *result)
   for (int r = 0; r < HESSIAN; r++) result[r] = value[root[r]];
 }
 
-static void differences(const quad *x, int i, quad step, quad *result)
+/* Returns whether something jumps on the way: then these differences are none of derivatives. */
+static int differences(const quad *x, int i, quad step, quad *result)
 {
+  static quad above[NODES_MAX];
   quad below[HESSIAN];
+  int jumps = 0;
   shifted(x, i, step, result);
+  memcpy(above, value, (size_t)graph.count * sizeof *above);
   shifted(x, i, -step, below);
+  for (int n = 0; n < graph.count; n++) jumps |= dvi__is_step(graph.node[n].op) && (above[n] < value[n] || above[n] > value[n]);
   for (int r = 0; r < HESSIAN; r++) result[r] = (result[r] - below[r]) / (2 * step);
+  return jumps;
 }
 
 static void judge(const quad *x, verdict *v)
@@ -138,10 +144,11 @@ static void judge(const quad *x, verdict *v)
   }
   for (int i = 0; i < INPUTS; i++) {
     quad longer[HESSIAN];
-    differences(x, i, step, v->difference[i]);
-    differences(x, i, 3 * step, longer);
+    (void)differences(x, i, step, v->difference[i]);
+    const int jumps = differences(x, i, 3 * step, longer);
     for (int r = 0; r < HESSIAN; r++)
-      v->doubt[i][r] = 10 * fabsq(longer[r] - v->difference[i][r]) + 10 * v->finer[r] / step + v->error[r] * step;
+      v->doubt[i][r] = jumps ? HUGE_VALQ
+                             : 10 * fabsq(longer[r] - v->difference[i][r]) + 10 * v->finer[r] / step + v->error[r] * step;
   }
 }
 

@@ -249,7 +249,8 @@ START_TEST(what_no_system_can_be_made_of_has_its_place)
   (void)snprintf(text, sizeof text, "%sone_form: {x: y, z: x}\nhamiltonian: x\ninitial: {x: 1, y: 1, z: 1}\nstep: 1\nuntil: 1\n",
                  three);
   refused_as(text, DVI_BAD_SIZE, ":2:11:", "even");
-  refused_as(X "lagrangian: x'^2*log(x)\ninitial: {x: 0}\nstep: 1\nuntil: 1\n", DVI_CALLBACK_RETRY, ":3:10:", "at the start");
+  refused_as(X "lagrangian: x'^2*log(x)\ninitial: {x: 0}\nstep: 1\nuntil: 1\n", DVI_CALLBACK_RETRY,
+             ":2:18:", "at the start: log(x), x = 0 is not finite");
   refused_as("coordinates: {R: rotation}\nlagrangian: R[1,1]'^2\nstep: 1\nuntil: 1\ninitial: {R: \"turn([1, 0, 0], 1)\"}\n",
              DVI_SINGULAR, ":2:13:", "the Lagrangian is degenerate");
 }

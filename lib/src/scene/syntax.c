@@ -103,9 +103,15 @@ static bool is_word(const parser *p, const char *word)
          strncmp(p->source->text + p->token.span.first, word, p->token.span.size) == 0;
 }
 
+/* Words of conditions are no operands. */
+static bool joins_conditions(const parser *p)
+{
+  return is_word(p, "and") || is_word(p, "or") || is_word(p, "not");
+}
+
 static bool begins_operand(const parser *p)
 {
-  if (is_word(p, "and") || is_word(p, "or")) return false;
+  if (joins_conditions(p)) return false;
   return p->token.kind == DVI__TOKEN_NUMBER || p->token.kind == DVI__TOKEN_NAME || p->token.kind == '(';
 }
 
@@ -232,6 +238,7 @@ static bool choice(parser *p, size_t first, dvi__span open, node **result)
   for (int k = 0; k < 3; k++) {
     node *part = NULL;
     if (!(k == 0 ? any_of(p, &part) : sum_of(p, &part)) || !add(p, &parts, part)) return false;
+    if (p->token.kind == '=') return dvi__complain(p->complaint, DVI_BAD_FILE, p->token.span, "equality is written ==");
     if (!expect(p, k < 2 ? ',' : ')', k < 2 ? "','" : "')'", open)) return false;
   }
   return make(p, DVI__FORM_IF, first, &parts, result);
@@ -276,7 +283,7 @@ static bool list(parser *p, node **result)
 
 static bool atom(parser *p, node **result)
 {
-  switch (p->token.kind) {
+  switch (joins_conditions(p) ? DVI__TOKEN_END : p->token.kind) {
   case DVI__TOKEN_NUMBER: return number(p, result);
   case DVI__TOKEN_NAME: return named(p, result);
   case '(': return parenthesis(p, result);
@@ -402,7 +409,6 @@ static bool compared(parser *p, node **result)
     if (!next(p) || !sum_of(p, &right) || !make_of(p, DVI__FORM_COMPARE, left, right, &made) || !add(p, &parts, made)) return false;
     made->name = name;
   }
-  if (p->token.kind == '=') return dvi__complain(p->complaint, DVI_BAD_FILE, p->token.span, "equality is written ==");
   return parts.count == 0 || make_row(p, DVI__FORM_AND, &parts, result);
 }
 
