@@ -1,5 +1,6 @@
 /* labels: order */
-/* Families with two indices: their members, names and starts, and a lattice whose motion has the order and the energy of any other. */
+/* Families with two indices: their members, names and starts, and a lattice whose motion has the
+ * order and the energy of any other. */
 #include <dvi/dvi.h>
 #include <dvi/scene.h>
 #include <math.h>

@@ -1,6 +1,6 @@
 /* labels: order */
-/* A kink of which the m-th derivative of the potential is the first that jumps leaves the order m to a method of higher order, as
- * docs/scenes.md says and dvi_scene_kink tells. */
+/* A kink of which the m-th derivative of the potential is the first that jumps leaves the order
+ * m to a method of higher order, as docs/scenes.md says and dvi_scene_kink tells. */
 #include <dvi/dvi.h>
 #include <dvi/scene.h>
 #include <math.h>
@@ -31,7 +31,8 @@ static void follow(const char *potential, int steps, double *end)
   dvi_scene_destroy(&scene);
 }
 
-/* The largest error of some runs with about as many steps: where in a step the kink is differs from run to run. */
+/* The largest error of some runs with about as many steps: where in a step the kink is differs
+ * from run to run. */
 static double largest_error(const char *potential, int steps, const double *exact)
 {
   double largest = 0;
@@ -43,7 +44,8 @@ static double largest_error(const char *potential, int steps, const double *exac
   return largest;
 }
 
-/* Which of so many roundings of phase errors have is seen in single slopes: hence 0.4 of the mean of three. */
+/* Which of so many roundings of phase errors have is seen in single slopes: hence 0.4 of the
+ * mean of three. */
 static void check_order(const char *potential, const double *exact, double order)
 {
   const double first = largest_error(potential, 100, exact), last = largest_error(potential, 100 << (LEVELS - 1), exact);

@@ -80,7 +80,7 @@ static bool note_names(dvi__context *c, const dvi__expression *e)
 static dvi__value choice(dvi__context *c, const dvi__expression *e, dvi__node holds, dvi__value a, dvi__value b)
 {
   char first[48], second[48];
-  if (a.shape.rank != b.shape.rank || a.shape.rows != b.shape.rows || a.shape.columns != b.shape.columns)
+  if (!dvi__same_shape(a.shape, b.shape))
     return dvi__refused(dvi__refuse(c, e->span, "the two sides of if are %s and %s", dvi__shape_text(a.shape, first, sizeof first),
                                     dvi__shape_text(b.shape, second, sizeof second)));
   if (a.shape.rank == 0) return dvi__number_value(dvi__choice(c->graph, holds, a.one, b.one));

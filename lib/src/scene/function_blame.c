@@ -88,44 +88,29 @@ void dvi__mark_moving(const dvi__kernel *kernel, int count, char *moves)
   }
 }
 
-/* The first of the operations that the root is made of at this point and that moves without a
- * series; -1: there is none. value [2 count]: of their operands. */
-static dvi__node first_to_stop(const dvi__graph *graph, int count, const double *value, const char *moves, char *part)
-{
-  dvi__node found = -1;
-  memset(part, 0, (size_t)count);
-  part[count - 1] = 1;
-  for (int n = count - 1; n >= 0; n--) {
-    const dvi__graph_node *node = &graph->node[n];
-    const int operands = part[n] ? dvi__operands(node->op) : 0, off = node->op == DVI__OP_WHERE && value[2 * n] <= 0;
-    if (operands > 0) part[node->a] = 1;
-    if (operands > 1 && !off) part[node->b] = 1;
-    if (part[n] && moves[n] && !has_series(node, value[2 * n], value[2 * n + 1])) found = n;
-  }
-  return found;
-}
-
-/* The first operation below the root that has no series; -1: all have one. */
+/* The first operation that the root is made of at this point, and that moves without a series; -1:
+ * all have one. */
 static dvi__node first_without_series(const dvi__kernel *kernel, const double *input)
 {
   const dvi__graph *graph = kernel->graph;
   int count = 0;
   char *part = dvi__parts(graph, 1, &kernel->root, &count), *moves = dvi__heap_take((size_t)count + 1, 1);
-  dvi__node *operand = dvi__heap_take(2 * (size_t)count + 1, sizeof *operand), unused = -1, found = -1;
-  double *value = dvi__heap_take(2 * (size_t)count + 1, sizeof *value);
-  for (int n = 0; n < count && operand != NULL; n++) {
-    const int operands = part != NULL && part[n] ? dvi__operands(graph->node[n].op) : 0;
-    operand[2 * n] = operands > 0 ? graph->node[n].a : kernel->root;
-    operand[2 * n + 1] = operands > 1 ? graph->node[n].b : kernel->root;
-  }
-  const int made = part != NULL && moves != NULL && operand != NULL && value != NULL;
-  if (made && dvi__evaluate(graph, input, 2 * count, operand, value, &unused) == DVI_OK) {
+  dvi__node *node = dvi__heap_take((size_t)count + 1, sizeof *node), unused = -1, found = -1;
+  double *value = dvi__heap_take((size_t)count + 1, sizeof *value);
+  const int made = part != NULL && moves != NULL && node != NULL && value != NULL;
+  for (int n = 0; n < count && made; n++) node[n] = part[n] ? n : kernel->root;
+  if (made && dvi__evaluate(graph, input, count, node, value, &unused) == DVI_OK) {
     dvi__mark_moving(kernel, count, moves);
-    found = first_to_stop(graph, count, value, moves, part);
+    dvi__mark_taken(graph, value, 1, &kernel->root, count, part);
+    for (int n = count - 1; n >= 0; n--) {
+      const dvi__graph_node *at = &graph->node[n];
+      const int operands = dvi__operands(at->op);
+      if (part[n] && moves[n] && !has_series(at, operands > 0 ? value[at->a] : 0, operands > 1 ? value[at->b] : 0)) found = n;
+    }
   }
   dvi__heap_free(part);
   dvi__heap_free(moves);
-  dvi__heap_free(operand);
+  dvi__heap_free(node);
   dvi__heap_free(value);
   return found;
 }

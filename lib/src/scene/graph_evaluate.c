@@ -84,22 +84,16 @@ static double value_of(const dvi__graph_node *node, const double *x, const doubl
   return dvi__operate(node->op, node->value, operands > 0 ? at[node->a] : 0, operands > 1 ? at[node->b] : 0);
 }
 
-/* The first node that is not finite and that a root is made of there: what a condition turns off
- * is not. `part` is used up. */
-static dvi__node first_not_finite(const dvi__graph *graph, int size, const double *at, int root_count, const dvi__node *root,
-                                  char *part)
+void dvi__mark_taken(const dvi__graph *graph, const double *at, int root_count, const dvi__node *root, int size, char *part)
 {
-  dvi__node first = -1;
   memset(part, 0, (size_t)size);
   for (int k = 0; k < root_count; k++) part[root[k]] = 1;
   for (int n = size - 1; n >= 0; n--) {
     const dvi__graph_node *node = graph->node + n;
-    const int operands = part[n] ? dvi__operands(node->op) : 0, off = node->op == DVI__OP_WHERE && at[node->a] <= 0;
+    const int operands = part[n] ? dvi__operands(node->op) : 0;
     if (operands > 0) part[node->a] = 1;
-    if (operands > 1 && !off) part[node->b] = 1;
-    if (part[n] && !isfinite(at[n])) first = n;
+    if (operands > 1 && !(node->op == DVI__OP_WHERE && at[node->a] <= 0)) part[node->b] = 1;
   }
-  return first;
 }
 
 dvi_status dvi__evaluate(const dvi__graph *graph, const double *x, int root_count, const dvi__node *root, double *value,
@@ -115,7 +109,12 @@ dvi_status dvi__evaluate(const dvi__graph *graph, const double *x, int root_coun
     at[n] = value_of(graph->node + n, x, at);
     finite &= isfinite(at[n]) != 0;
   }
-  *not_finite = at == NULL || finite ? -1 : first_not_finite(graph, size, at, root_count, root, part);
+  *not_finite = -1;
+  if (at != NULL && !finite) {
+    dvi__mark_taken(graph, at, root_count, root, size, part);
+    for (int n = 0; n < size && *not_finite < 0; n++)
+      if (part[n] && !isfinite(at[n])) *not_finite = n;
+  }
   for (int k = 0; k < root_count && at != NULL; k++) value[k] = at[root[k]];
   const dvi_status status = at == NULL ? DVI_NO_MEMORY : DVI_OK;
   dvi__heap_free(part);

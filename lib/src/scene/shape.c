@@ -38,11 +38,6 @@ static void put(dvi__value *value, int i, dvi__node node)
     value->node[i] = node;
 }
 
-static bool same_shape(dvi__shape a, dvi__shape b)
-{
-  return a.rank == b.rank && a.rows == b.rows && a.columns == b.columns;
-}
-
 /* Refuse two values for an operation: "a vector of 3 plus a number". */
 static dvi__value misfit(const dvi__context *c, dvi__value a, const char *word, dvi__value b, dvi__span span, const char *remedy)
 {
@@ -62,7 +57,7 @@ dvi__value dvi__value_negate(dvi__context *c, dvi__value a)
 
 dvi__value dvi__value_add(dvi__context *c, dvi__op op, dvi__value a, dvi__value b, dvi__span span)
 {
-  if (!same_shape(a.shape, b.shape)) return misfit(c, a, op == DVI__OP_ADD ? "plus" : "minus", b, span, "");
+  if (!dvi__same_shape(a.shape, b.shape)) return misfit(c, a, op == DVI__OP_ADD ? "plus" : "minus", b, span, "");
   dvi__value result = dvi__value_make(c, a.shape.rank, a.shape.rows, a.shape.columns);
   if (result.shape.rank < 0) return result;
   for (int i = 0; i < dvi__value_size(a); i++) put(&result, i, dvi__apply(c->graph, op, dvi__value_at(a, i), dvi__value_at(b, i)));

@@ -133,7 +133,7 @@ static bool right_shape(dvi_scene *scene, const dvi__target *target, dvi__shape 
     return dvi__scene_refuse(scene, target->span, "%s is more than a matrix: give it by a formula, %s[%s], or one by one, %s[%s]",
                              target->x->name, target->x->name, target->x->family > 1 ? "i,j" : "i", target->x->name,
                              target->x->family > 1 ? "1,1" : "1");
-  if (shape.rank == wanted.rank && shape.rows == wanted.rows && shape.columns == wanted.columns) return true;
+  if (dvi__same_shape(shape, wanted)) return true;
   return dvi__scene_refuse(scene, span, "%s for %s, which is %s", dvi__shape_text(shape, here, sizeof here), target->x->name,
                            dvi__shape_text(wanted, there, sizeof there));
 }
