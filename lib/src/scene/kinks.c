@@ -138,6 +138,7 @@ static double series_at(const line *l, const dvi__program *program, int count, c
 static int first_jump(const line *l, const dvi__program *program, int count, const int *number, double *rows, double s)
 {
   double before[2][DEGREE + 1], behind[2][DEGREE + 1], noise = 0;
+  *l->work += 4.0 * DEGREE * DEGREE * program->instruction_count;
   for (int k = 0; k < 2; k++) {
     const double way = apart / (k + 1);
     noise += rounding * series_at(l, program, count, number, rows, s - way, way, before[k]);
