@@ -113,6 +113,14 @@ static void sines_and_cosines(int lanes, int width, const double *restrict angle
   fill_up(lanes, width, cosine);
 }
 
+/* x where a condition holds. Its operands are read before anything is decided: where gcc 12
+ * makes vectors of four for AVX2 of c[k] > 0.0 ? x[k] : .., which reads x[k] for some lanes
+ * alone, it takes the wrong lanes. */
+DVI__SCENE_INLINE double taken(double condition, double x)
+{
+  return condition > 0.0 ? x : condition <= 0.0 ? 0.0 : condition;
+}
+
 /* Operations that are loops over whole blocks: X(name, code, result of lane k). */
 #define LOOPS(X)                                                             \
   X(copy, DVI__CODE_COPY, a[k])                                              \
@@ -136,7 +144,7 @@ static void sines_and_cosines(int lanes, int width, const double *restrict angle
   X(sign, DVI__OP_SIGN, a[k] > 0.0 ? 1.0 : a[k] < 0.0 ? -1.0 : a[k])         \
   X(whole, DVI__OP_FLOOR, floor(a[k]))                                       \
   X(positive, DVI__OP_POSITIVE, a[k] > 0.0 ? 1.0 : a[k] <= 0.0 ? 0.0 : a[k]) \
-  X(where, DVI__OP_WHERE, a[k] > 0.0 ? b[k] : a[k] <= 0.0 ? 0.0 : a[k])
+  X(where, DVI__OP_WHERE, taken(a[k], b[k]))
 
 #define LOOP(name, code, expression)                                                                              \
   DVI__SCENE_INLINE void name##_rows(int width, double value, const double *restrict a, const double *restrict b, \
