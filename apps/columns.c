@@ -181,12 +181,13 @@ static dvi_status measure(run_columns *c, dvi_integrator *integrator)
 
 bool columns_measure(run_columns *c, dvi_integrator *integrator)
 {
-  if (measure(c, integrator) == DVI_OK) return true;
+  const dvi_status status = measure(c, integrator);
+  if (status == DVI_OK) return true;
   dvi_counters counters;
   dvi_integrator_counters(integrator, &counters);
-  complain("run: no row at t = %.17g: %s%s", dvi_integrator_time(integrator), dvi_last_error(),
-           counters.steps > 0 ? "; try a smaller --h" : "");
-  blame_scene();
+  char before[64];
+  (void)snprintf(before, sizeof before, "run: no row at t = %.17g: ", dvi_integrator_time(integrator));
+  complain_of(status, before, counters.steps > 0 ? "; try a smaller --h" : "");
   return false;
 }
 

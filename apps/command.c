@@ -34,17 +34,40 @@ int usage_error(const char *format, ...)
   return USAGE;
 }
 
-void blame_scene(void)
+/* Whether a callback's failure is what a sentence tells of, and not one that a method has got
+ * over before. */
+static bool is_of_callback(dvi_status status, const char *sentence)
 {
-  const char *part = dvi_scene_blame();
-  if (part[0] != '\0') complain("%s", part);
+  return status == DVI_CALLBACK_RETRY || status == DVI_CALLBACK_FAILED ||
+         (status == DVI_REFERENCE_FAILED && strstr(sentence, " callback ") != NULL);
+}
+
+/* The library's sentence without its last words, of what a callback returned: the scene has told
+ * why. */
+static void without_callback(char *sentence)
+{
+  static const char without[] = " has no value there";
+  const char *last = strstr(sentence, " callback ");
+  char *cut = NULL;
+  for (char *colon = strstr(sentence, ": "); colon != NULL && colon < last; colon = strstr(colon + 1, ": ")) cut = colon;
+  if (cut != NULL) (void)snprintf(cut, SENTENCE_SIZE - (size_t)(cut - sentence), "%s", without);
+}
+
+void complain_of(dvi_status status, const char *before, const char *after)
+{
+  char sentence[SENTENCE_SIZE];
+  const char *said = status == DVI_NO_MEMORY ? "" : dvi_last_error(); /* the command's own shortage left none */
+  (void)snprintf(sentence, sizeof sentence, "%s", said[0] != '\0' ? said : dvi_status_meaning(status));
+  if (dvi_scene_blame()[0] != '\0' && is_of_callback(status, sentence)) {
+    complain("%s", dvi_scene_blame());
+    without_callback(sentence);
+  }
+  complain("%s%s%s", before, sentence, after);
 }
 
 int library_error(dvi_status status)
 {
-  const char *sentence = status == DVI_NO_MEMORY ? "" : dvi_last_error(); /* the command's own shortage left none */
-  complain("%s", sentence[0] != '\0' ? sentence : dvi_status_meaning(status));
-  if (status > DVI_OK || status == DVI_CALLBACK_FAILED || status == DVI_REFERENCE_FAILED) blame_scene();
+  complain_of(status, "", "");
   return status == DVI_BAD_OPTION || status == DVI_UNSUPPORTED ? USAGE : FAILED;
 }
 

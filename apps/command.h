@@ -34,8 +34,9 @@ int usage_error(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /** Complain with the library's last sentence; the exit code that fits the status. */
 int library_error(dvi_status status);
 
-/** If an expression of a scene was not finite, say which one was last: the library's sentence knows only that a callback failed. */
-void blame_scene(void);
+/** Complain with the library's last sentence between two texts. If an expression of a scene is
+ * the cause, its place comes first. */
+void complain_of(dvi_status status, const char *before, const char *after);
 
 /** Flush standard output. False, with a complaint unless the reader has merely gone away, if any of it was lost. */
 bool output_flushed(void);

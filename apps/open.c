@@ -3,6 +3,7 @@
 #include <dvi/scene.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "command.h"
@@ -82,6 +83,19 @@ static bool scene_beside(const char *name, char *hint)
   return true;
 }
 
+/* A name that is none of the catalogue: most often a slip, but it may be that of a file. */
+static int refuse_name(const char *name)
+{
+  char hint[HINT_SIZE];
+  struct stat there;
+  if (stat(name, &there) == 0)
+    return usage_error(
+        "'%s' is a %s, and no scene: that is a YAML file whose name ends in .yaml or .yml; dvi init NAME.yaml writes one", name,
+        S_ISDIR(there.st_mode) ? "folder" : "file of another kind");
+  return usage_error("unknown problem '%s'%s; see dvi list problems", name,
+                     scene_beside(name, hint) ? hint : suggestion(name, problem_at, NULL, hint, sizeof hint));
+}
+
 int open_problem(const char *name, const words *settings, problem **scene)
 {
   char message[MESSAGE_SIZE] = "";
@@ -89,9 +103,7 @@ int open_problem(const char *name, const words *settings, problem **scene)
   *scene = NULL;
   if (scene_is_path(name)) return scene_open(name, settings, scene);
   const int index = problem_find(name);
-  if (index < 0)
-    return usage_error("unknown problem '%s'%s; see dvi list problems", name,
-                       scene_beside(name, hint) ? hint : suggestion(name, problem_at, NULL, hint, sizeof hint));
+  if (index < 0) return refuse_name(name);
   const dvi_status status = problem_create(name, settings->count, settings->word, scene, message, sizeof message);
   if (status == DVI_OK) return DONE;
   if (status != DVI_BAD_OPTION && message[0] == '\0') return library_error(status);

@@ -351,6 +351,7 @@ int order_command(int argc, char **argv)
   if (code == DONE) code = check_step(&r, scene);
   if (code == DONE) code = check_methods(&r, scene);
   if (code == DONE) events_passed("order", scene);
+  if (code == DONE) scene_warn("order", scene);
   if (code == DONE) code = study_all(&r, scene);
   problem_destroy(&scene);
   return code;

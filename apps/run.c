@@ -173,6 +173,7 @@ static int run_problem(run_request *request, const char *name)
   signals_end(true, ended_before);
   int code = open_problem(name, &request->settings, &scene);
   if (code != DONE) return code;
+  scene_warn("run", scene);
   code = open_wish("run", scene, &request->method);
   if (code == DONE) code = place_momenta(request, scene);
   if (code == DONE) code = check_events(request, scene);

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "command.h"
 #include "entry.h"
@@ -17,6 +18,8 @@ enum { MESSAGE_SIZE = 2048 };
 
 /* Characters of a scene, as docs/scenes.md has it. */
 enum { TEXT_MAX = 1 << 20 };
+
+enum { KINK_SIZE = 512 };
 
 /* Steps of an order study that begins where the scene's own step is. */
 enum { STUDY_STEPS = 200 };
@@ -127,10 +130,24 @@ static int read_as(const char *path, dvi_status status, const char *message, dvi
   return *scene != NULL ? DONE : FAILED;
 }
 
+/* A folder can be opened, and not read. */
+static bool is_folder(const char *path)
+{
+  struct stat there;
+  return stat(path, &there) == 0 && S_ISDIR(there.st_mode);
+}
+
+static int refuse_folder(const char *path)
+{
+  return usage_error("'%s' is a folder, and no scene: that is a file; dvi init NAME.yaml writes one", path);
+}
+
 int scene_open(const char *path, const words *settings, problem **scene)
 {
   char message[MESSAGE_SIZE] = "";
   dvi_scene *read = NULL;
+  *scene = NULL;
+  if (is_folder(path)) return refuse_folder(path);
   const dvi_status status = dvi_scene_read(path, settings->count, settings->word, &read, message, sizeof message);
   return read_as(path, status, message, read, scene);
 }
@@ -147,7 +164,9 @@ int scene_parse(const char *path, const scene_text *text, const words *settings,
 /* One character more than a scene may have: dvi_scene_parse tells of that. */
 int scene_load(const char *path, scene_text *text)
 {
-  *text = (scene_text){.text = malloc(TEXT_MAX + 1)};
+  *text = (scene_text){.text = NULL};
+  if (is_folder(path)) return refuse_folder(path);
+  text->text = malloc(TEXT_MAX + 1);
   if (text->text == NULL) {
     complain("out of memory");
     return FAILED;
@@ -167,6 +186,12 @@ int scene_spared(const char *command, const char *path, int count, const named_f
     if (files[i].path != NULL && strcmp(files[i].path, "-") != 0 && file_same(path, files[i].path))
       return usage_error("%s: --%s %s would write over the scene", command, files[i].option, files[i].path);
   return DONE;
+}
+
+void scene_warn(const char *command, const problem *scene)
+{
+  char kink[KINK_SIZE];
+  if (dvi_scene_kink(scene->scene, kink, sizeof kink) >= 0) complain("%s: %s", command, kink);
 }
 
 static void tell_operations(const char *of, int operations, long points)
@@ -200,6 +225,7 @@ void scene_tell(const problem *scene)
   tell_operations(", Hessian", facts.hessian_operations, facts.hessian_points);
   if (facts.hessian_operations >= 0) (void)printf(", %ld entr%s", facts.hessian_entries, facts.hessian_entries == 1 ? "y" : "ies");
   (void)printf("\n");
-  char kept[512];
+  char kept[KINK_SIZE];
+  if (dvi_scene_kink(scene->scene, kept, sizeof kept) >= 0) (void)printf("kink: %s\n", kept);
   if (dvi_scene_invariance(scene->scene, kept, sizeof kept) > 0) (void)printf("invariant under %s\n", kept);
 }

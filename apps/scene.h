@@ -26,6 +26,9 @@ int scene_parse(const char *path, const scene_text *text, const words *settings,
 /** Refuse to write any of the files over the scene itself. Returns DONE, or complains and returns USAGE. */
 int scene_spared(const char *command, const char *path, int count, const named_file *files);
 
+/** Say on standard error where a scene has a kink, and what order that leaves to any method. */
+void scene_warn(const char *command, const problem *scene);
+
 /** Print what was found in a problem's scene and what has been derived from it by now; nothing for a problem of the catalogue. */
 void scene_tell(const problem *scene);
 #endif

@@ -24,6 +24,17 @@ step: 0.1
 until: 3
 END
 
+cat >pits.yaml <<'END'
+coordinates: {"u[3,2]": scalar}
+lagrangian: >-
+  sum(i, sum(j, u[i,j]'^2/2 - max(u[i,j], 0)^2 - if(u[i,j] < -0.5 and i > 1, u[i,j]^2, 0)
+  - floor(u[i,j])^0*(u[if(i < 3, i + 1, 1),j] - u[i,j])^2))
+initial: {"u[i,j]": sin(3*i + j)}
+method: verlet
+step: 0.1
+until: 3
+END
+
 # All that users turn on. For one instruction set alone, which is compiled sooner.
 compiler=${CC:-cc}
 flags='-std=c11 -O2 -Wall -Wextra -Wconversion -Wpedantic -Werror -DDVI_LANES='
@@ -45,7 +56,7 @@ in_turn='NR == 1 { count = split($0, number) } FNR == 2 { for (i = k = 1; i <= N
 # A program without a sanitizer does not run with a library that has one.
 if command -v "$compiler" >/dev/null && ! grep -q '__[at]san_init\|__ubsan_handle' "$libraries/libdvi.so"; then
   cp "$top"/apps/scenes/*.yaml .
-  for each in drop kepler oscillator driven-pendulum double-pendulum guiding-centre circle-dirac magnetic-pair elastica fpu vortices \
+  for each in drop pits kepler oscillator driven-pendulum double-pendulum guiding-centre circle-dirac magnetic-pair elastica fpu vortices \
     free-body spherical-double-pendulum satellite; do
     compiles $each.yaml
     expect 0 "$each" run $each.yaml --final

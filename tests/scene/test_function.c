@@ -397,7 +397,7 @@ START_TEST(what_is_not_finite_is_blamed)
   static const dvi__source source = {"scene", "log(x - 1)", 10};
   draft own;
   char text[100];
-  dvi__span span;
+  dvi__fault fault;
   double V, V_q;
   reset(&own, 1);
   affine(&own, 0, DVI__COORDINATES, 0, 0);
@@ -412,10 +412,11 @@ START_TEST(what_is_not_finite_is_blamed)
   ck_assert_int_eq(dvi__function_value(function, 1, x, &V), 0);
   ck_assert_int_eq(dvi__function_value(function, 1, bad, &V), 1);
   ck_assert_int_eq(dvi__function_gradient(function, 1, pole, (double *const[DVI__BLOCKS]){NULL, &V_q}), 1);
-  dvi__function_blame(function, &source, 2, x, 1, 0, text, sizeof text, &span);
+  dvi__function_blame(function, &source, 2, x, 1, 0, text, sizeof text, &fault);
   ck_assert_str_eq(text, "log(x - 1), x - 1 = -0.2 is not finite");
-  ck_assert_uint_eq(span.size, 10);
-  dvi__function_blame(function, &source, 2, x, 0, 1, text, sizeof text, &span);
+  ck_assert_uint_eq(fault.span.size, 10);
+  ck_assert(fault.count == 1 && fault.variable[0].block == DVI__COORDINATES && fault.variable[0].number == 0);
+  dvi__function_blame(function, &source, 2, x, 0, 1, text, sizeof text, &fault);
   ck_assert_str_eq(text, "");
   drop(&own, function);
 }

@@ -18,11 +18,12 @@
 #ifdef DVI_HAVE_QUADMATH
 enum { INPUTS = 3, POINTS = 3, JUDGED = 2, NODES_MAX = 6000, LETTERS_MAX = 200, OPEN_MAX = 32 };
 
-static const char *const corpus[] = {"xx*yy*+r1~/", "xyz**e xS+",  "x2-a yC l* zT/",  "xy@ xyh+",
-                                     "xsys+p3",     "x1+l y^ zt*", "xi yo- znN+ zI*", NULL};
-static const char *const tokens[] = {"x", "y", "z", "_", "xs", "xsys+", "1x/", "p0", "p1", "p5", "r", "e", "l", "S", "C",
-                                     "T", "i", "o", "t", "k",  "H",     "n",   "I",  "O",  "N",  "a", "g", "+", "-", "*",
-                                     "/", "^", "@", "h", "d",  "~",     "0",   "1",  "2",  "3",  "8", "9", NULL};
+static const char *const corpus[] = {"xx*yy*+r1~/", "xyz**e xS+",      "x2-a yC l* zT/", "xy@ xyh+",           "xsys+p3",
+                                     "x1+l y^ zt*", "xi yo- znN+ zI*", "x?xr:",          "y?yl: x2-?yr:+ xf*", "xy-dd?:~1x?-:+p3",
+                                     NULL};
+static const char *const tokens[] = {"x", "y", "z", "_", "xs", "xsys+", "1x/", "p0", "p1",   "p5", "r", "e", "l", "S", "C", "T",
+                                     "i", "o", "t", "k", "H",  "n",     "I",   "O",  "N",    "a",  "g", "+", "-", "*", "/", "^",
+                                     "@", "h", "d", "~", "f",  "?",     ":",   "x?", "xy-?", "0",  "1", "2", "3", "8", "9", NULL};
 
 /* At the last point only the end is watched: numbers there are zero, or at the end of their range. */
 static const double point[POINTS][INPUTS] = {{0.7, -1.3, 0.4}, {2.25, 0.31, -0.6}, {0, 1e-200, 1e200}};
@@ -36,7 +37,7 @@ static dvi__node root[ROOTS];
 
 static dvi__op op_of(char letter)
 {
-  static const char letters[] = ".._s.relSCTiotkHnIONag+-*/^@h"; /* in the order of the operations */
+  static const char letters[] = ".._s.relSCTiotkHnIONag+-*/^@hf?:"; /* in the order of the operations */
   const char *found = letter == '.' || letter == '\0' ? NULL : strchr(letters, letter);
   return found == NULL ? DVI__OP_COUNT : (dvi__op)(found - letters);
 }
@@ -100,7 +101,9 @@ static void mark_unusual(void)
     const int usual = (size == 0 && error[n] == 0) || (size > (quad)1e-290 && size < (quad)1e290 && error[n] < (quad)1e-4 * size);
     if (!usual) error[n] = HUGE_VALQ;
     if (operands > 0 && !finiteq(error[node->a])) error[n] = HUGE_VALQ;
-    if (operands > 1 && !finiteq(error[node->b])) error[n] = HUGE_VALQ;
+    const int off = node->op == DVI__OP_WHERE && value[node->a] <= 0; /* then the other operand need not exist */
+    if (operands > 1 && !off && !finiteq(error[node->b])) error[n] = HUGE_VALQ;
+    if (off && finiteq(error[node->a])) error[n] = 0;
   }
 }
 
@@ -114,12 +117,18 @@ static void shifted(const quad *x, int i, quad step, quad *result)
   for (int r = 0; r < HESSIAN; r++) result[r] = value[root[r]];
 }
 
-static void differences(const quad *x, int i, quad step, quad *result)
+/* Returns whether something jumps on the way: then these differences are none of derivatives. */
+static int differences(const quad *x, int i, quad step, quad *result)
 {
+  static quad above[NODES_MAX];
   quad below[HESSIAN];
+  int jumps = 0;
   shifted(x, i, step, result);
+  memcpy(above, value, (size_t)graph.count * sizeof *above);
   shifted(x, i, -step, below);
+  for (int n = 0; n < graph.count; n++) jumps |= dvi__is_step(graph.node[n].op) && (above[n] < value[n] || above[n] > value[n]);
   for (int r = 0; r < HESSIAN; r++) result[r] = (result[r] - below[r]) / (2 * step);
+  return jumps;
 }
 
 static void judge(const quad *x, verdict *v)
@@ -135,10 +144,11 @@ static void judge(const quad *x, verdict *v)
   }
   for (int i = 0; i < INPUTS; i++) {
     quad longer[HESSIAN];
-    differences(x, i, step, v->difference[i]);
-    differences(x, i, 3 * step, longer);
+    (void)differences(x, i, step, v->difference[i]);
+    const int jumps = differences(x, i, 3 * step, longer);
     for (int r = 0; r < HESSIAN; r++)
-      v->doubt[i][r] = 10 * fabsq(longer[r] - v->difference[i][r]) + 10 * v->finer[r] / step + v->error[r] * step;
+      v->doubt[i][r] = jumps ? HUGE_VALQ
+                             : 10 * fabsq(longer[r] - v->difference[i][r]) + 10 * v->finer[r] / step + v->error[r] * step;
   }
 }
 

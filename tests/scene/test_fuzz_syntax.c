@@ -8,15 +8,19 @@
 #include "support/scene_text.h"
 #include "support/suite.h"
 
-static const char *const corpus[] = {
-    "M/2*x'^2 + m/2*dot(bob', bob') - m*g*bob[2]", "sum(i<j = 1..N-1, m[i]*m[j]/norm(q[i] - q[j])) + sum(i, 0.5e-3*x[i]^2)",
-    "[x + l*sin(theta), [-l*cos(theta), A[1,2]]] # comment\n+ B.R'[3]", "-2^-x^(1/2) - atan2(y, .5 + 2.)*(a - (b - c))", NULL};
+static const char *const corpus[] = {"M/2*x'^2 + m/2*dot(bob', bob') - m*g*bob[2]",
+                                     "sum(i<j = 1..N-1, m[i]*m[j]/norm(q[i] - q[j])) + sum(i, 0.5e-3*x[i]^2)",
+                                     "[x + l*sin(theta), [-l*cos(theta), A[1,2]]] # comment\n+ B.R'[3]",
+                                     "-2^-x^(1/2) - atan2(y, .5 + 2.)*(a - (b - c))",
+                                     "if(0 < x <= 1 or not (y != 2 and z >= -1), max(x, y), if(x == 0, 1, sin(x)/x))",
+                                     NULL};
 
 static const char *const tokens[] = {
     "+",    "-",     "*",  "/",  "^",    "(",        ")",           "[",  "]",   ",",        ".",
     "..",   "'",     "<",  "=",  "sum(", "sum(i<j,", "sum(i=1..2,", "x",  "y_1", "1",        "0.5",
     "1e3",  "1e400", "1e", "**", "|",    "# c\n",    "\n",          " ",  "\t",  "\xCE\xB8", "\xE2\x88\x92",
-    "\xC3", ":",     "f(", "x[", "x'",   "(x",       "-(",          "2^", NULL};
+    "\xC3", ":",     "f(", "x[", "x'",   "(x",       "-(",          "2^", "if(", " and ",    " or ",
+    "not ", ">",     "<=", ">=", "==",   "!=",       "if(x<0,",     NULL};
 
 static scene_text scene;
 
@@ -33,17 +37,21 @@ static void check_form(const dvi__expression *e)
   static const struct {
     int least, most;
     bool named;
-  } form[] = {[DVI__FORM_NUMBER] = {0, 0, false},     [DVI__FORM_NAME] = {0, 0, true},      [DVI__FORM_INDEX] = {2, 1 << 20, false},
-              [DVI__FORM_MEMBER] = {1, 1, true},      [DVI__FORM_RATE] = {1, 1, false},     [DVI__FORM_NEGATIVE] = {1, 1, false},
-              [DVI__FORM_ADD] = {2, 2, false},        [DVI__FORM_SUBTRACT] = {2, 2, false}, [DVI__FORM_MULTIPLY] = {2, 2, false},
-              [DVI__FORM_DIVIDE] = {2, 2, false},     [DVI__FORM_POWER] = {2, 2, false},    [DVI__FORM_CALL] = {1, 1 << 20, true},
-              [DVI__FORM_LIST] = {1, 1 << 20, false}, [DVI__FORM_SUM] = {1, 3, true}};
+  } form[] = {
+      [DVI__FORM_NUMBER] = {0, 0, false},     [DVI__FORM_NAME] = {0, 0, true},       [DVI__FORM_INDEX] = {2, 1 << 20, false},
+      [DVI__FORM_MEMBER] = {1, 1, true},      [DVI__FORM_RATE] = {1, 1, false},      [DVI__FORM_NEGATIVE] = {1, 1, false},
+      [DVI__FORM_ADD] = {2, 2, false},        [DVI__FORM_SUBTRACT] = {2, 2, false},  [DVI__FORM_MULTIPLY] = {2, 2, false},
+      [DVI__FORM_DIVIDE] = {2, 2, false},     [DVI__FORM_POWER] = {2, 2, false},     [DVI__FORM_CALL] = {1, 1 << 20, true},
+      [DVI__FORM_LIST] = {1, 1 << 20, false}, [DVI__FORM_SUM] = {1, 3, true},        [DVI__FORM_IF] = {3, 3, false},
+      [DVI__FORM_NOT] = {1, 1, false},        [DVI__FORM_AND] = {2, 1 << 20, false}, [DVI__FORM_OR] = {2, 1 << 20, false},
+      [DVI__FORM_COMPARE] = {2, 2, false}};
   fuzz_requires(e->count >= form[e->form].least);
   fuzz_requires(e->count <= form[e->form].most);
   fuzz_requires(e->form != DVI__FORM_SUM || e->count != 2);
   fuzz_requires(e->form == DVI__FORM_SUM || e->name2 == NULL);
   fuzz_requires(isfinite(e->number));
   if (form[e->form].named) check_name(e->name);
+  if (e->form == DVI__FORM_COMPARE) fuzz_requires(strspn(e->name, "<>=!") == strlen(e->name));
   if (e->name2 != NULL) check_name(e->name2);
 }
 

@@ -62,7 +62,10 @@ static int is_inside(dvi__op op, double number, quad a, quad b)
   case DVI__OP_ATANH: return fabsq(a) < (quad)0.9;
   case DVI__OP_ACOSH: return a > (quad)1.1;
   case DVI__OP_ABS:
+  case DVI__OP_POSITIVE:
+  case DVI__OP_WHERE:
   case DVI__OP_SIGN: return fabsq(a) > (quad)SMALLEST;
+  case DVI__OP_FLOOR: return a - floorq(a) > (quad)SMALLEST && floorq(a) + 1 - a > (quad)SMALLEST;
   case DVI__OP_DIVIDE: return fabsq(b) > (quad)SMALLEST;
   case DVI__OP_ATAN2: return b > (quad)SMALLEST || fabsq(a) > (quad)SMALLEST;
   case DVI__OP_HYPOT: return fabsq(a) > (quad)SMALLEST || fabsq(b) > (quad)SMALLEST;
@@ -169,10 +172,8 @@ static quad difference(const expression *e, int i)
   return (after - value_at(e, x)) / (2 * STEP);
 }
 
-/* Of the second order, from values: with a longer step, for the difference is divided by its square. */
-static quad second_difference(const expression *e, int i, int j)
+static quad second_difference_of(const expression *e, int i, int j, quad h)
 {
-  const quad h = (quad)1e-9;
   quad sum = 0;
   for (int corner = 0; corner < 4; corner++) {
     quad x[INPUTS];
@@ -182,6 +183,14 @@ static quad second_difference(const expression *e, int i, int j)
     sum += (corner == 0 || corner == 3 ? 1 : -1) * value_at(e, x);
   }
   return sum / (4 * h * h);
+}
+
+/* Of the second order, from values: with a longer step, for the difference is divided by its
+ * square; extrapolated, for the step is long for functions of large derivatives. */
+static quad second_difference(const expression *e, int i, int j)
+{
+  const quad h = (quad)1e-9;
+  return (4 * second_difference_of(e, i, j, h / 2) - second_difference_of(e, i, j, h)) / 3;
 }
 
 static double largest(int count, const quad *x)

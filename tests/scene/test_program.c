@@ -69,6 +69,27 @@ START_TEST(every_operation_does_what_the_graph_says)
 }
 END_TEST
 
+/* On both sides of a jump, and at it; what is off may be no number, and a condition that is none
+ * makes none. */
+START_TEST(conditions_take_a_side_in_every_lane)
+{
+  dvi__graph graph = {0};
+  const dvi__node a = dvi__input(&graph, 0), b = dvi__input(&graph, 1), positive = dvi__apply(&graph, DVI__OP_POSITIVE, a, a);
+  check_against_graph(&graph, dvi__apply(&graph, DVI__OP_FLOOR, a, a), -3, 3, 0.0);
+  check_against_graph(&graph, positive, -1, 1, 0.0);
+  check_against_graph(&graph, dvi__choice(&graph, positive, dvi__apply(&graph, DVI__OP_LOG, a, a), b), -1, 1, 0.0);
+  const dvi__node root = dvi__choice(&graph, positive, a, dvi__constant(&graph, 7));
+  dvi__program program = compiled(&graph, root);
+  double row[DVI__LANES] = {(double)NAN, 0.0, -0.0, 2.0, -2.0, 1e-320, -1e-320, HUGE_VAL}, result[DVI__LANES];
+  static const double expected[DVI__LANES] = {0, 7, 7, 2, 7, 1e-320, 7, HUGE_VAL};
+  run(&program, DVI__LANES, (const double *const[INPUTS]){row, row}, result);
+  ck_assert(isnan(result[0]));
+  for (int k = 1; k < DVI__LANES; k++) ck_assert_msg(!(result[k] < expected[k]) && !(result[k] > expected[k]), "lane %d", k);
+  dvi__program_free(&program);
+  dvi__graph_free(&graph);
+}
+END_TEST
+
 START_TEST(constants_may_stand_on_either_side)
 {
   static const dvi__op ops[] = {DVI__OP_ADD, DVI__OP_SUBTRACT, DVI__OP_MULTIPLY, DVI__OP_DIVIDE, DVI__OP_RAISE, DVI__OP_ATAN2};
@@ -278,6 +299,7 @@ int main(void)
 {
   TCase *tests = tcase_create("program");
   tcase_add_test(tests, every_operation_does_what_the_graph_says);
+  tcase_add_test(tests, conditions_take_a_side_in_every_lane);
   tcase_add_test(tests, constants_may_stand_on_either_side);
   tcase_add_test(tests, products_that_are_added_are_rounded_first);
   tcase_add_test(tests, a_sine_and_a_cosine_of_one_angle_are_those_of_the_library);

@@ -3,6 +3,7 @@
 #include <float.h>
 #include <math.h>
 
+#include "scene/graph_make.h"
 #include "scene/program.h"
 #include "support/suite.h"
 
@@ -47,6 +48,9 @@ START_TEST(every_operation_of_one_number_is_known)
     if (op == DVI__OP_POWER) continue;
     compare(&graph, dvi__apply(&graph, op, op == DVI__OP_ACOSH ? y : x, x), curve);
   }
+  compare(&graph, dvi__apply(&graph, DVI__OP_FLOOR, dvi__scale(&graph, 5, y), x), curve);
+  compare(&graph, dvi__apply(&graph, DVI__OP_POSITIVE, x, x), curve);
+  compare(&graph, dvi__apply(&graph, DVI__OP_POSITIVE, dvi__negate(&graph, x), x), curve);
   dvi__graph_free(&graph);
 }
 END_TEST
@@ -60,7 +64,31 @@ START_TEST(every_operation_of_two_numbers_is_known)
     compare(&graph, dvi__apply(&graph, op, x, two), curve);
     compare(&graph, dvi__apply(&graph, op, two, y), curve);
   }
+  const dvi__node yes = dvi__greater(&graph, x, dvi__constant(&graph, -9)),
+                  log = dvi__apply(&graph, DVI__OP_LOG, dvi__negate(&graph, y), y);
+  compare(&graph, dvi__choice(&graph, yes, y, log), curve); /* the series of the logarithm is none */
   dvi__graph_free(&graph);
+}
+END_TEST
+
+/* What jumps, or turns, at 0 has no series there, unless its argument stays. */
+START_TEST(at_a_kink_there_is_a_series_of_what_stays_alone)
+{
+  static const dvi__op ops[] = {DVI__OP_ABS, DVI__OP_SIGN, DVI__OP_FLOOR, DVI__OP_POSITIVE};
+  for (size_t i = 0; i < sizeof ops / sizeof *ops; i++)
+    for (int moves = 0; moves < 2; moves++) {
+      dvi__graph graph = {0};
+      const dvi__node x = dvi__input(&graph, 0), root = dvi__apply(&graph, ops[i], x, x);
+      double memory[2 * ROWS] = {0}, *registers = memory + 2;
+      dvi__program program;
+      ck_assert_int_eq(dvi__program_make(&graph, 1, &x, 1, &root, &program), DVI_OK);
+      registers[-1] = moves;
+      dvi__program_run_series(&program, 1, registers);
+      const double *c = registers + (ptrdiff_t)2 * (program.row_count - 1);
+      ck_assert_int_eq(isfinite(c[0]) && isfinite(c[1]), !moves);
+      dvi__program_free(&program);
+      dvi__graph_free(&graph);
+    }
 }
 END_TEST
 
@@ -100,6 +128,7 @@ int main(void)
   TCase *tests = tcase_create("program series");
   tcase_add_test(tests, every_operation_of_one_number_is_known);
   tcase_add_test(tests, every_operation_of_two_numbers_is_known);
+  tcase_add_test(tests, at_a_kink_there_is_a_series_of_what_stays_alone);
   tcase_add_test(tests, powers_and_operations_in_one_are_known);
   tcase_add_test(tests, polynomials_have_series_at_zero);
   return run_tests("scene/program_series", tests);

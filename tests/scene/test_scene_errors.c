@@ -249,7 +249,8 @@ START_TEST(what_no_system_can_be_made_of_has_its_place)
   (void)snprintf(text, sizeof text, "%sone_form: {x: y, z: x}\nhamiltonian: x\ninitial: {x: 1, y: 1, z: 1}\nstep: 1\nuntil: 1\n",
                  three);
   refused_as(text, DVI_BAD_SIZE, ":2:11:", "even");
-  refused_as(X "lagrangian: x'^2*log(x)\ninitial: {x: 0}\nstep: 1\nuntil: 1\n", DVI_CALLBACK_RETRY, ":3:10:", "at the start");
+  refused_as(X "lagrangian: x'^2*log(x)\ninitial: {x: 0}\nstep: 1\nuntil: 1\n", DVI_CALLBACK_RETRY,
+             ":2:18:", "at the start: log(x), x = 0 is not finite");
   refused_as("coordinates: {R: rotation}\nlagrangian: R[1,1]'^2\nstep: 1\nuntil: 1\ninitial: {R: \"turn([1, 0, 0], 1)\"}\n",
              DVI_SINGULAR, ":2:13:", "the Lagrangian is degenerate");
 }
@@ -309,7 +310,7 @@ START_TEST(what_is_not_finite_is_told_with_its_place)
   double L;
   ck_assert_int_eq(parse(X "lagrangian: x'^2 - log(x - 1)\n" RUN, 0, NULL), DVI_OK);
   ck_assert_int_ne(dvi_system_lagrangian(dvi_scene_system(scene), 2.5, &(double){0.75}, &(double){0}, &L), DVI_OK);
-  ck_assert_str_eq(dvi_scene_blame(), "test.yaml:2:20: log(x - 1), x - 1 = -0.25 is not finite, at t = 2.5");
+  ck_assert_str_eq(dvi_scene_blame(), "test.yaml:2:20: log(x - 1), x - 1 = -0.25 is not finite, at t = 2.5, where x = 0.75");
 }
 END_TEST
 
@@ -323,9 +324,9 @@ START_TEST(what_has_no_series_is_told_with_its_place)
       X "lagrangian: x'^2/2 - 1e-290*sin(1e90*x)\n" RUN,
   };
   static const char *const words[] = {
-      "test.yaml:2:22: (x^2)^2.25, (x^2) = 0 has no Taylor series, at t = 0",
-      "test.yaml:2:28: (x^2 + x^4)^2.5, (x^2 + x^4) = 0 has no Taylor series, at t = 0",
-      "test.yaml:2:26: hypot(x, x^2)^3, hypot(x, x^2) = 0 has no Taylor series, at t = 0",
+      "test.yaml:2:22: (x^2)^2.25, (x^2) = 0 has no Taylor series, at t = 0, where x = 0",
+      "test.yaml:2:28: (x^2 + x^4)^2.5, (x^2 + x^4) = 0 has no Taylor series, at t = 0, where x = 0",
+      "test.yaml:2:26: hypot(x, x^2)^3, hypot(x, x^2) = 0 has no Taylor series, at t = 0, where x = 0",
       "test.yaml: the Taylor series of all terms is not finite",
   };
   for (size_t k = 0; k < sizeof words / sizeof *words; k++) {

@@ -331,7 +331,7 @@ START_TEST(starts_are_rotations_directions_and_across_them)
   start_refused("R: turn([1, 0, 0], 1)\n  B.R: turn([1, 0, 0], 1)\n  B.x: [0, 0, 0]\n  u: 0\n  d: [1, 0, 0]\n  p(R): [0, 0, 0]",
                 "the momentum p(B.R) is not given");
   refused("coordinates:\n  R[2]: rotation\nlagrangian: sum(i, dot(omega(R[i]), omega(R[i])))\ninitial:\n  R: [1, 2]\n" RUN,
-          ":5:3:", "R is a family of matrices: give them by a formula, R[i], or one by one, R[1]");
+          ":5:3:", "R is more than a matrix: give it by a formula, R[i], or one by one, R[1]");
 }
 END_TEST
 

@@ -29,7 +29,8 @@ static const dvi__expression *expression_of(const char *text)
 /* An expression in Lisp's manner, which says what is part of what. */
 static void put_expression(const dvi__expression *e, FILE *to)
 {
-  static const char *const head[] = {"", "", "index", "member", "'", "-", "+", "-", "*", "/", "^", "call", "list", "sum"};
+  static const char *const head[] = {"",  "",     "index", "member", "'",  "-",       "+",   "-",   "*", "/",
+                                     "^", "call", "list",  "sum",    "if", "compare", "not", "and", "or"};
   if (e->form == DVI__FORM_NUMBER)
     fprintf(to, "%.17g", e->number);
   else if (e->form == DVI__FORM_NAME)
@@ -191,6 +192,32 @@ START_TEST(brackets_are_told_where_they_open)
 }
 END_TEST
 
+START_TEST(conditions_bind_not_before_and_before_or)
+{
+  check_means("if(x < 0, a, b)", "(if (compare < x 0) a b)");
+  check_means("if(x<=y+1 or not p==q and r!=2, a, b)",
+              "(if (or (compare <= x (+ y 1)) (and (not (compare == p q)) (compare != r 2))) a b)");
+  check_means("if(0 < x <= 1 > y, a, b)", "(if (and (compare < 0 x) (compare <= x 1) (compare > 1 y)) a b)");
+  check_means("if((x < 0 or y >= 0) and (z + 1)*2 > 3, a, b)",
+              "(if (and (or (compare < x 0) (compare >= y 0)) (compare > (* (+ z 1) 2) 3)) a b)");
+  check_means("if(not not x < 1, max(a, b), order)", "(if (not (not (compare < x 1))) (call max a b) order)");
+  check_means("(not x > 1)", "(not (compare > x 1))");
+  check_means("notx + android", "(+ notx android)");
+}
+END_TEST
+
+START_TEST(conditions_end_where_they_must)
+{
+  check_refused("if(x < 0, a)", "s.yaml:1:12: found ')' where ',' is expected\n  if(x < 0, a)\n             ^");
+  check_refused("if(x = 0, a, b)", "s.yaml:1:6: equality is written ==\n  if(x = 0, a, b)\n       ^");
+  check_refused("if(x <, a, b)",
+                "s.yaml:1:7: found ',' where a number, a name or a bracket is expected\n  if(x <, a, b)\n        ^");
+  check_refused("2 - not x", "s.yaml:1:5: found 'not' where a number, a name or a bracket is expected\n  2 - not x\n      ^~~");
+  check_refused("x and", "s.yaml:1:6: found the end where a number, a name or a bracket is expected\n  x and\n       ^");
+  check_refused("if(x & y, a, b)", "s.yaml:1:6: '&' has no meaning in expressions; write and\n  if(x & y, a, b)\n       ^");
+}
+END_TEST
+
 START_TEST(what_was_found_and_what_was_expected_is_told)
 {
   check_refused("", "s.yaml:1:1: an expression is missing here");
@@ -278,6 +305,8 @@ int main(void)
   tcase_add_test(tests, a_part_of_the_source_is_all_that_is_read);
   tcase_add_test(tests, usual_slips_get_a_remedy);
   tcase_add_test(tests, brackets_are_told_where_they_open);
+  tcase_add_test(tests, conditions_bind_not_before_and_before_or);
+  tcase_add_test(tests, conditions_end_where_they_must);
   tcase_add_test(tests, what_was_found_and_what_was_expected_is_told);
   tcase_add_test(tests, nesting_ends_at_64_levels);
   tcase_add_test(tests, missing_memory_is_told);

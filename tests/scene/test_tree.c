@@ -153,8 +153,10 @@ END_TEST
 START_TEST(one_document_is_expected)
 {
   check_refused("a: 1\n---\nb: 2\n", "s.yaml:2:1: a second document begins here; a scene is one\n  ---\n  ^");
-  check_refused("", "s.yaml: the file is empty");
-  check_refused("# nothing\n", "s.yaml: the file is empty");
+  static const char empty[] = "s.yaml: the file is empty, and no scene: that is a YAML mapping with coordinates, lagrangian, "
+                              "initial, step and until; dvi init NAME.yaml writes one";
+  check_refused("", empty);
+  check_refused("# nothing\n", empty);
 }
 END_TEST
 

@@ -35,6 +35,9 @@ quad quad_operate(dvi__op op, double number, quad a, quad b)
   case DVI__OP_RAISE: return powq(a, b);
   case DVI__OP_ATAN2: return atan2q(a, b);
   case DVI__OP_HYPOT: return hypotq(a, b);
+  case DVI__OP_FLOOR: return floorq(a);
+  case DVI__OP_POSITIVE: return a > 0 ? 1 : 0;
+  case DVI__OP_WHERE: return a > 0 ? b : 0;
   case DVI__OP_COUNT: break;
   }
   return 0;

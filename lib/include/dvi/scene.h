@@ -148,8 +148,20 @@ int dvi_scene_invariance(const dvi_scene *scene, char *text, size_t size);
 dvi_status dvi_scene_quad_gradient(const dvi_scene *scene, dvi_pair t, const dvi_pair *q, const dvi_pair *v, dvi_pair *L_q,
                                    dvi_pair *L_v);
 
-/** The part of an expression that was not finite, or had no Taylor series, when a callback of a scene's system last failed on this thread, with the time; or the limit that its derivatives
- *  passed; "" if none failed since a scene was last read. */
+/** Where the Lagrangian (or the Hamiltonian) is not smooth: max, min, abs, sign, floor and if(..) that
+ *  the state decides. Where the motion crosses such a place no method is of higher order than the
+ *  lowest derivative that jumps there, one more if time alone decides. Looked for along some lines
+ *  from the start, at most 64 places; compares Taylor series on both sides. Allocates.
+ *
+ *  @param[out] text  [size] a sentence on the worst place, with file, line and column; "" without one
+ *  @return the order that it leaves, 0 (the function itself jumps) to 5; -1 if none was found, or NULL */
+int dvi_scene_kink(const dvi_scene *scene, char *text, size_t size);
+
+/** The part of an expression that was not finite, or had no Taylor series, when a callback of a
+ *  scene's system last failed on this thread, with the time and the coordinates that it depends on; or
+ *  the limit that its derivatives passed; "" if none failed since a scene was last read. A method may
+ *  have got over it since: it is the cause of an error only if that has the status DVI_CALLBACK_RETRY
+ *  or DVI_CALLBACK_FAILED. */
 const char *dvi_scene_blame(void);
 
 /** A sentence about a section of the scene, in the form of its own errors: file, line and column in front, the line and a caret below.

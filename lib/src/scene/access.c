@@ -55,20 +55,41 @@ static dvi__value parameter_value(dvi__context *c, dvi__parameter *p)
 /* An index for every element, between 1 and `count`. */
 static bool index_of(const dvi__context *c, const dvi__expression *e, int count, int **each, int *all);
 
-bool dvi__member_numbering(dvi__context *c, const dvi__coordinate *x, const dvi__expression *index, const dvi__slots *places,
+/* The member, from 1, that two indices say for every element: *each, to be freed, or *all. */
+static bool member_of_two(const dvi__context *c, const dvi__coordinate *x, const dvi__subscripts *index, int **each, int *all)
+{
+  int *row = NULL, *column = NULL, all_row = 1, all_column = 1;
+  bool good = index_of(c, index->of[0], dvi__extent(x, 0), &row, &all_row) &&
+              index_of(c, index->of[1], dvi__extent(x, 1), &column, &all_column);
+  *all = (all_row - 1) * x->columns + all_column;
+  *each = NULL;
+  if (good && (row != NULL || column != NULL)) {
+    *each = dvi__heap_take((size_t)c->elements, sizeof **each);
+    good = *each != NULL || dvi__scene_no_memory(c->scene);
+    for (int e = 0; good && e < c->elements; e++)
+      (*each)[e] = ((row != NULL ? row[e] : all_row) - 1) * x->columns + (column != NULL ? column[e] : all_column);
+  }
+  dvi__heap_free(row);
+  dvi__heap_free(column);
+  return good;
+}
+
+bool dvi__member_numbering(dvi__context *c, const dvi__coordinate *x, const dvi__subscripts *index, const dvi__slots *places,
                            dvi__numbering *numbering)
 {
   int *each = NULL, all = 1;
-  if (index != NULL && !index_of(c, index, x->size, &each, &all)) return false;
-  const bool made = dvi__numbering_of(c, each, all, places->first - places->stride, places->stride, numbering);
+  const bool good = index->count == 0   ? true
+                    : index->count == 1 ? index_of(c, index->of[0], x->size, &each, &all)
+                                        : member_of_two(c, x, index, &each, &all);
+  const bool made = good && dvi__numbering_of(c, each, all, places->first - places->stride, places->stride, numbering);
   dvi__heap_free(each);
   return made;
 }
 
-dvi__value dvi__coordinate_value(dvi__context *c, const dvi__coordinate *x, const dvi__expression *index, dvi__span span)
+dvi__value dvi__coordinate_value(dvi__context *c, const dvi__coordinate *x, const dvi__subscripts *index, dvi__span span)
 {
   dvi__numbering numbering;
-  if (!dvi__may_stand(c, DVI__SAYS_Q, index != NULL ? index->span : span)) return DVI__NO_VALUE;
+  if (!dvi__may_stand(c, DVI__SAYS_Q, index->count > 0 ? index->of[0]->span : span)) return DVI__NO_VALUE;
   if (x->kind == DVI__MOTION)
     return dvi__refused(
         dvi__refuse(c, span, "%s is a rigid motion; take its rotation, %s.R, or its place, %s.x", x->name, x->name, x->name));
@@ -110,9 +131,8 @@ dvi__value dvi__name_value(dvi__context *c, const dvi__expression *e)
   }
   const dvi__coordinate *x = &c->scene->coordinate[name->number];
   if (!dvi__may_stand(c, DVI__SAYS_Q, e->span)) return DVI__NO_VALUE;
-  if (x->family)
-    return dvi__refused(dvi__refuse(c, e->span, "%s is a family of %d; take one of it, as %s[1]", x->name, x->size, x->name));
-  return dvi__coordinate_value(c, x, NULL, e->span);
+  if (x->family > 0) return dvi__refused(dvi__refuse_family(c, x, "", e->span));
+  return dvi__coordinate_value(c, x, &(dvi__subscripts){0}, e->span);
 }
 
 /* ---- indices ---- */
@@ -225,11 +245,21 @@ static dvi__value part_of_value(dvi__context *c, dvi__value value, int count, co
   return value;
 }
 
-enum { INDICES_OF_ONE = 3 };
+enum { INDICES_OF_ONE = 4 };
+
+/* A member of a family, or an element of it: the family's indices come first. */
+static dvi__value family_element(dvi__context *c, const dvi__coordinate *x, int count, const dvi__expression *const *index,
+                                 dvi__span span)
+{
+  if (count < x->family) return dvi__refused(dvi__refuse_family(c, x, "", span));
+  const dvi__subscripts own = {x->family, {index[0], x->family > 1 ? index[1] : NULL}};
+  const dvi__value member = dvi__coordinate_value(c, x, &own, span);
+  return dvi__failed(member) ? member : part_of_value(c, member, count - x->family, index + x->family, span);
+}
 
 dvi__value dvi__index_value(dvi__context *c, const dvi__expression *e)
 {
-  const dvi__expression *index[INDICES_OF_ONE] = {e, e, e}, *base = e;
+  const dvi__expression *index[INDICES_OF_ONE] = {e, e, e, e}, *base = e;
   int count = 0;
   for (; base->form == DVI__FORM_INDEX; base = base->part[0]) {
     if (count + base->count - 1 > INDICES_OF_ONE)
@@ -241,10 +271,8 @@ dvi__value dvi__index_value(dvi__context *c, const dvi__expression *e)
   const dvi__name *name = base->form == DVI__FORM_NAME ? dvi__names_find(&c->scene->names, base->name) : NULL;
   if (name != NULL && name->sort == DVI__PARAMETER)
     return parameter_element(c, &c->scene->parameter[name->number], count, index, e->span);
-  if (name != NULL && name->sort == DVI__COORDINATE && c->scene->coordinate[name->number].family) {
-    const dvi__value member = dvi__coordinate_value(c, &c->scene->coordinate[name->number], index[0], e->span);
-    return dvi__failed(member) ? member : part_of_value(c, member, count - 1, index + 1, e->span);
-  }
+  if (name != NULL && name->sort == DVI__COORDINATE && c->scene->coordinate[name->number].family > 0)
+    return family_element(c, &c->scene->coordinate[name->number], count, index, e->span);
   const dvi__value value = dvi__elaborate(c, base);
   return dvi__failed(value) ? value : part_of_value(c, value, count, index, e->span);
 }

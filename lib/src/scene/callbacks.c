@@ -1,5 +1,7 @@
 #include "scene/callbacks.h"
 
+#include <dvi/number.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -10,11 +12,14 @@
 enum { BLAME_SIZE = 512 };
 static _Thread_local char blame_text[BLAME_SIZE];
 static _Thread_local dvi_status blame_status;
+static _Thread_local dvi__span blame_span;
+static _Thread_local size_t blame_words; /* where they begin, behind the place; 0: it names none */
 
 void dvi__blame_nobody(void)
 {
   blame_text[0] = '\0';
   blame_status = DVI_OK;
+  blame_words = 0;
 }
 
 dvi_status dvi__blame_status(void)
@@ -22,9 +27,41 @@ dvi_status dvi__blame_status(void)
   return blame_status;
 }
 
+bool dvi__blame_place(dvi__span *span, const char **words)
+{
+  *span = blame_span;
+  *words = blame_text + blame_words;
+  return blame_words > 0;
+}
+
 const char *dvi_scene_blame(void)
 {
   return blame_text;
+}
+
+/* Add to what is said. */
+static void add_words(const char *format, ...) DVI__SCENE_PRINTF(1, 2);
+static void add_words(const char *format, ...)
+{
+  const size_t used = strlen(blame_text);
+  va_list arguments;
+  va_start(arguments, format);
+  (void)dvi_number_vprint(blame_text + used, sizeof blame_text - used, format, arguments);
+  va_end(arguments);
+}
+
+/* The time, and the coordinates that the part depends on. */
+static void add_circumstances(const dvi__term *term, const double *t, const dvi__fault *fault)
+{
+  const char *word = ", where";
+  if (t != NULL) add_words(", at t = %.6g", *t);
+  for (int i = 0; i < fault->count; i++) {
+    const char *label = fault->variable[i].block == DVI__COORDINATES ? dvi_scene_coordinate(term->scene, fault->variable[i].number)
+                                                                     : NULL;
+    if (label == NULL) continue;
+    add_words("%s %s = %.6g", word, label, fault->variable[i].value);
+    word = ",";
+  }
 }
 
 /* Keep which part was not finite, or has no series, at the first of the points where one is. */
@@ -32,20 +69,23 @@ static void blame(const dvi__term *term, int count, const double *const *x, int 
 {
   const dvi__source *source = &term->scene->source;
   char part[BLAME_SIZE / 2] = "";
-  dvi__span span = DVI__NOWHERE;
+  dvi__fault fault = {.span = DVI__NOWHERE};
   int k = 0, line = 0, column = 0;
   for (; k < count && part[0] == '\0'; k++)
-    dvi__function_blame(term->function, source, count, x, k, of_series, part, sizeof part, &span);
+    dvi__function_blame(term->function, source, count, x, k, of_series, part, sizeof part, &fault);
+  blame_text[0] = '\0';
+  blame_words = 0;
   if (part[0] == '\0') {
-    (void)snprintf(blame_text, sizeof blame_text,
-                   of_series ? "%s: the Taylor series of all terms is not finite" : "%s: the sum of all terms is not finite",
-                   source->name);
+    add_words(of_series ? "%s: the Taylor series of all terms is not finite" : "%s: the sum of all terms is not finite",
+              source->name);
     return;
   }
-  dvi__source_place(source, span.first, &line, &column);
-  const int used = snprintf(blame_text, sizeof blame_text, "%s:%d:%d: %s", source->name, line, column, part);
-  if (x[DVI__TIME] != NULL && used > 0 && used < BLAME_SIZE)
-    (void)dvi__print(blame_text + used, sizeof blame_text - (size_t)used, ", at t = %.6g", x[DVI__TIME][k - 1]);
+  dvi__source_place(source, fault.span.first, &line, &column);
+  add_words("%s:%d:%d: ", source->name, line, column);
+  blame_span = fault.span;
+  blame_words = strlen(blame_text);
+  add_words("%s", part);
+  add_circumstances(term, x[DVI__TIME] != NULL ? &x[DVI__TIME][k - 1] : NULL, &fault);
 }
 
 /* Why there is no program, or no pattern. */

@@ -22,6 +22,8 @@ bool dvi__read_field(dvi_scene *scene, const dvi__tree *field, const char *where
 /* Forget what dvi_scene_blame says; and the status that it speaks of, DVI_OK after that. */
 void dvi__blame_nobody(void);
 dvi_status dvi__blame_status(void);
+/* The place that it names, and its words behind the place; false if it names none. */
+bool dvi__blame_place(dvi__span *span, const char **words);
 
 /* Refuse what there is no program or pattern for, for that status; false. */
 bool dvi__scene_too_large(dvi_scene *scene, const char *what, dvi_status status);

@@ -168,6 +168,14 @@ bool(dvi__complain_of_memory)(dvi__complaint *complaint)
   return dvi__complain(complaint, DVI_NO_MEMORY, DVI__NOWHERE, "memory ran out");
 }
 
+bool dvi__complain_of_file(dvi__complaint *complaint, dvi__span where, const char *is)
+{
+  return dvi__complain(complaint, DVI_BAD_FILE, where,
+                       "%s, and no scene: that is a YAML mapping with coordinates, lagrangian, initial, step and until; "
+                       "dvi init NAME.yaml writes one",
+                       is);
+}
+
 static int lower(char c)
 {
   return c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c;

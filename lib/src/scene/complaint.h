@@ -45,6 +45,10 @@ bool dvi__complain_of_memory(dvi__complaint *complaint);
 /* As snprintf, with a decimal point in all numbers. */
 int dvi__print(char *text, size_t size, const char *format, ...) DVI__SCENE_PRINTF(3, 4);
 
+/* The same for a file that is no scene: what it is instead, if that is known, and what a scene
+ * is. Returns false. */
+bool dvi__complain_of_file(dvi__complaint *complaint, dvi__span where, const char *is);
+
 /* The line and the column of a place, from 1; columns count characters of UTF-8. */
 void dvi__source_place(const dvi__source *source, size_t offset, int *line, int *column);
 

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "scene/elaborate.h"
 #include "scene/sections.h"
 #include "scene/shape.h"
 
@@ -187,20 +188,25 @@ static bool make_parts(dvi_scene *scene, dvi__coordinate *x)
   return true;
 }
 
-static bool add_coordinate(dvi_scene *scene, const char *name, dvi__span span, int family, int size, const declared *as)
+/* A family has `rows` members for one index, rows * columns for two. */
+static bool add_coordinate(dvi_scene *scene, const char *name, dvi__span span, int family, int rows, int columns,
+                           const declared *as)
 {
   const int number = scene->coordinate_count;
   dvi__coordinate *x = &scene->coordinate[number];
+  const long most = (COORDINATES_MAX - scene->n) / as->stored;
+  if ((long)rows * columns > most)
+    return dvi__complain(scene->complaint, DVI_BAD_SIZE, span, "more than %d coordinates", COORDINATES_MAX);
+  const int size = rows * columns;
   *x = (dvi__coordinate){.name = name,
                          .span = span,
                          .kind = as->kind,
                          .family = family,
                          .size = size,
+                         .columns = columns,
                          .shape = as->shape,
                          .q = {scene->n, as->stored, as->stored},
                          .v = {scene->nv, as->velocities, as->velocities}};
-  if ((long)size * as->stored > COORDINATES_MAX - scene->n)
-    return dvi__complain(scene->complaint, DVI_BAD_SIZE, span, "more than %d coordinates", COORDINATES_MAX);
   scene->n += size * as->stored;
   scene->nv += size * as->velocities;
   scene->coordinate_count++;
@@ -208,16 +214,20 @@ static bool add_coordinate(dvi_scene *scene, const char *name, dvi__span span, i
          dvi__names_add(&scene->names, &scene->arena, scene->complaint, name, span, DVI__COORDINATE, number);
 }
 
-/* x or x[N]. */
+/* x, x[N] or x[N,M]. */
 static bool declare(dvi_scene *scene, const dvi__expression *key, const declared *as)
 {
-  int size = 1;
-  if (key->form == DVI__FORM_NAME) return add_coordinate(scene, key->name, key->span, 0, 1, as);
-  if (key->form != DVI__FORM_INDEX || key->count != 2 || key->part[0]->form != DVI__FORM_NAME)
-    return dvi__scene_refuse(scene, key->span, "a coordinate is declared as x, or as x[N] for a family of N");
-  const dvi__tree how_many = {.kind = DVI__SCALAR, .span = key->part[1]->span};
-  return dvi__tree_whole(scene, &how_many, "the size of a family", 1, &size) &&
-         add_coordinate(scene, key->part[0]->name, key->part[0]->span, 1, size, as);
+  int extent[2] = {1, 1};
+  dvi__subscripts sizes;
+  if (key->form == DVI__FORM_NAME) return add_coordinate(scene, key->name, key->span, 0, 1, 1, as);
+  if (key->form != DVI__FORM_INDEX || !dvi__subscripts_of(key, &sizes) || key->part[0]->form != DVI__FORM_NAME)
+    return dvi__scene_refuse(scene, key->span,
+                             "a coordinate is declared as x, as x[N] for a family of N, or as x[N,M] for one of N times M");
+  for (int k = 0; k < sizes.count; k++) {
+    const dvi__tree how_many = {.kind = DVI__SCALAR, .span = sizes.of[k]->span};
+    if (!dvi__tree_whole(scene, &how_many, "the size of a family", 1, &extent[k])) return false;
+  }
+  return add_coordinate(scene, key->part[0]->name, key->part[0]->span, sizes.count, extent[0], extent[1], as);
 }
 
 bool dvi__read_coordinates(dvi_scene *scene, const dvi__tree *section)

@@ -186,6 +186,11 @@ static dvi__value element(dvi__context *c, const dvi__expression *e)
   case DVI__FORM_CALL: return call_value(c, e);
   case DVI__FORM_LIST: return list_value(c, e);
   case DVI__FORM_SUM: return sum_value(c, e);
+  case DVI__FORM_IF: return dvi__if_value(c, e);
+  case DVI__FORM_COMPARE:
+  case DVI__FORM_NOT:
+  case DVI__FORM_AND:
+  case DVI__FORM_OR: return dvi__refused(dvi__refuse(c, e->span, "a condition where a number is needed; write if(.., a, b)"));
   default: return chain_value(c, e);
   }
 }

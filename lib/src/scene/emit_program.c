@@ -35,6 +35,8 @@ static const char *formula_of(int op)
   case DVI__OP_DIVIDE: return "a / b";
   case DVI__OP_NEGATE: return "-a";
   case DVI__OP_SQUARE: return "a * a";
+  case DVI__OP_POSITIVE: return "a > 0.0 ? 1.0 : a <= 0.0 ? 0.0 : a";
+  case DVI__OP_WHERE: return "a > 0.0 ? b : a <= 0.0 ? 0.0 : a";
   case DVI__OP_SIGN: return "a > 0.0 ? 1.0 : a < 0.0 ? -1.0 : a";
   default: return NULL;
   }

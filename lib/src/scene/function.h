@@ -87,10 +87,32 @@ dvi_status dvi__function_prepare(dvi__function *function, int value, unsigned bl
 /* 1 if all second derivatives of a pair are constants, which no variable changes (also if there are none); 0; or -1 if they could not be derived. */
 int dvi__function_second_constant(dvi__function *function, dvi__pair pair);
 
-/* The first part that is not finite at point k of x, or, `of_series`, has no series: writes "log(x - 1), x - 1 = -0.2 is not finite" to text [size], and the span;
- * "" if there is none. Allocates; for messages. */
+/* Where a part stands, and the variables that it depends on, those that its sentence shows left
+ * out. */
+enum { DVI__FAULT_VARIABLES = 4 };
+typedef struct dvi__fault {
+  dvi__span span;
+  int count; /* of variables, the first ones alone */
+  struct {
+    dvi__block block;
+    int number;
+    double value;
+  } variable[DVI__FAULT_VARIABLES];
+} dvi__fault;
+
+/* The first part that is not finite at point k of x, or, `of_series`, has no series: writes
+ * "log(x - 1), x - 1 = -0.2 is not finite" to text [size]; "" if there is none. Allocates; for
+ * messages. */
 void dvi__function_blame(dvi__function *function, const dvi__source *source, int count, const double *const *x, int k,
-                         int of_series, char *text, size_t size, dvi__span *span);
+                         int of_series, char *text, size_t size, dvi__fault *fault);
+
+/* A part of the source on one line, cut if it is long; "" if it is nowhere. text
+ * [DVI__PART_SIZE] */
+enum { DVI__PART_SIZE = 64 };
+void dvi__copy_part(const dvi__source *source, dvi__span span, char *text);
+
+/* Mark, 1, which of the first `count` nodes of a kernel depend on a variable. */
+void dvi__mark_moving(const dvi__kernel *kernel, int count, char *moves);
 
 void dvi__function_count(dvi__function *function, dvi__function_counters *counters);
 

@@ -14,7 +14,8 @@ typedef enum failing { VALUE, DERIVATIVE, SERIES } failing;
 typedef struct culprit {
   const dvi__kernel *kernel;
   dvi__node node; /* -1: nobody */
-  double *input;  /* [input_count], to be freed */
+  int element;
+  double *input; /* [input_count], to be freed */
   failing of;
 } culprit;
 
@@ -65,6 +66,10 @@ static int has_series(const dvi__graph_node *node, double a, double b)
   case DVI__OP_SQRT:
   case DVI__OP_RAISE: return !is_zero;
   case DVI__OP_POWER: return !is_zero || whole;
+  case DVI__OP_ABS:
+  case DVI__OP_SIGN:
+  case DVI__OP_POSITIVE: return !is_zero;
+  case DVI__OP_FLOOR: return a > floor(a);
   case DVI__OP_ATAN2: return !is_zero || b > 0.0 || b < 0.0;
   case DVI__OP_ASIN:
   case DVI__OP_ACOS: return fabs(a) < 1.0;
@@ -73,24 +78,39 @@ static int has_series(const dvi__graph_node *node, double a, double b)
   }
 }
 
-/* The first operation below the root that has no series; -1: all have one. */
+void dvi__mark_moving(const dvi__kernel *kernel, int count, char *moves)
+{
+  for (int n = 0; n < count; n++) {
+    const dvi__graph_node *node = &kernel->graph->node[n];
+    const int operands = dvi__operands(node->op);
+    moves[n] = (char)(node->op == DVI__OP_INPUT ? !kernel->input[node->a].is_data
+                                                : (operands > 0 && moves[node->a]) || (operands > 1 && moves[node->b]));
+  }
+}
+
+/* The first operation that the root is made of at this point, and that moves without a series; -1:
+ * all have one. */
 static dvi__node first_without_series(const dvi__kernel *kernel, const double *input)
 {
   const dvi__graph *graph = kernel->graph;
   int count = 0;
-  char *part = dvi__parts(graph, 1, &kernel->root, &count);
-  dvi__node *operand = dvi__heap_take(2 * (size_t)count + 1, sizeof *operand), unused = -1, found = -1;
-  double *value = dvi__heap_take(2 * (size_t)count + 1, sizeof *value);
-  for (int n = 0; n < count && operand != NULL; n++) {
-    const int operands = part != NULL && part[n] ? dvi__operands(graph->node[n].op) : 0;
-    operand[2 * n] = operands > 0 ? graph->node[n].a : kernel->root;
-    operand[2 * n + 1] = operands > 1 ? graph->node[n].b : kernel->root;
+  char *part = dvi__parts(graph, 1, &kernel->root, &count), *moves = dvi__heap_take((size_t)count + 1, 1);
+  dvi__node *node = dvi__heap_take((size_t)count + 1, sizeof *node), unused = -1, found = -1;
+  double *value = dvi__heap_take((size_t)count + 1, sizeof *value);
+  const int made = part != NULL && moves != NULL && node != NULL && value != NULL;
+  for (int n = 0; n < count && made; n++) node[n] = part[n] ? n : kernel->root;
+  if (made && dvi__evaluate(graph, input, count, node, value, &unused) == DVI_OK) {
+    dvi__mark_moving(kernel, count, moves);
+    dvi__mark_taken(graph, value, 1, &kernel->root, count, part);
+    for (int n = count - 1; n >= 0; n--) {
+      const dvi__graph_node *at = &graph->node[n];
+      const int operands = dvi__operands(at->op);
+      if (part[n] && moves[n] && !has_series(at, operands > 0 ? value[at->a] : 0, operands > 1 ? value[at->b] : 0)) found = n;
+    }
   }
-  if (part != NULL && operand != NULL && value != NULL && dvi__evaluate(graph, input, 2 * count, operand, value, &unused) == DVI_OK)
-    for (int n = count - 1; n >= 0; n--)
-      if (part[n] && !has_series(&graph->node[n], value[2 * n], value[2 * n + 1])) found = n;
   dvi__heap_free(part);
-  dvi__heap_free(operand);
+  dvi__heap_free(moves);
+  dvi__heap_free(node);
   dvi__heap_free(value);
   return found;
 }
@@ -104,6 +124,7 @@ static void search_kernel(const dvi__function *function, int k, int count, const
   const dvi__node *root = found->of == DERIVATIVE ? derivatives : &kernel->root;
   double *input = dvi__heap_take((size_t)kernel->input_count + 1, sizeof *input);
   for (int e = 0; e < kernel->elements && found->node < 0 && root != NULL && input != NULL; e++) {
+    found->element = e;
     read_inputs(kernel, function->derivatives[k].place, e, count, x, point, input);
     found->node = found->of == SERIES ? first_without_series(kernel, input) : first_below(kernel, input, root_count, root);
   }
@@ -117,20 +138,17 @@ static void search_kernel(const dvi__function *function, int k, int count, const
 
 /* --- The words. --- */
 
-enum { PART_SIZE = 64 };
-
-/* A part of the source on one line, cut if it is long; "" if it is nowhere. */
-static void copy_part(const dvi__source *source, dvi__span span, char *text)
+void dvi__copy_part(const dvi__source *source, dvi__span span, char *text)
 {
   int length = 0;
   text[0] = '\0';
   if (span.first >= source->size || span.size > source->size - span.first) return;
-  for (size_t i = 0; i < span.size && length < PART_SIZE - 4; i++) {
+  for (size_t i = 0; i < span.size && length < DVI__PART_SIZE - 4; i++) {
     const char letter = source->text[span.first + i];
     const int blank = letter == ' ' || letter == '\n' || letter == '\r' || letter == '\t';
     if (!blank) text[length++] = letter;
     if (blank && length > 0 && text[length - 1] != ' ') text[length++] = ' ';
-    if (length == PART_SIZE - 4 && i + 1 < span.size) {
+    if (length == DVI__PART_SIZE - 4 && i + 1 < span.size) {
       memcpy(text + length, "..", 2);
       length += 2;
     }
@@ -145,18 +163,36 @@ static dvi__node operand_of(const dvi__graph_node *node)
   return node->op == DVI__OP_DIVIDE ? node->b : node->a;
 }
 
-static void describe(const culprit *found, const dvi__source *source, char *text, size_t size, dvi__span *span)
+/* The variables that the node depends on, but for its operand, which is shown if it is one. */
+static void list_variables(const culprit *found, dvi__node operand, dvi__fault *fault)
+{
+  const dvi__kernel *kernel = found->kernel;
+  const dvi__graph_node *shown = operand >= 0 ? &kernel->graph->node[operand] : NULL;
+  char *used = dvi__heap_take((size_t)kernel->input_count + 1, 1);
+  if (used == NULL) return;
+  dvi__inputs_used(kernel->graph, 1, &found->node, kernel->input_count, used);
+  for (int i = 0; i < kernel->input_count && fault->count < DVI__FAULT_VARIABLES; i++) {
+    if (!used[i] || kernel->input[i].is_data || (shown != NULL && shown->op == DVI__OP_INPUT && shown->a == i)) continue;
+    fault->variable[fault->count].block = kernel->input[i].block;
+    fault->variable[fault->count].number = dvi__input_number(&kernel->input[i], found->element);
+    fault->variable[fault->count++].value = found->input[i];
+  }
+  dvi__heap_free(used);
+}
+
+static void describe(const culprit *found, const dvi__source *source, char *text, size_t size, dvi__fault *fault)
 {
   const dvi__graph *graph = found->kernel->graph;
   const dvi__graph_node *node = &graph->node[found->node];
   const dvi__node operand = operand_of(node);
-  char part[PART_SIZE], operand_part[PART_SIZE] = "";
+  char part[DVI__PART_SIZE], operand_part[DVI__PART_SIZE] = "";
   double value = 0.0;
   dvi__node unused = -1;
-  copy_part(source, node->span, part);
-  *span = node->span;
+  dvi__copy_part(source, node->span, part);
+  *fault = (dvi__fault){.span = node->span};
+  list_variables(found, operand, fault);
   if (operand >= 0 && graph->node[operand].span.first + graph->node[operand].span.size != node->span.first + node->span.size)
-    copy_part(source, graph->node[operand].span, operand_part);
+    dvi__copy_part(source, graph->node[operand].span, operand_part);
   if (operand < 0) (void)dvi__evaluate(graph, found->input, 1, &found->node, &value, &unused);
   if (operand >= 0) (void)dvi__evaluate(graph, found->input, 1, &operand, &value, &unused);
   const char *prefix = found->of == DERIVATIVE ? "the derivative of " : "";
@@ -170,7 +206,7 @@ static void describe(const culprit *found, const dvi__source *source, char *text
 }
 
 void dvi__function_blame(dvi__function *function, const dvi__source *source, int count, const double *const *x, int k,
-                         int of_series, char *text, size_t size, dvi__span *span)
+                         int of_series, char *text, size_t size, dvi__fault *fault)
 {
   culprit found = {.node = -1};
   const int passes = of_series ? SERIES + 1 : SERIES;
@@ -181,7 +217,7 @@ void dvi__function_blame(dvi__function *function, const dvi__source *source, int
       search_kernel(function, i, count, x, k, &found);
     }
   text[0] = '\0';
-  if (found.node >= 0) describe(&found, source, text, size, span);
+  if (found.node >= 0) describe(&found, source, text, size, fault);
   pthread_mutex_unlock(&function->lock);
   dvi__heap_free(found.input);
 }

@@ -90,7 +90,9 @@ static int never_negative(const dvi__graph *graph, const dvi__graph_node *node)
   case DVI__OP_COSH:
   case DVI__OP_ACOS:
   case DVI__OP_ACOSH:
+  case DVI__OP_POSITIVE:
   case DVI__OP_ABS: return 1;
+  case DVI__OP_WHERE: return graph->node[node->b].never_negative;
   case DVI__OP_POWER:
     return graph->node[node->a].never_negative || node->value / 2 == (int)(node->value / 2) || node->value != (int)node->value;
   case DVI__OP_ADD:

@@ -1,10 +1,16 @@
 /* Expressions as a directed graph in which equal parts are one node.
  *
- * A node's operands have smaller numbers than itself, so a loop over numbers visits operands first. Nodes are made only if there is no equal one, after
- * simplifications that keep values up to rounding: constants folded, x+0, x*1, x*0, x-x, -(-x), x^0, x^1; powers of one base joined where the domain
- * is the same, so that 1/norm^3 is one power of the sum of squares; equal terms of a sum or difference joined, 3*x - x; constant factors gathered
- * at one factor of a product, and signs taken out of it; x/c = x*(1/c) for powers of two. Commutative operands are ordered by number; sums of
- * different terms are not reassociated. */
+ * A node's operands have smaller numbers than itself, so a loop over numbers visits operands
+ * first. Nodes are made only if there is no equal one, after simplifications that keep values up
+ * to rounding: constants folded, x+0, x*1, x*0, x-x, -(-x), x^0, x^1; powers of one base joined
+ * where the domain is the same, so that 1/norm^3 is one power of the sum of squares; equal terms
+ * of a sum or difference joined, 3*x - x; constant factors gathered at one factor of a product,
+ * and signs taken out of it; x/c = x*(1/c) for powers of two. Commutative operands are ordered
+ * by number; sums of different terms are not reassociated.
+ *
+ * A condition is a number, 1 or 0, and never negative. What it guards with WHERE stands in front
+ * of products, powers and equal guards, so that derivatives are guarded, too: if(x > 0, sqrt(x),
+ * 0) has the derivative 0 at x < 0, and not 0 * NaN. */
 #ifndef DVI_SCENE_GRAPH_H
 #define DVI_SCENE_GRAPH_H
 #include "scene/arena.h"
@@ -42,7 +48,10 @@ typedef int dvi__node;
   X(DIVIDE, 2, "/")                                                                        \
   X(RAISE, 2, "pow") /* by anything else */                                                \
   X(ATAN2, 2, "atan2")                                                                     \
-  X(HYPOT, 2, "hypot") /* of constants; else a square root, whose powers join others */
+  X(HYPOT, 2, "hypot") /* of constants; else a square root, whose powers join others */    \
+  X(FLOOR, 1, "floor")                                                                     \
+  X(POSITIVE, 1, "") /* 1 if a > 0, 0 if a <= 0: what conditions are made of */            \
+  X(WHERE, 2, "")    /* b where the condition a is 1; 0 where it is 0, whatever b is */
 
 typedef enum dvi__op {
 #define DVI__OP_ENUM(name, operands, spelling) DVI__OP_##name,
@@ -91,6 +100,14 @@ dvi__node dvi__apply(dvi__graph *graph, dvi__op op, dvi__node a, dvi__node b);
 /* a^exponent for a constant exponent: 1, a, SQUARE, SQRT, POWER, DIVIDE of 1 for -1, or RAISE for what is neither whole nor a half, or beyond
  * DVI__EXPONENT_MAX. */
 dvi__node dvi__power(dvi__graph *graph, dvi__node a, double exponent);
+
+/* Conditions, as 1 or 0: not c; both c and d, of which d need not exist where c is 0. */
+dvi__node dvi__complement(dvi__graph *graph, dvi__node c);
+dvi__node dvi__both(dvi__graph *graph, dvi__node c, dvi__node d);
+/* a where c is 1, b where it is 0; what is not taken need not exist there. */
+dvi__node dvi__choice(dvi__graph *graph, dvi__node c, dvi__node a, dvi__node b);
+/* a > b. */
+dvi__node dvi__greater(dvi__graph *graph, dvi__node a, dvi__node b);
 
 /* Whether a node is a constant, and which. */
 bool dvi__is_constant(const dvi__graph *graph, dvi__node node, double *value);

@@ -65,7 +65,7 @@ static dvi__node slope(dvi__graph *graph, dvi__node n)
   case DVI__OP_ACOSH: return inverse_roots(graph, a);
   case DVI__OP_ATANH: return inside(graph, dvi__negate(graph, square_less_one(graph, a)));
   case DVI__OP_ABS: return dvi__apply(graph, DVI__OP_SIGN, a, 0);
-  default: return dvi__constant(graph, 0); /* of SIGN */
+  default: return dvi__constant(graph, 0); /* of SIGN, FLOOR, POSITIVE */
   }
 }
 
@@ -80,6 +80,7 @@ static dvi__node slope_by_first(dvi__graph *graph, dvi__node n)
   case DVI__OP_RAISE:
     return dvi__multiply(graph, node.b, dvi__apply(graph, DVI__OP_RAISE, node.a, dvi__subtract(graph, node.b, one)));
   case DVI__OP_ATAN2: return dvi__divide(graph, node.b, dvi__add(graph, dvi__square(graph, node.a), dvi__square(graph, node.b)));
+  case DVI__OP_WHERE: return dvi__constant(graph, 0);
   default: return one; /* of ADD and SUBTRACT */
   }
 }
@@ -94,6 +95,7 @@ static dvi__node slope_by_second(dvi__graph *graph, dvi__node n)
   case DVI__OP_RAISE: return dvi__multiply(graph, n, dvi__apply(graph, DVI__OP_LOG, node.a, 0));
   case DVI__OP_ATAN2:
     return dvi__negate(graph, dvi__divide(graph, node.a, dvi__add(graph, dvi__square(graph, node.a), dvi__square(graph, node.b))));
+  case DVI__OP_WHERE: return dvi__where(graph, node.a, dvi__constant(graph, 1));
   default: return dvi__constant(graph, 1); /* of ADD */
   }
 }
@@ -132,10 +134,27 @@ static int is_zero(const dvi__graph *graph, dvi__node n)
   return n == NONE || (dvi__is_constant(graph, n, &value) && value == 0);
 }
 
+/* Whether a condition guards a part of which there are slopes below. */
+static bool is_guarded(const dvi__graph *graph, dvi__node n)
+{
+  return graph->failed == DVI_OK && graph->node[n].op == DVI__OP_WHERE;
+}
+
+/* The sum of two shares in the derivative by a node. Where no condition takes the node its
+ * slopes need not exist: what all shares are guarded by guards their sum. */
+static dvi__node add_shares(dvi__graph *graph, dvi__node to, dvi__node a, dvi__node b)
+{
+  const dvi__node sum = dvi__add(graph, a, b);
+  if (graph->node[to].op == DVI__OP_INPUT || !is_guarded(graph, a) || !is_guarded(graph, b)) return sum;
+  const dvi__node c = graph->node[a].a, d = graph->node[b].a, always = dvi__constant(graph, 1);
+  if (c == d || d == dvi__complement(graph, c)) return sum;
+  return dvi__where(graph, dvi__choice(graph, c, always, d), sum);
+}
+
 /* Add to the derivative of the root by a node. */
 static void give(dvi__graph *graph, const char *part, dvi__node *adjoint, dvi__node to, dvi__node share)
 {
-  if (part[to]) adjoint[to] = adjoint[to] == NONE ? share : dvi__add(graph, adjoint[to], share);
+  if (part[to]) adjoint[to] = adjoint[to] == NONE ? share : add_shares(graph, to, adjoint[to], share);
 }
 
 /* Hand the derivative of the root by node n on to its operands. */

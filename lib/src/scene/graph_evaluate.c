@@ -1,5 +1,6 @@
 /* Values of nodes, one operation after the other: for constants, and to find what went wrong where. */
 #include <math.h>
+#include <string.h>
 
 #include "scene/graph_make.h"
 #include "scene/heap.h"
@@ -41,6 +42,9 @@ double dvi__operate(dvi__op op, double value, double a, double b)
   case DVI__OP_RAISE: return pow(a, b);
   case DVI__OP_ATAN2: return atan2(a, b);
   case DVI__OP_HYPOT: return hypot(a, b);
+  case DVI__OP_FLOOR: return floor(a);
+  case DVI__OP_POSITIVE: return a > 0 ? 1 : a <= 0 ? 0 : a;
+  case DVI__OP_WHERE: return a > 0 ? b : a <= 0 ? 0 : a;
   case DVI__OP_COUNT: break;
   }
   return 0;
@@ -80,6 +84,18 @@ static double value_of(const dvi__graph_node *node, const double *x, const doubl
   return dvi__operate(node->op, node->value, operands > 0 ? at[node->a] : 0, operands > 1 ? at[node->b] : 0);
 }
 
+void dvi__mark_taken(const dvi__graph *graph, const double *at, int root_count, const dvi__node *root, int size, char *part)
+{
+  memset(part, 0, (size_t)size);
+  for (int k = 0; k < root_count; k++) part[root[k]] = 1;
+  for (int n = size - 1; n >= 0; n--) {
+    const dvi__graph_node *node = graph->node + n;
+    const int operands = part[n] ? dvi__operands(node->op) : 0;
+    if (operands > 0) part[node->a] = 1;
+    if (operands > 1 && !(node->op == DVI__OP_WHERE && at[node->a] <= 0)) part[node->b] = 1;
+  }
+}
+
 dvi_status dvi__evaluate(const dvi__graph *graph, const double *x, int root_count, const dvi__node *root, double *value,
                          dvi__node *not_finite)
 {
@@ -87,11 +103,17 @@ dvi_status dvi__evaluate(const dvi__graph *graph, const double *x, int root_coun
   int size;
   char *part = dvi__parts(graph, root_count, root, &size);
   double *at = part == NULL ? NULL : dvi__heap_take((size_t)size + 1, sizeof *at);
-  *not_finite = -1;
+  int finite = 1;
   for (int n = 0; n < size && at != NULL; n++) {
     if (!part[n]) continue;
     at[n] = value_of(graph->node + n, x, at);
-    if (*not_finite < 0 && !isfinite(at[n])) *not_finite = n;
+    finite &= isfinite(at[n]) != 0;
+  }
+  *not_finite = -1;
+  if (at != NULL && !finite) {
+    dvi__mark_taken(graph, at, root_count, root, size, part);
+    for (int n = 0; n < size && *not_finite < 0; n++)
+      if (part[n] && !isfinite(at[n])) *not_finite = n;
   }
   for (int k = 0; k < root_count && at != NULL; k++) value[k] = at[root[k]];
   const dvi_status status = at == NULL ? DVI_NO_MEMORY : DVI_OK;

@@ -36,6 +36,9 @@ static int curvature(const dvi__graph *graph, const dvi__graph_node *node)
   case DVI__OP_NEGATE:
   case DVI__OP_ABS:
   case DVI__OP_SIGN:
+  case DVI__OP_FLOOR:
+  case DVI__OP_POSITIVE:
+  case DVI__OP_WHERE:
   case DVI__OP_ADD:
   case DVI__OP_SUBTRACT: return 0;
   case DVI__OP_MULTIPLY:
@@ -53,10 +56,10 @@ static void mark_parts(const dvi__graph *graph, dvi__node root, char *mark)
   mark[root] = REACHED;
   for (int n = root; n >= 0; n--) {
     const dvi__graph_node *node = graph->node + n;
-    if (!mark[n] || node->op == DVI__OP_SIGN) continue;
+    if (!mark[n] || dvi__is_step(node->op)) continue;
     const char below = (char)(mark[n] | (curvature(graph, node) ? SET_NEEDED : 0));
     const int operands = dvi__operands(node->op);
-    if (operands > 0) mark[node->a] |= below;
+    if (operands > 0 && node->op != DVI__OP_WHERE) mark[node->a] |= below;
     if (operands > 1) mark[node->b] |= below;
   }
 }
@@ -99,7 +102,8 @@ static set set_of(const dvi__graph_node *node, int count, const set *sets, dvi__
     if (input != NULL) *input = node->a;
     return (set){input != NULL, input};
   }
-  if (operands == 0 || node->op == DVI__OP_SIGN) return (set){0};
+  if (operands == 0 || dvi__is_step(node->op)) return (set){0};
+  if (node->op == DVI__OP_WHERE) return sets[node->b];
   return operands == 1 ? sets[node->a] : join(arena, sets[node->a], sets[node->b], work);
 }
 

@@ -85,6 +85,7 @@ static dvi__node make_sum(dvi__graph *graph, dvi__node a, dvi__node b)
 static dvi__node scale_rest(dvi__graph *graph, double c, dvi__node n)
 {
   const dvi__graph_node node = *at(graph, n);
+  if (node.op == DVI__OP_WHERE) return dvi__where(graph, node.a, dvi__scale(graph, c, node.b));
   if (node.op == DVI__OP_MULTIPLY) {
     const scaled a = scaled_of(graph, node.a), b = scaled_of(graph, node.b);
     if (a.factor != 1 && is_moderate(c * a.factor)) return dvi__multiply(graph, dvi__scale(graph, c * a.factor, a.rest), node.b);
@@ -111,16 +112,24 @@ static dvi__node negate(dvi__graph *graph, dvi__node n)
 {
   const dvi__graph_node node = *at(graph, n);
   const scaled own = scaled_of(graph, n);
+  if (node.op == DVI__OP_WHERE) return dvi__where(graph, node.a, dvi__negate(graph, node.b));
   if (node.op == DVI__OP_SUBTRACT) return dvi__subtract(graph, node.b, node.a);
   if (own.factor == -1) return own.rest;
   if (own.factor != 1) return make_product(graph, dvi__constant(graph, -own.factor), own.rest);
   return dvi__make(graph, DVI__OP_NEGATE, n, 0, 0);
 }
 
+/* Two parts that one condition guards: they are added, or subtracted, under it. */
+static bool share_guard(const dvi__graph *graph, dvi__node a, dvi__node b)
+{
+  return at(graph, a)->op == DVI__OP_WHERE && at(graph, b)->op == DVI__OP_WHERE && at(graph, a)->a == at(graph, b)->a;
+}
+
 static dvi__node add(dvi__graph *graph, dvi__node a, dvi__node b)
 {
   const scaled x = scaled_of(graph, a), y = scaled_of(graph, b);
   double c;
+  if (share_guard(graph, a, b)) return dvi__where(graph, at(graph, a)->a, dvi__add(graph, at(graph, a)->b, at(graph, b)->b));
   if (dvi__is_constant(graph, a, &c) && c == 0) return b;
   if (dvi__is_constant(graph, b, &c) && c == 0) return a;
   if (x.rest == y.rest && isfinite(x.factor + y.factor)) return dvi__scale(graph, x.factor + y.factor, x.rest);
@@ -133,6 +142,7 @@ static dvi__node subtract(dvi__graph *graph, dvi__node a, dvi__node b)
 {
   const scaled x = scaled_of(graph, a), y = scaled_of(graph, b);
   double c;
+  if (share_guard(graph, a, b)) return dvi__where(graph, at(graph, a)->a, dvi__subtract(graph, at(graph, a)->b, at(graph, b)->b));
   if (dvi__is_constant(graph, a, &c) && c == 0) return dvi__negate(graph, b);
   if (dvi__is_constant(graph, b, &c) && c == 0) return a;
   if (x.rest == y.rest && isfinite(x.factor - y.factor)) return dvi__scale(graph, x.factor - y.factor, x.rest);
@@ -168,6 +178,9 @@ static dvi__node multiply(dvi__graph *graph, dvi__node a, dvi__node b)
   if (dvi__is_constant(graph, a, &c)) return dvi__scale(graph, c, b);
   if (dvi__is_constant(graph, b, &c)) return dvi__scale(graph, c, a);
   if (a == b) return dvi__power(graph, a, 2);
+  const dvi__graph_node left = *at(graph, a), right = *at(graph, b);
+  if (left.op == DVI__OP_WHERE) return dvi__where(graph, left.a, dvi__multiply(graph, left.b, b));
+  if (right.op == DVI__OP_WHERE) return dvi__where(graph, right.a, dvi__multiply(graph, a, right.b));
   const scaled x = scaled_of(graph, a), y = scaled_of(graph, b);
   const double factor = x.factor * y.factor;
   if (!is_moderate(factor)) return make_product(graph, a, b);
@@ -189,6 +202,8 @@ static dvi__node divide_by_constant(dvi__graph *graph, dvi__node a, double c)
 static dvi__node divide(dvi__graph *graph, dvi__node a, dvi__node b)
 {
   double c;
+  const dvi__graph_node guarded = *at(graph, a);
+  if (guarded.op == DVI__OP_WHERE) return dvi__where(graph, guarded.a, dvi__divide(graph, guarded.b, b));
   if (dvi__is_constant(graph, b, &c)) return divide_by_constant(graph, a, c);
   if (dvi__is_constant(graph, a, &c) && c == 0) return a;
   const scaled x = scaled_of(graph, a), y = scaled_of(graph, b);
@@ -231,6 +246,8 @@ dvi__node dvi__power(dvi__graph *graph, dvi__node a, double exponent)
   if (dvi__is_constant(graph, a, &base) && isfinite(pow(base, exponent))) return dvi__constant(graph, pow(base, exponent));
   if (exponent == 0) return dvi__constant(graph, 1);
   if (exponent == 1) return a;
+  const dvi__graph_node guarded = *at(graph, a);
+  if (guarded.op == DVI__OP_WHERE && exponent > 0) return dvi__where(graph, guarded.a, dvi__power(graph, guarded.b, exponent));
   if (!is_exponent(exponent)) return dvi__make(graph, DVI__OP_RAISE, a, dvi__constant(graph, exponent), 0);
   const scaled x = scaled_of(graph, a);
   const double factor = pow(x.factor, exponent);
@@ -271,6 +288,41 @@ static dvi__node function(dvi__graph *graph, dvi__op op, dvi__node a)
   }
 }
 
+/* b under a condition: known, or the same that guards it already. */
+static dvi__node where(dvi__graph *graph, dvi__node condition, dvi__node n)
+{
+  const dvi__graph_node node = *at(graph, n);
+  double c;
+  if (dvi__is_constant(graph, condition, &c) && isfinite(c)) return c > 0 ? n : dvi__constant(graph, 0);
+  if (dvi__is_constant(graph, n, &c) && c == 0) return n;
+  if (node.op == DVI__OP_WHERE && node.a == condition) return n;
+  return dvi__make(graph, DVI__OP_WHERE, condition, n, 0);
+}
+
+dvi__node dvi__complement(dvi__graph *graph, dvi__node c)
+{
+  const dvi__graph_node node = *at(graph, c);
+  double one;
+  if (node.op == DVI__OP_SUBTRACT && dvi__is_constant(graph, node.a, &one) && one == 1) return node.b;
+  return dvi__subtract(graph, dvi__constant(graph, 1), c);
+}
+
+dvi__node dvi__both(dvi__graph *graph, dvi__node c, dvi__node d)
+{
+  return dvi__where(graph, c, d);
+}
+
+dvi__node dvi__choice(dvi__graph *graph, dvi__node c, dvi__node a, dvi__node b)
+{
+  if (a == b) return a;
+  return dvi__add(graph, dvi__where(graph, c, a), dvi__where(graph, dvi__complement(graph, c), b));
+}
+
+dvi__node dvi__greater(dvi__graph *graph, dvi__node a, dvi__node b)
+{
+  return dvi__apply(graph, DVI__OP_POSITIVE, dvi__subtract(graph, a, b), 0);
+}
+
 /* The value of an operation on constants, if it has one. */
 static bool folded(const dvi__graph *graph, dvi__op op, dvi__node a, dvi__node b, double *value)
 {
@@ -297,6 +349,7 @@ dvi__node dvi__apply(dvi__graph *graph, dvi__op op, dvi__node a, dvi__node b)
   case DVI__OP_DIVIDE: return divide(graph, a, b);
   case DVI__OP_RAISE: return dvi__is_constant(graph, b, &c) ? dvi__power(graph, a, c) : dvi__make(graph, op, a, b, 0);
   case DVI__OP_ATAN2: return dvi__make(graph, op, a, b, 0);
+  case DVI__OP_WHERE: return where(graph, a, b);
   case DVI__OP_HYPOT: return dvi__power(graph, dvi__add(graph, dvi__square(graph, a), dvi__square(graph, b)), 0.5);
   default: return function(graph, op, a);
   }

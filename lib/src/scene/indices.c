@@ -167,7 +167,7 @@ static int places(const dvi_scene *scene, const char *text, int k)
   if (name->sort == DVI__DEFINITION) shape = scene->definition[name->number].shape;
   if (name->sort == DVI__COORDINATE) {
     const dvi__coordinate *x = &scene->coordinate[name->number];
-    if (x->family && k == 0) return x->size;
+    if (k < x->family) return dvi__extent(x, k);
     shape = x->shape;
     k -= x->family;
   }

@@ -137,6 +137,7 @@ static dual operate(const dvi__graph_node *node, const dual *at)
   case DVI__OP_SUBTRACT: return sum(a, negative(b));
   case DVI__OP_MULTIPLY: return product(a, b);
   case DVI__OP_DIVIDE: return product(a, power(b, -1));
+  case DVI__OP_WHERE: return product(unknown(node, a, none), b);
   case DVI__OP_RAISE:
   case DVI__OP_ATAN2:
   case DVI__OP_HYPOT: return unknown(node, a, b);

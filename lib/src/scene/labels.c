@@ -34,10 +34,11 @@ static void write_component(const dvi__coordinate *x, which of, int k, char *tex
 /* What follows the name in the label of number k of member i; at most ROOM characters. */
 static void write_ending(const dvi__coordinate *x, which of, int i, int k, char *text)
 {
-  char member[ROOM / 3] = "", component[ROOM / 3];
+  char member[24] = "", component[ROOM / 3];
   const int says_part = x->part_name != 0 && (of != OF_V || x->kind != DVI__ROTATION); /* omega(B), p(B.R) */
   const char part[3] = {says_part ? '_' : '\0', x->part_name, '\0'};
-  if (x->family) (void)snprintf(member, sizeof member, "_%d", i + 1);
+  if (x->family == 1) (void)snprintf(member, sizeof member, "_%d", i + 1);
+  if (x->family > 1) (void)snprintf(member, sizeof member, "_%d_%d", i / x->columns + 1, i % x->columns + 1);
   write_component(x, of, k, component, sizeof component);
   (void)snprintf(text, ROOM, "%s%s%s", member, part, component);
 }
@@ -112,12 +113,22 @@ static long counted(const char *bar)
   return bar != NULL && *bar == '_' ? strtol(bar + 1, NULL, 10) - 1 : -1;
 }
 
+/* The member that an ending says, from 0; -1: none. */
+static long member_said(const dvi__coordinate *x, const char *ending)
+{
+  const long first = x->family > 0 ? counted(ending) : 0;
+  if (x->family < 2) return first;
+  const long second = ending[0] != '\0' ? counted(strchr(ending + 1, '_')) : -1;
+  const bool inside = first >= 0 && first < dvi__extent(x, 0) && second >= 0 && second < dvi__extent(x, 1);
+  return inside ? first * x->columns + second : -1;
+}
+
 /* Whether a label of x ends so behind its name: the ending says of which member, and of long vectors which component. */
 static bool has_ending(const dvi__coordinate *x, which of, const char *ending)
 {
   if (x->kind == DVI__MOTION) return has_ending(&x->part[0], of, ending) || has_ending(&x->part[1], of, ending);
   const int components = of == OF_Q ? x->q.components : x->v.components;
-  const long i = x->family ? counted(ending) : 0, only = components > 12 ? counted(strrchr(ending, '_')) : -1;
+  const long i = member_said(x, ending), only = components > 12 ? counted(strrchr(ending, '_')) : -1;
   char own[ROOM];
   if (i < 0 || i >= x->size) return false;
   for (int k = 0; k < components; k++) {

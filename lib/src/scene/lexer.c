@@ -73,10 +73,11 @@ static const char *spelling(unsigned code)
   static const struct {
     unsigned code;
     const char *spelling;
-  } mark[] = {{0x2212, "-"},          {0x2013, "-"},    {0xB7, "*"},    {0x22C5, "*"},      {0xD7, "*"},       {0xF7, "/"},
-              {0xB2, "^2"},           {0xB3, "^3"},     {0x2019, "'"},  {0x2032, "'"},      {0xB4, "'"},       {0x221A, "sqrt(..)"},
-              {0x2211, "sum(i, ..)"}, {0x3D1, "theta"}, {0x3D5, "phi"}, {0x3F5, "epsilon"}, {0xA0, "a blank"}, {0x2264, "<"},
-              {0x2026, ".."}};
+  } mark[] = {
+      {0x2212, "-"},          {0x2013, "-"},    {0xB7, "*"},     {0x22C5, "*"},      {0xD7, "*"},       {0xF7, "/"},
+      {0xB2, "^2"},           {0xB3, "^3"},     {0x2019, "'"},   {0x2032, "'"},      {0xB4, "'"},       {0x221A, "sqrt(..)"},
+      {0x2211, "sum(i, ..)"}, {0x3D1, "theta"}, {0x3D5, "phi"},  {0x3F5, "epsilon"}, {0xA0, "a blank"}, {0x2264, "<="},
+      {0x2265, ">="},         {0x2260, "!="},   {0x2227, "and"}, {0x2228, "or"},     {0xAC, "not"},     {0x2026, ".."}};
   if (code >= 0x3B1 && code < 0x3B1 + sizeof greek / sizeof *greek) return greek[code - 0x3B1];
   for (size_t k = 0; k < sizeof mark / sizeof *mark; k++)
     if (mark[k].code == code) return mark[k].spelling;
@@ -106,21 +107,36 @@ static bool refuse(const text *t, size_t k, dvi__complaint *complaint)
                {':', "; a range is a..b"},
                {';', "; elements of a list are separated by commas, rows are lists: [[a, b], [c, d]]"},
                {'"', "; quotes stand around the whole expression, and the rate of x is x'"},
-               {'%', "; there is no remainder"},
+               {'%', "; a remainder is x - n*floor(x/n)"},
                {'{', "; write parentheses"},
                {'}', "; write parentheses"},
                {'\\', "; write sin(x), without a backslash"},
-               {'>', "; the pairs of a sum are i<j"},
                {'#', "; a blank stands before a comment"},
-               {'&', "; a scene has no conditions"},
-               {'?', "; a scene has no conditions"},
-               {'!', "; a scene has no conditions"}};
+               {'&', "; write and"},
+               {'?', "; write if(x < 0, a, b)"},
+               {'!', "; write not"}};
   const char c = t->at[k];
   if ((unsigned char)c >= 0x80) return refuse_letter(t, k, complaint);
   const char *remedy = "";
   for (size_t i = 0; i < sizeof known / sizeof *known; i++)
     if (known[i].mark == c) remedy = known[i].remedy;
   return dvi__complain(complaint, DVI_BAD_FILE, (dvi__span){k, 1}, "'%c' has no meaning in expressions%s", c, remedy);
+}
+
+/* The kind of a mark of two characters; 0: this is none. */
+static int mark_of_two(char first, char second)
+{
+  static const struct {
+    char spelling[3];
+    int kind;
+  } mark[] = {{"..", DVI__TOKEN_RANGE},
+              {"<=", DVI__TOKEN_AT_MOST},
+              {">=", DVI__TOKEN_AT_LEAST},
+              {"==", DVI__TOKEN_EQUALS},
+              {"!=", DVI__TOKEN_DIFFERS}};
+  for (size_t k = 0; k < sizeof mark / sizeof *mark; k++)
+    if (mark[k].spelling[0] == first && mark[k].spelling[1] == second) return mark[k].kind;
+  return 0;
 }
 
 bool dvi__token_read(const dvi__source *source, size_t offset, size_t end, dvi__complaint *complaint, dvi__token *token)
@@ -139,12 +155,12 @@ bool dvi__token_read(const dvi__source *source, size_t offset, size_t end, dvi__
   } else if (is_letter(c)) {
     kind = DVI__TOKEN_NAME;
     last = name_end(&t, first);
-  } else if (c == '.' && at(&t, first + 1) == '.') {
-    kind = DVI__TOKEN_RANGE;
+  } else if (mark_of_two(c, at(&t, last)) != 0) {
+    kind = mark_of_two(c, at(&t, last));
     last = first + 2;
   } else if (c == '*' && at(&t, last) == '*') {
     return dvi__complain(complaint, DVI_BAD_FILE, (dvi__span){first, 2}, "powers are written x^2, not x**2");
-  } else if (c == '\0' || strchr("+-*/^()[],.'<=", c) == NULL) {
+  } else if (c == '\0' || strchr("+-*/^()[],.'<>=", c) == NULL) {
     return refuse(&t, first, complaint);
   }
   *token = (dvi__token){kind, {first, last - first}};

@@ -8,11 +8,15 @@ typedef enum dvi__token_kind {
   DVI__TOKEN_END = 0,
   DVI__TOKEN_NUMBER = 256, /* not read yet: digits, point, exponent */
   DVI__TOKEN_NAME,
-  DVI__TOKEN_RANGE /* .. */
+  DVI__TOKEN_RANGE,    /* .. */
+  DVI__TOKEN_AT_MOST,  /* <= */
+  DVI__TOKEN_AT_LEAST, /* >= */
+  DVI__TOKEN_EQUALS,   /* == */
+  DVI__TOKEN_DIFFERS   /* != */
 } dvi__token_kind;
 
 typedef struct dvi__token {
-  int kind; /* a dvi__token_kind, or one of + - * / ^ ( ) [ ] , . ' < = */
+  int kind; /* a dvi__token_kind, or one of + - * / ^ ( ) [ ] , . ' < > = */
   dvi__span span;
 } dvi__token;
 

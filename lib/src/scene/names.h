@@ -41,13 +41,26 @@ typedef struct dvi__coordinate {
   const char *name;
   dvi__span span;
   dvi__kind kind;
-  int family;       /* 1: it is indexed */
+  int family;       /* how many indices it has, at most 2 */
   int size;         /* members of the family; 1 */
+  int columns;      /* values of the last one of two indices, which members are counted by first; 1 */
   dvi__shape shape; /* of a member */
   dvi__slots q, v;
   const struct dvi__coordinate *part; /* of a motion: [2], its rotation and its place */
   char part_name;                     /* of such a part: R or x; else 0 */
 } dvi__coordinate;
+
+/* Values of index k, from 0, of a family. */
+static inline int dvi__extent(const dvi__coordinate *x, int k)
+{
+  return k == 0 ? x->size / x->columns : x->columns;
+}
+
+/* The indices of a member of a family, none of what is no family. */
+typedef struct dvi__subscripts {
+  int count;
+  const dvi__expression *of[2];
+} dvi__subscripts;
 
 /* What an expression mentions, definitions seen through. */
 enum { DVI__SAYS_Q = 1, DVI__SAYS_V = 2, DVI__SAYS_P = 4, DVI__SAYS_T = 8, DVI__SAYS_SUM = 16 };

@@ -81,6 +81,7 @@ static void copy_moving(copy *c, int i)
   case DVI__OP_ADD:
   case DVI__OP_SUBTRACT: c->moving[i] = apply(c, node->op, c->moving[a], c->moving[b]); break;
   case DVI__OP_DIVIDE: c->moving[i] = apply(c, DVI__OP_DIVIDE, c->moving[a], c->rest[b]); break;
+  case DVI__OP_WHERE: c->moving[i] = apply(c, DVI__OP_WHERE, c->rest[a], c->moving[b]); break;
   case DVI__OP_MULTIPLY: c->moving[i] = moving_product(c, a, b); break;
   case DVI__OP_SQUARE:
     c->moving[i] = is_zero(c, c->rest[a]) ? apply(c, DVI__OP_SQUARE, c->moving[a], 0) : moving_product(c, a, a);
@@ -253,6 +254,8 @@ static dvi__degree of_node(const dvi__kernel *kernel, dvi__block block, const dv
   }
   case DVI__OP_DIVIDE:
     return known[node->b].degree > 0 ? of_other(known[node->a], known[node->b]) : of_product(known[node->a], known[node->b]);
+  case DVI__OP_WHERE:
+    return known[node->a].degree > 0 ? of_other(known[node->a], known[node->b]) : of_product(known[node->a], known[node->b]);
   case DVI__OP_RAISE:
   case DVI__OP_ATAN2: return of_other(known[node->a], known[node->b]);
   default: return of_other(known[node->a], none);

@@ -113,27 +113,38 @@ static void sines_and_cosines(int lanes, int width, const double *restrict angle
   fill_up(lanes, width, cosine);
 }
 
+/* x where a condition holds. Its operands are read before anything is decided: where gcc 12
+ * makes vectors of four for AVX2 of c[k] > 0.0 ? x[k] : .., which reads x[k] for some lanes
+ * alone, it takes the wrong lanes. */
+DVI__SCENE_INLINE double taken(double condition, double x)
+{
+  return condition > 0.0 ? x : condition <= 0.0 ? 0.0 : condition;
+}
+
 /* Operations that are loops over whole blocks: X(name, code, result of lane k). */
-#define LOOPS(X)                                                \
-  X(copy, DVI__CODE_COPY, a[k])                                 \
-  X(fill, DVI__CODE_FILL, value)                                \
-  X(add_value, DVI__CODE_ADD_VALUE, a[k] + value)               \
-  X(subtract_from, DVI__CODE_SUBTRACT_FROM, value - a[k])       \
-  X(multiply_by, DVI__CODE_MULTIPLY_BY, a[k] * value)           \
-  X(divide_by, DVI__CODE_DIVIDE_BY, a[k] / value)               \
-  X(divide_into, DVI__CODE_DIVIDE_INTO, value / a[k])           \
-  X(multiply_add, DVI__CODE_MULTIPLY_ADD, a[k] * b[k] + c[k])   \
-  X(multiply_less, DVI__CODE_MULTIPLY_LESS, a[k] * b[k] - c[k]) \
-  X(less_product, DVI__CODE_LESS_PRODUCT, c[k] - a[k] * b[k])   \
-  X(add, DVI__OP_ADD, a[k] + b[k])                              \
-  X(subtract, DVI__OP_SUBTRACT, a[k] - b[k])                    \
-  X(multiply, DVI__OP_MULTIPLY, a[k] * b[k])                    \
-  X(divide, DVI__OP_DIVIDE, a[k] / b[k])                        \
-  X(negate, DVI__OP_NEGATE, -a[k])                              \
-  X(square, DVI__OP_SQUARE, a[k] * a[k])                        \
-  X(root, DVI__OP_SQRT, sqrt(a[k]))                             \
-  X(magnitude, DVI__OP_ABS, fabs(a[k]))                         \
-  X(sign, DVI__OP_SIGN, a[k] > 0.0 ? 1.0 : a[k] < 0.0 ? -1.0 : a[k])
+#define LOOPS(X)                                                             \
+  X(copy, DVI__CODE_COPY, a[k])                                              \
+  X(fill, DVI__CODE_FILL, value)                                             \
+  X(add_value, DVI__CODE_ADD_VALUE, a[k] + value)                            \
+  X(subtract_from, DVI__CODE_SUBTRACT_FROM, value - a[k])                    \
+  X(multiply_by, DVI__CODE_MULTIPLY_BY, a[k] * value)                        \
+  X(divide_by, DVI__CODE_DIVIDE_BY, a[k] / value)                            \
+  X(divide_into, DVI__CODE_DIVIDE_INTO, value / a[k])                        \
+  X(multiply_add, DVI__CODE_MULTIPLY_ADD, a[k] * b[k] + c[k])                \
+  X(multiply_less, DVI__CODE_MULTIPLY_LESS, a[k] * b[k] - c[k])              \
+  X(less_product, DVI__CODE_LESS_PRODUCT, c[k] - a[k] * b[k])                \
+  X(add, DVI__OP_ADD, a[k] + b[k])                                           \
+  X(subtract, DVI__OP_SUBTRACT, a[k] - b[k])                                 \
+  X(multiply, DVI__OP_MULTIPLY, a[k] * b[k])                                 \
+  X(divide, DVI__OP_DIVIDE, a[k] / b[k])                                     \
+  X(negate, DVI__OP_NEGATE, -a[k])                                           \
+  X(square, DVI__OP_SQUARE, a[k] * a[k])                                     \
+  X(root, DVI__OP_SQRT, sqrt(a[k]))                                          \
+  X(magnitude, DVI__OP_ABS, fabs(a[k]))                                      \
+  X(sign, DVI__OP_SIGN, a[k] > 0.0 ? 1.0 : a[k] < 0.0 ? -1.0 : a[k])         \
+  X(whole, DVI__OP_FLOOR, floor(a[k]))                                       \
+  X(positive, DVI__OP_POSITIVE, a[k] > 0.0 ? 1.0 : a[k] <= 0.0 ? 0.0 : a[k]) \
+  X(where, DVI__OP_WHERE, taken(a[k], b[k]))
 
 #define LOOP(name, code, expression)                                                                              \
   DVI__SCENE_INLINE void name##_rows(int width, double value, const double *restrict a, const double *restrict b, \

@@ -49,6 +49,38 @@ static double sign_of(double x)
   return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : x;
 }
 
+/* Whether a series is a number and no more. */
+static int is_constant(int degree, const double *a)
+{
+  int constant = 1;
+  for (int k = 1; k <= degree; k++) constant &= a[k] <= 0.0 && a[k] >= 0.0;
+  return constant;
+}
+
+/* The value of a function that is constant between its jumps: at a jump through which the
+ * argument moves there is no series. */
+static void step(int degree, double value, int jumps, const double *a, double *to)
+{
+  fill(degree, jumps && !is_constant(degree, a) ? (double)NAN : value, to);
+}
+
+/* b under a condition. */
+static void where(int degree, const double *condition, const double *b, double *to)
+{
+  if (condition[0] > 0.0)
+    shift(degree, 0.0, 1.0, b, to);
+  else
+    fill(degree, condition[0] <= 0.0 ? 0.0 : condition[0], to);
+}
+
+/* |a|, which has no series where a passes through 0. */
+static void magnitude(int degree, const double *a, double *to)
+{
+  const double sign = sign_of(a[0]);
+  const int turns = !(a[0] > 0.0) && !(a[0] < 0.0) && !is_constant(degree, a);
+  shift(degree, 0.0, turns ? (double)NAN : sign, a, to);
+}
+
 /* The c that begins with c0 and has c' = (1 + sign c^2) a'. */
 static void tangent(int degree, double c0, double sign, const double *a, double *c)
 {
@@ -90,9 +122,7 @@ static void angle(int degree, const double *y, const double *x, double *c)
 static void raise(int degree, const double *a, const double *b, double *to)
 {
   double logarithm[LENGTH], exponent[LENGTH];
-  int constant = 1;
-  for (int k = 1; k <= degree; k++) constant &= !(b[k] < 0.0) && !(b[k] > 0.0);
-  if (constant) {
+  if (is_constant(degree, b)) {
     dvi_taylor_power(degree, a, b[0], to);
     return;
   }
@@ -151,8 +181,11 @@ static void run_one(const dvi__instruction *at, int degree, const double *a, con
   case DVI__CODE_ROOT_POWER:
   case DVI__CODE_INVERSE_ROOT_POWER: dvi_taylor_power(degree, a, value, to); break;
   case DVI__OP_NEGATE: shift(degree, 0.0, -1.0, a, to); break;
-  case DVI__OP_ABS: shift(degree, 0.0, sign_of(a[0]), a, to); break;
-  case DVI__OP_SIGN: fill(degree, sign_of(a[0]), to); break;
+  case DVI__OP_ABS: magnitude(degree, a, to); break;
+  case DVI__OP_SIGN: step(degree, sign_of(a[0]), !(a[0] > 0.0) && !(a[0] < 0.0), a, to); break;
+  case DVI__OP_FLOOR: step(degree, floor(a[0]), !(a[0] > floor(a[0])), a, to); break;
+  case DVI__OP_POSITIVE: step(degree, a[0] > 0.0 ? 1.0 : a[0] <= 0.0 ? 0.0 : a[0], !(a[0] > 0.0) && !(a[0] < 0.0), a, to); break;
+  case DVI__OP_WHERE: where(degree, a, b, to); break;
   case DVI__OP_ADD: dvi_taylor_combine(degree, 1.0, a, 1.0, b, to); break;
   case DVI__OP_SUBTRACT: dvi_taylor_combine(degree, 1.0, a, -1.0, b, to); break;
   case DVI__OP_MULTIPLY: dvi_taylor_multiply(degree, a, b, to); break;

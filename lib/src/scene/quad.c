@@ -119,6 +119,13 @@ static quad angle_of(quad y, quad x)
   return angle;
 }
 
+static quad whole_below(quad x)
+{
+  quad whole = (quad)floor((double)x); /* the rounded x may be beyond the next one */
+  if (whole > x) whole -= 1;
+  return whole + 1 <= x ? whole + 1 : whole;
+}
+
 static quad hyperbolic_sine(quad x)
 {
   if (magnitude(x) > 1) return (exponential(x) - exponential(-x)) / 2;
@@ -180,6 +187,9 @@ quad dvi__quad_operate(dvi__op op, double number, quad a, quad b)
   case DVI__OP_RAISE: return exponential(b * logarithm(a));
   case DVI__OP_ATAN2: return angle_of(a, b);
   case DVI__OP_HYPOT: return root(a * a + b * b);
+  case DVI__OP_FLOOR: return whole_below(a);
+  case DVI__OP_POSITIVE: return a > 0 ? 1 : a <= 0 ? 0 : a;
+  case DVI__OP_WHERE: return a > 0 ? b : a <= 0 ? 0 : a;
   case DVI__OP_COUNT: break;
   }
   return 0;
@@ -213,7 +223,10 @@ void dvi__quad_slopes(dvi__op op, double number, quad value, quad a, quad b, qua
   case DVI__OP_RAISE: slope[0] = b * value / a, slope[1] = value * logarithm(a); break;
   case DVI__OP_ATAN2: slope[0] = b / (a * a + b * b), slope[1] = -a / (a * a + b * b); break;
   case DVI__OP_HYPOT: slope[0] = a / value, slope[1] = b / value; break;
-  case DVI__OP_SIGN: slope[0] = 0; break;
+  case DVI__OP_WHERE: slope[0] = 0, slope[1] = a; break;
+  case DVI__OP_SIGN:
+  case DVI__OP_FLOOR:
+  case DVI__OP_POSITIVE: slope[0] = 0; break;
   default: slope[0] = slope[1] = 1; /* of ADD */
   }
 }

@@ -286,8 +286,5 @@ void dvi_scene_facts_of(const dvi_scene *scene, dvi_scene_facts *facts)
   facts->mass = scene->mass;
   for (const dvi__term *term = scene->functions; term != NULL; term = term->next)
     if (term->role == DVI__MOVES) add_facts(term, facts);
-  for (int k = 0; k < scene->terms.potential_count; k++) {
-    dvi__term *term = scene->terms.potentials[k].user;
-    facts->quadratic_potentials += dvi__function_second_constant(term->function, DVI__PAIR_QQ) == 1;
-  }
+  for (int k = 0; k < scene->terms.potential_count; k++) facts->quadratic_potentials += scene->terms.potentials[k].quadratic;
 }

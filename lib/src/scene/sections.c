@@ -327,12 +327,29 @@ static bool refuse_slips(dvi_scene *scene)
   return true;
 }
 
+/* What is no mapping, or a mapping of several keys of which none is known, was meant for
+ * something else. */
+static bool is_scene(dvi_scene *scene, const char *const *known)
+{
+  const dvi__tree *tree = scene->tree;
+  char hint[96];
+  bool near = tree->count == 1;
+  for (int i = 0; tree->kind == DVI__MAPPING && i < tree->count && !near; i++)
+    for (int k = 0; k < SECTIONS && !near; k++)
+      near = strcmp(tree->key[i]->text, known[k]) == 0 ||
+             dvi__nearest(tree->key[i]->text, SECTIONS, known, hint, sizeof hint)[0] != '\0';
+  if (tree->kind == DVI__MAPPING && near) return true;
+  return dvi__complain_of_file(scene->complaint, tree->span,
+                               tree->kind == DVI__MAPPING    ? "this is a mapping of other names"
+                               : tree->kind == DVI__SEQUENCE ? "this is a list"
+                                                             : "this is a text");
+}
+
 static bool all_known(dvi_scene *scene)
 {
   const char *known[SECTIONS];
   for (int k = 0; k < SECTIONS; k++) known[k] = sections[k].name;
-  if (!dvi__want_mapping(scene, scene->tree, "a scene") || !refuse_slips(scene) ||
-      !dvi__want_keys(scene, scene->tree, "a scene", SECTIONS, known))
+  if (!is_scene(scene, known) || !refuse_slips(scene) || !dvi__want_keys(scene, scene->tree, "a scene", SECTIONS, known))
     return false;
   for (int k = 0; k < SECTIONS; k++) {
     const dvi__tree *found = dvi__tree_find(scene->tree, sections[k].name);

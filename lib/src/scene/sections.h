@@ -68,14 +68,16 @@ bool dvi__labels_differ(dvi_scene *scene);
 
 /* ---- coordinates as keys ---- */
 
-/* x, x[3] or x[i], of a motion B.R or B.x; and of these the numbers, the velocities x', omega(R) or rate(u), or the momenta p(x). */
+/* x, x[3] or x[i], u[i,3], of a motion B.R or B.x; and of these the numbers, the velocities x',
+ * omega(R) or rate(u), or the momenta p(x). */
 typedef struct dvi__target {
   const dvi__coordinate *x;
-  unsigned says;                /* DVI__SAYS_Q, _V or _P */
-  const dvi__expression *index; /* one member; NULL: all */
-  const char *each;             /* the index of a formula for all members, or NULL */
-  const char *call;             /* "omega" or "rate", or NULL */
-  const dvi__slots *places;     /* in q, or in v and p */
+  unsigned says;            /* DVI__SAYS_Q, _V or _P */
+  dvi__subscripts index;    /* each a number, or the name in `each` */
+  const char *each[2];      /* the index of a formula for all its values, or NULL */
+  int fixed;                /* how many indices are numbers */
+  const char *call;         /* "omega" or "rate", or NULL */
+  const dvi__slots *places; /* in q, or in v and p */
   dvi__span span;
 } dvi__target;
 

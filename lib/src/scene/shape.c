@@ -38,11 +38,6 @@ static void put(dvi__value *value, int i, dvi__node node)
     value->node[i] = node;
 }
 
-static bool same_shape(dvi__shape a, dvi__shape b)
-{
-  return a.rank == b.rank && a.rows == b.rows && a.columns == b.columns;
-}
-
 /* Refuse two values for an operation: "a vector of 3 plus a number". */
 static dvi__value misfit(const dvi__context *c, dvi__value a, const char *word, dvi__value b, dvi__span span, const char *remedy)
 {
@@ -62,7 +57,7 @@ dvi__value dvi__value_negate(dvi__context *c, dvi__value a)
 
 dvi__value dvi__value_add(dvi__context *c, dvi__op op, dvi__value a, dvi__value b, dvi__span span)
 {
-  if (!same_shape(a.shape, b.shape)) return misfit(c, a, op == DVI__OP_ADD ? "plus" : "minus", b, span, "");
+  if (!dvi__same_shape(a.shape, b.shape)) return misfit(c, a, op == DVI__OP_ADD ? "plus" : "minus", b, span, "");
   dvi__value result = dvi__value_make(c, a.shape.rank, a.shape.rows, a.shape.columns);
   if (result.shape.rank < 0) return result;
   for (int i = 0; i < dvi__value_size(a); i++) put(&result, i, dvi__apply(c->graph, op, dvi__value_at(a, i), dvi__value_at(b, i)));
@@ -216,23 +211,43 @@ static bool right_count(const dvi__context *c, const dvi__expression *call, int 
 /* An angle is (cos, sin). */
 static const char *hint_of_angle(const dvi__context *c, const dvi__expression *e)
 {
-  const dvi__expression *index;
+  dvi__subscripts index;
   const dvi__coordinate *x = dvi__member_named(c->scene, e, &index);
   return x != NULL && x->kind == DVI__ANGLE ? ": the cosine of an angle u is u[1], its sine u[2]" : "";
+}
+
+static bool are_numbers(const dvi__context *c, const dvi__expression *call, const dvi__value *a)
+{
+  char shape[48];
+  for (int k = 0; k < call->count; k++)
+    if (a[k].shape.rank != 0)
+      return dvi__refuse(c, call->part[k]->span, "%s is taken of a number, not of %s%s", call->name,
+                         dvi__shape_text(a[k].shape, shape, sizeof shape), hint_of_angle(c, call->part[k]));
+  return true;
 }
 
 /* A function of numbers. */
 static dvi__value number_call(dvi__context *c, const dvi__expression *call, const dvi__function_word *word, const dvi__value *a)
 {
-  char shape[48];
-  if (!right_count(c, call, word->arguments)) return DVI__NO_VALUE;
-  for (int k = 0; k < call->count; k++)
-    if (a[k].shape.rank != 0) {
-      (void)dvi__refuse(c, call->part[k]->span, "%s is taken of a number, not of %s%s", call->name,
-                        dvi__shape_text(a[k].shape, shape, sizeof shape), hint_of_angle(c, call->part[k]));
-      return DVI__NO_VALUE;
-    }
-  return dvi__number_value(dvi__apply(c->graph, word->op, a[0].one, call->count == 2 ? a[1].one : 0));
+  if (!right_count(c, call, word->arguments) || !are_numbers(c, call, a)) return DVI__NO_VALUE;
+  const bool turned = strcmp(word->name, "ceil") == 0; /* -floor(-x) */
+  const dvi__node first = turned ? dvi__apply(c->graph, DVI__OP_NEGATE, a[0].one, 0) : a[0].one;
+  const dvi__node made = dvi__apply(c->graph, word->op, first, call->count == 2 ? a[1].one : 0);
+  return dvi__number_value(turned ? dvi__apply(c->graph, DVI__OP_NEGATE, made, 0) : made);
+}
+
+/* The largest of some numbers, or the smallest; of equal ones the last. */
+static dvi__value extreme(dvi__context *c, const dvi__expression *call, int largest, const dvi__value *a)
+{
+  if (call->count < 2) return dvi__refused(dvi__refuse(c, call->span, "%s takes 2 arguments or more, not 1", call->name));
+  if (!are_numbers(c, call, a)) return DVI__NO_VALUE;
+  dvi__node best = a[0].one;
+  for (int k = 1; k < call->count; k++) {
+    const dvi__node next = a[k].one;
+    const dvi__node stays = largest ? dvi__greater(c->graph, best, next) : dvi__greater(c->graph, next, best);
+    best = dvi__choice(c->graph, stays, best, next);
+  }
+  return dvi__number_value(best);
 }
 
 /* What is called and cannot be: a coordinate before a parenthesis, or a name that is not known. */
@@ -251,6 +266,8 @@ dvi__value dvi__value_call(dvi__context *c, const dvi__expression *call, const d
 {
   const dvi__function_word *word = dvi__function_word_of(call->name);
   if (word != NULL) return number_call(c, call, word, argument);
+  const int largest = strcmp(call->name, "max") == 0;
+  if (largest || strcmp(call->name, "min") == 0) return extreme(c, call, largest, argument);
   for (size_t i = 0; i < sizeof vector_words / sizeof *vector_words; i++) {
     if (strcmp(vector_words[i].name, call->name) != 0) continue;
     if (!right_count(c, call, vector_words[i].arguments)) return DVI__NO_VALUE;

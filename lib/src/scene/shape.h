@@ -17,6 +17,11 @@ static inline bool dvi__failed(dvi__value value)
   return value.shape.rank < 0;
 }
 
+static inline bool dvi__same_shape(dvi__shape a, dvi__shape b)
+{
+  return a.rank == b.rank && a.rows == b.rows && a.columns == b.columns;
+}
+
 /* How many numbers a value has; the i-th of them. */
 int dvi__value_size(dvi__value value);
 dvi__node dvi__value_at(dvi__value value, int i);

@@ -15,14 +15,13 @@ typedef struct given {
   int velocities, momenta;
 } given;
 
-/* How a number was given: by a formula or a list, which one for a single member overrides. */
-enum { BY_ALL = 1, BY_ONE = 2 };
-
+/* A mark is 1 for a number that was given by a formula or a list, and 1 more for every index
+ * that was a number: what says more of a member comes before what says less. */
 static bool put(dvi_scene *scene, const dvi__target *target, int number, double value, double *to, char *mark)
 {
-  const char how = target->index != NULL ? BY_ONE : BY_ALL;
+  const char how = (char)(1 + target->fixed);
   if (mark[number] == how) return dvi__scene_refuse(scene, target->span, "a number of %s is given twice", target->x->name);
-  if (mark[number] == BY_ONE) return true;
+  if (mark[number] > how) return true;
   mark[number] = how;
   to[number] = value;
   return true;
@@ -224,8 +223,11 @@ bool dvi__scene_complete_start(dvi_scene *scene)
   if (status == DVI_OK) return true;
   if (status == DVI_NO_MEMORY) return dvi__scene_no_memory(scene);
   if (status == DVI_CALLBACK_FAILED) status = dvi__blame_status();
-  const char *blame = dvi_scene_blame();
+  const char *words;
+  dvi__span span;
+  if (status == DVI_CALLBACK_RETRY && dvi__blame_place(&span, &words))
+    return dvi__complain(scene->complaint, status, span, "at the start: %s", words);
   const dvi__tree *cause = status == DVI_SINGULAR ? dvi__what_moves(scene) : dvi__tree_find(scene->tree, "initial");
-  return dvi__complain(scene->complaint, status, cause->span, "at the start: %s%s%s", dvi_last_error(), *blame != '\0' ? "; " : "",
-                       blame);
+  return dvi__complain(scene->complaint, status, cause->span, "at the start: %s%s%s", dvi_last_error(),
+                       dvi_scene_blame()[0] != '\0' ? "; " : "", dvi_scene_blame());
 }

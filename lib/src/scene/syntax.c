@@ -5,8 +5,15 @@
  *     signed   = { + | - } power
  *     power    = postfix [ ^ signed ]
  *     postfix  = atom { ' | [ sum_of {, sum_of} ] | . name }
- *     atom     = number | name | name ( sum_of {, sum_of} ) | sum ( range , sum_of ) | ( sum_of ) | [ sum_of {, sum_of} ]
+ *     atom     = number | name | name ( sum_of {, sum_of} ) | sum ( range , sum_of )
+ *              | if ( any_of , sum_of , sum_of ) | ( any_of ) | [ sum_of {, sum_of} ]
  *     range    = name [< name] [= sum_of .. sum_of]
+ *     any_of   = all_of { or all_of }
+ *     all_of   = denial { and denial }
+ *     denial   = not denial | sum_of { (<|<=|>|>=|==|!=) sum_of }
+ *
+ * A number may stand wherever a condition may, and the other way round within parentheses:
+ * elaboration tells them apart.
  *
  * Chains of + and *, however long, are loops; what nests is counted, so that neither this nor what reads the tree can be driven
  * deep. */
@@ -40,6 +47,7 @@ typedef struct row {
 } row;
 
 static bool sum_of(parser *p, node **result);
+static bool any_of(parser *p, node **result);
 
 static bool no_memory(const parser *p)
 {
@@ -86,8 +94,22 @@ static bool refuse_neighbours(const parser *p, const node *left)
                        text + l.first, (int)r.size, text + r.first, open ? "..)" : "");
 }
 
+/* Whether the token is this word. */
+static bool is_word(const parser *p, const char *word)
+{
+  return p->token.kind == DVI__TOKEN_NAME && p->token.span.size == strlen(word) &&
+         strncmp(p->source->text + p->token.span.first, word, p->token.span.size) == 0;
+}
+
+/* Words of conditions are no operands. */
+static bool joins_conditions(const parser *p)
+{
+  return is_word(p, "and") || is_word(p, "or") || is_word(p, "not");
+}
+
 static bool begins_operand(const parser *p)
 {
+  if (joins_conditions(p)) return false;
   return p->token.kind == DVI__TOKEN_NUMBER || p->token.kind == DVI__TOKEN_NAME || p->token.kind == '(';
 }
 
@@ -208,6 +230,19 @@ static bool sum_over(parser *p, size_t first, dvi__span open, node **result)
   return true;
 }
 
+/* What stands behind "if(": a condition, and two alternatives. */
+static bool choice(parser *p, size_t first, dvi__span open, node **result)
+{
+  row parts = {0};
+  for (int k = 0; k < 3; k++) {
+    node *part = NULL;
+    if (!(k == 0 ? any_of(p, &part) : sum_of(p, &part)) || !add(p, &parts, part)) return false;
+    if (p->token.kind == '=') return dvi__complain(p->complaint, DVI_BAD_FILE, p->token.span, "equality is written ==");
+    if (!expect(p, k < 2 ? ',' : ')', k < 2 ? "','" : "')'", open)) return false;
+  }
+  return make(p, DVI__FORM_IF, first, &parts, result);
+}
+
 /* A name, or a call. */
 static bool named(parser *p, node **result)
 {
@@ -222,6 +257,7 @@ static bool named(parser *p, node **result)
   }
   if (!next(p)) return false;
   if (strcmp(name, "sum") == 0) return sum_over(p, first, open, result);
+  if (strcmp(name, "if") == 0) return choice(p, first, open, result);
   row parts = {0};
   if (!parts_up_to(p, ')', "',' or ')'", open, &parts) || !make(p, DVI__FORM_CALL, first, &parts, result)) return false;
   (*result)->name = name;
@@ -231,7 +267,7 @@ static bool named(parser *p, node **result)
 static bool parenthesis(parser *p, node **result)
 {
   const dvi__span open = p->token.span;
-  if (!next(p) || !sum_of(p, result) || !expect(p, ')', "')' or an operator", open)) return false;
+  if (!next(p) || !any_of(p, result) || !expect(p, ')', "')' or an operator", open)) return false;
   (*result)->span = (dvi__span){open.first, p->last - open.first};
   return true;
 }
@@ -246,7 +282,7 @@ static bool list(parser *p, node **result)
 
 static bool atom(parser *p, node **result)
 {
-  switch (p->token.kind) {
+  switch (joins_conditions(p) ? DVI__TOKEN_END : p->token.kind) {
   case DVI__TOKEN_NUMBER: return number(p, result);
   case DVI__TOKEN_NAME: return named(p, result);
   case '(': return parenthesis(p, result);
@@ -339,11 +375,80 @@ static bool sum_of(parser *p, node **result)
   return true;
 }
 
+/* ---- conditions ---- */
+
+static const char *comparison(const parser *p)
+{
+  switch (p->token.kind) {
+  case '<': return "<";
+  case '>': return ">";
+  case DVI__TOKEN_AT_MOST: return "<=";
+  case DVI__TOKEN_AT_LEAST: return ">=";
+  case DVI__TOKEN_EQUALS: return "==";
+  case DVI__TOKEN_DIFFERS: return "!=";
+  default: return NULL;
+  }
+}
+
+/* The parts of a row as one node of a form, or the only part itself. */
+static bool make_row(const parser *p, dvi__form form, const row *parts, node **result)
+{
+  *result = parts->part[0];
+  return parts->count == 1 || make(p, form, parts->part[0]->span.first, parts, result);
+}
+
+/* a < b < c is a < b and b < c. */
+static bool compared(parser *p, node **result)
+{
+  row parts = {0};
+  node *left = NULL, *right = NULL, *made = NULL;
+  if (!sum_of(p, &left)) return false;
+  *result = left;
+  for (const char *name; (name = comparison(p)) != NULL; left = right) {
+    if (!next(p) || !sum_of(p, &right) || !make_of(p, DVI__FORM_COMPARE, left, right, &made) || !add(p, &parts, made)) return false;
+    made->name = name;
+  }
+  return parts.count == 0 || make_row(p, DVI__FORM_AND, &parts, result);
+}
+
+static bool denial(parser *p, node **result)
+{
+  const size_t first = p->token.span.first;
+  node *part = NULL;
+  row parts = {0};
+  if (!is_word(p, "not")) return compared(p, result);
+  if (!enter(p) || !next(p) || !denial(p, &part) || !add(p, &parts, part)) return false;
+  p->depth--;
+  return make(p, DVI__FORM_NOT, first, &parts, result);
+}
+
+/* Conditions joined by a word. */
+static bool joined(parser *p, const char *word, dvi__form form, bool (*one)(parser *, node **), node **result)
+{
+  row parts = {0};
+  for (;;) {
+    node *part = NULL;
+    if (!one(p, &part) || !add(p, &parts, part)) return false;
+    if (!is_word(p, word)) return make_row(p, form, &parts, result);
+    if (!next(p)) return false;
+  }
+}
+
+static bool all_of(parser *p, node **result)
+{
+  return joined(p, "and", DVI__FORM_AND, denial, result);
+}
+
+static bool any_of(parser *p, node **result)
+{
+  return joined(p, "or", DVI__FORM_OR, all_of, result);
+}
+
 static bool whole(parser *p, node **result)
 {
   const bool empty = p->token.kind == DVI__TOKEN_END;
   if (empty) return dvi__complain(p->complaint, DVI_BAD_FILE, p->token.span, "an expression is missing here");
-  if (!sum_of(p, result)) return false;
+  if (!any_of(p, result)) return false;
   if (p->token.kind == ')' || p->token.kind == ']')
     return dvi__complain(p->complaint, DVI_BAD_FILE, p->token.span, "this '%c' closes nothing",
                          p->source->text[p->token.span.first]);

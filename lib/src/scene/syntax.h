@@ -16,9 +16,15 @@ typedef enum dvi__form {
   DVI__FORM_MULTIPLY,
   DVI__FORM_DIVIDE,
   DVI__FORM_POWER,
-  DVI__FORM_CALL, /* name(part[0], .., part[count-1]) */
-  DVI__FORM_LIST, /* [part[0], ..] */
-  DVI__FORM_SUM   /* sum over name, or over name < name2, from part[1] to part[2] (count 3; count 1: as families say), of part[0] */
+  DVI__FORM_CALL,    /* name(part[0], .., part[count-1]) */
+  DVI__FORM_LIST,    /* [part[0], ..] */
+  DVI__FORM_SUM,     /* sum over name, or over name < name2, from part[1] to part[2] (count 3; count 1:
+                     as families say), of part[0] */
+  DVI__FORM_IF,      /* if(part[0], part[1], part[2]); part[0] is one of the conditions below */
+  DVI__FORM_COMPARE, /* part[0] name part[1], name one of < <= > >= == != */
+  DVI__FORM_NOT,     /* not part[0] */
+  DVI__FORM_AND,     /* part[0] and part[1] and .. */
+  DVI__FORM_OR
 } dvi__form;
 
 typedef struct dvi__expression {

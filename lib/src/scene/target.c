@@ -27,10 +27,7 @@ static const dvi__expression *bare(const dvi__expression *e, dvi__target *target
 static bool find_coordinate(dvi_scene *scene, const dvi__tree *key, const dvi__expression *e, dvi__target *target)
 {
   const dvi__expression *whole = e->form == DVI__FORM_MEMBER ? e->part[0] : e, *name = whole;
-  if (whole->form == DVI__FORM_INDEX && whole->count == 2) {
-    name = whole->part[0];
-    target->index = whole->part[1];
-  }
+  if (whole->form == DVI__FORM_INDEX && dvi__subscripts_of(whole, &target->index)) name = whole->part[0];
   if (name->form != DVI__FORM_NAME) return dvi__scene_refuse(scene, key->span, "this is no coordinate, as x, x[3] or x[i] are");
   const dvi__name *known = dvi__names_find(&scene->names, name->name);
   const bool word = known == NULL && dvi__is_word(name->name);
@@ -39,8 +36,11 @@ static bool find_coordinate(dvi_scene *scene, const dvi__tree *key, const dvi__e
     return dvi__scene_refuse(scene, name->span, "'%s' is a %s, no coordinate", name->name,
                              word ? "word of the language" : dvi__sort_name(known->sort));
   target->x = &scene->coordinate[known->number];
-  if (target->index != NULL && !target->x->family)
+  if (target->index.count > 0 && target->x->family == 0)
     return dvi__scene_refuse(scene, whole->span, "'%s' is no family, and is given as a whole", name->name);
+  if (target->index.count > 0 && target->index.count != target->x->family)
+    return dvi__scene_refuse(scene, whole->span, "'%s' has %d ind%s, not %d", name->name, target->x->family,
+                             target->x->family == 1 ? "ex" : "ices", target->index.count);
   if (e->form != DVI__FORM_MEMBER) return true;
   target->x = dvi__part_of_motion(target->x, e->name);
   return target->x != NULL ||
@@ -72,10 +72,11 @@ bool dvi__read_target(dvi_scene *scene, const dvi__tree *key, dvi__target *targe
   *target = (dvi__target){.span = key->span};
   if (!find_coordinate(scene, key, bare(e, target), target) || !right_key(scene, key->span, target)) return false;
   target->places = target->says == DVI__SAYS_Q ? &target->x->q : &target->x->v;
-  if (target->index != NULL && target->index->form == DVI__FORM_NAME &&
-      dvi__names_find(&scene->names, target->index->name) == NULL) {
-    target->each = target->index->name;
-    target->index = NULL;
+  for (int k = 0; k < target->index.count; k++) {
+    const dvi__expression *index = target->index.of[k];
+    const bool runs = index->form == DVI__FORM_NAME && dvi__names_find(&scene->names, index->name) == NULL;
+    if (runs) target->each[k] = index->name;
+    target->fixed += !runs;
   }
   return true;
 }
@@ -85,18 +86,30 @@ int dvi__target_place(const dvi__target *target, int k)
   return k / target->places->components * target->places->stride + k % target->places->components;
 }
 
-/* Bind the index of a formula for all members. */
-static bool bind_each(dvi__context *c, const dvi__target *target)
+/* Bind an index of a formula: of `elements`, its value changes with every `run`. */
+static bool bind_each(dvi__context *c, const dvi__target *target, int k, int run)
 {
-  int *each = dvi__arena_take(&c->scene->arena, (size_t)target->x->size, sizeof *each);
+  int *each = dvi__arena_take(&c->scene->arena, (size_t)c->elements, sizeof *each);
   if (each == NULL) return dvi__scene_no_memory(c->scene);
-  for (int i = 0; i < target->x->size; i++) each[i] = i + 1;
-  if (!dvi__index_bind(c, target->span, target->each)) return false;
-  if (target->x->size > 1)
+  for (int e = 0; e < c->elements; e++) each[e] = e / run % dvi__extent(target->x, k) + 1;
+  if (!dvi__index_bind(c, target->span, target->each[k])) return false;
+  if (c->elements > 1)
     c->index[c->index_count - 1].each = each;
   else
     c->index[c->index_count - 1].all = 1;
-  c->elements = target->x->size;
+  return true;
+}
+
+/* Bind those that run over all their values, the last one first. */
+static bool bind_all(dvi__context *c, const dvi__target *target)
+{
+  int run[2] = {1, 1};
+  for (int k = target->index.count - 1; k >= 0; k--) {
+    run[k] = c->elements;
+    if (target->each[k] != NULL) c->elements *= dvi__extent(target->x, k);
+  }
+  for (int k = 0; k < target->index.count; k++)
+    if (target->each[k] != NULL && !bind_each(c, target, k, run[k])) return false;
   return true;
 }
 
@@ -107,7 +120,8 @@ static dvi__shape wanted_shape(const dvi__target *target)
   dvi__shape one = x->shape;
   if (x->kind == DVI__ANGLE) one = (dvi__shape){0, 1, 1};
   if (x->kind == DVI__ROTATION && target->places == &x->v) one = (dvi__shape){1, 3, 1};
-  if (!x->family || target->each != NULL || target->index != NULL) return one;
+  if (x->family == 0 || target->index.count > 0) return one;
+  if (x->family > 1) return (dvi__shape){one.rank + 2, dvi__extent(x, 0), dvi__extent(x, 1)};
   return (dvi__shape){one.rank + 1, x->size, one.rows};
 }
 
@@ -116,34 +130,23 @@ static bool right_shape(dvi_scene *scene, const dvi__target *target, dvi__shape 
   char here[48], there[48];
   const dvi__shape wanted = wanted_shape(target);
   if (wanted.rank > 2)
-    return dvi__scene_refuse(scene, target->span, "%s is a family of matrices: give them by a formula, %s[i], or one by one, %s[1]",
-                             target->x->name, target->x->name, target->x->name);
-  if (shape.rank == wanted.rank && shape.rows == wanted.rows && shape.columns == wanted.columns) return true;
+    return dvi__scene_refuse(scene, target->span, "%s is more than a matrix: give it by a formula, %s[%s], or one by one, %s[%s]",
+                             target->x->name, target->x->name, target->x->family > 1 ? "i,j" : "i", target->x->name,
+                             target->x->family > 1 ? "1,1" : "1");
+  if (dvi__same_shape(shape, wanted)) return true;
   return dvi__scene_refuse(scene, span, "%s for %s, which is %s", dvi__shape_text(shape, here, sizeof here), target->x->name,
                            dvi__shape_text(wanted, there, sizeof there));
-}
-
-/* Where the first number of the value is in q, v or p, for every element. */
-static bool place_of(dvi__context *c, const dvi__target *target, dvi__numbering *numbering)
-{
-  const dvi__coordinate *x = target->x;
-  const int stride = target->places->stride, before = target->places->first - stride;
-  int *each = NULL, all = 1;
-  if (target->each != NULL) return dvi__numbering_of(c, c->index[0].each, 1, before, stride, numbering);
-  if (target->index == NULL) return dvi__numbering_of(c, NULL, 1, before, stride, numbering);
-  if (!dvi__whole_numbers_of(c, target->index, "an index", &each, &all)) return false;
-  if (all < 1 || all > x->size)
-    return dvi__scene_refuse(c->scene, target->index->span, "the index %d is not between 1 and %d", all, x->size);
-  return dvi__numbering_of(c, each, all, before, stride, numbering);
 }
 
 bool dvi__target_value(dvi__context *c, const dvi__target *target, const dvi__tree *tree, dvi__value *value,
                        dvi__numbering *numbering, const dvi__expression **e)
 {
-  if (target->each != NULL && !bind_each(c, target)) return false;
-  if (!place_of(c, target, numbering) || !dvi__tree_expression(c->scene, tree, e)) return false;
+  if (!bind_all(c, target)) return false;
+  if (!dvi__member_numbering(c, target->x, &target->index, target->places, numbering) || !dvi__tree_expression(c->scene, tree, e))
+    return false;
   *value = dvi__elaborate(c, *e);
   if (dvi__failed(*value) && c->uneven)
-    return dvi__scene_refuse(c->scene, (*e)->span, "the sum in this has other bounds for each %s", target->each);
+    return dvi__scene_refuse(c->scene, (*e)->span, "the sum in this has other bounds for each %s",
+                             target->each[target->each[0] == NULL]);
   return !dvi__failed(*value) && right_shape(c->scene, target, value->shape, (*e)->span);
 }

@@ -278,12 +278,20 @@ static bool read_events(reader *r, yaml_parser_t *parser)
   return fine;
 }
 
+/* Texts have no NULs; a single one is a slip, which is told with its place. */
+static bool is_binary(const dvi__source *source)
+{
+  const char *end = source->text + source->size, *first = memchr(source->text, '\0', source->size);
+  return first != NULL && memchr(first + 1, '\0', (size_t)(end - first - 1)) != NULL;
+}
+
 /* No other encoding, and no character that cannot be seen. */
 static bool check_characters(const reader *r)
 {
   const dvi__source *source = r->source;
   if (source->size >= 2 && (memcmp(source->text, "\xFF\xFE", 2) == 0 || memcmp(source->text, "\xFE\xFF", 2) == 0))
     return complain(r, DVI__NOWHERE, "the file is UTF-16; save it as UTF-8");
+  if (is_binary(source)) return dvi__complain_of_file(r->complaint, DVI__NOWHERE, "this is a binary file");
   if (source->size >= 3 && memcmp(source->text, "\xEF\xBB\xBF", 3) == 0)
     return complain(r, DVI__NOWHERE, "the file begins with a byte order mark; save it as UTF-8 without one");
   unsigned code = 0;
@@ -310,7 +318,7 @@ bool dvi__tree_read(const dvi__source *source, dvi__arena *arena, dvi__complaint
   const bool fine = read_events(&r, &parser);
   yaml_parser_delete(&parser);
   if (!fine) return false;
-  if (r.root == NULL) return complain(&r, DVI__NOWHERE, "the file is empty");
+  if (r.root == NULL) return dvi__complain_of_file(complaint, DVI__NOWHERE, "the file is empty");
   *root = r.root;
   return true;
 }

@@ -22,35 +22,52 @@ const dvi__coordinate *dvi__part_of_motion(const dvi__coordinate *x, const char 
   return strcmp(name, "R") == 0 ? &x->part[0] : strcmp(name, "x") == 0 ? &x->part[1] : NULL;
 }
 
-const dvi__coordinate *dvi__member_named(const dvi_scene *scene, const dvi__expression *e, const dvi__expression **index)
+bool dvi__subscripts_of(const dvi__expression *e, dvi__subscripts *index)
+{
+  *index = (dvi__subscripts){.count = e->count - 1};
+  for (int k = 0; k < index->count && k < 2; k++) index->of[k] = e->part[k + 1];
+  return index->count <= 2;
+}
+
+bool dvi__refuse_family(const dvi__context *c, const dvi__coordinate *x, const char *part, dvi__span span)
+{
+  if (x->family > 1)
+    return dvi__refuse(c, span, "%s is a family of %d x %d; take one of it, as %s[1,1]%s", x->name, dvi__extent(x, 0),
+                       dvi__extent(x, 1), x->name, part);
+  return dvi__refuse(c, span, "%s is a family of %d; take one of it, as %s[1]%s", x->name, x->size, x->name, part);
+}
+
+const dvi__coordinate *dvi__member_named(const dvi_scene *scene, const dvi__expression *e, dvi__subscripts *index)
 {
   const char *part = NULL;
-  *index = NULL;
+  *index = (dvi__subscripts){0};
   if (e->form == DVI__FORM_MEMBER) {
     part = e->name;
     e = e->part[0];
   }
-  if (e->form == DVI__FORM_INDEX && e->count == 2) {
-    *index = e->part[1];
+  if (e->form == DVI__FORM_INDEX) {
+    if (!dvi__subscripts_of(e, index)) return NULL;
     e = e->part[0];
   }
   const dvi__coordinate *x = coordinate_named(scene, e);
-  if (x == NULL || x->family != (*index != NULL)) return NULL;
+  if (x == NULL || x->family != index->count) return NULL;
   return part == NULL ? x : dvi__part_of_motion(x, part);
 }
 
 dvi__value dvi__member_value(dvi__context *c, const dvi__expression *e)
 {
-  const dvi__expression *index, *whole = e->part[0];
+  dvi__subscripts index;
+  const dvi__expression *whole = e->part[0];
   const dvi__coordinate *x = dvi__member_named(c->scene, e, &index);
-  if (x != NULL) return dvi__coordinate_value(c, x, index, e->span);
+  if (x != NULL) return dvi__coordinate_value(c, x, &index, e->span);
   if (whole->form == DVI__FORM_INDEX) whole = whole->part[0];
   x = coordinate_named(c->scene, whole);
   if (x == NULL || x->kind != DVI__MOTION)
     return dvi__refused(dvi__refuse(c, e->span, "only rigid motions have parts, B.R and B.x"));
-  if (x->family && e->part[0]->form == DVI__FORM_NAME)
-    return dvi__refused(
-        dvi__refuse(c, e->span, "%s is a family of %d; take one of it, as %s[1].%s", x->name, x->size, x->name, e->name));
+  if (x->family > 0 && e->part[0]->form == DVI__FORM_NAME) {
+    const char part[3] = {'.', e->name[0], '\0'};
+    return dvi__refused(dvi__refuse_family(c, x, part, e->span));
+  }
   return dvi__refused(
       dvi__refuse(c, e->span, "the parts of %s are %s.R, its rotation, and %s.x, its place", x->name, x->name, x->name));
 }
@@ -148,7 +165,7 @@ bool dvi__input_momentum(dvi__context *c, int input, dvi__node *momentum)
 }
 
 /* The velocities or momenta of a coordinate, or of a member of a family; `before` stand in front of the state's. */
-static dvi__value state_value(dvi__context *c, const dvi__coordinate *x, const dvi__expression *index, int before)
+static dvi__value state_value(dvi__context *c, const dvi__coordinate *x, const dvi__subscripts *index, int before)
 {
   dvi__numbering numbering;
   dvi__slots places = x->v;
@@ -161,7 +178,7 @@ static dvi__value state_value(dvi__context *c, const dvi__coordinate *x, const d
   return value;
 }
 
-static const dvi__coordinate *argument_of(dvi__context *c, const dvi__expression *e, const dvi__expression **index)
+static const dvi__coordinate *argument_of(dvi__context *c, const dvi__expression *e, dvi__subscripts *index)
 {
   if (e->count == 1) return dvi__member_named(c->scene, e->part[0], index);
   (void)dvi__refuse(c, e->span, "%s takes 1 argument, not %d", e->name, e->count);
@@ -170,7 +187,7 @@ static const dvi__coordinate *argument_of(dvi__context *c, const dvi__expression
 
 dvi__value dvi__turn_value(dvi__context *c, const dvi__expression *e)
 {
-  const dvi__expression *index;
+  dvi__subscripts index;
   const int omega = strcmp(e->name, "omega") == 0;
   if (!dvi__may_stand(c, DVI__SAYS_V, e->span)) return DVI__NO_VALUE;
   const dvi__coordinate *x = argument_of(c, e, &index);
@@ -183,15 +200,15 @@ dvi__value dvi__turn_value(dvi__context *c, const dvi__expression *e)
   if ((c->may & DVI__SAYS_P) != 0 && !c->sample)
     return dvi__refused(
         dvi__refuse(c, e->span, "velocities of what turns cannot stand in %s; say it by momenta, p(%s)", c->where, x->name));
-  return state_value(c, x, index, (c->may & DVI__OF_STATE) != 0 ? 0 : c->scene->n);
+  return state_value(c, x, &index, (c->may & DVI__OF_STATE) != 0 ? 0 : c->scene->n);
 }
 
 dvi__value dvi__whole_momentum(dvi__context *c, const dvi__expression *e)
 {
-  const dvi__expression *index;
+  dvi__subscripts index;
   const dvi__coordinate *x = argument_of(c, e, &index);
   if (x != NULL && x->kind == DVI__MOTION)
     return dvi__refused(
         dvi__refuse(c, e->part[0]->span, "%s is a rigid motion; its momenta are p(%s.R) and p(%s.x)", x->name, x->name, x->name));
-  return x == NULL ? DVI__NO_VALUE : state_value(c, x, index, 0);
+  return x == NULL ? DVI__NO_VALUE : state_value(c, x, &index, 0);
 }
