@@ -132,8 +132,11 @@ dvi_status dvi_integrator_start_velocity(dvi_integrator *integrator, double t, c
  *  @retval DVI_BAD_ARGUMENT    h is zero or not finite, or so small that t + h = t or 1/h = Inf
  *  @retval DVI_BAD_OPTION      sem: a first step h outside of hmin and hmax
  *  @retval DVI_BAD_STATE       before dvi_integrator_start
- *  @retval DVI_NOT_CONVERGED   the step's equations were not solved, even by KINSOL with line search; the error sentence names
- *                              step, time, iterations and residual. Of a one-form in up to 16 dimensions, and of up to 16 constraints, also:
+ *  @retval DVI_STEP_TOO_LARGE  the equations have no solution that continues those of shorter steps down
+ *                              to h = 0 (docs/theory.md); the error sentence names step, time, the h up to
+ *                              which there is one, and iterations. A rotation beyond its chart
+ *  @retval DVI_NOT_CONVERGED   not even a short step could be solved; the error sentence names step, time
+ *                              and iterations. Of a one-form in up to 16 dimensions, and of up to 16 constraints, also:
  *                              the step leads over a point where the two-form, or the bracket matrix, is singular, beyond which no
  *                              trajectory goes on
  *  @retval DVI_NOT_FINITE      NaN or Inf came out of a callback or the step

@@ -165,6 +165,6 @@ dvi_status dvi__branch_tell(const dvi__branch_end *end, double h, const dvi__bra
                         least_part * h, end->report.iterations, end->report.correction);
   return dvi__fail(DVI_STEP_TOO_LARGE,
                    "a step too large: the solution that continues those of shorter steps ends at h = %.4g; "
-                   "beyond, Newton's method comes to %d iterations and a change of %.1e",
+                   "beyond, Newton's method finds none near it (%d iterations, change %.1e)",
                    reached, end->report.iterations, end->report.correction);
 }
