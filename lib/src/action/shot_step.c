@@ -137,12 +137,13 @@ static dvi_status trace(dvi__shot_step *s)
   return DVI_OK;
 }
 
-dvi_status dvi__shot_step_place(dvi__shot_step *s, double t0, double h, const double *q0, const double *p0, double *v, double *x)
+dvi_status dvi__shot_step_place(dvi__shot_step *s, double t0, double h, double whole, const double *q0, const double *p0, double *v,
+                                double *x)
 {
   s->q0 = q0;
   s->p0 = p0;
   DVI_TRY(dvi__legendre_inverse(s->evaluator, t0, q0, p0, v));
-  DVI_TRY(choose_units(s, t0, h, v));
+  DVI_TRY(choose_units(s, t0, whole, v));
   dvi__shot_aim(s->shot, t0, h, s->q, s->unit);
   dvi__field_guess(dvi__shot_field(s->shot), v);
   for (int i = 0; i < s->n; i++) {

@@ -27,9 +27,9 @@ void dvi__shot_step_destroy(dvi__shot_step **step);
 const dvi__pattern *dvi__shot_step_pattern(const dvi__shot_step *step);
 
 /* Put the step at (t0, q0, p0), and x at the shot from the inverse Legendre map; v [n], a guess, becomes the velocity there. The arrays must stay as
- * they are. */
-dvi_status dvi__shot_step_place(dvi__shot_step *step, double t0, double h, const double *q0, const double *p0, double *v,
-                                double *x);
+ * they are. Units are those of a step of length `whole`. */
+dvi_status dvi__shot_step_place(dvi__shot_step *step, double t0, double h, double whole, const double *q0, const double *p0,
+                                double *v, double *x);
 
 dvi_status dvi__shot_step_residual(void *step, const double *x, double *R);
 dvi_status dvi__shot_step_jacobian(void *step, const double *x, double *values);

@@ -370,8 +370,8 @@ static dvi_status sweep(dvi__stacked_shot *s)
   return DVI_OK;
 }
 
-dvi_status dvi__stacked_shot_place(dvi__stacked_shot *s, double t0, double h, const double *q0, const double *p0, double *v,
-                                   double *x)
+dvi_status dvi__stacked_shot_place(dvi__stacked_shot *s, double t0, double h, double whole, const double *q0, const double *p0,
+                                   double *v, double *x)
 {
   const int n = s->n;
   double *start = at(s, s->x, dvi__stack_start(s));
@@ -382,7 +382,7 @@ dvi_status dvi__stacked_shot_place(dvi__stacked_shot *s, double t0, double h, co
   s->known = 0;
   DVI_TRY(dvi__legendre_inverse(s->evaluator, t0, q0, p0, v));
   DVI_TRY(dvi__field_mass(s->field, t0, q0, v, s->unit));
-  for (int i = 0; i < n; i++) s->unit[i] /= fabs(h);
+  for (int i = 0; i < n; i++) s->unit[i] /= fabs(whole);
   dvi__field_guess(s->field, v);
   memset(s->x, 0, 2 * (size_t)n * (size_t)s->blocks * sizeof *s->x);
   memcpy(start + n, p0, (size_t)n * sizeof *p0);

@@ -19,8 +19,8 @@ void dvi__stacked_shot_destroy(dvi__stacked_shot **step);
 const dvi__pattern *dvi__stacked_shot_pattern(const dvi__stacked_shot *step);
 
 /* As in action/shot_step.h. */
-dvi_status dvi__stacked_shot_place(dvi__stacked_shot *step, double t0, double h, const double *q0, const double *p0, double *v,
-                                   double *x);
+dvi_status dvi__stacked_shot_place(dvi__stacked_shot *step, double t0, double h, double whole, const double *q0, const double *p0,
+                                   double *v, double *x);
 dvi_status dvi__stacked_shot_residual(void *step, const double *x, double *R);
 dvi_status dvi__stacked_shot_jacobian(void *step, const double *x, double *values);
 void dvi__stacked_shot_ends(const dvi__stacked_shot *step, double *dq, double *dp);

@@ -18,9 +18,8 @@
 #include "core/status.h"
 #include "num/finite.h"
 
-/* Changes of more than this part of the kinetic energy are doubted; or of what the step exchanges,
- * by which elements of degree 0 change the energy by 2 % at well resolved steps. */
-static const double doubted_of_kinetic = 0.01, doubted_of_exchanged = 0.05;
+/* Changes of more than this part of the kinetic energy, or of what the step exchanges, are doubted. */
+static const double doubted_change = 0.01;
 
 /* Two solutions are the same if they differ by less than this part of the step: the roundings of an
  * ill-conditioned step are smaller, other solutions are farther away. */
@@ -51,22 +50,26 @@ void dvi__attempt_clear(dvi_integrator *I)
   dvi__release(I->first);
 }
 
+/* Where there is no kinetic energy, steps that lead this far from their velocities, too. */
+static const double doubted_defect = 0.2;
+
 /* Whether the energy changes by too much from `now` to `next`; also where it cannot be told. */
-static int energy_jumps(dvi_integrator *I)
+static int state_jumps(dvi_integrator *I)
 {
-  double change, exchanged;
+  double change, exchanged, defect = 0;
   const int has_kinetic = !(I->system->terms & (DVI__ONE_FORM | DVI__PHASE_SPACE));
   const dvi__instant before = {I->now.t, I->now.q, I->now.p, I->last_v}, after = {I->next.t, I->next.q, I->next.p, I->v};
   dvi__guess_velocity(I->system->n, I->now.q, I->last.q, I->last.p, I->last_h, I->last_v);
   dvi__guess_velocity(I->system->n, I->next.q, I->now.q, I->last_v, I->next.t - I->now.t, I->v);
   if (dvi__energy_change(I->evaluator, &before, &after, &change, &exchanged) != DVI_OK) return 1;
-  return !(change <= (has_kinetic ? doubted_of_kinetic : doubted_of_exchanged) * exchanged);
+  if (!has_kinetic && dvi__motion_defect(I->evaluator, &before, &after, &defect) != DVI_OK) return 1;
+  return !(change <= doubted_change * exchanged && defect <= doubted_defect);
 }
 
 static int is_doubted(dvi_integrator *I)
 {
   if (I->first == NULL || I->stepper.doubt == DVI__SURE) return 0;
-  return I->stepper.doubt == DVI__ASTRAY || energy_jumps(I);
+  return I->stepper.doubt == DVI__ASTRAY || state_jumps(I);
 }
 
 static dvi_status step(dvi_integrator *I, double length, double density)

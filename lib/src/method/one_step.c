@@ -87,8 +87,7 @@ dvi_status dvi__one_step_solve(dvi__stepper *self, const dvi__state *state, doub
   return dvi__stationary_solve(&one->equations, &step);
 }
 
-dvi_status dvi__one_step_momentum(dvi__stepper *self, const dvi__state *state, double part,
-                                  const double **p)
+dvi_status dvi__one_step_momentum(dvi__stepper *self, const dvi__state *state, double part, const double **p)
 {
   const dvi__one_step *one = self->own;
   const size_t n = (size_t)self->system->n;

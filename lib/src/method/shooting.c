@@ -86,8 +86,8 @@ typedef struct shooter {
   int unknowns, order; /* of the one-step method */
   double tolerance;    /* 0: roundoff */
   double *guess, *R;   /* [unknowns] */
-  double *values;        /* [entries] of the Jacobian; NULL without a tolerance */
-  double *v, *dq, *dp;   /* [n] */
+  double *values;      /* [entries] of the Jacobian; NULL without a tolerance */
+  double *v, *dq, *dp; /* [n] */
 } shooter;
 
 /* ---- what is asked for ---- */
@@ -413,9 +413,9 @@ static dvi_status solve_loosely(shooter *own, double size)
 static dvi_status place(dvi__stepper *self, const dvi__state *state, double h, double part)
 {
   const shooter *own = self->own;
-  (void)part;
-  if (own->stacked != NULL) return dvi__stacked_shot_place(own->stacked, state->t, h, state->q, state->p, own->v, own->guess);
-  return dvi__shot_step_place(own->shot, state->t, h, state->q, state->p, own->v, own->guess);
+  if (own->stacked != NULL)
+    return dvi__stacked_shot_place(own->stacked, state->t, h, h / part, state->q, state->p, own->v, own->guess);
+  return dvi__shot_step_place(own->shot, state->t, h, h / part, state->q, state->p, own->v, own->guess);
 }
 
 static dvi_status guess(dvi__stepper *self, double h, double *x)

@@ -15,14 +15,13 @@ static dvi_status no_chord(void *of, const double *x)
   return DVI_OK;
 }
 
-dvi_status dvi__stationary_create(dvi__stepper *self, dvi__equations *equations,
-                                  dvi__stationary *stationary)
+dvi_status dvi__stationary_create(dvi__stepper *self, dvi__equations *equations, dvi__stationary *stationary)
 {
   const size_t unknowns = (size_t)equations->unknowns;
   self->follows = 1;
   stationary->unknowns = equations->unknowns;
   stationary->x = DVI_NEW(double, unknowns);
-  stationary->room = DVI_NEW(double, DVI__BRANCH_ROOM * unknowns);
+  stationary->room = DVI_NEW(double, DVI__BRANCH_ROOM *unknowns);
   if (stationary->x == NULL || stationary->room == NULL)
     return dvi__fail(DVI_NO_MEMORY, "%s: no memory for %zu unknowns", self->method->name, unknowns);
   equations->linear = dvi__linear_for_exchanges(equations->pattern);
@@ -56,8 +55,7 @@ static double size_of(const dvi__stationary_step *step)
   return dvi__largest((size_t)step->stepper->system->n, step->state->q);
 }
 
-static dvi_status follow(const dvi__stationary *s, const dvi__stationary_step *step,
-                         const dvi__branch_failure *whole)
+static dvi_status follow(const dvi__stationary *s, const dvi__stationary_step *step, const dvi__branch_failure *whole)
 {
   dvi__stationary_step of = *step;
   const dvi__branch branch = {.of = &of,
@@ -82,8 +80,7 @@ static dvi_status solve_at_once(const dvi__stationary *s, const dvi__stationary_
   DVI_TRY(step->guess(step->stepper, step->h, s->x));
   DVI_TRY(dvi__solve(s->solver, DVI__NEWTON, size_of(step), 1, 0, s->x, &report));
   step->stepper->counters->newtons++;
-  if (!dvi__branch_is_sure(&report, s->unknowns, s->x) && step->stepper->doubt == DVI__SURE)
-    step->stepper->doubt = DVI__DOUBTED;
+  if (!dvi__branch_is_sure(&report, s->unknowns, s->x) && step->stepper->doubt == DVI__SURE) step->stepper->doubt = DVI__DOUBTED;
   return DVI_OK;
 }
 

@@ -16,6 +16,9 @@ static const double first_part = 1.0 / 16, least_part = 1.0 / DVI__BRANCH_PARTS;
  * Elsewhere, and where the Jacobian is not exact, solutions have to be closer to their guesses. */
 static const double contraction = 0.5, closer = 0.1;
 
+/* Of smaller corrections, relative to the unknowns, rounding may be a large part. */
+static const double negligible = 1e-6;
+
 /* The solutions found last, the latest first. */
 typedef struct history {
   int count, solved; /* points; of these the ones that were solved for */
@@ -49,8 +52,7 @@ static void extrapolate(const history *past, size_t unknowns, double part, doubl
   }
 }
 
-static double distance(const dvi__branch *branch, const history *past, size_t unknowns,
-                       const double *guess, const double *x)
+static double distance(const dvi__branch *branch, const history *past, size_t unknowns, const double *guess, const double *x)
 {
   double largest = 0, whole = DBL_MIN;
   if (branch->distance != NULL) return branch->distance(branch->of, guess, x);
@@ -62,18 +64,18 @@ static double distance(const dvi__branch *branch, const history *past, size_t un
 }
 
 /* Of a motion that begins at rest the first guesses are no measure. */
-static int is_near(const dvi__branch *branch, const history *past, size_t unknowns, const double *guess,
-                   const double *x, const dvi__solve_report *report)
+static int is_near(const dvi__branch *branch, const history *past, size_t unknowns, const double *guess, const double *x,
+                   const dvi__solve_report *report)
 {
   const int measurable = branch->distance != NULL || past->solved >= 2;
   const double away = measurable ? distance(branch, past, unknowns, guess, x) : 0;
-  const double near = report->contraction <= contraction ? branch->near : closer * branch->near;
-  return measurable ? away <= near : near == branch->near;
+  const int contracts = report->contraction <= contraction || report->first <= negligible * dvi__largest(unknowns, x);
+  const double near = contracts ? branch->near : closer * branch->near;
+  return measurable ? away <= near : contracts;
 }
 
 /* From the caller's guess until there are two points. */
-static dvi_status guess_at(const dvi__branch *branch, const history *past, size_t unknowns, double part,
-                           double *x)
+static dvi_status guess_at(const dvi__branch *branch, const history *past, size_t unknowns, double part, double *x)
 {
   DVI_TRY(branch->place(branch->of, part));
   if (past->count < 2) return branch->guess(branch->of, part, x);
@@ -81,8 +83,8 @@ static dvi_status guess_at(const dvi__branch *branch, const history *past, size_
   return DVI_OK;
 }
 
-static dvi_status solve_at(const dvi__branch *branch, dvi__solver *solver, const history *past,
-                           double part, double *x, double *guess, dvi__solve_report *report)
+static dvi_status solve_at(const dvi__branch *branch, dvi__solver *solver, const history *past, double part, double *x,
+                           double *guess, dvi__solve_report *report)
 {
   const size_t unknowns = (size_t)solver->equations.unknowns;
   DVI_TRY(guess_at(branch, past, unknowns, part, guess));
@@ -101,8 +103,7 @@ static void begin(const dvi__branch *branch, size_t unknowns, history *past)
   if (branch->from_zero) remember(past, unknowns, 0, past->first);
 }
 
-dvi_status dvi__branch_follow(const dvi__branch *branch, dvi__solver *solver, double *x,
-                              dvi__branch_end *end)
+dvi_status dvi__branch_follow(const dvi__branch *branch, dvi__solver *solver, double *x, dvi__branch_end *end)
 {
   const size_t unknowns = (size_t)solver->equations.unknowns;
   const double most_part = branch->parts > 1 ? 1.0 / branch->parts : 1;
@@ -156,15 +157,14 @@ dvi_status dvi__branch_tell(const dvi__branch_end *end, double h, const dvi__bra
 {
   const double reached = end->reached * h;
   if (is_callback(whole->status))
-    return dvi__fail(whole->status, "%s; solutions that continue those of shorter steps reach h = %.4g",
-                     whole->sentence, reached);
+    return dvi__fail(whole->status, "%s; solutions that continue those of shorter steps reach h = %.4g", whole->sentence, reached);
   if (is_callback(end->status))
     return dvi__fail_in(end->status, "the solution continues those of shorter steps up to h = %.4g", reached);
   if (end->reached == 0)
-    return dvi__fail_in(DVI_NOT_CONVERGED, "not solved, not even for a step of h = %.3g (%d iterations, change %.1e)",
-                        least_part * h, end->report.iterations, end->report.correction);
+    return dvi__fail_in(DVI_NOT_CONVERGED, "not solved, not even for a step of h = %.3g (%d iterations, residual %.1e)",
+                        least_part * h, end->report.iterations, end->report.residual);
   return dvi__fail(DVI_STEP_TOO_LARGE,
                    "a step too large: the solution that continues those of shorter steps ends at h = %.4g; "
-                   "beyond, Newton's method finds none near it (%d iterations, change %.1e)",
-                   reached, end->report.iterations, end->report.correction);
+                   "beyond, Newton's method finds none near it (%d iterations, residual %.1e)",
+                   reached, end->report.iterations, end->report.residual);
 }

@@ -12,7 +12,7 @@
 enum { DVI__BRANCH_POINTS = 4, DVI__BRANCH_ROOM = DVI__BRANCH_POINTS + 2 };
 
 /* Between an extrapolated guess and the next solution, as a part of how far the branch has come. */
-#define DVI__BRANCH_NEAR 0.1
+#define DVI__BRANCH_NEAR 0.03
 
 /* A branch is followed in at most so many parts of a step. */
 enum { DVI__BRANCH_PARTS = 4096, DVI__BRANCH_SENTENCE = 600 };

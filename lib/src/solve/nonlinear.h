@@ -45,7 +45,7 @@ typedef struct dvi__solve_report {
   double first;       /* largest change of an unknown in the first iteration of Newton's method */
   double contraction; /* that of the second one over it; 0: there was no second one */
   double correction;  /* largest change of an unknown in the last iteration */
-  double residual;    /* largest |R_i| / row_scale_i at the last point */
+  double residual;    /* largest |R_i| at the last point; by KINSOL over row_scale_i */
 } dvi__solve_report;
 
 typedef struct dvi__solver dvi__solver;

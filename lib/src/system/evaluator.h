@@ -114,7 +114,11 @@ typedef struct dvi__instant {
 /* Two states of a step: by how much the energy changes, and what that is measured by: the larger
  * kinetic energy p.v/2; of a one-form, which has none, and of phase space sum |H_q dq| + |H_p dp|,
  * what the step moves between the coordinates. Not with factors. */
-dvi_status dvi__energy_change(dvi__evaluator *e, const dvi__instant *before, const dvi__instant *after,
-                              double *change, double *exchanged);
+dvi_status dvi__energy_change(dvi__evaluator *e, const dvi__instant *before, const dvi__instant *after, double *change,
+                              double *exchanged);
+
+/* How far the step leads from where the mean of the velocities at its ends does, as a part of the
+ * larger one's way: (h omega)^2/12 for well resolved motions. Fills v. Not with factors. */
+dvi_status dvi__motion_defect(dvi__evaluator *e, const dvi__instant *before, const dvi__instant *after, double *defect);
 
 #endif

@@ -73,8 +73,8 @@ static dvi_status kinetic(dvi__evaluator *e, const dvi__instant *at, double *E, 
   return DVI_OK;
 }
 
-static dvi_status change_of_lagrangian(dvi__evaluator *e, const dvi__instant *before,
-                                       const dvi__instant *after, double *change, double *exchanged)
+static dvi_status change_of_lagrangian(dvi__evaluator *e, const dvi__instant *before, const dvi__instant *after, double *change,
+                                       double *exchanged)
 {
   double E0, E1, T0, T1, size0, size1;
   DVI_TRY(kinetic(e, before, &E0, &T0, &size0));
@@ -85,8 +85,8 @@ static dvi_status change_of_lagrangian(dvi__evaluator *e, const dvi__instant *be
 }
 
 /* sum |L_q dq| + |L_v dp| with L = -H(q) of a one-form at v = 0, and L = H(q,p) on phase space. */
-static dvi_status exchange(dvi__evaluator *e, const dvi__instant *at, const dvi__instant *before,
-                           const dvi__instant *after, int with_p, double *sum)
+static dvi_status exchange(dvi__evaluator *e, const dvi__instant *at, const dvi__instant *before, const dvi__instant *after,
+                           int with_p, double *sum)
 {
   const size_t n = (size_t)e->system->n;
   double *in_q = before->v, *in_p = e->point[2];
@@ -104,8 +104,8 @@ static dvi_status exchange(dvi__evaluator *e, const dvi__instant *at, const dvi_
   return DVI_OK;
 }
 
-static dvi_status change_of_hamiltonian(dvi__evaluator *e, const dvi__instant *before,
-                                        const dvi__instant *after, double *change, double *exchanged)
+static dvi_status change_of_hamiltonian(dvi__evaluator *e, const dvi__instant *before, const dvi__instant *after, double *change,
+                                        double *exchanged)
 {
   const int with_p = (e->system->terms & DVI__PHASE_SPACE) != 0;
   double E0, E1, sum0, sum1;
@@ -118,9 +118,24 @@ static dvi_status change_of_hamiltonian(dvi__evaluator *e, const dvi__instant *b
   return DVI_OK;
 }
 
-dvi_status dvi__energy_change(dvi__evaluator *e, const dvi__instant *before, const dvi__instant *after,
-                              double *change, double *exchanged)
+dvi_status dvi__energy_change(dvi__evaluator *e, const dvi__instant *before, const dvi__instant *after, double *change,
+                              double *exchanged)
 {
   const int has_kinetic = !(e->system->terms & (DVI__ONE_FORM | DVI__PHASE_SPACE));
   return (has_kinetic ? change_of_lagrangian : change_of_hamiltonian)(e, before, after, change, exchanged);
+}
+
+dvi_status dvi__motion_defect(dvi__evaluator *e, const dvi__instant *before, const dvi__instant *after, double *defect)
+{
+  const double h = after->t - before->t;
+  double off = 0, way = 0;
+  DVI_TRY(dvi__legendre_inverse(e, before->t, before->q, before->p, before->v));
+  DVI_TRY(dvi__legendre_inverse(e, after->t, after->q, after->p, after->v));
+  for (int i = 0; i < e->system->n; i++) {
+    const double v0 = before->v[i], v1 = after->v[i];
+    off = fmax(off, fabs((after->q[i] - before->q[i]) - 0.5 * h * (v0 + v1)));
+    way = fmax(way, fabs(h) * fmax(fabs(v0), fabs(v1)));
+  }
+  *defect = off > 0 ? off / way : 0;
+  return DVI_OK;
 }
