@@ -38,6 +38,7 @@ typedef struct member {
   problem *scene;
   dvi_path *path;
   dvi_path_report report;
+  bool found; /* a stationary path, and its report; its steps may be too long all the same */
 } member;
 
 /* ---- what the path is to be ---- */
@@ -238,6 +239,7 @@ static int read_family(const path_request *request, family *f)
 static int solve(member *m)
 {
   const dvi_status status = dvi_path_solve(m->path, &m->report);
+  m->found = status == DVI_OK || status == DVI_STEP_TOO_LARGE;
   return status == DVI_OK ? DONE : library_error(status);
 }
 
@@ -292,6 +294,15 @@ static void print_variation(const dvi_path_report *r, FILE *stream)
                   r->negative, r->zero, r->symmetries);
 }
 
+static void print_spread(const dvi_path_report *r, FILE *stream)
+{
+  if (isnan(r->energy_spread))
+    (void)fprintf(stream, "energy spread     not defined: the system depends on time\n");
+  else
+    (void)fprintf(stream, "energy spread     %.1e, %.1e of the kinetic energy; at most %.1e of it in a step\n",
+                  r->energy_spread, r->kinetic > 0.0 ? r->energy_spread / r->kinetic : 0.0, r->energy_jump);
+}
+
 static void print_report(const member *m, const path_request *request, FILE *stream)
 {
   const dvi_path_report *r = &m->report;
@@ -301,6 +312,7 @@ static void print_report(const member *m, const path_request *request, FILE *str
                 dvi_path_method(m->path));
   (void)fprintf(stream, "action            %.15g\n", r->action);
   if (!isnan(r->energy)) (void)fprintf(stream, "energy            %.15g\n", r->energy);
+  print_spread(r, stream);
   (void)fprintf(stream, "span              %.15g\n", r->span);
   (void)fprintf(stream, "gradient          %.1e of the largest momentum\n", r->gradient);
   print_variation(r, stream);
@@ -425,7 +437,7 @@ static int run(const char *name, const path_request *request)
   if (code == DONE) code = solve_family(name, request, &values, &found);
   const bool rows_on_output = request->out != NULL && strcmp(request->out, "-") == 0;
   if (code == DONE) events_passed("path", found.scene);
-  if (code == DONE) print_report(&found, request, rows_on_output ? stderr : stdout);
+  if (found.found) print_report(&found, request, rows_on_output ? stderr : stdout);
   if (code == DONE && request->out != NULL) code = write_path(&found, request->out);
   destroy(&found);
   return code;
