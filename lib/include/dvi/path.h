@@ -106,12 +106,13 @@ dvi_status dvi_path_guess(dvi_path *path, int points, int dimension, const doubl
  *  @retval DVI_BAD_ARGUMENT  ratio is not finite; the guess is as before */
 dvi_status dvi_path_guess_along(dvi_path *path, const dvi_path *last, const dvi_path *before, double ratio);
 
-/** Make the action stationary, from the guess or from the path that is there. On failure the path stays as it was, but for
- *  DVI_STEP_TOO_LARGE.
+/** Make the action stationary, from the guess or from the path that is there. On failure the path
+ *  stays as it was, but for DVI_STEP_TOO_LARGE.
  *
  *  @param[out] report  may be NULL
- *  @retval DVI_STEP_TOO_LARGE  the path that was found is stationary, but its steps follow no motion: the energy changes by more than
- *                              a tenth of the kinetic energy over the path or in a step. Path and report are those that were found
+ *  @retval DVI_STEP_TOO_LARGE  the path that was found is stationary, but its steps follow no motion:
+ *                              over the path, or in a step, the energy changes by more than a tenth
+ *                              of the kinetic energy. Path and report are those that were found
  *  @retval DVI_NOT_CONVERGED   no stationary path was found from there, or (with many conjugate points ahead) there is none
  *  @retval DVI_SINGULAR        the path that was found is not isolated, beyond its symmetries: the ends are conjugate, and every path beside it is as
  *                              good, or roundoff decided which one it is

@@ -109,7 +109,8 @@ dvi_status dvi__path_action(dvi_path *path, const double *x, double *action, dou
 
 /* ---- energy.c ---- */
 
-/* Fill energy_spread, kinetic, energy_jump and jump_step of the report for `trial` and trial_p. After dvi__path_gradient. */
+/* Fill energy_spread, kinetic, energy_jump and jump_step of the report for `trial` and its trial_p,
+ * which dvi__path_gradient has found. */
 dvi_status dvi__path_energies(dvi_path *path, dvi_path_report *report);
 
 /* DVI_STEP_TOO_LARGE if these numbers are those of a path that follows no motion. */
