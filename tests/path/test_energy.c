@@ -120,7 +120,7 @@ START_TEST(a_path_that_follows_no_motion_is_not_solved)
 }
 END_TEST
 
-/* A path that was refused is a guess of the one with other steps, as a solved one is. */
+/* Another path can be guessed from one that was refused, as from a solved one. */
 START_TEST(a_refused_path_may_be_gone_on_from)
 {
   problem *of = made_problem("double-pendulum", NULL);

@@ -60,7 +60,10 @@ dvi_status dvi__path_energies(dvi_path *path, dvi_path_report *report)
   report->energy_spread = report->energy_jump = report->kinetic = (double)NAN;
   if (!path->system->autonomous) return DVI_OK;
   report->energy_jump = report->kinetic = 0;
-  for (int k = 0; k < path->steps; k++) DVI_TRY(measure_step(path, k, &r, report));
+  for (int k = 0; k < path->steps; k++) {
+    const dvi_status status = measure_step(path, k, &r, report);
+    if (status != DVI_OK) return dvi__fail_in(status, "energy in step %d of %d", k + 1, path->steps);
+  }
   const dvi__instant lowest = node(path, r.lowest, 0), highest = node(path, r.highest, 1);
   return dvi__energy_change(path->energies, &lowest, &highest, &report->energy_spread, &kinetic);
 }
