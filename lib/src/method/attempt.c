@@ -26,9 +26,12 @@ static const double doubted_change = 0.01;
 static const double same = 1e-6;
 
 struct dvi__attempt {
-  dvi__state state; /* what the first attempt found, */
-  double *memory;   /* and left in the memory */
-  double *numbers;  /* of both */
+  dvi__state state;       /* what the first attempt found, */
+  double *memory;         /* and left in the memory */
+  double *work;           /* [2 n] */
+  int by_motion;          /* the step is followed because of its motion */
+  int vain, wait, spared; /* such steps in a row that were right; steps that are not asked after one; those that are left */
+  double *numbers;        /* of both */
 };
 
 dvi_status dvi__attempt_allocate(dvi_integrator *I)
@@ -37,10 +40,11 @@ dvi_status dvi__attempt_allocate(dvi_integrator *I)
   if (!I->stepper.follows) return DVI_OK;
   I->first = DVI_NEW(struct dvi__attempt, 1);
   if (I->first == NULL) return dvi__fail(DVI_NO_MEMORY, "integrator: no memory");
-  double *at = I->first->numbers = DVI_NEW(double, 4 * n + memory);
+  double *at = I->first->numbers = DVI_NEW(double, 6 * n + memory);
   if (at == NULL) return dvi__fail(DVI_NO_MEMORY, "integrator: no memory for %zu coordinates", n);
   dvi__state_lay_out(&I->first->state, &at, n);
-  I->first->memory = at;
+  I->first->work = at;
+  I->first->memory = at + 2 * n;
   return DVI_OK;
 }
 
@@ -50,25 +54,39 @@ void dvi__attempt_clear(dvi_integrator *I)
   dvi__release(I->first);
 }
 
-/* Where there is no kinetic energy, steps that lead this far from their velocities, too. */
-static const double doubted_defect = 0.2;
+/* So are steps in which a coordinate, or its momentum, ends farther than this from where the mean of
+ * its rates at both ends leads, as a part of the larger rate's way: energy alone does not see the small
+ * parts of a system. */
+static const double doubted_defect = 0.1;
 
-/* Whether the energy changes by too much from `now` to `next`; also where it cannot be told. */
+/* Right steps do so, too, where they are long. After some that were followed in vain the question is
+ * put more and more seldom, until its answer is that a step was wrong. */
+enum { VAIN_ONES = 8, LONGEST_WAIT = 64 };
+
+static int is_spared(struct dvi__attempt *first)
+{
+  first->by_motion = first->spared == 0;
+  if (first->spared > 0) first->spared--;
+  return !first->by_motion;
+}
+
+/* Whether energy or motion change by too much from `now` to `next`; also where it cannot be told. */
 static int state_jumps(dvi_integrator *I)
 {
-  double change, exchanged, defect = 0;
-  const int has_kinetic = !(I->system->terms & (DVI__ONE_FORM | DVI__PHASE_SPACE));
+  double change, exchanged, defect;
   const dvi__instant before = {I->now.t, I->now.q, I->now.p, I->last_v}, after = {I->next.t, I->next.q, I->next.p, I->v};
   dvi__guess_velocity(I->system->n, I->now.q, I->last.q, I->last.p, I->last_h, I->last_v);
   dvi__guess_velocity(I->system->n, I->next.q, I->now.q, I->last_v, I->next.t - I->now.t, I->v);
   if (dvi__energy_change(I->evaluator, &before, &after, &change, &exchanged) != DVI_OK) return 1;
-  if (!has_kinetic && dvi__motion_defect(I->evaluator, &before, &after, &defect) != DVI_OK) return 1;
-  return !(change <= doubted_change * exchanged && defect <= doubted_defect);
+  if (!(change <= doubted_change * exchanged)) return 1;
+  if (dvi__motion_defect(I->evaluator, &before, &after, I->first->work, &defect) != DVI_OK) return 1;
+  return defect > doubted_defect && !is_spared(I->first);
 }
 
 static int is_doubted(dvi_integrator *I)
 {
   if (I->first == NULL || I->stepper.doubt == DVI__SURE) return 0;
+  I->first->by_motion = 0;
   return I->stepper.doubt == DVI__ASTRAY || state_jumps(I);
 }
 
@@ -93,15 +111,23 @@ static void restore_first(dvi_integrator *I)
   memcpy(I->stepper.memory, I->first->memory, I->stepper.memory_count * sizeof(double));
 }
 
-/* Whether a vector [n] differs little beside what moved in the step. */
+/* Whether each number of a vector [n] differs little beside what it moved in the step. */
 static int is_same(size_t n, const double *one, const double *other, const double *start)
 {
-  double largest = 0, moved = 0;
   for (size_t i = 0; i < n; i++) {
-    largest = fmax(largest, fabs(one[i] - other[i]));
-    moved = fmax(moved, fmax(fabs(other[i] - start[i]), DBL_EPSILON * fabs(start[i]) / same));
+    const double moved = fmax(fabs(other[i] - start[i]), 4 * DBL_EPSILON * fabs(start[i]) / same);
+    if (!(fabs(one[i] - other[i]) <= same * moved)) return 0;
   }
-  return largest <= same * moved;
+  return 1;
+}
+
+static void learn(struct dvi__attempt *first, int right)
+{
+  if (!first->by_motion) return;
+  first->vain = right ? first->vain + 1 : 0;
+  if (first->vain < VAIN_ONES) first->wait = 0;
+  if (first->vain >= VAIN_ONES) first->wait = first->wait == 0 ? 1 : first->wait < LONGEST_WAIT ? 2 * first->wait : LONGEST_WAIT;
+  first->spared = first->wait;
 }
 
 /* What the first attempt has found stays, to the last bit, if it was right. */
@@ -118,6 +144,8 @@ dvi_status dvi__attempt(dvi_integrator *I, double length, double density)
   const dvi_status status = step(I, length, density);
   I->stepper.follow = 0;
   if (status != DVI_OK) return status;
-  if (is_same(n, I->next.q, I->first->state.q, I->now.q) && is_same(n, I->next.p, I->first->state.p, I->now.p)) restore_first(I);
+  const int right = is_same(n, I->next.q, I->first->state.q, I->now.q) && is_same(n, I->next.p, I->first->state.p, I->now.p);
+  learn(I->first, right);
+  if (right) restore_first(I);
   return DVI_OK;
 }

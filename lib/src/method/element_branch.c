@@ -11,6 +11,9 @@
  * others. Steps below half a radian are nearer to their guess. */
 static const double near_in_charts = 0.03;
 
+/* Fixed point iteration that contracts so fast all the way is sure of its solution. */
+static const double strong = 0.2;
+
 /* The same between an extrapolated guess and the next solution of a branch. */
 static const double follows_in_charts = 0.01;
 
@@ -74,7 +77,7 @@ static dvi_status branch_ends(const dvi__stepper *self, const dvi__element_place
                    end->reached * at->h, dvi__action_turned(own->action, own->dq));
 }
 
-dvi_status dvi__element_follow(dvi__stepper *self, const dvi__element_place *at, const dvi__branch_failure *whole, double *Y)
+dvi_status dvi__element_follow(dvi__stepper *self, const dvi__element_place *at, dvi_status whole, double *Y)
 {
   const dvi__element *own = self->own;
   pursuit of = {self, at, 0};
@@ -83,16 +86,19 @@ dvi_status dvi__element_follow(dvi__stepper *self, const dvi__element_place *at,
                               .guess = guess_part,
                               .distance = own->centred ? turn_between : NULL,
                               .near = own->centred ? follows_in_charts : DVI__BRANCH_NEAR,
+                              .group = dvi__action_unknowns(own->action) / self->system->n,
                               .parts = self->follow,
                               .signs = !own->centred || dvi__action_signs(own->action),
                               .from_zero = 1,
                               .size = dvi__largest((size_t)self->system->n, at->q),
                               .room = own->branch};
+  dvi__branch_failure failure;
   dvi__branch_end end;
+  dvi__branch_note(whole, &failure);
   self->counters->followed++;
   self->counters->newtons += !self->follow;
   const dvi_status status = dvi__branch_follow(&branch, own->solver, Y, &end);
-  return status <= 0 ? status : branch_ends(self, at, Y, &end, whole);
+  return status <= 0 ? status : branch_ends(self, at, Y, &end, &failure);
 }
 
 /* As h goes to 0 the Jacobian is L_vv times a positive matrix over h. On the way to another
@@ -114,7 +120,7 @@ dvi__doubt dvi__element_doubt(const dvi__stepper *self, const dvi__element_place
 {
   const dvi__element *own = self->own;
   const int by_newton = own->rung == DVI__NEWTON || own->rung == DVI__KINSOL;
-  if (own->rung == DVI__FIXED_POINT) return DVI__SURE;
+  if (own->rung == DVI__FIXED_POINT) return report->contraction <= strong ? DVI__SURE : DVI__DOUBTED;
   if (by_newton && is_turned(self, at)) return DVI__ASTRAY;
   if (own->rung == DVI__NEWTON && dvi__branch_is_sure(report, dvi__action_unknowns(own->action), own->Y)) return DVI__SURE;
   return DVI__DOUBTED;

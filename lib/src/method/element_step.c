@@ -335,12 +335,10 @@ static dvi__element_place place_of(const dvi__stepper *self, const dvi__state *s
 static dvi_status find_path(dvi__stepper *self, const dvi__element_place *at, dvi__solve_report *report)
 {
   dvi__element *own = self->own;
-  dvi__branch_failure whole = {0};
-  if (self->follow) return dvi__element_follow(self, at, &whole, own->Y);
-  const dvi_status status = solve_at(self, at, own->Y, report);
+  const dvi_status status = self->follow ? DVI_OK : solve_at(self, at, own->Y, report);
   if (status < 0) return status;
-  dvi__branch_note(status, &whole);
-  if (status != DVI_OK || (own->centred && dvi__element_strays(self, at))) return dvi__element_follow(self, at, &whole, own->Y);
+  if (status != DVI_OK || self->follow || (own->centred && dvi__element_strays(self, at)))
+    return dvi__element_follow(self, at, status, own->Y);
   if (!own->centred) self->doubt = dvi__element_doubt(self, at, report);
   return DVI_OK;
 }

@@ -34,8 +34,9 @@ typedef struct dvi__element {
 /* Y of a straight line along the velocity at the start, which is sought from that of the last path. */
 dvi_status dvi__element_straight(dvi__stepper *self, const dvi__element_place *at, double *Y);
 
-/* Y of the solution that continues those of shorter steps; `whole`: what the ladder failed by. */
-dvi_status dvi__element_follow(dvi__stepper *self, const dvi__element_place *at, const dvi__branch_failure *whole, double *Y);
+/* Y of the solution that continues those of shorter steps; `whole`: what the ladder failed by, with
+ * the thread's sentence, or DVI_OK. */
+dvi_status dvi__element_follow(dvi__stepper *self, const dvi__element_place *at, dvi_status whole, double *Y);
 
 /* Of the solution that the ladder has found: what it tells of its branch. */
 dvi__doubt dvi__element_doubt(const dvi__stepper *self, const dvi__element_place *at, const dvi__solve_report *report);

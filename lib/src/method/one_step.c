@@ -44,6 +44,7 @@ dvi_status dvi__one_step_create(dvi__stepper *self, size_t size, const dvi__step
                               .ahead = kind->renewed};
   DVI_TRY(dvi__stationary_create(self, &equations, &one->equations));
   one->x = one->equations.x;
+  one->equations.group = (int)(unknowns(one) / (size_t)self->system->n);
   return DVI_OK;
 }
 

@@ -55,22 +55,25 @@ static double size_of(const dvi__stationary_step *step)
   return dvi__largest((size_t)step->stepper->system->n, step->state->q);
 }
 
-static dvi_status follow(const dvi__stationary *s, const dvi__stationary_step *step, const dvi__branch_failure *whole)
+static dvi_status follow(const dvi__stationary *s, const dvi__stationary_step *step, dvi_status whole)
 {
   dvi__stationary_step of = *step;
   const dvi__branch branch = {.of = &of,
                               .place = place_part,
                               .guess = guess_part,
                               .near = DVI__BRANCH_NEAR,
+                              .group = s->group,
                               .parts = step->stepper->follow,
                               .signs = 1,
                               .size = size_of(step),
                               .room = s->room};
+  dvi__branch_failure failure;
   dvi__branch_end end;
+  dvi__branch_note(whole, &failure);
   step->stepper->counters->followed++;
   step->stepper->counters->newtons += !step->stepper->follow;
   const dvi_status status = dvi__branch_follow(&branch, s->solver, s->x, &end);
-  return status <= 0 ? status : dvi__branch_tell(&end, step->h, whole);
+  return status <= 0 ? status : dvi__branch_tell(&end, step->h, &failure);
 }
 
 static dvi_status solve_at_once(const dvi__stationary *s, const dvi__stationary_step *step)
@@ -86,11 +89,7 @@ static dvi_status solve_at_once(const dvi__stationary *s, const dvi__stationary_
 
 dvi_status dvi__stationary_solve(const dvi__stationary *s, const dvi__stationary_step *step)
 {
-  dvi__branch_failure whole = {0};
-  if (!step->stepper->follow) {
-    const dvi_status status = solve_at_once(s, step);
-    if (status <= 0) return status;
-    dvi__branch_note(status, &whole);
-  }
-  return follow(s, step, &whole);
+  const int asked = step->stepper->follow;
+  const dvi_status status = asked ? DVI_OK : solve_at_once(s, step);
+  return status > 0 || asked ? follow(s, step, status) : status;
 }

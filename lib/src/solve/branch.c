@@ -14,7 +14,10 @@ static const double first_part = 1.0 / 16, least_part = 1.0 / DVI__BRANCH_PARTS;
 
 /* A guess is in the domain of Newton's method if the second correction is this part of the first.
  * Elsewhere, and where the Jacobian is not exact, solutions have to be closer to their guesses. */
-static const double contraction = 0.5, closer = 0.1;
+static const double contraction = 0.5, at_first = 0.4, closer = 0.1;
+
+/* Of smaller changes of the numbers that are added nothing is known. */
+static const double rounding = 1e-12;
 
 /* Of smaller corrections, relative to the unknowns, rounding may be a large part. */
 static const double negligible = 1e-6;
@@ -52,24 +55,33 @@ static void extrapolate(const history *past, size_t unknowns, double part, doubl
   }
 }
 
-static double distance(const dvi__branch *branch, const history *past, size_t unknowns, const double *guess, const double *x)
+/* Unknowns with other units, and of small parts of a system, count as much as large ones. */
+static double distance(const dvi__branch *branch, const history *past, size_t unknowns, double part, const double *guess,
+                       const double *x)
 {
-  double largest = 0, whole = DBL_MIN;
+  const size_t group = branch->group > 0 ? (size_t)branch->group : 1;
+  const double least = rounding * fmax(branch->size, dvi__largest(unknowns, x));
+  double worst = 0;
   if (branch->distance != NULL) return branch->distance(branch->of, guess, x);
-  for (size_t i = 0; i < unknowns; i++) {
-    largest = fmax(largest, fabs(x[i] - guess[i]));
-    whole = fmax(whole, fabs(x[i] - past->first[i]));
+  for (size_t first = 0; first < unknowns; first += group) {
+    double away = 0, come = DBL_MIN;
+    for (size_t i = first; i < unknowns && i < first + group; i++) {
+      away = fmax(away, fabs(x[i] - guess[i]));
+      come = fmax(come, fmax(fabs(x[i] - past->first[i]), part * fabs(x[i])));
+    }
+    worst = fmax(worst, away / fmax(come, least));
   }
-  return largest / whole;
+  return worst;
 }
 
 /* Of a motion that begins at rest the first guesses are no measure. */
-static int is_near(const dvi__branch *branch, const history *past, size_t unknowns, const double *guess, const double *x,
-                   const dvi__solve_report *report)
+static int is_near(const dvi__branch *branch, const history *past, size_t unknowns, double part, const double *guess,
+                   const double *x, const dvi__solve_report *report)
 {
   const int measurable = branch->distance != NULL || past->solved >= 2;
-  const double away = measurable ? distance(branch, past, unknowns, guess, x) : 0;
-  const int contracts = report->contraction <= contraction || report->first <= negligible * dvi__largest(unknowns, x);
+  const double away = measurable ? distance(branch, past, unknowns, part, guess, x) : 0;
+  const int contracts = report->contraction <= (measurable ? contraction : at_first) ||
+                        report->first <= negligible * dvi__largest(unknowns, x);
   const double near = contracts ? branch->near : closer * branch->near;
   return measurable ? away <= near : contracts;
 }
@@ -90,7 +102,7 @@ static dvi_status solve_at(const dvi__branch *branch, dvi__solver *solver, const
   DVI_TRY(guess_at(branch, past, unknowns, part, guess));
   memcpy(x, guess, unknowns * sizeof *x);
   DVI_TRY(dvi__solve(solver, DVI__NEWTON, branch->size, 0, 0, x, report));
-  if (is_near(branch, past, unknowns, guess, x, report)) return DVI_OK;
+  if (is_near(branch, past, unknowns, part, guess, x, report)) return DVI_OK;
   return dvi__fail(DVI_NOT_CONVERGED, "the next solution is not near");
 }
 

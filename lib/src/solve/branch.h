@@ -23,9 +23,10 @@ typedef struct dvi__branch {
   dvi_status (*place)(void *of, double part);
   /* x [unknowns], a guess for a short part of the step. */
   dvi_status (*guess)(void *of, double part, double *x);
-  /* How far a solution is from its guess; NULL: as a part of how far the branch has come. */
+  /* How far a solution is from its guess; NULL: as a part of how far its group has come, the worst. */
   double (*distance)(void *of, const double *guess, const double *x);
   double near;   /* a solution on the branch is no farther from an extrapolated guess */
+  int group;     /* so many unknowns in a row have one unit, and are measured together; 0: 1 */
   int parts;     /* the step is followed in at least so many parts; 0: 1 */
   int signs;     /* along the branch the determinant of the Jacobian changes its sign at folds alone */
   int from_zero; /* x is 0 at a step of length 0: the extrapolation begins there */

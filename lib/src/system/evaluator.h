@@ -117,8 +117,10 @@ typedef struct dvi__instant {
 dvi_status dvi__energy_change(dvi__evaluator *e, const dvi__instant *before, const dvi__instant *after, double *change,
                               double *exchanged);
 
-/* How far the step leads from where the mean of the velocities at its ends does, as a part of the
- * larger one's way: (h omega)^2/12 for well resolved motions. Fills v. Not with factors. */
-dvi_status dvi__motion_defect(dvi__evaluator *e, const dvi__instant *before, const dvi__instant *after, double *defect);
+/* How far a step leads from where the mean of the rates at its ends does, as a part of the larger
+ * one's way: of all coordinates, and of all momenta of a Lagrangian, the worst; (h omega)^2/12 for well
+ * resolved motions. Fills v; forces [2n] is room. Not with factors. */
+dvi_status dvi__motion_defect(dvi__evaluator *e, const dvi__instant *before, const dvi__instant *after, double *forces,
+                              double *defect);
 
 #endif

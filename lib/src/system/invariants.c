@@ -125,17 +125,32 @@ dvi_status dvi__energy_change(dvi__evaluator *e, const dvi__instant *before, con
   return (has_kinetic ? change_of_lagrangian : change_of_hamiltonian)(e, before, after, change, exchanged);
 }
 
-dvi_status dvi__motion_defect(dvi__evaluator *e, const dvi__instant *before, const dvi__instant *after, double *defect)
+/* Rates r and what they move, x, of one kind; a rate that is a rounding of the others is no measure, nor is one that moves little of an x whose size counts. */
+static double defect_of(size_t n, double h, int sized, const double *x0, const double *x1, const double *r0, const double *r1)
 {
+  double worst = 0, largest = 0;
+  for (size_t i = 0; i < n; i++) largest = fmax(largest, fmax(fabs(r0[i]), fabs(r1[i])));
+  for (size_t i = 0; i < n; i++) {
+    const double size = fmax(fabs(x0[i]), fabs(x1[i])) * (sized ? 1 : 1e-10);
+    const double way = fmax(fabs(h) * fmax(fmax(fabs(r0[i]), fabs(r1[i])), 1e-9 * largest), size);
+    const double off = fabs((x1[i] - x0[i]) - 0.5 * h * (r0[i] + r1[i]));
+    if (off > 0) worst = fmax(worst, off / way);
+  }
+  return worst;
+}
+
+dvi_status dvi__motion_defect(dvi__evaluator *e, const dvi__instant *before, const dvi__instant *after, double *forces,
+                              double *defect)
+{
+  const size_t n = (size_t)e->system->n;
   const double h = after->t - before->t;
-  double off = 0, way = 0;
+  double *f0 = forces, *f1 = forces + n;
   DVI_TRY(dvi__legendre_inverse(e, before->t, before->q, before->p, before->v));
   DVI_TRY(dvi__legendre_inverse(e, after->t, after->q, after->p, after->v));
-  for (int i = 0; i < e->system->n; i++) {
-    const double v0 = before->v[i], v1 = after->v[i];
-    off = fmax(off, fabs((after->q[i] - before->q[i]) - 0.5 * h * (v0 + v1)));
-    way = fmax(way, fabs(h) * fmax(fabs(v0), fabs(v1)));
-  }
-  *defect = off > 0 ? off / way : 0;
+  *defect = defect_of(n, h, 0, before->q, after->q, before->v, after->v);
+  if (e->system->terms & (DVI__ONE_FORM | DVI__PHASE_SPACE)) return DVI_OK;
+  DVI_TRY(dvi__state_forces(e, before->t, before->q, before->v, f0));
+  DVI_TRY(dvi__state_forces(e, after->t, after->q, after->v, f1));
+  *defect = fmax(*defect, defect_of(n, h, 1, before->p, after->p, f0, f1));
   return DVI_OK;
 }
