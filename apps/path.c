@@ -38,6 +38,7 @@ typedef struct member {
   problem *scene;
   dvi_path *path;
   dvi_path_report report;
+  bool found; /* a stationary path, and its report; its steps may be too long all the same */
 } member;
 
 /* ---- what the path is to be ---- */
@@ -240,6 +241,7 @@ static int read_family(const path_request *request, family *f)
 static int solve(member *m)
 {
   const dvi_status status = dvi_path_solve(m->path, &m->report);
+  m->found = status == DVI_OK || status == DVI_STEP_TOO_LARGE;
   return status == DVI_OK ? DONE : library_error(status);
 }
 
@@ -294,6 +296,16 @@ static void print_variation(const dvi_path_report *r, FILE *stream)
                   r->negative, r->zero, r->symmetries);
 }
 
+static void print_spread(const dvi_path_report *r, FILE *stream)
+{
+  const double relative = r->kinetic > 0.0 ? r->energy_spread / r->kinetic : 0.0;
+  if (isnan(r->energy_spread))
+    (void)fprintf(stream, "energy spread     not defined: the system depends on time\n");
+  else
+    (void)fprintf(stream, "energy spread     %.1e, %.1e of the kinetic energy; at most %.1e of it in a step\n", r->energy_spread,
+                  relative, r->energy_jump);
+}
+
 static void print_report(const member *m, const path_request *request, FILE *stream)
 {
   const dvi_path_report *r = &m->report;
@@ -303,6 +315,7 @@ static void print_report(const member *m, const path_request *request, FILE *str
                 dvi_path_method(m->path));
   (void)fprintf(stream, "action            %.15g\n", r->action);
   if (!isnan(r->energy)) (void)fprintf(stream, "energy            %.15g\n", r->energy);
+  print_spread(r, stream);
   (void)fprintf(stream, "span              %.15g\n", r->span);
   (void)fprintf(stream, "gradient          %.1e of the largest momentum\n", r->gradient);
   print_variation(r, stream);
@@ -400,6 +413,10 @@ static const char *const details[] = {
     "The guess may be rough: some points, joined by straight lines. Left out: the straight line between fixed ends; else as\n"
     "many steps forward by the method from the problem's start. Newton's method with line search (KINSOL) leads from there\n"
     "to a stationary path, which need not be the nearest; dvi says whether the action has a minimum there or a saddle.\n",
+    "Steps that follow a motion keep its energy. A path over which, or in a step of which, it\n"
+    "changes by more than a tenth of the kinetic energy is printed, but not called solved: dvi says\n"
+    "where it changes most and how many steps to try, writes no FILE, and the exit code is 1. A\n"
+    "system that depends on time keeps no energy, and is not tested.\n",
     "--symmetry 3,4,5,6,1,2 says that coordinate 1 of the last node is coordinate 3 of the first one, and so on (-3: its\n"
     "negative): three bodies in a plane that take each other's places, after one third of the period of the whole.\n"
     "--free-period finds the period that belongs to an energy. --continue e=0.1:0.9:8 solves at e = 0.1, 0.2, .. 0.9, each\n"
@@ -425,7 +442,7 @@ static int run(const char *name, const path_request *request)
   if (code == DONE) code = solve_family(name, request, &values, &found);
   const bool rows_on_output = request->out != NULL && strcmp(request->out, "-") == 0;
   if (code == DONE) events_passed("path", found.scene);
-  if (code == DONE) print_report(&found, request, rows_on_output ? stderr : stdout);
+  if (found.found) print_report(&found, request, rows_on_output ? stderr : stdout);
   if (code == DONE && request->out != NULL) code = write_path(&found, request->out);
   destroy(&found);
   return code;

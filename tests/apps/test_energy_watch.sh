@@ -24,7 +24,7 @@ lines=5 warned 'chosen steps' run kepler --method sem --h 0.05 --t-end 100 --fin
 
 # What is advised helps: a step, or a method, that does not warn.
 for run in 'kepler --method verlet' 'kepler --method midpoint --h 30 --t-end 60' 'henon-heiles --method verlet --h 0.9' \
-  'double-pendulum --method midpoint --h 0.2' 'fpu --method verlet --h 0.03' 'tokamak --method vprk:nodes=1' \
+  'double-pendulum --method midpoint --h 0.1' 'fpu --method verlet --h 0.03' 'tokamak --method vprk:nodes=1' \
   'toda --method verlet --h 1' 'free-body --method lie-rk:scheme=explicit-midpoint --h 0.5' 'elastica --method hamiltonian:type=2,degree=1 --h 1'; do
   # shellcheck disable=SC2086
   warned "$run" run $run --final

@@ -44,6 +44,19 @@ says err 'path: --method is missing' 'who lacks it'
 expect 0 'places' $kepler --from 1,0 --to=-0.5,1
 expect 0 'a momentum' path kepler --method galerkin:degree=4 --ends initial --t-end 3 --steps 30 --from 1,0 --momentum 0,1.1
 
+# What the energy does over the path.
+double='path double-pendulum --method galerkin:degree=2 --ends fixed --from 2.8,1.5 --to=-1,-1.5 --t-end 2'
+expect 0 'steps that resolve a motion' $double --steps 16
+says out '^energy spread  *1.2e+00, 6.8e-03 of the kinetic energy; at most 5.1e-03 of it in a step' 'how much it changes'
+expect 1 'steps that follow none' $double --steps 4 --out coarse.csv
+says out '^energy spread  *[1-9.]*e+02, 9.[0-9]e-01 of the kinetic energy' 'how much it changes then'
+says err 'from node 3 to 4, t = 1.5 to 2, the energy changes by .*; try about 13 steps' 'where, and what helps'
+[ ! -e coarse.csv ] || fail 'no file of a path that is not solved'
+expect 1 'a family that comes to such a path' $double --steps 4 --continue g=0:9.8:2
+says err 'this was at g=' 'where in the family'
+expect 0 'a system that depends on time' path driven-pendulum --method midpoint --ends fixed --to 1 --t-end 1 --steps 10
+says out '^energy spread  *not defined: the system depends on time' 'it keeps no energy'
+
 # The figure eight from three points.
 cat >sketch.csv <<'END'
 t,x_1,y_1,x_2,y_2,x_3,y_3

@@ -228,7 +228,7 @@ START_TEST(equations_without_a_solution_are_reported_and_a_smaller_step_goes_on)
   ck_assert_int_eq(dvi_integrator_start(tried, 0, &(double){0}, &(double){0}), DVI_OK);
   ck_assert_int_eq(dvi_integrator_start(spared, 0, &(double){0}, &(double){0}), DVI_OK);
   ck_assert_int_eq(dvi_integrator_step(tried, 1.5), DVI_STEP_TOO_LARGE);
-  const char *const words[] = {"midpoint: step 1 ",  "from t = 0 ", "h = 1.5",    "the state is unchanged",
+  const char *const words[] = {"midpoint: step 1 ",  "from t = 0 ", "h = 1.5",         "the state is unchanged",
                                "try a smaller step", "iterations",  "ends at h = 1.41"};
   for (int k = 0; k < 7; k++) check_words(words[k]);
   check_same_state(tried, spared);

@@ -42,6 +42,13 @@ typedef struct dvi_path_report {
   double action; /**< S, over the span */
   double energy; /**< -dS/dspan, the mean of the steps' discrete energies; NaN if the system is not declared autonomous */
   double span;   /**< the time from the first to the last node */
+  /** The largest minus the smallest energy at the nodes, from q and p there, beyond roundings: a
+   *  motion keeps its energy. NaN, as the next two, if the system is not declared autonomous. */
+  double energy_spread;
+  double kinetic;     /**< the largest kinetic energy |p.v|/2 at the nodes */
+  double energy_jump; /**< the largest |E_(k+1) - E_k| over a step, beyond roundings, relative to
+                       *   the larger kinetic energy of its two nodes; Inf if both are at rest */
+  int jump_step;      /**< the k of that step; 0 if there is none */
   double
       gradient; /**< largest |dS/dX| over nodes and inner unknowns, relative to the largest momentum: what is left of stationarity */
   /** Signs of the second variation on the paths with these ends, at this span. An eigenvalue lambda of d2S = lambda / span^2 times the kinetic
@@ -99,9 +106,13 @@ dvi_status dvi_path_guess(dvi_path *path, int points, int dimension, const doubl
  *  @retval DVI_BAD_ARGUMENT  ratio is not finite; the guess is as before */
 dvi_status dvi_path_guess_along(dvi_path *path, const dvi_path *last, const dvi_path *before, double ratio);
 
-/** Make the action stationary, from the guess or from the path that is there. On failure the path stays as it was.
+/** Make the action stationary, from the guess or from the path that is there. On failure the path
+ *  stays as it was, but for DVI_STEP_TOO_LARGE.
  *
  *  @param[out] report  may be NULL
+ *  @retval DVI_STEP_TOO_LARGE  the path that was found is stationary, but its steps follow no motion:
+ *                              over the path, or in a step, the energy changes by more than a tenth
+ *                              of the kinetic energy. Path and report are those that were found
  *  @retval DVI_NOT_CONVERGED   no stationary path was found from there, or (with many conjugate points ahead) there is none
  *  @retval DVI_SINGULAR        the path that was found is not isolated, beyond its symmetries: the ends are conjugate, and every path beside it is as
  *                              good, or roundoff decided which one it is

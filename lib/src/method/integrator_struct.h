@@ -14,9 +14,9 @@ struct dvi_integrator {
   /* The present state, the one before the last step, and the one that a step works on: a step that fails spoils only `next`. Before the first
    * step `last.p` holds the start's velocity. */
   dvi__state now, last, next;
-  double *numbers;       /* the memory of all three */
-  double *memory_before; /* the stepper's memory before the last step: the two change places with every step */
-  double *v, *last_v;    /* [n] */
+  double *numbers;            /* the memory of all three */
+  double *memory_before;      /* the stepper's memory before the last step: the two change places with every step */
+  double *v, *last_v;         /* [n] */
   struct dvi__attempt *first; /* of a step that is taken again (attempt.h); NULL: none is */
   int started;
   double last_h;        /* in time; 0: no step was taken yet */

@@ -91,8 +91,8 @@ typedef struct dvi__stepper {
   int follows;      /* it solves equations, and can follow their branch from h = 0 */
   int follow;       /* set by the driver: the step does so, in at least so many parts; 0: it does not */
   dvi__doubt doubt; /* set by `step`, reset by the driver */
-  void *own;   /* the method's struct */
-  void *lanes; /* its struct for members side by side; NULL: each member steps on its own */
+  void *own;        /* the method's struct */
+  void *lanes;      /* its struct for members side by side; NULL: each member steps on its own */
 } dvi__stepper;
 
 /* A growing text in memory of fixed size. */

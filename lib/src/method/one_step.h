@@ -34,10 +34,10 @@ typedef struct dvi__one_step {
   const dvi__step_kind *kind;
   void *of; /* the step, of this kind */
   dvi__stationary equations;
-  size_t last;           /* where in the memory stands what the guess continues */
-  double *x, *work;      /* [unknowns] the solution; room for the kind */
-  double *dq, *dp;       /* [n] */
-  double *carried;       /* [2 n] of the node, in a part of the step */
+  size_t last;      /* where in the memory stands what the guess continues */
+  double *x, *work; /* [unknowns] the solution; room for the kind */
+  double *dq, *dp;  /* [n] */
+  double *carried;  /* [2 n] of the node, in a part of the step */
 } dvi__one_step;
 
 /* Make self->own, `size` bytes, and the memory with `carried` numbers of the method's own. The step is owned from here on, also on failure. */
@@ -49,8 +49,7 @@ dvi_status dvi__one_step_solve(dvi__stepper *self, const dvi__state *state, doub
 
 /* The momentum [n] from which a part of the step starts: where a method leaves p = alpha(q), what
  * keeps them apart belongs to the length of its steps, and without it there are no velocities. */
-dvi_status dvi__one_step_momentum(dvi__stepper *self, const dvi__state *state, double part,
-                                  const double **p);
+dvi_status dvi__one_step_momentum(dvi__stepper *self, const dvi__state *state, double part, const double **p);
 
 /* Move q by dq and t by the duration at x, and remember `last` [unknowns]. After the ends are taken. */
 dvi_status dvi__one_step_move(dvi__stepper *self, dvi__state *state, double h, const double *last);
@@ -67,7 +66,7 @@ void dvi__one_step_explain(const dvi__stepper *self, dvi__text *text);
 
 /* The kind whose functions are dvi__foo_..., as `kind`; then its `place` and `explain`, and what else it wants to
  * set. */
-#define DVI__STEP_KIND(foo, placed, ...)                                              \
+#define DVI__STEP_KIND(foo, placed, ...)                                          \
   static dvi_status residual_of(void *of, const double *x, double *R)             \
   {                                                                               \
     return dvi__##foo##_residual(of, x, R);                                       \

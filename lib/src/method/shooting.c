@@ -85,8 +85,8 @@ typedef struct shooter {
   dvi__stationary equations;
   int unknowns, order; /* of the one-step method */
   double tolerance;    /* 0: roundoff */
-  double *guess, *R;   /* [unknowns] */
   double *values;      /* [entries] of the Jacobian; NULL without a tolerance */
+  double *guess, *R;   /* [unknowns]; the arrays below lie behind */
   double *v, *dq, *dp; /* [n] */
 } shooter;
 
@@ -243,13 +243,14 @@ static dvi_status plot(const dvi__settings *settings, dvi__course *course)
 static int allocate(shooter *own, size_t n)
 {
   const size_t z = (size_t)own->unknowns;
-  own->guess = DVI_NEW(double, z);
-  own->R = DVI_NEW(double, z);
-  own->v = DVI_NEW(double, n);
-  own->dq = DVI_NEW(double, n);
-  own->dp = DVI_NEW(double, n);
+  double *at = own->guess = DVI_NEW(double, 2 * z + 3 * n);
   if (own->tolerance > 0) own->values = DVI_NEW(double, dvi__pattern_entries(own->pattern));
-  return own->guess && own->R && own->v && own->dq && own->dp && (own->values || own->tolerance == 0);
+  if (at == NULL || (own->values == NULL && own->tolerance > 0)) return 0;
+  own->R = at + z;
+  own->v = own->R + z;
+  own->dq = own->v + n;
+  own->dp = own->dq + n;
+  return 1;
 }
 
 /* Unknowns and rows come in units of q. */
@@ -375,11 +376,7 @@ static void destroy(dvi__stepper *self)
   dvi__shot_step_destroy(&own->shot);
   dvi__stacked_shot_destroy(&own->stacked);
   dvi__release(own->guess);
-  dvi__release(own->R);
   dvi__release(own->values);
-  dvi__release(own->v);
-  dvi__release(own->dq);
-  dvi__release(own->dp);
   dvi__release(own);
 }
 
@@ -459,15 +456,14 @@ static dvi_status find_duration(const dvi__stepper *self, double h, double *dura
 static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
 {
   const shooter *own = self->own;
-  const int n = self->system->n;
   double duration;
-  memcpy(own->v, self->memory, (size_t)n * sizeof *own->v);
+  memcpy(own->v, self->memory, self->memory_count * sizeof *own->v);
   DVI_TRY(solve(self, state, h));
   find_ends(own);
   DVI_TRY(find_duration(self, h, &duration));
-  for (int i = 0; i < n; i++) self->memory[i] = own->v[i];
-  dvi__add_compensated_all(n, state->q, state->q_carry, own->dq);
-  dvi__add_compensated_all(n, state->p, state->p_carry, own->dp);
+  memcpy(self->memory, own->v, self->memory_count * sizeof *own->v);
+  dvi__add_compensated_all(self->system->n, state->q, state->q_carry, own->dq);
+  dvi__add_compensated_all(self->system->n, state->p, state->p_carry, own->dp);
   dvi__add_compensated(&state->t, &state->t_carry, duration);
   return DVI_OK;
 }
@@ -476,9 +472,10 @@ static void explain(const dvi__stepper *self, dvi__text *text)
 {
   const shooter *own = self->own;
   const dvi__settings *set = &self->settings;
-  dvi__text_add(text, "one-step method: %s%s of order %d, %d stage%s\nquadrature: %s of %d nodes\n",
-                one_step_name(set->value[ONE_STEP]), set->value[COMPOSITION] > 0 ? ", composed," : "", own->order,
-                set->value[STAGES], set->value[STAGES] == 1 ? "" : "s", rule_name(set->value[QUADRATURE]), set->value[NODES]);
+  dvi__text_add(text, "one-step method: %s%s of order %d, %d stage%s\n", one_step_name(set->value[ONE_STEP]),
+                set->value[COMPOSITION] > 0 ? ", composed," : "", own->order, set->value[STAGES],
+                set->value[STAGES] == 1 ? "" : "s");
+  dvi__text_add(text, "quadrature: %s of %d nodes\n", rule_name(set->value[QUADRATURE]), set->value[NODES]);
   if (own->stacked != NULL)
     dvi__text_add(text, "kernel: stages and their costates; %d unknowns a step, Jacobian with %d entries (%.3g %% of a full one)\n",
                   own->unknowns, dvi__pattern_entries(own->pattern),

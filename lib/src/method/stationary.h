@@ -26,8 +26,7 @@ typedef struct dvi__stationary {
 
 /* Fill in what every such method has alike: no fixed point iteration, and zeros on the Jacobian's
  * diagonal. The equations' residual, jacobian and row_scale are the method's. */
-dvi_status dvi__stationary_create(dvi__stepper *self, dvi__equations *equations,
-                                  dvi__stationary *stationary);
+dvi_status dvi__stationary_create(dvi__stepper *self, dvi__equations *equations, dvi__stationary *stationary);
 void dvi__stationary_clear(dvi__stationary *stationary);
 
 /* x of the step; the equations are left there, and the stepper knows whether the solution is to be

@@ -138,9 +138,11 @@ static dvi_status make_action(dvi_path *path, const char *method)
   DVI_TRY(dvi__action_create(path->system, &space, &path->counters, &path->action));
   DVI_TRY(dvi__action_prepare_jacobian(path->action));
   DVI_TRY(dvi__action_prepare_between(path->action));
-  if (path->system->autonomous) DVI_TRY(dvi__action_prepare_energy(path->action));
   path->s = space.degree;
-  return DVI_OK;
+  path->order = dvi__element_order(&space);
+  if (!path->system->autonomous) return DVI_OK;
+  DVI_TRY(dvi__action_prepare_energy(path->action));
+  return dvi__evaluator_create(path->system, 1, DVI__STATES, &path->counters, &path->energies);
 }
 
 /* The straight line between fixed ends; else a path at rest, for want of anything better. */
@@ -204,6 +206,7 @@ void dvi_path_destroy(dvi_path **path)
                            own->energy_q0, own->probe, own->gauge,   own->origin,  own->defect};
   dvi__solver_destroy(&own->solver);
   dvi__action_destroy(&own->action);
+  dvi__evaluator_destroy(&own->energies);
   dvi__pattern_clear(&own->turn);
   dvi__pattern_clear(&own->pattern);
   for (size_t k = 0; k < sizeof owned / sizeof *owned; k++) dvi__release(owned[k]);

@@ -17,7 +17,7 @@ struct dvi_path {
   dvi_counters counters;
   char method[DVI__PATH_METHOD_SIZE];
   dvi_ends ends;
-  int n, s, steps;
+  int n, s, steps, order;
   double start, span; /* the span's unknown, if it is free, is its ratio to this */
   double energy;      /* of a free span */
   int free_span;
@@ -25,6 +25,7 @@ struct dvi_path {
   dvi__pattern turn;            /* the symmetry's transpose: its column i is row i of A; empty: the identity */
   double *turn_values;
   dvi__action *action;
+  dvi__evaluator *energies; /* at nodes; NULL: the system is not autonomous */
   dvi__solver *solver;
   dvi__pattern pattern;
   int core;                /* unknowns of nodes and bubbles */
@@ -105,6 +106,15 @@ dvi_status dvi__path_jacobian(dvi_path *path, const double *x, double *values);
 
 /* The action; and the mean energy, NaN if the system is not autonomous. DVI_NOT_CONVERGED if the path leads through a singularity unseen. */
 dvi_status dvi__path_action(dvi_path *path, const double *x, double *action, double *energy);
+
+/* ---- energy.c ---- */
+
+/* Fill energy_spread, kinetic, energy_jump and jump_step of the report for `trial` and its trial_p,
+ * which dvi__path_gradient has found. */
+dvi_status dvi__path_energies(dvi_path *path, dvi_path_report *report);
+
+/* DVI_STEP_TOO_LARGE if these numbers are those of a path that follows no motion. */
+dvi_status dvi__path_check_resolved(const dvi_path *path, const dvi_path_report *report);
 
 /* ---- gauge.c ---- */
 

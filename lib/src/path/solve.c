@@ -144,7 +144,8 @@ static dvi_status solve(dvi_path *path, dvi_path_report *report)
   if (status != DVI_OK) return status;
   DVI_TRY(dvi__path_check_symmetry(path, path->trial, path->steps));
   DVI_TRY(dvi__path_index(path, report));
-  return check_isolated(path, report);
+  DVI_TRY(check_isolated(path, report));
+  return dvi__path_energies(path, report);
 }
 
 dvi_status dvi_path_solve(dvi_path *path, dvi_path_report *report)
@@ -155,5 +156,5 @@ dvi_status dvi_path_solve(dvi_path *path, dvi_path_report *report)
   if (status != DVI_OK) return dvi__fail_in(status, "path");
   accept(path);
   if (report != NULL) *report = found;
-  return DVI_OK;
+  return dvi__path_check_resolved(path, &found);
 }

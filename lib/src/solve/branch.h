@@ -45,8 +45,7 @@ typedef struct dvi__branch_end {
  *
  * DVI_STEP_TOO_LARGE: the branch ends before, or nothing can be solved beyond; x is the last
  * solution. A negative status: fatal. */
-dvi_status dvi__branch_follow(const dvi__branch *branch, dvi__solver *solver, double *x,
-                              dvi__branch_end *end);
+dvi_status dvi__branch_follow(const dvi__branch *branch, dvi__solver *solver, double *x, dvi__branch_end *end);
 
 /* Whether Newton's method began so near its solution x [unknowns] that it can be no other one. */
 int dvi__branch_is_sure(const dvi__solve_report *report, int unknowns, const double *x);
