@@ -48,8 +48,9 @@ static void tell_derivatives(double worst, int at_kink)
   (void)putchar('\n');
 }
 
-/* Returns DONE, or complains of the first derivative that is wrong. With a kink another point may take the place of one that
- * fails, for differences across it are none of a derivative; what is wrong fails at the others, too. */
+/* Returns DONE, or complains of the first derivative that is wrong. With a kink another point may
+ * take the place of one that fails, for differences across it are not those of a smooth function;
+ * what is wrong fails at the others, too. */
 static int check_derivatives(const problem *scene, double *q, double *v)
 {
   uint64_t state = 1;

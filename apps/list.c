@@ -129,8 +129,8 @@ int list_command(int argc, char **argv)
       .name = "list",
       .synopsis = "methods|problems|NAME [--csv -|FILE]",
       .operand = "word (methods, problems, or the name of one)",
-      .summary = "List the methods with the keys of their specifications, or the problems with their parameters; or the one of\n"
-                 "that name.\n",
+      .summary = "List the methods with the keys of their specifications, or the problems with their\n"
+                 "parameters; or the one of that name.\n",
       .options = options,
       .details = details,
   };

@@ -15,8 +15,10 @@ endif()
 install(DIRECTORY apps/scenes DESTINATION "${CMAKE_INSTALL_DATADIR}/dvi")
 # The pages lie as they do here, with all that they lead to.
 install(FILES README.md CHANGELOG.md LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}")
-install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}" FILES_MATCHING PATTERN "*.md" PATTERN "*.svg" PATTERN "*.bib")
-install(DIRECTORY apps/examples apps/problems apps/scenes DESTINATION "${CMAKE_INSTALL_DOCDIR}/apps" PATTERN "CMakeLists.txt" EXCLUDE)
+install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}"
+        FILES_MATCHING PATTERN "*.md" PATTERN "*.svg" PATTERN "*.bib")
+install(DIRECTORY apps/examples apps/problems apps/scenes DESTINATION "${CMAKE_INSTALL_DOCDIR}/apps"
+        PATTERN "CMakeLists.txt" EXCLUDE)
 if(EXISTS "${PROJECT_SOURCE_DIR}/docs/dvi.1")
   install(FILES docs/dvi.1 DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
 endif()

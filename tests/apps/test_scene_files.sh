@@ -93,7 +93,8 @@ expect 0 'explain' explain kink.yaml
 says out '^kink: kink.yaml:2:22: max(x, 0)' 'explain'
 expect 0 'check' check kink.yaml
 says out '^kink: kink.yaml:2:22: max(x, 0)' 'check'
-# One of the points lies at a kink of a velocity: its differences go across, and say nothing on the derivatives.
+# One of the points lies at a kink of a velocity: its differences go across, and say nothing on the
+# derivatives.
 cat >rest.yaml <<'E1'
 coordinates: {y: scalar}
 lagrangian: y'^2/2 - 3*max(y,0)^2 + 0.1*abs(y')*y
