@@ -16,7 +16,7 @@ static int check_outputs(const bench_outputs *outputs, const char *name)
   const char *const paths[] = {outputs->csv, outputs->plot, outputs->at_csv};
   const named_file files[] = {{"csv", outputs->csv}, {"plot", outputs->plot}, {"at-csv", outputs->at_csv}};
   enum { FILES = sizeof files / sizeof *files };
-  int code = outputs_plot("bench", outputs->plot);
+  int code = outputs_plot("bench", "plot", outputs->plot);
   if (code == DONE) code = scene_spared("bench", name, FILES, files);
   if (code == DONE) code = outputs_distinct("bench", FILES, files);
   if (code != DONE) return code;

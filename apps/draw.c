@@ -64,7 +64,7 @@ static int plot_file(const plot_request *request, const char *path)
 {
   curve_list list;
   if (request->out == NULL) return usage_error("plot: --out FILE.svg is missing");
-  int code = outputs_plot("plot", request->out);
+  int code = outputs_plot("plot", "out", request->out);
   if (code == DONE) code = curves_ask(&request->axes, &list);
   if (code != DONE) return code;
   code = curves_read(path, &list);

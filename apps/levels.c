@@ -65,7 +65,9 @@ static void disturb(const order_study *s, double *q)
   }
 }
 
-/* What roundoff does to the end: how far a change of the start in its last place moves it. */
+/* What roundoff does to the end: how far a change of the start in its last place moves it. The
+ * disturbed start is projected: where a constraint is made of numbers that are 0, even the last
+ * place of the others is off it. */
 static dvi_status find_floor(order_study *s, long steps)
 {
   const int n = s->scene->nq;
@@ -73,10 +75,10 @@ static dvi_status find_floor(order_study *s, long steps)
   if (q == NULL) return DVI_NO_MEMORY;
   double *end = q + n;
   disturb(s, q);
-  dvi_status status = study_integrate(s, q, steps);
+  dvi_status status = study_integrate(s, q, &(dvi_start_options){.project = 1}, steps);
   if (status == DVI_OK) {
     memcpy(end, dvi_integrator_q(s->integrator), (size_t)n * sizeof *end);
-    status = study_integrate(s, s->scene->q, steps);
+    status = study_integrate(s, s->scene->q, NULL, steps);
   }
   double moved = DBL_EPSILON * study_size(s);
   for (int i = 0; i < n && status == DVI_OK; i++) moved = fmax(moved, fabs(end[i] - dvi_integrator_q(s->integrator)[i]));

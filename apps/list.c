@@ -29,13 +29,16 @@ static void append(char *text, const char *word)
     (void)snprintf(text + length, NAMES_SIZE - length, "%s%s", length > 0 ? " " : "", word);
 }
 
+static void print_method(int i)
+{
+  (void)printf("%-*s %s [%s]\n", NAME_COLUMN, dvi_method_name(i), dvi_method_summary(i), dvi_method_citation(i));
+  for (int k = 0; k < dvi_method_key_count(i); k++)
+    (void)printf("    %-*s  %s\n", KEY_COLUMN, dvi_method_key_name(i, k), dvi_method_key_help(i, k));
+}
+
 static void print_methods(void)
 {
-  for (int i = 0; i < dvi_method_count(); i++) {
-    (void)printf("%-*s %s [%s]\n", NAME_COLUMN, dvi_method_name(i), dvi_method_summary(i), dvi_method_citation(i));
-    for (int k = 0; k < dvi_method_key_count(i); k++)
-      (void)printf("    %-*s  %s\n", KEY_COLUMN, dvi_method_key_name(i, k), dvi_method_key_help(i, k));
-  }
+  for (int i = 0; i < dvi_method_count(); i++) print_method(i);
   (void)printf("\nA method is named as name[:key=value,...], for example galerkin:degree=4,quadrature=lobatto,nodes=5\n");
 }
 
@@ -53,17 +56,20 @@ static result_table *methods_table(void)
   return t;
 }
 
+static void print_problem(int i)
+{
+  (void)printf("%-*s %s\n", NAME_COLUMN, problem_name(i), problem_summary(i));
+  for (const problem_parameter *k = problem_parameters(i); k->name != NULL; k++) {
+    char spelling[32];
+    problem_spell(k, k->value, spelling, sizeof spelling);
+    (void)printf("    %-*s  %s (default %s%s)\n", KEY_COLUMN, k->name, k->help, spelling,
+                 k->start_only ? "; only places the start" : "");
+  }
+}
+
 static void print_problems(void)
 {
-  for (int i = 0; i < problem_count(); i++) {
-    (void)printf("%-*s %s\n", NAME_COLUMN, problem_name(i), problem_summary(i));
-    for (const problem_parameter *k = problem_parameters(i); k->name != NULL; k++) {
-      char spelling[32];
-      problem_spell(k, k->value, spelling, sizeof spelling);
-      (void)printf("    %-*s  %s (default %s%s)\n", KEY_COLUMN, k->name, k->help, spelling,
-                   k->start_only ? "; only places the start" : "");
-    }
-  }
+  for (int i = 0; i < problem_count(); i++) print_problem(i);
   (void)printf("\nParameters are set with --set name=value, for example dvi run kepler --method verlet --set e=0.9\n"
                "A problem of one's own is a scene, FILE.yaml in place of a name: dvi init FILE.yaml writes one to begin with\n");
 }
@@ -86,6 +92,17 @@ static result_table *problems_table(void)
   return t;
 }
 
+/* What has this name: a method, a problem, or nothing. */
+static bool print_named(const char *name)
+{
+  const int methods = dvi_method_count(), found = problem_find(name);
+  int method = 0;
+  while (method < methods && strcmp(dvi_method_name(method), name) != 0) method++;
+  if (method < methods) print_method(method);
+  if (found >= 0) print_problem(found);
+  return method < methods || found >= 0;
+}
+
 static int write_csv(const result_table *table, const char *path)
 {
   whole_file csv;
@@ -99,6 +116,7 @@ static const char *const details[] = {
     "separated by blanks, parameters stand with their defaults.\n",
     "Examples:\n"
     "  dvi list methods\n"
+    "  dvi list galerkin\n"
     "  dvi list problems --csv -\n",
     NULL,
 };
@@ -109,9 +127,10 @@ int list_command(int argc, char **argv)
   const option options[] = {{.name = "csv", .word = &csv, .value = "-|FILE", .help = "write the list as CSV"}, {.name = NULL}};
   const command_line command = {
       .name = "list",
-      .synopsis = "methods|problems [--csv -|FILE]",
-      .operand = "methods or problems",
-      .summary = "List the methods with the keys of their specifications, or the problems with their parameters.\n",
+      .synopsis = "methods|problems|NAME [--csv -|FILE]",
+      .operand = "word (methods, problems, or the name of one)",
+      .summary = "List the methods with the keys of their specifications, or the problems with their\n"
+                 "parameters; or the one of that name.\n",
       .options = options,
       .details = details,
   };
@@ -120,8 +139,10 @@ int list_command(int argc, char **argv)
   if (!options_parse(&command, argc, argv, &what, &code)) return code;
   const bool methods = strcmp(what, "methods") == 0;
   char hint[HINT_SIZE];
-  if (!methods && strcmp(what, "problems") != 0)
-    return usage_error("list: there are methods and problems to list, not '%s'%s", what,
+  const bool all = methods || strcmp(what, "problems") == 0;
+  if (!all && csv == NULL && print_named(what)) return DONE;
+  if (!all)
+    return usage_error("list: there are methods, problems and the name of one to list, not '%s'%s", what,
                        suggestion(what, list_at, NULL, hint, sizeof hint));
   if (csv == NULL) {
     (methods ? print_methods : print_problems)();

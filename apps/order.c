@@ -260,7 +260,7 @@ static int check_request(order_request *request, const char *name)
   if (pacing_check("order", &request->how) != DONE || words_distinct("order", "method", &request->methods) != DONE) return USAGE;
   const named_file files[] = {{"csv", request->csv}, {"plot", request->plot}};
   int code = request->judged_by != NULL ? judge_read("order: --judge", request->judged_by, &request->judge) : DONE;
-  if (code == DONE) code = outputs_plot("order", request->plot);
+  if (code == DONE) code = outputs_plot("order", "plot", request->plot);
   if (code == DONE) code = scene_spared("order", name, 2, files);
   if (code == DONE) code = outputs_distinct("order", 2, files);
   if (code != DONE) return code;

@@ -22,10 +22,10 @@ int outputs_distinct(const char *command, int count, const named_file *files)
   return DONE;
 }
 
-int outputs_plot(const char *command, const char *path)
+int outputs_plot(const char *command, const char *option, const char *path)
 {
   static const char ending[] = ".svg";
   const size_t length = path != NULL ? strlen(path) : 0;
   if (path == NULL || (length >= strlen(ending) && strcmp(path + length - strlen(ending), ending) == 0)) return DONE;
-  return usage_error("%s: --plot %s: plots are SVG files; give a name that ends in .svg", command, path);
+  return usage_error("%s: --%s %s: plots are SVG files; give a name that ends in .svg", command, option, path);
 }

@@ -203,11 +203,13 @@ static int create(const char *name, const path_request *request, const words *se
 {
   points guess = {0};
   arrays a = {0};
+  path_request own = *request;
   int code = open_problem(name, settings, &m->scene);
+  if (code == DONE) code = open_wish("path", m->scene, &own.method);
   if (code == DONE && m->scene->terms->factors != NULL)
     code = usage_error("path: %s has factors, and paths are found between ends in R^n; dvi run goes forward from its start", name);
   if (code == DONE && request->guess != NULL) code = points_read(request->guess, m->scene, &guess);
-  if (code == DONE) code = allocate(&a, (size_t)m->scene->nq) ? create_with(request, &guess, m, &a) : FAILED;
+  if (code == DONE) code = allocate(&a, (size_t)m->scene->nq) ? create_with(&own, &guess, m, &a) : FAILED;
   release(&a);
   points_clear(&guess);
   return code;
@@ -394,8 +396,6 @@ static int check_uses(const path_request *r)
 
 static int check_request(const path_request *r, const char *name)
 {
-  if (r->method == NULL)
-    return usage_error("path: --method is missing, for example --method galerkin:degree=4; see dvi list methods");
   if (r->ends == NULL) return usage_error("path: --ends is missing: fixed, periodic or initial");
   if (ends_of(r->ends) == 0) return usage_error("path: --ends %s: there are fixed, periodic and initial", r->ends);
   if (r->steps == 0) return usage_error("path: --steps is missing");
@@ -455,7 +455,7 @@ int path_command(int argc, char **argv)
       {.name = "method",
        .word = &r.method,
        .value = "SPEC",
-       .help = "galerkin, midpoint, trapezoidal, or hp or hamiltonian of types 1 to 3"},
+       .help = "galerkin, midpoint, trapezoidal, or hp or hamiltonian of types 1 to 3; left out: the scene's"},
       {.name = "ends", .word = &r.ends, .value = "KIND", .help = "fixed, periodic or initial"},
       {.name = "steps", .count = &r.steps, .value = "N", .help = "how many steps the path has"},
       {.name = "t-end", .number = &r.t_end, .value = "T", .help = "the end, from t = 0; left out: the problem's"},
@@ -477,7 +477,7 @@ int path_command(int argc, char **argv)
   };
   const command_line command = {
       .name = "path",
-      .synopsis = "PROBLEM|SCENE.yaml --method SPEC --ends KIND --steps N [OPTIONS]",
+      .synopsis = "PROBLEM|SCENE.yaml [--method SPEC] --ends KIND --steps N [OPTIONS]",
       .operand = "PROBLEM",
       .summary = "Make the action of a whole path stationary: boundary value problems and periodic orbits.\n",
       .options = options,

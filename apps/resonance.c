@@ -244,7 +244,7 @@ static int check_request(resonance_request *request, const resonance_task *task)
   int code = read_range(request);
   if (code == DONE) code = check_settings(&task->settings, request->name);
   if (code == DONE) code = complete_search(request);
-  if (code == DONE) code = outputs_plot("resonance", request->plot);
+  if (code == DONE) code = outputs_plot("resonance", "plot", request->plot);
   if (code == DONE) code = scene_spared("resonance", task->operand, 2, files);
   if (code == DONE) code = outputs_distinct("resonance", 2, files);
   if (code != DONE) return code;

@@ -68,15 +68,22 @@ static double way_to_end(double t, double t_end)
   return fabs(t_end - t) <= 16 * DBL_EPSILON * fmax(fabs(t), fabs(t_end)) ? 0.0 : t_end - t;
 }
 
+/* A checkpoint that stands past the end: only who gives a step back wants to go back. */
+static bool is_past(const run_request *request, double t, double way)
+{
+  return request->resume != NULL && way * t < 0.0 && !(request->h * way > 0.0);
+}
+
 /* Fill in what was left out, and refuse a step that cannot lead to the end. */
 static int complete(run_request *request, const problem *scene, double t)
 {
   if (request->every == 0) request->every = scene->every > 0 ? scene->every : 1;
   if (isnan(request->t_end)) request->t_end = scene->t_end;
   const double way = way_to_end(t, request->t_end);
+  if (is_past(request, t, way))
+    return usage_error("run: '%s' stands at t = %.17g, past --t-end %g; --h %g would lead back", request->resume, t, request->t_end,
+                       copysign(scene->h, way));
   if (isnan(request->h)) request->h = way < 0.0 ? -scene->h : scene->h;
-  if (request->resume != NULL && way * scene->h < 0.0 && request->h > 0.0)
-    return usage_error("run: '%s' stands at t = %.17g, past --t-end %g", request->resume, t, request->t_end);
   return way_check("run", request->h, way, request->t_end, request->how.transform == NULL && request->how.control == NULL);
 }
 
@@ -108,7 +115,7 @@ static int check_files(const run_request *request, const char *name)
     return usage_error("run: --checkpoint -: a checkpoint goes to a file, not to standard output");
   if (is_stream(request->events) && is_stream(request->out))
     return usage_error("run: --events -: standard output has the rows; give --out FILE, too");
-  int code = outputs_plot("run", request->plot);
+  int code = outputs_plot("run", "plot", request->plot);
   if (code == DONE) code = scene_spared("run", name, 4, files + 1);
   if (code == DONE) code = outputs_distinct("run", 4, files + 1);
   return code == DONE ? outputs_distinct("run", 4, files) : code;

@@ -74,9 +74,9 @@ void study_clear(order_study *study)
   dvi_integrator_destroy(&study->integrator);
 }
 
-dvi_status study_integrate(order_study *s, const double *q, long steps)
+dvi_status study_integrate(order_study *s, const double *q, const dvi_start_options *start, long steps)
 {
-  const dvi_status status = dvi_integrator_start(s->integrator, 0.0, q, s->scene->p);
+  const dvi_status status = dvi_integrator_start_with(s->integrator, 0.0, q, s->scene->p, start);
   if (status != DVI_OK) return status;
   return march(s->integrator, s->span / (double)steps, steps, s->t_end, NULL, NULL, s->progress, s->method);
 }
@@ -89,7 +89,7 @@ dvi_status study_run(order_study *study, long steps, level_trial *trial)
   trial->steps = trial->taken = steps;
   trial->h = study->span / (double)steps;
   trial->energy_error = trial->cpu_seconds = (double)NAN;
-  const dvi_status status = study_integrate(study, study->scene->q, steps);
+  const dvi_status status = study_integrate(study, study->scene->q, NULL, steps);
   if (status != DVI_OK) return status;
   trial->error = judge_error(study->judge, study->scene, dvi_integrator_q(study->integrator));
   dvi_integrator_counters(study->integrator, &trial->spent);
@@ -139,7 +139,7 @@ dvi_status study_time(order_study *study, level_trial *trial)
   double spent;
   long runs = 0;
   do {
-    const dvi_status status = study_integrate(study, study->scene->q, trial->steps);
+    const dvi_status status = study_integrate(study, study->scene->q, NULL, trial->steps);
     if (status != DVI_OK) return status;
     runs++;
     spent = cpu_now() - began;

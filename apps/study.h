@@ -54,8 +54,8 @@ dvi_status study_watch(order_study *study, level_trial *trial);
 /** Run as often as a clock needs: fills cpu_seconds. */
 dvi_status study_time(order_study *study, level_trial *trial);
 
-/** Integrate from q [n] and the problem's momenta with so many equal steps. */
-dvi_status study_integrate(order_study *study, const double *q, long steps);
+/** Integrate from q [n] and the problem's momenta with so many equal steps; `start` may be NULL. */
+dvi_status study_integrate(order_study *study, const double *q, const dvi_start_options *start, long steps);
 
 /** Size of the solution at the end, in the maximum norm; 1 if it is 0. */
 double study_size(const order_study *study);

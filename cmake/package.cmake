@@ -13,7 +13,12 @@ if(TARGET dvi_command)
   install(TARGETS dvi_command)
 endif()
 install(DIRECTORY apps/scenes DESTINATION "${CMAKE_INSTALL_DATADIR}/dvi")
-install(DIRECTORY docs/ DESTINATION "${CMAKE_INSTALL_DOCDIR}" FILES_MATCHING PATTERN "*.md" PATTERN "*.svg" PATTERN "CONTRIBUTING.md" EXCLUDE)
+# The pages lie as they do here, with all that they lead to.
+install(FILES README.md CHANGELOG.md LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}"
+        FILES_MATCHING PATTERN "*.md" PATTERN "*.svg" PATTERN "*.bib")
+install(DIRECTORY apps/examples apps/problems apps/scenes DESTINATION "${CMAKE_INSTALL_DOCDIR}/apps"
+        PATTERN "CMakeLists.txt" EXCLUDE)
 if(EXISTS "${PROJECT_SOURCE_DIR}/docs/dvi.1")
   install(FILES docs/dvi.1 DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
 endif()

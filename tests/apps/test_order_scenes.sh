@@ -86,6 +86,26 @@ for which in form wells; do
 done
 expect 0 'a selection for a one-form of the catalogue' bench lotka-volterra --rounds 1 --levels 2
 
+# Starts in which a momentum or a constraint is 0 exactly: a change of the last place is off it.
+scene rest vprk:nodes=2 0.1 10 <<'E1'
+coordinates: {q: scalar, v: scalar}
+lagrangian: v*q' - (v^2 + q^2)/2
+initial: {q: 1, v: 0}
+E1
+scene bowl dg-phase:degree=2 0.1 10 <<'E1'
+coordinates: {x: scalar, y: scalar, z: scalar}
+hamiltonian: (p(x)^2 + p(y)^2 + p(z)^2)/2 + z
+constraints:
+  on_the_sphere: (x^2 + y^2 + z^2 - 1)/2
+  along_it: x*p(x) + y*p(y) + z*p(z)
+initial: {x: 0.8, y: 0, z: -0.6, p(x): 0, p(y): 0.3, p(z): 0}
+E1
+for which in rest bowl; do
+  expect 0 "an order from zeros: $which" order $which.yaml
+  says out 'claimed order [24], fitted .*: ok$' "its order: $which"
+  expect 0 "a bench from zeros: $which" bench $which.yaml --rounds 1 --levels 2
+done
+
 # Orders to 16: single steps.
 for degree in 6 8; do
   for which in driven cart three; do

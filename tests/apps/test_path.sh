@@ -25,6 +25,22 @@ says out '^span  *2$' 'the span'
 expect 0 'initial ends' path pendulum --method midpoint --ends initial --t-end 2 --steps 50 --out initial.csv
 paste -d, run.csv initial.csv | awk -F, 'NR > 1 { for (i = 1; i <= 4; i++) if (($i - $(i + 4)) ^ 2 > 1e-24) { print; exit 1 } }' || fail 'joined steps are the run'
 says out 'not defined' 'no second variation between initial ends'
+# A scene brings its method, and each member of a family has it.
+cat >own.yaml <<'E1'
+parameters: {k: 1}
+coordinates: {x: scalar}
+lagrangian: x'^2/2 - k*x^2/2
+initial: {x: 1}
+method: galerkin:degree=3
+step: 0.1
+until: 1
+E1
+expect 0 "the scene's method" path own.yaml --ends fixed --to 0.5 --steps 10
+says out 'steps of galerkin:degree=3' 'its name'
+expect 0 "a family with the scene's method" path own.yaml --ends fixed --to 0.5 --steps 10 --continue k=1:2:2
+says out 'steps of galerkin:degree=3' 'its name'
+expect 2 'no method' path pendulum --ends fixed --to 0.5 --steps 10
+says err 'path: --method is missing' 'who lacks it'
 expect 0 'places' $kepler --from 1,0 --to=-0.5,1
 expect 0 'a momentum' path kepler --method galerkin:degree=4 --ends initial --t-end 3 --steps 30 --from 1,0 --momentum 0,1.1
 

@@ -19,6 +19,8 @@ says panels.svg '>energy<' 'two panels'
 
 # Words in cells, gaps, a curve that stays at one number, and no final newline.
 printf 'name,t,a,b\nup,0,1,2\ndown,1,1,\nup,2,1,4' >cells.csv
+expect 2 'no SVG' plot cells.csv --axes a --out cells.png
+says err '^dvi: plot: --out cells.png: plots are SVG files' 'the option that was given'
 expect 0 'cells' plot cells.csv --axes a --axes b --out cells.svg
 [ ! -s err ] || fail 'cells: gnuplot is not silent'
 expect 0 'logarithms' plot cells.csv --axes a:b --log --out log.svg

@@ -102,6 +102,8 @@ expect 1 'checkpoint of another method' run kepler --method verlet --resume good
 says err '.' 'a reason is given'
 expect 0 'a checkpoint past the end by a rounding' $kepler --resume good.state --t-end 0.9999999999999998 --final
 expect 2 'checkpoint past the end' $kepler --resume good.state --t-end 0.5 --out old.csv
+expect 2 'the same with the step of the problem' ${kepler% --h*} --resume good.state --t-end 0.5 --out old.csv
+says err "stands at t = 1, past --t-end 0.5; --h -[0-9.]* would lead back" 'how to go back'
 [ "$(cat old.csv)" = old ] || fail 'a refused run leaves the old file'
 
 # A step too large to solve: the message names the step, and the file stays.

@@ -132,6 +132,14 @@ expect 2 'ratio one' order kepler --method verlet --ratio 1
 for peers in cvodes ida, ,ida ida,,arkode , cvode,cvode-adams ida,ida; do expect 2 "peers $peers" bench kepler --against "$peers"; done
 says err 'ida twice' 'which peer is named twice'
 expect 2 'list what' list integrators
+expect 2 'list two' list methods verlet
+says err 'one word (methods, problems, or the name of one) is enough' 'how to list one'
+expect 0 'one method' list verlet
+[ "$(grep -c '^[a-z]' out)" -eq 1 ] || fail 'one method, and no other'
+says out '^verlet ' 'the method'
+expect 0 'one problem' list kepler
+says out '^ *e .*only places the start' 'its parameters'
+expect 2 'no list of one as csv' list kepler --csv -
 
 expect 0 'methods' list methods
 says out '^galerkin ' 'methods has galerkin'

@@ -50,5 +50,12 @@ say "the command"
 
 say "scenes and pages"
 "$prefix/bin/dvi" check "$prefix/share/dvi/scenes/kepler.yaml" >"$work/log" 2>&1 || { cat "$work/log"; fail "an installed scene does not run"; }
-[ -s "$prefix/share/doc/dvi/pictures/cart.svg" ] || fail "the pages are not there"
+pages=$prefix/share/doc/dvi
+[ -s "$pages/docs/pictures/cart.svg" ] || fail "the pages are not there"
+find "$pages" -name '*.md' | while read -r page; do
+  grep -o ']([^)# ]*' "$page" | sed 's/..//' | grep -v -e '^$' -e '^[a-z]*:' | while read -r link; do
+    [ -e "$(dirname "$page")/$link" ] || echo "${page#"$pages"/}: $link"
+  done
+done >"$work/log"
+[ ! -s "$work/log" ] || { cat "$work/log"; fail "links of the pages lead nowhere"; }
 say "all is well"

@@ -133,6 +133,9 @@ START_TEST(words_from_elsewhere_are_told_with_those_of_scenes)
   lagrangian_refused("x'^2#-x^2", 17, "'#' has no meaning in expressions; a blank stands before a comment");
   refused(X "L: x'^2\n" RUN, ":2:1:", "a scene has no 'L'; the section is lagrangian");
   refused(X "lagrangian: x'^2\ndt: 1\n" RUN, ":3:1:", "a scene has no 'dt'; the section is step");
+  refused(X "lagrangian: x'^2\nt-end: 1\n" RUN, ":3:1:", "a scene has no 't-end'; the section is until");
+  refused(X "parameters: {m: 1, g = 9.81}\n" RUN, ":2:20:", "a key is followed by a colon and a blank; write g: 9.81");
+  refused(X "parameters: {g:9.81}\n" RUN, ":2:14:", "a key is followed by a colon and a blank; write g: 9.81");
   refused(X "lagrangian: x'^2\nreport: {dt: 1}\n" RUN, ":3:10:", "report has no 'dt'");
 }
 END_TEST

@@ -69,6 +69,7 @@ const char *dvi__section_elsewhere(const char *key)
       {"h", "step"},
       {"dt", "step"},
       {"t_end", "until"},
+      {"t-end", "until"},
       {"end", "until"},
       {"tmax", "until"},
       {"start", "initial"},

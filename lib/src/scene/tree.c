@@ -182,6 +182,23 @@ static bool keys_differ(const reader *r, dvi__tree *const *key, size_t count)
   return true;
 }
 
+/* {g=9.81} and {g:9.81} are keys without values to YAML. */
+static bool none_assigned(const reader *r, const dvi__tree *mapping)
+{
+  for (int k = 0; k < mapping->count; k++) {
+    const dvi__tree *key = mapping->key[k], *value = mapping->child[k];
+    const size_t length = strcspn(key->text, "=:");
+    size_t name = length;
+    if (key->text[length] == '\0' || !key->plain || value->kind != DVI__SCALAR || !value->plain || value->text[0] != '\0') continue;
+    while (name > 0 && dvi__is_blank(key->text[name - 1])) name--;
+    const char *right = key->text + length + 1;
+    while (dvi__is_blank(*right)) right++;
+    return dvi__complain(r->complaint, DVI_BAD_FILE, key->span, "a key is followed by a colon and a blank; write %.*s: %s",
+                         (int)name, key->text, right);
+  }
+  return true;
+}
+
 /* A list that is a key becomes a scalar with its own source as text. */
 static bool turn_to_scalar(const reader *r, dvi__tree *node)
 {
@@ -202,7 +219,8 @@ static bool close_collection(reader *r, const yaml_event_t *event)
   node->key = closed->key;
   node->child = closed->child;
   if (closed->is_key) return turn_to_scalar(r, node);
-  return node->kind != DVI__MAPPING || node->count < 2 || keys_differ(r, node->key, closed->key_count);
+  if (node->kind != DVI__MAPPING) return true;
+  return none_assigned(r, node) && (node->count < 2 || keys_differ(r, node->key, closed->key_count));
 }
 
 static bool start_document(reader *r, const yaml_event_t *event)
