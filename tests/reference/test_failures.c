@@ -45,6 +45,7 @@ START_TEST(bad_input_is_refused_by_name)
   refuse(system, 1, q, p, (dvi_reference_options){.absolute_tolerance = -1}, DVI_BAD_ARGUMENT, "absolute_tolerance");
   refuse(system, 1, q, p, (dvi_reference_options){.absolute_tolerance = (double)NAN}, DVI_BAD_ARGUMENT, "absolute_tolerance");
   refuse(system, 1, q, p, (dvi_reference_options){.max_steps = -1}, DVI_BAD_ARGUMENT, "max_steps");
+  refuse(system, 1, q, p, (dvi_reference_options){.max_seconds = -1}, DVI_BAD_ARGUMENT, "max_seconds");
   double state[2] = {0.4, 0};
   ck_assert_int_eq(dvi_reference_solve(system, 0, 1, NULL, state, NULL, NULL), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_reference_judge(system, 0, 1, state, NULL, NULL, NULL), DVI_BAD_ARGUMENT);
