@@ -15,7 +15,7 @@ typedef struct natural_scale {
   unsigned chance;
   double *room;            /**< owned; the others are in it */
   double *start, *mixed;   /**< [nq + nv] */
-  double *value, *changed; /**< [invariants] at the mixed state; the sum of the changes */
+  double *value, *changed; /**< [invariants] mixed; the sum of changes */
 } natural_scale;
 
 /** Begin at a state. False without memory, with a complaint; clear it in any case. */

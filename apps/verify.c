@@ -21,7 +21,7 @@
 /* IDA's three runs may take as long as those of the method, or so many seconds. Nothing ends a
  * factorisation on the way: so many coordinates bound that of a full Jacobian, which has three
  * unknowns for each. */
-enum { WITNESS_STEPS = 200000, WITNESS_COORDINATES = 500 };
+enum { WITNESS_STEPS = 200000 };
 static const double witness_seconds = 2.0;
 
 /* The distances of IDA's runs, whose tolerances are apart by such a factor, tell its own error

@@ -64,9 +64,9 @@ static void print_witness(const run_request *request, const trust_verdict *verdi
   if (verdict->by_event)
     (void)printf("no second method: an event ended the run\n");
   else if (verdict->too_large)
-    (void)printf("no second method: IDA would take too long for a system as large as this one\n");
+    (void)printf("no second method: IDA is asked for %d coordinates at most, and may take long for more\n", WITNESS_COORDINATES);
   else if (!verdict->witness)
-    (void)printf("no second method: IDA did not come to t = %g in two seconds, or the time of these runs\n", request->t_end);
+    (void)printf("no second method: IDA did not come to t = %g in the time that it is given\n", request->t_end);
   else
     (void)printf("second method: IDA, which shares no code, ends %.1e away in the %s, its own error about %.1e%s\n", verdict->apart,
                  verdict->part, verdict->witness_error,

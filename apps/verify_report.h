@@ -4,6 +4,9 @@
 #include "columns.h"
 #include "run_request.h"
 
+/** The other method is asked for systems up to here. */
+enum { WITNESS_COORDINATES = 500 };
+
 /** Numbers of an end: t, q, p, and the shown columns. */
 typedef struct trust_numbers {
   int count;
