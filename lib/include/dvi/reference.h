@@ -29,11 +29,11 @@ typedef struct dvi_reference_options {
 
 /** What a reference run did. */
 typedef struct dvi_reference_report {
-  double error;       /**< dvi_reference_judge: max-norm of the difference of q between the two runs; dvi_reference_solve: NaN */
+  double error; /**< dvi_reference_judge: max-norm of the difference of q between the two runs; dvi_reference_solve: NaN */
   double relative_tolerance; /**< of the (tighter) run */
-  long steps;         /**< of the (tighter) run */
-  long evaluations;   /**< points at which gradients were evaluated */
-  double cpu_seconds; /**< process time */
+  long steps;                /**< of the (tighter) run */
+  long evaluations;          /**< points at which gradients were evaluated */
+  double cpu_seconds;        /**< process time */
 } dvi_reference_report;
 
 #ifdef __cplusplus
