@@ -176,12 +176,13 @@ static bool ask_witness(verifier *v)
          run_witness(v, tolerance * tolerance_factor, v->witness[2], &report);
 }
 
-/* Two tolerances may agree by chance, three hardly do. */
+/* Two tolerances may agree by chance, three hardly do. The error of the loosest one is a hundred
+ * times that of the tightest. */
 static double witness_distance(const verifier *v, int first, int count)
 {
   const double *const *witness = (const double *const *)v->witness;
   return fmax(judge_distance(count, witness[0] + first, witness[1] + first),
-              judge_distance(count, witness[0] + first, witness[2] + first) / tolerance_factor);
+              judge_distance(count, witness[0] + first, witness[2] + first) / (tolerance_factor * tolerance_factor));
 }
 
 static double relative(double error, double size)
@@ -199,7 +200,8 @@ static void measure_witness(verifier *v)
   for (int i = 0; i < v->count; i++) v->witness_error[i] = fmax(fmax(of_q, of_p) * v->size[i], witness_distance(v, i, 1));
 }
 
-/* Whether the witness is farther away than both errors explain. */
+/* Whether the witness is farther away than both errors explain; of coordinates and momenta the
+ * last part that was judged is told. */
 static bool judge_part(verifier *v, const char *name, int first, int count)
 {
   trust_verdict *verdict = &v->verdict;
@@ -220,7 +222,8 @@ static void hear_witness(verifier *v)
   v->verdict.witness = !v->verdict.by_event && !v->verdict.too_large && ask_witness(v);
   if (!v->verdict.witness) return;
   measure_witness(v);
-  if (!judge_part(v, "momenta", 1 + nq, nv)) (void)judge_part(v, "coordinates", 1, nq);
+  const bool in_momenta = judge_part(v, "momenta", 1 + nq, nv);
+  if (!judge_part(v, "coordinates", 1, nq) && in_momenta) (void)judge_part(v, "momenta", 1 + nq, nv);
   for (int i = 0; i < v->count; i++)
     v->error[i] = fmax(v->error[i], fabs(v->number[0][i] - v->witness[0][i]) - doubt * v->witness_error[i]);
 }

@@ -147,6 +147,20 @@ says out '^second method: IDA' 'it is told'
 grep -q 'contradicts' out && fail 'IDA does not contradict beyond its own error'
 says out '^  p_x  *-1.41419610549[0-9]*  *[0-9.]*e-1[56]  *1[45]$' 'the error of the method, not of IDA'
 
+# No step of the three evaluates the force where it is, and their errors fall: IDA sees it.
+cat >kick.yaml <<'END'
+coordinates: {x: scalar}
+lagrangian: x'^2/2 - x^2/2 + 10*x*exp(-(700*(t - 1.00625))^2)
+initial: {x: 1}
+method: verlet
+step: 0.05
+until: 3
+END
+expect 3 'an error that three step sizes share' run kick.yaml --verify --digits 3
+says out '^halving the step divides the error by 4;' 'the steps see nothing of it'
+says out '^second method: IDA, .* ends 2\.[0-9]e-02 away in the coordinates, .*: it contradicts' 'IDA does'
+says out '^  all coordinates  *2\.[0-9]e-02  *1$' 'its distance is the error'
+
 # A system with 2000 coordinates: factorisations of IDA's Jacobian would cost more than the runs.
 expect 0 'a large system' run fpu --set ell=1000 --method verlet --h 0.001 --t-end 0.1 --verify --columns energy
 says out '^no second method: IDA is asked for 500 coordinates at most' 'IDA is left out'
