@@ -26,8 +26,7 @@ double energy_shorter_step(double h, int order, double part, double most)
   return rounded_down(copysign(fmin(shorter, most), h));
 }
 
-/* A symplectic method of a higher order for such a system. */
-static const char *better_method(const dvi_system_terms *terms)
+const char *energy_better_method(const dvi_system_terms *terms)
 {
   if (terms->hamiltonian != NULL) return terms->constraint != NULL ? "dg-phase:degree=4" : "hamiltonian:type=2,degree=4";
   if (terms->factors != NULL) return "lie-galerkin:degree=4";
@@ -57,7 +56,7 @@ static void advise(const energy_watch *watch, const run_request *request, double
   const bool bodies = scene->bodies > 0 && scene->terms->factors == NULL && scene->terms->one_form == NULL;
   advice[0] = '\0';
   if (resolved && dvi_integrator_order(watch->integrator) <= GOOD_ORDER)
-    (void)snprintf(advice, ADVICE_SIZE, ", or --method %s --h %g", better_method(scene->terms), copysign(most, request->h));
+    (void)snprintf(advice, ADVICE_SIZE, ", or --method %s --h %g", energy_better_method(scene->terms), copysign(most, request->h));
   else if (!resolved && bodies && dvi_integrator_monitor(watch->integrator) == NULL)
     (void)snprintf(advice, ADVICE_SIZE, ", or --time-transform distance, whose steps follow close encounters");
 }

@@ -15,4 +15,7 @@ void energy_tell(energy_watch *watch, const run_request *request);
 /** The step that theory expects to bring an error down to `part` of it; no longer than `most`,
  *  in absolute value, and of two digits. */
 double energy_shorter_step(double h, int order, double part, double most);
+
+/** A symplectic method of a higher order for such a system. */
+const char *energy_better_method(const dvi_system_terms *terms);
 #endif

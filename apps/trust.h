@@ -20,6 +20,10 @@ bool trust_falls(double ratio);
  *  is the largest distance of any two of them, four times. */
 double trust_error(double first, double second, double third, double ratio);
 
+/** What the digits of a number are relative to, of its largest magnitude on the way and that of
+ *  all numbers of its kind: the latter where the number is nothing but rounding. */
+double trust_size(double size, double of_all);
+
 /** Whole digits of a number of that size with such an error: at most TRUST_DIGITS_MOST, at least
  *  0. */
 int trust_digits(double error, double size);

@@ -63,11 +63,14 @@ static void print_witness(const run_request *request, const trust_verdict *verdi
 {
   if (verdict->by_event)
     (void)printf("no second method: an event ended the run\n");
+  else if (verdict->too_large)
+    (void)printf("no second method: IDA is asked for %d coordinates at most, and may take long for more\n", WITNESS_COORDINATES);
   else if (!verdict->witness)
-    (void)printf("no second method: IDA did not come to t = %g in a second or so\n", request->t_end);
+    (void)printf("no second method: IDA did not come to t = %g in the time that it is given\n", request->t_end);
   else
-    (void)printf("second method: IDA, which shares no code, ends %.1e away, its own error about %.1e%s\n", verdict->apart,
-                 verdict->witness_error, verdict->contradicted ? ": it contradicts, and errors are at least that" : "");
+    (void)printf("second method: IDA, which shares no code, ends %.1e away in the %s, its own error about %.1e%s\n", verdict->apart,
+                 verdict->part, verdict->witness_error,
+                 verdict->contradicted ? ": it contradicts, and errors are at least that" : "");
 }
 
 static void print_all(const run_request *request, const problem *scene, const dvi_integrator *integrator, const result_table *table,
@@ -86,14 +89,26 @@ static void print_all(const run_request *request, const problem *scene, const dv
   print_witness(request, verdict);
 }
 
-/* Where errors fall, a step with so many digits more is known. */
-static int say_fewer(const run_request *request, const dvi_integrator *integrator, int digits, const trust_verdict *verdict)
+/* Where errors fall, a step with so many digits more is known. One that is far too short also
+ * gathers roundoff: there a higher order has them at this step. */
+static void advise(const run_request *request, const problem *scene, const dvi_integrator *integrator, int digits)
+{
+  static const double shortest = 1e-3;
+  const double part = pow(10.0, (double)(digits - request->digits - 1));
+  const double step = energy_shorter_step(request->h, dvi_integrator_order(integrator), part, fabs(request->h));
+  if (fabs(step) < shortest * fabs(request->h))
+    complain("run: --h %g would do, at %.0f times the cost; try --method %s --h %g", step, request->h / step,
+             energy_better_method(scene->terms), request->h);
+  else
+    complain("run: try --h %g", step);
+}
+
+static int say_fewer(const run_request *request, const problem *scene, const dvi_integrator *integrator, int digits,
+                     const trust_verdict *verdict)
 {
   complain("run: --digits %ld: %d can be trusted%s", request->digits, digits,
            trust_falls(verdict->ratio) ? "" : "; see whether a step much smaller, or a method of another order, has more");
-  if (trust_falls(verdict->ratio))
-    complain("run: try --h %g", energy_shorter_step(request->h, dvi_integrator_order(integrator),
-                                                    pow(10.0, (double)(digits - request->digits - 1)), fabs(request->h)));
+  if (trust_falls(verdict->ratio)) advise(request, scene, integrator, digits);
   return CHECK_FAILED;
 }
 
@@ -108,5 +123,5 @@ int verify_tell(const run_request *request, const problem *scene, const dvi_inte
   table_destroy(&table);
   if (!good) return FAILED;
   if (digits >= request->digits) return DONE;
-  return output_flushed() ? say_fewer(request, integrator, digits, verdict) : FAILED;
+  return output_flushed() ? say_fewer(request, scene, integrator, digits, verdict) : FAILED;
 }

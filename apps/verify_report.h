@@ -4,6 +4,9 @@
 #include "columns.h"
 #include "run_request.h"
 
+/** The other method is asked for systems up to here. */
+enum { WITNESS_COORDINATES = 500 };
+
 /** Numbers of an end: t, q, p, and the shown columns. */
 typedef struct trust_numbers {
   int count;
@@ -14,8 +17,10 @@ typedef struct trust_numbers {
 typedef struct trust_verdict {
   double ratio;         /**< by which the errors of the state fell from level to level */
   bool by_event;        /**< an event ended a run */
+  bool too_large;       /**< the system, for the other method */
   bool witness;         /**< the other method came to the end, */
-  double apart;         /**< so far from the first level's coordinates, */
+  const char *part;     /**< in the coordinates, or the momenta, */
+  double apart;         /**< so far from those of the first level, */
   double witness_error; /**< with such an error of its own, */
   bool contradicted;    /**< and that is too far */
 } trust_verdict;

@@ -131,4 +131,57 @@ END
 expect 0 'an event' run fall.yaml --verify --digits 4
 says out '^  t  *0.768[0-9]* ' 'the time of the end'
 says out '^no second method: an event ended the run$' 'no second method'
+
+# IDA's error in the momenta is 1.5e-10, while in the coordinates, which pass zero there, its tolerances agree by chance. The method
+# is right to rounding: IDA does not contradict it.
+cat >springs.yaml <<'END'
+coordinates: {x: scalar, y: scalar}
+lagrangian: (x'^2 + y'^2)/2 - (x - y)^2/2
+initial: {x: 1, y: -1}
+method: galerkin:degree=4
+step: 0.1
+until: 10
+END
+expect 0 'an error of IDA' run springs.yaml --verify --digits 12 --columns x,p_x,energy
+says out '^second method: IDA' 'it is told'
+grep -q 'contradicts' out && fail 'IDA does not contradict beyond its own error'
+says out '^  p_x  *-1.41419610549[0-9]*  *[0-9.]*e-1[56]  *1[45]$' 'the error of the method, not of IDA'
+
+# No step of the three evaluates the force where it is, and their errors fall: IDA sees it.
+cat >kick.yaml <<'END'
+coordinates: {x: scalar}
+lagrangian: x'^2/2 - x^2/2 + 10*x*exp(-(700*(t - 1.00625))^2)
+initial: {x: 1}
+method: verlet
+step: 0.05
+until: 3
+END
+expect 3 'an error that three step sizes share' run kick.yaml --verify --digits 3
+says out '^halving the step divides the error by 4;' 'the steps see nothing of it'
+says out '^second method: IDA, .* ends 2\.[0-9]e-02 away in the coordinates, .*: it contradicts' 'IDA does'
+says out '^  all coordinates  *2\.[0-9]e-02  *1$' 'its distance is the error'
+
+# A system with 2000 coordinates: factorisations of IDA's Jacobian would cost more than the runs.
+expect 0 'a large system' run fpu --set ell=1000 --method verlet --h 0.001 --t-end 0.1 --verify --columns energy
+says out '^no second method: IDA is asked for 500 coordinates at most' 'IDA is left out'
+
+# A step of 1e-7 is no advice; the method that is advised has the digits.
+expect 3 'far too few digits' run kepler --method verlet --h 0.01 --t-end 1 --verify --digits 12
+says err 'run: --h [0-9.]*e-0[78] would do, at [0-9]* times the cost; try --method galerkin:degree=4 --h 0.01$' 'a higher order'
+better=$(sed -n 's/.*try --method \([^ ]*\) .*/\1/p' err)
+expect 0 'the method that is advised' run kepler --method "$better" --h 0.01 --t-end 1 --verify --digits 12
+
+# w, its momentum and the sum of the others are 0 up to rounding: no digit of them is wrong.
+cat >zero.yaml <<'END'
+coordinates: {x: scalar, y: scalar, z: scalar, w: scalar}
+lagrangian: (x'^2 + y'^2 + z'^2 + w'^2)/2 + cos(x - y) + cos(y - z) + cos(z - x) - w*(x + y + z)/10 - w^2/2
+initial: {x: 0.1, y: 0.2, z: -0.3, w: 0, x': 0.7, y': -0.3, z': -0.4}
+invariants: {total: p(x) + p(y) + p(z)}
+method: galerkin:degree=4
+step: 0.1
+until: 20
+END
+expect 0 'zero up to rounding' run zero.yaml --verify --digits 10 --columns x,w,p_w,total
+expect 0 'a vector along an axis' run kepler --method galerkin:degree=4 --h 0.1 --t-end 10 --verify --digits 6 --columns laplace_y
+expect 3 'no more than its error' run kepler --method galerkin:degree=4 --h 0.1 --t-end 10 --verify --digits 8 --columns laplace_y
 finish

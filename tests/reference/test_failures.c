@@ -45,6 +45,7 @@ START_TEST(bad_input_is_refused_by_name)
   refuse(system, 1, q, p, (dvi_reference_options){.absolute_tolerance = -1}, DVI_BAD_ARGUMENT, "absolute_tolerance");
   refuse(system, 1, q, p, (dvi_reference_options){.absolute_tolerance = (double)NAN}, DVI_BAD_ARGUMENT, "absolute_tolerance");
   refuse(system, 1, q, p, (dvi_reference_options){.max_steps = -1}, DVI_BAD_ARGUMENT, "max_steps");
+  refuse(system, 1, q, p, (dvi_reference_options){.max_seconds = -1}, DVI_BAD_ARGUMENT, "max_seconds");
   double state[2] = {0.4, 0};
   ck_assert_int_eq(dvi_reference_solve(system, 0, 1, NULL, state, NULL, NULL), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_reference_judge(system, 0, 1, state, NULL, NULL, NULL), DVI_BAD_ARGUMENT);
@@ -62,6 +63,15 @@ START_TEST(too_few_steps_stop_with_the_time_reached)
          "after 7 steps");
   check_words("TOO_MUCH_WORK");
   check_words("allow more steps");
+  problem_destroy(&kepler);
+}
+END_TEST
+
+START_TEST(too_little_time_stops)
+{
+  problem *kepler = make("kepler", NULL);
+  const dvi_reference_options options = {.code = (dvi_reference_code)_i, .relative_tolerance = 1e-8, .max_seconds = 0.02};
+  refuse(kepler->system, 1e7, kepler->q, kepler->p, options, DVI_REFERENCE_FAILED, "max_seconds, 0.02");
   problem_destroy(&kepler);
 }
 END_TEST
@@ -198,6 +208,7 @@ static Suite *failures(void)
   TCase *cases = tcase_create("failures");
   tcase_add_test(cases, bad_input_is_refused_by_name);
   tcase_add_loop_test(cases, too_few_steps_stop_with_the_time_reached, 0, CODES);
+  tcase_add_loop_test(cases, too_little_time_stops, 0, CODES);
   tcase_add_loop_test(cases, a_start_in_the_singularity_is_refused, 0, CODES);
   tcase_add_loop_test(cases, a_collision_ends_the_run_in_words, 0, CODES);
   tcase_add_loop_test(cases, nan_from_a_callback_stops_the_code, 0, CODES);

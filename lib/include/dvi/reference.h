@@ -24,14 +24,16 @@ typedef struct dvi_reference_options {
       relative_tolerance; /**< 0: 1e-12, or 1e-9 for a general Lagrangian without a gradient, whose differences are noise below 1e-11; 1e-9 at index 2 */
   double absolute_tolerance; /**< in units of q and p alike; 0: the relative one */
   long max_steps;            /**< 0: 50 million */
+  double max_seconds;        /**< of process time, looked at in every evaluation; 0: any number */
 } dvi_reference_options;
 
 /** What a reference run did. */
 typedef struct dvi_reference_report {
-  double error;       /**< dvi_reference_judge: max-norm of the difference of q between the two runs; dvi_reference_solve: NaN */
-  long steps;         /**< of the (tighter) run */
-  long evaluations;   /**< points at which gradients were evaluated */
-  double cpu_seconds; /**< process time */
+  double error; /**< dvi_reference_judge: max-norm of the difference of q between the two runs; dvi_reference_solve: NaN */
+  double relative_tolerance; /**< of the (tighter) run */
+  long steps;                /**< of the (tighter) run */
+  long evaluations;          /**< points at which gradients were evaluated */
+  double cpu_seconds;        /**< process time */
 } dvi_reference_report;
 
 #ifdef __cplusplus

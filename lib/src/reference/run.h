@@ -24,6 +24,7 @@ typedef struct dvi__reference_run {
   SUNContext context;
   dvi_status callback; /* status of the last callback */
   double reached;      /* time */
+  double began;        /* process time, in seconds */
   long steps;
 } dvi__reference_run;
 

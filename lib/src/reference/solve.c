@@ -46,10 +46,24 @@ const char *dvi_reference_version(void)
   return version;
 }
 
+static double cpu_time(void)
+{
+  struct timespec now;
+  if (clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now) != 0) return (double)NAN;
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static dvi_status out_of_time(const dvi__reference_run *run)
+{
+  const double most = run->options.max_seconds;
+  if (!(most > 0) || cpu_time() - run->began <= most) return DVI_OK;
+  return dvi__fail(DVI_REFERENCE_FAILED, "reference: it takes more than max_seconds, %g; allow more", most);
+}
+
 int dvi__reference_callback(dvi__reference_run *run, dvi_status status)
 {
-  run->callback = status;
-  return (status > 0) - (status < 0);
+  run->callback = status == DVI_OK ? out_of_time(run) : status;
+  return (run->callback > 0) - (run->callback < 0);
 }
 
 double dvi__reference_least_step(const dvi__reference_run *run)
@@ -104,6 +118,8 @@ dvi_status dvi__reference_complete(const dvi_system *system, const dvi_reference
     return dvi__fail(DVI_BAD_ARGUMENT, "reference: relative_tolerance is %g, must be in [0,1)", options->relative_tolerance);
   if (!(options->absolute_tolerance >= 0) || isinf(options->absolute_tolerance))
     return dvi__fail(DVI_BAD_ARGUMENT, "reference: absolute_tolerance is %g, must not be negative", options->absolute_tolerance);
+  if (!(options->max_seconds >= 0))
+    return dvi__fail(DVI_BAD_ARGUMENT, "reference: max_seconds is %g, must not be negative", options->max_seconds);
   if (options->max_steps < 0)
     return dvi__fail(DVI_BAD_ARGUMENT, "reference: max_steps is %ld, must not be negative", options->max_steps);
   if (options->relative_tolerance == 0) options->relative_tolerance = default_of(system, options->code);
@@ -179,13 +195,6 @@ static void clear(dvi__reference_run *run)
   dvi__release(run->q);
 }
 
-static double cpu_time(void)
-{
-  struct timespec now;
-  if (clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now) != 0) return (double)NAN;
-  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 static dvi_status integrate(dvi__reference_run *run, double *q, double *p)
 {
   dvi_status status = prepare(run, q, p);
@@ -205,10 +214,13 @@ dvi_status dvi_reference_solve(const dvi_system *system, double t, double t_end,
   DVI_TRY(check_start(system, t, t_end, q, p));
   DVI_TRY(dvi__reference_complete(system, options, &run.options));
   run.n = dvi_system_nv(system);
-  const double began = cpu_time();
+  run.began = cpu_time();
   const dvi_status status = t == t_end ? DVI_OK : integrate(&run, q, p);
   if (report != NULL)
-    *report = (dvi_reference_report){
-        .error = (double)NAN, .steps = run.steps, .evaluations = run.counters.gradients, .cpu_seconds = cpu_time() - began};
+    *report = (dvi_reference_report){.error = (double)NAN,
+                                     .relative_tolerance = run.options.relative_tolerance,
+                                     .steps = run.steps,
+                                     .evaluations = run.counters.gradients,
+                                     .cpu_seconds = cpu_time() - run.began};
   return status;
 }
