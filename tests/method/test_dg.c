@@ -379,7 +379,8 @@ START_TEST(newtons_method_suffices)
   advance(integrator, 0.05, 20);
   dvi_integrator_counters(integrator, &counters);
   ck_assert_int_eq(counters.kinsols, 0);
-  ck_assert_int_le(counters.residuals, 12 * 22);
+  /* Elements of degree 0 lead far from their rates, and most of their steps are followed. */
+  ck_assert_int_le(counters.residuals, (_i == 3 ? 72 : 12) * 22);
   ck_assert_int_eq(counters.jump_alarms, 0);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&of);

@@ -66,7 +66,7 @@ START_TEST(all_stages_are_evaluated_once_a_point)
   for (int place = 0; place < PLACES; place++) {
     const dvi_counters n = counted(place, "shooting:solve=stages");
     ck_assert_int_le(n.hessians, POINTS * (n.residuals + STEPS));
-    ck_assert_int_le(n.gradients, POINTS * (n.residuals + STEPS) + STAGES * STEPS);
+    ck_assert_int_le(n.gradients, POINTS * (n.residuals + STEPS) + STAGES * STEPS + 4); /* of two steps' motion */
   }
 }
 END_TEST

@@ -48,6 +48,11 @@ dvi_status dvi__attempt_allocate(dvi_integrator *I)
   return DVI_OK;
 }
 
+void dvi__attempt_forget(dvi_integrator *I)
+{
+  if (I->first != NULL) I->first->vain = I->first->wait = I->first->spared = 0;
+}
+
 void dvi__attempt_clear(dvi_integrator *I)
 {
   if (I->first != NULL) dvi__release(I->first->numbers);

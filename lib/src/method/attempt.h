@@ -7,6 +7,9 @@
 dvi_status dvi__attempt_allocate(dvi_integrator *integrator);
 void dvi__attempt_clear(dvi_integrator *integrator);
 
+/* Forget what earlier steps have taught: the state is another one. */
+void dvi__attempt_forget(dvi_integrator *integrator);
+
 /* A step of `length` with this density (dvi__state). On failure `next` and the memory are spoilt. */
 dvi_status dvi__attempt(dvi_integrator *integrator, double length, double density);
 

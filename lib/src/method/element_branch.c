@@ -11,9 +11,6 @@
  * others. Steps below half a radian are nearer to their guess. */
 static const double near_in_charts = 0.03;
 
-/* Fixed point iteration that contracts so fast all the way is sure of its solution. */
-static const double strong = 0.2;
-
 /* The same between an extrapolated guess and the next solution of a branch. */
 static const double follows_in_charts = 0.01;
 
@@ -120,7 +117,7 @@ dvi__doubt dvi__element_doubt(const dvi__stepper *self, const dvi__element_place
 {
   const dvi__element *own = self->own;
   const int by_newton = own->rung == DVI__NEWTON || own->rung == DVI__KINSOL;
-  if (own->rung == DVI__FIXED_POINT) return report->contraction <= strong ? DVI__SURE : DVI__DOUBTED;
+  if (own->rung == DVI__FIXED_POINT) return DVI__SURE;
   if (by_newton && is_turned(self, at)) return DVI__ASTRAY;
   if (own->rung == DVI__NEWTON && dvi__branch_is_sure(report, dvi__action_unknowns(own->action), own->Y)) return DVI__SURE;
   return DVI__DOUBTED;

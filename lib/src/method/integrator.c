@@ -115,6 +115,7 @@ static dvi_status start(dvi_integrator *I, double t, const double *q, const doub
   I->now.side = 0;
   I->last_h = 0;
   I->started = 1;
+  dvi__attempt_forget(I);
   I->stepper.method->start(&I->stepper, w);
   return DVI_OK;
 }

@@ -17,7 +17,7 @@ static const double first_part = 1.0 / 16, least_part = 1.0 / DVI__BRANCH_PARTS;
 static const double contraction = 0.5, at_first = 0.4, closer = 0.1;
 
 /* Of smaller changes of the numbers that are added nothing is known. */
-static const double rounding = 1e-12;
+static const double rounding = 1e-9;
 
 /* Of smaller corrections, relative to the unknowns, rounding may be a large part. */
 static const double negligible = 1e-6;
@@ -68,6 +68,7 @@ static double distance(const dvi__branch *branch, const history *past, size_t un
     for (size_t i = first; i < unknowns && i < first + group; i++) {
       away = fmax(away, fabs(x[i] - guess[i]));
       come = fmax(come, fmax(fabs(x[i] - past->first[i]), part * fabs(x[i])));
+      for (int k = 0; k < past->count; k++) come = fmax(come, fabs(past->x[k][i] - past->first[i]));
     }
     worst = fmax(worst, away / fmax(come, least));
   }

@@ -154,13 +154,6 @@ static dvi_status prepare(dvi__solver *s, const double *x)
   return DVI_OK;
 }
 
-/* Ratios of corrections tell of the iteration while these are above the noise. */
-static void note_ratio(dvi__solve_report *report, const dvi__trail *trail, double whole)
-{
-  if (trail->before > 0 && trail->last > 1e-10 * whole)
-    report->contraction = fmax(report->contraction, trail->last / trail->before);
-}
-
 static dvi_status fixed_point(dvi__solver *s, double size, int patient, double *x, dvi__solve_report *report)
 {
   const int most = dvi__fixed_point_most(patient);
@@ -171,7 +164,6 @@ static dvi_status fixed_point(dvi__solver *s, double size, int patient, double *
   for (report->iterations = 1; report->iterations <= most; report->iterations++) {
     DVI_TRY(iterate(s, x, &report->correction, &whole));
     const dvi__progress progress = dvi__judge(report->correction, &trail, &pace, whole, size);
-    note_ratio(report, &trail, whole);
     if (progress == DVI__CONVERGED) {
       if (s->equations.sweep != NULL) s->equations.sweep_to(s->equations.of, x);
       return DVI_OK;

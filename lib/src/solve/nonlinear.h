@@ -43,7 +43,7 @@ typedef enum dvi__rung { DVI__FIXED_POINT, DVI__SIMPLIFIED, DVI__NEWTON, DVI__KI
 typedef struct dvi__solve_report {
   int iterations;
   double first;       /* largest change of an unknown in the first iteration of Newton's method */
-  double contraction; /* that of the second one over it, 0: there was none; of other iterations the largest such ratio */
+  double contraction; /* that of the second one over it, 0: there was none */
   double correction;  /* largest change of an unknown in the last iteration */
   double residual;    /* largest |R_i| at the last point; by KINSOL over row_scale_i */
 } dvi__solve_report;
