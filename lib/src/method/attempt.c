@@ -25,14 +25,23 @@ static const double doubted_change = 0.01;
  * ill-conditioned step are smaller, other solutions are farther away. */
 static const double same = 1e-6;
 
+/* Behind the method's memory, so that checkpoints and members have it: steps in a row that were
+ * followed for their motion in vain; steps that are not asked after one; those that are left of them. */
+enum { VAIN, WAIT, SPARED, LEARNED };
+
 struct dvi__attempt {
-  dvi__state state;       /* what the first attempt found, */
-  double *memory;         /* and left in the memory */
-  double *work;           /* [2 n] */
-  int by_motion;          /* the step is followed because of its motion */
-  int vain, wait, spared; /* such steps in a row that were right; steps that are not asked after one; those that are left */
-  double *numbers;        /* of both */
+  dvi__state state; /* what the first attempt found, */
+  double *memory;   /* and left in the memory */
+  double *work;     /* [2 n] */
+  int by_motion;    /* the step is followed because of its motion */
+  double *numbers;  /* of both */
 };
+
+void dvi__attempt_extend(dvi_integrator *I)
+{
+  I->learned = I->stepper.memory_count;
+  if (I->stepper.follows) I->stepper.memory_count += LEARNED;
+}
 
 dvi_status dvi__attempt_allocate(dvi_integrator *I)
 {
@@ -46,11 +55,6 @@ dvi_status dvi__attempt_allocate(dvi_integrator *I)
   I->first->work = at;
   I->first->memory = at + 2 * n;
   return DVI_OK;
-}
-
-void dvi__attempt_forget(dvi_integrator *I)
-{
-  if (I->first != NULL) I->first->vain = I->first->wait = I->first->spared = 0;
 }
 
 void dvi__attempt_clear(dvi_integrator *I)
@@ -68,11 +72,12 @@ static const double doubted_defect = 0.1;
  * put more and more seldom, until its answer is that a step was wrong. */
 enum { VAIN_ONES = 8, LONGEST_WAIT = 64 };
 
-static int is_spared(struct dvi__attempt *first)
+static int is_spared(const dvi_integrator *I)
 {
-  first->by_motion = first->spared == 0;
-  if (first->spared > 0) first->spared--;
-  return !first->by_motion;
+  double *spared = I->stepper.memory + I->learned + SPARED;
+  I->first->by_motion = *spared == 0;
+  if (*spared > 0) --*spared;
+  return !I->first->by_motion;
 }
 
 /* Whether energy or motion change by too much from `now` to `next`; also where it cannot be told. */
@@ -85,7 +90,7 @@ static int state_jumps(dvi_integrator *I)
   if (dvi__energy_change(I->evaluator, &before, &after, &change, &exchanged) != DVI_OK) return 1;
   if (!(change <= doubted_change * exchanged)) return 1;
   if (dvi__motion_defect(I->evaluator, &before, &after, I->first->work, &defect) != DVI_OK) return 1;
-  return defect > doubted_defect && !is_spared(I->first);
+  return defect > doubted_defect && !is_spared(I);
 }
 
 static int is_doubted(dvi_integrator *I)
@@ -126,13 +131,14 @@ static int is_same(size_t n, const double *one, const double *other, const doubl
   return 1;
 }
 
-static void learn(struct dvi__attempt *first, int right)
+/* The memory is that of the step as it was taken. */
+static void learn(const dvi_integrator *I, int right)
 {
-  if (!first->by_motion) return;
-  first->vain = right ? first->vain + 1 : 0;
-  if (first->vain < VAIN_ONES) first->wait = 0;
-  if (first->vain >= VAIN_ONES) first->wait = first->wait == 0 ? 1 : first->wait < LONGEST_WAIT ? 2 * first->wait : LONGEST_WAIT;
-  first->spared = first->wait;
+  double *own = I->stepper.memory + I->learned;
+  if (!I->first->by_motion) return;
+  own[VAIN] = right ? fmin(own[VAIN] + 1, VAIN_ONES) : 0;
+  own[WAIT] = own[VAIN] < VAIN_ONES ? 0 : own[WAIT] == 0 ? 1 : fmin(2 * own[WAIT], LONGEST_WAIT);
+  own[SPARED] = own[WAIT];
 }
 
 /* What the first attempt has found stays, to the last bit, if it was right. */
@@ -150,7 +156,7 @@ dvi_status dvi__attempt(dvi_integrator *I, double length, double density)
   I->stepper.follow = 0;
   if (status != DVI_OK) return status;
   const int right = is_same(n, I->next.q, I->first->state.q, I->now.q) && is_same(n, I->next.p, I->first->state.p, I->now.p);
-  learn(I->first, right);
   if (right) restore_first(I);
+  learn(I, right);
   return DVI_OK;
 }

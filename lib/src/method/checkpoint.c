@@ -19,7 +19,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "method/fingerprint.h"
-#include "method/attempt.h"
+#include "method/integrator_struct.h"
 #include "method/whole_file.h"
 #include "num/finite.h"
 
@@ -316,7 +316,6 @@ static void unpack(dvi_integrator *I, const file *f)
   memcpy(I->last.q, f->numbers + count, state);
   memcpy(I->stepper.memory, f->numbers + 2 * count, I->stepper.memory_count * sizeof(double));
   I->started = 1;
-  dvi__attempt_forget(I);
 }
 
 dvi_status dvi_integrator_restore(dvi_integrator *I, const char *path)

@@ -5,7 +5,6 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "method/attempt.h"
 #include "method/ensemble_struct.h"
 
 /* ---- members and integrators ---- */
@@ -27,7 +26,6 @@ void dvi__member_load(const dvi_ensemble *e, dvi__worker *w, const dvi__block *b
   I->now.t = dvi__row(block, DVI__MEMBER_T)[k];
   I->now.t_carry = dvi__row(block, DVI__MEMBER_T_CARRY)[k];
   I->now.side = 0;
-  dvi__attempt_forget(I);
   load_rows(4 * n, dvi__row(block, DVI__MEMBER_Q) + k, members, I->now.q); /* q, p and both carries lie in a row */
   load_rows(I->stepper.memory_count, dvi__row(block, DVI__MEMBER_Q + 4 * n) + k, members, I->stepper.memory);
   I->last_h = dvi__driver_row(e, block, DVI__MEMBER_LAST_H)[k];

@@ -21,6 +21,7 @@ void dvi__state_lay_out(dvi__state *state, double **at, size_t n)
 static dvi_status allocate(dvi_integrator *I)
 {
   const size_t n = (size_t)I->system->n;
+  dvi__attempt_extend(I);
   double *at = I->numbers = DVI_NEW(double, 14 * n);
   I->stepper.memory = DVI_NEW(double, I->stepper.memory_count);
   I->memory_before = DVI_NEW(double, I->stepper.memory_count);
@@ -115,7 +116,6 @@ static dvi_status start(dvi_integrator *I, double t, const double *q, const doub
   I->now.side = 0;
   I->last_h = 0;
   I->started = 1;
-  dvi__attempt_forget(I);
   I->stepper.method->start(&I->stepper, w);
   return DVI_OK;
 }

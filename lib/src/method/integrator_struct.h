@@ -17,6 +17,7 @@ struct dvi_integrator {
   double *numbers;            /* the memory of all three */
   double *memory_before;      /* the stepper's memory before the last step: the two change places with every step */
   double *v, *last_v;         /* [n] */
+  size_t learned;             /* where in the stepper's memory stands what dvi__attempt learns */
   struct dvi__attempt *first; /* of a step that is taken again (attempt.h); NULL: none is */
   int started;
   double last_h;        /* in time; 0: no step was taken yet */

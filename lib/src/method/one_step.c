@@ -45,6 +45,12 @@ dvi_status dvi__one_step_create(dvi__stepper *self, size_t size, const dvi__step
   DVI_TRY(dvi__stationary_create(self, &equations, &one->equations));
   one->x = one->equations.x;
   one->equations.group = (int)(unknowns(one) / (size_t)self->system->n);
+  /* Functions that change with h, and steps over many periods: what is measured of a branch, or of a
+   * motion, says nothing. Coefficients of several kinds of functions have no sizes of their own. */
+  if (kind->renewed) {
+    one->equations.group = (int)unknowns(one);
+    self->follows = 0;
+  }
   return DVI_OK;
 }
 
