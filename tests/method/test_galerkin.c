@@ -195,7 +195,8 @@ START_TEST(kinsol_certifies_every_step)
   advance(plain, runs[_i].h, STEPS);
   advance(certified, runs[_i].h, STEPS);
   dvi_integrator_counters(certified, &counters);
-  ck_assert_int_eq(counters.certified, STEPS);
+  ck_assert_int_ge(counters.certified, STEPS); /* one more for each step that is taken again */
+  ck_assert_int_le(counters.certified, STEPS + counters.followed);
   ck_assert_int_eq(counters.kinsols, 0);
   ck_assert_double_le(distance(of->nq, dvi_integrator_q(plain), dvi_integrator_q(certified)),
                       1e-11 * magnitude(of->nq, dvi_integrator_q(plain)));

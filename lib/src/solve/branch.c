@@ -175,9 +175,9 @@ dvi_status dvi__branch_tell(const dvi__branch_end *end, double h, const dvi__bra
     return dvi__fail_in(end->status, "the solution continues those of shorter steps up to h = %.4g", reached);
   if (end->reached == 0)
     return dvi__fail_in(DVI_NOT_CONVERGED, "not solved, not even for a step of h = %.3g (%d iterations, residual %.1e)",
-                        least_part * h, end->report.iterations, end->report.residual);
+                        least_part * h, end->report.iterations, end->report.row);
   return dvi__fail(DVI_STEP_TOO_LARGE,
                    "a step too large: the solution that continues those of shorter steps ends at h = %.4g; "
                    "beyond, Newton's method finds none near it (%d iterations, residual %.1e)",
-                   reached, end->report.iterations, end->report.residual);
+                   reached, end->report.iterations, end->report.row);
 }

@@ -66,7 +66,7 @@ dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__so
   for (report->iterations = 1; report->iterations <= MOST_ITERATIONS; report->iterations++) {
     if (!fresh) DVI_TRY(dvi__solver_factor(s, x));
     DVI_TRY(dvi__solver_residual(s, x, s->residual));
-    report->residual = dvi__largest((size_t)s->equations.unknowns, s->residual);
+    report->row = dvi__largest((size_t)s->equations.unknowns, s->residual);
     dvi__linear_solve(s->linear, s->residual);
     dvi__correct(s->equations.unknowns, s->residual, x, &report->correction, &whole);
     if (report->iterations == 1) report->first = report->correction;

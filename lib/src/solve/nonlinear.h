@@ -45,7 +45,8 @@ typedef struct dvi__solve_report {
   double first;       /* largest change of an unknown in the first iteration of Newton's method */
   double contraction; /* that of the second one over it, 0: there was none */
   double correction;  /* largest change of an unknown in the last iteration */
-  double residual;    /* largest |R_i| at the last point; by KINSOL over row_scale_i */
+  double residual;    /* KINSOL's: largest |R_i| / row_scale_i at the last point */
+  double row;         /* Newton's method's: largest |R_i| there */
 } dvi__solve_report;
 
 typedef struct dvi__solver dvi__solver;
