@@ -59,8 +59,8 @@ static int refuse_column(const row_file *file, int columns, const char *name)
   free(titles.title);
   if (hint[0] != '\0') return usage_error("plot: '%s' has no column '%s'%s", file->path, name, hint);
   int length = 0;
-  while (length < SHOWN && isprint((unsigned char)file->line[length])) length++;
-  return usage_error("plot: '%s' has no column '%s'; it has %.*s%s", file->path, name, length, file->line,
+  while (file->line != NULL && length < SHOWN && isprint((unsigned char)file->line[length])) length++;
+  return usage_error("plot: '%s' has no column '%s'; it has %.*s%s", file->path, name, length, file->line != NULL ? file->line : "",
                      length < SHOWN ? "" : "..");
 }
 

@@ -103,8 +103,13 @@ static bool tabulate(quad_step *s)
 static const rule *read_method(const char *method, int *degree, int *nodes)
 {
   char name[32];
-  if (sscanf(method, "galerkin:degree=%d,basis=%*[^,],quadrature=%31[^,],nodes=%d", degree, name, nodes) != 3) return NULL;
-  if (*degree > DEGREE_MAX || *nodes > NODES_MAX) return NULL;
+  int numbers = 0;
+  const char *const degrees = strstr(method, "galerkin:degree="), *const points = strstr(method, ",nodes=");
+  if (degrees != method || points == NULL || sscanf(method, "%*[^,],basis=%*[^,],quadrature=%31[^,],nodes=%n", name, &numbers) != 1)
+    return NULL;
+  *degree = (int)strtol(method + strlen("galerkin:degree="), NULL, 10);
+  *nodes = (int)strtol(points + strlen(",nodes="), NULL, 10);
+  if (numbers == 0 || *degree > DEGREE_MAX || *nodes > NODES_MAX) return NULL;
   for (size_t i = 0; i < sizeof rules / sizeof *rules; i++)
     if (strcmp(rules[i].name, name) == 0) return &rules[i];
   return NULL;

@@ -139,7 +139,7 @@ dvi_status dvi__stepper_prepare_lanes(dvi__stepper *stepper, int capacity)
 
 void dvi__stepper_destroy(dvi__stepper *stepper)
 {
-  if (stepper->lanes != NULL) stepper->method->clear_lanes(stepper);
+  if (stepper->method != NULL && stepper->lanes != NULL) stepper->method->clear_lanes(stepper);
   if (stepper->method != NULL) stepper->method->destroy(stepper);
   dvi__settings_clear(&stepper->settings);
   dvi__release(stepper->specification);
