@@ -154,7 +154,13 @@ dvi_status dvi__attempt(dvi_integrator *I, double length, double density)
   I->stepper.follow = 1;
   const dvi_status status = step(I, length, density);
   I->stepper.follow = 0;
-  if (status != DVI_OK) return status;
+  if (status < 0 || (status > 0 && !I->first->by_motion)) return status;
+  if (status > 0) {
+    /* Only the motion spoke against it, and the branch was lost, as at the front of a wave, whose
+     * numbers grow by high powers of h. */
+    restore_first(I);
+    return DVI_OK;
+  }
   const int right = is_same(n, I->next.q, I->first->state.q, I->now.q) && is_same(n, I->next.p, I->first->state.p, I->now.p);
   if (right) restore_first(I);
   learn(I, right);
