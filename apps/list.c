@@ -138,12 +138,13 @@ int list_command(int argc, char **argv)
   int code;
   if (!options_parse(&command, argc, argv, &what, &code)) return code;
   const bool methods = strcmp(what, "methods") == 0;
-  char hint[HINT_SIZE];
   const bool all = methods || strcmp(what, "problems") == 0;
   if (!all && csv == NULL && print_named(what)) return DONE;
-  if (!all)
+  if (!all) {
+    char hint[HINT_SIZE];
     return usage_error("list: there are methods, problems and the name of one to list, not '%s'%s", what,
                        suggestion(what, list_at, NULL, hint, sizeof hint));
+  }
   if (csv == NULL) {
     (methods ? print_methods : print_problems)();
     return DONE;

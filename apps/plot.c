@@ -201,14 +201,15 @@ static int redirect(posix_spawn_file_actions_t *actions, int script, const int e
 /* Start gnuplot, without the start-up files of the user. Returns 0 or an error number. */
 static int spawn(int script, const int ends[2], pid_t *process)
 {
-  char name[] = "gnuplot";
-  char alone[] = "--default-settings";
-  char *arguments[] = {name, alone, NULL};
   posix_spawn_file_actions_t actions;
   int failure = posix_spawn_file_actions_init(&actions);
   if (failure != 0) return failure;
   failure = redirect(&actions, script, ends);
-  if (failure == 0) failure = posix_spawnp(process, name, &actions, NULL, arguments, environ);
+  if (failure == 0) {
+    char name[] = "gnuplot", alone[] = "--default-settings";
+    char *arguments[] = {name, alone, NULL};
+    failure = posix_spawnp(process, name, &actions, NULL, arguments, environ);
+  }
   (void)posix_spawn_file_actions_destroy(&actions);
   return failure;
 }

@@ -111,7 +111,8 @@ static bool step_error(study *s, const centre *c, double h, quad *start, double 
   const size_t n = (size_t)s->scene->nq;
   quad *end = start + 2 * n, *step = end + 2 * n;
   const quad half = (quad)(0.5 * h), t = (quad)c->t;
-  double of_start = *judge_error, of_end = *judge_error;
+  const double wanted = *judge_error;
+  double of_start = wanted, of_end = wanted;
   memcpy(start, c->z, 2 * n * sizeof *start);
   memcpy(end, c->z, 2 * n * sizeof *end);
   if (!settle(s, c) || !quad_motion_flow(&s->motion, t, -half, c->v, start, &of_start) ||

@@ -76,11 +76,11 @@ static void print_witness(const run_request *request, const trust_verdict *verdi
 static void print_all(const run_request *request, const problem *scene, const dvi_integrator *integrator, const result_table *table,
                       const trust_verdict *verdict)
 {
-  const int rows = table_rows(table), shown = rows < ROWS_MOST ? rows : ROWS_MOST;
+  const int rows = table_rows(table), hidden = rows > ROWS_MOST ? rows - ROWS_MOST : 0;
   (void)printf("%s by %s with --h %g to t = %g, against --h %g and %g\n", scene->name, request->method, request->h, request->t_end,
                request->h / 2, request->h / 4);
-  table_print(table, stdout, 0, 0, shown);
-  if (shown < rows) (void)printf("and %d columns more; see --columns and --csv\n", rows - shown);
+  table_print(table, stdout, 0, 0, rows - hidden);
+  if (hidden > 0) (void)printf("and %d columns more; see --columns and --csv\n", hidden);
   if (trust_falls(verdict->ratio))
     (void)printf("halving the step divides the error by %.3g; order %d makes that %.3g\n", 1.0 / verdict->ratio,
                  dvi_integrator_order(integrator), ldexp(1.0, dvi_integrator_order(integrator)));

@@ -50,7 +50,7 @@ bootstrap: this system is neither Debian 12 or later nor Ubuntu 24.04 or later: 
 On Debian these packages are called
   $packages
   $lint_packages
-Then:  cmake --preset release && cmake --build --preset release && ctest --preset release -LE lint
+Then:  cmake --preset release && cmake --build --preset release && ctest --preset release -LE "lint|long"
 END
   exit 1
 }
@@ -141,7 +141,7 @@ case $1 in
   test)
     install_packages
     build release
-    run_tests release -LE lint
+    run_tests release -LE "lint|long"
     ;;
   lint) lint ;;
   *) usage ;;

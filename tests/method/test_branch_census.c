@@ -144,10 +144,6 @@ static const struct {
              {"elastica", 6.0, NULL, NULL}};
 enum { CASES = sizeof cases / sizeof *cases };
 
-/* The first ones have Lagrangians that are regular. Of degenerate ones the sign of the determinant, by which the judge knows folds, may tell of something
- * else: their rows are printed, and nothing is claimed. */
-enum { REGULAR = 8 };
-
 static const char *const methods[] = {"midpoint",
                                       "trapezoidal",
                                       "galerkin:degree=2",
@@ -305,29 +301,33 @@ static void print_row(int which, int method, const tally *bands)
 static plan chosen_plan(void)
 {
   const char *full = getenv("DVI_CENSUS");
-  if (full == NULL) return (plan){4, 0.1, 0.7, 3};
+  if (full == NULL) return (plan){3, 0.12, 0.6, 3};
   if (strcmp(full, "small") == 0) return (plan){6, 0.05, 0.8, 5};
   if (strcmp(full, "full") == 0) return (plan){50, 0.02, 1, 100};
   return (plan){atoi(full), 0.05, 1, 20};
 }
 
+/* Above 0.35 periods one step of few hundred may be where the judge and the method differ on the last
+ * millionth before a fold. */
 START_TEST(no_run_leaves_its_branch_without_a_word)
 {
   const plan chosen = chosen_plan();
-  const char *only = getenv("DVI_CENSUS_ONLY");
-  for (int which = 0; which < CASES; which++) {
-    if (which != _i || (only != NULL && strcmp(only, cases[which].name) != 0)) continue;
-    for (int method = 0; method < METHODS; method++) {
-      if (getenv("DVI_CENSUS_METHOD") != NULL && strcmp(getenv("DVI_CENSUS_METHOD"), methods[method]) != 0) continue;
-      tally bands[BANDS] = {0};
-      count_method(which, method, &chosen, bands);
-      if (getenv("DVI_CENSUS") != NULL && bands[0].steps + bands[1].steps > 0) print_row(which, method, bands);
-      ck_assert_msg(getenv("DVI_CENSUS") != NULL || which >= REGULAR || bands[0].strayed == 0, "%s, %s: %ld steps",
-                    cases[which].name, methods[method], bands[0].strayed);
-      ck_assert_msg(getenv("DVI_CENSUS") != NULL || which >= REGULAR || bands[1].strayed * 100 <= bands[1].steps,
-                    "%s, %s: %ld steps", cases[which].name, methods[method], bands[1].strayed);
+  const char *problem_asked = getenv("DVI_CENSUS_ONLY"), *method_asked = getenv("DVI_CENSUS_METHOD");
+  tally all[BANDS] = {0};
+  if (problem_asked != NULL && strcmp(problem_asked, cases[_i].name) != 0) return;
+  for (int method = 0; method < METHODS; method++) {
+    tally bands[BANDS] = {0};
+    if (method_asked != NULL && strcmp(method_asked, methods[method]) != 0) continue;
+    count_method(_i, method, &chosen, bands);
+    if (getenv("DVI_CENSUS") != NULL && bands[0].steps + bands[1].steps > 0) print_row(_i, method, bands);
+    for (int b = 0; b < BANDS; b++) {
+      all[b].steps += bands[b].steps;
+      all[b].strayed += bands[b].strayed;
     }
   }
+  ck_assert_msg(all[0].strayed == 0, "%s: %ld of %ld steps strayed", cases[_i].name, all[0].strayed, all[0].steps);
+  ck_assert_msg(all[1].strayed <= 1 || all[1].strayed * 100 <= all[1].steps, "%s: %ld of %ld long steps strayed", cases[_i].name,
+                all[1].strayed, all[1].steps);
 }
 END_TEST
 

@@ -2,12 +2,11 @@
  * do with the motion, at steps that would resolve it well. The one that is meant continues those of
  * shorter steps down to h = 0 (solve/branch.h).
  *
- * A solution of another branch nearly always changes the energy by a large part of the kinetic
- * energy. Where the method does not know its solution to be right, and the energy changes by more
- * than a hundredth of it, the step is taken again along its branch. Of 235 wrong solutions among
- * 6000 of Newton's method this caught 234, together with the sign of the Jacobian's determinant,
- * which methods look at, all; of the right ones it doubted 3 of 10, which costs time and changes
- * nothing: they are found again (docs/theory.md). */
+ * Where the method does not know its solution to be that one, the new state is asked. Solutions of
+ * other branches nearly always change the energy by more than a hundredth of the kinetic energy; in
+ * small parts of a system, which the energy does not show, they lead away from where their rates do. A
+ * doubted step is taken again along its branch. Most are found again: then the first solution stays,
+ * to the last bit (docs/theory.md, docs/branches.md). */
 #include "method/attempt.h"
 
 #include <float.h>
@@ -21,6 +20,14 @@
 /* Changes of more than this part of the kinetic energy, or of what the step exchanges, are doubted. */
 static const double doubted_change = 0.01;
 
+/* So are steps in which a coordinate, or its momentum, ends farther than this from where the mean of
+ * its rates at both ends leads, as a part of the larger rate's way. */
+static const double doubted_defect = 0.1;
+
+/* Right steps do so, too, where they are long. After some that were followed in vain the motion is
+ * asked more and more seldom, until its answer is that a step was wrong. */
+enum { VAIN_ONES = 4, LONGEST_WAIT = 4096 };
+
 /* Two solutions are the same if they differ by less than this part of the step: the roundings of an
  * ill-conditioned step are smaller, other solutions are farther away. */
 static const double same = 1e-6;
@@ -32,9 +39,9 @@ enum { VAIN, WAIT, SPARED, LEARNED };
 struct dvi__attempt {
   dvi__state state; /* what the first attempt found, */
   double *memory;   /* and left in the memory */
-  double *work;     /* [2 n] */
-  int by_motion;    /* the step is followed because of its motion */
-  double *numbers;  /* of both */
+  double *forces;   /* [2 n] work */
+  double *numbers;  /* the arrays of all three */
+  int by_motion;    /* the step is followed because of its motion alone */
 };
 
 void dvi__attempt_extend(dvi_integrator *I)
@@ -52,7 +59,7 @@ dvi_status dvi__attempt_allocate(dvi_integrator *I)
   double *at = I->first->numbers = DVI_NEW(double, 6 * n + memory);
   if (at == NULL) return dvi__fail(DVI_NO_MEMORY, "integrator: no memory for %zu coordinates", n);
   dvi__state_lay_out(&I->first->state, &at, n);
-  I->first->work = at;
+  I->first->forces = at;
   I->first->memory = at + 2 * n;
   return DVI_OK;
 }
@@ -62,15 +69,6 @@ void dvi__attempt_clear(dvi_integrator *I)
   if (I->first != NULL) dvi__release(I->first->numbers);
   dvi__release(I->first);
 }
-
-/* So are steps in which a coordinate, or its momentum, ends farther than this from where the mean of
- * its rates at both ends leads, as a part of the larger rate's way: energy alone does not see the small
- * parts of a system. */
-static const double doubted_defect = 0.1;
-
-/* Right steps do so, too, where they are long. After some that were followed in vain the question is
- * put more and more seldom, until its answer is that a step was wrong. */
-enum { VAIN_ONES = 8, LONGEST_WAIT = 64 };
 
 static int is_spared(const dvi_integrator *I)
 {
@@ -89,7 +87,8 @@ static int state_jumps(dvi_integrator *I)
   dvi__guess_velocity(I->system->n, I->next.q, I->now.q, I->last_v, I->next.t - I->now.t, I->v);
   if (dvi__energy_change(I->evaluator, &before, &after, &change, &exchanged) != DVI_OK) return 1;
   if (!(change <= doubted_change * exchanged)) return 1;
-  if (dvi__motion_defect(I->evaluator, &before, &after, I->first->work, &defect) != DVI_OK) return 1;
+  if (I->stepper.doubt == DVI__LINEAR) return 0;
+  if (dvi__motion_defect(I->evaluator, &before, &after, I->first->forces, &defect) != DVI_OK) return 1;
   return defect > doubted_defect && !is_spared(I);
 }
 
@@ -121,12 +120,15 @@ static void restore_first(dvi_integrator *I)
   memcpy(I->stepper.memory, I->first->memory, I->stepper.memory_count * sizeof(double));
 }
 
-/* Whether each number of a vector [n] differs little beside what it moved in the step. */
+/* Whether each number of a vector [n] differs little beside what it moved in the step, or is a rounding
+ * of what the others moved: no solver finds it better. */
 static int is_same(size_t n, const double *one, const double *other, const double *start)
 {
+  double largest = 0;
+  for (size_t i = 0; i < n; i++) largest = fmax(largest, fabs(other[i] - start[i]));
   for (size_t i = 0; i < n; i++) {
     const double moved = fmax(fabs(other[i] - start[i]), 4 * DBL_EPSILON * fabs(start[i]) / same);
-    if (!(fabs(one[i] - other[i]) <= same * moved)) return 0;
+    if (!(fabs(one[i] - other[i]) <= same * fmax(moved, same * largest))) return 0;
   }
   return 1;
 }
@@ -155,13 +157,10 @@ dvi_status dvi__attempt(dvi_integrator *I, double length, double density)
   const dvi_status status = step(I, length, density);
   I->stepper.follow = 0;
   if (status < 0 || (status > 0 && !I->first->by_motion)) return status;
-  if (status > 0) {
-    /* Only the motion spoke against it, and the branch was lost, as at the front of a wave, whose
-     * numbers grow by high powers of h. */
-    restore_first(I);
-    return DVI_OK;
-  }
-  const int right = is_same(n, I->next.q, I->first->state.q, I->now.q) && is_same(n, I->next.p, I->first->state.p, I->now.p);
+  /* Motion alone is no reason to refuse a step: at the front of a wave, where numbers grow by high
+   * powers of h, a branch may be lost that goes on. */
+  const int right = status > 0 ||
+                    (is_same(n, I->next.q, I->first->state.q, I->now.q) && is_same(n, I->next.p, I->first->state.p, I->now.p));
   if (right) restore_first(I);
   learn(I, right);
   return DVI_OK;

@@ -83,13 +83,6 @@ void dvi__charted_step_destroy(dvi__stepper *self)
 
 /* ---- the step ---- */
 
-/* Before the first step there is no path, and the velocity is sought from p. */
-void dvi__charted_step_start(dvi__stepper *self, const double *v)
-{
-  (void)v;
-  memset(self->memory, 0, self->memory_count * sizeof(double));
-}
-
 /* Points of the step's path, before its chart is left. */
 static void look_back(const charted_step *own, size_t n, const double *path)
 {

@@ -7,13 +7,12 @@
 dvi_status dvi__charted_step_create(dvi__stepper *self, int reduced);
 
 void dvi__charted_step_destroy(dvi__stepper *self);
-void dvi__charted_step_start(dvi__stepper *self, const double *v);
 dvi_status dvi__charted_step(dvi__stepper *self, dvi__state *state, double h);
 void dvi__charted_step_path(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v);
 void dvi__charted_step_explain(const dvi__stepper *self, dvi__text *text);
 
-#define DVI__CHARTED_OPERATIONS                                                                                   \
-  .takes_rest = 1, .needs = DVI__FACTORS, .destroy = dvi__charted_step_destroy, .start = dvi__charted_step_start, \
-  .step = dvi__charted_step, .path = dvi__charted_step_path, .explain = dvi__charted_step_explain
+#define DVI__CHARTED_OPERATIONS                                                                            \
+  .takes_rest = 1, .needs = DVI__FACTORS, .destroy = dvi__charted_step_destroy, .step = dvi__charted_step, \
+  .path = dvi__charted_step_path, .explain = dvi__charted_step_explain
 
 #endif

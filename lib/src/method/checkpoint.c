@@ -222,9 +222,9 @@ static void find_difference(const dvi__method *method, const char *at[2], int le
 
 static dvi_status check_method(const dvi_integrator *I, const file *f)
 {
-  const char *here = I->stepper.specification, *at[2] = {f->specification, here};
-  int length[2];
   if (f->head.steps != I->stepper.steps) {
+    const char *here = I->stepper.specification, *at[2] = {f->specification, here};
+    int length[2];
     find_difference(I->stepper.method, at, length);
     return dvi__fail(DVI_BAD_FILE, "checkpoint %s: %.*s there, %.*s here: written by %s, not by %s", f->path, length[0], at[0],
                      length[1], at[1], f->specification, here);

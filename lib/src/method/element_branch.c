@@ -31,14 +31,12 @@ dvi_status dvi__element_straight(dvi__stepper *self, const dvi__element_place *a
 typedef struct pursuit {
   dvi__stepper *self;
   const dvi__element_place *at;
-  double part; /* of the step, that the equations are placed at */
 } pursuit;
 
 static dvi_status place_part(void *of, double part)
 {
-  pursuit *own = of;
+  const pursuit *own = of;
   const dvi__element_place *at = own->at;
-  own->part = part;
   dvi__action_place(((dvi__element *)own->self->own)->action, at->t, part * at->h, at->q, at->p);
   return DVI_OK;
 }
@@ -77,13 +75,12 @@ static dvi_status branch_ends(const dvi__stepper *self, const dvi__element_place
 dvi_status dvi__element_follow(dvi__stepper *self, const dvi__element_place *at, dvi_status whole, double *Y)
 {
   const dvi__element *own = self->own;
-  pursuit of = {self, at, 0};
+  pursuit of = {self, at};
   const dvi__branch branch = {.of = &of,
                               .place = place_part,
                               .guess = guess_part,
                               .distance = own->centred ? turn_between : NULL,
                               .near = own->centred ? follows_in_charts : DVI__BRANCH_NEAR,
-                              .group = dvi__action_unknowns(own->action) / self->system->n,
                               .parts = self->follow,
                               .signs = !own->centred || dvi__action_signs(own->action),
                               .from_zero = 1,
@@ -119,8 +116,9 @@ dvi__doubt dvi__element_doubt(const dvi__stepper *self, const dvi__element_place
   const int by_newton = own->rung == DVI__NEWTON || own->rung == DVI__KINSOL;
   if (own->rung == DVI__FIXED_POINT) return DVI__SURE;
   if (by_newton && is_turned(self, at)) return DVI__ASTRAY;
-  if (own->rung == DVI__NEWTON && dvi__branch_is_sure(report, dvi__action_unknowns(own->action), own->Y)) return DVI__SURE;
-  return DVI__DOUBTED;
+  if (own->rung == DVI__KINSOL) return DVI__DOUBTED; /* of its way nothing is known */
+  if (dvi__branch_is_sure(report, dvi__action_unknowns(own->action), own->Y)) return DVI__SURE;
+  return dvi__branch_is_straight(report) ? DVI__LINEAR : DVI__DOUBTED;
 }
 
 /* Whether a solution in charts is not the one that continues shorter steps: it turns far away from

@@ -134,6 +134,7 @@ static dvi_status make_solver(dvi__stepper *self, dvi__element *own)
 {
   const int sweeps = dvi__action_can_sweep(own->action);
   const dvi__equations equations = {.unknowns = dvi__action_unknowns(own->action),
+                                    .group = dvi__action_unknowns(own->action) / self->system->n,
                                     .pattern = dvi__action_pattern(own->action),
                                     .of = own,
                                     .residual = residual_of,
@@ -205,7 +206,6 @@ int dvi__element_solver(const dvi__stepper *self)
 
 void dvi__element_start(dvi__stepper *self, const double *v)
 {
-  memset(self->memory, 0, self->memory_count * sizeof(double));
   memcpy(self->memory + DVI__LAST_Y, v, (size_t)self->system->n * sizeof(double));
 }
 

@@ -65,8 +65,7 @@ static dvi__stepper *inner_of(const dvi__stepper *self)
 void dvi__impulse_start(dvi__stepper *self, const double *v)
 {
   const dvi__impulse *own = self->own;
-  *made_for(self) = 0;
-  if (own->inner != NULL) own->inner->method->start(inner_of(self), v);
+  if (own->inner != NULL && own->inner->method->start != NULL) own->inner->method->start(inner_of(self), v);
 }
 
 /* ---- the step ---- */

@@ -116,7 +116,8 @@ static dvi_status start(dvi_integrator *I, double t, const double *q, const doub
   I->now.side = 0;
   I->last_h = 0;
   I->started = 1;
-  I->stepper.method->start(&I->stepper, w);
+  memset(I->stepper.memory, 0, I->stepper.memory_count * sizeof(double));
+  if (I->stepper.method->start != NULL) I->stepper.method->start(&I->stepper, w);
   return DVI_OK;
 }
 

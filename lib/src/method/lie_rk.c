@@ -67,11 +67,6 @@ static void destroy(dvi__stepper *self)
   dvi__release(own);
 }
 
-static void start(dvi__stepper *self, const double *v)
-{
-  (void)self, (void)v;
-}
-
 static dvi__phase phase_of(const dvi__state *state)
 {
   return (dvi__phase){state->q, state->p, state->q_carry, state->p_carry};
@@ -249,7 +244,6 @@ const dvi__method dvi__lie_rk = {
     .uses = DVI__CONSTANT_MASS | DVI__POTENTIAL | DVI__FACTORS,
     .create = create,
     .destroy = destroy,
-    .start = start,
     .step = step,
     .explain = explain,
 };

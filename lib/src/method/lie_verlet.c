@@ -65,12 +65,6 @@ static void destroy(dvi__stepper *self)
   dvi__release(own);
 }
 
-static void start(dvi__stepper *self, const double *v)
-{
-  (void)v;
-  *gradient_known(self) = 0;
-}
-
 static dvi_status gradient(const dvi__stepper *self, const dvi__state *state)
 {
   const lie_verlet *own = self->own;
@@ -125,7 +119,6 @@ const dvi__method dvi__lie_verlet = {
     .uses = DVI__CONSTANT_MASS | DVI__POTENTIAL | DVI__FACTORS,
     .create = create,
     .destroy = destroy,
-    .start = start,
     .step = step,
     .path = path,
     .explain = explain,

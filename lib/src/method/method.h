@@ -62,8 +62,9 @@ typedef struct dvi__settings {
 typedef struct dvi__method dvi__method;
 
 /* Whether the solution that a step takes is that of the branch from h = 0 (solve/branch.h): known to
- * be; for its energy to say; known not to be. */
-typedef enum dvi__doubt { DVI__SURE, DVI__DOUBTED, DVI__ASTRAY } dvi__doubt;
+ * be; for its energy to say, as its equations were nearly linear; for its energy and its motion to say;
+ * known not to be. */
+typedef enum dvi__doubt { DVI__SURE, DVI__LINEAR, DVI__DOUBTED, DVI__ASTRAY } dvi__doubt;
 
 /* A method on a system. */
 typedef struct dvi__stepper {
@@ -122,7 +123,8 @@ struct dvi__method {
   void (*destroy)(dvi__stepper *self);
   /* Steps will have `count` lengths in turn, those of a composition: keep what is made for each. Once. NULL: nothing is made for a length alone. */
   dvi_status (*keep_lengths)(dvi__stepper *self, int count);
-  /* Forget earlier steps: the state is new, and its velocity is v [n]. */
+  /* Earlier steps are forgotten: the memory is zero, the state is new, and its velocity is v [n]. NULL:
+   * no more than that need be known. */
   void (*start)(dvi__stepper *self, const double *v);
   /* Advance the state. On failure the driver throws state and memory away. */
   dvi_status (*step)(dvi__stepper *self, dvi__state *state, double h);

@@ -34,7 +34,9 @@ dvi_status dvi__one_step_create(dvi__stepper *self, size_t size, const dvi__step
   one->last = DVI__CARRIED + carried;
   self->memory_count = one->last + unknowns(one);
   if (!allocate(one, (size_t)self->system->n)) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
+  /* Coefficients of several kinds of functions have no sizes of their own. */
   dvi__equations equations = {.unknowns = (int)unknowns(one),
+                              .group = (int)(kind->renewed ? unknowns(one) : unknowns(one) / (size_t)self->system->n),
                               .pattern = kind->pattern(of),
                               .of = of,
                               .residual = kind->residual,
@@ -44,13 +46,9 @@ dvi_status dvi__one_step_create(dvi__stepper *self, size_t size, const dvi__step
                               .ahead = kind->renewed};
   DVI_TRY(dvi__stationary_create(self, &equations, &one->equations));
   one->x = one->equations.x;
-  one->equations.group = (int)(unknowns(one) / (size_t)self->system->n);
   /* Functions that change with h, and steps over many periods: what is measured of a branch, or of a
-   * motion, says nothing. Coefficients of several kinds of functions have no sizes of their own. */
-  if (kind->renewed) {
-    one->equations.group = (int)unknowns(one);
-    self->follows = 0;
-  }
+   * motion, says nothing. */
+  if (kind->renewed) self->follows = 0;
   return DVI_OK;
 }
 
@@ -70,7 +68,6 @@ void dvi__one_step_destroy(dvi__stepper *self)
 void dvi__one_step_start(dvi__stepper *self, const double *v)
 {
   const dvi__one_step *one = self->own;
-  memset(self->memory, 0, self->memory_count * sizeof(double));
   memcpy(self->memory + one->last, v, (size_t)self->system->n * sizeof(double));
 }
 

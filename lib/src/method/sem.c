@@ -109,7 +109,6 @@ static dvi__stepper *element_of(const dvi__stepper *self)
 
 static void start(dvi__stepper *self, const double *v)
 {
-  memset(self->memory, 0, OWN * sizeof(double));
   dvi__element_start(element_of(self), v);
 }
 

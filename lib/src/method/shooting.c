@@ -385,7 +385,7 @@ static void destroy(dvi__stepper *self)
 /* The memory is a guess for the velocity. */
 static void start(dvi__stepper *self, const double *v)
 {
-  memcpy(self->memory, v, self->memory_count * sizeof *v);
+  memcpy(self->memory, v, (size_t)self->system->n * sizeof *v);
 }
 
 /* Newton's method until the residual is as small as was asked for. */
@@ -457,11 +457,11 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
 {
   const shooter *own = self->own;
   double duration;
-  memcpy(own->v, self->memory, self->memory_count * sizeof *own->v);
+  memcpy(own->v, self->memory, (size_t)self->system->n * sizeof *own->v);
   DVI_TRY(solve(self, state, h));
   find_ends(own);
   DVI_TRY(find_duration(self, h, &duration));
-  memcpy(self->memory, own->v, self->memory_count * sizeof *own->v);
+  memcpy(self->memory, own->v, (size_t)self->system->n * sizeof *own->v);
   dvi__add_compensated_all(self->system->n, state->q, state->q_carry, own->dq);
   dvi__add_compensated_all(self->system->n, state->p, state->p_carry, own->dp);
   dvi__add_compensated(&state->t, &state->t_carry, duration);

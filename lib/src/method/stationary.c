@@ -62,7 +62,6 @@ static dvi_status follow(const dvi__stationary *s, const dvi__stationary_step *s
                               .place = place_part,
                               .guess = guess_part,
                               .near = DVI__BRANCH_NEAR,
-                              .group = s->group,
                               .parts = step->stepper->follow,
                               .signs = 1,
                               .size = size_of(step),
@@ -83,7 +82,9 @@ static dvi_status solve_at_once(const dvi__stationary *s, const dvi__stationary_
   DVI_TRY(step->guess(step->stepper, step->h, s->x));
   DVI_TRY(dvi__solve(s->solver, DVI__NEWTON, size_of(step), 1, 0, s->x, &report));
   step->stepper->counters->newtons++;
-  if (!dvi__branch_is_sure(&report, s->unknowns, s->x) && step->stepper->doubt == DVI__SURE) step->stepper->doubt = DVI__DOUBTED;
+  if (dvi__branch_is_sure(&report, s->unknowns, s->x)) return DVI_OK;
+  const dvi__doubt doubt = dvi__branch_is_straight(&report) ? DVI__LINEAR : DVI__DOUBTED;
+  if (doubt > step->stepper->doubt) step->stepper->doubt = doubt;
   return DVI_OK;
 }
 

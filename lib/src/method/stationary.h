@@ -19,9 +19,9 @@ typedef struct dvi__stationary_step {
 
 typedef struct dvi__stationary {
   dvi__solver *solver;
-  int unknowns, group; /* the branch's */
-  double *x;           /* [unknowns] the solution */
-  double *room;        /* [DVI__BRANCH_ROOM * unknowns] */
+  int unknowns;
+  double *x;    /* [unknowns] the solution */
+  double *room; /* [DVI__BRANCH_ROOM * unknowns] */
 } dvi__stationary;
 
 /* Fill in what every such method has alike: no fixed point iteration, and zeros on the Jacobian's

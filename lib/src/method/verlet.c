@@ -79,12 +79,6 @@ static void destroy(dvi__stepper *self)
   dvi__release(own);
 }
 
-static void start(dvi__stepper *self, const double *v)
-{
-  (void)v;
-  *gradient_known(self, self->memory) = 0;
-}
-
 /* ---- plain sweeps ---- */
 
 static dvi_status gradient(dvi__stepper *self, const dvi__state *state)
@@ -190,7 +184,6 @@ const dvi__method dvi__verlet = {
     .uses = DVI__CONSTANT_MASS | DVI__POTENTIAL,
     .create = create,
     .destroy = destroy,
-    .start = start,
     .step = step,
     .pass = pass,
     .traffic = traffic,

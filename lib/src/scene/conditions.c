@@ -79,10 +79,11 @@ static bool note_names(dvi__context *c, const dvi__expression *e)
 /* a where the condition holds, b elsewhere, number by number. */
 static dvi__value choice(dvi__context *c, const dvi__expression *e, dvi__node holds, dvi__value a, dvi__value b)
 {
-  char first[48], second[48];
-  if (!dvi__same_shape(a.shape, b.shape))
+  if (!dvi__same_shape(a.shape, b.shape)) {
+    char first[48], second[48];
     return dvi__refused(dvi__refuse(c, e->span, "the two sides of if are %s and %s", dvi__shape_text(a.shape, first, sizeof first),
                                     dvi__shape_text(b.shape, second, sizeof second)));
+  }
   if (a.shape.rank == 0) return dvi__number_value(dvi__choice(c->graph, holds, a.one, b.one));
   dvi__value result = dvi__value_make(c, a.shape.rank, a.shape.rows, a.shape.columns);
   for (int i = 0; !dvi__failed(result) && i < dvi__value_size(a); i++)

@@ -219,10 +219,11 @@ static void try_deciders(const dvi_scene *scene, line *l, const char *part, cons
 
 static void try_kernel(const dvi_scene *scene, const dvi__kernel *kernel, found *worst)
 {
-  int count, any = 0;
+  int count;
   char *part = dvi__parts(kernel->graph, 1, &kernel->root, &count), *moves = dvi__heap_take((size_t)kernel->root + 1, 1);
   double *inputs = dvi__heap_take(3 * (size_t)kernel->input_count + 1, sizeof *inputs);
   if (part != NULL && moves != NULL && inputs != NULL) {
+    int any = 0;
     dvi__mark_moving(kernel, count, moves);
     for (int n = 0; n < count && !any; n++) any = decides(kernel->graph, part, moves, n);
     line l = {kernel, -1, inputs, inputs + kernel->input_count, inputs + (ptrdiff_t)2 * kernel->input_count, &worst->work};

@@ -70,7 +70,7 @@ static void where(int degree, const double *condition, const double *b, double *
   if (condition[0] > 0.0)
     shift(degree, 0.0, 1.0, b, to);
   else
-    fill(degree, condition[0] <= 0.0 ? 0.0 : condition[0], to);
+    fill(degree, isnan(condition[0]) ? condition[0] : 0.0, to);
 }
 
 /* |a|, which has no series where a passes through 0. */

@@ -16,6 +16,11 @@ static const double first_part = 1.0 / 16, least_part = 1.0 / DVI__BRANCH_PARTS;
  * Elsewhere, and where the Jacobian is not exact, solutions have to be closer to their guesses. */
 static const double contraction = 0.5, at_first = 0.4, closer = 0.1;
 
+/* Equations that are so nearly linear between a guess and its solution, group by group, have no other
+ * solution near, whatever the distance: Newton's method needs 0.5 for that (Kantorovich; Deuflhard
+ * 2004, sec. 2.1). */
+static const double straight = 1e-3;
+
 /* Of smaller changes of the numbers that are added nothing is known. */
 static const double rounding = 1e-9;
 
@@ -56,10 +61,10 @@ static void extrapolate(const history *past, size_t unknowns, double part, doubl
 }
 
 /* Unknowns with other units, and of small parts of a system, count as much as large ones. */
-static double distance(const dvi__branch *branch, const history *past, size_t unknowns, double part, const double *guess,
+static double distance(const dvi__branch *branch, const dvi__solver *solver, const history *past, double part, const double *guess,
                        const double *x)
 {
-  const size_t group = branch->group > 0 ? (size_t)branch->group : 1;
+  const size_t unknowns = (size_t)solver->equations.unknowns, group = (size_t)solver->equations.group;
   const double least = rounding * fmax(branch->size, dvi__largest(unknowns, x));
   double worst = 0;
   if (branch->distance != NULL) return branch->distance(branch->of, guess, x);
@@ -76,11 +81,13 @@ static double distance(const dvi__branch *branch, const history *past, size_t un
 }
 
 /* Of a motion that begins at rest the first guesses are no measure. */
-static int is_near(const dvi__branch *branch, const history *past, size_t unknowns, double part, const double *guess,
+static int is_near(const dvi__branch *branch, const dvi__solver *solver, const history *past, double part, const double *guess,
                    const double *x, const dvi__solve_report *report)
 {
+  const size_t unknowns = (size_t)solver->equations.unknowns;
   const int measurable = branch->distance != NULL || past->solved >= 2;
-  const double away = measurable ? distance(branch, past, unknowns, part, guess, x) : 0;
+  if (branch->distance == NULL && report->bend <= straight) return 1;
+  const double away = measurable ? distance(branch, solver, past, part, guess, x) : 0;
   const int contracts = report->contraction <= (measurable ? contraction : at_first) ||
                         report->first <= negligible * dvi__largest(unknowns, x);
   const double near = contracts ? branch->near : closer * branch->near;
@@ -103,7 +110,7 @@ static dvi_status solve_at(const dvi__branch *branch, dvi__solver *solver, const
   DVI_TRY(guess_at(branch, past, unknowns, part, guess));
   memcpy(x, guess, unknowns * sizeof *x);
   DVI_TRY(dvi__solve(solver, DVI__NEWTON, branch->size, 0, 0, x, report));
-  if (is_near(branch, past, unknowns, part, guess, x, report)) return DVI_OK;
+  if (is_near(branch, solver, past, part, guess, x, report)) return DVI_OK;
   return dvi__fail(DVI_NOT_CONVERGED, "the next solution is not near");
 }
 
@@ -151,8 +158,13 @@ dvi_status dvi__branch_follow(const dvi__branch *branch, dvi__solver *solver, do
  * seldom less than a tenth of themselves away from the guess. */
 int dvi__branch_is_sure(const dvi__solve_report *report, int unknowns, const double *x)
 {
-  if (report->iterations <= 4) return 1;
+  if (report->bend <= straight) return 1;
   return report->contraction <= 0.05 && report->first <= 0.01 * dvi__largest((size_t)unknowns, x);
+}
+
+int dvi__branch_is_straight(const dvi__solve_report *report)
+{
+  return report->bend <= 0.05;
 }
 
 void dvi__branch_note(dvi_status status, dvi__branch_failure *failure)

@@ -26,7 +26,6 @@ typedef struct dvi__branch {
   /* How far a solution is from its guess; NULL: as a part of how far its group has come, the worst. */
   double (*distance)(void *of, const double *guess, const double *x);
   double near;   /* a solution on the branch is no farther from an extrapolated guess */
-  int group;     /* so many unknowns in a row have one unit, and are measured together; 0: 1 */
   int parts;     /* the step is followed in at least so many parts; 0: 1 */
   int signs;     /* along the branch the determinant of the Jacobian changes its sign at folds alone */
   int from_zero; /* x is 0 at a step of length 0: the extrapolation begins there */
@@ -50,6 +49,9 @@ dvi_status dvi__branch_follow(const dvi__branch *branch, dvi__solver *solver, do
 
 /* Whether Newton's method began so near its solution x [unknowns] that it can be no other one. */
 int dvi__branch_is_sure(const dvi__solve_report *report, int unknowns, const double *x);
+
+/* Whether the equations were nearly linear from the guess to the solution, group by group. */
+int dvi__branch_is_straight(const dvi__solve_report *report);
 
 /* What the solution of the whole step failed by, before its branch was followed. */
 typedef struct dvi__branch_failure {

@@ -69,8 +69,7 @@ dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__so
     report->row = dvi__largest((size_t)s->equations.unknowns, s->residual);
     dvi__linear_solve(s->linear, s->residual);
     dvi__correct(s->equations.unknowns, s->residual, x, &report->correction, &whole);
-    if (report->iterations == 1) report->first = report->correction;
-    if (report->iterations == 2) report->contraction = report->correction / report->first;
+    dvi__solver_note(s, x, report);
     const dvi__progress progress = dvi__judge(report->correction, &trail, &pace, whole, size);
     const double ratio = dvi__ratio(report->correction, &trail), next = fresh ? ratio : ratio * ratio;
     if (progress != DVI__STALLED && !converged && is_unseen(s, next, report->correction, whole, x)) return DVI_OK;

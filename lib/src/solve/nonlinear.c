@@ -6,6 +6,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "num/finite.h"
 #include "solve/solver_struct.h"
 
 enum { MOST_FIXED_POINT_ITERATIONS = 60, MOST_PATIENT_ITERATIONS = 1000 };
@@ -43,6 +44,34 @@ dvi_status dvi__solver_take_jacobian(dvi__solver *solver, const double *values)
   return status;
 }
 
+/* Of smaller corrections, relative to the unknowns, rounding is a large part. */
+static const double rounding = 1e-9;
+
+/* The worst ratio of two corrections, group by group. */
+static double bend_of(const dvi__solver *solver, const double *x)
+{
+  const int unknowns = solver->equations.unknowns, group = solver->equations.group;
+  double worst = 0;
+  for (int first = 0; first < unknowns; first += group) {
+    const size_t count = (size_t)(first + group < unknowns ? group : unknowns - first);
+    const double now = dvi__largest(count, solver->residual + first);
+    const double before = fmax(dvi__largest(count, solver->before + first), rounding * dvi__largest(count, x + first));
+    if (now > worst * before) worst = before > 0 ? now / before : HUGE_VAL;
+  }
+  return worst;
+}
+
+void dvi__solver_note(const dvi__solver *solver, const double *x, dvi__solve_report *report)
+{
+  if (report->iterations == 1) {
+    report->first = report->correction;
+    memcpy(solver->before, solver->residual, (size_t)solver->equations.unknowns * sizeof(double));
+  }
+  if (report->iterations != 2) return;
+  report->contraction = report->correction / report->first;
+  report->bend = bend_of(solver, x);
+}
+
 /* Each term of a row is itself the end of a few products and sums. */
 static const double floor_of_row = 4 * DBL_EPSILON;
 
@@ -65,11 +94,14 @@ dvi_status dvi__solver_at_floor(dvi__solver *solver, const double *x, int *at_fl
 static dvi_status fill(dvi__solver *solver)
 {
   const dvi__pattern *pattern = solver->equations.pattern;
-  solver->residual = DVI_NEW(double, solver->equations.unknowns);
+  const size_t unknowns = (size_t)solver->equations.unknowns;
+  if (solver->equations.group == 0) solver->equations.group = 1;
+  solver->residual = DVI_NEW(double, unknowns);
+  solver->before = DVI_NEW(double, unknowns);
   solver->values = DVI_NEW(double, dvi__pattern_entries(pattern));
-  if (solver->equations.magnitudes != NULL) solver->magnitude = DVI_NEW(double, solver->equations.unknowns);
-  if (solver->residual == NULL || solver->values == NULL || (solver->equations.magnitudes != NULL && solver->magnitude == NULL))
-    return dvi__fail(DVI_NO_MEMORY, "solver: no memory for %d unknowns", solver->equations.unknowns);
+  if (solver->equations.magnitudes != NULL) solver->magnitude = DVI_NEW(double, unknowns);
+  if (!solver->residual || !solver->before || !solver->values || (solver->equations.magnitudes != NULL && !solver->magnitude))
+    return dvi__fail(DVI_NO_MEMORY, "solver: no memory for %zu unknowns", unknowns);
   const int border = solver->equations.border;
   DVI_TRY(border > 0 ? dvi__linear_create_bordered(pattern, border, solver->counters, &solver->linear)
                      : dvi__linear_create(pattern, solver->equations.linear, solver->counters, &solver->linear));
@@ -96,6 +128,7 @@ void dvi__solver_destroy(dvi__solver **solver)
   dvi__kinsol_destroy(&s->kinsol);
   dvi__linear_destroy(&s->linear);
   dvi__release(s->residual);
+  dvi__release(s->before);
   dvi__release(s->magnitude);
   dvi__release(s->values);
   dvi__release(s);
@@ -190,6 +223,7 @@ static dvi_status simplified(dvi__solver *s, double size, int wary, double *x, d
     DVI_TRY(dvi__solver_residual(s, x, s->residual));
     equations->frozen(equations->of, s->residual);
     dvi__correct(equations->unknowns, s->residual, x, &report->correction, &whole);
+    dvi__solver_note(s, x, report);
     const dvi__progress progress = dvi__judge(report->correction, &trail, &frozen, whole, size);
     int converged = progress == DVI__CONVERGED;
     if (progress == DVI__STALLED) DVI_TRY(dvi__solver_at_floor(s, x, &converged));

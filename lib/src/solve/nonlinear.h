@@ -12,6 +12,7 @@
 
 typedef struct dvi__equations {
   int unknowns;
+  int group;                   /* so many unknowns in a row have one unit, and are measured together; 0: 1 */
   const dvi__pattern *pattern; /* of the Jacobian; outlives the solver */
   dvi__linear_kind linear;     /* that factors it; left out: AUTO, which takes the diagonal's entries for the largest ones */
   int border; /* so many of the last rows and columns may be full: sparse all the same; 0: none, `linear` says what is done */
@@ -42,8 +43,9 @@ typedef enum dvi__rung { DVI__FIXED_POINT, DVI__SIMPLIFIED, DVI__NEWTON, DVI__KI
 /* How a solve went; on failure, for the sentence. */
 typedef struct dvi__solve_report {
   int iterations;
-  double first;       /* largest change of an unknown in the first iteration of Newton's method */
+  double first;       /* largest change of an unknown in the first iteration of Newton's methods */
   double contraction; /* that of the second one over it, 0: there was none */
+  double bend;        /* the same, group by group of the unknowns: the worst; it tells how nonlinear each part is */
   double correction;  /* largest change of an unknown in the last iteration */
   double residual;    /* KINSOL's: largest |R_i| / row_scale_i at the last point */
   double row;         /* Newton's method's: largest |R_i| there */

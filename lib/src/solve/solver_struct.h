@@ -10,6 +10,7 @@ struct dvi__solver {
   dvi__equations equations;
   dvi_counters *counters;
   double *residual;  /* [unknowns]; then the correction */
+  double *before;    /* [unknowns] the first correction */
   double *magnitude; /* [unknowns] of what is summed in the rows; NULL: not known */
   double *values;    /* of the Jacobian */
   int factored;      /* these values are, */
@@ -26,6 +27,9 @@ dvi_status dvi__solver_factor(dvi__solver *solver, const double *x);
 
 /* Whether every row at x is 0 to a rounding of what is summed in it and of the unknowns, as the Jacobian in use sees them. */
 dvi_status dvi__solver_at_floor(dvi__solver *solver, const double *x, int *at_floor);
+
+/* Report on the first two corrections of an iteration, each after it was made. */
+void dvi__solver_note(const dvi__solver *solver, const double *x, dvi__solve_report *report);
 
 /* Newton's method alone (newton.c). */
 dvi_status dvi__newton(dvi__solver *solver, double size, int wary, double *x, dvi__solve_report *report);

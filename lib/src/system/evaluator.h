@@ -104,7 +104,8 @@ int dvi__mass_is_positive(const dvi__evaluator *e);
 dvi_status dvi__invariant(dvi__evaluator *e, double t, const double *q, const double *v, const double *p, int i, double *value);
 dvi_status dvi__invariants(dvi__evaluator *e, double t, const double *q, const double *v, const double *p, double *value);
 
-/* A state at a time; v [n]: room, with a guess of the velocity for general Lagrangians. */
+/* A state at a time; v [n]: room, with a guess of the velocity for general Lagrangians; of all
+ * Lagrangians it becomes the velocity. */
 typedef struct dvi__instant {
   double t;
   const double *q, *p;
@@ -117,9 +118,10 @@ typedef struct dvi__instant {
 dvi_status dvi__energy_change(dvi__evaluator *e, const dvi__instant *before, const dvi__instant *after, double *change,
                               double *exchanged);
 
-/* How far a step leads from where the mean of the rates at its ends does, as a part of the larger
- * one's way: of all coordinates, and of all momenta of a Lagrangian, the worst; (h omega)^2/12 for well
- * resolved motions. Fills v; forces [2n] is room. Not with factors. */
+/* After dvi__energy_change of the same states, whose v it left there: how far the step leads from
+ * where the mean of the rates at its ends does, as a part of the larger one's way: of all coordinates,
+ * and of all momenta of a Lagrangian, the worst; (h omega)^2/12 for well resolved motions.
+ * forces [2 n]: room. */
 dvi_status dvi__motion_defect(dvi__evaluator *e, const dvi__instant *before, const dvi__instant *after, double *forces,
                               double *defect);
 

@@ -62,6 +62,11 @@ dvi_status dvi__invariants(dvi__evaluator *e, double t, const double *q, const d
 /* Of a difference of energies no more is known than a rounding of what they are summed from. */
 static const double rounding = 64 * DBL_EPSILON;
 
+static int has_kinetic(const dvi_system *system)
+{
+  return !(system->terms & (DVI__ONE_FORM | DVI__PHASE_SPACE));
+}
+
 static dvi_status kinetic(dvi__evaluator *e, const dvi__instant *at, double *E, double *T, double *size)
 {
   double pv = 0;
@@ -121,11 +126,11 @@ static dvi_status change_of_hamiltonian(dvi__evaluator *e, const dvi__instant *b
 dvi_status dvi__energy_change(dvi__evaluator *e, const dvi__instant *before, const dvi__instant *after, double *change,
                               double *exchanged)
 {
-  const int has_kinetic = !(e->system->terms & (DVI__ONE_FORM | DVI__PHASE_SPACE));
-  return (has_kinetic ? change_of_lagrangian : change_of_hamiltonian)(e, before, after, change, exchanged);
+  return (has_kinetic(e->system) ? change_of_lagrangian : change_of_hamiltonian)(e, before, after, change, exchanged);
 }
 
-/* Rates r and what they move, x, of one kind; a rate that is a rounding of the others is no measure, nor is one that moves little of an x whose size counts. */
+/* Rates r and what they move, x, of one kind. A rate that is a rounding of the others is no measure,
+ * nor is one that moves little of an x whose size counts, as a momentum's does. */
 static double defect_of(size_t n, double h, int sized, const double *x0, const double *x1, const double *r0, const double *r1)
 {
   double worst = 0, largest = 0;
@@ -144,11 +149,14 @@ dvi_status dvi__motion_defect(dvi__evaluator *e, const dvi__instant *before, con
 {
   const size_t n = (size_t)e->system->n;
   const double h = after->t - before->t;
+  const int has_forces = has_kinetic(e->system);
   double *f0 = forces, *f1 = forces + n;
-  DVI_TRY(dvi__legendre_inverse(e, before->t, before->q, before->p, before->v));
-  DVI_TRY(dvi__legendre_inverse(e, after->t, after->q, after->p, after->v));
+  if (!has_forces) {
+    DVI_TRY(dvi__legendre_inverse(e, before->t, before->q, before->p, before->v));
+    DVI_TRY(dvi__legendre_inverse(e, after->t, after->q, after->p, after->v));
+  }
   *defect = defect_of(n, h, 0, before->q, after->q, before->v, after->v);
-  if (e->system->terms & (DVI__ONE_FORM | DVI__PHASE_SPACE)) return DVI_OK;
+  if (!has_forces) return DVI_OK;
   DVI_TRY(dvi__state_forces(e, before->t, before->q, before->v, f0));
   DVI_TRY(dvi__state_forces(e, after->t, after->q, after->v, f1));
   *defect = fmax(*defect, defect_of(n, h, 1, before->p, after->p, f0, f1));
