@@ -70,12 +70,13 @@ void dvi__attempt_clear(dvi_integrator *I)
   dvi__release(I->first);
 }
 
+/* Whether this step's motion is not asked. */
 static int is_spared(const dvi_integrator *I)
 {
   double *spared = I->stepper.memory + I->learned + SPARED;
-  I->first->by_motion = *spared == 0;
-  if (*spared > 0) --*spared;
-  return !I->first->by_motion;
+  if (*spared == 0) return 0;
+  --*spared;
+  return 1;
 }
 
 /* Whether energy or motion change by too much from `now` to `next`; also where it cannot be told. */
@@ -87,9 +88,10 @@ static int state_jumps(dvi_integrator *I)
   dvi__guess_velocity(I->system->n, I->next.q, I->now.q, I->last_v, I->next.t - I->now.t, I->v);
   if (dvi__energy_change(I->evaluator, &before, &after, &change, &exchanged) != DVI_OK) return 1;
   if (!(change <= doubted_change * exchanged)) return 1;
-  if (I->stepper.doubt == DVI__LINEAR) return 0;
+  if (I->stepper.doubt == DVI__LINEAR || is_spared(I)) return 0;
   if (dvi__motion_defect(I->evaluator, &before, &after, I->first->forces, &defect) != DVI_OK) return 1;
-  return defect > doubted_defect && !is_spared(I);
+  I->first->by_motion = defect > doubted_defect;
+  return I->first->by_motion;
 }
 
 static int is_doubted(dvi_integrator *I)
