@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "action/between.h"
+#include "step/element/between.h"
 #include "support/suite.h"
 #include "support/systems.h"
 

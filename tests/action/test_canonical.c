@@ -1,6 +1,6 @@
 /* labels: jacobian */
 /* A step by a discrete Hamiltonian: its Jacobian, and the functions that generate it. */
-#include "action/canonical.h"
+#include "step/hamiltonian/canonical.h"
 
 #include <math.h>
 #include <string.h>

@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "action/action.h"
-#include "action/decoupled.h"
+#include "step/element/action.h"
+#include "step/element/decoupled.h"
 #include "core/memory.h"
 #include "support/suite.h"
 #include "support/systems.h"

@@ -5,8 +5,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "action/action.h"
-#include "action/action_struct.h"
+#include "step/element/action.h"
+#include "step/element/action_struct.h"
 #include "support/suite.h"
 #include "support/systems.h"
 

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "action/energy.h"
+#include "step/element/energy.h"
 #include "support/suite.h"
 #include "support/systems.h"
 

@@ -1,6 +1,6 @@
 /* labels: reference */
 /* What Chebyshev polynomials leave out, against its bound: functions in long double. */
-#include "action/expansion.h"
+#include "step/split/expansion.h"
 
 #include <float.h>
 #include <math.h>

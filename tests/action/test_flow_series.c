@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "action/flow_series.h"
+#include "step/onestep/flow_series.h"
 #include "core/memory.h"
 #include "support/runs.h"
 #include "support/suite.h"

@@ -4,8 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "action/action_struct.h"
-#include "action/sweep.h"
+#include "step/element/action_struct.h"
+#include "step/element/sweep.h"
 #include "support/suite.h"
 #include "support/systems.h"
 

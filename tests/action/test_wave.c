@@ -6,9 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "action/wave.h"
-#include "method/integrator_struct.h"
-#include "num/lanes.h"
+#include "step/split/wave.h"
+#include "integrator/integrator_struct.h"
+#include "num/simd/lanes.h"
 #include "support/files.h"
 #include "support/runs.h"
 #include "support/suite.h"

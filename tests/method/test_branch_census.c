@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "method/integrator_struct.h"
+#include "integrator/integrator_struct.h"
 #include "support/runs.h"
 #include "support/suite.h"
 

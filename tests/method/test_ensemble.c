@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "num/lanes.h"
+#include "num/simd/lanes.h"
 #include "support/heap.h"
 #include "support/runs.h"
 #include "support/suite.h"

@@ -12,7 +12,7 @@
 #include "support/bodies.h"
 #include "support/runs.h"
 #include "support/suite.h"
-#include "system/charted.h"
+#include "system/chart/charted.h"
 
 static body of;
 
@@ -204,7 +204,7 @@ START_TEST(free_bodies_keep_all_of_their_momenta)
 }
 END_TEST
 
-/* With weight: that about the vertical. Steps so long that a centre that does not move (system/centring.h) loses 1e-6. */
+/* With weight: that about the vertical. Steps so long that a centre that does not move (system/chart/centring.h) loses 1e-6. */
 START_TEST(vertical_momentum_is_kept)
 {
   static const int kinds[] = {PENDULUM_3D, HEAVY_TOP, DIRECTIONS};

@@ -2,7 +2,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "action/wave.h"
+#include "step/split/wave.h"
 #include "support/heap.h"
 #include "support/runs.h"
 #include "support/suite.h"

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "action/flow_series.h"
+#include "step/onestep/flow_series.h"
 #include "support/quad.h"
 #include "support/runs.h"
 #include "support/suite.h"

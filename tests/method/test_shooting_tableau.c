@@ -6,7 +6,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "action/runge_kutta.h"
+#include "step/onestep/runge_kutta.h"
 #include "support/runs.h"
 #include "support/suite.h"
 #include "support/systems.h"

@@ -5,7 +5,7 @@
 #include <limits.h>
 #include <stdlib.h>
 
-#include "action/joint.h"
+#include "step/joint.h"
 #include "support/runs.h"
 #include "support/suite.h"
 

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <time.h>
 
-#include "action/action.h"
+#include "step/element/action.h"
 #include "support/heap.h"
 #include "support/runs.h"
 #include "support/suite.h"

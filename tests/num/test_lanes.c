@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "num/compensated.h"
-#include "num/lanes.h"
+#include "num/simd/lanes.h"
 #include "support/runs.h"
 #include "support/suite.h"
 

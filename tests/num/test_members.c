@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "num/lanes.h"
-#include "num/members.h"
+#include "num/simd/lanes.h"
+#include "num/simd/members.h"
 #include "support/suite.h"
 
 /* Widths from 1 to 9, 22 and 35: every remainder of a vector, and many vectors. */

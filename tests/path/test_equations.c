@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "path/path_struct.h"
+#include "boundary/path_struct.h"
 #include "solve/solver_struct.h"
 #include "support/runs.h"
 #include "support/suite.h"

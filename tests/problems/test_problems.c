@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "problem.h"
-#include "system/evaluator.h"
+#include "system/evaluate/evaluator.h"
 #include "support/suite.h"
 
 /* Differences of the value are good to about 1e-10 at these points; a wrong term shows at 1. */

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "scene/emit.h"
+#include "scene/emit/emit.h"
 #include "support/files.h"
 #include "support/suite.h"
 

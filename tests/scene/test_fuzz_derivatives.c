@@ -8,8 +8,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "scene/function.h"
-#include "scene/graph_make.h"
+#include "scene/function/function.h"
+#include "scene/expr/graph_make.h"
 #include "scene/heap.h"
 #include "support/fuzz.h"
 #include "support/quad_graph.h"

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "scene/syntax.h"
+#include "scene/text/syntax.h"
 #include "support/fuzz.h"
 #include "support/scene_text.h"
 #include "support/suite.h"

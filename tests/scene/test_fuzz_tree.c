@@ -2,8 +2,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "scene/tree.h"
-#include "scene/utf8.h"
+#include "scene/text/tree.h"
+#include "scene/text/utf8.h"
 #include "support/fuzz.h"
 #include "support/scene_text.h"
 #include "support/suite.h"

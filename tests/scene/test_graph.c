@@ -2,7 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "scene/graph.h"
+#include "scene/expr/graph.h"
 #include "scene/heap.h"
 #include "support/suite.h"
 

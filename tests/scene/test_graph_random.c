@@ -8,8 +8,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "scene/graph.h"
-#include "scene/graph_make.h"
+#include "scene/expr/graph.h"
+#include "scene/expr/graph_make.h"
 #include "scene/heap.h"
 #include "support/quad_graph.h"
 #include "support/suite.h"

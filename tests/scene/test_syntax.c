@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "scene/syntax.h"
+#include "scene/text/syntax.h"
 #include "support/scene_text.h"
 #include "support/suite.h"
 

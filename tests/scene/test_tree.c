@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "scene/tree.h"
+#include "scene/text/tree.h"
 #include "support/scene_text.h"
 #include "support/suite.h"
 

@@ -3,7 +3,7 @@
 #include <float.h>
 #include <math.h>
 
-#include "num/lanes.h"
+#include "num/simd/lanes.h"
 #include "solve/progress.h"
 #include "support/suite.h"
 

@@ -1,7 +1,7 @@
 #include "support/scene_text.h"
 
 #include "scene/heap.h"
-#include "scene/utf8.h"
+#include "scene/text/utf8.h"
 #include "support/suite.h"
 
 #include <string.h>

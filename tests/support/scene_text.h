@@ -2,7 +2,7 @@
 #ifndef TESTS_SUPPORT_SCENE_TEXT_H
 #define TESTS_SUPPORT_SCENE_TEXT_H
 #include "scene/arena.h"
-#include "scene/complaint.h"
+#include "scene/text/complaint.h"
 
 /* Its address must not change while it is open. */
 typedef struct scene_text {

@@ -5,7 +5,7 @@
 #include "core/memory.h"
 #include "support/suite.h"
 #include "support/systems.h"
-#include "system/evaluator.h"
+#include "system/evaluate/evaluator.h"
 
 enum { MOST = 500 };
 

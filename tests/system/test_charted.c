@@ -5,12 +5,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "action/action.h"
+#include "step/element/action.h"
 #include "core/memory.h"
 #include "support/bodies.h"
 #include "support/runs.h"
 #include "support/suite.h"
-#include "system/charted_struct.h"
+#include "system/chart/charted_struct.h"
 
 static const dvi__action_space space = {DVI_CHEBYSHEV, 3, DVI_GAUSS, 4};
 

@@ -4,7 +4,7 @@
 #include "core/memory.h"
 #include "support/suite.h"
 #include "support/systems.h"
-#include "system/evaluator.h"
+#include "system/evaluate/evaluator.h"
 
 enum { POINTS = 5, QQ = 3 * SITES - 2, QV = 2 * SITES - 1, VV = 3 * SITES - 2 };
 
@@ -183,7 +183,7 @@ START_TEST(a_constant_mass_has_its_own_derivatives)
 }
 END_TEST
 
-/* The tolerances are those that system/difference.h states; these functions vary over lengths of about 1, their steps as well. */
+/* The tolerances are those that system/check/difference.h states; these functions vary over lengths of about 1, their steps as well. */
 START_TEST(what_is_missing_is_differenced_to_the_stated_accuracy)
 {
   static evaluation exact, differenced;

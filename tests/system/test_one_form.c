@@ -5,7 +5,7 @@
 
 #include "support/runs.h"
 #include "support/suite.h"
-#include "system/evaluator.h"
+#include "system/evaluate/evaluator.h"
 
 /* alpha = (-x^2 y, lie + x y^2 + z, w, 0) of n coordinates, or 0 if `flat`; a wrong gradient where `lie` is not 0. */
 typedef struct form {

@@ -2,7 +2,7 @@
 /* Potentials that are declared fast or quadratic: the parts of a system, and what the check finds. */
 #include "support/suite.h"
 #include "support/systems.h"
-#include "system/evaluator.h"
+#include "system/evaluate/evaluator.h"
 #include "system/part.h"
 
 /* V = sum of stiffness q_i^2/2 + bend q_i^3 + swing t q_i^2/2 + t q_i. */

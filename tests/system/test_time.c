@@ -4,7 +4,7 @@
 
 #include "support/suite.h"
 #include "support/systems.h"
-#include "system/evaluator.h"
+#include "system/evaluate/evaluator.h"
 
 /* Rotors and wells depend on time, springs do not. */
 typedef struct scene {

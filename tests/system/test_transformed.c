@@ -4,7 +4,7 @@
 
 #include "support/runs.h"
 #include "support/suite.h"
-#include "system/transformed.h"
+#include "system/rescale/transformed.h"
 
 /* A positive function of all coordinates, with and without derivatives of its own. */
 static int bowl(double t, const double *q, double *g, void *user)

@@ -7,7 +7,7 @@
 #include "group/stumpff.h"
 #include "group/vector.h"
 #include "num/compensated.h"
-#include "num/fused.h"
+#include "num/simd/fused.h"
 
 /* tan(x)/x - 1 = x^2 (c_2 - c_3)/c_0 at x = |f|/2 is small: its rounding, the same in all steps of a steady turn, is too. At half a turn cos(x) may be rounded to 0.
  * An angle whose square overflows has no digits: no turn then. */

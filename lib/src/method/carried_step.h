@@ -1,7 +1,7 @@
-/* One element of the action (action/action.h) as a step for a degenerate Lagrangian: p is carried from step to step, and off alpha(q). */
+/* One element of the action (step/element/action.h) as a step for a degenerate Lagrangian: p is carried from step to step, and off alpha(q). */
 #ifndef DVI_METHOD_CARRIED_STEP_H
 #define DVI_METHOD_CARRIED_STEP_H
-#include "action/action.h"
+#include "step/element/action.h"
 #include "method/one_step.h"
 
 /* Make memory and own; order and symmetric are the method's. For a system with a one-form. `sign`: what is off p = alpha(q) has the multipliers

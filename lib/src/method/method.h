@@ -6,12 +6,12 @@
 #include <dvi/shapes.h>
 #include <stdint.h>
 
-#include "system/evaluator.h"
+#include "system/evaluate/evaluator.h"
 
 /* The state that a step advances. Sums are compensated: what a carry holds, its number is too large by. */
 typedef struct dvi__state {
   double t, t_carry;
-  double density;                    /* step control's z (method/control.c) */
+  double density;                    /* step control's z (integrator/control.c) */
   int side;                          /* the driver's, of degenerate systems: dvi__two_form_side or dvi__dirac_side; 0: not known */
   double *q, *p, *q_carry, *p_carry; /* [n] */
 } dvi__state;

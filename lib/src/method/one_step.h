@@ -1,7 +1,7 @@
 /* A step by the stationarity conditions of a kind of step that is not one element of the action (element_step.h has those): the vectors, the guess, the
  * solution, the new state and what is remembered for the next guess.
  *
- * The kind (action/partitioned.h and its neighbours) has the equations. To add one: `place`, DVI__STEP_KIND(foo, place, explain), a step of four lines
+ * The kind (step/degenerate/partitioned.h and its neighbours) has the equations. To add one: `place`, DVI__STEP_KIND(foo, place, explain), a step of four lines
  * (darboux_step.c), and the operations below in the methods' initialiser. */
 #ifndef DVI_METHOD_ONE_STEP_H
 #define DVI_METHOD_ONE_STEP_H

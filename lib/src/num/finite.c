@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "num/lanes.h"
+#include "num/simd/lanes.h"
 
 ptrdiff_t dvi__first_not_finite(size_t count, const double *x)
 {

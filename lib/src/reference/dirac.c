@@ -7,7 +7,7 @@
  * of index 2, with lambda in neither the error test nor that of the iteration's convergence. Its Jacobian dF/dy + c dF/dydot is written down, for IDA's
  * differences move lambda by what its tolerance says; that of the first has derivatives of lambda, and is differenced.
  * Source: Hindmarsh et al. 2005, ACM TOMS 31:363, sec. 2.3; Brenan, Campbell and Petzold 1996 (error tests at index 2). */
-#include "system/dirac.h"
+#include "system/evaluate/dirac.h"
 
 #include <string.h>
 #include <sunmatrix/sunmatrix_dense.h>

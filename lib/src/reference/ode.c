@@ -11,7 +11,7 @@
 
 #include "core/status.h"
 #include "reference/lift.h"
-#include "system/dirac.h"
+#include "system/evaluate/dirac.h"
 
 static int has_momenta(const dvi__reference_run *run)
 {

@@ -7,7 +7,7 @@
 #include <sundials/sundials_matrix.h>
 
 #include "solve/sundials_compat.h"
-#include "system/evaluator.h"
+#include "system/evaluate/evaluator.h"
 
 typedef struct dvi__reference_run {
   const dvi_system *system;

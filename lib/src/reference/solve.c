@@ -12,7 +12,7 @@
 #include "core/status.h"
 #include "num/finite.h"
 #include "reference/run.h"
-#include "system/dirac.h"
+#include "system/evaluate/dirac.h"
 #include "system/term.h"
 
 static const struct {

@@ -1,7 +1,7 @@
 /* The callbacks of a system's terms, on functions of a scene; `user` is a dvi__term. */
 #ifndef DVI_SCENE_CALLBACKS_H
 #define DVI_SCENE_CALLBACKS_H
-#include "scene/kernels.h"
+#include "scene/elaborate/kernels.h"
 
 /* Fill in a term: its callbacks, patterns and user pointer; rates only if the system depends on time. */
 bool dvi__make_potential(dvi_scene *scene, const char *name, dvi__term *term, dvi_potential *potential);

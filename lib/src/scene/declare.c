@@ -3,9 +3,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "scene/elaborate.h"
+#include "scene/elaborate/elaborate.h"
 #include "scene/sections.h"
-#include "scene/shape.h"
+#include "scene/elaborate/shape.h"
 
 enum { COORDINATES_MAX = 100000000 };
 

@@ -4,10 +4,10 @@
 #include <dvi/scene.h>
 #include <pthread.h>
 
-#include "scene/function.h"
+#include "scene/function/function.h"
 #include "scene/heap.h"
-#include "scene/names.h"
-#include "scene/tree.h"
+#include "scene/elaborate/names.h"
+#include "scene/text/tree.h"
 
 /* What a function is for: the motion; symmetries and invariants; events and constant masses, which the system does not evaluate. */
 typedef enum dvi__role { DVI__MOVES, DVI__WATCHES, DVI__STANDS_BESIDE } dvi__role;

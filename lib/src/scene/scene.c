@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "scene/callbacks.h"
-#include "scene/factors.h"
+#include "scene/elaborate/factors.h"
 #include "scene/heap.h"
 #include "scene/sections.h"
 #include "scene/start.h"

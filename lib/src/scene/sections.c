@@ -7,9 +7,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "scene/shape.h"
-#include "scene/slips.h"
-#include "scene/words.h"
+#include "scene/elaborate/shape.h"
+#include "scene/text/slips.h"
+#include "scene/text/words.h"
 
 /* ---- what readers share ---- */
 

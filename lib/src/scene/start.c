@@ -6,7 +6,7 @@
 #include "scene/callbacks.h"
 #include "scene/heap.h"
 #include "scene/sections.h"
-#include "scene/shape.h"
+#include "scene/elaborate/shape.h"
 #include "scene/start.h"
 
 /* What was given of q, v and p: a mark for every number. */

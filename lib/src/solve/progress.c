@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "num/finite.h"
-#include "num/lanes.h"
-#include "num/width.h"
+#include "num/simd/lanes.h"
+#include "num/simd/width.h"
 #include "solve/solver_struct.h"
 
 /* The iteration is at the floor when its own part of a correction is well below a rounding. That part counts although the unknowns are then right: the
@@ -21,7 +21,7 @@ static const double unseen = DBL_EPSILON / 2048;
 static const double hardly = 0.98;
 
 #define LOOPS "solve/progress_width.h"
-#include "num/each_width.h"
+#include "num/simd/each_width.h"
 
 dvi__progress dvi__judge(double correction, dvi__trail *trail, const dvi__pace *pace, double unknown, double size)
 {
@@ -61,7 +61,7 @@ LEVEL(baseline, , 2)
 LEVEL(avx2, __attribute__((target("avx2"))), 4)
 #endif
 
-/* In the order of num/lanes.c. gcc 12 takes comparisons of 8 numbers apart, one by one. */
+/* In the order of num/simd/lanes.c. gcc 12 takes comparisons of 8 numbers apart, one by one. */
 static judge_many *const levels[] = {
     judge_baseline,
 #ifdef __x86_64__

@@ -4,7 +4,7 @@
  *     q(tau) = q0 + sum_k psi_k(tau) Y_k,      psi_k(0) = 0,      psi_0(tau) = tau.
  *
  * Constants belong to the space: so q0 enters by a shift, the end is q0 + sum_k psi_k(1) Y_k, and the multiplier that ties it to the next step's start is p1, which
- * the rows of action/action.h have eliminated. A point need not lie on the path: psi_k there is what the quadrature makes of it. */
+ * the rows of step/element/action.h have eliminated. A point need not lie on the path: psi_k there is what the quadrature makes of it. */
 #ifndef DVI_SPACE_SHAPES_H
 #define DVI_SPACE_SHAPES_H
 

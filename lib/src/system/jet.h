@@ -6,7 +6,7 @@
 #define DVI_SYSTEM_JET_H
 #include <dvi/taylor.h>
 
-#include "system/evaluator.h"
+#include "system/evaluate/evaluator.h"
 
 /* Where the coefficients shall stand; NULL: not wanted. */
 typedef struct dvi__jets {

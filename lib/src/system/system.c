@@ -6,8 +6,8 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "system/dirac.h"
-#include "system/factor.h"
+#include "system/evaluate/dirac.h"
+#include "system/chart/factor.h"
 #include "system/gauge.h"
 #include "system/mass.h"
 #include "system/term.h"

@@ -3,8 +3,8 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/finite.h"
-#include "system/difference.h"
-#include "system/transformed.h"
+#include "system/check/difference.h"
+#include "system/rescale/transformed.h"
 
 dvi_status dvi__verdict(int returned, int entries, int count, const double *result, const char *name, const char *what,
                         const char *in)

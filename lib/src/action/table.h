@@ -1,9 +1,0 @@
-/* The tables of an action element: trial functions at the quadrature nodes and what follows from them. */
-#ifndef DVI_ACTION_TABLE_H
-#define DVI_ACTION_TABLE_H
-#include "action/action.h"
-
-/* Allocate and fill all tables of a->space. */
-dvi_status dvi__action_fill_tables(dvi__action *action);
-
-#endif

@@ -1,0 +1,495 @@
+/* The driver of one step: it owns the states, so that a failed step leaves everything as it was, for every method, in one place. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "integrator/attempt.h"
+#include "num/finite.h"
+#include "space/given.h"
+#include "system/evaluate/dirac.h"
+
+/* ---- create, destroy ---- */
+
+void dvi__state_lay_out(dvi__state *state, double **at, size_t n)
+{
+  double **const part[] = {&state->q, &state->p, &state->q_carry, &state->p_carry};
+  for (int i = 0; i < 4; i++, *at += n) *part[i] = *at;
+}
+
+static dvi_status allocate(dvi_integrator *I)
+{
+  const size_t n = (size_t)I->system->n;
+  dvi__attempt_extend(I);
+  double *at = I->numbers = DVI_NEW(double, 14 * n);
+  I->stepper.memory = DVI_NEW(double, I->stepper.memory_count);
+  I->memory_before = DVI_NEW(double, I->stepper.memory_count);
+  if (I->numbers == NULL || I->stepper.memory == NULL || I->memory_before == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "integrator: no memory for %zu coordinates", n);
+  dvi__state_lay_out(&I->now, &at, n);
+  dvi__state_lay_out(&I->last, &at, n);
+  dvi__state_lay_out(&I->next, &at, n);
+  I->v = at;
+  I->last_v = at + n;
+  DVI_TRY(dvi__attempt_allocate(I));
+  return dvi__evaluator_create(I->system, 1, DVI__STATES, &I->counters, &I->evaluator);
+}
+
+static dvi_status fill(dvi_integrator *I, const char *method, const dvi_shapes *shapes, const dvi_monitor *monitor,
+                       dvi__pacing pacing)
+{
+  if (shapes != NULL) I->shapes = dvi__shapes_copy(shapes);
+  if (shapes != NULL && I->shapes == NULL) return dvi__fail(DVI_NO_MEMORY, "integrator: no memory for the shapes %s", shapes->name);
+  if (monitor != NULL) DVI_TRY(dvi__pace_create(I->system, monitor, pacing, &I->counters, &I->pace));
+  DVI_TRY(dvi__stepper_create(dvi__pace_system(I->pace, I->system), method, I->shapes, &I->counters, &I->stepper));
+  return allocate(I);
+}
+
+dvi_status dvi__integrator_make(const dvi_system *system, const char *method, const dvi_shapes *shapes, const dvi_monitor *monitor,
+                                dvi__pacing pacing, dvi_integrator **integrator)
+{
+  if (integrator == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "integrator: no place for the result");
+  *integrator = NULL;
+  if (system == NULL || method == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "integrator: the system or the method is NULL");
+  const long before = dvi__allocation_count();
+  dvi_integrator *I = DVI_NEW(dvi_integrator, 1);
+  if (I == NULL) return dvi__fail(DVI_NO_MEMORY, "integrator: no memory");
+  I->system = system;
+  const dvi_status status = fill(I, method, shapes, monitor, pacing);
+  I->counters.allocations = dvi__allocation_count() - before;
+  if (status != DVI_OK) dvi_integrator_destroy(&I);
+  *integrator = I;
+  return status;
+}
+
+dvi_status dvi_integrator_create(const dvi_system *system, const char *method, dvi_integrator **integrator)
+{
+  return dvi__integrator_make(system, method, NULL, NULL, DVI__TRANSFORM, integrator);
+}
+
+void dvi_integrator_destroy(dvi_integrator **integrator)
+{
+  if (integrator == NULL || *integrator == NULL) return;
+  dvi_integrator *I = *integrator;
+  dvi__release(I->stepper.memory);
+  dvi__stepper_destroy(&I->stepper);
+  dvi__pace_destroy(&I->pace);
+  dvi__evaluator_destroy(&I->evaluator);
+  dvi__release(I->numbers);
+  dvi__release(I->memory_before);
+  dvi__attempt_clear(I);
+  dvi__release(I->shapes);
+  dvi__release(I);
+  *integrator = NULL;
+}
+
+/* ---- start ---- */
+
+static dvi_status check_start(const dvi_integrator *I, double t, const double *q, const double *second, char name)
+{
+  if (!isfinite(t)) return dvi__fail(DVI_NOT_FINITE, "the time is %g", t);
+  const ptrdiff_t in_q = dvi__first_not_finite((size_t)I->system->n, q);
+  const ptrdiff_t in_second = dvi__first_not_finite((size_t)I->system->nv, second);
+  if (in_q >= 0) return dvi__fail(DVI_NOT_FINITE, "the start's q[%td] = %g", in_q, q[in_q]);
+  if (in_second >= 0) return dvi__fail(DVI_NOT_FINITE, "the start's %c[%td] = %g", name, in_second, second[in_second]);
+  return dvi__state_check(I->evaluator, q, second);
+}
+
+/* The arguments may be the integrator's own. Until all is known to be good only `next` is written. */
+static dvi_status start(dvi_integrator *I, double t, const double *q, const double *v, const double *p)
+{
+  const size_t bytes = (size_t)I->system->n * sizeof(double), v_bytes = (size_t)I->system->nv * sizeof(double);
+  const double *w = I->pace != NULL ? I->last_v : v, *second = I->system->terms & DVI__PHASE_SPACE ? p : v;
+  double L, density = 0;
+  DVI_TRY(dvi__state_lagrangian(I->evaluator, t, q, second, &L));
+  DVI_TRY(dvi__state_forces(I->evaluator, t, q, second, I->next.p_carry));
+  if (I->pace != NULL) DVI_TRY(dvi__pace_start(I, t, q, v, p, I->last_v, &density));
+  memmove(I->now.q, q, bytes);
+  memmove(I->now.p, p, v_bytes);
+  memset(I->now.q_carry, 0, bytes);
+  memset(I->now.p_carry, 0, bytes);
+  memcpy(I->last.p, v, v_bytes);
+  I->now.t = t;
+  I->now.t_carry = 0;
+  I->now.density = density;
+  I->now.side = 0;
+  I->last_h = 0;
+  I->started = 1;
+  memset(I->stepper.memory, 0, I->stepper.memory_count * sizeof(double));
+  if (I->stepper.method->start != NULL) I->stepper.method->start(&I->stepper, w);
+  return DVI_OK;
+}
+
+static dvi_status verdict(const dvi_integrator *I, double t, dvi_status status)
+{
+  return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "%s: cannot start at t = %.6g", I->stepper.method->name, t);
+}
+
+/* Project a start in the integrator's own memory: onto p = alpha(q) by p, onto phi(q,p) = 0 by both; v [n] is zero. */
+static dvi_status project_start(dvi_integrator *I, double t, const double *v, const double **q, const double **p)
+{
+  const size_t n = (size_t)I->system->n;
+  memmove(I->next.p, *p, n * sizeof(double));
+  memmove(I->next.q, *q, n * sizeof(double));
+  *q = I->next.q;
+  *p = I->next.p;
+  if (I->system->terms & DVI__HAMILTONIAN) return dvi__dirac_project(I->evaluator, I->next.q);
+  return dvi__lagrangian_gradient(I->evaluator, 1, &t, *q, v, NULL, I->next.p);
+}
+
+static dvi_status constrain(dvi_integrator *I, double t, const double *v, int project, const double **q, const double **p)
+{
+  if (!(I->system->terms & (DVI__ONE_FORM | DVI__HAMILTONIAN))) return DVI_OK;
+  if (project) return project_start(I, t, v, q, p);
+  return I->system->terms & DVI__ONE_FORM ? dvi__form_constraint(I->evaluator, *q, *p)
+                                          : dvi__dirac_constraint(I->evaluator, *q, *p);
+}
+
+dvi_status dvi_integrator_start_with(dvi_integrator *I, double t, const double *q, const double *p,
+                                     const dvi_start_options *options)
+{
+  if (I == NULL || q == NULL || p == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "start: an argument is NULL");
+  double *v = I->next.q_carry;
+  memset(v, 0, (size_t)I->system->nv * sizeof(double));
+  dvi_status status = check_start(I, t, q, p, 'p');
+  if (status == DVI_OK) status = constrain(I, t, v, options != NULL && options->project, &q, &p);
+  if (status == DVI_OK) status = dvi__legendre_inverse(I->evaluator, t, q, p, v);
+  if (status == DVI_OK) status = start(I, t, q, v, p);
+  return verdict(I, t, status);
+}
+
+dvi_status dvi_integrator_start(dvi_integrator *I, double t, const double *q, const double *p)
+{
+  return dvi_integrator_start_with(I, t, q, p, NULL);
+}
+
+dvi_status dvi_integrator_start_velocity(dvi_integrator *I, double t, const double *q, const double *v)
+{
+  if (I == NULL || q == NULL || v == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "start: an argument is NULL");
+  double *p = I->next.p;
+  dvi_status status = check_start(I, t, q, v, 'v');
+  if (status == DVI_OK && I->system->terms & DVI__PHASE_SPACE)
+    status = dvi__fail(DVI_UNSUPPORTED, "the system declares a Hamiltonian; start with q and p");
+  if (status == DVI_OK) status = dvi__state_momentum(I->evaluator, t, q, v, p);
+  if (status == DVI_OK && dvi__first_not_finite((size_t)I->system->nv, p) >= 0)
+    status = dvi__fail(DVI_NOT_FINITE, "the momentum is not finite");
+  if (status == DVI_OK) status = dvi__legendre_regular(I->evaluator, t, q, v);
+  if (status == DVI_OK) status = start(I, t, q, v, p);
+  return verdict(I, t, status);
+}
+
+/* ---- step ---- */
+
+void dvi__state_copy(size_t n, const dvi__state *from, dvi__state *to)
+{
+  to->t = from->t;
+  to->t_carry = from->t_carry;
+  to->density = from->density;
+  to->side = from->side;
+  memcpy(to->q, from->q, 4 * n * sizeof(double)); /* q, p and both carries lie in a row */
+}
+
+static dvi_status check_state(const dvi_integrator *I)
+{
+  const size_t n = (size_t)I->system->n;
+  if (I->pace != NULL && I->next.t == I->now.t)
+    return dvi__fail(DVI_BAD_ARGUMENT, "monitor %s is so small that the step does not move the time", I->pace->name);
+  if (isfinite(I->next.t) && dvi__first_not_finite(2 * n, I->next.q) < 0) return DVI_OK;
+  return dvi__fail(DVI_NOT_FINITE, "the new state is not finite");
+}
+
+static dvi_status find_side(const dvi_integrator *I, dvi__state *state)
+{
+  if (I->system->terms & DVI__HAMILTONIAN) return dvi__dirac_side(I->evaluator, state->q, state->p, &state->side);
+  return dvi__two_form_side(I->evaluator, state->q, &state->side);
+}
+
+/* No trajectory goes through a point where the two-form, or the bracket matrix, is singular, but a step can go over it, and is on none then. */
+static dvi_status check_side(dvi_integrator *I)
+{
+  if (!(I->system->terms & (DVI__ONE_FORM | DVI__HAMILTONIAN))) return DVI_OK;
+  if (I->now.side == 0) DVI_TRY(find_side(I, &I->now));
+  DVI_TRY(find_side(I, &I->next));
+  if (I->next.side == I->now.side) return DVI_OK;
+  return dvi__fail(DVI_NOT_CONVERGED, "the step leads over a point where the %s is singular, beyond which no trajectory goes on",
+                   I->system->terms & DVI__HAMILTONIAN ? "constraints' bracket matrix" : "two-form of the one-form");
+}
+
+/* A step of the method that failed, with the reason if it is where the trajectory ends. `next` is spoilt already. */
+static dvi_status name_end(const dvi_integrator *I, double h, dvi_status status)
+{
+  char sentence[1024];
+  if (!(I->system->terms & DVI__ONE_FORM) || I->pace != NULL || (status < 0 && status != DVI_SINGULAR)) return status;
+  (void)snprintf(sentence, sizeof sentence, "%s", dvi_last_error());
+  const int ends = dvi__two_form_ends(I->evaluator, I->now.t, I->now.q, h, I->next.p, I->next.q);
+  return dvi__fail(status, "%s%s", sentence,
+                   ends ? "; the two-form of the one-form becomes singular within this step, and no trajectory goes on from there"
+                        : "");
+}
+
+static void accept(dvi_integrator *I, double h)
+{
+  const dvi__state oldest = I->last;
+  I->last = I->now;
+  I->now = I->next;
+  I->next = oldest;
+  I->last_h_before = I->last_h;
+  if (I->pace != NULL) I->pace->expanded = 0;
+  /* What a transform makes of h, or the control, is known by the clock alone; the carries tell it to the last digit. */
+  I->last_h = I->pace != NULL ? (I->now.t - I->last.t) - (I->now.t_carry - I->last.t_carry) : h;
+  I->counters.steps++;
+}
+
+static void exchange_memory(dvi_integrator *I)
+{
+  double *memory = I->stepper.memory;
+  I->stepper.memory = I->memory_before;
+  I->memory_before = memory;
+}
+
+/* `next` still holds what `last` was. */
+void dvi__integrator_take_back(dvi_integrator *I)
+{
+  const dvi__state oldest = I->next;
+  I->next = I->now;
+  I->now = I->last;
+  I->last = oldest;
+  I->last_h = I->last_h_before;
+  I->counters.steps--;
+  if (I->pace != NULL) I->pace->expanded = 0;
+  exchange_memory(I);
+}
+
+dvi_status dvi__integrator_undo(dvi_integrator *I, dvi_status status)
+{
+  dvi__integrator_take_back(I);
+  I->counters.failed_steps++;
+  return dvi__fail_in(status, "the step from t = %.9g is taken back", I->now.t);
+}
+
+static dvi_status refuse(dvi_integrator *I, double h, dvi_status status)
+{
+  exchange_memory(I);
+  I->counters.failed_steps++;
+  return dvi__fail_in(
+      status, "%s: step %ld from t = %.9g with h = %.3g failed%s", I->stepper.method->name, I->counters.steps + 1, I->now.t, h,
+      status > 0 && status != DVI_JUMP ? "; the state is unchanged, try a smaller step" : "; the state is unchanged");
+}
+
+dvi_status dvi__check_step(double t, double h)
+{
+  if (!isfinite(h) || h == 0 || t + h == t)
+    return dvi__fail(DVI_BAD_ARGUMENT, "step: h = %g does not move the time from t = %.17g; a finite step other than 0 is needed",
+                     h, t);
+  return isnormal(h) ? DVI_OK : dvi__fail(DVI_BAD_ARGUMENT, "step: h = %g is so small that 1/h cannot be computed", h);
+}
+
+/* From `now` and memory_before to `next` and the stepper's memory. */
+static dvi_status advance(dvi_integrator *I, double h)
+{
+  const dvi__method *method = I->stepper.method;
+  double length;
+  DVI_TRY(dvi__control_begin(I, h, &length));
+  const double density = I->next.density;
+  if (method->pass != NULL && method->pass(&I->stepper, &I->now, I->memory_before, &I->next, &length, 1) && isfinite(I->next.t))
+    return dvi__control_end(I, h);
+  const dvi_status status = dvi__attempt(I, length, density);
+  if (status != DVI_OK) return name_end(I, length, status);
+  DVI_TRY(check_state(I));
+  DVI_TRY(check_side(I));
+  return dvi__control_end(I, h);
+}
+
+dvi_status dvi_integrator_step(dvi_integrator *I, double h)
+{
+  if (I == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "step: the integrator is NULL");
+  if (!I->started) return dvi__fail(DVI_BAD_STATE, "step: the integrator has no state yet; call dvi_integrator_start first");
+  DVI_TRY(dvi__check_step(I->pace != NULL ? 0 : I->now.t, h));
+  exchange_memory(I);
+  const long before = dvi__allocation_count();
+  const dvi_status status = advance(I, h);
+  I->counters.allocations += dvi__allocation_count() - before;
+  if (status != DVI_OK) return refuse(I, h, status);
+  accept(I, I->stepper.method->chooses_steps ? I->stepper.taken : h);
+  return DVI_OK;
+}
+
+dvi_status dvi__integrator_step_exactly(dvi_integrator *I, double h)
+{
+  I->stepper.exact = 1;
+  const dvi_status status = dvi_integrator_step(I, h);
+  I->stepper.exact = 0;
+  return status;
+}
+
+/* ---- queries ---- */
+
+double dvi_integrator_time(const dvi_integrator *integrator)
+{
+  return integrator != NULL ? integrator->now.t : (double)NAN;
+}
+
+const double *dvi_integrator_q(const dvi_integrator *integrator)
+{
+  return integrator != NULL ? integrator->now.q : NULL;
+}
+
+const double *dvi_integrator_p(const dvi_integrator *integrator)
+{
+  return integrator != NULL ? integrator->now.p : NULL;
+}
+
+const dvi_system *dvi_integrator_system(const dvi_integrator *integrator)
+{
+  return integrator != NULL ? integrator->system : NULL;
+}
+
+int dvi_integrator_order(const dvi_integrator *integrator)
+{
+  return integrator != NULL ? integrator->stepper.order : 0;
+}
+
+double dvi_integrator_jump(const dvi_integrator *I, double *jump)
+{
+  if (I == NULL || !I->started || I->stepper.method->jump == NULL) return (double)NAN;
+  const double *now = I->stepper.method->jump(&I->stepper);
+  if (jump != NULL) memcpy(jump, now, (size_t)I->system->n * sizeof *jump);
+  return dvi__largest((size_t)I->system->n, now);
+}
+
+double dvi_integrator_traffic(const dvi_integrator *integrator)
+{
+  return integrator != NULL && integrator->stepper.method->traffic != NULL
+             ? integrator->stepper.method->traffic(&integrator->stepper, 1)
+             : 0;
+}
+
+double dvi_integrator_last_step(const dvi_integrator *integrator)
+{
+  return integrator != NULL ? integrator->last_h : 0;
+}
+
+int dvi_integrator_chooses_steps(const dvi_integrator *integrator)
+{
+  return integrator != NULL && (integrator->pace != NULL || integrator->stepper.method->chooses_steps);
+}
+
+dvi_status dvi_integrator_energy_balance(const dvi_integrator *I, dvi_energy_balance *balance)
+{
+  if (I == NULL || balance == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "energy balance: an argument is NULL");
+  if (I->stepper.method->balance == NULL)
+    return dvi__fail(DVI_UNSUPPORTED, "energy balance: %s conserves no discrete energy; sem does", I->stepper.method->name);
+  if (I->last_h == 0) return dvi__fail(DVI_BAD_STATE, "energy balance: no step was taken yet");
+  I->stepper.method->balance(&I->stepper, balance);
+  return DVI_OK;
+}
+
+const char *dvi_integrator_method(const dvi_integrator *integrator)
+{
+  return integrator != NULL ? integrator->stepper.specification : NULL;
+}
+
+void dvi_integrator_counters(const dvi_integrator *integrator, dvi_counters *counters)
+{
+  if (counters != NULL) *counters = integrator != NULL ? integrator->counters : (dvi_counters){0};
+}
+
+void dvi__guess_velocity(int n, const double *q, const double *last_q, const double *last_p, double last_h, double *v)
+{
+  for (int i = 0; i < n; i++) v[i] = last_h != 0 ? (q[i] - last_q[i]) / last_h : last_p[i];
+}
+
+/* The velocity of one of the two states. */
+static dvi_status velocity(dvi_integrator *I, const dvi__state *state, double *v)
+{
+  if (I->system->cells == NULL) dvi__guess_velocity(I->system->n, I->now.q, I->last.q, I->last.p, I->last_h, v);
+  return dvi__legendre_inverse(I->evaluator, state->t, state->q, state->p, v);
+}
+
+dvi_status dvi_integrator_invariants(dvi_integrator *I, double *value)
+{
+  if (I == NULL || value == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "invariants: an argument is NULL");
+  if (!I->started) return dvi__fail(DVI_BAD_STATE, "invariants: the integrator has no state yet; call dvi_integrator_start first");
+  DVI_TRY(velocity(I, &I->now, I->v));
+  return dvi__invariants(I->evaluator, I->now.t, I->now.q, I->v, I->now.p, value);
+}
+
+dvi_status dvi_integrator_invariant(dvi_integrator *I, int i, double *value)
+{
+  if (I == NULL || value == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "invariant: an argument is NULL");
+  if (!I->started) return dvi__fail(DVI_BAD_STATE, "invariant: the integrator has no state yet; call dvi_integrator_start first");
+  if (i < 0 || i >= dvi_system_invariant_count(I->system))
+    return dvi__fail(DVI_BAD_ARGUMENT, "invariant: there is none of index %d; there are %d", i,
+                     dvi_system_invariant_count(I->system));
+  if (i == 0) DVI_TRY(velocity(I, &I->now, I->v));
+  return dvi__invariant(I->evaluator, I->now.t, I->now.q, I->v, I->now.p, i, value);
+}
+
+dvi_status dvi_integrator_constraint(dvi_integrator *I, double *distance)
+{
+  if (I == NULL || distance == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "constraint: an argument is NULL");
+  if (!(I->system->terms & (DVI__ONE_FORM | DVI__HAMILTONIAN)))
+    return dvi__fail(DVI_UNSUPPORTED, "constraint: the system declares neither a one-form nor a Hamiltonian with constraints");
+  if (!I->started) return dvi__fail(DVI_BAD_STATE, "constraint: the integrator has no state yet; call dvi_integrator_start first");
+  if (I->system->terms & DVI__HAMILTONIAN) return dvi__dirac_distance(I->evaluator, I->now.q, I->now.p, distance);
+  return dvi__form_distance(I->evaluator, I->now.q, I->now.p, distance);
+}
+
+const double *dvi_integrator_multiplier(const dvi_integrator *I)
+{
+  if (I == NULL || I->last_h == 0 || I->stepper.method->multiplier == NULL) return NULL;
+  return I->stepper.method->multiplier(&I->stepper);
+}
+
+size_t dvi_integrator_explain(const dvi_integrator *integrator, char *text, size_t size)
+{
+  dvi__text out = {text, size, 0};
+  if (size > 0) text[0] = 0;
+  if (integrator == NULL) return 0;
+  dvi__text_add(&out, "method: %s, order %d%s\n", integrator->stepper.specification, integrator->stepper.order,
+                integrator->stepper.symmetric ? ", symmetric" : "");
+  if (integrator->pace != NULL) dvi__pace_explain(integrator->pace, &out);
+  integrator->stepper.method->explain(&integrator->stepper, &out);
+  return out.length;
+}
+
+/* ---- dense output ---- */
+
+/* Hermite's cubic through both ends of the last step. */
+static dvi_status hermite(dvi_integrator *I, double tau, double *q, double *v)
+{
+  const double h = I->last_h, a = (1 + 2 * tau) * (1 - tau) * (1 - tau), b = tau * (1 - tau) * (1 - tau);
+  const double c = tau * tau * (3 - 2 * tau), d = tau * tau * (tau - 1);
+  const double a1 = 6 * tau * (tau - 1), b1 = (1 - tau) * (1 - 3 * tau), d1 = tau * (3 * tau - 2);
+  DVI_TRY(velocity(I, &I->last, I->last_v));
+  DVI_TRY(velocity(I, &I->now, I->v));
+  for (int i = 0; i < I->system->n; i++) {
+    const double q0 = I->last.q[i], q1 = I->now.q[i], v0 = I->last_v[i], v1 = I->v[i];
+    if (q != NULL) q[i] = a * q0 + h * b * v0 + c * q1 + h * d * v1;
+    if (v != NULL) v[i] = a1 * (q0 - q1) / h + b1 * v0 + d1 * v1;
+  }
+  return DVI_OK;
+}
+
+dvi_status dvi_integrator_interpolate(dvi_integrator *I, double t, double *q, double *v)
+{
+  if (I == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "interpolate: the integrator is NULL");
+  if (I->last_h == 0) return dvi__fail(DVI_BAD_STATE, "interpolate: no step was taken yet");
+  /* By the rounded ends: late in a run t0 + h is rounded by much more than a part of h. */
+  const double tau = (t - I->last.t) / (I->now.t - I->last.t), rounding = 1e-12;
+  if (!(tau >= -rounding && tau <= 1 + rounding))
+    return dvi__fail(DVI_BAD_ARGUMENT, "interpolate: t = %.17g is outside of the last step, %.17g to %.17g", t, I->last.t,
+                     I->now.t);
+  if (I->stepper.method->path == NULL && I->system->cells != NULL)
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "interpolate: %s has no path between its steps, and a cubic would leave the rotations; "
+                     "lie-verlet and lie-galerkin have one",
+                     I->stepper.method->name);
+  if (I->stepper.method->path == NULL) return hermite(I, tau, q, v);
+  if (I->pace != NULL && I->pace->pacing == DVI__TRANSFORM) return dvi__pace_path(I, tau, q, v);
+  I->stepper.method->path(&I->stepper, I->last.q, I->last_h, tau, q, v);
+  const size_t n = (size_t)I->system->n, nv = (size_t)I->system->nv;
+  if ((q == NULL || dvi__first_not_finite(n, q) < 0) && (v == NULL || dvi__first_not_finite(nv, v) < 0)) return DVI_OK;
+  return dvi__fail(DVI_NOT_FINITE, "interpolate: the path is not finite at t = %.17g", t);
+}

@@ -1,0 +1,80 @@
+/* Time inside a step of a time-transformed system. The step's path is a polynomial in tau; the time that has passed at tau is
+ *
+ *     t(tau) = t0 + (t1 - t0) G(tau)/G(1),     G(tau) = integral of g(q) from 0 to tau,     tau from 0 to 1,
+ *
+ * so that both ends are the step's own. g on the path is expanded once a step in Legendre polynomials, by Gauss quadrature:
+ *
+ *     g = sum_m a_m P_m(x),  x = 2 tau - 1,     G = 1/2 a_0 (x + 1) + 1/2 sum_m a_m (P_m+1 - P_m-1)/(2m + 1). */
+#include <math.h>
+
+#include "core/status.h"
+#include "integrator/integrator_struct.h"
+
+enum { POINTS = DVI__PACE_POINTS, MOST_ITERATIONS = 60 };
+
+/* P_0 .. P_POINTS. */
+static void legendre(double x, double *P)
+{
+  P[0] = 1;
+  P[1] = x;
+  for (int m = 1; m < POINTS; m++) P[m + 1] = ((2 * m + 1) * x * P[m] - m * P[m - 1]) / (m + 1);
+}
+
+static dvi_status expand(dvi_integrator *I)
+{
+  dvi__pace *pace = I->pace;
+  double P[POINTS + 1], g;
+  if (pace->expanded) return DVI_OK;
+  for (int m = 0; m < POINTS; m++) pace->series[m] = 0;
+  for (int k = 0; k < POINTS; k++) {
+    I->stepper.method->path(&I->stepper, I->last.q, 1, pace->node[k], pace->q, NULL);
+    DVI_TRY(dvi__pace_monitor(pace, pace->q, &g));
+    legendre(2 * pace->node[k] - 1, P);
+    for (int m = 0; m < POINTS; m++) pace->series[m] += (2 * m + 1) * pace->weight[k] * P[m] * g;
+  }
+  pace->expanded = 1;
+  return DVI_OK;
+}
+
+/* G and g. */
+static double passed(const dvi__pace *pace, double tau, double *g)
+{
+  const double *a = pace->series;
+  double P[POINTS + 1], G = a[0] * tau;
+  legendre(2 * tau - 1, P);
+  *g = a[0];
+  for (int m = 1; m < POINTS; m++) {
+    G += 0.5 * a[m] * (P[m + 1] - P[m - 1]) / (2 * m + 1);
+    *g += a[m] * P[m];
+  }
+  return G;
+}
+
+/* The tau with this G: G rises, so Newton's iterates are kept between the last ones below and above. */
+static double find(const dvi__pace *pace, double wanted, double tau)
+{
+  double below = 0, above = 1, g;
+  for (int i = 0; i < MOST_ITERATIONS; i++) {
+    const double at = tau, missed = wanted - passed(pace, at, &g);
+    *(missed > 0 ? &below : &above) = at;
+    tau = at + missed / g;
+    if (!(tau >= below && tau <= above)) tau = 0.5 * (below + above);
+    if (fabs(tau - at) <= 1e-15) break;
+  }
+  return tau;
+}
+
+dvi_status dvi__pace_path(dvi_integrator *I, double fraction, double *q, double *v)
+{
+  double g, tau = fraction;
+  DVI_TRY(expand(I));
+  const double whole = passed(I->pace, 1, &g);
+  if (fraction > 0 && fraction < 1) tau = find(I->pace, fraction * whole, fraction);
+  I->stepper.method->path(&I->stepper, I->last.q, 1, tau, I->pace->q, v);
+  DVI_TRY(dvi__pace_monitor(I->pace, I->pace->q, &g));
+  for (int i = 0; i < I->system->n; i++) {
+    if (q != NULL) q[i] = I->pace->q[i];
+    if (v != NULL) v[i] *= whole / (I->last_h * g); /* dq/dt = dq/dtau dtau/dt */
+  }
+  return DVI_OK;
+}

@@ -1,0 +1,131 @@
+/* The branch of an element's solutions from h = 0: following it, and whether a solution is on it. */
+#include <math.h>
+#include <string.h>
+
+#include "core/status.h"
+#include "method/element/element_struct.h"
+#include "num/finite.h"
+
+/* Radians between a guess and its solution in charts. Other solutions were found by a third of a
+ * radian and more away, but by a fortieth where the smallest moment of inertia is 1e-5 of the
+ * others. Steps below half a radian are nearer to their guess. */
+static const double near_in_charts = 0.03;
+
+/* The same between an extrapolated guess and the next solution of a branch. */
+static const double follows_in_charts = 0.01;
+
+/* A straight line along the velocity at the start, which is sought from that of the last path. */
+dvi_status dvi__element_straight(dvi__stepper *self, const dvi__element_place *at, double *Y)
+{
+  dvi__element *own = self->own;
+  if (at->last_h != 0)
+    dvi__action_path(own->action, at->last_Y, at->last_h, 1.0, NULL, own->dq);
+  else
+    memcpy(own->dq, at->last_Y, (size_t)self->system->n * sizeof(double));
+  DVI_TRY(dvi__legendre_inverse(dvi__action_evaluator(own->action), at->t, at->q, at->p, own->dq));
+  dvi__action_straight(own->action, own->dq, Y);
+  return DVI_OK;
+}
+
+/* What a branch is followed for. */
+typedef struct pursuit {
+  dvi__stepper *self;
+  const dvi__element_place *at;
+} pursuit;
+
+static dvi_status place_part(void *of, double part)
+{
+  const pursuit *own = of;
+  const dvi__element_place *at = own->at;
+  dvi__action_place(((dvi__element *)own->self->own)->action, at->t, part * at->h, at->q, at->p);
+  return DVI_OK;
+}
+
+/* A straight line along the velocity at the start. */
+static dvi_status guess_part(void *of, double part, double *Y)
+{
+  const pursuit *own = of;
+  const dvi__element_place *at = own->at;
+  const dvi__element_place short_one = {at->t, part * at->h, at->q, at->p, at->last_h, at->last_Y, NULL};
+  return dvi__element_straight(own->self, &short_one, Y);
+}
+
+static double turn_between(void *of, const double *from, const double *Y)
+{
+  const pursuit *own = of;
+  return dvi__action_turn(((dvi__element *)own->self->own)->action, from, Y);
+}
+
+/* In charts the sentence tells how far the path turns, too. */
+static dvi_status branch_ends(const dvi__stepper *self, const dvi__element_place *at, const double *Y, const dvi__branch_end *end,
+                              const dvi__branch_failure *whole)
+{
+  const dvi__element *own = self->own;
+  const dvi_status status = dvi__branch_tell(end, at->h, whole);
+  if (!own->centred) return status;
+  if (end->reached == 0)
+    return dvi__fail(DVI_STEP_TOO_LARGE, "a step too large: not even that of h = %.3g has a path", at->h / DVI__BRANCH_PARTS);
+  dvi__action_path(own->action, Y, 1.0, 1.0, own->dq, NULL);
+  return dvi__fail(DVI_STEP_TOO_LARGE,
+                   "a step too large: its path continues those of shorter steps up to h = %.3g, "
+                   "where it turns by %.3g; the bound of a chart is half a turn",
+                   end->reached * at->h, dvi__action_turned(own->action, own->dq));
+}
+
+dvi_status dvi__element_follow(dvi__stepper *self, const dvi__element_place *at, dvi_status whole, double *Y)
+{
+  const dvi__element *own = self->own;
+  pursuit of = {self, at};
+  const dvi__branch branch = {.of = &of,
+                              .place = place_part,
+                              .guess = guess_part,
+                              .distance = own->centred ? turn_between : NULL,
+                              .near = own->centred ? follows_in_charts : DVI__BRANCH_NEAR,
+                              .parts = self->follow,
+                              .signs = !own->centred || dvi__action_signs(own->action),
+                              .from_zero = 1,
+                              .size = dvi__largest((size_t)self->system->n, at->q),
+                              .room = own->branch};
+  dvi__branch_failure failure;
+  dvi__branch_end end;
+  dvi__branch_note(whole, &failure);
+  self->counters->followed++;
+  self->counters->newtons += !self->follow;
+  const dvi_status status = dvi__branch_follow(&branch, own->solver, Y, &end);
+  return status <= 0 ? status : branch_ends(self, at, Y, &end, &failure);
+}
+
+/* As h goes to 0 the Jacobian is L_vv times a positive matrix over h. On the way to another
+ * solution beyond a fold its determinant is 0, and may have the other sign. */
+static int is_turned(const dvi__stepper *self, const dvi__element_place *at)
+{
+  const dvi__element *own = self->own;
+  dvi__evaluator *evaluator = dvi__action_evaluator(own->action);
+  const int unknowns = dvi__action_unknowns(own->action), degree = unknowns / self->system->n;
+  const int sign = dvi__solver_sign(own->solver) * (at->h < 0 && unknowns % 2 != 0 ? -1 : 1);
+  if (sign > 0 || own->centred || degree % 2 == 0) return sign < 0;
+  dvi__action_path(own->action, own->Y, at->h, 0.0, NULL, own->guess);
+  if (dvi__legendre_regular(evaluator, at->t, at->q, own->guess) != DVI_OK) return 1;
+  return dvi__mass_sign(evaluator) > 0;
+}
+
+/* What the solution itself tells of its branch; the rest is for its energy to say. */
+dvi__doubt dvi__element_doubt(const dvi__stepper *self, const dvi__element_place *at, const dvi__solve_report *report)
+{
+  const dvi__element *own = self->own;
+  const int by_newton = own->rung == DVI__NEWTON || own->rung == DVI__KINSOL;
+  if (own->rung == DVI__FIXED_POINT) return DVI__SURE;
+  if (by_newton && is_turned(self, at)) return DVI__ASTRAY;
+  if (own->rung == DVI__KINSOL) return DVI__DOUBTED; /* of its way nothing is known */
+  if (dvi__branch_is_sure(report, dvi__action_unknowns(own->action), own->Y)) return DVI__SURE;
+  return dvi__branch_is_straight(report) ? DVI__LINEAR : DVI__DOUBTED;
+}
+
+/* Whether a solution in charts is not the one that continues shorter steps: it turns far away from
+ * its guess, or the sign of the determinant is another. */
+int dvi__element_strays(const dvi__stepper *self, const dvi__element_place *at)
+{
+  const dvi__element *own = self->own;
+  if (dvi__action_signs(own->action) && is_turned(self, at)) return 1;
+  return !(dvi__action_turn(own->action, own->guess, own->Y) <= near_in_charts);
+}

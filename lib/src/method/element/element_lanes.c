@@ -1,0 +1,203 @@
+/* The element's step for members of an ensemble side by side: the cheapest way of element_step.c alone, fixed point iteration from the last forces
+ * continued. A member for which it would not be tried, or does not converge, is left to dvi__element_step. */
+#include <math.h>
+#include <string.h>
+
+#include "step/element/members.h"
+#include "step/element/sweep.h"
+#include "core/memory.h"
+#include "core/status.h"
+#include "method/element/element_step.h"
+#include "num/compensated.h"
+#include "num/simd/lanes.h"
+#include "solve/progress.h"
+
+typedef struct lanes {
+  dvi__action_members members;
+  dvi__pace pace;
+  int patient;
+  dvi__trails trails; /* of the lanes; their size is that of q at the step's start */
+  char *going;        /* [width] the lane iterates on */
+  int64_t *verdict;   /* [width] of the last iteration */
+  int *ended;         /* [width] lanes that ended with it */
+} lanes;
+
+/* A vector's worth of nodes fills the vectors of a single element. Members as lanes then gain only as long as they all stay in the cache of the
+ * first level, and with two vectors' worth no more. */
+enum { NODES_OF_A_VECTOR = 8, POINTS_IN_CACHE = 64 };
+
+static int pays(int n, int nodes)
+{
+  return nodes < NODES_OF_A_VECTOR || (nodes < 2 * NODES_OF_A_VECTOR && n <= POINTS_IN_CACHE / nodes);
+}
+
+dvi_status dvi__element_prepare_lanes(dvi__stepper *self, int capacity)
+{
+  dvi__action *action = dvi__element_action(self);
+  const int solver = dvi__element_solver(self), patient = solver == DVI__SOLVER_FIXED_POINT;
+  if (!patient && solver != DVI__SOLVER_AUTO) return DVI_OK;
+  if (!pays(self->system->n, dvi__action_nodes(action))) return DVI_OK;
+  if (!dvi__action_can_sweep(action) || !dvi__system_has_gradients(self->system)) return DVI_OK;
+  lanes *own = self->lanes = DVI_NEW(lanes, 1);
+  if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
+  own->patient = patient;
+  own->pace = dvi__fixed_point_pace(patient, 1);
+  own->trails.last = DVI_NEW(double, capacity);
+  own->trails.ratio = DVI_NEW(double, capacity);
+  own->trails.contraction = DVI_NEW(double, capacity);
+  own->trails.own = DVI_NEW(double, capacity);
+  own->trails.size = DVI_NEW(double, capacity);
+  own->going = DVI_NEW(char, capacity);
+  own->verdict = DVI_NEW(int64_t, capacity);
+  own->ended = DVI_NEW(int, capacity);
+  if (!own->trails.last || !own->trails.ratio || !own->trails.contraction || !own->trails.own || !own->trails.size || !own->going ||
+      !own->verdict || !own->ended)
+    return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
+  return dvi__action_members_create(action, capacity, &own->members);
+}
+
+void dvi__element_clear_lanes(dvi__stepper *self)
+{
+  lanes *own = self->lanes;
+  dvi__action_members_clear(&own->members);
+  dvi__release(own->trails.last);
+  dvi__release(own->trails.ratio);
+  dvi__release(own->trails.contraction);
+  dvi__release(own->trails.own);
+  dvi__release(own->trails.size);
+  dvi__release(own->going);
+  dvi__release(own->verdict);
+  dvi__release(own->ended);
+  dvi__release(own);
+}
+
+static double *memory_row(const dvi__members *m, size_t number)
+{
+  return m->memory + number * (size_t)m->count;
+}
+
+/* Leave the members that would not try fixed point iteration, or whose last step had another length than the others'. Gives that length; 0: no
+ * member is left to be served. */
+static double choose(const lanes *own, dvi__members *m)
+{
+  const double *last_h = memory_row(m, DVI__LAST_H), *newton_steps = memory_row(m, DVI__NEWTON_STEPS);
+  double common = 0;
+  for (int k = 0; k < m->count; k++) {
+    if (common == 0 && !m->left[k]) common = last_h[k];
+    if (last_h[k] == 0 || last_h[k] != common || (newton_steps[k] != 0 && !own->patient)) m->left[k] = 1;
+  }
+  return memchr(m->left, 0, (size_t)m->count) != NULL ? common : 0;
+}
+
+/* Lanes that have nothing to do any more make room. */
+static void close_up(lanes *own)
+{
+  dvi__action_members *at = &own->members;
+  double *const rows[] = {own->trails.last, own->trails.ratio, own->trails.contraction, own->trails.own, own->trails.size};
+  const int before = at->width;
+  dvi__action_members_close_up(at, own->going);
+  for (int i = 0; i < (int)(sizeof rows / sizeof *rows) && at->width < before; i++)
+    dvi__action_members_pack(at, 1, before, rows[i], rows[i]);
+  memset(own->going, 1, (size_t)at->width);
+}
+
+static void set_out(lanes *own, int n, size_t forces, const dvi__members *m, double h, double last_h)
+{
+  const size_t count = (size_t)m->count;
+  double *size = own->trails.size;
+  memset(own->trails.last, 0, count * sizeof(double));
+  memset(own->trails.ratio, 0, count * sizeof(double));
+  memset(own->trails.contraction, 0, count * sizeof(double));
+  memset(own->trails.own, 0, count * sizeof(double));
+  memset(size, 0, count * sizeof(double));
+  for (size_t i = 0; i < (size_t)n; i++)
+    for (size_t k = 0; k < count; k++) {
+      const double q = fabs(m->q[i * count + k]);
+      size[k] = q > size[k] ? q : size[k];
+    }
+  for (size_t k = 0; k < count; k++) own->going[k] = !m->left[k];
+  dvi__action_members_place(&own->members, m->count, h, last_h, m->t, m->q, m->p, memory_row(m, forces));
+  close_up(own);
+}
+
+/* A lane's iteration has ended with this one. */
+static void end_lane(lanes *own, dvi__members *m, int lane, int iteration)
+{
+  dvi__action_members *at = &own->members;
+  const int k = at->member[lane];
+  own->going[lane] = 0;
+  if (own->verdict[lane] == DVI__STALLED) {
+    m->left[k] = 1;
+    return;
+  }
+  dvi__action_members_keep(at, lane);
+  m->residuals[k] += iteration;
+  m->gradients[k] += (long)iteration * dvi__action_nodes(at->action);
+  m->fixed[k]++;
+}
+
+/* Judge every lane's iteration. Gives how many ended with it; *stalled: some of them must not be iterated any more. */
+static int judge(lanes *own, dvi__members *m, int iteration, int *stalled)
+{
+  const dvi__action_members *at = &own->members;
+  int ended = 0;
+  dvi__judge_all(at->width, at->change, at->largest, &own->pace, &own->trails, own->verdict);
+  for (int lane = 0; lane < at->width; lane++) {
+    own->ended[ended] = lane;
+    ended += own->going[lane] & (own->verdict[lane] != DVI__GO_ON);
+  }
+  for (int i = 0; i < ended; i++) {
+    end_lane(own, m, own->ended[i], iteration);
+    *stalled |= own->verdict[own->ended[i]] == DVI__STALLED;
+  }
+  return ended;
+}
+
+/* Members whose iteration is cut short are left. */
+static void leave_going(const lanes *own, dvi__members *m)
+{
+  for (int lane = 0; lane < own->members.width; lane++)
+    if (own->going[lane]) m->left[own->members.member[lane]] = 1;
+}
+
+/* Lanes that have nothing to do any more are carried along until they are half of all: to close up costs about as much as an iteration. */
+static void iterate(lanes *own, dvi__members *m)
+{
+  dvi__action_members *at = &own->members;
+  const int most = dvi__fixed_point_most(own->patient);
+  int going = at->width;
+  for (int iteration = 1; iteration <= most; iteration++) {
+    int stalled = 0;
+    if (dvi__action_members_sweep(at) != DVI_OK) break;
+    going -= judge(own, m, iteration, &stalled);
+    if (going == 0) return;
+    if (stalled || 2 * going <= at->width) close_up(own);
+  }
+  leave_going(own, m);
+}
+
+/* What a step that fixed point iteration has solved does to the state and the memory. */
+static void advance(const lanes *own, size_t n, dvi__members *m, double h)
+{
+  static const size_t forgotten[] = {DVI__NEWTON_STEPS, DVI__NEWTON_WAIT};
+  const dvi__action_members *at = &own->members;
+  const size_t count = (size_t)m->count;
+  double *last_h = memory_row(m, DVI__LAST_H);
+  dvi__lanes_add_scaled(n * count, 1.0, at->dq, m->q, m->q_carry);
+  dvi__lanes_add_scaled(n * count, 1.0, at->dq_low, m->q, m->q_carry);
+  dvi__lanes_add_scaled(n * count, 1.0, at->dp, m->p, m->p_carry);
+  for (size_t k = 0; k < count; k++) dvi__add_compensated(m->t + k, m->t_carry + k, h);
+  for (size_t k = 0; k < count; k++) last_h[k] = h;
+  for (int i = 0; i < 2; i++) memset(memory_row(m, forgotten[i]), 0, count * sizeof(double));
+}
+
+void dvi__element_step_lanes(dvi__stepper *self, dvi__members *m, double h)
+{
+  lanes *own = self->lanes;
+  const double last_h = choose(own, m);
+  if (last_h == 0) return;
+  set_out(own, self->system->n, dvi__element_forces(self), m, h, last_h);
+  iterate(own, m);
+  dvi__action_members_ends(&own->members, memory_row(m, DVI__LAST_Y));
+  advance(own, (size_t)self->system->n, m, h);
+}

@@ -1,0 +1,60 @@
+/* The mollified impulse method: kicks by the slow potentials at filtered places, and between them the exact motion of quadratic fast ones.
+ *
+ *     Ld(q0,q1) = action of the exact fast motion from q0 to q1 - h/2 (U(t0,A(q0)) + U(t1,A(q1)))
+ * U(A(q)) kicks by A'(q)^T U'(A(q)), which spares the modes that kicks would drive (method/split/oscillation.h). A by the modes' x = h omega:
+ *     average     the mean over a step of the fast motion that starts at rest:  phi = sin x/x;
+ *     projection  modes that a step does not resolve rest at their equilibrium: phi = 0 for x > 1, else 1.
+ * Order 2 as h goes to 0, symmetric, symplectic.
+ * Source: Garcia-Archilla, Sanz-Serna and Skeel 1999; Izaguirre, Reich and Skeel 1999. */
+#include "method/split/oscillation.h"
+
+enum { FILTER };
+
+enum { AVERAGE, PROJECTION };
+
+static const char *filter_name(int index)
+{
+  static const char *const name[] = {"average", "projection"};
+  return index >= 0 && index < 2 ? name[index] : NULL;
+}
+
+static const dvi__key keys[] = {
+    {"filter", filter_name, 0, 0, AVERAGE,
+     "where the slow potentials are asked: average (over the fast motion), or projection (without the modes of h omega > 1); "
+     "left out: average"},
+    {0},
+};
+
+static int pair(int number, double s, dvi__filter *filter)
+{
+  double c[4];
+  if (number == PROJECTION) {
+    *filter = s > 1 ? (dvi__filter){0, 1 / s, 0} : (dvi__filter){1, 0, 1};
+    return 1;
+  }
+  dvi__modes_functions(s, c);
+  *filter = (dvi__filter){c[1], c[3], c[1]};
+  return 1;
+}
+
+static const dvi__filters filters[] = {
+    {.at = pair, .number = AVERAGE, .phi = {1, 1, 0}, .psi = {1, 1, 0}},
+    {.at = pair, .number = PROJECTION},
+};
+
+static dvi_status create(dvi__stepper *self)
+{
+  return dvi__oscillation_create(self, &filters[self->settings.value[FILTER]], DVI__MOTION_AUTO,
+                                 "imex and respa:substeps=k take any");
+}
+
+const dvi__method dvi__mollified = {
+    .name = "mollified",
+    .summary = "mollified impulse method, to compare with: filtered kicks, exact motion of quadratic fast potentials; order 2",
+    .cite = "GarciaArchillaSanzSernaSkeel1999",
+    .keys = keys,
+    DVI__IMPULSE_OPERATIONS,
+    .create = create,
+    .destroy = dvi__oscillation_destroy,
+    .explain = dvi__oscillation_explain,
+};

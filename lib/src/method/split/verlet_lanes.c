@@ -1,0 +1,103 @@
+/* Stoermer-Verlet for many members at once: the operations of verlet.c, one batch of gradients a step. */
+#include "method/split/verlet_lanes.h"
+
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "num/compensated.h"
+#include "num/simd/lanes.h"
+
+/* The evaluator counts for itself: what a member took is counted in dvi__members. */
+typedef struct lanes {
+  dvi__evaluator *evaluator;
+  dvi__division *by; /* [n] how each coordinate's momentum becomes a velocity */
+  double *scalar;    /* [n] */
+} lanes;
+
+dvi_status dvi__verlet_prepare_lanes(dvi__stepper *self, int capacity)
+{
+  const double *mass = self->system->mass_diagonal;
+  const int n = self->system->n;
+  if (mass == NULL || !dvi__system_has_gradients(self->system)) return DVI_OK;
+  lanes *own = self->lanes = DVI_NEW(lanes, 1);
+  if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "verlet: no memory");
+  own->by = DVI_NEW(dvi__division, n);
+  own->scalar = DVI_NEW(double, n);
+  if (own->by == NULL || own->scalar == NULL) return dvi__fail(DVI_NO_MEMORY, "verlet: no memory");
+  for (int i = 0; i < n; i++) own->by[i] = dvi__division_by(mass[i], &own->scalar[i]);
+  return dvi__evaluator_create(self->system, capacity, DVI__GRADIENTS, NULL, &own->evaluator);
+}
+
+void dvi__verlet_clear_lanes(dvi__stepper *self)
+{
+  lanes *own = self->lanes;
+  dvi__evaluator_destroy(&own->evaluator);
+  dvi__release(own->by);
+  dvi__release(own->scalar);
+  dvi__release(own);
+}
+
+static void leave_all(dvi__members *m)
+{
+  memset(m->left, 1, (size_t)m->count);
+}
+
+static dvi_status gradient(const dvi__stepper *self, dvi__members *m)
+{
+  const lanes *own = self->lanes;
+  for (int k = 0; k < m->count; k++) m->gradients[k]++;
+  return dvi__potentials_gradient(own->evaluator, m->count, m->t, m->q, m->memory);
+}
+
+static double *gradient_known(const dvi__stepper *self, const dvi__members *m)
+{
+  return m->memory + (size_t)self->system->n * (size_t)m->count;
+}
+
+/* 1: of all of them, 0: of none, -1: of some. */
+static int all_known(const dvi__stepper *self, const dvi__members *m)
+{
+  const double *known = gradient_known(self, m);
+  int members = 0;
+  for (int k = 0; k < m->count; k++) members += known[k] != 0;
+  return members == m->count ? 1 : members == 0 ? 0 : -1;
+}
+
+/* The first kick and the drift, a coordinate at a time. */
+static void leap(const dvi__stepper *self, dvi__members *m, double h)
+{
+  const lanes *own = self->lanes;
+  const size_t count = (size_t)m->count;
+  for (size_t i = 0; i < (size_t)self->system->n; i++) {
+    const size_t at = i * count;
+    const dvi__phase row = {m->q + at, m->p + at, m->q_carry + at, m->p_carry + at};
+    dvi__lanes_leap(&(dvi__leap){.count = count,
+                                 .kicks = 1,
+                                 .kick = {-0.5 * h},
+                                 .drift = h,
+                                 .by = own->by[i],
+                                 .scalar = own->scalar[i],
+                                 .force = m->memory + at,
+                                 .from = row,
+                                 .to = row});
+  }
+  for (size_t k = 0; k < count; k++) dvi__add_compensated(m->t + k, m->t_carry + k, h);
+}
+
+/* One batch serves all or none: which member a callback failed for shows when each goes on alone. */
+void dvi__verlet_step_lanes(dvi__stepper *self, dvi__members *m, double h)
+{
+  const size_t count = (size_t)m->count;
+  const int known = all_known(self, m);
+  if (known < 0 || (known == 0 && gradient(self, m) != DVI_OK)) {
+    leave_all(m);
+    return;
+  }
+  for (size_t k = 0; k < count && known == 0; k++) gradient_known(self, m)[k] = 1;
+  leap(self, m, h);
+  if (gradient(self, m) != DVI_OK)
+    leave_all(m);
+  else
+    dvi__lanes_add_scaled((size_t)self->system->n * count, -0.5 * h, m->memory, m->p, m->p_carry);
+}

@@ -1,0 +1,145 @@
+#include "num/simd/members.h"
+
+#include <stdint.h>
+#include <string.h>
+
+#include "num/simd/lanes.h"
+#include "num/simd/width.h"
+
+#define LOOPS "num/simd/members_width.h"
+#include "num/simd/each_width.h"
+
+/* Whole vectors first, the rest in shorter ones. */
+#define TAIL2(name, ...) name##2(__VA_ARGS__, 0)
+#define TAIL4(name, ...) name##2(__VA_ARGS__, name##4(__VA_ARGS__, 0))
+#define TAIL8(name, ...) name##2(__VA_ARGS__, name##4(__VA_ARGS__, name##8(__VA_ARGS__, 0)))
+#define ALL(width, name, ...) ((void)name##1(__VA_ARGS__, TAIL##width(name, __VA_ARGS__)))
+
+/* Few stages are where members are lanes: their loops are worth knowing at compile time. */
+#define SWEEP(width)                                       \
+  INLINE void sweep_by##width(const dvi__members_sweep *s) \
+  {                                                        \
+    switch (s->stages) {                                   \
+    case 1: ALL(width, sweep, s, 1); break;                \
+    case 2: ALL(width, sweep, s, 2); break;                \
+    case 3: ALL(width, sweep, s, 3); break;                \
+    case 4: ALL(width, sweep, s, 4); break;                \
+    case 8: ALL(width, sweep, s, 8); break;                \
+    default: ALL(width, sweep, s, s->stages);              \
+    }                                                      \
+  }
+SWEEP(2)
+SWEEP(4)
+SWEEP(8)
+
+/* As in lanes.c. */
+INLINE void split(int n, int width, const double *factor, const double *restrict p0, double *restrict start, double *restrict low)
+{
+  for (int i = 0; i < n; i++, p0 += width, start += width, low += width)
+    for (int k = 0; k < width; k++) {
+      start[k] = factor[i] * p0[k];
+      low[k] = __builtin_fma(factor[i], p0[k], -start[k]);
+    }
+}
+
+/* As in lanes.c, from the sums on. */
+INLINE void finish(int width, double factor, const double *restrict sum, const double *restrict p0, double *restrict moved,
+                   double *restrict low)
+{
+  for (int k = 0; k < width; k++) {
+    const double half = 0.5 * sum[k], middle = p0[k] + half, back = middle - p0[k];
+    const double rest = (p0[k] - (middle - back)) + (half - back);
+    moved[k] = factor * middle;
+    low[k] = __builtin_fma(factor, middle, -moved[k]) + factor * (rest + low[k]);
+  }
+}
+
+#define ENDS(suffix)                                                                                           \
+  INLINE void ends_by##suffix(const dvi__members_ends *e)                                                      \
+  {                                                                                                            \
+    const size_t row = (size_t)e->width;                                                                       \
+    ALL(suffix, sums, e);                                                                                      \
+    for (size_t i = 0; i < (size_t)e->n; i++)                                                                  \
+      finish(e->width, e->factor[i], e->sum + i * row, e->p0 + i * row, e->moved + i * row, e->low + i * row); \
+  }
+ENDS(2)
+ENDS(4)
+ENDS(8)
+
+/* ---- instruction sets ---- */
+
+typedef struct level {
+  void (*sweep)(const dvi__members_sweep *s);
+  void (*split)(int n, int width, const double *factor, const double *p0, double *start, double *low);
+  void (*begin)(const dvi__members_sweep *s);
+  void (*ends)(const dvi__members_ends *e);
+  void (*product)(int n, int terms, int lanes, int rows, const double *matrix, int width, const double *x, double *out);
+} level;
+
+#define LEVEL(suffix, target, width)                                                                                             \
+  target static void sweep_##suffix(const dvi__members_sweep *s)                                                                 \
+  {                                                                                                                              \
+    sweep_by##width(s);                                                                                                          \
+  }                                                                                                                              \
+  target static void split_##suffix(int n, int members, const double *factor, const double *p0, double *start, double *low)      \
+  {                                                                                                                              \
+    split(n, members, factor, p0, start, low);                                                                                   \
+  }                                                                                                                              \
+  target static void begin_##suffix(const dvi__members_sweep *s)                                                                 \
+  {                                                                                                                              \
+    ALL(width, begin, s);                                                                                                        \
+  }                                                                                                                              \
+  target static void ends_##suffix(const dvi__members_ends *e)                                                                   \
+  {                                                                                                                              \
+    ends_by##width(e);                                                                                                           \
+  }                                                                                                                              \
+  target static void product_##suffix(int n, int terms, int lanes, int rows, const double *matrix, int members, const double *x, \
+                                      double *out)                                                                               \
+  {                                                                                                                              \
+    ALL(width, product, n, terms, lanes, rows, matrix, members, x, out);                                                         \
+  }
+
+LEVEL(baseline, , 2)
+#ifdef __x86_64__
+LEVEL(avx2, __attribute__((target("avx2,fma"))), 4)
+LEVEL(avx512, __attribute__((target("fma,avx512f,avx512dq,avx512vl"))), 8)
+#endif
+
+/* In the order of num/simd/lanes.c. */
+static const level levels[] = {
+    {sweep_baseline, split_baseline, begin_baseline, ends_baseline, product_baseline},
+#ifdef __x86_64__
+    {sweep_avx2, split_avx2, begin_avx2, ends_avx2, product_avx2},
+    {sweep_avx512, split_avx512, begin_avx512, ends_avx512, product_avx512},
+#endif
+};
+
+static const level *now(void)
+{
+  return &levels[dvi__lanes_level()];
+}
+
+void dvi__members_sweep_once(const dvi__members_sweep *s)
+{
+  now()->sweep(s);
+}
+
+void dvi__members_split(int n, int width, const double *factor, const double *p0, double *start, double *low)
+{
+  now()->split(n, width, factor, p0, start, low);
+}
+
+void dvi__members_begin(const dvi__members_sweep *s)
+{
+  now()->begin(s);
+}
+
+void dvi__members_ends_of(const dvi__members_ends *ends)
+{
+  now()->ends(ends);
+}
+
+void dvi__members_product(int n, int terms, int lanes, int rows, const double *matrix, int width, const double *x, double *out)
+{
+  now()->product(n, terms, lanes, rows, matrix, width, x, out);
+}

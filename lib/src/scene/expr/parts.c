@@ -1,0 +1,306 @@
+/* Copies of kernels: of what their root needs, and of their parts by degree in a block of variables.
+ *
+ * A node f is split into Z, where the block's variables are zero, and P = f - Z, by f's own rule: (Z_a + P_a)(Z_b + P_b) has P = P_a Z_b + Z_a P_b + P_a P_b. */
+#include <string.h>
+
+#include "scene/expr/graph_make.h"
+#include "scene/heap.h"
+#include "scene/elaborate/kernels.h"
+
+typedef struct copy {
+  const dvi__kernel *from;
+  dvi__graph *graph;
+  dvi__kernel_input *input; /* [as many as `from` has] */
+  int input_count;
+  int *of_input;            /* new number + 1 of an old input */
+  dvi__node *rest, *moving; /* Z and P of old nodes; moving NULL: only Z is wanted */
+  dvi__block block, as;     /* block DVI__BLOCKS: nothing moves */
+} copy;
+
+static dvi__node apply(copy *c, dvi__op op, dvi__node a, dvi__node b)
+{
+  return dvi__apply(c->graph, op, a, b);
+}
+
+static dvi__node zero(copy *c)
+{
+  return dvi__constant(c->graph, 0);
+}
+
+static int is_zero(const copy *c, dvi__node node)
+{
+  double value;
+  return dvi__is_constant(c->graph, node, &value) && !(value < 0) && !(value > 0);
+}
+
+/* An input, from the block `as` if it moves. */
+static dvi__node copy_input(copy *c, int number, int moves)
+{
+  if (c->of_input[number] == 0) {
+    c->input[c->input_count] = c->from->input[number];
+    if (moves) c->input[c->input_count].block = c->as;
+    c->of_input[number] = ++c->input_count;
+  }
+  return dvi__input(c->graph, c->of_input[number] - 1);
+}
+
+static void copy_rest(copy *c, int i)
+{
+  const dvi__graph_node *node = &c->from->graph->node[i];
+  if (node->op == DVI__OP_CONSTANT) {
+    c->rest[i] = dvi__constant(c->graph, node->value);
+  } else if (node->op == DVI__OP_INPUT) {
+    const dvi__kernel_input *input = &c->from->input[node->a];
+    const int moves = !input->is_data && input->block == c->block;
+    c->rest[i] = moves ? zero(c) : copy_input(c, node->a, 0);
+  } else if (node->op == DVI__OP_POWER) {
+    c->rest[i] = dvi__power(c->graph, c->rest[node->a], node->value);
+  } else
+    c->rest[i] = apply(c, node->op, c->rest[node->a], c->rest[node->b]);
+}
+
+/* P of a product, (Z_a + P_a)(Z_b + P_b). */
+static dvi__node moving_product(copy *c, int a, int b)
+{
+  const dvi__node mixed = apply(c, DVI__OP_ADD, apply(c, DVI__OP_MULTIPLY, c->moving[a], c->rest[b]),
+                                apply(c, DVI__OP_MULTIPLY, c->rest[a], c->moving[b]));
+  return apply(c, DVI__OP_ADD, mixed, apply(c, DVI__OP_MULTIPLY, c->moving[a], c->moving[b]));
+}
+
+static void copy_moving(copy *c, int i)
+{
+  const dvi__graph_node *node = &c->from->graph->node[i];
+  const int a = node->a, b = node->b;
+  switch (node->op) {
+  case DVI__OP_INPUT: {
+    const dvi__kernel_input *input = &c->from->input[a];
+    c->moving[i] = !input->is_data && input->block == c->block ? copy_input(c, a, 1) : zero(c);
+    break;
+  }
+  case DVI__OP_NEGATE: c->moving[i] = apply(c, DVI__OP_NEGATE, c->moving[a], 0); break;
+  case DVI__OP_ADD:
+  case DVI__OP_SUBTRACT: c->moving[i] = apply(c, node->op, c->moving[a], c->moving[b]); break;
+  case DVI__OP_DIVIDE: c->moving[i] = apply(c, DVI__OP_DIVIDE, c->moving[a], c->rest[b]); break;
+  case DVI__OP_WHERE: c->moving[i] = apply(c, DVI__OP_WHERE, c->rest[a], c->moving[b]); break;
+  case DVI__OP_MULTIPLY: c->moving[i] = moving_product(c, a, b); break;
+  case DVI__OP_SQUARE:
+    c->moving[i] = is_zero(c, c->rest[a]) ? apply(c, DVI__OP_SQUARE, c->moving[a], 0) : moving_product(c, a, a);
+    break;
+  default: c->moving[i] = zero(c); /* of degree 0, or no polynomial of degree 2: those are not split */
+  }
+}
+
+/* Which nodes a root needs. */
+static void mark(const dvi__graph *graph, dvi__node root, char *needed)
+{
+  needed[root] = 1;
+  for (int i = root; i >= 0; i--) {
+    if (!needed[i]) continue;
+    if (dvi__operands(graph->node[i].op) > 0) needed[graph->node[i].a] = 1;
+    if (dvi__operands(graph->node[i].op) > 1) needed[graph->node[i].b] = 1;
+  }
+}
+
+static void copy_nodes(copy *c, const char *needed)
+{
+  for (int i = 0; i <= c->from->root; i++) {
+    if (!needed[i]) continue;
+    c->graph->here = c->from->graph->node[i].span;
+    copy_rest(c, i);
+    if (c->moving != NULL) copy_moving(c, i);
+  }
+}
+
+static void free_work(copy *c, char *needed)
+{
+  dvi__heap_free(c->of_input);
+  dvi__heap_free(c->rest);
+  dvi__heap_free(c->moving);
+  dvi__heap_free(needed);
+}
+
+/* Z of a kernel, or P, into a kernel of its own, in the arena but for the nodes of its graph. */
+static bool copy_part(dvi_scene *scene, const dvi__kernel *from, dvi__block block, dvi__block as, int moving, dvi__kernel *to)
+{
+  const size_t nodes = (size_t)from->root + 1, inputs = (size_t)from->input_count + 1;
+  char *needed = dvi__heap_take(nodes, 1);
+  copy c = {.from = from, .block = block, .as = as};
+  c.graph = dvi__arena_take(&scene->arena, 1, sizeof *c.graph);
+  c.input = dvi__arena_take(&scene->arena, inputs, sizeof *c.input);
+  c.of_input = dvi__heap_take(inputs, sizeof *c.of_input);
+  c.rest = dvi__heap_take(nodes, sizeof *c.rest);
+  if (moving) c.moving = dvi__heap_take(nodes, sizeof *c.moving);
+  const int made = needed != NULL && c.graph != NULL && c.input != NULL && c.of_input != NULL && c.rest != NULL &&
+                   (!moving || c.moving != NULL);
+  if (made) {
+    mark(from->graph, from->root, needed);
+    copy_nodes(&c, needed);
+    *to = (dvi__kernel){.graph = c.graph,
+                        .root = moving ? c.moving[from->root] : c.rest[from->root],
+                        .elements = from->elements,
+                        .input_count = c.input_count,
+                        .input = c.input};
+  }
+  const bool good = made && c.graph->failed == DVI_OK;
+  free_work(&c, needed);
+  if (!good && c.graph != NULL) dvi__graph_free(c.graph);
+  return good || dvi__scene_no_memory(scene);
+}
+
+void dvi__kernels_free(dvi__kernels *list)
+{
+  for (int k = 0; k < list->count; k++) dvi__graph_free(list->kernel[k].graph);
+  dvi__heap_free(list->kernel);
+  *list = (dvi__kernels){0};
+}
+
+/* Put a kernel, which is taken over, at the end of a list. A kernel that is zero is dropped. */
+static bool append(dvi_scene *scene, dvi__kernels *list, const dvi__kernel *kernel)
+{
+  double value;
+  if (dvi__is_constant(kernel->graph, kernel->root, &value) && !(value < 0) && !(value > 0)) {
+    dvi__graph_free(kernel->graph);
+    return true;
+  }
+  dvi__kernel *longer = dvi__heap_grow(list->kernel, (size_t)list->count, sizeof *longer);
+  if (longer == NULL) {
+    dvi__graph_free(kernel->graph);
+    return dvi__scene_no_memory(scene);
+  }
+  list->kernel = longer;
+  list->kernel[list->count++] = *kernel;
+  return true;
+}
+
+/* Append a copy of what a kernel's root needs. */
+static bool append_needed(dvi_scene *scene, dvi__kernels *list, const dvi__kernel *kernel)
+{
+  dvi__kernel needed;
+  if (!copy_part(scene, kernel, DVI__BLOCKS, DVI__BLOCKS, 0, &needed)) return false;
+  return append(scene, list, &needed);
+}
+
+bool dvi__kernels_add_node(dvi__context *c, dvi__node root, dvi__kernels *list)
+{
+  if (c->graph->failed == DVI_BAD_SIZE)
+    return dvi__complain(c->scene->complaint, DVI_BAD_SIZE, DVI__NOWHERE, "more than 2000000 parts, with all sums written out");
+  if (c->graph->failed != DVI_OK) return dvi__scene_no_memory(c->scene);
+  if (c->scene->complaint->status != DVI_OK) return false;
+  const dvi__kernel all = {
+      .graph = c->graph, .root = root, .elements = c->elements, .input_count = c->input_count, .input = c->input};
+  return append_needed(c->scene, list, &all);
+}
+
+bool dvi__kernels_at_rest(dvi_scene *scene, const dvi__kernels *of, dvi__block block, int negative, dvi__kernels *list)
+{
+  for (int k = 0; k < of->count; k++) {
+    dvi__kernel part;
+    if (!copy_part(scene, &of->kernel[k], block, block, 0, &part)) return false;
+    if (negative) part.root = dvi__apply(part.graph, DVI__OP_NEGATE, part.root, 0);
+    const bool added = append_needed(scene, list, &part);
+    dvi__graph_free(part.graph);
+    if (!added) return false;
+  }
+  return true;
+}
+
+bool dvi__kernels_moving(dvi_scene *scene, const dvi__kernels *of, dvi__block block, dvi__block as, dvi__kernels *list)
+{
+  for (int k = 0; k < of->count; k++) {
+    dvi__kernel part;
+    if (!copy_part(scene, &of->kernel[k], block, as, 1, &part)) return false;
+    const bool added = append_needed(scene, list, &part);
+    dvi__graph_free(part.graph);
+    if (!added) return false;
+  }
+  return true;
+}
+
+/* ---- degrees ---- */
+
+static dvi__degree of_product(dvi__degree a, dvi__degree b)
+{
+  const int degree = a.degree + b.degree;
+  const int pure = (a.degree == 0 || (a.pure && !b.moves)) && (b.degree == 0 || (b.pure && !a.moves));
+  return (dvi__degree){degree > 3 ? 3 : degree, pure, a.moves || b.moves};
+}
+
+static dvi__degree of_input(const dvi__kernel_input *input, dvi__block block)
+{
+  if (input->is_data) return (dvi__degree){0, 1, 0};
+  return input->block == block ? (dvi__degree){1, 1, 0} : (dvi__degree){0, 1, 1};
+}
+
+static dvi__degree of_other(dvi__degree a, dvi__degree b)
+{
+  if (a.degree > 0 || b.degree > 0) return (dvi__degree){3, 0, 1};
+  return (dvi__degree){0, 1, a.moves || b.moves};
+}
+
+static dvi__degree of_node(const dvi__kernel *kernel, dvi__block block, const dvi__degree *known, int i)
+{
+  static const dvi__degree none = {0, 1, 0};
+  const dvi__graph_node *node = &kernel->graph->node[i];
+  switch (node->op) {
+  case DVI__OP_CONSTANT: return none;
+  case DVI__OP_INPUT: return of_input(&kernel->input[node->a], block);
+  case DVI__OP_NEGATE: return known[node->a];
+  case DVI__OP_SQUARE: return of_product(known[node->a], known[node->a]);
+  case DVI__OP_MULTIPLY: return of_product(known[node->a], known[node->b]);
+  case DVI__OP_ADD:
+  case DVI__OP_SUBTRACT: {
+    const dvi__degree a = known[node->a], b = known[node->b];
+    return (dvi__degree){a.degree > b.degree ? a.degree : b.degree, a.pure && b.pure, a.moves || b.moves};
+  }
+  case DVI__OP_DIVIDE:
+    return known[node->b].degree > 0 ? of_other(known[node->a], known[node->b]) : of_product(known[node->a], known[node->b]);
+  case DVI__OP_WHERE:
+    return known[node->a].degree > 0 ? of_other(known[node->a], known[node->b]) : of_product(known[node->a], known[node->b]);
+  case DVI__OP_RAISE:
+  case DVI__OP_ATAN2: return of_other(known[node->a], known[node->b]);
+  default: return of_other(known[node->a], none);
+  }
+}
+
+static int is_sum(dvi__op op)
+{
+  return op == DVI__OP_ADD || op == DVI__OP_SUBTRACT;
+}
+
+/* fits[i]: whether a node, of a sum all of its terms, is of degree 0, or of degree 2 and pure. */
+static void find_fits(const dvi__kernel *kernel, dvi__block block, dvi__degree *known, char *fits)
+{
+  for (int i = 0; i <= kernel->root; i++) {
+    const dvi__graph_node *node = &kernel->graph->node[i];
+    known[i] = of_node(kernel, block, known, i);
+    fits[i] = is_sum(node->op) ? fits[node->a] && fits[node->b] : known[i].degree == 0 || (known[i].degree == 2 && known[i].pure);
+  }
+}
+
+bool dvi__kernel_other_term(dvi_scene *scene, const dvi__kernel *kernel, dvi__block block, dvi__span *span, int *found)
+{
+  const dvi__graph_node *node = kernel->graph->node;
+  dvi__degree *known = dvi__heap_take((size_t)kernel->root + 1, sizeof *known);
+  char *fits = dvi__heap_take((size_t)kernel->root + 1, 1);
+  const bool good = (known != NULL && fits != NULL) || dvi__scene_no_memory(scene);
+  if (good) {
+    int at = kernel->root, sum = at;
+    find_fits(kernel, block, known, fits);
+    *found = !fits[at];
+    for (; is_sum(node[at].op); at = fits[node[at].a] ? node[at].b : node[at].a) sum = at;
+    *span = node[node[at].op == DVI__OP_INPUT ? sum : at].span; /* inputs are where they stand first */
+  }
+  dvi__heap_free(known);
+  dvi__heap_free(fits);
+  return good;
+}
+
+bool dvi__kernel_degree(dvi_scene *scene, const dvi__kernel *kernel, dvi__block block, dvi__degree *degree)
+{
+  dvi__degree *known = dvi__heap_take((size_t)kernel->root + 1, sizeof *known);
+  if (known == NULL) return dvi__scene_no_memory(scene);
+  for (int i = 0; i <= kernel->root; i++) known[i] = of_node(kernel, block, known, i);
+  *degree = known[kernel->root];
+  dvi__heap_free(known);
+  return true;
+}

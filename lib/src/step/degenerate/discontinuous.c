@@ -1,0 +1,409 @@
+#include "step/degenerate/discontinuous.h"
+
+#include <dvi/basis.h>
+#include <dvi/quadrature.h>
+#include <math.h>
+#include <string.h>
+
+#include "step/joint.h"
+#include "core/memory.h"
+#include "core/status.h"
+
+enum { MOST = DVI__DG_POINTS_MOST };
+
+struct dvi__discontinuous {
+  const dvi_system *system;
+  dvi__evaluator *evaluator;
+  int n, S, r, points;
+  double node[MOST], phi[MOST][MOST], dphi[MOST][MOST]; /* nodes of the basis; phi_k and phi_k' at c_i: [k][i] */
+  double b[MOST], c[MOST];
+  double side[MOST], weight[MOST]; /* of the path: 1/2 + s_g, w_g */
+  double lean;                     /* sum_g w_g s_g */
+  dvi__pattern joint, pattern;     /* joint: of one block; pattern: of the Jacobian */
+  dvi__block *block;               /* [entries of joint] */
+  int stiff;                       /* c is not 0 */
+  double *given;                   /* [n] c */
+  /* The step. */
+  double h;
+  dvi__dg_node from;
+  double *left, *stiffness;                           /* [n] dN/dq+ at its start; c with the sign of h */
+  double *t, *Q, *V, *L_q, *L_v, *H_qq, *H_qv, *H_vv; /* at c_i, component by component: [n*r] */
+  double *Y, *u;                                      /* [n*S] the coefficients less q*; [n] the jump at the end */
+  /* At one point of a path: the point, alpha, (Dalpha)^T u, and dN/dq- of them all, [n] each. */
+  double *y, *alpha, *gradient, *flux;
+  double *qq, *qv, *one_qq, *one_qv; /* Hessians at points of the path, entry by entry: [entries*points]; at one point */
+};
+
+/* ---- tables ---- */
+
+static double lagrange(const dvi__discontinuous *e, int k, double tau)
+{
+  double product = 1;
+  for (int l = 0; l < e->S; l++)
+    if (l != k) product *= (tau - e->node[l]) / (e->node[k] - e->node[l]);
+  return product;
+}
+
+static dvi_status fill_basis(dvi__discontinuous *e)
+{
+  double value[MOST], derivative[MOST];
+  DVI_TRY(dvi_quadrature(DVI_GAUSS, e->r, e->c, e->b));
+  if (e->S > 1) DVI_TRY(dvi_basis_nodes(DVI_LAGRANGE_LOBATTO, e->S - 1, e->node));
+  for (int i = 0; i < e->r; i++) {
+    value[0] = 1;
+    derivative[0] = 0;
+    if (e->S > 1) DVI_TRY(dvi_basis_evaluate(DVI_LAGRANGE_LOBATTO, e->S - 1, e->c[i], value, derivative));
+    for (int k = 0; k < e->S; k++) {
+      e->phi[k][i] = value[k];
+      e->dphi[k][i] = derivative[k];
+    }
+  }
+  return DVI_OK;
+}
+
+static dvi_status fill_path(dvi__discontinuous *e, const dvi__dg_space *space)
+{
+  e->points = space->points;
+  DVI_TRY(dvi_quadrature(DVI_GAUSS, e->points, e->side, e->weight));
+  if (space->flux == DVI__LEFT_FLUX) e->side[0] = 0;
+  if (space->flux == DVI__RIGHT_FLUX) e->side[0] = 1;
+  e->lean = space->flux == DVI__LEFT_FLUX ? -0.5 : space->flux == DVI__RIGHT_FLUX ? 0.5 : 0;
+  return DVI_OK;
+}
+
+/* ---- making it ---- */
+
+static double **owned(dvi__discontinuous *e, int i)
+{
+  double **const all[] = {&e->given, &e->stiffness, &e->left, &e->u,  &e->y,   &e->alpha,  &e->gradient,
+                          &e->flux,  &e->t,         &e->Q,    &e->V,  &e->L_q, &e->L_v,    &e->H_qq,
+                          &e->H_qv,  &e->H_vv,      &e->Y,    &e->qq, &e->qv,  &e->one_qq, &e->one_qv};
+  return i < (int)(sizeof all / sizeof *all) ? all[i] : NULL;
+}
+
+static dvi_status allocate(dvi__discontinuous *e)
+{
+  const size_t n = (size_t)e->n, r = (size_t)e->r, qq = (size_t)dvi__pattern_entries(&e->system->qq),
+               qv = (size_t)dvi__pattern_entries(&e->system->qv), points = (size_t)e->points;
+  const size_t size[] = {
+      n, n, n, n, n, n, n, n, r, n * r, n * r, n * r, n * r, qq * r, qv * r, 1, n * (size_t)e->S, qq * points, qv * points, qq, qv};
+  for (int i = 0; owned(e, i) != NULL; i++) {
+    *owned(e, i) = DVI_NEW(double, size[i] > 0 ? size[i] : 1);
+    if (*owned(e, i) == NULL) return dvi__fail(DVI_NO_MEMORY, "dg: no memory for degree %d in %d dimensions", e->S - 1, e->n);
+  }
+  return DVI_OK;
+}
+
+static dvi_status fill(dvi__discontinuous *e, const dvi__dg_space *space, dvi_counters *counters)
+{
+  DVI_TRY(dvi__joint_check(e->system, e->S, e->r));
+  DVI_TRY(fill_basis(e));
+  DVI_TRY(fill_path(e, space));
+  DVI_TRY(dvi__evaluator_create(e->system, e->r, DVI__HESSIANS, counters, &e->evaluator));
+  DVI_TRY(dvi__joint_create(e->system, &e->joint, &e->block));
+  DVI_TRY(dvi__pattern_blocks(&e->joint, e->S, &e->pattern));
+  DVI_TRY(allocate(e));
+  e->stiff = space->stiffness_count > 0;
+  for (int i = 0; e->stiff && i < e->n; i++) e->given[i] = space->stiffness[space->stiffness_count > 1 ? i : 0];
+  return DVI_OK;
+}
+
+dvi_status dvi__discontinuous_create(const dvi_system *system, const dvi__dg_space *space, dvi_counters *counters,
+                                     dvi__discontinuous **element)
+{
+  *element = NULL;
+  dvi__discontinuous *e = DVI_NEW(dvi__discontinuous, 1);
+  if (e == NULL) return dvi__fail(DVI_NO_MEMORY, "dg: no memory");
+  e->system = system;
+  e->n = system->n;
+  e->S = space->degree + 1;
+  e->r = space->nodes;
+  const dvi_status status = fill(e, space, counters);
+  if (status != DVI_OK) dvi__discontinuous_destroy(&e);
+  *element = e;
+  return status;
+}
+
+void dvi__discontinuous_destroy(dvi__discontinuous **element)
+{
+  dvi__discontinuous *e = *element;
+  if (e == NULL) return;
+  for (int i = 0; owned(e, i) != NULL; i++) dvi__release(*owned(e, i));
+  dvi__evaluator_destroy(&e->evaluator);
+  dvi__pattern_clear(&e->joint);
+  dvi__pattern_clear(&e->pattern);
+  dvi__release(e->block);
+  dvi__release(e);
+  *element = NULL;
+}
+
+const dvi__pattern *dvi__discontinuous_pattern(const dvi__discontinuous *e)
+{
+  return &e->pattern;
+}
+
+dvi__evaluator *dvi__discontinuous_evaluator(const dvi__discontinuous *e)
+{
+  return e->evaluator;
+}
+
+/* ---- the nodes ---- */
+
+/* dN/dq+ (`plus`) or dN/dq- at q- = q* + below, with the jump u. p = alpha(q*) is taken off alpha here and in the element, for roundings' sake: what a
+ * constant has in the rows adds up to nothing. */
+static dvi_status node_gradient(dvi__discontinuous *e, const double *below, int stride, const double *u, int plus, double *gradient)
+{
+  for (int i = 0; i < e->n; i++) gradient[i] = (plus ? e->stiffness[i] : -e->stiffness[i]) * u[i];
+  for (int g = 0; g < e->points; g++) {
+    const double sign = plus ? e->weight[g] : -e->weight[g], turn = e->weight[g] * (plus ? e->side[g] : 1 - e->side[g]);
+    for (int i = 0; i < e->n; i++) e->y[i] = e->from.q[i] + (below[i * stride] + e->side[g] * u[i]);
+    DVI_TRY(dvi__form_gradient(e->evaluator, e->y, u, e->gradient, e->alpha));
+    for (int i = 0; i < e->n; i++) gradient[i] += sign * (e->alpha[i] - e->from.p[i]) + turn * e->gradient[i];
+  }
+  return DVI_OK;
+}
+
+dvi_status dvi__discontinuous_place(dvi__discontinuous *e, double t0, double h, const dvi__dg_node *node)
+{
+  e->h = h;
+  e->from = *node;
+  for (int i = 0; i < e->n; i++) e->stiffness[i] = copysign(e->given[i], h);
+  for (int i = 0; i < e->r; i++) e->t[i] = t0 + e->c[i] * h;
+  for (int i = 0; i < e->n; i++) {
+    e->u[i] = node->offset[i] - 0.5 * node->jump[i];
+    e->Y[i * e->S] = node->offset[i] + 0.5 * node->jump[i];
+  }
+  return node_gradient(e, e->u, 1, node->jump, 1, e->left);
+}
+
+/* ---- residual ---- */
+
+static double dot(int count, const double *x, const double *y)
+{
+  double sum = 0;
+  for (int j = 0; j < count; j++) sum += x[j] * y[j];
+  return sum;
+}
+
+static void spread(dvi__discontinuous *e, const double *x)
+{
+  const size_t S = (size_t)e->S, r = (size_t)e->r;
+  for (size_t i = 0; i < (size_t)e->n; i++, x += S) {
+    double *Y = e->Y + i * S;
+    memcpy(Y + 1, x, (S - 1) * sizeof *Y);
+    e->u[i] = x[S - 1];
+    for (size_t k = 0; k < r; k++) {
+      double value = 0, slope = 0;
+      for (size_t l = 0; l < S; l++) {
+        value += e->phi[l][k] * Y[l];
+        slope += e->dphi[l][k] * Y[l];
+      }
+      e->Q[i * r + k] = e->from.q[i] + value;
+      e->V[i * r + k] = slope / e->h;
+    }
+  }
+}
+
+dvi_status dvi__discontinuous_residual(dvi__discontinuous *e, const double *x, double *R)
+{
+  const size_t S = (size_t)e->S, r = (size_t)e->r;
+  spread(e, x);
+  DVI_TRY(dvi__lagrangian_gradient(e->evaluator, e->r, e->t, e->Q, e->V, e->L_q, e->L_v));
+  DVI_TRY(node_gradient(e, e->Y + S - 1, e->S, e->u, 0, e->flux));
+  for (size_t i = 0; i < (size_t)e->n; i++) {
+    double *row = R + i * S;
+    for (size_t k = 0; k < S; k++) {
+      row[k] = 0;
+      for (size_t l = 0; l < r; l++)
+        row[k] += e->b[l] * (e->h * e->phi[k][l] * e->L_q[i * r + l] + e->dphi[k][l] * (e->L_v[i * r + l] - e->from.p[i]));
+    }
+    row[0] += e->left[i];
+    row[S - 1] += e->flux[i];
+  }
+  return DVI_OK;
+}
+
+/* ---- Jacobian ---- */
+
+static dvi_status hessians_on_path(dvi__discontinuous *e)
+{
+  const int qq = dvi__pattern_entries(&e->system->qq), qv = dvi__pattern_entries(&e->system->qv);
+  for (int g = 0; g < e->points; g++) {
+    for (int i = 0; i < e->n; i++) e->y[i] = e->from.q[i] + (e->Y[(i + 1) * e->S - 1] + e->side[g] * e->u[i]);
+    DVI_TRY(dvi__form_hessian(e->evaluator, e->y, e->u, e->one_qq, e->one_qv));
+    for (int k = 0; k < qq; k++) e->qq[k * e->points + g] = e->one_qq[k];
+    for (int k = 0; k < qv; k++) e->qv[k * e->points + g] = e->one_qv[k];
+  }
+  return DVI_OK;
+}
+
+/* What one entry (i,j) of the joint pattern has at c_i: d alpha_i/dq_j (A), d alpha_j/dq_i (B), h d2L/dq2 (K); and the derivatives of dN/dq- by q- and
+ * by the jump. */
+typedef struct entry {
+  double A[MOST], B[MOST], K[MOST];
+  double by_trace, by_jump;
+} entry;
+
+static double at(const double *values, int where, int count, int point)
+{
+  return where >= 0 ? values[where * count + point] : 0;
+}
+
+static void gather(const dvi__discontinuous *e, const dvi__block *where, double stiffness, entry *out)
+{
+  for (int k = 0; k < e->r; k++) {
+    out->A[k] = at(e->H_qv, where->vq, e->r, k);
+    out->B[k] = at(e->H_qv, where->qv, e->r, k);
+    out->K[k] = e->h * at(e->H_qq, where->qq, e->r, k);
+  }
+  out->by_trace = 0;
+  out->by_jump = -stiffness;
+  for (int g = 0; g < e->points; g++) {
+    const double A = at(e->qv, where->vq, e->points, g), B = at(e->qv, where->qv, e->points, g);
+    const double H = at(e->qq, where->qq, e->points, g), plus = e->side[g], minus = 1 - plus;
+    out->by_trace += e->weight[g] * (minus * H - A);
+    out->by_jump += e->weight[g] * (plus * minus * H + minus * B - plus * A);
+  }
+}
+
+/* Rows of a block in its column of the coefficient X_l, 0 < l. */
+static void coefficient_column(const dvi__discontinuous *e, const entry *of, int l, double *column)
+{
+  for (int k = 0; k < e->S; k++) {
+    column[k] = 0;
+    for (int i = 0; i < e->r; i++)
+      column[k] += e->b[i] *
+                   (e->phi[k][i] * (e->phi[l][i] * of->K[i] + e->dphi[l][i] * of->B[i]) + e->dphi[k][i] * e->phi[l][i] * of->A[i]);
+  }
+  if (l == e->S - 1) column[l] += of->by_trace;
+}
+
+dvi_status dvi__discontinuous_jacobian(dvi__discontinuous *e, const double *x, double *values)
+{
+  const size_t S = (size_t)e->S;
+  spread(e, x);
+  DVI_TRY(dvi__lagrangian_hessian(e->evaluator, e->r, e->t, e->Q, e->V, e->H_qq, e->H_qv, e->H_vv));
+  DVI_TRY(hessians_on_path(e));
+  for (int j = 0; j < e->n; j++) {
+    const size_t first = (size_t)e->joint.start[j], length = (size_t)e->joint.start[j + 1] - first;
+    for (size_t k = 0; k < length; k++) {
+      entry of;
+      double *columns = values + S * S * first + k * S, *last = columns + (S - 1) * length * S;
+      gather(e, &e->block[first + k], e->joint.row[first + k] == j ? e->stiffness[j] : 0, &of);
+      for (int l = 1; l < e->S; l++) coefficient_column(e, &of, l, columns + (size_t)(l - 1) * length * S);
+      memset(last, 0, S * sizeof *last);
+      last[S - 1] = of.by_jump;
+    }
+  }
+  return DVI_OK;
+}
+
+dvi_status dvi__discontinuous_scale(dvi__discontinuous *e, double *scale)
+{
+  DVI_TRY(dvi__form_scale(e->evaluator, e->from.q, e->alpha));
+  for (int i = 0; i < e->n; i++)
+    for (int k = 0; k < e->S; k++) scale[i * e->S + k] = fmax(e->alpha[i], e->given[i]);
+  return DVI_OK;
+}
+
+/* ---- the end ---- */
+
+/* {q} - q* = Omega^-1 C u at {q} = e->y, C = c + lean (Dalpha + (Dalpha)^T) = c + lean (2 (Dalpha)^T - Omega). */
+static dvi_status offset_of(dvi__discontinuous *e, const double *u, double *offset)
+{
+  memset(offset, 0, (size_t)e->n * sizeof *offset);
+  if (!e->stiff && e->lean == 0) return DVI_OK;
+  DVI_TRY(dvi__form_gradient(e->evaluator, e->y, u, e->gradient, e->alpha));
+  for (int i = 0; i < e->n; i++) offset[i] = e->stiffness[i] * u[i] + 2 * e->lean * e->gradient[i];
+  DVI_TRY(dvi__two_form_factor(e->evaluator, e->y));
+  dvi__two_form_solve(e->evaluator, offset);
+  for (int i = 0; i < e->n; i++) offset[i] -= e->lean * u[i];
+  return DVI_OK;
+}
+
+dvi_status dvi__discontinuous_end(dvi__discontinuous *e, const double *x, double *dq, double *jump, double *offset,
+                                  double *coefficients)
+{
+  const int S = e->S;
+  spread(e, x);
+  for (int i = 0; i < e->n; i++) {
+    dq[i] = e->Y[(i + 1) * S - 1] + 0.5 * e->u[i];
+    e->y[i] = e->from.q[i] + dq[i];
+  }
+  DVI_TRY(offset_of(e, e->u, offset));
+  memcpy(jump, e->u, (size_t)e->n * sizeof *jump);
+  for (int i = 0; i < e->n; i++) {
+    dq[i] -= offset[i];
+    for (int k = 0; k < S; k++) coefficients[i * S + k] = e->Y[i * S + k] - dq[i];
+  }
+  return DVI_OK;
+}
+
+/* ---- the start ---- */
+
+/* y = Omega(q*) x. */
+static dvi_status times_two_form(dvi__discontinuous *e, const double *x, double *y)
+{
+  const dvi__pattern *qv = &e->system->qv;
+  DVI_TRY(dvi__form_hessian(e->evaluator, e->from.q, x, e->one_qq, e->one_qv));
+  memset(y, 0, (size_t)e->n * sizeof *y);
+  for (int j = 0; j < e->n; j++)
+    for (int k = qv->start[j]; k < qv->start[j + 1]; k++) {
+      y[qv->row[k]] += e->one_qv[k] * x[j];
+      y[j] -= e->one_qv[k] * x[qv->row[k]];
+    }
+  return DVI_OK;
+}
+
+int dvi__discontinuous_can_settle(const dvi__discontinuous *e)
+{
+  return e->S % 2 == 1 || (e->stiff && e->lean == 0);
+}
+
+/* {q} - q* at the start, where q* is known and {q} is not: by iteration, which a jump contracts. */
+static dvi_status offset_at_start(dvi__discontinuous *e, const double *jump, double *offset)
+{
+  const int enough = 8;
+  for (int k = 0; k < enough; k++) {
+    for (int i = 0; i < e->n; i++) e->y[i] = e->from.q[i] + offset[i];
+    DVI_TRY(offset_of(e, jump, offset));
+  }
+  return DVI_OK;
+}
+
+/* (1 - M)^-1 of what the jump changed by: 1/2 - Omega^-1 C for odd S, 1/2 - Omega/(4c) for even S. */
+dvi_status dvi__discontinuous_settle(dvi__discontinuous *e, const double *x, double *jump, double *offset)
+{
+  const int even = e->S % 2 == 0;
+  spread(e, x);
+  for (int i = 0; i < e->n; i++) {
+    e->u[i] -= jump[i];
+    e->y[i] = e->from.q[i] + offset[i];
+  }
+  if (even)
+    DVI_TRY(times_two_form(e, e->u, e->flux));
+  else
+    DVI_TRY(offset_of(e, e->u, e->flux));
+  for (int i = 0; i < e->n; i++) jump[i] += 0.5 * e->u[i] - (even ? e->flux[i] / (4 * e->stiffness[i]) : e->flux[i]);
+  return offset_at_start(e, jump, offset);
+}
+
+/* ---- guesses ---- */
+
+void dvi__discontinuous_straight(const dvi__discontinuous *e, const double *v, double *x)
+{
+  for (int i = 0; i < e->n; i++, x += e->S) {
+    for (int k = 1; k < e->S; k++) x[k - 1] = e->node[k] * e->h * v[i];
+    x[e->S - 1] = 0;
+  }
+}
+
+void dvi__discontinuous_continue(const dvi__discontinuous *e, double ratio, const double *coefficients, double *x)
+{
+  for (int k = 1; k < e->S; k++) {
+    double weight[MOST];
+    for (int l = 0; l < e->S; l++) weight[l] = lagrange(e, l, 1 + ratio * e->node[k]);
+    for (int i = 0; i < e->n; i++) x[i * e->S + k - 1] = e->from.jump[i] + dot(e->S, weight, coefficients + i * e->S);
+  }
+  for (int i = 0; i < e->n; i++) x[(i + 1) * e->S - 1] = e->from.jump[i];
+}

@@ -1,0 +1,165 @@
+#include "step/element/action.h"
+
+#include <string.h>
+
+#include "step/element/action_struct.h"
+#include "step/element/sweep.h"
+#include "step/element/table.h"
+#include "core/memory.h"
+#include "core/status.h"
+
+static int allocate_batches(dvi__action *a)
+{
+  const size_t batch = (size_t)a->n * (size_t)a->r;
+  a->t = DVI_NEW(double, a->r);
+  a->Q = DVI_NEW(double, batch);
+  a->V = DVI_NEW(double, batch);
+  a->L_q = DVI_NEW(double, batch);
+  a->L_v = DVI_NEW(double, batch);
+  a->line = DVI_NEW(double, 2 * (size_t)a->s + 2 * (size_t)a->r);
+  a->rows = DVI_NEW(double, (size_t)a->n *(size_t)a->s);
+  return a->t && a->Q && a->V && a->L_q && a->L_v && a->line && a->rows;
+}
+
+static dvi_status allocate_chord(dvi__action *a, dvi_counters *counters)
+{
+  const dvi_system *system = a->system;
+  if (system->lagrangian == NULL || system->terms & DVI__ONE_FORM) return DVI_OK;
+  a->middle[0] = DVI_NEW(double, a->n);
+  a->middle[1] = DVI_NEW(double, a->n);
+  a->middle_vv = DVI_NEW(double, dvi__pattern_entries(&system->vv));
+  if (a->n <= DVI__CHORD_INVERSE) a->chord_inverse = DVI_NEW(double, (size_t)a->n *(size_t)a->n);
+  if (!a->middle[0] || !a->middle[1] || !a->middle_vv || (a->n <= DVI__CHORD_INVERSE && !a->chord_inverse))
+    return dvi__fail(DVI_NO_MEMORY, "action: no memory for the velocity Hessian");
+  return dvi__linear_create(&system->vv, DVI__LINEAR_AUTO, counters, &a->chord);
+}
+
+static dvi_status fill(dvi__action *a, dvi_counters *counters)
+{
+  if (!a->shaped) DVI_TRY(dvi__joint_check(a->system, a->s, a->r));
+  DVI_TRY(dvi__action_fill_tables(a));
+  const int capacity = a->r > a->s ? a->r : a->s; /* a batch of s is solved for at once in the chord */
+  DVI_TRY(dvi__evaluator_create(a->system, capacity, DVI__HESSIANS, counters, &a->evaluator));
+  if (!allocate_batches(a)) return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d nodes in %d dimensions", a->r, a->n);
+  if (a->shaped) return DVI_OK;
+  DVI_TRY(dvi__action_prepare_sweep(a));
+  return allocate_chord(a, counters);
+}
+
+static dvi_status create(const dvi_system *system, const dvi__action_space *space, int shaped, dvi_counters *counters,
+                         dvi__action **action)
+{
+  *action = NULL;
+  dvi__action *a = DVI_NEW(dvi__action, 1);
+  if (a == NULL) return dvi__fail(DVI_NO_MEMORY, "action: no memory");
+  a->system = system;
+  a->space = *space;
+  a->n = system->n;
+  a->s = space->degree;
+  a->r = space->nodes;
+  a->shaped = shaped;
+  const dvi_status status = fill(a, counters);
+  if (status != DVI_OK) dvi__action_destroy(&a);
+  *action = a;
+  return status;
+}
+
+dvi_status dvi__action_create(const dvi_system *system, const dvi__action_space *space, dvi_counters *counters,
+                              dvi__action **action)
+{
+  return create(system, space, 0, counters, action);
+}
+
+dvi_status dvi__action_create_shaped(const dvi_system *system, int functions, int points, dvi_counters *counters,
+                                     dvi__action **action)
+{
+  return create(system, &(dvi__action_space){.degree = functions, .nodes = points}, 1, counters, action);
+}
+
+void dvi__action_destroy(dvi__action **action)
+{
+  dvi__action *a = *action;
+  if (a == NULL) return;
+  double *const owned[] = {a->correction,
+                           a->end_q,
+                           a->end_dp,
+                           a->psi,
+                           a->dpsi,
+                           a->bar,
+                           a->node,
+                           a->weight,
+                           a->end,
+                           a->stiffness,
+                           a->stiffness_inverse,
+                           a->fit_point,
+                           a->fit,
+                           a->straight,
+                           a->shift.table,
+                           a->shift_rows,
+                           a->rows,
+                           a->bar_row,
+                           a->slope_row,
+                           a->stiffness_row,
+                           a->t,
+                           a->Q,
+                           a->V,
+                           a->L_q,
+                           a->L_v,
+                           a->line,
+                           a->middle_vv,
+                           a->chord_inverse,
+                           a->middle[0],
+                           a->middle[1],
+                           a->H_qq,
+                           a->H_qv,
+                           a->H_vv,
+                           a->sweep_matrix,
+                           a->sweep_node,
+                           a->sweep_slant,
+                           a->sweep_path,
+                           a->sweep_start,
+                           a->sweep_low,
+                           a->sweep_factor,
+                           a->sweep_weight,
+                           a->Z,
+                           a->sweep_shift.table};
+  for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) dvi__release(owned[i]);
+  dvi__action_clear_between(a);
+  dvi__action_clear_energy(a);
+  dvi__linear_destroy(&a->chord);
+  dvi__evaluator_destroy(&a->evaluator);
+  dvi__pattern_clear(&a->joint);
+  dvi__pattern_clear(&a->pattern);
+  dvi__release(a->block);
+  dvi__release(a);
+  *action = NULL;
+}
+
+dvi__action_space dvi__action_space_of(const dvi__action *action)
+{
+  return action->space;
+}
+
+int dvi__action_unknowns(const dvi__action *action)
+{
+  return action->n * action->s;
+}
+
+int dvi__action_nodes(const dvi__action *action)
+{
+  return action->r;
+}
+
+dvi__evaluator *dvi__action_evaluator(const dvi__action *action)
+{
+  return action->evaluator;
+}
+
+void dvi__action_place(dvi__action *action, double t0, double h, const double *q0, const double *p0)
+{
+  action->t0 = t0;
+  action->h = h;
+  action->q0 = q0;
+  action->p0 = p0;
+  for (int j = 0; j < action->r; j++) action->t[j] = t0 + action->node[j] * h;
+}

@@ -1,0 +1,98 @@
+/* A first guess: what the last step found, continued beyond its end. */
+#include <math.h>
+
+#include "step/element/action_struct.h"
+#include "num/cholesky.h"
+#include "num/simd/lanes.h"
+#include "space/legendre.h"
+#include "space/trial.h"
+
+/* Continuing a polynomial of degree d one step further multiplies rounding errors by about 6^d and gains little beyond this degree. */
+enum { CONTINUED_DEGREE = 10 };
+
+/* The table for this ratio; if it is not kept, the oldest one is to be filled. */
+static double *table_for(dvi__shifts *shifts, size_t size, double ratio, int *known)
+{
+  for (size_t k = 0; k < DVI__SHIFTS; k++)
+    if (shifts->ratio[k] == ratio) {
+      *known = 1;
+      return shifts->table + k * size;
+    }
+  const int place = shifts->oldest;
+  *known = 0;
+  shifts->ratio[place] = ratio;
+  shifts->oldest = (place + 1) % DVI__SHIFTS;
+  return shifts->table + (size_t)place * size;
+}
+
+/* ---- paths ---- */
+
+static void fill_path(const dvi__action *a, double ratio, double *shift)
+{
+  const size_t s = (size_t)a->s, lanes = (size_t)a->path_lanes;
+  dvi__trial_shift(a->space.basis, a->s, a->s < CONTINUED_DEGREE ? a->s : CONTINUED_DEGREE, ratio, a->shift_rows);
+  for (size_t k = 0; k < s; k++)
+    for (size_t l = 0; l < s; l++) shift[l * lanes + k] = a->shift_rows[k * s + l];
+}
+
+void dvi__action_continue(dvi__action *a, double ratio, const double *last, double *Y)
+{
+  int known;
+  double *shift = table_for(&a->shift, (size_t)a->s * (size_t)a->path_lanes, ratio, &known);
+  if (!known) fill_path(a, ratio, shift);
+  dvi__lanes_product(a->n, a->s, a->path_lanes, a->s, shift, last, Y);
+}
+
+/* ---- forces ---- */
+
+/* A polynomial in the Legendre basis fitted to values at the nodes, evaluated at the nodes of the next step: value_j = sum_k b_k U_j.W_k value_k with
+ * W_k = C^{-1} P(c_k), U_j = C^{-1} P(1 + ratio c_j), C C^T = sum_k b_k P(c_k) P(c_k)^T. */
+typedef struct fit {
+  int terms;
+  long double U[DVI_QUADRATURE_MAX][CONTINUED_DEGREE], W[DVI_QUADRATURE_MAX][CONTINUED_DEGREE];
+  long double C[CONTINUED_DEGREE * CONTINUED_DEGREE];
+} fit;
+
+static void fill_fit(const dvi__action *a, double ratio, fit *f)
+{
+  long double difference[CONTINUED_DEGREE];
+  const int terms = f->terms = a->r < CONTINUED_DEGREE ? a->r : CONTINUED_DEGREE;
+  for (int k = 0; k < terms * terms; k++) f->C[k] = 0;
+  for (int j = 0; j < a->r; j++) {
+    const long double tau = a->node[j];
+    dvi__legendre(terms - 1, 1 - tau, f->W[j], difference);
+    dvi__legendre(terms - 1, -ratio * tau, f->U[j], difference);
+    for (int k = 0; k < terms; k++)
+      for (int l = 0; l <= k; l++) f->C[k * terms + l] += a->weight[j] * f->W[j][k] * f->W[j][l];
+  }
+  dvi__cholesky(terms, f->C);
+  for (int j = 0; j < a->r; j++) {
+    dvi__cholesky_half(terms, f->C, f->U[j]);
+    dvi__cholesky_half(terms, f->C, f->W[j]);
+  }
+}
+
+/* From g of the last step to sum_j (c_i - P_ij) g_j of this one: with g_j = h b_j L_q_j the weights b_k of the fit cancel. */
+static void fill_forces(const dvi__action *a, double ratio, double *shift)
+{
+  fit f;
+  fill_fit(a, ratio, &f);
+  for (int i = 0; i < a->r; i++) {
+    long double row[CONTINUED_DEGREE] = {0};
+    for (int j = 0; j < a->r; j++)
+      for (int m = 0; m < f.terms; m++) row[m] += a->sweep_matrix[j * a->lanes + i] * ratio * a->weight[j] * f.U[j][m];
+    for (int k = 0; k < a->r; k++) {
+      long double sum = 0;
+      for (int m = 0; m < f.terms; m++) sum += row[m] * f.W[k][m];
+      shift[k * a->lanes + i] = (double)sum;
+    }
+  }
+}
+
+const double *dvi__action_sweep_shift(dvi__action *a, double ratio)
+{
+  int known;
+  double *shift = table_for(&a->sweep_shift, (size_t)a->r * (size_t)a->lanes, ratio, &known);
+  if (!known) fill_forces(a, ratio, shift);
+  return shift;
+}

@@ -1,0 +1,222 @@
+#include "step/element/decoupled.h"
+
+#include <string.h>
+
+#include "step/element/action_struct.h"
+#include "core/memory.h"
+#include "core/status.h"
+#include "num/eigen.h"
+#include "num/simd/lanes.h"
+
+/* One real eigenvalue, or a pair of complex ones. */
+typedef struct mode {
+  int place, parts;  /* its first coefficient, and how many it has: 1 or 2 */
+  double U[2], T[2]; /* real and imaginary part */
+  dvi__linear *linear;
+} mode;
+
+struct dvi__decoupled {
+  dvi__action *action;
+  dvi_counters *counters;
+  int modes;
+  mode mode[DVI_DEGREE_MAX];
+  double *in, *out;                 /* [s*lanes] by columns: X^{-1} K^{-1} and X */
+  double *values, *b, *coefficient; /* [2 entries], [2 n], [n*s] */
+  double h, *point;                 /* what is frozen: the step (0: nothing), and t, q, v */
+};
+
+/* ---- tables ---- */
+
+/* sum_j b_j left_k right_l by columns. */
+static void gram(const dvi__action *a, const double *left, const double *right, double *sum)
+{
+  for (int l = 0; l < a->s; l++)
+    for (int k = 0; k < a->s; k++) {
+      sum[l * a->s + k] = 0;
+      for (int j = 0; j < a->r; j++) sum[l * a->s + k] += a->weight[j] * left[k * a->lanes + j] * right[l * a->lanes + j];
+    }
+}
+
+/* product = A B, all by columns; K^{-1} is symmetric, so that its rows are its columns. */
+static void multiply(int s, const double *A, const double *B, double *product)
+{
+  for (int l = 0; l < s; l++)
+    for (int k = 0; k < s; k++) {
+      product[l * s + k] = 0;
+      for (int m = 0; m < s; m++) product[l * s + k] += A[m * s + k] * B[l * s + m];
+    }
+}
+
+static void pad(int s, const double *columns, double *padded)
+{
+  const int lanes = dvi__lanes_for(s);
+  for (int l = 0; l < s; l++)
+    for (int k = 0; k < s; k++) padded[l * lanes + k] = columns[l * s + k];
+}
+
+/* Of a pair's two columns the first and second coefficients alpha, beta stand for alpha - i beta: D then multiplies it by a + ib. */
+static dvi_status make_modes(dvi__decoupled *d, int mixed, const double *real_part, const double *imaginary_part)
+{
+  dvi__action *a = d->action;
+  for (int k = 0; k < a->s; k += d->mode[d->modes - 1].parts) {
+    mode *m = &d->mode[d->modes];
+    const double x = real_part[k], y = imaginary_part[k];
+    *m = (mode){.place = k, .parts = y != 0 ? 2 : 1};
+    d->modes++;
+    if (mixed)
+      m->T[0] = x, m->T[1] = y, m->U[0] = y * y - x * x, m->U[1] = -2 * x * y;
+    else
+      m->U[0] = x, m->U[1] = y;
+    const dvi__linear_kind kind = y != 0 ? DVI__LINEAR_COMPLEX : DVI__LINEAR_SPARSE;
+    DVI_TRY(k == 0 ? dvi__linear_create(&a->joint, kind, d->counters, &m->linear)
+                   : dvi__linear_create_like(d->mode[0].linear, kind, d->counters, &m->linear));
+  }
+  return DVI_OK;
+}
+
+/* What the tables are made from; s x s each. */
+typedef struct workspace {
+  double matrix[DVI_DEGREE_MAX * DVI_DEGREE_MAX], X[DVI_DEGREE_MAX * DVI_DEGREE_MAX], inverse[DVI_DEGREE_MAX * DVI_DEGREE_MAX],
+      product[DVI_DEGREE_MAX * DVI_DEGREE_MAX], real_part[DVI_DEGREE_MAX], imaginary_part[DVI_DEGREE_MAX];
+} workspace;
+
+static dvi_status fill(dvi__decoupled *d, workspace *w)
+{
+  dvi__action *a = d->action;
+  const int mixed = dvi__pattern_entries(&a->system->qv) > 0;
+  gram(a, mixed ? a->dpsi : a->bar, a->psi, w->product);
+  multiply(a->s, a->stiffness_inverse, w->product, w->matrix);
+  DVI_TRY(dvi__eigen(a->s, w->matrix, w->real_part, w->imaginary_part, w->X, w->inverse));
+  multiply(a->s, w->inverse, a->stiffness_inverse, w->product);
+  pad(a->s, w->product, d->in);
+  pad(a->s, w->X, d->out);
+  return make_modes(d, mixed, w->real_part, w->imaginary_part);
+}
+
+static dvi_status allocate(dvi__decoupled *d)
+{
+  const dvi__action *a = d->action;
+  const size_t n = (size_t)a->n, s = (size_t)a->s, lanes = (size_t)dvi__lanes_for(a->s);
+  d->in = DVI_NEW(double, s *lanes);
+  d->out = DVI_NEW(double, s *lanes);
+  d->values = DVI_NEW(double, 2 * (size_t)dvi__pattern_entries(&a->joint));
+  d->b = DVI_NEW(double, 2 * n);
+  d->coefficient = DVI_NEW(double, n *s);
+  d->point = DVI_NEW(double, dvi__decoupled_point_size(d));
+  if (d->in && d->out && d->values && d->b && d->coefficient && d->point) return DVI_OK;
+  return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d decoupled systems in %d dimensions", a->s, a->n);
+}
+
+dvi_status dvi__decoupled_create(dvi__action *action, dvi_counters *counters, dvi__decoupled **decoupled)
+{
+  *decoupled = NULL;
+  dvi__decoupled *d = DVI_NEW(dvi__decoupled, 1);
+  workspace *w = DVI_NEW(workspace, 1);
+  dvi_status status = d != NULL && w != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "action: no memory");
+  if (status == DVI_OK) {
+    d->action = action;
+    d->counters = counters;
+    status = allocate(d);
+  }
+  if (status == DVI_OK) status = fill(d, w);
+  dvi__release(w);
+  if (status != DVI_OK && d != NULL) dvi__decoupled_destroy(&d);
+  *decoupled = d;
+  return status;
+}
+
+void dvi__decoupled_destroy(dvi__decoupled **decoupled)
+{
+  dvi__decoupled *d = *decoupled;
+  if (d == NULL) return;
+  for (int m = d->modes - 1; m >= 0; m--) dvi__linear_destroy(&d->mode[m].linear); /* the first one lends its analysis */
+  dvi__release(d->in);
+  dvi__release(d->out);
+  dvi__release(d->values);
+  dvi__release(d->b);
+  dvi__release(d->coefficient);
+  dvi__release(d->point);
+  dvi__release(d);
+  *decoupled = NULL;
+}
+
+/* ---- factors ---- */
+
+static double entry(const double *H, int place)
+{
+  return place >= 0 ? H[place] : 0.0;
+}
+
+/* h U L_qq + T (L_vq - L_qv) + L_vv/h on the joint pattern. */
+static void assemble(const dvi__action *a, const mode *m, double *values)
+{
+  for (int e = 0, at = 0; e < dvi__pattern_entries(&a->joint); e++) {
+    const dvi__block *block = &a->block[e];
+    const double qq = a->h * entry(a->H_qq, block->qq), mixed = entry(a->H_qv, block->vq) - entry(a->H_qv, block->qv);
+    for (int part = 0; part < m->parts; part++, at++)
+      values[at] = m->U[part] * qq + m->T[part] * mixed + (part == 0 ? entry(a->H_vv, block->vv) / a->h : 0.0);
+  }
+}
+
+int dvi__decoupled_point_size(const dvi__decoupled *d)
+{
+  return 1 + 2 * d->action->n;
+}
+
+void dvi__decoupled_point(const dvi__decoupled *d, const double *Y, double *point)
+{
+  const dvi__action *a = d->action;
+  double *q = point + 1, *v = q + a->n;
+  point[0] = a->t0 + 0.5 * a->h;
+  dvi__action_path(a, Y, a->h, 0.5, q, v);
+  for (int i = 0; i < a->n; i++) q[i] += a->q0[i];
+}
+
+static dvi_status factor(dvi__decoupled *d)
+{
+  dvi__action *a = d->action;
+  const double *q = d->point + 1, *v = q + a->n;
+  d->counters->jacobians++;
+  DVI_TRY(dvi__lagrangian_hessian(a->evaluator, 1, d->point, q, v, a->H_qq, a->H_qv, a->H_vv));
+  for (int m = 0; m < d->modes; m++) {
+    assemble(a, &d->mode[m], d->values);
+    DVI_TRY(dvi__linear_factor(d->mode[m].linear, d->values));
+  }
+  return DVI_OK;
+}
+
+dvi_status dvi__decoupled_freeze(dvi__decoupled *d, const double *point)
+{
+  const size_t bytes = (size_t)dvi__decoupled_point_size(d) * sizeof(double);
+  if (d->h == d->action->h && memcmp(d->point, point, bytes) == 0) return DVI_OK;
+  memcpy(d->point, point, bytes);
+  const dvi_status status = factor(d);
+  d->h = status == DVI_OK ? d->action->h : 0;
+  return status;
+}
+
+/* ---- solving ---- */
+
+static void solve_mode(dvi__decoupled *d, const mode *m)
+{
+  const size_t s = (size_t)d->action->s, n = (size_t)d->action->n;
+  double *coefficient = d->coefficient + m->place;
+  if (m->parts == 1) {
+    for (size_t i = 0; i < n; i++) d->b[i] = coefficient[i * s];
+    dvi__linear_solve(m->linear, d->b);
+    for (size_t i = 0; i < n; i++) coefficient[i * s] = d->b[i];
+    return;
+  }
+  for (size_t i = 0; i < n; i++) d->b[2 * i] = coefficient[i * s], d->b[2 * i + 1] = -coefficient[i * s + 1];
+  dvi__linear_solve(m->linear, d->b);
+  for (size_t i = 0; i < n; i++) coefficient[i * s] = d->b[2 * i], coefficient[i * s + 1] = -d->b[2 * i + 1];
+}
+
+void dvi__decoupled_solve(dvi__decoupled *d, double *R)
+{
+  const dvi__action *a = d->action;
+  const int lanes = dvi__lanes_for(a->s);
+  dvi__lanes_product(a->n, a->s, lanes, a->s, d->in, R, d->coefficient);
+  for (int m = 0; m < d->modes; m++) solve_mode(d, &d->mode[m]);
+  dvi__lanes_product(a->n, a->s, lanes, a->s, d->out, d->coefficient, R);
+}

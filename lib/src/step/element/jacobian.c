@@ -1,0 +1,95 @@
+/* The Jacobian of the stationarity rows: one s x s block for each entry of the Hessian's joint pattern. */
+#include "step/element/action_struct.h"
+#include "core/memory.h"
+#include "core/status.h"
+#include "num/simd/lanes.h"
+
+const dvi__pattern *dvi__action_pattern(const dvi__action *action)
+{
+  return &action->pattern;
+}
+
+dvi_status dvi__action_prepare_hessians(dvi__action *a)
+{
+  const dvi_system *system = a->system;
+  const size_t r = (size_t)a->r;
+  DVI_TRY(dvi__joint_create(system, &a->joint, &a->block));
+  a->H_qq = DVI_NEW(double, (size_t)dvi__pattern_entries(&system->qq) * r);
+  a->H_qv = DVI_NEW(double, (size_t)dvi__pattern_entries(&system->qv) * r);
+  a->H_vv = DVI_NEW(double, (size_t)dvi__pattern_entries(&system->vv) * r);
+  if (a->H_qq && a->H_qv && a->H_vv) return DVI_OK;
+  return dvi__fail(DVI_NO_MEMORY, "action: no memory for Hessians at %d nodes", a->r);
+}
+
+dvi_status dvi__action_prepare_jacobian(dvi__action *a)
+{
+  DVI_TRY(dvi__action_prepare_hessians(a));
+  return dvi__pattern_blocks(&a->joint, a->s, &a->pattern);
+}
+
+/* x[j] += factor * H[j] * table[j], where the Hessian has this entry. */
+static void accumulate(int r, const double *H, int entry, double factor, const double *table, double *x)
+{
+  if (entry < 0) return;
+  H += (size_t)entry * (size_t)r;
+  for (int j = 0; j < r; j++) x[j] += factor * H[j] * table[j];
+}
+
+void dvi__action_weigh_hessian(const dvi__action *a, const dvi__block *block, const double *f, const double *df, double *in_q,
+                               double *in_v)
+{
+  const int r = a->r;
+  for (int j = 0; j < r; j++) in_q[j] = in_v[j] = 0;
+  accumulate(r, a->H_qq, block->qq, a->h, f, in_q);
+  accumulate(r, a->H_qv, block->qv, 1.0, df, in_q);
+  accumulate(r, a->H_qv, block->vq, 1.0, f, in_v);
+  accumulate(r, a->H_vv, block->vv, 1.0 / a->h, df, in_v);
+  for (int j = 0; j < r; j++) in_q[j] *= a->weight[j], in_v[j] *= a->weight[j];
+}
+
+void dvi__action_block_column(const dvi__action *a, const dvi__block *block, int l, int rows, double *column)
+{
+  const int r = a->r;
+  double *in_q = a->line, *in_v = a->line + r;
+  dvi__action_weigh_hessian(a, block, a->psi + l * a->lanes, a->dpsi + l * a->lanes, in_q, in_v);
+  for (int k = 0; k < rows; k++) {
+    const double *bar = a->bar + k * a->lanes, *slope = a->dpsi + k * a->lanes;
+    double sum = 0;
+    for (int j = 0; j < r; j++) sum += bar[j] * in_q[j] + slope[j] * in_v[j];
+    column[k] = sum;
+  }
+}
+
+dvi_status dvi__action_hessians(dvi__action *a, const double *Y)
+{
+  dvi__action_stages(a, Y);
+  dvi__action_centre_path(a, Y);
+  return dvi__lagrangian_hessian(a->evaluator, a->r, a->t, a->Q, a->V, a->H_qq, a->H_qv, a->H_vv);
+}
+
+dvi_status dvi__action_jacobian(dvi__action *a, const double *Y, double *values)
+{
+  const size_t s = (size_t)a->s;
+  DVI_TRY(dvi__action_hessians(a, Y));
+  for (int j = 0; j < a->n; j++) {
+    const int first = a->joint.start[j], length = a->joint.start[j + 1] - first;
+    double *column = values + s * s * (size_t)first;
+    for (int l = 0; l < a->s; l++)
+      for (int e = first; e < first + length; e++, column += s) dvi__action_block_column(a, &a->block[e], l, a->s, column);
+  }
+  dvi__action_centre_jacobian(a, values);
+  return DVI_OK;
+}
+
+void dvi__action_move_ends(dvi__action *a, const double *dY, double *dp)
+{
+  const size_t r = (size_t)a->r;
+  double *in_q = a->line, *in_v = a->line + r;
+  dvi__lanes_product(a->n, a->s, a->lanes, a->r, a->psi, dY, a->Q);
+  dvi__lanes_product(a->n, a->s, a->lanes, a->r, a->dpsi, dY, a->V);
+  for (int k = 0; k < a->n; k++)
+    for (int e = a->joint.start[k]; e < a->joint.start[k + 1]; e++) {
+      dvi__action_weigh_hessian(a, &a->block[e], a->Q + (size_t)k * r, a->V + (size_t)k * r, in_q, in_v);
+      for (size_t j = 0; j < r; j++) dp[a->joint.row[e]] += in_q[j];
+    }
+}

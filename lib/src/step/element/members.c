@@ -1,0 +1,171 @@
+#include "step/element/members.h"
+
+#include <string.h>
+
+#include "step/element/action_struct.h"
+#include "core/memory.h"
+#include "core/status.h"
+#include "num/simd/members.h"
+
+static int allocate(dvi__action_members *m, size_t capacity)
+{
+  const size_t n = (size_t)m->action->n, r = (size_t)m->action->r;
+  double **const rows[] = {&m->packed_start, &m->packed_low, &m->packed_origin, &m->all_start,
+                           &m->all_low,      &m->dq,         &m->dq_low,        &m->dp};
+  int complete = 1;
+  m->member = DVI_NEW(int, capacity);
+  m->going = DVI_NEW(int, capacity);
+  m->change = DVI_NEW(double, capacity);
+  m->largest = DVI_NEW(double, capacity);
+  m->t = DVI_NEW(double, r *capacity);
+  m->Z = DVI_NEW(double, n *r *capacity);
+  m->Q = DVI_NEW(double, n *r *capacity);
+  m->force = DVI_NEW(double, n *r *capacity);
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    *rows[i] = DVI_NEW(double, n *capacity);
+    complete = complete && *rows[i] != NULL;
+  }
+  return complete && m->member && m->going && m->change && m->largest && m->t && m->Z && m->Q && m->force;
+}
+
+dvi_status dvi__action_members_create(dvi__action *action, int capacity, dvi__action_members *members)
+{
+  *members = (dvi__action_members){.action = action};
+  /* Counted by who knows what a member took. */
+  DVI_TRY(dvi__evaluator_create(action->system, capacity * action->r, DVI__GRADIENTS, NULL, &members->evaluator));
+  if (allocate(members, (size_t)capacity)) return DVI_OK;
+  return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d members", capacity);
+}
+
+void dvi__action_members_clear(dvi__action_members *m)
+{
+  double *const owned[] = {m->change,     m->largest,       m->t,         m->Z,       m->Q,  m->force,  m->packed_start,
+                           m->packed_low, m->packed_origin, m->all_start, m->all_low, m->dq, m->dq_low, m->dp};
+  for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) dvi__release(owned[i]);
+  dvi__release(m->member);
+  dvi__release(m->going);
+  dvi__evaluator_destroy(&m->evaluator);
+  *m = (dvi__action_members){0};
+}
+
+static size_t row(const dvi__action_members *m, size_t number)
+{
+  return number * (size_t)m->width;
+}
+
+static dvi__members_sweep sweep_of(const dvi__action_members *m)
+{
+  const dvi__action *a = m->action;
+  return (dvi__members_sweep){.n = a->n,
+                              .stages = a->r,
+                              .width = m->width,
+                              .lanes = a->lanes,
+                              .matrix = a->sweep_matrix,
+                              .node = a->sweep_node,
+                              .weight = a->sweep_weight,
+                              .factor = a->sweep_factor,
+                              .start = m->start,
+                              .low = m->low,
+                              .origin = m->origin,
+                              .force = m->force,
+                              .Z = m->Z,
+                              .Q = m->Q,
+                              .change = m->change,
+                              .largest = m->largest};
+}
+
+/* As dvi__action_sweep_continue. */
+static void put_nodes(dvi__action_members *m, double ratio)
+{
+  dvi__action *a = m->action;
+  dvi__action_set_step(a);
+  dvi__members_split(a->n, m->width, a->sweep_factor, m->p, m->all_start, m->all_low);
+  dvi__members_product(a->n, a->r, a->lanes, a->r, dvi__action_sweep_shift(a, ratio), m->width, m->forces, m->Z);
+  const dvi__members_sweep sweep = sweep_of(m);
+  dvi__members_begin(&sweep);
+}
+
+void dvi__action_members_place(dvi__action_members *m, int count, double h, double last_h, const double *t, const double *q,
+                               const double *p, double *forces)
+{
+  dvi__action *a = m->action;
+  m->count = m->width = count;
+  m->start = m->all_start;
+  m->low = m->all_low;
+  m->origin = q;
+  m->p = p;
+  m->forces = forces;
+  for (int k = 0; k < count; k++) m->member[k] = k;
+  for (size_t j = 0; j < (size_t)a->r; j++)
+    for (size_t k = 0; k < (size_t)count; k++) m->t[row(m, j) + k] = t[k] + a->node[j] * h;
+  a->h = h;
+  put_nodes(m, h / last_h);
+}
+
+void dvi__action_members_pack(const dvi__action_members *m, int rows, int before, const double *x, double *packed)
+{
+  for (size_t i = 0; i < (size_t)rows; i++) {
+    const double *from = x + i * (size_t)before;
+    double *to = packed + row(m, i);
+    for (int k = 0; k < m->width; k++) to[k] = from[m->going[k]];
+  }
+}
+
+void dvi__action_members_close_up(dvi__action_members *m, const char *marked)
+{
+  const int n = m->action->n, r = m->action->r, before = m->width;
+  int lanes = 0;
+  for (int k = 0; k < before; k++) {
+    m->member[lanes] = m->member[k];
+    m->going[lanes] = k;
+    lanes += marked[k] != 0;
+  }
+  if (lanes == before) return;
+  m->width = lanes;
+  dvi__action_members_pack(m, r, before, m->t, m->t);
+  dvi__action_members_pack(m, n * r, before, m->Z, m->Z);
+  dvi__action_members_pack(m, n * r, before, m->Q, m->Q);
+  dvi__action_members_pack(m, n, before, m->start, m->packed_start);
+  dvi__action_members_pack(m, n, before, m->low, m->packed_low);
+  dvi__action_members_pack(m, n, before, m->origin, m->packed_origin);
+  m->start = m->packed_start;
+  m->low = m->packed_low;
+  m->origin = m->packed_origin;
+}
+
+dvi_status dvi__action_members_sweep(dvi__action_members *m)
+{
+  DVI_TRY(dvi__potentials_gradient(m->evaluator, m->action->r * m->width, m->t, m->Q, m->force));
+  const dvi__members_sweep sweep = sweep_of(m);
+  dvi__members_sweep_once(&sweep);
+  return DVI_OK;
+}
+
+void dvi__action_members_keep(dvi__action_members *m, int lane)
+{
+  const size_t rows = (size_t)m->action->n * (size_t)m->action->r, count = (size_t)m->count;
+  double *kept = m->forces + m->member[lane];
+  for (size_t i = 0; i < rows; i++) kept[i * count] = m->force[row(m, i) + (size_t)lane];
+}
+
+/* As dvi__action_sweep_to and dvi__action_sweep_ends. */
+void dvi__action_members_ends(dvi__action_members *m, double *Y)
+{
+  const dvi__action *a = m->action;
+  const size_t n = (size_t)a->n, s = (size_t)a->s, count = (size_t)m->count;
+  dvi__members_product(a->n, a->r, a->path_lanes, a->s, a->sweep_path, m->count, m->forces, Y);
+  for (size_t i = 0; i < n * s; i++) {
+    const double *start = m->all_start + i / s * count;
+    for (size_t k = 0; k < count; k++) Y[i * count + k] = start[k] * a->straight[i % s] + a->sweep_factor[i / s] * Y[i * count + k];
+  }
+  dvi__members_ends_of(&(dvi__members_ends){.n = a->n,
+                                            .stages = a->r,
+                                            .width = m->count,
+                                            .g = m->forces,
+                                            .slant = a->sweep_slant,
+                                            .factor = a->sweep_factor,
+                                            .p0 = m->p,
+                                            .moved = m->dq,
+                                            .low = m->dq_low,
+                                            .sum = m->dp});
+}

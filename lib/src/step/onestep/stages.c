@@ -1,0 +1,235 @@
+#include "step/onestep/stages.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "num/finite.h"
+
+struct dvi__stages {
+  dvi__field *field;
+  const dvi__runge_kutta *method;
+  int n, unknowns;
+  dvi__pattern pattern; /* full */
+  dvi__linear *linear, *transposed;
+  const double *unit;
+  int first;
+  double t, h;
+  const double *z;
+  double *slope;         /* [2n*2n*s] h f_z at the stages, column by column */
+  double *values;        /* [unknowns^2] */
+  double *point, *image; /* [2n] */
+  double *x, *R;         /* [unknowns] increments, those of momenta over `unit`; the residual, then the correction */
+};
+
+/* ---- equations ---- */
+
+static double *at(const dvi__stages *s, double *numbers, int j)
+{
+  return numbers + (size_t)j * 2 * (size_t)s->n;
+}
+
+static double unit_of(const dvi__stages *s, int component)
+{
+  return component < s->n ? 1 : s->unit[component - s->n];
+}
+
+/* x <- x times unit, or over it. */
+static void scale(const dvi__stages *s, int over, double *x)
+{
+  for (int j = 0; j < s->method->stages; j++)
+    for (int i = s->n; i < 2 * s->n; i++) at(s, x, j)[i] *= over ? 1 / unit_of(s, i) : unit_of(s, i);
+}
+
+static dvi_status residual(dvi__stages *s, const double *x, double *R)
+{
+  const dvi__runge_kutta *m = s->method;
+  for (int j = 0; j < m->stages; j++) {
+    const size_t row = (size_t)j * 2 * (size_t)s->n;
+    for (int i = 0; i < 2 * s->n; i++) {
+      double sum = 0;
+      for (int k = 0; k < m->stages; k++) sum += m->a[j][k] * x[k * 2 * s->n + i];
+      s->point[i] = s->z[i] + unit_of(s, i) * sum;
+    }
+    const dvi_status status = dvi__field_place(s->field, s->first + j, s->t + m->c[j] * s->h, s->point, s->point + s->n, s->image);
+    if (status != DVI_OK) return dvi__fail_in(status, "stage %d", j + 1);
+    for (int i = 0; i < 2 * s->n; i++) R[row + (size_t)i] = x[row + (size_t)i] - s->h / unit_of(s, i) * s->image[i];
+  }
+  return DVI_OK;
+}
+
+/* h f_z at all stages. */
+static dvi_status slopes(dvi__stages *s, double h)
+{
+  const int z = 2 * s->n;
+  memset(s->point, 0, (size_t)z * sizeof *s->point);
+  for (int j = 0; j < s->method->stages; j++) {
+    DVI_TRY(dvi__field_select(s->field, s->first + j));
+    for (int c = 0; c < z; c++) {
+      double *column = s->slope + (size_t)(j * z + c) * (size_t)z;
+      s->point[c] = unit_of(s, c);
+      dvi__field_product(s->field, s->point, s->image);
+      s->point[c] = 0;
+      for (int i = 0; i < s->n; i++) {
+        column[i] = h * s->image[s->n + i];
+        column[s->n + i] = -h / s->unit[i] * s->image[i];
+      }
+    }
+  }
+  return DVI_OK;
+}
+
+/* Entry (i,c) of block (j,k). */
+static double entry(const dvi__stages *s, int j, int i, int k, int c)
+{
+  const int z = 2 * s->n;
+  return (j == k && i == c) - s->method->a[j][k] * s->slope[(j * z + c) * z + i];
+}
+
+static dvi_status matrix(dvi__stages *s, double h, int transposed, double *values)
+{
+  const int z = 2 * s->n;
+  DVI_TRY(slopes(s, h));
+  for (int column = 0; column < s->unknowns; column++)
+    for (int row = 0; row < s->unknowns; row++)
+      *values++ = transposed ? entry(s, column / z, column % z, row / z, row % z)
+                             : entry(s, row / z, row % z, column / z, column % z);
+  return DVI_OK;
+}
+
+/* ---- making it ---- */
+
+static dvi_status allocate(dvi__stages *s)
+{
+  const size_t z = 2 * (size_t)s->n, all = (size_t)s->unknowns;
+  s->slope = DVI_NEW(double, z *z *(size_t)s->method->stages);
+  s->values = DVI_NEW(double, all *all);
+  s->point = DVI_NEW(double, z);
+  s->image = DVI_NEW(double, z);
+  s->x = DVI_NEW(double, all);
+  s->R = DVI_NEW(double, all);
+  if (s->slope && s->values && s->point && s->image && s->x && s->R) return DVI_OK;
+  return dvi__fail(DVI_NO_MEMORY, "no memory for %d stages in %d dimensions", s->method->stages, s->n);
+}
+
+static dvi_status fill(dvi__stages *s, dvi_counters *counters)
+{
+  DVI_TRY(dvi__pattern_copy(&(dvi_pattern){0}, s->unknowns, "stages", &s->pattern));
+  DVI_TRY(allocate(s));
+  DVI_TRY(dvi__linear_create(&s->pattern, DVI__LINEAR_DENSE, counters, &s->transposed));
+  return dvi__linear_create(&s->pattern, DVI__LINEAR_DENSE, counters, &s->linear);
+}
+
+dvi_status dvi__stages_create(dvi__field *field, int n, const dvi__runge_kutta *method, dvi_counters *counters,
+                              dvi__stages **stages)
+{
+  *stages = NULL;
+  dvi__stages *s = DVI_NEW(dvi__stages, 1);
+  if (s == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory");
+  s->field = field;
+  s->method = method;
+  s->n = n;
+  s->unknowns = 2 * n * method->stages;
+  const dvi_status status = fill(s, counters);
+  if (status != DVI_OK) dvi__stages_destroy(&s);
+  *stages = s;
+  return status;
+}
+
+void dvi__stages_destroy(dvi__stages **stages)
+{
+  dvi__stages *s = *stages;
+  if (s == NULL) return;
+  dvi__linear_destroy(&s->linear);
+  dvi__linear_destroy(&s->transposed);
+  dvi__pattern_clear(&s->pattern);
+  dvi__release(s->slope);
+  dvi__release(s->values);
+  dvi__release(s->point);
+  dvi__release(s->image);
+  dvi__release(s->x);
+  dvi__release(s->R);
+  dvi__release(s);
+  *stages = NULL;
+}
+
+void dvi__stages_unit(dvi__stages *s, const double *unit)
+{
+  s->unit = unit;
+}
+
+/* ---- solving ---- */
+
+dvi_status dvi__stages_factor(dvi__stages *s, int first, double h)
+{
+  s->first = first;
+  DVI_TRY(matrix(s, h, 0, s->values));
+  return dvi__linear_factor(s->linear, s->values);
+}
+
+/* At the points of the last residual. */
+static dvi_status renew(dvi__stages *s)
+{
+  DVI_TRY(dvi__field_differentiate(s->field, s->first, s->method->stages));
+  const dvi_status status = dvi__stages_factor(s, s->first, s->h);
+  return status == DVI_SINGULAR ? dvi__fail_in(DVI_NOT_CONVERGED, "the stages' Jacobian cannot be factored") : status;
+}
+
+/* Newton's method to roundoff: to corrections of a few roundings, or to noise that shrinks no more. The Jacobian is kept while they shrink fast. */
+static dvi_status newton(dvi__stages *s)
+{
+  enum { MOST = 40 };
+  const size_t all = (size_t)s->unknowns;
+  const double few = 2 * DBL_EPSILON, noise = 1e4 * DBL_EPSILON, fast = 0.05;
+  double last = HUGE_VAL;
+  int fresh = 0;
+  for (int iteration = 0; iteration < MOST; iteration++) {
+    DVI_TRY(residual(s, s->x, s->R));
+    if (!fresh) DVI_TRY(renew(s));
+    dvi__linear_solve(s->linear, s->R);
+    for (size_t i = 0; i < all; i++) s->x[i] -= s->R[i];
+    const double correction = dvi__largest(all, s->R), whole = dvi__largest(all, s->x);
+    if (correction <= few * whole || (correction <= noise * whole && correction >= 0.5 * last)) return DVI_OK;
+    if (!(correction <= 1e300)) break;
+    fresh = correction <= fast * last;
+    last = correction;
+  }
+  return dvi__fail(DVI_NOT_CONVERGED, "Newton's method does not settle (change %.1e)", last);
+}
+
+/* From stages that all move as z does. */
+dvi_status dvi__stages_solve(dvi__stages *s, int first, double t, double h, const double *z, double *W)
+{
+  s->first = first;
+  s->t = t;
+  s->h = h;
+  s->z = z;
+  DVI_TRY(dvi__field_place(s->field, first, t, z, z + s->n, s->image));
+  for (int j = 0; j < s->method->stages; j++)
+    for (int i = 0; i < 2 * s->n; i++) at(s, s->x, j)[i] = h / unit_of(s, i) * s->image[i];
+  DVI_TRY(newton(s));
+  DVI_TRY(residual(s, s->x, s->R));
+  memcpy(W, s->x, (size_t)s->unknowns * sizeof *W);
+  scale(s, 0, W);
+  return DVI_OK;
+}
+
+dvi_status dvi__stages_solve_transposed(dvi__stages *s, int first, double h, double *x)
+{
+  s->first = first;
+  DVI_TRY(matrix(s, h, 1, s->values));
+  DVI_TRY(dvi__linear_factor(s->transposed, s->values));
+  scale(s, 0, x);
+  dvi__linear_solve(s->transposed, x);
+  scale(s, 1, x);
+  return DVI_OK;
+}
+
+void dvi__stages_apply(dvi__stages *s, double *x)
+{
+  scale(s, 1, x);
+  dvi__linear_solve(s->linear, x);
+  scale(s, 0, x);
+}

@@ -1,0 +1,353 @@
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "num/finite.h"
+#include "system/chart/charted.h"
+#include "system/evaluate/dirac.h"
+#include "system/evaluate/evaluator_struct.h"
+
+static size_t numbers(const dvi__evaluator *e, int count)
+{
+  return (size_t)e->system->n * (size_t)count;
+}
+
+static int allocate_general(dvi__evaluator *e)
+{
+  const dvi_system *system = e->system;
+  e->unwanted = DVI_NEW(double, numbers(e, e->capacity));
+  e->velocity_search = DVI_NEW(double, 6 * numbers(e, 1));
+  e->hessian[0] = DVI_NEW(double, dvi__pattern_entries(&system->lagrangian->qq));
+  e->hessian[1] = DVI_NEW(double, dvi__pattern_entries(&system->qv));
+  e->hessian[2] = DVI_NEW(double, dvi__pattern_entries(&system->vv));
+  if (system->terms & DVI__ONE_FORM) e->two_form = DVI_NEW(double, dvi__pattern_entries(&system->lagrangian->omega));
+  return e->unwanted && e->velocity_search && e->hessian[0] && e->hessian[1] && e->hessian[2] &&
+         (e->two_form || !(system->terms & DVI__ONE_FORM));
+}
+
+static dvi_status allocate(dvi__evaluator *e, int hessians)
+{
+  const dvi_system *system = e->system;
+  DVI_TRY(dvi__scratch_create(system, e->capacity, hessians, &e->scratch));
+  e->term = DVI_NEW(double, (size_t)dvi__longest_hessian(system, hessians) * (size_t)e->capacity);
+  for (int i = 0; i < 3; i++) e->point[i] = DVI_NEW(double, system->n);
+  if (e->term && e->point[0] && e->point[1] && e->point[2] && (system->lagrangian == NULL || allocate_general(e))) return DVI_OK;
+  return dvi__fail(DVI_NO_MEMORY, "evaluator: no memory for %d points in %d dimensions", e->capacity, system->n);
+}
+
+static dvi_status prepare_velocity(dvi__evaluator *e)
+{
+  const dvi_system *system = e->system;
+  if (system->mass_diagonal != NULL || system->cells != NULL || system->terms & DVI__CANONICAL) return DVI_OK;
+  if (system->terms & DVI__HAMILTONIAN) {
+    const dvi__pattern *bracket = &system->constraint->bracket;
+    DVI_TRY(dvi__dirac_create(system, &e->dirac));
+    return dvi__linear_create(bracket, dvi__linear_for_exchanges(bracket), e->counters, &e->velocity);
+  }
+  if (system->terms & DVI__ONE_FORM) {
+    const dvi__pattern *omega = &system->lagrangian->omega;
+    return dvi__linear_create(omega, dvi__linear_for_exchanges(omega), e->counters, &e->velocity);
+  }
+  DVI_TRY(dvi__linear_create(&system->vv, DVI__LINEAR_AUTO, e->counters, &e->velocity));
+  return system->mass_values != NULL ? dvi__linear_factor(e->velocity, system->mass_values) : DVI_OK;
+}
+
+static dvi_status prepare_states(dvi__evaluator *e)
+{
+  const size_t n = (size_t)e->system->n;
+  if (e->system->cells == NULL) return DVI_OK;
+  DVI_TRY(dvi__charted_create(e->system, 0, e->counters, &e->charted));
+  const dvi__pattern *vv = &dvi__charted_system(e->charted)->vv;
+  e->rate = DVI_NEW(double, n);
+  e->local = DVI_NEW(double, n);
+  e->mass = DVI_NEW(double, dvi__pattern_entries(vv));
+  if (!e->rate || !e->local || !e->mass) return dvi__fail(DVI_NO_MEMORY, "evaluator: no memory");
+  return dvi__linear_create(vv, DVI__LINEAR_AUTO, e->counters, &e->velocity);
+}
+
+dvi_status dvi__evaluator_create(const dvi_system *system, int capacity, dvi__derivatives most, dvi_counters *counters,
+                                 dvi__evaluator **evaluator)
+{
+  const int hessians = most == DVI__HESSIANS;
+  *evaluator = NULL;
+  if (hessians) DVI_TRY(dvi__system_prepare_hessian(system));
+  dvi__evaluator *e = DVI_NEW(dvi__evaluator, 1);
+  if (e == NULL) return dvi__fail(DVI_NO_MEMORY, "evaluator: no memory");
+  e->system = system;
+  e->capacity = capacity;
+  e->counters = counters != NULL ? counters : &e->own;
+  dvi_status status = allocate(e, hessians);
+  if (status == DVI_OK) status = prepare_velocity(e);
+  if (status == DVI_OK && most == DVI__STATES) status = prepare_states(e);
+  if (status != DVI_OK) dvi__evaluator_destroy(&e);
+  *evaluator = e;
+  return status;
+}
+
+void dvi__evaluator_destroy(dvi__evaluator **evaluator)
+{
+  dvi__evaluator *e = *evaluator;
+  if (e == NULL) return;
+  dvi__linear_destroy(&e->velocity);
+  dvi__charted_destroy(&e->charted);
+  dvi__release(e->rate);
+  dvi__release(e->local);
+  dvi__release(e->mass);
+  dvi__scratch_clear(&e->scratch);
+  dvi__release(e->term);
+  for (int i = 0; i < 3; i++) dvi__release(e->point[i]);
+  dvi__dirac_destroy(&e->dirac);
+  dvi__release(e->unwanted);
+  dvi__release(e->velocity_search);
+  dvi__release(e->two_form);
+  for (int i = 0; i < 3; i++) dvi__release(e->hessian[i]);
+  dvi__release(e);
+  *evaluator = NULL;
+}
+
+/* ---- constant mass ---- */
+
+/* y = M x for a batch. */
+static void mass_times(const dvi_system *s, int count, const double *x, double *y)
+{
+  const size_t points = (size_t)count;
+  if (s->mass_diagonal != NULL) {
+    for (size_t i = 0; i < (size_t)s->n; i++)
+      for (size_t k = i * points; k < (i + 1) * points; k++) y[k] = s->mass_diagonal[i] * x[k];
+    return;
+  }
+  memset(y, 0, (size_t)s->n * points * sizeof(double));
+  for (size_t j = 0; j < (size_t)s->n; j++)
+    for (int e = s->vv.start[j]; e < s->vv.start[j + 1]; e++)
+      for (size_t k = 0; k < points; k++) y[(size_t)s->vv.row[e] * points + k] += s->mass_values[e] * x[j * points + k];
+}
+
+void dvi__mass_solve(dvi__evaluator *e, int count, const double *y, double *x)
+{
+  const dvi_system *s = e->system;
+  const size_t points = (size_t)count;
+  if (s->mass_diagonal != NULL) {
+    for (size_t i = 0; i < (size_t)s->n; i++)
+      for (size_t k = i * points; k < (i + 1) * points; k++) x[k] = y[k] / s->mass_diagonal[i];
+    return;
+  }
+  for (size_t k = 0; k < points; k++) {
+    for (size_t i = 0; i < (size_t)s->n; i++) e->point[0][i] = y[i * points + k];
+    dvi__linear_solve(e->velocity, e->point[0]);
+    for (size_t i = 0; i < (size_t)s->n; i++) x[i * points + k] = e->point[0][i];
+  }
+}
+
+int dvi__mass_sign(const dvi__evaluator *e)
+{
+  const dvi_system *s = e->system;
+  int negative = 0;
+  if (s->mass_diagonal == NULL) return dvi__linear_sign(e->velocity);
+  for (int i = 0; i < s->n; i++) negative ^= s->mass_diagonal[i] < 0;
+  return negative ? -1 : 1;
+}
+
+int dvi__mass_is_positive(const dvi__evaluator *e)
+{
+  const dvi_system *s = e->system;
+  if (s->mass_diagonal == NULL) return dvi__linear_is_positive(e->velocity);
+  for (int i = 0; i < s->n; i++)
+    if (s->mass_diagonal[i] < 0) return 0;
+  return 1;
+}
+
+void dvi__count_differences(dvi__evaluator *e)
+{
+  e->counters->values += e->scratch.of_value.points;
+  e->counters->gradients += e->scratch.of_gradient.points;
+  e->scratch.of_value.points = e->scratch.of_gradient.points = 0;
+}
+
+/* ---- value ---- */
+
+static void kinetic_energy(dvi__evaluator *e, int count, const double *v, double *T)
+{
+  const size_t points = (size_t)count;
+  memset(T, 0, points * sizeof(double));
+  mass_times(e->system, count, v, e->term);
+  for (size_t i = 0; i < (size_t)e->system->n; i++)
+    for (size_t k = 0; k < points; k++) T[k] += 0.5 * v[i * points + k] * e->term[i * points + k];
+}
+
+dvi_status dvi__lagrangian_value(dvi__evaluator *e, int count, const double *t, const double *q, const double *v, double *L)
+{
+  const dvi_system *s = e->system;
+  e->counters->values += count;
+  if (s->lagrangian != NULL)
+    DVI_TRY(dvi__general_value(s->lagrangian, &e->scratch, count, t, q, v, L));
+  else
+    kinetic_energy(e, count, v, L);
+  for (int p = 0; p < s->potential_count; p++) {
+    DVI_TRY(dvi__potential_value(&s->potentials[p], &e->scratch, count, t, q, e->term));
+    for (int k = 0; k < count; k++) L[k] -= e->term[k];
+  }
+  if (dvi__first_not_finite((size_t)count, L) >= 0)
+    return dvi__fail(DVI_NOT_FINITE, "the %s's value is not finite", s->terms & DVI__PHASE_SPACE ? "Hamiltonian" : "Lagrangian");
+  return DVI_OK;
+}
+
+dvi_status dvi__lagrangian_rate(dvi__evaluator *e, int count, const double *t, const double *q, const double *v, double *L_t)
+{
+  const dvi_system *s = e->system;
+  memset(L_t, 0, (size_t)count * sizeof(double));
+  if (s->autonomous) return DVI_OK;
+  e->counters->values += count;
+  if (s->lagrangian != NULL) DVI_TRY(dvi__general_rate(s->lagrangian, &e->scratch, count, t, q, v, L_t));
+  for (int p = 0; p < s->potential_count; p++) {
+    DVI_TRY(dvi__potential_rate(&s->potentials[p], &e->scratch, count, t, q, e->term));
+    for (int k = 0; k < count; k++) L_t[k] -= e->term[k];
+  }
+  return DVI_OK;
+}
+
+/* ---- gradient ---- */
+
+/* The sum of the potentials' gradients; the first one is evaluated in place. */
+static dvi_status sum_gradients(dvi__evaluator *e, int count, const double *t, const double *q, double *V_q)
+{
+  const dvi_system *s = e->system;
+  const size_t length = numbers(e, count);
+  if (s->potential_count == 0) memset(V_q, 0, length * sizeof(double));
+  for (int p = 0; p < s->potential_count; p++) {
+    DVI_TRY(dvi__potential_gradient(&s->potentials[p], &e->scratch, count, t, q, p == 0 ? V_q : e->term));
+    for (size_t i = 0; i < length && p > 0; i++) V_q[i] += e->term[i];
+  }
+  return DVI_OK;
+}
+
+dvi_status dvi__potentials_gradient(dvi__evaluator *e, int count, const double *t, const double *q, double *V_q)
+{
+  e->counters->gradients += count;
+  const dvi_status status = sum_gradients(e, count, t, q, V_q);
+  dvi__count_differences(e);
+  return status;
+}
+
+static dvi_status potential_forces(dvi__evaluator *e, int count, const double *t, const double *q, double *L_q)
+{
+  DVI_TRY(sum_gradients(e, count, t, q, L_q));
+  for (size_t i = 0; i < numbers(e, count); i++) L_q[i] = -L_q[i];
+  return DVI_OK;
+}
+
+static dvi_status general_gradient(dvi__evaluator *e, int count, const double *t, const double *q, const double *v, double *L_q,
+                                   double *L_v)
+{
+  const dvi_system *s = e->system;
+  DVI_TRY(dvi__general_gradient(s->lagrangian, &e->scratch, count, t, q, v, L_q, L_v));
+  for (int p = 0; p < s->potential_count; p++) {
+    DVI_TRY(dvi__potential_gradient(&s->potentials[p], &e->scratch, count, t, q, e->term));
+    for (size_t i = 0; i < numbers(e, count); i++) L_q[i] -= e->term[i];
+  }
+  return DVI_OK;
+}
+
+dvi_status dvi__lagrangian_gradient(dvi__evaluator *e, int count, const double *t, const double *q, const double *v, double *L_q,
+                                    double *L_v)
+{
+  const dvi_system *s = e->system;
+  if (s->lagrangian == NULL && L_v != NULL) mass_times(s, count, v, L_v);
+  if (s->lagrangian == NULL && L_q == NULL) return DVI_OK;
+  e->counters->gradients += count;
+  const dvi_status status = s->lagrangian == NULL
+                                ? potential_forces(e, count, t, q, L_q)
+                                : general_gradient(e, count, t, q, v, L_q ? L_q : e->unwanted, L_v ? L_v : e->unwanted);
+  dvi__count_differences(e);
+  return status;
+}
+
+/* ---- Hessian ---- */
+
+static void copy_mass_hessian(const dvi_system *s, int count, double *L_vv)
+{
+  const double *M = s->mass_diagonal != NULL ? s->mass_diagonal : s->mass_values;
+  const size_t points = (size_t)count;
+  for (size_t entry = 0; entry < (size_t)dvi__pattern_entries(&s->vv); entry++)
+    for (size_t k = 0; k < points; k++) L_vv[entry * points + k] = M[entry];
+}
+
+static void embed(const dvi__pattern *part, const int *where, size_t points, double sign, const double *values, double *whole)
+{
+  for (size_t entry = 0; entry < (size_t)dvi__pattern_entries(part); entry++)
+    for (size_t k = 0; k < points; k++) whole[(size_t)where[entry] * points + k] += sign * values[entry * points + k];
+}
+
+static dvi_status potential_hessians(dvi__evaluator *e, int count, const double *t, const double *q, double *L_qq)
+{
+  const dvi_system *s = e->system;
+  for (int p = 0; p < s->potential_count; p++) {
+    const dvi__potential_term *term = &s->potentials[p];
+    DVI_TRY(dvi__potential_hessian(term, &e->scratch, count, t, q, e->term));
+    embed(&term->qq, term->in_qq, (size_t)count, -1, e->term, L_qq);
+  }
+  return DVI_OK;
+}
+
+/* The Lagrangian's own block stands packed at the front of the whole L_qq: move its entries to their places, from the back. */
+static void spread(const dvi_system *s, size_t points, double *L_qq)
+{
+  int from = dvi__pattern_entries(&s->lagrangian->qq) - 1;
+  for (int entry = dvi__pattern_entries(&s->qq) - 1; entry >= 0; entry--) {
+    const int found = from >= 0 && s->lagrangian->in_qq[from] == entry;
+    for (size_t k = 0; k < points; k++) L_qq[(size_t)entry * points + k] = found ? L_qq[(size_t)from * points + k] : 0.0;
+    from -= found;
+  }
+}
+
+static dvi_status hessian(dvi__evaluator *e, int count, const double *t, const double *q, const double *v, double *L_qq,
+                          double *L_qv, double *L_vv)
+{
+  const dvi_system *s = e->system;
+  const size_t points = (size_t)count;
+  if (s->lagrangian != NULL) {
+    DVI_TRY(dvi__general_hessian(s->lagrangian, &e->scratch, count, t, q, v, L_qq, L_qv, L_vv));
+    spread(s, points, L_qq);
+    return potential_hessians(e, count, t, q, L_qq);
+  }
+  if (L_vv != NULL) copy_mass_hessian(s, count, L_vv);
+  if (L_qq == NULL) return DVI_OK;
+  memset(L_qq, 0, (size_t)dvi__pattern_entries(&s->qq) * points * sizeof(double));
+  return potential_hessians(e, count, t, q, L_qq);
+}
+
+dvi_status dvi__lagrangian_hessian(dvi__evaluator *e, int count, const double *t, const double *q, const double *v, double *L_qq,
+                                   double *L_qv, double *L_vv)
+{
+  e->counters->hessians += count;
+  const dvi_status status = hessian(e, count, t, q, v, L_qq, L_qv, L_vv);
+  dvi__count_differences(e);
+  return status;
+}
+
+dvi_status dvi__form_gradient(dvi__evaluator *e, const double *q, const double *w, double *alpha_w_q, double *alpha)
+{
+  const double any_time = 0;
+  e->counters->gradients++;
+  return dvi__general_gradient(e->system->lagrangian, &e->scratch, 1, &any_time, q, w, alpha_w_q, alpha);
+}
+
+dvi_status dvi__form_hessian(dvi__evaluator *e, const double *q, const double *w, double *alpha_w_qq, double *alpha_q)
+{
+  const double any_time = 0;
+  e->counters->hessians++;
+  const dvi_status status = dvi__general_hessian(e->system->lagrangian, &e->scratch, 1, &any_time, q, w, alpha_w_qq, alpha_q,
+                                                 e->hessian[2]);
+  dvi__count_differences(e);
+  if (status == DVI_OK) spread(e->system, 1, alpha_w_qq);
+  return status;
+}
+
+dvi_status dvi__velocity_hessian(dvi__evaluator *e, double t, const double *q, const double *v, const double **L_vv)
+{
+  e->counters->hessians++;
+  *L_vv = e->hessian[2];
+  const dvi_status status = dvi__general_hessian(e->system->lagrangian, &e->scratch, 1, &t, q, v, e->hessian[0], e->hessian[1],
+                                                 e->hessian[2]);
+  dvi__count_differences(e);
+  return status;
+}

@@ -1,0 +1,164 @@
+/* Energy, momentum maps of the declared symmetries, and declared invariants. */
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "core/status.h"
+#include "system/evaluate/evaluator_struct.h"
+
+static dvi_status callback(int returned, const char *name)
+{
+  if (returned == 0) return DVI_OK;
+  return dvi__fail(returned < 0 ? DVI_CALLBACK_FAILED : DVI_CALLBACK_RETRY, "invariant '%s': the callback returned %d", name,
+                   returned);
+}
+
+/* J = p.xi(q)  (Marsden and West 2001, eq. 1.2.6). */
+static dvi_status momentum_map(dvi__evaluator *e, const dvi_symmetry *symmetry, const double *q, const double *p, double *J)
+{
+  double *xi = e->point[2];
+  *J = 0;
+  DVI_TRY(callback(symmetry->generator(q, xi, symmetry->user), symmetry->name));
+  for (int i = 0; i < e->system->nv; i++) *J += p[i] * xi[i];
+  return DVI_OK;
+}
+
+/* H, or p.v - L; the Hamiltonian -L(t,q,0) of a one-form wants no velocity. */
+static dvi_status energy(dvi__evaluator *e, double t, const double *q, const double *v, const double *p, double *E)
+{
+  double L, pv = 0, *rest = e->point[2];
+  const int degenerate = (e->system->terms & DVI__ONE_FORM) != 0;
+  if (e->system->terms & DVI__PHASE_SPACE) return dvi__lagrangian_value(e, 1, &t, q, p, E);
+  memset(rest, 0, (size_t)e->system->n * sizeof(double));
+  DVI_TRY(dvi__state_lagrangian(e, t, q, degenerate ? rest : v, &L));
+  for (int i = 0; i < e->system->nv && !degenerate; i++) pv += p[i] * v[i];
+  *E = pv - L;
+  return DVI_OK;
+}
+
+dvi_status dvi__invariant(dvi__evaluator *e, double t, const double *q, const double *v, const double *p, int i, double *value)
+{
+  const dvi_system *s = e->system;
+  const char *name = s->invariant_names[i];
+  const int declared = i - 1 - s->symmetry_count;
+  if (i == 0)
+    DVI_TRY(energy(e, t, q, v, p, value));
+  else if (declared < 0)
+    DVI_TRY(momentum_map(e, &s->symmetries[i - 1], q, p, value));
+  else
+    DVI_TRY(callback(s->invariants[declared].value(t, q, p, value, s->invariants[declared].user), name));
+  return isfinite(*value) ? DVI_OK : dvi__fail(DVI_NOT_FINITE, "invariant '%s' is %g at t = %.6g", name, *value, t);
+}
+
+dvi_status dvi__invariants(dvi__evaluator *e, double t, const double *q, const double *v, const double *p, double *value)
+{
+  const int count = dvi_system_invariant_count(e->system);
+  for (int i = 0; i < count; i++) DVI_TRY(dvi__invariant(e, t, q, v, p, i, &value[i]));
+  return DVI_OK;
+}
+
+/* ---- over a step ---- */
+
+/* Of a difference of energies no more is known than a rounding of what they are summed from. */
+static const double rounding = 64 * DBL_EPSILON;
+
+static int has_kinetic(const dvi_system *system)
+{
+  return !(system->terms & (DVI__ONE_FORM | DVI__PHASE_SPACE));
+}
+
+static dvi_status kinetic(dvi__evaluator *e, const dvi__instant *at, double *E, double *T, double *size)
+{
+  double pv = 0;
+  DVI_TRY(dvi__legendre_inverse(e, at->t, at->q, at->p, at->v));
+  DVI_TRY(energy(e, at->t, at->q, at->v, at->p, E));
+  for (int i = 0; i < e->system->n; i++) pv += at->p[i] * at->v[i];
+  *T = 0.5 * fabs(pv);
+  *size = fabs(pv) + fabs(*E);
+  return DVI_OK;
+}
+
+static dvi_status change_of_lagrangian(dvi__evaluator *e, const dvi__instant *before, const dvi__instant *after, double *change,
+                                       double *exchanged)
+{
+  double E0, E1, T0, T1, size0, size1;
+  DVI_TRY(kinetic(e, before, &E0, &T0, &size0));
+  DVI_TRY(kinetic(e, after, &E1, &T1, &size1));
+  *change = fmax(fabs(E1 - E0) - rounding * fmax(size0, size1), 0);
+  *exchanged = fmax(T0, T1);
+  return DVI_OK;
+}
+
+/* sum |L_q dq| + |L_v dp| with L = -H(q) of a one-form at v = 0, and L = H(q,p) on phase space. */
+static dvi_status exchange(dvi__evaluator *e, const dvi__instant *at, const dvi__instant *before, const dvi__instant *after,
+                           int with_p, double *sum)
+{
+  const size_t n = (size_t)e->system->n;
+  double *in_q = before->v, *in_p = e->point[2];
+  const double *second = at->p;
+  if (!with_p) {
+    memset(e->point[1], 0, n * sizeof(double));
+    second = e->point[1];
+  }
+  DVI_TRY(dvi__lagrangian_gradient(e, 1, &at->t, at->q, second, in_q, in_p));
+  *sum = 0;
+  for (size_t i = 0; i < n; i++) {
+    *sum += fabs(in_q[i] * (after->q[i] - before->q[i]));
+    if (with_p) *sum += fabs(in_p[i] * (after->p[i] - before->p[i]));
+  }
+  return DVI_OK;
+}
+
+static dvi_status change_of_hamiltonian(dvi__evaluator *e, const dvi__instant *before, const dvi__instant *after, double *change,
+                                        double *exchanged)
+{
+  const int with_p = (e->system->terms & DVI__PHASE_SPACE) != 0;
+  double E0, E1, sum0, sum1;
+  DVI_TRY(energy(e, before->t, before->q, before->v, before->p, &E0));
+  DVI_TRY(energy(e, after->t, after->q, after->v, after->p, &E1));
+  DVI_TRY(exchange(e, before, before, after, with_p, &sum0));
+  DVI_TRY(exchange(e, after, before, after, with_p, &sum1));
+  *change = fmax(fabs(E1 - E0) - rounding * fmax(fabs(E0), fabs(E1)), 0);
+  *exchanged = fmax(sum0, sum1);
+  return DVI_OK;
+}
+
+dvi_status dvi__energy_change(dvi__evaluator *e, const dvi__instant *before, const dvi__instant *after, double *change,
+                              double *exchanged)
+{
+  return (has_kinetic(e->system) ? change_of_lagrangian : change_of_hamiltonian)(e, before, after, change, exchanged);
+}
+
+/* Rates r and what they move, x, of one kind. A rate that is a rounding of the others is no measure,
+ * nor is one that moves little of an x whose size counts, as a momentum's does. */
+static double defect_of(size_t n, double h, int sized, const double *x0, const double *x1, const double *r0, const double *r1)
+{
+  double worst = 0, largest = 0;
+  for (size_t i = 0; i < n; i++) largest = fmax(largest, fmax(fabs(r0[i]), fabs(r1[i])));
+  for (size_t i = 0; i < n; i++) {
+    const double size = fmax(fabs(x0[i]), fabs(x1[i])) * (sized ? 1 : 1e-10);
+    const double way = fmax(fabs(h) * fmax(fmax(fabs(r0[i]), fabs(r1[i])), 1e-9 * largest), size);
+    const double off = fabs((x1[i] - x0[i]) - 0.5 * h * (r0[i] + r1[i]));
+    if (off > 0) worst = fmax(worst, off / way);
+  }
+  return worst;
+}
+
+dvi_status dvi__motion_defect(dvi__evaluator *e, const dvi__instant *before, const dvi__instant *after, double *forces,
+                              double *defect)
+{
+  const size_t n = (size_t)e->system->n;
+  const double h = after->t - before->t;
+  const int has_forces = has_kinetic(e->system);
+  double *f0 = forces, *f1 = forces + n;
+  if (!has_forces) {
+    DVI_TRY(dvi__legendre_inverse(e, before->t, before->q, before->p, before->v));
+    DVI_TRY(dvi__legendre_inverse(e, after->t, after->q, after->p, after->v));
+  }
+  *defect = defect_of(n, h, 0, before->q, after->q, before->v, after->v);
+  if (!has_forces) return DVI_OK;
+  DVI_TRY(dvi__state_forces(e, before->t, before->q, before->v, f0));
+  DVI_TRY(dvi__state_forces(e, after->t, after->q, after->v, f1));
+  *defect = fmax(*defect, defect_of(n, h, 1, before->p, after->p, f0, f1));
+  return DVI_OK;
+}

@@ -1,0 +1,103 @@
+/* Memory for one-point callbacks and differences: only what the system's missing callbacks need. */
+#include "core/memory.h"
+#include "core/status.h"
+#include "system/term.h"
+#include "system/rescale/transformed.h"
+
+static int larger(int a, int b)
+{
+  return a > b ? a : b;
+}
+
+static int longest_of(const dvi__lagrangian_term *term)
+{
+  const int qq = dvi__pattern_entries(&term->qq), qv = dvi__pattern_entries(&term->qv), vv = dvi__pattern_entries(&term->vv);
+  return larger(larger(qq, qv), vv);
+}
+
+int dvi__longest_hessian(const dvi_system *system, int hessians)
+{
+  int longest = system->n;
+  for (int k = 0; k < system->potential_count && hessians; k++)
+    longest = larger(longest, dvi__pattern_entries(&system->potentials[k].qq));
+  if (system->lagrangian == NULL) return longest;
+  if (system->constraint != NULL) longest = larger(longest, longest_of(&system->constraint->weighted));
+  return larger(longest, longest_of(system->lagrangian));
+}
+
+static int lacks_gradient(const dvi_system *system)
+{
+  int lacks = system->lagrangian != NULL && !dvi__general_has_gradient(system->lagrangian);
+  for (int k = 0; k < system->potential_count; k++) lacks |= !dvi__potential_has_gradient(&system->potentials[k]);
+  return lacks;
+}
+
+/* A general Lagrangian's Hessian is always asked for: by the inverse Legendre map. */
+static int lacks_hessian(const dvi_system *system, int hessians)
+{
+  int lacks = system->lagrangian != NULL && !dvi__general_has_hessian(system->lagrangian);
+  lacks |= system->constraint != NULL && system->constraint->callbacks.hessian == NULL;
+  for (int k = 0; k < system->potential_count && hessians; k++) lacks |= !dvi__potential_has_hessian(&system->potentials[k]);
+  return lacks;
+}
+
+double dvi__hessian_noise(const dvi_system *system)
+{
+  const dvi__transformed *transformed = dvi__transformed_of(system);
+  if (transformed != NULL) return dvi__transformed_noise(transformed);
+  if (!lacks_hessian(system, 1)) return 0;
+  return lacks_gradient(system) ? 1e-7 : 1e-10;
+}
+
+int dvi__differences_allocate(size_t numbers, dvi__differences *d)
+{
+  *d = (dvi__differences){DVI_NEW(double, numbers),
+                          DVI_NEW(double, numbers),
+                          DVI_NEW(double, numbers),
+                          DVI_NEW(double, numbers),
+                          DVI_NEW(double, numbers),
+                          DVI_NEW(double, numbers),
+                          0,
+                          0};
+  return d->moved && d->step && d->plus && d->minus && d->plus_v && d->minus_v;
+}
+
+void dvi__differences_clear(dvi__differences *d)
+{
+  dvi__release(d->moved);
+  dvi__release(d->step);
+  dvi__release(d->plus);
+  dvi__release(d->minus);
+  dvi__release(d->plus_v);
+  dvi__release(d->minus_v);
+}
+
+static int allocate(const dvi_system *system, int capacity, int hessians, dvi__scratch *s)
+{
+  const size_t numbers = (size_t)system->n * (size_t)capacity;
+  s->point_q = DVI_NEW(double, system->n);
+  s->point_v = DVI_NEW(double, system->n);
+  for (int k = 0; k < 3; k++) s->result[k] = DVI_NEW(double, dvi__longest_hessian(system, hessians));
+  if (!s->point_q || !s->point_v || !s->result[0] || !s->result[1] || !s->result[2]) return 0;
+  if (lacks_gradient(system) && !dvi__differences_allocate(numbers, &s->of_value)) return 0;
+  return !lacks_hessian(system, hessians) || dvi__differences_allocate(numbers, &s->of_gradient);
+}
+
+dvi_status dvi__scratch_create(const dvi_system *system, int capacity, int hessians, dvi__scratch *scratch)
+{
+  *scratch = (dvi__scratch){.n = system->n, .capacity = capacity};
+  if (dvi__transformed_of(system) != NULL) DVI_TRY(dvi__transformed_reserve(dvi__transformed_of(system), capacity));
+  if (allocate(system, capacity, hessians, scratch)) return DVI_OK;
+  dvi__scratch_clear(scratch);
+  return dvi__fail(DVI_NO_MEMORY, "evaluator: no memory for %d points in %d dimensions", capacity, system->n);
+}
+
+void dvi__scratch_clear(dvi__scratch *scratch)
+{
+  dvi__release(scratch->point_q);
+  dvi__release(scratch->point_v);
+  for (int k = 0; k < 3; k++) dvi__release(scratch->result[k]);
+  dvi__differences_clear(&scratch->of_value);
+  dvi__differences_clear(&scratch->of_gradient);
+  *scratch = (dvi__scratch){0};
+}

@@ -1,0 +1,300 @@
+/* With v = w/g and the energy E = L_v.v - L, all of L at (q,v):
+ *
+ *     Lg_q  = g L_q + (E0 - E) g_q            Lg_w = L_v
+ *     Lg_qq = g L_qq + d g_q^T + g_q d^T + (v.L_vv v)/g g_q g_q^T + (E0 - E) g_qq,      d = L_q - L_qv v
+ *     Lg_qw = L_qv - g_q (L_vv v)^T/g         Lg_ww = L_vv/g
+ *
+ * On the orbit E = E0, and E - E0 is what the step's nodes leave of it. */
+#include "system/rescale/transformed.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/hash.h"
+#include "core/memory.h"
+#include "core/status.h"
+#include "num/finite.h"
+
+/* Work for a batch; all in one block. */
+typedef struct work {
+  double *numbers;
+  double *v, *g_q, *L_q, *L_v, *d, *Mv;       /* [n*capacity]; Mv: L_vv v */
+  double *g, *lag, *vMv;                      /* [capacity]; lag: E0 - E; vMv: v.L_vv v */
+  double *g_qq, *base_qq, *base_qv, *base_vv; /* [entries*capacity] of g, and of the system's L */
+} work;
+
+struct dvi__transformed {
+  const dvi_system *base;
+  dvi_system *system;
+  dvi_monitor given;
+  dvi__monitor *monitor;
+  dvi__evaluator *evaluator; /* of base */
+  dvi_counters *counters;
+  double energy;
+  int capacity;
+  work work;
+};
+
+/* ---- room for batches ---- */
+
+static dvi_status allocate(const dvi_system *base, int capacity, work *w)
+{
+  const size_t points = (size_t)capacity, n = (size_t)base->n * points;
+  const size_t qq = (size_t)dvi__pattern_entries(&base->qq) * points, qv = (size_t)dvi__pattern_entries(&base->qv) * points;
+  const size_t vv = (size_t)dvi__pattern_entries(&base->vv) * points, full = (size_t)base->n * n;
+  double **const part[] = {&w->v,   &w->g_q, &w->L_q,  &w->L_v,     &w->d,       &w->Mv,     &w->g,
+                           &w->lag, &w->vMv, &w->g_qq, &w->base_qq, &w->base_qv, &w->base_vv};
+  const size_t size[] = {n, n, n, n, n, n, points, points, points, full, qq, qv, vv};
+  double *at = w->numbers = DVI_NEW(double, 6 * n + 3 * points + full + qq + qv + vv);
+  if (at == NULL) return dvi__fail(DVI_NO_MEMORY, "time transform: no memory for %d points in %d dimensions", capacity, base->n);
+  for (size_t i = 0; i < sizeof part / sizeof *part; at += size[i++]) *part[i] = at;
+  return DVI_OK;
+}
+
+dvi_status dvi__transformed_reserve(dvi__transformed *x, int capacity)
+{
+  work room = {0};
+  dvi__monitor *monitor = NULL;
+  dvi__evaluator *evaluator = NULL;
+  if (capacity <= x->capacity) return DVI_OK;
+  dvi_status status = dvi__evaluator_create(x->base, capacity, DVI__HESSIANS, x->counters, &evaluator);
+  if (status == DVI_OK) status = dvi__monitor_create(x->base, &x->given, capacity, DVI__HESSIANS, x->counters, &monitor);
+  if (status == DVI_OK) status = allocate(x->base, capacity, &room);
+  if (status != DVI_OK) {
+    dvi__evaluator_destroy(&evaluator);
+    dvi__monitor_destroy(&monitor);
+    return status;
+  }
+  dvi__evaluator_destroy(&x->evaluator);
+  dvi__monitor_destroy(&x->monitor);
+  dvi__release(x->work.numbers);
+  x->evaluator = evaluator;
+  x->monitor = monitor;
+  x->work = room;
+  x->capacity = capacity;
+  dvi__monitor_set_energy(monitor, x->energy);
+  return DVI_OK;
+}
+
+/* ---- create, destroy ---- */
+
+/* g depends on all coordinates, so L_qq and L_qw are full; L_ww is where the system's is. */
+static dvi_status make_patterns(dvi_system *s, const dvi_system *base)
+{
+  const dvi_pattern full = {0};
+  dvi__lagrangian_term *term = s->lagrangian;
+  DVI_TRY(dvi__pattern_copy(&full, base->n, "time transform", &term->qq));
+  DVI_TRY(dvi__pattern_copy(&full, base->n, "time transform", &term->qv));
+  DVI_TRY(dvi__pattern_copy(&full, base->n, "time transform", &s->qv));
+  DVI_TRY(dvi__pattern_union(&base->vv, &base->vv, &term->vv));
+  return dvi__pattern_union(&base->vv, &base->vv, &s->vv);
+}
+
+static dvi_status make_system(dvi__transformed *x)
+{
+  dvi_system *s = x->system = DVI_NEW(dvi_system, 1);
+  if (s == NULL) return dvi__fail(DVI_NO_MEMORY, "time transform: no memory");
+  s->n = s->nv = s->nx = x->base->n;
+  s->terms = DVI__LAGRANGIAN;
+  s->autonomous = 1;
+  s->lagrangian = DVI_NEW(dvi__lagrangian_term, 1);
+  if (s->lagrangian == NULL) return dvi__fail(DVI_NO_MEMORY, "time transform: no memory");
+  s->lagrangian->name = "Lagrangian";
+  s->lagrangian->transformed = x;
+  return make_patterns(s, x->base);
+}
+
+static dvi_status fill(dvi__transformed *x, const dvi_system *system, const dvi_monitor *monitor, dvi_counters *counters)
+{
+  x->base = system;
+  x->given = *monitor;
+  x->counters = counters;
+  x->energy = (double)NAN;
+  if (!system->autonomous)
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "the system is not declared autonomous: its energy need not be conserved, and no function of q "
+                     "alone can stand for its time");
+  if (system->terms & (DVI__ONE_FORM | DVI__PHASE_SPACE))
+    return dvi__fail(DVI_UNSUPPORTED, "the system declares a %s: its Lagrangian has no mass that could be divided by the monitor",
+                     system->lagrangian->name);
+  DVI_TRY(dvi__system_prepare_hessian(system));
+  DVI_TRY(dvi__transformed_reserve(x, 1));
+  return make_system(x);
+}
+
+dvi_status dvi__transformed_create(const dvi_system *system, const dvi_monitor *monitor, dvi_counters *counters,
+                                   dvi__transformed **transformed)
+{
+  *transformed = NULL;
+  dvi__transformed *x = DVI_NEW(dvi__transformed, 1);
+  if (x == NULL) return dvi__fail(DVI_NO_MEMORY, "time transform: no memory");
+  const dvi_status status = fill(x, system, monitor, counters);
+  if (status != DVI_OK) dvi__transformed_destroy(&x);
+  *transformed = x;
+  return status;
+}
+
+void dvi__transformed_destroy(dvi__transformed **transformed)
+{
+  dvi__transformed *x = *transformed;
+  if (x == NULL) return;
+  dvi_system_destroy(&x->system);
+  dvi__monitor_destroy(&x->monitor);
+  dvi__evaluator_destroy(&x->evaluator);
+  dvi__release(x->work.numbers);
+  dvi__release(x);
+  *transformed = NULL;
+}
+
+const dvi_system *dvi__transformed_system(const dvi__transformed *x)
+{
+  return x->system;
+}
+
+dvi__transformed *dvi__transformed_of(const dvi_system *system)
+{
+  return system->lagrangian != NULL ? system->lagrangian->transformed : NULL;
+}
+
+dvi__monitor *dvi__transformed_monitor(const dvi__transformed *x)
+{
+  return x->monitor;
+}
+
+double dvi__transformed_noise(const dvi__transformed *x)
+{
+  return fmax(dvi__hessian_noise(x->base), dvi__monitor_noise(x->monitor));
+}
+
+void dvi__transformed_set_energy(dvi__transformed *x, double energy)
+{
+  x->energy = energy;
+  dvi__monitor_set_energy(x->monitor, energy);
+}
+
+/* ---- evaluation ---- */
+
+/* g and v = w/g. */
+static dvi_status velocities(dvi__transformed *x, int count, const double *q, const double *w)
+{
+  const size_t points = (size_t)count;
+  DVI_TRY(dvi__monitor_value(x->monitor, count, q, x->work.g));
+  for (size_t i = 0; i < (size_t)x->base->n; i++)
+    for (size_t k = 0; k < points; k++) x->work.v[i * points + k] = w[i * points + k] / x->work.g[k];
+  return DVI_OK;
+}
+
+/* The evaluator that asks counts the same points; the system's own evaluator counts what is really evaluated. */
+dvi_status dvi__transformed_value(dvi__transformed *x, int count, const double *t, const double *q, const double *w, double *L)
+{
+  x->counters->values -= count;
+  DVI_TRY(velocities(x, count, q, w));
+  DVI_TRY(dvi__lagrangian_value(x->evaluator, count, t, q, x->work.v, L));
+  for (int k = 0; k < count; k++) L[k] = x->work.g[k] * (L[k] + x->energy);
+  return DVI_OK;
+}
+
+/* lag <- L - L_v.v + E0 = E0 - E, from L. */
+static void find_lag(const dvi__transformed *x, int count)
+{
+  const work *at = &x->work;
+  const size_t points = (size_t)count;
+  for (size_t i = 0; i < (size_t)x->base->n; i++)
+    for (size_t k = 0; k < points; k++) at->lag[k] -= at->L_v[i * points + k] * at->v[i * points + k];
+  for (size_t k = 0; k < points; k++) at->lag[k] += x->energy;
+}
+
+/* Everything of first order: v, g, g_q, L_q, L_v and lag = E0 - E. */
+static dvi_status first_order(dvi__transformed *x, int count, const double *t, const double *q, const double *w)
+{
+  const work *at = &x->work;
+  DVI_TRY(velocities(x, count, q, w));
+  DVI_TRY(dvi__monitor_gradient(x->monitor, count, q, at->g_q));
+  DVI_TRY(dvi__lagrangian_value(x->evaluator, count, t, q, at->v, at->lag));
+  DVI_TRY(dvi__lagrangian_gradient(x->evaluator, count, t, q, at->v, at->L_q, at->L_v));
+  find_lag(x, count);
+  return DVI_OK;
+}
+
+dvi_status dvi__transformed_gradient(dvi__transformed *x, int count, const double *t, const double *q, const double *w, double *L_q,
+                                     double *L_w)
+{
+  const work *at = &x->work;
+  const size_t n = (size_t)x->base->n, points = (size_t)count;
+  x->counters->gradients -= count;
+  DVI_TRY(first_order(x, count, t, q, w));
+  for (size_t i = 0; i < n; i++)
+    for (size_t k = 0; k < points; k++)
+      L_q[i * points + k] = at->g[k] * at->L_q[i * points + k] + at->lag[k] * at->g_q[i * points + k];
+  memcpy(L_w, at->L_v, n * points * sizeof *L_w);
+  if (dvi__first_not_finite(n * points, L_q) < 0 && dvi__first_not_finite(n * points, L_w) < 0) return DVI_OK;
+  return dvi__fail(DVI_NOT_FINITE, "time transform: the gradient is not finite");
+}
+
+/* y += A x (point by point), A of a pattern. */
+static void add_product(const dvi__pattern *pattern, size_t points, const double *A, const double *x, double *y)
+{
+  for (size_t j = 0; j < (size_t)pattern->columns; j++)
+    for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++)
+      for (size_t k = 0; k < points; k++) y[(size_t)pattern->row[e] * points + k] += A[(size_t)e * points + k] * x[j * points + k];
+}
+
+/* d, Mv and vMv. */
+static void second_order(dvi__transformed *x, size_t points)
+{
+  const work *at = &x->work;
+  const size_t n = (size_t)x->base->n;
+  memset(at->d, 0, n * points * sizeof(double));
+  memset(at->Mv, 0, n * points * sizeof(double));
+  memset(at->vMv, 0, points * sizeof(double));
+  add_product(&x->base->qv, points, at->base_qv, at->v, at->d);
+  add_product(&x->base->vv, points, at->base_vv, at->v, at->Mv);
+  for (size_t i = 0; i < n; i++)
+    for (size_t k = i * points; k < (i + 1) * points; k++) {
+      at->d[k] = at->L_q[k] - at->d[k];
+      at->vMv[k - i * points] += at->v[k] * at->Mv[k];
+    }
+}
+
+/* The parts of L_qq and L_qw that g's derivatives make, in all entries. */
+static void fill_full(const work *at, size_t n, size_t points, double *L_qq, double *L_qw)
+{
+  for (size_t j = 0; j < n; j++)
+    for (size_t i = 0; i < n; i++)
+      for (size_t k = 0; k < points; k++) {
+        const size_t e = (j * n + i) * points + k, row = i * points + k, column = j * points + k;
+        const double g_i = at->g_q[row], g_j = at->g_q[column], g = at->g[k];
+        L_qq[e] = at->d[row] * g_j + g_i * at->d[column] + at->vMv[k] / g * g_i * g_j + at->lag[k] * at->g_qq[e];
+        L_qw[e] = -g_i * at->Mv[column] / g;
+      }
+}
+
+/* Add the system's own blocks, `by` g or not, where their patterns have entries. */
+static void add_block(const dvi__pattern *pattern, size_t n, size_t points, const double *A, const double *by, double *full)
+{
+  for (size_t j = 0; j < n; j++)
+    for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++)
+      for (size_t k = 0; k < points; k++)
+        full[(j * n + (size_t)pattern->row[e]) * points + k] += (by != NULL ? by[k] : 1) * A[(size_t)e * points + k];
+}
+
+dvi_status dvi__transformed_hessian(dvi__transformed *x, int count, const double *t, const double *q, const double *w, double *L_qq,
+                                    double *L_qw, double *L_ww)
+{
+  const work *at = &x->work;
+  const size_t n = (size_t)x->base->n, points = (size_t)count, vv = (size_t)dvi__pattern_entries(&x->base->vv);
+  x->counters->hessians -= count;
+  DVI_TRY(first_order(x, count, t, q, w));
+  DVI_TRY(dvi__monitor_hessian(x->monitor, count, q, at->g_qq));
+  DVI_TRY(dvi__lagrangian_hessian(x->evaluator, count, t, q, at->v, at->base_qq, at->base_qv, at->base_vv));
+  second_order(x, points);
+  fill_full(at, n, points, L_qq, L_qw);
+  add_block(&x->base->qq, n, points, at->base_qq, at->g, L_qq);
+  add_block(&x->base->qv, n, points, at->base_qv, NULL, L_qw);
+  for (size_t e = 0; e < vv; e++)
+    for (size_t k = 0; k < points; k++) L_ww[e * points + k] = at->base_vv[e * points + k] / at->g[k];
+  if (dvi__first_not_finite(n * n * points, L_qq) < 0 && dvi__first_not_finite(n * n * points, L_qw) < 0 &&
+      dvi__first_not_finite(vv * points, L_ww) < 0)
+    return DVI_OK;
+  return dvi__fail(DVI_NOT_FINITE, "time transform: the Hessian is not finite");
+}
