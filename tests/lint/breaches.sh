@@ -10,12 +10,12 @@ rc=0
 clean() {
   rm -rf "${work:?}"/*
   cd "$work" || exit 1
-  for room in core num group space system solve action method diagnostics reference scene; do mkdir -p lib/src/$room; done
+  for room in core num group space system solve step/element method/element diagnostics reference scene; do mkdir -p lib/src/$room; done
   mkdir -p lib/include/dvi apps/problems apps/examples tests/method docs/methods
   printf '/** One. */\nint dvi_one(int a);\n' >lib/include/dvi/one.h
   printf '#include <dvi/one.h>\n\nint dvi_one(int a)\n{\n  return a;\n}\n' >lib/src/core/one.c
-  printf '#include <dvi/one.h>\n' >lib/src/method/leap.c
-  printf '/* .cite = "Euler1744" */\n' >>lib/src/method/leap.c
+  printf '#include <dvi/one.h>\n' >lib/src/method/element/leap.c
+  printf '/* .cite = "Euler1744" */\n' >>lib/src/method/element/leap.c
   printf '#include <dvi/one.h>\n' >apps/main.c
   touch tests/method/test_leap.c docs/methods/leap.md
   printf '@book{Euler1744,\n}\n' >docs/references.bib
@@ -57,12 +57,14 @@ for gate in layers text documented methods messages docs headers symbols; do pas
 sees layers lib/src/core/one.c '#include "num/linear.h"'
 sees layers lib/src/num/one.c '#include "system/system.h"'
 sees layers lib/src/solve/one.c '#include "system/system.h"'
-sees layers lib/src/solve/one.c '#include "action/element.h"'
-sees layers lib/src/method/two.c '#include "method/leap.h"'
+sees layers lib/src/solve/one.c '#include "step/element/action.h"'
+sees layers lib/src/method/element/two.c '#include "method/element/leap.h"'
 sees layers lib/src/reference/one.c '#include "solve/nonlinear.h"'
+sees layers lib/src/step/element/one.c '#include "step/split/modes.h"'
+sees layers lib/src/method/element/one.c '#include "integrator/event.h"'
 sees layers lib/src/diagnostics/one.c '#include "method/method.h"'
 sees layers lib/src/core/one.c '#include "local.h"'
-sees layers lib/src/method/leap.c '#include <kinsol/kinsol.h>'
+sees layers lib/src/method/element/leap.c '#include <kinsol/kinsol.h>'
 sees layers lib/src/solve/one.c '#include <klu.h>'
 sees layers lib/src/num/one.c '#include <sundials/sundials_types.h>'
 sees layers lib/src/reference/one.c '#include <gsl/gsl_odeiv2.h>'
@@ -102,7 +104,7 @@ sees headers lib/include/dvi/one.h 'size_t dvi_size(void);'
 sees symbols lib/src/core/one.c 'int dvi_two;'
 sees symbols lib/src/core/one.c 'int stray;'
 sees symbols lib/include/dvi/one.h 'int dvi_promised(int a);'
-for file in lib/src/method/leap.c tests/method/test_leap.c docs/methods/leap.md docs/references.bib; do
+for file in lib/src/method/element/leap.c tests/method/test_leap.c docs/methods/leap.md docs/references.bib; do
   clean
   rm $file
   if methods >log 2>&1; then echo "methods does not see that $file is missing"; rc=1; fi

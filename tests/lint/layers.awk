@@ -2,27 +2,47 @@
 # Prints every breach and exits 1 if there is one.
 
 BEGIN {
-  # Rooms of lib/src that a room may look into, besides itself.
+  # Rooms of lib/src that a room may look into, besides itself; a room without its sub-room's name stands for all of them.
   sees["core"] = ""
-  sees["num"] = "core"
+  sees["num/simd"] = "core"
+  sees["num"] = "core num/simd"
   sees["group"] = "core num"
   sees["space"] = "core num"
-  sees["group"] = "core num"
-  sees["system"] = "core num group"
   sees["solve"] = "core num"
-  sees["action"] = "core num group space system"
-  sees["method"] = "core num group space system action solve"
-  sees["path"] = "core num group space system action solve method"
+  sees["system"] = "core num group"
+  sees["system/evaluate"] = sees["system/check"] = sees["system/chart"] = sees["system/rescale"] = "core num group system"
+  sees["step"] = "core num system"
+  sees["step/element"] = "core num group space system step"
+  sees["step/onestep"] = "core num space system step"
+  sees["step/degenerate"] = "core num system step step/onestep"
+  sees["step/hamiltonian"] = "core num space system step step/element step/onestep"
+  sees["step/split"] = "core num group system step"
+  sees["step/lie"] = "core num group system step step/split"
+  sees["method"] = "core num solve system step/element"
+  sees["method/element"] = sees["method"] " space method"
+  sees["method/degenerate"] = sees["method"] " method method/element step/degenerate"
+  sees["method/hamiltonian"] = sees["method/degenerate"] " step/hamiltonian"
+  sees["method/lie"] = sees["method"] " method method/element step/lie"
+  sees["method/shooting"] = sees["method"] " method space step/onestep"
+  sees["method/split"] = sees["method"] " method method/element space step/split"
+  sees["integrator"] = "core num space system method"
+  sees["boundary"] = "core num solve system step/element method/element"
   sees["diagnostics"] = "core num system"
   sees["reference"] = "core num system"
-  sees["scene"] = "" # a library of its own, beside libdvi's public headers
+  # A library of its own, beside libdvi's public headers.
+  sees["scene/text"] = ""
+  sees["scene/expr"] = "scene/text"
+  sees["scene/function"] = "scene/text scene/expr"
+  sees["scene/elaborate"] = "scene/text scene/expr scene/function"
+  sees["scene"] = "scene/text scene/expr scene/function scene/elaborate"
+  sees["scene/emit"] = sees["scene"] " scene"
   # Single headers that are open to a room beyond that.
   also["reference solve/sundials_compat.h"] = 1
   # Standard headers that a public header may need.
   split("math.h stdarg.h stddef.h", open_headers)
   for (i in open_headers) standard[open_headers[i]] = 1
   count = split(methods, names, " ")
-  for (i = 1; i <= count; i++) method["method/" names[i] ".h"] = 1
+  for (i = 1; i <= count; i++) method[names[i] ".h"] = 1
 }
 
 function breach(why) { printf "%s:%d: %s: %s\n", FILENAME, FNR, why, $0; failed = 1 }
@@ -38,12 +58,20 @@ function check_library(quoted, header,   target) {
     if (part_of_suitesparse(header) && room != "num" && room != "reference") breach("KLU belongs to num/ and reference/")
     return
   }
-  if (header !~ /^[a-z]+\/[a-z_0-9]+\.(h|def)$/) { breach("write \"room/file.h\""); return }
-  target = header
-  sub(/\/.*/, "", target)
-  if (header in method) breach("methods never include each other")
-  if (target == room || (room " " header) in also) return
-  if (index(" " sees[room] " ", " " target " ") == 0) breach(room "/ may not see " target "/")
+  if (header !~ /^[a-z]+\/([a-z]+\/)?[a-z_0-9]+\.(h|def)$/) { breach("write \"room/file.h\""); return }
+  target = file = header
+  sub(/\/[^\/]*$/, "", target)
+  sub(/.*\//, "", file)
+  if (target ~ /^method/ && file in method) breach("methods never include each other")
+  if (target == room || (room " " header) in also || is_seen(target)) return
+  breach(room "/ may not see " target "/")
+}
+
+# A room, or the one that it is a part of.
+function is_seen(target,   whole) {
+  whole = target
+  sub(/\/.*/, "", whole)
+  return index(" " sees[room] " ", " " target " ") > 0 || (whole != hall && index(" " sees[room] " ", " " whole " ") > 0)
 }
 
 function check_public(quoted, header) {
@@ -59,7 +87,7 @@ function check_user(quoted, header) {
 FNR == 1 {
   room = FILENAME
   zone = "other"
-  if (sub(/^lib\/src\//, "", room)) { zone = "library"; sub(/\/.*/, "", room); if (!(room in sees)) { breach("unknown room " room) } }
+  if (sub(/^lib\/src\//, "", room)) { zone = "library"; sub(/\/[^\/]*$/, "", room); hall = room; sub(/\/.*/, "", hall); if (!(room in sees)) { breach("unknown room " room) } }
   else if (FILENAME ~ /^lib\/include\//) zone = "public"
   else if (FILENAME ~ /^apps\//) zone = "user"
 }
@@ -86,12 +114,12 @@ FILENAME != "lib/src/core/number.c" && (zone == "library" && /[^A-Za-z0-9_]vsnpr
   breach("numbers are read and written by dvi/number.h, the same in every locale")
 }
 # Scenes are a library of their own, with a door of their own.
-zone == "library" && FILENAME != "lib/src/core/memory.c" && FILENAME != "lib/src/scene/heap.c" && /(^|[^A-Za-z0-9_])(malloc|calloc|realloc|strdup)\(/ {
-  breach("the heap is behind core/memory.h, and scene/heap.h")
+zone == "library" && FILENAME != "lib/src/core/memory.c" && FILENAME != "lib/src/scene/text/heap.c" && /(^|[^A-Za-z0-9_])(malloc|calloc|realloc|strdup)\(/ {
+  breach("the heap is behind core/memory.h, and scene/text/heap.h")
 }
 # SUNDIALS hands over some strings that are to be freed.
-zone == "library" && FILENAME != "lib/src/core/memory.c" && FILENAME != "lib/src/scene/heap.c" && room != "solve" && room != "reference" && /(^|[^A-Za-z0-9_])free\(/ {
-  breach("the heap is behind core/memory.h, and scene/heap.h")
+zone == "library" && FILENAME != "lib/src/core/memory.c" && FILENAME != "lib/src/scene/text/heap.c" && room != "solve" && room != "reference" && /(^|[^A-Za-z0-9_])free\(/ {
+  breach("the heap is behind core/memory.h, and scene/text/heap.h")
 }
 zone == "user" && /dvi__/ { breach("apps/ may not use internal names") }
 zone == "public" && /dvi__/ { breach("internal name in a public header") }

@@ -8,12 +8,13 @@ rc=0
 need() { [ -e "$1" ] || { echo "missing: $1 (its method is in lib/src/method/methods.def)"; rc=1; }; }
 [ $# -gt 0 ] || { echo "no METHOD(name) line in lib/src/method/methods.def"; exit 1; }
 for name; do
-  need "lib/src/method/$name.c"
+  source=$(find lib/src/method -name "$name.c")
+  [ -n "$source" ] || { echo "missing: lib/src/method/*/$name.c (its method is in lib/src/method/methods.def)"; rc=1; continue; }
   need "tests/method/test_$name.c"
   need "docs/methods/$name.md"
-  cite=$(sed -n 's/.*\.cite = "\([^"]*\)".*/\1/p' "lib/src/method/$name.c" 2>/dev/null)
+  cite=$(sed -n 's/.*\.cite = "\([^"]*\)".*/\1/p' "$source")
   if [ -z "$cite" ]; then
-    echo "lib/src/method/$name.c: no .cite"; rc=1
+    echo "$source: no .cite"; rc=1
   elif ! grep -q "^@[a-z]*{$cite," docs/references.bib 2>/dev/null; then
     echo "docs/references.bib: no entry $cite (cited by $name)"; rc=1
   fi

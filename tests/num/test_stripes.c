@@ -1,6 +1,6 @@
 /* labels: unit */
 /* Chebyshev sums of sparse matrices, against the same recurrence with rows of a full matrix. */
-#include "num/simd/stripes.h"
+#include "num/stripes.h"
 
 #include <float.h>
 #include <math.h>

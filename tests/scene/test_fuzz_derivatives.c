@@ -10,7 +10,7 @@
 
 #include "scene/function/function.h"
 #include "scene/expr/graph_make.h"
-#include "scene/heap.h"
+#include "scene/text/heap.h"
 #include "support/fuzz.h"
 #include "support/quad_graph.h"
 #include "support/suite.h"

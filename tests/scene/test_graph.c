@@ -3,7 +3,7 @@
 #include <stdlib.h>
 
 #include "scene/expr/graph.h"
-#include "scene/heap.h"
+#include "scene/text/heap.h"
 #include "support/suite.h"
 
 enum { INPUTS_MAX = 100 };

@@ -10,7 +10,7 @@
 
 #include "scene/expr/graph.h"
 #include "scene/expr/graph_make.h"
-#include "scene/heap.h"
+#include "scene/text/heap.h"
 #include "support/quad_graph.h"
 #include "support/suite.h"
 

@@ -1,6 +1,6 @@
 #include "support/scene_text.h"
 
-#include "scene/heap.h"
+#include "scene/text/heap.h"
 #include "scene/text/utf8.h"
 #include "support/suite.h"
 

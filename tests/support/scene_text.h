@@ -1,7 +1,7 @@
 /* The text of a scene in a test: what it is read into, and what is said of it. */
 #ifndef TESTS_SUPPORT_SCENE_TEXT_H
 #define TESTS_SUPPORT_SCENE_TEXT_H
-#include "scene/arena.h"
+#include "scene/text/arena.h"
 #include "scene/text/complaint.h"
 
 /* Its address must not change while it is open. */

@@ -68,6 +68,15 @@ dvi_status dvi_integrator_create(const dvi_system *system, const char *method, d
   return dvi__integrator_make(system, method, NULL, NULL, DVI__TRANSFORM, integrator);
 }
 
+dvi_status dvi_integrator_create_shaped(const dvi_system *system, const dvi_shapes *shapes, const char *method,
+                                        dvi_integrator **integrator)
+{
+  if (integrator == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "integrator: no place for the result");
+  *integrator = NULL;
+  DVI_TRY(dvi__shapes_check(shapes));
+  return dvi__integrator_make(system, method, shapes, NULL, DVI__TRANSFORM, integrator);
+}
+
 void dvi_integrator_destroy(dvi_integrator **integrator)
 {
   if (integrator == NULL || *integrator == NULL) return;

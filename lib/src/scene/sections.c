@@ -8,8 +8,8 @@
 #include <string.h>
 
 #include "scene/elaborate/shape.h"
-#include "scene/text/slips.h"
-#include "scene/text/words.h"
+#include "scene/elaborate/slips.h"
+#include "scene/elaborate/words.h"
 
 /* ---- what readers share ---- */
 

@@ -1,7 +1,7 @@
 /* The sections of a scene and who reads them. */
 #ifndef DVI_SCENE_SECTIONS_H
 #define DVI_SCENE_SECTIONS_H
-#include "scene/context.h"
+#include "scene/elaborate/context.h"
 
 /* Settings "name=value" from outside. */
 typedef struct dvi__settings {

@@ -1,7 +1,7 @@
 /* What follows from a start once there is a system: momenta of velocities, or velocities of momenta. */
 #ifndef DVI_SCENE_START_H
 #define DVI_SCENE_START_H
-#include "scene/model.h"
+#include "scene/elaborate/model.h"
 
 bool dvi__scene_complete_start(dvi_scene *scene);
 

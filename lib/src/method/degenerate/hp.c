@@ -15,7 +15,7 @@
  * else mostly not. At 1 the parasite adds up, and the order is d-1: for even d where the symmetric part is 0, for odd d where it is all.
  * Source: Leok and Ohsawa 2011; Marsden and West 2001, sec. 2.6 (the pairs). The parasite is ours. */
 #include "core/status.h"
-#include "method/carried_step.h"
+#include "method/degenerate/carried_step.h"
 #include "method/element/element_step.h"
 #include "method/degenerate/partitioned_step.h"
 

@@ -13,7 +13,6 @@
 #include "core/hash.h"
 #include "core/memory.h"
 #include "method/element/element_step.h"
-#include "integrator/integrator_struct.h"
 #include "method/one_step.h"
 #include "num/compensated.h"
 #include "space/given.h"
@@ -205,17 +204,6 @@ static void destroy(dvi__stepper *self)
   dvi__given *space = own->space;
   dvi__one_step_destroy(self);
   dvi__given_destroy(&space);
-}
-
-/* ---- the program's door ---- */
-
-dvi_status dvi_integrator_create_shaped(const dvi_system *system, const dvi_shapes *shapes, const char *method,
-                                        dvi_integrator **integrator)
-{
-  if (integrator == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "integrator: no place for the result");
-  *integrator = NULL;
-  DVI_TRY(dvi__shapes_check(shapes));
-  return dvi__integrator_make(system, method, shapes, NULL, DVI__TRANSFORM, integrator);
 }
 
 /* ---- the step ---- */

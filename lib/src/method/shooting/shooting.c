@@ -14,7 +14,7 @@
 #include "step/onestep/stacked_shot.h"
 #include "core/memory.h"
 #include "core/status.h"
-#include "method/shooting/scheme.h"
+#include "method/scheme.h"
 #include "method/stationary.h"
 #include "num/compensated.h"
 #include "num/finite.h"

@@ -2,13 +2,13 @@
  *
  *     Psi_h = Phi_{g_m h} o ... o Phi_{g_2 h} o Phi_{g_1 h},    g_i = g_{m+1-i},   sum g_i = 1
  * The discrete Lagrangian is the sum of those of the substeps, stationary in the points between them (Marsden and West 2001, sec. 2.5.1).
- * The g_i are those of method/shooting/scheme.h. */
+ * The g_i are those of method/scheme.h. */
 #include <string.h>
 
 #include "core/memory.h"
 #include "core/status.h"
 #include "method/method.h"
-#include "method/shooting/scheme.h"
+#include "method/scheme.h"
 #include "num/compensated.h"
 #include "system/rescale/transformed.h"
 

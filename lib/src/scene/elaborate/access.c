@@ -3,8 +3,8 @@
 #include <string.h>
 
 #include "scene/elaborate/elaborate.h"
-#include "scene/heap.h"
-#include "scene/text/words.h"
+#include "scene/text/heap.h"
+#include "scene/elaborate/words.h"
 
 /* ---- names ---- */
 

@@ -1,7 +1,7 @@
 /* The parts of elaborate.c that stand in files of their own. */
 #ifndef DVI_SCENE_ELABORATE_H
 #define DVI_SCENE_ELABORATE_H
-#include "scene/context.h"
+#include "scene/elaborate/context.h"
 #include "scene/elaborate/shape.h"
 
 /* Whether something, one of DVI__SAYS_.., may stand here; told if not. */

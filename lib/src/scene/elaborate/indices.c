@@ -3,11 +3,11 @@
 #include <math.h>
 #include <string.h>
 
-#include "scene/context.h"
-#include "scene/heap.h"
+#include "scene/elaborate/context.h"
+#include "scene/text/heap.h"
 #include "scene/expr/program.h"
 #include "scene/elaborate/shape.h"
-#include "scene/text/words.h"
+#include "scene/elaborate/words.h"
 
 const dvi__index *dvi__index_find(const dvi__context *c, const char *name)
 {

@@ -1,8 +1,8 @@
 /* Inputs of kernels: variables by their numbers, and rows of data. Each is there once. */
 #include <string.h>
 
-#include "scene/context.h"
-#include "scene/heap.h"
+#include "scene/elaborate/context.h"
+#include "scene/text/heap.h"
 
 static int block_size(const dvi_scene *scene, dvi__block block)
 {

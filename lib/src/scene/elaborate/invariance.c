@@ -10,8 +10,8 @@
 #include <string.h>
 
 #include "scene/expr/graph_make.h"
-#include "scene/heap.h"
-#include "scene/model.h"
+#include "scene/text/heap.h"
+#include "scene/elaborate/model.h"
 
 /* Nodes of a trial over all elements; and in all trials, which take a second. */
 enum { TRIALS = 3, WORK_MAX = 2000000, ALL_WORK_MAX = 40000000, GROUP_MAX = 8 };

@@ -1,7 +1,7 @@
 /* Kernels of an expression: sums that are added to the whole are one kernel each, all else is one more. */
 #ifndef DVI_SCENE_KERNELS_H
 #define DVI_SCENE_KERNELS_H
-#include "scene/context.h"
+#include "scene/elaborate/context.h"
 
 /* A list of kernels that owns the nodes of their graphs; dvi__kernels_free. All else is the arena's. */
 typedef struct dvi__kernels {

@@ -12,8 +12,8 @@
 #include <string.h>
 
 #include "scene/expr/graph_make.h"
-#include "scene/heap.h"
-#include "scene/model.h"
+#include "scene/text/heap.h"
+#include "scene/elaborate/model.h"
 #include "scene/expr/program.h"
 
 /* Nodes of all trials, which take less than a second. */

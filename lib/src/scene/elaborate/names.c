@@ -5,8 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "scene/text/slips.h"
-#include "scene/text/words.h"
+#include "scene/elaborate/slips.h"
+#include "scene/elaborate/words.h"
 
 static uint32_t hash_of(const char *text)
 {

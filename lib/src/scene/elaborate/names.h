@@ -1,7 +1,7 @@
 /* The names of a scene: parameters, coordinates and definitions, and what each of them is. */
 #ifndef DVI_SCENE_NAMES_H
 #define DVI_SCENE_NAMES_H
-#include "scene/arena.h"
+#include "scene/text/arena.h"
 #include "scene/text/complaint.h"
 #include "scene/text/syntax.h"
 

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "scene/elaborate/elaborate.h"
-#include "scene/text/words.h"
+#include "scene/elaborate/words.h"
 
 int dvi__value_size(dvi__value value)
 {

@@ -1,7 +1,7 @@
 /* Arithmetic of numbers, vectors and matrices of nodes. */
 #ifndef DVI_SCENE_SHAPE_H
 #define DVI_SCENE_SHAPE_H
-#include "scene/context.h"
+#include "scene/elaborate/context.h"
 
 #define DVI__NO_VALUE ((dvi__value){.shape = {-1, 0, 0}})
 

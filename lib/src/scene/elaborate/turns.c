@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "scene/elaborate/elaborate.h"
-#include "scene/heap.h"
+#include "scene/text/heap.h"
 
 /* ---- what is named ---- */
 

@@ -2,7 +2,7 @@
 #ifndef DVI_SCENE_EMIT_SCENE_H
 #define DVI_SCENE_EMIT_SCENE_H
 #include "scene/emit/emit.h"
-#include "scene/model.h"
+#include "scene/elaborate/model.h"
 
 /* A callback: its name, its parameters but `user`, and what the function gets for them. `asks` is 'v', 'g' or 's': the value, the gradient by the blocks in
  * the mask, or the second derivatives of its pairs; 'c': gradients of constraints, which have two of these. */

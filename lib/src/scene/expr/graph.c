@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "scene/expr/graph_make.h"
-#include "scene/heap.h"
+#include "scene/text/heap.h"
 
 enum { LIMIT = 2000000 };
 

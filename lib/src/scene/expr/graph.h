@@ -13,7 +13,7 @@
  * 0) has the derivative 0 at x < 0, and not 0 * NaN. */
 #ifndef DVI_SCENE_GRAPH_H
 #define DVI_SCENE_GRAPH_H
-#include "scene/arena.h"
+#include "scene/text/arena.h"
 #include "scene/text/complaint.h"
 
 typedef int dvi__node;

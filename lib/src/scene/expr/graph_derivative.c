@@ -3,7 +3,7 @@
 #include <stdlib.h>
 
 #include "scene/expr/graph_make.h"
-#include "scene/heap.h"
+#include "scene/text/heap.h"
 
 enum { NONE = -1 }; /* no node: a derivative that is zero */
 

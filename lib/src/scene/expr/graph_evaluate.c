@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "scene/expr/graph_make.h"
-#include "scene/heap.h"
+#include "scene/text/heap.h"
 
 static double sign(double x)
 {

@@ -6,9 +6,9 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "scene/arena.h"
+#include "scene/text/arena.h"
 #include "scene/expr/graph_make.h"
-#include "scene/heap.h"
+#include "scene/text/heap.h"
 
 typedef struct set {
   int count;

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "scene/heap.h"
+#include "scene/text/heap.h"
 #include "scene/expr/program_codes.h"
 
 enum { NOWHERE = INT_MAX };

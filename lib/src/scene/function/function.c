@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "scene/function/function_parts.h"
-#include "scene/heap.h"
+#include "scene/text/heap.h"
 #include "scene/expr/lanes.h"
 
 /* --- Creation. --- */

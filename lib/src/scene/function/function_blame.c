@@ -5,7 +5,7 @@
 
 #include "scene/function/function_parts.h"
 #include "scene/expr/graph_make.h"
-#include "scene/heap.h"
+#include "scene/text/heap.h"
 
 /* What a node is looked for in: that it has no value, no derivative, or, where it has both, no series. */
 typedef enum failing { VALUE, DERIVATIVE, SERIES } failing;

@@ -2,7 +2,7 @@
 #include <limits.h>
 
 #include "scene/function/function_parts.h"
-#include "scene/heap.h"
+#include "scene/text/heap.h"
 
 static const dvi__block pair_blocks[DVI__PAIRS][2] = {
     [DVI__PAIR_QQ] = {DVI__COORDINATES, DVI__COORDINATES}, [DVI__PAIR_QV] = {DVI__COORDINATES, DVI__VELOCITIES},

@@ -3,7 +3,7 @@
 #include <limits.h>
 
 #include "scene/function/function_parts.h"
-#include "scene/heap.h"
+#include "scene/text/heap.h"
 
 /* An array of a result; `touched` [entries] what is added to already. */
 typedef struct array {

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "scene/function/function_parts.h"
-#include "scene/heap.h"
+#include "scene/text/heap.h"
 
 /* What the nodes of a kernel are to the roots of a part. */
 enum { NEEDED = 1, VARIES = 2 };

@@ -2,7 +2,7 @@
  * some ten of its operations; and what these have in common is computed once, what they add to the same entry is added before it is stored. */
 #include "scene/function/function_parts.h"
 #include "scene/expr/graph_make.h"
-#include "scene/heap.h"
+#include "scene/text/heap.h"
 
 enum {
   FEW = 4,          /* elements that are written out */

@@ -9,7 +9,7 @@
 #include <stdatomic.h>
 
 #include "scene/function/function.h"
-#include "scene/heap.h"
+#include "scene/text/heap.h"
 #include "scene/expr/program.h"
 
 enum {

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "scene/function/function_parts.h"
-#include "scene/heap.h"
+#include "scene/text/heap.h"
 
 dvi_status dvi__find_pairs(dvi__function *function, int k)
 {

@@ -1,7 +1,7 @@
 /* Errors as compilers print them: the place, the sentence, the line and a caret. Whatever a hostile file holds, what is shown can be
  * printed and is of bounded length. */
 #include "scene/text/complaint.h"
-#include "scene/heap.h"
+#include "scene/text/heap.h"
 #include "scene/text/utf8.h"
 
 #include <dvi/number.h>

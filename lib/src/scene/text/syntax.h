@@ -1,7 +1,7 @@
 /* Expressions as they are written: a tree of their parts, each with its place. docs/scenes.md has the grammar. */
 #ifndef DVI_SCENE_SYNTAX_H
 #define DVI_SCENE_SYNTAX_H
-#include "scene/arena.h"
+#include "scene/text/arena.h"
 #include "scene/text/complaint.h"
 
 typedef enum dvi__form {

@@ -1,7 +1,7 @@
 /* A YAML document as a tree of scalars, sequences and mappings, read by libyaml's events. */
 #ifndef DVI_SCENE_TREE_H
 #define DVI_SCENE_TREE_H
-#include "scene/arena.h"
+#include "scene/text/arena.h"
 #include "scene/text/complaint.h"
 
 typedef enum dvi__tree_kind { DVI__SCALAR, DVI__SEQUENCE, DVI__MAPPING } dvi__tree_kind;

@@ -9,7 +9,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/compensated.h"
-#include "num/simd/stripes.h"
+#include "num/stripes.h"
 
 struct dvi__polynomials {
   int n;

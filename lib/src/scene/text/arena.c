@@ -1,9 +1,9 @@
-#include "scene/arena.h"
+#include "scene/text/arena.h"
 
 #include <stdint.h>
 #include <string.h>
 
-#include "scene/heap.h"
+#include "scene/text/heap.h"
 
 enum { BLOCK_SIZE = 1 << 16, ALIGNMENT = 16 };
 

@@ -1,4 +1,4 @@
-#include "scene/heap.h"
+#include "scene/text/heap.h"
 
 #include <stdint.h>
 #include <stdlib.h>

@@ -5,7 +5,7 @@
 #include <pthread.h>
 
 #include "scene/function/function.h"
-#include "scene/heap.h"
+#include "scene/text/heap.h"
 #include "scene/elaborate/names.h"
 #include "scene/text/tree.h"
 

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "scene/expr/graph_make.h"
-#include "scene/heap.h"
+#include "scene/text/heap.h"
 #include "scene/elaborate/kernels.h"
 
 typedef struct copy {

@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "scene/callbacks.h"
-#include "scene/elaborate/factors.h"
-#include "scene/heap.h"
+#include "scene/factors.h"
+#include "scene/text/heap.h"
 #include "scene/sections.h"
 #include "scene/elaborate/shape.h"
 

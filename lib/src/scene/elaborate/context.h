@@ -5,7 +5,7 @@
 #ifndef DVI_SCENE_CONTEXT_H
 #define DVI_SCENE_CONTEXT_H
 #include "scene/function/function.h"
-#include "scene/model.h"
+#include "scene/elaborate/model.h"
 
 enum { DVI__INDICES_MAX = 64 };
 

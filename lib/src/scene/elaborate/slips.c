@@ -1,4 +1,4 @@
-#include "scene/text/slips.h"
+#include "scene/elaborate/slips.h"
 
 #include <stdio.h>
 #include <string.h>

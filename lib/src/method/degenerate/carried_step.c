@@ -1,4 +1,4 @@
-#include "method/carried_step.h"
+#include "method/degenerate/carried_step.h"
 
 #include "core/memory.h"
 #include "num/compensated.h"

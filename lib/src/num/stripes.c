@@ -1,4 +1,4 @@
-#include "num/simd/stripes.h"
+#include "num/stripes.h"
 
 #include <limits.h>
 #include <stdint.h>

@@ -1,4 +1,4 @@
-#include "scene/elaborate/factors.h"
+#include "scene/factors.h"
 
 #include "scene/sections.h"
 

@@ -1,4 +1,4 @@
-#include "scene/text/words.h"
+#include "scene/elaborate/words.h"
 
 #include <string.h>
 

@@ -5,8 +5,8 @@
 
 #include "scene/function/function_parts.h"
 #include "scene/expr/graph_make.h"
-#include "scene/heap.h"
-#include "scene/model.h"
+#include "scene/text/heap.h"
+#include "scene/elaborate/model.h"
 #include "scene/expr/quad.h"
 
 #ifdef DVI__QUAD

@@ -5,7 +5,7 @@
 #include "scene/elaborate/elaborate.h"
 #include "scene/sections.h"
 #include "scene/elaborate/shape.h"
-#include "scene/text/words.h"
+#include "scene/elaborate/words.h"
 
 /* Take x', omega(R), rate(u) or p(x) apart. */
 static const dvi__expression *bare(const dvi__expression *e, dvi__target *target)

@@ -1,4 +1,4 @@
-#include "method/shooting/scheme.h"
+#include "method/scheme.h"
 
 #include <stddef.h>
 
