@@ -28,7 +28,8 @@ static const char *const colour[COLOURS] = {"#0072B2", "#D55E00", "#009E73", "#C
 
 /* A gnuplot string in double quotes. What stands between backquotes there would be run as a command,
  * and more characters mean something: of ASCII all but letters, digits and blanks are written by their
- * numbers. No control character can be in an SVG file. */
+ * numbers, of which gnuplot reads four digits if the first is 0. No control character can be in an SVG
+ * file. */
 static void quoted(FILE *script, const char *text)
 {
   (void)fputc('"', script);
@@ -39,7 +40,7 @@ static void quoted(FILE *script, const char *text)
     else if (byte == ' ' || isalnum(byte) || byte >= 0x80)
       (void)fputc(byte, script);
     else
-      (void)fprintf(script, "\\%03o", byte);
+      (void)fprintf(script, "\\%04o", byte);
   }
   (void)fputc('"', script);
 }

@@ -20,6 +20,12 @@ hostile='`touch run` $(touch run) "; system "touch run" # '\''; !touch run @run 
 expect 0 'a title' plot cells.csv --axes a --title "$hostile" --out title.svg
 shows title.svg "$hostile" 'a title'
 unharmed 'a title'
+# Digits behind a character are none of its number.
+for digit in 0 1 2 3 4 5 6 7 8 9; do
+  text=$(printf '! " # $ %% & ( ) * + - . / : ; < = > ? @ [ \\ ] ^ _ { | } ~' | sed "s/ /$digit/g")$digit
+  expect 0 "digits $digit" plot cells.csv --axes a --title "$text" --out digits.svg
+  shows digits.svg "$text" "digits $digit"
+done
 broken=$(printf 'one`touch run`\n!touch run\n@run\ttwo\001three')
 expect 0 'a title of lines' plot cells.csv --axes a --title "$broken" --out lines.svg
 shows lines.svg "$broken" 'a title of lines'

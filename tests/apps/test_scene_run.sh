@@ -202,4 +202,20 @@ done
 expect 1 'an example over the scene' init ball.yaml
 same ball.yaml kept.yaml 'the scene stays'
 no_trace 'scenes'
+# Differences near a singularity are taken over steps that do not reach it.
+for x in 0.994 0.98; do
+  cat >satellite.yaml <<END
+parameters: {mu: 0.012277471}
+coordinates: {x: scalar, y: scalar}
+lagrangian: ((x' - y)^2 + (y' + x)^2)/2 + (1-mu)/hypot(x+mu,y) + mu/hypot(x-1+mu,y)
+initial: {x: $x, y: 0, y': -2.00158510637908}
+method: galerkin:degree=6
+step: 0.001
+until: 0.01
+END
+  expect 0 "a singularity near $x" check satellite.yaml
+done
+expect 2 'a base that does not serve' run satellite.yaml --method composition:order=4 --final
+says err 'composition: choose another base=, this one does not serve: verlet: ' 'a base that does not serve'
+
 finish

@@ -10,7 +10,7 @@
 typedef struct dvi__differences {
   double *moved, *step, *plus, *minus, *plus_v, *minus_v;
   long points; /* at which the function was asked for */
-  int shorter; /* 1: columns are differenced over steps a sixteenth as long */
+  int shorter; /* so many times are the steps halved over which columns are differenced */
 } dvi__differences;
 
 typedef struct dvi__scratch {
@@ -80,6 +80,9 @@ dvi_status dvi__general_value_of_q(const void *function, int count, const double
 dvi_status dvi__general_value_of_v(const void *function, int count, const double *v, double *L);
 dvi_status dvi__general_gradient_of_q(const void *function, int count, const double *q, double *L_q, double *L_v);
 dvi_status dvi__general_gradient_of_v(const void *function, int count, const double *v, double *L_q, double *L_v);
+
+/* Whether a gradient is differenced, of values. */
+int dvi__lacks_gradient(const dvi_system *system);
 
 /* Length of the longest Hessian block that the scratch above serves, at least n. */
 int dvi__longest_hessian(const dvi_system *system, int hessians);

@@ -42,6 +42,7 @@ static dvi_status create(dvi__stepper *self)
   dvi__stepper *base = self->own = DVI_NEW(dvi__stepper, 1);
   if (base == NULL) return dvi__fail(DVI_NO_MEMORY, "composition: no memory");
   dvi_status status = dvi__stepper_create_inner(self, base_name(*chosen), self->system, self->shapes, base);
+  if (status == DVI_UNSUPPORTED) return dvi__fail_in(status, "composition: choose another base=, this one does not serve");
   if (status == DVI_OK && base->method->keep_lengths != NULL) status = base->method->keep_lengths(base, scheme_of(self)->lengths);
   if (status != DVI_OK) return dvi__fail_in(status, "composition");
   if (!base->symmetric)

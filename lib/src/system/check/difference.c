@@ -75,7 +75,7 @@ static int shorten_steps(dvi__differences *d, size_t row, int count)
 dvi_status dvi__difference_gradient(dvi__batch_value value, const void *function, dvi__differences *d, int n, int count,
                                     const double *x, double *gradient)
 {
-  enum { MOST_TRIES = 4 };
+  enum { MOST_TRIES = 8 };
   const size_t points = (size_t)count;
   choose_steps(n, count, x, sixth_order_step(), d->step);
   memcpy(d->moved, x, (size_t)n * points * sizeof(double));
@@ -137,7 +137,7 @@ dvi_status dvi__difference_column(dvi__batch_gradient gradient, const void *func
                                   const double *x, double *first, double *second)
 {
   const size_t size = (size_t)n * sizeof(double);
-  choose_steps(n, 1, x, sixth_order_step() / (d->shorter ? 16 : 1), d->step);
+  choose_steps(n, 1, x, ldexp(sixth_order_step(), -d->shorter), d->step);
   memcpy(d->moved, x, size);
   memset(first, 0, size);
   memset(second, 0, size);

@@ -25,7 +25,7 @@ int dvi__longest_hessian(const dvi_system *system, int hessians)
   return larger(longest, longest_of(system->lagrangian));
 }
 
-static int lacks_gradient(const dvi_system *system)
+int dvi__lacks_gradient(const dvi_system *system)
 {
   int lacks = system->lagrangian != NULL && !dvi__general_has_gradient(system->lagrangian);
   for (int k = 0; k < system->potential_count; k++) lacks |= !dvi__potential_has_gradient(&system->potentials[k]);
@@ -46,7 +46,7 @@ double dvi__hessian_noise(const dvi_system *system)
   const dvi__transformed *transformed = dvi__transformed_of(system);
   if (transformed != NULL) return dvi__transformed_noise(transformed);
   if (!lacks_hessian(system, 1)) return 0;
-  return lacks_gradient(system) ? 1e-7 : 1e-10;
+  return dvi__lacks_gradient(system) ? 1e-7 : 1e-10;
 }
 
 int dvi__differences_allocate(size_t numbers, dvi__differences *d)
@@ -79,7 +79,7 @@ static int allocate(const dvi_system *system, int capacity, int hessians, dvi__s
   s->point_v = DVI_NEW(double, system->n);
   for (int k = 0; k < 3; k++) s->result[k] = DVI_NEW(double, dvi__longest_hessian(system, hessians));
   if (!s->point_q || !s->point_v || !s->result[0] || !s->result[1] || !s->result[2]) return 0;
-  if (lacks_gradient(system) && !dvi__differences_allocate(numbers, &s->of_value)) return 0;
+  if (dvi__lacks_gradient(system) && !dvi__differences_allocate(numbers, &s->of_value)) return 0;
   return !lacks_hessian(system, hessians) || dvi__differences_allocate(numbers, &s->of_gradient);
 }
 
