@@ -31,7 +31,7 @@ dvi_status dvi__system_has_taylor(const dvi_system *system)
   for (int p = 0; p < system->potential_count && without == NULL; p++)
     if (!dvi__potential_has_taylor(&system->potentials[p])) without = system->potentials[p].name;
   if (without == NULL) return DVI_OK;
-  if (l != NULL && l->transformed != NULL)
+  if (l != NULL && l->computed != NULL)
     return dvi__fail(
         DVI_UNSUPPORTED,
         "a time-transformed system has no Taylor coefficients, and derivatives beyond the second are needed; take step "

@@ -22,7 +22,7 @@ int dvi__potential_has_taylor(const dvi__potential_term *p)
 
 int dvi__general_has_taylor(const dvi__lagrangian_term *l)
 {
-  return l->transformed == NULL && l->callbacks.taylor != NULL;
+  return l->computed == NULL && l->callbacks.taylor != NULL;
 }
 
 /* Every coefficient that was asked for must be finite. */

@@ -47,11 +47,23 @@ typedef struct dvi__gauge_term {
   int *in_qq, *in_qv, *form_in_qq, *form_in_qv;
 } dvi__gauge_term;
 
+/* A Lagrangian that a part of the library computes from another one. Shapes as in
+ * system/evaluate/evaluator.h; `of` is the term's. */
+typedef struct dvi__computed {
+  dvi_status (*value)(void *of, int count, const double *t, const double *q, const double *v, double *L);
+  dvi_status (*gradient)(void *of, int count, const double *t, const double *q, const double *v, double *L_q, double *L_v);
+  dvi_status (*hessian)(void *of, int count, const double *t, const double *q, const double *v, double *L_qq, double *L_qv,
+                        double *L_vv);
+  double (*noise)(const void *of);               /* as dvi__hessian_noise */
+  dvi_status (*reserve)(void *of, int capacity); /* room for so many points in a batch */
+} dvi__computed;
+
 /* A general Lagrangian, or alpha(q).v; or a Hamiltonian, which is a function of p where these are functions of v. */
 typedef struct dvi__lagrangian_term {
   const char *name; /* for messages: "Lagrangian", "Hamiltonian", "constraint" */
   dvi_lagrangian callbacks;
-  struct dvi__transformed *transformed; /* not NULL: it stands in the place of the callbacks (transformed.h) */
+  const struct dvi__computed *computed; /* not NULL: it stands in the place of the callbacks, */
+  void *of;                             /* with this first argument */
   dvi_one_form one_form;                /* without a value: there is none, and the callbacks above count */
   dvi__gauge_term gauge;
   dvi__pattern qq, qv, vv;

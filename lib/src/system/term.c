@@ -4,7 +4,6 @@
 #include "core/status.h"
 #include "num/finite.h"
 #include "system/check/difference.h"
-#include "system/rescale/transformed.h"
 
 dvi_status dvi__verdict(int returned, int entries, int count, const double *result, const char *name, const char *what,
                         const char *in)
@@ -272,13 +271,13 @@ static int is_form(const dvi__lagrangian_term *l)
 
 int dvi__general_has_gradient(const dvi__lagrangian_term *l)
 {
-  return is_form(l) || l->transformed != NULL || l->callbacks.gradient != NULL || l->callbacks.gradient_batch != NULL;
+  return is_form(l) || l->computed != NULL || l->callbacks.gradient != NULL || l->callbacks.gradient_batch != NULL;
 }
 
 int dvi__general_has_hessian(const dvi__lagrangian_term *l)
 {
   if (is_form(l)) return l->one_form.hessian != NULL && (!has_gauge(l) || l->gauge.callbacks.third != NULL);
-  return l->transformed != NULL || l->callbacks.hessian != NULL || l->callbacks.hessian_batch != NULL;
+  return l->computed != NULL || l->callbacks.hessian != NULL || l->callbacks.hessian_batch != NULL;
 }
 
 dvi_status dvi__general_value(const dvi__lagrangian_term *l, dvi__scratch *s, int count, const double *t, const double *q,
@@ -286,7 +285,7 @@ dvi_status dvi__general_value(const dvi__lagrangian_term *l, dvi__scratch *s, in
 {
   const dvi_lagrangian *c = &l->callbacks;
   int returned = 0;
-  if (l->transformed != NULL) return dvi__transformed_value(l->transformed, count, t, q, v, L);
+  if (l->computed != NULL) return l->computed->value(l->of, count, t, q, v, L);
   if (is_form(l)) return form_lagrangian(l, s, count, q, v, L);
   if (c->value_batch != NULL) returned = c->value_batch(count, t, q, v, L, c->user);
   for (int k = 0; c->value_batch == NULL && k < count && returned == 0; k++) {
@@ -326,7 +325,7 @@ dvi_status dvi__general_gradient(const dvi__lagrangian_term *l, dvi__scratch *s,
 {
   const dvi_lagrangian *c = &l->callbacks;
   int returned = 0;
-  if (l->transformed != NULL) return dvi__transformed_gradient(l->transformed, count, t, q, v, L_q, L_v);
+  if (l->computed != NULL) return l->computed->gradient(l->of, count, t, q, v, L_q, L_v);
   if (is_form(l)) return form_gradient(l, s, count, q, v, L_q, L_v);
   if (!dvi__general_has_gradient(l)) {
     const dvi__general_at at = {l, s, t, q, v};
@@ -360,7 +359,7 @@ dvi_status dvi__general_hessian(const dvi__lagrangian_term *l, dvi__scratch *s, 
   const dvi_lagrangian *c = &l->callbacks;
   const int qq = dvi__pattern_entries(&l->qq), qv = dvi__pattern_entries(&l->qv), vv = dvi__pattern_entries(&l->vv);
   int returned = 0;
-  if (l->transformed != NULL) return dvi__transformed_hessian(l->transformed, count, t, q, v, L_qq, L_qv, L_vv);
+  if (l->computed != NULL) return l->computed->hessian(l->of, count, t, q, v, L_qq, L_qv, L_vv);
   if (is_form(l)) return form_hessian(&(dvi__general_at){l, s, t, q, v}, count, L_qq, L_qv);
   if (!dvi__general_has_hessian(l)) return difference_general_hessian(&(dvi__general_at){l, s, t, q, v}, count, L_qq, L_qv, L_vv);
   if (c->hessian_batch != NULL) returned = c->hessian_batch(count, t, q, v, L_qq, L_qv, L_vv, c->user);

@@ -52,7 +52,7 @@ static dvi_status create_momentum_centred(dvi__stepper *self, int degree, dvi_ru
   if (degree >= POINTS_MOST)
     return dvi__fail(DVI_BAD_OPTION, "hp: type=4 has degree+1 points, at most %d; degree=1 to %d is possible", POINTS_MOST,
                      POINTS_MOST - 1);
-  if (self->system->lagrangian != NULL && self->system->lagrangian->transformed != NULL)
+  if (self->system->lagrangian != NULL && self->system->lagrangian->computed != NULL)
     return dvi__fail(DVI_UNSUPPORTED, "hp: type=4 has no path whose time could be measured; types 1 to 3 have");
   self->method = &momentum_centred;
   self->order = 2 * degree;

@@ -2,7 +2,6 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "system/term.h"
-#include "system/rescale/transformed.h"
 
 static int larger(int a, int b)
 {
@@ -43,8 +42,8 @@ static int lacks_hessian(const dvi_system *system, int hessians)
 
 double dvi__hessian_noise(const dvi_system *system)
 {
-  const dvi__transformed *transformed = dvi__transformed_of(system);
-  if (transformed != NULL) return dvi__transformed_noise(transformed);
+  const dvi__lagrangian_term *term = system->lagrangian;
+  if (term != NULL && term->computed != NULL) return term->computed->noise(term->of);
   if (!lacks_hessian(system, 1)) return 0;
   return dvi__lacks_gradient(system) ? 1e-7 : 1e-10;
 }
@@ -86,7 +85,8 @@ static int allocate(const dvi_system *system, int capacity, int hessians, dvi__s
 dvi_status dvi__scratch_create(const dvi_system *system, int capacity, int hessians, dvi__scratch *scratch)
 {
   *scratch = (dvi__scratch){.n = system->n, .capacity = capacity};
-  if (dvi__transformed_of(system) != NULL) DVI_TRY(dvi__transformed_reserve(dvi__transformed_of(system), capacity));
+  const dvi__lagrangian_term *term = system->lagrangian;
+  if (term != NULL && term->computed != NULL) DVI_TRY(term->computed->reserve(term->of, capacity));
   if (allocate(system, capacity, hessians, scratch)) return DVI_OK;
   dvi__scratch_clear(scratch);
   return dvi__fail(DVI_NO_MEMORY, "evaluator: no memory for %d points in %d dimensions", capacity, system->n);

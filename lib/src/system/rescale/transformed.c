@@ -51,8 +51,9 @@ static dvi_status allocate(const dvi_system *base, int capacity, work *w)
   return DVI_OK;
 }
 
-dvi_status dvi__transformed_reserve(dvi__transformed *x, int capacity)
+static dvi_status reserve(void *of, int capacity)
 {
+  dvi__transformed *x = of;
   work room = {0};
   dvi__monitor *monitor = NULL;
   dvi__evaluator *evaluator = NULL;
@@ -76,102 +77,6 @@ dvi_status dvi__transformed_reserve(dvi__transformed *x, int capacity)
   return DVI_OK;
 }
 
-/* ---- create, destroy ---- */
-
-/* g depends on all coordinates, so L_qq and L_qw are full; L_ww is where the system's is. */
-static dvi_status make_patterns(dvi_system *s, const dvi_system *base)
-{
-  const dvi_pattern full = {0};
-  dvi__lagrangian_term *term = s->lagrangian;
-  DVI_TRY(dvi__pattern_copy(&full, base->n, "time transform", &term->qq));
-  DVI_TRY(dvi__pattern_copy(&full, base->n, "time transform", &term->qv));
-  DVI_TRY(dvi__pattern_copy(&full, base->n, "time transform", &s->qv));
-  DVI_TRY(dvi__pattern_union(&base->vv, &base->vv, &term->vv));
-  return dvi__pattern_union(&base->vv, &base->vv, &s->vv);
-}
-
-static dvi_status make_system(dvi__transformed *x)
-{
-  dvi_system *s = x->system = DVI_NEW(dvi_system, 1);
-  if (s == NULL) return dvi__fail(DVI_NO_MEMORY, "time transform: no memory");
-  s->n = s->nv = s->nx = x->base->n;
-  s->terms = DVI__LAGRANGIAN;
-  s->autonomous = 1;
-  s->lagrangian = DVI_NEW(dvi__lagrangian_term, 1);
-  if (s->lagrangian == NULL) return dvi__fail(DVI_NO_MEMORY, "time transform: no memory");
-  s->lagrangian->name = "Lagrangian";
-  s->lagrangian->transformed = x;
-  return make_patterns(s, x->base);
-}
-
-static dvi_status fill(dvi__transformed *x, const dvi_system *system, const dvi_monitor *monitor, dvi_counters *counters)
-{
-  x->base = system;
-  x->given = *monitor;
-  x->counters = counters;
-  x->energy = (double)NAN;
-  if (!system->autonomous)
-    return dvi__fail(DVI_UNSUPPORTED,
-                     "the system is not declared autonomous: its energy need not be conserved, and no function of q "
-                     "alone can stand for its time");
-  if (system->terms & (DVI__ONE_FORM | DVI__PHASE_SPACE))
-    return dvi__fail(DVI_UNSUPPORTED, "the system declares a %s: its Lagrangian has no mass that could be divided by the monitor",
-                     system->lagrangian->name);
-  DVI_TRY(dvi__system_prepare_hessian(system));
-  DVI_TRY(dvi__transformed_reserve(x, 1));
-  return make_system(x);
-}
-
-dvi_status dvi__transformed_create(const dvi_system *system, const dvi_monitor *monitor, dvi_counters *counters,
-                                   dvi__transformed **transformed)
-{
-  *transformed = NULL;
-  dvi__transformed *x = DVI_NEW(dvi__transformed, 1);
-  if (x == NULL) return dvi__fail(DVI_NO_MEMORY, "time transform: no memory");
-  const dvi_status status = fill(x, system, monitor, counters);
-  if (status != DVI_OK) dvi__transformed_destroy(&x);
-  *transformed = x;
-  return status;
-}
-
-void dvi__transformed_destroy(dvi__transformed **transformed)
-{
-  dvi__transformed *x = *transformed;
-  if (x == NULL) return;
-  dvi_system_destroy(&x->system);
-  dvi__monitor_destroy(&x->monitor);
-  dvi__evaluator_destroy(&x->evaluator);
-  dvi__release(x->work.numbers);
-  dvi__release(x);
-  *transformed = NULL;
-}
-
-const dvi_system *dvi__transformed_system(const dvi__transformed *x)
-{
-  return x->system;
-}
-
-dvi__transformed *dvi__transformed_of(const dvi_system *system)
-{
-  return system->lagrangian != NULL ? system->lagrangian->transformed : NULL;
-}
-
-dvi__monitor *dvi__transformed_monitor(const dvi__transformed *x)
-{
-  return x->monitor;
-}
-
-double dvi__transformed_noise(const dvi__transformed *x)
-{
-  return fmax(dvi__hessian_noise(x->base), dvi__monitor_noise(x->monitor));
-}
-
-void dvi__transformed_set_energy(dvi__transformed *x, double energy)
-{
-  x->energy = energy;
-  dvi__monitor_set_energy(x->monitor, energy);
-}
-
 /* ---- evaluation ---- */
 
 /* g and v = w/g. */
@@ -185,8 +90,9 @@ static dvi_status velocities(dvi__transformed *x, int count, const double *q, co
 }
 
 /* The evaluator that asks counts the same points; the system's own evaluator counts what is really evaluated. */
-dvi_status dvi__transformed_value(dvi__transformed *x, int count, const double *t, const double *q, const double *w, double *L)
+static dvi_status value(void *of, int count, const double *t, const double *q, const double *w, double *L)
 {
+  dvi__transformed *x = of;
   x->counters->values -= count;
   DVI_TRY(velocities(x, count, q, w));
   DVI_TRY(dvi__lagrangian_value(x->evaluator, count, t, q, x->work.v, L));
@@ -216,9 +122,9 @@ static dvi_status first_order(dvi__transformed *x, int count, const double *t, c
   return DVI_OK;
 }
 
-dvi_status dvi__transformed_gradient(dvi__transformed *x, int count, const double *t, const double *q, const double *w, double *L_q,
-                                     double *L_w)
+static dvi_status gradient(void *of, int count, const double *t, const double *q, const double *w, double *L_q, double *L_w)
 {
+  dvi__transformed *x = of;
   const work *at = &x->work;
   const size_t n = (size_t)x->base->n, points = (size_t)count;
   x->counters->gradients -= count;
@@ -278,9 +184,10 @@ static void add_block(const dvi__pattern *pattern, size_t n, size_t points, cons
         full[(j * n + (size_t)pattern->row[e]) * points + k] += (by != NULL ? by[k] : 1) * A[(size_t)e * points + k];
 }
 
-dvi_status dvi__transformed_hessian(dvi__transformed *x, int count, const double *t, const double *q, const double *w, double *L_qq,
-                                    double *L_qw, double *L_ww)
+static dvi_status hessian(void *of, int count, const double *t, const double *q, const double *w, double *L_qq, double *L_qw,
+                          double *L_ww)
 {
+  dvi__transformed *x = of;
   const work *at = &x->work;
   const size_t n = (size_t)x->base->n, points = (size_t)count, vv = (size_t)dvi__pattern_entries(&x->base->vv);
   x->counters->hessians -= count;
@@ -297,4 +204,105 @@ dvi_status dvi__transformed_hessian(dvi__transformed *x, int count, const double
       dvi__first_not_finite(vv * points, L_ww) < 0)
     return DVI_OK;
   return dvi__fail(DVI_NOT_FINITE, "time transform: the Hessian is not finite");
+}
+
+static double noise(const void *of)
+{
+  const dvi__transformed *x = of;
+  return fmax(dvi__hessian_noise(x->base), dvi__monitor_noise(x->monitor));
+}
+
+static const dvi__computed computed = {value, gradient, hessian, noise, reserve};
+
+/* ---- create, destroy ---- */
+
+/* g depends on all coordinates, so L_qq and L_qw are full; L_ww is where the system's is. */
+static dvi_status make_patterns(dvi_system *s, const dvi_system *base)
+{
+  const dvi_pattern full = {0};
+  dvi__lagrangian_term *term = s->lagrangian;
+  DVI_TRY(dvi__pattern_copy(&full, base->n, "time transform", &term->qq));
+  DVI_TRY(dvi__pattern_copy(&full, base->n, "time transform", &term->qv));
+  DVI_TRY(dvi__pattern_copy(&full, base->n, "time transform", &s->qv));
+  DVI_TRY(dvi__pattern_union(&base->vv, &base->vv, &term->vv));
+  return dvi__pattern_union(&base->vv, &base->vv, &s->vv);
+}
+
+static dvi_status make_system(dvi__transformed *x)
+{
+  dvi_system *s = x->system = DVI_NEW(dvi_system, 1);
+  if (s == NULL) return dvi__fail(DVI_NO_MEMORY, "time transform: no memory");
+  s->n = s->nv = s->nx = x->base->n;
+  s->terms = DVI__LAGRANGIAN;
+  s->autonomous = 1;
+  s->lagrangian = DVI_NEW(dvi__lagrangian_term, 1);
+  if (s->lagrangian == NULL) return dvi__fail(DVI_NO_MEMORY, "time transform: no memory");
+  s->lagrangian->name = "Lagrangian";
+  s->lagrangian->computed = &computed;
+  s->lagrangian->of = x;
+  return make_patterns(s, x->base);
+}
+
+static dvi_status fill(dvi__transformed *x, const dvi_system *system, const dvi_monitor *monitor, dvi_counters *counters)
+{
+  x->base = system;
+  x->given = *monitor;
+  x->counters = counters;
+  x->energy = (double)NAN;
+  if (!system->autonomous)
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "the system is not declared autonomous: its energy need not be conserved, and no function of q "
+                     "alone can stand for its time");
+  if (system->terms & (DVI__ONE_FORM | DVI__PHASE_SPACE))
+    return dvi__fail(DVI_UNSUPPORTED, "the system declares a %s: its Lagrangian has no mass that could be divided by the monitor",
+                     system->lagrangian->name);
+  DVI_TRY(dvi__system_prepare_hessian(system));
+  DVI_TRY(reserve(x, 1));
+  return make_system(x);
+}
+
+dvi_status dvi__transformed_create(const dvi_system *system, const dvi_monitor *monitor, dvi_counters *counters,
+                                   dvi__transformed **transformed)
+{
+  *transformed = NULL;
+  dvi__transformed *x = DVI_NEW(dvi__transformed, 1);
+  if (x == NULL) return dvi__fail(DVI_NO_MEMORY, "time transform: no memory");
+  const dvi_status status = fill(x, system, monitor, counters);
+  if (status != DVI_OK) dvi__transformed_destroy(&x);
+  *transformed = x;
+  return status;
+}
+
+void dvi__transformed_destroy(dvi__transformed **transformed)
+{
+  dvi__transformed *x = *transformed;
+  if (x == NULL) return;
+  dvi_system_destroy(&x->system);
+  dvi__monitor_destroy(&x->monitor);
+  dvi__evaluator_destroy(&x->evaluator);
+  dvi__release(x->work.numbers);
+  dvi__release(x);
+  *transformed = NULL;
+}
+
+const dvi_system *dvi__transformed_system(const dvi__transformed *x)
+{
+  return x->system;
+}
+
+dvi__transformed *dvi__transformed_of(const dvi_system *system)
+{
+  const dvi__lagrangian_term *term = system->lagrangian;
+  return term != NULL && term->computed == &computed ? term->of : NULL;
+}
+
+dvi__monitor *dvi__transformed_monitor(const dvi__transformed *x)
+{
+  return x->monitor;
+}
+
+void dvi__transformed_set_energy(dvi__transformed *x, double energy)
+{
+  x->energy = energy;
+  dvi__monitor_set_energy(x->monitor, energy);
 }

@@ -24,20 +24,7 @@ dvi__transformed *dvi__transformed_of(const dvi_system *system);
 /* Valid until room is made for larger batches. */
 dvi__monitor *dvi__transformed_monitor(const dvi__transformed *transformed);
 
-/* As dvi__hessian_noise: of the system and of the monitor. */
-double dvi__transformed_noise(const dvi__transformed *transformed);
-
 /* E0; NaN until it is set. */
 void dvi__transformed_set_energy(dvi__transformed *transformed, double energy);
-
-/* Make room for batches of so many points; what was there remains if there is no memory. */
-dvi_status dvi__transformed_reserve(dvi__transformed *transformed, int capacity);
-
-/* Shapes as in term.h, in the order of the new system's patterns. */
-dvi_status dvi__transformed_value(dvi__transformed *x, int count, const double *t, const double *q, const double *w, double *L);
-dvi_status dvi__transformed_gradient(dvi__transformed *x, int count, const double *t, const double *q, const double *w, double *L_q,
-                                     double *L_w);
-dvi_status dvi__transformed_hessian(dvi__transformed *x, int count, const double *t, const double *q, const double *w, double *L_qq,
-                                    double *L_qw, double *L_ww);
 
 #endif
