@@ -183,7 +183,7 @@ START_TEST(a_constant_mass_has_its_own_derivatives)
 }
 END_TEST
 
-/* The tolerances are those that system/check/difference.h states; these functions vary over lengths of about 1, their steps as well. */
+/* The tolerances are those that system/term/difference.h states; these functions vary over lengths of about 1, their steps as well. */
 START_TEST(what_is_missing_is_differenced_to_the_stated_accuracy)
 {
   static evaluation exact, differenced;

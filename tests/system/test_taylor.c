@@ -8,7 +8,7 @@
 #include "core/status.h"
 #include "support/runs.h"
 #include "support/suite.h"
-#include "system/jet.h"
+#include "system/evaluate/jet.h"
 
 enum { DEGREE = 20, LENGTH = DEGREE + 1 };
 

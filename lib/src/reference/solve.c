@@ -13,7 +13,7 @@
 #include "num/finite.h"
 #include "reference/run.h"
 #include "system/evaluate/dirac.h"
-#include "system/term.h"
+#include "system/term/term.h"
 
 static const struct {
   const char *name;

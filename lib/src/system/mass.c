@@ -6,7 +6,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/finite.h"
-#include "system/chart/factor.h"
+#include "system/factor.h"
 
 static dvi_status check_symmetric(const dvi__pattern *pattern, const double *values)
 {

@@ -129,7 +129,7 @@ dvi_status dvi__system_prepare_hessian(const dvi_system *system);
 /* Whether all potentials give their gradient: nothing is differenced for forces. */
 int dvi__system_has_gradients(const dvi_system *system);
 
-/* The relative error of the second derivatives: 0 if all terms give theirs, else that of differences (system/check/difference.h). */
+/* The relative error of the second derivatives: 0 if all terms give theirs, else that of differences (system/term/difference.h). */
 double dvi__hessian_noise(const dvi_system *system);
 
 /* DVI_OK if L_t is known: the system is autonomous, or all terms give their rates. Else the sentence names the term without. */

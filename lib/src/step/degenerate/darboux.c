@@ -8,7 +8,7 @@
 #include "step/joint.h"
 #include "core/memory.h"
 #include "core/status.h"
-#include "system/half.h"
+#include "system/term/half.h"
 
 enum { MOST = DVI__STAGES_MOST };
 

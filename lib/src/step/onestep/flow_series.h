@@ -8,7 +8,7 @@
  * Source: Leok and Shingel 2012 (the prolongation of the Euler-Lagrange equations); Griewank and Walther 2008, sec. 13.4 (the recurrences). */
 #ifndef DVI_ACTION_FLOW_SERIES_H
 #define DVI_ACTION_FLOW_SERIES_H
-#include "system/jet.h"
+#include "system/evaluate/jet.h"
 
 typedef struct dvi__flow_series dvi__flow_series;
 

@@ -12,7 +12,7 @@
 #include "system/check/check_quadratic.h"
 #include "system/check/check_taylor.h"
 #include "system/check/check_time.h"
-#include "system/check/difference.h"
+#include "system/term/difference.h"
 #include "system/evaluate/dirac.h"
 
 /* One entry at which callback and difference disagree. */

@@ -1,7 +1,7 @@
 /* The part of the derivative check that is about potentials declared quadratic. */
 #ifndef DVI_SYSTEM_CHECK_QUADRATIC_H
 #define DVI_SYSTEM_CHECK_QUADRATIC_H
-#include "system/term.h"
+#include "system/term/term.h"
 
 /* Of a potential that is declared quadratic: the gradient must be linear in q far from the point, too, and its slope the same at other times. Fills
  * not_quadratic and where. */

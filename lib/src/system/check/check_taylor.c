@@ -11,7 +11,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "system/jet.h"
+#include "system/evaluate/jet.h"
 
 enum { DEGREE = DVI_TAYLOR_MAX, COEFFICIENTS = DEGREE + 1, PROBE = 4, CURVE = 3, SIDES = 3, BLOCKS = 6, ALL = (1 << BLOCKS) - 1 };
 

@@ -8,7 +8,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "system/check/difference.h"
+#include "system/term/difference.h"
 
 /* One term, and the point at which it is asked: one of potential and lagrangian. */
 typedef struct subject {

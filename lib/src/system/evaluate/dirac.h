@@ -6,7 +6,7 @@
 #ifndef DVI_SYSTEM_DIRAC_H
 #define DVI_SYSTEM_DIRAC_H
 #include "system/evaluate/evaluator.h"
-#include "system/term.h"
+#include "system/term/term.h"
 
 /* The function phi(q,p).w of q and p, w fixed. */
 typedef struct dvi__weighted {

@@ -2,7 +2,7 @@
 #ifndef DVI_SYSTEM_EVALUATOR_STRUCT_H
 #define DVI_SYSTEM_EVALUATOR_STRUCT_H
 #include "system/evaluate/evaluator.h"
-#include "system/term.h"
+#include "system/term/term.h"
 
 struct dvi__evaluator {
   const dvi_system *system;

@@ -2,7 +2,7 @@
 #include "core/status.h"
 #include "num/finite.h"
 #include "system/evaluate/evaluator_struct.h"
-#include "system/chart/factor.h"
+#include "system/factor.h"
 
 /* The rate of the stored coordinates. */
 static const double *rate_of(dvi__evaluator *e, const double *q, const double *v)

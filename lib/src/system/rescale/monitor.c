@@ -6,7 +6,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "system/term.h"
+#include "system/term/term.h"
 
 struct dvi__monitor {
   dvi_system *system; /* of unit mass, with the monitor as its potential */

@@ -15,7 +15,7 @@ dvi_status dvi__transformed_create(const dvi_system *system, const dvi_monitor *
                                    dvi__transformed **transformed);
 void dvi__transformed_destroy(dvi__transformed **transformed);
 
-/* The new system: a general Lagrangian that leads here (system/term.c). */
+/* The new system: a general Lagrangian that leads here (system/term/term.c). */
 const dvi_system *dvi__transformed_system(const dvi__transformed *transformed);
 
 /* What stands behind a system; NULL: it is not such a new one. */

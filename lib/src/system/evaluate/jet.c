@@ -1,11 +1,11 @@
-#include "system/jet.h"
+#include "system/evaluate/jet.h"
 
 #include <string.h>
 
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/finite.h"
-#include "system/term.h"
+#include "system/term/term.h"
 
 struct dvi__jet {
   const dvi_system *system;

@@ -1,4 +1,4 @@
-#include "system/half.h"
+#include "system/term/half.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -6,7 +6,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "system/term.h"
+#include "system/term/term.h"
 
 enum { POINTS = 12, CANDIDATES_MOST = 16 };
 

@@ -1,7 +1,7 @@
 /* Memory for one-point callbacks and differences: only what the system's missing callbacks need. */
 #include "core/memory.h"
 #include "core/status.h"
-#include "system/term.h"
+#include "system/term/term.h"
 
 static int larger(int a, int b)
 {

@@ -1,7 +1,7 @@
 /* Derivatives by central differences, for a batch of points at once. */
 #ifndef DVI_SYSTEM_DIFFERENCE_H
 #define DVI_SYSTEM_DIFFERENCE_H
-#include "system/term.h"
+#include "system/term/term.h"
 
 /* A scalar function at a batch of points; a gradient at a batch of points (second may be NULL where there is none). */
 typedef dvi_status (*dvi__batch_value)(const void *function, int count, const double *x, double *value);

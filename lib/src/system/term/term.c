@@ -1,9 +1,9 @@
-#include "system/term.h"
+#include "system/term/term.h"
 
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/finite.h"
-#include "system/check/difference.h"
+#include "system/term/difference.h"
 
 dvi_status dvi__verdict(int returned, int entries, int count, const double *result, const char *name, const char *what,
                         const char *in)

@@ -1,4 +1,4 @@
-#include "system/chart/factor.h"
+#include "system/factor.h"
 
 #include <dvi/group.h>
 #include <math.h>

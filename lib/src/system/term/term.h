@@ -59,7 +59,7 @@ dvi_status dvi__general_rate(const dvi__lagrangian_term *l, dvi__scratch *s, int
 dvi_status dvi__form_value(const dvi__lagrangian_term *l, const double *q, double *alpha, double *work);
 dvi_status dvi__form_gradients(const dvi__lagrangian_term *l, const double *q, double *alpha_q, double *work);
 
-/* A potential as a function of q alone, in the shapes that system/check/difference.h wants; `function` is a dvi__potential_at. */
+/* A potential as a function of q alone, in the shapes that system/term/difference.h wants; `function` is a dvi__potential_at. */
 typedef struct dvi__potential_at {
   const dvi__potential_term *term;
   dvi__scratch *scratch;

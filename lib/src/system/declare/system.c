@@ -7,10 +7,10 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "system/evaluate/dirac.h"
-#include "system/chart/factor.h"
+#include "system/factor.h"
 #include "system/gauge.h"
 #include "system/mass.h"
-#include "system/term.h"
+#include "system/term/term.h"
 
 static char *copy_text(const char *text)
 {

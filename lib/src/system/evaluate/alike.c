@@ -1,7 +1,7 @@
 /* What a system's terms have in common, and which systems may stand in for one another. */
 #include "core/status.h"
-#include "system/jet.h"
-#include "system/term.h"
+#include "system/evaluate/jet.h"
+#include "system/term/term.h"
 
 int dvi__system_has_gradients(const dvi_system *system)
 {

@@ -1,4 +1,4 @@
-#include "system/check/difference.h"
+#include "system/term/difference.h"
 
 #include <float.h>
 #include <math.h>
