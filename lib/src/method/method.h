@@ -91,7 +91,8 @@ typedef struct dvi__stepper {
   int exact;
   int follows;      /* it solves equations, and can follow their branch from h = 0 */
   int follow;       /* set by the driver: the step does so, in at least so many parts; 0: it does not */
-  dvi__doubt doubt; /* set by `step`, reset by the driver */
+  dvi__doubt doubt; /* set by `step`, reset by the driver, */
+  double bend;      /* and so is how much its equations bent: the worst of dvi__solve_report */
   void *own;        /* the method's struct */
   void *lanes;      /* its struct for members side by side; NULL: each member steps on its own */
 } dvi__stepper;

@@ -1,5 +1,6 @@
 /* Making a stepper: the specification is parsed, the method must be able to use every term that the system declares. */
 #include <dvi/method.h>
+#include <math.h>
 #include <string.h>
 
 #include "core/hash.h"
@@ -127,8 +128,10 @@ dvi_status dvi__inner_step(dvi__stepper *self, dvi__stepper *inner, dvi__state *
 {
   inner->follow = self->follow;
   inner->doubt = DVI__SURE;
+  inner->bend = 0;
   const dvi_status status = inner->method->step(inner, state, h);
   if (inner->doubt > self->doubt) self->doubt = inner->doubt;
+  self->bend = fmax(self->bend, inner->bend);
   return status;
 }
 
