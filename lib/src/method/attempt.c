@@ -27,8 +27,12 @@ static const double doubted_defect = 0.1;
 
 /* Right steps do so, too, where they are long. After some that were followed in vain the motion of
  * steps like them, whose equations bend no more than so many times theirs, is asked more and more
- * seldom, until its answer is that a step was wrong. */
-enum { VAIN_ONES = 4, LONGEST_WAIT = 4096, LIKE_THEM = 2 };
+ * seldom, until its answer is that a step was wrong. Of many coordinates one or the other always
+ * bends. */
+enum { VAIN_ONES = 4, LONGEST_WAIT = 4096, LIKE_THEM = 2, MANY = 32 };
+
+/* Each one that was asked for its bend, in vain, lets the next one bend by so much more. */
+static const double more_bend = 1.25;
 
 /* Two solutions are the same if they differ by less than this part of the step: the roundings of an
  * ill-conditioned step are smaller, other solutions are farther away. */
@@ -36,7 +40,7 @@ static const double same = 1e-6;
 
 /* Behind the method's memory, so that checkpoints and members have it: steps in a row that were
  * followed for their motion in vain; steps that are not asked after one; those that are left of them;
- * how much the equations of those in vain bent, at least. */
+ * how much the equations of those in vain bent. */
 enum { VAIN, WAIT, SPARED, BEND, LEARNED };
 
 struct dvi__attempt {
@@ -77,7 +81,8 @@ void dvi__attempt_clear(dvi_integrator *I)
 static int is_spared(const dvi_integrator *I)
 {
   double *own = I->stepper.memory + I->learned;
-  if (own[SPARED] == 0 || !(I->stepper.bend <= LIKE_THEM * own[BEND])) return 0;
+  const int is_other = I->system->n <= MANY && !(I->stepper.bend <= LIKE_THEM * own[BEND]);
+  if (own[SPARED] == 0 || is_other) return 0;
   --own[SPARED];
   return 1;
 }
@@ -139,15 +144,25 @@ static int is_same(size_t n, const double *one, const double *other, const doubl
   return 1;
 }
 
-/* The memory is that of the step as it was taken. */
+/* A step that was followed for its motion: in vain, it was right; asked in its turn, or for its bend
+ * while others are spared. The memory is that of the step as it was taken. */
 static void learn(const dvi_integrator *I, int right, double bend)
 {
   double *own = I->stepper.memory + I->learned;
   if (!I->first->by_motion) return;
-  own[VAIN] = right ? fmin(own[VAIN] + 1, VAIN_ONES) : 0;
-  own[WAIT] = own[VAIN] < VAIN_ONES ? 0 : own[WAIT] == 0 ? 1 : fmin(2 * own[WAIT], LONGEST_WAIT);
-  own[SPARED] = own[WAIT];
-  own[BEND] = own[VAIN] > 1 ? fmin(own[BEND], bend) : bend;
+  if (!right) {
+    memset(own, 0, LEARNED * sizeof *own);
+    return;
+  }
+  if (own[SPARED] > 0) {
+    own[BEND] *= more_bend;
+    return;
+  }
+  if (own[VAIN] < VAIN_ONES)
+    own[BEND] = own[VAIN]++ == 0 ? bend : fmin(own[BEND], bend);
+  else
+    own[WAIT] = fmin(2 * own[WAIT], LONGEST_WAIT);
+  if (own[VAIN] == VAIN_ONES) own[SPARED] = own[WAIT] = fmax(own[WAIT], 1);
 }
 
 /* What the first attempt has found stays, to the last bit, if it was right. */
