@@ -165,6 +165,18 @@ static void learn(const dvi_integrator *I, int right, double bend)
   if (own[VAIN] == VAIN_ONES) own[SPARED] = own[WAIT] = fmax(own[WAIT], 1);
 }
 
+/* The step along its branch. An end that hasty parts have found is looked at again. */
+static dvi_status follow(dvi_integrator *I, double length, double density)
+{
+  const int hasty = I->stepper.doubt != DVI__ASTRAY;
+  I->stepper.follow = hasty ? 1 : DVI__BRANCH_CAREFUL;
+  dvi_status status = step(I, length, density);
+  I->stepper.follow = DVI__BRANCH_CAREFUL;
+  if (hasty && status > 0 && I->stepper.doubt == DVI__ASTRAY) status = step(I, length, density);
+  I->stepper.follow = 0;
+  return status;
+}
+
 /* What the first attempt has found stays, to the last bit, if it was right. */
 dvi_status dvi__attempt(dvi_integrator *I, double length, double density)
 {
@@ -176,9 +188,7 @@ dvi_status dvi__attempt(dvi_integrator *I, double length, double density)
   I->counters.jump_alarms = before.jump_alarms;
   I->counters.energy_fallbacks = before.energy_fallbacks;
   const double bend = I->stepper.bend;
-  I->stepper.follow = I->stepper.doubt == DVI__ASTRAY ? DVI__BRANCH_CAREFUL : 1;
-  const dvi_status status = step(I, length, density);
-  I->stepper.follow = 0;
+  const dvi_status status = follow(I, length, density);
   const int is_lost = status > 0 && I->stepper.doubt != DVI__ASTRAY;
   if (status != DVI_OK && !(is_lost && I->first->by_motion)) return status;
   /* Motion alone is no reason to refuse a step if there is a solution beyond: at the front of a

@@ -83,11 +83,12 @@ static int is_symmetric(const dvi__stepper *self, const dvi__element *own)
   return own->definite && dvi__action_unknowns(own->action) == self->system->n;
 }
 
-/* In charts solutions are nearer to their guesses. */
+/* In charts solutions are nearer to their guesses, and differences are noise over short parts. */
 static int parts_of(const dvi__stepper *self)
 {
+  const int coarse = ((const dvi__element *)self->own)->centred || dvi__hessian_noise(self->system) > 0;
   if (self->follow > 0) return self->follow;
-  return ((const dvi__element *)self->own)->centred ? 1 : DVI__BRANCH_CAREFUL;
+  return coarse ? 1 : DVI__BRANCH_CAREFUL;
 }
 
 dvi_status dvi__element_follow(dvi__stepper *self, const dvi__element_place *at, dvi_status whole, double *Y)

@@ -62,7 +62,7 @@ static dvi_status follow(const dvi__stationary *s, const dvi__stationary_step *s
                               .place = place_part,
                               .guess = guess_part,
                               .near = DVI__BRANCH_NEAR,
-                              .parts = step->stepper->follow > 0 ? step->stepper->follow : DVI__BRANCH_CAREFUL,
+                              .parts = step->stepper->follow > 0 ? step->stepper->follow : 1,
                               .signs = 1,
                               .size = size_of(step),
                               .room = s->room};

@@ -75,12 +75,14 @@ static double distance(const dvi__branch *branch, const dvi__solver *solver, con
   return worst;
 }
 
-/* Of a motion that begins at rest the first guesses are no measure. */
+/* Of a motion that begins at rest the first guesses are no measure; short steps, whose equations are
+ * nearly linear, have no other solution near. */
 static int is_near(const dvi__branch *branch, const dvi__solver *solver, const history *past, double part, const double *guess,
                    const double *x, const dvi__solve_report *report)
 {
   const size_t unknowns = (size_t)solver->equations.unknowns;
   const int measurable = branch->distance != NULL || past->solved >= 2;
+  if (branch->distance == NULL && past->count < DVI__BRANCH_POINTS && dvi__branch_is_straight(report)) return 1;
   const double away = measurable ? distance(branch, solver, past, part, guess, x) : 0;
   const int contracts = report->contraction <= (measurable ? contraction : at_first) ||
                         report->largest_first <= negligible * dvi__largest(unknowns, x);
