@@ -16,9 +16,6 @@ static const double first_part = 1.0 / 16, least_part = 1.0 / DVI__BRANCH_PARTS;
  * Elsewhere, and where the Jacobian is not exact, solutions have to be closer to their guesses. */
 static const double contraction = 0.5, at_first = 0.4, closer = 0.1;
 
-/* Of smaller changes of the numbers that are added nothing is known. */
-static const double rounding = 1e-9;
-
 /* Of smaller corrections, relative to the unknowns, rounding may be a large part. */
 static const double negligible = 1e-6;
 
@@ -60,7 +57,7 @@ static double distance(const dvi__branch *branch, const dvi__solver *solver, con
                        const double *x)
 {
   const size_t unknowns = (size_t)solver->equations.unknowns, group = (size_t)solver->equations.group;
-  const double least = rounding * fmax(branch->size, dvi__largest(unknowns, x));
+  const double least = dvi__solver_least_part(solver) * fmax(branch->size, dvi__largest(unknowns, x));
   double worst = 0;
   if (branch->distance != NULL) return branch->distance(branch->of, guess, x);
   for (size_t first = 0; first < unknowns; first += group) {

@@ -44,8 +44,13 @@ dvi_status dvi__solver_take_jacobian(dvi__solver *solver, const double *values)
   return status;
 }
 
-/* Of smaller corrections, relative to the unknowns, rounding is a large part. */
+/* Of smaller changes, relative to the largest unknowns, rounding is a large part. */
 static const double rounding = 1e-9;
+
+double dvi__solver_least_part(const dvi__solver *solver)
+{
+  return fmax(rounding, sqrt(solver->equations.noise));
+}
 
 /* The worst ratio of two vectors, group by group; of groups of `to` no less than `least` counts. */
 static double worst_ratio(const dvi__solver *solver, double least, const double *of, const double *to)
@@ -67,7 +72,7 @@ void dvi__solver_note(const dvi__solver *solver, const double *x, dvi__solve_rep
     memcpy(solver->before, solver->residual, (size_t)solver->equations.unknowns * sizeof(double));
   }
   if (report->iterations != 2) return;
-  const double least = rounding * dvi__largest((size_t)solver->equations.unknowns, x);
+  const double least = dvi__solver_least_part(solver) * dvi__largest((size_t)solver->equations.unknowns, x);
   report->contraction = report->correction / report->largest_first;
   report->first = worst_ratio(solver, least, solver->before, x);
   report->bend = worst_ratio(solver, least, solver->residual, solver->before);
