@@ -61,7 +61,7 @@ dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__so
 {
   const dvi__pace pace = pace_of(s);
   dvi__trail trail = {0};
-  double whole = 0, last_relative = HUGE_VAL;
+  double whole, last_relative = HUGE_VAL;
   int fresh = 0, growing = 0, converged = 0;
   for (report->iterations = 1; report->iterations <= MOST_ITERATIONS; report->iterations++) {
     if (!fresh) DVI_TRY(dvi__solver_factor(s, x));
@@ -85,7 +85,6 @@ dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__so
     fresh = converged || is_unseen(s, next * next, report->correction, whole, x) ||
             (!s->equations.renewed && (trail.before == 0 || trail.last < keep_below * trail.before));
   }
-  /* By a Jacobian that is not exact corrections may go on shrinking below the rounding of the unknowns. */
-  if (converged || report->correction <= 4 * DBL_EPSILON * fmax(whole, size)) return DVI_OK;
+  if (converged) return DVI_OK;
   return dvi__fail(DVI_NOT_CONVERGED, "Newton's method does not settle (change %.1e after %.1e)", trail.last, trail.before);
 }
