@@ -38,43 +38,7 @@ done
 right -0.5 0.15 kepler --method galerkin:degree=2 --h 0.64 --t-end 60
 right 0.5 10 stiff-pendulum --method galerkin:degree=12 --h 0.064 --t-end 60
 
-# A light pendulum on a heavy cart.
-cat >cart.yaml <<'END'
-coordinates: {x: scalar, y: scalar}
-lagrangian: 27009.9*x'^2 - 915.89*x^2 + 0.7277*((x' + 0.402608*cos(y)*y')^2 + (0.402608*sin(y)*y')^2) + 2.99126*cos(y)
-initial: {x: -2.46809, x': 2.04087, y: -1.85655, y': -0.244602}
-method: midpoint
-step: 0.450971
-until: 4.058739
-END
-expect 0 'a light part' run cart.yaml --final --columns y
-near 1.7666411073 1e-7 'a light part'
-
-# The attitude of a satellite whose place is in metres.
-cat >satellite.yaml <<'END'
-coordinates: {x: scalar, y: scalar, z: scalar}
-lagrangian: 699.7*(x'^2 + y'^2) + 5.57801e17/sqrt(x^2 + y^2) + 30.68225*z'^2 + 0.501412*cos(z)
-initial: {x: 7154310, x': 0, y: 0, y': 8953.49, z: -1.88252, z': -0.106374}
-method: midpoint
-step: 23.1363
-until: 208.2267
-END
-expect 0 'other units' run satellite.yaml --final --columns z
-near 4.7216325852 1e-6 'other units'
-
-# Two bodies that fly together: the energy of their encounter is a small part of the whole.
-cat >flight.yaml <<'END'
-coordinates: {x: scalar, y: scalar, z: scalar, w: scalar}
-lagrangian: 0.1750525*(x'^2 + y'^2) + 0.266008*(z'^2 + w'^2) + 0.186261/sqrt((x - z)^2 + (y - w)^2)
-initial: {x: 0.838327, x': 4.29083, y: 0, y': 0.375245, z: -0.551679, z': 4.29083, w: 0, w': -0.246938}
-method: galerkin:degree=3,nodes=4
-step: 2.0648
-until: 4.1296
-END
-expect 1 'beyond a fold' run flight.yaml --final
-says err 'ends at h = 1.92' 'beyond a fold'
-
-# one NAME STEP COORDINATES LAGRANGIAN INITIAL [METHOD]: a scene of one step.
+# one NAME STEP COORDINATES LAGRANGIAN INITIAL [METHOD]: a scene, of one step.
 one() {
   cat >"$1.yaml" <<END
 coordinates: {$3}
@@ -85,6 +49,27 @@ step: $2
 until: $2
 END
 }
+
+# A light pendulum on a heavy cart.
+one cart 0.450971 'x: scalar, y: scalar' \
+  "27009.9*x'^2 - 915.89*x^2 + 0.7277*((x' + 0.402608*cos(y)*y')^2 + (0.402608*sin(y)*y')^2) + 2.99126*cos(y)" \
+  "x: -2.46809, x': 2.04087, y: -1.85655, y': -0.244602"
+expect 0 'a light part' run cart.yaml --t-end 4.058739 --final --columns y
+near 1.7666411073 1e-7 'a light part'
+
+# The attitude of a satellite whose place is in metres.
+one satellite 23.1363 'x: scalar, y: scalar, z: scalar' \
+  "699.7*(x'^2 + y'^2) + 5.57801e17/sqrt(x^2 + y^2) + 30.68225*z'^2 + 0.501412*cos(z)" \
+  "x: 7154310, x': 0, y: 0, y': 8953.49, z: -1.88252, z': -0.106374"
+expect 0 'other units' run satellite.yaml --t-end 208.2267 --final --columns z
+near 4.7216325852 1e-6 'other units'
+
+# Two bodies that fly together: the energy of their encounter is a small part of the whole.
+one flight 2.0648 'x: scalar, y: scalar, z: scalar, w: scalar' \
+  "0.1750525*(x'^2 + y'^2) + 0.266008*(z'^2 + w'^2) + 0.186261/sqrt((x - z)^2 + (y - w)^2)" \
+  "x: 0.838327, x': 4.29083, y: 0, y': 0.375245, z: -0.551679, z': 4.29083, w: 0, w': -0.246938" galerkin:degree=3,nodes=4
+expect 1 'beyond a fold' run flight.yaml --t-end 4.1296 --final
+says err 'ends at h = 1.92' 'beyond a fold'
 
 # Beyond h kappa = 2, kappa the rate at which a motion leaves an unstable place, the midpoint rule has
 # another solution near the guess; of two such motions the determinant has its old sign again.

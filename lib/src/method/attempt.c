@@ -15,8 +15,8 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "solve/branch.h"
 #include "num/finite.h"
+#include "solve/branch.h"
 
 /* Changes of more than this part of the kinetic energy, or of what the step exchanges, are doubted. */
 static const double doubted_change = 0.01;
@@ -165,14 +165,13 @@ static void learn(const dvi_integrator *I, int right, double bend)
   if (own[VAIN] == VAIN_ONES) own[SPARED] = own[WAIT] = fmax(own[WAIT], 1);
 }
 
-/* The step along its branch. An end that hasty parts have found is looked at again. */
-static dvi_status follow(dvi_integrator *I, double length, double density)
+/* The step along its branch, in at least so many parts; alarms are those of the step as it is taken. */
+static dvi_status follow(dvi_integrator *I, double length, double density, int parts, const dvi_counters *before)
 {
-  const int hasty = I->stepper.doubt != DVI__ASTRAY;
-  I->stepper.follow = hasty ? 1 : DVI__BRANCH_CAREFUL;
-  dvi_status status = step(I, length, density);
-  I->stepper.follow = DVI__BRANCH_CAREFUL;
-  if (hasty && status > 0 && I->stepper.doubt == DVI__ASTRAY) status = step(I, length, density);
+  I->counters.jump_alarms = before->jump_alarms;
+  I->counters.energy_fallbacks = before->energy_fallbacks;
+  I->stepper.follow = parts;
+  const dvi_status status = step(I, length, density);
   I->stepper.follow = 0;
   return status;
 }
@@ -185,10 +184,10 @@ dvi_status dvi__attempt(dvi_integrator *I, double length, double density)
   DVI_TRY(step(I, length, density));
   if (!is_doubted(I)) return DVI_OK;
   keep_first(I);
-  I->counters.jump_alarms = before.jump_alarms;
-  I->counters.energy_fallbacks = before.energy_fallbacks;
   const double bend = I->stepper.bend;
-  const dvi_status status = follow(I, length, density);
+  const int hasty = I->stepper.doubt != DVI__ASTRAY;
+  dvi_status status = follow(I, length, density, hasty ? 1 : DVI__BRANCH_CAREFUL, &before);
+  if (hasty && status > 0 && I->stepper.doubt == DVI__ASTRAY) status = follow(I, length, density, DVI__BRANCH_CAREFUL, &before);
   const int is_lost = status > 0 && I->stepper.doubt != DVI__ASTRAY;
   if (status != DVI_OK && !(is_lost && I->first->by_motion)) return status;
   /* Motion alone is no reason to refuse a step if there is a solution beyond: at the front of a

@@ -78,8 +78,9 @@ static int direction(const dvi__element_place *at)
 }
 
 /* Of one coefficient a coordinate the whole Jacobian is symmetric. */
-static int is_symmetric(const dvi__stepper *self, const dvi__element *own)
+static int is_symmetric(const dvi__stepper *self)
 {
+  const dvi__element *own = self->own;
   return own->definite && dvi__action_unknowns(own->action) == self->system->n;
 }
 
@@ -102,7 +103,7 @@ dvi_status dvi__element_follow(dvi__stepper *self, const dvi__element_place *at,
                               .near = own->centred ? follows_in_charts : DVI__BRANCH_NEAR,
                               .parts = parts_of(self),
                               .signs = !own->centred || dvi__action_signs(own->action),
-                              .definite = is_symmetric(self, own) ? direction(at) : 0,
+                              .definite = is_symmetric(self) ? direction(at) : 0,
                               .from_zero = 1,
                               .size = dvi__largest((size_t)self->system->n, at->q),
                               .room = own->branch};
@@ -131,7 +132,7 @@ static int is_turned(const dvi__stepper *self, const dvi__element_place *at)
   const int apart = own->rung == DVI__SIMPLIFIED && own->decoupled != NULL;
   const int unknowns = dvi__action_unknowns(own->action), degree = unknowns / self->system->n;
   if (apart && own->definite) return !dvi__decoupled_is_definite(own->decoupled, direction(at));
-  if (!apart && is_symmetric(self, own)) return !dvi__solver_is_definite(own->solver, direction(at));
+  if (!apart && is_symmetric(self)) return !dvi__solver_is_definite(own->solver, direction(at));
   const int sign = (apart ? dvi__decoupled_sign(own->decoupled) : dvi__solver_sign(own->solver)) *
                    (unknowns % 2 != 0 ? direction(at) : 1);
   if (sign > 0 || own->centred || degree % 2 == 0) return sign < 0;

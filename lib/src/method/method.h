@@ -158,6 +158,9 @@ dvi_status dvi__stepper_create(const dvi_system *system, const char *specificati
                                dvi_counters *counters, dvi__stepper *stepper);
 void dvi__stepper_destroy(dvi__stepper *stepper);
 
+/* The state is new, its velocity is v [n], and the memory zero. */
+void dvi__stepper_start(dvi__stepper *stepper, const double *v);
+
 /* A step of a stepper that the method itself is made of. */
 dvi_status dvi__inner_step(dvi__stepper *self, dvi__stepper *inner, dvi__state *state, double h);
 

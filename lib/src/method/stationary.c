@@ -19,7 +19,6 @@ dvi_status dvi__stationary_create(dvi__stepper *self, dvi__equations *equations,
 {
   const size_t unknowns = (size_t)equations->unknowns;
   self->follows = 1;
-  stationary->unknowns = equations->unknowns;
   stationary->x = DVI_NEW(double, unknowns);
   stationary->room = DVI_NEW(double, DVI__BRANCH_ROOM *unknowns);
   if (stationary->x == NULL || stationary->room == NULL)

@@ -124,6 +124,11 @@ dvi_status dvi__stepper_create_inner(dvi__stepper *self, const char *method, con
   return keys == NULL || *rest != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "%s: no memory for its specification", method);
 }
 
+void dvi__stepper_start(dvi__stepper *stepper, const double *v)
+{
+  if (stepper->method->start != NULL) stepper->method->start(stepper, v);
+}
+
 dvi_status dvi__inner_step(dvi__stepper *self, dvi__stepper *inner, dvi__state *state, double h)
 {
   inner->follow = self->follow;

@@ -51,8 +51,10 @@ typedef struct dvi__branch_end {
 dvi_status dvi__branch_follow(const dvi__branch *branch, dvi__solver *solver, double *x, dvi__branch_end *end);
 
 /* Whether a Newton method began near its solution, and the equations were nearly linear in between,
- * group by group; or, with a bound, whether they were so linear alone. */
+ * group by group. */
 int dvi__branch_is_near(const dvi__solve_report *report);
+
+/* Whether the equations were all but linear from the guess to the solution, however far that is. */
 int dvi__branch_is_straight(const dvi__solve_report *report);
 
 /* What the solution of the whole step failed by, before its branch was followed. */

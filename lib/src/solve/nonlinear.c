@@ -256,6 +256,7 @@ static dvi_status kinsol(dvi__solver *s, double size, double *x, dvi__solve_repo
   const int iterations = report->iterations;
   const dvi_status polished = dvi__newton(s, size, 0, x, report);
   report->iterations += iterations;
+  report->first = report->bend = 0; /* they were those of the polish alone */
   return polished;
 }
 
