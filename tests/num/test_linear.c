@@ -113,7 +113,7 @@ static void product(unsigned *state, int negative, double *a)
     }
 }
 
-START_TEST(pivots_tell_whether_a_symmetric_matrix_is_positive)
+START_TEST(pivots_tell_whether_a_symmetric_matrix_is_definite)
 {
   enum { N = 8 };
   unsigned state = 1;
@@ -124,7 +124,11 @@ START_TEST(pivots_tell_whether_a_symmetric_matrix_is_positive)
     compress(N, a, &m);
     dvi__linear *linear = make(&m, DVI__LINEAR_SPARSE, NULL);
     ck_assert_msg(dvi__linear_factor(linear, m.values) == DVI_OK, "%s", dvi_last_error());
-    ck_assert_int_eq(dvi__linear_is_positive(linear), k % 2 == 0);
+    ck_assert_int_eq(dvi__linear_is_definite(linear, 1), k % 2 == 0);
+    ck_assert_int_eq(dvi__linear_is_definite(linear, -1), 0);
+    for (int e = 0; e < dvi__pattern_entries(&m.pattern); e++) m.values[e] = -m.values[e];
+    ck_assert_msg(dvi__linear_factor(linear, m.values) == DVI_OK, "%s", dvi_last_error());
+    ck_assert_int_eq(dvi__linear_is_definite(linear, -1), k % 2 == 0);
     ck_assert_int_eq(dvi__is_positive_definite(N, a), k % 2 == 0);
     dvi__linear_destroy(&linear);
     dvi__pattern_clear(&m.pattern);
@@ -394,7 +398,7 @@ int main(void)
 {
   TCase *tests = tcase_create("linear");
   tcase_add_loop_test(tests, determinants_have_their_sign, 0, 8);
-  tcase_add_test(tests, pivots_tell_whether_a_symmetric_matrix_is_positive);
+  tcase_add_test(tests, pivots_tell_whether_a_symmetric_matrix_is_definite);
   tcase_add_loop_test(tests, a_known_system_has_its_known_solution, 0, 2);
   tcase_add_loop_test(tests, one_unknown_is_a_division, 0, 2);
   tcase_add_loop_test(tests, dense_and_sparse_agree_with_the_solution_that_made_the_right_side, 0, 3);

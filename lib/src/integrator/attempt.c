@@ -16,6 +16,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/finite.h"
+#include "solve/branch.h"
 
 /* Changes of more than this part of the kinetic energy, or of what the step exchanges, are doubted. */
 static const double doubted_change = 0.01;
@@ -24,17 +25,23 @@ static const double doubted_change = 0.01;
  * its rates at both ends leads, as a part of the larger rate's way. */
 static const double doubted_defect = 0.1;
 
-/* Right steps do so, too, where they are long. After some that were followed in vain the motion is
- * asked more and more seldom, until its answer is that a step was wrong. */
-enum { VAIN_ONES = 4, LONGEST_WAIT = 4096 };
+/* Right steps do so, too, where they are long. After some that were followed in vain the motion of
+ * steps like them, whose equations bend no more than so many times theirs, is asked more and more
+ * seldom, until its answer is that a step was wrong. Of many coordinates one or the other always
+ * bends. */
+enum { VAIN_ONES = 4, LONGEST_WAIT = 4096, LIKE_THEM = 2, MANY = 32 };
+
+/* Each one that was asked for its bend, in vain, lets the next one bend by so much more. */
+static const double more_bend = 1.25;
 
 /* Two solutions are the same if they differ by less than this part of the step: the roundings of an
  * ill-conditioned step are smaller, other solutions are farther away. */
 static const double same = 1e-6;
 
 /* Behind the method's memory, so that checkpoints and members have it: steps in a row that were
- * followed for their motion in vain; steps that are not asked after one; those that are left of them. */
-enum { VAIN, WAIT, SPARED, LEARNED };
+ * followed for their motion in vain; steps that are not asked after one; those that are left of them;
+ * how much the equations of those in vain bent. */
+enum { VAIN, WAIT, SPARED, BEND, LEARNED };
 
 struct dvi__attempt {
   dvi__state state; /* what the first attempt found, */
@@ -73,9 +80,10 @@ void dvi__attempt_clear(dvi_integrator *I)
 /* Whether this step's motion is not asked. */
 static int is_spared(const dvi_integrator *I)
 {
-  double *spared = I->stepper.memory + I->learned + SPARED;
-  if (*spared == 0) return 0;
-  --*spared;
+  double *own = I->stepper.memory + I->learned;
+  const int is_other = I->system->n <= MANY && !(I->stepper.bend <= LIKE_THEM * own[BEND]);
+  if (own[SPARED] == 0 || is_other) return 0;
+  --own[SPARED];
   return 1;
 }
 
@@ -107,6 +115,7 @@ static dvi_status step(dvi_integrator *I, double length, double density)
   memcpy(I->stepper.memory, I->memory_before, I->stepper.memory_count * sizeof(double));
   I->next.density = density;
   I->stepper.doubt = DVI__SURE;
+  I->stepper.bend = 0;
   return I->stepper.method->step(&I->stepper, &I->next, length);
 }
 
@@ -135,14 +144,36 @@ static int is_same(size_t n, const double *one, const double *other, const doubl
   return 1;
 }
 
-/* The memory is that of the step as it was taken. */
-static void learn(const dvi_integrator *I, int right)
+/* A step that was followed for its motion: in vain, it was right; asked in its turn, or for its bend
+ * while others are spared. The memory is that of the step as it was taken. */
+static void learn(const dvi_integrator *I, int right, double bend)
 {
   double *own = I->stepper.memory + I->learned;
   if (!I->first->by_motion) return;
-  own[VAIN] = right ? fmin(own[VAIN] + 1, VAIN_ONES) : 0;
-  own[WAIT] = own[VAIN] < VAIN_ONES ? 0 : own[WAIT] == 0 ? 1 : fmin(2 * own[WAIT], LONGEST_WAIT);
-  own[SPARED] = own[WAIT];
+  if (!right) {
+    memset(own, 0, LEARNED * sizeof *own);
+    return;
+  }
+  if (own[SPARED] > 0) {
+    own[BEND] *= more_bend;
+    return;
+  }
+  if (own[VAIN] < VAIN_ONES)
+    own[BEND] = own[VAIN]++ == 0 ? bend : fmin(own[BEND], bend);
+  else
+    own[WAIT] = fmin(2 * own[WAIT], LONGEST_WAIT);
+  if (own[VAIN] == VAIN_ONES) own[SPARED] = own[WAIT] = fmax(own[WAIT], 1);
+}
+
+/* The step along its branch, in at least so many parts; alarms are those of the step as it is taken. */
+static dvi_status follow(dvi_integrator *I, double length, double density, int parts, const dvi_counters *before)
+{
+  I->counters.jump_alarms = before->jump_alarms;
+  I->counters.energy_fallbacks = before->energy_fallbacks;
+  I->stepper.follow = parts;
+  const dvi_status status = step(I, length, density);
+  I->stepper.follow = 0;
+  return status;
 }
 
 /* What the first attempt has found stays, to the last bit, if it was right. */
@@ -153,17 +184,17 @@ dvi_status dvi__attempt(dvi_integrator *I, double length, double density)
   DVI_TRY(step(I, length, density));
   if (!is_doubted(I)) return DVI_OK;
   keep_first(I);
-  I->counters.jump_alarms = before.jump_alarms;
-  I->counters.energy_fallbacks = before.energy_fallbacks;
-  I->stepper.follow = 1;
-  const dvi_status status = step(I, length, density);
-  I->stepper.follow = 0;
-  if (status < 0 || (status > 0 && !I->first->by_motion)) return status;
-  /* Motion alone is no reason to refuse a step: at the front of a wave, where numbers grow by high
-   * powers of h, a branch may be lost that goes on. */
-  const int right = status > 0 ||
+  const double bend = I->stepper.bend;
+  const int hasty = I->stepper.doubt != DVI__ASTRAY;
+  dvi_status status = follow(I, length, density, hasty ? 1 : DVI__BRANCH_CAREFUL, &before);
+  if (hasty && status > 0 && I->stepper.doubt == DVI__ASTRAY) status = follow(I, length, density, DVI__BRANCH_CAREFUL, &before);
+  const int is_lost = status > 0 && I->stepper.doubt != DVI__ASTRAY;
+  if (status != DVI_OK && !(is_lost && I->first->by_motion)) return status;
+  /* Motion alone is no reason to refuse a step if there is a solution beyond: at the front of a
+   * wave, where numbers grow by high powers of h, a branch may be lost that goes on. */
+  const int right = is_lost ||
                     (is_same(n, I->next.q, I->first->state.q, I->now.q) && is_same(n, I->next.p, I->first->state.p, I->now.p));
   if (right) restore_first(I);
-  learn(I, right);
+  learn(I, right, bend);
   return DVI_OK;
 }

@@ -126,7 +126,7 @@ static dvi_status start(dvi_integrator *I, double t, const double *q, const doub
   I->last_h = 0;
   I->started = 1;
   memset(I->stepper.memory, 0, I->stepper.memory_count * sizeof(double));
-  if (I->stepper.method->start != NULL) I->stepper.method->start(&I->stepper, w);
+  dvi__stepper_start(&I->stepper, w);
   return DVI_OK;
 }
 

@@ -91,7 +91,8 @@ typedef struct dvi__stepper {
   int exact;
   int follows;      /* it solves equations, and can follow their branch from h = 0 */
   int follow;       /* set by the driver: the step does so, in at least so many parts; 0: it does not */
-  dvi__doubt doubt; /* set by `step`, reset by the driver */
+  dvi__doubt doubt; /* set by `step`, reset by the driver, */
+  double bend;      /* and so is how much its equations bent: the worst of dvi__solve_report */
   void *own;        /* the method's struct */
   void *lanes;      /* its struct for members side by side; NULL: each member steps on its own */
 } dvi__stepper;
@@ -156,6 +157,9 @@ struct dvi__method {
 dvi_status dvi__stepper_create(const dvi_system *system, const char *specification, const dvi_shapes *shapes,
                                dvi_counters *counters, dvi__stepper *stepper);
 void dvi__stepper_destroy(dvi__stepper *stepper);
+
+/* The state is new, its velocity is v [n], and the memory zero. */
+void dvi__stepper_start(dvi__stepper *stepper, const double *v);
 
 /* A step of a stepper that the method itself is made of. */
 dvi_status dvi__inner_step(dvi__stepper *self, dvi__stepper *inner, dvi__state *state, double h);

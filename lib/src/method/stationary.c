@@ -19,7 +19,6 @@ dvi_status dvi__stationary_create(dvi__stepper *self, dvi__equations *equations,
 {
   const size_t unknowns = (size_t)equations->unknowns;
   self->follows = 1;
-  stationary->unknowns = equations->unknowns;
   stationary->x = DVI_NEW(double, unknowns);
   stationary->room = DVI_NEW(double, DVI__BRANCH_ROOM *unknowns);
   if (stationary->x == NULL || stationary->room == NULL)
@@ -62,7 +61,7 @@ static dvi_status follow(const dvi__stationary *s, const dvi__stationary_step *s
                               .place = place_part,
                               .guess = guess_part,
                               .near = DVI__BRANCH_NEAR,
-                              .parts = step->stepper->follow,
+                              .parts = step->stepper->follow > 0 ? step->stepper->follow : 1,
                               .signs = 1,
                               .size = size_of(step),
                               .room = s->room};
@@ -72,6 +71,7 @@ static dvi_status follow(const dvi__stationary *s, const dvi__stationary_step *s
   step->stepper->counters->followed++;
   step->stepper->counters->newtons += !step->stepper->follow;
   const dvi_status status = dvi__branch_follow(&branch, s->solver, s->x, &end);
+  if (status > 0 && end.ends) step->stepper->doubt = DVI__ASTRAY;
   return status <= 0 ? status : dvi__branch_tell(&end, step->h, &failure);
 }
 
@@ -82,7 +82,8 @@ static dvi_status solve_at_once(const dvi__stationary *s, const dvi__stationary_
   DVI_TRY(step->guess(step->stepper, step->h, s->x));
   DVI_TRY(dvi__solve(s->solver, DVI__NEWTON, size_of(step), 1, 0, s->x, &report));
   step->stepper->counters->newtons++;
-  if (dvi__branch_is_sure(&report, s->unknowns, s->x)) return DVI_OK;
+  step->stepper->bend = fmax(step->stepper->bend, report.bend);
+  if (report.iterations <= 4 || dvi__branch_is_near(&report)) return DVI_OK;
   const dvi__doubt doubt = dvi__branch_is_straight(&report) ? DVI__LINEAR : DVI__DOUBTED;
   if (doubt > step->stepper->doubt) step->stepper->doubt = doubt;
   return DVI_OK;

@@ -19,7 +19,6 @@ typedef struct dvi__stationary_step {
 
 typedef struct dvi__stationary {
   dvi__solver *solver;
-  int unknowns;
   double *x;    /* [unknowns] the solution */
   double *room; /* [DVI__BRANCH_ROOM * unknowns] */
 } dvi__stationary;

@@ -1,5 +1,6 @@
 /* Making a stepper: the specification is parsed, the method must be able to use every term that the system declares. */
 #include <dvi/method.h>
+#include <math.h>
 #include <string.h>
 
 #include "core/hash.h"
@@ -123,12 +124,19 @@ dvi_status dvi__stepper_create_inner(dvi__stepper *self, const char *method, con
   return keys == NULL || *rest != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "%s: no memory for its specification", method);
 }
 
+void dvi__stepper_start(dvi__stepper *stepper, const double *v)
+{
+  if (stepper->method->start != NULL) stepper->method->start(stepper, v);
+}
+
 dvi_status dvi__inner_step(dvi__stepper *self, dvi__stepper *inner, dvi__state *state, double h)
 {
   inner->follow = self->follow;
   inner->doubt = DVI__SURE;
+  inner->bend = 0;
   const dvi_status status = inner->method->step(inner, state, h);
   if (inner->doubt > self->doubt) self->doubt = inner->doubt;
+  self->bend = fmax(self->bend, inner->bend);
   return status;
 }
 

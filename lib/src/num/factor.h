@@ -16,7 +16,8 @@ typedef struct dvi__factor_operations {
   void (*solve)(void *factor, const dvi__pattern *pattern, double *b);
   void (*destroy)(void *factor);
   int (*sign)(const void *factor, const dvi__pattern *pattern); /* of the determinant; real factors without a border have it */
-  int (*is_positive)(const void *factor, const dvi__pattern *pattern); /* dvi__linear_is_positive; NULL: not known */
+  /* dvi__linear_is_definite; NULL: not known */
+  int (*is_definite)(const void *factor, const dvi__pattern *pattern, int sign);
 } dvi__factor_operations;
 
 extern const dvi__factor_operations dvi__dense_factor;   /* dense.c */

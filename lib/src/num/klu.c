@@ -166,15 +166,16 @@ static int sign(const void *factor, const dvi__pattern *pattern)
   return negative ? -1 : 1;
 }
 
-/* Pivots on the diagonal are those of A = L D L^T. A positive definite matrix keeps them there: none of them is small beside its column. */
-static int is_positive(const void *factor, const dvi__pattern *pattern)
+/* Pivots on the diagonal are those of A = L D L^T. A definite matrix keeps them there: none of them is
+ * small beside its column. */
+static int is_definite(const void *factor, const dvi__pattern *pattern, int sign)
 {
   const sparse *s = factor;
   const double *pivot = s->current->Udiag;
   for (int i = 0; i < pattern->columns; i++)
-    if (s->current->Pnum[i] != s->symbolic->Q[i] || !(pivot[i] > 0)) return 0;
+    if (s->current->Pnum[i] != s->symbolic->Q[i] || !(sign * pivot[i] > 0)) return 0;
   return 1;
 }
 
-const dvi__factor_operations dvi__sparse_factor = {create_real, refactor, solve, destroy, sign, is_positive};
+const dvi__factor_operations dvi__sparse_factor = {create_real, refactor, solve, destroy, sign, is_definite};
 const dvi__factor_operations dvi__complex_factor = {create_complex, refactor, solve, destroy, NULL, NULL};

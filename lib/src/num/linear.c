@@ -176,9 +176,9 @@ int dvi__linear_sign(const dvi__linear *linear)
   return linear->operations->sign(linear->factor, linear->pattern);
 }
 
-int dvi__linear_is_positive(const dvi__linear *linear)
+int dvi__linear_is_definite(const dvi__linear *linear, int sign)
 {
-  return linear->operations->is_positive(linear->factor, linear->pattern);
+  return linear->operations->is_definite != NULL && linear->operations->is_definite(linear->factor, linear->pattern, sign);
 }
 
 static void scale(int n, int parts, const double *by, double *b)

@@ -40,8 +40,9 @@ dvi_status dvi__linear_factor(dvi__linear *linear, const double *values);
 /* The sign of the determinant of the matrix that was factored last, 1 or -1; it must be real, and without a border. */
 int dvi__linear_sign(const dvi__linear *linear);
 
-/* Whether the matrix that was factored last, a symmetric one, is positive definite; it must be DVI__LINEAR_SPARSE (for full ones: num/eigen.h). */
-int dvi__linear_is_positive(const dvi__linear *linear);
+/* Whether the matrix that was factored last, a symmetric one, is positive (sign 1) or negative (-1)
+ * definite; 0, too, where that is not known: of all that are not DVI__LINEAR_SPARSE (num/eigen.h). */
+int dvi__linear_is_definite(const dvi__linear *linear, int sign);
 
 /* Overwrite b [rows, or pairs of them] by the solution. Needs a factor. */
 void dvi__linear_solve(dvi__linear *linear, double *b);

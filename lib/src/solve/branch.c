@@ -16,14 +16,6 @@ static const double first_part = 1.0 / 16, least_part = 1.0 / DVI__BRANCH_PARTS;
  * Elsewhere, and where the Jacobian is not exact, solutions have to be closer to their guesses. */
 static const double contraction = 0.5, at_first = 0.4, closer = 0.1;
 
-/* Equations that are so nearly linear between a guess and its solution, group by group, have no other
- * solution near, whatever the distance: Newton's method needs 0.5 for that (Kantorovich; Deuflhard
- * 2004, sec. 2.1). */
-static const double straight = 1e-3;
-
-/* Of smaller changes of the numbers that are added nothing is known. */
-static const double rounding = 1e-9;
-
 /* Of smaller corrections, relative to the unknowns, rounding may be a large part. */
 static const double negligible = 1e-6;
 
@@ -65,7 +57,7 @@ static double distance(const dvi__branch *branch, const dvi__solver *solver, con
                        const double *x)
 {
   const size_t unknowns = (size_t)solver->equations.unknowns, group = (size_t)solver->equations.group;
-  const double least = rounding * fmax(branch->size, dvi__largest(unknowns, x));
+  const double least = dvi__solver_least_part(solver) * fmax(branch->size, dvi__largest(unknowns, x));
   double worst = 0;
   if (branch->distance != NULL) return branch->distance(branch->of, guess, x);
   for (size_t first = 0; first < unknowns; first += group) {
@@ -80,16 +72,17 @@ static double distance(const dvi__branch *branch, const dvi__solver *solver, con
   return worst;
 }
 
-/* Of a motion that begins at rest the first guesses are no measure. */
+/* Of a motion that begins at rest the first guesses are no measure; short steps, whose equations are
+ * nearly linear, have no other solution near. */
 static int is_near(const dvi__branch *branch, const dvi__solver *solver, const history *past, double part, const double *guess,
                    const double *x, const dvi__solve_report *report)
 {
   const size_t unknowns = (size_t)solver->equations.unknowns;
   const int measurable = branch->distance != NULL || past->solved >= 2;
-  if (branch->distance == NULL && report->bend <= straight) return 1;
+  if (branch->distance == NULL && past->count < DVI__BRANCH_POINTS && dvi__branch_is_straight(report)) return 1;
   const double away = measurable ? distance(branch, solver, past, part, guess, x) : 0;
   const int contracts = report->contraction <= (measurable ? contraction : at_first) ||
-                        report->first <= negligible * dvi__largest(unknowns, x);
+                        report->largest_first <= negligible * dvi__largest(unknowns, x);
   const double near = contracts ? branch->near : closer * branch->near;
   return measurable ? away <= near : contracts;
 }
@@ -109,9 +102,7 @@ static dvi_status solve_at(const dvi__branch *branch, dvi__solver *solver, const
   const size_t unknowns = (size_t)solver->equations.unknowns;
   DVI_TRY(guess_at(branch, past, unknowns, part, guess));
   memcpy(x, guess, unknowns * sizeof *x);
-  DVI_TRY(dvi__solve(solver, DVI__NEWTON, branch->size, 0, 0, x, report));
-  if (is_near(branch, solver, past, part, guess, x, report)) return DVI_OK;
-  return dvi__fail(DVI_NOT_CONVERGED, "the next solution is not near");
+  return dvi__solve(solver, DVI__NEWTON, branch->size, 0, 0, x, report);
 }
 
 static void begin(const dvi__branch *branch, size_t unknowns, history *past)
@@ -123,10 +114,17 @@ static void begin(const dvi__branch *branch, size_t unknowns, history *past)
   if (branch->from_zero) remember(past, unknowns, 0, past->first);
 }
 
+/* Whether the last solution is beyond a fold; before it the determinant had a sign, if any were solved. */
+static int is_folded(const dvi__branch *branch, const dvi__solver *solver, int solved, int sign)
+{
+  if (branch->definite != 0 && !dvi__solver_is_definite(solver, branch->definite)) return 1;
+  return branch->signs && solved > 0 && dvi__solver_sign(solver) != sign;
+}
+
 dvi_status dvi__branch_follow(const dvi__branch *branch, dvi__solver *solver, double *x, dvi__branch_end *end)
 {
   const size_t unknowns = (size_t)solver->equations.unknowns;
-  const double most_part = branch->parts > 1 ? 1.0 / branch->parts : 1;
+  const double most_part = 1.0 / branch->parts;
   double part = fmin(first_part, most_part), *guess = branch->room;
   history past;
   int sign = 0;
@@ -136,9 +134,10 @@ dvi_status dvi__branch_follow(const dvi__branch *branch, dvi__solver *solver, do
     const double next = fmin(1, end->reached + part);
     end->status = solve_at(branch, solver, &past, next, x, guess, &end->report);
     if (end->status < 0) return end->status;
-    const int folded = branch->signs && past.solved > 0 && dvi__solver_sign(solver) != sign;
-    const int follows = end->status == DVI_OK && !folded;
-    if (!follows) {
+    const int solved = end->status == DVI_OK, folded = solved && is_folded(branch, solver, past.solved, sign);
+    if (!solved || folded || !is_near(branch, solver, &past, next, guess, x, &end->report)) {
+      end->ends = !solved || folded || end->report.contraction > contraction;
+      if (solved) end->status = dvi__fail(DVI_NOT_CONVERGED, "the next solution is not near");
       part *= 0.5;
       continue;
     }
@@ -154,17 +153,14 @@ dvi_status dvi__branch_follow(const dvi__branch *branch, dvi__solver *solver, do
   return DVI_STEP_TOO_LARGE;
 }
 
-/* Solutions of other branches, 235 among 6000, were never found in fewer than 6 iterations, and
- * seldom less than a tenth of themselves away from the guess. */
-int dvi__branch_is_sure(const dvi__solve_report *report, int unknowns, const double *x)
+int dvi__branch_is_near(const dvi__solve_report *report)
 {
-  if (report->bend <= straight) return 1;
-  return report->contraction <= 0.05 && report->first <= 0.01 * dvi__largest((size_t)unknowns, x);
+  return report->iterations == 1 || (report->bend <= 0.05 && report->first <= 0.01);
 }
 
 int dvi__branch_is_straight(const dvi__solve_report *report)
 {
-  return report->bend <= 0.05;
+  return report->bend <= 1e-3;
 }
 
 void dvi__branch_note(dvi_status status, dvi__branch_failure *failure)

@@ -14,8 +14,9 @@ enum { DVI__BRANCH_POINTS = 4, DVI__BRANCH_ROOM = DVI__BRANCH_POINTS + 2 };
 /* Between an extrapolated guess and the next solution, as a part of how far the branch has come. */
 #define DVI__BRANCH_NEAR 0.03
 
-/* A branch is followed in at most so many parts of a step. */
-enum { DVI__BRANCH_PARTS = 4096, DVI__BRANCH_SENTENCE = 600 };
+/* A branch is followed in at most so many parts of a step; and in at least so many where solutions of
+ * another one were met. */
+enum { DVI__BRANCH_PARTS = 4096, DVI__BRANCH_CAREFUL = 64, DVI__BRANCH_SENTENCE = 600 };
 
 typedef struct dvi__branch {
   void *of; /* first argument of the functions */
@@ -26,8 +27,9 @@ typedef struct dvi__branch {
   /* How far a solution is from its guess; NULL: as a part of how far its group has come, the worst. */
   double (*distance)(void *of, const double *guess, const double *x);
   double near;   /* a solution on the branch is no farther from an extrapolated guess */
-  int parts;     /* the step is followed in at least so many parts; 0: 1 */
+  int parts;     /* the step is followed in at least so many parts */
   int signs;     /* along the branch the determinant of the Jacobian changes its sign at folds alone */
+  int definite;  /* 1, -1: and it is symmetric, and positive or negative definite before them; 0: it need not be */
   int from_zero; /* x is 0 at a step of length 0: the extrapolation begins there */
   double size;   /* of the quantities to which x is an increment (nonlinear.h) */
   double *room;  /* [DVI__BRANCH_ROOM * unknowns] */
@@ -39,6 +41,7 @@ typedef struct dvi__branch_end {
   double reached;
   dvi__solve_report report;
   dvi_status status;
+  int ends; /* there is no solution beyond, or one across a fold; 0: there is one, but not near its guess */
 } dvi__branch_end;
 
 /* The solution x [unknowns] of the whole step on the branch; the equations are left there.
@@ -47,10 +50,11 @@ typedef struct dvi__branch_end {
  * solution. A negative status: fatal. */
 dvi_status dvi__branch_follow(const dvi__branch *branch, dvi__solver *solver, double *x, dvi__branch_end *end);
 
-/* Whether Newton's method began so near its solution x [unknowns] that it can be no other one. */
-int dvi__branch_is_sure(const dvi__solve_report *report, int unknowns, const double *x);
+/* Whether a Newton method began near its solution, and the equations were nearly linear in between,
+ * group by group. */
+int dvi__branch_is_near(const dvi__solve_report *report);
 
-/* Whether the equations were nearly linear from the guess to the solution, group by group. */
+/* Whether the equations were all but linear from the guess to the solution, however far that is. */
 int dvi__branch_is_straight(const dvi__solve_report *report);
 
 /* What the solution of the whole step failed by, before its branch was followed. */

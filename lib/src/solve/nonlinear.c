@@ -44,19 +44,23 @@ dvi_status dvi__solver_take_jacobian(dvi__solver *solver, const double *values)
   return status;
 }
 
-/* Of smaller corrections, relative to the unknowns, rounding is a large part. */
+/* Of smaller changes, relative to the largest unknowns, rounding is a large part. */
 static const double rounding = 1e-9;
 
-/* The worst ratio of two corrections, group by group. */
-static double bend_of(const dvi__solver *solver, const double *x)
+double dvi__solver_least_part(const dvi__solver *solver)
+{
+  return fmax(rounding, sqrt(solver->equations.noise));
+}
+
+/* The worst ratio of two vectors, group by group; of groups of `to` no less than `least` counts. */
+static double worst_ratio(const dvi__solver *solver, double least, const double *of, const double *to)
 {
   const int unknowns = solver->equations.unknowns, group = solver->equations.group;
   double worst = 0;
   for (int first = 0; first < unknowns; first += group) {
     const size_t count = (size_t)(first + group < unknowns ? group : unknowns - first);
-    const double now = dvi__largest(count, solver->residual + first);
-    const double before = fmax(dvi__largest(count, solver->before + first), rounding * dvi__largest(count, x + first));
-    if (now > worst * before) worst = before > 0 ? now / before : HUGE_VAL;
+    const double one = dvi__largest(count, of + first), other = fmax(dvi__largest(count, to + first), least);
+    if (one > worst * other) worst = other > 0 ? one / other : HUGE_VAL;
   }
   return worst;
 }
@@ -64,12 +68,14 @@ static double bend_of(const dvi__solver *solver, const double *x)
 void dvi__solver_note(const dvi__solver *solver, const double *x, dvi__solve_report *report)
 {
   if (report->iterations == 1) {
-    report->first = report->correction;
+    report->largest_first = report->correction;
     memcpy(solver->before, solver->residual, (size_t)solver->equations.unknowns * sizeof(double));
   }
   if (report->iterations != 2) return;
-  report->contraction = report->correction / report->first;
-  report->bend = bend_of(solver, x);
+  const double least = dvi__solver_least_part(solver) * dvi__largest((size_t)solver->equations.unknowns, x);
+  report->contraction = report->correction / report->largest_first;
+  report->first = worst_ratio(solver, least, solver->before, x);
+  report->bend = worst_ratio(solver, least, solver->residual, solver->before);
 }
 
 /* Each term of a row is itself the end of a few products and sums. */
@@ -143,6 +149,12 @@ void dvi__solver_apply_factor(dvi__solver *solver, double *b)
 int dvi__solver_sign(const dvi__solver *solver)
 {
   return solver->factored ? dvi__linear_sign(solver->linear) : 1;
+}
+
+int dvi__solver_is_definite(const dvi__solver *solver, int sign)
+{
+  if (!solver->factored || dvi__linear_kind_of(solver->linear) != DVI__LINEAR_SPARSE) return 1;
+  return dvi__linear_is_definite(solver->linear, sign);
 }
 
 dvi__linear_kind dvi__solver_linear_kind(const dvi__solver *solver)
@@ -244,6 +256,7 @@ static dvi_status kinsol(dvi__solver *s, double size, double *x, dvi__solve_repo
   const int iterations = report->iterations;
   const dvi_status polished = dvi__newton(s, size, 0, x, report);
   report->iterations += iterations;
+  report->first = report->bend = 0; /* they were those of the polish alone */
   return polished;
 }
 

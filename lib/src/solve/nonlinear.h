@@ -43,12 +43,13 @@ typedef enum dvi__rung { DVI__FIXED_POINT, DVI__SIMPLIFIED, DVI__NEWTON, DVI__KI
 /* How a solve went; on failure, for the sentence. */
 typedef struct dvi__solve_report {
   int iterations;
-  double first;       /* largest change of an unknown in the first iteration of Newton's methods */
-  double contraction; /* that of the second one over it, 0: there was none */
-  double bend;        /* the same, group by group of the unknowns: the worst; it tells how nonlinear each part is */
-  double correction;  /* largest change of an unknown in the last iteration */
-  double residual;    /* KINSOL's: largest |R_i| / row_scale_i at the last point */
-  double row;         /* Newton's method's: largest |R_i| there */
+  double largest_first; /* change of an unknown in the first iteration of Newton's methods */
+  double first;         /* the first correction of Newton's methods relative to the unknowns, group by group: the worst */
+  double contraction;   /* the largest second correction over the largest first one, 0: there was none */
+  double bend;          /* the same, group by group: the worst */
+  double correction;    /* largest change of an unknown in the last iteration */
+  double residual;      /* KINSOL's: largest |R_i| / row_scale_i at the last point */
+  double row;           /* Newton's method's: largest |R_i| there */
 } dvi__solve_report;
 
 typedef struct dvi__solver dvi__solver;
@@ -78,6 +79,10 @@ void dvi__solver_apply_factor(dvi__solver *solver, double *b);
 
 /* The sign of the determinant of the Jacobian that was factored last, and is near that of the solution if the iteration went by it; 1 if there is none. */
 int dvi__solver_sign(const dvi__solver *solver);
+
+/* Whether that Jacobian, a symmetric one, is positive (sign 1) or negative (-1) definite; 1 if there is
+ * none, or it is not known. */
+int dvi__solver_is_definite(const dvi__solver *solver, int sign);
 
 /* Which linear solver the Newton rungs use. */
 dvi__linear_kind dvi__solver_linear_kind(const dvi__solver *solver);

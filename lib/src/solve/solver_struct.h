@@ -28,6 +28,9 @@ dvi_status dvi__solver_factor(dvi__solver *solver, const double *x);
 /* Whether every row at x is 0 to a rounding of what is summed in it and of the unknowns, as the Jacobian in use sees them. */
 dvi_status dvi__solver_at_floor(dvi__solver *solver, const double *x, int *at_floor);
 
+/* Groups of unknowns are measured beside at least this part of the largest: smaller ones may be noise. */
+double dvi__solver_least_part(const dvi__solver *solver);
+
 /* Report on the first two corrections of an iteration, each after it was made. */
 void dvi__solver_note(const dvi__solver *solver, const double *x, dvi__solve_report *report);
 

@@ -72,6 +72,26 @@ static dvi_status branch_ends(const dvi__stepper *self, const dvi__element_place
                    end->reached * at->h, dvi__action_turned(own->action, own->dq));
 }
 
+static int direction(const dvi__element_place *at)
+{
+  return at->h < 0 ? -1 : 1;
+}
+
+/* Of one coefficient a coordinate the whole Jacobian is symmetric. */
+static int is_symmetric(const dvi__stepper *self)
+{
+  const dvi__element *own = self->own;
+  return own->definite && dvi__action_unknowns(own->action) == self->system->n;
+}
+
+/* In charts solutions are nearer to their guesses, and differences are noise over short parts. */
+static int parts_of(const dvi__stepper *self)
+{
+  const int coarse = ((const dvi__element *)self->own)->centred || dvi__hessian_noise(self->system) > 0;
+  if (self->follow > 0) return self->follow;
+  return coarse ? 1 : DVI__BRANCH_CAREFUL;
+}
+
 dvi_status dvi__element_follow(dvi__stepper *self, const dvi__element_place *at, dvi_status whole, double *Y)
 {
   const dvi__element *own = self->own;
@@ -81,8 +101,9 @@ dvi_status dvi__element_follow(dvi__stepper *self, const dvi__element_place *at,
                               .guess = guess_part,
                               .distance = own->centred ? turn_between : NULL,
                               .near = own->centred ? follows_in_charts : DVI__BRANCH_NEAR,
-                              .parts = self->follow,
+                              .parts = parts_of(self),
                               .signs = !own->centred || dvi__action_signs(own->action),
+                              .definite = is_symmetric(self) ? direction(at) : 0,
                               .from_zero = 1,
                               .size = dvi__largest((size_t)self->system->n, at->q),
                               .room = own->branch};
@@ -92,32 +113,43 @@ dvi_status dvi__element_follow(dvi__stepper *self, const dvi__element_place *at,
   self->counters->followed++;
   self->counters->newtons += !self->follow;
   const dvi_status status = dvi__branch_follow(&branch, own->solver, Y, &end);
+  if (status > 0 && end.ends) self->doubt = DVI__ASTRAY;
   return status <= 0 ? status : branch_ends(self, at, Y, &end, &failure);
 }
 
-/* As h goes to 0 the Jacobian is L_vv times a positive matrix over h. On the way to another
- * solution beyond a fold its determinant is 0, and may have the other sign. */
+int dvi__element_is_definite(const dvi_system *system, const dvi__evaluator *evaluator)
+{
+  return system->lagrangian == NULL && system->cells == NULL && dvi__mass_is_positive(evaluator);
+}
+
+/* As h goes to 0 the Jacobian is L_vv times a positive matrix over h. On the way to another solution
+ * beyond a fold an eigenvalue goes through 0: it is no longer definite, where it is symmetric, and its
+ * determinant may have the other sign. */
 static int is_turned(const dvi__stepper *self, const dvi__element_place *at)
 {
   const dvi__element *own = self->own;
   dvi__evaluator *evaluator = dvi__action_evaluator(own->action);
+  const int apart = own->rung == DVI__SIMPLIFIED && own->decoupled != NULL;
   const int unknowns = dvi__action_unknowns(own->action), degree = unknowns / self->system->n;
-  const int sign = dvi__solver_sign(own->solver) * (at->h < 0 && unknowns % 2 != 0 ? -1 : 1);
+  if (apart && own->definite) return !dvi__decoupled_is_definite(own->decoupled, direction(at));
+  if (!apart && is_symmetric(self)) return !dvi__solver_is_definite(own->solver, direction(at));
+  const int sign = (apart ? dvi__decoupled_sign(own->decoupled) : dvi__solver_sign(own->solver)) *
+                   (unknowns % 2 != 0 ? direction(at) : 1);
   if (sign > 0 || own->centred || degree % 2 == 0) return sign < 0;
   dvi__action_path(own->action, own->Y, at->h, 0.0, NULL, own->guess);
   if (dvi__legendre_regular(evaluator, at->t, at->q, own->guess) != DVI_OK) return 1;
   return dvi__mass_sign(evaluator) > 0;
 }
 
-/* What the solution itself tells of its branch; the rest is for its energy to say. */
+/* What the solution itself tells of its branch; the rest is for its energy and motion to say. */
 dvi__doubt dvi__element_doubt(const dvi__stepper *self, const dvi__element_place *at, const dvi__solve_report *report)
 {
   const dvi__element *own = self->own;
-  const int by_newton = own->rung == DVI__NEWTON || own->rung == DVI__KINSOL;
   if (own->rung == DVI__FIXED_POINT) return DVI__SURE;
-  if (by_newton && is_turned(self, at)) return DVI__ASTRAY;
+  if (is_turned(self, at)) return DVI__ASTRAY;
   if (own->rung == DVI__KINSOL) return DVI__DOUBTED; /* of its way nothing is known */
-  if (dvi__branch_is_sure(report, dvi__action_unknowns(own->action), own->Y)) return DVI__SURE;
+  if (own->rung == DVI__NEWTON && report->iterations <= 4) return DVI__SURE;
+  if (dvi__branch_is_near(report)) return DVI__SURE;
   return dvi__branch_is_straight(report) ? DVI__LINEAR : DVI__DOUBTED;
 }
 

@@ -161,6 +161,7 @@ dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *spac
   own->choice = solver;
   DVI_TRY(dvi__action_create(self->system, space, self->counters, &own->action));
   DVI_TRY(dvi__action_prepare_jacobian(own->action));
+  own->definite = dvi__element_is_definite(self->system, dvi__action_evaluator(own->action));
   DVI_TRY(make_decoupled(self, own));
   if (!allocate(self, own)) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
   return make_solver(self, own);
@@ -340,6 +341,7 @@ static dvi_status find_path(dvi__stepper *self, const dvi__element_place *at, dv
   if (status != DVI_OK || self->follow || (own->centred && dvi__element_strays(self, at)))
     return dvi__element_follow(self, at, status, own->Y);
   if (!own->centred) self->doubt = dvi__element_doubt(self, at, report);
+  self->bend = report->bend;
   return DVI_OK;
 }
 

@@ -19,6 +19,7 @@ typedef struct dvi__element {
   dvi__decoupled *decoupled; /* simplified Newton's method takes the Jacobian apart; NULL: it does not */
   int centred,
       keeps_whole; /* in charts at its start, where a path that is not near its guess is followed; it keeps the whole Jacobian */
+  int definite; /* symmetric Jacobians, and real parts of them, are definite for short steps: the mass is constant, and positive */
   dvi__solver *solver;
   int choice;     /* of the solver */
   dvi__rung rung; /* that was tried last */
@@ -37,6 +38,9 @@ dvi_status dvi__element_straight(dvi__stepper *self, const dvi__element_place *a
 /* Y of the solution that continues those of shorter steps; `whole`: what the ladder failed by, with
  * the thread's sentence, or DVI_OK. */
 dvi_status dvi__element_follow(dvi__stepper *self, const dvi__element_place *at, dvi_status whole, double *Y);
+
+/* Whether the mass makes what is symmetric of a short step's Jacobian definite. */
+int dvi__element_is_definite(const dvi_system *system, const dvi__evaluator *evaluator);
 
 /* Of the solution that the ladder has found: what it tells of its branch. */
 dvi__doubt dvi__element_doubt(const dvi__stepper *self, const dvi__element_place *at, const dvi__solve_report *report);

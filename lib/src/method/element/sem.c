@@ -276,9 +276,11 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
   dvi__stepper *element = element_of(self);
   element->follow = self->follow;
   element->doubt = DVI__SURE;
+  element->bend = 0;
   const int given = self->exact || self->memory[FIRST_H] != h;
   const dvi_status status = given ? given_step(self, state, h) : chosen_step(self, state);
   self->doubt = element->doubt;
+  self->bend = element->bend;
   return status;
 }
 

@@ -75,8 +75,7 @@ static dvi__stepper *base_of(const dvi__stepper *self)
 
 static void start(dvi__stepper *self, const double *v)
 {
-  dvi__stepper *base = base_of(self);
-  if (base->method->start != NULL) base->method->start(base, v);
+  dvi__stepper_start(base_of(self), v);
 }
 
 /* The rounded weights sum to 1 but for a rounding, which would add up over many steps: the clock moves by h. */

@@ -65,7 +65,7 @@ static dvi__stepper *inner_of(const dvi__stepper *self)
 void dvi__impulse_start(dvi__stepper *self, const double *v)
 {
   const dvi__impulse *own = self->own;
-  if (own->inner != NULL && own->inner->method->start != NULL) own->inner->method->start(inner_of(self), v);
+  if (own->inner != NULL) dvi__stepper_start(inner_of(self), v);
 }
 
 /* ---- the step ---- */

@@ -195,6 +195,21 @@ dvi_status dvi__decoupled_freeze(dvi__decoupled *d, const double *point)
   return status;
 }
 
+int dvi__decoupled_sign(const dvi__decoupled *d)
+{
+  int sign = 1;
+  for (int m = 0; m < d->modes; m++)
+    if (d->mode[m].parts == 1) sign *= dvi__linear_sign(d->mode[m].linear);
+  return sign;
+}
+
+int dvi__decoupled_is_definite(const dvi__decoupled *d, int sign)
+{
+  for (int m = 0; m < d->modes; m++)
+    if (d->mode[m].parts == 1 && !dvi__linear_is_definite(d->mode[m].linear, sign)) return 0;
+  return 1;
+}
+
 /* ---- solving ---- */
 
 static void solve_mode(dvi__decoupled *d, const mode *m)

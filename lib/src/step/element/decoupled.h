@@ -23,6 +23,11 @@ void dvi__decoupled_point(const dvi__decoupled *decoupled, const double *Y, doub
 /* Freeze the Jacobian of the action's h at a point, and factor; nothing is done if it is frozen there already. */
 dvi_status dvi__decoupled_freeze(dvi__decoupled *decoupled, const double *point);
 
+/* Of what is frozen, whose real parts alone can be singular: the sign of the determinant; and whether
+ * the real parts, which must be symmetric, are positive (sign 1) or negative (-1) definite. */
+int dvi__decoupled_sign(const dvi__decoupled *decoupled);
+int dvi__decoupled_is_definite(const dvi__decoupled *decoupled, int sign);
+
 /* Overwrite R by the correction J^{-1} R. */
 void dvi__decoupled_solve(dvi__decoupled *decoupled, double *R);
 

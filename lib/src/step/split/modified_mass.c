@@ -96,7 +96,7 @@ dvi_status dvi__modified_mass_keep(dvi__modified_mass *m, int count)
 static int is_as_the_mass(const dvi__modified_mass *m, const dvi__linear *linear)
 {
   if (!m->is_positive) return dvi__linear_sign(linear) == dvi__mass_sign(m->evaluator);
-  return m->full != NULL ? full_is_positive(m, m->matrix) : dvi__linear_is_positive(linear);
+  return m->full != NULL ? full_is_positive(m, m->matrix) : dvi__linear_is_definite(linear, 1);
 }
 
 static dvi_status factor(dvi__modified_mass *m, double square, kept_factor *kept)

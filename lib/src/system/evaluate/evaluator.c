@@ -150,7 +150,7 @@ int dvi__mass_sign(const dvi__evaluator *e)
 int dvi__mass_is_positive(const dvi__evaluator *e)
 {
   const dvi_system *s = e->system;
-  if (s->mass_diagonal == NULL) return dvi__linear_is_positive(e->velocity);
+  if (s->mass_diagonal == NULL) return dvi__linear_is_definite(e->velocity, 1);
   for (int i = 0; i < s->n; i++)
     if (s->mass_diagonal[i] < 0) return 0;
   return 1;
