@@ -4,10 +4,10 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "command.h"
-#include "peer.h"
-#include "signals.h"
-#include "spelling.h"
+#include "cli/command.h"
+#include "bench/peer.h"
+#include "cli/signals.h"
+#include "cli/spelling.h"
 
 typedef struct subcommand {
   const char *name;

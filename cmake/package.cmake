@@ -12,7 +12,8 @@ if(TARGET dvi_command)
   set_target_properties(dvi_command PROPERTIES INSTALL_RPATH "$ORIGIN/${to_libraries}")
   install(TARGETS dvi_command)
 endif()
-install(DIRECTORY apps/scenes DESTINATION "${CMAKE_INSTALL_DATADIR}/dvi")
+file(GLOB scenes CONFIGURE_DEPENDS apps/scenes/*.yaml apps/scenes/*/*.yaml)
+install(FILES ${scenes} DESTINATION "${CMAKE_INSTALL_DATADIR}/dvi/scenes")
 # The pages lie as they do here, with all that they lead to.
 install(FILES README.md CHANGELOG.md LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}"

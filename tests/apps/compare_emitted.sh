@@ -20,7 +20,7 @@ compile() {
 compare() {
   echo "$1 $2" | grep -q -e "$pattern" || return 0
   if [ ! -e "$1" ]; then
-    "$build/apps/dvi" emit-c "$top/apps/scenes/$1.yaml" ${5:+--set "$5"} --name emitted --out emitted.c &&
+    "$build/apps/dvi" emit-c "$(find "$top/apps/scenes" -name "$1.yaml")" ${5:+--set "$5"} --name emitted --out emitted.c &&
       compile emitted.c emitted.o &&
       "$compiler" compare.o emitted.o "$problems" -L"$build/lib" -Wl,-rpath,"$build/lib" -ldvi -lm -o "$1" || exit 1
   fi

@@ -55,7 +55,7 @@ in_turn='NR == 1 { count = split($0, number) } FNR == 2 { for (i = k = 1; i <= N
 
 # A program without a sanitizer does not run with a library that has one.
 if command -v "$compiler" >/dev/null && ! grep -q '__[at]san_init\|__ubsan_handle' "$libraries/libdvi.so"; then
-  cp "$top"/apps/scenes/*.yaml .
+  cp "$top"/apps/scenes/*.yaml "$top"/apps/scenes/*/*.yaml .
   for each in drop pits kepler oscillator driven-pendulum double-pendulum guiding-centre circle-dirac magnetic-pair elastica fpu vortices \
     free-body spherical-double-pendulum satellite; do
     compiles $each.yaml

@@ -1,4 +1,4 @@
-#include "frontier.h"
+#include "bench/frontier.h"
 
 #include <math.h>
 

@@ -1,4 +1,4 @@
-#include "hills.h"
+#include "sweep/hills.h"
 
 #include <math.h>
 

@@ -9,7 +9,7 @@ fail() { echo "$1"; rc=1; }
 value_of() { sed -n "s/^$1: *//p" "$2"; }
 
 count=0
-for scene in "$here"/../../apps/scenes/*.yaml; do
+for scene in "$here"/../../apps/scenes/*.yaml "$here"/../../apps/scenes/*/*.yaml; do
   name=$(basename "$scene" .yaml)
   method=$(value_of method "$scene") h=$(value_of step "$scene")
   "$dvi" check "$scene" >/dev/null || fail "dvi check $name: exit code $?"

@@ -11,7 +11,7 @@ clean() {
   rm -rf "${work:?}"/*
   cd "$work" || exit 1
   for room in core num group space system solve step/element method/element diagnostics reference scene; do mkdir -p lib/src/$room; done
-  mkdir -p lib/include/dvi apps/problems apps/examples tests/method docs/methods
+  mkdir -p lib/include/dvi apps/cli apps/problems apps/examples tests/method docs/methods
   printf '/** One. */\nint dvi_one(int a);\n' >lib/include/dvi/one.h
   printf '#include <dvi/one.h>\n\nint dvi_one(int a)\n{\n  return a;\n}\n' >lib/src/core/one.c
   printf '#include <dvi/one.h>\n' >lib/src/method/element/leap.c
@@ -81,6 +81,7 @@ sees layers lib/include/dvi/one.h '#include "core/status.h"'
 sees layers lib/include/dvi/one.h 'int dvi__two(int a);'
 sees layers apps/main.c '#include "core/status.h"'
 sees layers apps/examples/one.c '#include <kinsol/kinsol.h>'
+sees layers apps/cli/one.c '#include "plot/plot.h"'
 sees layers apps/problems/one.c 'dvi__release(x);'
 sees text lib/src/core/one.c 'int\ta;'
 sees text lib/src/core/one.c 'int a; '

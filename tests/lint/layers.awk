@@ -26,11 +26,11 @@ BEGIN {
   sees["method"] = "core num solve system step/element"
   sees["method/element"] = sees["method"] " space method"
   sees["method/degenerate"] = sees["method"] " method method/element step/degenerate"
-  sees["method/hamiltonian"] = sees["method/degenerate"] " step/hamiltonian"
+  sees["method/hamiltonian"] = sees["method/degenerate"] " method/degenerate step/hamiltonian"
   sees["method/lie"] = sees["method"] " method method/element step/lie"
   sees["method/shooting"] = sees["method"] " method space step/onestep"
   sees["method/split"] = sees["method"] " method method/element space step/split"
-  sees["integrator"] = "core num space system method"
+  sees["integrator"] = "core num space solve system method"
   sees["boundary"] = "core num solve system step/element method/element"
   sees["diagnostics"] = "core num system"
   sees["reference"] = "core num system"
@@ -41,6 +41,16 @@ BEGIN {
   sees["scene/elaborate"] = "scene/text scene/expr scene/function"
   sees["scene"] = "scene/text scene/expr scene/function scene/elaborate"
   sees["scene/emit"] = sees["scene"] " scene"
+  # The command, on public headers and those of the problems.
+  uses["cli"] = ""
+  uses["csv"] = "cli"
+  uses["load"] = "cli"
+  uses["plot"] = "cli csv"
+  uses["sweep"] = "cli csv load"
+  uses["study"] = "cli csv load plot"
+  uses["watch"] = uses["bench"] = uses["study"] " study"
+  uses["cmd"] = uses["study"] " study watch bench sweep"
+  uses["main.c"] = "cli bench"
   # Single headers that are open to a room beyond that.
   also["reference solve/sundials_compat.h"] = 1
   # Standard headers that a public header may need.
@@ -84,9 +94,14 @@ function check_public(quoted, header) {
 }
 
 # The command, the problems and the examples are users of the library.
-function check_user(quoted, header) {
+function check_user(quoted, header,   target) {
   if (part_of_sundials(header) || part_of_suitesparse(header)) breach("apps/ reach the solvers through the library")
-  if (quoted && header ~ /\//) breach("apps/ include public headers and their own folder only")
+  if (!quoted || header !~ /\//) return
+  target = header
+  sub(/\/.*/, "", target)
+  if (target == room || index(" " uses[room] " ", " " target " ") > 0) return
+  if (room == "problems" && target ~ /^(bodies|degenerate)$/) return
+  breach("apps/" room " may not see apps/" target)
 }
 
 FNR == 1 {
@@ -94,7 +109,7 @@ FNR == 1 {
   zone = "other"
   if (sub(/^lib\/src\//, "", room)) { zone = "library"; sub(/\/[^\/]*$/, "", room); hall = room; sub(/\/.*/, "", hall); if (!(room in sees)) { breach("unknown room " room) } }
   else if (FILENAME ~ /^lib\/include\//) zone = "public"
-  else if (FILENAME ~ /^apps\//) zone = "user"
+  else if (sub(/^apps\//, "", room)) { zone = "user"; sub(/\/.*/, "", room) }
 }
 
 /^[ \t]*#[ \t]*include/ {

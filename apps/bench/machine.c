@@ -1,0 +1,124 @@
+#include "bench/machine.h"
+
+#include <dvi/dvi.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bench/peer.h"
+#include "study/study.h"
+
+/* A sanitizer brings a malloc of its own, of which the C library knows nothing. */
+#if defined(__SANITIZE_ADDRESS__)
+#define HAS_SANITIZER
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define HAS_SANITIZER
+#endif
+#endif
+
+#if defined(HAS_SANITIZER)
+size_t __sanitizer_get_current_allocated_bytes(void); /* its header is not in every package */
+#elif defined(__GLIBC__)
+#include <malloc.h>
+#if __GLIBC__ > 2 || __GLIBC_MINOR__ >= 33
+#define HAS_MALLINFO2
+#endif
+#endif
+
+/* Given by the build; a compiler that is called by hand leaves them out. */
+#ifndef DVI_BUILD_COMPILER
+#define DVI_BUILD_COMPILER "unknown"
+#endif
+#ifndef DVI_BUILD_FLAGS
+#define DVI_BUILD_FLAGS "flags unknown"
+#endif
+
+enum { LINE_SIZE = 256 };
+
+/* Linux on x86 has a line "model name : ..." for each core; other processors have no such line. */
+static void processor(char *name)
+{
+  static const char key[] = "model name";
+  char line[LINE_SIZE];
+  (void)snprintf(name, LINE_SIZE, "unknown");
+  FILE *file = fopen("/proc/cpuinfo", "r");
+  if (file == NULL) return;
+  while (fgets(line, sizeof line, file) != NULL) {
+    const char *value = strchr(line, ':');
+    if (strncmp(line, key, strlen(key)) != 0 || value == NULL) continue;
+    value += 1 + strspn(value + 1, " \t");
+    (void)snprintf(name, LINE_SIZE, "%.*s", (int)strcspn(value, "\n"), value);
+    break;
+  }
+  (void)fclose(file);
+}
+
+void machine_print(FILE *stream)
+{
+  char name[LINE_SIZE];
+  processor(name);
+  (void)fprintf(stream, "processor: %s\n", name);
+  (void)fprintf(stream, "compiler: %s, %s\n", DVI_BUILD_COMPILER, DVI_BUILD_FLAGS);
+  (void)fprintf(stream, "libraries: dvi %s, SUNDIALS %s", dvi_version(), dvi_reference_version());
+  if (peer_gsl_version() != NULL) (void)fprintf(stream, ", GSL %s", peer_gsl_version());
+  (void)fputc('\n', stream);
+}
+
+double machine_multiplications(void)
+{
+  enum { RUN = 10000000, SCALE = 10 };
+  volatile double start = 1.0; /* unknown to the compiler, as is what becomes of the product */
+  const double factor = start + 1e-10;
+  double product = start;
+  const double began = cpu_now();
+  for (int i = 0; i < RUN; i++) product *= factor;
+  const double spent = cpu_now() - began;
+  start = product;
+  return SCALE * spent;
+}
+
+void machine_print_calibration(FILE *stream, const spread *seconds)
+{
+  (void)fprintf(stream, "calibration: 1e8 dependent multiplications in %.3f s (least %.3f, quartiles %.3f, %.3f)\n",
+                seconds->median, seconds->least, seconds->lower, seconds->upper);
+}
+
+/* The best that the processor has: a yardstick shall not be short. */
+#if defined(__x86_64__) && defined(__gnu_linux__) && (!defined(__clang__) || __clang_major__ >= 14)
+__attribute__((target_clones("arch=x86-64-v4", "avx2", "default")))
+#endif
+static void
+add_multiple(size_t n, double a, const double *restrict x, double *restrict y)
+{
+  for (size_t i = 0; i < n; i++) y[i] += a * x[i];
+}
+
+double machine_axpy(int n)
+{
+  enum { LINE = 64, LEAST = 4 };
+  static const double seconds = 0.05;
+  const size_t count = (size_t)n, size = (count * sizeof(double) + LINE - 1) / LINE * LINE;
+  double *x = aligned_alloc(LINE, size), *y = aligned_alloc(LINE, size), spent = 0.0;
+  long passes = 0;
+  for (size_t i = 0; x != NULL && y != NULL && i < count; i++) x[i] = y[i] = 1.0;
+  for (const double began = cpu_now(); x != NULL && y != NULL && (passes < LEAST || spent < seconds); passes++) {
+    add_multiple(count, 1e-9, x, y);
+    spent = cpu_now() - began;
+  }
+  free(x);
+  free(y);
+  return passes > 0 ? 24.0 * n * (double)passes / spent : (double)NAN;
+}
+
+double machine_heap(void)
+{
+#if defined(HAS_SANITIZER)
+  return (double)__sanitizer_get_current_allocated_bytes();
+#elif defined(HAS_MALLINFO2)
+  const struct mallinfo2 heap = mallinfo2();
+  return (double)heap.uordblks + (double)heap.hblkhd;
+#else
+  return (double)NAN;
+#endif
+}

@@ -1,0 +1,97 @@
+#include "bench/peer.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/command.h"
+#ifdef DVI_GSL
+#include "bench/rk8pd.h"
+#endif
+
+static const char gsl_name[] = "gsl-rk8pd";
+
+static char reason[512];
+
+#ifdef DVI_GSL
+/* SUNDIALS' codes have the library's numbers; GSL's follows them. */
+static int gsl_number(void)
+{
+  int count = 0;
+  while (dvi_reference_name((dvi_reference_code)count) != NULL) count++;
+  return count;
+}
+#endif
+
+const char *peer_name(int peer)
+{
+#ifdef DVI_GSL
+  if (peer == gsl_number()) return gsl_name;
+#endif
+  return dvi_reference_name((dvi_reference_code)peer);
+}
+
+const char *peer_gsl_version(void)
+{
+#ifdef DVI_GSL
+  return rk8pd_version();
+#else
+  return NULL;
+#endif
+}
+
+/* "cvode" alone is its Adams formula, the better one where nothing is stiff: it comes first. */
+static bool is_named(const char *name, const char *text, size_t length)
+{
+  return (length == strlen(name) || length == strcspn(name, "-")) && strncmp(name, text, length) == 0;
+}
+
+static int read_peer(const char *text, size_t length, peer_list *list)
+{
+  int peer = 0;
+  while (peer_name(peer) != NULL && !is_named(peer_name(peer), text, length)) peer++;
+  const char *name = peer_name(peer);
+  if (name == NULL && is_named(gsl_name, text, length))
+    return usage_error(
+        "bench: --against gsl: this dvi was built without GSL; configure with -DDVI_GSL=ON (Debian's package: libgsl-dev); "
+        "a binary built so is under the GPL");
+  if (name == NULL)
+    return usage_error("bench: --against knows cvode (cvode-adams), cvode-bdf, arkode, ida and gsl, not '%.*s'", (int)length, text);
+  for (int i = 0; i < list->count; i++)
+    if (list->peer[i] == peer) return usage_error("bench: --against names %s twice", name);
+  list->peer[list->count++] = peer; /* each once: there are fewer than PEERS_MAX */
+  return DONE;
+}
+
+int peers_read(const words *against, peer_list *list)
+{
+  int code = DONE;
+  list->count = 0;
+  for (int i = 0; i < against->count; i++)
+    for (const char *text = against->word[i]; text != NULL && code == DONE;) {
+      const size_t length = strcspn(text, ",");
+      code = read_peer(text, length, list);
+      text = text[length] == ',' ? text + length + 1 : NULL;
+    }
+  return code;
+}
+
+dvi_status peer_solve(int peer, const problem *scene, double t_end, double tolerance, double *q, double *p,
+                      dvi_reference_report *report)
+{
+  dvi_reference_report unread;
+  const dvi_reference_options options = {.code = (dvi_reference_code)peer, .relative_tolerance = tolerance};
+  memcpy(q, scene->q, (size_t)scene->nq * sizeof *q);
+  memcpy(p, scene->p, (size_t)scene->nv * sizeof *p);
+  if (report == NULL) report = &unread;
+#ifdef DVI_GSL
+  if (peer == gsl_number()) return rk8pd_solve(scene, t_end, tolerance, q, p, report, reason, sizeof reason);
+#endif
+  const dvi_status status = dvi_reference_solve(scene->system, 0.0, t_end, q, p, &options, report);
+  if (status != DVI_OK) (void)snprintf(reason, sizeof reason, "%s", dvi_last_error());
+  return status;
+}
+
+const char *peer_error(void)
+{
+  return reason;
+}

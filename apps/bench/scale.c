@@ -1,0 +1,366 @@
+#include "bench/scale.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "load/axis.h"
+#include "cli/command.h"
+#include "csv/events.h"
+#include "bench/machine.h"
+#include "load/open.h"
+#include "plot/plot.h"
+#include "cli/progress.h"
+#include "bench/samples.h"
+#include "study/study.h"
+#include "csv/table.h"
+
+enum { STEPS_DEFAULT = 32, TITLE_SIZE = 160 };
+
+/* One method at one value. */
+typedef struct cell {
+  int n;
+  double h;
+  double step[ROUNDS_MAX]; /* seconds of one, in each round */
+  spread seconds;          /* of all rounds; set when they are over */
+  double bytes;            /* NaN: not known */
+  dvi_counters counted;    /* in the steps of one run */
+  double traffic;          /* bytes that a step moves; 0: not known */
+  double axpy[ROUNDS_MAX]; /* bytes a second that one moves beside it, in each round, where the traffic is known */
+  spread bandwidth;        /* of these */
+} cell;
+
+typedef struct scaling {
+  const scale_request *request;
+  scale_axis axis;
+  long steps; /* of one run */
+  cell *cell; /* [methods][values] */
+  spread calibration;
+  progress_line progress;
+} scaling;
+
+static const table_column columns[] = {
+    {"method", NULL},
+    {"problem", NULL},
+    {"parameter", NULL},
+    {"value", "%.6g"},
+    {"n", "%.0f"},
+    {"h", "%.6g"},
+    {"step_seconds", "%.3e"},
+    {"step_lower", "%.3e"},
+    {"step_upper", "%.3e"},
+    {"bytes", "%.0f"},
+    {"step_evaluations", "%.2f"},
+    {"step_residuals", "%.2f"},
+    {"step_factorizations", "%.2f"},
+    {"calibration_seconds", ""},
+    {"calibration_least", ""},
+    {NULL, NULL},
+};
+
+static cell *cell_at(const scaling *s, int method, int k)
+{
+  return &s->cell[method * s->axis.values.count + k];
+}
+
+/* Of several threads process time is the sum. */
+static double now(const scaling *s)
+{
+  return s->axis.parallel ? elapsed_now() : cpu_now();
+}
+
+/* The first steps from the start: their time, and what they counted. */
+static dvi_status run_steps(const scaling *s, dvi_integrator *integrator, const problem *scene, cell *c, double *spent)
+{
+  dvi_counters before;
+  dvi_status status = dvi_integrator_start(integrator, 0.0, scene->q, scene->p);
+  dvi_integrator_counters(integrator, &before);
+  const double began = now(s);
+  for (long i = 0; i < s->steps && status == DVI_OK; i++) status = dvi_integrator_step(integrator, c->h);
+  *spent = now(s) - began;
+  dvi_integrator_counters(integrator, &c->counted);
+  c->counted.gradients -= before.gradients;
+  c->counted.residuals -= before.residuals;
+  c->counted.factorizations -= before.factorizations;
+  return status;
+}
+
+static dvi_status measure_cell(const scaling *s, const char *method, const problem *scene, cell *c, int round)
+{
+  dvi_integrator *integrator = NULL;
+  double spent = 0.0;
+  double total = 0.0;
+  const double heap = machine_heap();
+  dvi_status status = dvi_integrator_create(scene->system, method, &integrator);
+  /* The first run finds memory and the machine's caches as they will be: it is not timed. */
+  for (int i = 0; i < 2 && status == DVI_OK; i++) status = run_steps(s, integrator, scene, c, &spent);
+  const double grown = machine_heap() - heap;
+  if (round == 0) c->bytes = grown > 0.0 ? grown : (double)NAN; /* another malloc does not show there */
+  const long repeats = study_repeats(spent);
+  for (long i = 0; i < repeats && status == DVI_OK; i++) {
+    status = run_steps(s, integrator, scene, c, &spent);
+    total += spent;
+  }
+  c->step[round] = total / ((double)s->steps * (double)repeats);
+  c->traffic = dvi_integrator_traffic(integrator);
+  dvi_integrator_destroy(&integrator);
+  return status;
+}
+
+static int measure_methods(scaling *s, const problem *scene, int k, int round)
+{
+  char method[SPECIFICATION_SIZE];
+  int code = DONE;
+  for (int i = 0; i < s->request->methods->count && code == DONE; i++) {
+    cell *c = cell_at(s, i, k);
+    c->n = scene->nq;
+    c->h = isnan(s->request->h) ? scene->h : s->request->h;
+    progress_show(&s->progress, -1.0, s->request->methods->word[i]);
+    code = axis_method(&s->axis, k, s->request->methods->word[i], method);
+    if (code != DONE) break;
+    const dvi_status status = measure_cell(s, method, scene, c, round);
+    if (status != DVI_OK) code = library_error(status);
+    if (c->traffic > 0.0) c->axpy[round] = machine_axpy(c->n);
+  }
+  return code;
+}
+
+static int measure_value(scaling *s, int k, int round)
+{
+  problem *scene;
+  int code = axis_problem(&s->axis, k, s->request->problem, s->request->settings, s->request->one_point, &scene);
+  if (code != DONE) return code;
+  code = measure_methods(s, scene, k, round);
+  problem_destroy(&scene);
+  return code;
+}
+
+/* Every round measures everything once, so that whatever slows the machine for a while slows all of it. */
+static int measure(scaling *s)
+{
+  double calibration[ROUNDS_MAX];
+  const int rounds = (int)s->request->rounds;
+  int code = DONE;
+  progress_start(&s->progress, true);
+  for (int round = 0; round < rounds && code == DONE; round++) {
+    calibration[round] = machine_multiplications();
+    for (int k = 0; k < s->axis.values.count && code == DONE; k++) code = measure_value(s, k, round);
+  }
+  progress_end(&s->progress);
+  if (code != DONE) return code;
+  s->calibration = samples_spread(rounds, calibration);
+  for (int i = 0; i < s->request->methods->count * s->axis.values.count; i++) {
+    s->cell[i].seconds = samples_spread(rounds, s->cell[i].step);
+    s->cell[i].bandwidth = samples_spread(rounds, s->cell[i].axpy);
+  }
+  return DONE;
+}
+
+static result_table *make_table(const scaling *s)
+{
+  result_table *rows = table_create(columns);
+  for (int i = 0; i < s->request->methods->count; i++)
+    for (int k = 0; k < s->axis.values.count; k++) {
+      const cell *c = cell_at(s, i, k);
+      table_text(rows, s->request->methods->word[i]);
+      table_text(rows, s->request->problem);
+      table_text(rows, s->axis.name);
+      table_number(rows, s->axis.values.number[k]);
+      table_number(rows, c->n);
+      table_number(rows, c->h);
+      table_number(rows, c->seconds.median);
+      table_number(rows, c->seconds.lower);
+      table_number(rows, c->seconds.upper);
+      table_number(rows, c->bytes);
+      table_number(rows, (double)c->counted.gradients / (double)s->steps);
+      table_number(rows, (double)c->counted.residuals / (double)s->steps);
+      table_number(rows, (double)c->counted.factorizations / (double)s->steps);
+      table_number(rows, s->calibration.median);
+      table_number(rows, s->calibration.least);
+    }
+  return rows;
+}
+
+static void print_power(FILE *stream, const scaling *s, const char *name, const double *x, const double *y)
+{
+  const double exponent = samples_power(s->axis.values.count, x, y);
+  if (isnan(exponent))
+    (void)fprintf(stream, "  %s: not known", name);
+  else
+    (void)fprintf(stream, "  %s ~ %s^%.2f", name, axis_symbol(&s->axis), exponent);
+}
+
+static void print_powers(FILE *stream, const scaling *s, int method)
+{
+  double x[NUMBERS_MAX];
+  double seconds[NUMBERS_MAX];
+  double bytes[NUMBERS_MAX];
+  double evaluations[NUMBERS_MAX];
+  for (int k = 0; k < s->axis.values.count; k++) {
+    const cell *c = cell_at(s, method, k);
+    x[k] = axis_abscissa(&s->axis, k, c->n);
+    seconds[k] = c->seconds.median;
+    bytes[k] = c->bytes;
+    evaluations[k] = (double)c->counted.gradients;
+  }
+  print_power(stream, s, "step_seconds", x, seconds);
+  print_power(stream, s, "bytes", x, bytes);
+  print_power(stream, s, "step_evaluations", x, evaluations);
+  (void)fputc('\n', stream);
+}
+
+static void print_speed_up(FILE *stream, const scaling *s, int method)
+{
+  (void)fprintf(stream, "  speed-up against %s=%s:", s->axis.name, s->axis.values.text[0]);
+  for (int k = 1; k < s->axis.values.count; k++)
+    (void)fprintf(stream, "  %.2f", cell_at(s, method, 0)->seconds.median / cell_at(s, method, k)->seconds.median);
+  (void)fputc('\n', stream);
+}
+
+/* How much of the machine's memory bandwidth the steps use. */
+static void print_traffic(FILE *stream, const scaling *s, int method)
+{
+  for (int k = 0; k < s->axis.values.count; k++) {
+    const cell *c = cell_at(s, method, k);
+    const double moved = c->traffic / c->seconds.median;
+    const double axpy = c->bandwidth.median;
+    if (c->traffic > 0.0)
+      (void)fprintf(stream, "  %s=%s: a step moves %.4g bytes, %.1f GB/s: %.2f of the %.1f GB/s of an in-place axpy\n",
+                    s->axis.name, s->axis.values.text[k], c->traffic, 1e-9 * moved, moved / axpy, 1e-9 * axpy);
+  }
+}
+
+static void print_meaning(FILE *stream, const scaling *s)
+{
+  (void)fprintf(stream,
+                "\nstep_seconds: %s time of a step, mean of the first %ld from the start, repeated; median of %ld interleaved\n",
+                s->axis.parallel ? "elapsed" : "process", s->steps, s->request->rounds);
+  (void)fprintf(stream, "rounds; step_lower, step_upper: quartiles%s\n",
+                s->axis.parallel ? "" : "; the fitted exponents are least squares over all rows");
+  (void)fprintf(
+      stream,
+      "bytes: what the integrator holds of the heap after its first steps, by mallinfo2; the problem's own is not counted\n");
+}
+
+static void print_all(FILE *stream, const scaling *s, const result_table *rows)
+{
+  (void)fprintf(stream, "Cost of a step on %s\n", s->request->problem);
+  machine_print(stream);
+  machine_print_calibration(stream, &s->calibration);
+  if (s->request->one_point) (void)fprintf(stream, "callbacks: one point a call\n");
+  for (int i = 0; i < s->request->methods->count; i++) {
+    (void)fprintf(stream, "\n%s\n", s->request->methods->word[i]);
+    table_print(rows, stream, 2, i * s->axis.values.count, (i + 1) * s->axis.values.count);
+    if (s->axis.parallel)
+      print_speed_up(stream, s, i);
+    else
+      print_powers(stream, s, i);
+    print_traffic(stream, s, i);
+  }
+  print_meaning(stream, s);
+}
+
+static bool plot_cells(const scaling *s)
+{
+  plot_curve curve[WORDS_MAX];
+  char title[TITLE_SIZE];
+  const char *y_label = s->axis.parallel ? "elapsed seconds of a step" : "CPU seconds of a step";
+  const int methods = s->request->methods->count;
+  const int values = s->axis.values.count;
+  double *x = calloc(2 * (size_t)methods * (size_t)values, sizeof *x);
+  if (x == NULL) {
+    complain("out of memory for the plot");
+    return false;
+  }
+  double *y = x + methods * values;
+  for (int i = 0; i < methods * values; i++) {
+    x[i] = axis_abscissa(&s->axis, i % values, s->cell[i].n);
+    y[i] = s->cell[i].seconds.median;
+  }
+  for (int i = 0; i < methods; i++)
+    curve[i] = (plot_curve){.label = s->request->methods->word[i], .count = values, .x = x + i * values, .y = y + i * values};
+  (void)snprintf(title, sizeof title, "%s time of a step against %s: %s", s->axis.parallel ? "elapsed" : "CPU",
+                 axis_title(&s->axis), s->request->problem);
+  const plot_panel panel = {
+      .title = title, .x_label = axis_title(&s->axis), .y_label = y_label, .logarithmic = true, .curves = methods, .curve = curve};
+  const bool good = plot_write(s->request->plot, 1, &panel);
+  free(x);
+  return good;
+}
+
+static int report(const scaling *s)
+{
+  const scale_request *request = s->request;
+  const bool csv_only = request->csv != NULL && strcmp(request->csv, "-") == 0;
+  result_table *rows = make_table(s);
+  bool good = table_good(rows);
+  if (good) print_all(csv_only ? stderr : stdout, s, rows);
+  if (good && request->csv != NULL) good = table_write(rows, request->csv);
+  if (good && request->plot != NULL) good = plot_cells(s);
+  table_destroy(&rows);
+  return good ? DONE : FAILED;
+}
+
+static int check_methods(const scaling *s, const problem *scene, int k)
+{
+  char method[SPECIFICATION_SIZE];
+  int code = DONE;
+  for (int i = 0; i < s->request->methods->count && code == DONE; i++) {
+    dvi_integrator *integrator = NULL;
+    code = axis_method(&s->axis, k, s->request->methods->word[i], method);
+    if (code == DONE) code = open_integrator(scene, method, &integrator);
+    dvi_integrator_destroy(&integrator);
+  }
+  return code;
+}
+
+/* Value k makes a problem of another size than those before it, n [k]. */
+static int check_growth(const scaling *s, const int *n, int k)
+{
+  const char(*value)[NUMBER_SIZE] = s->axis.values.text;
+  for (int j = 0; j < k && s->axis.kind == AXIS_PARAMETER; j++)
+    if (n[j] == n[k])
+      return usage_error("bench: --scale: %s has %d coordinates at %s=%s and at %s=%s alike; scale a parameter that makes it grow",
+                         s->request->problem, n[k], s->axis.name, value[j], s->axis.name, value[k]);
+  return DONE;
+}
+
+/* Before anything is measured: each problem and each specification can be made. What a method says to a problem does not depend on the
+ * problem's size, so it is asked once. */
+static int check_values(const scaling *s)
+{
+  int n[NUMBERS_MAX];
+  int code = DONE;
+  for (int k = 0; k < s->axis.values.count && code == DONE; k++) {
+    problem *scene;
+    code = axis_problem(&s->axis, k, s->request->problem, s->request->settings, s->request->one_point, &scene);
+    if (code != DONE) return code;
+    n[k] = scene->nq;
+    if (k == 0 || s->axis.kind != AXIS_PARAMETER) code = check_methods(s, scene, k);
+    if (k == 0 && code == DONE) events_passed("bench", scene);
+    problem_destroy(&scene);
+    if (code == DONE) code = check_growth(s, n, k);
+  }
+  return code;
+}
+
+int scale_run(const scale_request *request)
+{
+  scaling s = {.request = request, .steps = request->steps > 0 ? request->steps : STEPS_DEFAULT};
+  if (request->methods->count == 0) return usage_error("bench: --scale needs a method: --method SPEC");
+  if (request->settings->count == WORDS_MAX) return usage_error("bench: --set is given too often for --scale");
+  int code = axis_read(request->scaled, &s.axis);
+  if (code == DONE) code = check_values(&s);
+  if (code != DONE) return code;
+  const int cells = request->methods->count * s.axis.values.count;
+  s.cell = cells > 0 ? calloc((size_t)cells, sizeof *s.cell) : NULL;
+  if (s.cell == NULL) {
+    complain("out of memory");
+    return FAILED;
+  }
+  code = measure(&s);
+  if (code == DONE) code = report(&s);
+  free(s.cell);
+  return code;
+}

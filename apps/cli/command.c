@@ -1,0 +1,80 @@
+#include "cli/command.h"
+
+#include <dvi/scene.h>
+#include <errno.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { SENTENCE_SIZE = 2048 };
+
+static void speak(const char *sentence)
+{
+  (void)fprintf(stderr, "dvi: %s\n", sentence);
+}
+
+void complain(const char *format, ...)
+{
+  char sentence[SENTENCE_SIZE];
+  va_list arguments;
+  va_start(arguments, format);
+  (void)vsnprintf(sentence, sizeof sentence, format, arguments);
+  va_end(arguments);
+  speak(sentence);
+}
+
+int usage_error(const char *format, ...)
+{
+  char sentence[SENTENCE_SIZE];
+  va_list arguments;
+  va_start(arguments, format);
+  (void)vsnprintf(sentence, sizeof sentence, format, arguments);
+  va_end(arguments);
+  speak(sentence);
+  return USAGE;
+}
+
+/* Whether a callback's failure is what a sentence tells of, and not one that a method has got
+ * over before. */
+static bool is_of_callback(dvi_status status, const char *sentence)
+{
+  return status == DVI_CALLBACK_RETRY || status == DVI_CALLBACK_FAILED ||
+         (status == DVI_REFERENCE_FAILED && strstr(sentence, " callback ") != NULL);
+}
+
+/* The library's sentence without its last words, of what a callback returned: the scene has told
+ * why. */
+static void without_callback(char *sentence)
+{
+  static const char without[] = " has no value there";
+  const char *last = strstr(sentence, " callback ");
+  char *cut = NULL;
+  for (char *colon = strstr(sentence, ": "); colon != NULL && colon < last; colon = strstr(colon + 1, ": ")) cut = colon;
+  if (cut != NULL) (void)snprintf(cut, SENTENCE_SIZE - (size_t)(cut - sentence), "%s", without);
+}
+
+void complain_of(dvi_status status, const char *before, const char *after)
+{
+  char sentence[SENTENCE_SIZE];
+  const char *said = status == DVI_NO_MEMORY ? "" : dvi_last_error(); /* the command's own shortage left none */
+  (void)snprintf(sentence, sizeof sentence, "%s", said[0] != '\0' ? said : dvi_status_meaning(status));
+  if (dvi_scene_blame()[0] != '\0' && is_of_callback(status, sentence)) {
+    complain("%s", dvi_scene_blame());
+    without_callback(sentence);
+  }
+  complain("%s%s%s", before, sentence, after);
+}
+
+int library_error(dvi_status status)
+{
+  complain_of(status, "", "");
+  return status == DVI_BAD_OPTION || status == DVI_UNSUPPORTED ? USAGE : FAILED;
+}
+
+bool output_flushed(void)
+{
+  errno = 0;
+  if (fflush(stdout) == 0 && !ferror(stdout)) return true;
+  if (errno != EPIPE) complain("cannot write to standard output: %s", errno != 0 ? strerror(errno) : "an earlier write failed");
+  return false;
+}

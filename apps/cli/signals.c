@@ -1,0 +1,60 @@
+#define _POSIX_C_SOURCE 200809L
+#include "cli/signals.h"
+
+#include <stdatomic.h>
+#include <stddef.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli/file.h"
+
+_Static_assert(ATOMIC_POINTER_LOCK_FREE == 2, "a signal handler reads a pointer that the program writes");
+
+static volatile sig_atomic_t noting, noted;
+static _Atomic(const char *) farewell;
+
+static void on_signal(int number)
+{
+  if (noting && (noted == 0 || number != SIGINT)) {
+    if (noted == 0) noted = number;
+    return;
+  }
+  file_remove_unfinished();
+  const char *sentence = farewell;
+  const ssize_t written = sentence != NULL ? write(STDERR_FILENO, sentence, strlen(sentence)) : 0;
+  (void)written;
+  _exit(128 + number);
+}
+
+/* UCX, which SUNDIALS brings along on Debian 13, takes SIGHUP when it is loaded, and hides whether nohup had it ignored. What nohup starts has
+ * no terminal. */
+static bool may_be_ignored(const struct sigaction *found)
+{
+  if (found->sa_handler == SIG_DFL) return false;
+  return found->sa_handler == SIG_IGN || !(isatty(STDIN_FILENO) || isatty(STDOUT_FILENO) || isatty(STDERR_FILENO));
+}
+
+static void take(int number, bool even_ignored)
+{
+  struct sigaction action;
+  if (sigaction(number, NULL, &action) != 0 || (!even_ignored && may_be_ignored(&action))) return;
+  memset(&action, 0, sizeof action);
+  action.sa_handler = on_signal;
+  action.sa_flags = (int)SA_RESTART; /* a row that waits for a slow reader shall not be lost */
+  (void)sigaction(number, &action, NULL);
+}
+
+void signals_end(bool even_ignored, const char *sentence)
+{
+  farewell = sentence;
+  take(SIGINT, even_ignored);
+  take(SIGTERM, even_ignored);
+  take(SIGHUP, false);
+}
+
+const volatile sig_atomic_t *signals_note(const char *sentence)
+{
+  noting = 1; /* first: the sentence is for what comes after the noted signal */
+  farewell = sentence;
+  return &noted;
+}

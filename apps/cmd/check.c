@@ -1,0 +1,174 @@
+/* dvi check: are the derivatives those of the values, and does the method take the problem? */
+#include <dvi/scene.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "cli/command.h"
+#include "load/open.h"
+#include "cli/options.h"
+#include "load/scene.h"
+
+/* Points beside the start, and how far they are from it. */
+enum { POINTS = 4 };
+static const double APART = 0.01;
+
+/* Above this many coordinates the check's n^2 gradients take too long. */
+enum { COORDINATES_MAX = 2000 };
+
+/* Numbers from -1 to 1, the same in every run. */
+static double draw(uint64_t *state)
+{
+  *state = *state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+  return (double)(*state >> 11) / 4503599627370496.0 - 1.0;
+}
+
+/* A point near the start: velocities, or momenta of a Hamiltonian, are moved, and coordinates where there is no manifold to leave. */
+static void move(const problem *scene, uint64_t *state, double *q, double *v)
+{
+  const double *rates = scene->terms->hamiltonian != NULL ? scene->p : scene->v;
+  for (int i = 0; i < scene->nq; i++) q[i] = scene->q[i] + (scene->velocity == NULL ? APART * draw(state) : 0.0);
+  for (int i = 0; i < scene->nv; i++) v[i] = rates[i] + (scene->velocity == NULL ? APART * draw(state) : 0.0);
+}
+
+static bool has_kink(const problem *scene)
+{
+  char unread[1];
+  return dvi_scene_kink(scene->scene, unread, sizeof unread) >= 0;
+}
+
+static void tell_derivatives(double worst, int at_kink)
+{
+  if (worst > 0.0)
+    (void)printf("derivatives: within %.1e of differences at %d points near the start", worst, (int)POINTS);
+  else
+    (void)printf("derivatives: differences at %d points near the start tell nothing against them", (int)POINTS);
+  if (at_kink > 0) (void)printf("; left out: %d at a kink, which differences go across", at_kink);
+  (void)putchar('\n');
+}
+
+/* Returns DONE, or complains of the first derivative that is wrong. With a kink another point may
+ * take the place of one that fails, for differences across it are not those of a smooth function;
+ * what is wrong fails at the others, too. */
+static int check_derivatives(const problem *scene, double *q, double *v)
+{
+  uint64_t state = 1;
+  double worst = 0.0;
+  int at_kink = 0;
+  for (int k = 0; k < POINTS;) {
+    dvi_derivative_check found;
+    move(scene, &state, q, v);
+    const dvi_status status = dvi_system_check(scene->system, 0.0, q, v, 0.0, &found);
+    if (status == DVI_BAD_ARGUMENT && at_kink < POINTS && has_kink(scene)) {
+      at_kink++;
+      continue;
+    }
+    if (status == DVI_BAD_ARGUMENT) {
+      complain("check: %s", dvi_last_error());
+      if (at_kink > 0) complain("check: differences across a kink look like this, too; try a start away from it");
+      scene_warn("check", scene);
+      return CHECK_FAILED;
+    }
+    if (status != DVI_OK) return library_error(status);
+    worst = fmax(worst, fmax(found.gradient_error, found.hessian_error));
+    k++;
+  }
+  tell_derivatives(worst, at_kink);
+  return DONE;
+}
+
+static int check_all_derivatives(const problem *scene)
+{
+  if (scene->nq > COORDINATES_MAX) {
+    (void)printf("derivatives: not compared; that is for %d coordinates at most, and here are %d\n", (int)COORDINATES_MAX,
+                 scene->nq);
+    return DONE;
+  }
+  double *q = calloc((size_t)scene->nq + (size_t)scene->nv, sizeof *q);
+  if (q == NULL) {
+    complain("out of memory");
+    return FAILED;
+  }
+  const int code = check_derivatives(scene, q, q + scene->nq);
+  free(q);
+  return code;
+}
+
+/* What is watched has values at the start. */
+static int check_invariants(const problem *scene)
+{
+  double *value = calloc((size_t)dvi_system_invariant_count(scene->system), sizeof *value);
+  if (value == NULL) {
+    complain("out of memory");
+    return FAILED;
+  }
+  const dvi_status status = dvi_system_invariants(scene->system, 0.0, scene->q, scene->p, value);
+  free(value);
+  return status == DVI_OK ? DONE : library_error(status);
+}
+
+/* One step of the method from the start. */
+static int check_step(const problem *scene, const char *method)
+{
+  dvi_integrator *integrator = NULL;
+  int code = open_integrator(scene, method, &integrator);
+  if (code != DONE) return code;
+  dvi_status status = dvi_integrator_start(integrator, 0.0, scene->q, scene->p);
+  if (status == DVI_OK) status = dvi_integrator_step(integrator, scene->h);
+  code = status == DVI_OK ? DONE : library_error(status);
+  if (code == DONE) (void)printf("method: %s takes its first step, h = %g\n", method, scene->h);
+  dvi_integrator_destroy(&integrator);
+  return code;
+}
+
+/* What is declared and has no use is told: it may be a name that was changed elsewhere. */
+static void tell_unused(const problem *scene)
+{
+  const char *name;
+  for (int i = 0; scene->scene != NULL && (name = dvi_scene_unused(scene->scene, i)) != NULL; i++)
+    (void)printf("%s: nothing in the scene mentions it\n", name);
+}
+
+static const char *const details[] = {
+    "Exit codes: 0 all is well; 1 a file cannot be read, or the step fails; 2 the scene makes no sense, and where; 3 a derivative "
+    "is wrong, and which.\n",
+    "Examples:\n"
+    "  dvi check cart.yaml\n"
+    "  dvi check cart.yaml --set l=2 --method verlet\n",
+    NULL,
+};
+
+int check_command(int argc, char **argv)
+{
+  const char *method = NULL, *name;
+  words settings = {0};
+  int code;
+  problem *scene;
+  const option options[] = {
+      {.name = "method", .word = &method, .value = "SPEC", .help = "take a step with this method; left out: the scene's, or none"},
+      {.name = "set", .words = &settings, .value = "NAME=VALUE", .help = "set a parameter of the problem; may be repeated"},
+      {.name = NULL},
+  };
+  const command_line command = {
+      .name = "check",
+      .synopsis = "PROBLEM|SCENE.yaml [OPTIONS]",
+      .operand = "PROBLEM",
+      .summary = "Read a problem, compare all its derivatives with differences of its values, evaluate what is watched, and take "
+                 "one step.\n",
+      .options = options,
+      .details = details,
+  };
+  if (!options_parse(&command, argc, argv, &name, &code)) return code;
+  code = open_problem(name, &settings, &scene);
+  if (code != DONE) return code;
+  if (method == NULL) method = scene->method;
+  (void)printf("%s: %s\n", scene->name, scene->summary);
+  code = check_all_derivatives(scene);
+  if (code == DONE) code = check_invariants(scene);
+  if (code == DONE && method != NULL) code = check_step(scene, method);
+  if (code == DONE) scene_tell(scene);
+  tell_unused(scene);
+  problem_destroy(&scene);
+  return code;
+}

@@ -1,0 +1,161 @@
+/* dvi explain: what a method makes of a problem before a single step is taken. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/command.h"
+#include "csv/events.h"
+#include "load/open.h"
+#include "cli/options.h"
+#include "load/scene.h"
+
+enum { NAMES_SHOWN = 12 };
+
+static const double pi = 3.14159265358979323846;
+
+/* The value that a parameter has: its setting, else the default. */
+static void print_parameter(const problem_parameter *parameter, const words *settings)
+{
+  const size_t length = strlen(parameter->name);
+  for (int i = 0; i < settings->count; i++)
+    if (strncmp(settings->word[i], parameter->name, length) == 0 && settings->word[i][length] == '=') {
+      (void)printf("  parameter    %s   %s\n", settings->word[i], parameter->help);
+      return;
+    }
+  char spelling[32];
+  problem_spell(parameter, parameter->value, spelling, sizeof spelling);
+  (void)printf("  parameter    %s=%s   %s (default)\n", parameter->name, spelling, parameter->help);
+}
+
+static void print_problem(const problem *scene, const words *settings)
+{
+  (void)printf("problem %s: %s\n", scene->name, scene->summary);
+  for (const problem_parameter *k = scene->parameter; k->name != NULL; k++) print_parameter(k, settings);
+  if (scene->velocity != NULL)
+    (void)printf("  coordinates  %d, velocities %d:", scene->nq, scene->nv);
+  else
+    (void)printf("  coordinates  %d:", scene->nq);
+  for (int i = 0; i < scene->nq && i < NAMES_SHOWN; i++) (void)printf(" %s", scene->coordinate[i]);
+  (void)printf("%s\n  watched      ", scene->nq > NAMES_SHOWN ? " ..." : "");
+  for (int i = 0; i < dvi_system_invariant_count(scene->system); i++)
+    (void)printf("%s%s", i > 0 ? ", " : "", dvi_system_invariant_name(scene->system, i));
+  if (events_count(scene) > 0) (void)printf("\n  events       ");
+  events_print(scene);
+  (void)printf("\n  first run    --h %g --t-end %g\n", scene->h, scene->t_end);
+  (void)printf("  judged by    %s\n", scene->exact != NULL      ? "its exact solution"
+                                      : scene->digits_q != NULL ? "its stored quadruple-precision result, or IDA or two runs"
+                                                                : "IDA or two runs");
+}
+
+static int print_method(const dvi_integrator *integrator)
+{
+  const size_t size = dvi_integrator_explain(integrator, NULL, 0) + 1;
+  char *text = malloc(size);
+  if (text == NULL) {
+    complain("out of memory");
+    return FAILED;
+  }
+  (void)dvi_integrator_explain(integrator, text, size);
+  (void)fputs(text, stdout);
+  free(text);
+  return DONE;
+}
+
+/* What a step of length h does to a fast frequency. */
+static void print_turn(const char *method, double h, double omega)
+{
+  double turn, rate;
+  (void)printf("fast motion: omega = %g, h omega = %g; ", omega, h * omega);
+  if (dvi_exchange(method, h * omega, &turn, &rate) == DVI_OK)
+    (void)printf(
+        "a step turns it by %.4f (exactly by %.4f), modulo 2 pi; energy goes from mode to mode at %.4f of the exact rate\n", turn,
+        fmod(h * omega, 2 * pi), rate);
+  else
+    (void)printf("%s\n", dvi_last_error());
+}
+
+static void print_fast_motion(const problem *scene, const char *method, double h)
+{
+  double least, most;
+  if (dvi_fast_frequencies(scene->system, &least, &most) != DVI_OK) {
+    (void)printf("fast motion: %s\n", dvi_last_error());
+    return;
+  }
+  print_turn(method, h, most);
+  if (least < (1 - 1e-6) * most) print_turn(method, h, least);
+}
+
+static int explain(const problem *scene, const char *method, const pacing *how, double h)
+{
+  dvi_integrator *integrator = NULL;
+  int code = open_paced(scene, method, how, &integrator);
+  if (code != DONE) return code;
+  const dvi_status status = dvi_integrator_start(integrator, 0.0, scene->q, scene->p);
+  code = status == DVI_OK ? print_method(integrator) : library_error(status);
+  if (code == DONE && !isnan(h)) print_fast_motion(scene, method, fabs(h));
+  /* A scene derives what is asked for: one step asks for all that the method wants. Whether it succeeds does not matter. */
+  if (code == DONE && scene->scene != NULL) (void)dvi_integrator_step(integrator, scene->h);
+  if (code == DONE) scene_tell(scene);
+  dvi_integrator_destroy(&integrator);
+  return code;
+}
+
+static const char *const details[] = {
+    "Examples:\n"
+    "  dvi explain kepler --method galerkin:degree=4\n"
+    "  dvi explain fpu --method midpoint --set ell=1000\n"
+    "  dvi explain fpu --method imex --h 0.1\n"
+    "  dvi explain kepler --method galerkin:degree=4 --time-transform distance:power=1.5\n"
+    "  dvi explain cart.yaml\n",
+    "With --h: by which angle a step turns the largest frequency of the potentials that are declared fast and quadratic\n"
+    "(and the least one, if there are several), and how fast slow forces carry energy from one mode to another of the same\n"
+    "frequency. An angle over the step is the frequency that the method gives to the mode.\n",
+    NULL,
+};
+
+int explain_command(int argc, char **argv)
+{
+  const char *method = NULL;
+  words settings = {0};
+  pacing how = {0};
+  double h = NAN;
+  const option options[] = {
+      {.name = "method",
+       .word = &method,
+       .value = "SPEC",
+       .help = "the method: name[:key=value,...], see dvi list methods; left out: the scene's"},
+      {.name = "time-transform",
+       .word = &how.transform,
+       .value = "MONITOR",
+       .help = "steps of equal length in another time: distance[:power=P], arclength or acceleration[:power=P]"},
+      {.name = "step-control",
+       .word = &how.control,
+       .value = "MONITOR",
+       .help = "steps that follow a monitor reversibly: cheaper, symmetric, not symplectic"},
+      {.name = "h", .number = &h, .value = "H", .help = "say what steps of this length do to fast frequencies, too"},
+      {.name = "set", .words = &settings, .value = "NAME=VALUE", .help = "set a parameter of the problem; may be repeated"},
+      {.name = NULL},
+  };
+  const command_line command = {
+      .name = "explain",
+      .synopsis = "PROBLEM|SCENE.yaml --method SPEC [OPTIONS]",
+      .operand = "PROBLEM",
+      .summary = "Say which terms a problem has, and which kernel, solver and sparsity a method chooses for it, and why.\n",
+      .options = options,
+      .details = details,
+  };
+  const char *name;
+  int code;
+  if (!options_parse(&command, argc, argv, &name, &code)) return code;
+  code = pacing_check("explain", &how);
+  if (code != DONE) return code;
+  problem *scene;
+  code = open_problem(name, &settings, &scene);
+  if (code != DONE) return code;
+  code = open_wish("explain", scene, &method);
+  if (code == DONE) print_problem(scene, &settings);
+  if (code == DONE) code = explain(scene, method, &how, h);
+  problem_destroy(&scene);
+  return code;
+}

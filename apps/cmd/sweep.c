@@ -1,0 +1,227 @@
+/* dvi sweep: one run at each point of a grid of parameters. */
+#define _POSIX_C_SOURCE 200809L
+#include <math.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/command.h"
+#include "cli/crew.h"
+#include "cli/file.h"
+#include "load/open.h"
+#include "cli/options.h"
+#include "cli/progress.h"
+#include "cli/signals.h"
+#include "sweep/sweep_part.h"
+#include "sweep/sweep_point.h"
+#include "cli/way.h"
+
+/* A sweep under way; the lock guards what stands below it. */
+typedef struct sweep {
+  const sweep_task *task;
+  long points, there; /* all; those that an earlier sweep left */
+  pthread_mutex_t lock;
+  sweep_row *row; /* [points] without a text: still to be run */
+  long next;      /* where the search for one goes on */
+  long done;
+  sweep_part part;
+  progress_line progress;
+  bool lost;    /* a row could not be written, or there was no memory for it */
+  bool written; /* all rows are where they were asked for */
+} sweep;
+
+static const char ended[] = "dvi: sweep: a signal ended the sweep; the same command goes on where it stopped\n";
+
+/* ---- points ---- */
+
+/* The next point without a row; -1 if there is none, or none shall be begun. */
+static long take_point(sweep *s)
+{
+  (void)pthread_mutex_lock(&s->lock);
+  while (s->next < s->points && s->row[s->next].text != NULL) s->next++;
+  const long k = s->next < s->points && !s->lost ? s->next++ : -1;
+  (void)pthread_mutex_unlock(&s->lock);
+  return k;
+}
+
+static void give_row(sweep *s, long k, const sweep_row *row)
+{
+  (void)pthread_mutex_lock(&s->lock);
+  s->row[k] = *row;
+  if (row->text == NULL) complain("out of memory");
+  if (row->text == NULL || !sweep_part_add(&s->part, k, row)) s->lost = true;
+  s->done++;
+  progress_show(&s->progress, (double)s->done / (double)(s->points - s->there), "dvi sweep");
+  (void)pthread_mutex_unlock(&s->lock);
+}
+
+static void *work(void *user)
+{
+  sweep *s = user;
+  for (long k = take_point(s); k >= 0; k = take_point(s)) {
+    const sweep_row row = sweep_run(s->task, k);
+    give_row(s, k, &row);
+  }
+  return NULL;
+}
+
+static void run_points(sweep *s, long threads)
+{
+  const long left = s->points - s->there;
+  progress_start(&s->progress, true);
+  crew_work(threads < left ? threads : left, work, s);
+  progress_end(&s->progress);
+}
+
+/* ---- rows ---- */
+
+static long count_rows(const sweep *s, bool failed_only)
+{
+  long count = 0;
+  for (long k = 0; k < s->points; k++) count += s->row[k].text != NULL && (s->row[k].failed || !failed_only);
+  return count;
+}
+
+static bool write_rows(const sweep *s, const char *path)
+{
+  whole_file out;
+  if (!file_open(&out, path)) return false;
+  sweep_header(s->task, out.stream);
+  for (long k = 0; k < s->points; k++) (void)fprintf(out.stream, "\n%s", s->row[k].text);
+  (void)fputc('\n', out.stream);
+  return file_keep(&out);
+}
+
+static int finish(sweep *s, const char *path)
+{
+  s->written = !s->lost && write_rows(s, path);
+  if (!s->written) return FAILED;
+  const long failed = count_rows(s, true);
+  if (failed == 0) return DONE;
+  complain("sweep: %ld of %ld points failed; column status of '%s' says which", failed, s->points, path);
+  return FAILED;
+}
+
+static int sweep_all(const sweep_task *task, long threads, const char *path)
+{
+  sweep s = {.task = task, .points = task->grid.points};
+  int code = FAILED;
+  s.row = calloc((size_t)s.points, sizeof *s.row);
+  (void)pthread_mutex_init(&s.lock, NULL);
+  if (s.row == NULL)
+    complain("out of memory");
+  else if (sweep_part_open(&s.part, path, sweep_key(task), s.points, s.row)) {
+    s.there = count_rows(&s, false);
+    if (s.there > 0) complain("sweep: %ld of %ld points are in '%s' already", s.there, s.points, s.part.path);
+    run_points(&s, threads);
+    code = finish(&s, path);
+  }
+  sweep_part_close(&s.part, s.written);
+  for (long k = 0; s.row != NULL && k < s.points; k++) free(s.row[k].text);
+  free(s.row);
+  (void)pthread_mutex_destroy(&s.lock);
+  return code;
+}
+
+/* ---- request ---- */
+
+typedef struct sweep_request {
+  const char *out;
+  long threads; /* 0: not given */
+  words settings;
+} sweep_request;
+
+/* What is wrong at all points is told before the first one. */
+static int check_task(const sweep_task *task)
+{
+  const problem *model = task->model;
+  const char *method = task->method;
+  dvi_integrator *integrator = NULL;
+  int code = open_wish("sweep", model, &method);
+  if (code == DONE) code = open_integrator(model, method, &integrator);
+  dvi_integrator_destroy(&integrator);
+  if (code != DONE) return code;
+  const double t_end = isnan(task->t_end) ? model->t_end : task->t_end;
+  return way_check("sweep", isnan(task->h) ? copysign(model->h, t_end) : task->h, t_end, t_end, true);
+}
+
+static int check_request(const sweep_request *request)
+{
+  if (request->out == NULL)
+    return usage_error("sweep: --out FILE.csv is missing: where the rows go, and from where an interrupted sweep goes on");
+  if (strcmp(request->out, "-") == 0)
+    return usage_error("sweep: --out -: rows go to a file, not to standard output, for an interrupted sweep goes on from there");
+  if (request->threads > CREW_MAX) return usage_error("sweep: at most %d threads", (int)CREW_MAX);
+  return file_writable(request->out) ? DONE : FAILED;
+}
+
+static int run_request(const sweep_request *request, sweep_task *task)
+{
+  grid_point fixed;
+  problem *model = NULL;
+  int code = scene_is_path(task->operand) ? scene_load(task->operand, &task->text) : DONE;
+  if (code == DONE) code = grid_read(&request->settings, &task->grid);
+  grid_fixed(&task->grid, &fixed);
+  if (code == DONE) code = open_text(task->operand, &task->text, &fixed.settings, &model);
+  task->model = model;
+  if (code == DONE) code = grid_complete(model, &task->grid);
+  if (code == DONE) code = check_task(task);
+  if (code == DONE) code = sweep_all(task, request->threads > 0 ? request->threads : crew_cores(), request->out);
+  problem_destroy(&model);
+  grid_clear(&task->grid);
+  free(task->text.text);
+  return code;
+}
+
+static const char *const details[] = {
+    "Points: all combinations of the values of the scene's section sweep and of --set, the last one's changes first;\n"
+    "--set of a parameter replaces its values in the section. Each point reads the scene anew.\n",
+    "Columns: the parameters; status, DVI_OK, 'event NAME' where an event of the scene ended the run, why it failed, or refused\n"
+    "where the problem cannot be made; steps; t, the coordinates, the momenta and the invariants at the end, or where the run "
+    "ended; energy_error, the largest change\n"
+    "of the energy since the start. 17 digits; cells without a number are empty. Rows stand in the order of the points and\n"
+    "do not depend on the number of threads. If points failed, all others are there, and the exit code is 1.\n",
+    "Rows are kept in FILE.csv.part as they are found. A sweep that was interrupted, however it was, goes on from there when\n"
+    "the same command is given again; with another scene, method, step, end or values it is refused. When all points are\n"
+    "there, FILE.csv is written whole.\n",
+    "Examples:\n"
+    "  dvi init cart.yaml\n"
+    "  dvi sweep cart.yaml --out cart.csv\n"
+    "  dvi sweep cart.yaml --set l=0.2:1:5 --set m=0.2 --out lengths.csv\n"
+    "  dvi sweep kepler --method galerkin:degree=4 --set e=0:0.9:10 --out kepler.csv\n",
+    NULL,
+};
+
+int sweep_command(int argc, char **argv)
+{
+  sweep_task task = {.h = (double)NAN, .t_end = (double)NAN};
+  sweep_request r = {.out = NULL};
+  const option options[] = {
+      {.name = "set",
+       .words = &r.settings,
+       .value = "NAME=VALUES",
+       .help = "a parameter's values: V1,V2,.. or FROM:TO:COUNT, or a single one; may be repeated"},
+      {.name = "method", .word = &task.method, .value = "SPEC", .help = "the method; left out: the scene's"},
+      {.name = "h", .number = &task.h, .value = "H", .help = "the step; left out: the problem's"},
+      {.name = "t-end", .number = &task.t_end, .value = "T", .help = "the end, from t = 0; left out: the problem's"},
+      {.name = "threads", .count = &r.threads, .value = "N", .help = "runs at a time; left out: as many as there are cores"},
+      {.name = "out", .word = &r.out, .value = "FILE.csv", .help = "where the rows go"},
+      {.name = NULL},
+  };
+  const command_line command = {
+      .name = "sweep",
+      .synopsis = "PROBLEM --out FILE.csv [--set NAME=VALUES ...] [OPTIONS]",
+      .operand = "PROBLEM",
+      .summary = "Run a problem at each point of a grid of parameters, on all cores, and write the ends as CSV.\n",
+      .options = options,
+      .details = details,
+  };
+  int code;
+  if (!options_parse(&command, argc, argv, &task.operand, &code)) return code;
+  code = check_request(&r);
+  if (code == DONE) code = scene_spared("sweep", task.operand, 1, &(named_file){"out", r.out});
+  if (code != DONE) return code;
+  signals_end(true, ended);
+  return run_request(&r, &task);
+}

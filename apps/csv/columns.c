@@ -1,0 +1,214 @@
+#define _POSIX_C_SOURCE 200809L
+#include "csv/columns.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/command.h"
+#include "cli/spelling.h"
+#include "csv/table.h"
+#include "csv/velocity.h"
+
+enum { HINT_SIZE = 512, NAMED_MOST = 12 };
+
+/* ---- what there is ---- */
+
+static void add(run_columns *c, const char *name, column_kind kind, int index)
+{
+  c->all[c->there++] = (shown_column){name, kind, index};
+}
+
+static void add_all(run_columns *c, int count, char *const *name, column_kind kind)
+{
+  for (int i = 0; i < count; i++) add(c, name[i], kind, i);
+}
+
+static void list_all(run_columns *c, const dvi_integrator *integrator)
+{
+  const problem *scene = c->scene;
+  add_all(c, scene->nq, scene->coordinate, COLUMN_COORDINATE);
+  if (scene->velocity != NULL) add_all(c, scene->nv, scene->velocity, COLUMN_VELOCITY);
+  add_all(c, scene->nv, scene->momentum, COLUMN_MOMENTUM);
+  for (int i = 0; i < dvi_system_invariant_count(scene->system); i++)
+    add(c, dvi_system_invariant_name(scene->system, i), COLUMN_INVARIANT, i);
+  if (dvi_integrator_chooses_steps(integrator)) add(c, "h", COLUMN_STEP, 0);
+  if (scene->velocity != NULL) add(c, "distance", COLUMN_DISTANCE, 0);
+  if (scene->terms->one_form != NULL || scene->terms->constraint != NULL) add(c, "constraint", COLUMN_CONSTRAINT, 0);
+  if (!isnan(dvi_integrator_jump(integrator, NULL))) add(c, "jump", COLUMN_JUMP, 0);
+}
+
+/* A method's own column must not be called as one of the problem's. */
+static int distinct(const run_columns *c, const char *method)
+{
+  for (int k = 0; k < c->there; k++) {
+    const bool own = c->all[k].kind == COLUMN_STEP || c->all[k].kind == COLUMN_JUMP;
+    for (int i = 0; i < k && own; i++)
+      if (strcmp(c->all[i].name, c->all[k].name) == 0)
+        return usage_error("run: %s by %s has two columns '%s', one of them the method's; rename the other", c->scene->name, method,
+                           c->all[k].name);
+  }
+  return DONE;
+}
+
+/* ---- what is shown ---- */
+
+static void show(run_columns *c, int k)
+{
+  c->column[c->count++] = c->all[k];
+  c->shown[k] = true;
+  c->shows[c->all[k].kind] = true;
+}
+
+/* All words that a column may be named by, for the nearest one. */
+static const char *name_at(int k, const void *list)
+{
+  const run_columns *c = list;
+  return k < c->there ? c->all[k].name : NULL;
+}
+
+/* The nearest name; without one the first of all names. */
+static const char *hint_at_name(const run_columns *c, const char *name, char hint[HINT_SIZE])
+{
+  if (suggestion(name, name_at, c, hint, HINT_SIZE)[0] != '\0') return hint;
+  size_t length = 0;
+  for (int k = 0; k < c->there && k < NAMED_MOST && length < HINT_SIZE; k++)
+    length += (size_t)snprintf(hint + length, HINT_SIZE - length, "%s%s", k > 0 ? ", " : "; it has ", c->all[k].name);
+  if (c->there > NAMED_MOST && length < HINT_SIZE)
+    (void)snprintf(hint + length, HINT_SIZE - length, " and %d others", c->there - NAMED_MOST);
+  return hint;
+}
+
+/* t is in front of every row. */
+static int show_name(run_columns *c, const char *method, const char *name)
+{
+  const char *there;
+  int k = 0;
+  if (strcmp(name, "t") == 0) return DONE;
+  while ((there = name_at(k, c)) != NULL && strcmp(there, name) != 0) k++;
+  if (there == NULL) {
+    char hint[HINT_SIZE];
+    return usage_error("run: %s by %s has no column '%s'%s", c->scene->name, method, name, hint_at_name(c, name, hint));
+  }
+  if (c->shown[k]) return usage_error("run: column '%s' is asked for twice", name);
+  show(c, k);
+  return DONE;
+}
+
+static int show_asked(run_columns *c, const char *method, const char *asked)
+{
+  int code = DONE;
+  char *names = strdup(asked);
+  if (names == NULL) return library_error(DVI_NO_MEMORY);
+  for (char *name = names, *next; name != NULL && code == DONE; name = next) {
+    next = strchr(name, ',');
+    if (next != NULL) *next++ = '\0';
+    code = show_name(c, method, name);
+  }
+  free(names);
+  return code;
+}
+
+static int show_wanted(run_columns *c, const char *method)
+{
+  int code = DONE;
+  for (int i = 0; i < c->scene->column_count && code == DONE; i++) code = show_name(c, method, c->scene->column[i]);
+  return code;
+}
+
+static bool make_room(run_columns *c)
+{
+  const size_t nq = (size_t)c->scene->nq, nv = (size_t)c->scene->nv;
+  const size_t invariants = (size_t)dvi_system_invariant_count(c->scene->system), most = nq + 2 * nv + invariants + COLUMN_KINDS;
+  c->all = calloc(most, sizeof *c->all);
+  c->column = calloc(most, sizeof *c->column);
+  c->shown = calloc(most, sizeof *c->shown);
+  c->invariant = calloc(invariants, sizeof *c->invariant);
+  c->velocity = calloc(nv, sizeof *c->velocity);
+  c->room = calloc(nq + nv, sizeof *c->room);
+  return c->all != NULL && c->column != NULL && c->shown != NULL && c->invariant != NULL && c->velocity != NULL && c->room != NULL;
+}
+
+int columns_choose(run_columns *c, const problem *scene, const dvi_integrator *integrator, const char *asked)
+{
+  *c = (run_columns){.scene = scene};
+  if (!make_room(c)) return library_error(DVI_NO_MEMORY);
+  list_all(c, integrator);
+  const int code = distinct(c, dvi_integrator_method(integrator));
+  if (code != DONE) return code;
+  if (asked != NULL) return show_asked(c, dvi_integrator_method(integrator), asked);
+  if (scene->column != NULL) return show_wanted(c, dvi_integrator_method(integrator));
+  for (int k = 0; k < c->there; k++) show(c, k);
+  return DONE;
+}
+
+void columns_clear(run_columns *c)
+{
+  free(c->all);
+  free(c->column);
+  free(c->shown);
+  free(c->invariant);
+  free(c->velocity);
+  free(c->room);
+  *c = (run_columns){.count = 0};
+}
+
+/* ---- rows ---- */
+
+void columns_header(const run_columns *c, FILE *stream)
+{
+  (void)fputs("t", stream);
+  for (int k = 0; k < c->count; k++) {
+    (void)fputc(',', stream);
+    csv_text(stream, c->column[k].name);
+  }
+  (void)fputc('\n', stream);
+}
+
+static dvi_status measure(run_columns *c, dvi_integrator *integrator)
+{
+  const double t = dvi_integrator_time(integrator), *q = dvi_integrator_q(integrator), *p = dvi_integrator_p(integrator);
+  dvi_status status = DVI_OK;
+  for (int k = 0; k < c->count && status == DVI_OK && c->shows[COLUMN_INVARIANT]; k++) {
+    const shown_column *column = &c->column[k];
+    if (column->kind == COLUMN_INVARIANT)
+      status = dvi_integrator_invariant(integrator, column->index, &c->invariant[column->index]);
+  }
+  if (status == DVI_OK && c->shows[COLUMN_VELOCITY]) status = velocity_near(c->scene, t, q, p, c->room, c->velocity);
+  if (status == DVI_OK && c->shows[COLUMN_CONSTRAINT]) status = dvi_integrator_constraint(integrator, &c->constraint);
+  return status;
+}
+
+bool columns_measure(run_columns *c, dvi_integrator *integrator)
+{
+  const dvi_status status = measure(c, integrator);
+  if (status == DVI_OK) return true;
+  dvi_counters counters;
+  dvi_integrator_counters(integrator, &counters);
+  char before[64];
+  (void)snprintf(before, sizeof before, "run: no row at t = %.17g: ", dvi_integrator_time(integrator));
+  complain_of(status, before, counters.steps > 0 ? "; try a smaller --h" : "");
+  return false;
+}
+
+double columns_number(const run_columns *c, const dvi_integrator *integrator, int k)
+{
+  const shown_column *column = &c->column[k];
+  switch (column->kind) {
+  case COLUMN_COORDINATE: return dvi_integrator_q(integrator)[column->index];
+  case COLUMN_VELOCITY: return c->velocity[column->index];
+  case COLUMN_MOMENTUM: return dvi_integrator_p(integrator)[column->index];
+  case COLUMN_INVARIANT: return c->invariant[column->index];
+  case COLUMN_STEP: return dvi_integrator_last_step(integrator);
+  case COLUMN_DISTANCE: return dvi_system_distance(c->scene->system, dvi_integrator_q(integrator));
+  case COLUMN_CONSTRAINT: return c->constraint;
+  default: return dvi_integrator_jump(integrator, NULL);
+  }
+}
+
+void columns_row(const run_columns *c, const dvi_integrator *integrator, FILE *stream)
+{
+  (void)fprintf(stream, "%.17g", dvi_integrator_time(integrator));
+  for (int k = 0; k < c->count; k++) (void)fprintf(stream, ",%.17g", columns_number(c, integrator, k));
+  (void)fputc('\n', stream);
+}

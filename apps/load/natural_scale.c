@@ -1,0 +1,63 @@
+#include "load/natural_scale.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/command.h"
+
+static void read_state(const problem *scene, const dvi_integrator *integrator, double *state)
+{
+  memcpy(state, dvi_integrator_q(integrator), (size_t)scene->nq * sizeof *state);
+  memcpy(state + scene->nq, dvi_integrator_p(integrator), (size_t)scene->nv * sizeof *state);
+}
+
+bool natural_scale_start(natural_scale *s, const problem *scene, const dvi_integrator *integrator)
+{
+  const size_t numbers = (size_t)scene->nq + (size_t)scene->nv;
+  const size_t invariants = (size_t)dvi_system_invariant_count(scene->system);
+  *s = (natural_scale){.scene = scene, .invariants = (int)invariants, .chance = 1};
+  s->room = calloc(2 * (numbers + invariants), sizeof *s->room);
+  if (s->room == NULL) return library_error(DVI_NO_MEMORY) == DONE;
+  s->start = s->room;
+  s->mixed = s->start + numbers;
+  s->value = s->mixed + numbers;
+  s->changed = s->value + invariants;
+  read_state(scene, integrator, s->start);
+  return true;
+}
+
+void natural_scale_clear(natural_scale *s)
+{
+  free(s->room);
+  s->room = NULL;
+}
+
+/* The high bits of a linear congruential generator (Numerical Recipes' numbers). */
+static bool by_chance(natural_scale *s)
+{
+  s->chance = s->chance * 1664525U + 1013904223U;
+  return (s->chance >> 31 & 1U) != 0;
+}
+
+void natural_scale_look(natural_scale *s, dvi_integrator *integrator)
+{
+  const int numbers = s->scene->nq + s->scene->nv;
+  read_state(s->scene, integrator, s->mixed);
+  for (int i = 0; i < numbers; i++)
+    if (by_chance(s)) s->mixed[i] = s->start[i];
+  if (dvi_system_invariants(s->scene->system, dvi_integrator_time(integrator), s->mixed, s->mixed + s->scene->nq, s->value) !=
+      DVI_OK)
+    return;
+  for (int i = 0; i < s->invariants; i++) {
+    double there;
+    if (dvi_integrator_invariant(integrator, i, &there) == DVI_OK) s->changed[i] += fabs(s->value[i] - there);
+  }
+  s->looks++;
+}
+
+double natural_scale_of(const natural_scale *s, int invariant)
+{
+  const double mean = s->looks > 0 ? s->changed[invariant] / s->looks : 0.0;
+  return isfinite(mean) ? mean : 0.0;
+}

@@ -1,0 +1,241 @@
+#include "load/open.h"
+
+#include <dvi/scene.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "cli/command.h"
+#include "cli/spelling.h"
+
+enum { MESSAGE_SIZE = 1024, WORD_SIZE = 64, HINT_SIZE = 128 };
+
+static const char *problem_at(int k, const void *list)
+{
+  (void)list;
+  return k < problem_count() ? problem_name(k) : NULL;
+}
+
+static const char *parameter_at(int k, const void *list)
+{
+  return ((const problem_parameter *)list)[k].name;
+}
+
+static const char *method_at(int k, const void *list)
+{
+  (void)list;
+  return dvi_method_name(k);
+}
+
+/* Keys of the method whose index *list is; a composition hands keys on to its base, so those of all methods follow. */
+static const char *key_at(int k, const void *list)
+{
+  const int method = *(const int *)list;
+  if (k < dvi_method_key_count(method)) return dvi_method_key_name(method, k);
+  k -= dvi_method_key_count(method);
+  for (int i = 0; i < dvi_method_count(); i++) {
+    if (k < dvi_method_key_count(i)) return dvi_method_key_name(i, k);
+    k -= dvi_method_key_count(i);
+  }
+  return NULL;
+}
+
+static bool is_known(const char *word, word_at known, const void *list)
+{
+  const char *candidate;
+  for (int k = 0; (candidate = known(k, list)) != NULL; k++)
+    if (strcmp(candidate, word) == 0) return true;
+  return false;
+}
+
+/* Copy what stands before any of the stop characters. Returns what follows that character, or NULL at the end of the text. */
+static const char *take_word(const char *text, const char *stops, char *word)
+{
+  const size_t length = strcspn(text, stops);
+  (void)snprintf(word, WORD_SIZE, "%.*s", (int)length, text);
+  return text[length] != '\0' ? text + length + 1 : NULL;
+}
+
+/* Whether a setting is of the form name=value for that name. */
+static bool is_value_of(const char *setting, const char *name)
+{
+  const size_t length = strlen(name);
+  return strncmp(setting, name, length) == 0 && setting[length] == '=';
+}
+
+static void hint_at_setting(const words *settings, const problem_parameter *parameters, char *hint)
+{
+  char word[WORD_SIZE];
+  hint[0] = '\0';
+  for (int i = 0; i < settings->count && hint[0] == '\0'; i++) {
+    (void)take_word(settings->word[i], "=", word);
+    if (!is_known(word, parameter_at, parameters)) (void)suggestion(word, parameter_at, parameters, hint, HINT_SIZE);
+  }
+}
+
+/* A scene without its ending. */
+static bool scene_beside(const char *name, char *hint)
+{
+  char path[HINT_SIZE / 2];
+  if (snprintf(path, sizeof path, "%s.yaml", name) >= (int)sizeof path || access(path, R_OK) != 0) return false;
+  (void)snprintf(hint, HINT_SIZE, " (did you mean '%s'?)", path);
+  return true;
+}
+
+/* A name that is none of the catalogue: most often a slip, but it may be that of a file. */
+static int refuse_name(const char *name)
+{
+  char hint[HINT_SIZE];
+  struct stat there;
+  if (stat(name, &there) == 0)
+    return usage_error(
+        "'%s' is a %s, and no scene: that is a YAML file whose name ends in .yaml or .yml; dvi init NAME.yaml writes one", name,
+        S_ISDIR(there.st_mode) ? "folder" : "file of another kind");
+  return usage_error("unknown problem '%s'%s; see dvi list problems", name,
+                     scene_beside(name, hint) ? hint : suggestion(name, problem_at, NULL, hint, sizeof hint));
+}
+
+int open_problem(const char *name, const words *settings, problem **scene)
+{
+  char message[MESSAGE_SIZE] = "";
+  char hint[HINT_SIZE];
+  *scene = NULL;
+  if (scene_is_path(name)) return scene_open(name, settings, scene);
+  const int index = problem_find(name);
+  if (index < 0) return refuse_name(name);
+  const dvi_status status = problem_create(name, settings->count, settings->word, scene, message, sizeof message);
+  if (status == DVI_OK) return DONE;
+  if (status != DVI_BAD_OPTION && message[0] == '\0') return library_error(status);
+  hint_at_setting(settings, problem_parameters(index), hint);
+  complain("%s%s", message, hint);
+  return status == DVI_BAD_OPTION ? USAGE : FAILED;
+}
+
+int open_text(const char *name, const scene_text *text, const words *settings, problem **scene)
+{
+  return text->text == NULL ? open_problem(name, settings, scene) : scene_parse(name, text, settings, scene);
+}
+
+int open_shaped(const char *name, const words *settings, bool one_point, problem **scene)
+{
+  const int code = open_problem(name, settings, scene);
+  if (code != DONE || !one_point || *scene == NULL) return code;
+  if ((*scene)->scene != NULL) {
+    problem_destroy(scene);
+    return usage_error("--one-point: %s is a scene, and those evaluate batches", name);
+  }
+  const dvi_status status = problem_one_point(*scene);
+  if (status == DVI_OK) return DONE;
+  problem_destroy(scene);
+  return library_error(status);
+}
+
+int open_wish(const char *command, const problem *scene, const char **method)
+{
+  if (*method == NULL) *method = scene->method;
+  if (*method != NULL) return DONE;
+  return usage_error("%s: --method is missing, for example --method galerkin:degree=4; see dvi list methods", command);
+}
+
+const char *start_setting(const problem *scene, const words *settings)
+{
+  for (int i = 0; i < settings->count; i++)
+    for (const problem_parameter *k = scene->parameter; k->name != NULL; k++)
+      if (k->start_only && is_value_of(settings->word[i], k->name)) return settings->word[i];
+  return NULL;
+}
+
+static int method_index(const char *name)
+{
+  for (int i = 0; i < dvi_method_count(); i++)
+    if (strcmp(dvi_method_name(i), name) == 0) return i;
+  return -1;
+}
+
+/* Keys behind a blank: they stand behind a colon. */
+static bool hint_at_colon(const char *method, char *hint)
+{
+  char name[WORD_SIZE];
+  const char *keys = take_word(method, " ", name);
+  if (keys == NULL || method_index(name) < 0) return false;
+  (void)snprintf(hint, HINT_SIZE, " (did you mean '%s:%.*s'?)", name, (int)strcspn(keys, " "), keys);
+  return true;
+}
+
+static void hint_at_method(const char *method, char *hint)
+{
+  char word[WORD_SIZE];
+  if (hint_at_colon(method, hint)) return;
+  const char *rest = take_word(method, ":", word);
+  const int index = method_index(word);
+  hint[0] = '\0';
+  if (index < 0) (void)suggestion(word, method_at, NULL, hint, HINT_SIZE);
+  while (index >= 0 && rest != NULL && hint[0] == '\0') {
+    char pair[WORD_SIZE];
+    rest = take_word(rest, ",", pair);
+    (void)take_word(pair, "=", word);
+    if (!is_known(word, key_at, &index)) (void)suggestion(word, key_at, &index, hint, HINT_SIZE);
+  }
+}
+
+static int read_monitor(const problem *scene, const char *asked, const char *specification, dvi_monitor *monitor)
+{
+  if (dvi_monitor_read(specification, monitor) != DVI_OK) return usage_error("--%s %s: %s", asked, specification, dvi_last_error());
+  if (monitor->kind != DVI_MONITOR_DISTANCE || scene->velocity != NULL) return DONE; /* with factors there is no monitor at all */
+  if (scene->bodies == 0)
+    return usage_error("--%s %s: %s has no bodies whose distances could be measured; see arclength and acceleration", asked,
+                       specification, scene->name);
+  const int dimension = scene->nq / scene->bodies;
+  if ((monitor->bodies != 0 && monitor->bodies != scene->bodies) || (monitor->dimension != 0 && monitor->dimension != dimension))
+    return usage_error("--%s %s: %s is bodies=%d,dimension=%d; leave the keys out", asked, specification, scene->name,
+                       scene->bodies, dimension);
+  monitor->bodies = scene->bodies;
+  return DONE;
+}
+
+/* Refuse a method where it stands: in the scene, or on the command line. */
+static int refuse_method(const problem *scene, const char *method)
+{
+  char hint[HINT_SIZE], sentence[MESSAGE_SIZE], message[2 * MESSAGE_SIZE];
+  hint_at_method(method, hint);
+  const bool said = strstr(dvi_last_error(), "did you mean") != NULL;
+  (void)snprintf(sentence, sizeof sentence, "%s: %s%s", method, dvi_last_error(), said ? "" : hint);
+  if (scene->scene == NULL || method != scene->method) return usage_error("--method %s", sentence);
+  dvi_scene_tell(scene->scene, "method", sentence, message, sizeof message);
+  return usage_error("%s", message);
+}
+
+/* The exit code for what came of making an integrator. */
+static int opened(dvi_status status, const problem *scene, const char *method)
+{
+  if (status != DVI_BAD_OPTION) return status == DVI_OK ? DONE : library_error(status);
+  return refuse_method(scene, method);
+}
+
+int open_integrator(const problem *scene, const char *method, dvi_integrator **integrator)
+{
+  return opened(dvi_integrator_create(scene->system, method, integrator), scene, method);
+}
+
+int open_monitor(const problem *scene, const pacing *how, dvi_monitor *monitor)
+{
+  if (how->transform != NULL) return read_monitor(scene, "time-transform", how->transform, monitor);
+  return how->control != NULL ? read_monitor(scene, "step-control", how->control, monitor) : DONE;
+}
+
+dvi_status create_paced(const problem *scene, const char *method, const pacing *how, const dvi_monitor *monitor,
+                        dvi_integrator **integrator)
+{
+  if (how->transform != NULL) return dvi_integrator_create_transformed(scene->system, monitor, method, integrator);
+  if (how->control != NULL) return dvi_integrator_create_controlled(scene->system, monitor, method, integrator);
+  return dvi_integrator_create(scene->system, method, integrator);
+}
+
+int open_paced(const problem *scene, const char *method, const pacing *how, dvi_integrator **integrator)
+{
+  dvi_monitor monitor = {0};
+  *integrator = NULL;
+  const int code = open_monitor(scene, how, &monitor);
+  return code == DONE ? opened(create_paced(scene, method, how, &monitor, integrator), scene, method) : code;
+}

@@ -1,0 +1,28 @@
+/** Columns of a CSV file as curves. */
+#ifndef CURVES_H
+#define CURVES_H
+#include "cli/options.h"
+#include "csv/rows.h"
+
+/** One column against another. */
+typedef struct curve_points {
+  int panel; /**< which pair of axes, from 0 */
+  char x_name[FIELD_SIZE], y_name[FIELD_SIZE];
+  int x_column, y_column;
+  double *x, *y; /**< [count]; NaN where a cell is no number */
+} curve_points;
+
+/** What is to be drawn, and its points. */
+typedef struct curve_list {
+  int panels, curves, count, capacity;
+  curve_points curve[WORDS_MAX];
+} curve_list;
+
+/** Read the words of --axes, each "X:Y[,X:Y...]" for one panel; Y alone is t:Y. Returns DONE, or complains and returns USAGE. */
+int curves_ask(const words *asked, curve_list *list);
+
+/** Read the columns that are asked for from a CSV file with a header. Returns DONE, or complains and returns the exit code. */
+int curves_read(const char *path, curve_list *list);
+
+void curves_clear(curve_list *list);
+#endif

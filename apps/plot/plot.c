@@ -1,0 +1,308 @@
+#define _POSIX_C_SOURCE 200809L
+#include "plot/plot.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <float.h>
+#include <math.h>
+#include <spawn.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "cli/command.h"
+#include "cli/file.h"
+#include "plot/thin.h"
+
+extern char **environ;
+
+enum { WIDTH = 860, PANEL_HEIGHT = 560, COLOURS = 8 };
+
+/* Pixels: less is not seen. */
+static const double SEEN = 0.2;
+
+/* Okabe and Ito's colours, which the colour-blind can tell apart; their yellow is too pale for lines. */
+static const char *const colour[COLOURS] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000", "#7F3C8D"};
+
+/* A gnuplot string in double quotes. What stands between backquotes there would be run as a command,
+ * and more characters mean something: of ASCII all but letters, digits and blanks are written by their
+ * numbers, of which gnuplot reads four digits if the first is 0. No control character can be in an SVG
+ * file. */
+static void quoted(FILE *script, const char *text)
+{
+  (void)fputc('"', script);
+  for (const char *c = text; *c != '\0'; c++) {
+    const unsigned char byte = (unsigned char)*c;
+    if (byte < ' ' || byte == 0x7f)
+      (void)fputc(' ', script);
+    else if (byte == ' ' || isalnum(byte) || byte >= 0x80)
+      (void)fputc(byte, script);
+    else
+      (void)fprintf(script, "\\%04o", byte);
+  }
+  (void)fputc('"', script);
+}
+
+static void setting(FILE *script, const char *what, const char *text)
+{
+  (void)fprintf(script, "set %s ", what);
+  quoted(script, text);
+  (void)fputs(" noenhanced\n", script);
+}
+
+static bool drawable(const plot_panel *panel, const plot_curve *curve, int i)
+{
+  const double x = curve->x[i];
+  const double y = curve->y[i];
+  return isfinite(x) && isfinite(y) && (!panel->logarithmic || (x > 0.0 && y > 0.0));
+}
+
+static int points(const plot_panel *panel, const plot_curve *curve)
+{
+  int count = 0;
+  for (int i = 0; i < curve->count; i++) count += drawable(panel, curve, i);
+  return count;
+}
+
+/* The range of the drawable points of all curves: [least, most] of x, then of y. Whether y stays where it is, up to what its labels could show; the
+ * range is then wider. */
+static bool find_range(const plot_panel *panel, double range[4])
+{
+  range[0] = range[2] = HUGE_VAL;
+  range[1] = range[3] = -HUGE_VAL;
+  for (int k = 0; k < panel->curves; k++)
+    for (int i = 0; i < panel->curve[k].count; i++) {
+      if (!drawable(panel, &panel->curve[k], i)) continue;
+      range[0] = fmin(range[0], panel->curve[k].x[i]);
+      range[1] = fmax(range[1], panel->curve[k].x[i]);
+      range[2] = fmin(range[2], panel->curve[k].y[i]);
+      range[3] = fmax(range[3], panel->curve[k].y[i]);
+    }
+  const double size = fmax(fabs(range[2]), fabs(range[3]));
+  const bool stays = !(range[3] - range[2] > 1e-9 * size);
+  if (stays) {
+    range[2] -= fmax(0.01 * size, 1e-16);
+    range[3] += fmax(0.01 * size, 1e-16);
+  }
+  return stays;
+}
+
+/* The points of a smooth curve without which it would look different, to be freed; NULL: all. */
+static bool *needed_points(const plot_panel *panel, const plot_curve *curve)
+{
+  const size_t count = (size_t)curve->count;
+  double range[4];
+  bool *needed = calloc(count + 1, sizeof *needed);
+  double *x = calloc(2 * count + 1, sizeof *x), *y = x != NULL ? x + count : NULL;
+  (void)find_range(panel, range);
+  for (int i = 0; i < curve->count && needed != NULL && x != NULL; i++) {
+    needed[i] = drawable(panel, curve, i);
+    x[i] = (curve->x[i] - range[0]) / fmax(range[1] - range[0], DBL_MIN) * WIDTH;
+    y[i] = (curve->y[i] - range[2]) / fmax(range[3] - range[2], DBL_MIN) * PANEL_HEIGHT;
+  }
+  if (needed != NULL && x != NULL) thin_curve(curve->count, x, y, SEEN, needed);
+  free(x);
+  return needed;
+}
+
+/* Each curve's points as a block of numbers, named by panel and curve. */
+static void write_blocks(FILE *script, int index, const plot_panel *panel)
+{
+  for (int k = 0; k < panel->curves; k++) {
+    const plot_curve *curve = &panel->curve[k];
+    (void)fprintf(script, "$panel%d_curve%d << END\n", index, k);
+    bool *needed = panel->smooth && !panel->dots ? needed_points(panel, curve) : NULL;
+    for (int i = 0; i < curve->count; i++)
+      if (needed != NULL ? needed[i] : drawable(panel, curve, i)) (void)fprintf(script, "%.9g %.9g\n", curve->x[i], curve->y[i]);
+    (void)fputs("END\n", script);
+    free(needed);
+  }
+}
+
+static void write_curve(FILE *script, int index, const plot_panel *panel, int k, int style)
+{
+  const plot_curve *curve = &panel->curve[k];
+  (void)fprintf(script, "$panel%d_curve%d using 1:2 ", index, k);
+  if (curve->label != NULL) {
+    (void)fputs("title ", script);
+    quoted(script, curve->label);
+    (void)fputs(" noenhanced with ", script);
+  } else {
+    (void)fputs("notitle with ", script);
+  }
+  if (curve->guide)
+    (void)fputs("lines lw 1 dt 2 lc rgb '#808080'", script);
+  else if (panel->dots)
+    (void)fprintf(script, "points pt 7 ps 0.25 lc rgb '%s'", colour[style % COLOURS]);
+  else if (panel->smooth)
+    (void)fprintf(script, "lines lw 1.2 lc rgb '%s'", colour[style % COLOURS]);
+  else
+    (void)fprintf(script, "linespoints lw 1.6 ps 0.7 pt %d lc rgb '%s'", 4 + style, colour[style % COLOURS]);
+}
+
+/* gnuplot would warn of a curve that stays at one number, and guess. */
+static void fix_range(FILE *script, const plot_panel *panel)
+{
+  double range[4];
+  if (find_range(panel, range) && !panel->logarithmic)
+    (void)fprintf(script, "set yrange [%.17g:%.17g]\n", range[2], range[3]);
+  else
+    (void)fputs("set autoscale y\n", script);
+}
+
+static void write_panel(FILE *script, int index, const plot_panel *panel)
+{
+  setting(script, "title", panel->title);
+  setting(script, "xlabel", panel->x_label);
+  (void)fputs("set xlabel offset 0,0.6\n", script);
+  setting(script, "ylabel", panel->y_label);
+  (void)fputs(panel->logarithmic ? "set logscale xy 10\nset format x '10^{%L}'\nset format y '10^{%L}'\n"
+                                 : "unset logscale\nset format '%g'\n",
+              script);
+  (void)fputs(panel->logarithmic ? "unset offsets\n" : "set offsets graph 0, 0, graph 0.03, graph 0.03\n", script);
+  fix_range(script, panel);
+  (void)fputs(panel->equal ? "set size ratio -1\n" : "set size noratio\n", script);
+  const char *joint = "plot ";
+  for (int k = 0, style = 0; k < panel->curves; k++) {
+    if (points(panel, &panel->curve[k]) == 0) continue;
+    (void)fputs(joint, script);
+    write_curve(script, index, panel, k, style);
+    joint = ", \\\n     ";
+    style += !panel->curve[k].guide;
+  }
+  (void)fputc('\n', script);
+}
+
+static void write_script(FILE *script, int panels, const plot_panel *panel)
+{
+  (void)fprintf(script, "set terminal svg size %d,%d enhanced background rgb 'white' font 'Helvetica,13'\n", WIDTH,
+                panels * PANEL_HEIGHT);
+  (void)fputs("set grid lt 1 lw 0.5 lc rgb '#d8d8d8'\nset border lc rgb '#404040'\nset key outside below center horizontal maxcols "
+              "2 Left reverse samplen 3\n",
+              script);
+  for (int i = 0; i < panels; i++) write_blocks(script, i, &panel[i]);
+  if (panels > 1) (void)fprintf(script, "set lmargin 12\nset multiplot layout %d,1\n", panels);
+  for (int i = 0; i < panels; i++) write_panel(script, i, &panel[i]);
+  if (panels > 1) (void)fputs("unset multiplot\n", script);
+}
+
+/* In the child the script is the input, the pipe's end to write to is the output, and the pipe has no
+ * other descriptors. */
+static int redirect(posix_spawn_file_actions_t *actions, int script, const int ends[2])
+{
+  int failure = posix_spawn_file_actions_adddup2(actions, script, STDIN_FILENO);
+  if (failure == 0) failure = posix_spawn_file_actions_adddup2(actions, ends[1], STDOUT_FILENO);
+  for (int k = 0; k < 2 && failure == 0; k++)
+    if (ends[k] > STDERR_FILENO) failure = posix_spawn_file_actions_addclose(actions, ends[k]);
+  return failure;
+}
+
+/* Start gnuplot, without the start-up files of the user. Returns 0 or an error number. */
+static int spawn(int script, const int ends[2], pid_t *process)
+{
+  posix_spawn_file_actions_t actions;
+  int failure = posix_spawn_file_actions_init(&actions);
+  if (failure != 0) return failure;
+  failure = redirect(&actions, script, ends);
+  if (failure == 0) {
+    char name[] = "gnuplot", alone[] = "--default-settings";
+    char *arguments[] = {name, alone, NULL};
+    failure = posix_spawnp(process, name, &actions, NULL, arguments, environ);
+  }
+  (void)posix_spawn_file_actions_destroy(&actions);
+  return failure;
+}
+
+/* Start gnuplot with the script as its input. Returns the descriptor to read the picture from, or -1
+ * with errno set. */
+static int start_gnuplot(FILE *script, pid_t *process)
+{
+  int ends[2];
+  if (pipe(ends) != 0) return -1;
+  const int failure = spawn(fileno(script), ends, process);
+  (void)close(ends[1]);
+  if (failure == 0) return ends[0];
+  (void)close(ends[0]);
+  errno = failure;
+  return -1;
+}
+
+/* gnuplot does not tell when a disk is full: its picture comes through a pipe, and file_keep tells.
+ * False if there is no picture. */
+static bool copy_picture(int from, FILE *picture)
+{
+  char part[4096];
+  bool any = false;
+  ssize_t length;
+  while ((length = read(from, part, sizeof part)) > 0 || (length < 0 && errno == EINTR)) {
+    any = any || length > 0;
+    if (length > 0) (void)fwrite(part, 1, (size_t)length, picture);
+  }
+  return any && length == 0;
+}
+
+static bool succeeded(pid_t process)
+{
+  int result = 0;
+  pid_t ended;
+  do ended = waitpid(process, &result, 0);
+  while (ended < 0 && errno == EINTR);
+  return ended == process && WIFEXITED(result) && WEXITSTATUS(result) == 0;
+}
+
+/* True if gnuplot drew the picture. */
+static bool draw(FILE *script, FILE *picture, const char *path)
+{
+  pid_t process;
+  const int from = start_gnuplot(script, &process);
+  if (from < 0) {
+    complain("no plot in '%s': gnuplot cannot be started (%s); install the package gnuplot-nox", path, strerror(errno));
+    return false;
+  }
+  const bool copied = copy_picture(from, picture);
+  (void)close(from);
+  if (succeeded(process) && copied) return true;
+  complain("no plot in '%s': gnuplot failed", path);
+  return false;
+}
+
+static bool anything_to_draw(int panels, const plot_panel *panel)
+{
+  for (int i = 0; i < panels; i++) {
+    int count = 0;
+    for (int k = 0; k < panel[i].curves; k++) count += points(&panel[i], &panel[i].curve[k]);
+    if (count == 0) return false;
+  }
+  return true;
+}
+
+/* A temporary file with the script, to be read from its start; NULL, with a complaint, without room. */
+static FILE *make_script(const char *path, int panels, const plot_panel *panel)
+{
+  FILE *script = tmpfile();
+  if (script != NULL) {
+    write_script(script, panels, panel);
+    if (fflush(script) == 0 && !ferror(script) && fseek(script, 0, SEEK_SET) == 0) return script;
+  }
+  complain("no plot in '%s': no temporary file for gnuplot: %s", path, strerror(errno));
+  if (script != NULL) (void)fclose(script);
+  return NULL;
+}
+
+bool plot_write(const char *path, int panels, const plot_panel *panel)
+{
+  whole_file picture = {0};
+  if (!anything_to_draw(panels, panel)) {
+    complain("no plot in '%s': there is no point that its axes can show", path);
+    return false;
+  }
+  FILE *script = make_script(path, panels, panel);
+  if (script == NULL) return false;
+  bool good = file_open(&picture, path) && draw(script, picture.stream, path);
+  if (good) good = file_keep(&picture);
+  file_discard(&picture);
+  (void)fclose(script);
+  return good;
+}

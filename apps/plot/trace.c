@@ -1,0 +1,207 @@
+#include "plot/trace.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/command.h"
+#include "plot/plot.h"
+
+enum { MOTION, ENERGY, INVARIANTS };
+enum { USUAL_CURVES = 6, NAMES_SIZE = 512 };
+
+/* What is drawn first: places and angles, then directions; entries of matrices, of which nine
+ * say what three angles do, last. */
+typedef enum coordinate_rank { PLACE, DIRECTION, ENTRY } coordinate_rank;
+
+/* ---- the choice ---- */
+
+static coordinate_rank rank_of(const dvi_system_terms *terms, int i)
+{
+  static const int entries[] = {[DVI_SO3] = 9, [DVI_SE3] = 9, [DVI_S2] = 0, [DVI_U1] = 0},
+                   stored[] = {[DVI_SO3] = 9, [DVI_SE3] = 12, [DVI_S2] = 3, [DVI_U1] = 2};
+  for (int f = 0; f < terms->factor_count; f++) {
+    const dvi_factor_kind kind = terms->factors[f].kind;
+    const int size = kind == DVI_RN ? terms->factors[f].size : stored[kind];
+    if (i < size) return kind == DVI_S2 ? DIRECTION : i < entries[kind] ? ENTRY : PLACE;
+    i -= size;
+  }
+  return PLACE;
+}
+
+static void choose(trace_panel *panel, int column, int most)
+{
+  if (panel->curves < most)
+    panel->column[panel->curves++] = column;
+  else
+    panel->left_out++;
+}
+
+/* Of all columns the coordinates of a rank. */
+static void choose_rank(run_trace *trace, coordinate_rank rank)
+{
+  const run_columns *c = trace->columns;
+  for (int k = 0; k < c->count; k++)
+    if (c->column[k].kind == COLUMN_COORDINATE && rank_of(c->scene->terms, c->column[k].index) == rank)
+      choose(&trace->panel[MOTION], k, USUAL_CURVES);
+}
+
+static void choose_motion(run_trace *trace)
+{
+  const run_columns *c = trace->columns;
+  choose_rank(trace, PLACE);
+  choose_rank(trace, DIRECTION);
+  const bool turns_only = trace->panel[MOTION].curves == 0;
+  for (int k = 0; k < c->count && turns_only; k++)
+    if (c->column[k].kind == COLUMN_VELOCITY) choose(&trace->panel[MOTION], k, USUAL_CURVES);
+}
+
+static void choose_curves(run_trace *trace, bool chosen)
+{
+  const run_columns *c = trace->columns;
+  if (!chosen) choose_motion(trace);
+  for (int k = 0; k < c->count; k++) {
+    const shown_column *column = &c->column[k];
+    if (column->kind == COLUMN_INVARIANT)
+      choose(&trace->panel[column->index == 0 ? ENERGY : INVARIANTS], k, TRACE_CURVES);
+    else if (chosen)
+      choose(&trace->panel[MOTION], k, TRACE_CURVES);
+  }
+}
+
+/* ---- the record ---- */
+
+static bool make_room(trace_panel *panel)
+{
+  bool good = true;
+  for (int i = 0; i < panel->curves; i++) {
+    panel->y[i] = calloc(TRACE_MAX, sizeof *panel->y[i]);
+    good = good && panel->y[i] != NULL;
+  }
+  return good;
+}
+
+bool trace_init(run_trace *trace, const run_columns *columns, bool chosen)
+{
+  *trace = (run_trace){.columns = columns, .stride = 1};
+  choose_curves(trace, chosen);
+  trace->t = calloc(TRACE_MAX, sizeof *trace->t);
+  bool good = trace->t != NULL;
+  for (int i = 0; i < TRACE_PANELS; i++) good = make_room(&trace->panel[i]) && good;
+  if (!good) complain("out of memory for the plot");
+  return good;
+}
+
+void trace_clear(run_trace *trace)
+{
+  free(trace->t);
+  for (int i = 0; i < TRACE_PANELS; i++)
+    for (int k = 0; k < trace->panel[i].curves; k++) free(trace->panel[i].y[k]);
+  *trace = (run_trace){.count = 0};
+}
+
+static void keep_every_other(double *x)
+{
+  for (int k = 0; k < TRACE_MAX / 2; k++) x[k] = x[2 * k];
+}
+
+/* Keep every other sample, and from now on only every other one. */
+static void halve(run_trace *trace)
+{
+  keep_every_other(trace->t);
+  for (int i = 0; i < TRACE_PANELS; i++)
+    for (int k = 0; k < trace->panel[i].curves; k++) keep_every_other(trace->panel[i].y[k]);
+  trace->count = TRACE_MAX / 2;
+  trace->stride *= 2;
+}
+
+void trace_add(run_trace *trace, const dvi_integrator *integrator)
+{
+  if (trace->seen++ % trace->stride != 0) return;
+  if (trace->count == TRACE_MAX) {
+    halve(trace);
+    if ((trace->seen - 1) % trace->stride != 0) return;
+  }
+  trace->t[trace->count] = dvi_integrator_time(integrator);
+  for (int i = 0; i < TRACE_PANELS; i++)
+    for (int k = 0; k < trace->panel[i].curves; k++)
+      trace->panel[i].y[k][trace->count] = columns_number(trace->columns, integrator, trace->panel[i].column[k]);
+  trace->count++;
+}
+
+/* ---- the picture ---- */
+
+static const char *name_of(const run_trace *trace, int panel, int k)
+{
+  return trace->columns->column[trace->panel[panel].column[k]].name;
+}
+
+/* "x, y", as far as there is room. */
+static void list_names(const run_trace *trace, int panel, char names[NAMES_SIZE])
+{
+  size_t length = 0;
+  names[0] = '\0';
+  for (int k = 0; k < trace->panel[panel].curves && length < NAMES_SIZE; k++)
+    length += (size_t)snprintf(names + length, NAMES_SIZE - length, "%s%s", k > 0 ? ", " : "", name_of(trace, panel, k));
+}
+
+static void tell(const run_trace *trace, const char *path)
+{
+  static const char *const what[] = {[MOTION] = "over t: ", [ENERGY] = "change since the start: ", [INVARIANTS] = ", "};
+  char text[TRACE_PANELS * (NAMES_SIZE + 64)] = "", names[NAMES_SIZE];
+  size_t length = 0;
+  int left_out = 0;
+  for (int i = 0; i < TRACE_PANELS; i++) {
+    left_out += trace->panel[i].left_out;
+    if (trace->panel[i].curves == 0) continue;
+    const bool begins = i != INVARIANTS || trace->panel[ENERGY].curves == 0;
+    list_names(trace, i, names);
+    length += (size_t)snprintf(text + length, sizeof text - length, "%s%s%s", begins && length > 0 ? "; " : "",
+                               what[begins && i == INVARIANTS ? ENERGY : i], names);
+  }
+  complain("run: --plot %s draws %s%s", path, text, left_out > 0 ? "; --columns chooses others" : "");
+}
+
+/* What is drawn of an invariant is its change. */
+static void subtract_start(const run_trace *trace, const trace_panel *panel)
+{
+  for (int k = 0; k < panel->curves; k++) {
+    const double start = panel->y[k][0];
+    for (int i = 0; i < trace->count; i++) panel->y[k][i] -= start;
+  }
+}
+
+static void fill_panel(const run_trace *trace, int i, plot_curve *curve, plot_panel *made)
+{
+  static const char *const titles[] = {
+      [ENERGY] = "energy - energy at the start", [INVARIANTS] = "invariants: change since the start"};
+  const trace_panel *panel = &trace->panel[i];
+  if (i != MOTION) subtract_start(trace, panel);
+  for (int k = 0; k < panel->curves; k++)
+    curve[k] = (plot_curve){
+        .label = i == ENERGY ? NULL : name_of(trace, i, k), .count = trace->count, .x = trace->t, .y = panel->y[k]};
+  const bool coordinates = trace->columns->column[panel->column[0]].kind == COLUMN_COORDINATE;
+  *made = (plot_panel){.title = i == MOTION ? trace->columns->scene->name : titles[i],
+                       .x_label = "t",
+                       .y_label = i != MOTION   ? "error"
+                                  : coordinates ? "coordinates"
+                                                : "columns",
+                       .smooth = true,
+                       .curves = panel->curves,
+                       .curve = curve};
+}
+
+bool trace_plot(const run_trace *trace, const char *path)
+{
+  plot_curve curves[TRACE_PANELS][TRACE_CURVES];
+  plot_panel panels[TRACE_PANELS];
+  int count = 0;
+  for (int i = 0; i < TRACE_PANELS; i++)
+    if (trace->panel[i].curves > 0) fill_panel(trace, i, curves[i], &panels[count++]);
+  if (count == 0) {
+    complain("run: no plot in '%s': --columns names nothing to draw", path);
+    return true;
+  }
+  tell(trace, path);
+  return plot_write(path, count, panels);
+}

@@ -1,0 +1,76 @@
+#include "bodies/pulls.h"
+
+#include <math.h>
+
+/* r of a pull at point k. */
+static void vector_of(const pull *of, int count, int k, const double *q, double *r)
+{
+  r[0] = r[1] = r[2] = 0.0;
+  for (int a = 0; a < of->arms; a++)
+    for (int i = 0; i < 3; i++) r[i] += of->arm[a].factor * q[(of->arm[a].first + i * of->arm[a].stride) * count + k];
+}
+
+static int value(int count, const double *t, const double *q, double *V, void *user)
+{
+  const pulls *all = user;
+  (void)t;
+  for (int k = 0; k < count; k++) {
+    double r[3];
+    V[k] = 0.0;
+    for (int j = 0; j < all->count; j++) {
+      vector_of(&all->pull[j], count, k, q, r);
+      V[k] -= all->pull[j].strength / sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
+    }
+  }
+  return 0;
+}
+
+static void add_gradient(const pull *of, int count, int k, const double *q, double *V_q)
+{
+  double r[3];
+  vector_of(of, count, k, q, r);
+  const double r2 = r[0] * r[0] + r[1] * r[1] + r[2] * r[2], force = of->strength / (r2 * sqrt(r2));
+  for (int a = 0; a < of->arms; a++)
+    for (int i = 0; i < 3; i++) V_q[(of->arm[a].first + i * of->arm[a].stride) * count + k] += of->arm[a].factor * force * r[i];
+}
+
+static int gradient(int count, const double *t, const double *q, double *V_q, void *user)
+{
+  const pulls *all = user;
+  (void)t;
+  memset(V_q, 0, (size_t)all->nq * (size_t)count * sizeof *V_q);
+  for (int k = 0; k < count; k++)
+    for (int j = 0; j < all->count; j++) add_gradient(&all->pull[j], count, k, q, V_q);
+  return 0;
+}
+
+/* The Hessian of -1/|r| in r is I/|r|^3 - 3 r r^t/|r|^5. */
+static void add_hessian(const pull *of, int nq, int count, int k, const double *q, double *V_qq)
+{
+  double r[3];
+  vector_of(of, count, k, q, r);
+  const double r2 = r[0] * r[0] + r[1] * r[1] + r[2] * r[2], force = of->strength / (r2 * sqrt(r2));
+  for (int a = 0; a < 3 * of->arms; a++)
+    for (int b = 0; b < 3 * of->arms; b++) {
+      const arm *row = &of->arm[a / 3], *column = &of->arm[b / 3];
+      const int i = a % 3, j = b % 3, in_row = row->first + i * row->stride, in_column = column->first + j * column->stride;
+      V_qq[((ptrdiff_t)in_column * nq + in_row) * count + k] += row->factor * column->factor * force *
+                                                                ((i == j ? 1.0 : 0.0) - 3.0 * r[i] * r[j] / r2);
+    }
+}
+
+static int hessian(int count, const double *t, const double *q, double *V_qq, void *user)
+{
+  const pulls *all = user;
+  (void)t;
+  memset(V_qq, 0, (size_t)all->nq * (size_t)all->nq * (size_t)count * sizeof *V_qq);
+  for (int k = 0; k < count; k++)
+    for (int j = 0; j < all->count; j++) add_hessian(&all->pull[j], all->nq, count, k, q, V_qq);
+  return 0;
+}
+
+dvi_potential pulls_potential(const char *name, const pulls *all)
+{
+  return (dvi_potential){
+      .name = name, .value_batch = value, .gradient_batch = gradient, .hessian_batch = hessian, .user = (void *)all};
+}

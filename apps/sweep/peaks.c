@@ -1,0 +1,129 @@
+#define _POSIX_C_SOURCE 200809L
+#include "sweep/peaks.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "cli/command.h"
+#include "cli/crew.h"
+#include "sweep/hills.h"
+#include "cli/progress.h"
+
+enum { LINE_SIZE = 64 };
+
+static const double floor_of_errors = 1e-12;
+
+/* A search under way; the lock guards what stands below it. */
+typedef struct round_of_runs {
+  const resonance_task *task;
+  peaks_found *found;
+  pthread_mutex_t lock;
+  int next; /* the points from here on are still to be run */
+  progress_line progress;
+} round_of_runs;
+
+double peaks_height(const resonance_point *point)
+{
+  return log10(fmin(fmax(point->error, floor_of_errors), RESONANCE_LIMIT)); /* fmax takes a NaN for the floor */
+}
+
+/* ---- runs ---- */
+
+static int take_point(round_of_runs *r)
+{
+  char line[LINE_SIZE];
+  (void)pthread_mutex_lock(&r->lock);
+  const int k = r->next < r->found->count ? r->next++ : -1;
+  (void)snprintf(line, sizeof line, "dvi resonance: %d of %d points so far", r->next, r->found->count);
+  progress_show(&r->progress, -1.0, line);
+  (void)pthread_mutex_unlock(&r->lock);
+  return k;
+}
+
+static void *work(void *user)
+{
+  round_of_runs *r = user;
+  for (int k = take_point(r); k >= 0; k = take_point(r)) resonance_run(r->task, &r->found->point[k]);
+  return NULL;
+}
+
+static int by_value(const void *left, const void *right)
+{
+  const double a = ((const resonance_point *)left)->value, b = ((const resonance_point *)right)->value;
+  return (a > b) - (a < b);
+}
+
+static void run_new(round_of_runs *r, long threads)
+{
+  const long left = r->found->count - r->next;
+  crew_work(threads < left ? threads : left, work, r);
+  qsort(r->found->point, (size_t)r->found->count, sizeof *r->found->point, by_value);
+}
+
+/* ---- points ---- */
+
+static void add_point(peaks_found *found, double value)
+{
+  found->point[found->count++] = (resonance_point){.value = value};
+}
+
+static void add_grid(const peaks_search *search, peaks_found *found)
+{
+  for (long k = 0; k < search->grid; k++)
+    add_point(found, search->from + (search->to - search->from) * (double)k / (double)(search->grid - 1));
+  found->point[found->count - 1].value = search->to;
+}
+
+/* The middles of the gaps that want one; false if there is room for some of them only. */
+static bool add_middles(const peaks_search *search, peaks_found *found, double *x, bool *halve)
+{
+  const int count = found->count;
+  double *y = x + search->most;
+  for (int i = 0; i < count; i++) {
+    x[i] = found->point[i].value;
+    y[i] = peaks_height(&found->point[i]);
+  }
+  const int wanted = hills_gaps(count, x, y, search->width, found->top, halve);
+  for (int i = 0; i + 1 < count && found->count < search->most; i++)
+    if (halve[i]) add_point(found, 0.5 * x[i] + 0.5 * x[i + 1]);
+  return found->count == count + wanted;
+}
+
+static void run_rounds(round_of_runs *r, const peaks_search *search, double *x, bool *halve)
+{
+  progress_start(&r->progress, true);
+  add_grid(search, r->found);
+  while (r->next < r->found->count) {
+    run_new(r, search->threads);
+    r->found->complete = add_middles(search, r->found, x, halve);
+  }
+  progress_end(&r->progress);
+}
+
+bool peaks_find(const resonance_task *task, const peaks_search *search, peaks_found *found)
+{
+  const size_t most = (size_t)search->most;
+  *found = (peaks_found){.point = calloc(most, sizeof *found->point), .top = calloc(most, sizeof *found->top)};
+  round_of_runs r = {.task = task, .found = found};
+  double *x = calloc(2 * most, sizeof *x);
+  bool *halve = calloc(most, sizeof *halve);
+  const bool good = found->point != NULL && found->top != NULL && x != NULL && halve != NULL;
+  (void)pthread_mutex_init(&r.lock, NULL);
+  if (good)
+    run_rounds(&r, search, x, halve);
+  else
+    complain("out of memory");
+  (void)pthread_mutex_destroy(&r.lock);
+  free(x);
+  free(halve);
+  return good;
+}
+
+void peaks_clear(peaks_found *found)
+{
+  free(found->point);
+  free(found->top);
+  *found = (peaks_found){.count = 0};
+}

@@ -1,0 +1,169 @@
+#include "watch/energy_watch.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/command.h"
+
+/* A prime number of steps: a motion whose period is a whole number of them is seen at all its
+ * phases. */
+enum { EVERY_STEP = 32, STRIDE = 61 };
+
+/* The scale is at least this part of the energy itself: of a system at rest there is no other. */
+static const double least_scale = 1e-8;
+
+static bool has_kinetic_energy(const problem *scene)
+{
+  return scene->terms->one_form == NULL && scene->terms->hamiltonian == NULL;
+}
+
+const char *energy_scale_name(const problem *scene)
+{
+  return has_kinetic_energy(scene) ? "kinetic energy" : "energy that the motion exchanges";
+}
+
+static bool add_potential(const dvi_potential *of, double t, const double *q, double *sum)
+{
+  double V = 0.0;
+  const int code = of->value != NULL ? of->value(t, q, &V, of->user) : of->value_batch(1, &t, q, &V, of->user);
+  *sum += V;
+  return code == 0;
+}
+
+static bool potential_energy(const dvi_system_terms *terms, double t, const double *q, double *V)
+{
+  bool good = true;
+  *V = 0.0;
+  for (int k = 0; k < terms->potential_count && good; k++) good = add_potential(&terms->potentials[k], t, q, V);
+  return good;
+}
+
+/* Of a constant mass T = E - V; of a general Lagrangian p.v/2, which is T where it is quadratic
+ * in v. */
+static bool kinetic_energy(energy_watch *w, double t, double energy, double *T)
+{
+  const problem *scene = w->scene;
+  const double *p = dvi_integrator_p(w->integrator);
+  if (scene->terms->lagrangian == NULL) {
+    double V;
+    const bool good = potential_energy(scene->terms, t, dvi_integrator_q(w->integrator), &V);
+    *T = fabs(energy - V);
+    return good;
+  }
+  if (dvi_integrator_interpolate(w->integrator, t, NULL, w->room) != DVI_OK) return false;
+  *T = 0.0;
+  for (int i = 0; i < scene->nv; i++) *T += 0.5 * p[i] * w->room[i];
+  *T = fabs(*T);
+  return true;
+}
+
+/* The energy of a system that has no velocities in it. */
+static bool plain_energy(const dvi_system_terms *terms, double t, const double *q, const double *p, double *H)
+{
+  if (terms->hamiltonian != NULL) return terms->hamiltonian->value(t, q, p, H, terms->hamiltonian->user) == 0;
+  return potential_energy(terms, t, q, H);
+}
+
+/* By how much the energy changes if one number goes back to the start, times how many numbers
+ * there are: each look takes the next one. */
+static bool exchange(energy_watch *w, double t, double energy, double *change)
+{
+  const problem *scene = w->scene;
+  const int numbers = scene->nq + (scene->terms->hamiltonian != NULL ? scene->nv : 0);
+  double back = 0.0;
+  memcpy(w->room, dvi_integrator_q(w->integrator), (size_t)scene->nq * sizeof *w->room);
+  memcpy(w->room + scene->nq, dvi_integrator_p(w->integrator), (size_t)scene->nv * sizeof *w->room);
+  w->room[w->next] = w->start[w->next];
+  const bool good = plain_energy(scene->terms, t, w->room, w->room + scene->nq, &back) && isfinite(back);
+  *change = good ? numbers * fabs(energy - back) : 0.0;
+  w->next = (w->next + 1) % numbers;
+  return true;
+}
+
+static double mean(const energy_watch *w)
+{
+  const double span = fabs(w->t - w->t_start);
+  return fmax(span > 0.0 ? w->exchanged / span : 0.0, least_scale * fabs(w->first));
+}
+
+static double ratio_of(const energy_look *look, double scale)
+{
+  return look->error > 0.0 ? look->error / fmax(scale, look->local) : 0.0;
+}
+
+/* Of two neighbours the worse one stays. */
+static void halve(energy_watch *w)
+{
+  const double scale = mean(w);
+  for (int k = 0; k < ENERGY_LOOKS_MAX / 2; k++) {
+    const energy_look *one = &w->look[2 * k], *other = one + 1;
+    w->look[k] = ratio_of(one, scale) < ratio_of(other, scale) ? *other : *one;
+  }
+  w->looks = ENERGY_LOOKS_MAX / 2;
+}
+
+/* What cannot be evaluated ends the watch, and nothing else. */
+static void look(energy_watch *w)
+{
+  const double t = dvi_integrator_time(w->integrator);
+  double energy, T;
+  const bool kinetic = has_kinetic_energy(w->scene);
+  w->blind = dvi_integrator_invariant(w->integrator, 0, &energy) != DVI_OK ||
+             !(kinetic ? kinetic_energy : exchange)(w, t, energy, &T) || !isfinite(energy) || !isfinite(T);
+  if (w->blind) return;
+  w->exchanged += T * fabs(t - w->t);
+  w->t = t;
+  if (w->looks == ENERGY_LOOKS_MAX) halve(w);
+  w->look[w->looks++] = (energy_look){t, fabs(energy - w->first), kinetic ? T : 0.0};
+  if (isnan(w->passed) && ratio_of(&w->look[w->looks - 1], mean(w)) > w->bound) w->passed = t;
+}
+
+bool energy_look_due(long steps)
+{
+  return steps <= EVERY_STEP || steps % STRIDE == 0;
+}
+
+bool energy_watch_start(energy_watch *w, const problem *scene, dvi_integrator *integrator, double bound)
+{
+  const size_t nq = (size_t)scene->nq, nv = (size_t)scene->nv;
+  *w = (energy_watch){.scene = scene, .integrator = integrator, .bound = bound, .passed = (double)NAN, .blind = true};
+  if (!dvi_system_autonomous(scene->system)) return true;
+  w->room = calloc(2 * (nq + nv), sizeof *w->room);
+  if (w->room == NULL) return library_error(DVI_NO_MEMORY) == DONE;
+  double *start = w->room + nq + nv;
+  memcpy(start, dvi_integrator_q(integrator), nq * sizeof *start);
+  memcpy(start + nq, dvi_integrator_p(integrator), nv * sizeof *start);
+  w->start = start;
+  w->t = w->t_start = dvi_integrator_time(integrator);
+  w->blind = dvi_integrator_invariant(integrator, 0, &w->first) != DVI_OK;
+  return true;
+}
+
+void energy_watch_clear(energy_watch *w)
+{
+  free(w->room);
+  w->room = NULL;
+}
+
+void energy_watch_step(energy_watch *w)
+{
+  w->steps++;
+  if (!w->blind && energy_look_due(w->steps)) look(w);
+}
+
+energy_verdict energy_watch_end(energy_watch *w)
+{
+  energy_verdict verdict = {.ratio = (double)NAN, .passed = (double)NAN};
+  if (!w->blind && dvi_integrator_time(w->integrator) != w->t) look(w);
+  const double scale = mean(w);
+  for (int k = 0; k < w->looks; k++) {
+    const energy_look *seen = &w->look[k];
+    const double ratio = ratio_of(seen, scale);
+    if (ratio <= verdict.ratio) continue;
+    verdict.ratio = ratio;
+    verdict.t = seen->t;
+  }
+  if (verdict.ratio > w->bound) verdict.passed = isnan(w->passed) ? verdict.t : w->passed;
+  return verdict;
+}

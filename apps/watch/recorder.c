@@ -1,0 +1,223 @@
+#include "watch/recorder.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "watch/alarms.h"
+#include "csv/columns.h"
+#include "cli/command.h"
+#include "watch/energy_report.h"
+#include "watch/energy_watch.h"
+#include "csv/events.h"
+#include "cli/file.h"
+#include "cli/progress.h"
+#include "cli/signals.h"
+#include "plot/trace.h"
+
+/* A run under way. */
+typedef struct recorder {
+  const run_request *request;
+  const problem *scene;
+  whole_file out, events_out;
+  run_columns columns;
+  event_list events;
+  alarm_list alarms;
+  run_trace trace;
+  progress_line progress;
+  double t_start, t;        /* where the run began; where the last observed step ended */
+  double shortest, longest; /* steps, of methods that choose them; 0: none yet */
+  energy_watch watch;
+  long steps_taken, given_steps;
+  long step;    /* counted from t = 0, so that a resumed run writes the rows of an uninterrupted one */
+  bool chooses; /* the method chooses its steps */
+  bool begun, row_written, stop_silently;
+  const volatile sig_atomic_t *caught; /* the signal that ends the run after its step; 0: none yet */
+} recorder;
+
+static const char ended_again[] = "dvi: run: a second Ctrl-C ended the run at once; FILEs not yet complete stay as they were\n";
+
+/* main complains about standard output. */
+static bool written(const whole_file *file)
+{
+  if (!ferror(file->stream)) return true;
+  if (file->path != NULL) complain("cannot write '%s': %s", file->path, strerror(errno));
+  return false;
+}
+
+static bool write_row(recorder *r, dvi_integrator *integrator)
+{
+  columns_row(&r->columns, integrator, r->out.stream);
+  r->row_written = true;
+  return written(&r->out);
+}
+
+/* An event was found. */
+static int write_event(int index, double t, const double *q, const double *v, void *user)
+{
+  recorder *r = user;
+  if (r->events_out.stream == NULL) return 0;
+  events_row(r->scene, index, t, q, v, r->events_out.stream);
+  r->stop_silently = !written(&r->events_out);
+  return r->stop_silently ? -1 : 0;
+}
+
+static bool row_is_due(const recorder *r)
+{
+  return !r->request->final && (!r->begun || r->step % r->request->every == 0);
+}
+
+/* The lengths that the method chose: not that of the step that ends the run on time. */
+static void note_step(recorder *r, const dvi_integrator *integrator)
+{
+  const double length = fabs(dvi_integrator_last_step(integrator));
+  dvi_energy_balance energy = {0};
+  (void)dvi_integrator_energy_balance(integrator, &energy);
+  if (energy.given_steps > r->given_steps) {
+    r->given_steps = energy.given_steps;
+    return;
+  }
+  r->shortest = r->steps_taken == 0 ? length : fmin(r->shortest, length);
+  r->longest = fmax(r->longest, length);
+  r->steps_taken++;
+}
+
+/* The driver calls this at the start, after each step, and once more at the end. */
+static int observe(dvi_integrator *integrator, void *user)
+{
+  recorder *r = user;
+  const double t = dvi_integrator_time(integrator);
+  if (r->begun && t == r->t) return 0;
+  r->t = t;
+  r->step += r->begun;
+  if (r->begun) energy_watch_step(&r->watch);
+  if (r->chooses && r->begun) note_step(r, integrator);
+  r->row_written = false;
+  const bool row = row_is_due(r);
+  r->begun = true;
+  bool good = true;
+  if (row || r->trace.t != NULL) good = columns_measure(&r->columns, integrator);
+  if (good && row) good = write_row(r, integrator);
+  if (good) good = alarms_look(&r->alarms, integrator);
+  if (good && r->trace.t != NULL) trace_add(&r->trace, integrator);
+  if (r->progress.shown) progress_show(&r->progress, (t - r->t_start) / (r->request->t_end - r->t_start), "dvi run");
+  r->stop_silently = !good;
+  return good ? 0 : -1;
+}
+
+/* The last state is always a row, whatever --every says. */
+static bool write_last_row(recorder *r, dvi_integrator *integrator)
+{
+  return r->row_written || (columns_measure(&r->columns, integrator) && write_row(r, integrator));
+}
+
+/* The number of the step that ends at t on the grid 0, h, 2h, ...; 0 if t is not on it. In another time there is no such grid, but a count. */
+static long step_number(const dvi_integrator *integrator, double t, double h)
+{
+  dvi_counters counters;
+  dvi_integrator_counters(integrator, &counters);
+  if (dvi_integrator_monitor(integrator) != NULL) return counters.steps;
+  const double steps = t / h;
+  return steps > 0.0 && steps < 1e15 && fabs(steps - round(steps)) < 1e-6 ? lround(steps) : 0;
+}
+
+static void say_interrupted(const recorder *r)
+{
+  complain("run: signal %d ended the run at t = %.17g of %g; the output is complete up to there", (int)*r->caught, r->t,
+           r->request->t_end);
+  if (r->request->checkpoint != NULL) complain("run: continue with --resume %s", r->request->checkpoint);
+}
+
+/* Of methods that choose their steps: what they chose, and where the energy jumped. */
+static void say_steps(const recorder *r, const dvi_integrator *integrator)
+{
+  dvi_energy_balance energy;
+  if (!r->chooses || r->steps_taken == 0) return;
+  complain("run: %ld step%s of %.3g to %.3g", r->steps_taken, r->steps_taken == 1 ? "" : "s", r->shortest, r->longest);
+  if (dvi_integrator_energy_balance(integrator, &energy) != DVI_OK) return;
+  if (energy.fallbacks == 0)
+    complain("run: no step was a fallback: the discrete energy is that of the start%s",
+             energy.work != 0 ? " and the drive's work" : "");
+  else
+    complain("run: %ld fallback%s to the least-squares step; the largest energy jump is %.3g, the last %.3g, all together %.3g",
+             energy.fallbacks, energy.fallbacks == 1 ? "" : "s", energy.largest_jump, energy.last_jump,
+             energy.jumps - energy.given_jumps);
+  if (energy.given_steps > 0)
+    complain("run: %ld ordinary step%s of given length, to end on time: energy jump %.3g", energy.given_steps,
+             energy.given_steps == 1 ? "" : "s", energy.given_jumps);
+}
+
+/* Drive the integrator to the end and write all rows. */
+static int advance(recorder *r, dvi_integrator *integrator)
+{
+  const run_request *request = r->request;
+  const dvi_run_options options = {.h = request->h,
+                                   .t_end = request->t_end,
+                                   .observe = observe,
+                                   .user = r,
+                                   .events = r->events.event,
+                                   .event_count = r->events.count,
+                                   .checkpoint = request->checkpoint,
+                                   .checkpoint_every = request->checkpoint_every,
+                                   .cancel = r->caught};
+  r->t_start = dvi_integrator_time(integrator);
+  r->step = step_number(integrator, r->t_start, request->h);
+  columns_header(&r->columns, r->out.stream);
+  if (r->events_out.stream != NULL) events_header(r->scene, r->events_out.stream);
+  progress_start(&r->progress, request->final || r->out.path != NULL);
+  dvi_run_report report;
+  const dvi_status status = dvi_run(integrator, &options, &report);
+  progress_end(&r->progress);
+  /* Said at once: what is asked below may leave a sentence of its own. */
+  const int code = status == DVI_OK ? DONE : r->stop_silently ? FAILED : library_error(status);
+  say_steps(r, integrator);
+  events_tell(&r->events, "run", &report);
+  alarms_tell(&r->alarms);
+  energy_tell(&r->watch, r->request);
+  if (r->stop_silently) return FAILED;
+  const bool complete = (status != DVI_OK && request->final) || write_last_row(r, integrator);
+  if (status != DVI_OK) return code;
+  if (*r->caught != 0) say_interrupted(r);
+  return !complete ? FAILED : *r->caught != 0 ? 128 + (int)*r->caught : DONE;
+}
+
+/* Whether what was written is to stay: all but what a failure has cut short. */
+static bool to_be_kept(int code)
+{
+  return code == DONE || code > CHECK_FAILED;
+}
+
+static int write_files(recorder *r, dvi_integrator *integrator)
+{
+  const run_request *request = r->request;
+  int code = FAILED;
+  const bool chosen = request->columns != NULL || r->scene->column != NULL;
+  if (request->plot != NULL && !trace_init(&r->trace, &r->columns, chosen)) {
+    trace_clear(&r->trace);
+    return FAILED;
+  }
+  if (file_open(&r->out, request->out) && (request->events == NULL || file_open(&r->events_out, request->events)))
+    code = advance(r, integrator);
+  if (to_be_kept(code) && !file_keep(&r->out)) code = FAILED;
+  if (to_be_kept(code) && request->events != NULL && !file_keep(&r->events_out)) code = FAILED;
+  if (to_be_kept(code) && request->plot != NULL && !trace_plot(&r->trace, request->plot)) code = FAILED;
+  file_discard(&r->out);
+  file_discard(&r->events_out);
+  trace_clear(&r->trace);
+  return code;
+}
+
+int record(const run_request *request, const problem *scene, dvi_integrator *integrator)
+{
+  recorder r = {.request = request, .scene = scene, .chooses = dvi_integrator_chooses_steps(integrator)};
+  int code = columns_choose(&r.columns, scene, integrator, request->columns);
+  if (code == DONE) code = alarms_read(&r.alarms, scene, &request->alarms);
+  if (code == DONE && !energy_watch_start(&r.watch, scene, integrator, energy_bound(scene, request->method))) code = FAILED;
+  r.caught = signals_note(ended_again);
+  if (code == DONE) code = events_list(&r.events, scene, write_event, &r) ? write_files(&r, integrator) : FAILED;
+  events_clear(&r.events);
+  energy_watch_clear(&r.watch);
+  columns_clear(&r.columns);
+  return code;
+}
