@@ -12,6 +12,7 @@ BEGIN {
   sees["system"] = "core num group"
   sees["system/term"] = "core num system"
   sees["system/evaluate"] = "core num system system/term"
+  sees["system/dynamics"] = "core num system system/term system/evaluate"
   sees["system/chart"] = "core num group system system/evaluate"
   sees["system/rescale"] = "core num system system/evaluate system/term"
   sees["system/check"] = "core num system system/evaluate system/term"

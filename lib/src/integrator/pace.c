@@ -9,6 +9,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "integrator/integrator_struct.h"
+#include "system/evaluate/dynamics.h"
 
 /* ---- create, destroy ---- */
 
@@ -78,6 +79,7 @@ dvi_status dvi__pace_slope(dvi__pace *pace, const double *q, double *g_q)
 
 static dvi_status check_method(const dvi_integrator *I)
 {
+  const char *symmetric = I->system->dynamics->symmetric;
   if (I->stepper.method->chooses_steps)
     return dvi__fail(DVI_UNSUPPORTED, "%s chooses the lengths of its steps itself", I->stepper.method->name);
   if (I->pace->pacing == DVI__TRANSFORM || I->stepper.symmetric) return DVI_OK;
@@ -85,8 +87,7 @@ static dvi_status check_method(const dvi_integrator *I)
                    "%s is not symmetric, and only that keeps energies from drifting when steps change; "
                    "choose %s",
                    I->stepper.specification,
-                   I->system->terms & DVI__ONE_FORM ? "dg, dg-phase, dvrk, or vprk with its symmetric projection"
-                                                    : "a symmetric quadrature, one-step method or type, or the time transform");
+                   symmetric != NULL ? symmetric : "a symmetric quadrature, one-step method or type, or the time transform");
 }
 
 static dvi_status create(const dvi_system *system, const dvi_monitor *monitor, dvi__pacing pacing, const char *method,
@@ -96,7 +97,7 @@ static dvi_status create(const dvi_system *system, const dvi_monitor *monitor, d
   if (integrator == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "integrator: no place for the result");
   *integrator = NULL;
   if (monitor == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "integrator: the monitor is NULL");
-  if (system != NULL && system->terms & DVI__FACTORS)
+  if (system != NULL && system->dynamics->on_manifold)
     return dvi__fail(DVI_UNSUPPORTED,
                      "%s: the system has factors, and monitors are functions of coordinates of R^n; take steps of equal length",
                      what);
@@ -160,7 +161,7 @@ void dvi__pace_set_energy(dvi__pace *pace, double energy)
 static dvi_status energy_at(dvi_integrator *I, double t, const double *q, const double *v, const double *momenta, double *energy)
 {
   double L, *p = I->pace->g_q;
-  if (I->system->terms & DVI__PHASE_SPACE) return dvi__lagrangian_value(I->evaluator, 1, &t, q, momenta, energy);
+  if (I->system->dynamics->by_momentum) return dvi__lagrangian_value(I->evaluator, 1, &t, q, momenta, energy);
   DVI_TRY(dvi__lagrangian_value(I->evaluator, 1, &t, q, v, &L));
   DVI_TRY(dvi__lagrangian_gradient(I->evaluator, 1, &t, q, v, NULL, p));
   *energy = -L;

@@ -103,7 +103,7 @@ const dvi__method dvi__dg_phase = {
     .summary = "discontinuous Galerkin with constraints phi(q,p) = 0 at the averages; order 2 degree; degenerate systems only",
     .cite = "KrausYoshimuraPeng",
     .keys = keys,
-    .uses = DVI__ONE_FORM | DVI__POTENTIAL | DVI__HAMILTONIAN,
+    .uses = DVI__ONE_FORM | DVI__POTENTIAL | DVI__CONSTRAINED_HAMILTONIAN,
     .create = create,
     .step = step,
     .multiplier = multiplier,

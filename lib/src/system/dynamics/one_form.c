@@ -10,7 +10,17 @@
 #include "core/status.h"
 #include "num/finite.h"
 #include "num/pfaffian.h"
+#include "system/dynamics/one_form.h"
 #include "system/evaluate/evaluator_struct.h"
+#include "system/gauge.h"
+#include "system/term/declare.h"
+#include "system/term/term.h"
+
+/* The entries of Omega, in the order of the term's omega. */
+static double *entries_of(const dvi__evaluator *e)
+{
+  return e->own;
+}
 
 /* An entry of the gradients; 0 outside of their pattern. */
 static double entry(const dvi__pattern *pattern, const double *values, int row, int column)
@@ -19,7 +29,7 @@ static double entry(const dvi__pattern *pattern, const double *values, int row, 
   return e >= 0 ? values[e] : 0;
 }
 
-/* Omega at q into e->two_form, in the order of the term's omega. */
+/* Omega at q. */
 static dvi_status evaluate(dvi__evaluator *e, const double *q)
 {
   const dvi__lagrangian_term *l = e->system->lagrangian;
@@ -27,14 +37,14 @@ static dvi_status evaluate(dvi__evaluator *e, const double *q)
   DVI_TRY(dvi__form_gradients(l, q, alpha_q, e->scratch.result[0]));
   for (int j = 0; j < e->system->n; j++)
     for (int k = l->omega.start[j]; k < l->omega.start[j + 1]; k++)
-      e->two_form[k] = entry(&l->qv, alpha_q, l->omega.row[k], j) - entry(&l->qv, alpha_q, j, l->omega.row[k]);
+      entries_of(e)[k] = entry(&l->qv, alpha_q, l->omega.row[k], j) - entry(&l->qv, alpha_q, j, l->omega.row[k]);
   return DVI_OK;
 }
 
 dvi_status dvi__two_form_factor(dvi__evaluator *e, const double *q)
 {
   DVI_TRY(evaluate(e, q));
-  const dvi_status status = dvi__linear_factor(e->velocity, e->two_form);
+  const dvi_status status = dvi__linear_factor(e->velocity, entries_of(e));
   return status == DVI_SINGULAR ? dvi__fail(status, "the two-form of the one-form is singular at this point") : status;
 }
 
@@ -50,12 +60,13 @@ static void fill_dense(const dvi__evaluator *e, double *Omega)
   const size_t n = (size_t)e->system->n;
   memset(Omega, 0, n * n * sizeof(double));
   for (size_t j = 0; j < n; j++)
-    for (int k = omega->start[j]; k < omega->start[j + 1]; k++) Omega[j * n + (size_t)omega->row[k]] = e->two_form[k];
+    for (int k = omega->start[j]; k < omega->start[j + 1]; k++) Omega[j * n + (size_t)omega->row[k]] = entries_of(e)[k];
 }
 
-dvi_status dvi__two_form_side(dvi__evaluator *e, const double *q, int *side)
+static dvi_status two_form_side(dvi__evaluator *e, const double *q, const double *p, int *side)
 {
   double Omega[DVI__SIDES_MOST * DVI__SIDES_MOST];
+  (void)p;
   *side = 1;
   if (e->system->n > DVI__SIDES_MOST) return DVI_OK;
   DVI_TRY(evaluate(e, q));
@@ -64,7 +75,7 @@ dvi_status dvi__two_form_side(dvi__evaluator *e, const double *q, int *side)
   return DVI_OK;
 }
 
-dvi_status dvi__two_form_velocity(dvi__evaluator *e, double t, const double *q, double *v)
+static dvi_status two_form_velocity(dvi__evaluator *e, double t, const double *q, double *v)
 {
   const size_t n = (size_t)e->system->n;
   DVI_TRY(dvi__two_form_factor(e, q));
@@ -80,7 +91,7 @@ dvi_status dvi__two_form_residual(dvi__evaluator *e, double t, const double *q, 
   DVI_TRY(dvi__potentials_gradient(e, 1, &t, q, F));
   for (int i = 0; i < e->system->n; i++) F[i] = -F[i];
   for (int j = 0; j < e->system->n; j++)
-    for (int k = omega->start[j]; k < omega->start[j + 1]; k++) F[omega->row[k]] += e->two_form[k] * v[j];
+    for (int k = omega->start[j]; k < omega->start[j + 1]; k++) F[omega->row[k]] += entries_of(e)[k] * v[j];
   return DVI_OK;
 }
 
@@ -198,7 +209,7 @@ dvi_status dvi__form_definite(dvi__evaluator *e, const double *q, int sign, doub
   return good < 2 * n ? refuse_near_one(sign, size) : DVI_OK;
 }
 
-dvi_status dvi__form_distance(dvi__evaluator *e, const double *q, const double *p, double *distance)
+static dvi_status form_distance(dvi__evaluator *e, const double *q, const double *p, double *distance)
 {
   double *alpha = e->point[2], largest = 0;
   DVI_TRY(dvi__form_value(e->system->lagrangian, q, alpha, e->scratch.result[0]));
@@ -223,15 +234,16 @@ static dvi_status size_of_form(dvi__evaluator *e, const double *q, const double 
   return DVI_OK;
 }
 
-dvi_status dvi__form_size(dvi__evaluator *e, const double *q, double *size)
+static dvi_status form_size(dvi__evaluator *e, const double *q, const double *p, double *size)
 {
   double *alpha = e->point[2];
+  (void)p;
   *size = 0;
   DVI_TRY(dvi__form_value(e->system->lagrangian, q, alpha, e->scratch.result[0]));
   return size_of_form(e, q, alpha, size);
 }
 
-dvi_status dvi__form_constraint(dvi__evaluator *e, const double *q, const double *p)
+static dvi_status check_form(dvi__evaluator *e, const double *q, const double *p)
 {
   double *alpha = e->point[2], size = 0;
   DVI_TRY(dvi__form_value(e->system->lagrangian, q, alpha, e->scratch.result[0]));
@@ -277,7 +289,7 @@ static dvi_status measure(dvi__evaluator *e, const double *q, double *Omega, dou
   const dvi__pattern *omega = &e->system->lagrangian->omega;
   const dvi_status status = dvi__two_form_factor(e, q);
   if (status != DVI_OK && status != DVI_SINGULAR) return status;
-  if (condition != NULL) *condition = status == DVI_OK ? norm(omega, e->two_form) * inverse_norm(e) : HUGE_VAL;
+  if (condition != NULL) *condition = status == DVI_OK ? norm(omega, entries_of(e)) * inverse_norm(e) : HUGE_VAL;
   if (Omega != NULL) fill_dense(e, Omega);
   return DVI_OK;
 }
@@ -286,15 +298,15 @@ static dvi_status measure(dvi__evaluator *e, const double *q, double *Omega, dou
  * which in two dimensions is always 1. */
 static const double straight = 2, large_condition = 1e6;
 
-int dvi__two_form_ends(dvi__evaluator *e, double t, const double *q, double h, double *v, double *ahead)
+static int two_form_ends(dvi__evaluator *e, double t, const double *q, double h, double *v, double *ahead)
 {
   int here, there;
   double condition;
-  if (measure(e, q, NULL, &condition) != DVI_OK || dvi__two_form_side(e, q, &here) != DVI_OK) return 0;
+  if (measure(e, q, NULL, &condition) != DVI_OK || two_form_side(e, q, NULL, &here) != DVI_OK) return 0;
   if (condition > large_condition) return 1;
-  if (dvi__two_form_velocity(e, t, q, v) != DVI_OK) return 0;
+  if (two_form_velocity(e, t, q, v) != DVI_OK) return 0;
   for (int i = 0; i < e->system->n; i++) ahead[i] = q[i] + straight * h * v[i];
-  return dvi__two_form_side(e, ahead, &there) == DVI_OK && there != here;
+  return two_form_side(e, ahead, NULL, &there) == DVI_OK && there != here;
 }
 
 dvi_status dvi_system_two_form(const dvi_system *system, const double *q, double *Omega, double *condition)
@@ -308,3 +320,119 @@ dvi_status dvi_system_two_form(const dvi_system *system, const double *q, double
   dvi__evaluator_destroy(&e);
   return status;
 }
+
+/* ---- the kind ---- */
+
+static int one_form_is_declared(const dvi_system_terms *terms)
+{
+  return terms->one_form != NULL;
+}
+
+static dvi_status join_two_form(dvi__lagrangian_term *term)
+{
+  dvi__pattern vq;
+  DVI_TRY(dvi__pattern_transpose(&term->qv, &vq));
+  const dvi_status status = dvi__pattern_union(&term->qv, &vq, &term->omega);
+  dvi__pattern_clear(&vq);
+  return status;
+}
+
+/* alpha(q).v is a Lagrangian whose L_qv holds the gradients of alpha, and whose L_vv has no entries. */
+static dvi_status declare_one_form(const dvi_system_terms *terms, dvi_system *s)
+{
+  const dvi_one_form *given = terms->one_form;
+  if (given->value == NULL || given->gradient == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "system: the one-form has no %s callback", given->value == NULL ? "value" : "gradient");
+  if (s->n % 2 != 0)
+    return dvi__fail(DVI_BAD_SIZE, "system: dimension %d with a one-form; its two-form is singular unless the dimension is even",
+                     s->n);
+  s->terms |= DVI__ONE_FORM;
+  dvi__lagrangian_term *term = s->lagrangian = DVI_NEW(dvi__lagrangian_term, 1);
+  if (term == NULL) return dvi__fail(DVI_NO_MEMORY, "system: no memory for its terms");
+  term->name = "one-form";
+  term->one_form = *given;
+  DVI_TRY(dvi__pattern_copy_symmetric(&given->qq, s->n, "one-form: d2(alpha.v)/dq2", &term->qq));
+  DVI_TRY(dvi__pattern_copy(&given->gradients, s->n, "one-form: gradients", &term->qv));
+  DVI_TRY(dvi__pattern_empty(s->n, &term->vv));
+  if (terms->gauge != NULL) DVI_TRY(dvi__gauge_join(terms->gauge, term));
+  DVI_TRY(join_two_form(term));
+  DVI_TRY(dvi__pattern_union(&term->qv, &term->qv, &s->qv));
+  DVI_TRY(dvi__pattern_empty(s->n, &s->vv));
+  return dvi__general_has_hessian(term) ? DVI_OK : dvi__general_group(term);
+}
+
+static dvi_status prepare_two_form(dvi__evaluator *e, dvi__derivatives most)
+{
+  const dvi__pattern *omega = &e->system->lagrangian->omega;
+  (void)most;
+  e->own = DVI_NEW(double, dvi__pattern_entries(omega));
+  if (e->own == NULL) return dvi__fail(DVI_NO_MEMORY, "evaluator: no memory for the two-form");
+  return dvi__linear_create(omega, dvi__linear_for_exchanges(omega), e->counters, &e->velocity);
+}
+
+static void release_two_form(dvi__evaluator *e)
+{
+  dvi__release(e->own);
+}
+
+static dvi_status velocity_by_two_form(dvi__evaluator *e, double t, const double *q, const double *p, double *v)
+{
+  double *found = e->velocity_search;
+  (void)p;
+  DVI_TRY(two_form_velocity(e, t, q, found));
+  memcpy(v, found, (size_t)e->system->n * sizeof *v);
+  return DVI_OK;
+}
+
+static dvi_status two_form_is_regular(dvi__evaluator *e, double t, const double *q, const double *v)
+{
+  (void)t, (void)v;
+  return dvi__two_form_factor(e, q);
+}
+
+/* H = -L(t,q,0) wants no velocity. */
+static dvi_status energy_at_rest(dvi__evaluator *e, double t, const double *q, const double *v, const double *p, double *E)
+{
+  double L, *rest = e->point[2];
+  (void)v, (void)p;
+  memset(rest, 0, (size_t)e->system->n * sizeof *rest);
+  DVI_TRY(dvi__value_of_point(e, t, q, rest, &L));
+  *E = 0 - L;
+  return DVI_OK;
+}
+
+static dvi_status project_on_form(dvi__evaluator *e, double t, double *q, double *p)
+{
+  double *rest = e->point[2];
+  memset(rest, 0, (size_t)e->system->n * sizeof *rest);
+  return dvi__momentum_of_point(e, t, q, rest, p);
+}
+
+static const dvi__state_constraint by_form = {
+    .matrix = "two-form of the one-form",
+    .check = check_form,
+    .project = project_on_form,
+    .distance = form_distance,
+    .size = form_size,
+    .side = two_form_side,
+    .ends = two_form_ends,
+};
+
+const dvi__dynamics dvi__dynamics_one_form = {
+    .name = "one-form",
+    .function = "Lagrangian",
+    .equations = DVI__FIRST_ORDER,
+    .symmetric = "dg, dg-phase, dvrk, or vprk with its symmetric projection",
+    .is_declared = one_form_is_declared,
+    .declare = declare_one_form,
+    .prepare = prepare_two_form,
+    .release = release_two_form,
+    .velocity = velocity_by_two_form,
+    .regular = two_form_is_regular,
+    .motion = dvi__motion_of_lagrangian,
+    .energy = energy_at_rest,
+    .value = dvi__value_of_point,
+    .forces = dvi__forces_of_point,
+    .momentum = dvi__momentum_of_point,
+    .constraint = &by_form,
+};

@@ -1,4 +1,5 @@
-/* The Legendre map p = L_v(t,q,v) and its inverse.  Source: Marsden and West 2001, sec. 1.2.5.
+/* A general Lagrangian L(t,q,v): q' = v, p' = L_q, p = L_v.
+ * Source: Marsden and West 2001, sec. 1.2.5 (the Legendre map p = L_v and its inverse).
  *
  * The inverse is Newton's method on p - L_v = 0, damped by the natural monotonicity test: a step d = L_vv^{-1} (p - L_v) is taken in full, or by
  * halves, so that the next simplified step, with the same L_vv, is shorter (Deuflhard 2004, sec. 3.3). Steps out of the domain of L, as beyond
@@ -9,9 +10,9 @@
 
 #include "core/status.h"
 #include "num/finite.h"
-#include "system/chart/charted.h"
-#include "system/evaluate/dirac.h"
+#include "system/evaluate/dynamics.h"
 #include "system/evaluate/evaluator_struct.h"
+#include "system/term/declare.h"
 
 enum { MOST_ITERATIONS = 100, MOST_HALVINGS = 30 };
 
@@ -94,11 +95,6 @@ static dvi_status newton(search *s)
   return dvi__fail(DVI_NOT_CONVERGED, "Newton's method does not settle (change %.1e)", size);
 }
 
-static dvi_status degenerate(double t)
-{
-  return dvi__fail_in(DVI_SINGULAR, "the Lagrangian is degenerate at t = %.6g: d2L/dv2 cannot be inverted", t);
-}
-
 /* Newton's method from the guess in v, then from velocities along the momentum: a Lagrangian may be regular only away from v = 0, as v^4/4
  * is, or have its solution beyond a point where L_vv is singular. */
 static dvi_status newton_from_guesses(search *s)
@@ -112,7 +108,7 @@ static dvi_status newton_from_guesses(search *s)
     status = newton(s);
     singular += status == DVI_SINGULAR;
   }
-  if (singular == 1 + guesses) return degenerate(s->t);
+  if (singular == 1 + guesses) return dvi__lagrangian_is_degenerate(s->t);
   if (status == DVI_SINGULAR || status == DVI_NOT_CONVERGED)
     return dvi__fail(DVI_NOT_CONVERGED,
                      "no velocity found for the momentum at t = %.6g: Newton's method did not settle from any of %d guesses", s->t,
@@ -120,59 +116,63 @@ static dvi_status newton_from_guesses(search *s)
   return status;
 }
 
-/* With factors, in the charts at q: the mass is constant in the stored coordinates, so that p = L_vv v. */
-static dvi_status factor_mass(dvi__evaluator *e, double t, const double *q)
-{
-  dvi__charted_centre(e->charted, q);
-  dvi__charted_mass(e->charted, e->mass);
-  const dvi_status status = dvi__linear_factor(e->velocity, e->mass);
-  return status == DVI_SINGULAR ? degenerate(t) : status;
-}
-
-static dvi_status not_finite(double t)
-{
-  return dvi__fail(DVI_NOT_FINITE, "the velocity M^-1 p at t = %.6g is not finite", t);
-}
-
-static dvi_status inverse_in_charts(dvi__evaluator *e, double t, const double *q, const double *p, double *v)
-{
-  DVI_TRY(factor_mass(e, t, q));
-  dvi__charted_enter(e->charted, p, e->local);
-  dvi__linear_solve(e->velocity, e->local);
-  if (dvi__first_not_finite((size_t)e->system->nx, e->local) >= 0) return not_finite(t);
-  dvi__charted_store(e->charted, e->local, v);
-  return DVI_OK;
-}
-
-dvi_status dvi__legendre_inverse(dvi__evaluator *e, double t, const double *q, const double *p, double *v)
+dvi_status dvi__search_velocity(dvi__evaluator *e, double t, const double *q, const double *p, double *v)
 {
   const size_t n = (size_t)e->system->n;
   double *found = e->velocity_search;
-  if (e->system->cells != NULL) return inverse_in_charts(e, t, q, p, v);
-  if (e->system->lagrangian == NULL) {
-    found = e->point[1];
-    dvi__mass_solve(e, 1, p, found);
-    if (dvi__first_not_finite(n, found) >= 0) return not_finite(t);
-  } else if (e->system->terms & DVI__ONE_FORM) {
-    DVI_TRY(dvi__two_form_velocity(e, t, q, found));
-  } else if (e->system->terms & DVI__PHASE_SPACE) {
-    DVI_TRY(dvi__dirac_motion(e, t, q, p, found, found + n, NULL));
-  } else {
-    search s = {e, t, q, p, found, found + n, found + 2 * n, found + 3 * n, found + 4 * n, found + 5 * n};
-    memcpy(found, v, n * sizeof(double));
-    DVI_TRY(newton_from_guesses(&s));
-  }
+  search s = {e, t, q, p, found, found + n, found + 2 * n, found + 3 * n, found + 4 * n, found + 5 * n};
+  memcpy(found, v, n * sizeof(double));
+  DVI_TRY(newton_from_guesses(&s));
   memcpy(v, found, n * sizeof(double));
   return DVI_OK;
 }
 
-dvi_status dvi__legendre_regular(dvi__evaluator *e, double t, const double *q, const double *v)
+dvi_status dvi__velocity_hessian_is_regular(dvi__evaluator *e, double t, const double *q, const double *v)
 {
   const double *L_vv;
-  if (e->system->cells != NULL) return factor_mass(e, t, q);
-  if (e->system->lagrangian == NULL) return DVI_OK;
-  if (e->system->terms & DVI__ONE_FORM) return dvi__two_form_factor(e, q);
   DVI_TRY(dvi__velocity_hessian(e, t, q, v, &L_vv));
   const dvi_status status = dvi__linear_factor(e->velocity, L_vv);
-  return status == DVI_SINGULAR ? degenerate(t) : status;
+  return status == DVI_SINGULAR ? dvi__lagrangian_is_degenerate(t) : status;
 }
+
+dvi_status dvi__prepare_velocity_hessian(dvi__evaluator *e, dvi__derivatives most)
+{
+  (void)most;
+  return dvi__linear_create(&e->system->vv, DVI__LINEAR_AUTO, e->counters, &e->velocity);
+}
+
+static int lagrangian_is_declared(const dvi_system_terms *terms)
+{
+  return terms->lagrangian != NULL;
+}
+
+static dvi_status declare_lagrangian(const dvi_system_terms *terms, dvi_system *s)
+{
+  static const char *const part[] = {"Lagrangian: d2L/dq2", "Lagrangian: d2L/dqdv", "Lagrangian: d2L/dv2"};
+  const dvi_lagrangian *given = terms->lagrangian;
+  if (given->value == NULL && given->value_batch == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "system: the Lagrangian has no value callback");
+  DVI_TRY(dvi__check_shapes("the Lagrangian", given->value && given->value_batch, given->gradient && given->gradient_batch,
+                            given->hessian && given->hessian_batch, given->rate && given->rate_batch));
+  DVI_TRY(dvi__check_rate(s, "the Lagrangian", given->rate || given->rate_batch));
+  s->terms |= DVI__LAGRANGIAN;
+  return dvi__declare_function(s, given, "Lagrangian", part);
+}
+
+const dvi__dynamics dvi__dynamics_general_lagrangian = {
+    .name = "general Lagrangian",
+    .function = "Lagrangian",
+    .equations = DVI__EULER_LAGRANGE,
+    .searches_velocity = 1,
+    .has_kinetic_energy = 1,
+    .is_declared = lagrangian_is_declared,
+    .declare = declare_lagrangian,
+    .prepare = dvi__prepare_velocity_hessian,
+    .velocity = dvi__search_velocity,
+    .regular = dvi__velocity_hessian_is_regular,
+    .motion = dvi__motion_of_lagrangian,
+    .energy = dvi__energy_of_lagrangian,
+    .value = dvi__value_of_point,
+    .forces = dvi__forces_of_point,
+    .momentum = dvi__momentum_of_point,
+};

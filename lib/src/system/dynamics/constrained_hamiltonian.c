@@ -1,4 +1,10 @@
-#include "system/evaluate/dirac.h"
+/* A Hamiltonian with constraints phi(q,p) = 0 of second class:
+ *
+ *     q' = H_p + phi_p^T lambda,   p' = -H_q - phi_q^T lambda,
+ *     sum_b {phi_a, phi_b} lambda_b = -{phi_a, H}.
+ *
+ * Source: Dirac 1964; Kraus, Yoshimura and Peng (talk). */
+#include "system/dynamics/constrained_hamiltonian.h"
 
 #include <math.h>
 #include <string.h>
@@ -7,6 +13,7 @@
 #include "core/status.h"
 #include "num/finite.h"
 #include "num/pfaffian.h"
+#include "system/dynamics/hamiltonian.h"
 #include "system/evaluate/evaluator_struct.h"
 
 static dvi_status no_memory(void)
@@ -14,119 +21,39 @@ static dvi_status no_memory(void)
   return dvi__fail(DVI_NO_MEMORY, "no memory for the constraints");
 }
 
-/* ---- the term ---- */
-
-static dvi_status copy_weighted(const dvi_constraint *given, int n, dvi__lagrangian_term *term)
-{
-  term->name = "constraint";
-  DVI_TRY(dvi__pattern_copy_symmetric(&given->qq, n, "constraint: d2(phi.w)/dq2", &term->qq));
-  DVI_TRY(dvi__pattern_copy(&given->qp, n, "constraint: d2(phi.w)/dqdp", &term->qv));
-  DVI_TRY(dvi__pattern_copy_symmetric(&given->pp, n, "constraint: d2(phi.w)/dp2", &term->vv));
-  return given->hessian != NULL ? DVI_OK : dvi__general_group(term);
-}
-
-dvi_status dvi__constraint_copy(const dvi_constraint *given, int n, dvi__constraint_term **term)
-{
-  if (given->value == NULL || given->gradient == NULL)
-    return dvi__fail(DVI_BAD_ARGUMENT, "system: the constraint has no %s callback", given->value == NULL ? "value" : "gradient");
-  if (given->count < 2 || given->count > 2 * n || given->count % 2 != 0)
-    return dvi__fail(DVI_BAD_SIZE,
-                     "system: %d constraints; an even number from 2 to %d is needed, for others have a singular bracket matrix",
-                     given->count, 2 * n);
-  dvi__constraint_term *made = *term = DVI_NEW(dvi__constraint_term, 1);
-  if (made == NULL) return no_memory();
-  made->callbacks = *given;
-  DVI_TRY(dvi__pattern_copy_rectangular(&given->gradients, 2 * n, given->count, "constraint: gradients", &made->gradients));
-  DVI_TRY(dvi__pattern_copy(&(dvi_pattern){0}, given->count, "constraint: bracket matrix", &made->bracket));
-  return copy_weighted(given, n, &made->weighted);
-}
-
-void dvi__constraint_clear(dvi__constraint_term **term)
-{
-  if (*term == NULL) return;
-  dvi__pattern_clear(&(*term)->gradients);
-  dvi__pattern_clear(&(*term)->bracket);
-  dvi__general_clear(&(*term)->weighted);
-  dvi__release(*term);
-  *term = NULL;
-}
-
-/* ---- phi.w ---- */
-
-static int weighted_value(double t, const double *q, const double *p, double *sum, void *user)
-{
-  const dvi__weighted *own = user;
-  const dvi_constraint *c = &own->constraint->callbacks;
-  (void)t;
-  *sum = 0;
-  const int returned = c->value(q, p, own->phi, c->user);
-  for (int a = 0; a < c->count && returned == 0; a++) *sum += own->w[a] * own->phi[a];
-  return returned;
-}
-
-static int weighted_gradient(double t, const double *q, const double *p, double *sum_q, double *sum_p, void *user)
-{
-  const dvi__weighted *own = user;
-  const dvi_constraint *c = &own->constraint->callbacks;
-  const dvi__pattern *gradients = &own->constraint->gradients;
-  const int n = gradients->rows / 2, returned = c->gradient(q, p, own->phi_z, c->user);
-  (void)t;
-  for (int i = 0; i < n; i++) sum_q[i] = sum_p[i] = 0;
-  for (int a = 0; a < c->count && returned == 0; a++)
-    for (int k = gradients->start[a]; k < gradients->start[a + 1]; k++) {
-      const int row = gradients->row[k];
-      *(row < n ? sum_q + row : sum_p + row - n) += own->w[a] * own->phi_z[k];
-    }
-  return returned;
-}
-
-static int weighted_hessian(double t, const double *q, const double *p, double *qq, double *qp, double *pp, void *user)
-{
-  const dvi__weighted *own = user;
-  const dvi_constraint *c = &own->constraint->callbacks;
-  (void)t;
-  return c->hessian(q, p, own->w, qq, qp, pp, c->user);
-}
-
-dvi_status dvi__weighted_open(const dvi_system *system, dvi__weighted *weighted)
-{
-  const dvi__constraint_term *c = system->constraint;
-  *weighted = (dvi__weighted){.term = c->weighted,
-                              .constraint = c,
-                              .phi = DVI_NEW(double, c->callbacks.count),
-                              .phi_z = DVI_NEW(double, dvi__pattern_entries(&c->gradients))};
-  weighted->term.callbacks = (dvi_lagrangian){.value = weighted_value,
-                                              .gradient = weighted_gradient,
-                                              .hessian = c->callbacks.hessian != NULL ? weighted_hessian : NULL,
-                                              .user = weighted};
-  return weighted->phi != NULL && weighted->phi_z != NULL ? DVI_OK : no_memory();
-}
-
-void dvi__weighted_close(dvi__weighted *weighted)
-{
-  dvi__release(weighted->phi);
-  dvi__release(weighted->phi_z);
-  *weighted = (dvi__weighted){0};
-}
-
 /* ---- an evaluator's part ---- */
 
-dvi_status dvi__dirac_create(const dvi_system *system, dvi__dirac **dirac)
+typedef struct constraint_memory {
+  dvi__weighted weighted;
+  double *bracket, *multiplier; /* [m*m], [m] */
+  double *field, *pushed;       /* [2n] of H and of one constraint */
+} constraint_memory;
+
+static constraint_memory *memory_of(const dvi__evaluator *e)
 {
+  return e->own;
+}
+
+static dvi_status prepare_constraints(dvi__evaluator *e, dvi__derivatives most)
+{
+  const dvi_system *system = e->system;
+  const dvi__pattern *bracket = &system->constraint->bracket;
   const size_t n = (size_t)system->n, m = (size_t)system->constraint->callbacks.count;
-  dvi__dirac *d = *dirac = DVI_NEW(dvi__dirac, 1);
+  constraint_memory *d = e->own = DVI_NEW(constraint_memory, 1);
+  (void)most;
   if (d == NULL) return no_memory();
   d->bracket = DVI_NEW(double, m *m);
   d->multiplier = DVI_NEW(double, m);
   d->field = DVI_NEW(double, 2 * n);
   d->pushed = DVI_NEW(double, 2 * n);
   if (d->bracket == NULL || d->multiplier == NULL || d->field == NULL || d->pushed == NULL) return no_memory();
-  return dvi__weighted_open(system, &d->weighted);
+  DVI_TRY(dvi__weighted_open(system, &d->weighted));
+  return dvi__linear_create(bracket, dvi__linear_for_exchanges(bracket), e->counters, &e->velocity);
 }
 
-void dvi__dirac_destroy(dvi__dirac **dirac)
+static void release_constraints(dvi__evaluator *e)
 {
-  dvi__dirac *d = *dirac;
+  constraint_memory *d = e->own;
   if (d == NULL) return;
   dvi__weighted_close(&d->weighted);
   dvi__release(d->bracket);
@@ -134,7 +61,6 @@ void dvi__dirac_destroy(dvi__dirac **dirac)
   dvi__release(d->field);
   dvi__release(d->pushed);
   dvi__release(d);
-  *dirac = NULL;
 }
 
 dvi_status dvi__constraint_value(dvi__evaluator *e, const double *q, const double *p, double *phi)
@@ -156,9 +82,9 @@ dvi_status dvi__constraint_hessian(dvi__evaluator *e, const double *q, const dou
                                    double *pp)
 {
   const double any_time = 0;
-  e->dirac->weighted.w = w;
+  memory_of(e)->weighted.w = w;
   e->counters->hessians++;
-  const dvi_status status = dvi__general_hessian(&e->dirac->weighted.term, &e->scratch, 1, &any_time, q, p, qq, qp, pp);
+  const dvi_status status = dvi__general_hessian(&memory_of(e)->weighted.term, &e->scratch, 1, &any_time, q, p, qq, qp, pp);
   dvi__count_differences(e);
   return status;
 }
@@ -187,11 +113,11 @@ static double along(const dvi__pattern *gradients, const double *phi_z, int a, c
   return sum;
 }
 
-/* The bracket matrix into e->dirac->bracket, from the gradients that the weighted function holds. */
+/* The bracket matrix into memory_of(e)->bracket, from the gradients that the weighted function holds. */
 static dvi_status evaluate_bracket(dvi__evaluator *e, const double *q, const double *p)
 {
   const dvi__constraint_term *c = e->system->constraint;
-  const dvi__dirac *d = e->dirac;
+  const constraint_memory *d = memory_of(e);
   const int n = e->system->n, m = c->callbacks.count;
   double *unit = d->multiplier, *phi_z = d->weighted.phi_z;
   DVI_TRY(dvi__constraint_gradients(e, q, p, phi_z));
@@ -208,46 +134,37 @@ static dvi_status evaluate_bracket(dvi__evaluator *e, const double *q, const dou
 static dvi_status factor_bracket(dvi__evaluator *e, const double *q, const double *p)
 {
   DVI_TRY(evaluate_bracket(e, q, p));
-  const dvi_status status = dvi__linear_factor(e->velocity, e->dirac->bracket);
+  const dvi_status status = dvi__linear_factor(e->velocity, memory_of(e)->bracket);
   if (status != DVI_SINGULAR) return status;
   return dvi__fail(
       status,
       "the constraints' bracket matrix {phi_a, phi_b} is singular at this point: they are dependent, or not all of second class");
 }
 
-dvi_status dvi__dirac_side(dvi__evaluator *e, const double *q, const double *p, int *side)
+static dvi_status bracket_side(dvi__evaluator *e, const double *q, const double *p, int *side)
 {
   const int m = e->system->constraint->callbacks.count;
   *side = 1;
   if (m > DVI__SIDES_MOST) return DVI_OK;
   DVI_TRY(evaluate_bracket(e, q, p));
-  *side = dvi__pfaffian_sign((size_t)m, e->dirac->bracket);
+  *side = dvi__pfaffian_sign((size_t)m, memory_of(e)->bracket);
   return DVI_OK;
 }
 
-/* Hamilton's equations. */
-static dvi_status field_of_H(dvi__evaluator *e, double t, const double *q, const double *p, double *qdot, double *pdot)
-{
-  DVI_TRY(dvi__lagrangian_gradient(e, 1, &t, q, p, pdot, qdot));
-  for (int i = 0; i < e->system->n; i++) pdot[i] = -pdot[i];
-  return DVI_OK;
-}
-
-dvi_status dvi__dirac_motion(dvi__evaluator *e, double t, const double *q, const double *p, double *qdot, double *pdot,
-                             double *multiplier)
+static dvi_status constrained_motion(dvi__evaluator *e, double t, const double *q, const double *p, double *v, double *pdot,
+                                     double *multiplier)
 {
   const dvi__constraint_term *c = e->system->constraint;
-  const dvi__dirac *d = e->dirac;
+  const constraint_memory *d = memory_of(e);
   const size_t n = (size_t)e->system->n;
-  if (c == NULL) return field_of_H(e, t, q, p, qdot, pdot);
   const int m = c->callbacks.count;
-  DVI_TRY(field_of_H(e, t, q, p, d->field, d->field + n));
+  DVI_TRY(dvi__hamiltonian_vector_field(e, t, q, p, d->field, d->field + n));
   DVI_TRY(factor_bracket(e, q, p));
   for (int a = 0; a < m; a++) d->multiplier[a] = -along(&c->gradients, d->weighted.phi_z, a, d->field);
   dvi__linear_solve(e->velocity, d->multiplier);
   dvi__constraint_push(c, d->weighted.phi_z, d->multiplier, 1, d->field);
   if (dvi__first_not_finite(2 * n, d->field) >= 0) return dvi__fail(DVI_NOT_FINITE, "the velocity at t = %.6g is not finite", t);
-  memcpy(qdot, d->field, n * sizeof *qdot);
+  memcpy(v, d->field, n * sizeof *v);
   memcpy(pdot, d->field + n, n * sizeof *pdot);
   if (multiplier != NULL) memcpy(multiplier, d->multiplier, (size_t)m * sizeof *multiplier);
   return DVI_OK;
@@ -255,9 +172,9 @@ dvi_status dvi__dirac_motion(dvi__evaluator *e, double t, const double *q, const
 
 /* ---- the constraint ---- */
 
-dvi_status dvi__dirac_distance(dvi__evaluator *e, const double *q, const double *p, double *distance)
+static dvi_status constraint_distance(dvi__evaluator *e, const double *q, const double *p, double *distance)
 {
-  double *phi = e->dirac->weighted.phi;
+  double *phi = memory_of(e)->weighted.phi;
   DVI_TRY(dvi__constraint_value(e, q, p, phi));
   *distance = dvi__largest((size_t)e->system->constraint->callbacks.count, phi);
   return DVI_OK;
@@ -278,20 +195,20 @@ static double size_of(const dvi__constraint_term *c, const double *phi_z, int a,
   return size;
 }
 
-dvi_status dvi__dirac_size(dvi__evaluator *e, const double *q, const double *p, double *size)
+static dvi_status constraint_size(dvi__evaluator *e, const double *q, const double *p, double *size)
 {
   const dvi__constraint_term *c = e->system->constraint;
-  double *phi_z = e->dirac->weighted.phi_z;
+  double *phi_z = memory_of(e)->weighted.phi_z;
   *size = 0;
   DVI_TRY(dvi__constraint_gradients(e, q, p, phi_z));
   for (int a = 0; a < c->callbacks.count; a++) *size = fmax(*size, size_of(c, phi_z, a, q, p));
   return DVI_OK;
 }
 
-dvi_status dvi__dirac_constraint(dvi__evaluator *e, const double *q, const double *p)
+static dvi_status check_constraint(dvi__evaluator *e, const double *q, const double *p)
 {
   const dvi__constraint_term *c = e->system->constraint;
-  const dvi__weighted *at = &e->dirac->weighted;
+  const dvi__weighted *at = &memory_of(e)->weighted;
   DVI_TRY(dvi__constraint_value(e, q, p, at->phi));
   DVI_TRY(dvi__constraint_gradients(e, q, p, at->phi_z));
   for (int a = 0; a < c->callbacks.count; a++) {
@@ -304,27 +221,32 @@ dvi_status dvi__dirac_constraint(dvi__evaluator *e, const double *q, const doubl
   return DVI_OK;
 }
 
-/* Newton's method along the fields of the constraints: the change X_phi mu makes phi smaller by {phi, phi} mu. */
-dvi_status dvi__dirac_project(dvi__evaluator *e, double *z)
+/* Newton's method along the vector fields (phi_p, -phi_q) of the constraints: the change X_phi mu makes
+ * phi smaller by {phi, phi} mu. */
+static dvi_status project_on_constraint(dvi__evaluator *e, double t, double *q, double *p)
 {
   enum { MOST_ITERATIONS = 50 };
   const dvi__constraint_term *c = e->system->constraint;
-  const dvi__dirac *d = e->dirac;
+  const constraint_memory *d = memory_of(e);
   const size_t n = (size_t)e->system->n;
   double size = HUGE_VAL, next;
-  DVI_TRY(dvi__dirac_distance(e, z, z + n, &next));
+  (void)t;
+  DVI_TRY(constraint_distance(e, q, p, &next));
   for (int iteration = 0; iteration < MOST_ITERATIONS && next > 0 && next < size; iteration++) {
     size = next;
-    DVI_TRY(factor_bracket(e, z, z + n));
+    DVI_TRY(factor_bracket(e, q, p));
     for (int a = 0; a < c->callbacks.count; a++) d->multiplier[a] = -d->weighted.phi[a];
     dvi__linear_solve(e->velocity, d->multiplier);
-    memcpy(d->pushed, z, 2 * n * sizeof *z);
+    memcpy(d->pushed, q, n * sizeof *q);
+    memcpy(d->pushed + n, p, n * sizeof *p);
     dvi__constraint_push(c, d->weighted.phi_z, d->multiplier, 1, d->pushed);
     if (dvi__first_not_finite(2 * n, d->pushed) >= 0) return dvi__fail(DVI_NOT_CONVERGED, "no point of the constraint was found");
-    DVI_TRY(dvi__dirac_distance(e, d->pushed, d->pushed + n, &next));
-    if (next < size) memcpy(z, d->pushed, 2 * n * sizeof *z);
+    DVI_TRY(constraint_distance(e, d->pushed, d->pushed + n, &next));
+    if (next >= size) continue;
+    memcpy(q, d->pushed, n * sizeof *q);
+    memcpy(p, d->pushed + n, n * sizeof *p);
   }
-  if (dvi__dirac_constraint(e, z, z + n) == DVI_OK) return DVI_OK;
+  if (check_constraint(e, q, p) == DVI_OK) return DVI_OK;
   return dvi__fail_in(DVI_NOT_CONVERGED, "no point of the constraint was found by Newton's method");
 }
 
@@ -344,7 +266,7 @@ static double norm_of(int m, const double *matrix)
 
 static double inverse_norm(dvi__evaluator *e, int m)
 {
-  double norm = 0, *column = e->dirac->multiplier;
+  double norm = 0, *column = memory_of(e)->multiplier;
   for (int b = 0; b < m; b++) {
     double sum = 0;
     memset(column, 0, (size_t)m * sizeof *column);
@@ -361,8 +283,8 @@ static dvi_status measure(dvi__evaluator *e, const double *q, const double *p, d
   const int m = e->system->constraint->callbacks.count;
   const dvi_status status = factor_bracket(e, q, p);
   if (status != DVI_OK && status != DVI_SINGULAR) return status;
-  if (condition != NULL) *condition = status == DVI_OK ? norm_of(m, e->dirac->bracket) * inverse_norm(e, m) : HUGE_VAL;
-  if (bracket != NULL) memcpy(bracket, e->dirac->bracket, (size_t)m * (size_t)m * sizeof *bracket);
+  if (condition != NULL) *condition = status == DVI_OK ? norm_of(m, memory_of(e)->bracket) * inverse_norm(e, m) : HUGE_VAL;
+  if (bracket != NULL) memcpy(bracket, memory_of(e)->bracket, (size_t)m * (size_t)m * sizeof *bracket);
   return DVI_OK;
 }
 
@@ -384,3 +306,53 @@ int dvi_system_constraint_count(const dvi_system *system)
 {
   return system != NULL && system->constraint != NULL ? system->constraint->callbacks.count : 0;
 }
+
+/* ---- the kind ---- */
+
+static int constraint_is_declared(const dvi_system_terms *terms)
+{
+  return terms->hamiltonian != NULL && terms->constraint != NULL;
+}
+
+static dvi_status declare_constrained(const dvi_system_terms *terms, dvi_system *system)
+{
+  DVI_TRY(dvi__declare_hamiltonian(terms, system, DVI__CONSTRAINED_HAMILTONIAN));
+  return dvi__constraint_copy(terms->constraint, system->n, &system->constraint);
+}
+
+static dvi_status constrained_velocity(dvi__evaluator *e, double t, const double *q, const double *p, double *v)
+{
+  double *found = e->velocity_search;
+  const size_t n = (size_t)e->system->n;
+  DVI_TRY(constrained_motion(e, t, q, p, found, found + n, NULL));
+  memcpy(v, found, n * sizeof *v);
+  return DVI_OK;
+}
+
+static const dvi__state_constraint on_phase_space = {
+    .matrix = "constraints' bracket matrix",
+    .check = check_constraint,
+    .project = project_on_constraint,
+    .distance = constraint_distance,
+    .size = constraint_size,
+    .side = bracket_side,
+};
+
+const dvi__dynamics dvi__dynamics_constrained_hamiltonian = {
+    .name = "Hamiltonian with constraints",
+    .function = "Hamiltonian",
+    .equations = DVI__HAMILTON,
+    .by_momentum = 1,
+    .no_taylor = dvi__no_taylor_of_hamiltonian,
+    .is_declared = constraint_is_declared,
+    .declare = declare_constrained,
+    .prepare = prepare_constraints,
+    .release = release_constraints,
+    .velocity = constrained_velocity,
+    .motion = constrained_motion,
+    .energy = dvi__energy_of_hamiltonian,
+    .value = dvi__value_of_point,
+    .forces = dvi__forces_of_point,
+    .momentum = dvi__momentum_of_point,
+    .constraint = &on_phase_space,
+};

@@ -7,7 +7,7 @@
  * of index 2, with lambda in neither the error test nor that of the iteration's convergence. Its Jacobian dF/dy + c dF/dydot is written down, for IDA's
  * differences move lambda by what its tolerance says; that of the first has derivatives of lambda, and is differenced.
  * Source: Hindmarsh et al. 2005, ACM TOMS 31:363, sec. 2.3; Brenan, Campbell and Petzold 1996 (error tests at index 2). */
-#include "system/evaluate/dirac.h"
+#include "system/dynamics/constrained_hamiltonian.h"
 
 #include <string.h>
 #include <sunmatrix/sunmatrix_dense.h>
@@ -28,7 +28,7 @@ static int reduced_residual(double t, N_Vector y, N_Vector ydot, N_Vector F, voi
   dvi__reference_run *run = ((judge *)user)->run;
   const double *q = N_VGetArrayPointer(y), *rate = N_VGetArrayPointer(ydot);
   double *X = N_VGetArrayPointer(F);
-  const dvi_status status = dvi__dirac_motion(run->evaluator, t, q, q + run->n, X, X + run->n, NULL);
+  const dvi_status status = dvi__state_rates(run->evaluator, t, q, q + run->n, X, X + run->n, NULL);
   for (int i = 0; status == DVI_OK && i < 2 * run->n; i++) X[i] = rate[i] - X[i];
   return dvi__reference_callback(run, status);
 }
@@ -163,7 +163,7 @@ static void clear(judge *self)
   dvi__release(self->phi_pp);
 }
 
-dvi_status dvi__reference_dirac(dvi__reference_run *run)
+dvi_status dvi__reference_hamilton(dvi__reference_run *run)
 {
   judge self = {.run = run, .whole = run->options.code == DVI_IDA_INDEX_2};
   dvi_status status = reserve(&self);
