@@ -6,7 +6,7 @@
 
 #include "support/runs.h"
 #include "support/suite.h"
-#include "support/systems.h"
+#include "support/systems/systems.h"
 
 static const double pi = 3.14159265358979323846;
 

@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "problem.h"
-#include "support/quad.h"
-#include "support/quad_real.h"
+#include "support/quad/quad.h"
+#include "support/quad/quad_real.h"
 #include "support/suite.h"
 
 /* What the judge may say about itself where 1e-17 is wanted: 1e-20 leaves three digits. */

@@ -2,7 +2,7 @@
 /* Long runs of the quadruple-precision judge. */
 #include <math.h>
 
-#include "support/quad.h"
+#include "support/quad/quad.h"
 #include "support/suite.h"
 
 /* fpu at T = 200 is sensitive: from 1/50 rounded to a double, as here, x0_1 differs by 5e-14 from what exact 1/50 gives. The printed

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "reference/catalogue.h"
-#include "support/quad.h"
+#include "support/quad/quad.h"
 #include "support/runs.h"
 #include "support/suite.h"
 

@@ -1,7 +1,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "support/scene_text.h"
+#include "support/scene/scene_text.h"
 #include "support/suite.h"
 
 /* The message about a part of a text. */

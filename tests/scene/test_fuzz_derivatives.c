@@ -11,8 +11,8 @@
 #include "scene/function/function.h"
 #include "scene/expr/graph_make.h"
 #include "scene/text/heap.h"
-#include "support/fuzz.h"
-#include "support/quad_graph.h"
+#include "support/scene/fuzz.h"
+#include "support/quad/quad_graph.h"
 #include "support/suite.h"
 
 #ifdef DVI_HAVE_QUADMATH

@@ -9,8 +9,8 @@
 #include <string.h>
 
 #include "scene/text/utf8.h"
-#include "support/fuzz.h"
-#include "support/scene_calls.h"
+#include "support/scene/fuzz.h"
+#include "support/scene/scene_calls.h"
 #include "support/suite.h"
 
 static const char *const tokens[] = {"coordinates:",

@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "scene/text/syntax.h"
-#include "support/fuzz.h"
-#include "support/scene_text.h"
+#include "support/scene/fuzz.h"
+#include "support/scene/scene_text.h"
 #include "support/suite.h"
 
 static const char *const corpus[] = {"M/2*x'^2 + m/2*dot(bob', bob') - m*g*bob[2]",

@@ -4,8 +4,8 @@
 
 #include "scene/text/tree.h"
 #include "scene/text/utf8.h"
-#include "support/fuzz.h"
-#include "support/scene_text.h"
+#include "support/scene/fuzz.h"
+#include "support/scene/scene_text.h"
 #include "support/suite.h"
 
 static const char *const corpus[] = {

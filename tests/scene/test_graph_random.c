@@ -11,7 +11,7 @@
 #include "scene/expr/graph.h"
 #include "scene/expr/graph_make.h"
 #include "scene/text/heap.h"
-#include "support/quad_graph.h"
+#include "support/quad/quad_graph.h"
 #include "support/suite.h"
 
 #ifdef DVI_HAVE_QUADMATH

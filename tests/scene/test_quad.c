@@ -7,7 +7,7 @@
 
 #include "scene/expr/graph_make.h"
 #include "scene/expr/quad.h"
-#include "support/quad_graph.h"
+#include "support/quad/quad_graph.h"
 #include "support/suite.h"
 
 #if defined DVI__QUAD && defined DVI_HAVE_QUADMATH

@@ -164,7 +164,7 @@ START_TEST(what_is_no_condition_is_told)
 END_TEST
 
 /* What order is left: of the first derivative that jumps; 1 more where time alone decides; -1
- * where nothing jumps. Orders that are measured are in tests/method/test_kinks.c. */
+ * where nothing jumps. Orders that are measured are in test_scene_kinks.c. */
 START_TEST(kinks_are_found_with_the_order_that_they_leave)
 {
   static const struct {

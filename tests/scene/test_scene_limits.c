@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "support/scene_calls.h"
+#include "support/scene/scene_calls.h"
 #include "support/suite.h"
 
 enum { MESSAGE_SIZE = 1024, TEXT_SIZE = 2048 };

@@ -8,7 +8,7 @@
 #include "core/memory.h"
 #include "scene/text/heap.h"
 #include "support/heap.h"
-#include "support/scene_calls.h"
+#include "support/scene/scene_calls.h"
 #include "support/suite.h"
 
 #define RUN "step: 0.1\nuntil: 1\n"

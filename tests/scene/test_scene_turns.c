@@ -1,5 +1,5 @@
 /* Scenes with rotations, rigid motions, directions and angles: the Lagrangian that is written is the one that there is, and what makes no sense is told with its
- * place. apps/scenes has those of the catalogue, which move as the hand-written ones (tests/apps/test_scenes.sh). */
+ * place. apps/scenes has those of the catalogue, which move as the hand-written ones (tests/apps/scene/test_scenes.sh). */
 #include <dvi/dvi.h>
 #include <dvi/scene.h>
 #include <math.h>

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "scene/text/syntax.h"
-#include "support/scene_text.h"
+#include "support/scene/scene_text.h"
 #include "support/suite.h"
 
 static scene_text scene;

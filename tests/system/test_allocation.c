@@ -4,7 +4,7 @@
 
 #include "core/memory.h"
 #include "support/suite.h"
-#include "support/systems.h"
+#include "support/systems/systems.h"
 #include "system/evaluate/evaluator.h"
 
 enum { MOST = 500 };

@@ -7,7 +7,7 @@
 
 #include "step/element/action.h"
 #include "core/memory.h"
-#include "support/bodies.h"
+#include "support/systems/bodies.h"
 #include "support/runs.h"
 #include "support/suite.h"
 #include "system/chart/charted_struct.h"

@@ -3,7 +3,7 @@
 
 #include "core/memory.h"
 #include "support/suite.h"
-#include "support/systems.h"
+#include "support/systems/systems.h"
 #include "system/evaluate/evaluator.h"
 
 enum { POINTS = 5, QQ = 3 * SITES - 2, QV = 2 * SITES - 1, VV = 3 * SITES - 2 };

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "support/bodies.h"
+#include "support/systems/bodies.h"
 #include "support/runs.h"
 #include "support/suite.h"
 #include "system/system.h"

@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "support/suite.h"
-#include "support/systems.h"
+#include "support/systems/systems.h"
 
 static behaviour quiet;
 

@@ -5,7 +5,7 @@
 
 #include "support/runs.h"
 #include "support/suite.h"
-#include "support/systems.h"
+#include "support/systems/systems.h"
 
 enum { LENGTH = 11 };
 

@@ -1,7 +1,7 @@
 /* labels: unit */
 /* Potentials that are declared fast or quadratic: the parts of a system, and what the check finds. */
 #include "support/suite.h"
-#include "support/systems.h"
+#include "support/systems/systems.h"
 #include "system/evaluate/evaluator.h"
 #include "system/part.h"
 

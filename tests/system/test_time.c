@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "support/suite.h"
-#include "support/systems.h"
+#include "support/systems/systems.h"
 #include "system/evaluate/evaluator.h"
 
 /* Rotors and wells depend on time, springs do not. */

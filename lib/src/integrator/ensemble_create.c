@@ -263,8 +263,9 @@ void dvi_ensemble_destroy(dvi_ensemble **ensemble)
   if (ensemble == NULL || *ensemble == NULL) return;
   dvi_ensemble *e = *ensemble;
   dvi__team_destroy(&e->team);
-  for (int i = 0; i < e->threads && e->workers != NULL; i++) clear_worker(&e->workers[i]);
+  /* A worker owns the copy of the system that its integrators evaluate. */
   for (int i = 0; i < e->integrator_count; i++) dvi_integrator_destroy(&e->integrators[i]);
+  for (int i = 0; i < e->threads && e->workers != NULL; i++) clear_worker(&e->workers[i]);
   dvi__release(e->integrators);
   dvi__release(e->workers);
   dvi__release(e->blocks);

@@ -47,7 +47,7 @@ static dvi_status create_for_form(dvi__stepper *self)
   return dvi__dg_create(self, &space, value[ALARM], "take another method, dg:degree=3,stiffness=c, from the start on");
 }
 
-/* Measured on circle-dirac and magnetic-pair (tests/method/test_dg_phase.c). */
+/* Measured on circle-dirac and magnetic-pair (tests/method/hamiltonian/test_dg_phase.c). */
 static int order_of(int degree, int moments)
 {
   return moments < degree - 1 ? 2 * moments + 2 : 2 * degree;
