@@ -41,7 +41,6 @@ dvi_status dvi__evaluator_create(const dvi_system *system, int capacity, dvi__de
   dvi__evaluator *e = DVI_NEW(dvi__evaluator, 1);
   if (e == NULL) return dvi__fail(DVI_NO_MEMORY, "evaluator: no memory");
   e->system = system;
-  e->release = system->dynamics->release;
   e->capacity = capacity;
   e->counters = counters != NULL ? counters : &e->own_counters;
   dvi_status status = allocate(e, hessians);
@@ -56,7 +55,7 @@ void dvi__evaluator_destroy(dvi__evaluator **evaluator)
   dvi__evaluator *e = *evaluator;
   if (e == NULL) return;
   dvi__linear_destroy(&e->velocity);
-  if (e->release != NULL) e->release(e);
+  if (e->system->dynamics->release != NULL) e->system->dynamics->release(e);
   dvi__scratch_clear(&e->scratch);
   dvi__release(e->term);
   for (int i = 0; i < 3; i++) dvi__release(e->point[i]);
