@@ -236,6 +236,56 @@ START_TEST(a_checkpoint_damaged_at_any_byte_is_refused)
 }
 END_TEST
 
+START_TEST(a_checkpoint_of_another_format_is_refused_with_a_sentence)
+{
+  const uint32_t old = 5; /* of libdvi before its checkpoints had sections */
+  scene s = made_scene();
+  memcpy(s.past.at + 12, &old, sizeof old);
+  refused(&s, s.past.count);
+  check_words("written in format 5 by another version of libdvi; this one reads format 6");
+  clear_scene(&s);
+}
+END_TEST
+
+/* ---- memory ---- */
+
+static void check_still(const dvi_integrator *integrator, bytes expected)
+{
+  const bytes found = state_of(integrator);
+  ck_assert_uint_eq(found.count, expected.count);
+  ck_assert_mem_eq(found.at, expected.at, found.count);
+  free(found.at);
+}
+
+START_TEST(a_state_in_memory_is_that_of_a_file)
+{
+  scene s = made_scene();
+  size_t size = 0;
+  const bytes now = state_of(s.integrator);
+  ck_assert_int_eq(dvi_integrator_save_memory(s.integrator, NULL, 0, &size), DVI_OK);
+  ck_assert_uint_eq(size, now.count);
+  unsigned char *room = malloc(size + 1);
+  ck_assert_ptr_nonnull(room);
+  ck_assert_int_eq(dvi_integrator_save_memory(s.integrator, room + 1, size - 1, &size), DVI_BAD_SIZE);
+  check_words("are needed");
+  ck_assert_int_eq(dvi_integrator_save_memory(s.integrator, room + 1, size, &size), DVI_OK);
+  ck_assert_mem_eq(room + 1, now.at, size);
+  ck_assert_int_eq(dvi_integrator_restore_memory(s.integrator, s.past.at, s.past.count), DVI_OK);
+  check_still(s.integrator, s.past);
+  ck_assert_int_eq(dvi_integrator_restore_memory(s.integrator, room + 1, size), DVI_OK); /* aligned to nothing */
+  check_still(s.integrator, now);
+  room[size / 2] ^= 1;
+  ck_assert_int_eq(dvi_integrator_restore_memory(s.integrator, room + 1, size), DVI_BAD_FILE);
+  check_words("checkpoint in memory: damaged");
+  ck_assert_int_eq(dvi_integrator_restore_memory(s.integrator, room + 1, size - 1), DVI_BAD_FILE);
+  check_words("checkpoint in memory");
+  check_still(s.integrator, now);
+  free(room);
+  free(now.at);
+  clear_scene(&s);
+}
+END_TEST
+
 /* ---- files of others ---- */
 
 static void refused_by(const char *of, const char *setting, const char *method, const char *words)
@@ -431,6 +481,8 @@ SUITE(checkpoint)
   tcase_add_test(tests, a_checkpoint_cut_anywhere_is_refused);
   tcase_add_test(tests, a_checkpoint_that_is_too_long_is_refused);
   tcase_add_test(tests, a_checkpoint_damaged_at_any_byte_is_refused);
+  tcase_add_test(tests, a_checkpoint_of_another_format_is_refused_with_a_sentence);
+  tcase_add_test(tests, a_state_in_memory_is_that_of_a_file);
   tcase_add_test(tests, a_checkpoint_of_another_method_or_dimension_is_refused);
   tcase_add_test(tests, a_checkpoint_of_another_system_or_other_parameters_is_refused);
   tcase_add_test(tests, a_checkpoint_of_another_start_is_taken);

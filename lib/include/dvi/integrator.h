@@ -256,6 +256,14 @@ size_t dvi_integrator_explain(const dvi_integrator *integrator, char *text, size
  *                        cannot be flushed; the error sentence has the system's reason */
 dvi_status dvi_integrator_save(const dvi_integrator *integrator, const char *path);
 
+/** Write the same state to memory.
+ *
+ *  @param[out] bytes     [capacity] the state; NULL: only its size is wanted
+ *  @param      capacity  bytes of room
+ *  @param[out] size      bytes that the state takes, also where the room is too small
+ *  @retval DVI_BAD_SIZE  the room is too small; nothing is written */
+dvi_status dvi_integrator_save_memory(const dvi_integrator *integrator, void *bytes, size_t capacity, size_t *size);
+
 /** Read a state that dvi_integrator_save wrote; a run then continues bit for bit.
  *
  *  On any failure the state stays. The method must have the same keys, but for those that do
@@ -270,6 +278,10 @@ dvi_status dvi_integrator_save(const dvi_integrator *integrator, const char *pat
  *  @retval DVI_BAD_FILE  it is cut short, damaged, or from another method or system; the error
  *                        sentence says what differs */
 dvi_status dvi_integrator_restore(dvi_integrator *integrator, const char *path);
+
+/** Read a state that dvi_integrator_save_memory wrote, or the bytes of a file of dvi_integrator_save; the
+ *  rest is as of dvi_integrator_restore. */
+dvi_status dvi_integrator_restore_memory(dvi_integrator *integrator, const void *bytes, size_t size);
 
 #ifdef __cplusplus
 }

@@ -1,5 +1,5 @@
 #define _XOPEN_SOURCE 700 /* fsync, realpath */
-#include "integrator/whole_file.h"
+#include "march/whole_file.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -57,7 +57,7 @@ static int write_all(int descriptor, const unsigned char *bytes, size_t count)
 }
 
 /* Write, flush and close. 0, or what failed first. */
-static int fill(int descriptor, const unsigned char *bytes, size_t count)
+static int write_and_close(int descriptor, const unsigned char *bytes, size_t count)
 {
   int reason = write_all(descriptor, bytes, count) != 0 || fsync(descriptor) != 0 ? errno : 0;
   if (close(descriptor) != 0 && reason == 0) reason = errno;
@@ -86,7 +86,7 @@ dvi_status dvi__write_whole(const char *link, const unsigned char *bytes, size_t
   const int descriptor = create_beside(path, sizeof beside, beside);
   if (descriptor < 0) return dvi__fail(DVI_IO_ERROR, "cannot write a file beside %.256s: %s", link, strerror(errno));
   take_rights(descriptor, path);
-  int reason = fill(descriptor, bytes, count);
+  int reason = write_and_close(descriptor, bytes, count);
   if (reason == 0 && rename(beside, path) != 0) reason = errno;
   if (reason != 0) {
     (void)unlink(beside);
