@@ -138,12 +138,10 @@ START_TEST(a_solve_without_memory_fails)
 }
 END_TEST
 
-int main(void)
+SUITE(cost)
 {
-  TCase *tests = tcase_create("cost");
   tcase_add_test(tests, memory_and_work_are_in_proportion_to_the_steps);
   tcase_add_test(tests, full_rows_and_columns_leave_it_in_proportion);
   tcase_add_test(tests, a_path_survives_every_failure_of_memory);
   tcase_add_test(tests, a_solve_without_memory_fails);
-  return run_tests("cost", tests);
 }

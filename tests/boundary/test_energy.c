@@ -165,14 +165,12 @@ START_TEST(what_depends_on_time_keeps_no_energy)
 }
 END_TEST
 
-int main(void)
+SUITE(energy)
 {
-  TCase *tests = tcase_create("energy");
   tcase_add_test(tests, the_spread_is_that_of_the_energies_at_the_nodes);
   tcase_add_test(tests, the_spread_falls_with_the_order_of_the_method);
   tcase_add_test(tests, a_path_that_follows_no_motion_is_not_solved);
   tcase_add_test(tests, a_refused_path_may_be_gone_on_from);
   tcase_add_test(tests, a_motion_below_the_roundings_of_its_energy_is_not_refused);
   tcase_add_test(tests, what_depends_on_time_keeps_no_energy);
-  return run_tests("energy", tests);
 }

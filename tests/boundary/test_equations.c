@@ -99,10 +99,8 @@ START_TEST(the_jacobian_is_a_hessian)
 }
 END_TEST
 
-int main(void)
+SUITE(equations)
 {
-  TCase *tests = tcase_create("equations");
   tcase_add_loop_test(tests, the_jacobian_is_the_derivative_of_the_residual, 0, 2 * KINDS);
   tcase_add_loop_test(tests, the_jacobian_is_a_hessian, 0, KINDS);
-  return run_tests("equations", tests);
 }

@@ -467,9 +467,8 @@ START_TEST(a_guess_along_two_paths_is_better_than_the_last_one)
 }
 END_TEST
 
-int main(void)
+SUITE(path)
 {
-  TCase *tests = tcase_create("path");
   tcase_add_loop_test(tests, a_two_point_problem_finds_the_run_between_its_ends, 0, PLACES);
   tcase_add_loop_test(tests, an_initial_value_problem_as_one_system_is_the_run, 0, PLACES);
   tcase_add_test(tests, time_dependent_systems_have_paths);
@@ -484,5 +483,4 @@ int main(void)
   tcase_add_test(tests, a_circle_is_relatively_periodic);
   tcase_add_test(tests, a_driven_oscillator_follows_its_drive);
   tcase_add_test(tests, a_guess_along_two_paths_is_better_than_the_last_one);
-  return run_tests("path", tests);
 }

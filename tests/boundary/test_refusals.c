@@ -431,9 +431,8 @@ START_TEST(callbacks_have_the_last_word)
 }
 END_TEST
 
-int main(void)
+SUITE(refusals)
 {
-  TCase *tests = tcase_create("refusals");
   tcase_add_checked_fixture(tests, set_up, tear_down);
   tcase_add_test(tests, spans_are_positive_times);
   tcase_add_test(tests, steps_can_be_counted);
@@ -454,5 +453,4 @@ int main(void)
   tcase_add_test(tests, a_period_is_tested_on_the_path_that_is_found);
   tcase_add_test(tests, a_guess_where_the_lagrangian_is_infinite_fails);
   tcase_add_test(tests, callbacks_have_the_last_word);
-  return run_tests("refusals", tests);
 }

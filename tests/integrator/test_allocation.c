@@ -198,9 +198,8 @@ START_TEST(saving_and_restoring_survive_the_failure)
 }
 END_TEST
 
-int main(void)
+SUITE(allocation)
 {
-  TCase *tests = tcase_create("allocation");
   tcase_set_timeout(tests, 120); /* checkpoints are flushed to the disk, which may be busy */
   tcase_add_checked_fixture(tests, make_folder, remove_folder);
   tcase_add_test(tests, every_method_has_its_place);
@@ -208,5 +207,4 @@ int main(void)
   tcase_add_loop_test(tests, an_integrator_gives_back_all_that_it_took, 0, PLACES);
   tcase_add_loop_test(tests, a_run_survives_every_failure, 0, PLACES);
   tcase_add_loop_test(tests, saving_and_restoring_survive_the_failure, 0, PLACES);
-  return run_tests("method/allocation", tests);
 }

@@ -470,9 +470,8 @@ START_TEST(a_full_disk_leaves_the_old_checkpoint)
 }
 END_TEST
 
-int main(void)
+SUITE(checkpoint)
 {
-  TCase *tests = tcase_create("checkpoint");
   tcase_set_timeout(tests, 120); /* every file is flushed to the disk, which may be busy */
   tcase_add_checked_fixture(tests, make_folder, remove_folder);
   tcase_add_loop_test(tests, a_restored_run_continues_bit_for_bit_from_any_step, 0, RUNS);
@@ -493,5 +492,4 @@ int main(void)
   tcase_add_test(tests, a_pipe_is_no_place_for_a_checkpoint);
   tcase_add_test(tests, neither_neighbours_nor_the_file_s_rights_change);
   tcase_add_test(tests, a_full_disk_leaves_the_old_checkpoint);
-  return run_tests("method/checkpoint", tests);
 }

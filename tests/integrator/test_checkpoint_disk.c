@@ -122,14 +122,12 @@ START_TEST(a_save_without_memory_leaves_no_part)
 }
 END_TEST
 
-int main(void)
+SUITE(checkpoint_disk)
 {
-  TCase *tests = tcase_create("checkpoint_disk");
   tcase_set_timeout(tests, 120); /* every file is flushed to the disk, which may be busy */
   tcase_add_checked_fixture(tests, make_folder, remove_folder);
   tcase_add_test(tests, the_file_is_flushed_then_named_then_its_folder_is_flushed);
   tcase_add_loop_test(tests, a_call_that_fails_leaves_the_old_file_and_no_part, 0, 2);
   tcase_add_test(tests, a_folder_that_cannot_be_flushed_is_told_if_it_could);
   tcase_add_test(tests, a_save_without_memory_leaves_no_part);
-  return run_tests("method/checkpoint_disk", tests);
 }

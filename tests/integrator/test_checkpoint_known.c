@@ -440,9 +440,8 @@ START_TEST(forged_numbers_do_no_harm)
 }
 END_TEST
 
-int main(void)
+SUITE(checkpoint_known)
 {
-  TCase *tests = tcase_create("checkpoint_known");
   tcase_set_timeout(tests, 120); /* every file is flushed to the disk, which may be busy */
   tcase_add_checked_fixture(tests, make_folder, remove_folder);
   tcase_add_test(tests, a_long_specification_is_kept_whole);
@@ -457,5 +456,4 @@ int main(void)
   tcase_add_loop_test(tests, no_method_takes_the_checkpoint_of_another, 0, FAMILIES);
   tcase_add_loop_test(tests, no_method_takes_what_is_cut_or_damaged_at_any_byte, 0, FAMILIES);
   tcase_add_loop_test(tests, forged_numbers_do_no_harm, 0, FAMILIES);
-  return run_tests("method/checkpoint_known", tests);
 }

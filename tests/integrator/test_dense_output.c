@@ -220,9 +220,8 @@ START_TEST(the_path_is_in_the_checkpoint)
 }
 END_TEST
 
-int main(void)
+SUITE(dense_output)
 {
-  TCase *tests = tcase_create("dense output");
   tcase_set_timeout(tests, 60);
   tcase_add_checked_fixture(tests, make_folder, remove_folder);
   tcase_add_loop_test(tests, the_path_passes_through_both_ends, 0, METHODS);
@@ -232,5 +231,4 @@ int main(void)
   tcase_add_loop_test(tests, times_outside_of_the_last_step_are_refused, 0, METHODS);
   tcase_add_loop_test(tests, without_a_step_there_is_no_path, 0, METHODS);
   tcase_add_loop_test(tests, the_path_is_in_the_checkpoint, 0, METHODS);
-  return run_tests("method/dense output", tests);
 }

@@ -443,9 +443,8 @@ START_TEST(waves_are_not_given_up_for_members_as_lanes)
 }
 END_TEST
 
-int main(void)
+SUITE(ensemble)
 {
-  TCase *tests = tcase_create("ensemble");
   tcase_set_timeout(tests, 120);
   tcase_add_checked_fixture(tests, NULL, best_again);
   tcase_add_test(tests, every_method_has_its_place);
@@ -458,5 +457,4 @@ int main(void)
   tcase_add_loop_test(tests, no_step_allocates, 0, PLACES * METHODS);
   tcase_add_test(tests, explain_says_how_members_are_grouped);
   tcase_add_test(tests, waves_are_not_given_up_for_members_as_lanes);
-  return run_tests("method/ensemble", tests);
 }

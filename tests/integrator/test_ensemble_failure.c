@@ -356,9 +356,8 @@ START_TEST(creation_survives_every_failure_of_memory)
 }
 END_TEST
 
-int main(void)
+SUITE(ensemble_failure)
 {
-  TCase *tests = tcase_create("ensemble_failure");
   tcase_add_checked_fixture(tests, set_up, tear_down);
   tcase_add_test(tests, wrong_options_are_refused_by_name);
   tcase_add_test(tests, an_ensemble_has_no_state_before_its_start);
@@ -369,5 +368,4 @@ int main(void)
   tcase_add_test(tests, a_fatal_failure_is_worse_than_an_earlier_member);
   tcase_add_test(tests, a_state_that_is_not_finite_is_not_taken);
   tcase_add_loop_test(tests, creation_survives_every_failure_of_memory, 0, 5);
-  return run_tests("method/ensemble_failure", tests);
 }

@@ -416,9 +416,8 @@ START_TEST(a_parameter_that_rests_is_one_to_the_last_bit)
 }
 END_TEST
 
-int main(void)
+SUITE(ensemble_systems)
 {
-  TCase *tests = tcase_create("ensemble_systems");
   tcase_add_loop_test(tests, members_with_systems_of_their_own_have_the_bits_of_runs_alone, 0, 2 * SWEEPS * METHODS);
   tcase_add_loop_test(tests, methods_that_split_have_the_parts_of_each_members_system, 0, 2 * SPLITS);
   tcase_add_test(tests, neighbours_with_one_system_share_its_modes);
@@ -429,5 +428,4 @@ int main(void)
   tcase_add_test(tests, a_reach_of_its_own_is_refused);
   tcase_add_test(tests, neighbours_with_one_system_share_a_call);
   tcase_add_test(tests, a_parameter_that_rests_is_one_to_the_last_bit);
-  return run_tests("method/ensemble_systems", tests);
 }

@@ -455,9 +455,8 @@ START_TEST(a_callback_that_fails_fails_the_run)
 }
 END_TEST
 
-int main(void)
+SUITE(event)
 {
-  TCase *tests = tcase_create("event");
   tcase_add_checked_fixture(tests, set_up, tear_down);
   tcase_add_loop_test(tests, zeros_of_an_oscillator_are_where_theory_says, 0, 3);
   tcase_add_test(tests, directions_are_those_of_the_run_also_backward);
@@ -479,5 +478,4 @@ int main(void)
   tcase_add_loop_test(tests, a_direction_that_is_none_is_refused, 0, 2);
   tcase_add_loop_test(tests, a_function_that_fails_at_the_start_fails_the_run, 0, AILMENTS);
   tcase_add_test(tests, a_callback_that_fails_fails_the_run);
-  return run_tests("method/event", tests);
 }

@@ -82,10 +82,8 @@ START_TEST(late_events_are_located_to_the_rounding_of_the_clock)
 }
 END_TEST
 
-int main(void)
+SUITE(event_scale)
 {
-  TCase *tests = tcase_create("event_scale");
   tcase_add_loop_test(tests, femtoseconds_are_located_as_well_as_years, 0, 8);
   tcase_add_loop_test(tests, late_events_are_located_to_the_rounding_of_the_clock, 0, 4);
-  return run_tests("method/event_scale", tests);
 }

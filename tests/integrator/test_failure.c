@@ -369,9 +369,8 @@ START_TEST(arguments_that_are_missing_are_refused)
 }
 END_TEST
 
-int main(void)
+SUITE(failure)
 {
-  TCase *tests = tcase_create("failure");
   tcase_set_timeout(tests, 120); /* states are compared by files, which are flushed to the disk */
   tcase_add_checked_fixture(tests, make_folder, remove_folder);
   tcase_add_loop_test(tests, gradients_that_fail_in_mid_run_leave_the_state_alone, 0, METHODS * AILMENTS);
@@ -385,5 +384,4 @@ int main(void)
   tcase_add_loop_test(tests, a_bad_start_leaves_the_old_state, 0, METHODS);
   tcase_add_loop_test(tests, a_degenerate_lagrangian_is_refused_at_the_start_by_name, 0, GENERAL_METHODS);
   tcase_add_loop_test(tests, arguments_that_are_missing_are_refused, 0, METHODS);
-  return run_tests("method/failure", tests);
 }

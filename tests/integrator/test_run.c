@@ -424,9 +424,8 @@ START_TEST(a_composition_ends_at_t_end_and_may_be_asked_again)
 }
 END_TEST
 
-int main(void)
+SUITE(run)
 {
-  TCase *tests = tcase_create("run");
   tcase_set_timeout(tests, 120); /* checkpoints are flushed to the disk, which may be busy */
   tcase_add_checked_fixture(tests, set_up, tear_down);
   tcase_add_loop_test(tests, a_run_is_its_steps_bit_for_bit, 0, METHODS);
@@ -451,5 +450,4 @@ int main(void)
   tcase_add_test(tests, a_step_that_time_does_not_feel_fails_the_run);
   tcase_add_loop_test(tests, a_step_longer_than_the_way_is_cut_to_it, 0, 3);
   tcase_add_loop_test(tests, a_composition_ends_at_t_end_and_may_be_asked_again, 0, 3);
-  return run_tests("method/run", tests);
 }

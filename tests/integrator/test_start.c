@@ -224,9 +224,8 @@ START_TEST(queries_of_nothing_give_nothing)
 }
 END_TEST
 
-int main(void)
+SUITE(start)
 {
-  TCase *tests = tcase_create("start");
   tcase_add_test(tests, a_velocity_is_found_where_the_hessian_at_rest_is_singular_or_indefinite);
   tcase_add_loop_test(tests, a_velocity_near_the_edge_of_the_domain_is_found, 0, 4);
   tcase_add_test(tests, a_momentum_that_none_has_or_that_is_degenerate_is_refused);
@@ -234,5 +233,4 @@ int main(void)
   tcase_add_loop_test(tests, both_starts_are_one_where_the_velocity_is_unique, 0, 2);
   tcase_add_test(tests, bad_velocities_are_refused_and_the_state_stays);
   tcase_add_test(tests, queries_of_nothing_give_nothing);
-  return run_tests("method/start", tests);
 }

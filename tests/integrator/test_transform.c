@@ -334,9 +334,8 @@ START_TEST(explain_says_what_a_step_is)
 }
 END_TEST
 
-int main(void)
+SUITE(transform)
 {
-  TCase *tests = tcase_create("transform");
   tcase_add_checked_fixture(tests, make_folder, remove_folder);
   tcase_add_loop_test(tests, a_step_in_tau_is_symplectic, 0, 9);
   tcase_add_test(tests, a_controlled_step_is_not_symplectic);
@@ -353,5 +352,4 @@ int main(void)
   tcase_add_loop_test(tests, one_like_another_takes_the_same_steps, 0, WAYS);
   tcase_add_test(tests, one_like_another_keeps_its_E0);
   tcase_add_test(tests, explain_says_what_a_step_is);
-  return run_tests("transform", tests);
 }

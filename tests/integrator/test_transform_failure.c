@@ -381,9 +381,8 @@ START_TEST(creation_survives_every_failure_of_memory)
 }
 END_TEST
 
-int main(void)
+SUITE(transform_failure)
 {
-  TCase *tests = tcase_create("transform failure");
   tcase_add_checked_fixture(tests, make_folder, remove_folder);
   tcase_add_test(tests, a_system_that_may_depend_on_time_is_not_transformed);
   tcase_add_test(tests, explicit_methods_are_not_transformed);
@@ -402,5 +401,4 @@ int main(void)
   tcase_add_loop_test(tests, a_start_that_fails_leaves_the_state, 0, 2);
   tcase_add_loop_test(tests, steps_of_no_length_are_refused, 0, 2);
   tcase_add_test(tests, creation_survives_every_failure_of_memory);
-  return run_tests("transform failure", tests);
 }

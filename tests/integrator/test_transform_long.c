@@ -158,12 +158,10 @@ START_TEST(burraus_three_bodies_meet_and_part_as_they_must)
 }
 END_TEST
 
-int main(void)
+SUITE(transform_long)
 {
-  TCase *tests = tcase_create("transform long");
   tcase_add_test(tests, the_energy_of_a_transformed_run_does_not_drift);
   tcase_add_test(tests, nor_does_that_of_a_controlled_run);
   tcase_add_loop_test(tests, a_transformed_run_needs_a_tenth_of_the_evaluations_of_fixed_steps, 0, 3);
   tcase_add_test(tests, burraus_three_bodies_meet_and_part_as_they_must);
-  return run_tests("transform long", tests);
 }

@@ -206,13 +206,11 @@ START_TEST(arc_lengths_and_accelerations_keep_the_order)
 }
 END_TEST
 
-int main(void)
+SUITE(transform_order)
 {
-  TCase *tests = tcase_create("transform order");
   tcase_add_loop_test(tests, coordinates_momenta_and_time_have_the_order_of_the_method, 0, METHODS);
   tcase_add_test(tests, every_method_is_measured_or_refuses);
   tcase_add_test(tests, a_method_of_higher_derivatives_says_why_not);
   tcase_add_test(tests, a_mass_that_depends_on_the_coordinates_may_be_transformed);
   tcase_add_test(tests, arc_lengths_and_accelerations_keep_the_order);
-  return run_tests("transform order", tests);
 }

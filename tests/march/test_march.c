@@ -160,11 +160,9 @@ START_TEST(a_step_whose_event_fails_is_rejected)
 }
 END_TEST
 
-int main(void)
+SUITE(march)
 {
-  TCase *tests = tcase_create("march");
   tcase_add_test(tests, clocks_that_tick_when_they_are_due_run_to_the_end);
   tcase_add_test(tests, events_are_located_between_ticks_and_end_the_run_at_their_time);
   tcase_add_test(tests, a_step_whose_event_fails_is_rejected);
-  return run_tests("march/march", tests);
 }

@@ -76,11 +76,9 @@ START_TEST(a_writer_without_memory_says_so)
 }
 END_TEST
 
-int main(void)
+SUITE(sections)
 {
-  TCase *tests = tcase_create("sections");
   tcase_add_test(tests, sections_are_found_by_name_version_and_size);
   tcase_add_test(tests, every_cut_and_every_flipped_bit_is_refused);
   tcase_add_test(tests, a_writer_without_memory_says_so);
-  return run_tests("march/sections", tests);
 }

@@ -19,10 +19,8 @@ START_TEST(fpu_has_the_printed_state_at_200)
 }
 END_TEST
 
-int main(void)
+SUITE(digits_long)
 {
-  TCase *tests = tcase_create("digits");
   tcase_set_timeout(tests, 600);
   tcase_add_test(tests, fpu_has_the_printed_state_at_200);
-  return run_tests("reference/digits_long", tests);
 }

@@ -204,10 +204,8 @@ START_TEST(any_text_is_a_scene_or_a_sentence)
 }
 END_TEST
 
-int main(void)
+SUITE(fuzz_scene)
 {
-  TCase *tests = tcase_create("fuzz_scene");
   tcase_set_timeout(tests, fuzz_timeout());
   tcase_add_test(tests, any_text_is_a_scene_or_a_sentence);
-  return run_tests("scene/fuzz_scene", tests);
 }

@@ -116,10 +116,8 @@ START_TEST(any_text_makes_an_expression_or_a_sentence)
 }
 END_TEST
 
-int main(void)
+SUITE(fuzz_syntax)
 {
-  TCase *tests = tcase_create("fuzz_syntax");
   tcase_set_timeout(tests, fuzz_timeout());
   tcase_add_test(tests, any_text_makes_an_expression_or_a_sentence);
-  return run_tests("fuzz_syntax", tests);
 }

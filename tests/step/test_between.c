@@ -159,11 +159,9 @@ START_TEST(the_hessian_is_that_of_the_action)
 }
 END_TEST
 
-int main(void)
+SUITE(between)
 {
-  TCase *tests = tcase_create("between");
   tcase_add_loop_test(tests, the_path_leads_from_one_end_to_the_other, 0, 2 * SPACES);
   tcase_add_loop_test(tests, the_gradient_is_that_of_the_action, 0, 2 * SPACES);
   tcase_add_loop_test(tests, the_hessian_is_that_of_the_action, 0, 2 * SPACES);
-  return run_tests("between", tests);
 }

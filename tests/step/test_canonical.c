@@ -152,10 +152,8 @@ START_TEST(the_right_and_the_left_discrete_hamiltonian_generate_the_step)
 }
 END_TEST
 
-int main(void)
+SUITE(canonical)
 {
-  TCase *tests = tcase_create("canonical");
   tcase_add_loop_test(tests, the_right_and_the_left_discrete_hamiltonian_generate_the_step, 0, SERVE);
   tcase_add_loop_test(tests, the_jacobian_is_the_derivative_of_the_rows, 0, SPACES);
-  return run_tests("canonical", tests);
 }

@@ -166,12 +166,10 @@ START_TEST(creating_survives_every_failure)
 }
 END_TEST
 
-int main(void)
+SUITE(decoupled)
 {
-  TCase *tests = tcase_create("decoupled");
   tcase_add_loop_test(tests, a_separable_jacobian_is_inverted_in_any_space, 0, 7 * 3);
   tcase_add_loop_test(tests, a_mixed_jacobian_is_inverted_with_gauss_quadrature, 0, 6 * DEGREE_MOST * 3);
   tcase_add_loop_test(tests, one_factorisation_is_made_for_each_pair, 0, DEGREE_MOST);
   tcase_add_test(tests, creating_survives_every_failure);
-  return run_tests("action/decoupled", tests);
 }

@@ -465,9 +465,8 @@ START_TEST(rows_are_scaled_by_the_velocity_hessian_over_the_step)
 }
 END_TEST
 
-int main(void)
+SUITE(element)
 {
-  TCase *tests = tcase_create("element");
   tcase_set_timeout(tests, 60);
   tcase_add_loop_test(tests, the_residual_is_the_gradient_of_the_discrete_action, 0, SYSTEMS * RULES);
   tcase_add_loop_test(tests, ends_are_the_path_s_end_and_the_discrete_momentum, 0, SYSTEMS * RULES);
@@ -480,5 +479,4 @@ int main(void)
   tcase_add_loop_test(tests, a_straight_path_is_straight, 0, RULES);
   tcase_add_loop_test(tests, the_chord_inverts_the_kinetic_part, 0, SYSTEMS * RULES);
   tcase_add_loop_test(tests, rows_are_scaled_by_the_velocity_hessian_over_the_step, 0, SYSTEMS);
-  return run_tests("action/element", tests);
 }

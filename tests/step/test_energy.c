@@ -237,12 +237,10 @@ START_TEST(a_system_without_rates_has_no_energies)
 }
 END_TEST
 
-int main(void)
+SUITE(energy)
 {
-  TCase *tests = tcase_create("energy");
   tcase_add_loop_test(tests, the_energies_are_the_derivatives_of_the_action_in_the_times_of_the_ends, 0, SYSTEMS * SPACES);
   tcase_add_loop_test(tests, the_h_column_is_the_derivative_of_the_rows, 0, SYSTEMS * SPACES);
   tcase_add_loop_test(tests, the_gradients_are_the_derivatives_of_the_energies, 0, SYSTEMS * SPACES);
   tcase_add_test(tests, a_system_without_rates_has_no_energies);
-  return run_tests("action/energy", tests);
 }

@@ -140,10 +140,8 @@ START_TEST(degrees_are_half_the_largest_angle_and_a_little_more)
 }
 END_TEST
 
-int main(void)
+SUITE(expansion)
 {
-  TCase *tests = tcase_create("expansion");
   tcase_add_loop_test(tests, what_is_left_out_is_within_its_bound, 0, FUNCTIONS * INTERVALS);
   tcase_add_test(tests, degrees_are_half_the_largest_angle_and_a_little_more);
-  return run_tests("expansion", tests);
 }

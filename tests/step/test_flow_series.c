@@ -197,14 +197,12 @@ START_TEST(failures_are_said)
 }
 END_TEST
 
-int main(void)
+SUITE(flow_series)
 {
-  TCase *tests = tcase_create("flow series");
   tcase_add_test(tests, an_oscillator_has_the_series_of_the_cosine);
   tcase_add_loop_test(tests, the_sum_is_where_an_integrator_arrives, 0, PLACES);
   tcase_add_loop_test(tests, derivatives_agree_with_differences, 0, PLACES);
   tcase_add_test(tests, the_derivative_is_symplectic_order_by_order);
   tcase_add_test(tests, nothing_is_allocated_after_create);
   tcase_add_test(tests, failures_are_said);
-  return run_tests("action/flow_series", tests);
 }

@@ -96,11 +96,9 @@ START_TEST(a_mass_that_couples_is_left_to_the_rows)
 }
 END_TEST
 
-int main(void)
+SUITE(sweep)
 {
-  TCase *tests = tcase_create("sweep");
   tcase_add_loop_test(tests, the_coefficients_are_symplectic_to_the_last_bit, 0, 4 * DVI_DEGREE_MAX);
   tcase_add_loop_test(tests, the_fixed_point_solves_the_rows, 0, 8);
   tcase_add_test(tests, a_mass_that_couples_is_left_to_the_rows);
-  return run_tests("action/sweep", tests);
 }

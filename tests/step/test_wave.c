@@ -458,9 +458,8 @@ START_TEST(runs_with_events_are_those_of_the_plain_sweep)
 }
 END_TEST
 
-int main(void)
+SUITE(wave)
 {
-  TCase *tests = tcase_create("wave");
   tcase_add_checked_fixture(tests, make_folder, remove_folder);
   tcase_add_checked_fixture(tests, NULL, best_again);
   tcase_set_timeout(tests, 120);
@@ -478,5 +477,4 @@ int main(void)
   tcase_add_loop_test(tests, a_new_start_begins_anew, 0, METHODS);
   tcase_add_loop_test(tests, a_checkpoint_continues_bit_for_bit, 0, METHODS);
   tcase_add_loop_test(tests, runs_with_events_are_those_of_the_plain_sweep, 0, METHODS);
-  return run_tests("action/wave", tests);
 }

@@ -105,9 +105,8 @@ START_TEST(points_without_a_logarithm_are_left_out)
 }
 END_TEST
 
-int main(void)
+SUITE(frontier)
 {
-  TCase *tests = tcase_create("frontier");
   tcase_add_test(tests, a_straight_line_in_logarithms_is_met_between_its_points);
   tcase_add_test(tests, a_setting_itself_costs_what_was_measured);
   tcase_add_test(tests, only_the_two_neighbours_count);
@@ -117,5 +116,4 @@ int main(void)
   tcase_add_test(tests, a_roundoff_floor_that_gets_worse_with_cost_is_left_out);
   tcase_add_test(tests, a_setting_that_stands_twice_counts_once);
   tcase_add_test(tests, points_without_a_logarithm_are_left_out);
-  return run_tests("frontier", tests);
 }

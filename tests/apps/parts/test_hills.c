@@ -78,13 +78,11 @@ START_TEST(narrow_peaks_with_tails_are_found)
 }
 END_TEST
 
-int main(void)
+SUITE(hills)
 {
-  TCase *tests = tcase_create("hills");
   tcase_add_test(tests, a_top_rises_from_the_higher_one_of_two_valleys);
   tcase_add_test(tests, of_equal_points_the_first_is_the_top);
   tcase_add_test(tests, an_end_of_the_range_may_be_a_top_and_level_ground_has_none);
   tcase_add_test(tests, steep_gaps_are_halved_down_to_the_width);
   tcase_add_test(tests, narrow_peaks_with_tails_are_found);
-  return run_tests("hills", tests);
 }

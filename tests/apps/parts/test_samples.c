@@ -75,9 +75,8 @@ START_TEST(one_size_tells_no_exponent)
 }
 END_TEST
 
-int main(void)
+SUITE(samples)
 {
-  TCase *tests = tcase_create("samples");
   tcase_add_test(tests, median_and_quartiles_of_an_odd_number);
   tcase_add_test(tests, between_two_measurements_they_are_interpolated);
   tcase_add_test(tests, one_measurement_is_all_of_them);
@@ -85,5 +84,4 @@ int main(void)
   tcase_add_test(tests, the_exponent_of_a_power_is_found);
   tcase_add_test(tests, points_without_a_logarithm_do_not_count_for_an_exponent);
   tcase_add_test(tests, one_size_tells_no_exponent);
-  return run_tests("samples", tests);
 }

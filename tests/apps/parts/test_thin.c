@@ -80,12 +80,10 @@ START_TEST(gaps_stay_gaps)
 }
 END_TEST
 
-int main(void)
+SUITE(thin)
 {
-  TCase *tests = tcase_create("thin");
   tcase_add_test(tests, a_straight_line_keeps_its_ends);
   tcase_add_test(tests, no_point_is_farther_from_the_thinned_curve_than_can_be_seen);
   tcase_add_test(tests, a_line_that_turns_back_keeps_its_turning_points);
   tcase_add_test(tests, gaps_stay_gaps);
-  return run_tests("thin", tests);
 }

@@ -60,12 +60,10 @@ START_TEST(what_roundings_leave_of_zero_has_the_size_of_its_kind)
 }
 END_TEST
 
-int main(void)
+SUITE(trust)
 {
-  TCase *tests = tcase_create("trust");
   tcase_add_test(tests, an_error_that_follows_its_power_is_found);
   tcase_add_test(tests, errors_that_do_not_fall_are_not_made_small);
   tcase_add_test(tests, digits_are_whole_and_within_their_range);
   tcase_add_test(tests, what_roundings_leave_of_zero_has_the_size_of_its_kind);
-  return run_tests("apps/trust", tests);
 }

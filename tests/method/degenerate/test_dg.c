@@ -443,9 +443,8 @@ START_TEST(specifications_are_spelled_out_and_read_again)
 }
 END_TEST
 
-int main(void)
+SUITE(dg)
 {
-  TCase *tests = tcase_create("dg");
   tcase_set_timeout(tests, 120);
   tcase_add_loop_test(tests, degrees_fluxes_and_stiffnesses_have_the_order_that_they_claim, 0, CLAIMS);
   tcase_add_loop_test(tests, five_and_six_coefficients_have_order_10, 4, 6);
@@ -461,5 +460,4 @@ int main(void)
   tcase_add_loop_test(tests, newtons_method_suffices, 0, 4);
   tcase_add_loop_test(tests, what_cannot_be_is_refused_with_its_reason, 0, REFUSED);
   tcase_add_test(tests, specifications_are_spelled_out_and_read_again);
-  return run_tests("method/dg", tests);
 }

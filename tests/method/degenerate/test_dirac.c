@@ -349,9 +349,8 @@ START_TEST(a_start_off_the_constraint_is_projected_on_request)
 }
 END_TEST
 
-int main(void)
+SUITE(dirac)
 {
-  TCase *tests = tcase_create("dirac");
   tcase_set_timeout(tests, 60);
   tcase_add_loop_test(tests, claimed_order_is_measured, 0, CLAIMS);
   tcase_add_test(tests, the_particle_on_a_circle_is_the_pendulum);
@@ -364,5 +363,4 @@ int main(void)
   tcase_add_test(tests, what_cannot_be_is_refused_by_name);
   tcase_add_test(tests, starts_off_the_constraint_are_refused);
   tcase_add_test(tests, a_start_off_the_constraint_is_projected_on_request);
-  return run_tests("method/dirac", tests);
 }

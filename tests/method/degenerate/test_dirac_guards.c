@@ -321,9 +321,8 @@ START_TEST(a_checkpoint_of_another_one_form_is_refused)
 }
 END_TEST
 
-int main(void)
+SUITE(dirac_guards)
 {
-  TCase *tests = tcase_create("dirac guards");
   tcase_set_timeout(tests, 60);
   tcase_add_checked_fixture(tests, make_folder, remove_folder);
   tcase_add_loop_test(tests, a_force_without_motion_rings_no_alarm, 0, METHODS);
@@ -332,5 +331,4 @@ int main(void)
   tcase_add_loop_test(tests, a_gradient_that_fails_from_some_call_on_says_so, 0, METHODS);
   tcase_add_loop_test(tests, a_checkpoint_of_another_constraint_is_refused, 0, METHODS);
   tcase_add_loop_test(tests, a_checkpoint_of_another_one_form_is_refused, 0, 5);
-  return run_tests("method/dirac_guards", tests);
 }

@@ -287,9 +287,8 @@ START_TEST(members_have_the_digits_of_single_runs)
 }
 END_TEST
 
-int main(void)
+SUITE(dirac_systems)
 {
-  TCase *tests = tcase_create("dirac systems");
   tcase_set_timeout(tests, 60);
   tcase_add_loop_test(tests, beads_turn_at_their_rates, 1, 3);
   tcase_add_loop_test(tests, beads_turn_at_their_rates, BEADS_MOST, BEADS_MOST + 1);
@@ -297,5 +296,4 @@ int main(void)
   tcase_add_test(tests, a_hamiltonian_may_depend_on_time);
   tcase_add_test(tests, controlled_steps_back_undo_steps);
   tcase_add_test(tests, members_have_the_digits_of_single_runs);
-  return run_tests("method/dirac_systems", tests);
 }

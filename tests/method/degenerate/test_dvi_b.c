@@ -15,10 +15,8 @@ START_TEST(it_has_order_1_in_its_class_and_refuses_what_is_outside)
 }
 END_TEST
 
-int main(void)
+SUITE(dvi_b)
 {
-  TCase *tests = tcase_create("dvi-b");
   tcase_add_test(tests, it_is_symplectic_euler);
   tcase_add_test(tests, it_has_order_1_in_its_class_and_refuses_what_is_outside);
-  return run_tests("method/dvi-b", tests);
 }

@@ -15,10 +15,8 @@ START_TEST(it_has_order_2_in_its_class_and_refuses_what_is_outside)
 }
 END_TEST
 
-int main(void)
+SUITE(dvi_midpoint)
 {
-  TCase *tests = tcase_create("dvi-midpoint");
   tcase_add_test(tests, it_is_the_midpoint_rule);
   tcase_add_test(tests, it_has_order_2_in_its_class_and_refuses_what_is_outside);
-  return run_tests("method/dvi-midpoint", tests);
 }

@@ -254,9 +254,8 @@ START_TEST(a_hamiltonian_that_depends_on_time_is_met_at_the_same_times)
 }
 END_TEST
 
-int main(void)
+SUITE(dvrk)
 {
-  TCase *tests = tcase_create("dvrk");
   tcase_set_timeout(tests, 120);
   tcase_add_loop_test(tests, it_is_galerkin_with_gauss_where_y_is_the_momentum, 1, 7);
   tcase_add_loop_test(tests, gauss_stages_have_order_2s, 1, 5);
@@ -268,5 +267,4 @@ int main(void)
   tcase_add_test(tests, other_one_forms_are_refused);
   tcase_add_test(tests, a_component_that_changes_after_all_stops_the_step);
   tcase_add_test(tests, a_pattern_tells_the_class_where_no_probe_reaches);
-  return run_tests("method/dvrk", tests);
 }

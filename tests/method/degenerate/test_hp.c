@@ -230,9 +230,8 @@ START_TEST(what_does_not_go_is_refused)
 }
 END_TEST
 
-int main(void)
+SUITE(hp)
 {
-  TCase *tests = tcase_create("hp");
   tcase_add_loop_test(tests, type_1_is_galerkin_with_lobattos_points, 1, 6);
   tcase_add_loop_test(tests, with_the_same_quadrature_types_1_to_3_are_the_same, 1, 4);
   tcase_add_loop_test(tests, type_4_with_gauss_points_is_gauss_collocation, 1, 4);
@@ -241,5 +240,4 @@ int main(void)
   tcase_add_loop_test(tests, orders_are_those_claimed, 0, CLAIMS);
   tcase_add_loop_test(tests, all_types_are_symplectic_and_types_1_and_4_symmetric, 1, 5);
   tcase_add_test(tests, what_does_not_go_is_refused);
-  return run_tests("method/hp", tests);
 }

@@ -364,9 +364,8 @@ START_TEST(coarse_quadratures_are_refused)
 }
 END_TEST
 
-int main(void)
+SUITE(hp_degenerate)
 {
-  TCase *tests = tcase_create("hp_degenerate");
   tcase_set_timeout(tests, 120);
   tcase_add_loop_test(tests, orders_are_those_claimed_in_every_gauge, 0, CLAIMS);
   tcase_add_test(tests, energy_stays_bounded_over_long_runs);
@@ -381,5 +380,4 @@ int main(void)
   tcase_add_loop_test(tests, multipliers_near_1_are_refused, 1, 5);
   tcase_add_loop_test(tests, odd_degrees_need_no_symmetric_part, 2, 4);
   tcase_add_test(tests, coarse_quadratures_are_refused);
-  return run_tests("method/hp_degenerate", tests);
 }

@@ -166,11 +166,9 @@ START_TEST(both_sides_can_be_started_on)
 }
 END_TEST
 
-int main(void)
+SUITE(two_form_side)
 {
-  TCase *tests = tcase_create("two-form side");
   tcase_add_loop_test(tests, no_step_leads_over_a_singular_two_form, 0, sizeof general / sizeof *general);
   tcase_add_loop_test(tests, nor_does_one_of_a_one_step_method, 0, sizeof one_step / sizeof *one_step);
   tcase_add_test(tests, both_sides_can_be_started_on);
-  return run_tests("method/two_form_side", tests);
 }

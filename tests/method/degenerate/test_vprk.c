@@ -260,9 +260,8 @@ START_TEST(lobatto_wants_two_nodes)
 }
 END_TEST
 
-int main(void)
+SUITE(vprk)
 {
-  TCase *tests = tcase_create("vprk");
   tcase_set_timeout(tests, 120);
   tcase_add_loop_test(tests, gauss_with_the_symmetric_projection_has_order_2s, 0, 3 * PLACES);
   tcase_add_loop_test(tests, tableaux_and_projections_have_the_order_that_they_claim, 0, KINDS);
@@ -274,5 +273,4 @@ int main(void)
   tcase_add_test(tests, a_step_out_of_the_logarithms_domain_leaves_the_state);
   tcase_add_loop_test(tests, a_callback_that_goes_on_asking_for_smaller_steps_is_heard, 0, 6);
   tcase_add_test(tests, lobatto_wants_two_nodes);
-  return run_tests("method/vprk", tests);
 }

@@ -336,10 +336,8 @@ START_TEST(no_run_leaves_its_branch_without_a_word)
 }
 END_TEST
 
-int main(void)
+SUITE(branch_census)
 {
-  TCase *tests = tcase_create("branch_census");
   tcase_set_timeout(tests, 1e5);
   tcase_add_loop_test(tests, no_run_leaves_its_branch_without_a_word, 0, CASES);
-  return run_tests("method/branch_census", tests);
 }

@@ -206,9 +206,8 @@ START_TEST(kinsol_certifies_every_step)
 }
 END_TEST
 
-int main(void)
+SUITE(galerkin)
 {
-  TCase *tests = tcase_create("galerkin");
   tcase_add_loop_test(tests, all_bases_of_a_degree_give_one_trajectory, 0, DEGREES * BASES);
   tcase_add_test(tests, the_claimed_order_is_the_lesser_of_twice_the_degree_and_the_quadratures);
   tcase_add_test(tests, nodes_left_out_are_the_fewest_of_full_order);
@@ -217,5 +216,4 @@ int main(void)
   tcase_add_loop_test(tests, all_solvers_find_the_same_step, 0, 3);
   tcase_add_test(tests, a_small_coordinate_is_solved_to_its_own_roundoff);
   tcase_add_loop_test(tests, kinsol_certifies_every_step, 0, 6);
-  return run_tests("galerkin", tests);
 }

@@ -52,11 +52,9 @@ START_TEST(it_is_galerkin_of_degree_1_with_the_midpoint_bit_for_bit)
 }
 END_TEST
 
-int main(void)
+SUITE(midpoint)
 {
-  TCase *tests = tcase_create("midpoint");
   tcase_add_test(tests, on_an_oscillator_a_step_is_the_cayley_transform);
   tcase_add_test(tests, a_quadratic_invariant_is_conserved_to_roundoff);
   tcase_add_test(tests, it_is_galerkin_of_degree_1_with_the_midpoint_bit_for_bit);
-  return run_tests("midpoint", tests);
 }

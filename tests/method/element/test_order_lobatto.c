@@ -15,10 +15,8 @@ START_TEST(lobatto_with_one_node_more_has_order_2s)
 }
 END_TEST
 
-int main(void)
+SUITE(order_lobatto)
 {
-  TCase *tests = tcase_create("order");
   tcase_set_timeout(tests, 0);
   tcase_add_loop_test(tests, lobatto_with_one_node_more_has_order_2s, 0, ORDER_PLACES * MOST_DEGREE);
-  return run_tests("order_lobatto", tests);
 }

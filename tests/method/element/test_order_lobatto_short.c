@@ -36,11 +36,9 @@ START_TEST(clenshaw_curtis_with_few_nodes_has_the_order_that_its_own_allows)
 }
 END_TEST
 
-int main(void)
+SUITE(order_lobatto_short)
 {
-  TCase *tests = tcase_create("order");
   tcase_set_timeout(tests, 0);
   tcase_add_loop_test(tests, lobatto_with_as_many_nodes_as_degrees_has_order_2s_minus_2, 0, ORDER_PLACES * (MOST_DEGREE - 1));
   tcase_add_loop_test(tests, clenshaw_curtis_with_few_nodes_has_the_order_that_its_own_allows, 0, 3 * FEW);
-  return run_tests("order_lobatto_short", tests);
 }

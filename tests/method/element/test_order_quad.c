@@ -164,11 +164,9 @@ START_TEST(the_librarys_trajectory_is_theirs_to_roundoff)
 }
 END_TEST
 
-int main(void)
+SUITE(order_quad)
 {
-  TCase *tests = tcase_create("order in quadruple precision");
   tcase_set_timeout(tests, 120);
   tcase_add_loop_test(tests, the_equations_of_a_step_have_the_claimed_order, 0, CASES);
   tcase_add_loop_test(tests, the_librarys_trajectory_is_theirs_to_roundoff, 0, CASES);
-  return run_tests("order", tests);
 }

@@ -51,9 +51,7 @@ START_TEST(degree_s_has_order_2s)
 }
 END_TEST
 
-int main(void)
+SUITE(order_sem)
 {
-  TCase *tests = tcase_create("order of sem");
   tcase_add_loop_test(tests, degree_s_has_order_2s, 0, 2 * DEGREES);
-  return run_tests("method/order_sem", tests);
 }

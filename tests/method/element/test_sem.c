@@ -406,9 +406,8 @@ START_TEST(queries_answer_for_methods_of_fixed_steps)
 }
 END_TEST
 
-int main(void)
+SUITE(sem)
 {
-  TCase *tests = tcase_create("sem");
   tcase_set_timeout(tests, 60);
   tcase_add_loop_test(tests, energy_and_angular_momentum_are_conserved, 0, CONSERVING);
   tcase_add_test(tests, the_steps_are_galerkin_steps_of_other_lengths);
@@ -425,5 +424,4 @@ int main(void)
   tcase_add_test(tests, a_system_that_may_depend_on_time_needs_rates);
   tcase_add_test(tests, ensembles_refuse_it);
   tcase_add_test(tests, queries_answer_for_methods_of_fixed_steps);
-  return run_tests("method/sem", tests);
 }

@@ -38,9 +38,7 @@ START_TEST(energy_is_conserved_to_1e_12_over_1e5_steps)
 }
 END_TEST
 
-int main(void)
+SUITE(sem_long)
 {
-  TCase *tests = tcase_create("sem long");
   tcase_add_loop_test(tests, energy_is_conserved_to_1e_12_over_1e5_steps, 0, DEGREES + 2);
-  return run_tests("method/sem_long", tests);
 }

@@ -129,10 +129,8 @@ START_TEST(the_first_step_is_symplectic_in_q_and_p_alone)
 }
 END_TEST
 
-int main(void)
+SUITE(sem_symplectic)
 {
-  TCase *tests = tcase_create("sem symplectic");
   tcase_add_loop_test(tests, the_form_is_the_same_before_and_after, 0, PLACES);
   tcase_add_test(tests, the_first_step_is_symplectic_in_q_and_p_alone);
-  return run_tests("method/sem_symplectic", tests);
 }

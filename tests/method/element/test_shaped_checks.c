@@ -476,9 +476,8 @@ START_TEST(members_of_an_ensemble_have_the_digits_of_single_runs)
 }
 END_TEST
 
-int main(void)
+SUITE(shaped_checks)
 {
-  TCase *tests = tcase_create("shaped checks");
   tcase_add_checked_fixture(tests, make_folder, remove_folder);
   tcase_add_test(tests, what_is_missing_or_out_of_range_is_named);
   tcase_add_test(tests, specifications_that_do_not_fit_are_refused);
@@ -496,5 +495,4 @@ int main(void)
   tcase_add_test(tests, checkpoints_know_the_space);
   tcase_add_test(tests, what_the_program_gave_is_copied);
   tcase_add_test(tests, members_of_an_ensemble_have_the_digits_of_single_runs);
-  return run_tests("method/shaped_checks", tests);
 }

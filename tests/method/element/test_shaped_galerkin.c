@@ -306,9 +306,8 @@ START_TEST(an_order_of_ones_own_may_be_claimed)
 }
 END_TEST
 
-int main(void)
+SUITE(shaped_galerkin)
 {
-  TCase *tests = tcase_create("shaped-galerkin");
   tcase_add_test(tests, polynomials_given_as_functions_are_galerkin);
   tcase_add_test(tests, scales_constants_and_mixtures_of_functions_do_not_matter);
   tcase_add_loop_test(tests, an_oscillator_of_the_given_frequency_is_exact, 0, 5);
@@ -321,5 +320,4 @@ int main(void)
   tcase_add_test(tests, cubic_splines_have_order_6);
   tcase_add_test(tests, a_basis_of_b_splines_has_the_same_paths);
   tcase_add_test(tests, an_order_of_ones_own_may_be_claimed);
-  return run_tests("method/shaped_galerkin", tests);
 }

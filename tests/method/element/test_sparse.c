@@ -104,10 +104,8 @@ START_TEST(memory_and_jacobian_grow_in_proportion_to_the_chain)
 }
 END_TEST
 
-int main(void)
+SUITE(sparse)
 {
-  TCase *tests = tcase_create("sparse");
   tcase_set_timeout(tests, 0);
   tcase_add_loop_test(tests, memory_and_jacobian_grow_in_proportion_to_the_chain, 0, sizeof kinds / sizeof *kinds);
-  return run_tests("method/sparse", tests);
 }

@@ -53,11 +53,9 @@ START_TEST(a_modal_basis_does_the_same)
 }
 END_TEST
 
-int main(void)
+SUITE(spectral)
 {
-  TCase *tests = tcase_create("spectral convergence");
   tcase_set_timeout(tests, 60);
   tcase_add_loop_test(tests, three_steps_a_turn_gain_two_digits_with_eight_degrees, 0, DEGREES);
   tcase_add_loop_test(tests, a_modal_basis_does_the_same, 0, DEGREES);
-  return run_tests("spectral", tests);
 }

@@ -32,10 +32,8 @@ START_TEST(it_takes_a_general_lagrangian)
 }
 END_TEST
 
-int main(void)
+SUITE(trapezoidal)
 {
-  TCase *tests = tcase_create("trapezoidal");
   tcase_add_test(tests, with_a_constant_mass_it_is_verlet);
   tcase_add_test(tests, it_takes_a_general_lagrangian);
-  return run_tests("trapezoidal", tests);
 }

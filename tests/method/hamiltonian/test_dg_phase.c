@@ -129,14 +129,12 @@ START_TEST(too_few_nodes_are_refused)
 }
 END_TEST
 
-int main(void)
+SUITE(dg_phase)
 {
-  TCase *tests = tcase_create("dg-phase");
   tcase_set_timeout(tests, 120);
   tcase_add_loop_test(tests, every_degree_has_order_2, 0, 3 * PLACES);
   tcase_add_test(tests, steps_solve_the_printed_equations);
   tcase_add_loop_test(tests, degrees_and_nodes_give_the_steps_of_degree_0_on_the_configurations, 0, 3);
   tcase_add_test(tests, energy_stays_bounded);
   tcase_add_test(tests, too_few_nodes_are_refused);
-  return run_tests("method/dg_phase", tests);
 }

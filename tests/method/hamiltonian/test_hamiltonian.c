@@ -365,9 +365,8 @@ START_TEST(a_step_that_fails_leaves_the_state)
 }
 END_TEST
 
-int main(void)
+SUITE(hamiltonian)
 {
-  TCase *tests = tcase_create("hamiltonian");
   tcase_set_timeout(tests, 0);
   tcase_add_loop_test(tests, type_2_of_a_hyperregular_hamiltonian_is_type_1_that_is_galerkin, 0, 5);
   tcase_add_loop_test(tests, all_types_are_the_same_steps_and_on_a_lagrangian_those_of_galerkin, 1, 1 + DEGREES);
@@ -383,5 +382,4 @@ int main(void)
   tcase_add_test(tests, other_methods_refuse_a_hamiltonian_and_name_this_one);
   tcase_add_test(tests, bad_options_are_refused);
   tcase_add_test(tests, a_step_that_fails_leaves_the_state);
-  return run_tests("hamiltonian", tests);
 }

@@ -149,9 +149,8 @@ START_TEST(type_1_is_for_lagrangians)
 }
 END_TEST
 
-int main(void)
+SUITE(hamiltonian_shooting)
 {
-  TCase *tests = tcase_create("hamiltonian_shooting");
   tcase_set_timeout(tests, 0);
   tcase_add_loop_test(tests, the_order_is_the_lower_one_of_both, 0, PAIRS);
   tcase_add_loop_test(tests, elastica_shows_the_same_orders, 0, 6);
@@ -160,5 +159,4 @@ int main(void)
   tcase_add_loop_test(tests, types_2_and_3_of_symmetric_pairs_undo_each_other, 0, 2);
   tcase_add_loop_test(tests, energy_stays_and_momenta_are_kept, 2, 4);
   tcase_add_test(tests, type_1_is_for_lagrangians);
-  return run_tests("hamiltonian_shooting", tests);
 }

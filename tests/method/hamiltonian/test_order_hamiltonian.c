@@ -104,13 +104,11 @@ START_TEST(more_points_have_order_2s_where_h_is_regular)
 }
 END_TEST
 
-int main(void)
+SUITE(order_hamiltonian)
 {
-  TCase *tests = tcase_create("order");
   tcase_set_timeout(tests, 0);
   tcase_add_loop_test(tests, gauss_has_order_2s, 1, 1 + DEGREES);
   tcase_add_loop_test(tests, radau_has_order_2s_minus_1, 1, 1 + DEGREES);
   tcase_add_loop_test(tests, lobatto_with_as_many_points_has_order_2s_minus_2, 2, 1 + DEGREES);
   tcase_add_loop_test(tests, more_points_have_order_2s_where_h_is_regular, 1, 1 + DEGREES);
-  return run_tests("order_hamiltonian", tests);
 }

@@ -153,13 +153,11 @@ START_TEST(a_turn_beyond_the_chart_is_a_step_too_large)
 }
 END_TEST
 
-int main(void)
+SUITE(euler_poincare)
 {
-  TCase *tests = tcase_create("euler_poincare");
   tcase_add_loop_test(tests, it_takes_the_steps_of_lie_galerkin, 0, KEYS);
   tcase_add_test(tests, momenta_follow_the_coadjoint_action);
   tcase_add_loop_test(tests, its_steps_are_symplectic, 0, 2);
   tcase_add_test(tests, what_the_group_does_not_leave_alone_is_refused);
   tcase_add_test(tests, a_turn_beyond_the_chart_is_a_step_too_large);
-  return run_tests("method/euler_poincare", tests);
 }

@@ -277,9 +277,8 @@ START_TEST(known_digits_are_met)
 }
 END_TEST
 
-int main(void)
+SUITE(lie_galerkin)
 {
-  TCase *tests = tcase_create("lie_galerkin");
   tcase_add_checked_fixture(tests, NULL, forget_body);
   tcase_add_loop_test(tests, gauss_has_order_2s, 0, BODIES);
   tcase_add_loop_test(tests, degree_5_has_order_10, 0, 2);
@@ -291,5 +290,4 @@ int main(void)
   tcase_add_loop_test(tests, steps_back_undo_steps_of_degree_1, 0, BODIES);
   tcase_add_loop_test(tests, steps_are_symplectic, 0, BODIES);
   tcase_add_test(tests, known_digits_are_met);
-  return run_tests("method/lie_galerkin", tests);
 }

@@ -165,14 +165,12 @@ START_TEST(usual_steps_are_not_followed)
 }
 END_TEST
 
-int main(void)
+SUITE(lie_galerkin_branch)
 {
-  TCase *tests = tcase_create("lie_galerkin_branch");
   tcase_add_loop_test(tests, steps_of_rods_find_the_motion, 0, sizeof rods / sizeof *rods);
   tcase_add_loop_test(tests, runs_of_rods_stay_with_the_motion, 0, sizeof runs / sizeof *runs);
   tcase_add_loop_test(tests, steps_with_forces_find_the_motion, 0, 4);
   tcase_add_loop_test(tests, steps_beyond_a_fold_are_refused, 0, 2);
   tcase_add_loop_test(tests, refusals_tell_how_far_a_step_may_go, 0, 3);
   tcase_add_loop_test(tests, usual_steps_are_not_followed, 0, 3);
-  return run_tests("method/lie_galerkin_branch", tests);
 }

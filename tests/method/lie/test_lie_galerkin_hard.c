@@ -320,9 +320,8 @@ START_TEST(steps_cost_what_they_did)
 }
 END_TEST
 
-int main(void)
+SUITE(lie_galerkin_hard)
 {
-  TCase *tests = tcase_create("lie_galerkin_hard");
   tcase_add_test(tests, fast_tops_keep_energy_and_spin);
   tcase_add_loop_test(tests, steps_of_nearly_half_a_turn_are_taken, 0, 3);
   tcase_add_loop_test(tests, more_than_half_a_turn_is_a_step_too_large, 0, 5);
@@ -334,5 +333,4 @@ int main(void)
   tcase_add_loop_test(tests, no_step_allocates, 0, METHODS);
   tcase_add_loop_test(tests, paths_between_states_are_those_of_the_group, 0, METHODS);
   tcase_add_test(tests, steps_cost_what_they_did);
-  return run_tests("method/lie_galerkin_hard", tests);
 }

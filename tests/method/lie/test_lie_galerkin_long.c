@@ -46,10 +46,8 @@ START_TEST(a_million_steps_keep_what_they_should)
 }
 END_TEST
 
-int main(void)
+SUITE(lie_galerkin_long)
 {
-  TCase *tests = tcase_create("lie_galerkin_long");
   tcase_set_timeout(tests, 600);
   tcase_add_loop_test(tests, a_million_steps_keep_what_they_should, 0, sizeof runs / sizeof *runs);
-  return run_tests("method/lie_galerkin_long", tests);
 }

@@ -187,9 +187,8 @@ START_TEST(an_explicit_step_too_large_asks_for_a_smaller_one)
 }
 END_TEST
 
-int main(void)
+SUITE(lie_rk)
 {
-  TCase *tests = tcase_create("lie-rk");
   tcase_add_loop_test(tests, a_pendulum_shows_the_order, 0, 4);
   tcase_add_loop_test(tests, products_show_the_order, 0, 4 * (CELLS + 1));
   tcase_add_loop_test(tests, the_group_is_kept_or_left, 0, 4);
@@ -199,5 +198,4 @@ int main(void)
   tcase_add_test(tests, an_implicit_step_too_large_fails_by_name);
   tcase_add_test(tests, coupled_cells_refuse_steps_too_large);
   tcase_add_test(tests, an_explicit_step_too_large_asks_for_a_smaller_one);
-  return run_tests("lie-rk", tests);
 }

@@ -417,9 +417,8 @@ START_TEST(systems_without_factors_are_refused)
 }
 END_TEST
 
-int main(void)
+SUITE(lie_verlet)
 {
-  TCase *tests = tcase_create("lie-verlet");
   tcase_add_loop_test(tests, a_free_body_has_order_2, 0, 2);
   tcase_add_loop_test(tests, a_pendulum_has_order_2, 0, 2);
   tcase_add_loop_test(tests, products_have_order_2, 0, PRODUCTS);
@@ -438,5 +437,4 @@ int main(void)
   tcase_add_test(tests, a_centre_of_mass_goes_straight);
   tcase_add_loop_test(tests, between_steps_it_stays_on_the_group, 0, PRODUCTS);
   tcase_add_test(tests, systems_without_factors_are_refused);
-  return run_tests("lie-verlet", tests);
 }

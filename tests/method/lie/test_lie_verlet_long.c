@@ -57,10 +57,8 @@ START_TEST(coupled_directions_keep_their_length)
 }
 END_TEST
 
-int main(void)
+SUITE(lie_verlet_long)
 {
-  TCase *tests = tcase_create("lie-verlet, long");
   tcase_add_test(tests, a_million_steps_stay_on_the_group_with_their_momentum);
   tcase_add_test(tests, coupled_directions_keep_their_length);
-  return run_tests("lie-verlet, long", tests);
 }

@@ -92,11 +92,9 @@ START_TEST(directions_and_angles_keep_their_length)
 }
 END_TEST
 
-int main(void)
+SUITE(lie_verlet_rounding)
 {
-  TCase *tests = tcase_create("lie-verlet, rounding");
   tcase_add_loop_test(tests, a_steady_rotation_stays_on_the_group, 0, 3);
   tcase_add_loop_test(tests, tumbling_bodies_keep_energy_and_momentum, 0, 3);
   tcase_add_test(tests, directions_and_angles_keep_their_length);
-  return run_tests("lie-verlet, rounding", tests);
 }

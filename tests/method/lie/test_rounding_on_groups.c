@@ -131,10 +131,8 @@ START_TEST(a_pendulum_keeps_its_vertical_momentum)
 }
 END_TEST
 
-int main(void)
+SUITE(rounding_on_groups)
 {
-  TCase *tests = tcase_create("rounding on groups");
   tcase_add_loop_test(tests, steady_turns_keep_to_the_group_and_keep_their_momentum, 0, CASES);
   tcase_add_loop_test(tests, a_pendulum_keeps_its_vertical_momentum, 0, PENDULUMS);
-  return run_tests("rounding on groups", tests);
 }

@@ -109,13 +109,11 @@ START_TEST(chains_cost_as_much_as_they_have_links)
 }
 END_TEST
 
-int main(void)
+SUITE(sphere_galerkin)
 {
-  TCase *tests = tcase_create("sphere_galerkin");
   tcase_add_test(tests, a_free_direction_keeps_its_momentum);
   tcase_add_loop_test(tests, it_takes_the_steps_of_lie_galerkin, 0, 2);
   tcase_add_test(tests, directions_stay_directions);
   tcase_add_test(tests, rotations_are_refused_by_name);
   tcase_add_test(tests, chains_cost_as_much_as_they_have_links);
-  return run_tests("method/sphere_galerkin", tests);
 }

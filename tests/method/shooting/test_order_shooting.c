@@ -231,9 +231,8 @@ START_TEST(newtons_method_is_as_fast_as_the_step_is_short)
 }
 END_TEST
 
-int main(void)
+SUITE(order_shooting)
 {
-  TCase *tests = tcase_create("order");
   tcase_set_timeout(tests, 120);
   tcase_add_loop_test(tests, the_order_is_the_lower_of_both, 0, ONE_STEPS * RULES);
   tcase_add_loop_test(tests, odd_orders_are_no_lower_than_claimed, 0, 4);
@@ -242,5 +241,4 @@ int main(void)
   tcase_add_loop_test(tests, series_have_the_order_of_their_degree, 0, SERIES);
   tcase_add_loop_test(tests, euler_maclaurin_has_order_twice_its_terms_and_2, 0, SUMMED);
   tcase_add_test(tests, newtons_method_is_as_fast_as_the_step_is_short);
-  return run_tests("method/order_shooting", tests);
 }

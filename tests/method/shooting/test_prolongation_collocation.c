@@ -179,9 +179,8 @@ START_TEST(what_it_cannot_use_is_refused)
 }
 END_TEST
 
-int main(void)
+SUITE(prolongation_collocation)
 {
-  TCase *tests = tcase_create("prolongation-collocation");
   tcase_add_loop_test(tests, the_order_is_that_of_the_quadrature, 0, LARGEST * PLACES);
   tcase_add_loop_test(tests, it_goes_on_to_order_10, 0, 4);
   tcase_add_test(tests, time_may_stand_in_the_lagrangian);
@@ -192,5 +191,4 @@ int main(void)
   tcase_add_test(tests, a_step_that_is_too_long_leaves_the_state);
   tcase_add_loop_test(tests, a_term_without_taylor_coefficients_is_named, 0, 2);
   tcase_add_test(tests, what_it_cannot_use_is_refused);
-  return run_tests("method/prolongation_collocation", tests);
 }

@@ -334,9 +334,8 @@ START_TEST(a_one_step_method_that_fails_inside_a_step_leaves_the_state)
 }
 END_TEST
 
-int main(void)
+SUITE(shooting)
 {
-  TCase *tests = tcase_create("shooting");
   tcase_set_timeout(tests, 60);
   tcase_add_loop_test(tests, steps_are_symplectic_and_symmetric_pairs_symmetric, 0, PAIRS);
   tcase_add_loop_test(tests, momenta_of_equivariant_one_step_methods_stay_at_roundoff, 0, 3);
@@ -346,5 +345,4 @@ int main(void)
   tcase_add_test(tests, what_needs_taylor_coefficients_says_who_lacks_them);
   tcase_add_loop_test(tests, derivatives_that_are_left_out_are_differenced, 0, NOISY);
   tcase_add_loop_test(tests, a_one_step_method_that_fails_inside_a_step_leaves_the_state, 0, 2);
-  return run_tests("method/shooting", tests);
 }

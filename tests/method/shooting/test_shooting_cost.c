@@ -71,10 +71,8 @@ START_TEST(all_stages_are_evaluated_once_a_point)
 }
 END_TEST
 
-int main(void)
+SUITE(shooting_cost)
 {
-  TCase *tests = tcase_create("cost");
   tcase_add_loop_test(tests, a_step_is_as_many_shots_as_residuals, 0, SHOTS);
   tcase_add_test(tests, all_stages_are_evaluated_once_a_point);
-  return run_tests("method/shooting_cost", tests);
 }

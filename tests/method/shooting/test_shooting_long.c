@@ -51,11 +51,9 @@ START_TEST(a_loose_search_drifts)
 }
 END_TEST
 
-int main(void)
+SUITE(shooting_long)
 {
-  TCase *tests = tcase_create("long");
   tcase_set_timeout(tests, 300);
   tcase_add_loop_test(tests, explicit_one_step_methods_do_not_drift, 0, RUNS);
   tcase_add_test(tests, a_loose_search_drifts);
-  return run_tests("method/shooting_long", tests);
 }

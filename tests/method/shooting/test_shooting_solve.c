@@ -100,13 +100,11 @@ START_TEST(what_is_too_large_or_has_no_such_way_is_refused)
 }
 END_TEST
 
-int main(void)
+SUITE(shooting_solve)
 {
-  TCase *tests = tcase_create("solve");
   tcase_set_timeout(tests, 60);
   tcase_add_loop_test(tests, all_stages_at_once_give_the_same_steps, 0, SOLVED);
   tcase_add_test(tests, long_chains_are_solved_by_all_stages_at_once);
   tcase_add_loop_test(tests, left_out_the_cheaper_one_is_taken, 0, TAKEN);
   tcase_add_loop_test(tests, what_is_too_large_or_has_no_such_way_is_refused, 0, REFUSED);
-  return run_tests("method/shooting_solve", tests);
 }

@@ -155,9 +155,8 @@ START_TEST(files_have_a_most)
 }
 END_TEST
 
-int main(void)
+SUITE(shooting_tableau)
 {
-  TCase *tests = tcase_create("tableau");
   tcase_set_timeout(tests, 60);
   tcase_add_loop_test(tests, tableaus_have_the_order_that_they_claim_and_no_more, 0, DVI__RK_NAMED);
   tcase_add_test(tests, every_coefficient_counts);
@@ -165,5 +164,4 @@ int main(void)
   tcase_add_loop_test(tests, broken_files_are_refused, 0, BROKEN);
   tcase_add_test(tests, what_is_no_text_is_refused);
   tcase_add_test(tests, files_have_a_most);
-  return run_tests("method/shooting_tableau", tests);
 }

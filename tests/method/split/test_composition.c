@@ -76,9 +76,8 @@ START_TEST(verlet_keeps_its_one_gradient_a_substep)
 }
 END_TEST
 
-int main(void)
+SUITE(composition)
 {
-  TCase *tests = tcase_create("composition");
   tcase_add_test(tests, a_base_that_is_not_symmetric_is_refused);
   tcase_add_test(tests, a_key_that_the_base_does_not_know_is_refused);
   tcase_add_test(tests, an_order_without_coefficients_is_refused);
@@ -86,5 +85,4 @@ int main(void)
   tcase_add_loop_test(tests, the_substeps_add_up_to_the_step, 0, 3);
   tcase_add_test(tests, a_base_of_higher_order_keeps_its_order);
   tcase_add_test(tests, verlet_keeps_its_one_gradient_a_substep);
-  return run_tests("composition", tests);
 }

@@ -321,9 +321,8 @@ START_TEST(the_stiff_springs_keep_their_energy_over_long_times_at_steps_beyond_t
 }
 END_TEST
 
-int main(void)
+SUITE(imex)
 {
-  TCase *tests = tcase_create("imex");
   tcase_add_test(tests, one_linear_system_a_step_does_what_newtons_method_does);
   tcase_add_test(tests, a_quadratic_fast_potential_takes_one_factorisation_a_run_and_one_gradient_a_step);
   tcase_add_loop_test(tests, a_composition_takes_one_factorisation_for_each_length_of_its_substeps, 0, 3);
@@ -337,5 +336,4 @@ int main(void)
   tcase_add_test(tests, no_fast_frequency_resonates);
   tcase_add_test(tests, steps_are_stable_exactly_below_the_slow_limit_of_2);
   tcase_add_test(tests, the_stiff_springs_keep_their_energy_over_long_times_at_steps_beyond_their_period);
-  return run_tests("imex", tests);
 }

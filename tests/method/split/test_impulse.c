@@ -184,14 +184,12 @@ START_TEST(a_slow_force_that_fails_in_mid_run_leaves_the_state_alone)
 }
 END_TEST
 
-int main(void)
+SUITE(impulse)
 {
-  TCase *tests = tcase_create("impulse");
   tcase_add_loop_test(tests, steps_are_symplectic, 0, METHODS);
   tcase_add_loop_test(tests, momenta_of_symmetries_are_kept, 0, METHODS);
   tcase_add_loop_test(tests, a_step_back_undoes_a_step, 0, METHODS);
   tcase_add_loop_test(tests, a_step_depends_on_its_state_and_its_length_alone, 0, METHODS);
   tcase_add_loop_test(tests, systems_that_cannot_be_split_are_refused_by_name, 0, METHODS * REFUSED);
   tcase_add_loop_test(tests, a_slow_force_that_fails_in_mid_run_leaves_the_state_alone, 0, METHODS);
-  return run_tests("impulse", tests);
 }

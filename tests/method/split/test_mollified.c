@@ -60,12 +60,10 @@ START_TEST(fast_potentials_that_are_not_quadratic_are_refused)
 }
 END_TEST
 
-int main(void)
+SUITE(mollified)
 {
-  TCase *tests = tcase_create("mollified");
   tcase_add_loop_test(tests, filtered_kicks_do_not_resonate, 0, 2);
   tcase_add_test(tests, modes_that_a_step_resolves_are_not_projected);
   tcase_add_test(tests, the_average_asks_for_the_slow_force_at_the_mean_of_the_fast_motion);
   tcase_add_loop_test(tests, fast_potentials_that_are_not_quadratic_are_refused, 0, 2);
-  return run_tests("mollified", tests);
 }

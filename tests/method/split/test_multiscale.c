@@ -339,9 +339,8 @@ START_TEST(of_many_fast_coordinates_it_is_asked_for)
 }
 END_TEST
 
-int main(void)
+SUITE(multiscale)
 {
-  TCase *tests = tcase_create("multiscale");
   tcase_add_loop_test(tests, a_linear_oscillator_is_exact_whatever_h_omega, 0, 36);
   tcase_add_test(tests, between_its_steps_too);
   tcase_add_test(tests, where_the_oscillation_is_a_polynomial_it_is_galerkin_with_as_many_nodes);
@@ -360,5 +359,4 @@ int main(void)
   tcase_add_test(tests, what_is_not_known_is_asked_for);
   tcase_add_test(tests, of_two_fast_frequencies_one_must_be_chosen);
   tcase_add_test(tests, of_many_fast_coordinates_it_is_asked_for);
-  return run_tests("method/multiscale", tests);
 }

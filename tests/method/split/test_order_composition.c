@@ -28,12 +28,10 @@ START_TEST(the_explicit_and_the_two_point_rules_have_order_2)
 }
 END_TEST
 
-int main(void)
+SUITE(order_composition)
 {
-  TCase *tests = tcase_create("order");
   tcase_set_timeout(tests, 0);
   tcase_add_loop_test(tests, compositions_of_verlet_have_their_order, 0, ORDER_PLACES * 3);
   tcase_add_loop_test(tests, compositions_of_midpoint_have_their_order, 0, ORDER_PLACES * 3);
   tcase_add_loop_test(tests, the_explicit_and_the_two_point_rules_have_order_2, 0, 3);
-  return run_tests("order_composition", tests);
 }

@@ -42,12 +42,10 @@ START_TEST(a_slow_coordinate_has_the_order_of_its_polynomials)
 }
 END_TEST
 
-int main(void)
+SUITE(order_multiscale)
 {
-  TCase *tests = tcase_create("order");
   tcase_add_test(tests, it_has_twice_the_order_of_its_functions_on_the_stiff_pendulum);
   tcase_add_test(tests, and_at_a_frequency_that_is_not_the_motions);
   tcase_add_loop_test(tests, at_every_degree_of_path_and_amplitudes, 0, sizeof cases / sizeof *cases);
   tcase_add_test(tests, a_slow_coordinate_has_the_order_of_its_polynomials);
-  return run_tests("method/order_multiscale", tests);
 }

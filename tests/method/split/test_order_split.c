@@ -44,13 +44,11 @@ START_TEST(ida_finds_their_order_2)
 }
 END_TEST
 
-int main(void)
+SUITE(order_split)
 {
-  TCase *tests = tcase_create("order");
   tcase_set_timeout(tests, 0);
   tcase_add_loop_test(tests, they_have_order_2_on_the_chain_of_soft_and_stiff_springs, 0, METHODS);
   tcase_add_loop_test(tests, compositions_of_imex_have_theirs, 0, 3);
   tcase_add_loop_test(tests, they_have_order_2_on_oscillators, 0, METHODS);
   tcase_add_loop_test(tests, ida_finds_their_order_2, 0, METHODS);
-  return run_tests("order_split", tests);
 }

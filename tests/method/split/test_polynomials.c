@@ -335,9 +335,8 @@ START_TEST(blocks_of_more_than_64_go_by_polynomials_where_they_serve)
 }
 END_TEST
 
-int main(void)
+SUITE(polynomials)
 {
-  TCase *tests = tcase_create("polynomials");
   tcase_add_loop_test(tests, polynomials_move_as_modes_do, 0, FILTERS);
   tcase_add_test(tests, a_string_of_five_hundred_moves_as_modes_do);
   tcase_add_loop_test(tests, the_fast_motion_is_exact_to_rounding, 0, 4);
@@ -352,5 +351,4 @@ int main(void)
   tcase_add_test(tests, steps_for_which_there_is_no_polynomial_fail_and_those_that_are_named_do_not);
   tcase_add_test(tests, a_filter_that_jumps_has_no_polynomial);
   tcase_add_loop_test(tests, blocks_of_more_than_64_go_by_polynomials_where_they_serve, 0, 4);
-  return run_tests("polynomials", tests);
 }

@@ -161,9 +161,8 @@ START_TEST(energy_grows_at_a_peak_and_not_beside_it)
 }
 END_TEST
 
-int main(void)
+SUITE(respa)
 {
-  TCase *tests = tcase_create("respa");
   tcase_add_test(tests, with_one_substep_it_is_verlet);
   tcase_add_loop_test(tests, a_step_has_one_slow_gradient_and_one_of_the_fast_potentials_for_each_substep, 0, 2);
   tcase_add_test(tests, exact_motion_is_exact_whatever_the_step);
@@ -171,5 +170,4 @@ int main(void)
   tcase_add_test(tests, substeps_are_a_number_or_exact);
   tcase_add_loop_test(tests, kicks_in_phase_with_the_fast_motion_resonate, 0, 4);
   tcase_add_test(tests, energy_grows_at_a_peak_and_not_beside_it);
-  return run_tests("respa", tests);
 }

@@ -114,13 +114,11 @@ START_TEST(a_step_at_which_a_filter_does_not_exist_fails_and_a_smaller_one_goes_
 }
 END_TEST
 
-int main(void)
+SUITE(trig)
 {
-  TCase *tests = tcase_create("trig");
   tcase_add_loop_test(tests, two_steps_have_the_filters_of_their_name, 0, FILTERS);
   tcase_add_loop_test(tests, methods_with_one_filter_are_symplectic_and_the_others_are_not, 0, FILTERS);
   tcase_add_loop_test(tests, two_of_them_are_known_by_other_names, 0, 2);
   tcase_add_loop_test(tests, a_step_has_one_slow_gradient_and_one_fast_one, 0, FILTERS + 1);
   tcase_add_loop_test(tests, a_step_at_which_a_filter_does_not_exist_fails_and_a_smaller_one_goes_on, 0, 3);
-  return run_tests("trig", tests);
 }

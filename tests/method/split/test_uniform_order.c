@@ -96,12 +96,10 @@ START_TEST(steps_that_do_not_turn_fast_springs_right_have_first_order)
 }
 END_TEST
 
-int main(void)
+SUITE(uniform_order)
 {
-  TCase *tests = tcase_create("uniform order");
   tcase_add_loop_test(tests, away_from_resonances_all_have_second_order_whatever_the_frequency, 0, ROWS);
   tcase_add_loop_test(tests, near_multiples_of_pi_only_those_have_it_for_which_the_theorem_holds, 0, ROWS);
   tcase_add_test(tests, exact_filters_have_it_far_from_the_zeros_of_sinc_alone);
   tcase_add_test(tests, steps_that_do_not_turn_fast_springs_right_have_first_order);
-  return run_tests("uniform_order", tests);
 }

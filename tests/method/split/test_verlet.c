@@ -110,13 +110,11 @@ START_TEST(what_it_cannot_do_is_refused_by_name)
 }
 END_TEST
 
-int main(void)
+SUITE(verlet)
 {
-  TCase *tests = tcase_create("verlet");
   tcase_add_test(tests, a_step_is_kick_drift_kick);
   tcase_add_test(tests, a_step_costs_one_gradient_and_nothing_else);
   tcase_add_test(tests, a_general_lagrangian_is_refused_by_name);
   tcase_add_loop_test(tests, what_it_cannot_do_is_refused_by_name, 0, 9);
   tcase_add_test(tests, no_hessian_is_made_for_it);
-  return run_tests("verlet", tests);
 }
