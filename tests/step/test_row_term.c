@@ -249,11 +249,9 @@ START_TEST(too_many_terms_are_refused)
 }
 END_TEST
 
-int main(void)
+SUITE(row_term)
 {
-  TCase *tests = tcase_create("row terms");
   tcase_add_test(tests, a_damped_oscillator_has_the_order_of_the_method);
   tcase_add_test(tests, a_multiplier_holds_its_constraint_and_has_order_2);
   tcase_add_test(tests, too_many_terms_are_refused);
-  return run_tests("step/row_term", tests);
 }
