@@ -30,7 +30,7 @@ static void start(run *r, const dvi_system_terms *terms, const char *method, con
   ck_assert_msg(dvi__element_add_term(&r->stepper, term) == DVI_OK, "%s", dvi_last_error());
   r->stepper.memory = calloc(r->stepper.memory_count, sizeof(double));
   ck_assert_ptr_nonnull(r->stepper.memory);
-  r->state = (dvi__state){.q = r->numbers, .p = r->numbers + 2, .q_carry = r->numbers + 4, .p_carry = r->numbers + 6};
+  r->state = (dvi__state){.q = r->numbers, .p = r->numbers + 2, .q_compensation = r->numbers + 4, .p_compensation = r->numbers + 6};
   memcpy(r->state.q, q, (size_t)terms->dimension * sizeof *q);
   memcpy(r->state.p, p, (size_t)terms->dimension * sizeof *p);
 }

@@ -16,7 +16,7 @@ void dvi__path_place(dvi_path *path, const double *x, int k)
 {
   const double h = dvi__path_span(path, x) / path->steps;
   dvi__action_place(path->action, path->start + k * h, h, dvi__path_at(path, x, k), path->rest);
-  dvi__action_between(path->action, dvi__path_at(path, x, k + 1), x + dvi__path_bubbles(path, k), path->Y);
+  dvi__action_two_point(path->action, dvi__path_at(path, x, k + 1), x + dvi__path_bubbles(path, k), path->Y);
 }
 
 /* Say in which step it failed. */
@@ -47,7 +47,7 @@ static void add_rows(dvi_path *path, int k, double *rows)
 static dvi_status element_gradient(dvi_path *path, const double *x, int k)
 {
   dvi__path_place(path, x, k);
-  return dvi__action_between_gradient(path->action, path->Y, path->in_ends[0], path->in_ends[1], path->in_Z);
+  return dvi__action_two_point_gradient(path->action, path->Y, path->in_ends[0], path->in_ends[1], path->in_Z);
 }
 
 /* -dS/dq0 of the first step is p_0. */
@@ -188,7 +188,7 @@ static dvi_status add_span(assembly *to, dvi_path *path, int k)
   dvi__energy_gradient gradient = {path->energy_Y, path->energy_q0, 0};
   dvi__places places;
   DVI_TRY(dvi__action_energy_gradients(path->action, &gradient, &gradient));
-  dvi__action_between_ends(path->action, gradient.Y, gradient.q0, path->in_ends[0], path->in_ends[1], path->in_Z);
+  dvi__action_two_point_ends(path->action, gradient.Y, gradient.q0, path->in_ends[0], path->in_ends[1], path->in_Z);
   for (int a = 0; a <= path->s; a++)
     for (int i = 0; i < path->n; i++) {
       dvi__path_places(path, k, a, i, 0, &places);
@@ -208,7 +208,7 @@ dvi_status dvi__path_jacobian(dvi_path *path, const double *x, double *values)
   memset(values, 0, (size_t)dvi__pattern_entries(&path->pattern) * sizeof(double));
   for (int k = 0; k < path->steps; k++) {
     dvi__path_place(path, x, k);
-    DVI_TRY(at_step(path, x, k, dvi__action_between_hessian(path->action, path->Y, path->block)));
+    DVI_TRY(at_step(path, x, k, dvi__action_two_point_hessian(path->action, path->Y, path->block)));
     dvi__path_each_entry(path, k, add_entry, &to);
     if (path->free_span) DVI_TRY(at_step(path, x, k, add_span(&to, path, k)));
   }

@@ -137,7 +137,7 @@ static dvi_status make_action(dvi_path *path, const char *method)
   DVI_TRY(dvi__element_space(path->system, method, "path", &space, &(dvi__text){path->method, sizeof path->method, 0}));
   DVI_TRY(dvi__action_create(path->system, &space, &path->counters, &path->action));
   DVI_TRY(dvi__action_prepare_jacobian(path->action));
-  DVI_TRY(dvi__action_prepare_between(path->action));
+  DVI_TRY(dvi__action_prepare_two_point(path->action));
   path->s = space.degree;
   path->order = dvi__element_order(&space);
   if (!path->system->autonomous) return DVI_OK;

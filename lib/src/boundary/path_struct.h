@@ -1,13 +1,13 @@
 /* The inside of a path, for the files of this room.
  *
- * Unknowns, in the order of time: (q_0, Z^0, q_1, Z^1, .. ), where Z^k are the bubbles of step k (step/element/between.h) and given nodes are left out; then the
+ * Unknowns, in the order of time: (q_0, Z^0, q_1, Z^1, .. ), where Z^k are the bubbles of step k (step/element/two_point.h) and given nodes are left out; then the
  * span, if it is free; then a multiplier for each direction along which the path may be moved (gauge.c). Rows stand in the same order, so that the
  * Jacobian is the symmetric Hessian of the action; but for initial ends, where the row of node k stands with the unknown q_(k+1) that it gives. */
 #ifndef DVI_PATH_PATH_STRUCT_H
 #define DVI_PATH_PATH_STRUCT_H
 #include <dvi/path.h>
 
-#include "step/element/between.h"
+#include "step/element/two_point.h"
 #include "solve/nonlinear.h"
 
 enum { DVI__PATH_METHOD_SIZE = 256 };

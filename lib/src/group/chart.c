@@ -161,7 +161,7 @@ dvi__turn dvi__chart_turn(const dvi__chart *chart, const double *xi)
   return dvi__turn_of(w);
 }
 
-void dvi__chart_leap(const dvi__chart *chart, const double *xi, double *leap)
+void dvi__chart_moser_veselov(const dvi__chart *chart, const double *xi, double *leap)
 {
   const int stored = dvi__chart_stored(chart->kind);
   if (chart->kind == DVI__LINE) {

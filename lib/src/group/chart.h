@@ -60,7 +60,7 @@ void dvi__chart_place(const dvi__chart *chart, const double *xi, double *y);
 void dvi__chart_point(const dvi__chart *chart, const dvi__functions *c, const double *xi, const double *rate, double *y, double *v);
 
 /* y(xi) - y0, right to a rounding of its own size. */
-void dvi__chart_leap(const dvi__chart *chart, const double *xi, double *leap);
+void dvi__chart_moser_veselov(const dvi__chart *chart, const double *xi, double *leap);
 
 /* y, where the chart is centred, to y(xi), with its carry: it does not leave the manifold, however many steps there are. */
 void dvi__chart_move(const dvi__chart *chart, const double *xi, double *y, double *carry);
@@ -103,8 +103,8 @@ void dvi__chart_momentum_derivative(const dvi__chart *chart, const double *xi, c
 
 /* y to y(xi), and the stored momentum p, to whose angular momentum this is added first: both with their carries, to twice the digits, so that what is not added
  * to is conserved. */
-void dvi__chart_carry(const dvi__chart *chart, const double *xi, const double *added, double *y, double *y_carry, double *p,
-                      double *p_carry);
+void dvi__chart_transport(const dvi__chart *chart, const double *xi, const double *added, double *y, double *y_compensation, double *p,
+                      double *p_compensation);
 
 /* W [size*3]: the chart's momentum at xi of a moment in space. */
 void dvi__chart_moments(const dvi__chart *chart, const double *xi, double *W);

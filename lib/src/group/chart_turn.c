@@ -82,27 +82,27 @@ void dvi__chart_momentum(const dvi__chart *chart, const double *xi, const double
     direction_momentum(chart, c, xi, angular, p);
 }
 
-static void carry_direction(const dvi__chart *chart, const double *xi, const double *added, double *y, double *y_carry, double *p,
-                            double *p_carry)
+static void carry_direction(const dvi__chart *chart, const double *xi, const double *added, double *y, double *y_compensation, double *p,
+                            double *p_compensation)
 {
   dvi__twofold mu[3];
-  dvi__turn_angular(y, y_carry, p, p_carry, mu);
+  dvi__turn_angular(y, y_compensation, p, p_compensation, mu);
   for (int i = 0; i < 3; i++) mu[i] = dvi__twofold_sum(mu[i], (dvi__twofold){added[i], 0});
-  dvi__chart_move(chart, xi, y, y_carry);
-  dvi__turn_momentum(mu, dvi__dot(added, added) == 0 ? DVI__TURN_ANY : DVI__TURN_ROUNDINGS, y, y_carry, p, p_carry);
+  dvi__chart_move(chart, xi, y, y_compensation);
+  dvi__turn_momentum(mu, dvi__dot(added, added) == 0 ? DVI__TURN_ANY : DVI__TURN_ROUNDINGS, y, y_compensation, p, p_compensation);
 }
 
-void dvi__chart_carry(const dvi__chart *chart, const double *xi, const double *added, double *y, double *y_carry, double *p,
-                      double *p_carry)
+void dvi__chart_transport(const dvi__chart *chart, const double *xi, const double *added, double *y, double *y_compensation, double *p,
+                      double *p_compensation)
 {
   if (chart->kind == DVI__SPHERE) {
-    carry_direction(chart, xi, added, y, y_carry, p, p_carry);
+    carry_direction(chart, xi, added, y, y_compensation, p, p_compensation);
     return;
   }
   const dvi__turn turn = dvi__chart_turn(chart, xi);
-  dvi__add_compensated_all(3, p, p_carry, added);
-  dvi__turn_rows(&turn, 9, y, y_carry);
-  dvi__turn_rows(&turn, 3, p, p_carry);
+  dvi__add_compensated_all(3, p, p_compensation, added);
+  dvi__turn_rows(&turn, 9, y, y_compensation);
+  dvi__turn_rows(&turn, 3, p, p_compensation);
 }
 
 void dvi__chart_moments(const dvi__chart *chart, const double *xi, double *W)

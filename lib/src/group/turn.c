@@ -100,11 +100,11 @@ FUSED_INLINE double dot(const dvi__twofold a[3], const dvi__twofold b[3], double
 }
 
 /* y is a unit vector but for rounding: 1/|y|^2 is 1 less what |y|^2 is above it. */
-FUSED static void angular(const double *y, const double *y_carry, const double *p, const double *p_carry, dvi__twofold mu[3])
+FUSED static void angular(const double *y, const double *y_compensation, const double *p, const double *p_compensation, dvi__twofold mu[3])
 {
   dvi__twofold at[3], momentum[3];
-  dvi__twofold_get(3, y, y_carry, at);
-  dvi__twofold_get(3, p, p_carry, momentum);
+  dvi__twofold_get(3, y, y_compensation, at);
+  dvi__twofold_get(3, p, p_compensation, momentum);
   cross(at, momentum, mu);
   const double above = dot(at, at, -1);
   for (int i = 0; i < 3; i++) mu[i] = dvi__exact_sum(mu[i].head, mu[i].tail - above * mu[i].head);
@@ -118,14 +118,14 @@ FUSED_INLINE void straighten(const dvi__twofold mu[3], double most, dvi__twofold
   for (int i = 0; i < 3; i++) y[i].tail -= along / square * mu[i].head;
 }
 
-FUSED static void momentum_of(const dvi__twofold mu[3], double most, double *y, double *y_carry, double *p, double *p_carry)
+FUSED static void momentum_of(const dvi__twofold mu[3], double most, double *y, double *y_compensation, double *p, double *p_compensation)
 {
   dvi__twofold at[3], momentum[3];
-  dvi__twofold_get(3, y, y_carry, at);
+  dvi__twofold_get(3, y, y_compensation, at);
   straighten(mu, most, at);
   cross(mu, at, momentum);
-  dvi__twofold_put(3, at, y, y_carry);
-  dvi__twofold_put(3, momentum, p, p_carry);
+  dvi__twofold_put(3, at, y, y_compensation);
+  dvi__twofold_put(3, momentum, p, p_compensation);
 }
 
 /* clang does not export a function that is compiled more than once. */
@@ -139,12 +139,12 @@ void dvi__turn_rows(const dvi__turn *turn, int count, double *x, double *carry)
   turn_rows(turn, count, x, carry);
 }
 
-void dvi__turn_angular(const double *y, const double *y_carry, const double *p, const double *p_carry, dvi__twofold mu[3])
+void dvi__turn_angular(const double *y, const double *y_compensation, const double *p, const double *p_compensation, dvi__twofold mu[3])
 {
-  angular(y, y_carry, p, p_carry, mu);
+  angular(y, y_compensation, p, p_compensation, mu);
 }
 
-void dvi__turn_momentum(const dvi__twofold mu[3], double most, double *y, double *y_carry, double *p, double *p_carry)
+void dvi__turn_momentum(const dvi__twofold mu[3], double most, double *y, double *y_compensation, double *p, double *p_compensation)
 {
-  momentum_of(mu, most, y, y_carry, p, p_carry);
+  momentum_of(mu, most, y, y_compensation, p, p_compensation);
 }

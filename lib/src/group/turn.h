@@ -27,12 +27,12 @@ void dvi__turn_change(const dvi__turn *turn, const double x[3], double change[3]
 void dvi__turn_rows(const dvi__turn *turn, int count, double *x, double *carry);
 
 /* Of a direction y [3] and its momentum p [3], all with carries: the angular momentum mu = y x p / |y|^2. */
-void dvi__turn_angular(const double *y, const double *y_carry, const double *p, const double *p_carry, dvi__twofold mu[3]);
+void dvi__turn_angular(const double *y, const double *y_compensation, const double *p, const double *p_compensation, dvi__twofold mu[3]);
 
 /* And p = mu x y of a mu that is at a right angle to y, but for rounding: y is moved to be so, up to this angle, not mu, which is conserved. Beyond the angle the rounding
  * is that of a small mu, to which something was added. */
 #define DVI__TURN_ROUNDINGS (64 * DBL_EPSILON)
 #define DVI__TURN_ANY 1.0
-void dvi__turn_momentum(const dvi__twofold mu[3], double most, double *y, double *y_carry, double *p, double *p_carry);
+void dvi__turn_momentum(const dvi__twofold mu[3], double most, double *y, double *y_compensation, double *p, double *p_compensation);
 
 #endif

@@ -38,7 +38,7 @@ typedef struct system_section {
 } system_section;
 
 typedef struct clock_section {
-  double t, t_carry, last_t, last_t_carry, last_h;
+  double t, t_compensation, last_t, last_t_carry, last_h;
   int64_t steps;
 } clock_section;
 
@@ -62,7 +62,7 @@ typedef struct checkpoint {
 
 static int64_t pacing_of(const dvi_integrator *I)
 {
-  return I->pace != NULL ? I->pace->pacing : DVI_STEPS_OF_TIME;
+  return I->monitored != NULL ? I->monitored->pacing : DVI_STEPS_OF_TIME;
 }
 
 static size_t state_size(const dvi_integrator *I)
@@ -93,9 +93,9 @@ static void put_system(const dvi_integrator *I, dvi__sections_writer *w)
 static void put_clock(const dvi_integrator *I, dvi__sections_writer *w)
 {
   const clock_section clock = {.t = I->now.t,
-                               .t_carry = I->now.t_carry,
+                               .t_compensation = I->now.t_compensation,
                                .last_t = I->last.t,
-                               .last_t_carry = I->last.t_carry,
+                               .last_t_carry = I->last.t_compensation,
                                .last_h = I->last_h,
                                .steps = I->counters.steps};
   dvi__section_open(w, "clock", SECTION_VERSION);
@@ -105,9 +105,9 @@ static void put_clock(const dvi_integrator *I, dvi__sections_writer *w)
 static void put_pacing(const dvi_integrator *I, dvi__sections_writer *w)
 {
   pacing_section pacing = {.pacing = pacing_of(I), .density = I->now.density};
-  if (I->pace != NULL) {
-    pacing.energy = I->pace->energy;
-    memcpy(pacing.monitor, I->pace->name, sizeof pacing.monitor);
+  if (I->monitored != NULL) {
+    pacing.energy = I->monitored->energy;
+    memcpy(pacing.monitor, I->monitored->name, sizeof pacing.monitor);
   }
   dvi__section_open(w, "pacing", SECTION_VERSION);
   dvi__section_put(w, &pacing, sizeof pacing);
@@ -204,7 +204,7 @@ static const char *name_of(int64_t pacing)
 
 static dvi_status check_time(const dvi_integrator *I, const checkpoint *c)
 {
-  const char *monitor = I->pace != NULL ? I->pace->name : "";
+  const char *monitor = I->monitored != NULL ? I->monitored->name : "";
   if (c->pacing.pacing == pacing_of(I) && strncmp(c->pacing.monitor, monitor, sizeof c->pacing.monitor) == 0) return DVI_OK;
   return dvi__fail(DVI_BAD_FILE, "%s: of steps %s%.*s, not of steps %s%s", c->sections.name, name_of(c->pacing.pacing),
                    (int)sizeof c->pacing.monitor, c->pacing.monitor, name_of(pacing_of(I)), monitor);
@@ -223,11 +223,11 @@ static dvi_status check_declared(const dvi_integrator *I, const checkpoint *c)
 static dvi_status take_fingerprint(const dvi_integrator *I, const checkpoint *c, dvi__fingerprint *here)
 {
   const size_t n = (size_t)I->system->n;
-  const double *now = c->numbers, *last = now + 4 * n, before = I->pace != NULL ? I->pace->energy : 0;
+  const double *now = c->numbers, *last = now + 4 * n, before = I->monitored != NULL ? I->monitored->energy : 0;
   const dvi__moment at = {c->clock.t, c->clock.last_h, now, now + n, last, last + n};
-  if (I->pace != NULL) dvi__pace_set_energy(I->pace, c->pacing.energy);
+  if (I->monitored != NULL) dvi__monitored_time_set_energy(I->monitored, c->pacing.energy);
   const dvi_status status = dvi__fingerprint_take(I, &at, here);
-  if (I->pace != NULL) dvi__pace_set_energy(I->pace, before);
+  if (I->monitored != NULL) dvi__monitored_time_set_energy(I->monitored, before);
   return status;
 }
 
@@ -301,13 +301,13 @@ static void take_over(dvi_integrator *I, const checkpoint *c)
 {
   const clock_section *clock = &c->clock;
   I->now.t = clock->t;
-  I->now.t_carry = clock->t_carry;
+  I->now.t_compensation = clock->t_compensation;
   I->last.t = clock->last_t;
-  I->last.t_carry = clock->last_t_carry;
+  I->last.t_compensation = clock->last_t_carry;
   I->last_h = clock->last_h;
   I->now.density = c->pacing.density;
   I->now.side = 0;
-  if (I->pace != NULL) dvi__pace_set_energy(I->pace, c->pacing.energy);
+  if (I->monitored != NULL) dvi__monitored_time_set_energy(I->monitored, c->pacing.energy);
   I->counters.steps = (long)clock->steps;
   memcpy(I->now.q, c->numbers, state_size(I));
   memcpy(I->last.q, c->numbers + 4 * (size_t)I->system->n, state_size(I));

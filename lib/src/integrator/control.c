@@ -12,13 +12,13 @@
 /* -g_q.v/g at a state. */
 static dvi_status slope(dvi_integrator *I, const dvi__state *state, double *rate)
 {
-  dvi__pace *pace = I->pace;
+  dvi__monitored_time *monitored = I->monitored;
   double g, along = 0;
-  dvi__guess_velocity(I->system->n, I->now.q, I->last.q, I->last.p, I->last_h, pace->v);
-  DVI_TRY(dvi__legendre_inverse(I->evaluator, state->t, state->q, state->p, pace->v));
-  DVI_TRY(dvi__monitor_value(pace->monitor, 1, state->q, &g));
-  DVI_TRY(dvi__monitor_gradient(pace->monitor, 1, state->q, pace->g_q));
-  for (int i = 0; i < I->system->n; i++) along += pace->g_q[i] * pace->v[i];
+  dvi__guess_velocity(I->system->n, I->now.q, I->last.q, I->last.p, I->last_h, monitored->v);
+  DVI_TRY(dvi__legendre_inverse(I->evaluator, state->t, state->q, state->p, monitored->v));
+  DVI_TRY(dvi__monitor_value(monitored->monitor, 1, state->q, &g));
+  DVI_TRY(dvi__monitor_gradient(monitored->monitor, 1, state->q, monitored->g_q));
+  for (int i = 0; i < I->system->n; i++) along += monitored->g_q[i] * monitored->v[i];
   *rate = -along / g;
   return DVI_OK;
 }
@@ -32,14 +32,14 @@ static dvi_status follow(dvi_integrator *I, const dvi__state *state, double h, d
   if (*next > 0 && isfinite(*next)) return DVI_OK;
   return dvi__fail(DVI_NOT_CONVERGED,
                    "step control: the steps' density z went from %.3g to %.3g; h is too large for how fast %s changes", z, *next,
-                   I->pace->name);
+                   I->monitored->name);
 }
 
 dvi_status dvi__control_begin(dvi_integrator *I, double h, double *length)
 {
   *length = h;
   I->next.density = I->now.density;
-  if (I->pace == NULL || I->pace->pacing != DVI_STEP_CONTROL) return DVI_OK;
+  if (I->monitored == NULL || I->monitored->pacing != DVI_STEP_CONTROL) return DVI_OK;
   DVI_TRY(follow(I, &I->now, h, I->now.density, &I->next.density));
   *length = h / I->next.density;
   return dvi__check_step(I->now.t, *length);
@@ -47,6 +47,6 @@ dvi_status dvi__control_begin(dvi_integrator *I, double h, double *length)
 
 dvi_status dvi__control_end(dvi_integrator *I, double h)
 {
-  if (I->pace == NULL || I->pace->pacing != DVI_STEP_CONTROL) return DVI_OK;
+  if (I->monitored == NULL || I->monitored->pacing != DVI_STEP_CONTROL) return DVI_OK;
   return follow(I, &I->next, h, I->next.density, &I->next.density);
 }

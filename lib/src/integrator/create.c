@@ -4,7 +4,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "integrator/attempt.h"
-#include "space/given.h"
+#include "space/user_basis.h"
 #include "system/evaluate/dynamics.h"
 
 /* ---- create ---- */
@@ -37,8 +37,8 @@ static dvi_status copy_shapes(dvi_integrator *I, const dvi_shapes *shapes)
 static dvi_status make_stepper(dvi_integrator *I, const dvi_integrator_options *o)
 {
   DVI_TRY(copy_shapes(I, o->shapes));
-  if (o->pacing != DVI_STEPS_OF_TIME) DVI_TRY(dvi__pace_create(I->system, o->monitor, o->pacing, &I->counters, &I->pace));
-  DVI_TRY(dvi__stepper_create(dvi__pace_system(I->pace, I->system), o->method, I->shapes, &I->counters, &I->stepper));
+  if (o->pacing != DVI_STEPS_OF_TIME) DVI_TRY(dvi__monitored_time_create(I->system, o->monitor, o->pacing, &I->counters, &I->monitored));
+  DVI_TRY(dvi__stepper_create(dvi__monitored_time_system(I->monitored, I->system), o->method, I->shapes, &I->counters, &I->stepper));
   return allocate_integrator(I);
 }
 
@@ -47,7 +47,7 @@ static dvi_status check_paced_method(const dvi_integrator *I)
   const char *symmetric = I->system->dynamics->symmetric;
   if (I->stepper.method->chooses_steps)
     return dvi__fail(DVI_UNSUPPORTED, "%s chooses the lengths of its steps itself", I->stepper.method->name);
-  if (I->pace->pacing == DVI_TIME_TRANSFORM || I->stepper.symmetric) return DVI_OK;
+  if (I->monitored->pacing == DVI_TIME_TRANSFORM || I->stepper.symmetric) return DVI_OK;
   return dvi__fail(DVI_UNSUPPORTED,
                    "%s is not symmetric, and only that keeps energies from drifting when steps change; "
                    "choose %s",
@@ -63,7 +63,7 @@ static dvi_status make_integrator(const dvi_system *system, const dvi_integrator
   I->system = system;
   dvi_status status = make_stepper(I, o);
   I->counters.allocations = dvi__allocation_count() - before;
-  if (status == DVI_OK && I->pace != NULL) status = check_paced_method(I);
+  if (status == DVI_OK && I->monitored != NULL) status = check_paced_method(I);
   if (status != DVI_OK) dvi_integrator_destroy(&I);
   *integrator = I;
   return status;
@@ -122,12 +122,12 @@ dvi_status dvi_integrator_create_like(const dvi_integrator *I, dvi_integrator **
   const dvi_integrator_options options = {.size = sizeof options,
                                           .method = I->stepper.specification,
                                           .shapes = I->shapes,
-                                          .pacing = I->pace != NULL ? I->pace->pacing : DVI_STEPS_OF_TIME,
-                                          .monitor = I->pace != NULL ? &I->pace->given : NULL};
+                                          .pacing = I->monitored != NULL ? I->monitored->pacing : DVI_STEPS_OF_TIME,
+                                          .monitor = I->monitored != NULL ? &I->monitored->given : NULL};
   DVI_TRY(dvi_integrator_create_with(I->system, &options, integrator));
-  if (I->pace == NULL) return DVI_OK;
-  (*integrator)->pace->holds = I->pace->holds || I->started;
-  dvi__pace_set_energy((*integrator)->pace, I->pace->energy);
+  if (I->monitored == NULL) return DVI_OK;
+  (*integrator)->monitored->holds = I->monitored->holds || I->started;
+  dvi__monitored_time_set_energy((*integrator)->monitored, I->monitored->energy);
   return DVI_OK;
 }
 
@@ -139,7 +139,7 @@ void dvi_integrator_destroy(dvi_integrator **integrator)
   dvi_integrator *I = *integrator;
   dvi__release(I->stepper.memory);
   dvi__stepper_destroy(&I->stepper);
-  dvi__pace_destroy(&I->pace);
+  dvi__monitored_time_destroy(&I->monitored);
   dvi__evaluator_destroy(&I->evaluator);
   dvi__release(I->numbers);
   dvi__release(I->memory_before);

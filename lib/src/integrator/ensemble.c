@@ -24,7 +24,7 @@ void dvi__member_load(const dvi_ensemble *e, dvi__worker *w, const dvi__block *b
   dvi_integrator *I = w->integrator;
   const size_t n = (size_t)e->n, members = (size_t)block->count;
   I->now.t = dvi__row(block, DVI__MEMBER_T)[k];
-  I->now.t_carry = dvi__row(block, DVI__MEMBER_T_CARRY)[k];
+  I->now.t_compensation = dvi__row(block, DVI__MEMBER_T_CARRY)[k];
   I->now.side = 0;
   load_rows(4 * n, dvi__row(block, DVI__MEMBER_Q) + k, members, I->now.q); /* q, p and both carries lie in a row */
   load_rows(I->stepper.memory_count, dvi__row(block, DVI__MEMBER_Q + 4 * n) + k, members, I->stepper.memory);
@@ -42,7 +42,7 @@ void dvi__member_store(const dvi_ensemble *e, const dvi__worker *w, const dvi__b
   const dvi_integrator *I = w->integrator;
   const size_t n = (size_t)e->n, members = (size_t)block->count;
   dvi__row(block, DVI__MEMBER_T)[k] = I->now.t;
-  dvi__row(block, DVI__MEMBER_T_CARRY)[k] = I->now.t_carry;
+  dvi__row(block, DVI__MEMBER_T_CARRY)[k] = I->now.t_compensation;
   store_rows(4 * n, I->now.q, members, dvi__row(block, DVI__MEMBER_Q) + k);
   store_rows(I->stepper.memory_count, I->stepper.memory, members, dvi__row(block, DVI__MEMBER_Q + 4 * n) + k);
   dvi__driver_row(e, block, DVI__MEMBER_LAST_H)[k] = I->last_h;
@@ -75,7 +75,7 @@ void dvi__ensemble_clear_failures(dvi_ensemble *e)
 }
 
 /* Whatever threads met them in whatever order: a fatal one first, then the first member. */
-static int is_worse(dvi_status status, int member, const dvi__misfortune *than)
+static int is_worse(dvi_status status, int member, const dvi__worst_failure *than)
 {
   if (than->status == DVI_OK || (status < 0) != (than->status < 0)) return than->status == DVI_OK || status < 0;
   return member < than->member;
@@ -92,10 +92,10 @@ void dvi__worker_note(dvi__worker *w, int member, dvi_status status)
 
 dvi_status dvi__ensemble_verdict(const dvi_ensemble *e)
 {
-  const dvi__misfortune *worst = &e->workers[0].worst;
+  const dvi__worst_failure *worst = &e->workers[0].worst;
   long failures = 0;
   for (int i = 0; i < e->threads; i++) {
-    const dvi__misfortune *here = &e->workers[i].worst;
+    const dvi__worst_failure *here = &e->workers[i].worst;
     failures += e->workers[i].failures;
     if (here->status != DVI_OK && is_worse(here->status, here->member, worst)) worst = here;
   }

@@ -4,7 +4,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "integrator/ensemble_struct.h"
-#include "space/given.h"
+#include "space/user_basis.h"
 
 enum { THREADS_MOST = 1024, BLOCK_MOST = 65536 };
 

@@ -18,12 +18,12 @@ static void lay_out(const dvi_ensemble *e, const dvi__block *block, dvi__members
   const size_t count = (size_t)block->count, n = (size_t)e->n;
   m->count = block->count;
   m->t = dvi__row(block, DVI__MEMBER_T);
-  m->t_carry = dvi__row(block, DVI__MEMBER_T_CARRY);
+  m->t_compensation = dvi__row(block, DVI__MEMBER_T_CARRY);
   m->q = dvi__row(block, DVI__MEMBER_Q);
   m->p = m->q + n * count;
-  m->q_carry = m->p + n * count;
-  m->p_carry = m->q_carry + n * count;
-  m->memory = m->p_carry + n * count;
+  m->q_compensation = m->p + n * count;
+  m->p_compensation = m->q_compensation + n * count;
+  m->memory = m->p_compensation + n * count;
 }
 
 /* For step number i: members that are ahead have taken it, members that have failed take no more, and what h does not move is for the driver to

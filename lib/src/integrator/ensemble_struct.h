@@ -23,11 +23,11 @@ typedef struct dvi__block {
 } dvi__block;
 
 /* The worst failure that a thread has met. */
-typedef struct dvi__misfortune {
+typedef struct dvi__worst_failure {
   dvi_status status;
   int member;
   char sentence[DVI__MISFORTUNE_SENTENCE];
-} dvi__misfortune;
+} dvi__worst_failure;
 
 /* What a thread works with. */
 typedef struct dvi__worker {
@@ -40,7 +40,7 @@ typedef struct dvi__worker {
   int *absence;         /* [capacity] for how many it did so */
   double *point[2];     /* [n] a start's q and p or v */
   long steps;           /* taken by members; the integrator's own count is that of the member at hand */
-  dvi__misfortune worst;
+  dvi__worst_failure worst;
   long failures;
 } dvi__worker;
 

@@ -32,11 +32,11 @@ static dvi_status constraint(const dvi_integrator *I, const double *q, const dou
 
 static dvi_status monitor(const dvi_integrator *I, const double *q, dvi__fingerprint *f)
 {
-  if (I->pace == NULL) return DVI_OK;
-  DVI_TRY(dvi__pace_monitor(I->pace, q, &f->monitor.value));
-  DVI_TRY(dvi__pace_slope(I->pace, q, I->pace->g_q));
+  if (I->monitored == NULL) return DVI_OK;
+  DVI_TRY(dvi__monitored_time_monitor(I->monitored, q, &f->monitor.value));
+  DVI_TRY(dvi__monitored_time_slope(I->monitored, q, I->monitored->g_q));
   f->monitor.size = f->monitor.value;
-  f->monitor_slope = weighted(I->system->n, I->pace->g_q);
+  f->monitor_slope = weighted(I->system->n, I->monitored->g_q);
   return DVI_OK;
 }
 

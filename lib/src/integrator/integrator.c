@@ -7,12 +7,12 @@
 #include "core/status.h"
 #include "integrator/attempt.h"
 #include "num/finite.h"
-#include "space/given.h"
+#include "space/user_basis.h"
 #include "system/evaluate/dynamics.h"
 
 void dvi__state_lay_out(dvi__state *state, double **at, size_t n)
 {
-  double **const part[] = {&state->q, &state->p, &state->q_carry, &state->p_carry};
+  double **const part[] = {&state->q, &state->p, &state->q_compensation, &state->p_compensation};
   for (int i = 0; i < 4; i++, *at += n) *part[i] = *at;
 }
 
@@ -32,18 +32,18 @@ static dvi_status check_start(const dvi_integrator *I, double t, const double *q
 static dvi_status start(dvi_integrator *I, double t, const double *q, const double *v, const double *p)
 {
   const size_t bytes = (size_t)I->system->n * sizeof(double), v_bytes = (size_t)I->system->nv * sizeof(double);
-  const double *w = I->pace != NULL ? I->last_v : v, *second = dvi__second(I->system, v, p);
+  const double *w = I->monitored != NULL ? I->last_v : v, *second = dvi__second(I->system, v, p);
   double L, density = 0;
   DVI_TRY(I->system->dynamics->value(I->evaluator, t, q, second, &L));
-  DVI_TRY(I->system->dynamics->forces(I->evaluator, t, q, second, I->next.p_carry));
-  if (I->pace != NULL) DVI_TRY(dvi__pace_start(I, t, q, v, p, I->last_v, &density));
+  DVI_TRY(I->system->dynamics->forces(I->evaluator, t, q, second, I->next.p_compensation));
+  if (I->monitored != NULL) DVI_TRY(dvi__monitored_time_start(I, t, q, v, p, I->last_v, &density));
   memmove(I->now.q, q, bytes);
   memmove(I->now.p, p, v_bytes);
-  memset(I->now.q_carry, 0, bytes);
-  memset(I->now.p_carry, 0, bytes);
+  memset(I->now.q_compensation, 0, bytes);
+  memset(I->now.p_compensation, 0, bytes);
   memcpy(I->last.p, v, v_bytes);
   I->now.t = t;
-  I->now.t_carry = 0;
+  I->now.t_compensation = 0;
   I->now.density = density;
   I->now.side = 0;
   I->last_h = 0;
@@ -76,7 +76,7 @@ dvi_status dvi_integrator_start_with(dvi_integrator *I, double t, const double *
                                      const dvi_start_options *options)
 {
   if (I == NULL || q == NULL || p == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "start: an argument is NULL");
-  double *v = I->next.q_carry;
+  double *v = I->next.q_compensation;
   memset(v, 0, (size_t)I->system->nv * sizeof(double));
   dvi_status status = check_start(I, t, q, p, 'p');
   if (status == DVI_OK) status = constrain_start(I, t, options != NULL && options->project, &q, &p);
@@ -110,7 +110,7 @@ dvi_status dvi_integrator_start_velocity(dvi_integrator *I, double t, const doub
 void dvi__state_copy(size_t n, const dvi__state *from, dvi__state *to)
 {
   to->t = from->t;
-  to->t_carry = from->t_carry;
+  to->t_compensation = from->t_compensation;
   to->density = from->density;
   to->side = from->side;
   memcpy(to->q, from->q, 4 * n * sizeof(double)); /* q, p and both carries lie in a row */
@@ -119,8 +119,8 @@ void dvi__state_copy(size_t n, const dvi__state *from, dvi__state *to)
 static dvi_status check_state(const dvi_integrator *I)
 {
   const size_t n = (size_t)I->system->n;
-  if (I->pace != NULL && I->next.t == I->now.t)
-    return dvi__fail(DVI_BAD_ARGUMENT, "monitor %s is so small that the step does not move the time", I->pace->name);
+  if (I->monitored != NULL && I->next.t == I->now.t)
+    return dvi__fail(DVI_BAD_ARGUMENT, "monitor %s is so small that the step does not move the time", I->monitored->name);
   if (isfinite(I->next.t) && dvi__first_not_finite(2 * n, I->next.q) < 0) return DVI_OK;
   return dvi__fail(DVI_NOT_FINITE, "the new state is not finite");
 }
@@ -143,7 +143,7 @@ static dvi_status name_end(const dvi_integrator *I, double h, dvi_status status)
 {
   char sentence[1024];
   const dvi__state_constraint *constraint = I->system->dynamics->constraint;
-  if (constraint == NULL || constraint->ends == NULL || I->pace != NULL || (status < 0 && status != DVI_SINGULAR)) return status;
+  if (constraint == NULL || constraint->ends == NULL || I->monitored != NULL || (status < 0 && status != DVI_SINGULAR)) return status;
   (void)snprintf(sentence, sizeof sentence, "%s", dvi_last_error());
   if (!constraint->ends(I->evaluator, I->now.t, I->now.q, h, I->next.p, I->next.q)) return dvi__fail(status, "%s", sentence);
   return dvi__fail(status, "%s; the %s becomes singular within this step, and no trajectory goes on from there", sentence,
@@ -157,9 +157,9 @@ static void accept(dvi_integrator *I, double h)
   I->now = I->next;
   I->next = oldest;
   I->last_h_before = I->last_h;
-  if (I->pace != NULL) I->pace->expanded = 0;
+  if (I->monitored != NULL) I->monitored->expanded = 0;
   /* What a transform makes of h, or the control, is known by the clock alone; the carries tell it to the last digit. */
-  I->last_h = I->pace != NULL ? (I->now.t - I->last.t) - (I->now.t_carry - I->last.t_carry) : h;
+  I->last_h = I->monitored != NULL ? (I->now.t - I->last.t) - (I->now.t_compensation - I->last.t_compensation) : h;
   I->counters.steps++;
 }
 
@@ -179,7 +179,7 @@ void dvi__integrator_take_back(dvi_integrator *I)
   I->last = oldest;
   I->last_h = I->last_h_before;
   I->counters.steps--;
-  if (I->pace != NULL) I->pace->expanded = 0;
+  if (I->monitored != NULL) I->monitored->expanded = 0;
   exchange_memory(I);
 }
 
@@ -227,7 +227,7 @@ dvi_status dvi_integrator_step(dvi_integrator *I, double h)
 {
   if (I == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "step: the integrator is NULL");
   if (!I->started) return dvi__fail(DVI_BAD_STATE, "step: the integrator has no state yet; call dvi_integrator_start first");
-  DVI_TRY(dvi__check_step(I->pace != NULL ? 0 : I->now.t, h));
+  DVI_TRY(dvi__check_step(I->monitored != NULL ? 0 : I->now.t, h));
   exchange_memory(I);
   const long before = dvi__allocation_count();
   const dvi_status status = advance(I, h);
@@ -294,7 +294,7 @@ double dvi_integrator_last_step(const dvi_integrator *integrator)
 
 int dvi_integrator_chooses_steps(const dvi_integrator *integrator)
 {
-  return integrator != NULL && (integrator->pace != NULL || integrator->stepper.method->chooses_steps);
+  return integrator != NULL && (integrator->monitored != NULL || integrator->stepper.method->chooses_steps);
 }
 
 dvi_status dvi_integrator_energy_balance(const dvi_integrator *I, dvi_energy_balance *balance)
@@ -371,7 +371,7 @@ size_t dvi_integrator_explain(const dvi_integrator *integrator, char *text, size
   if (integrator == NULL) return 0;
   dvi__text_add(&out, "method: %s, order %d%s\n", integrator->stepper.specification, integrator->stepper.order,
                 integrator->stepper.symmetric ? ", symmetric" : "");
-  if (integrator->pace != NULL) dvi__pace_explain(integrator->pace, &out);
+  if (integrator->monitored != NULL) dvi__monitored_time_explain(integrator->monitored, &out);
   integrator->stepper.method->explain(&integrator->stepper, &out);
   return out.length;
 }
@@ -409,7 +409,7 @@ dvi_status dvi_integrator_interpolate(dvi_integrator *I, double t, double *q, do
                      "lie-verlet and lie-galerkin have one",
                      I->stepper.method->name);
   if (I->stepper.method->path == NULL) return hermite(I, tau, q, v);
-  if (I->pace != NULL && I->pace->pacing == DVI_TIME_TRANSFORM) return dvi__pace_path(I, tau, q, v);
+  if (I->monitored != NULL && I->monitored->pacing == DVI_TIME_TRANSFORM) return dvi__monitored_time_path(I, tau, q, v);
   I->stepper.method->path(&I->stepper, I->last.q, I->last_h, tau, q, v);
   const size_t n = (size_t)I->system->n, nv = (size_t)I->system->nv;
   if ((q == NULL || dvi__first_not_finite(n, q) < 0) && (v == NULL || dvi__first_not_finite(nv, v) < 0)) return DVI_OK;

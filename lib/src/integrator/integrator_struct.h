@@ -2,13 +2,13 @@
 #ifndef DVI_METHOD_INTEGRATOR_STRUCT_H
 #define DVI_METHOD_INTEGRATOR_STRUCT_H
 #include "method/method.h"
-#include "integrator/pace.h"
+#include "integrator/monitored_time.h"
 
 struct dvi_integrator {
   const dvi_system *system;
   dvi_shapes *shapes;   /* its own copy of the program's; NULL: there are none */
-  dvi__pace *pace;      /* NULL: steps are steps of time */
-  dvi__stepper stepper; /* of the system, or of the one that the pace puts in its place */
+  dvi__monitored_time *monitored;      /* NULL: steps are steps of time */
+  dvi__stepper stepper; /* of the system, or of the one that the monitored puts in its place */
   dvi_counters counters;
   dvi__evaluator *evaluator; /* for diagnostics at one point */
   /* The present state, the one before the last step, and the one that a step works on: a step that fails spoils only `next`. Before the first

@@ -22,7 +22,7 @@ static double time_of(const void *of)
 static double time_left(const void *of, double t_end)
 {
   const dvi_integrator *I = ((const mechanics *)of)->integrator;
-  return (t_end - I->now.t) + I->now.t_carry;
+  return (t_end - I->now.t) + I->now.t_compensation;
 }
 
 static long steps_of(const void *of)
@@ -36,7 +36,7 @@ static dvi_status advance(void *of, double h, double t_end, double tolerance)
 {
   dvi_integrator *I = ((const mechanics *)of)->integrator;
   const double forward = h > 0 ? 1 : -1, left = time_left(of, t_end);
-  if (I->pace != NULL) return dvi__pace_step(I, h, t_end, tolerance);
+  if (I->monitored != NULL) return dvi__monitored_time_step(I, h, t_end, tolerance);
   DVI_TRY(dvi_integrator_step(I, h));
   if (!dvi_integrator_chooses_steps(I)) return DVI_OK;
   if (forward * (I->now.t - t_end) <= tolerance) return DVI_OK;
@@ -154,7 +154,7 @@ static dvi_status run(mechanics *m, dvi_run_report *report)
   const dvi__march_options options = {.h = given->h,
                                       .t_end = given->t_end,
                                       .chooses_steps = dvi_integrator_chooses_steps(I),
-                                      .counts_by_time = I->pace == NULL,
+                                      .counts_by_time = I->monitored == NULL,
                                       .every = given->every,
                                       .event_count = given->event_count,
                                       .checkpoint = given->checkpoint,

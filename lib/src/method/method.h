@@ -10,17 +10,17 @@
 
 /* The state that a step advances. Sums are compensated: what a carry holds, its number is too large by. */
 typedef struct dvi__state {
-  double t, t_carry;
+  double t, t_compensation;
   double density;                    /* step control's z (integrator/control.c) */
   int side;                          /* the driver's, of degenerate systems: dvi__two_form_side or dvi__dirac_side; 0: not known */
-  double *q, *p, *q_carry, *p_carry; /* [n] */
+  double *q, *p, *q_compensation, *p_compensation; /* [n] */
 } dvi__state;
 
 /* Several members of an ensemble side by side, each a state with the method's memory: number i of member k is [i*count + k]. */
 typedef struct dvi__members {
   int count;
-  double *t, *t_carry;                 /* [count] */
-  double *q, *p, *q_carry, *p_carry;   /* [n*count] */
+  double *t, *t_compensation;                 /* [count] */
+  double *q, *p, *q_compensation, *p_compensation;   /* [n*count] */
   double *memory;                      /* [memory_count*count] */
   char *left;                          /* [count] not 0: this member is left to `step`; what stands here for it does not count */
   long *residuals, *gradients, *fixed; /* [count] what the step took, as dvi_counters has it: residuals, gradients, fixed_points */

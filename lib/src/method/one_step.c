@@ -110,8 +110,8 @@ dvi_status dvi__one_step_move(dvi__stepper *self, dvi__state *state, double h, c
   const dvi__one_step *one = self->own;
   double duration = h;
   if (one->kind->duration != NULL) DVI_TRY(one->kind->duration(one->of, one->x, &duration));
-  dvi__add_compensated_all(self->system->n, state->q, state->q_carry, one->dq);
-  dvi__add_compensated(&state->t, &state->t_carry, duration);
+  dvi__add_compensated_all(self->system->n, state->q, state->q_compensation, one->dq);
+  dvi__add_compensated(&state->t, &state->t_compensation, duration);
   self->memory[DVI__LENGTH] = h;
   memcpy(self->memory + one->last, last, unknowns(one) * sizeof(double));
   return DVI_OK;

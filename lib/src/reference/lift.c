@@ -155,7 +155,7 @@ dvi_status dvi__lift_create(dvi__reference_run *run, dvi__lift *lift)
   lift->rate = lift->y + nq;
   lift->L_y = lift->y + 2 * nq;
   lift->C = lift->y + 3 * nq;
-  for (int c = 0; c < run->system->cell_count; c++) lift->size += lifted_size(run->system->cells[c].kind);
+  for (int c = 0; c < run->system->slot_count; c++) lift->size += lifted_size(run->system->slots[c].kind);
   return DVI_OK;
 }
 
@@ -166,23 +166,23 @@ void dvi__lift_clear(dvi__lift *lift)
 
 void dvi__lift_up(const dvi__lift *lift, const double *q, double *kappa)
 {
-  for (int c = 0; c < lift->system->cell_count; c++) {
-    const dvi__cell *cell = &lift->system->cells[c];
-    const int size = lifted_size(cell->kind);
-    if (cell->kind == DVI__ROTATION)
-      quaternion_of(q + cell->q, kappa);
+  for (int c = 0; c < lift->system->slot_count; c++) {
+    const dvi__factor_slot *slot = &lift->system->slots[c];
+    const int size = lifted_size(slot->kind);
+    if (slot->kind == DVI__ROTATION)
+      quaternion_of(q + slot->q, kappa);
     else
-      memcpy(kappa, q + cell->q, (size_t)size * sizeof *kappa);
+      memcpy(kappa, q + slot->q, (size_t)size * sizeof *kappa);
     kappa += size;
   }
 }
 
 void dvi__lift_down(const dvi__lift *lift, const double *kappa, double *q)
 {
-  for (int c = 0; c < lift->system->cell_count; c++) {
-    const dvi__cell *cell = &lift->system->cells[c];
-    point_of(cell->kind, kappa, q + cell->q);
-    kappa += lifted_size(cell->kind);
+  for (int c = 0; c < lift->system->slot_count; c++) {
+    const dvi__factor_slot *slot = &lift->system->slots[c];
+    point_of(slot->kind, kappa, q + slot->q);
+    kappa += lifted_size(slot->kind);
   }
 }
 
@@ -191,29 +191,29 @@ dvi_status dvi__lift_equations(dvi__lift *lift, double t, const double *kappa, c
 {
   const dvi_system *system = lift->system;
   dvi__lift_down(lift, kappa, lift->y);
-  for (int c = 0; c < system->cell_count; c++) {
-    const dvi__cell *cell = &system->cells[c];
-    lifted_rate(cell->kind, kappa, v + cell->v, kappa_rate);
-    stored_rate(cell->kind, lift->y + cell->q, v + cell->v, lift->rate + cell->q);
-    kappa += lifted_size(cell->kind);
-    kappa_rate += lifted_size(cell->kind);
+  for (int c = 0; c < system->slot_count; c++) {
+    const dvi__factor_slot *slot = &system->slots[c];
+    lifted_rate(slot->kind, kappa, v + slot->v, kappa_rate);
+    stored_rate(slot->kind, lift->y + slot->q, v + slot->v, lift->rate + slot->q);
+    kappa += lifted_size(slot->kind);
+    kappa_rate += lifted_size(slot->kind);
   }
   DVI_TRY(dvi__lagrangian_gradient(lift->evaluator, 1, &t, lift->y, lift->rate, lift->L_y, lift->C));
-  for (int c = 0; c < system->cell_count; c++) {
-    const dvi__cell *cell = &system->cells[c];
-    const double *y = lift->y + cell->q, *C = lift->C + cell->q;
-    momentum_of(cell->kind, y, v + cell->v, C, p_of_v + cell->v);
-    momentum_rate(cell->kind, y, lift->rate + cell->q, lift->L_y + cell->q, C, p_rate + cell->v);
+  for (int c = 0; c < system->slot_count; c++) {
+    const dvi__factor_slot *slot = &system->slots[c];
+    const double *y = lift->y + slot->q, *C = lift->C + slot->q;
+    momentum_of(slot->kind, y, v + slot->v, C, p_of_v + slot->v);
+    momentum_rate(slot->kind, y, lift->rate + slot->q, lift->L_y + slot->q, C, p_rate + slot->v);
   }
   return DVI_OK;
 }
 
 void dvi__lift_tangent(const dvi__lift *lift, const double *q, double *p)
 {
-  for (int c = 0; c < lift->system->cell_count; c++) {
-    const dvi__cell *cell = &lift->system->cells[c];
-    if (cell->kind != DVI__SPHERE) continue;
-    const double along = dot(q + cell->q, p + cell->v);
-    for (int i = 0; i < 3; i++) p[cell->v + i] -= along * q[cell->q + i];
+  for (int c = 0; c < lift->system->slot_count; c++) {
+    const dvi__factor_slot *slot = &lift->system->slots[c];
+    if (slot->kind != DVI__SPHERE) continue;
+    const double along = dot(q + slot->q, p + slot->v);
+    for (int i = 0; i < 3; i++) p[slot->v + i] -= along * q[slot->q + i];
   }
 }

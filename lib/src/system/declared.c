@@ -20,7 +20,7 @@ static uint64_t terms_of(const dvi_system *s)
 {
   uint64_t hash = dvi__hash(DVI__HASH_START, sizeof s->n, &s->n);
   hash = dvi__hash(hash, sizeof s->terms, &s->terms);
-  for (int c = 0; c < s->cell_count; c++) hash = dvi__hash(hash, sizeof s->cells[c].kind, &s->cells[c].kind);
+  for (int c = 0; c < s->slot_count; c++) hash = dvi__hash(hash, sizeof s->slots[c].kind, &s->slots[c].kind);
   return hash;
 }
 

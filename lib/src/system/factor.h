@@ -3,7 +3,7 @@
 #define DVI_SYSTEM_FACTOR_H
 #include "system/system.h"
 
-/* Fill in n, nv, nx and the cells; DVI_BAD_SIZE, DVI_BAD_ARGUMENT. */
+/* Fill in n, nv, nx and the slots; DVI_BAD_SIZE, DVI_BAD_ARGUMENT. */
 dvi_status dvi__factors_lay_out(const dvi_system_terms *terms, dvi_system *system);
 
 /* The mass of the factors and of the terms together, on the stored coordinates. */

@@ -62,6 +62,6 @@ dvi_status dvi__mass_copy(const dvi_system_terms *terms, dvi_system *s)
   if (forms > 1) return dvi__fail(DVI_BAD_ARGUMENT, "system: the mass is given in %d forms; one is possible", forms);
   s->terms |= DVI__CONSTANT_MASS;
   DVI_TRY(dvi__pattern_empty(s->n, &s->qv));
-  if (s->cells != NULL) return dvi__factors_mass(terms, s);
+  if (s->slots != NULL) return dvi__factors_mass(terms, s);
   return mass->values != NULL ? copy_sparse_mass(s, mass) : copy_diagonal_mass(s, mass);
 }

@@ -73,10 +73,10 @@ typedef struct dvi__lagrangian_term {
 } dvi__lagrangian_term;
 
 /* A factor, or a coordinate of R^n: which chart it has, and where its numbers begin. A factor of rigid motions is one of rotations and three coordinates. */
-typedef struct dvi__cell {
+typedef struct dvi__factor_slot {
   dvi__chart_kind kind;
   int q, v, x; /* of the stored coordinates, of the stored velocities, of the chart's coordinates */
-} dvi__cell;
+} dvi__factor_slot;
 
 /* Constraints phi(q,p) = 0. */
 typedef struct dvi__constraint_term {
@@ -104,8 +104,8 @@ struct dvi_system {
   int n;          /* stored coordinates */
   int nv;         /* numbers of a velocity: n without factors */
   int nx;         /* degrees of freedom */
-  int cell_count; /* 0: no factors */
-  dvi__cell *cells;
+  int slot_count; /* 0: no factors */
+  dvi__factor_slot *slots;
   int autonomous; /* declared so */
   dvi__declared declared;
   unsigned terms; /* dvi__term bits */

@@ -68,7 +68,7 @@ dvi_status dvi__carried_step(dvi__stepper *self, dvi__state *state, double h)
   DVI_TRY(dvi__action_residual(one->of, one->x, rows));
   dvi__action_ends(one->of, one->x, one->dq, dq_low, one->dp);
   DVI_TRY(dvi__one_step_move(self, state, h, one->x));
-  dvi__add_compensated_all(self->system->n, state->p, state->p_carry, one->dp);
+  dvi__add_compensated_all(self->system->n, state->p, state->p_compensation, one->dp);
   return DVI_OK;
 }
 

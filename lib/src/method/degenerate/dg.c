@@ -16,10 +16,10 @@ static const char *flux_name(int index)
 }
 
 static const dvi__key keys[] = {
-    {"degree", NULL, 0, DVI__DG_POINTS_MOST - 1, 2, "of the polynomials, 0 to 7; left out: 2"},
-    {"nodes", NULL, 1, DVI__DG_POINTS_MOST, DVI__LEFT_OUT, "Gauss points of an element, degree+1 to 8; left out: degree+1"},
-    {"flux", flux_name, 0, 0, DVI__AVERAGE_FLUX, "average, left, right or path; left out: average"},
-    {"points", NULL, 1, DVI__DG_POINTS_MOST, DVI__LEFT_OUT, "Gauss points of flux=path, 1 to 8; left out: 2 (1 of other fluxes)"},
+    {"degree", NULL, 0, DVI__DG_POINTS_MOST - 1, 2, "of the polynomials, 0 to 7; default: 2"},
+    {"nodes", NULL, 1, DVI__DG_POINTS_MOST, DVI__LEFT_OUT, "Gauss points of an element, degree+1 to 8; default: degree+1"},
+    {"flux", flux_name, 0, 0, DVI__AVERAGE_FLUX, "average, left, right or path; default: average"},
+    {"points", NULL, 1, DVI__DG_POINTS_MOST, DVI__LEFT_OUT, "Gauss points of flux=path, 1 to 8; default: 2 (1 of other fluxes)"},
     DVI__ALARM_KEY,
     {0},
 };
@@ -76,7 +76,7 @@ const dvi__method dvi__dg = {
     .cite = "KrausYoshimuraPeng",
     .keys = keys,
     .list = "stiffness",
-    .list_help = "c of the jump, one for all coordinates or one for each (c1:c2:...); left out: none",
+    .list_help = "c of the jump, one for all coordinates or one for each (c1:c2:...); default: none",
     .create = create,
     DVI__DG_OPERATIONS,
 };

@@ -8,7 +8,7 @@
 #define DVI__ALARM_KEY                                                         \
   {                                                                            \
     "alarm", dvi__alarm_choice, DVI__SAID, 0, DVI__ALARM_STOP,                 \
-        "stop or warn if the jump is large against the motion; left out: stop" \
+        "stop or warn if the jump is large against the motion; default: stop" \
   }
 
 enum { DVI__ALARM_STOP, DVI__ALARM_WARN };

@@ -8,7 +8,7 @@
 enum { NODES };
 
 static const dvi__key keys[] = {
-    {"nodes", NULL, 1, 6, 2, "the stages, 1 to 6; left out: 2"},
+    {"nodes", NULL, 1, 6, 2, "the stages, 1 to 6; default: 2"},
     {0},
 };
 

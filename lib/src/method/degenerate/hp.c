@@ -28,10 +28,10 @@ static const char *rule_name(int index)
 }
 
 static const dvi__key keys[] = {
-    {"type", NULL, 1, 4, 1, "of generating functions: 1 (q,Q), 2 (q,P), 3 (p,Q) or 4 (p,P); left out: 1"},
-    {"degree", NULL, 1, DVI_DEGREE_MAX - 1, 1, "degree of q, of type 4 of p, 1 to 39 (type 4: to 7); left out: 1"},
+    {"type", NULL, 1, 4, 1, "of generating functions: 1 (q,Q), 2 (q,P), 3 (p,Q) or 4 (p,P); default: 1"},
+    {"degree", NULL, 1, DVI_DEGREE_MAX - 1, 1, "degree of q, of type 4 of p, 1 to 39 (type 4: to 7); default: 1"},
     {"quadrature", rule_name, 0, 0, DVI__LEFT_OUT,
-     "one of galerkin's, of type 4 lobatto or gauss; left out: lobatto, of type 2 radau-left, of type 3 radau-right"},
+     "one of galerkin's, of type 4 lobatto or gauss; default: lobatto, of type 2 radau-left, of type 3 radau-right"},
     {0},
 };
 

@@ -57,7 +57,7 @@ dvi_status dvi__partitioned_step(dvi__stepper *self, dvi__state *state, double h
   keep_multiplier(self);
   DVI_TRY(dvi__one_step_move(self, state, h, one->x));
   if (own->projection != DVI__NO_PROJECTION) return dvi__one_step_constrain(self, state);
-  dvi__add_compensated_all(self->system->n, state->p, state->p_carry, one->dp);
+  dvi__add_compensated_all(self->system->n, state->p, state->p_compensation, one->dp);
   return DVI_OK;
 }
 

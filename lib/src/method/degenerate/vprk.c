@@ -27,9 +27,9 @@ static const char *projection_name(int index)
 }
 
 static const dvi__key keys[] = {
-    {"nodes", NULL, 1, 6, 2, "the stages, 1 to 6; left out: 2"},
-    {"tableau", tableau_name, 0, 0, DVI__GAUSS, "gauss or lobatto-iiie (2 stages or more); left out: gauss"},
-    {"projection", projection_name, 0, 0, DVI__SYMMETRIC, "symmetric, midpoint, symplectic, post or none; left out: symmetric"},
+    {"nodes", NULL, 1, 6, 2, "the stages, 1 to 6; default: 2"},
+    {"tableau", tableau_name, 0, 0, DVI__GAUSS, "gauss or lobatto-iiie (2 stages or more); default: gauss"},
+    {"projection", projection_name, 0, 0, DVI__SYMMETRIC, "symmetric, midpoint, symplectic, post or none; default: symmetric"},
     {0},
 };
 

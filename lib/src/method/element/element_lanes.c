@@ -183,10 +183,10 @@ static void advance(const lanes *own, size_t n, dvi__members *m, double h)
   const dvi__action_members *at = &own->members;
   const size_t count = (size_t)m->count;
   double *last_h = memory_row(m, DVI__LAST_H);
-  dvi__lanes_add_scaled(n * count, 1.0, at->dq, m->q, m->q_carry);
-  dvi__lanes_add_scaled(n * count, 1.0, at->dq_low, m->q, m->q_carry);
-  dvi__lanes_add_scaled(n * count, 1.0, at->dp, m->p, m->p_carry);
-  for (size_t k = 0; k < count; k++) dvi__add_compensated(m->t + k, m->t_carry + k, h);
+  dvi__lanes_add_scaled(n * count, 1.0, at->dq, m->q, m->q_compensation);
+  dvi__lanes_add_scaled(n * count, 1.0, at->dq_low, m->q, m->q_compensation);
+  dvi__lanes_add_scaled(n * count, 1.0, at->dp, m->p, m->p_compensation);
+  for (size_t k = 0; k < count; k++) dvi__add_compensated(m->t + k, m->t_compensation + k, h);
   for (size_t k = 0; k < count; k++) last_h[k] = h;
   for (int i = 0; i < 2; i++) memset(memory_row(m, forgotten[i]), 0, count * sizeof(double));
 }

@@ -318,10 +318,10 @@ static dvi_status advance(dvi__stepper *self, dvi__state *state, double h)
   const int n = self->system->n;
   double duration;
   DVI_TRY(dvi__action_duration(own->action, own->Y, &duration));
-  dvi__add_compensated_all(n, state->q, state->q_carry, own->dq);
-  dvi__add_compensated_all(n, state->q, state->q_carry, own->dq_low);
-  dvi__add_compensated_all(n, state->p, state->p_carry, own->dp);
-  dvi__add_compensated(&state->t, &state->t_carry, duration);
+  dvi__add_compensated_all(n, state->q, state->q_compensation, own->dq);
+  dvi__add_compensated_all(n, state->q, state->q_compensation, own->dq_low);
+  dvi__add_compensated_all(n, state->p, state->p_compensation, own->dp);
+  dvi__add_compensated(&state->t, &state->t_compensation, duration);
   self->memory[DVI__LAST_H] = h;
   memcpy(self->memory + DVI__LAST_Y, own->Y, (size_t)dvi__action_unknowns(own->action) * sizeof(double));
   return DVI_OK;

@@ -8,7 +8,7 @@
 #define DVI__SOLVER_KEY                                                              \
   {                                                                                  \
     "solver", dvi__solver_choice, 0, 0, DVI__SOLVER_AUTO,                            \
-        "auto, certified, fixed-point, simplified, newton or kinsol; left out: auto" \
+        "auto, certified, fixed-point, simplified, newton or kinsol; default: auto" \
   }
 
 enum {

@@ -19,7 +19,7 @@ dvi_status dvi__energy_search_create(dvi__bordered *b, dvi__energy_search *searc
   search->b = b;
   search->memory = DVI_NEW(double, b->element.memory_count);
   if (at == NULL || search->memory == NULL) return dvi__fail(DVI_NO_MEMORY, "sem: no memory for %zu coordinates", n);
-  search->state = (dvi__state){.q = at, .p = at + n, .q_carry = at + 2 * n, .p_carry = at + 3 * n};
+  search->state = (dvi__state){.q = at, .p = at + n, .q_compensation = at + 2 * n, .p_compensation = at + 3 * n};
   return DVI_OK;
 }
 
@@ -32,7 +32,7 @@ void dvi__energy_search_clear(dvi__energy_search *search)
 static void copy_state(size_t n, const dvi__state *from, dvi__state *to)
 {
   to->t = from->t;
-  to->t_carry = from->t_carry;
+  to->t_compensation = from->t_compensation;
   memcpy(to->q, from->q, 4 * n * sizeof(double));
 }
 

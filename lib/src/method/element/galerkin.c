@@ -21,13 +21,13 @@ static const char *rule_name(int index)
 }
 
 static const dvi__key keys[] = {
-    {"degree", NULL, 1, DVI_DEGREE_MAX, 2, "degree of the path, 1 to 40; left out: 2"},
+    {"degree", NULL, 1, DVI_DEGREE_MAX, 2, "degree of the path, 1 to 40; default: 2"},
     {"basis", basis_name, 0, 0, DVI_LAGRANGE_LOBATTO,
-     "trial functions: lobatto, gauss, chebyshev-lobatto, equispaced (Lagrange), legendre, chebyshev (modal); left out: lobatto"},
+     "trial functions: lobatto, gauss, chebyshev-lobatto, equispaced (Lagrange), legendre, chebyshev (modal); default: lobatto"},
     {"quadrature", rule_name, 0, 0, DVI_GAUSS,
-     "gauss, lobatto, radau-left, radau-right, clenshaw-curtis, midpoint, trapezoid, simpson; left out: gauss"},
+     "gauss, lobatto, radau-left, radau-right, clenshaw-curtis, midpoint, trapezoid, simpson; default: gauss"},
     {"nodes", NULL, 1, DVI_QUADRATURE_MAX, DVI__LEFT_OUT,
-     "quadrature points, at least the degree, at most 80; left out: the fewest of order 2 degree (Gauss: the degree)"},
+     "quadrature points, at least the degree, at most 80; default: the fewest of order 2 degree (Gauss: the degree)"},
     DVI__SOLVER_KEY,
     {0},
 };

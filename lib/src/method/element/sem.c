@@ -28,11 +28,11 @@ static const char *solver_name(int index)
 }
 
 static const dvi__key keys[] = {
-    {"degree", NULL, 1, DVI_DEGREE_MAX, 1, "degree of the path, 1 to 40; left out: 1, the midpoint rule with Gauss"},
-    {"quadrature", rule_name, 0, 0, 0, "gauss (degree points) or lobatto (degree + 1 points); left out: gauss"},
-    {"hmin", NULL, DVI__POSITIVE, 0, 0, "the least length of a step, positive; auto, or left out: a tenth of the first step"},
-    {"hmax", NULL, DVI__POSITIVE, 0, 0, "the largest length of a step, positive; auto, or left out: thirty times the first step"},
-    {"solver", solver_name, 0, 0, 0, "of rows and energy row together: newton, or kinsol, with line search; left out: newton"},
+    {"degree", NULL, 1, DVI_DEGREE_MAX, 1, "degree of the path, 1 to 40; default: 1, the midpoint rule with Gauss"},
+    {"quadrature", rule_name, 0, 0, 0, "gauss (degree points) or lobatto (degree + 1 points); default: gauss"},
+    {"hmin", NULL, DVI__POSITIVE, 0, 0, "the least length of a step, positive; auto, or default: a tenth of the first step"},
+    {"hmax", NULL, DVI__POSITIVE, 0, 0, "the largest length of a step, positive; auto, or default: thirty times the first step"},
+    {"solver", solver_name, 0, 0, 0, "of rows and energy row together: newton, or kinsol, with line search; default: newton"},
     {0},
 };
 

@@ -3,19 +3,19 @@
  * Space: polynomials of degree d, and in the coordinates that have them the user's functions.  Quadrature: a rule of galerkin's with r points, at least as many as there
  * are functions, or the user's.
  *     Ld(q0,q1) = ext over such paths q from q0 to q1 of  h sum_j b_j L(t0 + c_j h, q_j, q'_j/h),      p0 = -D1 Ld, p1 = D2 Ld.
- * The rows are those of step/element/action.h in another space (step/element/shaped.h). Symplectic; symmetric where space and quadrature are. Order min(2d, u, 2(u-d+1)) for a
+ * The rows are those of step/element/action.h in another space (step/element/user_element.h). Symplectic; symmetric where space and quadrature are. Order min(2d, u, 2(u-d+1)) for a
  * quadrature of order u is what the polynomials claim; the functions may do better, and the user may say so.
  * Source: Marsden and West 2001, sec. 2.2.6; Hall and Leok 2015 (spaces other than polynomials). */
 #include <math.h>
 #include <string.h>
 
-#include "step/element/shaped.h"
+#include "step/element/user_element.h"
 #include "core/hash.h"
 #include "core/memory.h"
 #include "method/element/element_step.h"
 #include "method/one_step.h"
 #include "num/compensated.h"
-#include "space/given.h"
+#include "space/user_basis.h"
 
 enum { DEGREE, QUADRATURE, NODES, DEGREE_MOST = 20 };
 
@@ -27,10 +27,10 @@ static const char *rule_name(int index)
 }
 
 static const dvi__key keys[] = {
-    {"degree", NULL, 1, DEGREE_MOST, 1, "degree of the polynomials that all coordinates have, 1 to 20; left out: 1"},
-    {"quadrature", rule_name, 0, 0, DVI__LEFT_OUT, "as of galerkin; own: the program's; left out: the program's, or gauss"},
+    {"degree", NULL, 1, DEGREE_MOST, 1, "degree of the polynomials that all coordinates have, 1 to 20; default: 1"},
+    {"quadrature", rule_name, 0, 0, DVI__LEFT_OUT, "as of galerkin; own: the program's; default: the program's, or gauss"},
     {"nodes", NULL, 1, DVI_SHAPES_POINTS_MOST, DVI__LEFT_OUT,
-     "quadrature points, at least as many as there are functions with those of the polynomials, at most 80; left out: the fewest "
+     "quadrature points, at least as many as there are functions with those of the polynomials, at most 80; default: the fewest "
      "of that number"},
     {0},
 };
@@ -41,7 +41,7 @@ enum { FINGERPRINT = DVI__CARRIED, CARRIED = 1 };
 
 typedef struct shaped_galerkin {
   dvi__one_step one;
-  dvi__given *space;
+  dvi__user_basis *space;
   int coordinates;    /* that have the functions */
   double fingerprint; /* of the space at its own length */
 } shaped_galerkin;
@@ -138,21 +138,21 @@ static dvi_status place(dvi__stepper *self, const dvi__state *state, double h, d
 {
   const shaped_galerkin *own = self->own;
   (void)part;
-  DVI_TRY(dvi__given_prepare(own->space, h));
-  dvi__shaped_place(own->one.of, state->t, h, state->q, state->p);
+  DVI_TRY(dvi__user_basis_prepare(own->space, h));
+  dvi__user_element_place(own->one.of, state->t, h, state->q, state->p);
   return DVI_OK;
 }
 
-DVI__STEP_KIND(shaped, place, explain, .renewed = 1);
+DVI__STEP_KIND(user_element, place, explain, .renewed = 1);
 
 static int smaller(int a, int b)
 {
   return a < b ? a : b;
 }
 
-static int order_of(const dvi__stepper *self, const dvi__given *space)
+static int order_of(const dvi__stepper *self, const dvi__user_basis *space)
 {
-  const int d = self->settings.value[DEGREE], u = dvi__given_quadrature_order(space),
+  const int d = self->settings.value[DEGREE], u = dvi__user_basis_quadrature_order(space),
             order = smaller(smaller(2 * d, u), 2 * (u - d + 1));
   if (self->shapes->order > 0) return self->shapes->order;
   return order > 1 ? order : 1;
@@ -162,24 +162,24 @@ static int order_of(const dvi__stepper *self, const dvi__given *space)
 static dvi_status make(dvi__stepper *self, const char *has)
 {
   const int *value = self->settings.value;
-  dvi__shaped *shaped = NULL;
-  dvi__given *space = NULL;
-  DVI_TRY(dvi__given_create(self->shapes, value[DEGREE], (dvi_rule)value[QUADRATURE], value[NODES], &space));
-  const dvi__shapes shapes = dvi__given_shapes(space);
-  dvi_status status = dvi__shaped_create(self->system, &shapes, has, value[DEGREE], self->counters, &shaped);
+  dvi__user_element *shaped = NULL;
+  dvi__user_basis *space = NULL;
+  DVI_TRY(dvi__user_basis_create(self->shapes, value[DEGREE], (dvi_rule)value[QUADRATURE], value[NODES], &space));
+  const dvi__shapes shapes = dvi__user_basis_shapes(space);
+  dvi_status status = dvi__user_element_create(self->system, &shapes, has, value[DEGREE], self->counters, &shaped);
   if (status == DVI_OK) status = dvi__one_step_create(self, sizeof(shaped_galerkin), &kind, shaped, CARRIED);
   shaped_galerkin *own = self->own;
   if (own == NULL) {
-    dvi__given_destroy(&space);
+    dvi__user_basis_destroy(&space);
     return status;
   }
   own->space = space;
   for (int i = 0; i < self->system->n; i++) own->coordinates += has[i];
-  own->fingerprint = dvi__given_fingerprint_of(space).sum;
+  own->fingerprint = dvi__user_basis_fingerprint_of(space).sum;
   self->fingerprint = dvi__hash(DVI__HASH_START, (size_t)self->system->n, has);
   self->fingerprinted = "coordinates that have the functions of its space";
   self->order = order_of(self, space);
-  self->symmetric = dvi__given_symmetric(space);
+  self->symmetric = dvi__user_basis_symmetric(space);
   return status;
 }
 
@@ -201,9 +201,9 @@ static void destroy(dvi__stepper *self)
 {
   shaped_galerkin *own = self->own;
   if (own == NULL) return;
-  dvi__given *space = own->space;
+  dvi__user_basis *space = own->space;
   dvi__one_step_destroy(self);
-  dvi__given_destroy(&space);
+  dvi__user_basis_destroy(&space);
 }
 
 /* ---- the step ---- */
@@ -220,10 +220,10 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
   const shaped_galerkin *own = self->own;
   const dvi__one_step *one = &own->one;
   DVI_TRY(dvi__one_step_solve(self, state, h));
-  dvi__shaped_ends(one->of, one->x, one->dq, one->dp);
+  dvi__user_element_ends(one->of, one->x, one->dq, one->dp);
   DVI_TRY(dvi__one_step_move(self, state, h, one->x));
-  dvi__add_compensated_all(self->system->n, state->p, state->p_carry, one->dp);
-  self->memory[FINGERPRINT] = dvi__given_fingerprint_of(own->space).sum;
+  dvi__add_compensated_all(self->system->n, state->p, state->p_compensation, one->dp);
+  self->memory[FINGERPRINT] = dvi__user_basis_fingerprint_of(own->space).sum;
   return DVI_OK;
 }
 
@@ -232,14 +232,14 @@ static void path(const dvi__stepper *self, const double *q0, double h, double ta
 {
   const shaped_galerkin *own = self->own;
   const dvi__one_step *one = &own->one;
-  if (dvi__given_prepare(own->space, h) != DVI_OK) {
+  if (dvi__user_basis_prepare(own->space, h) != DVI_OK) {
     for (int i = 0; i < self->system->n; i++) {
       if (q != NULL) q[i] = (double)NAN;
       if (v != NULL) v[i] = (double)NAN;
     }
     return;
   }
-  dvi__shaped_path(one->of, self->memory + one->last, h, tau, q, v);
+  dvi__user_element_path(one->of, self->memory + one->last, h, tau, q, v);
   for (int i = 0; q != NULL && i < self->system->n; i++) q[i] += q0[i];
 }
 
@@ -248,8 +248,8 @@ static int recognizes(const dvi__stepper *self, const double *memory)
 {
   const shaped_galerkin *own = self->own;
   const double h = memory[DVI__LENGTH];
-  if (dvi__given_prepare(own->space, h != 0 ? h : self->shapes->h) != DVI_OK) return 0;
-  const dvi__given_fingerprint here = dvi__given_fingerprint_of(own->space);
+  if (dvi__user_basis_prepare(own->space, h != 0 ? h : self->shapes->h) != DVI_OK) return 0;
+  const dvi__user_basis_fingerprint here = dvi__user_basis_fingerprint_of(own->space);
   return fabs(here.sum - memory[FINGERPRINT]) <= 1e-9 * here.size;
 }
 

@@ -20,11 +20,11 @@
 enum { DEGREE, NODES, MOMENTS, ALARM };
 
 static const dvi__key keys[] = {
-    {"degree", NULL, 1, DVI__DG_POINTS_MOST, 1, "of the polynomials, 1 to 8; with a one-form all give the same steps; left out: 1"},
+    {"degree", NULL, 1, DVI__DG_POINTS_MOST, 1, "of the polynomials, 1 to 8; with a one-form all give the same steps; default: 1"},
     {"nodes", NULL, 1, DVI__DG_POINTS_MOST, DVI__LEFT_OUT,
-     "Gauss points; with a one-form degree to 8, all give the same steps; with a Hamiltonian degree; left out: degree"},
+     "Gauss points; with a one-form degree to 8, all give the same steps; with a Hamiltonian degree; default: degree"},
     {"moments", NULL, 0, DVI__DG_POINTS_MOST, DVI__LEFT_OUT,
-     "of the constraint inside an element, even, 0 to degree; with a one-form 0; left out: the most"},
+     "of the constraint inside an element, even, 0 to degree; with a one-form 0; default: the most"},
     DVI__ALARM_KEY,
     {0},
 };

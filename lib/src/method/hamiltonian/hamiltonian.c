@@ -30,11 +30,11 @@ static const char *rule_name(int index)
 }
 
 static const dvi__key keys[] = {
-    {"type", NULL, 1, 3, 2, "of generating functions: 1 (q0,q1), 2 (q0,p1) or 3 (p0,q1); left out: 2"},
-    {"degree", NULL, 1, DVI__CANONICAL_DEGREE, 2, "degree of the path, 1 to 8; left out: 2"},
-    {"quadrature", rule_name, 0, 0, DVI_GAUSS, "one of galerkin's; left out: gauss"},
+    {"type", NULL, 1, 3, 2, "of generating functions: 1 (q0,q1), 2 (q0,p1) or 3 (p0,q1); default: 2"},
+    {"degree", NULL, 1, DVI__CANONICAL_DEGREE, 2, "degree of the path, 1 to 8; default: 2"},
+    {"quadrature", rule_name, 0, 0, DVI_GAUSS, "one of galerkin's; default: gauss"},
     {"nodes", NULL, 1, DVI__CANONICAL_POINTS, DVI__LEFT_OUT,
-     "quadrature points, at least the degree, at most 9; left out: the fewest of order 2 degree, Gauss's and Radau's rules the "
+     "quadrature points, at least the degree, at most 9; default: the fewest of order 2 degree, Gauss's and Radau's rules the "
      "degree"},
     {0},
 };
@@ -121,7 +121,7 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
   dvi__canonical_ends(one->of, one->x, one->dq, one->dp);
   dvi__canonical_keep(one->of, one->x, one->work);
   DVI_TRY(dvi__one_step_move(self, state, h, one->work));
-  dvi__add_compensated_all(self->system->n, state->p, state->p_carry, one->dp);
+  dvi__add_compensated_all(self->system->n, state->p, state->p_compensation, one->dp);
   return DVI_OK;
 }
 

@@ -98,7 +98,7 @@ dvi_status dvi__phase_step(dvi__stepper *self, dvi__state *state, double h)
   dvi__phase_end(one->of, one->x, one->dq, one->dp, multiplier(self));
   DVI_TRY(watch(self));
   DVI_TRY(dvi__one_step_move(self, state, h, one->x));
-  dvi__add_compensated_all(self->system->n, state->p, state->p_carry, one->dp);
+  dvi__add_compensated_all(self->system->n, state->p, state->p_compensation, one->dp);
   return DVI_OK;
 }
 

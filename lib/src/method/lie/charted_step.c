@@ -44,8 +44,8 @@ static dvi_status allocate(dvi__stepper *self, charted_step *own)
 static int has_two_ends(const dvi_system *system, const dvi__stepper *inner)
 {
   int turns = 0;
-  for (int c = 0; c < system->cell_count; c++)
-    turns |= system->cells[c].kind == DVI__ROTATION || system->cells[c].kind == DVI__SPHERE;
+  for (int c = 0; c < system->slot_count; c++)
+    turns |= system->slots[c].kind == DVI__ROTATION || system->slots[c].kind == DVI__SPHERE;
   return !turns || dvi__action_space_of(dvi__element_action(inner)).degree == 1;
 }
 
@@ -115,14 +115,14 @@ static dvi_status solve(dvi__stepper *self, const dvi__state *state, double h, d
   dvi__charted_centre(own->charted, state->q);
   memset(own->local, 0, 4 * nx * sizeof(double));
   *local = (dvi__state){.t = state->t,
-                        .t_carry = state->t_carry,
+                        .t_compensation = state->t_compensation,
                         .density = state->density,
                         .q = own->local,
                         .p = own->local + nx,
-                        .q_carry = own->local + 2 * nx,
-                        .p_carry = own->local + 3 * nx};
+                        .q_compensation = own->local + 2 * nx,
+                        .p_compensation = own->local + 3 * nx};
   dvi__charted_enter(own->charted, state->p, local->p);
-  dvi__charted_enter(own->charted, state->p_carry, local->p_carry);
+  dvi__charted_enter(own->charted, state->p_compensation, local->p_compensation);
   own->inner.memory = self->memory;
   const dvi_status status = own->inner.method->step(&own->inner, local, h);
   return status == DVI_OK ? dvi__charted_check(own->charted, local->q) : dvi__charted_explain(own->charted, status);
@@ -138,12 +138,12 @@ dvi_status dvi__charted_step(dvi__stepper *self, dvi__state *state, double h)
   memcpy(own_path, path, unknowns * sizeof(double));
   memcpy(own->seen + n * (unknowns / (size_t)self->system->nx), state->q, n * sizeof(double));
   look_back(own, n, own_path);
-  dvi__charted_arrive(own->charted, &(dvi__phase){local.q, local.p, local.q_carry, local.p_carry},
-                      &(dvi__phase){state->q, state->p, state->q_carry, state->p_carry});
+  dvi__charted_arrive(own->charted, &(dvi__phase){local.q, local.p, local.q_compensation, local.p_compensation},
+                      &(dvi__phase){state->q, state->p, state->q_compensation, state->p_compensation});
   dvi__charted_centre(own->charted, state->q);
   turn_path(own, n, path);
   state->t = local.t;
-  state->t_carry = local.t_carry;
+  state->t_compensation = local.t_compensation;
   return DVI_OK;
 }
 

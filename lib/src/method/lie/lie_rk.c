@@ -29,7 +29,7 @@ static const char *scheme_name(int index)
 
 static const dvi__key keys[] = {
     {"scheme", scheme_name, 0, 0, MUNTHE_KAAS,
-     "explicit-midpoint, implicit-midpoint, crouch-grossman (order 2) or munthe-kaas (order 4); left out: munthe-kaas"},
+     "explicit-midpoint, implicit-midpoint, crouch-grossman (order 2) or munthe-kaas (order 4); default: munthe-kaas"},
     {0},
 };
 
@@ -52,7 +52,7 @@ static dvi_status create(dvi__stepper *self)
   if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "lie-rk: no memory");
   double *at = own->numbers = DVI_NEW(double, ARRAYS *n);
   if (at == NULL) return dvi__fail(DVI_NO_MEMORY, "lie-rk: no memory");
-  double **const array[ARRAYS] = {&own->start.q, &own->start.p, &own->start.q_carry, &own->start.p_carry, &own->omega,
+  double **const array[ARRAYS] = {&own->start.q, &own->start.p, &own->start.q_compensation, &own->start.p_compensation, &own->omega,
                                   &own->m_rate,  &own->sum,     &own->m_sum,         &own->theta};
   for (int i = 0; i < ARRAYS; i++) *array[i] = at + (size_t)i * n;
   return dvi__flow_create(self->system, self->counters, &own->flow);
@@ -69,16 +69,16 @@ static void destroy(dvi__stepper *self)
 
 static dvi__phase phase_of(const dvi__state *state)
 {
-  return (dvi__phase){state->q, state->p, state->q_carry, state->p_carry};
+  return (dvi__phase){state->q, state->p, state->q_compensation, state->p_compensation};
 }
 
 static void copy(const dvi_system *system, const dvi__phase *from, const dvi__phase *to)
 {
   const size_t points = (size_t)system->n * sizeof(double), momenta = (size_t)system->nv * sizeof(double);
   memcpy(to->q, from->q, points);
-  memcpy(to->q_carry, from->q_carry, points);
+  memcpy(to->q_compensation, from->q_compensation, points);
   memcpy(to->p, from->p, momenta);
-  memcpy(to->p_carry, from->p_carry, momenta);
+  memcpy(to->p_compensation, from->p_compensation, momenta);
 }
 
 /* ---- in the coordinates that contain the group ---- */
@@ -112,8 +112,8 @@ static double move_plainly(dvi__stepper *self, dvi__state *state, double h)
 {
   const lie_rk *own = self->own;
   const dvi__phase *from = &own->start;
-  return fmax(move_numbers(self->system->n, from->q, from->q_carry, h, own->sum, state->q, state->q_carry),
-              move_numbers(self->system->nv, from->p, from->p_carry, h, own->m_sum, state->p, state->p_carry));
+  return fmax(move_numbers(self->system->n, from->q, from->q_compensation, h, own->sum, state->q, state->q_compensation),
+              move_numbers(self->system->nv, from->p, from->p_compensation, h, own->m_sum, state->p, state->p_compensation));
 }
 
 static dvi_status explicit_midpoint(dvi__stepper *self, dvi__state *state, double h)
@@ -129,9 +129,9 @@ static dvi_status explicit_midpoint(dvi__stepper *self, dvi__state *state, doubl
  * by turns of half a step below 1, its guesses are no longer than sqrt(2). */
 static int is_astray(const dvi_system *system, const double *q)
 {
-  for (int c = 0; c < system->cell_count; c++) {
-    const dvi__cell *cell = &system->cells[c];
-    if (cell->kind != DVI__LINE && dvi__largest((size_t)dvi__chart_stored(cell->kind), q + cell->q) > 2) return 1;
+  for (int c = 0; c < system->slot_count; c++) {
+    const dvi__factor_slot *slot = &system->slots[c];
+    if (slot->kind != DVI__LINE && dvi__largest((size_t)dvi__chart_stored(slot->kind), q + slot->q) > 2) return 1;
   }
   return 0;
 }
@@ -164,7 +164,7 @@ static void move_state(dvi__stepper *self, dvi__state *state, const double *thet
   const dvi__phase phase = phase_of(state);
   copy(self->system, &own->start, &phase);
   dvi__flow_move(own->flow, theta, &phase);
-  for (int i = 0; i < self->system->nv; i++) dvi__add_compensated(phase.p + i, phase.p_carry + i, h * m_rate[i]);
+  for (int i = 0; i < self->system->nv; i++) dvi__add_compensated(phase.p + i, phase.p_compensation + i, h * m_rate[i]);
   dvi__flow_leave(own->flow, &phase);
 }
 
@@ -223,7 +223,7 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
   if (status == DVI_SINGULAR) /* at the start the mass was regular */
     return dvi__fail(DVI_NOT_CONVERGED, "the mass is singular at a state inside the step");
   DVI_TRY(status);
-  dvi__add_compensated(&state->t, &state->t_carry, h);
+  dvi__add_compensated(&state->t, &state->t_compensation, h);
   return DVI_OK;
 }
 

@@ -15,7 +15,7 @@ enum { COORDINATES_MOST = 500 };
 
 static const dvi__key keys[] = {
     {"derivatives", NULL, 1, DVI__PROLONGATION_MOST, 2,
-     "m: the highest derivative of q that is matched at both ends, 1 to 10; left out: 2"},
+     "m: the highest derivative of q that is matched at both ends, 1 to 10; default: 2"},
     {0},
 };
 
@@ -59,7 +59,7 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
   const dvi__one_step *one = self->own;
   DVI_TRY(dvi__one_step_solve(self, state, h));
   DVI_TRY(dvi__prolongation_end(one->of, one->x, one->dq, one->dp, self->memory + DVI__CARRIED));
-  dvi__add_compensated_all(self->system->n, state->p, state->p_carry, one->dp);
+  dvi__add_compensated_all(self->system->n, state->p, state->p_compensation, one->dp);
   DVI_TRY(dvi__one_step_move(self, state, h, one->x));
   return DVI_OK;
 }

@@ -55,25 +55,25 @@ static const char *solve_name(int index)
 static const dvi__key keys[] = {
     {"onestep", one_step_name, 0, 0, DVI__LEFT_OUT,
      "euler, explicit-midpoint, heun, kutta3, rk4, three-eighths, dormand-prince, butcher6, cooper-verner, backward-euler, "
-     "implicit-midpoint, gauss, radau-iia, lobatto-iiia, sdirk, taylor, or file; left out: rk4"},
+     "implicit-midpoint, gauss, radau-iia, lobatto-iiia, sdirk, taylor, or file; default: rk4"},
     {"stages", NULL, 1, STAGES_MOST, DVI__LEFT_OUT,
-     "of gauss, radau-iia, lobatto-iiia (2 to 8) and sdirk (2 or 3); of taylor the degree, 1 to 20; left out: 2, of taylor 4"},
+     "of gauss, radau-iia, lobatto-iiia (2 to 8) and sdirk (2 or 3); of taylor the degree, 1 to 20; default: 2, of taylor 4"},
     {"tableau", NULL, DVI__FILE, 0, 0, "the file of the one-step method's tableau"},
     {"composition", composition_name, 0, 0, 0,
-     "none, 4, 6 or 8: the order to which a symmetric one-step method is composed; left out: none"},
+     "none, 4, 6 or 8: the order to which a symmetric one-step method is composed; default: none"},
     {"quadrature", rule_name, 0, 0, DVI_SIMPSON,
-     "trapezoid, simpson, lobatto, clenshaw-curtis, euler-maclaurin or gauss-hermite; left out: simpson"},
+     "trapezoid, simpson, lobatto, clenshaw-curtis, euler-maclaurin or gauss-hermite; default: simpson"},
     {"nodes", NULL, 2, NODES_MOST, DVI__LEFT_OUT,
-     "of lobatto and clenshaw-curtis, 2 to 16; left out: the fewest whose order reaches that of the one-step method"},
+     "of lobatto and clenshaw-curtis, 2 to 16; default: the fewest whose order reaches that of the one-step method"},
     {"terms", NULL, 0, STAGES_MOST, DVI__LEFT_OUT,
-     "of euler-maclaurin, beside the trapezoid, and of gauss-hermite, at each end, up to 20; left out: as nodes"},
+     "of euler-maclaurin, beside the trapezoid, and of gauss-hermite, at each end, up to 20; default: as nodes"},
     {"solve", solve_name, 0, 0, AUTO,
      "shot: for the start, by dense derivatives of the shot; stages: for all stages, as one sparse system; auto: the cheaper; left "
      "out: auto"},
     {"tolerance", NULL, DVI__POSITIVE, 0, 0,
-     "the residual, relative to the coordinates, at which the search for v ends: to see what a loose one does; left out: roundoff"},
+     "the residual, relative to the coordinates, at which the search for v ends: to see what a loose one does; default: roundoff"},
     {"type", NULL, 1, 3, DVI__LEFT_OUT,
-     "of generating functions: 1 (q0,q1), 2 (q0,p1) or 3 (p0,q1); left out: 1, with a Hamiltonian 2"},
+     "of generating functions: 1 (q0,q1), 2 (q0,p1) or 3 (p0,q1); default: 1, with a Hamiltonian 2"},
     {0},
 };
 
@@ -462,9 +462,9 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
   find_ends(own);
   DVI_TRY(find_duration(self, h, &duration));
   memcpy(self->memory, own->v, (size_t)self->system->n * sizeof *own->v);
-  dvi__add_compensated_all(self->system->n, state->q, state->q_carry, own->dq);
-  dvi__add_compensated_all(self->system->n, state->p, state->p_carry, own->dp);
-  dvi__add_compensated(&state->t, &state->t_carry, duration);
+  dvi__add_compensated_all(self->system->n, state->q, state->q_compensation, own->dq);
+  dvi__add_compensated_all(self->system->n, state->p, state->p_compensation, own->dp);
+  dvi__add_compensated(&state->t, &state->t_compensation, duration);
   return DVI_OK;
 }
 

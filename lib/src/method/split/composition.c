@@ -23,10 +23,10 @@ static const char *base_name(int index)
 }
 
 static const dvi__key keys[] = {
-    {"order", dvi__scheme_name, 0, 0, 0, "4, 6 or 8; left out: 4"},
+    {"order", dvi__scheme_name, 0, 0, 0, "4, 6 or 8; default: 4"},
     {"base", base_name, 0, 0, DVI__LEFT_OUT,
      "the symmetric method that is composed: verlet, midpoint, trapezoidal, galerkin, imex, lie-verlet, or a program's "
-     "shaped-galerkin; all other keys are its own; left out: verlet, on groups lie-verlet"},
+     "shaped-galerkin; all other keys are its own; default: verlet, on groups lie-verlet"},
     {0},
 };
 
@@ -79,10 +79,10 @@ static void start(dvi__stepper *self, const double *v)
 }
 
 /* The rounded weights sum to 1 but for a rounding, which would add up over many steps: the clock moves by h. */
-static void move_clock(double t, double t_carry, double h, double *moved, double *moved_carry)
+static void move_clock(double t, double t_compensation, double h, double *moved, double *moved_carry)
 {
   *moved = t;
-  *moved_carry = t_carry;
+  *moved_carry = t_compensation;
   dvi__add_compensated(moved, moved_carry, h);
 }
 
@@ -90,9 +90,9 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
 {
   dvi__stepper *base = base_of(self);
   const dvi__scheme *s = scheme_of(self);
-  const double t = state->t, t_carry = state->t_carry;
+  const double t = state->t, t_compensation = state->t_compensation;
   for (int i = 0; i < s->substeps; i++) DVI_TRY(dvi__inner_step(self, base, state, h * dvi__scheme_part(s, i)));
-  if (dvi__transformed_of(self->system) == NULL) move_clock(t, t_carry, h, &state->t, &state->t_carry);
+  if (dvi__transformed_of(self->system) == NULL) move_clock(t, t_compensation, h, &state->t, &state->t_compensation);
   return DVI_OK;
 }
 
@@ -104,7 +104,7 @@ static int pass(dvi__stepper *self, const dvi__state *now, const double *before,
   if (base->method->pass == NULL || count != 1) return 0;
   for (int i = 0; i < s->substeps; i++) substeps[i] = h[0] * dvi__scheme_part(s, i);
   if (!base->method->pass(base, now, before, next, substeps, s->substeps)) return 0;
-  move_clock(now->t, now->t_carry, h[0], &next->t, &next->t_carry);
+  move_clock(now->t, now->t_compensation, h[0], &next->t, &next->t_compensation);
   return 1;
 }
 
@@ -136,11 +136,11 @@ static void step_lanes(dvi__stepper *self, dvi__members *m, double h)
   dvi__stepper *base = self->own;
   const dvi__scheme *s = scheme_of(self);
   const size_t bytes = (size_t)m->count * sizeof(double);
-  double *t = self->lanes, *t_carry = t + m->count;
+  double *t = self->lanes, *t_compensation = t + m->count;
   memcpy(t, m->t, bytes);
-  memcpy(t_carry, m->t_carry, bytes);
+  memcpy(t_compensation, m->t_compensation, bytes);
   for (int i = 0; i < s->substeps; i++) base->method->step_lanes(base, m, h * dvi__scheme_part(s, i));
-  for (int k = 0; k < m->count; k++) move_clock(t[k], t_carry[k], h, m->t + k, m->t_carry + k);
+  for (int k = 0; k < m->count; k++) move_clock(t[k], t_compensation[k], h, m->t + k, m->t_compensation + k);
 }
 
 static int recognizes(const dvi__stepper *self, const double *memory)

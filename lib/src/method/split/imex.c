@@ -31,7 +31,7 @@ static dvi_status drift(dvi__stepper *self, dvi__state *state, double h)
   const int n = self->system->n;
   for (int i = 0; i < n; i++) own->d[i] = h * state->p[i];
   DVI_TRY(dvi__modified_mass_solve(own->mass, h, own->d));
-  dvi__add_compensated_all(n, state->q, state->q_carry, own->d);
+  dvi__add_compensated_all(n, state->q, state->q_compensation, own->d);
   return DVI_OK;
 }
 

@@ -13,7 +13,7 @@ static double *made_for(const dvi__stepper *self)
 
 dvi__phase dvi__impulse_phase(const dvi__state *state)
 {
-  return (dvi__phase){state->q, state->p, state->q_carry, state->p_carry};
+  return (dvi__phase){state->q, state->p, state->q_compensation, state->p_compensation};
 }
 
 /* ---- create, destroy ---- */
@@ -73,10 +73,10 @@ void dvi__impulse_start(dvi__stepper *self, const double *v)
 dvi_status dvi__impulse_inner_steps(dvi__stepper *self, dvi__state *state, double h, int count)
 {
   dvi__stepper *inner = inner_of(self);
-  const double t = state->t, t_carry = state->t_carry;
+  const double t = state->t, t_compensation = state->t_compensation;
   for (int k = 0; k < count; k++) DVI_TRY(dvi__inner_step(self, inner, state, h / count));
   state->t = t;
-  state->t_carry = t_carry;
+  state->t_compensation = t_compensation;
   return DVI_OK;
 }
 
@@ -90,7 +90,7 @@ static dvi_status gradient(dvi__stepper *self, const dvi__state *state, double h
 
 static void kick(const dvi__stepper *self, dvi__state *state, double h)
 {
-  dvi__lanes_add_scaled((size_t)self->system->n, -h, self->memory, state->p, state->p_carry);
+  dvi__lanes_add_scaled((size_t)self->system->n, -h, self->memory, state->p, state->p_compensation);
 }
 
 dvi_status dvi__impulse_step(dvi__stepper *self, dvi__state *state, double h)
@@ -100,7 +100,7 @@ dvi_status dvi__impulse_step(dvi__stepper *self, dvi__state *state, double h)
   if (length == 0 || (own->gradient != NULL && length != h)) DVI_TRY(gradient(self, state, h));
   kick(self, state, 0.5 * h);
   DVI_TRY(own->move(self, state, h));
-  dvi__add_compensated(&state->t, &state->t_carry, h);
+  dvi__add_compensated(&state->t, &state->t_compensation, h);
   DVI_TRY(gradient(self, state, h));
   kick(self, state, 0.5 * h);
   return DVI_OK;

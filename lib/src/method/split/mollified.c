@@ -21,7 +21,7 @@ static const char *filter_name(int index)
 static const dvi__key keys[] = {
     {"filter", filter_name, 0, 0, AVERAGE,
      "where the slow potentials are asked: average (over the fast motion), or projection (without the modes of h omega > 1); "
-     "left out: average"},
+     "default: average"},
     {0},
 };
 

@@ -4,7 +4,7 @@
  *     sin(2 omega t) and cos(2 omega t) times constants, which a nonlinear motion has.
  * Quadrature: Filon-Lobatto with d+1 nodes for m=0, else d+2, for twice the space's harmonics; where as many points resolve the oscillation by themselves, Gauss (space/oscillating.h).
  *     Ld(q0,q1) = ext over such paths q from q0 to q1 of the quadrature of L,      p0 = -D1 Ld, p1 = D2 Ld.
- * The rows are those of step/element/action.h in another space (step/element/shaped.h). The path of a linear oscillator of frequency omega is in the space, and its action is
+ * The rows are those of step/element/action.h in another space (step/element/user_element.h). The path of a linear oscillator of frequency omega is in the space, and its action is
  * exact: so are its steps, whatever h omega is.
  * Symmetric, symplectic. As h goes to 0 with fixed omega the space is as good as polynomials of degree d+2m+2, while these are more than roundoff: order twice that; with a slow
  * coordinate, which has polynomials of degree d, 2d.
@@ -14,7 +14,7 @@
 
 #include "step/split/fastest.h"
 #include "step/split/modes.h"
-#include "step/element/shaped.h"
+#include "step/element/user_element.h"
 #include "core/memory.h"
 #include "method/one_step.h"
 #include "num/compensated.h"
@@ -24,10 +24,10 @@
 enum { DEGREE, AMPLITUDE, HARMONICS, OMEGA };
 
 static const dvi__key keys[] = {
-    {"degree", NULL, 1, DVI__OSCILLATING_DEGREE_MOST, 3, "degree of the path without its oscillation, 1 to 6; left out: 3"},
+    {"degree", NULL, 1, DVI__OSCILLATING_DEGREE_MOST, 3, "degree of the path without its oscillation, 1 to 6; default: 3"},
     {"amplitude", NULL, 0, DVI__OSCILLATING_DEGREE_MOST, DVI__LEFT_OUT,
-     "degree of the oscillation's amplitudes, 0 to degree; left out: 1"},
-    {"harmonics", NULL, 1, 2, 1, "harmonics of the oscillation, 1 or 2; the second one has constant amplitudes; left out: 1"},
+     "degree of the oscillation's amplitudes, 0 to degree; default: 1"},
+    {"harmonics", NULL, 1, 2, 1, "harmonics of the oscillation, 1 or 2; the second one has constant amplitudes; default: 1"},
     {"omega", NULL, DVI__POSITIVE, 0, 0,
      "the fast frequency; left out, or auto: that of quadratic fast potentials, else found at the first step"},
     {0},
@@ -137,18 +137,18 @@ static void explain(const dvi__stepper *self, dvi__text *text)
 
 static dvi_status duration_of(void *of, const double *x, double *duration)
 {
-  return dvi__shaped_duration(of, x, duration);
+  return dvi__user_element_duration(of, x, duration);
 }
 
 static dvi_status place(dvi__stepper *self, const dvi__state *state, double h, double part)
 {
   const dvi__one_step *one = self->own;
   (void)part;
-  dvi__shaped_place(one->of, state->t, h, state->q, state->p);
+  dvi__user_element_place(one->of, state->t, h, state->q, state->p);
   return DVI_OK;
 }
 
-DVI__STEP_KIND(shaped, place, explain, .duration = duration_of, .renewed = 1);
+DVI__STEP_KIND(user_element, place, explain, .duration = duration_of, .renewed = 1);
 
 static dvi_status prepare_to_find(dvi__stepper *self, const char *fast)
 {
@@ -163,11 +163,11 @@ static dvi_status make(dvi__stepper *self, const char *fast)
 {
   const int *value = self->settings.value;
   const double omega = self->settings.number[OMEGA];
-  dvi__shaped *shaped = NULL;
+  dvi__user_element *shaped = NULL;
   dvi__oscillating *space = dvi__oscillating_create(value[DEGREE], value[AMPLITUDE], value[HARMONICS], omega);
   if (space == NULL) return dvi__fail(DVI_NO_MEMORY, "multiscale: no memory");
   const dvi__shapes shapes = dvi__oscillating_shapes(space);
-  dvi_status status = dvi__shaped_create(self->system, &shapes, fast, value[DEGREE], self->counters, &shaped);
+  dvi_status status = dvi__user_element_create(self->system, &shapes, fast, value[DEGREE], self->counters, &shaped);
   if (status == DVI_OK) status = dvi__one_step_create(self, sizeof(multiscale), &kind, shaped, omega == 0);
   multiscale *own = self->own;
   if (own == NULL) {
@@ -216,7 +216,7 @@ static void tune(const dvi__stepper *self)
   if (own->fastest == NULL || own->omega == self->memory[FOUND]) return;
   own->omega = self->memory[FOUND];
   dvi__oscillating_tune(own->space, own->omega);
-  dvi__shaped_renew(own->one.of);
+  dvi__user_element_renew(own->one.of);
 }
 
 static dvi_status find_omega(const dvi__stepper *self, const dvi__state *state)
@@ -232,9 +232,9 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
   DVI_TRY(find_omega(self, state));
   tune(self);
   DVI_TRY(dvi__one_step_solve(self, state, h));
-  dvi__shaped_ends(one->of, one->x, one->dq, one->dp);
+  dvi__user_element_ends(one->of, one->x, one->dq, one->dp);
   DVI_TRY(dvi__one_step_move(self, state, h, one->x));
-  dvi__add_compensated_all(self->system->n, state->p, state->p_carry, one->dp);
+  dvi__add_compensated_all(self->system->n, state->p, state->p_compensation, one->dp);
   return DVI_OK;
 }
 
@@ -242,7 +242,7 @@ static void path(const dvi__stepper *self, const double *q0, double h, double ta
 {
   const dvi__one_step *one = self->own;
   tune(self);
-  dvi__shaped_path(one->of, self->memory + one->last, h, tau, q, v);
+  dvi__user_element_path(one->of, self->memory + one->last, h, tau, q, v);
   for (int i = 0; q != NULL && i < self->system->n; i++) q[i] += q0[i];
 }
 
@@ -252,7 +252,7 @@ const dvi__method dvi__multiscale = {
     .cite = "Leok2004",
     .keys = keys,
     .list = "fast",
-    .list_help = "the fast coordinates, by their numbers from 0, such as 0:2; left out: those of the fast potentials",
+    .list_help = "the fast coordinates, by their numbers from 0, such as 0:2; default: those of the fast potentials",
     .uses = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL,
     .create = create,
     .destroy = destroy,

@@ -18,7 +18,7 @@ static const char *substeps_name(int index)
 
 static const dvi__key keys[] = {
     {"substeps", substeps_name, 1, 1000000, 10,
-     "how many steps of verlet the fast motion takes in a step; or exact, for quadratic fast potentials; left out: 10"},
+     "how many steps of verlet the fast motion takes in a step; or exact, for quadratic fast potentials; default: 10"},
     {0},
 };
 
@@ -37,7 +37,7 @@ static dvi_status create(dvi__stepper *self)
   if (is_exact(self)) return dvi__oscillation_create(self, NULL, DVI__MOTION_AUTO, "substeps=k takes any");
   DVI_TRY(dvi__impulse_create(self, sizeof(dvi__impulse), 0));
   ((dvi__impulse *)self->own)->move = substeps;
-  return dvi__impulse_take_inner(self, "verlet:sweep=plain");
+  return dvi__impulse_take_inner(self, "verlet:blocking=none");
 }
 
 static void destroy(dvi__stepper *self)

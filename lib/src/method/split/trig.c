@@ -31,11 +31,11 @@ static const char *motion_name(int index)
 static const dvi__key keys[] = {
     {"filter", filter_name, 0, 0, GARCIA_ARCHILLA,
      "the filters of the slow forces: exact, deuflhard or garcia-archilla (variational); gautschi, hochbruck-lubich, "
-     "grimm-hochbruck or hairer-lubich (not symplectic); left out: garcia-archilla"},
+     "grimm-hochbruck or hairer-lubich (not symplectic); default: garcia-archilla"},
     {"motion", motion_name, 0, 0, DVI__MOTION_AUTO,
      "how the fast motion is found: by normal modes, in blocks of up to 2000 coupled coordinates, or by polynomials, for sparse "
      "springs of any "
-     "size; left out: auto"},
+     "size; default: auto"},
     {0},
 };
 

@@ -8,7 +8,7 @@
 #include "step/joint.h"
 #include "core/memory.h"
 #include "core/status.h"
-#include "system/term/half.h"
+#include "system/term/constant_components.h"
 #include "system/dynamics/one_form.h"
 
 enum { MOST = DVI__STAGES_MOST };
@@ -95,7 +95,7 @@ static dvi_status fill(dvi__darboux *d, dvi__darboux_rule rule, dvi_counters *co
   DVI_TRY(dvi__joint_check(d->system, d->m, d->m));
   d->is_x = DVI_NEW(int, d->n);
   if (d->is_x == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory");
-  DVI_TRY(dvi__form_half(d->system, d->is_x));
+  DVI_TRY(dvi__form_constant_components(d->system, d->is_x));
   DVI_TRY(fill_tableau(d, rule));
   DVI_TRY(dvi__evaluator_create(d->system, d->m, DVI__HESSIANS, counters, &d->evaluator));
   DVI_TRY(dvi__joint_create(d->system, NULL, &d->joint, &d->block));

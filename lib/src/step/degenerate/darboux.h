@@ -20,7 +20,7 @@ typedef struct dvi__darboux dvi__darboux;
 /* A: at (x0, p1). B: at (x1, p0). Trapezoidal: Lobatto IIIA for x, IIIB for p. */
 typedef enum dvi__darboux_rule { DVI__EULER_A, DVI__EULER_B, DVI__TRAPEZOIDAL_PAIR, DVI__GAUSS_STAGES } dvi__darboux_rule;
 
-/* `stages` [1,6] matters for Gauss alone. DVI_UNSUPPORTED: the one-form has not that shape (dvi__form_half). */
+/* `stages` [1,6] matters for Gauss alone. DVI_UNSUPPORTED: the one-form has not that shape (dvi__form_constant_components). */
 dvi_status dvi__darboux_create(const dvi_system *system, dvi__darboux_rule rule, int stages, dvi_counters *counters,
                                dvi__darboux **darboux);
 void dvi__darboux_destroy(dvi__darboux **darboux);

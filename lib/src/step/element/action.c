@@ -70,7 +70,7 @@ dvi_status dvi__action_create(const dvi_system *system, const dvi__action_space 
   return create(system, space, 0, counters, action);
 }
 
-dvi_status dvi__action_create_shaped(const dvi_system *system, int functions, int points, dvi_counters *counters,
+dvi_status dvi__action_create_by_user(const dvi_system *system, int functions, int points, dvi_counters *counters,
                                      dvi__action **action)
 {
   return create(system, &(dvi__action_space){.degree = functions, .nodes = points}, 1, counters, action);
@@ -122,7 +122,7 @@ void dvi__action_destroy(dvi__action **action)
                            a->Z,
                            a->sweep_shift.table};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) dvi__release(owned[i]);
-  dvi__action_clear_between(a);
+  dvi__action_clear_two_point(a);
   dvi__action_clear_energy(a);
   dvi__action_clear_charts(a);
   dvi__linear_destroy(&a->chord);

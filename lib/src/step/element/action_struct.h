@@ -103,7 +103,7 @@ void dvi__action_clear_charts(dvi__action *action);
 void dvi__action_clear_energy(dvi__action *action);
 
 /* An element whose tables shaped.c fills, at every new length: of it there are place, residual, Hessians and ends. */
-dvi_status dvi__action_create_shaped(const dvi_system *system, int functions, int points, dvi_counters *counters,
+dvi_status dvi__action_create_by_user(const dvi_system *system, int functions, int points, dvi_counters *counters,
                                      dvi__action **action);
 
 /* Row scales by the velocity Hessian in the order of vv; NULL: the constant mass. */
@@ -124,8 +124,8 @@ void dvi__action_block_column(const dvi__action *action, const dvi__block *block
 void dvi__action_weigh_hessian(const dvi__action *action, const dvi__block *block, const double *f, const double *df, double *in_q,
                                double *in_v);
 
-/* Free what dvi__action_prepare_between made. */
-void dvi__action_clear_between(const dvi__action *action);
+/* Free what dvi__action_prepare_two_point made. */
+void dvi__action_clear_two_point(const dvi__action *action);
 
 /* Fill the batches Q and V with the path's points at the nodes. */
 void dvi__action_stages(const dvi__action *action, const double *Y);

@@ -240,7 +240,7 @@ dvi_status dvi__phase_residual(dvi__phase *f, const double *x, double *R)
 /* ---- Jacobian ---- */
 
 /* slope += factor times the derivative of the field (F_p, -F_q); entry e of F_qq is qq[e * stride]. */
-static void add_slope(const dvi__field_places *at, const dvi__lagrangian_term *of, const double *qq, const double *qp,
+static void add_slope(const dvi__vector_field_places *at, const dvi__lagrangian_term *of, const double *qq, const double *qp,
                       const double *pp, int stride, double factor, double *slope)
 {
   for (int e = 0; e < dvi__pattern_entries(&of->qq); e++) slope[at->qq[e]] -= factor * qq[e * stride];

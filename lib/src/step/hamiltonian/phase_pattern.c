@@ -62,9 +62,9 @@ static void add_field(pairs *p, int n, const dvi__pattern *qq, const dvi__patter
 }
 
 static dvi_status place_field(const dvi__pattern *joint, int n, const dvi__pattern *qq, const dvi__pattern *qp,
-                              const dvi__pattern *pp, dvi__field_places *at)
+                              const dvi__pattern *pp, dvi__vector_field_places *at)
 {
-  *at = (dvi__field_places){DVI_NEW(int, dvi__pattern_entries(qq)), DVI_NEW(int, dvi__pattern_entries(qp)),
+  *at = (dvi__vector_field_places){DVI_NEW(int, dvi__pattern_entries(qq)), DVI_NEW(int, dvi__pattern_entries(qp)),
                             DVI_NEW(int, dvi__pattern_entries(qp)), DVI_NEW(int, dvi__pattern_entries(pp))};
   if (at->qq == NULL || at->qp_in_p == NULL || at->qp_in_q == NULL || at->pp == NULL) return no_memory();
   for (int j = 0; j < n; j++) {
@@ -78,7 +78,7 @@ static dvi_status place_field(const dvi__pattern *joint, int n, const dvi__patte
   return DVI_OK;
 }
 
-static void clear_field(dvi__field_places *at)
+static void clear_field(dvi__vector_field_places *at)
 {
   dvi__release(at->qq);
   dvi__release(at->qp_in_p);

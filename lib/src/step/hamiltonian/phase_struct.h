@@ -7,9 +7,9 @@
 
 /* Where a function's second derivatives go in the derivative of its field (F_p, -F_q): for each entry of F_qq, F_qp and F_pp the entry of `joint`;
  * F_qp goes to two places. */
-typedef struct dvi__field_places {
+typedef struct dvi__vector_field_places {
   int *qq, *qp_in_p, *qp_in_q, *pp;
-} dvi__field_places;
+} dvi__vector_field_places;
 
 struct dvi__phase {
   const dvi_system *system;
@@ -19,7 +19,7 @@ struct dvi__phase {
   double legendre[DVI__STAGES_MOST][DVI__STAGES_MOST + 1]; /* P_l(c_i) at [i][l] */
   /* One row and column for each component of z and each constraint; the Jacobian has a block for each entry. */
   dvi__pattern joint, pattern;
-  dvi__field_places of_H, of_phi;
+  dvi__vector_field_places of_H, of_phi;
   int *gradient; /* [entries of joint] of a constraint's row or column: the entry of its gradient; else -1 */
   /* The step. */
   double t0, h;

@@ -1,4 +1,4 @@
-/* The equations of motion on a configuration space with factors, as those of a group that acts on it: each cell is moved by its own turns. */
+/* The equations of motion on a configuration space with factors, as those of a group that acts on it: each slot is moved by its own turns. */
 #ifndef DVI_ACTION_FLOW_H
 #define DVI_ACTION_FLOW_H
 #include "num/simd/lanes.h"

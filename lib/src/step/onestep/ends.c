@@ -63,16 +63,16 @@ static double sum_of(const dvi__ends *e, double h, int i, const double *coeffici
 }
 
 /* In z: what v depends on counts by the derivatives of v(q,p). */
-dvi_status dvi__ends_gradient(dvi__ends *e, dvi__field *field, double h, double *gradient)
+dvi_status dvi__ends_gradient(dvi__ends *e, dvi__vector_field *field, double h, double *gradient)
 {
   const int n = e->n;
-  const dvi__field_point at = dvi__field_selected(field);
+  const dvi__vector_field_point at = dvi__vector_field_selected(field);
   DVI_TRY(dvi__flow_series_expand(e->series, at.t, at.q, at.v));
   DVI_TRY(dvi__flow_series_vary(e->series));
   DVI_TRY(dvi__flow_series_lagrangian(e->series, e->L, e->L_q0, e->L_v0));
   memset(e->motion, 0, (size_t)n * sizeof *e->motion);
   for (int i = 0; i < n; i++) e->motion[n + i] = sum_of(e, h, i, e->L_v0);
-  dvi__field_product(field, e->motion, gradient);
+  dvi__vector_field_product(field, e->motion, gradient);
   for (int i = 0; i < n; i++) gradient[i] += sum_of(e, h, i, e->L_q0);
   return DVI_OK;
 }

@@ -3,7 +3,7 @@
  *     h sum_{j >= 1} w_j h^j L_j  at the start,     h sum_{j >= 1} w_j (-h)^j L_j  at the end. */
 #ifndef DVI_ACTION_ENDS_H
 #define DVI_ACTION_ENDS_H
-#include "step/onestep/field.h"
+#include "step/onestep/vector_field.h"
 
 typedef struct dvi__ends dvi__ends;
 
@@ -12,6 +12,6 @@ dvi_status dvi__ends_create(const dvi_system *system, int count, const double *w
 void dvi__ends_destroy(dvi__ends **ends);
 
 /* The gradient [2n] of that in z at the point that is selected, with -h for h at the end; the factor h in front is left out. */
-dvi_status dvi__ends_gradient(dvi__ends *ends, dvi__field *field, double h, double *gradient);
+dvi_status dvi__ends_gradient(dvi__ends *ends, dvi__vector_field *field, double h, double *gradient);
 
 #endif

@@ -13,7 +13,7 @@ struct dvi__shot {
   const dvi_system *system;
   dvi__runge_kutta method;
   dvi__course course;
-  dvi__field *field;
+  dvi__vector_field *field;
   dvi__stages *coupled; /* NULL: the method is explicit */
   dvi__taylor *series;  /* NULL: it has a tableau */
   dvi__ends *ends;      /* NULL: the quadrature has values of L alone */
@@ -71,7 +71,7 @@ static int first_stage_is_node(const dvi__runge_kutta *m)
 static dvi_status fill(dvi__shot *s, const dvi_system *system, dvi_counters *counters)
 {
   DVI_TRY(allocate(s));
-  DVI_TRY(dvi__field_create(system, node_point(s, s->course.pieces) + 1, counters, &s->field));
+  DVI_TRY(dvi__vector_field_create(system, node_point(s, s->course.pieces) + 1, counters, &s->field));
   if (s->method.series > 0) DVI_TRY(dvi__taylor_create(system, s->field, s->method.series, s->course.pieces, counters, &s->series));
   if (s->course.count > 0) DVI_TRY(dvi__ends_create(system, s->course.count, s->course.weight, counters, &s->ends));
   return s->method.is_explicit ? DVI_OK : dvi__stages_create(s->field, s->n, &s->method, counters, &s->coupled);
@@ -102,12 +102,12 @@ void dvi__shot_destroy(dvi__shot **shot)
   dvi__stages_destroy(&s->coupled);
   dvi__taylor_destroy(&s->series);
   dvi__ends_destroy(&s->ends);
-  dvi__field_destroy(&s->field);
+  dvi__vector_field_destroy(&s->field);
   dvi__release(s);
   *shot = NULL;
 }
 
-dvi__field *dvi__shot_field(dvi__shot *s)
+dvi__vector_field *dvi__shot_vector_field(dvi__shot *s)
 {
   return s->field;
 }
@@ -146,7 +146,7 @@ static dvi_status place(dvi__shot *s, int point, double t, const double *moved, 
     s->point[i] = s->q0[i] + moved[i];
     s->point[s->n + i] = s->p0[i] + moved[s->n + i];
   }
-  return dvi__field_place(s->field, point, t, s->point, s->point + s->n, rate);
+  return dvi__vector_field_place(s->field, point, t, s->point, s->point + s->n, rate);
 }
 
 static dvi_status explicit_stages(dvi__shot *s, int piece, double t, double h)
@@ -238,9 +238,9 @@ dvi_status dvi__shot_duration(dvi__shot *s, double *duration)
 
 dvi_status dvi__shot_trace(dvi__shot *s)
 {
-  DVI_TRY(dvi__field_differentiate(s->field, 0, s->course.pieces * s->method.stages));
+  DVI_TRY(dvi__vector_field_differentiate(s->field, 0, s->course.pieces * s->method.stages));
   for (int m = 0; m <= s->course.pieces; m++)
-    if (stands_alone(s, m)) DVI_TRY(dvi__field_differentiate(s->field, node_point(s, m), 1));
+    if (stands_alone(s, m)) DVI_TRY(dvi__vector_field_differentiate(s->field, node_point(s, m), 1));
   for (int piece = 0; s->series != NULL && piece < s->course.pieces; piece++)
     DVI_TRY(dvi__taylor_trace(s->series, piece, length_of(s, piece)));
   return DVI_OK;
@@ -254,8 +254,8 @@ static dvi_status explicit_costates(dvi__shot *s, int piece, double h, const dou
     memset(Gamma, 0, 2 * (size_t)s->n * sizeof *Gamma);
     add(s, m->b[j], end, Gamma);
     for (int k = j + 1; k < m->stages; k++) add(s, m->a[k][j], at(s, s->kappa, k), Gamma);
-    DVI_TRY(dvi__field_select(s->field, stage_point(s, piece, j)));
-    dvi__field_pull(s->field, h, Gamma, at(s, s->kappa, j));
+    DVI_TRY(dvi__vector_field_select(s->field, stage_point(s, piece, j)));
+    dvi__vector_field_pull(s->field, h, Gamma, at(s, s->kappa, j));
   }
   return DVI_OK;
 }
@@ -268,8 +268,8 @@ static dvi_status coupled_costates(dvi__shot *s, int piece, double h, const doub
   }
   DVI_TRY(dvi__stages_solve_transposed(s->coupled, stage_point(s, piece, 0), h, s->Gamma));
   for (int j = 0; j < s->method.stages; j++) {
-    DVI_TRY(dvi__field_select(s->field, stage_point(s, piece, j)));
-    dvi__field_pull(s->field, h, at(s, s->Gamma, j), at(s, s->kappa, j));
+    DVI_TRY(dvi__vector_field_select(s->field, stage_point(s, piece, j)));
+    dvi__vector_field_pull(s->field, h, at(s, s->Gamma, j), at(s, s->kappa, j));
   }
   return DVI_OK;
 }
@@ -285,8 +285,8 @@ static dvi_status costates(dvi__shot *s, int piece, const double *end)
 static dvi_status add_lagrangian(dvi__shot *s, int m)
 {
   if (s->course.b[m] == 0) return DVI_OK;
-  DVI_TRY(dvi__field_select(s->field, node_point(s, m)));
-  dvi__field_lagrangian(s->field, s->point);
+  DVI_TRY(dvi__vector_field_select(s->field, node_point(s, m)));
+  dvi__vector_field_lagrangian(s->field, s->point);
   add(s, s->h * s->course.b[m], s->point, s->lambda);
   if (s->ends == NULL || (m > 0 && m < s->course.pieces)) return DVI_OK;
   DVI_TRY(dvi__ends_gradient(s->ends, s->field, m == 0 ? s->h : -s->h, s->point));
@@ -322,11 +322,11 @@ static dvi_status move_stages(dvi__shot *s, int piece, double h, int columns, do
 {
   const dvi__runge_kutta *m = &s->method;
   for (int j = 0; j < m->stages; j++) {
-    DVI_TRY(dvi__field_select(s->field, stage_point(s, piece, j)));
+    DVI_TRY(dvi__vector_field_select(s->field, stage_point(s, piece, j)));
     for (int i = 0; i < columns; i++) {
       memcpy(s->point, at(s, motion, i), 2 * (size_t)s->n * sizeof *s->point);
       for (int k = 0; k < j && m->is_explicit; k++) add(s, m->a[j][k], at(s, column_of(s, i), k), s->point);
-      dvi__field_push(s->field, h, s->point, at(s, column_of(s, i), j));
+      dvi__vector_field_push(s->field, h, s->point, at(s, column_of(s, i), j));
     }
   }
   return DVI_OK;

@@ -4,14 +4,14 @@
  * A piece has stages with increments W_j = h_m f(Z_j), Z_j = z_m + sum_k a_jk W_k, z_{m+1} = z_m + sum_j b_j W_j. The gradient of S + e.z_pieces is found
  * by the costates, from the end to the start and exactly:
  *     Gamma_j = b_j lambda_{m+1} + sum_k a_kj h_m f_z(Z_k)^T Gamma_k,     lambda_m = lambda_{m+1} + sum_j h_m f_z(Z_j)^T Gamma_j + h b_m L_z(z_m).
- * On phase space f_z is made of second derivatives of L alone (step/onestep/field.h), for a constant mass it is the shot in (q,v).
+ * On phase space f_z is made of second derivatives of L alone (step/onestep/vector_field.h), for a constant mass it is the shot in (q,v).
  *
  * Source: Leok and Shingel 2012, sec. 3; Hager 2000 (the costates of a Runge-Kutta method). */
 #ifndef DVI_ACTION_SHOT_H
 #define DVI_ACTION_SHOT_H
 #include <dvi/taylor.h>
 
-#include "step/onestep/field.h"
+#include "step/onestep/vector_field.h"
 #include "step/onestep/runge_kutta.h"
 
 enum { DVI__PIECES_MOST = 256 };
@@ -29,7 +29,7 @@ typedef struct dvi__shot dvi__shot;
 dvi_status dvi__shot_create(const dvi_system *system, const dvi__runge_kutta *method, const dvi__course *course,
                             dvi_counters *counters, dvi__shot **shot);
 void dvi__shot_destroy(dvi__shot **shot);
-dvi__field *dvi__shot_field(dvi__shot *shot);
+dvi__vector_field *dvi__shot_vector_field(dvi__shot *shot);
 
 /* For the next shots: from time t0 and q [n], which must stay as it is, of length h; unit [n] is the momentum by which a unit of q is moved in h. */
 void dvi__shot_aim(dvi__shot *shot, double t0, double h, const double *q, const double *unit);

@@ -93,7 +93,7 @@ static dvi_status choose_units(dvi__shot_step *s, double t0, double h, const dou
 {
   const size_t n = (size_t)s->n;
   if (!s->on_H) {
-    DVI_TRY(dvi__field_mass(dvi__shot_field(s->shot), t0, s->q0, v, s->unit));
+    DVI_TRY(dvi__vector_field_mass(dvi__shot_vector_field(s->shot), t0, s->q0, v, s->unit));
     for (size_t i = 0; i < n; i++) s->unit[i] /= fabs(h);
     return DVI_OK;
   }
@@ -144,7 +144,7 @@ dvi_status dvi__shot_step_place(dvi__shot_step *s, double t0, double h, double w
   DVI_TRY(dvi__legendre_inverse(s->evaluator, t0, q0, p0, v));
   DVI_TRY(choose_units(s, t0, whole, v));
   dvi__shot_aim(s->shot, t0, h, s->q, s->unit);
-  dvi__field_guess(dvi__shot_field(s->shot), v);
+  dvi__vector_field_guess(dvi__shot_vector_field(s->shot), v);
   for (int i = 0; i < s->n; i++) {
     x[i] = s->type == 3 ? 0 : p0[i] / s->unit[i];
     x[s->n + i] = 0;

@@ -31,7 +31,7 @@ static dvi_status allocate(dvi__stacked_shot *s)
 static dvi_status fill(dvi__stacked_shot *s, const dvi_system *system, dvi_counters *counters)
 {
   DVI_TRY(dvi__joint_check(system, 2, 2 * s->blocks));
-  DVI_TRY(dvi__field_create(system, dvi__stack_node_point(s, s->course.pieces) + 1, counters, &s->field));
+  DVI_TRY(dvi__vector_field_create(system, dvi__stack_node_point(s, s->course.pieces) + 1, counters, &s->field));
   DVI_TRY(dvi__evaluator_create(system, 1, DVI__GRADIENTS, counters, &s->evaluator));
   DVI_TRY(dvi__stacked_shot_lay_out(s, system));
   return allocate(s);
@@ -60,7 +60,7 @@ void dvi__stacked_shot_destroy(dvi__stacked_shot **step)
   if (s == NULL) return;
   for (int i = 0; owned(s, i) != NULL; i++) dvi__release(*owned(s, i));
   dvi__stacked_shot_clear_layout(s);
-  dvi__field_destroy(&s->field);
+  dvi__vector_field_destroy(&s->field);
   dvi__evaluator_destroy(&s->evaluator);
   dvi__release(s);
   *step = NULL;
@@ -137,7 +137,7 @@ static dvi_status place(dvi__stacked_shot *s, int point, double t, double *rate)
     s->point[i] += s->q0[i];
     s->point[s->n + i] += p[i];
   }
-  return dvi__field_place(s->field, point, t, s->point, s->point + s->n, rate);
+  return dvi__vector_field_place(s->field, point, t, s->point, s->point + s->n, rate);
 }
 
 static dvi_status place_stage(dvi__stacked_shot *s, int m, int j)
@@ -160,12 +160,12 @@ static dvi_status place_all(dvi__stacked_shot *s)
   if (s->known) return DVI_OK;
   for (int m = 0; m < s->course.pieces; m++)
     for (int j = 0; j < s->method.stages; j++) DVI_TRY(place_stage(s, m, j));
-  DVI_TRY(dvi__field_differentiate(s->field, 0, s->course.pieces * s->method.stages));
+  DVI_TRY(dvi__vector_field_differentiate(s->field, 0, s->course.pieces * s->method.stages));
   for (int m = 0; m <= s->course.pieces; m++) {
     if (s->course.b[m] == 0) continue;
     go_to_node(s, m);
     DVI_TRY(place(s, dvi__stack_node_point(s, m), s->t0 + s->course.c[m] * s->h, s->turned));
-    DVI_TRY(dvi__field_differentiate(s->field, dvi__stack_node_point(s, m), 1));
+    DVI_TRY(dvi__vector_field_differentiate(s->field, dvi__stack_node_point(s, m), 1));
   }
   s->known = 1;
   return DVI_OK;
@@ -181,14 +181,14 @@ static dvi_status pull(dvi__stacked_shot *s)
     for (int j = 0; j < s->method.stages; j++) {
       const double *Gamma = at(s, s->x, dvi__stack_Gamma(s, m, j));
       const int point = dvi__stack_stage_point(s, m, j);
-      DVI_TRY(dvi__field_select(s->field, point));
-      dvi__field_pull(s->field, length_of(s, m), Gamma, at(s, s->kappa, point));
+      DVI_TRY(dvi__vector_field_select(s->field, point));
+      dvi__vector_field_pull(s->field, length_of(s, m), Gamma, at(s, s->kappa, point));
     }
   memset(s->slope, 0, 2 * (size_t)n * ((size_t)s->course.pieces + 1) * sizeof *s->slope);
   for (int m = 0; m <= s->course.pieces; m++) {
     if (s->course.b[m] == 0) continue;
-    DVI_TRY(dvi__field_select(s->field, dvi__stack_node_point(s, m)));
-    dvi__field_lagrangian(s->field, s->point);
+    DVI_TRY(dvi__vector_field_select(s->field, dvi__stack_node_point(s, m)));
+    dvi__vector_field_lagrangian(s->field, s->point);
     add(s, s->h * s->course.b[m], s->point, at(s, s->slope, m));
   }
   return DVI_OK;
@@ -293,7 +293,7 @@ static void hessian(dvi__stacked_shot *s)
   memset(s->point, 0, 2 * (size_t)s->n * sizeof *s->point);
   for (int c = 0; c < 2 * s->n; c++) {
     s->point[c] = 1;
-    dvi__field_product(s->field, s->point, s->turned);
+    dvi__vector_field_product(s->field, s->point, s->turned);
     s->point[c] = 0;
     for (int e = s->joint.start[c]; e < s->joint.start[c + 1]; e++) s->H_zz[e] = s->turned[s->joint.row[e]];
   }
@@ -341,7 +341,7 @@ dvi_status dvi__stacked_shot_jacobian(void *step, const double *x, double *value
     const dvi__stack_block *block = &s->block[b];
     if (block->stuff != DVI__ONE && block->point != selected) {
       selected = block->point;
-      DVI_TRY(dvi__field_select(s->field, selected));
+      DVI_TRY(dvi__vector_field_select(s->field, selected));
       hessian(s);
     }
     at_entry += fill_block(s, block, s->where + at_entry, values);
@@ -381,9 +381,9 @@ dvi_status dvi__stacked_shot_place(dvi__stacked_shot *s, double t0, double h, do
   s->p0 = p0;
   s->known = 0;
   DVI_TRY(dvi__legendre_inverse(s->evaluator, t0, q0, p0, v));
-  DVI_TRY(dvi__field_mass(s->field, t0, q0, v, s->unit));
+  DVI_TRY(dvi__vector_field_mass(s->field, t0, q0, v, s->unit));
   for (int i = 0; i < n; i++) s->unit[i] /= fabs(whole);
-  dvi__field_guess(s->field, v);
+  dvi__vector_field_guess(s->field, v);
   memset(s->x, 0, 2 * (size_t)n * (size_t)s->blocks * sizeof *s->x);
   memcpy(start + n, p0, (size_t)n * sizeof *p0);
   DVI_TRY(sweep(s));

@@ -4,7 +4,7 @@
  * Unknowns, blocks of 2n: for each piece m the increments W_j of its stages and z_{m+1} - z_0; Gamma_j of its stages and lambda_m without -p1; at last (p1, pi0).
  *     W_j = h f(Z_j),    z_{m+1} = z_m + sum_j b_j W_j,
  *     Gamma_j = b_j lambda_{m+1} + sum_k a_kj kappa_k,    lambda_m = lambda_{m+1} + sum_k kappa_k + h b_m L_z(z_m),    kappa_k = h f_z(Z_k)^T Gamma_k,
- * and (lambda_0)_q = -p0, (lambda_0)_p = 0. In the Jacobian third derivatives of L are left out: those of f_z with the costates and of L_z nearly cancel. */
+ * and (lambda_0)_q = -p0, (lambda_0)_p = 0. In the Jacobian third derivatives of L are default: those of f_z with the costates and of L_z nearly cancel. */
 #ifndef DVI_ACTION_STACKED_SHOT_H
 #define DVI_ACTION_STACKED_SHOT_H
 #include "step/onestep/shot.h"

@@ -19,7 +19,7 @@ struct dvi__stacked_shot {
   const dvi_system *system;
   dvi__runge_kutta method;
   dvi__course course;
-  dvi__field *field;
+  dvi__vector_field *field;
   dvi__evaluator *evaluator;
   int n, blocks; /* of unknowns */
   /* The Jacobian. joint: of H's second derivatives in z; flow, transposed [entries of joint]: the entry of H_zz that f_z, f_z^T has there. */

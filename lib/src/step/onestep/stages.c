@@ -9,7 +9,7 @@
 #include "num/finite.h"
 
 struct dvi__stages {
-  dvi__field *field;
+  dvi__vector_field *field;
   const dvi__runge_kutta *method;
   int n, unknowns;
   dvi__pattern pattern; /* full */
@@ -53,7 +53,7 @@ static dvi_status residual(dvi__stages *s, const double *x, double *R)
       for (int k = 0; k < m->stages; k++) sum += m->a[j][k] * x[k * 2 * s->n + i];
       s->point[i] = s->z[i] + unit_of(s, i) * sum;
     }
-    const dvi_status status = dvi__field_place(s->field, s->first + j, s->t + m->c[j] * s->h, s->point, s->point + s->n, s->image);
+    const dvi_status status = dvi__vector_field_place(s->field, s->first + j, s->t + m->c[j] * s->h, s->point, s->point + s->n, s->image);
     if (status != DVI_OK) return dvi__fail_in(status, "stage %d", j + 1);
     for (int i = 0; i < 2 * s->n; i++) R[row + (size_t)i] = x[row + (size_t)i] - s->h / unit_of(s, i) * s->image[i];
   }
@@ -66,11 +66,11 @@ static dvi_status slopes(dvi__stages *s, double h)
   const int z = 2 * s->n;
   memset(s->point, 0, (size_t)z * sizeof *s->point);
   for (int j = 0; j < s->method->stages; j++) {
-    DVI_TRY(dvi__field_select(s->field, s->first + j));
+    DVI_TRY(dvi__vector_field_select(s->field, s->first + j));
     for (int c = 0; c < z; c++) {
       double *column = s->slope + (size_t)(j * z + c) * (size_t)z;
       s->point[c] = unit_of(s, c);
-      dvi__field_product(s->field, s->point, s->image);
+      dvi__vector_field_product(s->field, s->point, s->image);
       s->point[c] = 0;
       for (int i = 0; i < s->n; i++) {
         column[i] = h * s->image[s->n + i];
@@ -122,7 +122,7 @@ static dvi_status fill(dvi__stages *s, dvi_counters *counters)
   return dvi__linear_create(&s->pattern, DVI__LINEAR_DENSE, counters, &s->linear);
 }
 
-dvi_status dvi__stages_create(dvi__field *field, int n, const dvi__runge_kutta *method, dvi_counters *counters,
+dvi_status dvi__stages_create(dvi__vector_field *field, int n, const dvi__runge_kutta *method, dvi_counters *counters,
                               dvi__stages **stages)
 {
   *stages = NULL;
@@ -172,7 +172,7 @@ dvi_status dvi__stages_factor(dvi__stages *s, int first, double h)
 /* At the points of the last residual. */
 static dvi_status renew(dvi__stages *s)
 {
-  DVI_TRY(dvi__field_differentiate(s->field, s->first, s->method->stages));
+  DVI_TRY(dvi__vector_field_differentiate(s->field, s->first, s->method->stages));
   const dvi_status status = dvi__stages_factor(s, s->first, s->h);
   return status == DVI_SINGULAR ? dvi__fail_in(DVI_NOT_CONVERGED, "the stages' Jacobian cannot be factored") : status;
 }
@@ -206,7 +206,7 @@ dvi_status dvi__stages_solve(dvi__stages *s, int first, double t, double h, cons
   s->t = t;
   s->h = h;
   s->z = z;
-  DVI_TRY(dvi__field_place(s->field, first, t, z, z + s->n, s->image));
+  DVI_TRY(dvi__vector_field_place(s->field, first, t, z, z + s->n, s->image));
   for (int j = 0; j < s->method->stages; j++)
     for (int i = 0; i < 2 * s->n; i++) at(s, s->x, j)[i] = h / unit_of(s, i) * s->image[i];
   DVI_TRY(newton(s));

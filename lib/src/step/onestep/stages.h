@@ -1,13 +1,13 @@
 /* The stages of an implicit one-step method, which know of each other: W_j = h f(Z_j), Z_j = z + sum_k a_jk W_k, one dense system of 2 n s unknowns. */
 #ifndef DVI_ACTION_STAGES_H
 #define DVI_ACTION_STAGES_H
-#include "step/onestep/field.h"
+#include "step/onestep/vector_field.h"
 #include "step/onestep/runge_kutta.h"
 
 typedef struct dvi__stages dvi__stages;
 
 /* field and method must outlive it. */
-dvi_status dvi__stages_create(dvi__field *field, int n, const dvi__runge_kutta *method, dvi_counters *counters,
+dvi_status dvi__stages_create(dvi__vector_field *field, int n, const dvi__runge_kutta *method, dvi_counters *counters,
                               dvi__stages **stages);
 void dvi__stages_destroy(dvi__stages **stages);
 

@@ -4,12 +4,12 @@
  * and its derivative, by that of the series (step/onestep/flow_series.h). Of order `degree`. */
 #ifndef DVI_ACTION_TAYLOR_H
 #define DVI_ACTION_TAYLOR_H
-#include "step/onestep/field.h"
+#include "step/onestep/vector_field.h"
 
 typedef struct dvi__taylor dvi__taylor;
 
 /* For so many pieces of a shot; piece i goes from the field's point i to point i+1. The field must outlive it. */
-dvi_status dvi__taylor_create(const dvi_system *system, dvi__field *field, int degree, int pieces, dvi_counters *counters,
+dvi_status dvi__taylor_create(const dvi_system *system, dvi__vector_field *field, int degree, int pieces, dvi_counters *counters,
                               dvi__taylor **taylor);
 void dvi__taylor_destroy(dvi__taylor **taylor);
 

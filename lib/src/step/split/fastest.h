@@ -1,5 +1,5 @@
 /* The highest frequency of small oscillations of some coordinates about a state, the others held as they are: the largest lambda = omega^2 of K x = lambda M x,
- * K = -L_qq and M = L_vv there. What velocities couple (L_qv) is left out: it changes lambda by squares of slow rates. */
+ * K = -L_qq and M = L_vv there. What velocities couple (L_qv) is default: it changes lambda by squares of slow rates. */
 #ifndef DVI_ACTION_FASTEST_H
 #define DVI_ACTION_FASTEST_H
 #include "system/evaluate/evaluator.h"

@@ -319,7 +319,7 @@ void dvi__modes_move(dvi__modes *m, double h, const double *V_q, const dvi__phas
     force[k] = y_change;
   }
   dvi__modes_to_coordinates(m, force, m->change);
-  dvi__add_compensated_all(m->n, phase->q, phase->q_carry, m->change);
+  dvi__add_compensated_all(m->n, phase->q, phase->q_compensation, m->change);
   dvi__modes_to_forces(m, w, m->change);
-  dvi__add_compensated_all(m->n, phase->p, phase->p_carry, m->change);
+  dvi__add_compensated_all(m->n, phase->p, phase->p_compensation, m->change);
 }

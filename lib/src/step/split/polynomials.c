@@ -166,7 +166,7 @@ void dvi__polynomials_interval(const dvi__polynomials *p, double *low, double *h
 /* A mode that grows takes digits from all others: the coefficients are as large as what it grows to. */
 static const double growth_most = 9;
 
-/* Of what is left out: half a rounding. */
+/* Of what is default: half a rounding. */
 static const double tolerance = DBL_EPSILON / 2;
 
 static dvi_status choose_degree(const dvi__polynomials *p, double h, const dvi__growth *growth, int divided, int *degree)
@@ -293,8 +293,8 @@ dvi_status dvi__polynomials_move(dvi__polynomials *p, double h, const double *V_
   dvi__stripes_sum(&p->move);
   const double *const q_change = elements(p->move.d), *const v_change = q_change + p->G.room;
   for (int i = 0; i < p->n; i++) {
-    dvi__add_compensated(phase->q + i, phase->q_carry + i, q_change[i]);
-    dvi__add_compensated(phase->p + i, phase->p_carry + i, p->mass[i] * v_change[i] / h);
+    dvi__add_compensated(phase->q + i, phase->q_compensation + i, q_change[i]);
+    dvi__add_compensated(phase->p + i, phase->p_compensation + i, p->mass[i] * v_change[i] / h);
   }
   p->counters->products += 2 * p->move.degree;
   return DVI_OK;

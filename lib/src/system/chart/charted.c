@@ -24,9 +24,9 @@ static dvi_status make_system(dvi__charted *x)
 
 static dvi_status allocate(dvi__charted *x)
 {
-  const size_t group = (size_t)x->base->n * DVI__GROUP, cells = (size_t)x->base->cell_count;
-  x->chart = DVI_NEW(dvi__chart, cells);
-  x->functions = DVI_NEW(dvi__functions, DVI__GROUP * cells);
+  const size_t group = (size_t)x->base->n * DVI__GROUP, slots = (size_t)x->base->slot_count;
+  x->chart = DVI_NEW(dvi__chart, slots);
+  x->functions = DVI_NEW(dvi__functions, DVI__GROUP * slots);
   x->t = DVI_NEW(double, DVI__GROUP);
   x->y = DVI_NEW(double, group);
   x->rate = DVI_NEW(double, group);
@@ -35,11 +35,11 @@ static dvi_status allocate(dvi__charted *x)
   x->L_yy = DVI_NEW(double, (size_t)dvi__pattern_entries(&x->base->qq) * DVI__GROUP);
   x->T = DVI_NEW(double, 3 * (size_t)x->base->n);
   x->S = DVI_NEW(double, 3 * (size_t)x->base->n);
-  x->curved = DVI_NEW(double, 9 * cells);
-  x->mixed = DVI_NEW(double, 9 * cells);
+  x->curved = DVI_NEW(double, 9 * slots);
+  x->mixed = DVI_NEW(double, 9 * slots);
   if (x->chart && x->functions && x->t && x->y && x->rate && x->L_y && x->w && x->L_yy && x->T && x->S && x->curved && x->mixed)
     return DVI_OK;
-  return dvi__fail(DVI_NO_MEMORY, "charts: no memory for %zu factors", cells);
+  return dvi__fail(DVI_NO_MEMORY, "charts: no memory for %zu factors", slots);
 }
 
 static dvi_status fill(dvi__charted *x, const dvi_system *system, int reduced, dvi_counters *counters)
@@ -74,7 +74,7 @@ void dvi__charted_destroy(dvi__charted **charted)
   dvi__pattern_clear(&x->qv);
   dvi__pattern_clear(&x->vv);
   dvi__reduced_clear(&x->reduced);
-  void *const own[] = {x->functions,  x->chart,      x->cell,       x->cell_of_x,  x->t,         x->y,         x->rate,
+  void *const own[] = {x->functions,  x->chart,      x->slot,       x->slot_of_x,  x->t,         x->y,         x->rate,
                        x->L_y,        x->w,          x->L_yy,       x->T,          x->S,         x->curved,    x->mixed,
                        x->in_qq,      x->mass_in_qq, x->mass_in_qv, x->mass_in_vv, x->own_in_qq, x->own_in_qv, x->own_in_vv,
                        x->coupled_in, x->W,          x->end,        x->moment,     x->impulse,   x->turned_T,  x->turned_S,
@@ -93,41 +93,41 @@ const dvi_system *dvi__charted_system(const dvi__charted *x)
 
 void dvi__charted_centre(dvi__charted *x, const double *q)
 {
-  for (int c = 0; c < x->base->cell_count; c++) dvi__chart_centre(x->base->cells[c].kind, q + x->base->cells[c].q, &x->chart[c]);
+  for (int c = 0; c < x->base->slot_count; c++) dvi__chart_centre(x->base->slots[c].kind, q + x->base->slots[c].q, &x->chart[c]);
   x->failure = DVI_OK;
 }
 
 void dvi__charted_enter(const dvi__charted *x, const double *stored, double *local)
 {
-  for (int c = 0; c < x->base->cell_count; c++)
-    dvi__chart_enter(&x->chart[c], stored + x->base->cells[c].v, local + x->base->cells[c].x);
+  for (int c = 0; c < x->base->slot_count; c++)
+    dvi__chart_enter(&x->chart[c], stored + x->base->slots[c].v, local + x->base->slots[c].x);
 }
 
 void dvi__charted_store(const dvi__charted *x, const double *local, double *stored)
 {
-  for (int c = 0; c < x->base->cell_count; c++)
-    dvi__chart_store(&x->chart[c], local + x->base->cells[c].x, stored + x->base->cells[c].v);
+  for (int c = 0; c < x->base->slot_count; c++)
+    dvi__chart_store(&x->chart[c], local + x->base->slots[c].x, stored + x->base->slots[c].v);
 }
 
 void dvi__charted_arrive(const dvi__charted *x, const dvi__phase *local, const dvi__phase *state)
 {
-  for (int c = 0; c < x->base->cell_count; c++) {
-    const dvi__cell *at = &x->base->cells[c];
-    double *y = state->q + at->q, *y_carry = state->q_carry + at->q, *p = state->p + at->v, *p_carry = state->p_carry + at->v;
+  for (int c = 0; c < x->base->slot_count; c++) {
+    const dvi__factor_slot *at = &x->base->slots[c];
+    double *y = state->q + at->q, *y_compensation = state->q_compensation + at->q, *p = state->p + at->v, *p_compensation = state->p_compensation + at->v;
     if (dvi__turns(at)) {
-      dvi__chart_carry(&x->chart[c], local->q + at->x, x->impulse + 3 * c, y, y_carry, p, p_carry);
+      dvi__chart_transport(&x->chart[c], local->q + at->x, x->impulse + 3 * c, y, y_compensation, p, p_compensation);
     } else {
-      dvi__chart_move(&x->chart[c], local->q + at->x, y, y_carry);
+      dvi__chart_move(&x->chart[c], local->q + at->x, y, y_compensation);
       *p = local->p[at->x];
-      *p_carry = local->p_carry[at->x];
+      *p_compensation = local->p_compensation[at->x];
     }
   }
 }
 
 void dvi__charted_point(const dvi__charted *x, const double *xi, const double *rate, double *q, double *v)
 {
-  for (int c = 0; c < x->base->cell_count; c++) {
-    const dvi__cell *at = &x->base->cells[c];
+  for (int c = 0; c < x->base->slot_count; c++) {
+    const dvi__factor_slot *at = &x->base->slots[c];
     if (q != NULL) dvi__chart_place(&x->chart[c], xi + at->x, q + at->q);
     if (v == NULL) continue;
     dvi__functions functions;
@@ -138,7 +138,7 @@ void dvi__charted_point(const dvi__charted *x, const double *xi, const double *r
 
 void dvi__charted_inverse(const dvi__charted *x, const double *q, double *xi)
 {
-  for (int c = 0; c < x->base->cell_count; c++) dvi__chart_inverse(&x->chart[c], q + x->base->cells[c].q, xi + x->base->cells[c].x);
+  for (int c = 0; c < x->base->slot_count; c++) dvi__chart_inverse(&x->chart[c], q + x->base->slots[c].q, xi + x->base->slots[c].x);
 }
 
 dvi_status dvi__charted_too_large(double turned)
@@ -149,10 +149,10 @@ dvi_status dvi__charted_too_large(double turned)
 
 dvi_status dvi__charted_check(const dvi__charted *x, const double *xi)
 {
-  for (int c = 0; c < x->base->cell_count; c++) {
-    const dvi__cell *cell = &x->base->cells[c];
-    const double angle = dvi__chart_angle(cell->kind, xi + cell->x);
-    if (!(angle < dvi__chart_bound(cell->kind))) return dvi__charted_too_large(angle);
+  for (int c = 0; c < x->base->slot_count; c++) {
+    const dvi__factor_slot *slot = &x->base->slots[c];
+    const double angle = dvi__chart_angle(slot->kind, xi + slot->x);
+    if (!(angle < dvi__chart_bound(slot->kind))) return dvi__charted_too_large(angle);
   }
   return DVI_OK;
 }

@@ -20,7 +20,7 @@ static const double none[DVI__CHART_POINT] = {0};
 /* One body at one point of a batch. */
 typedef struct spinning {
   const dvi__chart *chart;
-  const dvi__cell *cell, *line; /* line NULL: there is none */
+  const dvi__factor_slot *slot, *line; /* line NULL: there is none */
   dvi__functions functions;
   double xi[3], rate[3], Omega[3], spin[3]; /* spin = J Omega */
   double w[DVI__CHART_POINT];               /* x' m rho^T */
@@ -34,10 +34,10 @@ static void times(const double *A, const double *x, double *Ax)
 static dvi_status find_spin(dvi__charted *x, const dvi__body *body, int count, int k, const double *xi, const double *rate,
                             spinning *m)
 {
-  const dvi__cell *cells = x->base->cells;
-  *m = (spinning){.chart = &x->chart[body->cell], .cell = &cells[body->cell], .line = body->line >= 0 ? &cells[body->line] : NULL};
-  dvi__charted_gather(m->cell, count, k, xi, m->xi);
-  dvi__charted_gather(m->cell, count, k, rate, m->rate);
+  const dvi__factor_slot *slots = x->base->slots;
+  *m = (spinning){.chart = &x->chart[body->slot], .slot = &slots[body->slot], .line = body->line >= 0 ? &slots[body->line] : NULL};
+  dvi__charted_gather(m->slot, count, k, xi, m->xi);
+  dvi__charted_gather(m->slot, count, k, rate, m->rate);
   const double angle = dvi__chart_angle(DVI__ROTATION, m->xi);
   if (!(angle < dvi__chart_bound(DVI__ROTATION))) return dvi__charted_too_large(angle);
   dvi__chart_functions(DVI__ROTATION, m->xi, &m->functions);
@@ -97,8 +97,8 @@ static void add_shift(const dvi__body *body, const spinning *m, size_t count, si
   dvi__chart_gradient(m->chart, &m->functions, m->xi, m->rate, none, m->w, in_xi, in_rate);
   dvi__chart_point(m->chart, &m->functions, m->xi, m->rate, y, v);
   shifted(body, v, shift);
-  add_vector(m->cell->x, in_xi, count, k, L_xi);
-  add_vector(m->cell->x, in_rate, count, k, L_rate);
+  add_vector(m->slot->x, in_xi, count, k, L_xi);
+  add_vector(m->slot->x, in_rate, count, k, L_rate);
   add_vector(m->line->x, shift, count, k, L_rate);
 }
 
@@ -119,8 +119,8 @@ int dvi__reduced_gradient(int count, const double *t, const double *xi, const do
       status = find_spin(x, &x->reduced.bodies[b], count, (int)k, xi, rate, &m);
       if (status != DVI_OK) break;
       dvi__chart_turning_gradient(&m.functions, m.xi, m.rate, m.spin, in_xi, in_rate);
-      add_vector(m.cell->x, in_xi, points, k, L_xi);
-      add_vector(m.cell->x, in_rate, points, k, L_rate);
+      add_vector(m.slot->x, in_xi, points, k, L_xi);
+      add_vector(m.slot->x, in_rate, points, k, L_rate);
       if (m.line != NULL) add_shift(&x->reduced.bodies[b], &m, points, k, L_xi, L_rate);
     }
   return dvi__charted_verdict(x, status);
@@ -157,12 +157,12 @@ static void add_spin(dvi__charted *x, const dvi__body *body, const spinning *m, 
   velocity_matrix(m, A);
   dvi_so3_velocity_derivative(m->xi, m->rate, D);
   dvi__chart_turning_curvature(&m->functions, m->xi, m->rate, m->spin, in_qq, in_qv);
-  dvi__charted_add_own_blocks(x, body->cell, in_qq, in_qv, count, k, L_qq, L_qv);
+  dvi__charted_add_own_blocks(x, body->slot, in_qq, in_qv, count, k, L_qq, L_qv);
   sandwich(D, body->inertia, D, in_qq);
   sandwich(D, body->inertia, A, in_qv);
-  dvi__charted_add_own_blocks(x, body->cell, in_qq, in_qv, count, k, L_qq, L_qv);
+  dvi__charted_add_own_blocks(x, body->slot, in_qq, in_qv, count, k, L_qq, L_qv);
   sandwich(A, body->inertia, A, product);
-  dvi__charted_add_block(&x->own_in_vv[body->cell], 3, 3, product, count, k, L_vv);
+  dvi__charted_add_block(&x->own_in_vv[body->slot], 3, 3, product, count, k, L_vv);
 }
 
 /* Of x'.R' m rho, the same. */
@@ -171,7 +171,7 @@ static void add_shift_blocks(dvi__charted *x, const dvi__body *body, const dvi__
 {
   double in_qq[9], in_qv[9], T[27], S[27];
   dvi__chart_curvature(m->chart, &m->functions, m->xi, m->rate, none, m->w, in_qq, in_qv);
-  dvi__charted_add_own_blocks(x, body->cell, in_qq, in_qv, count, k, L_qq, L_qv);
+  dvi__charted_add_own_blocks(x, body->slot, in_qq, in_qv, count, k, L_qq, L_qv);
   dvi__chart_tangents(m->chart, &m->functions, m->xi, m->rate, T, S);
   for (int i = 0; i < 3; i++) {
     double by_xi[3] = {0}, by_rate[3] = {0}; /* of R'_i m rho, row i */
@@ -223,17 +223,17 @@ int dvi__reduced_hessian(int count, const double *t, const double *xi, const dou
 
 dvi_status dvi__reduced_place(dvi__charted *x)
 {
-  x->own_in_vv = DVI_NEW(dvi__place, x->base->cell_count);
+  x->own_in_vv = DVI_NEW(dvi__place, x->base->slot_count);
   x->coupled_in = DVI_NEW(dvi__coupling, x->reduced.count);
   if (x->own_in_vv == NULL || x->coupled_in == NULL) return dvi__fail(DVI_NO_MEMORY, "charts: no memory for bodies");
-  for (int c = 0; c < x->base->cell_count; c++) x->own_in_vv[c] = dvi__charted_place(x, &x->vv, c, c);
+  for (int c = 0; c < x->base->slot_count; c++) x->own_in_vv[c] = dvi__charted_place(x, &x->vv, c, c);
   for (int b = 0; b < x->reduced.count; b++) {
     const dvi__body *body = &x->reduced.bodies[b];
     for (int i = 0; i < 3 && body->line >= 0; i++) {
-      x->coupled_in[b].qq[i] = dvi__charted_place(x, &x->qq, body->cell, body->line + i);
-      x->coupled_in[b].qv[i] = dvi__charted_place(x, &x->qv, body->cell, body->line + i);
-      x->coupled_in[b].vv[i] = dvi__charted_place(x, &x->vv, body->cell, body->line + i);
-      x->coupled_in[b].vv_back[i] = dvi__charted_place(x, &x->vv, body->line + i, body->cell);
+      x->coupled_in[b].qq[i] = dvi__charted_place(x, &x->qq, body->slot, body->line + i);
+      x->coupled_in[b].qv[i] = dvi__charted_place(x, &x->qv, body->slot, body->line + i);
+      x->coupled_in[b].vv[i] = dvi__charted_place(x, &x->vv, body->slot, body->line + i);
+      x->coupled_in[b].vv_back[i] = dvi__charted_place(x, &x->vv, body->line + i, body->slot);
     }
   }
   return DVI_OK;
@@ -252,20 +252,20 @@ void dvi__reduced_impulse(const dvi__charted *x, const dvi__body *body, const do
   double moment[3];
   memset(impulse, 0, 3 * sizeof *impulse);
   if (body->line < 0) return;
-  const int line = x->base->cells[body->line].x;
+  const int line = x->base->slots[body->line].x;
   dvi__cross(p0 + line, x->end + line, moment);
-  turn_back(x->chart[body->cell].y0, moment, impulse);
+  turn_back(x->chart[body->slot].y0, moment, impulse);
 }
 
 void dvi__reduced_derive(const dvi__charted *x, const dvi__body *body, const dvi__coupling *at, const double *p0, double *C_q1)
 {
-  const dvi__cell *cell = &x->base->cells[body->cell];
+  const dvi__factor_slot *slot = &x->base->slots[body->slot];
   for (int i = 0; i < 3 && body->line >= 0; i++) {
     double e[3] = {0}, moment[3], turned[3], column[3];
     e[i] = -1;
-    dvi__cross(e, p0 + x->base->cells[body->line].x, moment);
-    turn_back(x->chart[body->cell].y0, moment, turned);
-    dvi__chart_momentum(&x->chart[body->cell], x->end + cell->x, turned, column);
+    dvi__cross(e, p0 + x->base->slots[body->line].x, moment);
+    turn_back(x->chart[body->slot].y0, moment, turned);
+    dvi__chart_momentum(&x->chart[body->slot], x->end + slot->x, turned, column);
     dvi__charted_add_block(&at->qq[i], 3, 1, column, 1, 0, C_q1);
   }
 }

@@ -23,43 +23,43 @@ struct dvi__charted {
   dvi_system *system;
   dvi__evaluator *evaluator; /* of base */
   dvi_counters *counters;
-  dvi__chart *chart;     /* [cells] */
-  int *cell, *cell_of_x; /* [nq], [nx] that a stored coordinate, and a chart's, belongs to */
+  dvi__chart *chart;     /* [slots] */
+  int *slot, *slot_of_x; /* [nq], [nx] that a stored coordinate, and a chart's, belongs to */
   dvi_status failure;    /* of the last evaluation, and why */
   char sentence[DVI__SENTENCE_SIZE];
-  dvi__functions *functions;                                /* [cells*GROUP] of the charts, at the points of a group */
+  dvi__functions *functions;                                /* [slots*GROUP] of the charts, at the points of a group */
   double *t, *y, *rate, *L_y, *w;                           /* a group: [GROUP], [nq*GROUP]; w = M y' */
   double *L_yy;                                             /* [entries*GROUP] */
   double *T, *S;                                            /* [nq*3], of one point */
-  double *curved, *mixed;                                   /* [cells*9], of one point */
+  double *curved, *mixed;                                   /* [slots*9], of one point */
   dvi__pattern qq, qv, vv;                                  /* of the new system */
   dvi__place *in_qq, *mass_in_qq, *mass_in_qv, *mass_in_vv; /* of every entry of the stored coordinates' matrices */
-  dvi__place *own_in_qq, *own_in_qv;                        /* [cells] of their diagonal blocks; of lines these may be missing */
+  dvi__place *own_in_qq, *own_in_qv;                        /* [slots] of their diagonal blocks; of lines these may be missing */
   /* Without potentials, and left as it is by the group: what its Lagrangian is made of (charted_reduced.c); bodies NULL: it is not. */
   dvi__reduced reduced;
-  dvi__place *own_in_vv;     /* [cells] */
+  dvi__place *own_in_vv;     /* [slots] */
   dvi__coupling *coupled_in; /* [bodies] */
-  /* Paths from the centre (dvi__charted_centring): not 0 for those; N [cells*3*capacity], at node j of a batch [(3 c + a)*capacity + j]. */
+  /* Paths from the centre (dvi__charted_centring): not 0 for those; N [slots*3*capacity], at node j of a batch [(3 c + a)*capacity + j]. */
   int from_centre, capacity;
-  double *W, *end, *moment;    /* W [cells*9], xi1 [nx] */
-  double *impulse;             /* [cells*3] mu1 - mu0 of the last path, of a rotation in the centre's frame */
+  double *W, *end, *moment;    /* W [slots*9], xi1 [nx] */
+  double *impulse;             /* [slots*3] mu1 - mu0 of the last path, of a rotation in the centre's frame */
   double *turned_T, *turned_S; /* [nq*3] y x and y' x, times W, of one point */
   double *C_q1, *C_qq, *C_qv;  /* [entries], [entries*capacity] */
 };
 
 /* Rotations and directions turn, and have moments. */
-static inline int dvi__turns(const dvi__cell *cell)
+static inline int dvi__turns(const dvi__factor_slot *slot)
 {
-  return cell->kind == DVI__ROTATION || cell->kind == DVI__SPHERE;
+  return slot->kind == DVI__ROTATION || slot->kind == DVI__SPHERE;
 }
 
-/* Of cell c at point k of a group. */
+/* Of slot c at point k of a group. */
 static inline dvi__functions *dvi__charted_functions(const dvi__charted *x, int c, int k)
 {
   return &x->functions[(size_t)c * DVI__GROUP + (size_t)k];
 }
 
-/* Where the block of two cells begins in a pattern of the new system. */
+/* Where the block of two slots begins in a pattern of the new system. */
 dvi__place dvi__charted_place(const dvi__charted *charted, const dvi__pattern *pattern, int row_cell, int column_cell);
 
 /* values += the matrix [rows*columns] in its block, for point k of `count`. */
@@ -97,15 +97,15 @@ int dvi__charted_verdict(dvi__charted *charted, dvi_status status);
 /* A coordinate that is beyond its chart by this angle. */
 dvi_status dvi__charted_too_large(double turned);
 
-/* xi or rate of point k of a batch of `count`, for a cell. */
-void dvi__charted_gather(const dvi__cell *cell, int count, int k, const double *batch, double *one);
+/* xi or rate of point k of a batch of `count`, for a slot. */
+void dvi__charted_gather(const dvi__factor_slot *slot, int count, int k, const double *batch, double *one);
 
 /* y, rate, L_y = -V_y and w of the group that begins at point `first` of a batch. */
 dvi_status dvi__charted_forces(dvi__charted *charted, int count, int first, int group, const double *t, const double *xi,
                                const double *rate);
 
-/* A cell's numbers of two of these arrays at point k of a group. */
-void dvi__charted_pair(const dvi__cell *cell, int group, int k, const double *first, const double *second, double *a, double *b);
+/* A slot's numbers of two of these arrays at point k of a group. */
+void dvi__charted_pair(const dvi__factor_slot *slot, int group, int k, const double *first, const double *second, double *a, double *b);
 
 /* N at the nodes of a group whose forces are known. */
 void dvi__charted_find_moments(dvi__charted *charted, int first, int group);
@@ -117,7 +117,7 @@ void dvi__charted_add_mass_product(const dvi__charted *charted, const dvi__place
 void dvi__charted_add_potentials(const dvi__charted *charted, int group, int in_group, const double *left, size_t count, size_t k,
                                  double *L_qq);
 
-/* The diagonal blocks of cell c. */
+/* The diagonal blocks of slot c. */
 void dvi__charted_add_own_blocks(const dvi__charted *charted, int c, const double *in_qq, const double *in_qv, size_t count,
                                  size_t k, double *qq, double *qv);
 

@@ -8,7 +8,7 @@
 
 /* A rotation, with the place x of its body if that moves with it. */
 typedef struct dvi__body {
-  int cell, line;              /* of the rotation, and of x_1; line -1: there is none */
+  int slot, line;              /* of the rotation, and of x_1; line -1: there is none */
   double inertia[9], shift[3]; /* J and m rho */
 } dvi__body;
 

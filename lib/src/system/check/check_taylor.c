@@ -311,7 +311,7 @@ dvi_status dvi__check_taylor(const dvi_system *system, dvi__scratch *scratch, do
   const curve first = curve_in(n, drawn);
   subject s = {.scratch = scratch, .n = n, .own = curve_in(n, drawn + numbers), .moved = curve_in(n, drawn + 2 * numbers)};
   dvi_status status = DVI_OK;
-  draw(n, t0, q0, system->cells == NULL ? v0 : q0, &first); /* the velocities of factors are fewer numbers */
+  draw(n, t0, q0, system->slots == NULL ? v0 : q0, &first); /* the velocities of factors are fewer numbers */
   if (system->lagrangian != NULL && dvi__general_has_taylor(system->lagrangian)) {
     s.lagrangian = system->lagrangian;
     (void)snprintf(s.owner, sizeof s.owner, "%s", s.lagrangian->name);

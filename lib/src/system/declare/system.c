@@ -274,7 +274,7 @@ void dvi_system_destroy(dvi_system **system)
   dvi__pattern_clear(&s->qq);
   dvi__pattern_clear(&s->qv);
   dvi__pattern_clear(&s->vv);
-  dvi__release(s->cells);
+  dvi__release(s->slots);
   dvi__release(s->mass_diagonal);
   dvi__release(s->mass_values);
   dvi__release(s->potentials);

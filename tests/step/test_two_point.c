@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "step/element/between.h"
+#include "step/element/two_point.h"
 #include "support/suite.h"
 #include "support/systems/systems.h"
 
@@ -46,7 +46,7 @@ static void make_element(int index, element *e)
   *e = (element){.system = system_of(index / SPACES), .s = space->degree};
   ck_assert_int_eq(dvi__action_create(e->system, space, NULL, &e->action), DVI_OK);
   ck_assert_int_eq(dvi__action_prepare_jacobian(e->action), DVI_OK);
-  ck_assert_int_eq(dvi__action_prepare_between(e->action), DVI_OK);
+  ck_assert_int_eq(dvi__action_prepare_two_point(e->action), DVI_OK);
   for (int i = 0; i < SITES; i++) {
     e->X[i] = generic_q[i];
     e->X[SITES + i] = generic_q[i] + h * generic_v[i];
@@ -63,7 +63,7 @@ static void free_element(element *e)
 static void place(element *e)
 {
   dvi__action_place(e->action, t0, h, e->X, e->rest);
-  dvi__action_between(e->action, e->X + SITES, e->X + 2 * SITES, e->Y);
+  dvi__action_two_point(e->action, e->X + SITES, e->X + 2 * SITES, e->Y);
 }
 
 static double value(element *e)
@@ -77,7 +77,7 @@ static double value(element *e)
 static void gradient(element *e, double *G)
 {
   place(e);
-  ck_assert_int_eq(dvi__action_between_gradient(e->action, e->Y, G, G + SITES, G + 2 * SITES), DVI_OK);
+  ck_assert_int_eq(dvi__action_two_point_gradient(e->action, e->Y, G, G + SITES, G + 2 * SITES), DVI_OK);
 }
 
 static const double moved[3] = {0.01, 0.02, 0.03}, share[3] = {1.5, -0.6, 0.1};
@@ -133,7 +133,7 @@ START_TEST(the_hessian_is_that_of_the_action)
   make_element(_i, &e);
   const int size = e.s + 1;
   place(&e);
-  ck_assert_int_eq(dvi__action_between_hessian(e.action, e.Y, values), DVI_OK);
+  ck_assert_int_eq(dvi__action_two_point_hessian(e.action, e.Y, values), DVI_OK);
   for (int y = 0; y < SITES * size; y++) {
     const double at = e.X[y];
     double plus[COUNT_MOST], minus[COUNT_MOST], column[COUNT_MOST] = {0};
@@ -159,7 +159,7 @@ START_TEST(the_hessian_is_that_of_the_action)
 }
 END_TEST
 
-SUITE(between)
+SUITE(two_point)
 {
   tcase_add_loop_test(tests, the_path_leads_from_one_end_to_the_other, 0, 2 * SPACES);
   tcase_add_loop_test(tests, the_gradient_is_that_of_the_action, 0, 2 * SPACES);

@@ -1,4 +1,4 @@
-#include "system/term/half.h"
+#include "system/term/constant_components.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -130,7 +130,7 @@ static dvi_status decide(probe *p, int *is_x)
   return refuse(p, constant, is_x);
 }
 
-dvi_status dvi__form_half(const dvi_system *system, int *is_x)
+dvi_status dvi__form_constant_components(const dvi_system *system, int *is_x)
 {
   const size_t n = (size_t)system->n;
   probe p = {.system = system,

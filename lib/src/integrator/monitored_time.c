@@ -1,5 +1,5 @@
 /* Steps in a fictitious time: how they are made, started and ended. */
-#include "integrator/pace.h"
+#include "integrator/monitored_time.h"
 
 #include <dvi/quadrature.h>
 #include <math.h>
@@ -13,7 +13,7 @@
 
 /* ---- create, destroy ---- */
 
-static dvi_status fill(dvi__pace *p, const dvi_system *system, const dvi_monitor *monitor, dvi_counters *counters)
+static dvi_status fill(dvi__monitored_time *p, const dvi_system *system, const dvi_monitor *monitor, dvi_counters *counters)
 {
   p->given = *monitor;
   p->energy = (double)NAN;
@@ -28,25 +28,25 @@ static dvi_status fill(dvi__pace *p, const dvi_system *system, const dvi_monitor
   const dvi__monitor *made = p->transformed != NULL ? dvi__transformed_monitor(p->transformed) : p->monitor;
   (void)snprintf(p->name, sizeof p->name, "%s", dvi__monitor_name(made));
   p->given.function.name = p->name;
-  return dvi_quadrature(DVI_GAUSS, DVI__PACE_POINTS, p->node, p->weight);
+  return dvi_quadrature(DVI_GAUSS, DVI__MONITORED_POINTS, p->node, p->weight);
 }
 
-dvi_status dvi__pace_create(const dvi_system *system, const dvi_monitor *monitor, dvi_pacing pacing, dvi_counters *counters,
-                            dvi__pace **pace)
+dvi_status dvi__monitored_time_create(const dvi_system *system, const dvi_monitor *monitor, dvi_pacing pacing, dvi_counters *counters,
+                            dvi__monitored_time **monitored)
 {
-  *pace = NULL;
-  dvi__pace *p = DVI_NEW(dvi__pace, 1);
+  *monitored = NULL;
+  dvi__monitored_time *p = DVI_NEW(dvi__monitored_time, 1);
   if (p == NULL) return dvi__fail(DVI_NO_MEMORY, "monitor: no memory");
   p->pacing = pacing;
   const dvi_status status = fill(p, system, monitor, counters);
-  if (status != DVI_OK) dvi__pace_destroy(&p);
-  *pace = p;
+  if (status != DVI_OK) dvi__monitored_time_destroy(&p);
+  *monitored = p;
   return status;
 }
 
-void dvi__pace_destroy(dvi__pace **pace)
+void dvi__monitored_time_destroy(dvi__monitored_time **monitored)
 {
-  dvi__pace *p = *pace;
+  dvi__monitored_time *p = *monitored;
   if (p == NULL) return;
   dvi__transformed_destroy(&p->transformed);
   dvi__monitor_destroy(&p->monitor);
@@ -54,59 +54,59 @@ void dvi__pace_destroy(dvi__pace **pace)
   dvi__release(p->v);
   dvi__release(p->g_q);
   dvi__release(p);
-  *pace = NULL;
+  *monitored = NULL;
 }
 
-const dvi_system *dvi__pace_system(const dvi__pace *pace, const dvi_system *system)
+const dvi_system *dvi__monitored_time_system(const dvi__monitored_time *monitored, const dvi_system *system)
 {
-  return pace != NULL && pace->transformed != NULL ? dvi__transformed_system(pace->transformed) : system;
+  return monitored != NULL && monitored->transformed != NULL ? dvi__transformed_system(monitored->transformed) : system;
 }
 
-static dvi__monitor *monitor_of(const dvi__pace *pace)
+static dvi__monitor *monitor_of(const dvi__monitored_time *monitored)
 {
-  return pace->transformed != NULL ? dvi__transformed_monitor(pace->transformed) : pace->monitor;
+  return monitored->transformed != NULL ? dvi__transformed_monitor(monitored->transformed) : monitored->monitor;
 }
 
-dvi_status dvi__pace_monitor(dvi__pace *pace, const double *q, double *g)
+dvi_status dvi__monitored_time_monitor(dvi__monitored_time *monitored, const double *q, double *g)
 {
-  return dvi__monitor_value(monitor_of(pace), 1, q, g);
+  return dvi__monitor_value(monitor_of(monitored), 1, q, g);
 }
 
-dvi_status dvi__pace_slope(dvi__pace *pace, const double *q, double *g_q)
+dvi_status dvi__monitored_time_slope(dvi__monitored_time *monitored, const double *q, double *g_q)
 {
-  return dvi__monitor_gradient(monitor_of(pace), 1, q, g_q);
+  return dvi__monitor_gradient(monitor_of(monitored), 1, q, g_q);
 }
 
 const char *dvi_integrator_monitor(const dvi_integrator *integrator)
 {
-  return integrator != NULL && integrator->pace != NULL ? integrator->pace->name : NULL;
+  return integrator != NULL && integrator->monitored != NULL ? integrator->monitored->name : NULL;
 }
 
-void dvi__pace_explain(const dvi__pace *pace, dvi__text *text)
+void dvi__monitored_time_explain(const dvi__monitored_time *monitored, dvi__text *text)
 {
-  if (pace->pacing == DVI_TIME_TRANSFORM)
+  if (monitored->pacing == DVI_TIME_TRANSFORM)
     dvi__text_add(text, "time: transformed, dt/dtau = g(q), %s; steps are steps of tau, of a general Lagrangian with mass M/g\n",
-                  pace->name);
+                  monitored->name);
   else
-    dvi__text_add(text, "time: steps follow %s by reversible control; symmetric, not symplectic\n", pace->name);
+    dvi__text_add(text, "time: steps follow %s by reversible control; symmetric, not symplectic\n", monitored->name);
 }
 
 /* ---- start ---- */
 
-void dvi__pace_set_energy(dvi__pace *pace, double energy)
+void dvi__monitored_time_set_energy(dvi__monitored_time *monitored, double energy)
 {
-  pace->energy = energy;
-  pace->expanded = 0;
-  if (pace->transformed != NULL)
-    dvi__transformed_set_energy(pace->transformed, energy);
+  monitored->energy = energy;
+  monitored->expanded = 0;
+  if (monitored->transformed != NULL)
+    dvi__transformed_set_energy(monitored->transformed, energy);
   else
-    dvi__monitor_set_energy(pace->monitor, energy);
+    dvi__monitor_set_energy(monitored->monitor, energy);
 }
 
 /* L_v.v - L, or H at the start's momenta. */
 static dvi_status energy_at(dvi_integrator *I, double t, const double *q, const double *v, const double *momenta, double *energy)
 {
-  double L, *p = I->pace->g_q;
+  double L, *p = I->monitored->g_q;
   if (I->system->dynamics->by_momentum) return dvi__lagrangian_value(I->evaluator, 1, &t, q, momenta, energy);
   DVI_TRY(dvi__lagrangian_value(I->evaluator, 1, &t, q, v, &L));
   DVI_TRY(dvi__lagrangian_gradient(I->evaluator, 1, &t, q, v, NULL, p));
@@ -115,20 +115,20 @@ static dvi_status energy_at(dvi_integrator *I, double t, const double *q, const 
   return DVI_OK;
 }
 
-dvi_status dvi__pace_start(dvi_integrator *I, double t, const double *q, const double *v, const double *p, double *w,
+dvi_status dvi__monitored_time_start(dvi_integrator *I, double t, const double *q, const double *v, const double *p, double *w,
                            double *density)
 {
-  dvi__pace *pace = I->pace;
-  const double before = pace->energy;
+  dvi__monitored_time *monitored = I->monitored;
+  const double before = monitored->energy;
   double g = 1, energy = before;
-  if (!pace->holds) DVI_TRY(energy_at(I, t, q, v, p, &energy));
-  dvi__pace_set_energy(pace, energy);
-  const dvi_status status = dvi__pace_monitor(pace, q, &g);
+  if (!monitored->holds) DVI_TRY(energy_at(I, t, q, v, p, &energy));
+  dvi__monitored_time_set_energy(monitored, energy);
+  const dvi_status status = dvi__monitored_time_monitor(monitored, q, &g);
   if (status != DVI_OK) {
-    dvi__pace_set_energy(pace, before);
+    dvi__monitored_time_set_energy(monitored, before);
     return status;
   }
-  for (int i = 0; i < I->system->n; i++) w[i] = pace->pacing == DVI_TIME_TRANSFORM ? g * v[i] : v[i];
+  for (int i = 0; i < I->system->n; i++) w[i] = monitored->pacing == DVI_TIME_TRANSFORM ? g * v[i] : v[i];
   *density = 1 / g;
   return DVI_OK;
 }
@@ -140,7 +140,7 @@ enum { MOST_TRIES = 60 };
 /* The time past the end, in the direction of the run. */
 static double past(const dvi_integrator *I, double h, double t_end)
 {
-  const double later = (I->now.t - t_end) - I->now.t_carry;
+  const double later = (I->now.t - t_end) - I->now.t_compensation;
   return h > 0 ? later : -later;
 }
 
@@ -148,8 +148,8 @@ static double past(const dvi_integrator *I, double h, double t_end)
 static dvi_status arrive(dvi_integrator *I, double t_end)
 {
   I->now.t = t_end;
-  I->now.t_carry = 0;
-  I->last_h = (t_end - I->last.t) + I->last.t_carry;
+  I->now.t_compensation = 0;
+  I->last_h = (t_end - I->last.t) + I->last.t_compensation;
   return DVI_OK;
 }
 
@@ -188,11 +188,11 @@ static dvi_status step_to_end(dvi_integrator *I, double h, double over, double l
 static dvi_status retry(dvi_integrator *I, double h, double t_end, double tolerance, dvi_status failure)
 {
   double g;
-  if (failure < 0 || dvi__pace_monitor(I->pace, I->now.q, &g) != DVI_OK || past(I, h, t_end) + 2 * fabs(h) * g < 0) return failure;
+  if (failure < 0 || dvi__monitored_time_monitor(I->monitored, I->now.q, &g) != DVI_OK || past(I, h, t_end) + 2 * fabs(h) * g < 0) return failure;
   return step_to_end(I, h, (double)NAN, 0.0625 * tolerance / g, t_end, tolerance);
 }
 
-dvi_status dvi__pace_step(dvi_integrator *I, double h, double t_end, double tolerance)
+dvi_status dvi__monitored_time_step(dvi_integrator *I, double h, double t_end, double tolerance)
 {
   const dvi_status status = dvi_integrator_step(I, h);
   if (status != DVI_OK) return retry(I, h, t_end, tolerance, status);

@@ -17,34 +17,34 @@ INLINE void NAME(kick_by)(double factor, const NAME(vector) * force, NAME(vector
 
 /* Numbers that the loop gets to soon. A loop over nine streams of memory outruns the hardware's own look-ahead, which stops at the end of each page;
  * nothing is read here, so the end of the arrays does not matter. */
-INLINE void NAME(fetch)(const dvi__leap *l, size_t i)
+INLINE void NAME(fetch)(const dvi__moser_veselov *l, size_t i)
 {
-  const double *const read[] = {l->force, l->from.p, l->from.p_carry, l->from.q, l->from.q_carry};
-  const double *const written[] = {l->to.p, l->to.p_carry, l->to.q, l->to.q_carry};
+  const double *const read[] = {l->force, l->from.p, l->from.p_compensation, l->from.q, l->from.q_compensation};
+  const double *const written[] = {l->to.p, l->to.p_compensation, l->to.q, l->to.q_compensation};
   for (int k = 0; k < 5; k++) __builtin_prefetch((const void *)((uintptr_t)(read[k] + i) + FETCH_AHEAD), 0);
   for (int k = 0; k < 4; k++) __builtin_prefetch((const void *)((uintptr_t)(written[k] + i) + FETCH_AHEAD), 1);
 }
 
-INLINE size_t NAME(leap)(const dvi__leap *whole, size_t i, const int kicks, const dvi__division by)
+INLINE size_t NAME(leap)(const dvi__moser_veselov *whole, size_t i, const int kicks, const dvi__division by)
 {
-  const dvi__leap l = *whole; /* for the compiler cannot know that no store changes it */
+  const dvi__moser_veselov l = *whole; /* for the compiler cannot know that no store changes it */
   for (; i + WIDTH <= l.count; i += WIDTH) {
-    NAME(vector) force, p, p_carry, q, q_carry, v;
+    NAME(vector) force, p, p_compensation, q, q_compensation, v;
     if (l.far) NAME(fetch)(&l, i);
     NAME(load)(l.force + i, &force);
     NAME(load)(l.from.p + i, &p);
-    NAME(load)(l.from.p_carry + i, &p_carry);
-    for (int k = 0; k < kicks; k++) NAME(kick_by)(l.kick[k], &force, &p, &p_carry);
+    NAME(load)(l.from.p_compensation + i, &p_compensation);
+    for (int k = 0; k < kicks; k++) NAME(kick_by)(l.kick[k], &force, &p, &p_compensation);
     NAME(store)(l.to.p + i, &p, WIDTH);
-    NAME(store)(l.to.p_carry + i, &p_carry, WIDTH);
+    NAME(store)(l.to.p_compensation + i, &p_compensation, WIDTH);
     if (by == DVI__BY_ARRAY) NAME(load)(l.mass + i, &v);
     v = by == DVI__BY_ARRAY ? p / v : by == DVI__BY_SCALAR ? p / l.scalar : p * l.scalar;
     v *= l.drift;
     NAME(load)(l.from.q + i, &q);
-    NAME(load)(l.from.q_carry + i, &q_carry);
-    NAME(add)(&q, &q_carry, &v);
+    NAME(load)(l.from.q_compensation + i, &q_compensation);
+    NAME(add)(&q, &q_compensation, &v);
     NAME(store)(l.to.q + i, &q, WIDTH);
-    NAME(store)(l.to.q_carry + i, &q_carry, WIDTH);
+    NAME(store)(l.to.q_compensation + i, &q_compensation, WIDTH);
   }
   return i;
 }

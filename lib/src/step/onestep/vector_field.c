@@ -1,4 +1,4 @@
-#include "step/onestep/field.h"
+#include "step/onestep/vector_field.h"
 
 #include <math.h>
 #include <string.h>
@@ -6,7 +6,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 
-struct dvi__field {
+struct dvi__vector_field {
   const dvi_system *system;
   dvi__evaluator *evaluator;
   int n, points, at, is_H; /* is_H: the system declares a Hamiltonian, whose derivatives stand in the place of L's */
@@ -16,13 +16,13 @@ struct dvi__field {
   dvi__linear *linear;           /* the factor of L_vv at the selected point; NULL: the mass is constant, or there is H */
 };
 
-static double **owned(dvi__field *f, int i)
+static double **owned(dvi__vector_field *f, int i)
 {
   double **const all[] = {&f->t, &f->q, &f->v, &f->p, &f->H_q, &f->L_qq, &f->L_qv, &f->L_vv, &f->velocity, &f->w, &f->motion};
   return i < (int)(sizeof all / sizeof *all) ? all[i] : NULL;
 }
 
-static dvi_status allocate(dvi__field *f)
+static dvi_status allocate(dvi__vector_field *f)
 {
   const dvi_system *s = f->system;
   const size_t n = (size_t)f->n, m = (size_t)f->points, qq = (size_t)dvi__pattern_entries(&s->qq),
@@ -35,7 +35,7 @@ static dvi_status allocate(dvi__field *f)
   return DVI_OK;
 }
 
-static dvi_status fill(dvi__field *f, dvi_counters *counters)
+static dvi_status fill(dvi__vector_field *f, dvi_counters *counters)
 {
   DVI_TRY(dvi__evaluator_create(f->system, 1, DVI__HESSIANS, counters, &f->evaluator));
   DVI_TRY(allocate(f));
@@ -43,24 +43,24 @@ static dvi_status fill(dvi__field *f, dvi_counters *counters)
                                                    : DVI_OK;
 }
 
-dvi_status dvi__field_create(const dvi_system *system, int points, dvi_counters *counters, dvi__field **field)
+dvi_status dvi__vector_field_create(const dvi_system *system, int points, dvi_counters *counters, dvi__vector_field **field)
 {
   *field = NULL;
-  dvi__field *f = DVI_NEW(dvi__field, 1);
+  dvi__vector_field *f = DVI_NEW(dvi__vector_field, 1);
   if (f == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory");
   f->system = system;
   f->n = system->n;
   f->points = points;
   f->is_H = (system->terms & DVI__HAMILTONIAN) != 0;
   const dvi_status status = fill(f, counters);
-  if (status != DVI_OK) dvi__field_destroy(&f);
+  if (status != DVI_OK) dvi__vector_field_destroy(&f);
   *field = f;
   return status;
 }
 
-void dvi__field_destroy(dvi__field **field)
+void dvi__vector_field_destroy(dvi__vector_field **field)
 {
-  dvi__field *f = *field;
+  dvi__vector_field *f = *field;
   if (f == NULL) return;
   for (int i = 0; owned(f, i) != NULL; i++) dvi__release(*owned(f, i));
   dvi__linear_destroy(&f->linear);
@@ -69,7 +69,7 @@ void dvi__field_destroy(dvi__field **field)
   *field = NULL;
 }
 
-void dvi__field_guess(dvi__field *f, const double *v)
+void dvi__vector_field_guess(dvi__vector_field *f, const double *v)
 {
   memcpy(f->velocity, v, (size_t)f->n * sizeof *v);
 }
@@ -77,14 +77,14 @@ void dvi__field_guess(dvi__field *f, const double *v)
 /* ---- points ---- */
 
 /* The velocity, and p'. */
-static dvi_status motion_at(dvi__field *f, double t, const double *q, const double *p, double *pdot)
+static dvi_status motion_at(dvi__vector_field *f, double t, const double *q, const double *p, double *pdot)
 {
   if (f->is_H) return dvi__state_rates(f->evaluator, t, q, p, f->velocity, pdot, NULL);
   DVI_TRY(dvi__legendre_inverse(f->evaluator, t, q, p, f->velocity));
   return dvi__lagrangian_gradient(f->evaluator, 1, &t, q, f->velocity, pdot, NULL);
 }
 
-dvi_status dvi__field_place(dvi__field *f, int k, double t, const double *q, const double *p, double *rate)
+dvi_status dvi__vector_field_place(dvi__vector_field *f, int k, double t, const double *q, const double *p, double *rate)
 {
   const size_t n = (size_t)f->n, at = (size_t)k * n, bytes = n * sizeof *q;
   DVI_TRY(motion_at(f, t, q, p, rate + n));
@@ -103,7 +103,7 @@ static size_t first_of(const dvi__pattern *pattern, int k)
   return (size_t)dvi__pattern_entries(pattern) * (size_t)k;
 }
 
-dvi_status dvi__field_differentiate(dvi__field *f, int first, int count)
+dvi_status dvi__vector_field_differentiate(dvi__vector_field *f, int first, int count)
 {
   const dvi_system *s = f->system;
   for (int k = first; k < first + count; k++) {
@@ -115,7 +115,7 @@ dvi_status dvi__field_differentiate(dvi__field *f, int first, int count)
   return DVI_OK;
 }
 
-dvi_status dvi__field_select(dvi__field *f, int k)
+dvi_status dvi__vector_field_select(dvi__vector_field *f, int k)
 {
   f->at = k;
   return f->linear != NULL ? dvi__linear_factor(f->linear, f->L_vv + first_of(&f->system->vv, k)) : DVI_OK;
@@ -131,7 +131,7 @@ static void add_times(const dvi__pattern *of, const double *values, int transpos
     }
 }
 
-static void product_of_H(const dvi__field *f, const double *motion, double *product)
+static void product_of_H(const dvi__vector_field *f, const double *motion, double *product)
 {
   const dvi_system *s = f->system;
   const int n = f->n;
@@ -143,7 +143,7 @@ static void product_of_H(const dvi__field *f, const double *motion, double *prod
   add_times(&s->vv, f->L_vv + first_of(&s->vv, f->at), 0, 1, motion + n, product + n);
 }
 
-void dvi__field_product(dvi__field *f, const double *motion, double *product)
+void dvi__vector_field_product(dvi__vector_field *f, const double *motion, double *product)
 {
   const dvi_system *s = f->system;
   const int n = f->n;
@@ -166,19 +166,19 @@ void dvi__field_product(dvi__field *f, const double *motion, double *product)
 }
 
 /* L = p.H_p - H. */
-void dvi__field_lagrangian(dvi__field *f, double *gradient)
+void dvi__vector_field_lagrangian(dvi__vector_field *f, double *gradient)
 {
   const size_t n = (size_t)f->n, at = (size_t)f->at * n;
   memset(f->motion, 0, n * sizeof(double));
   memcpy(f->motion + n, f->p + at, n * sizeof(double));
-  dvi__field_product(f, f->motion, gradient);
+  dvi__vector_field_product(f, f->motion, gradient);
   for (size_t i = 0; i < n; i++) gradient[i] -= f->H_q[at + i];
 }
 
-void dvi__field_push(dvi__field *f, double h, const double *motion, double *image)
+void dvi__vector_field_push(dvi__vector_field *f, double h, const double *motion, double *image)
 {
   const int n = f->n;
-  dvi__field_product(f, motion, f->motion);
+  dvi__vector_field_product(f, motion, f->motion);
   for (int i = 0; i < n; i++) {
     image[i] = h * f->motion[n + i];
     image[n + i] = -h * f->motion[i];
@@ -186,31 +186,31 @@ void dvi__field_push(dvi__field *f, double h, const double *motion, double *imag
 }
 
 /* f_z^T (a,b) = H_zz (-b,a). */
-void dvi__field_pull(dvi__field *f, double h, const double *costate, double *image)
+void dvi__vector_field_pull(dvi__vector_field *f, double h, const double *costate, double *image)
 {
   const int n = f->n;
   for (int i = 0; i < n; i++) {
     f->motion[i] = -h * costate[n + i];
     f->motion[n + i] = h * costate[i];
   }
-  dvi__field_product(f, f->motion, image);
+  dvi__vector_field_product(f, f->motion, image);
 }
 
 /* ---- velocities ---- */
 
-dvi__field_point dvi__field_point_at(const dvi__field *f, int k)
+dvi__vector_field_point dvi__vector_field_point_at(const dvi__vector_field *f, int k)
 {
   const size_t at = (size_t)k * (size_t)f->n;
-  return (dvi__field_point){f->t[k], f->q + at, f->v + at};
+  return (dvi__vector_field_point){f->t[k], f->q + at, f->v + at};
 }
 
-dvi__field_point dvi__field_selected(const dvi__field *f)
+dvi__vector_field_point dvi__vector_field_selected(const dvi__vector_field *f)
 {
-  return dvi__field_point_at(f, f->at);
+  return dvi__vector_field_point_at(f, f->at);
 }
 
 /* For a constant mass L_v is linear, and nothing is lost to p. */
-dvi_status dvi__field_impulse(dvi__field *f, int k, double t, const double *q, const double *dv, double *dp)
+dvi_status dvi__vector_field_impulse(dvi__vector_field *f, int k, double t, const double *q, const double *dv, double *dp)
 {
   const size_t n = (size_t)f->n, at = (size_t)k * n;
   if (f->linear == NULL) return dvi__lagrangian_gradient(f->evaluator, 1, &t, q, dv, NULL, dp);
@@ -220,17 +220,17 @@ dvi_status dvi__field_impulse(dvi__field *f, int k, double t, const double *q, c
   return DVI_OK;
 }
 
-static const double *constant_mass(const dvi__field *f)
+static const double *constant_mass(const dvi__vector_field *f)
 {
   return f->system->mass_diagonal != NULL ? f->system->mass_diagonal : f->system->mass_values;
 }
 
-static const double *mass_of(const dvi__field *f, int k)
+static const double *mass_of(const dvi__vector_field *f, int k)
 {
   return f->linear != NULL ? f->L_vv + first_of(&f->system->vv, k) : constant_mass(f);
 }
 
-void dvi__field_lift(dvi__field *f, int k, const double *motion, double *dp)
+void dvi__vector_field_lift(dvi__vector_field *f, int k, const double *motion, double *dp)
 {
   const dvi_system *s = f->system;
   memset(dp, 0, (size_t)f->n * sizeof *dp);
@@ -238,7 +238,7 @@ void dvi__field_lift(dvi__field *f, int k, const double *motion, double *dp)
   add_times(&s->vv, mass_of(f, k), 0, 1, motion + f->n, dp);
 }
 
-void dvi__field_lower(dvi__field *f, int k, const double *covector, double *image)
+void dvi__vector_field_lower(dvi__vector_field *f, int k, const double *covector, double *image)
 {
   const dvi_system *s = f->system;
   memset(image, 0, 2 * (size_t)f->n * sizeof *image);
@@ -248,14 +248,14 @@ void dvi__field_lower(dvi__field *f, int k, const double *covector, double *imag
 
 /* ---- sizes ---- */
 
-static dvi_status mass_at(dvi__field *f, double t, const double *q, const double *v, const double **values)
+static dvi_status mass_at(dvi__vector_field *f, double t, const double *q, const double *v, const double **values)
 {
   if (f->linear != NULL) return dvi__velocity_hessian(f->evaluator, t, q, v, values);
   *values = constant_mass(f);
   return DVI_OK;
 }
 
-dvi_status dvi__field_mass(dvi__field *f, double t, const double *q, const double *v, double *size)
+dvi_status dvi__vector_field_mass(dvi__vector_field *f, double t, const double *q, const double *v, double *size)
 {
   const dvi__pattern *vv = &f->system->vv;
   const double *values;

@@ -1,4 +1,4 @@
-#include "space/given.h"
+#include "space/user_basis.h"
 
 #include <math.h>
 #include <string.h>
@@ -6,7 +6,7 @@
 #include "core/hash.h"
 #include "core/memory.h"
 #include "core/status.h"
-#include "space/given_struct.h"
+#include "space/user_basis_struct.h"
 #include "space/legendre.h"
 
 static const long double least_part = 1e-8L;
@@ -21,7 +21,7 @@ static double *cut(double **left, size_t count)
   return array;
 }
 
-static void lay_out(dvi__given_tables *t, size_t points, size_t count, double **left)
+static void lay_out(dvi__user_basis_tables *t, size_t points, size_t count, double **left)
 {
   t->node = cut(left, points);
   t->weight = cut(left, points);
@@ -33,7 +33,7 @@ static void lay_out(dvi__given_tables *t, size_t points, size_t count, double **
   t->lean = cut(left, count);
 }
 
-static int allocate(dvi__given *g)
+static int allocate(dvi__user_basis *g)
 {
   const size_t points = (size_t)g->points, count = (size_t)g->count, functions = (size_t)g->shapes->functions;
   double *left = g->numbers = DVI_NEW(double, 2 * (2 * points * (1 + count) + 4 * count) + 2 * points + 2 * functions);
@@ -57,36 +57,36 @@ static int allocate(dvi__given *g)
 }
 
 /* Without a length of its own a space is the same at every one. */
-static double length(const dvi__given *g, double h)
+static double length(const dvi__user_basis *g, double h)
 {
   return g->shapes->h != 0 ? h : 1;
 }
 
-static dvi_status make(dvi__given *g, dvi_rule rule)
+static dvi_status make(dvi__user_basis *g, dvi_rule rule)
 {
   if (!allocate(g)) return dvi__fail(DVI_NO_MEMORY, "shapes %s: no memory", g->shapes->name);
   if (g->shapes->point == NULL) DVI_TRY(dvi_quadrature(rule, g->points, g->node, g->weight));
-  DVI_TRY(dvi__given_prepare(g, g->shapes->h));
-  DVI_TRY(dvi__given_check(g));
+  DVI_TRY(dvi__user_basis_prepare(g, g->shapes->h));
+  DVI_TRY(dvi__user_basis_check(g));
   g->order = g->now.order;
-  g->symmetric = dvi__given_mirrors(g);
+  g->symmetric = dvi__user_basis_mirrors(g);
   return DVI_OK;
 }
 
-dvi_status dvi__given_create(const dvi_shapes *shapes, int degree, dvi_rule rule, int nodes, dvi__given **given)
+dvi_status dvi__user_basis_create(const dvi_shapes *shapes, int degree, dvi_rule rule, int nodes, dvi__user_basis **given)
 {
-  dvi__given *g = *given = DVI_NEW(dvi__given, 1);
+  dvi__user_basis *g = *given = DVI_NEW(dvi__user_basis, 1);
   if (g == NULL) return dvi__fail(DVI_NO_MEMORY, "shapes %s: no memory", shapes->name);
   g->shapes = shapes;
   g->degree = degree;
   g->count = degree + shapes->functions;
   g->points = shapes->point != NULL ? shapes->points : nodes;
   const dvi_status status = make(g, rule);
-  if (status != DVI_OK) dvi__given_destroy(given);
+  if (status != DVI_OK) dvi__user_basis_destroy(given);
   return status;
 }
 
-void dvi__given_destroy(dvi__given **given)
+void dvi__user_basis_destroy(dvi__user_basis **given)
 {
   if (*given == NULL) return;
   dvi__release((*given)->numbers);
@@ -97,7 +97,7 @@ void dvi__given_destroy(dvi__given **given)
 
 /* ---- the functions ---- */
 
-static dvi_status check_answer(const dvi__given *g, const char *callback, double h, int answer)
+static dvi_status check_answer(const dvi__user_basis *g, const char *callback, double h, int answer)
 {
   if (answer == 0) return DVI_OK;
   return dvi__fail(answer > 0 ? DVI_CALLBACK_RETRY : DVI_CALLBACK_FAILED, "shapes %s: %s returned %d for a step of h = %.3g",
@@ -105,12 +105,12 @@ static dvi_status check_answer(const dvi__given *g, const char *callback, double
 }
 
 /* A number that a callback leaves out is NaN. */
-static void forget(const dvi__given *g)
+static void forget(const dvi__user_basis *g)
 {
   for (int i = 0; i < g->shapes->functions; i++) g->f[i] = g->df[i] = (double)NAN;
 }
 
-static dvi_status take(const dvi__given *g, const char *callback, double h, double tau)
+static dvi_status take(const dvi__user_basis *g, const char *callback, double h, double tau)
 {
   for (int i = 0; i < g->shapes->functions; i++) {
     if (!isfinite(g->f[i]) || !isfinite(g->df[i]))
@@ -123,7 +123,7 @@ static dvi_status take(const dvi__given *g, const char *callback, double h, doub
 }
 
 /* tau, and the integrals of Legendre's polynomials from 0 on. */
-static void polynomials(const dvi__given *g, double tau)
+static void polynomials(const dvi__user_basis *g, double tau)
 {
   long double P[DVI_SHAPES_MOST + 2], difference[DVI_SHAPES_MOST + 2];
   dvi__legendre(g->degree, 1 - (long double)tau, P, difference);
@@ -135,7 +135,7 @@ static void polynomials(const dvi__given *g, double tau)
   }
 }
 
-dvi_status dvi__given_evaluate(const dvi__given *g, double h, double tau)
+dvi_status dvi__user_basis_evaluate(const dvi__user_basis *g, double h, double tau)
 {
   polynomials(g, tau);
   forget(g);
@@ -145,7 +145,7 @@ dvi_status dvi__given_evaluate(const dvi__given *g, double h, double tau)
 
 /* ---- at the points ---- */
 
-static dvi_status ask_point(const dvi__given *g, double h, int j, double *node, double *weight)
+static dvi_status ask_point(const dvi__user_basis *g, double h, int j, double *node, double *weight)
 {
   *node = *weight = (double)NAN;
   forget(g);
@@ -160,13 +160,13 @@ static dvi_status ask_point(const dvi__given *g, double h, int j, double *node, 
   return take(g, "point", h, *node);
 }
 
-static dvi_status ask_points(const dvi__given *g, double h, const dvi__given_tables *t)
+static dvi_status ask_points(const dvi__user_basis *g, double h, const dvi__user_basis_tables *t)
 {
   double sum = 0;
   for (int j = 0; j < g->points; j++) {
     t->node[j] = g->node[j];
     t->weight[j] = g->weight[j];
-    DVI_TRY(g->shapes->point != NULL ? ask_point(g, h, j, &t->node[j], &t->weight[j]) : dvi__given_evaluate(g, h, t->node[j]));
+    DVI_TRY(g->shapes->point != NULL ? ask_point(g, h, j, &t->node[j], &t->weight[j]) : dvi__user_basis_evaluate(g, h, t->node[j]));
     sum += t->weight[j];
     for (int k = 0; k < g->count; k++) {
       g->value[k * g->points + j] = g->at_value[k] - t->start[k];
@@ -178,7 +178,7 @@ static dvi_status ask_points(const dvi__given *g, double h, const dvi__given_tab
                    g->shapes->name, sum, h);
 }
 
-static void add(double number, dvi__given_fingerprint *to)
+static void add(double number, dvi__user_basis_fingerprint *to)
 {
   const double part = dvi__weight(to->count++) * number;
   to->sum += part;
@@ -186,9 +186,9 @@ static void add(double number, dvi__given_fingerprint *to)
 }
 
 /* Of the user's numbers as they are: an orthonormal basis would amplify what other machines round otherwise. */
-static void fingerprint(const dvi__given *g, dvi__given_tables *t)
+static void fingerprint(const dvi__user_basis *g, dvi__user_basis_tables *t)
 {
-  t->fingerprint = (dvi__given_fingerprint){0};
+  t->fingerprint = (dvi__user_basis_fingerprint){0};
   for (int j = 0; j < g->points; j++) {
     add(t->node[j], &t->fingerprint);
     add(t->weight[j], &t->fingerprint);
@@ -201,15 +201,15 @@ static void fingerprint(const dvi__given *g, dvi__given_tables *t)
 
 /* ---- an orthonormal basis ---- */
 
-static long double inner(const dvi__given *g, const dvi__given_tables *t, int k, int l)
+static long double inner(const dvi__user_basis *g, const dvi__user_basis_tables *t, int k, int l)
 {
   const long double *a = g->slope + k * g->points, *b = g->slope + l * g->points;
   long double sum = 0;
-  for (int j = 0; j < g->points; j++) sum += dvi__given_measure(g, t, j, l) * a[j] * b[j];
+  for (int j = 0; j < g->points; j++) sum += dvi__user_basis_measure(g, t, j, l) * a[j] * b[j];
   return sum;
 }
 
-static void multiply(const dvi__given *g, const dvi__given_tables *t, int k, long double factor)
+static void multiply(const dvi__user_basis *g, const dvi__user_basis_tables *t, int k, long double factor)
 {
   for (int j = k * g->points; j < (k + 1) * g->points; j++) {
     g->value[j] *= factor;
@@ -218,7 +218,7 @@ static void multiply(const dvi__given *g, const dvi__given_tables *t, int k, lon
   for (int i = 0; i <= k; i++) t->matrix[k * g->count + i] *= factor;
 }
 
-static void subtract(const dvi__given *g, const dvi__given_tables *t, int k, long double factor, int l)
+static void subtract(const dvi__user_basis *g, const dvi__user_basis_tables *t, int k, long double factor, int l)
 {
   for (int j = 0; j < g->points; j++) {
     g->value[k * g->points + j] -= factor * g->value[l * g->points + j];
@@ -228,7 +228,7 @@ static void subtract(const dvi__given *g, const dvi__given_tables *t, int k, lon
 }
 
 /* Gram and Schmidt's, in the derivatives, each function three times. The first, tau, stays as it is: the weights sum to 1. */
-static void orthogonalize(const dvi__given *g, const dvi__given_tables *t)
+static void orthogonalize(const dvi__user_basis *g, const dvi__user_basis_tables *t)
 {
   memset(t->matrix, 0, (size_t)g->count * (size_t)g->count * sizeof *t->matrix);
   for (int k = 0; k < g->count; k++) {
@@ -242,20 +242,20 @@ static void orthogonalize(const dvi__given *g, const dvi__given_tables *t)
 }
 
 /* The derivatives at the points, which are final. */
-static void write_slopes(const dvi__given *g, const dvi__given_tables *t)
+static void write_slopes(const dvi__user_basis *g, const dvi__user_basis_tables *t)
 {
   for (int k = 0; k < g->count; k++) {
     long double lean = 0;
     for (int j = 0; j < g->points; j++) {
       t->dpsi[j * g->count + k] = (double)g->slope[k * g->points + j];
-      lean += dvi__given_measure(g, t, j, k) * g->slope[k * g->points + j] * (long double)t->node[j];
+      lean += dvi__user_basis_measure(g, t, j, k) * g->slope[k * g->points + j] * (long double)t->node[j];
     }
     t->lean[k] = (double)lean;
   }
 }
 
 /* The quadrature's order, as far as the polynomials ask for it. */
-static int order_of(const dvi__given *g, const dvi__given_tables *t)
+static int order_of(const dvi__user_basis *g, const dvi__user_basis_tables *t)
 {
   for (int power = 0; power < 2 * g->degree; power++) {
     double sum = 0;
@@ -266,7 +266,7 @@ static int order_of(const dvi__given *g, const dvi__given_tables *t)
 }
 
 /* psi_k(1), from the e_k(1) in at_value. */
-static long double end_of(const dvi__given *g, const dvi__given_tables *t, int k)
+static long double end_of(const dvi__user_basis *g, const dvi__user_basis_tables *t, int k)
 {
   long double sum = 0;
   for (int i = 0; i <= k; i++) sum += t->matrix[k * g->count + i] * (g->at_value[i] - t->start[i]);
@@ -274,7 +274,7 @@ static long double end_of(const dvi__given *g, const dvi__given_tables *t, int k
 }
 
 /* sum_j b_j psi_k psi_l' */
-static long double mixed(const dvi__given *g, const dvi__given_tables *t, int k, int l)
+static long double mixed(const dvi__user_basis *g, const dvi__user_basis_tables *t, int k, int l)
 {
   long double sum = 0;
   for (int j = 0; j < g->points; j++) sum += (long double)t->weight[j] * g->value[k * g->points + j] * g->slope[l * g->points + j];
@@ -284,7 +284,7 @@ static long double mixed(const dvi__given *g, const dvi__given_tables *t, int k,
 /* A stationary path of polynomials must stay one, or there is no order: sum_j b_j (psi_k f)' = psi_k(1) f(1) for f of degree less than d and every function. The
  * integrals of derivatives are 0 already. What the quadrature errs by in the others is taken from the values, as a polynomial of degree d: it is as small as that
  * error, 0 where functions are integrated exactly. psi_m meets psi_{m-1}' and psi_{m+1}' alone, so that one is taken after the other. */
-static void match(const dvi__given *g, const dvi__given_tables *t, int k)
+static void match(const dvi__user_basis *g, const dvi__user_basis_tables *t, int k)
 {
   for (int m = 0; m < g->degree && 2 * m < t->order; m++) {
     const long double part = m == 0 ? end_of(g, t, k) : mixed(g, t, k, m - 1) / mixed(g, t, m, m - 1);
@@ -293,7 +293,7 @@ static void match(const dvi__given *g, const dvi__given_tables *t, int k)
   }
 }
 
-static void write_values(const dvi__given *g, const dvi__given_tables *t)
+static void write_values(const dvi__user_basis *g, const dvi__user_basis_tables *t)
 {
   for (int k = 0; k < g->count; k++) {
     if (k >= g->degree && t->matrix[k * g->count + k] != 0) match(g, t, k);
@@ -302,9 +302,9 @@ static void write_values(const dvi__given *g, const dvi__given_tables *t)
 }
 
 /* psi_k and psi_k' [count] at tau; dpsi may be NULL. */
-static dvi_status evaluate_basis(const dvi__given *g, const dvi__given_tables *t, double tau, double *psi, double *dpsi)
+static dvi_status evaluate_basis(const dvi__user_basis *g, const dvi__user_basis_tables *t, double tau, double *psi, double *dpsi)
 {
-  DVI_TRY(dvi__given_evaluate(g, t->h, tau));
+  DVI_TRY(dvi__user_basis_evaluate(g, t->h, tau));
   for (int k = 0; k < g->count; k++) {
     const long double *row = t->matrix + k * g->count;
     long double value = 0, slope = 0;
@@ -318,28 +318,28 @@ static dvi_status evaluate_basis(const dvi__given *g, const dvi__given_tables *t
   return DVI_OK;
 }
 
-dvi_status dvi__given_fill(const dvi__given *g, double h, dvi__given_tables *t)
+dvi_status dvi__user_basis_fill(const dvi__user_basis *g, double h, dvi__user_basis_tables *t)
 {
   t->h = length(g, h);
-  DVI_TRY(dvi__given_evaluate(g, t->h, 0));
+  DVI_TRY(dvi__user_basis_evaluate(g, t->h, 0));
   memcpy(t->start, g->at_value, (size_t)g->count * sizeof *t->start);
   DVI_TRY(ask_points(g, t->h, t));
   fingerprint(g, t);
   t->order = order_of(g, t);
   orthogonalize(g, t);
   write_slopes(g, t);
-  DVI_TRY(dvi__given_evaluate(g, t->h, 1));
+  DVI_TRY(dvi__user_basis_evaluate(g, t->h, 1));
   for (int k = g->degree; k < g->count; k++) add((double)(g->at_value[k] - t->start[k]), &t->fingerprint);
   write_values(g, t);
   DVI_TRY(evaluate_basis(g, t, 0, t->end, t->slopes[0]));
   return evaluate_basis(g, t, 1, t->end, t->slopes[1]);
 }
 
-dvi_status dvi__given_prepare(dvi__given *g, double h)
+dvi_status dvi__user_basis_prepare(dvi__user_basis *g, double h)
 {
   if (g->now.h == length(g, h)) return DVI_OK;
-  DVI_TRY(dvi__given_fill(g, h, &g->spare));
-  const dvi__given_tables before = g->now;
+  DVI_TRY(dvi__user_basis_fill(g, h, &g->spare));
+  const dvi__user_basis_tables before = g->now;
   g->now = g->spare;
   g->spare = before;
   return DVI_OK;
@@ -350,13 +350,13 @@ dvi_status dvi__given_prepare(dvi__given *g, double h)
 /* The method has prepared this length, when a failure could be told; a callback that has changed its mind shall not pass. */
 static void set(void *of, double h)
 {
-  dvi__given *g = of;
-  g->broken = dvi__given_prepare(g, h) != DVI_OK;
+  dvi__user_basis *g = of;
+  g->broken = dvi__user_basis_prepare(g, h) != DVI_OK;
 }
 
 static void point(const void *of, int j, double *tau, double *weight, double *psi, double *dpsi)
 {
-  const dvi__given *g = of;
+  const dvi__user_basis *g = of;
   *tau = g->now.node[j];
   *weight = g->broken ? (double)NAN : g->now.weight[j];
   memcpy(psi, g->now.psi + j * g->count, (size_t)g->count * sizeof *psi);
@@ -366,7 +366,7 @@ static void point(const void *of, int j, double *tau, double *weight, double *ps
 /* Ends of a step are rounded: tau may be beyond them by that. NaN: a callback failed there. */
 static void path(const void *of, double tau, double *psi, double *dpsi)
 {
-  const dvi__given *g = of;
+  const dvi__user_basis *g = of;
   if (!g->broken && evaluate_basis(g, &g->now, fmin(1, fmax(0, tau)), psi, dpsi) == DVI_OK) return;
   for (int k = 0; k < g->count; k++) {
     psi[k] = (double)NAN;
@@ -376,7 +376,7 @@ static void path(const void *of, double tau, double *psi, double *dpsi)
 
 static int present(const void *of, int k)
 {
-  const dvi__given *g = of;
+  const dvi__user_basis *g = of;
   return g->now.matrix[k * g->count + k] != 0;
 }
 
@@ -390,12 +390,12 @@ static double dot(int count, const double *a, const double *b)
 /* Beyond its end a path is known by its velocities alone: they go on as they went from one end to the other. */
 static void next(const void *of, const double *last, double *Y)
 {
-  const dvi__given *g = of;
+  const dvi__user_basis *g = of;
   const double first = dot(g->count, g->now.slopes[0], last), end = dot(g->count, g->now.slopes[1], last);
   for (int k = 0; k < g->count; k++) Y[k] = (k == 0 ? end : 0) + g->now.lean[k] * (end - first);
 }
 
-dvi__shapes dvi__given_shapes(dvi__given *given)
+dvi__shapes dvi__user_basis_shapes(dvi__user_basis *given)
 {
   return (dvi__shapes){.functions = given->count,
                        .points = given->points,
@@ -407,17 +407,17 @@ dvi__shapes dvi__given_shapes(dvi__given *given)
                        .next = next};
 }
 
-int dvi__given_symmetric(const dvi__given *given)
+int dvi__user_basis_symmetric(const dvi__user_basis *given)
 {
   return given->symmetric;
 }
 
-int dvi__given_quadrature_order(const dvi__given *given)
+int dvi__user_basis_quadrature_order(const dvi__user_basis *given)
 {
   return given->order;
 }
 
-dvi__given_fingerprint dvi__given_fingerprint_of(const dvi__given *given)
+dvi__user_basis_fingerprint dvi__user_basis_fingerprint_of(const dvi__user_basis *given)
 {
   return given->now.fingerprint;
 }

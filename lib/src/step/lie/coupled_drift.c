@@ -6,9 +6,9 @@
  * branch (Kantorovich's theorem; Deuflhard 2004, sec. 2.1). Where it ends corrections shrink by one half only. Their length is that of T0 xi with the weights
  * sum_j |M_ij|: at least the kinetic energy's, and a length where that is not, for the mass may be indefinite.
  *
- * With a = M (y1 - y0)/h the angular momentum y x a of a cell changes by (y1 - y0) x a, what the other cells do to it: all these together are 0 if the mass has
+ * With a = M (y1 - y0)/h the angular momentum y x a of a slot changes by (y1 - y0) x a, what the other slots do to it: all these together are 0 if the mass has
  * the symmetry. */
-#include "step/lie/coupled_leaps.h"
+#include "step/lie/coupled_drift.h"
 
 #include <math.h>
 #include <string.h>
@@ -22,12 +22,12 @@
 enum { MOST_ITERATIONS = 60 };
 
 typedef struct unit {
-  const dvi__cell *cell;
+  const dvi__factor_slot *slot;
   int x; /* where its unknowns begin */
   dvi__chart chart;
 } unit;
 
-struct dvi__coupled_leaps {
+struct dvi__coupled_drift {
   const dvi_system *system;
   dvi_counters *counters;
   int count, unknowns;
@@ -46,45 +46,45 @@ struct dvi__coupled_leaps {
 
 /* ---- making it ---- */
 
-static void find_units(dvi__coupled_leaps *l, const int *together)
+static void find_units(dvi__coupled_drift *l, const int *together)
 {
   const dvi_system *s = l->system;
   for (int i = 0; i < s->n; i++) l->owner[i] = -1;
-  for (int c = 0; c < s->cell_count; c++) {
-    const dvi__cell *cell = &s->cells[c];
+  for (int c = 0; c < s->slot_count; c++) {
+    const dvi__factor_slot *slot = &s->slots[c];
     if (!together[c]) continue;
-    for (int i = 0; i < dvi__chart_stored(cell->kind); i++) l->owner[cell->q + i] = l->count;
-    l->unit[l->count++] = (unit){.cell = cell, .x = l->unknowns};
-    l->unknowns += dvi__chart_size(cell->kind);
+    for (int i = 0; i < dvi__chart_stored(slot->kind); i++) l->owner[slot->q + i] = l->count;
+    l->unit[l->count++] = (unit){.slot = slot, .x = l->unknowns};
+    l->unknowns += dvi__chart_size(slot->kind);
   }
 }
 
 /* The rows of unit `column`'s block column: those of all units that the mass ties to it. Only counts them without `row`. */
-static size_t list_rows(const dvi__coupled_leaps *l, int column, int *seen, int stamp, int *row)
+static size_t list_rows(const dvi__coupled_drift *l, int column, int *seen, int stamp, int *row)
 {
-  const dvi__cell *cell = l->unit[column].cell;
+  const dvi__factor_slot *slot = l->unit[column].slot;
   const dvi__pattern *vv = &l->system->vv;
   size_t rows = 0;
   seen[column] = stamp;
-  for (int j = cell->q; j < cell->q + dvi__chart_stored(cell->kind); j++)
+  for (int j = slot->q; j < slot->q + dvi__chart_stored(slot->kind); j++)
     for (int e = vv->start[j]; e < vv->start[j + 1]; e++)
       if (l->owner[vv->row[e]] >= 0) seen[l->owner[vv->row[e]]] = stamp;
   for (int u = 0; u < l->count; u++)
-    for (int i = 0; seen[u] == stamp && i < dvi__chart_size(l->unit[u].cell->kind); i++, rows++)
+    for (int i = 0; seen[u] == stamp && i < dvi__chart_size(l->unit[u].slot->kind); i++, rows++)
       if (row != NULL) row[rows] = l->unit[u].x + i;
   return rows;
 }
 
-static dvi_status make_pattern(dvi__coupled_leaps *l)
+static dvi_status make_pattern(dvi__coupled_drift *l)
 {
   int *seen = DVI_NEW(int, l->count);
   size_t entries = 0;
   for (int u = 0; u < l->count && seen != NULL; u++)
-    entries += list_rows(l, u, seen, u + 1, NULL) * (size_t)dvi__chart_size(l->unit[u].cell->kind);
+    entries += list_rows(l, u, seen, u + 1, NULL) * (size_t)dvi__chart_size(l->unit[u].slot->kind);
   l->pattern = (dvi__pattern){l->unknowns, l->unknowns, DVI_NEW(int, (size_t)l->unknowns + 1), DVI_NEW(int, entries)};
   const int possible = seen != NULL && l->pattern.start != NULL && l->pattern.row != NULL && entries <= 0x7fffffff;
   for (int u = 0, at = 0; u < l->count && possible; u++)
-    for (int j = 0; j < dvi__chart_size(l->unit[u].cell->kind); j++) {
+    for (int j = 0; j < dvi__chart_size(l->unit[u].slot->kind); j++) {
       at += (int)list_rows(l, u, seen, l->count + u + 1, l->pattern.row + at);
       l->pattern.start[l->unit[u].x + j + 1] = at;
     }
@@ -92,7 +92,7 @@ static dvi_status make_pattern(dvi__coupled_leaps *l)
   return possible ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "leaps: no memory for the mass in charts");
 }
 
-static void find_blocks(dvi__coupled_leaps *l)
+static void find_blocks(dvi__coupled_drift *l)
 {
   const dvi__pattern *vv = &l->system->vv;
   for (int j = 0; j < vv->columns; j++)
@@ -101,7 +101,7 @@ static void find_blocks(dvi__coupled_leaps *l)
         l->first[e] = dvi__pattern_find(&l->pattern, l->unit[l->owner[vv->row[e]]].x, l->unit[l->owner[j]].x);
 }
 
-static dvi_status allocate(dvi__coupled_leaps *l)
+static dvi_status allocate(dvi__coupled_drift *l)
 {
   const size_t n = (size_t)l->system->n, unknowns = (size_t)l->unknowns;
   l->first = DVI_NEW(int, dvi__pattern_entries(&l->system->vv));
@@ -119,16 +119,16 @@ static dvi_status allocate(dvi__coupled_leaps *l)
   return DVI_OK;
 }
 
-static void find_weights(dvi__coupled_leaps *l)
+static void find_weights(dvi__coupled_drift *l)
 {
   const dvi__pattern *vv = &l->system->vv;
   for (int j = 0; j < vv->columns; j++)
     for (int e = vv->start[j]; e < vv->start[j + 1]; e++) l->weight[j] += fabs(l->system->mass_values[e]);
 }
 
-static dvi_status fill(dvi__coupled_leaps *l, const int *together)
+static dvi_status fill(dvi__coupled_drift *l, const int *together)
 {
-  l->unit = DVI_NEW(unit, l->system->cell_count);
+  l->unit = DVI_NEW(unit, l->system->slot_count);
   l->owner = DVI_NEW(int, l->system->n);
   if (l->unit == NULL || l->owner == NULL) return dvi__fail(DVI_NO_MEMORY, "leaps: no memory");
   find_units(l, together);
@@ -139,21 +139,21 @@ static dvi_status fill(dvi__coupled_leaps *l, const int *together)
   return dvi__linear_create(&l->pattern, DVI__LINEAR_AUTO, l->counters, &l->linear);
 }
 
-dvi_status dvi__coupled_leaps_create(const dvi_system *system, const int *together, dvi_counters *counters,
-                                     dvi__coupled_leaps **leaps)
+dvi_status dvi__coupled_drift_create(const dvi_system *system, const int *together, dvi_counters *counters,
+                                     dvi__coupled_drift **leaps)
 {
-  dvi__coupled_leaps *l = *leaps = DVI_NEW(dvi__coupled_leaps, 1);
+  dvi__coupled_drift *l = *leaps = DVI_NEW(dvi__coupled_drift, 1);
   if (l == NULL) return dvi__fail(DVI_NO_MEMORY, "leaps: no memory");
   l->system = system;
   l->counters = counters;
   const dvi_status status = fill(l, together);
-  if (status != DVI_OK) dvi__coupled_leaps_destroy(leaps);
+  if (status != DVI_OK) dvi__coupled_drift_destroy(leaps);
   return status;
 }
 
-void dvi__coupled_leaps_destroy(dvi__coupled_leaps **leaps)
+void dvi__coupled_drift_destroy(dvi__coupled_drift **leaps)
 {
-  dvi__coupled_leaps *l = *leaps;
+  dvi__coupled_drift *l = *leaps;
   if (l == NULL) return;
   dvi__linear_destroy(&l->linear);
   dvi__pattern_clear(&l->pattern);
@@ -169,7 +169,7 @@ void dvi__coupled_leaps_destroy(dvi__coupled_leaps **leaps)
 /* ---- points ---- */
 
 /* force = M moved. */
-static void multiply(dvi__coupled_leaps *l)
+static void multiply(dvi__coupled_drift *l)
 {
   const dvi__pattern *vv = &l->system->vv;
   memset(l->force, 0, (size_t)l->system->n * sizeof *l->force);
@@ -179,16 +179,16 @@ static void multiply(dvi__coupled_leaps *l)
 }
 
 /* Of a change of xi at q0. */
-static double length_of(const dvi__coupled_leaps *l, const double *change)
+static double length_of(const dvi__coupled_drift *l, const double *change)
 {
   double sum = 0;
   for (int u = 0; u < l->count; u++) {
-    const dvi__cell *cell = l->unit[u].cell;
-    const int size = dvi__chart_size(cell->kind);
-    for (int i = 0; i < dvi__chart_stored(cell->kind); i++) {
+    const dvi__factor_slot *slot = l->unit[u].slot;
+    const int size = dvi__chart_size(slot->kind);
+    for (int i = 0; i < dvi__chart_stored(slot->kind); i++) {
       double moved = 0;
-      for (int a = 0; a < size; a++) moved += l->T0[3 * cell->q + i * size + a] * change[l->unit[u].x + a];
-      sum += l->weight[cell->q + i] * moved * moved;
+      for (int a = 0; a < size; a++) moved += l->T0[3 * slot->q + i * size + a] * change[l->unit[u].x + a];
+      sum += l->weight[slot->q + i] * moved * moved;
     }
   }
   return sqrt(sum);
@@ -197,56 +197,56 @@ static double length_of(const dvi__coupled_leaps *l, const double *change)
 /* ---- Newton's method ---- */
 
 /* T of a unit at xi. */
-static void find_tangents(const dvi__coupled_leaps *l, const unit *of, const double *xi, double *T)
+static void find_tangents(const dvi__coupled_drift *l, const unit *of, const double *xi, double *T)
 {
   const double rest[DVI__CHART_SIZE] = {0};
   dvi__functions c;
   dvi__chart_functions(of->chart.kind, xi, &c);
-  dvi__chart_tangents(&of->chart, &c, xi, rest, T + 3 * (size_t)of->cell->q, l->unwanted);
+  dvi__chart_tangents(&of->chart, &c, xi, rest, T + 3 * (size_t)of->slot->q, l->unwanted);
 }
 
-static void begin(dvi__coupled_leaps *l, double h, const double *q, const double *p)
+static void begin(dvi__coupled_drift *l, double h, const double *q, const double *p)
 {
   const double rest[DVI__CHART_SIZE] = {0};
   memset(l->xi, 0, (size_t)l->unknowns * sizeof *l->xi);
   for (int u = 0; u < l->count; u++) {
     unit *of = &l->unit[u];
     double *impulse = l->impulse + of->x;
-    dvi__chart_centre(of->cell->kind, q + of->cell->q, &of->chart);
+    dvi__chart_centre(of->slot->kind, q + of->slot->q, &of->chart);
     find_tangents(l, of, rest, l->T0);
-    dvi__chart_enter(&of->chart, p + of->cell->v, impulse);
-    for (int a = 0; a < dvi__chart_size(of->cell->kind); a++) impulse[a] *= h;
+    dvi__chart_enter(&of->chart, p + of->slot->v, impulse);
+    for (int a = 0; a < dvi__chart_size(of->slot->kind); a++) impulse[a] *= h;
   }
 }
 
 /* change = h p - T0^T M (y(xi) - y0). */
-static void find_residual(dvi__coupled_leaps *l)
+static void find_residual(dvi__coupled_drift *l)
 {
-  for (int u = 0; u < l->count; u++) dvi__chart_leap(&l->unit[u].chart, l->xi + l->unit[u].x, l->moved + l->unit[u].cell->q);
+  for (int u = 0; u < l->count; u++) dvi__chart_moser_veselov(&l->unit[u].chart, l->xi + l->unit[u].x, l->moved + l->unit[u].slot->q);
   multiply(l);
   memcpy(l->change, l->impulse, (size_t)l->unknowns * sizeof *l->change);
   for (int u = 0; u < l->count; u++) {
-    const dvi__cell *cell = l->unit[u].cell;
-    const int size = dvi__chart_size(cell->kind);
-    for (int i = 0; i < dvi__chart_stored(cell->kind); i++)
-      for (int a = 0; a < size; a++) l->change[l->unit[u].x + a] -= l->T0[3 * cell->q + i * size + a] * l->force[cell->q + i];
+    const dvi__factor_slot *slot = l->unit[u].slot;
+    const int size = dvi__chart_size(slot->kind);
+    for (int i = 0; i < dvi__chart_stored(slot->kind); i++)
+      for (int a = 0; a < size; a++) l->change[l->unit[u].x + a] -= l->T0[3 * slot->q + i * size + a] * l->force[slot->q + i];
   }
 }
 
 /* values += T0^T (entry e, in column j) T */
-static void add_block(dvi__coupled_leaps *l, int e, int j)
+static void add_block(dvi__coupled_drift *l, int e, int j)
 {
   const int i = l->system->vv.row[e];
   const unit *row = &l->unit[l->owner[i]], *column = &l->unit[l->owner[j]];
-  const int rows = dvi__chart_size(row->cell->kind), columns = dvi__chart_size(column->cell->kind),
+  const int rows = dvi__chart_size(row->slot->kind), columns = dvi__chart_size(column->slot->kind),
             length = l->pattern.start[column->x + 1] - l->pattern.start[column->x];
-  const double *left = l->T0 + 3 * row->cell->q + (i - row->cell->q) * rows,
-               *right = l->T + 3 * column->cell->q + (j - column->cell->q) * columns;
+  const double *left = l->T0 + 3 * row->slot->q + (i - row->slot->q) * rows,
+               *right = l->T + 3 * column->slot->q + (j - column->slot->q) * columns;
   for (int b = 0; b < columns; b++)
     for (int a = 0; a < rows; a++) l->values[l->first[e] + b * length + a] += left[a] * l->system->mass_values[e] * right[b];
 }
 
-static dvi_status correct(dvi__coupled_leaps *l)
+static dvi_status correct(dvi__coupled_drift *l)
 {
   const dvi__pattern *vv = &l->system->vv;
   for (int u = 0; u < l->count; u++) find_tangents(l, &l->unit[u], l->xi + l->unit[u].x, l->T);
@@ -265,13 +265,13 @@ static dvi_status correct(dvi__coupled_leaps *l)
 static dvi_status too_large(double ratio)
 {
   return dvi__fail(DVI_STEP_TOO_LARGE,
-                   "coupled cells turn too far: the corrections of their leap shrink by %.3g, not by 1/2 as on the branch of short "
+                   "coupled slots turn too far: the corrections of their leap shrink by %.3g, not by 1/2 as on the branch of short "
                    "steps; for a single "
                    "one that means h |p| near its moment of inertia",
                    ratio);
 }
 
-static dvi_status newton(dvi__coupled_leaps *l)
+static dvi_status newton(dvi__coupled_drift *l)
 {
   double first = 0, last = HUGE_VAL;
   for (int iteration = 0; iteration < MOST_ITERATIONS; iteration++) {
@@ -291,49 +291,49 @@ static dvi_status newton(dvi__coupled_leaps *l)
 /* ---- the end ---- */
 
 /* The moment (y1 - y0) x a in space. */
-static void moment_of(const dvi__coupled_leaps *l, const unit *of, double h, double *moment)
+static void moment_of(const dvi__coupled_drift *l, const unit *of, double h, double *moment)
 {
-  const int q = of->cell->q;
+  const int q = of->slot->q;
   memset(moment, 0, 3 * sizeof *moment);
-  if (of->cell->kind == DVI__CIRCLE)
+  if (of->slot->kind == DVI__CIRCLE)
     moment[0] = l->moved[q] * l->force[q + 1] - l->moved[q + 1] * l->force[q];
-  else if (of->cell->kind != DVI__LINE)
-    dvi__chart_add_moment(of->cell->kind, l->moved + q, l->force + q, moment);
+  else if (of->slot->kind != DVI__LINE)
+    dvi__chart_add_moment(of->slot->kind, l->moved + q, l->force + q, moment);
   for (int i = 0; i < 3; i++) moment[i] /= h;
 }
 
-static void arrive(const dvi__coupled_leaps *l, const unit *of, double h, const dvi__phase *state, double *leap)
+static void arrive(const dvi__coupled_drift *l, const unit *of, double h, const dvi__phase *state, double *leap)
 {
-  const int q = of->cell->q, v = of->cell->v;
+  const int q = of->slot->q, v = of->slot->v;
   const double *xi = l->xi + of->x;
-  double *y = state->q + q, *y_carry = state->q_carry + q, *p = state->p + v, *p_carry = state->p_carry + v, moment[3],
+  double *y = state->q + q, *y_compensation = state->q_compensation + q, *p = state->p + v, *p_compensation = state->p_compensation + v, moment[3],
          added[3] = {0};
   moment_of(l, of, h, moment);
   dvi__chart_store(&of->chart, xi, leap + v);
-  if (of->cell->kind == DVI__LINE || of->cell->kind == DVI__CIRCLE) {
-    dvi__chart_move(&of->chart, xi, y, y_carry);
-    if (of->cell->kind == DVI__CIRCLE) dvi__add_compensated(p, p_carry, moment[0]);
+  if (of->slot->kind == DVI__LINE || of->slot->kind == DVI__CIRCLE) {
+    dvi__chart_move(&of->chart, xi, y, y_compensation);
+    if (of->slot->kind == DVI__CIRCLE) dvi__add_compensated(p, p_compensation, moment[0]);
     return;
   }
   dvi__chart_add_impulse(&of->chart, moment, added);
-  dvi__chart_carry(&of->chart, xi, added, y, y_carry, p, p_carry);
-  if (of->cell->kind == DVI__ROTATION) dvi__turn_tangent(xi, leap + v);
+  dvi__chart_transport(&of->chart, xi, added, y, y_compensation, p, p_compensation);
+  if (of->slot->kind == DVI__ROTATION) dvi__turn_tangent(xi, leap + v);
 }
 
-static dvi_status check_turns(const dvi__coupled_leaps *l)
+static dvi_status check_turns(const dvi__coupled_drift *l)
 {
   for (int u = 0; u < l->count; u++) {
     const unit *of = &l->unit[u];
     double square = 0;
-    for (int a = 0; a < dvi__chart_size(of->cell->kind); a++) square += l->xi[of->x + a] * l->xi[of->x + a];
-    if (!(sqrt(square) < dvi__chart_bound(of->cell->kind)))
-      return dvi__fail(DVI_STEP_TOO_LARGE, "the cell at coordinate %d turns by %.3g in one step, half a turn or more", of->cell->q,
+    for (int a = 0; a < dvi__chart_size(of->slot->kind); a++) square += l->xi[of->x + a] * l->xi[of->x + a];
+    if (!(sqrt(square) < dvi__chart_bound(of->slot->kind)))
+      return dvi__fail(DVI_STEP_TOO_LARGE, "the slot at coordinate %d turns by %.3g in one step, half a turn or more", of->slot->q,
                        sqrt(square));
   }
   return DVI_OK;
 }
 
-dvi_status dvi__coupled_leaps_drift(dvi__coupled_leaps *l, double h, const dvi__phase *state, double *leap)
+dvi_status dvi__coupled_drift_drift(dvi__coupled_drift *l, double h, const dvi__phase *state, double *leap)
 {
   begin(l, h, state->q, state->p);
   DVI_TRY(newton(l));
@@ -343,10 +343,10 @@ dvi_status dvi__coupled_leaps_drift(dvi__coupled_leaps *l, double h, const dvi__
   return DVI_OK;
 }
 
-dvi_status dvi__coupled_leaps_velocity(dvi__coupled_leaps *l, const double *q, const double *p, double *v)
+dvi_status dvi__coupled_drift_velocity(dvi__coupled_drift *l, const double *q, const double *p, double *v)
 {
   begin(l, 1, q, p);
   DVI_TRY(correct(l));
-  for (int u = 0; u < l->count; u++) dvi__chart_store(&l->unit[u].chart, l->change + l->unit[u].x, v + l->unit[u].cell->v);
+  for (int u = 0; u < l->count; u++) dvi__chart_store(&l->unit[u].chart, l->change + l->unit[u].x, v + l->unit[u].slot->v);
   return DVI_OK;
 }

@@ -4,7 +4,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "space/given_struct.h"
+#include "space/user_basis_struct.h"
 
 enum { NAME_MOST = 40 };
 
@@ -74,28 +74,28 @@ static double place(int i)
 }
 
 /* The size of f_k', to which its errors are compared: the largest over the places, and what rounding of f_k may do to differences. */
-static dvi_status measure(const dvi__given *g, int k, double h, double *size)
+static dvi_status measure(const dvi__user_basis *g, int k, double h, double *size)
 {
   *size = 0;
   for (int i = 0; i < PLACES; i++) {
-    DVI_TRY(dvi__given_evaluate(g, h, place(i)));
+    DVI_TRY(dvi__user_basis_evaluate(g, h, place(i)));
     *size = fmax(*size, fabs(g->df[k]) + 1e-9 * fabs(g->f[k]));
   }
   return DVI_OK;
 }
 
 /* Second order: what differences leave of sin(nu tau) is nu^2 6e-12 of its derivative. */
-static dvi_status check_derivative(const dvi__given *g, int k, double h)
+static dvi_status check_derivative(const dvi__user_basis *g, int k, double h)
 {
   double size;
   DVI_TRY(measure(g, k, h, &size));
   for (int i = 0; i < PLACES; i++) {
     const double tau = place(i), before = tau - least_move, after = tau + least_move;
-    DVI_TRY(dvi__given_evaluate(g, h, before));
+    DVI_TRY(dvi__user_basis_evaluate(g, h, before));
     const double f = g->f[k];
-    DVI_TRY(dvi__given_evaluate(g, h, after));
+    DVI_TRY(dvi__user_basis_evaluate(g, h, after));
     const double difference = (g->f[k] - f) / (after - before);
-    DVI_TRY(dvi__given_evaluate(g, h, tau));
+    DVI_TRY(dvi__user_basis_evaluate(g, h, tau));
     if (fabs(g->df[k] - difference) > 1e-4 * size)
       return dvi__fail(DVI_BAD_ARGUMENT,
                        "shapes %s: at tau = %.6g of a step of h = %.3g derivative[%d] = %.9g, but differences of the values give "
@@ -105,7 +105,7 @@ static dvi_status check_derivative(const dvi__given *g, int k, double h)
   return DVI_OK;
 }
 
-static dvi_status check_independence(const dvi__given *g)
+static dvi_status check_independence(const dvi__user_basis *g)
 {
   for (int k = 0; k < g->count; k++) {
     if (g->now.matrix[k * g->count + k] != 0) continue;
@@ -122,8 +122,8 @@ static dvi_status check_independence(const dvi__given *g)
 }
 
 /* Functions are orthonormal, sum_j |b_j| psi'^2 = 1, and by Schwarz' inequality no value is above 1 but for the quadrature's error. One that is has almost all of its
- * slope between the points: it would be corrected (space/given.c) by as much as it is large, and orders show only at steps that are shorter by as much. */
-static dvi_status check_resolution(const dvi__given *g)
+ * slope between the points: it would be corrected (space/user_basis.c) by as much as it is large, and orders show only at steps that are shorter by as much. */
+static dvi_status check_resolution(const dvi__user_basis *g)
 {
   enum { LARGEST = 100 };
   for (int k = g->degree; k < g->count; k++) {
@@ -138,7 +138,7 @@ static dvi_status check_resolution(const dvi__given *g)
   return DVI_OK;
 }
 
-dvi_status dvi__given_check(const dvi__given *g)
+dvi_status dvi__user_basis_check(const dvi__user_basis *g)
 {
   for (int k = 0; k < g->shapes->functions; k++) DVI_TRY(check_derivative(g, k, g->now.h));
   DVI_TRY(check_independence(g));
@@ -147,7 +147,7 @@ dvi_status dvi__given_check(const dvi__given *g)
 
 /* ---- symmetry ---- */
 
-static int points_mirror(const dvi__given *g, const dvi__given_tables *a, const dvi__given_tables *b)
+static int points_mirror(const dvi__user_basis *g, const dvi__user_basis_tables *a, const dvi__user_basis_tables *b)
 {
   for (int j = 0; j < g->points; j++) {
     const int other = g->points - 1 - j;
@@ -157,28 +157,28 @@ static int points_mirror(const dvi__given *g, const dvi__given_tables *a, const 
 }
 
 /* The mirrored function, tau to psi_k(1 - tau) - psi_k(1), in the basis b: coefficients [count] in at_value, and what is left of the derivatives, its largest. */
-static long double project_mirrored(const dvi__given *g, const dvi__given_tables *a, const dvi__given_tables *b, int k)
+static long double project_mirrored(const dvi__user_basis *g, const dvi__user_basis_tables *a, const dvi__user_basis_tables *b, int k)
 {
   long double *left = g->slope, most = 0;
   for (int j = 0; j < g->points; j++) left[j] = -(long double)a->dpsi[(g->points - 1 - j) * g->count + k];
   for (int l = 0; l < g->count; l++) {
     g->at_value[l] = 0;
     for (int j = 0; j < g->points; j++)
-      g->at_value[l] += dvi__given_measure(g, b, j, l) * left[j] * (long double)b->dpsi[j * g->count + l];
+      g->at_value[l] += dvi__user_basis_measure(g, b, j, l) * left[j] * (long double)b->dpsi[j * g->count + l];
     for (int j = 0; j < g->points; j++) left[j] -= g->at_value[l] * (long double)b->dpsi[j * g->count + l];
   }
   for (int j = 0; j < g->points; j++) most = fmaxl(most, fabsl(left[j]));
   return most;
 }
 
-static long double combine(const dvi__given *g, const double *function)
+static long double combine(const dvi__user_basis *g, const double *function)
 {
   long double sum = 0;
   for (int l = 0; l < g->count; l++) sum += g->at_value[l] * (long double)function[l];
   return sum;
 }
 
-static int function_mirrors(const dvi__given *g, const dvi__given_tables *a, const dvi__given_tables *b, int k)
+static int function_mirrors(const dvi__user_basis *g, const dvi__user_basis_tables *a, const dvi__user_basis_tables *b, int k)
 {
   long double most = project_mirrored(g, a, b, k);
   most = fmaxl(most, fabsl((long double)a->end[k] + combine(g, b->end)));
@@ -190,9 +190,9 @@ static int function_mirrors(const dvi__given *g, const dvi__given_tables *a, con
 }
 
 /* A step back undoes a step if its paths are the same ones, and its points too. What cannot be evaluated backward is not symmetric. */
-int dvi__given_mirrors(dvi__given *g)
+int dvi__user_basis_mirrors(dvi__user_basis *g)
 {
-  if (dvi__given_fill(g, -g->shapes->h, &g->spare) != DVI_OK) return 0;
+  if (dvi__user_basis_fill(g, -g->shapes->h, &g->spare) != DVI_OK) return 0;
   if (!points_mirror(g, &g->now, &g->spare)) return 0;
   for (int k = 0; k < g->count; k++)
     if (!function_mirrors(g, &g->now, &g->spare, k)) return 0;

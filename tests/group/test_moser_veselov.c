@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "group/leap.h"
+#include "group/moser_veselov.h"
 #include "group/turn.h"
 #include "group/vector.h"
 #include "support/suite.h"
@@ -39,13 +39,13 @@ static double residual(const double Jd[9], const double w[3], const double g[3])
 enum { CASES = 4000, PARTS = 100 };
 
 /* Every h Pi that has a leap has one for all its parts, and it goes on continuously from 0: no other branch is ever taken. */
-static void check_branch(const dvi__body *body, dvi__leap_by by, const double g[3])
+static void check_branch(const dvi__body *body, dvi__moser_veselov_map by, const double g[3])
 {
   double last[3] = {0};
   for (int part = 1; part <= PARTS; part++) {
     const double some[] = {g[0] * part / PARTS, g[1] * part / PARTS, g[2] * part / PARTS};
     double w[3], angle[3];
-    ck_assert_int_gt(dvi__body_leap(body, by, some, w), 0);
+    ck_assert_int_gt(dvi__body_moser_veselov(body, by, some, w), 0);
     for (int i = 0; i < 3; i++) {
       angle[i] = atan(w[i]);
       ck_assert_double_le(fabs(angle[i] - last[i]), .3);
@@ -56,7 +56,7 @@ static void check_branch(const dvi__body *body, dvi__leap_by by, const double g[
 
 START_TEST(a_leap_solves_its_equation_on_the_branch_of_short_steps)
 {
-  const dvi__leap_by by = _i == 0 ? DVI__BY_EXPONENTIAL : DVI__BY_CAYLEY;
+  const dvi__moser_veselov_map by = _i == 0 ? DVI__BY_EXPONENTIAL : DVI__BY_CAYLEY;
   unsigned seed = 12345;
   long iterations = 0, solved = 0;
   for (int n = 0; n < CASES; n++) {
@@ -65,7 +65,7 @@ START_TEST(a_leap_solves_its_equation_on_the_branch_of_short_steps)
     some_moments(&seed, n % 2, Jd);
     ck_assert_int_eq(dvi__body_of(Jd, &body), 1);
     for (int i = 0; i < 3; i++) g[i] = body.largest * next_number(&seed);
-    const int taken = dvi__body_leap(&body, by, g, w);
+    const int taken = dvi__body_moser_veselov(&body, by, g, w);
     if (taken == 0) continue;
     iterations += taken;
     solved++;
@@ -83,23 +83,23 @@ START_TEST(short_leaps_take_two_iterations)
   dvi__body body;
   double w[3];
   ck_assert_int_eq(dvi__body_of(Jd, &body), 1);
-  ck_assert_int_le(dvi__body_leap(&body, DVI__BY_CAYLEY, g, w), 2);
+  ck_assert_int_le(dvi__body_moser_veselov(&body, DVI__BY_CAYLEY, g, w), 2);
 }
 END_TEST
 
 START_TEST(a_sphere_can_be_solved_up_to_a_quarter_turn)
 {
   const double Jd[] = {.5, 0, 0, 0, .5, 0, 0, 0, .5};
-  const dvi__leap_by by = _i == 0 ? DVI__BY_EXPONENTIAL : DVI__BY_CAYLEY;
+  const dvi__moser_veselov_map by = _i == 0 ? DVI__BY_EXPONENTIAL : DVI__BY_CAYLEY;
   dvi__body body;
   double w[3];
   ck_assert_int_eq(dvi__body_of(Jd, &body), 1);
   for (int k = 0; k < 150; k++) {
     const double size = 1 - pow(.9, k + 1);
-    ck_assert_int_gt(dvi__body_leap(&body, by, (const double[]){0, .6 * size, .8 * size}, w), 0);
+    ck_assert_int_gt(dvi__body_moser_veselov(&body, by, (const double[]){0, .6 * size, .8 * size}, w), 0);
     ck_assert_double_eq_tol(2 * atan(sqrt(dvi__dot(w, w))), asin(size), 1e-15 / sqrt(1 - size));
   }
-  ck_assert_int_eq(dvi__body_leap(&body, by, (const double[]){0, .6001, .8001}, w), 0);
+  ck_assert_int_eq(dvi__body_moser_veselov(&body, by, (const double[]){0, .6001, .8001}, w), 0);
 }
 END_TEST
 
@@ -129,7 +129,7 @@ START_TEST(turns_back_undo_turns)
 }
 END_TEST
 
-SUITE(leap)
+SUITE(moser_veselov)
 {
   tcase_add_loop_test(tests, a_leap_solves_its_equation_on_the_branch_of_short_steps, 0, 2);
   tcase_add_test(tests, short_leaps_take_two_iterations);

@@ -1,4 +1,4 @@
-#include "step/element/shaped.h"
+#include "step/element/user_element.h"
 
 #include <string.h>
 
@@ -6,7 +6,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 
-struct dvi__shaped {
+struct dvi__user_element {
   dvi__action *action; /* in which every coordinate has all functions: those that it has not got stay 0 */
   dvi__shapes shapes;
   int *first;           /* [n+1] of a coordinate's unknowns */
@@ -19,19 +19,19 @@ struct dvi__shaped {
   double *whole;        /* [n*functions] work */
 };
 
-static int functions_of(const dvi__shaped *s, int i)
+static int functions_of(const dvi__user_element *s, int i)
 {
   return s->first[i + 1] - s->first[i];
 }
 
-static int is_present(const dvi__shaped *s, int k)
+static int is_present(const dvi__user_element *s, int k)
 {
   return s->shapes.present(s->shapes.of, k);
 }
 
 /* ---- making it ---- */
 
-static int allocate(dvi__shaped *s, const char *has_all, int fewest)
+static int allocate(dvi__user_element *s, const char *has_all, int fewest)
 {
   const size_t n = (size_t)s->action->n, count = (size_t)s->shapes.functions;
   s->first = DVI_NEW(int, n + 1);
@@ -46,30 +46,30 @@ static int allocate(dvi__shaped *s, const char *has_all, int fewest)
   return 1;
 }
 
-static dvi_status fill(dvi__shaped *s, const dvi_system *system, const char *has_all, int fewest, dvi_counters *counters)
+static dvi_status fill(dvi__user_element *s, const dvi_system *system, const char *has_all, int fewest, dvi_counters *counters)
 {
   const int functions = s->shapes.functions, points = s->shapes.points;
   DVI_TRY(dvi__joint_check(system, fewest, functions > points ? functions : points));
-  DVI_TRY(dvi__action_create_shaped(system, s->shapes.functions, s->shapes.points, counters, &s->action));
+  DVI_TRY(dvi__action_create_by_user(system, s->shapes.functions, s->shapes.points, counters, &s->action));
   if (!allocate(s, has_all, fewest)) return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d shapes", s->shapes.functions);
   DVI_TRY(dvi__action_prepare_hessians(s->action));
   return dvi__pattern_uneven_blocks(&s->action->joint, s->first, &s->pattern);
 }
 
-dvi_status dvi__shaped_create(const dvi_system *system, const dvi__shapes *shapes, const char *has_all, int fewest,
-                              dvi_counters *counters, dvi__shaped **shaped)
+dvi_status dvi__user_element_create(const dvi_system *system, const dvi__shapes *shapes, const char *has_all, int fewest,
+                              dvi_counters *counters, dvi__user_element **shaped)
 {
-  dvi__shaped *s = *shaped = DVI_NEW(dvi__shaped, 1);
+  dvi__user_element *s = *shaped = DVI_NEW(dvi__user_element, 1);
   if (s == NULL) return dvi__fail(DVI_NO_MEMORY, "action: no memory");
   s->shapes = *shapes;
   const dvi_status status = fill(s, system, has_all, fewest, counters);
-  if (status != DVI_OK) dvi__shaped_destroy(shaped);
+  if (status != DVI_OK) dvi__user_element_destroy(shaped);
   return status;
 }
 
-void dvi__shaped_destroy(dvi__shaped **shaped)
+void dvi__user_element_destroy(dvi__user_element **shaped)
 {
-  dvi__shaped *s = *shaped;
+  dvi__user_element *s = *shaped;
   if (s == NULL) return;
   dvi__action_destroy(&s->action);
   dvi__pattern_clear(&s->pattern);
@@ -84,12 +84,12 @@ void dvi__shaped_destroy(dvi__shaped **shaped)
   *shaped = NULL;
 }
 
-const dvi__pattern *dvi__shaped_pattern(const dvi__shaped *shaped)
+const dvi__pattern *dvi__user_element_pattern(const dvi__user_element *shaped)
 {
   return &shaped->pattern;
 }
 
-dvi__evaluator *dvi__shaped_evaluator(const dvi__shaped *shaped)
+dvi__evaluator *dvi__user_element_evaluator(const dvi__user_element *shaped)
 {
   return dvi__action_evaluator(shaped->action);
 }
@@ -105,7 +105,7 @@ static void fill_point(dvi__action *a, int j, const double *psi, const double *d
   }
 }
 
-static void set_length(dvi__shaped *s, double h)
+static void set_length(dvi__user_element *s, double h)
 {
   dvi__action *a = s->action;
   if (s->h == h) return;
@@ -118,12 +118,12 @@ static void set_length(dvi__shaped *s, double h)
   }
 }
 
-void dvi__shaped_renew(dvi__shaped *shaped)
+void dvi__user_element_renew(dvi__user_element *shaped)
 {
   shaped->h = 0;
 }
 
-void dvi__shaped_place(dvi__shaped *shaped, double t0, double h, const double *q0, const double *p0)
+void dvi__user_element_place(dvi__user_element *shaped, double t0, double h, const double *q0, const double *p0)
 {
   set_length(shaped, h);
   dvi__action_place(shaped->action, t0, h, q0, p0);
@@ -132,14 +132,14 @@ void dvi__shaped_place(dvi__shaped *shaped, double t0, double h, const double *q
 /* ---- the step ---- */
 
 /* All coordinates' coefficients [n*functions] from the unknowns. */
-static void widen(const dvi__shaped *s, const double *Y, double *whole)
+static void widen(const dvi__user_element *s, const double *Y, double *whole)
 {
   const size_t count = (size_t)s->shapes.functions;
   memset(whole, 0, (size_t)s->action->n * count * sizeof *whole);
   for (int i = 0; i < s->action->n; i++) memcpy(whole + (size_t)i * count, Y + s->first[i], (size_t)functions_of(s, i) * sizeof *Y);
 }
 
-dvi_status dvi__shaped_residual(dvi__shaped *shaped, const double *Y, double *R)
+dvi_status dvi__user_element_residual(dvi__user_element *shaped, const double *Y, double *R)
 {
   const dvi__action *a = shaped->action;
   widen(shaped, Y, shaped->at);
@@ -151,13 +151,13 @@ dvi_status dvi__shaped_residual(dvi__shaped *shaped, const double *Y, double *R)
 }
 
 /* Rows and columns of functions that are not present become those of the identity. */
-static void mask_block(const dvi__shaped *s, int i, int j, int l, double *column)
+static void mask_block(const dvi__user_element *s, int i, int j, int l, double *column)
 {
   for (int k = 0; k < functions_of(s, i); k++)
     if (!is_present(s, k) || !is_present(s, l)) column[k] = i == j && k == l;
 }
 
-dvi_status dvi__shaped_jacobian(dvi__shaped *shaped, const double *Y, double *values)
+dvi_status dvi__user_element_jacobian(dvi__user_element *shaped, const double *Y, double *values)
 {
   const dvi__action *a = shaped->action;
   widen(shaped, Y, shaped->whole);
@@ -173,7 +173,7 @@ dvi_status dvi__shaped_jacobian(dvi__shaped *shaped, const double *Y, double *va
   return DVI_OK;
 }
 
-dvi_status dvi__shaped_scale(dvi__shaped *shaped, double *scale)
+dvi_status dvi__user_element_scale(dvi__user_element *shaped, double *scale)
 {
   const dvi__action *a = shaped->action;
   const double *L_vv = NULL;
@@ -185,7 +185,7 @@ dvi_status dvi__shaped_scale(dvi__shaped *shaped, double *scale)
   return DVI_OK;
 }
 
-void dvi__shaped_straight(const dvi__shaped *shaped, const double *v, double *Y)
+void dvi__user_element_straight(const dvi__user_element *shaped, const double *v, double *Y)
 {
   const dvi__action *a = shaped->action;
   memset(Y, 0, (size_t)shaped->pattern.columns * sizeof *Y);
@@ -193,7 +193,7 @@ void dvi__shaped_straight(const dvi__shaped *shaped, const double *v, double *Y)
 }
 
 /* After a step of another length its mean velocity is all that is taken over. */
-void dvi__shaped_continue(dvi__shaped *shaped, double ratio, const double *last, double *Y)
+void dvi__user_element_continue(dvi__user_element *shaped, double ratio, const double *last, double *Y)
 {
   const dvi__action *a = shaped->action;
   const size_t count = (size_t)a->s;
@@ -210,7 +210,7 @@ void dvi__shaped_continue(dvi__shaped *shaped, double ratio, const double *last,
   }
 }
 
-void dvi__shaped_ends(dvi__shaped *shaped, const double *Y, double *dq, double *dp)
+void dvi__user_element_ends(dvi__user_element *shaped, const double *Y, double *dq, double *dp)
 {
   const size_t count = (size_t)shaped->action->n * (size_t)shaped->action->s;
   widen(shaped, Y, shaped->whole);
@@ -219,13 +219,13 @@ void dvi__shaped_ends(dvi__shaped *shaped, const double *Y, double *dq, double *
   dvi__action_move_ends(shaped->action, shaped->at, dp);
 }
 
-dvi_status dvi__shaped_duration(dvi__shaped *shaped, const double *Y, double *duration)
+dvi_status dvi__user_element_duration(dvi__user_element *shaped, const double *Y, double *duration)
 {
   widen(shaped, Y, shaped->whole);
   return dvi__action_duration(shaped->action, shaped->whole, duration);
 }
 
-void dvi__shaped_path(dvi__shaped *shaped, const double *Y, double h, double tau, double *offset, double *v)
+void dvi__user_element_path(dvi__user_element *shaped, const double *Y, double h, double tau, double *offset, double *v)
 {
   const dvi__action *a = shaped->action;
   set_length(shaped, h);

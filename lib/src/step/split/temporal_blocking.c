@@ -1,4 +1,4 @@
-#include "step/split/wave.h"
+#include "step/split/temporal_blocking.h"
 
 #include <stdatomic.h>
 #include <stddef.h>
@@ -15,7 +15,7 @@ enum { LINE = 8, BLOCK = 512, WINDOW = 24 * 1024 };
 /* Arrays that a pass reads and writes: q, p, their carries, the gradient. */
 enum { ARRAYS = 5 };
 
-struct dvi__wave {
+struct dvi__blocking {
   const dvi_system *system;
   int threads;
   ptrdiff_t block, lag; /* coordinates of one turn; of one operation behind the other */
@@ -28,14 +28,14 @@ struct dvi__wave {
 
 static atomic_int chosen_block;
 
-void dvi__wave_choose_block(int block)
+void dvi__blocking_choose_block(int block)
 {
   atomic_store(&chosen_block, block);
 }
 
 /* ---- create, destroy ---- */
 
-const char *dvi__wave_obstacle(const dvi_system *system)
+const char *dvi__blocking_obstacle(const dvi_system *system)
 {
   if (system->mass_diagonal == NULL) return "the mass is not diagonal";
   if (system->potential_count == 0) return "there is no potential";
@@ -44,7 +44,7 @@ const char *dvi__wave_obstacle(const dvi_system *system)
   return NULL;
 }
 
-static dvi_status fill(dvi__wave *w)
+static dvi_status fill(dvi__blocking *w)
 {
   const int potentials = w->system->potential_count, block = atomic_load(&chosen_block);
   int reach = 0;
@@ -60,22 +60,22 @@ static dvi_status fill(dvi__wave *w)
   return w->threads > 1 ? dvi__team_create(w->threads, &w->team) : DVI_OK;
 }
 
-dvi_status dvi__wave_create(const dvi_system *system, int threads, dvi__wave **wave)
+dvi_status dvi__blocking_create(const dvi_system *system, int threads, dvi__blocking **wave)
 {
   *wave = NULL;
-  dvi__wave *made = DVI_NEW(dvi__wave, 1);
+  dvi__blocking *made = DVI_NEW(dvi__blocking, 1);
   if (made == NULL) return dvi__fail(DVI_NO_MEMORY, "wave: no memory");
   made->system = system;
   made->threads = threads;
   const dvi_status status = fill(made);
-  if (status != DVI_OK) dvi__wave_destroy(&made);
+  if (status != DVI_OK) dvi__blocking_destroy(&made);
   *wave = made;
   return status;
 }
 
-void dvi__wave_destroy(dvi__wave **wave)
+void dvi__blocking_destroy(dvi__blocking **wave)
 {
-  dvi__wave *w = *wave;
+  dvi__blocking *w = *wave;
   if (w == NULL) return;
   dvi__team_destroy(&w->team);
   dvi__release(w->begun);
@@ -88,8 +88,8 @@ void dvi__wave_destroy(dvi__wave **wave)
 
 /* A pass of some threads over all coordinates. */
 typedef struct pass {
-  const dvi__wave *wave;
-  dvi__wave_step step;
+  const dvi__blocking *wave;
+  dvi__blocking_step step;
   int members;
   atomic_int failed;
 } pass;
@@ -107,16 +107,16 @@ typedef struct range {
 
 static dvi__phase phase_at(const dvi__phase *whole, ptrdiff_t i)
 {
-  return (dvi__phase){whole->q + i, whole->p + i, whole->q_carry + i, whole->p_carry + i};
+  return (dvi__phase){whole->q + i, whole->p + i, whole->q_compensation + i, whole->p_compensation + i};
 }
 
 /* A_k, k = 0 .. count-1: the second kick of the substep before and the first of this one have the same gradient. */
 static void leap(const part *own, int k, range r)
 {
-  const dvi__wave *w = own->pass->wave;
-  const dvi__wave_step *s = &own->pass->step;
+  const dvi__blocking *w = own->pass->wave;
+  const dvi__blocking_step *s = &own->pass->step;
   const double *gradient = k == 0 && s->gradient != NULL ? s->gradient : s->gradient_to;
-  const dvi__leap leap = {.count = (size_t)(r.last - r.first),
+  const dvi__moser_veselov leap = {.count = (size_t)(r.last - r.first),
                           .kicks = k == 0 ? 1 : 2,
                           .kick = {k == 0 ? -0.5 * s->h[0] : -0.5 * s->h[k - 1], -0.5 * s->h[k]},
                           .drift = s->h[k],
@@ -127,7 +127,7 @@ static void leap(const part *own, int k, range r)
                           .from = phase_at(k == 0 ? &s->from : &s->to, r.first),
                           .to = phase_at(&s->to, r.first),
                           .far = k == 0};
-  dvi__lanes_leap(&leap);
+  dvi__lanes_kick_drift(&leap);
 }
 
 /* The sum of the potentials' gradients at q, in the order of the plain sweep. */
@@ -147,10 +147,10 @@ static int gradient(const part *own, double t, const double *q, range r)
 /* The last kick; what it leaves is the new state. */
 static int finish(const part *own, range r)
 {
-  const dvi__wave_step *s = &own->pass->step;
+  const dvi__blocking_step *s = &own->pass->step;
   const dvi__phase to = phase_at(&s->to, r.first);
   const size_t count = (size_t)(r.last - r.first);
-  dvi__lanes_add_scaled(count, -0.5 * s->h[s->count - 1], s->gradient_to + r.first, to.p, to.p_carry);
+  dvi__lanes_add_scaled(count, -0.5 * s->h[s->count - 1], s->gradient_to + r.first, to.p, to.p_compensation);
   return dvi__lanes_all_finite(count, to.p) && dvi__lanes_all_finite(count, to.q);
 }
 
@@ -168,7 +168,7 @@ static range range_at(const part *own, ptrdiff_t x, ptrdiff_t lag)
 /* All operations, each where it is while the first one is at x. */
 static int work_at(const part *own, ptrdiff_t x)
 {
-  const dvi__wave_step *s = &own->pass->step;
+  const dvi__blocking_step *s = &own->pass->step;
   const ptrdiff_t lag = own->pass->wave->lag;
   range r = range_at(own, x, 0);
   if (s->gradient == NULL && r.first < r.last && !gradient(own, s->t0, s->from.q, r)) return 0;
@@ -194,7 +194,7 @@ static int await(const part *own, int neighbour)
  * anybody, so all get there. */
 static int sweep(const part *own, int member)
 {
-  const dvi__wave *w = own->pass->wave;
+  const dvi__blocking *w = own->pass->wave;
   const ptrdiff_t behind = (2 * own->pass->step.count - 1) * w->lag, clear = own->begin + 2 * (behind + w->lag);
   const int last = member == own->pass->members - 1;
   const ptrdiff_t end = (last ? own->end : own->end + behind) + behind;
@@ -219,29 +219,29 @@ static ptrdiff_t cut(const pass *p, int member)
 static void take_part(void *user, int member)
 {
   pass *p = user;
-  const dvi__wave *w = p->wave;
+  const dvi__blocking *w = p->wave;
   const part own = {p, cut(p, member), cut(p, member + 1), w->term != NULL ? w->term + member * w->block : NULL};
   if (!sweep(&own, member)) atomic_store(&p->failed, 1);
 }
 
 /* ---- the whole ---- */
 
-int dvi__wave_depth(const dvi__wave *w)
+int dvi__blocking_depth(const dvi__blocking *w)
 {
   const ptrdiff_t depth = w->lag > 0 ? (WINDOW - w->block) / (2 * w->lag) : DVI__WAVE_SUBSTEPS;
   return depth < 1 ? 1 : depth > DVI__WAVE_SUBSTEPS ? DVI__WAVE_SUBSTEPS : (int)depth;
 }
 
-int dvi__wave_threads(const dvi__wave *w, int count)
+int dvi__blocking_threads(const dvi__blocking *w, int count)
 {
-  const int substeps = count < dvi__wave_depth(w) ? count : dvi__wave_depth(w);
+  const int substeps = count < dvi__blocking_depth(w) ? count : dvi__blocking_depth(w);
   const ptrdiff_t least = 4 * (substeps + 1) * w->lag + 4 * w->block + LINE, possible = w->system->n / least;
   return possible < 1 ? 1 : possible < w->threads ? (int)possible : w->threads;
 }
 
-static int run_pass(dvi__wave *w, const dvi__wave_step *step)
+static int run_pass(dvi__blocking *w, const dvi__blocking_step *step)
 {
-  pass p = {.wave = w, .step = *step, .members = dvi__wave_threads(w, step->count)};
+  pass p = {.wave = w, .step = *step, .members = dvi__blocking_threads(w, step->count)};
   atomic_init(&p.failed, 0);
   for (int i = 0; i < w->threads; i++) atomic_store(&w->begun[i], 0);
   if (p.members == 1)
@@ -251,10 +251,10 @@ static int run_pass(dvi__wave *w, const dvi__wave_step *step)
   return !atomic_load(&p.failed);
 }
 
-int dvi__wave_run(dvi__wave *w, const dvi__wave_step *step)
+int dvi__blocking_run(dvi__blocking *w, const dvi__blocking_step *step)
 {
-  const int depth = dvi__wave_depth(w);
-  dvi__wave_step rest = *step;
+  const int depth = dvi__blocking_depth(w);
+  dvi__blocking_step rest = *step;
   while (step->h + step->count > rest.h) {
     const ptrdiff_t left = step->h + step->count - rest.h;
     rest.count = left < depth ? (int)left : depth;
@@ -269,9 +269,9 @@ int dvi__wave_run(dvi__wave *w, const dvi__wave_step *step)
 }
 
 /* The first pass goes from one place to the other, later ones stay there. */
-double dvi__wave_traffic(const dvi__wave *w, int count)
+double dvi__blocking_traffic(const dvi__blocking *w, int count)
 {
-  const int depth = dvi__wave_depth(w), passes = (count + depth - 1) / depth;
+  const int depth = dvi__blocking_depth(w), passes = (count + depth - 1) / depth;
   const int arrays = 3 * ARRAYS + 2 * ARRAYS * (passes - 1) + (w->by == DVI__BY_ARRAY ? passes : 0);
   return (double)arrays * (double)sizeof(double) * w->system->n;
 }

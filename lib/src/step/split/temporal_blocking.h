@@ -25,12 +25,12 @@
 #include "num/simd/lanes.h"
 #include "system/system.h"
 
-typedef struct dvi__wave dvi__wave;
+typedef struct dvi__blocking dvi__blocking;
 
 enum { DVI__WAVE_SUBSTEPS = 32 };
 
 /* One step. */
-typedef struct dvi__wave_step {
+typedef struct dvi__blocking_step {
   int count;              /* substeps, 1 to DVI__WAVE_SUBSTEPS */
   const double *h;        /* [count] */
   double t0;              /* where it starts, and */
@@ -38,29 +38,29 @@ typedef struct dvi__wave_step {
   dvi__phase from, to;    /* [n] each; `from` is only read */
   const double *gradient; /* [n] at the start; NULL: not known */
   double *gradient_to;    /* [n] at the end */
-} dvi__wave_step;
+} dvi__blocking_step;
 
 /* NULL if waves are possible: a mass for each coordinate, and potentials that declare gradient_range. Else what stands against it, in words. */
-const char *dvi__wave_obstacle(const dvi_system *system);
+const char *dvi__blocking_obstacle(const dvi_system *system);
 
 /* For so many threads, at least 1. Only without an obstacle. */
-dvi_status dvi__wave_create(const dvi_system *system, int threads, dvi__wave **wave);
-void dvi__wave_destroy(dvi__wave **wave);
+dvi_status dvi__blocking_create(const dvi_system *system, int threads, dvi__blocking **wave);
+void dvi__blocking_destroy(dvi__blocking **wave);
 
 /* How many substeps one pass takes at most: as many as fit into the cache. */
-int dvi__wave_depth(const dvi__wave *wave);
+int dvi__blocking_depth(const dvi__blocking *wave);
 
 /* Threads that a pass of so many substeps is divided among: a short chain has not enough for all. */
-int dvi__wave_threads(const dvi__wave *wave, int count);
+int dvi__blocking_threads(const dvi__blocking *wave, int count);
 
 /* 1 if all went well. 0 if a callback failed or gave, or the new state holds, a number that is not finite: `to` and gradient_to are spoiled then, and
  * the plain sweep finds what came first. */
-int dvi__wave_run(dvi__wave *wave, const dvi__wave_step *step);
+int dvi__blocking_run(dvi__blocking *wave, const dvi__blocking_step *step);
 
 /* Bytes that a step of so many substeps moves if the chain fits in no cache: what it reads and writes, and lines that are fetched to be written. */
-double dvi__wave_traffic(const dvi__wave *wave, int count);
+double dvi__blocking_traffic(const dvi__blocking *wave, int count);
 
 /* For tests: waves made from now on have this block length; 0: the usual one. */
-void dvi__wave_choose_block(int block);
+void dvi__blocking_choose_block(int block);
 
 #endif

@@ -1,4 +1,4 @@
-#include "step/element/between.h"
+#include "step/element/two_point.h"
 
 #include <math.h>
 
@@ -42,7 +42,7 @@ static void fill_ends(dvi__action *a)
     }
 }
 
-dvi_status dvi__action_prepare_between(dvi__action *a)
+dvi_status dvi__action_prepare_two_point(dvi__action *a)
 {
   const size_t s = (size_t)a->s, table = (s + 1) * (size_t)a->lanes;
   a->bubble = DVI_NEW(double, s *(s - 1));
@@ -57,7 +57,7 @@ dvi_status dvi__action_prepare_between(dvi__action *a)
   return DVI_OK;
 }
 
-void dvi__action_clear_between(const dvi__action *a)
+void dvi__action_clear_two_point(const dvi__action *a)
 {
   dvi__release(a->bubble);
   dvi__release(a->chi);
@@ -66,7 +66,7 @@ void dvi__action_clear_between(const dvi__action *a)
   dvi__release(a->between_dp);
 }
 
-void dvi__action_between(const dvi__action *a, const double *q1, const double *Z, double *Y)
+void dvi__action_two_point(const dvi__action *a, const double *q1, const double *Z, double *Y)
 {
   const size_t s = (size_t)a->s;
   for (size_t i = 0; i < (size_t)a->n; i++)
@@ -77,7 +77,7 @@ void dvi__action_between(const dvi__action *a, const double *q1, const double *Z
     }
 }
 
-void dvi__action_between_ends(const dvi__action *a, const double *by_Y, const double *by_q0, double *in_q0, double *in_q1,
+void dvi__action_two_point_ends(const dvi__action *a, const double *by_Y, const double *by_q0, double *in_q0, double *in_q1,
                               double *in_Z)
 {
   const size_t s = (size_t)a->s;
@@ -95,7 +95,7 @@ void dvi__action_between_ends(const dvi__action *a, const double *by_Y, const do
 }
 
 /* In Y with q0 fixed: the rows R, and psi(1) dp, which the elimination of p1 has taken from them. */
-dvi_status dvi__action_between_gradient(dvi__action *a, const double *Y, double *in_q0, double *in_q1, double *in_Z)
+dvi_status dvi__action_two_point_gradient(dvi__action *a, const double *Y, double *in_q0, double *in_q1, double *in_Z)
 {
   DVI_TRY(dvi__action_residual(a, Y, a->between_rows));
   for (size_t i = 0, r = (size_t)a->r, s = (size_t)a->s; i < (size_t)a->n; i++) {
@@ -104,7 +104,7 @@ dvi_status dvi__action_between_gradient(dvi__action *a, const double *Y, double 
     a->between_dp[i] = a->h * sum;
     for (size_t k = 0; k < s; k++) a->between_rows[i * s + k] += a->end[k] * a->between_dp[i];
   }
-  dvi__action_between_ends(a, a->between_rows, a->between_dp, in_q0, in_q1, in_Z);
+  dvi__action_two_point_ends(a, a->between_rows, a->between_dp, in_q0, in_q1, in_Z);
   return DVI_OK;
 }
 
@@ -128,7 +128,7 @@ static void block_column(const dvi__action *a, const dvi__block *block, int b, d
   }
 }
 
-dvi_status dvi__action_between_hessian(dvi__action *a, const double *Y, double *values)
+dvi_status dvi__action_two_point_hessian(dvi__action *a, const double *Y, double *values)
 {
   dvi__action_stages(a, Y);
   DVI_TRY(dvi__lagrangian_hessian(a->evaluator, a->r, a->t, a->Q, a->V, a->H_qq, a->H_qv, a->H_vv));

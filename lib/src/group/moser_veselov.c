@@ -10,7 +10,7 @@
  *
  * The determinant of the derivative is 1 at f = 0 and vanishes where the branch ends: iterates stay where it is positive. If J = j I, g = sin(a) n, and that
  * is at a quarter turn. No F has |h Pi| above the largest moment: h Pi.n = tr(F Jd n^^T) is at most the sum of Jd n^'s singular values. */
-#include "group/leap.h"
+#include "group/moser_veselov.h"
 
 #include <dvi/group.h>
 #include <math.h>
@@ -97,7 +97,7 @@ typedef struct coefficients {
   double more_a, b, least_c, more_c, a_s, b_s, c_s;
 } coefficients;
 
-static coefficients coefficients_at(dvi__leap_by by, double s)
+static coefficients coefficients_at(dvi__moser_veselov_map by, double s)
 {
   double c[9];
   if (by == DVI__BY_CAYLEY) return (coefficients){0, 1, 0.5, 0.5 * s, 0, 0, 0.5};
@@ -112,7 +112,7 @@ static void slanted(const dvi__body *body, const double f[3], double product[3])
 }
 
 /* Two passes of Cayley's equation, solved for its linear term: right to the fourth order in the angle. */
-static void guess(const dvi__body *body, dvi__leap_by by, const double g[3], double f[3])
+static void guess(const dvi__body *body, dvi__moser_veselov_map by, const double g[3], double f[3])
 {
   double product[3];
   for (int i = 0; i < 3; i++) f[i] = 0.5 * g[i];
@@ -137,7 +137,7 @@ static void residual(const dvi__body *body, const coefficients *at, const double
 }
 
 /* Newton's correction at f; the determinant of the derivative. */
-static double correction(const dvi__body *body, dvi__leap_by by, const double impulse[3], const double f[3], double delta[3])
+static double correction(const dvi__body *body, dvi__moser_veselov_map by, const double impulse[3], const double f[3], double delta[3])
 {
   const coefficients at = coefficients_at(by, dvi__dot(f, f));
   double product[3], r[3], row[3][3], minor[3][3];
@@ -158,7 +158,7 @@ static double correction(const dvi__body *body, dvi__leap_by by, const double im
 }
 
 /* From f to the solution; the iterations taken, or 0. Iterates off the branch go half of the way back. */
-static int newton(const dvi__body *body, dvi__leap_by by, const double impulse[3], double f[3])
+static int newton(const dvi__body *body, dvi__moser_veselov_map by, const double impulse[3], double f[3])
 {
   const double most = by == DVI__BY_CAYLEY ? HUGE_VAL : half_turn * half_turn;
   double last[3] = {0};
@@ -184,7 +184,7 @@ static void transform(const dvi__body *body, const dvi__turn *turn, const double
   for (int i = 0; i < 3; i++) y[i] = x[i] + change[i];
 }
 
-int dvi__body_leap(const dvi__body *body, dvi__leap_by by, const double impulse[3], double w[3])
+int dvi__body_moser_veselov(const dvi__body *body, dvi__moser_veselov_map by, const double impulse[3], double w[3])
 {
   double inside[3], g[3], f[3];
   if (!(dvi__dot(impulse, impulse) <= body->largest * body->largest)) return 0;

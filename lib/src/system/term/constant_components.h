@@ -9,6 +9,6 @@
  * callbacks can be evaluated. Whoever relies on it checks again where he comes.
  * DVI_UNSUPPORTED otherwise; the sentence names the components among which the two-form vanishes, so that a gauge can remove them, or says that there is
  * no such half, or that the two-form has a row of zeros. Allocates. */
-dvi_status dvi__form_half(const dvi_system *system, int *is_x);
+dvi_status dvi__form_constant_components(const dvi_system *system, int *is_x);
 
 #endif

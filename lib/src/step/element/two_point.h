@@ -15,21 +15,21 @@
 #include "step/element/action.h"
 
 /* Prepare what follows; after dvi__action_prepare_jacobian. Once. */
-dvi_status dvi__action_prepare_between(dvi__action *action);
+dvi_status dvi__action_prepare_two_point(dvi__action *action);
 
 /* The unknowns Y (action.h) of the path from the element's q0 to q1 [n] with bubbles Z [n*(s-1)]. */
-void dvi__action_between(const dvi__action *action, const double *q1, const double *Z, double *Y);
+void dvi__action_two_point(const dvi__action *action, const double *q1, const double *Z, double *Y);
 
-/* The derivatives of S: in q0 and q1 [n] and in Z [n*(s-1)], for the Y of dvi__action_between. The element must be placed with p0 = 0. */
-dvi_status dvi__action_between_gradient(dvi__action *action, const double *Y, double *in_q0, double *in_q1, double *in_Z);
+/* The derivatives of S: in q0 and q1 [n] and in Z [n*(s-1)], for the Y of dvi__action_two_point. The element must be placed with p0 = 0. */
+dvi_status dvi__action_two_point_gradient(dvi__action *action, const double *Y, double *in_q0, double *in_q1, double *in_Z);
 
 /* The derivatives of any function of q0 and Y in q0, q1 and Z, from those in Y [n*s] and in q0 with Y fixed [n]. */
-void dvi__action_between_ends(const dvi__action *action, const double *by_Y, const double *by_q0, double *in_q0, double *in_q1,
+void dvi__action_two_point_ends(const dvi__action *action, const double *by_Y, const double *by_q0, double *in_q0, double *in_q1,
                               double *in_Z);
 
 /* The second derivatives of S. For each entry e = (i,j) of dvi__action_coupling a block of (s+1)^2 numbers: that of X_a of coordinate i and X_b of
  * coordinate j is values[(e*(s+1) + b)*(s+1) + a]. */
-dvi_status dvi__action_between_hessian(dvi__action *action, const double *Y, double *values);
+dvi_status dvi__action_two_point_hessian(dvi__action *action, const double *Y, double *values);
 
 /* Which coordinates L couples: the union of the patterns of L_qq, L_qv, L_vq and L_vv, [n x n]. */
 const dvi__pattern *dvi__action_coupling(const dvi__action *action);

@@ -8,7 +8,7 @@
 #include "group/turn.h"
 
 /* The unknown of Newton's method: f of F = exp(f^), or f of F = (I + f^)(I - f^)^-1. Both give the same F. */
-typedef enum dvi__leap_by { DVI__BY_EXPONENTIAL, DVI__BY_CAYLEY } dvi__leap_by;
+typedef enum dvi__moser_veselov_map { DVI__BY_EXPONENTIAL, DVI__BY_CAYLEY } dvi__moser_veselov_map;
 
 /* A body in its principal axes. */
 typedef struct dvi__body {
@@ -24,7 +24,7 @@ typedef struct dvi__body {
 int dvi__body_of(const double Jd[9], dvi__body *body);
 
 /* w = n tan(a/2) of the rotation F about n by a, from h Pi. The number of iterations; 0: there is no such F, or none that belongs to the branch. */
-int dvi__body_leap(const dvi__body *body, dvi__leap_by by, const double impulse[3], double w[3]);
+int dvi__body_moser_veselov(const dvi__body *body, dvi__moser_veselov_map by, const double impulse[3], double w[3]);
 
 /* Omega = J^-1 Pi; both may be one array. */
 void dvi__body_velocity(const dvi__body *body, const double Pi[3], double Omega[3]);

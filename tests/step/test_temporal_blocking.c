@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "step/split/wave.h"
+#include "step/split/temporal_blocking.h"
 #include "integrator/integrator_struct.h"
 #include "num/simd/lanes.h"
 #include "support/files.h"
@@ -126,10 +126,10 @@ static void make_pair(pair *p, int n, int reach, int potentials, int mass, const
       .dimension = n, .mass = mass_of(mass, n, diagonal), .potentials = both, .potential_count = potentials};
   ck_assert_msg(dvi_system_create(&terms, &p->system) == DVI_OK, "%s", dvi_last_error());
   free(diagonal);
-  dvi__wave_choose_block(block);
-  p->wave = made_integrator(p->system, spec("%ssweep=wave,threads=%d", method, threads));
-  p->plain = made_integrator(p->system, spec("%ssweep=plain", method));
-  dvi__wave_choose_block(0);
+  dvi__blocking_choose_block(block);
+  p->wave = made_integrator(p->system, spec("%sblocking=temporal,threads=%d", method, threads));
+  p->plain = made_integrator(p->system, spec("%sblocking=none", method));
+  dvi__blocking_choose_block(0);
   start_alike(p);
 }
 
@@ -163,7 +163,7 @@ enum { METHODS = 4 };
 static void best_again(void)
 {
   dvi__lanes_choose(-1);
-  dvi__wave_choose_block(0);
+  dvi__blocking_choose_block(0);
 }
 
 /* ---- bits ---- */
@@ -221,8 +221,8 @@ START_TEST(a_long_reach_takes_several_passes_with_the_same_bits)
     const dvi_potential wells = {.value = wells_value, .gradient_range = wells_range, .reach = reaches[k], .user = &p.lattice};
     const dvi_system_terms terms = {.dimension = 40000, .mass.scalar = 1, .potentials = &wells, .potential_count = 1};
     ck_assert_int_eq(dvi_system_create(&terms, &p.system), DVI_OK);
-    p.wave = made_integrator(p.system, "composition:order=6,sweep=wave,threads=2");
-    p.plain = made_integrator(p.system, "composition:order=6,sweep=plain");
+    p.wave = made_integrator(p.system, "composition:order=6,blocking=temporal,threads=2");
+    p.plain = made_integrator(p.system, "composition:order=6,blocking=none");
     dvi_integrator_explain(p.wave, text, sizeof text);
     ck_assert_msg(strstr(text, k == 0   ? "at most 13 substeps"
                                : k == 1 ? "at most 2 substeps"
@@ -241,10 +241,10 @@ START_TEST(the_catalogues_chain_has_the_same_bits_by_both_sweeps)
 {
   static const char *const sizes[] = {"n=1", "n=2", "n=32", "n=4099"};
   problem *chain = made_problem("chain", sizes[_i]);
-  dvi_integrator *plain = started(chain, "composition:order=8,sweep=plain");
+  dvi_integrator *plain = started(chain, "composition:order=8,blocking=none");
   advance(plain, 0.1, 20);
   for (int threads = 1; threads <= 2; threads++) {
-    dvi_integrator *wave = started(chain, spec("composition:order=8,sweep=wave,threads=%d", threads));
+    dvi_integrator *wave = started(chain, spec("composition:order=8,blocking=temporal,threads=%d", threads));
     advance(wave, 0.1, 20);
     check_same(wave, plain, "chain");
     dvi_integrator_destroy(&wave);
@@ -458,7 +458,7 @@ START_TEST(runs_with_events_are_those_of_the_plain_sweep)
 }
 END_TEST
 
-SUITE(wave)
+SUITE(temporal_blocking)
 {
   tcase_add_checked_fixture(tests, make_folder, remove_folder);
   tcase_add_checked_fixture(tests, NULL, best_again);
