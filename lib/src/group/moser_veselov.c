@@ -1,15 +1,20 @@
-/* In principal axes, with F = I + a f^ + b f^^2, c = h Pi_i / J_i times a function of s = |f|^2 that keeps the equation simple:
+/* In principal axes, with F = I + a f^ + b f^^2, c = h Pi_i / J_i times a function of s = |f|^2
+ * that keeps the equation simple:
  *
  *     a f_i + b slant_i f_j f_k = c g_i,     g_i = h Pi_i / J_i,
  *
- * for the exponential a = c_1(s), b = c_2(s), c = 1, for Cayley's map a = b = 1, c = (1 + s)/2. Slants are differences of second moments, so that nothing
- * cancels, however thin a body is, and all rows have the size of the angle. But rounded moments and slants are not of one body, and axes rounded entry by entry
- * not orthogonal: solutions would gain or lose energy, the same in every step. Hence the axes are a turn, and residuals in the second moments themselves,
+ * for the exponential a = c_1(s), b = c_2(s), c = 1, for Cayley's map a = b = 1, c = (1 + s)/2.
+ * Slants are differences of second moments, so that nothing cancels, however thin a body is, and
+ * all rows have the size of the angle. But rounded moments and slants are not of one body, and axes
+ * rounded entry by entry not orthogonal: solutions would gain or lose energy, the same in every
+ * step. Hence the axes are a turn, and residuals in the second moments themselves,
  *
  *     c h Pi_i - a (d_j f_i + d_k f_i) - b (d_j f_j f_k - d_k f_j f_k).
  *
- * The determinant of the derivative is 1 at f = 0 and vanishes where the branch ends: iterates stay where it is positive. If J = j I, g = sin(a) n, and that
- * is at a quarter turn. No F has |h Pi| above the largest moment: h Pi.n = tr(F Jd n^^T) is at most the sum of Jd n^'s singular values. */
+ * The determinant of the derivative is 1 at f = 0 and vanishes where the branch ends: iterates stay
+ * where it is positive. If J = j I, g = sin(a) n, and that is at a quarter turn. No F has |h Pi|
+ * above the largest moment: h Pi.n = tr(F Jd n^^T) is at most the sum of Jd n^'s singular
+ * values. */
 #include "group/moser_veselov.h"
 
 #include <dvi/group.h>
@@ -28,7 +33,8 @@ static const double half_turn = 3.14159265358979323846;
 /* One of Jacobi's rotations: A_pq becomes 0, the columns of the axes turn along. */
 static void rotate(double A[3][3], double axis[3][3], int p, int q)
 {
-  const double theta = (A[q][q] - A[p][p]) / (2 * A[p][q]), t = copysign(1, theta) / (fabs(theta) + sqrt(theta * theta + 1)),
+  const double theta = (A[q][q] - A[p][p]) / (2 * A[p][q]),
+               t = copysign(1, theta) / (fabs(theta) + sqrt(theta * theta + 1)),
                cosine = 1 / sqrt(t * t + 1), sine = t * cosine;
   for (int k = 0; k < 3; k++) {
     const double Akp = A[k][p], Akq = A[k][q];
@@ -45,7 +51,8 @@ static void rotate(double A[3][3], double axis[3][3], int p, int q)
   A[p][q] = A[q][p] = 0;
 }
 
-/* The turn of rows into the axes, or into those with two of them reversed: of the four the one by the smallest angle, at most 2 pi/3. */
+/* The turn of rows into the axes, or into those with two of them reversed: of the four the one by
+ * the smallest angle, at most 2 pi/3. */
 static dvi__turn turn_into(double axis[3][3])
 {
   double columns[9], q[4] = {1}, w[3];
@@ -111,7 +118,8 @@ static void slanted(const dvi__body *body, const double f[3], double product[3])
   for (int i = 0; i < 3; i++) product[i] = body->slant[i] * f[(i + 1) % 3] * f[(i + 2) % 3];
 }
 
-/* Two passes of Cayley's equation, solved for its linear term: right to the fourth order in the angle. */
+/* Two passes of Cayley's equation, solved for its linear term: right to the fourth order in the
+ * angle. */
 static void guess(const dvi__body *body, dvi__moser_veselov_map by, const double g[3], double f[3])
 {
   double product[3];
@@ -125,19 +133,24 @@ static void guess(const dvi__body *body, dvi__moser_veselov_map by, const double
   for (int i = 0; i < 3 && by == DVI__BY_EXPONENTIAL; i++) f[i] *= stretch;
 }
 
-/* What is left of the equation at f. Only c h Pi and J f at f = 0 are rounded to their own size: what is small is added last. */
-static void residual(const dvi__body *body, const coefficients *at, const double impulse[3], const double f[3], double r[3])
+/* What is left of the equation at f. Only c h Pi and J f at f = 0 are rounded to their own size:
+ * what is small is added last. */
+static void residual(const dvi__body *body, const coefficients *at, const double impulse[3],
+                     const double f[3], double r[3])
 {
   const double *d = body->second;
   for (int i = 0; i < 3; i++) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
-    const double Jf = d[j] * f[i] + d[k] * f[i], product = f[j] * f[k], turned = d[j] * product - d[k] * product;
-    r[i] = (at->least_c * impulse[i] - Jf) + (at->more_c * impulse[i] - at->more_a * Jf - at->b * turned);
+    const double Jf = d[j] * f[i] + d[k] * f[i], product = f[j] * f[k],
+                 turned = d[j] * product - d[k] * product;
+    r[i] = (at->least_c * impulse[i] - Jf) +
+           (at->more_c * impulse[i] - at->more_a * Jf - at->b * turned);
   }
 }
 
 /* Newton's correction at f; the determinant of the derivative. */
-static double correction(const dvi__body *body, dvi__moser_veselov_map by, const double impulse[3], const double f[3], double delta[3])
+static double correction(const dvi__body *body, dvi__moser_veselov_map by, const double impulse[3],
+                         const double f[3], double delta[3])
 {
   const coefficients at = coefficients_at(by, dvi__dot(f, f));
   double product[3], r[3], row[3][3], minor[3][3];
@@ -145,7 +158,8 @@ static double correction(const dvi__body *body, dvi__moser_veselov_map by, const
   residual(body, &at, impulse, f, r);
   for (int i = 0; i < 3; i++) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
-    const double along = 2 * (at.a_s * f[i] + at.b_s * product[i] - at.c_s * impulse[i] / body->moment[i]);
+    const double along = 2 * (at.a_s * f[i] + at.b_s * product[i] -
+                              at.c_s * impulse[i] / body->moment[i]);
     r[i] /= body->moment[i];
     row[i][i] = (1 + at.more_a) + along * f[i];
     row[i][j] = at.b * body->slant[i] * f[k] + along * f[j];
@@ -153,12 +167,15 @@ static double correction(const dvi__body *body, dvi__moser_veselov_map by, const
   }
   for (int i = 0; i < 3; i++) dvi__cross(row[(i + 1) % 3], row[(i + 2) % 3], minor[i]);
   const double determinant = dvi__dot(row[0], minor[0]);
-  for (int i = 0; i < 3; i++) delta[i] = (r[0] * minor[0][i] + r[1] * minor[1][i] + r[2] * minor[2][i]) / determinant;
+  for (int i = 0; i < 3; i++)
+    delta[i] = (r[0] * minor[0][i] + r[1] * minor[1][i] + r[2] * minor[2][i]) / determinant;
   return determinant;
 }
 
-/* From f to the solution; the iterations taken, or 0. Iterates off the branch go half of the way back. */
-static int newton(const dvi__body *body, dvi__moser_veselov_map by, const double impulse[3], double f[3])
+/* From f to the solution; the iterations taken, or 0. Iterates off the branch go half of the way
+ * back. */
+static int newton(const dvi__body *body, dvi__moser_veselov_map by, const double impulse[3],
+                  double f[3])
 {
   const double most = by == DVI__BY_CAYLEY ? HUGE_VAL : half_turn * half_turn;
   double last[3] = {0};
@@ -184,7 +201,8 @@ static void transform(const dvi__body *body, const dvi__turn *turn, const double
   for (int i = 0; i < 3; i++) y[i] = x[i] + change[i];
 }
 
-int dvi__body_moser_veselov(const dvi__body *body, dvi__moser_veselov_map by, const double impulse[3], double w[3])
+int dvi__body_moser_veselov(const dvi__body *body, dvi__moser_veselov_map by,
+                            const double impulse[3], double w[3])
 {
   double inside[3], g[3], f[3];
   if (!(dvi__dot(impulse, impulse) <= body->largest * body->largest)) return 0;

@@ -1,9 +1,10 @@
-/* Reversible step control: an integrating controller for z, the number of steps in a unit of time over h,
+/* Reversible step control: an integrating controller for z, the number of steps in a unit of time
+ * over h,
  *
  *     dz/dtau = -g_q.v/g  if dt/dtau = 1/z,        z = 1/g  at the start,
  *
- * in two halves around each step, so that a step of -h undoes one of h. Source: Hairer and Soederlind 2005, sec. 3; Hairer, Lubich and Wanner
- * 2006, sec. VIII.3.2. */
+ * in two halves around each step, so that a step of -h undoes one of h. Source: Hairer and
+ * Soederlind 2005, sec. 3; Hairer, Lubich and Wanner 2006, sec. VIII.3.2. */
 #include <math.h>
 
 #include "core/status.h"
@@ -24,15 +25,17 @@ static dvi_status slope(dvi_integrator *I, const dvi__state *state, double *rate
 }
 
 /* Half a step of z. */
-static dvi_status follow(dvi_integrator *I, const dvi__state *state, double h, double z, double *next)
+static dvi_status follow(dvi_integrator *I, const dvi__state *state, double h, double z,
+                         double *next)
 {
   double rate;
   DVI_TRY(slope(I, state, &rate));
   *next = z + 0.5 * h * rate;
   if (*next > 0 && isfinite(*next)) return DVI_OK;
   return dvi__fail(DVI_NOT_CONVERGED,
-                   "step control: the steps' density z went from %.3g to %.3g; h is too large for how fast %s changes", z, *next,
-                   I->monitored->name);
+                   "step control: the steps' density z went from %.3g to %.3g; h is too large for "
+                   "how fast %s changes",
+                   z, *next, I->monitored->name);
 }
 
 dvi_status dvi__control_begin(dvi_integrator *I, double h, double *length)

@@ -13,26 +13,30 @@
 
 /* ---- create, destroy ---- */
 
-static dvi_status fill(dvi__monitored_time *p, const dvi_system *system, const dvi_monitor *monitor, dvi_counters *counters)
+static dvi_status fill(dvi__monitored_time *p, const dvi_system *system, const dvi_monitor *monitor,
+                       dvi_counters *counters)
 {
   p->given = *monitor;
   p->energy = (double)NAN;
   p->q = DVI_NEW(double, system->n);
   p->v = DVI_NEW(double, system->n);
   p->g_q = DVI_NEW(double, system->n);
-  if (!p->q || !p->v || !p->g_q) return dvi__fail(DVI_NO_MEMORY, "monitor: no memory for %d coordinates", system->n);
+  if (!p->q || !p->v || !p->g_q)
+    return dvi__fail(DVI_NO_MEMORY, "monitor: no memory for %d coordinates", system->n);
   if (p->pacing == DVI_TIME_TRANSFORM)
     DVI_TRY(dvi__transformed_create(system, monitor, counters, &p->transformed));
   else
     DVI_TRY(dvi__monitor_create(system, monitor, 1, DVI__GRADIENTS, counters, &p->monitor));
-  const dvi__monitor *made = p->transformed != NULL ? dvi__transformed_monitor(p->transformed) : p->monitor;
+  const dvi__monitor *made = p->transformed != NULL ? dvi__transformed_monitor(p->transformed)
+                                                    : p->monitor;
   (void)snprintf(p->name, sizeof p->name, "%s", dvi__monitor_name(made));
   p->given.function.name = p->name;
   return dvi_quadrature(DVI_GAUSS, DVI__MONITORED_POINTS, p->node, p->weight);
 }
 
-dvi_status dvi__monitored_time_create(const dvi_system *system, const dvi_monitor *monitor, dvi_pacing pacing, dvi_counters *counters,
-                            dvi__monitored_time **monitored)
+dvi_status dvi__monitored_time_create(const dvi_system *system, const dvi_monitor *monitor,
+                                      dvi_pacing pacing, dvi_counters *counters,
+                                      dvi__monitored_time **monitored)
 {
   *monitored = NULL;
   dvi__monitored_time *p = DVI_NEW(dvi__monitored_time, 1);
@@ -57,14 +61,18 @@ void dvi__monitored_time_destroy(dvi__monitored_time **monitored)
   *monitored = NULL;
 }
 
-const dvi_system *dvi__monitored_time_system(const dvi__monitored_time *monitored, const dvi_system *system)
+const dvi_system *dvi__monitored_time_system(const dvi__monitored_time *monitored,
+                                             const dvi_system *system)
 {
-  return monitored != NULL && monitored->transformed != NULL ? dvi__transformed_system(monitored->transformed) : system;
+  return monitored != NULL && monitored->transformed != NULL
+             ? dvi__transformed_system(monitored->transformed)
+             : system;
 }
 
 static dvi__monitor *monitor_of(const dvi__monitored_time *monitored)
 {
-  return monitored->transformed != NULL ? dvi__transformed_monitor(monitored->transformed) : monitored->monitor;
+  return monitored->transformed != NULL ? dvi__transformed_monitor(monitored->transformed)
+                                        : monitored->monitor;
 }
 
 dvi_status dvi__monitored_time_monitor(dvi__monitored_time *monitored, const double *q, double *g)
@@ -85,10 +93,13 @@ const char *dvi_integrator_monitor(const dvi_integrator *integrator)
 void dvi__monitored_time_explain(const dvi__monitored_time *monitored, dvi__text *text)
 {
   if (monitored->pacing == DVI_TIME_TRANSFORM)
-    dvi__text_add(text, "time: transformed, dt/dtau = g(q), %s; steps are steps of tau, of a general Lagrangian with mass M/g\n",
+    dvi__text_add(text,
+                  "time: transformed, dt/dtau = g(q), %s; steps are steps of tau, of a general "
+                  "Lagrangian with mass M/g\n",
                   monitored->name);
   else
-    dvi__text_add(text, "time: steps follow %s by reversible control; symmetric, not symplectic\n", monitored->name);
+    dvi__text_add(text, "time: steps follow %s by reversible control; symmetric, not symplectic\n",
+                  monitored->name);
 }
 
 /* ---- start ---- */
@@ -104,10 +115,12 @@ void dvi__monitored_time_set_energy(dvi__monitored_time *monitored, double energ
 }
 
 /* L_v.v - L, or H at the start's momenta. */
-static dvi_status energy_at(dvi_integrator *I, double t, const double *q, const double *v, const double *momenta, double *energy)
+static dvi_status energy_at(dvi_integrator *I, double t, const double *q, const double *v,
+                            const double *momenta, double *energy)
 {
   double L, *p = I->monitored->g_q;
-  if (I->system->dynamics->by_momentum) return dvi__lagrangian_value(I->evaluator, 1, &t, q, momenta, energy);
+  if (I->system->dynamics->by_momentum)
+    return dvi__lagrangian_value(I->evaluator, 1, &t, q, momenta, energy);
   DVI_TRY(dvi__lagrangian_value(I->evaluator, 1, &t, q, v, &L));
   DVI_TRY(dvi__lagrangian_gradient(I->evaluator, 1, &t, q, v, NULL, p));
   *energy = -L;
@@ -115,8 +128,8 @@ static dvi_status energy_at(dvi_integrator *I, double t, const double *q, const 
   return DVI_OK;
 }
 
-dvi_status dvi__monitored_time_start(dvi_integrator *I, double t, const double *q, const double *v, const double *p, double *w,
-                           double *density)
+dvi_status dvi__monitored_time_start(dvi_integrator *I, double t, const double *q, const double *v,
+                                     const double *p, double *w, double *density)
 {
   dvi__monitored_time *monitored = I->monitored;
   const double before = monitored->energy;
@@ -128,7 +141,8 @@ dvi_status dvi__monitored_time_start(dvi_integrator *I, double t, const double *
     dvi__monitored_time_set_energy(monitored, before);
     return status;
   }
-  for (int i = 0; i < I->system->n; i++) w[i] = monitored->pacing == DVI_TIME_TRANSFORM ? g * v[i] : v[i];
+  for (int i = 0; i < I->system->n; i++)
+    w[i] = monitored->pacing == DVI_TIME_TRANSFORM ? g * v[i] : v[i];
   *density = 1 / g;
   return DVI_OK;
 }
@@ -144,7 +158,8 @@ static double past(const dvi_integrator *I, double h, double t_end)
   return h > 0 ? later : -later;
 }
 
-/* The run ends at t_end itself, not a few roundings beside it: what follows, or ends there too, finds it so. */
+/* The run ends at t_end itself, not a few roundings beside it: what follows, or ends there too,
+ * finds it so. */
 static dvi_status arrive(dvi_integrator *I, double t_end)
 {
   I->now.t = t_end;
@@ -153,16 +168,19 @@ static dvi_status arrive(dvi_integrator *I, double t_end)
   return DVI_OK;
 }
 
-/* The length of the step from here that ends at t_end: Illinois' variant of regula falsi (Dowell and Jarratt 1971) between one that falls short and
- * one that passes the end, `over`; bisection while that one fails, `over` NaN, for beyond the end are places that the run never comes to, down to
- * `least`. */
-static dvi_status step_to_end(dvi_integrator *I, double h, double over, double least, double t_end, double tolerance)
+/* The length of the step from here that ends at t_end: Illinois' variant of regula falsi (Dowell
+ * and Jarratt 1971) between one that falls short and one that passes the end, `over`; bisection
+ * while that one fails, `over` NaN, for beyond the end are places that the run never comes to, down
+ * to `least`. */
+static dvi_status step_to_end(dvi_integrator *I, double h, double over, double least, double t_end,
+                              double tolerance)
 {
   double longer = h, shorter = 0, under = past(I, h, t_end);
   dvi_status failure = DVI_OK;
   int side = 0;
   for (int i = 0; i < MOST_TRIES && fabs(longer - shorter) > least; i++) {
-    const double part = isnan(over) ? 0.5 : under / (under - over), length = shorter + (longer - shorter) * part;
+    const double part = isnan(over) ? 0.5 : under / (under - over),
+                 length = shorter + (longer - shorter) * part;
     const dvi_status status = dvi_integrator_step(I, length);
     if (status < 0) return status;
     if (status > 0) failure = status;
@@ -180,15 +198,20 @@ static dvi_status step_to_end(dvi_integrator *I, double h, double over, double l
     }
   }
   if (failure != DVI_OK) return failure; /* its sentence is the last one */
-  return dvi__fail(DVI_NOT_CONVERGED, "%s: the step from t = %.9g that ends at t = %.9g was not found; try a smaller h",
-                   I->stepper.method->name, I->now.t, t_end);
+  return dvi__fail(
+      DVI_NOT_CONVERGED,
+      "%s: the step from t = %.9g that ends at t = %.9g was not found; try a smaller h",
+      I->stepper.method->name, I->now.t, t_end);
 }
 
 /* After a step that has failed: it may have been one past the end, by the monitor here. */
-static dvi_status retry(dvi_integrator *I, double h, double t_end, double tolerance, dvi_status failure)
+static dvi_status retry(dvi_integrator *I, double h, double t_end, double tolerance,
+                        dvi_status failure)
 {
   double g;
-  if (failure < 0 || dvi__monitored_time_monitor(I->monitored, I->now.q, &g) != DVI_OK || past(I, h, t_end) + 2 * fabs(h) * g < 0) return failure;
+  if (failure < 0 || dvi__monitored_time_monitor(I->monitored, I->now.q, &g) != DVI_OK ||
+      past(I, h, t_end) + 2 * fabs(h) * g < 0)
+    return failure;
   return step_to_end(I, h, (double)NAN, 0.0625 * tolerance / g, t_end, tolerance);
 }
 

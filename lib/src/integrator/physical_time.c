@@ -1,10 +1,13 @@
-/* Time inside a step of a time-transformed system. The step's path is a polynomial in tau; the time that has passed at tau is
+/* Time inside a step of a time-transformed system. The step's path is a polynomial in tau; the time
+ * that has passed at tau is
  *
  *     t(tau) = t0 + (t1 - t0) G(tau)/G(1),     G(tau) = integral of g(q) from 0 to tau,     tau from 0 to 1,
  *
- * so that both ends are the step's own. g on the path is expanded once a step in Legendre polynomials, by Gauss quadrature:
+ * so that both ends are the step's own. g on the path is expanded once a step in Legendre
+ * polynomials, by Gauss quadrature:
  *
- *     g = sum_m a_m P_m(x),  x = 2 tau - 1,     G = 1/2 a_0 (x + 1) + 1/2 sum_m a_m (P_m+1 - P_m-1)/(2m + 1). */
+ *     g = sum_m a_m P_m(x),  x = 2 tau - 1,     G = 1/2 a_0 (x + 1) + 1/2 sum_m a_m (P_m+1 - P_m-1)/(2m +
+ * 1). */
 #include <math.h>
 
 #include "core/status.h"
@@ -30,7 +33,8 @@ static dvi_status expand(dvi_integrator *I)
     I->stepper.method->path(&I->stepper, I->last.q, 1, monitored->node[k], monitored->q, NULL);
     DVI_TRY(dvi__monitored_time_monitor(monitored, monitored->q, &g));
     legendre(2 * monitored->node[k] - 1, P);
-    for (int m = 0; m < POINTS; m++) monitored->series[m] += (2 * m + 1) * monitored->weight[k] * P[m] * g;
+    for (int m = 0; m < POINTS; m++)
+      monitored->series[m] += (2 * m + 1) * monitored->weight[k] * P[m] * g;
   }
   monitored->expanded = 1;
   return DVI_OK;
@@ -50,7 +54,8 @@ static double passed(const dvi__monitored_time *monitored, double tau, double *g
   return G;
 }
 
-/* The tau with this G: G rises, so Newton's iterates are kept between the last ones below and above. */
+/* The tau with this G: G rises, so Newton's iterates are kept between the last ones below and
+ * above. */
 static double find(const dvi__monitored_time *monitored, double wanted, double tau)
 {
   double below = 0, above = 1, g;

@@ -82,9 +82,12 @@ static dvi_status ask(const dvi_event *event, double t, const double *q, const d
 {
   const int returned = event->value(t, q, v, g, event->user);
   if (returned != 0)
-    return dvi__fail(returned < 0 ? DVI_CALLBACK_FAILED : DVI_CALLBACK_RETRY, "event '%s': the callback returned %d at t = %.9g",
-                     name_of(event), returned, t);
-  return isfinite(*g) ? DVI_OK : dvi__fail(DVI_NOT_FINITE, "event '%s' is %g at t = %.9g", name_of(event), *g, t);
+    return dvi__fail(returned < 0 ? DVI_CALLBACK_FAILED : DVI_CALLBACK_RETRY,
+                     "event '%s': the callback returned %d at t = %.9g", name_of(event), returned,
+                     t);
+  return isfinite(*g)
+             ? DVI_OK
+             : dvi__fail(DVI_NOT_FINITE, "event '%s' is %g at t = %.9g", name_of(event), *g, t);
 }
 
 /* On the last step's path. */
@@ -114,21 +117,27 @@ static dvi_status occurred(void *of, int k, double t, int *returned)
   DVI_TRY(dvi_integrator_interpolate(m->integrator, t, m->q, m->v));
   *returned = event->occurred(t, m->q, m->v, event->user);
   if (*returned >= 0) return DVI_OK;
-  return dvi__fail(DVI_CALLBACK_FAILED, "event '%s': the callback at t = %.9g failed with %d", name_of(event), t, *returned);
+  return dvi__fail(DVI_CALLBACK_FAILED, "event '%s': the callback at t = %.9g failed with %d",
+                   name_of(event), t, *returned);
 }
 
 static dvi_status check_events(const dvi_run_options *options)
 {
-  if (options->event_count < 0) return dvi__fail(DVI_BAD_ARGUMENT, "run: %d events; 0 or more are possible", options->event_count);
+  if (options->event_count < 0)
+    return dvi__fail(DVI_BAD_ARGUMENT, "run: %d events; 0 or more are possible",
+                     options->event_count);
   if (options->event_count > 0 && options->events == NULL)
-    return dvi__fail(DVI_BAD_ARGUMENT, "run: %d events declared, but their list is NULL", options->event_count);
+    return dvi__fail(DVI_BAD_ARGUMENT, "run: %d events declared, but their list is NULL",
+                     options->event_count);
   if (options->event_count == 0 && options->events != NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "run: a list of events is given, but their count is 0");
   for (int k = 0; k < options->event_count; k++) {
     const dvi_event *event = &options->events[k];
-    if (event->value == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "run: event %d has no value callback", k);
+    if (event->value == NULL)
+      return dvi__fail(DVI_BAD_ARGUMENT, "run: event %d has no value callback", k);
     if (event->direction < -1 || event->direction > 1)
-      return dvi__fail(DVI_BAD_ARGUMENT, "run: event %d has direction %d; -1, 0 or 1 are possible", k, event->direction);
+      return dvi__fail(DVI_BAD_ARGUMENT, "run: event %d has direction %d; -1, 0 or 1 are possible",
+                       k, event->direction);
   }
   return DVI_OK;
 }
@@ -178,7 +187,9 @@ dvi_status dvi_run(dvi_integrator *I, const dvi_run_options *options, dvi_run_re
   mechanics m = {.integrator = I, .options = options};
   *out = (dvi_run_report){.end = DVI_RUN_FAILED, .event_time = (double)NAN, .event = -1};
   if (I == NULL || options == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "run: an argument is NULL");
-  if (!I->started) return dvi__fail(DVI_BAD_STATE, "run: the integrator has no state yet; call dvi_integrator_start first");
+  if (!I->started)
+    return dvi__fail(DVI_BAD_STATE,
+                     "run: the integrator has no state yet; call dvi_integrator_start first");
   DVI_TRY(check_events(options));
   dvi_status status = reserve(&m);
   if (status == DVI_OK) status = run(&m, out);

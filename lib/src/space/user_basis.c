@@ -35,9 +35,12 @@ static void lay_out(dvi__user_basis_tables *t, size_t points, size_t count, doub
 
 static int allocate(dvi__user_basis *g)
 {
-  const size_t points = (size_t)g->points, count = (size_t)g->count, functions = (size_t)g->shapes->functions;
-  double *left = g->numbers = DVI_NEW(double, 2 * (2 * points * (1 + count) + 4 * count) + 2 * points + 2 * functions);
-  long double *longs = g->long_numbers = DVI_NEW(long double, 2 * (count + count * count) + 2 * points * count + 2 * count);
+  const size_t points = (size_t)g->points, count = (size_t)g->count,
+               functions = (size_t)g->shapes->functions;
+  double *left = g->numbers = DVI_NEW(double, 2 * (2 * points * (1 + count) + 4 * count) +
+                                                  2 * points + 2 * functions);
+  long double *longs = g->long_numbers = DVI_NEW(long double, 2 * (count + count * count) +
+                                                                  2 * points * count + 2 * count);
   if (left == NULL || longs == NULL) return 0;
   lay_out(&g->now, points, count, &left);
   lay_out(&g->spare, points, count, &left);
@@ -73,7 +76,8 @@ static dvi_status make(dvi__user_basis *g, dvi_rule rule)
   return DVI_OK;
 }
 
-dvi_status dvi__user_basis_create(const dvi_shapes *shapes, int degree, dvi_rule rule, int nodes, dvi__user_basis **given)
+dvi_status dvi__user_basis_create(const dvi_shapes *shapes, int degree, dvi_rule rule, int nodes,
+                                  dvi__user_basis **given)
 {
   dvi__user_basis *g = *given = DVI_NEW(dvi__user_basis, 1);
   if (g == NULL) return dvi__fail(DVI_NO_MEMORY, "shapes %s: no memory", shapes->name);
@@ -100,8 +104,9 @@ void dvi__user_basis_destroy(dvi__user_basis **given)
 static dvi_status check_answer(const dvi__user_basis *g, const char *callback, double h, int answer)
 {
   if (answer == 0) return DVI_OK;
-  return dvi__fail(answer > 0 ? DVI_CALLBACK_RETRY : DVI_CALLBACK_FAILED, "shapes %s: %s returned %d for a step of h = %.3g",
-                   g->shapes->name, callback, answer, h);
+  return dvi__fail(answer > 0 ? DVI_CALLBACK_RETRY : DVI_CALLBACK_FAILED,
+                   "shapes %s: %s returned %d for a step of h = %.3g", g->shapes->name, callback,
+                   answer, h);
 }
 
 /* A number that a callback leaves out is NaN. */
@@ -114,8 +119,10 @@ static dvi_status take(const dvi__user_basis *g, const char *callback, double h,
 {
   for (int i = 0; i < g->shapes->functions; i++) {
     if (!isfinite(g->f[i]) || !isfinite(g->df[i]))
-      return dvi__fail(DVI_NOT_FINITE, "shapes %s: %s gave %s[%d] = %g at tau = %.6g of a step of h = %.3g", g->shapes->name,
-                       callback, isfinite(g->f[i]) ? "derivative" : "value", i, isfinite(g->f[i]) ? g->df[i] : g->f[i], tau, h);
+      return dvi__fail(DVI_NOT_FINITE,
+                       "shapes %s: %s gave %s[%d] = %g at tau = %.6g of a step of h = %.3g",
+                       g->shapes->name, callback, isfinite(g->f[i]) ? "derivative" : "value", i,
+                       isfinite(g->f[i]) ? g->df[i] : g->f[i], tau, h);
     g->at_value[g->degree + i] = (long double)g->f[i];
     g->at_slope[g->degree + i] = (long double)g->df[i];
   }
@@ -139,7 +146,8 @@ dvi_status dvi__user_basis_evaluate(const dvi__user_basis *g, double h, double t
 {
   polynomials(g, tau);
   forget(g);
-  DVI_TRY(check_answer(g, "evaluate", h, g->shapes->evaluate(h, tau, g->f, g->df, g->shapes->user)));
+  DVI_TRY(
+      check_answer(g, "evaluate", h, g->shapes->evaluate(h, tau, g->f, g->df, g->shapes->user)));
   return take(g, "evaluate", h, tau);
 }
 
@@ -149,13 +157,16 @@ static dvi_status ask_point(const dvi__user_basis *g, double h, int j, double *n
 {
   *node = *weight = (double)NAN;
   forget(g);
-  DVI_TRY(check_answer(g, "point", h, g->shapes->point(h, j, node, weight, g->f, g->df, g->shapes->user)));
+  DVI_TRY(check_answer(g, "point", h,
+                       g->shapes->point(h, j, node, weight, g->f, g->df, g->shapes->user)));
   if (!(*node >= 0 && *node <= 1))
-    return dvi__fail(isfinite(*node) ? DVI_BAD_ARGUMENT : DVI_NOT_FINITE,
-                     "shapes %s: point %d is at tau = %g of a step of h = %.3g; 0 to 1 are possible", g->shapes->name, j, *node, h);
+    return dvi__fail(
+        isfinite(*node) ? DVI_BAD_ARGUMENT : DVI_NOT_FINITE,
+        "shapes %s: point %d is at tau = %g of a step of h = %.3g; 0 to 1 are possible",
+        g->shapes->name, j, *node, h);
   if (!isfinite(*weight))
-    return dvi__fail(DVI_NOT_FINITE, "shapes %s: point %d has the weight %g for a step of h = %.3g", g->shapes->name, j, *weight,
-                     h);
+    return dvi__fail(DVI_NOT_FINITE, "shapes %s: point %d has the weight %g for a step of h = %.3g",
+                     g->shapes->name, j, *weight, h);
   polynomials(g, *node);
   return take(g, "point", h, *node);
 }
@@ -166,7 +177,8 @@ static dvi_status ask_points(const dvi__user_basis *g, double h, const dvi__user
   for (int j = 0; j < g->points; j++) {
     t->node[j] = g->node[j];
     t->weight[j] = g->weight[j];
-    DVI_TRY(g->shapes->point != NULL ? ask_point(g, h, j, &t->node[j], &t->weight[j]) : dvi__user_basis_evaluate(g, h, t->node[j]));
+    DVI_TRY(g->shapes->point != NULL ? ask_point(g, h, j, &t->node[j], &t->weight[j])
+                                     : dvi__user_basis_evaluate(g, h, t->node[j]));
     sum += t->weight[j];
     for (int k = 0; k < g->count; k++) {
       g->value[k * g->points + j] = g->at_value[k] - t->start[k];
@@ -174,7 +186,8 @@ static dvi_status ask_points(const dvi__user_basis *g, double h, const dvi__user
     }
   }
   if (fabs(sum - 1) <= 1e-12) return DVI_OK;
-  return dvi__fail(DVI_BAD_ARGUMENT, "shapes %s: the weights sum to %.15g for a step of h = %.3g; they must sum to 1",
+  return dvi__fail(DVI_BAD_ARGUMENT,
+                   "shapes %s: the weights sum to %.15g for a step of h = %.3g; they must sum to 1",
                    g->shapes->name, sum, h);
 }
 
@@ -185,7 +198,8 @@ static void add(double number, dvi__user_basis_fingerprint *to)
   to->size += fabs(part);
 }
 
-/* Of the user's numbers as they are: an orthonormal basis would amplify what other machines round otherwise. */
+/* Of the user's numbers as they are: an orthonormal basis would amplify what other machines round
+ * otherwise. */
 static void fingerprint(const dvi__user_basis *g, dvi__user_basis_tables *t)
 {
   t->fingerprint = (dvi__user_basis_fingerprint){0};
@@ -209,7 +223,8 @@ static long double inner(const dvi__user_basis *g, const dvi__user_basis_tables 
   return sum;
 }
 
-static void multiply(const dvi__user_basis *g, const dvi__user_basis_tables *t, int k, long double factor)
+static void multiply(const dvi__user_basis *g, const dvi__user_basis_tables *t, int k,
+                     long double factor)
 {
   for (int j = k * g->points; j < (k + 1) * g->points; j++) {
     g->value[j] *= factor;
@@ -218,7 +233,8 @@ static void multiply(const dvi__user_basis *g, const dvi__user_basis_tables *t, 
   for (int i = 0; i <= k; i++) t->matrix[k * g->count + i] *= factor;
 }
 
-static void subtract(const dvi__user_basis *g, const dvi__user_basis_tables *t, int k, long double factor, int l)
+static void subtract(const dvi__user_basis *g, const dvi__user_basis_tables *t, int k,
+                     long double factor, int l)
 {
   for (int j = 0; j < g->points; j++) {
     g->value[k * g->points + j] -= factor * g->value[l * g->points + j];
@@ -227,7 +243,8 @@ static void subtract(const dvi__user_basis *g, const dvi__user_basis_tables *t, 
   for (int i = 0; i <= l; i++) t->matrix[k * g->count + i] -= factor * t->matrix[l * g->count + i];
 }
 
-/* Gram and Schmidt's, in the derivatives, each function three times. The first, tau, stays as it is: the weights sum to 1. */
+/* Gram and Schmidt's, in the derivatives, each function three times. The first, tau, stays as it
+ * is: the weights sum to 1. */
 static void orthogonalize(const dvi__user_basis *g, const dvi__user_basis_tables *t)
 {
   memset(t->matrix, 0, (size_t)g->count * (size_t)g->count * sizeof *t->matrix);
@@ -248,7 +265,8 @@ static void write_slopes(const dvi__user_basis *g, const dvi__user_basis_tables 
     long double lean = 0;
     for (int j = 0; j < g->points; j++) {
       t->dpsi[j * g->count + k] = (double)g->slope[k * g->points + j];
-      lean += dvi__user_basis_measure(g, t, j, k) * g->slope[k * g->points + j] * (long double)t->node[j];
+      lean += dvi__user_basis_measure(g, t, j, k) * g->slope[k * g->points + j] *
+              (long double)t->node[j];
     }
     t->lean[k] = (double)lean;
   }
@@ -277,18 +295,23 @@ static long double end_of(const dvi__user_basis *g, const dvi__user_basis_tables
 static long double mixed(const dvi__user_basis *g, const dvi__user_basis_tables *t, int k, int l)
 {
   long double sum = 0;
-  for (int j = 0; j < g->points; j++) sum += (long double)t->weight[j] * g->value[k * g->points + j] * g->slope[l * g->points + j];
+  for (int j = 0; j < g->points; j++)
+    sum += (long double)t->weight[j] * g->value[k * g->points + j] * g->slope[l * g->points + j];
   return sum;
 }
 
-/* A stationary path of polynomials must stay one, or there is no order: sum_j b_j (psi_k f)' = psi_k(1) f(1) for f of degree less than d and every function. The
- * integrals of derivatives are 0 already. What the quadrature errs by in the others is taken from the values, as a polynomial of degree d: it is as small as that
- * error, 0 where functions are integrated exactly. psi_m meets psi_{m-1}' and psi_{m+1}' alone, so that one is taken after the other. */
+/* A stationary path of polynomials must stay one, or there is no order: sum_j b_j (psi_k f)' =
+ * psi_k(1) f(1) for f of degree less than d and every function. The integrals of derivatives are 0
+ * already. What the quadrature errs by in the others is taken from the values, as a polynomial of
+ * degree d: it is as small as that error, 0 where functions are integrated exactly. psi_m meets
+ * psi_{m-1}' and psi_{m+1}' alone, so that one is taken after the other. */
 static void match(const dvi__user_basis *g, const dvi__user_basis_tables *t, int k)
 {
   for (int m = 0; m < g->degree && 2 * m < t->order; m++) {
-    const long double part = m == 0 ? end_of(g, t, k) : mixed(g, t, k, m - 1) / mixed(g, t, m, m - 1);
-    for (int j = 0; j < g->points; j++) g->value[k * g->points + j] -= part * g->value[m * g->points + j];
+    const long double part = m == 0 ? end_of(g, t, k)
+                                    : mixed(g, t, k, m - 1) / mixed(g, t, m, m - 1);
+    for (int j = 0; j < g->points; j++)
+      g->value[k * g->points + j] -= part * g->value[m * g->points + j];
     for (int i = 0; i <= m; i++) t->matrix[k * g->count + i] -= part * t->matrix[m * g->count + i];
   }
 }
@@ -297,12 +320,14 @@ static void write_values(const dvi__user_basis *g, const dvi__user_basis_tables 
 {
   for (int k = 0; k < g->count; k++) {
     if (k >= g->degree && t->matrix[k * g->count + k] != 0) match(g, t, k);
-    for (int j = 0; j < g->points; j++) t->psi[j * g->count + k] = (double)g->value[k * g->points + j];
+    for (int j = 0; j < g->points; j++)
+      t->psi[j * g->count + k] = (double)g->value[k * g->points + j];
   }
 }
 
 /* psi_k and psi_k' [count] at tau; dpsi may be NULL. */
-static dvi_status evaluate_basis(const dvi__user_basis *g, const dvi__user_basis_tables *t, double tau, double *psi, double *dpsi)
+static dvi_status evaluate_basis(const dvi__user_basis *g, const dvi__user_basis_tables *t,
+                                 double tau, double *psi, double *dpsi)
 {
   DVI_TRY(dvi__user_basis_evaluate(g, t->h, tau));
   for (int k = 0; k < g->count; k++) {
@@ -329,7 +354,8 @@ dvi_status dvi__user_basis_fill(const dvi__user_basis *g, double h, dvi__user_ba
   orthogonalize(g, t);
   write_slopes(g, t);
   DVI_TRY(dvi__user_basis_evaluate(g, t->h, 1));
-  for (int k = g->degree; k < g->count; k++) add((double)(g->at_value[k] - t->start[k]), &t->fingerprint);
+  for (int k = g->degree; k < g->count; k++)
+    add((double)(g->at_value[k] - t->start[k]), &t->fingerprint);
   write_values(g, t);
   DVI_TRY(evaluate_basis(g, t, 0, t->end, t->slopes[0]));
   return evaluate_basis(g, t, 1, t->end, t->slopes[1]);
@@ -347,7 +373,8 @@ dvi_status dvi__user_basis_prepare(dvi__user_basis *g, double h)
 
 /* ---- as shapes ---- */
 
-/* The method has prepared this length, when a failure could be told; a callback that has changed its mind shall not pass. */
+/* The method has prepared this length, when a failure could be told; a callback that has changed
+ * its mind shall not pass. */
 static void set(void *of, double h)
 {
   dvi__user_basis *g = of;
@@ -387,11 +414,13 @@ static double dot(int count, const double *a, const double *b)
   return sum;
 }
 
-/* Beyond its end a path is known by its velocities alone: they go on as they went from one end to the other. */
+/* Beyond its end a path is known by its velocities alone: they go on as they went from one end to
+ * the other. */
 static void next(const void *of, const double *last, double *Y)
 {
   const dvi__user_basis *g = of;
-  const double first = dot(g->count, g->now.slopes[0], last), end = dot(g->count, g->now.slopes[1], last);
+  const double first = dot(g->count, g->now.slopes[0], last),
+               end = dot(g->count, g->now.slopes[1], last);
   for (int k = 0; k < g->count; k++) Y[k] = (k == 0 ? end : 0) + g->now.lean[k] * (end - first);
 }
 

@@ -28,7 +28,8 @@ dvi_status dvi__impulse_create(dvi__stepper *self, size_t size, int all)
   if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
   if (!all) DVI_TRY(dvi__system_slow_part(self->system, &own->slow));
   DVI_TRY(dvi__system_fast_part(self->system, &own->fast));
-  return dvi__evaluator_create(all ? self->system : own->slow, 1, DVI__GRADIENTS, self->counters, &own->forces);
+  return dvi__evaluator_create(all ? self->system : own->slow, 1, DVI__GRADIENTS, self->counters,
+                               &own->forces);
 }
 
 void dvi__impulse_destroy(dvi__stepper *self)
@@ -47,7 +48,8 @@ dvi_status dvi__impulse_take_inner(dvi__stepper *self, const char *specification
   dvi__impulse *own = self->own;
   own->inner = DVI_NEW(dvi__stepper, 1);
   if (own->inner == NULL) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
-  const dvi_status status = dvi__stepper_create(own->fast, specification, NULL, self->counters, own->inner);
+  const dvi_status status = dvi__stepper_create(own->fast, specification, NULL, self->counters,
+                                                own->inner);
   if (status != DVI_OK) return dvi__fail_in(status, "%s", self->method->name);
   self->memory_count += own->inner->memory_count;
   self->follows = own->inner->follows;

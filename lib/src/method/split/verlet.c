@@ -4,7 +4,8 @@
  *     Ld(q0,q1) = h/2 L(q0, (q1-q0)/h) + h/2 L(q1, (q1-q0)/h)
  * For L = v.Mv/2 - V(q) the stationarity conditions p0 = -D1 Ld, p1 = D2 Ld solve themselves:
  *     p_half = p0 - h/2 dV(q0),   q1 = q0 + h M^-1 p_half,   p1 = p_half - h/2 dV(q1).
- * Order 2, symmetric, symplectic.  Source: Marsden and West 2001, sec. 2.3.1; Hairer, Lubich and Wanner 2003. */
+ * Order 2, symmetric, symplectic. Source: Marsden and West 2001, sec. 2.3.1; Hairer, Lubich and
+ * Wanner 2003. */
 #include <string.h>
 
 #include "step/split/temporal_blocking.h"
@@ -25,16 +26,20 @@ static const char *blocking_name(int index)
 
 static const dvi__key keys[] = {
     {"blocking", blocking_name, 0, 0, BLOCKING_AUTO,
-     "how a step goes through memory: temporal (once, block by block; potentials must declare gradient_range), "
-     "none (one operation after the other), or auto (temporal where it is possible); the same digits; default: auto"},
-    {"threads", NULL, 1, 64, 1, "for blocking=temporal: how many, 1 to 64; the same digits; default: 1"},
+     "how a step goes through memory: temporal (once, block by block; potentials must declare "
+     "gradient_range), "
+     "none (one operation after the other), or auto (temporal where it is possible); the same "
+     "digits; default: auto"},
+    {"threads", NULL, 1, 64, 1,
+     "for blocking=temporal: how many, 1 to 64; the same digits; default: 1"},
     {0},
 };
 
-/* The gradient at the end of a step is that at the start of the next: memory holds it, then a flag. */
+/* The gradient at the end of a step is that at the start of the next: memory holds it, then a
+ * flag. */
 typedef struct verlet {
   dvi__evaluator *evaluator;
-  double *change;  /* [n] */
+  double *change;          /* [n] */
   dvi__blocking *blocking; /* NULL: one operation after the other */
 } verlet;
 
@@ -48,10 +53,14 @@ static double *gradient_known(const dvi__stepper *self, double *memory)
 static dvi_status create_blocking(dvi__stepper *self, verlet *own)
 {
   const int asked = self->settings.value[BLOCKING], threads = self->settings.value[THREADS];
-  const char *obstacle = asked == BLOCKING_NONE ? "blocking=none is asked for" : dvi__blocking_obstacle(self->system);
+  const char *obstacle = asked == BLOCKING_NONE ? "blocking=none is asked for"
+                                                : dvi__blocking_obstacle(self->system);
   if (obstacle == NULL) return dvi__blocking_create(self->system, threads, &own->blocking);
-  if (asked == BLOCKING_TEMPORAL) return dvi__fail(DVI_UNSUPPORTED, "verlet: blocking=temporal is not possible: %s", obstacle);
-  if (threads > 1) return dvi__fail(DVI_UNSUPPORTED, "verlet: threads=%d needs blocking=temporal, but %s", threads, obstacle);
+  if (asked == BLOCKING_TEMPORAL)
+    return dvi__fail(DVI_UNSUPPORTED, "verlet: blocking=temporal is not possible: %s", obstacle);
+  if (threads > 1)
+    return dvi__fail(DVI_UNSUPPORTED, "verlet: threads=%d needs blocking=temporal, but %s", threads,
+                     obstacle);
   return DVI_OK;
 }
 
@@ -118,7 +127,8 @@ static dvi__phase phase_of(const dvi__state *state)
   return (dvi__phase){state->q, state->p, state->q_compensation, state->p_compensation};
 }
 
-static int pass(dvi__stepper *self, const dvi__state *now, const double *before, dvi__state *next, const double *h, int count)
+static int pass(dvi__stepper *self, const dvi__state *now, const double *before, dvi__state *next,
+                const double *h, int count)
 {
   const verlet *own = self->own;
   double t[DVI__WAVE_SUBSTEPS];
@@ -133,13 +143,13 @@ static int pass(dvi__stepper *self, const dvi__state *now, const double *before,
   self->counters->gradients += count + !known;
   *gradient_known(self, self->memory) = 1;
   return dvi__blocking_run(own->blocking, &(dvi__blocking_step){.count = count,
-                                                    .h = h,
-                                                    .t0 = now->t,
-                                                    .t = t,
-                                                    .from = phase_of(now),
-                                                    .to = phase_of(next),
-                                                    .gradient = known ? before : NULL,
-                                                    .gradient_to = self->memory});
+                                                                .h = h,
+                                                                .t0 = now->t,
+                                                                .t = t,
+                                                                .from = phase_of(now),
+                                                                .to = phase_of(next),
+                                                                .gradient = known ? before : NULL,
+                                                                .gradient_to = self->memory});
 }
 
 static double traffic(const dvi__stepper *self, int count)
@@ -150,13 +160,15 @@ static double traffic(const dvi__stepper *self, int count)
 
 /* ---- members side by side ---- */
 
-/* A wave has coordinates as lanes: members gain only where these are too few to fill vectors, and who asks for waves gets them. */
+/* A wave has coordinates as lanes: members gain only where these are too few to fill vectors, and
+ * who asks for waves gets them. */
 enum { FEW_COORDINATES = 16 };
 
 static dvi_status prepare_lanes(dvi__stepper *self, int capacity)
 {
   const verlet *own = self->own;
-  const int asked = self->settings.value[BLOCKING] == BLOCKING_TEMPORAL || self->settings.value[THREADS] > 1;
+  const int asked = self->settings.value[BLOCKING] == BLOCKING_TEMPORAL ||
+                    self->settings.value[THREADS] > 1;
   const int pays = own->blocking == NULL || (!asked && self->system->n <= FEW_COORDINATES);
   return pays ? dvi__verlet_prepare_lanes(self, capacity) : DVI_OK;
 }
@@ -164,14 +176,22 @@ static dvi_status prepare_lanes(dvi__stepper *self, int capacity)
 static void explain(const dvi__stepper *self, dvi__text *text)
 {
   const verlet *own = self->own;
-  dvi__text_add(text, "kernel: explicit; one gradient a step (the last one of a step is the first of the next)\n");
-  dvi__text_add(text, "solver: none; no Hessian, no Jacobian, no factorisation of a step's equations\n");
+  dvi__text_add(
+      text,
+      "kernel: explicit; one gradient a step (the last one of a step is the first of the next)\n");
+  dvi__text_add(text,
+                "solver: none; no Hessian, no Jacobian, no factorisation of a step's equations\n");
   if (own->blocking != NULL)
-    dvi__text_add(text, "blocking: temporal; at most %d substeps in one pass through memory; threads: %d of %d\n",
-                  dvi__blocking_depth(own->blocking), dvi__blocking_threads(own->blocking, 1), self->settings.value[THREADS]);
+    dvi__text_add(
+        text,
+        "blocking: temporal; at most %d substeps in one pass through memory; threads: %d of %d\n",
+        dvi__blocking_depth(own->blocking), dvi__blocking_threads(own->blocking, 1),
+        self->settings.value[THREADS]);
   else
     dvi__text_add(text, "blocking: none; %s\n",
-                  self->settings.value[BLOCKING] == BLOCKING_NONE ? "it is asked for" : dvi__blocking_obstacle(self->system));
+                  self->settings.value[BLOCKING] == BLOCKING_NONE
+                      ? "it is asked for"
+                      : dvi__blocking_obstacle(self->system));
 }
 
 const dvi__method dvi__verlet = {

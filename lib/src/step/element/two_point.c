@@ -12,10 +12,12 @@ static void bubbles_at(int degree, double tau, double *beta)
 {
   long double value[DVI_DEGREE_MAX + 1], difference[DVI_DEGREE_MAX + 1];
   dvi__legendre(degree, 1 - (long double)tau, value, difference);
-  for (int m = 1; m < degree; m++) beta[m - 1] = (double)((difference[m + 1] + difference[m]) / (2 * (2 * m + 1)));
+  for (int m = 1; m < degree; m++)
+    beta[m - 1] = (double)((difference[m + 1] + difference[m]) / (2 * (2 * m + 1)));
 }
 
-/* The bubbles in reduced trial functions: beta_m = sum_k psi_k bubble[m-1][k], fitted as any path is. */
+/* The bubbles in reduced trial functions: beta_m = sum_k psi_k bubble[m-1][k], fitted as any path
+ * is. */
 static void fill_bubbles(dvi__action *a)
 {
   double at_point[DVI_DEGREE_MAX][DVI_DEGREE_MAX];
@@ -77,8 +79,8 @@ void dvi__action_two_point(const dvi__action *a, const double *q1, const double 
     }
 }
 
-void dvi__action_two_point_ends(const dvi__action *a, const double *by_Y, const double *by_q0, double *in_q0, double *in_q1,
-                              double *in_Z)
+void dvi__action_two_point_ends(const dvi__action *a, const double *by_Y, const double *by_q0,
+                                double *in_q0, double *in_q1, double *in_Z)
 {
   const size_t s = (size_t)a->s;
   for (size_t i = 0; i < (size_t)a->n; i++) {
@@ -94,8 +96,10 @@ void dvi__action_two_point_ends(const dvi__action *a, const double *by_Y, const 
   }
 }
 
-/* In Y with q0 fixed: the rows R, and psi(1) dp, which the elimination of p1 has taken from them. */
-dvi_status dvi__action_two_point_gradient(dvi__action *a, const double *Y, double *in_q0, double *in_q1, double *in_Z)
+/* In Y with q0 fixed: the rows R, and psi(1) dp, which the elimination of p1 has taken from
+ * them. */
+dvi_status dvi__action_two_point_gradient(dvi__action *a, const double *Y, double *in_q0,
+                                          double *in_q1, double *in_Z)
 {
   DVI_TRY(dvi__action_residual(a, Y, a->between_rows));
   for (size_t i = 0, r = (size_t)a->r, s = (size_t)a->s; i < (size_t)a->n; i++) {
@@ -113,7 +117,8 @@ const dvi__pattern *dvi__action_coupling(const dvi__action *a)
   return &a->joint;
 }
 
-/* column[c] = sum_j b_j [ chi_c (h L_qq chi_b + L_qv chi_b') + chi_c' (L_vq chi_b + L_vv chi_b'/h) ] */
+/* column[c] = sum_j b_j [ chi_c (h L_qq chi_b + L_qv chi_b') + chi_c' (L_vq chi_b + L_vv chi_b'/h)
+ * ] */
 static void block_column(const dvi__action *a, const dvi__block *block, int b, double *column)
 {
   const int r = a->r;
@@ -134,7 +139,9 @@ dvi_status dvi__action_two_point_hessian(dvi__action *a, const double *Y, double
   DVI_TRY(dvi__lagrangian_hessian(a->evaluator, a->r, a->t, a->Q, a->V, a->H_qq, a->H_qv, a->H_vv));
   const int size = a->s + 1;
   for (int e = 0; e < dvi__pattern_entries(&a->joint); e++)
-    for (int b = 0; b < size; b++) block_column(a, &a->block[e], b, values + ((size_t)e * (size_t)size + (size_t)b) * (size_t)size);
+    for (int b = 0; b < size; b++)
+      block_column(a, &a->block[e], b,
+                   values + ((size_t)e * (size_t)size + (size_t)b) * (size_t)size);
   return DVI_OK;
 }
 

@@ -7,7 +7,8 @@
 #include "core/status.h"
 
 struct dvi__user_element {
-  dvi__action *action; /* in which every coordinate has all functions: those that it has not got stay 0 */
+  /* in which every coordinate has all functions: those that it has not got stay 0 */
+  dvi__action *action;
   dvi__shapes shapes;
   int *first;           /* [n+1] of a coordinate's unknowns */
   dvi__pattern pattern; /* of the Jacobian */
@@ -42,22 +43,27 @@ static int allocate(dvi__user_element *s, const char *has_all, int fewest)
   s->at = DVI_NEW(double, n *count);
   s->whole = DVI_NEW(double, n *count);
   if (!s->first || !s->psi || !s->dpsi || !s->rest || !s->dq_low || !s->at || !s->whole) return 0;
-  for (size_t i = 0; i < n; i++) s->first[i + 1] = s->first[i] + (has_all[i] ? s->shapes.functions : fewest);
+  for (size_t i = 0; i < n; i++)
+    s->first[i + 1] = s->first[i] + (has_all[i] ? s->shapes.functions : fewest);
   return 1;
 }
 
-static dvi_status fill(dvi__user_element *s, const dvi_system *system, const char *has_all, int fewest, dvi_counters *counters)
+static dvi_status fill(dvi__user_element *s, const dvi_system *system, const char *has_all,
+                       int fewest, dvi_counters *counters)
 {
   const int functions = s->shapes.functions, points = s->shapes.points;
   DVI_TRY(dvi__joint_check(system, fewest, functions > points ? functions : points));
-  DVI_TRY(dvi__action_create_by_user(system, s->shapes.functions, s->shapes.points, counters, &s->action));
-  if (!allocate(s, has_all, fewest)) return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d shapes", s->shapes.functions);
+  DVI_TRY(dvi__action_create_by_user(system, s->shapes.functions, s->shapes.points, counters,
+                                     &s->action));
+  if (!allocate(s, has_all, fewest))
+    return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d shapes", s->shapes.functions);
   DVI_TRY(dvi__action_prepare_hessians(s->action));
   return dvi__pattern_uneven_blocks(&s->action->joint, s->first, &s->pattern);
 }
 
-dvi_status dvi__user_element_create(const dvi_system *system, const dvi__shapes *shapes, const char *has_all, int fewest,
-                              dvi_counters *counters, dvi__user_element **shaped)
+dvi_status dvi__user_element_create(const dvi_system *system, const dvi__shapes *shapes,
+                                    const char *has_all, int fewest, dvi_counters *counters,
+                                    dvi__user_element **shaped)
 {
   dvi__user_element *s = *shaped = DVI_NEW(dvi__user_element, 1);
   if (s == NULL) return dvi__fail(DVI_NO_MEMORY, "action: no memory");
@@ -123,7 +129,8 @@ void dvi__user_element_renew(dvi__user_element *shaped)
   shaped->h = 0;
 }
 
-void dvi__user_element_place(dvi__user_element *shaped, double t0, double h, const double *q0, const double *p0)
+void dvi__user_element_place(dvi__user_element *shaped, double t0, double h, const double *q0,
+                             const double *p0)
 {
   set_length(shaped, h);
   dvi__action_place(shaped->action, t0, h, q0, p0);
@@ -136,7 +143,8 @@ static void widen(const dvi__user_element *s, const double *Y, double *whole)
 {
   const size_t count = (size_t)s->shapes.functions;
   memset(whole, 0, (size_t)s->action->n * count * sizeof *whole);
-  for (int i = 0; i < s->action->n; i++) memcpy(whole + (size_t)i * count, Y + s->first[i], (size_t)functions_of(s, i) * sizeof *Y);
+  for (int i = 0; i < s->action->n; i++)
+    memcpy(whole + (size_t)i * count, Y + s->first[i], (size_t)functions_of(s, i) * sizeof *Y);
 }
 
 dvi_status dvi__user_element_residual(dvi__user_element *shaped, const double *Y, double *R)
@@ -177,7 +185,8 @@ dvi_status dvi__user_element_scale(dvi__user_element *shaped, double *scale)
 {
   const dvi__action *a = shaped->action;
   const double *L_vv = NULL;
-  if (a->system->lagrangian != NULL) DVI_TRY(dvi__velocity_hessian(a->evaluator, a->t0, a->q0, shaped->rest, &L_vv));
+  if (a->system->lagrangian != NULL)
+    DVI_TRY(dvi__velocity_hessian(a->evaluator, a->t0, a->q0, shaped->rest, &L_vv));
   dvi__action_scale_by(a, L_vv, shaped->whole);
   for (int i = 0; i < a->n; i++)
     for (int k = 0, row = shaped->first[i]; row < shaped->first[i + 1]; k++, row++)
@@ -193,7 +202,8 @@ void dvi__user_element_straight(const dvi__user_element *shaped, const double *v
 }
 
 /* After a step of another length its mean velocity is all that is taken over. */
-void dvi__user_element_continue(dvi__user_element *shaped, double ratio, const double *last, double *Y)
+void dvi__user_element_continue(dvi__user_element *shaped, double ratio, const double *last,
+                                double *Y)
 {
   const dvi__action *a = shaped->action;
   const size_t count = (size_t)a->s;
@@ -206,7 +216,8 @@ void dvi__user_element_continue(dvi__user_element *shaped, double ratio, const d
       shaped->shapes.next(shaped->shapes.of, from, shaped->psi);
     else
       to[0] = ratio * from[0];
-    for (int k = 0; ratio == 1 && k < functions_of(shaped, i); k++) to[k] = is_present(shaped, k) ? shaped->psi[k] : 0;
+    for (int k = 0; ratio == 1 && k < functions_of(shaped, i); k++)
+      to[k] = is_present(shaped, k) ? shaped->psi[k] : 0;
   }
 }
 
@@ -225,7 +236,8 @@ dvi_status dvi__user_element_duration(dvi__user_element *shaped, const double *Y
   return dvi__action_duration(shaped->action, shaped->whole, duration);
 }
 
-void dvi__user_element_path(dvi__user_element *shaped, const double *Y, double h, double tau, double *offset, double *v)
+void dvi__user_element_path(dvi__user_element *shaped, const double *Y, double h, double tau,
+                            double *offset, double *v)
 {
   const dvi__action *a = shaped->action;
   set_length(shaped, h);

@@ -2,12 +2,14 @@
  *
  *     h p - T0^T M (y(xi) - y0) = 0,     with the derivative  -T0^T M T(xi).
  *
- * From xi = 0 the first correction is h v. As long as each is much shorter than the one before, the same holds for all shorter steps: the solution is on their
- * branch (Kantorovich's theorem; Deuflhard 2004, sec. 2.1). Where it ends corrections shrink by one half only. Their length is that of T0 xi with the weights
- * sum_j |M_ij|: at least the kinetic energy's, and a length where that is not, for the mass may be indefinite.
+ * From xi = 0 the first correction is h v. As long as each is much shorter than the one before, the
+ * same holds for all shorter steps: the solution is on their branch (Kantorovich's theorem;
+ * Deuflhard 2004, sec. 2.1). Where it ends corrections shrink by one half only. Their length is
+ * that of T0 xi with the weights sum_j |M_ij|: at least the kinetic energy's, and a length where
+ * that is not, for the mass may be indefinite.
  *
- * With a = M (y1 - y0)/h the angular momentum y x a of a slot changes by (y1 - y0) x a, what the other slots do to it: all these together are 0 if the mass has
- * the symmetry. */
+ * With a = M (y1 - y0)/h the angular momentum y x a of a slot changes by (y1 - y0) x a, what the
+ * other slots do to it: all these together are 0 if the mass has the symmetry. */
 #include "step/lie/coupled_drift.h"
 
 #include <math.h>
@@ -59,7 +61,8 @@ static void find_units(dvi__coupled_drift *l, const int *together)
   }
 }
 
-/* The rows of unit `column`'s block column: those of all units that the mass ties to it. Only counts them without `row`. */
+/* The rows of unit `column`'s block column: those of all units that the mass ties to it. Only
+ * counts them without `row`. */
 static size_t list_rows(const dvi__coupled_drift *l, int column, int *seen, int stamp, int *row)
 {
   const dvi__factor_slot *slot = l->unit[column].slot;
@@ -81,8 +84,10 @@ static dvi_status make_pattern(dvi__coupled_drift *l)
   size_t entries = 0;
   for (int u = 0; u < l->count && seen != NULL; u++)
     entries += list_rows(l, u, seen, u + 1, NULL) * (size_t)dvi__chart_size(l->unit[u].slot->kind);
-  l->pattern = (dvi__pattern){l->unknowns, l->unknowns, DVI_NEW(int, (size_t)l->unknowns + 1), DVI_NEW(int, entries)};
-  const int possible = seen != NULL && l->pattern.start != NULL && l->pattern.row != NULL && entries <= 0x7fffffff;
+  l->pattern = (dvi__pattern){l->unknowns, l->unknowns, DVI_NEW(int, (size_t)l->unknowns + 1),
+                              DVI_NEW(int, entries)};
+  const int possible = seen != NULL && l->pattern.start != NULL && l->pattern.row != NULL &&
+                       entries <= 0x7fffffff;
   for (int u = 0, at = 0; u < l->count && possible; u++)
     for (int j = 0; j < dvi__chart_size(l->unit[u].slot->kind); j++) {
       at += (int)list_rows(l, u, seen, l->count + u + 1, l->pattern.row + at);
@@ -98,7 +103,8 @@ static void find_blocks(dvi__coupled_drift *l)
   for (int j = 0; j < vv->columns; j++)
     for (int e = vv->start[j]; e < vv->start[j + 1] && l->owner[j] >= 0; e++)
       if (l->owner[vv->row[e]] >= 0)
-        l->first[e] = dvi__pattern_find(&l->pattern, l->unit[l->owner[vv->row[e]]].x, l->unit[l->owner[j]].x);
+        l->first[e] = dvi__pattern_find(&l->pattern, l->unit[l->owner[vv->row[e]]].x,
+                                        l->unit[l->owner[j]].x);
 }
 
 static dvi_status allocate(dvi__coupled_drift *l)
@@ -107,7 +113,8 @@ static dvi_status allocate(dvi__coupled_drift *l)
   l->first = DVI_NEW(int, dvi__pattern_entries(&l->system->vv));
   l->values = DVI_NEW(double, dvi__pattern_entries(&l->pattern));
   l->T0 = DVI_NEW(double, 12 * n + 3 * unknowns);
-  if (l->first == NULL || l->values == NULL || l->T0 == NULL) return dvi__fail(DVI_NO_MEMORY, "leaps: no memory");
+  if (l->first == NULL || l->values == NULL || l->T0 == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "leaps: no memory");
   l->T = l->T0 + 3 * n;
   l->unwanted = l->T + 3 * n;
   l->moved = l->unwanted + 3 * n;
@@ -123,7 +130,8 @@ static void find_weights(dvi__coupled_drift *l)
 {
   const dvi__pattern *vv = &l->system->vv;
   for (int j = 0; j < vv->columns; j++)
-    for (int e = vv->start[j]; e < vv->start[j + 1]; e++) l->weight[j] += fabs(l->system->mass_values[e]);
+    for (int e = vv->start[j]; e < vv->start[j + 1]; e++)
+      l->weight[j] += fabs(l->system->mass_values[e]);
 }
 
 static dvi_status fill(dvi__coupled_drift *l, const int *together)
@@ -139,8 +147,8 @@ static dvi_status fill(dvi__coupled_drift *l, const int *together)
   return dvi__linear_create(&l->pattern, DVI__LINEAR_AUTO, l->counters, &l->linear);
 }
 
-dvi_status dvi__coupled_drift_create(const dvi_system *system, const int *together, dvi_counters *counters,
-                                     dvi__coupled_drift **leaps)
+dvi_status dvi__coupled_drift_create(const dvi_system *system, const int *together,
+                                     dvi_counters *counters, dvi__coupled_drift **leaps)
 {
   dvi__coupled_drift *l = *leaps = DVI_NEW(dvi__coupled_drift, 1);
   if (l == NULL) return dvi__fail(DVI_NO_MEMORY, "leaps: no memory");
@@ -187,7 +195,8 @@ static double length_of(const dvi__coupled_drift *l, const double *change)
     const int size = dvi__chart_size(slot->kind);
     for (int i = 0; i < dvi__chart_stored(slot->kind); i++) {
       double moved = 0;
-      for (int a = 0; a < size; a++) moved += l->T0[3 * slot->q + i * size + a] * change[l->unit[u].x + a];
+      for (int a = 0; a < size; a++)
+        moved += l->T0[3 * slot->q + i * size + a] * change[l->unit[u].x + a];
       sum += l->weight[slot->q + i] * moved * moved;
     }
   }
@@ -222,14 +231,17 @@ static void begin(dvi__coupled_drift *l, double h, const double *q, const double
 /* change = h p - T0^T M (y(xi) - y0). */
 static void find_residual(dvi__coupled_drift *l)
 {
-  for (int u = 0; u < l->count; u++) dvi__chart_moser_veselov(&l->unit[u].chart, l->xi + l->unit[u].x, l->moved + l->unit[u].slot->q);
+  for (int u = 0; u < l->count; u++)
+    dvi__chart_moser_veselov(&l->unit[u].chart, l->xi + l->unit[u].x,
+                             l->moved + l->unit[u].slot->q);
   multiply(l);
   memcpy(l->change, l->impulse, (size_t)l->unknowns * sizeof *l->change);
   for (int u = 0; u < l->count; u++) {
     const dvi__factor_slot *slot = l->unit[u].slot;
     const int size = dvi__chart_size(slot->kind);
     for (int i = 0; i < dvi__chart_stored(slot->kind); i++)
-      for (int a = 0; a < size; a++) l->change[l->unit[u].x + a] -= l->T0[3 * slot->q + i * size + a] * l->force[slot->q + i];
+      for (int a = 0; a < size; a++)
+        l->change[l->unit[u].x + a] -= l->T0[3 * slot->q + i * size + a] * l->force[slot->q + i];
   }
 }
 
@@ -243,7 +255,8 @@ static void add_block(dvi__coupled_drift *l, int e, int j)
   const double *left = l->T0 + 3 * row->slot->q + (i - row->slot->q) * rows,
                *right = l->T + 3 * column->slot->q + (j - column->slot->q) * columns;
   for (int b = 0; b < columns; b++)
-    for (int a = 0; a < rows; a++) l->values[l->first[e] + b * length + a] += left[a] * l->system->mass_values[e] * right[b];
+    for (int a = 0; a < rows; a++)
+      l->values[l->first[e] + b * length + a] += left[a] * l->system->mass_values[e] * right[b];
 }
 
 static dvi_status correct(dvi__coupled_drift *l)
@@ -265,7 +278,8 @@ static dvi_status correct(dvi__coupled_drift *l)
 static dvi_status too_large(double ratio)
 {
   return dvi__fail(DVI_STEP_TOO_LARGE,
-                   "coupled slots turn too far: the corrections of their leap shrink by %.3g, not by 1/2 as on the branch of short "
+                   "coupled slots turn too far: the corrections of their leap shrink by %.3g, not "
+                   "by 1/2 as on the branch of short "
                    "steps; for a single "
                    "one that means h |p| near its moment of inertia",
                    ratio);
@@ -302,12 +316,13 @@ static void moment_of(const dvi__coupled_drift *l, const unit *of, double h, dou
   for (int i = 0; i < 3; i++) moment[i] /= h;
 }
 
-static void arrive(const dvi__coupled_drift *l, const unit *of, double h, const dvi__phase *state, double *leap)
+static void arrive(const dvi__coupled_drift *l, const unit *of, double h, const dvi__phase *state,
+                   double *leap)
 {
   const int q = of->slot->q, v = of->slot->v;
   const double *xi = l->xi + of->x;
-  double *y = state->q + q, *y_compensation = state->q_compensation + q, *p = state->p + v, *p_compensation = state->p_compensation + v, moment[3],
-         added[3] = {0};
+  double *y = state->q + q, *y_compensation = state->q_compensation + q, *p = state->p + v,
+         *p_compensation = state->p_compensation + v, moment[3], added[3] = {0};
   moment_of(l, of, h, moment);
   dvi__chart_store(&of->chart, xi, leap + v);
   if (of->slot->kind == DVI__LINE || of->slot->kind == DVI__CIRCLE) {
@@ -325,15 +340,18 @@ static dvi_status check_turns(const dvi__coupled_drift *l)
   for (int u = 0; u < l->count; u++) {
     const unit *of = &l->unit[u];
     double square = 0;
-    for (int a = 0; a < dvi__chart_size(of->slot->kind); a++) square += l->xi[of->x + a] * l->xi[of->x + a];
+    for (int a = 0; a < dvi__chart_size(of->slot->kind); a++)
+      square += l->xi[of->x + a] * l->xi[of->x + a];
     if (!(sqrt(square) < dvi__chart_bound(of->slot->kind)))
-      return dvi__fail(DVI_STEP_TOO_LARGE, "the slot at coordinate %d turns by %.3g in one step, half a turn or more", of->slot->q,
-                       sqrt(square));
+      return dvi__fail(DVI_STEP_TOO_LARGE,
+                       "the slot at coordinate %d turns by %.3g in one step, half a turn or more",
+                       of->slot->q, sqrt(square));
   }
   return DVI_OK;
 }
 
-dvi_status dvi__coupled_drift_drift(dvi__coupled_drift *l, double h, const dvi__phase *state, double *leap)
+dvi_status dvi__coupled_drift_drift(dvi__coupled_drift *l, double h, const dvi__phase *state,
+                                    double *leap)
 {
   begin(l, h, state->q, state->p);
   DVI_TRY(newton(l));
@@ -343,10 +361,12 @@ dvi_status dvi__coupled_drift_drift(dvi__coupled_drift *l, double h, const dvi__
   return DVI_OK;
 }
 
-dvi_status dvi__coupled_drift_velocity(dvi__coupled_drift *l, const double *q, const double *p, double *v)
+dvi_status dvi__coupled_drift_velocity(dvi__coupled_drift *l, const double *q, const double *p,
+                                       double *v)
 {
   begin(l, 1, q, p);
   DVI_TRY(correct(l));
-  for (int u = 0; u < l->count; u++) dvi__chart_store(&l->unit[u].chart, l->change + l->unit[u].x, v + l->unit[u].slot->v);
+  for (int u = 0; u < l->count; u++)
+    dvi__chart_store(&l->unit[u].chart, l->change + l->unit[u].x, v + l->unit[u].slot->v);
   return DVI_OK;
 }

@@ -1,5 +1,7 @@
-/* With L = y'.M y'/2 - V the moment of what the Lagrangian does to a slot is N = y' x M y' - y x V_y, in space. The angular momentum of a direction has the rate
- * N, that of a body in its frame R^T N + Pi x Omega; an angle has the same in the plane. y' x M y' vanishes for pieces but rigid motions. */
+/* With L = y'.M y'/2 - V the moment of what the Lagrangian does to a slot is N = y' x M y' - y x
+ * V_y, in space. The angular momentum of a direction has the rate N, that of a body in its frame
+ * R^T N + Pi x Omega; an angle has the same in the plane. y' x M y' vanishes for pieces but rigid
+ * motions. */
 #include "step/lie/flow.h"
 
 #include <dvi/group.h>
@@ -18,10 +20,11 @@ struct dvi__flow {
   dvi__evaluator *evaluator;
   dvi__mass_blocks pieces;
   dvi__coupled_drift *together; /* NULL: nothing is coupled */
-  int mixed;                    /* not 0: slots are coupled, or places to rotations: y' x M y' counts */
-  double *force;                /* [nq] V_y */
-  double *rate, *covector;      /* [nq] y' and M y' */
-  double *v;                    /* [nv] */
+  /* not 0: slots are coupled, or places to rotations: y' x M y' counts */
+  int mixed;
+  double *force;           /* [nq] V_y */
+  double *rate, *covector; /* [nq] y' and M y' */
+  double *v;               /* [nv] */
 };
 
 /* ---- making it ---- */
@@ -37,7 +40,8 @@ static dvi_status fill(dvi__flow *f, dvi_counters *counters)
   f->rate = f->force + n;
   f->covector = f->rate + n;
   f->v = f->covector + n;
-  if (f->pieces.coupled > 0) DVI_TRY(dvi__coupled_drift_create(f->system, f->pieces.together, counters, &f->together));
+  if (f->pieces.coupled > 0)
+    DVI_TRY(dvi__coupled_drift_create(f->system, f->pieces.together, counters, &f->together));
   return dvi__evaluator_create(f->system, 1, DVI__GRADIENTS, counters, &f->evaluator);
 }
 
@@ -66,7 +70,8 @@ void dvi__flow_destroy(dvi__flow **flow)
 /* ---- momenta ---- */
 
 /* mu = y x p of a direction, and p of it. */
-static void enter_direction(const double *y, const double *y_compensation, double *p, double *p_compensation)
+static void enter_direction(const double *y, const double *y_compensation, double *p,
+                            double *p_compensation)
 {
   dvi__twofold mu[3];
   dvi__turn_angular(y, y_compensation, p, p_compensation, mu);
@@ -85,7 +90,9 @@ void dvi__flow_enter(const dvi__flow *f, const dvi__phase *state)
   for (int c = 0; c < f->system->slot_count; c++) {
     const dvi__factor_slot *slot = &f->system->slots[c];
     const int q = slot->q, v = slot->v;
-    if (slot->kind == DVI__SPHERE) enter_direction(state->q + q, state->q_compensation + q, state->p + v, state->p_compensation + v);
+    if (slot->kind == DVI__SPHERE)
+      enter_direction(state->q + q, state->q_compensation + q, state->p + v,
+                      state->p_compensation + v);
   }
 }
 
@@ -94,7 +101,9 @@ void dvi__flow_leave(const dvi__flow *f, const dvi__phase *state)
   for (int c = 0; c < f->system->slot_count; c++) {
     const dvi__factor_slot *slot = &f->system->slots[c];
     const int q = slot->q, v = slot->v;
-    if (slot->kind == DVI__SPHERE) leave_direction(state->q + q, state->q_compensation + q, state->p + v, state->p_compensation + v);
+    if (slot->kind == DVI__SPHERE)
+      leave_direction(state->q + q, state->q_compensation + q, state->p + v,
+                      state->p_compensation + v);
   }
 }
 
@@ -117,7 +126,8 @@ static void move_rate(dvi__chart_kind kind, const double *y, const double *omega
 
 static dvi_status velocities(dvi__flow *f, const double *q, const double *p)
 {
-  for (int i = 0; i < f->pieces.alone; i++) dvi__mass_block_velocity(&f->pieces.piece[i], q, p, f->v);
+  for (int i = 0; i < f->pieces.alone; i++)
+    dvi__mass_block_velocity(&f->pieces.piece[i], q, p, f->v);
   return f->together == NULL ? DVI_OK : dvi__coupled_drift_velocity(f->together, q, p, f->v);
 }
 
@@ -127,15 +137,19 @@ static void multiply(dvi__flow *f)
   const dvi__pattern *vv = &f->system->vv;
   memset(f->covector, 0, (size_t)f->system->n * sizeof *f->covector);
   for (int j = 0; j < vv->columns; j++)
-    for (int e = vv->start[j]; e < vv->start[j + 1]; e++) f->covector[vv->row[e]] += f->system->mass_values[e] * f->rate[j];
+    for (int e = vv->start[j]; e < vv->start[j + 1]; e++)
+      f->covector[vv->row[e]] += f->system->mass_values[e] * f->rate[j];
 }
 
 /* N of a slot; of an angle one number. */
-static void moment_of(const dvi__flow *f, const dvi__factor_slot *slot, const double *y, double *moment)
+static void moment_of(const dvi__flow *f, const dvi__factor_slot *slot, const double *y,
+                      double *moment)
 {
-  const double *V = f->force + slot->q, *rate = f->rate + slot->q, *covector = f->covector + slot->q;
+  const double *V = f->force + slot->q, *rate = f->rate + slot->q,
+               *covector = f->covector + slot->q;
   if (slot->kind == DVI__CIRCLE) {
-    moment[0] = y[1] * V[0] - y[0] * V[1] + (f->mixed ? rate[0] * covector[1] - rate[1] * covector[0] : 0);
+    moment[0] = y[1] * V[0] - y[0] * V[1] +
+                (f->mixed ? rate[0] * covector[1] - rate[1] * covector[0] : 0);
     return;
   }
   memset(moment, 0, 3 * sizeof *moment);
@@ -144,8 +158,8 @@ static void moment_of(const dvi__flow *f, const dvi__factor_slot *slot, const do
   if (f->mixed) dvi__chart_add_moment(slot->kind, rate, covector, moment);
 }
 
-static void momentum_rate(const dvi__flow *f, const dvi__factor_slot *slot, const double *q, const double *p, const double *omega,
-                          double *m_rate)
+static void momentum_rate(const dvi__flow *f, const dvi__factor_slot *slot, const double *q,
+                          const double *p, const double *omega, double *m_rate)
 {
   const double *y = q + slot->q;
   double moment[3], turned[3];
@@ -159,10 +173,12 @@ static void momentum_rate(const dvi__flow *f, const dvi__factor_slot *slot, cons
     return;
   }
   dvi__cross(p, omega, turned);
-  for (int i = 0; i < 3; i++) m_rate[i] = turned[i] + y[i] * moment[0] + y[3 + i] * moment[1] + y[6 + i] * moment[2];
+  for (int i = 0; i < 3; i++)
+    m_rate[i] = turned[i] + y[i] * moment[0] + y[3 + i] * moment[1] + y[6 + i] * moment[2];
 }
 
-dvi_status dvi__flow_rates(dvi__flow *f, double t, const double *q, const double *p, double *omega, double *m_rate)
+dvi_status dvi__flow_rates(dvi__flow *f, double t, const double *q, const double *p, double *omega,
+                           double *m_rate)
 {
   const dvi_system *s = f->system;
   DVI_TRY(velocities(f, q, p));
@@ -184,8 +200,8 @@ dvi_status dvi__flow_rates(dvi__flow *f, double t, const double *q, const double
   return DVI_OK;
 }
 
-void dvi__flow_plain(const dvi__flow *f, const double *q, const double *p, const double *omega, const double *m_rate,
-                     double *q_rate, double *p_rate)
+void dvi__flow_plain(const dvi__flow *f, const double *q, const double *p, const double *omega,
+                     const double *m_rate, double *q_rate, double *p_rate)
 {
   memcpy(p_rate, m_rate, (size_t)f->system->nv * sizeof *p_rate);
   for (int c = 0; c < f->system->slot_count; c++) {
@@ -206,7 +222,8 @@ void dvi__flow_plain(const dvi__flow *f, const double *q, const double *p, const
 static void turn_cell(dvi__chart_kind kind, const double *theta, double *y, double *carry)
 {
   double w[3] = {0};
-  for (int i = 0; i < 3 && kind != DVI__CIRCLE; i++) w[i] = kind == DVI__SPHERE ? -theta[i] : theta[i];
+  for (int i = 0; i < 3 && kind != DVI__CIRCLE; i++)
+    w[i] = kind == DVI__SPHERE ? -theta[i] : theta[i];
   if (kind == DVI__CIRCLE) w[2] = -*theta;
   dvi__turn_tangent(w, w);
   const dvi__turn turn = dvi__turn_of(w);
@@ -225,12 +242,14 @@ void dvi__flow_move(const dvi__flow *f, const double *theta, const dvi__phase *s
   }
 }
 
-void dvi__flow_theta_rate(const dvi__flow *f, const double *theta, const double *omega, double *theta_rate)
+void dvi__flow_theta_rate(const dvi__flow *f, const double *theta, const double *omega,
+                          double *theta_rate)
 {
   memmove(theta_rate, omega, (size_t)f->system->nv * sizeof *omega);
   for (int c = 0; c < f->system->slot_count; c++) {
     const dvi__factor_slot *slot = &f->system->slots[c];
-    const double sign = slot->kind == DVI__SPHERE ? 1 : -1, *at = theta + slot->v; /* turned from the left, or from the right */
+    /* turned from the left, or from the right */
+    const double sign = slot->kind == DVI__SPHERE ? 1 : -1, *at = theta + slot->v;
     if (slot->kind != DVI__SPHERE && slot->kind != DVI__ROTATION) continue;
     const double from[] = {sign * at[0], sign * at[1], sign * at[2]};
     dvi_so3_dexp_inverse(from, theta_rate + slot->v, theta_rate + slot->v);

@@ -1,5 +1,6 @@
-/* A rigid motion whose centre of mass is at R rho from x:  p_x = m (dx + dR rho)/h gives dx, and what is left of
- * Pi = R0^T-part of (dR Jd + m dx rho^T)/h  is  Pi - rho x R0^T p_x, of the free body with the second moments Jd - m rho rho^T about its centre. */
+/* A rigid motion whose centre of mass is at R rho from x: p_x = m (dx + dR rho)/h gives dx, and
+ * what is left of Pi = R0^T-part of (dR Jd + m dx rho^T)/h is Pi - rho x R0^T p_x, of the free body
+ * with the second moments Jd - m rho rho^T about its centre. */
 #include "step/lie/lie_drift.h"
 
 #include <math.h>
@@ -18,7 +19,8 @@ struct dvi__lie_drift {
   dvi__coupled_drift *together; /* NULL: nothing is coupled */
 };
 
-dvi_status dvi__lie_drift_create(const dvi_system *system, dvi__moser_veselov_map by, dvi_counters *counters, dvi__lie_drift **leaps)
+dvi_status dvi__lie_drift_create(const dvi_system *system, dvi__moser_veselov_map by,
+                                 dvi_counters *counters, dvi__lie_drift **leaps)
 {
   dvi__lie_drift *l = *leaps = DVI_NEW(dvi__lie_drift, 1);
   if (l == NULL) return dvi__fail(DVI_NO_MEMORY, "leaps: no memory");
@@ -53,7 +55,8 @@ static void kick_body(double h, const double *V_q, const double *R, double *p, d
   double moment[3] = {0};
   dvi__chart_add_moment(DVI__ROTATION, R, V_q, moment);
   for (int i = 0; i < 3; i++)
-    dvi__add_compensated(p + i, carry + i, -h * (R[i] * moment[0] + R[3 + i] * moment[1] + R[6 + i] * moment[2]));
+    dvi__add_compensated(p + i, carry + i,
+                         -h * (R[i] * moment[0] + R[3 + i] * moment[1] + R[6 + i] * moment[2]));
 }
 
 static void kick_direction(double h, const double *V_q, const double *y, double *p, double *carry)
@@ -62,14 +65,16 @@ static void kick_direction(double h, const double *V_q, const double *y, double 
   for (int i = 0; i < 3; i++) dvi__add_compensated(p + i, carry + i, -h * (V_q[i] - radial * y[i]));
 }
 
-void dvi__lie_drift_kick(const dvi__lie_drift *l, double h, const double *V_q, const dvi__phase *state)
+void dvi__lie_drift_kick(const dvi__lie_drift *l, double h, const double *V_q,
+                         const dvi__phase *state)
 {
   for (int c = 0; c < l->pieces.system->slot_count; c++) {
     const dvi__factor_slot *slot = &l->pieces.system->slots[c];
     const double *V = V_q + slot->q, *y = state->q + slot->q;
     double *p = state->p + slot->v;
     if (slot->kind == DVI__LINE) dvi__add_compensated(p, state->p_compensation + slot->v, -h * *V);
-    if (slot->kind == DVI__CIRCLE) dvi__add_compensated(p, state->p_compensation + slot->v, -h * (y[0] * V[1] - y[1] * V[0]));
+    if (slot->kind == DVI__CIRCLE)
+      dvi__add_compensated(p, state->p_compensation + slot->v, -h * (y[0] * V[1] - y[1] * V[0]));
     if (slot->kind == DVI__SPHERE) kick_direction(h, V, y, p, state->p_compensation + slot->v);
     if (slot->kind == DVI__ROTATION) kick_body(h, V, y, p, state->p_compensation + slot->v);
   }
@@ -80,12 +85,16 @@ void dvi__lie_drift_kick(const dvi__lie_drift *l, double h, const double *V_q, c
 static dvi_status too_large(const dvi__mass_block *own, double impulse, double most)
 {
   const dvi__factor_slot *slot = own->slot;
-  const char *what = slot->kind == DVI__ROTATION ? "body" : slot->kind == DVI__SPHERE ? "direction" : "angle";
-  return dvi__fail(
-      DVI_STEP_TOO_LARGE,
-      "the %s at coordinates %d to %d turns too far: h |p| is %.6g, and a step can be solved up to %.6g, its %smoment of inertia%s",
-      what, slot->q, slot->q + dvi__chart_stored(slot->kind) - 1, impulse, most, slot->kind == DVI__ROTATION ? "largest " : "",
-      slot->kind == DVI__ROTATION ? ", about another axis only up to that of this axis" : "");
+  const char *what = slot->kind == DVI__ROTATION ? "body"
+                     : slot->kind == DVI__SPHERE ? "direction"
+                                                 : "angle";
+  return dvi__fail(DVI_STEP_TOO_LARGE,
+                   "the %s at coordinates %d to %d turns too far: h |p| is %.6g, and a step can be "
+                   "solved up to %.6g, its %smoment of inertia%s",
+                   what, slot->q, slot->q + dvi__chart_stored(slot->kind) - 1, impulse, most,
+                   slot->kind == DVI__ROTATION ? "largest " : "",
+                   slot->kind == DVI__ROTATION ? ", about another axis only up to that of this axis"
+                                               : "");
 }
 
 static void leap_line(const dvi__mass_block *own, double h, const dvi__phase *state, double *leap)
@@ -101,7 +110,8 @@ static double one_and_cosine(double sine)
   return 1 + sqrt((1 - sine) * (1 + sine));
 }
 
-static dvi_status leap_circle(const dvi__mass_block *own, double h, const dvi__phase *state, double *leap)
+static dvi_status leap_circle(const dvi__mass_block *own, double h, const dvi__phase *state,
+                              double *leap)
 {
   const int q = own->slot->q, v = own->slot->v;
   const double sine = h * (state->p[v] / own->mass);
@@ -113,10 +123,12 @@ static dvi_status leap_circle(const dvi__mass_block *own, double h, const dvi__p
 }
 
 /* By a, sin(a) = |h mu/m|, about mu, which it keeps. */
-static dvi_status leap_sphere(const dvi__mass_block *own, double h, const dvi__phase *state, double *leap)
+static dvi_status leap_sphere(const dvi__mass_block *own, double h, const dvi__phase *state,
+                              double *leap)
 {
   const int q = own->slot->q, v = own->slot->v;
-  double *y = state->q + q, *y_compensation = state->q_compensation + q, *p = state->p + v, *p_compensation = state->p_compensation + v, w[3];
+  double *y = state->q + q, *y_compensation = state->q_compensation + q, *p = state->p + v,
+         *p_compensation = state->p_compensation + v, w[3];
   dvi__twofold mu[3];
   dvi__turn_angular(y, y_compensation, p, p_compensation, mu);
   for (int i = 0; i < 3; i++) w[i] = h * (mu[i].head / own->mass);
@@ -139,7 +151,8 @@ static void leap_place(const dvi__mass_block *own, double h, const dvi__phase *s
   const dvi__turn back = dvi__turn_of((const double[]){-leap[v], -leap[v + 1], -leap[v + 2]});
   double moved[3];
   dvi__turn_change(&back, own->centre, moved);
-  for (int i = 0; i < 3; i++) leap[v + 3 + i] = h * (state->p[v + 3 + i] / own->mass) - dvi__dot(R + 3 * i, moved);
+  for (int i = 0; i < 3; i++)
+    leap[v + 3 + i] = h * (state->p[v + 3 + i] / own->mass) - dvi__dot(R + 3 * i, moved);
   dvi__add_compensated_all(3, state->q + x, state->q_compensation + x, leap + v + 3);
 }
 
@@ -149,15 +162,19 @@ static void shift(const dvi__mass_block *own, double sign, const dvi__phase *sta
   const int v = own->slot->v;
   double moment[3];
   dvi__mass_block_moment(own, state->q, state->p, moment);
-  for (int i = 0; i < 3; i++) dvi__add_compensated(state->p + v + i, state->p_compensation + v + i, sign * moment[i]);
+  for (int i = 0; i < 3; i++)
+    dvi__add_compensated(state->p + v + i, state->p_compensation + v + i, sign * moment[i]);
 }
 
-static dvi_status leap_body(const dvi__mass_block *own, dvi__moser_veselov_map by, double h, const dvi__phase *state, double *leap)
+static dvi_status leap_body(const dvi__mass_block *own, dvi__moser_veselov_map by, double h,
+                            const dvi__phase *state, double *leap)
 {
-  double *p = state->p + own->slot->v, *p_compensation = state->p_compensation + own->slot->v, *w = leap + own->slot->v;
+  double *p = state->p + own->slot->v, *p_compensation = state->p_compensation + own->slot->v,
+         *w = leap + own->slot->v;
   if (own->rigid) shift(own, -1, state);
   const double impulse[] = {h * p[0], h * p[1], h * p[2]};
-  if (!dvi__body_moser_veselov(own->body, by, impulse, w)) return too_large(own, sqrt(dvi__dot(impulse, impulse)), own->body->largest);
+  if (!dvi__body_moser_veselov(own->body, by, impulse, w))
+    return too_large(own, sqrt(dvi__dot(impulse, impulse)), own->body->largest);
   if (own->rigid) leap_place(own, h, state, leap);
   const dvi__turn turn = dvi__turn_of(w);
   dvi__turn_rows(&turn, 9, state->q + own->slot->q, state->q_compensation + own->slot->q);
@@ -166,7 +183,8 @@ static dvi_status leap_body(const dvi__mass_block *own, dvi__moser_veselov_map b
   return DVI_OK;
 }
 
-static dvi_status leap_alone(const dvi__mass_block *own, dvi__moser_veselov_map by, double h, const dvi__phase *state, double *leap)
+static dvi_status leap_alone(const dvi__mass_block *own, dvi__moser_veselov_map by, double h,
+                             const dvi__phase *state, double *leap)
 {
   switch (own->slot->kind) {
   case DVI__CIRCLE: return leap_circle(own, h, state, leap);
@@ -178,7 +196,8 @@ static dvi_status leap_alone(const dvi__mass_block *own, dvi__moser_veselov_map 
 
 dvi_status dvi__lie_drift_drift(dvi__lie_drift *l, double h, const dvi__phase *state, double *leap)
 {
-  for (int i = 0; i < l->pieces.alone; i++) DVI_TRY(leap_alone(&l->pieces.piece[i], l->by, h, state, leap));
+  for (int i = 0; i < l->pieces.alone; i++)
+    DVI_TRY(leap_alone(&l->pieces.piece[i], l->by, h, state, leap));
   return l->together == NULL ? DVI_OK : dvi__coupled_drift_drift(l->together, h, state, leap);
 }
 
@@ -189,11 +208,13 @@ static void coordinates_of(const dvi__chart *chart, const double *leap, double *
 {
   dvi__chart_enter(chart, leap, xi);
   if (chart->kind != DVI__ROTATION) return;
-  const double tangent = sqrt(dvi__dot(xi, xi)), stretch = tangent > 0 ? 2 * atan(tangent) / tangent : 2;
+  const double tangent = sqrt(dvi__dot(xi, xi)),
+               stretch = tangent > 0 ? 2 * atan(tangent) / tangent : 2;
   for (int i = 0; i < 3; i++) xi[i] *= stretch;
 }
 
-void dvi__lie_drift_path(const dvi__lie_drift *l, const double *q0, const double *leap, double h, double tau, double *q, double *v)
+void dvi__lie_drift_path(const dvi__lie_drift *l, const double *q0, const double *leap, double h,
+                         double tau, double *q, double *v)
 {
   for (int c = 0; c < l->pieces.system->slot_count; c++) {
     const dvi__factor_slot *slot = &l->pieces.system->slots[c];

@@ -33,17 +33,22 @@ struct dvi__shot {
 
 static double **owned(dvi__shot *s, int i)
 {
-  double **const all[] = {&s->p0, &s->node, &s->W, &s->point, &s->turned, &s->lambda, &s->Gamma, &s->kappa};
+  double **const all[] = {&s->p0,     &s->node,   &s->W,     &s->point,
+                          &s->turned, &s->lambda, &s->Gamma, &s->kappa};
   return i < (int)(sizeof all / sizeof *all) ? all[i] : NULL;
 }
 
 static dvi_status allocate(dvi__shot *s)
 {
-  const size_t z = 2 * (size_t)s->n, stages = (size_t)s->method.stages, pieces = (size_t)s->course.pieces;
-  const size_t size[] = {z, z * (pieces + 1), z * stages * pieces, z, z, z, z * stages, z * stages * z};
+  const size_t z = 2 * (size_t)s->n, stages = (size_t)s->method.stages,
+               pieces = (size_t)s->course.pieces;
+  const size_t size[] = {z, z * (pieces + 1), z * stages * pieces, z, z,
+                         z, z * stages,       z * stages * z};
   for (int i = 0; owned(s, i) != NULL; i++) {
     *owned(s, i) = DVI_NEW(double, size[i]);
-    if (*owned(s, i) == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory for %d stages in %d dimensions", s->method.stages, s->n);
+    if (*owned(s, i) == NULL)
+      return dvi__fail(DVI_NO_MEMORY, "no memory for %d stages in %d dimensions", s->method.stages,
+                       s->n);
   }
   return DVI_OK;
 }
@@ -71,14 +76,20 @@ static int first_stage_is_node(const dvi__runge_kutta *m)
 static dvi_status fill(dvi__shot *s, const dvi_system *system, dvi_counters *counters)
 {
   DVI_TRY(allocate(s));
-  DVI_TRY(dvi__vector_field_create(system, node_point(s, s->course.pieces) + 1, counters, &s->field));
-  if (s->method.series > 0) DVI_TRY(dvi__taylor_create(system, s->field, s->method.series, s->course.pieces, counters, &s->series));
-  if (s->course.count > 0) DVI_TRY(dvi__ends_create(system, s->course.count, s->course.weight, counters, &s->ends));
-  return s->method.is_explicit ? DVI_OK : dvi__stages_create(s->field, s->n, &s->method, counters, &s->coupled);
+  DVI_TRY(
+      dvi__vector_field_create(system, node_point(s, s->course.pieces) + 1, counters, &s->field));
+  if (s->method.series > 0)
+    DVI_TRY(dvi__taylor_create(system, s->field, s->method.series, s->course.pieces, counters,
+                               &s->series));
+  if (s->course.count > 0)
+    DVI_TRY(dvi__ends_create(system, s->course.count, s->course.weight, counters, &s->ends));
+  return s->method.is_explicit
+             ? DVI_OK
+             : dvi__stages_create(s->field, s->n, &s->method, counters, &s->coupled);
 }
 
-dvi_status dvi__shot_create(const dvi_system *system, const dvi__runge_kutta *method, const dvi__course *course,
-                            dvi_counters *counters, dvi__shot **shot)
+dvi_status dvi__shot_create(const dvi_system *system, const dvi__runge_kutta *method,
+                            const dvi__course *course, dvi_counters *counters, dvi__shot **shot)
 {
   *shot = NULL;
   dvi__shot *s = DVI_NEW(dvi__shot, 1);
@@ -156,8 +167,11 @@ static dvi_status explicit_stages(dvi__shot *s, int piece, double t, double h)
   for (int j = 0; j < m->stages; j++) {
     memcpy(moved, at(s, s->node, piece), 2 * (size_t)s->n * sizeof *moved);
     for (int k = 0; k < j; k++) add(s, m->a[j][k], at(s, W, k), moved);
-    const dvi_status status = place(s, stage_point(s, piece, j), t + m->c[j] * h, moved, at(s, W, j));
-    if (status != DVI_OK) return dvi__fail_in(status, "stage %d of the one-step method from node %d on", j + 1, piece + 1);
+    const dvi_status status = place(s, stage_point(s, piece, j), t + m->c[j] * h, moved,
+                                    at(s, W, j));
+    if (status != DVI_OK)
+      return dvi__fail_in(status, "stage %d of the one-step method from node %d on", j + 1,
+                          piece + 1);
     for (int i = 0; i < 2 * s->n; i++) at(s, W, j)[i] *= h;
   }
   return DVI_OK;
@@ -169,7 +183,9 @@ static dvi_status series_stage(dvi__shot *s, int piece, double t, double h)
   const int point = stage_point(s, piece, 0);
   dvi_status status = place(s, point, t, at(s, s->node, piece), s->turned);
   if (status == DVI_OK) status = dvi__taylor_advance(s->series, point, h, at(s, s->W, piece));
-  return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "the Taylor series of the motion at node %d", piece + 1);
+  return status == DVI_OK
+             ? DVI_OK
+             : dvi__fail_in(status, "the Taylor series of the motion at node %d", piece + 1);
 }
 
 static dvi_status coupled_stages(dvi__shot *s, int piece, double t, double h)
@@ -181,7 +197,9 @@ static dvi_status coupled_stages(dvi__shot *s, int piece, double t, double h)
   }
   const dvi_status status = dvi__stages_solve(s->coupled, stage_point(s, piece, 0), t, h, s->point,
                                               at(s, s->W, piece * s->method.stages));
-  return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "the stages of the one-step method from node %d on", piece + 1);
+  return status == DVI_OK
+             ? DVI_OK
+             : dvi__fail_in(status, "the stages of the one-step method from node %d on", piece + 1);
 }
 
 static dvi_status stages(dvi__shot *s, int piece)
@@ -200,7 +218,9 @@ static int stands_alone(const dvi__shot *s, int m)
 static dvi_status place_nodes(dvi__shot *s)
 {
   for (int m = 0; m <= s->course.pieces; m++)
-    if (stands_alone(s, m)) DVI_TRY(place(s, node_point(s, m), s->t0 + s->course.c[m] * s->h, at(s, s->node, m), s->turned));
+    if (stands_alone(s, m))
+      DVI_TRY(
+          place(s, node_point(s, m), s->t0 + s->course.c[m] * s->h, at(s, s->node, m), s->turned));
   return DVI_OK;
 }
 
@@ -279,7 +299,8 @@ static dvi_status costates(dvi__shot *s, int piece, const double *end)
 {
   const double h = length_of(s, piece);
   if (s->series != NULL) return dvi__taylor_pull(s->series, piece, end, s->kappa);
-  return s->coupled != NULL ? coupled_costates(s, piece, h, end) : explicit_costates(s, piece, h, end);
+  return s->coupled != NULL ? coupled_costates(s, piece, h, end)
+                            : explicit_costates(s, piece, h, end);
 }
 
 static dvi_status add_lagrangian(dvi__shot *s, int m)
@@ -325,7 +346,8 @@ static dvi_status move_stages(dvi__shot *s, int piece, double h, int columns, do
     DVI_TRY(dvi__vector_field_select(s->field, stage_point(s, piece, j)));
     for (int i = 0; i < columns; i++) {
       memcpy(s->point, at(s, motion, i), 2 * (size_t)s->n * sizeof *s->point);
-      for (int k = 0; k < j && m->is_explicit; k++) add(s, m->a[j][k], at(s, column_of(s, i), k), s->point);
+      for (int k = 0; k < j && m->is_explicit; k++)
+        add(s, m->a[j][k], at(s, column_of(s, i), k), s->point);
       dvi__vector_field_push(s->field, h, s->point, at(s, column_of(s, i), j));
     }
   }
@@ -335,7 +357,8 @@ static dvi_status move_stages(dvi__shot *s, int piece, double h, int columns, do
 static dvi_status move_series(dvi__shot *s, int piece, int columns, const double *motion)
 {
   for (int i = 0; i < columns; i++)
-    DVI_TRY(dvi__taylor_push(s->series, piece, motion + (size_t)i * 2 * (size_t)s->n, column_of(s, i)));
+    DVI_TRY(
+        dvi__taylor_push(s->series, piece, motion + (size_t)i * 2 * (size_t)s->n, column_of(s, i)));
   return DVI_OK;
 }
 
@@ -352,10 +375,12 @@ dvi_status dvi__shot_move(dvi__shot *s, double *motion)
   const int columns = 2 * s->n;
   for (int piece = 0; piece < s->course.pieces; piece++) {
     const double h = length_of(s, piece);
-    DVI_TRY(s->series != NULL ? move_series(s, piece, columns, motion) : move_stages(s, piece, h, columns, motion));
+    DVI_TRY(s->series != NULL ? move_series(s, piece, columns, motion)
+                              : move_stages(s, piece, h, columns, motion));
     DVI_TRY(couple(s, piece, h, columns));
     for (int i = 0; i < columns; i++)
-      for (int j = 0; j < s->method.stages; j++) add(s, s->method.b[j], at(s, column_of(s, i), j), at(s, motion, i));
+      for (int j = 0; j < s->method.stages; j++)
+        add(s, s->method.b[j], at(s, column_of(s, i), j), at(s, motion, i));
   }
   return DVI_OK;
 }

@@ -21,7 +21,8 @@ struct dvi__stages {
   double *slope;         /* [2n*2n*s] h f_z at the stages, column by column */
   double *values;        /* [unknowns^2] */
   double *point, *image; /* [2n] */
-  double *x, *R;         /* [unknowns] increments, those of momenta over `unit`; the residual, then the correction */
+  /* [unknowns] increments, those of momenta over `unit`; the residual, then the correction */
+  double *x, *R;
 };
 
 /* ---- equations ---- */
@@ -40,7 +41,8 @@ static double unit_of(const dvi__stages *s, int component)
 static void scale(const dvi__stages *s, int over, double *x)
 {
   for (int j = 0; j < s->method->stages; j++)
-    for (int i = s->n; i < 2 * s->n; i++) at(s, x, j)[i] *= over ? 1 / unit_of(s, i) : unit_of(s, i);
+    for (int i = s->n; i < 2 * s->n; i++)
+      at(s, x, j)[i] *= over ? 1 / unit_of(s, i) : unit_of(s, i);
 }
 
 static dvi_status residual(dvi__stages *s, const double *x, double *R)
@@ -53,9 +55,11 @@ static dvi_status residual(dvi__stages *s, const double *x, double *R)
       for (int k = 0; k < m->stages; k++) sum += m->a[j][k] * x[k * 2 * s->n + i];
       s->point[i] = s->z[i] + unit_of(s, i) * sum;
     }
-    const dvi_status status = dvi__vector_field_place(s->field, s->first + j, s->t + m->c[j] * s->h, s->point, s->point + s->n, s->image);
+    const dvi_status status = dvi__vector_field_place(s->field, s->first + j, s->t + m->c[j] * s->h,
+                                                      s->point, s->point + s->n, s->image);
     if (status != DVI_OK) return dvi__fail_in(status, "stage %d", j + 1);
-    for (int i = 0; i < 2 * s->n; i++) R[row + (size_t)i] = x[row + (size_t)i] - s->h / unit_of(s, i) * s->image[i];
+    for (int i = 0; i < 2 * s->n; i++)
+      R[row + (size_t)i] = x[row + (size_t)i] - s->h / unit_of(s, i) * s->image[i];
   }
   return DVI_OK;
 }
@@ -111,7 +115,8 @@ static dvi_status allocate(dvi__stages *s)
   s->x = DVI_NEW(double, all);
   s->R = DVI_NEW(double, all);
   if (s->slope && s->values && s->point && s->image && s->x && s->R) return DVI_OK;
-  return dvi__fail(DVI_NO_MEMORY, "no memory for %d stages in %d dimensions", s->method->stages, s->n);
+  return dvi__fail(DVI_NO_MEMORY, "no memory for %d stages in %d dimensions", s->method->stages,
+                   s->n);
 }
 
 static dvi_status fill(dvi__stages *s, dvi_counters *counters)
@@ -122,8 +127,8 @@ static dvi_status fill(dvi__stages *s, dvi_counters *counters)
   return dvi__linear_create(&s->pattern, DVI__LINEAR_DENSE, counters, &s->linear);
 }
 
-dvi_status dvi__stages_create(dvi__vector_field *field, int n, const dvi__runge_kutta *method, dvi_counters *counters,
-                              dvi__stages **stages)
+dvi_status dvi__stages_create(dvi__vector_field *field, int n, const dvi__runge_kutta *method,
+                              dvi_counters *counters, dvi__stages **stages)
 {
   *stages = NULL;
   dvi__stages *s = DVI_NEW(dvi__stages, 1);
@@ -174,10 +179,13 @@ static dvi_status renew(dvi__stages *s)
 {
   DVI_TRY(dvi__vector_field_differentiate(s->field, s->first, s->method->stages));
   const dvi_status status = dvi__stages_factor(s, s->first, s->h);
-  return status == DVI_SINGULAR ? dvi__fail_in(DVI_NOT_CONVERGED, "the stages' Jacobian cannot be factored") : status;
+  return status == DVI_SINGULAR
+             ? dvi__fail_in(DVI_NOT_CONVERGED, "the stages' Jacobian cannot be factored")
+             : status;
 }
 
-/* Newton's method to roundoff: to corrections of a few roundings, or to noise that shrinks no more. The Jacobian is kept while they shrink fast. */
+/* Newton's method to roundoff: to corrections of a few roundings, or to noise that shrinks no more.
+ * The Jacobian is kept while they shrink fast. */
 static dvi_status newton(dvi__stages *s)
 {
   enum { MOST = 40 };
@@ -191,7 +199,8 @@ static dvi_status newton(dvi__stages *s)
     dvi__linear_solve(s->linear, s->R);
     for (size_t i = 0; i < all; i++) s->x[i] -= s->R[i];
     const double correction = dvi__largest(all, s->R), whole = dvi__largest(all, s->x);
-    if (correction <= few * whole || (correction <= noise * whole && correction >= 0.5 * last)) return DVI_OK;
+    if (correction <= few * whole || (correction <= noise * whole && correction >= 0.5 * last))
+      return DVI_OK;
     if (!(correction <= 1e300)) break;
     fresh = correction <= fast * last;
     last = correction;
@@ -200,7 +209,8 @@ static dvi_status newton(dvi__stages *s)
 }
 
 /* From stages that all move as z does. */
-dvi_status dvi__stages_solve(dvi__stages *s, int first, double t, double h, const double *z, double *W)
+dvi_status dvi__stages_solve(dvi__stages *s, int first, double t, double h, const double *z,
+                             double *W)
 {
   s->first = first;
   s->t = t;

@@ -10,13 +10,14 @@ struct dvi__taylor {
   dvi__vector_field *field;
   dvi__flow_series *series; /* to one degree more: v has one less */
   int n, degree;
-  double *change;         /* [2n*2n*pieces] the derivative of (q1,v1) in (q,v), column by column, less the identity */
+  /* [2n*2n*pieces] the derivative of (q1,v1) in (q,v), column by column, less the identity */
+  double *change;
   double *end;            /* [2n] */
   double *motion, *image; /* [2n] */
 };
 
-dvi_status dvi__taylor_create(const dvi_system *system, dvi__vector_field *field, int degree, int pieces, dvi_counters *counters,
-                              dvi__taylor **taylor)
+dvi_status dvi__taylor_create(const dvi_system *system, dvi__vector_field *field, int degree,
+                              int pieces, dvi_counters *counters, dvi__taylor **taylor)
 {
   const size_t z = 2 * (size_t)system->n;
   *taylor = NULL;
@@ -29,8 +30,11 @@ dvi_status dvi__taylor_create(const dvi_system *system, dvi__vector_field *field
   t->end = DVI_NEW(double, z);
   t->motion = DVI_NEW(double, z);
   t->image = DVI_NEW(double, z);
-  dvi_status status = t->change && t->end && t->motion && t->image ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "no memory");
-  if (status == DVI_OK) status = dvi__flow_series_create(system, degree + 1, DVI__HESSIANS, counters, &t->series);
+  dvi_status status = t->change && t->end && t->motion && t->image
+                          ? DVI_OK
+                          : dvi__fail(DVI_NO_MEMORY, "no memory");
+  if (status == DVI_OK)
+    status = dvi__flow_series_create(system, degree + 1, DVI__HESSIANS, counters, &t->series);
   if (status != DVI_OK) dvi__taylor_destroy(&t);
   *taylor = t;
   return status;
@@ -50,7 +54,8 @@ void dvi__taylor_destroy(dvi__taylor **taylor)
 }
 
 /* sum_k h^k c_k without c_0; c_k is [count], at a distance of `stride`. */
-static void sum_series(const dvi__taylor *t, double h, int count, size_t stride, const double *c, double *sum)
+static void sum_series(const dvi__taylor *t, double h, int count, size_t stride, const double *c,
+                       double *sum)
 {
   for (int i = 0; i < count; i++) {
     sum[i] = 0;

@@ -9,16 +9,19 @@
 struct dvi__vector_field {
   const dvi_system *system;
   dvi__evaluator *evaluator;
-  int n, points, at, is_H; /* is_H: the system declares a Hamiltonian, whose derivatives stand in the place of L's */
+  /* is_H: the system declares a Hamiltonian, whose derivatives stand in the place of L's */
+  int n, points, at, is_H;
   /* Point by point: [points], [n*points], [entries*points]. */
   double *t, *q, *v, *p, *H_q, *L_qq, *L_qv, *L_vv;
   double *velocity, *w, *motion; /* [n], [n], [2n] */
-  dvi__linear *linear;           /* the factor of L_vv at the selected point; NULL: the mass is constant, or there is H */
+  /* the factor of L_vv at the selected point; NULL: the mass is constant, or there is H */
+  dvi__linear *linear;
 };
 
 static double **owned(dvi__vector_field *f, int i)
 {
-  double **const all[] = {&f->t, &f->q, &f->v, &f->p, &f->H_q, &f->L_qq, &f->L_qv, &f->L_vv, &f->velocity, &f->w, &f->motion};
+  double **const all[] = {&f->t,    &f->q,    &f->v,        &f->p, &f->H_q,   &f->L_qq,
+                          &f->L_qv, &f->L_vv, &f->velocity, &f->w, &f->motion};
   return i < (int)(sizeof all / sizeof *all) ? all[i] : NULL;
 }
 
@@ -30,7 +33,8 @@ static dvi_status allocate(dvi__vector_field *f)
   const size_t size[] = {m, n * m, n * m, n * m, n * m, qq * m, qv * m, vv * m, n, n, 2 * n};
   for (int i = 0; owned(f, i) != NULL; i++) {
     *owned(f, i) = DVI_NEW(double, size[i] > 0 ? size[i] : 1);
-    if (*owned(f, i) == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory for %d stages in %d dimensions", f->points, f->n);
+    if (*owned(f, i) == NULL)
+      return dvi__fail(DVI_NO_MEMORY, "no memory for %d stages in %d dimensions", f->points, f->n);
   }
   return DVI_OK;
 }
@@ -39,11 +43,13 @@ static dvi_status fill(dvi__vector_field *f, dvi_counters *counters)
 {
   DVI_TRY(dvi__evaluator_create(f->system, 1, DVI__HESSIANS, counters, &f->evaluator));
   DVI_TRY(allocate(f));
-  return f->system->lagrangian != NULL && !f->is_H ? dvi__linear_create(&f->system->vv, DVI__LINEAR_AUTO, counters, &f->linear)
-                                                   : DVI_OK;
+  return f->system->lagrangian != NULL && !f->is_H
+             ? dvi__linear_create(&f->system->vv, DVI__LINEAR_AUTO, counters, &f->linear)
+             : DVI_OK;
 }
 
-dvi_status dvi__vector_field_create(const dvi_system *system, int points, dvi_counters *counters, dvi__vector_field **field)
+dvi_status dvi__vector_field_create(const dvi_system *system, int points, dvi_counters *counters,
+                                    dvi__vector_field **field)
 {
   *field = NULL;
   dvi__vector_field *f = DVI_NEW(dvi__vector_field, 1);
@@ -77,14 +83,16 @@ void dvi__vector_field_guess(dvi__vector_field *f, const double *v)
 /* ---- points ---- */
 
 /* The velocity, and p'. */
-static dvi_status motion_at(dvi__vector_field *f, double t, const double *q, const double *p, double *pdot)
+static dvi_status motion_at(dvi__vector_field *f, double t, const double *q, const double *p,
+                            double *pdot)
 {
   if (f->is_H) return dvi__state_rates(f->evaluator, t, q, p, f->velocity, pdot, NULL);
   DVI_TRY(dvi__legendre_inverse(f->evaluator, t, q, p, f->velocity));
   return dvi__lagrangian_gradient(f->evaluator, 1, &t, q, f->velocity, pdot, NULL);
 }
 
-dvi_status dvi__vector_field_place(dvi__vector_field *f, int k, double t, const double *q, const double *p, double *rate)
+dvi_status dvi__vector_field_place(dvi__vector_field *f, int k, double t, const double *q,
+                                   const double *p, double *rate)
 {
   const size_t n = (size_t)f->n, at = (size_t)k * n, bytes = n * sizeof *q;
   DVI_TRY(motion_at(f, t, q, p, rate + n));
@@ -109,8 +117,9 @@ dvi_status dvi__vector_field_differentiate(dvi__vector_field *f, int first, int 
   for (int k = first; k < first + count; k++) {
     const size_t at = (size_t)k * (size_t)f->n;
     double *L_vv = f->linear != NULL || f->is_H ? f->L_vv + first_of(&s->vv, k) : NULL;
-    DVI_TRY(dvi__lagrangian_hessian(f->evaluator, 1, f->t + k, f->q + at, (f->is_H ? f->p : f->v) + at,
-                                    f->L_qq + first_of(&s->qq, k), f->L_qv + first_of(&s->qv, k), L_vv));
+    DVI_TRY(dvi__lagrangian_hessian(f->evaluator, 1, f->t + k, f->q + at,
+                                    (f->is_H ? f->p : f->v) + at, f->L_qq + first_of(&s->qq, k),
+                                    f->L_qv + first_of(&s->qv, k), L_vv));
   }
   return DVI_OK;
 }
@@ -118,11 +127,13 @@ dvi_status dvi__vector_field_differentiate(dvi__vector_field *f, int first, int 
 dvi_status dvi__vector_field_select(dvi__vector_field *f, int k)
 {
   f->at = k;
-  return f->linear != NULL ? dvi__linear_factor(f->linear, f->L_vv + first_of(&f->system->vv, k)) : DVI_OK;
+  return f->linear != NULL ? dvi__linear_factor(f->linear, f->L_vv + first_of(&f->system->vv, k))
+                           : DVI_OK;
 }
 
 /* y += sign A x, or with the transpose of A. */
-static void add_times(const dvi__pattern *of, const double *values, int transposed, double sign, const double *x, double *y)
+static void add_times(const dvi__pattern *of, const double *values, int transposed, double sign,
+                      const double *x, double *y)
 {
   for (int j = 0; j < of->columns; j++)
     for (int e = of->start[j]; e < of->start[j + 1]; e++) {
@@ -210,7 +221,8 @@ dvi__vector_field_point dvi__vector_field_selected(const dvi__vector_field *f)
 }
 
 /* For a constant mass L_v is linear, and nothing is lost to p. */
-dvi_status dvi__vector_field_impulse(dvi__vector_field *f, int k, double t, const double *q, const double *dv, double *dp)
+dvi_status dvi__vector_field_impulse(dvi__vector_field *f, int k, double t, const double *q,
+                                     const double *dv, double *dp)
 {
   const size_t n = (size_t)f->n, at = (size_t)k * n;
   if (f->linear == NULL) return dvi__lagrangian_gradient(f->evaluator, 1, &t, q, dv, NULL, dp);
@@ -248,21 +260,25 @@ void dvi__vector_field_lower(dvi__vector_field *f, int k, const double *covector
 
 /* ---- sizes ---- */
 
-static dvi_status mass_at(dvi__vector_field *f, double t, const double *q, const double *v, const double **values)
+static dvi_status mass_at(dvi__vector_field *f, double t, const double *q, const double *v,
+                          const double **values)
 {
   if (f->linear != NULL) return dvi__velocity_hessian(f->evaluator, t, q, v, values);
   *values = constant_mass(f);
   return DVI_OK;
 }
 
-dvi_status dvi__vector_field_mass(dvi__vector_field *f, double t, const double *q, const double *v, double *size)
+dvi_status dvi__vector_field_mass(dvi__vector_field *f, double t, const double *q, const double *v,
+                                  double *size)
 {
   const dvi__pattern *vv = &f->system->vv;
   const double *values;
   DVI_TRY(mass_at(f, t, q, v, &values));
   memset(size, 0, (size_t)f->n * sizeof *size);
-  for (int e = 0; e < dvi__pattern_entries(vv); e++) size[vv->row[e]] = fmax(size[vv->row[e]], fabs(values[e]));
+  for (int e = 0; e < dvi__pattern_entries(vv); e++)
+    size[vv->row[e]] = fmax(size[vv->row[e]], fabs(values[e]));
   for (int i = 0; i < f->n; i++)
-    if (!(size[i] > 0)) return dvi__fail(DVI_SINGULAR, "the Lagrangian is degenerate: coordinate %d has no mass", i);
+    if (!(size[i] > 0))
+      return dvi__fail(DVI_SINGULAR, "the Lagrangian is degenerate: coordinate %d has no mass", i);
   return DVI_OK;
 }

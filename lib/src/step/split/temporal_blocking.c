@@ -8,8 +8,9 @@
 #include "core/status.h"
 #include "num/team.h"
 
-/* Lags are multiples of a cache line, so that vectors stay aligned. Blocks of 512 coordinates, with the lags of 17 substeps between
- * nearest neighbours, keep a window of five arrays of 800 numbers at work: it fits into the first cache. Windows up to WINDOW fit into the second. */
+/* Lags are multiples of a cache line, so that vectors stay aligned. Blocks of 512 coordinates, with
+ * the lags of 17 substeps between nearest neighbours, keep a window of five arrays of 800 numbers
+ * at work: it fits into the first cache. Windows up to WINDOW fit into the second. */
 enum { LINE = 8, BLOCK = 512, WINDOW = 24 * 1024 };
 
 /* Arrays that a pass reads and writes: q, p, their carries, the gradient. */
@@ -21,7 +22,9 @@ struct dvi__blocking {
   ptrdiff_t block, lag; /* coordinates of one turn; of one operation behind the other */
   dvi__division by;
   double scalar;
-  double *term; /* [threads*block]: one potential's gradient, before it is added to the others; NULL if there is only one */
+  /* [threads*block]: one potential's gradient, before it is added to the others; NULL if there is
+   * only one */
+  double *term;
   dvi__team *team;
   atomic_int *begun; /* [threads]: the left neighbour may cross the cut */
 };
@@ -40,7 +43,8 @@ const char *dvi__blocking_obstacle(const dvi_system *system)
   if (system->mass_diagonal == NULL) return "the mass is not diagonal";
   if (system->potential_count == 0) return "there is no potential";
   for (int k = 0; k < system->potential_count; k++)
-    if (system->potentials[k].callbacks.gradient_range == NULL) return "a potential has no gradient_range";
+    if (system->potentials[k].callbacks.gradient_range == NULL)
+      return "a potential has no gradient_range";
   return NULL;
 }
 
@@ -49,10 +53,13 @@ static dvi_status fill(dvi__blocking *w)
   const int potentials = w->system->potential_count, block = atomic_load(&chosen_block);
   int reach = 0;
   for (int k = 0; k < potentials; k++)
-    reach = w->system->potentials[k].callbacks.reach > reach ? w->system->potentials[k].callbacks.reach : reach;
+    reach = w->system->potentials[k].callbacks.reach > reach
+                ? w->system->potentials[k].callbacks.reach
+                : reach;
   w->block = block > 0 ? block : BLOCK;
   w->lag = block > 0 ? reach : ((ptrdiff_t)reach + LINE - 1) / LINE * LINE;
-  w->by = w->system->mass_scalar != 0 ? dvi__division_by(w->system->mass_scalar, &w->scalar) : DVI__BY_ARRAY;
+  w->by = w->system->mass_scalar != 0 ? dvi__division_by(w->system->mass_scalar, &w->scalar)
+                                      : DVI__BY_ARRAY;
   w->begun = DVI_NEW(atomic_int, w->threads);
   if (potentials > 1) w->term = DVI_NEW(double, w->threads * w->block);
   if (w->begun == NULL || (potentials > 1 && w->term == NULL))
@@ -94,7 +101,8 @@ typedef struct pass {
   atomic_int failed;
 } pass;
 
-/* What one thread does of it: coordinates begin to end-1, cut obliquely on both sides unless the chain ends there. */
+/* What one thread does of it: coordinates begin to end-1, cut obliquely on both sides unless the
+ * chain ends there. */
 typedef struct part {
   pass *pass;
   ptrdiff_t begin, end;
@@ -107,26 +115,29 @@ typedef struct range {
 
 static dvi__phase phase_at(const dvi__phase *whole, ptrdiff_t i)
 {
-  return (dvi__phase){whole->q + i, whole->p + i, whole->q_compensation + i, whole->p_compensation + i};
+  return (dvi__phase){whole->q + i, whole->p + i, whole->q_compensation + i,
+                      whole->p_compensation + i};
 }
 
-/* A_k, k = 0 .. count-1: the second kick of the substep before and the first of this one have the same gradient. */
+/* A_k, k = 0 .. count-1: the second kick of the substep before and the first of this one have the
+ * same gradient. */
 static void leap(const part *own, int k, range r)
 {
   const dvi__blocking *w = own->pass->wave;
   const dvi__blocking_step *s = &own->pass->step;
   const double *gradient = k == 0 && s->gradient != NULL ? s->gradient : s->gradient_to;
-  const dvi__moser_veselov leap = {.count = (size_t)(r.last - r.first),
-                          .kicks = k == 0 ? 1 : 2,
-                          .kick = {k == 0 ? -0.5 * s->h[0] : -0.5 * s->h[k - 1], -0.5 * s->h[k]},
-                          .drift = s->h[k],
-                          .by = w->by,
-                          .scalar = w->scalar,
-                          .mass = w->by == DVI__BY_ARRAY ? w->system->mass_diagonal + r.first : NULL,
-                          .force = gradient + r.first,
-                          .from = phase_at(k == 0 ? &s->from : &s->to, r.first),
-                          .to = phase_at(&s->to, r.first),
-                          .far = k == 0};
+  const dvi__moser_veselov leap = {
+      .count = (size_t)(r.last - r.first),
+      .kicks = k == 0 ? 1 : 2,
+      .kick = {k == 0 ? -0.5 * s->h[0] : -0.5 * s->h[k - 1], -0.5 * s->h[k]},
+      .drift = s->h[k],
+      .by = w->by,
+      .scalar = w->scalar,
+      .mass = w->by == DVI__BY_ARRAY ? w->system->mass_diagonal + r.first : NULL,
+      .force = gradient + r.first,
+      .from = phase_at(k == 0 ? &s->from : &s->to, r.first),
+      .to = phase_at(&s->to, r.first),
+      .far = k == 0};
   dvi__lanes_kick_drift(&leap);
 }
 
@@ -138,7 +149,9 @@ static int gradient(const part *own, double t, const double *q, range r)
   const size_t count = (size_t)(r.last - r.first);
   for (int k = 0; k < system->potential_count; k++) {
     const dvi_potential *asked = &system->potentials[k].callbacks;
-    if (asked->gradient_range(t, q, (int)r.first, (int)r.last, k == 0 ? sum : own->term, asked->user) != 0) return 0;
+    if (asked->gradient_range(t, q, (int)r.first, (int)r.last, k == 0 ? sum : own->term,
+                              asked->user) != 0)
+      return 0;
     for (size_t i = 0; i < count && k > 0; i++) sum[i] += own->term[i];
   }
   return dvi__lanes_all_finite(count, sum);
@@ -150,7 +163,8 @@ static int finish(const part *own, range r)
   const dvi__blocking_step *s = &own->pass->step;
   const dvi__phase to = phase_at(&s->to, r.first);
   const size_t count = (size_t)(r.last - r.first);
-  dvi__lanes_add_scaled(count, -0.5 * s->h[s->count - 1], s->gradient_to + r.first, to.p, to.p_compensation);
+  dvi__lanes_add_scaled(count, -0.5 * s->h[s->count - 1], s->gradient_to + r.first, to.p,
+                        to.p_compensation);
   return dvi__lanes_all_finite(count, to.p) && dvi__lanes_all_finite(count, to.q);
 }
 
@@ -160,8 +174,10 @@ static int finish(const part *own, range r)
 static range range_at(const part *own, ptrdiff_t x, ptrdiff_t lag)
 {
   const ptrdiff_t n = own->pass->wave->system->n, block = own->pass->wave->block;
-  const ptrdiff_t least = own->begin == 0 ? 0 : own->begin + lag, most = own->end == n ? n : own->end + lag;
-  const range r = {x - lag > least ? x - lag : least, x - lag + block < most ? x - lag + block : most};
+  const ptrdiff_t least = own->begin == 0 ? 0 : own->begin + lag,
+                  most = own->end == n ? n : own->end + lag;
+  const range r = {x - lag > least ? x - lag : least,
+                   x - lag + block < most ? x - lag + block : most};
   return r;
 }
 
@@ -190,12 +206,13 @@ static int await(const part *own, int neighbour)
   return 1;
 }
 
-/* Nothing after `clear` touches what the left neighbour will: he writes `behind` beyond the cut and reads one reach more. Before that no one waits for
- * anybody, so all get there. */
+/* Nothing after `clear` touches what the left neighbour will: he writes `behind` beyond the cut and
+ * reads one reach more. Before that no one waits for anybody, so all get there. */
 static int sweep(const part *own, int member)
 {
   const dvi__blocking *w = own->pass->wave;
-  const ptrdiff_t behind = (2 * own->pass->step.count - 1) * w->lag, clear = own->begin + 2 * (behind + w->lag);
+  const ptrdiff_t behind = (2 * own->pass->step.count - 1) * w->lag,
+                  clear = own->begin + 2 * (behind + w->lag);
   const int last = member == own->pass->members - 1;
   const ptrdiff_t end = (last ? own->end : own->end + behind) + behind;
   int waits = !last, good = 1;
@@ -205,7 +222,8 @@ static int sweep(const part *own, int member)
       good = await(own, member + 1);
       waits = 0;
     }
-    good = good && !atomic_load_explicit(&own->pass->failed, memory_order_relaxed) && work_at(own, x);
+    good = good && !atomic_load_explicit(&own->pass->failed, memory_order_relaxed) &&
+           work_at(own, x);
   }
   return good;
 }
@@ -220,7 +238,8 @@ static void take_part(void *user, int member)
 {
   pass *p = user;
   const dvi__blocking *w = p->wave;
-  const part own = {p, cut(p, member), cut(p, member + 1), w->term != NULL ? w->term + member * w->block : NULL};
+  const part own = {p, cut(p, member), cut(p, member + 1),
+                    w->term != NULL ? w->term + member * w->block : NULL};
   if (!sweep(&own, member)) atomic_store(&p->failed, 1);
 }
 
@@ -235,7 +254,8 @@ int dvi__blocking_depth(const dvi__blocking *w)
 int dvi__blocking_threads(const dvi__blocking *w, int count)
 {
   const int substeps = count < dvi__blocking_depth(w) ? count : dvi__blocking_depth(w);
-  const ptrdiff_t least = 4 * (substeps + 1) * w->lag + 4 * w->block + LINE, possible = w->system->n / least;
+  const ptrdiff_t least = 4 * (substeps + 1) * w->lag + 4 * w->block + LINE,
+                  possible = w->system->n / least;
   return possible < 1 ? 1 : possible < w->threads ? (int)possible : w->threads;
 }
 

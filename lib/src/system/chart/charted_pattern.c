@@ -1,4 +1,5 @@
-/* Patterns of the Lagrangian in the charts: slots whose stored coordinates meet in a matrix have full blocks. */
+/* Patterns of the Lagrangian in the charts: slots whose stored coordinates meet in a matrix have
+ * full blocks. */
 #include <limits.h>
 
 #include "core/memory.h"
@@ -49,11 +50,13 @@ static void meet(meetings *m, int c)
   m->count = 0;
   if (m->own || at->kind != DVI__LINE) add_new(m, c);
   for (int k = 0; k < 2 && m->part[k] != NULL; k++)
-    for (int e = m->part[k]->start[at->q]; e < m->part[k]->start[at->q + dvi__chart_stored(at->kind)]; e++)
+    for (int e = m->part[k]->start[at->q];
+         e < m->part[k]->start[at->q + dvi__chart_stored(at->kind)]; e++)
       add_new(m, m->slot[m->part[k]->row[e]]);
 }
 
-/* The pattern of slots. It is symmetric: giving every slot its columns in turn makes rows ascend. */
+/* The pattern of slots. It is symmetric: giving every slot its columns in turn makes rows
+ * ascend. */
 static dvi_status meet_all(meetings *m, dvi__pattern *slots)
 {
   const int count = m->base->slot_count;
@@ -74,8 +77,10 @@ static dvi_status meet_all(meetings *m, dvi__pattern *slots)
   return DVI_OK;
 }
 
-/* Rows of all that meet slot c, for each of its chart coordinates. Only counts them if there is no room. */
-static size_t put_columns(const dvi_system *base, const dvi__pattern *slots, int c, size_t at, dvi__pattern *made)
+/* Rows of all that meet slot c, for each of its chart coordinates. Only counts them if there is no
+ * room. */
+static size_t put_columns(const dvi_system *base, const dvi__pattern *slots, int c, size_t at,
+                          dvi__pattern *made)
 {
   const dvi__factor_slot *column = &base->slots[c];
   for (int j = 0; j < dvi__chart_size(column->kind); j++) {
@@ -93,18 +98,24 @@ static dvi_status expand(const dvi_system *base, const dvi__pattern *slots, dvi_
 {
   size_t entries = 0;
   for (int c = 0; c < base->slot_count; c++) entries = put_columns(base, slots, c, entries, NULL);
-  if (entries > INT_MAX) return dvi__fail(DVI_BAD_SIZE, "charts: a Hessian of %zu entries is too large", entries);
-  *made = (dvi__pattern){base->nx, base->nx, DVI_NEW(int, (size_t)base->nx + 1), DVI_NEW(int, entries)};
+  if (entries > INT_MAX)
+    return dvi__fail(DVI_BAD_SIZE, "charts: a Hessian of %zu entries is too large", entries);
+  *made = (dvi__pattern){base->nx, base->nx, DVI_NEW(int, (size_t)base->nx + 1),
+                         DVI_NEW(int, entries)};
   if (made->start == NULL || made->row == NULL) return no_memory();
-  for (int c = 0, at = 0; c < base->slot_count; c++) at = (int)put_columns(base, slots, c, (size_t)at, made);
+  for (int c = 0, at = 0; c < base->slot_count; c++)
+    at = (int)put_columns(base, slots, c, (size_t)at, made);
   return DVI_OK;
 }
 
 /* Full blocks where slots meet in a or b. `own`: and all the diagonal blocks. */
-static dvi_status make_pattern(const dvi__charted *x, const dvi__pattern *a, const dvi__pattern *b, int own, dvi__pattern *made)
+static dvi_status make_pattern(const dvi__charted *x, const dvi__pattern *a, const dvi__pattern *b,
+                               int own, dvi__pattern *made)
 {
   const dvi_system *base = x->base;
-  meetings m = {base, x->slot, {a, b}, own, DVI_NEW(int, base->slot_count), 0, DVI_NEW(int, base->slot_count), 0};
+  meetings m = {
+      base, x->slot, {a, b}, own, DVI_NEW(int, base->slot_count), 0, DVI_NEW(int, base->slot_count),
+      0};
   dvi__pattern slots = {0};
   dvi_status status = m.seen != NULL && m.met != NULL ? meet_all(&m, &slots) : no_memory();
   if (status == DVI_OK) status = expand(base, &slots, made);
@@ -114,14 +125,17 @@ static dvi_status make_pattern(const dvi__charted *x, const dvi__pattern *a, con
   return status;
 }
 
-dvi__place dvi__charted_place(const dvi__charted *x, const dvi__pattern *made, int row_cell, int column_cell)
+dvi__place dvi__charted_place(const dvi__charted *x, const dvi__pattern *made, int row_cell,
+                              int column_cell)
 {
   const int row = x->base->slots[row_cell].x, column = x->base->slots[column_cell].x;
-  return (dvi__place){dvi__pattern_find(made, row, column), made->start[column + 1] - made->start[column]};
+  return (dvi__place){dvi__pattern_find(made, row, column),
+                      made->start[column + 1] - made->start[column]};
 }
 
 /* The block of every entry of `part` in `made`. */
-static dvi_status place(const dvi__charted *x, const dvi__pattern *part, const dvi__pattern *made, dvi__place **places)
+static dvi_status place(const dvi__charted *x, const dvi__pattern *part, const dvi__pattern *made,
+                        dvi__place **places)
 {
   *places = DVI_NEW(dvi__place, dvi__pattern_entries(part));
   if (*places == NULL) return no_memory();

@@ -37,7 +37,8 @@ static void read_body(const reader *r, int c, dvi__body *body)
   for (int j = q; j < q + 3; j++)
     for (int e = s->vv.start[j]; e < s->vv.start[j + 1]; e++) {
       const int other = r->slot[s->vv.row[e]];
-      if (s->slots[other].kind == DVI__LINE && s->mass_values[e] != 0 && body->line < 0) body->line = other;
+      if (s->slots[other].kind == DVI__LINE && s->mass_values[e] != 0 && body->line < 0)
+        body->line = other;
     }
   if (body->line + 3 > s->slot_count) body->line = -1;
   for (int i = 0; i < 3 && body->line >= 0; i++) {
@@ -58,7 +59,8 @@ static double expected(const reader *r, int i, int j)
     return i == j ? mass_at(s, s->slots[body->line].q, s->slots[body->line].q) : 0;
   if (s->slots[r->slot[i]].kind == DVI__LINE) return expected(r, j, i);
   const int row = (i - q) / 3;
-  if (s->slots[r->slot[j]].kind == DVI__LINE) return r->slot[j] == body->line + row ? body->shift[(i - q) % 3] : 0;
+  if (s->slots[r->slot[j]].kind == DVI__LINE)
+    return r->slot[j] == body->line + row ? body->shift[(i - q) % 3] : 0;
   return row == (j - q) / 3 ? mass_at(s, q + (i - q) % 3, q + (j - q) % 3) : 0;
 }
 
@@ -89,8 +91,9 @@ static dvi_status check(const reader *r, int i, int j, double mass)
 {
   if (is_invariant(r, i, j, mass)) return DVI_OK;
   return dvi__fail(DVI_UNSUPPORTED,
-                   "the mass of coordinates %d and %d is none that turning and shifting leaves as it is; lie-galerkin takes it", i,
-                   j);
+                   "the mass of coordinates %d and %d is none that turning and shifting leaves as "
+                   "it is; lie-galerkin takes it",
+                   i, j);
 }
 
 /* What must be there, too: all pairs of two slots. */
@@ -142,9 +145,15 @@ static dvi_status read(const reader *r, int *slot)
 
 dvi_status dvi__reduced_create(const dvi_system *system, dvi__reduced *made)
 {
-  const size_t slots = (size_t)system->slot_count, entries = (size_t)dvi__pattern_entries(&system->vv);
+  const size_t slots = (size_t)system->slot_count,
+               entries = (size_t)dvi__pattern_entries(&system->vv);
   int *slot = DVI_NEW(int, system->n), *body_of = DVI_NEW(int, slots);
-  *made = (dvi__reduced){0, 0, DVI_NEW(dvi__body, slots), DVI_NEW(int, entries), DVI_NEW(int, entries), DVI_NEW(double, entries)};
+  *made = (dvi__reduced){0,
+                         0,
+                         DVI_NEW(dvi__body, slots),
+                         DVI_NEW(int, entries),
+                         DVI_NEW(int, entries),
+                         DVI_NEW(double, entries)};
   dvi_status status = dvi__fail(DVI_NO_MEMORY, "no memory for bodies");
   if (slot && body_of && made->bodies && made->row && made->column && made->mass)
     status = read(&(reader){system, slot, body_of, made}, slot);

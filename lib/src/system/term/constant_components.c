@@ -10,25 +10,29 @@
 
 enum { POINTS = 12, CANDIDATES_MOST = 16 };
 
-/* What was seen at the points: sizes of the gradients' entries, and of the two-form's, relative to the largest of the point. */
+/* What was seen at the points: sizes of the gradients' entries, and of the two-form's, relative to
+ * the largest of the point. */
 typedef struct probe {
   const dvi_system *system;
   double *q, *alpha_q, *work; /* [n], [entries of qv] */
-  double *form, *turn;        /* [n] largest of a component, and of the two-form in a coordinate's row */
+  /* [n] largest of a component, and of the two-form in a coordinate's row */
+  double *form, *turn;
   double two_form[CANDIDATES_MOST][CANDIDATES_MOST];
   int seen;
 } probe;
 
-/* Negligible beside the largest of a point's derivatives: sums that cancel, after a change of gauge. */
+/* Negligible beside the largest of a point's derivatives: sums that cancel, after a change of
+ * gauge. */
 static const double negligible = 1e-12;
 
-/* Numbers that are equally distributed and rational multiples of nothing: the first third within (0.25, 1.25), for logarithms and radii, the next
- * within (-1, 1), the last within (0, 100). */
+/* Numbers that are equally distributed and rational multiples of nothing: the first third within
+ * (0.25, 1.25), for logarithms and radii, the next within (-1, 1), the last within (0, 100). */
 static void place(const probe *p, int k)
 {
   const double golden = 0.6180339887498949;
   for (int i = 0; i < p->system->n; i++) {
-    const double number = (k + 1) * golden + (i + 1) * sqrt(2.0) + (k + 1) * (i + 1) * sqrt(3.0), u = number - floor(number);
+    const double number = (k + 1) * golden + (i + 1) * sqrt(2.0) + (k + 1) * (i + 1) * sqrt(3.0),
+                 u = number - floor(number);
     p->q[i] = 3 * k < POINTS ? 0.25 + u : 3 * k < 2 * POINTS ? 2 * u - 1 : 100 * u;
   }
 }
@@ -44,7 +48,8 @@ static void look(probe *p, int k)
   const dvi__pattern *qv = &p->system->qv;
   double largest = 0;
   place(p, k);
-  if (dvi__form_gradients(p->system->lagrangian, p->q, p->alpha_q, p->work) != DVI_OK) return; /* outside of the domain */
+  /* outside of the domain */
+  if (dvi__form_gradients(p->system->lagrangian, p->q, p->alpha_q, p->work) != DVI_OK) return;
   p->seen++;
   for (int e = 0; e < dvi__pattern_entries(qv); e++) largest = fmax(largest, fabs(p->alpha_q[e]));
   for (int j = 0; j < qv->columns && largest > 0; j++)
@@ -54,11 +59,13 @@ static void look(probe *p, int k)
       p->form[j] = fmax(p->form[j], fabs(p->alpha_q[e]) / largest);
       p->turn[i] = fmax(p->turn[i], omega);
       p->turn[j] = fmax(p->turn[j], omega);
-      if (qv->columns <= CANDIDATES_MOST) p->two_form[i][j] = p->two_form[j][i] = fmax(p->two_form[i][j], omega);
+      if (qv->columns <= CANDIDATES_MOST)
+        p->two_form[i][j] = p->two_form[j][i] = fmax(p->two_form[i][j], omega);
     }
 }
 
-/* Choose `left` more coordinates from number `from` on, the two-form vanishing among all of them: chosen[i] = 1. 0 if there is no such choice. */
+/* Choose `left` more coordinates from number `from` on, the two-form vanishing among all of them:
+ * chosen[i] = 1. 0 if there is no such choice. */
 static int choose(const probe *p, int from, int left, int *chosen)
 {
   const int n = p->system->n;
@@ -81,18 +88,23 @@ static dvi_status refuse(const probe *p, int constant, int *chosen)
   const char *const needs = "half of the one-form's components must be constant";
   memset(chosen, 0, (size_t)n * sizeof *chosen);
   if (n > CANDIDATES_MOST)
-    return dvi__fail(DVI_UNSUPPORTED, "%s, and %d of %d are; look for a gauge alpha + grad f, or take vprk", needs, constant, n);
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "%s, and %d of %d are; look for a gauge alpha + grad f, or take vprk", needs,
+                     constant, n);
   if (!choose(p, 0, n / 2, chosen))
     return dvi__fail(DVI_UNSUPPORTED,
-                     "%s, and %d of %d are; no gauge helps, as the two-form vanishes among no half of the coordinates: take vprk",
+                     "%s, and %d of %d are; no gauge helps, as the two-form vanishes among no half "
+                     "of the coordinates: take vprk",
                      needs, constant, n);
   for (int i = 0; i < n; i++)
-    if (chosen[i]) end += snprintf(end, (size_t)(name + sizeof name - end), "%sq[%d]", end > name ? ", " : "", i);
-  return dvi__fail(
-      DVI_UNSUPPORTED,
-      "%s, and %d of %d are; use the gauge alpha + grad f with df/dq_i = -alpha_i for %s, among which the two-form vanishes "
-      "(dvi_gauge), or take vprk",
-      needs, constant, n, name);
+    if (chosen[i])
+      end += snprintf(end, (size_t)(name + sizeof name - end), "%sq[%d]", end > name ? ", " : "",
+                      i);
+  return dvi__fail(DVI_UNSUPPORTED,
+                   "%s, and %d of %d are; use the gauge alpha + grad f with df/dq_i = -alpha_i for "
+                   "%s, among which the two-form vanishes "
+                   "(dvi_gauge), or take vprk",
+                   needs, constant, n, name);
 }
 
 /* A row of zeros in the two-form, at all points. */
@@ -101,7 +113,8 @@ static dvi_status check_turns(const probe *p)
   for (int i = 0; i < p->system->n && p->seen > 0; i++)
     if (p->turn[i] <= negligible)
       return dvi__fail(DVI_UNSUPPORTED,
-                       "the two-form of the one-form is singular at all of %d points probed, within 1 and 100 of the origin, for "
+                       "the two-form of the one-form is singular at all of %d points probed, "
+                       "within 1 and 100 of the origin, for "
                        "q[%d] takes no part in it; no gauge and no other method helps",
                        p->seen, i);
   return DVI_OK;
@@ -122,11 +135,12 @@ static dvi_status decide(probe *p, int *is_x)
   }
   if (2 * constant == n) return DVI_OK;
   if (p->seen == 0)
-    return dvi__fail(
-        DVI_UNSUPPORTED,
-        "half of the one-form's components must be constant, and it cannot be evaluated at any of %d points probed, within 1 and "
-        "100 of the origin; declare the pattern of its gradients, with empty columns for them (there are %d)",
-        POINTS, empty);
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "half of the one-form's components must be constant, and it cannot be "
+                     "evaluated at any of %d points probed, within 1 and "
+                     "100 of the origin; declare the pattern of its gradients, with empty columns "
+                     "for them (there are %d)",
+                     POINTS, empty);
   return refuse(p, constant, is_x);
 }
 
