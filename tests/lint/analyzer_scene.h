@@ -2,7 +2,7 @@
 /* As syntax.c says, before any header. */
 #define _POSIX_C_SOURCE 200809L
 #include "scene/callbacks.h"
-#include "scene/text/complaint.h"
+#include "text/complaint.h"
 #include "scene/sections.h"
 
 #define dvi__complain(...) ((void)(dvi__complain)(__VA_ARGS__), false)

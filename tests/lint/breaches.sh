@@ -10,7 +10,7 @@ rc=0
 clean() {
   rm -rf "${work:?}"/*
   cd "$work" || exit 1
-  for room in core num group space system solve step/element method/element diagnostics reference scene; do mkdir -p lib/src/$room; done
+  for room in core num group space system solve step/element method/element diagnostics reference text expr scene; do mkdir -p lib/src/$room; done
   mkdir -p lib/include/dvi apps/cli apps/problems apps/examples tests/method docs/methods
   printf '/** One. */\nint dvi_one(int a);\n' >lib/include/dvi/one.h
   printf '#include <dvi/one.h>\n\nint dvi_one(int a)\n{\n  return a;\n}\n' >lib/src/core/one.c

@@ -4,7 +4,7 @@
 #include <check.h>
 #include <stdlib.h>
 
-#include "scene/function/function.h"
+#include "expr/function/function.h"
 
 /* A function that is being put together: kernels of at most INPUTS inputs. */
 enum { INPUTS = 8, KERNELS = 4 };

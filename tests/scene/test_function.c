@@ -7,7 +7,7 @@
 
 #include "problem.h"
 #include "scene/draft.h"
-#include "scene/function/function.h"
+#include "expr/function/function.h"
 #include "support/heap.h"
 #include "support/suite.h"
 

@@ -8,9 +8,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "scene/function/function.h"
-#include "scene/expr/graph_make.h"
-#include "scene/text/heap.h"
+#include "expr/function/function.h"
+#include "expr/graph_make.h"
+#include "text/heap.h"
 #include "support/fuzz.h"
 #include "support/quad_graph.h"
 #include "support/suite.h"

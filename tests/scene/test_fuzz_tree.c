@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "scene/text/tree.h"
-#include "scene/text/utf8.h"
+#include "text/utf8.h"
 #include "support/fuzz.h"
 #include "support/scene_text.h"
 #include "support/suite.h"

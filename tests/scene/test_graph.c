@@ -2,8 +2,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "scene/expr/graph.h"
-#include "scene/text/heap.h"
+#include "expr/graph.h"
+#include "text/heap.h"
 #include "support/suite.h"
 
 enum { INPUTS_MAX = 100 };

@@ -8,9 +8,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "scene/expr/graph.h"
-#include "scene/expr/graph_make.h"
-#include "scene/text/heap.h"
+#include "expr/graph.h"
+#include "expr/graph_make.h"
+#include "text/heap.h"
 #include "support/quad_graph.h"
 #include "support/suite.h"
 

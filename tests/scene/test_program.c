@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "scene/expr/program.h"
+#include "expr/compile/program.h"
 #include "support/suite.h"
 
 enum { INPUTS = 2, ROWS = 64 };

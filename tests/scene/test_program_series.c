@@ -3,8 +3,8 @@
 #include <float.h>
 #include <math.h>
 
-#include "scene/expr/graph_make.h"
-#include "scene/expr/program.h"
+#include "expr/graph_make.h"
+#include "expr/compile/program.h"
 #include "support/suite.h"
 
 enum { DEGREE = 14, LENGTH = DEGREE + 1, ROWS = 64, INPUTS = 2 };

@@ -5,8 +5,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "scene/expr/graph_make.h"
-#include "scene/expr/quad.h"
+#include "expr/graph_make.h"
+#include "expr/quad.h"
 #include "support/quad_graph.h"
 #include "support/suite.h"
 

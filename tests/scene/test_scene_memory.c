@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "scene/text/heap.h"
+#include "text/heap.h"
 #include "support/heap.h"
 #include "support/scene_calls.h"
 #include "support/suite.h"

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "scene/expr/program.h"
+#include "expr/compile/program.h"
 
 /* ---- blame ---- */
 

@@ -3,11 +3,11 @@
 #include <math.h>
 #include <string.h>
 
-#include "scene/function/function_parts.h"
-#include "scene/expr/graph_make.h"
-#include "scene/text/heap.h"
+#include "expr/function/function_parts.h"
+#include "expr/graph_make.h"
+#include "text/heap.h"
 #include "scene/elaborate/model.h"
-#include "scene/expr/quad.h"
+#include "expr/quad.h"
 
 #ifdef DVI__QUAD
 typedef dvi__quad quad;

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "scene/elaborate/shape.h"
-#include "scene/elaborate/slips.h"
+#include "scene/elaborate/hints.h"
 #include "scene/elaborate/words.h"
 
 /* ---- what readers share ---- */

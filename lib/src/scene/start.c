@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "scene/callbacks.h"
-#include "scene/text/heap.h"
+#include "text/heap.h"
 #include "scene/sections.h"
 #include "scene/elaborate/shape.h"
 #include "scene/start.h"

@@ -6,7 +6,7 @@
 
 #include "scene/callbacks.h"
 #include "scene/factors.h"
-#include "scene/text/heap.h"
+#include "text/heap.h"
 #include "scene/sections.h"
 #include "scene/elaborate/shape.h"
 

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "scene/elaborate/elaborate.h"
-#include "scene/text/heap.h"
+#include "text/heap.h"
 #include "scene/elaborate/words.h"
 
 /* ---- names ---- */

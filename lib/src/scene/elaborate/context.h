@@ -4,7 +4,7 @@
  * element, too, and becomes a constant if they are all the same and a row of data if not. */
 #ifndef DVI_SCENE_CONTEXT_H
 #define DVI_SCENE_CONTEXT_H
-#include "scene/function/function.h"
+#include "expr/function/function.h"
 #include "scene/elaborate/model.h"
 
 enum { DVI__INDICES_MAX = 64 };

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "scene/text/heap.h"
+#include "text/heap.h"
 
 enum { DEPTH_MAX = 512 };
 static const long work_max = 10000000;

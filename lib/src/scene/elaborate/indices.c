@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "scene/elaborate/context.h"
-#include "scene/text/heap.h"
-#include "scene/expr/program.h"
+#include "text/heap.h"
+#include "expr/compile/program.h"
 #include "scene/elaborate/shape.h"
 #include "scene/elaborate/words.h"
 

@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "scene/elaborate/context.h"
-#include "scene/text/heap.h"
+#include "text/heap.h"
 
 static int block_size(const dvi_scene *scene, dvi__block block)
 {

@@ -9,8 +9,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "scene/expr/graph_make.h"
-#include "scene/text/heap.h"
+#include "expr/graph_make.h"
+#include "text/heap.h"
 #include "scene/elaborate/model.h"
 
 /* Nodes of a trial over all elements; and in all trials, which take a second. */

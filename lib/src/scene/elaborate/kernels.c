@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-#include "scene/text/heap.h"
+#include "text/heap.h"
 
 enum { LEAVES_MAX = 100000, LEVELS_MAX = 512 };
 static const long elements_max = 200000000;

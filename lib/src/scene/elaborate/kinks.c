@@ -11,10 +11,10 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "scene/expr/graph_make.h"
-#include "scene/text/heap.h"
+#include "expr/graph_make.h"
+#include "text/heap.h"
 #include "scene/elaborate/model.h"
-#include "scene/expr/program.h"
+#include "expr/compile/program.h"
 
 /* Nodes of all trials, which take less than a second. */
 static const double WORK_MAX = 3e7;

@@ -4,8 +4,8 @@
 #include <dvi/scene.h>
 #include <pthread.h>
 
-#include "scene/function/function.h"
-#include "scene/text/heap.h"
+#include "expr/function/function.h"
+#include "text/heap.h"
 #include "scene/elaborate/names.h"
 #include "scene/text/tree.h"
 

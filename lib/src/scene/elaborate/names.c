@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "scene/elaborate/slips.h"
+#include "scene/elaborate/hints.h"
 #include "scene/elaborate/words.h"
 
 static uint32_t hash_of(const char *text)

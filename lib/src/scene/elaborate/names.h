@@ -1,8 +1,8 @@
 /* The names of a scene: parameters, coordinates and definitions, and what each of them is. */
 #ifndef DVI_SCENE_NAMES_H
 #define DVI_SCENE_NAMES_H
-#include "scene/text/arena.h"
-#include "scene/text/complaint.h"
+#include "text/arena.h"
+#include "text/complaint.h"
 #include "scene/text/syntax.h"
 
 /* rank 0: a number; 1: a vector of `rows`; 2: a matrix. rank -1: none, an error was told. */

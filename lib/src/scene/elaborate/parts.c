@@ -3,8 +3,8 @@
  * A node f is split into Z, where the block's variables are zero, and P = f - Z, by f's own rule: (Z_a + P_a)(Z_b + P_b) has P = P_a Z_b + Z_a P_b + P_a P_b. */
 #include <string.h>
 
-#include "scene/expr/graph_make.h"
-#include "scene/text/heap.h"
+#include "expr/graph_make.h"
+#include "text/heap.h"
 #include "scene/elaborate/kernels.h"
 
 typedef struct copy {

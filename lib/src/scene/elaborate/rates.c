@@ -1,7 +1,7 @@
 /* Rates by the chain rule, and momenta. */
 
 #include "scene/elaborate/elaborate.h"
-#include "scene/text/heap.h"
+#include "text/heap.h"
 
 /* ---- rates and momenta ---- */
 

@@ -9,7 +9,7 @@
 #include <string.h>
 
 #include "scene/emit/emit_parts.h"
-#include "scene/text/heap.h"
+#include "text/heap.h"
 
 enum { TEXT_MAX = 500, A_LINE = 16 };
 

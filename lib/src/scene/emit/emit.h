@@ -2,7 +2,7 @@
  * same. The text is C11 with no word in it but ours. */
 #ifndef DVI_SCENE_EMIT_H
 #define DVI_SCENE_EMIT_H
-#include "scene/function/function.h"
+#include "expr/function/function.h"
 
 /* Where text goes. Fill in write and user; the rest starts at zero. Once write returned not 0, or memory ran out, nothing more is written. */
 typedef struct dvi__emitter {

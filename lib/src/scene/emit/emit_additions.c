@@ -1,7 +1,7 @@
 /* How the rows of a unit are added to the entries of an array: one loop over all additions, whose numbers are tables, since compilers take more than their share of
  * time for a function of very many loops. */
 #include "scene/emit/emit_parts.h"
-#include "scene/text/heap.h"
+#include "text/heap.h"
 
 /* A row that goes to entries, while the tables are made. */
 typedef struct addition {

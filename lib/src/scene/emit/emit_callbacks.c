@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "scene/emit/emit_scene.h"
-#include "scene/text/heap.h"
+#include "text/heap.h"
 
 enum { ENTRIES_MAX = 65536 }; /* of the gradients of constraints, which wait on the stack */
 

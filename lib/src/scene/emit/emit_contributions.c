@@ -2,7 +2,7 @@
 #include <stdlib.h>
 
 #include "scene/emit/emit_parts.h"
-#include "scene/text/heap.h"
+#include "text/heap.h"
 
 static int by_entry(const void *first, const void *second)
 {

@@ -4,7 +4,7 @@
 #include <stdio.h>
 
 #include "scene/emit/emit_parts.h"
-#include "scene/text/heap.h"
+#include "text/heap.h"
 
 enum { ROOM = 8192, ROOM_MAX = 131072, TERMS_MAX = 1024 };
 

@@ -1,7 +1,7 @@
 /* Sums whose kernels have one element each: one straight line, in a loop over points. */
 
 #include "scene/emit/emit_parts.h"
-#include "scene/text/heap.h"
+#include "text/heap.h"
 
 static void emit_inputs(dvi__emitter *out, const dvi__part *part, const int *name)
 {

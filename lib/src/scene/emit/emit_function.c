@@ -2,7 +2,7 @@
 #include <stdatomic.h>
 
 #include "scene/emit/emit_parts.h"
-#include "scene/text/heap.h"
+#include "text/heap.h"
 
 const char *const dvi__block_name[DVI__BLOCKS] = {"t", "q", "v", "w"};
 static const char *const value_name[] = {"f"}, *const gradient_name[DVI__BLOCKS] = {"f_t", "f_q", "f_v", "f_w"},

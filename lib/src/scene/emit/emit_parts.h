@@ -2,7 +2,7 @@
 #ifndef DVI_SCENE_EMIT_PARTS_H
 #define DVI_SCENE_EMIT_PARTS_H
 #include "scene/emit/emit.h"
-#include "scene/function/function_parts.h"
+#include "expr/function/function_parts.h"
 
 /* A program's straight line: `r%d` are its numbers, from *next on, which moves. name [row_count + input_count]: of registers, then of inputs, whose
  * names must be there; the outputs' are there afterwards. */

@@ -3,7 +3,7 @@
 #include <stddef.h>
 
 #include "scene/emit/emit_parts.h"
-#include "scene/expr/program_codes.h"
+#include "expr/compile/program_codes.h"
 
 typedef struct emission {
   dvi__emitter *out;

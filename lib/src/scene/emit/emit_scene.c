@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "scene/emit/emit_scene.h"
-#include "scene/text/heap.h"
+#include "text/heap.h"
 #include "scene/elaborate/names.h"
 
 enum { IDENTIFIER_MAX = 63 }; /* as many letters of a name are sure to count in C */

@@ -1,6 +1,6 @@
 /* Words of expressions, and remedies for characters that mean something elsewhere: in other languages, or on paper. */
 #include "scene/text/lexer.h"
-#include "scene/text/utf8.h"
+#include "text/utf8.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
 /* The words of expressions. */
 #ifndef DVI_SCENE_LEXER_H
 #define DVI_SCENE_LEXER_H
-#include "scene/text/complaint.h"
+#include "text/complaint.h"
 
 /* Marks of one character are tokens of that character's code. */
 typedef enum dvi__token_kind {

@@ -20,7 +20,7 @@
 #include "scene/text/syntax.h"
 
 #include "scene/text/lexer.h"
-#include "scene/text/utf8.h"
+#include "text/utf8.h"
 
 #include <dvi/number.h>
 #include <math.h>

@@ -1,8 +1,8 @@
 /* Expressions as they are written: a tree of their parts, each with its place. docs/scenes.md has the grammar. */
 #ifndef DVI_SCENE_SYNTAX_H
 #define DVI_SCENE_SYNTAX_H
-#include "scene/text/arena.h"
-#include "scene/text/complaint.h"
+#include "text/arena.h"
+#include "text/complaint.h"
 
 typedef enum dvi__form {
   DVI__FORM_NUMBER,   /* number */

@@ -4,7 +4,7 @@
  * libyaml counts characters, and spans count bytes: a place is carried along the text. The text is looked through before libyaml sees
  * it, so that what it complains of is YAML and not letters. */
 #include "scene/text/tree.h"
-#include "scene/text/utf8.h"
+#include "text/utf8.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,8 +1,8 @@
 /* A YAML document as a tree of scalars, sequences and mappings, read by libyaml's events. */
 #ifndef DVI_SCENE_TREE_H
 #define DVI_SCENE_TREE_H
-#include "scene/text/arena.h"
-#include "scene/text/complaint.h"
+#include "text/arena.h"
+#include "text/complaint.h"
 
 typedef enum dvi__tree_kind { DVI__SCALAR, DVI__SEQUENCE, DVI__MAPPING } dvi__tree_kind;
 
