@@ -94,10 +94,12 @@ static int never_negative(const dvi__graph *graph, const dvi__graph_node *node)
   case DVI__OP_ABS: return 1;
   case DVI__OP_WHERE: return graph->node[node->b].never_negative;
   case DVI__OP_POWER:
-    return graph->node[node->a].never_negative || node->value / 2 == (int)(node->value / 2) || node->value != (int)node->value;
+    return graph->node[node->a].never_negative || node->value / 2 == (int)(node->value / 2) ||
+           node->value != (int)node->value;
   case DVI__OP_ADD:
   case DVI__OP_MULTIPLY:
-  case DVI__OP_DIVIDE: return graph->node[node->a].never_negative && graph->node[node->b].never_negative;
+  case DVI__OP_DIVIDE:
+    return graph->node[node->a].never_negative && graph->node[node->b].never_negative;
   default: return 0;
   }
 }
@@ -131,7 +133,8 @@ dvi__node dvi__make(dvi__graph *graph, dvi__op op, dvi__node a, dvi__node b, dou
 
 dvi__node dvi__constant(dvi__graph *graph, double value)
 {
-  return dvi__make(graph, DVI__OP_CONSTANT, 0, 0, value == 0 ? 0.0 : value); /* one zero, without a sign */
+  return dvi__make(graph, DVI__OP_CONSTANT, 0, 0,
+                   value == 0 ? 0.0 : value); /* one zero, without a sign */
 }
 
 dvi__node dvi__input(dvi__graph *graph, int number)

@@ -65,18 +65,21 @@ typedef struct dvi__graph_node {
   dvi__node a, b;     /* operands; of an input a is its number, from 0 */
   double value;       /* of a constant; the exponent of a power */
   int never_negative; /* 1: the value is at least 0, or NaN */
-  dvi__span span;     /* the part of the source that first made it; derivatives point to what they are derivatives of */
+  dvi__span span; /* the part of the source that first made it; derivatives point to what they are
+                     derivatives of */
 } dvi__graph_node;
 
-/* Room in which dvi__tangents works, for as many nodes; between its calls marks are 0 and tangents -1. */
+/* Room in which dvi__tangents works, for as many nodes; between its calls marks are 0 and tangents
+ * -1. */
 typedef struct dvi__tangent_room {
   int size;
   char *part;
   dvi__node *tangent, *list;
 } dvi__tangent_room;
 
-/* Zero: empty, but for `limit`. Grown in memory of its own, freed by dvi__graph_free. Once `failed` is not DVI_OK (DVI_NO_MEMORY, DVI_BAD_SIZE: more nodes than
- * the limit) every call returns node 0 and nothing grows: ask once, at the end. */
+/* Zero: empty, but for `limit`. Grown in memory of its own, freed by dvi__graph_free. Once `failed`
+ * is not DVI_OK (DVI_NO_MEMORY, DVI_BAD_SIZE: more nodes than the limit) every call returns node 0
+ * and nothing grows: ask once, at the end. */
 typedef struct dvi__graph {
   dvi__graph_node *node;
   int count;
@@ -97,8 +100,8 @@ dvi__node dvi__constant(dvi__graph *graph, double value);
 dvi__node dvi__input(dvi__graph *graph, int number);
 /* Any other operation; b is ignored by those of one operand. Of POWER not: see dvi__power. */
 dvi__node dvi__apply(dvi__graph *graph, dvi__op op, dvi__node a, dvi__node b);
-/* a^exponent for a constant exponent: 1, a, SQUARE, SQRT, POWER, DIVIDE of 1 for -1, or RAISE for what is neither whole nor a half, or beyond
- * DVI__EXPONENT_MAX. */
+/* a^exponent for a constant exponent: 1, a, SQUARE, SQRT, POWER, DIVIDE of 1 for -1, or RAISE for
+ * what is neither whole nor a half, or beyond DVI__EXPONENT_MAX. */
 dvi__node dvi__power(dvi__graph *graph, dvi__node a, double exponent);
 
 /* Conditions, as 1 or 0: not c; both c and d, of which d need not exist where c is 0. */
@@ -112,26 +115,35 @@ dvi__node dvi__greater(dvi__graph *graph, dvi__node a, dvi__node b);
 /* Whether a node is a constant, and which. */
 bool dvi__is_constant(const dvi__graph *graph, dvi__node node, double *value);
 
-/* Derivatives of `root` by inputs 0 .. count-1, by the reverse mode: at most four times the operations of the root. New nodes in the same graph. */
+/* Derivatives of `root` by inputs 0 .. count-1, by the reverse mode: at most four times the
+ * operations of the root. New nodes in the same graph. */
 void dvi__gradient(dvi__graph *graph, dvi__node root, int count, dvi__node *gradient);
 
-/* The derivatives of the nodes of[count] by one input, by the forward mode. Nodes of `of` that do not depend on it give the constant 0. Takes as long as
- * what they are made of, however large the graph is. */
-void dvi__tangents(dvi__graph *graph, int input, int count, const dvi__node *of, dvi__node *tangent);
+/* The derivatives of the nodes of[count] by one input, by the forward mode. Nodes of `of` that do
+ * not depend on it give the constant 0. Takes as long as what they are made of, however large the
+ * graph is. */
+void dvi__tangents(dvi__graph *graph, int input, int count, const dvi__node *of,
+                   dvi__node *tangent);
 
-/* The total rates of roots, result [root_count]: sum over inputs of a root's derivative times rate[input] (nodes), by the forward mode. */
-void dvi__rates(dvi__graph *graph, int root_count, const dvi__node *root, int count, const dvi__node *rate, dvi__node *result);
+/* The total rates of roots, result [root_count]: sum over inputs of a root's derivative times
+ * rate[input] (nodes), by the forward mode. */
+void dvi__rates(dvi__graph *graph, int root_count, const dvi__node *root, int count,
+                const dvi__node *rate, dvi__node *result);
 
-/* Which second derivatives of `root` by inputs (i,j), 0 <= j <= i < count, may differ from zero, without making them: by the first and second order
- * dependences of each node.
- * pairs: (i,j) column by column; *pair_count of them; owned by the caller (dvi__heap_free). DVI_BAD_SIZE: more than 20000000; DVI_NO_MEMORY. */
-dvi_status dvi__second_pattern(const dvi__graph *graph, dvi__node root, int count, int (**pairs)[2], int *pair_count);
+/* Which second derivatives of `root` by inputs (i,j), 0 <= j <= i < count, may differ from zero,
+ * without making them: by the first and second order dependences of each node. pairs: (i,j) column
+ * by column; *pair_count of them; owned by the caller (dvi__heap_free). DVI_BAD_SIZE: more than
+ * 20000000; DVI_NO_MEMORY. */
+dvi_status dvi__second_pattern(const dvi__graph *graph, dvi__node root, int count, int (**pairs)[2],
+                               int *pair_count);
 
 /* Mark [count], 1: the input occurs in one of the roots. */
-void dvi__inputs_used(const dvi__graph *graph, int root_count, const dvi__node *root, int count, char *used);
+void dvi__inputs_used(const dvi__graph *graph, int root_count, const dvi__node *root, int count,
+                      char *used);
 
-/* The roots' values [root_count] at the inputs x, one operation after the other; x NULL: no inputs. The first node with a result that is not finite, or -1. Allocates. */
-dvi_status dvi__evaluate(const dvi__graph *graph, const double *x, int root_count, const dvi__node *root, double *value,
-                         dvi__node *not_finite);
+/* The roots' values [root_count] at the inputs x, one operation after the other; x NULL: no inputs.
+ * The first node with a result that is not finite, or -1. Allocates. */
+dvi_status dvi__evaluate(const dvi__graph *graph, const double *x, int root_count,
+                         const dvi__node *root, double *value, dvi__node *not_finite);
 
 #endif

@@ -1,5 +1,6 @@
-/* Derivatives, by the reverse mode (of one number by everything) and by the forward mode (of everything by one number). Both take a node's derivatives by its
- * operands from one table; parts that do not depend on what is asked for are not visited. */
+/* Derivatives, by the reverse mode (of one number by everything) and by the forward mode (of
+ * everything by one number). Both take a node's derivatives by its operands from one table; parts
+ * that do not depend on what is asked for are not visited. */
 #include <stdlib.h>
 
 #include "expr/graph_make.h"
@@ -26,7 +27,8 @@ static dvi__node inverse_root(dvi__graph *graph, dvi__node n)
   return dvi__power(graph, dvi__negate(graph, square_less_one(graph, n)), -0.5);
 }
 
-/* 1/n where n is positive, and no number where it is not: a function that ends at 0 shall not go on in its derivative. */
+/* 1/n where n is positive, and no number where it is not: a function that ends at 0 shall not go on
+ * in its derivative. */
 static dvi__node inside(dvi__graph *graph, dvi__node n)
 {
   return dvi__power(graph, dvi__power(graph, n, -0.5), 2);
@@ -78,8 +80,11 @@ static dvi__node slope_by_first(dvi__graph *graph, dvi__node n)
   case DVI__OP_MULTIPLY: return node.b;
   case DVI__OP_DIVIDE: return dvi__power(graph, node.b, -1);
   case DVI__OP_RAISE:
-    return dvi__multiply(graph, node.b, dvi__apply(graph, DVI__OP_RAISE, node.a, dvi__subtract(graph, node.b, one)));
-  case DVI__OP_ATAN2: return dvi__divide(graph, node.b, dvi__add(graph, dvi__square(graph, node.a), dvi__square(graph, node.b)));
+    return dvi__multiply(
+        graph, node.b, dvi__apply(graph, DVI__OP_RAISE, node.a, dvi__subtract(graph, node.b, one)));
+  case DVI__OP_ATAN2:
+    return dvi__divide(graph, node.b,
+                       dvi__add(graph, dvi__square(graph, node.a), dvi__square(graph, node.b)));
   case DVI__OP_WHERE: return dvi__constant(graph, 0);
   default: return one; /* of ADD and SUBTRACT */
   }
@@ -94,19 +99,24 @@ static dvi__node slope_by_second(dvi__graph *graph, dvi__node n)
   case DVI__OP_DIVIDE: return dvi__negate(graph, dvi__divide(graph, n, node.b));
   case DVI__OP_RAISE: return dvi__multiply(graph, n, dvi__apply(graph, DVI__OP_LOG, node.a, 0));
   case DVI__OP_ATAN2:
-    return dvi__negate(graph, dvi__divide(graph, node.a, dvi__add(graph, dvi__square(graph, node.a), dvi__square(graph, node.b))));
+    return dvi__negate(graph, dvi__divide(graph, node.a,
+                                          dvi__add(graph, dvi__square(graph, node.a),
+                                                   dvi__square(graph, node.b))));
   case DVI__OP_WHERE: return dvi__where(graph, node.a, dvi__constant(graph, 1));
   default: return dvi__constant(graph, 1); /* of ADD */
   }
 }
 
-/* A quotient of two parts that both vary, or of a varying one by a parameter: its modes divide once. */
+/* A quotient of two parts that both vary, or of a varying one by a parameter: its modes divide
+ * once. */
 static int is_quotient(const dvi__graph *graph, dvi__node n)
 {
-  return graph->node[n].op == DVI__OP_DIVIDE && graph->node[graph->node[n].a].op != DVI__OP_CONSTANT;
+  return graph->node[n].op == DVI__OP_DIVIDE &&
+         graph->node[graph->node[n].a].op != DVI__OP_CONSTANT;
 }
 
-/* Whether a node depends on inputs below `count` (or on input `only`, if that is not NONE), when it is known of its operands. */
+/* Whether a node depends on inputs below `count` (or on input `only`, if that is not NONE), when it
+ * is known of its operands. */
 static int depends(const dvi__graph *graph, int count, int only, const char *part, dvi__node n)
 {
   const dvi__graph_node *node = graph->node + n;
@@ -145,16 +155,19 @@ static bool is_guarded(const dvi__graph *graph, dvi__node n)
 static dvi__node add_shares(dvi__graph *graph, dvi__node to, dvi__node a, dvi__node b)
 {
   const dvi__node sum = dvi__add(graph, a, b);
-  if (graph->node[to].op == DVI__OP_INPUT || !is_guarded(graph, a) || !is_guarded(graph, b)) return sum;
+  if (graph->node[to].op == DVI__OP_INPUT || !is_guarded(graph, a) || !is_guarded(graph, b))
+    return sum;
   const dvi__node c = graph->node[a].a, d = graph->node[b].a, always = dvi__constant(graph, 1);
   if (c == d || d == dvi__complement(graph, c)) return sum;
   return dvi__where(graph, dvi__choice(graph, c, always, d), sum);
 }
 
 /* Add to the derivative of the root by a node. */
-static void give(dvi__graph *graph, const char *part, dvi__node *adjoint, dvi__node to, dvi__node share)
+static void give(dvi__graph *graph, const char *part, dvi__node *adjoint, dvi__node to,
+                 dvi__node share)
 {
-  if (part[to]) adjoint[to] = adjoint[to] == NONE ? share : add_shares(graph, to, adjoint[to], share);
+  if (part[to])
+    adjoint[to] = adjoint[to] == NONE ? share : add_shares(graph, to, adjoint[to], share);
 }
 
 /* Hand the derivative of the root by node n on to its operands. */
@@ -165,16 +178,21 @@ static void pull_back(dvi__graph *graph, const char *part, dvi__node *adjoint, d
   if (is_quotient(graph, n)) {
     const dvi__node share = dvi__divide(graph, adjoint[n], node.b);
     give(graph, part, adjoint, node.a, share);
-    if (part[node.b]) give(graph, part, adjoint, node.b, dvi__negate(graph, dvi__multiply(graph, share, n)));
+    if (part[node.b])
+      give(graph, part, adjoint, node.b, dvi__negate(graph, dvi__multiply(graph, share, n)));
     return;
   }
-  if (operands == 1) give(graph, part, adjoint, node.a, dvi__multiply(graph, adjoint[n], slope(graph, n)));
+  if (operands == 1)
+    give(graph, part, adjoint, node.a, dvi__multiply(graph, adjoint[n], slope(graph, n)));
   if (operands < 2) return;
-  if (part[node.a]) give(graph, part, adjoint, node.a, dvi__multiply(graph, adjoint[n], slope_by_first(graph, n)));
-  if (part[node.b]) give(graph, part, adjoint, node.b, dvi__multiply(graph, adjoint[n], slope_by_second(graph, n)));
+  if (part[node.a])
+    give(graph, part, adjoint, node.a, dvi__multiply(graph, adjoint[n], slope_by_first(graph, n)));
+  if (part[node.b])
+    give(graph, part, adjoint, node.b, dvi__multiply(graph, adjoint[n], slope_by_second(graph, n)));
 }
 
-static void pull_back_all(dvi__graph *graph, dvi__node root, int count, const char *part, dvi__node *adjoint, dvi__node *gradient)
+static void pull_back_all(dvi__graph *graph, dvi__node root, int count, const char *part,
+                          dvi__node *adjoint, dvi__node *gradient)
 {
   const dvi__span here = graph->here;
   adjoint[root] = dvi__constant(graph, 1);
@@ -216,12 +234,15 @@ static dvi__node push_forward(dvi__graph *graph, const dvi__node *tangent, dvi__
   const dvi__node a = is_zero(graph, tangent[node.a]) ? zero : tangent[node.a];
   if (operands == 1) return dvi__multiply(graph, slope(graph, n), a);
   const dvi__node b = is_zero(graph, tangent[node.b]) ? zero : tangent[node.b];
-  if (is_quotient(graph, n)) return dvi__divide(graph, dvi__subtract(graph, a, dvi__multiply(graph, n, b)), node.b);
+  if (is_quotient(graph, n))
+    return dvi__divide(graph, dvi__subtract(graph, a, dvi__multiply(graph, n, b)), node.b);
   const dvi__node first = a == zero ? zero : dvi__multiply(graph, slope_by_first(graph, n), a);
-  return b == zero ? first : dvi__add(graph, first, dvi__multiply(graph, slope_by_second(graph, n), b));
+  return b == zero ? first
+                   : dvi__add(graph, first, dvi__multiply(graph, slope_by_second(graph, n), b));
 }
 
-/* All parts' derivatives, from those of the inputs; to parts that do not depend on these NONE is given. */
+/* All parts' derivatives, from those of the inputs; to parts that do not depend on these NONE is
+ * given. */
 static void push_forward_all(dvi__graph *graph, int count, const dvi__node *rate)
 {
   const dvi__span here = graph->here;
@@ -265,8 +286,9 @@ static int by_number(const void *a, const void *b)
   return *(const dvi__node *)a - *(const dvi__node *)b;
 }
 
-/* List and mark what the roots are made of, operands before what is made of them. Where the roots are a small part of the graph, all of it is not passed over: of a
- * long sum there are as many roots as there are inputs. */
+/* List and mark what the roots are made of, operands before what is made of them. Where the roots
+ * are a small part of the graph, all of it is not passed over: of a long sum there are as many
+ * roots as there are inputs. */
 static int list_parts(const dvi__graph *graph, int root_count, const dvi__node *root, int size)
 {
   enum { SMALL = 32 };
@@ -289,8 +311,8 @@ static int list_parts(const dvi__graph *graph, int root_count, const dvi__node *
 }
 
 /* The derivatives of nodes by the one input, or along the rates of inputs 0 .. count-1. */
-static void forward(dvi__graph *graph, int only, int count, const dvi__node *rate, int root_count, const dvi__node *root,
-                    dvi__node *result)
+static void forward(dvi__graph *graph, int only, int count, const dvi__node *rate, int root_count,
+                    const dvi__node *root, dvi__node *result)
 {
   const dvi__node zero = dvi__constant(graph, 0);
   int size = 0;
@@ -303,9 +325,11 @@ static void forward(dvi__graph *graph, int only, int count, const dvi__node *rat
   }
   const dvi__tangent_room *room = &graph->room;
   const int parts = list_parts(graph, root_count, root, size);
-  for (int k = 0; k < parts; k++) room->part[room->list[k]] = (char)depends(graph, count, only, room->part, room->list[k]);
+  for (int k = 0; k < parts; k++)
+    room->part[room->list[k]] = (char)depends(graph, count, only, room->part, room->list[k]);
   push_forward_all(graph, parts, rate);
-  for (int k = 0; k < root_count; k++) result[k] = is_zero(graph, room->tangent[root[k]]) ? zero : room->tangent[root[k]];
+  for (int k = 0; k < root_count; k++)
+    result[k] = is_zero(graph, room->tangent[root[k]]) ? zero : room->tangent[root[k]];
   for (int k = 0; k < parts; k++) {
     room->part[room->list[k]] = 0;
     room->tangent[room->list[k]] = NONE;
@@ -317,7 +341,8 @@ void dvi__tangents(dvi__graph *graph, int input, int count, const dvi__node *of,
   forward(graph, input, 0, NULL, count, of, tangent);
 }
 
-void dvi__rates(dvi__graph *graph, int root_count, const dvi__node *root, int count, const dvi__node *rate, dvi__node *result)
+void dvi__rates(dvi__graph *graph, int root_count, const dvi__node *root, int count,
+                const dvi__node *rate, dvi__node *result)
 {
   forward(graph, NONE, count, rate, root_count, root, result);
 }

@@ -1,4 +1,5 @@
-/* Values of nodes, one operation after the other: for constants, and to find what went wrong where. */
+/* Values of nodes, one operation after the other: for constants, and to find what went wrong
+ * where. */
 #include <math.h>
 #include <string.h>
 
@@ -66,13 +67,15 @@ char *dvi__parts(const dvi__graph *graph, int root_count, const dvi__node *root,
   return part;
 }
 
-void dvi__inputs_used(const dvi__graph *graph, int root_count, const dvi__node *root, int count, char *used)
+void dvi__inputs_used(const dvi__graph *graph, int root_count, const dvi__node *root, int count,
+                      char *used)
 {
   int size = 0;
   char *part = graph->failed == DVI_OK ? dvi__parts(graph, root_count, root, &size) : NULL;
   for (int i = 0; i < count; i++) used[i] = part == NULL; /* without memory: all may be used */
   for (int n = 0; n < size && part != NULL; n++)
-    if (part[n] && graph->node[n].op == DVI__OP_INPUT && graph->node[n].a < count) used[graph->node[n].a] = 1;
+    if (part[n] && graph->node[n].op == DVI__OP_INPUT && graph->node[n].a < count)
+      used[graph->node[n].a] = 1;
   dvi__heap_free(part);
 }
 
@@ -81,10 +84,12 @@ static double value_of(const dvi__graph_node *node, const double *x, const doubl
 {
   if (node->op == DVI__OP_INPUT) return x[node->a];
   const int operands = dvi__operands(node->op);
-  return dvi__operate(node->op, node->value, operands > 0 ? at[node->a] : 0, operands > 1 ? at[node->b] : 0);
+  return dvi__operate(node->op, node->value, operands > 0 ? at[node->a] : 0,
+                      operands > 1 ? at[node->b] : 0);
 }
 
-void dvi__mark_taken(const dvi__graph *graph, const double *at, int root_count, const dvi__node *root, int size, char *part)
+void dvi__mark_taken(const dvi__graph *graph, const double *at, int root_count,
+                     const dvi__node *root, int size, char *part)
 {
   memset(part, 0, (size_t)size);
   for (int k = 0; k < root_count; k++) part[root[k]] = 1;
@@ -96,8 +101,8 @@ void dvi__mark_taken(const dvi__graph *graph, const double *at, int root_count, 
   }
 }
 
-dvi_status dvi__evaluate(const dvi__graph *graph, const double *x, int root_count, const dvi__node *root, double *value,
-                         dvi__node *not_finite)
+dvi_status dvi__evaluate(const dvi__graph *graph, const double *x, int root_count,
+                         const dvi__node *root, double *value, dvi__node *not_finite)
 {
   if (graph->failed != DVI_OK) return graph->failed;
   int size;

@@ -23,12 +23,14 @@ double dvi__operate(dvi__op op, double value, double a, double b);
 
 void dvi__tangent_room_free(dvi__tangent_room *room);
 
-/* Mark, 1, what the roots are made of: [*size], up to the last root; owned by the caller. NULL: no memory. */
+/* Mark, 1, what the roots are made of: [*size], up to the last root; owned by the caller. NULL: no
+ * memory. */
 char *dvi__parts(const dvi__graph *graph, int root_count, const dvi__node *root, int *size);
 
 /* Mark, 1, those of the first `size` nodes that the roots are made of where nodes have the
  * values `at`: not what a condition turns off. */
-void dvi__mark_taken(const dvi__graph *graph, const double *at, int root_count, const dvi__node *root, int size, char *part);
+void dvi__mark_taken(const dvi__graph *graph, const double *at, int root_count,
+                     const dvi__node *root, int size, char *part);
 
 /* Shorter names for the operations. */
 static inline dvi__node dvi__add(dvi__graph *graph, dvi__node a, dvi__node b)

@@ -1,8 +1,10 @@
 /* Which second derivatives can differ from zero.
  *
- * A node f(a, b) adds to the second derivatives of the root what f_aa, f_ab and f_bb are factors of: the pairs of inputs on which a and a, a and b, b and b depend.
- * So the pattern is the union, over all nodes that are not linear, of products of the sets of inputs of their operands (Walther 2008). Sets
- * are sorted lists, equal ones mostly shared, made only for what stands below a node that is not linear. */
+ * A node f(a, b) adds to the second derivatives of the root what f_aa, f_ab and f_bb are factors
+ * of: the pairs of inputs on which a and a, a and b, b and b depend. So the pattern is the union,
+ * over all nodes that are not linear, of products of the sets of inputs of their operands (Walther
+ * 2008). Sets are sorted lists, equal ones mostly shared, made only for what stands below a node
+ * that is not linear. */
 #include <stdint.h>
 #include <string.h>
 
@@ -42,15 +44,20 @@ static int curvature(const dvi__graph *graph, const dvi__graph_node *node)
   case DVI__OP_ADD:
   case DVI__OP_SUBTRACT: return 0;
   case DVI__OP_MULTIPLY:
-    return graph->node[node->a].op == DVI__OP_CONSTANT || graph->node[node->b].op == DVI__OP_CONSTANT ? 0 : CURVED_AB;
-  case DVI__OP_DIVIDE: return graph->node[node->b].op == DVI__OP_CONSTANT ? 0 : CURVED_AB | CURVED_BB;
+    return graph->node[node->a].op == DVI__OP_CONSTANT ||
+                   graph->node[node->b].op == DVI__OP_CONSTANT
+               ? 0
+               : CURVED_AB;
+  case DVI__OP_DIVIDE:
+    return graph->node[node->b].op == DVI__OP_CONSTANT ? 0 : CURVED_AB | CURVED_BB;
   case DVI__OP_RAISE:
   case DVI__OP_ATAN2: return CURVED_AA | CURVED_AB | CURVED_BB;
   default: return CURVED_AA;
   }
 }
 
-/* Mark what has a derivative that reaches the root, and what stands below a node that is not linear. */
+/* Mark what has a derivative that reaches the root, and what stands below a node that is not
+ * linear. */
 static void mark_parts(const dvi__graph *graph, dvi__node root, char *mark)
 {
   mark[root] = REACHED;
@@ -94,7 +101,8 @@ static set join(dvi__arena *arena, set a, set b, int *work)
 }
 
 /* What a node depends on, by its derivatives. */
-static set set_of(const dvi__graph_node *node, int count, const set *sets, dvi__arena *arena, int *work)
+static set set_of(const dvi__graph_node *node, int count, const set *sets, dvi__arena *arena,
+                  int *work)
 {
   const int operands = dvi__operands(node->op);
   if (node->op == DVI__OP_INPUT && node->a < count) {
@@ -153,8 +161,8 @@ static dvi_status put_all(pairs *p, set a, set b)
 }
 
 /* The pairs of all parts, in `found`. */
-static dvi_status find_pairs(const dvi__graph *graph, dvi__node root, int count, const char *mark, set *sets, dvi__arena *arena,
-                             int *work, pairs *found)
+static dvi_status find_pairs(const dvi__graph *graph, dvi__node root, int count, const char *mark,
+                             set *sets, dvi__arena *arena, int *work, pairs *found)
 {
   dvi_status status = DVI_OK;
   for (int n = 0; n <= root && status == DVI_OK; n++) {
@@ -163,14 +171,18 @@ static dvi_status find_pairs(const dvi__graph *graph, dvi__node root, int count,
     if (mark[n] & SET_NEEDED) sets[n] = set_of(node, count, sets, arena, work);
     const int curved = curvature(graph, node);
     if (curved & CURVED_AA) status = put_all(found, sets[node->a], sets[node->a]);
-    if ((curved & CURVED_AB) && status == DVI_OK) status = put_all(found, sets[node->a], sets[node->b]);
-    if ((curved & CURVED_BB) && status == DVI_OK) status = put_all(found, sets[node->b], sets[node->b]);
+    if ((curved & CURVED_AB) && status == DVI_OK)
+      status = put_all(found, sets[node->a], sets[node->b]);
+    if ((curved & CURVED_BB) && status == DVI_OK)
+      status = put_all(found, sets[node->b], sets[node->b]);
   }
   return status == DVI_OK && arena->failed ? DVI_NO_MEMORY : status;
 }
 
-/* Sort keys by the 32 bits from `shift` on, which are below `count`, keeping the order of equal ones; start [count + 1]. */
-static void sort_by(int shift, int count, size_t size, const uint64_t *key, uint64_t *sorted, size_t *start)
+/* Sort keys by the 32 bits from `shift` on, which are below `count`, keeping the order of equal
+ * ones; start [count + 1]. */
+static void sort_by(int shift, int count, size_t size, const uint64_t *key, uint64_t *sorted,
+                    size_t *start)
 {
   memset(start, 0, ((size_t)count + 1) * sizeof *start);
   for (size_t k = 0; k < size; k++) start[(uint32_t)(key[k] >> shift) + 1]++;
@@ -192,14 +204,16 @@ static dvi_status list_pairs(pairs *found, int count, int (**list)[2])
       if (found->key[k] != FREE) found->key[used++] = found->key[k];
     sort_by(0, count, size, found->key, by_row, start);
     sort_by(32, count, size, by_row, found->key, start);
-    for (size_t k = 0; k < size; k++) (*list)[k][0] = (int)(uint32_t)found->key[k], (*list)[k][1] = (int)(found->key[k] >> 32);
+    for (size_t k = 0; k < size; k++)
+      (*list)[k][0] = (int)(uint32_t)found->key[k], (*list)[k][1] = (int)(found->key[k] >> 32);
   }
   dvi__heap_free(by_row);
   dvi__heap_free(start);
   return failed ? DVI_NO_MEMORY : DVI_OK;
 }
 
-dvi_status dvi__second_pattern(const dvi__graph *graph, dvi__node root, int count, int (**list)[2], int *pair_count)
+dvi_status dvi__second_pattern(const dvi__graph *graph, dvi__node root, int count, int (**list)[2],
+                               int *pair_count)
 {
   *list = NULL;
   *pair_count = 0;

@@ -1,7 +1,9 @@
-/* Operations as they are applied: what can be said simpler is, as long as values stay the same up to rounding.
+/* Operations as they are applied: what can be said simpler is, as long as values stay the same up
+ * to rounding.
  *
- * Every node is seen as factor * rest, and rest as base^exponent. Constant factors are gathered at one factor of a product, where that is most likely to be
- * shared: in the pull s*d of two bodies at the power s of their distance, not at the components of d. */
+ * Every node is seen as factor * rest, and rest as base^exponent. Constant factors are gathered at
+ * one factor of a product, where that is most likely to be shared: in the pull s*d of two bodies at
+ * the power s of their distance, not at the components of d. */
 #include <math.h>
 
 #include "expr/graph_make.h"
@@ -26,8 +28,10 @@ static scaled scaled_of(const dvi__graph *graph, dvi__node n)
   const dvi__graph_node *node = at(graph, n);
   double c;
   if (node->op == DVI__OP_NEGATE) return (scaled){-1, node->a};
-  if (node->op == DVI__OP_MULTIPLY && dvi__is_constant(graph, node->a, &c)) return (scaled){c, node->b};
-  if (node->op == DVI__OP_MULTIPLY && dvi__is_constant(graph, node->b, &c)) return (scaled){c, node->a};
+  if (node->op == DVI__OP_MULTIPLY && dvi__is_constant(graph, node->a, &c))
+    return (scaled){c, node->b};
+  if (node->op == DVI__OP_MULTIPLY && dvi__is_constant(graph, node->b, &c))
+    return (scaled){c, node->a};
   return (scaled){1, n};
 }
 
@@ -39,7 +43,9 @@ static powered powered_of(const dvi__graph *graph, dvi__node n)
   case DVI__OP_SQUARE: return (powered){node->a, 2};
   case DVI__OP_SQRT: return (powered){node->a, 0.5};
   case DVI__OP_POWER: return (powered){node->a, node->value};
-  case DVI__OP_DIVIDE: return dvi__is_constant(graph, node->a, &c) && c == 1 ? (powered){node->b, -1} : (powered){n, 1};
+  case DVI__OP_DIVIDE:
+    return dvi__is_constant(graph, node->a, &c) && c == 1 ? (powered){node->b, -1}
+                                                          : (powered){n, 1};
   default: return (powered){n, 1};
   }
 }
@@ -49,7 +55,8 @@ static int is_whole(double x)
   return x == floor(x);
 }
 
-/* Factors that are gathered: far from the ends of the range, so that partial products stay far from them as well. */
+/* Factors that are gathered: far from the ends of the range, so that partial products stay far from
+ * them as well. */
 static int is_moderate(double c)
 {
   return fabs(c) >= 1e-100 && fabs(c) <= 1e100;
@@ -61,7 +68,8 @@ static int is_exponent(double x)
   return is_whole(2 * x) && fabs(x) <= DVI__EXPONENT_MAX;
 }
 
-/* Whether x^e x^f = x^(e+f) wherever the left side is finite, and the right side is not where the left side is not. */
+/* Whether x^e x^f = x^(e+f) wherever the left side is finite, and the right side is not where the
+ * left side is not. */
 static int joins(const dvi__graph *graph, dvi__node x, double e, double f)
 {
   const double sum = e + f;
@@ -73,7 +81,8 @@ static int joins(const dvi__graph *graph, dvi__node x, double e, double f)
 /* Operands that commute, by number. */
 static dvi__node make_product(dvi__graph *graph, dvi__node a, dvi__node b)
 {
-  return a < b ? dvi__make(graph, DVI__OP_MULTIPLY, a, b, 0) : dvi__make(graph, DVI__OP_MULTIPLY, b, a, 0);
+  return a < b ? dvi__make(graph, DVI__OP_MULTIPLY, a, b, 0)
+               : dvi__make(graph, DVI__OP_MULTIPLY, b, a, 0);
 }
 
 static dvi__node make_sum(dvi__graph *graph, dvi__node a, dvi__node b)
@@ -88,8 +97,10 @@ static dvi__node scale_rest(dvi__graph *graph, double c, dvi__node n)
   if (node.op == DVI__OP_WHERE) return dvi__where(graph, node.a, dvi__scale(graph, c, node.b));
   if (node.op == DVI__OP_MULTIPLY) {
     const scaled a = scaled_of(graph, node.a), b = scaled_of(graph, node.b);
-    if (a.factor != 1 && is_moderate(c * a.factor)) return dvi__multiply(graph, dvi__scale(graph, c * a.factor, a.rest), node.b);
-    if (b.factor != 1 && is_moderate(c * b.factor)) return dvi__multiply(graph, node.a, dvi__scale(graph, c * b.factor, b.rest));
+    if (a.factor != 1 && is_moderate(c * a.factor))
+      return dvi__multiply(graph, dvi__scale(graph, c * a.factor, a.rest), node.b);
+    if (b.factor != 1 && is_moderate(c * b.factor))
+      return dvi__multiply(graph, node.a, dvi__scale(graph, c * b.factor, b.rest));
   }
   return make_product(graph, dvi__constant(graph, c), n);
 }
@@ -101,7 +112,8 @@ dvi__node dvi__scale(dvi__graph *graph, double c, dvi__node n)
   if (c == 0) return dvi__constant(graph, 0);
   if (c == 1) return n;
   if (c == -1) return dvi__negate(graph, n);
-  if (dvi__is_constant(graph, n, &constant) && isfinite(c * constant)) return dvi__constant(graph, c * constant);
+  if (dvi__is_constant(graph, n, &constant) && isfinite(c * constant))
+    return dvi__constant(graph, c * constant);
   const scaled own = scaled_of(graph, n);
   if (own.factor == 1) return scale_rest(graph, c, n);
   if (!is_moderate(c * own.factor)) return make_product(graph, dvi__constant(graph, c), n);
@@ -122,17 +134,20 @@ static dvi__node negate(dvi__graph *graph, dvi__node n)
 /* Two parts that one condition guards: they are added, or subtracted, under it. */
 static bool share_guard(const dvi__graph *graph, dvi__node a, dvi__node b)
 {
-  return at(graph, a)->op == DVI__OP_WHERE && at(graph, b)->op == DVI__OP_WHERE && at(graph, a)->a == at(graph, b)->a;
+  return at(graph, a)->op == DVI__OP_WHERE && at(graph, b)->op == DVI__OP_WHERE &&
+         at(graph, a)->a == at(graph, b)->a;
 }
 
 static dvi__node add(dvi__graph *graph, dvi__node a, dvi__node b)
 {
   const scaled x = scaled_of(graph, a), y = scaled_of(graph, b);
   double c;
-  if (share_guard(graph, a, b)) return dvi__where(graph, at(graph, a)->a, dvi__add(graph, at(graph, a)->b, at(graph, b)->b));
+  if (share_guard(graph, a, b))
+    return dvi__where(graph, at(graph, a)->a, dvi__add(graph, at(graph, a)->b, at(graph, b)->b));
   if (dvi__is_constant(graph, a, &c) && c == 0) return b;
   if (dvi__is_constant(graph, b, &c) && c == 0) return a;
-  if (x.rest == y.rest && isfinite(x.factor + y.factor)) return dvi__scale(graph, x.factor + y.factor, x.rest);
+  if (x.rest == y.rest && isfinite(x.factor + y.factor))
+    return dvi__scale(graph, x.factor + y.factor, x.rest);
   if (y.factor < 0) return dvi__subtract(graph, a, dvi__scale(graph, -y.factor, y.rest));
   if (x.factor < 0) return dvi__subtract(graph, b, dvi__scale(graph, -x.factor, x.rest));
   return make_sum(graph, a, b);
@@ -142,10 +157,13 @@ static dvi__node subtract(dvi__graph *graph, dvi__node a, dvi__node b)
 {
   const scaled x = scaled_of(graph, a), y = scaled_of(graph, b);
   double c;
-  if (share_guard(graph, a, b)) return dvi__where(graph, at(graph, a)->a, dvi__subtract(graph, at(graph, a)->b, at(graph, b)->b));
+  if (share_guard(graph, a, b))
+    return dvi__where(graph, at(graph, a)->a,
+                      dvi__subtract(graph, at(graph, a)->b, at(graph, b)->b));
   if (dvi__is_constant(graph, a, &c) && c == 0) return dvi__negate(graph, b);
   if (dvi__is_constant(graph, b, &c) && c == 0) return a;
-  if (x.rest == y.rest && isfinite(x.factor - y.factor)) return dvi__scale(graph, x.factor - y.factor, x.rest);
+  if (x.rest == y.rest && isfinite(x.factor - y.factor))
+    return dvi__scale(graph, x.factor - y.factor, x.rest);
   if (y.factor < 0) return dvi__add(graph, a, dvi__scale(graph, -y.factor, y.rest));
   if (x.factor == -1) return dvi__negate(graph, dvi__add(graph, x.rest, b));
   return dvi__make(graph, DVI__OP_SUBTRACT, a, b, 0);
@@ -180,7 +198,8 @@ static dvi__node multiply(dvi__graph *graph, dvi__node a, dvi__node b)
   if (a == b) return dvi__power(graph, a, 2);
   const dvi__graph_node left = *at(graph, a), right = *at(graph, b);
   if (left.op == DVI__OP_WHERE) return dvi__where(graph, left.a, dvi__multiply(graph, left.b, b));
-  if (right.op == DVI__OP_WHERE) return dvi__where(graph, right.a, dvi__multiply(graph, a, right.b));
+  if (right.op == DVI__OP_WHERE)
+    return dvi__where(graph, right.a, dvi__multiply(graph, a, right.b));
   const scaled x = scaled_of(graph, a), y = scaled_of(graph, b);
   const double factor = x.factor * y.factor;
   if (!is_moderate(factor)) return make_product(graph, a, b);
@@ -203,7 +222,8 @@ static dvi__node divide(dvi__graph *graph, dvi__node a, dvi__node b)
 {
   double c;
   const dvi__graph_node guarded = *at(graph, a);
-  if (guarded.op == DVI__OP_WHERE) return dvi__where(graph, guarded.a, dvi__divide(graph, guarded.b, b));
+  if (guarded.op == DVI__OP_WHERE)
+    return dvi__where(graph, guarded.a, dvi__divide(graph, guarded.b, b));
   if (dvi__is_constant(graph, b, &c)) return divide_by_constant(graph, a, c);
   if (dvi__is_constant(graph, a, &c) && c == 0) return a;
   const scaled x = scaled_of(graph, a), y = scaled_of(graph, b);
@@ -217,8 +237,10 @@ static dvi__node divide(dvi__graph *graph, dvi__node a, dvi__node b)
   }
   if (y.factor == -1) return dvi__negate(graph, dvi__divide(graph, a, y.rest));
   if (x.factor == -1) return dvi__negate(graph, dvi__divide(graph, x.rest, b));
-  if (!dvi__is_constant(graph, a, &c) || !is_moderate(c / y.factor)) return dvi__make(graph, DVI__OP_DIVIDE, a, b, 0);
-  return dvi__scale(graph, c / y.factor, dvi__make(graph, DVI__OP_DIVIDE, dvi__constant(graph, 1), y.rest, 0));
+  if (!dvi__is_constant(graph, a, &c) || !is_moderate(c / y.factor))
+    return dvi__make(graph, DVI__OP_DIVIDE, a, b, 0);
+  return dvi__scale(graph, c / y.factor,
+                    dvi__make(graph, DVI__OP_DIVIDE, dvi__constant(graph, 1), y.rest, 0));
 }
 
 static dvi__node make_power(dvi__graph *graph, dvi__node a, double exponent)
@@ -233,7 +255,8 @@ static dvi__node make_power(dvi__graph *graph, dvi__node a, double exponent)
 static dvi__node power_of_power(dvi__graph *graph, dvi__node n, powered x, double exponent)
 {
   const double total = x.exponent * exponent;
-  const int keeps_domain = is_whole(x.exponent) || !is_whole(total) || at(graph, x.base)->never_negative;
+  const int keeps_domain = is_whole(x.exponent) || !is_whole(total) ||
+                           at(graph, x.base)->never_negative;
   if (!is_exponent(total) || !keeps_domain) return make_power(graph, n, exponent);
   const int even = is_whole(x.exponent / 2) && !is_whole(exponent);
   return dvi__power(graph, even ? dvi__apply(graph, DVI__OP_ABS, x.base, 0) : x.base, total);
@@ -243,19 +266,23 @@ dvi__node dvi__power(dvi__graph *graph, dvi__node a, double exponent)
 {
   if (graph->failed != DVI_OK) return 0;
   double base;
-  if (dvi__is_constant(graph, a, &base) && isfinite(pow(base, exponent))) return dvi__constant(graph, pow(base, exponent));
+  if (dvi__is_constant(graph, a, &base) && isfinite(pow(base, exponent)))
+    return dvi__constant(graph, pow(base, exponent));
   if (exponent == 0) return dvi__constant(graph, 1);
   if (exponent == 1) return a;
   const dvi__graph_node guarded = *at(graph, a);
-  if (guarded.op == DVI__OP_WHERE && exponent > 0) return dvi__where(graph, guarded.a, dvi__power(graph, guarded.b, exponent));
-  if (!is_exponent(exponent)) return dvi__make(graph, DVI__OP_RAISE, a, dvi__constant(graph, exponent), 0);
+  if (guarded.op == DVI__OP_WHERE && exponent > 0)
+    return dvi__where(graph, guarded.a, dvi__power(graph, guarded.b, exponent));
+  if (!is_exponent(exponent))
+    return dvi__make(graph, DVI__OP_RAISE, a, dvi__constant(graph, exponent), 0);
   const scaled x = scaled_of(graph, a);
   const double factor = pow(x.factor, exponent);
   if (x.factor != 1 && is_whole(exponent) && is_moderate(factor))
     return dvi__scale(graph, factor, dvi__power(graph, x.rest, exponent));
   const powered p = powered_of(graph, a);
   if (p.exponent != 1) return power_of_power(graph, a, p, exponent);
-  if (at(graph, a)->op == DVI__OP_ABS && is_whole(exponent / 2)) return dvi__power(graph, at(graph, a)->a, exponent);
+  if (at(graph, a)->op == DVI__OP_ABS && is_whole(exponent / 2))
+    return dvi__power(graph, at(graph, a)->a, exponent);
   return make_power(graph, a, exponent);
 }
 
@@ -263,7 +290,8 @@ static dvi__node absolute(dvi__graph *graph, dvi__node n)
 {
   const scaled x = scaled_of(graph, n);
   if (at(graph, n)->never_negative) return n;
-  if (x.factor != 1) return dvi__scale(graph, fabs(x.factor), dvi__apply(graph, DVI__OP_ABS, x.rest, 0));
+  if (x.factor != 1)
+    return dvi__scale(graph, fabs(x.factor), dvi__apply(graph, DVI__OP_ABS, x.rest, 0));
   return dvi__make(graph, DVI__OP_ABS, n, 0, 0);
 }
 
@@ -293,7 +321,8 @@ static dvi__node where(dvi__graph *graph, dvi__node condition, dvi__node n)
 {
   const dvi__graph_node node = *at(graph, n);
   double c;
-  if (dvi__is_constant(graph, condition, &c) && isfinite(c)) return c > 0 ? n : dvi__constant(graph, 0);
+  if (dvi__is_constant(graph, condition, &c) && isfinite(c))
+    return c > 0 ? n : dvi__constant(graph, 0);
   if (dvi__is_constant(graph, n, &c) && c == 0) return n;
   if (node.op == DVI__OP_WHERE && node.a == condition) return n;
   return dvi__make(graph, DVI__OP_WHERE, condition, n, 0);
@@ -303,7 +332,8 @@ dvi__node dvi__complement(dvi__graph *graph, dvi__node c)
 {
   const dvi__graph_node node = *at(graph, c);
   double one;
-  if (node.op == DVI__OP_SUBTRACT && dvi__is_constant(graph, node.a, &one) && one == 1) return node.b;
+  if (node.op == DVI__OP_SUBTRACT && dvi__is_constant(graph, node.a, &one) && one == 1)
+    return node.b;
   return dvi__subtract(graph, dvi__constant(graph, 1), c);
 }
 
@@ -347,10 +377,12 @@ dvi__node dvi__apply(dvi__graph *graph, dvi__op op, dvi__node a, dvi__node b)
   case DVI__OP_SUBTRACT: return subtract(graph, a, b);
   case DVI__OP_MULTIPLY: return multiply(graph, a, b);
   case DVI__OP_DIVIDE: return divide(graph, a, b);
-  case DVI__OP_RAISE: return dvi__is_constant(graph, b, &c) ? dvi__power(graph, a, c) : dvi__make(graph, op, a, b, 0);
+  case DVI__OP_RAISE:
+    return dvi__is_constant(graph, b, &c) ? dvi__power(graph, a, c) : dvi__make(graph, op, a, b, 0);
   case DVI__OP_ATAN2: return dvi__make(graph, op, a, b, 0);
   case DVI__OP_WHERE: return where(graph, a, b);
-  case DVI__OP_HYPOT: return dvi__power(graph, dvi__add(graph, dvi__square(graph, a), dvi__square(graph, b)), 0.5);
+  case DVI__OP_HYPOT:
+    return dvi__power(graph, dvi__add(graph, dvi__square(graph, a), dvi__square(graph, b)), 0.5);
   default: return function(graph, op, a);
   }
 }

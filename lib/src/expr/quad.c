@@ -44,7 +44,8 @@ static quad exponential_less_one(quad r)
 /* exp(r) 2^k with x = r + k log 2. */
 static quad exponential(quad x)
 {
-  const quad log_two = constant(0x1.62e42fefa39efp-1, 0x1.abc9e3b39803fp-56, 0x1.7b57a079a1934p-111);
+  const quad log_two = constant(0x1.62e42fefa39efp-1, 0x1.abc9e3b39803fp-56,
+                                0x1.7b57a079a1934p-111);
   const double k = nearbyint((double)(x / log_two));
   if (!(fabs(k) < 1000)) return (quad)exp((double)x);
   return (quad)ldexp(1, (int)k) * (1 + exponential_less_one(x - (quad)k * log_two));
@@ -59,14 +60,16 @@ static quad logarithm(quad x)
 }
 
 #define INVERSES(n) (quad)1 / (n), (quad)1 / ((n) + 1), (quad)1 / ((n) + 2), (quad)1 / ((n) + 3)
-static const quad inverse_number[] = {INVERSES(1),  INVERSES(5),  INVERSES(9),  INVERSES(13), INVERSES(17),
-                                      INVERSES(21), INVERSES(25), INVERSES(29), INVERSES(33)};
+static const quad inverse_number[] = {INVERSES(1),  INVERSES(5),  INVERSES(9),
+                                      INVERSES(13), INVERSES(17), INVERSES(21),
+                                      INVERSES(25), INVERSES(29), INVERSES(33)};
 enum { TERMS = sizeof inverse_number / sizeof *inverse_number };
 
 /* Sine and cosine by their series, after whole quarters of a turn are taken off. */
 static void find_turn(quad x, quad *sine, quad *cosine)
 {
-  const quad quarter = constant(0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54, -0x1.f1976b7ed8fbcp-110);
+  const quad quarter = constant(0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54,
+                                -0x1.f1976b7ed8fbcp-110);
   const double quarters = nearbyint((double)(x / quarter)), least = 1e-36;
   const quad r = x - (quad)quarters * quarter;
   quad term = 1, sum[2] = {0, 0};

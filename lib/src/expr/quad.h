@@ -20,7 +20,8 @@ dvi__quad dvi__quad_operate(dvi__op op, double number, dvi__quad a, dvi__quad b)
 
 /* Its derivatives by the operands, slope[2]; value is what it gives. Those that the operation does
  * not have stay as they are. */
-void dvi__quad_slopes(dvi__op op, double number, dvi__quad value, dvi__quad a, dvi__quad b, dvi__quad *slope);
+void dvi__quad_slopes(dvi__op op, double number, dvi__quad value, dvi__quad a, dvi__quad b,
+                      dvi__quad *slope);
 #endif
 
 #endif

@@ -56,8 +56,9 @@ static void add_circumstances(const dvi__term *term, const double *t, const dvi_
   const char *word = ", where";
   if (t != NULL) add_words(", at t = %.6g", *t);
   for (int i = 0; i < fault->count; i++) {
-    const char *label = fault->variable[i].block == DVI__COORDINATES ? dvi_scene_coordinate(term->scene, fault->variable[i].number)
-                                                                     : NULL;
+    const char *label = fault->variable[i].block == DVI__COORDINATES
+                            ? dvi_scene_coordinate(term->scene, fault->variable[i].number)
+                            : NULL;
     if (label == NULL) continue;
     add_words("%s %s = %.6g", word, label, fault->variable[i].value);
     word = ",";
@@ -76,7 +77,8 @@ static void blame(const dvi__term *term, int count, const double *const *x, int 
   blame_text[0] = '\0';
   blame_words = 0;
   if (part[0] == '\0') {
-    add_words(of_series ? "%s: the Taylor series of all terms is not finite" : "%s: the sum of all terms is not finite",
+    add_words(of_series ? "%s: the Taylor series of all terms is not finite"
+                        : "%s: the sum of all terms is not finite",
               source->name);
     return;
   }
@@ -91,19 +93,21 @@ static void blame(const dvi__term *term, int count, const double *const *x, int 
 /* Why there is no program, or no pattern. */
 static const char *too_large(dvi_status status)
 {
-  return status == DVI_NO_MEMORY
-             ? "memory ran out"
-             : "too large: its derivatives need more than 2000000 parts, 20000000 pairs, 16384 numbers at a time, or 1 GiB";
+  return status == DVI_NO_MEMORY ? "memory ran out"
+                                 : "too large: its derivatives need more than 2000000 parts, "
+                                   "20000000 pairs, 16384 numbers at a time, or 1 GiB";
 }
 
-static int verdict(const dvi__term *term, int count, const double *const *x, int of_series, int returned)
+static int verdict(const dvi__term *term, int count, const double *const *x, int of_series,
+                   int returned)
 {
   if (returned == 0) return 0;
   blame_status = returned > 0 ? DVI_NOT_FINITE : (dvi_status)returned;
   if (returned > 0)
     blame(term, count, x, of_series);
   else
-    (void)snprintf(blame_text, sizeof blame_text, "%s: %s", term->scene->source.name, too_large(blame_status));
+    (void)snprintf(blame_text, sizeof blame_text, "%s: %s", term->scene->source.name,
+                   too_large(blame_status));
   return returned;
 }
 
@@ -129,7 +133,8 @@ static int second_at(dvi__term *term, int count, const double *const *x, double 
   return verdict(term, count, x, 0, dvi__function_second(term->function, count, x, values));
 }
 
-int dvi__term_value(double t, const double *q, const double *velocity_or_momentum, double *value, void *user)
+int dvi__term_value(double t, const double *q, const double *velocity_or_momentum, double *value,
+                    void *user)
 {
   const double *x[DVI__BLOCKS] = {&t, q, velocity_or_momentum, NULL};
   return value_at(user, 1, x, value);
@@ -165,38 +170,47 @@ static int potential_rate(int count, const double *t, const double *q, double *V
 }
 
 /* Of the curve's coefficients the first ones are its point. */
-static int potential_taylor(int degree, const double *t, const double *q, double *V, double *V_q, double *V_qq, void *user)
+static int potential_taylor(int degree, const double *t, const double *q, double *V, double *V_q,
+                            double *V_qq, void *user)
 {
   const dvi__term *term = user;
   const double *x[DVI__BLOCKS] = {t, q, NULL, NULL};
-  double *gradient[DVI__BLOCKS] = {[DVI__COORDINATES] = V_q}, *values[DVI__PAIRS] = {[DVI__PAIR_QQ] = V_qq};
-  return verdict(term, 1, x, 1, dvi__function_series(term->function, degree, x, V, gradient, values));
+  double *gradient[DVI__BLOCKS] = {[DVI__COORDINATES] = V_q},
+         *values[DVI__PAIRS] = {[DVI__PAIR_QQ] = V_qq};
+  return verdict(term, 1, x, 1,
+                 dvi__function_series(term->function, degree, x, V, gradient, values));
 }
 
-bool dvi__term_pattern(dvi_scene *scene, dvi__term *term, dvi__pair pair, dvi_pattern *pattern, int *full)
+bool dvi__term_pattern(dvi_scene *scene, dvi__term *term, dvi__pair pair, dvi_pattern *pattern,
+                       int *full)
 {
   const dvi_status status = dvi__function_pattern(term->function, pair, pattern, full);
-  if (status != DVI_OK) return dvi__scene_too_large(scene, "the pattern of the second derivatives", status);
+  if (status != DVI_OK)
+    return dvi__scene_too_large(scene, "the pattern of the second derivatives", status);
   if (*full) *pattern = (dvi_pattern){0};
   return true;
 }
 
-/* Programs of large expressions are made now, for they may be refused: the value's, and the gradient's by these blocks. */
+/* Programs of large expressions are made now, for they may be refused: the value's, and the
+ * gradient's by these blocks. */
 static bool prepare_large(dvi_scene *scene, const dvi__term *term, unsigned blocks)
 {
   enum { ALWAYS_FIT = DVI__ROWS_MAX / 32 }; /* parts, whatever is derived of them */
   const dvi__kernel *largest = NULL;
   for (int k = 0; k < dvi__function_kernel_count(term->function); k++) {
     const dvi__kernel *kernel = dvi__function_kernel(term->function, k);
-    if (kernel->root >= ALWAYS_FIT && (largest == NULL || kernel->root > largest->root)) largest = kernel;
+    if (kernel->root >= ALWAYS_FIT && (largest == NULL || kernel->root > largest->root))
+      largest = kernel;
   }
   if (largest == NULL) return true;
   const dvi_status status = dvi__function_prepare(term->function, 1, blocks, 0);
   return status == DVI_OK ||
-         dvi__complain(scene->complaint, status, largest->graph->node[largest->root].span, "%s", too_large(status));
+         dvi__complain(scene->complaint, status, largest->graph->node[largest->root].span, "%s",
+                       too_large(status));
 }
 
-bool dvi__make_potential(dvi_scene *scene, const char *name, dvi__term *term, dvi_potential *potential)
+bool dvi__make_potential(dvi_scene *scene, const char *name, dvi__term *term,
+                         dvi_potential *potential)
 {
   int full;
   *potential = (dvi_potential){.name = name,
@@ -206,47 +220,55 @@ bool dvi__make_potential(dvi_scene *scene, const char *name, dvi__term *term, dv
                                .rate_batch = potential_rate,
                                .taylor = potential_taylor,
                                .user = term};
-  return prepare_large(scene, term, 1U << DVI__COORDINATES) && dvi__term_pattern(scene, term, DVI__PAIR_QQ, &potential->qq, &full);
+  return prepare_large(scene, term, 1U << DVI__COORDINATES) &&
+         dvi__term_pattern(scene, term, DVI__PAIR_QQ, &potential->qq, &full);
 }
 
 /* ---- Lagrangians ---- */
 
-static int lagrangian_value(int count, const double *t, const double *q, const double *v, double *L, void *user)
+static int lagrangian_value(int count, const double *t, const double *q, const double *v, double *L,
+                            void *user)
 {
   const double *x[DVI__BLOCKS] = {t, q, v, NULL};
   return value_at(user, count, x, L);
 }
 
-static int lagrangian_gradient(int count, const double *t, const double *q, const double *v, double *L_q, double *L_v, void *user)
+static int lagrangian_gradient(int count, const double *t, const double *q, const double *v,
+                               double *L_q, double *L_v, void *user)
 {
   const double *x[DVI__BLOCKS] = {t, q, v, NULL};
   double *gradient[DVI__BLOCKS] = {[DVI__COORDINATES] = L_q, [DVI__VELOCITIES] = L_v};
   return gradient_at(user, count, x, gradient);
 }
 
-static int lagrangian_hessian(int count, const double *t, const double *q, const double *v, double *L_qq, double *L_qv,
-                              double *L_vv, void *user)
+static int lagrangian_hessian(int count, const double *t, const double *q, const double *v,
+                              double *L_qq, double *L_qv, double *L_vv, void *user)
 {
   const double *x[DVI__BLOCKS] = {t, q, v, NULL};
-  double *values[DVI__PAIRS] = {[DVI__PAIR_QQ] = L_qq, [DVI__PAIR_QV] = L_qv, [DVI__PAIR_VV] = L_vv};
+  double *values[DVI__PAIRS] = {
+      [DVI__PAIR_QQ] = L_qq, [DVI__PAIR_QV] = L_qv, [DVI__PAIR_VV] = L_vv};
   return second_at(user, count, x, values);
 }
 
-static int lagrangian_rate(int count, const double *t, const double *q, const double *v, double *L_t, void *user)
+static int lagrangian_rate(int count, const double *t, const double *q, const double *v,
+                           double *L_t, void *user)
 {
   const double *x[DVI__BLOCKS] = {t, q, v, NULL};
   double *gradient[DVI__BLOCKS] = {[DVI__TIME] = L_t};
   return gradient_at(user, count, x, gradient);
 }
 
-static int lagrangian_taylor(int degree, const double *t, const double *q, const double *v, double *L, double *L_q, double *L_v,
-                             double *L_qq, double *L_qv, double *L_vv, void *user)
+static int lagrangian_taylor(int degree, const double *t, const double *q, const double *v,
+                             double *L, double *L_q, double *L_v, double *L_qq, double *L_qv,
+                             double *L_vv, void *user)
 {
   const dvi__term *term = user;
   const double *x[DVI__BLOCKS] = {t, q, v, NULL};
   double *gradient[DVI__BLOCKS] = {[DVI__COORDINATES] = L_q, [DVI__VELOCITIES] = L_v};
-  double *values[DVI__PAIRS] = {[DVI__PAIR_QQ] = L_qq, [DVI__PAIR_QV] = L_qv, [DVI__PAIR_VV] = L_vv};
-  return verdict(term, 1, x, 1, dvi__function_series(term->function, degree, x, L, gradient, values));
+  double *values[DVI__PAIRS] = {
+      [DVI__PAIR_QQ] = L_qq, [DVI__PAIR_QV] = L_qv, [DVI__PAIR_VV] = L_vv};
+  return verdict(term, 1, x, 1,
+                 dvi__function_series(term->function, degree, x, L, gradient, values));
 }
 
 bool dvi__make_lagrangian(dvi_scene *scene, dvi__term *term, dvi_lagrangian *lagrangian)
@@ -297,7 +319,10 @@ static int form_hessian(const double *q, const double *w, double *alpha_w_qq, vo
 bool dvi__make_one_form(dvi_scene *scene, dvi__term *term, dvi_one_form *form)
 {
   int full;
-  *form = (dvi_one_form){.value = dvi__term_generator, .gradient = form_gradient, .hessian = form_hessian, .user = term};
+  *form = (dvi_one_form){.value = dvi__term_generator,
+                         .gradient = form_gradient,
+                         .hessian = form_hessian,
+                         .user = term};
   return prepare_large(scene, term, 1U << DVI__MULTIPLIERS) &&
          dvi__term_pattern(scene, term, DVI__PAIR_QW, &form->gradients, &full) &&
          dvi__term_pattern(scene, term, DVI__PAIR_QQ, &form->qq, &full);
@@ -305,25 +330,30 @@ bool dvi__make_one_form(dvi_scene *scene, dvi__term *term, dvi_one_form *form)
 
 /* ---- Hamiltonians with constraints ---- */
 
-static int hamiltonian_gradient(double t, const double *q, const double *p, double *H_q, double *H_p, void *user)
+static int hamiltonian_gradient(double t, const double *q, const double *p, double *H_q,
+                                double *H_p, void *user)
 {
   const double *x[DVI__BLOCKS] = {&t, q, p, NULL};
   double *gradient[DVI__BLOCKS] = {[DVI__COORDINATES] = H_q, [DVI__VELOCITIES] = H_p};
   return gradient_at(user, 1, x, gradient);
 }
 
-static int hamiltonian_hessian(double t, const double *q, const double *p, double *H_qq, double *H_qp, double *H_pp, void *user)
+static int hamiltonian_hessian(double t, const double *q, const double *p, double *H_qq,
+                               double *H_qp, double *H_pp, void *user)
 {
   const double *x[DVI__BLOCKS] = {&t, q, p, NULL};
-  double *values[DVI__PAIRS] = {[DVI__PAIR_QQ] = H_qq, [DVI__PAIR_QV] = H_qp, [DVI__PAIR_VV] = H_pp};
+  double *values[DVI__PAIRS] = {
+      [DVI__PAIR_QQ] = H_qq, [DVI__PAIR_QV] = H_qp, [DVI__PAIR_VV] = H_pp};
   return second_at(user, 1, x, values);
 }
 
 bool dvi__make_hamiltonian(dvi_scene *scene, dvi__term *term, dvi_hamiltonian *hamiltonian)
 {
   int full;
-  *hamiltonian = (dvi_hamiltonian){
-      .value = dvi__term_value, .gradient = hamiltonian_gradient, .hessian = hamiltonian_hessian, .user = term};
+  *hamiltonian = (dvi_hamiltonian){.value = dvi__term_value,
+                                   .gradient = hamiltonian_gradient,
+                                   .hessian = hamiltonian_hessian,
+                                   .user = term};
   return prepare_large(scene, term, 1U << DVI__COORDINATES | 1U << DVI__VELOCITIES) &&
          dvi__term_pattern(scene, term, DVI__PAIR_QQ, &hamiltonian->qq, &full) &&
          dvi__term_pattern(scene, term, DVI__PAIR_QV, &hamiltonian->qp, &full) &&
@@ -339,14 +369,15 @@ static void turn_round(double *first, double *end)
   }
 }
 
-/* Columns of d phi/dq, then those of d phi/dp, to columns of both: each column of the latter moves in front of what is left of the former. There is no
- * memory but the result's. */
+/* Columns of d phi/dq, then those of d phi/dp, to columns of both: each column of the latter moves
+ * in front of what is left of the former. There is no memory but the result's. */
 static void join_columns(int count, const int *q_start, const int *p_start, double *phi_z)
 {
   double *to = phi_z;
   for (int a = 0; a < count; a++) {
     to += q_start[a + 1] - q_start[a];
-    double *from = to + (q_start[count] - q_start[a + 1]), *end = from + (p_start[a + 1] - p_start[a]);
+    double *from = to + (q_start[count] - q_start[a + 1]),
+           *end = from + (p_start[a + 1] - p_start[a]);
     turn_round(to, from);
     turn_round(from, end);
     turn_round(to, end);
@@ -358,13 +389,15 @@ static int constraint_gradient(const double *q, const double *p, double *phi_z, 
 {
   dvi__term *term = user;
   const double *x[DVI__BLOCKS] = {NULL, q, p, term->none};
-  double *values[DVI__PAIRS] = {[DVI__PAIR_QW] = phi_z, [DVI__PAIR_VW] = phi_z + term->qw.start[term->count]};
+  double *values[DVI__PAIRS] = {
+      [DVI__PAIR_QW] = phi_z, [DVI__PAIR_VW] = phi_z + term->qw.start[term->count]};
   const int returned = second_at(term, 1, x, values);
   if (returned == 0) join_columns(term->count, term->qw.start, term->vw.start, phi_z);
   return returned;
 }
 
-static int constraint_hessian(const double *q, const double *p, const double *w, double *qq, double *qp, double *pp, void *user)
+static int constraint_hessian(const double *q, const double *p, const double *w, double *qq,
+                              double *qp, double *pp, void *user)
 {
   const double *x[DVI__BLOCKS] = {NULL, q, p, w};
   double *values[DVI__PAIRS] = {[DVI__PAIR_QQ] = qq, [DVI__PAIR_QV] = qp, [DVI__PAIR_VV] = pp};
@@ -372,7 +405,8 @@ static int constraint_hessian(const double *q, const double *p, const double *w,
 }
 
 /* A pattern with its entries, even if it is full. */
-static bool explicit_pattern(dvi_scene *scene, dvi__term *term, dvi__pair pair, dvi_pattern *pattern)
+static bool explicit_pattern(dvi_scene *scene, dvi__term *term, dvi__pair pair,
+                             dvi_pattern *pattern)
 {
   int full;
   if (!dvi__term_pattern(scene, term, pair, pattern, &full)) return false;
@@ -409,10 +443,15 @@ static bool join_patterns(dvi_scene *scene, const dvi__term *term, dvi_pattern *
 bool dvi__make_constraint(dvi_scene *scene, dvi__term *term, dvi_constraint *constraint)
 {
   int full;
-  *constraint = (dvi_constraint){
-      .count = term->count, .value = multiplied, .gradient = constraint_gradient, .hessian = constraint_hessian, .user = term};
-  return prepare_large(scene, term, 1U << DVI__MULTIPLIERS) && explicit_pattern(scene, term, DVI__PAIR_QW, &term->qw) &&
-         explicit_pattern(scene, term, DVI__PAIR_VW, &term->vw) && join_patterns(scene, term, &constraint->gradients) &&
+  *constraint = (dvi_constraint){.count = term->count,
+                                 .value = multiplied,
+                                 .gradient = constraint_gradient,
+                                 .hessian = constraint_hessian,
+                                 .user = term};
+  return prepare_large(scene, term, 1U << DVI__MULTIPLIERS) &&
+         explicit_pattern(scene, term, DVI__PAIR_QW, &term->qw) &&
+         explicit_pattern(scene, term, DVI__PAIR_VW, &term->vw) &&
+         join_patterns(scene, term, &constraint->gradients) &&
          dvi__term_pattern(scene, term, DVI__PAIR_QQ, &constraint->qq, &full) &&
          dvi__term_pattern(scene, term, DVI__PAIR_QV, &constraint->qp, &full) &&
          dvi__term_pattern(scene, term, DVI__PAIR_VV, &constraint->pp, &full);

@@ -3,8 +3,10 @@
 #define DVI_SCENE_CALLBACKS_H
 #include "scene/elaborate/kernels.h"
 
-/* Fill in a term: its callbacks, patterns and user pointer; rates only if the system depends on time. */
-bool dvi__make_potential(dvi_scene *scene, const char *name, dvi__term *term, dvi_potential *potential);
+/* Fill in a term: its callbacks, patterns and user pointer; rates only if the system depends on
+ * time. */
+bool dvi__make_potential(dvi_scene *scene, const char *name, dvi__term *term,
+                         dvi_potential *potential);
 bool dvi__make_lagrangian(dvi_scene *scene, dvi__term *term, dvi_lagrangian *lagrangian);
 /* Of the function alpha(q).w. */
 bool dvi__make_one_form(dvi_scene *scene, dvi__term *term, dvi_one_form *form);
@@ -14,7 +16,8 @@ bool dvi__make_constraint(dvi_scene *scene, dvi__term *term, dvi_constraint *con
 
 /* Of xi(q).w; and of one number. */
 int dvi__term_generator(const double *q, double *xi, void *user);
-int dvi__term_value(double t, const double *q, const double *velocity_or_momentum, double *value, void *user);
+int dvi__term_value(double t, const double *q, const double *velocity_or_momentum, double *value,
+                    void *user);
 
 /* The function xi(q).w of a vector field that is given by coordinate; `where` for messages. */
 bool dvi__read_field(dvi_scene *scene, const dvi__tree *field, const char *where, dvi__term **term);
@@ -29,6 +32,7 @@ bool dvi__blame_place(dvi__span *span, const char **words);
 bool dvi__scene_too_large(dvi_scene *scene, const char *what, dvi_status status);
 
 /* A pattern of a function; told if there is none. */
-bool dvi__term_pattern(dvi_scene *scene, dvi__term *term, dvi__pair pair, dvi_pattern *pattern, int *full);
+bool dvi__term_pattern(dvi_scene *scene, dvi__term *term, dvi__pair pair, dvi_pattern *pattern,
+                       int *full);
 
 #endif

@@ -22,7 +22,8 @@ static void add_lines(dvi_scene *scene, dvi_factor *factors, const dvi__coordina
 static size_t most_factors(const dvi_scene *scene)
 {
   size_t most = 0;
-  for (int k = 0; k < scene->coordinate_count; k++) most += is_line(&scene->coordinate[k]) ? 1U : (size_t)scene->coordinate[k].size;
+  for (int k = 0; k < scene->coordinate_count; k++)
+    most += is_line(&scene->coordinate[k]) ? 1U : (size_t)scene->coordinate[k].size;
   return most;
 }
 
@@ -35,7 +36,8 @@ static dvi_factor *lay_out(dvi_scene *scene, int *of)
     const dvi__coordinate *x = &scene->coordinate[k];
     of[k] = scene->terms.factor_count;
     if (is_line(x)) add_lines(scene, factors, x);
-    for (int i = 0; i < x->size && !is_line(x); i++) factors[scene->terms.factor_count++].kind = kind[x->kind];
+    for (int i = 0; i < x->size && !is_line(x); i++)
+      factors[scene->terms.factor_count++].kind = kind[x->kind];
   }
   scene->terms.factors = factors;
   return factors;
@@ -43,32 +45,37 @@ static dvi_factor *lay_out(dvi_scene *scene, int *of)
 
 /* ---- velocities of the state: inertias ---- */
 
-/* omega(R)[1]*x' has no constant mass: what is constant in omega(R) is not so in the rates of R, and the other way round. */
+/* omega(R)[1]*x' has no constant mass: what is constant in omega(R) is not so in the rates of R,
+ * and the other way round. */
 static bool refuse_coupling(dvi_scene *scene, int state, int other)
 {
   const int n = scene->n;
-  const dvi__coordinate
-      *a = &scene->coordinate[dvi__coordinate_at(scene, state - n, 1)],
-      *b = &scene->coordinate[other < n ? dvi__coordinate_at(scene, other, 0) : dvi__coordinate_at(scene, other - n, 1)];
-  return dvi__scene_refuse(
-      scene, a->span,
-      "in L %s(%s) is multiplied by the velocity of %s: what couples must have constant coefficients in rates of "
-      "what is stored; say it by points, as (R*c)', of an angle (l*u)'",
-      a->kind == DVI__ANGLE ? "rate" : "omega", a->name, b->name);
+  const dvi__coordinate *a = &scene->coordinate[dvi__coordinate_at(scene, state - n, 1)],
+                        *b =
+                            &scene->coordinate[other < n ? dvi__coordinate_at(scene, other, 0)
+                                                         : dvi__coordinate_at(scene, other - n, 1)];
+  return dvi__scene_refuse(scene, a->span,
+                           "in L %s(%s) is multiplied by the velocity of %s: what couples must "
+                           "have constant coefficients in rates of "
+                           "what is stored; say it by points, as (R*c)', of an angle (l*u)'",
+                           a->kind == DVI__ANGLE ? "rate" : "omega", a->name, b->name);
 }
 
 /* An entry of an inertia: numbers `row` and `column` of v. */
-static bool add_inertia(dvi_scene *scene, dvi_factor *factors, const int *of, int row, int column, double value)
+static bool add_inertia(dvi_scene *scene, dvi_factor *factors, const int *of, int row, int column,
+                        double value)
 {
   const int k = dvi__coordinate_at(scene, row, 1);
   const dvi__coordinate *x = &scene->coordinate[k];
   const int member = (row - x->v.first) / x->v.stride, start = x->v.first + member * x->v.stride;
-  if (column < start || column >= start + x->v.stride) return refuse_coupling(scene, scene->n + column, scene->n + row);
+  if (column < start || column >= start + x->v.stride)
+    return refuse_coupling(scene, scene->n + column, scene->n + row);
   dvi_factor *factor = &factors[of[k] + member];
   if (x->kind == DVI__ANGLE) {
     factor->mass = value;
-    return value > 0 ||
-           dvi__scene_refuse(scene, x->span, "the moment of inertia of %s is %g, and must be positive", x->name, value);
+    return value > 0 || dvi__scene_refuse(scene, x->span,
+                                          "the moment of inertia of %s is %g, and must be positive",
+                                          x->name, value);
   }
   double *J = (double *)factor->inertia;
   if (J == NULL) J = dvi__arena_take(&scene->arena, 9, sizeof *J);
@@ -93,20 +100,25 @@ static bool add_entry(dvi_scene *scene, parts *to, int row, int column, double v
   const int n = scene->n;
   if (!(value < 0) && !(value > 0)) return true;
   to->heavy[column] = 1;
-  if (row >= n && column >= n) return add_inertia(scene, to->factors, to->of, row - n, column - n, value);
-  if (row >= n || column >= n) return refuse_coupling(scene, row >= n ? row : column, row >= n ? column : row);
+  if (row >= n && column >= n)
+    return add_inertia(scene, to->factors, to->of, row - n, column - n, value);
+  if (row >= n || column >= n)
+    return refuse_coupling(scene, row >= n ? row : column, row >= n ? column : row);
   to->row[to->count] = row;
   to->value[to->count++] = value;
   return true;
 }
 
-static bool add_columns(dvi_scene *scene, parts *to, const dvi_pattern *pattern, const double *values)
+static bool add_columns(dvi_scene *scene, parts *to, const dvi_pattern *pattern,
+                        const double *values)
 {
   const int all = scene->velocities, full = pattern->start == NULL;
   bool good = true;
   for (int j = 0; j < all && good; j++) {
-    const int first = full ? j * all : pattern->start[j], end = full ? first + all : pattern->start[j + 1];
-    for (int e = first; e < end && good; e++) good = add_entry(scene, to, full ? e - first : pattern->row[e], j, values[e]);
+    const int first = full ? j * all : pattern->start[j],
+              end = full ? first + all : pattern->start[j + 1];
+    for (int e = first; e < end && good; e++)
+      good = add_entry(scene, to, full ? e - first : pattern->row[e], j, values[e]);
     if (j < scene->n) to->start[j + 1] = to->count;
   }
   return good;
@@ -141,7 +153,8 @@ static bool all_are_heavy(dvi_scene *scene, const char *heavy)
       const dvi__coordinate *one = x->kind == DVI__MOTION ? &x->part[part] : x;
       if (is_heavy(scene, one, heavy)) continue;
       const char dot[3] = {one->part_name != 0 ? '.' : '\0', one->part_name, '\0'};
-      return dvi__scene_refuse(scene, x->span, "the velocity of %s%s has no mass: L has no square of it", x->name, dot);
+      return dvi__scene_refuse(
+          scene, x->span, "the velocity of %s%s has no mass: L has no square of it", x->name, dot);
     }
   }
   return true;
@@ -161,7 +174,8 @@ bool dvi__make_factors(dvi_scene *scene, const dvi_pattern *pattern, const doubl
   to.factors = lay_out(scene, to.of);
   if (to.factors == NULL) return dvi__scene_no_memory(scene);
   if (!add_columns(scene, &to, pattern, values) || !all_are_heavy(scene, to.heavy)) return false;
-  if (to.count > 0) scene->terms.mass = (dvi_mass){.values = to.value, .pattern = {to.start, to.row}};
+  if (to.count > 0)
+    scene->terms.mass = (dvi_mass){.values = to.value, .pattern = {to.start, to.row}};
   scene->mass = to.count > 0 ? "sparse" : "inertias";
   return true;
 }
@@ -183,11 +197,13 @@ bool dvi__inertias_are_of_bodies(dvi_scene *scene)
 {
   for (int k = 0, f = 0; k < scene->coordinate_count; k++) {
     const dvi__coordinate *x = &scene->coordinate[k];
-    const int turns = x->kind == DVI__ROTATION || x->kind == DVI__MOTION, joined = is_line(x) && k > 0 && is_line(x - 1);
+    const int turns = x->kind == DVI__ROTATION || x->kind == DVI__MOTION,
+              joined = is_line(x) && k > 0 && is_line(x - 1);
     for (int i = 0; i < x->size && turns; i++)
       if (scene->terms.factors[f + i].inertia != NULL && !is_of_body(&scene->terms.factors[f + i]))
         return dvi__scene_refuse(scene, x->span,
-                                 "the inertia of %s is that of no body: its principal moments must be positive, and none larger "
+                                 "the inertia of %s is that of no body: its principal moments must "
+                                 "be positive, and none larger "
                                  "than the sum of the others",
                                  x->name);
     f += is_line(x) ? !joined : x->size;

@@ -27,13 +27,17 @@ static bool lies_below(const char *folder, const char *file)
 static bool check_place(dvi_scene *scene, dvi__span span, const char *given, const char *path)
 {
   char real_folder[PATH_MAX], real_file[PATH_MAX];
-  const char *folder = dvi__arena_text(&scene->arena, path, (size_t)folder_size(scene->source.name));
+  const char *folder = dvi__arena_text(&scene->arena, path,
+                                       (size_t)folder_size(scene->source.name));
   if (folder == NULL) return dvi__scene_no_memory(scene);
-  if (realpath(folder[0] != '\0' ? folder : ".", real_folder) == NULL || realpath(path, real_file) == NULL)
-    return dvi__scene_refuse(scene, span, "the file '%s' cannot be read: %s", path, strerror(errno));
+  if (realpath(folder[0] != '\0' ? folder : ".", real_folder) == NULL ||
+      realpath(path, real_file) == NULL)
+    return dvi__scene_refuse(scene, span, "the file '%s' cannot be read: %s", path,
+                             strerror(errno));
   if (lies_below(real_folder, real_file)) return true;
-  return dvi__scene_refuse(scene, span, "the file '%s' is not in the scene's folder or below; put it there, or give --method",
-                           given);
+  return dvi__scene_refuse(
+      scene, span,
+      "the file '%s' is not in the scene's folder or below; put it there, or give --method", given);
 }
 
 bool dvi__scene_place_file(dvi_scene *scene, dvi__span span, const char **method)
@@ -44,12 +48,17 @@ bool dvi__scene_place_file(dvi_scene *scene, dvi__span span, const char **method
   const int head = (int)(named - *method), folder = folder_size(name);
   const size_t room = strlen(*method) + (size_t)folder + 1;
   const char *given = dvi__arena_text(&scene->arena, named, length);
-  char *path = dvi__arena_take(&scene->arena, room, 1), *placed = dvi__arena_take(&scene->arena, room, 1);
+  char *path = dvi__arena_take(&scene->arena, room, 1),
+       *placed = dvi__arena_take(&scene->arena, room, 1);
   if (given == NULL || path == NULL || placed == NULL) return dvi__scene_no_memory(scene);
   if (given[0] == '/')
-    return dvi__scene_refuse(scene, span, "the file '%s' is named from the root; name it from the scene's folder", given);
+    return dvi__scene_refuse(
+        scene, span, "the file '%s' is named from the root; name it from the scene's folder",
+        given);
   if (memchr(name, ',', (size_t)folder) != NULL)
-    return dvi__scene_refuse(scene, span, "no method takes the file '%s' from a folder with a comma; rename the folder", given);
+    return dvi__scene_refuse(
+        scene, span, "no method takes the file '%s' from a folder with a comma; rename the folder",
+        given);
   (void)snprintf(path, room, "%.*s%s", folder, name, given);
   (void)snprintf(placed, room, "%.*s%s%s", head, *method, path, named + length);
   *method = placed;

@@ -1,7 +1,9 @@
 /* What a Lagrangian is: a constant mass and potentials, a one-form and a Hamiltonian, or neither.
  *
- * Each kernel's degree in the velocities is found by one pass over its graph. If all are polynomials of degree 2 whose velocities have constant coefficients,
- * the mass is their second derivatives; what is left at rest is minus the potential. If all are of degree 1, they are alpha(q).v. */
+ * Each kernel's degree in the velocities is found by one pass over its graph. If all are
+ * polynomials of degree 2 whose velocities have constant coefficients, the mass is their second
+ * derivatives; what is left at rest is minus the potential. If all are of degree 1, they are
+ * alpha(q).v. */
 #include <string.h>
 
 #include "scene/callbacks.h"
@@ -11,7 +13,8 @@
 #include "scene/elaborate/shape.h"
 
 /* What all kernels together are in the variables of a block. */
-static bool degree_of(dvi_scene *scene, const dvi__kernels *list, dvi__block block, dvi__degree *whole)
+static bool degree_of(dvi_scene *scene, const dvi__kernels *list, dvi__block block,
+                      dvi__degree *whole)
 {
   *whole = (dvi__degree){0, 1, 0};
   for (int k = 0; k < list->count; k++) {
@@ -25,10 +28,12 @@ static bool degree_of(dvi_scene *scene, const dvi__kernels *list, dvi__block blo
 
 /* ---- potentials ---- */
 
-/* Whether the Hessian is constant: that shows in the degree, or, beside terms that move a linear part in time, in its formulas. */
+/* Whether the Hessian is constant: that shows in the degree, or, beside terms that move a linear
+ * part in time, in its formulas. */
 static int is_quadratic(const dvi__degree *degree, const dvi__term *term)
 {
-  return degree->degree <= 2 && (degree->pure || dvi__function_second_constant(term->function, DVI__PAIR_QQ) == 1);
+  return degree->degree <= 2 &&
+         (degree->pure || dvi__function_second_constant(term->function, DVI__PAIR_QQ) == 1);
 }
 
 /* Add a potential of these kernels, none if they are none. */
@@ -37,8 +42,10 @@ static bool add_potential(dvi_scene *scene, const char *name, int fast, dvi__ker
   dvi__term *term;
   dvi__degree degree;
   if (list->count == 0) return true;
-  dvi_potential *potential = (dvi_potential *)&scene->terms.potentials[scene->terms.potential_count++];
-  if (!degree_of(scene, list, DVI__COORDINATES, &degree) || !dvi__kernels_function(scene, list, 0, &term) ||
+  dvi_potential *potential =
+      (dvi_potential *)&scene->terms.potentials[scene->terms.potential_count++];
+  if (!degree_of(scene, list, DVI__COORDINATES, &degree) ||
+      !dvi__kernels_function(scene, list, 0, &term) ||
       !dvi__make_potential(scene, name, term, potential))
     return false;
   potential->fast = fast;
@@ -49,7 +56,8 @@ static bool add_potential(dvi_scene *scene, const char *name, int fast, dvi__ker
 /* Room for so many potentials, and one more. */
 static bool room_for_potentials(dvi_scene *scene, int count)
 {
-  scene->terms.potentials = dvi__arena_take(&scene->arena, (size_t)count + 1, sizeof *scene->terms.potentials);
+  scene->terms.potentials = dvi__arena_take(&scene->arena, (size_t)count + 1,
+                                            sizeof *scene->terms.potentials);
   return scene->terms.potentials != NULL || dvi__scene_no_memory(scene);
 }
 
@@ -64,14 +72,16 @@ static bool read_potential(dvi_scene *scene, const dvi__tree *tree, const char *
   return good;
 }
 
-/* What stands under slow or fast may be a potential itself, or some by name; all others are slow. */
+/* What stands under slow or fast may be a potential itself, or some by name; all others are
+ * slow. */
 static bool read_speed(dvi_scene *scene, const dvi__tree *key, const dvi__tree *tree)
 {
   const int fast = strcmp(key->text, "fast") == 0;
   if (!dvi__want_name(scene, key->text, key->span)) return false;
   if (tree->kind != DVI__MAPPING) return read_potential(scene, tree, key->text, fast);
   if (!fast && strcmp(key->text, "slow") != 0)
-    return dvi__scene_refuse(scene, key->span, "a potential is an expression; only slow and fast hold some by name");
+    return dvi__scene_refuse(scene, key->span,
+                             "a potential is an expression; only slow and fast hold some by name");
   for (int i = 0; i < tree->count; i++)
     if (!dvi__want_name(scene, tree->key[i]->text, tree->key[i]->span) ||
         !read_potential(scene, tree->child[i], tree->key[i]->text, fast))
@@ -103,7 +113,8 @@ static bool mass_values(dvi_scene *scene, dvi__term *T, dvi_pattern *pattern, do
   if (*values == NULL) return dvi__scene_no_memory(scene);
   const double *x[DVI__BLOCKS] = {scene->zeros, scene->zeros, scene->zeros, scene->zeros};
   double *second[DVI__PAIRS] = {[DVI__PAIR_VV] = *values};
-  return dvi__function_second(T->function, 1, x, second) == 0 || dvi__scene_refuse(scene, DVI__NOWHERE, "the mass is not finite");
+  return dvi__function_second(T->function, 1, x, second) == 0 ||
+         dvi__scene_refuse(scene, DVI__NOWHERE, "the mass is not finite");
 }
 
 static int row_of(const dvi_pattern *pattern, int n, int entry)
@@ -143,7 +154,8 @@ static bool set_mass(dvi_scene *scene, const dvi_pattern *pattern, const double 
     same = same && !(diagonal[i] < diagonal[0]) && !(diagonal[i] > diagonal[0]);
     if (diagonal[i] < 0 || diagonal[i] > 0) continue;
     const dvi__coordinate *x = &scene->coordinate[dvi__coordinate_at(scene, i, 0)];
-    return dvi__scene_refuse(scene, x->span, "the rate of %s has no mass: L has no square of it", x->name);
+    return dvi__scene_refuse(scene, x->span, "the rate of %s has no mass: L has no square of it",
+                             x->name);
   }
   scene->mass_diagonal = diagonal;
   scene->mass = !same ? "diagonal" : diagonal[0] < 1 || diagonal[0] > 1 ? "scalar" : "identity";
@@ -157,7 +169,8 @@ static bool set_mass(dvi_scene *scene, const dvi_pattern *pattern, const double 
 /* Derive what the mass is read from. */
 static bool derive_mass(dvi_scene *scene, dvi__term *T)
 {
-  const dvi_status status = dvi__function_prepare(T->function, 0, 1U << DVI__VELOCITIES, 1U << DVI__PAIR_VV);
+  const dvi_status status = dvi__function_prepare(T->function, 0, 1U << DVI__VELOCITIES,
+                                                  1U << DVI__PAIR_VV);
   return status == DVI_OK || dvi__scene_too_large(scene, "the mass", status);
 }
 
@@ -169,14 +182,16 @@ static bool rests(dvi_scene *scene, dvi__term *T, int *at_rest)
   double *gradient[DVI__BLOCKS] = {[DVI__VELOCITIES] = momentum};
   if (momentum == NULL) return dvi__scene_no_memory(scene);
   *at_rest = dvi__function_gradient(T->function, 1, x, gradient) == 0;
-  for (int i = 0; i < scene->velocities && *at_rest; i++) *at_rest = !(momentum[i] < 0) && !(momentum[i] > 0);
+  for (int i = 0; i < scene->velocities && *at_rest; i++)
+    *at_rest = !(momentum[i] < 0) && !(momentum[i] > 0);
   dvi__heap_free(momentum);
   return true;
 }
 
 /* ---- the three forms ---- */
 
-/* With rotations, directions or angles the mass is constant: name the first term that is of another form. */
+/* With rotations, directions or angles the mass is constant: name the first term that is of another
+ * form. */
 static bool refuse_moving(dvi_scene *scene, const dvi__kernels *L)
 {
   for (int k = 0; k < L->count; k++) {
@@ -184,23 +199,26 @@ static bool refuse_moving(dvi_scene *scene, const dvi__kernels *L)
     int found;
     if (!dvi__kernel_other_term(scene, &L->kernel[k], DVI__VELOCITIES, &span, &found)) return false;
     if (found)
-      return dvi__scene_refuse(
-          scene, span,
-          "this term is of another form: beside rotations, motions, directions and angles velocities stand in L "
-          "as squares and products with constant coefficients, of rates of what is stored, or of omega(R) and "
-          "rate(u)");
+      return dvi__scene_refuse(scene, span,
+                               "this term is of another form: beside rotations, motions, "
+                               "directions and angles velocities stand in L "
+                               "as squares and products with constant coefficients, of rates of "
+                               "what is stored, or of omega(R) and "
+                               "rate(u)");
   }
   const dvi__kernel *first = &L->kernel[0];
-  return dvi__scene_refuse(
-      scene, first->graph->node[first->root].span,
-      "beside rotations, motions, directions and angles no velocity stands alone in L, but in squares and products");
+  return dvi__scene_refuse(scene, first->graph->node[first->root].span,
+                           "beside rotations, motions, directions and angles no velocity stands "
+                           "alone in L, but in squares and products");
 }
 
 static bool make_general(dvi_scene *scene, dvi__kernels *L)
 {
   dvi__term *term;
   if (dvi__has_factors(scene)) return refuse_moving(scene, L);
-  if (!dvi__kernels_function(scene, L, 0, &term) || !dvi__make_lagrangian(scene, term, &scene->lagrangian)) return false;
+  if (!dvi__kernels_function(scene, L, 0, &term) ||
+      !dvi__make_lagrangian(scene, term, &scene->lagrangian))
+    return false;
   scene->terms.lagrangian = &scene->lagrangian;
   scene->form = "general Lagrangian";
   return true;
@@ -214,14 +232,17 @@ static bool make_separable(dvi_scene *scene, dvi__kernels *L, const char *rest)
   double *values;
   int at_rest = 0;
   bool good = dvi__kernels_moving(scene, L, DVI__VELOCITIES, DVI__VELOCITIES, &moving) &&
-              dvi__kernels_function(scene, &moving, 0, &T) && derive_mass(scene, T) && rests(scene, T, &at_rest);
+              dvi__kernels_function(scene, &moving, 0, &T) && derive_mass(scene, T) &&
+              rests(scene, T, &at_rest);
   dvi__kernels_free(&moving);
   if (T != NULL) T->role = DVI__STANDS_BESIDE;
   if (good && !at_rest) return make_general(scene, L);
   scene->kinetic = T;
   good = good && mass_values(scene, T, &pattern, &values) &&
-         (dvi__has_factors(scene) ? dvi__make_factors(scene, &pattern, values) : set_mass(scene, &pattern, values)) &&
-         dvi__kernels_at_rest(scene, L, DVI__VELOCITIES, 1, &V) && add_potential(scene, rest, 0, &V);
+         (dvi__has_factors(scene) ? dvi__make_factors(scene, &pattern, values)
+                                  : set_mass(scene, &pattern, values)) &&
+         dvi__kernels_at_rest(scene, L, DVI__VELOCITIES, 1, &V) &&
+         add_potential(scene, rest, 0, &V);
   dvi__kernels_free(&V);
   scene->form = "separable";
   return good;
@@ -238,18 +259,21 @@ static int has_time(const dvi__kernels *list)
 }
 
 /* alpha(q).w, and H. */
-static bool make_degenerate(dvi_scene *scene, const dvi__expression *e, dvi__kernels *L, const char *rest)
+static bool make_degenerate(dvi_scene *scene, const dvi__expression *e, dvi__kernels *L,
+                            const char *rest)
 {
   dvi__kernels alpha = {0}, H = {0};
   dvi__term *term = NULL;
   bool good = dvi__kernels_moving(scene, L, DVI__VELOCITIES, DVI__MULTIPLIERS, &alpha);
   if (good && has_time(&alpha))
-    good = dvi__scene_refuse(
-        scene, e->span,
-        "of first degree in the velocities this is a one-form, alpha(q).q' - H(t,q); beside the velocities the "
-        "time cannot stand");
-  good = good && dvi__kernels_function(scene, &alpha, scene->n, &term) && dvi__make_one_form(scene, term, &scene->one_form) &&
-         dvi__kernels_at_rest(scene, L, DVI__VELOCITIES, 1, &H) && add_potential(scene, rest, 0, &H);
+    good = dvi__scene_refuse(scene, e->span,
+                             "of first degree in the velocities this is a one-form, alpha(q).q' - "
+                             "H(t,q); beside the velocities the "
+                             "time cannot stand");
+  good = good && dvi__kernels_function(scene, &alpha, scene->n, &term) &&
+         dvi__make_one_form(scene, term, &scene->one_form) &&
+         dvi__kernels_at_rest(scene, L, DVI__VELOCITIES, 1, &H) &&
+         add_potential(scene, rest, 0, &H);
   dvi__kernels_free(&alpha);
   dvi__kernels_free(&H);
   scene->terms.one_form = &scene->one_form;
@@ -261,18 +285,22 @@ static bool make_form(dvi_scene *scene, const dvi__expression *e, dvi__kernels *
 {
   dvi__degree degree;
   if (!degree_of(scene, L, DVI__VELOCITIES, &degree)) return false;
-  if (degree.degree == 0) return dvi__scene_refuse(scene, e->span, "there is no velocity in it, so nothing would move");
+  if (degree.degree == 0)
+    return dvi__scene_refuse(scene, e->span, "there is no velocity in it, so nothing would move");
   if (degree.degree == 1 && dvi__has_factors(scene)) return refuse_moving(scene, L);
   if (degree.degree == 1) return make_degenerate(scene, e, L, rest);
-  return degree.degree == 2 && degree.pure ? make_separable(scene, L, rest) : make_general(scene, L);
+  return degree.degree == 2 && degree.pure ? make_separable(scene, L, rest)
+                                           : make_general(scene, L);
 }
 
-static bool read_moving(dvi_scene *scene, const dvi__tree *section, const char *where, const char *rest)
+static bool read_moving(dvi_scene *scene, const dvi__tree *section, const char *where,
+                        const char *rest)
 {
   const dvi__expression *e;
   dvi__kernels L = {0};
   const bool good = dvi__tree_expression(scene, section, &e) &&
-                    dvi__kernels_add(scene, DVI__SAYS_Q | DVI__SAYS_V | DVI__SAYS_T, where, e, 0, &L) &&
+                    dvi__kernels_add(scene, DVI__SAYS_Q | DVI__SAYS_V | DVI__SAYS_T, where, e, 0,
+                                     &L) &&
                     make_form(scene, e, &L, rest);
   dvi__kernels_free(&L);
   return good;
@@ -292,29 +320,34 @@ bool dvi__read_kinetic(dvi_scene *scene, const dvi__tree *section)
 /* ---- one-forms and Hamiltonians that are given as such ---- */
 
 /* value.w for the numbers of a target, or of one number, added to a total. */
-static void add_product(dvi__context *c, dvi__value value, const dvi__target *target, dvi__numbering numbering, dvi__node *total)
+static void add_product(dvi__context *c, dvi__value value, const dvi__target *target,
+                        dvi__numbering numbering, dvi__node *total)
 {
   for (int k = 0; k < dvi__value_size(value); k++) {
     const int place = target != NULL ? dvi__target_place(target, k) : k;
     const dvi__node w = dvi__variable_node(c, DVI__MULTIPLIERS, numbering, place);
-    *total = dvi__apply(c->graph, DVI__OP_ADD, *total, dvi__apply(c->graph, DVI__OP_MULTIPLY, dvi__value_at(value, k), w));
+    *total = dvi__apply(c->graph, DVI__OP_ADD, *total,
+                        dvi__apply(c->graph, DVI__OP_MULTIPLY, dvi__value_at(value, k), w));
   }
 }
 
 /* A field is given by coordinate; where these turn, by omega(R) and rate(u). */
-static bool is_of_field(dvi_scene *scene, const dvi__tree *key, const char *where, dvi__target *target)
+static bool is_of_field(dvi_scene *scene, const dvi__tree *key, const char *where,
+                        dvi__target *target)
 {
   const dvi__kind kind = target->x->kind;
   const int turns = kind == DVI__ROTATION || kind == DVI__ANGLE;
   target->places = &target->x->v;
   if (turns ? target->says == DVI__SAYS_V : target->says == DVI__SAYS_Q) return true;
   if (turns)
-    return dvi__scene_refuse(scene, key->span, "%s is given of what turns by its velocity, %s(%s)", where,
-                             kind == DVI__ANGLE ? "rate" : "omega", target->x->name);
-  return dvi__scene_refuse(scene, key->span, "%s is given by coordinate, neither by rate nor by momentum", where);
+    return dvi__scene_refuse(scene, key->span, "%s is given of what turns by its velocity, %s(%s)",
+                             where, kind == DVI__ANGLE ? "rate" : "omega", target->x->name);
+  return dvi__scene_refuse(scene, key->span,
+                           "%s is given by coordinate, neither by rate nor by momentum", where);
 }
 
-static bool add_component(dvi_scene *scene, const dvi__tree *key, const dvi__tree *tree, const char *where, dvi__kernels *list)
+static bool add_component(dvi_scene *scene, const dvi__tree *key, const dvi__tree *tree,
+                          const char *where, dvi__kernels *list)
 {
   dvi__context c;
   dvi__target target;
@@ -338,7 +371,8 @@ bool dvi__read_field(dvi_scene *scene, const dvi__tree *field, const char *where
 {
   dvi__kernels list = {0};
   bool good = dvi__want_mapping(scene, field, where);
-  for (int i = 0; good && i < field->count; i++) good = add_component(scene, field->key[i], field->child[i], where, &list);
+  for (int i = 0; good && i < field->count; i++)
+    good = add_component(scene, field->key[i], field->child[i], where, &list);
   good = good && dvi__kernels_function(scene, &list, scene->nv, term);
   dvi__kernels_free(&list);
   return good;
@@ -348,20 +382,23 @@ bool dvi__read_field(dvi_scene *scene, const dvi__tree *field, const char *where
 static bool refuse_factors(dvi_scene *scene, const dvi__tree *section, const char *name)
 {
   return !dvi__has_factors(scene) ||
-         dvi__scene_refuse(
-             scene, section->span,
-             "beside %s there are no rotations, motions, directions and angles; they go with lagrangian, or kinetic and potentials",
-             name);
+         dvi__scene_refuse(scene, section->span,
+                           "beside %s there are no rotations, motions, directions and angles; they "
+                           "go with lagrangian, or kinetic and potentials",
+                           name);
 }
 
 bool dvi__read_one_form(dvi_scene *scene, const dvi__tree *section)
 {
   dvi__term *term;
   if (!refuse_factors(scene, section, "one_form")) return false;
-  if (!dvi__read_field(scene, section, "a one-form", &term) || !dvi__make_one_form(scene, term, &scene->one_form)) return false;
+  if (!dvi__read_field(scene, section, "a one-form", &term) ||
+      !dvi__make_one_form(scene, term, &scene->one_form))
+    return false;
   scene->terms.one_form = &scene->one_form;
   scene->form = "one-form";
-  return room_for_potentials(scene, 0) && read_potential(scene, dvi__tree_find(scene->tree, "hamiltonian"), "H", 0);
+  return room_for_potentials(scene, 0) &&
+         read_potential(scene, dvi__tree_find(scene->tree, "hamiltonian"), "H", 0);
 }
 
 /* The function phi.w. */
@@ -378,7 +415,8 @@ static bool constraints_function(dvi_scene *scene, const dvi__tree *section, dvi
     good = dvi__tree_expression(scene, section->child[a], &e) && dvi__elaborate_number(&c, e, &phi);
     if (good) add_product(&c, (dvi__value){.one = phi}, NULL, (dvi__numbering){.base = a}, &total);
   }
-  good = good && dvi__kernels_add_node(&c, total, &list) && dvi__kernels_function(scene, &list, section->count, term);
+  good = good && dvi__kernels_add_node(&c, total, &list) &&
+         dvi__kernels_function(scene, &list, section->count, term);
   dvi__context_free(&c);
   dvi__kernels_free(&list);
   return good;
@@ -390,8 +428,10 @@ static bool read_H(dvi_scene *scene, const dvi__tree *tree)
   dvi__kernels H = {0};
   dvi__term *term;
   const bool good = dvi__tree_expression(scene, tree, &e) &&
-                    dvi__kernels_add(scene, DVI__SAYS_Q | DVI__SAYS_P | DVI__SAYS_T, "a Hamiltonian", e, 0, &H) &&
-                    dvi__kernels_function(scene, &H, 0, &term) && dvi__make_hamiltonian(scene, term, &scene->hamiltonian);
+                    dvi__kernels_add(scene, DVI__SAYS_Q | DVI__SAYS_P | DVI__SAYS_T,
+                                     "a Hamiltonian", e, 0, &H) &&
+                    dvi__kernels_function(scene, &H, 0, &term) &&
+                    dvi__make_hamiltonian(scene, term, &scene->hamiltonian);
   dvi__kernels_free(&H);
   scene->terms.hamiltonian = &scene->hamiltonian;
   return good;
@@ -407,11 +447,17 @@ bool dvi__read_hamiltonian(dvi_scene *scene, const dvi__tree *section)
 bool dvi__read_constraints(dvi_scene *scene, const dvi__tree *section)
 {
   dvi__term *term;
-  if (!dvi__want_mapping(scene, section, "constraints") || !refuse_factors(scene, section, "constraints")) return false;
+  if (!dvi__want_mapping(scene, section, "constraints") ||
+      !refuse_factors(scene, section, "constraints"))
+    return false;
   if (section->count == 0 || section->count % 2 != 0 || section->count > 2 * scene->n)
-    return dvi__scene_refuse(scene, section->span,
-                             "there are %d constraints; an even number is needed, at most 2 for each coordinate", section->count);
-  if (!constraints_function(scene, section, &term) || !dvi__make_constraint(scene, term, &scene->constraint)) return false;
+    return dvi__scene_refuse(
+        scene, section->span,
+        "there are %d constraints; an even number is needed, at most 2 for each coordinate",
+        section->count);
+  if (!constraints_function(scene, section, &term) ||
+      !dvi__make_constraint(scene, term, &scene->constraint))
+    return false;
   scene->terms.constraint = &scene->constraint;
   scene->form = "Hamiltonian with constraints";
   return read_H(scene, dvi__tree_find(scene->tree, "hamiltonian"));

@@ -28,7 +28,9 @@ static struct dvi__arena_block *new_block(dvi__arena *arena, size_t wanted)
 void *dvi__arena_take(dvi__arena *arena, size_t count, size_t size)
 {
   const size_t most = SIZE_MAX / 2; /* as much as is refused */
-  const size_t wanted = size != 0 && count > most / size ? most : (count * size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
+  const size_t wanted = size != 0 && count > most / size
+                            ? most
+                            : (count * size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
   struct dvi__arena_block *block = arena->last;
   if (block == NULL || wanted > block->size - block->used) block = new_block(arena, wanted);
   if (block == NULL) {
@@ -49,7 +51,8 @@ char *dvi__arena_text(dvi__arena *arena, const char *text, size_t length)
 
 void *dvi__arena_grow(dvi__arena *arena, void *items, size_t count, size_t size)
 {
-  const int full = (count & (count - 1)) == 0; /* the room is the least power of two that is not below the count */
+  const int full = (count & (count - 1)) ==
+                   0; /* the room is the least power of two that is not below the count */
   if (!full) return items;
   void *more = dvi__arena_take(arena, count == 0 ? 1 : 2 * count, size);
   if (more != NULL && count > 0) memcpy(more, items, count * size);

@@ -1,5 +1,5 @@
-/* Errors as compilers print them: the place, the sentence, the line and a caret. Whatever a hostile file holds, what is shown can be
- * printed and is of bounded length. */
+/* Errors as compilers print them: the place, the sentence, the line and a caret. Whatever a hostile
+ * file holds, what is shown can be printed and is of bounded length. */
 #include "text/complaint.h"
 #include "text/heap.h"
 #include "text/utf8.h"
@@ -54,7 +54,8 @@ static size_t width_of(const char *text, size_t size)
   return width == 0 ? 1 : width;
 }
 
-/* One character as it is shown: tabs stay, since the line of the caret has them too. Returns how many bytes it takes. */
+/* One character as it is shown: tabs stay, since the line of the caret has them too. Returns how
+ * many bytes it takes. */
 static size_t put_shown(writer *w, const char *text, size_t size)
 {
   unsigned code = 0;
@@ -75,13 +76,15 @@ static void put_sentence(writer *w, const char *text)
 
 static size_t line_start(const dvi__source *source, size_t offset)
 {
-  while (offset > 0 && source->text[offset - 1] != '\n' && source->text[offset - 1] != '\r') offset--;
+  while (offset > 0 && source->text[offset - 1] != '\n' && source->text[offset - 1] != '\r')
+    offset--;
   return offset;
 }
 
 static size_t line_end(const dvi__source *source, size_t offset)
 {
-  while (offset < source->size && source->text[offset] != '\n' && source->text[offset] != '\r') offset++;
+  while (offset < source->size && source->text[offset] != '\n' && source->text[offset] != '\r')
+    offset++;
   return offset;
 }
 
@@ -96,7 +99,8 @@ static size_t characters(const dvi__source *source, size_t from, size_t to)
 /* The place that is so many characters after another one, at most `end`. */
 static size_t ahead(const dvi__source *source, size_t from, size_t count, size_t end)
 {
-  for (; count > 0 && from < end; count--) from += width_of(source->text + from, source->size - from);
+  for (; count > 0 && from < end; count--)
+    from += width_of(source->text + from, source->size - from);
   return from < end ? from : end;
 }
 
@@ -106,7 +110,8 @@ void dvi__source_place(const dvi__source *source, size_t offset, int *line, int 
   *line = 1;
   for (size_t k = 0; k < offset; k++) {
     const char c = source->text[k];
-    const int pair = c == '\r' && k + 1 < source->size && source->text[k + 1] == '\n'; /* counted with its second half */
+    const int pair = c == '\r' && k + 1 < source->size &&
+                     source->text[k + 1] == '\n'; /* counted with its second half */
     *line += (c == '\n' || c == '\r') && !pair;
   }
   *column = 1 + (int)characters(source, line_start(source, offset), offset);
@@ -133,7 +138,8 @@ static void put_excerpt(writer *w, const dvi__source *source, dvi__span where)
   for (size_t k = characters(source, where.first, end); k > 1; k--) put_text(w, "~");
 }
 
-bool(dvi__complain)(dvi__complaint *complaint, dvi_status status, dvi__span where, const char *format, ...)
+bool(dvi__complain)(dvi__complaint *complaint, dvi_status status, dvi__span where,
+                    const char *format, ...)
 {
   if (complaint->status != DVI_OK) return false;
   complaint->status = status;
@@ -164,14 +170,16 @@ bool(dvi__complain)(dvi__complaint *complaint, dvi_status status, dvi__span wher
 bool(dvi__complain_of_memory)(dvi__complaint *complaint)
 {
   if (dvi__heap_refusal() == DVI_BAD_SIZE)
-    return dvi__complain(complaint, DVI_BAD_SIZE, DVI__NOWHERE, "more than 1 GiB of memory is needed");
+    return dvi__complain(complaint, DVI_BAD_SIZE, DVI__NOWHERE,
+                         "more than 1 GiB of memory is needed");
   return dvi__complain(complaint, DVI_NO_MEMORY, DVI__NOWHERE, "memory ran out");
 }
 
 bool dvi__complain_of_file(dvi__complaint *complaint, dvi__span where, const char *is)
 {
   return dvi__complain(complaint, DVI_BAD_FILE, where,
-                       "%s, and no scene: that is a YAML mapping with coordinates, lagrangian, initial, step and until; "
+                       "%s, and no scene: that is a YAML mapping with coordinates, lagrangian, "
+                       "initial, step and until; "
                        "dvi init NAME.yaml writes one",
                        is);
 }
@@ -192,7 +200,8 @@ static int least(int a, int b)
   return a < b ? a : b;
 }
 
-/* Insertions, deletions, replacements and exchanges of neighbours between two words, in halves; three rows of the table. */
+/* Insertions, deletions, replacements and exchanges of neighbours between two words, in halves;
+ * three rows of the table. */
 static int edits(const char *from, const char *to)
 {
   const int columns = (int)strlen(to);
@@ -206,22 +215,27 @@ static int edits(const char *from, const char *to)
     const int *second = row[(i + 1) % 3];
     here[0] = 2 * i;
     for (int j = 1; j <= columns; j++) {
-      here[j] = least(least(above[j], here[j - 1]) + 2, above[j - 1] + replacement(from[i - 1], to[j - 1]));
-      if (i > 1 && j > 1 && from[i - 1] == to[j - 2] && from[i - 2] == to[j - 1]) here[j] = least(here[j], second[j - 2] + 2);
+      here[j] = least(least(above[j], here[j - 1]) + 2,
+                      above[j - 1] + replacement(from[i - 1], to[j - 1]));
+      if (i > 1 && j > 1 && from[i - 1] == to[j - 2] && from[i - 2] == to[j - 1])
+        here[j] = least(here[j], second[j - 2] + 2);
     }
   }
   return row[i % 3][columns];
 }
 
-const char *dvi__nearest(const char *word, int count, const char *const *candidate, char *hint, size_t size)
+const char *dvi__nearest(const char *word, int count, const char *const *candidate, char *hint,
+                         size_t size)
 {
   if (size > 0) hint[0] = '\0';
   const size_t length = strlen(word);
   if (length > WORD_MAX) return hint;
-  int best = 2 * least((int)length, length < 6 ? 3 : 4); /* this many edits make another word, not a slip */
+  int best = 2 * least((int)length,
+                       length < 6 ? 3 : 4); /* this many edits make another word, not a slip */
   const char *nearest = NULL;
   for (int k = 0; k < count; k++) {
-    if (strlen(candidate[k]) > WORD_MAX || strcmp(candidate[k], word) == 0) continue; /* known, but not there */
+    if (strlen(candidate[k]) > WORD_MAX || strcmp(candidate[k], word) == 0)
+      continue; /* known, but not there */
     const int begun = length > 1 && strncmp(candidate[k], word, length) == 0;
     const int distance = begun ? 2 : edits(word, candidate[k]);
     if (distance >= best) continue;

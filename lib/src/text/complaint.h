@@ -37,9 +37,11 @@ typedef struct dvi__complaint {
  *       lagrangian: M/2*x'^2 + cos(thet)
  *                                  ^~~~
  * Returns false, always. */
-bool dvi__complain(dvi__complaint *complaint, dvi_status status, dvi__span where, const char *format, ...) DVI__SCENE_PRINTF(4, 5);
+bool dvi__complain(dvi__complaint *complaint, dvi_status status, dvi__span where,
+                   const char *format, ...) DVI__SCENE_PRINTF(4, 5);
 
-/* The same for memory that was refused: DVI_BAD_SIZE if it was too much, else DVI_NO_MEMORY. Returns false. */
+/* The same for memory that was refused: DVI_BAD_SIZE if it was too much, else DVI_NO_MEMORY.
+ * Returns false. */
 bool dvi__complain_of_memory(dvi__complaint *complaint);
 
 /* As snprintf, with a decimal point in all numbers. */
@@ -52,7 +54,9 @@ bool dvi__complain_of_file(dvi__complaint *complaint, dvi__span where, const cha
 /* The line and the column of a place, from 1; columns count characters of UTF-8. */
 void dvi__source_place(const dvi__source *source, size_t offset, int *line, int *column);
 
-/* "; did you mean X?" for the nearest of the candidates [count] if one is near, else "". `hint` [size] is returned. */
-const char *dvi__nearest(const char *word, int count, const char *const *candidate, char *hint, size_t size);
+/* "; did you mean X?" for the nearest of the candidates [count] if one is near, else "". `hint`
+ * [size] is returned. */
+const char *dvi__nearest(const char *word, int count, const char *const *candidate, char *hint,
+                         size_t size);
 
 #endif

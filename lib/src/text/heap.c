@@ -50,7 +50,9 @@ static void pay_back(dvi__ledger *ledger, size_t bytes)
 static int charge(dvi__ledger *ledger, size_t bytes)
 {
   if (ledger == NULL) return 1;
-  if (bytes <= limit && atomic_fetch_add_explicit(&ledger->taken, bytes, memory_order_relaxed) <= limit - bytes) return 1;
+  if (bytes <= limit &&
+      atomic_fetch_add_explicit(&ledger->taken, bytes, memory_order_relaxed) <= limit - bytes)
+    return 1;
   if (bytes <= limit) pay_back(ledger, bytes);
   return 0;
 }
@@ -58,7 +60,8 @@ static int charge(dvi__ledger *ledger, size_t bytes)
 /* Bytes of a block; SIZE_MAX: too many. */
 static size_t whole(size_t count, size_t size)
 {
-  return size > 0 && count > (SIZE_MAX - sizeof(header)) / size ? SIZE_MAX : sizeof(header) + count * size;
+  return size > 0 && count > (SIZE_MAX - sizeof(header)) / size ? SIZE_MAX
+                                                                : sizeof(header) + count * size;
 }
 
 void *dvi__heap_take(size_t count, size_t size)
@@ -77,7 +80,8 @@ void *dvi__heap_take(size_t count, size_t size)
 
 void *dvi__heap_grow(void *items, size_t count, size_t size)
 {
-  const int full = (count & (count - 1)) == 0; /* the room is the least power of two that is not below the count */
+  const int full = (count & (count - 1)) ==
+                   0; /* the room is the least power of two that is not below the count */
   if (items == NULL) return dvi__heap_take(1, size);
   if (!full) return items;
   header *old = (header *)items - 1;

@@ -1,6 +1,7 @@
 #include "text/utf8.h"
 
-/* The bytes that a first byte announces, with the bits that it holds of the code; 0: it is no first byte. */
+/* The bytes that a first byte announces, with the bits that it holds of the code; 0: it is no first
+ * byte. */
 static size_t announced(unsigned char first, unsigned *bits)
 {
   static const struct {

@@ -1,4 +1,5 @@
-/* Compiling: which nodes are needed, which of them are done in one instruction, and in which registers results are kept. */
+/* Compiling: which nodes are needed, which of them are done in one instruction, and in which
+ * registers results are kept. */
 #include "expr/compile/program.h"
 
 #include <limits.h>
@@ -17,7 +18,8 @@ typedef struct compiler {
   int *uses;       /* of a node, still to come */
   int *row;        /* where it is, or NOWHERE */
   int *mate;       /* of a sine its cosine, and the reverse; else -1 */
-  int *first_root; /* of a node, the first output that it is, and of an output the next one; -1: none */
+  int *first_root; /* of a node, the first output that it is, and of an output the next one; -1:
+                      none */
   int *next_root;
   int *free_register, free_count, register_count;
   char *given, *joined; /* joined: a product that is computed where it is added */
@@ -73,8 +75,9 @@ static dvi__node second_factor(const dvi__graph_node *node)
 static int joins(const compiler *c, dvi__node product, dvi__node other)
 {
   const dvi__graph_node *node = node_of(c, product);
-  return (node->op == DVI__OP_MULTIPLY || node->op == DVI__OP_SQUARE) && c->uses[product] == 1 && !c->given[product] &&
-         product != other && !is_constant(c, node->a) && !is_constant(c, second_factor(node)) && !is_constant(c, other);
+  return (node->op == DVI__OP_MULTIPLY || node->op == DVI__OP_SQUARE) && c->uses[product] == 1 &&
+         !c->given[product] && product != other && !is_constant(c, node->a) &&
+         !is_constant(c, second_factor(node)) && !is_constant(c, other);
 }
 
 /* Sines and cosines of the same angle meet at it. `seen` [count] is filled with -1. */
@@ -110,7 +113,8 @@ static int take_register(compiler *c)
 
 static void release(compiler *c, dvi__node n)
 {
-  if (--c->uses[n] == 0 && c->row[n] >= 0 && c->row[n] != NOWHERE) c->free_register[c->free_count++] = c->row[n];
+  if (--c->uses[n] == 0 && c->row[n] >= 0 && c->row[n] != NOWHERE)
+    c->free_register[c->free_count++] = c->row[n];
 }
 
 static void release_operands(compiler *c, dvi__node n)
@@ -137,7 +141,8 @@ static int row_of(compiler *c, dvi__node n)
 {
   if (c->row[n] == NOWHERE) {
     c->row[n] = take_register(c);
-    append(c, (dvi__instruction){.op = DVI__CODE_FILL, .to = c->row[n], .value = node_of(c, n)->value});
+    append(c, (dvi__instruction){
+                  .op = DVI__CODE_FILL, .to = c->row[n], .value = node_of(c, n)->value});
   }
   return c->row[n];
 }
@@ -153,7 +158,10 @@ static int power_code(double exponent)
 static dvi__instruction of_product(compiler *c, dvi__code code, dvi__node product, dvi__node other)
 {
   const dvi__graph_node *node = node_of(c, product);
-  return (dvi__instruction){.op = (int)code, .a = row_of(c, node->a), .b = row_of(c, second_factor(node)), .c = row_of(c, other)};
+  return (dvi__instruction){.op = (int)code,
+                            .a = row_of(c, node->a),
+                            .b = row_of(c, second_factor(node)),
+                            .c = row_of(c, other)};
 }
 
 static dvi__instruction of_value(compiler *c, dvi__code code, dvi__node a, double value)
@@ -166,8 +174,10 @@ static dvi__instruction sum(compiler *c, const dvi__graph_node *node)
   double value = 0.0;
   if (c->joined[node->a]) return of_product(c, DVI__CODE_MULTIPLY_ADD, node->a, node->b);
   if (c->joined[node->b]) return of_product(c, DVI__CODE_MULTIPLY_ADD, node->b, node->a);
-  if (dvi__is_constant(c->graph, node->a, &value)) return of_value(c, DVI__CODE_ADD_VALUE, node->b, value);
-  if (dvi__is_constant(c->graph, node->b, &value)) return of_value(c, DVI__CODE_ADD_VALUE, node->a, value);
+  if (dvi__is_constant(c->graph, node->a, &value))
+    return of_value(c, DVI__CODE_ADD_VALUE, node->b, value);
+  if (dvi__is_constant(c->graph, node->b, &value))
+    return of_value(c, DVI__CODE_ADD_VALUE, node->a, value);
   return (dvi__instruction){.op = DVI__OP_ADD, .a = row_of(c, node->a), .b = row_of(c, node->b)};
 }
 
@@ -176,9 +186,12 @@ static dvi__instruction difference(compiler *c, const dvi__graph_node *node)
   double value = 0.0;
   if (c->joined[node->a]) return of_product(c, DVI__CODE_MULTIPLY_LESS, node->a, node->b);
   if (c->joined[node->b]) return of_product(c, DVI__CODE_LESS_PRODUCT, node->b, node->a);
-  if (dvi__is_constant(c->graph, node->a, &value)) return of_value(c, DVI__CODE_SUBTRACT_FROM, node->b, value);
-  if (dvi__is_constant(c->graph, node->b, &value)) return of_value(c, DVI__CODE_ADD_VALUE, node->a, -value);
-  return (dvi__instruction){.op = DVI__OP_SUBTRACT, .a = row_of(c, node->a), .b = row_of(c, node->b)};
+  if (dvi__is_constant(c->graph, node->a, &value))
+    return of_value(c, DVI__CODE_SUBTRACT_FROM, node->b, value);
+  if (dvi__is_constant(c->graph, node->b, &value))
+    return of_value(c, DVI__CODE_ADD_VALUE, node->a, -value);
+  return (dvi__instruction){
+      .op = DVI__OP_SUBTRACT, .a = row_of(c, node->a), .b = row_of(c, node->b)};
 }
 
 /* What computes node n, but for where it goes. */
@@ -239,7 +252,8 @@ static void write_roots(compiler *c, dvi__node n)
 {
   for (int k = c->first_root[n]; k >= 0; k = c->next_root[k]) {
     if (is_constant(c, n))
-      append(c, (dvi__instruction){.op = DVI__CODE_FILL, .to = output_row(k), .value = node_of(c, n)->value});
+      append(c, (dvi__instruction){
+                    .op = DVI__CODE_FILL, .to = output_row(k), .value = node_of(c, n)->value});
     else if (c->row[n] != output_row(k))
       append(c, (dvi__instruction){.op = DVI__CODE_COPY, .to = output_row(k), .a = c->row[n]});
     release(c, n);
@@ -286,7 +300,9 @@ static dvi_status allocate(compiler *c, int root_count)
   c->next_root = filled(root_count, -1);
   c->given = dvi__heap_take((size_t)c->count + 1, 2);
   c->free_register = filled(c->count, -1);
-  if (!c->uses || !c->row || !c->mate || !c->first_root || !c->next_root || !c->given || !c->free_register) return DVI_NO_MEMORY;
+  if (!c->uses || !c->row || !c->mate || !c->first_root || !c->next_root || !c->given ||
+      !c->free_register)
+    return DVI_NO_MEMORY;
   c->joined = c->given + c->count;
   return DVI_OK;
 }
@@ -302,7 +318,8 @@ static void clear(compiler *c)
   dvi__heap_free(c->free_register);
 }
 
-static dvi_status compile(compiler *c, int input_count, const dvi__node *input, int root_count, const dvi__node *root)
+static dvi_status compile(compiler *c, int input_count, const dvi__node *input, int root_count,
+                          const dvi__node *root)
 {
   dvi_status status = allocate(c, root_count);
   if (status != DVI_OK) return status;
@@ -316,7 +333,8 @@ static dvi_status compile(compiler *c, int input_count, const dvi__node *input, 
   }
   const size_t needed = (size_t)count_uses(c, root_count, root);
   if (c->failed != DVI_OK) return c->failed;
-  c->program->instruction = dvi__heap_take(needed + (size_t)root_count + 1, sizeof *c->program->instruction);
+  c->program->instruction = dvi__heap_take(needed + (size_t)root_count + 1,
+                                           sizeof *c->program->instruction);
   if (c->program->instruction == NULL) return DVI_NO_MEMORY;
   combine(c, c->free_register); /* no register is free yet */
   emit_all(c);
@@ -324,8 +342,8 @@ static dvi_status compile(compiler *c, int input_count, const dvi__node *input, 
   return c->program->row_count + input_count > DVI__ROWS_MAX ? DVI_BAD_SIZE : DVI_OK;
 }
 
-dvi_status dvi__program_make(const dvi__graph *graph, int input_count, const dvi__node *input, int root_count,
-                             const dvi__node *root, dvi__program *program)
+dvi_status dvi__program_make(const dvi__graph *graph, int input_count, const dvi__node *input,
+                             int root_count, const dvi__node *root, dvi__program *program)
 {
   *program = (dvi__program){.input_count = input_count, .output_count = root_count};
   compiler c = {.graph = graph, .program = program};
@@ -351,8 +369,8 @@ int dvi__program_operations(const dvi__program *program)
   for (int i = 0; i < program->instruction_count; i++) {
     const int op = program->instruction[i].op;
     if (op == DVI__CODE_COPY || op == DVI__CODE_FILL) continue;
-    operations += op == DVI__CODE_MULTIPLY_ADD || op == DVI__CODE_MULTIPLY_LESS || op == DVI__CODE_LESS_PRODUCT ||
-                          op == DVI__CODE_SINE_AND_COSINE
+    operations += op == DVI__CODE_MULTIPLY_ADD || op == DVI__CODE_MULTIPLY_LESS ||
+                          op == DVI__CODE_LESS_PRODUCT || op == DVI__CODE_SINE_AND_COSINE
                       ? 2
                       : 1;
   }

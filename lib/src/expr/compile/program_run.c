@@ -1,4 +1,5 @@
-/* Running: one switch, each case a loop over whole blocks of lanes. Functions of the C library are called for the lanes in use alone. */
+/* Running: one switch, each case a loop over whole blocks of lanes. Functions of the C library are
+ * called for the lanes in use alone. */
 #include <float.h>
 #include <math.h>
 #include <stddef.h>
@@ -9,15 +10,18 @@
 #include "expr/compile/program.h"
 #include "expr/compile/program_codes.h"
 
-/* Numbers of which inverse_powers finds the root: not near the ends of the range, and not those that have none. */
+/* Numbers of which inverse_powers finds the root: not near the ends of the range, and not those
+ * that have none. */
 DVI__SCENE_INLINE int is_plain(double x)
 {
   return (x >= DBL_MIN) & (x <= 1e300);
 }
 
-/* x^-(1/2 + factors) of plain numbers, right to two roundings for each root in it. A square root and a division take longer: the exponent's bits halved and negated are
- * right to 3.5 % (Lomont 2003), then e = 1 - x y^2 shrinks by the series of (1 - e)^(-1/2). */
-DVI__SCENE_INLINE void inverse_powers(int width, const int factors, const double *restrict x, double *restrict to)
+/* x^-(1/2 + factors) of plain numbers, right to two roundings for each root in it. A square root
+ * and a division take longer: the exponent's bits halved and negated are right to 3.5 % (Lomont
+ * 2003), then e = 1 - x y^2 shrinks by the series of (1 - e)^(-1/2). */
+DVI__SCENE_INLINE void inverse_powers(int width, const int factors, const double *restrict x,
+                                      double *restrict to)
 {
   for (int k = 0; k < width; k++) {
     uint64_t bits;
@@ -36,7 +40,8 @@ DVI__SCENE_INLINE void inverse_powers(int width, const int factors, const double
 }
 
 /* x^n, n = 1, 2, .. or x^-n. */
-DVI__SCENE_INLINE void powers(int width, const int exponent, const double *restrict x, double *restrict to)
+DVI__SCENE_INLINE void powers(int width, const int exponent, const double *restrict x,
+                              double *restrict to)
 {
   const unsigned power = exponent < 0 ? 0U - (unsigned)exponent : (unsigned)exponent;
   for (int at = 0; at < width; at += DVI__LANES) {
@@ -53,7 +58,8 @@ DVI__SCENE_INLINE void powers(int width, const int exponent, const double *restr
 }
 
 /* The compiler makes vectors of the powers that it knows. */
-DVI__SCENE_INLINE void whole_powers(int width, double exponent, const double *restrict x, double *restrict to)
+DVI__SCENE_INLINE void whole_powers(int width, double exponent, const double *restrict x,
+                                    double *restrict to)
 {
   switch ((int)exponent) {
   case 3: powers(width, 3, x, to); break;
@@ -65,7 +71,8 @@ DVI__SCENE_INLINE void whole_powers(int width, double exponent, const double *re
 }
 
 /* x^(n + 1/2), n = 1, 2, .. */
-DVI__SCENE_INLINE void root_powers(int width, double exponent, const double *restrict x, double *restrict to)
+DVI__SCENE_INLINE void root_powers(int width, double exponent, const double *restrict x,
+                                   double *restrict to)
 {
   const int factors = (int)exponent;
   for (int at = 0; at < width; at += DVI__LANES) {
@@ -78,7 +85,8 @@ DVI__SCENE_INLINE void root_powers(int width, double exponent, const double *res
 }
 
 /* x^-(n + 1/2), n = 0, 1, .. */
-DVI__SCENE_INLINE void inverse_root_powers(int width, double exponent, const double *restrict x, double *restrict to)
+DVI__SCENE_INLINE void inverse_root_powers(int width, double exponent, const double *restrict x,
+                                           double *restrict to)
 {
   const int factors = (int)-exponent;
   int plain = 0;
@@ -103,7 +111,8 @@ DVI__SCENE_INLINE void fill_up(int lanes, int width, double *to)
   for (int k = lanes; k < width; k++) to[k] = to[lanes - 1];
 }
 
-static void sines_and_cosines(int lanes, int width, const double *restrict angle, double *restrict sine, double *restrict cosine)
+static void sines_and_cosines(int lanes, int width, const double *restrict angle,
+                              double *restrict sine, double *restrict cosine)
 {
   for (int k = 0; k < lanes; k++) {
     sine[k] = sin(angle[k]);
@@ -146,13 +155,15 @@ DVI__SCENE_INLINE double taken(double condition, double x)
   X(positive, DVI__OP_POSITIVE, a[k] > 0.0 ? 1.0 : a[k] <= 0.0 ? 0.0 : a[k]) \
   X(where, DVI__OP_WHERE, taken(a[k], b[k]))
 
-#define LOOP(name, code, expression)                                                                              \
-  DVI__SCENE_INLINE void name##_rows(int width, double value, const double *restrict a, const double *restrict b, \
-                                     const double *restrict c, double *restrict to)                               \
-  {                                                                                                               \
-    (void)value, (void)a, (void)b, (void)c;                                                                       \
-    for (int first = 0; first < width; first += DVI__LANES)                                                       \
-      DVI__SCENE_INDEPENDENT for (int k = first; k < first + DVI__LANES; k++) to[k] = (expression);               \
+#define LOOP(name, code, expression)                                                     \
+  DVI__SCENE_INLINE void name##_rows(int width, double value, const double *restrict a,  \
+                                     const double *restrict b, const double *restrict c, \
+                                     double *restrict to)                                \
+  {                                                                                      \
+    (void)value, (void)a, (void)b, (void)c;                                              \
+    for (int first = 0; first < width; first += DVI__LANES)                              \
+      DVI__SCENE_INDEPENDENT for (int k = first; k < first + DVI__LANES; k++)            \
+          to[k] = (expression);                                                          \
   }
 LOOPS(LOOP)
 #undef LOOP
@@ -162,7 +173,8 @@ LOOPS(LOOP)
   case code:                                              \
     for (int k = 0; k < lanes; k++) to[k] = (expression); \
     break;
-static void call_library(int op, int lanes, int width, const double *restrict a, const double *restrict b, double *restrict to)
+static void call_library(int op, int lanes, int width, const double *restrict a,
+                         const double *restrict b, double *restrict to)
 {
   switch (op) {
     CALL(DVI__OP_EXP, exp(a[k]))
@@ -187,14 +199,15 @@ static void call_library(int op, int lanes, int width, const double *restrict a,
 }
 
 /* `below`: rows of inputs stand below the registers. */
-DVI__SCENE_INLINE void run_rows(const int below, const dvi__program *program, int lanes, int width, const double *const *input,
-                                double *registers)
+DVI__SCENE_INLINE void run_rows(const int below, const dvi__program *program, int lanes, int width,
+                                const double *const *input, double *registers)
 {
   const dvi__instruction *const end = program->instruction + program->instruction_count;
 #define ROW(i) (below || (i) >= 0 ? registers + (ptrdiff_t)(i)*width : input[~(i)])
   for (const dvi__instruction *at = program->instruction; at < end; at++) {
     double *restrict const to = registers + (ptrdiff_t)at->to * width;
-    const double *restrict const a = ROW(at->a), *restrict const b = ROW(at->b), *restrict const c = ROW(at->c);
+    const double *restrict const a = ROW(at->a), *restrict const b = ROW(at->b),
+                                 *restrict const c = ROW(at->c);
     const double value = at->value;
     switch (at->op) {
 #define CASE(name, code, expression) \
@@ -204,14 +217,17 @@ DVI__SCENE_INLINE void run_rows(const int below, const dvi__program *program, in
     case DVI__CODE_WHOLE_POWER: whole_powers(width, value, a, to); break;
     case DVI__CODE_ROOT_POWER: root_powers(width, value, a, to); break;
     case DVI__CODE_INVERSE_ROOT_POWER: inverse_root_powers(width, value, a, to); break;
-    case DVI__CODE_SINE_AND_COSINE: sines_and_cosines(lanes, width, a, to, registers + (ptrdiff_t)at->b * width); break;
+    case DVI__CODE_SINE_AND_COSINE:
+      sines_and_cosines(lanes, width, a, to, registers + (ptrdiff_t)at->b * width);
+      break;
     default: call_library(at->op, lanes, width, a, b, to);
     }
   }
 #undef ROW
 }
 
-DVI__SCENE_LANES static void run(const dvi__program *program, int lanes, const double *const *input, double *registers)
+DVI__SCENE_LANES static void run(const dvi__program *program, int lanes, const double *const *input,
+                                 double *registers)
 {
   run_rows(0, program, lanes, dvi__row_width(lanes), input, registers);
 }
@@ -222,7 +238,8 @@ DVI__SCENE_LANES static void run_block(const dvi__program *program, int lanes, d
 }
 
 /* clang does not export a function that is compiled more than once. */
-void dvi__program_run(const dvi__program *program, int lanes, const double *const *input, double *registers)
+void dvi__program_run(const dvi__program *program, int lanes, const double *const *input,
+                      double *registers)
 {
   run(program, lanes, input, registers);
 }

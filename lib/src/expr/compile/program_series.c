@@ -94,8 +94,10 @@ static void tangent(int degree, double c0, double sign, const double *a, double 
   }
 }
 
-/* The c that begins with c0 and has c' = sign a'/b, b = constant + factor a^2, or the root of that. */
-static void inverse(int degree, double c0, double sign, double constant, double factor, int root, const double *a, double *c)
+/* The c that begins with c0 and has c' = sign a'/b, b = constant + factor a^2, or the root of
+ * that. */
+static void inverse(int degree, double c0, double sign, double constant, double factor, int root,
+                    const double *a, double *c)
 {
   double slope[LENGTH], square[LENGTH], b[LENGTH], rooted[LENGTH];
   dvi_taylor_multiply(degree, a, a, square);
@@ -112,7 +114,8 @@ static void angle(int degree, const double *y, const double *x, double *c)
   double y_slope[LENGTH], x_slope[LENGTH], turn[LENGTH], square[LENGTH];
   dvi_taylor_differentiate(degree, y, y_slope);
   dvi_taylor_differentiate(degree, x, x_slope);
-  for (int k = 0; k < degree; k++) turn[k] = dvi_taylor_product(k, x, y_slope) - dvi_taylor_product(k, y, x_slope);
+  for (int k = 0; k < degree; k++)
+    turn[k] = dvi_taylor_product(k, x, y_slope) - dvi_taylor_product(k, y, x_slope);
   dvi_taylor_multiply(degree, x, x, square);
   dvi_taylor_add_product(degree, y, y, square);
   dvi_taylor_integrate_quotient(degree, turn, square, atan2(y[0], x[0]), c);
@@ -156,7 +159,8 @@ static void run_function(int op, int degree, const double *a, const double *b, d
   }
 }
 
-static void run_one(const dvi__instruction *at, int degree, const double *a, const double *b, const double *c, double *to)
+static void run_one(const dvi__instruction *at, int degree, const double *a, const double *b,
+                    const double *c, double *to)
 {
   const double value = at->value;
   switch (at->op) {
@@ -184,7 +188,13 @@ static void run_one(const dvi__instruction *at, int degree, const double *a, con
   case DVI__OP_ABS: magnitude(degree, a, to); break;
   case DVI__OP_SIGN: step(degree, sign_of(a[0]), !(a[0] > 0.0) && !(a[0] < 0.0), a, to); break;
   case DVI__OP_FLOOR: step(degree, floor(a[0]), !(a[0] > floor(a[0])), a, to); break;
-  case DVI__OP_POSITIVE: step(degree, a[0] > 0.0 ? 1.0 : a[0] <= 0.0 ? 0.0 : a[0], !(a[0] > 0.0) && !(a[0] < 0.0), a, to); break;
+  case DVI__OP_POSITIVE:
+    step(degree,
+         a[0] > 0.0    ? 1.0
+         : a[0] <= 0.0 ? 0.0
+                       : a[0],
+         !(a[0] > 0.0) && !(a[0] < 0.0), a, to);
+    break;
   case DVI__OP_WHERE: where(degree, a, b, to); break;
   case DVI__OP_ADD: dvi_taylor_combine(degree, 1.0, a, 1.0, b, to); break;
   case DVI__OP_SUBTRACT: dvi_taylor_combine(degree, 1.0, a, -1.0, b, to); break;
@@ -199,7 +209,8 @@ static void run_one(const dvi__instruction *at, int degree, const double *a, con
 void dvi__program_run_series(const dvi__program *program, int degree, double *registers)
 {
   const ptrdiff_t width = degree + 1;
-  for (const dvi__instruction *at = program->instruction; at < program->instruction + program->instruction_count; at++) {
+  for (const dvi__instruction *at = program->instruction;
+       at < program->instruction + program->instruction_count; at++) {
     double *const to = registers + at->to * width, *const b = registers + at->b * width;
     const double *const a = registers + at->a * width, *const c = registers + at->c * width;
     if (at->op == DVI__CODE_SINE_AND_COSINE)

@@ -29,7 +29,8 @@ const int *dvi__strides(dvi__arena *arena, int elements, const int *list)
 static dvi_status find_places(dvi__function *function, int k)
 {
   const dvi__kernel *kernel = &function->kernel[k];
-  dvi__places *place = dvi__arena_take(&function->arena, (size_t)kernel->input_count, sizeof *place);
+  dvi__places *place = dvi__arena_take(&function->arena, (size_t)kernel->input_count,
+                                       sizeof *place);
   if (place == NULL) return DVI_NO_MEMORY;
   const int *list = NULL, *stride_of = NULL;
   for (int i = 0; i < kernel->input_count; i++) {
@@ -40,8 +41,9 @@ static dvi_status find_places(dvi__function *function, int k)
       stride_of = dvi__strides(&function->arena, kernel->elements, list);
       if (stride_of == NULL) return DVI_NO_MEMORY;
     }
-    place[i] = input->number != NULL ? (dvi__places){input->number, stride_of, input->offset, 0}
-                                     : (dvi__places){NULL, NULL, input->base + input->offset, input->stride};
+    place[i] = input->number != NULL
+                   ? (dvi__places){input->number, stride_of, input->offset, 0}
+                   : (dvi__places){NULL, NULL, input->base + input->offset, input->stride};
   }
   function->derivatives[k] = (dvi__derivatives){.place = place, .pair_count = -1};
   return DVI_OK;
@@ -50,12 +52,15 @@ static dvi_status find_places(dvi__function *function, int k)
 static dvi_status fill(dvi__function *function, int kernel_count, const dvi__kernel *kernels)
 {
   function->kernel = dvi__arena_take(&function->arena, (size_t)kernel_count, sizeof *kernels);
-  function->derivatives = dvi__arena_take(&function->arena, (size_t)kernel_count, sizeof *function->derivatives);
+  function->derivatives = dvi__arena_take(&function->arena, (size_t)kernel_count,
+                                          sizeof *function->derivatives);
   if (function->kernel == NULL || function->derivatives == NULL) return DVI_NO_MEMORY;
   if (kernel_count > 0) memcpy(function->kernel, kernels, (size_t)kernel_count * sizeof *kernels);
   function->kernel_count = kernel_count;
-  dvi_status status = dvi__merge_kernels(&function->arena, &function->kernel_count, function->kernel);
-  for (int k = 0; k < function->kernel_count && status == DVI_OK; k++) status = find_places(function, k);
+  dvi_status status = dvi__merge_kernels(&function->arena, &function->kernel_count,
+                                         function->kernel);
+  for (int k = 0; k < function->kernel_count && status == DVI_OK; k++)
+    status = find_places(function, k);
   return status;
 }
 
@@ -67,7 +72,8 @@ static dvi__ledger *current_ledger(void)
   return ledger;
 }
 
-dvi_status dvi__function_create(int kernel_count, const dvi__kernel *kernels, const int *block_size, dvi__function **function)
+dvi_status dvi__function_create(int kernel_count, const dvi__kernel *kernels, const int *block_size,
+                                dvi__function **function)
 {
   *function = NULL;
   dvi__function *made = dvi__heap_take(1, sizeof *made);
@@ -77,7 +83,8 @@ dvi_status dvi__function_create(int kernel_count, const dvi__kernel *kernels, co
     return DVI_NO_MEMORY;
   }
   made->ledger = current_ledger();
-  made->counters = (dvi__function_counters){.value_operations = -1, .gradient_operations = -1, .second_operations = -1};
+  made->counters = (dvi__function_counters){
+      .value_operations = -1, .gradient_operations = -1, .second_operations = -1};
   memcpy(made->block_size, block_size, sizeof made->block_size);
   const dvi_status status = fill(made, kernel_count, kernels);
   if (status == DVI_OK)
@@ -112,7 +119,8 @@ dvi_status dvi__function_leave(dvi__function *function, dvi_status status)
 {
   if (status == DVI_NO_MEMORY) status = dvi__heap_refusal();
   for (int k = 0; k < function->kernel_count; k++) /* there may be memory the next time */
-    if (function->kernel[k].graph->failed == DVI_NO_MEMORY) function->kernel[k].graph->failed = DVI_OK;
+    if (function->kernel[k].graph->failed == DVI_NO_MEMORY)
+      function->kernel[k].graph->failed = DVI_OK;
   (void)dvi__heap_charge(function->other);
   pthread_mutex_unlock(&function->lock);
   return status;
@@ -121,7 +129,8 @@ dvi_status dvi__function_leave(dvi__function *function, dvi_status status)
 typedef dvi_status derivation(dvi__function *function, unsigned mask, dvi__sum **sum);
 
 /* The sum in a slot, derived now if it is not there. */
-static dvi_status ask(dvi__function *function, _Atomic(dvi__sum *) *slot, derivation *derive, unsigned mask, const dvi__sum **sum)
+static dvi_status ask(dvi__function *function, _Atomic(dvi__sum *) *slot, derivation *derive,
+                      unsigned mask, const dvi__sum **sum)
 {
   *sum = atomic_load_explicit(slot, memory_order_acquire);
   if (*sum != NULL) return DVI_OK;
@@ -141,7 +150,8 @@ DVI__SCENE_LANES static int all_finite(size_t size, const double *restrict x)
 }
 
 /* Evaluate to arrays of size[] numbers a point; NULL: not wanted. */
-static int evaluate(const dvi__sum *sum, int count, const double *const *x, int arrays, const int *size, double *const *result)
+static int evaluate(const dvi__sum *sum, int count, const double *const *x, int arrays,
+                    const int *size, double *const *result)
 {
   int finite = 1;
   for (int i = 0; i < arrays; i++)
@@ -174,15 +184,18 @@ static dvi_status ask_value(dvi__function *function, int count, const dvi__sum *
   return status;
 }
 
-static dvi_status ask_gradient(dvi__function *function, int count, double *const *gradient, const dvi__sum **sum)
+static dvi_status ask_gradient(dvi__function *function, int count, double *const *gradient,
+                               const dvi__sum **sum)
 {
   const unsigned blocks = mask_of(DVI__BLOCKS, gradient);
-  const dvi_status status = ask(function, &function->gradient[blocks], dvi__derive_gradient, blocks, sum);
+  const dvi_status status = ask(function, &function->gradient[blocks], dvi__derive_gradient, blocks,
+                                sum);
   if (status == DVI_OK) count_points(&function->gradient_points, count);
   return status;
 }
 
-static dvi_status ask_second(dvi__function *function, int count, double *const *values, const dvi__sum **sum, int *size)
+static dvi_status ask_second(dvi__function *function, int count, double *const *values,
+                             const dvi__sum **sum, int *size)
 {
   const unsigned pairs = mask_of(DVI__PAIRS, values);
   const dvi_status status = ask(function, &function->second[pairs], dvi__derive_second, pairs, sum);
@@ -199,14 +212,17 @@ int dvi__function_value(dvi__function *function, int count, const double *const 
   return status != DVI_OK ? (int)status : evaluate(sum, count, x, 1, &(int){1}, &value);
 }
 
-int dvi__function_gradient(dvi__function *function, int count, const double *const *x, double *const *gradient)
+int dvi__function_gradient(dvi__function *function, int count, const double *const *x,
+                           double *const *gradient)
 {
   const dvi__sum *sum;
   const dvi_status status = ask_gradient(function, count, gradient, &sum);
-  return status != DVI_OK ? (int)status : evaluate(sum, count, x, DVI__BLOCKS, function->block_size, gradient);
+  return status != DVI_OK ? (int)status
+                          : evaluate(sum, count, x, DVI__BLOCKS, function->block_size, gradient);
 }
 
-int dvi__function_second(dvi__function *function, int count, const double *const *x, double *const *values)
+int dvi__function_second(dvi__function *function, int count, const double *const *x,
+                         double *const *values)
 {
   const dvi__sum *sum;
   int size[DVI__PAIRS];
@@ -217,20 +233,21 @@ int dvi__function_second(dvi__function *function, int count, const double *const
 /* --- Along a curve. --- */
 
 /* As evaluate, of so many coefficients. */
-static int expand(const dvi__function *function, const dvi__sum *sum, int count, const double *const *x, int arrays,
-                  const int *size, double *const *result)
+static int expand(const dvi__function *function, const dvi__sum *sum, int count,
+                  const double *const *x, int arrays, const int *size, double *const *result)
 {
   int finite = 1;
   for (int i = 0; i < arrays; i++)
-    if (result[i] != NULL && size[i] > 0) memset(result[i], 0, (size_t)size[i] * (size_t)count * sizeof **result);
+    if (result[i] != NULL && size[i] > 0)
+      memset(result[i], 0, (size_t)size[i] * (size_t)count * sizeof **result);
   const dvi_status status = dvi__sum_add_series(sum, count, function->block_size, x, size, result);
   for (int i = 0; i < arrays && finite; i++)
     if (result[i] != NULL) finite = all_finite((size_t)size[i] * (size_t)count, result[i]);
   return status != DVI_OK ? (int)status : !finite;
 }
 
-int dvi__function_series(dvi__function *function, int degree, const double *const *x, double *value, double *const *gradient,
-                         double *const *values)
+int dvi__function_series(dvi__function *function, int degree, const double *const *x, double *value,
+                         double *const *gradient, double *const *values)
 {
   const int count = degree + 1;
   const dvi__sum *sum;
@@ -241,7 +258,8 @@ int dvi__function_series(dvi__function *function, int degree, const double *cons
   }
   if (returned == 0 && gradient != NULL && mask_of(DVI__BLOCKS, gradient) != 0) {
     returned = (int)ask_gradient(function, count, gradient, &sum);
-    if (returned == 0) returned = expand(function, sum, count, x, DVI__BLOCKS, function->block_size, gradient);
+    if (returned == 0)
+      returned = expand(function, sum, count, x, DVI__BLOCKS, function->block_size, gradient);
   }
   if (returned == 0 && values != NULL && mask_of(DVI__PAIRS, values) != 0) {
     int size[DVI__PAIRS];
@@ -251,19 +269,23 @@ int dvi__function_series(dvi__function *function, int degree, const double *cons
   return returned;
 }
 
-dvi_status dvi__function_prepare(dvi__function *function, int value, unsigned blocks, unsigned pairs)
+dvi_status dvi__function_prepare(dvi__function *function, int value, unsigned blocks,
+                                 unsigned pairs)
 {
   const dvi__sum *sum;
   dvi_status status = DVI_OK;
   if (value) status = ask(function, &function->value, dvi__derive_value, 0, &sum);
-  if (status == DVI_OK && blocks != 0) status = ask(function, &function->gradient[blocks], dvi__derive_gradient, blocks, &sum);
-  if (status == DVI_OK && pairs != 0) status = ask(function, &function->second[pairs], dvi__derive_second, pairs, &sum);
+  if (status == DVI_OK && blocks != 0)
+    status = ask(function, &function->gradient[blocks], dvi__derive_gradient, blocks, &sum);
+  if (status == DVI_OK && pairs != 0)
+    status = ask(function, &function->second[pairs], dvi__derive_second, pairs, &sum);
   return status;
 }
 
 /* --- Questions. --- */
 
-dvi_status dvi__function_pattern(dvi__function *function, dvi__pair pair, dvi_pattern *pattern, int *full)
+dvi_status dvi__function_pattern(dvi__function *function, dvi__pair pair, dvi_pattern *pattern,
+                                 int *full)
 {
   dvi__function_enter(function);
   const dvi_status status = dvi__find_pattern(function, pair);
@@ -278,7 +300,8 @@ void dvi__function_count(dvi__function *function, dvi__function_counters *counte
   *counters = function->counters;
   pthread_mutex_unlock(&function->lock);
   counters->value_points = atomic_load_explicit(&function->value_points, memory_order_relaxed);
-  counters->gradient_points = atomic_load_explicit(&function->gradient_points, memory_order_relaxed);
+  counters->gradient_points = atomic_load_explicit(&function->gradient_points,
+                                                   memory_order_relaxed);
   counters->second_points = atomic_load_explicit(&function->second_points, memory_order_relaxed);
 }
 

@@ -5,9 +5,12 @@
 #include "text/heap.h"
 
 static const dvi__block pair_blocks[DVI__PAIRS][2] = {
-    [DVI__PAIR_QQ] = {DVI__COORDINATES, DVI__COORDINATES}, [DVI__PAIR_QV] = {DVI__COORDINATES, DVI__VELOCITIES},
-    [DVI__PAIR_VV] = {DVI__VELOCITIES, DVI__VELOCITIES},   [DVI__PAIR_QW] = {DVI__COORDINATES, DVI__MULTIPLIERS},
-    [DVI__PAIR_VW] = {DVI__VELOCITIES, DVI__MULTIPLIERS},  [DVI__PAIR_TQ] = {DVI__TIME, DVI__COORDINATES},
+    [DVI__PAIR_QQ] = {DVI__COORDINATES, DVI__COORDINATES},
+    [DVI__PAIR_QV] = {DVI__COORDINATES, DVI__VELOCITIES},
+    [DVI__PAIR_VV] = {DVI__VELOCITIES, DVI__VELOCITIES},
+    [DVI__PAIR_QW] = {DVI__COORDINATES, DVI__MULTIPLIERS},
+    [DVI__PAIR_VW] = {DVI__VELOCITIES, DVI__MULTIPLIERS},
+    [DVI__PAIR_TQ] = {DVI__TIME, DVI__COORDINATES},
     [DVI__PAIR_TV] = {DVI__TIME, DVI__VELOCITIES},
 };
 
@@ -20,8 +23,8 @@ void dvi__pair_blocks(dvi__pair pair, dvi__block *rows, dvi__block *columns)
 dvi__pair dvi__pair_of(dvi__block a, dvi__block b)
 {
   int pair = 0;
-  while (pair < DVI__PAIRS &&
-         !((pair_blocks[pair][0] == a && pair_blocks[pair][1] == b) || (pair_blocks[pair][0] == b && pair_blocks[pair][1] == a)))
+  while (pair < DVI__PAIRS && !((pair_blocks[pair][0] == a && pair_blocks[pair][1] == b) ||
+                                (pair_blocks[pair][0] == b && pair_blocks[pair][1] == a)))
     pair++;
   return (dvi__pair)pair;
 }
@@ -54,8 +57,8 @@ enum { SLICE = 1024 };
 /* A sum to which every kernel gives its roots. */
 typedef dvi_status part_roots(dvi__function *function, int k, unsigned mask, roots *own);
 
-static dvi_status make_sum(dvi__function *function, part_roots *roots_of, unsigned mask, int arrays, const int *entries,
-                           dvi__sum **sum)
+static dvi_status make_sum(dvi__function *function, part_roots *roots_of, unsigned mask, int arrays,
+                           const int *entries, dvi__sum **sum)
 {
   dvi__sum *made = dvi__sum_new(function);
   dvi_status status = made != NULL ? DVI_OK : DVI_NO_MEMORY;
@@ -78,7 +81,8 @@ static int operations_of(const dvi__sum *sum)
 {
   long long all = 0;
   for (int k = 0; k < sum->part_count; k++)
-    all += (long long)dvi__program_operations(&sum->part[k].program) * sum->part[k].kernel->elements;
+    all += (long long)dvi__program_operations(&sum->part[k].program) *
+           sum->part[k].kernel->elements;
   return all < INT_MAX ? (int)all : INT_MAX;
 }
 
@@ -94,7 +98,8 @@ static dvi_status value_roots(dvi__function *function, int k, unsigned mask, roo
   const dvi__kernel *kernel = &function->kernel[k];
   (void)mask;
   const dvi_status status = make_room(function, 1, own);
-  if (status == DVI_OK && !is_zero(kernel->graph, kernel->root)) own->node[own->count++] = kernel->root;
+  if (status == DVI_OK && !is_zero(kernel->graph, kernel->root))
+    own->node[own->count++] = kernel->root;
   return status;
 }
 
@@ -112,7 +117,8 @@ dvi_status dvi__derive_first(dvi__function *function, int k)
   const dvi__kernel *kernel = &function->kernel[k];
   dvi__derivatives *own = &function->derivatives[k];
   if (own->gradient != NULL) return DVI_OK;
-  dvi__node *gradient = dvi__arena_take(&function->arena, (size_t)kernel->input_count, sizeof *gradient);
+  dvi__node *gradient = dvi__arena_take(&function->arena, (size_t)kernel->input_count,
+                                        sizeof *gradient);
   if (gradient == NULL) return DVI_NO_MEMORY;
   dvi__gradient(kernel->graph, kernel->root, kernel->input_count, gradient);
   if (kernel->graph->failed == DVI_OK) own->gradient = gradient;
@@ -127,8 +133,11 @@ static dvi_status gradient_roots(dvi__function *function, int k, unsigned blocks
   if (status == DVI_OK) status = make_room(function, kernel->input_count, own);
   for (int i = 0; i < kernel->input_count && status == DVI_OK; i++) {
     const dvi__kernel_input *input = &kernel->input[i];
-    if (input->is_data || (blocks >> input->block & 1U) == 0 || is_zero(kernel->graph, known->gradient[i])) continue;
-    own->target[own->count] = (dvi__destination){.array = (int)input->block, .entry = {.minor = known->place[i]}};
+    if (input->is_data || (blocks >> input->block & 1U) == 0 ||
+        is_zero(kernel->graph, known->gradient[i]))
+      continue;
+    own->target[own->count] = (dvi__destination){.array = (int)input->block,
+                                                 .entry = {.minor = known->place[i]}};
     own->node[own->count++] = known->gradient[i];
   }
   return status;
@@ -136,14 +145,16 @@ static dvi_status gradient_roots(dvi__function *function, int k, unsigned blocks
 
 dvi_status dvi__derive_gradient(dvi__function *function, unsigned mask, dvi__sum **sum)
 {
-  const dvi_status status = make_sum(function, gradient_roots, mask, DVI__BLOCKS, function->block_size, sum);
+  const dvi_status status = make_sum(function, gradient_roots, mask, DVI__BLOCKS,
+                                     function->block_size, sum);
   if (status == DVI_OK) raise_to(&function->counters.gradient_operations, operations_of(*sum));
   return status;
 }
 
 /* --- Second derivatives. --- */
 
-/* The pair that inputs i and j of a kernel belong to, DVI__PAIRS for none, and which of them has the row. */
+/* The pair that inputs i and j of a kernel belong to, DVI__PAIRS for none, and which of them has
+ * the row. */
 static dvi__pair pair_of_inputs(const dvi__kernel *kernel, const int *input, int *row, int *column)
 {
   const dvi__kernel_input *first = &kernel->input[input[0]], *second = &kernel->input[input[1]];
@@ -162,8 +173,10 @@ static int is_wanted(const dvi__kernel *kernel, const int *input, unsigned pairs
   return pair != DVI__PAIRS && (pairs >> pair & 1U) != 0;
 }
 
-/* The second derivatives in one column of the local pairs, first to last - 1, that are wanted and not there. */
-static dvi_status derive_column(const dvi__kernel *kernel, dvi__derivatives *own, unsigned pairs, int first, int last)
+/* The second derivatives in one column of the local pairs, first to last - 1, that are wanted and
+ * not there. */
+static dvi_status derive_column(const dvi__kernel *kernel, dvi__derivatives *own, unsigned pairs,
+                                int first, int last)
 {
   const size_t most = (size_t)(last - first);
   dvi__node *of = dvi__heap_take(2 * most, sizeof *of);
@@ -171,11 +184,13 @@ static dvi_status derive_column(const dvi__kernel *kernel, dvi__derivatives *own
   if (of == NULL) return DVI_NO_MEMORY;
   dvi__node *tangent = of + most;
   for (int e = first; e < last; e++)
-    if (own->second[e] < 0 && is_wanted(kernel, own->pair[e], pairs)) of[count++] = own->gradient[own->pair[e][0]];
+    if (own->second[e] < 0 && is_wanted(kernel, own->pair[e], pairs))
+      of[count++] = own->gradient[own->pair[e][0]];
   if (count > 0) dvi__tangents(kernel->graph, own->pair[first][1], count, of, tangent);
   count = 0;
   for (int e = first; e < last && kernel->graph->failed == DVI_OK; e++)
-    if (own->second[e] < 0 && is_wanted(kernel, own->pair[e], pairs)) own->second[e] = tangent[count++];
+    if (own->second[e] < 0 && is_wanted(kernel, own->pair[e], pairs))
+      own->second[e] = tangent[count++];
   dvi__heap_free(of);
   return kernel->graph->failed;
 }
@@ -193,29 +208,35 @@ dvi_status dvi__derive_pairs(dvi__function *function, int k, unsigned pairs)
     for (int e = 0; e < own->pair_count; e++) own->second[e] = -1;
   }
   for (int first = 0, last; first < own->pair_count && status == DVI_OK; first = last) {
-    for (last = first + 1; last < own->pair_count && own->pair[last][1] == own->pair[first][1];) last++;
+    for (last = first + 1; last < own->pair_count && own->pair[last][1] == own->pair[first][1];)
+      last++;
     status = derive_column(kernel, own, pairs, first, last);
   }
   return status;
 }
 
 /* For every element the entry of (row, column) in a pattern. */
-static dvi_status map_entries(dvi__function *function, const dvi_pattern *pattern, int elements, const dvi__places *row,
-                              const dvi__places *column, dvi__places *entries)
+static dvi_status map_entries(dvi__function *function, const dvi_pattern *pattern, int elements,
+                              const dvi__places *row, const dvi__places *column,
+                              dvi__places *entries)
 {
   int *list = dvi__arena_take(&function->arena, (size_t)elements, sizeof *list);
   if (list == NULL) return DVI_NO_MEMORY;
-  for (int e = 0; e < elements; e++) list[e] = dvi__pattern_entry(pattern, dvi__place_at(row, e), dvi__place_at(column, e));
-  *entries = (dvi__places){.list = list, .stride_of = dvi__strides(&function->arena, elements, list)};
+  for (int e = 0; e < elements; e++)
+    list[e] = dvi__pattern_entry(pattern, dvi__place_at(row, e), dvi__place_at(column, e));
+  *entries = (dvi__places){.list = list,
+                           .stride_of = dvi__strides(&function->arena, elements, list)};
   return entries->stride_of != NULL ? DVI_OK : DVI_NO_MEMORY;
 }
 
 /* Where a pair's derivative by inputs `row` and `column` of kernel k is added. */
-static dvi_status find_target(dvi__function *function, int k, dvi__pair pair, int row, int column, dvi__destination *target)
+static dvi_status find_target(dvi__function *function, int k, dvi__pair pair, int row, int column,
+                              dvi__destination *target)
 {
   const dvi__places *place = function->derivatives[k].place;
   const dvi__pair_pattern *known = &function->pattern[pair];
-  const int elements = function->kernel[k].elements, mirrored = row != column && pair_blocks[pair][0] == pair_blocks[pair][1];
+  const int elements = function->kernel[k].elements,
+            mirrored = row != column && pair_blocks[pair][0] == pair_blocks[pair][1];
   *target = (dvi__destination){.array = (int)pair, .mirrored = mirrored};
   if (known->full) {
     const int rows = function->block_size[pair_blocks[pair][0]];
@@ -223,9 +244,11 @@ static dvi_status find_target(dvi__function *function, int k, dvi__pair pair, in
     target->mirror = (dvi__entries){place[column], place[row], rows};
     return DVI_OK;
   }
-  dvi_status status = map_entries(function, &known->pattern, elements, &place[row], &place[column], &target->entry.minor);
+  dvi_status status = map_entries(function, &known->pattern, elements, &place[row], &place[column],
+                                  &target->entry.minor);
   if (status == DVI_OK && mirrored)
-    status = map_entries(function, &known->pattern, elements, &place[column], &place[row], &target->mirror.minor);
+    status = map_entries(function, &known->pattern, elements, &place[column], &place[row],
+                         &target->mirror.minor);
   return status;
 }
 
@@ -238,7 +261,8 @@ static dvi_status second_roots(dvi__function *function, int k, unsigned pairs, r
   for (int e = 0; e < known->pair_count && status == DVI_OK; e++) {
     int row, column;
     const dvi__pair pair = pair_of_inputs(kernel, known->pair[e], &row, &column);
-    if (pair == DVI__PAIRS || (pairs >> pair & 1U) == 0 || is_zero(kernel->graph, known->second[e])) continue;
+    if (pair == DVI__PAIRS || (pairs >> pair & 1U) == 0 || is_zero(kernel->graph, known->second[e]))
+      continue;
     status = find_target(function, k, pair, row, column, &own->target[own->count]);
     own->node[own->count++] = known->second[e];
   }
@@ -266,7 +290,9 @@ dvi_status dvi__derive_second(dvi__function *function, unsigned mask, dvi__sum *
 static int are_constants(const dvi__kernel *kernel, const dvi__derivatives *known, dvi__pair pair)
 {
   for (int e = 0; e < known->pair_count; e++)
-    if (is_wanted(kernel, known->pair[e], 1U << pair) && kernel->graph->node[known->second[e]].op != DVI__OP_CONSTANT) return 0;
+    if (is_wanted(kernel, known->pair[e], 1U << pair) &&
+        kernel->graph->node[known->second[e]].op != DVI__OP_CONSTANT)
+      return 0;
   return 1;
 }
 

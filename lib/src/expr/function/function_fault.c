@@ -7,7 +7,8 @@
 #include "expr/graph_make.h"
 #include "text/heap.h"
 
-/* What a node is looked for in: that it has no value, no derivative, or, where it has both, no series. */
+/* What a node is looked for in: that it has no value, no derivative, or, where it has both, no
+ * series. */
 typedef enum failing { VALUE, DERIVATIVE, SERIES } failing;
 
 /* A node of a kernel at one of its elements. */
@@ -19,21 +20,24 @@ typedef struct culprit {
   failing of;
 } culprit;
 
-static void read_inputs(const dvi__kernel *kernel, const dvi__places *place, int e, int count, const double *const *x, int k,
-                        double *value)
+static void read_inputs(const dvi__kernel *kernel, const dvi__places *place, int e, int count,
+                        const double *const *x, int k, double *value)
 {
   for (int i = 0; i < kernel->input_count; i++)
-    value[i] = kernel->input[i].is_data ? kernel->input[i].data[e]
-                                        : x[kernel->input[i].block][(ptrdiff_t)dvi__place_at(&place[i], e) * count + k];
+    value[i] = kernel->input[i].is_data
+                   ? kernel->input[i].data[e]
+                   : x[kernel->input[i].block][(ptrdiff_t)dvi__place_at(&place[i], e) * count + k];
 }
 
 /* The first node that is not finite below roots of which one is not; -1: all are. */
-static dvi__node first_below(const dvi__kernel *kernel, const double *input, int root_count, const dvi__node *root)
+static dvi__node first_below(const dvi__kernel *kernel, const double *input, int root_count,
+                             const dvi__node *root)
 {
   double *value = dvi__heap_take((size_t)root_count + 1, sizeof *value);
   dvi__node node = -1;
   int finite = 1;
-  if (value == NULL || dvi__evaluate(kernel->graph, input, root_count, root, value, &node) != DVI_OK) {
+  if (value == NULL ||
+      dvi__evaluate(kernel->graph, input, root_count, root, value, &node) != DVI_OK) {
     dvi__heap_free(value);
     return -1;
   }
@@ -42,7 +46,8 @@ static dvi__node first_below(const dvi__kernel *kernel, const double *input, int
   return finite ? -1 : node;
 }
 
-/* The derivatives of kernel k that are known, by variables; their number. Freed by the caller; NULL: no memory. */
+/* The derivatives of kernel k that are known, by variables; their number. Freed by the caller;
+ * NULL: no memory. */
 static dvi__node *known_derivatives(const dvi__function *function, int k, int *count)
 {
   const dvi__kernel *kernel = &function->kernel[k];
@@ -83,8 +88,9 @@ void dvi__mark_moving(const dvi__kernel *kernel, int count, char *moves)
   for (int n = 0; n < count; n++) {
     const dvi__graph_node *node = &kernel->graph->node[n];
     const int operands = dvi__operands(node->op);
-    moves[n] = (char)(node->op == DVI__OP_INPUT ? !kernel->input[node->a].is_data
-                                                : (operands > 0 && moves[node->a]) || (operands > 1 && moves[node->b]));
+    moves[n] = (char)(node->op == DVI__OP_INPUT
+                          ? !kernel->input[node->a].is_data
+                          : (operands > 0 && moves[node->a]) || (operands > 1 && moves[node->b]));
   }
 }
 
@@ -94,7 +100,8 @@ static dvi__node first_without_series(const dvi__kernel *kernel, const double *i
 {
   const dvi__graph *graph = kernel->graph;
   int count = 0;
-  char *part = dvi__parts(graph, 1, &kernel->root, &count), *moves = dvi__heap_take((size_t)count + 1, 1);
+  char *part = dvi__parts(graph, 1, &kernel->root, &count),
+       *moves = dvi__heap_take((size_t)count + 1, 1);
   dvi__node *node = dvi__heap_take((size_t)count + 1, sizeof *node), unused = -1, found = -1;
   double *value = dvi__heap_take((size_t)count + 1, sizeof *value);
   const int made = part != NULL && moves != NULL && node != NULL && value != NULL;
@@ -105,7 +112,9 @@ static dvi__node first_without_series(const dvi__kernel *kernel, const double *i
     for (int n = count - 1; n >= 0; n--) {
       const dvi__graph_node *at = &graph->node[n];
       const int operands = dvi__operands(at->op);
-      if (part[n] && moves[n] && !has_series(at, operands > 0 ? value[at->a] : 0, operands > 1 ? value[at->b] : 0)) found = n;
+      if (part[n] && moves[n] &&
+          !has_series(at, operands > 0 ? value[at->a] : 0, operands > 1 ? value[at->b] : 0))
+        found = n;
     }
   }
   dvi__heap_free(part);
@@ -116,17 +125,20 @@ static dvi__node first_without_series(const dvi__kernel *kernel, const double *i
 }
 
 /* Look at kernel k, element by element. */
-static void search_kernel(const dvi__function *function, int k, int count, const double *const *x, int point, culprit *found)
+static void search_kernel(const dvi__function *function, int k, int count, const double *const *x,
+                          int point, culprit *found)
 {
   const dvi__kernel *kernel = &function->kernel[k];
   int root_count = 1;
-  dvi__node *derivatives = found->of == DERIVATIVE ? known_derivatives(function, k, &root_count) : NULL;
+  dvi__node *derivatives = found->of == DERIVATIVE ? known_derivatives(function, k, &root_count)
+                                                   : NULL;
   const dvi__node *root = found->of == DERIVATIVE ? derivatives : &kernel->root;
   double *input = dvi__heap_take((size_t)kernel->input_count + 1, sizeof *input);
   for (int e = 0; e < kernel->elements && found->node < 0 && root != NULL && input != NULL; e++) {
     found->element = e;
     read_inputs(kernel, function->derivatives[k].place, e, count, x, point, input);
-    found->node = found->of == SERIES ? first_without_series(kernel, input) : first_below(kernel, input, root_count, root);
+    found->node = found->of == SERIES ? first_without_series(kernel, input)
+                                      : first_below(kernel, input, root_count, root);
   }
   dvi__heap_free(derivatives);
   found->kernel = kernel;
@@ -172,7 +184,9 @@ static void list_variables(const culprit *found, dvi__node operand, dvi__fault *
   if (used == NULL) return;
   dvi__inputs_used(kernel->graph, 1, &found->node, kernel->input_count, used);
   for (int i = 0; i < kernel->input_count && fault->count < DVI__FAULT_VARIABLES; i++) {
-    if (!used[i] || kernel->input[i].is_data || (shown != NULL && shown->op == DVI__OP_INPUT && shown->a == i)) continue;
+    if (!used[i] || kernel->input[i].is_data ||
+        (shown != NULL && shown->op == DVI__OP_INPUT && shown->a == i))
+      continue;
     fault->variable[fault->count].block = kernel->input[i].block;
     fault->variable[fault->count].number = dvi__input_number(&kernel->input[i], found->element);
     fault->variable[fault->count++].value = found->input[i];
@@ -180,7 +194,8 @@ static void list_variables(const culprit *found, dvi__node operand, dvi__fault *
   dvi__heap_free(used);
 }
 
-static void describe(const culprit *found, const dvi__source *source, char *text, size_t size, dvi__fault *fault)
+static void describe(const culprit *found, const dvi__source *source, char *text, size_t size,
+                     dvi__fault *fault)
 {
   const dvi__graph *graph = found->kernel->graph;
   const dvi__graph_node *node = &graph->node[found->node];
@@ -191,7 +206,8 @@ static void describe(const culprit *found, const dvi__source *source, char *text
   dvi__copy_part(source, node->span, part);
   *fault = (dvi__fault){.span = node->span};
   list_variables(found, operand, fault);
-  if (operand >= 0 && graph->node[operand].span.first + graph->node[operand].span.size != node->span.first + node->span.size)
+  if (operand >= 0 && graph->node[operand].span.first + graph->node[operand].span.size !=
+                          node->span.first + node->span.size)
     dvi__copy_part(source, graph->node[operand].span, operand_part);
   if (operand < 0) (void)dvi__evaluate(graph, found->input, 1, &found->node, &value, &unused);
   if (operand >= 0) (void)dvi__evaluate(graph, found->input, 1, &operand, &value, &unused);
@@ -205,8 +221,9 @@ static void describe(const culprit *found, const dvi__source *source, char *text
     (void)snprintf(text, size, "%s%s %s", prefix, part, what);
 }
 
-void dvi__function_blame(dvi__function *function, const dvi__source *source, int count, const double *const *x, int k,
-                         int of_series, char *text, size_t size, dvi__fault *fault)
+void dvi__function_blame(dvi__function *function, const dvi__source *source, int count,
+                         const double *const *x, int k, int of_series, char *text, size_t size,
+                         dvi__fault *fault)
 {
   culprit found = {.node = -1};
   const int passes = of_series ? SERIES + 1 : SERIES;

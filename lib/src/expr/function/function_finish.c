@@ -1,5 +1,5 @@
-/* What a sum stores and what it adds to: the first thing added to an entry is stored there, if it is alone in its kernel, and arrays that are stored in full
- * need not be zero before. */
+/* What a sum stores and what it adds to: the first thing added to an entry is stored there, if it
+ * is alone in its kernel, and arrays that are stored in full need not be zero before. */
 #include <limits.h>
 
 #include "expr/function/function_parts.h"

@@ -1,4 +1,5 @@
-/* Parts of sums: the program of a kernel's roots, what it reads, and columns of what depends on no variable, computed once for every element. */
+/* Parts of sums: the program of a kernel's roots, what it reads, and columns of what depends on no
+ * variable, computed once for every element. */
 #include <limits.h>
 #include <string.h>
 
@@ -45,11 +46,13 @@ static void mark_varying(maker *m)
   }
 }
 
-/* What takes one operation on a column is done each time: reading another column would take longer. */
+/* What takes one operation on a column is done each time: reading another column would take
+ * longer. */
 static int is_cheap(const maker *m, const dvi__graph_node *node)
 {
   if (node->op == DVI__OP_NEGATE || node->op == DVI__OP_SQUARE) return 1;
-  if (node->op != DVI__OP_ADD && node->op != DVI__OP_SUBTRACT && node->op != DVI__OP_MULTIPLY) return 0;
+  if (node->op != DVI__OP_ADD && node->op != DVI__OP_SUBTRACT && node->op != DVI__OP_MULTIPLY)
+    return 0;
   return is_constant(m, node->a) || is_constant(m, node->b);
 }
 
@@ -94,11 +97,14 @@ static const double *column_of(const maker *m, dvi__node n)
   return NULL;
 }
 
-/* Run a program of data inputs (nodes `data`) for all elements, a few at a time; its outputs go to columns. */
-static dvi_status run_columns(const maker *m, const dvi__program *program, const dvi__node *data, int count, double *const *column)
+/* Run a program of data inputs (nodes `data`) for all elements, a few at a time; its outputs go to
+ * columns. */
+static dvi_status run_columns(const maker *m, const dvi__program *program, const dvi__node *data,
+                              int count, double *const *column)
 {
   const int width = DVI__LANES, inputs = program->input_count;
-  double *rows = dvi__heap_take((size_t)program->row_count + (size_t)inputs, (size_t)width * sizeof *rows);
+  double *rows = dvi__heap_take((size_t)program->row_count + (size_t)inputs,
+                                (size_t)width * sizeof *rows);
   const double **input = dvi__heap_take((size_t)inputs + 1, sizeof *input);
   if (rows == NULL || input == NULL) {
     dvi__heap_free(rows);
@@ -112,10 +118,12 @@ static dvi_status run_columns(const maker *m, const dvi__program *program, const
     const int left = m->kernel->elements - first;
     for (int i = 0; i < inputs; i++)
       for (int k = 0; k < width; k++)
-        rows[i * width + k] = m->kernel->input[node_of(m, data[i])->a].data[k < left ? first + k : m->kernel->elements - 1];
+        rows[i * width + k] = m->kernel->input[node_of(m, data[i])->a]
+                                  .data[k < left ? first + k : m->kernel->elements - 1];
     dvi__program_run(program, width, input, registers);
     for (int c = 0; c < count; c++)
-      memcpy(column[c] + first, outputs + (ptrdiff_t)c * width, (size_t)(left < width ? left : width) * sizeof **column);
+      memcpy(column[c] + first, outputs + (ptrdiff_t)c * width,
+             (size_t)(left < width ? left : width) * sizeof **column);
   }
   dvi__heap_free(rows);
   dvi__heap_free((void *)input);
@@ -140,7 +148,8 @@ static int data_nodes(const maker *m, dvi__node *data)
 {
   int count = 0;
   for (dvi__node n = 0; n < m->count; n++)
-    if (node_of(m, n)->op == DVI__OP_INPUT && m->kernel->input[node_of(m, n)->a].is_data) data[count++] = n;
+    if (node_of(m, n)->op == DVI__OP_INPUT && m->kernel->input[node_of(m, n)->a].is_data)
+      data[count++] = n;
   return count;
 }
 
@@ -150,7 +159,8 @@ static dvi_status compute_columns(maker *m, int count, const dvi__node *node)
   double **value = dvi__heap_take((size_t)count + 1, sizeof *value);
   dvi__program program = {0};
   dvi_status status = data != NULL && value != NULL ? DVI_OK : DVI_NO_MEMORY;
-  if (status == DVI_OK) status = dvi__program_make(m->kernel->graph, data_nodes(m, data), data, count, node, &program);
+  if (status == DVI_OK)
+    status = dvi__program_make(m->kernel->graph, data_nodes(m, data), data, count, node, &program);
   dvi__column *const before = m->derivatives->column;
   if (status == DVI_OK) status = keep_columns(m, count, node, value);
   if (status == DVI_OK) status = run_columns(m, &program, data, count, value);
@@ -181,16 +191,20 @@ static dvi_status make_columns(maker *m)
 static dvi_status point_at_rows(maker *m)
 {
   dvi__part *part = m->part;
-  part->block = dvi__arena_take(&m->function->arena, (size_t)part->variable_count, sizeof *part->block);
-  part->variable = dvi__arena_take(&m->function->arena, (size_t)part->variable_count, sizeof *part->variable);
-  part->column = dvi__arena_take(&m->function->arena, (size_t)part->column_count, sizeof *part->column);
+  part->block = dvi__arena_take(&m->function->arena, (size_t)part->variable_count,
+                                sizeof *part->block);
+  part->variable = dvi__arena_take(&m->function->arena, (size_t)part->variable_count,
+                                   sizeof *part->variable);
+  part->column = dvi__arena_take(&m->function->arena, (size_t)part->column_count,
+                                 sizeof *part->column);
   if (part->block == NULL || part->variable == NULL || part->column == NULL) return DVI_NO_MEMORY;
   for (int i = 0; i < part->variable_count; i++) {
     const int input = node_of(m, m->given[i])->a;
     part->block[i] = m->kernel->input[input].block;
     part->variable[i] = m->derivatives->place[input];
   }
-  for (int c = 0; c < part->column_count; c++) part->column[c] = column_of(m, m->given[part->variable_count + c]);
+  for (int c = 0; c < part->column_count; c++)
+    part->column[c] = column_of(m, m->given[part->variable_count + c]);
   return DVI_OK;
 }
 
@@ -201,8 +215,8 @@ static dvi_status make(maker *m, int root_count, const dvi__node *root)
   dvi_status status = make_columns(m);
   if (status == DVI_OK) status = point_at_rows(m);
   if (status != DVI_OK) return status;
-  status = dvi__program_make(m->kernel->graph, m->part->variable_count + m->part->column_count, m->given, root_count, root,
-                             &m->part->program);
+  status = dvi__program_make(m->kernel->graph, m->part->variable_count + m->part->column_count,
+                             m->given, root_count, root, &m->part->program);
   return status == DVI_OK ? dvi__part_plan(m->part) : status;
 }
 
@@ -222,7 +236,8 @@ static dvi__node without_sign(const maker *m, dvi__node root, int *negative)
   return *negative ? node_of(m, root)->a : root;
 }
 
-/* Point targets at outputs; equal roots share one. Leaves the different ones, signs left out, in `root`. */
+/* Point targets at outputs; equal roots share one. Leaves the different ones, signs left out, in
+ * `root`. */
 static dvi_status find_outputs(const maker *m, dvi__node *root, int *output_count)
 {
   int *output = dvi__heap_take((size_t)m->count + 1, sizeof *output); /* of a node, plus 1 */
@@ -245,15 +260,19 @@ static dvi_status find_outputs(const maker *m, dvi__node *root, int *output_coun
 static int is_beside(const dvi__destination *target)
 {
   const dvi__places *own = &target[0].entry.minor, *next = &target[1].entry.minor;
-  return target[0].entry.scale == 0 && target[1].entry.scale == 0 && target[0].array == target[1].array &&
-         target[0].negative == target[1].negative && !target[0].mirrored && !target[1].mirrored && own->list == next->list &&
-         own->stride == next->stride && next->start == own->start + 1 && target[1].output == target[0].output + 1;
+  return target[0].entry.scale == 0 && target[1].entry.scale == 0 &&
+         target[0].array == target[1].array && target[0].negative == target[1].negative &&
+         !target[0].mirrored && !target[1].mirrored && own->list == next->list &&
+         own->stride == next->stride && next->start == own->start + 1 &&
+         target[1].output == target[0].output + 1;
 }
 
 static void find_groups(const dvi__part *part)
 {
   for (int k = 0, group; k < part->target_count; k += group) {
-    for (group = 1; group < 3 && k + group < part->target_count && is_beside(&part->target[k + group - 1]);) group++;
+    for (group = 1;
+         group < 3 && k + group < part->target_count && is_beside(&part->target[k + group - 1]);)
+      group++;
     for (int i = 0; i < group; i++) part->target[k + i].group = group - i;
   }
 }
@@ -261,20 +280,25 @@ static void find_groups(const dvi__part *part)
 /* A place for another part; NULL: no memory. */
 static dvi__part *next_part(dvi__function *function, dvi__sum *sum)
 {
-  dvi__part *part = dvi__arena_grow(&function->arena, sum->part, (size_t)sum->part_count, sizeof *part);
+  dvi__part *part = dvi__arena_grow(&function->arena, sum->part, (size_t)sum->part_count,
+                                    sizeof *part);
   if (part == NULL) return NULL;
   sum->part = part;
   return &sum->part[sum->part_count++];
 }
 
-dvi_status dvi__sum_extend(dvi__function *function, dvi__sum *sum, int k, int root_count, dvi__node *root, dvi__destination *target)
+dvi_status dvi__sum_extend(dvi__function *function, dvi__sum *sum, int k, int root_count,
+                           dvi__node *root, dvi__destination *target)
 {
   const dvi__kernel *kernel = &function->kernel[k];
   if (root_count == 0 || kernel->elements == 0) return DVI_OK;
   dvi__part *part = next_part(function, sum);
   if (part == NULL) return DVI_NO_MEMORY;
   *part = (dvi__part){.kernel = kernel, .target_count = root_count, .target = target};
-  maker m = {.function = function, .kernel = kernel, .derivatives = &function->derivatives[k], .part = part};
+  maker m = {.function = function,
+             .kernel = kernel,
+             .derivatives = &function->derivatives[k],
+             .part = part};
   for (int i = 0; i < root_count; i++)
     if (root[i] >= m.count) m.count = root[i] + 1;
   m.mark = dvi__heap_take((size_t)m.count + 1, sizeof *m.mark);

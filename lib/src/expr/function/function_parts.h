@@ -1,8 +1,9 @@
 /* What a function is made of; shared by function*.c.
  *
- * Elements go through programs in tiles: some units of elements times some points are the lanes of a row, the points of an element side by side. Results
- * are added up unit by unit, in a unit output by output, and in an output by the elements' order, or, where all elements of a unit add to one entry, by
- * halves: the order is a matter of the elements alone. */
+ * Elements go through programs in tiles: some units of elements times some points are the lanes of
+ * a row, the points of an element side by side. Results are added up unit by unit, in a unit output
+ * by output, and in an output by the elements' order, or, where all elements of a unit add to one
+ * entry, by halves: the order is a matter of the elements alone. */
 #ifndef DVI_SCENE_FUNCTION_PARTS_H
 #define DVI_SCENE_FUNCTION_PARTS_H
 #include <pthread.h>
@@ -31,22 +32,26 @@ typedef struct dvi__entries {
   int scale;
 } dvi__entries;
 
-/* Where an output is added, or subtracted: to entries of an array of the result, and, if it stands for both triangles, to their mirror images. */
+/* Where an output is added, or subtracted: to entries of an array of the result, and, if it stands
+ * for both triangles, to their mirror images. */
 typedef struct dvi__destination {
   int output, negative;
-  int group; /* so many targets, from this one on, are added side by side: the coordinates of a point; 1, 2 or 3 */
+  int group; /* so many targets, from this one on, are added side by side: the coordinates of a
+                point; 1, 2 or 3 */
   int array, mirrored;
   int sets; /* 1: the first and only thing that is added so far to where it goes: it is stored */
   dvi__entries entry, mirror;
   ptrdiff_t single, single_mirror; /* these entries, of the only element */
 } dvi__destination;
 
-/* A kernel's share in a sum, or some of it. Its program reads a row for each of the variables (inputs of the kernel), then one for each column. */
+/* A kernel's share in a sum, or some of it. Its program reads a row for each of the variables
+ * (inputs of the kernel), then one for each column. */
 typedef struct dvi__part {
   const dvi__kernel *kernel;
   dvi__program program;
   int variable_count, column_count, target_count;
-  int unit, lanes, large;   /* elements of a unit; most lanes of a tile; 1: not in the nearest cache */
+  int unit, lanes;          /* elements of a unit; most lanes of a tile */
+  int large;                /* 1: not in the nearest cache */
   dvi__block *block;        /* [variable_count] */
   dvi__places *variable;    /* [variable_count] */
   const double **column;    /* [column_count], [elements] each: what depends on no variable */
@@ -112,7 +117,8 @@ typedef struct dvi__track {
 
 static inline dvi__track dvi__track_of(const dvi__places *places, int first)
 {
-  if (places->list == NULL) return (dvi__track){NULL, places->start + places->stride * first, places->stride};
+  if (places->list == NULL)
+    return (dvi__track){NULL, places->start + places->stride * first, places->stride};
   const int stride = places->stride_of[first / DVI__UNIT];
   if (stride == DVI__IRREGULAR) return (dvi__track){places->list + first, places->start, 0};
   return (dvi__track){NULL, places->start + places->list[first], stride};
@@ -127,7 +133,8 @@ static inline int dvi__place_at(const dvi__places *places, int e)
 /* The entry of element e. */
 static inline ptrdiff_t dvi__entry_at(const dvi__entries *entries, int e)
 {
-  return dvi__place_at(&entries->minor, e) + (ptrdiff_t)entries->scale * dvi__place_at(&entries->major, e);
+  return dvi__place_at(&entries->minor, e) +
+         (ptrdiff_t)entries->scale * dvi__place_at(&entries->major, e);
 }
 
 /* Choose the size of a part's tiles; DVI_BAD_SIZE: its rows leave no room for a unit. */
@@ -147,27 +154,32 @@ const int *dvi__strides(dvi__arena *arena, int elements, const int *list);
 /* Add the sum at `count` points to result[array], [entries * count]. */
 void dvi__sum_add(const dvi__sum *sum, int count, const double *const *x, double *const *result);
 
-/* Add its Taylor coefficients, `count` of them, along a curve: coefficient k of a block's variable i is at x[block][k*block_size[block] + i], that of entry e of an array
- * at result[array][k*size[array] + e]. DVI_BAD_SIZE: the rows of a program do not fit. */
-dvi_status dvi__sum_add_series(const dvi__sum *sum, int count, const int *block_size, const double *const *x, const int *size,
-                               double *const *result);
+/* Add its Taylor coefficients, `count` of them, along a curve: coefficient k of a block's variable
+ * i is at x[block][k*block_size[block] + i], that of entry e of an array at
+ * result[array][k*size[array] + e]. DVI_BAD_SIZE: the rows of a program do not fit. */
+dvi_status dvi__sum_add_series(const dvi__sum *sum, int count, const int *block_size,
+                               const double *const *x, const int *size, double *const *result);
 
-/* Take the lock, and charge the function's ledger; the reverse, which tells memory that ran out from a full ledger: returns the status. */
+/* Take the lock, and charge the function's ledger; the reverse, which tells memory that ran out
+ * from a full ledger: returns the status. */
 void dvi__function_enter(dvi__function *function);
 dvi_status dvi__function_leave(dvi__function *function, dvi_status status);
 
 /* The same for a part of one element, not large, at DVI__LANES points or fewer. */
-void dvi__part_run_block(const dvi__part *part, int points, const double *const *x, double *const *result);
+void dvi__part_run_block(const dvi__part *part, int points, const double *const *x,
+                         double *const *result);
 
 /* The following want the lock. */
 
 /* An empty sum; NULL: no memory. */
 dvi__sum *dvi__sum_new(dvi__function *function);
-/* Add a part of kernel k: root[i] goes to target[i], which are kept; roots that are equal, but for the sign, become one output. */
-dvi_status dvi__sum_extend(dvi__function *function, dvi__sum *sum, int k, int root_count, dvi__node *root,
-                           dvi__destination *target);
+/* Add a part of kernel k: root[i] goes to target[i], which are kept; roots that are equal, but for
+ * the sign, become one output. */
+dvi_status dvi__sum_extend(dvi__function *function, dvi__sum *sum, int k, int root_count,
+                           dvi__node *root, dvi__destination *target);
 
-/* Find what need not be zero before the sum is added to arrays of so many entries a point, since it is stored there first. */
+/* Find what need not be zero before the sum is added to arrays of so many entries a point, since it
+ * is stored there first. */
 dvi_status dvi__sum_finish(dvi__sum *sum, int arrays, const int *entries);
 
 /* Find which second derivatives of kernel k there are; and the pattern of a pair. */

@@ -1,4 +1,5 @@
-/* Which second derivatives there are: of a kernel, and of all its elements together, as a matrix by compressed columns. */
+/* Which second derivatives there are: of a kernel, and of all its elements together, as a matrix by
+ * compressed columns. */
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,7 +13,8 @@ dvi_status dvi__find_pairs(dvi__function *function, int k)
   dvi__derivatives *own = &function->derivatives[k];
   if (own->pair_count >= 0) return DVI_OK;
   int(*found)[2] = NULL, count = 0;
-  dvi_status status = dvi__second_pattern(kernel->graph, kernel->root, kernel->input_count, &found, &count);
+  dvi_status status = dvi__second_pattern(kernel->graph, kernel->root, kernel->input_count, &found,
+                                          &count);
   if (status != DVI_OK) return status;
   own->pair = dvi__arena_take(&function->arena, (size_t)count, sizeof *own->pair);
   if (own->pair == NULL) status = DVI_NO_MEMORY;
@@ -27,14 +29,16 @@ dvi_status dvi__find_pairs(dvi__function *function, int k)
 /* Returns whether more are wanted. */
 typedef bool visitor(void *user, int row, int column);
 
-static inline bool visit_elements(int elements, const dvi__places *row, const dvi__places *column, visitor *visit, void *user)
+static inline bool visit_elements(int elements, const dvi__places *row, const dvi__places *column,
+                                  visitor *visit, void *user)
 {
   for (int e = 0; e < elements; e++)
     if (!visit(user, dvi__place_at(row, e), dvi__place_at(column, e))) return false;
   return true;
 }
 
-static inline bool visit_all(const dvi__function *function, dvi__pair pair, visitor *visit, void *user)
+static inline bool visit_all(const dvi__function *function, dvi__pair pair, visitor *visit,
+                             void *user)
 {
   dvi__block rows, columns;
   dvi__pair_blocks(pair, &rows, &columns);
@@ -46,7 +50,8 @@ static inline bool visit_all(const dvi__function *function, dvi__pair pair, visi
       if (kernel->input[i].is_data || kernel->input[j].is_data) continue;
       const dvi__block first = kernel->input[i].block, second = kernel->input[j].block;
       bool more = true;
-      if (first == rows && second == columns) more = visit_elements(kernel->elements, &own->place[i], &own->place[j], visit, user);
+      if (first == rows && second == columns)
+        more = visit_elements(kernel->elements, &own->place[i], &own->place[j], visit, user);
       if (more && second == rows && first == columns && i != j)
         more = visit_elements(kernel->elements, &own->place[j], &own->place[i], visit, user);
       if (!more) return false;
@@ -58,8 +63,9 @@ static inline bool visit_all(const dvi__function *function, dvi__pair pair, visi
 /* --- By bits, for matrices that are not much larger than what is added to them. --- */
 
 typedef struct bits {
-  size_t rows, count, enough; /* count: of bits that are set; enough: a pattern with more of them is full */
-  unsigned char *bit;         /* [rows * columns / 8] column by column */
+  size_t rows, count,
+      enough;         /* count: of bits that are set; enough: a pattern with more of them is full */
+  unsigned char *bit; /* [rows * columns / 8] column by column */
 } bits;
 
 static bool set_bit(void *user, int row, int column)
@@ -83,8 +89,8 @@ static void read_bits(const bits *all, int columns, int *start, int *row)
 }
 
 /* Room for a pattern, in the arena; or none if it is nearly full. */
-static dvi_status take_pattern(dvi__function *function, size_t cells, size_t entries, int columns, int **start, int **row,
-                               dvi__pair_pattern *known)
+static dvi_status take_pattern(dvi__function *function, size_t cells, size_t entries, int columns,
+                               int **start, int **row, dvi__pair_pattern *known)
 {
   *start = NULL;
   *row = NULL;
@@ -99,7 +105,8 @@ static dvi_status take_pattern(dvi__function *function, size_t cells, size_t ent
   return *start != NULL && *row != NULL ? DVI_OK : DVI_NO_MEMORY;
 }
 
-static dvi_status pattern_by_bits(dvi__function *function, dvi__pair pair, size_t rows, int columns, dvi__pair_pattern *known)
+static dvi_status pattern_by_bits(dvi__function *function, dvi__pair pair, size_t rows, int columns,
+                                  dvi__pair_pattern *known)
 {
   const size_t cells = rows * (size_t)columns;
   bits all = {rows, 0, cells / 2, dvi__heap_take(cells / 8 + 1, 1)};
@@ -156,10 +163,11 @@ static int sort_columns(const lists *all, int columns)
   return entries;
 }
 
-static dvi_status pattern_by_lists(dvi__function *function, dvi__pair pair, size_t rows, int columns, size_t visits,
-                                   dvi__pair_pattern *known)
+static dvi_status pattern_by_lists(dvi__function *function, dvi__pair pair, size_t rows,
+                                   int columns, size_t visits, dvi__pair_pattern *known)
 {
-  lists all = {dvi__heap_take((size_t)columns + 2, sizeof *all.start), dvi__heap_take(visits + 1, sizeof *all.row)};
+  lists all = {dvi__heap_take((size_t)columns + 2, sizeof *all.start),
+               dvi__heap_take(visits + 1, sizeof *all.row)};
   dvi_status status = all.start != NULL && all.row != NULL ? DVI_OK : DVI_NO_MEMORY;
   int *start = NULL, *row = NULL;
   if (status == DVI_OK) {
@@ -167,7 +175,8 @@ static dvi_status pattern_by_lists(dvi__function *function, dvi__pair pair, size
     for (int j = 0; j < columns; j++) all.start[j + 2] += all.start[j + 1];
     (void)visit_all(function, pair, append_entry, &all);
     const int entries = sort_columns(&all, columns);
-    status = take_pattern(function, rows * (size_t)columns, (size_t)entries, columns, &start, &row, known);
+    status = take_pattern(function, rows * (size_t)columns, (size_t)entries, columns, &start, &row,
+                          known);
   }
   if (status == DVI_OK && start != NULL) {
     memcpy(start, all.start, ((size_t)columns + 1) * sizeof *start);
@@ -191,9 +200,12 @@ static size_t count_visits(const dvi__function *function, dvi__pair pair)
     const dvi__kernel *kernel = &function->kernel[k];
     const dvi__derivatives *own = &function->derivatives[k];
     for (int e = 0; e < own->pair_count; e++) {
-      const dvi__kernel_input *first = &kernel->input[own->pair[e][0]], *second = &kernel->input[own->pair[e][1]];
-      if (first->is_data || second->is_data || dvi__pair_of(first->block, second->block) != pair) continue;
-      visits += (size_t)kernel->elements * (first->block == second->block && first != second ? 2 : 1);
+      const dvi__kernel_input *first = &kernel->input[own->pair[e][0]],
+                              *second = &kernel->input[own->pair[e][1]];
+      if (first->is_data || second->is_data || dvi__pair_of(first->block, second->block) != pair)
+        continue;
+      visits += (size_t)kernel->elements *
+                (first->block == second->block && first != second ? 2 : 1);
     }
   }
   return visits;
@@ -206,14 +218,16 @@ dvi_status dvi__find_pattern(dvi__function *function, dvi__pair pair)
   dvi_status status = DVI_OK;
   if (known->found) return DVI_OK;
   dvi__pair_blocks(pair, &rows, &columns);
-  for (int k = 0; k < function->kernel_count && status == DVI_OK; k++) status = dvi__find_pairs(function, k);
+  for (int k = 0; k < function->kernel_count && status == DVI_OK; k++)
+    status = dvi__find_pairs(function, k);
   if (status != DVI_OK) return status;
   const size_t height = (size_t)function->block_size[rows], visits = count_visits(function, pair);
   const size_t cells = height * (size_t)function->block_size[columns];
   if (cells <= 32 * visits && cells <= BITS_MAX)
     status = pattern_by_bits(function, pair, height, function->block_size[columns], &found);
   else
-    status = visits <= VISITS_MAX ? pattern_by_lists(function, pair, height, function->block_size[columns], visits, &found)
+    status = visits <= VISITS_MAX ? pattern_by_lists(function, pair, height,
+                                                     function->block_size[columns], visits, &found)
                                   : DVI_BAD_SIZE;
   if (status == DVI_OK) *known = found;
   return status;

@@ -1,4 +1,5 @@
-/* Evaluation: tiles of elements and points are gathered into rows, go through the kernel's program, and are added up. */
+/* Evaluation: tiles of elements and points are gathered into rows, go through the kernel's program,
+ * and are added up. */
 #include <string.h>
 
 #include "expr/function/function_parts.h"
@@ -10,31 +11,37 @@ enum {
   LARGE = DVI__ROWS_MAX * DVI__LANES
 };
 
-/* Elements first .. first + elements - 1 at points point .. point + points - 1 of count; so many elements a unit has. */
+/* Elements first .. first + elements - 1 at points point .. point + points - 1 of count; so many
+ * elements a unit has. */
 typedef struct tile {
   int first, elements, point, points, count;
 } tile;
 
-/* Up to a block of points their number is a constant to what follows: loops of known length need no preparation, which would cost more than their work. */
+/* Up to a block of points their number is a constant to what follows: loops of known length need no
+ * preparation, which would cost more than their work. */
 #define FEW_POINTS(X) X(1) X(2) X(3) X(4) X(5) X(6) X(7) X(8)
 
 /* --- Gather. --- */
 
 /* More than a block of points end with a block that overlaps the one before. */
-DVI__SCENE_INLINE void copy_points(const int points, const double *restrict from, double *restrict to)
+DVI__SCENE_INLINE void copy_points(const int points, const double *restrict from,
+                                   double *restrict to)
 {
   const int size = points < DVI__LANES ? points : DVI__LANES, last = points - size;
   for (int k = 0; k < last; k += DVI__LANES) memcpy(to + k, from + k, DVI__LANES * sizeof *to);
   memcpy(to + last, from + last, (size_t)size * sizeof *to);
 }
 
-/* Numbers of one point that follow each other by `step`. The compiler makes vectors of the steps that it knows. */
-DVI__SCENE_INLINE void copy_strided(int elements, ptrdiff_t step, const double *restrict from, double *restrict to)
+/* Numbers of one point that follow each other by `step`. The compiler makes vectors of the steps
+ * that it knows. */
+DVI__SCENE_INLINE void copy_strided(int elements, ptrdiff_t step, const double *restrict from,
+                                    double *restrict to)
 {
   for (int e = 0; e < elements; e++) to[e] = from[e * step];
 }
 
-DVI__SCENE_INLINE void gather_strided(int elements, ptrdiff_t step, const double *restrict from, double *restrict to)
+DVI__SCENE_INLINE void gather_strided(int elements, ptrdiff_t step, const double *restrict from,
+                                      double *restrict to)
 {
   switch (step) {
   case 0: copy_strided(elements, 0, from, to); break;
@@ -46,28 +53,33 @@ DVI__SCENE_INLINE void gather_strided(int elements, ptrdiff_t step, const double
 }
 
 /* The numbers of one unit; x is at the tile's first point. */
-DVI__SCENE_INLINE void gather_unit(const int points, dvi__track track, int elements, ptrdiff_t count, const double *restrict x,
-                                   double *restrict row)
+DVI__SCENE_INLINE void gather_unit(const int points, dvi__track track, int elements,
+                                   ptrdiff_t count, const double *restrict x, double *restrict row)
 {
   const ptrdiff_t step = track.stride * count;
   const double *restrict from = x + track.start * count;
   if (track.list != NULL)
-    for (int e = 0; e < elements; e++) copy_points(points, from + track.list[e] * count, row + (ptrdiff_t)e * points);
+    for (int e = 0; e < elements; e++)
+      copy_points(points, from + track.list[e] * count, row + (ptrdiff_t)e * points);
   else if (points == 1 && elements > 1)
     gather_strided(elements, step, from, row);
   else
-    for (int e = 0; e < elements; e++) copy_points(points, from + e * step, row + (ptrdiff_t)e * points);
+    for (int e = 0; e < elements; e++)
+      copy_points(points, from + e * step, row + (ptrdiff_t)e * points);
 }
 
-DVI__SCENE_INLINE void gather_variable(const int points, const dvi__places *places, const tile *at, const double *x, double *row)
+DVI__SCENE_INLINE void gather_variable(const int points, const dvi__places *places, const tile *at,
+                                       const double *x, double *row)
 {
   for (int e = 0; e < at->elements; e += DVI__UNIT) {
     const int elements = dvi__unit_size(at->elements, e);
-    gather_unit(points, dvi__track_of(places, at->first + e), elements, at->count, x, row + (ptrdiff_t)e * points);
+    gather_unit(points, dvi__track_of(places, at->first + e), elements, at->count, x,
+                row + (ptrdiff_t)e * points);
   }
 }
 
-DVI__SCENE_INLINE void gather_column(const int points, const double *restrict column, int elements, double *restrict row)
+DVI__SCENE_INLINE void gather_column(const int points, const double *restrict column, int elements,
+                                     double *restrict row)
 {
   for (int e = 0; e < elements; e++)
     for (int p = 0; p < points; p++) row[e * points + p] = column[e];
@@ -78,16 +90,20 @@ static const double *standing(const dvi__places *places, const tile *at, const d
 {
   if (places->list != NULL && at->elements > DVI__UNIT) return NULL;
   const dvi__track track = dvi__track_of(places, at->first);
-  if (track.list != NULL || (at->elements > 1 && (track.stride != 1 || at->points != at->count))) return NULL;
+  if (track.list != NULL || (at->elements > 1 && (track.stride != 1 || at->points != at->count)))
+    return NULL;
   return x + (ptrdiff_t)track.start * at->count;
 }
 
-/* Point input[] at the rows that the program reads. What does not stand ready as whole blocks is put below the registers, the last one first: the idle lanes of each
- * are filled by one block too many. */
-DVI__SCENE_INLINE void gather_points(const int points, const dvi__part *part, const tile *at, const double *const *x,
-                                     const double **input, double *registers)
+/* Point input[] at the rows that the program reads. What does not stand ready as whole blocks is
+ * put below the registers, the last one first: the idle lanes of each are filled by one block too
+ * many. */
+DVI__SCENE_INLINE void gather_points(const int points, const dvi__part *part, const tile *at,
+                                     const double *const *x, const double **input,
+                                     double *registers)
 {
-  const int lanes = at->elements * points, width = dvi__row_width(lanes), whole = lanes == width && lanes > DVI__LANES;
+  const int lanes = at->elements * points, width = dvi__row_width(lanes),
+            whole = lanes == width && lanes > DVI__LANES;
   double *row = registers - (ptrdiff_t)part->program.input_count * width;
   for (int i = part->program.input_count - 1; i >= 0; i--, row += width) {
     const int c = i - part->variable_count;
@@ -105,8 +121,8 @@ DVI__SCENE_INLINE void gather_points(const int points, const dvi__part *part, co
   }
 }
 
-DVI__SCENE_LANES static void gather(const dvi__part *part, const tile *at, const double *const *x, const double **input,
-                                    double *registers)
+DVI__SCENE_LANES static void gather(const dvi__part *part, const tile *at, const double *const *x,
+                                    const double **input, double *registers)
 {
   switch (at->points) {
 #define GATHER(points) \
@@ -119,7 +135,8 @@ DVI__SCENE_LANES static void gather(const dvi__part *part, const tile *at, const
 
 /* --- Scatter: `sign` is 1 or -1. --- */
 
-DVI__SCENE_INLINE void add_points(const int points, double sign, const double *restrict row, double *restrict to)
+DVI__SCENE_INLINE void add_points(const int points, double sign, const double *restrict row,
+                                  double *restrict to)
 {
   const int size = points < DVI__LANES ? points : DVI__LANES, last = points - size;
   double end[DVI__LANES];
@@ -130,7 +147,8 @@ DVI__SCENE_INLINE void add_points(const int points, double sign, const double *r
 }
 
 /* Eight at a time: the ends of longer loops are foreseen more often. */
-DVI__SCENE_INLINE void add_strided(int elements, double sign, ptrdiff_t step, const double *restrict row, double *restrict to)
+DVI__SCENE_INLINE void add_strided(int elements, double sign, ptrdiff_t step,
+                                   const double *restrict row, double *restrict to)
 {
   int e = 0;
   for (; e + DVI__LANES <= elements; e += DVI__LANES, to += DVI__LANES * step)
@@ -138,9 +156,10 @@ DVI__SCENE_INLINE void add_strided(int elements, double sign, ptrdiff_t step, co
   for (; e < elements; e++, to += step) *to += sign * row[e];
 }
 
-/* An entry that follows itself in the list, as that of the first body of pairs does, waits in a register. */
-DVI__SCENE_INLINE void add_listed(int elements, double sign, const int *restrict list, ptrdiff_t count, const double *restrict row,
-                                  double *to)
+/* An entry that follows itself in the list, as that of the first body of pairs does, waits in a
+ * register. */
+DVI__SCENE_INLINE void add_listed(int elements, double sign, const int *restrict list,
+                                  ptrdiff_t count, const double *restrict row, double *to)
 {
   ptrdiff_t at = list[0] * count;
   double sum = to[at];
@@ -155,42 +174,49 @@ DVI__SCENE_INLINE void add_listed(int elements, double sign, const int *restrict
   to[at] = sum;
 }
 
-DVI__SCENE_INLINE void add_unit(const int points, dvi__track track, int elements, ptrdiff_t count, double sign,
-                                const double *restrict row, double *restrict result)
+DVI__SCENE_INLINE void add_unit(const int points, dvi__track track, int elements, ptrdiff_t count,
+                                double sign, const double *restrict row, double *restrict result)
 {
   const ptrdiff_t step = track.stride * count;
   double *restrict to = result + track.start * count;
   if (track.list != NULL && points == 1)
     add_listed(elements, sign, track.list, count, row, to);
   else if (track.list != NULL)
-    for (int e = 0; e < elements; e++) add_points(points, sign, row + (ptrdiff_t)e * points, to + track.list[e] * count);
+    for (int e = 0; e < elements; e++)
+      add_points(points, sign, row + (ptrdiff_t)e * points, to + track.list[e] * count);
   else if (track.stride == 1 && points == count && elements > 1)
     for (int k = 0; k < elements * points; k++) to[k] += sign * row[k];
   else if (points == 1)
     add_strided(elements, sign, step, row, to);
   else
-    for (int e = 0; e < elements; e++) add_points(points, sign, row + (ptrdiff_t)e * points, to + e * step);
+    for (int e = 0; e < elements; e++)
+      add_points(points, sign, row + (ptrdiff_t)e * points, to + e * step);
 }
 
 /* The sum of all elements' numbers, by halves; `sum` [DVI__LANES_MAX] has room for half of them. */
 DVI__SCENE_INLINE void fold(int elements, int points, const double *restrict row, double *sum)
 {
   int left = (elements + 1) / 2, others = (elements - left) * points;
-  for (int k = 0; k < left * points; k++) sum[k] = k < others ? row[k] + row[left * points + k] : row[k];
+  for (int k = 0; k < left * points; k++)
+    sum[k] = k < others ? row[k] + row[left * points + k] : row[k];
   for (; left > 1; left = (left + 1) / 2) {
     const int half = (left + 1) / 2;
     const double *restrict upper = sum + (ptrdiff_t)half * points;
     double *restrict lower = sum;
     others = (left - half) * points;
     DVI__SCENE_INDEPENDENT
-    for (int k = 0; k < others; k++) lower[k] += upper[k]; /* NOLINT(clang-analyzer-core.uninitialized.Assign): filled above */
+    for (int k = 0; k < others; k++)
+      lower[k] += upper[k]; /* NOLINT(clang-analyzer-core.uninitialized.Assign): filled above */
   }
 }
 
-/* A unit of points of two or three coordinates, which stand side by side; rows are `pitch` apart. */
-DVI__SCENE_INLINE void add_coordinates(const int group, double sign, ptrdiff_t pitch, const double *row, double *restrict to)
+/* A unit of points of two or three coordinates, which stand side by side; rows are `pitch`
+ * apart. */
+DVI__SCENE_INLINE void add_coordinates(const int group, double sign, ptrdiff_t pitch,
+                                       const double *row, double *restrict to)
 {
-  const double *restrict x = row, *restrict y = row + pitch, *restrict z = row + (group - 1) * pitch;
+  const double *restrict x = row, *restrict y = row + pitch,
+                         *restrict z = row + (group - 1) * pitch;
   for (int e = 0; e < DVI__UNIT; e++) {
     to[group * e] += sign * x[e];
     if (group == 3) to[3 * e + 1] += sign * y[e];
@@ -203,14 +229,17 @@ static int place_in(const dvi__track *track, int e)
   return track->start + (track->list != NULL ? track->list[e] : track->stride * e);
 }
 
-/* The track of entries minor + scale * major; `list` [DVI__UNIT] is for those that have no stride. */
-DVI__SCENE_INLINE dvi__track entry_track(const dvi__entries *entries, int first, int elements, int *list)
+/* The track of entries minor + scale * major; `list` [DVI__UNIT] is for those that have no
+ * stride. */
+DVI__SCENE_INLINE dvi__track entry_track(const dvi__entries *entries, int first, int elements,
+                                         int *list)
 {
   const dvi__track minor = dvi__track_of(&entries->minor, first);
   if (entries->scale == 0) return minor;
   const dvi__track major = dvi__track_of(&entries->major, first);
   if (minor.list == NULL && major.list == NULL)
-    return (dvi__track){NULL, minor.start + entries->scale * major.start, minor.stride + entries->scale * major.stride};
+    return (dvi__track){NULL, minor.start + entries->scale * major.start,
+                        minor.stride + entries->scale * major.stride};
   int e = 0;
   do list[e] = place_in(&minor, e) + entries->scale * place_in(&major, e);
   while (++e < elements);
@@ -218,8 +247,9 @@ DVI__SCENE_INLINE dvi__track entry_track(const dvi__entries *entries, int first,
 }
 
 /* Add a unit's row to its entries. */
-DVI__SCENE_INLINE void scatter_unit(const int points, const dvi__entries *entries, int first, int elements, int count, double sign,
-                                    const double *row, double *result)
+DVI__SCENE_INLINE void scatter_unit(const int points, const dvi__entries *entries, int first,
+                                    int elements, int count, double sign, const double *row,
+                                    double *result)
 {
   int list[DVI__UNIT];
   double sum[DVI__LANES_MAX];
@@ -235,9 +265,10 @@ DVI__SCENE_INLINE void scatter_unit(const int points, const dvi__entries *entrie
   add_unit(points, track, elements, count, sign, row, result);
 }
 
-/* Add a full unit of a group of targets at one point, if they lie so. Returns how many targets that were. */
-DVI__SCENE_INLINE int scatter_group(const dvi__destination *target, int first, ptrdiff_t pitch, double sign, const double *row,
-                                    double *result)
+/* Add a full unit of a group of targets at one point, if they lie so. Returns how many targets that
+ * were. */
+DVI__SCENE_INLINE int scatter_group(const dvi__destination *target, int first, ptrdiff_t pitch,
+                                    double sign, const double *row, double *result)
 {
   const dvi__track track = dvi__track_of(&target->entry.minor, first);
   const int group = target->group;
@@ -249,8 +280,8 @@ DVI__SCENE_INLINE int scatter_group(const dvi__destination *target, int first, p
   return group;
 }
 
-DVI__SCENE_INLINE void scatter_points(const int points, const dvi__part *part, const tile *at, const double *outputs,
-                                      double *const *result)
+DVI__SCENE_INLINE void scatter_points(const int points, const dvi__part *part, const tile *at,
+                                      const double *outputs, double *const *result)
 {
   const int width = dvi__row_width(at->elements * points);
   for (int e = 0; e < at->elements; e += DVI__UNIT) {
@@ -260,16 +291,20 @@ DVI__SCENE_INLINE void scatter_points(const int points, const dvi__part *part, c
       const double *row = outputs + (ptrdiff_t)target->output * width + (ptrdiff_t)e * points;
       const double sign = target->negative ? -1.0 : 1.0;
       double *to = result[target->array] + at->point;
-      added = points == 1 && at->count == 1 && elements == DVI__UNIT ? scatter_group(target, first, width, sign, row, to) : 0;
+      added = points == 1 && at->count == 1 && elements == DVI__UNIT
+                  ? scatter_group(target, first, width, sign, row, to)
+                  : 0;
       if (added > 0) continue;
       for (int m = 0; m <= target->mirrored; m++)
-        scatter_unit(points, m ? &target->mirror : &target->entry, first, elements, at->count, sign, row, to);
+        scatter_unit(points, m ? &target->mirror : &target->entry, first, elements, at->count, sign,
+                     row, to);
       added = 1;
     }
   }
 }
 
-DVI__SCENE_LANES static void scatter(const dvi__part *part, const tile *at, const double *outputs, double *const *result)
+DVI__SCENE_LANES static void scatter(const dvi__part *part, const tile *at, const double *outputs,
+                                     double *const *result)
 {
   switch (at->points) {
 #define SCATTER(points) \
@@ -282,7 +317,8 @@ DVI__SCENE_LANES static void scatter(const dvi__part *part, const tile *at, cons
 
 /* --- Tiles. --- */
 
-/* The shape of tiles at so many points: as many points as fit beside a unit, then as many units as fit. */
+/* The shape of tiles at so many points: as many points as fit beside a unit, then as many units as
+ * fit. */
 static tile shape_of(const dvi__part *part, int count)
 {
   const int unit = part->unit;
@@ -291,18 +327,21 @@ static tile shape_of(const dvi__part *part, int count)
     if (unit < part->kernel->elements) shape.elements = part->lanes / (unit * count) * unit;
     return shape;
   }
-  const int most = part->lanes / unit, chunks = (count + most - 1) / most, even = (count + chunks - 1) / chunks;
+  const int most = part->lanes / unit, chunks = (count + most - 1) / most,
+            even = (count + chunks - 1) / chunks;
   if (most < DVI__LANES)
     shape.points = even;
   else
-    shape.points = dvi__row_width(even) <= most ? dvi__row_width(even) : most / DVI__LANES * DVI__LANES;
+    shape.points = dvi__row_width(even) <= most ? dvi__row_width(even)
+                                                : most / DVI__LANES * DVI__LANES;
   return shape;
 }
 
-static void run_tile(const dvi__part *part, const tile *at, const double *const *x, double *const *result, const double **input,
-                     double *memory)
+static void run_tile(const dvi__part *part, const tile *at, const double *const *x,
+                     double *const *result, const double **input, double *memory)
 {
-  const int lanes = at->elements * at->points, width = dvi__row_width(lanes), outputs = part->program.output_count;
+  const int lanes = at->elements * at->points, width = dvi__row_width(lanes),
+            outputs = part->program.output_count;
   double *registers = memory + (ptrdiff_t)part->program.input_count * width;
   gather(part, at, x, input, registers);
   if (width == DVI__LANES)
@@ -312,8 +351,8 @@ static void run_tile(const dvi__part *part, const tile *at, const double *const 
   scatter(part, at, registers + (ptrdiff_t)(part->program.row_count - outputs) * width, result);
 }
 
-static void run_tiles(const dvi__part *part, const tile *shape, const double *const *x, double *const *result, const double **input,
-                      double *memory)
+static void run_tiles(const dvi__part *part, const tile *shape, const double *const *x,
+                      double *const *result, const double **input, double *memory)
 {
   const int all = part->kernel->elements;
   tile at = *shape;
@@ -326,15 +365,18 @@ static void run_tiles(const dvi__part *part, const tile *shape, const double *co
   }
 }
 
-/* Aligned to pages: the processor compares addresses within a page first, and times would depend on where the stack happens to begin. */
-static void run_small(const dvi__part *part, const tile *shape, const double *const *x, double *const *result)
+/* Aligned to pages: the processor compares addresses within a page first, and times would depend on
+ * where the stack happens to begin. */
+static void run_small(const dvi__part *part, const tile *shape, const double *const *x,
+                      double *const *result)
 {
   _Alignas(4096) double memory[SMALL];
   const double *input[SMALL / DVI__LANES];
   run_tiles(part, shape, x, result, input, memory);
 }
 
-static void run_large(const dvi__part *part, const tile *shape, const double *const *x, double *const *result)
+static void run_large(const dvi__part *part, const tile *shape, const double *const *x,
+                      double *const *result)
 {
   _Alignas(64) double memory[LARGE];
   const double *input[DVI__ROWS_MAX];
@@ -344,7 +386,8 @@ static void run_large(const dvi__part *part, const tile *shape, const double *co
 /* Lanes of a tile of which so many numbers are wanted at most. */
 static int lanes_for(const dvi__part *part, int numbers)
 {
-  const int lanes = numbers / (part->program.row_count + part->program.input_count) / DVI__LANES * DVI__LANES;
+  const int lanes = numbers / (part->program.row_count + part->program.input_count) / DVI__LANES *
+                    DVI__LANES;
   return lanes < DVI__LANES_MAX ? lanes : DVI__LANES_MAX;
 }
 
@@ -364,12 +407,15 @@ dvi_status dvi__part_plan(dvi__part *part)
 /* Tiles are added: what is to be stored is added to zero. */
 static void clear(const dvi__part *part, int count, double *const *result)
 {
-  for (const dvi__destination *target = part->target; target < part->target + part->target_count; target++)
+  for (const dvi__destination *target = part->target; target < part->target + part->target_count;
+       target++)
     for (int m = 0; target->sets && m <= target->mirrored; m++)
-      memset(result[target->array] + (m ? target->single_mirror : target->single) * count, 0, (size_t)count * sizeof **result);
+      memset(result[target->array] + (m ? target->single_mirror : target->single) * count, 0,
+             (size_t)count * sizeof **result);
 }
 
-static void run_part(const dvi__part *part, int count, const double *const *x, double *const *result)
+static void run_part(const dvi__part *part, int count, const double *const *x,
+                     double *const *result)
 {
   const tile shape = shape_of(part, count);
   if (part->kernel->elements == 1) clear(part, count, result);

@@ -5,8 +5,10 @@
 
 enum { NUMBERS = DVI__ROWS_MAX * DVI__LANES };
 
-/* Row i stands `i + 1` rows below the registers. What depends on no variable is a series of one coefficient. */
-static void gather(const dvi__part *part, int e, int count, const int *block_size, const double *const *x, double *registers)
+/* Row i stands `i + 1` rows below the registers. What depends on no variable is a series of one
+ * coefficient. */
+static void gather(const dvi__part *part, int e, int count, const int *block_size,
+                   const double *const *x, double *registers)
 {
   double *row = registers;
   for (int i = 0; i < part->variable_count; i++) {
@@ -22,10 +24,13 @@ static void gather(const dvi__part *part, int e, int count, const int *block_siz
   }
 }
 
-static void scatter(const dvi__part *part, int e, int count, const int *size, const double *outputs, double *const *result)
+static void scatter(const dvi__part *part, int e, int count, const int *size, const double *outputs,
+                    double *const *result)
 {
-  for (const dvi__destination *target = part->target; target < part->target + part->target_count; target++) {
-    const double sign = target->negative ? -1.0 : 1.0, *row = outputs + (ptrdiff_t)target->output * count;
+  for (const dvi__destination *target = part->target; target < part->target + part->target_count;
+       target++) {
+    const double sign = target->negative ? -1.0 : 1.0,
+                 *row = outputs + (ptrdiff_t)target->output * count;
     for (int m = 0; m <= target->mirrored; m++) {
       double *to = result[target->array] + dvi__entry_at(m ? &target->mirror : &target->entry, e);
       for (int k = 0; k < count; k++) to[(ptrdiff_t)k * size[target->array]] += sign * row[k];
@@ -33,8 +38,8 @@ static void scatter(const dvi__part *part, int e, int count, const int *size, co
   }
 }
 
-dvi_status dvi__sum_add_series(const dvi__sum *sum, int count, const int *block_size, const double *const *x, const int *size,
-                               double *const *result)
+dvi_status dvi__sum_add_series(const dvi__sum *sum, int count, const int *block_size,
+                               const double *const *x, const int *size, double *const *result)
 {
   _Alignas(64) double memory[NUMBERS];
   for (int p = 0; p < sum->part_count; p++) {
@@ -42,7 +47,8 @@ dvi_status dvi__sum_add_series(const dvi__sum *sum, int count, const int *block_
     const dvi__program *program = &part->program;
     if (program->row_count + program->input_count > NUMBERS / count) return DVI_BAD_SIZE;
     double *registers = memory + (ptrdiff_t)program->input_count * count;
-    const double *outputs = registers + (ptrdiff_t)(program->row_count - program->output_count) * count;
+    const double *outputs = registers +
+                            (ptrdiff_t)(program->row_count - program->output_count) * count;
     for (int e = 0; e < part->kernel->elements; e++) {
       gather(part, e, count, block_size, x, registers);
       dvi__program_run_series(program, count - 1, registers);

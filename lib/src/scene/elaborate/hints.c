@@ -15,26 +15,30 @@ static const char *find(int count, const slip *list, const char *word)
 }
 
 static const slip functions[] = {
-    {"ln", "log(x)"},       {"e", "exp(x)"},           {"pow", "x^y"},           {"arcsin", "asin(x)"},   {"arccos", "acos(x)"},
-    {"arctan", "atan(x)"},  {"arctan2", "atan2(y,x)"}, {"diff", "x', the rate"}, {"der", "x', the rate"}, {"fabs", "abs(x)"},
-    {"arsinh", "asinh(x)"}, {"arcosh", "acosh(x)"},    {"artanh", "atanh(x)"},
+    {"ln", "log(x)"},          {"e", "exp(x)"},          {"pow", "x^y"},
+    {"arcsin", "asin(x)"},     {"arccos", "acos(x)"},    {"arctan", "atan(x)"},
+    {"arctan2", "atan2(y,x)"}, {"diff", "x', the rate"}, {"der", "x', the rate"},
+    {"fabs", "abs(x)"},        {"arsinh", "asinh(x)"},   {"arcosh", "acosh(x)"},
+    {"artanh", "atanh(x)"},
 };
 
 /* How the rate or the momentum of a coordinate is called where there are no primes. */
 static const struct {
   const char *before, *after, *open, *close;
 } rates[] = {
-    {"", "_dot", "", "'"}, {"", "dot", "", "'"}, {"v_", "", "", "'"}, {"d", "", "", "'"}, {"v", "", "", "'"}, {"p_", "", "p(", ")"},
+    {"", "_dot", "", "'"}, {"", "dot", "", "'"}, {"v_", "", "", "'"},
+    {"d", "", "", "'"},    {"v", "", "", "'"},   {"p_", "", "p(", ")"},
 };
 
 enum { NAME_SIZE = 48 };
 
 /* The coordinate in a name of the form before..after; 0: none. */
-static int coordinate_in(const dvi__names *names, const char *name, const char *before, const char *after, char *coordinate)
+static int coordinate_in(const dvi__names *names, const char *name, const char *before,
+                         const char *after, char *coordinate)
 {
   const size_t length = strlen(name), head = strlen(before), tail = strlen(after);
-  if (length <= head + tail || length - head - tail >= NAME_SIZE || strncmp(name, before, head) != 0 ||
-      strcmp(name + length - tail, after) != 0)
+  if (length <= head + tail || length - head - tail >= NAME_SIZE ||
+      strncmp(name, before, head) != 0 || strcmp(name + length - tail, after) != 0)
     return 0;
   (void)snprintf(coordinate, NAME_SIZE, "%.*s", (int)(length - head - tail), name + head);
   const dvi__name *found = dvi__names_find(names, coordinate);

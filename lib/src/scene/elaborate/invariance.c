@@ -1,9 +1,11 @@
 /* Translations and rotations that leave a scene as it is, proved on its expressions.
  *
- * L stays as it is if its slope along the motion of coordinates and velocities is zero. Expressions are evaluated with exact numbers for that, modulo a prime, at
- * random coordinates and velocities that have their slopes beside them: a rational function that is not zero is zero there by a chance of less than 1e-8 a trial
- * (Schwartz 1980). Roots and transcendental functions get values and derivatives at random, equal ones for equal arguments, so that a proof holds for any function in
- * their place: sqrt(x^2 + y^2) turns into itself since its argument does. */
+ * L stays as it is if its slope along the motion of coordinates and velocities is zero. Expressions
+ * are evaluated with exact numbers for that, modulo a prime, at random coordinates and velocities
+ * that have their slopes beside them: a rational function that is not zero is zero there by a
+ * chance of less than 1e-8 a trial (Schwartz 1980). Roots and transcendental functions get values
+ * and derivatives at random, equal ones for equal arguments, so that a proof holds for any function
+ * in their place: sqrt(x^2 + y^2) turns into itself since its argument does. */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -65,7 +67,8 @@ static dual sum(dual a, dual b)
 
 static dual product(dual a, dual b)
 {
-  return (dual){times(a.value, b.value), (times(a.value, b.slope) + times(a.slope, b.value)) % prime};
+  return (dual){times(a.value, b.value),
+                (times(a.value, b.slope) + times(a.slope, b.value)) % prime};
 }
 
 static dual power(dual a, int64_t exponent)
@@ -86,14 +89,16 @@ static uint64_t scramble(uint64_t x)
 /* Any function of a and b. */
 static dual unknown(const dvi__graph_node *node, dual a, dual b)
 {
-  const uint64_t key = scramble(scramble(scramble((uint64_t)node->op) + residue(node->value)) + (a.value << 32 | b.value)),
+  const uint64_t key = scramble(scramble(scramble((uint64_t)node->op) + residue(node->value)) +
+                                (a.value << 32 | b.value)),
                  by_a = scramble(key + 1) % prime, by_b = scramble(key + 2) % prime;
   return (dual){key % prime, (times(by_a, a.slope) + times(by_b, b.slope)) % prime};
 }
 
 /* ---- expressions ---- */
 
-/* A motion: to[i] is 0 if number i stays, n + 1 if it moves on, else the number + 1, with its sign, at which it turns; and the trial. */
+/* A motion: to[i] is 0 if number i stays, n + 1 if it moves on, else the number + 1, with its sign,
+ * at which it turns; and the trial. */
 typedef struct motion {
   int n;
   const int *to;
@@ -105,7 +110,8 @@ static uint64_t at_random(const motion *m, dvi__block block, int number)
   return scramble(scramble(m->trial * DVI__BLOCKS + (uint64_t)block) + (uint64_t)number) % prime;
 }
 
-/* A variable of a block: coordinates move and turn, velocities turn, and what does neither stays. */
+/* A variable of a block: coordinates move and turn, velocities turn, and what does neither
+ * stays. */
 static dual variable(const motion *m, unsigned turning, dvi__block block, int number)
 {
   dual x = {at_random(m, block, number), 0};
@@ -128,7 +134,8 @@ static dual input_of(const motion *m, unsigned turning, const dvi__kernel_input 
 static dual operate(const dvi__graph_node *node, const dual *at)
 {
   const int operands = dvi__operands(node->op);
-  const dual none = {0, 0}, a = operands > 0 ? at[node->a] : none, b = operands > 1 ? at[node->b] : none;
+  const dual none = {0, 0}, a = operands > 0 ? at[node->a] : none,
+             b = operands > 1 ? at[node->b] : none;
   switch (node->op) {
   case DVI__OP_CONSTANT: return (dual){residue(node->value), 0};
   case DVI__OP_NEGATE: return negative(a);
@@ -155,7 +162,8 @@ static uint64_t slope_of(const motion *m, unsigned turning, const dvi__kernel *k
   for (int e = 0; e < kernel->elements; e++) {
     for (int k = 0; k <= kernel->root; k++) {
       const dvi__graph_node *node = &kernel->graph->node[k];
-      at[k] = node->op == DVI__OP_INPUT ? input_of(m, turning, &kernel->input[node->a], e) : operate(node, at);
+      at[k] = node->op == DVI__OP_INPUT ? input_of(m, turning, &kernel->input[node->a], e)
+                                        : operate(node, at);
     }
     slope = (slope + at[kernel->root].slope) % prime;
   }
@@ -184,13 +192,17 @@ static int largest(const dvi_scene *scene, double *work)
   return most;
 }
 
-/* The multipliers of a one-form stand for velocities. Sums of several kernels may be kept though none of them is. */
+/* The multipliers of a one-form stand for velocities. Sums of several kernels may be kept though
+ * none of them is. */
 static uint64_t slope_of_scene(const dvi_scene *scene, const motion *m, dual *at)
 {
   uint64_t slope = 0;
   for (const dvi__term *term = scene->functions; term != NULL; term = term->next) {
-    const unsigned turning = 1U << DVI__COORDINATES | 1U << (term == scene->one_form.user ? DVI__MULTIPLIERS : DVI__VELOCITIES);
-    const int sign = term == scene->kinetic || term == scene->one_form.user || term == scene->lagrangian.user;
+    const unsigned turning = 1U << DVI__COORDINATES |
+                             1U << (term == scene->one_form.user ? DVI__MULTIPLIERS
+                                                                 : DVI__VELOCITIES);
+    const int sign = term == scene->kinetic || term == scene->one_form.user ||
+                     term == scene->lagrangian.user;
     for (int k = 0; counts(scene, term) && k < dvi__function_kernel_count(term->function); k++) {
       const uint64_t one = slope_of(m, turning, dvi__function_kernel(term->function, k), at);
       slope = (slope + (sign ? one : prime - one)) % prime;
@@ -213,7 +225,9 @@ static bool is_kept(search *s)
 {
   for (uint64_t trial = 0; trial < TRIALS; trial++) {
     s->spent += s->work;
-    if (s->spent > ALL_WORK_MAX || slope_of_scene(s->scene, &(motion){s->scene->n, s->to, trial}, s->at) != 0) return false;
+    if (s->spent > ALL_WORK_MAX ||
+        slope_of_scene(s->scene, &(motion){s->scene->n, s->to, trial}, s->at) != 0)
+      return false;
   }
   return true;
 }
@@ -227,7 +241,8 @@ static void say(search *s, const char *text)
 }
 
 /* "translation of q and r along x" */
-static void say_found(search *s, const char *what, int count, const dvi__coordinate *const *group, const char *way, int axis)
+static void say_found(search *s, const char *what, int count, const dvi__coordinate *const *group,
+                      const char *way, int axis)
 {
   const char end[] = {' ', "xyz"[axis], '\0'};
   say(s, s->found++ > 0 ? ", " : "");
@@ -250,7 +265,8 @@ static void move(search *s, const dvi__coordinate *x, int from, int to)
   }
 }
 
-static bool try_group(search *s, const char *what, int count, const dvi__coordinate *const *group, int from, int to)
+static bool try_group(search *s, const char *what, int count, const dvi__coordinate *const *group,
+                      int from, int to)
 {
   memset(s->to, 0, (size_t)s->scene->n * sizeof *s->to);
   for (int k = 0; k < count; k++) move(s, group[k], from, to);
@@ -269,7 +285,8 @@ static bool try_shape(search *s, int count, const dvi__coordinate *const *group)
   const int rows = group[0]->shape.rows, before = s->found;
   for (int k = 0; k < rows && rows <= 3; k++) (void)try_group(s, "translation", count, group, k, k);
   if (rows == 2) (void)try_group(s, "rotation", count, group, 0, 1);
-  for (int k = 0; k < 3 && rows == 3; k++) (void)try_group(s, "rotation", count, group, (k + 1) % 3, (k + 2) % 3);
+  for (int k = 0; k < 3 && rows == 3; k++)
+    (void)try_group(s, "rotation", count, group, (k + 1) % 3, (k + 2) % 3);
   return s->found > before;
 }
 

@@ -18,7 +18,15 @@
 
 /* Nodes of all trials, which take less than a second. */
 static const double WORK_MAX = 3e7;
-enum { LINES = 4, DECIDERS_MAX = 64, MARKS = 60, HALVINGS = 60, DEGREE = 8, JUMPS = 4, SMOOTH = JUMPS + 1 };
+enum {
+  LINES = 4,
+  DECIDERS_MAX = 64,
+  MARKS = 60,
+  HALVINGS = 60,
+  DEGREE = 8,
+  JUMPS = 4,
+  SMOOTH = JUMPS + 1
+};
 
 /* Half the distance of the two points; and what is too small to be no rounding, of numbers and
  * of the place. */
@@ -53,8 +61,10 @@ static void place_line(const dvi_scene *scene, line *l, int element, int which)
     const dvi__kernel_input *input = &l->kernel->input[i];
     const int number = input->is_data ? 0 : dvi__input_number(input, element);
     l->base[i] = input->is_data ? input->data[element] : start_of(scene, input->block, number);
-    l->direction[i] = input->is_data ? 0
-                                     : draw(((uint64_t)number * DVI__BLOCKS + (uint64_t)input->block) * LINES + (uint64_t)which);
+    l->direction[i] = input->is_data
+                          ? 0
+                          : draw(((uint64_t)number * DVI__BLOCKS + (uint64_t)input->block) * LINES +
+                                 (uint64_t)which);
   }
 }
 
@@ -67,7 +77,8 @@ static double side_at(const line *l, double s)
   *l->work += l->decides;
   if (*l->work > WORK_MAX) return (double)NAN;
   for (int i = 0; i < l->kernel->input_count; i++) l->value[i] = l->base[i] + s * l->direction[i];
-  if (dvi__evaluate(l->kernel->graph, l->value, 1, &node->a, &x, &unused) != DVI_OK || !isfinite(x)) return (double)NAN;
+  if (dvi__evaluate(l->kernel->graph, l->value, 1, &node->a, &x, &unused) != DVI_OK || !isfinite(x))
+    return (double)NAN;
   return node->op == DVI__OP_FLOOR ? floor(x) : (double)(x > 0);
 }
 
@@ -107,14 +118,15 @@ static bool compile(const dvi__kernel *kernel, int *count, int *number, dvi__pro
       number[*count] = kernel->graph->node[n].a;
       input[(*count)++] = n;
     }
-  const dvi_status status = dvi__program_make(kernel->graph, *count, input, 1, &kernel->root, program);
+  const dvi_status status = dvi__program_make(kernel->graph, *count, input, 1, &kernel->root,
+                                              program);
   dvi__heap_free(input);
   return status == DVI_OK;
 }
 
 /* The series at s, moved to s + way: c [DEGREE + 1]. Returns how large its terms are. */
-static double series_at(const line *l, const dvi__program *program, int count, const int *number, double *rows, double s,
-                        double way, double *c)
+static double series_at(const line *l, const dvi__program *program, int count, const int *number,
+                        double *rows, double s, double way, double *c)
 {
   enum { WIDTH = DEGREE + 1 };
   double *registers = rows + (ptrdiff_t)count * WIDTH, size = 0;
@@ -135,7 +147,8 @@ static double series_at(const line *l, const dvi__program *program, int count, c
 /* The first derivative that jumps at s, from 0 on; SMOOTH: none that is looked at. What series
  * leave out shrinks with the distance, and a jump does not; roundings are those of the terms,
  * and of s. */
-static int first_jump(const line *l, const dvi__program *program, int count, const int *number, double *rows, double s)
+static int first_jump(const line *l, const dvi__program *program, int count, const int *number,
+                      double *rows, double s)
 {
   double before[2][DEGREE + 1], behind[2][DEGREE + 1], noise = 0;
   *l->work += 4.0 * DEGREE * DEGREE * program->instruction_count;
@@ -148,13 +161,16 @@ static int first_jump(const line *l, const dvi__program *program, int count, con
     const double jump = behind[0][m] - before[0][m], again = behind[1][m] - before[1][m];
     const double size = fabs(before[0][m]) + fabs(behind[0][m]),
                  slope = (m + 1) * (fabs(before[0][m + 1]) + fabs(behind[0][m + 1]));
-    if (fabs(jump) > alike * size + noise + displaced * (1 + fabs(s)) * slope && fabs(again) > 0.9 * fabs(jump)) return m;
+    if (fabs(jump) > alike * size + noise + displaced * (1 + fabs(s)) * slope &&
+        fabs(again) > 0.9 * fabs(jump))
+      return m;
   }
   return SMOOTH;
 }
 
 /* Try the lines at some elements. */
-static int try_lines(const dvi_scene *scene, line *l, const dvi__program *program, int count, const int *number, double *rows)
+static int try_lines(const dvi_scene *scene, line *l, const dvi__program *program, int count,
+                     const int *number, double *rows)
 {
   const int last = l->kernel->elements - 1, element[] = {0, last / 2, last};
   int least = SMOOTH;
@@ -190,14 +206,16 @@ static int by_time(const dvi__kernel *kernel, dvi__node n)
 {
   char *used = dvi__heap_take((size_t)kernel->input_count + 1, 1);
   int alone = used != NULL;
-  if (used != NULL) dvi__inputs_used(kernel->graph, 1, &kernel->graph->node[n].a, kernel->input_count, used);
+  if (used != NULL)
+    dvi__inputs_used(kernel->graph, 1, &kernel->graph->node[n].a, kernel->input_count, used);
   for (int i = 0; i < kernel->input_count && alone; i++)
     alone = !used[i] || kernel->input[i].is_data || kernel->input[i].block == DVI__TIME;
   dvi__heap_free(used);
   return alone;
 }
 
-static void try_deciders(const dvi_scene *scene, line *l, const char *part, const char *moves, found *worst)
+static void try_deciders(const dvi_scene *scene, line *l, const char *part, const char *moves,
+                         found *worst)
 {
   const dvi__kernel *kernel = l->kernel;
   dvi__program program = {0};
@@ -209,8 +227,10 @@ static void try_deciders(const dvi_scene *scene, line *l, const char *part, cons
     if (!decides(kernel->graph, part, moves, n)) continue;
     worst->tried++;
     l->decides = n;
-    const int jump = try_lines(scene, l, &program, count, number, rows), order = jump + by_time(kernel, n);
-    if (jump < SMOOTH && order < worst->order) *worst = (found){jump, order, worst->tried, worst->work, kernel, n};
+    const int jump = try_lines(scene, l, &program, count, number, rows),
+              order = jump + by_time(kernel, n);
+    if (jump < SMOOTH && order < worst->order)
+      *worst = (found){jump, order, worst->tried, worst->work, kernel, n};
   }
   dvi__program_free(&program);
   dvi__heap_free(number);
@@ -220,13 +240,19 @@ static void try_deciders(const dvi_scene *scene, line *l, const char *part, cons
 static void try_kernel(const dvi_scene *scene, const dvi__kernel *kernel, found *worst)
 {
   int count;
-  char *part = dvi__parts(kernel->graph, 1, &kernel->root, &count), *moves = dvi__heap_take((size_t)kernel->root + 1, 1);
+  char *part = dvi__parts(kernel->graph, 1, &kernel->root, &count),
+       *moves = dvi__heap_take((size_t)kernel->root + 1, 1);
   double *inputs = dvi__heap_take(3 * (size_t)kernel->input_count + 1, sizeof *inputs);
   if (part != NULL && moves != NULL && inputs != NULL) {
     int any = 0;
     dvi__mark_moving(kernel, count, moves);
     for (int n = 0; n < count && !any; n++) any = decides(kernel->graph, part, moves, n);
-    line l = {kernel, -1, inputs, inputs + kernel->input_count, inputs + (ptrdiff_t)2 * kernel->input_count, &worst->work};
+    line l = {kernel,
+              -1,
+              inputs,
+              inputs + kernel->input_count,
+              inputs + (ptrdiff_t)2 * kernel->input_count,
+              &worst->work};
     if (any) try_deciders(scene, &l, part, moves, worst);
   }
   dvi__heap_free(part);
@@ -250,12 +276,18 @@ static void say(const dvi_scene *scene, const found *worst, char *text, size_t s
   size -= (size_t)used;
   if (worst->order == 0)
     (void)snprintf(text, size,
-                   ": the %s itself jumps here, which methods do not see: where the motion crosses it they have no order", what);
+                   ": the %s itself jumps here, which methods do not see: where the motion crosses "
+                   "it they have no order",
+                   what);
   else if (worst->jump == 0)
-    (void)snprintf(text, size, ": the %s itself jumps here: where the motion crosses it orders above %d are lost", what,
-                   worst->order);
+    (void)snprintf(
+        text, size,
+        ": the %s itself jumps here: where the motion crosses it orders above %d are lost", what,
+        worst->order);
   else
-    (void)snprintf(text, size, ": the %s derivative of the %s jumps here: where the motion crosses it orders above %d are lost",
+    (void)snprintf(text, size,
+                   ": the %s derivative of the %s jumps here: where the motion crosses it orders "
+                   "above %d are lost",
                    ordinal[worst->jump], what, worst->order);
 }
 
@@ -265,7 +297,9 @@ int dvi_scene_kink(const dvi_scene *scene, char *text, size_t size)
   if (scene == NULL || text == NULL) return -1;
   found worst = {.order = SMOOTH + 1};
   for (const dvi__term *term = scene->functions; term != NULL; term = term->next)
-    for (int k = 0; (term->role == DVI__MOVES || term == scene->kinetic) && k < dvi__function_kernel_count(term->function); k++)
+    for (int k = 0; (term->role == DVI__MOVES || term == scene->kinetic) &&
+                    k < dvi__function_kernel_count(term->function);
+         k++)
       try_kernel(scene, dvi__function_kernel(term->function, k), &worst);
   if (worst.kernel == NULL) return -1;
   say(scene, &worst, text, size);

@@ -1,8 +1,9 @@
 /* Coordinates that are no numbers: which one an expression names, and its velocity and momentum.
  *
- * In a Lagrangian velocities are of two sorts, for the mass is constant in both: the rates of what is stored (x', and R' of a matrix R, entry by entry), numbers
- * 0 .. n-1 of their block, and after them the velocities of the state, omega(R) and rate(u). Elsewhere there are those of the state alone, and a rate is
- * made of them: R' = R hat(omega), (cos, sin)' = (-sin, cos) rate. */
+ * In a Lagrangian velocities are of two sorts, for the mass is constant in both: the rates of what
+ * is stored (x', and R' of a matrix R, entry by entry), numbers 0 .. n-1 of their block, and after
+ * them the velocities of the state, omega(R) and rate(u). Elsewhere there are those of the state
+ * alone, and a rate is made of them: R' = R hat(omega), (cos, sin)' = (-sin, cos) rate. */
 #include <string.h>
 
 #include "scene/elaborate/elaborate.h"
@@ -12,7 +13,8 @@
 
 static const dvi__coordinate *coordinate_named(const dvi_scene *scene, const dvi__expression *e)
 {
-  const dvi__name *name = e->form == DVI__FORM_NAME ? dvi__names_find(&scene->names, e->name) : NULL;
+  const dvi__name *name = e->form == DVI__FORM_NAME ? dvi__names_find(&scene->names, e->name)
+                                                    : NULL;
   return name != NULL && name->sort == DVI__COORDINATE ? &scene->coordinate[name->number] : NULL;
 }
 
@@ -29,15 +31,18 @@ bool dvi__subscripts_of(const dvi__expression *e, dvi__subscripts *index)
   return index->count <= 2;
 }
 
-bool dvi__refuse_family(const dvi__context *c, const dvi__coordinate *x, const char *part, dvi__span span)
+bool dvi__refuse_family(const dvi__context *c, const dvi__coordinate *x, const char *part,
+                        dvi__span span)
 {
   if (x->family > 1)
-    return dvi__refuse(c, span, "%s is a family of %d x %d; take one of it, as %s[1,1]%s", x->name, dvi__extent(x, 0),
-                       dvi__extent(x, 1), x->name, part);
-  return dvi__refuse(c, span, "%s is a family of %d; take one of it, as %s[1]%s", x->name, x->size, x->name, part);
+    return dvi__refuse(c, span, "%s is a family of %d x %d; take one of it, as %s[1,1]%s", x->name,
+                       dvi__extent(x, 0), dvi__extent(x, 1), x->name, part);
+  return dvi__refuse(c, span, "%s is a family of %d; take one of it, as %s[1]%s", x->name, x->size,
+                     x->name, part);
 }
 
-const dvi__coordinate *dvi__member_named(const dvi_scene *scene, const dvi__expression *e, dvi__subscripts *index)
+const dvi__coordinate *dvi__member_named(const dvi_scene *scene, const dvi__expression *e,
+                                         dvi__subscripts *index)
 {
   const char *part = NULL;
   *index = (dvi__subscripts){0};
@@ -68,8 +73,9 @@ dvi__value dvi__member_value(dvi__context *c, const dvi__expression *e)
     const char part[3] = {'.', e->name[0], '\0'};
     return dvi__refused(dvi__refuse_family(c, x, part, e->span));
   }
-  return dvi__refused(
-      dvi__refuse(c, e->span, "the parts of %s are %s.R, its rotation, and %s.x, its place", x->name, x->name, x->name));
+  return dvi__refused(dvi__refuse(c, e->span,
+                                  "the parts of %s are %s.R, its rotation, and %s.x, its place",
+                                  x->name, x->name, x->name));
 }
 
 int dvi__coordinate_at(const dvi_scene *scene, int number, int of_v)
@@ -106,15 +112,18 @@ static bool locate(dvi__context *c, int input, whereabouts *w)
   const dvi__kernel_input of = c->input[input];
   const int number = dvi__input_number(&of, 0);
   const dvi__coordinate *x = part_at(c->scene, number);
-  *w = (whereabouts){.x = x, .k = (number - x->q.first) % x->q.stride, .all = (number - x->q.first) / x->q.stride};
+  *w = (whereabouts){
+      .x = x, .k = (number - x->q.first) % x->q.stride, .all = (number - x->q.first) / x->q.stride};
   if (of.number == NULL && of.stride == 0) return true;
   w->each = dvi__heap_take((size_t)c->elements, sizeof *w->each);
   if (w->each == NULL) return dvi__scene_no_memory(c->scene);
-  for (int e = 0; e < c->elements; e++) w->each[e] = (dvi__input_number(&of, e) - x->q.first) / x->q.stride;
+  for (int e = 0; e < c->elements; e++)
+    w->each[e] = (dvi__input_number(&of, e) - x->q.first) / x->q.stride;
   return true;
 }
 
-static bool first_numbers(dvi__context *c, const whereabouts *w, const dvi__slots *places, dvi__numbering *numbering)
+static bool first_numbers(dvi__context *c, const whereabouts *w, const dvi__slots *places,
+                          dvi__numbering *numbering)
 {
   return dvi__numbering_of(c, w->each, w->all, places->first, places->stride, numbering);
 }
@@ -158,27 +167,32 @@ bool dvi__input_momentum(dvi__context *c, int input, dvi__node *momentum)
   whereabouts w;
   dvi__numbering v;
   if (!locate(c, input, &w)) return false;
-  const bool good = w.x->kind != DVI__ROTATION && w.x->kind != DVI__ANGLE && first_numbers(c, &w, &w.x->v, &v);
+  const bool good = w.x->kind != DVI__ROTATION && w.x->kind != DVI__ANGLE &&
+                    first_numbers(c, &w, &w.x->v, &v);
   if (good) *momentum = dvi__variable_node(c, DVI__VELOCITIES, v, w.k);
   dvi__heap_free(w.each);
   return good;
 }
 
-/* The velocities or momenta of a coordinate, or of a member of a family; `before` stand in front of the state's. */
-static dvi__value state_value(dvi__context *c, const dvi__coordinate *x, const dvi__subscripts *index, int before)
+/* The velocities or momenta of a coordinate, or of a member of a family; `before` stand in front of
+ * the state's. */
+static dvi__value state_value(dvi__context *c, const dvi__coordinate *x,
+                              const dvi__subscripts *index, int before)
 {
   dvi__numbering numbering;
   dvi__slots places = x->v;
   places.first += before;
   if (!dvi__member_numbering(c, x, index, &places, &numbering)) return DVI__NO_VALUE;
-  if (x->v.components == 1) return dvi__number_value(dvi__variable_node(c, DVI__VELOCITIES, numbering, 0));
+  if (x->v.components == 1)
+    return dvi__number_value(dvi__variable_node(c, DVI__VELOCITIES, numbering, 0));
   dvi__value value = dvi__value_make(c, 1, x->v.components, 1);
   for (int k = 0; !dvi__failed(value) && k < x->v.components; k++)
     value.node[k] = dvi__variable_node(c, DVI__VELOCITIES, numbering, k);
   return value;
 }
 
-static const dvi__coordinate *argument_of(dvi__context *c, const dvi__expression *e, dvi__subscripts *index)
+static const dvi__coordinate *argument_of(dvi__context *c, const dvi__expression *e,
+                                          dvi__subscripts *index)
 {
   if (e->count == 1) return dvi__member_named(c->scene, e->part[0], index);
   (void)dvi__refuse(c, e->span, "%s takes 1 argument, not %d", e->name, e->count);
@@ -194,12 +208,14 @@ dvi__value dvi__turn_value(dvi__context *c, const dvi__expression *e)
   if (c->scene->complaint->status != DVI_OK) return DVI__NO_VALUE;
   if (x != NULL && x->kind == DVI__MOTION) x = &x->part[0];
   if (x == NULL || x->kind != (omega ? DVI__ROTATION : DVI__ANGLE))
-    return dvi__refused(dvi__refuse(c, e->part[0]->span,
-                                    omega ? "omega is taken of a rotation, or of a rigid motion"
-                                          : "rate is taken of an angle; of numbers and vectors it is x'"));
-  if ((c->may & DVI__SAYS_P) != 0 && !c->sample)
     return dvi__refused(
-        dvi__refuse(c, e->span, "velocities of what turns cannot stand in %s; say it by momenta, p(%s)", c->where, x->name));
+        dvi__refuse(c, e->part[0]->span,
+                    omega ? "omega is taken of a rotation, or of a rigid motion"
+                          : "rate is taken of an angle; of numbers and vectors it is x'"));
+  if ((c->may & DVI__SAYS_P) != 0 && !c->sample)
+    return dvi__refused(dvi__refuse(
+        c, e->span, "velocities of what turns cannot stand in %s; say it by momenta, p(%s)",
+        c->where, x->name));
   return state_value(c, x, &index, (c->may & DVI__OF_STATE) != 0 ? 0 : c->scene->n);
 }
 
@@ -208,7 +224,8 @@ dvi__value dvi__whole_momentum(dvi__context *c, const dvi__expression *e)
   dvi__subscripts index;
   const dvi__coordinate *x = argument_of(c, e, &index);
   if (x != NULL && x->kind == DVI__MOTION)
-    return dvi__refused(
-        dvi__refuse(c, e->part[0]->span, "%s is a rigid motion; its momenta are p(%s.R) and p(%s.x)", x->name, x->name, x->name));
+    return dvi__refused(dvi__refuse(c, e->part[0]->span,
+                                    "%s is a rigid motion; its momenta are p(%s.R) and p(%s.x)",
+                                    x->name, x->name, x->name));
   return x == NULL ? DVI__NO_VALUE : state_value(c, x, &index, 0);
 }

@@ -1,4 +1,5 @@
-/* A scene while it is read, and afterwards: one object that the parts of the reader fill in turn. */
+/* A scene while it is read, and afterwards: one object that the parts of the reader fill in
+ * turn. */
 #ifndef DVI_SCENE_MODEL_H
 #define DVI_SCENE_MODEL_H
 #include <dvi/scene.h>
@@ -9,7 +10,8 @@
 #include "scene/elaborate/names.h"
 #include "scene/text/tree.h"
 
-/* What a function is for: the motion; symmetries and invariants; events and constant masses, which the system does not evaluate. */
+/* What a function is for: the motion; symmetries and invariants; events and constant masses, which
+ * the system does not evaluate. */
 typedef enum dvi__role { DVI__MOVES, DVI__WATCHES, DVI__STANDS_BESIDE } dvi__role;
 
 /* The functions that callbacks evaluate, in a list that the scene frees. */
@@ -36,10 +38,11 @@ struct dvi_scene {
   int parameter_count, coordinate_count, definition_count;
   unsigned reads; /* where parameters that are met stand */
   int n, nv;      /* numbers of q; of v and p */
-  int velocities; /* in the block of velocities: n, or with factors n rates of q and nv velocities after them */
+  int velocities; /* in the block of velocities: n, or with factors n rates of q and nv velocities
+                     after them */
   long work;      /* parts of expressions that were elaborated */
 
-  const double *mass_diagonal; /* [n] or NULL: what velocities are made of momenta by, in invariants */
+  const double *mass_diagonal; /* [n] or NULL: divides momenta in invariants */
   dvi_system_terms terms;
   dvi_lagrangian lagrangian;
   dvi_one_form one_form;

@@ -5,14 +5,18 @@
 #include "text/heap.h"
 
 const char *const dvi__block_name[DVI__BLOCKS] = {"t", "q", "v", "w"};
-static const char *const value_name[] = {"f"}, *const gradient_name[DVI__BLOCKS] = {"f_t", "f_q", "f_v", "f_w"},
-                         *const second_name[DVI__PAIRS] = {"f_qq", "f_qv", "f_vv", "f_qw", "f_vw", "f_tq", "f_tv"};
+static const char *const value_name[] = {"f"},
+                         *const gradient_name[DVI__BLOCKS] = {"f_t", "f_q", "f_v", "f_w"},
+                         *const second_name[DVI__PAIRS] = {"f_qq", "f_qv", "f_vv", "f_qw",
+                                                           "f_vw", "f_tq", "f_tv"};
 
 int *dvi__name_rows(const dvi__part *part, int *next)
 {
   const dvi__program *program = &part->program;
-  int *name = dvi__heap_take((size_t)program->row_count + (size_t)program->input_count + 1, sizeof *name);
-  for (int i = 0; i < program->input_count && name != NULL; i++) name[program->row_count + i] = (*next)++;
+  int *name = dvi__heap_take((size_t)program->row_count + (size_t)program->input_count + 1,
+                             sizeof *name);
+  for (int i = 0; i < program->input_count && name != NULL; i++)
+    name[program->row_count + i] = (*next)++;
   return name;
 }
 
@@ -29,9 +33,11 @@ static void emit_names(dvi__emitter *out, const dvi__emitted_sum *own, const cha
 void dvi__emit_parameters(dvi__emitter *out, const dvi__emitted_sum *own)
 {
   dvi__emit(out, ",\n    ");
-  for (int b = 0; b < DVI__BLOCKS; b++) dvi__emit(out, "const double *restrict %s, ", dvi__block_name[b]);
+  for (int b = 0; b < DVI__BLOCKS; b++)
+    dvi__emit(out, "const double *restrict %s, ", dvi__block_name[b]);
   for (int a = 0, more = 0; own->mask >> a != 0; a++)
-    if ((own->mask >> a & 1U) != 0) dvi__emit(out, "%sdouble *restrict %s", more++ > 0 ? ", " : "", own->array[a]);
+    if ((own->mask >> a & 1U) != 0)
+      dvi__emit(out, "%sdouble *restrict %s", more++ > 0 ? ", " : "", own->array[a]);
 }
 
 void dvi__emit_arguments(dvi__emitter *out, const dvi__emitted_sum *own)
@@ -58,7 +64,8 @@ void dvi__emit_shifts(dvi__emitter *out, const dvi__emitted_sum *own, const dvi_
 
 void dvi__emit_zeros(dvi__emitter *out, const dvi__emitted_sum *own, int array)
 {
-  dvi__emit(out, "  memset(%s, 0, sizeof *%s * (size_t)n * %d);\n", own->array[array], own->array[array], own->size[array]);
+  dvi__emit(out, "  memset(%s, 0, sizeof *%s * (size_t)n * %d);\n", own->array[array],
+            own->array[array], own->size[array]);
 }
 
 /* --- Functions. --- */
@@ -77,7 +84,8 @@ static int has_inverse_roots(const dvi__sum *sum)
   return 0;
 }
 
-static void emit_head(dvi__emitter *out, const dvi__emitted_sum *own, const char *kind, const char *ending)
+static void emit_head(dvi__emitter *out, const dvi__emitted_sum *own, const char *kind,
+                      const char *ending)
 {
   dvi__emit(out, "%sstatic void %s%s(int count", kind, own->name, ending);
   dvi__emit_parameters(out, own);
@@ -94,7 +102,8 @@ static void emit_call(dvi__emitter *out, const dvi__emitted_sum *own, const char
 static dvi_status emit_sum(dvi__emitter *out, const dvi__emitted_sum *own)
 {
   const int may_be_unusual = has_inverse_roots(own->sum);
-  const dvi_status status = has_one_element(own->sum) ? dvi__emit_expressions(out, own) : dvi__emit_elements(out, own);
+  const dvi_status status = has_one_element(own->sum) ? dvi__emit_expressions(out, own)
+                                                      : dvi__emit_elements(out, own);
   if (status != DVI_OK) return status;
   if (may_be_unusual) {
     emit_head(out, own, "DVI_SELDOM ", "_careful");
@@ -121,21 +130,28 @@ dvi_status dvi__emit_value(dvi__emitter *out, dvi__function *function, const cha
   return emit_sum(out, &own);
 }
 
-dvi_status dvi__emit_gradient(dvi__emitter *out, dvi__function *function, unsigned blocks, int lanes, const char *name)
+dvi_status dvi__emit_gradient(dvi__emitter *out, dvi__function *function, unsigned blocks,
+                              int lanes, const char *name)
 {
   const dvi_status status = dvi__function_prepare(function, 0, blocks, 0);
   if (status != DVI_OK) return status;
-  const dvi__emitted_sum own = {
-      atomic_load(&function->gradient[blocks]), name, function->block_size, gradient_name, blocks, lanes ? 8 : 1};
+  const dvi__emitted_sum own = {atomic_load(&function->gradient[blocks]),
+                                name,
+                                function->block_size,
+                                gradient_name,
+                                blocks,
+                                lanes ? 8 : 1};
   return emit_sum(out, &own);
 }
 
-dvi_status dvi__emit_second(dvi__emitter *out, dvi__function *function, unsigned pairs, int lanes, const char *name)
+dvi_status dvi__emit_second(dvi__emitter *out, dvi__function *function, unsigned pairs, int lanes,
+                            const char *name)
 {
   int size[DVI__PAIRS];
   const dvi_status status = dvi__function_prepare(function, 0, 0, pairs);
   if (status != DVI_OK) return status;
   for (int pair = 0; pair < DVI__PAIRS; pair++) size[pair] = function->pattern[pair].entries;
-  const dvi__emitted_sum own = {atomic_load(&function->second[pairs]), name, size, second_name, pairs, lanes ? 4 : 1};
+  const dvi__emitted_sum own = {
+      atomic_load(&function->second[pairs]), name, size, second_name, pairs, lanes ? 4 : 1};
   return emit_sum(out, &own);
 }

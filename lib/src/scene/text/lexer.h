@@ -20,8 +20,9 @@ typedef struct dvi__token {
   dvi__span span;
 } dvi__token;
 
-/* The token at `offset` or behind blanks and comments (# to the end of the line), before `end`; false, with a complaint, if something
- * else stands there. */
-bool dvi__token_read(const dvi__source *source, size_t offset, size_t end, dvi__complaint *complaint, dvi__token *token);
+/* The token at `offset` or behind blanks and comments (# to the end of the line), before `end`;
+ * false, with a complaint, if something else stands there. */
+bool dvi__token_read(const dvi__source *source, size_t offset, size_t end,
+                     dvi__complaint *complaint, dvi__token *token);
 
 #endif

@@ -15,8 +15,8 @@
  * A number may stand wherever a condition may, and the other way round within parentheses:
  * elaboration tells them apart.
  *
- * Chains of + and *, however long, are loops; what nests is counted, so that neither this nor what reads the tree can be driven
- * deep. */
+ * Chains of + and *, however long, are loops; what nests is counted, so that neither this nor what
+ * reads the tree can be driven deep. */
 #include "scene/text/syntax.h"
 
 #include "scene/text/lexer.h"
@@ -58,7 +58,8 @@ static bool next(parser *p)
 {
   p->last = p->token.span.first + p->token.span.size;
   if (!dvi__token_read(p->source, p->last, p->end, p->complaint, &p->token)) return false;
-  if (p->token.kind == DVI__TOKEN_END) p->token.span.first = p->last; /* behind the last word, before blanks and comments */
+  if (p->token.kind == DVI__TOKEN_END)
+    p->token.span.first = p->last; /* behind the last word, before blanks and comments */
   return true;
 }
 
@@ -66,15 +67,17 @@ static bool enter(parser *p)
 {
   if (p->depth == LEVELS_MAX)
     return dvi__complain(p->complaint, DVI_BAD_SIZE, p->token.span,
-                         "more than %d levels of nesting; name a part of it in definitions", LEVELS_MAX);
+                         "more than %d levels of nesting; name a part of it in definitions",
+                         LEVELS_MAX);
   p->depth++;
   return true;
 }
 
 /* "found ')'" in words that fit into a sentence: at most 40 letters of what is there. */
 #define FOUND_FORMAT "%s%.*s%s"
-#define FOUND(p)                                                                                                     \
-  (p)->token.kind == DVI__TOKEN_END ? "the end" : "'", (int)((p)->token.span.size < 40 ? (p)->token.span.size : 40), \
+#define FOUND(p)                                                    \
+  (p)->token.kind == DVI__TOKEN_END ? "the end" : "'",              \
+      (int)((p)->token.span.size < 40 ? (p)->token.span.size : 40), \
       (p)->source->text + (p)->token.span.first, (p)->token.kind == DVI__TOKEN_END ? "" : "'"
 
 /* Two operands stand beside each other. `left` is the one before. */
@@ -85,12 +88,16 @@ static bool refuse_neighbours(const parser *p, const node *left)
   const char *text = p->source->text;
   const bool open = p->token.kind == '(';
   if (l.size > 40 || r.size > 40)
-    return dvi__complain(p->complaint, DVI_BAD_FILE, r, "an operator is missing here; write * for a product");
-  if (left->form == DVI__FORM_NAME && !open)
     return dvi__complain(p->complaint, DVI_BAD_FILE, r,
-                         "an operator is missing here; write %.*s*%.*s for a product, %.*s(%.*s) for a function", (int)l.size,
-                         text + l.first, (int)r.size, text + r.first, (int)l.size, text + l.first, (int)r.size, text + r.first);
-  return dvi__complain(p->complaint, DVI_BAD_FILE, r, "an operator is missing here; write %.*s*%.*s%s for a product", (int)l.size,
+                         "an operator is missing here; write * for a product");
+  if (left->form == DVI__FORM_NAME && !open)
+    return dvi__complain(
+        p->complaint, DVI_BAD_FILE, r,
+        "an operator is missing here; write %.*s*%.*s for a product, %.*s(%.*s) for a function",
+        (int)l.size, text + l.first, (int)r.size, text + r.first, (int)l.size, text + l.first,
+        (int)r.size, text + r.first);
+  return dvi__complain(p->complaint, DVI_BAD_FILE, r,
+                       "an operator is missing here; write %.*s*%.*s%s for a product", (int)l.size,
                        text + l.first, (int)r.size, text + r.first, open ? "..)" : "");
 }
 
@@ -110,7 +117,8 @@ static bool joins_conditions(const parser *p)
 static bool begins_operand(const parser *p)
 {
   if (joins_conditions(p)) return false;
-  return p->token.kind == DVI__TOKEN_NUMBER || p->token.kind == DVI__TOKEN_NAME || p->token.kind == '(';
+  return p->token.kind == DVI__TOKEN_NUMBER || p->token.kind == DVI__TOKEN_NAME ||
+         p->token.kind == '(';
 }
 
 /* Whether YAML ended the text at a comma, as it does in {..} and [..]. */
@@ -126,10 +134,12 @@ static bool expect(parser *p, int kind, const char *spelling, dvi__span open)
 {
   if (p->token.kind == kind) return next(p);
   if (p->token.kind == DVI__TOKEN_END && open.size == 1)
-    return dvi__complain(p->complaint, DVI_BAD_FILE, open, "this '%c' is never closed%s", p->source->text[open.first],
-                         ends_at_comma(p) ? "; within {..} or [..] a text with commas needs quotes" : "");
-  return dvi__complain(p->complaint, DVI_BAD_FILE, p->token.span, "found " FOUND_FORMAT " where %s is expected", FOUND(p),
-                       spelling);
+    return dvi__complain(p->complaint, DVI_BAD_FILE, open, "this '%c' is never closed%s",
+                         p->source->text[open.first],
+                         ends_at_comma(p) ? "; within {..} or [..] a text with commas needs quotes"
+                                          : "");
+  return dvi__complain(p->complaint, DVI_BAD_FILE, p->token.span,
+                       "found " FOUND_FORMAT " where %s is expected", FOUND(p), spelling);
 }
 
 /* A new node that ends with the last token. */
@@ -175,7 +185,8 @@ static bool parts_up_to(parser *p, int kind, const char *spelling, dvi__span ope
 /* The text of the token, ended by NUL. */
 static const char *copy_of_token(const parser *p)
 {
-  const char *copy = dvi__arena_text(p->arena, p->source->text + p->token.span.first, p->token.span.size);
+  const char *copy = dvi__arena_text(p->arena, p->source->text + p->token.span.first,
+                                     p->token.span.size);
   if (copy == NULL) (void)no_memory(p);
   return copy;
 }
@@ -183,7 +194,8 @@ static const char *copy_of_token(const parser *p)
 static bool take_name(parser *p, const char **name)
 {
   if (p->token.kind != DVI__TOKEN_NAME)
-    return dvi__complain(p->complaint, DVI_BAD_FILE, p->token.span, "found " FOUND_FORMAT " where a name is expected", FOUND(p));
+    return dvi__complain(p->complaint, DVI_BAD_FILE, p->token.span,
+                         "found " FOUND_FORMAT " where a name is expected", FOUND(p));
   *name = copy_of_token(p);
   return *name != NULL && next(p);
 }
@@ -195,7 +207,9 @@ static bool number(parser *p, node **result)
   if (digits == NULL) return false;
   double value = 0.0;
   (void)dvi_number_read(digits, &value);
-  if (!isfinite(value)) return dvi__complain(p->complaint, DVI_BAD_FILE, where, "this number is too large; numbers end at 1.8e308");
+  if (!isfinite(value))
+    return dvi__complain(p->complaint, DVI_BAD_FILE, where,
+                         "this number is too large; numbers end at 1.8e308");
   if (!next(p) || !make(p, DVI__FORM_NUMBER, where.first, NULL, result)) return false;
   (*result)->number = value;
   return true;
@@ -215,15 +229,20 @@ static bool sum_over(parser *p, size_t first, dvi__span open, node **result)
     const dvi__span second = p->token.span;
     if (!take_name(p, &name2)) return false;
     if (strcmp(name, name2) == 0)
-      return dvi__complain(p->complaint, DVI_BAD_FILE, second, "the two indices of a pair need two names");
+      return dvi__complain(p->complaint, DVI_BAD_FILE, second,
+                           "the two indices of a pair need two names");
   }
   if (p->token.kind == '=') {
-    if (!next(p) || !sum_of(p, &from) || !expect(p, DVI__TOKEN_RANGE, "'..'", open) || !sum_of(p, &to)) return false;
+    if (!next(p) || !sum_of(p, &from) || !expect(p, DVI__TOKEN_RANGE, "'..'", open) ||
+        !sum_of(p, &to))
+      return false;
   }
   const char *expected = from != NULL ? "','" : name2 != NULL ? "',' or '='" : "',', '=' or '<'";
-  if (!expect(p, ',', expected, open) || !sum_of(p, &summand) || !expect(p, ')', "')'", open)) return false;
+  if (!expect(p, ',', expected, open) || !sum_of(p, &summand) || !expect(p, ')', "')'", open))
+    return false;
   row parts = {0};
-  if (!add(p, &parts, summand) || (from != NULL && (!add(p, &parts, from) || !add(p, &parts, to)))) return false;
+  if (!add(p, &parts, summand) || (from != NULL && (!add(p, &parts, from) || !add(p, &parts, to))))
+    return false;
   if (!make(p, DVI__FORM_SUM, first, &parts, result)) return false;
   (*result)->name = name;
   (*result)->name2 = name2;
@@ -237,7 +256,8 @@ static bool choice(parser *p, size_t first, dvi__span open, node **result)
   for (int k = 0; k < 3; k++) {
     node *part = NULL;
     if (!(k == 0 ? any_of(p, &part) : sum_of(p, &part)) || !add(p, &parts, part)) return false;
-    if (p->token.kind == '=') return dvi__complain(p->complaint, DVI_BAD_FILE, p->token.span, "equality is written ==");
+    if (p->token.kind == '=')
+      return dvi__complain(p->complaint, DVI_BAD_FILE, p->token.span, "equality is written ==");
     if (!expect(p, k < 2 ? ',' : ')', k < 2 ? "','" : "')'", open)) return false;
   }
   return make(p, DVI__FORM_IF, first, &parts, result);
@@ -259,7 +279,9 @@ static bool named(parser *p, node **result)
   if (strcmp(name, "sum") == 0) return sum_over(p, first, open, result);
   if (strcmp(name, "if") == 0) return choice(p, first, open, result);
   row parts = {0};
-  if (!parts_up_to(p, ')', "',' or ')'", open, &parts) || !make(p, DVI__FORM_CALL, first, &parts, result)) return false;
+  if (!parts_up_to(p, ')', "',' or ')'", open, &parts) ||
+      !make(p, DVI__FORM_CALL, first, &parts, result))
+    return false;
   (*result)->name = name;
   return true;
 }
@@ -289,15 +311,17 @@ static bool atom(parser *p, node **result)
   case '[': return list(p, result);
   default:
     return dvi__complain(p->complaint, DVI_BAD_FILE, p->token.span,
-                         "found " FOUND_FORMAT " where a number, a name or a bracket is expected", FOUND(p));
+                         "found " FOUND_FORMAT " where a number, a name or a bracket is expected",
+                         FOUND(p));
   }
 }
 
 static bool rate(parser *p, node **result)
 {
   if ((*result)->form == DVI__FORM_RATE)
-    return dvi__complain(p->complaint, DVI_BAD_FILE, p->token.span,
-                         "there are no second rates x'': expressions have positions and velocities");
+    return dvi__complain(
+        p->complaint, DVI_BAD_FILE, p->token.span,
+        "there are no second rates x'': expressions have positions and velocities");
   return next(p) && make_of(p, DVI__FORM_RATE, *result, NULL, result);
 }
 
@@ -306,14 +330,16 @@ static bool indexed(parser *p, node **result)
   const dvi__span open = p->token.span;
   const size_t first = (*result)->span.first;
   row parts = {0};
-  if (!next(p) || !add(p, &parts, *result) || !parts_up_to(p, ']', "',' or ']'", open, &parts)) return false;
+  if (!next(p) || !add(p, &parts, *result) || !parts_up_to(p, ']', "',' or ']'", open, &parts))
+    return false;
   return make(p, DVI__FORM_INDEX, first, &parts, result);
 }
 
 static bool member(parser *p, node **result)
 {
   const char *name = NULL;
-  if (!next(p) || !take_name(p, &name) || !make_of(p, DVI__FORM_MEMBER, *result, NULL, result)) return false;
+  if (!next(p) || !take_name(p, &name) || !make_of(p, DVI__FORM_MEMBER, *result, NULL, result))
+    return false;
   (*result)->name = name;
   return true;
 }
@@ -323,7 +349,9 @@ static bool postfix(parser *p, node **result)
   const int depth = p->depth;
   bool fine = atom(p, result);
   while (fine && (p->token.kind == '\'' || p->token.kind == '[' || p->token.kind == '.')) {
-    fine = p->token.kind == '\'' ? rate(p, result) : p->token.kind == '[' ? indexed(p, result) : member(p, result);
+    fine = p->token.kind == '\''  ? rate(p, result)
+           : p->token.kind == '[' ? indexed(p, result)
+                                  : member(p, result);
     fine = fine && enter(p);
   }
   p->depth = depth;
@@ -346,7 +374,8 @@ static bool with_sign(parser *p, node **result)
   } else {
     if (!postfix(p, &left)) return false;
     *result = left;
-    if (p->token.kind == '^' && !(next(p) && with_sign(p, &right) && make_of(p, DVI__FORM_POWER, left, right, result)))
+    if (p->token.kind == '^' &&
+        !(next(p) && with_sign(p, &right) && make_of(p, DVI__FORM_POWER, left, right, result)))
       return false;
   }
   p->depth--;
@@ -359,7 +388,8 @@ static bool product(parser *p, node **result)
   while (p->token.kind == '*' || p->token.kind == '/') {
     const dvi__form form = p->token.kind == '*' ? DVI__FORM_MULTIPLY : DVI__FORM_DIVIDE;
     node *right = NULL;
-    if (!next(p) || !with_sign(p, &right) || !make_of(p, form, *result, right, result)) return false;
+    if (!next(p) || !with_sign(p, &right) || !make_of(p, form, *result, right, result))
+      return false;
   }
   return true;
 }
@@ -405,7 +435,9 @@ static bool compared(parser *p, node **result)
   if (!sum_of(p, &left)) return false;
   *result = left;
   for (const char *name; (name = comparison(p)) != NULL; left = right) {
-    if (!next(p) || !sum_of(p, &right) || !make_of(p, DVI__FORM_COMPARE, left, right, &made) || !add(p, &parts, made)) return false;
+    if (!next(p) || !sum_of(p, &right) || !make_of(p, DVI__FORM_COMPARE, left, right, &made) ||
+        !add(p, &parts, made))
+      return false;
     made->name = name;
   }
   return parts.count == 0 || make_row(p, DVI__FORM_AND, &parts, result);
@@ -423,7 +455,8 @@ static bool denial(parser *p, node **result)
 }
 
 /* Conditions joined by a word. */
-static bool joined(parser *p, const char *word, dvi__form form, bool (*one)(parser *, node **), node **result)
+static bool joined(parser *p, const char *word, dvi__form form, bool (*one)(parser *, node **),
+                   node **result)
 {
   row parts = {0};
   for (;;) {
@@ -447,7 +480,9 @@ static bool any_of(parser *p, node **result)
 static bool whole(parser *p, node **result)
 {
   const bool empty = p->token.kind == DVI__TOKEN_END;
-  if (empty) return dvi__complain(p->complaint, DVI_BAD_FILE, p->token.span, "an expression is missing here");
+  if (empty)
+    return dvi__complain(p->complaint, DVI_BAD_FILE, p->token.span,
+                         "an expression is missing here");
   if (!any_of(p, result)) return false;
   if (p->token.kind == ')' || p->token.kind == ']')
     return dvi__complain(p->complaint, DVI_BAD_FILE, p->token.span, "this '%c' closes nothing",
@@ -455,8 +490,8 @@ static bool whole(parser *p, node **result)
   return expect(p, DVI__TOKEN_END, "an operator or the end", DVI__NOWHERE);
 }
 
-bool dvi__expression_parse(const dvi__source *source, dvi__span span, dvi__arena *arena, dvi__complaint *complaint,
-                           const dvi__expression **expression)
+bool dvi__expression_parse(const dvi__source *source, dvi__span span, dvi__arena *arena,
+                           dvi__complaint *complaint, const dvi__expression **expression)
 {
   *expression = NULL;
   parser p = {.source = source,
