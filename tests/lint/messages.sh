@@ -7,7 +7,7 @@ cd "$1" || exit 1
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 
-sources=$(find lib/src/text lib/src/expr lib/src/scene -name '*.c' ! -path 'lib/src/scene/emit/*' | LC_ALL=C sort)
+sources=$(find lib/src/text lib/src/expr lib/src/scene -name '*.[ch]' ! -path 'lib/src/scene/emit/*' | LC_ALL=C sort)
 # shellcheck disable=SC2086
 awk -f "$lint/messages.awk" $sources | LC_ALL=C sort -u >"$work/said"
 sed -n 's/^ *- ``\(.*\)``.*/\1/p; t; s/^ *- `\([^`]*\)`.*/\1/p' docs/scene-errors.md | sed 's/<[^>]*>/<>/g; s/\(<>\)*<>/<>/g; s/^ *//; s/ *$//' |
