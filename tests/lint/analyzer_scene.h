@@ -2,6 +2,7 @@
 /* As syntax.c says, before any header. */
 #define _POSIX_C_SOURCE 200809L
 #include "scene/callbacks.h"
+#include "scene/fault.h"
 #include "text/complaint.h"
 #include "scene/sections.h"
 

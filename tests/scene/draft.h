@@ -9,11 +9,15 @@
 /* A function that is being put together: kernels of at most INPUTS inputs. */
 enum { INPUTS = 8, KERNELS = 4 };
 
+/* The blocks and the pairs of a Lagrangian. */
+enum { TIME, COORDINATES, VELOCITIES, BLOCKS };
+enum { PAIR_QQ, PAIR_QV, PAIR_VV, PAIR_TQ, PAIR_TV, PAIRS };
+
 typedef struct draft {
   dvi__graph graph[KERNELS];
   dvi__kernel kernel[KERNELS];
   dvi__kernel_input input[KERNELS][INPUTS];
-  int kernel_count, block_size[DVI__BLOCKS];
+  int kernel_count, width[BLOCKS];
   int *list[2];
   double *values;
 } draft;
@@ -25,7 +29,7 @@ static inline dvi__graph *graph_of(draft *own)
 
 static inline void reset(draft *own, int n)
 {
-  *own = (draft){.block_size = {1, n, n, 0}};
+  *own = (draft){.width = {1, n, n}};
 }
 
 static inline dvi__node apply(draft *own, dvi__op op, dvi__node a, dvi__node b)
@@ -56,15 +60,20 @@ static inline void finish(draft *own, dvi__node root, int elements, int input_co
   own->kernel[k] = (dvi__kernel){&own->graph[k], root, elements, input_count, own->input[k]};
 }
 
-static inline void affine(draft *own, int input, dvi__block block, int base, int stride)
+static inline void affine(draft *own, int input, int block, int base, int stride)
 {
   own->input[own->kernel_count][input] = (dvi__kernel_input){.block = block, .base = base, .stride = stride};
 }
 
 static inline dvi__function *made(draft *own)
 {
+  static const dvi__block_pair pair[PAIRS] = {
+      [PAIR_QQ] = {COORDINATES, COORDINATES}, [PAIR_QV] = {COORDINATES, VELOCITIES}, [PAIR_VV] = {VELOCITIES, VELOCITIES},
+      [PAIR_TQ] = {TIME, COORDINATES},        [PAIR_TV] = {TIME, VELOCITIES},
+  };
+  const dvi__blocks blocks = {BLOCKS, own->width, PAIRS, pair};
   dvi__function *function;
-  ck_assert_int_eq(dvi__function_create(own->kernel_count, own->kernel, own->block_size, &function), DVI_OK);
+  ck_assert_int_eq(dvi__function_create(own->kernel_count, own->kernel, &blocks, &function), DVI_OK);
   return function;
 }
 
@@ -95,7 +104,7 @@ static inline dvi__function *gravity(draft *own, int bodies, int dimension, doub
   dvi__node sum = number(own, 0.0);
   for (int i = 0; i < dimension; i++) {
     for (int side = 0; side < 2; side++)
-      own->input[0][2 * i + side] = (dvi__kernel_input){.block = DVI__COORDINATES, .number = own->list[side], .offset = i};
+      own->input[0][2 * i + side] = (dvi__kernel_input){.block = COORDINATES, .number = own->list[side], .offset = i};
     const dvi__node d = apply(own, DVI__OP_SUBTRACT, variable(own, 2 * i), variable(own, 2 * i + 1));
     sum = apply(own, DVI__OP_ADD, sum, apply(own, DVI__OP_SQUARE, d, d));
   }
@@ -120,8 +129,8 @@ static inline dvi__function *toda(draft *own, int n)
   reset(own, n);
   for (int ring = 0; ring < 2; ring++) {
     const dvi__node d = apply(own, DVI__OP_SUBTRACT, variable(own, 0), variable(own, 1));
-    affine(own, 0, DVI__COORDINATES, ring == 0 ? 0 : n - 1, 1);
-    affine(own, 1, DVI__COORDINATES, ring == 0 ? 1 : 0, 1);
+    affine(own, 0, COORDINATES, ring == 0 ? 0 : n - 1, 1);
+    affine(own, 1, COORDINATES, ring == 0 ? 1 : 0, 1);
     finish(own, times(own, 0.64, apply(own, DVI__OP_EXP, d, d)), ring == 0 ? n - 1 : 1, 2);
   }
   return made(own);
@@ -138,13 +147,13 @@ static inline dvi__node quartic(draft *own, dvi__node left, dvi__node right)
 static inline dvi__function *fpu(draft *own, int ell)
 {
   reset(own, 2 * ell);
-  for (int i = 0; i < 4; i++) affine(own, i, DVI__COORDINATES, i / 2 + (i % 2) * ell, 1);
+  for (int i = 0; i < 4; i++) affine(own, i, COORDINATES, i / 2 + (i % 2) * ell, 1);
   const dvi__node left = apply(own, DVI__OP_ADD, variable(own, 0), variable(own, 1));
   const dvi__node right = apply(own, DVI__OP_SUBTRACT, variable(own, 2), variable(own, 3));
   finish(own, quartic(own, left, right), ell - 1, 4);
   for (int end = 0; end < 2; end++) {
-    affine(own, 0, DVI__COORDINATES, end == 0 ? 0 : ell - 1, 0);
-    affine(own, 1, DVI__COORDINATES, end == 0 ? ell : 2 * ell - 1, 0);
+    affine(own, 0, COORDINATES, end == 0 ? 0 : ell - 1, 0);
+    affine(own, 1, COORDINATES, end == 0 ? ell : 2 * ell - 1, 0);
     const dvi__node x0 = variable(own, 0), x1 = variable(own, 1), zero = number(own, 0.0);
     finish(own,
            end == 0 ? quartic(own, zero, apply(own, DVI__OP_SUBTRACT, x0, x1))
@@ -159,7 +168,7 @@ static inline dvi__function *double_pendulum(draft *own)
 {
   const double l1 = 2.0, l2 = 3.0, m1 = 1.0, m2 = 2.0, g = 9.80665;
   reset(own, 2);
-  for (int i = 0; i < 4; i++) affine(own, i, i < 2 ? DVI__COORDINATES : DVI__VELOCITIES, i % 2, 0);
+  for (int i = 0; i < 4; i++) affine(own, i, i < 2 ? COORDINATES : VELOCITIES, i % 2, 0);
   const dvi__node q1 = variable(own, 0), q2 = variable(own, 1), v1 = variable(own, 2), v2 = variable(own, 3);
   const dvi__node d = apply(own, DVI__OP_SUBTRACT, q1, q2), vv = apply(own, DVI__OP_MULTIPLY, v1, v2);
   dvi__node L = times(own, 0.5 * (m1 + m2) * l1 * l1, apply(own, DVI__OP_SQUARE, v1, v1));

@@ -62,13 +62,13 @@ static void check_potential(dvi__function *function, const char *name, const cha
   double *q = points(made_by_hand->q, n, count), *t = calloc((size_t)count, sizeof *t);
   double *V = room(count), *V_q = room(n * count), *V_qq = room(n * n * count);
   double *value = room(count), *gradient = room(n * count), *hessian = room(n * n * count);
-  const double *const x[DVI__BLOCKS] = {[DVI__COORDINATES] = q};
+  const double *const x[BLOCKS] = {[COORDINATES] = q};
   dvi_pattern pattern;
   int full;
   ck_assert_int_eq(dvi__function_value(function, count, x, V), 0);
-  ck_assert_int_eq(dvi__function_gradient(function, count, x, (double *const[DVI__BLOCKS]){[DVI__COORDINATES] = V_q}), 0);
-  ck_assert_int_eq(dvi__function_second(function, count, x, (double *const[DVI__PAIRS]){[DVI__PAIR_QQ] = V_qq}), 0);
-  ck_assert_int_eq(dvi__function_pattern(function, DVI__PAIR_QQ, &pattern, &full), DVI_OK);
+  ck_assert_int_eq(dvi__function_gradient(function, count, x, (double *const[BLOCKS]){[COORDINATES] = V_q}), 0);
+  ck_assert_int_eq(dvi__function_second(function, count, x, (double *const[PAIRS]){[PAIR_QQ] = V_qq}), 0);
+  ck_assert_int_eq(dvi__function_pattern(function, PAIR_QQ, &pattern, &full), DVI_OK);
   ck_assert_int_eq(potential->value_batch(count, t, q, value, potential->user), 0);
   ck_assert_int_eq(potential->gradient_batch(count, t, q, gradient, potential->user), 0);
   ck_assert_int_eq(potential->hessian_batch(count, t, q, hessian, potential->user), 0);
@@ -133,12 +133,10 @@ START_TEST(the_double_pendulum_is_that_of_the_catalogue)
   const dvi_lagrangian *L = made_by_hand->terms->lagrangian;
   double *q = points(made_by_hand->q, 2, COUNT), *v = points(made_by_hand->v, 2, COUNT);
   double t[COUNT] = {0}, value[2][COUNT], gradient[2][2][2 * COUNT], second[2][3][4 * COUNT];
-  const double *const x[DVI__BLOCKS] = {[DVI__COORDINATES] = q, [DVI__VELOCITIES] = v};
+  const double *const x[BLOCKS] = {[COORDINATES] = q, [VELOCITIES] = v};
   ck_assert_int_eq(dvi__function_value(function, COUNT, x, value[0]), 0);
-  ck_assert_int_eq(dvi__function_gradient(function, COUNT, x, (double *const[DVI__BLOCKS]){NULL, gradient[0][0], gradient[0][1]}),
-                   0);
-  ck_assert_int_eq(dvi__function_second(function, COUNT, x, (double *const[DVI__PAIRS]){second[0][0], second[0][1], second[0][2]}),
-                   0);
+  ck_assert_int_eq(dvi__function_gradient(function, COUNT, x, (double *const[BLOCKS]){NULL, gradient[0][0], gradient[0][1]}), 0);
+  ck_assert_int_eq(dvi__function_second(function, COUNT, x, (double *const[PAIRS]){second[0][0], second[0][1], second[0][2]}), 0);
   ck_assert_int_eq(L->value_batch(COUNT, t, q, v, value[1], L->user), 0);
   ck_assert_int_eq(L->gradient_batch(COUNT, t, q, v, gradient[1][0], gradient[1][1], L->user), 0);
   ck_assert_int_eq(L->hessian_batch(COUNT, t, q, v, second[1][0], second[1][1], second[1][2], L->user), 0);
@@ -178,14 +176,14 @@ static void check_bits(dvi__function *function, int n, const double *all)
   double *q = room(n * MOST), *V_q = room(n * MOST), *one = room(n * MOST), V, value[MOST];
   for (int k = 0; k < MOST; k++) {
     for (int i = 0; i < n; i++) q[i] = all[i * MOST + k];
-    const double *const x[DVI__BLOCKS] = {[DVI__COORDINATES] = q};
-    ck_assert_int_eq(dvi__function_gradient(function, 1, x, (double *const[DVI__BLOCKS]){NULL, V_q}), 0);
+    const double *const x[BLOCKS] = {[COORDINATES] = q};
+    ck_assert_int_eq(dvi__function_gradient(function, 1, x, (double *const[BLOCKS]){NULL, V_q}), 0);
     for (int i = 0; i < n; i++) one[i * MOST + k] = V_q[i];
   }
   for (int count = 2; count <= MOST; count = count < 20 ? count + 1 : count + 93) {
     for (int i = 0; i < n; i++) memcpy(q + i * count, all + i * MOST, (size_t)count * sizeof *q);
-    const double *const x[DVI__BLOCKS] = {[DVI__COORDINATES] = q};
-    ck_assert_int_eq(dvi__function_gradient(function, count, x, (double *const[DVI__BLOCKS]){NULL, V_q}), 0);
+    const double *const x[BLOCKS] = {[COORDINATES] = q};
+    ck_assert_int_eq(dvi__function_gradient(function, count, x, (double *const[BLOCKS]){NULL, V_q}), 0);
     ck_assert_int_eq(dvi__function_value(function, count, x, value), 0);
     for (int i = 0; i < n; i++) ck_assert_mem_eq(V_q + i * count, one + i * MOST, (size_t)count * sizeof *q);
     if (count == 2) V = value[0];
@@ -222,9 +220,9 @@ typedef struct worker {
 static void *work(void *user)
 {
   worker *own = user;
-  const double *const x[DVI__BLOCKS] = {[DVI__COORDINATES] = own->q};
+  const double *const x[BLOCKS] = {[COORDINATES] = own->q};
   for (int turn = 0; turn < 20; turn++)
-    own->failed |= dvi__function_gradient(own->function, 3, x, (double *const[DVI__BLOCKS]){NULL, own->V_q});
+    own->failed |= dvi__function_gradient(own->function, 3, x, (double *const[BLOCKS]){NULL, own->V_q});
   return NULL;
 }
 
@@ -254,18 +252,20 @@ START_TEST(threads_may_ask_first_at_one_time)
 }
 END_TEST
 
+static const char by_coordinates[BLOCKS] = {[COORDINATES] = 1}, qq_alone[PAIRS] = {[PAIR_QQ] = 1};
+
 START_TEST(evaluations_allocate_nothing)
 {
   draft own;
   dvi__function *function = solar(&own);
   double q[18 * 5], V[5], V_q[18 * 5], V_qq[18 * 18 * 5];
   for (int i = 0; i < 90; i++) q[i] = sin(1.0 + 2.0 * i);
-  const double *const x[DVI__BLOCKS] = {[DVI__COORDINATES] = q};
-  ck_assert_int_eq(dvi__function_prepare(function, 1, 1U << DVI__COORDINATES, 1U << DVI__PAIR_QQ), DVI_OK);
+  const double *const x[BLOCKS] = {[COORDINATES] = q};
+  ck_assert_int_eq(dvi__function_prepare(function, 1, by_coordinates, qq_alone), DVI_OK);
   const long calls = heap_calls();
   const int failed = dvi__function_value(function, 5, x, V) |
-                     dvi__function_gradient(function, 5, x, (double *const[DVI__BLOCKS]){NULL, V_q}) |
-                     dvi__function_second(function, 5, x, (double *const[DVI__PAIRS]){V_qq});
+                     dvi__function_gradient(function, 5, x, (double *const[BLOCKS]){NULL, V_q}) |
+                     dvi__function_second(function, 5, x, (double *const[PAIRS]){V_qq});
   const long taken = heap_calls() - calls;
   ck_assert_int_eq(failed, 0);
   ck_assert_int_eq(taken, 0);
@@ -280,7 +280,7 @@ START_TEST(counters_count_points_and_what_was_derived)
   dvi__function_counters counters;
   double q[18 * 4], V[4];
   for (int i = 0; i < 72; i++) q[i] = sin(1.0 + 2.0 * i);
-  const double *const x[DVI__BLOCKS] = {[DVI__COORDINATES] = q};
+  const double *const x[BLOCKS] = {[COORDINATES] = q};
   dvi__function_count(function, &counters);
   ck_assert_int_eq(counters.value_operations, -1);
   ck_assert_int_eq(dvi__function_value(function, 4, x, V), 0);
@@ -289,7 +289,7 @@ START_TEST(counters_count_points_and_what_was_derived)
   ck_assert_int_eq(counters.value_operations, 15 * 11); /* three differences and squares, two sums, a power, two factors */
   ck_assert_int_eq(counters.gradient_operations, -1);
   ck_assert_int_eq(counters.second_operations, -1);
-  ck_assert_int_eq(dvi__function_prepare(function, 0, 1U << DVI__COORDINATES, 1U << DVI__PAIR_QQ), DVI_OK);
+  ck_assert_int_eq(dvi__function_prepare(function, 0, by_coordinates, qq_alone), DVI_OK);
   dvi__function_count(function, &counters);
   ck_assert_int_gt(counters.gradient_operations, counters.value_operations);
   ck_assert_int_gt(counters.second_operations, counters.gradient_operations);
@@ -304,29 +304,28 @@ START_TEST(time_is_a_block_and_constants_are_known)
 {
   draft own;
   reset(&own, 1);
-  affine(&own, 0, DVI__TIME, 0, 0);
-  affine(&own, 1, DVI__COORDINATES, 0, 0);
-  affine(&own, 2, DVI__VELOCITIES, 0, 0);
+  affine(&own, 0, TIME, 0, 0);
+  affine(&own, 1, COORDINATES, 0, 0);
+  affine(&own, 2, VELOCITIES, 0, 0);
   const dvi__node t = variable(&own, 0), q = variable(&own, 1), v = variable(&own, 2);
   const dvi__node first = apply(&own, DVI__OP_MULTIPLY, apply(&own, DVI__OP_SQUARE, q, q), t);
   finish(&own, apply(&own, DVI__OP_ADD, first, times(&own, 3.0, apply(&own, DVI__OP_MULTIPLY, q, v))), 1, 3);
   dvi__function *function = made(&own);
-  const double at[3] = {2.0, 5.0, 7.0}, *const x[DVI__BLOCKS] = {&at[0], &at[1], &at[2]};
+  const double at[3] = {2.0, 5.0, 7.0}, *const x[BLOCKS] = {&at[0], &at[1], &at[2]};
   double rate, by_q, by_v, qq, qv, vv, tq, tv;
-  ck_assert_int_eq(dvi__function_gradient(function, 1, x, (double *const[DVI__BLOCKS]){&rate, &by_q, &by_v}), 0);
+  ck_assert_int_eq(dvi__function_gradient(function, 1, x, (double *const[BLOCKS]){&rate, &by_q, &by_v}), 0);
   ck_assert_double_eq(rate, 25.0);
   ck_assert_double_eq(by_q, 20.0 + 21.0);
   ck_assert_double_eq(by_v, 15.0);
-  double *const second[DVI__PAIRS] = {[DVI__PAIR_QQ] = &qq, [DVI__PAIR_QV] = &qv, [DVI__PAIR_TQ] = &tq};
+  double *const second[PAIRS] = {[PAIR_QQ] = &qq, [PAIR_QV] = &qv, [PAIR_TQ] = &tq};
   ck_assert_int_eq(dvi__function_second(function, 1, x, second), 0);
   ck_assert_double_eq(qq, 4.0);
   ck_assert_double_eq(qv, 3.0);
   ck_assert_double_eq(tq, 10.0);
-  ck_assert_int_eq(dvi__function_second(function, 1, x, (double *const[DVI__PAIRS]){[DVI__PAIR_VV] = &vv, [DVI__PAIR_TV] = &tv}),
-                   0);
-  ck_assert_int_eq(dvi__function_second_constant(function, DVI__PAIR_QQ), 0);
-  ck_assert_int_eq(dvi__function_second_constant(function, DVI__PAIR_QV), 1);
-  ck_assert_int_eq(dvi__function_second_constant(function, DVI__PAIR_VV), 1);
+  ck_assert_int_eq(dvi__function_second(function, 1, x, (double *const[PAIRS]){[PAIR_VV] = &vv, [PAIR_TV] = &tv}), 0);
+  ck_assert_int_eq(dvi__function_second_constant(function, PAIR_QQ), 0);
+  ck_assert_int_eq(dvi__function_second_constant(function, PAIR_QV), 1);
+  ck_assert_int_eq(dvi__function_second_constant(function, PAIR_VV), 1);
   drop(&own, function);
 }
 END_TEST
@@ -341,14 +340,14 @@ START_TEST(an_element_may_read_a_variable_twice)
   for (int i = 0; i < 2; i++) {
     own.list[i] = malloc(N * N * sizeof **own.list);
     for (int e = 0; e < N * N; e++) own.list[i][e] = i == 0 ? e / N : e % N;
-    own.input[0][i] = (dvi__kernel_input){.block = DVI__COORDINATES, .number = own.list[i]};
+    own.input[0][i] = (dvi__kernel_input){.block = COORDINATES, .number = own.list[i]};
   }
   finish(&own, apply(&own, DVI__OP_MULTIPLY, variable(&own, 0), variable(&own, 1)), N * N, 2);
   dvi__function *function = made(&own);
   for (int i = 0; i < N; i++) x[i] = 1.0 + i;
-  const double *const at[DVI__BLOCKS] = {[DVI__COORDINATES] = x};
-  ck_assert_int_eq(dvi__function_gradient(function, 1, at, (double *const[DVI__BLOCKS]){NULL, by_q}), 0);
-  ck_assert_int_eq(dvi__function_second(function, 1, at, (double *const[DVI__PAIRS]){qq}), 0);
+  const double *const at[BLOCKS] = {[COORDINATES] = x};
+  ck_assert_int_eq(dvi__function_gradient(function, 1, at, (double *const[BLOCKS]){NULL, by_q}), 0);
+  ck_assert_int_eq(dvi__function_second(function, 1, at, (double *const[PAIRS]){qq}), 0);
   for (int i = 0; i < N; i++) ck_assert_double_eq(by_q[i], 90.0);
   for (int i = 0; i < N * N; i++) ck_assert_double_eq(qq[i], 2.0);
   drop(&own, function);
@@ -361,12 +360,12 @@ START_TEST(a_function_without_kernels_is_zero)
   reset(&own, 3);
   dvi__function *function = made(&own);
   double q[3] = {1.0, 2.0, 3.0}, V = 5.0, V_q[3] = {5.0, 5.0, 5.0};
-  const double *const x[DVI__BLOCKS] = {[DVI__COORDINATES] = q};
+  const double *const x[BLOCKS] = {[COORDINATES] = q};
   dvi_pattern pattern;
   int full;
   ck_assert_int_eq(dvi__function_value(function, 1, x, &V), 0);
-  ck_assert_int_eq(dvi__function_gradient(function, 1, x, (double *const[DVI__BLOCKS]){NULL, V_q}), 0);
-  ck_assert_int_eq(dvi__function_pattern(function, DVI__PAIR_QQ, &pattern, &full), DVI_OK);
+  ck_assert_int_eq(dvi__function_gradient(function, 1, x, (double *const[BLOCKS]){NULL, V_q}), 0);
+  ck_assert_int_eq(dvi__function_pattern(function, PAIR_QQ, &pattern, &full), DVI_OK);
   ck_assert_double_eq(V + V_q[0] + V_q[1] + V_q[2], 0.0);
   ck_assert_int_eq(full, 0);
   ck_assert_int_eq(pattern.start[3], 0);
@@ -382,7 +381,7 @@ START_TEST(the_pattern_of_a_long_chain_is_found)
   dvi__function *function = toda(&own, N);
   dvi_pattern pattern;
   int full;
-  ck_assert_int_eq(dvi__function_pattern(function, DVI__PAIR_QQ, &pattern, &full), DVI_OK);
+  ck_assert_int_eq(dvi__function_pattern(function, PAIR_QQ, &pattern, &full), DVI_OK);
   ck_assert_int_eq(full, 0);
   ck_assert_int_eq(pattern.start[N], 3 * N);
   ck_assert_mem_eq(pattern.row + pattern.start[1], ((int[]){0, 1, 2}), 3 * sizeof(int));
@@ -392,7 +391,7 @@ START_TEST(the_pattern_of_a_long_chain_is_found)
 END_TEST
 
 /* log(x - 1) at x = 0.8 in the source "log(x - 1)". */
-START_TEST(what_is_not_finite_is_blamed)
+START_TEST(what_is_not_finite_is_located)
 {
   static const dvi__source source = {"scene", "log(x - 1)", 10};
   draft own;
@@ -400,23 +399,22 @@ START_TEST(what_is_not_finite_is_blamed)
   dvi__fault fault;
   double V, V_q;
   reset(&own, 1);
-  affine(&own, 0, DVI__COORDINATES, 0, 0);
+  affine(&own, 0, COORDINATES, 0, 0);
   graph_of(&own)->here = (dvi__span){4, 5};
   const dvi__node difference = apply(&own, DVI__OP_SUBTRACT, variable(&own, 0), number(&own, 1.0));
   graph_of(&own)->here = (dvi__span){0, 10};
   finish(&own, apply(&own, DVI__OP_LOG, difference, difference), 1, 1);
   dvi__function *function = made(&own);
-  const double q[2] = {2.0, 0.8}, *const x[DVI__BLOCKS] = {[DVI__COORDINATES] = q};
-  const double *const bad[DVI__BLOCKS] = {[DVI__COORDINATES] = q + 1},
-                      one = 1.0, *const pole[DVI__BLOCKS] = {[DVI__COORDINATES] = &one};
+  const double q[2] = {2.0, 0.8}, *const x[BLOCKS] = {[COORDINATES] = q};
+  const double *const bad[BLOCKS] = {[COORDINATES] = q + 1}, one = 1.0, *const pole[BLOCKS] = {[COORDINATES] = &one};
   ck_assert_int_eq(dvi__function_value(function, 1, x, &V), 0);
   ck_assert_int_eq(dvi__function_value(function, 1, bad, &V), 1);
-  ck_assert_int_eq(dvi__function_gradient(function, 1, pole, (double *const[DVI__BLOCKS]){NULL, &V_q}), 1);
-  dvi__function_blame(function, &source, 2, x, 1, 0, text, sizeof text, &fault);
+  ck_assert_int_eq(dvi__function_gradient(function, 1, pole, (double *const[BLOCKS]){NULL, &V_q}), 1);
+  dvi__function_fault(function, &source, 2, x, 1, 0, text, sizeof text, &fault);
   ck_assert_str_eq(text, "log(x - 1), x - 1 = -0.2 is not finite");
   ck_assert_uint_eq(fault.span.size, 10);
-  ck_assert(fault.count == 1 && fault.variable[0].block == DVI__COORDINATES && fault.variable[0].number == 0);
-  dvi__function_blame(function, &source, 2, x, 0, 1, text, sizeof text, &fault);
+  ck_assert(fault.count == 1 && fault.variable[0].block == COORDINATES && fault.variable[0].number == 0);
+  dvi__function_fault(function, &source, 2, x, 0, 1, text, sizeof text, &fault);
   ck_assert_str_eq(text, "");
   drop(&own, function);
 }
@@ -438,6 +436,6 @@ int main(void)
   tcase_add_test(tests, an_element_may_read_a_variable_twice);
   tcase_add_test(tests, a_function_without_kernels_is_zero);
   tcase_add_test(tests, the_pattern_of_a_long_chain_is_found);
-  tcase_add_test(tests, what_is_not_finite_is_blamed);
+  tcase_add_test(tests, what_is_not_finite_is_located);
   return run_tests("scene/function", tests);
 }

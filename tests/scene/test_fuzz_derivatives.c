@@ -212,15 +212,13 @@ static void spread(const dvi_pattern *pattern, int full, const double *entry, do
 
 static unsigned run_at(dvi__function *function, const double *x, const verdict *v)
 {
-  const double *const block[DVI__BLOCKS] = {[DVI__COORDINATES] = x};
   double result[ROOTS] = {0}, entry[INPUTS * INPUTS] = {0};
-  double *const gradient[DVI__BLOCKS] = {[DVI__COORDINATES] = result + GRADIENT};
-  double *const second[DVI__PAIRS] = {[DVI__PAIR_QQ] = entry};
+  double *const gradient = result + GRADIENT, *const second = entry;
   dvi_pattern pattern;
   int full;
-  ck_assert_int_eq(dvi__function_pattern(function, DVI__PAIR_QQ, &pattern, &full), DVI_OK);
-  const int code[] = {dvi__function_value(function, 1, block, result), dvi__function_gradient(function, 1, block, gradient),
-                      dvi__function_second(function, 1, block, second)};
+  ck_assert_int_eq(dvi__function_pattern(function, 0, &pattern, &full), DVI_OK);
+  const int code[] = {dvi__function_value(function, 1, &x, result), dvi__function_gradient(function, 1, &x, &gradient),
+                      dvi__function_second(function, 1, &x, &second)};
   for (int k = 0; k < 3; k++) fuzz_requires(code[k] >= 0);
   spread(&pattern, full, entry, result + HESSIAN);
   check_results(v, code[0], 1, result, 0);
@@ -232,13 +230,14 @@ static unsigned run_at(dvi__function *function, const double *x, const verdict *
 /* The graph becomes the function's, and is freed with it. */
 static unsigned run(const verdict *v)
 {
-  static const dvi__kernel_input input[INPUTS] = {
-      {.block = DVI__COORDINATES, .base = 0}, {.block = DVI__COORDINATES, .base = 1}, {.block = DVI__COORDINATES, .base = 2}};
-  static const int size[DVI__BLOCKS] = {1, INPUTS, 0, 0};
+  static const dvi__kernel_input input[INPUTS] = {{.base = 0}, {.base = 1}, {.base = 2}};
+  static const int width = INPUTS;
+  static const dvi__block_pair pair = {0, 0};
+  static const dvi__blocks blocks = {1, &width, 1, &pair};
   const dvi__kernel kernel = {.graph = &graph, .root = root[0], .elements = 1, .input_count = INPUTS, .input = input};
   dvi__function *function = NULL;
   unsigned codes = 0;
-  ck_assert_int_eq(dvi__function_create(1, &kernel, size, &function), DVI_OK);
+  ck_assert_int_eq(dvi__function_create(1, &kernel, &blocks, &function), DVI_OK);
   for (int p = 0; p < POINTS; p++) codes = 8 * codes + run_at(function, point[p], p < JUDGED ? &v[p] : NULL);
   dvi__function_destroy(&function);
   return codes;

@@ -11,8 +11,8 @@
  * A condition is a number, 1 or 0, and never negative. What it guards with WHERE stands in front
  * of products, powers and equal guards, so that derivatives are guarded, too: if(x > 0, sqrt(x),
  * 0) has the derivative 0 at x < 0, and not 0 * NaN. */
-#ifndef DVI_SCENE_GRAPH_H
-#define DVI_SCENE_GRAPH_H
+#ifndef DVI_EXPR_GRAPH_H
+#define DVI_EXPR_GRAPH_H
 #include "text/arena.h"
 #include "text/complaint.h"
 

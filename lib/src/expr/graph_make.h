@@ -1,6 +1,6 @@
 /* What the files of the graph share. */
-#ifndef DVI_SCENE_GRAPH_MAKE_H
-#define DVI_SCENE_GRAPH_MAKE_H
+#ifndef DVI_EXPR_GRAPH_MAKE_H
+#define DVI_EXPR_GRAPH_MAKE_H
 #include "expr/graph.h"
 
 /* The node that is exactly this, found or made; nothing is simplified. */

@@ -1,7 +1,7 @@
 /* The operations of expressions on numbers of 113 bits, for errors that lie below the rounding of a
  * double. Of the processor's library nothing is needed but doubles to begin with. */
-#ifndef DVI_SCENE_QUAD_H
-#define DVI_SCENE_QUAD_H
+#ifndef DVI_EXPR_QUAD_H
+#define DVI_EXPR_QUAD_H
 #include <float.h>
 
 #include "expr/graph.h"

@@ -1,136 +1,30 @@
 #include "scene/callbacks.h"
 
-#include <dvi/number.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "expr/compile/program.h"
-
-/* ---- blame ---- */
-
-enum { BLAME_SIZE = 512 };
-static _Thread_local char blame_text[BLAME_SIZE];
-static _Thread_local dvi_status blame_status;
-static _Thread_local dvi__span blame_span;
-static _Thread_local size_t blame_words; /* where they begin, behind the place; 0: it names none */
-
-void dvi__blame_nobody(void)
-{
-  blame_text[0] = '\0';
-  blame_status = DVI_OK;
-  blame_words = 0;
-}
-
-dvi_status dvi__blame_status(void)
-{
-  return blame_status;
-}
-
-bool dvi__blame_place(dvi__span *span, const char **words)
-{
-  *span = blame_span;
-  *words = blame_text + blame_words;
-  return blame_words > 0;
-}
-
-const char *dvi_scene_blame(void)
-{
-  return blame_text;
-}
-
-/* Add to what is said. */
-static void add_words(const char *format, ...) DVI__SCENE_PRINTF(1, 2);
-static void add_words(const char *format, ...)
-{
-  const size_t used = strlen(blame_text);
-  va_list arguments;
-  va_start(arguments, format);
-  (void)dvi_number_vprint(blame_text + used, sizeof blame_text - used, format, arguments);
-  va_end(arguments);
-}
-
-/* The time, and the coordinates that the part depends on. */
-static void add_circumstances(const dvi__term *term, const double *t, const dvi__fault *fault)
-{
-  const char *word = ", where";
-  if (t != NULL) add_words(", at t = %.6g", *t);
-  for (int i = 0; i < fault->count; i++) {
-    const char *label = fault->variable[i].block == DVI__COORDINATES
-                            ? dvi_scene_coordinate(term->scene, fault->variable[i].number)
-                            : NULL;
-    if (label == NULL) continue;
-    add_words("%s %s = %.6g", word, label, fault->variable[i].value);
-    word = ",";
-  }
-}
-
-/* Keep which part was not finite, or has no series, at the first of the points where one is. */
-static void blame(const dvi__term *term, int count, const double *const *x, int of_series)
-{
-  const dvi__source *source = &term->scene->source;
-  char part[BLAME_SIZE / 2] = "";
-  dvi__fault fault = {.span = DVI__NOWHERE};
-  int k = 0, line = 0, column = 0;
-  for (; k < count && part[0] == '\0'; k++)
-    dvi__function_blame(term->function, source, count, x, k, of_series, part, sizeof part, &fault);
-  blame_text[0] = '\0';
-  blame_words = 0;
-  if (part[0] == '\0') {
-    add_words(of_series ? "%s: the Taylor series of all terms is not finite"
-                        : "%s: the sum of all terms is not finite",
-              source->name);
-    return;
-  }
-  dvi__source_place(source, fault.span.first, &line, &column);
-  add_words("%s:%d:%d: ", source->name, line, column);
-  blame_span = fault.span;
-  blame_words = strlen(blame_text);
-  add_words("%s", part);
-  add_circumstances(term, x[DVI__TIME] != NULL ? &x[DVI__TIME][k - 1] : NULL, &fault);
-}
-
-/* Why there is no program, or no pattern. */
-static const char *too_large(dvi_status status)
-{
-  return status == DVI_NO_MEMORY ? "memory ran out"
-                                 : "too large: its derivatives need more than 2000000 parts, "
-                                   "20000000 pairs, 16384 numbers at a time, or 1 GiB";
-}
-
-static int verdict(const dvi__term *term, int count, const double *const *x, int of_series,
-                   int returned)
-{
-  if (returned == 0) return 0;
-  blame_status = returned > 0 ? DVI_NOT_FINITE : (dvi_status)returned;
-  if (returned > 0)
-    blame(term, count, x, of_series);
-  else
-    (void)snprintf(blame_text, sizeof blame_text, "%s: %s", term->scene->source.name,
-                   too_large(blame_status));
-  return returned;
-}
-
-bool(dvi__scene_too_large)(dvi_scene *scene, const char *what, dvi_status status)
-{
-  return dvi__complain(scene->complaint, status, DVI__NOWHERE, "%s: %s", what, too_large(status));
-}
+#include "scene/fault.h"
 
 /* ---- evaluations ---- */
 
-static int value_at(dvi__term *term, int count, const double *const *x, double *value)
+static int value_at(dvi__scene_term *term, int count, const double *const *x, double *value)
 {
-  return verdict(term, count, x, 0, dvi__function_value(term->function, count, x, value));
+  return dvi__fault_check(term, count, x, 0, dvi__function_value(term->function, count, x, value));
 }
 
-static int gradient_at(dvi__term *term, int count, const double *const *x, double *const *gradient)
+static int gradient_at(dvi__scene_term *term, int count, const double *const *x,
+                       double *const *gradient)
 {
-  return verdict(term, count, x, 0, dvi__function_gradient(term->function, count, x, gradient));
+  return dvi__fault_check(term, count, x, 0,
+                          dvi__function_gradient(term->function, count, x, gradient));
 }
 
-static int second_at(dvi__term *term, int count, const double *const *x, double *const *values)
+static int second_at(dvi__scene_term *term, int count, const double *const *x,
+                     double *const *values)
 {
-  return verdict(term, count, x, 0, dvi__function_second(term->function, count, x, values));
+  return dvi__fault_check(term, count, x, 0,
+                          dvi__function_second(term->function, count, x, values));
 }
 
 int dvi__term_value(double t, const double *q, const double *velocity_or_momentum, double *value,
@@ -173,15 +67,15 @@ static int potential_rate(int count, const double *t, const double *q, double *V
 static int potential_taylor(int degree, const double *t, const double *q, double *V, double *V_q,
                             double *V_qq, void *user)
 {
-  const dvi__term *term = user;
+  const dvi__scene_term *term = user;
   const double *x[DVI__BLOCKS] = {t, q, NULL, NULL};
   double *gradient[DVI__BLOCKS] = {[DVI__COORDINATES] = V_q},
          *values[DVI__PAIRS] = {[DVI__PAIR_QQ] = V_qq};
-  return verdict(term, 1, x, 1,
-                 dvi__function_series(term->function, degree, x, V, gradient, values));
+  return dvi__fault_check(term, 1, x, 1,
+                          dvi__function_series(term->function, degree, x, V, gradient, values));
 }
 
-bool dvi__term_pattern(dvi_scene *scene, dvi__term *term, dvi__pair pair, dvi_pattern *pattern,
+bool dvi__term_pattern(dvi_scene *scene, dvi__scene_term *term, int pair, dvi_pattern *pattern,
                        int *full)
 {
   const dvi_status status = dvi__function_pattern(term->function, pair, pattern, full);
@@ -191,9 +85,14 @@ bool dvi__term_pattern(dvi_scene *scene, dvi__term *term, dvi__pair pair, dvi_pa
   return true;
 }
 
+/* Blocks by which gradients are derived. */
+static const char of_coordinates[DVI__BLOCKS] = {[DVI__COORDINATES] = 1};
+static const char of_motion[DVI__BLOCKS] = {[DVI__COORDINATES] = 1, [DVI__VELOCITIES] = 1};
+static const char of_multipliers[DVI__BLOCKS] = {[DVI__MULTIPLIERS] = 1};
+
 /* Programs of large expressions are made now, for they may be refused: the value's, and the
  * gradient's by these blocks. */
-static bool prepare_large(dvi_scene *scene, const dvi__term *term, unsigned blocks)
+static bool prepare_large(dvi_scene *scene, const dvi__scene_term *term, const char *blocks)
 {
   enum { ALWAYS_FIT = DVI__ROWS_MAX / 32 }; /* parts, whatever is derived of them */
   const dvi__kernel *largest = NULL;
@@ -203,13 +102,13 @@ static bool prepare_large(dvi_scene *scene, const dvi__term *term, unsigned bloc
       largest = kernel;
   }
   if (largest == NULL) return true;
-  const dvi_status status = dvi__function_prepare(term->function, 1, blocks, 0);
+  const dvi_status status = dvi__function_prepare(term->function, 1, blocks, NULL);
   return status == DVI_OK ||
          dvi__complain(scene->complaint, status, largest->graph->node[largest->root].span, "%s",
-                       too_large(status));
+                       dvi__too_large(status));
 }
 
-bool dvi__make_potential(dvi_scene *scene, const char *name, dvi__term *term,
+bool dvi__make_potential(dvi_scene *scene, const char *name, dvi__scene_term *term,
                          dvi_potential *potential)
 {
   int full;
@@ -220,7 +119,7 @@ bool dvi__make_potential(dvi_scene *scene, const char *name, dvi__term *term,
                                .rate_batch = potential_rate,
                                .taylor = potential_taylor,
                                .user = term};
-  return prepare_large(scene, term, 1U << DVI__COORDINATES) &&
+  return prepare_large(scene, term, of_coordinates) &&
          dvi__term_pattern(scene, term, DVI__PAIR_QQ, &potential->qq, &full);
 }
 
@@ -262,16 +161,16 @@ static int lagrangian_taylor(int degree, const double *t, const double *q, const
                              double *L, double *L_q, double *L_v, double *L_qq, double *L_qv,
                              double *L_vv, void *user)
 {
-  const dvi__term *term = user;
+  const dvi__scene_term *term = user;
   const double *x[DVI__BLOCKS] = {t, q, v, NULL};
   double *gradient[DVI__BLOCKS] = {[DVI__COORDINATES] = L_q, [DVI__VELOCITIES] = L_v};
   double *values[DVI__PAIRS] = {
       [DVI__PAIR_QQ] = L_qq, [DVI__PAIR_QV] = L_qv, [DVI__PAIR_VV] = L_vv};
-  return verdict(term, 1, x, 1,
-                 dvi__function_series(term->function, degree, x, L, gradient, values));
+  return dvi__fault_check(term, 1, x, 1,
+                          dvi__function_series(term->function, degree, x, L, gradient, values));
 }
 
-bool dvi__make_lagrangian(dvi_scene *scene, dvi__term *term, dvi_lagrangian *lagrangian)
+bool dvi__make_lagrangian(dvi_scene *scene, dvi__scene_term *term, dvi_lagrangian *lagrangian)
 {
   int full;
   *lagrangian = (dvi_lagrangian){.value_batch = lagrangian_value,
@@ -280,7 +179,7 @@ bool dvi__make_lagrangian(dvi_scene *scene, dvi__term *term, dvi_lagrangian *lag
                                  .rate_batch = lagrangian_rate,
                                  .taylor = lagrangian_taylor,
                                  .user = term};
-  return prepare_large(scene, term, 1U << DVI__COORDINATES | 1U << DVI__VELOCITIES) &&
+  return prepare_large(scene, term, of_motion) &&
          dvi__term_pattern(scene, term, DVI__PAIR_QQ, &lagrangian->qq, &full) &&
          dvi__term_pattern(scene, term, DVI__PAIR_QV, &lagrangian->qv, &full) &&
          dvi__term_pattern(scene, term, DVI__PAIR_VV, &lagrangian->vv, &full);
@@ -290,7 +189,7 @@ bool dvi__make_lagrangian(dvi_scene *scene, dvi__term *term, dvi_lagrangian *lag
 
 static int multiplied(const double *q, const double *p, double *gradient_w, void *user)
 {
-  dvi__term *term = user;
+  dvi__scene_term *term = user;
   const double *x[DVI__BLOCKS] = {NULL, q, p, term->none};
   double *gradient[DVI__BLOCKS] = {[DVI__MULTIPLIERS] = gradient_w};
   return gradient_at(term, 1, x, gradient);
@@ -303,7 +202,7 @@ int dvi__term_generator(const double *q, double *xi, void *user)
 
 static int form_gradient(const double *q, double *alpha_q, void *user)
 {
-  dvi__term *term = user;
+  dvi__scene_term *term = user;
   const double *x[DVI__BLOCKS] = {NULL, q, NULL, term->none};
   double *values[DVI__PAIRS] = {[DVI__PAIR_QW] = alpha_q};
   return second_at(term, 1, x, values);
@@ -316,14 +215,14 @@ static int form_hessian(const double *q, const double *w, double *alpha_w_qq, vo
   return second_at(user, 1, x, values);
 }
 
-bool dvi__make_one_form(dvi_scene *scene, dvi__term *term, dvi_one_form *form)
+bool dvi__make_one_form(dvi_scene *scene, dvi__scene_term *term, dvi_one_form *form)
 {
   int full;
   *form = (dvi_one_form){.value = dvi__term_generator,
                          .gradient = form_gradient,
                          .hessian = form_hessian,
                          .user = term};
-  return prepare_large(scene, term, 1U << DVI__MULTIPLIERS) &&
+  return prepare_large(scene, term, of_multipliers) &&
          dvi__term_pattern(scene, term, DVI__PAIR_QW, &form->gradients, &full) &&
          dvi__term_pattern(scene, term, DVI__PAIR_QQ, &form->qq, &full);
 }
@@ -347,14 +246,14 @@ static int hamiltonian_hessian(double t, const double *q, const double *p, doubl
   return second_at(user, 1, x, values);
 }
 
-bool dvi__make_hamiltonian(dvi_scene *scene, dvi__term *term, dvi_hamiltonian *hamiltonian)
+bool dvi__make_hamiltonian(dvi_scene *scene, dvi__scene_term *term, dvi_hamiltonian *hamiltonian)
 {
   int full;
   *hamiltonian = (dvi_hamiltonian){.value = dvi__term_value,
                                    .gradient = hamiltonian_gradient,
                                    .hessian = hamiltonian_hessian,
                                    .user = term};
-  return prepare_large(scene, term, 1U << DVI__COORDINATES | 1U << DVI__VELOCITIES) &&
+  return prepare_large(scene, term, of_motion) &&
          dvi__term_pattern(scene, term, DVI__PAIR_QQ, &hamiltonian->qq, &full) &&
          dvi__term_pattern(scene, term, DVI__PAIR_QV, &hamiltonian->qp, &full) &&
          dvi__term_pattern(scene, term, DVI__PAIR_VV, &hamiltonian->pp, &full);
@@ -387,7 +286,7 @@ static void join_columns(int count, const int *q_start, const int *p_start, doub
 
 static int constraint_gradient(const double *q, const double *p, double *phi_z, void *user)
 {
-  dvi__term *term = user;
+  dvi__scene_term *term = user;
   const double *x[DVI__BLOCKS] = {NULL, q, p, term->none};
   double *values[DVI__PAIRS] = {
       [DVI__PAIR_QW] = phi_z, [DVI__PAIR_VW] = phi_z + term->qw.start[term->count]};
@@ -405,7 +304,7 @@ static int constraint_hessian(const double *q, const double *p, const double *w,
 }
 
 /* A pattern with its entries, even if it is full. */
-static bool explicit_pattern(dvi_scene *scene, dvi__term *term, dvi__pair pair,
+static bool explicit_pattern(dvi_scene *scene, dvi__scene_term *term, int pair,
                              dvi_pattern *pattern)
 {
   int full;
@@ -422,7 +321,7 @@ static bool explicit_pattern(dvi_scene *scene, dvi__term *term, dvi__pair pair,
 }
 
 /* The gradients' pattern: in each column the rows of q, then those of p. */
-static bool join_patterns(dvi_scene *scene, const dvi__term *term, dvi_pattern *joined)
+static bool join_patterns(dvi_scene *scene, const dvi__scene_term *term, dvi_pattern *joined)
 {
   const int count = term->count, *q_start = term->qw.start, *p_start = term->vw.start;
   const size_t entries = (size_t)q_start[count] + (size_t)p_start[count];
@@ -440,7 +339,7 @@ static bool join_patterns(dvi_scene *scene, const dvi__term *term, dvi_pattern *
   return true;
 }
 
-bool dvi__make_constraint(dvi_scene *scene, dvi__term *term, dvi_constraint *constraint)
+bool dvi__make_constraint(dvi_scene *scene, dvi__scene_term *term, dvi_constraint *constraint)
 {
   int full;
   *constraint = (dvi_constraint){.count = term->count,
@@ -448,7 +347,7 @@ bool dvi__make_constraint(dvi_scene *scene, dvi__term *term, dvi_constraint *con
                                  .gradient = constraint_gradient,
                                  .hessian = constraint_hessian,
                                  .user = term};
-  return prepare_large(scene, term, 1U << DVI__MULTIPLIERS) &&
+  return prepare_large(scene, term, of_multipliers) &&
          explicit_pattern(scene, term, DVI__PAIR_QW, &term->qw) &&
          explicit_pattern(scene, term, DVI__PAIR_VW, &term->vw) &&
          join_patterns(scene, term, &constraint->gradients) &&

@@ -1,18 +1,18 @@
-/* The callbacks of a system's terms, on functions of a scene; `user` is a dvi__term. */
+/* The callbacks of a system's terms, on functions of a scene; `user` is a dvi__scene_term. */
 #ifndef DVI_SCENE_CALLBACKS_H
 #define DVI_SCENE_CALLBACKS_H
 #include "scene/elaborate/kernels.h"
 
 /* Fill in a term: its callbacks, patterns and user pointer; rates only if the system depends on
  * time. */
-bool dvi__make_potential(dvi_scene *scene, const char *name, dvi__term *term,
+bool dvi__make_potential(dvi_scene *scene, const char *name, dvi__scene_term *term,
                          dvi_potential *potential);
-bool dvi__make_lagrangian(dvi_scene *scene, dvi__term *term, dvi_lagrangian *lagrangian);
+bool dvi__make_lagrangian(dvi_scene *scene, dvi__scene_term *term, dvi_lagrangian *lagrangian);
 /* Of the function alpha(q).w. */
-bool dvi__make_one_form(dvi_scene *scene, dvi__term *term, dvi_one_form *form);
-bool dvi__make_hamiltonian(dvi_scene *scene, dvi__term *term, dvi_hamiltonian *hamiltonian);
+bool dvi__make_one_form(dvi_scene *scene, dvi__scene_term *term, dvi_one_form *form);
+bool dvi__make_hamiltonian(dvi_scene *scene, dvi__scene_term *term, dvi_hamiltonian *hamiltonian);
 /* Of the function phi(q,p).w, w [term->count]. */
-bool dvi__make_constraint(dvi_scene *scene, dvi__term *term, dvi_constraint *constraint);
+bool dvi__make_constraint(dvi_scene *scene, dvi__scene_term *term, dvi_constraint *constraint);
 
 /* Of xi(q).w; and of one number. */
 int dvi__term_generator(const double *q, double *xi, void *user);
@@ -20,19 +20,11 @@ int dvi__term_value(double t, const double *q, const double *velocity_or_momentu
                     void *user);
 
 /* The function xi(q).w of a vector field that is given by coordinate; `where` for messages. */
-bool dvi__read_field(dvi_scene *scene, const dvi__tree *field, const char *where, dvi__term **term);
-
-/* Forget what dvi_scene_blame says; and the status that it speaks of, DVI_OK after that. */
-void dvi__blame_nobody(void);
-dvi_status dvi__blame_status(void);
-/* The place that it names, and its words behind the place; false if it names none. */
-bool dvi__blame_place(dvi__span *span, const char **words);
-
-/* Refuse what there is no program or pattern for, for that status; false. */
-bool dvi__scene_too_large(dvi_scene *scene, const char *what, dvi_status status);
+bool dvi__read_field(dvi_scene *scene, const dvi__tree *field, const char *where,
+                     dvi__scene_term **term);
 
 /* A pattern of a function; told if there is none. */
-bool dvi__term_pattern(dvi_scene *scene, dvi__term *term, dvi__pair pair, dvi_pattern *pattern,
+bool dvi__term_pattern(dvi_scene *scene, dvi__scene_term *term, int pair, dvi_pattern *pattern,
                        int *full);
 
 #endif

@@ -11,7 +11,7 @@ enum { COORDINATES_MAX = 100000000 };
 
 /* ---- parameters ---- */
 
-static int setting_of(dvi_scene *scene, const char *name, const dvi__settings *settings)
+static int setting_of(dvi_scene *scene, const char *name, const dvi__scene_settings *settings)
 {
   const size_t length = strlen(name);
   int found = -1;
@@ -59,7 +59,7 @@ static bool evaluate(dvi_scene *scene, const dvi__expression *e, dvi__parameter 
 }
 
 static bool read_parameter(dvi_scene *scene, const dvi__tree *key, const dvi__tree *tree,
-                           dvi__settings *settings)
+                           dvi__scene_settings *settings)
 {
   const dvi__expression *e;
   dvi__parameter *p = &scene->parameter[scene->parameter_count];
@@ -99,7 +99,7 @@ static bool refuse_setting(dvi_scene *scene, const char *text)
                        dvi__nearest(name, scene->parameter_count, known, hint, sizeof hint));
 }
 
-bool dvi__read_parameters(dvi_scene *scene, const dvi__tree *section, dvi__settings *settings)
+bool dvi__read_parameters(dvi_scene *scene, const dvi__tree *section, dvi__scene_settings *settings)
 {
   if (section != NULL && !dvi__want_mapping(scene, section, "parameters")) return false;
   const int count = section == NULL ? 0 : section->count;
@@ -129,7 +129,7 @@ bool dvi__note_parameter(dvi_scene *scene, dvi__parameter *parameter)
 
 /* Parameters are made of those above them: from the last one on, all that mention one are known
  * when it is met. */
-bool dvi__read_uses(dvi_scene *scene, const dvi__settings *settings)
+bool dvi__read_uses(dvi_scene *scene, const dvi__scene_settings *settings)
 {
   for (int i = scene->parameter_count - 1; i >= 0; i--) {
     const dvi__parameter *p = &scene->parameter[i];

@@ -16,7 +16,7 @@ enum { SIZE_MAX_OF_FILE = 1 << 20 };
 /* ---- reading ---- */
 
 /* Whether the time occurs in a function. */
-static int has_time(const dvi__term *term)
+static int has_time(const dvi__scene_term *term)
 {
   for (int k = 0; k < dvi__function_kernel_count(term->function); k++) {
     const dvi__kernel *kernel = dvi__function_kernel(term->function, k);
@@ -30,7 +30,7 @@ static int has_time(const dvi__term *term)
 static void find_time(dvi_scene *scene)
 {
   int timed = 0;
-  for (const dvi__term *term = scene->functions; term != NULL; term = term->next)
+  for (const dvi__scene_term *term = scene->functions; term != NULL; term = term->next)
     timed = timed || (term->role != DVI__STANDS_BESIDE && has_time(term));
   scene->terms.autonomous = !timed;
   if (timed) return;
@@ -90,7 +90,7 @@ static void find_bodies(dvi_scene *scene)
     scene->bodies = x->size;
 }
 
-static bool read_scene(dvi_scene *scene, dvi__settings *settings)
+static bool read_scene(dvi_scene *scene, dvi__scene_settings *settings)
 {
   if (!dvi__tree_read(&scene->source, &scene->arena, scene->complaint, &scene->tree)) return false;
   if (!dvi__scene_read_tree(scene, settings) || !make_system(scene) ||
@@ -102,7 +102,7 @@ static bool read_scene(dvi_scene *scene, dvi__settings *settings)
 
 /* Fill in a scene; its texts are copied. */
 static dvi_status fill(dvi_scene *scene, const char *name, const char *text, size_t length,
-                       dvi__settings *settings, dvi__complaint *complaint)
+                       dvi__scene_settings *settings, dvi__complaint *complaint)
 {
   const char *name_copy = dvi__arena_text(&scene->arena, name, strlen(name)),
              *copy = dvi__arena_text(&scene->arena, text, length);
@@ -151,7 +151,7 @@ dvi_status dvi_scene_parse(const char *name, const char *text, size_t length, in
     dvi__heap_free(made);
     return tell(message, size, DVI_NO_MEMORY, name);
   }
-  dvi__settings given = {.count = setting_count, .text = settings};
+  dvi__scene_settings given = {.count = setting_count, .text = settings};
   dvi__complaint complaint = {.message = message, .size = message != NULL ? size : 0};
   dvi__ledger *const other = dvi__heap_charge(&made->ledger);
   const dvi_status status = fill(made, name, text, length, &given, &complaint);
@@ -203,7 +203,7 @@ void dvi_scene_destroy(dvi_scene **scene)
   dvi_scene *own = *scene;
   *scene = NULL;
   dvi_system_destroy(&own->system);
-  for (dvi__term *term = own->functions; term != NULL; term = term->next)
+  for (dvi__scene_term *term = own->functions; term != NULL; term = term->next)
     dvi__function_destroy(&term->function);
   pthread_mutex_destroy(&own->labels_mutex);
   dvi__arena_free(&own->label_arena);
@@ -276,7 +276,7 @@ static void add_operations(int operations, int *all)
   if (operations >= 0) *all = operations + (*all > 0 ? *all : 0);
 }
 
-static void add_facts(const dvi__term *term, dvi_scene_facts *facts)
+static void add_facts(const dvi__scene_term *term, dvi_scene_facts *facts)
 {
   dvi__function_counters counters;
   dvi__function_count(term->function, &counters);
@@ -302,7 +302,7 @@ void dvi_scene_facts_of(const dvi_scene *scene, dvi_scene_facts *facts)
   if (scene == NULL) return;
   facts->form = scene->form;
   facts->mass = scene->mass;
-  for (const dvi__term *term = scene->functions; term != NULL; term = term->next)
+  for (const dvi__scene_term *term = scene->functions; term != NULL; term = term->next)
     if (term->role == DVI__MOVES) add_facts(term, facts);
   for (int k = 0; k < scene->terms.potential_count; k++)
     facts->quadratic_potentials += scene->terms.potentials[k].quadratic;

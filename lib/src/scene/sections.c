@@ -445,7 +445,7 @@ static bool one_form_of_system(dvi_scene *scene)
                            ways_to_move[which]);
 }
 
-bool dvi__scene_read_tree(dvi_scene *scene, dvi__settings *settings)
+bool dvi__scene_read_tree(dvi_scene *scene, dvi__scene_settings *settings)
 {
   if (!all_known(scene) || !one_form_of_system(scene)) return false;
   scene->reads = DVI__IN_PARAMETERS;

@@ -4,16 +4,17 @@
 #include "scene/elaborate/context.h"
 
 /* Settings "name=value" from outside. */
-typedef struct dvi__settings {
+typedef struct dvi__scene_settings {
   int count;
   const char *const *text;
   char *used; /* [count] */
-} dvi__settings;
+} dvi__scene_settings;
 
 /* Read the whole scene from its tree: names, terms, start, plan. Its system is made later. */
-bool dvi__scene_read_tree(dvi_scene *scene, dvi__settings *settings);
+bool dvi__scene_read_tree(dvi_scene *scene, dvi__scene_settings *settings);
 
-bool dvi__read_parameters(dvi_scene *scene, const dvi__tree *section, dvi__settings *settings);
+bool dvi__read_parameters(dvi_scene *scene, const dvi__tree *section,
+                          dvi__scene_settings *settings);
 bool dvi__read_coordinates(dvi_scene *scene, const dvi__tree *section);
 bool dvi__read_definitions(dvi_scene *scene, const dvi__tree *section);
 bool dvi__read_lagrangian(dvi_scene *scene, const dvi__tree *section);
@@ -33,7 +34,7 @@ bool dvi__read_sweep(dvi_scene *scene, const dvi__tree *section);
 
 /* Refuse with a place; false. */
 bool dvi__scene_refuse(dvi_scene *scene, dvi__span span, const char *format, ...)
-    DVI__SCENE_PRINTF(3, 4);
+    DVI__TEXT_PRINTF(3, 4);
 
 /* A section that must be a mapping, or a text. */
 /* The file that a method's specification names: it must lie in the scene's folder or below, and the
@@ -64,7 +65,7 @@ bool dvi__tree_whole(dvi_scene *scene, const dvi__tree *tree, const char *what, 
 
 /* After all sections: tell parameters where what is made of them stands, and refuse settings of
  * those that stand nowhere. */
-bool dvi__read_uses(dvi_scene *scene, const dvi__settings *settings);
+bool dvi__read_uses(dvi_scene *scene, const dvi__scene_settings *settings);
 
 /* ---- columns ---- */
 

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "scene/callbacks.h"
+#include "scene/fault.h"
 #include "text/heap.h"
 #include "scene/sections.h"
 #include "scene/elaborate/shape.h"
@@ -241,7 +241,7 @@ static dvi_status try_mass(dvi_scene *scene)
 bool dvi__scene_complete_start(dvi_scene *scene)
 {
   dvi_status status = DVI_OK;
-  dvi__blame_nobody();
+  dvi__fault_clear();
   if (scene->terms.one_form != NULL || scene->momenta_given)
     status = dvi_system_velocity(scene->system, 0.0, scene->q, scene->p, scene->v);
   if (status == DVI_OK && !scene->momenta_given)
@@ -250,14 +250,14 @@ bool dvi__scene_complete_start(dvi_scene *scene)
     status = try_mass(scene);
   if (status == DVI_OK) return true;
   if (status == DVI_NO_MEMORY) return dvi__scene_no_memory(scene);
-  if (status == DVI_CALLBACK_FAILED) status = dvi__blame_status();
+  if (status == DVI_CALLBACK_FAILED) status = dvi__fault_status();
   const char *words;
   dvi__span span;
-  if (status == DVI_CALLBACK_RETRY && dvi__blame_place(&span, &words))
+  if (status == DVI_CALLBACK_RETRY && dvi__fault_place(&span, &words))
     return dvi__complain(scene->complaint, status, span, "at the start: %s", words);
   const dvi__tree *cause = status == DVI_SINGULAR ? dvi__what_moves(scene)
                                                   : dvi__tree_find(scene->tree, "initial");
   return dvi__complain(scene->complaint, status, cause->span, "at the start: %s%s%s",
-                       dvi_last_error(), dvi_scene_blame()[0] != '\0' ? "; " : "",
-                       dvi_scene_blame());
+                       dvi_last_error(), dvi_scene_fault()[0] != '\0' ? "; " : "",
+                       dvi_scene_fault());
 }

@@ -7,14 +7,14 @@
 #include <string.h>
 
 #include "scene/callbacks.h"
+#include "scene/fault.h"
 #include "scene/factors.h"
 #include "text/heap.h"
 #include "scene/sections.h"
 #include "scene/elaborate/shape.h"
 
 /* What all kernels together are in the variables of a block. */
-static bool degree_of(dvi_scene *scene, const dvi__kernels *list, dvi__block block,
-                      dvi__degree *whole)
+static bool degree_of(dvi_scene *scene, const dvi__kernels *list, int block, dvi__degree *whole)
 {
   *whole = (dvi__degree){0, 1, 0};
   for (int k = 0; k < list->count; k++) {
@@ -30,7 +30,7 @@ static bool degree_of(dvi_scene *scene, const dvi__kernels *list, dvi__block blo
 
 /* Whether the Hessian is constant: that shows in the degree, or, beside terms that move a linear
  * part in time, in its formulas. */
-static int is_quadratic(const dvi__degree *degree, const dvi__term *term)
+static int is_quadratic(const dvi__degree *degree, const dvi__scene_term *term)
 {
   return degree->degree <= 2 &&
          (degree->pure || dvi__function_second_constant(term->function, DVI__PAIR_QQ) == 1);
@@ -39,7 +39,7 @@ static int is_quadratic(const dvi__degree *degree, const dvi__term *term)
 /* Add a potential of these kernels, none if they are none. */
 static bool add_potential(dvi_scene *scene, const char *name, int fast, dvi__kernels *list)
 {
-  dvi__term *term;
+  dvi__scene_term *term;
   dvi__degree degree;
   if (list->count == 0) return true;
   dvi_potential *potential =
@@ -104,7 +104,7 @@ static bool read_potentials(dvi_scene *scene, const dvi__tree *section)
 /* ---- the constant mass ---- */
 
 /* The second derivatives by velocities, which are the same everywhere. */
-static bool mass_values(dvi_scene *scene, dvi__term *T, dvi_pattern *pattern, double **values)
+static bool mass_values(dvi_scene *scene, dvi__scene_term *T, dvi_pattern *pattern, double **values)
 {
   int full;
   if (!dvi__term_pattern(scene, T, DVI__PAIR_VV, pattern, &full)) return false;
@@ -167,15 +167,16 @@ static bool set_mass(dvi_scene *scene, const dvi_pattern *pattern, const double 
 }
 
 /* Derive what the mass is read from. */
-static bool derive_mass(dvi_scene *scene, dvi__term *T)
+static bool derive_mass(dvi_scene *scene, dvi__scene_term *T)
 {
-  const dvi_status status = dvi__function_prepare(T->function, 0, 1U << DVI__VELOCITIES,
-                                                  1U << DVI__PAIR_VV);
+  const dvi_status status = dvi__function_prepare(T->function, 0,
+                                                  (const char[DVI__BLOCKS]){[DVI__VELOCITIES] = 1},
+                                                  (const char[DVI__PAIRS]){[DVI__PAIR_VV] = 1});
   return status == DVI_OK || dvi__scene_too_large(scene, "the mass", status);
 }
 
 /* Whether no velocity stands alone: the momenta at rest are zero. */
-static bool rests(dvi_scene *scene, dvi__term *T, int *at_rest)
+static bool rests(dvi_scene *scene, dvi__scene_term *T, int *at_rest)
 {
   const double *x[DVI__BLOCKS] = {scene->zeros, scene->zeros, scene->zeros, scene->zeros};
   double *momentum = dvi__heap_take((size_t)scene->velocities, sizeof *momentum);
@@ -214,7 +215,7 @@ static bool refuse_moving(dvi_scene *scene, const dvi__kernels *L)
 
 static bool make_general(dvi_scene *scene, dvi__kernels *L)
 {
-  dvi__term *term;
+  dvi__scene_term *term;
   if (dvi__has_factors(scene)) return refuse_moving(scene, L);
   if (!dvi__kernels_function(scene, L, 0, &term) ||
       !dvi__make_lagrangian(scene, term, &scene->lagrangian))
@@ -227,7 +228,7 @@ static bool make_general(dvi_scene *scene, dvi__kernels *L)
 static bool make_separable(dvi_scene *scene, dvi__kernels *L, const char *rest)
 {
   dvi__kernels moving = {0}, V = {0};
-  dvi__term *T = NULL;
+  dvi__scene_term *T = NULL;
   dvi_pattern pattern;
   double *values;
   int at_rest = 0;
@@ -263,7 +264,7 @@ static bool make_degenerate(dvi_scene *scene, const dvi__expression *e, dvi__ker
                             const char *rest)
 {
   dvi__kernels alpha = {0}, H = {0};
-  dvi__term *term = NULL;
+  dvi__scene_term *term = NULL;
   bool good = dvi__kernels_moving(scene, L, DVI__VELOCITIES, DVI__MULTIPLIERS, &alpha);
   if (good && has_time(&alpha))
     good = dvi__scene_refuse(scene, e->span,
@@ -367,7 +368,8 @@ static bool add_component(dvi_scene *scene, const dvi__tree *key, const dvi__tre
   return good;
 }
 
-bool dvi__read_field(dvi_scene *scene, const dvi__tree *field, const char *where, dvi__term **term)
+bool dvi__read_field(dvi_scene *scene, const dvi__tree *field, const char *where,
+                     dvi__scene_term **term)
 {
   dvi__kernels list = {0};
   bool good = dvi__want_mapping(scene, field, where);
@@ -390,7 +392,7 @@ static bool refuse_factors(dvi_scene *scene, const dvi__tree *section, const cha
 
 bool dvi__read_one_form(dvi_scene *scene, const dvi__tree *section)
 {
-  dvi__term *term;
+  dvi__scene_term *term;
   if (!refuse_factors(scene, section, "one_form")) return false;
   if (!dvi__read_field(scene, section, "a one-form", &term) ||
       !dvi__make_one_form(scene, term, &scene->one_form))
@@ -402,7 +404,7 @@ bool dvi__read_one_form(dvi_scene *scene, const dvi__tree *section)
 }
 
 /* The function phi.w. */
-static bool constraints_function(dvi_scene *scene, const dvi__tree *section, dvi__term **term)
+static bool constraints_function(dvi_scene *scene, const dvi__tree *section, dvi__scene_term **term)
 {
   dvi__context c;
   dvi__kernels list = {0};
@@ -426,7 +428,7 @@ static bool read_H(dvi_scene *scene, const dvi__tree *tree)
 {
   const dvi__expression *e;
   dvi__kernels H = {0};
-  dvi__term *term;
+  dvi__scene_term *term;
   const bool good = dvi__tree_expression(scene, tree, &e) &&
                     dvi__kernels_add(scene, DVI__SAYS_Q | DVI__SAYS_P | DVI__SAYS_T,
                                      "a Hamiltonian", e, 0, &H) &&
@@ -446,7 +448,7 @@ bool dvi__read_hamiltonian(dvi_scene *scene, const dvi__tree *section)
 
 bool dvi__read_constraints(dvi_scene *scene, const dvi__tree *section)
 {
-  dvi__term *term;
+  dvi__scene_term *term;
   if (!dvi__want_mapping(scene, section, "constraints") ||
       !refuse_factors(scene, section, "constraints"))
     return false;

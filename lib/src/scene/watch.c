@@ -10,7 +10,7 @@ bool dvi__read_symmetries(dvi_scene *scene, const dvi__tree *section)
   dvi_symmetry *list = dvi__arena_take(&scene->arena, (size_t)section->count + 1, sizeof *list);
   if (list == NULL) return dvi__scene_no_memory(scene);
   for (int i = 0; i < section->count; i++) {
-    dvi__term *term;
+    dvi__scene_term *term;
     if (!dvi__column_is_new(scene, section->key[i]->text, section->key[i]->span, NULL))
       return false;
     if (!dvi__read_field(scene, section->child[i], "a symmetry", &term)) return false;
@@ -25,7 +25,7 @@ bool dvi__read_symmetries(dvi_scene *scene, const dvi__tree *section)
 
 /* A function of t, q and what `may` says beside them. */
 static bool read_function(dvi_scene *scene, const dvi__tree *tree, unsigned may, const char *where,
-                          dvi__term **term)
+                          dvi__scene_term **term)
 {
   const dvi__expression *e;
   dvi__kernels list = {0};
@@ -55,7 +55,7 @@ bool dvi__read_invariants(dvi_scene *scene, const dvi__tree *section)
   dvi_invariant *list = dvi__arena_take(&scene->arena, (size_t)section->count + 1, sizeof *list);
   if (list == NULL) return dvi__scene_no_memory(scene);
   for (int i = 0; i < section->count; i++) {
-    dvi__term *term;
+    dvi__scene_term *term;
     if (!invariant_is_new(scene, section->key[i])) return false;
     if (!read_function(scene, section->child[i], may, "an invariant", &term)) return false;
     list[i] = (dvi_invariant){
@@ -86,7 +86,7 @@ static bool read_event(dvi_scene *scene, const char *name, const dvi__tree *tree
                            *const stop_word[] = {"no", "yes"};
   static const int sign[] = {1, -1, 0};
   int direction = 2, stop = 0;
-  dvi__term *term;
+  dvi__scene_term *term;
   if (!dvi__want_mapping(scene, tree, "an event") ||
       !dvi__want_keys(scene, tree, "an event", 3, known))
     return false;

@@ -1,6 +1,6 @@
 /* Memory that is given back all at once: what a scene is read and compiled with. */
-#ifndef DVI_SCENE_ARENA_H
-#define DVI_SCENE_ARENA_H
+#ifndef DVI_TEXT_ARENA_H
+#define DVI_TEXT_ARENA_H
 #include <stddef.h>
 
 /* Zero: empty. It owns its blocks. */

@@ -1,14 +1,14 @@
 /* Errors with their place: line, column, the line itself and a caret under it. */
-#ifndef DVI_SCENE_COMPLAINT_H
-#define DVI_SCENE_COMPLAINT_H
+#ifndef DVI_TEXT_COMPLAINT_H
+#define DVI_TEXT_COMPLAINT_H
 #include <dvi/status.h>
 #include <stdbool.h>
 #include <stddef.h>
 
 #if defined(__GNUC__)
-#define DVI__SCENE_PRINTF(text, first) __attribute__((format(printf, text, first)))
+#define DVI__TEXT_PRINTF(text, first) __attribute__((format(printf, text, first)))
 #else
-#define DVI__SCENE_PRINTF(text, first)
+#define DVI__TEXT_PRINTF(text, first)
 #endif
 
 /* A file's name and its text, which need not end with NUL. Owned by the caller. */
@@ -38,14 +38,14 @@ typedef struct dvi__complaint {
  *                                  ^~~~
  * Returns false, always. */
 bool dvi__complain(dvi__complaint *complaint, dvi_status status, dvi__span where,
-                   const char *format, ...) DVI__SCENE_PRINTF(4, 5);
+                   const char *format, ...) DVI__TEXT_PRINTF(4, 5);
 
 /* The same for memory that was refused: DVI_BAD_SIZE if it was too much, else DVI_NO_MEMORY.
  * Returns false. */
 bool dvi__complain_of_memory(dvi__complaint *complaint);
 
 /* As snprintf, with a decimal point in all numbers. */
-int dvi__print(char *text, size_t size, const char *format, ...) DVI__SCENE_PRINTF(3, 4);
+int dvi__print(char *text, size_t size, const char *format, ...) DVI__TEXT_PRINTF(3, 4);
 
 /* The same for a file that is no scene: what it is instead, if that is known, and what a scene
  * is. Returns false. */

@@ -1,7 +1,7 @@
 /* The one door to the heap of what reads scenes: it charges who asks, and tests can make it
  * fail. */
-#ifndef DVI_SCENE_HEAP_H
-#define DVI_SCENE_HEAP_H
+#ifndef DVI_TEXT_HEAP_H
+#define DVI_TEXT_HEAP_H
 #include <dvi/status.h>
 #include <stdatomic.h>
 #include <stddef.h>

@@ -1,6 +1,6 @@
 /* Characters of UTF-8. */
-#ifndef DVI_SCENE_UTF8_H
-#define DVI_SCENE_UTF8_H
+#ifndef DVI_TEXT_UTF8_H
+#define DVI_TEXT_UTF8_H
 #include <stddef.h>
 
 /* How many bytes the character at the head of the text takes, with its code; 0 if it is none

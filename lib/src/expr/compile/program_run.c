@@ -12,7 +12,7 @@
 
 /* Numbers of which inverse_powers finds the root: not near the ends of the range, and not those
  * that have none. */
-DVI__SCENE_INLINE int is_plain(double x)
+DVI__EXPR_INLINE int is_plain(double x)
 {
   return (x >= DBL_MIN) & (x <= 1e300);
 }
@@ -20,8 +20,8 @@ DVI__SCENE_INLINE int is_plain(double x)
 /* x^-(1/2 + factors) of plain numbers, right to two roundings for each root in it. A square root
  * and a division take longer: the exponent's bits halved and negated are right to 3.5 % (Lomont
  * 2003), then e = 1 - x y^2 shrinks by the series of (1 - e)^(-1/2). */
-DVI__SCENE_INLINE void inverse_powers(int width, const int factors, const double *restrict x,
-                                      double *restrict to)
+DVI__EXPR_INLINE void inverse_powers(int width, const int factors, const double *restrict x,
+                                     double *restrict to)
 {
   for (int k = 0; k < width; k++) {
     uint64_t bits;
@@ -40,8 +40,8 @@ DVI__SCENE_INLINE void inverse_powers(int width, const int factors, const double
 }
 
 /* x^n, n = 1, 2, .. or x^-n. */
-DVI__SCENE_INLINE void powers(int width, const int exponent, const double *restrict x,
-                              double *restrict to)
+DVI__EXPR_INLINE void powers(int width, const int exponent, const double *restrict x,
+                             double *restrict to)
 {
   const unsigned power = exponent < 0 ? 0U - (unsigned)exponent : (unsigned)exponent;
   for (int at = 0; at < width; at += DVI__LANES) {
@@ -58,8 +58,8 @@ DVI__SCENE_INLINE void powers(int width, const int exponent, const double *restr
 }
 
 /* The compiler makes vectors of the powers that it knows. */
-DVI__SCENE_INLINE void whole_powers(int width, double exponent, const double *restrict x,
-                                    double *restrict to)
+DVI__EXPR_INLINE void whole_powers(int width, double exponent, const double *restrict x,
+                                   double *restrict to)
 {
   switch ((int)exponent) {
   case 3: powers(width, 3, x, to); break;
@@ -71,8 +71,8 @@ DVI__SCENE_INLINE void whole_powers(int width, double exponent, const double *re
 }
 
 /* x^(n + 1/2), n = 1, 2, .. */
-DVI__SCENE_INLINE void root_powers(int width, double exponent, const double *restrict x,
-                                   double *restrict to)
+DVI__EXPR_INLINE void root_powers(int width, double exponent, const double *restrict x,
+                                  double *restrict to)
 {
   const int factors = (int)exponent;
   for (int at = 0; at < width; at += DVI__LANES) {
@@ -85,8 +85,8 @@ DVI__SCENE_INLINE void root_powers(int width, double exponent, const double *res
 }
 
 /* x^-(n + 1/2), n = 0, 1, .. */
-DVI__SCENE_INLINE void inverse_root_powers(int width, double exponent, const double *restrict x,
-                                           double *restrict to)
+DVI__EXPR_INLINE void inverse_root_powers(int width, double exponent, const double *restrict x,
+                                          double *restrict to)
 {
   const int factors = (int)-exponent;
   int plain = 0;
@@ -106,7 +106,7 @@ DVI__SCENE_INLINE void inverse_root_powers(int width, double exponent, const dou
 }
 
 /* Idle lanes of results of the C library hold what the last lane holds. */
-DVI__SCENE_INLINE void fill_up(int lanes, int width, double *to)
+DVI__EXPR_INLINE void fill_up(int lanes, int width, double *to)
 {
   for (int k = lanes; k < width; k++) to[k] = to[lanes - 1];
 }
@@ -125,7 +125,7 @@ static void sines_and_cosines(int lanes, int width, const double *restrict angle
 /* x where a condition holds. Its operands are read before anything is decided: where gcc 12
  * makes vectors of four for AVX2 of c[k] > 0.0 ? x[k] : .., which reads x[k] for some lanes
  * alone, it takes the wrong lanes. */
-DVI__SCENE_INLINE double taken(double condition, double x)
+DVI__EXPR_INLINE double taken(double condition, double x)
 {
   return condition > 0.0 ? x : condition <= 0.0 ? 0.0 : condition;
 }
@@ -155,15 +155,14 @@ DVI__SCENE_INLINE double taken(double condition, double x)
   X(positive, DVI__OP_POSITIVE, a[k] > 0.0 ? 1.0 : a[k] <= 0.0 ? 0.0 : a[k]) \
   X(where, DVI__OP_WHERE, taken(a[k], b[k]))
 
-#define LOOP(name, code, expression)                                                     \
-  DVI__SCENE_INLINE void name##_rows(int width, double value, const double *restrict a,  \
-                                     const double *restrict b, const double *restrict c, \
-                                     double *restrict to)                                \
-  {                                                                                      \
-    (void)value, (void)a, (void)b, (void)c;                                              \
-    for (int first = 0; first < width; first += DVI__LANES)                              \
-      DVI__SCENE_INDEPENDENT for (int k = first; k < first + DVI__LANES; k++)            \
-          to[k] = (expression);                                                          \
+#define LOOP(name, code, expression)                                                               \
+  DVI__EXPR_INLINE void name##_rows(int width, double value, const double *restrict a,             \
+                                    const double *restrict b, const double *restrict c,            \
+                                    double *restrict to)                                           \
+  {                                                                                                \
+    (void)value, (void)a, (void)b, (void)c;                                                        \
+    for (int first = 0; first < width; first += DVI__LANES)                                        \
+      DVI__EXPR_INDEPENDENT for (int k = first; k < first + DVI__LANES; k++) to[k] = (expression); \
   }
 LOOPS(LOOP)
 #undef LOOP
@@ -199,8 +198,8 @@ static void call_library(int op, int lanes, int width, const double *restrict a,
 }
 
 /* `below`: rows of inputs stand below the registers. */
-DVI__SCENE_INLINE void run_rows(const int below, const dvi__program *program, int lanes, int width,
-                                const double *const *input, double *registers)
+DVI__EXPR_INLINE void run_rows(const int below, const dvi__program *program, int lanes, int width,
+                               const double *const *input, double *registers)
 {
   const dvi__instruction *const end = program->instruction + program->instruction_count;
 #define ROW(i) (below || (i) >= 0 ? registers + (ptrdiff_t)(i)*width : input[~(i)])
@@ -226,13 +225,13 @@ DVI__SCENE_INLINE void run_rows(const int below, const dvi__program *program, in
 #undef ROW
 }
 
-DVI__SCENE_LANES static void run(const dvi__program *program, int lanes, const double *const *input,
-                                 double *registers)
+DVI__EXPR_LANES static void run(const dvi__program *program, int lanes, const double *const *input,
+                                double *registers)
 {
   run_rows(0, program, lanes, dvi__row_width(lanes), input, registers);
 }
 
-DVI__SCENE_LANES static void run_block(const dvi__program *program, int lanes, double *registers)
+DVI__EXPR_LANES static void run_block(const dvi__program *program, int lanes, double *registers)
 {
   run_rows(1, program, lanes, DVI__LANES, NULL, registers);
 }

@@ -6,8 +6,8 @@
 #include "expr/function/function_parts.h"
 #include "expr/compile/lanes.h"
 
-DVI__SCENE_INLINE void gather(const int points, const dvi__part *part, const double *const *x,
-                              double *registers)
+DVI__EXPR_INLINE void gather(const int points, const dvi__part *part, const double *const *x,
+                             double *registers)
 {
   double *row = registers;
   for (int i = 0; i < part->variable_count; i++) {
@@ -27,7 +27,7 @@ DVI__SCENE_INLINE void gather(const int points, const dvi__part *part, const dou
 
 /* Results pass through memory of their own: the compiler need not ask what else they might
  * overwrite. What is stored is added to zero: bits are those of tiles. */
-DVI__SCENE_INLINE void put(const int points, int sets, double sign, const double *row, double *to)
+DVI__EXPR_INLINE void put(const int points, int sets, double sign, const double *row, double *to)
 {
   const size_t size = (size_t)points * sizeof *to;
   double before[DVI__LANES] = {0}, sum[DVI__LANES];
@@ -37,8 +37,8 @@ DVI__SCENE_INLINE void put(const int points, int sets, double sign, const double
   memcpy(to, sum, size);
 }
 
-DVI__SCENE_INLINE void scatter(const int points, const dvi__part *part, const double *outputs,
-                               double *const *result)
+DVI__EXPR_INLINE void scatter(const int points, const dvi__part *part, const double *outputs,
+                              double *const *result)
 {
   const dvi__destination *const end = part->target + part->target_count;
   for (const dvi__destination *target = part->target; target < end; target++) {
@@ -50,8 +50,8 @@ DVI__SCENE_INLINE void scatter(const int points, const dvi__part *part, const do
   }
 }
 
-DVI__SCENE_INLINE void run(const int points, const dvi__part *part, const double *const *x,
-                           double *const *result)
+DVI__EXPR_INLINE void run(const int points, const dvi__part *part, const double *const *x,
+                          double *const *result)
 {
   _Alignas(64) double memory[DVI__BLOCK_ROWS * DVI__LANES];
   double *registers = memory + (ptrdiff_t)part->program.input_count * DVI__LANES;
@@ -63,8 +63,8 @@ DVI__SCENE_INLINE void run(const int points, const dvi__part *part, const double
           result);
 }
 
-DVI__SCENE_LANES static void run_points(const dvi__part *part, int points, const double *const *x,
-                                        double *const *result)
+DVI__EXPR_LANES static void run_points(const dvi__part *part, int points, const double *const *x,
+                                       double *const *result)
 {
   switch (points) {
   case 1: run(1, part, x, result); break;

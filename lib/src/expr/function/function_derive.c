@@ -4,31 +4,6 @@
 #include "expr/function/function_parts.h"
 #include "text/heap.h"
 
-static const dvi__block pair_blocks[DVI__PAIRS][2] = {
-    [DVI__PAIR_QQ] = {DVI__COORDINATES, DVI__COORDINATES},
-    [DVI__PAIR_QV] = {DVI__COORDINATES, DVI__VELOCITIES},
-    [DVI__PAIR_VV] = {DVI__VELOCITIES, DVI__VELOCITIES},
-    [DVI__PAIR_QW] = {DVI__COORDINATES, DVI__MULTIPLIERS},
-    [DVI__PAIR_VW] = {DVI__VELOCITIES, DVI__MULTIPLIERS},
-    [DVI__PAIR_TQ] = {DVI__TIME, DVI__COORDINATES},
-    [DVI__PAIR_TV] = {DVI__TIME, DVI__VELOCITIES},
-};
-
-void dvi__pair_blocks(dvi__pair pair, dvi__block *rows, dvi__block *columns)
-{
-  *rows = pair_blocks[pair][0];
-  *columns = pair_blocks[pair][1];
-}
-
-dvi__pair dvi__pair_of(dvi__block a, dvi__block b)
-{
-  int pair = 0;
-  while (pair < DVI__PAIRS && !((pair_blocks[pair][0] == a && pair_blocks[pair][1] == b) ||
-                                (pair_blocks[pair][0] == b && pair_blocks[pair][1] == a)))
-    pair++;
-  return (dvi__pair)pair;
-}
-
 static int is_zero(const dvi__graph *graph, dvi__node n)
 {
   double value = 1.0;
@@ -42,42 +17,221 @@ typedef struct roots {
   dvi__destination *target;
 } roots;
 
-/* Room for so many; the nodes are to be freed. */
-static dvi_status make_room(dvi__function *function, int most, roots *own)
+/* Take room for so many roots; the nodes are to be freed. */
+static dvi_status roots_allocate(dvi__function *function, size_t most, roots *own)
 {
   own->count = 0;
-  own->target = dvi__arena_take(&function->arena, (size_t)most, sizeof *own->target);
-  own->node = dvi__heap_take((size_t)most + 1, sizeof *own->node);
+  own->target = dvi__arena_take(&function->arena, most, sizeof *own->target);
+  own->node = dvi__heap_take(most + 1, sizeof *own->node);
   return own->target != NULL && own->node != NULL ? DVI_OK : DVI_NO_MEMORY;
+}
+
+static void roots_add(roots *own, dvi__node node, const dvi__destination *target)
+{
+  own->target[own->count] = *target;
+  own->node[own->count++] = node;
 }
 
 /* Most roots of a part: the second derivatives of a large expression do not all fit into one. */
 enum { SLICE = 1024 };
 
-/* A sum to which every kernel gives its roots. */
-typedef dvi_status part_roots(dvi__function *function, int k, unsigned mask, roots *own);
+/* Find what kernel k gives to a sum. */
+typedef dvi_status roots_finder(dvi__function *function, int k, const dvi__function_sum *sum,
+                                roots *own);
 
-static dvi_status make_sum(dvi__function *function, part_roots *roots_of, unsigned mask, int arrays,
-                           const int *entries, dvi__sum **sum)
+static dvi_status sum_fill(dvi__function *function, roots_finder *find, dvi__function_sum *sum)
 {
-  dvi__sum *made = dvi__sum_new(function);
-  dvi_status status = made != NULL ? DVI_OK : DVI_NO_MEMORY;
+  dvi_status status = DVI_OK;
   for (int k = 0; k < function->kernel_count && status == DVI_OK; k++) {
     roots own = {0};
-    status = roots_of(function, k, mask, &own);
+    status = find(function, k, sum, &own);
     for (int first = 0; first < own.count && status == DVI_OK; first += SLICE) {
       const int count = own.count - first < SLICE ? own.count - first : SLICE;
-      status = dvi__sum_extend(function, made, k, count, own.node + first, own.target + first);
+      status = dvi__sum_extend(function, sum, k, count, own.node + first, own.target + first);
     }
     dvi__heap_free(own.node);
   }
-  if (status == DVI_OK) status = dvi__sum_finish(made, arrays, entries);
-  if (status == DVI_OK) *sum = made;
+  return status == DVI_OK ? dvi__sum_finish(sum) : status;
+}
+
+/* --- The value. --- */
+
+static dvi_status value_roots(dvi__function *function, int k, const dvi__function_sum *sum,
+                              roots *own)
+{
+  const dvi__kernel *kernel = &function->kernel[k];
+  (void)sum;
+  const dvi_status status = roots_allocate(function, 1, own);
+  if (status == DVI_OK && !is_zero(kernel->graph, kernel->root))
+    roots_add(own, kernel->root, &(dvi__destination){0});
   return status;
 }
 
+/* --- The gradient. --- */
+
+/* The gradient of kernel k as nodes. */
+static dvi_status derive_first(dvi__function *function, int k)
+{
+  const dvi__kernel *kernel = &function->kernel[k];
+  dvi__derivatives *own = &function->derivatives[k];
+  if (own->gradient != NULL) return DVI_OK;
+  dvi__node *gradient = dvi__arena_take(&function->arena, (size_t)kernel->input_count,
+                                        sizeof *gradient);
+  if (gradient == NULL) return DVI_NO_MEMORY;
+  dvi__gradient(kernel->graph, kernel->root, kernel->input_count, gradient);
+  if (kernel->graph->failed == DVI_OK) own->gradient = gradient;
+  return kernel->graph->failed;
+}
+
+static dvi_status gradient_roots(dvi__function *function, int k, const dvi__function_sum *sum,
+                                 roots *own)
+{
+  const dvi__kernel *kernel = &function->kernel[k];
+  const dvi__derivatives *known = &function->derivatives[k];
+  dvi_status status = derive_first(function, k);
+  if (status == DVI_OK) status = roots_allocate(function, (size_t)kernel->input_count, own);
+  for (int i = 0; i < kernel->input_count && status == DVI_OK; i++) {
+    const dvi__kernel_input *input = &kernel->input[i];
+    if (input->is_data || !sum->wanted[input->block] || is_zero(kernel->graph, known->gradient[i]))
+      continue;
+    roots_add(own, known->gradient[i],
+              &(dvi__destination){.array = input->block, .entry = {.minor = known->place[i]}});
+  }
+  return status;
+}
+
+/* --- Second derivatives. --- */
+
+/* Whether the second derivative by inputs i and j of a kernel belongs to a pair of blocks. */
+static int pair_has_inputs(dvi__block_pair pair, const dvi__kernel *kernel, const int *input)
+{
+  const dvi__kernel_input *first = &kernel->input[input[0]], *second = &kernel->input[input[1]];
+  return !first->is_data && !second->is_data && dvi__pair_has(pair, first->block, second->block);
+}
+
+/* Count the wanted pairs that the second derivative by these inputs belongs to. */
+static int count_wanted(const dvi__function *function, const dvi__kernel *kernel, const int *input,
+                        const char *wanted)
+{
+  int count = 0;
+  for (int p = 0; p < function->blocks.pair_count; p++)
+    count += wanted[p] && pair_has_inputs(function->blocks.pair[p], kernel, input);
+  return count;
+}
+
+/* Derive in one column of the local pairs, first to last - 1, what is wanted and not there. */
+static dvi_status derive_column(const dvi__function *function, int k, const char *wanted, int first,
+                                int last)
+{
+  const dvi__kernel *kernel = &function->kernel[k];
+  dvi__derivatives *own = &function->derivatives[k];
+  const size_t most = (size_t)(last - first);
+  dvi__node *of = dvi__heap_take(2 * most, sizeof *of);
+  int count = 0, *derived = dvi__heap_take(most, sizeof *derived);
+  if (of == NULL || derived == NULL) {
+    dvi__heap_free(of);
+    dvi__heap_free(derived);
+    return DVI_NO_MEMORY;
+  }
+  for (int e = first; e < last; e++) {
+    if (own->second[e] >= 0 || count_wanted(function, kernel, own->pair[e], wanted) == 0) continue;
+    derived[count] = e;
+    of[count++] = own->gradient[own->pair[e][0]];
+  }
+  if (count > 0) dvi__tangents(kernel->graph, own->pair[first][1], count, of, of + most);
+  for (int i = 0; i < count && kernel->graph->failed == DVI_OK; i++)
+    own->second[derived[i]] = of[most + (size_t)i];
+  dvi__heap_free(of);
+  dvi__heap_free(derived);
+  return kernel->graph->failed;
+}
+
+dvi_status dvi__derive_pairs(dvi__function *function, int k, const char *wanted)
+{
+  dvi__derivatives *own = &function->derivatives[k];
+  dvi_status status = derive_first(function, k);
+  if (status == DVI_OK) status = dvi__find_pairs(function, k);
+  if (status != DVI_OK) return status;
+  if (own->second == NULL) {
+    own->second = dvi__arena_take(&function->arena, (size_t)own->pair_count, sizeof *own->second);
+    if (own->second == NULL) return DVI_NO_MEMORY;
+    for (int e = 0; e < own->pair_count; e++) own->second[e] = -1;
+  }
+  for (int first = 0, last; first < own->pair_count && status == DVI_OK; first = last) {
+    for (last = first + 1; last < own->pair_count && own->pair[last][1] == own->pair[first][1];)
+      last++;
+    status = derive_column(function, k, wanted, first, last);
+  }
+  return status;
+}
+
+/* For every element the entry of (row, column) in a pattern. */
+static dvi_status map_entries(dvi__function *function, const dvi_pattern *pattern, int elements,
+                              const dvi__element_places *row, const dvi__element_places *column,
+                              dvi__element_places *entries)
+{
+  int *list = dvi__arena_take(&function->arena, (size_t)elements, sizeof *list);
+  if (list == NULL) return DVI_NO_MEMORY;
+  for (int e = 0; e < elements; e++)
+    list[e] = dvi__pattern_entry(pattern, dvi__place_at(row, e), dvi__place_at(column, e));
+  *entries = (dvi__element_places){.list = list,
+                                   .stride_of = dvi__strides(&function->arena, elements, list)};
+  return entries->stride_of != NULL ? DVI_OK : DVI_NO_MEMORY;
+}
+
+/* Find where a pair's derivative by two inputs of kernel k is added: the row is that of the input
+ * which is of the pair's first block. */
+static dvi_status find_target(dvi__function *function, int k, int pair, const int *input,
+                              dvi__destination *target)
+{
+  const dvi__kernel *kernel = &function->kernel[k];
+  const dvi__block_pair blocks = function->blocks.pair[pair];
+  const int in_order = kernel->input[input[0]].block == blocks.rows;
+  const int mirrored = input[0] != input[1] && blocks.rows == blocks.columns;
+  const dvi__element_places *row = &function->derivatives[k].place[input[in_order ? 0 : 1]];
+  const dvi__element_places *column = &function->derivatives[k].place[input[in_order ? 1 : 0]];
+  const dvi__pair_pattern *known = &function->pattern[pair];
+  *target = (dvi__destination){.array = pair, .mirrored = mirrored};
+  if (known->full) {
+    const int rows = function->blocks.width[blocks.rows];
+    target->entry = (dvi__entries){*row, *column, rows};
+    target->mirror = (dvi__entries){*column, *row, rows};
+    return DVI_OK;
+  }
+  dvi_status status = map_entries(function, &known->pattern, kernel->elements, row, column,
+                                  &target->entry.minor);
+  if (status == DVI_OK && mirrored)
+    status = map_entries(function, &known->pattern, kernel->elements, column, row,
+                         &target->mirror.minor);
+  return status;
+}
+
+static dvi_status second_roots(dvi__function *function, int k, const dvi__function_sum *sum,
+                               roots *own)
+{
+  const dvi__kernel *kernel = &function->kernel[k];
+  const dvi__derivatives *known = &function->derivatives[k];
+  dvi_status status = dvi__derive_pairs(function, k, sum->wanted);
+  size_t most = 0;
+  for (int e = 0; e < known->pair_count && status == DVI_OK; e++)
+    most += (size_t)count_wanted(function, kernel, known->pair[e], sum->wanted);
+  if (status == DVI_OK) status = roots_allocate(function, most, own);
+  for (int e = 0; e < known->pair_count && status == DVI_OK; e++)
+    for (int p = 0; p < sum->array_count && status == DVI_OK; p++) {
+      dvi__destination target;
+      if (!sum->wanted[p] || !pair_has_inputs(function->blocks.pair[p], kernel, known->pair[e]) ||
+          is_zero(kernel->graph, known->second[e]))
+        continue;
+      status = find_target(function, k, p, known->pair[e], &target);
+      roots_add(own, known->second[e], &target);
+    }
+  return status;
+}
+
+/* --- All three. --- */
+
 /* Operations a point. */
-static int operations_of(const dvi__sum *sum)
+static int operations_of(const dvi__function_sum *sum)
 {
   long long all = 0;
   for (int k = 0; k < sum->part_count; k++)
@@ -91,219 +245,64 @@ static void raise_to(int *most, int value)
   if (value > *most) *most = value;
 }
 
-/* --- The value. --- */
-
-static dvi_status value_roots(dvi__function *function, int k, unsigned mask, roots *own)
-{
-  const dvi__kernel *kernel = &function->kernel[k];
-  (void)mask;
-  const dvi_status status = make_room(function, 1, own);
-  if (status == DVI_OK && !is_zero(kernel->graph, kernel->root))
-    own->node[own->count++] = kernel->root;
-  return status;
-}
-
-dvi_status dvi__derive_value(dvi__function *function, unsigned mask, dvi__sum **sum)
-{
-  const dvi_status status = make_sum(function, value_roots, mask, 1, &(int){1}, sum);
-  if (status == DVI_OK) raise_to(&function->counters.value_operations, operations_of(*sum));
-  return status;
-}
-
-/* --- The gradient. --- */
-
-dvi_status dvi__derive_first(dvi__function *function, int k)
-{
-  const dvi__kernel *kernel = &function->kernel[k];
-  dvi__derivatives *own = &function->derivatives[k];
-  if (own->gradient != NULL) return DVI_OK;
-  dvi__node *gradient = dvi__arena_take(&function->arena, (size_t)kernel->input_count,
-                                        sizeof *gradient);
-  if (gradient == NULL) return DVI_NO_MEMORY;
-  dvi__gradient(kernel->graph, kernel->root, kernel->input_count, gradient);
-  if (kernel->graph->failed == DVI_OK) own->gradient = gradient;
-  return kernel->graph->failed;
-}
-
-static dvi_status gradient_roots(dvi__function *function, int k, unsigned blocks, roots *own)
-{
-  const dvi__kernel *kernel = &function->kernel[k];
-  const dvi__derivatives *known = &function->derivatives[k];
-  dvi_status status = dvi__derive_first(function, k);
-  if (status == DVI_OK) status = make_room(function, kernel->input_count, own);
-  for (int i = 0; i < kernel->input_count && status == DVI_OK; i++) {
-    const dvi__kernel_input *input = &kernel->input[i];
-    if (input->is_data || (blocks >> input->block & 1U) == 0 ||
-        is_zero(kernel->graph, known->gradient[i]))
-      continue;
-    own->target[own->count] = (dvi__destination){.array = (int)input->block,
-                                                 .entry = {.minor = known->place[i]}};
-    own->node[own->count++] = known->gradient[i];
-  }
-  return status;
-}
-
-dvi_status dvi__derive_gradient(dvi__function *function, unsigned mask, dvi__sum **sum)
-{
-  const dvi_status status = make_sum(function, gradient_roots, mask, DVI__BLOCKS,
-                                     function->block_size, sum);
-  if (status == DVI_OK) raise_to(&function->counters.gradient_operations, operations_of(*sum));
-  return status;
-}
-
-/* --- Second derivatives. --- */
-
-/* The pair that inputs i and j of a kernel belong to, DVI__PAIRS for none, and which of them has
- * the row. */
-static dvi__pair pair_of_inputs(const dvi__kernel *kernel, const int *input, int *row, int *column)
-{
-  const dvi__kernel_input *first = &kernel->input[input[0]], *second = &kernel->input[input[1]];
-  if (first->is_data || second->is_data) return DVI__PAIRS;
-  const dvi__pair pair = dvi__pair_of(first->block, second->block);
-  const int in_order = pair == DVI__PAIRS || pair_blocks[pair][0] == first->block;
-  *row = input[in_order ? 0 : 1];
-  *column = input[in_order ? 1 : 0];
-  return pair;
-}
-
-static int is_wanted(const dvi__kernel *kernel, const int *input, unsigned pairs)
-{
-  int row, column;
-  const dvi__pair pair = pair_of_inputs(kernel, input, &row, &column);
-  return pair != DVI__PAIRS && (pairs >> pair & 1U) != 0;
-}
-
-/* The second derivatives in one column of the local pairs, first to last - 1, that are wanted and
- * not there. */
-static dvi_status derive_column(const dvi__kernel *kernel, dvi__derivatives *own, unsigned pairs,
-                                int first, int last)
-{
-  const size_t most = (size_t)(last - first);
-  dvi__node *of = dvi__heap_take(2 * most, sizeof *of);
-  int count = 0;
-  if (of == NULL) return DVI_NO_MEMORY;
-  dvi__node *tangent = of + most;
-  for (int e = first; e < last; e++)
-    if (own->second[e] < 0 && is_wanted(kernel, own->pair[e], pairs))
-      of[count++] = own->gradient[own->pair[e][0]];
-  if (count > 0) dvi__tangents(kernel->graph, own->pair[first][1], count, of, tangent);
-  count = 0;
-  for (int e = first; e < last && kernel->graph->failed == DVI_OK; e++)
-    if (own->second[e] < 0 && is_wanted(kernel, own->pair[e], pairs))
-      own->second[e] = tangent[count++];
-  dvi__heap_free(of);
-  return kernel->graph->failed;
-}
-
-dvi_status dvi__derive_pairs(dvi__function *function, int k, unsigned pairs)
-{
-  const dvi__kernel *kernel = &function->kernel[k];
-  dvi__derivatives *own = &function->derivatives[k];
-  dvi_status status = dvi__derive_first(function, k);
-  if (status == DVI_OK) status = dvi__find_pairs(function, k);
-  if (status != DVI_OK) return status;
-  if (own->second == NULL) {
-    own->second = dvi__arena_take(&function->arena, (size_t)own->pair_count, sizeof *own->second);
-    if (own->second == NULL) return DVI_NO_MEMORY;
-    for (int e = 0; e < own->pair_count; e++) own->second[e] = -1;
-  }
-  for (int first = 0, last; first < own->pair_count && status == DVI_OK; first = last) {
-    for (last = first + 1; last < own->pair_count && own->pair[last][1] == own->pair[first][1];)
-      last++;
-    status = derive_column(kernel, own, pairs, first, last);
-  }
-  return status;
-}
-
-/* For every element the entry of (row, column) in a pattern. */
-static dvi_status map_entries(dvi__function *function, const dvi_pattern *pattern, int elements,
-                              const dvi__places *row, const dvi__places *column,
-                              dvi__places *entries)
-{
-  int *list = dvi__arena_take(&function->arena, (size_t)elements, sizeof *list);
-  if (list == NULL) return DVI_NO_MEMORY;
-  for (int e = 0; e < elements; e++)
-    list[e] = dvi__pattern_entry(pattern, dvi__place_at(row, e), dvi__place_at(column, e));
-  *entries = (dvi__places){.list = list,
-                           .stride_of = dvi__strides(&function->arena, elements, list)};
-  return entries->stride_of != NULL ? DVI_OK : DVI_NO_MEMORY;
-}
-
-/* Where a pair's derivative by inputs `row` and `column` of kernel k is added. */
-static dvi_status find_target(dvi__function *function, int k, dvi__pair pair, int row, int column,
-                              dvi__destination *target)
-{
-  const dvi__places *place = function->derivatives[k].place;
-  const dvi__pair_pattern *known = &function->pattern[pair];
-  const int elements = function->kernel[k].elements,
-            mirrored = row != column && pair_blocks[pair][0] == pair_blocks[pair][1];
-  *target = (dvi__destination){.array = (int)pair, .mirrored = mirrored};
-  if (known->full) {
-    const int rows = function->block_size[pair_blocks[pair][0]];
-    target->entry = (dvi__entries){place[row], place[column], rows};
-    target->mirror = (dvi__entries){place[column], place[row], rows};
-    return DVI_OK;
-  }
-  dvi_status status = map_entries(function, &known->pattern, elements, &place[row], &place[column],
-                                  &target->entry.minor);
-  if (status == DVI_OK && mirrored)
-    status = map_entries(function, &known->pattern, elements, &place[column], &place[row],
-                         &target->mirror.minor);
-  return status;
-}
-
-static dvi_status second_roots(dvi__function *function, int k, unsigned pairs, roots *own)
-{
-  const dvi__kernel *kernel = &function->kernel[k];
-  const dvi__derivatives *known = &function->derivatives[k];
-  dvi_status status = dvi__derive_pairs(function, k, pairs);
-  if (status == DVI_OK) status = make_room(function, known->pair_count, own);
-  for (int e = 0; e < known->pair_count && status == DVI_OK; e++) {
-    int row, column;
-    const dvi__pair pair = pair_of_inputs(kernel, known->pair[e], &row, &column);
-    if (pair == DVI__PAIRS || (pairs >> pair & 1U) == 0 || is_zero(kernel->graph, known->second[e]))
-      continue;
-    status = find_target(function, k, pair, row, column, &own->target[own->count]);
-    own->node[own->count++] = known->second[e];
-  }
-  return status;
-}
-
-dvi_status dvi__derive_second(dvi__function *function, unsigned mask, dvi__sum **sum)
+/* Find how many numbers of a point each array has that is wanted. */
+static dvi_status find_sizes(dvi__function *function, dvi__derived derived, dvi__function_sum *sum)
 {
   dvi_status status = DVI_OK;
-  int entries[DVI__PAIRS] = {0}, all = 0;
-  for (int pair = 0; pair < DVI__PAIRS && status == DVI_OK; pair++) {
-    if ((mask >> pair & 1U) == 0) continue;
-    status = dvi__find_pattern(function, (dvi__pair)pair);
-    entries[pair] = function->pattern[pair].entries;
-    all = entries[pair] < INT_MAX - all ? all + entries[pair] : INT_MAX;
+  for (int a = 0; a < sum->array_count && status == DVI_OK; a++) {
+    if (!sum->wanted[a]) continue;
+    if (derived == DVI__SECOND) status = dvi__find_pattern(function, a);
+    sum->size[a] = derived == DVI__VALUE      ? 1
+                   : derived == DVI__GRADIENT ? function->blocks.width[a]
+                                              : function->pattern[a].entries;
   }
-  if (status == DVI_OK) status = make_sum(function, second_roots, mask, DVI__PAIRS, entries, sum);
+  return status;
+}
+
+static int count_entries(const dvi__function_sum *sum)
+{
+  int all = 0;
+  for (int a = 0; a < sum->array_count; a++)
+    all = sum->size[a] < INT_MAX - all ? all + sum->size[a] : INT_MAX;
+  return all;
+}
+
+dvi_status dvi__derive(dvi__function *function, dvi__derived derived, dvi__function_sum *sum)
+{
+  static roots_finder *const find[DVI__DERIVED] = {value_roots, gradient_roots, second_roots};
+  dvi__function_counters *counters = &function->counters;
+  int *const operations[DVI__DERIVED] = {
+      &counters->value_operations, &counters->gradient_operations, &counters->second_operations};
+  dvi_status status = find_sizes(function, derived, sum);
+  if (status == DVI_OK) status = sum_fill(function, find[derived], sum);
   if (status != DVI_OK) return status;
-  raise_to(&function->counters.second_operations, operations_of(*sum));
-  raise_to(&function->counters.second_entries, all);
+  raise_to(operations[derived], operations_of(sum));
+  if (derived == DVI__SECOND) raise_to(&counters->second_entries, count_entries(sum));
   return DVI_OK;
 }
 
-/* Whether all second derivatives of kernel k in a pair are constants. */
-static int are_constants(const dvi__kernel *kernel, const dvi__derivatives *known, dvi__pair pair)
+/* Whether all second derivatives of kernel k in a pair, which are derived, are constants. */
+static int are_constants(const dvi__function *function, int k, int pair)
 {
+  const dvi__kernel *kernel = &function->kernel[k];
+  const dvi__derivatives *known = &function->derivatives[k];
   for (int e = 0; e < known->pair_count; e++)
-    if (is_wanted(kernel, known->pair[e], 1U << pair) &&
+    if (pair_has_inputs(function->blocks.pair[pair], kernel, known->pair[e]) &&
         kernel->graph->node[known->second[e]].op != DVI__OP_CONSTANT)
       return 0;
   return 1;
 }
 
-int dvi__function_second_constant(dvi__function *function, dvi__pair pair)
+int dvi__function_second_constant(dvi__function *function, int pair)
 {
-  int constant = 1;
   dvi__function_enter(function);
+  char *wanted = dvi__heap_take((size_t)function->blocks.pair_count, 1);
+  int constant = wanted != NULL ? 1 : -1;
+  if (wanted != NULL) wanted[pair] = 1;
   for (int k = 0; k < function->kernel_count && constant == 1; k++)
-    constant = dvi__derive_pairs(function, k, 1U << pair) == DVI_OK
-                   ? are_constants(&function->kernel[k], &function->derivatives[k], pair)
-                   : -1;
+    constant = dvi__derive_pairs(function, k, wanted) == DVI_OK ? are_constants(function, k, pair)
+                                                                : -1;
+  dvi__heap_free(wanted);
   (void)dvi__function_leave(function, DVI_OK);
   return constant;
 }

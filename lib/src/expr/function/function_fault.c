@@ -1,4 +1,4 @@
-/* Which part of an expression is not finite: for messages. */
+/* Fault location: which part of an expression is not finite, or has no series. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -7,21 +7,20 @@
 #include "expr/graph_make.h"
 #include "text/heap.h"
 
-/* What a node is looked for in: that it has no value, no derivative, or, where it has both, no
- * series. */
-typedef enum failing { VALUE, DERIVATIVE, SERIES } failing;
+/* What a node lacks: a value, a derivative, or, where it has both, a series. */
+typedef enum lack { VALUE, DERIVATIVE, SERIES } lack;
 
 /* A node of a kernel at one of its elements. */
-typedef struct culprit {
+typedef struct location {
   const dvi__kernel *kernel;
-  dvi__node node; /* -1: nobody */
+  dvi__node node; /* -1: none */
   int element;
   double *input; /* [input_count], to be freed */
-  failing of;
-} culprit;
+  lack of;
+} location;
 
-static void read_inputs(const dvi__kernel *kernel, const dvi__places *place, int e, int count,
-                        const double *const *x, int k, double *value)
+static void read_inputs(const dvi__kernel *kernel, const dvi__element_places *place, int e,
+                        int count, const double *const *x, int k, double *value)
 {
   for (int i = 0; i < kernel->input_count; i++)
     value[i] = kernel->input[i].is_data
@@ -126,7 +125,7 @@ static dvi__node first_without_series(const dvi__kernel *kernel, const double *i
 
 /* Look at kernel k, element by element. */
 static void search_kernel(const dvi__function *function, int k, int count, const double *const *x,
-                          int point, culprit *found)
+                          int point, location *found)
 {
   const dvi__kernel *kernel = &function->kernel[k];
   int root_count = 1;
@@ -168,7 +167,7 @@ void dvi__copy_part(const dvi__source *source, dvi__span span, char *text)
   text[length] = '\0';
 }
 
-/* The operand that is to blame: what is divided by, else the first; -1: none. */
+/* The operand that a sentence shows: what is divided by, else the first; -1: none. */
 static dvi__node operand_of(const dvi__graph_node *node)
 {
   if (node->op == DVI__OP_CONSTANT || node->op == DVI__OP_INPUT) return -1;
@@ -176,7 +175,7 @@ static dvi__node operand_of(const dvi__graph_node *node)
 }
 
 /* The variables that the node depends on, but for its operand, which is shown if it is one. */
-static void list_variables(const culprit *found, dvi__node operand, dvi__fault *fault)
+static void list_variables(const location *found, dvi__node operand, dvi__fault *fault)
 {
   const dvi__kernel *kernel = found->kernel;
   const dvi__graph_node *shown = operand >= 0 ? &kernel->graph->node[operand] : NULL;
@@ -194,8 +193,8 @@ static void list_variables(const culprit *found, dvi__node operand, dvi__fault *
   dvi__heap_free(used);
 }
 
-static void describe(const culprit *found, const dvi__source *source, char *text, size_t size,
-                     dvi__fault *fault)
+static void describe_fault(const location *found, const dvi__source *source, char *text,
+                           size_t size, dvi__fault *fault)
 {
   const dvi__graph *graph = found->kernel->graph;
   const dvi__graph_node *node = &graph->node[found->node];
@@ -221,20 +220,20 @@ static void describe(const culprit *found, const dvi__source *source, char *text
     (void)snprintf(text, size, "%s%s %s", prefix, part, what);
 }
 
-void dvi__function_blame(dvi__function *function, const dvi__source *source, int count,
+void dvi__function_fault(dvi__function *function, const dvi__source *source, int count,
                          const double *const *x, int k, int of_series, char *text, size_t size,
                          dvi__fault *fault)
 {
-  culprit found = {.node = -1};
+  location found = {.node = -1};
   const int passes = of_series ? SERIES + 1 : SERIES;
   pthread_mutex_lock(&function->lock);
   for (int pass = 0; pass < passes && found.node < 0; pass++)
     for (int i = 0; i < function->kernel_count && found.node < 0; i++) {
-      found.of = (failing)pass;
+      found.of = (lack)pass;
       search_kernel(function, i, count, x, k, &found);
     }
   text[0] = '\0';
-  if (found.node >= 0) describe(&found, source, text, size, fault);
+  if (found.node >= 0) describe_fault(&found, source, text, size, fault);
   pthread_mutex_unlock(&function->lock);
   dvi__heap_free(found.input);
 }

@@ -1,14 +1,12 @@
 /* What a sum stores and what it adds to: the first thing added to an entry is stored there, if it
  * is alone in its kernel, and arrays that are stored in full need not be zero before. */
-#include <limits.h>
-
 #include "expr/function/function_parts.h"
 #include "text/heap.h"
 
-/* An array of a result; `touched` [entries] what is added to already. */
+/* An array of a result. */
 typedef struct array {
-  int number, entries, left; /* left: not touched */
-  unsigned char *touched;
+  int number, left;       /* left: entries that nothing is added to yet */
+  unsigned char *touched; /* [size] 1: something is added to the entry already */
 } array;
 
 /* The target stores if nothing is there yet. */
@@ -23,7 +21,7 @@ static void touch(array *own, dvi__destination *target)
 }
 
 /* Whether only kernels of one element add to an array. */
-static int has_singles_alone(const dvi__sum *sum, int number)
+static int has_singles_alone(const dvi__function_sum *sum, int number)
 {
   for (int k = 0; k < sum->part_count; k++) {
     const dvi__part *part = &sum->part[k];
@@ -33,14 +31,14 @@ static int has_singles_alone(const dvi__sum *sum, int number)
   return 1;
 }
 
-static void touch_all(const dvi__sum *sum, array *own)
+static void touch_all(const dvi__function_sum *sum, array *own)
 {
   for (int k = 0; k < sum->part_count; k++)
     for (int i = 0; i < sum->part[k].target_count; i++)
       if (sum->part[k].target[i].array == own->number) touch(own, &sum->part[k].target[i]);
 }
 
-static void find_singles(const dvi__sum *sum)
+static void find_singles(const dvi__function_sum *sum)
 {
   for (int k = 0; k < sum->part_count; k++)
     for (int i = 0; i < sum->part[k].target_count; i++) {
@@ -50,16 +48,17 @@ static void find_singles(const dvi__sum *sum)
     }
 }
 
-dvi_status dvi__sum_finish(dvi__sum *sum, int arrays, const int *entries)
+dvi_status dvi__sum_finish(dvi__function_sum *sum)
 {
-  sum->clear = UINT_MAX;
   find_singles(sum);
-  for (int a = 0; a < arrays; a++) {
+  for (int a = 0; a < sum->array_count; a++) {
+    if (!sum->wanted[a]) continue;
+    sum->clear[a] = 1;
     if (!has_singles_alone(sum, a)) continue;
-    array own = {a, entries[a], entries[a], dvi__heap_take((size_t)entries[a], 1)};
+    array own = {a, sum->size[a], dvi__heap_take((size_t)sum->size[a], 1)};
     if (own.touched == NULL) return DVI_NO_MEMORY;
     touch_all(sum, &own);
-    if (own.left == 0) sum->clear &= ~(1U << a);
+    if (own.left == 0) sum->clear[a] = 0;
     dvi__heap_free(own.touched);
   }
   return DVI_OK;

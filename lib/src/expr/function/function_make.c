@@ -220,10 +220,18 @@ static dvi_status make(maker *m, int root_count, const dvi__node *root)
   return status == DVI_OK ? dvi__part_plan(m->part) : status;
 }
 
-dvi__sum *dvi__sum_new(dvi__function *function)
+dvi__function_sum *dvi__sum_new(dvi__function *function, int array_count)
 {
-  dvi__sum *sum = dvi__arena_take(&function->arena, 1, sizeof *sum);
-  if (sum == NULL) return NULL;
+  const size_t count = (size_t)array_count;
+  dvi__function_sum *sum = dvi__arena_take(&function->arena, 1, sizeof *sum);
+  char *flags = dvi__arena_take(&function->arena, 2 * count, sizeof *flags);
+  int *size = dvi__arena_take(&function->arena, 2 * count, sizeof *size);
+  if (sum == NULL || flags == NULL || size == NULL) return NULL;
+  sum->array_count = array_count;
+  sum->wanted = flags;
+  sum->clear = flags + count;
+  sum->size = size;
+  sum->result = size + count;
   sum->before = function->last;
   function->last = sum;
   return sum;
@@ -259,7 +267,7 @@ static dvi_status find_outputs(const maker *m, dvi__node *root, int *output_coun
 /* Whether the target after this one is always added beside it. */
 static int is_beside(const dvi__destination *target)
 {
-  const dvi__places *own = &target[0].entry.minor, *next = &target[1].entry.minor;
+  const dvi__element_places *own = &target[0].entry.minor, *next = &target[1].entry.minor;
   return target[0].entry.scale == 0 && target[1].entry.scale == 0 &&
          target[0].array == target[1].array && target[0].negative == target[1].negative &&
          !target[0].mirrored && !target[1].mirrored && own->list == next->list &&
@@ -278,7 +286,7 @@ static void find_groups(const dvi__part *part)
 }
 
 /* A place for another part; NULL: no memory. */
-static dvi__part *next_part(dvi__function *function, dvi__sum *sum)
+static dvi__part *next_part(dvi__function *function, dvi__function_sum *sum)
 {
   dvi__part *part = dvi__arena_grow(&function->arena, sum->part, (size_t)sum->part_count,
                                     sizeof *part);
@@ -287,7 +295,7 @@ static dvi__part *next_part(dvi__function *function, dvi__sum *sum)
   return &sum->part[sum->part_count++];
 }
 
-dvi_status dvi__sum_extend(dvi__function *function, dvi__sum *sum, int k, int root_count,
+dvi_status dvi__sum_extend(dvi__function *function, dvi__function_sum *sum, int k, int root_count,
                            dvi__node *root, dvi__destination *target)
 {
   const dvi__kernel *kernel = &function->kernel[k];

@@ -27,7 +27,7 @@ static int is_short(const dvi__kernel *kernel)
 }
 
 /* The input that reads this variable, found or made. */
-static dvi__node variable(merger *m, dvi__block block, int place)
+static dvi__node variable(merger *m, int block, int place)
 {
   for (int i = 0; i < m->input_count; i++)
     if (m->input[i].block == block && m->input[i].base == place) return dvi__input(m->graph, i);

@@ -29,30 +29,28 @@ dvi_status dvi__find_pairs(dvi__function *function, int k)
 /* Returns whether more are wanted. */
 typedef bool visitor(void *user, int row, int column);
 
-static inline bool visit_elements(int elements, const dvi__places *row, const dvi__places *column,
-                                  visitor *visit, void *user)
+static inline bool visit_elements(int elements, const dvi__element_places *row,
+                                  const dvi__element_places *column, visitor *visit, void *user)
 {
   for (int e = 0; e < elements; e++)
     if (!visit(user, dvi__place_at(row, e), dvi__place_at(column, e))) return false;
   return true;
 }
 
-static inline bool visit_all(const dvi__function *function, dvi__pair pair, visitor *visit,
+static inline bool visit_all(const dvi__function *function, dvi__block_pair pair, visitor *visit,
                              void *user)
 {
-  dvi__block rows, columns;
-  dvi__pair_blocks(pair, &rows, &columns);
   for (int k = 0; k < function->kernel_count; k++) {
     const dvi__kernel *kernel = &function->kernel[k];
     const dvi__derivatives *own = &function->derivatives[k];
     for (int e = 0; e < own->pair_count; e++) {
       const int i = own->pair[e][0], j = own->pair[e][1];
       if (kernel->input[i].is_data || kernel->input[j].is_data) continue;
-      const dvi__block first = kernel->input[i].block, second = kernel->input[j].block;
+      const int first = kernel->input[i].block, second = kernel->input[j].block;
       bool more = true;
-      if (first == rows && second == columns)
+      if (first == pair.rows && second == pair.columns)
         more = visit_elements(kernel->elements, &own->place[i], &own->place[j], visit, user);
-      if (more && second == rows && first == columns && i != j)
+      if (more && second == pair.rows && first == pair.columns && i != j)
         more = visit_elements(kernel->elements, &own->place[j], &own->place[i], visit, user);
       if (!more) return false;
     }
@@ -63,9 +61,9 @@ static inline bool visit_all(const dvi__function *function, dvi__pair pair, visi
 /* --- By bits, for matrices that are not much larger than what is added to them. --- */
 
 typedef struct bits {
-  size_t rows, count,
-      enough;         /* count: of bits that are set; enough: a pattern with more of them is full */
-  unsigned char *bit; /* [rows * columns / 8] column by column */
+  size_t rows;
+  size_t count, enough; /* bits that are set; a pattern with more than enough of them is full */
+  unsigned char *bit;   /* [rows * columns / 8] column by column */
 } bits;
 
 static bool set_bit(void *user, int row, int column)
@@ -105,10 +103,17 @@ static dvi_status take_pattern(dvi__function *function, size_t cells, size_t ent
   return *start != NULL && *row != NULL ? DVI_OK : DVI_NO_MEMORY;
 }
 
-static dvi_status pattern_by_bits(dvi__function *function, dvi__pair pair, size_t rows, int columns,
+/* How many entries a full matrix of the pair has. */
+static size_t cells_of(const dvi__function *function, dvi__block_pair pair)
+{
+  return (size_t)function->blocks.width[pair.rows] * (size_t)function->blocks.width[pair.columns];
+}
+
+static dvi_status pattern_by_bits(dvi__function *function, dvi__block_pair pair,
                                   dvi__pair_pattern *known)
 {
-  const size_t cells = rows * (size_t)columns;
+  const size_t rows = (size_t)function->blocks.width[pair.rows], cells = cells_of(function, pair);
+  const int columns = function->blocks.width[pair.columns];
   bits all = {rows, 0, cells / 2, dvi__heap_take(cells / 8 + 1, 1)};
   int *start, *row;
   if (all.bit == NULL) return DVI_NO_MEMORY;
@@ -163,9 +168,10 @@ static int sort_columns(const lists *all, int columns)
   return entries;
 }
 
-static dvi_status pattern_by_lists(dvi__function *function, dvi__pair pair, size_t rows,
-                                   int columns, size_t visits, dvi__pair_pattern *known)
+static dvi_status pattern_by_lists(dvi__function *function, dvi__block_pair pair, size_t visits,
+                                   dvi__pair_pattern *known)
 {
+  const int columns = function->blocks.width[pair.columns];
   lists all = {dvi__heap_take((size_t)columns + 2, sizeof *all.start),
                dvi__heap_take(visits + 1, sizeof *all.row)};
   dvi_status status = all.start != NULL && all.row != NULL ? DVI_OK : DVI_NO_MEMORY;
@@ -175,8 +181,8 @@ static dvi_status pattern_by_lists(dvi__function *function, dvi__pair pair, size
     for (int j = 0; j < columns; j++) all.start[j + 2] += all.start[j + 1];
     (void)visit_all(function, pair, append_entry, &all);
     const int entries = sort_columns(&all, columns);
-    status = take_pattern(function, rows * (size_t)columns, (size_t)entries, columns, &start, &row,
-                          known);
+    status = take_pattern(function, cells_of(function, pair), (size_t)entries, columns, &start,
+                          &row, known);
   }
   if (status == DVI_OK && start != NULL) {
     memcpy(start, all.start, ((size_t)columns + 1) * sizeof *start);
@@ -193,7 +199,7 @@ static dvi_status pattern_by_lists(dvi__function *function, dvi__pair pair, size
 static const size_t VISITS_MAX = (size_t)1 << 28, BITS_MAX = (size_t)1 << 33;
 
 /* How often visit_all would visit. */
-static size_t count_visits(const dvi__function *function, dvi__pair pair)
+static size_t count_visits(const dvi__function *function, dvi__block_pair pair)
 {
   size_t visits = 0;
   for (int k = 0; k < function->kernel_count; k++) {
@@ -202,7 +208,7 @@ static size_t count_visits(const dvi__function *function, dvi__pair pair)
     for (int e = 0; e < own->pair_count; e++) {
       const dvi__kernel_input *first = &kernel->input[own->pair[e][0]],
                               *second = &kernel->input[own->pair[e][1]];
-      if (first->is_data || second->is_data || dvi__pair_of(first->block, second->block) != pair)
+      if (first->is_data || second->is_data || !dvi__pair_has(pair, first->block, second->block))
         continue;
       visits += (size_t)kernel->elements *
                 (first->block == second->block && first != second ? 2 : 1);
@@ -211,23 +217,20 @@ static size_t count_visits(const dvi__function *function, dvi__pair pair)
   return visits;
 }
 
-dvi_status dvi__find_pattern(dvi__function *function, dvi__pair pair)
+dvi_status dvi__find_pattern(dvi__function *function, int pair)
 {
+  const dvi__block_pair blocks = function->blocks.pair[pair];
   dvi__pair_pattern *known = &function->pattern[pair], found = {.found = 1};
-  dvi__block rows, columns;
   dvi_status status = DVI_OK;
   if (known->found) return DVI_OK;
-  dvi__pair_blocks(pair, &rows, &columns);
   for (int k = 0; k < function->kernel_count && status == DVI_OK; k++)
     status = dvi__find_pairs(function, k);
   if (status != DVI_OK) return status;
-  const size_t height = (size_t)function->block_size[rows], visits = count_visits(function, pair);
-  const size_t cells = height * (size_t)function->block_size[columns];
+  const size_t visits = count_visits(function, blocks), cells = cells_of(function, blocks);
   if (cells <= 32 * visits && cells <= BITS_MAX)
-    status = pattern_by_bits(function, pair, height, function->block_size[columns], &found);
+    status = pattern_by_bits(function, blocks, &found);
   else
-    status = visits <= VISITS_MAX ? pattern_by_lists(function, pair, height,
-                                                     function->block_size[columns], visits, &found)
+    status = visits <= VISITS_MAX ? pattern_by_lists(function, blocks, visits, &found)
                                   : DVI_BAD_SIZE;
   if (status == DVI_OK) *known = found;
   return status;

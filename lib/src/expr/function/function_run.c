@@ -24,8 +24,8 @@ typedef struct tile {
 /* --- Gather. --- */
 
 /* More than a block of points end with a block that overlaps the one before. */
-DVI__SCENE_INLINE void copy_points(const int points, const double *restrict from,
-                                   double *restrict to)
+DVI__EXPR_INLINE void copy_points(const int points, const double *restrict from,
+                                  double *restrict to)
 {
   const int size = points < DVI__LANES ? points : DVI__LANES, last = points - size;
   for (int k = 0; k < last; k += DVI__LANES) memcpy(to + k, from + k, DVI__LANES * sizeof *to);
@@ -34,14 +34,14 @@ DVI__SCENE_INLINE void copy_points(const int points, const double *restrict from
 
 /* Numbers of one point that follow each other by `step`. The compiler makes vectors of the steps
  * that it knows. */
-DVI__SCENE_INLINE void copy_strided(int elements, ptrdiff_t step, const double *restrict from,
-                                    double *restrict to)
+DVI__EXPR_INLINE void copy_strided(int elements, ptrdiff_t step, const double *restrict from,
+                                   double *restrict to)
 {
   for (int e = 0; e < elements; e++) to[e] = from[e * step];
 }
 
-DVI__SCENE_INLINE void gather_strided(int elements, ptrdiff_t step, const double *restrict from,
-                                      double *restrict to)
+DVI__EXPR_INLINE void gather_strided(int elements, ptrdiff_t step, const double *restrict from,
+                                     double *restrict to)
 {
   switch (step) {
   case 0: copy_strided(elements, 0, from, to); break;
@@ -53,8 +53,8 @@ DVI__SCENE_INLINE void gather_strided(int elements, ptrdiff_t step, const double
 }
 
 /* The numbers of one unit; x is at the tile's first point. */
-DVI__SCENE_INLINE void gather_unit(const int points, dvi__track track, int elements,
-                                   ptrdiff_t count, const double *restrict x, double *restrict row)
+DVI__EXPR_INLINE void gather_unit(const int points, dvi__track track, int elements, ptrdiff_t count,
+                                  const double *restrict x, double *restrict row)
 {
   const ptrdiff_t step = track.stride * count;
   const double *restrict from = x + track.start * count;
@@ -68,8 +68,8 @@ DVI__SCENE_INLINE void gather_unit(const int points, dvi__track track, int eleme
       copy_points(points, from + e * step, row + (ptrdiff_t)e * points);
 }
 
-DVI__SCENE_INLINE void gather_variable(const int points, const dvi__places *places, const tile *at,
-                                       const double *x, double *row)
+DVI__EXPR_INLINE void gather_variable(const int points, const dvi__element_places *places,
+                                      const tile *at, const double *x, double *row)
 {
   for (int e = 0; e < at->elements; e += DVI__UNIT) {
     const int elements = dvi__unit_size(at->elements, e);
@@ -78,15 +78,15 @@ DVI__SCENE_INLINE void gather_variable(const int points, const dvi__places *plac
   }
 }
 
-DVI__SCENE_INLINE void gather_column(const int points, const double *restrict column, int elements,
-                                     double *restrict row)
+DVI__EXPR_INLINE void gather_column(const int points, const double *restrict column, int elements,
+                                    double *restrict row)
 {
   for (int e = 0; e < elements; e++)
     for (int p = 0; p < points; p++) row[e * points + p] = column[e];
 }
 
 /* Where the tile's numbers of a variable stand in a row already, or NULL. */
-static const double *standing(const dvi__places *places, const tile *at, const double *x)
+static const double *standing(const dvi__element_places *places, const tile *at, const double *x)
 {
   if (places->list != NULL && at->elements > DVI__UNIT) return NULL;
   const dvi__track track = dvi__track_of(places, at->first);
@@ -98,9 +98,8 @@ static const double *standing(const dvi__places *places, const tile *at, const d
 /* Point input[] at the rows that the program reads. What does not stand ready as whole blocks is
  * put below the registers, the last one first: the idle lanes of each are filled by one block too
  * many. */
-DVI__SCENE_INLINE void gather_points(const int points, const dvi__part *part, const tile *at,
-                                     const double *const *x, const double **input,
-                                     double *registers)
+DVI__EXPR_INLINE void gather_points(const int points, const dvi__part *part, const tile *at,
+                                    const double *const *x, const double **input, double *registers)
 {
   const int lanes = at->elements * points, width = dvi__row_width(lanes),
             whole = lanes == width && lanes > DVI__LANES;
@@ -121,8 +120,8 @@ DVI__SCENE_INLINE void gather_points(const int points, const dvi__part *part, co
   }
 }
 
-DVI__SCENE_LANES static void gather(const dvi__part *part, const tile *at, const double *const *x,
-                                    const double **input, double *registers)
+DVI__EXPR_LANES static void gather(const dvi__part *part, const tile *at, const double *const *x,
+                                   const double **input, double *registers)
 {
   switch (at->points) {
 #define GATHER(points) \
@@ -135,8 +134,8 @@ DVI__SCENE_LANES static void gather(const dvi__part *part, const tile *at, const
 
 /* --- Scatter: `sign` is 1 or -1. --- */
 
-DVI__SCENE_INLINE void add_points(const int points, double sign, const double *restrict row,
-                                  double *restrict to)
+DVI__EXPR_INLINE void add_points(const int points, double sign, const double *restrict row,
+                                 double *restrict to)
 {
   const int size = points < DVI__LANES ? points : DVI__LANES, last = points - size;
   double end[DVI__LANES];
@@ -147,8 +146,8 @@ DVI__SCENE_INLINE void add_points(const int points, double sign, const double *r
 }
 
 /* Eight at a time: the ends of longer loops are foreseen more often. */
-DVI__SCENE_INLINE void add_strided(int elements, double sign, ptrdiff_t step,
-                                   const double *restrict row, double *restrict to)
+DVI__EXPR_INLINE void add_strided(int elements, double sign, ptrdiff_t step,
+                                  const double *restrict row, double *restrict to)
 {
   int e = 0;
   for (; e + DVI__LANES <= elements; e += DVI__LANES, to += DVI__LANES * step)
@@ -158,8 +157,8 @@ DVI__SCENE_INLINE void add_strided(int elements, double sign, ptrdiff_t step,
 
 /* An entry that follows itself in the list, as that of the first body of pairs does, waits in a
  * register. */
-DVI__SCENE_INLINE void add_listed(int elements, double sign, const int *restrict list,
-                                  ptrdiff_t count, const double *restrict row, double *to)
+DVI__EXPR_INLINE void add_listed(int elements, double sign, const int *restrict list,
+                                 ptrdiff_t count, const double *restrict row, double *to)
 {
   ptrdiff_t at = list[0] * count;
   double sum = to[at];
@@ -174,8 +173,8 @@ DVI__SCENE_INLINE void add_listed(int elements, double sign, const int *restrict
   to[at] = sum;
 }
 
-DVI__SCENE_INLINE void add_unit(const int points, dvi__track track, int elements, ptrdiff_t count,
-                                double sign, const double *restrict row, double *restrict result)
+DVI__EXPR_INLINE void add_unit(const int points, dvi__track track, int elements, ptrdiff_t count,
+                               double sign, const double *restrict row, double *restrict result)
 {
   const ptrdiff_t step = track.stride * count;
   double *restrict to = result + track.start * count;
@@ -194,7 +193,7 @@ DVI__SCENE_INLINE void add_unit(const int points, dvi__track track, int elements
 }
 
 /* The sum of all elements' numbers, by halves; `sum` [DVI__LANES_MAX] has room for half of them. */
-DVI__SCENE_INLINE void fold(int elements, int points, const double *restrict row, double *sum)
+DVI__EXPR_INLINE void fold(int elements, int points, const double *restrict row, double *sum)
 {
   int left = (elements + 1) / 2, others = (elements - left) * points;
   for (int k = 0; k < left * points; k++)
@@ -204,7 +203,7 @@ DVI__SCENE_INLINE void fold(int elements, int points, const double *restrict row
     const double *restrict upper = sum + (ptrdiff_t)half * points;
     double *restrict lower = sum;
     others = (left - half) * points;
-    DVI__SCENE_INDEPENDENT
+    DVI__EXPR_INDEPENDENT
     for (int k = 0; k < others; k++)
       lower[k] += upper[k]; /* NOLINT(clang-analyzer-core.uninitialized.Assign): filled above */
   }
@@ -212,8 +211,8 @@ DVI__SCENE_INLINE void fold(int elements, int points, const double *restrict row
 
 /* A unit of points of two or three coordinates, which stand side by side; rows are `pitch`
  * apart. */
-DVI__SCENE_INLINE void add_coordinates(const int group, double sign, ptrdiff_t pitch,
-                                       const double *row, double *restrict to)
+DVI__EXPR_INLINE void add_coordinates(const int group, double sign, ptrdiff_t pitch,
+                                      const double *row, double *restrict to)
 {
   const double *restrict x = row, *restrict y = row + pitch,
                          *restrict z = row + (group - 1) * pitch;
@@ -231,8 +230,8 @@ static int place_in(const dvi__track *track, int e)
 
 /* The track of entries minor + scale * major; `list` [DVI__UNIT] is for those that have no
  * stride. */
-DVI__SCENE_INLINE dvi__track entry_track(const dvi__entries *entries, int first, int elements,
-                                         int *list)
+DVI__EXPR_INLINE dvi__track entry_track(const dvi__entries *entries, int first, int elements,
+                                        int *list)
 {
   const dvi__track minor = dvi__track_of(&entries->minor, first);
   if (entries->scale == 0) return minor;
@@ -247,9 +246,9 @@ DVI__SCENE_INLINE dvi__track entry_track(const dvi__entries *entries, int first,
 }
 
 /* Add a unit's row to its entries. */
-DVI__SCENE_INLINE void scatter_unit(const int points, const dvi__entries *entries, int first,
-                                    int elements, int count, double sign, const double *row,
-                                    double *result)
+DVI__EXPR_INLINE void scatter_unit(const int points, const dvi__entries *entries, int first,
+                                   int elements, int count, double sign, const double *row,
+                                   double *result)
 {
   int list[DVI__UNIT];
   double sum[DVI__LANES_MAX];
@@ -267,8 +266,8 @@ DVI__SCENE_INLINE void scatter_unit(const int points, const dvi__entries *entrie
 
 /* Add a full unit of a group of targets at one point, if they lie so. Returns how many targets that
  * were. */
-DVI__SCENE_INLINE int scatter_group(const dvi__destination *target, int first, ptrdiff_t pitch,
-                                    double sign, const double *row, double *result)
+DVI__EXPR_INLINE int scatter_group(const dvi__destination *target, int first, ptrdiff_t pitch,
+                                   double sign, const double *row, double *result)
 {
   const dvi__track track = dvi__track_of(&target->entry.minor, first);
   const int group = target->group;
@@ -280,8 +279,8 @@ DVI__SCENE_INLINE int scatter_group(const dvi__destination *target, int first, p
   return group;
 }
 
-DVI__SCENE_INLINE void scatter_points(const int points, const dvi__part *part, const tile *at,
-                                      const double *outputs, double *const *result)
+DVI__EXPR_INLINE void scatter_points(const int points, const dvi__part *part, const tile *at,
+                                     const double *outputs, double *const *result)
 {
   const int width = dvi__row_width(at->elements * points);
   for (int e = 0; e < at->elements; e += DVI__UNIT) {
@@ -303,8 +302,8 @@ DVI__SCENE_INLINE void scatter_points(const int points, const dvi__part *part, c
   }
 }
 
-DVI__SCENE_LANES static void scatter(const dvi__part *part, const tile *at, const double *outputs,
-                                     double *const *result)
+DVI__EXPR_LANES static void scatter(const dvi__part *part, const tile *at, const double *outputs,
+                                    double *const *result)
 {
   switch (at->points) {
 #define SCATTER(points) \
@@ -425,7 +424,8 @@ static void run_part(const dvi__part *part, int count, const double *const *x,
     run_small(part, &shape, x, result);
 }
 
-void dvi__sum_add(const dvi__sum *sum, int count, const double *const *x, double *const *result)
+void dvi__sum_add(const dvi__function_sum *sum, int count, const double *const *x,
+                  double *const *result)
 {
   for (int k = 0; k < sum->part_count; k++) {
     const dvi__part *part = &sum->part[k];

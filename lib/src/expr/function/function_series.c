@@ -7,12 +7,12 @@ enum { NUMBERS = DVI__ROWS_MAX * DVI__LANES };
 
 /* Row i stands `i + 1` rows below the registers. What depends on no variable is a series of one
  * coefficient. */
-static void gather(const dvi__part *part, int e, int count, const int *block_size,
+static void gather(const dvi__part *part, int e, int count, const int *width,
                    const double *const *x, double *registers)
 {
   double *row = registers;
   for (int i = 0; i < part->variable_count; i++) {
-    const int size = block_size[part->block[i]];
+    const int size = width[part->block[i]];
     const double *from = x[part->block[i]] + dvi__place_at(&part->variable[i], e);
     row -= count;
     for (int k = 0; k < count; k++) row[k] = from[(ptrdiff_t)k * size];
@@ -38,8 +38,8 @@ static void scatter(const dvi__part *part, int e, int count, const int *size, co
   }
 }
 
-dvi_status dvi__sum_add_series(const dvi__sum *sum, int count, const int *block_size,
-                               const double *const *x, const int *size, double *const *result)
+dvi_status dvi__sum_add_series(const dvi__function_sum *sum, int count, const int *width,
+                               const double *const *x, double *const *result)
 {
   _Alignas(64) double memory[NUMBERS];
   for (int p = 0; p < sum->part_count; p++) {
@@ -50,9 +50,9 @@ dvi_status dvi__sum_add_series(const dvi__sum *sum, int count, const int *block_
     const double *outputs = registers +
                             (ptrdiff_t)(program->row_count - program->output_count) * count;
     for (int e = 0; e < part->kernel->elements; e++) {
-      gather(part, e, count, block_size, x, registers);
+      gather(part, e, count, width, x, registers);
       dvi__program_run_series(program, count - 1, registers);
-      scatter(part, e, count, size, outputs, result);
+      scatter(part, e, count, sum->size, outputs, result);
     }
   }
   return DVI_OK;

@@ -78,15 +78,14 @@ bool dvi__whole_numbers_of(const dvi__context *c, const dvi__expression *e, cons
 bool dvi__constants_of(dvi__context *c, const dvi__expression *e, dvi__value value, double *number);
 
 /* A variable of a block as a node: number numbering + offset. */
-dvi__node dvi__variable_node(dvi__context *c, dvi__block block, dvi__numbering numbering,
-                             int offset);
+dvi__node dvi__variable_node(dvi__context *c, int block, dvi__numbering numbering, int offset);
 /* The numbers scale * (each or all) + shift as a numbering. */
 bool dvi__numbering_of(dvi__context *c, const int *each, int all, int shift, int scale,
                        dvi__numbering *numbering);
 /* A row of data [elements] as a node; copied. */
 dvi__node dvi__data_node(dvi__context *c, const double *row);
 /* The same variable of another block: the velocity of a coordinate. */
-dvi__node dvi__sibling_node(dvi__context *c, int input, dvi__block block);
+dvi__node dvi__sibling_node(dvi__context *c, int input, int block);
 
 /* Bind an index, without its values; refused if the name is taken. */
 bool dvi__index_bind(dvi__context *c, dvi__span span, const char *name);
@@ -107,6 +106,6 @@ unsigned dvi__says(const dvi_scene *scene, const dvi__expression *e);
 const dvi__expression **dvi__spine(dvi_scene *scene, const dvi__expression *e, int *count);
 
 bool dvi__refuse(const dvi__context *c, dvi__span span, const char *format, ...)
-    DVI__SCENE_PRINTF(3, 4);
+    DVI__TEXT_PRINTF(3, 4);
 
 #endif

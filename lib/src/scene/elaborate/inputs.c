@@ -4,7 +4,7 @@
 #include "scene/elaborate/context.h"
 #include "text/heap.h"
 
-static int block_size(const dvi_scene *scene, dvi__block block)
+static int block_size(const dvi_scene *scene, int block)
 {
   if (block == DVI__TIME) return 1;
   return block == DVI__MULTIPLIERS  ? 2 * scene->n
@@ -51,7 +51,7 @@ static dvi__node add_input(dvi__context *c, const dvi__kernel_input *input)
 
 /* A variable that is the same for all elements: found by a table, for there may be as many as
  * coordinates. */
-static dvi__node fixed_variable(dvi__context *c, dvi__block block, int number)
+static dvi__node fixed_variable(dvi__context *c, int block, int number)
 {
   if (c->of_number[block] == NULL)
     c->of_number[block] = dvi__heap_take((size_t)block_size(c->scene, block),
@@ -67,13 +67,13 @@ static dvi__node fixed_variable(dvi__context *c, dvi__block block, int number)
   return node;
 }
 
-static int same_variable(const dvi__kernel_input *a, dvi__block block, dvi__numbering n, int offset)
+static int same_variable(const dvi__kernel_input *a, int block, dvi__numbering n, int offset)
 {
   return !a->is_data && a->block == block && a->number == n.number && a->base == n.base &&
          a->stride == n.stride && a->offset == offset;
 }
 
-dvi__node dvi__variable_node(dvi__context *c, dvi__block block, dvi__numbering n, int offset)
+dvi__node dvi__variable_node(dvi__context *c, int block, dvi__numbering n, int offset)
 {
   if (n.number == NULL && n.stride == 0) return fixed_variable(c, block, n.base + offset);
   for (int i = 0; i < c->input_count; i++)
@@ -85,7 +85,7 @@ dvi__node dvi__variable_node(dvi__context *c, dvi__block block, dvi__numbering n
                                            .offset = offset});
 }
 
-dvi__node dvi__sibling_node(dvi__context *c, int input, dvi__block block)
+dvi__node dvi__sibling_node(dvi__context *c, int input, int block)
 {
   const dvi__kernel_input of = c->input[input];
   return dvi__variable_node(c, block, (dvi__numbering){of.number, of.base, of.stride}, of.offset);

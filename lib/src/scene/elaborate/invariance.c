@@ -105,14 +105,14 @@ typedef struct motion {
   uint64_t trial;
 } motion;
 
-static uint64_t at_random(const motion *m, dvi__block block, int number)
+static uint64_t at_random(const motion *m, int block, int number)
 {
   return scramble(scramble(m->trial * DVI__BLOCKS + (uint64_t)block) + (uint64_t)number) % prime;
 }
 
 /* A variable of a block: coordinates move and turn, velocities turn, and what does neither
  * stays. */
-static dual variable(const motion *m, unsigned turning, dvi__block block, int number)
+static dual variable(const motion *m, unsigned turning, int block, int number)
 {
   dual x = {at_random(m, block, number), 0};
   const int to = (turning >> block & 1U) ? m->to[number] : 0;
@@ -173,7 +173,7 @@ static uint64_t slope_of(const motion *m, unsigned turning, const dvi__kernel *k
 /* ---- a scene ---- */
 
 /* Whether a function is a part of L, or a constraint. */
-static int counts(const dvi_scene *scene, const dvi__term *term)
+static int counts(const dvi_scene *scene, const dvi__scene_term *term)
 {
   return term->role == DVI__MOVES || term == scene->kinetic;
 }
@@ -183,7 +183,7 @@ static int largest(const dvi_scene *scene, double *work)
 {
   int most = 0;
   *work = 0;
-  for (const dvi__term *term = scene->functions; term != NULL; term = term->next)
+  for (const dvi__scene_term *term = scene->functions; term != NULL; term = term->next)
     for (int k = 0; counts(scene, term) && k < dvi__function_kernel_count(term->function); k++) {
       const dvi__kernel *kernel = dvi__function_kernel(term->function, k);
       most = kernel->root + 1 > most ? kernel->root + 1 : most;
@@ -197,7 +197,7 @@ static int largest(const dvi_scene *scene, double *work)
 static uint64_t slope_of_scene(const dvi_scene *scene, const motion *m, dual *at)
 {
   uint64_t slope = 0;
-  for (const dvi__term *term = scene->functions; term != NULL; term = term->next) {
+  for (const dvi__scene_term *term = scene->functions; term != NULL; term = term->next) {
     const unsigned turning = 1U << DVI__COORDINATES |
                              1U << (term == scene->one_form.user ? DVI__MULTIPLIERS
                                                                  : DVI__VELOCITIES);

@@ -345,13 +345,15 @@ bool dvi__kernels_add(dvi_scene *scene, unsigned may, const char *where, const d
   return good;
 }
 
-bool dvi__kernels_function(dvi_scene *scene, dvi__kernels *list, int count, dvi__term **term)
+bool dvi__kernels_function(dvi_scene *scene, dvi__kernels *list, int count, dvi__scene_term **term)
 {
-  const int size[DVI__BLOCKS] = {1, scene->n, scene->velocities, count};
-  dvi__term *made = dvi__arena_take(&scene->arena, 1, sizeof *made);
+  const int width[DVI__BLOCKS] = {1, scene->n, scene->velocities, count};
+  const dvi__blocks blocks = {DVI__BLOCKS, width, DVI__PAIRS, dvi__scene_pairs};
+  dvi__scene_term *made = dvi__arena_take(&scene->arena, 1, sizeof *made);
   *term = made;
   if (made == NULL) return dvi__scene_no_memory(scene);
-  const dvi_status status = dvi__function_create(list->count, list->kernel, size, &made->function);
+  const dvi_status status = dvi__function_create(list->count, list->kernel, &blocks,
+                                                 &made->function);
   if (status != DVI_OK) return dvi__scene_no_memory(scene);
   dvi__heap_free(list->kernel);
   *list = (dvi__kernels){0};

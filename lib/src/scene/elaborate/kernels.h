@@ -22,7 +22,7 @@ bool dvi__kernels_add(dvi_scene *scene, unsigned may, const char *where, const d
 bool dvi__kernels_add_node(dvi__context *c, dvi__node root, dvi__kernels *list);
 
 /* Make a function of them; the list is empty then. `count` multipliers. Kept by the scene. */
-bool dvi__kernels_function(dvi_scene *scene, dvi__kernels *list, int count, dvi__term **term);
+bool dvi__kernels_function(dvi_scene *scene, dvi__kernels *list, int count, dvi__scene_term **term);
 
 /* ---- parts of kernels by their degree in a block of variables, in velocities above all ---- */
 
@@ -32,19 +32,19 @@ typedef struct dvi__degree {
   int degree, pure, moves; /* moves: the part of degree 0 has other variables */
 } dvi__degree;
 
-bool dvi__kernel_degree(dvi_scene *scene, const dvi__kernel *kernel, dvi__block block,
+bool dvi__kernel_degree(dvi_scene *scene, const dvi__kernel *kernel, int block,
                         dvi__degree *degree);
 
 /* Whether a term of a kernel is neither of degree 0 nor of degree 2 and pure, and where the first
  * of them is. */
-bool dvi__kernel_other_term(dvi_scene *scene, const dvi__kernel *kernel, dvi__block block,
-                            dvi__span *span, int *found);
+bool dvi__kernel_other_term(dvi_scene *scene, const dvi__kernel *kernel, int block, dvi__span *span,
+                            int *found);
 
 /* Add the part of degree 0 of each kernel (velocities are zero) or its negative; or the rest, for
  * degree at most 2, with the block's variables taken from the block `as`. */
-bool dvi__kernels_at_rest(dvi_scene *scene, const dvi__kernels *of, dvi__block block, int negative,
+bool dvi__kernels_at_rest(dvi_scene *scene, const dvi__kernels *of, int block, int negative,
                           dvi__kernels *list);
-bool dvi__kernels_moving(dvi_scene *scene, const dvi__kernels *of, dvi__block block, dvi__block as,
+bool dvi__kernels_moving(dvi_scene *scene, const dvi__kernels *of, int block, int as,
                          dvi__kernels *list);
 
 #endif

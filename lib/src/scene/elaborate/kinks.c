@@ -48,7 +48,7 @@ static double draw(uint64_t key)
   return (double)(int64_t)(key ^ (key >> 32)) / 9223372036854775808.0;
 }
 
-static double start_of(const dvi_scene *scene, dvi__block block, int number)
+static double start_of(const dvi_scene *scene, int block, int number)
 {
   if (block == DVI__COORDINATES) return scene->q[number];
   if (block != DVI__VELOCITIES || number >= scene->nv) return 0;
@@ -296,7 +296,7 @@ int dvi_scene_kink(const dvi_scene *scene, char *text, size_t size)
   if (size > 0 && text != NULL) text[0] = '\0';
   if (scene == NULL || text == NULL) return -1;
   found worst = {.order = SMOOTH + 1};
-  for (const dvi__term *term = scene->functions; term != NULL; term = term->next)
+  for (const dvi__scene_term *term = scene->functions; term != NULL; term = term->next)
     for (int k = 0; (term->role == DVI__MOVES || term == scene->kinetic) &&
                     k < dvi__function_kernel_count(term->function);
          k++)

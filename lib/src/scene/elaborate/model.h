@@ -5,25 +5,25 @@
 #include <dvi/scene.h>
 #include <pthread.h>
 
-#include "expr/function/function.h"
-#include "text/heap.h"
+#include "scene/elaborate/blocks.h"
 #include "scene/elaborate/names.h"
 #include "scene/text/tree.h"
+#include "text/heap.h"
 
 /* What a function is for: the motion; symmetries and invariants; events and constant masses, which
  * the system does not evaluate. */
 typedef enum dvi__role { DVI__MOVES, DVI__WATCHES, DVI__STANDS_BESIDE } dvi__role;
 
 /* The functions that callbacks evaluate, in a list that the scene frees. */
-typedef struct dvi__term {
+typedef struct dvi__scene_term {
   dvi__function *function;
   const dvi_scene *scene;
   int n, count;       /* coordinates; multipliers */
   const double *none; /* zeros, as many as the longest block has */
   dvi_pattern qw, vw; /* of constraints: d phi/dq and d phi/dp, of which the gradients are made */
   dvi__role role;
-  struct dvi__term *next;
-} dvi__term;
+  struct dvi__scene_term *next;
+} dvi__scene_term;
 
 struct dvi_scene {
   dvi__ledger ledger;
@@ -48,8 +48,8 @@ struct dvi_scene {
   dvi_one_form one_form;
   dvi_hamiltonian hamiltonian;
   dvi_constraint constraint;
-  dvi__term *functions;
-  const dvi__term *kinetic; /* what a constant mass was read from; NULL */
+  dvi__scene_term *functions;
+  const dvi__scene_term *kinetic; /* what a constant mass was read from; NULL */
   dvi_system *system;
   double *q, *v, *p;
   double *zeros; /* [2 n] */

@@ -16,7 +16,7 @@ typedef struct copy {
   int input_count;
   int *of_input;            /* new number + 1 of an old input */
   dvi__node *rest, *moving; /* Z and P of old nodes; moving NULL: only Z is wanted */
-  dvi__block block, as;     /* block DVI__BLOCKS: nothing moves */
+  int block, as;            /* block DVI__BLOCKS: nothing moves */
 } copy;
 
 static dvi__node apply(copy *c, dvi__op op, dvi__node a, dvi__node b)
@@ -125,8 +125,8 @@ static void free_work(copy *c, char *needed)
 }
 
 /* Z of a kernel, or P, into a kernel of its own, in the arena but for the nodes of its graph. */
-static bool copy_part(dvi_scene *scene, const dvi__kernel *from, dvi__block block, dvi__block as,
-                      int moving, dvi__kernel *to)
+static bool copy_part(dvi_scene *scene, const dvi__kernel *from, int block, int as, int moving,
+                      dvi__kernel *to)
 {
   const size_t nodes = (size_t)from->root + 1, inputs = (size_t)from->input_count + 1;
   char *needed = dvi__heap_take(nodes, 1);
@@ -201,7 +201,7 @@ bool dvi__kernels_add_node(dvi__context *c, dvi__node root, dvi__kernels *list)
   return append_needed(c->scene, list, &all);
 }
 
-bool dvi__kernels_at_rest(dvi_scene *scene, const dvi__kernels *of, dvi__block block, int negative,
+bool dvi__kernels_at_rest(dvi_scene *scene, const dvi__kernels *of, int block, int negative,
                           dvi__kernels *list)
 {
   for (int k = 0; k < of->count; k++) {
@@ -215,7 +215,7 @@ bool dvi__kernels_at_rest(dvi_scene *scene, const dvi__kernels *of, dvi__block b
   return true;
 }
 
-bool dvi__kernels_moving(dvi_scene *scene, const dvi__kernels *of, dvi__block block, dvi__block as,
+bool dvi__kernels_moving(dvi_scene *scene, const dvi__kernels *of, int block, int as,
                          dvi__kernels *list)
 {
   for (int k = 0; k < of->count; k++) {
@@ -238,7 +238,7 @@ static dvi__degree of_product(dvi__degree a, dvi__degree b)
   return (dvi__degree){degree > 3 ? 3 : degree, pure, a.moves || b.moves};
 }
 
-static dvi__degree of_input(const dvi__kernel_input *input, dvi__block block)
+static dvi__degree of_input(const dvi__kernel_input *input, int block)
 {
   if (input->is_data) return (dvi__degree){0, 1, 0};
   return input->block == block ? (dvi__degree){1, 1, 0} : (dvi__degree){0, 1, 1};
@@ -250,8 +250,7 @@ static dvi__degree of_other(dvi__degree a, dvi__degree b)
   return (dvi__degree){0, 1, a.moves || b.moves};
 }
 
-static dvi__degree of_node(const dvi__kernel *kernel, dvi__block block, const dvi__degree *known,
-                           int i)
+static dvi__degree of_node(const dvi__kernel *kernel, int block, const dvi__degree *known, int i)
 {
   static const dvi__degree none = {0, 1, 0};
   const dvi__graph_node *node = &kernel->graph->node[i];
@@ -285,7 +284,7 @@ static int is_sum(dvi__op op)
 }
 
 /* fits[i]: whether a node, of a sum all of its terms, is of degree 0, or of degree 2 and pure. */
-static void find_fits(const dvi__kernel *kernel, dvi__block block, dvi__degree *known, char *fits)
+static void find_fits(const dvi__kernel *kernel, int block, dvi__degree *known, char *fits)
 {
   for (int i = 0; i <= kernel->root; i++) {
     const dvi__graph_node *node = &kernel->graph->node[i];
@@ -295,8 +294,8 @@ static void find_fits(const dvi__kernel *kernel, dvi__block block, dvi__degree *
   }
 }
 
-bool dvi__kernel_other_term(dvi_scene *scene, const dvi__kernel *kernel, dvi__block block,
-                            dvi__span *span, int *found)
+bool dvi__kernel_other_term(dvi_scene *scene, const dvi__kernel *kernel, int block, dvi__span *span,
+                            int *found)
 {
   const dvi__graph_node *node = kernel->graph->node;
   dvi__degree *known = dvi__heap_take((size_t)kernel->root + 1, sizeof *known);
@@ -315,8 +314,7 @@ bool dvi__kernel_other_term(dvi_scene *scene, const dvi__kernel *kernel, dvi__bl
   return good;
 }
 
-bool dvi__kernel_degree(dvi_scene *scene, const dvi__kernel *kernel, dvi__block block,
-                        dvi__degree *degree)
+bool dvi__kernel_degree(dvi_scene *scene, const dvi__kernel *kernel, int block, dvi__degree *degree)
 {
   dvi__degree *known = dvi__heap_take((size_t)kernel->root + 1, sizeof *known);
   if (known == NULL) return dvi__scene_no_memory(scene);

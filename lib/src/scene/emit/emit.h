@@ -3,7 +3,7 @@
  * it but ours. */
 #ifndef DVI_SCENE_EMIT_H
 #define DVI_SCENE_EMIT_H
-#include "expr/function/function.h"
+#include "scene/elaborate/blocks.h"
 
 /* Where text goes. Fill in write and user; the rest starts at zero. Once write returned not 0, or
  * memory ran out, nothing more is written. */
@@ -17,7 +17,7 @@ typedef struct dvi__emitter {
 
 /* Write as printf does, at most 500 characters; doubles by dvi__emit_number alone: they are read
  * again. */
-void dvi__emit(dvi__emitter *out, const char *format, ...) DVI__SCENE_PRINTF(2, 3);
+void dvi__emit(dvi__emitter *out, const char *format, ...) DVI__TEXT_PRINTF(2, 3);
 void dvi__emit_number(dvi__emitter *out, double value);
 
 /* Static arrays of a file: the number n of `static const int dvi_list_n[]` or `static const double
@@ -34,18 +34,22 @@ int dvi__emit_lists(dvi__emitter *out, int count, const int *list);
 /* What the functions below need: headers and small functions. First in a file. */
 void dvi__emit_begin(dvi__emitter *out);
 
-/* Write a function
- *     static void NAME(int count, const double *t, const double *q, const double *v, const double
- * *w, double *f_.., ..) that does what dvi__function_value does, dvi__function_gradient (an array
- * for each of the blocks in the mask), or dvi__function_second (of the pairs); but what is not
- * finite is not looked for. The order of blocks and pairs is that of function.h; what does not
- * occur may be NULL. `name` is an identifier. `lanes`: 1 if it is for many points, and worth being
- * compiled for several instruction sets; 0: it may be called for many, too. */
+/* Write a function of a scene as
+ *
+ *     static void NAME(int count, const double *t, const double *q, const double *v,
+ *                      const double *w, double *f_.., ..)
+ *
+ * that does what dvi__function_value does, or dvi__function_gradient (an array for each block b
+ * with blocks[b]), or dvi__function_second (an array for each pair with pairs[pair]), but does not
+ * look for what is not finite. Arrays are in the order of blocks and pairs in
+ * scene/elaborate/blocks.h; what does not occur may be NULL. `name` is an identifier. `lanes`: 1 if
+ * it is for many points, and worth being compiled for several instruction sets; 0: it may be called
+ * for many, too. */
 dvi_status dvi__emit_value(dvi__emitter *out, dvi__function *function, const char *name);
-dvi_status dvi__emit_gradient(dvi__emitter *out, dvi__function *function, unsigned blocks,
+dvi_status dvi__emit_gradient(dvi__emitter *out, dvi__function *function, const char *blocks,
                               int lanes, const char *name);
-dvi_status dvi__emit_second(dvi__emitter *out, dvi__function *function, unsigned pairs, int lanes,
-                            const char *name);
+dvi_status dvi__emit_second(dvi__emitter *out, dvi__function *function, const char *pairs,
+                            int lanes, const char *name);
 
 /* Free what the emitter remembers; returns what went wrong, DVI_OK if nothing did. */
 dvi_status dvi__emit_end(dvi__emitter *out);

@@ -20,7 +20,7 @@ void dvi__emit_text(dvi__emitter *out, const char *text)
 
 /* Where the entries of d phi/dq, then those of d phi/dp, stand when they are gradients, column by
  * column. */
-static dvi_status emit_order(dvi__emitter *out, const dvi__term *term, int *list)
+static dvi_status emit_order(dvi__emitter *out, const dvi__scene_term *term, int *list)
 {
   const int count = term->count, *q_start = term->qw.start, *p_start = term->vw.start;
   int *from = dvi__heap_take((size_t)q_start[count] + (size_t)p_start[count] + 1, sizeof *from),
@@ -36,7 +36,7 @@ static dvi_status emit_order(dvi__emitter *out, const dvi__term *term, int *list
 }
 
 /* The call for gradients of constraints: d phi/dq and d phi/dp together. */
-static void emit_joined_call(dvi__emitter *out, const dvi__term *term, const char *function,
+static void emit_joined_call(dvi__emitter *out, const dvi__scene_term *term, const char *function,
                              const char *arguments, int list)
 {
   const int of_q = term->qw.start[term->count], all = of_q + term->vw.start[term->count];
@@ -44,18 +44,18 @@ static void emit_joined_call(dvi__emitter *out, const dvi__term *term, const cha
   dvi__emit(out, "  for (int e = 0; e < %d; e++) phi_z[e] = z[dvi_list_%d[e]];\n", all, list);
 }
 
-static dvi_status emit_function(dvi__emitter *out, const dvi__term *term, const dvi__callback *c,
-                                const char *name, int *list)
+static dvi_status emit_function(dvi__emitter *out, const dvi__scene_term *term,
+                                const dvi__callback *c, const char *name, int *list)
 {
   const int lanes = strstr(c->name, "batch") != NULL;
   switch (c->asks) {
   case 'v': return dvi__emit_value(out, term->function, name);
-  case 'g': return dvi__emit_gradient(out, term->function, c->mask, lanes, name);
-  case 's': return dvi__emit_second(out, term->function, c->mask, lanes, name);
+  case 'g': return dvi__emit_gradient(out, term->function, c->wanted, lanes, name);
+  case 's': return dvi__emit_second(out, term->function, c->wanted, lanes, name);
   default: break;
   }
   if (term->qw.start[term->count] > ENTRIES_MAX - term->vw.start[term->count]) return DVI_BAD_SIZE;
-  const dvi_status status = dvi__emit_second(out, term->function, c->mask, lanes, name);
+  const dvi_status status = dvi__emit_second(out, term->function, c->wanted, lanes, name);
   return status != DVI_OK ? status : emit_order(out, term, list);
 }
 

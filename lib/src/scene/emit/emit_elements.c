@@ -34,7 +34,7 @@ static int is_short(const dvi__part *part)
 
 /* --- Arrays, before the functions. --- */
 
-static void declare_places(dvi__emitter *out, const dvi__places *places, int elements)
+static void declare_places(dvi__emitter *out, const dvi__element_places *places, int elements)
 {
   if (places->list != NULL) (void)dvi__emit_ints(out, elements, places->list);
 }
@@ -47,7 +47,7 @@ static dvi_status declare_arrays(dvi__emitter *out, const dvi__emitted_sum *own,
   for (int i = 0; i < part->variable_count; i++) declare_places(out, &part->variable[i], elements);
   for (int c = 0; c < part->column_count; c++)
     (void)dvi__emit_doubles(out, elements, part->column[c]);
-  for (int a = 0; own->mask >> a != 0 && status == DVI_OK && !is_short(part); a++)
+  for (int a = 0; a < own->sum->array_count && status == DVI_OK && !is_short(part); a++)
     status = dvi__additions_declare(out, part, a, &additions[a]);
   return status;
 }
@@ -55,7 +55,7 @@ static dvi_status declare_arrays(dvi__emitter *out, const dvi__emitted_sum *own,
 /* --- A unit. --- */
 
 /* The place of element first + e. */
-static void emit_place(dvi__emitter *out, const dvi__places *places, int elements)
+static void emit_place(dvi__emitter *out, const dvi__element_places *places, int elements)
 {
   if (places->list != NULL)
     dvi__emit(out, "(%d + dvi_list_%d[first + e])", places->start,
@@ -150,7 +150,7 @@ static dvi_status emit_unit(dvi__emitter *out, const dvi__emitted_sum *own, int 
   dvi__heap_free(name);
   dvi_status status = DVI_OK;
   if (is_short(part)) status = emit_entries(out, own, part, k == 0 ? stored : 0);
-  for (int a = 0; own->mask >> a != 0 && !is_short(part); a++)
+  for (int a = 0; a < own->sum->array_count && !is_short(part); a++)
     dvi__additions_emit(out, &additions[a], own->array[a], part->kernel->elements);
   dvi__emit(out, "  return unusual;\n}\n");
   return status;
@@ -158,7 +158,7 @@ static dvi_status emit_unit(dvi__emitter *out, const dvi__emitted_sum *own, int 
 
 /* --- All units, at all points. --- */
 
-static int is_row(const dvi__places *places)
+static int is_row(const dvi__element_places *places)
 {
   return places->list == NULL && places->stride == 1;
 }
@@ -218,8 +218,8 @@ static dvi_status find_stored(const dvi__emitted_sum *own, unsigned *stored)
   *stored = 0;
   if (own->sum->part_count == 0 || !is_short(own->sum->part)) return DVI_OK;
   const dvi_status status = dvi__contributions_find(1, own->sum->part, &all);
-  for (int a = 0; own->mask >> a != 0 && status == DVI_OK; a++)
-    if ((own->mask >> a & 1U) != 0 && dvi__entries_written(&all, a) == own->size[a])
+  for (int a = 0; a < own->sum->array_count && status == DVI_OK; a++)
+    if (own->sum->wanted[a] && dvi__entries_written(&all, a) == own->sum->size[a])
       *stored |= 1U << a;
   dvi__heap_free(all.list);
   return status;
@@ -245,8 +245,8 @@ dvi_status dvi__emit_elements(dvi__emitter *out, const dvi__emitted_sum *own)
   dvi__emit(out, "DVI_INLINE int %s_at(const int careful, const ptrdiff_t n", own->name);
   dvi__emit_parameters(out, own);
   dvi__emit(out, ")\n{\n  int64_t unusual = 0;\n");
-  for (int a = 0; own->mask >> a != 0; a++)
-    if (((own->mask & ~stored) >> a & 1U) != 0) dvi__emit_zeros(out, own, a);
+  for (int a = 0; a < own->sum->array_count; a++)
+    if (own->sum->wanted[a] && (stored >> a & 1U) == 0) dvi__emit_zeros(out, own, a);
   for (int k = 0; k < own->sum->part_count; k++) emit_calls(out, own, k);
   dvi__emit(out, "  return unusual != 0;\n}\n");
   return DVI_OK;

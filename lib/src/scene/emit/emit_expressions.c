@@ -48,15 +48,15 @@ static void emit_entries(dvi__emitter *out, const dvi__emitted_sum *sum,
 static void emit_zeros(dvi__emitter *out, const dvi__emitted_sum *own,
                        const dvi__contributions *all)
 {
-  for (int a = 0; own->mask >> a != 0; a++)
-    if ((own->mask >> a & 1U) != 0 && dvi__entries_written(all, a) < own->size[a])
+  for (int a = 0; a < own->sum->array_count; a++)
+    if (own->sum->wanted[a] && dvi__entries_written(all, a) < own->sum->size[a])
       dvi__emit_zeros(out, own, a);
 }
 
 static dvi_status emit_body(dvi__emitter *out, const dvi__emitted_sum *own,
                             const dvi__contributions *all, int *name)
 {
-  const dvi__sum *sum = own->sum;
+  const dvi__function_sum *sum = own->sum;
   dvi_status status = DVI_OK;
   int next = 0, *made = name;
   dvi__emit(out, "DVI_INLINE int %s_at(const int careful, const ptrdiff_t n", own->name);

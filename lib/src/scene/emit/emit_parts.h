@@ -13,13 +13,11 @@ void dvi__emit_program(dvi__emitter *out, const dvi__program *program, const cha
 /* 1 if the program takes inverse roots, so that it wants `careful` and `unusual`. */
 int dvi__program_has_inverse_roots(const dvi__program *program);
 
-/* A sum as a function: array a has a name and size[a] entries for the arrays in `mask`. */
+/* A sum of a scene's function as a C function: array a of its results has a name. */
 typedef struct dvi__emitted_sum {
-  const dvi__sum *sum;
+  const dvi__function_sum *sum;
   const char *name;
-  const int *size;
   const char *const *array;
-  unsigned mask;
   int points; /* most that are taken at once: a power of two; 1: it is compiled for one instruction
                  set */
 } dvi__emitted_sum;

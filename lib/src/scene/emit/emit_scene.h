@@ -5,12 +5,12 @@
 #include "scene/elaborate/model.h"
 
 /* A callback: its name, its parameters but `user`, and what the function gets for them. `asks` is
- * 'v', 'g' or 's': the value, the gradient by the blocks in the mask, or the second derivatives of
- * its pairs; 'c': gradients of constraints, which have two of these. */
+ * 'v', 'g' or 's': the value, the gradient by the blocks that are wanted, or the second derivatives
+ * of the pairs that are; 'c': gradients of constraints, which have two of these. */
 typedef struct dvi__callback {
   const char *name, *parameters, *arguments;
   char asks;
-  unsigned mask;
+  char wanted[DVI__PAIRS]; /* blocks or pairs: 1 for those that are */
 } dvi__callback;
 
 /* A term as an object: static const TYPE NAME, or one of a list. */
@@ -18,7 +18,7 @@ typedef struct dvi__emitted_term {
   const char *type;
   char name[32];
   const char *shown; /* in tables; NULL: it has no name there */
-  const dvi__term *term;
+  const dvi__scene_term *term;
   int callback_count;
   const dvi__callback *callback;
   int columns; /* of patterns */
