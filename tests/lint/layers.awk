@@ -41,7 +41,9 @@ BEGIN {
   sees["expr/function"] = "text expr expr/compile"
   sees["scene/text"] = "text"
   sees["scene/elaborate"] = "text expr expr/compile expr/function scene/text"
-  sees["scene"] = "text expr expr/compile expr/function scene/text scene/elaborate"
+  sees["scene/terms"] = sees["scene/elaborate"] " scene/elaborate"
+  sees["scene/sections"] = sees["scene/terms"] " scene/terms"
+  sees["scene"] = sees["scene/sections"] " scene/sections"
   sees["scene/emit"] = sees["scene"] " scene"
   # The command, on public headers and those of the problems.
   uses["cli"] = ""

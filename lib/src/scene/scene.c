@@ -5,10 +5,10 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "scene/callbacks.h"
-#include "scene/factors.h"
+#include "scene/terms/callbacks.h"
+#include "scene/terms/factors.h"
 #include "text/heap.h"
-#include "scene/sections.h"
+#include "scene/sections/sections.h"
 #include "scene/start.h"
 
 enum { SIZE_MAX_OF_FILE = 1 << 20 };

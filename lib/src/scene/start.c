@@ -3,9 +3,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "scene/fault.h"
+#include "scene/terms/fault.h"
 #include "text/heap.h"
-#include "scene/sections.h"
+#include "scene/sections/sections.h"
 #include "scene/elaborate/shape.h"
 #include "scene/start.h"
 

@@ -1,4 +1,4 @@
-#include "scene/sections.h"
+#include "scene/sections/sections.h"
 
 #include <dvi/number.h>
 #include <limits.h>

@@ -1,4 +1,4 @@
-#include "scene/fault.h"
+#include "scene/terms/fault.h"
 
 #include <dvi/number.h>
 #include <stdarg.h>

@@ -6,11 +6,11 @@
  * alpha(q).v. */
 #include <string.h>
 
-#include "scene/callbacks.h"
-#include "scene/fault.h"
-#include "scene/factors.h"
+#include "scene/terms/callbacks.h"
+#include "scene/terms/fault.h"
+#include "scene/terms/factors.h"
 #include "text/heap.h"
-#include "scene/sections.h"
+#include "scene/sections/sections.h"
 #include "scene/elaborate/shape.h"
 
 /* What all kernels together are in the variables of a block. */

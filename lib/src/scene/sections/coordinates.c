@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "scene/elaborate/elaborate.h"
-#include "scene/sections.h"
+#include "scene/sections/sections.h"
 #include "scene/elaborate/shape.h"
 
 enum { COORDINATES_MAX = 100000000 };

@@ -1,10 +1,10 @@
-#include "scene/callbacks.h"
+#include "scene/terms/callbacks.h"
 
 #include <stdio.h>
 #include <string.h>
 
 #include "expr/compile/program.h"
-#include "scene/fault.h"
+#include "scene/terms/fault.h"
 
 /* ---- evaluations ---- */
 

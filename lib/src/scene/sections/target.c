@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "scene/elaborate/elaborate.h"
-#include "scene/sections.h"
+#include "scene/sections/sections.h"
 #include "scene/elaborate/shape.h"
 #include "scene/elaborate/words.h"
 

@@ -1,6 +1,6 @@
-#include "scene/factors.h"
+#include "scene/terms/factors.h"
 
-#include "scene/sections.h"
+#include "scene/sections/sections.h"
 
 /* ---- which factors there are ---- */
 

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "scene/sections.h"
+#include "scene/sections/sections.h"
 
 /* How many characters of a scene's path are its folder and the stroke behind it; 0: it is here. */
 static int folder_size(const char *path)

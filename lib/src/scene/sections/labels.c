@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "scene/sections.h"
+#include "scene/sections/sections.h"
 
 enum { ROOM = 40 }; /* beside the name itself */
 

@@ -1,8 +1,8 @@
 /* What is watched along a run: symmetries, invariants and events. */
 #include <string.h>
 
-#include "scene/callbacks.h"
-#include "scene/sections.h"
+#include "scene/terms/callbacks.h"
+#include "scene/sections/sections.h"
 
 bool dvi__read_symmetries(dvi_scene *scene, const dvi__tree *section)
 {
