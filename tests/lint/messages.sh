@@ -8,8 +8,11 @@ work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 
 sources=$(find lib/src/text lib/src/expr lib/src/scene -name '*.[ch]' ! -path 'lib/src/scene/emit/*' | LC_ALL=C sort)
+# Of the registry of sections: the examples, and why some are refused.
+awk -f "$lint/sections.awk" lib/src/scene/sections/sections.def |
+  awk -F '\t' '{ printf "\"%s\" x\n", $2 == "REFUSED" ? $4 : $3 }' >"$work/registry.c"
 # shellcheck disable=SC2086
-awk -f "$lint/messages.awk" $sources | LC_ALL=C sort -u >"$work/said"
+awk -f "$lint/messages.awk" $sources "$work/registry.c" | LC_ALL=C sort -u >"$work/said"
 sed -n 's/^ *- ``\(.*\)``.*/\1/p; t; s/^ *- `\([^`]*\)`.*/\1/p' docs/scene-errors.md | sed 's/<[^>]*>/<>/g; s/\(<>\)*<>/<>/g; s/^ *//; s/ *$//' |
   LC_ALL=C sort >"$work/listed"
 [ -s "$work/said" ] || { echo "no sentences in the sources"; exit 1; }

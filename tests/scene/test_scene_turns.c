@@ -345,7 +345,7 @@ START_TEST(declarations_that_do_not_go_together_are_told)
   refused(KINDS "hamiltonian: x\ninitial: {x: 1}\n" RUN, ":2:14:", "beside hamiltonian there are no rotations");
   refused("inertia: {R: 1}\n" KINDS "lagrangian: 1\ninitial: {x: 1}\n" RUN, ":1:1:", "a scene has no 'inertia'");
   refused("coordinates: {R: rotation}\nlagrangian: dot(omega(R), omega(R))\nsymmetries: {a: {R: [1, 0, 0]}}\ninitial: {R: 1}\n" RUN,
-          ":3:18:", "a symmetry is given of what turns by its velocity, omega(R)");
+          ":3:18:", "a symmetry of a rotation or an angle is given by its velocity, omega(R)");
   refused("coordinates: {d: direction}\nlagrangian: dot(d', d')\nsymmetries: {a: {\"d'\": [1, 0, 0]}}\ninitial: {R: 1}\n" RUN,
           ":3:19:", "a symmetry is given by coordinate");
 }

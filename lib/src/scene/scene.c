@@ -90,19 +90,18 @@ static void find_bodies(dvi_scene *scene)
     scene->bodies = x->size;
 }
 
-static bool read_scene(dvi_scene *scene, dvi__scene_settings *settings)
+static bool read_scene(dvi_scene *scene)
 {
   if (!dvi__tree_read(&scene->source, &scene->arena, scene->complaint, &scene->tree)) return false;
-  if (!dvi__scene_read_tree(scene, settings) || !make_system(scene) ||
-      !dvi__scene_complete_start(scene))
+  if (!dvi__scene_read_tree(scene) || !make_system(scene) || !dvi__scene_complete_start(scene))
     return false;
   find_bodies(scene);
   return show_parameters(scene) && list_unused(scene);
 }
 
 /* Fill in a scene; its texts are copied. */
-static dvi_status fill(dvi_scene *scene, const char *name, const char *text, size_t length,
-                       dvi__scene_settings *settings, dvi__complaint *complaint)
+static dvi_status scene_fill(dvi_scene *scene, const char *name, const char *text, size_t length,
+                             dvi__scene_settings *settings, dvi__complaint *complaint)
 {
   const char *name_copy = dvi__arena_text(&scene->arena, name, strlen(name)),
              *copy = dvi__arena_text(&scene->arena, text, length);
@@ -115,7 +114,9 @@ static dvi_status fill(dvi_scene *scene, const char *name, const char *text, siz
     (void)dvi__complain_of_memory(complaint);
     return complaint->status;
   }
-  const bool read = read_scene(scene, settings);
+  scene->settings = settings;
+  const bool read = read_scene(scene);
+  scene->settings = NULL;
   const dvi_status status = complaint->status;
   complaint->source = NULL;
   scene->complaint = NULL;
@@ -154,7 +155,7 @@ dvi_status dvi_scene_parse(const char *name, const char *text, size_t length, in
   dvi__scene_settings given = {.count = setting_count, .text = settings};
   dvi__complaint complaint = {.message = message, .size = message != NULL ? size : 0};
   dvi__ledger *const other = dvi__heap_charge(&made->ledger);
-  const dvi_status status = fill(made, name, text, length, &given, &complaint);
+  const dvi_status status = scene_fill(made, name, text, length, &given, &complaint);
   (void)dvi__heap_charge(other);
   if (status == DVI_OK) {
     *scene = made;

@@ -12,7 +12,7 @@ dvi__value dvi__index_value(dvi__context *c, const dvi__expression *e);
 dvi__value dvi__rate_value(dvi__context *c, const dvi__expression *e);
 dvi__value dvi__momentum_value(dvi__context *c, const dvi__expression *e);
 dvi__value dvi__member_value(dvi__context *c, const dvi__expression *e);
-dvi__value dvi__turn_value(dvi__context *c, const dvi__expression *e);
+dvi__value dvi__velocity_value(dvi__context *c, const dvi__expression *e);
 dvi__value dvi__if_value(dvi__context *c, const dvi__expression *e);
 
 /* The part R or x of a motion; NULL if x is none, or has no such part. */

@@ -3,18 +3,19 @@
 #include <stdio.h>
 #include <string.h>
 
-typedef struct slip {
+/* A word of elsewhere, and what it is called here. */
+typedef struct synonym {
   const char *elsewhere, *here;
-} slip;
+} synonym;
 
-static const char *find(int count, const slip *list, const char *word)
+static const char *synonym_find(int count, const synonym *list, const char *word)
 {
   for (int k = 0; k < count; k++)
     if (strcmp(list[k].elsewhere, word) == 0) return list[k].here;
   return NULL;
 }
 
-static const slip functions[] = {
+static const synonym functions[] = {
     {"ln", "log(x)"},          {"e", "exp(x)"},          {"pow", "x^y"},
     {"arcsin", "asin(x)"},     {"arccos", "acos(x)"},    {"arctan", "atan(x)"},
     {"arctan2", "atan2(y,x)"}, {"diff", "x', the rate"}, {"der", "x', the rate"},
@@ -45,10 +46,10 @@ static int coordinate_in(const dvi__names *names, const char *name, const char *
   return found != NULL && found->sort == DVI__COORDINATE;
 }
 
-const char *dvi__name_elsewhere(const dvi__names *names, const char *name, char *hint, size_t size)
+const char *dvi__hint_of_name(const dvi__names *names, const char *name, char *hint, size_t size)
 {
   char coordinate[NAME_SIZE];
-  const char *here = find(sizeof functions / sizeof *functions, functions, name);
+  const char *here = synonym_find(sizeof functions / sizeof *functions, functions, name);
   if (size > 0) hint[0] = '\0';
   if (here != NULL) (void)snprintf(hint, size, "; write %s", here);
   for (size_t k = 0; k < sizeof rates / sizeof *rates && here == NULL; k++)
@@ -59,9 +60,9 @@ const char *dvi__name_elsewhere(const dvi__names *names, const char *name, char 
   return hint;
 }
 
-const char *dvi__section_elsewhere(const char *key)
+const char *dvi__hint_of_section(const char *key)
 {
-  static const slip sections[] = {
+  static const synonym sections[] = {
       {"params", "parameters"},
       {"constants", "parameters"},
       {"variables", "coordinates"},
@@ -82,5 +83,5 @@ const char *dvi__section_elsewhere(const char *key)
       {"output", "report"},
       {"name", "title"},
   };
-  return find(sizeof sections / sizeof *sections, sections, key);
+  return synonym_find(sizeof sections / sizeof *sections, sections, key);
 }

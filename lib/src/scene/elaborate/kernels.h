@@ -35,6 +35,9 @@ typedef struct dvi__degree {
 bool dvi__kernel_degree(dvi_scene *scene, const dvi__kernel *kernel, int block,
                         dvi__degree *degree);
 
+/* What all kernels of a list together are. */
+bool dvi__kernels_degree(dvi_scene *scene, const dvi__kernels *list, int block, dvi__degree *whole);
+
 /* Whether a term of a kernel is neither of degree 0 nor of degree 2 and pure, and where the first
  * of them is. */
 bool dvi__kernel_other_term(dvi_scene *scene, const dvi__kernel *kernel, int block, dvi__span *span,

@@ -1,4 +1,4 @@
-/* Coordinates that are no numbers: which one an expression names, and its velocity and momentum.
+/* Manifold coordinates: which one an expression names, and its velocity and momentum.
  *
  * In a Lagrangian velocities are of two sorts, for the mass is constant in both: the rates of what
  * is stored (x', and R' of a matrix R, entry by entry), numbers 0 .. n-1 of their block, and after
@@ -93,11 +93,11 @@ int dvi__coordinate_at(const dvi_scene *scene, int number, int of_v)
 
 /* ---- velocities and momenta of a state ---- */
 
-/* Where an input is: number k of members of a coordinate, one for each element or `all`. */
-typedef struct whereabouts {
+/* What an input is: number k of members of a coordinate, one for each element or `all`. */
+typedef struct member_number {
   const dvi__coordinate *x;
   int k, *each, all;
-} whereabouts;
+} member_number;
 
 /* The coordinate, or the part of a motion, that a stored number belongs to. */
 static const dvi__coordinate *part_at(const dvi_scene *scene, int number)
@@ -107,12 +107,12 @@ static const dvi__coordinate *part_at(const dvi_scene *scene, int number)
   return &x->part[(number - x->q.first) % x->q.stride >= x->part[0].q.components];
 }
 
-static bool locate(dvi__context *c, int input, whereabouts *w)
+static bool member_number_of(dvi__context *c, int input, member_number *w)
 {
   const dvi__kernel_input of = c->input[input];
   const int number = dvi__input_number(&of, 0);
   const dvi__coordinate *x = part_at(c->scene, number);
-  *w = (whereabouts){
+  *w = (member_number){
       .x = x, .k = (number - x->q.first) % x->q.stride, .all = (number - x->q.first) / x->q.stride};
   if (of.number == NULL && of.stride == 0) return true;
   w->each = dvi__heap_take((size_t)c->elements, sizeof *w->each);
@@ -122,7 +122,7 @@ static bool locate(dvi__context *c, int input, whereabouts *w)
   return true;
 }
 
-static bool first_numbers(dvi__context *c, const whereabouts *w, const dvi__slots *places,
+static bool first_numbers(dvi__context *c, const member_number *w, const dvi__slots *places,
                           dvi__numbering *numbering)
 {
   return dvi__numbering_of(c, w->each, w->all, places->first, places->stride, numbering);
@@ -134,7 +134,8 @@ static dvi__node times(const dvi__context *c, dvi__node a, dvi__node b)
 }
 
 /* The rate of number k of a member whose numbers are q and whose velocities are v. */
-static dvi__node rate_of(dvi__context *c, const whereabouts *w, dvi__numbering q, dvi__numbering v)
+static dvi__node rate_of(dvi__context *c, const member_number *w, dvi__numbering q,
+                         dvi__numbering v)
 {
   const int k = w->k;
   if (w->x->kind == DVI__ANGLE) {
@@ -153,9 +154,9 @@ static dvi__node rate_of(dvi__context *c, const whereabouts *w, dvi__numbering q
 
 bool dvi__input_velocity(dvi__context *c, int input, dvi__node *rate)
 {
-  whereabouts w;
+  member_number w;
   dvi__numbering q, v;
-  if (!locate(c, input, &w)) return false;
+  if (!member_number_of(c, input, &w)) return false;
   const bool good = first_numbers(c, &w, &w.x->q, &q) && first_numbers(c, &w, &w.x->v, &v);
   if (good) *rate = rate_of(c, &w, q, v);
   dvi__heap_free(w.each);
@@ -164,9 +165,9 @@ bool dvi__input_velocity(dvi__context *c, int input, dvi__node *rate)
 
 bool dvi__input_momentum(dvi__context *c, int input, dvi__node *momentum)
 {
-  whereabouts w;
+  member_number w;
   dvi__numbering v;
-  if (!locate(c, input, &w)) return false;
+  if (!member_number_of(c, input, &w)) return false;
   const bool good = w.x->kind != DVI__ROTATION && w.x->kind != DVI__ANGLE &&
                     first_numbers(c, &w, &w.x->v, &v);
   if (good) *momentum = dvi__variable_node(c, DVI__VELOCITIES, v, w.k);
@@ -199,7 +200,7 @@ static const dvi__coordinate *argument_of(dvi__context *c, const dvi__expression
   return NULL;
 }
 
-dvi__value dvi__turn_value(dvi__context *c, const dvi__expression *e)
+dvi__value dvi__velocity_value(dvi__context *c, const dvi__expression *e)
 {
   dvi__subscripts index;
   const int omega = strcmp(e->name, "omega") == 0;
@@ -214,8 +215,9 @@ dvi__value dvi__turn_value(dvi__context *c, const dvi__expression *e)
                           : "rate is taken of an angle; of numbers and vectors it is x'"));
   if ((c->may & DVI__SAYS_P) != 0 && !c->sample)
     return dvi__refused(dvi__refuse(
-        c, e->span, "velocities of what turns cannot stand in %s; say it by momenta, p(%s)",
-        c->where, x->name));
+        c, e->span,
+        "velocities of rotations and angles cannot stand in %s; say it by momenta, p(%s)", c->where,
+        x->name));
   return state_value(c, x, &index, (c->may & DVI__OF_STATE) != 0 ? 0 : c->scene->n);
 }
 

@@ -14,6 +14,13 @@
  * the system does not evaluate. */
 typedef enum dvi__role { DVI__MOVES, DVI__WATCHES, DVI__STANDS_BESIDE } dvi__role;
 
+/* Settings "name=value" from outside. */
+typedef struct dvi__scene_settings {
+  int count;
+  const char *const *text;
+  char *used; /* [count] */
+} dvi__scene_settings;
+
 /* The functions that callbacks evaluate, in a list that the scene frees. */
 typedef struct dvi__scene_term {
   dvi__function *function;
@@ -31,6 +38,7 @@ struct dvi_scene {
   dvi__source source; /* a copy, for messages of callbacks */
   dvi__complaint *complaint;
   const dvi__tree *tree;
+  const dvi__scene_settings *settings; /* while it is read */
   dvi__names names;
   dvi__parameter *parameter;
   dvi__coordinate *coordinate;
@@ -76,7 +84,9 @@ static inline bool dvi__has_factors(const dvi_scene *scene)
 /* The number of the coordinate to which a number of q, or of v, belongs. */
 int dvi__coordinate_at(const dvi_scene *scene, int number, int of_v);
 
-/* Refuse something for which there is no memory; false. */
+/* Refuse something with a place, or for which there is no memory; false. */
+bool dvi__scene_refuse(dvi_scene *scene, dvi__span span, const char *format, ...)
+    DVI__TEXT_PRINTF(3, 4);
 bool dvi__scene_no_memory(dvi_scene *scene);
 
 #endif

@@ -80,7 +80,7 @@ bool(dvi__names_unknown)(const dvi__names *names, dvi__arena *arena, dvi__compla
   const char **candidate = dvi__arena_take(arena, (size_t)count, sizeof *candidate);
   for (int i = 0; candidate != NULL && i < count; i++)
     candidate[i] = i < names->count ? names->name[i].text : dvi__word(i - names->count);
-  (void)dvi__name_elsewhere(names, text, hint, sizeof hint);
+  (void)dvi__hint_of_name(names, text, hint, sizeof hint);
   if (hint[0] == '\0' && candidate != NULL)
     (void)dvi__nearest(text, count, candidate, hint, sizeof hint);
   return dvi__complain(complaint, DVI_BAD_FILE, span, "there is no '%s'%s", text, hint);

@@ -323,3 +323,15 @@ bool dvi__kernel_degree(dvi_scene *scene, const dvi__kernel *kernel, int block, 
   dvi__heap_free(known);
   return true;
 }
+
+bool dvi__kernels_degree(dvi_scene *scene, const dvi__kernels *list, int block, dvi__degree *whole)
+{
+  *whole = (dvi__degree){0, 1, 0};
+  for (int k = 0; k < list->count; k++) {
+    dvi__degree one = {0};
+    if (!dvi__kernel_degree(scene, &list->kernel[k], block, &one)) return false;
+    if (one.degree > whole->degree) whole->degree = one.degree;
+    whole->pure = whole->pure && one.pure;
+  }
+  return true;
+}

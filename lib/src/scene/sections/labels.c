@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "scene/sections/columns.h"
 #include "scene/sections/sections.h"
 
 enum { ROOM = 40 }; /* beside the name itself */

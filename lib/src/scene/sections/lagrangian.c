@@ -1,4 +1,4 @@
-/* What a Lagrangian is: a constant mass and potentials, a one-form and a Hamiltonian, or neither.
+/* The sections lagrangian and kinetic. What a Lagrangian is: a constant mass and potentials, a one-form and a Hamiltonian, or neither.
  *
  * Each kernel's degree in the velocities is found by one pass over its graph. If all are
  * polynomials of degree 2 whose velocities have constant coefficients, the mass is their second
@@ -6,100 +6,13 @@
  * alpha(q).v. */
 #include <string.h>
 
-#include "scene/terms/callbacks.h"
-#include "scene/terms/fault.h"
-#include "scene/terms/factors.h"
-#include "text/heap.h"
-#include "scene/sections/sections.h"
 #include "scene/elaborate/shape.h"
-
-/* What all kernels together are in the variables of a block. */
-static bool degree_of(dvi_scene *scene, const dvi__kernels *list, int block, dvi__degree *whole)
-{
-  *whole = (dvi__degree){0, 1, 0};
-  for (int k = 0; k < list->count; k++) {
-    dvi__degree one;
-    if (!dvi__kernel_degree(scene, &list->kernel[k], block, &one)) return false;
-    if (one.degree > whole->degree) whole->degree = one.degree;
-    whole->pure = whole->pure && one.pure;
-  }
-  return true;
-}
-
-/* ---- potentials ---- */
-
-/* Whether the Hessian is constant: that shows in the degree, or, beside terms that move a linear
- * part in time, in its formulas. */
-static int is_quadratic(const dvi__degree *degree, const dvi__scene_term *term)
-{
-  return degree->degree <= 2 &&
-         (degree->pure || dvi__function_second_constant(term->function, DVI__PAIR_QQ) == 1);
-}
-
-/* Add a potential of these kernels, none if they are none. */
-static bool add_potential(dvi_scene *scene, const char *name, int fast, dvi__kernels *list)
-{
-  dvi__scene_term *term;
-  dvi__degree degree;
-  if (list->count == 0) return true;
-  dvi_potential *potential =
-      (dvi_potential *)&scene->terms.potentials[scene->terms.potential_count++];
-  if (!degree_of(scene, list, DVI__COORDINATES, &degree) ||
-      !dvi__kernels_function(scene, list, 0, &term) ||
-      !dvi__make_potential(scene, name, term, potential))
-    return false;
-  potential->fast = fast;
-  potential->quadratic = is_quadratic(&degree, term);
-  return true;
-}
-
-/* Room for so many potentials, and one more. */
-static bool room_for_potentials(dvi_scene *scene, int count)
-{
-  scene->terms.potentials = dvi__arena_take(&scene->arena, (size_t)count + 1,
-                                            sizeof *scene->terms.potentials);
-  return scene->terms.potentials != NULL || dvi__scene_no_memory(scene);
-}
-
-static bool read_potential(dvi_scene *scene, const dvi__tree *tree, const char *name, int fast)
-{
-  const dvi__expression *e;
-  dvi__kernels V = {0};
-  const bool good = dvi__tree_expression(scene, tree, &e) &&
-                    dvi__kernels_add(scene, DVI__SAYS_Q | DVI__SAYS_T, "a potential", e, 0, &V) &&
-                    add_potential(scene, name, fast, &V);
-  dvi__kernels_free(&V);
-  return good;
-}
-
-/* What stands under slow or fast may be a potential itself, or some by name; all others are
- * slow. */
-static bool read_speed(dvi_scene *scene, const dvi__tree *key, const dvi__tree *tree)
-{
-  const int fast = strcmp(key->text, "fast") == 0;
-  if (!dvi__want_name(scene, key->text, key->span)) return false;
-  if (tree->kind != DVI__MAPPING) return read_potential(scene, tree, key->text, fast);
-  if (!fast && strcmp(key->text, "slow") != 0)
-    return dvi__scene_refuse(scene, key->span,
-                             "a potential is an expression; only slow and fast hold some by name");
-  for (int i = 0; i < tree->count; i++)
-    if (!dvi__want_name(scene, tree->key[i]->text, tree->key[i]->span) ||
-        !read_potential(scene, tree->child[i], tree->key[i]->text, fast))
-      return false;
-  return true;
-}
-
-static bool read_potentials(dvi_scene *scene, const dvi__tree *section)
-{
-  if (section == NULL) return room_for_potentials(scene, 0);
-  if (!dvi__want_mapping(scene, section, "potentials")) return false;
-  int count = section->count;
-  for (int i = 0; i < section->count; i++) count += section->child[i]->count;
-  if (!room_for_potentials(scene, count)) return false;
-  for (int i = 0; i < section->count; i++)
-    if (!read_speed(scene, section->key[i], section->child[i])) return false;
-  return true;
-}
+#include "scene/sections/motion.h"
+#include "scene/sections/sections.h"
+#include "scene/terms/callbacks.h"
+#include "scene/terms/factors.h"
+#include "scene/terms/fault.h"
+#include "text/heap.h"
 
 /* ---- the constant mass ---- */
 
@@ -243,7 +156,7 @@ static bool make_separable(dvi_scene *scene, dvi__kernels *L, const char *rest)
          (dvi__has_factors(scene) ? dvi__make_factors(scene, &pattern, values)
                                   : set_mass(scene, &pattern, values)) &&
          dvi__kernels_at_rest(scene, L, DVI__VELOCITIES, 1, &V) &&
-         add_potential(scene, rest, 0, &V);
+         dvi__potential_add(scene, rest, 0, &V);
   dvi__kernels_free(&V);
   scene->form = "separable";
   return good;
@@ -274,7 +187,7 @@ static bool make_degenerate(dvi_scene *scene, const dvi__expression *e, dvi__ker
   good = good && dvi__kernels_function(scene, &alpha, scene->n, &term) &&
          dvi__make_one_form(scene, term, &scene->one_form) &&
          dvi__kernels_at_rest(scene, L, DVI__VELOCITIES, 1, &H) &&
-         add_potential(scene, rest, 0, &H);
+         dvi__potential_add(scene, rest, 0, &H);
   dvi__kernels_free(&alpha);
   dvi__kernels_free(&H);
   scene->terms.one_form = &scene->one_form;
@@ -285,7 +198,7 @@ static bool make_degenerate(dvi_scene *scene, const dvi__expression *e, dvi__ker
 static bool make_form(dvi_scene *scene, const dvi__expression *e, dvi__kernels *L, const char *rest)
 {
   dvi__degree degree;
-  if (!degree_of(scene, L, DVI__VELOCITIES, &degree)) return false;
+  if (!dvi__kernels_degree(scene, L, DVI__VELOCITIES, &degree)) return false;
   if (degree.degree == 0)
     return dvi__scene_refuse(scene, e->span, "there is no velocity in it, so nothing would move");
   if (degree.degree == 1 && dvi__has_factors(scene)) return refuse_moving(scene, L);
@@ -309,158 +222,12 @@ static bool read_moving(dvi_scene *scene, const dvi__tree *section, const char *
 
 bool dvi__read_lagrangian(dvi_scene *scene, const dvi__tree *section)
 {
-  return room_for_potentials(scene, 0) && read_moving(scene, section, "a Lagrangian", "potential");
+  return dvi__potentials_reserve(scene, 0) &&
+         read_moving(scene, section, "a Lagrangian", "potential");
 }
 
 bool dvi__read_kinetic(dvi_scene *scene, const dvi__tree *section)
 {
-  return read_potentials(scene, dvi__tree_find(scene->tree, "potentials")) &&
+  return (scene->terms.potentials != NULL || dvi__potentials_reserve(scene, 0)) &&
          read_moving(scene, section, "a kinetic energy", "kinetic at rest");
-}
-
-/* ---- one-forms and Hamiltonians that are given as such ---- */
-
-/* value.w for the numbers of a target, or of one number, added to a total. */
-static void add_product(dvi__context *c, dvi__value value, const dvi__target *target,
-                        dvi__numbering numbering, dvi__node *total)
-{
-  for (int k = 0; k < dvi__value_size(value); k++) {
-    const int place = target != NULL ? dvi__target_place(target, k) : k;
-    const dvi__node w = dvi__variable_node(c, DVI__MULTIPLIERS, numbering, place);
-    *total = dvi__apply(c->graph, DVI__OP_ADD, *total,
-                        dvi__apply(c->graph, DVI__OP_MULTIPLY, dvi__value_at(value, k), w));
-  }
-}
-
-/* A field is given by coordinate; where these turn, by omega(R) and rate(u). */
-static bool is_of_field(dvi_scene *scene, const dvi__tree *key, const char *where,
-                        dvi__target *target)
-{
-  const dvi__kind kind = target->x->kind;
-  const int turns = kind == DVI__ROTATION || kind == DVI__ANGLE;
-  target->places = &target->x->v;
-  if (turns ? target->says == DVI__SAYS_V : target->says == DVI__SAYS_Q) return true;
-  if (turns)
-    return dvi__scene_refuse(scene, key->span, "%s is given of what turns by its velocity, %s(%s)",
-                             where, kind == DVI__ANGLE ? "rate" : "omega", target->x->name);
-  return dvi__scene_refuse(scene, key->span,
-                           "%s is given by coordinate, neither by rate nor by momentum", where);
-}
-
-static bool add_component(dvi_scene *scene, const dvi__tree *key, const dvi__tree *tree,
-                          const char *where, dvi__kernels *list)
-{
-  dvi__context c;
-  dvi__target target;
-  dvi__value value;
-  dvi__numbering numbering;
-  const dvi__expression *e;
-  if (!dvi__read_target(scene, key, &target) || !is_of_field(scene, key, where, &target) ||
-      !dvi__context_make(&c, scene, DVI__SAYS_Q, where))
-    return false;
-  bool good = dvi__target_value(&c, &target, tree, &value, &numbering, &e);
-  if (good) {
-    dvi__node total = dvi__constant(c.graph, 0);
-    add_product(&c, value, &target, numbering, &total);
-    good = dvi__kernels_add_node(&c, total, list);
-  }
-  dvi__context_free(&c);
-  return good;
-}
-
-bool dvi__read_field(dvi_scene *scene, const dvi__tree *field, const char *where,
-                     dvi__scene_term **term)
-{
-  dvi__kernels list = {0};
-  bool good = dvi__want_mapping(scene, field, where);
-  for (int i = 0; good && i < field->count; i++)
-    good = add_component(scene, field->key[i], field->child[i], where, &list);
-  good = good && dvi__kernels_function(scene, &list, scene->nv, term);
-  dvi__kernels_free(&list);
-  return good;
-}
-
-/* Rotations, directions and angles need a kinetic energy. */
-static bool refuse_factors(dvi_scene *scene, const dvi__tree *section, const char *name)
-{
-  return !dvi__has_factors(scene) ||
-         dvi__scene_refuse(scene, section->span,
-                           "beside %s there are no rotations, motions, directions and angles; they "
-                           "go with lagrangian, or kinetic and potentials",
-                           name);
-}
-
-bool dvi__read_one_form(dvi_scene *scene, const dvi__tree *section)
-{
-  dvi__scene_term *term;
-  if (!refuse_factors(scene, section, "one_form")) return false;
-  if (!dvi__read_field(scene, section, "a one-form", &term) ||
-      !dvi__make_one_form(scene, term, &scene->one_form))
-    return false;
-  scene->terms.one_form = &scene->one_form;
-  scene->form = "one-form";
-  return room_for_potentials(scene, 0) &&
-         read_potential(scene, dvi__tree_find(scene->tree, "hamiltonian"), "H", 0);
-}
-
-/* The function phi.w. */
-static bool constraints_function(dvi_scene *scene, const dvi__tree *section, dvi__scene_term **term)
-{
-  dvi__context c;
-  dvi__kernels list = {0};
-  if (!dvi__context_make(&c, scene, DVI__SAYS_Q | DVI__SAYS_P, "a constraint")) return false;
-  dvi__node total = dvi__constant(c.graph, 0);
-  bool good = true;
-  for (int a = 0; a < section->count && good; a++) {
-    const dvi__expression *e;
-    dvi__node phi;
-    good = dvi__tree_expression(scene, section->child[a], &e) && dvi__elaborate_number(&c, e, &phi);
-    if (good) add_product(&c, (dvi__value){.one = phi}, NULL, (dvi__numbering){.base = a}, &total);
-  }
-  good = good && dvi__kernels_add_node(&c, total, &list) &&
-         dvi__kernels_function(scene, &list, section->count, term);
-  dvi__context_free(&c);
-  dvi__kernels_free(&list);
-  return good;
-}
-
-static bool read_H(dvi_scene *scene, const dvi__tree *tree)
-{
-  const dvi__expression *e;
-  dvi__kernels H = {0};
-  dvi__scene_term *term;
-  const bool good = dvi__tree_expression(scene, tree, &e) &&
-                    dvi__kernels_add(scene, DVI__SAYS_Q | DVI__SAYS_P | DVI__SAYS_T,
-                                     "a Hamiltonian", e, 0, &H) &&
-                    dvi__kernels_function(scene, &H, 0, &term) &&
-                    dvi__make_hamiltonian(scene, term, &scene->hamiltonian);
-  dvi__kernels_free(&H);
-  scene->terms.hamiltonian = &scene->hamiltonian;
-  return good;
-}
-
-bool dvi__read_hamiltonian(dvi_scene *scene, const dvi__tree *section)
-{
-  if (dvi__what_moves(scene) != section) return true;
-  scene->form = "Hamiltonian";
-  return refuse_factors(scene, section, "hamiltonian") && read_H(scene, section);
-}
-
-bool dvi__read_constraints(dvi_scene *scene, const dvi__tree *section)
-{
-  dvi__scene_term *term;
-  if (!dvi__want_mapping(scene, section, "constraints") ||
-      !refuse_factors(scene, section, "constraints"))
-    return false;
-  if (section->count == 0 || section->count % 2 != 0 || section->count > 2 * scene->n)
-    return dvi__scene_refuse(
-        scene, section->span,
-        "there are %d constraints; an even number is needed, at most 2 for each coordinate",
-        section->count);
-  if (!constraints_function(scene, section, &term) ||
-      !dvi__make_constraint(scene, term, &scene->constraint))
-    return false;
-  scene->terms.constraint = &scene->constraint;
-  scene->form = "Hamiltonian with constraints";
-  return read_H(scene, dvi__tree_find(scene->tree, "hamiltonian"));
 }

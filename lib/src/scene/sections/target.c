@@ -4,6 +4,7 @@
 
 #include "scene/elaborate/elaborate.h"
 #include "scene/sections/sections.h"
+#include "scene/sections/target.h"
 #include "scene/elaborate/shape.h"
 #include "scene/elaborate/words.h"
 
@@ -17,10 +18,10 @@ static const dvi__expression *bare(const dvi__expression *e, dvi__target *target
   }
   if (e->form != DVI__FORM_CALL || e->count != 1) return e;
   const int momentum = strcmp(e->name, "p") == 0,
-            turns = strcmp(e->name, "omega") == 0 || strcmp(e->name, "rate") == 0;
-  if (!momentum && !turns) return e;
+            velocity = strcmp(e->name, "omega") == 0 || strcmp(e->name, "rate") == 0;
+  if (!momentum && !velocity) return e;
   target->says = momentum ? DVI__SAYS_P : DVI__SAYS_V;
-  if (turns) target->call = e->name;
+  if (velocity) target->call = e->name;
   return e->part[0];
 }
 

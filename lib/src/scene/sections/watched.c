@@ -2,6 +2,8 @@
 #include <string.h>
 
 #include "scene/terms/callbacks.h"
+#include "scene/sections/columns.h"
+#include "scene/sections/motion.h"
 #include "scene/sections/sections.h"
 
 bool dvi__read_symmetries(dvi_scene *scene, const dvi__tree *section)
@@ -13,7 +15,7 @@ bool dvi__read_symmetries(dvi_scene *scene, const dvi__tree *section)
     dvi__scene_term *term;
     if (!dvi__column_is_new(scene, section->key[i]->text, section->key[i]->span, NULL))
       return false;
-    if (!dvi__read_field(scene, section->child[i], "a symmetry", &term)) return false;
+    if (!dvi__field_read(scene, section->child[i], "a symmetry", &term)) return false;
     term->role = DVI__WATCHES;
     list[i] = (dvi_symmetry){
         .name = section->key[i]->text, .generator = dvi__term_generator, .user = term};

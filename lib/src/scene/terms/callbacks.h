@@ -19,10 +19,6 @@ int dvi__term_generator(const double *q, double *xi, void *user);
 int dvi__term_value(double t, const double *q, const double *velocity_or_momentum, double *value,
                     void *user);
 
-/* The function xi(q).w of a vector field that is given by coordinate; `where` for messages. */
-bool dvi__read_field(dvi_scene *scene, const dvi__tree *field, const char *where,
-                     dvi__scene_term **term);
-
 /* A pattern of a function; told if there is none. */
 bool dvi__term_pattern(dvi_scene *scene, dvi__scene_term *term, int pair, dvi_pattern *pattern,
                        int *full);

@@ -1,6 +1,6 @@
 #include "scene/terms/factors.h"
 
-#include "scene/sections/sections.h"
+#include "scene/elaborate/model.h"
 
 /* ---- which factors there are ---- */
 
@@ -132,7 +132,7 @@ static int any(const char *heavy, int count)
   return found;
 }
 
-/* Numbers have masses one by one; what turns has some mass at all. */
+/* Numbers have masses one by one; a manifold coordinate has some mass at all. */
 static bool is_heavy(const dvi_scene *scene, const dvi__coordinate *x, const char *heavy)
 {
   const int numbers = is_line(x) ? 1 : x->q.components;
@@ -197,9 +197,9 @@ bool dvi__inertias_are_of_bodies(dvi_scene *scene)
 {
   for (int k = 0, f = 0; k < scene->coordinate_count; k++) {
     const dvi__coordinate *x = &scene->coordinate[k];
-    const int turns = x->kind == DVI__ROTATION || x->kind == DVI__MOTION,
+    const int has_inertia = x->kind == DVI__ROTATION || x->kind == DVI__MOTION,
               joined = is_line(x) && k > 0 && is_line(x - 1);
-    for (int i = 0; i < x->size && turns; i++)
+    for (int i = 0; i < x->size && has_inertia; i++)
       if (scene->terms.factors[f + i].inertia != NULL && !is_of_body(&scene->terms.factors[f + i]))
         return dvi__scene_refuse(scene, x->span,
                                  "the inertia of %s is that of no body: its principal moments must "
