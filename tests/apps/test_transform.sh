@@ -21,7 +21,7 @@ expect 0 'the checkpoint of an end' run kepler --method verlet --step-control di
 expect 1 'a step too large' run kepler --set e=0.99 --method verlet --step-control distance --h 1.5 --t-end 63 --final
 says err '^dvi: verlet: step [0-9]* from t = .* with h = 1.5 failed' 'the step that failed is named'
 
-# A checkpoint goes on, in the same time only.  (tests/method/test_transform.c has the bits: here the first part ends with a shortened step.)
+# A checkpoint goes on, in the same time only.  (tests/integrator/test_transform.c has the bits: here the first part ends with a shortened step.)
 for way in '--time-transform distance' '--step-control distance:power=1.2'; do
   # shellcheck disable=SC2086
   expect 0 'first part' run $comet $way --h 0.3 --t-end 7 --checkpoint half.state --out first.csv

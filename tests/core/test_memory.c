@@ -59,13 +59,11 @@ START_TEST(failures_can_be_injected_and_lifted)
 }
 END_TEST
 
-int main(void)
+SUITE(memory)
 {
-  TCase *tests = tcase_create("memory");
   tcase_add_test(tests, memory_comes_zeroed_and_is_counted);
   tcase_add_test(tests, nothing_is_still_a_block);
   tcase_add_test(tests, a_duplicate_holds_the_same_numbers);
   tcase_add_test(tests, sizes_that_overflow_give_no_memory);
   tcase_add_test(tests, failures_can_be_injected_and_lifted);
-  return run_tests("core/memory", tests);
 }

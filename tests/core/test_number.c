@@ -125,13 +125,11 @@ START_TEST(all_is_the_same_with_a_decimal_comma)
 }
 END_TEST
 
-int main(void)
+SUITE(number)
 {
-  TCase *tests = tcase_create("all");
   tcase_add_checked_fixture(tests, make_folder, remove_folder);
   tcase_add_test(tests, numbers_are_read_to_the_last_bit);
   tcase_add_test(tests, what_is_no_decimal_number_is_not_read);
   tcase_add_test(tests, written_numbers_are_read_back);
   tcase_add_test(tests, all_is_the_same_with_a_decimal_comma);
-  return run_tests("core/number", tests);
 }

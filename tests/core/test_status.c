@@ -80,9 +80,8 @@ START_TEST(try_leaves_with_the_status_of_the_call_that_fails)
 }
 END_TEST
 
-int main(void)
+SUITE(status)
 {
-  TCase *tests = tcase_create("status");
   tcase_add_test(tests, every_status_has_its_own_name_and_a_meaning);
   tcase_add_test(tests, before_any_failure_the_sentence_is_empty);
   tcase_add_test(tests, a_failure_returns_its_status_and_keeps_its_sentence);
@@ -91,5 +90,4 @@ int main(void)
   tcase_add_test(tests, the_last_sentence_may_be_quoted_in_the_next_one);
   tcase_add_test(tests, long_sentences_are_cut_not_overrun);
   tcase_add_test(tests, try_leaves_with_the_status_of_the_call_that_fails);
-  return run_tests("core/status", tests);
 }

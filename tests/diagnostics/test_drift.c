@@ -201,9 +201,8 @@ START_TEST(no_sample_is_lost_when_blocks_are_joined)
 }
 END_TEST
 
-int main(void)
+SUITE(drift)
 {
-  TCase *tests = tcase_create("drift");
   tcase_add_test(tests, a_constant_has_no_drift_and_no_nan);
   tcase_add_test(tests, a_line_gives_its_slope_whatever_the_number_of_samples);
   tcase_add_test(tests, change_is_the_slope_times_the_time_between_the_first_and_the_last_sample);
@@ -217,5 +216,4 @@ int main(void)
   tcase_add_test(tests, samples_at_one_time_have_no_slope);
   tcase_add_test(tests, a_nan_in_the_record_is_not_hidden);
   tcase_add_test(tests, no_sample_is_lost_when_blocks_are_joined);
-  return run_tests("diagnostics/drift", tests);
 }

@@ -6,7 +6,7 @@
 
 #include "support/runs.h"
 #include "support/suite.h"
-#include "support/systems.h"
+#include "support/systems/systems.h"
 
 static const double pi = 3.14159265358979323846;
 
@@ -195,9 +195,8 @@ START_TEST(a_system_without_them_is_refused)
 }
 END_TEST
 
-int main(void)
+SUITE(exchange)
 {
-  TCase *tests = tcase_create("exchange");
   tcase_add_loop_test(tests, imex_turns_springs_by_twice_the_arc_tangent_and_exchanges_at_the_exact_rate, 0, PRODUCTS);
   tcase_add_loop_test(tests, the_midpoint_rule_turns_them_alike_and_exchanges_too_slowly, 0, PRODUCTS);
   tcase_add_loop_test(tests, verlet_exchanges_too_fast, 0, PRODUCTS);
@@ -206,5 +205,4 @@ int main(void)
   tcase_add_test(tests, a_run_exchanges_energy_at_the_predicted_rate);
   tcase_add_test(tests, fast_frequencies_are_those_of_the_declared_potentials);
   tcase_add_test(tests, a_system_without_them_is_refused);
-  return run_tests("exchange", tests);
 }

@@ -60,11 +60,9 @@ START_TEST(bad_arguments_are_refused)
 }
 END_TEST
 
-int main(void)
+SUITE(loop)
 {
-  TCase *tests = tcase_create("loop");
   tcase_add_test(tests, an_ellipse_has_its_area_from_the_fewest_points_on);
   tcase_add_test(tests, an_uneven_loop_converges_exponentially);
   tcase_add_test(tests, bad_arguments_are_refused);
-  return run_tests("diagnostics/loop", tests);
 }

@@ -84,14 +84,12 @@ START_TEST(steps_that_do_not_descend_and_missing_arrays_are_refused)
 }
 END_TEST
 
-int main(void)
+SUITE(order)
 {
-  TCase *tests = tcase_create("order");
   tcase_add_test(tests, a_power_law_gives_its_exponent);
   tcase_add_test(tests, the_floor_and_the_ceiling_are_left_out);
   tcase_add_test(tests, an_error_equal_to_the_floor_is_left_out);
   tcase_add_test(tests, the_longest_window_is_taken_and_the_last_of_equal_ones);
   tcase_add_test(tests, no_window_of_two_errors_is_reported);
   tcase_add_test(tests, steps_that_do_not_descend_and_missing_arrays_are_refused);
-  return run_tests("diagnostics/order", tests);
 }

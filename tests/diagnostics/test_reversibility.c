@@ -90,13 +90,11 @@ START_TEST(bad_arguments_are_refused_and_nothing_is_written)
 }
 END_TEST
 
-int main(void)
+SUITE(reversibility)
 {
-  TCase *tests = tcase_create("reversibility");
   tcase_set_timeout(tests, 60);
   tcase_add_test(tests, verlet_returns_to_its_start);
   tcase_add_test(tests, the_start_may_be_the_integrators_own_state);
   tcase_add_test(tests, a_force_that_changes_between_the_ways_is_found);
   tcase_add_test(tests, bad_arguments_are_refused_and_nothing_is_written);
-  return run_tests("diagnostics/reversibility", tests);
 }

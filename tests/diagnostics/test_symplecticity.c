@@ -459,9 +459,8 @@ START_TEST(every_failing_allocation_is_reported)
 }
 END_TEST
 
-int main(void)
+SUITE(symplecticity)
 {
-  TCase *tests = tcase_create("symplecticity");
   tcase_set_timeout(tests, 60);
   tcase_add_loop_test(tests, verlet_is_symplectic_to_the_floor_of_the_differences, 0, WITH_MASS);
   tcase_add_loop_test(tests, galerkin_is_symplectic_to_the_floor_of_the_differences, 0, PROBLEMS);
@@ -481,5 +480,4 @@ int main(void)
   tcase_add_test(tests, factors_have_no_canonical_coordinates);
   tcase_add_test(tests, degenerate_systems_are_refused_and_the_sentence_names_the_loop_integral);
   tcase_add_test(tests, every_failing_allocation_is_reported);
-  return run_tests("diagnostics/symplecticity", tests);
 }

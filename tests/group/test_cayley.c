@@ -205,9 +205,8 @@ START_TEST(the_quaternion_0_is_taken_for_1)
 }
 END_TEST
 
-int main(void)
+SUITE(cayley)
 {
-  TCase *tests = tcase_create("cayley");
 #ifdef DVI_HAVE_QUADMATH
   tcase_add_test(tests, cayley_is_right_to_2_ulp);
   tcase_add_test(tests, its_inverse_is_right_to_4_ulp);
@@ -221,5 +220,4 @@ int main(void)
   tcase_add_test(tests, the_inverse_of_dcayley_undoes_it);
   tcase_add_test(tests, half_turns_are_refused_by_the_inverse_of_cayley);
   tcase_add_test(tests, the_quaternion_0_is_taken_for_1);
-  return run_tests("group/cayley", tests);
 }

@@ -245,14 +245,12 @@ START_TEST(turns_are_those_of_space)
 }
 END_TEST
 
-int main(void)
+SUITE(chart)
 {
-  TCase *tests = tcase_create("chart");
   tcase_add_loop_test(tests, derivatives_are_those_of_points, 0, KINDS * LENGTHS);
   tcase_add_loop_test(tests, velocities_are_those_of_points, 0, KINDS * LENGTHS);
   tcase_add_loop_test(tests, momenta_are_those_of_turns, 0, KINDS * LENGTHS);
   tcase_add_loop_test(tests, spins_have_their_derivatives, 0, LENGTHS);
   tcase_add_loop_test(tests, points_are_found_again, 0, KINDS);
   tcase_add_loop_test(tests, turns_are_those_of_space, 0, 2);
-  return run_tests("group/chart", tests);
 }

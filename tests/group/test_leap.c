@@ -129,13 +129,11 @@ START_TEST(turns_back_undo_turns)
 }
 END_TEST
 
-int main(void)
+SUITE(leap)
 {
-  TCase *tests = tcase_create("leap");
   tcase_add_loop_test(tests, a_leap_solves_its_equation_on_the_branch_of_short_steps, 0, 2);
   tcase_add_test(tests, short_leaps_take_two_iterations);
   tcase_add_loop_test(tests, a_sphere_can_be_solved_up_to_a_quarter_turn, 0, 2);
   tcase_add_loop_test(tests, a_million_equal_turns_keep_to_the_group, 0, 4);
   tcase_add_test(tests, turns_back_undo_turns);
-  return run_tests("leap", tests);
 }

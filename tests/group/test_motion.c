@@ -214,9 +214,8 @@ START_TEST(no_angle_makes_nan)
 }
 END_TEST
 
-int main(void)
+SUITE(motion)
 {
-  TCase *tests = tcase_create("motion");
 #ifdef DVI_HAVE_QUADMATH
   tcase_add_test(tests, exp_is_right_to_3_ulp);
   tcase_add_test(tests, log_is_right_to_6_ulp_up_to_half_turns);
@@ -229,5 +228,4 @@ int main(void)
   tcase_add_test(tests, dexp_of_the_opposite_twist_is_the_body_velocity);
   tcase_add_test(tests, log_refuses_what_is_no_rotation_and_writes_nothing);
   tcase_add_test(tests, no_angle_makes_nan);
-  return run_tests("group/motion", tests);
 }

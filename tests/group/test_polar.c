@@ -120,9 +120,8 @@ START_TEST(matrices_up_to_the_bound_are_read_as_rotations)
 }
 END_TEST
 
-int main(void)
+SUITE(polar)
 {
-  TCase *tests = tcase_create("polar");
 #ifdef DVI_HAVE_QUADMATH
   tcase_add_test(tests, the_projection_is_right_to_6_ulp);
 #else
@@ -132,5 +131,4 @@ int main(void)
   tcase_add_test(tests, any_matrix_has_a_rotation);
   tcase_add_test(tests, what_was_refused_is_taken_after_its_projection);
   tcase_add_loop_test(tests, matrices_up_to_the_bound_are_read_as_rotations, 0, 4);
-  return run_tests("group/polar", tests);
 }

@@ -254,9 +254,8 @@ START_TEST(no_angle_makes_nan)
 }
 END_TEST
 
-int main(void)
+SUITE(rotation)
 {
-  TCase *tests = tcase_create("rotation");
 #ifdef DVI_HAVE_QUADMATH
   tcase_add_test(tests, exp_is_right_to_2_ulp);
   tcase_add_test(tests, log_is_right_to_4_ulp_up_to_half_turns);
@@ -272,5 +271,4 @@ int main(void)
   tcase_add_test(tests, of_two_half_turns_log_takes_the_one_whose_largest_component_is_positive);
   tcase_add_test(tests, what_is_no_rotation_is_refused_and_nothing_is_written);
   tcase_add_test(tests, no_angle_makes_nan);
-  return run_tests("group/rotation", tests);
 }

@@ -128,9 +128,8 @@ START_TEST(the_angle_of_the_half_turn_is_pi_whatever_the_sign_of_zero)
 }
 END_TEST
 
-int main(void)
+SUITE(sphere)
 {
-  TCase *tests = tcase_create("sphere");
 #ifdef DVI_HAVE_QUADMATH
   tcase_add_test(tests, exp_on_the_sphere_is_right_to_3_ulp);
   tcase_add_test(tests, log_on_the_sphere_is_right_to_3_ulp);
@@ -141,5 +140,4 @@ int main(void)
   tcase_add_test(tests, a_million_steps_stay_on_the_sphere);
   tcase_add_test(tests, to_the_opposite_point_log_takes_the_axis_of_the_smallest_component);
   tcase_add_test(tests, the_angle_of_the_half_turn_is_pi_whatever_the_sign_of_zero);
-  return run_tests("group/sphere", tests);
 }

@@ -77,9 +77,8 @@ START_TEST(no_size_of_s_makes_nan)
 }
 END_TEST
 
-int main(void)
+SUITE(stumpff)
 {
-  TCase *tests = tcase_create("stumpff");
 #ifdef DVI_HAVE_QUADMATH
   tcase_add_test(tests, all_nine_are_right_to_4_ulp_up_to_two_turns);
   tcase_add_test(tests, c_2_keeps_its_digits_close_to_a_full_turn);
@@ -88,5 +87,4 @@ int main(void)
 #endif
   tcase_add_test(tests, the_first_four_alone_have_the_same_digits);
   tcase_add_test(tests, no_size_of_s_makes_nan);
-  return run_tests("group/stumpff", tests);
 }

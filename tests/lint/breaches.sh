@@ -11,13 +11,13 @@ clean() {
   rm -rf "${work:?}"/*
   cd "$work" || exit 1
   for room in core num group space system solve step/element method/element diagnostics reference text expr scene scene/sections; do mkdir -p lib/src/$room; done
-  mkdir -p lib/include/dvi apps/cli apps/problems apps/examples tests/method docs/methods
+  mkdir -p lib/include/dvi apps/cli apps/problems apps/examples tests/method/element docs/methods
   printf '/** One. */\nint dvi_one(int a);\n' >lib/include/dvi/one.h
   printf '#include <dvi/one.h>\n\nint dvi_one(int a)\n{\n  return a;\n}\n' >lib/src/core/one.c
   printf '#include <dvi/one.h>\n' >lib/src/method/element/leap.c
   printf '/* .cite = "Euler1744" */\n' >>lib/src/method/element/leap.c
   printf '#include <dvi/one.h>\n' >apps/main.c
-  touch tests/method/test_leap.c docs/methods/leap.md
+  touch tests/method/element/test_leap.c docs/methods/leap.md
   printf '@book{Euler1744,\n}\n' >docs/references.bib
   printf 'int main(void)\n{\n  return 0;\n}\n' >apps/examples/pendulum.c
   printf 'int main(void)\n{\n  return 0;\n}\n' >apps/examples/shapes.c
@@ -113,7 +113,7 @@ sees headers lib/include/dvi/one.h 'size_t dvi_size(void);'
 sees symbols lib/src/core/one.c 'int dvi_two;'
 sees symbols lib/src/core/one.c 'int stray;'
 sees symbols lib/include/dvi/one.h 'int dvi_promised(int a);'
-for file in lib/src/method/element/leap.c tests/method/test_leap.c docs/methods/leap.md docs/references.bib; do
+for file in lib/src/method/element/leap.c tests/method/element/test_leap.c docs/methods/leap.md docs/references.bib; do
   clean
   rm $file
   if methods >log 2>&1; then echo "methods does not see that $file is missing"; rc=1; fi

@@ -10,7 +10,8 @@ need() { [ -e "$1" ] || { echo "missing: $1 (its method is in lib/src/method/met
 for name; do
   source=$(find lib/src/method -name "$name.c")
   [ -n "$source" ] || { echo "missing: lib/src/method/*/$name.c (its method is in lib/src/method/methods.def)"; rc=1; continue; }
-  need "tests/method/test_$name.c"
+  folder=$(dirname "${source#lib/src/}")
+  need "tests/$folder/test_$name.c"
   need "docs/methods/$name.md"
   cite=$(sed -n 's/.*\.cite = "\([^"]*\)".*/\1/p' "$source")
   if [ -z "$cite" ]; then

@@ -56,11 +56,9 @@ START_TEST(ida_meets_the_digits_to_its_own_error)
 }
 END_TEST
 
-int main(void)
+SUITE(digits)
 {
-  TCase *tests = tcase_create("digits");
   tcase_set_timeout(tests, 60);
   tcase_add_loop_test(tests, a_method_of_high_order_meets_the_digits, 0, problem_count());
   tcase_add_loop_test(tests, ida_meets_the_digits_to_its_own_error, 0, problem_count());
-  return run_tests("digits", tests);
 }

@@ -160,13 +160,11 @@ START_TEST(the_energy_error_grows_like_the_square_root_of_the_steps)
 }
 END_TEST
 
-int main(void)
+SUITE(drift)
 {
-  TCase *tests = tcase_create("drift");
   tcase_set_timeout(tests, 200);
   tcase_add_loop_test(tests, energy_does_not_drift_over_a_million_steps, 0, RUNS);
   tcase_add_loop_test(tests, a_charge_in_a_magnetic_field_keeps_its_energy_at_roundoff, 0, 5);
   tcase_add_loop_test(tests, a_stiff_oscillator_keeps_its_energy_at_roundoff, 0, 7);
   tcase_add_test(tests, the_energy_error_grows_like_the_square_root_of_the_steps);
-  return run_tests("drift", tests);
 }

@@ -61,7 +61,7 @@ static void run(int i, outcome *seen)
   problem *of = made_problem(runs[i].problem, runs[i].setting);
   memset(seen, 0, sizeof *seen);
   take_steps(of,
-             runs[i].monitor != NULL ? paced(of, dvi_integrator_create_transformed, runs[i].monitor, runs[i].method)
+             runs[i].monitor != NULL ? paced(of, create_transformed, runs[i].monitor, runs[i].method)
                                      : started(of, runs[i].method),
              seen);
   problem_destroy(&of);
@@ -116,12 +116,10 @@ START_TEST(the_command_writes_the_same_rows)
 }
 END_TEST
 
-int main(void)
+SUITE(locale)
 {
-  TCase *tests = tcase_create("all");
   tcase_add_checked_fixture(tests, make_folder, remove_folder);
   tcase_add_loop_test(tests, specifications_lists_monitors_and_tableaus_are_read_the_same, 0, RUNS);
   tcase_add_test(tests, commas_are_refused);
   tcase_add_test(tests, the_command_writes_the_same_rows);
-  return run_tests("method/locale", tests);
 }

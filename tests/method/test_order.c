@@ -16,10 +16,8 @@ START_TEST(gauss_with_as_many_nodes_as_degrees_has_order_2s)
 }
 END_TEST
 
-int main(void)
+SUITE(order)
 {
-  TCase *tests = tcase_create("order");
   tcase_set_timeout(tests, 0);
   tcase_add_loop_test(tests, gauss_with_as_many_nodes_as_degrees_has_order_2s, 0, ORDER_PLACES * MOST_DEGREE);
-  return run_tests("order", tests);
 }

@@ -23,12 +23,10 @@ START_TEST(ida_finds_the_order_4_of_lobatto_with_three_nodes_for_degree_3)
 }
 END_TEST
 
-int main(void)
+SUITE(order_ida)
 {
-  TCase *tests = tcase_create("order");
   tcase_set_timeout(tests, 0);
   tcase_add_loop_test(tests, ida_finds_the_order_2_of_the_midpoint_rule, 0, ORDER_PLACES);
   tcase_add_loop_test(tests, ida_finds_the_order_4_of_gauss_with_two_nodes, 0, ORDER_PLACES);
   tcase_add_loop_test(tests, ida_finds_the_order_4_of_lobatto_with_three_nodes_for_degree_3, 0, ORDER_PLACES);
-  return run_tests("order_ida", tests);
 }

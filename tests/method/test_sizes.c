@@ -99,12 +99,10 @@ START_TEST(the_largest_counts_are_those_of_an_int)
 }
 END_TEST
 
-int main(void)
+SUITE(sizes)
 {
-  TCase *tests = tcase_create("sizes");
   tcase_add_loop_test(tests, more_members_than_there_is_memory_for, 0, 2);
   tcase_add_test(tests, more_coordinates_than_ints_count);
   tcase_add_test(tests, more_unknowns_than_an_int_counts);
   tcase_add_test(tests, the_largest_counts_are_those_of_an_int);
-  return run_tests("method/sizes", tests);
 }

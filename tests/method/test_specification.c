@@ -121,12 +121,10 @@ START_TEST(no_list_of_a_sentence_is_cut_short)
 }
 END_TEST
 
-int main(void)
+SUITE(specification)
 {
-  TCase *tests = tcase_create("specification");
   tcase_add_loop_test(tests, verlet_is_refused_on_a_general_lagrangian_by_name, 0, 2);
   tcase_add_loop_test(tests, a_wrong_specification_is_refused_with_its_reason, 0, REFUSED);
   tcase_add_loop_test(tests, a_specification_without_end_is_refused, 0, 6);
   tcase_add_test(tests, no_list_of_a_sentence_is_cut_short);
-  return run_tests("method/specification", tests);
 }

@@ -111,12 +111,10 @@ START_TEST(linear_and_angular_momentum_of_the_planets_stay_at_roundoff)
 }
 END_TEST
 
-int main(void)
+SUITE(structure)
 {
-  TCase *tests = tcase_create("structure");
   tcase_set_timeout(tests, 120);
   tcase_add_loop_test(tests, every_method_is_symplectic_on_every_problem, 0, METHODS * problem_count());
   tcase_add_loop_test(tests, symmetric_methods_return_to_the_start, 0, METHODS * problem_count());
   tcase_add_test(tests, linear_and_angular_momentum_of_the_planets_stay_at_roundoff);
-  return run_tests("structure", tests);
 }

@@ -89,12 +89,10 @@ START_TEST(two_symmetric_matrices_are_made_diagonal_together)
 }
 END_TEST
 
-int main(void)
+SUITE(eigen)
 {
-  TCase *tests = tcase_create("eigen");
   tcase_add_loop_test(tests, a_matrix_is_made_again_from_its_eigen_structure, 0, MOST);
   tcase_add_test(tests, of_a_pair_the_one_above_the_real_axis_stands_first);
   tcase_add_test(tests, lacking_memory_is_a_status);
   tcase_add_test(tests, two_symmetric_matrices_are_made_diagonal_together);
-  return run_tests("num/eigen", tests);
 }

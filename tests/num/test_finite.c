@@ -31,11 +31,9 @@ START_TEST(numbers_behind_the_count_do_not_matter)
 }
 END_TEST
 
-int main(void)
+SUITE(finite)
 {
-  TCase *tests = tcase_create("finite");
   tcase_add_test(tests, finite_numbers_pass_however_large_or_small);
   tcase_add_test(tests, the_first_of_several_is_named);
   tcase_add_test(tests, numbers_behind_the_count_do_not_matter);
-  return run_tests("num/finite", tests);
 }

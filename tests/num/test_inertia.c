@@ -110,13 +110,11 @@ START_TEST(a_singular_complement_is_a_status)
 }
 END_TEST
 
-int main(void)
+SUITE(inertia)
 {
-  TCase *tests = tcase_create("inertia");
   tcase_add_test(tests, a_chain_has_its_cosines);
   tcase_add_test(tests, a_ring_has_its_cosines);
   tcase_add_test(tests, zero_diagonals_are_no_trouble);
   tcase_add_test(tests, a_border_is_left_out);
   tcase_add_test(tests, a_singular_complement_is_a_status);
-  return run_tests("inertia", tests);
 }

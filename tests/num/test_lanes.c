@@ -258,9 +258,8 @@ START_TEST(levels_have_names)
 }
 END_TEST
 
-int main(void)
+SUITE(lanes)
 {
-  TCase *tests = tcase_create("lanes");
   tcase_add_checked_fixture(tests, NULL, best_again);
   tcase_add_loop_test(tests, a_sweep_has_the_bits_of_plain_loops, 0, 3 * STAGES_MOST);
   tcase_add_loop_test(tests, a_product_has_the_bits_of_plain_loops, 0, 3 * STAGES_MOST);
@@ -269,5 +268,4 @@ int main(void)
   tcase_add_loop_test(tests, one_number_that_is_not_finite_is_seen_anywhere, 0, 3);
   tcase_add_loop_test(tests, steps_have_the_same_bits_at_every_level, 0, 7);
   tcase_add_test(tests, levels_have_names);
-  return run_tests("num/lanes", tests);
 }

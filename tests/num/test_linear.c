@@ -394,9 +394,8 @@ START_TEST(a_border_makes_a_singular_matrix_regular)
 }
 END_TEST
 
-int main(void)
+SUITE(linear)
 {
-  TCase *tests = tcase_create("linear");
   tcase_add_loop_test(tests, determinants_have_their_sign, 0, 8);
   tcase_add_test(tests, pivots_tell_whether_a_symmetric_matrix_is_definite);
   tcase_add_loop_test(tests, a_known_system_has_its_known_solution, 0, 2);
@@ -415,5 +414,4 @@ int main(void)
   tcase_add_test(tests, auto_prefers_lapack_for_large_full_matrices);
   tcase_add_test(tests, a_border_makes_a_singular_matrix_regular);
   tcase_add_loop_test(tests, what_is_not_square_is_refused, 0, 2);
-  return run_tests("num/linear", tests);
 }

@@ -245,13 +245,11 @@ START_TEST(a_product_has_the_bits_of_one_member_alone)
 }
 END_TEST
 
-int main(void)
+SUITE(members)
 {
-  TCase *tests = tcase_create("members");
   tcase_add_checked_fixture(tests, NULL, best_again);
   tcase_add_loop_test(tests, a_sweep_has_the_bits_of_one_member_alone, 0, 3 * STAGES_MOST);
   tcase_add_loop_test(tests, a_beginning_has_the_bits_of_one_member_alone, 0, 3 * STAGES_MOST);
   tcase_add_loop_test(tests, ends_have_the_bits_of_one_member_alone, 0, 3 * STAGES_MOST);
   tcase_add_loop_test(tests, a_product_has_the_bits_of_one_member_alone, 0, 3 * STAGES_MOST);
-  return run_tests("num/members", tests);
 }

@@ -194,9 +194,8 @@ START_TEST(full_columns_cannot_be_grouped_and_empty_ones_all_can)
 }
 END_TEST
 
-int main(void)
+SUITE(pattern)
 {
-  TCase *tests = tcase_create("pattern");
   tcase_add_test(tests, a_declared_pattern_is_copied);
   tcase_add_test(tests, an_undeclared_pattern_is_full_column_by_column);
   tcase_add_test(tests, a_pattern_without_entries_is_possible);
@@ -209,5 +208,4 @@ int main(void)
   tcase_add_test(tests, entries_are_found_and_missing_ones_are_not);
   tcase_add_test(tests, a_band_of_half_width_w_needs_2w_plus_1_groups);
   tcase_add_test(tests, full_columns_cannot_be_grouped_and_empty_ones_all_can);
-  return run_tests("num/pattern", tests);
 }

@@ -59,10 +59,8 @@ START_TEST(an_exchange_turns_it)
 }
 END_TEST
 
-int main(void)
+SUITE(pfaffian)
 {
-  TCase *tests = tcase_create("pfaffian");
   tcase_add_loop_test(tests, the_sign_is_that_of_the_pfaffian, 0, sizeof matrices / sizeof *matrices);
   tcase_add_test(tests, an_exchange_turns_it);
-  return run_tests("num/pfaffian", tests);
 }

@@ -117,10 +117,8 @@ START_TEST(where_the_matrix_vanishes_rows_stay_alike)
 }
 END_TEST
 
-int main(void)
+SUITE(stripes)
 {
-  TCase *tests = tcase_create("stripes");
   tcase_add_loop_test(tests, sums_are_those_of_the_full_matrix, 0, 2 * MATRICES);
   tcase_add_test(tests, where_the_matrix_vanishes_rows_stay_alike);
-  return run_tests("stripes", tests);
 }

@@ -141,14 +141,12 @@ START_TEST(a_team_without_memory_is_none)
 }
 END_TEST
 
-int main(void)
+SUITE(team)
 {
-  TCase *tests = tcase_create("team");
   tcase_add_loop_test(tests, each_turn_calls_each_member_once, 1, MOST + 1);
   tcase_add_test(tests, members_work_at_one_time);
   tcase_add_loop_test(tests, each_item_is_done_once, 1, 6);
   tcase_add_test(tests, items_are_done_at_one_time);
   tcase_add_test(tests, a_team_that_never_worked_can_be_ended);
   tcase_add_test(tests, a_team_without_memory_is_none);
-  return run_tests("num/team", tests);
 }

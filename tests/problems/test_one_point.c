@@ -86,11 +86,9 @@ START_TEST(without_memory_the_problem_stays_as_it_was)
 }
 END_TEST
 
-int main(void)
+SUITE(one_point)
 {
-  TCase *tests = tcase_create("one point");
   tcase_add_loop_test(tests, one_point_callbacks_give_the_same_digits_and_counts, 0, problem_count());
   tcase_add_loop_test(tests, no_batch_is_left_and_no_term_is_lost, 0, problem_count());
   tcase_add_test(tests, without_memory_the_problem_stays_as_it_was);
-  return run_tests("problems/one_point", tests);
 }

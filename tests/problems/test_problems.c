@@ -388,9 +388,8 @@ START_TEST(invariants_hold_between_start_and_digits)
 }
 END_TEST
 
-int main(void)
+SUITE(problems)
 {
-  TCase *tests = tcase_create("catalogue");
   const int count = problem_count();
   tcase_add_loop_test(tests, derivatives_and_patterns_agree_with_differences, 0, count);
   tcase_add_loop_test(tests, derivatives_agree_for_other_parameters, 0, 26);
@@ -406,5 +405,4 @@ int main(void)
   tcase_add_test(tests, kepler_in_the_singularity_gives_no_finite_number);
   tcase_add_loop_test(tests, symmetries_and_invariants_have_their_names, 0, 8);
   tcase_add_loop_test(tests, invariants_hold_between_start_and_digits, 0, count);
-  return run_tests("problems/problems", tests);
 }

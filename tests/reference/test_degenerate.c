@@ -52,11 +52,9 @@ START_TEST(index_2_is_for_constraints)
 }
 END_TEST
 
-int main(void)
+SUITE(degenerate)
 {
-  TCase *tests = tcase_create("degenerate");
   tcase_set_timeout(tests, 60);
   tcase_add_loop_test(tests, each_code_meets_the_digits_to_its_own_error, 0, CODES * PROBLEMS);
   tcase_add_test(tests, index_2_is_for_constraints);
-  return run_tests("reference/degenerate", tests);
 }

@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "problem.h"
-#include "support/quad.h"
-#include "support/quad_real.h"
+#include "support/quad/quad.h"
+#include "support/quad/quad_real.h"
 #include "support/suite.h"
 
 /* What the judge may say about itself where 1e-17 is wanted: 1e-20 leaves three digits. */
@@ -166,9 +166,8 @@ START_TEST(the_judge_refuses_what_it_does_not_know)
 }
 END_TEST
 
-int main(void)
+SUITE(digits)
 {
-  TCase *tests = tcase_create("digits");
   tcase_add_loop_test(tests, stored_digits_are_those_of_the_judge, 0, problem_count());
   tcase_add_loop_test(tests, the_judge_agrees_with_itself_from_the_rounded_start, 0, problem_count());
   tcase_add_loop_test(tests, printed_digits_are_right_to_the_last_one, 0, 6);
@@ -177,5 +176,4 @@ int main(void)
   tcase_add_test(tests, the_figure_eight_closes);
   tcase_add_test(tests, the_judge_reads_settings_and_goes_backward);
   tcase_add_test(tests, the_judge_refuses_what_it_does_not_know);
-  return run_tests("reference/digits", tests);
 }

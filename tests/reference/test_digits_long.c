@@ -2,7 +2,7 @@
 /* Long runs of the quadruple-precision judge. */
 #include <math.h>
 
-#include "support/quad.h"
+#include "support/quad/quad.h"
 #include "support/suite.h"
 
 /* fpu at T = 200 is sensitive: from 1/50 rounded to a double, as here, x0_1 differs by 5e-14 from what exact 1/50 gives. The printed
@@ -19,10 +19,8 @@ START_TEST(fpu_has_the_printed_state_at_200)
 }
 END_TEST
 
-int main(void)
+SUITE(digits_long)
 {
-  TCase *tests = tcase_create("digits");
   tcase_set_timeout(tests, 600);
   tcase_add_test(tests, fpu_has_the_printed_state_at_200);
-  return run_tests("reference/digits_long", tests);
 }

@@ -121,13 +121,11 @@ START_TEST(what_is_off_the_manifold_or_too_large_is_refused)
 }
 END_TEST
 
-int main(void)
+SUITE(factors)
 {
-  TCase *tests = tcase_create("factors");
   tcase_add_loop_test(tests, every_code_meets_the_digits, 0, CODES * 8);
   tcase_add_test(tests, the_judge_knows_its_error_on_the_free_body);
   tcase_add_loop_test(tests, every_attitude_is_a_start, 0, 4);
   tcase_add_loop_test(tests, an_angle_on_the_circle_moves_as_a_number, 0, CODES);
   tcase_add_test(tests, what_is_off_the_manifold_or_too_large_is_refused);
-  return run_tests("reference/factors", tests);
 }

@@ -202,29 +202,16 @@ START_TEST(no_memory_is_a_status)
 }
 END_TEST
 
-static Suite *failures(void)
+SUITE(failures)
 {
-  Suite *suite = suite_create("failures of the reference codes");
-  TCase *cases = tcase_create("failures");
-  tcase_add_test(cases, bad_input_is_refused_by_name);
-  tcase_add_loop_test(cases, too_few_steps_stop_with_the_time_reached, 0, CODES);
-  tcase_add_loop_test(cases, too_little_time_stops, 0, CODES);
-  tcase_add_loop_test(cases, a_start_in_the_singularity_is_refused, 0, CODES);
-  tcase_add_loop_test(cases, a_collision_ends_the_run_in_words, 0, CODES);
-  tcase_add_loop_test(cases, nan_from_a_callback_stops_the_code, 0, CODES);
-  tcase_add_loop_test(cases, a_callback_that_keeps_asking_for_smaller_steps_stops_the_code, 0, CODES);
-  tcase_add_loop_test(cases, a_callback_that_fails_for_good_gives_its_own_status, 0, CODES);
-  tcase_add_loop_test(cases, failures_print_nothing, 0, CODES);
-  tcase_add_loop_test(cases, no_memory_is_a_status, 0, CODES);
-  suite_add_tcase(suite, cases);
-  return suite;
-}
-
-int main(void)
-{
-  SRunner *runner = srunner_create(failures());
-  srunner_run_all(runner, CK_NORMAL);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  tcase_add_test(tests, bad_input_is_refused_by_name);
+  tcase_add_loop_test(tests, too_few_steps_stop_with_the_time_reached, 0, CODES);
+  tcase_add_loop_test(tests, too_little_time_stops, 0, CODES);
+  tcase_add_loop_test(tests, a_start_in_the_singularity_is_refused, 0, CODES);
+  tcase_add_loop_test(tests, a_collision_ends_the_run_in_words, 0, CODES);
+  tcase_add_loop_test(tests, nan_from_a_callback_stops_the_code, 0, CODES);
+  tcase_add_loop_test(tests, a_callback_that_keeps_asking_for_smaller_steps_stops_the_code, 0, CODES);
+  tcase_add_loop_test(tests, a_callback_that_fails_for_good_gives_its_own_status, 0, CODES);
+  tcase_add_loop_test(tests, failures_print_nothing, 0, CODES);
+  tcase_add_loop_test(tests, no_memory_is_a_status, 0, CODES);
 }

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "support/quad.h"
+#include "support/quad/quad.h"
 #include "support/runs.h"
 #include "support/suite.h"
 
@@ -56,12 +56,10 @@ START_TEST(other_parameters_and_problems_have_no_far_digits)
 }
 END_TEST
 
-int main(void)
+SUITE(far_digits)
 {
-  TCase *tests = tcase_create("far digits");
   tcase_set_timeout(tests, 600);
   tcase_add_loop_test(tests, far_digits_are_those_of_the_judge, 0, NAMES);
   tcase_add_loop_test(tests, the_rounded_start_ends_where_is_said, 0, NAMES);
   tcase_add_test(tests, other_parameters_and_problems_have_no_far_digits);
-  return run_tests("reference/far_digits", tests);
 }

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "reference/catalogue.h"
-#include "support/quad.h"
+#include "support/quad/quad.h"
 #include "support/runs.h"
 #include "support/suite.h"
 
@@ -105,13 +105,11 @@ START_TEST(long_times_cost_only_the_roundings_of_the_phase)
 }
 END_TEST
 
-int main(void)
+SUITE(free_body)
 {
-  TCase *tests = tcase_create("free body");
   tcase_add_loop_test(tests, the_attitude_is_exact_whatever_the_axes_and_signs, 0, 10);
   tcase_add_test(tests, it_is_exact_near_the_separatrix);
   tcase_add_loop_test(tests, steady_turns_go_on, 0, 4);
   tcase_add_test(tests, on_the_separatrix_there_is_none);
   tcase_add_test(tests, long_times_cost_only_the_roundings_of_the_phase);
-  return run_tests("reference/free_body", tests);
 }

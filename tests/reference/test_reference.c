@@ -371,9 +371,8 @@ START_TEST(tolerances_down_to_1e_14_work_or_are_refused_in_words)
 }
 END_TEST
 
-int main(void)
+SUITE(reference)
 {
-  TCase *tests = tcase_create("reference");
   tcase_add_loop_test(tests, each_code_meets_the_exact_oscillator, 0, CODES);
   tcase_add_loop_test(tests, each_code_meets_the_exact_kepler, 0, CODES);
   tcase_add_loop_test(tests, each_code_goes_backward, 0, CODES);
@@ -392,5 +391,4 @@ int main(void)
   tcase_add_test(tests, left_out_options_are_ida_at_1e_12);
   tcase_add_test(tests, codes_have_names_and_sundials_a_version);
   tcase_add_loop_test(tests, tolerances_down_to_1e_14_work_or_are_refused_in_words, 0, CODES);
-  return run_tests("reference/reference", tests);
 }

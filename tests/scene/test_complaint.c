@@ -1,7 +1,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "support/scene_text.h"
+#include "support/scene/scene_text.h"
 #include "support/suite.h"
 
 /* The message about a part of a text. */
@@ -126,9 +126,8 @@ START_TEST(what_is_far_from_all_names_gets_no_hint)
 }
 END_TEST
 
-int main(void)
+SUITE(complaint)
 {
-  TCase *tests = tcase_create("complaint");
   tcase_add_test(tests, a_complaint_shows_the_line_and_a_caret);
   tcase_add_test(tests, the_first_complaint_stays);
   tcase_add_test(tests, a_span_over_several_lines_is_marked_on_its_first);
@@ -140,5 +139,4 @@ int main(void)
   tcase_add_test(tests, a_message_that_does_not_fit_ends_with_a_whole_character);
   tcase_add_test(tests, the_nearest_name_is_offered);
   tcase_add_test(tests, what_is_far_from_all_names_gets_no_hint);
-  return run_tests("complaint", tests);
 }

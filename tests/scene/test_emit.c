@@ -327,9 +327,8 @@ START_TEST(a_writer_that_refuses_ends_it)
 }
 END_TEST
 
-int main(void)
+SUITE(emit)
 {
-  TCase *tests = tcase_create("emit");
   tcase_add_checked_fixture(tests, setup, teardown);
   tcase_add_test(tests, straight_lines_have_the_digits_of_the_byte_code);
   tcase_add_test(tests, pairs_have_the_digits_of_the_byte_code);
@@ -337,5 +336,4 @@ int main(void)
   tcase_add_test(tests, chains_have_the_digits_of_the_byte_code);
   tcase_add_test(tests, sums_into_one_entry_have_the_digits_of_the_byte_code);
   tcase_add_test(tests, a_writer_that_refuses_ends_it);
-  return run_tests("scene/emit", tests);
 }

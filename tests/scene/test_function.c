@@ -420,9 +420,8 @@ START_TEST(what_is_not_finite_is_located)
 }
 END_TEST
 
-int main(void)
+SUITE(function)
 {
-  TCase *tests = tcase_create("function");
   tcase_add_test(tests, planets_pull_as_in_the_catalogue);
   tcase_add_test(tests, todas_lattice_is_that_of_the_catalogue);
   tcase_add_test(tests, soft_springs_are_those_of_the_catalogue);
@@ -437,5 +436,4 @@ int main(void)
   tcase_add_test(tests, a_function_without_kernels_is_zero);
   tcase_add_test(tests, the_pattern_of_a_long_chain_is_found);
   tcase_add_test(tests, what_is_not_finite_is_located);
-  return run_tests("scene/function", tests);
 }

@@ -11,8 +11,8 @@
 #include "expr/function/function.h"
 #include "expr/graph_make.h"
 #include "text/heap.h"
-#include "support/fuzz.h"
-#include "support/quad_graph.h"
+#include "support/scene/fuzz.h"
+#include "support/quad/quad_graph.h"
 #include "support/suite.h"
 
 #ifdef DVI_HAVE_QUADMATH
@@ -280,14 +280,12 @@ START_TEST(derivatives_are_those_of_differences)
 END_TEST
 #endif
 
-int main(void)
+SUITE(fuzz_derivatives)
 {
-  TCase *tests = tcase_create("fuzz_derivatives");
 #ifdef DVI_HAVE_QUADMATH
   tcase_set_timeout(tests, fuzz_timeout());
   tcase_add_test(tests, derivatives_are_those_of_differences);
 #else
   puts("no libquadmath: nothing to compare with");
 #endif
-  return run_tests("scene/fuzz_derivatives", tests);
 }

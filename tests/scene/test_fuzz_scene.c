@@ -9,8 +9,8 @@
 #include <string.h>
 
 #include "text/utf8.h"
-#include "support/fuzz.h"
-#include "support/scene_calls.h"
+#include "support/scene/fuzz.h"
+#include "support/scene/scene_calls.h"
 #include "support/suite.h"
 
 static const char *const tokens[] = {"coordinates:",
@@ -204,10 +204,8 @@ START_TEST(any_text_is_a_scene_or_a_sentence)
 }
 END_TEST
 
-int main(void)
+SUITE(fuzz_scene)
 {
-  TCase *tests = tcase_create("fuzz_scene");
   tcase_set_timeout(tests, fuzz_timeout());
   tcase_add_test(tests, any_text_is_a_scene_or_a_sentence);
-  return run_tests("scene/fuzz_scene", tests);
 }

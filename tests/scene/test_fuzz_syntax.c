@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "scene/text/syntax.h"
-#include "support/fuzz.h"
-#include "support/scene_text.h"
+#include "support/scene/fuzz.h"
+#include "support/scene/scene_text.h"
 #include "support/suite.h"
 
 static const char *const corpus[] = {"M/2*x'^2 + m/2*dot(bob', bob') - m*g*bob[2]",
@@ -116,10 +116,8 @@ START_TEST(any_text_makes_an_expression_or_a_sentence)
 }
 END_TEST
 
-int main(void)
+SUITE(fuzz_syntax)
 {
-  TCase *tests = tcase_create("fuzz_syntax");
   tcase_set_timeout(tests, fuzz_timeout());
   tcase_add_test(tests, any_text_makes_an_expression_or_a_sentence);
-  return run_tests("fuzz_syntax", tests);
 }

@@ -4,8 +4,8 @@
 
 #include "scene/text/tree.h"
 #include "text/utf8.h"
-#include "support/fuzz.h"
-#include "support/scene_text.h"
+#include "support/scene/fuzz.h"
+#include "support/scene/scene_text.h"
 #include "support/suite.h"
 
 static const char *const corpus[] = {
@@ -146,10 +146,8 @@ START_TEST(any_text_makes_a_tree_or_a_sentence)
 }
 END_TEST
 
-int main(void)
+SUITE(fuzz_tree)
 {
-  TCase *tests = tcase_create("fuzz_tree");
   tcase_set_timeout(tests, fuzz_timeout());
   tcase_add_test(tests, any_text_makes_a_tree_or_a_sentence);
-  return run_tests("fuzz_tree", tests);
 }

@@ -461,9 +461,8 @@ START_TEST(any_limit_fails_in_peace)
 }
 END_TEST
 
-int main(void)
+SUITE(graph)
 {
-  TCase *tests = tcase_create("graph");
   tcase_add_checked_fixture(tests, setup, teardown);
   tcase_add_test(tests, equal_parts_are_one_node);
   tcase_add_test(tests, zeros_ones_and_signs_vanish);
@@ -487,5 +486,4 @@ int main(void)
   tcase_add_test(tests, new_nodes_have_the_span_of_their_source);
   tcase_add_test(tests, beyond_the_limit_everything_is_node_0);
   tcase_add_test(tests, any_limit_fails_in_peace);
-  return run_tests("scene/graph", tests);
 }

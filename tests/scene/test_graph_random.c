@@ -11,7 +11,7 @@
 #include "expr/graph.h"
 #include "expr/graph_make.h"
 #include "text/heap.h"
-#include "support/quad_graph.h"
+#include "support/quad/quad_graph.h"
 #include "support/suite.h"
 
 #ifdef DVI_HAVE_QUADMATH
@@ -293,9 +293,8 @@ START_TEST(patterns_hold_all_second_derivatives_but_zeros)
 END_TEST
 #endif
 
-int main(void)
+SUITE(graph_random)
 {
-  TCase *tests = tcase_create("graph_random");
 #ifdef DVI_HAVE_QUADMATH
   tcase_add_test(tests, simplified_values_are_those_of_what_was_written);
   tcase_add_test(tests, derivatives_are_those_of_differences);
@@ -303,5 +302,4 @@ int main(void)
 #else
   puts("no libquadmath: the comparison with quadruple precision is left out");
 #endif
-  return run_tests("scene/graph_random", tests);
 }

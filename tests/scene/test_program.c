@@ -295,9 +295,8 @@ START_TEST(more_rows_than_there_are_is_refused)
 }
 END_TEST
 
-int main(void)
+SUITE(program)
 {
-  TCase *tests = tcase_create("program");
   tcase_add_test(tests, every_operation_does_what_the_graph_says);
   tcase_add_test(tests, conditions_take_a_side_in_every_lane);
   tcase_add_test(tests, constants_may_stand_on_either_side);
@@ -311,5 +310,4 @@ int main(void)
   tcase_add_test(tests, registers_are_taken_again);
   tcase_add_test(tests, an_input_that_is_not_given_is_refused);
   tcase_add_test(tests, more_rows_than_there_are_is_refused);
-  return run_tests("scene/program", tests);
 }

@@ -123,13 +123,11 @@ START_TEST(polynomials_have_series_at_zero)
 }
 END_TEST
 
-int main(void)
+SUITE(program_series)
 {
-  TCase *tests = tcase_create("program series");
   tcase_add_test(tests, every_operation_of_one_number_is_known);
   tcase_add_test(tests, every_operation_of_two_numbers_is_known);
   tcase_add_test(tests, at_a_kink_there_is_a_series_of_what_stays_alone);
   tcase_add_test(tests, powers_and_operations_in_one_are_known);
   tcase_add_test(tests, polynomials_have_series_at_zero);
-  return run_tests("scene/program_series", tests);
 }

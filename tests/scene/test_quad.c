@@ -7,7 +7,7 @@
 
 #include "expr/graph_make.h"
 #include "expr/quad.h"
-#include "support/quad_graph.h"
+#include "support/quad/quad_graph.h"
 #include "support/suite.h"
 
 #if defined DVI__QUAD && defined DVI_HAVE_QUADMATH
@@ -167,9 +167,8 @@ START_TEST(what_is_no_lagrangian_of_numbers_is_refused)
 }
 END_TEST
 
-int main(void)
+SUITE(quad)
 {
-  TCase *tests = tcase_create("quadruple precision");
 #if defined DVI__QUAD && defined DVI_HAVE_QUADMATH
   tcase_add_loop_test(tests, every_operation_is_right_to_its_last_digits, 0, DVI__OP_COUNT);
   tcase_add_loop_test(tests, slopes_are_those_of_the_values, 0, DVI__OP_COUNT);
@@ -180,5 +179,4 @@ int main(void)
   tcase_add_test(tests, a_point_without_a_gradient_is_told);
 #endif
   tcase_add_loop_test(tests, what_is_no_lagrangian_of_numbers_is_refused, 0, 3);
-  return run_tests("scene/quad", tests);
 }

@@ -448,9 +448,8 @@ START_TEST(elastica_is_that_of_the_catalogue)
 }
 END_TEST
 
-int main(void)
+SUITE(scene)
 {
-  TCase *tests = tcase_create("scene");
   tcase_add_checked_fixture(tests, NULL, release);
   tcase_add_test(tests, kepler_is_that_of_the_catalogue);
   tcase_add_test(tests, invariants_are_those_of_the_catalogue);
@@ -471,5 +470,4 @@ int main(void)
   tcase_add_test(tests, lotka_volterra_is_that_of_the_catalogue_in_both_spellings);
   tcase_add_test(tests, circle_dirac_is_that_of_the_catalogue);
   tcase_add_test(tests, elastica_is_that_of_the_catalogue);
-  return run_tests("scene", tests);
 }

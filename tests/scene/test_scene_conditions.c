@@ -164,7 +164,7 @@ START_TEST(what_is_no_condition_is_told)
 END_TEST
 
 /* What order is left: of the first derivative that jumps; 1 more where time alone decides; -1
- * where nothing jumps. Orders that are measured are in tests/method/test_kinks.c. */
+ * where nothing jumps. Orders that are measured are in test_scene_kinks.c. */
 START_TEST(kinks_are_found_with_the_order_that_they_leave)
 {
   static const struct {
@@ -232,9 +232,8 @@ START_TEST(series_are_refused_at_a_kink_alone)
 }
 END_TEST
 
-int main(void)
+SUITE(scene_conditions)
 {
-  TCase *tests = tcase_create("scene_conditions");
   tcase_add_checked_fixture(tests, NULL, release);
   tcase_add_test(tests, values_and_derivatives_are_those_of_the_side);
   tcase_add_test(tests, at_a_kink_the_derivative_is_that_of_the_side_that_is_documented);
@@ -244,5 +243,4 @@ int main(void)
   tcase_add_test(tests, kinks_are_found_with_the_order_that_they_leave);
   tcase_add_test(tests, what_has_a_kink_is_no_quadratic_potential);
   tcase_add_test(tests, series_are_refused_at_a_kink_alone);
-  return run_tests("scene/conditions", tests);
 }

@@ -389,9 +389,8 @@ START_TEST(c_is_written_under_a_name_and_to_its_end)
 }
 END_TEST
 
-int main(void)
+SUITE(scene_errors)
 {
-  TCase *tests = tcase_create("scene errors");
   tcase_add_checked_fixture(tests, NULL, release);
   tcase_add_test(tests, what_nothing_mentions_is_known);
   tcase_add_test(tests, unknown_names_are_told_with_the_nearest);
@@ -412,5 +411,4 @@ int main(void)
   tcase_add_test(tests, null_is_no_scene_and_no_setting);
   tcase_add_test(tests, a_file_that_is_not_there_is_told);
   tcase_add_test(tests, c_is_written_under_a_name_and_to_its_end);
-  return run_tests("scene errors", tests);
 }

@@ -152,14 +152,12 @@ START_TEST(other_keys_name_no_file)
 }
 END_TEST
 
-int main(void)
+SUITE(scene_files)
 {
-  TCase *tests = tcase_create("all");
   tcase_add_checked_fixture(tests, make_files, remove_files);
   tcase_add_loop_test(tests, a_file_in_the_folder_or_below_is_found_from_anywhere, 0, GOOD);
   tcase_add_loop_test(tests, any_other_file_is_refused_unopened, 0, BAD);
   tcase_add_test(tests, a_folder_with_a_comma_is_refused);
   tcase_add_test(tests, a_text_has_the_folder_of_its_name);
   tcase_add_test(tests, other_keys_name_no_file);
-  return run_tests("scene/scene_files", tests);
 }

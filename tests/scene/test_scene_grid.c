@@ -184,9 +184,8 @@ START_TEST(a_lattice_is_followed_in_the_order_of_the_method)
 }
 END_TEST
 
-int main(void)
+SUITE(scene_grid)
 {
-  TCase *tests = tcase_create("scene_grid");
   tcase_add_checked_fixture(tests, NULL, release);
   tcase_add_test(tests, the_last_index_runs_first);
   tcase_add_test(tests, what_says_more_of_a_member_comes_first);
@@ -194,5 +193,4 @@ int main(void)
   tcase_add_test(tests, slips_with_two_indices_are_told);
   tcase_add_test(tests, neighbours_on_a_torus_are_those_of_loops);
   tcase_add_test(tests, a_lattice_is_followed_in_the_order_of_the_method);
-  return run_tests("scene/grid", tests);
 }

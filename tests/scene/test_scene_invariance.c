@@ -72,10 +72,8 @@ START_TEST(what_turns_is_not_looked_at)
 }
 END_TEST
 
-int main(void)
+SUITE(scene_invariance)
 {
-  TCase *tests = tcase_create("scene_invariance");
   tcase_add_loop_test(tests, what_leaves_the_lagrangian_as_it_is_is_found, 0, KNOWN);
   tcase_add_test(tests, what_turns_is_not_looked_at);
-  return run_tests("scene/scene_invariance", tests);
 }

@@ -82,12 +82,10 @@ START_TEST(jumps_of_higher_derivatives_leave_more)
 }
 END_TEST
 
-int main(void)
+SUITE(scene_kinks)
 {
-  TCase *tests = tcase_create("scene_kinks");
   tcase_set_timeout(tests, 60);
   tcase_add_test(tests, a_jump_of_the_force_leaves_order_1);
   tcase_add_test(tests, a_kink_of_the_force_leaves_order_2);
   tcase_add_test(tests, jumps_of_higher_derivatives_leave_more);
-  return run_tests("scene/kinks", tests);
 }

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "support/scene_calls.h"
+#include "support/scene/scene_calls.h"
 #include "support/suite.h"
 
 enum { MESSAGE_SIZE = 1024, TEXT_SIZE = 2048 };
@@ -152,9 +152,8 @@ START_TEST(runs_are_limited)
 }
 END_TEST
 
-int main(void)
+SUITE(scene_limits)
 {
-  TCase *tests = tcase_create("scene_limits");
   tcase_add_test(tests, usual_parts_make_a_scene);
   tcase_add_test(tests, files_are_limited);
   tcase_add_test(tests, nesting_is_limited);
@@ -165,5 +164,4 @@ int main(void)
   tcase_add_test(tests, programs_are_limited_when_they_are_read);
   tcase_add_test(tests, derivatives_are_limited_when_they_are_made);
   tcase_add_test(tests, runs_are_limited);
-  return run_tests("scene/scene_limits", tests);
 }

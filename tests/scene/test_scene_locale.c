@@ -104,12 +104,10 @@ START_TEST(what_is_not_finite_is_told_the_same)
 }
 END_TEST
 
-int main(void)
+SUITE(scene_locale)
 {
-  TCase *tests = tcase_create("all");
   tcase_add_checked_fixture(tests, make_folder, remove_folder);
   tcase_add_test(tests, scenes_and_settings_are_read_and_written_the_same);
   tcase_add_loop_test(tests, errors_are_told_the_same, 0, BROKEN);
   tcase_add_test(tests, what_is_not_finite_is_told_the_same);
-  return run_tests("scene/scene_locale", tests);
 }

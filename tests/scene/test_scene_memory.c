@@ -8,7 +8,7 @@
 #include "core/memory.h"
 #include "text/heap.h"
 #include "support/heap.h"
-#include "support/scene_calls.h"
+#include "support/scene/scene_calls.h"
 #include "support/suite.h"
 
 #define RUN "step: 0.1\nuntil: 1\n"
@@ -170,14 +170,12 @@ START_TEST(names_come_when_there_is_memory)
 }
 END_TEST
 
-int main(void)
+SUITE(scene_memory)
 {
-  TCase *tests = tcase_create("scene_memory");
   tcase_add_loop_test(tests, reading_says_that_memory_ran_out, 0, TEXTS);
   tcase_add_loop_test(tests, reading_says_that_the_library_has_no_memory, 0, TEXTS);
   tcase_add_loop_test(tests, reading_says_that_others_have_no_memory, 0, TEXTS);
   tcase_add_loop_test(tests, deriving_says_that_memory_ran_out, 0, TEXTS);
   tcase_add_loop_test(tests, writing_says_that_memory_ran_out, 0, TEXTS);
   tcase_add_test(tests, names_come_when_there_is_memory);
-  return run_tests("scene/scene_memory", tests);
 }

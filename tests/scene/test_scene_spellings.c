@@ -130,9 +130,8 @@ START_TEST(powers_and_functions_are_those_of_the_page)
 }
 END_TEST
 
-int main(void)
+SUITE(scene_spellings)
 {
-  TCase *tests = tcase_create("scene spellings");
   tcase_add_checked_fixture(tests, NULL, release);
   tcase_add_test(tests, sums_are_their_terms);
   tcase_add_test(tests, sums_inside_of_something_are_their_terms);
@@ -140,5 +139,4 @@ int main(void)
   tcase_add_test(tests, vectors_and_matrices_are_their_numbers);
   tcase_add_test(tests, rates_follow_the_chain_rule);
   tcase_add_test(tests, powers_and_functions_are_those_of_the_page);
-  return run_tests("scene spellings", tests);
 }

@@ -1,5 +1,5 @@
 /* Scenes with rotations, rigid motions, directions and angles: the Lagrangian that is written is the one that there is, and what makes no sense is told with its
- * place. apps/scenes has those of the catalogue, which move as the hand-written ones (tests/apps/test_scenes.sh). */
+ * place. apps/scenes has those of the catalogue, which move as the hand-written ones (tests/apps/scene/test_scenes.sh). */
 #include <dvi/dvi.h>
 #include <dvi/scene.h>
 #include <math.h>
@@ -351,9 +351,8 @@ START_TEST(declarations_that_do_not_go_together_are_told)
 }
 END_TEST
 
-int main(void)
+SUITE(scene_turns)
 {
-  TCase *tests = tcase_create("scene_turns");
   tcase_add_checked_fixture(tests, NULL, release);
   tcase_add_test(tests, an_angle_is_the_coordinate_of_the_same_pendulum);
   tcase_add_test(tests, a_point_of_a_body_moves_as_its_velocity_says);
@@ -366,5 +365,4 @@ int main(void)
   tcase_add_test(tests, velocities_are_asked_of_the_right_kind);
   tcase_add_test(tests, starts_are_rotations_directions_and_across_them);
   tcase_add_test(tests, declarations_that_do_not_go_together_are_told);
-  return run_tests("scene_turns", tests);
 }

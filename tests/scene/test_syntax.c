@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "scene/text/syntax.h"
-#include "support/scene_text.h"
+#include "support/scene/scene_text.h"
 #include "support/suite.h"
 
 static scene_text scene;
@@ -290,9 +290,8 @@ static void release(void)
   close_text(&scene);
 }
 
-int main(void)
+SUITE(syntax)
 {
-  TCase *tests = tcase_create("syntax");
   tcase_add_checked_fixture(tests, NULL, release);
   tcase_add_test(tests, operators_bind_as_on_paper);
   tcase_add_test(tests, powers_bind_to_the_right_and_before_the_sign);
@@ -311,5 +310,4 @@ int main(void)
   tcase_add_test(tests, nesting_ends_at_64_levels);
   tcase_add_test(tests, missing_memory_is_told);
   tcase_add_test(tests, chains_may_be_as_long_as_the_file);
-  return run_tests("syntax", tests);
 }

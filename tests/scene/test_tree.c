@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "scene/text/tree.h"
-#include "support/scene_text.h"
+#include "support/scene/scene_text.h"
 #include "support/suite.h"
 
 static scene_text scene;
@@ -295,9 +295,8 @@ static void release(void)
   close_text(&scene);
 }
 
-int main(void)
+SUITE(tree)
 {
-  TCase *tests = tcase_create("tree");
   tcase_add_checked_fixture(tests, NULL, release);
   tcase_add_test(tests, a_mapping_keeps_its_order);
   tcase_add_test(tests, spans_are_the_characters_in_the_source);
@@ -317,5 +316,4 @@ int main(void)
   tcase_add_test(tests, files_end_at_one_mebibyte);
   tcase_add_test(tests, missing_memory_is_told);
   tcase_add_test(tests, many_keys_take_no_longer_each);
-  return run_tests("tree", tests);
 }

@@ -187,9 +187,8 @@ START_TEST(nothing_is_printed)
 }
 END_TEST
 
-int main(void)
+SUITE(failures)
 {
-  TCase *tests = tcase_create("failures");
   tcase_add_loop_test(tests, a_residual_that_fails_ends_the_solve, 0, 3 * ANSWERS);
   tcase_add_loop_test(tests, a_jacobian_that_fails_ends_the_solve, 0, 2 * ANSWERS);
   tcase_add_test(tests, line_search_steps_back_from_where_the_residual_does_not_exist);
@@ -198,5 +197,4 @@ int main(void)
   tcase_add_loop_test(tests, nan_in_a_jacobian_is_a_failure, 0, 2);
   tcase_add_loop_test(tests, a_solver_works_again_after_a_failure, 0, 3 * ANSWERS);
   tcase_add_test(tests, nothing_is_printed);
-  return run_tests("solve/failures", tests);
 }

@@ -142,11 +142,9 @@ START_TEST(the_library_s_midpoint_rule_does_not)
 }
 END_TEST
 
-int main(void)
+SUITE(kinsol_drift)
 {
-  TCase *tests = tcase_create("kinsol_drift");
   tcase_set_timeout(tests, 0);
   tcase_add_test(tests, kinsol_as_it_comes_drifts);
   tcase_add_loop_test(tests, the_library_s_midpoint_rule_does_not, 0, 3);
-  return run_tests("solve/kinsol_drift", tests);
 }

@@ -195,9 +195,8 @@ START_TEST(a_row_that_is_rounding_is_solved)
 }
 END_TEST
 
-int main(void)
+SUITE(ladder)
 {
-  TCase *tests = tcase_create("ladder");
   tcase_add_loop_test(tests, every_rung_finds_the_solution_to_roundoff, 0, 3);
   tcase_add_loop_test(tests, counters_count_what_was_called, 0, 3);
   tcase_add_test(tests, newton_keeps_a_factor_that_works);
@@ -209,5 +208,4 @@ int main(void)
   tcase_add_loop_test(tests, a_singular_jacobian_is_a_step_s_failure, 0, 2);
   tcase_add_loop_test(tests, a_start_on_a_critical_point_is_a_failure, 0, 2);
   tcase_add_loop_test(tests, a_row_that_is_rounding_is_solved, 0, 2);
-  return run_tests("solve/ladder", tests);
 }

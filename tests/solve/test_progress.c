@@ -115,12 +115,10 @@ START_TEST(slow_contraction_is_given_up)
 }
 END_TEST
 
-int main(void)
+SUITE(progress)
 {
-  TCase *tests = tcase_create("progress");
   tcase_add_loop_test(tests, many_are_judged_as_each_alone, 0, 12);
   tcase_add_loop_test(tests, a_correction_that_is_small_by_chance_ends_nothing, 0, 4);
   tcase_add_loop_test(tests, noise_does_not_keep_an_iteration_from_its_end, 0, 50);
   tcase_add_test(tests, slow_contraction_is_given_up);
-  return run_tests("solve/progress", tests);
 }

@@ -231,9 +231,8 @@ START_TEST(every_basis_has_a_name_of_its_own)
 }
 END_TEST
 
-int main(void)
+SUITE(basis)
 {
-  TCase *tests = tcase_create("basis");
 #ifdef DVI_HAVE_QUADMATH
   tcase_add_loop_test(tests, values_and_derivatives_are_right_to_2_units_of_the_largest_against_quadruple_precision, 0, BASES);
 #else
@@ -247,5 +246,4 @@ int main(void)
   tcase_add_loop_test(tests, either_output_may_be_left_out, 0, BASES);
   tcase_add_test(tests, bad_arguments_are_refused_and_nothing_is_written);
   tcase_add_test(tests, every_basis_has_a_name_of_its_own);
-  return run_tests("space/basis", tests);
 }

@@ -92,14 +92,12 @@ START_TEST(without_a_frequency_it_is_lobattos_rule_on_the_path)
 }
 END_TEST
 
-int main(void)
+SUITE(filon)
 {
-  TCase *tests = tcase_create("filon");
   tcase_add_loop_test(tests, moments_of_the_lagrange_polynomials_are_right_to_roundoff_at_every_frequency, 0,
                       sizeof phases / sizeof *phases);
   tcase_add_test(tests, moments_add_up_to_the_integral_of_the_wave_at_frequencies_that_no_grid_resolves);
   tcase_add_loop_test(tests, the_rule_is_exact_for_two_harmonics_whose_amplitude_the_nodes_interpolate, 0,
                       sizeof phases / sizeof *phases);
   tcase_add_test(tests, without_a_frequency_it_is_lobattos_rule_on_the_path);
-  return run_tests("space/filon", tests);
 }

@@ -125,14 +125,12 @@ START_TEST(a_path_is_continued_into_the_next_step)
 }
 END_TEST
 
-int main(void)
+SUITE(oscillating)
 {
-  TCase *tests = tcase_create("oscillating");
   tcase_add_loop_test(tests, all_functions_vanish_at_the_start_and_the_first_one_is_the_straight_line, 0,
                       2 * sizeof lengths / sizeof *lengths);
   tcase_add_loop_test(tests, of_every_degree_and_amplitude, 1, DVI__OSCILLATING_DEGREE_MOST + 1);
   tcase_add_loop_test(tests, the_quadrature_is_exact_for_products_of_two_functions, 0, 2 * sizeof lengths / sizeof *lengths);
   tcase_add_test(tests, where_steps_are_far_below_the_period_polynomials_are_left);
   tcase_add_loop_test(tests, a_path_is_continued_into_the_next_step, 0, 2);
-  return run_tests("space/oscillating", tests);
 }

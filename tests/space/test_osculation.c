@@ -93,12 +93,10 @@ START_TEST(hermites_functions_give_back_polynomials_and_their_slopes)
 }
 END_TEST
 
-int main(void)
+SUITE(osculation)
 {
-  TCase *tests = tcase_create("osculation");
   tcase_add_test(tests, rules_are_exact_to_their_order_and_no_further);
   tcase_add_test(tests, bernoullis_numbers_are_those_of_the_books);
   tcase_add_test(tests, the_next_coefficients_are_those_of_the_polynomial);
   tcase_add_test(tests, hermites_functions_give_back_polynomials_and_their_slopes);
-  return run_tests("space/osculation", tests);
 }

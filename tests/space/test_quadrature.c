@@ -198,9 +198,8 @@ START_TEST(every_rule_has_a_name_of_its_own)
 }
 END_TEST
 
-int main(void)
+SUITE(quadrature)
 {
-  TCase *tests = tcase_create("quadrature");
 #ifdef DVI_HAVE_QUADMATH
   tcase_add_loop_test(tests, nodes_and_weights_are_right_to_2_ulp_against_quadruple_precision, 0, RULES);
 #else
@@ -214,5 +213,4 @@ int main(void)
   tcase_add_test(tests, bad_sizes_are_refused_and_nothing_is_written);
   tcase_add_test(tests, unknown_rules_and_missing_arrays_are_refused_and_nothing_is_written);
   tcase_add_test(tests, every_rule_has_a_name_of_its_own);
-  return run_tests("space/quadrature", tests);
 }

@@ -208,9 +208,8 @@ START_TEST(shift_drops_derivatives_orthogonal_to_the_kept_degree)
 }
 END_TEST
 
-int main(void)
+SUITE(trial)
 {
-  TCase *tests = tcase_create("trial");
   tcase_add_loop_test(tests, psi_vanishes_at_0_and_bar_at_1, 0, BASES);
   tcase_add_loop_test(tests, psi_and_bar_are_the_basis_less_its_ends, 0, BASES);
   tcase_add_loop_test(tests, psi_keeps_its_digits_near_0, 0, BASES);
@@ -222,5 +221,4 @@ int main(void)
   tcase_add_loop_test(tests, shift_continues_a_polynomial_of_the_kept_degree, 0, BASES);
   tcase_add_loop_test(tests, shift_backward_by_the_whole_step_returns_the_step, 0, BASES);
   tcase_add_loop_test(tests, shift_drops_derivatives_orthogonal_to_the_kept_degree, 0, BASES);
-  return run_tests("space/trial", tests);
 }

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "support/quad.h"
+#include "support/quad/quad.h"
 #include "support/runs.h"
 #include "support/suite.h"
 

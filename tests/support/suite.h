@@ -1,17 +1,21 @@
-/* What every test executable has: its main function, and a look at the last error. */
+/* What every test file has: its suite, and a look at the last error. */
 #ifndef TESTS_SUPPORT_SUITE_H
 #define TESTS_SUPPORT_SUITE_H
 #include <check.h>
 
-/* An assertion that holds leaves no trace. Check would write down where it stands, for the case that the next one ends the process: by far the
- * most of what loops over many assertions cost, and sanitizers and valgrind tell the place better. */
+/* An assertion that holds leaves no trace. Check would write down where it stands, for the case that the next one ends the
+ * process: by far the most of what loops over many assertions cost, and sanitizers and valgrind tell the place better. */
 #define _mark_point(file, line) ((void)0)
 
-/* Run one suite of one case; what main returns. Frees both. */
-int run_tests(const char *name, TCase *tests);
+/* The suite of tests/<room>/test_<thing>.c adds its cases to `tests`. The program of the room runs it by its name.
+ * A suite without cases counts as skipped. */
+#define SUITE(thing)                   \
+  void suite_of_##thing(TCase *tests); \
+  void suite_of_##thing(TCase *tests)
 
 /* How often to do what is done `often` times for the sake of its numbers. Where memory is watched, by sanitizers or
- * valgrind, a tenth of it: there each time takes up to fifty times as long, and numbers are judged in the other builds (DVI_TEST_FEWER). */
+ * valgrind, a tenth of it: there each time takes up to fifty times as long, and numbers are judged in the other builds
+ * (DVI_TEST_FEWER). */
 int repeats(int often);
 
 /* dvi_last_error() must hold these words. */

@@ -4,7 +4,7 @@
 
 #include "core/memory.h"
 #include "support/suite.h"
-#include "support/systems.h"
+#include "support/systems/systems.h"
 #include "system/evaluate/evaluator.h"
 
 enum { MOST = 500 };
@@ -185,13 +185,11 @@ START_TEST(every_call_at_one_point_survives_every_failure)
 }
 END_TEST
 
-int main(void)
+SUITE(allocation)
 {
-  TCase *tests = tcase_create("allocation");
   tcase_add_loop_test(tests, a_system_survives_every_failure, 0, KINDS);
   tcase_add_loop_test(tests, completing_a_system_survives_every_failure, 0, KINDS);
   tcase_add_loop_test(tests, an_evaluator_survives_every_failure, 0, KINDS);
   tcase_add_loop_test(tests, a_linear_solver_survives_every_failure, 0, 2);
   tcase_add_loop_test(tests, every_call_at_one_point_survives_every_failure, 0, 5 * KINDS);
-  return run_tests("system/allocation", tests);
 }

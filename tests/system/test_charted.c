@@ -7,7 +7,7 @@
 
 #include "step/element/action.h"
 #include "core/memory.h"
-#include "support/bodies.h"
+#include "support/systems/bodies.h"
 #include "support/runs.h"
 #include "support/suite.h"
 #include "system/chart/charted_struct.h"
@@ -206,9 +206,8 @@ START_TEST(a_chains_patterns_are_sparse)
 }
 END_TEST
 
-int main(void)
+SUITE(charted)
 {
-  TCase *tests = tcase_create("charted");
   tcase_add_checked_fixture(tests, NULL, give_back);
   tcase_add_loop_test(tests, derivatives_are_those_of_the_value, 0, KINDS);
   tcase_add_loop_test(tests, the_value_is_the_systems_own, 0, KINDS);
@@ -218,5 +217,4 @@ int main(void)
   tcase_add_loop_test(tests, charts_survive_every_failure, 0, KINDS);
   tcase_add_test(tests, beyond_half_a_turn_there_is_no_chart);
   tcase_add_test(tests, a_chains_patterns_are_sparse);
-  return run_tests("system/charted", tests);
 }

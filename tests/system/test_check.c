@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "support/suite.h"
-#include "support/systems.h"
+#include "support/systems/systems.h"
 
 /* Rotors, springs and wells, each with its own behaviour. */
 typedef struct scene {
@@ -266,9 +266,8 @@ START_TEST(bad_arguments_are_refused)
 }
 END_TEST
 
-int main(void)
+SUITE(check)
 {
-  TCase *tests = tcase_create("check");
   tcase_add_test(tests, right_derivatives_pass);
   tcase_add_test(tests, a_wrong_gradient_entry_of_a_potential_is_named_with_both_numbers);
   tcase_add_loop_test(tests, a_wrong_gradient_entry_of_the_lagrangian_is_named, 0, 2);
@@ -285,5 +284,4 @@ int main(void)
   tcase_add_test(tests, a_callback_that_fails_ends_the_check_with_its_status);
   tcase_add_test(tests, the_tolerance_decides);
   tcase_add_test(tests, bad_arguments_are_refused);
-  return run_tests("system/check", tests);
 }

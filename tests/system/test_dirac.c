@@ -210,9 +210,8 @@ START_TEST(terms_that_do_not_go_together_are_refused)
 }
 END_TEST
 
-int main(void)
+SUITE(dirac)
 {
-  TCase *tests = tcase_create("dirac");
   tcase_add_test(tests, the_velocity_is_that_of_the_constrained_motion);
   tcase_add_test(tests, the_energy_is_the_hamiltonian);
   tcase_add_test(tests, the_bracket_matrix_is_that_of_the_gradients);
@@ -220,5 +219,4 @@ int main(void)
   tcase_add_test(tests, the_check_names_the_offender);
   tcase_add_test(tests, differenced_hessians_give_the_same_steps);
   tcase_add_test(tests, terms_that_do_not_go_together_are_refused);
-  return run_tests("system/dirac", tests);
 }

@@ -3,7 +3,7 @@
 
 #include "core/memory.h"
 #include "support/suite.h"
-#include "support/systems.h"
+#include "support/systems/systems.h"
 #include "system/evaluate/evaluator.h"
 
 enum { POINTS = 5, QQ = 3 * SITES - 2, QV = 2 * SITES - 1, VV = 3 * SITES - 2 };
@@ -451,9 +451,8 @@ START_TEST(an_evaluator_of_a_degenerate_lagrangian_can_be_made)
 }
 END_TEST
 
-int main(void)
+SUITE(evaluator)
 {
-  TCase *tests = tcase_create("evaluator");
   tcase_add_test(tests, one_point_and_batch_callbacks_agree_bit_for_bit);
   tcase_add_test(tests, a_batch_is_its_points_one_by_one);
   tcase_add_test(tests, several_potentials_sum_with_a_minus_sign);
@@ -472,5 +471,4 @@ int main(void)
   tcase_add_loop_test(tests, a_lagrangian_that_misbehaves_is_named, 0, 8);
   tcase_add_loop_test(tests, faults_show_through_differences, 0, 4);
   tcase_add_test(tests, an_evaluator_of_a_degenerate_lagrangian_can_be_made);
-  return run_tests("system/evaluator", tests);
 }

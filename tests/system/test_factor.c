@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "support/bodies.h"
+#include "support/systems/bodies.h"
 #include "support/runs.h"
 #include "support/suite.h"
 #include "system/system.h"
@@ -318,9 +318,8 @@ START_TEST(systems_with_factors_survive_every_failure)
 }
 END_TEST
 
-int main(void)
+SUITE(factor)
 {
-  TCase *tests = tcase_create("factor");
   tcase_add_checked_fixture(tests, NULL, destroy);
   tcase_add_test(tests, numbers_stand_in_the_order_of_the_factors);
   tcase_add_test(tests, a_bodys_energy_is_that_of_its_inertia);
@@ -336,5 +335,4 @@ int main(void)
   tcase_add_test(tests, singular_masses_cannot_start);
   tcase_add_test(tests, a_success_leaves_the_last_error_as_it_is);
   tcase_add_test(tests, systems_with_factors_survive_every_failure);
-  return run_tests("system/factor", tests);
 }

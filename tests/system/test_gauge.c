@@ -273,14 +273,12 @@ START_TEST(a_system_in_another_gauge_survives_every_failure_of_memory)
 }
 END_TEST
 
-int main(void)
+SUITE(gauge)
 {
-  TCase *tests = tcase_create("gauge");
   tcase_add_loop_test(tests, the_two_form_stays_and_the_momenta_move_by_the_gradient, 0, PLACES);
   tcase_add_loop_test(tests, in_another_gauge_the_trajectory_is_the_same_to_the_methods_order, 0, PLACES);
   tcase_add_loop_test(tests, a_gauge_brings_systems_into_the_class_of_one_step_methods, 0, IN_CLASS);
   tcase_add_loop_test(tests, a_gauge_is_the_one_form_that_it_gives, 0, 2);
   tcase_add_test(tests, bad_gauges_are_refused_and_wrong_ones_found);
   tcase_add_test(tests, a_system_in_another_gauge_survives_every_failure_of_memory);
-  return run_tests("system/gauge", tests);
 }

@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "support/suite.h"
-#include "support/systems.h"
+#include "support/systems/systems.h"
 
 static behaviour quiet;
 
@@ -145,14 +145,12 @@ START_TEST(missing_arguments_are_refused)
 }
 END_TEST
 
-int main(void)
+SUITE(invariants)
 {
-  TCase *tests = tcase_create("invariants");
   tcase_add_test(tests, energy_momenta_and_declared_invariants_come_in_this_order);
   tcase_add_test(tests, the_values_are_those_of_their_definitions);
   tcase_add_test(tests, the_energy_of_a_general_lagrangian_uses_the_inverse_legendre_map);
   tcase_add_loop_test(tests, a_generator_that_fails_is_named, 0, 2);
   tcase_add_test(tests, an_invariant_that_is_not_finite_is_named);
   tcase_add_test(tests, missing_arguments_are_refused);
-  return run_tests("system/invariants", tests);
 }

@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "support/suite.h"
-#include "support/systems.h"
+#include "support/systems/systems.h"
 
 static behaviour quiet;
 
@@ -235,9 +235,8 @@ START_TEST(missing_and_not_finite_arguments_are_refused)
 }
 END_TEST
 
-int main(void)
+SUITE(legendre)
 {
-  TCase *tests = tcase_create("legendre");
   tcase_add_loop_test(tests, a_mass_that_depends_on_q_is_inverted_from_any_guess, 0, 3);
   tcase_add_test(tests, a_body_at_rest_is_found_in_spite_of_a_magnetic_momentum);
   tcase_add_test(tests, velocities_at_the_roundoff_of_the_momentum_are_found);
@@ -248,5 +247,4 @@ int main(void)
   tcase_add_test(tests, a_failing_callback_keeps_its_status_and_the_guess);
   tcase_add_test(tests, results_that_overflow_are_not_finite);
   tcase_add_test(tests, missing_and_not_finite_arguments_are_refused);
-  return run_tests("system/legendre", tests);
 }

@@ -262,9 +262,8 @@ START_TEST(a_start_that_is_rounded_where_the_one_form_vanishes_is_not_off_the_co
 }
 END_TEST
 
-int main(void)
+SUITE(one_form)
 {
-  TCase *tests = tcase_create("one-form");
   tcase_add_test(tests, values_momenta_and_two_form_are_those_of_the_definition);
   tcase_add_test(tests, the_velocity_solves_the_equations_of_motion);
   tcase_add_test(tests, a_wrong_gradient_is_found);
@@ -277,5 +276,4 @@ int main(void)
   tcase_add_test(tests, a_start_off_the_constraint_is_projected_on_request);
   tcase_add_test(tests, without_a_one_form_a_projection_changes_nothing);
   tcase_add_test(tests, a_start_that_is_rounded_where_the_one_form_vanishes_is_not_off_the_constraint);
-  return run_tests("system/one_form", tests);
 }

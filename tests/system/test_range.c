@@ -5,7 +5,7 @@
 
 #include "support/runs.h"
 #include "support/suite.h"
-#include "support/systems.h"
+#include "support/systems/systems.h"
 
 enum { LENGTH = 11 };
 
@@ -264,9 +264,8 @@ START_TEST(a_range_that_fails_ends_the_check_with_its_status)
 }
 END_TEST
 
-int main(void)
+SUITE(range)
 {
-  TCase *tests = tcase_create("range");
   tcase_add_test(tests, a_bad_reach_is_refused_by_name);
   tcase_add_loop_test(tests, a_range_alone_serves_every_method, 0, 5);
   tcase_add_loop_test(tests, where_waves_are_not_possible_auto_sweeps_plainly_and_says_why, 0, 3);
@@ -277,5 +276,4 @@ int main(void)
   tcase_add_test(tests, a_range_that_writes_behind_its_end_is_found);
   tcase_add_test(tests, a_wrong_gradient_is_named_before_its_ranges);
   tcase_add_test(tests, a_range_that_fails_ends_the_check_with_its_status);
-  return run_tests("system/range", tests);
 }

@@ -1,7 +1,7 @@
 /* labels: unit */
 /* Potentials that are declared fast or quadratic: the parts of a system, and what the check finds. */
 #include "support/suite.h"
-#include "support/systems.h"
+#include "support/systems/systems.h"
 #include "system/evaluate/evaluator.h"
 #include "system/part.h"
 
@@ -115,12 +115,10 @@ START_TEST(a_part_without_potentials_is_free)
 }
 END_TEST
 
-int main(void)
+SUITE(speed)
 {
-  TCase *tests = tcase_create("speed");
   tcase_add_loop_test(tests, a_quadratic_potential_passes_and_its_linear_part_may_move, 0, 2);
   tcase_add_loop_test(tests, a_potential_that_is_not_quadratic_although_it_is_declared_so_is_named, 0, 4);
   tcase_add_test(tests, the_parts_of_a_system_add_up_to_it);
   tcase_add_test(tests, a_part_without_potentials_is_free);
-  return run_tests("speed", tests);
 }

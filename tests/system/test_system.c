@@ -4,7 +4,7 @@
 
 #include "core/memory.h"
 #include "support/suite.h"
-#include "support/systems.h"
+#include "support/systems/systems.h"
 #include "system/system.h"
 
 static behaviour quiet;
@@ -333,9 +333,8 @@ START_TEST(everything_declared_is_copied)
 }
 END_TEST
 
-int main(void)
+SUITE(system)
 {
-  TCase *tests = tcase_create("system");
   tcase_add_test(tests, a_dimension_below_one_is_refused);
   tcase_add_test(tests, negative_counts_are_refused);
   tcase_add_test(tests, lists_that_are_missing_are_refused);
@@ -360,5 +359,4 @@ int main(void)
   tcase_add_test(tests, the_patterns_are_the_unions_over_the_terms);
   tcase_add_test(tests, a_constant_mass_has_an_empty_mixed_block);
   tcase_add_test(tests, everything_declared_is_copied);
-  return run_tests("system/system", tests);
 }

@@ -441,9 +441,8 @@ START_TEST(every_failure_of_memory_is_survived)
 }
 END_TEST
 
-int main(void)
+SUITE(taylor)
 {
-  TCase *tests = tcase_create("taylor");
   tcase_add_test(tests, series_of_the_variable_itself_are_those_of_the_books);
   tcase_add_test(tests, operations_undo_each_other);
   tcase_add_test(tests, the_integral_of_a_quotient_is_the_arc_tangent);
@@ -460,5 +459,4 @@ int main(void)
   tcase_add_test(tests, a_coefficient_that_is_not_finite_is_named);
   tcase_add_test(tests, a_term_without_coefficients_is_named);
   tcase_add_test(tests, every_failure_of_memory_is_survived);
-  return run_tests("system/taylor", tests);
 }

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "support/suite.h"
-#include "support/systems.h"
+#include "support/systems/systems.h"
 #include "system/evaluate/evaluator.h"
 
 /* Rotors and wells depend on time, springs do not. */
@@ -202,9 +202,8 @@ START_TEST(no_system_is_not_autonomous)
 }
 END_TEST
 
-int main(void)
+SUITE(time)
 {
-  TCase *tests = tcase_create("time");
   tcase_add_loop_test(tests, right_rates_pass, ONE_POINT, BATCH + 1);
   tcase_add_loop_test(tests, a_wrong_rate_is_named_with_both_numbers, 0, 3);
   tcase_add_test(tests, a_term_that_changes_with_time_although_the_system_is_declared_autonomous_is_named);
@@ -215,5 +214,4 @@ int main(void)
   tcase_add_test(tests, the_rates_of_an_autonomous_system_are_known_to_be_zero);
   tcase_add_loop_test(tests, a_term_without_its_rate_is_named, 0, 3);
   tcase_add_test(tests, no_system_is_not_autonomous);
-  return run_tests("system/time", tests);
 }

@@ -202,9 +202,8 @@ START_TEST(null_arguments_are_refused)
 }
 END_TEST
 
-int main(void)
+SUITE(transformed)
 {
-  TCase *tests = tcase_create("transformed");
   tcase_add_loop_test(tests, its_derivatives_are_those_of_its_value, 0, PLACES);
   tcase_add_test(tests, its_value_is_the_definition);
   tcase_add_test(tests, pairs_of_bodies_are_summed);
@@ -212,5 +211,4 @@ int main(void)
   tcase_add_test(tests, specifications_are_read);
   tcase_add_loop_test(tests, wrong_specifications_are_refused_with_a_sentence, 0, WRONG);
   tcase_add_test(tests, null_arguments_are_refused);
-  return run_tests("transformed", tests);
 }

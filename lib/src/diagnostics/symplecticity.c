@@ -28,7 +28,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "system/system.h"
+#include "system/evaluate/dynamics.h"
 
 enum {
   ORDERS = 6, /* entries of a row of the extrapolation: even powers of the length up to the 10th are removed */
@@ -114,7 +114,7 @@ static dvi_status choose_scales(const step_map *map)
   dvi_status status = v ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "symplecticity: no memory for %d velocities", n);
   if (status == DVI_OK) status = dvi_system_velocity(dvi_integrator_system(map->probe), map->t, q, p, v);
   if (status == DVI_OK) coordinate_scales(n, q, v, map->h, map->scale);
-  if (dvi_integrator_system(map->probe)->terms & DVI__CANONICAL)
+  if (dvi_integrator_system(map->probe)->dynamics->by_momentum)
     coordinate_scales(n, p, v, 0, map->scale + n);
   else
     for (int i = 0; status == DVI_OK && i < n; i++) status = momentum_scale(map, v, i, &map->scale[n + i]);
@@ -269,11 +269,11 @@ static dvi_status check(const dvi_integrator *integrator, const double *q, const
   if (!integrator || !q || !p || !defect) return dvi__fail(DVI_BAD_ARGUMENT, "symplecticity: an argument is NULL");
   if (!isfinite(h) || h == 0) return dvi__fail(DVI_BAD_ARGUMENT, "symplecticity: h = %g, a finite step other than 0 is needed", h);
   const dvi_system *system = dvi_integrator_system(integrator);
-  if (system->terms & DVI__FACTORS)
+  if (system->dynamics->on_manifold)
     return dvi__fail(DVI_UNSUPPORTED,
                      "symplecticity: the %d coordinates of a system with factors, and its momenta, are no canonical coordinates",
                      dvi_system_nq(system));
-  if (system->terms & (DVI__ONE_FORM | DVI__HAMILTONIAN))
+  if (system->dynamics->constraint != NULL)
     return dvi__fail(DVI_UNSUPPORTED,
                      "symplecticity: the system is degenerate, and no step starts off its constraint, where the map would be "
                      "differenced; use dvi_loop_integral over a loop of starts");

@@ -5,7 +5,7 @@
 #include "core/hash.h"
 #include "core/status.h"
 #include "integrator/integrator_struct.h"
-#include "system/evaluate/dirac.h"
+#include "system/evaluate/dynamics.h"
 
 /* Another machine's mathematical functions differ by a few roundings; other parameters by more
  * than this. */
@@ -24,13 +24,10 @@ static dvi__sum weighted(int count, const double *numbers)
 
 static dvi_status constraint(const dvi_integrator *I, const double *q, const double *p, dvi__sum *distance)
 {
-  if (I->system->terms & DVI__HAMILTONIAN) {
-    DVI_TRY(dvi__dirac_size(I->evaluator, q, p, &distance->size));
-    return dvi__dirac_distance(I->evaluator, q, p, &distance->value);
-  }
-  if (!(I->system->terms & DVI__ONE_FORM)) return DVI_OK;
-  DVI_TRY(dvi__form_size(I->evaluator, q, &distance->size));
-  return dvi__form_distance(I->evaluator, q, p, &distance->value);
+  const dvi__state_constraint *of_states = I->system->dynamics->constraint;
+  if (of_states == NULL) return DVI_OK;
+  DVI_TRY(of_states->size(I->evaluator, q, p, &distance->size));
+  return of_states->distance(I->evaluator, q, p, &distance->value);
 }
 
 static dvi_status monitor(const dvi_integrator *I, const double *q, dvi__fingerprint *f)
@@ -47,11 +44,11 @@ static dvi_status take(const dvi_integrator *I, const dvi__moment *at, dvi__fing
 {
   const int n = I->system->n;
   double *v = I->v, *forces = I->last_v;
-  const double *second = I->system->terms & DVI__PHASE_SPACE ? at->p : v;
-  if (I->system->cells == NULL) dvi__guess_velocity(n, at->q, at->last_q, at->last_p, at->last_h, v);
+  const double *second = dvi__second(I->system, v, at->p);
+  if (I->system->dynamics->searches_velocity) dvi__guess_velocity(n, at->q, at->last_q, at->last_p, at->last_h, v);
   DVI_TRY(dvi__legendre_inverse(I->evaluator, at->t, at->q, at->p, v));
-  DVI_TRY(dvi__state_lagrangian(I->evaluator, at->t, at->q, second, &f->lagrangian.value));
-  DVI_TRY(dvi__state_forces(I->evaluator, at->t, at->q, second, forces));
+  DVI_TRY(I->system->dynamics->value(I->evaluator, at->t, at->q, second, &f->lagrangian.value));
+  DVI_TRY(I->system->dynamics->forces(I->evaluator, at->t, at->q, second, forces));
   f->lagrangian.size = fabs(f->lagrangian.value);
   for (int i = 0; i < n; i++) f->lagrangian.size += fabs(at->p[i] * v[i]);
   f->forces = weighted(n, forces);

@@ -8,89 +8,12 @@
 #include "integrator/attempt.h"
 #include "num/finite.h"
 #include "space/given.h"
-#include "system/evaluate/dirac.h"
-
-/* ---- create, destroy ---- */
+#include "system/evaluate/dynamics.h"
 
 void dvi__state_lay_out(dvi__state *state, double **at, size_t n)
 {
   double **const part[] = {&state->q, &state->p, &state->q_carry, &state->p_carry};
   for (int i = 0; i < 4; i++, *at += n) *part[i] = *at;
-}
-
-static dvi_status allocate(dvi_integrator *I)
-{
-  const size_t n = (size_t)I->system->n;
-  dvi__attempt_extend(I);
-  double *at = I->numbers = DVI_NEW(double, 14 * n);
-  I->stepper.memory = DVI_NEW(double, I->stepper.memory_count);
-  I->memory_before = DVI_NEW(double, I->stepper.memory_count);
-  if (I->numbers == NULL || I->stepper.memory == NULL || I->memory_before == NULL)
-    return dvi__fail(DVI_NO_MEMORY, "integrator: no memory for %zu coordinates", n);
-  dvi__state_lay_out(&I->now, &at, n);
-  dvi__state_lay_out(&I->last, &at, n);
-  dvi__state_lay_out(&I->next, &at, n);
-  I->v = at;
-  I->last_v = at + n;
-  DVI_TRY(dvi__attempt_allocate(I));
-  return dvi__evaluator_create(I->system, 1, DVI__STATES, &I->counters, &I->evaluator);
-}
-
-static dvi_status fill(dvi_integrator *I, const char *method, const dvi_shapes *shapes, const dvi_monitor *monitor,
-                       dvi__pacing pacing)
-{
-  if (shapes != NULL) I->shapes = dvi__shapes_copy(shapes);
-  if (shapes != NULL && I->shapes == NULL) return dvi__fail(DVI_NO_MEMORY, "integrator: no memory for the shapes %s", shapes->name);
-  if (monitor != NULL) DVI_TRY(dvi__pace_create(I->system, monitor, pacing, &I->counters, &I->pace));
-  DVI_TRY(dvi__stepper_create(dvi__pace_system(I->pace, I->system), method, I->shapes, &I->counters, &I->stepper));
-  return allocate(I);
-}
-
-dvi_status dvi__integrator_make(const dvi_system *system, const char *method, const dvi_shapes *shapes, const dvi_monitor *monitor,
-                                dvi__pacing pacing, dvi_integrator **integrator)
-{
-  if (integrator == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "integrator: no place for the result");
-  *integrator = NULL;
-  if (system == NULL || method == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "integrator: the system or the method is NULL");
-  const long before = dvi__allocation_count();
-  dvi_integrator *I = DVI_NEW(dvi_integrator, 1);
-  if (I == NULL) return dvi__fail(DVI_NO_MEMORY, "integrator: no memory");
-  I->system = system;
-  const dvi_status status = fill(I, method, shapes, monitor, pacing);
-  I->counters.allocations = dvi__allocation_count() - before;
-  if (status != DVI_OK) dvi_integrator_destroy(&I);
-  *integrator = I;
-  return status;
-}
-
-dvi_status dvi_integrator_create(const dvi_system *system, const char *method, dvi_integrator **integrator)
-{
-  return dvi__integrator_make(system, method, NULL, NULL, DVI__TRANSFORM, integrator);
-}
-
-dvi_status dvi_integrator_create_shaped(const dvi_system *system, const dvi_shapes *shapes, const char *method,
-                                        dvi_integrator **integrator)
-{
-  if (integrator == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "integrator: no place for the result");
-  *integrator = NULL;
-  DVI_TRY(dvi__shapes_check(shapes));
-  return dvi__integrator_make(system, method, shapes, NULL, DVI__TRANSFORM, integrator);
-}
-
-void dvi_integrator_destroy(dvi_integrator **integrator)
-{
-  if (integrator == NULL || *integrator == NULL) return;
-  dvi_integrator *I = *integrator;
-  dvi__release(I->stepper.memory);
-  dvi__stepper_destroy(&I->stepper);
-  dvi__pace_destroy(&I->pace);
-  dvi__evaluator_destroy(&I->evaluator);
-  dvi__release(I->numbers);
-  dvi__release(I->memory_before);
-  dvi__attempt_clear(I);
-  dvi__release(I->shapes);
-  dvi__release(I);
-  *integrator = NULL;
 }
 
 /* ---- start ---- */
@@ -109,10 +32,10 @@ static dvi_status check_start(const dvi_integrator *I, double t, const double *q
 static dvi_status start(dvi_integrator *I, double t, const double *q, const double *v, const double *p)
 {
   const size_t bytes = (size_t)I->system->n * sizeof(double), v_bytes = (size_t)I->system->nv * sizeof(double);
-  const double *w = I->pace != NULL ? I->last_v : v, *second = I->system->terms & DVI__PHASE_SPACE ? p : v;
+  const double *w = I->pace != NULL ? I->last_v : v, *second = dvi__second(I->system, v, p);
   double L, density = 0;
-  DVI_TRY(dvi__state_lagrangian(I->evaluator, t, q, second, &L));
-  DVI_TRY(dvi__state_forces(I->evaluator, t, q, second, I->next.p_carry));
+  DVI_TRY(I->system->dynamics->value(I->evaluator, t, q, second, &L));
+  DVI_TRY(I->system->dynamics->forces(I->evaluator, t, q, second, I->next.p_carry));
   if (I->pace != NULL) DVI_TRY(dvi__pace_start(I, t, q, v, p, I->last_v, &density));
   memmove(I->now.q, q, bytes);
   memmove(I->now.p, p, v_bytes);
@@ -135,24 +58,18 @@ static dvi_status verdict(const dvi_integrator *I, double t, dvi_status status)
   return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "%s: cannot start at t = %.6g", I->stepper.method->name, t);
 }
 
-/* Project a start in the integrator's own memory: onto p = alpha(q) by p, onto phi(q,p) = 0 by both; v [n] is zero. */
-static dvi_status project_start(dvi_integrator *I, double t, const double *v, const double **q, const double **p)
+/* Project a start onto the constraint of all states, in the integrator's own memory; or check it. */
+static dvi_status constrain_start(dvi_integrator *I, double t, int project, const double **q, const double **p)
 {
-  const size_t n = (size_t)I->system->n;
-  memmove(I->next.p, *p, n * sizeof(double));
-  memmove(I->next.q, *q, n * sizeof(double));
+  const dvi__state_constraint *constraint = I->system->dynamics->constraint;
+  const size_t bytes = (size_t)I->system->n * sizeof(double);
+  if (constraint == NULL) return DVI_OK;
+  if (!project) return constraint->check(I->evaluator, *q, *p);
+  memmove(I->next.p, *p, bytes);
+  memmove(I->next.q, *q, bytes);
   *q = I->next.q;
   *p = I->next.p;
-  if (I->system->terms & DVI__HAMILTONIAN) return dvi__dirac_project(I->evaluator, I->next.q);
-  return dvi__lagrangian_gradient(I->evaluator, 1, &t, *q, v, NULL, I->next.p);
-}
-
-static dvi_status constrain(dvi_integrator *I, double t, const double *v, int project, const double **q, const double **p)
-{
-  if (!(I->system->terms & (DVI__ONE_FORM | DVI__HAMILTONIAN))) return DVI_OK;
-  if (project) return project_start(I, t, v, q, p);
-  return I->system->terms & DVI__ONE_FORM ? dvi__form_constraint(I->evaluator, *q, *p)
-                                          : dvi__dirac_constraint(I->evaluator, *q, *p);
+  return constraint->project(I->evaluator, t, I->next.q, I->next.p);
 }
 
 dvi_status dvi_integrator_start_with(dvi_integrator *I, double t, const double *q, const double *p,
@@ -162,7 +79,7 @@ dvi_status dvi_integrator_start_with(dvi_integrator *I, double t, const double *
   double *v = I->next.q_carry;
   memset(v, 0, (size_t)I->system->nv * sizeof(double));
   dvi_status status = check_start(I, t, q, p, 'p');
-  if (status == DVI_OK) status = constrain(I, t, v, options != NULL && options->project, &q, &p);
+  if (status == DVI_OK) status = constrain_start(I, t, options != NULL && options->project, &q, &p);
   if (status == DVI_OK) status = dvi__legendre_inverse(I->evaluator, t, q, p, v);
   if (status == DVI_OK) status = start(I, t, q, v, p);
   return verdict(I, t, status);
@@ -178,9 +95,9 @@ dvi_status dvi_integrator_start_velocity(dvi_integrator *I, double t, const doub
   if (I == NULL || q == NULL || v == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "start: an argument is NULL");
   double *p = I->next.p;
   dvi_status status = check_start(I, t, q, v, 'v');
-  if (status == DVI_OK && I->system->terms & DVI__PHASE_SPACE)
+  if (status == DVI_OK && I->system->dynamics->by_momentum)
     status = dvi__fail(DVI_UNSUPPORTED, "the system declares a Hamiltonian; start with q and p");
-  if (status == DVI_OK) status = dvi__state_momentum(I->evaluator, t, q, v, p);
+  if (status == DVI_OK) status = I->system->dynamics->momentum(I->evaluator, t, q, v, p);
   if (status == DVI_OK && dvi__first_not_finite((size_t)I->system->nv, p) >= 0)
     status = dvi__fail(DVI_NOT_FINITE, "the momentum is not finite");
   if (status == DVI_OK) status = dvi__legendre_regular(I->evaluator, t, q, v);
@@ -208,33 +125,29 @@ static dvi_status check_state(const dvi_integrator *I)
   return dvi__fail(DVI_NOT_FINITE, "the new state is not finite");
 }
 
-static dvi_status find_side(const dvi_integrator *I, dvi__state *state)
-{
-  if (I->system->terms & DVI__HAMILTONIAN) return dvi__dirac_side(I->evaluator, state->q, state->p, &state->side);
-  return dvi__two_form_side(I->evaluator, state->q, &state->side);
-}
-
-/* No trajectory goes through a point where the two-form, or the bracket matrix, is singular, but a step can go over it, and is on none then. */
+/* No trajectory goes through a point where the constraint's matrix is singular, but a step can go over
+ * it, and is on none then. */
 static dvi_status check_side(dvi_integrator *I)
 {
-  if (!(I->system->terms & (DVI__ONE_FORM | DVI__HAMILTONIAN))) return DVI_OK;
-  if (I->now.side == 0) DVI_TRY(find_side(I, &I->now));
-  DVI_TRY(find_side(I, &I->next));
+  const dvi__state_constraint *constraint = I->system->dynamics->constraint;
+  if (constraint == NULL) return DVI_OK;
+  if (I->now.side == 0) DVI_TRY(constraint->side(I->evaluator, I->now.q, I->now.p, &I->now.side));
+  DVI_TRY(constraint->side(I->evaluator, I->next.q, I->next.p, &I->next.side));
   if (I->next.side == I->now.side) return DVI_OK;
   return dvi__fail(DVI_NOT_CONVERGED, "the step leads over a point where the %s is singular, beyond which no trajectory goes on",
-                   I->system->terms & DVI__HAMILTONIAN ? "constraints' bracket matrix" : "two-form of the one-form");
+                   constraint->matrix);
 }
 
 /* A step of the method that failed, with the reason if it is where the trajectory ends. `next` is spoilt already. */
 static dvi_status name_end(const dvi_integrator *I, double h, dvi_status status)
 {
   char sentence[1024];
-  if (!(I->system->terms & DVI__ONE_FORM) || I->pace != NULL || (status < 0 && status != DVI_SINGULAR)) return status;
+  const dvi__state_constraint *constraint = I->system->dynamics->constraint;
+  if (constraint == NULL || constraint->ends == NULL || I->pace != NULL || (status < 0 && status != DVI_SINGULAR)) return status;
   (void)snprintf(sentence, sizeof sentence, "%s", dvi_last_error());
-  const int ends = dvi__two_form_ends(I->evaluator, I->now.t, I->now.q, h, I->next.p, I->next.q);
-  return dvi__fail(status, "%s%s", sentence,
-                   ends ? "; the two-form of the one-form becomes singular within this step, and no trajectory goes on from there"
-                        : "");
+  if (!constraint->ends(I->evaluator, I->now.t, I->now.q, h, I->next.p, I->next.q)) return dvi__fail(status, "%s", sentence);
+  return dvi__fail(status, "%s; the %s becomes singular within this step, and no trajectory goes on from there", sentence,
+                   constraint->matrix);
 }
 
 static void accept(dvi_integrator *I, double h)
@@ -412,7 +325,7 @@ void dvi__guess_velocity(int n, const double *q, const double *last_q, const dou
 /* The velocity of one of the two states. */
 static dvi_status velocity(dvi_integrator *I, const dvi__state *state, double *v)
 {
-  if (I->system->cells == NULL) dvi__guess_velocity(I->system->n, I->now.q, I->last.q, I->last.p, I->last_h, v);
+  if (I->system->dynamics->searches_velocity) dvi__guess_velocity(I->system->n, I->now.q, I->last.q, I->last.p, I->last_h, v);
   return dvi__legendre_inverse(I->evaluator, state->t, state->q, state->p, v);
 }
 
@@ -438,11 +351,11 @@ dvi_status dvi_integrator_invariant(dvi_integrator *I, int i, double *value)
 dvi_status dvi_integrator_constraint(dvi_integrator *I, double *distance)
 {
   if (I == NULL || distance == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "constraint: an argument is NULL");
-  if (!(I->system->terms & (DVI__ONE_FORM | DVI__HAMILTONIAN)))
+  const dvi__state_constraint *constraint = I->system->dynamics->constraint;
+  if (constraint == NULL)
     return dvi__fail(DVI_UNSUPPORTED, "constraint: the system declares neither a one-form nor a Hamiltonian with constraints");
   if (!I->started) return dvi__fail(DVI_BAD_STATE, "constraint: the integrator has no state yet; call dvi_integrator_start first");
-  if (I->system->terms & DVI__HAMILTONIAN) return dvi__dirac_distance(I->evaluator, I->now.q, I->now.p, distance);
-  return dvi__form_distance(I->evaluator, I->now.q, I->now.p, distance);
+  return constraint->distance(I->evaluator, I->now.q, I->now.p, distance);
 }
 
 const double *dvi_integrator_multiplier(const dvi_integrator *I)
@@ -490,13 +403,13 @@ dvi_status dvi_integrator_interpolate(dvi_integrator *I, double t, double *q, do
   if (!(tau >= -rounding && tau <= 1 + rounding))
     return dvi__fail(DVI_BAD_ARGUMENT, "interpolate: t = %.17g is outside of the last step, %.17g to %.17g", t, I->last.t,
                      I->now.t);
-  if (I->stepper.method->path == NULL && I->system->cells != NULL)
+  if (I->stepper.method->path == NULL && I->system->dynamics->on_manifold)
     return dvi__fail(DVI_UNSUPPORTED,
                      "interpolate: %s has no path between its steps, and a cubic would leave the rotations; "
                      "lie-verlet and lie-galerkin have one",
                      I->stepper.method->name);
   if (I->stepper.method->path == NULL) return hermite(I, tau, q, v);
-  if (I->pace != NULL && I->pace->pacing == DVI__TRANSFORM) return dvi__pace_path(I, tau, q, v);
+  if (I->pace != NULL && I->pace->pacing == DVI_TIME_TRANSFORM) return dvi__pace_path(I, tau, q, v);
   I->stepper.method->path(&I->stepper, I->last.q, I->last_h, tau, q, v);
   const size_t n = (size_t)I->system->n, nv = (size_t)I->system->nv;
   if ((q == NULL || dvi__first_not_finite(n, q) < 0) && (v == NULL || dvi__first_not_finite(nv, v) < 0)) return DVI_OK;

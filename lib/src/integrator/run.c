@@ -1,17 +1,121 @@
-/* The driver of a run. */
+/* A run of an integrator: what the loop of room march asks, in coordinates and velocities. */
 #include <dvi/run.h>
-#include <float.h>
 #include <math.h>
-#include <stdio.h>
 
+#include "core/memory.h"
 #include "core/status.h"
-#include "integrator/event.h"
 #include "integrator/integrator_struct.h"
+#include "march/march.h"
 
-/* The last step may be longer than h by this part of it. */
-static const double stretch = 1e-9;
-/* Of more steps a number of double precision does not know how many they are. */
-static const double steps_max = 0x1p53;
+typedef struct mechanics {
+  dvi_integrator *integrator;
+  const dvi_run_options *options;
+  double *q, *v; /* [nq], [nv] at an event */
+} mechanics;
+
+static double time_of(const void *of)
+{
+  return dvi_integrator_time(((const mechanics *)of)->integrator);
+}
+
+/* The clock's carry matters where the time is large: rounded it may miss much of a step. */
+static double time_left(const void *of, double t_end)
+{
+  const dvi_integrator *I = ((const mechanics *)of)->integrator;
+  return (t_end - I->now.t) + I->now.t_carry;
+}
+
+static long steps_of(const void *of)
+{
+  return ((const mechanics *)of)->integrator->counters.steps;
+}
+
+/* A step of a method that chooses its length ends the run where it is to end: one that goes past is
+ * replaced by an ordinary one of what is left. */
+static dvi_status advance(void *of, double h, double t_end, double tolerance)
+{
+  dvi_integrator *I = ((const mechanics *)of)->integrator;
+  const double forward = h > 0 ? 1 : -1, left = time_left(of, t_end);
+  if (I->pace != NULL) return dvi__pace_step(I, h, t_end, tolerance);
+  DVI_TRY(dvi_integrator_step(I, h));
+  if (!dvi_integrator_chooses_steps(I)) return DVI_OK;
+  if (forward * (I->now.t - t_end) <= tolerance) return DVI_OK;
+  dvi__integrator_take_back(I);
+  return dvi__integrator_step_exactly(I, left);
+}
+
+static void take_back(void *of)
+{
+  dvi__integrator_take_back(((const mechanics *)of)->integrator);
+}
+
+static dvi_status reject(void *of, dvi_status status)
+{
+  return dvi__integrator_undo(((const mechanics *)of)->integrator, status);
+}
+
+static int observe(void *of)
+{
+  const mechanics *m = of;
+  return m->options->observe(m->integrator, m->options->user);
+}
+
+static dvi_status save(const void *of, const char *path)
+{
+  return dvi_integrator_save(((const mechanics *)of)->integrator, path);
+}
+
+/* ---- events ---- */
+
+static const char *name_of(const dvi_event *event)
+{
+  return event->name != NULL ? event->name : "unnamed";
+}
+
+static dvi__watched watched(const void *of, int k)
+{
+  const dvi_event *event = &((const mechanics *)of)->options->events[k];
+  return (dvi__watched){event->direction, event->terminal};
+}
+
+static dvi_status ask(const dvi_event *event, double t, const double *q, const double *v, double *g)
+{
+  const int returned = event->value(t, q, v, g, event->user);
+  if (returned != 0)
+    return dvi__fail(returned < 0 ? DVI_CALLBACK_FAILED : DVI_CALLBACK_RETRY, "event '%s': the callback returned %d at t = %.9g",
+                     name_of(event), returned, t);
+  return isfinite(*g) ? DVI_OK : dvi__fail(DVI_NOT_FINITE, "event '%s' is %g at t = %.9g", name_of(event), *g, t);
+}
+
+/* On the last step's path. */
+static dvi_status value_on_path(void *of, int k, double t, double *g)
+{
+  const mechanics *m = of;
+  DVI_TRY(dvi_integrator_interpolate(m->integrator, t, m->q, m->v));
+  return ask(&m->options->events[k], t, m->q, m->v, g);
+}
+
+/* By the state itself: there is no step yet to interpolate on. */
+static dvi_status value_at_start(void *of, int k, double *g)
+{
+  const mechanics *m = of;
+  const dvi_integrator *I = m->integrator;
+  const size_t n = (size_t)I->system->nv;
+  for (size_t i = 0; i < n; i++) m->v[i] = 0;
+  DVI_TRY(dvi_system_velocity(I->system, I->now.t, I->now.q, I->now.p, m->v));
+  return ask(&m->options->events[k], I->now.t, I->now.q, m->v, g);
+}
+
+static dvi_status occurred(void *of, int k, double t, int *returned)
+{
+  const mechanics *m = of;
+  const dvi_event *event = &m->options->events[k];
+  if (event->occurred == NULL) return DVI_OK;
+  DVI_TRY(dvi_integrator_interpolate(m->integrator, t, m->q, m->v));
+  *returned = event->occurred(t, m->q, m->v, event->user);
+  if (*returned >= 0) return DVI_OK;
+  return dvi__fail(DVI_CALLBACK_FAILED, "event '%s': the callback at t = %.9g failed with %d", name_of(event), t, *returned);
+}
 
 static dvi_status check_events(const dvi_run_options *options)
 {
@@ -29,139 +133,56 @@ static dvi_status check_events(const dvi_run_options *options)
   return DVI_OK;
 }
 
-/* What sums of steps may miss the end by: a few roundings of the times. */
-static double clock_error(const dvi_integrator *I, const dvi_run_options *options)
+/* ---- a run ---- */
+
+static dvi_status run(mechanics *m, dvi_run_report *report)
 {
-  return 16 * DBL_EPSILON * fmax(fabs(options->t_end), fabs(dvi_integrator_time(I)));
+  const dvi_integrator *I = m->integrator;
+  const dvi_run_options *given = m->options;
+  const dvi__marcher marcher = {.time = time_of,
+                                .left = time_left,
+                                .steps = steps_of,
+                                .advance = advance,
+                                .take_back = take_back,
+                                .reject = reject,
+                                .event = watched,
+                                .value = value_on_path,
+                                .value_at_start = value_at_start,
+                                .occurred = occurred,
+                                .observe = given->observe != NULL ? observe : NULL,
+                                .save = save};
+  const dvi__march_options options = {.h = given->h,
+                                      .t_end = given->t_end,
+                                      .chooses_steps = dvi_integrator_chooses_steps(I),
+                                      .counts_by_time = I->pace == NULL,
+                                      .every = given->every,
+                                      .event_count = given->event_count,
+                                      .checkpoint = given->checkpoint,
+                                      .checkpoint_every = given->checkpoint_every,
+                                      .cancel = given->cancel};
+  return dvi__march(m, &marcher, &options, report);
 }
 
-static dvi_status check(const dvi_integrator *I, const dvi_run_options *options)
+static dvi_status reserve(mechanics *m)
 {
-  if (I == NULL || options == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "run: an argument is NULL");
-  if (!I->started) return dvi__fail(DVI_BAD_STATE, "run: the integrator has no state yet; call dvi_integrator_start first");
-  const double way = options->t_end - dvi_integrator_time(I);
-  if (!isfinite(options->h) || options->h == 0)
-    return dvi__fail(DVI_BAD_ARGUMENT, "run: h = %g; a finite step other than 0 is needed", options->h);
-  if (!isfinite(options->t_end)) return dvi__fail(DVI_BAD_ARGUMENT, "run: t_end = %g is not finite", options->t_end);
-  if (fabs(way) > clock_error(I, options) && (way > 0) != (options->h > 0))
-    return dvi__fail(DVI_BAD_ARGUMENT, "run: h = %g leads away from t_end = %g; the time is %g", options->h, options->t_end,
-                     dvi_integrator_time(I));
-  if (I->pace == NULL && !(fabs(way / options->h) <= steps_max))
-    return dvi__fail(DVI_BAD_ARGUMENT,
-                     "run: h = %g makes %.3g steps to t_end = %g; at most 2^53 can be counted; take a longer step or a nearer end",
-                     options->h, way / options->h, options->t_end);
-  if (options->every < 0 || options->checkpoint_every < 0)
-    return dvi__fail(DVI_BAD_ARGUMENT, "run: every = %ld, checkpoint_every = %ld; 0 or more are possible", options->every,
-                     options->checkpoint_every);
-  if (options->checkpoint_every > 0 && options->checkpoint == NULL)
-    return dvi__fail(DVI_BAD_ARGUMENT, "run: checkpoint_every = %ld, but no checkpoint file is named", options->checkpoint_every);
-  return check_events(options);
-}
-
-static dvi_status observe(dvi_integrator *I, const dvi_run_options *options, dvi_run_report *report, int *stop)
-{
-  if (options->observe == NULL) return DVI_OK;
-  const long steps = I->counters.steps;
-  const double t = I->now.t;
-  const int returned = options->observe(I, options->user);
-  if (I->counters.steps != steps || I->now.t != t)
-    return dvi__fail(DVI_BAD_STATE, "run: the observer has moved the integrator from t = %.9g; it may only look at it", t);
-  if (returned < 0)
-    return dvi__fail(DVI_CALLBACK_FAILED, "run: the observer failed with %d at t = %.9g", returned, dvi_integrator_time(I));
-  if (returned > 0) {
-    report->end = DVI_RUN_STOPPED;
-    *stop = 1;
-  }
-  return DVI_OK;
-}
-
-/* The next step's length: h, or what is left of the way, or 0 at its end. An h that divides the way but for the digits that it was given
- * with is stretched in the last step. The clock's carry matters where the time is large: rounded it may miss much of a step. */
-static double next_step(const dvi_integrator *I, const dvi_run_options *options)
-{
-  const double left = (options->t_end - I->now.t) + I->now.t_carry, h = options->h, missed = clock_error(I, options);
-  if (fabs(left) <= missed) return 0;
-  if (dvi_integrator_chooses_steps(I)) return h;
-  if (fabs(left - h) <= missed) return h;
-  return left / h <= 1 + stretch ? left : h;
-}
-
-/* A step of a method that chooses its length ends the run where it is to end: one that goes past is replaced by an ordinary one of what is left. */
-static dvi_status take_step(dvi_integrator *I, const dvi_run_options *options, double h)
-{
-  const double forward = options->h > 0 ? 1 : -1, left = (options->t_end - I->now.t) + I->now.t_carry;
-  if (I->pace != NULL) return dvi__pace_step(I, h, options->t_end, clock_error(I, options));
-  if (!dvi_integrator_chooses_steps(I)) return dvi_integrator_step(I, h);
-  DVI_TRY(dvi_integrator_step(I, h));
-  if (forward * (I->now.t - options->t_end) <= clock_error(I, options)) return DVI_OK;
-  dvi__integrator_take_back(I);
-  return dvi__integrator_step_exactly(I, left);
-}
-
-/* A terminal event ends the run at its own time: the step that holds it is taken again, up to there. */
-static dvi_status end_at(dvi_integrator *I, const dvi_run_options *options, dvi_run_report *report)
-{
-  dvi_run_options there = *options;
-  there.t_end = report->event_time;
-  if (next_step(I, &there) == 0) return DVI_OK;
-  dvi__integrator_take_back(I);
-  const double h = next_step(I, &there);
-  if (h != 0) return take_step(I, &there, h);
-  report->steps--;
-  return DVI_OK;
-}
-
-static dvi_status one_step(dvi_integrator *I, const dvi_run_options *options, double h, dvi__watch *watch, dvi_run_report *report,
-                           int *stop)
-{
-  const double from = dvi_integrator_time(I);
-  const long every = options->every > 0 ? options->every : 1;
-  DVI_TRY(take_step(I, options, h));
-  const dvi_status found = dvi__watch_find(watch, I, options, from);
-  if (found != DVI_OK) return dvi__integrator_undo(I, found);
-  report->steps++;
-  DVI_TRY(dvi__watch_report(watch, I, options, report, stop));
-  if (report->end == DVI_RUN_EVENT) DVI_TRY(end_at(I, options, report));
-  if (options->cancel != NULL && *options->cancel && !*stop) {
-    report->end = DVI_RUN_CANCELLED;
-    *stop = 1;
-  }
-  if (*stop || report->steps % every == 0 || next_step(I, options) == 0) DVI_TRY(observe(I, options, report, stop));
-  if (options->checkpoint != NULL && options->checkpoint_every > 0 && report->steps % options->checkpoint_every == 0)
-    return dvi_integrator_save(I, options->checkpoint);
-  return DVI_OK;
-}
-
-static dvi_status loop(dvi_integrator *I, const dvi_run_options *options, dvi__watch *watch, dvi_run_report *report)
-{
-  int stop = 0;
-  DVI_TRY(observe(I, options, report, &stop));
-  for (double h = next_step(I, options); h != 0 && !stop; h = next_step(I, options))
-    DVI_TRY(one_step(I, options, h, watch, report, &stop));
-  return DVI_OK;
-}
-
-/* The last good state is saved even if the run failed; the run's failure is the one that counts. */
-static dvi_status save_at_end(const dvi_integrator *I, const char *path, dvi_status status)
-{
-  char sentence[1024];
-  (void)snprintf(sentence, sizeof sentence, "%s", dvi_last_error());
-  const dvi_status saved = dvi_integrator_save(I, path);
-  if (status == DVI_OK) return saved;
-  return saved == DVI_OK ? dvi__fail(status, "%s", sentence) : dvi__fail_in(status, "%s; and then", sentence);
+  if (m->options->event_count == 0) return DVI_OK;
+  m->q = DVI_NEW(double, m->integrator->system->n);
+  m->v = DVI_NEW(double, m->integrator->system->n);
+  if (m->q != NULL && m->v != NULL) return DVI_OK;
+  return dvi__fail(DVI_NO_MEMORY, "run: no memory for %d events", m->options->event_count);
 }
 
 dvi_status dvi_run(dvi_integrator *I, const dvi_run_options *options, dvi_run_report *report)
 {
   dvi_run_report own, *out = report != NULL ? report : &own;
-  dvi__watch watch = {0};
+  mechanics m = {.integrator = I, .options = options};
   *out = (dvi_run_report){.end = DVI_RUN_FAILED, .event_time = (double)NAN, .event = -1};
-  DVI_TRY(check(I, options));
-  DVI_TRY(dvi__watch_create(I, options, &watch));
-  out->end = DVI_RUN_COMPLETE;
-  dvi_status status = loop(I, options, &watch, out);
-  dvi__watch_destroy(&watch);
-  if (options->checkpoint != NULL) status = save_at_end(I, options->checkpoint, status);
-  if (status != DVI_OK) out->end = DVI_RUN_FAILED;
+  if (I == NULL || options == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "run: an argument is NULL");
+  if (!I->started) return dvi__fail(DVI_BAD_STATE, "run: the integrator has no state yet; call dvi_integrator_start first");
+  DVI_TRY(check_events(options));
+  dvi_status status = reserve(&m);
+  if (status == DVI_OK) status = run(&m, out);
+  dvi__release(m.q);
+  dvi__release(m.v);
   return status;
 }

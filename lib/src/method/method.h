@@ -45,7 +45,7 @@ enum { DVI__POSITIVE = -2, DVI__SAID = -3, DVI__FILE = -4 };
 enum { DVI__KEYS_MOST = 10, DVI__LIST_MOST = 16, DVI__LEFT_OUT = -1 };
 
 /* Characters of a specification; and of a list of names in a sentence, with its end. */
-enum { DVI__SPECIFICATION_MOST = 8191 };
+enum { DVI__SPECIFICATION_MOST = INT_MAX / 4 };
 
 /* Values of the keys, in the order of the method's table. A method may replace DVI__LEFT_OUT by what it chose. */
 typedef struct dvi__settings {

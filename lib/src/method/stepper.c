@@ -15,10 +15,10 @@ static const char *term_name(unsigned term)
   case DVI__LAGRANGIAN: return "a general Lagrangian";
   case DVI__ONE_FORM: return "a one-form";
   case DVI__FACTORS: return "factors of its configuration space";
-  case DVI__HAMILTONIAN: return "a Hamiltonian with constraints";
+  case DVI__CONSTRAINED_HAMILTONIAN: return "a Hamiltonian with constraints";
   case DVI__ROTATIONS: return "rotations";
   case DVI__DIRECTIONS: return "directions (S^2)";
-  case DVI__CANONICAL: return "a Hamiltonian without constraints";
+  case DVI__HAMILTONIAN: return "a Hamiltonian without constraints";
   case DVI__FAST: return "a fast potential (one that is declared `fast`)";
   default: return "potentials";
   }
@@ -47,7 +47,7 @@ static void name_others(const dvi_system *system, dvi__text *names)
 /* What the method can take for what moves. */
 static void name_motions(const dvi__method *method, dvi__text *names)
 {
-  static const unsigned motions[] = {DVI__CONSTANT_MASS, DVI__LAGRANGIAN, DVI__ONE_FORM, DVI__HAMILTONIAN, DVI__FACTORS};
+  static const unsigned motions[] = {DVI__CONSTANT_MASS, DVI__LAGRANGIAN, DVI__ONE_FORM, DVI__CONSTRAINED_HAMILTONIAN, DVI__FACTORS};
   for (int i = 0; i < 5; i++)
     if (method->uses & motions[i]) dvi__text_add(names, "%s%s", names->length > 0 ? " or " : "", term_name(motions[i]));
 }
@@ -57,7 +57,7 @@ static dvi_status refuse_canonical(const dvi__method *method, const char *others
   char motions[DVI__SENTENCE_SIZE] = "";
   name_motions(method, &(dvi__text){motions, sizeof motions, 0});
   return dvi__fail(DVI_UNSUPPORTED, "%s: the system declares %s, and this method needs %s; methods for this system: %s",
-                   method->name, term_name(DVI__CANONICAL), motions, others);
+                   method->name, term_name(DVI__HAMILTONIAN), motions, others);
 }
 
 static dvi_status check_terms(const dvi__method *method, const dvi_system *system)
@@ -65,7 +65,7 @@ static dvi_status check_terms(const dvi__method *method, const dvi_system *syste
   char names[DVI__SENTENCE_SIZE] = "";
   if (can_use(method, system)) return DVI_OK;
   name_others(system, &(dvi__text){names, sizeof names, 0});
-  if (surplus(method, system) & DVI__CANONICAL) return refuse_canonical(method, names);
+  if (surplus(method, system) & DVI__HAMILTONIAN) return refuse_canonical(method, names);
   for (unsigned term = 1; term <= DVI__LAST_TERM; term <<= 1)
     if (surplus(method, system) & term)
       return dvi__fail(DVI_UNSUPPORTED, "%s: the system declares %s, which this method cannot use; methods for this system: %s",

@@ -21,6 +21,7 @@
 #include "core/status.h"
 #include "num/pattern.h"
 #include "reference/ida_run.h"
+#include "system/dynamics/one_form.h"
 
 typedef struct judge {
   dvi__reference_run *run;
@@ -98,7 +99,7 @@ static int jacobian(double t, double c, N_Vector y, N_Vector ydot, N_Vector F, S
 static dvi_status acceleration(dvi__reference_run *run, double *vdot)
 {
   const int n = run->n;
-  if (run->system->terms & DVI__CONSTANT_MASS) {
+  if (run->system->lagrangian == NULL) {
     dvi__mass_solve(run->evaluator, 1, run->force, vdot);
     return DVI_OK;
   }
@@ -195,14 +196,14 @@ static void clear(judge *self)
 
 dvi_status dvi__reference_ida(dvi__reference_run *run)
 {
-  const int form = (run->system->terms & DVI__ONE_FORM) != 0;
-  if (!form && !(run->system->terms & DVI__HAMILTONIAN) && run->options.code == DVI_IDA_INDEX_2)
+  const dvi__dynamics *dynamics = run->system->dynamics;
+  if (dynamics->constraint == NULL && run->options.code == DVI_IDA_INDEX_2)
     return dvi__fail(
         DVI_UNSUPPORTED,
         "ida-index-2: the system declares neither a one-form nor a Hamiltonian with constraints; its equations are of index 1");
-  if (run->system->terms & DVI__PHASE_SPACE) return dvi__reference_dirac(run);
-  if (run->system->terms & DVI__FACTORS) return dvi__reference_ida_lift(run);
-  judge self = {.run = run, .reduced = form && run->options.code == DVI_IDA};
+  if (dynamics->equations == DVI__HAMILTON) return dvi__reference_hamilton(run);
+  if (dynamics->equations == DVI__LIFTED) return dvi__reference_ida_lift(run);
+  judge self = {.run = run, .reduced = dynamics->equations == DVI__FIRST_ORDER && run->options.code == DVI_IDA};
   dvi_status status = reserve(&self);
   if (status == DVI_OK) status = start(&self);
   if (status == DVI_OK && configure(&self) != 0) status = dvi__reference_no_setup(run);

@@ -11,16 +11,16 @@
 
 #include "core/status.h"
 #include "reference/lift.h"
-#include "system/evaluate/dirac.h"
+#include "system/evaluate/dynamics.h"
 
 static int has_momenta(const dvi__reference_run *run)
 {
-  return !(run->system->terms & DVI__ONE_FORM);
+  return run->system->dynamics->equations != DVI__FIRST_ORDER;
 }
 
 static int has_factors(const dvi__reference_run *run)
 {
-  return (run->system->terms & DVI__FACTORS) != 0;
+  return run->system->dynamics->equations == DVI__LIFTED;
 }
 
 typedef struct flow {
@@ -36,9 +36,8 @@ typedef struct flow {
 
 static dvi_status rate(dvi__reference_run *run, double t, const double *q, const double *p, double *qdot, double *pdot)
 {
-  if (run->system->terms & DVI__PHASE_SPACE) return dvi__dirac_motion(run->evaluator, t, q, p, qdot, pdot, NULL);
-  DVI_TRY(dvi__legendre_inverse(run->evaluator, t, q, p, run->v));
-  if (has_momenta(run)) DVI_TRY(dvi__lagrangian_gradient(run->evaluator, 1, &t, q, run->v, pdot, NULL));
+  const dvi__dynamics *dynamics = run->system->dynamics;
+  DVI_TRY(dynamics->motion(run->evaluator, t, q, p, run->v, has_momenta(run) ? pdot : NULL, NULL));
   memcpy(qdot, run->v, (size_t)run->n * sizeof *qdot);
   return DVI_OK;
 }
@@ -71,7 +70,7 @@ static CVRhsFn right_side_of(const dvi__reference_run *run)
 /* Only then is M^-1 as sparse as M, and the Jacobian written down at once. */
 static int mass_is_diagonal(const dvi_system *system)
 {
-  return (system->terms & DVI__CONSTANT_MASS) && system->mass_values == NULL && !(system->terms & DVI__FACTORS);
+  return system->mass_diagonal != NULL && !system->dynamics->on_manifold;
 }
 
 /* d(qdot, pdot)/d(q, p) = [ 0, M^-1; L_qq, 0 ], with its diagonal, to which CVODE adds the identity in place. */

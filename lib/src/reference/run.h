@@ -30,7 +30,7 @@ typedef struct dvi__reference_run {
 
 /* The codes. They leave the end in run->q and run->p, and what they did in run->reached and run->steps. */
 dvi_status dvi__reference_ida(dvi__reference_run *run);
-dvi_status dvi__reference_dirac(dvi__reference_run *run);    /* IDA with a Hamiltonian */
+dvi_status dvi__reference_hamilton(dvi__reference_run *run); /* IDA with a Hamiltonian */
 dvi_status dvi__reference_ida_lift(dvi__reference_run *run); /* of systems with factors */
 dvi_status dvi__reference_cvode(dvi__reference_run *run);
 dvi_status dvi__reference_arkode(dvi__reference_run *run);

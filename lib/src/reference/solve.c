@@ -12,7 +12,7 @@
 #include "core/status.h"
 #include "num/finite.h"
 #include "reference/run.h"
-#include "system/evaluate/dirac.h"
+#include "system/evaluate/dynamics.h"
 #include "system/term/term.h"
 
 static const struct {
@@ -164,19 +164,15 @@ dvi_status dvi__reference_form_momentum(dvi__reference_run *run)
 
 static dvi_status prepare(dvi__reference_run *run, const double *q, const double *p)
 {
-  const int factors = (run->system->terms & DVI__FACTORS) != 0;
-  dvi_status status = dvi__evaluator_create(run->system, 1, factors ? DVI__STATES : DVI__HESSIANS, &run->counters, &run->evaluator);
+  const dvi__dynamics *dynamics = run->system->dynamics;
+  const int lifted = dynamics->equations == DVI__LIFTED;
+  dvi_status status = dvi__evaluator_create(run->system, 1, lifted ? DVI__STATES : DVI__HESSIANS, &run->counters, &run->evaluator);
   if (status == DVI_OK) status = reserve(run, q, p);
   if (status == DVI_OK) status = dvi__state_check(run->evaluator, run->q, run->p);
-  if (status == DVI_OK && run->system->terms & DVI__ONE_FORM) status = dvi__form_constraint(run->evaluator, run->q, run->p);
-  if (status == DVI_OK && run->system->terms & DVI__HAMILTONIAN) status = dvi__dirac_constraint(run->evaluator, run->q, run->p);
-  if (run->system->terms & DVI__PHASE_SPACE) {
-    if (status == DVI_OK) status = dvi__dirac_motion(run->evaluator, run->t, run->q, run->p, run->v, run->force, run->multiplier);
-  } else {
-    if (status == DVI_OK) status = dvi__legendre_inverse(run->evaluator, run->t, run->q, run->p, run->v);
-    if (status == DVI_OK && !factors)
-      status = dvi__lagrangian_gradient(run->evaluator, 1, &run->t, run->q, run->v, run->force, NULL);
-  }
+  if (status == DVI_OK && dynamics->constraint != NULL) status = dynamics->constraint->check(run->evaluator, run->q, run->p);
+  if (status == DVI_OK)
+    status = lifted ? dynamics->velocity(run->evaluator, run->t, run->q, run->p, run->v)
+                    : dynamics->motion(run->evaluator, run->t, run->q, run->p, run->v, run->force, run->multiplier);
   if (status == DVI_OK) return DVI_OK;
   return dvi__fail_in(status, "%s: no start at t = %.9g", codes[run->options.code].name, run->t);
 }

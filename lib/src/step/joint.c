@@ -11,7 +11,7 @@ static dvi_status join(const dvi_system *system, dvi__pattern *joint)
   dvi_status status = dvi__pattern_transpose(&system->qv, &vq);
   if (status == DVI_OK) status = dvi__pattern_union(&system->qv, &vq, &mixed);
   if (status == DVI_OK)
-    status = (system->terms & (DVI__ONE_FORM | DVI__CANONICAL)) != 0 ? dvi__pattern_diagonal(system->n, &own)
+    status = (system->terms & (DVI__ONE_FORM | DVI__HAMILTONIAN)) != 0 ? dvi__pattern_diagonal(system->n, &own)
                                                                      : dvi__pattern_empty(system->n, &own);
   if (status == DVI_OK) status = dvi__pattern_union(&system->vv, &own, &second);
   if (status == DVI_OK) status = dvi__pattern_union(&system->qq, &second, &diagonal);

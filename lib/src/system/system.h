@@ -15,15 +15,15 @@ typedef enum dvi__term {
   DVI__LAGRANGIAN = 2,
   DVI__ONE_FORM = 4,
   DVI__POTENTIAL = 8,
-  DVI__HAMILTONIAN = 16, /* with its constraints */
+  DVI__CONSTRAINED_HAMILTONIAN = 16,
   DVI__FACTORS = 32,
   DVI__ROTATIONS = 64, /* among the factors */
   DVI__DIRECTIONS = 128,
-  DVI__FAST = 256,      /* among the potentials */
-  DVI__CANONICAL = 512, /* a Hamiltonian without constraints */
-  DVI__PHASE_SPACE = DVI__HAMILTONIAN | DVI__CANONICAL,
+  DVI__FAST = 256,        /* among the potentials */
+  DVI__HAMILTONIAN = 512, /* without constraints */
+  DVI__PHASE_SPACE = DVI__CONSTRAINED_HAMILTONIAN | DVI__HAMILTONIAN,
   DVI__KINDS = DVI__ROTATIONS | DVI__DIRECTIONS | DVI__FAST,
-  DVI__LAST_TERM = DVI__CANONICAL
+  DVI__LAST_TERM = DVI__HAMILTONIAN
 } dvi__term;
 
 /* How to difference a missing Hessian block: columns of a group are moved together. */
@@ -96,7 +96,11 @@ typedef struct dvi__declared {
   uint64_t hash[DVI__DECLARED_PARTS];
 } dvi__declared;
 
+/* What the equations of motion are (system/evaluate/dynamics.h). */
+typedef struct dvi__dynamics dvi__dynamics;
+
 struct dvi_system {
+  const dvi__dynamics *dynamics;
   int n;          /* stored coordinates */
   int nv;         /* numbers of a velocity: n without factors */
   int nx;         /* degrees of freedom */

@@ -2,6 +2,7 @@
 
 #include "core/memory.h"
 #include "num/compensated.h"
+#include "system/dynamics/one_form.h"
 
 typedef struct carried {
   dvi__one_step one;

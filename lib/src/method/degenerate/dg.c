@@ -49,7 +49,7 @@ static dvi_status check_stiffness(const dvi__settings *settings, int n)
   return DVI_OK;
 }
 
-/* Measured on massless-particle and vortices (tests/method/test_dg.c). Even S share the multiplier 1 of the solution with the jump, which costs two
+/* Measured on massless-particle and vortices (tests/method/degenerate/test_dg.c). Even S share the multiplier 1 of the solution with the jump, which costs two
  * orders. A stiffness that does not change with h adds c j^2/2 per node of the smooth jump j = O(h^S), that is O(h^(2S-1)) to the energy. A flux
  * at one side has the symmetric part of Dalpha for its stiffness. */
 static int order_of(const dvi__settings *settings)

@@ -33,7 +33,7 @@ static const dvi__key keys[] = {
     {0},
 };
 
-/* Measured where the projections differ, on massless-particle and vortices (tests/method/test_vprk.c): what a projection along directions that are
+/* Measured where the projections differ, on massless-particle and vortices (tests/method/degenerate/test_vprk.c): what a projection along directions that are
  * right to h, or on one side alone, leaves of the tableau's order. */
 static int order_of(int tableau, int s, int projection)
 {

@@ -47,7 +47,7 @@ static dvi_status create_for_form(dvi__stepper *self)
   return dvi__dg_create(self, &space, value[ALARM], "take another method, dg:degree=3,stiffness=c, from the start on");
 }
 
-/* Measured on circle-dirac and magnetic-pair (tests/method/test_dg_phase.c). */
+/* Measured on circle-dirac and magnetic-pair (tests/method/hamiltonian/test_dg_phase.c). */
 static int order_of(int degree, int moments)
 {
   return moments < degree - 1 ? 2 * moments + 2 : 2 * degree;
@@ -103,7 +103,7 @@ const dvi__method dvi__dg_phase = {
     .summary = "discontinuous Galerkin with constraints phi(q,p) = 0 at the averages; order 2 degree; degenerate systems only",
     .cite = "KrausYoshimuraPeng",
     .keys = keys,
-    .uses = DVI__ONE_FORM | DVI__POTENTIAL | DVI__HAMILTONIAN,
+    .uses = DVI__ONE_FORM | DVI__POTENTIAL | DVI__CONSTRAINED_HAMILTONIAN,
     .create = create,
     .step = step,
     .multiplier = multiplier,

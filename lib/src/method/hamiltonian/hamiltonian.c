@@ -145,7 +145,7 @@ static void destroy(dvi__stepper *self)
 static const dvi__method on_phase_space = {
     .name = "hamiltonian",
     .keys = keys,
-    .uses = DVI__CANONICAL,
+    .uses = DVI__HAMILTONIAN,
     .destroy = destroy,
     .start = dvi__one_step_start,
     .step = step,
@@ -194,7 +194,7 @@ static dvi_status create(dvi__stepper *self)
                      "least degree",
                      nodes, nodes, degree, degree);
   const dvi__action_space space = {DVI_LAGRANGE_LOBATTO, degree, rule, nodes};
-  return self->system->terms & DVI__CANONICAL ? create_on_phase_space(self, &space)
+  return self->system->terms & DVI__HAMILTONIAN ? create_on_phase_space(self, &space)
                                               : dvi__element_create(self, &space, DVI__SOLVER_AUTO);
 }
 
@@ -203,7 +203,7 @@ const dvi__method dvi__hamiltonian = {
     .summary = "discrete Hamiltonians of type 1, 2 and 3, Galerkin; order 2 degree; Hamiltonians without a Lagrangian, too",
     .cite = "LeokZhang2011",
     .keys = keys,
-    .uses = DVI__ELEMENT_TERMS | DVI__CANONICAL,
+    .uses = DVI__ELEMENT_TERMS | DVI__HAMILTONIAN,
     .create = create,
     DVI__ELEMENT_OPERATIONS,
 };

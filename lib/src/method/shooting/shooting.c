@@ -338,7 +338,7 @@ static dvi_status make(dvi__stepper *self, const dvi__runge_kutta *method, const
 
 static dvi_status choose_type(const dvi_system *system, int *type)
 {
-  const int on_H = (system->terms & DVI__CANONICAL) != 0;
+  const int on_H = (system->terms & DVI__HAMILTONIAN) != 0;
   if (*type == DVI__LEFT_OUT) *type = on_H ? 2 : 1;
   if (*type != 1 || !on_H) return DVI_OK;
   return dvi__fail(DVI_UNSUPPORTED,
@@ -491,7 +491,7 @@ const dvi__method dvi__shooting = {
     .summary = "any one-step method and a quadrature with both ends; order that of the lower of both",
     .cite = "LeokShingel2012",
     .keys = keys,
-    .uses = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL | DVI__CANONICAL,
+    .uses = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL | DVI__HAMILTONIAN,
     .create = create,
     .destroy = destroy,
     .start = start,

@@ -9,6 +9,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "system/term/half.h"
+#include "system/dynamics/one_form.h"
 
 enum { MOST = DVI__STAGES_MOST };
 

@@ -8,6 +8,7 @@
 #include "step/joint.h"
 #include "core/memory.h"
 #include "core/status.h"
+#include "system/dynamics/one_form.h"
 
 enum { MOST = DVI__DG_POINTS_MOST };
 

@@ -8,6 +8,7 @@
 #include "step/joint.h"
 #include "core/memory.h"
 #include "core/status.h"
+#include "system/dynamics/one_form.h"
 
 /* The kicks: k0 = before lambda + carried times the last lambda, k1 = after lambda; their directions at the mean of q0 and q1, or at the ends. */
 typedef struct kicks {

@@ -7,6 +7,7 @@
 #include "core/status.h"
 #include "num/simd/lanes.h"
 #include "space/trial.h"
+#include "system/dynamics/one_form.h"
 
 void dvi__action_stages(const dvi__action *a, const double *Y)
 {

@@ -23,7 +23,7 @@ enum { DVI__CANONICAL_DEGREE = 8, DVI__CANONICAL_POINTS = 9 };
 
 typedef struct dvi__canonical dvi__canonical;
 
-/* For a system with DVI__CANONICAL; the space's numbers must be valid, nodes >= degree. */
+/* For a system with DVI__HAMILTONIAN; the space's numbers must be valid, nodes >= degree. */
 dvi_status dvi__canonical_create(const dvi_system *system, const dvi__action_space *space, dvi_counters *counters,
                                  dvi__canonical **canonical);
 void dvi__canonical_destroy(dvi__canonical **canonical);

@@ -3,7 +3,7 @@
 #define DVI_ACTION_PHASE_STRUCT_H
 #include "step/onestep/collocation.h"
 #include "step/hamiltonian/phase.h"
-#include "system/evaluate/dirac.h"
+#include "system/dynamics/constrained_hamiltonian.h"
 
 /* Where a function's second derivatives go in the derivative of its field (F_p, -F_q): for each entry of F_qq, F_qp and F_pp the entry of `joint`;
  * F_qp goes to two places. */

@@ -5,7 +5,6 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "system/evaluate/dirac.h"
 
 struct dvi__field {
   const dvi_system *system;
@@ -52,7 +51,7 @@ dvi_status dvi__field_create(const dvi_system *system, int points, dvi_counters 
   f->system = system;
   f->n = system->n;
   f->points = points;
-  f->is_H = (system->terms & DVI__CANONICAL) != 0;
+  f->is_H = (system->terms & DVI__HAMILTONIAN) != 0;
   const dvi_status status = fill(f, counters);
   if (status != DVI_OK) dvi__field_destroy(&f);
   *field = f;
@@ -80,7 +79,7 @@ void dvi__field_guess(dvi__field *f, const double *v)
 /* The velocity, and p'. */
 static dvi_status motion_at(dvi__field *f, double t, const double *q, const double *p, double *pdot)
 {
-  if (f->is_H) return dvi__dirac_motion(f->evaluator, t, q, p, f->velocity, pdot, NULL);
+  if (f->is_H) return dvi__state_rates(f->evaluator, t, q, p, f->velocity, pdot, NULL);
   DVI_TRY(dvi__legendre_inverse(f->evaluator, t, q, p, f->velocity));
   return dvi__lagrangian_gradient(f->evaluator, 1, &t, q, f->velocity, pdot, NULL);
 }

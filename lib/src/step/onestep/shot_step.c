@@ -6,7 +6,6 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/finite.h"
-#include "system/evaluate/dirac.h"
 
 struct dvi__shot_step {
   dvi__shot *shot;
@@ -63,7 +62,7 @@ dvi_status dvi__shot_step_create(const dvi_system *system, int type, const dvi__
   if (s == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory");
   s->n = system->n;
   s->type = type;
-  s->on_H = (system->terms & DVI__CANONICAL) != 0;
+  s->on_H = (system->terms & DVI__HAMILTONIAN) != 0;
   const dvi_status status = fill(s, system, method, course, counters);
   if (status != DVI_OK) dvi__shot_step_destroy(&s);
   *step = s;
@@ -98,7 +97,7 @@ static dvi_status choose_units(dvi__shot_step *s, double t0, double h, const dou
     for (size_t i = 0; i < n; i++) s->unit[i] /= fabs(h);
     return DVI_OK;
   }
-  DVI_TRY(dvi__dirac_motion(s->evaluator, t0, s->q0, s->p0, s->q, s->p, NULL));
+  DVI_TRY(dvi__state_rates(s->evaluator, t0, s->q0, s->p0, s->q, s->p, NULL));
   const double of_q = fmax(dvi__largest(n, s->q0), fabs(h) * dvi__largest(n, s->q));
   const double least = 0x1p-40 * fmax(dvi__largest(n, s->p0), fabs(h) * dvi__largest(n, s->p));
   for (size_t i = 0; i < n; i++) {

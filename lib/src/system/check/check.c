@@ -13,7 +13,8 @@
 #include "system/check/check_taylor.h"
 #include "system/check/check_time.h"
 #include "system/term/difference.h"
-#include "system/evaluate/dirac.h"
+#include "system/evaluate/dynamics.h"
+#include "system/term/constraint.h"
 
 /* One entry at which callback and difference disagree. */
 typedef struct disagreement {
@@ -338,7 +339,7 @@ static dvi_status check_constraint(check *c, const dvi_system *system)
 
 static dvi_status check_terms(check *c, const dvi_system *system)
 {
-  const names *name = system->terms & DVI__PHASE_SPACE ? &of_hamiltonian : &of_lagrangian;
+  const names *name = system->dynamics->by_momentum ? &of_hamiltonian : &of_lagrangian;
   if (system->lagrangian != NULL)
     DVI_TRY(system->terms & DVI__ONE_FORM ? check_one_form(c, system->lagrangian) : check_general(c, system->lagrangian, name));
   if (system->constraint != NULL) DVI_TRY(check_constraint(c, system));

@@ -6,10 +6,12 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "system/evaluate/dirac.h"
+#include "system/evaluate/dynamics.h"
 #include "system/factor.h"
 #include "system/gauge.h"
 #include "system/mass.h"
+#include "system/term/constraint.h"
+#include "system/term/declare.h"
 #include "system/term/term.h"
 
 static char *copy_text(const char *text)
@@ -20,122 +22,6 @@ static char *copy_text(const char *text)
 static dvi_status no_memory(void)
 {
   return dvi__fail(DVI_NO_MEMORY, "system: no memory for its terms");
-}
-
-/* ---- general Lagrangian ---- */
-
-static dvi_status make_groups(const dvi__pattern *pattern, dvi__groups *groups)
-{
-  dvi__release(groups->of_column);
-  groups->of_column = DVI_NEW(int, pattern->columns);
-  if (groups->of_column == NULL) return no_memory();
-  return dvi__pattern_groups(pattern, groups->of_column, &groups->count);
-}
-
-dvi_status dvi__general_group(dvi__lagrangian_term *term)
-{
-  dvi__pattern v_columns;
-  DVI_TRY(make_groups(&term->qq, &term->q_groups));
-  DVI_TRY(dvi__pattern_union(&term->qv, &term->vv, &v_columns));
-  const dvi_status status = make_groups(&v_columns, &term->v_groups);
-  dvi__pattern_clear(&v_columns);
-  return status;
-}
-
-/* Only one of two shapes would ever be called. */
-static dvi_status check_shapes(const char *owner, int values, int gradients, int hessians, int rates)
-{
-  if (!values && !gradients && !hessians && !rates) return DVI_OK;
-  return dvi__fail(DVI_BAD_ARGUMENT, "system: %s has its %s callback in two shapes, one-point and batch; declare one", owner,
-                   values      ? "value"
-                   : gradients ? "gradient"
-                   : hessians  ? "Hessian"
-                               : "rate");
-}
-
-/* It would never be asked for. */
-static dvi_status check_rate(const dvi_system *s, const char *owner, int given)
-{
-  if (!given || !s->autonomous) return DVI_OK;
-  return dvi__fail(DVI_BAD_ARGUMENT, "system: %s has a rate, but the system is declared autonomous; leave out one of them", owner);
-}
-
-/* A function of q and v, or of q and p; `part` names its Hessian's blocks. */
-static dvi_status copy_general(dvi_system *s, const dvi_lagrangian *given, const char *name, const char *const part[3])
-{
-  dvi__lagrangian_term *term = s->lagrangian = DVI_NEW(dvi__lagrangian_term, 1);
-  if (term == NULL) return no_memory();
-  term->name = name;
-  term->callbacks = *given;
-  DVI_TRY(dvi__pattern_copy_symmetric(&given->qq, s->n, part[0], &term->qq));
-  DVI_TRY(dvi__pattern_copy(&given->qv, s->n, part[1], &term->qv));
-  DVI_TRY(dvi__pattern_copy_symmetric(&given->vv, s->n, part[2], &term->vv));
-  DVI_TRY(dvi__pattern_union(&term->qv, &term->qv, &s->qv));
-  DVI_TRY(dvi__pattern_union(&term->vv, &term->vv, &s->vv));
-  const int differenced = given->hessian == NULL && given->hessian_batch == NULL;
-  return differenced ? dvi__general_group(term) : DVI_OK;
-}
-
-static dvi_status copy_lagrangian(dvi_system *s, const dvi_lagrangian *given)
-{
-  static const char *const part[] = {"Lagrangian: d2L/dq2", "Lagrangian: d2L/dqdv", "Lagrangian: d2L/dv2"};
-  if (given->value == NULL && given->value_batch == NULL)
-    return dvi__fail(DVI_BAD_ARGUMENT, "system: the Lagrangian has no value callback");
-  DVI_TRY(check_shapes("the Lagrangian", given->value && given->value_batch, given->gradient && given->gradient_batch,
-                       given->hessian && given->hessian_batch, given->rate && given->rate_batch));
-  DVI_TRY(check_rate(s, "the Lagrangian", given->rate || given->rate_batch));
-  s->terms |= DVI__LAGRANGIAN;
-  return copy_general(s, given, "Lagrangian", part);
-}
-
-/* H stands where a general Lagrangian stands, and p where its v does. */
-static dvi_status copy_hamiltonian(dvi_system *s, const dvi_hamiltonian *given, const dvi_constraint *constraint)
-{
-  static const char *const part[] = {"Hamiltonian: d2H/dq2", "Hamiltonian: d2H/dqdp", "Hamiltonian: d2H/dp2"};
-  const dvi_lagrangian function = {.value = given->value,
-                                   .gradient = given->gradient,
-                                   .hessian = given->hessian,
-                                   .qq = given->qq,
-                                   .qv = given->qp,
-                                   .vv = given->pp,
-                                   .user = given->user};
-  if (given->value == NULL || given->gradient == NULL)
-    return dvi__fail(DVI_BAD_ARGUMENT, "system: the Hamiltonian has no %s callback", given->value == NULL ? "value" : "gradient");
-  s->terms |= constraint != NULL ? DVI__HAMILTONIAN : DVI__CANONICAL;
-  DVI_TRY(copy_general(s, &function, "Hamiltonian", part));
-  return constraint != NULL ? dvi__constraint_copy(constraint, s->n, &s->constraint) : DVI_OK;
-}
-
-static dvi_status join_two_form(dvi__lagrangian_term *term)
-{
-  dvi__pattern vq;
-  DVI_TRY(dvi__pattern_transpose(&term->qv, &vq));
-  const dvi_status status = dvi__pattern_union(&term->qv, &vq, &term->omega);
-  dvi__pattern_clear(&vq);
-  return status;
-}
-
-/* alpha(q).v is a Lagrangian whose L_qv holds the gradients of alpha, and whose L_vv has no entries. */
-static dvi_status copy_one_form(dvi_system *s, const dvi_one_form *given, const dvi_gauge *gauge)
-{
-  if (given->value == NULL || given->gradient == NULL)
-    return dvi__fail(DVI_BAD_ARGUMENT, "system: the one-form has no %s callback", given->value == NULL ? "value" : "gradient");
-  if (s->n % 2 != 0)
-    return dvi__fail(DVI_BAD_SIZE, "system: dimension %d with a one-form; its two-form is singular unless the dimension is even",
-                     s->n);
-  s->terms |= DVI__ONE_FORM;
-  dvi__lagrangian_term *term = s->lagrangian = DVI_NEW(dvi__lagrangian_term, 1);
-  if (term == NULL) return no_memory();
-  term->name = "one-form";
-  term->one_form = *given;
-  DVI_TRY(dvi__pattern_copy_symmetric(&given->qq, s->n, "one-form: d2(alpha.v)/dq2", &term->qq));
-  DVI_TRY(dvi__pattern_copy(&given->gradients, s->n, "one-form: gradients", &term->qv));
-  DVI_TRY(dvi__pattern_empty(s->n, &term->vv));
-  if (gauge != NULL) DVI_TRY(dvi__gauge_join(gauge, term));
-  DVI_TRY(join_two_form(term));
-  DVI_TRY(dvi__pattern_union(&term->qv, &term->qv, &s->qv));
-  DVI_TRY(dvi__pattern_empty(s->n, &s->vv));
-  return dvi__general_has_hessian(term) ? DVI_OK : dvi__general_group(term);
 }
 
 /* ---- potentials ---- */
@@ -153,9 +39,9 @@ static dvi_status copy_potential(dvi_system *s, const dvi_potential *given, dvi_
   const char *name = given->name != NULL ? given->name : "potential";
   if (given->value == NULL && given->value_batch == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "system: potential '%s' has no value callback", name);
-  DVI_TRY(check_shapes(name, given->value && given->value_batch, given->gradient && given->gradient_batch,
-                       given->hessian && given->hessian_batch, given->rate && given->rate_batch));
-  DVI_TRY(check_rate(s, name, given->rate || given->rate_batch));
+  DVI_TRY(dvi__check_shapes(name, given->value && given->value_batch, given->gradient && given->gradient_batch,
+                            given->hessian && given->hessian_batch, given->rate && given->rate_batch));
+  DVI_TRY(dvi__check_rate(s, name, given->rate || given->rate_batch));
   DVI_TRY(check_range(given, name));
   if (given->fast) s->terms |= DVI__FAST;
   term->callbacks = *given;
@@ -203,7 +89,7 @@ static dvi_status complete_potential(const dvi_system *s, dvi__potential_term *t
   const int differenced = term->callbacks.hessian == NULL && term->callbacks.hessian_batch == NULL;
   const dvi_status status = term->qq.start == NULL ? dvi__pattern_copy(&(dvi_pattern){0}, s->n, term->name, &term->qq) : DVI_OK;
   if (status != DVI_OK) return dvi__fail_in(status, "the Hessian of '%s'", term->name);
-  return differenced ? make_groups(&term->qq, &term->groups) : DVI_OK;
+  return differenced ? dvi__group_columns(&term->qq, &term->groups) : DVI_OK;
 }
 
 static dvi_status join_patterns(dvi_system *s, dvi__pattern *qq)
@@ -317,18 +203,25 @@ static dvi_status check_terms(const dvi_system_terms *terms)
   return check_watched(terms);
 }
 
+/* Factors stand before the mass that goes with them. */
+static const dvi__dynamics *const kinds[] = {
+#define DYNAMICS(name) &dvi__dynamics_##name,
+#include "system/declare/dynamics.def"
+#undef DYNAMICS
+};
+
+static dvi_status declare_dynamics(dvi_system *s, const dvi_system_terms *terms)
+{
+  for (size_t k = 0; k < sizeof kinds / sizeof *kinds && s->dynamics == NULL; k++)
+    if (kinds[k]->is_declared(terms)) s->dynamics = kinds[k];
+  return s->dynamics->declare(terms, s);
+}
+
 static dvi_status fill(dvi_system *s, const dvi_system_terms *terms)
 {
   DVI_TRY(dvi__factors_lay_out(terms, s));
   s->autonomous = terms->autonomous != 0;
-  if (s->cells != NULL)
-    DVI_TRY(dvi__mass_copy(terms, s));
-  else if (terms->lagrangian != NULL)
-    DVI_TRY(copy_lagrangian(s, terms->lagrangian));
-  else if (terms->hamiltonian != NULL)
-    DVI_TRY(copy_hamiltonian(s, terms->hamiltonian, terms->constraint));
-  else
-    DVI_TRY(terms->one_form != NULL ? copy_one_form(s, terms->one_form, terms->gauge) : dvi__mass_copy(terms, s));
+  DVI_TRY(declare_dynamics(s, terms));
   DVI_TRY(copy_potentials(s, terms));
   DVI_TRY(copy_invariants(s, terms));
   dvi__system_declared(s, &s->declared);

@@ -1,5 +1,6 @@
 /* What a system's terms have in common, and which systems may stand in for one another. */
 #include "core/status.h"
+#include "system/evaluate/dynamics.h"
 #include "system/evaluate/jet.h"
 #include "system/term/term.h"
 
@@ -31,15 +32,7 @@ dvi_status dvi__system_has_taylor(const dvi_system *system)
   for (int p = 0; p < system->potential_count && without == NULL; p++)
     if (!dvi__potential_has_taylor(&system->potentials[p])) without = system->potentials[p].name;
   if (without == NULL) return DVI_OK;
-  if (l != NULL && l->computed != NULL)
-    return dvi__fail(
-        DVI_UNSUPPORTED,
-        "a time-transformed system has no Taylor coefficients, and derivatives beyond the second are needed; take step "
-        "control, or a method by values, as galerkin");
-  if (system->terms & DVI__PHASE_SPACE)
-    return dvi__fail(DVI_UNSUPPORTED,
-                     "a Hamiltonian has no taylor callback, and derivatives beyond the second are needed; take a tableau, and a "
-                     "quadrature by values");
+  if (system->dynamics->no_taylor != NULL) return dvi__fail(DVI_UNSUPPORTED, "%s", system->dynamics->no_taylor);
   return dvi__fail(DVI_UNSUPPORTED,
                    "'%s' has no taylor callback, and derivatives beyond the second are needed; give it (dvi/taylor.h)", without);
 }

@@ -3,8 +3,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/finite.h"
-#include "system/chart/charted.h"
-#include "system/evaluate/dirac.h"
+#include "system/evaluate/dynamics.h"
 #include "system/evaluate/evaluator_struct.h"
 
 static size_t numbers(const dvi__evaluator *e, int count)
@@ -20,9 +19,7 @@ static int allocate_general(dvi__evaluator *e)
   e->hessian[0] = DVI_NEW(double, dvi__pattern_entries(&system->lagrangian->qq));
   e->hessian[1] = DVI_NEW(double, dvi__pattern_entries(&system->qv));
   e->hessian[2] = DVI_NEW(double, dvi__pattern_entries(&system->vv));
-  if (system->terms & DVI__ONE_FORM) e->two_form = DVI_NEW(double, dvi__pattern_entries(&system->lagrangian->omega));
-  return e->unwanted && e->velocity_search && e->hessian[0] && e->hessian[1] && e->hessian[2] &&
-         (e->two_form || !(system->terms & DVI__ONE_FORM));
+  return e->unwanted && e->velocity_search && e->hessian[0] && e->hessian[1] && e->hessian[2];
 }
 
 static dvi_status allocate(dvi__evaluator *e, int hessians)
@@ -35,36 +32,6 @@ static dvi_status allocate(dvi__evaluator *e, int hessians)
   return dvi__fail(DVI_NO_MEMORY, "evaluator: no memory for %d points in %d dimensions", e->capacity, system->n);
 }
 
-static dvi_status prepare_velocity(dvi__evaluator *e)
-{
-  const dvi_system *system = e->system;
-  if (system->mass_diagonal != NULL || system->cells != NULL || system->terms & DVI__CANONICAL) return DVI_OK;
-  if (system->terms & DVI__HAMILTONIAN) {
-    const dvi__pattern *bracket = &system->constraint->bracket;
-    DVI_TRY(dvi__dirac_create(system, &e->dirac));
-    return dvi__linear_create(bracket, dvi__linear_for_exchanges(bracket), e->counters, &e->velocity);
-  }
-  if (system->terms & DVI__ONE_FORM) {
-    const dvi__pattern *omega = &system->lagrangian->omega;
-    return dvi__linear_create(omega, dvi__linear_for_exchanges(omega), e->counters, &e->velocity);
-  }
-  DVI_TRY(dvi__linear_create(&system->vv, DVI__LINEAR_AUTO, e->counters, &e->velocity));
-  return system->mass_values != NULL ? dvi__linear_factor(e->velocity, system->mass_values) : DVI_OK;
-}
-
-static dvi_status prepare_states(dvi__evaluator *e)
-{
-  const size_t n = (size_t)e->system->n;
-  if (e->system->cells == NULL) return DVI_OK;
-  DVI_TRY(dvi__charted_create(e->system, 0, e->counters, &e->charted));
-  const dvi__pattern *vv = &dvi__charted_system(e->charted)->vv;
-  e->rate = DVI_NEW(double, n);
-  e->local = DVI_NEW(double, n);
-  e->mass = DVI_NEW(double, dvi__pattern_entries(vv));
-  if (!e->rate || !e->local || !e->mass) return dvi__fail(DVI_NO_MEMORY, "evaluator: no memory");
-  return dvi__linear_create(vv, DVI__LINEAR_AUTO, e->counters, &e->velocity);
-}
-
 dvi_status dvi__evaluator_create(const dvi_system *system, int capacity, dvi__derivatives most, dvi_counters *counters,
                                  dvi__evaluator **evaluator)
 {
@@ -75,10 +42,9 @@ dvi_status dvi__evaluator_create(const dvi_system *system, int capacity, dvi__de
   if (e == NULL) return dvi__fail(DVI_NO_MEMORY, "evaluator: no memory");
   e->system = system;
   e->capacity = capacity;
-  e->counters = counters != NULL ? counters : &e->own;
+  e->counters = counters != NULL ? counters : &e->own_counters;
   dvi_status status = allocate(e, hessians);
-  if (status == DVI_OK) status = prepare_velocity(e);
-  if (status == DVI_OK && most == DVI__STATES) status = prepare_states(e);
+  if (status == DVI_OK) status = system->dynamics->prepare(e, most);
   if (status != DVI_OK) dvi__evaluator_destroy(&e);
   *evaluator = e;
   return status;
@@ -89,17 +55,12 @@ void dvi__evaluator_destroy(dvi__evaluator **evaluator)
   dvi__evaluator *e = *evaluator;
   if (e == NULL) return;
   dvi__linear_destroy(&e->velocity);
-  dvi__charted_destroy(&e->charted);
-  dvi__release(e->rate);
-  dvi__release(e->local);
-  dvi__release(e->mass);
+  if (e->system->dynamics->release != NULL) e->system->dynamics->release(e);
   dvi__scratch_clear(&e->scratch);
   dvi__release(e->term);
   for (int i = 0; i < 3; i++) dvi__release(e->point[i]);
-  dvi__dirac_destroy(&e->dirac);
   dvi__release(e->unwanted);
   dvi__release(e->velocity_search);
-  dvi__release(e->two_form);
   for (int i = 0; i < 3; i++) dvi__release(e->hessian[i]);
   dvi__release(e);
   *evaluator = NULL;
@@ -187,7 +148,7 @@ dvi_status dvi__lagrangian_value(dvi__evaluator *e, int count, const double *t, 
     for (int k = 0; k < count; k++) L[k] -= e->term[k];
   }
   if (dvi__first_not_finite((size_t)count, L) >= 0)
-    return dvi__fail(DVI_NOT_FINITE, "the %s's value is not finite", s->terms & DVI__PHASE_SPACE ? "Hamiltonian" : "Lagrangian");
+    return dvi__fail(DVI_NOT_FINITE, "the %s's value is not finite", s->dynamics->function);
   return DVI_OK;
 }
 

@@ -43,29 +43,14 @@ dvi_status dvi__lagrangian_hessian(dvi__evaluator *e, int count, const double *t
 /* One point of a general Lagrangian: *L_vv is owned by the evaluator, valid until its next call. Potentials do not matter for it. */
 dvi_status dvi__velocity_hessian(dvi__evaluator *e, double t, const double *q, const double *v, const double **L_vv);
 
-/* One state: L; its momentum p; the forces L_q [nq]. */
-dvi_status dvi__state_lagrangian(dvi__evaluator *e, double t, const double *q, const double *v, double *L);
-dvi_status dvi__state_momentum(dvi__evaluator *e, double t, const double *q, const double *v, double *p);
-dvi_status dvi__state_forces(dvi__evaluator *e, double t, const double *q, const double *v, double *L_q);
-
 /* One state: DVI_BAD_ARGUMENT if q is not on the manifold of the factors, or second, v or p, not in its tangent space. */
 dvi_status dvi__state_check(const dvi__evaluator *e, const double *q, const double *second);
 
 /* One state: v with L_v(t,q,v) = p, or that of the equations of motion with a one-form. v holds a guess for general Lagrangians; unchanged on failure. */
 dvi_status dvi__legendre_inverse(dvi__evaluator *e, double t, const double *q, const double *p, double *v);
 
-/* One point of a system with a one-form: factor Omega(q); x [n] <- Omega^-1 x with that; v with Omega(q) v = H_q(t,q). DVI_SINGULAR. */
-dvi_status dvi__two_form_factor(dvi__evaluator *e, const double *q);
-void dvi__two_form_solve(dvi__evaluator *e, double *x);
-dvi_status dvi__two_form_velocity(dvi__evaluator *e, double t, const double *q, double *v);
-
-/* On which side of the points where the two-form is singular q lies: the sign of its Pfaffian, 0 at such a point. Always 1 in more than
- * DVI__SIDES_MOST dimensions, where the answer would cost as much as a step. */
+/* Up to so many rows the side of a matrix's singular points is told (dynamics.h). */
 enum { DVI__SIDES_MOST = 16 };
-dvi_status dvi__two_form_side(dvi__evaluator *e, const double *q, int *side);
-
-/* Whether the trajectory from q seems to end within h at a point where the two-form is singular, or is as good as there. v, ahead [n]: room. */
-int dvi__two_form_ends(dvi__evaluator *e, double t, const double *q, double h, double *v, double *ahead);
 
 /* One point of a one-form: alpha [n], and the gradient [n] of alpha(q).w, w [n]. */
 dvi_status dvi__form_gradient(dvi__evaluator *e, const double *q, const double *w, double *alpha_w_q, double *alpha);
@@ -73,25 +58,13 @@ dvi_status dvi__form_gradient(dvi__evaluator *e, const double *q, const double *
 /* Only with DVI__HESSIANS. The Hessian of alpha(q).w in the order of the system's qq, and the gradients of alpha in that of its qv. */
 dvi_status dvi__form_hessian(dvi__evaluator *e, const double *q, const double *w, double *alpha_w_qq, double *alpha_q);
 
-/* scale [n]: the largest gradient of alpha at q that has to do with a coordinate; 1 where all vanish. */
-dvi_status dvi__form_scale(dvi__evaluator *e, const double *q, double *scale);
-
-/* DVI_SINGULAR unless the symmetric part S of alpha's gradients D at q is definite, and with it the eigenvalues of sign D^-T D away from 1 on the unit
- * circle; with sign = 1 S may be 0. The sentence names a gauge that helps. A [4*n*n]: room. */
-dvi_status dvi__form_definite(dvi__evaluator *e, const double *q, int sign, double *A);
-
-/* F [n] = Omega(q) v - H_q(t,q), without a factorisation. */
-dvi_status dvi__two_form_residual(dvi__evaluator *e, double t, const double *q, const double *v, double *F);
-
-/* The largest |p_i - alpha_i(q)|, and the size of alpha and of what its gradients make of q, by which that is measured. */
-dvi_status dvi__form_distance(dvi__evaluator *e, const double *q, const double *p, double *distance);
-dvi_status dvi__form_size(dvi__evaluator *e, const double *q, double *size);
-
-/* DVI_BAD_ARGUMENT unless p = alpha(q) up to rounding. */
-dvi_status dvi__form_constraint(dvi__evaluator *e, const double *q, const double *p);
-
-/* One state: DVI_SINGULAR if L_vv (Omega with a one-form) cannot be inverted there. */
+/* One state: DVI_SINGULAR if it has no velocity, or no motion. */
 dvi_status dvi__legendre_regular(dvi__evaluator *e, double t, const double *q, const double *v);
+
+/* One state: both rates v and pdot [n]; v holds a guess as above; the multipliers of a Hamiltonian's
+ * constraints if they are not NULL. Not on a manifold. */
+dvi_status dvi__state_rates(dvi__evaluator *e, double t, const double *q, const double *p, double *v, double *pdot,
+                            double *multiplier);
 
 /* x [n*count, component-major] = M^{-1} y for the constant mass; x may be y. Only for systems with DVI__CONSTANT_MASS. */
 void dvi__mass_solve(dvi__evaluator *e, int count, const double *y, double *x);

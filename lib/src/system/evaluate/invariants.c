@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/status.h"
+#include "system/evaluate/dynamics.h"
 #include "system/evaluate/evaluator_struct.h"
 
 static dvi_status callback(int returned, const char *name)
@@ -23,26 +24,13 @@ static dvi_status momentum_map(dvi__evaluator *e, const dvi_symmetry *symmetry, 
   return DVI_OK;
 }
 
-/* H, or p.v - L; the Hamiltonian -L(t,q,0) of a one-form wants no velocity. */
-static dvi_status energy(dvi__evaluator *e, double t, const double *q, const double *v, const double *p, double *E)
-{
-  double L, pv = 0, *rest = e->point[2];
-  const int degenerate = (e->system->terms & DVI__ONE_FORM) != 0;
-  if (e->system->terms & DVI__PHASE_SPACE) return dvi__lagrangian_value(e, 1, &t, q, p, E);
-  memset(rest, 0, (size_t)e->system->n * sizeof(double));
-  DVI_TRY(dvi__state_lagrangian(e, t, q, degenerate ? rest : v, &L));
-  for (int i = 0; i < e->system->nv && !degenerate; i++) pv += p[i] * v[i];
-  *E = pv - L;
-  return DVI_OK;
-}
-
 dvi_status dvi__invariant(dvi__evaluator *e, double t, const double *q, const double *v, const double *p, int i, double *value)
 {
   const dvi_system *s = e->system;
   const char *name = s->invariant_names[i];
   const int declared = i - 1 - s->symmetry_count;
   if (i == 0)
-    DVI_TRY(energy(e, t, q, v, p, value));
+    DVI_TRY(e->system->dynamics->energy(e, t, q, v, p, value));
   else if (declared < 0)
     DVI_TRY(momentum_map(e, &s->symmetries[i - 1], q, p, value));
   else
@@ -62,16 +50,11 @@ dvi_status dvi__invariants(dvi__evaluator *e, double t, const double *q, const d
 /* Of a difference of energies no more is known than a rounding of what they are summed from. */
 static const double rounding = 64 * DBL_EPSILON;
 
-static int has_kinetic(const dvi_system *system)
-{
-  return !(system->terms & (DVI__ONE_FORM | DVI__PHASE_SPACE));
-}
-
 static dvi_status kinetic(dvi__evaluator *e, const dvi__instant *at, double *E, double *T, double *size)
 {
   double pv = 0;
   DVI_TRY(dvi__legendre_inverse(e, at->t, at->q, at->p, at->v));
-  DVI_TRY(energy(e, at->t, at->q, at->v, at->p, E));
+  DVI_TRY(e->system->dynamics->energy(e, at->t, at->q, at->v, at->p, E));
   for (int i = 0; i < e->system->n; i++) pv += at->p[i] * at->v[i];
   *T = 0.5 * fabs(pv);
   *size = fabs(pv) + fabs(*E);
@@ -112,10 +95,10 @@ static dvi_status exchange(dvi__evaluator *e, const dvi__instant *at, const dvi_
 static dvi_status change_of_hamiltonian(dvi__evaluator *e, const dvi__instant *before, const dvi__instant *after, double *change,
                                         double *exchanged)
 {
-  const int with_p = (e->system->terms & DVI__PHASE_SPACE) != 0;
+  const int with_p = e->system->dynamics->by_momentum;
   double E0, E1, sum0, sum1;
-  DVI_TRY(energy(e, before->t, before->q, before->v, before->p, &E0));
-  DVI_TRY(energy(e, after->t, after->q, after->v, after->p, &E1));
+  DVI_TRY(e->system->dynamics->energy(e, before->t, before->q, before->v, before->p, &E0));
+  DVI_TRY(e->system->dynamics->energy(e, after->t, after->q, after->v, after->p, &E1));
   DVI_TRY(exchange(e, before, before, after, with_p, &sum0));
   DVI_TRY(exchange(e, after, before, after, with_p, &sum1));
   *change = fmax(fabs(E1 - E0) - rounding * fmax(fabs(E0), fabs(E1)), 0);
@@ -126,7 +109,8 @@ static dvi_status change_of_hamiltonian(dvi__evaluator *e, const dvi__instant *b
 dvi_status dvi__energy_change(dvi__evaluator *e, const dvi__instant *before, const dvi__instant *after, double *change,
                               double *exchanged)
 {
-  return (has_kinetic(e->system) ? change_of_lagrangian : change_of_hamiltonian)(e, before, after, change, exchanged);
+  return (e->system->dynamics->has_kinetic_energy ? change_of_lagrangian : change_of_hamiltonian)(e, before, after, change,
+                                                                                                  exchanged);
 }
 
 /* Rates r and what they move, x, of one kind. A rate that is a rounding of the others is no measure,
@@ -149,7 +133,7 @@ dvi_status dvi__motion_defect(dvi__evaluator *e, const dvi__instant *before, con
 {
   const size_t n = (size_t)e->system->n;
   const double h = after->t - before->t;
-  const int has_forces = has_kinetic(e->system);
+  const int has_forces = e->system->dynamics->has_kinetic_energy;
   double *f0 = forces, *f1 = forces + n;
   if (!has_forces) {
     DVI_TRY(dvi__legendre_inverse(e, before->t, before->q, before->p, before->v));
@@ -157,8 +141,8 @@ dvi_status dvi__motion_defect(dvi__evaluator *e, const dvi__instant *before, con
   }
   *defect = defect_of(n, h, 0, before->q, after->q, before->v, after->v);
   if (!has_forces) return DVI_OK;
-  DVI_TRY(dvi__state_forces(e, before->t, before->q, before->v, f0));
-  DVI_TRY(dvi__state_forces(e, after->t, after->q, after->v, f1));
+  DVI_TRY(e->system->dynamics->forces(e, before->t, before->q, before->v, f0));
+  DVI_TRY(e->system->dynamics->forces(e, after->t, after->q, after->v, f1));
   *defect = fmax(*defect, defect_of(n, h, 1, before->p, after->p, f0, f1));
   return DVI_OK;
 }

@@ -5,7 +5,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/finite.h"
-#include "system/evaluate/evaluator.h"
+#include "system/evaluate/dynamics.h"
 
 static dvi_status check_point(const dvi_system *system, double t, const double *q, const double *second, const void *result)
 {
@@ -18,7 +18,7 @@ static dvi_status check_point(const dvi_system *system, double t, const double *
 
 static dvi_status needs_lagrangian(const dvi_system *system)
 {
-  if (!(system->terms & DVI__PHASE_SPACE)) return DVI_OK;
+  if (!system->dynamics->by_momentum) return DVI_OK;
   return dvi__fail(DVI_UNSUPPORTED,
                    "system: a Hamiltonian is declared, no Lagrangian; ask at q and p: dvi_system_invariants, dvi_system_velocity");
 }
@@ -31,7 +31,7 @@ dvi_status dvi_system_lagrangian(const dvi_system *system, double t, const doubl
   DVI_TRY(needs_lagrangian(system));
   DVI_TRY(dvi__evaluator_create(system, 1, DVI__STATES, NULL, &e));
   dvi_status status = dvi__state_check(e, q, v);
-  if (status == DVI_OK) status = dvi__state_lagrangian(e, t, q, v, &value);
+  if (status == DVI_OK) status = system->dynamics->value(e, t, q, v, &value);
   dvi__evaluator_destroy(&e);
   if (status == DVI_OK) *L = value;
   return status;
@@ -44,7 +44,7 @@ dvi_status dvi_system_momentum(const dvi_system *system, double t, const double 
   DVI_TRY(needs_lagrangian(system));
   DVI_TRY(dvi__evaluator_create(system, 1, DVI__STATES, NULL, &e));
   dvi_status status = dvi__state_check(e, q, v);
-  if (status == DVI_OK) status = dvi__state_momentum(e, t, q, v, p);
+  if (status == DVI_OK) status = system->dynamics->momentum(e, t, q, v, p);
   dvi__evaluator_destroy(&e);
   if (status == DVI_OK && dvi__first_not_finite((size_t)system->nv, p) >= 0)
     return dvi__fail(DVI_NOT_FINITE, "system: the momentum at t = %g is not finite", t);
@@ -55,7 +55,7 @@ dvi_status dvi_system_velocity(const dvi_system *system, double t, const double 
 {
   dvi__evaluator *e;
   DVI_TRY(check_point(system, t, q, p, v));
-  if (system->terms & DVI__LAGRANGIAN && dvi__first_not_finite((size_t)system->n, v) >= 0)
+  if (system->dynamics->searches_velocity && dvi__first_not_finite((size_t)system->n, v) >= 0)
     return dvi__fail(DVI_NOT_FINITE, "system: the starting velocity is not finite");
   DVI_TRY(dvi__evaluator_create(system, 1, DVI__STATES, NULL, &e));
   dvi_status status = dvi__state_check(e, q, p);

@@ -6,6 +6,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "system/evaluate/dynamics.h"
 #include "system/term/term.h"
 
 struct dvi__monitor {
@@ -44,7 +45,7 @@ static dvi_status read_motion(const dvi_system *system, const dvi_monitor *given
   const char *what = arclength ? "arclength" : "acceleration";
   if (system->lagrangian != NULL)
     return dvi__fail(DVI_UNSUPPORTED, "monitor %s: the system declares a %s; a constant mass is needed", what,
-                     system->terms & DVI__LAGRANGIAN ? "general Lagrangian" : system->lagrangian->name);
+                     system->dynamics->name);
   if (arclength && !system->autonomous)
     return dvi__fail(DVI_UNSUPPORTED,
                      "monitor arclength: the system is not declared autonomous, and has no energy to take the speed from");

@@ -14,6 +14,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/finite.h"
+#include "system/evaluate/dynamics.h"
 
 /* Work for a batch; all in one block. */
 typedef struct work {
@@ -233,6 +234,7 @@ static dvi_status make_system(dvi__transformed *x)
   dvi_system *s = x->system = DVI_NEW(dvi_system, 1);
   if (s == NULL) return dvi__fail(DVI_NO_MEMORY, "time transform: no memory");
   s->n = s->nv = s->nx = x->base->n;
+  s->dynamics = &dvi__dynamics_time_transformed;
   s->terms = DVI__LAGRANGIAN;
   s->autonomous = 1;
   s->lagrangian = DVI_NEW(dvi__lagrangian_term, 1);
@@ -253,7 +255,7 @@ static dvi_status fill(dvi__transformed *x, const dvi_system *system, const dvi_
     return dvi__fail(DVI_UNSUPPORTED,
                      "the system is not declared autonomous: its energy need not be conserved, and no function of q "
                      "alone can stand for its time");
-  if (system->terms & (DVI__ONE_FORM | DVI__PHASE_SPACE))
+  if (!system->dynamics->has_kinetic_energy)
     return dvi__fail(DVI_UNSUPPORTED, "the system declares a %s: its Lagrangian has no mass that could be divided by the monitor",
                      system->lagrangian->name);
   DVI_TRY(dvi__system_prepare_hessian(system));

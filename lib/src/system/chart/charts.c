@@ -1,0 +1,113 @@
+/* Rotations, rigid motions and directions, with a constant mass: L = y'.My'/2 - V(t,y) on the stored
+ * coordinates y, whose velocities and momenta are those of the tangent spaces. At a state they are
+ * found in the charts centred there, where the mass is constant: p = L_vv v. */
+#include "core/memory.h"
+#include "core/status.h"
+#include "num/finite.h"
+#include "system/chart/charted.h"
+#include "system/evaluate/dynamics.h"
+#include "system/evaluate/evaluator_struct.h"
+#include "system/factor.h"
+#include "system/mass.h"
+
+typedef struct chart_memory {
+  dvi__charted *charted;
+  double *mass;         /* L_vv at the centre, in the order of the charts' vv */
+  double *rate, *local; /* [n] */
+} chart_memory;
+
+static int factors_are_declared(const dvi_system_terms *terms)
+{
+  return terms->factors != NULL;
+}
+
+static dvi_status prepare_charts(dvi__evaluator *e, dvi__derivatives most)
+{
+  const size_t n = (size_t)e->system->n;
+  if (most != DVI__STATES) return DVI_OK;
+  chart_memory *own = e->own = DVI_NEW(chart_memory, 1);
+  if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "evaluator: no memory");
+  DVI_TRY(dvi__charted_create(e->system, 0, e->counters, &own->charted));
+  const dvi__pattern *vv = &dvi__charted_system(own->charted)->vv;
+  own->rate = DVI_NEW(double, n);
+  own->local = DVI_NEW(double, n);
+  own->mass = DVI_NEW(double, dvi__pattern_entries(vv));
+  if (!own->rate || !own->local || !own->mass) return dvi__fail(DVI_NO_MEMORY, "evaluator: no memory");
+  return dvi__linear_create(vv, DVI__LINEAR_AUTO, e->counters, &e->velocity);
+}
+
+static void release_charts(dvi__evaluator *e)
+{
+  chart_memory *own = e->own;
+  if (own == NULL) return;
+  dvi__charted_destroy(&own->charted);
+  dvi__release(own->rate);
+  dvi__release(own->local);
+  dvi__release(own->mass);
+  dvi__release(own);
+}
+
+/* The rate of the stored coordinates. */
+static const double *rate_of(dvi__evaluator *e, const double *q, const double *v)
+{
+  const chart_memory *own = e->own;
+  dvi__factors_rate(e->system, q, v, own->rate);
+  return own->rate;
+}
+
+static dvi_status value_on_manifold(dvi__evaluator *e, double t, const double *q, const double *v, double *L)
+{
+  return dvi__lagrangian_value(e, 1, &t, q, rate_of(e, q, v), L);
+}
+
+static dvi_status forces_on_manifold(dvi__evaluator *e, double t, const double *q, const double *v, double *L_q)
+{
+  return dvi__lagrangian_gradient(e, 1, &t, q, rate_of(e, q, v), L_q, NULL);
+}
+
+static dvi_status momentum_on_manifold(dvi__evaluator *e, double t, const double *q, const double *v, double *p)
+{
+  DVI_TRY(dvi__lagrangian_gradient(e, 1, &t, q, rate_of(e, q, v), NULL, e->point[0]));
+  dvi__factors_momentum(e->system, q, e->point[0], p);
+  return DVI_OK;
+}
+
+static dvi_status factor_chart_mass(dvi__evaluator *e, double t, const double *q, const double *v)
+{
+  const chart_memory *own = e->own;
+  (void)v;
+  dvi__charted_centre(own->charted, q);
+  dvi__charted_mass(own->charted, own->mass);
+  const dvi_status status = dvi__linear_factor(e->velocity, own->mass);
+  return status == DVI_SINGULAR ? dvi__lagrangian_is_degenerate(t) : status;
+}
+
+static dvi_status velocity_in_charts(dvi__evaluator *e, double t, const double *q, const double *p, double *v)
+{
+  const chart_memory *own = e->own;
+  DVI_TRY(factor_chart_mass(e, t, q, NULL));
+  dvi__charted_enter(own->charted, p, own->local);
+  dvi__linear_solve(e->velocity, own->local);
+  if (dvi__first_not_finite((size_t)e->system->nx, own->local) >= 0)
+    return dvi__fail(DVI_NOT_FINITE, "the velocity M^-1 p at t = %.6g is not finite", t);
+  dvi__charted_store(own->charted, own->local, v);
+  return DVI_OK;
+}
+
+const dvi__dynamics dvi__dynamics_charts = {
+    .name = "constant mass on a manifold",
+    .function = "Lagrangian",
+    .equations = DVI__LIFTED,
+    .has_kinetic_energy = 1,
+    .on_manifold = 1,
+    .is_declared = factors_are_declared,
+    .declare = dvi__mass_copy,
+    .prepare = prepare_charts,
+    .release = release_charts,
+    .velocity = velocity_in_charts,
+    .regular = factor_chart_mass,
+    .energy = dvi__energy_of_lagrangian,
+    .value = value_on_manifold,
+    .forces = forces_on_manifold,
+    .momentum = momentum_on_manifold,
+};

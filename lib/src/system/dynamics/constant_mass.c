@@ -1,0 +1,48 @@
+/* A constant mass M and potentials: L = v.Mv/2 - V(t,q), so that v = M^-1 p. */
+#include <string.h>
+
+#include "core/status.h"
+#include "num/finite.h"
+#include "system/evaluate/dynamics.h"
+#include "system/evaluate/evaluator_struct.h"
+#include "system/mass.h"
+
+static int mass_is_declared(const dvi_system_terms *terms)
+{
+  return terms->mass.scalar != 0 || terms->mass.diagonal != NULL || terms->mass.values != NULL;
+}
+
+static dvi_status prepare_mass(dvi__evaluator *e, dvi__derivatives most)
+{
+  const dvi_system *system = e->system;
+  if (system->mass_diagonal != NULL) return DVI_OK;
+  DVI_TRY(dvi__prepare_velocity_hessian(e, most));
+  return dvi__linear_factor(e->velocity, system->mass_values);
+}
+
+static dvi_status velocity_by_mass(dvi__evaluator *e, double t, const double *q, const double *p, double *v)
+{
+  const size_t n = (size_t)e->system->n;
+  double *found = e->point[1];
+  (void)q;
+  dvi__mass_solve(e, 1, p, found);
+  if (dvi__first_not_finite(n, found) >= 0) return dvi__fail(DVI_NOT_FINITE, "the velocity M^-1 p at t = %.6g is not finite", t);
+  memcpy(v, found, n * sizeof *v);
+  return DVI_OK;
+}
+
+const dvi__dynamics dvi__dynamics_constant_mass = {
+    .name = "constant mass",
+    .function = "Lagrangian",
+    .equations = DVI__EULER_LAGRANGE,
+    .has_kinetic_energy = 1,
+    .is_declared = mass_is_declared,
+    .declare = dvi__mass_copy,
+    .prepare = prepare_mass,
+    .velocity = velocity_by_mass,
+    .motion = dvi__motion_of_lagrangian,
+    .energy = dvi__energy_of_lagrangian,
+    .value = dvi__value_of_point,
+    .forces = dvi__forces_of_point,
+    .momentum = dvi__momentum_of_point,
+};

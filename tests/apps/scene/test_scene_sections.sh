@@ -1,0 +1,186 @@
+#!/bin/sh
+# What a scene declares is used or refused: each form of a scene with each method, and each section of those that a method takes, whose change must show.
+# Usage: test_scene_sections.sh DVI
+. "$(dirname "$0")/../check.sh"
+
+plan() {
+  cat <<'END'
+title: first
+parameters: {k: 2}
+step: 0.1
+until: 0.5
+report: {every: 1}
+sweep: {k: [1, 2]}
+END
+}
+common() {
+  plan
+  cat <<'END'
+coordinates: {x: scalar, y: scalar}
+definitions: {r2: x^2 + y^2}
+symmetries: {turn: {x: -y, y: x}}
+invariants: {size: r2}
+events: {pass: {zero: y + 0.1}}
+END
+}
+{ common; cat <<'END'
+kinetic: (x'^2 + 2*y'^2)/2
+potentials: {spring: k*r2/2, well: x^4/4}
+initial: {x: 1, y: 0, x': -0.3, y': -1}
+END
+} >separable.yaml
+sed 's/potentials: .*/potentials: {fast: {spring: k*r2\/2}, slow: {well: x^4\/4}}/' separable.yaml >fast.yaml
+{ common; cat <<'END'
+lagrangian: x'^2/2 + (1 + x^2)*y'^2/2 - k*r2/2
+initial: {x: 1, y: 0, x': -0.3, y': -1}
+END
+} >general.yaml
+{ common; cat <<'END'
+one_form: {x: y}
+hamiltonian: k*r2/2
+initial: {x: 1, y: 0.3}
+END
+} >oneform.yaml
+{ common; cat <<'END'
+hamiltonian: (p(x)^2 + p(y)^2)/2 + k*y
+constraints: {circle: r2 - 1, tangent: x*p(x) + y*p(y)}
+initial: {x: 1, y: 0, p(x): 0, p(y): -0.5}
+END
+} >dirac.yaml
+{ plan; cat <<'END'
+coordinates: {R: rotation}
+definitions: {tip: "R[3,1]"}
+symmetries: {turn: {omega(R): "transpose(R)*[0, 0, 1]"}}
+invariants: {size: tip^2}
+events: {pass: {zero: tip + 0.1}}
+lagrangian: (omega(R)[1]^2 + 1.5*omega(R)[2]^2 + 2*omega(R)[3]^2)/2 - k*tip
+initial: {R: "turn([1, 0, 0], 1)", omega(R): [0.3, 2, -0.5]}
+END
+} >rotation.yaml
+sed 's/^\(lagrangian: \)\(.*\) - k.tip/\1k*\2/' rotation.yaml >body.yaml
+{ plan; cat <<'END'
+coordinates: {u: direction}
+definitions: {tip: "u[3]"}
+symmetries: {turn: {u: "cross([0, 0, 1], u)"}}
+invariants: {size: tip^2}
+events: {pass: {zero: tip + 0.1}}
+lagrangian: dot(u', u')/2 - k*tip
+initial: {u: [1, 0, 0], u': [0, -0.3, -1]}
+END
+} >direction.yaml
+# Form, section, and a change of it, by sed. Flat forms have coordinates x and y.
+forms='separable fast general oneform dirac rotation body direction'
+cat >changes <<'END'
+all parameters s/k: 2/k: 3/
+flat coordinates s/{x: scalar, y: scalar}/{y: scalar, x: scalar}/
+flat definitions s/r2: x^2/r2: 2*x^2/
+flat symmetries s/x: -y/x: -2*y/
+all symmetries s/turn:/twist:/
+all invariants s/size: /size: 2*/
+all events s/+ 0.1}/+ 50}/
+all events s/0.1}/0.1, direction: rising}/
+all events s/0.1}/0.1, stop: yes}/
+all step s/step: 0.1/step: 0.05/
+all until s/until: 0.5/until: 0.4/
+all report s/every: 1/every: 2/
+all report s/every: 1/columns: [turn, energy]/
+fast potentials s/spring: k/spring: 2*k/
+fast potentials s/well: x^4/well: 2*x^4/
+fast initial s/x': -0.3/x': 0/
+turning coordinates s/\bR\b/S/g
+turning definitions s/3,1/3,2/
+turning symmetries s/0, 0, 1]"/0, 0, 2]"/
+turning lagrangian s/1.5/1.6/
+turning initial s/0.3/0.2/
+turning initial s/, 1)/, 1.1)/
+direction coordinates s/\bu\b/w/g
+direction definitions s/3\]"/2]"/
+direction symmetries s/0, 0, 1/0, 0, 2/
+direction lagrangian s/u')\/2/u')/
+direction initial s/-0.3/-0.2/
+separable kinetic s/2\*y'^2/3*y'^2/
+separable potentials s/well: x^4/well: 2*x^4/
+separable initial s/x': -0.3/x': 0/
+separable initial s/y': -1/p(x): 1, p(y): -2/;s/x': -0.3, //
+general lagrangian s/1 + x^2/2 + x^2/
+general initial s/x': -0.3/x': 0/
+oneform one_form s/x: y}/x: 2*y}/
+oneform hamiltonian s/k\*r2/k*(x + r2)/
+oneform initial s/y: 0.3/y: 0.2/
+dirac hamiltonian s/k\*y/2*k*y/
+dirac constraints s/r2 - 1/x^2 + 2*y^2 - 1/;s/x\*p(x) + y/x*p(x) + 2*y/
+dirac initial s/p(y): -0.5/p(y): -0.4/
+END
+while read -r form section change; do
+  for scene in $forms; do
+    case "$form:$scene" in
+    flat:rotation | flat:body | flat:direction) continue ;;
+    all:* | flat:* | turning:rotation | turning:body | "$scene:$scene") ;;
+    *) continue ;;
+    esac
+    sed "$change" $scene.yaml >"$scene-$section-$((changes += 1)).yaml"
+    cmp -s $scene.yaml "$scene-$section-$changes.yaml" && fail "$scene: '$change' changes nothing"
+  done
+done <changes
+
+# show SCENE METHOD: what a run shows, all together; without the sections that $without names.
+without=
+show() {
+  sed "/^${without:-none}:/d" "$1" >tried.yaml
+  "$dvi" run tried.yaml --method "$2" 2>&1
+}
+
+# used SCENE METHOD: the method takes the scene, and all its sections. On manifold coordinates these methods have no path on which to look for events.
+used() {
+  without=
+  case "$1:$2" in rotation:lie-rk | body:lie-rk | direction:lie-rk | rotation:comp* | body:comp* | direction:comp*) without=events ;; esac
+  show "$1.yaml" "$2" >base
+  for changed in "$1"-*.yaml; do
+    case "$changed" in *"-$without-"*) continue ;; esac
+    show "$changed" "$2" >shown
+    [ -s shown ] || fail "$2: $changed: neither rows nor a reason"
+    cmp -s base shown && fail "$2: the change in $changed does not show"
+  done
+  { cat "$1.yaml"; echo "method: $2"; } | sed "/^${without:-none}:/d" >tried.yaml
+  "$dvi" run tried.yaml >shown 2>&1
+  same shown base "$2: the scene's own method"
+  expect 0 "$2: a sweep over $1" sweep tried.yaml --threads 1 --out sweep.csv
+  [ "$(cut -d, -f1,2 sweep.csv | tr '\n' ' ')" = 'k,status 1,DVI_OK 2,DVI_OK ' ] || fail "$2: the section sweep of $1"
+}
+
+# Every method takes a form (multiscale once it is told what is fast), or refuses it by a sentence that names those that do.
+refused=0
+"$dvi" list methods --csv - | tail -n +2 | cut -d, -f1 | sed 's/^multiscale$/multiscale:fast=0,omega=5/' >methods
+echo composition:order=4,base=midpoint >>methods
+for scene in $forms; do
+  taken=
+  while read -r method; do
+    if "$dvi" check $scene.yaml --method "$method" >out 2>err; then
+      taken="$taken $method"
+      says out "^$scene: first$" "$method: the title of $scene"
+      used $scene "$method"
+    else
+      refused=$((refused + 1))
+      expect 2 "$method refuses $scene" run $scene.yaml --method "$method"
+      says err 'methods for this system: [a-z]\| can$' "$method: what to take for $scene"
+    fi
+  done <methods
+  echo "$scene:$taken"
+  case "$scene:$taken " in
+  fast:*' imex respa mollified trig '* | rotation:*' lie-galerkin lie-verlet lie-rk '*) ;;
+  body:*' lie-galerkin lie-verlet lie-rk euler-poincare '* | direction:*' lie-galerkin lie-verlet lie-rk sphere-galerkin '*) ;;
+  fast:* | rotation:* | body:* | direction:*) fail "a method does not take $scene" ;;
+  *:' ') fail "no method takes $scene" ;;
+  esac
+done
+[ $refused -gt 0 ] || fail 'no method refuses anything'
+
+# Sections that no scene may have, or not beside others.
+for pair in 'forces: {x: 1}|takes forces' 'lagrangian: x'"'"'^2|one of these' 'hamiltonian: x|no hamiltonian' 'one_form: {x: y}|one of these' \
+  'constraints: {a: x, b: y}|one of these' 'friction: 1|has no .friction.'; do
+  { cat separable.yaml; echo "${pair%%|*}"; } >odd.yaml
+  expect 2 "${pair%%|*}" run odd.yaml --method verlet
+  says err "${pair#*|}" "why not ${pair%%|*}"
+done
+no_trace 'sections'
+finish

@@ -1,0 +1,460 @@
+/* labels: invariant */
+/* Every member of an ensemble has the bits of an integrator of its own, at every level of instructions, for every number of threads and every
+ * grouping; and what it counts is what they count together. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "num/simd/lanes.h"
+#include "support/heap.h"
+#include "support/runs.h"
+#include "support/suite.h"
+
+enum { N_MOST = 64, MEMBERS_MOST = 100, INVARIANTS_MOST = 16 };
+
+static void best_again(void)
+{
+  dvi__lanes_choose(-1);
+}
+
+/* ---- members and their twins ---- */
+
+/* Initial states near the problem's own, no two alike; component-major. */
+static double first_q[N_MOST * MEMBERS_MOST], first_p[N_MOST * MEMBERS_MOST];
+
+static void take(int n, int members, int k, const double *all, double *one)
+{
+  for (int i = 0; i < n; i++) one[i] = all[i * members + k];
+}
+
+/* p = alpha(q), where there is a one-form. */
+static void constrain(const problem *of, int members, int k)
+{
+  double q[N_MOST], p[N_MOST];
+  take(of->nq, members, k, first_q, q);
+  ck_assert_int_eq(dvi_system_momentum(of->system, 0, q, of->v, p), DVI_OK);
+  for (int i = 0; i < of->nq; i++) first_p[i * members + k] = p[i];
+}
+
+/* With factors the places stay on their manifold, and the momenta in its tangent spaces. */
+static void spread_momenta(const problem *of, int members, double spread)
+{
+  for (int k = 0; k < members; k++) {
+    for (int i = 0; i < of->nq; i++) first_q[i * members + k] = of->q[i];
+    for (int i = 0; i < of->nv; i++) first_p[i * members + k] = of->p[i] * (1 + spread * k / members);
+  }
+}
+
+static void spread_start(const problem *of, int members, double spread)
+{
+  ck_assert_int_le(of->nq, N_MOST);
+  ck_assert_int_le(members, MEMBERS_MOST);
+  if (of->terms->factors != NULL) {
+    spread_momenta(of, members, spread);
+    return;
+  }
+  for (int k = 0; k < members; k++)
+    for (int i = 0; i < of->nq; i++) {
+      const double u = fmod(0.618033988749895 * (k * of->nq + i + 1), 1.0) - 0.5;
+      first_q[i * members + k] = of->q[i] + spread * u * (1 + fabs(of->q[i]));
+      first_p[i * members + k] = of->p[i] * (1 + spread * u);
+    }
+  for (int k = 0; k < members && of->terms->one_form != NULL; k++) constrain(of, members, k);
+}
+
+static dvi_ensemble *made_ensemble(const dvi_system *system, const char *method, dvi_ensemble_options options)
+{
+  dvi_ensemble *made = NULL;
+  ck_assert_msg(dvi_ensemble_create(system, method, &options, &made) == DVI_OK, "%s", dvi_last_error());
+  return made;
+}
+
+static void start_all(dvi_ensemble *e)
+{
+  ck_assert_msg(dvi_ensemble_start(e, 0.25, first_q, first_p) == DVI_OK, "%s", dvi_last_error());
+}
+
+/* An integrator that runs member k alone. */
+static dvi_integrator *twin(const dvi_system *system, const char *method, int members, int k)
+{
+  double q[N_MOST], p[N_MOST];
+  dvi_integrator *made = made_integrator(system, method);
+  take(dvi_system_nq(system), members, k, first_q, q);
+  take(dvi_system_nv(system), members, k, first_p, p);
+  ck_assert_msg(dvi_integrator_start(made, 0.25, q, p) == DVI_OK, "%s", dvi_last_error());
+  return made;
+}
+
+/* Member k and its twin have the same time, coordinates, momenta and invariants. */
+static void same_member(dvi_ensemble *e, int k, dvi_integrator *single)
+{
+  static double t[MEMBERS_MOST], q[N_MOST * MEMBERS_MOST], p[N_MOST * MEMBERS_MOST];
+  double q_k[N_MOST], p_k[N_MOST], here[INVARIANTS_MOST], there[INVARIANTS_MOST], t_single = dvi_integrator_time(single);
+  const dvi_system *system = dvi_integrator_system(single);
+  const int n = dvi_system_nq(system), nv = dvi_system_nv(system), members = dvi_ensemble_members(e),
+            invariants = dvi_system_invariant_count(system);
+  ck_assert_int_le(invariants, INVARIANTS_MOST);
+  ck_assert_int_eq(dvi_ensemble_state(e, t, q, p), DVI_OK);
+  take(n, members, k, q, q_k), take(nv, members, k, p, p_k);
+  ck_assert_mem_eq(&t[k], &t_single, sizeof(double));
+  ck_assert_mem_eq(q_k, dvi_integrator_q(single), (size_t)n * sizeof(double));
+  ck_assert_mem_eq(p_k, dvi_integrator_p(single), (size_t)nv * sizeof(double));
+  /* Where a run has blown up there is no energy, on both sides. */
+  const dvi_status status = dvi_integrator_invariants(single, there);
+  ck_assert_int_eq(dvi_ensemble_invariants(e, k, here), status);
+  if (status == DVI_OK) ck_assert_mem_eq(here, there, (size_t)invariants * sizeof(double));
+}
+
+static void add(const dvi_counters *some, dvi_counters *sum)
+{
+  const long *from = (const long *)(const void *)some;
+  long *to = (long *)(void *)sum;
+  for (size_t i = 0; i < sizeof *sum / sizeof(long); i++) to[i] += from[i];
+}
+
+/* But for memory, what making an integrator counts, factors that all members share since the length of the step alone matters, and the frozen Jacobians
+ * that another member has displaced. */
+static void check_counters(dvi_counters got, dvi_counters wanted, const dvi_counters *creation, int members)
+{
+  wanted.symbolic -= (members - 1) * creation->symbolic;
+  wanted.factorizations -= (members - 1) * creation->factorizations;
+  wanted.hessians -= (members - 1) * creation->hessians;
+  if (wanted.residuals == 0 && wanted.factorizations > got.factorizations) {
+    ck_assert_int_eq(got.factorizations * members, wanted.factorizations);
+    got.factorizations = wanted.factorizations;
+  }
+  got.allocations = wanted.allocations = 0;
+  if (wanted.simplified > 0) {
+    ck_assert_int_ge(got.jacobians, wanted.jacobians);
+    ck_assert_int_eq(got.hessians - wanted.hessians, got.jacobians - wanted.jacobians);
+    ck_assert_int_ge(got.factorizations, wanted.factorizations);
+    got.jacobians = wanted.jacobians, got.hessians = wanted.hessians, got.factorizations = wanted.factorizations;
+  }
+  ck_assert_mem_eq(&got, &wanted, sizeof got);
+}
+
+/* ---- places ---- */
+
+/* The chain of 40 goes in waves, that of 8 in lanes. fpu at h = 0.1 is stiff: fixed point iteration fails. At h = 0.02 it fails for some members and steps, and at pericentre kepler's goes through
+ * all solvers. */
+static const struct {
+  const char *problem, *setting;
+  double h, spread;
+} places[] = {{"kepler", NULL, 0.05, 0.1},
+              {"kepler", "e=0.8", 0.2, 0.02},
+              {"pendulum", NULL, 0.1, 0.5},
+              {"fpu", "ell=3", 0.1, 0.1},
+              {"fpu", "ell=3", 0.03, 0.3},
+              {"double-pendulum", NULL, 0.05, 0.3},
+              {"henon-heiles", NULL, 0.2, 0.1},
+              {"chain", "n=8", 0.1, 0.1},
+              {"chain", "n=40", 0.1, 0.1},
+              {"vortices", NULL, 0.05, 0.01},
+              {"massless-particle", "gauge=singular", 0.1, 0.01},
+              {"elastica", NULL, 0.1, 0.01},
+              {"free-body", NULL, 0.1, 0.01},
+              {"spherical-double-pendulum", NULL, 0.01, 0.01}};
+
+static const char *const methods[] = {
+    "verlet",
+    "verlet:sweep=plain",
+    "midpoint",
+    "midpoint:solver=fixed-point",
+    "trapezoidal",
+    "galerkin",
+    "galerkin:degree=3,basis=legendre,quadrature=lobatto",
+    "galerkin:degree=5",
+    "galerkin:degree=8",
+    "galerkin:degree=16",
+    "galerkin:degree=2,solver=newton",
+    "galerkin:degree=2,solver=certified",
+    "composition",
+    "composition:order=8",
+    "composition:order=6,base=galerkin,degree=2",
+    "vprk:nodes=3",
+    "dg",
+    "dg-phase",
+    "dg:degree=3,stiffness=1",
+    "vprk:projection=symplectic",
+    "dvi-a",
+    "dvi-b",
+    "dvi-midpoint",
+    "dvi-trapezoidal",
+    "dvrk",
+    "vprk:projection=none",
+    "hp:type=3",
+    "hamiltonian:degree=3",
+    "hp:type=4",
+    "lie-galerkin",
+    "euler-poincare",
+    "sphere-galerkin:degree=1",
+    "lie-verlet",
+    "lie-rk",
+    "imex",
+    "imex:solver=newton",
+    "multiscale:fast=0,omega=5",
+    "shooting",
+    "respa:substeps=5",
+    "respa:substeps=exact",
+    "mollified:filter=projection",
+    "trig:filter=gautschi",
+    "prolongation-collocation:derivatives=3",
+};
+enum { PLACES = sizeof places / sizeof *places, METHODS = sizeof methods / sizeof *methods, STEPS = 12 };
+
+/* But sem, which is refused (tests/method/element/test_sem.c). */
+START_TEST(every_method_has_its_place)
+{
+  for (int i = 0; i < dvi_method_count(); i++) {
+    if (strcmp(dvi_method_name(i), "sem") == 0) continue;
+    const size_t length = strlen(dvi_method_name(i));
+    int found = 0;
+    for (int k = 0; k < METHODS; k++)
+      found += strcspn(methods[k], ":") == length && strncmp(methods[k], dvi_method_name(i), length) == 0;
+    ck_assert_msg(found > 0, "%s", dvi_method_name(i));
+  }
+}
+END_TEST
+
+/* One way to run an ensemble beside the twins, which take the same steps. Some members may fail, on both sides. */
+static void compare(const problem *of, const char *method, double h, dvi_ensemble_options options)
+{
+  dvi_counters wanted = {0}, got, creation, single;
+  dvi_ensemble *e = made_ensemble(of->system, method, options);
+  dvi_integrator *probe = made_integrator(of->system, method);
+  dvi_integrator_counters(probe, &creation);
+  dvi_integrator_destroy(&probe);
+  start_all(e);
+  dvi_status worst = dvi_ensemble_advance(e, h, STEPS - 3);
+  if (worst == DVI_OK) worst = dvi_ensemble_step(e, h);
+  if (worst == DVI_OK) worst = dvi_ensemble_advance(e, -0.7 * h, 2);
+  dvi_ensemble_counters(e, &got);
+  for (int k = 0; k < options.members; k++) {
+    dvi_integrator *alone = twin(of->system, method, options.members, k);
+    dvi_status status = DVI_OK;
+    for (int i = 0; i < (worst == DVI_OK ? STEPS : STEPS - 3) && status == DVI_OK; i++)
+      status = dvi_integrator_step(alone, i < STEPS - 2 ? h : -0.7 * h);
+    ck_assert_int_eq(dvi_ensemble_status(e, k), status);
+    dvi_integrator_counters(alone, &single);
+    ck_assert_int_eq(dvi_ensemble_steps(e, k), single.steps);
+    add(&single, &wanted);
+    same_member(e, k, alone);
+    dvi_integrator_destroy(&alone);
+  }
+  check_counters(got, wanted, &creation, options.members);
+  dvi_ensemble_destroy(&e);
+}
+
+static int can_use(const problem *of, const char *method)
+{
+  dvi_integrator *made = NULL;
+  const dvi_status status = dvi_integrator_create(of->system, method, &made);
+  dvi_integrator_destroy(&made);
+  return status == DVI_OK;
+}
+
+START_TEST(every_member_has_the_bits_of_a_run_alone)
+{
+  const int at = _i / METHODS;
+  const char *method = methods[_i % METHODS];
+  problem *of = made_problem(places[at].problem, places[at].setting);
+  if (can_use(of, method)) {
+    spread_start(of, 21, places[at].spread);
+    compare(of, method, places[at].h, (dvi_ensemble_options){.members = 21});
+  }
+  problem_destroy(&of);
+}
+END_TEST
+
+/* Levels, threads and groupings, one after the other: each is compared with runs alone at the best level. */
+START_TEST(levels_threads_and_groupings_change_no_bit)
+{
+  static const struct {
+    int members, threads, block;
+  } ways[] = {{1, 1, 0},  {2, 1, 0},   {7, 3, 2},    {21, 1, 1},   {21, 2, 5},
+              {37, 4, 8}, {37, 1, 37}, {100, 1, 64}, {100, 3, 13}, {9, 100, 0}};
+  static const char *const some[] = {"verlet", "galerkin", "galerkin:degree=5", "composition:order=6,base=galerkin,degree=2",
+                                     "galerkin:degree=8"};
+  const int way = _i % 10, level = _i / 10;
+  if (level >= dvi__lanes_levels()) return;
+  problem *of = made_problem("kepler", "e=0.5");
+  for (int m = 0; m < 5; m++) {
+    dvi__lanes_choose(level);
+    spread_start(of, ways[way].members, 0.1);
+    compare(of, some[m], 0.05,
+            (dvi_ensemble_options){.members = ways[way].members, .threads = ways[way].threads, .block = ways[way].block});
+  }
+  problem_destroy(&of);
+}
+END_TEST
+
+/* The ensemble's state at each level against that of the baseline: `compare` has both sides at one level. */
+START_TEST(levels_agree_with_each_other)
+{
+  static double base_q[N_MOST * MEMBERS_MOST], q[N_MOST * MEMBERS_MOST];
+  problem *of = made_problem("outer-solar", NULL);
+  spread_start(of, 33, 0.01);
+  for (int level = 0; level < dvi__lanes_levels(); level++) {
+    dvi__lanes_choose(level);
+    dvi_ensemble *e = made_ensemble(of->system, methods[_i], (dvi_ensemble_options){.members = 33});
+    start_all(e);
+    ck_assert_msg(dvi_ensemble_advance(e, 50, 20) == DVI_OK, "%s", dvi_last_error());
+    ck_assert_int_eq(dvi_ensemble_state(e, NULL, level == 0 ? base_q : q, NULL), DVI_OK);
+    if (level > 0) ck_assert_mem_eq(q, base_q, (size_t)of->nq * 33 * sizeof(double));
+    dvi_ensemble_destroy(&e);
+  }
+  problem_destroy(&of);
+}
+END_TEST
+
+START_TEST(a_start_in_velocities_is_one_in_their_momenta)
+{
+  problem *of = made_problem("double-pendulum", NULL);
+  double v[N_MOST], momentum[N_MOST], p[N_MOST * 5];
+  spread_start(of, 5, 0.2);
+  dvi_ensemble *e = made_ensemble(of->system, "galerkin", (dvi_ensemble_options){.members = 5, .threads = 2});
+  ck_assert_int_eq(dvi_ensemble_start_velocity(e, 0, first_q, first_p), DVI_OK); /* any numbers will do */
+  ck_assert_int_eq(dvi_ensemble_state(e, NULL, NULL, p), DVI_OK);
+  for (int k = 0; k < 5; k++) {
+    double q[N_MOST];
+    take(of->nq, 5, k, first_q, q), take(of->nq, 5, k, first_p, v);
+    ck_assert_int_eq(dvi_system_momentum(of->system, 0, q, v, momentum), DVI_OK);
+    for (int i = 0; i < of->nq; i++) ck_assert_double_eq(p[i * 5 + k], momentum[i]);
+  }
+  dvi_ensemble_destroy(&e);
+  problem_destroy(&of);
+}
+END_TEST
+
+/* ---- what is done ---- */
+
+/* A step of verlet takes one gradient for each member, and one more at the start of all. */
+START_TEST(verlet_evaluates_once_a_step)
+{
+  problem *of = made_problem("kepler", NULL);
+  dvi_counters before, after;
+  spread_start(of, 64, 0.1);
+  dvi_ensemble *e = made_ensemble(of->system, "verlet", (dvi_ensemble_options){.members = 64});
+  start_all(e);
+  dvi_ensemble_counters(e, &before);
+  ck_assert_int_eq(dvi_ensemble_advance(e, 0.01, 50), DVI_OK);
+  dvi_ensemble_counters(e, &after);
+  ck_assert_int_eq(after.gradients - before.gradients, 64 * 51);
+  ck_assert_int_eq(after.steps, 64 * 50);
+  ck_assert_int_eq(after.residuals, 0);
+  dvi_ensemble_destroy(&e);
+  problem_destroy(&of);
+}
+END_TEST
+
+/* A stiff step: simplified Newton's method keeps its Jacobian as long as it serves. Members that go on alone take 1, 2, 4, ... 32 steps at a time. */
+START_TEST(a_frozen_jacobian_serves_several_steps)
+{
+  enum { ALL = 21, SPAN = 63 };
+  problem *of = made_problem("fpu", "ell=3");
+  dvi_counters got, single;
+  long alone = 0;
+  spread_start(of, ALL, 0.01);
+  dvi_ensemble *e = made_ensemble(of->system, "galerkin", (dvi_ensemble_options){.members = ALL});
+  start_all(e);
+  ck_assert_int_eq(dvi_ensemble_advance(e, 0.1, SPAN), DVI_OK);
+  dvi_ensemble_counters(e, &got);
+  for (int k = 0; k < ALL; k++) {
+    dvi_integrator *one = twin(of->system, "galerkin", ALL, k);
+    advance(one, 0.1, SPAN);
+    dvi_integrator_counters(one, &single);
+    alone += single.jacobians;
+    dvi_integrator_destroy(&one);
+  }
+  ck_assert_int_gt(got.simplified, ALL * SPAN / 2);
+  ck_assert_int_le(got.jacobians, alone + 7 * ALL);
+  dvi_ensemble_destroy(&e);
+  problem_destroy(&of);
+}
+END_TEST
+
+START_TEST(no_step_allocates)
+{
+  problem *of = made_problem(places[_i / METHODS].problem, places[_i / METHODS].setting);
+  const char *method = methods[_i % METHODS];
+  if (can_use(of, method)) {
+    dvi_counters before, after;
+    spread_start(of, 21, 0.05);
+    dvi_ensemble *e = made_ensemble(of->system, method, (dvi_ensemble_options){.members = 21, .threads = 2, .block = 4});
+    start_all(e);
+    dvi_ensemble_counters(e, &before);
+    const long calls = heap_calls();
+    (void)dvi_ensemble_advance(e, places[_i / METHODS].h, 4);
+    (void)dvi_ensemble_step(e, places[_i / METHODS].h);
+    const long made = heap_calls() - calls;
+    dvi_ensemble_counters(e, &after);
+    ck_assert_int_gt(before.allocations, 0);
+    ck_assert_int_eq(after.allocations, before.allocations);
+    const long messages = atoi(dvi_reference_version()) >= 7 ? 2 * after.kinsols : 0; /* SUNDIALS 7 keeps those of failed solves */
+    ck_assert_msg(made <= messages, "%s: %ld heap calls", method, made);
+    dvi_ensemble_destroy(&e);
+  }
+  problem_destroy(&of);
+}
+END_TEST
+
+START_TEST(explain_says_how_members_are_grouped)
+{
+  char text[2048], little[20];
+  problem *of = made_problem("kepler", NULL);
+  dvi_ensemble *e = made_ensemble(of->system, "verlet", (dvi_ensemble_options){.members = 64, .block = 16});
+  const size_t length = dvi_ensemble_explain(e, text, sizeof text);
+  ck_assert_uint_eq(length, strlen(text));
+  ck_assert_ptr_nonnull(strstr(text, "64 members in 4 blocks, side by side as lanes, 1 thread\nmethod: verlet"));
+  ck_assert_uint_eq(dvi_ensemble_explain(e, little, sizeof little), length);
+  ck_assert_int_eq(strncmp(text, little, sizeof little - 1), 0);
+  ck_assert_uint_eq(dvi_ensemble_explain(e, NULL, 0), length);
+  ck_assert_str_eq(dvi_ensemble_method(e), "verlet:sweep=auto,threads=1");
+  dvi_ensemble_destroy(&e);
+  e = made_ensemble(of->system, "galerkin:degree=16", (dvi_ensemble_options){.members = 64, .threads = 2});
+  (void)dvi_ensemble_explain(e, text, sizeof text);
+  ck_assert_ptr_nonnull(strstr(text, "64 members in 64 blocks, one after the other, 2 threads\n"));
+  dvi_ensemble_destroy(&e);
+  problem_destroy(&of);
+}
+END_TEST
+
+static void explained(const char *method, const char *setting, const char *words)
+{
+  char text[2048];
+  problem *of = made_problem("chain", setting);
+  dvi_ensemble *e = made_ensemble(of->system, method, (dvi_ensemble_options){.members = 16});
+  (void)dvi_ensemble_explain(e, text, sizeof text);
+  ck_assert_msg(strstr(text, words) != NULL, "%s", text);
+  dvi_ensemble_destroy(&e);
+  problem_destroy(&of);
+}
+
+START_TEST(waves_are_not_given_up_for_members_as_lanes)
+{
+  explained("verlet", "n=8", "side by side");
+  explained("verlet:sweep=wave", "n=8", "one after the other");
+  explained("verlet:threads=2", "n=8", "one after the other");
+  explained("verlet", "n=40", "one after the other");
+  explained("verlet:sweep=plain", "n=40", "side by side");
+  explained("composition", "n=40", "one after the other");
+  explained("galerkin", "n=40", "side by side");
+}
+END_TEST
+
+SUITE(ensemble)
+{
+  tcase_set_timeout(tests, 120);
+  tcase_add_checked_fixture(tests, NULL, best_again);
+  tcase_add_test(tests, every_method_has_its_place);
+  tcase_add_loop_test(tests, every_member_has_the_bits_of_a_run_alone, 0, PLACES * METHODS);
+  tcase_add_loop_test(tests, levels_threads_and_groupings_change_no_bit, 0, 30);
+  tcase_add_loop_test(tests, levels_agree_with_each_other, 0, 9);
+  tcase_add_test(tests, a_start_in_velocities_is_one_in_their_momenta);
+  tcase_add_test(tests, verlet_evaluates_once_a_step);
+  tcase_add_test(tests, a_frozen_jacobian_serves_several_steps);
+  tcase_add_loop_test(tests, no_step_allocates, 0, PLACES * METHODS);
+  tcase_add_test(tests, explain_says_how_members_are_grouped);
+  tcase_add_test(tests, waves_are_not_given_up_for_members_as_lanes);
+}

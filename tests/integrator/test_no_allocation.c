@@ -1,0 +1,241 @@
+/* A step takes no memory from the heap and gives none back: not the library's own, nor that of SUNDIALS, KLU and LAPACK. */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "step/split/wave.h"
+#include "support/heap.h"
+#include "support/runs.h"
+#include "support/suite.h"
+
+enum { STEPS = 60, COORDINATES_MOST = 600, INVARIANTS_MOST = 16 };
+
+/* On fpu's stiff springs (omega h = 5) fixed point iteration gives up, on the double pendulum it does in mid-run, outer-solar's 72 unknowns
+ * of degree 4 go to LAPACK. */
+typedef struct place {
+  const char *name, *setting;
+  double h;
+} place;
+
+static const place places[] = {
+    {"pendulum", NULL, 0.1},
+    {"fpu", "ell=3", 0.1},
+    {"fpu", "ell=200", 0.1},
+    {"toda", "N=5", 0.1},
+    {"toda", "N=300", 0.1},
+    {"outer-solar", NULL, 100.0},
+    {"double-pendulum", NULL, 0.1},
+    {"kepler", "e=0.6", 0.1},
+    {"chain", "n=500", 0.1},
+    {"vortices", NULL, 0.05},
+    {"massless-particle", "gauge=singular", 0.1},
+    {"magnetic-pair", NULL, 0.1},
+    {"elastica", NULL, 0.1},
+};
+
+static const char *const methods[] = {
+    "midpoint",
+    "dg-phase:degree=3",
+    "trapezoidal",
+    "galerkin:degree=2",
+    "galerkin:degree=2,solver=newton",
+    "galerkin:degree=2,solver=kinsol",
+    "galerkin:degree=2,solver=fixed-point",
+    "galerkin:degree=4,basis=legendre,quadrature=lobatto,nodes=5",
+    "galerkin:degree=4,solver=newton",
+    "galerkin:degree=5,solver=simplified",
+    "galerkin:degree=8,solver=certified",
+    "galerkin:degree=4,solver=kinsol",
+    "composition:order=4,base=midpoint",
+    "composition:order=6,base=galerkin,degree=2,solver=newton",
+    "verlet",
+    "imex",
+    "imex:solver=newton",
+    "composition:order=8,base=imex",
+    "respa",
+    "respa:substeps=exact",
+    "trig",
+    "multiscale:fast=0,omega=5",
+    "composition:order=8,base=verlet",
+    "verlet:threads=3",
+    "composition:order=6,base=verlet,threads=2",
+    "vprk:nodes=3",
+    "dvi-trapezoidal",
+    "dvrk:nodes=3",
+    "hp:type=3,quadrature=gauss",
+    "dg:stiffness=1",
+    "dg-phase",
+    "hamiltonian:degree=3",
+    "hamiltonian:type=3,degree=2,quadrature=radau-right",
+};
+enum { PLACES = sizeof places / sizeof *places, METHODS = sizeof methods / sizeof *methods };
+
+/* An integrator that has not taken its first step. NULL: the method cannot use the problem's terms. */
+static dvi_integrator *ready(const problem *of, const char *method)
+{
+  dvi_integrator *made = NULL;
+  const dvi_status status = dvi_integrator_create(of->system, method, &made);
+  if (status == DVI_UNSUPPORTED) return NULL;
+  ck_assert_msg(status == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi_integrator_start(made, 0, of->q, of->p) == DVI_OK, "%s", dvi_last_error());
+  return made;
+}
+
+static long allocations_of(const dvi_integrator *integrator)
+{
+  dvi_counters counters;
+  dvi_integrator_counters(integrator, &counters);
+  return counters.allocations;
+}
+
+/* SUNDIALS 7 puts the message of a failed solve, which the library discards, into memory of its own: one block, taken and given back. */
+static long calls_of_messages(const dvi_integrator *integrator)
+{
+  dvi_counters counters;
+  dvi_integrator_counters(integrator, &counters);
+  return atoi(dvi_reference_version()) >= 7 ? 2 * counters.kinsols : 0;
+}
+
+/* Heap calls of some steps. Their length changes, and with it the tables of the continued path. The first one must succeed; verlet and the
+ * trapezoidal rule soon blow up on the stiff springs, but a step that fails shall take no memory either. */
+static long calls_of_steps(dvi_integrator *integrator, double h, int steps)
+{
+  const long before = heap_calls();
+  for (int i = 0; i < steps; i++)
+    if (dvi_integrator_step(integrator, i % 3 == 2 ? 0.9 * h : h) != DVI_OK && steps == 1) ck_abort_msg("%s", dvi_last_error());
+  return heap_calls() - before;
+}
+
+START_TEST(no_step_allocates_not_even_the_first)
+{
+  const place *at = &places[_i / METHODS];
+  problem *of = made_problem(at->name, at->setting);
+  dvi_integrator *integrator = ready(of, methods[_i % METHODS]);
+  if (integrator != NULL) {
+    const long created = allocations_of(integrator);
+    ck_assert_int_gt(created, 0);
+    const long first = calls_of_steps(integrator, at->h, 1);
+    const long later = calls_of_steps(integrator, at->h, repeats(STEPS));
+    const long back = calls_of_steps(integrator, -at->h, 2);
+    ck_assert_msg(first == 0 && later + back <= calls_of_messages(integrator), "%s, %s: %ld, %ld and %ld heap calls", at->name,
+                  methods[_i % METHODS], first, later, back);
+    ck_assert_int_eq(allocations_of(integrator), created);
+  }
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&of);
+}
+END_TEST
+
+/* Fallbacks and searches included (the pendulum near its separatrix has both). Not at steps so long that KLU must choose other pivots. */
+static const struct {
+  const char *name, *setting, *method;
+  double h;
+} chosen[] = {
+    {"kepler", "e=0.3", "sem:degree=2", 0.1},
+    {"kepler", "e=0.8", "sem", 0.01},
+    {"pendulum", "q0=1e-3", "sem", 0.1},
+    {"henon-heiles", NULL, "sem:degree=2,quadrature=lobatto,solver=kinsol", 0.1},
+    {"driven-pendulum", NULL, "sem:degree=2,hmax=0.3", 0.1},
+    {"fpu", "ell=40", "sem:degree=2", 0.01},
+    {"kepler", "e=0.6", "shooting", 0.1},
+    {"pendulum", NULL, "shooting:onestep=heun,tolerance=1e-9", 0.1},
+    {"double-pendulum", NULL, "shooting:onestep=gauss", 0.05},
+    {"toda", "N=5", "shooting:solve=stages", 0.1},
+    {"double-pendulum", NULL, "shooting:onestep=taylor,quadrature=euler-maclaurin", 0.01},
+};
+
+START_TEST(steps_of_chosen_lengths_do_not_allocate)
+{
+  problem *of = made_problem(chosen[_i].name, chosen[_i].setting);
+  dvi_integrator *integrator = ready(of, chosen[_i].method);
+  const int steps = repeats(4 * STEPS);
+  const long created = allocations_of(integrator), before = heap_calls();
+  for (int i = 0; i < steps; i++)
+    if (dvi_integrator_step(integrator, chosen[_i].h) != DVI_OK) ck_abort_msg("%s", dvi_last_error());
+  ck_assert_int_le(heap_calls() - before, calls_of_messages(integrator));
+  ck_assert_int_eq(allocations_of(integrator), created);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&of);
+}
+END_TEST
+
+START_TEST(invariants_and_dense_output_do_not_allocate)
+{
+  const place *at = &places[_i / METHODS];
+  double value[INVARIANTS_MOST], q[COORDINATES_MOST], v[COORDINATES_MOST];
+  problem *of = made_problem(at->name, at->setting);
+  ck_assert_int_le(of->nq, COORDINATES_MOST);
+  ck_assert_int_le(dvi_system_invariant_count(of->system), INVARIANTS_MOST);
+  dvi_integrator *integrator = ready(of, methods[_i % METHODS]);
+  if (integrator != NULL) {
+    (void)calls_of_steps(integrator, at->h, 2);
+    const double t = dvi_integrator_time(integrator) - 0.3 * at->h;
+    const long before = heap_calls();
+    const int failed = dvi_integrator_invariants(integrator, value) || dvi_integrator_interpolate(integrator, t, q, v);
+    const long calls = heap_calls() - before; /* Check's own assertions allocate */
+    ck_assert_msg(!failed, "%s", dvi_last_error());
+    ck_assert_msg(calls == 0, "%s, %s: %ld heap calls", at->name, methods[_i % METHODS], calls);
+  }
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&of);
+}
+END_TEST
+
+/* The midpoint rule has no solution here, at pericentre: the way leads through the ladder and along the branch from h = 0 to a sentence. */
+START_TEST(a_step_that_fails_does_not_allocate)
+{
+  problem *of = made_problem("kepler", "e=0.6");
+  dvi_integrator *integrator = ready(of, "midpoint");
+  dvi_counters counters;
+  const long before = heap_calls();
+  const dvi_status status = dvi_integrator_step(integrator, 0.3);
+  const long calls = heap_calls() - before;
+  ck_assert_int_gt(status, 0);
+  ck_assert_int_le(calls, calls_of_messages(integrator));
+  dvi_integrator_counters(integrator, &counters);
+  ck_assert_int_eq(counters.failed_steps, 1);
+  ck_assert_int_eq(counters.followed, 1);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&of);
+}
+END_TEST
+
+/* Else the zeros above would say nothing about the solvers. */
+START_TEST(the_places_reach_every_solver)
+{
+  problem *of = made_problem("fpu", "ell=200");
+  dvi_integrator *integrator = ready(of, "galerkin:degree=2");
+  dvi_counters counters;
+  (void)calls_of_steps(integrator, 0.1, STEPS);
+  dvi_integrator_counters(integrator, &counters);
+  ck_assert_int_gt(counters.simplified, 0);
+  dvi_integrator_destroy(&integrator);
+  integrator = ready(of, "galerkin:degree=4,solver=newton");
+  (void)calls_of_steps(integrator, 0.1, STEPS);
+  dvi_integrator_counters(integrator, &counters);
+  ck_assert_int_gt(counters.newtons, 0);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&of);
+  of = made_problem("outer-solar", NULL);
+  integrator = ready(of, "galerkin:degree=4,solver=kinsol");
+  (void)calls_of_steps(integrator, 100.0, 3);
+  dvi_integrator_counters(integrator, &counters);
+  ck_assert_int_eq(counters.kinsols, 3);
+  ck_assert_int_eq(counters.symbolic, 0); /* dense LU */
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&of);
+}
+END_TEST
+
+SUITE(no_allocation)
+{
+  if (!heap_is_counted()) {
+    (void)puts("heap calls cannot be counted here: skipped");
+    return;
+  }
+  dvi__wave_choose_block(16); /* the chain of 500 is long enough for three threads then */
+  tcase_add_loop_test(tests, no_step_allocates_not_even_the_first, 0, PLACES * METHODS);
+  tcase_add_loop_test(tests, steps_of_chosen_lengths_do_not_allocate, 0, (int)(sizeof chosen / sizeof *chosen));
+  tcase_add_loop_test(tests, invariants_and_dense_output_do_not_allocate, 0, PLACES * METHODS);
+  tcase_add_test(tests, a_step_that_fails_does_not_allocate);
+  tcase_add_test(tests, the_places_reach_every_solver);
+}

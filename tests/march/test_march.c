@@ -1,0 +1,168 @@
+/* labels: unit */
+/* The loop of a run serves what has neither coordinates nor a step of one length: here a set of clocks, each of
+ * which advances when it is due. */
+#include "march/march.h"
+
+#include <math.h>
+
+#include "support/suite.h"
+
+enum { CLOCKS = 3 };
+
+/* Clocks of periods 1, sqrt(2) and pi: an advance moves the one that is due first. */
+typedef struct clocks {
+  double now, before; /* time of the last tick, and of the one before */
+  double due[CLOCKS], due_before[CLOCKS];
+  long ticks;
+  int observed, saved, occurred, rejected, fails_at;
+} clocks;
+
+static const double period[CLOCKS] = {1, 1.4142135623730951, 3.141592653589793};
+
+static clocks made_clocks(void)
+{
+  return (clocks){.due = {1, 1.4142135623730951, 3.141592653589793}, .fails_at = -1};
+}
+
+static double time_of(const void *of)
+{
+  return ((const clocks *)of)->now;
+}
+
+static double time_left(const void *of, double t_end)
+{
+  return t_end - time_of(of);
+}
+
+static long ticks_of(const void *of)
+{
+  return ((const clocks *)of)->ticks;
+}
+
+static dvi_status advance(void *of, double h, double t_end, double tolerance)
+{
+  clocks *c = of;
+  int first = 0;
+  (void)h, (void)tolerance;
+  for (int k = 1; k < CLOCKS; k++)
+    if (c->due[k] < c->due[first]) first = k;
+  c->before = c->now;
+  for (int k = 0; k < CLOCKS; k++) c->due_before[k] = c->due[k];
+  c->ticks++;
+  c->now = fmin(c->due[first], t_end);
+  if (c->now == c->due[first]) c->due[first] += period[first];
+  return DVI_OK;
+}
+
+static void take_back(void *of)
+{
+  clocks *c = of;
+  c->now = c->before;
+  for (int k = 0; k < CLOCKS; k++) c->due[k] = c->due_before[k];
+  c->ticks--;
+}
+
+static dvi_status reject(void *of, dvi_status status)
+{
+  take_back(of);
+  ((clocks *)of)->rejected++;
+  return status;
+}
+
+static dvi__watched event(const void *of, int k)
+{
+  (void)of;
+  return (dvi__watched){.direction = 1, .terminal = k == 1};
+}
+
+/* Event 0 is at 2.5, event 1 at 7.25. */
+static dvi_status value(void *of, int k, double t, double *g)
+{
+  const clocks *c = of;
+  if (c->fails_at >= 0 && t > c->fails_at) return DVI_NOT_FINITE;
+  *g = t - (k == 0 ? 2.5 : 7.25);
+  return DVI_OK;
+}
+
+static dvi_status value_at_start(void *of, int k, double *g)
+{
+  return value(of, k, time_of(of), g);
+}
+
+static dvi_status occurred(void *of, int k, double t, int *returned)
+{
+  clocks *c = of;
+  *returned = 0;
+  c->occurred++;
+  ck_assert(fabs(t - (k == 0 ? 2.5 : 7.25)) < 1e-12);
+  return DVI_OK;
+}
+
+static int observe(void *of)
+{
+  ((clocks *)of)->observed++;
+  return 0;
+}
+
+static int saves;
+
+static dvi_status save(const void *of, const char *path)
+{
+  (void)of;
+  ck_assert_str_eq(path, "there");
+  saves++;
+  return DVI_OK;
+}
+
+static const dvi__marcher marcher = {time_of, time_left, ticks_of,       advance,  take_back, reject,
+                                     event,   value,     value_at_start, occurred, observe,   save};
+
+START_TEST(clocks_that_tick_when_they_are_due_run_to_the_end)
+{
+  clocks c = made_clocks();
+  dvi_run_report report = {0};
+  const dvi__march_options options = {.h = 1, .t_end = 10, .chooses_steps = 1, .checkpoint = "there", .checkpoint_every = 5};
+  saves = 0;
+  ck_assert_int_eq(dvi__march(&c, &marcher, &options, &report), DVI_OK);
+  ck_assert_int_eq(report.end, DVI_RUN_COMPLETE);
+  ck_assert_double_eq(c.now, 10);
+  ck_assert_int_eq(report.steps, 10 + 7 + 3); /* ticks at 1..10, at sqrt(2) k and at pi k */
+  ck_assert_int_eq(c.observed, 1 + 20);
+  ck_assert_int_eq(saves, 4 + 1);
+}
+END_TEST
+
+START_TEST(events_are_located_between_ticks_and_end_the_run_at_their_time)
+{
+  clocks c = made_clocks();
+  dvi_run_report report = {0};
+  const dvi__march_options options = {.h = 1, .t_end = 10, .chooses_steps = 1, .event_count = 2};
+  ck_assert_int_eq(dvi__march(&c, &marcher, &options, &report), DVI_OK);
+  ck_assert_int_eq(report.end, DVI_RUN_EVENT);
+  ck_assert_int_eq(report.event, 1);
+  ck_assert_int_eq(report.events, 2);
+  ck_assert_int_eq(c.occurred, 2);
+  ck_assert(fabs(c.now - 7.25) < 1e-12);
+  ck_assert_double_eq(c.due[0], 8); /* the tick behind the event was taken back */
+}
+END_TEST
+
+START_TEST(a_step_whose_event_fails_is_rejected)
+{
+  clocks c = made_clocks();
+  dvi_run_report report = {0};
+  const dvi__march_options options = {.h = 1, .t_end = 10, .chooses_steps = 1, .event_count = 2};
+  c.fails_at = 4;
+  ck_assert_int_eq(dvi__march(&c, &marcher, &options, &report), DVI_NOT_FINITE);
+  ck_assert_int_eq(report.end, DVI_RUN_FAILED);
+  ck_assert_int_eq(c.rejected, 1);
+  ck_assert_double_eq(c.now, 4);
+}
+END_TEST
+
+SUITE(march)
+{
+  tcase_add_test(tests, clocks_that_tick_when_they_are_due_run_to_the_end);
+  tcase_add_test(tests, events_are_located_between_ticks_and_end_the_run_at_their_time);
+  tcase_add_test(tests, a_step_whose_event_fails_is_rejected);
+}

@@ -1,0 +1,111 @@
+/* labels: slow */
+/* A long chain of springs: memory and Jacobian grow in proportion to its length, the pattern is analysed once, no step allocates. Times are
+ * printed for the reader, not judged. */
+#include <math.h>
+#include <stdio.h>
+#include <time.h>
+
+#include "step/element/action.h"
+#include "support/heap.h"
+#include "support/runs.h"
+#include "support/suite.h"
+
+enum { STEPS = 10, LENGTHS = 4 };
+
+static const int lengths[LENGTHS] = {100, 1000, 10000, 100000};
+static const double h = 0.1;
+
+typedef struct kind {
+  const char *method;
+  dvi__action_space space;
+  int lengths;
+} kind;
+
+static const kind kinds[] = {
+    {"midpoint", {DVI_LAGRANGE_LOBATTO, 1, DVI_MIDPOINT, 1}, LENGTHS},
+    {"galerkin:degree=2", {DVI_LAGRANGE_LOBATTO, 2, DVI_GAUSS, 2}, LENGTHS - 1},
+};
+
+typedef struct measured {
+  int n;
+  long bytes;   /* of the integrator */
+  long entries; /* of the Jacobian */
+  double seconds;
+} measured;
+
+static long entries_of(const problem *of, const dvi__action_space *space)
+{
+  dvi__action *action;
+  dvi_counters counters = {0};
+  ck_assert_int_eq(dvi__action_create(of->system, space, &counters, &action), DVI_OK);
+  ck_assert_int_eq(dvi__action_prepare_jacobian(action), DVI_OK);
+  const long entries = dvi__pattern_entries(dvi__action_pattern(action));
+  dvi__action_destroy(&action);
+  return entries;
+}
+
+/* Steps of one chain; what must hold at every length is asserted here. */
+static void take_steps(dvi_integrator *integrator, measured *m)
+{
+  dvi_counters before, after;
+  dvi_integrator_counters(integrator, &before);
+  const long calls = heap_calls();
+  const clock_t start = clock();
+  int failed = 0;
+  for (int i = 0; i < STEPS && !failed; i++) failed = dvi_integrator_step(integrator, h);
+  m->seconds = (double)(clock() - start) / CLOCKS_PER_SEC / (double)STEPS;
+  const long taken = heap_calls() - calls;
+  ck_assert_msg(!failed, "%s", dvi_last_error());
+  dvi_integrator_counters(integrator, &after);
+  ck_assert_int_eq(after.symbolic, 2); /* one of each pattern: of the whole Jacobian, and of the decoupled systems */
+  ck_assert_int_eq(before.symbolic, 2);
+  ck_assert_int_eq(after.allocations, before.allocations);
+  ck_assert_int_eq(after.simplified, STEPS); /* omega h = 5: fixed point iteration does not contract */
+  ck_assert_int_ge(after.factorizations, 1);
+  /* Kept while they are good; of the first steps some are followed, with some for each part. */
+  ck_assert_int_lt(after.factorizations, STEPS + 24 * after.followed);
+  ck_assert_int_le(after.followed, STEPS);
+  if (heap_is_counted()) ck_assert_int_eq(taken, 0);
+}
+
+static void measure(const kind *k, int ell, measured *m)
+{
+  problem *of = made_problem("fpu", spec("ell=%d", ell));
+  m->n = of->nq;
+  m->entries = entries_of(of, &k->space);
+  const long before = heap_bytes();
+  dvi_integrator *integrator = started(of, k->method);
+  take_steps(integrator, m);
+  m->bytes = heap_bytes() - before;
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&of);
+}
+
+/* A chain has two ends that lack a few entries, and a few blocks do not grow with it: within a tenth for the shortest. */
+static void check_proportional(long small, int n, long large, int most)
+{
+  const double ratio = ((double)small / n) / ((double)large / most);
+  ck_assert_msg(fabs(ratio - 1) < 0.1, "%ld for %d, %ld for %d: not in proportion (%.3f)", small, n, large, most, ratio);
+}
+
+START_TEST(memory_and_jacobian_grow_in_proportion_to_the_chain)
+{
+  const kind *k = &kinds[_i];
+  measured m[LENGTHS];
+  const measured *longest = &m[k->lengths - 1];
+  for (int i = 0; i < k->lengths; i++) measure(k, lengths[i], &m[i]);
+  (void)printf("%s\n%10s %12s %12s %22s\n", k->method, "n", "entries", "bytes", "microseconds per step");
+  for (int i = 0; i < k->lengths; i++)
+    (void)printf("%10d %12ld %12ld %22.1f\n", m[i].n, m[i].entries, m[i].bytes, 1e6 * m[i].seconds);
+  for (int i = 0; i < k->lengths; i++) {
+    check_proportional(m[i].entries, m[i].n, longest->entries, longest->n);
+    if (heap_is_counted()) check_proportional(m[i].bytes, m[i].n, longest->bytes, longest->n);
+  }
+}
+END_TEST
+
+SUITE(sparse)
+{
+  tcase_set_timeout(tests, 0);
+  tcase_add_loop_test(tests, memory_and_jacobian_grow_in_proportion_to_the_chain, 0, sizeof kinds / sizeof *kinds);
+}

@@ -1,0 +1,53 @@
+/* labels: invariant slow */
+/* A million steps on groups, never put back on them: momenta, energy, and the distance from the group. */
+#include <dvi/diagnostics.h>
+#include <math.h>
+#include <string.h>
+
+#include "support/systems/bodies.h"
+#include "support/runs.h"
+#include "support/suite.h"
+
+enum { STEPS = 1000000, SAMPLING = 10 };
+
+static const struct {
+  body_kind kind;
+  const char *method;
+  double h;
+} runs[] = {{PENDULUM_3D, "lie-galerkin:degree=2", 0.05},
+            {FREE_BODY, "euler-poincare:degree=2", 0.2},
+            {DIRECTIONS, "sphere-galerkin:degree=2", 0.005}};
+
+/* Of 1e6 steps the roundings of the impulses leave 1e3 ulp in the momentum, and no trend; the distance is that of the last rounding. */
+START_TEST(a_million_steps_keep_what_they_should)
+{
+  body of;
+  double first[2], now[2], far = 0, momentum = 0;
+  dvi_drift drift;
+  dvi_drift_fit energy;
+  make_body(runs[_i].kind, &of);
+  dvi_integrator *made = body_integrator(&of, runs[_i].method);
+  ck_assert_int_eq(dvi_integrator_invariants(made, first), DVI_OK);
+  dvi_drift_init(&drift);
+  for (long n = 0; n < STEPS; n += SAMPLING) {
+    advance(made, runs[_i].h, SAMPLING);
+    ck_assert_int_eq(dvi_integrator_invariants(made, now), DVI_OK);
+    dvi_drift_add(&drift, dvi_integrator_time(made), now[0]);
+    momentum = fmax(momentum, fabs(now[1] - first[1]));
+    far = fmax(far, dvi_system_distance(of.system, dvi_integrator_q(made)));
+  }
+  dvi_drift_result(&drift, &energy);
+  ck_assert_msg(energy.significance < 3, "%s: energy %.1e, drift %.1e, significance %.1f", of.name, energy.largest, energy.change,
+                energy.significance);
+  ck_assert_msg(momentum < 1e-12 * fmax(1, fabs(first[1])), "%s: momentum %.1e", of.name, momentum);
+  ck_assert_msg(far < 1e-15, "%s: distance %.1e", of.name, far);
+  dvi_integrator_destroy(&made);
+  destroy_body(&of);
+}
+END_TEST
+
+SUITE(lie_galerkin_long)
+{
+  tcase_set_timeout(tests, 600);
+  tcase_add_loop_test(tests, a_million_steps_keep_what_they_should, 0, sizeof runs / sizeof *runs);
+}

@@ -1,0 +1,119 @@
+/* labels: invariant */
+/* Directions alone: the steps of lie-galerkin, their length, chains at linear cost, and what is refused. */
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "support/systems/bodies.h"
+#include "support/heap.h"
+#include "support/runs.h"
+#include "support/suite.h"
+
+START_TEST(it_takes_the_steps_of_lie_galerkin)
+{
+  body of;
+  make_body(_i == 0 ? DIRECTIONS : ANGLE, &of);
+  dvi_integrator *mine = body_integrator(&of, "sphere-galerkin:degree=3"), *theirs = body_integrator(&of, "lie-galerkin:degree=3");
+  advance(mine, 0.02, 100);
+  advance(theirs, 0.02, 100);
+  ck_assert_mem_eq(dvi_integrator_q(mine), dvi_integrator_q(theirs), (size_t)of.nq * sizeof(double));
+  ck_assert_mem_eq(dvi_integrator_p(mine), dvi_integrator_p(theirs), (size_t)of.nv * sizeof(double));
+  dvi_integrator_destroy(&mine);
+  dvi_integrator_destroy(&theirs);
+  destroy_body(&of);
+}
+END_TEST
+
+/* A free direction goes round a great circle: always the same step, in which rounding errors of one sign would add up to 1e-10. */
+START_TEST(a_free_direction_keeps_its_momentum)
+{
+  const dvi_factor factor = {.kind = DVI_S2, .mass = 1};
+  dvi_system *system;
+  ck_assert_int_eq(dvi_system_create(&(dvi_system_terms){.factors = &factor, .factor_count = 1, .autonomous = 1}, &system), DVI_OK);
+  dvi_integrator *made = made_integrator(system, "sphere-galerkin:degree=2");
+  ck_assert_int_eq(dvi_integrator_start_velocity(made, 0, (double[]){1, 0, 0}, (double[]){0, .7, .4}), DVI_OK);
+  advance(made, 1e-3, 100000);
+  const double *q = dvi_integrator_q(made), *p = dvi_integrator_p(made);
+  ck_assert_double_le(fabs(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] - 0.65), 1e-15);
+  ck_assert_double_le(fabs(q[0] * p[1] - q[1] * p[0] - 0.7), 1e-15);
+  ck_assert_double_le(dvi_system_distance(system, q), 1e-15);
+  dvi_integrator_destroy(&made);
+  dvi_system_destroy(&system);
+}
+END_TEST
+
+/* |q| = 1 and p orthogonal to q, without projection; the vertical momentum. */
+START_TEST(directions_stay_directions)
+{
+  body of;
+  double before[2], after[2];
+  make_body(DIRECTIONS, &of);
+  dvi_integrator *made = body_integrator(&of, "sphere-galerkin:degree=2");
+  ck_assert_int_eq(dvi_integrator_invariants(made, before), DVI_OK);
+  advance(made, 0.01, 10000);
+  ck_assert_int_eq(dvi_integrator_invariants(made, after), DVI_OK);
+  const double *q = dvi_integrator_q(made), *p = dvi_integrator_p(made);
+  ck_assert_double_le(dvi_system_distance(of.system, q), 1e-15);
+  for (int i = 0; i < 6; i += 3)
+    ck_assert_double_le(fabs(q[i] * p[i] + q[i + 1] * p[i + 1] + q[i + 2] * p[i + 2]), 1e-14 * magnitude(6, p));
+  ck_assert_double_le(fabs(after[1] - before[1]), 1e-15);
+  dvi_integrator_destroy(&made);
+  destroy_body(&of);
+}
+END_TEST
+
+START_TEST(rotations_are_refused_by_name)
+{
+  body of;
+  dvi_integrator *made;
+  make_body(PRODUCT, &of);
+  ck_assert_int_eq(dvi_integrator_create(of.system, "sphere-galerkin", &made), DVI_UNSUPPORTED);
+  check_words("sphere-galerkin: the system declares rotations");
+  check_words("methods for this system: composition, lie-galerkin");
+  ck_assert_ptr_null(strstr(dvi_last_error(), "lie-rk, sphere-galerkin"));
+  destroy_body(&of);
+}
+END_TEST
+
+typedef struct cost {
+  long bytes;
+  dvi_counters counters;
+} cost;
+
+static cost cost_of(int links)
+{
+  chain of;
+  cost found;
+  make_linked_chain(links, &of);
+  const long before = heap_bytes();
+  dvi_integrator *made = made_integrator(of.system, "sphere-galerkin:degree=2,solver=newton");
+  found.bytes = heap_bytes() - before;
+  ck_assert_int_eq(dvi_integrator_start_velocity(made, 0, of.q, of.v), DVI_OK);
+  advance(made, 0.02, 10);
+  dvi_integrator_counters(made, &found.counters);
+  dvi_integrator_destroy(&made);
+  destroy_chain(&of);
+  return found;
+}
+
+/* Ten times the links: ten times the memory, and as many residuals and Jacobians, whose entries test_charted counts; what a chain of one link needs is part of
+ * both. */
+START_TEST(chains_cost_as_much_as_they_have_links)
+{
+  const cost few = cost_of(100), many = cost_of(1000);
+  ck_assert_int_le(many.counters.residuals, few.counters.residuals * 12 / 10);
+  ck_assert_int_le(many.counters.jacobians, few.counters.jacobians * 12 / 10);
+  if (heap_is_counted())
+    ck_assert_msg(many.bytes < 12 * few.bytes && few.bytes > 100000, "%ld and %ld bytes", few.bytes, many.bytes);
+}
+END_TEST
+
+SUITE(sphere_galerkin)
+{
+  tcase_add_test(tests, a_free_direction_keeps_its_momentum);
+  tcase_add_loop_test(tests, it_takes_the_steps_of_lie_galerkin, 0, 2);
+  tcase_add_test(tests, directions_stay_directions);
+  tcase_add_test(tests, rotations_are_refused_by_name);
+  tcase_add_test(tests, chains_cost_as_much_as_they_have_links);
+}

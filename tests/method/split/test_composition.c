@@ -1,0 +1,88 @@
+/* labels: unit */
+#include <check.h>
+
+#include "support/runs.h"
+#include "support/suite.h"
+
+static void check_refused(const char *method, const char *because)
+{
+  problem *oscillator = made_problem("oscillator", NULL);
+  dvi_integrator *integrator = NULL;
+  ck_assert_int_eq(dvi_integrator_create(oscillator->system, method, &integrator), DVI_BAD_OPTION);
+  ck_assert_ptr_null(integrator);
+  check_words(because);
+  problem_destroy(&oscillator);
+}
+
+START_TEST(a_base_that_is_not_symmetric_is_refused)
+{
+  check_refused("composition:order=4,base=galerkin,degree=2,quadrature=radau-right", "not symmetric");
+}
+END_TEST
+
+START_TEST(a_key_that_the_base_does_not_know_is_refused)
+{
+  check_refused("composition:order=4,base=verlet,degree=2", "degree");
+}
+END_TEST
+
+START_TEST(an_order_without_coefficients_is_refused)
+{
+  check_refused("composition:order=5", "order=5");
+}
+END_TEST
+
+START_TEST(a_composition_of_compositions_is_refused)
+{
+  check_refused("composition:base=composition", "base=composition");
+}
+END_TEST
+
+/* The order conditions: the weights sum to 1, and so do steps of the clock. */
+START_TEST(the_substeps_add_up_to_the_step)
+{
+  const char *const order[] = {"4", "6", "8"};
+  problem *oscillator = made_problem("oscillator", NULL);
+  dvi_integrator *integrator = started(oscillator, spec("composition:order=%s", order[_i]));
+  advance(integrator, 0.5, 1);
+  ck_assert_double_eq_tol(dvi_integrator_time(integrator), 0.5, 1e-15); /* up to 17 roundings, compensated */
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&oscillator);
+}
+END_TEST
+
+START_TEST(a_base_of_higher_order_keeps_its_order)
+{
+  problem *oscillator = made_problem("oscillator", NULL);
+  dvi_integrator *integrator = started(oscillator, "composition:order=4,base=galerkin,degree=3");
+  ck_assert_int_eq(dvi_integrator_order(integrator), 6);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&oscillator);
+}
+END_TEST
+
+START_TEST(verlet_keeps_its_one_gradient_a_substep)
+{
+  problem *stars = made_problem("henon-heiles", NULL);
+  dvi_integrator *integrator = started(stars, "composition:order=8");
+  dvi_counters before, after;
+  advance(integrator, 0.1, 1);
+  dvi_integrator_counters(integrator, &before);
+  advance(integrator, 0.1, 10);
+  dvi_integrator_counters(integrator, &after);
+  ck_assert_int_eq(after.gradients - before.gradients, 170);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&stars);
+}
+END_TEST
+
+SUITE(composition)
+{
+  tcase_add_test(tests, a_base_that_is_not_symmetric_is_refused);
+  tcase_add_test(tests, a_key_that_the_base_does_not_know_is_refused);
+  tcase_add_test(tests, an_order_without_coefficients_is_refused);
+  tcase_add_test(tests, a_composition_of_compositions_is_refused);
+  tcase_add_loop_test(tests, the_substeps_add_up_to_the_step, 0, 3);
+  tcase_add_test(tests, a_base_of_higher_order_keeps_its_order);
+  tcase_add_test(tests, verlet_keeps_its_one_gradient_a_substep);
+}

@@ -1,0 +1,165 @@
+/* The symplectic form of bodies, before and after a step. */
+#include <dvi/group.h>
+#include <math.h>
+#include <string.h>
+
+#include "support/systems/bodies.h"
+#include "support/suite.h"
+
+enum { DIRECTIONS_MOST = 2 * BODY_V, POINTS = 4 };
+
+static const double reach = 2e-3; /* of differences of order 4: they err by 1e-11, and by roundoff as much */
+
+typedef struct place {
+  double q[BODY_Q], p[BODY_V];
+} place;
+
+/* Tangent vectors: of every factor in turn, eta and dPi of a rotation, the rest as it is stored. */
+typedef struct tangent {
+  double q[BODY_V], p[BODY_V];
+} tangent;
+
+static double dot(const double *a, const double *b)
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static int turns(const dvi_factor *factor)
+{
+  return factor->kind == DVI_SO3 || factor->kind == DVI_SE3;
+}
+
+static int stored(const dvi_factor *factor)
+{
+  return factor->kind == DVI_SO3 ? 9 : factor->kind == DVI_SE3 ? 12 : factor->kind == DVI_S2 ? 3 : 2;
+}
+
+static int velocities(const dvi_factor *factor)
+{
+  return factor->kind == DVI_SE3 ? 6 : factor->kind == DVI_U1 ? 1 : 3;
+}
+
+/* Move one factor by `by` along number k of its velocities, or of its momenta behind them. */
+static void move(const dvi_factor *factor, int k, double by, double *q, double *p)
+{
+  const int nv = velocities(factor);
+  double e[6] = {0}, E[9], R[9];
+  if (k >= nv)
+    p[k - nv] += by;
+  else if (turns(factor) && k >= 3)
+    q[6 + k] += by;
+  e[k % nv] = by;
+  if (turns(factor) && k < 3) {
+    dvi_so3_exp(e, E);
+    memcpy(R, q, sizeof R);
+    for (int i = 0; i < 3; i++)
+      for (int j = 0; j < 3; j++) q[3 * i + j] = R[3 * i] * E[j] + R[3 * i + 1] * E[3 + j] + R[3 * i + 2] * E[6 + j];
+  }
+  if (factor->kind == DVI_U1 && k == 0) {
+    const double angle = dvi_u1_log(q) + by;
+    dvi_u1_exp(angle, q);
+  }
+  if (factor->kind != DVI_S2) return;
+  const double along = dot(e, q);
+  for (int i = 0; i < 3; i++) e[i] -= along * q[i];
+  if (k < nv) dvi_s2_exp(q, e, q);
+  const double radial = dot(p, q);
+  for (int i = 0; i < 3; i++) p[i] -= radial * q[i];
+}
+
+static double size_of(int count, const double *p)
+{
+  double largest = 0;
+  for (int i = 0; i < count; i++) largest = fmax(largest, fabs(p[i]));
+  return largest;
+}
+
+/* Direction number k of all factors in a row; momenta in units of what the factor has at the start. */
+static void displace(const body *of, int k, double by, const place *start, place *at)
+{
+  int q = 0, v = 0;
+  for (int f = 0; f < of->factor_count; f++) {
+    const dvi_factor *factor = &of->factors[f];
+    const int nv = velocities(factor), direction = k - 2 * v;
+    if (direction >= 0 && direction < 2 * nv)
+      move(factor, direction, direction < nv ? by : by * size_of(nv, start->p + v), at->q + q, at->p + v);
+    q += stored(factor);
+    v += nv;
+  }
+}
+
+static void add_difference(double weight, const dvi_factor *factor, const double *q0, const double *q, double *delta)
+{
+  if (turns(factor)) {
+    double E[9], eta[3];
+    for (int i = 0; i < 3; i++)
+      for (int j = 0; j < 3; j++) E[3 * i + j] = q0[i] * q[j] + q0[3 + i] * q[3 + j] + q0[6 + i] * q[6 + j];
+    ck_assert_int_eq(dvi_so3_log(E, eta), DVI_OK);
+    for (int i = 0; i < 3; i++) delta[i] += weight * eta[i];
+    for (int i = 3; i < velocities(factor); i++) delta[i] += weight * (q[6 + i] - q0[6 + i]);
+  } else if (factor->kind == DVI_U1) {
+    delta[0] += weight * (q0[0] * q[1] - q0[1] * q[0]);
+  } else {
+    for (int i = 0; i < 3; i++) delta[i] += weight * q[i];
+  }
+}
+
+static void add_place(const body *of, double weight, const place *middle, const place *at, tangent *sum)
+{
+  int q = 0, v = 0;
+  for (int f = 0; f < of->factor_count; f++) {
+    const dvi_factor *factor = &of->factors[f];
+    add_difference(weight, factor, middle->q + q, at->q + q, sum->q + v);
+    for (int i = 0; i < velocities(factor); i++) sum->p[v + i] += weight * at->p[v + i];
+    q += stored(factor);
+    v += velocities(factor);
+  }
+}
+
+static double form(const body *of, const place *at, const tangent *a, const tangent *b)
+{
+  double sum = 0;
+  int v = 0;
+  for (int i = 0; i < of->nv; i++) sum += a->p[i] * b->q[i] - b->p[i] * a->q[i];
+  for (int f = 0; f < of->factor_count; f++) {
+    const double *x = a->q + v, *y = b->q + v;
+    const double bracket[] = {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
+    if (turns(&of->factors[f])) sum -= dot(at->p + v, bracket);
+    v += velocities(&of->factors[f]);
+  }
+  return sum;
+}
+
+static void step(const body *of, const char *method, double h, const place *from, place *to)
+{
+  dvi_integrator *made = NULL;
+  ck_assert_msg(dvi_integrator_create(of->system, method, &made) == DVI_OK &&
+                    dvi_integrator_start(made, 0, from->q, from->p) == DVI_OK && dvi_integrator_step(made, h) == DVI_OK,
+                "%s, %s: %s", of->name, method, dvi_last_error());
+  memcpy(to->q, dvi_integrator_q(made), (size_t)of->nq * sizeof *to->q);
+  memcpy(to->p, dvi_integrator_p(made), (size_t)of->nv * sizeof *to->p);
+  dvi_integrator_destroy(&made);
+}
+
+double symplectic_defect(const body *of, const char *method, double h)
+{
+  static const double multiple[POINTS] = {-2, -1, 1, 2}, weight[POINTS] = {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 / 12};
+  tangent before[DIRECTIONS_MOST] = {0}, after[DIRECTIONS_MOST] = {0};
+  place start = {0}, end = {0}, near, moved = {0};
+  double largest = 0;
+  memcpy(start.q, of->q, sizeof start.q);
+  ck_assert_int_eq(dvi_system_momentum(of->system, 0, of->q, of->v, start.p), DVI_OK);
+  step(of, method, h, &start, &end);
+  for (int k = 0; k < 2 * of->nv; k++)
+    for (int point = 0; point < POINTS; point++) {
+      near = start;
+      displace(of, k, multiple[point] * reach, &start, &near);
+      step(of, method, h, &near, &moved);
+      add_place(of, weight[point] / reach, &start, &near, &before[k]);
+      add_place(of, weight[point] / reach, &end, &moved, &after[k]);
+    }
+  for (int k = 0; k < 2 * of->nv; k++)
+    for (int l = 0; l < k; l++)
+      largest = fmax(largest, fabs(form(of, &end, &after[k], &after[l]) - form(of, &start, &before[k], &before[l])));
+  return largest / size_of(of->nv, start.p);
+}
