@@ -9,7 +9,8 @@ static const char *complaint_at(const char *text, size_t first, size_t size, con
 {
   static scene_text scene;
   open_text(&scene, text, strlen(text));
-  ck_assert(!dvi__complain(&scene.complaint, DVI_BAD_FILE, (dvi__span){first, size}, "%s", sentence));
+  ck_assert(
+      !dvi__complain(&scene.complaint, DVI_BAD_FILE, (dvi__span){first, size}, "%s", sentence));
   return scene.message;
 }
 
@@ -53,13 +54,15 @@ END_TEST
 
 START_TEST(columns_count_characters_and_tabs_stay)
 {
-  ck_assert_str_eq(complaint_at("\xCE\xB8\t\xC3\xA9: x", 7, 1, "no"), "s.yaml:1:6: no\n  \xCE\xB8\t\xC3\xA9: x\n   \t   ^");
+  ck_assert_str_eq(complaint_at("\xCE\xB8\t\xC3\xA9: x", 7, 1, "no"),
+                   "s.yaml:1:6: no\n  \xCE\xB8\t\xC3\xA9: x\n   \t   ^");
 }
 END_TEST
 
 START_TEST(nothing_is_shown_that_a_terminal_would_obey)
 {
-  ck_assert_str_eq(complaint_at("\x1B[2J \xC2\x9B \xFF x", 9, 1, "no\x1B\n"), "s.yaml:1:9: no??\n  ?[2J ? ? x\n          ^");
+  ck_assert_str_eq(complaint_at("\x1B[2J \xC2\x9B \xFF x", 9, 1, "no\x1B\n"),
+                   "s.yaml:1:9: no??\n  ?[2J ? ? x\n          ^");
 }
 END_TEST
 
@@ -107,10 +110,11 @@ static const char *hint_for(const char *word)
 
 START_TEST(the_nearest_name_is_offered)
 {
-  ck_assert_str_eq(hint_for("thet"), "; did you mean theta?");        /* a beginning */
-  ck_assert_str_eq(hint_for("Theta"), "; did you mean theta?");       /* the other case */
-  ck_assert_str_eq(hint_for("tehat"), "; did you mean theta?");       /* two exchanges */
-  ck_assert_str_eq(hint_for("momemtmu"), "; did you mean momentum?"); /* an exchange and a replacement */
+  ck_assert_str_eq(hint_for("thet"), "; did you mean theta?");  /* a beginning */
+  ck_assert_str_eq(hint_for("Theta"), "; did you mean theta?"); /* the other case */
+  ck_assert_str_eq(hint_for("tehat"), "; did you mean theta?"); /* two exchanges */
+  ck_assert_str_eq(hint_for("momemtmu"),
+                   "; did you mean momentum?"); /* an exchange and a replacement */
   ck_assert_str_eq(hint_for("X"), "; did you mean x?");
 }
 END_TEST
@@ -120,7 +124,8 @@ START_TEST(what_is_far_from_all_names_gets_no_hint)
   ck_assert_str_eq(hint_for("y"), ""); /* one letter for another: nothing is left of it */
   ck_assert_str_eq(hint_for("energy"), "");
   ck_assert_str_eq(hint_for(""), "");
-  ck_assert_str_eq(hint_for("a_name_of_more_than_sixty_three_letters_is_not_compared_with_others"), "");
+  ck_assert_str_eq(hint_for("a_name_of_more_than_sixty_three_letters_is_not_compared_with_others"),
+                   "");
   char hint[8];
   ck_assert_str_eq(dvi__nearest("x", 0, NULL, hint, sizeof hint), "");
 }

@@ -131,15 +131,18 @@ START_TEST(constants_are_folded_and_gathered)
   ck_assert(dvi__is_constant(&graph, apply(DVI__OP_SIN, constant(0.7), 0), &value));
   ck_assert_double_eq(value, sin(0.7));
   ck_assert_int_eq(multiply(constant(3), multiply(constant(2), x)), multiply(constant(6), x));
-  ck_assert_int_eq(add(multiply(constant(3), x), multiply(constant(2), x)), multiply(constant(5), x));
+  ck_assert_int_eq(add(multiply(constant(3), x), multiply(constant(2), x)),
+                   multiply(constant(5), x));
   ck_assert_int_eq(subtract(multiply(constant(3), x), x), multiply(constant(2), x));
   ck_assert_int_eq(divide(x, constant(4)), multiply(constant(0.25), x));
   ck_assert_int_eq(graph.node[divide(x, constant(3))].op, DVI__OP_DIVIDE);
-  ck_assert_int_eq(multiply(multiply(constant(3), x), multiply(constant(2), y)), multiply(multiply(constant(6), x), y));
+  ck_assert_int_eq(multiply(multiply(constant(3), x), multiply(constant(2), y)),
+                   multiply(multiply(constant(6), x), y));
 }
 END_TEST
 
-/* What is not finite is left to happen where it happens; products of constants that would overflow are not made. */
+/* What is not finite is left to happen where it happens; products of constants that would overflow
+ * are not made. */
 START_TEST(folding_makes_no_infinities)
 {
   const dvi__node x = input(0);
@@ -148,7 +151,8 @@ START_TEST(folding_makes_no_infinities)
   ck_assert(!dvi__is_constant(&graph, divide(constant(1), constant(0)), &value));
   ck_assert(!dvi__is_constant(&graph, power(constant(0), -1.5), &value));
   ck_assert(!dvi__is_constant(&graph, multiply(constant(1e300), constant(1e300)), &value));
-  const dvi__node root = multiply(constant(1e300), multiply(constant(1e300), multiply(constant(1e-300), x)));
+  const dvi__node root = multiply(constant(1e300),
+                                  multiply(constant(1e300), multiply(constant(1e-300), x)));
   const double one = 1;
   dvi__node not_finite;
   ck_assert_int_eq(dvi__evaluate(&graph, &one, 1, &root, &value, &not_finite), DVI_OK);
@@ -161,7 +165,8 @@ END_TEST
 START_TEST(gathering_factors_makes_no_infinities)
 {
   const dvi__node x = input(0), y = input(1), large = multiply(constant(1e308), x);
-  const dvi__node roots[2] = {multiply(multiply(constant(1e150), x), multiply(constant(1e150), y)), add(large, large)};
+  const dvi__node roots[2] = {multiply(multiply(constant(1e150), x), multiply(constant(1e150), y)),
+                              add(large, large)};
   const double at[2] = {1e10, 1e-300}, at_small[2] = {1e-10, 0};
   double value[2];
   dvi__node not_finite;
@@ -188,7 +193,8 @@ START_TEST(powers_of_one_base_are_one_power)
 }
 END_TEST
 
-/* The root of x does not exist for x < 0, nor 1/x for 0; what would extend the domain is kept as it stands. */
+/* The root of x does not exist for x < 0, nor 1/x for 0; what would extend the domain is kept as it
+ * stands. */
 START_TEST(domains_are_kept)
 {
   const dvi__node x = input(0);
@@ -208,7 +214,8 @@ static dvi__node gravity(void)
   return divide(negate(multiply(input(6), input(7))), apply(DVI__OP_SQRT, r2, 0));
 }
 
-/* One power -3/2; the products w_0 w_1, times it, and three components of the pull, which are negated for the other body. */
+/* One power -3/2; the products w_0 w_1, times it, and three components of the pull, which are
+ * negated for the other body. */
 START_TEST(the_pull_of_two_bodies_costs_one_power)
 {
   const dvi__node root = gravity();
@@ -250,7 +257,8 @@ static dvi__node pendulum(int links)
 static dvi__node springs(int count)
 {
   dvi__node sum = constant(0);
-  for (int i = 0; i + 1 < count; i++) sum = add(sum, multiply(constant(0.25), power(subtract(input(i + 1), input(i)), 4)));
+  for (int i = 0; i + 1 < count; i++)
+    sum = add(sum, multiply(constant(0.25), power(subtract(input(i + 1), input(i)), 4)));
   return sum;
 }
 
@@ -296,7 +304,8 @@ START_TEST(rates_follow_the_chain_rule)
 {
   const dvi__node rate[2] = {input(2), constant(0)};
   const dvi__node root = multiply(input(1), apply(DVI__OP_SIN, input(0), 0));
-  ck_assert_int_eq(rate_of(root, 2, rate), multiply(input(1), multiply(apply(DVI__OP_COS, input(0), 0), input(2))));
+  ck_assert_int_eq(rate_of(root, 2, rate),
+                   multiply(input(1), multiply(apply(DVI__OP_COS, input(0), 0), input(2))));
   ck_assert_int_eq(rate_of(input(1), 2, rate), constant(0));
 }
 END_TEST
@@ -319,7 +328,8 @@ static void check_pattern(dvi__node root, int count, const char *expected)
 
 START_TEST(patterns_are_exact)
 {
-  const dvi__node x = input(0), y = input(1), z = input(2), w = input(3), sine = apply(DVI__OP_SIN, x, 0);
+  const dvi__node x = input(0), y = input(1), z = input(2), w = input(3),
+                  sine = apply(DVI__OP_SIN, x, 0);
   check_pattern(add(multiply(constant(2), x), subtract(y, z)), 4, "");
   check_pattern(add(multiply(x, y), power(z, 2)), 4, "10 22 ");
   check_pattern(multiply(add(x, y), z), 4, "20 21 ");
@@ -383,7 +393,8 @@ START_TEST(the_first_part_that_is_not_finite_is_told)
 }
 END_TEST
 
-/* Each takes as long as its own parts: if each went through all of the graph, they would take minutes. */
+/* Each takes as long as its own parts: if each went through all of the graph, they would take
+ * minutes. */
 START_TEST(second_derivatives_of_a_long_sum_are_found_one_by_one)
 {
   enum { TERMS = 100000 };

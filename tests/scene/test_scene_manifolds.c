@@ -86,7 +86,8 @@ END_TEST
 START_TEST(a_point_of_a_body_moves_as_its_velocity_says)
 {
   const dvi_system *system = open_scene(
-      "parameters: {J: [[3, 0.1, 0], [0.1, 2, 0], [0, 0, 1.5]], c: [0.3, -0.2, 0.5]}\ncoordinates: {B: motion}\n"
+      "parameters: {J: [[3, 0.1, 0], [0.1, 2, 0], [0, 0, 1.5]], c: [0.3, -0.2, 0.5]}\ncoordinates: "
+      "{B: motion}\n"
       "definitions:\n  centre: B.x + B.R*c\n"
       "lagrangian: 2*dot(centre', centre') + dot(omega(B), J*omega(B))/2 - B.R[3,1]\n"
       "initial:\n  B.R: [[0.36, 0.48, -0.8], [-0.8, 0.6, 0], [0.48, 0.64, 0.6]]\n  B.x: [1, 2, 3]\n"
@@ -111,13 +112,17 @@ START_TEST(a_point_of_a_body_moves_as_its_velocity_says)
 END_TEST
 
 /* One of everything, and families of some. */
-#define ZOO                                                                                                   \
-  "coordinates:\n  u: angle\n  x: scalar\n  R: rotation\n  d: direction\n  B[2]: motion\n  w[2]: angle\n"     \
-  "kinetic: >-\n  x'^2/2 + rate(u)^2 + dot(omega(R), omega(R)) + dot(d', d') + sum(i, rate(w[i])^2)\n"        \
-  "  + sum(i, dot(B[i].x', B[i].x') + dot(omega(B[i]), omega(B[i])))\n"                                       \
-  "initial:\n  u: 0.5\n  x: 1\n  R: turn([1, 2, 2], 0.4)\n  d: [0.6, 0, 0.8]\n  B[i].R: turn([0, 1, i], i)\n" \
-  "  B.x: [[1, 2, 3], [4, 5, 6]]\n  w: [0.1, 0.2]\n  rate(u): 0.3\n  x': 0.7\n  omega(R): [0.1, 0.2, 0.3]\n"  \
-  "  d': \"cross([0.1, 0.2, 0.3], [0.6, 0, 0.8])\"\n  B.x': [[0.1, 0.2, 0.3], [0.4, 0.5, 0.6]]\n"             \
+#define ZOO                                                                                        \
+  "coordinates:\n  u: angle\n  x: scalar\n  R: rotation\n  d: direction\n  B[2]: motion\n  w[2]: " \
+  "angle\n"                                                                                        \
+  "kinetic: >-\n  x'^2/2 + rate(u)^2 + dot(omega(R), omega(R)) + dot(d', d') + sum(i, "            \
+  "rate(w[i])^2)\n"                                                                                \
+  "  + sum(i, dot(B[i].x', B[i].x') + dot(omega(B[i]), omega(B[i])))\n"                            \
+  "initial:\n  u: 0.5\n  x: 1\n  R: turn([1, 2, 2], 0.4)\n  d: [0.6, 0, 0.8]\n  B[i].R: turn([0, " \
+  "1, i], i)\n"                                                                                    \
+  "  B.x: [[1, 2, 3], [4, 5, 6]]\n  w: [0.1, 0.2]\n  rate(u): 0.3\n  x': 0.7\n  omega(R): [0.1, "  \
+  "0.2, 0.3]\n"                                                                                    \
+  "  d': \"cross([0.1, 0.2, 0.3], [0.6, 0, 0.8])\"\n  B.x': [[0.1, 0.2, 0.3], [0.4, 0.5, 0.6]]\n"  \
   "  omega(B[2]): [0.3, 0.1, 0.2]\n  w[1]: 0.1\n  rate(w): [0.4, 0.6]\n" RUN
 
 enum { U = 0, X = 2, TURN = 3, D = 12, B_2 = 27, W_2 = 41 };                     /* in q */
@@ -169,11 +174,12 @@ END_TEST
 
 START_TEST(symmetries_and_invariants_go_by_the_velocities_of_the_state)
 {
-  const dvi_system *system = open_scene(
-      ZOO
-      "symmetries:\n  a: {rate(u): 2, omega(R): \"transpose(R)*[0, 0, 1]\", d: \"cross([0, 0, 1], d)\", \"B[i].x\": \"i*B[i].x\"}\n"
-      "  b: {\"omega(B[i])\": \"[0, i, 0]\", \"rate(w[i])\": i}\n"
-      "invariants:\n  c: p(u) + 10*p(w[2]) + p(d)[1] + p(d[2]) + p(x) + dot(p(R), [1, 2, 3]) + p(B[2].R)[1] + p(B[2].x)[3]\n");
+  const dvi_system *system = open_scene(ZOO
+                                        "symmetries:\n  a: {rate(u): 2, omega(R): \"transpose(R)*[0, 0, 1]\", d: \"cross([0, 0, "
+                                        "1], d)\", \"B[i].x\": \"i*B[i].x\"}\n"
+                                        "  b: {\"omega(B[i])\": \"[0, i, 0]\", \"rate(w[i])\": i}\n"
+                                        "invariants:\n  c: p(u) + 10*p(w[2]) + p(d)[1] + p(d[2]) + p(x) + dot(p(R), [1, 2, 3]) + "
+                                        "p(B[2].R)[1] + p(B[2].x)[3]\n");
   const double *q, *v, *p;
   double I[4];
   dvi_scene_start(scene, &q, &v, &p);
@@ -214,7 +220,8 @@ START_TEST(momenta_give_the_start_as_velocities_do)
   const double *q, *v, *p;
   (void)open_scene("coordinates: {R: rotation, d: direction, u: angle}\n"
                    "lagrangian: omega(R)[1]^2 + omega(R)[2]^2 + 0.5*omega(R)[3]^2 + dot(d', d') + 2*rate(u)^2\n"
-                   "initial: {R: \"turn([0, 0, 1], 1)\", d: [0, 0, 1], u: 0, p(R): [1, 2, 3], p(d): [4, 6, 0], p(u): 8}\n" RUN);
+                   "initial: {R: \"turn([0, 0, 1], 1)\", d: [0, 0, 1], u: 0, p(R): [1, 2, 3], p(d): [4, 6, 0], "
+                   "p(u): 8}\n" RUN);
   dvi_scene_start(scene, &q, &v, &p);
   static const double wanted[] = {0.5, 1, 3, 2, 3, 0, 2};
   for (int i = 0; i < 7; i++) near(v[i], wanted[i]);
@@ -266,13 +273,14 @@ START_TEST(what_has_no_mass_and_no_body_is_told)
                      ":1:28:", "the velocity of B.x has no mass");
   lagrangian_refused("x'^2", ":1:15:", "the velocity of R has no mass");
   lagrangian_refused("x'^2 - rate(u)^2", ":1:53:", "the moment of inertia of u is -2, and must be positive");
-  refused("coordinates: {x: scalar, R: rotation}\nlagrangian: x'^2 + omega(R)[1]^2 + omega(R)[2]^2 - omega(R)[3]^2\n"
+  refused("coordinates: {x: scalar, R: rotation}\nlagrangian: x'^2 + omega(R)[1]^2 + omega(R)[2]^2 "
+          "- omega(R)[3]^2\n"
           "initial: {x: 1, R: \"turn([0, 0, 1], 0)\"}\n" RUN,
           ":1:26:", "the inertia of R is that of no body");
-  refused(
-      "coordinates: {x: scalar, y: scalar, B: motion}\nlagrangian: x'^2 + y'^2 + dot(B.x', B.x') + omega(B)[1]^2 + omega(B)[2]^2 + "
-      "3*omega(B)[3]^2\ninitial: {x: 1, y: 1, B.x: [0, 0, 0], B.R: \"turn([0, 0, 1], 0)\"}\n" RUN,
-      ":1:37:", "the inertia of B is that of no body");
+  refused("coordinates: {x: scalar, y: scalar, B: motion}\nlagrangian: x'^2 + y'^2 + dot(B.x', B.x') + "
+          "omega(B)[1]^2 + omega(B)[2]^2 + "
+          "3*omega(B)[3]^2\ninitial: {x: 1, y: 1, B.x: [0, 0, 0], B.R: \"turn([0, 0, 1], 0)\"}\n" RUN,
+          ":1:37:", "the inertia of B is that of no body");
 }
 END_TEST
 
@@ -290,7 +298,8 @@ START_TEST(velocities_are_asked_of_the_right_kind)
   lagrangian_refused("x'^2 - R", ":2:13:", "a number minus a 3 x 3 matrix");
   refused("coordinates:\n  R[2]: rotation\nlagrangian: dot(omega(R), omega(R))\ninitial: {R: 1}\n" RUN,
           ":3:23:", "omega is taken of a rotation");
-  refused("coordinates: {R: rotation}\nlagrangian: dot(omega(R), omega(R))\ninvariants: {a: \"omega(R)[1]\"}\n"
+  refused("coordinates: {R: rotation}\nlagrangian: dot(omega(R), omega(R))\ninvariants: {a: "
+          "\"omega(R)[1]\"}\n"
           "initial: {R: \"turn([1, 0, 0], 0)\"}\n" RUN,
           ":3:18:", "say it by momenta, p(R)");
 }
@@ -300,11 +309,11 @@ END_TEST
 static void start_refused(const char *entry, const char *words)
 {
   char text[TEXT_SIZE];
-  (void)snprintf(
-      text, sizeof text,
-      KINDS "lagrangian: x'^2 + dot(omega(R), omega(R)) + dot(omega(B), omega(B)) + dot(B.x', B.x') + dot(d', d') + rate(u)^2\n"
-            "initial:\n  %s\n  x: 1\n" RUN,
-      entry);
+  (void)snprintf(text, sizeof text,
+                 KINDS "lagrangian: x'^2 + dot(omega(R), omega(R)) + dot(omega(B), omega(B)) + "
+                       "dot(B.x', B.x') + dot(d', d') + rate(u)^2\n"
+                       "initial:\n  %s\n  x: 1\n" RUN,
+                 entry);
   refused(text, ":", words);
 }
 
@@ -326,11 +335,14 @@ START_TEST(starts_are_rotations_directions_and_across_them)
   start_refused("rate(R): 1", "the velocity of R is omega(R)");
   start_refused("omega(R): 1", "a number for R, which is a vector of 3");
   start_refused("R: turn([1, 0, 0], 1)\n  B.R: turn([1, 0, 0], 1)", "the start of B.x is not given");
-  start_refused("R: turn([1, 0, 0], 1)\n  B.R: turn([1, 0, 0], 1)\n  B.x: [0, 0, 0]\n  u: 0\n  d: [1, 0, 0]\n  d': [0.1, 1, 0]",
+  start_refused("R: turn([1, 0, 0], 1)\n  B.R: turn([1, 0, 0], 1)\n  B.x: [0, 0, 0]\n  u: 0\n  d: "
+                "[1, 0, 0]\n  d': [0.1, 1, 0]",
                 "the velocity or momentum of the direction d is not orthogonal to it");
-  start_refused("R: turn([1, 0, 0], 1)\n  B.R: turn([1, 0, 0], 1)\n  B.x: [0, 0, 0]\n  u: 0\n  d: [1, 0, 0]\n  p(R): [0, 0, 0]",
+  start_refused("R: turn([1, 0, 0], 1)\n  B.R: turn([1, 0, 0], 1)\n  B.x: [0, 0, 0]\n  u: 0\n  d: "
+                "[1, 0, 0]\n  p(R): [0, 0, 0]",
                 "the momentum p(B.R) is not given");
-  refused("coordinates:\n  R[2]: rotation\nlagrangian: sum(i, dot(omega(R[i]), omega(R[i])))\ninitial:\n  R: [1, 2]\n" RUN,
+  refused("coordinates:\n  R[2]: rotation\nlagrangian: sum(i, dot(omega(R[i]), "
+          "omega(R[i])))\ninitial:\n  R: [1, 2]\n" RUN,
           ":5:3:", "R is more than a matrix: give it by a formula, R[i], or one by one, R[1]");
 }
 END_TEST
@@ -344,14 +356,16 @@ START_TEST(declarations_that_do_not_go_together_are_told)
           ":3:14:", "beside constraints there are no rotations");
   refused(KINDS "hamiltonian: x\ninitial: {x: 1}\n" RUN, ":2:14:", "beside hamiltonian there are no rotations");
   refused("inertia: {R: 1}\n" KINDS "lagrangian: 1\ninitial: {x: 1}\n" RUN, ":1:1:", "a scene has no 'inertia'");
-  refused("coordinates: {R: rotation}\nlagrangian: dot(omega(R), omega(R))\nsymmetries: {a: {R: [1, 0, 0]}}\ninitial: {R: 1}\n" RUN,
+  refused("coordinates: {R: rotation}\nlagrangian: dot(omega(R), omega(R))\nsymmetries: {a: {R: "
+          "[1, 0, 0]}}\ninitial: {R: 1}\n" RUN,
           ":3:18:", "a symmetry of a rotation or an angle is given by its velocity, omega(R)");
-  refused("coordinates: {d: direction}\nlagrangian: dot(d', d')\nsymmetries: {a: {\"d'\": [1, 0, 0]}}\ninitial: {R: 1}\n" RUN,
+  refused("coordinates: {d: direction}\nlagrangian: dot(d', d')\nsymmetries: {a: {\"d'\": [1, 0, "
+          "0]}}\ninitial: {R: 1}\n" RUN,
           ":3:19:", "a symmetry is given by coordinate");
 }
 END_TEST
 
-SUITE(scene_turns)
+SUITE(scene_manifolds)
 {
   tcase_add_checked_fixture(tests, NULL, release);
   tcase_add_test(tests, an_angle_is_the_coordinate_of_the_same_pendulum);

@@ -1,6 +1,6 @@
 /* labels: jacobian slow */
-/* Random expressions against an independent judge: the expression as it was drawn, evaluated in quadruple precision without any simplification, and its
- * central differences. */
+/* Random expressions against an independent judge: the expression as it was drawn, evaluated in
+ * quadruple precision without any simplification, and its central differences. */
 #include <check.h>
 #include <float.h>
 #include <math.h>
@@ -77,18 +77,23 @@ static int is_inside(dvi__op op, double number, quad a, quad b)
 static quad error_of(const part *all, const part *own)
 {
   const part *a = all + own->a, *b = all + own->b;
-  return dvi__operands(own->op) == 0
-             ? 0
-             : quad_error(own->op, own->number, a->value, a->error, b->value, b->error, 2 * (quad)DBL_EPSILON);
+  return dvi__operands(own->op) == 0 ? 0
+                                     : quad_error(own->op, own->number, a->value, a->error,
+                                                  b->value, b->error, 2 * (quad)DBL_EPSILON);
 }
 
-/* Draw an operation for these operands until one is inside of its domain and its value of a moderate size; sums and sines always are. */
+/* Draw an operation for these operands until one is inside of its domain and its value of a
+ * moderate size; sums and sines always are. */
 static part draw(uint64_t *seed, const expression *e, int a, int b)
 {
   static const double exponents[] = {-3, -2.5, -2, -1.5, -1, -0.5, 0.5, 1.5, 2, 2.5, 3, 4, 5, 7};
   for (int tries = 0; tries < 20; tries++) {
-    part own = {.op = (dvi__op)(DVI__OP_NEGATE + random_below(seed, DVI__OP_COUNT - DVI__OP_NEGATE)), .a = a, .b = b};
-    if (own.op == DVI__OP_POWER) own.number = exponents[random_below(seed, (int)(sizeof exponents / sizeof *exponents))];
+    part own = {
+        .op = (dvi__op)(DVI__OP_NEGATE + random_below(seed, DVI__OP_COUNT - DVI__OP_NEGATE)),
+        .a = a,
+        .b = b};
+    if (own.op == DVI__OP_POWER)
+      own.number = exponents[random_below(seed, (int)(sizeof exponents / sizeof *exponents))];
     const quad x = e->part[a].value, y = e->part[b].value;
     if (!is_inside(own.op, own.number, x, y)) continue;
     own.value = quad_operate(own.op, own.number, x, y);
@@ -154,7 +159,8 @@ static quad value_at(const expression *e, const quad *x)
     if (own->op == DVI__OP_INPUT)
       value[i] = x[own->a];
     else
-      value[i] = quad_operate(own->op, own->number, operands > 0 ? value[own->a] : 0, operands > 1 ? value[own->b] : 0);
+      value[i] = quad_operate(own->op, own->number, operands > 0 ? value[own->a] : 0,
+                              operands > 1 ? value[own->b] : 0);
   }
   return value[e->count - 1];
 }
@@ -200,13 +206,15 @@ static double largest(int count, const quad *x)
   return (double)result;
 }
 
-/* Entries against the judge's, relative to the largest. Constants are folded in double precision, hence not 1e-16. */
+/* Entries against the judge's, relative to the largest. Constants are folded in double precision,
+ * hence not 1e-16. */
 static void check_close(int count, const quad *entry, const quad *judge, uint64_t seed)
 {
   const double scale = largest(count, judge);
   for (int i = 0; i < count; i++)
-    ck_assert_msg(fabsq(entry[i] - judge[i]) <= (quad)(1e-10 * scale + 1e-14), "seed %llu, entry %d: %.17g, by differences %.17g",
-                  (unsigned long long)seed, i, (double)entry[i], (double)judge[i]);
+    ck_assert_msg(fabsq(entry[i] - judge[i]) <= (quad)(1e-10 * scale + 1e-14),
+                  "seed %llu, entry %d: %.17g, by differences %.17g", (unsigned long long)seed, i,
+                  (double)entry[i], (double)judge[i]);
 }
 
 START_TEST(simplified_values_are_those_of_what_was_written)
@@ -225,8 +233,8 @@ START_TEST(simplified_values_are_those_of_what_was_written)
     const part *last = e.part + e.count - 1;
     const double allowed = (double)(2 * last->error + 8 * (quad)DBL_EPSILON * fabsq(last->value));
     const double error = (double)fabsq((quad)value - last->value);
-    ck_assert_msg(error <= allowed, "seed %llu: %.17g for %.17g, error %.2g > %.2g", (unsigned long long)seed, value,
-                  (double)last->value, error, allowed);
+    ck_assert_msg(error <= allowed, "seed %llu: %.17g for %.17g, error %.2g > %.2g",
+                  (unsigned long long)seed, value, (double)last->value, error, allowed);
     ck_assert_int_eq(not_finite, -1);
     if (allowed > 0) worst = fmax(worst, error / allowed);
     dvi__graph_free(&graph);
@@ -236,7 +244,8 @@ START_TEST(simplified_values_are_those_of_what_was_written)
 END_TEST
 
 /* First and second derivatives of the graph at the point, evaluated in quadruple precision. */
-static void differentiate(dvi__graph *graph, const expression *e, dvi__node root, quad *first, quad *second)
+static void differentiate(dvi__graph *graph, const expression *e, dvi__node root, quad *first,
+                          quad *second)
 {
   dvi__node gradient[INPUTS], hessian[INPUTS][INPUTS];
   dvi__gradient(graph, root, INPUTS, gradient);
@@ -264,7 +273,8 @@ START_TEST(derivatives_are_those_of_differences)
     differentiate(&graph, &e, root, first, second);
     for (int i = 0; i < INPUTS; i++) judge[i] = difference(&e, i);
     check_close(INPUTS, first, judge, seed);
-    for (int i = 0; i < INPUTS * INPUTS; i++) judge[i] = second_difference(&e, i % INPUTS, i / INPUTS);
+    for (int i = 0; i < INPUTS * INPUTS; i++)
+      judge[i] = second_difference(&e, i % INPUTS, i / INPUTS);
     check_close(INPUTS * INPUTS, second, judge, seed);
     dvi__graph_free(&graph);
   }
@@ -281,7 +291,8 @@ START_TEST(patterns_hold_all_second_derivatives_but_zeros)
     const dvi__node root = build(&graph, &e);
     int(*pair)[2], count, inside[INPUTS][INPUTS] = {{0}};
     ck_assert_int_eq(dvi__second_pattern(&graph, root, INPUTS, &pair, &count), DVI_OK);
-    for (int k = 0; k < count; k++) inside[pair[k][0]][pair[k][1]] = inside[pair[k][1]][pair[k][0]] = 1;
+    for (int k = 0; k < count; k++)
+      inside[pair[k][0]][pair[k][1]] = inside[pair[k][1]][pair[k][0]] = 1;
     dvi__heap_free(pair);
     quad first[INPUTS], second[INPUTS * INPUTS];
     differentiate(&graph, &e, root, first, second);

@@ -1,4 +1,5 @@
-/* Programs on truncated power series: the sum of the series is what the expression has at the point. */
+/* Programs on truncated power series: the sum of the series is what the expression has at the
+ * point. */
 #include <dvi/taylor.h>
 #include <float.h>
 #include <math.h>
@@ -9,7 +10,8 @@
 
 enum { DEGREE = 14, LENGTH = DEGREE + 1, ROWS = 64, INPUTS = 2 };
 
-/* x(s) = 0.6 + .., y(s) = 1.7 + ..: inside of the domains of all operations but acosh, which gets y. */
+/* x(s) = 0.6 + .., y(s) = 1.7 + ..: inside of the domains of all operations but acosh, which gets
+ * y. */
 static const double curve[INPUTS][LENGTH] = {{0.6, 0.4, -0.3, 0.2}, {1.7, -0.5, 0.25, 0.1}};
 
 static double sum_of(const double *series, double s)
@@ -58,7 +60,8 @@ END_TEST
 START_TEST(every_operation_of_two_numbers_is_known)
 {
   dvi__graph graph = {0};
-  const dvi__node x = dvi__input(&graph, 0), y = dvi__input(&graph, 1), two = dvi__constant(&graph, 2.5);
+  const dvi__node x = dvi__input(&graph, 0), y = dvi__input(&graph, 1),
+                  two = dvi__constant(&graph, 2.5);
   for (dvi__op op = DVI__OP_ADD; op <= DVI__OP_ATAN2; op++) {
     compare(&graph, dvi__apply(&graph, op, x, y), curve);
     compare(&graph, dvi__apply(&graph, op, x, two), curve);
@@ -66,7 +69,8 @@ START_TEST(every_operation_of_two_numbers_is_known)
   }
   const dvi__node yes = dvi__greater(&graph, x, dvi__constant(&graph, -9)),
                   log = dvi__apply(&graph, DVI__OP_LOG, dvi__negate(&graph, y), y);
-  compare(&graph, dvi__choice(&graph, yes, y, log), curve); /* the series of the logarithm is none */
+  compare(&graph, dvi__choice(&graph, yes, y, log),
+          curve); /* the series of the logarithm is none */
   dvi__graph_free(&graph);
 }
 END_TEST
@@ -96,12 +100,15 @@ START_TEST(powers_and_operations_in_one_are_known)
 {
   static const double exponents[] = {3, 4, 7, -2, -3, 1.5, 2.5, -0.5, -1.5, -2.5};
   dvi__graph graph = {0};
-  const dvi__node x = dvi__input(&graph, 0), y = dvi__input(&graph, 1), product = dvi__apply(&graph, DVI__OP_MULTIPLY, x, y);
-  for (size_t i = 0; i < sizeof exponents / sizeof *exponents; i++) compare(&graph, dvi__power(&graph, x, exponents[i]), curve);
+  const dvi__node x = dvi__input(&graph, 0), y = dvi__input(&graph, 1),
+                  product = dvi__apply(&graph, DVI__OP_MULTIPLY, x, y);
+  for (size_t i = 0; i < sizeof exponents / sizeof *exponents; i++)
+    compare(&graph, dvi__power(&graph, x, exponents[i]), curve);
   compare(&graph, dvi__apply(&graph, DVI__OP_ADD, product, x), curve);
   compare(&graph, dvi__apply(&graph, DVI__OP_SUBTRACT, product, y), curve);
   compare(&graph, dvi__apply(&graph, DVI__OP_SUBTRACT, y, product), curve);
-  const dvi__node sine = dvi__apply(&graph, DVI__OP_SIN, x, x), cosine = dvi__apply(&graph, DVI__OP_COS, x, x);
+  const dvi__node sine = dvi__apply(&graph, DVI__OP_SIN, x, x),
+                  cosine = dvi__apply(&graph, DVI__OP_COS, x, x);
   compare(&graph, dvi__apply(&graph, DVI__OP_DIVIDE, sine, cosine), curve);
   compare(&graph, dvi__constant(&graph, 3.25), curve);
   dvi__graph_free(&graph);

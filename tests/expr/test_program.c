@@ -25,7 +25,9 @@ static void run(const dvi__program *program, int lanes, const double *const *inp
   double *registers = calloc((size_t)program->row_count * DVI__LANES_MAX, sizeof *registers);
   ck_assert_ptr_nonnull(registers);
   dvi__program_run(program, lanes, input, registers);
-  memcpy(result, registers + (ptrdiff_t)(program->row_count - program->output_count) * dvi__row_width(lanes),
+  memcpy(result,
+         registers +
+             (ptrdiff_t)(program->row_count - program->output_count) * dvi__row_width(lanes),
          (size_t)lanes * sizeof *result);
   free(registers);
 }
@@ -34,11 +36,13 @@ static void run(const dvi__program *program, int lanes, const double *const *inp
 static void fill(double *row, double least, double most, int turn)
 {
   for (int k = 0; k < DVI__LANES_MAX; k++)
-    row[k] = least + (most - least) * fmod(0.5 + (k + 1) * (turn == 0 ? 0.6180339887 : 0.4142135624), 1.0);
+    row[k] = least +
+             (most - least) * fmod(0.5 + (k + 1) * (turn == 0 ? 0.6180339887 : 0.4142135624), 1.0);
 }
 
 /* All lanes are what the graph's own evaluation says. */
-static void check_against_graph(const dvi__graph *graph, dvi__node root, double least, double most, double ulps)
+static void check_against_graph(const dvi__graph *graph, dvi__node root, double least, double most,
+                                double ulps)
 {
   double a[DVI__LANES_MAX], b[DVI__LANES_MAX], result[DVI__LANES_MAX];
   const double *const input[INPUTS] = {a, b};
@@ -49,7 +53,8 @@ static void check_against_graph(const dvi__graph *graph, dvi__node root, double 
   for (int k = 0; k < DVI__LANES_MAX; k++) {
     double expected;
     dvi__node bad;
-    ck_assert_int_eq(dvi__evaluate(graph, (double[]){a[k], b[k]}, 1, &root, &expected, &bad), DVI_OK);
+    ck_assert_int_eq(dvi__evaluate(graph, (double[]){a[k], b[k]}, 1, &root, &expected, &bad),
+                     DVI_OK);
     ck_assert_double_le(fabs(result[k] - expected), ulps * DBL_EPSILON * fabs(expected));
   }
   dvi__program_free(&program);
@@ -74,17 +79,21 @@ END_TEST
 START_TEST(conditions_take_a_side_in_every_lane)
 {
   dvi__graph graph = {0};
-  const dvi__node a = dvi__input(&graph, 0), b = dvi__input(&graph, 1), positive = dvi__apply(&graph, DVI__OP_POSITIVE, a, a);
+  const dvi__node a = dvi__input(&graph, 0), b = dvi__input(&graph, 1),
+                  positive = dvi__apply(&graph, DVI__OP_POSITIVE, a, a);
   check_against_graph(&graph, dvi__apply(&graph, DVI__OP_FLOOR, a, a), -3, 3, 0.0);
   check_against_graph(&graph, positive, -1, 1, 0.0);
-  check_against_graph(&graph, dvi__choice(&graph, positive, dvi__apply(&graph, DVI__OP_LOG, a, a), b), -1, 1, 0.0);
+  check_against_graph(
+      &graph, dvi__choice(&graph, positive, dvi__apply(&graph, DVI__OP_LOG, a, a), b), -1, 1, 0.0);
   const dvi__node root = dvi__choice(&graph, positive, a, dvi__constant(&graph, 7));
   dvi__program program = compiled(&graph, root);
-  double row[DVI__LANES] = {(double)NAN, 0.0, -0.0, 2.0, -2.0, 1e-320, -1e-320, HUGE_VAL}, result[DVI__LANES];
+  double row[DVI__LANES] = {(double)NAN, 0.0, -0.0, 2.0, -2.0, 1e-320, -1e-320, HUGE_VAL},
+         result[DVI__LANES];
   static const double expected[DVI__LANES] = {0, 7, 7, 2, 7, 1e-320, 7, HUGE_VAL};
   run(&program, DVI__LANES, (const double *const[INPUTS]){row, row}, result);
   ck_assert(isnan(result[0]));
-  for (int k = 1; k < DVI__LANES; k++) ck_assert_msg(!(result[k] < expected[k]) && !(result[k] > expected[k]), "lane %d", k);
+  for (int k = 1; k < DVI__LANES; k++)
+    ck_assert_msg(!(result[k] < expected[k]) && !(result[k] > expected[k]), "lane %d", k);
   dvi__program_free(&program);
   dvi__graph_free(&graph);
 }
@@ -92,13 +101,15 @@ END_TEST
 
 START_TEST(constants_may_stand_on_either_side)
 {
-  static const dvi__op ops[] = {DVI__OP_ADD, DVI__OP_SUBTRACT, DVI__OP_MULTIPLY, DVI__OP_DIVIDE, DVI__OP_RAISE, DVI__OP_ATAN2};
+  static const dvi__op ops[] = {DVI__OP_ADD,    DVI__OP_SUBTRACT, DVI__OP_MULTIPLY,
+                                DVI__OP_DIVIDE, DVI__OP_RAISE,    DVI__OP_ATAN2};
   for (size_t i = 0; i < sizeof ops / sizeof *ops; i++)
     for (int side = 0; side < 2; side++) {
       dvi__graph graph = {0};
       const dvi__node x = dvi__input(&graph, 0), c = dvi__constant(&graph, 0.3);
       (void)dvi__input(&graph, 1);
-      check_against_graph(&graph, dvi__apply(&graph, ops[i], side == 0 ? x : c, side == 0 ? c : x), 0.2, 3.0, 2.0);
+      check_against_graph(&graph, dvi__apply(&graph, ops[i], side == 0 ? x : c, side == 0 ? c : x),
+                          0.2, 3.0, 2.0);
       dvi__graph_free(&graph);
     }
 }
@@ -110,7 +121,8 @@ START_TEST(products_that_are_added_are_rounded_first)
   for (int shape = 0; shape < 6; shape++) {
     dvi__graph graph = {0};
     const dvi__node a = dvi__input(&graph, 0), b = dvi__input(&graph, 1);
-    const dvi__node product = shape < 3 ? dvi__apply(&graph, DVI__OP_MULTIPLY, a, b) : dvi__apply(&graph, DVI__OP_SQUARE, a, a);
+    const dvi__node product = shape < 3 ? dvi__apply(&graph, DVI__OP_MULTIPLY, a, b)
+                                        : dvi__apply(&graph, DVI__OP_SQUARE, a, a);
     const dvi__node root = shape % 3 == 0   ? dvi__apply(&graph, DVI__OP_ADD, product, b)
                            : shape % 3 == 1 ? dvi__apply(&graph, DVI__OP_SUBTRACT, product, b)
                                             : dvi__apply(&graph, DVI__OP_SUBTRACT, b, product);
@@ -157,7 +169,8 @@ START_TEST(powers_are_right_to_two_roundings_for_each_root)
     run(&program, DVI__LANES_MAX, input, result);
     for (int k = 0; k < DVI__LANES_MAX; k++) {
       const long double expected = powl(x[k], exponent);
-      ck_assert_double_le((double)fabsl((result[k] - expected) / expected), 4.0 * fabs(exponent) * DBL_EPSILON);
+      ck_assert_double_le((double)fabsl((result[k] - expected) / expected),
+                          4.0 * fabs(exponent) * DBL_EPSILON);
     }
     dvi__program_free(&program);
     dvi__graph_free(&graph);
@@ -192,7 +205,8 @@ static dvi__node some_expression(dvi__graph *graph)
 {
   const dvi__node x = dvi__input(graph, 0), y = dvi__input(graph, 1);
   const dvi__node sum = dvi__apply(graph, DVI__OP_ADD, dvi__apply(graph, DVI__OP_SIN, x, x), y);
-  const dvi__node square = dvi__apply(graph, DVI__OP_ADD, dvi__constant(graph, 1.0), dvi__apply(graph, DVI__OP_SQUARE, y, y));
+  const dvi__node square = dvi__apply(graph, DVI__OP_ADD, dvi__constant(graph, 1.0),
+                                      dvi__apply(graph, DVI__OP_SQUARE, y, y));
   const dvi__node product = dvi__apply(graph, DVI__OP_MULTIPLY, dvi__power(graph, sum, -1.5),
                                        dvi__apply(graph, DVI__OP_SQRT, square, square));
   return dvi__apply(graph, DVI__OP_DIVIDE, product, x);
@@ -240,12 +254,14 @@ START_TEST(roots_may_be_inputs_constants_parts_of_others_and_equal)
   const dvi__node x = dvi__input(&graph, 0), square = dvi__apply(&graph, DVI__OP_SQUARE, x, x),
                   e = dvi__apply(&graph, DVI__OP_EXP, square, x);
   const dvi__node root[6] = {x, dvi__constant(&graph, 7.0), e, square, e, x};
-  const double threes[8] = {3, 3, 3, 3, 3, 3, 3, 3}, expected[6] = {3.0, 7.0, exp(9.0), 9.0, exp(9.0), 3.0};
+  const double threes[8] = {3, 3, 3, 3, 3, 3, 3, 3},
+               expected[6] = {3.0, 7.0, exp(9.0), 9.0, exp(9.0), 3.0};
   double registers[ROWS * DVI__LANES];
   dvi__program program;
   ck_assert_int_eq(dvi__program_make(&graph, 1, &x, 6, root, &program), DVI_OK);
   dvi__program_run(&program, 2, (const double *const[]){threes}, registers);
-  for (int k = 0; k < 6; k++) ck_assert_double_eq(registers[(program.row_count - 6 + k) * DVI__LANES], expected[k]);
+  for (int k = 0; k < 6; k++)
+    ck_assert_double_eq(registers[(program.row_count - 6 + k) * DVI__LANES], expected[k]);
   dvi__program_free(&program);
   dvi__graph_free(&graph);
 }
@@ -256,7 +272,8 @@ START_TEST(registers_are_taken_again)
   dvi__graph graph = {0};
   const dvi__node x = dvi__input(&graph, 0);
   dvi__node root = x;
-  for (int i = 0; i < 1000; i++) root = dvi__apply(&graph, i % 2 == 0 ? DVI__OP_SIN : DVI__OP_EXP, root, root);
+  for (int i = 0; i < 1000; i++)
+    root = dvi__apply(&graph, i % 2 == 0 ? DVI__OP_SIN : DVI__OP_EXP, root, root);
   dvi__program program = compiled(&graph, root);
   ck_assert_int_eq(program.instruction_count, 1000);
   ck_assert_int_le(program.row_count, 3);
@@ -268,7 +285,8 @@ END_TEST
 START_TEST(an_input_that_is_not_given_is_refused)
 {
   dvi__graph graph = {0};
-  const dvi__node x = dvi__input(&graph, 0), root = dvi__apply(&graph, DVI__OP_ADD, x, dvi__input(&graph, 1));
+  const dvi__node x = dvi__input(&graph, 0),
+                  root = dvi__apply(&graph, DVI__OP_ADD, x, dvi__input(&graph, 1));
   dvi__program program;
   ck_assert_int_eq(dvi__program_make(&graph, 1, &x, 1, &root, &program), DVI_BAD_ARGUMENT);
   ck_assert_ptr_null(program.instruction);
@@ -285,7 +303,8 @@ START_TEST(more_rows_than_there_are_is_refused)
   dvi__program program;
   ck_assert_ptr_nonnull(root);
   for (int i = 0; i < DVI__ROWS_MAX; i++)
-    root[i] = dvi__apply(&graph, DVI__OP_SIN, dvi__apply(&graph, DVI__OP_ADD, x, dvi__constant(&graph, 1.0 + i)), x);
+    root[i] = dvi__apply(&graph, DVI__OP_SIN,
+                         dvi__apply(&graph, DVI__OP_ADD, x, dvi__constant(&graph, 1.0 + i)), x);
   ck_assert_int_eq(dvi__program_make(&graph, 1, &x, DVI__ROWS_MAX, root, &program), DVI_BAD_SIZE);
   ck_assert_ptr_null(program.instruction);
   ck_assert_int_eq(dvi__program_make(&graph, 1, &x, DVI__ROWS_MAX - 16, root, &program), DVI_OK);

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "problem.h"
-#include "scene/draft.h"
+#include "expr/draft.h"
 #include "expr/function/function.h"
 #include "support/heap.h"
 #include "support/suite.h"
@@ -17,7 +17,8 @@ static problem *catalogue(const char *name, const char *setting)
 {
   problem *found = NULL;
   char message[200];
-  ck_assert_int_eq(problem_create(name, setting != NULL, &setting, &found, message, sizeof message), DVI_OK);
+  ck_assert_int_eq(problem_create(name, setting != NULL, &setting, &found, message, sizeof message),
+                   DVI_OK);
   return found;
 }
 
@@ -27,7 +28,8 @@ static double *points(const double *start, int n, int count)
   double *x = malloc((size_t)n * (size_t)count * sizeof *x);
   ck_assert_ptr_nonnull(x);
   for (int i = 0; i < n; i++)
-    for (int k = 0; k < count; k++) x[i * count + k] = start[i] + 0.1 * sin(1.0 + i + 3.0 * k) * (1.0 + fabs(start[i]));
+    for (int k = 0; k < count; k++)
+      x[i * count + k] = start[i] + 0.1 * sin(1.0 + i + 3.0 * k) * (1.0 + fabs(start[i]));
   return x;
 }
 
@@ -43,7 +45,8 @@ static void check_equal(int size, const double *found, const double *expected)
 {
   double largest = 0.0;
   for (int i = 0; i < size; i++) largest = fmax(largest, fabs(expected[i]));
-  for (int i = 0; i < size; i++) ck_assert_double_le(fabs(found[i] - expected[i]), 40.0 * DBL_EPSILON * largest);
+  for (int i = 0; i < size; i++)
+    ck_assert_double_le(fabs(found[i] - expected[i]), 40.0 * DBL_EPSILON * largest);
 }
 
 static void check_patterns(const dvi_pattern *found, int full, const dvi_pattern *expected, int n)
@@ -54,7 +57,8 @@ static void check_patterns(const dvi_pattern *found, int full, const dvi_pattern
   ck_assert_mem_eq(found->row, expected->row, (size_t)found->start[n] * sizeof(int));
 }
 
-static void check_potential(dvi__function *function, const char *name, const char *setting, int count)
+static void check_potential(dvi__function *function, const char *name, const char *setting,
+                            int count)
 {
   problem *made_by_hand = catalogue(name, setting);
   const dvi_potential *potential = &made_by_hand->terms->potentials[0];
@@ -66,8 +70,10 @@ static void check_potential(dvi__function *function, const char *name, const cha
   dvi_pattern pattern;
   int full;
   ck_assert_int_eq(dvi__function_value(function, count, x, V), 0);
-  ck_assert_int_eq(dvi__function_gradient(function, count, x, (double *const[BLOCKS]){[COORDINATES] = V_q}), 0);
-  ck_assert_int_eq(dvi__function_second(function, count, x, (double *const[PAIRS]){[PAIR_QQ] = V_qq}), 0);
+  ck_assert_int_eq(
+      dvi__function_gradient(function, count, x, (double *const[BLOCKS]){[COORDINATES] = V_q}), 0);
+  ck_assert_int_eq(
+      dvi__function_second(function, count, x, (double *const[PAIRS]){[PAIR_QQ] = V_qq}), 0);
   ck_assert_int_eq(dvi__function_pattern(function, PAIR_QQ, &pattern, &full), DVI_OK);
   ck_assert_int_eq(potential->value_batch(count, t, q, value, potential->user), 0);
   ck_assert_int_eq(potential->gradient_batch(count, t, q, gradient, potential->user), 0);
@@ -135,11 +141,18 @@ START_TEST(the_double_pendulum_is_that_of_the_catalogue)
   double t[COUNT] = {0}, value[2][COUNT], gradient[2][2][2 * COUNT], second[2][3][4 * COUNT];
   const double *const x[BLOCKS] = {[COORDINATES] = q, [VELOCITIES] = v};
   ck_assert_int_eq(dvi__function_value(function, COUNT, x, value[0]), 0);
-  ck_assert_int_eq(dvi__function_gradient(function, COUNT, x, (double *const[BLOCKS]){NULL, gradient[0][0], gradient[0][1]}), 0);
-  ck_assert_int_eq(dvi__function_second(function, COUNT, x, (double *const[PAIRS]){second[0][0], second[0][1], second[0][2]}), 0);
+  ck_assert_int_eq(
+      dvi__function_gradient(function, COUNT, x,
+                             (double *const[BLOCKS]){NULL, gradient[0][0], gradient[0][1]}),
+      0);
+  ck_assert_int_eq(
+      dvi__function_second(function, COUNT, x,
+                           (double *const[PAIRS]){second[0][0], second[0][1], second[0][2]}),
+      0);
   ck_assert_int_eq(L->value_batch(COUNT, t, q, v, value[1], L->user), 0);
   ck_assert_int_eq(L->gradient_batch(COUNT, t, q, v, gradient[1][0], gradient[1][1], L->user), 0);
-  ck_assert_int_eq(L->hessian_batch(COUNT, t, q, v, second[1][0], second[1][1], second[1][2], L->user), 0);
+  ck_assert_int_eq(
+      L->hessian_batch(COUNT, t, q, v, second[1][0], second[1][1], second[1][2], L->user), 0);
   check_equal(COUNT, value[0], value[1]);
   check_equal(4 * COUNT, gradient[0][0], gradient[1][0]);
   check_equal(12 * COUNT, second[0][0], second[1][0]);
@@ -183,9 +196,11 @@ static void check_bits(dvi__function *function, int n, const double *all)
   for (int count = 2; count <= MOST; count = count < 20 ? count + 1 : count + 93) {
     for (int i = 0; i < n; i++) memcpy(q + i * count, all + i * MOST, (size_t)count * sizeof *q);
     const double *const x[BLOCKS] = {[COORDINATES] = q};
-    ck_assert_int_eq(dvi__function_gradient(function, count, x, (double *const[BLOCKS]){NULL, V_q}), 0);
+    ck_assert_int_eq(dvi__function_gradient(function, count, x, (double *const[BLOCKS]){NULL, V_q}),
+                     0);
     ck_assert_int_eq(dvi__function_value(function, count, x, value), 0);
-    for (int i = 0; i < n; i++) ck_assert_mem_eq(V_q + i * count, one + i * MOST, (size_t)count * sizeof *q);
+    for (int i = 0; i < n; i++)
+      ck_assert_mem_eq(V_q + i * count, one + i * MOST, (size_t)count * sizeof *q);
     if (count == 2) V = value[0];
     ck_assert_double_eq(value[0], V);
   }
@@ -222,7 +237,8 @@ static void *work(void *user)
   worker *own = user;
   const double *const x[BLOCKS] = {[COORDINATES] = own->q};
   for (int turn = 0; turn < 20; turn++)
-    own->failed |= dvi__function_gradient(own->function, 3, x, (double *const[BLOCKS]){NULL, own->V_q});
+    own->failed |= dvi__function_gradient(own->function, 3, x,
+                                          (double *const[BLOCKS]){NULL, own->V_q});
   return NULL;
 }
 
@@ -286,7 +302,8 @@ START_TEST(counters_count_points_and_what_was_derived)
   ck_assert_int_eq(dvi__function_value(function, 4, x, V), 0);
   dvi__function_count(function, &counters);
   ck_assert_int_eq(counters.value_points, 4);
-  ck_assert_int_eq(counters.value_operations, 15 * 11); /* three differences and squares, two sums, a power, two factors */
+  ck_assert_int_eq(counters.value_operations,
+                   15 * 11); /* three differences and squares, two sums, a power, two factors */
   ck_assert_int_eq(counters.gradient_operations, -1);
   ck_assert_int_eq(counters.second_operations, -1);
   ck_assert_int_eq(dvi__function_prepare(function, 0, by_coordinates, qq_alone), DVI_OK);
@@ -309,11 +326,14 @@ START_TEST(time_is_a_block_and_constants_are_known)
   affine(&own, 2, VELOCITIES, 0, 0);
   const dvi__node t = variable(&own, 0), q = variable(&own, 1), v = variable(&own, 2);
   const dvi__node first = apply(&own, DVI__OP_MULTIPLY, apply(&own, DVI__OP_SQUARE, q, q), t);
-  finish(&own, apply(&own, DVI__OP_ADD, first, times(&own, 3.0, apply(&own, DVI__OP_MULTIPLY, q, v))), 1, 3);
+  finish(&own,
+         apply(&own, DVI__OP_ADD, first, times(&own, 3.0, apply(&own, DVI__OP_MULTIPLY, q, v))), 1,
+         3);
   dvi__function *function = made(&own);
   const double at[3] = {2.0, 5.0, 7.0}, *const x[BLOCKS] = {&at[0], &at[1], &at[2]};
   double rate, by_q, by_v, qq, qv, vv, tq, tv;
-  ck_assert_int_eq(dvi__function_gradient(function, 1, x, (double *const[BLOCKS]){&rate, &by_q, &by_v}), 0);
+  ck_assert_int_eq(
+      dvi__function_gradient(function, 1, x, (double *const[BLOCKS]){&rate, &by_q, &by_v}), 0);
   ck_assert_double_eq(rate, 25.0);
   ck_assert_double_eq(by_q, 20.0 + 21.0);
   ck_assert_double_eq(by_v, 15.0);
@@ -322,7 +342,9 @@ START_TEST(time_is_a_block_and_constants_are_known)
   ck_assert_double_eq(qq, 4.0);
   ck_assert_double_eq(qv, 3.0);
   ck_assert_double_eq(tq, 10.0);
-  ck_assert_int_eq(dvi__function_second(function, 1, x, (double *const[PAIRS]){[PAIR_VV] = &vv, [PAIR_TV] = &tv}), 0);
+  ck_assert_int_eq(dvi__function_second(function, 1, x,
+                                        (double *const[PAIRS]){[PAIR_VV] = &vv, [PAIR_TV] = &tv}),
+                   0);
   ck_assert_int_eq(dvi__function_second_constant(function, PAIR_QQ), 0);
   ck_assert_int_eq(dvi__function_second_constant(function, PAIR_QV), 1);
   ck_assert_int_eq(dvi__function_second_constant(function, PAIR_VV), 1);
@@ -330,7 +352,8 @@ START_TEST(time_is_a_block_and_constants_are_known)
 }
 END_TEST
 
-/* x_i x_j summed over all i and j, i = j among them: (sum x)^2, of which all second derivatives are 2. */
+/* x_i x_j summed over all i and j, i = j among them: (sum x)^2, of which all second derivatives
+ * are 2. */
 START_TEST(an_element_may_read_a_variable_twice)
 {
   enum { N = 9 };
@@ -406,14 +429,17 @@ START_TEST(what_is_not_finite_is_located)
   finish(&own, apply(&own, DVI__OP_LOG, difference, difference), 1, 1);
   dvi__function *function = made(&own);
   const double q[2] = {2.0, 0.8}, *const x[BLOCKS] = {[COORDINATES] = q};
-  const double *const bad[BLOCKS] = {[COORDINATES] = q + 1}, one = 1.0, *const pole[BLOCKS] = {[COORDINATES] = &one};
+  const double *const bad[BLOCKS] = {[COORDINATES] = q + 1},
+                      one = 1.0, *const pole[BLOCKS] = {[COORDINATES] = &one};
   ck_assert_int_eq(dvi__function_value(function, 1, x, &V), 0);
   ck_assert_int_eq(dvi__function_value(function, 1, bad, &V), 1);
-  ck_assert_int_eq(dvi__function_gradient(function, 1, pole, (double *const[BLOCKS]){NULL, &V_q}), 1);
+  ck_assert_int_eq(dvi__function_gradient(function, 1, pole, (double *const[BLOCKS]){NULL, &V_q}),
+                   1);
   dvi__function_fault(function, &source, 2, x, 1, 0, text, sizeof text, &fault);
   ck_assert_str_eq(text, "log(x - 1), x - 1 = -0.2 is not finite");
   ck_assert_uint_eq(fault.span.size, 10);
-  ck_assert(fault.count == 1 && fault.variable[0].block == COORDINATES && fault.variable[0].number == 0);
+  ck_assert(fault.count == 1 && fault.variable[0].block == COORDINATES &&
+            fault.variable[0].number == 0);
   dvi__function_fault(function, &source, 2, x, 0, 1, text, sizeof text, &fault);
   ck_assert_str_eq(text, "");
   drop(&own, function);

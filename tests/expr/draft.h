@@ -1,6 +1,7 @@
-/* Functions that tests put together, kernel by kernel, and some systems of the catalogue as such functions. */
-#ifndef TESTS_SCENE_DRAFT_H
-#define TESTS_SCENE_DRAFT_H
+/* Functions that tests put together, kernel by kernel, and some systems of the catalogue as such
+ * functions. */
+#ifndef TESTS_EXPR_DRAFT_H
+#define TESTS_EXPR_DRAFT_H
 #include <check.h>
 #include <stdlib.h>
 
@@ -62,18 +63,21 @@ static inline void finish(draft *own, dvi__node root, int elements, int input_co
 
 static inline void affine(draft *own, int input, int block, int base, int stride)
 {
-  own->input[own->kernel_count][input] = (dvi__kernel_input){.block = block, .base = base, .stride = stride};
+  own->input[own->kernel_count][input] = (dvi__kernel_input){
+      .block = block, .base = base, .stride = stride};
 }
 
 static inline dvi__function *made(draft *own)
 {
   static const dvi__block_pair pair[PAIRS] = {
-      [PAIR_QQ] = {COORDINATES, COORDINATES}, [PAIR_QV] = {COORDINATES, VELOCITIES}, [PAIR_VV] = {VELOCITIES, VELOCITIES},
-      [PAIR_TQ] = {TIME, COORDINATES},        [PAIR_TV] = {TIME, VELOCITIES},
+      [PAIR_QQ] = {COORDINATES, COORDINATES}, [PAIR_QV] = {COORDINATES, VELOCITIES},
+      [PAIR_VV] = {VELOCITIES, VELOCITIES},   [PAIR_TQ] = {TIME, COORDINATES},
+      [PAIR_TV] = {TIME, VELOCITIES},
   };
   const dvi__blocks blocks = {BLOCKS, own->width, PAIRS, pair};
   dvi__function *function;
-  ck_assert_int_eq(dvi__function_create(own->kernel_count, own->kernel, &blocks, &function), DVI_OK);
+  ck_assert_int_eq(dvi__function_create(own->kernel_count, own->kernel, &blocks, &function),
+                   DVI_OK);
   return function;
 }
 
@@ -88,7 +92,8 @@ static inline void drop(draft *own, dvi__function *function)
 /* --- The systems. --- */
 
 /* -G m_a m_b/|x_a - x_b| for all pairs of bodies in `dimension` dimensions. */
-static inline dvi__function *gravity(draft *own, int bodies, int dimension, double G, const double *mass)
+static inline dvi__function *gravity(draft *own, int bodies, int dimension, double G,
+                                     const double *mass)
 {
   const int pairs = bodies * (bodies - 1) / 2;
   reset(own, dimension * bodies);
@@ -104,14 +109,20 @@ static inline dvi__function *gravity(draft *own, int bodies, int dimension, doub
   dvi__node sum = number(own, 0.0);
   for (int i = 0; i < dimension; i++) {
     for (int side = 0; side < 2; side++)
-      own->input[0][2 * i + side] = (dvi__kernel_input){.block = COORDINATES, .number = own->list[side], .offset = i};
-    const dvi__node d = apply(own, DVI__OP_SUBTRACT, variable(own, 2 * i), variable(own, 2 * i + 1));
+      own->input[0][2 * i + side] = (dvi__kernel_input){
+          .block = COORDINATES, .number = own->list[side], .offset = i};
+    const dvi__node d = apply(own, DVI__OP_SUBTRACT, variable(own, 2 * i),
+                              variable(own, 2 * i + 1));
     sum = apply(own, DVI__OP_ADD, sum, apply(own, DVI__OP_SQUARE, d, d));
   }
   for (int side = 0; side < 2; side++)
-    own->input[0][2 * dimension + side] = (dvi__kernel_input){.is_data = 1, .data = own->values + side * pairs};
-  const dvi__node product = apply(own, DVI__OP_MULTIPLY, variable(own, 2 * dimension), variable(own, 2 * dimension + 1));
-  finish(own, apply(own, DVI__OP_DIVIDE, times(own, -G, product), apply(own, DVI__OP_SQRT, sum, sum)), pairs, 2 * dimension + 2);
+    own->input[0][2 * dimension + side] = (dvi__kernel_input){.is_data = 1,
+                                                              .data = own->values + side * pairs};
+  const dvi__node product = apply(own, DVI__OP_MULTIPLY, variable(own, 2 * dimension),
+                                  variable(own, 2 * dimension + 1));
+  finish(own,
+         apply(own, DVI__OP_DIVIDE, times(own, -G, product), apply(own, DVI__OP_SQRT, sum, sum)),
+         pairs, 2 * dimension + 2);
   return made(own);
 }
 
@@ -169,11 +180,16 @@ static inline dvi__function *double_pendulum(draft *own)
   const double l1 = 2.0, l2 = 3.0, m1 = 1.0, m2 = 2.0, g = 9.80665;
   reset(own, 2);
   for (int i = 0; i < 4; i++) affine(own, i, i < 2 ? COORDINATES : VELOCITIES, i % 2, 0);
-  const dvi__node q1 = variable(own, 0), q2 = variable(own, 1), v1 = variable(own, 2), v2 = variable(own, 3);
-  const dvi__node d = apply(own, DVI__OP_SUBTRACT, q1, q2), vv = apply(own, DVI__OP_MULTIPLY, v1, v2);
+  const dvi__node q1 = variable(own, 0), q2 = variable(own, 1), v1 = variable(own, 2),
+                  v2 = variable(own, 3);
+  const dvi__node d = apply(own, DVI__OP_SUBTRACT, q1, q2),
+                  vv = apply(own, DVI__OP_MULTIPLY, v1, v2);
   dvi__node L = times(own, 0.5 * (m1 + m2) * l1 * l1, apply(own, DVI__OP_SQUARE, v1, v1));
-  L = apply(own, DVI__OP_ADD, L, times(own, 0.5 * m2 * l2 * l2, apply(own, DVI__OP_SQUARE, v2, v2)));
-  L = apply(own, DVI__OP_ADD, L, times(own, m2 * l1 * l2, apply(own, DVI__OP_MULTIPLY, apply(own, DVI__OP_COS, d, d), vv)));
+  L = apply(own, DVI__OP_ADD, L,
+            times(own, 0.5 * m2 * l2 * l2, apply(own, DVI__OP_SQUARE, v2, v2)));
+  L = apply(
+      own, DVI__OP_ADD, L,
+      times(own, m2 * l1 * l2, apply(own, DVI__OP_MULTIPLY, apply(own, DVI__OP_COS, d, d), vv)));
   L = apply(own, DVI__OP_ADD, L, times(own, (m1 + m2) * g * l1, apply(own, DVI__OP_COS, q1, q1)));
   L = apply(own, DVI__OP_ADD, L, times(own, m2 * g * l2, apply(own, DVI__OP_COS, q2, q2)));
   finish(own, L, 1, 4);

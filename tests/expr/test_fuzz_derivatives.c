@@ -1,7 +1,9 @@
 /* labels: invariant */
-/* Any expression has derivatives that are those of differences, in quadruple precision, and a program that computes them up to rounding.
+/* Any expression has derivatives that are those of differences, in quadruple precision, and a
+ * program that computes them up to rounding.
  *
- * A text is an expression behind its operands, letter by letter: xyz are inputs, digits constants; letters that want more operands than there are do nothing. */
+ * A text is an expression behind its operands, letter by letter: xyz are inputs, digits constants;
+ * letters that want more operands than there are do nothing. */
 #include <check.h>
 #include <float.h>
 #include <math.h>
@@ -18,15 +20,19 @@
 #ifdef DVI_HAVE_QUADMATH
 enum { INPUTS = 3, POINTS = 3, JUDGED = 2, NODES_MAX = 6000, LETTERS_MAX = 200, OPEN_MAX = 32 };
 
-static const char *const corpus[] = {"xx*yy*+r1~/", "xyz**e xS+",      "x2-a yC l* zT/", "xy@ xyh+",           "xsys+p3",
-                                     "x1+l y^ zt*", "xi yo- znN+ zI*", "x?xr:",          "y?yl: x2-?yr:+ xf*", "xy-dd?:~1x?-:+p3",
-                                     NULL};
-static const char *const tokens[] = {"x", "y", "z", "_", "xs", "xsys+", "1x/", "p0", "p1",   "p5", "r", "e", "l", "S", "C", "T",
-                                     "i", "o", "t", "k", "H",  "n",     "I",   "O",  "N",    "a",  "g", "+", "-", "*", "/", "^",
-                                     "@", "h", "d", "~", "f",  "?",     ":",   "x?", "xy-?", "0",  "1", "2", "3", "8", "9", NULL};
+static const char *const corpus[] = {"xx*yy*+r1~/",      "xyz**e xS+", "x2-a yC l* zT/",
+                                     "xy@ xyh+",         "xsys+p3",    "x1+l y^ zt*",
+                                     "xi yo- znN+ zI*",  "x?xr:",      "y?yl: x2-?yr:+ xf*",
+                                     "xy-dd?:~1x?-:+p3", NULL};
+static const char *const tokens[] = {
+    "x", "y", "z", "_", "xs", "xsys+", "1x/", "p0", "p1",   "p5", "r", "e", "l", "S", "C", "T",
+    "i", "o", "t", "k", "H",  "n",     "I",   "O",  "N",    "a",  "g", "+", "-", "*", "/", "^",
+    "@", "h", "d", "~", "f",  "?",     ":",   "x?", "xy-?", "0",  "1", "2", "3", "8", "9", NULL};
 
-/* At the last point only the end is watched: numbers there are zero, or at the end of their range. */
-static const double point[POINTS][INPUTS] = {{0.7, -1.3, 0.4}, {2.25, 0.31, -0.6}, {0, 1e-200, 1e200}};
+/* At the last point only the end is watched: numbers there are zero, or at the end of their range.
+ */
+static const double point[POINTS][INPUTS] = {
+    {0.7, -1.3, 0.4}, {2.25, 0.31, -0.6}, {0, 1e-200, 1e200}};
 
 /* An expression with its derivatives, as nodes: value, gradient, Hessian by columns. */
 enum { ROOTS = 1 + INPUTS + INPUTS * INPUTS, GRADIENT = 1, HESSIAN = 1 + INPUTS };
@@ -37,7 +43,8 @@ static dvi__node root[ROOTS];
 
 static dvi__op op_of(char letter)
 {
-  static const char letters[] = ".._s.relSCTiotkHnIONag+-*/^@hf?:"; /* in the order of the operations */
+  static const char letters[] =
+      ".._s.relSCTiotkHnIONag+-*/^@hf?:"; /* in the order of the operations */
   const char *found = letter == '.' || letter == '\0' ? NULL : strchr(letters, letter);
   return found == NULL ? DVI__OP_COUNT : (dvi__op)(found - letters);
 }
@@ -49,12 +56,14 @@ static int take(char letter, char next, dvi__node *open, int count)
   static const double exponents[] = {-2, 1.5, -0.5, -1.5, 3, 7, -3, 0.3, 33, 2.5};
   const dvi__op op = op_of(letter);
   if (letter >= 'x' && letter <= 'z') open[count++] = dvi__input(&graph, letter - 'x');
-  if (letter >= '0' && letter <= '9') open[count++] = dvi__constant(&graph, constants[letter - '0']);
+  if (letter >= '0' && letter <= '9')
+    open[count++] = dvi__constant(&graph, constants[letter - '0']);
   if (letter == 'd' && count > 0) {
     open[count] = open[count - 1];
     count++;
   }
-  if (letter == 'p' && count > 0) open[count - 1] = dvi__power(&graph, open[count - 1], exponents[(unsigned char)next % 10]);
+  if (letter == 'p' && count > 0)
+    open[count - 1] = dvi__power(&graph, open[count - 1], exponents[(unsigned char)next % 10]);
   if (letter == '~' && count > 1) {
     const dvi__node last = open[count - 1];
     open[count - 1] = open[count - 2];
@@ -84,24 +93,29 @@ static dvi__node read_expression(const char *text, size_t size)
 
 static quad value[NODES_MAX], error[NODES_MAX], finer[NODES_MAX];
 
-/* What the judge knows of the roots at a point: values, the roundings of double and of quadruple precision, and the derivatives by each input of value and
- * gradient with what their two differences disagree by. Nodes that are at the end of the range of double are not judged: infinite errors. */
+/* What the judge knows of the roots at a point: values, the roundings of double and of quadruple
+ * precision, and the derivatives by each input of value and gradient with what their two
+ * differences disagree by. Nodes that are at the end of the range of double are not judged:
+ * infinite errors. */
 typedef struct verdict {
   quad value[ROOTS], error[ROOTS], finer[ROOTS];
   quad difference[INPUTS][HESSIAN], doubt[INPUTS][HESSIAN];
 } verdict;
 
-/* Whether a node, or one below it, leaves the range of double, or is more rounding than number: bounds are those of small errors. */
+/* Whether a node, or one below it, leaves the range of double, or is more rounding than number:
+ * bounds are those of small errors. */
 static void mark_unusual(void)
 {
   for (int n = 0; n < graph.count; n++) {
     const dvi__graph_node *node = graph.node + n;
     const int operands = dvi__operands(node->op);
     const quad size = fabsq(value[n]);
-    const int usual = (size == 0 && error[n] == 0) || (size > (quad)1e-290 && size < (quad)1e290 && error[n] < (quad)1e-4 * size);
+    const int usual = (size == 0 && error[n] == 0) ||
+                      (size > (quad)1e-290 && size < (quad)1e290 && error[n] < (quad)1e-4 * size);
     if (!usual) error[n] = HUGE_VALQ;
     if (operands > 0 && !finiteq(error[node->a])) error[n] = HUGE_VALQ;
-    const int off = node->op == DVI__OP_WHERE && value[node->a] <= 0; /* then the other operand need not exist */
+    const int off = node->op == DVI__OP_WHERE &&
+                    value[node->a] <= 0; /* then the other operand need not exist */
     if (operands > 1 && !off && !finiteq(error[node->b])) error[n] = HUGE_VALQ;
     if (off && finiteq(error[node->a])) error[n] = 0;
   }
@@ -126,7 +140,8 @@ static int differences(const quad *x, int i, quad step, quad *result)
   shifted(x, i, step, result);
   memcpy(above, value, (size_t)graph.count * sizeof *above);
   shifted(x, i, -step, below);
-  for (int n = 0; n < graph.count; n++) jumps |= dvi__is_step(graph.node[n].op) && (above[n] < value[n] || above[n] > value[n]);
+  for (int n = 0; n < graph.count; n++)
+    jumps |= dvi__is_step(graph.node[n].op) && (above[n] < value[n] || above[n] > value[n]);
   for (int r = 0; r < HESSIAN; r++) result[r] = (result[r] - below[r]) / (2 * step);
   return jumps;
 }
@@ -148,7 +163,8 @@ static void judge(const quad *x, verdict *v)
     const int jumps = differences(x, i, 3 * step, longer);
     for (int r = 0; r < HESSIAN; r++)
       v->doubt[i][r] = jumps ? HUGE_VALQ
-                             : 10 * fabsq(longer[r] - v->difference[i][r]) + 10 * v->finer[r] / step + v->error[r] * step;
+                             : 10 * fabsq(longer[r] - v->difference[i][r]) +
+                                   10 * v->finer[r] / step + v->error[r] * step;
   }
 }
 
@@ -162,8 +178,8 @@ static void check_derivative(const verdict *v, int derivative, int i, int of)
 {
   const quad room = 4 * v->error[derivative] + v->doubt[i][of];
   if (!agree(v->value[derivative], v->difference[i][of], room))
-    ck_abort_msg("root %d by input %d: %.17g, by differences %.17g, room %.3g", of, i, (double)v->value[derivative],
-                 (double)v->difference[i][of], (double)room);
+    ck_abort_msg("root %d by input %d: %.17g, by differences %.17g, room %.3g", of, i,
+                 (double)v->value[derivative], (double)v->difference[i][of], (double)room);
 }
 
 static void check_derivatives(const verdict *v)
@@ -179,11 +195,13 @@ static void check_pattern(const verdict *v)
 {
   int(*pair)[2], count, inside[INPUTS][INPUTS] = {{0}};
   ck_assert_int_eq(dvi__second_pattern(&graph, root[0], INPUTS, &pair, &count), DVI_OK);
-  for (int k = 0; k < count; k++) inside[pair[k][0]][pair[k][1]] = inside[pair[k][1]][pair[k][0]] = 1;
+  for (int k = 0; k < count; k++)
+    inside[pair[k][0]][pair[k][1]] = inside[pair[k][1]][pair[k][0]] = 1;
   dvi__heap_free(pair);
   for (int i = 0; i < INPUTS; i++)
     for (int j = 0; j < INPUTS; j++)
-      fuzz_requires(inside[i][j] || agree(v->value[HESSIAN + INPUTS * j + i], 0, v->error[HESSIAN + INPUTS * j + i]));
+      fuzz_requires(inside[i][j] || agree(v->value[HESSIAN + INPUTS * j + i], 0,
+                                          v->error[HESSIAN + INPUTS * j + i]));
 }
 
 /* --- Programs. --- */
@@ -197,8 +215,8 @@ static void check_results(const verdict *v, int code, int count, const double *r
   for (int k = 0; k < count && code == 0; k++) {
     fuzz_requires(isfinite(result[k]));
     if (known && !agree((quad)result[k], v->value[first + k], 4 * v->error[first + k]))
-      ck_abort_msg("result %d: %.17g for %.17g, error %.3g", first + k, result[k], (double)v->value[first + k],
-                   (double)v->error[first + k]);
+      ck_abort_msg("result %d: %.17g for %.17g, error %.3g", first + k, result[k],
+                   (double)v->value[first + k], (double)v->error[first + k]);
   }
 }
 
@@ -207,7 +225,8 @@ static void spread(const dvi_pattern *pattern, int full, const double *entry, do
 {
   for (int k = 0; k < INPUTS * INPUTS; k++) all[k] = full ? entry[k] : 0;
   for (int j = 0; j < INPUTS && !full; j++)
-    for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++) all[INPUTS * j + pattern->row[e]] = entry[e];
+    for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++)
+      all[INPUTS * j + pattern->row[e]] = entry[e];
 }
 
 static unsigned run_at(dvi__function *function, const double *x, const verdict *v)
@@ -217,7 +236,8 @@ static unsigned run_at(dvi__function *function, const double *x, const verdict *
   dvi_pattern pattern;
   int full;
   ck_assert_int_eq(dvi__function_pattern(function, 0, &pattern, &full), DVI_OK);
-  const int code[] = {dvi__function_value(function, 1, &x, result), dvi__function_gradient(function, 1, &x, &gradient),
+  const int code[] = {dvi__function_value(function, 1, &x, result),
+                      dvi__function_gradient(function, 1, &x, &gradient),
                       dvi__function_second(function, 1, &x, &second)};
   for (int k = 0; k < 3; k++) fuzz_requires(code[k] >= 0);
   spread(&pattern, full, entry, result + HESSIAN);
@@ -234,11 +254,13 @@ static unsigned run(const verdict *v)
   static const int width = INPUTS;
   static const dvi__block_pair pair = {0, 0};
   static const dvi__blocks blocks = {1, &width, 1, &pair};
-  const dvi__kernel kernel = {.graph = &graph, .root = root[0], .elements = 1, .input_count = INPUTS, .input = input};
+  const dvi__kernel kernel = {
+      .graph = &graph, .root = root[0], .elements = 1, .input_count = INPUTS, .input = input};
   dvi__function *function = NULL;
   unsigned codes = 0;
   ck_assert_int_eq(dvi__function_create(1, &kernel, &blocks, &function), DVI_OK);
-  for (int p = 0; p < POINTS; p++) codes = 8 * codes + run_at(function, point[p], p < JUDGED ? &v[p] : NULL);
+  for (int p = 0; p < POINTS; p++)
+    codes = 8 * codes + run_at(function, point[p], p < JUDGED ? &v[p] : NULL);
   dvi__function_destroy(&function);
   return codes;
 }
@@ -257,7 +279,8 @@ static unsigned one(const char *text, size_t size)
   graph = (dvi__graph){.limit = NODES_MAX};
   root[0] = read_expression(text, size);
   dvi__gradient(&graph, root[0], INPUTS, root + GRADIENT);
-  for (int j = 0; j < INPUTS; j++) dvi__tangents(&graph, j, INPUTS, root + GRADIENT, root + HESSIAN + (ptrdiff_t)INPUTS * j);
+  for (int j = 0; j < INPUTS; j++)
+    dvi__tangents(&graph, j, INPUTS, root + GRADIENT, root + HESSIAN + (ptrdiff_t)INPUTS * j);
   if (graph.failed != DVI_OK) {
     fuzz_requires(graph.failed == DVI_BAD_SIZE);
     dvi__graph_free(&graph);
