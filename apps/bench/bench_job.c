@@ -5,10 +5,10 @@
 #include <string.h>
 
 #include "cli/command.h"
-#include "study/march.h"
+#include "mechanics/march.h"
 #include "load/open.h"
 #include "bench/peer.h"
-#include "study/study.h"
+#include "mechanics/order_study.h"
 
 /* Adds the time of creation to *creation. q: room for the end, [n], or NULL. */
 static dvi_status run_method(const bench_job *job, const problem *scene, double t_end, double *creation, double *q,

@@ -1,10 +1,10 @@
 /** One setting of a bench: a whole job, from creation to the last step, that can be repeated. */
 #ifndef BENCH_JOB_H
 #define BENCH_JOB_H
-#include "study/judge.h"
+#include "mechanics/judge.h"
 #include "load/pacing.h"
 #include "problem.h"
-#include "bench/samples.h"
+#include "study/samples.h"
 
 enum { SETTING_SIZE = 32 };
 

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "bench/peer.h"
-#include "study/study.h"
+#include "mechanics/order_study.h"
 
 /* A sanitizer brings a malloc of its own, of which the C library knows nothing. */
 #if defined(__SANITIZE_ADDRESS__)

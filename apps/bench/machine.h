@@ -3,7 +3,7 @@
 #define MACHINE_H
 #include <stdio.h>
 
-#include "bench/samples.h"
+#include "study/samples.h"
 
 /** Print processor, compiler with its flags, and the versions of dvi, SUNDIALS and, if it is there, GSL, a line each. */
 void machine_print(FILE *stream);

@@ -12,8 +12,8 @@
 #include "load/open.h"
 #include "plot/plot.h"
 #include "cli/progress.h"
-#include "bench/samples.h"
-#include "study/study.h"
+#include "study/samples.h"
+#include "mechanics/order_study.h"
 #include "csv/table.h"
 
 enum { STEPS_DEFAULT = 64, MEMBERS_MOST = 1000000, LABEL_SIZE = 300 };

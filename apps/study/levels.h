@@ -3,7 +3,7 @@
 #define LEVELS_H
 #include <stdbool.h>
 
-#include "study/study.h"
+#include "mechanics/order_study.h"
 
 /** The most steps of a first level that is asked for. */
 enum { FIRST_STEPS_MAX = 1 << 24 };

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "study/study.h"
+#include "mechanics/order_study.h"
 #include "study/window.h"
 
 static const double order_tolerance = 0.2;

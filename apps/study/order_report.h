@@ -5,10 +5,10 @@
 #include <stdio.h>
 
 #include "plot/axes.h"
-#include "study/judge.h"
+#include "mechanics/judge.h"
 #include "load/pacing.h"
 #include "problem.h"
-#include "study/single_steps.h"
+#include "mechanics/single_steps.h"
 #include "csv/table.h"
 
 enum { LEVELS_MAX = 40 };

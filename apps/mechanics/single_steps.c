@@ -5,7 +5,7 @@
  *
  * Steps are centred: from -h/2 to h/2 about a fixed time the error of a symmetric method is
  * h^(p+1) times a series in h^2, and falls into its leading term twice as fast as from a fixed start. */
-#include "study/single_steps.h"
+#include "mechanics/single_steps.h"
 
 #include <dvi/scene.h>
 #include <math.h>
@@ -13,7 +13,7 @@
 #include <string.h>
 
 #include "load/catalogue.h"
-#include "study/quad_step.h"
+#include "mechanics/quad_step.h"
 #include "study/window.h"
 
 #ifdef QUAD_EXISTS

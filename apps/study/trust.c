@@ -1,4 +1,4 @@
-#include "watch/trust.h"
+#include "study/trust.h"
 
 #include <math.h>
 

@@ -1,9 +1,9 @@
-#include "bench/asked.h"
+#include "study/asked.h"
 
 #include <math.h>
 
-#include "bench/frontier.h"
-#include "study/study.h"
+#include "study/frontier.h"
+#include "mechanics/order_study.h"
 
 enum { FIRST_SHOWN = 3 };
 

@@ -1,4 +1,4 @@
-#include "study/quad.h"
+#include "mechanics/quad.h"
 
 #include <math.h>
 

@@ -1,7 +1,7 @@
 /** Steps of Galerkin variational integrators in quadruple precision, from their definition. */
 #ifndef QUAD_STEP_H
 #define QUAD_STEP_H
-#include "study/quad_motion.h"
+#include "mechanics/quad_motion.h"
 
 #ifdef QUAD_EXISTS
 /** A degree and a quadrature. */

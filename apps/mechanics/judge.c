@@ -1,4 +1,4 @@
-#include "study/judge.h"
+#include "mechanics/judge.h"
 
 #include <float.h>
 #include <math.h>
@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "cli/command.h"
-#include "study/judge_runs.h"
+#include "mechanics/judge_runs.h"
 #include "cli/spelling.h"
 
 /* A judge that is off by this many times its own error is wrong about it. */

@@ -1,10 +1,10 @@
-#include "bench/bench_report.h"
+#include "study/work_report.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "bench/asked.h"
+#include "study/asked.h"
 #include "cli/command.h"
 #include "bench/machine.h"
 #include "csv/table.h"

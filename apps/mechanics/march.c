@@ -1,4 +1,4 @@
-#include "study/march.h"
+#include "mechanics/march.h"
 
 #include <math.h>
 

@@ -1,4 +1,4 @@
-#include "study/judge_runs.h"
+#include "mechanics/judge_runs.h"
 
 #include <float.h>
 #include <math.h>

@@ -1,7 +1,7 @@
 /** One method on one problem at one step size after another, up to the same time. */
 #ifndef STUDY_H
 #define STUDY_H
-#include "study/judge.h"
+#include "mechanics/judge.h"
 #include "load/open.h"
 #include "problem.h"
 #include "cli/progress.h"

@@ -1,5 +1,5 @@
 #define _POSIX_C_SOURCE 200809L
-#include "study/study.h"
+#include "mechanics/order_study.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -7,7 +7,7 @@
 #include <time.h>
 
 #include "cli/command.h"
-#include "study/march.h"
+#include "mechanics/march.h"
 
 static const double ceiling_digits = 1e-2; /* an error of 1 % of the solution's size is no longer asymptotic */
 static const double clock_seconds = 0.02;  /* process time that one measurement takes at least */

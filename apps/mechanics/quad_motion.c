@@ -1,6 +1,6 @@
 /* Gragg's modified midpoint rule, extrapolated (Bulirsch and Stoer 1966), on qdot = v, pdot = L_q
  * with p = L_v(t,q,v) solved for v: no part of it is a variational integrator. */
-#include "study/quad_motion.h"
+#include "mechanics/quad_motion.h"
 
 #include <math.h>
 #include <stdlib.h>

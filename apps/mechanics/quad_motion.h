@@ -3,7 +3,7 @@
 #define QUAD_MOTION_H
 #include <dvi/scene.h>
 
-#include "study/quad.h"
+#include "mechanics/quad.h"
 
 #ifdef QUAD_EXISTS
 /** The Lagrangian, and the mass at a place. */

@@ -1,7 +1,7 @@
 /** What errors that were asked for cost, integrator by integrator: the --at of dvi bench. */
 #ifndef ASKED_H
 #define ASKED_H
-#include "bench/bench_report.h"
+#include "study/work_report.h"
 #include "csv/table.h"
 
 /** The table: for each asked error a row for each integrator. NULL, or not table_good, without memory. */

@@ -7,7 +7,7 @@
  * (Marsden and West 2001, sec. 2.2.6), with I_k(1) = 0 but for k = 0. Solved by fixed point iteration
  * with the inverse of K (x) M, K_kl = sum_j b_j P_k P_l: whatever the basis of the library's own path,
  * polynomials of that degree are the same space. */
-#include "study/quad_step.h"
+#include "mechanics/quad_step.h"
 
 #include <dvi/dvi.h>
 #include <math.h>

@@ -1,7 +1,7 @@
 /** Two Galerkin runs that agree: the judge of spans that are too long for IDA. */
 #ifndef JUDGE_RUNS_H
 #define JUDGE_RUNS_H
-#include "study/judge.h"
+#include "mechanics/judge.h"
 
 /** Run degree 16, and degree 12 with other steps, with ever smaller steps until the ends of two levels come no closer: fills other, which it allocates, and q,
  *  error and words.
