@@ -14,8 +14,11 @@
 /* A judge that is off by this many times its own error is wrong about it. */
 static const double contradiction = 10.0;
 
-static const char *const kinds[] = {
-    [JUDGE_AUTO] = "auto", [JUDGE_EXACT] = "exact", [JUDGE_STORED] = "stored", [JUDGE_IDA] = "ida", [JUDGE_RUNS] = "runs"};
+static const char *const kinds[] = {[JUDGE_AUTO] = "auto",
+                                    [JUDGE_EXACT] = "exact",
+                                    [JUDGE_STORED] = "stored",
+                                    [JUDGE_IDA] = "ida",
+                                    [JUDGE_RUNS] = "runs"};
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
 static const char *kind_at(int k, const void *list)
@@ -60,7 +63,9 @@ static bool ask_exact(judgement *judge, const problem *scene, double t_end, doub
 {
   if (scene->exact == NULL || scene->exact(scene, t_end, judge->q, p) != 0) return false;
   set_words(judge, "exact solution");
-  judge->error = 4.0 * DBL_EPSILON * fmax(1.0, judge_largest(scene->nq, judge->q)); /* some roundings in its evaluation */
+  judge->error = 4.0 * DBL_EPSILON *
+                 fmax(1.0,
+                      judge_largest(scene->nq, judge->q)); /* some roundings in its evaluation */
   return true;
 }
 
@@ -71,7 +76,8 @@ static bool ask_digits(judgement *judge, const problem *scene, double t_end)
   if (digits == NULL) return false;
   memcpy(judge->q, digits, (size_t)scene->nq * sizeof *judge->q);
   set_words(judge, "stored quadruple-precision result");
-  judge->error = fmax(DBL_EPSILON * judge_largest(scene->nq, judge->q), far ? scene->far_error : 0.0); /* rounded to double */
+  judge->error = fmax(DBL_EPSILON * judge_largest(scene->nq, judge->q),
+                      far ? scene->far_error : 0.0); /* rounded to double */
   return true;
 }
 
@@ -80,7 +86,8 @@ static dvi_status ask_ida(judgement *judge, const problem *scene, double t_end, 
   memcpy(judge->q, scene->q, (size_t)scene->nq * sizeof *judge->q);
   memcpy(p, scene->p, (size_t)scene->nv * sizeof *p);
   dvi_reference_report report;
-  const dvi_status status = dvi_reference_judge(scene->system, 0.0, t_end, judge->q, p, NULL, &report);
+  const dvi_status status = dvi_reference_judge(scene->system, 0.0, t_end, judge->q, p, NULL,
+                                                &report);
   if (status != DVI_OK) return status;
   set_words(judge, "IDA, run at two tolerances");
   judge->error = report.error;
@@ -94,13 +101,14 @@ static void add_witness(judgement *judge, int n, const double *ida, double ida_e
   const double apart = judge_distance(n, judge->q, ida);
   const size_t length = strlen(judge->words);
   if (apart > contradiction * (ida_error + judge->error)) judge->error = apart;
-  (void)snprintf(judge->words + length, sizeof judge->words - length, " (IDA, of error %.1e, is %.1e away)", ida_error, apart);
+  (void)snprintf(judge->words + length, sizeof judge->words - length,
+                 " (IDA, of error %.1e, is %.1e away)", ida_error, apart);
 }
 
 /* IDA shares no code with the methods, so it is asked first; of its answer and that of the runs the
  * one with the smaller error is taken. ida [n]: room for its answer. */
-static dvi_status ask_ida_then_runs(judgement *judge, const problem *scene, double t_end, const judge_request *request, double *p,
-                                    double *ida)
+static dvi_status ask_ida_then_runs(judgement *judge, const problem *scene, double t_end,
+                                    const judge_request *request, double *p, double *ida)
 {
   const int n = scene->nq;
   const dvi_status of_ida = ask_ida(judge, scene, t_end, p);
@@ -110,7 +118,8 @@ static dvi_status ask_ida_then_runs(judgement *judge, const problem *scene, doub
   const dvi_status status = judge_by_runs(judge, scene, t_end, request->progress);
   if (of_ida != DVI_OK) {
     const size_t length = strlen(judge->words);
-    (void)snprintf(judge->words + length, sizeof judge->words - length, " (IDA fails: they have no witness)");
+    (void)snprintf(judge->words + length, sizeof judge->words - length,
+                   " (IDA fails: they have no witness)");
     return status;
   }
   if (status == DVI_OK) add_witness(judge, n, ida, ida_error);
@@ -125,12 +134,16 @@ static dvi_status ask_ida_then_runs(judgement *judge, const problem *scene, doub
 
 static int refuse(const problem *scene, double t_end, const judge_request *request)
 {
-  if (request->kind == JUDGE_EXACT) return usage_error("--judge exact: %s has no known exact solution", scene->name);
-  return usage_error("--judge stored: there is no stored result of %s for these parameters at t = %g", scene->name, t_end);
+  if (request->kind == JUDGE_EXACT)
+    return usage_error("--judge exact: %s has no known exact solution", scene->name);
+  return usage_error(
+      "--judge stored: there is no stored result of %s for these parameters at t = %g", scene->name,
+      t_end);
 }
 
 /* p, ida [n]: room. */
-static int ask(judgement *judge, const problem *scene, double t_end, const judge_request *request, double *p, double *ida)
+static int ask(judgement *judge, const problem *scene, double t_end, const judge_request *request,
+               double *p, double *ida)
 {
   const judge_kind kind = request->kind;
   dvi_status status;
@@ -154,8 +167,9 @@ int judge_init(judgement *judge, const problem *scene, double t_end, const judge
   memset(judge, 0, sizeof *judge);
   judge->q = calloc(n, sizeof *judge->q);
   double *room = calloc(2 * n, sizeof *room);
-  const int code = judge->q != NULL && room != NULL ? ask(judge, scene, t_end, request, room, room + n)
-                                                    : library_error(DVI_NO_MEMORY);
+  const int code = judge->q != NULL && room != NULL
+                       ? ask(judge, scene, t_end, request, room, room + n)
+                       : library_error(DVI_NO_MEMORY);
   free(room);
   return code;
 }

@@ -7,14 +7,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The runs share neither their polynomials nor, because the number of steps differs by a factor near the golden ratio, the ends of their steps
- * (but the first and the last). At every level both halve their steps. Two runs may agree by luck, so the ends of the level before must agree
- * too: the error is the largest distance of these four from each other. */
+/* The runs share neither their polynomials nor, because the number of steps differs by a factor
+ * near the golden ratio, the ends of their steps (but the first and the last). At every level both
+ * halve their steps. Two runs may agree by luck, so the ends of the level before must agree too:
+ * the error is the largest distance of these four from each other. */
 enum { LEVELS_MAX = 16, PROGRESS_STEPS = 256 };
 static const double other_ratio = 1.618;
-static const double first_step = 8.0;     /* of the problem's own step for a first run of low degree */
+static const double first_step = 8.0; /* of the problem's own step for a first run of low degree */
 static const double steps_max = 1L << 20; /* of a run */
-static const double agreement = 1e-6;     /* relative: before that, an error that does not fall may be one of steps too large */
+static const double agreement =
+    1e-6; /* relative: before that, an error that does not fall may be one of steps too large */
 
 /* A method, and the key and its two values that the runs differ in. */
 typedef struct runner {
@@ -22,7 +24,8 @@ typedef struct runner {
   int value[2];
 } runner;
 
-static const runner galerkin = {"galerkin", "degree", {16, 12}}, lie_galerkin = {"lie-galerkin", "degree", {16, 12}},
+static const runner galerkin = {"galerkin", "degree", {16, 12}},
+                    lie_galerkin = {"lie-galerkin", "degree", {16, 12}},
                     vprk = {"vprk", "nodes", {6, 5}}, dg_phase = {"dg-phase", "degree", {6, 5}},
                     hamiltonian = {"hamiltonian", "degree", {6, 5}};
 
@@ -42,8 +45,8 @@ typedef struct levels {
   double best;    /* the smallest error so far of two levels that follow each other */
 } levels;
 
-static dvi_status run_once(const problem *scene, const runner *by, int which, long steps, double t_end, progress_line *progress,
-                           double *q)
+static dvi_status run_once(const problem *scene, const runner *by, int which, long steps,
+                           double t_end, progress_line *progress, double *q)
 {
   char method[32];
   dvi_integrator *integrator = NULL;
@@ -59,7 +62,8 @@ static dvi_status run_once(const problem *scene, const runner *by, int which, lo
   return status;
 }
 
-/* The largest distance of any two ends. Equal ends are no proof of no error: the last place remains. */
+/* The largest distance of any two ends. Equal ends are no proof of no error: the last place
+ * remains. */
 static double spread_of(const levels *l, int n)
 {
   const double *const end[4] = {l->now, l->now + n, l->before, l->before + n};
@@ -69,12 +73,14 @@ static double spread_of(const levels *l, int n)
   return apart;
 }
 
-static void keep(judgement *judge, int n, const runner *by, const double *ends, double error, const long *steps)
+static void keep(judgement *judge, int n, const runner *by, const double *ends, double error,
+                 const long *steps)
 {
   memcpy(judge->q, ends, (size_t)n * sizeof *ends);
   memcpy(judge->other, ends + n, (size_t)n * sizeof *ends);
   judge->error = error;
-  (void)snprintf(judge->words, sizeof judge->words, "two runs of %s, %s %d in %ld steps and %s %d in %ld", by->method, by->key,
+  (void)snprintf(judge->words, sizeof judge->words,
+                 "two runs of %s, %s %d in %ld steps and %s %d in %ld", by->method, by->key,
                  by->value[0], steps[0], by->key, by->value[1], steps[1]);
 }
 
@@ -92,12 +98,14 @@ static bool take_level(judgement *judge, int n, levels *l, const long *steps)
   return settled;
 }
 
-static dvi_status refine(judgement *judge, const problem *scene, double t_end, progress_line *progress, levels *l)
+static dvi_status refine(judgement *judge, const problem *scene, double t_end,
+                         progress_line *progress, levels *l)
 {
   const int n = scene->nq;
   dvi_status failure = DVI_OK;
   double steps = fmax(2.0, ceil(fabs(t_end) / (first_step * scene->h)));
-  for (int level = 0; level < LEVELS_MAX && (level == 0 || other_ratio * steps <= steps_max); level++, steps *= 2.0) {
+  for (int level = 0; level < LEVELS_MAX && (level == 0 || other_ratio * steps <= steps_max);
+       level++, steps *= 2.0) {
     const long both[2] = {lround(steps), lround(ceil(other_ratio * steps))};
     dvi_status status = run_once(scene, l->by, 0, both[0], t_end, progress, l->now);
     if (status == DVI_OK) status = run_once(scene, l->by, 1, both[1], t_end, progress, l->now + n);
@@ -110,13 +118,17 @@ static dvi_status refine(judgement *judge, const problem *scene, double t_end, p
   return l->follows ? DVI_OK : failure;
 }
 
-dvi_status judge_by_runs(judgement *judge, const problem *scene, double t_end, progress_line *progress)
+dvi_status judge_by_runs(judgement *judge, const problem *scene, double t_end,
+                         progress_line *progress)
 {
   const size_t n = (size_t)scene->nq;
   double *ends = calloc(4 * n, sizeof *ends);
   judge->other = calloc(n, sizeof *judge->other);
-  levels l = {.by = runner_for(scene->terms), .now = ends, .before = ends + 2 * n, .best = HUGE_VAL};
-  const dvi_status status = ends != NULL && judge->other != NULL ? refine(judge, scene, t_end, progress, &l) : DVI_NO_MEMORY;
+  levels l = {
+      .by = runner_for(scene->terms), .now = ends, .before = ends + 2 * n, .best = HUGE_VAL};
+  const dvi_status status = ends != NULL && judge->other != NULL
+                                ? refine(judge, scene, t_end, progress, &l)
+                                : DVI_NO_MEMORY;
   free(ends);
   return status;
 }

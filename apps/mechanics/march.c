@@ -16,7 +16,8 @@ typedef struct marcher {
 
 static void show(marcher *m)
 {
-  if (m->progress != NULL && m->steps++ % PROGRESS_STEPS == 0) progress_show(m->progress, -1.0, m->words);
+  if (m->progress != NULL && m->steps++ % PROGRESS_STEPS == 0)
+    progress_show(m->progress, -1.0, m->words);
 }
 
 static int observe(dvi_integrator *integrator, void *user)
@@ -26,12 +27,14 @@ static int observe(dvi_integrator *integrator, void *user)
   return m->look != NULL ? m->look(integrator, m->user) : 0;
 }
 
-dvi_status march(dvi_integrator *integrator, double h, long steps, double t_end, march_look look, void *user,
-                 progress_line *progress, const char *words)
+dvi_status march(dvi_integrator *integrator, double h, long steps, double t_end, march_look look,
+                 void *user, progress_line *progress, const char *words)
 {
   marcher m = {look, user, progress, words, 0};
   if (dvi_integrator_chooses_steps(integrator))
-    return dvi_run(integrator, &(dvi_run_options){.h = h, .t_end = t_end, .observe = observe, .user = &m}, NULL);
+    return dvi_run(integrator,
+                   &(dvi_run_options){.h = h, .t_end = t_end, .observe = observe, .user = &m},
+                   NULL);
   dvi_status status = DVI_OK;
   for (long i = 0; i < steps && status == DVI_OK; i++) {
     show(&m);
@@ -49,7 +52,8 @@ static int count(dvi_integrator *integrator, void *user)
   return (*steps)++ > SPAN_STEPS_MAX;
 }
 
-dvi_status march_span(dvi_integrator *integrator, const double *q, const double *p, double h, double t_end, double *span)
+dvi_status march_span(dvi_integrator *integrator, const double *q, const double *p, double h,
+                      double t_end, double *span)
 {
   dvi_status status = DVI_OK;
   *span = t_end;
@@ -60,7 +64,9 @@ dvi_status march_span(dvi_integrator *integrator, const double *q, const double 
     long steps = 0;
     status = dvi_integrator_start(integrator, 0.0, q, p);
     if (status == DVI_OK)
-      status = dvi_run(integrator, &(dvi_run_options){.h = h, .t_end = t_end, .observe = count, .user = &steps}, &report);
+      status = dvi_run(integrator,
+                       &(dvi_run_options){.h = h, .t_end = t_end, .observe = count, .user = &steps},
+                       &report);
     if (status <= 0) {
       *span = report.end == DVI_RUN_COMPLETE ? h * (double)report.steps : (double)NAN;
       return status;

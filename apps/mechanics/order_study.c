@@ -9,8 +9,9 @@
 #include "cli/command.h"
 #include "mechanics/march.h"
 
-static const double ceiling_digits = 1e-2; /* an error of 1 % of the solution's size is no longer asymptotic */
-static const double clock_seconds = 0.02;  /* process time that one measurement takes at least */
+static const double ceiling_digits =
+    1e-2; /* an error of 1 % of the solution's size is no longer asymptotic */
+static const double clock_seconds = 0.02; /* process time that one measurement takes at least */
 static const double repeats_max = 1e6;
 
 static double now(clockid_t clock)
@@ -32,7 +33,9 @@ double elapsed_now(void)
 
 long study_repeats(double seconds)
 {
-  return seconds >= clock_seconds ? 1 : lround(fmin(ceil(clock_seconds / fmax(seconds, 1e-9)), repeats_max));
+  return seconds >= clock_seconds
+             ? 1
+             : lround(fmin(ceil(clock_seconds / fmax(seconds, 1e-9)), repeats_max));
 }
 
 double study_size(const order_study *s)
@@ -43,13 +46,14 @@ double study_size(const order_study *s)
 
 int study_refuse(const order_study *s)
 {
-  complain("%s: its steps do not lead to the solution at t = %g; is the monitor finite and above 0 all the way?", s->method,
-           s->t_end);
+  complain("%s: its steps do not lead to the solution at t = %g; is the monitor finite and above 0 "
+           "all the way?",
+           s->method, s->t_end);
   return FAILED;
 }
 
-int study_init(order_study *study, const problem *scene, const judgement *judge, const char *method, const pacing *how,
-               double t_end)
+int study_init(order_study *study, const problem *scene, const judgement *judge, const char *method,
+               const pacing *how, double t_end)
 {
   memset(study, 0, sizeof *study);
   study->scene = scene;
@@ -58,7 +62,8 @@ int study_init(order_study *study, const problem *scene, const judgement *judge,
   study->t_end = t_end;
   const int code = open_paced(scene, method, how, &study->integrator);
   if (code != DONE) return code;
-  const dvi_status status = march_span(study->integrator, scene->q, scene->p, scene->order_h, t_end, &study->span);
+  const dvi_status status = march_span(study->integrator, scene->q, scene->p, scene->order_h, t_end,
+                                       &study->span);
   if (status != DVI_OK || isnan(study->span)) {
     study_clear(study);
     return status != DVI_OK ? library_error(status) : study_refuse(study);
@@ -74,11 +79,13 @@ void study_clear(order_study *study)
   dvi_integrator_destroy(&study->integrator);
 }
 
-dvi_status study_integrate(order_study *s, const double *q, const dvi_start_options *start, long steps)
+dvi_status study_integrate(order_study *s, const double *q, const dvi_start_options *start,
+                           long steps)
 {
   const dvi_status status = dvi_integrator_start_with(s->integrator, 0.0, q, s->scene->p, start);
   if (status != DVI_OK) return status;
-  return march(s->integrator, s->span / (double)steps, steps, s->t_end, NULL, NULL, s->progress, s->method);
+  return march(s->integrator, s->span / (double)steps, steps, s->t_end, NULL, NULL, s->progress,
+               s->method);
 }
 
 dvi_status study_run(order_study *study, long steps, level_trial *trial)
@@ -97,7 +104,8 @@ dvi_status study_run(order_study *study, long steps, level_trial *trial)
   trial->spent.jacobians -= before.jacobians;
   trial->spent.factorizations -= before.factorizations;
   trial->spent.gradients -= before.gradients;
-  if (dvi_integrator_chooses_steps(study->integrator)) trial->taken = trial->spent.steps - before.steps;
+  if (dvi_integrator_chooses_steps(study->integrator))
+    trial->taken = trial->spent.steps - before.steps;
   return DVI_OK;
 }
 
@@ -115,7 +123,8 @@ static int watch(dvi_integrator *integrator, void *user)
   if (dvi_integrator_invariants(integrator, w->value) != DVI_OK) return -1;
   if (isnan(w->first)) w->first = w->value[0];
   w->trial->energy_error = fmax(w->trial->energy_error, fabs(w->value[0] - w->first));
-  w->trial->distance = fmax(w->trial->distance, dvi_system_distance(w->system, dvi_integrator_q(integrator)));
+  w->trial->distance = fmax(w->trial->distance,
+                            dvi_system_distance(w->system, dvi_integrator_q(integrator)));
   return 0;
 }
 
@@ -123,12 +132,15 @@ dvi_status study_watch(order_study *study, level_trial *trial)
 {
   double *value = calloc((size_t)dvi_system_invariant_count(study->scene->system), sizeof *value);
   if (value == NULL) return DVI_NO_MEMORY;
-  watched w = {.system = study->scene->system, .value = value, .first = (double)NAN, .trial = trial};
+  watched w = {
+      .system = study->scene->system, .value = value, .first = (double)NAN, .trial = trial};
   trial->energy_error = trial->distance = 0.0;
   const double h = study->span / (double)trial->steps;
-  dvi_status status = dvi_integrator_start(study->integrator, 0.0, study->scene->q, study->scene->p);
+  dvi_status status = dvi_integrator_start(study->integrator, 0.0, study->scene->q,
+                                           study->scene->p);
   if (status == DVI_OK && watch(study->integrator, &w) != 0) status = DVI_NOT_FINITE;
-  if (status == DVI_OK) status = march(study->integrator, h, trial->steps, study->t_end, watch, &w, NULL, NULL);
+  if (status == DVI_OK)
+    status = march(study->integrator, h, trial->steps, study->t_end, watch, &w, NULL, NULL);
   free(value);
   return status;
 }

@@ -15,13 +15,14 @@ typedef struct order_study {
   const judgement *judge;
   const char *method; /**< its name in tables */
   double t_end;
-  double span;                /**< the sum of the steps: t_end, or what it is in the time of the steps */
+  double span; /**< the sum of the steps: t_end, or what it is in the time of the steps */
   dvi_integrator *integrator; /**< owned */
   progress_line *progress;    /**< shown while it runs; NULL: none */
   int order;                  /**< that the method claims */
-  double first_error;         /**< where the first level's error should lie, relative to study_size; 0: chosen by the order */
-  double ceiling;             /**< errors above this are too large to tell an order */
-  double floor;               /**< errors up to this belong to roundoff or to the judge */
+  double first_error; /**< where the first level's error should lie, relative to study_size; 0:
+                         chosen by the order */
+  double ceiling;     /**< errors above this are too large to tell an order */
+  double floor;       /**< errors up to this belong to roundoff or to the judge */
 } order_study;
 
 /** What came out at one step size. */
@@ -36,9 +37,10 @@ typedef struct level_trial {
   dvi_counters spent;  /**< by one run without diagnostics */
 } level_trial;
 
-/** Begin a study of a method, whose steps may follow a monitor. Returns DONE, or complains and returns the exit code. */
-int study_init(order_study *study, const problem *scene, const judgement *judge, const char *method, const pacing *how,
-               double t_end);
+/** Begin a study of a method, whose steps may follow a monitor. Returns DONE, or complains and
+ * returns the exit code. */
+int study_init(order_study *study, const problem *scene, const judgement *judge, const char *method,
+               const pacing *how, double t_end);
 
 /** Complain that the monitor leads nowhere, and return FAILED. */
 int study_refuse(const order_study *study);
@@ -55,12 +57,14 @@ dvi_status study_watch(order_study *study, level_trial *trial);
 dvi_status study_time(order_study *study, level_trial *trial);
 
 /** Integrate from q [n] and the problem's momenta with so many equal steps; `start` may be NULL. */
-dvi_status study_integrate(order_study *study, const double *q, const dvi_start_options *start, long steps);
+dvi_status study_integrate(order_study *study, const double *q, const dvi_start_options *start,
+                           long steps);
 
 /** Size of the solution at the end, in the maximum norm; 1 if it is 0. */
 double study_size(const order_study *study);
 
-/** How often something that takes so many seconds is to be run in one measurement, so that the clock can tell. */
+/** How often something that takes so many seconds is to be run in one measurement, so that the
+ * clock can tell. */
 long study_repeats(double seconds);
 
 /** Process time in seconds. */

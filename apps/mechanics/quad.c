@@ -47,11 +47,14 @@ bool quad_invert(int n, quad *A, quad *inverse)
     const int pivot = pivot_row(n, A, c);
     const quad divisor = A[pivot * n + c];
     if (!(fabs((double)divisor) > 0.0)) return false;
-    if (pivot != c) exchange(n, A + c * n, A + pivot * n), exchange(n, inverse + c * n, inverse + pivot * n);
+    if (pivot != c)
+      exchange(n, A + c * n, A + pivot * n), exchange(n, inverse + c * n, inverse + pivot * n);
     for (int j = 0; j < n; j++) A[c * n + j] /= divisor, inverse[c * n + j] /= divisor;
     for (int i = 0; i < n; i++) {
       const quad factor = A[i * n + c];
-      if (i != c) subtract(n, factor, A + c * n, A + i * n), subtract(n, factor, inverse + c * n, inverse + i * n);
+      if (i != c)
+        subtract(n, factor, A + c * n, A + i * n),
+            subtract(n, factor, inverse + c * n, inverse + i * n);
     }
   }
   return true;

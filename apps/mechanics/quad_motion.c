@@ -37,12 +37,14 @@ static dvi_pair parted(quad x)
   return (dvi_pair){high, (double)(x - (quad)high)};
 }
 
-bool quad_motion_gradient(quad_motion *motion, quad t, const quad *q, const quad *v, quad *L_q, quad *L_v)
+bool quad_motion_gradient(quad_motion *motion, quad t, const quad *q, const quad *v, quad *L_q,
+                          quad *L_v)
 {
   const int n = motion->n;
   dvi_pair *at = motion->pair, *L = at + 2 * n;
   for (int i = 0; i < n; i++) at[i] = parted(q[i]), at[n + i] = parted(v[i]);
-  if (dvi_scene_quad_gradient(motion->scene, parted(t), at, at + n, L, L + n) != DVI_OK) return false;
+  if (dvi_scene_quad_gradient(motion->scene, parted(t), at, at + n, L, L + n) != DVI_OK)
+    return false;
   for (int i = 0; i < n; i++) {
     L_q[i] = (quad)L[i].high + (quad)L[i].low;
     L_v[i] = (quad)L[n + i].high + (quad)L[n + i].low;
@@ -53,7 +55,8 @@ bool quad_motion_gradient(quad_motion *motion, quad t, const quad *q, const quad
 bool quad_motion_settle(quad_motion *motion, quad t, const quad *q, const quad *v)
 {
   const int n = motion->n;
-  quad *mass = motion->inverse + n * n, *moved = motion->room, *L_q = moved + n, *here = L_q + n, *there = here + n;
+  quad *mass = motion->inverse + n * n, *moved = motion->room, *L_q = moved + n, *here = L_q + n,
+       *there = here + n;
   const quad step = (quad)(difference * fmax(quad_largest(n, v), 1.0));
   if (!quad_motion_gradient(motion, t, q, v, L_q, here)) return false;
   for (int j = 0; j < n; j++) {
@@ -92,7 +95,8 @@ static void update(quad_motion *motion, const quad *s, const quad *w, quad *row)
 }
 
 /* Broyden's method. L_q [n] belongs to the velocity before the last change, of a rounding. */
-static bool solve_velocity(quad_motion *motion, quad t, const quad *q, const quad *p, quad *v, quad *L_q)
+static bool solve_velocity(quad_motion *motion, quad t, const quad *q, const quad *p, quad *v,
+                           quad *L_q)
 {
   const int n = motion->n;
   quad *rest = motion->room, *change = rest + n, *before = change + n, *row = before + n;
@@ -116,7 +120,8 @@ static bool solve_velocity(quad_motion *motion, quad t, const quad *q, const qua
 
 static void track(quad_motion *motion)
 {
-  memcpy(motion->tracked, motion->inverse, (size_t)(motion->n * motion->n) * sizeof *motion->inverse);
+  memcpy(motion->tracked, motion->inverse,
+         (size_t)(motion->n * motion->n) * sizeof *motion->inverse);
 }
 
 bool quad_motion_velocity(quad_motion *motion, quad t, const quad *q, const quad *p, quad *v)
@@ -139,7 +144,8 @@ static bool rate_at(quad_motion *motion, quad t, const quad *z, flow *f)
 }
 
 /* z at t + span by `steps` steps of the midpoint rule, an even number, into `to`. */
-static bool leap(quad_motion *motion, quad t, quad span, int steps, const quad *z, flow *f, quad *to)
+static bool leap(quad_motion *motion, quad t, quad span, int steps, const quad *z, flow *f,
+                 quad *to)
 {
   const int size = 2 * motion->n;
   const quad h = span / steps;
@@ -167,7 +173,8 @@ static bool extrapolate(quad_motion *motion, quad t, quad span, flow *f, quad *z
     for (int j = k - 1; j >= 0; j--) {
       const quad ratio = (quad)((k + 1) * (k + 1)) / ((j + 1) * (j + 1));
       quad *lower = f->column + j * size;
-      for (int i = 0; i < size; i++) lower[i] = lower[i + size] + (lower[i + size] - lower[i]) / (ratio - 1);
+      for (int i = 0; i < size; i++)
+        lower[i] = lower[i + size] + (lower[i + size] - lower[i]) / (ratio - 1);
     }
   }
   memcpy(z, f->column, (size_t)size * sizeof *z);
@@ -177,7 +184,8 @@ static bool extrapolate(quad_motion *motion, quad t, quad span, flow *f, quad *z
 double quad_motion_distance(const quad_motion *motion, const quad *z, const quad *other)
 {
   const int n = motion->n;
-  return hypot(quad_distance(n, z, other) / motion->q_size, quad_distance(n, z + n, other + n) / motion->p_size);
+  return hypot(quad_distance(n, z, other) / motion->q_size,
+               quad_distance(n, z + n, other + n) / motion->p_size);
 }
 
 bool quad_motion_flow(quad_motion *motion, quad t, quad span, const quad *v, quad *z, double *error)

@@ -4,9 +4,9 @@
  *     sum_j b_j ( h (I_k - I_k(1)) L_q + P_k L_v )_j = I_k(1) p0,
  *     q1 = q0 + h Y_0,   p1 = p0 + h sum_j b_j L_q_j
  *
- * (Marsden and West 2001, sec. 2.2.6), with I_k(1) = 0 but for k = 0. Solved by fixed point iteration
- * with the inverse of K (x) M, K_kl = sum_j b_j P_k P_l: whatever the basis of the library's own path,
- * polynomials of that degree are the same space. */
+ * (Marsden and West 2001, sec. 2.2.6), with I_k(1) = 0 but for k = 0. Solved by fixed point
+ * iteration with the inverse of K (x) M, K_kl = sum_j b_j P_k P_l: whatever the basis of the
+ * library's own path, polynomials of that degree are the same space. */
 #include "mechanics/quad_step.h"
 
 #include <dvi/dvi.h>
@@ -17,7 +17,8 @@
 
 #ifdef QUAD_EXISTS
 enum { NODES_MAX = 16, DEGREE_MAX = NODES_MAX, ITERATIONS = 400, NEWTON_STEPS = 6 };
-static const double noise = 1e-28; /* changes below this end the iteration once they shrink no more */
+static const double noise =
+    1e-28; /* changes below this end the iteration once they shrink no more */
 
 struct quad_step {
   int n, degree, nodes;
@@ -63,8 +64,10 @@ static bool place_nodes(quad_step *s, const rule *by)
     quad x = 2 * (quad)node[j] - 1;
     for (int i = 0; i < NEWTON_STEPS; i++) {
       legendre(r, x, value, slope);
-      const quad two = r > 1 ? by->two * value[r - 2] : 0, two_slope = r > 1 ? by->two * slope[r - 2] : 0;
-      x -= (value[r] + by->one * value[r - 1] + two) / (slope[r] + by->one * slope[r - 1] + two_slope);
+      const quad two = r > 1 ? by->two * value[r - 2] : 0,
+                 two_slope = r > 1 ? by->two * slope[r - 2] : 0;
+      x -= (value[r] + by->one * value[r - 1] + two) /
+           (slope[r] + by->one * slope[r - 1] + two_slope);
     }
     s->node[j] = (1 + x) / 2;
   }
@@ -75,7 +78,8 @@ static bool place_nodes(quad_step *s, const rule *by)
 static bool weigh_nodes(quad_step *s)
 {
   const int r = s->nodes;
-  quad A[NODES_MAX * NODES_MAX], inverse[NODES_MAX * NODES_MAX], value[NODES_MAX + 2], slope[NODES_MAX + 2];
+  quad A[NODES_MAX * NODES_MAX], inverse[NODES_MAX * NODES_MAX], value[NODES_MAX + 2],
+      slope[NODES_MAX + 2];
   for (int j = 0; j < r; j++) {
     legendre(r, 2 * s->node[j] - 1, value, slope);
     for (int k = 0; k < r; k++) A[k * r + j] = value[k];
@@ -95,7 +99,8 @@ static bool tabulate(quad_step *s)
       s->I[k][j] = k == 0 ? s->node[j] : (value[k + 1] - value[k - 1]) / (2 * (2 * k + 1));
     }
     for (int k = 0; k < s->degree; k++)
-      for (int l = 0; l < s->degree; l++) K[k * s->degree + l] += s->weight[j] * value[k] * value[l];
+      for (int l = 0; l < s->degree; l++)
+        K[k * s->degree + l] += s->weight[j] * value[k] * value[l];
   }
   return quad_invert(s->degree, K, s->inverse);
 }
@@ -104,8 +109,10 @@ static const rule *read_method(const char *method, int *degree, int *nodes)
 {
   char name[32];
   int numbers = 0;
-  const char *const degrees = strstr(method, "galerkin:degree="), *const points = strstr(method, ",nodes=");
-  if (degrees != method || points == NULL || sscanf(method, "%*[^,],basis=%*[^,],quadrature=%31[^,],nodes=%n", name, &numbers) != 1)
+  const char *const degrees = strstr(method, "galerkin:degree="), *const points = strstr(method,
+                                                                                         ",nodes=");
+  if (degrees != method || points == NULL ||
+      sscanf(method, "%*[^,],basis=%*[^,],quadrature=%31[^,],nodes=%n", name, &numbers) != 1)
     return NULL;
   *degree = (int)strtol(method + strlen("galerkin:degree="), NULL, 10);
   *nodes = (int)strtol(points + strlen(",nodes="), NULL, 10);
@@ -140,7 +147,8 @@ quad_step *quad_step_create(const char *method, int n)
   s->n = n;
   s->degree = degree;
   s->nodes = nodes;
-  if (!make_room(s) || !place_nodes(s, by) || !weigh_nodes(s) || !tabulate(s)) quad_step_destroy(&s);
+  if (!make_room(s) || !place_nodes(s, by) || !weigh_nodes(s) || !tabulate(s))
+    quad_step_destroy(&s);
   return s;
 }
 
@@ -186,7 +194,8 @@ static double correct(quad_step *s, const quad_motion *motion)
   for (int k = 0; k < s->degree; k++)
     for (int i = 0; i < n; i++) {
       quad change = 0;
-      for (int l = 0; l < s->degree; l++) change += s->inverse[k * s->degree + l] * s->row[l * n + i];
+      for (int l = 0; l < s->degree; l++)
+        change += s->inverse[k * s->degree + l] * s->row[l * n + i];
       s->Y[k * n + i] -= change;
       most = isnan((double)change) ? HUGE_VAL : fmax(most, fabs((double)change));
     }

@@ -1,10 +1,11 @@
-/* A step's equations are solved in quadruple precision (quad_step.c), and compared with the solution
- * (quad_motion.c). The proof has two halves, for the program in quadruple precision is not the
- * library: the errors have the order, and at the largest step, where doubles still show the error,
- * the library's step is that one.
+/* A step's equations are solved in quadruple precision (quad_step.c), and compared with the
+ * solution (quad_motion.c). The proof has two halves, for the program in quadruple precision is not
+ * the library: the errors have the order, and at the largest step, where doubles still show the
+ * error, the library's step is that one.
  *
  * Steps are centred: from -h/2 to h/2 about a fixed time the error of a symmetric method is
- * h^(p+1) times a series in h^2, and falls into its leading term twice as fast as from a fixed start. */
+ * h^(p+1) times a series in h^2, and falls into its leading term twice as fast as from a fixed
+ * start. */
 #include "mechanics/single_steps.h"
 
 #include <dvi/scene.h>
@@ -18,10 +19,13 @@
 
 #ifdef QUAD_EXISTS
 enum { SEARCH_TRIES = 60, N_MAX = 64 };
-static const double common_error = 1e-10; /* of the steps that are compared with the library's: above its roundings */
-static const double first_error = 1e-18, last_error = 1e-28; /* of the levels: to 100 roundings of the judge */
-static const double guide_method_steps = 4.0;                /* of the run to the points, for one of the problem's */
-static const double sameness = 0.01;                         /* of the first error: how far the library's step may be off */
+static const double common_error =
+    1e-10; /* of the steps that are compared with the library's: above its roundings */
+static const double first_error = 1e-18,
+                    last_error = 1e-28; /* of the levels: to 100 roundings of the judge */
+static const double guide_method_steps =
+    4.0;                             /* of the run to the points, for one of the problem's */
+static const double sameness = 0.01; /* of the first error: how far the library's step may be off */
 
 /* A point of the motion. */
 typedef struct centre {
@@ -49,7 +53,8 @@ static const dvi_scene *expressions_of(study *s, const words *settings)
   if (s->scene->scene != NULL) return s->scene->scene;
   for (const catalogue_text *at = catalogue_texts; at->name != NULL; at++)
     if (strcmp(at->name, s->scene->name) == 0 &&
-        dvi_scene_parse(at->name, at->text, at->length, settings->count, settings->word, &s->read, NULL, 0) != DVI_OK)
+        dvi_scene_parse(at->name, at->text, at->length, settings->count, settings->word, &s->read,
+                        NULL, 0) != DVI_OK)
       return NULL;
   return s->read;
 }
@@ -67,7 +72,8 @@ static dvi_status place_centres(study *s, double t_end)
     c->t = (k + 0.5) * each;
     const double way = c->t - dvi_integrator_time(guide);
     const long steps = lround(ceil(guide_method_steps * fabs(way) / s->scene->order_h));
-    for (long i = 0; i < steps && status == DVI_OK; i++) status = dvi_integrator_step(guide, way / (double)steps);
+    for (long i = 0; i < steps && status == DVI_OK; i++)
+      status = dvi_integrator_step(guide, way / (double)steps);
     c->z = s->room + 3 * n * k;
     c->v = c->z + 2 * n;
     for (int i = 0; i < n; i++) {
@@ -93,7 +99,8 @@ static void measure_sizes(study *s)
   s->motion.p_size = p > 0.0 ? p : 1.0;
 }
 
-/* Find the mass and the velocity at a centre: once with the velocity of the start, once with its own. */
+/* Find the mass and the velocity at a centre: once with the velocity of the start, once with its
+ * own. */
 static bool settle(study *s, const centre *c)
 {
   const int n = s->scene->nq;
@@ -106,7 +113,8 @@ static bool settle(study *s, const centre *c)
 
 /* The error of the step of h about a centre; `start` [2 n]: where it begins. *judge_error: what is
  * wanted, then what it is. */
-static bool step_error(study *s, const centre *c, double h, quad *start, double *error, double *judge_error)
+static bool step_error(study *s, const centre *c, double h, quad *start, double *error,
+                       double *judge_error)
 {
   const size_t n = (size_t)s->scene->nq;
   quad *end = start + 2 * n, *step = end + 2 * n;
@@ -144,8 +152,8 @@ static bool error_at(study *s, double h, double foreseen, double *error, double 
   return isfinite(*error);
 }
 
-/* Search for the step that is compared with the library's; 0: there is none. The claimed order is but
- * a guess of how errors fall. */
+/* Search for the step that is compared with the library's; 0: there is none. The claimed order is
+ * but a guess of how errors fall. */
 static double find_common(study *s, double *of_common)
 {
   double h = copysign(s->scene->order_h, s->centre[0].t), error = 0.0, judge_error = 0.0;
@@ -160,7 +168,8 @@ static double find_common(study *s, double *of_common)
   return 0.0;
 }
 
-/* How far the library's step from a centre is from that in quadruple precision, from the same doubles. */
+/* How far the library's step from a centre is from that in quadruple precision, from the same
+ * doubles. */
 static bool compare(study *s, const centre *c, double h, double *apart)
 {
   const int n = s->scene->nq;
@@ -170,7 +179,9 @@ static bool compare(study *s, const centre *c, double h, double *apart)
   if (!step_error(s, c, h, start, &error, &judge_error)) return false;
   for (int i = 0; i < 2 * n; i++) z[i] = (double)start[i], start[i] = (quad)z[i];
   if (!quad_step_take(s->step, &s->motion, (quad)t, (quad)h, c->v, start)) return false;
-  if (dvi_integrator_start(s->integrator, t, z, z + n) != DVI_OK || dvi_integrator_step(s->integrator, h) != DVI_OK) return false;
+  if (dvi_integrator_start(s->integrator, t, z, z + n) != DVI_OK ||
+      dvi_integrator_step(s->integrator, h) != DVI_OK)
+    return false;
   for (int i = 0; i < n; i++) {
     mine[i] = (quad)dvi_integrator_q(s->integrator)[i];
     mine[n + i] = (quad)dvi_integrator_p(s->integrator)[i];
@@ -184,17 +195,23 @@ static const char *measure_levels(study *s, single_steps *found)
   double of_unit[SINGLE_LEVELS]; /* the error of a step over its length: its slope is the order */
   double of_common = 0.0;
   measure_sizes(s);
-  const double common = find_common(s, &of_common), fall = pow(last_error / first_error, 1.0 / (SINGLE_LEVELS - 1));
-  if (!(fabs(common) > 0.0)) return "no step was found that can be solved and has an error near 1e-10";
+  const double common = find_common(s, &of_common),
+               fall = pow(last_error / first_error, 1.0 / (SINGLE_LEVELS - 1));
+  if (!(fabs(common) > 0.0))
+    return "no step was found that can be solved and has an error near 1e-10";
   for (int k = 0; k < SINGLE_LEVELS; k++) {
-    const double foreseen = first_error * pow(fall, k), h = common * pow(foreseen / of_common, 1.0 / (s->order + 1.0));
-    if (!error_at(s, h, foreseen, &found->error[k], &found->judge_error)) return "their equations could not be solved";
+    const double foreseen = first_error * pow(fall, k),
+                 h = common * pow(foreseen / of_common, 1.0 / (s->order + 1.0));
+    if (!error_at(s, h, foreseen, &found->error[k], &found->judge_error))
+      return "their equations could not be solved";
     found->h[k] = fabs(h);
     of_unit[k] = found->error[k] / found->h[k];
   }
   for (int k = 0; k < SINGLE_POINTS; k++)
-    if (!compare(s, &s->centre[k], common, &found->apart)) return "the library's own step of that length fails";
-  if (!(found->apart <= sameness * of_common)) return "the library's own steps are not those in quadruple precision";
+    if (!compare(s, &s->centre[k], common, &found->apart))
+      return "the library's own step of that length fails";
+  if (!(found->apart <= sameness * of_common))
+    return "the library's own steps are not those in quadruple precision";
   found->common_error = of_common;
   found->common_h = fabs(common);
   const double floor = 10.0 * found->judge_error / found->h[SINGLE_LEVELS - 1];
@@ -205,23 +222,29 @@ static const char *measure_levels(study *s, single_steps *found)
 static dvi_status prepare(study *s, const words *settings, double t_end, single_steps *found)
 {
   const size_t n = (size_t)s->scene->nq;
-  const dvi_scene *expressions = s->scene->velocity == NULL && n <= N_MAX ? expressions_of(s, settings) : NULL;
+  const dvi_scene *expressions = s->scene->velocity == NULL && n <= N_MAX
+                                     ? expressions_of(s, settings)
+                                     : NULL;
   dvi_status status = dvi_integrator_create(s->scene->system, s->method, &s->integrator);
   if (status != DVI_OK) return status;
   s->order = dvi_integrator_order(s->integrator);
   s->step = quad_step_create(dvi_integrator_method(s->integrator), (int)n);
-  if (s->step == NULL) found->missing = "they are there for galerkin with Gauss, Lobatto and Radau quadratures of up to 16 points";
+  if (s->step == NULL)
+    found->missing =
+        "they are there for galerkin with Gauss, Lobatto and Radau quadratures of up to 16 points";
   if (s->step != NULL && expressions == NULL)
-    found->missing = "they are there for Lagrangians of R^n with expressions, of up to 64 coordinates";
+    found->missing =
+        "they are there for Lagrangians of R^n with expressions, of up to 64 coordinates";
   if (found->missing != NULL) return DVI_OK;
   s->room = calloc(3 * n * SINGLE_POINTS + 6 * n, sizeof *s->room);
   s->state = calloc(2 * n, sizeof *s->state);
-  if (s->room == NULL || s->state == NULL || !quad_motion_init(&s->motion, expressions, (int)n)) return DVI_NO_MEMORY;
+  if (s->room == NULL || s->state == NULL || !quad_motion_init(&s->motion, expressions, (int)n))
+    return DVI_NO_MEMORY;
   return place_centres(s, t_end);
 }
 
-dvi_status single_steps_measure(const problem *scene, const words *settings, const char *method, double t_end,
-                                progress_line *progress, single_steps *found)
+dvi_status single_steps_measure(const problem *scene, const words *settings, const char *method,
+                                double t_end, progress_line *progress, single_steps *found)
 {
   study s = {.scene = scene, .method = method, .progress = progress};
   *found = (single_steps){.asked = true};
@@ -236,11 +259,12 @@ dvi_status single_steps_measure(const problem *scene, const words *settings, con
   return status;
 }
 #else
-dvi_status single_steps_measure(const problem *scene, const words *settings, const char *method, double t_end,
-                                progress_line *progress, single_steps *found)
+dvi_status single_steps_measure(const problem *scene, const words *settings, const char *method,
+                                double t_end, progress_line *progress, single_steps *found)
 {
   (void)scene, (void)settings, (void)method, (void)t_end, (void)progress;
-  *found = (single_steps){.asked = true, .missing = "there is no arithmetic of 113 bits on this machine"};
+  *found = (single_steps){.asked = true,
+                          .missing = "there is no arithmetic of 113 bits on this machine"};
   return DVI_OK;
 }
 #endif

@@ -8,21 +8,23 @@
 enum { FIRST_SHOWN = 3 };
 
 static const table_column columns[] = {
-    {"asked_error", "%.3e"},    {"problem", NULL},           {"judged", NULL},          {"integrator", NULL},
-    {"cpu_seconds", "%.3e"},    {"ratio", "%.2f"},           {"evaluations", "%.0f"},   {"answer", NULL},
-    {"create_seconds", "%.3e"}, {"calibration_seconds", ""}, {"calibration_least", ""}, {NULL, NULL},
+    {"asked_error", "%.3e"},     {"problem", NULL},         {"judged", NULL},
+    {"integrator", NULL},        {"cpu_seconds", "%.3e"},   {"ratio", "%.2f"},
+    {"evaluations", "%.0f"},     {"answer", NULL},          {"create_seconds", "%.3e"},
+    {"calibration_seconds", ""}, {"calibration_least", ""}, {NULL, NULL},
 };
 
-static const char *const answers[] = {
-    [FRONTIER_NOT_REACHED] = "not reached", [FRONTIER_BETWEEN] = "interpolated", [FRONTIER_AT_MOST] = "at most"};
+static const char *const answers[] = {[FRONTIER_NOT_REACHED] = "not reached",
+                                      [FRONTIER_BETWEEN] = "interpolated",
+                                      [FRONTIER_AT_MOST] = "at most"};
 
 typedef struct price {
   double seconds, creation, evaluations;
   frontier_answer answer;
 } price;
 
-/* Time and evaluations have a frontier each: what a method evaluates shall not depend on the clock. Its creation takes as
- * long for any step. */
+/* Time and evaluations have a frontier each: what a method evaluates shall not depend on the clock.
+ * Its creation takes as long for any step. */
 static price price_at(const bench_results *results, int first, double asked)
 {
   enum { SETTINGS_MAX = 64 }; /* no integrator has as many */
@@ -34,14 +36,16 @@ static price price_at(const bench_results *results, int first, double asked)
   int count = 0;
   for (int i = first; i < bench_group_end(results, first) && count < SETTINGS_MAX; i++, count++) {
     const bench_job *job = &results->job[i];
-    error[count] = fmax(job->error, results->judge->error); /* more than the judge knows is not credited */
+    error[count] = fmax(job->error,
+                        results->judge->error); /* more than the judge knows is not credited */
     seconds[count] = job->seconds.median;
     evaluations[count] = (double)job->evaluations;
     creation[count] = job->creation_seconds;
   }
   found.answer = frontier_cost(count, error, seconds, asked, &found.seconds);
   (void)frontier_cost(count, error, evaluations, asked, &found.evaluations);
-  found.creation = found.answer == FRONTIER_NOT_REACHED ? (double)NAN : samples_spread(count, creation).median;
+  found.creation = found.answer == FRONTIER_NOT_REACHED ? (double)NAN
+                                                        : samples_spread(count, creation).median;
   return found;
 }
 
@@ -55,7 +59,8 @@ static double fastest(const bench_results *results, double asked)
 {
   double least = (double)NAN;
   for (int first = 0; first < results->jobs; first = bench_group_end(results, first))
-    least = fmin(least, price_at(results, first, asked).seconds); /* of a number and a NaN the number */
+    least = fmin(least,
+                 price_at(results, first, asked).seconds); /* of a number and a NaN the number */
   return least;
 }
 
@@ -85,12 +90,15 @@ result_table *asked_table(const bench_results *results, const numbers *asked)
   return rows;
 }
 
-void asked_print(const bench_results *results, const numbers *asked, const result_table *rows, FILE *stream)
+void asked_print(const bench_results *results, const numbers *asked, const result_table *rows,
+                 FILE *stream)
 {
   const int integrators = table_rows(rows) / asked->count;
   for (int k = 0; k < asked->count; k++) {
     (void)fprintf(stream, "At an error of %s%s\n", asked->text[k],
-                  can_be_judged(results, asked->number[k]) ? "" : ": less than ten times the judge's own error, not to be trusted");
+                  can_be_judged(results, asked->number[k])
+                      ? ""
+                      : ": less than ten times the judge's own error, not to be trusted");
     table_print(rows, stream, FIRST_SHOWN, k * integrators, (k + 1) * integrators);
     (void)fputc('\n', stream);
   }

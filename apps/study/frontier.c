@@ -11,7 +11,8 @@ static bool usable(double x)
 /* Whether point j makes point i superfluous. Equal points both stay, and do no harm. */
 static bool beats(const double *error, const double *cost, int j, int i)
 {
-  if (!usable(error[j]) || !usable(cost[j]) || error[j] > error[i] || cost[j] > cost[i]) return false;
+  if (!usable(error[j]) || !usable(cost[j]) || error[j] > error[i] || cost[j] > cost[i])
+    return false;
   return error[j] < error[i] || cost[j] < cost[i];
 }
 
@@ -23,7 +24,8 @@ static bool on_curve(int count, const double *error, const double *cost, int i)
   return true;
 }
 
-frontier_answer frontier_cost(int count, const double *error, const double *cost, double asked, double *least)
+frontier_answer frontier_cost(int count, const double *error, const double *cost, double asked,
+                              double *least)
 {
   int below = -1; /* the largest error that does not exceed the asked one */
   int above = -1; /* the smallest error that does */

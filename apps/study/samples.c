@@ -54,5 +54,7 @@ double samples_power(int count, const double *x, const double *y)
     product += away * (log(y[i]) - mean_y);
     widest = fmax(widest, fabs(away));
   }
-  return widest > 1e-12 * fmax(1.0, fabs(mean_x)) ? product / square : (double)NAN; /* below: roundoff of one and the same x */
+  return widest > 1e-12 * fmax(1.0, fabs(mean_x))
+             ? product / square
+             : (double)NAN; /* below: roundoff of one and the same x */
 }

@@ -20,7 +20,8 @@ bool trust_falls(double ratio)
 
 double trust_error(double first, double second, double third, double ratio)
 {
-  const double coarse = fabs(first - second), fine = fabs(second - third), whole = fabs(first - third);
+  const double coarse = fabs(first - second), fine = fabs(second - third),
+               whole = fabs(first - third);
   if (!trust_falls(ratio)) return 4.0 * fmax(whole, fmax(coarse, fine));
   return whole + ratio / (1.0 - ratio) * fmax(fine, ratio * coarse);
 }
@@ -34,5 +35,6 @@ double trust_size(double size, double of_all)
 int trust_digits(double error, double size)
 {
   if (!(error < size)) return error > 0.0 || isnan(error) ? 0 : TRUST_DIGITS_MOST;
-  return error > 0.0 ? (int)fmin(floor(-log10(error / size)), TRUST_DIGITS_MOST) : TRUST_DIGITS_MOST;
+  return error > 0.0 ? (int)fmin(floor(-log10(error / size)), TRUST_DIGITS_MOST)
+                     : TRUST_DIGITS_MOST;
 }

@@ -24,7 +24,9 @@ const table_column bench_columns[] = {
 int bench_group_end(const bench_results *results, int first)
 {
   int end = first;
-  while (end < results->jobs && strcmp(results->job[end].integrator, results->job[first].integrator) == 0) end++;
+  while (end < results->jobs &&
+         strcmp(results->job[end].integrator, results->job[first].integrator) == 0)
+    end++;
   return end;
 }
 
@@ -53,7 +55,9 @@ static result_table *make_table(const bench_results *results)
 static bool has_sundials(const bench_results *results)
 {
   for (int i = 0; i < results->jobs; i++)
-    if (results->job[i].peer >= 0 && dvi_reference_name((dvi_reference_code)results->job[i].peer) != NULL) return true;
+    if (results->job[i].peer >= 0 &&
+        dvi_reference_name((dvi_reference_code)results->job[i].peer) != NULL)
+      return true;
   return false;
 }
 
@@ -67,16 +71,23 @@ static void print_head(FILE *stream, const bench_results *results)
 
 static void print_notes(FILE *stream, const bench_results *results)
 {
-  (void)fprintf(stream, "judge at t = %g: %s, error %.1e\n", results->t_end, results->judge->words, results->judge->error);
+  (void)fprintf(stream, "judge at t = %g: %s, error %.1e\n", results->t_end, results->judge->words,
+                results->judge->error);
   (void)fprintf(stream,
-                "cpu_seconds: process time of a whole job, median of %ld interleaved rounds; cpu_lower, cpu_upper: quartiles\n",
+                "cpu_seconds: process time of a whole job, median of %ld interleaved rounds; "
+                "cpu_lower, cpu_upper: quartiles\n",
                 results->rounds);
-  (void)fprintf(stream, "create_seconds: its part that creates the integrator; of peers not known\n");
-  (void)fprintf(stream, "energy_error: methods: largest over the run; peers: largest of %d times\n", (int)ENERGY_TIMES);
+  (void)fprintf(stream,
+                "create_seconds: its part that creates the integrator; of peers not known\n");
+  (void)fprintf(stream, "energy_error: methods: largest over the run; peers: largest of %d times\n",
+                (int)ENERGY_TIMES);
   if (!has_sundials(results)) return;
-  (void)fprintf(stream, "SUNDIALS %s. Caution: Debian's packages of SUNDIALS are built without optimisation; its codes linked\n",
+  (void)fprintf(stream,
+                "SUNDIALS %s. Caution: Debian's packages of SUNDIALS are built without "
+                "optimisation; its codes linked\n",
                 dvi_reference_version());
-  (void)fprintf(stream, "from them are several times slower than they can be. Say which build a ratio was measured against.\n");
+  (void)fprintf(stream, "from them are several times slower than they can be. Say which build a "
+                        "ratio was measured against.\n");
 }
 
 static void print_table(FILE *stream, const bench_results *results, const result_table *rows)
@@ -88,7 +99,8 @@ static void print_table(FILE *stream, const bench_results *results, const result
   (void)fputc('\n', stream);
 }
 
-static bool plot_jobs(const bench_results *results, const result_table *rows, const plot_axes *axes, const char *path)
+static bool plot_jobs(const bench_results *results, const result_table *rows, const plot_axes *axes,
+                      const char *path)
 {
   char subject[SUBJECT_SIZE];
   (void)snprintf(subject, sizeof subject, "%s, to t = %g", results->scene->name, results->t_end);
@@ -105,7 +117,8 @@ static bool report_asked(FILE *stream, const bench_results *results, const bench
   if (outputs->asked.count == 0) return true;
   result_table *rows = asked_table(results, &outputs->asked);
   bool good = table_good(rows);
-  if (good && !on_standard_output(outputs->at_csv)) asked_print(results, &outputs->asked, rows, stream);
+  if (good && !on_standard_output(outputs->at_csv))
+    asked_print(results, &outputs->asked, rows, stream);
   if (good && outputs->at_csv != NULL) good = table_write(rows, outputs->at_csv);
   table_destroy(&rows);
   return good;
@@ -113,7 +126,8 @@ static bool report_asked(FILE *stream, const bench_results *results, const bench
 
 int bench_report(const bench_results *results, const bench_outputs *outputs)
 {
-  FILE *report = on_standard_output(outputs->csv) || on_standard_output(outputs->at_csv) ? stderr : stdout;
+  FILE *report = on_standard_output(outputs->csv) || on_standard_output(outputs->at_csv) ? stderr
+                                                                                         : stdout;
   result_table *rows = make_table(results);
   bool good = table_good(rows);
   print_head(report, results);

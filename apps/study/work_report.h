@@ -15,7 +15,8 @@ typedef struct bench_results {
   bool one_point; /**< callbacks of the one-point shape */
   long rounds;
   int jobs;
-  bench_job *job;     /**< [jobs] in the order of the table: all settings of one integrator, then of the next */
+  bench_job *job; /**< [jobs] in the order of the table: all settings of one integrator, then of the
+                     next */
   spread calibration; /**< machine_multiplications, once a round */
 } bench_results;
 
