@@ -5,21 +5,24 @@
 #include <string.h>
 
 #include "cli/command.h"
-#include "study/march.h"
+#include "mechanics/march.h"
 #include "load/open.h"
 #include "bench/peer.h"
-#include "study/study.h"
+#include "mechanics/order_study.h"
 
 /* Adds the time of creation to *creation. q: room for the end, [n], or NULL. */
-static dvi_status run_method(const bench_job *job, const problem *scene, double t_end, double *creation, double *q,
-                             long *evaluations, long *taken)
+static dvi_status run_method(const bench_job *job, const problem *scene, double t_end,
+                             double *creation, double *q, long *evaluations, long *taken)
 {
   dvi_integrator *integrator = NULL;
   const double began = cpu_now();
-  dvi_status status = open_paced(scene, job->method, &job->how, &integrator) == DONE ? DVI_OK : DVI_BAD_OPTION;
+  dvi_status status = open_paced(scene, job->method, &job->how, &integrator) == DONE
+                          ? DVI_OK
+                          : DVI_BAD_OPTION;
   *creation += cpu_now() - began;
   if (status == DVI_OK) status = dvi_integrator_start(integrator, 0.0, scene->q, scene->p);
-  if (status == DVI_OK) status = march(integrator, job->h, job->steps, t_end, NULL, NULL, NULL, NULL);
+  if (status == DVI_OK)
+    status = march(integrator, job->h, job->steps, t_end, NULL, NULL, NULL, NULL);
   if (status == DVI_OK && q != NULL) {
     dvi_counters counters;
     dvi_integrator_counters(integrator, &counters);
@@ -31,7 +34,8 @@ static dvi_status run_method(const bench_job *job, const problem *scene, double 
   return status;
 }
 
-static dvi_status energy_change(const problem *scene, double t, const double *q, const double *p, double *change)
+static dvi_status energy_change(const problem *scene, double t, const double *q, const double *p,
+                                double *change)
 {
   double *value = calloc(2 * (size_t)dvi_system_invariant_count(scene->system), sizeof *value);
   if (value == NULL) return DVI_NO_MEMORY;
@@ -67,7 +71,8 @@ static dvi_status try_method(bench_job *job, const problem *scene, double t_end,
 {
   double creation = 0.0;
   const double began = cpu_now();
-  const dvi_status status = run_method(job, scene, t_end, &creation, q, &job->evaluations, &job->taken);
+  const dvi_status status = run_method(job, scene, t_end, &creation, q, &job->evaluations,
+                                       &job->taken);
   job->tried = cpu_now() - began;
   return status;
 }
@@ -76,7 +81,8 @@ dvi_status bench_job_try(bench_job *job, const problem *scene, const judgement *
 {
   double *q = calloc(2 * (size_t)scene->nq, sizeof *q);
   if (q == NULL) return DVI_NO_MEMORY;
-  const dvi_status status = job->peer >= 0 ? try_peer(job, scene, t_end, q, q + scene->nq) : try_method(job, scene, t_end, q);
+  const dvi_status status = job->peer >= 0 ? try_peer(job, scene, t_end, q, q + scene->nq)
+                                           : try_method(job, scene, t_end, q);
   job->error = judge_error(judge, scene, q);
   job->repeats = study_repeats(job->tried);
   free(q);
@@ -91,8 +97,9 @@ dvi_status bench_job_time(bench_job *job, const problem *scene, double t_end, in
   double creation = job->peer >= 0 ? (double)NAN : 0.0; /* a peer is created and run in one call */
   const double began = cpu_now();
   for (long i = 0; i < job->repeats && status == DVI_OK; i++)
-    status = job->peer >= 0 ? peer_solve(job->peer, scene, t_end, job->tolerance, q, q + scene->nq, NULL)
-                            : run_method(job, scene, t_end, &creation, NULL, NULL, NULL);
+    status = job->peer >= 0
+                 ? peer_solve(job->peer, scene, t_end, job->tolerance, q, q + scene->nq, NULL)
+                 : run_method(job, scene, t_end, &creation, NULL, NULL, NULL);
   job->cpu[round] = (cpu_now() - began) / (double)job->repeats;
   job->creation[round] = creation / (double)job->repeats;
   free(q);

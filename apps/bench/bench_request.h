@@ -3,8 +3,8 @@
 #define BENCH_REQUEST_H
 #include <stdbool.h>
 
-#include "bench/bench_report.h"
-#include "study/judge.h"
+#include "study/work_report.h"
+#include "mechanics/judge.h"
 #include "cli/options.h"
 #include "bench/peer.h"
 

@@ -58,8 +58,8 @@ void complain_of(dvi_status status, const char *before, const char *after)
   char sentence[SENTENCE_SIZE];
   const char *said = status == DVI_NO_MEMORY ? "" : dvi_last_error(); /* the command's own shortage left none */
   (void)snprintf(sentence, sizeof sentence, "%s", said[0] != '\0' ? said : dvi_status_meaning(status));
-  if (dvi_scene_blame()[0] != '\0' && is_of_callback(status, sentence)) {
-    complain("%s", dvi_scene_blame());
+  if (dvi_scene_fault()[0] != '\0' && is_of_callback(status, sentence)) {
+    complain("%s", dvi_scene_fault());
     without_callback(sentence);
   }
   complain("%s%s%s", before, sentence, after);

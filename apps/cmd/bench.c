@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "bench/bench_job.h"
-#include "bench/bench_report.h"
+#include "study/work_report.h"
 #include "bench/bench_request.h"
 #include "cli/command.h"
 #include "csv/events.h"
@@ -14,9 +14,9 @@
 #include "bench/members.h"
 #include "load/open.h"
 #include "cli/progress.h"
-#include "bench/samples.h"
+#include "study/samples.h"
 #include "bench/scale.h"
-#include "study/study.h"
+#include "mechanics/order_study.h"
 
 enum { LEVELS_DEFAULT = 6 };
 

@@ -15,7 +15,7 @@
 #include "cli/outputs.h"
 #include "cli/progress.h"
 #include "load/scene.h"
-#include "study/study.h"
+#include "mechanics/order_study.h"
 #include "csv/table.h"
 #include "study/window.h"
 

@@ -15,7 +15,7 @@
 #include "watch/run_request.h"
 #include "load/scene.h"
 #include "cli/signals.h"
-#include "watch/trust.h"
+#include "study/trust.h"
 #include "watch/verify.h"
 #include "cli/way.h"
 

@@ -6,17 +6,20 @@
 #include <string.h>
 
 enum { SEARCH_TRIES = 40, ROOM_LEVELS = 6 };
-static const long search_max = 1L << 17; /* of one that is searched: the search shall end within seconds */
+static const long search_max =
+    1L << 17; /* of one that is searched: the search shall end within seconds */
 static const long finest_max = 1L << 22; /* of the last level after that one */
-static const double level_room = 1e5;    /* first error over the floor, at least: five decades for the levels */
+static const double level_room =
+    1e5; /* first error over the floor, at least: five decades for the levels */
 
 static double within(double x, double low, double high)
 {
   return fmin(fmax(x, low), high);
 }
 
-/* Where the first level's error should lie. A high order shows late, when the terms beyond the leading one have died out, but
- * passes its few levels in many digits; a low order needs steps without number to come near the floor. */
+/* Where the first level's error should lie. A high order shows late, when the terms beyond the
+ * leading one have died out, but passes its few levels in many digits; a low order needs steps
+ * without number to come near the floor. */
 static double first_target(const order_study *s)
 {
   if (s->first_error > 0.0) return s->first_error * study_size(s);
@@ -24,20 +27,25 @@ static double first_target(const order_study *s)
   return within(level_room * s->floor, pow(10.0, -digits) * study_size(s), 0.1 * s->ceiling);
 }
 
-/* The number of steps, strictly between too few and enough (0: not known), that the order foretells from one error. */
-static long next_guess(const order_study *s, long steps, double error, double target, long too_few, long enough)
+/* The number of steps, strictly between too few and enough (0: not known), that the order foretells
+ * from one error. */
+static long next_guess(const order_study *s, long steps, double error, double target, long too_few,
+                       long enough)
 {
-  const double factor = isfinite(error) ? within(pow(error / target, 1.0 / s->order), 0.25, 4.0) : 2.0;
+  const double factor = isfinite(error) ? within(pow(error / target, 1.0 / s->order), 0.25, 4.0)
+                                        : 2.0;
   const double high = enough > 0 ? (double)enough - 1.0 : (double)search_max;
   return lround(within(ceil((double)steps * factor), (double)too_few + 1.0, high));
 }
 
-/* Search for the first level, of more steps than too_few: the error nearest below three times the target. A step too large to solve is too rough. */
+/* Search for the first level, of more steps than too_few: the error nearest below three times the
+ * target. A step too large to solve is too rough. */
 static dvi_status find_first(order_study *s, long too_few, level_trial *first)
 {
   const double target = first_target(s);
   level_trial fine = {0}; /* the last one below; of no steps: there is none yet */
-  long steps = lround(within(ceil(fabs(s->span) / s->scene->order_h), (double)too_few + 1.0, (double)search_max));
+  long steps = lround(
+      within(ceil(fabs(s->span) / s->scene->order_h), (double)too_few + 1.0, (double)search_max));
   for (int i = 0; i < SEARCH_TRIES; i++) {
     const dvi_status status = study_run(s, steps, first);
     if (status < 0) return status;
@@ -81,29 +89,36 @@ static dvi_status find_floor(order_study *s, long steps)
     status = study_integrate(s, s->scene->q, NULL, steps);
   }
   double moved = DBL_EPSILON * study_size(s);
-  for (int i = 0; i < n && status == DVI_OK; i++) moved = fmax(moved, fabs(end[i] - dvi_integrator_q(s->integrator)[i]));
+  for (int i = 0; i < n && status == DVI_OK; i++)
+    moved = fmax(moved, fabs(end[i] - dvi_integrator_q(s->integrator)[i]));
   free(q);
   s->floor = STUDY_FLOOR_MARGIN * fmax(s->judge->error, moved);
   return status;
 }
 
-/* The first level, and the floor there. One that cannot be solved from the disturbed start hangs on roundoffs: it is too rough, too. */
+/* The first level, and the floor there. One that cannot be solved from the disturbed start hangs on
+ * roundoffs: it is too rough, too. */
 static dvi_status find_first_and_floor(order_study *s, level_trial *first)
 {
   long too_few = 0;
   dvi_status status = find_first(s, too_few, first);
-  while (status == DVI_OK && (status = find_floor(s, first->steps)) > 0 && first->steps < search_max) {
+  while (status == DVI_OK && (status = find_floor(s, first->steps)) > 0 &&
+         first->steps < search_max) {
     too_few = first->steps;
     status = find_first(s, too_few, first);
   }
-  return status == DVI_OK ? find_first(s, too_few, first) : status; /* now that the floor is known */
+  return status == DVI_OK ? find_first(s, too_few, first)
+                          : status; /* now that the floor is known */
 }
 
-/* The ratio that leads from the first error to a little above the floor, with at most so many steps if it can be. */
-static double choose_ratio(const order_study *s, const level_trial *first, int levels, double finest)
+/* The ratio that leads from the first error to a little above the floor, with at most so many steps
+ * if it can be. */
+static double choose_ratio(const order_study *s, const level_trial *first, int levels,
+                           double finest)
 {
   const double span = first->error / (3.0 * s->floor);
-  const double ratio = span > 1.0 && levels > 1 ? pow(span, 1.0 / (s->order * (levels - 1.0))) : 1.0;
+  const double ratio = span > 1.0 && levels > 1 ? pow(span, 1.0 / (s->order * (levels - 1.0)))
+                                                : 1.0;
   const double most = levels > 1 ? pow(finest / (double)first->steps, 1.0 / (levels - 1.0)) : 2.0;
   return within(ratio, 1.05, within(most, 1.05, 2.0));
 }
@@ -115,24 +130,30 @@ static bool has_room(const order_study *s, const level_trial *first, int levels)
   return first->error * pow((double)first->steps / finest, s->order) > s->floor;
 }
 
-/* Whether even many steps fail, or end where the solution is not: finer ones cost much and tell nothing. */
+/* Whether even many steps fail, or end where the solution is not: finer ones cost much and tell
+ * nothing. */
 static bool is_lost(const order_study *s, dvi_status status, const level_trial *first)
 {
   static const double far = 10.0; /* times the largest error that tells an order */
-  return dvi_integrator_monitor(s->integrator) != NULL && (status > 0 || (status == DVI_OK && !(first->error <= far * s->ceiling)));
+  return dvi_integrator_monitor(s->integrator) != NULL &&
+         (status > 0 || (status == DVI_OK && !(first->error <= far * s->ceiling)));
 }
 
-dvi_status choose_levels(order_study *study, double h, double ratio, int levels, long *steps, bool *room)
+dvi_status choose_levels(order_study *study, double h, double ratio, int levels, long *steps,
+                         bool *room)
 {
   level_trial first;
   const double wanted = h > 0.0 ? within(fabs(study->span) / h, 1.0, (double)FIRST_STEPS_MAX) : 0.0;
-  dvi_status status = wanted > 0.0 ? study_run(study, lround(wanted), &first) : find_first_and_floor(study, &first);
+  dvi_status status = wanted > 0.0 ? study_run(study, lround(wanted), &first)
+                                   : find_first_and_floor(study, &first);
   if (status == DVI_OK && wanted > 0.0) status = find_floor(study, first.steps);
   steps[0] = 0;
   if (!(wanted > 0.0) && is_lost(study, status, &first)) return DVI_OK;
   if (status != DVI_OK) return status;
   *room = has_room(study, &first, levels < ROOM_LEVELS ? levels : ROOM_LEVELS);
-  const double factor = ratio > 0.0 ? ratio : choose_ratio(study, &first, levels, wanted > 0.0 ? HUGE_VAL : (double)finest_max);
+  const double factor = ratio > 0.0 ? ratio
+                                    : choose_ratio(study, &first, levels,
+                                                   wanted > 0.0 ? HUGE_VAL : (double)finest_max);
   steps[0] = first.steps;
   for (int k = 1; k < levels; k++) {
     steps[k] = lround((double)first.steps * pow(factor, k));

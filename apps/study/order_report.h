@@ -5,10 +5,10 @@
 #include <stdio.h>
 
 #include "plot/axes.h"
-#include "study/judge.h"
+#include "mechanics/judge.h"
 #include "load/pacing.h"
 #include "problem.h"
-#include "study/single_steps.h"
+#include "mechanics/single_steps.h"
 #include "csv/table.h"
 
 enum { LEVELS_MAX = 40 };
@@ -33,20 +33,22 @@ typedef struct order_result {
 /** The order that level k and the one before it show; NaN if there is none. */
 double order_local_slope(const order_result *result, int k);
 
-/** The columns of the table; of problems with factors there is one more, the distance from their manifold. */
+/** The columns of the table; of problems with factors there is one more, the distance from their
+ * manifold. */
 const table_column *order_columns(const problem *scene);
 
 /** Whether a settled slope is the claimed order. */
 bool order_holds(const order_result *result);
 
 /** Each method's levels, aligned. */
-void order_print_tables(const char *name, const result_table *rows, int results, const order_result *result);
+void order_print_tables(const char *name, const result_table *rows, int results,
+                        const order_result *result);
 
 /** Who judged a method, and whether it has its order. */
 void order_print_verdict(FILE *stream, const order_result *result);
 
-/** Columns of the table against each other, the error against the step with the claimed slopes, as an SVG file. False, with a complaint, if it
- *  cannot be written. */
-bool order_plot(const char *name, const result_table *rows, const plot_axes *axes, int results, const order_result *result,
-                const char *path);
+/** Columns of the table against each other, the error against the step with the claimed slopes, as
+ * an SVG file. False, with a complaint, if it cannot be written. */
+bool order_plot(const char *name, const result_table *rows, const plot_axes *axes, int results,
+                const order_result *result, const char *path);
 #endif

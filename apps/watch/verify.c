@@ -11,11 +11,11 @@
 #include "cli/command.h"
 #include "watch/energy_watch.h"
 #include "csv/events.h"
-#include "study/judge.h"
+#include "mechanics/judge.h"
 #include "load/natural_scale.h"
 #include "cli/progress.h"
 #include "cli/signals.h"
-#include "watch/trust.h"
+#include "study/trust.h"
 #include "watch/verify_report.h"
 
 /* IDA's three runs may take as long as those of the method, or so many seconds. Nothing ends a

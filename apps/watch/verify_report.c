@@ -5,9 +5,9 @@
 
 #include "cli/command.h"
 #include "watch/energy_report.h"
-#include "study/judge.h"
+#include "mechanics/judge.h"
 #include "csv/table.h"
-#include "watch/trust.h"
+#include "study/trust.h"
 
 enum { ROWS_MOST = 64 };
 

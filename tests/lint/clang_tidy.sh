@@ -10,8 +10,9 @@ tidy() { xargs -n 1 -P 2 "$tool" -p "$build" --quiet --warnings-as-errors='*' "$
 
 {
   find lib/src/core apps -name '*.c' | tidy
-  find lib/src -name '*.c' ! -path 'lib/src/core/*' ! -path 'lib/src/scene/*' |
+  find lib/src -name '*.c' ! -path 'lib/src/core/*' ! -path 'lib/src/text/*' ! -path 'lib/src/expr/*' ! -path 'lib/src/scene/*' |
     tidy --extra-arg=-include --extra-arg="$1/tests/lint/analyzer.h" --extra-arg=-Wno-unused-value
-  find lib/src/scene -name '*.c' | tidy --extra-arg=-include --extra-arg="$1/tests/lint/analyzer_scene.h" --extra-arg=-Wno-unused-value
+  find lib/src/text lib/src/expr lib/src/scene -name '*.c' |
+    tidy --extra-arg=-include --extra-arg="$1/tests/lint/analyzer_scene.h" --extra-arg=-Wno-unused-value
 } | grep -v ' warnings\? .*generated\.$\|^Suppressed \|^Use -header-filter' >"$log"
 if grep -q 'error:\|warning:' "$log"; then cat "$log"; exit 1; fi

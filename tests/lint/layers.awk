@@ -37,11 +37,15 @@ BEGIN {
   sees["diagnostics"] = "core num system"
   sees["reference"] = "core num system"
   # A library of its own, beside libdvi's public headers.
-  sees["scene/text"] = ""
-  sees["scene/expr"] = "scene/text"
-  sees["scene/function"] = "scene/text scene/expr"
-  sees["scene/elaborate"] = "scene/text scene/expr scene/function"
-  sees["scene"] = "scene/text scene/expr scene/function scene/elaborate"
+  sees["text"] = ""
+  sees["expr"] = "text"
+  sees["expr/compile"] = "text expr"
+  sees["expr/function"] = "text expr expr/compile"
+  sees["scene/text"] = "text"
+  sees["scene/elaborate"] = "text expr expr/compile expr/function scene/text"
+  sees["scene/terms"] = sees["scene/elaborate"] " scene/elaborate"
+  sees["scene/sections"] = sees["scene/terms"] " scene/terms"
+  sees["scene"] = sees["scene/sections"] " scene/sections"
   sees["scene/emit"] = sees["scene"] " scene"
   # The command, on public headers and those of the problems.
   uses["cli"] = ""
@@ -136,12 +140,12 @@ FILENAME != "lib/src/core/number.c" && (zone == "library" && /[^A-Za-z0-9_]vsnpr
   breach("numbers are read and written by dvi/number.h, the same in every locale")
 }
 # Scenes are a library of their own, with a door of their own.
-zone == "library" && FILENAME != "lib/src/core/memory.c" && FILENAME != "lib/src/scene/text/heap.c" && /(^|[^A-Za-z0-9_])(malloc|calloc|realloc|strdup)\(/ {
-  breach("the heap is behind core/memory.h, and scene/text/heap.h")
+zone == "library" && FILENAME != "lib/src/core/memory.c" && FILENAME != "lib/src/text/heap.c" && /(^|[^A-Za-z0-9_])(malloc|calloc|realloc|strdup)\(/ {
+  breach("the heap is behind core/memory.h, and text/heap.h")
 }
 # SUNDIALS hands over some strings that are to be freed.
-zone == "library" && FILENAME != "lib/src/core/memory.c" && FILENAME != "lib/src/scene/text/heap.c" && room != "solve" && room != "reference" && /(^|[^A-Za-z0-9_])free\(/ {
-  breach("the heap is behind core/memory.h, and scene/text/heap.h")
+zone == "library" && FILENAME != "lib/src/core/memory.c" && FILENAME != "lib/src/text/heap.c" && room != "solve" && room != "reference" && /(^|[^A-Za-z0-9_])free\(/ {
+  breach("the heap is behind core/memory.h, and text/heap.h")
 }
 zone == "user" && /dvi__/ { breach("apps/ may not use internal names") }
 zone == "public" && /dvi__/ { breach("internal name in a public header") }

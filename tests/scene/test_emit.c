@@ -50,9 +50,10 @@ static void make_kernel(int k, dvi__node root, int elements, int input_count)
 
 static dvi__function *make_function(int kernel_count)
 {
-  const int block_size[DVI__BLOCKS] = {1, n, n, 0};
+  const int width[DVI__BLOCKS] = {1, n, n, 0};
+  const dvi__blocks blocks = {DVI__BLOCKS, width, DVI__PAIRS, dvi__scene_pairs};
   dvi__function *function = NULL;
-  ck_assert_int_eq(dvi__function_create(kernel_count, kernel, block_size, &function), DVI_OK);
+  ck_assert_int_eq(dvi__function_create(kernel_count, kernel, &blocks, &function), DVI_OK);
   return function;
 }
 
@@ -61,7 +62,7 @@ static dvi__kernel_input from(const int *numbers, int offset)
   return (dvi__kernel_input){.block = DVI__COORDINATES, .number = numbers, .offset = offset};
 }
 
-static dvi__kernel_input along(dvi__block block, int base, int stride)
+static dvi__kernel_input along(int block, int base, int stride)
 {
   return (dvi__kernel_input){.block = block, .base = base, .stride = stride};
 }
@@ -84,8 +85,8 @@ static void teardown(void)
 
 /* --- The results of the byte code. --- */
 
-static const unsigned BLOCKS = 1U << DVI__COORDINATES | 1U << DVI__VELOCITIES;
-static const unsigned PAIRS = 1U << DVI__PAIR_QQ | 1U << DVI__PAIR_QV | 1U << DVI__PAIR_VV;
+static const char BLOCKS[DVI__BLOCKS] = {[DVI__COORDINATES] = 1, [DVI__VELOCITIES] = 1};
+static const char PAIRS[DVI__PAIRS] = {[DVI__PAIR_QQ] = 1, [DVI__PAIR_QV] = 1, [DVI__PAIR_VV] = 1};
 
 enum { KINDS = 3 }; /* value, gradient, second derivatives */
 
@@ -102,12 +103,12 @@ static void find_sizes(dvi__function *function, results *all)
 {
   memset(all, 0, sizeof *all);
   all->size[0][0] = 1;
-  for (int b = 0; b < DVI__BLOCKS; b++) all->size[1][b] = BLOCKS >> b & 1U ? n : 0;
+  for (int b = 0; b < DVI__BLOCKS; b++) all->size[1][b] = BLOCKS[b] ? n : 0;
   for (int pair = 0; pair < DVI__PAIRS; pair++) {
-    if ((PAIRS >> pair & 1U) == 0) continue;
+    if (!PAIRS[pair]) continue;
     dvi_pattern pattern;
     int full;
-    ck_assert_int_eq(dvi__function_pattern(function, (dvi__pair)pair, &pattern, &full), DVI_OK);
+    ck_assert_int_eq(dvi__function_pattern(function, pair, &pattern, &full), DVI_OK);
     all->size[2][pair] = full ? n * n : pattern.start[n];
   }
 }
@@ -150,7 +151,7 @@ static void emit_call(dvi__emitter *out, const results *all, int kind, int count
   int at = 0;
   dvi__emit(out, "  %s(%d, 0, x[0], x[1], 0", names[kind], count);
   for (int a = 0; a < DVI__PAIRS; a++) {
-    if (kind == 0 ? a == 0 : (kind == 1 ? BLOCKS : PAIRS) >> a & 1U)
+    if (kind == 0 ? a == 0 : kind == 1 ? a < DVI__BLOCKS && BLOCKS[a] : PAIRS[a])
       dvi__emit(out, all->size[kind][a] > 0 ? ", at + %d" : ", 0", at);
     at += all->size[kind][a] * count;
   }

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "scene/text/utf8.h"
+#include "text/utf8.h"
 #include "support/scene/fuzz.h"
 #include "support/scene/scene_calls.h"
 #include "support/suite.h"

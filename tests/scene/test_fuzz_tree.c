@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "scene/text/tree.h"
-#include "scene/text/utf8.h"
+#include "text/utf8.h"
 #include "support/scene/fuzz.h"
 #include "support/scene/scene_text.h"
 #include "support/suite.h"

@@ -37,7 +37,7 @@ static void evaluate(const char *expression, const double *q, double *V, double 
   double L;
   ck_assert_msg(parse(expression) == DVI_OK, "%s", message);
   const dvi_system *system = dvi_scene_system(scene);
-  ck_assert_msg(dvi_system_lagrangian(system, t, q, v, &L) == DVI_OK, "%s: %s", expression, dvi_scene_blame());
+  ck_assert_msg(dvi_system_lagrangian(system, t, q, v, &L) == DVI_OK, "%s: %s", expression, dvi_scene_fault());
   *V = -L;
   const dvi_potential *potential = dvi_scene_terms(scene)->potentials;
   memset(V_qq, 0, N * N * sizeof *V_qq);
@@ -130,12 +130,12 @@ START_TEST(a_condition_that_is_no_number_is_told)
   double L;
   ck_assert_int_eq(parse("if(log(x) < 0, 1, 2)*x"), DVI_OK);
   ck_assert_int_ne(dvi_system_lagrangian(dvi_scene_system(scene), 0, (double[N]){-1, 0}, (double[N]){0}, &L), DVI_OK);
-  ck_assert_str_eq(dvi_scene_blame(), "test.yaml:3:31: log(x), x = -1 is not finite, at t = 0");
+  ck_assert_str_eq(dvi_scene_fault(), "test.yaml:3:31: log(x), x = -1 is not finite, at t = 0");
   ck_assert_int_eq(parse("max(log(x), y)"), DVI_OK);
   ck_assert_int_ne(dvi_system_lagrangian(dvi_scene_system(scene), 0, (double[N]){-1, 0}, (double[N]){0}, &L), DVI_OK);
   ck_assert_int_eq(parse("if(x > 0, sqrt(x), 1/y)"), DVI_OK);
   ck_assert_int_ne(dvi_system_lagrangian(dvi_scene_system(scene), 0, (double[N]){-1, 0}, (double[N]){0}, &L), DVI_OK);
-  ck_assert_str_eq(dvi_scene_blame(), "test.yaml:3:47: 1/y, y = 0 is not finite, at t = 0");
+  ck_assert_str_eq(dvi_scene_fault(), "test.yaml:3:47: 1/y, y = 0 is not finite, at t = 0");
 }
 END_TEST
 
@@ -226,7 +226,7 @@ START_TEST(series_are_refused_at_a_kink_alone)
     ck_assert_int_eq(dvi_integrator_start(integrator, 0, (double[N]){k == 0 ? 0 : 0.5, 0}, (double[N]){1, 1}), DVI_OK);
     const dvi_status status = dvi_integrator_step(integrator, 0.01);
     ck_assert_int_eq(status == DVI_OK, k == 1);
-    if (k == 0) ck_assert_str_eq(dvi_scene_blame(), "test.yaml:3:28: max(x, 0), x = 0 has no Taylor series, at t = 0");
+    if (k == 0) ck_assert_str_eq(dvi_scene_fault(), "test.yaml:3:28: max(x, 0), x = 0 has no Taylor series, at t = 0");
     dvi_integrator_destroy(&integrator);
   }
 }

@@ -313,7 +313,7 @@ START_TEST(what_is_not_finite_is_told_with_its_place)
   double L;
   ck_assert_int_eq(parse(X "lagrangian: x'^2 - log(x - 1)\n" RUN, 0, NULL), DVI_OK);
   ck_assert_int_ne(dvi_system_lagrangian(dvi_scene_system(scene), 2.5, &(double){0.75}, &(double){0}, &L), DVI_OK);
-  ck_assert_str_eq(dvi_scene_blame(), "test.yaml:2:20: log(x - 1), x - 1 = -0.25 is not finite, at t = 2.5, where x = 0.75");
+  ck_assert_str_eq(dvi_scene_fault(), "test.yaml:2:20: log(x - 1), x - 1 = -0.25 is not finite, at t = 2.5, where x = 0.75");
 }
 END_TEST
 
@@ -338,7 +338,7 @@ START_TEST(what_has_no_series_is_told_with_its_place)
     ck_assert_int_eq(dvi_integrator_create(dvi_scene_system(scene), "prolongation-collocation:derivatives=6", &integrator), DVI_OK);
     ck_assert_int_eq(dvi_integrator_start(integrator, 0, &(double){0}, &(double){1}), DVI_OK);
     ck_assert_int_ne(dvi_integrator_step(integrator, 0.01), DVI_OK);
-    ck_assert_str_eq(dvi_scene_blame(), words[k]);
+    ck_assert_str_eq(dvi_scene_fault(), words[k]);
     dvi_integrator_destroy(&integrator);
   }
 }

@@ -136,7 +136,7 @@ START_TEST(derivatives_are_limited_when_they_are_made)
   ck_assert_msg(read_parts(&p, &scene) == DVI_OK, "%s", message);
   ck_assert_int_eq(call_all(scene), DVI_BAD_SIZE);
   ck_assert_str_eq(
-      dvi_scene_blame(),
+      dvi_scene_fault(),
       "s.yaml: too large: its derivatives need more than 2000000 parts, 20000000 pairs, 16384 numbers at a time, or 1 GiB");
   dvi_scene_destroy(&scene);
 }

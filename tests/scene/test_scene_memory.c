@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "scene/text/heap.h"
+#include "text/heap.h"
 #include "support/heap.h"
 #include "support/scene/scene_calls.h"
 #include "support/suite.h"
@@ -106,7 +106,7 @@ START_TEST(deriving_says_that_memory_ran_out)
     ck_assert_int_lt(k, MOST);
     if (code != 0) {
       ck_assert_int_eq(code, DVI_NO_MEMORY);
-      ck_assert_str_eq(dvi_scene_blame(), "s.yaml: memory ran out");
+      ck_assert_str_eq(dvi_scene_fault(), "s.yaml: memory ran out");
     }
     ck_assert_int_eq(call_all(scene), 0);
     dvi_scene_destroy(&scene);

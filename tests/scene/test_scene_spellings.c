@@ -34,7 +34,7 @@ static void open_spelling(int k, const char *definitions, const char *L)
 static double value(int k, double t, const double *q, const double *v, double *p)
 {
   double L;
-  ck_assert_msg(dvi_system_lagrangian(dvi_scene_system(scene[k]), t, q, v, &L) == DVI_OK, "%s", dvi_scene_blame());
+  ck_assert_msg(dvi_system_lagrangian(dvi_scene_system(scene[k]), t, q, v, &L) == DVI_OK, "%s", dvi_scene_fault());
   ck_assert_int_eq(dvi_system_momentum(dvi_scene_system(scene[k]), t, q, v, p), DVI_OK);
   return L;
 }

@@ -181,7 +181,7 @@ int dvi_scene_kink(const dvi_scene *scene, char *text, size_t size);
  *  or the limit that its derivatives passed; "" if none failed since a scene was last read. A
  *  method may have got over it since: it is the cause of an error only if that has the status
  *  DVI_CALLBACK_RETRY or DVI_CALLBACK_FAILED. */
-const char *dvi_scene_blame(void);
+const char *dvi_scene_fault(void);
 
 /** A sentence about a section of the scene, in the form of its own errors: file, line and column in
  * front, the line and a caret below.

@@ -1,4 +1,4 @@
-#include "bench/frontier.h"
+#include "study/frontier.h"
 
 #include <math.h>
 

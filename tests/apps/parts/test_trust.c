@@ -1,5 +1,5 @@
 /* Digits from three step sizes: no more than there are. */
-#include "watch/trust.h"
+#include "study/trust.h"
 
 #include <math.h>
 

@@ -1,6 +1,6 @@
 #include "support/quad/quad_graph.h"
 
-#include "scene/expr/graph_make.h"
+#include "expr/graph_make.h"
 
 #ifdef DVI_HAVE_QUADMATH
 quad quad_operate(dvi__op op, double number, quad a, quad b)

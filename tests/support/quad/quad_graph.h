@@ -1,7 +1,7 @@
 /* Graphs of expressions in quadruple precision: a judge of what is computed in double. Only where libquadmath has its header (DVI_HAVE_QUADMATH). */
 #ifndef SUPPORT_QUAD_GRAPH_H
 #define SUPPORT_QUAD_GRAPH_H
-#include "scene/expr/graph.h"
+#include "expr/graph.h"
 
 #ifdef DVI_HAVE_QUADMATH
 #include <quadmath.h>

@@ -29,7 +29,7 @@ static void judge(caller *c, int code, size_t count, double *x)
 {
   for (size_t i = 0; code == 0 && i < count; i++)
     if (!isfinite(x[i])) ck_abort_msg("a callback gives %g for a number", x[i]);
-  if (code != 0 && dvi_scene_blame()[0] == '\0') ck_abort_msg("nothing is said of the code %d", code);
+  if (code != 0 && dvi_scene_fault()[0] == '\0') ck_abort_msg("nothing is said of the code %d", code);
   if (c->code == 0) c->code = code;
   free(x);
 }

@@ -1,7 +1,7 @@
 #include "support/scene/scene_text.h"
 
-#include "scene/text/heap.h"
-#include "scene/text/utf8.h"
+#include "text/heap.h"
+#include "text/utf8.h"
 #include "support/suite.h"
 
 #include <string.h>
