@@ -75,7 +75,7 @@ static void read_without_memory(int i, switch_off *fail_after)
 START_TEST(reading_says_that_memory_ran_out)
 {
   const long before = heap_bytes();
-  read_without_memory(_i, dvi__heap_fail_after);
+  read_without_memory(_i, dvi__fail_allocations_after);
   ck_assert_int_eq(heap_bytes(), before);
 }
 END_TEST
@@ -100,9 +100,9 @@ START_TEST(deriving_says_that_memory_ran_out)
   int code = -1;
   for (long k = 0; code != 0; k++) {
     dvi_scene *scene = good_scene(_i);
-    dvi__heap_fail_after(k);
+    dvi__fail_allocations_after(k);
     code = call_all(scene);
-    dvi__heap_fail_after(-1);
+    dvi__fail_allocations_after(-1);
     ck_assert_int_lt(k, MOST);
     if (code != 0) {
       ck_assert_int_eq(code, DVI_NO_MEMORY);
@@ -134,9 +134,9 @@ static void emit_without_memory(int i, size_t whole)
   for (long k = 0; status != DVI_OK; k++) {
     size_t size = 0;
     dvi_scene *scene = good_scene(i);
-    dvi__heap_fail_after(k);
+    dvi__fail_allocations_after(k);
     status = emit(scene, &size);
-    dvi__heap_fail_after(-1);
+    dvi__fail_allocations_after(-1);
     ck_assert_int_lt(k, MOST);
     ck_assert_msg(status == DVI_OK || status == DVI_NO_MEMORY, "request %ld: %s", k, dvi_status_name(status));
     ck_assert_int_eq(emit(scene, &size), DVI_OK);
@@ -160,10 +160,10 @@ END_TEST
 START_TEST(names_come_when_there_is_memory)
 {
   dvi_scene *scene = good_scene(1);
-  dvi__heap_fail_after(0);
+  dvi__fail_allocations_after(0);
   ck_assert_ptr_null(dvi_scene_coordinate(scene, 1));
   ck_assert_ptr_null(dvi_scene_momentum(scene, 1));
-  dvi__heap_fail_after(-1);
+  dvi__fail_allocations_after(-1);
   ck_assert_str_eq(dvi_scene_coordinate(scene, 1), "y");
   ck_assert_str_eq(dvi_scene_momentum(scene, 0), "p_x");
   dvi_scene_destroy(&scene);

@@ -1,7 +1,9 @@
 #include "text/heap.h"
 
 #include <stdint.h>
-#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
 
 static const size_t limit = (size_t)1 << 30;
 
@@ -13,7 +15,6 @@ typedef struct header {
 
 static _Thread_local dvi__ledger *charged;
 static _Thread_local dvi_status refusal = DVI_NO_MEMORY;
-static _Thread_local long successes_left = -1;
 
 dvi__ledger *dvi__heap_charge(dvi__ledger *ledger)
 {
@@ -32,13 +33,6 @@ static void *refuse(dvi_status why)
 dvi_status dvi__heap_refusal(void)
 {
   return refusal;
-}
-
-static int may_succeed(void)
-{
-  if (successes_left == 0) return 0;
-  if (successes_left > 0) successes_left--;
-  return 1;
 }
 
 static void pay_back(dvi__ledger *ledger, size_t bytes)
@@ -67,9 +61,8 @@ static size_t whole(size_t count, size_t size)
 void *dvi__heap_take(size_t count, size_t size)
 {
   const size_t bytes = whole(count, size);
-  if (!may_succeed()) return refuse(DVI_NO_MEMORY);
   if (bytes == SIZE_MAX || !charge(charged, bytes)) return refuse(DVI_BAD_SIZE);
-  header *made = calloc(1, bytes);
+  header *made = dvi__allocate(1, bytes);
   if (made == NULL) {
     pay_back(charged, bytes);
     return refuse(DVI_NO_MEMORY);
@@ -87,14 +80,15 @@ void *dvi__heap_grow(void *items, size_t count, size_t size)
   header *old = (header *)items - 1;
   dvi__ledger *ledger = old->ledger;
   const size_t bytes = whole(2 * count, size), more = bytes - old->size;
-  if (!may_succeed()) return refuse(DVI_NO_MEMORY);
   if (bytes == SIZE_MAX || !charge(ledger, more)) return refuse(DVI_BAD_SIZE);
-  header *moved = realloc(old, bytes);
+  header *moved = dvi__allocate(1, bytes);
   if (moved == NULL) {
     pay_back(ledger, more);
     return refuse(DVI_NO_MEMORY);
   }
+  memcpy(moved, old, old->size);
   moved->size = bytes;
+  dvi__release(old);
   return moved + 1;
 }
 
@@ -103,10 +97,5 @@ void dvi__heap_free(void *memory)
   if (memory == NULL) return;
   header *own = (header *)memory - 1;
   pay_back(own->ledger, own->size);
-  free(own);
-}
-
-void dvi__heap_fail_after(long successes)
-{
-  successes_left = successes;
+  dvi__release(own);
 }

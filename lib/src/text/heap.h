@@ -1,5 +1,5 @@
-/* The one door to the heap of what reads scenes: it charges who asks, and tests can make it
- * fail. */
+/* The heap of what reads scenes: libdvi's own (core/memory.h), charged to a ledger that bounds what one
+ * scene may take. */
 #ifndef DVI_TEXT_HEAP_H
 #define DVI_TEXT_HEAP_H
 #include <dvi/status.h>
@@ -31,9 +31,5 @@ void dvi__heap_free(void *memory);
 /* Why this thread was last refused since the ledger was named: DVI_BAD_SIZE, it asked for more than
  * is left there; or DVI_NO_MEMORY. */
 dvi_status dvi__heap_refusal(void);
-
-/* For tests: let the next `successes` requests of this thread succeed and all later ones fail;
- * negative: all succeed again. */
-void dvi__heap_fail_after(long successes);
 
 #endif

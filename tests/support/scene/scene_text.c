@@ -1,5 +1,6 @@
 #include "support/scene/scene_text.h"
 
+#include "core/memory.h"
 #include "text/heap.h"
 #include "text/utf8.h"
 #include "support/suite.h"
@@ -14,7 +15,7 @@ void open_text(scene_text *scene, const char *text, size_t size)
 
 void close_text(scene_text *scene)
 {
-  dvi__heap_fail_after(-1);
+  dvi__fail_allocations_after(-1);
   dvi__arena_free(&scene->arena);
 }
 
@@ -22,7 +23,7 @@ void limit_memory(scene_text *scene, size_t size)
 {
   enum { BLOCK = 65536 };
   ck_assert_ptr_nonnull(dvi__arena_take(&scene->arena, BLOCK - size, 1));
-  dvi__heap_fail_after(0); /* no second block */
+  dvi__fail_allocations_after(0); /* no second block */
 }
 
 void check_complaint(const scene_text *scene, dvi_status status, const char *message)

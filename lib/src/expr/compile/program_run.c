@@ -225,16 +225,24 @@ DVI__EXPR_INLINE void run_rows(const int below, const dvi__program *program, int
 #undef ROW
 }
 
-DVI__EXPR_LANES static void run(const dvi__program *program, int lanes, const double *const *input,
-                                double *registers)
+DVI__EXPR_INLINE void run_body(const dvi__program *program, int lanes, const double *const *input,
+                               double *registers)
 {
   run_rows(0, program, lanes, dvi__row_width(lanes), input, registers);
 }
 
-DVI__EXPR_LANES static void run_block(const dvi__program *program, int lanes, double *registers)
+DVI__EXPR_VERSIONS(run,
+                   (const dvi__program *program, int lanes, const double *const *input,
+                    double *registers),
+                   (program, lanes, input, registers))
+
+DVI__EXPR_INLINE void run_block_body(const dvi__program *program, int lanes, double *registers)
 {
   run_rows(1, program, lanes, DVI__LANES, NULL, registers);
 }
+
+DVI__EXPR_VERSIONS(run_block, (const dvi__program *program, int lanes, double *registers),
+                   (program, lanes, registers))
 
 /* clang does not export a function that is compiled more than once. */
 void dvi__program_run(const dvi__program *program, int lanes, const double *const *input,

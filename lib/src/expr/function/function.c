@@ -219,10 +219,18 @@ const dvi__function_sum *dvi__function_sum_of(const dvi__function *function, dvi
 
 /* --- Evaluation. --- */
 
-DVI__EXPR_LANES static int all_finite(size_t size, const double *restrict x)
+DVI__EXPR_INLINE void look_for_infinity_body(size_t size, const double *restrict x, int *beyond)
+{
+  for (size_t i = 0; i < size; i++) *beyond |= !(fabs(x[i]) <= 1.7976931348623157e308);
+}
+
+DVI__EXPR_VERSIONS(look_for_infinity, (size_t size, const double *restrict x, int *beyond),
+                   (size, x, beyond))
+
+static int all_finite(size_t size, const double *x)
 {
   int beyond = 0;
-  for (size_t i = 0; i < size; i++) beyond |= !(fabs(x[i]) <= 1.7976931348623157e308);
+  look_for_infinity(size, x, &beyond);
   return !beyond;
 }
 

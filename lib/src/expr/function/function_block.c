@@ -63,8 +63,8 @@ DVI__EXPR_INLINE void run(const int points, const dvi__part *part, const double 
           result);
 }
 
-DVI__EXPR_LANES static void run_points(const dvi__part *part, int points, const double *const *x,
-                                       double *const *result)
+DVI__EXPR_INLINE void run_points_body(const dvi__part *part, int points, const double *const *x,
+                                      double *const *result)
 {
   switch (points) {
   case 1: run(1, part, x, result); break;
@@ -77,6 +77,11 @@ DVI__EXPR_LANES static void run_points(const dvi__part *part, int points, const 
   default: run(8, part, x, result);
   }
 }
+
+DVI__EXPR_VERSIONS(run_points,
+                   (const dvi__part *part, int points, const double *const *x,
+                    double *const *result),
+                   (part, points, x, result))
 
 void dvi__part_run_block(const dvi__part *part, int points, const double *const *x,
                          double *const *result)

@@ -120,8 +120,8 @@ DVI__EXPR_INLINE void gather_points(const int points, const dvi__part *part, con
   }
 }
 
-DVI__EXPR_LANES static void gather(const dvi__part *part, const tile *at, const double *const *x,
-                                   const double **input, double *registers)
+DVI__EXPR_INLINE void gather_body(const dvi__part *part, const tile *at, const double *const *x,
+                                  const double **input, double *registers)
 {
   switch (at->points) {
 #define GATHER(points) \
@@ -131,6 +131,11 @@ DVI__EXPR_LANES static void gather(const dvi__part *part, const tile *at, const 
   default: gather_points(at->points, part, at, x, input, registers);
   }
 }
+
+DVI__EXPR_VERSIONS(gather,
+                   (const dvi__part *part, const tile *at, const double *const *x,
+                    const double **input, double *registers),
+                   (part, at, x, input, registers))
 
 /* --- Scatter: `sign` is 1 or -1. --- */
 
@@ -302,8 +307,8 @@ DVI__EXPR_INLINE void scatter_points(const int points, const dvi__part *part, co
   }
 }
 
-DVI__EXPR_LANES static void scatter(const dvi__part *part, const tile *at, const double *outputs,
-                                    double *const *result)
+DVI__EXPR_INLINE void scatter_body(const dvi__part *part, const tile *at, const double *outputs,
+                                   double *const *result)
 {
   switch (at->points) {
 #define SCATTER(points) \
@@ -313,6 +318,11 @@ DVI__EXPR_LANES static void scatter(const dvi__part *part, const tile *at, const
   default: scatter_points(at->points, part, at, outputs, result);
   }
 }
+
+DVI__EXPR_VERSIONS(scatter,
+                   (const dvi__part *part, const tile *at, const double *outputs,
+                    double *const *result),
+                   (part, at, outputs, result))
 
 /* --- Tiles. --- */
 
