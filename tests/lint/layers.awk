@@ -141,13 +141,12 @@ zone == "library" {
 FILENAME != "lib/src/core/number.c" && (zone == "library" && /[^A-Za-z0-9_]vsnprintf\(/ || (zone == "library" || zone == "user") && /[^A-Za-z0-9_](strtod|strtof|strtold|atof|setlocale)\(/) {
   breach("numbers are read and written by dvi/number.h, the same in every locale")
 }
-# Scenes are a library of their own, with a door of their own.
-zone == "library" && FILENAME != "lib/src/core/memory.c" && FILENAME != "lib/src/text/heap.c" && /(^|[^A-Za-z0-9_])(malloc|calloc|realloc|strdup)\(/ {
-  breach("the heap is behind core/memory.h, and text/heap.h")
+zone == "library" && FILENAME != "lib/src/core/memory.c" && /(^|[^A-Za-z0-9_])(malloc|calloc|realloc|strdup)\(/ {
+  breach("the heap is behind core/memory.h")
 }
 # SUNDIALS hands over some strings that are to be freed.
-zone == "library" && FILENAME != "lib/src/core/memory.c" && FILENAME != "lib/src/text/heap.c" && room != "solve" && room != "reference" && /(^|[^A-Za-z0-9_])free\(/ {
-  breach("the heap is behind core/memory.h, and text/heap.h")
+zone == "library" && FILENAME != "lib/src/core/memory.c" && room != "solve" && room != "reference" && /(^|[^A-Za-z0-9_])free\(/ {
+  breach("the heap is behind core/memory.h")
 }
 zone == "user" && /dvi__/ { breach("apps/ may not use internal names") }
 zone == "public" && /dvi__/ { breach("internal name in a public header") }
