@@ -68,8 +68,7 @@ typedef struct dvi__lagrangian_term {
   dvi_lagrangian callbacks;
   const struct dvi__computed *computed; /* replaces the callbacks if not NULL */
   void *of;                             /* first argument of `computed` */
-  /* one-form, used if it has a value */
-  dvi_one_form one_form;
+  dvi_one_form one_form;                /* used if one_form.value is not NULL */
   dvi__gauge_term gauge;
   dvi__pattern qq, qv, vv;
   dvi__pattern omega; /* pattern of the two-form, qv and its transpose */

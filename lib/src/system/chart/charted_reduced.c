@@ -9,7 +9,7 @@
  *     mu1 = Ad*_f mu0,     f = g0^{-1} g1
  *
  * For x' in the frame of space this is p1 = p0 for x, and Pi - R0^T (x1 - x0) x p for the turn,
- * before f turns it. */
+ * before f turns the result. */
 #include <math.h>
 #include <string.h>
 

@@ -100,7 +100,7 @@ int dvi__reduced_hessian(int count, const double *t, const double *xi, const dou
 dvi_status dvi__reduced_place(dvi__charted *charted);
 
 /* Compute the change of a body's angular momentum on a path, in the frame of the centre. A moving x
- * with momentum changes it by Ad*. */
+ * with momentum changes the angular one by Ad*. */
 void dvi__reduced_impulse(const dvi__charted *charted, const dvi__reduced_body *body,
                           const double *p0, double *impulse);
 

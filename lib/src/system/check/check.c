@@ -16,8 +16,7 @@
 
 /* One block of one term while it is compared. */
 typedef struct block {
-  /* The potential's name, or else the part of the kinetic term, or else NULL for the whole of
-   * it. */
+  /* term is the name of a potential or NULL, owner a part of the kinetic term or NULL for all. */
   const char *term, *owner, *name;
   const dvi__pattern *pattern; /* NULL for a gradient */
   const double *given;         /* NULL without a callback, where only the pattern is checked */

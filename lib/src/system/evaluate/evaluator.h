@@ -116,7 +116,7 @@ dvi_status dvi__energy_change(dvi__evaluator *e, const dvi__instant *before,
 
 /* Compute the distance between a step's change and the mean of the rates at its ends, relative to
  * the larger change. The worst one of all coordinates counts, and of all momenta of a Lagrangian.
- * It is (h omega)^2/12 for well resolved motions. Call it after dvi__energy_change of the same
+ * It is (h omega)^2/12 for well resolved motions. Call this after dvi__energy_change of the same
  * states, which leaves v there. forces [2 n] is work. */
 dvi_status dvi__motion_defect(dvi__evaluator *e, const dvi__instant *before,
                               const dvi__instant *after, double *forces, double *defect);

@@ -15,8 +15,8 @@ static double sixth_order_step(void)
   return pow(DBL_EPSILON, 1.0 / 7.0);
 }
 
-/* A point nearer to the origin than this is taken to pass it. Steps that shrink further would drown
- * in the rounding of the values. */
+/* A point nearer to the origin than this is taken to pass the origin. Steps that shrink further
+ * would drown in the rounding of the values. */
 static const double smallest_size = 1e-2;
 
 /* Choose steps near relative * (size of the coordinate), rounded to powers of two so that multiples

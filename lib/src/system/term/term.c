@@ -89,7 +89,7 @@ dvi_status dvi__potential_gradient(const dvi__potential_term *p, dvi__scratch *s
                                     &s->of_value, s->n, count, q, V_q);
   if (c->gradient_batch != NULL)
     returned = c->gradient_batch(count, t, q, V_q, c->user);
-  else if (count == 1) /* a single point is already laid out as the callback needs it */
+  else if (count == 1) /* one point needs no copy */
     returned = ask_potential_gradient(c, s->n, t[0], q, V_q);
   else
     for (int k = 0; k < count && returned == 0; k++) {
