@@ -1,5 +1,5 @@
-/* Cayley's map on SO(3), (I - W/2)^-1 (I + W/2), W = hat(w): the rotation of the quaternion (1,
- * w/2). */
+/* Cayley's map on SO(3), (I - W/2)^-1 (I + W/2), W = hat(w), gives the rotation of the quaternion
+ * (1, w/2). */
 #include <dvi/group.h>
 #include <float.h>
 

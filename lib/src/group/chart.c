@@ -19,7 +19,7 @@ double dvi__chart_angle(dvi__chart_kind kind, const double *xi)
   return sqrt(dvi__inner(dvi__chart_size(kind), xi, xi));
 }
 
-/* By d c_k / ds = (k c_{k+2} - c_{k+1}) / 2. */
+/* The derivatives follow from d c_k / ds = (k c_{k+2} - c_{k+1}) / 2. */
 void dvi__chart_functions(dvi__chart_kind kind, const double *xi, dvi__functions *c)
 {
   const int size = dvi__chart_size(kind);
@@ -37,7 +37,7 @@ void dvi__chart_functions(dvi__chart_kind kind, const double *xi, dvi__functions
 /* ---- matrices ---- */
 
 /* out = R0 E. */
-static void turn(const double *R0, const double *E, double *out)
+static void multiply_rotation(const double *R0, const double *E, double *out)
 {
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++)
@@ -53,8 +53,8 @@ static void add_hat(const double *a, double *E)
 
 /* ---- centre ---- */
 
-/* Orthonormal and across y0 even where rounding has made y0 longer or shorter than 1: what it lost
- * in every step would add up. Source: Duff et al. 2017. */
+/* Find a basis that is orthonormal and orthogonal to y0 even where rounding has made y0 longer or
+ * shorter than 1. Otherwise the losses of all steps would add up. Source: Duff et al. 2017. */
 static void find_basis(const double *y0, double basis[2][3])
 {
   const double length = sqrt(dvi__dot(y0, y0)), x = y0[0] / length, y = y0[1] / length,
@@ -89,7 +89,7 @@ void dvi__chart_lift(const dvi__chart *chart, const double *x, double *out)
 
 /* ---- points ---- */
 
-/* (a b^T + b a^T) - 2 a.b I, which is a^ b^ + b^ a^. */
+/* Add factor ((a b^T + b a^T) - 2 a.b I), which is factor (a^ b^ + b^ a^). */
 static void add_squares(double factor, const double *a, const double *b, double *E)
 {
   dvi__add_outer(3, factor, a, b, E);
@@ -104,13 +104,13 @@ static void rotation_point(const dvi__chart *chart, const dvi__functions *c, con
   for (int i = 0; i < 3; i++) a[i] = c->of[1][0] * xi[i];
   add_hat(a, E);
   add_squares(0.5 * c->of[2][0], xi, xi, E);
-  turn(chart->y0, E, y);
+  multiply_rotation(chart->y0, E, y);
   memset(E, 0, sizeof E);
   for (int i = 0; i < 3; i++) a[i] = c->of[1][0] * rate[i] + 2 * sigma * c->of[1][1] * xi[i];
   add_hat(a, E);
   add_squares(c->of[2][0], xi, rate, E);
   add_squares(sigma * c->of[2][1], xi, xi, E);
-  turn(chart->y0, E, v);
+  multiply_rotation(chart->y0, E, v);
 }
 
 static void sphere_point(const dvi__chart *chart, const dvi__functions *c, const double *xi,
@@ -147,7 +147,7 @@ void dvi__chart_place(const dvi__chart *chart, const double *xi, double *y)
   if (chart->kind == DVI__ROTATION) {
     double E[9];
     dvi_so3_exp(xi, E);
-    turn(chart->y0, E, y);
+    multiply_rotation(chart->y0, E, y);
     return;
   }
   dvi__chart_functions(chart->kind, xi, &c);
@@ -168,34 +168,34 @@ dvi__turn dvi__chart_turn(const dvi__chart *chart, const double *xi)
   return dvi__turn_of(w);
 }
 
-void dvi__chart_moser_veselov(const dvi__chart *chart, const double *xi, double *leap)
+void dvi__chart_displacement(const dvi__chart *chart, const double *xi, double *displacement)
 {
   const int stored = dvi__chart_stored(chart->kind);
   if (chart->kind == DVI__LINE) {
-    *leap = *xi;
+    *displacement = *xi;
     return;
   }
   const dvi__turn turn = dvi__chart_turn(chart, xi);
   for (int i = 0; i < stored; i += 3) {
     double change[3];
     dvi__turn_change(&turn, chart->y0 + i, change);
-    memcpy(leap + i, change, (size_t)(stored < 3 ? stored : 3) * sizeof *leap);
+    memcpy(displacement + i, change, (size_t)(stored < 3 ? stored : 3) * sizeof *displacement);
   }
 }
 
-void dvi__chart_move(const dvi__chart *chart, const double *xi, double *y, double *carry)
+void dvi__chart_move(const dvi__chart *chart, const double *xi, double *y, double *compensation)
 {
   if (chart->kind == DVI__LINE) {
-    dvi__add_compensated(y, carry, *xi);
+    dvi__add_compensated(y, compensation, *xi);
     return;
   }
   const dvi__turn turn = dvi__chart_turn(chart, xi);
-  dvi__turn_rows(&turn, dvi__chart_stored(chart->kind), y, carry);
+  dvi__turn_rows(&turn, dvi__chart_stored(chart->kind), y, compensation);
 }
 
 /* ---- tangents ---- */
 
-/* Columns j of T and S, as matrices E before R0. */
+/* Columns j of T and S are R0 E with these matrices E. */
 static void rotation_tangent(const dvi__functions *c, const double *xi, const double *rate, int j,
                              double *T, double *S)
 {
@@ -246,8 +246,8 @@ void dvi__chart_tangents(const dvi__chart *chart, const dvi__functions *c, const
     if (chart->kind == DVI__ROTATION) {
       double turned[2][9];
       rotation_tangent(c, xi, rate, j, column[0], column[1]);
-      turn(chart->y0, column[0], turned[0]);
-      turn(chart->y0, column[1], turned[1]);
+      multiply_rotation(chart->y0, column[0], turned[0]);
+      multiply_rotation(chart->y0, column[1], turned[1]);
       memcpy(column, turned, sizeof column);
     } else {
       sphere_tangent(chart, c, xi, rate, j, column[0], column[1]);
@@ -259,16 +259,16 @@ void dvi__chart_tangents(const dvi__chart *chart, const dvi__functions *c, const
   }
 }
 
-/* ---- between charts ---- */
+/* ---- from chart to chart ---- */
 
-/* xi of R0^T R, of a rotation. */
+/* Find xi of the rotation R0^T R. */
 static void rotation_inverse(const double *R0, const double *R, double *xi)
 {
   double E[9];
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++)
       E[3 * i + j] = R0[i] * R[j] + R0[3 + i] * R[3 + j] + R0[6 + i] * R[6 + j];
-  memset(xi, 0, 3 * sizeof *xi); /* of what is no rotation */
+  memset(xi, 0, 3 * sizeof *xi); /* the matrix is no rotation */
   (void)dvi_so3_log(E, xi);
 }
 

@@ -1,4 +1,4 @@
-/* What turning a rotation or a direction in space does, and its angular momentum. */
+/* Rotations of space acting on a rotation or a direction, and the angular momentum. */
 #include <dvi/group.h>
 #include <string.h>
 
@@ -7,7 +7,8 @@
 #include "group/vector.h"
 #include "num/compensated.h"
 
-/* Vectors in a stored point: the columns of a rotation, or the direction itself. */
+/* Count the vectors in a stored point, which are the columns of a rotation or the direction
+ * itself. */
 static int vectors_of(dvi__chart_kind kind)
 {
   return kind == DVI__ROTATION ? 3 : 1;
@@ -62,7 +63,8 @@ void dvi__chart_add_impulse(const dvi__chart *chart, const double *impulse, doub
                       : impulse[j];
 }
 
-/* Of a direction: p_j = T_j.(angular x y), T_j = c_1 B_j + xi_j ((c_3 - c_2) B xi - c_1 y0). */
+/* Compute p_j = T_j.(angular x y) of a direction, T_j = c_1 B_j + xi_j ((c_3 - c_2) B xi - c_1
+ * y0). */
 static void direction_momentum(const dvi__chart *chart, const double c[4], const double *xi,
                                const double *angular, double *p)
 {
@@ -74,8 +76,8 @@ static void direction_momentum(const dvi__chart *chart, const double c[4], const
   for (int j = 0; j < 2; j++) p[j] = c[1] * dvi__dot(chart->basis[j], P) + along * xi[j];
 }
 
-/* Of a rotation R0 exp(xi): turning by w in the centre's frame is d xi with dexp_xi d xi = w, so p
- * = dexp_xi^T angular = dexp_{-xi} angular. */
+/* A turn by w of R0 exp(xi) in the centre's frame moves xi by d xi with dexp_xi d xi = w. So
+ * p = dexp_xi^T angular = dexp_{-xi} angular. */
 void dvi__chart_momentum(const dvi__chart *chart, const double *xi, const double *angular,
                          double *p)
 {

@@ -1,7 +1,7 @@
 /* Rotations and unit quaternions.
  *
  * Sums and differences of R's entries are the products 4 q_i q_j. Those with the largest |q_k| have
- * lost no digits (Shepperd 1978), and are the quaternion but for their common length. */
+ * lost no digits (Shepperd 1978). They are the quaternion but for their common length. */
 #include "group/quaternion.h"
 
 #include <dvi/group.h>
@@ -10,8 +10,8 @@
 #include "core/status.h"
 #include "group/vector.h"
 
-/* How far from a rotation a matrix may be that is read as a rotation: what a long run or a file of
- * ten digits leaves, and no more. */
+/* A matrix this far from a rotation is still read as one. A long run or a file of ten digits leaves
+ * such errors, and no larger ones. */
 #define TOLERANCE 1e-8
 
 void dvi_so3_from_quaternion(const double q[4], double R[9])

@@ -1,18 +1,18 @@
-/* The rotation of a quaternion: exponential and Cayley's map are made here. */
+/* The rotation of a quaternion, from which exponential and Cayley's map are made. */
 #ifndef DVI_GROUP_QUATERNION_H
 #define DVI_GROUP_QUATERNION_H
 
-/* q_i q_j as a head without error and a tail. */
+/* A product q_i q_j as a head without error and a tail. */
 typedef struct dvi__product {
   double head, tail;
 } dvi__product;
 
-/* R = I + 2 (q_0 hat(u) + hat(u)^2) / |q|^2, u = (q_1, q_2, q_3), for q of length 1 but for
- * roundoff; each entry is rounded once.
+/* Compute R = I + 2 (q_0 hat(u) + hat(u)^2) / |q|^2, u = (q_1, q_2, q_3), for q of length 1 but for
+ * roundoff. Each entry is rounded once.
  *
- * q is split into heads, multiples of 2^-25 whose products add up without error, and tails. Then
- * |q|^2 - 1 is known to 1e-23, and the tails can be given what is missing to length 1. Left as it
- * is, the roundoff of q would be in R^T R - I four times as large, and biased. */
+ * q is split into tails and heads, which are multiples of 2^-25 whose products add up without
+ * error. Then |q|^2 - 1 is known to 1e-23, and the tails are corrected to length 1. Otherwise the
+ * roundoff of q would be in R^T R - I four times as large, and biased. */
 static inline void dvi__rotation(const double q[4], double R[9])
 {
   const double shift = 0x1.8p27;

@@ -1,4 +1,4 @@
-/* SO(3): exponential, logarithm, and what they do to velocities.
+/* Exponential and logarithm of SO(3), and their action on velocities.
  *
  * The exponential of w is the rotation of the quaternion (cos |w|/2, w sin(|w|/2) / |w|). */
 #include <dvi/group.h>
@@ -34,8 +34,8 @@ void dvi_so3_dexp(const double w[3], const double v[3], double u[3])
   dvi__about(w, c[2], c[3], v, u);
 }
 
-/* (1 - x cot x) / (4 x^2), x = |w|/2, is (c_2 - c_3) / (4 c_1) at x^2: nothing cancels below a full
- * turn. */
+/* With x = |w|/2 the factor (1 - x cot x) / (4 x^2) is (c_2 - c_3) / (4 c_1) at x^2. Nothing
+ * cancels below a full turn. */
 void dvi_so3_dexp_inverse(const double w[3], const double v[3], double u[3])
 {
   double c[4];
@@ -43,7 +43,7 @@ void dvi_so3_dexp_inverse(const double w[3], const double v[3], double u[3])
   dvi__about(w, -0.5, c[1] != 0 ? (c[2] - c[3]) / (4 * c[1]) : 0, v, u);
 }
 
-/* The velocity is v - c_2 w x v + c_3 (w (w.v) - |w|^2 v); the derivatives of c_2 and c_3 in w are
+/* The velocity is v - c_2 w x v + c_3 (w (w.v) - |w|^2 v). The derivatives of c_2 and c_3 in w are
  * (2 c_4 - c_3) w and (3 c_5 - c_4) w. */
 void dvi_so3_velocity_derivative(const double w[3], const double v[3], double D[9])
 {

@@ -1,5 +1,4 @@
-/* What a user's function space is, as far as it can be found out: whether it is one, and whether it
- * is symmetric. */
+/* Checks of a user's function space, and the test for its symmetry. */
 #include <math.h>
 #include <string.h>
 
@@ -25,7 +24,7 @@ dvi_shapes *dvi__shapes_copy(const dvi_shapes *shapes)
   return copy;
 }
 
-static dvi_status check_name(const char *name)
+static dvi_status check_shapes_name(const char *name)
 {
   static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.";
   if (name == NULL)
@@ -38,7 +37,7 @@ static dvi_status check_name(const char *name)
                    name, NAME_MOST);
 }
 
-static dvi_status check_points(const dvi_shapes *s)
+static dvi_status check_shapes_points(const dvi_shapes *s)
 {
   if ((s->point == NULL) != (s->points == 0))
     return dvi__fail(
@@ -53,7 +52,7 @@ static dvi_status check_points(const dvi_shapes *s)
 dvi_status dvi__shapes_check(const dvi_shapes *s)
 {
   if (s == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "shapes: the shapes are NULL");
-  DVI_TRY(check_name(s->name));
+  DVI_TRY(check_shapes_name(s->name));
   if (s->evaluate == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "shapes %s: the callback evaluate is NULL", s->name);
   if (s->functions < 1 || s->functions > DVI_SHAPES_MOST)
@@ -73,39 +72,40 @@ dvi_status dvi__shapes_check(const dvi_shapes *s)
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "shapes %s: the order %d is claimed; 0 leaves it to the polynomials", s->name,
                      s->order);
-  return check_points(s);
+  return check_shapes_points(s);
 }
 
 /* ---- the functions ---- */
 
-/* Irrational places, so that none lies on a knot. */
+/* Irrational points, so that none lies on a knot. */
 enum { PLACES = 41 };
 static const double golden = 0.61803398874989485, least_move = 6e-6;
 
-static double place(int i)
+static double derivative_point(int i)
 {
   return least_move + (1 - 2 * least_move) * fmod((i + 1) * golden, 1);
 }
 
-/* The size of f_k', to which its errors are compared: the largest over the places, and what
- * rounding of f_k may do to differences. */
-static dvi_status measure(const dvi__user_basis *g, int k, double h, double *size)
+/* Find the size of f_k', by which its errors are measured. This is the largest value over the
+ * points, and the possible effect of f_k's rounding on differences. */
+static dvi_status measure_derivative(const dvi__user_basis *g, int k, double h, double *size)
 {
   *size = 0;
   for (int i = 0; i < PLACES; i++) {
-    DVI_TRY(dvi__user_basis_evaluate(g, h, place(i)));
+    DVI_TRY(dvi__user_basis_evaluate(g, h, derivative_point(i)));
     *size = fmax(*size, fabs(g->df[k]) + 1e-9 * fabs(g->f[k]));
   }
   return DVI_OK;
 }
 
-/* Second order: what differences leave of sin(nu tau) is nu^2 6e-12 of its derivative. */
+/* Compare with second-order differences. Their error for sin(nu tau) is nu^2 6e-12 of its
+ * derivative. */
 static dvi_status check_derivative(const dvi__user_basis *g, int k, double h)
 {
   double size;
-  DVI_TRY(measure(g, k, h, &size));
+  DVI_TRY(measure_derivative(g, k, h, &size));
   for (int i = 0; i < PLACES; i++) {
-    const double tau = place(i), before = tau - least_move, after = tau + least_move;
+    const double tau = derivative_point(i), before = tau - least_move, after = tau + least_move;
     DVI_TRY(dvi__user_basis_evaluate(g, h, before));
     const double f = g->f[k];
     DVI_TRY(dvi__user_basis_evaluate(g, h, after));
@@ -140,10 +140,10 @@ static dvi_status check_independence(const dvi__user_basis *g)
   return DVI_OK;
 }
 
-/* Functions are orthonormal, sum_j |b_j| psi'^2 = 1, and by Schwarz' inequality no value is above 1
- * but for the quadrature's error. One that is has almost all of its slope between the points: it
- * would be corrected (space/user_basis.c) by as much as it is large, and orders show only at steps
- * that are shorter by as much. */
+/* Functions are orthonormal, sum_j |b_j| psi'^2 = 1. By Schwarz' inequality no value is above 1 but
+ * for the quadrature's error. A function with a larger value has almost all of its slope between
+ * the points. Its correction (space/user_basis.c) would be as large as the value, and orders would
+ * show only at steps that are shorter by this factor. */
 static dvi_status check_resolution(const dvi__user_basis *g)
 {
   enum { LARGEST = 100 };
@@ -181,8 +181,8 @@ static int points_mirror(const dvi__user_basis *g, const dvi__user_basis_tables 
   return 1;
 }
 
-/* The mirrored function, tau to psi_k(1 - tau) - psi_k(1), in the basis b: coefficients [count] in
- * at_value, and what is left of the derivatives, its largest. */
+/* Expand the mirrored function tau -> psi_k(1 - tau) - psi_k(1) in the basis b, with the
+ * coefficients [count] in at_value. Return the largest residual of the derivatives. */
 static long double project_mirrored(const dvi__user_basis *g, const dvi__user_basis_tables *a,
                                     const dvi__user_basis_tables *b, int k)
 {
@@ -201,7 +201,7 @@ static long double project_mirrored(const dvi__user_basis *g, const dvi__user_ba
   return most;
 }
 
-static long double combine(const dvi__user_basis *g, const double *function)
+static long double combine_functions(const dvi__user_basis *g, const double *function)
 {
   long double sum = 0;
   for (int l = 0; l < g->count; l++) sum += g->at_value[l] * (long double)function[l];
@@ -212,16 +212,16 @@ static int function_mirrors(const dvi__user_basis *g, const dvi__user_basis_tabl
                             const dvi__user_basis_tables *b, int k)
 {
   long double most = project_mirrored(g, a, b, k);
-  most = fmaxl(most, fabsl((long double)a->end[k] + combine(g, b->end)));
+  most = fmaxl(most, fabsl((long double)a->end[k] + combine_functions(g, b->end)));
   for (int j = 0; j < g->points; j++) {
     const double value = a->psi[(g->points - 1 - j) * g->count + k];
-    most = fmaxl(most, fabsl((long double)value - (long double)a->end[k] -
-                             combine(g, b->psi + j * g->count)));
+    const long double mirrored = (long double)value - (long double)a->end[k];
+    most = fmaxl(most, fabsl(mirrored - combine_functions(g, b->psi + j * g->count)));
   }
   return most <= 1e-9L;
 }
 
-/* A step back undoes a step if its paths are the same ones, and its points too. What cannot be
+/* A step back undoes a step if both have the same paths and the same points. A space that cannot be
  * evaluated backward is not symmetric. */
 int dvi__user_basis_mirrors(dvi__user_basis *g)
 {

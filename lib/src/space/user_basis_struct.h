@@ -1,52 +1,54 @@
-/* The inside of a user's function space, for given.c and given_check.c. */
-#ifndef DVI_SPACE_GIVEN_STRUCT_H
-#define DVI_SPACE_GIVEN_STRUCT_H
+/* The inside of a user's function space, for user_basis.c and user_basis_check.c. */
+#ifndef DVI_SPACE_USER_BASIS_STRUCT_H
+#define DVI_SPACE_USER_BASIS_STRUCT_H
 #include <math.h>
 
 #include "space/user_basis.h"
 
-/* What is known of steps of one length. */
+/* Tables of steps of one length. */
 typedef struct dvi__user_basis_tables {
-  double h;              /* 0: nothing */
-  double *node, *weight; /* [points] */
-  double *psi, *dpsi;    /* [points*count] by points */
-  /* [count] e_k(0); [count*count] by rows: psi_k = sum_i matrix[k][i] (e_i - e_i(0)), i <= k */
+  double h;              /* length of the step, 0 for empty tables */
+  double *node, *weight; /* nodes and weights [points] */
+  double *psi, *dpsi;    /* values and derivatives [points*count], by points */
+  /* Values e_k(0) [count], and the matrix [count*count] by rows with psi_k = sum_i matrix[k][i]
+   * (e_i - e_i(0)), i <= k. */
   long double *start, *matrix;
-  double *end, *slopes[2]; /* [count] psi_k(1); psi_k' at both ends */
-  double *lean;            /* [count] of the function with psi' = tau */
-  int order;               /* the quadrature's, 2 degree at most */
+  double *end, *slopes[2]; /* psi_k(1), and psi_k' at both ends, [count] */
+  double *lean;            /* coefficients [count] of the function with psi' = tau */
+  int order;               /* order of the quadrature, 2 degree at most */
   dvi__user_basis_fingerprint fingerprint;
 } dvi__user_basis_tables;
 
 struct dvi__user_basis {
   const dvi_shapes *shapes;
-  int degree, count, points;         /* count: of polynomials but the constant, and functions */
-  double *node, *weight;             /* [points] of the library's quadrature */
-  dvi__user_basis_tables now, spare; /* spare: in the making */
-  double *numbers;                   /* the memory of both */
+  /* count is the number of functions, polynomials without the constant included */
+  int degree, count, points;
+  double *node, *weight;             /* nodes and weights [points] of the library's quadrature */
+  dvi__user_basis_tables now, spare; /* tables in use, and tables under construction */
+  double *numbers;                   /* memory of both tables */
   long double *long_numbers;
-  long double *value, *slope;       /* [count*points] by functions, work */
-  long double *at_value, *at_slope; /* [count] at one point */
-  double *f, *df;                   /* [functions] the user's */
+  long double *value, *slope;       /* work [count*points], by functions */
+  long double *at_value, *at_slope; /* e_k and e_k' [count] at one point */
+  double *f, *df;                   /* the user's functions [functions] at one point */
   int broken, symmetric, order;
 };
 
-/* e_k and e_k' [count] at tau of a step of length h, in at_value and at_slope. */
-dvi_status dvi__user_basis_evaluate(const dvi__user_basis *given, double h, double tau);
+/* Compute e_k and e_k' [count] at tau of a step of length h, in at_value and at_slope. */
+dvi_status dvi__user_basis_evaluate(const dvi__user_basis *basis, double h, double tau);
 
-/* The tables of a length. */
-dvi_status dvi__user_basis_fill(const dvi__user_basis *given, double h,
+/* Compute the tables of steps of length h. */
+dvi_status dvi__user_basis_fill(const dvi__user_basis *basis, double h,
                                 dvi__user_basis_tables *tables);
 
-/* What the user supplied, at shapes->h, whose tables are filled. */
-dvi_status dvi__user_basis_check(const dvi__user_basis *given);
+/* Check what the user supplied at shapes->h, whose tables are computed. */
+dvi_status dvi__user_basis_check(const dvi__user_basis *basis);
 
-/* Whether the spaces of h and -h mirror each other, and so do the points; fills the spare
- * tables. */
-int dvi__user_basis_mirrors(dvi__user_basis *given);
+/* Return 1 if the spaces of h and -h mirror each other, with their points. The spare tables are
+ * overwritten. */
+int dvi__user_basis_mirrors(dvi__user_basis *basis);
 
-/* The weight of point j in the inner product by which function l is made orthonormal: of
- * polynomials, to which all are orthogonal, it is the quadrature's own. */
+/* Return the weight of point j in the inner product by which function l is made orthonormal. All
+ * functions are orthogonal to the polynomials, whose weight is the quadrature's own. */
 static inline long double dvi__user_basis_measure(const dvi__user_basis *g,
                                                   const dvi__user_basis_tables *t, int j, int l)
 {

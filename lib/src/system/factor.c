@@ -9,7 +9,7 @@
 #include "group/vector.h"
 #include "num/finite.h"
 
-/* ---- places ---- */
+/* ---- slots ---- */
 
 static dvi_status check_factor(int index, const dvi_factor *factor)
 {
@@ -37,7 +37,8 @@ static dvi_status check_factor(int index, const dvi_factor *factor)
   return DVI_OK;
 }
 
-/* How many slots of which kind a factor begins with and how many coordinates of R^n follow. */
+/* Return the count of coordinates of R^n of a factor. The second function returns 1 if a slot of
+ * another kind comes before them. */
 static int lines_of(const dvi_factor *factor)
 {
   return factor->kind == DVI_RN ? factor->size : factor->kind == DVI_SE3 ? 3 : 0;
@@ -53,7 +54,7 @@ static int has_slot(const dvi_factor *factor, dvi__chart_kind *kind)
 
 static void add_slot(dvi_system *s, dvi__chart_kind kind)
 {
-  s->slots[s->slot_count++] = (dvi__factor_slot){kind, s->n, s->nv, s->nx};
+  s->slots[s->slot_count++] = (dvi__factor_slot){.kind = kind, .q = s->n, .v = s->nv, .x = s->nx};
   s->terms |= kind == DVI__ROTATION ? DVI__ROTATIONS : kind == DVI__SPHERE ? DVI__DIRECTIONS : 0U;
   s->n += dvi__chart_stored(kind);
   s->nv += dvi__chart_velocities(kind);
@@ -102,9 +103,9 @@ dvi_status dvi__factors_lay_out(const dvi_system_terms *terms, dvi_system *s)
 
 /* ---- mass ---- */
 
-/* Whether the symmetric A/size + shift I is positive definite: of size 1, so that no product is too
- * small. */
-static int positive(const double *A, double size, double shift)
+/* Return 1 if the symmetric A/size + shift I is positive definite. The scaling to size 1 keeps
+ * products from underflow. */
+static int is_positive_matrix(const double *A, double size, double shift)
 {
   const double a = A[0] / size + shift, b = A[4] / size + shift, c = A[8] / size + shift;
   const double d = A[1] / size, e = A[2] / size, f = A[5] / size;
@@ -112,7 +113,7 @@ static int positive(const double *A, double size, double shift)
          a * (b * c - f * f) - d * (d * c - f * e) + e * (d * f - b * e) > 0;
 }
 
-/* J, symmetric to the last digit, and its trace. */
+/* Make J symmetric to the last digit, and compute its trace. */
 static dvi_status symmetric_inertia(int index, const double *given, double *J, double *trace)
 {
   *trace = given[0] + given[4] + given[8];
@@ -126,14 +127,14 @@ static dvi_status symmetric_inertia(int index, const double *given, double *J, d
                          j);
       J[3 * i + j] = 0.5 * given[3 * i + j] + 0.5 * given[3 * j + i];
     }
-  if (*trace > 0 && positive(J, *trace, 0)) return DVI_OK;
+  if (*trace > 0 && is_positive_matrix(J, *trace, 0)) return DVI_OK;
   return dvi__fail(DVI_BAD_ARGUMENT, "system: the inertia of factor %d is not positive definite",
                    index);
 }
 
-/* The second moments of the mass, tr(J)/2 I - J: positive semidefinite for a body; about the centre
- * of mass, too. */
-static dvi_status moments(int index, const dvi_factor *factor, double *Jd)
+/* Compute the second moments of the mass, tr(J)/2 I - J. They are positive semidefinite for a body,
+ * and about the centre of mass, too. */
+static dvi_status second_moments(int index, const dvi_factor *factor, double *Jd)
 {
   double J[9] = {0}, about[9], trace;
   const double rounding = 1e-12, *centre = factor->centre;
@@ -144,10 +145,11 @@ static dvi_status moments(int index, const dvi_factor *factor, double *Jd)
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) {
       Jd[3 * i + j] = (i == j ? 0.5 * trace : 0) - J[3 * i + j];
-      about[3 * i + j] = Jd[3 * i + j] -
-                         (centre != NULL ? factor->mass * centre[i] * centre[j] : 0);
+      const double shift = centre != NULL ? factor->mass * centre[i] * centre[j] : 0;
+      about[3 * i + j] = Jd[3 * i + j] - shift;
     }
-  if (positive(Jd, trace, rounding) && positive(about, trace, rounding)) return DVI_OK;
+  if (is_positive_matrix(Jd, trace, rounding) && is_positive_matrix(about, trace, rounding))
+    return DVI_OK;
   return dvi__fail(DVI_BAD_ARGUMENT,
                    "system: the inertia of factor %d is that of no body: about its origin and its "
                    "centre of mass no principal "
@@ -155,41 +157,41 @@ static dvi_status moments(int index, const dvi_factor *factor, double *Jd)
                    index);
 }
 
-/* Entries of the mass: (row, column, value), summed where they meet. */
+/* Entries (row, column, value) of the mass, summed where they meet. */
 typedef struct entries {
   int count;
   int *row, *column;
   double *value;
 } entries;
 
-static void add_entry(entries *list, int row, int column, double value)
+static void add_mass_entry(entries *list, int row, int column, double value)
 {
   list->row[list->count] = row;
   list->column[list->count] = column;
   list->value[list->count++] = value;
 }
 
-/* A body's kinetic energy is that of its points x + R rho: sum_i of row i of R, R_i, (R_i'.Jd R_i'
- * + m x_i'^2)/2 + m x_i' R_i'.centre. */
-static dvi_status add_body(int index, const dvi_factor *factor, int at, entries *list)
+/* Add the entries of a body. Its kinetic energy is that of its points x + R rho, the sum over i of
+ * (R_i'.Jd R_i' + m x_i'^2)/2 + m x_i' R_i'.centre, with row i of R, R_i. */
+static dvi_status add_body_mass(int index, const dvi_factor *factor, int at, entries *list)
 {
   double Jd[9] = {0};
-  DVI_TRY(moments(index, factor, Jd));
+  DVI_TRY(second_moments(index, factor, Jd));
   for (int i = 0; i < 3; i++) {
     const int x = at + 9 + i, row = at + 3 * i;
     for (int j = 0; j < 3; j++)
-      for (int k = 0; k < 3; k++) add_entry(list, row + j, row + k, Jd[3 * j + k]);
+      for (int k = 0; k < 3; k++) add_mass_entry(list, row + j, row + k, Jd[3 * j + k]);
     if (factor->kind == DVI_SO3) continue;
-    add_entry(list, x, x, factor->mass);
+    add_mass_entry(list, x, x, factor->mass);
     for (int j = 0; j < 3 && factor->centre != NULL; j++) {
-      add_entry(list, x, row + j, factor->mass * factor->centre[j]);
-      add_entry(list, row + j, x, factor->mass * factor->centre[j]);
+      add_mass_entry(list, x, row + j, factor->mass * factor->centre[j]);
+      add_mass_entry(list, row + j, x, factor->mass * factor->centre[j]);
     }
   }
   return DVI_OK;
 }
 
-static int stored_of(const dvi_factor *factor)
+static int stored_numbers(const dvi_factor *factor)
 {
   dvi__chart_kind kind;
   return lines_of(factor) + (has_slot(factor, &kind) ? dvi__chart_stored(kind) : 0);
@@ -200,13 +202,13 @@ static dvi_status add_factors(const dvi_system_terms *terms, entries *list)
   int at = 0;
   for (int f = 0; f < terms->factor_count; f++) {
     const dvi_factor *factor = &terms->factors[f];
-    const int stored = stored_of(factor);
-    if (factor->inertia != NULL) DVI_TRY(add_body(f, factor, at, list));
+    const int stored = stored_numbers(factor);
+    if (factor->inertia != NULL) DVI_TRY(add_body_mass(f, factor, at, list));
     if (factor->kind == DVI_SE3 && factor->inertia == NULL && factor->mass != 0)
       return dvi__fail(DVI_BAD_ARGUMENT, "system: factor %d, of SE(3), has a mass but no inertia",
                        f);
     for (int i = 0; i < stored && factor->kind != DVI_SE3 && factor->mass != 0; i++)
-      add_entry(list, at + i, at + i, factor->mass);
+      add_mass_entry(list, at + i, at + i, factor->mass);
     at += stored;
   }
   return DVI_OK;
@@ -216,15 +218,16 @@ static void add_mass(const dvi_mass *mass, const dvi__pattern *pattern, int n, e
 {
   for (int j = 0; j < n && mass->values == NULL; j++)
     if (mass->diagonal != NULL || mass->scalar != 0)
-      add_entry(list, j, j, mass->diagonal != NULL ? mass->diagonal[j] : mass->scalar);
+      add_mass_entry(list, j, j, mass->diagonal != NULL ? mass->diagonal[j] : mass->scalar);
   for (int j = 0; j < n && mass->values != NULL; j++)
     for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++)
-      add_entry(list, pattern->row[e], j, mass->values[e]);
+      add_mass_entry(list, pattern->row[e], j, mass->values[e]);
 }
 
-/* Sort the entries into columns with ascending rows: by rows first, then by columns, each sort
- * keeping the other's order. */
-static void sort_by(const int *key, int n, int count, const int *order, int *start, int *sorted)
+/* Sort the entries into columns with ascending rows, by rows first, then by columns. Each sort
+ * keeps the other's order. */
+static void sort_entries_by(const int *key, int n, int count, const int *order, int *start,
+                            int *sorted)
 {
   memset(start, 0, ((size_t)n + 1) * sizeof *start);
   for (int e = 0; e < count; e++) start[key[e] + 1]++;
@@ -235,8 +238,8 @@ static void sort_by(const int *key, int n, int count, const int *order, int *sta
   }
 }
 
-/* `sorted` lists the entries column by column: equal ones become one. */
-static void join(const entries *list, const int *sorted, dvi_system *s)
+/* Join equal entries. `sorted` lists the entries column by column. */
+static void join_entries(const entries *list, const int *sorted, dvi_system *s)
 {
   int made = -1;
   for (int e = 0; e < list->count; e++) {
@@ -252,17 +255,20 @@ static void join(const entries *list, const int *sorted, dvi_system *s)
     if (s->vv.start[j + 1] < s->vv.start[j]) s->vv.start[j + 1] = s->vv.start[j];
 }
 
-static dvi_status compress(const entries *list, dvi_system *s)
+static dvi_status compress_entries(const entries *list, dvi_system *s)
 {
   int *start = DVI_NEW(int, (size_t)s->n + 1), *by_row = DVI_NEW(int, list->count),
       *sorted = DVI_NEW(int, list->count);
-  s->vv = (dvi__pattern){s->n, s->n, DVI_NEW(int, (size_t)s->n + 1), DVI_NEW(int, list->count)};
+  s->vv = (dvi__pattern){.rows = s->n,
+                         .columns = s->n,
+                         .start = DVI_NEW(int, (size_t)s->n + 1),
+                         .row = DVI_NEW(int, list->count)};
   s->mass_values = DVI_NEW(double, list->count);
   const int possible = start && by_row && sorted && s->vv.start && s->vv.row && s->mass_values;
   if (possible) {
-    sort_by(list->row, s->n, list->count, NULL, start, by_row);
-    sort_by(list->column, s->n, list->count, by_row, start, sorted);
-    join(list, sorted, s);
+    sort_entries_by(list->row, s->n, list->count, NULL, start, by_row);
+    sort_entries_by(list->column, s->n, list->count, by_row, start, sorted);
+    join_entries(list, sorted, s);
   }
   dvi__release(start);
   dvi__release(by_row);
@@ -270,8 +276,7 @@ static dvi_status compress(const entries *list, dvi_system *s)
   return possible ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "system: no memory for its mass");
 }
 
-/* Whether no mass concerns a slot: wherever it stands, its momentum says nothing of its
- * velocity. */
+/* Return 1 if a slot has no mass. The momentum of such a slot says nothing of its velocity. */
 static int is_massless(const dvi_system *s, const dvi__factor_slot *slot)
 {
   const int end = s->vv.start[slot->q + dvi__chart_stored(slot->kind)];
@@ -301,7 +306,8 @@ static dvi_status check_massive(const dvi_system_terms *terms, const dvi_system 
 static size_t most_entries(const dvi_system_terms *terms, const dvi__pattern *declared, int n)
 {
   size_t most = (size_t)dvi__pattern_entries(declared) + (size_t)n;
-  for (int f = 0; f < terms->factor_count; f++) most += 48 + (size_t)stored_of(&terms->factors[f]);
+  for (int f = 0; f < terms->factor_count; f++)
+    most += 48 + (size_t)stored_numbers(&terms->factors[f]);
   return most;
 }
 
@@ -324,7 +330,7 @@ dvi_status dvi__factors_mass(const dvi_system_terms *terms, dvi_system *s)
     if (dvi__first_not_finite((size_t)list.count, list.value) >= 0)
       status = dvi__fail(DVI_SINGULAR, "system: the mass matrix is not finite");
   }
-  if (status == DVI_OK) status = compress(&list, s);
+  if (status == DVI_OK) status = compress_entries(&list, s);
   if (status == DVI_OK) status = check_massive(terms, s);
   dvi__release(list.row);
   dvi__release(list.column);
@@ -335,7 +341,7 @@ dvi_status dvi__factors_mass(const dvi_system_terms *terms, dvi_system *s)
 
 /* ---- points ---- */
 
-static double length(int count, const double *x)
+static double euclidean_length(int count, const double *x)
 {
   double sum = 0;
   for (int i = 0; i < count; i++) sum += x[i] * x[i];
@@ -345,8 +351,9 @@ static double length(int count, const double *x)
 static double distance_of(const dvi__factor_slot *slot, const double *q)
 {
   if (slot->kind == DVI__LINE) return 0;
-  return slot->kind == DVI__ROTATION ? dvi_so3_distance(q + slot->q)
-                                     : fabs(length(dvi__chart_stored(slot->kind), q + slot->q) - 1);
+  return slot->kind == DVI__ROTATION
+             ? dvi_so3_distance(q + slot->q)
+             : fabs(euclidean_length(dvi__chart_stored(slot->kind), q + slot->q) - 1);
 }
 
 double dvi_system_distance(const dvi_system *system, const double *q)
@@ -361,7 +368,7 @@ double dvi_system_distance(const dvi_system *system, const double *q)
   return largest;
 }
 
-/* Rounding of numbers that somebody else has computed. */
+/* Rounding of numbers that the user has computed. */
 static const double near_enough = 1e-12;
 
 dvi_status dvi__factors_check(const dvi_system *s, const double *q, const double *second)
@@ -378,7 +385,7 @@ dvi_status dvi__factors_check(const dvi_system *s, const double *q, const double
     if (slot->kind != DVI__SPHERE) continue;
     const double *x = q + slot->q, *p = second + slot->v,
                  radial = x[0] * p[0] + x[1] * p[1] + x[2] * p[2];
-    if (!(fabs(radial) <= near_enough * length(3, p)))
+    if (!(fabs(radial) <= near_enough * euclidean_length(3, p)))
       return dvi__fail(DVI_BAD_ARGUMENT,
                        "numbers %d to %d of the velocity or momentum of a direction q are not "
                        "orthogonal to it: off by %.2e; subtract "
@@ -424,8 +431,8 @@ void dvi__factors_momentum(const dvi_system *s, const double *q, const double *c
 
 /* ---- projection ---- */
 
-/* Of finite numbers: so that none of their products is too large. 0: all of them are 0. */
-static int scale(int count, double *x)
+/* Scale finite numbers so that none of their products overflows. Return 0 if all of them are 0. */
+static int scale_down(int count, double *x)
 {
   const double largest = dvi__largest((size_t)count, x);
   for (int i = 0; i < count && largest > 0; i++) x[i] /= largest;
@@ -435,7 +442,7 @@ static int scale(int count, double *x)
 static int make_rotation(double *R)
 {
   double normal[3];
-  if (!scale(9, R)) return 0;
+  if (!scale_down(9, R)) return 0;
   dvi__cross(R, R + 3, normal);
   if (!(dvi__dot(normal, R + 6) > 0)) return 0;
   dvi_so3_project(R, R);
@@ -444,8 +451,8 @@ static int make_rotation(double *R)
 
 static int make_unit(int count, double *x)
 {
-  if (!scale(count, x)) return 0;
-  const double size = length(count, x);
+  if (!scale_down(count, x)) return 0;
+  const double size = euclidean_length(count, x);
   for (int i = 0; i < count; i++) x[i] /= size;
   return 1;
 }

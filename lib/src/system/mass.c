@@ -1,4 +1,4 @@
-/* A constant mass: checked, and copied in the form that evaluators use. */
+/* A constant mass is checked, and copied in the form that evaluators use. */
 #include "system/mass.h"
 
 #include <math.h>
@@ -20,8 +20,8 @@ static dvi_status check_symmetric(const dvi__pattern *pattern, const double *val
   return DVI_OK;
 }
 
-/* The kind that an evaluator will use, so that both judge alike. */
-static dvi_status check_regular(const dvi__pattern *pattern, const double *values)
+/* Check with the kind of factors that an evaluator will use, so that both give the same answer. */
+static dvi_status check_regular_mass(const dvi__pattern *pattern, const double *values)
 {
   dvi__linear *linear;
   dvi_status status = dvi__linear_create(pattern, DVI__LINEAR_AUTO, NULL, &linear);
@@ -37,7 +37,7 @@ static dvi_status copy_sparse_mass(dvi_system *s, const dvi_mass *mass)
   if (dvi__first_not_finite(entries, mass->values) >= 0)
     return dvi__fail(DVI_SINGULAR, "system: the mass matrix is not finite");
   DVI_TRY(check_symmetric(&s->vv, mass->values));
-  DVI_TRY(check_regular(&s->vv, mass->values));
+  DVI_TRY(check_regular_mass(&s->vv, mass->values));
   s->mass_values = dvi__duplicate(mass->values, entries, sizeof(double));
   return s->mass_values != NULL ? DVI_OK
                                 : dvi__fail(DVI_NO_MEMORY, "system: no memory for its mass");

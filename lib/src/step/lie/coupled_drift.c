@@ -232,7 +232,7 @@ static void begin(dvi__coupled_drift *l, double h, const double *q, const double
 static void find_residual(dvi__coupled_drift *l)
 {
   for (int u = 0; u < l->count; u++)
-    dvi__chart_moser_veselov(&l->unit[u].chart, l->xi + l->unit[u].x,
+    dvi__chart_displacement(&l->unit[u].chart, l->xi + l->unit[u].x,
                              l->moved + l->unit[u].slot->q);
   multiply(l);
   memcpy(l->change, l->impulse, (size_t)l->unknowns * sizeof *l->change);

@@ -1,4 +1,4 @@
-/* Charts at one point of a configuration space, and what passes between them and the space. */
+/* Charts at one point of a configuration space, and maps between the charts and the space. */
 #include "system/chart/charted_struct.h"
 
 #include <math.h>
@@ -9,7 +9,7 @@
 
 /* ---- create, destroy ---- */
 
-static dvi_status make_system(dvi__charted *x)
+static dvi_status make_charted_system(dvi__charted *x)
 {
   const int reduced = x->reduced.bodies != NULL;
   const dvi_lagrangian lagrangian = {
@@ -24,7 +24,7 @@ static dvi_status make_system(dvi__charted *x)
                            &x->system);
 }
 
-static dvi_status allocate(dvi__charted *x)
+static dvi_status charted_allocate(dvi__charted *x)
 {
   const size_t group = (size_t)x->base->n * DVI__GROUP, slots = (size_t)x->base->slot_count;
   x->chart = DVI_NEW(dvi__chart, slots);
@@ -45,18 +45,18 @@ static dvi_status allocate(dvi__charted *x)
   return dvi__fail(DVI_NO_MEMORY, "charts: no memory for %zu factors", slots);
 }
 
-static dvi_status fill(dvi__charted *x, const dvi_system *system, int reduced,
-                       dvi_counters *counters)
+static dvi_status charted_fill(dvi__charted *x, const dvi_system *system, int reduced,
+                               dvi_counters *counters)
 {
   x->base = system;
   x->counters = counters;
   DVI_TRY(dvi__system_prepare_hessian(system));
-  DVI_TRY(allocate(x));
+  DVI_TRY(charted_allocate(x));
   DVI_TRY(dvi__evaluator_create(system, DVI__GROUP, DVI__HESSIANS, counters, &x->evaluator));
   if (reduced) DVI_TRY(dvi__reduced_create(system, &x->reduced));
   DVI_TRY(dvi__charted_make_patterns(x));
   if (reduced) DVI_TRY(dvi__reduced_place(x));
-  return make_system(x);
+  return make_charted_system(x);
 }
 
 dvi_status dvi__charted_create(const dvi_system *system, int reduced, dvi_counters *counters,
@@ -64,7 +64,7 @@ dvi_status dvi__charted_create(const dvi_system *system, int reduced, dvi_counte
 {
   dvi__charted *x = *charted = DVI_NEW(dvi__charted, 1);
   if (x == NULL) return dvi__fail(DVI_NO_MEMORY, "charts: no memory");
-  const dvi_status status = fill(x, system, reduced, counters);
+  const dvi_status status = charted_fill(x, system, reduced, counters);
   if (status != DVI_OK) dvi__charted_destroy(charted);
   return status;
 }
@@ -96,7 +96,7 @@ const dvi_system *dvi__charted_system(const dvi__charted *x)
   return x->system;
 }
 
-/* ---- between the charts and the space ---- */
+/* ---- maps between the charts and the space ---- */
 
 void dvi__charted_centre(dvi__charted *x, const double *q)
 {
@@ -171,7 +171,7 @@ dvi_status dvi__charted_check(const dvi__charted *x, const double *xi)
   return DVI_OK;
 }
 
-/* Where every number of `system` was finite, those of the charts are too large. */
+/* If every number of `system` was finite, numbers of the charts are too large. */
 dvi_status dvi__charted_explain(const dvi__charted *x, dvi_status status)
 {
   const int by_callback = status == DVI_CALLBACK_RETRY || status == DVI_CALLBACK_FAILED;

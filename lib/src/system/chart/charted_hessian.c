@@ -1,16 +1,16 @@
-/* Second derivatives of the Lagrangian in the charts, in the letters of charted_lagrangian.c:
+/* Second derivatives of the Lagrangian in the charts, in the notation of charted_lagrangian.c,
  *
- *     L_xi'xi' = T^T M T,     L_xixi' = S^T M T + w.d2y,     L_xixi = S^T M S + T^T L_yy T + (w.d3y) xi' +
- * L_y.d2y */
+ *     L_xi'xi' = T^T M T,     L_xixi' = S^T M T + w.d2y,
+ *     L_xixi = S^T M S + T^T L_yy T + (w.d3y) xi' + L_y.d2y */
 #include "system/chart/charted_struct.h"
 
 #include <string.h>
 
 #include "core/status.h"
 
-/* T, S and the curvatures of point k of a group. */
-static void bend(dvi__charted *x, int count, int first, int group, int k, const double *xi,
-                 const double *rate)
+/* Compute T, S and the curvatures at point k of a group. */
+static void bend_charts(dvi__charted *x, int count, int first, int group, int k, const double *xi,
+                        const double *rate)
 {
   for (int c = 0; c < x->base->slot_count; c++) {
     const dvi__factor_slot *slot = &x->base->slots[c];
@@ -26,26 +26,26 @@ static void bend(dvi__charted *x, int count, int first, int group, int k, const 
   }
 }
 
-/* The tangents of stored coordinate i. */
-static const double *row_of(const dvi__factor_slot *slot, const double *tangents, int i)
+/* Return the tangents of stored coordinate i. */
+static const double *tangents_of(const dvi__factor_slot *slot, const double *tangents, int i)
 {
   return tangents + 3 * (size_t)slot->q +
          (size_t)(i - slot->q) * (size_t)dvi__chart_size(slot->kind);
 }
 
-/* values += left^T (entry) right, in the block of an entry (i,j), for point k of `count`. */
-static void add_product(const dvi__place *at, int rows, int columns, double entry,
-                        const double *left, const double *right, size_t count, size_t k,
-                        double *values)
+/* Add left^T (entry) right to the block of an entry (i,j), for point k of `count`. */
+static void add_entry_product(const dvi__place *at, int rows, int columns, double entry,
+                              const double *left, const double *right, size_t count, size_t k,
+                              double *values)
 {
   for (int b = 0; b < columns; b++)
     for (int a = 0; a < rows; a++)
       values[(size_t)(at->first + b * at->column + a) * count + k] += left[a] * entry * right[b];
 }
 
-/* left^T M right in the blocks of `in`; a slot's own block, nearly all of M, is summed up before it
- * is added. */
-static void add_cell_product(const dvi__charted *x, const dvi__factor_slot *slot,
+/* Add left^T M right to the blocks of `in`. A slot's own block, nearly all of M, is summed up
+ * before it is added. */
+static void add_slot_product(const dvi__charted *x, const dvi__factor_slot *slot,
                              const dvi__place *in, const double *left, const double *right,
                              size_t count, size_t k, double *values)
 {
@@ -57,10 +57,10 @@ static void add_cell_product(const dvi__charted *x, const dvi__factor_slot *slot
     for (int e = vv->start[j]; e < vv->start[j + 1]; e++) {
       const int i = vv->row[e];
       const dvi__factor_slot *row = &x->base->slots[x->slot[i]];
-      const double *from = row_of(row, left, i), *to = row_of(slot, right, j);
+      const double *from = tangents_of(row, left, i), *to = tangents_of(slot, right, j);
       if (row != slot) {
-        add_product(&in[e], dvi__chart_size(row->kind), size, x->base->mass_values[e], from, to,
-                    count, k, values);
+        add_entry_product(&in[e], dvi__chart_size(row->kind), size, x->base->mass_values[e], from,
+                          to, count, k, values);
         continue;
       }
       own = &in[e];
@@ -75,10 +75,10 @@ void dvi__charted_add_mass_product(const dvi__charted *x, const dvi__place *in, 
                                    const double *right, size_t count, size_t k, double *values)
 {
   for (int c = 0; c < x->base->slot_count; c++)
-    add_cell_product(x, &x->base->slots[c], in, left, right, count, k, values);
+    add_slot_product(x, &x->base->slots[c], in, left, right, count, k, values);
 }
 
-/* left^T L_yy T in the blocks of qq. */
+/* Add left^T L_yy T to the blocks of qq. */
 void dvi__charted_add_potentials(const dvi__charted *x, int group, int in_group, const double *left,
                                  size_t count, size_t k, double *L_qq)
 {
@@ -87,9 +87,9 @@ void dvi__charted_add_potentials(const dvi__charted *x, int group, int in_group,
     for (int e = qq->start[j]; e < qq->start[j + 1]; e++) {
       const dvi__factor_slot *row = &x->base->slots[x->slot[qq->row[e]]],
                              *column = &x->base->slots[x->slot[j]];
-      add_product(&x->in_qq[e], dvi__chart_size(row->kind), dvi__chart_size(column->kind),
-                  x->L_yy[e * group + in_group], row_of(row, left, qq->row[e]),
-                  row_of(column, x->T, j), count, k, L_qq);
+      add_entry_product(&x->in_qq[e], dvi__chart_size(row->kind), dvi__chart_size(column->kind),
+                        x->L_yy[e * group + in_group], tangents_of(row, left, qq->row[e]),
+                        tangents_of(column, x->T, j), count, k, L_qq);
     }
 }
 
@@ -110,7 +110,8 @@ void dvi__charted_add_own_blocks(const dvi__charted *x, int c, const double *in_
   dvi__charted_add_block(&x->own_in_qv[c], size, size, in_qv, count, k, qv);
 }
 
-static void add_curvature(const dvi__charted *x, size_t count, size_t k, double *L_qq, double *L_qv)
+static void add_chart_curvature(const dvi__charted *x, size_t count, size_t k, double *L_qq,
+                                double *L_qv)
 {
   for (int c = 0; c < x->base->slot_count; c++)
     if (x->base->slots[c].kind != DVI__LINE)
@@ -126,19 +127,19 @@ static dvi_status hessian_group(dvi__charted *x, int count, int first, int group
   DVI_TRY(dvi__lagrangian_hessian(x->evaluator, group, x->t, x->y, x->rate, x->L_yy, NULL, NULL));
   for (int k = 0; k < group; k++) {
     const size_t points = (size_t)count, to = (size_t)first + (size_t)k;
-    bend(x, count, first, group, k, xi, rate);
+    bend_charts(x, count, first, group, k, xi, rate);
     dvi__charted_add_mass_product(x, x->mass_in_qq, x->S, x->S, points, to, L_qq);
     dvi__charted_add_mass_product(x, x->mass_in_qv, x->S, x->T, points, to, L_qv);
     dvi__charted_add_mass_product(x, x->mass_in_vv, x->T, x->T, points, to, L_vv);
     dvi__charted_add_potentials(x, group, k, x->T, points, to, L_qq);
-    add_curvature(x, points, to, L_qq, L_qv);
+    add_chart_curvature(x, points, to, L_qq, L_qv);
     if (on_path) dvi__charted_add_moment_changes(x, count, first, group, k);
   }
   if (on_path) dvi__charted_find_moments(x, first, group);
   return DVI_OK;
 }
 
-static void clear(const dvi__pattern *pattern, int count, double *values)
+static void clear_hessian(const dvi__pattern *pattern, int count, double *values)
 {
   memset(values, 0, (size_t)dvi__pattern_entries(pattern) * (size_t)count * sizeof *values);
 }
@@ -146,7 +147,7 @@ static void clear(const dvi__pattern *pattern, int count, double *values)
 void dvi__charted_mass(dvi__charted *x, double *mass)
 {
   static const double rest[DVI__CHART_SIZE] = {0};
-  clear(&x->vv, 1, mass);
+  clear_hessian(&x->vv, 1, mass);
   for (int c = 0; c < x->base->slot_count; c++) {
     const size_t row = 3 * (size_t)x->base->slots[c].q;
     dvi__functions functions;
@@ -156,7 +157,7 @@ void dvi__charted_mass(dvi__charted *x, double *mass)
   dvi__charted_add_mass_product(x, x->mass_in_vv, x->T, x->T, 1, 0, mass);
 }
 
-static int smaller(int a, int b)
+static int smaller_group(int a, int b)
 {
   return a < b ? a : b;
 }
@@ -168,16 +169,16 @@ int dvi__charted_hessian(int count, const double *t, const double *xi, const dou
   const int on_path = dvi__charted_on_path(x, count);
   dvi_status status = DVI_OK;
   x->counters->hessians -= count;
-  clear(&x->qq, count, L_qq);
-  clear(&x->qv, count, L_qv);
-  clear(&x->vv, count, L_vv);
+  clear_hessian(&x->qq, count, L_qq);
+  clear_hessian(&x->qv, count, L_qv);
+  clear_hessian(&x->vv, count, L_vv);
   if (on_path) {
     dvi__charted_find_turns(x);
     dvi__charted_clear_changes(x, count);
   }
   for (int first = 0; first < count && status == DVI_OK; first += DVI__GROUP)
-    status = hessian_group(x, count, first, smaller(DVI__GROUP, count - first), t, xi, rate, L_qq,
-                           L_qv, L_vv);
+    status = hessian_group(x, count, first, smaller_group(DVI__GROUP, count - first), t, xi, rate,
+                           L_qq, L_qv, L_vv);
   if (on_path && status == DVI_OK) dvi__charted_finish_changes(x, count, L_qq, L_qv);
   return dvi__charted_verdict(x, status);
 }

@@ -1,5 +1,5 @@
 /* Values and first derivatives of the Lagrangian in the charts. With T = dy/dxi and S = dy'/dxi
- * (group/chart.h), the mass M constant, w = M y' and L_y = -V_y of the potentials' sum V:
+ * (group/chart.h), the constant mass M, w = M y' and L_y = -V_y of the potentials' sum V,
  *
  *     L_xi = S^T w + T^T L_y,     L_xi' = T^T w */
 #include "system/chart/charted_struct.h"
@@ -8,7 +8,8 @@
 
 #include "core/status.h"
 
-/* A callback of the new system says it by a number; the status itself is kept, and its sentence. */
+/* A callback of the new system can only return a number. The status itself is kept, with its
+ * sentence. */
 int dvi__charted_verdict(dvi__charted *x, dvi_status status)
 {
   x->failure = status;
@@ -16,7 +17,7 @@ int dvi__charted_verdict(dvi__charted *x, dvi_status status)
   return status == DVI_OK ? 0 : status > 0 ? 1 : -1;
 }
 
-/* xi and rate of point k of a batch of `count`, for a slot. */
+/* Copy xi or rate of point k of a batch of `count`, for a slot. */
 void dvi__charted_gather(const dvi__factor_slot *slot, int count, int k, const double *batch,
                          double *one)
 {
@@ -24,8 +25,8 @@ void dvi__charted_gather(const dvi__factor_slot *slot, int count, int k, const d
     one[i] = batch[(size_t)(slot->x + i) * (size_t)count + (size_t)k];
 }
 
-/* y and rate of a slot, and its chart's functions, at point k of a group, which is point `from` of
- * a batch. */
+/* Compute y and rate of a slot, and its chart's functions, at point k of a group. This is point
+ * `from` of a batch. */
 static dvi_status find_point(dvi__charted *x, int c, int count, int from, int group, int k,
                              const double *xi, const double *rate)
 {
@@ -45,9 +46,9 @@ static dvi_status find_point(dvi__charted *x, int c, int count, int from, int gr
   return DVI_OK;
 }
 
-/* t, y and rate of the group that begins at point `first`. */
-static dvi_status points(dvi__charted *x, int count, int first, int group, const double *t,
-                         const double *xi, const double *rate)
+/* Compute t, y and rate of the group that begins at point `first`. */
+static dvi_status find_points(dvi__charted *x, int count, int first, int group, const double *t,
+                              const double *xi, const double *rate)
 {
   for (int c = 0; c < x->base->slot_count; c++)
     for (int k = 0; k < group; k++) DVI_TRY(find_point(x, c, count, first + k, group, k, xi, rate));
@@ -55,7 +56,7 @@ static dvi_status points(dvi__charted *x, int count, int first, int group, const
   return DVI_OK;
 }
 
-static int smaller(int a, int b)
+static int smaller_batch(int a, int b)
 {
   return a < b ? a : b;
 }
@@ -65,10 +66,10 @@ int dvi__charted_value(int count, const double *t, const double *xi, const doubl
 {
   dvi__charted *x = user;
   dvi_status status = DVI_OK;
-  x->counters->values -= count; /* what asks counts the same points */
+  x->counters->values -= count; /* the calling evaluator counts the same points */
   for (int first = 0; first < count && status == DVI_OK; first += DVI__GROUP) {
-    const int group = smaller(DVI__GROUP, count - first);
-    status = points(x, count, first, group, t, xi, rate);
+    const int group = smaller_batch(DVI__GROUP, count - first);
+    status = find_points(x, count, first, group, t, xi, rate);
     if (status == DVI_OK)
       status = dvi__lagrangian_value(x->evaluator, group, x->t, x->y, x->rate, L + first);
   }
@@ -78,7 +79,7 @@ int dvi__charted_value(int count, const double *t, const double *xi, const doubl
 dvi_status dvi__charted_forces(dvi__charted *x, int count, int first, int group, const double *t,
                                const double *xi, const double *rate)
 {
-  DVI_TRY(points(x, count, first, group, t, xi, rate));
+  DVI_TRY(find_points(x, count, first, group, t, xi, rate));
   return dvi__lagrangian_gradient(x->evaluator, group, x->t, x->y, x->rate, x->L_y, x->w);
 }
 
@@ -91,8 +92,8 @@ void dvi__charted_pair(const dvi__factor_slot *slot, int group, int k, const dou
   }
 }
 
-static void pull_back(const dvi__charted *x, int count, int first, int group, const double *xi,
-                      const double *rate, double *L_xi, double *L_rate)
+static void pull_back_gradient(const dvi__charted *x, int count, int first, int group,
+                               const double *xi, const double *rate, double *L_xi, double *L_rate)
 {
   for (int c = 0; c < x->base->slot_count; c++) {
     const dvi__factor_slot *slot = &x->base->slots[c];
@@ -112,8 +113,8 @@ static void pull_back(const dvi__charted *x, int count, int first, int group, co
   }
 }
 
-/* w -= m y' of each vector of a slot, m its own mass: v x m v is 0, but not when it is rounded, and
- * always to one side. */
+/* Subtract m y' from w for each vector of a slot, m its own mass. v x m v is 0, but its rounded
+ * value is not, and always errs to one side. */
 static void take_own(const dvi__charted *x, const dvi__factor_slot *slot, const double *rate,
                      double *w)
 {
@@ -124,7 +125,7 @@ static void take_own(const dvi__charted *x, const dvi__factor_slot *slot, const 
   }
 }
 
-/* N at the nodes of a group. */
+/* Compute N at the nodes of a group. */
 void dvi__charted_find_moments(dvi__charted *x, int first, int group)
 {
   for (int c = 0; c < x->base->slot_count; c++) {
@@ -149,9 +150,9 @@ int dvi__charted_gradient(int count, const double *t, const double *xi, const do
   dvi_status status = DVI_OK;
   x->counters->gradients -= count;
   for (int first = 0; first < count && status == DVI_OK; first += DVI__GROUP) {
-    const int group = smaller(DVI__GROUP, count - first);
+    const int group = smaller_batch(DVI__GROUP, count - first);
     status = dvi__charted_forces(x, count, first, group, t, xi, rate);
-    if (status == DVI_OK) pull_back(x, count, first, group, xi, rate, L_xi, L_rate);
+    if (status == DVI_OK) pull_back_gradient(x, count, first, group, xi, rate, L_xi, L_rate);
     if (status == DVI_OK && dvi__charted_on_path(x, count))
       dvi__charted_find_moments(x, first, group);
   }

@@ -1,10 +1,12 @@
 /* Paths from the centre. Moving the centre turns a path in space. Let N = y x L_y + y' x w be the
- * moment of what the Lagrangian does to a rotation or a direction, and mu its angular momentum.
- * Then mu1 = mu0 + h sum_j b_j N_j, and the chart's momentum at the end is p1 = W(xi1) mu1
+ * moment that the Lagrangian exerts on a rotation or a direction, and mu its angular momentum. Then
+ * mu1 = mu0 + h sum_j b_j N_j, and the chart's momentum at the end is p1 = W(xi1) mu1
  * (group/chart.h). So
+ *
  *     C = W(xi1) mu1 - p0 - h sum_j b_j L_xi_j.
- * Without it steps have the same order, but keep neither momenta nor the symplectic form: they
- * would have a discrete Lagrangian of their own in every step. */
+ *
+ * Without C steps have the same order, but keep neither momenta nor the symplectic form. They would
+ * have a discrete Lagrangian of their own in every step. */
 #include "system/chart/charted_struct.h"
 
 #include <math.h>
@@ -13,7 +15,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 
-/* values [stored*size] = rows y x times W^T. */
+/* Compute values [stored*size], the rows y x times W^T. */
 static void turn_rows(const dvi__factor_slot *slot, const double *y, const double *W,
                       double *values)
 {
@@ -34,8 +36,8 @@ static void times_W(int size, const double *W, const double *columns, double *pr
                               W[3 * a + 2] * columns[3 * b + 2];
 }
 
-/* W times what the moment N of fixed covectors a, b changes by with xi and its rate: T_j x a + S_j
- * x b, T_j x b. */
+/* Compute W times the change of the moment N of fixed covectors a, b with xi and its rate. These
+ * are T_j x a + S_j x b and T_j x b. */
 static void moment_change(const dvi__charted *x, const dvi__factor_slot *slot, const double *W,
                           const double *a, const double *b, double *in_xi, double *in_rate)
 {
@@ -55,7 +57,7 @@ static void moment_change(const dvi__charted *x, const dvi__factor_slot *slot, c
   times_W(size, W, by_rate, in_rate);
 }
 
-/* W N_xi and W N_xi' at point k of a group, into C_qq and C_qv. */
+/* Add W N_xi and W N_xi' at point k of a group to C_qq and C_qv. */
 void dvi__charted_add_moment_changes(dvi__charted *x, int count, int first, int group, int k)
 {
   const size_t to = (size_t)first + (size_t)k;
@@ -97,7 +99,7 @@ void dvi__charted_clear_changes(dvi__charted *x, int count)
   memset(x->C_qv, 0, (size_t)dvi__pattern_entries(&x->qv) * points);
 }
 
-/* C -= H in the rows of what turns. */
+/* Subtract H from C in the rows of slots that turn. */
 static void subtract_rows(const dvi__charted *x, const dvi__pattern *pattern, size_t count,
                           const double *H, double *C)
 {
@@ -121,7 +123,7 @@ static void place_path(void *of, const double *q0, const double *q1)
   memcpy(x->end, q1, (size_t)x->base->nx * sizeof *q1);
 }
 
-/* mu1 - mu0 = h sum_j b_j N_j of slot c. */
+/* Compute mu1 - mu0 = h sum_j b_j N_j of slot c. */
 static void impulse_of(const dvi__charted *x, int c, int nodes, double h, const double *weight,
                        double *impulse)
 {
@@ -133,7 +135,7 @@ static void impulse_of(const dvi__charted *x, int c, int nodes, double h, const 
   dvi__chart_add_impulse(&x->chart[c], in_space, impulse);
 }
 
-/* mu1 */
+/* Compute mu1 of slot c. */
 static void angular_momentum(const dvi__charted *x, int c, const double *p0, const double *impulse,
                              double *mu)
 {
@@ -141,8 +143,8 @@ static void angular_momentum(const dvi__charted *x, int c, const double *p0, con
   for (int i = 0; i < 3; i++) mu[i] += impulse[i];
 }
 
-/* C of slot c, whose impulse is known. */
-static void correct_cell(const dvi__charted *x, int c, const double *p0, const double *dp,
+/* Compute C of slot c, whose impulse is known. */
+static void correct_slot(const dvi__charted *x, int c, const double *p0, const double *dp,
                          double *C)
 {
   const dvi__factor_slot *slot = &x->base->slots[c];
@@ -161,11 +163,11 @@ static void correct_path(void *of, int nodes, double h, const double *weight, co
   for (int c = 0; c < x->base->slot_count && x->from_centre; c++)
     if (dvi__turns(&x->base->slots[c])) {
       impulse_of(x, c, nodes, h, weight, x->impulse + 3 * c);
-      correct_cell(x, c, p0, dp, C);
+      correct_slot(x, c, p0, dp, C);
     }
 }
 
-/* Where nothing but the group's own motion changes momenta. */
+/* Compute C where nothing but the group's own motion changes momenta. */
 static void correct_reduced(void *of, int nodes, double h, const double *weight, const double *p0,
                             const double *dp, double *C)
 {
@@ -175,13 +177,13 @@ static void correct_reduced(void *of, int nodes, double h, const double *weight,
   for (int b = 0; b < x->reduced.count && x->from_centre; b++) {
     const int c = x->reduced.bodies[b].slot;
     dvi__reduced_impulse(x, &x->reduced.bodies[b], p0, x->impulse + 3 * c);
-    correct_cell(x, c, p0, dp, C);
+    correct_slot(x, c, p0, dp, C);
   }
 }
 
-/* In whatever frame it is summed up, one component of a turn's momentum is rounded as the largest
- * one. */
-static void mix_magnitudes(void *of, int s, double *magnitude)
+/* In every frame of the sum, one component of a turn's momentum is rounded as the largest component
+ * is. */
+static void mix_turn_magnitudes(void *of, int s, double *magnitude)
 {
   const dvi__charted *x = of;
   for (int c = 0; c < x->base->slot_count; c++) {
@@ -212,8 +214,8 @@ static double largest_turn(void *of, int s, const double *points, const double *
   return largest;
 }
 
-/* Into the diagonal block of C_q1. */
-static void derive_cell(const dvi__charted *x, int c, const double *p0, const double *impulse)
+/* Add the derivative of C to the diagonal block of C_q1. */
+static void derive_slot(const dvi__charted *x, int c, const double *p0, const double *impulse)
 {
   const dvi__factor_slot *slot = &x->base->slots[c];
   const int size = dvi__chart_size(slot->kind);
@@ -241,7 +243,7 @@ static void derive_path(void *of, int nodes, double h, const double *weight, con
   for (int c = 0; c < x->base->slot_count && x->from_centre; c++)
     if (dvi__turns(&x->base->slots[c])) {
       impulse_of(x, c, nodes, h, weight, impulse);
-      derive_cell(x, c, p0, impulse);
+      derive_slot(x, c, p0, impulse);
     }
 }
 
@@ -254,12 +256,12 @@ static void derive_reduced(void *of, int nodes, double h, const double *weight, 
   name_changes(x, C_q1, C_qq, C_qv);
   for (int b = 0; b < x->reduced.count && x->from_centre; b++) {
     dvi__reduced_impulse(x, &x->reduced.bodies[b], p0, impulse);
-    derive_cell(x, x->reduced.bodies[b].slot, p0, impulse);
+    derive_slot(x, x->reduced.bodies[b].slot, p0, impulse);
     dvi__reduced_derive(x, &x->reduced.bodies[b], &x->coupled_in[b], p0, x->C_q1);
   }
 }
 
-static dvi_status reserve(dvi__charted *x, int nodes)
+static dvi_status charted_reserve(dvi__charted *x, int nodes)
 {
   const size_t slots = (size_t)x->base->slot_count, n = (size_t)x->base->n,
                qq = (size_t)dvi__pattern_entries(&x->qq);
@@ -281,14 +283,15 @@ static dvi_status reserve(dvi__charted *x, int nodes)
 
 dvi_status dvi__charted_centring(dvi__charted *x, int nodes, dvi__centring *centring)
 {
+  const int reduced = x->reduced.bodies != NULL;
   int signs = 1;
   for (int c = 0; c < x->base->slot_count; c++) signs &= x->base->slots[c].kind != DVI__SPHERE;
-  *centring = (dvi__centring){x,
-                              signs,
-                              place_path,
-                              x->reduced.bodies != NULL ? correct_reduced : correct_path,
-                              mix_magnitudes,
-                              largest_turn,
-                              x->reduced.bodies != NULL ? derive_reduced : derive_path};
-  return reserve(x, nodes);
+  *centring = (dvi__centring){.of = x,
+                              .signs = signs,
+                              .place = place_path,
+                              .correct = reduced ? correct_reduced : correct_path,
+                              .mix = mix_turn_magnitudes,
+                              .turn = largest_turn,
+                              .derive = reduced ? derive_reduced : derive_path};
+  return charted_reserve(x, nodes);
 }

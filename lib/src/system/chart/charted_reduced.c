@@ -1,12 +1,15 @@
-/* The Lagrangian of bodies and constant masses (reduced.h) in the charts at a point of a group:
+/* The Lagrangian of bodies and constant masses (reduced.h) in the charts at a point of a group,
  *
- *     Omega = dexp_{-xi} xi',     L = Omega.J Omega/2 + x'.R' m rho + rate.M rate/2,     R = R0 exp(xi^)
+ *     Omega = dexp_{-xi} xi',     L = Omega.J Omega/2 + x'.R' m rho + rate.M rate/2,
+ *     R = R0 exp(xi^)
  *
- * Nothing of the stored coordinates is formed but for bodies whose centre of mass is not their
- * origin. A path's end has the momenta of
- *     mu1 = Ad*_f mu0,     f = g0^{-1} g1                                           (discrete Euler-Poincare equation)
- * which for x' in the frame of space are p1 = p0 for x and Pi - R0^T (x1 - x0) x p for the turn,
- * before f turns it. */
+ * Stored coordinates are not computed, but for bodies whose centre of mass is not their origin. At
+ * a path's end the momenta are given by the discrete Euler-Poincare equation
+ *
+ *     mu1 = Ad*_f mu0,     f = g0^{-1} g1
+ *
+ * For x' in the frame of space this is p1 = p0 for x, and Pi - R0^T (x1 - x0) x p for the turn,
+ * before f turns the result. */
 #include <math.h>
 #include <string.h>
 
@@ -22,18 +25,18 @@ static const double none[DVI__CHART_POINT] = {0};
 /* One body at one point of a batch. */
 typedef struct spinning {
   const dvi__chart *chart;
-  const dvi__factor_slot *slot, *line; /* line NULL: there is none */
+  const dvi__factor_slot *slot, *line; /* slots of the rotation and of x, line is NULL without x */
   dvi__functions functions;
   double xi[3], rate[3], Omega[3], spin[3]; /* spin = J Omega */
-  double w[DVI__CHART_POINT];               /* x' m rho^T */
+  double w[DVI__CHART_POINT];               /* the matrix x' m rho^T */
 } spinning;
 
-static void times(const double *A, const double *x, double *Ax)
+static void matrix_times(const double *A, const double *x, double *Ax)
 {
   for (int i = 0; i < 3; i++) Ax[i] = dvi__dot(A + 3 * i, x);
 }
 
-static dvi_status find_spin(dvi__charted *x, const dvi__body *body, int count, int k,
+static dvi_status find_spin(dvi__charted *x, const dvi__reduced_body *body, int count, int k,
                             const double *xi, const double *rate, spinning *m)
 {
   const dvi__factor_slot *slots = x->base->slots;
@@ -46,17 +49,17 @@ static dvi_status find_spin(dvi__charted *x, const dvi__body *body, int count, i
   if (!(angle < dvi__chart_bound(DVI__ROTATION))) return dvi__charted_too_large(angle);
   dvi__chart_functions(DVI__ROTATION, m->xi, &m->functions);
   dvi__chart_leave_velocity(m->chart, &m->functions, m->xi, m->rate, m->Omega);
-  times(body->inertia, m->Omega, m->spin);
+  matrix_times(body->inertia, m->Omega, m->spin);
   for (int i = 0; i < 3 && m->line != NULL; i++)
     for (int j = 0; j < 3; j++)
       m->w[3 * i + j] = rate[(size_t)(m->line->x + i) * (size_t)count + (size_t)k] * body->shift[j];
   return DVI_OK;
 }
 
-/* R' m rho, or what else stands in the place of R'. */
-static void shifted(const dvi__body *body, const double *rate_of_R, double *shift)
+/* Compute R' m rho, or the product with another matrix in the place of R'. */
+static void rotate_shift(const dvi__reduced_body *body, const double *rate_of_R, double *shift)
 {
-  times(rate_of_R, body->shift, shift);
+  matrix_times(rate_of_R, body->shift, shift);
 }
 
 int dvi__reduced_value(int count, const double *t, const double *xi, const double *rate, double *L,
@@ -98,14 +101,14 @@ static void add_vector(int first, const double *vector, size_t count, size_t k, 
   for (size_t i = 0; i < 3; i++) values[((size_t)first + i) * count + k] += vector[i];
 }
 
-/* What x' and R' have together. */
-static void add_shift(const dvi__body *body, const spinning *m, size_t count, size_t k,
+/* Add the terms that couple x' and R'. */
+static void add_shift(const dvi__reduced_body *body, const spinning *m, size_t count, size_t k,
                       double *L_xi, double *L_rate)
 {
   double in_xi[3], in_rate[3], y[9], v[9], shift[3];
   dvi__chart_gradient(m->chart, &m->functions, m->xi, m->rate, none, m->w, in_xi, in_rate);
   dvi__chart_point(m->chart, &m->functions, m->xi, m->rate, y, v);
-  shifted(body, v, shift);
+  rotate_shift(body, v, shift);
   add_vector(m->slot->x, in_xi, count, k, L_xi);
   add_vector(m->slot->x, in_rate, count, k, L_rate);
   add_vector(m->line->x, shift, count, k, L_rate);
@@ -137,8 +140,8 @@ int dvi__reduced_gradient(int count, const double *t, const double *xi, const do
 
 /* ---- second derivatives ---- */
 
-/* product = A^T B C. */
-static void sandwich(const double *A, const double *B, const double *C, double *product)
+/* Compute product = A^T B C. */
+static void triple_product(const double *A, const double *B, const double *C, double *product)
 {
   double BC[9];
   for (int i = 0; i < 3; i++)
@@ -149,7 +152,7 @@ static void sandwich(const double *A, const double *B, const double *C, double *
       product[3 * i + j] = A[i] * BC[j] + A[3 + i] * BC[3 + j] + A[6 + i] * BC[6 + j];
 }
 
-/* A = dOmega/drate = dexp_{-xi}. */
+/* Compute A = dOmega/drate = dexp_{-xi}. */
 static void velocity_matrix(const spinning *m, double *A)
 {
   for (int j = 0; j < 3; j++) {
@@ -160,34 +163,34 @@ static void velocity_matrix(const spinning *m, double *A)
   }
 }
 
-/* Of Omega.J Omega/2: with D = dOmega/dxi the products D^T J D, D^T J A, A^T J A, and the curvature
- * of J Omega.Omega. */
-static void add_spin(dvi__charted *x, const dvi__body *body, const spinning *m, size_t count,
-                     size_t k, double *L_qq, double *L_qv, double *L_vv)
+/* Add the second derivatives of Omega.J Omega/2. With D = dOmega/dxi these are the products D^T J
+ * D, D^T J A, A^T J A, and the curvature of J Omega.Omega. */
+static void add_spin(dvi__charted *x, const dvi__reduced_body *body, const spinning *m,
+                     size_t count, size_t k, double *L_qq, double *L_qv, double *L_vv)
 {
   double A[9], D[9], in_qq[9], in_qv[9], product[9];
   velocity_matrix(m, A);
   dvi_so3_velocity_derivative(m->xi, m->rate, D);
   dvi__chart_turning_curvature(&m->functions, m->xi, m->rate, m->spin, in_qq, in_qv);
   dvi__charted_add_own_blocks(x, body->slot, in_qq, in_qv, count, k, L_qq, L_qv);
-  sandwich(D, body->inertia, D, in_qq);
-  sandwich(D, body->inertia, A, in_qv);
+  triple_product(D, body->inertia, D, in_qq);
+  triple_product(D, body->inertia, A, in_qv);
   dvi__charted_add_own_blocks(x, body->slot, in_qq, in_qv, count, k, L_qq, L_qv);
-  sandwich(A, body->inertia, A, product);
+  triple_product(A, body->inertia, A, product);
   dvi__charted_add_block(&x->own_in_vv[body->slot], 3, 3, product, count, k, L_vv);
 }
 
-/* Of x'.R' m rho, the same. */
-static void add_shift_blocks(dvi__charted *x, const dvi__body *body, const dvi__coupling *at,
-                             const spinning *m, size_t count, size_t k, double *L_qq, double *L_qv,
-                             double *L_vv)
+/* Add the second derivatives of x'.R' m rho. */
+static void add_shift_blocks(dvi__charted *x, const dvi__reduced_body *body,
+                             const dvi__coupling *at, const spinning *m, size_t count, size_t k,
+                             double *L_qq, double *L_qv, double *L_vv)
 {
   double in_qq[9], in_qv[9], T[27], S[27];
   dvi__chart_curvature(m->chart, &m->functions, m->xi, m->rate, none, m->w, in_qq, in_qv);
   dvi__charted_add_own_blocks(x, body->slot, in_qq, in_qv, count, k, L_qq, L_qv);
   dvi__chart_tangents(m->chart, &m->functions, m->xi, m->rate, T, S);
   for (int i = 0; i < 3; i++) {
-    double by_xi[3] = {0}, by_rate[3] = {0}; /* of R'_i m rho, row i */
+    double by_xi[3] = {0}, by_rate[3] = {0}; /* row i is the derivative of R'_i m rho */
     for (int j = 0; j < 3; j++)
       for (int l = 0; l < 3; l++) {
         by_xi[l] += S[3 * (3 * i + j) + l] * body->shift[j];
@@ -199,7 +202,7 @@ static void add_shift_blocks(dvi__charted *x, const dvi__body *body, const dvi__
   }
 }
 
-static void clear(const dvi__pattern *pattern, size_t count, double *values)
+static void clear_blocks(const dvi__pattern *pattern, size_t count, double *values)
 {
   memset(values, 0, (size_t)dvi__pattern_entries(pattern) * count * sizeof *values);
 }
@@ -212,9 +215,9 @@ int dvi__reduced_hessian(int count, const double *t, const double *xi, const dou
   const size_t points = (size_t)count;
   dvi_status status = DVI_OK;
   (void)t;
-  clear(&x->qq, points, L_qq);
-  clear(&x->qv, points, L_qv);
-  clear(&x->vv, points, L_vv);
+  clear_blocks(&x->qq, points, L_qq);
+  clear_blocks(&x->qv, points, L_qv);
+  clear_blocks(&x->vv, points, L_vv);
   for (int e = 0; e < of->masses; e++) {
     const size_t at = (size_t)dvi__pattern_find(&x->vv, of->row[e], of->column[e]) * points;
     for (size_t k = 0; k < points; k++) L_vv[at + k] += of->mass[e];
@@ -244,7 +247,7 @@ dvi_status dvi__reduced_place(dvi__charted *x)
   for (int c = 0; c < x->base->slot_count; c++)
     x->own_in_vv[c] = dvi__charted_place(x, &x->vv, c, c);
   for (int b = 0; b < x->reduced.count; b++) {
-    const dvi__body *body = &x->reduced.bodies[b];
+    const dvi__reduced_body *body = &x->reduced.bodies[b];
     for (int i = 0; i < 3 && body->line >= 0; i++) {
       x->coupled_in[b].qq[i] = dvi__charted_place(x, &x->qq, body->slot, body->line + i);
       x->coupled_in[b].qv[i] = dvi__charted_place(x, &x->qv, body->slot, body->line + i);
@@ -257,13 +260,13 @@ dvi_status dvi__reduced_place(dvi__charted *x)
 
 /* ---- paths ---- */
 
-/* R0^T v. */
+/* Compute R0^T v. */
 static void turn_back(const double *R0, const double *v, double *turned)
 {
   for (int j = 0; j < 3; j++) turned[j] = R0[j] * v[0] + R0[3 + j] * v[1] + R0[6 + j] * v[2];
 }
 
-void dvi__reduced_impulse(const dvi__charted *x, const dvi__body *body, const double *p0,
+void dvi__reduced_impulse(const dvi__charted *x, const dvi__reduced_body *body, const double *p0,
                           double *impulse)
 {
   double moment[3];
@@ -274,8 +277,8 @@ void dvi__reduced_impulse(const dvi__charted *x, const dvi__body *body, const do
   turn_back(x->chart[body->slot].y0, moment, impulse);
 }
 
-void dvi__reduced_derive(const dvi__charted *x, const dvi__body *body, const dvi__coupling *at,
-                         const double *p0, double *C_q1)
+void dvi__reduced_derive(const dvi__charted *x, const dvi__reduced_body *body,
+                         const dvi__coupling *at, const double *p0, double *C_q1)
 {
   const dvi__factor_slot *slot = &x->base->slots[body->slot];
   for (int i = 0; i < 3 && body->line >= 0; i++) {

@@ -1,4 +1,5 @@
-/* Checking what a system says about time: that it is autonomous, or how fast its terms change. */
+/* Checking what a system declares about time. Either the system is autonomous, or its terms have
+ * rates. */
 #include "system/check/check_time.h"
 
 #include <float.h>
@@ -10,7 +11,7 @@
 #include "core/status.h"
 #include "system/term/difference.h"
 
-/* One term, and the point at which it is asked: one of potential and lagrangian. */
+/* One of potential and lagrangian, and the point at which it is evaluated. */
 typedef struct subject {
   const dvi__potential_term *potential;
   const dvi__lagrangian_term *lagrangian;
@@ -28,7 +29,7 @@ static void name_subject(const subject *s, size_t size, char *text)
 
 /* ---- rates ---- */
 
-/* The value as a function of time alone. */
+/* Evaluate the term as a function of time alone. */
 static dvi_status value_of_time(const void *function, int count, const double *t, double *value)
 {
   const subject *s = function;
@@ -64,9 +65,9 @@ static dvi_status check_rate(const subject *s, dvi__differences *d, double t, do
 
 /* ---- autonomous systems ---- */
 
-/* All that the term gives at one time: its value, its gradient (2 n numbers), its Hessian (3 times
- * `longest`). */
-static dvi_status portray(const subject *s, double t, size_t longest, double *numbers)
+/* Collect all numbers of the term at one time, its value, its gradient (2 n numbers) and its
+ * Hessian (3 times `longest`). */
+static dvi_status collect_numbers(const subject *s, double t, size_t longest, double *numbers)
 {
   const size_t n = (size_t)s->scratch->n;
   double *gradient = numbers + 1, *hessian = gradient + 2 * n;
@@ -98,8 +99,8 @@ static dvi_status report_change(const subject *s, size_t at, double t, double ot
                    owner, what, here, t, there, other);
 }
 
-/* The other times are no multiples of each other: what returns after a period shows at one of them.
- * `numbers` holds two portraits. */
+/* Compare the term at two other times, which are no multiples of each other. A periodic term
+ * differs at one of them. `numbers` holds two fingerprints. */
 static dvi_status check_autonomous(const subject *s, double t, size_t longest, double *numbers,
                                    dvi_derivative_check *result)
 {
@@ -107,10 +108,10 @@ static dvi_status check_autonomous(const subject *s, double t, size_t longest, d
   const size_t count = 1 + 2 * (size_t)s->scratch->n + 3 * longest;
   double *moved = numbers + count;
   memset(numbers, 0, 2 * count * sizeof(double));
-  DVI_TRY(portray(s, t, longest, numbers));
+  DVI_TRY(collect_numbers(s, t, longest, numbers));
   for (int k = 0; k < 2; k++) {
     const double other = t + apart[k] * fmax(1, fabs(t));
-    DVI_TRY(portray(s, other, longest, moved));
+    DVI_TRY(collect_numbers(s, other, longest, moved));
     for (size_t i = 0; i < count; i++)
       if (numbers[i] != moved[i])
         return report_change(s, i, t, other, numbers[i], moved[i], result);
@@ -120,7 +121,7 @@ static dvi_status check_autonomous(const subject *s, double t, size_t longest, d
 
 /* ---- all terms ---- */
 
-/* Every term in turn; `numbers` is NULL if rates are to be checked. */
+/* Check every term. `numbers` is NULL if rates are to be checked. */
 static dvi_status each_term(const dvi_system *system, subject s, dvi__differences *d, double t,
                             double tolerance, double *numbers, dvi_derivative_check *result)
 {
@@ -140,8 +141,8 @@ dvi_status dvi__check_time(const dvi_system *system, dvi__scratch *scratch,
 {
   const subject at = {.scratch = scratch, .q = q, .v = v};
   if (!system->autonomous) return each_term(system, at, differences, t, tolerance, NULL, result);
-  const size_t portrait = 1 + 2 * (size_t)system->n + 3 * (size_t)dvi__longest_hessian(system, 1);
-  double *numbers = DVI_NEW(double, 2 * portrait);
+  const size_t count = 1 + 2 * (size_t)system->n + 3 * (size_t)dvi__longest_hessian(system, 1);
+  double *numbers = DVI_NEW(double, 2 * count);
   if (numbers == NULL)
     return dvi__fail(DVI_NO_MEMORY, "system check: no memory for %d dimensions", system->n);
   const dvi_status status = each_term(system, at, differences, t, tolerance, numbers, result);

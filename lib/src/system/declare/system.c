@@ -1,5 +1,5 @@
-/* Making a system: every term is checked, copied, and its patterns joined to those of the whole
- * Lagrangian. */
+/* Creation of a system. Every term is checked and copied, and its patterns are joined to those of
+ * the whole Lagrangian. */
 #include "system/system.h"
 
 #include <pthread.h>
@@ -20,7 +20,7 @@ static char *copy_text(const char *text)
   return dvi__duplicate(text, strlen(text) + 1, 1);
 }
 
-static dvi_status no_memory(void)
+static dvi_status refuse_memory_of_system(void)
 {
   return dvi__fail(DVI_NO_MEMORY, "system: no memory for its terms");
 }
@@ -52,7 +52,7 @@ static dvi_status copy_potential(dvi_system *s, const dvi_potential *given,
   if (given->fast) s->terms |= DVI__FAST;
   term->callbacks = *given;
   term->name = copy_text(name);
-  if (term->name == NULL) return no_memory();
+  if (term->name == NULL) return refuse_memory_of_system();
   term->callbacks.name = term->name;
   const int left_out = given->qq.start == NULL && given->qq.row == NULL;
   return left_out ? DVI_OK : dvi__pattern_copy_symmetric(&given->qq, s->n, name, &term->qq);
@@ -62,7 +62,7 @@ static dvi_status copy_potentials(dvi_system *s, const dvi_system_terms *terms)
 {
   if (terms->potential_count > 0) s->terms |= DVI__POTENTIAL;
   s->potentials = DVI_NEW(dvi__potential_term, terms->potential_count);
-  if (s->potentials == NULL) return no_memory();
+  if (s->potentials == NULL) return refuse_memory_of_system();
   for (int k = 0; k < terms->potential_count; k++) {
     s->potential_count = k + 1;
     DVI_TRY(copy_potential(s, &terms->potentials[k], &s->potentials[k]));
@@ -72,7 +72,7 @@ static dvi_status copy_potentials(dvi_system *s, const dvi_system_terms *terms)
 
 /* ---- the whole ---- */
 
-static dvi_status widen(dvi__pattern *whole, const dvi__pattern *part)
+static dvi_status widen_pattern(dvi__pattern *whole, const dvi__pattern *part)
 {
   dvi__pattern sum;
   DVI_TRY(dvi__pattern_union(whole, part, &sum));
@@ -81,11 +81,11 @@ static dvi_status widen(dvi__pattern *whole, const dvi__pattern *part)
   return DVI_OK;
 }
 
-static dvi_status embed(const dvi__pattern *part, const dvi__pattern *whole, int **where)
+static dvi_status embed_pattern(const dvi__pattern *part, const dvi__pattern *whole, int **where)
 {
   dvi__release(*where);
   *where = DVI_NEW(int, dvi__pattern_entries(part));
-  if (*where == NULL) return no_memory();
+  if (*where == NULL) return refuse_memory_of_system();
   dvi__pattern_embed(part, whole, *where);
   return DVI_OK;
 }
@@ -100,21 +100,20 @@ static dvi_status complete_potential(const dvi_system *s, dvi__potential_term *t
   return differenced ? dvi__group_columns(&term->qq, &term->groups) : DVI_OK;
 }
 
-static dvi_status join_patterns(dvi_system *s, dvi__pattern *qq)
+static dvi_status join_term_patterns(dvi_system *s, dvi__pattern *qq)
 {
   for (int k = 0; k < s->potential_count; k++) DVI_TRY(complete_potential(s, &s->potentials[k]));
   DVI_TRY(dvi__pattern_empty(s->n, qq));
-  if (s->lagrangian != NULL) DVI_TRY(widen(qq, &s->lagrangian->qq));
-  for (int k = 0; k < s->potential_count; k++) DVI_TRY(widen(qq, &s->potentials[k].qq));
-  if (s->lagrangian != NULL) DVI_TRY(embed(&s->lagrangian->qq, qq, &s->lagrangian->in_qq));
+  if (s->lagrangian != NULL) DVI_TRY(widen_pattern(qq, &s->lagrangian->qq));
+  for (int k = 0; k < s->potential_count; k++) DVI_TRY(widen_pattern(qq, &s->potentials[k].qq));
+  if (s->lagrangian != NULL) DVI_TRY(embed_pattern(&s->lagrangian->qq, qq, &s->lagrangian->in_qq));
   for (int k = 0; k < s->potential_count; k++)
-    DVI_TRY(embed(&s->potentials[k].qq, qq, &s->potentials[k].in_qq));
+    DVI_TRY(embed_pattern(&s->potentials[k].qq, qq, &s->potentials[k].in_qq));
   return DVI_OK;
 }
 
-/* Nothing that a user of the system sees changes, so the system is const to him; the lock is for
- * users on other threads. What a failure leaves is made anew by the next call, or freed with the
- * system. */
+/* The user sees no change of the system, so it is const. The lock serves users on other threads. On
+ * failure the remains are replaced by the next call, or freed with the system. */
 dvi_status dvi__system_prepare_hessian(const dvi_system *system)
 {
   static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
@@ -123,7 +122,7 @@ dvi_status dvi__system_prepare_hessian(const dvi_system *system)
   (void)pthread_mutex_lock(&lock);
   if (s->qq.start == NULL) {
     dvi__pattern qq = {0};
-    status = join_patterns(s, &qq);
+    status = join_term_patterns(s, &qq);
     if (status == DVI_OK)
       s->qq = qq;
     else
@@ -142,7 +141,7 @@ static dvi_status copy_invariants(dvi_system *s, const dvi_system_terms *terms)
   s->invariant_names = DVI_NEW(char *,
                                1 + (size_t)terms->symmetry_count + (size_t)terms->invariant_count);
   if (s->symmetries == NULL || s->invariants == NULL || s->invariant_names == NULL)
-    return no_memory();
+    return refuse_memory_of_system();
   s->symmetry_count = terms->symmetry_count;
   s->invariant_count = terms->invariant_count;
   for (int i = 0; i < dvi_system_invariant_count(s); i++) {
@@ -150,7 +149,7 @@ static dvi_status copy_invariants(dvi_system *s, const dvi_system_terms *terms)
                        : i <= s->symmetry_count ? s->symmetries[i - 1].name
                                                 : s->invariants[i - 1 - s->symmetry_count].name;
     s->invariant_names[i] = copy_text(name != NULL ? name : "unnamed");
-    if (s->invariant_names[i] == NULL) return no_memory();
+    if (s->invariant_names[i] == NULL) return refuse_memory_of_system();
   }
   for (int i = 0; i < s->symmetry_count; i++) s->symmetries[i].name = s->invariant_names[1 + i];
   for (int i = 0; i < s->invariant_count; i++)
@@ -192,7 +191,7 @@ static dvi_status check_hamiltonian(const dvi_system_terms *terms)
   return DVI_OK;
 }
 
-static dvi_status check_terms(const dvi_system_terms *terms)
+static dvi_status check_declared_terms(const dvi_system_terms *terms)
 {
   const dvi_mass *mass = &terms->mass;
   const int has_pattern = mass->pattern.start != NULL || mass->pattern.row != NULL;
@@ -230,7 +229,7 @@ static dvi_status check_terms(const dvi_system_terms *terms)
   return check_watched(terms);
 }
 
-/* Factors stand before the mass that goes with them. */
+/* Factors come before the mass that belongs to them. */
 static const dvi__dynamics *const kinds[] = {
 #define DYNAMICS(name) &dvi__dynamics_##name,
 #include "system/declare/dynamics.def"
@@ -244,7 +243,7 @@ static dvi_status declare_dynamics(dvi_system *s, const dvi_system_terms *terms)
   return s->dynamics->declare(terms, s);
 }
 
-static dvi_status fill(dvi_system *s, const dvi_system_terms *terms)
+static dvi_status system_fill(dvi_system *s, const dvi_system_terms *terms)
 {
   DVI_TRY(dvi__factors_lay_out(terms, s));
   s->autonomous = terms->autonomous != 0;
@@ -260,10 +259,10 @@ dvi_status dvi_system_create(const dvi_system_terms *terms, dvi_system **system)
   if (system == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "system: no place for the result");
   *system = NULL;
   if (terms == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "system: no terms");
-  DVI_TRY(check_terms(terms));
+  DVI_TRY(check_declared_terms(terms));
   dvi_system *made = DVI_NEW(dvi_system, 1);
-  if (made == NULL) return no_memory();
-  const dvi_status status = fill(made, terms);
+  if (made == NULL) return refuse_memory_of_system();
+  const dvi_status status = system_fill(made, terms);
   if (status != DVI_OK) dvi_system_destroy(&made);
   *system = made;
   return status;

@@ -1,4 +1,4 @@
-/* A constant mass M and potentials: L = v.Mv/2 - V(t,q), so that v = M^-1 p. */
+/* A constant mass M and potentials have L = v.Mv/2 - V(t,q), so that v = M^-1 p. */
 #include <string.h>
 
 #include "core/status.h"

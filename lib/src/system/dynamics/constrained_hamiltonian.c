@@ -1,4 +1,4 @@
-/* A Hamiltonian with constraints phi(q,p) = 0 of second class:
+/* A Hamiltonian with constraints phi(q,p) = 0 of second class has
  *
  *     q' = H_p + phi_p^T lambda,   p' = -H_q - phi_q^T lambda,
  *     sum_b {phi_a, phi_b} lambda_b = -{phi_a, H}.
@@ -16,7 +16,7 @@
 #include "system/dynamics/hamiltonian.h"
 #include "system/evaluate/evaluator_struct.h"
 
-static dvi_status no_memory(void)
+static dvi_status refuse_memory_of_constraints(void)
 {
   return dvi__fail(DVI_NO_MEMORY, "no memory for the constraints");
 }
@@ -25,8 +25,8 @@ static dvi_status no_memory(void)
 
 typedef struct constraint_memory {
   dvi__weighted weighted;
-  double *bracket, *multiplier; /* [m*m], [m] */
-  double *field, *pushed;       /* [2n] of H and of one constraint */
+  double *bracket, *multiplier; /* bracket [m*m], multipliers [m] */
+  double *field, *pushed;       /* vector fields [2n] of H and of one constraint */
 } constraint_memory;
 
 static constraint_memory *memory_of(const dvi__evaluator *e)
@@ -41,13 +41,13 @@ static dvi_status prepare_constraints(dvi__evaluator *e, dvi__derivatives most)
   const size_t n = (size_t)system->n, m = (size_t)system->constraint->callbacks.count;
   constraint_memory *d = e->own = DVI_NEW(constraint_memory, 1);
   (void)most;
-  if (d == NULL) return no_memory();
+  if (d == NULL) return refuse_memory_of_constraints();
   d->bracket = DVI_NEW(double, m *m);
   d->multiplier = DVI_NEW(double, m);
   d->field = DVI_NEW(double, 2 * n);
   d->pushed = DVI_NEW(double, 2 * n);
   if (d->bracket == NULL || d->multiplier == NULL || d->field == NULL || d->pushed == NULL)
-    return no_memory();
+    return refuse_memory_of_constraints();
   DVI_TRY(dvi__weighted_open(system, &d->weighted));
   return dvi__linear_create(bracket, dvi__linear_for_exchanges(bracket), e->counters, &e->velocity);
 }
@@ -109,8 +109,9 @@ void dvi__constraint_push(const dvi__constraint_term *c, const double *phi_z, co
 
 /* ---- the motion ---- */
 
-/* grad phi_a.x, x [2n]: the bracket {phi_a, F} for the field x of F. */
-static double along(const dvi__pattern *gradients, const double *phi_z, int a, const double *x)
+/* Compute grad phi_a.x, x [2n]. This is the bracket {phi_a, F} for the vector field x of F. */
+static double derivative_along(const dvi__pattern *gradients, const double *phi_z, int a,
+                               const double *x)
 {
   double sum = 0;
   for (int k = gradients->start[a]; k < gradients->start[a + 1]; k++)
@@ -118,8 +119,8 @@ static double along(const dvi__pattern *gradients, const double *phi_z, int a, c
   return sum;
 }
 
-/* The bracket matrix into memory_of(e)->bracket, from the gradients that the weighted function
- * holds. */
+/* Compute the bracket matrix in memory_of(e)->bracket, from the gradients that the weighted
+ * function holds. */
 static dvi_status evaluate_bracket(dvi__evaluator *e, const double *q, const double *p)
 {
   const dvi__constraint_term *c = e->system->constraint;
@@ -132,7 +133,8 @@ static dvi_status evaluate_bracket(dvi__evaluator *e, const double *q, const dou
     memset(d->pushed, 0, 2 * (size_t)n * sizeof *d->pushed);
     unit[b] = 1;
     dvi__constraint_push(c, phi_z, unit, 1, d->pushed);
-    for (int a = 0; a < m; a++) d->bracket[b * m + a] = along(&c->gradients, phi_z, a, d->pushed);
+    for (int a = 0; a < m; a++)
+      d->bracket[b * m + a] = derivative_along(&c->gradients, phi_z, a, d->pushed);
   }
   return DVI_OK;
 }
@@ -166,7 +168,7 @@ static dvi_status constrained_motion(dvi__evaluator *e, double t, const double *
   DVI_TRY(dvi__hamiltonian_vector_field(e, t, q, p, d->field, d->field + n));
   DVI_TRY(factor_bracket(e, q, p));
   for (int a = 0; a < m; a++)
-    d->multiplier[a] = -along(&c->gradients, d->weighted.phi_z, a, d->field);
+    d->multiplier[a] = -derivative_along(&c->gradients, d->weighted.phi_z, a, d->field);
   dvi__linear_solve(e->velocity, d->multiplier);
   dvi__constraint_push(c, d->weighted.phi_z, d->multiplier, 1, d->field);
   if (dvi__first_not_finite(2 * n, d->field) >= 0)
@@ -188,13 +190,12 @@ static dvi_status constraint_distance(dvi__evaluator *e, const double *q, const 
   return DVI_OK;
 }
 
-/* A start computed in another way differs by its roundings; one that is off the constraint, by
- * more. */
+/* A start computed in another way differs by its roundings. A larger violation is refused. */
 static const double on_constraint = 1e-11;
 
-/* What the roundings of a point do to phi_a is measured by its gradient. */
-static double size_of(const dvi__constraint_term *c, const double *phi_z, int a, const double *q,
-                      const double *p)
+/* Measure the effect of roundings of a point on phi_a by the gradient of phi_a. */
+static double size_of_gradient(const dvi__constraint_term *c, const double *phi_z, int a,
+                               const double *q, const double *p)
 {
   const int n = c->gradients.rows / 2;
   double size = 0;
@@ -211,18 +212,19 @@ static dvi_status constraint_size(dvi__evaluator *e, const double *q, const doub
   double *phi_z = memory_of(e)->weighted.phi_z;
   *size = 0;
   DVI_TRY(dvi__constraint_gradients(e, q, p, phi_z));
-  for (int a = 0; a < c->callbacks.count; a++) *size = fmax(*size, size_of(c, phi_z, a, q, p));
+  for (int a = 0; a < c->callbacks.count; a++)
+    *size = fmax(*size, size_of_gradient(c, phi_z, a, q, p));
   return DVI_OK;
 }
 
-static dvi_status check_constraint(dvi__evaluator *e, const double *q, const double *p)
+static dvi_status check_on_constraint(dvi__evaluator *e, const double *q, const double *p)
 {
   const dvi__constraint_term *c = e->system->constraint;
   const dvi__weighted *at = &memory_of(e)->weighted;
   DVI_TRY(dvi__constraint_value(e, q, p, at->phi));
   DVI_TRY(dvi__constraint_gradients(e, q, p, at->phi_z));
   for (int a = 0; a < c->callbacks.count; a++) {
-    if (!(fabs(at->phi[a]) <= on_constraint * size_of(c, at->phi_z, a, q, p)))
+    if (!(fabs(at->phi[a]) <= on_constraint * size_of_gradient(c, at->phi_z, a, q, p)))
       return dvi__fail(DVI_BAD_ARGUMENT,
                        "constraint %d is %.17g at this point, not 0; start with phi(q,p) = 0, or "
                        "let it be projected (dvi_start_options)",
@@ -231,8 +233,8 @@ static dvi_status check_constraint(dvi__evaluator *e, const double *q, const dou
   return DVI_OK;
 }
 
-/* Newton's method along the vector fields (phi_p, -phi_q) of the constraints: the change X_phi mu
- * makes phi smaller by {phi, phi} mu. */
+/* Apply Newton's method along the vector fields (phi_p, -phi_q) of the constraints. The change
+ * X_phi mu makes phi smaller by {phi, phi} mu. */
 static dvi_status project_on_constraint(dvi__evaluator *e, double t, double *q, double *p)
 {
   enum { MOST_ITERATIONS = 50 };
@@ -257,13 +259,14 @@ static dvi_status project_on_constraint(dvi__evaluator *e, double t, double *q, 
     memcpy(q, d->pushed, n * sizeof *q);
     memcpy(p, d->pushed + n, n * sizeof *p);
   }
-  if (check_constraint(e, q, p) == DVI_OK) return DVI_OK;
+  if (check_on_constraint(e, q, p) == DVI_OK) return DVI_OK;
   return dvi__fail_in(DVI_NOT_CONVERGED, "no point of the constraint was found by Newton's method");
 }
 
 /* ---- the public view ---- */
 
-/* The largest sum of magnitudes in a column of the m x m matrix; of its inverse, by the factor. */
+/* Compute the largest sum of magnitudes in a column of the m x m matrix. The second function does
+ * so for its inverse, by the factor. */
 static double norm_of(int m, const double *matrix)
 {
   double norm = 0;
@@ -275,7 +278,7 @@ static double norm_of(int m, const double *matrix)
   return norm;
 }
 
-static double inverse_norm(dvi__evaluator *e, int m)
+static double inverse_bracket_norm(dvi__evaluator *e, int m)
 {
   double norm = 0, *column = memory_of(e)->multiplier;
   for (int b = 0; b < m; b++) {
@@ -289,14 +292,14 @@ static double inverse_norm(dvi__evaluator *e, int m)
   return norm;
 }
 
-static dvi_status measure(dvi__evaluator *e, const double *q, const double *p, double *bracket,
-                          double *condition)
+static dvi_status measure_violation(dvi__evaluator *e, const double *q, const double *p,
+                                    double *bracket, double *condition)
 {
   const int m = e->system->constraint->callbacks.count;
   const dvi_status status = factor_bracket(e, q, p);
   if (status != DVI_OK && status != DVI_SINGULAR) return status;
   if (condition != NULL)
-    *condition = status == DVI_OK ? norm_of(m, memory_of(e)->bracket) * inverse_norm(e, m)
+    *condition = status == DVI_OK ? norm_of(m, memory_of(e)->bracket) * inverse_bracket_norm(e, m)
                                   : HUGE_VAL;
   if (bracket != NULL)
     memcpy(bracket, memory_of(e)->bracket, (size_t)m * (size_t)m * sizeof *bracket);
@@ -315,7 +318,7 @@ dvi_status dvi_system_bracket(const dvi_system *system, const double *q, const d
   if (dvi__first_not_finite(n, q) >= 0 || dvi__first_not_finite(n, p) >= 0)
     return dvi__fail(DVI_NOT_FINITE, "bracket: the point is not finite");
   DVI_TRY(dvi__evaluator_create(system, 1, DVI__GRADIENTS, NULL, &e));
-  const dvi_status status = measure(e, q, p, bracket, condition);
+  const dvi_status status = measure_violation(e, q, p, bracket, condition);
   dvi__evaluator_destroy(&e);
   return status;
 }
@@ -350,7 +353,7 @@ static dvi_status constrained_velocity(dvi__evaluator *e, double t, const double
 
 static const dvi__state_constraint on_phase_space = {
     .matrix = "constraints' bracket matrix",
-    .check = check_constraint,
+    .check = check_on_constraint,
     .project = project_on_constraint,
     .distance = constraint_distance,
     .size = constraint_size,

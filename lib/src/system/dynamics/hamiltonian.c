@@ -1,5 +1,5 @@
-/* A Hamiltonian H(t,q,p) on phase space: q' = H_p, p' = -H_q. All functions of the evaluator give H
- * and its derivatives, p standing for v. */
+/* A Hamiltonian H(t,q,p) on phase space has q' = H_p, p' = -H_q. All functions of the evaluator
+ * give H and its derivatives. p takes the place of v. */
 #include "system/dynamics/hamiltonian.h"
 
 #include <string.h>

@@ -1,4 +1,4 @@
-/* What a system's terms have in common, and which systems may stand in for one another. */
+/* Common properties of a system's terms, and the test for systems that may replace one another. */
 #include "core/status.h"
 #include "system/evaluate/dynamics.h"
 #include "system/evaluate/jet.h"

@@ -6,7 +6,7 @@
 #include "system/evaluate/dynamics.h"
 #include "system/evaluate/evaluator_struct.h"
 
-static size_t numbers(const dvi__evaluator *e, int count)
+static size_t count_numbers(const dvi__evaluator *e, int count)
 {
   return (size_t)e->system->n * (size_t)count;
 }
@@ -14,15 +14,15 @@ static size_t numbers(const dvi__evaluator *e, int count)
 static int allocate_general(dvi__evaluator *e)
 {
   const dvi_system *system = e->system;
-  e->unwanted = DVI_NEW(double, numbers(e, e->capacity));
-  e->velocity_search = DVI_NEW(double, 6 * numbers(e, 1));
+  e->unwanted = DVI_NEW(double, count_numbers(e, e->capacity));
+  e->velocity_search = DVI_NEW(double, 6 * count_numbers(e, 1));
   e->hessian[0] = DVI_NEW(double, dvi__pattern_entries(&system->lagrangian->qq));
   e->hessian[1] = DVI_NEW(double, dvi__pattern_entries(&system->qv));
   e->hessian[2] = DVI_NEW(double, dvi__pattern_entries(&system->vv));
   return e->unwanted && e->velocity_search && e->hessian[0] && e->hessian[1] && e->hessian[2];
 }
 
-static dvi_status allocate(dvi__evaluator *e, int hessians)
+static dvi_status evaluator_allocate(dvi__evaluator *e, int hessians)
 {
   const dvi_system *system = e->system;
   DVI_TRY(dvi__scratch_create(system, e->capacity, hessians, &e->scratch));
@@ -46,7 +46,7 @@ dvi_status dvi__evaluator_create(const dvi_system *system, int capacity, dvi__de
   e->system = system;
   e->capacity = capacity;
   e->counters = counters != NULL ? counters : &e->own_counters;
-  dvi_status status = allocate(e, hessians);
+  dvi_status status = evaluator_allocate(e, hessians);
   if (status == DVI_OK) status = system->dynamics->prepare(e, most);
   if (status != DVI_OK) dvi__evaluator_destroy(&e);
   *evaluator = e;
@@ -71,7 +71,7 @@ void dvi__evaluator_destroy(dvi__evaluator **evaluator)
 
 /* ---- constant mass ---- */
 
-/* y = M x for a batch. */
+/* Compute y = M x for a batch. */
 static void mass_times(const dvi_system *s, int count, const double *x, double *y)
 {
   const size_t points = (size_t)count;
@@ -130,7 +130,7 @@ void dvi__count_differences(dvi__evaluator *e)
 
 /* ---- value ---- */
 
-static void kinetic_energy(dvi__evaluator *e, int count, const double *v, double *T)
+static void constant_mass_energy(dvi__evaluator *e, int count, const double *v, double *T)
 {
   const size_t points = (size_t)count;
   memset(T, 0, points * sizeof(double));
@@ -147,7 +147,7 @@ dvi_status dvi__lagrangian_value(dvi__evaluator *e, int count, const double *t, 
   if (s->lagrangian != NULL)
     DVI_TRY(dvi__general_value(s->lagrangian, &e->scratch, count, t, q, v, L));
   else
-    kinetic_energy(e, count, v, L);
+    constant_mass_energy(e, count, v, L);
   for (int p = 0; p < s->potential_count; p++) {
     DVI_TRY(dvi__potential_value(&s->potentials[p], &e->scratch, count, t, q, e->term));
     for (int k = 0; k < count; k++) L[k] -= e->term[k];
@@ -175,12 +175,12 @@ dvi_status dvi__lagrangian_rate(dvi__evaluator *e, int count, const double *t, c
 
 /* ---- gradient ---- */
 
-/* The sum of the potentials' gradients; the first one is evaluated in place. */
+/* Sum the potentials' gradients. The first one is evaluated in place. */
 static dvi_status sum_gradients(dvi__evaluator *e, int count, const double *t, const double *q,
                                 double *V_q)
 {
   const dvi_system *s = e->system;
-  const size_t length = numbers(e, count);
+  const size_t length = count_numbers(e, count);
   if (s->potential_count == 0) memset(V_q, 0, length * sizeof(double));
   for (int p = 0; p < s->potential_count; p++) {
     DVI_TRY(dvi__potential_gradient(&s->potentials[p], &e->scratch, count, t, q,
@@ -203,7 +203,7 @@ static dvi_status potential_forces(dvi__evaluator *e, int count, const double *t
                                    double *L_q)
 {
   DVI_TRY(sum_gradients(e, count, t, q, L_q));
-  for (size_t i = 0; i < numbers(e, count); i++) L_q[i] = -L_q[i];
+  for (size_t i = 0; i < count_numbers(e, count); i++) L_q[i] = -L_q[i];
   return DVI_OK;
 }
 
@@ -214,7 +214,7 @@ static dvi_status general_gradient(dvi__evaluator *e, int count, const double *t
   DVI_TRY(dvi__general_gradient(s->lagrangian, &e->scratch, count, t, q, v, L_q, L_v));
   for (int p = 0; p < s->potential_count; p++) {
     DVI_TRY(dvi__potential_gradient(&s->potentials[p], &e->scratch, count, t, q, e->term));
-    for (size_t i = 0; i < numbers(e, count); i++) L_q[i] -= e->term[i];
+    for (size_t i = 0; i < count_numbers(e, count); i++) L_q[i] -= e->term[i];
   }
   return DVI_OK;
 }
@@ -244,8 +244,8 @@ static void copy_mass_hessian(const dvi_system *s, int count, double *L_vv)
     for (size_t k = 0; k < points; k++) L_vv[entry * points + k] = M[entry];
 }
 
-static void embed(const dvi__pattern *part, const int *where, size_t points, double sign,
-                  const double *values, double *whole)
+static void add_embedded(const dvi__pattern *part, const int *where, size_t points, double sign,
+                         const double *values, double *whole)
 {
   for (size_t entry = 0; entry < (size_t)dvi__pattern_entries(part); entry++)
     for (size_t k = 0; k < points; k++)
@@ -259,14 +259,14 @@ static dvi_status potential_hessians(dvi__evaluator *e, int count, const double 
   for (int p = 0; p < s->potential_count; p++) {
     const dvi__potential_term *term = &s->potentials[p];
     DVI_TRY(dvi__potential_hessian(term, &e->scratch, count, t, q, e->term));
-    embed(&term->qq, term->in_qq, (size_t)count, -1, e->term, L_qq);
+    add_embedded(&term->qq, term->in_qq, (size_t)count, -1, e->term, L_qq);
   }
   return DVI_OK;
 }
 
-/* The Lagrangian's own block stands packed at the front of the whole L_qq: move its entries to
- * their places, from the back. */
-static void spread(const dvi_system *s, size_t points, double *L_qq)
+/* Move the entries of the Lagrangian's own block, which are packed at the front of the whole L_qq,
+ * to their places, from the back. */
+static void spread_entries(const dvi_system *s, size_t points, double *L_qq)
 {
   int from = dvi__pattern_entries(&s->lagrangian->qq) - 1;
   for (int entry = dvi__pattern_entries(&s->qq) - 1; entry >= 0; entry--) {
@@ -277,14 +277,14 @@ static void spread(const dvi_system *s, size_t points, double *L_qq)
   }
 }
 
-static dvi_status hessian(dvi__evaluator *e, int count, const double *t, const double *q,
-                          const double *v, double *L_qq, double *L_qv, double *L_vv)
+static dvi_status sum_hessians(dvi__evaluator *e, int count, const double *t, const double *q,
+                               const double *v, double *L_qq, double *L_qv, double *L_vv)
 {
   const dvi_system *s = e->system;
   const size_t points = (size_t)count;
   if (s->lagrangian != NULL) {
     DVI_TRY(dvi__general_hessian(s->lagrangian, &e->scratch, count, t, q, v, L_qq, L_qv, L_vv));
-    spread(s, points, L_qq);
+    spread_entries(s, points, L_qq);
     return potential_hessians(e, count, t, q, L_qq);
   }
   if (L_vv != NULL) copy_mass_hessian(s, count, L_vv);
@@ -297,7 +297,7 @@ dvi_status dvi__lagrangian_hessian(dvi__evaluator *e, int count, const double *t
                                    const double *v, double *L_qq, double *L_qv, double *L_vv)
 {
   e->counters->hessians += count;
-  const dvi_status status = hessian(e, count, t, q, v, L_qq, L_qv, L_vv);
+  const dvi_status status = sum_hessians(e, count, t, q, v, L_qq, L_qv, L_vv);
   dvi__count_differences(e);
   return status;
 }
@@ -319,7 +319,7 @@ dvi_status dvi__form_hessian(dvi__evaluator *e, const double *q, const double *w
   const dvi_status status = dvi__general_hessian(e->system->lagrangian, &e->scratch, 1, &any_time,
                                                  q, w, alpha_w_qq, alpha_q, e->hessian[2]);
   dvi__count_differences(e);
-  if (status == DVI_OK) spread(e->system, 1, alpha_w_qq);
+  if (status == DVI_OK) spread_entries(e->system, 1, alpha_w_qq);
   return status;
 }
 

@@ -1,4 +1,4 @@
-/* The public functions of a system at one point: each makes an evaluator for the call. */
+/* The public functions of a system at one point. Each creates an evaluator for the call. */
 #include <math.h>
 #include <string.h>
 
@@ -69,6 +69,14 @@ dvi_status dvi_system_velocity(const dvi_system *system, double t, const double 
   return status;
 }
 
+static dvi_status invariants_at(dvi__evaluator *e, double t, const double *q, const double *p,
+                                double *v, double *value)
+{
+  DVI_TRY(dvi__state_check(e, q, p));
+  DVI_TRY(dvi__legendre_inverse(e, t, q, p, v));
+  return dvi__invariants(e, t, q, v, p, value);
+}
+
 dvi_status dvi_system_invariants(const dvi_system *system, double t, const double *q,
                                  const double *p, double *value)
 {
@@ -77,9 +85,7 @@ dvi_status dvi_system_invariants(const dvi_system *system, double t, const doubl
   double *v = DVI_NEW(double, system->n);
   if (v == NULL) return dvi__fail(DVI_NO_MEMORY, "system: no memory for a velocity");
   dvi_status status = dvi__evaluator_create(system, 1, DVI__STATES, NULL, &e);
-  if (status == DVI_OK) status = dvi__state_check(e, q, p);
-  if (status == DVI_OK) status = dvi__legendre_inverse(e, t, q, p, v);
-  if (status == DVI_OK) status = dvi__invariants(e, t, q, v, p, value);
+  if (status == DVI_OK) status = invariants_at(e, t, q, p, v, value);
   dvi__evaluator_destroy(&e);
   dvi__release(v);
   return status;

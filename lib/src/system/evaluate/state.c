@@ -22,7 +22,7 @@ dvi_status dvi__momentum_of_point(dvi__evaluator *e, double t, const double *q, 
   return dvi__lagrangian_gradient(e, 1, &t, q, v, NULL, p);
 }
 
-/* p.v - L */
+/* Compute p.v - L. */
 dvi_status dvi__energy_of_lagrangian(dvi__evaluator *e, double t, const double *q, const double *v,
                                      const double *p, double *E)
 {

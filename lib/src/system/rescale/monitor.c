@@ -10,14 +10,14 @@
 #include "system/term/term.h"
 
 struct dvi__monitor {
-  dvi_system *system; /* of unit mass, with the monitor as its potential */
+  dvi_system *system; /* system of unit mass, with the monitor as its potential */
   dvi__scratch scratch;
-  double *t;              /* [capacity] zeros: a monitor has no time */
-  dvi__built_in built_in; /* of a user's function: not used */
+  double *t;              /* zeros [capacity], because a monitor has no time */
+  dvi__built_in built_in; /* not used for a user's function */
   char name[DVI__MONITOR_NAME];
 };
 
-/* ---- what is declared ---- */
+/* ---- declaration ---- */
 
 static dvi_status check_power(const char *name, double power)
 {
@@ -88,9 +88,9 @@ static dvi_status check_unused(const dvi_monitor *given)
   return DVI_OK;
 }
 
-/* The monitor as a potential. */
-static dvi_status declare(dvi__monitor *m, const dvi_system *system, const dvi_monitor *given,
-                          dvi_potential *function)
+/* Declare the monitor as a potential. */
+static dvi_status declare_monitor(dvi__monitor *m, const dvi_system *system,
+                                  const dvi_monitor *given, dvi_potential *function)
 {
   DVI_TRY(check_unused(given));
   m->built_in.system = system;
@@ -144,12 +144,12 @@ static dvi_status allocate_built_in(dvi__built_in *own, const dvi_monitor *given
   return own->zero && own->a && own->V_qq ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "monitor: no memory");
 }
 
-static dvi_status fill(dvi__monitor *m, const dvi_system *system, const dvi_monitor *given,
-                       int capacity, dvi__derivatives most, dvi_counters *counters)
+static dvi_status monitor_fill(dvi__monitor *m, const dvi_system *system, const dvi_monitor *given,
+                               int capacity, dvi__derivatives most, dvi_counters *counters)
 {
   const int hessians = most == DVI__HESSIANS;
   dvi_potential function = {0};
-  DVI_TRY(declare(m, system, given, &function));
+  DVI_TRY(declare_monitor(m, system, given, &function));
   const dvi_system_terms terms = {.dimension = system->n,
                                   .mass.scalar = 1,
                                   .potentials = &function,
@@ -170,7 +170,7 @@ dvi_status dvi__monitor_create(const dvi_system *system, const dvi_monitor *give
   *monitor = NULL;
   dvi__monitor *m = DVI_NEW(dvi__monitor, 1);
   if (m == NULL) return dvi__fail(DVI_NO_MEMORY, "monitor: no memory");
-  const dvi_status status = fill(m, system, given, capacity, most, counters);
+  const dvi_status status = monitor_fill(m, system, given, capacity, most, counters);
   if (status != DVI_OK) dvi__monitor_destroy(&m);
   *monitor = m;
   return status;
@@ -234,7 +234,7 @@ dvi_status dvi__monitor_hessian(dvi__monitor *m, int count, const double *q, dou
 static dvi_status check_at(dvi__monitor *m, const double *q, double tolerance,
                            dvi_derivative_check *check)
 {
-  /* at rest: the system's own kinetic part has nothing to say */
+  /* At rest the system's own kinetic part vanishes. */
   double g, *v = DVI_NEW(double, m->system->n);
   if (v == NULL) return dvi__fail(DVI_NO_MEMORY, "monitor check: no memory");
   dvi_status status = dvi__monitor_value(m, 1, q, &g);

@@ -1,4 +1,4 @@
-/* Monitors of the motion itself, for a constant mass: with a = M^-1 V_q and the speed by the
+/* Monitors of the motion itself, for a constant mass. With a = M^-1 V_q and the speed by the
  * energy,
  *
  *     arclength:     1/g^2 = 2 (E0 - V) + V_q.a,      g_q = g^3 (V_q - V_qq a)
@@ -8,9 +8,9 @@
 #include "core/status.h"
 #include "system/rescale/monitor.h"
 
-/* V_q and a, and their product into square [count]. */
-static dvi_status accelerations(const dvi__built_in *own, int count, const double *t,
-                                const double *q, double *square)
+/* Compute V_q and a, and their product in square [count]. */
+static dvi_status find_accelerations(const dvi__built_in *own, int count, const double *t,
+                                     const double *q, double *square)
 {
   DVI_TRY(dvi__potentials_gradient(own->evaluator, count, t, q, own->V_q));
   dvi__mass_solve(own->evaluator, count, own->V_q, own->a);
@@ -21,7 +21,7 @@ static dvi_status accelerations(const dvi__built_in *own, int count, const doubl
   return DVI_OK;
 }
 
-/* g_q <- -V_qq a, by L_qq = -V_qq. */
+/* Compute g_q <- -V_qq a, by L_qq = -V_qq. */
 static dvi_status curvature_along(const dvi__built_in *own, int count, const double *t,
                                   const double *q, double *g_q)
 {
@@ -44,7 +44,7 @@ static dvi_status arclength_at(const dvi__built_in *own, int count, const double
 {
   double *minus_V = own->V_qq; /* free until the Hessian is asked for */
   DVI_TRY(dvi__lagrangian_value(own->evaluator, count, t, q, own->zero, minus_V));
-  DVI_TRY(accelerations(own, count, t, q, g));
+  DVI_TRY(find_accelerations(own, count, t, q, g));
   for (int k = 0; k < count; k++) g[k] = 1 / sqrt(2 * (own->energy + minus_V[k]) + g[k]);
   return DVI_OK;
 }
@@ -76,7 +76,7 @@ void dvi__arclength_callbacks(dvi_potential *function)
 static int acceleration_value(int count, const double *t, const double *q, double *g, void *user)
 {
   const dvi__built_in *own = user;
-  const dvi_status status = accelerations(own, count, t, q, g);
+  const dvi_status status = find_accelerations(own, count, t, q, g);
   for (int k = 0; k < count && status == DVI_OK; k++) g[k] = pow(g[k], -0.5 * own->power);
   return (int)status;
 }
@@ -85,7 +85,7 @@ static int acceleration_gradient(int count, const double *t, const double *q, do
                                  void *user)
 {
   const dvi__built_in *own = user;
-  dvi_status status = accelerations(own, count, t, q, own->g);
+  dvi_status status = find_accelerations(own, count, t, q, own->g);
   if (status == DVI_OK) status = curvature_along(own, count, t, q, g_q);
   for (size_t i = 0, k = 0; status == DVI_OK && i < (size_t)own->n * (size_t)count;
        i++, k = i % (size_t)count)

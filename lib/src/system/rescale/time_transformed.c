@@ -1,5 +1,5 @@
-/* The general Lagrangian g [L(q, w/g) + E0] of a time transform (transformed.h): a kind of its own
- * for what it cannot give. */
+/* The general Lagrangian g [L(q, w/g) + E0] of a time transform (transformed.h). It is a kind of
+ * its own, because some functions of a general Lagrangian are missing. */
 #include "system/evaluate/dynamics.h"
 
 static int is_never_declared(const dvi_system_terms *terms)

@@ -10,24 +10,25 @@
 
 enum { POINTS = 12, CANDIDATES_MOST = 16 };
 
-/* What was seen at the points: sizes of the gradients' entries, and of the two-form's, relative to
- * the largest of the point. */
+/* Statistics over the points. They hold the sizes of the gradients' entries, and of the two-form's,
+ * relative to the largest of the point. */
 typedef struct probe {
   const dvi_system *system;
-  double *q, *alpha_q, *work; /* [n], [entries of qv] */
-  /* [n] largest of a component, and of the two-form in a coordinate's row */
+  double *q, *alpha_q, *work; /* work [n], [entries of qv] */
+  /* Largest entry [n] of a component, and of the two-form in a coordinate's row. */
   double *form, *turn;
   double two_form[CANDIDATES_MOST][CANDIDATES_MOST];
   int seen;
 } probe;
 
-/* Negligible beside the largest of a point's derivatives: sums that cancel, after a change of
- * gauge. */
+/* Entries smaller than this, relative to the largest derivative of a point, are sums that cancel
+ * after a change of gauge. */
 static const double negligible = 1e-12;
 
-/* Numbers that are equally distributed and rational multiples of nothing: the first third within
- * (0.25, 1.25), for logarithms and radii, the next within (-1, 1), the last within (0, 100). */
-static void place(const probe *p, int k)
+/* Choose a point by numbers that are equally distributed and rational multiples of nothing. The
+ * first third is within (0.25, 1.25), for logarithms and radii, the next within (-1, 1), the last
+ * within (0, 100). */
+static void place_probe(const probe *p, int k)
 {
   const double golden = 0.6180339887498949;
   for (int i = 0; i < p->system->n; i++) {
@@ -37,25 +38,25 @@ static void place(const probe *p, int k)
   }
 }
 
-static double entry(const probe *p, int row, int column)
+static double probe_entry(const probe *p, int row, int column)
 {
   const int e = dvi__pattern_find(&p->system->qv, row, column);
   return e >= 0 ? p->alpha_q[e] : 0;
 }
 
-static void look(probe *p, int k)
+static void probe_point(probe *p, int k)
 {
   const dvi__pattern *qv = &p->system->qv;
   double largest = 0;
-  place(p, k);
-  /* outside of the domain */
+  place_probe(p, k);
+  /* the point is outside of the domain */
   if (dvi__form_gradients(p->system->lagrangian, p->q, p->alpha_q, p->work) != DVI_OK) return;
   p->seen++;
   for (int e = 0; e < dvi__pattern_entries(qv); e++) largest = fmax(largest, fabs(p->alpha_q[e]));
   for (int j = 0; j < qv->columns && largest > 0; j++)
     for (int e = qv->start[j]; e < qv->start[j + 1]; e++) {
       const int i = qv->row[e];
-      const double omega = fabs(p->alpha_q[e] - entry(p, j, i)) / largest;
+      const double omega = fabs(p->alpha_q[e] - probe_entry(p, j, i)) / largest;
       p->form[j] = fmax(p->form[j], fabs(p->alpha_q[e]) / largest);
       p->turn[i] = fmax(p->turn[i], omega);
       p->turn[j] = fmax(p->turn[j], omega);
@@ -64,9 +65,9 @@ static void look(probe *p, int k)
     }
 }
 
-/* Choose `left` more coordinates from number `from` on, the two-form vanishing among all of them:
- * chosen[i] = 1. 0 if there is no such choice. */
-static int choose(const probe *p, int from, int left, int *chosen)
+/* Choose `left` more coordinates from number `from` on, such that the two-form vanishes among all
+ * of them. Chosen ones have chosen[i] = 1. Return 0 if there is no such choice. */
+static int choose_constant(const probe *p, int from, int left, int *chosen)
 {
   const int n = p->system->n;
   if (left == 0) return 1;
@@ -75,13 +76,13 @@ static int choose(const probe *p, int from, int left, int *chosen)
     for (int j = 0; j < i; j++) meets |= chosen[j] && p->two_form[i][j] > negligible;
     if (meets) continue;
     chosen[i] = 1;
-    if (choose(p, i + 1, left - 1, chosen)) return 1;
+    if (choose_constant(p, i + 1, left - 1, chosen)) return 1;
     chosen[i] = 0;
   }
   return 0;
 }
 
-static dvi_status refuse(const probe *p, int constant, int *chosen)
+static dvi_status refuse_components(const probe *p, int constant, int *chosen)
 {
   const int n = p->system->n;
   char name[128] = "", *end = name;
@@ -91,7 +92,7 @@ static dvi_status refuse(const probe *p, int constant, int *chosen)
     return dvi__fail(DVI_UNSUPPORTED,
                      "%s, and %d of %d are; look for a gauge alpha + grad f, or take vprk", needs,
                      constant, n);
-  if (!choose(p, 0, n / 2, chosen))
+  if (!choose_constant(p, 0, n / 2, chosen))
     return dvi__fail(DVI_UNSUPPORTED,
                      "%s, and %d of %d are; no gauge helps, as the two-form vanishes among no half "
                      "of the coordinates: take vprk",
@@ -107,8 +108,8 @@ static dvi_status refuse(const probe *p, int constant, int *chosen)
                    needs, constant, n, name);
 }
 
-/* A row of zeros in the two-form, at all points. */
-static dvi_status check_turns(const probe *p)
+/* Refuse a row of the two-form that is 0 at all points. */
+static dvi_status check_two_form_rows(const probe *p)
 {
   for (int i = 0; i < p->system->n && p->seen > 0; i++)
     if (p->turn[i] <= negligible)
@@ -120,13 +121,13 @@ static dvi_status check_turns(const probe *p)
   return DVI_OK;
 }
 
-static dvi_status decide(probe *p, int *is_x)
+static dvi_status decide_components(probe *p, int *is_x)
 {
   const dvi__pattern *qv = &p->system->qv;
   const int n = p->system->n;
   int constant = 0, empty = 0;
-  for (int k = 0; k < POINTS; k++) look(p, k);
-  DVI_TRY(check_turns(p));
+  for (int k = 0; k < POINTS; k++) probe_point(p, k);
+  DVI_TRY(check_two_form_rows(p));
   for (int i = 0; i < n; i++) {
     const int without = qv->start[i] == qv->start[i + 1];
     is_x[i] = p->seen > 0 ? p->form[i] > negligible : !without;
@@ -141,7 +142,7 @@ static dvi_status decide(probe *p, int *is_x)
                      "100 of the origin; declare the pattern of its gradients, with empty columns "
                      "for them (there are %d)",
                      POINTS, empty);
-  return refuse(p, constant, is_x);
+  return refuse_components(p, constant, is_x);
 }
 
 dvi_status dvi__form_constant_components(const dvi_system *system, int *is_x)
@@ -155,7 +156,7 @@ dvi_status dvi__form_constant_components(const dvi_system *system, int *is_x)
              .turn = DVI_NEW(double, n)};
   dvi_status status = DVI_NO_MEMORY;
   if (p.q && p.alpha_q && p.work && p.form && p.turn)
-    status = decide(&p, is_x);
+    status = decide_components(&p, is_x);
   else
     (void)dvi__fail(status, "no memory to look at the one-form");
   dvi__release(p.q);

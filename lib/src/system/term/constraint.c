@@ -3,7 +3,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 
-static dvi_status no_memory(void)
+static dvi_status refuse_memory_of_weights(void)
 {
   return dvi__fail(DVI_NO_MEMORY, "no memory for the constraints");
 }
@@ -30,7 +30,7 @@ dvi_status dvi__constraint_copy(const dvi_constraint *given, int n, dvi__constra
                      "have a singular bracket matrix",
                      given->count, 2 * n);
   dvi__constraint_term *made = *term = DVI_NEW(dvi__constraint_term, 1);
-  if (made == NULL) return no_memory();
+  if (made == NULL) return refuse_memory_of_weights();
   made->callbacks = *given;
   DVI_TRY(dvi__pattern_copy_rectangular(&given->gradients, 2 * n, given->count,
                                         "constraint: gradients", &made->gradients));
@@ -100,7 +100,7 @@ dvi_status dvi__weighted_open(const dvi_system *system, dvi__weighted *weighted)
       .gradient = weighted_gradient,
       .hessian = c->callbacks.hessian != NULL ? weighted_hessian : NULL,
       .user = weighted};
-  return weighted->phi != NULL && weighted->phi_z != NULL ? DVI_OK : no_memory();
+  return weighted->phi != NULL && weighted->phi_z != NULL ? DVI_OK : refuse_memory_of_weights();
 }
 
 void dvi__weighted_close(dvi__weighted *weighted)

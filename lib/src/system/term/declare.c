@@ -4,7 +4,7 @@
 #include "core/status.h"
 #include "system/term/term.h"
 
-static dvi_status no_memory(void)
+static dvi_status refuse_memory_of_term(void)
 {
   return dvi__fail(DVI_NO_MEMORY, "system: no memory for its terms");
 }
@@ -13,7 +13,7 @@ dvi_status dvi__group_columns(const dvi__pattern *pattern, dvi__groups *groups)
 {
   dvi__release(groups->of_column);
   groups->of_column = DVI_NEW(int, pattern->columns);
-  if (groups->of_column == NULL) return no_memory();
+  if (groups->of_column == NULL) return refuse_memory_of_term();
   return dvi__pattern_groups(pattern, groups->of_column, &groups->count);
 }
 
@@ -51,7 +51,7 @@ dvi_status dvi__declare_function(dvi_system *s, const dvi_lagrangian *given, con
                                  const char *const part[3])
 {
   dvi__lagrangian_term *term = s->lagrangian = DVI_NEW(dvi__lagrangian_term, 1);
-  if (term == NULL) return no_memory();
+  if (term == NULL) return refuse_memory_of_term();
   term->name = name;
   term->callbacks = *given;
   DVI_TRY(dvi__pattern_copy_symmetric(&given->qq, s->n, part[0], &term->qq));

@@ -6,8 +6,8 @@
 
 #include "core/status.h"
 
-/* 6th order central differences: the weights of (f(x + m step) - f(x - m step)) / step, and the
- * step where truncation meets roundoff. */
+/* Central differences of 6th order. These are the weights of (f(x + m step) - f(x - m step)) /
+ * step, and the step where truncation meets roundoff. */
 static const double weight[3] = {45.0 / 60.0, -9.0 / 60.0, 1.0 / 60.0};
 
 static double sixth_order_step(void)
@@ -15,12 +15,12 @@ static double sixth_order_step(void)
   return pow(DBL_EPSILON, 1.0 / 7.0);
 }
 
-/* A point nearer to the origin than this is taken to pass it: steps that shrink with it would drown
- * in the rounding of the values. */
+/* A point nearer to the origin than this is taken to pass the origin. Steps that shrink further
+ * would drown in the rounding of the values. */
 static const double smallest_size = 1e-2;
 
-/* Steps near relative * (size of the coordinate), rounded to powers of two so that multiples and
- * quotients are exact. A coordinate near zero is measured by the largest one of its point. */
+/* Choose steps near relative * (size of the coordinate), rounded to powers of two so that multiples
+ * and quotients are exact. A coordinate near zero is measured by the largest one of its point. */
 static void choose_steps(int n, int count, const double *x, double relative, double *step)
 {
   for (size_t k = 0, points = (size_t)count; k < points; k++) {
@@ -31,8 +31,8 @@ static void choose_steps(int n, int count, const double *x, double relative, dou
   }
 }
 
-/* Both estimates of a row of the gradient at all points, from the same six evaluations at each: 6th
- * order to d->plus_v, 4th to d->minus_v. */
+/* Compute both estimates of a row of the gradient at all points, from the same six evaluations at
+ * each. The 6th order goes to d->plus_v, the 4th to d->minus_v. */
 static dvi_status difference_row(dvi__batch_value value, const void *function, dvi__differences *d,
                                  size_t row, int count, const double *x)
 {
@@ -56,12 +56,13 @@ static dvi_status difference_row(dvi__batch_value value, const void *function, d
   return DVI_OK;
 }
 
-/* Where the two estimates differ by more than this, a singularity is so near that the better one
- * errs by more than 1e-11 (for a pole at R the errors are about 4 (step/R)^4 and 36 (step/R)^6),
- * unless roundoff explains it. */
+/* If the two estimates differ by more than this, a singularity is so near that the better one errs
+ * by more than 1e-11, unless roundoff explains the difference. For a pole at R the errors are about
+ * 4 (step/R)^4 and 36 (step/R)^6. */
 static const double estimates_agree = 1e-8;
 
-/* Shorten the steps of the points at which they are too long; how many there are. */
+/* Shorten the steps of the points at which they are too long, and return the count of these
+ * points. */
 static int shorten_steps(dvi__differences *d, size_t row, int count)
 {
   int shortened = 0;

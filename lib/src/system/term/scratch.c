@@ -1,9 +1,10 @@
-/* Memory for one-point callbacks and differences: only what the system's missing callbacks need. */
+/* Memory for one-point callbacks and differences, only as far as the system's missing callbacks
+ * need it. */
 #include "core/memory.h"
 #include "core/status.h"
 #include "system/term/term.h"
 
-static int larger(int a, int b)
+static int larger_count(int a, int b)
 {
   return a > b ? a : b;
 }
@@ -12,18 +13,18 @@ static int longest_of(const dvi__lagrangian_term *term)
 {
   const int qq = dvi__pattern_entries(&term->qq), qv = dvi__pattern_entries(&term->qv),
             vv = dvi__pattern_entries(&term->vv);
-  return larger(larger(qq, qv), vv);
+  return larger_count(larger_count(qq, qv), vv);
 }
 
 int dvi__longest_hessian(const dvi_system *system, int hessians)
 {
   int longest = system->n;
   for (int k = 0; k < system->potential_count && hessians; k++)
-    longest = larger(longest, dvi__pattern_entries(&system->potentials[k].qq));
+    longest = larger_count(longest, dvi__pattern_entries(&system->potentials[k].qq));
   if (system->lagrangian == NULL) return longest;
   if (system->constraint != NULL)
-    longest = larger(longest, longest_of(&system->constraint->weighted));
-  return larger(longest, longest_of(system->lagrangian));
+    longest = larger_count(longest, longest_of(&system->constraint->weighted));
+  return larger_count(longest, longest_of(system->lagrangian));
 }
 
 int dvi__lacks_gradient(const dvi_system *system)
@@ -34,7 +35,7 @@ int dvi__lacks_gradient(const dvi_system *system)
   return lacks;
 }
 
-/* A general Lagrangian's Hessian is always asked for: by the inverse Legendre map. */
+/* The inverse Legendre map always needs a general Lagrangian's Hessian. */
 static int lacks_hessian(const dvi_system *system, int hessians)
 {
   int lacks = system->lagrangian != NULL && !dvi__general_has_hessian(system->lagrangian);
@@ -54,14 +55,12 @@ double dvi__hessian_noise(const dvi_system *system)
 
 int dvi__differences_allocate(size_t numbers, dvi__differences *d)
 {
-  *d = (dvi__differences){DVI_NEW(double, numbers),
-                          DVI_NEW(double, numbers),
-                          DVI_NEW(double, numbers),
-                          DVI_NEW(double, numbers),
-                          DVI_NEW(double, numbers),
-                          DVI_NEW(double, numbers),
-                          0,
-                          0};
+  *d = (dvi__differences){.moved = DVI_NEW(double, numbers),
+                          .step = DVI_NEW(double, numbers),
+                          .plus = DVI_NEW(double, numbers),
+                          .minus = DVI_NEW(double, numbers),
+                          .plus_v = DVI_NEW(double, numbers),
+                          .minus_v = DVI_NEW(double, numbers)};
   return d->moved && d->step && d->plus && d->minus && d->plus_v && d->minus_v;
 }
 
@@ -75,7 +74,7 @@ void dvi__differences_clear(dvi__differences *d)
   dvi__release(d->minus_v);
 }
 
-static int allocate(const dvi_system *system, int capacity, int hessians, dvi__scratch *s)
+static int scratch_allocate(const dvi_system *system, int capacity, int hessians, dvi__scratch *s)
 {
   const size_t numbers = (size_t)system->n * (size_t)capacity;
   s->point_q = DVI_NEW(double, system->n);
@@ -93,7 +92,7 @@ dvi_status dvi__scratch_create(const dvi_system *system, int capacity, int hessi
   *scratch = (dvi__scratch){.n = system->n, .capacity = capacity};
   const dvi__lagrangian_term *term = system->lagrangian;
   if (term != NULL && term->computed != NULL) DVI_TRY(term->computed->reserve(term->of, capacity));
-  if (allocate(system, capacity, hessians, scratch)) return DVI_OK;
+  if (scratch_allocate(system, capacity, hessians, scratch)) return DVI_OK;
   dvi__scratch_clear(scratch);
   return dvi__fail(DVI_NO_MEMORY, "evaluator: no memory for %d points in %d dimensions", capacity,
                    system->n);

@@ -20,12 +20,12 @@ dvi_status dvi__verdict(int returned, int entries, int count, const double *resu
                    name, what, result[bad], in, bad / count, bad % count, count);
 }
 
-static void gather(int n, int count, int k, const double *batch, double *point)
+static void gather_point(int n, int count, int k, const double *batch, double *point)
 {
   for (size_t i = 0; i < (size_t)n; i++) point[i] = batch[i * (size_t)count + (size_t)k];
 }
 
-static void scatter(int entries, int count, int k, const double *point, double *batch)
+static void scatter_result(int entries, int count, int k, const double *point, double *batch)
 {
   for (size_t e = 0; e < (size_t)entries; e++) batch[e * (size_t)count + (size_t)k] = point[e];
 }
@@ -50,7 +50,7 @@ dvi_status dvi__potential_value(const dvi__potential_term *p, dvi__scratch *s, i
   int returned = 0;
   if (c->value_batch != NULL) returned = c->value_batch(count, t, q, V, c->user);
   for (int k = 0; c->value_batch == NULL && k < count && returned == 0; k++) {
-    gather(s->n, count, k, q, s->point_q);
+    gather_point(s->n, count, k, q, s->point_q);
     returned = c->value(t[k], s->point_q, V + k, c->user);
   }
   return dvi__verdict(returned, 1, count, V, p->name, "value", "");
@@ -70,8 +70,9 @@ dvi_status dvi__potential_gradient_of_q(const void *function, int count, const d
   return dvi__potential_gradient(f->term, f->scratch, count, f->t, q, V_q);
 }
 
-/* The gradient at one point, in the shape that there is. */
-static int ask_gradient(const dvi_potential *c, int n, double t, const double *q, double *V_q)
+/* Evaluate the gradient at one point, in the shape that is declared. */
+static int ask_potential_gradient(const dvi_potential *c, int n, double t, const double *q,
+                                  double *V_q)
 {
   return c->gradient != NULL ? c->gradient(t, q, V_q, c->user)
                              : c->gradient_range(t, q, 0, n, V_q, c->user);
@@ -83,17 +84,18 @@ dvi_status dvi__potential_gradient(const dvi__potential_term *p, dvi__scratch *s
   const dvi_potential *c = &p->callbacks;
   int returned = 0;
   if (!dvi__potential_has_gradient(p))
-    return dvi__difference_gradient(dvi__potential_value_of_q, &(dvi__potential_at){p, s, t},
+    return dvi__difference_gradient(dvi__potential_value_of_q,
+                                    &(dvi__potential_at){.term = p, .scratch = s, .t = t},
                                     &s->of_value, s->n, count, q, V_q);
   if (c->gradient_batch != NULL)
     returned = c->gradient_batch(count, t, q, V_q, c->user);
-  else if (count == 1) /* a long point is not copied: it lies as the callback wants it */
-    returned = ask_gradient(c, s->n, t[0], q, V_q);
+  else if (count == 1) /* one point needs no copy */
+    returned = ask_potential_gradient(c, s->n, t[0], q, V_q);
   else
     for (int k = 0; k < count && returned == 0; k++) {
-      gather(s->n, count, k, q, s->point_q);
-      returned = ask_gradient(c, s->n, t[k], s->point_q, s->result[0]);
-      scatter(s->n, count, k, s->result[0], V_q);
+      gather_point(s->n, count, k, q, s->point_q);
+      returned = ask_potential_gradient(c, s->n, t[k], s->point_q, s->result[0]);
+      scatter_result(s->n, count, k, s->result[0], V_q);
     }
   return dvi__verdict(returned, s->n, count, V_q, p->name, "gradient", "");
 }
@@ -105,14 +107,15 @@ dvi_status dvi__potential_hessian(const dvi__potential_term *p, dvi__scratch *s,
   const int entries = dvi__pattern_entries(&p->qq);
   int returned = 0;
   if (!dvi__potential_has_hessian(p))
-    return dvi__difference_hessian(dvi__potential_gradient_of_q, &(dvi__potential_at){p, s, t},
+    return dvi__difference_hessian(dvi__potential_gradient_of_q,
+                                   &(dvi__potential_at){.term = p, .scratch = s, .t = t},
                                    &s->of_gradient, &p->groups, !dvi__potential_has_gradient(p),
                                    count, q, &p->qq, V_qq, NULL, NULL);
   if (c->hessian_batch != NULL) returned = c->hessian_batch(count, t, q, V_qq, c->user);
   for (int k = 0; c->hessian_batch == NULL && k < count && returned == 0; k++) {
-    gather(s->n, count, k, q, s->point_q);
+    gather_point(s->n, count, k, q, s->point_q);
     returned = c->hessian(t[k], s->point_q, s->result[0], c->user);
-    scatter(entries, count, k, s->result[0], V_qq);
+    scatter_result(entries, count, k, s->result[0], V_qq);
   }
   return dvi__verdict(returned, entries, count, V_qq, p->name, "Hessian", "");
 }
@@ -129,7 +132,7 @@ dvi_status dvi__potential_rate(const dvi__potential_term *p, dvi__scratch *s, in
   int returned = 0;
   if (c->rate_batch != NULL) returned = c->rate_batch(count, t, q, V_t, c->user);
   for (int k = 0; c->rate_batch == NULL && k < count && returned == 0; k++) {
-    gather(s->n, count, k, q, s->point_q);
+    gather_point(s->n, count, k, q, s->point_q);
     returned = c->rate(t[k], s->point_q, V_t + k, c->user);
   }
   return dvi__verdict(returned, 1, count, V_t, p->name, "rate", "");
@@ -164,7 +167,7 @@ static void add_part(const dvi__pattern *part, const int *where, const double *v
   for (int e = 0; e < dvi__pattern_entries(part); e++) whole[where[e]] += values[e];
 }
 
-static void clear(const dvi__pattern *pattern, double *values)
+static void clear_entries(const dvi__pattern *pattern, double *values)
 {
   for (int e = 0; e < dvi__pattern_entries(pattern); e++) values[e] = 0;
 }
@@ -181,7 +184,7 @@ dvi_status dvi__form_gradients(const dvi__lagrangian_term *l, const double *q, d
 {
   const dvi__gauge_term *g = &l->gauge;
   if (!has_gauge(l)) return own_gradients(l, &l->qv, q, alpha_q);
-  clear(&l->qv, alpha_q);
+  clear_entries(&l->qv, alpha_q);
   DVI_TRY(own_gradients(l, &g->form_qv, q, work));
   add_part(&g->form_qv, g->form_in_qv, work, alpha_q);
   const int returned = g->callbacks.hessian(q, work, g->callbacks.user);
@@ -197,13 +200,13 @@ static dvi_status own_hessian(const dvi__lagrangian_term *l, const dvi__pattern 
   return dvi__verdict(returned, dvi__pattern_entries(qq), 1, alpha_w_qq, form, "Hessian", "");
 }
 
-/* The Hessian of (alpha + grad f).w at one point. */
+/* Compute the Hessian of (alpha + grad f).w at one point. */
 static dvi_status whole_hessian(const dvi__lagrangian_term *l, const double *q, const double *w,
                                 double *qq, double *work)
 {
   const dvi__gauge_term *g = &l->gauge;
   if (!has_gauge(l)) return own_hessian(l, &l->qq, q, w, qq);
-  clear(&l->qq, qq);
+  clear_entries(&l->qq, qq);
   DVI_TRY(own_hessian(l, &g->form_qq, q, w, work));
   add_part(&g->form_qq, g->form_in_qq, work, qq);
   const int returned = g->callbacks.third(q, w, work, g->callbacks.user);
@@ -213,12 +216,12 @@ static dvi_status whole_hessian(const dvi__lagrangian_term *l, const double *q, 
   return DVI_OK;
 }
 
-/* s->result[0] = alpha at point k of the batch, with s->point_q and s->point_v. */
+/* Compute s->result[0] = alpha at point k of the batch, with s->point_q and s->point_v. */
 static dvi_status form_value(const dvi__lagrangian_term *l, dvi__scratch *s, int count, int k,
                              const double *q, const double *v)
 {
-  gather(s->n, count, k, q, s->point_q);
-  gather(s->n, count, k, v, s->point_v);
+  gather_point(s->n, count, k, q, s->point_q);
+  gather_point(s->n, count, k, v, s->point_v);
   return dvi__form_value(l, s->point_q, s->result[0], s->result[2]);
 }
 
@@ -233,24 +236,24 @@ static dvi_status form_lagrangian(const dvi__lagrangian_term *l, dvi__scratch *s
   return DVI_OK;
 }
 
-/* L_q = sum_j v_j d alpha_j/dq,  L_v = alpha. */
-static dvi_status form_gradient(const dvi__lagrangian_term *l, dvi__scratch *s, int count,
-                                const double *q, const double *v, double *L_q, double *L_v)
+/* Compute L_q = sum_j v_j d alpha_j/dq,  L_v = alpha. */
+static dvi_status one_form_gradient(const dvi__lagrangian_term *l, dvi__scratch *s, int count,
+                                    const double *q, const double *v, double *L_q, double *L_v)
 {
   for (int k = 0; k < count; k++) {
     DVI_TRY(form_value(l, s, count, k, q, v));
-    scatter(s->n, count, k, s->result[0], L_v);
+    scatter_result(s->n, count, k, s->result[0], L_v);
     DVI_TRY(dvi__form_gradients(l, s->point_q, s->result[1], s->result[2]));
     for (int i = 0; i < s->n; i++) s->result[0][i] = 0;
     for (int j = 0; j < s->n; j++)
       for (int e = l->qv.start[j]; e < l->qv.start[j + 1]; e++)
         s->result[0][l->qv.row[e]] += s->point_v[j] * s->result[1][e];
-    scatter(s->n, count, k, s->result[0], L_q);
+    scatter_result(s->n, count, k, s->result[0], L_q);
   }
   return DVI_OK;
 }
 
-/* The Hessian of alpha.v, by differences of the gradients if it is not given. */
+/* Compute the Hessian of alpha.v, by differences of the gradients if there is no callback. */
 static dvi_status form_curvature(const dvi__general_at *at, int count, double *L_qq)
 {
   const dvi__lagrangian_term *l = at->term;
@@ -259,24 +262,24 @@ static dvi_status form_curvature(const dvi__general_at *at, int count, double *L
     return dvi__difference_hessian(dvi__general_gradient_of_q, at, &s->of_gradient, &l->q_groups, 0,
                                    count, at->q, &l->qq, L_qq, NULL, NULL);
   for (int k = 0; k < count; k++) {
-    gather(s->n, count, k, at->q, s->point_q);
-    gather(s->n, count, k, at->v, s->point_v);
+    gather_point(s->n, count, k, at->q, s->point_q);
+    gather_point(s->n, count, k, at->v, s->point_v);
     DVI_TRY(whole_hessian(l, s->point_q, s->point_v, s->result[0], s->result[2]));
-    scatter(dvi__pattern_entries(&l->qq), count, k, s->result[0], L_qq);
+    scatter_result(dvi__pattern_entries(&l->qq), count, k, s->result[0], L_qq);
   }
   return DVI_OK;
 }
 
-/* L_qq is the Hessian of alpha.v, L_qv has the gradients of alpha, and L_vv is empty. */
-static dvi_status form_hessian(const dvi__general_at *at, int count, double *L_qq, double *L_qv)
+/* Compute L_qq, the Hessian of alpha.v, and L_qv, the gradients of alpha. L_vv is empty. */
+static dvi_status one_form_hessian(const dvi__general_at *at, int count, double *L_qq, double *L_qv)
 {
   const dvi__lagrangian_term *l = at->term;
   dvi__scratch *s = at->scratch;
   DVI_TRY(form_curvature(at, count, L_qq));
   for (int k = 0; k < count; k++) {
-    gather(s->n, count, k, at->q, s->point_q);
+    gather_point(s->n, count, k, at->q, s->point_q);
     DVI_TRY(dvi__form_gradients(l, s->point_q, s->result[0], s->result[2]));
-    scatter(dvi__pattern_entries(&l->qv), count, k, s->result[0], L_qv);
+    scatter_result(dvi__pattern_entries(&l->qv), count, k, s->result[0], L_qv);
   }
   return DVI_OK;
 }
@@ -310,8 +313,8 @@ dvi_status dvi__general_value(const dvi__lagrangian_term *l, dvi__scratch *s, in
   if (is_form(l)) return form_lagrangian(l, s, count, q, v, L);
   if (c->value_batch != NULL) returned = c->value_batch(count, t, q, v, L, c->user);
   for (int k = 0; c->value_batch == NULL && k < count && returned == 0; k++) {
-    gather(s->n, count, k, q, s->point_q);
-    gather(s->n, count, k, v, s->point_v);
+    gather_point(s->n, count, k, q, s->point_q);
+    gather_point(s->n, count, k, v, s->point_v);
     returned = c->value(t[k], s->point_q, s->point_v, L + k, c->user);
   }
   return dvi__verdict(returned, 1, count, L, l->name, "value", "");
@@ -350,9 +353,9 @@ dvi_status dvi__general_gradient(const dvi__lagrangian_term *l, dvi__scratch *s,
   const dvi_lagrangian *c = &l->callbacks;
   int returned = 0;
   if (l->computed != NULL) return l->computed->gradient(l->of, count, t, q, v, L_q, L_v);
-  if (is_form(l)) return form_gradient(l, s, count, q, v, L_q, L_v);
+  if (is_form(l)) return one_form_gradient(l, s, count, q, v, L_q, L_v);
   if (!dvi__general_has_gradient(l)) {
-    const dvi__general_at at = {l, s, t, q, v};
+    const dvi__general_at at = {.term = l, .scratch = s, .t = t, .q = q, .v = v};
     DVI_TRY(
         dvi__difference_gradient(dvi__general_value_of_q, &at, &s->of_value, s->n, count, q, L_q));
     return dvi__difference_gradient(dvi__general_value_of_v, &at, &s->of_value, s->n, count, v,
@@ -360,11 +363,11 @@ dvi_status dvi__general_gradient(const dvi__lagrangian_term *l, dvi__scratch *s,
   }
   if (c->gradient_batch != NULL) returned = c->gradient_batch(count, t, q, v, L_q, L_v, c->user);
   for (int k = 0; c->gradient_batch == NULL && k < count && returned == 0; k++) {
-    gather(s->n, count, k, q, s->point_q);
-    gather(s->n, count, k, v, s->point_v);
+    gather_point(s->n, count, k, q, s->point_q);
+    gather_point(s->n, count, k, v, s->point_v);
     returned = c->gradient(t[k], s->point_q, s->point_v, s->result[0], s->result[1], c->user);
-    scatter(s->n, count, k, s->result[0], L_q);
-    scatter(s->n, count, k, s->result[1], L_v);
+    scatter_result(s->n, count, k, s->result[0], L_q);
+    scatter_result(s->n, count, k, s->result[1], L_v);
   }
   DVI_TRY(dvi__verdict(returned, s->n, count, L_q, l->name, "gradient", " in L_q"));
   return dvi__verdict(returned, s->n, count, L_v, l->name, "gradient", " in L_v");
@@ -391,19 +394,23 @@ dvi_status dvi__general_hessian(const dvi__lagrangian_term *l, dvi__scratch *s, 
             vv = dvi__pattern_entries(&l->vv);
   int returned = 0;
   if (l->computed != NULL) return l->computed->hessian(l->of, count, t, q, v, L_qq, L_qv, L_vv);
-  if (is_form(l)) return form_hessian(&(dvi__general_at){l, s, t, q, v}, count, L_qq, L_qv);
+  if (is_form(l))
+    return one_form_hessian(&(dvi__general_at){.term = l, .scratch = s, .t = t, .q = q, .v = v},
+                            count, L_qq, L_qv);
   if (!dvi__general_has_hessian(l))
-    return difference_general_hessian(&(dvi__general_at){l, s, t, q, v}, count, L_qq, L_qv, L_vv);
+    return difference_general_hessian(
+        &(dvi__general_at){.term = l, .scratch = s, .t = t, .q = q, .v = v}, count, L_qq, L_qv,
+        L_vv);
   if (c->hessian_batch != NULL)
     returned = c->hessian_batch(count, t, q, v, L_qq, L_qv, L_vv, c->user);
   for (int k = 0; c->hessian_batch == NULL && k < count && returned == 0; k++) {
-    gather(s->n, count, k, q, s->point_q);
-    gather(s->n, count, k, v, s->point_v);
+    gather_point(s->n, count, k, q, s->point_q);
+    gather_point(s->n, count, k, v, s->point_v);
     returned = c->hessian(t[k], s->point_q, s->point_v, s->result[0], s->result[1], s->result[2],
                           c->user);
-    scatter(qq, count, k, s->result[0], L_qq);
-    scatter(qv, count, k, s->result[1], L_qv);
-    scatter(vv, count, k, s->result[2], L_vv);
+    scatter_result(qq, count, k, s->result[0], L_qq);
+    scatter_result(qv, count, k, s->result[1], L_qv);
+    scatter_result(vv, count, k, s->result[2], L_vv);
   }
   DVI_TRY(dvi__verdict(returned, qq, count, L_qq, l->name, "Hessian", " in L_qq"));
   DVI_TRY(dvi__verdict(returned, qv, count, L_qv, l->name, "Hessian", " in L_qv"));
@@ -424,8 +431,8 @@ dvi_status dvi__general_rate(const dvi__lagrangian_term *l, dvi__scratch *s, int
   if (is_form(l)) return DVI_OK;
   if (c->rate_batch != NULL) returned = c->rate_batch(count, t, q, v, L_t, c->user);
   for (int k = 0; c->rate_batch == NULL && k < count && returned == 0; k++) {
-    gather(s->n, count, k, q, s->point_q);
-    gather(s->n, count, k, v, s->point_v);
+    gather_point(s->n, count, k, q, s->point_q);
+    gather_point(s->n, count, k, v, s->point_v);
     returned = c->rate(t[k], s->point_q, s->point_v, L_t + k, c->user);
   }
   return dvi__verdict(returned, 1, count, L_t, l->name, "rate", "");
