@@ -6,8 +6,8 @@
 #include "num/finite.h"
 #include "boundary/path_struct.h"
 
-/* Copy the nodes of x to q, for the queries; there are no momenta until the path is solved. */
-static void show(dvi_path *path)
+/* Copy the nodes of x to q, for the queries. Momenta exist only after a solve. */
+static void show_guess(dvi_path *path)
 {
   const size_t n = (size_t)path->n;
   for (int k = 0; k <= path->steps; k++)
@@ -15,8 +15,8 @@ static void show(dvi_path *path)
   path->solved = 0;
 }
 
-static dvi_status check_points(const dvi_path *path, int points, int dimension, const double *t,
-                               const double *q)
+static dvi_status check_guess_points(const dvi_path *path, int points, int dimension,
+                                     const double *t, const double *q)
 {
   if (t == NULL || q == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "path: the guess has no times or no points");
@@ -41,9 +41,9 @@ static dvi_status check_points(const dvi_path *path, int points, int dimension, 
   return DVI_OK;
 }
 
-/* Between points m and m+1 of the guess. */
-static void interpolate(const dvi_path *path, const double *t, const double *q, int m, double time,
-                        double *node)
+/* Interpolate between points m and m+1 of the guess. */
+static void interpolate_guess(const dvi_path *path, const double *t, const double *q, int m,
+                              double time, double *node)
 {
   const double part = (time - t[m]) / (t[m + 1] - t[m]);
   const double *left = q + (size_t)m * (size_t)path->n, *right = left + path->n;
@@ -54,16 +54,16 @@ dvi_status dvi_path_guess(dvi_path *path, int points, int dimension, const doubl
                           const double *q)
 {
   if (path == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "path: no path to guess");
-  DVI_TRY(check_points(path, points, dimension, t, q));
+  DVI_TRY(check_guess_points(path, points, dimension, t, q));
   memset(path->x, 0, (size_t)path->unknowns * sizeof(double));
   for (int k = 0, m = 0; k <= path->steps; k++) {
     const double time = t[0] + (t[points - 1] - t[0]) * k / path->steps;
     while (m < points - 2 && time > t[m + 1]) m++;
     if (dvi__path_node(path, k) >= 0)
-      interpolate(path, t, q, m, time, path->x + dvi__path_node(path, k));
+      interpolate_guess(path, t, q, m, time, path->x + dvi__path_node(path, k));
   }
   if (path->free_span) path->x[path->core] = 1;
-  show(path);
+  show_guess(path);
   return DVI_OK;
 }
 
@@ -93,6 +93,6 @@ dvi_status dvi_path_guess_along(dvi_path *path, const dvi_path *last, const dvi_
                  earlier = before != NULL ? dvi__path_span(before, before->x) : span;
     path->x[path->core] = (span + ratio * (span - earlier)) / path->span;
   }
-  show(path);
+  show_guess(path);
   return DVI_OK;
 }

@@ -1,4 +1,4 @@
-/* A path's life: what it is asked to be, its memory, and what it tells. */
+/* A path's checks of options, creation, destruction and queries. */
 #include <math.h>
 #include <string.h>
 
@@ -9,9 +9,9 @@
 #include "num/finite.h"
 #include "boundary/path_struct.h"
 
-/* ---- what is asked ---- */
+/* ---- options ---- */
 
-/* An array that these ends must have, or may not have. */
+/* Check an array that these ends require (wanted) or refuse. */
 static dvi_status check_array(const dvi_path_options *options, const double *array,
                               const char *name, int wanted)
 {
@@ -45,7 +45,7 @@ static dvi_status check_arrays(const dvi_system *system, const dvi_path_options 
                    "path: a symmetry is given, but only periodic ends have a use for it");
 }
 
-static dvi_status check(const dvi_system *system, const dvi_path_options *o)
+static dvi_status path_check(const dvi_system *system, const dvi_path_options *o)
 {
   if (o->ends < DVI_ENDS_FIXED || o->ends > DVI_ENDS_PERIODIC)
     return dvi__fail(DVI_BAD_ARGUMENT, "path: unknown ends %d", (int)o->ends);
@@ -116,7 +116,7 @@ static int copy_arrays(dvi_path *path, const dvi_path_options *o)
          copy_array(path, o->p0, &path->p0) && copy_array(path, o->shift, &path->shift);
 }
 
-static dvi_status allocate(dvi_path *path)
+static dvi_status path_allocate(dvi_path *path)
 {
   const size_t n = (size_t)path->n, s = (size_t)path->s, nodes = (size_t)path->steps + 1,
                gauges = (size_t)path->gauges;
@@ -154,7 +154,7 @@ static dvi_status allocate(dvi_path *path)
                          path->steps, path->n);
 }
 
-static dvi_status make_action(dvi_path *path, const char *method)
+static dvi_status path_make_action(dvi_path *path, const char *method)
 {
   dvi__action_space space;
   DVI_TRY(dvi__element_space(path->system, method, "path", &space,
@@ -169,7 +169,8 @@ static dvi_status make_action(dvi_path *path, const char *method)
   return dvi__evaluator_create(path->system, 1, DVI__STATES, &path->counters, &path->energies);
 }
 
-/* The straight line between fixed ends; else a path at rest, for want of anything better. */
+/* Guess the straight line between fixed ends, else a path at rest, because nothing better is
+ * known. */
 static dvi_status first_guess(dvi_path *path)
 {
   const size_t n = (size_t)path->n;
@@ -184,7 +185,7 @@ static dvi_status first_guess(dvi_path *path)
   return status;
 }
 
-static dvi_status fill(dvi_path *path, const char *method, const dvi_path_options *o)
+static dvi_status path_assemble(dvi_path *path, const char *method, const dvi_path_options *o)
 {
   path->ends = o->ends;
   path->n = path->system->n;
@@ -196,11 +197,11 @@ static dvi_status fill(dvi_path *path, const char *method, const dvi_path_option
   path->gauges = o->ends == DVI_ENDS_PERIODIC
                      ? path->system->symmetry_count + (path->system->autonomous != 0)
                      : 0;
-  DVI_TRY(make_action(path, method));
+  DVI_TRY(path_make_action(path, method));
   DVI_TRY(copy_turn(path, o));
   DVI_TRY(dvi__path_lay_out(path));
   if (!copy_arrays(path, o)) return dvi__fail(DVI_NO_MEMORY, "path: no memory for the ends");
-  DVI_TRY(allocate(path));
+  DVI_TRY(path_allocate(path));
   DVI_TRY(dvi__path_make_solver(path));
   return first_guess(path);
 }
@@ -212,12 +213,12 @@ dvi_status dvi_path_create(const dvi_system *system, const char *method,
   *path = NULL;
   if (system == NULL || method == NULL || options == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "path: the system, the method or the options are NULL");
-  DVI_TRY(check(system, options));
+  DVI_TRY(path_check(system, options));
   const long before = dvi__allocation_count();
   dvi_path *made = DVI_NEW(dvi_path, 1);
   if (made == NULL) return dvi__fail(DVI_NO_MEMORY, "path: no memory");
   made->system = system;
-  const dvi_status status = fill(made, method, options);
+  const dvi_status status = path_assemble(made, method, options);
   made->counters.allocations = dvi__allocation_count() - before;
   if (status != DVI_OK) dvi_path_destroy(&made);
   *path = made;

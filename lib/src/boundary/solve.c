@@ -1,4 +1,4 @@
-/* Newton's method with line search from the guess, and what is asked of the path that it finds. */
+/* Newton's method with line search from the guess, and the checks of the path that it finds. */
 #include <math.h>
 #include <string.h>
 
@@ -6,19 +6,19 @@
 #include "num/finite.h"
 #include "boundary/path_struct.h"
 
-/* What may be left of the gradient, of the largest momentum. */
+/* Largest gradient of a stationary path, relative to the largest momentum. */
 static const double stationary_below = 1e-9;
 
-/* Newton's method settles from there, unless the Hessian is singular. */
+/* From this residual Newton's method converges, unless the Hessian is singular. */
 static const double nearly_stationary = 1e-8;
 
-/* A gradient that is no larger where the path is held in place may vanish at another time; and a
- * residual, on another path beside it. */
+/* A gradient up to this size, with the path held in place, may vanish after a shift in time. A
+ * residual up to this size may vanish on a neighbouring path. */
 static const double nearly_in_time = 1e-4;
 
-/* Directions that move the guess alike are one. On a circle rotation moves a path as time does, but
- * on a rough guess of it they differ: if it cannot be held in place along both, they are taken for
- * one. */
+/* Directions that move the guess alike, up to these parts, count as one. On a circle rotation moves
+ * a path as time does, but on a rough guess the two differ. If a path cannot be held in place along
+ * both (equal), they are taken for one (alike). */
 static const double equal = 1e-6, alike = 0.5;
 
 static dvi_status not_found(dvi_path *path, dvi_status status, const dvi__solve_report *solved)
@@ -65,9 +65,9 @@ static dvi_status held_in_place(double gradient)
                    gradient);
 }
 
-/* What is left of stationarity, relative to momenta; for a path at rest, to a momentum that would
- * cross its own size. */
-static dvi_status measure(dvi_path *path, double size, dvi_path_report *report)
+/* Measure the gradient relative to the momenta, and the action. For a path at rest the gradient is
+ * relative to a momentum that would cross the path's own size. */
+static dvi_status measure_path(dvi_path *path, double size, dvi_path_report *report)
 {
   const double *x = path->trial;
   report->span = dvi__path_span(path, x);
@@ -84,8 +84,8 @@ static dvi_status measure(dvi_path *path, double size, dvi_path_report *report)
   return dvi__path_action(path, x, &report->action, &report->energy);
 }
 
-/* Zero eigenvalues that no symmetry explains: the path is one of many, or roundoff chose it. One
- * may belong to a free span, which the energy fixes. */
+/* Check that symmetries explain all zero eigenvalues. Otherwise the path is one of many, or
+ * roundoff chose it. One zero may belong to a free span, which the energy fixes. */
 static dvi_status check_isolated(const dvi_path *path, const dvi_path_report *report)
 {
   if (report->zero <= report->symmetries + path->free_span) return DVI_OK;
@@ -100,8 +100,8 @@ static dvi_status check_isolated(const dvi_path *path, const dvi_path_report *re
                        : "it is not isolated");
 }
 
-/* Newton's method finds nothing, or does not settle, where the Hessian is singular: at the guess,
- * or where it ended, if that is nearly stationary. Else the status stays. */
+/* Find out whether Newton's method failed because the Hessian is singular. The Hessian is tested at
+ * the last iterate, if that is nearly stationary, and at the guess. Otherwise the status stays. */
 static dvi_status check_singular(dvi_path *path, dvi_status status, const dvi__solve_report *solved)
 {
   dvi_path_report found = {.symmetries = path->in_use};
@@ -115,7 +115,7 @@ static dvi_status check_singular(dvi_path *path, dvi_status status, const dvi__s
   return status;
 }
 
-static void accept(dvi_path *path)
+static void accept_path(dvi_path *path)
 {
   const size_t n = (size_t)path->n;
   double *x = path->x, *p = path->p;
@@ -128,9 +128,9 @@ static void accept(dvi_path *path)
   path->solved = 1;
 }
 
-/* The steps are so long that the discrete motion has preferred times, by a little: Newton's method
- * takes the path to one of them. */
-static dvi_status settle(dvi_path *path, double size, dvi_path_report *report)
+/* Solve once more with the path released in time. Steps that are too long give the discrete motion
+ * slightly preferred times, and Newton's method moves the path to one of them. */
+static dvi_status settle_in_time(dvi_path *path, double size, dvi_path_report *report)
 {
   dvi__solve_report solved;
   const double gradient = report->gradient;
@@ -139,11 +139,11 @@ static dvi_status settle(dvi_path *path, double size, dvi_path_report *report)
   if (status > 0) return held_in_place(gradient);
   if (status < 0) return not_found(path, status, &solved);
   report->iterations += solved.iterations;
-  return measure(path, size, report);
+  return measure_path(path, size, report);
 }
 
-/* From the guess, which is held in place along directions that are independent to this part. */
-static dvi_status attempt(dvi_path *path, double least_own_part, dvi_path_report *report)
+/* Solve from the guess, held in place along directions that are independent to this part. */
+static dvi_status solve_from_guess(dvi_path *path, double least_own_part, dvi_path_report *report)
 {
   dvi__solve_report solved;
   memcpy(path->trial, path->x, (size_t)path->unknowns * sizeof(double));
@@ -156,17 +156,18 @@ static dvi_status attempt(dvi_path *path, double least_own_part, dvi_path_report
   if (status != DVI_OK) return not_found(path, status, &solved);
   report->iterations = solved.iterations;
   report->symmetries = path->in_use;
-  const dvi_status measured = measure(path, size, report);
+  const dvi_status measured = measure_path(path, size, report);
   return measured == DVI_NOT_CONVERGED && report->gradient < nearly_in_time
-             ? settle(path, size, report)
+             ? settle_in_time(path, size, report)
              : measured;
 }
 
-static dvi_status solve(dvi_path *path, dvi_path_report *report)
+static dvi_status solve_path(dvi_path *path, dvi_path_report *report)
 {
   DVI_TRY(dvi__path_check_symmetry(path, path->x, 1));
-  dvi_status status = attempt(path, equal, report);
-  if (status == DVI_NOT_CONVERGED && path->in_use > 1) status = attempt(path, alike, report);
+  dvi_status status = solve_from_guess(path, equal, report);
+  if (status == DVI_NOT_CONVERGED && path->in_use > 1)
+    status = solve_from_guess(path, alike, report);
   if (status != DVI_OK) return status;
   DVI_TRY(dvi__path_check_symmetry(path, path->trial, path->steps));
   DVI_TRY(dvi__path_index(path, report));
@@ -178,9 +179,9 @@ dvi_status dvi_path_solve(dvi_path *path, dvi_path_report *report)
 {
   if (path == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "path: no path to solve");
   dvi_path_report found = {0};
-  const dvi_status status = solve(path, &found);
+  const dvi_status status = solve_path(path, &found);
   if (status != DVI_OK) return dvi__fail_in(status, "path");
-  accept(path);
+  accept_path(path);
   if (report != NULL) *report = found;
   return dvi__path_check_resolved(path, &found);
 }

@@ -34,7 +34,8 @@ const char *dvi_last_error(void)
   return sentence;
 }
 
-/* Both functions write aside first: an argument may be the last sentence itself. */
+/* Both functions write to a local text first, because an argument may be the last sentence
+ * itself. */
 dvi_status dvi__fail(dvi_status status, const char *format, ...)
 {
   char text[DVI__SENTENCE_SIZE];

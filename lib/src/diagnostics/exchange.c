@@ -1,8 +1,8 @@
-/* How far a step turns a stiff spring, and how fast it lets slow forces carry energy from one such
- * spring to another.
+/* The angle by which a step turns a stiff spring, and the rate at which slow forces carry energy
+ * from one such spring to another.
  *
  * Springs x of one frequency omega that slow forces -K x couple move as x = Re z exp(i omega t),
- * where on average 2 i omega z' = K z: each mode of K, with the number kappa, turns faster by
+ * where on average 2 i omega z' = K z. Each mode of K, with the eigenvalue kappa, turns faster by
  * kappa/(2 omega), and the springs exchange their energies as the modes' phases part. A step of one
  * mode,
  *
@@ -22,10 +22,11 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* Shorter turns and longer ones are lost in the rounding of a trace near 2 or -2. */
+/* Limits of h omega and of the turn. Turns beyond them are lost in the rounding of a trace near 2
+ * or -2. */
 static const double shortest = 1e-3, longest = 1e5, least_turn = 1e-12;
 
-static int value(double t, const double *x, double *V, void *user)
+static int spring_value(double t, const double *x, double *V, void *user)
 {
   const double *stiffness = user;
   (void)t;
@@ -33,7 +34,7 @@ static int value(double t, const double *x, double *V, void *user)
   return 0;
 }
 
-static int gradient(double t, const double *x, double *V_x, void *user)
+static int spring_gradient(double t, const double *x, double *V_x, void *user)
 {
   const double *stiffness = user;
   (void)t;
@@ -41,7 +42,7 @@ static int gradient(double t, const double *x, double *V_x, void *user)
   return 0;
 }
 
-static int hessian(double t, const double *x, double *V_xx, void *user)
+static int spring_hessian(double t, const double *x, double *V_xx, void *user)
 {
   const double *stiffness = user;
   (void)t, (void)x;
@@ -49,12 +50,12 @@ static int hessian(double t, const double *x, double *V_xx, void *user)
   return 0;
 }
 
-static dvi_potential spring(double *stiffness, int fast)
+static dvi_potential spring_potential(double *stiffness, int fast)
 {
   return (dvi_potential){.name = fast ? "fast" : "slow",
-                         .value = value,
-                         .gradient = gradient,
-                         .hessian = hessian,
+                         .value = spring_value,
+                         .gradient = spring_gradient,
+                         .hessian = spring_hessian,
                          .user = stiffness,
                          .fast = fast,
                          .quadratic = 1};
@@ -80,7 +81,7 @@ static dvi_status take_steps(dvi_integrator *integrator, step_matrix *step)
 static dvi_status take_step(const char *method, double omega, double kappa, step_matrix *step)
 {
   double square = omega * omega;
-  const dvi_potential springs[] = {spring(&square, 1), spring(&kappa, 0)};
+  const dvi_potential springs[] = {spring_potential(&square, 1), spring_potential(&kappa, 0)};
   const dvi_system_terms terms = {.dimension = 1,
                                   .mass = {.scalar = 1},
                                   .potentials = springs,
@@ -96,7 +97,7 @@ static dvi_status take_step(const char *method, double omega, double kappa, step
   return status;
 }
 
-static double trace(const step_matrix *step)
+static double step_trace(const step_matrix *step)
 {
   return step->column[0][0] + step->column[1][1];
 }
@@ -113,13 +114,14 @@ dvi_status dvi_exchange(const char *method, double h_omega, double *turn, double
   DVI_TRY(take_step(method, h_omega, -kappa, &softer));
   DVI_TRY(take_step(method, h_omega, 0, &as_it_is));
   DVI_TRY(take_step(method, h_omega, kappa, &stiffer));
-  const double cosine = 0.5 * trace(&as_it_is);
+  const double cosine = 0.5 * step_trace(&as_it_is);
   if (!(fabs(cosine) < 1 - least_turn))
     return dvi__fail(
         DVI_BAD_ARGUMENT,
         "exchange: a step of h omega = %g by %s does not turn a spring, or by a multiple of pi",
         h_omega, method);
-  const double angle = acos(cosine), slope = (trace(&stiffer) - trace(&softer)) / (2 * kappa);
+  const double angle = acos(cosine),
+               slope = (step_trace(&stiffer) - step_trace(&softer)) / (2 * kappa);
   *turn = as_it_is.column[1][0] > 0 ? angle : 2 * pi - angle;
   *rate = -h_omega * slope / sin(*turn);
   return DVI_OK;

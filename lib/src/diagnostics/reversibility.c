@@ -1,11 +1,11 @@
-/* There and back again. */
+/* Reversibility: steps of h and as many of -h. */
 #include <dvi/diagnostics.h>
 #include <math.h>
 
 #include "core/memory.h"
 #include "core/status.h"
 
-static dvi_status go(dvi_integrator *integrator, double h, long steps)
+static dvi_status take_equal_steps(dvi_integrator *integrator, double h, long steps)
 {
   for (long i = 0; i < steps; i++) DVI_TRY(dvi_integrator_step(integrator, h));
   return DVI_OK;
@@ -31,8 +31,8 @@ dvi_status dvi_reversibility(dvi_integrator *integrator, double t, const double 
   double *start = (double *)dvi__duplicate(q, (size_t)nq, sizeof *q);
   if (!start) return dvi__fail(DVI_NO_MEMORY, "reversibility: no memory for %d coordinates", nq);
   dvi_status status = dvi_integrator_start(integrator, t, q, p);
-  if (status == DVI_OK) status = go(integrator, h, steps);
-  if (status == DVI_OK) status = go(integrator, -h, steps);
+  if (status == DVI_OK) status = take_equal_steps(integrator, h, steps);
+  if (status == DVI_OK) status = take_equal_steps(integrator, -h, steps);
   if (status == DVI_OK) *defect = largest_difference(nq, dvi_integrator_q(integrator), start);
   dvi__release(start);
   return status;

@@ -1,17 +1,17 @@
-/* Reversible step control: an integrating controller for z, the number of steps in a unit of time
- * over h,
+/* Reversible step control. An integrating controller advances z, the number of steps in a unit of
+ * time over h,
  *
  *     dz/dtau = -g_q.v/g  if dt/dtau = 1/z,        z = 1/g  at the start,
  *
- * in two halves around each step, so that a step of -h undoes one of h. Source: Hairer and
- * Soederlind 2005, sec. 3; Hairer, Lubich and Wanner 2006, sec. VIII.3.2. */
+ * in two halves around each step, so that a step of -h undoes one of h. Sources: Hairer and
+ * Soederlind 2005, sec. 3, and Hairer, Lubich and Wanner 2006, sec. VIII.3.2. */
 #include <math.h>
 
 #include "core/status.h"
 #include "integrator/integrator_struct.h"
 
-/* -g_q.v/g at a state. */
-static dvi_status slope(dvi_integrator *I, const dvi__state *state, double *rate)
+/* Evaluate dz/dtau = -g_q.v/g at a state. */
+static dvi_status density_rate(dvi_integrator *I, const dvi__state *state, double *rate)
 {
   dvi__monitored_time *monitored = I->monitored;
   double g, along = 0;
@@ -24,12 +24,12 @@ static dvi_status slope(dvi_integrator *I, const dvi__state *state, double *rate
   return DVI_OK;
 }
 
-/* Half a step of z. */
-static dvi_status follow(dvi_integrator *I, const dvi__state *state, double h, double z,
-                         double *next)
+/* Advance z by half a step. */
+static dvi_status density_half_step(dvi_integrator *I, const dvi__state *state, double h, double z,
+                                    double *next)
 {
   double rate;
-  DVI_TRY(slope(I, state, &rate));
+  DVI_TRY(density_rate(I, state, &rate));
   *next = z + 0.5 * h * rate;
   if (*next > 0 && isfinite(*next)) return DVI_OK;
   return dvi__fail(DVI_NOT_CONVERGED,
@@ -43,7 +43,7 @@ dvi_status dvi__control_begin(dvi_integrator *I, double h, double *length)
   *length = h;
   I->next.density = I->now.density;
   if (I->monitored == NULL || I->monitored->pacing != DVI_STEP_CONTROL) return DVI_OK;
-  DVI_TRY(follow(I, &I->now, h, I->now.density, &I->next.density));
+  DVI_TRY(density_half_step(I, &I->now, h, I->now.density, &I->next.density));
   *length = h / I->next.density;
   return dvi__check_step(I->now.t, *length);
 }
@@ -51,5 +51,5 @@ dvi_status dvi__control_begin(dvi_integrator *I, double h, double *length)
 dvi_status dvi__control_end(dvi_integrator *I, double h)
 {
   if (I->monitored == NULL || I->monitored->pacing != DVI_STEP_CONTROL) return DVI_OK;
-  return follow(I, &I->next, h, I->next.density, &I->next.density);
+  return density_half_step(I, &I->next, h, I->next.density, &I->next.density);
 }

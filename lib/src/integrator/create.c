@@ -1,4 +1,4 @@
-/* Making and destroying integrators. */
+/* Creation and destruction of integrators. */
 #include <string.h>
 
 #include "core/memory.h"
@@ -47,7 +47,7 @@ static dvi_status make_stepper(dvi_integrator *I, const dvi_integrator_options *
   return allocate_integrator(I);
 }
 
-static dvi_status check_paced_method(const dvi_integrator *I)
+static dvi_status check_monitored_method(const dvi_integrator *I)
 {
   const char *symmetric = I->system->dynamics->symmetric;
   if (I->stepper.method->chooses_steps)
@@ -72,14 +72,15 @@ static dvi_status make_integrator(const dvi_system *system, const dvi_integrator
   I->system = system;
   dvi_status status = make_stepper(I, o);
   I->counters.allocations = dvi__allocation_count() - before;
-  if (status == DVI_OK && I->monitored != NULL) status = check_paced_method(I);
+  if (status == DVI_OK && I->monitored != NULL) status = check_monitored_method(I);
   if (status != DVI_OK) dvi_integrator_destroy(&I);
   *integrator = I;
   return status;
 }
 
-static dvi_status make_paced(const dvi_system *system, const dvi_integrator_options *o,
-                             dvi_integrator **integrator)
+static dvi_status make_monitored_integrator(const dvi_system *system,
+                                            const dvi_integrator_options *o,
+                                            dvi_integrator **integrator)
 {
   const char *what = o->pacing == DVI_TIME_TRANSFORM
                          ? "time transform, a general Lagrangian with the mass M/g"
@@ -94,7 +95,8 @@ static dvi_status make_paced(const dvi_system *system, const dvi_integrator_opti
   return status;
 }
 
-/* The caller's struct may be that of an older header, without the last fields. */
+/* Copy the options. The caller's struct may be that of an older header, without the last
+ * fields. */
 static dvi_status read_options(const dvi_integrator_options *given, dvi_integrator_options *o)
 {
   *o = (dvi_integrator_options){0};
@@ -128,7 +130,7 @@ dvi_status dvi_integrator_create_with(const dvi_system *system,
                      system == NULL ? "system is" : "options are");
   DVI_TRY(read_options(options, &o));
   return o.pacing == DVI_STEPS_OF_TIME ? make_integrator(system, &o, integrator)
-                                       : make_paced(system, &o, integrator);
+                                       : make_monitored_integrator(system, &o, integrator);
 }
 
 dvi_status dvi_integrator_create(const dvi_system *system, const char *method,

@@ -1,4 +1,4 @@
-/* An ensemble's members: their start, their numbers, their failures. */
+/* The members of an ensemble: start, numbers, failures and queries. */
 #include <dvi/ensemble.h>
 #include <stdio.h>
 #include <string.h>
@@ -24,9 +24,9 @@ void dvi__member_load(const dvi_ensemble *e, dvi__worker *w, const dvi__block *b
   dvi_integrator *I = w->integrator;
   const size_t n = (size_t)e->n, members = (size_t)block->count;
   I->now.t = dvi__row(block, DVI__MEMBER_T)[k];
-  I->now.t_compensation = dvi__row(block, DVI__MEMBER_T_CARRY)[k];
+  I->now.t_compensation = dvi__row(block, DVI__MEMBER_T_COMPENSATION)[k];
   I->now.side = 0;
-  /* q, p and both carries lie in a row */
+  /* q, p and both compensations are contiguous */
   load_rows(4 * n, dvi__row(block, DVI__MEMBER_Q) + k, members, I->now.q);
   load_rows(I->stepper.memory_count, dvi__row(block, DVI__MEMBER_Q + 4 * n) + k, members,
             I->stepper.memory);
@@ -38,13 +38,13 @@ void dvi__member_load(const dvi_ensemble *e, dvi__worker *w, const dvi__block *b
   }
 }
 
-/* Of what came before the present state a member keeps what dvi__guess_velocity looks at. */
+/* Store a member's state, and the numbers of earlier states that dvi__guess_velocity uses. */
 void dvi__member_store(const dvi_ensemble *e, const dvi__worker *w, const dvi__block *block, int k)
 {
   const dvi_integrator *I = w->integrator;
   const size_t n = (size_t)e->n, members = (size_t)block->count;
   dvi__row(block, DVI__MEMBER_T)[k] = I->now.t;
-  dvi__row(block, DVI__MEMBER_T_CARRY)[k] = I->now.t_compensation;
+  dvi__row(block, DVI__MEMBER_T_COMPENSATION)[k] = I->now.t_compensation;
   store_rows(4 * n, I->now.q, members, dvi__row(block, DVI__MEMBER_Q) + k);
   store_rows(I->stepper.memory_count, I->stepper.memory, members,
              dvi__row(block, DVI__MEMBER_Q + 4 * n) + k);
@@ -78,7 +78,7 @@ void dvi__ensemble_clear_failures(dvi_ensemble *e)
   }
 }
 
-/* Whatever threads met them in whatever order: a fatal one first, then the first member. */
+/* Order failures independently of the threads. Fatal failures come first, then the first member. */
 static int is_worse(dvi_status status, int member, const dvi__worst_failure *than)
 {
   if (than->status == DVI_OK || (status < 0) != (than->status < 0))
@@ -118,7 +118,7 @@ static void start_block(void *of, int thread, int item)
   dvi_ensemble *e = of;
   dvi__worker *w = &e->workers[thread];
   dvi__block block = e->blocks[item];
-  const dvi__departure *from = &e->departure;
+  const dvi__start_task *from = &e->start_task;
   const size_t n = (size_t)e->n, nv = (size_t)block.system->nv, members = (size_t)e->members;
   block.numbers = from->numbers + (size_t)block.first * e->member_numbers;
   dvi__worker_bind(w, &block);
@@ -138,9 +138,9 @@ static void start_block(void *of, int thread, int item)
   }
 }
 
-/* The new states take the place of the old ones once all are good. */
-static dvi_status start(dvi_ensemble *e, double t, const double *q, const double *second,
-                        int by_velocity)
+/* Start all members. The new states replace the old ones once all members have started. */
+static dvi_status ensemble_start_members(dvi_ensemble *e, double t, const double *q,
+                                         const double *second, int by_velocity)
 {
   if (e == NULL || q == NULL || second == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "ensemble: start: an argument is NULL");
@@ -148,7 +148,8 @@ static dvi_status start(dvi_ensemble *e, double t, const double *q, const double
   if (numbers == NULL)
     return dvi__fail(DVI_NO_MEMORY, "ensemble: start: no memory for %d members", e->members);
   e->allocations++;
-  e->departure = (dvi__departure){t, q, second, by_velocity, numbers};
+  e->start_task = (dvi__start_task){
+      .t = t, .q = q, .second = second, .by_velocity = by_velocity, .numbers = numbers};
   dvi__ensemble_clear_failures(e);
   dvi__team_share(e->team, e->block_count, start_block, e);
   const dvi_status status = dvi__ensemble_verdict(e);
@@ -167,12 +168,12 @@ static dvi_status start(dvi_ensemble *e, double t, const double *q, const double
 
 dvi_status dvi_ensemble_start(dvi_ensemble *e, double t, const double *q, const double *p)
 {
-  return start(e, t, q, p, 0);
+  return ensemble_start_members(e, t, q, p, 0);
 }
 
 dvi_status dvi_ensemble_start_velocity(dvi_ensemble *e, double t, const double *q, const double *v)
 {
-  return start(e, t, q, v, 1);
+  return ensemble_start_members(e, t, q, v, 1);
 }
 
 /* ---- queries ---- */

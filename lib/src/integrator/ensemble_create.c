@@ -1,5 +1,5 @@
-/* Making an ensemble: blocks of members that share a system, and an integrator for each thread, or
- * for each block. */
+/* Creation of an ensemble: blocks of members that share a system, and an integrator for each thread
+ * or for each block. */
 #include <string.h>
 
 #include "core/memory.h"
@@ -9,8 +9,9 @@
 
 enum { THREADS_MOST = 1024, BLOCK_MOST = 65536 };
 
-/* Members side by side: as many as have room, with what an iteration needs beside them, in a cache
- * of the first level, but enough to fill vectors and few enough to make use of a thread. */
+/* Limits of the number of members side by side. A block and the work of an iteration should fit in
+ * the first-level cache. A block has enough members to fill vectors, and few enough to give every
+ * thread work. */
 enum { SIDE_BY_SIDE_LEAST = 8, SIDE_BY_SIDE_MOST = 64, NUMBERS_SIDE_BY_SIDE = 2304 };
 
 static const dvi_system *system_of(const dvi_system *system, const dvi_ensemble_options *o,
@@ -34,7 +35,8 @@ static dvi_status check_systems(const dvi_ensemble_options *o)
   return DVI_OK;
 }
 
-static dvi_status check(const dvi_system *system, const char *method, const dvi_ensemble_options *o)
+static dvi_status ensemble_check(const dvi_system *system, const char *method,
+                                 const dvi_ensemble_options *o)
 {
   if (method == NULL || o == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "ensemble: the method or the options are NULL");
@@ -69,7 +71,7 @@ void dvi__worker_bind(dvi__worker *w, const dvi__block *block)
   w->scene->invariants = system->invariants;
 }
 
-/* One more. */
+/* Add one integrator to the ensemble. */
 static dvi_status add_integrator(dvi_ensemble *e, const dvi_system *system, const char *method,
                                  const dvi_shapes *shapes)
 {
@@ -88,9 +90,10 @@ static dvi_status add_integrator(dvi_ensemble *e, const dvi_system *system, cons
   return DVI_OK;
 }
 
-/* Systems that differ share the threads' integrators, or not: a first integrator tells. Those of
- * threads are made for a copy of a system, which takes the terms of each; the patterns of their
- * Hessians, if the method needs them, must be complete before that. */
+/* Decide whether different systems share the threads' integrators. A first integrator says whether
+ * its stepper is bound to the system. Threads' integrators are made for a copy of a system, which
+ * takes the terms of each block's system. The patterns of Hessians, if the method needs them, must
+ * be complete before the copy. */
 static dvi_status look_at_systems(dvi_ensemble *e, const char *method,
                                   const dvi_ensemble_options *o)
 {
@@ -107,7 +110,8 @@ static dvi_status look_at_systems(dvi_ensemble *e, const char *method,
   return DVI_OK;
 }
 
-/* What creation has counted is counted once, for any number of threads. */
+/* Make an integrator for each thread. The work of creation is counted once, for any number of
+ * threads. */
 static dvi_status add_those_of_threads(dvi_ensemble *e, const dvi_system *system,
                                        const char *method, const dvi_shapes *shapes)
 {
@@ -120,7 +124,8 @@ static dvi_status add_those_of_threads(dvi_ensemble *e, const dvi_system *system
   return DVI_OK;
 }
 
-/* Alike systems give integrators with memories of one length. The first one is there. */
+/* Make an integrator for each block. The first integrator exists already. Systems with the same
+ * declarations give integrators with memories of one length. */
 static dvi_status add_those_of_blocks(dvi_ensemble *e, const char *method, const dvi_shapes *shapes)
 {
   dvi_integrator **all = DVI_NEW(dvi_integrator *, e->block_count);
@@ -145,8 +150,8 @@ static int has_lanes(const dvi_ensemble *e)
   return e->integrators[0]->stepper.lanes != NULL;
 }
 
-/* What a block's step needs. */
-static dvi_status make_room(const dvi_ensemble *e, dvi__worker *w)
+/* Allocate the work arrays of a block's step. */
+static dvi_status worker_allocate(const dvi_ensemble *e, dvi__worker *w)
 {
   dvi__members *m = &w->members;
   const size_t capacity = (size_t)e->capacity;
@@ -194,24 +199,25 @@ static dvi_status make_workers(dvi_ensemble *e, const dvi_system *system, const 
 
 /* ---- blocks ---- */
 
-static int smaller(int a, int b)
+static int smaller_count(int a, int b)
 {
   return a < b ? a : b;
 }
 
-/* A share for every thread, in whole vectors; whole, where it is to have few integrators. */
+/* Choose the members of a block, so that every thread has a share in whole vectors. If each block
+ * has its own integrator, a block is a thread's whole share. */
 static int choose_capacity(const dvi_ensemble *e, const dvi_ensemble_options *o)
 {
-  if (o->block > 0) return smaller(o->block, o->members);
+  if (o->block > 0) return smaller_count(o->block, o->members);
   const int share = (o->members - 1) / e->threads + 1;
   if (e->bound) return share;
   const int room = (int)(NUMBERS_SIDE_BY_SIDE / e->state_numbers) / 8 * 8;
-  const int chosen = room > SIDE_BY_SIDE_LEAST ? smaller(room, SIDE_BY_SIDE_MOST)
+  const int chosen = room > SIDE_BY_SIDE_LEAST ? smaller_count(room, SIDE_BY_SIDE_MOST)
                                                : SIDE_BY_SIDE_LEAST;
-  return share < chosen ? smaller((share - 1) / 8 * 8 + 8, o->members) : chosen;
+  return share < chosen ? smaller_count((share - 1) / 8 * 8 + 8, o->members) : chosen;
 }
 
-/* The number of blocks; with `blocks`, they are written. */
+/* Count the blocks, and write them if `blocks` is not NULL. */
 static int cut_blocks(const dvi_ensemble *e, const dvi_system *system,
                       const dvi_ensemble_options *o, dvi__block *blocks)
 {
@@ -222,13 +228,16 @@ static int cut_blocks(const dvi_ensemble *e, const dvi_system *system,
          end < o->members && end - first < e->capacity && system_of(system, o, end) == of;)
       end++;
     if (blocks != NULL)
-      blocks[count] = (dvi__block){first, end - first, of, NULL,
-                                   e->numbers + (size_t)first * e->member_numbers};
+      blocks[count] = (dvi__block){.first = first,
+                                   .count = end - first,
+                                   .system = of,
+                                   .numbers = e->numbers + (size_t)first * e->member_numbers};
   }
   return count;
 }
 
-/* The most that an ensemble takes, and first: too many members are refused at once. */
+/* Allocate the members' numbers, the largest array, first, so that too many members are refused at
+ * once. */
 static dvi_status make_members(dvi_ensemble *e)
 {
   const size_t n = (size_t)e->n;
@@ -240,15 +249,15 @@ static dvi_status make_members(dvi_ensemble *e)
                    e->member_numbers * sizeof(double));
 }
 
-/* Where members go one after the other, what is one member's should stand together: a block for
- * each. */
+/* Prepare the lanes. If members are stepped one after the other, each member is a block of its own,
+ * so that its numbers are contiguous. */
 static dvi_status make_lanes(dvi_ensemble *e, const dvi_ensemble_options *o)
 {
   e->capacity = choose_capacity(e, o);
   for (int i = 0; i < e->integrator_count; i++)
     DVI_TRY(dvi__stepper_prepare_lanes(&e->integrators[i]->stepper, e->capacity));
   if (!has_lanes(e) && !e->bound && o->block == 0) e->capacity = 1;
-  for (int i = 0; i < e->threads; i++) DVI_TRY(make_room(e, &e->workers[i]));
+  for (int i = 0; i < e->threads; i++) DVI_TRY(worker_allocate(e, &e->workers[i]));
   return DVI_OK;
 }
 
@@ -264,8 +273,8 @@ static dvi_status make_blocks(dvi_ensemble *e, const dvi_system *system,
   return DVI_OK;
 }
 
-static dvi_status fill(dvi_ensemble *e, const dvi_system *system, const char *method,
-                       const dvi_ensemble_options *o)
+static dvi_status ensemble_assemble(dvi_ensemble *e, const dvi_system *system, const char *method,
+                                    const dvi_ensemble_options *o)
 {
   DVI_TRY(make_workers(e, system, method, o));
   DVI_TRY(make_members(e));
@@ -280,15 +289,15 @@ dvi_status dvi_ensemble_create(const dvi_system *system, const char *method,
 {
   if (ensemble == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "ensemble: no place for the result");
   *ensemble = NULL;
-  DVI_TRY(check(system, method, options));
+  DVI_TRY(ensemble_check(system, method, options));
   const long before = dvi__allocation_count();
   dvi_ensemble *e = DVI_NEW(dvi_ensemble, 1);
   if (e == NULL) return dvi__fail(DVI_NO_MEMORY, "ensemble: no memory");
   e->members = options->members;
-  e->threads = smaller(options->threads > 0 ? options->threads : 1, options->members);
+  e->threads = smaller_count(options->threads > 0 ? options->threads : 1, options->members);
   e->n = system_of(system, options, 0)->n;
   e->system_is_general = system_of(system, options, 0)->lagrangian != NULL;
-  const dvi_status status = fill(e, system, method, options);
+  const dvi_status status = ensemble_assemble(e, system, method, options);
   e->allocations = dvi__allocation_count() - before;
   if (status != DVI_OK) dvi_ensemble_destroy(&e);
   *ensemble = e;

@@ -1,5 +1,5 @@
-/* The driver of one step: it owns the states, so that a failed step leaves everything as it was,
- * for every method, in one place. */
+/* The driver of one step. The driver owns the states, so that a failed step of any method leaves
+ * the integrator unchanged. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -19,8 +19,8 @@ void dvi__state_lay_out(dvi__state *state, double **at, size_t n)
 
 /* ---- start ---- */
 
-static dvi_status check_start(const dvi_integrator *I, double t, const double *q,
-                              const double *second, char name)
+static dvi_status check_start_state(const dvi_integrator *I, double t, const double *q,
+                                    const double *second, char name)
 {
   if (!isfinite(t)) return dvi__fail(DVI_NOT_FINITE, "the time is %g", t);
   const ptrdiff_t in_q = dvi__first_not_finite((size_t)I->system->n, q);
@@ -32,10 +32,10 @@ static dvi_status check_start(const dvi_integrator *I, double t, const double *q
   return dvi__state_check(I->evaluator, q, second);
 }
 
-/* The arguments may be the integrator's own. Until all is known to be good only `next` is
- * written. */
-static dvi_status start(dvi_integrator *I, double t, const double *q, const double *v,
-                        const double *p)
+/* Start from a complete state. The arguments may be the integrator's own. Until all checks have
+ * passed only `next` is written. */
+static dvi_status start_from_state(dvi_integrator *I, double t, const double *q, const double *v,
+                                   const double *p)
 {
   const size_t bytes = (size_t)I->system->n * sizeof(double),
                v_bytes = (size_t)I->system->nv * sizeof(double);
@@ -60,15 +60,15 @@ static dvi_status start(dvi_integrator *I, double t, const double *q, const doub
   return DVI_OK;
 }
 
-static dvi_status verdict(const dvi_integrator *I, double t, dvi_status status)
+static dvi_status start_verdict(const dvi_integrator *I, double t, dvi_status status)
 {
   return status == DVI_OK
              ? DVI_OK
              : dvi__fail_in(status, "%s: cannot start at t = %.6g", I->stepper.method->name, t);
 }
 
-/* Project a start onto the constraint of all states, in the integrator's own memory; or check
- * it. */
+/* Project a start onto the constraint of all states, in the integrator's own memory, or only check
+ * the constraint. */
 static dvi_status constrain_start(dvi_integrator *I, double t, int project, const double **q,
                                   const double **p)
 {
@@ -83,18 +83,36 @@ static dvi_status constrain_start(dvi_integrator *I, double t, int project, cons
   return constraint->project(I->evaluator, t, I->next.q, I->next.p);
 }
 
+static dvi_status start_by_momentum(dvi_integrator *I, double t, const double *q, const double *p,
+                                    int project)
+{
+  double *v = I->next.q_compensation;
+  memset(v, 0, (size_t)I->system->nv * sizeof(double));
+  DVI_TRY(check_start_state(I, t, q, p, 'p'));
+  DVI_TRY(constrain_start(I, t, project, &q, &p));
+  DVI_TRY(dvi__legendre_inverse(I->evaluator, t, q, p, v));
+  return start_from_state(I, t, q, v, p);
+}
+
+static dvi_status start_by_velocity(dvi_integrator *I, double t, const double *q, const double *v)
+{
+  double *p = I->next.p;
+  DVI_TRY(check_start_state(I, t, q, v, 'v'));
+  if (I->system->dynamics->by_momentum)
+    return dvi__fail(DVI_UNSUPPORTED, "the system declares a Hamiltonian; start with q and p");
+  DVI_TRY(I->system->dynamics->momentum(I->evaluator, t, q, v, p));
+  if (dvi__first_not_finite((size_t)I->system->nv, p) >= 0)
+    return dvi__fail(DVI_NOT_FINITE, "the momentum is not finite");
+  DVI_TRY(dvi__legendre_regular(I->evaluator, t, q, v));
+  return start_from_state(I, t, q, v, p);
+}
+
 dvi_status dvi_integrator_start_with(dvi_integrator *I, double t, const double *q, const double *p,
                                      const dvi_start_options *options)
 {
   if (I == NULL || q == NULL || p == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "start: an argument is NULL");
-  double *v = I->next.q_compensation;
-  memset(v, 0, (size_t)I->system->nv * sizeof(double));
-  dvi_status status = check_start(I, t, q, p, 'p');
-  if (status == DVI_OK) status = constrain_start(I, t, options != NULL && options->project, &q, &p);
-  if (status == DVI_OK) status = dvi__legendre_inverse(I->evaluator, t, q, p, v);
-  if (status == DVI_OK) status = start(I, t, q, v, p);
-  return verdict(I, t, status);
+  return start_verdict(I, t, start_by_momentum(I, t, q, p, options != NULL && options->project));
 }
 
 dvi_status dvi_integrator_start(dvi_integrator *I, double t, const double *q, const double *p)
@@ -107,16 +125,7 @@ dvi_status dvi_integrator_start_velocity(dvi_integrator *I, double t, const doub
 {
   if (I == NULL || q == NULL || v == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "start: an argument is NULL");
-  double *p = I->next.p;
-  dvi_status status = check_start(I, t, q, v, 'v');
-  if (status == DVI_OK && I->system->dynamics->by_momentum)
-    status = dvi__fail(DVI_UNSUPPORTED, "the system declares a Hamiltonian; start with q and p");
-  if (status == DVI_OK) status = I->system->dynamics->momentum(I->evaluator, t, q, v, p);
-  if (status == DVI_OK && dvi__first_not_finite((size_t)I->system->nv, p) >= 0)
-    status = dvi__fail(DVI_NOT_FINITE, "the momentum is not finite");
-  if (status == DVI_OK) status = dvi__legendre_regular(I->evaluator, t, q, v);
-  if (status == DVI_OK) status = start(I, t, q, v, p);
-  return verdict(I, t, status);
+  return start_verdict(I, t, start_by_velocity(I, t, q, v));
 }
 
 /* ---- step ---- */
@@ -127,7 +136,7 @@ void dvi__state_copy(size_t n, const dvi__state *from, dvi__state *to)
   to->t_compensation = from->t_compensation;
   to->density = from->density;
   to->side = from->side;
-  memcpy(to->q, from->q, 4 * n * sizeof(double)); /* q, p and both carries lie in a row */
+  memcpy(to->q, from->q, 4 * n * sizeof(double)); /* q, p and both compensations are contiguous */
 }
 
 static dvi_status check_state(const dvi_integrator *I)
@@ -141,8 +150,8 @@ static dvi_status check_state(const dvi_integrator *I)
   return dvi__fail(DVI_NOT_FINITE, "the new state is not finite");
 }
 
-/* No trajectory goes through a point where the constraint's matrix is singular, but a step can go
- * over it, and is on none then. */
+/* Check that the step stays on one side of the points where the constraint's matrix is singular. No
+ * trajectory goes through such a point, but a step can, and then follows no trajectory. */
 static dvi_status check_side(dvi_integrator *I)
 {
   const dvi__state_constraint *constraint = I->system->dynamics->constraint;
@@ -156,9 +165,9 @@ static dvi_status check_side(dvi_integrator *I)
       constraint->matrix);
 }
 
-/* A step of the method that failed, with the reason if it is where the trajectory ends. `next` is
- * spoilt already. */
-static dvi_status name_end(const dvi_integrator *I, double h, dvi_status status)
+/* Name the reason of a failed step if the trajectory ends within the step. `next` is undefined
+ * already. */
+static dvi_status name_trajectory_end(const dvi_integrator *I, double h, dvi_status status)
 {
   char sentence[1024];
   const dvi__state_constraint *constraint = I->system->dynamics->constraint;
@@ -173,7 +182,7 @@ static dvi_status name_end(const dvi_integrator *I, double h, dvi_status status)
       sentence, constraint->matrix);
 }
 
-static void accept(dvi_integrator *I, double h)
+static void accept_step(dvi_integrator *I, double h)
 {
   const dvi__state oldest = I->last;
   I->last = I->now;
@@ -181,8 +190,8 @@ static void accept(dvi_integrator *I, double h)
   I->next = oldest;
   I->last_h_before = I->last_h;
   if (I->monitored != NULL) I->monitored->expanded = 0;
-  /* What a transform makes of h, or the control, is known by the clock alone; the carries tell it
-   * to the last digit. */
+  /* Only the clock knows the length in time that a transform or the control gives to h. The
+   * compensations contain its last digits. */
   I->last_h = I->monitored != NULL
                   ? (I->now.t - I->last.t) - (I->now.t_compensation - I->last.t_compensation)
                   : h;
@@ -196,7 +205,7 @@ static void exchange_memory(dvi_integrator *I)
   I->memory_before = memory;
 }
 
-/* `next` still holds what `last` was. */
+/* `next` still holds the former `last`. */
 void dvi__integrator_take_back(dvi_integrator *I)
 {
   const dvi__state oldest = I->next;
@@ -216,7 +225,7 @@ dvi_status dvi__integrator_undo(dvi_integrator *I, dvi_status status)
   return dvi__fail_in(status, "the step from t = %.9g is taken back", I->now.t);
 }
 
-static dvi_status refuse(dvi_integrator *I, double h, dvi_status status)
+static dvi_status refuse_step(dvi_integrator *I, double h, dvi_status status)
 {
   exchange_memory(I);
   I->counters.failed_steps++;
@@ -239,8 +248,8 @@ dvi_status dvi__check_step(double t, double h)
                                  "step: h = %g is so small that 1/h cannot be computed", h);
 }
 
-/* From `now` and memory_before to `next` and the stepper's memory. */
-static dvi_status advance(dvi_integrator *I, double h)
+/* Advance from `now` and memory_before to `next` and the stepper's memory. */
+static dvi_status advance_state(dvi_integrator *I, double h)
 {
   const dvi__method *method = I->stepper.method;
   double length;
@@ -251,7 +260,7 @@ static dvi_status advance(dvi_integrator *I, double h)
       isfinite(I->next.t))
     return dvi__control_end(I, h);
   const dvi_status status = dvi__attempt(I, length, density);
-  if (status != DVI_OK) return name_end(I, length, status);
+  if (status != DVI_OK) return name_trajectory_end(I, length, status);
   DVI_TRY(check_state(I));
   DVI_TRY(check_side(I));
   return dvi__control_end(I, h);
@@ -266,10 +275,10 @@ dvi_status dvi_integrator_step(dvi_integrator *I, double h)
   DVI_TRY(dvi__check_step(I->monitored != NULL ? 0 : I->now.t, h));
   exchange_memory(I);
   const long before = dvi__allocation_count();
-  const dvi_status status = advance(I, h);
+  const dvi_status status = advance_state(I, h);
   I->counters.allocations += dvi__allocation_count() - before;
-  if (status != DVI_OK) return refuse(I, h, status);
-  accept(I, I->stepper.method->chooses_steps ? I->stepper.taken : h);
+  if (status != DVI_OK) return refuse_step(I, h, status);
+  accept_step(I, I->stepper.method->chooses_steps ? I->stepper.taken : h);
   return DVI_OK;
 }
 
@@ -362,8 +371,8 @@ void dvi__guess_velocity(int n, const double *q, const double *last_q, const dou
   for (int i = 0; i < n; i++) v[i] = last_h != 0 ? (q[i] - last_q[i]) / last_h : last_p[i];
 }
 
-/* The velocity of one of the two states. */
-static dvi_status velocity(dvi_integrator *I, const dvi__state *state, double *v)
+/* Evaluate the velocity of `now` or `last`. */
+static dvi_status state_velocity(dvi_integrator *I, const dvi__state *state, double *v)
 {
   if (I->system->dynamics->searches_velocity)
     dvi__guess_velocity(I->system->n, I->now.q, I->last.q, I->last.p, I->last_h, v);
@@ -378,7 +387,7 @@ dvi_status dvi_integrator_invariants(dvi_integrator *I, double *value)
     return dvi__fail(
         DVI_BAD_STATE,
         "invariants: the integrator has no state yet; call dvi_integrator_start first");
-  DVI_TRY(velocity(I, &I->now, I->v));
+  DVI_TRY(state_velocity(I, &I->now, I->v));
   return dvi__invariants(I->evaluator, I->now.t, I->now.q, I->v, I->now.p, value);
 }
 
@@ -392,7 +401,7 @@ dvi_status dvi_integrator_invariant(dvi_integrator *I, int i, double *value)
   if (i < 0 || i >= dvi_system_invariant_count(I->system))
     return dvi__fail(DVI_BAD_ARGUMENT, "invariant: there is none of index %d; there are %d", i,
                      dvi_system_invariant_count(I->system));
-  if (i == 0) DVI_TRY(velocity(I, &I->now, I->v));
+  if (i == 0) DVI_TRY(state_velocity(I, &I->now, I->v));
   return dvi__invariant(I->evaluator, I->now.t, I->now.q, I->v, I->now.p, i, value);
 }
 
@@ -432,15 +441,15 @@ size_t dvi_integrator_explain(const dvi_integrator *integrator, char *text, size
 
 /* ---- dense output ---- */
 
-/* Hermite's cubic through both ends of the last step. */
-static dvi_status hermite(dvi_integrator *I, double tau, double *q, double *v)
+/* Evaluate Hermite's cubic through both ends of the last step. */
+static dvi_status hermite_cubic(dvi_integrator *I, double tau, double *q, double *v)
 {
   const double h = I->last_h, a = (1 + 2 * tau) * (1 - tau) * (1 - tau),
                b = tau * (1 - tau) * (1 - tau);
   const double c = tau * tau * (3 - 2 * tau), d = tau * tau * (tau - 1);
   const double a1 = 6 * tau * (tau - 1), b1 = (1 - tau) * (1 - 3 * tau), d1 = tau * (3 * tau - 2);
-  DVI_TRY(velocity(I, &I->last, I->last_v));
-  DVI_TRY(velocity(I, &I->now, I->v));
+  DVI_TRY(state_velocity(I, &I->last, I->last_v));
+  DVI_TRY(state_velocity(I, &I->now, I->v));
   for (int i = 0; i < I->system->n; i++) {
     const double q0 = I->last.q[i], q1 = I->now.q[i], v0 = I->last_v[i], v1 = I->v[i];
     if (q != NULL) q[i] = a * q0 + h * b * v0 + c * q1 + h * d * v1;
@@ -453,7 +462,7 @@ dvi_status dvi_integrator_interpolate(dvi_integrator *I, double t, double *q, do
 {
   if (I == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "interpolate: the integrator is NULL");
   if (I->last_h == 0) return dvi__fail(DVI_BAD_STATE, "interpolate: no step was taken yet");
-  /* By the rounded ends: late in a run t0 + h is rounded by much more than a part of h. */
+  /* Use the rounded ends, because late in a run t0 + h is rounded by a large part of h. */
   const double tau = (t - I->last.t) / (I->now.t - I->last.t), rounding = 1e-12;
   if (!(tau >= -rounding && tau <= 1 + rounding))
     return dvi__fail(DVI_BAD_ARGUMENT,
@@ -465,7 +474,7 @@ dvi_status dvi_integrator_interpolate(dvi_integrator *I, double t, double *q, do
         "interpolate: %s has no path between its steps, and a cubic would leave the rotations; "
         "lie-verlet and lie-galerkin have one",
         I->stepper.method->name);
-  if (I->stepper.method->path == NULL) return hermite(I, tau, q, v);
+  if (I->stepper.method->path == NULL) return hermite_cubic(I, tau, q, v);
   if (I->monitored != NULL && I->monitored->pacing == DVI_TIME_TRANSFORM)
     return dvi__monitored_time_path(I, tau, q, v);
   I->stepper.method->path(&I->stepper, I->last.q, I->last_h, tau, q, v);

@@ -1,4 +1,4 @@
-/* Steps in a fictitious time: how they are made, started and ended. */
+/* Steps in a fictitious time by a monitor: creation, start, and the last step of a run. */
 #include "integrator/monitored_time.h"
 
 #include <dvi/quadrature.h>
@@ -13,25 +13,25 @@
 
 /* ---- create, destroy ---- */
 
-static dvi_status fill(dvi__monitored_time *p, const dvi_system *system, const dvi_monitor *monitor,
-                       dvi_counters *counters)
+static dvi_status monitored_time_prepare(dvi__monitored_time *m, const dvi_system *system,
+                                         const dvi_monitor *monitor, dvi_counters *counters)
 {
-  p->given = *monitor;
-  p->energy = (double)NAN;
-  p->q = DVI_NEW(double, system->n);
-  p->v = DVI_NEW(double, system->n);
-  p->g_q = DVI_NEW(double, system->n);
-  if (!p->q || !p->v || !p->g_q)
+  m->given = *monitor;
+  m->energy = (double)NAN;
+  m->q = DVI_NEW(double, system->n);
+  m->v = DVI_NEW(double, system->n);
+  m->g_q = DVI_NEW(double, system->n);
+  if (!m->q || !m->v || !m->g_q)
     return dvi__fail(DVI_NO_MEMORY, "monitor: no memory for %d coordinates", system->n);
-  if (p->pacing == DVI_TIME_TRANSFORM)
-    DVI_TRY(dvi__transformed_create(system, monitor, counters, &p->transformed));
+  if (m->pacing == DVI_TIME_TRANSFORM)
+    DVI_TRY(dvi__transformed_create(system, monitor, counters, &m->transformed));
   else
-    DVI_TRY(dvi__monitor_create(system, monitor, 1, DVI__GRADIENTS, counters, &p->monitor));
-  const dvi__monitor *made = p->transformed != NULL ? dvi__transformed_monitor(p->transformed)
-                                                    : p->monitor;
-  (void)snprintf(p->name, sizeof p->name, "%s", dvi__monitor_name(made));
-  p->given.function.name = p->name;
-  return dvi_quadrature(DVI_GAUSS, DVI__MONITORED_POINTS, p->node, p->weight);
+    DVI_TRY(dvi__monitor_create(system, monitor, 1, DVI__GRADIENTS, counters, &m->monitor));
+  const dvi__monitor *made = m->transformed != NULL ? dvi__transformed_monitor(m->transformed)
+                                                    : m->monitor;
+  (void)snprintf(m->name, sizeof m->name, "%s", dvi__monitor_name(made));
+  m->given.function.name = m->name;
+  return dvi_quadrature(DVI_GAUSS, DVI__MONITORED_POINTS, m->node, m->weight);
 }
 
 dvi_status dvi__monitored_time_create(const dvi_system *system, const dvi_monitor *monitor,
@@ -39,25 +39,25 @@ dvi_status dvi__monitored_time_create(const dvi_system *system, const dvi_monito
                                       dvi__monitored_time **monitored)
 {
   *monitored = NULL;
-  dvi__monitored_time *p = DVI_NEW(dvi__monitored_time, 1);
-  if (p == NULL) return dvi__fail(DVI_NO_MEMORY, "monitor: no memory");
-  p->pacing = pacing;
-  const dvi_status status = fill(p, system, monitor, counters);
-  if (status != DVI_OK) dvi__monitored_time_destroy(&p);
-  *monitored = p;
+  dvi__monitored_time *m = DVI_NEW(dvi__monitored_time, 1);
+  if (m == NULL) return dvi__fail(DVI_NO_MEMORY, "monitor: no memory");
+  m->pacing = pacing;
+  const dvi_status status = monitored_time_prepare(m, system, monitor, counters);
+  if (status != DVI_OK) dvi__monitored_time_destroy(&m);
+  *monitored = m;
   return status;
 }
 
 void dvi__monitored_time_destroy(dvi__monitored_time **monitored)
 {
-  dvi__monitored_time *p = *monitored;
-  if (p == NULL) return;
-  dvi__transformed_destroy(&p->transformed);
-  dvi__monitor_destroy(&p->monitor);
-  dvi__release(p->q);
-  dvi__release(p->v);
-  dvi__release(p->g_q);
-  dvi__release(p);
+  dvi__monitored_time *m = *monitored;
+  if (m == NULL) return;
+  dvi__transformed_destroy(&m->transformed);
+  dvi__monitor_destroy(&m->monitor);
+  dvi__release(m->q);
+  dvi__release(m->v);
+  dvi__release(m->g_q);
+  dvi__release(m);
   *monitored = NULL;
 }
 
@@ -75,12 +75,13 @@ static dvi__monitor *monitor_of(const dvi__monitored_time *monitored)
                                         : monitored->monitor;
 }
 
-dvi_status dvi__monitored_time_monitor(dvi__monitored_time *monitored, const double *q, double *g)
+dvi_status dvi__monitored_time_value(dvi__monitored_time *monitored, const double *q, double *g)
 {
   return dvi__monitor_value(monitor_of(monitored), 1, q, g);
 }
 
-dvi_status dvi__monitored_time_slope(dvi__monitored_time *monitored, const double *q, double *g_q)
+dvi_status dvi__monitored_time_gradient(dvi__monitored_time *monitored, const double *q,
+                                        double *g_q)
 {
   return dvi__monitor_gradient(monitor_of(monitored), 1, q, g_q);
 }
@@ -114,7 +115,7 @@ void dvi__monitored_time_set_energy(dvi__monitored_time *monitored, double energ
     dvi__monitor_set_energy(monitored->monitor, energy);
 }
 
-/* L_v.v - L, or H at the start's momenta. */
+/* Evaluate the energy L_v.v - L, or H at the start's momenta. */
 static dvi_status energy_at(dvi_integrator *I, double t, const double *q, const double *v,
                             const double *momenta, double *energy)
 {
@@ -136,7 +137,7 @@ dvi_status dvi__monitored_time_start(dvi_integrator *I, double t, const double *
   double g = 1, energy = before;
   if (!monitored->holds) DVI_TRY(energy_at(I, t, q, v, p, &energy));
   dvi__monitored_time_set_energy(monitored, energy);
-  const dvi_status status = dvi__monitored_time_monitor(monitored, q, &g);
+  const dvi_status status = dvi__monitored_time_value(monitored, q, &g);
   if (status != DVI_OK) {
     dvi__monitored_time_set_energy(monitored, before);
     return status;
@@ -151,16 +152,15 @@ dvi_status dvi__monitored_time_start(dvi_integrator *I, double t, const double *
 
 enum { MOST_TRIES = 60 };
 
-/* The time past the end, in the direction of the run. */
-static double past(const dvi_integrator *I, double h, double t_end)
+/* Return the time past the end, in the direction of the run. */
+static double time_past_end(const dvi_integrator *I, double h, double t_end)
 {
   const double later = (I->now.t - t_end) - I->now.t_compensation;
   return h > 0 ? later : -later;
 }
 
-/* The run ends at t_end itself, not a few roundings beside it: what follows, or ends there too,
- * finds it so. */
-static dvi_status arrive(dvi_integrator *I, double t_end)
+/* Set the time to t_end itself, not a few roundings beside it, for later runs and comparisons. */
+static dvi_status arrive_at_end(dvi_integrator *I, double t_end)
 {
   I->now.t = t_end;
   I->now.t_compensation = 0;
@@ -168,14 +168,14 @@ static dvi_status arrive(dvi_integrator *I, double t_end)
   return DVI_OK;
 }
 
-/* The length of the step from here that ends at t_end: Illinois' variant of regula falsi (Dowell
- * and Jarratt 1971) between one that falls short and one that passes the end, `over`; bisection
- * while that one fails, `over` NaN, for beyond the end are places that the run never comes to, down
- * to `least`. */
+/* Take the step from here that ends at t_end. Its length is found by Illinois' variant of regula
+ * falsi (Dowell and Jarratt 1971) between a step that falls short and one that passes the end by
+ * `over`. While the longer step fails, over is NaN and the interval is bisected, down to `least`. A
+ * failure there is no failure of the run, which never reaches states beyond the end. */
 static dvi_status step_to_end(dvi_integrator *I, double h, double over, double least, double t_end,
                               double tolerance)
 {
-  double longer = h, shorter = 0, under = past(I, h, t_end);
+  double longer = h, shorter = 0, under = time_past_end(I, h, t_end);
   dvi_status failure = DVI_OK;
   int side = 0;
   for (int i = 0; i < MOST_TRIES && fabs(longer - shorter) > least; i++) {
@@ -184,8 +184,8 @@ static dvi_status step_to_end(dvi_integrator *I, double h, double over, double l
     const dvi_status status = dvi_integrator_step(I, length);
     if (status < 0) return status;
     if (status > 0) failure = status;
-    const double missed = status == DVI_OK ? past(I, h, t_end) : (double)NAN;
-    if (fabs(missed) <= tolerance) return arrive(I, t_end);
+    const double missed = status == DVI_OK ? time_past_end(I, h, t_end) : (double)NAN;
+    if (fabs(missed) <= tolerance) return arrive_at_end(I, t_end);
     if (status == DVI_OK) dvi__integrator_take_back(I);
     if (missed < 0) {
       shorter = length, under = missed;
@@ -204,13 +204,14 @@ static dvi_status step_to_end(dvi_integrator *I, double h, double over, double l
       I->stepper.method->name, I->now.t, t_end);
 }
 
-/* After a step that has failed: it may have been one past the end, by the monitor here. */
-static dvi_status retry(dvi_integrator *I, double h, double t_end, double tolerance,
-                        dvi_status failure)
+/* Handle a failed step. If the monitor shows that the step may have passed the end, take the one
+ * that ends there. */
+static dvi_status retry_to_end(dvi_integrator *I, double h, double t_end, double tolerance,
+                               dvi_status failure)
 {
   double g;
-  if (failure < 0 || dvi__monitored_time_monitor(I->monitored, I->now.q, &g) != DVI_OK ||
-      past(I, h, t_end) + 2 * fabs(h) * g < 0)
+  if (failure < 0 || dvi__monitored_time_value(I->monitored, I->now.q, &g) != DVI_OK ||
+      time_past_end(I, h, t_end) + 2 * fabs(h) * g < 0)
     return failure;
   return step_to_end(I, h, (double)NAN, 0.0625 * tolerance / g, t_end, tolerance);
 }
@@ -218,10 +219,10 @@ static dvi_status retry(dvi_integrator *I, double h, double t_end, double tolera
 dvi_status dvi__monitored_time_step(dvi_integrator *I, double h, double t_end, double tolerance)
 {
   const dvi_status status = dvi_integrator_step(I, h);
-  if (status != DVI_OK) return retry(I, h, t_end, tolerance, status);
-  const double over = past(I, h, t_end);
+  if (status != DVI_OK) return retry_to_end(I, h, t_end, tolerance, status);
+  const double over = time_past_end(I, h, t_end);
   if (over < -tolerance) return DVI_OK;
-  if (over <= tolerance) return arrive(I, t_end);
+  if (over <= tolerance) return arrive_at_end(I, t_end);
   dvi__integrator_take_back(I);
   return step_to_end(I, h, over, 0, t_end, tolerance);
 }

@@ -13,9 +13,9 @@
 
 #include "core/status.h"
 
-/* A new file beside path, of a name that nobody else takes: other processes by its number, other
- * threads by the count. One that a killed process of the same number has left behind is passed
- * over. -1, and errno, if there is no such file. */
+/* Create a new file beside path, with a unique name. The process number in the name excludes other
+ * processes, the count other threads. A file that a killed process of the same number has left
+ * behind is passed over. Return its descriptor, or -1 with errno. */
 static int create_beside(const char *path, size_t size, char *beside)
 {
   enum { MOST_NAMES = 1000 };
@@ -33,7 +33,7 @@ static int create_beside(const char *path, size_t size, char *beside)
   return -1;
 }
 
-/* A device or a pipe would be replaced by a file of its name. */
+/* Test for a device or a pipe, which renaming would replace by a file. */
 static int is_no_file(const char *path)
 {
   struct stat old;
@@ -46,7 +46,7 @@ static void take_rights(int descriptor, const char *path)
   if (stat(path, &old) == 0) (void)fchmod(descriptor, old.st_mode & 07777);
 }
 
-/* Signals may interrupt it. */
+/* Write all bytes. Signals may interrupt a write, which is then repeated. */
 static int write_all(int descriptor, const unsigned char *bytes, size_t count)
 {
   while (count > 0) {
@@ -57,7 +57,7 @@ static int write_all(int descriptor, const unsigned char *bytes, size_t count)
   return 0;
 }
 
-/* Write, flush and close. 0, or what failed first. */
+/* Write, flush and close. Return 0 or the first error number. */
 static int write_and_close(int descriptor, const unsigned char *bytes, size_t count)
 {
   int reason = write_all(descriptor, bytes, count) != 0 || fsync(descriptor) != 0 ? errno : 0;
@@ -65,8 +65,8 @@ static int write_and_close(int descriptor, const unsigned char *bytes, size_t co
   return reason;
 }
 
-/* The new name is on the disk, too, where the file system can tell, and the folder may be
- * opened. 0, or what failed. */
+/* Flush the new name to the disk, too, where the file system supports this and the folder can be
+ * opened. Return 0 or the error number. */
 static int flush_folder(const char *path)
 {
   char folder[PATH_MAX + 2];

@@ -1,7 +1,7 @@
-/* A judge runs twice: the distance of the two results is taken as its error.
+/* A reference solution by two runs. The distance of the two results is taken as its error.
  *
  * If the error falls with the tolerance, the distance is the first run's error up to the second's,
- * and so an upper estimate of the second's, whose result is given. */
+ * and so an upper estimate of the second's. The result is that of the second run. */
 #include <dvi/reference.h>
 #include <math.h>
 #include <string.h>
@@ -10,15 +10,15 @@
 #include "core/status.h"
 #include "reference/run.h"
 
-static double distance(int n, const double *a, const double *b)
+static double largest_distance(int n, const double *a, const double *b)
 {
   double largest = 0;
   for (int i = 0; i < n; i++) largest = fmax(largest, fabs(a[i] - b[i]));
   return largest;
 }
 
-/* The loose and the tight result start as copies of q and p; q and p are written only when both are
- * there. */
+/* Run at both tolerances. The loose and the tight result start as copies of q and p, which are
+ * written only when both runs succeed. */
 static dvi_status run_twice(const dvi_system *system, double t, double t_end, double *loose,
                             double *tight, double *q, double *p,
                             const dvi_reference_options *options, dvi_reference_report *report)
@@ -32,7 +32,7 @@ static dvi_status run_twice(const dvi_system *system, double t, double t_end, do
                                                 report);
   if (status != DVI_OK)
     return dvi__fail_in(status, "judge: the second run, at tolerance %g", tenth.relative_tolerance);
-  if (report != NULL) report->error = distance((int)nq, loose, tight);
+  if (report != NULL) report->error = largest_distance((int)nq, loose, tight);
   memcpy(q, tight, nq * sizeof *q);
   memcpy(p, tight + nq, nv * sizeof *p);
   return DVI_OK;

@@ -6,7 +6,7 @@
 
 #include "reference/run.h"
 
-/* Up to here a dense factorisation costs less than KLU's bookkeeping. */
+/* Up to this size a dense factorisation costs less than KLU's bookkeeping. */
 enum { DENSE_LIMIT = 48 };
 
 int dvi__reference_is_dense(int size)

@@ -1,4 +1,4 @@
-/* The frame around every code: arguments, the consistent start, counters, failures. */
+/* The common part of all codes: arguments, the consistent start, counters, failures. */
 #define _POSIX_C_SOURCE 199309L /* clock_gettime */
 #include <dvi/reference.h>
 #include <float.h>
@@ -28,10 +28,10 @@ static const struct {
 
 enum { CODE_COUNT = sizeof codes / sizeof codes[0] };
 
-/* Without a gradient the momenta L_v are differenced values: below about 1e-11 their noise stops
- * the codes (measured on IDA). */
+/* Default tolerances. Without a gradient the momenta L_v are differenced values, whose noise stops
+ * the codes below about 1e-11 (measured on IDA). */
 static const double default_tolerance = 1e-12, default_without_gradient = 1e-9;
-/* At index 2 the multiplier's noise, 1/h times that of q, comes back through L_q. */
+/* At index 2 the multiplier's noise, 1/h times that of q, enters the equations through L_q. */
 static const double default_index_2 = 1e-9;
 static const long default_max_steps = 50000000;
 
@@ -80,7 +80,7 @@ dvi_status dvi__reference_no_setup(const dvi__reference_run *run)
 }
 
 /* IDA, CVODE and ARKODE number these flags alike. */
-static const char *remedy(int flag)
+static const char *flag_remedy(int flag)
 {
   switch (flag) {
   case -1: return "allow more steps";
@@ -103,7 +103,7 @@ dvi_status dvi__reference_stopped(const dvi__reference_run *run, int flag, char 
   else
     status = dvi__fail(DVI_REFERENCE_FAILED,
                        "%s: stopped at t = %.9g, before %.9g, after %ld steps (%s); %s", code,
-                       run->reached, run->t_end, run->steps, reason, remedy(flag));
+                       run->reached, run->t_end, run->steps, reason, flag_remedy(flag));
   free(flag_name);
   return status;
 }
@@ -141,8 +141,8 @@ dvi_status dvi__reference_complete(const dvi_system *system, const dvi_reference
   return DVI_OK;
 }
 
-static dvi_status check_start(const dvi_system *system, double t, double t_end, const double *q,
-                              const double *p)
+static dvi_status reference_check_start(const dvi_system *system, double t, double t_end,
+                                        const double *q, const double *p)
 {
   if (system == NULL || q == NULL || p == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "reference: system, q and p are needed");
@@ -156,7 +156,7 @@ static dvi_status check_start(const dvi_system *system, double t, double t_end, 
   return DVI_OK;
 }
 
-static dvi_status reserve(dvi__reference_run *run, const double *q, const double *p)
+static dvi_status reference_reserve(dvi__reference_run *run, const double *q, const double *p)
 {
   const size_t n = (size_t)run->n;
   run->q = dvi__duplicate(q, (size_t)run->system->n, sizeof *q);
@@ -179,25 +179,22 @@ dvi_status dvi__reference_form_momentum(dvi__reference_run *run)
   return dvi__lagrangian_gradient(run->evaluator, 1, &run->t_end, run->q, run->v, NULL, run->p);
 }
 
-static dvi_status prepare(dvi__reference_run *run, const double *q, const double *p)
+static dvi_status reference_prepare(dvi__reference_run *run, const double *q, const double *p)
 {
   const dvi__dynamics *dynamics = run->system->dynamics;
   const int lifted = dynamics->equations == DVI__LIFTED;
-  dvi_status status = dvi__evaluator_create(run->system, 1, lifted ? DVI__STATES : DVI__HESSIANS,
-                                            &run->counters, &run->evaluator);
-  if (status == DVI_OK) status = reserve(run, q, p);
-  if (status == DVI_OK) status = dvi__state_check(run->evaluator, run->q, run->p);
-  if (status == DVI_OK && dynamics->constraint != NULL)
-    status = dynamics->constraint->check(run->evaluator, run->q, run->p);
-  if (status == DVI_OK)
-    status = lifted ? dynamics->velocity(run->evaluator, run->t, run->q, run->p, run->v)
-                    : dynamics->motion(run->evaluator, run->t, run->q, run->p, run->v, run->force,
-                                       run->multiplier);
-  if (status == DVI_OK) return DVI_OK;
-  return dvi__fail_in(status, "%s: no start at t = %.9g", codes[run->options.code].name, run->t);
+  DVI_TRY(dvi__evaluator_create(run->system, 1, lifted ? DVI__STATES : DVI__HESSIANS,
+                                &run->counters, &run->evaluator));
+  DVI_TRY(reference_reserve(run, q, p));
+  DVI_TRY(dvi__state_check(run->evaluator, run->q, run->p));
+  if (dynamics->constraint != NULL)
+    DVI_TRY(dynamics->constraint->check(run->evaluator, run->q, run->p));
+  return lifted ? dynamics->velocity(run->evaluator, run->t, run->q, run->p, run->v)
+                : dynamics->motion(run->evaluator, run->t, run->q, run->p, run->v, run->force,
+                                   run->multiplier);
 }
 
-static void clear(dvi__reference_run *run)
+static void reference_clear(dvi__reference_run *run)
 {
   dvi__evaluator_destroy(&run->evaluator);
   if (run->context != NULL) (void)SUNContext_Free(&run->context);
@@ -211,15 +208,17 @@ static void clear(dvi__reference_run *run)
   dvi__release(run->q);
 }
 
-static dvi_status integrate(dvi__reference_run *run, double *q, double *p)
+static dvi_status reference_integrate(dvi__reference_run *run, double *q, double *p)
 {
-  dvi_status status = prepare(run, q, p);
+  const char *code = codes[run->options.code].name;
+  dvi_status status = reference_prepare(run, q, p);
+  if (status != DVI_OK) (void)dvi__fail_in(status, "%s: no start at t = %.9g", code, run->t);
   if (status == DVI_OK) status = codes[run->options.code].integrate(run);
   if (status == DVI_OK) {
     memcpy(q, run->q, (size_t)run->system->n * sizeof *q);
     memcpy(p, run->p, (size_t)run->n * sizeof *p);
   }
-  clear(run);
+  reference_clear(run);
   return status;
 }
 
@@ -228,11 +227,11 @@ dvi_status dvi_reference_solve(const dvi_system *system, double t, double t_end,
                                dvi_reference_report *report)
 {
   dvi__reference_run run = {.system = system, .t = t, .t_end = t_end, .reached = t};
-  DVI_TRY(check_start(system, t, t_end, q, p));
+  DVI_TRY(reference_check_start(system, t, t_end, q, p));
   DVI_TRY(dvi__reference_complete(system, options, &run.options));
   run.n = dvi_system_nv(system);
   run.began = cpu_time();
-  const dvi_status status = t == t_end ? DVI_OK : integrate(&run, q, p);
+  const dvi_status status = t == t_end ? DVI_OK : reference_integrate(&run, q, p);
   if (report != NULL)
     *report = (dvi_reference_report){.error = (double)NAN,
                                      .relative_tolerance = run.options.relative_tolerance,
