@@ -14,8 +14,8 @@ struct dvi__ends {
   double *motion;          /* [2n] */
 };
 
-static dvi_status fill(dvi__ends *e, const dvi_system *system, const double *weight,
-                       dvi_counters *counters)
+static dvi_status ends_initialise(dvi__ends *e, const dvi_system *system, const double *weight,
+                                  dvi_counters *counters)
 {
   const size_t n = (size_t)e->n, count = (size_t)e->count;
   e->weight = DVI_NEW(double, count);
@@ -37,7 +37,7 @@ dvi_status dvi__ends_create(const dvi_system *system, int count, const double *w
   if (e == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory");
   e->n = system->n;
   e->count = count;
-  const dvi_status status = fill(e, system, weight, counters);
+  const dvi_status status = ends_initialise(e, system, weight, counters);
   if (status != DVI_OK) dvi__ends_destroy(&e);
   *ends = e;
   return status;
@@ -57,8 +57,8 @@ void dvi__ends_destroy(dvi__ends **ends)
   *ends = NULL;
 }
 
-/* sum_{j >= 1} w_j h^j of coefficients that are [n] each. */
-static double sum_of(const dvi__ends *e, double h, int i, const double *coefficient)
+/* Return sum_{j >= 1} w_j h^j c_j for coefficients of n numbers each. */
+static double ends_sum_of(const dvi__ends *e, double h, int i, const double *coefficient)
 {
   double sum = 0;
   for (int j = e->count - 1; j >= 1; j--)
@@ -66,7 +66,7 @@ static double sum_of(const dvi__ends *e, double h, int i, const double *coeffici
   return sum;
 }
 
-/* In z: what v depends on counts by the derivatives of v(q,p). */
+/* Compute the gradient in z. The dependence on v counts by the derivatives of v(q,p). */
 dvi_status dvi__ends_gradient(dvi__ends *e, dvi__vector_field *field, double h, double *gradient)
 {
   const int n = e->n;
@@ -75,8 +75,8 @@ dvi_status dvi__ends_gradient(dvi__ends *e, dvi__vector_field *field, double h, 
   DVI_TRY(dvi__flow_series_vary(e->series));
   DVI_TRY(dvi__flow_series_lagrangian(e->series, e->L, e->L_q0, e->L_v0));
   memset(e->motion, 0, (size_t)n * sizeof *e->motion);
-  for (int i = 0; i < n; i++) e->motion[n + i] = sum_of(e, h, i, e->L_v0);
+  for (int i = 0; i < n; i++) e->motion[n + i] = ends_sum_of(e, h, i, e->L_v0);
   dvi__vector_field_product(field, e->motion, gradient);
-  for (int i = 0; i < n; i++) gradient[i] += sum_of(e, h, i, e->L_q0);
+  for (int i = 0; i < n; i++) gradient[i] += ends_sum_of(e, h, i, e->L_q0);
   return DVI_OK;
 }
