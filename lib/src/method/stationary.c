@@ -21,7 +21,7 @@ dvi_status dvi__stationary_create(dvi__stepper *self, dvi__equations *equations,
   const size_t unknowns = (size_t)equations->unknowns;
   self->follows = 1;
   stationary->x = DVI_NEW(double, unknowns);
-  stationary->room = DVI_NEW(double, DVI__BRANCH_ROOM *unknowns);
+  stationary->room = DVI_NEW(double, (DVI__BRANCH_ROOM * unknowns));
   if (stationary->x == NULL || stationary->room == NULL)
     return dvi__fail(DVI_NO_MEMORY, "%s: no memory for %zu unknowns", self->method->name, unknowns);
   equations->linear = dvi__linear_for_exchanges(equations->pattern);

@@ -11,8 +11,8 @@
  * The component along the Legendre polynomial of degree d vanishes at d Gauss points, so that
  * a' = (-1)^(d+1) a. At the start a is 0, and therefore everywhere. Hence [z] = h X_phi lambda, and
  * lambda alone is carried. The rest is collocation between two half kicks of the multiplier
- * (step/hamiltonian/phase.h). The order min(2d, 2k+2) is measured. The method is symmetric and
- * conserves dq dp + d[q] d[p]/4.
+ * (step/hamiltonian/phase_element.h). The order min(2d, 2k+2) is measured. The method is symmetric
+ * and conserves dq dp + d[q] d[p]/4.
  *
  * For a one-form, phi = p - alpha(q) and H(q), the constraint has no moments inside the elements.
  * Then q is constant in the elements, because all motion of q comes from the multipliers. Every

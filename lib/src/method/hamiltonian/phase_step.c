@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "step/hamiltonian/phase.h"
+#include "step/hamiltonian/phase_element.h"
 #include "method/degenerate/dg_step.h"
 #include "num/compensated.h"
 #include "num/finite.h"
@@ -35,17 +35,18 @@ static dvi_status phase_step_place(dvi__stepper *self, const dvi__state *state, 
 {
   const dvi__one_step *one = self->own;
   (void)part;
-  return dvi__phase_place(one->of, state->t, h, state->q, state->p, phase_step_multiplier(self));
+  return dvi__phase_element_place(one->of, state->t, h, state->q, state->p,
+                                  phase_step_multiplier(self));
 }
 
-DVI__STEP_KIND(phase, phase_step_place, phase_step_explain);
+DVI__STEP_KIND(phase_element, phase_step_place, phase_step_explain);
 
 dvi_status dvi__phase_step_create(dvi__stepper *self, int degree, int moments, int alarm)
 {
-  dvi__phase *step;
+  dvi__phase_element *step;
   const size_t n = (size_t)self->system->n, m = (size_t)dvi_system_constraint_count(self->system);
   self->symmetric = 1;
-  DVI_TRY(dvi__phase_create(self->system, degree, moments, self->counters, &step));
+  DVI_TRY(dvi__phase_element_create(self->system, degree, moments, self->counters, &step));
   DVI_TRY(dvi__one_step_create(self, sizeof(phase_step), &kind, step, 4 + 2 * n + m));
   phase_step *own = self->own;
   own->alarm = alarm;
@@ -66,9 +67,9 @@ static dvi_status phase_step_settle_multiplier(dvi__stepper *self, const dvi__st
   double *there = one->work;
   for (int k = 0; k < 2; k++) {
     DVI_TRY(dvi__one_step_solve(self, state, h));
-    dvi__phase_end(one->of, one->x, one->dq, one->dp, self->memory + JUMP);
+    dvi__phase_element_end(one->of, one->x, one->dq, one->dp, self->memory + JUMP);
     DVI_TRY(dvi__one_step_solve(self, state, -h));
-    dvi__phase_end(one->of, one->x, one->dq, one->dp, there);
+    dvi__phase_element_end(one->of, one->x, one->dq, one->dp, there);
     for (int a = 0; a < m; a++)
       phase_step_multiplier(self)[a] = 0.25 * (self->memory[JUMP + a] +
                                                2 * phase_step_multiplier(self)[a] + there[a]);
@@ -89,8 +90,8 @@ static dvi_status phase_step_check_jumps(dvi__stepper *self)
   double *motion = self->memory + MOTION, *largest = self->memory + LARGEST_JUMP,
          *jump = self->memory + JUMP, size[2], changed[2];
   int rings = -1;
-  DVI_TRY(dvi__phase_jump(one->of, one->x, jump, one->work));
-  dvi__phase_sizes(one->of, one->x, size);
+  DVI_TRY(dvi__phase_element_jump(one->of, one->x, jump, one->work));
+  dvi__phase_element_sizes(one->of, one->x, size);
   for (int i = 0; i < 2; i++, jump += n, change += n) {
     changed[i] = dvi__largest(n, change);
     motion[i] = fmax(motion[i], dvi__largest(n, moved[i]));
@@ -107,7 +108,7 @@ dvi_status dvi__phase_step(dvi__stepper *self, dvi__state *state, double h)
   const dvi__one_step *one = self->own;
   if (self->memory[DVI__LENGTH] == 0) DVI_TRY(phase_step_settle_multiplier(self, state, h));
   DVI_TRY(dvi__one_step_solve(self, state, h));
-  dvi__phase_end(one->of, one->x, one->dq, one->dp, phase_step_multiplier(self));
+  dvi__phase_element_end(one->of, one->x, one->dq, one->dp, phase_step_multiplier(self));
   DVI_TRY(phase_step_check_jumps(self));
   DVI_TRY(dvi__one_step_move(self, state, h, one->x));
   dvi__add_compensated_all(self->system->n, state->p, state->p_compensation, one->dp);

@@ -1,4 +1,4 @@
-/* This step of step/hamiltonian/phase.h is that of dg-phase for a Hamiltonian. */
+/* This step of step/hamiltonian/phase_element.h is that of dg-phase for a Hamiltonian. */
 #ifndef DVI_METHOD_PHASE_STEP_H
 #define DVI_METHOD_PHASE_STEP_H
 #include "method/one_step.h"

@@ -60,7 +60,7 @@ static dvi_status lie_rk_create(dvi__stepper *self)
   self->symmetric = self->settings.value[SCHEME] == IMPLICIT_MIDPOINT;
   self->memory_count = 0;
   if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "lie-rk: no memory");
-  double *at = own->numbers = DVI_NEW(double, ARRAYS *n);
+  double *at = own->numbers = DVI_NEW(double, (ARRAYS * n));
   if (at == NULL) return dvi__fail(DVI_NO_MEMORY, "lie-rk: no memory");
   double **const array[ARRAYS] = {&own->start.q,
                                   &own->start.p,

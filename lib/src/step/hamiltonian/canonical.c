@@ -67,7 +67,7 @@ static dvi_status canonical_allocate(dvi__canonical *c)
                pp = (size_t)dvi__pattern_entries(&c->system->vv);
   const size_t size[] = {1, n, n, n, n, qq, qp, pp};
   for (int i = 0; canonical_owned_array(c, i) != NULL; i++) {
-    *canonical_owned_array(c, i) = DVI_NEW(double, r *size[i] + 1);
+    *canonical_owned_array(c, i) = DVI_NEW(double, size[i] * r + 1);
     if (*canonical_owned_array(c, i) == NULL)
       return dvi__fail(DVI_NO_MEMORY, "no memory for %d points in %d dimensions", c->r, c->n);
   }

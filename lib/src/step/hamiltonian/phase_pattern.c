@@ -115,7 +115,7 @@ static void phase_pattern_add_constraints(pairs *p, const dvi__pattern *gradient
     }
 }
 
-static dvi_status place_constraints(dvi__phase *f)
+static dvi_status place_constraints(dvi__phase_element *f)
 {
   const dvi__pattern *gradients = &f->system->constraint->gradients;
   const int entries = dvi__pattern_entries(&f->joint);
@@ -133,7 +133,7 @@ static dvi_status place_constraints(dvi__phase *f)
 
 /* ---- Jacobian ---- */
 
-static dvi_status phase_pattern_join(const dvi__phase *f, dvi__pattern *joint)
+static dvi_status phase_pattern_join(const dvi__phase_element *f, dvi__pattern *joint)
 {
   const dvi_system *s = f->system;
   const dvi__lagrangian_term *w = &s->constraint->weighted;
@@ -156,18 +156,18 @@ static dvi_status phase_pattern_join(const dvi__phase *f, dvi__pattern *joint)
 }
 
 /* The number of rows or columns of a block, and the first of them. */
-static int phase_pattern_length_of(const dvi__phase *f, int block)
+static int phase_pattern_length_of(const dvi__phase_element *f, int block)
 {
   return block < 2 * f->n ? f->d + 1 : f->k + 1;
 }
 
-static int begin_of(const dvi__phase *f, int block)
+static int begin_of(const dvi__phase_element *f, int block)
 {
   const int z = 2 * f->n;
   return block < z ? block * (f->d + 1) : z * (f->d + 1) + (block - z) * (f->k + 1);
 }
 
-static dvi_status phase_pattern_expand(const dvi__phase *f, dvi__pattern *pattern)
+static dvi_status phase_pattern_expand(const dvi__phase_element *f, dvi__pattern *pattern)
 {
   const dvi__pattern *joint = &f->joint;
   const int size = begin_of(f, joint->columns);
@@ -195,7 +195,7 @@ static dvi_status phase_pattern_expand(const dvi__phase *f, dvi__pattern *patter
   return DVI_OK;
 }
 
-dvi_status dvi__phase_lay_out(dvi__phase *f)
+dvi_status dvi__phase_element_lay_out(dvi__phase_element *f)
 {
   const dvi_system *s = f->system;
   const dvi__lagrangian_term *w = &s->constraint->weighted;
@@ -206,7 +206,7 @@ dvi_status dvi__phase_lay_out(dvi__phase *f)
   return place_constraints(f);
 }
 
-void dvi__phase_clear_layout(dvi__phase *f)
+void dvi__phase_element_clear_layout(dvi__phase_element *f)
 {
   dvi__pattern_clear(&f->joint);
   dvi__pattern_clear(&f->pattern);

@@ -1,8 +1,8 @@
-/* The struct of an element on phase space, for phase.c and phase_pattern.c. */
+/* The struct of an element on phase space, for phase_element.c and phase_pattern.c. */
 #ifndef DVI_STEP_PHASE_STRUCT_H
 #define DVI_STEP_PHASE_STRUCT_H
 #include "step/onestep/collocation.h"
-#include "step/hamiltonian/phase.h"
+#include "step/hamiltonian/phase_element.h"
 #include "system/dynamics/constrained_hamiltonian.h"
 
 /* Positions of a function's second derivatives in the derivative of its vector field (F_p, -F_q).
@@ -12,7 +12,7 @@ typedef struct dvi__vector_field_places {
   int *qq, *qp_in_p, *qp_in_q, *pp;
 } dvi__vector_field_places;
 
-struct dvi__phase {
+struct dvi__phase_element {
   const dvi_system *system;
   dvi__evaluator *evaluator;
   int n, m, d, k;
@@ -42,7 +42,7 @@ struct dvi__phase {
 };
 
 /* Make joint and pattern, and all indices into them. */
-dvi_status dvi__phase_lay_out(dvi__phase *phase);
-void dvi__phase_clear_layout(dvi__phase *phase);
+dvi_status dvi__phase_element_lay_out(dvi__phase_element *phase);
+void dvi__phase_element_clear_layout(dvi__phase_element *phase);
 
 #endif

@@ -27,9 +27,9 @@ static int flow_series_allocate(dvi__flow_series *f, int hessians)
   const size_t n = (size_t)f->n, degree = (size_t)f->degree, coefficients = hessians ? degree : 1;
   f->t = DVI_NEW(double, degree + 1);
   f->q = DVI_NEW(double, (degree + 1) * n);
-  f->v = DVI_NEW(double, degree *n);
-  f->L_q = DVI_NEW(double, degree *n);
-  f->L_v = DVI_NEW(double, degree *n);
+  f->v = DVI_NEW(double, (degree * n));
+  f->L_q = DVI_NEW(double, (degree * n));
+  f->L_v = DVI_NEW(double, (degree * n));
   f->L_vv = DVI_NEW(double, coefficients *(size_t)dvi__pattern_entries(&f->system->vv));
   if (!f->t || !f->q || !f->v || !f->L_q || !f->L_v || !f->L_vv) return 0;
   if (!hessians) return 1;

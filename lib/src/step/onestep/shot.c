@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "step/onestep/ends.h"
+#include "step/onestep/end_terms.h"
 #include "step/onestep/stages.h"
 #include "step/onestep/taylor.h"
 #include "core/memory.h"
@@ -16,7 +16,7 @@ struct dvi__shot {
   dvi__vector_field *field;
   dvi__stages *coupled; /* NULL for an explicit method */
   dvi__taylor *series;  /* NULL for a method with a tableau */
-  dvi__ends *ends;      /* NULL for a quadrature by values of L alone */
+  dvi__end_terms *ends; /* NULL for a quadrature by values of L alone */
   int n, first_is_node; /* first_is_node is not 0 if a node is the first stage of the next piece */
   double t0, h;
   const double *q0;
@@ -83,7 +83,7 @@ static dvi_status shot_initialise(dvi__shot *s, const dvi_system *system, dvi_co
     DVI_TRY(dvi__taylor_create(system, s->field, s->method.series, s->course.pieces, counters,
                                &s->series));
   if (s->course.count > 0)
-    DVI_TRY(dvi__ends_create(system, s->course.count, s->course.weight, counters, &s->ends));
+    DVI_TRY(dvi__end_terms_create(system, s->course.count, s->course.weight, counters, &s->ends));
   return s->method.is_explicit
              ? DVI_OK
              : dvi__stages_create(s->field, s->n, &s->method, counters, &s->coupled);
@@ -113,7 +113,7 @@ void dvi__shot_destroy(dvi__shot **shot)
   for (int i = 0; shot_owned_array(s, i) != NULL; i++) dvi__release(*shot_owned_array(s, i));
   dvi__stages_destroy(&s->coupled);
   dvi__taylor_destroy(&s->series);
-  dvi__ends_destroy(&s->ends);
+  dvi__end_terms_destroy(&s->ends);
   dvi__vector_field_destroy(&s->field);
   dvi__release(s);
   *shot = NULL;
@@ -312,7 +312,7 @@ static dvi_status add_lagrangian(dvi__shot *s, int m)
   dvi__vector_field_lagrangian(s->field, s->point);
   shot_add(s, s->h * s->course.b[m], s->point, s->lambda);
   if (s->ends == NULL || (m > 0 && m < s->course.pieces)) return DVI_OK;
-  DVI_TRY(dvi__ends_gradient(s->ends, s->field, m == 0 ? s->h : -s->h, s->point));
+  DVI_TRY(dvi__end_terms_gradient(s->ends, s->field, m == 0 ? s->h : -s->h, s->point));
   shot_add(s, s->h, s->point, s->lambda);
   return DVI_OK;
 }

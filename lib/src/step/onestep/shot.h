@@ -26,8 +26,8 @@ enum { DVI__PIECES_MOST = 256 };
 typedef struct dvi__course {
   int pieces;
   double c[DVI__PIECES_MOST + 1], b[DVI__PIECES_MOST + 1];
-  /* number of Taylor coefficients of L at both ends (step/onestep/ends.h), with their weights; 0
-   * for a quadrature by values alone */
+  /* number of Taylor coefficients of L at both ends (step/onestep/end_terms.h), with their weights;
+   * 0 for a quadrature by values alone */
   int count;
   double weight[DVI_TAYLOR_MAX + 1];
 } dvi__course;

@@ -8,15 +8,15 @@
 
 /* ---- blocks ---- */
 
-/* Write a block, or count the block without a list. */
-static void stack_add(dvi__stacked_shot *s, int row, int column, dvi__stuff stuff,
-                      dvi__columns columns, int point, double factor)
+/* Count a block, and write the block if there is a list. */
+static void stack_add(dvi__stacked_shot *s, int row, int column, dvi__stack_content content,
+                      dvi__stack_columns columns, int point, double factor)
 {
   if (factor == 0) return;
   if (s->block != NULL)
     s->block[s->block_count] = (dvi__stack_block){.row = row,
                                                   .column = column,
-                                                  .stuff = stuff,
+                                                  .content = content,
                                                   .columns = columns,
                                                   .point = point,
                                                   .factor = factor};
@@ -25,11 +25,11 @@ static void stack_add(dvi__stacked_shot *s, int row, int column, dvi__stuff stuf
 
 /* Add a block in the columns on which z_m depends. These are the columns of its motion, and of the
  * start's momentum. */
-static void stack_add_node(dvi__stacked_shot *s, int row, int m, dvi__stuff stuff, int point,
-                           double factor)
+static void stack_add_node(dvi__stacked_shot *s, int row, int m, dvi__stack_content content,
+                           int point, double factor)
 {
-  stack_add(s, row, dvi__stack_start(s), stuff, DVI__SECOND, point, factor);
-  if (m > 0) stack_add(s, row, dvi__stack_node(s, m), stuff, DVI__BOTH, point, factor);
+  stack_add(s, row, dvi__stack_start(s), content, DVI__SECOND, point, factor);
+  if (m > 0) stack_add(s, row, dvi__stack_node(s, m), content, DVI__BOTH, point, factor);
 }
 
 /* Add a block in the columns of lambda_{m}. At the end this is h b L_z(z), whose row is the next
@@ -141,8 +141,8 @@ static int stack_row_of(const dvi__stacked_shot *s, int block, int i)
   return block * z + i;
 }
 
-/* List the entries of a block, column by column. Returns their number. row and column are the first
- * ones of each entry, if not NULL. */
+/* Write the row and the column of each entry of a block, column by column, unless both are NULL.
+ * Returns the number of entries. */
 static int stack_entries_of(const dvi__stacked_shot *s, const dvi__stack_block *b, int *row,
                             int *column)
 {
@@ -150,10 +150,10 @@ static int stack_entries_of(const dvi__stacked_shot *s, const dvi__stack_block *
             to = b->columns == DVI__FIRST ? s->n : z;
   int count = 0;
   for (int c = from; c < to; c++)
-    for (int e = b->stuff == DVI__ONE ? -1 : s->joint.start[c];
-         e < (b->stuff == DVI__ONE ? 0 : s->joint.start[c + 1]); e++) {
+    for (int e = b->content == DVI__ONE ? -1 : s->joint.start[c];
+         e < (b->content == DVI__ONE ? 0 : s->joint.start[c + 1]); e++) {
       if (row != NULL) {
-        row[count] = stack_row_of(s, b->row, b->stuff == DVI__ONE ? c : s->joint.row[e]);
+        row[count] = stack_row_of(s, b->row, b->content == DVI__ONE ? c : s->joint.row[e]);
         column[count] = b->column * z + c;
       }
       count++;

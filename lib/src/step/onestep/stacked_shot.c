@@ -321,10 +321,10 @@ static void stacked_hessian(dvi__stacked_shot *s)
 }
 
 /* Return an entry of f_z = (H_pz, -H_qz), or of L_zz = (-H_qq, H_pp) without third derivatives. */
-static double stacked_value_of(const dvi__stacked_shot *s, dvi__stuff stuff, int row, int column,
-                               int e)
+static double stacked_value_of(const dvi__stacked_shot *s, dvi__stack_content content, int row,
+                               int column, int e)
 {
-  switch (stuff) {
+  switch (content) {
   case DVI__FLOW: return (row < s->n ? 1 : -1) * s->H_zz[s->flow[e]];
   case DVI__FLOW_TRANSPOSED: return (column < s->n ? 1 : -1) * s->H_zz[s->transposed[e]];
   case DVI__LAGRANGIAN_ZZ:
@@ -343,14 +343,14 @@ static int fill_block(dvi__stacked_shot *s, const dvi__stack_block *b, const int
   int count = 0;
   for (int c = from; c < to; c++) {
     const double column = stacked_unit_of(s, b->column, c);
-    if (b->stuff == DVI__ONE) {
+    if (b->content == DVI__ONE) {
       values[where[count++]] += b->factor * column / unit_of_row(s, b->row, c);
       continue;
     }
     for (int e = s->joint.start[c]; e < s->joint.start[c + 1]; e++) {
       const int i = s->joint.row[e];
-      values[where[count++]] += s->h * b->factor * stacked_value_of(s, b->stuff, i, c, e) * column /
-                                unit_of_row(s, b->row, i);
+      values[where[count++]] += s->h * b->factor * stacked_value_of(s, b->content, i, c, e) *
+                                column / unit_of_row(s, b->row, i);
     }
   }
   return count;
@@ -365,7 +365,7 @@ dvi_status dvi__stacked_shot_jacobian(void *step, const double *x, double *value
   memset(values, 0, (size_t)dvi__pattern_entries(&s->pattern) * sizeof *values);
   for (int b = 0; b < s->block_count; b++) {
     const dvi__stack_block *block = &s->block[b];
-    if (block->stuff != DVI__ONE && block->point != selected) {
+    if (block->content != DVI__ONE && block->point != selected) {
       selected = block->point;
       DVI_TRY(dvi__vector_field_select(s->field, selected));
       stacked_hessian(s);

@@ -5,18 +5,18 @@
 
 /* A block of the Jacobian is 1, or h times f_z, f_z^T or the second derivatives of L(t,q,v(q,p)) at
  * a point. The second enumeration selects its columns. */
-typedef enum dvi__stuff {
+typedef enum dvi__stack_content {
   DVI__ONE,
   DVI__FLOW,
   DVI__FLOW_TRANSPOSED,
   DVI__LAGRANGIAN_ZZ
-} dvi__stuff;
-typedef enum dvi__columns { DVI__BOTH, DVI__FIRST, DVI__SECOND } dvi__columns;
+} dvi__stack_content;
+typedef enum dvi__stack_columns { DVI__BOTH, DVI__FIRST, DVI__SECOND } dvi__stack_columns;
 
 typedef struct dvi__stack_block {
   int row, column; /* indices of blocks */
-  dvi__stuff stuff;
-  dvi__columns columns;
+  dvi__stack_content content;
+  dvi__stack_columns columns;
   int point; /* point of the vector field */
   double factor;
 } dvi__stack_block;

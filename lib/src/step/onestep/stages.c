@@ -109,8 +109,8 @@ static dvi_status stages_matrix(dvi__stages *s, double h, int transposed, double
 static dvi_status stages_allocate(dvi__stages *s)
 {
   const size_t z = 2 * (size_t)s->n, all = (size_t)s->unknowns;
-  s->slope = DVI_NEW(double, z *z *(size_t)s->method->stages);
-  s->values = DVI_NEW(double, all *all);
+  s->slope = DVI_NEW(double, (z * z * (size_t)s->method->stages));
+  s->values = DVI_NEW(double, (all * all));
   s->point = DVI_NEW(double, z);
   s->image = DVI_NEW(double, z);
   s->x = DVI_NEW(double, all);

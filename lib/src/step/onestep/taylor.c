@@ -26,7 +26,7 @@ dvi_status dvi__taylor_create(const dvi_system *system, dvi__vector_field *field
   t->field = field;
   t->n = system->n;
   t->degree = degree;
-  t->change = DVI_NEW(double, z *z *(size_t)pieces);
+  t->change = DVI_NEW(double, (z * z * (size_t)pieces));
   t->end = DVI_NEW(double, z);
   t->motion = DVI_NEW(double, z);
   t->image = DVI_NEW(double, z);

@@ -40,7 +40,7 @@ static dvi_status look_at_mass(dvi__modified_mass *m)
 {
   const size_t n = (size_t)m->parts.pattern.columns;
   if (dvi__linear_kind_of(m->kept[0].linear) == DVI__LINEAR_DENSE) {
-    m->full = DVI_NEW(double, n *n);
+    m->full = DVI_NEW(double, (n * n));
     if (m->full == NULL)
       return dvi__fail(DVI_NO_MEMORY, "modified mass: no memory for %zu x %zu numbers", n, n);
   }

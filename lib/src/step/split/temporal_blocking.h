@@ -9,12 +9,12 @@
  *     G_k   the gradient at its end, V_q(i) from q(i-r) .. q(i+r)
  *
  *              x-4r           x-3r           x-2r           x-r            x          x+block
- *     done:
+ *     done so far:
  *     A_1       ##########################################################################
- *     G_1       ################################################################
- *     A_2       #################################################
- *     G_2       ##################################
- *     A_3       ###################
+ *     G_1       ###########################################################
+ *     A_2       ############################################
+ *     G_2       #############################
+ *     A_3       ##############
  *
  * G_k on a coordinate needs A_k on all its neighbours, so that A_k is r ahead. A_k+1 overwrites q,
  * which G_k on its neighbours still needs, so that A_k+1 is r behind. Hence one array holds all

@@ -13,7 +13,7 @@ enum { MOST = DVI__STAGES_MOST };
 
 /* ---- create ---- */
 
-static double **phase_owned_array(dvi__phase *f, int i)
+static double **phase_owned_array(dvi__phase_element *f, int i)
 {
   double **const all[] = {&f->kick,   &f->impulse, &f->t,     &f->Z,     &f->F,      &f->phi,
                           &f->H_qq,   &f->H_qp,    &f->H_pp,  &f->phi_z, &f->phi_qq, &f->phi_qp,
@@ -21,7 +21,7 @@ static double **phase_owned_array(dvi__phase *f, int i)
   return i < (int)(sizeof all / sizeof *all) ? all[i] : NULL;
 }
 
-static dvi_status phase_allocate(dvi__phase *f)
+static dvi_status phase_allocate(dvi__phase_element *f)
 {
   const dvi_system *s = f->system;
   const dvi__constraint_term *c = s->constraint;
@@ -55,7 +55,7 @@ static dvi_status phase_allocate(dvi__phase *f)
   return DVI_OK;
 }
 
-static dvi_status phase_fill_tables(dvi__phase *f)
+static dvi_status phase_fill_tables(dvi__phase_element *f)
 {
   DVI_TRY(dvi_quadrature(DVI_GAUSS, f->d, f->c, f->b));
   DVI_TRY(dvi__collocate(f->d, f->c, f->a));
@@ -67,20 +67,20 @@ static dvi_status phase_fill_tables(dvi__phase *f)
   return DVI_OK;
 }
 
-static dvi_status phase_initialise(dvi__phase *f, dvi_counters *counters)
+static dvi_status phase_initialise(dvi__phase_element *f, dvi_counters *counters)
 {
   DVI_TRY(dvi__joint_check(f->system, f->d + 1, 2 * (f->d + 1)));
   DVI_TRY(phase_fill_tables(f));
   DVI_TRY(dvi__evaluator_create(f->system, f->d, DVI__HESSIANS, counters, &f->evaluator));
-  DVI_TRY(dvi__phase_lay_out(f));
+  DVI_TRY(dvi__phase_element_lay_out(f));
   return phase_allocate(f);
 }
 
-dvi_status dvi__phase_create(const dvi_system *system, int degree, int moments,
-                             dvi_counters *counters, dvi__phase **phase)
+dvi_status dvi__phase_element_create(const dvi_system *system, int degree, int moments,
+                                     dvi_counters *counters, dvi__phase_element **phase)
 {
   *phase = NULL;
-  dvi__phase *f = DVI_NEW(dvi__phase, 1);
+  dvi__phase_element *f = DVI_NEW(dvi__phase_element, 1);
   if (f == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory");
   f->system = system;
   f->n = system->n;
@@ -88,52 +88,52 @@ dvi_status dvi__phase_create(const dvi_system *system, int degree, int moments,
   f->d = degree;
   f->k = moments;
   const dvi_status status = phase_initialise(f, counters);
-  if (status != DVI_OK) dvi__phase_destroy(&f);
+  if (status != DVI_OK) dvi__phase_element_destroy(&f);
   *phase = f;
   return status;
 }
 
-void dvi__phase_destroy(dvi__phase **phase)
+void dvi__phase_element_destroy(dvi__phase_element **phase)
 {
-  dvi__phase *f = *phase;
+  dvi__phase_element *f = *phase;
   if (f == NULL) return;
   for (int i = 0; phase_owned_array(f, i) != NULL; i++) dvi__release(*phase_owned_array(f, i));
-  dvi__phase_clear_layout(f);
+  dvi__phase_element_clear_layout(f);
   dvi__evaluator_destroy(&f->evaluator);
   dvi__release(f);
   *phase = NULL;
 }
 
-const dvi__pattern *dvi__phase_pattern(const dvi__phase *f)
+const dvi__pattern *dvi__phase_element_pattern(const dvi__phase_element *f)
 {
   return &f->pattern;
 }
 
-dvi__evaluator *dvi__phase_evaluator(const dvi__phase *f)
+dvi__evaluator *dvi__phase_element_evaluator(const dvi__phase_element *f)
 {
   return f->evaluator;
 }
 
 /* ---- points ---- */
 
-static const double *phase_row_of(const dvi__phase *f, const double *x, int component)
+static const double *phase_row_of(const dvi__phase_element *f, const double *x, int component)
 {
   return x + component * (f->d + 1);
 }
 
 /* Return h lambda' of a constraint, followed by the coefficients of h Lambda. */
-static const double *phase_multipliers(const dvi__phase *f, const double *x, int constraint)
+static const double *phase_multipliers(const dvi__phase_element *f, const double *x, int constraint)
 {
   return x + 2 * f->n * (f->d + 1) + constraint * (f->k + 1);
 }
 
-static double *gradients_at(const dvi__phase *f, int stage)
+static double *gradients_at(const dvi__phase_element *f, int stage)
 {
   return f->phi_z + (size_t)stage * (size_t)dvi__pattern_entries(&f->system->constraint->gradients);
 }
 
-dvi_status dvi__phase_place(dvi__phase *f, double t0, double h, const double *q, const double *p,
-                            const double *multiplier)
+dvi_status dvi__phase_element_place(dvi__phase_element *f, double t0, double h, const double *q,
+                                    const double *p, const double *multiplier)
 {
   f->t0 = t0;
   f->h = h;
@@ -147,12 +147,12 @@ dvi_status dvi__phase_place(dvi__phase *f, double t0, double h, const double *q,
   return DVI_OK;
 }
 
-static double phase_start_of(const dvi__phase *f, int component)
+static double phase_start_of(const dvi__phase_element *f, int component)
 {
   return component < f->n ? f->q0[component] : f->p0[component - f->n];
 }
 
-static void phase_points(dvi__phase *f, const double *x)
+static void phase_points(dvi__phase_element *f, const double *x)
 {
   const int d = f->d;
   for (int c = 0; c < 2 * f->n; c++) {
@@ -167,7 +167,7 @@ static void phase_points(dvi__phase *f, const double *x)
 }
 
 /* Write one stage to f->point, and h Lambda there to f->weight. */
-static void take_stage(const dvi__phase *f, const double *x, int i)
+static void take_stage(const dvi__phase_element *f, const double *x, int i)
 {
   for (int c = 0; c < 2 * f->n; c++) f->point[c] = f->Z[c * f->d + i];
   for (int a = 0; a < f->m; a++) {
@@ -177,7 +177,7 @@ static void take_stage(const dvi__phase *f, const double *x, int i)
   }
 }
 
-static void take_end(const dvi__phase *f, const double *x)
+static void take_end(const dvi__phase_element *f, const double *x)
 {
   memcpy(f->point, f->end, 2 * (size_t)f->n * sizeof *f->point);
   for (int a = 0; a < f->m; a++) f->weight[a] = phase_multipliers(f, x, a)[0];
@@ -185,7 +185,7 @@ static void take_end(const dvi__phase *f, const double *x)
 
 /* Evaluate the constraint at f->point. Keep its gradients for `stage`, and write X_phi times the
  * weights to f->field. */
-static dvi_status phase_push_constraints(dvi__phase *f, int stage)
+static dvi_status phase_push_constraints(dvi__phase_element *f, int stage)
 {
   double *phi_z = gradients_at(f, stage);
   memset(f->field, 0, 2 * (size_t)f->n * sizeof *f->field);
@@ -197,7 +197,7 @@ static dvi_status phase_push_constraints(dvi__phase *f, int stage)
 /* ---- residual ---- */
 
 /* Set F = h X_H + h X_phi Lambda at the stages. Without moments no constraint acts there. */
-static dvi_status phase_vector_fields(dvi__phase *f, const double *x)
+static dvi_status phase_vector_fields(dvi__phase_element *f, const double *x)
 {
   const int half = f->n * f->d;
   DVI_TRY(dvi__lagrangian_gradient(f->evaluator, f->d, f->t, f->Z, f->Z + half, f->F + half, f->F));
@@ -214,14 +214,14 @@ static dvi_status phase_vector_fields(dvi__phase *f, const double *x)
   return DVI_OK;
 }
 
-static double phase_moment(const dvi__phase *f, int constraint, int l)
+static double phase_moment(const dvi__phase_element *f, int constraint, int l)
 {
   double sum = 0;
   for (int i = 0; i < f->d; i++) sum += f->b[i] * f->legendre[i][l] * f->phi[i * f->m + constraint];
   return sum;
 }
 
-dvi_status dvi__phase_residual(dvi__phase *f, const double *x, double *R)
+dvi_status dvi__phase_element_residual(dvi__phase_element *f, const double *x, double *R)
 {
   const int d = f->d;
   phase_points(f, x);
@@ -263,7 +263,7 @@ static void add_slope(const dvi__vector_field_places *at, const dvi__lagrangian_
 }
 
 /* Add the derivative of the constraints with the weights at f->point. */
-static dvi_status phase_add_constraints(dvi__phase *f, double *slope)
+static dvi_status phase_add_constraints(dvi__phase_element *f, double *slope)
 {
   DVI_TRY(dvi__constraint_hessian(f->evaluator, f->point, f->point + f->n, f->weight, f->phi_qq,
                                   f->phi_qp, f->phi_pp));
@@ -272,7 +272,7 @@ static dvi_status phase_add_constraints(dvi__phase *f, double *slope)
   return DVI_OK;
 }
 
-static dvi_status phase_slopes(dvi__phase *f, const double *x)
+static dvi_status phase_slopes(dvi__phase_element *f, const double *x)
 {
   const size_t entries = (size_t)dvi__pattern_entries(&f->joint);
   const int half = f->n * f->d;
@@ -294,7 +294,7 @@ static dvi_status phase_slopes(dvi__phase *f, const double *x)
 }
 
 /* Fill the rows of a block of two components in column l, which belongs to W_l or to {z'} - {z}. */
-static void component_column(const dvi__phase *f, int e, int same, int l, double *column)
+static void component_column(const dvi__phase_element *f, int e, int same, int l, double *column)
 {
   const size_t entries = (size_t)dvi__pattern_entries(&f->joint);
   const int d = f->d;
@@ -308,7 +308,7 @@ static void component_column(const dvi__phase *f, int e, int same, int l, double
 }
 
 /* Fill the rows of a constraint in the same column. */
-static void constraint_rows(const dvi__phase *f, int gradient, int l, double *column)
+static void constraint_rows(const dvi__phase_element *f, int gradient, int l, double *column)
 {
   column[0] = l == f->d ? gradients_at(f, f->d)[gradient] : 0;
   for (int k = 0; k < f->k; k++) {
@@ -320,14 +320,15 @@ static void constraint_rows(const dvi__phase *f, int gradient, int l, double *co
 
 /* Fill the rows of a component in column l of a constraint, which belongs to h lambda' or to a
  * coefficient of h Lambda. The entries are phi_p for q and -phi_q for p. */
-static void constraint_column(const dvi__phase *f, int gradient, double sign, int l, double *column)
+static void constraint_column(const dvi__phase_element *f, int gradient, double sign, int l,
+                              double *column)
 {
   for (int i = 0; i < f->d; i++)
     column[i] = l == 0 ? 0 : -sign * f->legendre[i][l - 1] * gradients_at(f, i)[gradient];
   column[f->d] = l == 0 ? -0.5 * sign * gradients_at(f, f->d)[gradient] : 0;
 }
 
-dvi_status dvi__phase_jacobian(dvi__phase *f, const double *x, double *values)
+dvi_status dvi__phase_element_jacobian(dvi__phase_element *f, const double *x, double *values)
 {
   const int z = 2 * f->n;
   phase_points(f, x);
@@ -349,7 +350,7 @@ dvi_status dvi__phase_jacobian(dvi__phase *f, const double *x, double *values)
 
 /* Write the scale of the rows. Rows of z have the size of the unknowns, and rows of a constraint
  * that of its gradient. */
-dvi_status dvi__phase_scale(dvi__phase *f, double *scale)
+dvi_status dvi__phase_element_scale(dvi__phase_element *f, double *scale)
 {
   const dvi__pattern *gradients = &f->system->constraint->gradients;
   DVI_TRY(dvi__constraint_gradients(f->evaluator, f->q0, f->p0, f->phi_z));
@@ -365,8 +366,8 @@ dvi_status dvi__phase_scale(dvi__phase *f, double *scale)
 
 /* ---- the end ---- */
 
-void dvi__phase_end(const dvi__phase *f, const double *x, double *dq, double *dp,
-                    double *multiplier)
+void dvi__phase_element_end(const dvi__phase_element *f, const double *x, double *dq, double *dp,
+                            double *multiplier)
 {
   for (int i = 0; i < f->n; i++) {
     dq[i] = phase_row_of(f, x, i)[f->d];
@@ -375,7 +376,8 @@ void dvi__phase_end(const dvi__phase *f, const double *x, double *dq, double *dp
   for (int a = 0; a < f->m; a++) multiplier[a] = phase_multipliers(f, x, a)[0] / f->h;
 }
 
-dvi_status dvi__phase_jump(dvi__phase *f, const double *x, double *jump, double *change)
+dvi_status dvi__phase_element_jump(dvi__phase_element *f, const double *x, double *jump,
+                                   double *change)
 {
   const size_t bytes = 2 * (size_t)f->n * sizeof *jump;
   phase_points(f, x);
@@ -389,7 +391,7 @@ dvi_status dvi__phase_jump(dvi__phase *f, const double *x, double *jump, double 
 
 /* Add the kicks to the sizes. The gradients are those of the end, where the multipliers of q's
  * kicks are those of phi_p. */
-static void add_kicks(const dvi__phase *f, const double *x, double size[2])
+static void add_kicks(const dvi__phase_element *f, const double *x, double size[2])
 {
   const dvi__pattern *gradients = &f->system->constraint->gradients;
   const double *phi_z = gradients_at(f, f->d);
@@ -400,13 +402,13 @@ static void add_kicks(const dvi__phase *f, const double *x, double size[2])
     }
 }
 
-static double phase_largest_entry(const dvi__phase *f, const dvi__pattern *pattern,
+static double phase_largest_entry(const dvi__phase_element *f, const dvi__pattern *pattern,
                                   const double *values)
 {
   return dvi__largest((size_t)dvi__pattern_entries(pattern) * (size_t)f->d, values);
 }
 
-void dvi__phase_sizes(const dvi__phase *f, const double *x, double size[2])
+void dvi__phase_element_sizes(const dvi__phase_element *f, const double *x, double size[2])
 {
   const dvi_system *s = f->system;
   size[0] = dvi__largest((size_t)f->n, f->q0);
@@ -421,7 +423,7 @@ void dvi__phase_sizes(const dvi__phase *f, const double *x, double size[2])
 
 /* Start with a straight line. p' and Lambda are not known yet, and the multiplier of the node is
  * kept. */
-void dvi__phase_straight(const dvi__phase *f, const double *v, double *x)
+void dvi__phase_element_straight(const dvi__phase_element *f, const double *v, double *x)
 {
   for (int c = 0; c < 2 * f->n; c++)
     for (int i = 0; i <= f->d; i++) *x++ = c < f->n ? f->h * v[c] : 0;
@@ -431,7 +433,8 @@ void dvi__phase_straight(const dvi__phase *f, const double *v, double *x)
   }
 }
 
-void dvi__phase_continue(const dvi__phase *f, double ratio, const double *last, double *x)
+void dvi__phase_element_continue(const dvi__phase_element *f, double ratio, const double *last,
+                                 double *x)
 {
   const int d = f->d;
   for (int i = 0; i < d; i++) {
