@@ -30,7 +30,7 @@ static const struct {
     {"Verlet", "unknown method 'Verlet'"},
     {"galerkin,degree=2", "unknown method 'galerkin,degree=2'"},
     {"verlet:", "'' is not key=value"},
-    {"verlet:solver=auto", "verlet: unknown key 'solver'; it takes sweep, threads"},
+    {"verlet:solver=auto", "verlet: unknown key 'solver'; it takes blocking, threads"},
     {"midpoint:degree=2", "midpoint: unknown key 'degree'; it takes solver"},
     {"trapezoidal:solver=", "trapezoidal: solver=; possible are auto, certified, fixed-point, simplified, newton, kinsol"},
     {"midpoint:solver=newton,solver=newton", "midpoint: solver is given twice"},

@@ -1,5 +1,5 @@
-/* Making a stepper: the specification is parsed, the method must be able to use every term that the
- * system declares. */
+/* Make a stepper. The specification is parsed, and the method must be able to use every term that
+ * the system declares. */
 #include <dvi/method.h>
 #include <math.h>
 #include <string.h>
@@ -25,7 +25,7 @@ static const char *term_name(unsigned term)
   }
 }
 
-/* What the system declares and the method cannot use. */
+/* Return the terms that the system declares and the method cannot use. */
 static unsigned surplus(const dvi__method *method, const dvi_system *system)
 {
   return system->terms & ((~method->uses & ~(unsigned)DVI__KINDS) | method->refuses);
@@ -36,7 +36,7 @@ static int can_use(const dvi__method *method, const dvi_system *system)
   return surplus(method, system) == 0 && (method->needs & ~system->terms) == 0;
 }
 
-/* The names of the methods for such a system. */
+/* Write the names of the methods for such a system. */
 static void name_others(const dvi_system *system, dvi__text *names)
 {
   for (int i = 0; i < dvi_method_count(); i++) {
@@ -46,7 +46,7 @@ static void name_others(const dvi_system *system, dvi__text *names)
   }
 }
 
-/* What the method can take for what moves. */
+/* Write the kinds of motion that the method takes. */
 static void name_motions(const dvi__method *method, dvi__text *names)
 {
   static const unsigned motions[] = {DVI__CONSTANT_MASS, DVI__LAGRANGIAN, DVI__ONE_FORM,
@@ -66,7 +66,7 @@ static dvi_status refuse_canonical(const dvi__method *method, const char *others
       method->name, term_name(DVI__HAMILTONIAN), motions, others);
 }
 
-static dvi_status check_terms(const dvi__method *method, const dvi_system *system)
+static dvi_status stepper_check_terms(const dvi__method *method, const dvi_system *system)
 {
   char names[DVI__SENTENCE_SIZE] = "";
   if (can_use(method, system)) return DVI_OK;
@@ -108,18 +108,30 @@ static dvi_status spell_out(dvi__stepper *stepper)
                              stepper->method->name);
 }
 
+static dvi_status stepper_choose_method(dvi__stepper *stepper, const char *specification)
+{
+  DVI_TRY(dvi__parse(specification, &stepper->method, &stepper->settings));
+  DVI_TRY(stepper_check_terms(stepper->method, stepper->system));
+  return check_shapes(stepper->method, stepper->shapes);
+}
+
+static dvi_status stepper_create_method(dvi__stepper *stepper)
+{
+  DVI_TRY(stepper->method->create(stepper));
+  return spell_out(stepper);
+}
+
 dvi_status dvi__stepper_create(const dvi_system *system, const char *specification,
                                const dvi_shapes *shapes, dvi_counters *counters,
                                dvi__stepper *stepper)
 {
   *stepper = (dvi__stepper){
       .system = system, .shapes = shapes, .counters = counters, .fingerprinted = "contents"};
-  dvi_status status = dvi__parse(specification, &stepper->method, &stepper->settings);
-  if (status == DVI_OK) status = check_terms(stepper->method, system);
-  if (status == DVI_OK) status = check_shapes(stepper->method, shapes);
-  if (status != DVI_OK) stepper->method = NULL; /* nothing of it is there to be destroyed */
-  if (status == DVI_OK) status = stepper->method->create(stepper);
-  if (status == DVI_OK) status = spell_out(stepper);
+  dvi_status status = stepper_choose_method(stepper, specification);
+  if (status != DVI_OK)
+    stepper->method = NULL; /* the method has nothing to destroy yet */
+  else
+    status = stepper_create_method(stepper);
   if (status != DVI_OK) dvi__stepper_destroy(stepper);
   return status;
 }

@@ -5,7 +5,8 @@
 #include "core/memory.h"
 #include "core/status.h"
 
-static dvi_status join(const dvi_system *system, const dvi__pattern *more, dvi__pattern *joint)
+static dvi_status joint_join(const dvi_system *system, const dvi__pattern *more,
+                             dvi__pattern *joint)
 {
   dvi__pattern vq = {0}, mixed = {0}, own = {0}, second = {0}, diagonal = {0}, whole = {0};
   dvi_status status = dvi__pattern_transpose(&system->qv, &vq);
@@ -34,8 +35,7 @@ dvi_status dvi__joint_check(const dvi_system *system, int size, int most)
   if (numbers >= INT_MAX)
     return dvi__fail(DVI_BAD_SIZE,
                      "action: %d coordinates with %zu numbers each make %zu, more than an int can "
-                     "count; take a lower degree, or "
-                     "fewer nodes or stages",
+                     "count; take a lower degree, or fewer nodes or stages",
                      system->n, numbers / (size_t)system->n, numbers);
   DVI_TRY(dvi__system_prepare_hessian(system));
   const int qq = dvi__pattern_entries(&system->qq), vv = dvi__pattern_entries(&system->vv);
@@ -43,15 +43,14 @@ dvi_status dvi__joint_check(const dvi_system *system, int size, int most)
   if (least < INT_MAX) return DVI_OK;
   return dvi__fail(DVI_BAD_SIZE,
                    "action: the Jacobian would have %zu entries or more, which an int cannot "
-                   "count; declare sparse Hessians, or "
-                   "take a lower degree",
+                   "count; declare sparse Hessians, or take a lower degree",
                    least);
 }
 
 dvi_status dvi__joint_create(const dvi_system *system, const dvi__pattern *more,
                              dvi__pattern *joint, dvi__block **block)
 {
-  DVI_TRY(join(system, more, joint));
+  DVI_TRY(joint_join(system, more, joint));
   *block = DVI_NEW(dvi__block, dvi__pattern_entries(joint));
   if (*block == NULL) return dvi__fail(DVI_NO_MEMORY, "action: no memory for the Jacobian");
   for (int j = 0; j < joint->columns; j++)

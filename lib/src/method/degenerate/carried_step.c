@@ -6,11 +6,11 @@
 
 typedef struct carried {
   dvi__one_step one;
-  int sign;     /* of the parasite's multipliers; 0: every gauge will do */
-  double *room; /* [4*n*n], to look at them */
+  int sign;     /* multipliers of the parasite have this sign; 0 admits every gauge */
+  double *room; /* [4*n*n] work for the multipliers */
 } carried;
 
-static void explain(const dvi__stepper *self, dvi__text *text)
+static void carried_step_explain(const dvi__stepper *self, dvi__text *text)
 {
   const carried *own = self->own;
   static const char *const gauge[] = {
@@ -22,7 +22,8 @@ static void explain(const dvi__stepper *self, dvi__text *text)
                 gauge[own->sign + 1]);
 }
 
-static dvi_status place(dvi__stepper *self, const dvi__state *state, double h, double part)
+static dvi_status carried_step_place(dvi__stepper *self, const dvi__state *state, double h,
+                                     double part)
 {
   const dvi__one_step *one = self->own;
   const double *p;
@@ -31,10 +32,10 @@ static dvi_status place(dvi__stepper *self, const dvi__state *state, double h, d
   return DVI_OK;
 }
 
-DVI__STEP_KIND(action, place, explain);
+DVI__STEP_KIND(action, carried_step_place, carried_step_explain);
 
-static dvi_status make_action(const dvi__stepper *self, const dvi__action_space *space,
-                              dvi__action **action)
+static dvi_status carried_step_make_action(const dvi__stepper *self, const dvi__action_space *space,
+                                           dvi__action **action)
 {
   DVI_TRY(dvi__action_create(self->system, space, self->counters, action));
   const dvi_status status = dvi__action_prepare_jacobian(*action);
@@ -46,7 +47,7 @@ dvi_status dvi__carried_step_create(dvi__stepper *self, const dvi__action_space 
 {
   const size_t n = (size_t)self->system->n;
   dvi__action *action;
-  DVI_TRY(make_action(self, space, &action));
+  DVI_TRY(carried_step_make_action(self, space, &action));
   DVI_TRY(dvi__one_step_create(self, sizeof(carried), &kind, action, 0));
   if (sign == 0) return DVI_OK;
   carried *own = self->own;

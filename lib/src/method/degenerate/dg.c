@@ -1,11 +1,12 @@
 /* Discontinuous Galerkin variational integrators for degenerate Lagrangians alpha(q).v - H(q).
  *
- *     S = sum over elements of h sum_i b_i L(Q_i, V_i) + sum over nodes of N(q-, q+),    N = [q].alpha({q}) + [q].c[q]/2 (average flux)
+ *     S = sum over elements of h sum_i b_i L(Q_i, V_i) + sum over nodes of N(q-, q+),
+ *     N = [q].alpha({q}) + [q].c[q]/2 (average flux)
  *
- * with polynomials of degree d in each element that jump between two: see
- * step/degenerate/discontinuous.h, whose q* is what stands here for q. p is alpha(q*). The jump is
- * memory of the method, and its oscillation, the parasite, can break a run: it is watched, and an
- * alarm stops the run or is counted. */
+ * Each element has polynomials of degree d, which jump between two elements. The state q is the q*
+ * of step/degenerate/discontinuous.h, and p is alpha(q*). The method's memory holds the jump. The
+ * oscillation of the jump is a parasite that can break a run, so that every step checks its size.
+ * An alarm stops the run or is counted. */
 #include "core/status.h"
 #include "method/degenerate/dg_step.h"
 
@@ -28,7 +29,7 @@ static const dvi__key keys[] = {
     {0},
 };
 
-static dvi_status choose(int *value)
+static dvi_status dg_choose(int *value)
 {
   if (value[NODES] == DVI__LEFT_OUT) value[NODES] = value[DEGREE] + 1;
   if (value[POINTS] == DVI__LEFT_OUT) value[POINTS] = value[FLUX] == DVI__PATH_FLUX ? 2 : 1;
@@ -58,25 +59,30 @@ static dvi_status check_stiffness(const dvi__settings *settings, int n)
   return DVI_OK;
 }
 
-/* Measured on massless-particle and vortices (tests/method/degenerate/test_dg.c). Even S share the
- * multiplier 1 of the solution with the jump, which costs two orders. A stiffness that does not
- * change with h adds c j^2/2 per node of the smooth jump j = O(h^S), that is O(h^(2S-1)) to the
- * energy. A flux at one side has the symmetric part of Dalpha for its stiffness. */
-static int order_of(const dvi__settings *settings)
+/* These orders were measured on massless-particle and vortices (tests/method/degenerate/test_dg.c).
+ * For even S the solution and the jump share the multiplier 1, which costs two orders. A stiffness
+ * that does not change with h adds c j^2/2 per node of the smooth jump j = O(h^S), that is
+ * O(h^(2S-1)) to the energy. A flux at one side has the symmetric part of Dalpha as its
+ * stiffness. */
+static int dg_order_of(const dvi__settings *settings)
 {
   const int S = settings->value[DEGREE] + 1, flux = settings->value[FLUX];
   if (settings->listed > 0 || flux == DVI__LEFT_FLUX || flux == DVI__RIGHT_FLUX) return 2 * S - 1;
   return S % 2 == 1 ? 2 * S : 2 * S - 2;
 }
 
-static dvi_status create(dvi__stepper *self)
+static dvi_status dg_create(dvi__stepper *self)
 {
   int *value = self->settings.value;
-  DVI_TRY(choose(value));
+  DVI_TRY(dg_choose(value));
   DVI_TRY(check_stiffness(&self->settings, self->system->n));
-  self->order = order_of(&self->settings);
-  const dvi__dg_space space = {value[DEGREE], value[NODES],          (dvi__flux)value[FLUX],
-                               value[POINTS], self->settings.listed, self->settings.list};
+  self->order = dg_order_of(&self->settings);
+  const dvi__dg_space space = {.degree = value[DEGREE],
+                               .nodes = value[NODES],
+                               .flux = (dvi__flux)value[FLUX],
+                               .points = value[POINTS],
+                               .stiffness_count = self->settings.listed,
+                               .stiffness = self->settings.list};
   return dvi__dg_create(self, &space, value[ALARM],
                         "from the start on, a stiffness (dg:stiffness=c) keeps it small");
 }
@@ -90,6 +96,6 @@ const dvi__method dvi__dg = {
     .list = "stiffness",
     .list_help =
         "c of the jump, one for all coordinates or one for each (c1:c2:...); default: none",
-    .create = create,
+    .create = dg_create,
     DVI__DG_OPERATIONS,
 };

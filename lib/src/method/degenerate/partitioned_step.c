@@ -2,7 +2,7 @@
 
 #include "num/compensated.h"
 
-/* Carried: the last step's multiplier [n]. */
+/* The memory holds the multiplier of the last step [n]. */
 enum { MULTIPLIER = DVI__CARRIED };
 
 typedef struct partitioned {
@@ -10,7 +10,7 @@ typedef struct partitioned {
   dvi__projection projection;
 } partitioned;
 
-static void explain(const dvi__stepper *self, dvi__text *text)
+static void partitioned_step_explain(const dvi__stepper *self, dvi__text *text)
 {
   const partitioned *own = self->own;
   if (self->system->terms & DVI__ONE_FORM)
@@ -19,7 +19,8 @@ static void explain(const dvi__stepper *self, dvi__text *text)
                                                         : "to the last bit after every step");
 }
 
-static dvi_status place(dvi__stepper *self, const dvi__state *state, double h, double part)
+static dvi_status partitioned_step_place(dvi__stepper *self, const dvi__state *state, double h,
+                                         double part)
 {
   const dvi__one_step *one = self->own;
   const double *p;
@@ -28,7 +29,7 @@ static dvi_status place(dvi__stepper *self, const dvi__state *state, double h, d
   return DVI_OK;
 }
 
-DVI__STEP_KIND(partitioned, place, explain);
+DVI__STEP_KIND(partitioned, partitioned_step_place, partitioned_step_explain);
 
 dvi_status dvi__partitioned_step_create(dvi__stepper *self, dvi__tableau tableau, int stages,
                                         dvi__projection projection)
@@ -51,7 +52,8 @@ static void keep_multiplier(dvi__stepper *self)
                                                                          : 0;
 }
 
-/* On the constraint p is alpha(q), to the last bit. */
+/* Evaluate p = alpha(q) again where the projection imposes the constraint. Then the constraint
+ * holds to the last bit. */
 dvi_status dvi__partitioned_step(dvi__stepper *self, dvi__state *state, double h)
 {
   const partitioned *own = self->own;

@@ -1,12 +1,14 @@
 /* Prolongation-collocation.
  *
- * Space: the polynomial of degree 2m-1 through both ends that has there the derivatives, up to the
- * m-th, which the equations of motion and their prolongation give. Quadrature: Euler and
- * Maclaurin's with [m/2] terms,
- *     Ld(q0,q1) = h/2 (L(0) + L(h)) - sum_{l=1}^{[m/2]} B_{2l}/(2l)! h^{2l} (L^{(2l-1)}(h) - L^{(2l-1)}(0)),     L^{(k)} the k-th time derivative along it.
- * p0 = -D1 Ld, p1 = D2 Ld, exactly, by multipliers for the collocation
- * (step/onestep/prolongation.h). m = 1: the straight line and the trapezoid. Order 2 [m/2] + 2,
- * that of the quadrature; symmetric, symplectic. Source: Leok and Shingel 2012, IMA J. Numer. Anal.
+ * The space is the polynomial of degree 2m-1 through both ends. Its derivatives up to the m-th at
+ * both ends are those that the equations of motion and their prolongation give. The quadrature is
+ * that of Euler and Maclaurin with [m/2] terms,
+ *     Ld(q0,q1) = h/2 (L(0) + L(h))
+ *                 - sum_{l=1}^{[m/2]} B_{2l}/(2l)! h^{2l} (L^{(2l-1)}(h) - L^{(2l-1)}(0)),
+ * where L^{(k)} is the k-th time derivative along the polynomial. The momenta p0 = -D1 Ld and
+ * p1 = D2 Ld are exact, by multipliers for the collocation (step/onestep/prolongation.h). m = 1
+ * gives the straight line and the trapezoid. The order is 2 [m/2] + 2, that of the quadrature. The
+ * method is symmetric and symplectic. Source: Leok and Shingel 2012, IMA J. Numer. Anal.
  * 32:1194. */
 #include "step/onestep/prolongation.h"
 #include "method/one_step.h"
@@ -22,7 +24,7 @@ static const dvi__key keys[] = {
     {0},
 };
 
-static void explain(const dvi__stepper *self, dvi__text *text)
+static void prolongation_collocation_explain(const dvi__stepper *self, dvi__text *text)
 {
   const int m = self->settings.value[DERIVATIVES];
   dvi__text_add(text, "path: polynomial of degree %d, by derivatives up to the %d%s at both ends\n",
@@ -35,7 +37,8 @@ static void explain(const dvi__stepper *self, dvi__text *text)
                 m / 2 == 1 ? "" : "s");
 }
 
-static dvi_status place(dvi__stepper *self, const dvi__state *state, double h, double part)
+static dvi_status prolongation_collocation_place(dvi__stepper *self, const dvi__state *state,
+                                                 double h, double part)
 {
   const dvi__one_step *one = self->own;
   (void)part;
@@ -43,9 +46,9 @@ static dvi_status place(dvi__stepper *self, const dvi__state *state, double h, d
   return DVI_OK;
 }
 
-DVI__STEP_KIND(prolongation, place, explain);
+DVI__STEP_KIND(prolongation, prolongation_collocation_place, prolongation_collocation_explain);
 
-static dvi_status create(dvi__stepper *self)
+static dvi_status prolongation_collocation_create(dvi__stepper *self)
 {
   const int m = self->settings.value[DERIVATIVES];
   dvi__prolongation *of;
@@ -62,7 +65,7 @@ static dvi_status create(dvi__stepper *self)
                               (size_t)(2 * m - 1) * (size_t)self->system->n);
 }
 
-static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
+static dvi_status prolongation_collocation_step(dvi__stepper *self, dvi__state *state, double h)
 {
   const dvi__one_step *one = self->own;
   DVI_TRY(dvi__one_step_solve(self, state, h));
@@ -72,8 +75,8 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
   return DVI_OK;
 }
 
-static void path(const dvi__stepper *self, const double *q0, double h, double tau, double *q,
-                 double *v)
+static void prolongation_collocation_path(const dvi__stepper *self, const double *q0, double h,
+                                          double tau, double *q, double *v)
 {
   const dvi__one_step *one = self->own;
   dvi__prolongation_path(one->of, self->memory + DVI__CARRIED, h, tau, q, v);
@@ -83,13 +86,12 @@ static void path(const dvi__stepper *self, const double *q0, double h, double ta
 const dvi__method dvi__prolongation_collocation = {
     .name = "prolongation-collocation",
     .summary = "equations of motion and their derivatives at both ends, Euler-Maclaurin; order 2 "
-               "[m/2] + 2; any Lagrangian with "
-               "Taylor coefficients",
+               "[m/2] + 2; any Lagrangian with Taylor coefficients",
     .cite = "LeokShingel2012b",
     .keys = keys,
     .uses = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL,
     DVI__ONE_STEP_OPERATIONS,
-    .create = create,
-    .step = step,
-    .path = path,
+    .create = prolongation_collocation_create,
+    .step = prolongation_collocation_step,
+    .path = prolongation_collocation_path,
 };

@@ -27,8 +27,8 @@ static const dvi__key keys[] = {
     {"order", dvi__scheme_name, 0, 0, 0, "4, 6 or 8; default: 4"},
     {"base", base_name, 0, 0, DVI__LEFT_OUT,
      "the symmetric method that is composed: verlet, midpoint, trapezoidal, galerkin, imex, "
-     "lie-verlet, or a program's "
-     "shaped-galerkin; all other keys are its own; default: verlet, on groups lie-verlet"},
+     "lie-verlet, or a program's shaped-galerkin; all other keys are its own; default: verlet, on "
+     "groups lie-verlet"},
     {0},
 };
 
@@ -37,7 +37,7 @@ static const dvi__scheme *scheme_of(const dvi__stepper *self)
   return dvi__scheme_at(self->settings.value[ORDER]);
 }
 
-static dvi_status create(dvi__stepper *self)
+static dvi_status composition_create(dvi__stepper *self)
 {
   int *chosen = &self->settings.value[BASE];
   if (*chosen == DVI__LEFT_OUT) *chosen = self->system->terms & DVI__FACTORS ? LIE_VERLET : VERLET;
@@ -65,14 +65,14 @@ static dvi_status create(dvi__stepper *self)
   return DVI_OK;
 }
 
-static void destroy(dvi__stepper *self)
+static void composition_destroy(dvi__stepper *self)
 {
   if (self->own == NULL) return;
   dvi__stepper_destroy(self->own);
   dvi__release(self->own);
 }
 
-/* The base, which works on this method's memory. */
+/* Return the base, which works on the memory of this method. */
 static dvi__stepper *base_of(const dvi__stepper *self)
 {
   dvi__stepper *base = self->own;
@@ -80,22 +80,22 @@ static dvi__stepper *base_of(const dvi__stepper *self)
   return base;
 }
 
-static void start(dvi__stepper *self, const double *v)
+static void composition_start(dvi__stepper *self, const double *v)
 {
   dvi__stepper_start(base_of(self), v);
 }
 
-/* The rounded weights sum to 1 but for a rounding, which would add up over many steps: the clock
- * moves by h. */
+/* Move the clock by h. The rounded weights sum to 1 but for a rounding, which would add up over
+ * many steps. */
 static void move_clock(double t, double t_compensation, double h, double *moved,
-                       double *moved_carry)
+                       double *moved_compensation)
 {
   *moved = t;
-  *moved_carry = t_compensation;
-  dvi__add_compensated(moved, moved_carry, h);
+  *moved_compensation = t_compensation;
+  dvi__add_compensated(moved, moved_compensation, h);
 }
 
-static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
+static dvi_status composition_step(dvi__stepper *self, dvi__state *state, double h)
 {
   dvi__stepper *base = base_of(self);
   const dvi__scheme *s = scheme_of(self);
@@ -107,8 +107,8 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
   return DVI_OK;
 }
 
-static int pass(dvi__stepper *self, const dvi__state *now, const double *before, dvi__state *next,
-                const double *h, int count)
+static int composition_pass(dvi__stepper *self, const dvi__state *now, const double *before,
+                            dvi__state *next, const double *h, int count)
 {
   dvi__stepper *base = base_of(self);
   const dvi__scheme *s = scheme_of(self);
@@ -120,7 +120,7 @@ static int pass(dvi__stepper *self, const dvi__state *now, const double *before,
   return 1;
 }
 
-static double traffic(const dvi__stepper *self, int count)
+static double composition_traffic(const dvi__stepper *self, int count)
 {
   const dvi__stepper *base = self->own;
   return base->method->traffic != NULL && count == 1
@@ -130,8 +130,8 @@ static double traffic(const dvi__stepper *self, int count)
 
 /* ---- members side by side ---- */
 
-/* [2*capacity] the clocks at the start of a step. */
-static dvi_status prepare_lanes(dvi__stepper *self, int capacity)
+/* Allocate the clocks at the start of a step [2*capacity]. */
+static dvi_status composition_prepare_lanes(dvi__stepper *self, int capacity)
 {
   dvi__stepper *base = self->own;
   DVI_TRY(dvi__stepper_prepare_lanes(base, capacity));
@@ -145,7 +145,7 @@ static void clear_lanes(dvi__stepper *self)
   dvi__release(self->lanes);
 }
 
-static void step_lanes(dvi__stepper *self, dvi__members *m, double h)
+static void composition_step_lanes(dvi__stepper *self, dvi__members *m, double h)
 {
   dvi__stepper *base = self->own;
   const dvi__scheme *s = scheme_of(self);
@@ -159,13 +159,13 @@ static void step_lanes(dvi__stepper *self, dvi__members *m, double h)
     move_clock(t[k], t_compensation[k], h, m->t + k, m->t_compensation + k);
 }
 
-static int recognizes(const dvi__stepper *self, const double *memory)
+static int composition_recognizes(const dvi__stepper *self, const double *memory)
 {
   const dvi__stepper *base = self->own;
   return base->method->recognizes == NULL || base->method->recognizes(base, memory);
 }
 
-static void explain(const dvi__stepper *self, dvi__text *text)
+static void composition_explain(const dvi__stepper *self, dvi__text *text)
 {
   const dvi__stepper *base = self->own;
   dvi__text_add(text, "composition: %d substeps a step, each by %s\n", scheme_of(self)->substeps,
@@ -181,15 +181,15 @@ const dvi__method dvi__composition = {
     .takes_rest = 1,
     .takes_shapes = 1,
     .uses = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL | DVI__FACTORS,
-    .create = create,
-    .destroy = destroy,
-    .start = start,
-    .step = step,
-    .pass = pass,
-    .traffic = traffic,
-    .recognizes = recognizes,
-    .explain = explain,
-    .prepare_lanes = prepare_lanes,
+    .create = composition_create,
+    .destroy = composition_destroy,
+    .start = composition_start,
+    .step = composition_step,
+    .pass = composition_pass,
+    .traffic = composition_traffic,
+    .recognizes = composition_recognizes,
+    .explain = composition_explain,
+    .prepare_lanes = composition_prepare_lanes,
     .clear_lanes = clear_lanes,
-    .step_lanes = step_lanes,
+    .step_lanes = composition_step_lanes,
 };

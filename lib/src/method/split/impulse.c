@@ -5,7 +5,7 @@
 #include "num/compensated.h"
 #include "system/part.h"
 
-/* For which length the gradient in the memory was made. */
+/* The length of step for which the gradient in the memory was computed. */
 static double *made_for(const dvi__stepper *self)
 {
   return self->memory + self->system->n;
@@ -13,7 +13,10 @@ static double *made_for(const dvi__stepper *self)
 
 dvi__phase dvi__impulse_phase(const dvi__state *state)
 {
-  return (dvi__phase){state->q, state->p, state->q_compensation, state->p_compensation};
+  return (dvi__phase){.q = state->q,
+                      .p = state->p,
+                      .q_compensation = state->q_compensation,
+                      .p_compensation = state->p_compensation};
 }
 
 /* ---- create, destroy ---- */
@@ -56,7 +59,7 @@ dvi_status dvi__impulse_take_inner(dvi__stepper *self, const char *specification
   return DVI_OK;
 }
 
-/* It works on this method's memory. */
+/* Return the inner stepper, which works on the memory of this method. */
 static dvi__stepper *inner_of(const dvi__stepper *self)
 {
   const dvi__impulse *own = self->own;
@@ -82,7 +85,7 @@ dvi_status dvi__impulse_inner_steps(dvi__stepper *self, dvi__state *state, doubl
   return DVI_OK;
 }
 
-static dvi_status gradient(dvi__stepper *self, const dvi__state *state, double h)
+static dvi_status impulse_gradient(dvi__stepper *self, const dvi__state *state, double h)
 {
   const dvi__impulse *own = self->own;
   *made_for(self) = h;
@@ -90,7 +93,7 @@ static dvi_status gradient(dvi__stepper *self, const dvi__state *state, double h
   return dvi__potentials_gradient(own->forces, 1, &state->t, state->q, self->memory);
 }
 
-static void kick(const dvi__stepper *self, dvi__state *state, double h)
+static void impulse_kick(const dvi__stepper *self, dvi__state *state, double h)
 {
   dvi__lanes_add_scaled((size_t)self->system->n, -h, self->memory, state->p, state->p_compensation);
 }
@@ -99,11 +102,12 @@ dvi_status dvi__impulse_step(dvi__stepper *self, dvi__state *state, double h)
 {
   const dvi__impulse *own = self->own;
   const double length = *made_for(self);
-  if (length == 0 || (own->gradient != NULL && length != h)) DVI_TRY(gradient(self, state, h));
-  kick(self, state, 0.5 * h);
+  if (length == 0 || (own->gradient != NULL && length != h))
+    DVI_TRY(impulse_gradient(self, state, h));
+  impulse_kick(self, state, 0.5 * h);
   DVI_TRY(own->move(self, state, h));
   dvi__add_compensated(&state->t, &state->t_compensation, h);
-  DVI_TRY(gradient(self, state, h));
-  kick(self, state, 0.5 * h);
+  DVI_TRY(impulse_gradient(self, state, h));
+  impulse_kick(self, state, 0.5 * h);
   return DVI_OK;
 }

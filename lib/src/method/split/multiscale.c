@@ -1,17 +1,22 @@
-/* Multiscale variational integrators: steps beyond fast periods, which shape functions resolve.
+/* Multiscale variational integrators take steps beyond the fast periods, which the basis functions
+ * resolve.
  *
- * Space: q(t) = p(t) + r(t) sin(omega t) + s(t) cos(omega t) in fast coordinates, p(t) in slow
- * ones; p of degree d, r and s of degree m. With harmonics=2 also
- *     sin(2 omega t) and cos(2 omega t) times constants, which a nonlinear motion has.
- * Quadrature: Filon-Lobatto with d+1 nodes for m=0, else d+2, for twice the space's harmonics;
- * where as many points resolve the oscillation by themselves, Gauss (space/oscillating.h).
- *     Ld(q0,q1) = ext over such paths q from q0 to q1 of the quadrature of L,      p0 = -D1 Ld, p1 = D2 Ld.
+ * The space is q(t) = p(t) + r(t) sin(omega t) + s(t) cos(omega t) in fast coordinates and p(t) in
+ * slow ones. The polynomial p has degree d, and r and s have degree m. With harmonics=2 the space
+ * also has constants times sin(2 omega t) and cos(2 omega t), which a nonlinear motion contains.
+ * The quadrature is Filon-Lobatto with d+1 nodes for m=0, else d+2, for twice the harmonics of the
+ * space. Where as many points resolve the oscillation by themselves, Gauss's rule is taken
+ * (space/oscillating.h).
+ *     Ld(q0,q1) = ext over such paths q from q0 to q1 of the quadrature of L,
+ *     p0 = -D1 Ld,   p1 = D2 Ld
+ *
  * The rows are those of step/element/action.h in another space (step/element/user_element.h). The
- * path of a linear oscillator of frequency omega is in the space, and its action is exact: so are
- * its steps, whatever h omega is. Symmetric, symplectic. As h goes to 0 with fixed omega the space
- * is as good as polynomials of degree d+2m+2, while these are more than roundoff: order twice that;
- * with a slow coordinate, which has polynomials of degree d, 2d. Source: Leok 2004, sec. 5.7. The
- * path there is a product, p(t) (1 + r sin + s cos), singular where the amplitude is 0; the sum is
+ * path of a linear oscillator of frequency omega lies in the space, and its action is exact.
+ * Therefore its steps are exact for every h omega. The method is symmetric and symplectic. As h
+ * goes to 0 with fixed omega, the space is as good as polynomials of degree d+2m+2, as long as
+ * these differ by more than roundoff, and the order is twice that degree. With a slow coordinate,
+ * which has polynomials of degree d, the order is 2d. Source: Leok 2004, sec. 5.7. The path there
+ * is a product, p(t) (1 + r sin + s cos), which is singular where the amplitude is 0. The sum is
  * ours, and so is the quadrature of any Lagrangian by samples of the phase. */
 #include <math.h>
 
@@ -39,20 +44,20 @@ static const dvi__key keys[] = {
     {0},
 };
 
-/* In the memory, where omega is not known: what was found for it at the first step. */
+/* Where omega is not known, the memory holds the value from the first step. */
 enum { FOUND = DVI__CARRIED };
 
 typedef struct multiscale {
   dvi__one_step one;
   dvi__oscillating *space;
-  dvi__fastest *fastest; /* NULL: omega is known */
-  double omega;          /* of the space; 0: not yet known */
-  int fast;              /* how many coordinates are */
+  dvi__fastest *fastest; /* NULL if omega is known */
+  double omega;          /* frequency of the space (default 0, not yet known) */
+  int fast;              /* number of fast coordinates */
 } multiscale;
 
 /* ---- which coordinates are fast, and how fast ---- */
 
-static dvi_status mark_listed(const dvi__stepper *self, char *fast)
+static dvi_status multiscale_mark_listed(const dvi__stepper *self, char *fast)
 {
   const int n = self->system->n;
   for (int k = 0; k < self->settings.listed; k++) {
@@ -77,7 +82,7 @@ static dvi_status mark_moved(const dvi_system *part, char *fast)
   return DVI_OK;
 }
 
-/* One frequency is what the space has. Modes that do not oscillate are none of its business. */
+/* Find the one frequency that the space has. Modes that do not oscillate are not counted. */
 static dvi_status frequency_of(const dvi__stepper *self, const dvi_system *part, double *omega)
 {
   dvi__modes *modes;
@@ -95,8 +100,8 @@ static dvi_status frequency_of(const dvi__stepper *self, const dvi_system *part,
                    least, *omega);
 }
 
-/* What is left out comes from the part of the system that is declared fast; a frequency that it
- * does not tell is found at the first step. */
+/* Find the defaults from the part of the system that is declared fast. If this part does not give a
+ * frequency, the first step finds one. */
 static dvi_status ask_fast_part(dvi__stepper *self, char *fast)
 {
   const dvi_system *system = self->system;
@@ -122,12 +127,12 @@ static dvi_status ask_fast_part(dvi__stepper *self, char *fast)
 
 static dvi_status find_fast(dvi__stepper *self, char *fast)
 {
-  DVI_TRY(mark_listed(self, fast));
+  DVI_TRY(multiscale_mark_listed(self, fast));
   return self->settings.listed == 0 || self->settings.number[OMEGA] == 0 ? ask_fast_part(self, fast)
                                                                          : DVI_OK;
 }
 
-/* ---- making it ---- */
+/* ---- create ---- */
 
 static void explain_omega(const dvi__stepper *self, dvi__text *text)
 {
@@ -143,7 +148,7 @@ static void explain_omega(const dvi__stepper *self, dvi__text *text)
                   own->fastest == NULL ? "" : ", found at the first step");
 }
 
-static void explain(const dvi__stepper *self, dvi__text *text)
+static void multiscale_explain(const dvi__stepper *self, dvi__text *text)
 {
   const multiscale *own = self->own;
   const int *value = self->settings.value;
@@ -164,7 +169,8 @@ static dvi_status duration_of(void *of, const double *x, double *duration)
   return dvi__user_element_duration(of, x, duration);
 }
 
-static dvi_status place(dvi__stepper *self, const dvi__state *state, double h, double part)
+static dvi_status multiscale_place(dvi__stepper *self, const dvi__state *state, double h,
+                                   double part)
 {
   const dvi__one_step *one = self->own;
   (void)part;
@@ -172,7 +178,8 @@ static dvi_status place(dvi__stepper *self, const dvi__state *state, double h, d
   return DVI_OK;
 }
 
-DVI__STEP_KIND(user_element, place, explain, .duration = duration_of, .renewed = 1);
+DVI__STEP_KIND(user_element, multiscale_place, multiscale_explain, .duration = duration_of,
+               .renewed = 1);
 
 static dvi_status prepare_to_find(dvi__stepper *self, const char *fast)
 {
@@ -185,21 +192,21 @@ static dvi_status prepare_to_find(dvi__stepper *self, const char *fast)
                    own->fast, DVI__FASTEST_MOST);
 }
 
-/* The space is owned by the stepper from the moment there is one; it waits for an omega that is not
+/* Make the space, which the stepper owns from then on. The space waits for an omega that is not
  * known. */
-static dvi_status make(dvi__stepper *self, const char *fast)
+static dvi_status multiscale_initialise(dvi__stepper *self, const char *fast)
 {
   const int *value = self->settings.value;
   const double omega = self->settings.number[OMEGA];
-  dvi__user_element *shaped = NULL;
+  dvi__user_element *element = NULL;
   dvi__oscillating *space = dvi__oscillating_create(value[DEGREE], value[AMPLITUDE],
                                                     value[HARMONICS], omega);
   if (space == NULL) return dvi__fail(DVI_NO_MEMORY, "multiscale: no memory");
   const dvi__shapes shapes = dvi__oscillating_shapes(space);
   dvi_status status = dvi__user_element_create(self->system, &shapes, fast, value[DEGREE],
-                                               self->counters, &shaped);
+                                               self->counters, &element);
   if (status == DVI_OK)
-    status = dvi__one_step_create(self, sizeof(multiscale), &kind, shaped, omega == 0);
+    status = dvi__one_step_create(self, sizeof(multiscale), &kind, element, omega == 0);
   multiscale *own = self->own;
   if (own == NULL) {
     dvi__oscillating_destroy(&space);
@@ -213,7 +220,7 @@ static dvi_status make(dvi__stepper *self, const char *fast)
   return status == DVI_OK && omega == 0 ? prepare_to_find(self, fast) : status;
 }
 
-static dvi_status create(dvi__stepper *self)
+static dvi_status multiscale_create(dvi__stepper *self)
 {
   int *value = self->settings.value;
   if (value[AMPLITUDE] == DVI__LEFT_OUT) value[AMPLITUDE] = 1;
@@ -224,12 +231,12 @@ static dvi_status create(dvi__stepper *self)
   char *fast = DVI_NEW(char, self->system->n);
   if (fast == NULL) return dvi__fail(DVI_NO_MEMORY, "multiscale: no memory");
   dvi_status status = find_fast(self, fast);
-  if (status == DVI_OK) status = make(self, fast);
+  if (status == DVI_OK) status = multiscale_initialise(self, fast);
   dvi__release(fast);
   return status;
 }
 
-static void destroy(dvi__stepper *self)
+static void multiscale_destroy(dvi__stepper *self)
 {
   multiscale *own = self->own;
   if (own == NULL) return;
@@ -241,9 +248,9 @@ static void destroy(dvi__stepper *self)
 
 /* ---- the step ---- */
 
-/* Tables are made for the omega that the run goes by: another run, or a restored one, may have used
- * this stepper in between. */
-static void tune(const dvi__stepper *self)
+/* Make the tables for the omega of this run. Another run, or a restored one, may have used this
+ * stepper in between. */
+static void multiscale_tune_tables(const dvi__stepper *self)
 {
   multiscale *own = self->own;
   if (own->fastest == NULL || own->omega == self->memory[FOUND]) return;
@@ -260,11 +267,11 @@ static dvi_status find_omega(const dvi__stepper *self, const dvi__state *state)
                                 &self->memory[FOUND]);
 }
 
-static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
+static dvi_status multiscale_step(dvi__stepper *self, dvi__state *state, double h)
 {
   const dvi__one_step *one = self->own;
   DVI_TRY(find_omega(self, state));
-  tune(self);
+  multiscale_tune_tables(self);
   DVI_TRY(dvi__one_step_solve(self, state, h));
   dvi__user_element_ends(one->of, one->x, one->dq, one->dp);
   DVI_TRY(dvi__one_step_move(self, state, h, one->x));
@@ -272,11 +279,11 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
   return DVI_OK;
 }
 
-static void path(const dvi__stepper *self, const double *q0, double h, double tau, double *q,
-                 double *v)
+static void multiscale_path(const dvi__stepper *self, const double *q0, double h, double tau,
+                            double *q, double *v)
 {
   const dvi__one_step *one = self->own;
-  tune(self);
+  multiscale_tune_tables(self);
   dvi__user_element_path(one->of, self->memory + one->last, h, tau, q, v);
   for (int i = 0; q != NULL && i < self->system->n; i++) q[i] += q0[i];
 }
@@ -291,10 +298,10 @@ const dvi__method dvi__multiscale = {
     .list_help = "the fast coordinates, by their numbers from 0, such as 0:2; default: those of "
                  "the fast potentials",
     .uses = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL,
-    .create = create,
-    .destroy = destroy,
+    .create = multiscale_create,
+    .destroy = multiscale_destroy,
     .start = dvi__one_step_start,
-    .step = step,
-    .path = path,
+    .step = multiscale_step,
+    .path = multiscale_path,
     .explain = dvi__one_step_explain,
 };

@@ -9,14 +9,14 @@
 
 /* ---- the step ---- */
 
-/* In the memory, behind the impulse's: the fast gradient at the state, which the filter wanted, and
- * the next move wants. */
+/* The fast gradient at the state stands in the memory behind the numbers of the impulse method. The
+ * filter and the next move use it. */
 static double *kept_gradient(const dvi__stepper *self)
 {
   return self->memory + self->system->n + 1;
 }
 
-static dvi_status move(dvi__stepper *self, dvi__state *state, double h)
+static dvi_status oscillation_move(dvi__stepper *self, dvi__state *state, double h)
 {
   const dvi__oscillation *own = self->own;
   const double middle = state->t + 0.5 * h, *V_q = own->keeps ? kept_gradient(self) : own->V_q;
@@ -30,7 +30,7 @@ static dvi_status move(dvi__stepper *self, dvi__state *state, double h)
 
 /* ---- filters ---- */
 
-/* The polynomials' slots. */
+/* Slots of the polynomials. */
 enum { SHIFT, PSI };
 
 static int is_one(const dvi__growth *growth)
@@ -76,7 +76,7 @@ static dvi_status expand_filters(dvi__oscillation *own, double h)
   return dvi__polynomials_expand(own->polynomials, PSI, h, &filters->psi, 0, psi_at, filters);
 }
 
-static dvi_status prepare(dvi__oscillation *own, int n, double h)
+static dvi_status oscillation_prepare(dvi__oscillation *own, int n, double h)
 {
   if (own->h == h) return DVI_OK;
   own->h = 0;
@@ -85,8 +85,9 @@ static dvi_status prepare(dvi__oscillation *own, int n, double h)
   return DVI_OK;
 }
 
-/* nearby = A(q), of the fast gradient at q. */
-static void approach(dvi__oscillation *own, int n, double h, const double *q, const double *fast)
+/* Set nearby = A(q), from the fast gradient at q. */
+static void oscillation_filter_place(dvi__oscillation *own, int n, double h, const double *q,
+                                     const double *fast)
 {
   if (own->modes != NULL) {
     dvi__modes_of_forces(own->modes, fast, own->y);
@@ -99,7 +100,8 @@ static void approach(dvi__oscillation *own, int n, double h, const double *q, co
   for (int i = 0; i < n; i++) own->nearby[i] += q[i];
 }
 
-static void soften(dvi__oscillation *own, int n, const double *slow, double *softened)
+static void oscillation_filter_force(dvi__oscillation *own, int n, const double *slow,
+                                     double *softened)
 {
   if (own->modes != NULL) {
     dvi__modes_of_forces(own->modes, slow, own->y);
@@ -117,21 +119,21 @@ static dvi_status filtered_gradient(dvi__stepper *self, const dvi__state *state,
   const int n = self->system->n, here = is_one(&own->filters->phi),
             hard = is_one(&own->filters->psi);
   double *fast = own->keeps ? kept_gradient(self) : own->V_q, *slow = hard ? V_q : own->V_q;
-  DVI_TRY(prepare(own, n, h));
+  DVI_TRY(oscillation_prepare(own, n, h));
   if (!here) {
     DVI_TRY(dvi__potentials_gradient(own->fast_forces, 1, &state->t, state->q, fast));
-    approach(own, n, h, state->q, fast);
+    oscillation_filter_place(own, n, h, state->q, fast);
   }
   DVI_TRY(dvi__potentials_gradient(own->impulse.forces, 1, &state->t, here ? state->q : own->nearby,
                                    slow));
-  if (!hard) soften(own, n, slow, V_q);
+  if (!hard) oscillation_filter_force(own, n, slow, V_q);
   return DVI_OK;
 }
 
 /* ---- create, destroy ---- */
 
-/* Larger blocks are left to polynomials, where these serve as well: products with so many modes
- * take longer. */
+/* Polynomials take larger blocks where possible, because products with so many modes take
+ * longer. */
 enum { MODES_BLOCK_QUICK = 64 };
 
 static int has_polynomials(const dvi__filters *filters)
@@ -147,9 +149,9 @@ static dvi_status make_polynomials(dvi__oscillation *own, dvi_counters *counters
                    "polynomials: the filter jumps, they cannot follow it; take another one");
 }
 
-/* Modes of small blocks, else polynomials; filters with poles want modes, which may lie between
- * these, as long as there can be some. */
-static dvi_status choose(dvi__oscillation *own, dvi_counters *counters)
+/* Choose modes for small blocks, else polynomials. Filters with poles need modes, because modes may
+ * lie between the poles, as long as there can be some. */
+static dvi_status oscillation_choose(dvi__oscillation *own, dvi_counters *counters)
 {
   const dvi__filters *filters = own->filters;
   const int poles = filters != NULL && (filters->phi.poles > 0 || filters->psi.poles > 0);
@@ -164,13 +166,14 @@ static dvi_status choose(dvi__oscillation *own, dvi_counters *counters)
   return status == DVI_BAD_SIZE ? dvi__fail_in(status, "%s", because) : status;
 }
 
-static dvi_status fill(dvi__stepper *self, dvi__oscillation *own, dvi__motion motion)
+static dvi_status oscillation_initialise(dvi__stepper *self, dvi__oscillation *own,
+                                         dvi__motion motion)
 {
   const size_t n = (size_t)self->system->n;
   DVI_TRY(motion == DVI__MOTION_MODES ? dvi__modes_create(own->impulse.fast, DVI__MODES_BLOCK_MOST,
                                                           self->counters, &own->modes)
           : motion == DVI__MOTION_POLYNOMIALS ? make_polynomials(own, self->counters)
-                                              : choose(own, self->counters));
+                                              : oscillation_choose(own, self->counters));
   own->filter = DVI_NEW(dvi__filter, n);
   own->V_q = DVI_NEW(double, n);
   own->y = DVI_NEW(double, n);
@@ -185,19 +188,19 @@ dvi_status dvi__oscillation_create(dvi__stepper *self, const dvi__filters *filte
                                    dvi__motion motion, const char *remedy)
 {
   if (!dvi__system_fast_is_quadratic(self->system))
-    return dvi__fail(DVI_UNSUPPORTED,
-                     "%s: a fast potential is not declared `quadratic`, and only such ones have "
-                     "modes; %s (it is '%s'; those of scenes are "
-                     "declared if their second derivatives are constant)",
-                     self->method->name, remedy, dvi__system_fast_not_quadratic(self->system));
+    return dvi__fail(
+        DVI_UNSUPPORTED,
+        "%s: a fast potential is not declared `quadratic`, and only such ones have modes; %s (it "
+        "is '%s'; those of scenes are declared if their second derivatives are constant)",
+        self->method->name, remedy, dvi__system_fast_not_quadratic(self->system));
   DVI_TRY(dvi__impulse_create(self, sizeof(dvi__oscillation), 0));
   dvi__oscillation *own = self->own;
   own->filters = filters;
-  own->impulse.move = move;
+  own->impulse.move = oscillation_move;
   own->impulse.gradient = filters != NULL ? filtered_gradient : NULL;
   own->keeps = filters != NULL && !is_one(&filters->phi) && self->system->autonomous;
   if (own->keeps) self->memory_count += (size_t)self->system->n;
-  const dvi_status status = fill(self, own, motion);
+  const dvi_status status = oscillation_initialise(self, own, motion);
   return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "%s", self->method->name);
 }
 

@@ -1,7 +1,7 @@
-/* With L = y'.M y'/2 - V the moment of what the Lagrangian does to a slot is N = y' x M y' - y x
- * V_y, in space. The angular momentum of a direction has the rate N, that of a body in its frame
- * R^T N + Pi x Omega; an angle has the same in the plane. y' x M y' vanishes for pieces but rigid
- * motions. */
+/* Let L = y'.M y'/2 - V. The Lagrangian exerts the moment N = y' x M y' - y x V_y on a slot, in
+ * space. The angular momentum of a direction has the rate N, and that of a body in the body's frame
+ * R^T N + Pi x Omega. An angle has the same rates in the plane. y' x M y' vanishes for mass blocks
+ * other than rigid motions. */
 #include "step/lie/flow.h"
 
 #include <dvi/group.h>
@@ -18,30 +18,30 @@
 struct dvi__flow {
   const dvi_system *system;
   dvi__evaluator *evaluator;
-  dvi__mass_blocks pieces;
-  dvi__coupled_drift *together; /* NULL: nothing is coupled */
-  /* not 0: slots are coupled, or places to rotations: y' x M y' counts */
+  dvi__mass_blocks blocks;
+  dvi__coupled_drift *together; /* NULL without coupled slots */
+  /* not 0 if y' x M y' counts, because slots are coupled or rotations have places */
   int mixed;
   double *force;           /* [nq] V_y */
   double *rate, *covector; /* [nq] y' and M y' */
   double *v;               /* [nv] */
 };
 
-/* ---- making it ---- */
+/* ---- create ---- */
 
-static dvi_status fill(dvi__flow *f, dvi_counters *counters)
+static dvi_status flow_initialise(dvi__flow *f, dvi_counters *counters)
 {
   const size_t n = (size_t)f->system->n;
-  DVI_TRY(dvi__mass_blocks_create(f->system, &f->pieces));
-  f->mixed = f->pieces.coupled > 0;
-  for (int i = 0; i < f->pieces.alone; i++) f->mixed |= f->pieces.piece[i].rigid;
+  DVI_TRY(dvi__mass_blocks_create(f->system, &f->blocks));
+  f->mixed = f->blocks.coupled > 0;
+  for (int i = 0; i < f->blocks.alone; i++) f->mixed |= f->blocks.block[i].rigid;
   f->force = DVI_NEW(double, 4 * n);
   if (f->force == NULL) return dvi__fail(DVI_NO_MEMORY, "flow: no memory");
   f->rate = f->force + n;
   f->covector = f->rate + n;
   f->v = f->covector + n;
-  if (f->pieces.coupled > 0)
-    DVI_TRY(dvi__coupled_drift_create(f->system, f->pieces.together, counters, &f->together));
+  if (f->blocks.coupled > 0)
+    DVI_TRY(dvi__coupled_drift_create(f->system, f->blocks.together, counters, &f->together));
   return dvi__evaluator_create(f->system, 1, DVI__GRADIENTS, counters, &f->evaluator);
 }
 
@@ -50,7 +50,7 @@ dvi_status dvi__flow_create(const dvi_system *system, dvi_counters *counters, dv
   dvi__flow *f = *flow = DVI_NEW(dvi__flow, 1);
   if (f == NULL) return dvi__fail(DVI_NO_MEMORY, "flow: no memory");
   f->system = system;
-  const dvi_status status = fill(f, counters);
+  const dvi_status status = flow_initialise(f, counters);
   if (status != DVI_OK) dvi__flow_destroy(flow);
   return status;
 }
@@ -61,7 +61,7 @@ void dvi__flow_destroy(dvi__flow **flow)
   if (f == NULL) return;
   dvi__evaluator_destroy(&f->evaluator);
   dvi__coupled_drift_destroy(&f->together);
-  dvi__mass_blocks_clear(&f->pieces);
+  dvi__mass_blocks_clear(&f->blocks);
   dvi__release(f->force);
   dvi__release(f);
   *flow = NULL;
@@ -69,7 +69,7 @@ void dvi__flow_destroy(dvi__flow **flow)
 
 /* ---- momenta ---- */
 
-/* mu = y x p of a direction, and p of it. */
+/* Replace p of a direction by mu = y x p. The function below goes back. */
 static void enter_direction(const double *y, const double *y_compensation, double *p,
                             double *p_compensation)
 {
@@ -78,11 +78,11 @@ static void enter_direction(const double *y, const double *y_compensation, doubl
   dvi__twofold_put(3, mu, p, p_compensation);
 }
 
-static void leave_direction(double *y, double *y_compensation, double *m, double *m_carry)
+static void leave_direction(double *y, double *y_compensation, double *m, double *m_compensation)
 {
   dvi__twofold mu[3];
-  dvi__twofold_get(3, m, m_carry, mu);
-  dvi__turn_momentum(mu, DVI__TURN_ROUNDINGS, y, y_compensation, m, m_carry);
+  dvi__twofold_get(3, m, m_compensation, mu);
+  dvi__turn_momentum(mu, DVI__TURN_ROUNDINGS, y, y_compensation, m, m_compensation);
 }
 
 void dvi__flow_enter(const dvi__flow *f, const dvi__phase *state)
@@ -109,7 +109,7 @@ void dvi__flow_leave(const dvi__flow *f, const dvi__phase *state)
 
 /* ---- rates ---- */
 
-/* y' of a slot that omega moves. */
+/* Compute y' of a slot with the velocity omega. */
 static void move_rate(dvi__chart_kind kind, const double *y, const double *omega, double *rate)
 {
   switch (kind) {
@@ -124,15 +124,15 @@ static void move_rate(dvi__chart_kind kind, const double *y, const double *omega
   }
 }
 
-static dvi_status velocities(dvi__flow *f, const double *q, const double *p)
+static dvi_status flow_velocities(dvi__flow *f, const double *q, const double *p)
 {
-  for (int i = 0; i < f->pieces.alone; i++)
-    dvi__mass_block_velocity(&f->pieces.piece[i], q, p, f->v);
+  for (int i = 0; i < f->blocks.alone; i++)
+    dvi__mass_block_velocity(&f->blocks.block[i], q, p, f->v);
   return f->together == NULL ? DVI_OK : dvi__coupled_drift_velocity(f->together, q, p, f->v);
 }
 
-/* covector = M y' */
-static void multiply(dvi__flow *f)
+/* Set covector = M y'. */
+static void flow_multiply(dvi__flow *f)
 {
   const dvi__pattern *vv = &f->system->vv;
   memset(f->covector, 0, (size_t)f->system->n * sizeof *f->covector);
@@ -141,9 +141,9 @@ static void multiply(dvi__flow *f)
       f->covector[vv->row[e]] += f->system->mass_values[e] * f->rate[j];
 }
 
-/* N of a slot; of an angle one number. */
-static void moment_of(const dvi__flow *f, const dvi__factor_slot *slot, const double *y,
-                      double *moment)
+/* Compute N of a slot. N of an angle is one number. */
+static void flow_moment_of(const dvi__flow *f, const dvi__factor_slot *slot, const double *y,
+                           double *moment)
 {
   const double *V = f->force + slot->q, *rate = f->rate + slot->q,
                *covector = f->covector + slot->q;
@@ -158,8 +158,8 @@ static void moment_of(const dvi__flow *f, const dvi__factor_slot *slot, const do
   if (f->mixed) dvi__chart_add_moment(slot->kind, rate, covector, moment);
 }
 
-static void momentum_rate(const dvi__flow *f, const dvi__factor_slot *slot, const double *q,
-                          const double *p, const double *omega, double *m_rate)
+static void flow_momentum_rate(const dvi__flow *f, const dvi__factor_slot *slot, const double *q,
+                               const double *p, const double *omega, double *m_rate)
 {
   const double *y = q + slot->q;
   double moment[3], turned[3];
@@ -167,7 +167,7 @@ static void momentum_rate(const dvi__flow *f, const dvi__factor_slot *slot, cons
     *m_rate = -f->force[slot->q];
     return;
   }
-  moment_of(f, slot, y, moment);
+  flow_moment_of(f, slot, y, moment);
   if (slot->kind != DVI__ROTATION) {
     memcpy(m_rate, moment, (size_t)dvi__chart_velocities(slot->kind) * sizeof *m_rate);
     return;
@@ -181,7 +181,7 @@ dvi_status dvi__flow_rates(dvi__flow *f, double t, const double *q, const double
                            double *m_rate)
 {
   const dvi_system *s = f->system;
-  DVI_TRY(velocities(f, q, p));
+  DVI_TRY(flow_velocities(f, q, p));
   DVI_TRY(dvi__potentials_gradient(f->evaluator, 1, &t, q, f->force));
   for (int c = 0; c < s->slot_count; c++) {
     const dvi__factor_slot *slot = &s->slots[c];
@@ -192,10 +192,10 @@ dvi_status dvi__flow_rates(dvi__flow *f, double t, const double *q, const double
       memcpy(omega + slot->v, v, (size_t)dvi__chart_velocities(slot->kind) * sizeof *v);
     if (f->mixed) move_rate(slot->kind, q + slot->q, omega + slot->v, f->rate + slot->q);
   }
-  if (f->mixed) multiply(f);
+  if (f->mixed) flow_multiply(f);
   for (int c = 0; c < s->slot_count; c++) {
     const int v = s->slots[c].v;
-    momentum_rate(f, &s->slots[c], q, p + v, omega + v, m_rate + v);
+    flow_momentum_rate(f, &s->slots[c], q, p + v, omega + v, m_rate + v);
   }
   return DVI_OK;
 }
@@ -218,8 +218,9 @@ void dvi__flow_plain(const dvi__flow *f, const double *q, const double *p, const
 
 /* ---- points ---- */
 
-/* A direction and an angle are turned from the left. */
-static void turn_cell(dvi__chart_kind kind, const double *theta, double *y, double *carry)
+/* Rotate a direction or an angle from the left. */
+static void flow_turn_slot(dvi__chart_kind kind, const double *theta, double *y,
+                           double *compensation)
 {
   double w[3] = {0};
   for (int i = 0; i < 3 && kind != DVI__CIRCLE; i++)
@@ -227,18 +228,18 @@ static void turn_cell(dvi__chart_kind kind, const double *theta, double *y, doub
   if (kind == DVI__CIRCLE) w[2] = -*theta;
   dvi__turn_tangent(w, w);
   const dvi__turn turn = dvi__turn_of(w);
-  dvi__turn_rows(&turn, dvi__chart_stored(kind), y, carry);
+  dvi__turn_rows(&turn, dvi__chart_stored(kind), y, compensation);
 }
 
 void dvi__flow_move(const dvi__flow *f, const double *theta, const dvi__phase *state)
 {
   for (int c = 0; c < f->system->slot_count; c++) {
     const dvi__factor_slot *slot = &f->system->slots[c];
-    double *y = state->q + slot->q, *carry = state->q_compensation + slot->q;
+    double *y = state->q + slot->q, *compensation = state->q_compensation + slot->q;
     if (slot->kind == DVI__LINE)
-      dvi__add_compensated(y, carry, theta[slot->v]);
+      dvi__add_compensated(y, compensation, theta[slot->v]);
     else
-      turn_cell(slot->kind, theta + slot->v, y, carry);
+      flow_turn_slot(slot->kind, theta + slot->v, y, compensation);
   }
 }
 
@@ -248,7 +249,7 @@ void dvi__flow_theta_rate(const dvi__flow *f, const double *theta, const double 
   memmove(theta_rate, omega, (size_t)f->system->nv * sizeof *omega);
   for (int c = 0; c < f->system->slot_count; c++) {
     const dvi__factor_slot *slot = &f->system->slots[c];
-    /* turned from the left, or from the right */
+    /* rotate from the left (1) or from the right (-1) */
     const double sign = slot->kind == DVI__SPHERE ? 1 : -1, *at = theta + slot->v;
     if (slot->kind != DVI__SPHERE && slot->kind != DVI__ROTATION) continue;
     const double from[] = {sign * at[0], sign * at[1], sign * at[2]};

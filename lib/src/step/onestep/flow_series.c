@@ -11,25 +11,25 @@ struct dvi__flow_series {
   const dvi_system *system;
   int n, degree;
   dvi__jet *jet;
-  dvi__linear *kinetic; /* factors L_vv; NULL for a diagonal mass */
+  dvi__linear *kinetic; /* factors of L_vv, NULL for a diagonal mass */
   double *t;            /* [degree+1] */
   double *q, *v;        /* [(degree+1)*n], [degree*n] */
   double *L_q, *L_v;    /* [degree*n] */
-  double *L_vv;         /* at the start, or, with Hessians, along the motion, as the other two */
+  double *L_vv; /* values at the start, or, with Hessians, along the motion as the other two */
   double *L_qq, *L_qv;
   double *dq, *dv; /* [(degree+1)*2n*n], [degree*2n*n] */
 };
 
-/* ---- making it ---- */
+/* ---- create ---- */
 
-static int allocate(dvi__flow_series *f, int hessians)
+static int flow_series_allocate(dvi__flow_series *f, int hessians)
 {
   const size_t n = (size_t)f->n, degree = (size_t)f->degree, coefficients = hessians ? degree : 1;
   f->t = DVI_NEW(double, degree + 1);
   f->q = DVI_NEW(double, (degree + 1) * n);
-  f->v = DVI_NEW(double, degree *n);
-  f->L_q = DVI_NEW(double, degree *n);
-  f->L_v = DVI_NEW(double, degree *n);
+  f->v = DVI_NEW(double, (degree * n));
+  f->L_q = DVI_NEW(double, (degree * n));
+  f->L_v = DVI_NEW(double, (degree * n));
   f->L_vv = DVI_NEW(double, coefficients *(size_t)dvi__pattern_entries(&f->system->vv));
   if (!f->t || !f->q || !f->v || !f->L_q || !f->L_v || !f->L_vv) return 0;
   if (!hessians) return 1;
@@ -40,11 +40,12 @@ static int allocate(dvi__flow_series *f, int hessians)
   return f->L_qq && f->L_qv && f->dq && f->dv;
 }
 
-static dvi_status fill(dvi__flow_series *f, dvi__derivatives most, dvi_counters *counters)
+static dvi_status flow_series_initialise(dvi__flow_series *f, dvi__derivatives most,
+                                         dvi_counters *counters)
 {
   const dvi_system *s = f->system;
   DVI_TRY(dvi__jet_create(s, f->degree - 1, most, counters, &f->jet));
-  if (!allocate(f, most == DVI__HESSIANS))
+  if (!flow_series_allocate(f, most == DVI__HESSIANS))
     return dvi__fail(DVI_NO_MEMORY,
                      "series of the motion: no memory for degree %d in %d dimensions", f->degree,
                      f->n);
@@ -62,7 +63,7 @@ dvi_status dvi__flow_series_create(const dvi_system *system, int degree, dvi__de
   f->system = system;
   f->n = system->n;
   f->degree = degree;
-  const dvi_status status = fill(f, most, counters);
+  const dvi_status status = flow_series_initialise(f, most, counters);
   if (status != DVI_OK) dvi__flow_series_destroy(&f);
   *series = f;
   return status;
@@ -103,7 +104,7 @@ const double *dvi__flow_series_dv(const dvi__flow_series *f)
 
 /* ---- the motion ---- */
 
-/* x <- L_vv^-1 x at the start. */
+/* Set x <- L_vv^-1 x at the start. */
 static void solve_kinetic(dvi__flow_series *f, double *x)
 {
   if (f->kinetic != NULL) {
@@ -113,7 +114,7 @@ static void solve_kinetic(dvi__flow_series *f, double *x)
   for (int i = 0; i < f->n; i++) x[i] /= f->system->mass_diagonal[i];
 }
 
-/* A constant mass is factored already. */
+/* Factor L_vv. A constant mass is factored already. */
 static dvi_status factor_kinetic(dvi__flow_series *f)
 {
   if (f->system->lagrangian == NULL) return DVI_OK;
@@ -121,7 +122,7 @@ static dvi_status factor_kinetic(dvi__flow_series *f)
   return dvi__linear_factor(f->kinetic, f->L_vv);
 }
 
-/* v_{k+1} and q_{k+2}. Of a constant mass [L_v]_{k+1} is M v_{k+1} alone. */
+/* Compute v_{k+1} and q_{k+2}. For a constant mass [L_v]_{k+1} is M v_{k+1} alone. */
 static dvi_status next_coefficient(dvi__flow_series *f, int k)
 {
   const size_t n = (size_t)f->n;
@@ -141,7 +142,7 @@ dvi_status dvi__flow_series_expand(dvi__flow_series *f, double t, const double *
 {
   const size_t n = (size_t)f->n;
   f->t[0] = t;
-  f->t[1] = 1; /* the other coefficients of t are 0 since create */
+  f->t[1] = 1; /* create has set the other coefficients of t to 0 */
   memcpy(f->q, q, n * sizeof *q);
   memcpy(f->q + n, v, n * sizeof *v);
   memcpy(f->v, v, n * sizeof *v);
@@ -152,9 +153,9 @@ dvi_status dvi__flow_series_expand(dvi__flow_series *f, double t, const double *
                    t);
 }
 
-/* ---- its derivative ---- */
+/* ---- derivative of the motion ---- */
 
-/* y += factor A x, or A^T x. */
+/* Add factor A x, or factor A^T x, to y. */
 static void multiply_add(const dvi__pattern *pattern, const double *A, int transposed,
                          double factor, const double *x, double *y)
 {
@@ -168,10 +169,11 @@ static void multiply_add(const dvi__pattern *pattern, const double *A, int trans
     }
 }
 
-/* y += factor [A x]_k, the coefficient of a product of series of which A's stand in the pattern's
- * order and x's at a distance of `stride`; A's from `first` on. */
-static void convolve(const dvi__pattern *pattern, const double *A, int transposed, int first, int k,
-                     double factor, const double *x, size_t stride, double *y)
+/* Add factor [A x]_k to y, the coefficient of a product of series. The coefficients of A stand in
+ * the pattern's order and start from `first`. Those of x stand at a distance of `stride`. */
+static void flow_series_convolve(const dvi__pattern *pattern, const double *A, int transposed,
+                                 int first, int k, double factor, const double *x, size_t stride,
+                                 double *y)
 {
   const size_t entries = (size_t)dvi__pattern_entries(pattern);
   for (int j = first; j <= k; j++)
@@ -179,17 +181,18 @@ static void convolve(const dvi__pattern *pattern, const double *A, int transpose
                  y);
 }
 
-/* dv_{k+1} and dq_{k+2} of one column: dq_0 .. dq_{k+1} and dv_0 .. dv_k are known. */
+/* Compute dv_{k+1} and dq_{k+2} of one column from dq_0 .. dq_{k+1} and dv_0 .. dv_k. */
 static void next_variation(dvi__flow_series *f, int k, double *dq, double *dv)
 {
   const dvi_system *s = f->system;
   const size_t n = (size_t)f->n, stride = 2 * n * n;
   double *next = dv + (size_t)(k + 1) * stride;
   memset(next, 0, n * sizeof *next);
-  convolve(&s->qq, f->L_qq, 0, 0, k, 1.0 / (k + 1), dq, stride, next);
-  convolve(&s->qv, f->L_qv, 0, 0, k, 1.0 / (k + 1), dv, stride, next);
-  convolve(&s->qv, f->L_qv, 1, 0, k + 1, -1, dq, stride, next);
-  if (s->lagrangian != NULL) convolve(&s->vv, f->L_vv, 0, 1, k + 1, -1, dv, stride, next);
+  flow_series_convolve(&s->qq, f->L_qq, 0, 0, k, 1.0 / (k + 1), dq, stride, next);
+  flow_series_convolve(&s->qv, f->L_qv, 0, 0, k, 1.0 / (k + 1), dv, stride, next);
+  flow_series_convolve(&s->qv, f->L_qv, 1, 0, k + 1, -1, dq, stride, next);
+  if (s->lagrangian != NULL)
+    flow_series_convolve(&s->vv, f->L_vv, 0, 1, k + 1, -1, dv, stride, next);
   solve_kinetic(f, next);
   for (size_t i = 0; i < n; i++) dq[(size_t)(k + 2) * stride + i] = next[i] / (k + 2);
 }
@@ -212,9 +215,9 @@ dvi_status dvi__flow_series_vary(dvi__flow_series *f)
                    f->t[0]);
 }
 
-/* ---- L along it ---- */
+/* ---- L along the motion ---- */
 
-/* [L_q dq + L_v dv]_k of one column. */
+/* Return [L_q dq + L_v dv]_k of one column. */
 static double variation_of_L(const dvi__flow_series *f, int k, const double *dq, const double *dv)
 {
   const size_t n = (size_t)f->n, stride = 2 * n * n;

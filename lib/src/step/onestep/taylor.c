@@ -8,9 +8,9 @@
 
 struct dvi__taylor {
   dvi__vector_field *field;
-  dvi__flow_series *series; /* to one degree more: v has one less */
+  dvi__flow_series *series; /* series to one degree more, because v has one degree less */
   int n, degree;
-  /* [2n*2n*pieces] the derivative of (q1,v1) in (q,v), column by column, less the identity */
+  /* [2n*2n*pieces] derivative of (q1,v1) in (q,v), column by column, minus the identity */
   double *change;
   double *end;            /* [2n] */
   double *motion, *image; /* [2n] */
@@ -26,7 +26,7 @@ dvi_status dvi__taylor_create(const dvi_system *system, dvi__vector_field *field
   t->field = field;
   t->n = system->n;
   t->degree = degree;
-  t->change = DVI_NEW(double, z *z *(size_t)pieces);
+  t->change = DVI_NEW(double, (z * z * (size_t)pieces));
   t->end = DVI_NEW(double, z);
   t->motion = DVI_NEW(double, z);
   t->image = DVI_NEW(double, z);
@@ -53,7 +53,7 @@ void dvi__taylor_destroy(dvi__taylor **taylor)
   *taylor = NULL;
 }
 
-/* sum_k h^k c_k without c_0; c_k is [count], at a distance of `stride`. */
+/* Compute sum_k h^k c_k without c_0. Each c_k is [count], at a distance of `stride`. */
 static void sum_series(const dvi__taylor *t, double h, int count, size_t stride, const double *c,
                        double *sum)
 {
@@ -63,7 +63,7 @@ static void sum_series(const dvi__taylor *t, double h, int count, size_t stride,
   }
 }
 
-static dvi_status expand(dvi__taylor *t, int piece)
+static dvi_status taylor_expand(dvi__taylor *t, int piece)
 {
   const dvi__vector_field_point at = dvi__vector_field_point_at(t->field, piece);
   return dvi__flow_series_expand(t->series, at.t, at.q, at.v);
@@ -73,7 +73,7 @@ dvi_status dvi__taylor_advance(dvi__taylor *t, int piece, double h, double *move
 {
   const int n = t->n;
   const dvi__vector_field_point at = dvi__vector_field_point_at(t->field, piece);
-  DVI_TRY(expand(t, piece));
+  DVI_TRY(taylor_expand(t, piece));
   sum_series(t, h, n, (size_t)n, dvi__flow_series_q(t->series), moved);
   sum_series(t, h, n, (size_t)n, dvi__flow_series_v(t->series), t->end + n);
   for (int i = 0; i < n; i++) t->end[i] = at.q[i] + moved[i];
@@ -84,7 +84,7 @@ dvi_status dvi__taylor_trace(dvi__taylor *t, int piece, double h)
 {
   const int n = t->n, z = 2 * n;
   const size_t stride = (size_t)z * (size_t)n;
-  DVI_TRY(expand(t, piece));
+  DVI_TRY(taylor_expand(t, piece));
   DVI_TRY(dvi__flow_series_vary(t->series));
   for (int c = 0; c < z; c++) {
     double *column = t->change + (size_t)(piece * z + c) * (size_t)z;
@@ -94,7 +94,7 @@ dvi_status dvi__taylor_trace(dvi__taylor *t, int piece, double h)
   return DVI_OK;
 }
 
-static double entry(const dvi__taylor *t, int piece, int row, int column)
+static double taylor_entry(const dvi__taylor *t, int piece, int row, int column)
 {
   const int z = 2 * t->n;
   return t->change[(piece * z + column) * z + row];
@@ -109,7 +109,7 @@ dvi_status dvi__taylor_push(dvi__taylor *t, int piece, const double *motion, dou
   memcpy(t->motion + n, t->image + n, (size_t)n * sizeof *motion);
   for (int i = 0; i < z; i++) {
     double sum = 0;
-    for (int c = 0; c < z; c++) sum += entry(t, piece, i, c) * t->motion[c];
+    for (int c = 0; c < z; c++) sum += taylor_entry(t, piece, i, c) * t->motion[c];
     t->end[i] = t->motion[i] + sum;
     change[i] = sum;
   }
@@ -128,7 +128,7 @@ dvi_status dvi__taylor_pull(dvi__taylor *t, int piece, const double *costate, do
   }
   for (int c = 0; c < z; c++) {
     double sum = 0;
-    for (int i = 0; i < z; i++) sum += entry(t, piece, i, c) * t->end[i];
+    for (int i = 0; i < z; i++) sum += taylor_entry(t, piece, i, c) * t->end[i];
     if (c < n)
       change[c] += sum;
     else

@@ -9,40 +9,41 @@
 struct dvi__vector_field {
   const dvi_system *system;
   dvi__evaluator *evaluator;
-  /* is_H: the system declares a Hamiltonian, whose derivatives stand in the place of L's */
+  /* is_H is not 0 if the system declares a Hamiltonian, whose derivatives take the place of those
+   * of L */
   int n, points, at, is_H;
-  /* Point by point: [points], [n*points], [entries*points]. */
+  /* Values point by point, [points], [n*points], [entries*points]. */
   double *t, *q, *v, *p, *H_q, *L_qq, *L_qv, *L_vv;
   double *velocity, *w, *motion; /* [n], [n], [2n] */
-  /* the factor of L_vv at the selected point; NULL: the mass is constant, or there is H */
+  /* factors of L_vv at the selected point; NULL for a constant mass or a Hamiltonian */
   dvi__linear *linear;
 };
 
-static double **owned(dvi__vector_field *f, int i)
+static double **vector_field_owned_array(dvi__vector_field *f, int i)
 {
   double **const all[] = {&f->t,    &f->q,    &f->v,        &f->p, &f->H_q,   &f->L_qq,
                           &f->L_qv, &f->L_vv, &f->velocity, &f->w, &f->motion};
   return i < (int)(sizeof all / sizeof *all) ? all[i] : NULL;
 }
 
-static dvi_status allocate(dvi__vector_field *f)
+static dvi_status vector_field_allocate(dvi__vector_field *f)
 {
   const dvi_system *s = f->system;
   const size_t n = (size_t)f->n, m = (size_t)f->points, qq = (size_t)dvi__pattern_entries(&s->qq),
                qv = (size_t)dvi__pattern_entries(&s->qv), vv = (size_t)dvi__pattern_entries(&s->vv);
   const size_t size[] = {m, n * m, n * m, n * m, n * m, qq * m, qv * m, vv * m, n, n, 2 * n};
-  for (int i = 0; owned(f, i) != NULL; i++) {
-    *owned(f, i) = DVI_NEW(double, size[i] > 0 ? size[i] : 1);
-    if (*owned(f, i) == NULL)
+  for (int i = 0; vector_field_owned_array(f, i) != NULL; i++) {
+    *vector_field_owned_array(f, i) = DVI_NEW(double, size[i] > 0 ? size[i] : 1);
+    if (*vector_field_owned_array(f, i) == NULL)
       return dvi__fail(DVI_NO_MEMORY, "no memory for %d stages in %d dimensions", f->points, f->n);
   }
   return DVI_OK;
 }
 
-static dvi_status fill(dvi__vector_field *f, dvi_counters *counters)
+static dvi_status vector_field_initialise(dvi__vector_field *f, dvi_counters *counters)
 {
   DVI_TRY(dvi__evaluator_create(f->system, 1, DVI__HESSIANS, counters, &f->evaluator));
-  DVI_TRY(allocate(f));
+  DVI_TRY(vector_field_allocate(f));
   return f->system->lagrangian != NULL && !f->is_H
              ? dvi__linear_create(&f->system->vv, DVI__LINEAR_AUTO, counters, &f->linear)
              : DVI_OK;
@@ -58,7 +59,7 @@ dvi_status dvi__vector_field_create(const dvi_system *system, int points, dvi_co
   f->n = system->n;
   f->points = points;
   f->is_H = (system->terms & DVI__HAMILTONIAN) != 0;
-  const dvi_status status = fill(f, counters);
+  const dvi_status status = vector_field_initialise(f, counters);
   if (status != DVI_OK) dvi__vector_field_destroy(&f);
   *field = f;
   return status;
@@ -68,7 +69,8 @@ void dvi__vector_field_destroy(dvi__vector_field **field)
 {
   dvi__vector_field *f = *field;
   if (f == NULL) return;
-  for (int i = 0; owned(f, i) != NULL; i++) dvi__release(*owned(f, i));
+  for (int i = 0; vector_field_owned_array(f, i) != NULL; i++)
+    dvi__release(*vector_field_owned_array(f, i));
   dvi__linear_destroy(&f->linear);
   dvi__evaluator_destroy(&f->evaluator);
   dvi__release(f);
@@ -82,7 +84,7 @@ void dvi__vector_field_guess(dvi__vector_field *f, const double *v)
 
 /* ---- points ---- */
 
-/* The velocity, and p'. */
+/* Compute the velocity and p'. */
 static dvi_status motion_at(dvi__vector_field *f, double t, const double *q, const double *p,
                             double *pdot)
 {
@@ -105,8 +107,8 @@ dvi_status dvi__vector_field_place(dvi__vector_field *f, int k, double t, const 
   return DVI_OK;
 }
 
-/* Where the entries of a pattern begin at point k. */
-static size_t first_of(const dvi__pattern *pattern, int k)
+/* Return the index of a pattern's first entry at point k. */
+static size_t vector_field_first_of(const dvi__pattern *pattern, int k)
 {
   return (size_t)dvi__pattern_entries(pattern) * (size_t)k;
 }
@@ -116,10 +118,11 @@ dvi_status dvi__vector_field_differentiate(dvi__vector_field *f, int first, int 
   const dvi_system *s = f->system;
   for (int k = first; k < first + count; k++) {
     const size_t at = (size_t)k * (size_t)f->n;
-    double *L_vv = f->linear != NULL || f->is_H ? f->L_vv + first_of(&s->vv, k) : NULL;
+    double *L_vv = f->linear != NULL || f->is_H ? f->L_vv + vector_field_first_of(&s->vv, k) : NULL;
     DVI_TRY(dvi__lagrangian_hessian(f->evaluator, 1, f->t + k, f->q + at,
-                                    (f->is_H ? f->p : f->v) + at, f->L_qq + first_of(&s->qq, k),
-                                    f->L_qv + first_of(&s->qv, k), L_vv));
+                                    (f->is_H ? f->p : f->v) + at,
+                                    f->L_qq + vector_field_first_of(&s->qq, k),
+                                    f->L_qv + vector_field_first_of(&s->qv, k), L_vv));
   }
   return DVI_OK;
 }
@@ -127,11 +130,12 @@ dvi_status dvi__vector_field_differentiate(dvi__vector_field *f, int first, int 
 dvi_status dvi__vector_field_select(dvi__vector_field *f, int k)
 {
   f->at = k;
-  return f->linear != NULL ? dvi__linear_factor(f->linear, f->L_vv + first_of(&f->system->vv, k))
-                           : DVI_OK;
+  return f->linear != NULL
+             ? dvi__linear_factor(f->linear, f->L_vv + vector_field_first_of(&f->system->vv, k))
+             : DVI_OK;
 }
 
-/* y += sign A x, or with the transpose of A. */
+/* Add sign A x, or sign A^T x, to y. */
 static void add_times(const dvi__pattern *of, const double *values, int transposed, double sign,
                       const double *x, double *y)
 {
@@ -146,19 +150,19 @@ static void product_of_H(const dvi__vector_field *f, const double *motion, doubl
 {
   const dvi_system *s = f->system;
   const int n = f->n;
-  const double *H_qp = f->L_qv + first_of(&s->qv, f->at);
+  const double *H_qp = f->L_qv + vector_field_first_of(&s->qv, f->at);
   memset(product, 0, 2 * (size_t)n * sizeof *product);
-  add_times(&s->qq, f->L_qq + first_of(&s->qq, f->at), 0, 1, motion, product);
+  add_times(&s->qq, f->L_qq + vector_field_first_of(&s->qq, f->at), 0, 1, motion, product);
   add_times(&s->qv, H_qp, 0, 1, motion + n, product);
   add_times(&s->qv, H_qp, 1, 1, motion, product + n);
-  add_times(&s->vv, f->L_vv + first_of(&s->vv, f->at), 0, 1, motion + n, product + n);
+  add_times(&s->vv, f->L_vv + vector_field_first_of(&s->vv, f->at), 0, 1, motion + n, product + n);
 }
 
 void dvi__vector_field_product(dvi__vector_field *f, const double *motion, double *product)
 {
   const dvi_system *s = f->system;
   const int n = f->n;
-  const double *L_qv = f->L_qv + first_of(&s->qv, f->at);
+  const double *L_qv = f->L_qv + vector_field_first_of(&s->qv, f->at);
   double *w = product + n;
   if (f->is_H) {
     product_of_H(f, motion, product);
@@ -171,12 +175,12 @@ void dvi__vector_field_product(dvi__vector_field *f, const double *motion, doubl
   else
     dvi__mass_solve(f->evaluator, 1, f->w, f->w);
   memset(product, 0, (size_t)n * sizeof *product);
-  add_times(&s->qq, f->L_qq + first_of(&s->qq, f->at), 0, -1, motion, product);
+  add_times(&s->qq, f->L_qq + vector_field_first_of(&s->qq, f->at), 0, -1, motion, product);
   add_times(&s->qv, L_qv, 0, -1, f->w, product);
   memcpy(w, f->w, (size_t)n * sizeof *w);
 }
 
-/* L = p.H_p - H. */
+/* Compute the gradient of L = p.H_p - H. */
 void dvi__vector_field_lagrangian(dvi__vector_field *f, double *gradient)
 {
   const size_t n = (size_t)f->n, at = (size_t)f->at * n;
@@ -196,7 +200,7 @@ void dvi__vector_field_push(dvi__vector_field *f, double h, const double *motion
   }
 }
 
-/* f_z^T (a,b) = H_zz (-b,a). */
+/* Compute f_z^T (a,b) = H_zz (-b,a). */
 void dvi__vector_field_pull(dvi__vector_field *f, double h, const double *costate, double *image)
 {
   const int n = f->n;
@@ -212,7 +216,7 @@ void dvi__vector_field_pull(dvi__vector_field *f, double h, const double *costat
 dvi__vector_field_point dvi__vector_field_point_at(const dvi__vector_field *f, int k)
 {
   const size_t at = (size_t)k * (size_t)f->n;
-  return (dvi__vector_field_point){f->t[k], f->q + at, f->v + at};
+  return (dvi__vector_field_point){.t = f->t[k], .q = f->q + at, .v = f->v + at};
 }
 
 dvi__vector_field_point dvi__vector_field_selected(const dvi__vector_field *f)
@@ -220,7 +224,8 @@ dvi__vector_field_point dvi__vector_field_selected(const dvi__vector_field *f)
   return dvi__vector_field_point_at(f, f->at);
 }
 
-/* For a constant mass L_v is linear, and nothing is lost to p. */
+/* Compute the change of p. For a constant mass L_v is linear, and the difference has no rounding
+ * error of p. */
 dvi_status dvi__vector_field_impulse(dvi__vector_field *f, int k, double t, const double *q,
                                      const double *dv, double *dp)
 {
@@ -237,31 +242,31 @@ static const double *constant_mass(const dvi__vector_field *f)
   return f->system->mass_diagonal != NULL ? f->system->mass_diagonal : f->system->mass_values;
 }
 
-static const double *mass_of(const dvi__vector_field *f, int k)
+static const double *vector_field_mass_of(const dvi__vector_field *f, int k)
 {
-  return f->linear != NULL ? f->L_vv + first_of(&f->system->vv, k) : constant_mass(f);
+  return f->linear != NULL ? f->L_vv + vector_field_first_of(&f->system->vv, k) : constant_mass(f);
 }
 
 void dvi__vector_field_lift(dvi__vector_field *f, int k, const double *motion, double *dp)
 {
   const dvi_system *s = f->system;
   memset(dp, 0, (size_t)f->n * sizeof *dp);
-  add_times(&s->qv, f->L_qv + first_of(&s->qv, k), 1, 1, motion, dp);
-  add_times(&s->vv, mass_of(f, k), 0, 1, motion + f->n, dp);
+  add_times(&s->qv, f->L_qv + vector_field_first_of(&s->qv, k), 1, 1, motion, dp);
+  add_times(&s->vv, vector_field_mass_of(f, k), 0, 1, motion + f->n, dp);
 }
 
 void dvi__vector_field_lower(dvi__vector_field *f, int k, const double *covector, double *image)
 {
   const dvi_system *s = f->system;
   memset(image, 0, 2 * (size_t)f->n * sizeof *image);
-  add_times(&s->qv, f->L_qv + first_of(&s->qv, k), 0, 1, covector, image);
-  add_times(&s->vv, mass_of(f, k), 0, 1, covector, image + f->n);
+  add_times(&s->qv, f->L_qv + vector_field_first_of(&s->qv, k), 0, 1, covector, image);
+  add_times(&s->vv, vector_field_mass_of(f, k), 0, 1, covector, image + f->n);
 }
 
 /* ---- sizes ---- */
 
-static dvi_status mass_at(dvi__vector_field *f, double t, const double *q, const double *v,
-                          const double **values)
+static dvi_status vector_field_mass_at(dvi__vector_field *f, double t, const double *q,
+                                       const double *v, const double **values)
 {
   if (f->linear != NULL) return dvi__velocity_hessian(f->evaluator, t, q, v, values);
   *values = constant_mass(f);
@@ -273,7 +278,7 @@ dvi_status dvi__vector_field_mass(dvi__vector_field *f, double t, const double *
 {
   const dvi__pattern *vv = &f->system->vv;
   const double *values;
-  DVI_TRY(mass_at(f, t, q, v, &values));
+  DVI_TRY(vector_field_mass_at(f, t, q, v, &values));
   memset(size, 0, (size_t)f->n * sizeof *size);
   for (int e = 0; e < dvi__pattern_entries(vv); e++)
     size[vv->row[e]] = fmax(size[vv->row[e]], fabs(values[e]));

@@ -9,21 +9,21 @@
 
 typedef struct kept_factor {
   dvi__linear *linear;
-  double square; /* h^2 of the matrix that is factored; 0: none is */
+  double square; /* h^2 of the factored matrix (0 before the first) */
 } kept_factor;
 
 struct dvi__modified_mass {
   dvi__evaluator *evaluator;
   dvi_counters *counters;
   dvi__quadratic parts;
-  double *matrix;  /* in the order of their pattern */
-  double *full;    /* [n*n] the same, where a full matrix is factored; else NULL */
-  int is_positive; /* the mass */
+  double *matrix;  /* matrix in the order of its pattern */
+  double *full;    /* [n*n] the same matrix where a full one is factored, else NULL */
+  int is_positive; /* not 0 if the mass is positive */
   kept_factor kept[DVI__LENGTHS_MOST];
-  int count, oldest; /* of those */
+  int count, oldest; /* number of kept factors, and the oldest of them */
 };
 
-/* Of a matrix in the order of the pattern. */
+/* Return 1 if a matrix in the order of the pattern is positive. */
 static int full_is_positive(const dvi__modified_mass *m, const double *values)
 {
   const dvi__pattern *pattern = &m->parts.pattern;
@@ -35,12 +35,12 @@ static int full_is_positive(const dvi__modified_mass *m, const double *values)
   return dvi__is_positive_definite(pattern->columns, m->full);
 }
 
-/* A mass with fewer entries than a sparse matrix is sparse, too. */
+/* Examine the mass. A mass with fewer entries than a sparse matrix is sparse, too. */
 static dvi_status look_at_mass(dvi__modified_mass *m)
 {
   const size_t n = (size_t)m->parts.pattern.columns;
   if (dvi__linear_kind_of(m->kept[0].linear) == DVI__LINEAR_DENSE) {
-    m->full = DVI_NEW(double, n *n);
+    m->full = DVI_NEW(double, (n * n));
     if (m->full == NULL)
       return dvi__fail(DVI_NO_MEMORY, "modified mass: no memory for %zu x %zu numbers", n, n);
   }
@@ -49,7 +49,8 @@ static dvi_status look_at_mass(dvi__modified_mass *m)
   return DVI_OK;
 }
 
-static dvi_status fill(dvi__modified_mass *m, const dvi_system *system, dvi_counters *counters)
+static dvi_status modified_mass_initialise(dvi__modified_mass *m, const dvi_system *system,
+                                           dvi_counters *counters)
 {
   DVI_TRY(dvi__evaluator_create(system, 1, DVI__HESSIANS, counters, &m->evaluator));
   DVI_TRY(dvi__quadratic_fill(system, m->evaluator, &m->parts));
@@ -66,7 +67,7 @@ dvi_status dvi__modified_mass_create(const dvi_system *system, dvi_counters *cou
 {
   dvi__modified_mass *made = *mass = DVI_NEW(dvi__modified_mass, 1);
   if (made == NULL) return dvi__fail(DVI_NO_MEMORY, "modified mass: no memory");
-  const dvi_status status = fill(made, system, counters);
+  const dvi_status status = modified_mass_initialise(made, system, counters);
   if (status != DVI_OK) dvi__modified_mass_destroy(mass);
   return status;
 }
@@ -97,15 +98,15 @@ dvi_status dvi__modified_mass_keep(dvi__modified_mass *m, int count)
   return DVI_OK;
 }
 
-/* From h = 0 on the matrix keeps what it is until it is singular; longer steps would jump through
- * infinity. */
+/* Return 1 if the matrix has the signature of the mass. From h = 0 on the signature is constant
+ * until the matrix is singular. Longer steps would jump through infinity. */
 static int is_as_the_mass(const dvi__modified_mass *m, const dvi__linear *linear)
 {
   if (!m->is_positive) return dvi__linear_sign(linear) == dvi__mass_sign(m->evaluator);
   return m->full != NULL ? full_is_positive(m, m->matrix) : dvi__linear_is_definite(linear, 1);
 }
 
-static dvi_status factor(dvi__modified_mass *m, double square, kept_factor *kept)
+static dvi_status modified_mass_factor(dvi__modified_mass *m, double square, kept_factor *kept)
 {
   kept->square = 0;
   for (int e = 0; e < dvi__pattern_entries(&m->parts.pattern); e++)
@@ -128,7 +129,7 @@ dvi_status dvi__modified_mass_solve(dvi__modified_mass *m, double h, double *x)
   while (k < m->count && m->kept[k].square != h * h) k++;
   if (k == m->count) {
     k = m->oldest;
-    DVI_TRY(factor(m, h * h, &m->kept[k]));
+    DVI_TRY(modified_mass_factor(m, h * h, &m->kept[k]));
     m->oldest = k + 1 < m->count ? k + 1 : 0;
   }
   dvi__linear_solve(m->kept[k].linear, x);

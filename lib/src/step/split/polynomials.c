@@ -14,30 +14,29 @@
 struct dvi__polynomials {
   int n;
   double *mass;       /* [n] */
-  double low, high;   /* of omega^2 */
+  double low, high;   /* bounds of omega^2 */
   dvi__stripes G;     /* 4 (M^-1 K - low)/(high - low) */
-  double h;           /* of the motion's coefficients; 0: of none */
-  dvi__clenshaw move; /* its two vectors, with which one alone is worked on, too */
+  double h;           /* length of step of the motion's coefficients (0 before the first) */
+  dvi__clenshaw move; /* the two vectors of the motion, also used for one alone */
   double *motion;     /* [4*(DVI__DEGREE_MOST+1)] coefficients */
   struct {
     int degree;
     double *c; /* [DVI__DEGREE_MOST+1] */
   } slot[DVI__POLYNOMIALS_SLOTS];
-  double *numbers; /* all of these, and `room` */
+  double *numbers; /* owns all of these, and `room` */
   double *room;    /* [2*DVI__DEGREE_MOST+3] */
-  double *vectors; /* [4*2*G.room] those of `move` */
+  double *vectors; /* [4*2*G.room] vectors of `move` */
   dvi_counters *counters;
 };
 
-static dvi_status no_memory(void)
+static dvi_status polynomials_no_memory(void)
 {
   return dvi__fail(DVI_NO_MEMORY, "polynomials: no memory");
 }
 
 /* ---- the interval ---- */
 
-/* The discs of Gershgorin of column i, divided by its mass: those of M^-1 K, and of M^-1/2 K
- * M^-1/2. */
+/* The discs of Gershgorin of column i, divided by its mass, for M^-1 K and for M^-1/2 K M^-1/2. */
 typedef struct discs {
   double centre, radius, even_radius;
 } discs;
@@ -55,9 +54,9 @@ static discs discs_of(const dvi__quadratic *q, const double *mass, int i)
   return d;
 }
 
-/* What rounding may have taken from an end moves it, but not off zero: T_k grows to 1 + k^2 delta
- * so far out, delta of the interval's length. */
-static void enclose(dvi__polynomials *p, const dvi__quadratic *q)
+/* Compute the interval. Each end moves by the possible rounding error, except an end at zero. T_k
+ * grows to 1 + k^2 delta at a distance of delta of the interval's length. */
+static void polynomials_enclose(dvi__polynomials *p, const dvi__quadratic *q)
 {
   double low[2] = {0, 0}, high[2] = {0, 0};
   int longest = 0;
@@ -76,12 +75,12 @@ static void enclose(dvi__polynomials *p, const dvi__quadratic *q)
   const double rounding = 2 * (longest + 4) * DBL_EPSILON * (p->high - p->low);
   p->high += rounding;
   p->low = p->low < -rounding ? p->low - rounding : 0;
-  if (p->high == p->low) p->high = 1; /* no springs: any bound is one */
+  if (p->high == p->low) p->high = 1; /* without springs any bound is valid */
 }
 
-/* ---- making them ---- */
+/* ---- create ---- */
 
-static dvi_status check(const dvi_system *system)
+static dvi_status polynomials_check(const dvi_system *system)
 {
   const int row = dvi__pattern_entries(&system->qq) / system->n;
   if (system->mass_diagonal == NULL)
@@ -100,7 +99,7 @@ static dvi_status check(const dvi_system *system)
 static dvi_status fill_matrix(dvi__polynomials *p, const dvi__quadratic *q)
 {
   double *scale = DVI_NEW(double, p->n);
-  if (scale == NULL) return no_memory();
+  if (scale == NULL) return polynomials_no_memory();
   for (int i = 0; i < p->n; i++) scale[i] = 4 / (p->high - p->low) / p->mass[i];
   const dvi_status status = dvi__stripes_fill(&q->pattern, q->stiffness, scale,
                                               4 * p->low / (p->high - p->low), &p->G);
@@ -124,19 +123,19 @@ static void hand_out(dvi__polynomials *p)
                             .other = x + 6 * p->G.room};
 }
 
-static dvi_status fill(dvi__polynomials *p, const dvi_system *system, dvi__evaluator *evaluator,
-                       dvi__quadratic *q)
+static dvi_status polynomials_initialise(dvi__polynomials *p, const dvi_system *system,
+                                         dvi__evaluator *evaluator, dvi__quadratic *q)
 {
-  DVI_TRY(check(system));
+  DVI_TRY(polynomials_check(system));
   DVI_TRY(dvi__quadratic_fill(system, evaluator, q));
   p->n = system->n;
   p->mass = dvi__duplicate(system->mass_diagonal, (size_t)p->n, sizeof(double));
-  if (p->mass == NULL) return no_memory();
-  enclose(p, q);
+  if (p->mass == NULL) return polynomials_no_memory();
+  polynomials_enclose(p, q);
   DVI_TRY(fill_matrix(p, q));
   p->numbers = DVI_NEW(double, (7 + (size_t)DVI__POLYNOMIALS_SLOTS) * (DVI__DEGREE_MOST + 1));
   p->vectors = DVI_NEW(double, 8 * p->G.room);
-  if (p->numbers == NULL || p->vectors == NULL) return no_memory();
+  if (p->numbers == NULL || p->vectors == NULL) return polynomials_no_memory();
   hand_out(p);
   return DVI_OK;
 }
@@ -150,7 +149,9 @@ dvi_status dvi__polynomials_create(const dvi_system *system, dvi_counters *count
   DVI_TRY(dvi__evaluator_create(system, 1, DVI__HESSIANS, counters, &evaluator));
   dvi__polynomials *made = *polynomials = DVI_NEW(dvi__polynomials, 1);
   if (made != NULL) made->counters = counters;
-  const dvi_status status = made != NULL ? fill(made, system, evaluator, &quadratic) : no_memory();
+  const dvi_status status = made != NULL
+                                ? polynomials_initialise(made, system, evaluator, &quadratic)
+                                : polynomials_no_memory();
   dvi__quadratic_clear(&quadratic);
   dvi__evaluator_destroy(&evaluator);
   if (status != DVI_OK) dvi__polynomials_destroy(polynomials);
@@ -177,11 +178,11 @@ void dvi__polynomials_interval(const dvi__polynomials *p, double *low, double *h
 
 /* ---- coefficients ---- */
 
-/* A mode that grows takes digits from all others: the coefficients are as large as what it grows
- * to. */
+/* A growing mode takes digits from all others, because the coefficients are as large as its
+ * growth. */
 static const double growth_most = 9;
 
-/* Of what is default: half a rounding. */
+/* Truncate at half a rounding. */
 static const double tolerance = DBL_EPSILON / 2;
 
 static dvi_status choose_degree(const dvi__polynomials *p, double h, const dvi__growth *growth,
@@ -194,14 +195,12 @@ static dvi_status choose_degree(const dvi__polynomials *p, double h, const dvi__
   if (growing > growth_most)
     return dvi__fail(DVI_NOT_CONVERGED,
                      "of omega^2 of fast modes it is only known that it is above %.6g, and "
-                     "exp(%.3g) is too much for polynomials; "
-                     "h = %.3g is possible",
+                     "exp(%.3g) is too much for polynomials; h = %.3g is possible",
                      p->low, growing, h * growth_most / growing);
   if (*degree < 0)
     return dvi__fail(DVI_NOT_CONVERGED,
                      "h omega = %.6g may be of a fast mode, where this filter does not exist: it "
-                     "divides by sinc(h omega), or by "
-                     "its root; h = %.3g is possible",
+                     "divides by sinc(h omega), or by its root; h = %.3g is possible",
                      x, 3 * h / x);
   if (*degree <= DVI__DEGREE_MOST) return DVI_OK;
   return dvi__fail(DVI_NOT_CONVERGED,
@@ -222,10 +221,10 @@ dvi_status dvi__polynomials_expand(dvi__polynomials *p, int slot, double h,
   return DVI_OK;
 }
 
-/* 1 - cos x, of the functions below the one that grows most. */
+/* The function 1 - cos x grows most of those below. */
 static const dvi__growth of_motion = {.type = 1, .mass = 2};
 
-static double sine(const void *user, double s)
+static double expand_sine(const void *user, double s)
 {
   double c[4];
   (void)user;
@@ -233,9 +232,9 @@ static double sine(const void *user, double s)
   return c[1];
 }
 
-static double minus_sine(const void *user, double s)
+static double expand_minus_sine(const void *user, double s)
 {
-  return -sine(user, s);
+  return -expand_sine(user, s);
 }
 
 static double minus_fall(const void *user, double s)
@@ -251,10 +250,12 @@ static double cosine_less_one(const void *user, double s)
   return s * minus_fall(user, s);
 }
 
-/* (c_1, -c_2; -s c_2, -c_1) of (h M^-1 p, h^2 M^-1 V_q): the changes of q and of h M^-1 p. */
-static dvi_status prepare(dvi__polynomials *p, double h)
+/* Expand (c_1, -c_2; -s c_2, -c_1), which maps (h M^-1 p, h^2 M^-1 V_q) to the changes of q and of
+ * h M^-1 p. */
+static dvi_status polynomials_prepare(dvi__polynomials *p, double h)
 {
-  double (*const f[])(const void *, double) = {sine, minus_fall, cosine_less_one, minus_sine};
+  double (*const f[])(const void *, double) = {expand_sine, minus_fall, cosine_less_one,
+                                               expand_minus_sine};
   p->h = 0;
   DVI_TRY(choose_degree(p, h, &of_motion, 0, &p->move.degree));
   for (int k = 0; k < 4; k++)
@@ -276,7 +277,7 @@ int dvi__polynomials_degree(const dvi__polynomials *p, double h, double *bound)
 
 /* ---- products ---- */
 
-static double *elements(double *vectors)
+static double *polynomials_elements(double *vectors)
 {
   return vectors + DVI__STRIPES_MARGIN;
 }
@@ -291,10 +292,10 @@ void dvi__polynomials_to_coordinates(dvi__polynomials *p, int slot, const double
                              .d = p->move.d,
                              .b = p->move.b,
                              .other = p->move.other};
-  double *at = elements(p->vectors);
+  double *at = polynomials_elements(p->vectors);
   for (int i = 0; i < p->n; i++) at[i] = force[i] / p->mass[i];
   dvi__stripes_sum(&sum);
-  memcpy(x, elements(sum.d), (size_t)p->n * sizeof(double));
+  memcpy(x, polynomials_elements(sum.d), (size_t)p->n * sizeof(double));
   p->counters->products += sum.degree;
 }
 
@@ -307,14 +308,15 @@ void dvi__polynomials_to_forces(dvi__polynomials *p, int slot, const double *for
 dvi_status dvi__polynomials_move(dvi__polynomials *p, double h, const double *V_q,
                                  const dvi__phase *phase)
 {
-  if (p->h != h) DVI_TRY(prepare(p, h));
-  double *const drift = elements(p->vectors), *const pull = drift + p->G.room;
+  if (p->h != h) DVI_TRY(polynomials_prepare(p, h));
+  double *const drift = polynomials_elements(p->vectors), *const pull = drift + p->G.room;
   for (int i = 0; i < p->n; i++) {
     drift[i] = h * phase->p[i] / p->mass[i];
     pull[i] = h * h * V_q[i] / p->mass[i];
   }
   dvi__stripes_sum(&p->move);
-  const double *const q_change = elements(p->move.d), *const v_change = q_change + p->G.room;
+  const double *const q_change = polynomials_elements(p->move.d), *const v_change = q_change +
+                                                                                    p->G.room;
   for (int i = 0; i < p->n; i++) {
     dvi__add_compensated(phase->q + i, phase->q_compensation + i, q_change[i]);
     dvi__add_compensated(phase->p + i, phase->p_compensation + i, p->mass[i] * v_change[i] / h);

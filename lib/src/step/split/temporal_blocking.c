@@ -8,25 +8,25 @@
 #include "core/status.h"
 #include "num/team.h"
 
-/* Lags are multiples of a cache line, so that vectors stay aligned. Blocks of 512 coordinates, with
- * the lags of 17 substeps between nearest neighbours, keep a window of five arrays of 800 numbers
- * at work: it fits into the first cache. Windows up to WINDOW fit into the second. */
+/* Lags are multiples of a cache line, so that vectors stay aligned. With blocks of 512 coordinates,
+ * and the lags of 17 substeps between nearest neighbours, the window has five arrays of 800
+ * numbers, which fits into the first cache. Windows up to WINDOW fit into the second. */
 enum { LINE = 8, BLOCK = 512, WINDOW = 24 * 1024 };
 
-/* Arrays that a pass reads and writes: q, p, their carries, the gradient. */
+/* A pass reads and writes five arrays, q, p, their compensations, and the gradient. */
 enum { ARRAYS = 5 };
 
 struct dvi__blocking {
   const dvi_system *system;
   int threads;
-  ptrdiff_t block, lag; /* coordinates of one turn; of one operation behind the other */
+  ptrdiff_t block, lag; /* coordinates of one turn; lag of one operation behind the other */
   dvi__division by;
   double scalar;
-  /* [threads*block]: one potential's gradient, before it is added to the others; NULL if there is
-   * only one */
+  /* [threads*block] one potential's gradient, before it is added to the others; NULL for a single
+   * potential */
   double *term;
   dvi__team *team;
-  atomic_int *begun; /* [threads]: the left neighbour may cross the cut */
+  atomic_int *begun; /* [threads] not 0 if the left neighbour may cross the cut */
 };
 
 static atomic_int chosen_block;
@@ -48,7 +48,7 @@ const char *dvi__blocking_obstacle(const dvi_system *system)
   return NULL;
 }
 
-static dvi_status fill(dvi__blocking *w)
+static dvi_status blocking_initialise(dvi__blocking *w)
 {
   const int potentials = w->system->potential_count, block = atomic_load(&chosen_block);
   int reach = 0;
@@ -63,46 +63,46 @@ static dvi_status fill(dvi__blocking *w)
   w->begun = DVI_NEW(atomic_int, w->threads);
   if (potentials > 1) w->term = DVI_NEW(double, w->threads * w->block);
   if (w->begun == NULL || (potentials > 1 && w->term == NULL))
-    return dvi__fail(DVI_NO_MEMORY, "wave: no memory for %d threads", w->threads);
+    return dvi__fail(DVI_NO_MEMORY, "temporal blocking: no memory for %d threads", w->threads);
   return w->threads > 1 ? dvi__team_create(w->threads, &w->team) : DVI_OK;
 }
 
-dvi_status dvi__blocking_create(const dvi_system *system, int threads, dvi__blocking **wave)
+dvi_status dvi__blocking_create(const dvi_system *system, int threads, dvi__blocking **blocking)
 {
-  *wave = NULL;
+  *blocking = NULL;
   dvi__blocking *made = DVI_NEW(dvi__blocking, 1);
-  if (made == NULL) return dvi__fail(DVI_NO_MEMORY, "wave: no memory");
+  if (made == NULL) return dvi__fail(DVI_NO_MEMORY, "temporal blocking: no memory");
   made->system = system;
   made->threads = threads;
-  const dvi_status status = fill(made);
+  const dvi_status status = blocking_initialise(made);
   if (status != DVI_OK) dvi__blocking_destroy(&made);
-  *wave = made;
+  *blocking = made;
   return status;
 }
 
-void dvi__blocking_destroy(dvi__blocking **wave)
+void dvi__blocking_destroy(dvi__blocking **blocking)
 {
-  dvi__blocking *w = *wave;
+  dvi__blocking *w = *blocking;
   if (w == NULL) return;
   dvi__team_destroy(&w->team);
   dvi__release(w->begun);
   dvi__release(w->term);
   dvi__release(w);
-  *wave = NULL;
+  *blocking = NULL;
 }
 
 /* ---- the operations ---- */
 
 /* A pass of some threads over all coordinates. */
 typedef struct pass {
-  const dvi__blocking *wave;
+  const dvi__blocking *blocking;
   dvi__blocking_step step;
   int members;
   atomic_int failed;
 } pass;
 
-/* What one thread does of it: coordinates begin to end-1, cut obliquely on both sides unless the
- * chain ends there. */
+/* The part of one thread has coordinates begin to end-1. It is cut obliquely on both sides, except
+ * at the ends of the chain. */
 typedef struct part {
   pass *pass;
   ptrdiff_t begin, end;
@@ -115,18 +115,20 @@ typedef struct range {
 
 static dvi__phase phase_at(const dvi__phase *whole, ptrdiff_t i)
 {
-  return (dvi__phase){whole->q + i, whole->p + i, whole->q_compensation + i,
-                      whole->p_compensation + i};
+  return (dvi__phase){.q = whole->q + i,
+                      .p = whole->p + i,
+                      .q_compensation = whole->q_compensation + i,
+                      .p_compensation = whole->p_compensation + i};
 }
 
-/* A_k, k = 0 .. count-1: the second kick of the substep before and the first of this one have the
- * same gradient. */
-static void leap(const part *own, int k, range r)
+/* Take the operation A_k, k = 0 .. count-1. The second kick of the substep before and the first
+ * kick of this one have the same gradient. */
+static void blocking_kick_drift(const part *own, int k, range r)
 {
-  const dvi__blocking *w = own->pass->wave;
+  const dvi__blocking *w = own->pass->blocking;
   const dvi__blocking_step *s = &own->pass->step;
   const double *gradient = k == 0 && s->gradient != NULL ? s->gradient : s->gradient_to;
-  const dvi__moser_veselov leap = {
+  const dvi__moser_veselov kick_drift = {
       .count = (size_t)(r.last - r.first),
       .kicks = k == 0 ? 1 : 2,
       .kick = {k == 0 ? -0.5 * s->h[0] : -0.5 * s->h[k - 1], -0.5 * s->h[k]},
@@ -138,13 +140,13 @@ static void leap(const part *own, int k, range r)
       .from = phase_at(k == 0 ? &s->from : &s->to, r.first),
       .to = phase_at(&s->to, r.first),
       .far = k == 0};
-  dvi__lanes_kick_drift(&leap);
+  dvi__lanes_kick_drift(&kick_drift);
 }
 
-/* The sum of the potentials' gradients at q, in the order of the plain sweep. */
-static int gradient(const part *own, double t, const double *q, range r)
+/* Add the potentials' gradients at q, in the order of the plain operations. */
+static int blocking_gradient(const part *own, double t, const double *q, range r)
 {
-  const dvi_system *system = own->pass->wave->system;
+  const dvi_system *system = own->pass->blocking->system;
   double *sum = own->pass->step.gradient_to + r.first;
   const size_t count = (size_t)(r.last - r.first);
   for (int k = 0; k < system->potential_count; k++) {
@@ -157,8 +159,8 @@ static int gradient(const part *own, double t, const double *q, range r)
   return dvi__lanes_all_finite(count, sum);
 }
 
-/* The last kick; what it leaves is the new state. */
-static int finish(const part *own, range r)
+/* Take the last kick, which leaves the new state. */
+static int blocking_last_kick(const part *own, range r)
 {
   const dvi__blocking_step *s = &own->pass->step;
   const dvi__phase to = phase_at(&s->to, r.first);
@@ -170,10 +172,11 @@ static int finish(const part *own, range r)
 
 /* ---- one thread ---- */
 
-/* Where an operation that is `lag` behind works while the first one works from x on. */
+/* Return the range of an operation that is `lag` behind, when the first operation works from x
+ * on. */
 static range range_at(const part *own, ptrdiff_t x, ptrdiff_t lag)
 {
-  const ptrdiff_t n = own->pass->wave->system->n, block = own->pass->wave->block;
+  const ptrdiff_t n = own->pass->blocking->system->n, block = own->pass->blocking->block;
   const ptrdiff_t least = own->begin == 0 ? 0 : own->begin + lag,
                   most = own->end == n ? n : own->end + lag;
   const range r = {x - lag > least ? x - lag : least,
@@ -181,36 +184,38 @@ static range range_at(const part *own, ptrdiff_t x, ptrdiff_t lag)
   return r;
 }
 
-/* All operations, each where it is while the first one is at x. */
+/* Take all operations, each in its range when the first one is at x. */
 static int work_at(const part *own, ptrdiff_t x)
 {
   const dvi__blocking_step *s = &own->pass->step;
-  const ptrdiff_t lag = own->pass->wave->lag;
+  const ptrdiff_t lag = own->pass->blocking->lag;
   range r = range_at(own, x, 0);
-  if (s->gradient == NULL && r.first < r.last && !gradient(own, s->t0, s->from.q, r)) return 0;
+  if (s->gradient == NULL && r.first < r.last && !blocking_gradient(own, s->t0, s->from.q, r))
+    return 0;
   for (int k = 0; k < s->count; k++) {
     r = range_at(own, x, 2 * k * lag);
-    if (r.first < r.last) leap(own, k, r);
+    if (r.first < r.last) blocking_kick_drift(own, k, r);
     r = range_at(own, x, (2 * k + 1) * lag);
-    if (r.first < r.last && !gradient(own, s->t[k], s->to.q, r)) return 0;
+    if (r.first < r.last && !blocking_gradient(own, s->t[k], s->to.q, r)) return 0;
   }
-  return r.first >= r.last || finish(own, r);
+  return r.first >= r.last || blocking_last_kick(own, r);
 }
 
-static int await(const part *own, int neighbour)
+static int blocking_await_neighbour(const part *own, int neighbour)
 {
-  for (int waited = 0; atomic_load(&own->pass->wave->begun[neighbour]) == 0; waited++) {
+  for (int waited = 0; atomic_load(&own->pass->blocking->begun[neighbour]) == 0; waited++) {
     if (atomic_load(&own->pass->failed)) return 0;
     dvi__team_pause(waited);
   }
   return 1;
 }
 
-/* Nothing after `clear` touches what the left neighbour will: he writes `behind` beyond the cut and
- * reads one reach more. Before that no one waits for anybody, so all get there. */
-static int sweep(const part *own, int member)
+/* Run the part of one thread. Behind `clear` the thread touches no coordinate of the left
+ * neighbour, which writes `behind` coordinates beyond the cut and reads one reach more. Before
+ * `clear` no thread waits for another, so that all threads get there. */
+static int blocking_run_part(const part *own, int member)
 {
-  const dvi__blocking *w = own->pass->wave;
+  const dvi__blocking *w = own->pass->blocking;
   const ptrdiff_t behind = (2 * own->pass->step.count - 1) * w->lag,
                   clear = own->begin + 2 * (behind + w->lag);
   const int last = member == own->pass->members - 1;
@@ -219,7 +224,7 @@ static int sweep(const part *own, int member)
   for (ptrdiff_t x = own->begin; x < end && good; x += w->block) {
     if (x >= clear) atomic_store(&w->begun[member], 1);
     if (waits && x + w->block + w->lag > own->end) {
-      good = await(own, member + 1);
+      good = blocking_await_neighbour(own, member + 1);
       waits = 0;
     }
     good = good && !atomic_load_explicit(&own->pass->failed, memory_order_relaxed) &&
@@ -228,27 +233,27 @@ static int sweep(const part *own, int member)
   return good;
 }
 
-static ptrdiff_t cut(const pass *p, int member)
+static ptrdiff_t blocking_cut(const pass *p, int member)
 {
-  const ptrdiff_t n = p->wave->system->n;
+  const ptrdiff_t n = p->blocking->system->n;
   return member == p->members ? n : n / p->members * member / LINE * LINE;
 }
 
-static void take_part(void *user, int member)
+static void blocking_take_part(void *user, int member)
 {
   pass *p = user;
-  const dvi__blocking *w = p->wave;
-  const part own = {p, cut(p, member), cut(p, member + 1),
+  const dvi__blocking *w = p->blocking;
+  const part own = {p, blocking_cut(p, member), blocking_cut(p, member + 1),
                     w->term != NULL ? w->term + member * w->block : NULL};
-  if (!sweep(&own, member)) atomic_store(&p->failed, 1);
+  if (!blocking_run_part(&own, member)) atomic_store(&p->failed, 1);
 }
 
 /* ---- the whole ---- */
 
 int dvi__blocking_depth(const dvi__blocking *w)
 {
-  const ptrdiff_t depth = w->lag > 0 ? (WINDOW - w->block) / (2 * w->lag) : DVI__WAVE_SUBSTEPS;
-  return depth < 1 ? 1 : depth > DVI__WAVE_SUBSTEPS ? DVI__WAVE_SUBSTEPS : (int)depth;
+  const ptrdiff_t depth = w->lag > 0 ? (WINDOW - w->block) / (2 * w->lag) : DVI__BLOCKING_SUBSTEPS;
+  return depth < 1 ? 1 : depth > DVI__BLOCKING_SUBSTEPS ? DVI__BLOCKING_SUBSTEPS : (int)depth;
 }
 
 int dvi__blocking_threads(const dvi__blocking *w, int count)
@@ -261,13 +266,13 @@ int dvi__blocking_threads(const dvi__blocking *w, int count)
 
 static int run_pass(dvi__blocking *w, const dvi__blocking_step *step)
 {
-  pass p = {.wave = w, .step = *step, .members = dvi__blocking_threads(w, step->count)};
+  pass p = {.blocking = w, .step = *step, .members = dvi__blocking_threads(w, step->count)};
   atomic_init(&p.failed, 0);
   for (int i = 0; i < w->threads; i++) atomic_store(&w->begun[i], 0);
   if (p.members == 1)
-    take_part(&p, 0);
+    blocking_take_part(&p, 0);
   else
-    dvi__team_run(w->team, p.members, take_part, &p);
+    dvi__team_run(w->team, p.members, blocking_take_part, &p);
   return !atomic_load(&p.failed);
 }
 
@@ -288,7 +293,7 @@ int dvi__blocking_run(dvi__blocking *w, const dvi__blocking_step *step)
   return 1;
 }
 
-/* The first pass goes from one place to the other, later ones stay there. */
+/* The first pass goes from one array to another, and later passes stay there. */
 double dvi__blocking_traffic(const dvi__blocking *w, int count)
 {
   const int depth = dvi__blocking_depth(w), passes = (count + depth - 1) / depth;

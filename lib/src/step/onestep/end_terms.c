@@ -1,4 +1,4 @@
-#include "step/onestep/ends.h"
+#include "step/onestep/end_terms.h"
 
 #include <string.h>
 
@@ -6,7 +6,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 
-struct dvi__ends {
+struct dvi__end_terms {
   dvi__flow_series *series;
   int n, count;
   double *weight;          /* [count] */
@@ -14,14 +14,14 @@ struct dvi__ends {
   double *motion;          /* [2n] */
 };
 
-static dvi_status fill(dvi__ends *e, const dvi_system *system, const double *weight,
-                       dvi_counters *counters)
+static dvi_status end_terms_initialise(dvi__end_terms *e, const dvi_system *system,
+                                       const double *weight, dvi_counters *counters)
 {
   const size_t n = (size_t)e->n, count = (size_t)e->count;
   e->weight = DVI_NEW(double, count);
   e->L = DVI_NEW(double, count);
-  e->L_q0 = DVI_NEW(double, count *n);
-  e->L_v0 = DVI_NEW(double, count *n);
+  e->L_q0 = DVI_NEW(double, (count * n));
+  e->L_v0 = DVI_NEW(double, (count * n));
   e->motion = DVI_NEW(double, 2 * n);
   if (!e->weight || !e->L || !e->L_q0 || !e->L_v0 || !e->motion)
     return dvi__fail(DVI_NO_MEMORY, "no memory");
@@ -29,23 +29,23 @@ static dvi_status fill(dvi__ends *e, const dvi_system *system, const double *wei
   return dvi__flow_series_create(system, e->count, DVI__HESSIANS, counters, &e->series);
 }
 
-dvi_status dvi__ends_create(const dvi_system *system, int count, const double *weight,
-                            dvi_counters *counters, dvi__ends **ends)
+dvi_status dvi__end_terms_create(const dvi_system *system, int count, const double *weight,
+                                 dvi_counters *counters, dvi__end_terms **ends)
 {
   *ends = NULL;
-  dvi__ends *e = DVI_NEW(dvi__ends, 1);
+  dvi__end_terms *e = DVI_NEW(dvi__end_terms, 1);
   if (e == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory");
   e->n = system->n;
   e->count = count;
-  const dvi_status status = fill(e, system, weight, counters);
-  if (status != DVI_OK) dvi__ends_destroy(&e);
+  const dvi_status status = end_terms_initialise(e, system, weight, counters);
+  if (status != DVI_OK) dvi__end_terms_destroy(&e);
   *ends = e;
   return status;
 }
 
-void dvi__ends_destroy(dvi__ends **ends)
+void dvi__end_terms_destroy(dvi__end_terms **ends)
 {
-  dvi__ends *e = *ends;
+  dvi__end_terms *e = *ends;
   if (e == NULL) return;
   dvi__flow_series_destroy(&e->series);
   dvi__release(e->weight);
@@ -57,8 +57,8 @@ void dvi__ends_destroy(dvi__ends **ends)
   *ends = NULL;
 }
 
-/* sum_{j >= 1} w_j h^j of coefficients that are [n] each. */
-static double sum_of(const dvi__ends *e, double h, int i, const double *coefficient)
+/* Return sum_{j >= 1} w_j h^j c_j for coefficients of n numbers each. */
+static double end_terms_sum_of(const dvi__end_terms *e, double h, int i, const double *coefficient)
 {
   double sum = 0;
   for (int j = e->count - 1; j >= 1; j--)
@@ -66,8 +66,9 @@ static double sum_of(const dvi__ends *e, double h, int i, const double *coeffici
   return sum;
 }
 
-/* In z: what v depends on counts by the derivatives of v(q,p). */
-dvi_status dvi__ends_gradient(dvi__ends *e, dvi__vector_field *field, double h, double *gradient)
+/* Compute the gradient in z. The dependence on v counts by the derivatives of v(q,p). */
+dvi_status dvi__end_terms_gradient(dvi__end_terms *e, dvi__vector_field *field, double h,
+                                   double *gradient)
 {
   const int n = e->n;
   const dvi__vector_field_point at = dvi__vector_field_selected(field);
@@ -75,8 +76,8 @@ dvi_status dvi__ends_gradient(dvi__ends *e, dvi__vector_field *field, double h, 
   DVI_TRY(dvi__flow_series_vary(e->series));
   DVI_TRY(dvi__flow_series_lagrangian(e->series, e->L, e->L_q0, e->L_v0));
   memset(e->motion, 0, (size_t)n * sizeof *e->motion);
-  for (int i = 0; i < n; i++) e->motion[n + i] = sum_of(e, h, i, e->L_v0);
+  for (int i = 0; i < n; i++) e->motion[n + i] = end_terms_sum_of(e, h, i, e->L_v0);
   dvi__vector_field_product(field, e->motion, gradient);
-  for (int i = 0; i < n; i++) gradient[i] += sum_of(e, h, i, e->L_q0);
+  for (int i = 0; i < n; i++) gradient[i] += end_terms_sum_of(e, h, i, e->L_q0);
   return DVI_OK;
 }
