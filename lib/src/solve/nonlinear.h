@@ -14,7 +14,7 @@ typedef struct dvi__equations {
   int unknowns;
   int group;                   /* so many unknowns in a row have one unit, and are measured together; 0: 1 */
   const dvi__pattern *pattern; /* of the Jacobian; outlives the solver */
-  dvi__linear_kind linear;     /* that factors it; left out: AUTO, which takes the diagonal's entries for the largest ones */
+  dvi__linear_kind linear;     /* that factors it; default: AUTO, which takes the diagonal's entries for the largest ones */
   int border; /* so many of the last rows and columns may be full: sparse all the same; 0: none, `linear` says what is done */
   void *of;   /* first argument of the callbacks */
   dvi_status (*residual)(void *of, const double *x, double *r);

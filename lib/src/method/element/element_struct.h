@@ -16,34 +16,45 @@ typedef struct dvi__element_place {
 
 typedef struct dvi__element {
   dvi__action *action;
-  dvi__decoupled *decoupled; /* simplified Newton's method takes the Jacobian apart; NULL: it does not */
+  /* simplified Newton's method takes the Jacobian apart; NULL: it does not */
+  dvi__decoupled *decoupled;
   int centred,
-      keeps_whole; /* in charts at its start, where a path that is not near its guess is followed; it keeps the whole Jacobian */
-  int definite; /* symmetric Jacobians, and real parts of them, are definite for short steps: the mass is constant, and positive */
+      /* in charts at its start, where a path that is not near its guess is followed; it keeps the
+       * whole Jacobian */
+      keeps_whole;
+  /* symmetric Jacobians, and real parts of them, are definite for short steps: the mass is
+   * constant, and positive */
+  int definite;
   dvi__solver *solver;
   int choice;     /* of the solver */
   dvi__rung rung; /* that was tried last */
   double *Y;      /* the unknowns; the arrays below lie behind */
-  double *frozen; /* in the memory: FROZEN_H (0: nothing is), FROZEN_ITERATIONS that it took when it was new, and the Jacobian */
-  int keeps;      /* the Jacobian is not frozen anew */
-  const dvi__element_place *forces_of; /* the place whose iteration starts from the last step's forces; NULL: from Y */
+  /* in the memory: FROZEN_H (0: nothing is), FROZEN_ITERATIONS that it took when it was new, and
+   * the Jacobian */
+  double *frozen;
+  int keeps; /* the Jacobian is not frozen anew */
+  /* the place whose iteration starts from the last step's forces; NULL: from Y */
+  const dvi__element_place *forces_of;
   double *dq, *dq_low, *dp;
   double *guess;  /* [unknowns] of the iteration, in charts */
   double *branch; /* [DVI__BRANCH_ROOM * unknowns] room to follow one */
 } dvi__element;
 
-/* Y of a straight line along the velocity at the start, which is sought from that of the last path. */
+/* Y of a straight line along the velocity at the start, which is sought from that of the last
+ * path. */
 dvi_status dvi__element_straight(dvi__stepper *self, const dvi__element_place *at, double *Y);
 
 /* Y of the solution that continues those of shorter steps; `whole`: what the ladder failed by, with
  * the thread's sentence, or DVI_OK. */
-dvi_status dvi__element_follow(dvi__stepper *self, const dvi__element_place *at, dvi_status whole, double *Y);
+dvi_status dvi__element_follow(dvi__stepper *self, const dvi__element_place *at, dvi_status whole,
+                               double *Y);
 
 /* Whether the mass makes what is symmetric of a short step's Jacobian definite. */
 int dvi__element_is_definite(const dvi_system *system, const dvi__evaluator *evaluator);
 
 /* Of the solution that the ladder has found: what it tells of its branch. */
-dvi__doubt dvi__element_doubt(const dvi__stepper *self, const dvi__element_place *at, const dvi__solve_report *report);
+dvi__doubt dvi__element_doubt(const dvi__stepper *self, const dvi__element_place *at,
+                              const dvi__solve_report *report);
 
 /* The same in charts, where the turn from the guess decides: whether it is to be followed. */
 int dvi__element_strays(const dvi__stepper *self, const dvi__element_place *at);
