@@ -55,9 +55,9 @@ static int check_modes(const bench_request *r)
 
 static int check_request(bench_request *request)
 {
-  if (request->levels > LEVELS_MAX)
+  if (request->levels > WORK_LEVELS_MAX)
     return usage_error("bench: --levels %ld is too many, %d are possible", request->levels,
-                       (int)LEVELS_MAX);
+                       (int)WORK_LEVELS_MAX);
   if (request->rounds > ROUNDS_MAX)
     return usage_error("bench: --rounds %ld is too many, %d are possible", request->rounds,
                        (int)ROUNDS_MAX);
@@ -72,9 +72,10 @@ static int check_request(bench_request *request)
     code = numbers_read("bench: --at", request->at, &request->outputs.asked);
   if (code == DONE && request->judged_by != NULL)
     code = judge_read("bench: --judge", request->judged_by, &request->judge);
+  work_columns(&whole_job_words, request->outputs.columns);
   if (code == DONE)
     code = axes_read("bench", &request->axes, request->outputs.plot, "error:cpu_seconds",
-                     bench_columns, &request->outputs.axes);
+                     request->outputs.columns, &request->outputs.axes);
   if (code == DONE) code = peers_read(&request->against, &request->peers);
   return code == DONE ? check_outputs(&request->outputs, request->name) : code;
 }
@@ -175,10 +176,10 @@ static const char *const details[] = {
     NULL,
 };
 
-bool bench_request_read(int argc, char **argv, bench_request *r, int *exit_code)
+/* What is measured, and how. */
+static int add_measured(bench_request *r, option *options)
 {
-  *r = (bench_request){.t_end = (double)NAN, .h = (double)NAN, .rounds = ROUNDS_DEFAULT};
-  const option options[] = {
+  const option list[] = {
       {.name = "method",
        .words = &r->methods,
        .value = "SPEC",
@@ -228,6 +229,15 @@ bool bench_request_read(int argc, char **argv, bench_request *r, int *exit_code)
        .count = &r->rounds,
        .value = "N",
        .help = "how often everything is measured; left out: 5"},
+  };
+  memcpy(options, list, sizeof list);
+  return (int)(sizeof list / sizeof *list);
+}
+
+/* How far, of what, and where the results go. */
+static int add_outputs(bench_request *r, option *options)
+{
+  const option list[] = {
       {.name = "t-end",
        .number = &r->t_end,
        .value = "T",
@@ -248,8 +258,18 @@ bool bench_request_read(int argc, char **argv, bench_request *r, int *exit_code)
        .words = &r->axes,
        .value = "X:Y",
        .help = "draw these columns of the table instead; may be repeated"},
-      {.name = NULL},
   };
+  memcpy(options, list, sizeof list);
+  return (int)(sizeof list / sizeof *list);
+}
+
+bool bench_request_read(int argc, char **argv, bench_request *r, int *exit_code)
+{
+  enum { OPTIONS_MAX = 24 };
+  option options[OPTIONS_MAX] = {{.name = NULL}};
+  *r = (bench_request){.t_end = (double)NAN, .h = (double)NAN, .rounds = ROUNDS_DEFAULT};
+  const int count = add_measured(r, options);
+  (void)add_outputs(r, options + count);
   const command_line command = {
       .name = "bench",
       .synopsis =

@@ -3,12 +3,12 @@
 #define BENCH_REQUEST_H
 #include <stdbool.h>
 
-#include "study/work_report.h"
+#include "bench/bench_report.h"
 #include "mechanics/judge.h"
 #include "cli/options.h"
 #include "bench/peer.h"
 
-enum { LEVELS_MAX = 20, STEPS_MAX = 1000000 };
+enum { STEPS_MAX = 1000000 };
 
 /** The options, read and checked as far as they can be without the problem. */
 typedef struct bench_request {

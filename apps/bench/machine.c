@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "bench/peer.h"
-#include "mechanics/order_study.h"
+#include "study/clock.h"
 
 /* A sanitizer brings a malloc of its own, of which the C library knows nothing. */
 #if defined(__SANITIZE_ADDRESS__)

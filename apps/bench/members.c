@@ -13,7 +13,7 @@
 #include "plot/plot.h"
 #include "cli/progress.h"
 #include "study/samples.h"
-#include "mechanics/order_study.h"
+#include "study/clock.h"
 #include "csv/table.h"
 
 enum { STEPS_DEFAULT = 64, MEMBERS_MOST = 1000000, LABEL_SIZE = 300 };
@@ -150,7 +150,7 @@ static dvi_status measure_together(const comparison *c, const char *method, int 
   /* The first run finds memory and the machine's caches as they will be: it is not timed. */
   if (status == DVI_OK) status = run_together(c, ensemble, &spent);
   dvi_ensemble_counters(ensemble, &before);
-  const long repeats = study_repeats(spent);
+  const long repeats = clock_repeats(spent);
   for (long i = 0; i < repeats && status == DVI_OK; i++) {
     status = run_together(c, ensemble, &spent);
     total += spent;
@@ -171,7 +171,7 @@ static dvi_status measure_alone(const comparison *c, const char *method, int mem
   double total = 0.0;
   dvi_status status = dvi_integrator_create(c->scene->system, method, &integrator);
   if (status == DVI_OK) status = run_alone(c, integrator, members, &spent);
-  const long repeats = study_repeats(spent);
+  const long repeats = clock_repeats(spent);
   for (long i = 0; i < repeats && status == DVI_OK; i++) {
     status = run_alone(c, integrator, members, &spent);
     total += spent;

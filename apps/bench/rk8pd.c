@@ -1,6 +1,6 @@
 /* GSL's rk8pd on y = (q, p), qdot = v(t,q,p), pdot = L_q(t,q,v), with the callbacks that the
  * methods get, at one point a call. Source: Prince and Dormand 1981, J. Comput. Appl. Math.
-  * 7:67. */
+ * 7:67. */
 #include "bench/rk8pd.h"
 
 #include <float.h>

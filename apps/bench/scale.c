@@ -13,7 +13,7 @@
 #include "plot/plot.h"
 #include "cli/progress.h"
 #include "study/samples.h"
-#include "mechanics/order_study.h"
+#include "study/clock.h"
 #include "csv/table.h"
 
 enum { STEPS_DEFAULT = 32, TITLE_SIZE = 160 };
@@ -103,7 +103,7 @@ static dvi_status measure_cell(const scaling *s, const char *method, const probl
   const double grown = machine_heap() - heap;
   if (round == 0)
     c->bytes = grown > 0.0 ? grown : (double)NAN; /* another malloc does not show there */
-  const long repeats = study_repeats(spent);
+  const long repeats = clock_repeats(spent);
   for (long i = 0; i < repeats && status == DVI_OK; i++) {
     status = run_steps(s, integrator, scene, c, &spent);
     total += spent;

@@ -15,7 +15,9 @@
 #include "cli/outputs.h"
 #include "cli/progress.h"
 #include "load/scene.h"
-#include "mechanics/order_study.h"
+#include "mechanics/judge.h"
+#include "mechanics/motion_study.h"
+#include "mechanics/single_steps.h"
 #include "csv/table.h"
 #include "study/window.h"
 
@@ -30,33 +32,10 @@ typedef struct order_request {
   double h, t_end, ratio;
   long levels;                    /* 0: chosen */
   words methods, settings, asked; /* asked: the axes of the plot */
+  table_column columns[ORDER_COLUMNS_MAX];
   plot_axes axes;
   pacing how;
 } order_request;
-
-static void add_row(result_table *rows, const order_study *study, const order_result *result, int k, const level_trial *trial)
-{
-  table_text(rows, study->method);
-  table_text(rows, study->scene->name);
-  table_number(rows, trial->h);
-  table_number(rows, (double)trial->taken);
-  table_number(rows, trial->error);
-  table_number(rows, order_local_slope(result, k));
-  table_number(rows, trial->energy_error);
-  table_number(rows, trial->cpu_seconds);
-  table_number(rows, (double)trial->spent.residuals);
-  table_number(rows, (double)trial->spent.jacobians);
-  table_number(rows, (double)trial->spent.factorizations);
-  if (study->scene->velocity != NULL) table_number(rows, trial->distance);
-}
-
-static dvi_status run_level(order_study *study, long steps, level_trial *trial)
-{
-  dvi_status status = study_run(study, steps, trial);
-  if (status == DVI_OK) status = study_watch(study, trial);
-  if (status == DVI_OK) status = study_time(study, trial);
-  return status;
-}
 
 /* A study of one method, and who judges it. */
 typedef struct hearing {
@@ -64,6 +43,7 @@ typedef struct hearing {
   const problem *scene;
   judgement judge;
   double judged_at; /* the time that the judge was asked for; NaN: not yet */
+  levels_choice choice;
   progress_line progress;
   result_table *rows;
 } hearing;
@@ -81,59 +61,44 @@ static int ask_judge(hearing *ask, double t_end)
   return code;
 }
 
-static int level_count(const order_request *request, const order_study *study)
+static int level_count(const order_request *request, int order)
 {
   if (request->levels > 0) return (int)request->levels;
-  return study->order < HIGH_ORDER ? LEVELS_DEFAULT : LEVELS_HIGH_ORDER;
+  return order < HIGH_ORDER ? LEVELS_DEFAULT : LEVELS_HIGH_ORDER;
 }
 
-/* Run all levels of one method and fit its order. */
-static dvi_status measure(hearing *ask, order_study *study, int levels, const long *steps, order_result *result)
-{
-  dvi_status status = DVI_OK;
-  result->claimed = study->order;
-  result->chooses_steps = dvi_integrator_chooses_steps(study->integrator);
-  result->t_end = study->t_end;
-  memcpy(result->judge, ask->judge.words, sizeof result->judge);
-  result->judge_error = ask->judge.error;
-  result->floor = study->floor;
-  result->ceiling = study->ceiling;
-  for (int k = 0; k < levels && status == DVI_OK; k++) {
-    level_trial trial;
-    status = run_level(study, steps[k], &trial);
-    if (status != DVI_OK) break;
-    result->h[k] = fabs(trial.h);
-    result->error[k] = trial.error;
-    result->levels = k + 1;
-    add_row(ask->rows, study, result, k, &trial);
-  }
-  if (status == DVI_OK)
-    result->settled = window_fit(result->levels, result->h, result->error, result->floor, result->ceiling, &result->fit);
-  return status;
-}
-
-/* Study up to t_end. If the levels do not fit above the floor there, and that matters, *room becomes false instead. */
-static int study_until(hearing *ask, const char *method, double t_end, bool *room, order_result *result)
+/* Choose the levels of a method, and run them: not if they must fit above the floor and do not. */
+static dvi_status run_levels(hearing *ask, const study_subject *of, bool must_fit, order_result *to)
 {
   const order_request *request = ask->request;
-  order_study study;
-  long steps[LEVELS_MAX];
-  const bool must_fit = *room;
+  const levels_request wanted = {.length = isnan(request->h) ? 0.0 : request->h,
+                                 .ratio = isnan(request->ratio) ? 0.0 : request->ratio,
+                                 .count = level_count(request, of->order)};
+  const dvi_status status = levels_choose(of, &wanted, &ask->choice);
+  const bool there = status == DVI_OK && ask->choice.parts[0] > 0;
+  if (!there || (must_fit && !ask->choice.room)) return status;
+  return order_measure(of, &ask->choice, wanted.count, ask->rows, to);
+}
+
+/* Study up to t_end. If the levels do not fit above the floor there, and that matters, *room
+ * becomes false instead. */
+static int study_until(hearing *ask, const char *method, double t_end, bool *room, order_result *to)
+{
+  motion_study study;
+  char name[PACED_NAME];
   int code = ask_judge(ask, t_end);
   if (code != DONE) return code;
-  code = study_init(&study, ask->scene, &ask->judge, method, &request->how, t_end);
+  paced_name(method, &ask->request->how, name, sizeof name);
+  const judged_motion motion = {ask->scene, &ask->judge, t_end};
+  code = motion_study_init(&study, &motion, method, &ask->request->how, name);
   if (code != DONE) return code;
-  paced_name(method, &request->how, result->method, sizeof result->method);
-  study.method = result->method;
   study.progress = &ask->progress;
-  const int levels = level_count(request, &study);
-  dvi_status status = choose_levels(&study, isnan(request->h) ? 0.0 : request->h, isnan(request->ratio) ? 0.0 : request->ratio,
-                                    levels, steps, room);
-  const bool lost = status == DVI_OK && steps[0] == 0;
-  if (lost) code = study_refuse(&study);
-  if (status == DVI_OK && !lost && (*room || !must_fit)) status = measure(ask, &study, levels, steps, result);
-  study_clear(&study);
-  if (status == DVI_OK) return code;
+  const dvi_status status = run_levels(ask, &study.subject, *room, to);
+  motion_study_clear(&study);
+  if (status == DVI_OK) {
+    *room = ask->choice.room;
+    return ask->choice.parts[0] > 0 ? DONE : motion_study_refuse(name, t_end);
+  }
   (void)library_error(status);
   complain("order: %s failed on %s; try a smaller --h", method, ask->scene->name);
   return FAILED;
@@ -147,8 +112,11 @@ static int study_single_steps(hearing *ask, const char *method, order_result *re
   const order_request *request = ask->request;
   const bool few = request->levels > 0 && request->levels < WINDOW_LEVELS;
   if (order_holds(result) || few || request->how.transform != NULL || request->how.control != NULL) return DONE;
-  const dvi_status status = single_steps_measure(ask->scene, &request->settings, method, result->t_end, &ask->progress,
-                                                 &result->single);
+  const words *settings = &request->settings;
+  const double t_end = result->extent;
+  progress_line *progress = &ask->progress;
+  closer_look *look = &result->closer;
+  const dvi_status status = single_steps_measure(ask->scene, settings, method, t_end, progress, look);
   return status == DVI_OK ? DONE : library_error(status);
 }
 
@@ -180,9 +148,9 @@ static int study_method(hearing *ask, const char *method, order_result *result)
 static int check_step(const order_request *request, const problem *scene)
 {
   const double t_end = study_end(request, scene);
-  if (!(fabs(t_end) / request->h > FIRST_STEPS_MAX)) return DONE;
+  if (!(fabs(t_end) / request->h > FIRST_PARTS_MAX)) return DONE;
   return usage_error("order: --h %g is too small: %g steps to t = %g, %d are possible at the first level", request->h,
-                     fabs(t_end) / request->h, t_end, (int)FIRST_STEPS_MAX);
+                     fabs(t_end) / request->h, t_end, (int)FIRST_PARTS_MAX);
 }
 
 static bool write_csv(const result_table *rows, const char *path)
@@ -213,7 +181,8 @@ static int report(const hearing *ask, order_result *result)
 
 static int study_all(const order_request *request, const problem *scene)
 {
-  hearing ask = {.request = request, .scene = scene, .judged_at = (double)NAN, .rows = table_create(order_columns(scene))};
+  result_table *rows = table_create(request->columns);
+  hearing ask = {.request = request, .scene = scene, .judged_at = (double)NAN, .rows = rows};
   order_result *result = calloc((size_t)request->methods.count, sizeof *result);
   int code = result != NULL && table_good(ask.rows) ? DONE : FAILED;
   progress_start(&ask.progress, true);
@@ -250,8 +219,8 @@ static int check_methods(const order_request *request, const problem *scene)
 
 static int check_request(order_request *request, const char *name)
 {
-  if (request->levels > LEVELS_MAX)
-    return usage_error("order: --levels %ld is too many, %d are possible", request->levels, (int)LEVELS_MAX);
+  const int most = STUDY_LEVELS_MAX;
+  if (request->levels > most) return usage_error("order: --levels %ld is too many, %d are possible", request->levels, most);
   if (request->t_end == 0.0) return usage_error("order: --t-end 0 leaves nothing to do");
   if (!isnan(request->h) && !(request->h > 0.0))
     return usage_error("order: --h %g is not positive; for a study backward in time set --t-end below 0", request->h);
@@ -346,7 +315,8 @@ int order_command(int argc, char **argv)
   problem *scene;
   code = open_problem(name, &r.settings, &scene);
   if (code != DONE) return code;
-  code = axes_read("order", &r.asked, r.plot, "h:error", order_columns(scene), &r.axes);
+  order_columns(motion_words(scene), r.columns);
+  code = axes_read("order", &r.asked, r.plot, "h:error", r.columns, &r.axes);
   if (code == DONE) code = wish_method(&r, scene);
   if (code == DONE) code = check_step(&r, scene);
   if (code == DONE) code = check_methods(&r, scene);

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "cli/command.h"
-#include "cli/crew.h"
+#include "cli/parallel.h"
 #include "csv/events.h"
 #include "cli/file.h"
 #include "load/open.h"
@@ -225,14 +225,14 @@ static int complete_search(resonance_request *request)
   const double range = search->to - search->from;
   search->grid = request->grid > 0 ? request->grid : GRID_DEFAULT;
   search->most = request->points > 0 ? request->points : POINTS_DEFAULT;
-  search->threads = request->threads > 0 ? request->threads : crew_cores();
+  search->threads = request->threads > 0 ? request->threads : parallel_cores();
   if (!isfinite(range * (double)search->grid)) return usage_error("resonance: --sweep %s: the range is too wide", request->varied);
   search->width = isnan(request->width) ? width_default * range : request->width;
   if (search->grid < 3) return usage_error("resonance: --grid %ld is too few, a peak needs 3", search->grid);
   if (search->most > POINTS_MAX) return usage_error("resonance: --points: %d at most", (int)POINTS_MAX);
   if (search->grid > search->most)
     return usage_error("resonance: --grid %ld is more than the %ld of --points", search->grid, search->most);
-  if (search->threads > CREW_MAX) return usage_error("resonance: at most %d threads", (int)CREW_MAX);
+  if (search->threads > THREADS_MAX) return usage_error("resonance: at most %d threads", (int)THREADS_MAX);
   if (!(search->width >= 1e-13 * fmax(fabs(search->from), fabs(search->to))))
     return usage_error("resonance: --width %g is below what numbers near %g can tell apart", search->width, search->to);
   return DONE;

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "cli/command.h"
-#include "cli/crew.h"
+#include "cli/parallel.h"
 #include "cli/file.h"
 #include "load/open.h"
 #include "cli/options.h"
@@ -70,7 +70,7 @@ static void run_points(sweep *s, long threads)
 {
   const long left = s->points - s->there;
   progress_start(&s->progress, true);
-  crew_work(threads < left ? threads : left, work, s);
+  parallel_work(threads < left ? threads : left, work, s);
   progress_end(&s->progress);
 }
 
@@ -152,7 +152,7 @@ static int check_request(const sweep_request *request)
     return usage_error("sweep: --out FILE.csv is missing: where the rows go, and from where an interrupted sweep goes on");
   if (strcmp(request->out, "-") == 0)
     return usage_error("sweep: --out -: rows go to a file, not to standard output, for an interrupted sweep goes on from there");
-  if (request->threads > CREW_MAX) return usage_error("sweep: at most %d threads", (int)CREW_MAX);
+  if (request->threads > THREADS_MAX) return usage_error("sweep: at most %d threads", (int)THREADS_MAX);
   return file_writable(request->out) ? DONE : FAILED;
 }
 
@@ -167,7 +167,7 @@ static int run_request(const sweep_request *request, sweep_task *task)
   task->model = model;
   if (code == DONE) code = grid_complete(model, &task->grid);
   if (code == DONE) code = check_task(task);
-  if (code == DONE) code = sweep_all(task, request->threads > 0 ? request->threads : crew_cores(), request->out);
+  if (code == DONE) code = sweep_all(task, request->threads > 0 ? request->threads : parallel_cores(), request->out);
   problem_destroy(&model);
   grid_clear(&task->grid);
   free(task->text.text);

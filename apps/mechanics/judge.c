@@ -10,6 +10,7 @@
 #include "cli/command.h"
 #include "mechanics/judge_runs.h"
 #include "cli/spelling.h"
+#include "study/norms.h"
 
 /* A judge that is off by this many times its own error is wrong about it. */
 static const double contradiction = 10.0;
@@ -39,20 +40,6 @@ int judge_read(const char *where, const char *name, judge_kind *kind)
                      suggestion(name, kind_at, NULL, hint, sizeof hint));
 }
 
-double judge_distance(int n, const double *a, const double *b)
-{
-  double size = 0.0;
-  for (int i = 0; i < n; i++) size = fmax(size, fabs(a[i] - b[i]));
-  return size;
-}
-
-double judge_largest(int n, const double *x)
-{
-  double size = 0.0;
-  for (int i = 0; i < n; i++) size = fmax(size, fabs(x[i]));
-  return size;
-}
-
 static void set_words(judgement *judge, const char *words)
 {
   (void)snprintf(judge->words, sizeof judge->words, "%s", words);
@@ -65,7 +52,7 @@ static bool ask_exact(judgement *judge, const problem *scene, double t_end, doub
   set_words(judge, "exact solution");
   judge->error = 4.0 * DBL_EPSILON *
                  fmax(1.0,
-                      judge_largest(scene->nq, judge->q)); /* some roundings in its evaluation */
+                      norm_largest(scene->nq, judge->q)); /* some roundings in its evaluation */
   return true;
 }
 
@@ -76,7 +63,7 @@ static bool ask_digits(judgement *judge, const problem *scene, double t_end)
   if (digits == NULL) return false;
   memcpy(judge->q, digits, (size_t)scene->nq * sizeof *judge->q);
   set_words(judge, "stored quadruple-precision result");
-  judge->error = fmax(DBL_EPSILON * judge_largest(scene->nq, judge->q),
+  judge->error = fmax(DBL_EPSILON * norm_largest(scene->nq, judge->q),
                       far ? scene->far_error : 0.0); /* rounded to double */
   return true;
 }
@@ -98,7 +85,7 @@ static dvi_status ask_ida(judgement *judge, const problem *scene, double t_end, 
  * contradicts them their error is not what they say. */
 static void add_witness(judgement *judge, int n, const double *ida, double ida_error)
 {
-  const double apart = judge_distance(n, judge->q, ida);
+  const double apart = norm_distance(n, judge->q, ida);
   const size_t length = strlen(judge->words);
   if (apart > contradiction * (ida_error + judge->error)) judge->error = apart;
   (void)snprintf(judge->words + length, sizeof judge->words - length,
@@ -184,6 +171,6 @@ void judge_clear(judgement *judge)
 
 double judge_error(const judgement *judge, const problem *scene, const double *q)
 {
-  const double error = judge_distance(scene->nq, q, judge->q);
-  return judge->other == NULL ? error : fmax(error, judge_distance(scene->nq, q, judge->other));
+  const double error = norm_distance(scene->nq, q, judge->q);
+  return judge->other == NULL ? error : fmax(error, norm_distance(scene->nq, q, judge->other));
 }

@@ -46,8 +46,4 @@ void judge_clear(judgement *judge);
 /** Distance of q [n] from the judge's answer, in the maximum norm; from the farther one if there
  * are two. */
 double judge_error(const judgement *judge, const problem *scene, const double *q);
-
-/** The largest |a_i - b_i|, and the largest |x_i|; NaN is not seen. */
-double judge_distance(int n, const double *a, const double *b);
-double judge_largest(int n, const double *x);
 #endif

@@ -1,4 +1,5 @@
 #include "mechanics/judge_runs.h"
+#include "study/norms.h"
 
 #include <float.h>
 #include <math.h>
@@ -67,9 +68,9 @@ static dvi_status run_once(const problem *scene, const runner *by, int which, lo
 static double spread_of(const levels *l, int n)
 {
   const double *const end[4] = {l->now, l->now + n, l->before, l->before + n};
-  double apart = DBL_EPSILON * judge_largest(n, l->now);
+  double apart = DBL_EPSILON * norm_largest(n, l->now);
   for (int i = 0; i < (l->follows ? 4 : 2); i++)
-    for (int j = 0; j < i; j++) apart = fmax(apart, judge_distance(n, end[i], end[j]));
+    for (int j = 0; j < i; j++) apart = fmax(apart, norm_distance(n, end[i], end[j]));
   return apart;
 }
 
@@ -88,7 +89,7 @@ static void keep(judgement *judge, int n, const runner *by, const double *ends, 
 static bool take_level(judgement *judge, int n, levels *l, const long *steps)
 {
   const double error = spread_of(l, n);
-  const bool settled = l->best <= agreement * judge_largest(n, l->now) && !(error < 0.5 * l->best);
+  const bool settled = l->best <= agreement * norm_largest(n, l->now) && !(error < 0.5 * l->best);
   if (error < l->best) keep(judge, n, l->by, l->now, error, steps);
   if (l->follows) l->best = fmin(l->best, error);
   double *room = l->before;

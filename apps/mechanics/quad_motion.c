@@ -144,8 +144,8 @@ static bool rate_at(quad_motion *motion, quad t, const quad *z, flow *f)
 }
 
 /* z at t + span by `steps` steps of the midpoint rule, an even number, into `to`. */
-static bool leap(quad_motion *motion, quad t, quad span, int steps, const quad *z, flow *f,
-                 quad *to)
+static bool leapfrog(quad_motion *motion, quad t, quad span, int steps, const quad *z, flow *f,
+                     quad *to)
 {
   const int size = 2 * motion->n;
   const quad h = span / steps;
@@ -169,7 +169,7 @@ static bool extrapolate(quad_motion *motion, quad t, quad span, flow *f, quad *z
   const int size = 2 * motion->n;
   for (int k = 0; k < COLUMNS; k++) {
     quad *last = f->column + k * size;
-    if (!leap(motion, t, span, 2 * (k + 1), z, f, last)) return false;
+    if (!leapfrog(motion, t, span, 2 * (k + 1), z, f, last)) return false;
     for (int j = k - 1; j >= 0; j--) {
       const quad ratio = (quad)((k + 1) * (k + 1)) / ((j + 1) * (j + 1));
       quad *lower = f->column + j * size;

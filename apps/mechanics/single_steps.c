@@ -17,6 +17,14 @@
 #include "mechanics/quad_step.h"
 #include "study/window.h"
 
+/* The errors of single steps have a slope of one more than the order. */
+static const closer_look look = {
+    .asked = true,
+    .of = "single steps",
+    .digits = "in quadruple precision",
+    .unlike = "is the Lagrangian smooth all along the motion? (abs and roots of 0 are not)",
+    .excess = 1.0};
+
 #ifdef QUAD_EXISTS
 enum { SEARCH_TRIES = 60, N_MAX = 64 };
 static const double common_error =
@@ -190,9 +198,24 @@ static bool compare(study *s, const centre *c, double h, double *apart)
   return true;
 }
 
-static const char *measure_levels(study *s, single_steps *found)
+/* What a measurement rests on. */
+typedef struct evidence {
+  double judge_error; /* the largest of the solutions that the smallest steps are compared with */
+  double common_h, common_error; /* of larger steps, which doubles show, too */
+  double apart; /* the largest distance of the library's own steps of that length from these */
+} evidence;
+
+/* Fit the order: the slope of the errors over the lengths of their steps. */
+static void fit_levels(closer_look *found, double judge_error)
 {
-  double of_unit[SINGLE_LEVELS]; /* the error of a step over its length: its slope is the order */
+  double of_unit[SINGLE_LEVELS];
+  for (int k = 0; k < SINGLE_LEVELS; k++) of_unit[k] = found->error[k] / found->length[k];
+  const double floor = 10.0 * judge_error / found->length[SINGLE_LEVELS - 1];
+  found->settled = window_fit(SINGLE_LEVELS, found->length, of_unit, floor, HUGE_VAL, &found->fit);
+}
+
+static const char *measure_levels(study *s, closer_look *found, evidence *rests)
+{
   double of_common = 0.0;
   measure_sizes(s);
   const double common = find_common(s, &of_common),
@@ -202,24 +225,33 @@ static const char *measure_levels(study *s, single_steps *found)
   for (int k = 0; k < SINGLE_LEVELS; k++) {
     const double foreseen = first_error * pow(fall, k),
                  h = common * pow(foreseen / of_common, 1.0 / (s->order + 1.0));
-    if (!error_at(s, h, foreseen, &found->error[k], &found->judge_error))
+    if (!error_at(s, h, foreseen, &found->error[k], &rests->judge_error))
       return "their equations could not be solved";
-    found->h[k] = fabs(h);
-    of_unit[k] = found->error[k] / found->h[k];
+    found->length[k] = fabs(h);
   }
   for (int k = 0; k < SINGLE_POINTS; k++)
-    if (!compare(s, &s->centre[k], common, &found->apart))
+    if (!compare(s, &s->centre[k], common, &rests->apart))
       return "the library's own step of that length fails";
-  if (!(found->apart <= sameness * of_common))
+  if (!(rests->apart <= sameness * of_common))
     return "the library's own steps are not those in quadruple precision";
-  found->common_error = of_common;
-  found->common_h = fabs(common);
-  const double floor = 10.0 * found->judge_error / found->h[SINGLE_LEVELS - 1];
-  found->settled = window_fit(SINGLE_LEVELS, found->h, of_unit, floor, HUGE_VAL, &found->fit);
+  rests->common_error = of_common;
+  rests->common_h = fabs(common);
+  fit_levels(found, rests->judge_error);
   return NULL;
 }
 
-static dvi_status prepare(study *s, const words *settings, double t_end, single_steps *found)
+static void describe(closer_look *found, double t_end, const evidence *rests)
+{
+  (void)snprintf(found->title, sizeof found->title,
+                 "single steps from %d points to t = %g, in quadruple precision",
+                 (int)SINGLE_POINTS, t_end);
+  (void)snprintf(found->judge, sizeof found->judge,
+                 "judge of the steps: extrapolation, error %.1e; with h = %.3g and an error of "
+                 "%.1e the library's own steps are %.1e from these",
+                 rests->judge_error, rests->common_h, rests->common_error, rests->apart);
+}
+
+static dvi_status prepare(study *s, const words *settings, double t_end, closer_look *found)
 {
   const size_t n = (size_t)s->scene->nq;
   const dvi_scene *expressions = s->scene->velocity == NULL && n <= N_MAX
@@ -244,12 +276,16 @@ static dvi_status prepare(study *s, const words *settings, double t_end, single_
 }
 
 dvi_status single_steps_measure(const problem *scene, const words *settings, const char *method,
-                                double t_end, progress_line *progress, single_steps *found)
+                                double t_end, progress_line *progress, closer_look *found)
 {
   study s = {.scene = scene, .method = method, .progress = progress};
-  *found = (single_steps){.asked = true};
+  evidence rests = {0};
+  *found = look;
+  found->levels = SINGLE_LEVELS;
   const dvi_status status = prepare(&s, settings, t_end, found);
-  if (status == DVI_OK && found->missing == NULL) found->missing = measure_levels(&s, found);
+  if (status == DVI_OK && found->missing == NULL)
+    found->missing = measure_levels(&s, found, &rests);
+  describe(found, t_end, &rests);
   quad_step_destroy(&s.step);
   quad_motion_clear(&s.motion);
   dvi_integrator_destroy(&s.integrator);
@@ -260,11 +296,11 @@ dvi_status single_steps_measure(const problem *scene, const words *settings, con
 }
 #else
 dvi_status single_steps_measure(const problem *scene, const words *settings, const char *method,
-                                double t_end, progress_line *progress, single_steps *found)
+                                double t_end, progress_line *progress, closer_look *found)
 {
   (void)scene, (void)settings, (void)method, (void)t_end, (void)progress;
-  *found = (single_steps){.asked = true,
-                          .missing = "there is no arithmetic of 113 bits on this machine"};
+  *found = look;
+  found->missing = "there is no arithmetic of 113 bits on this machine";
   return DVI_OK;
 }
 #endif

@@ -7,8 +7,8 @@
 #include <stdlib.h>
 
 #include "cli/command.h"
-#include "cli/crew.h"
-#include "sweep/hills.h"
+#include "cli/parallel.h"
+#include "sweep/peak_refinement.h"
 #include "cli/progress.h"
 
 enum { LINE_SIZE = 64 };
@@ -58,7 +58,7 @@ static int by_value(const void *left, const void *right)
 static void run_new(round_of_runs *r, long threads)
 {
   const long left = r->found->count - r->next;
-  crew_work(threads < left ? threads : left, work, r);
+  parallel_work(threads < left ? threads : left, work, r);
   qsort(r->found->point, (size_t)r->found->count, sizeof *r->found->point, by_value);
 }
 
@@ -85,7 +85,7 @@ static bool add_middles(const peaks_search *search, peaks_found *found, double *
     x[i] = found->point[i].value;
     y[i] = peaks_height(&found->point[i]);
   }
-  const int wanted = hills_gaps(count, x, y, search->width, found->top, halve);
+  const int wanted = peak_gaps(count, x, y, search->width, found->top, halve);
   for (int i = 0; i + 1 < count && found->count < search->most; i++)
     if (halve[i]) add_point(found, 0.5 * x[i] + 0.5 * x[i + 1]);
   return found->count == count + wanted;

@@ -29,8 +29,8 @@ static const char *const tokens[] = {
     "i", "o", "t", "k", "H",  "n",     "I",   "O",  "N",    "a",  "g", "+", "-", "*", "/", "^",
     "@", "h", "d", "~", "f",  "?",     ":",   "x?", "xy-?", "0",  "1", "2", "3", "8", "9", NULL};
 
-/* At the last point only the end is watched: numbers there are zero, or at the end of their range.
- */
+/* At the last point only the end is watched: numbers there are zero, or at the end of their
+ * range. */
 static const double point[POINTS][INPUTS] = {
     {0.7, -1.3, 0.4}, {2.25, 0.31, -0.6}, {0, 1e-200, 1e200}};
 

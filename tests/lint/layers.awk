@@ -53,9 +53,10 @@ BEGIN {
   uses["load"] = "cli"
   uses["plot"] = "cli csv"
   uses["sweep"] = "cli csv load"
-  uses["study"] = "cli csv load plot"
-  uses["watch"] = uses["bench"] = uses["study"] " study"
-  uses["cmd"] = uses["study"] " study watch bench sweep"
+  uses["study"] = "cli csv plot"
+  uses["mechanics"] = uses["study"] " study load"
+  uses["watch"] = uses["bench"] = uses["mechanics"] " mechanics"
+  uses["cmd"] = uses["watch"] " watch bench sweep"
   uses["main.c"] = "cli bench"
   # Single headers that are open to a room beyond that.
   also["reference solve/sundials_compat.h"] = 1

@@ -10,7 +10,7 @@ typedef struct array {
 } array;
 
 /* The target stores if nothing is there yet. */
-static void touch(array *own, dvi__destination *target)
+static void array_touch(array *own, dvi__destination *target)
 {
   const ptrdiff_t entry = target->single, mirror = target->mirrored ? target->single_mirror : entry;
   target->sets = !own->touched[entry] && !own->touched[mirror];
@@ -35,7 +35,7 @@ static void touch_all(const dvi__function_sum *sum, array *own)
 {
   for (int k = 0; k < sum->part_count; k++)
     for (int i = 0; i < sum->part[k].target_count; i++)
-      if (sum->part[k].target[i].array == own->number) touch(own, &sum->part[k].target[i]);
+      if (sum->part[k].target[i].array == own->number) array_touch(own, &sum->part[k].target[i]);
 }
 
 static void find_singles(const dvi__function_sum *sum)

@@ -64,7 +64,7 @@ static int is_column(const maker *m, dvi__node n)
 }
 
 /* Collect what the program reads: first variables, then columns. */
-static void collect(maker *m, int root_count, const dvi__node *root)
+static void maker_collect(maker *m, int root_count, const dvi__node *root)
 {
   int columns = 0, at = m->count;
   for (int k = 0; k < root_count; k++) m->mark[root[k]] |= NEEDED;
@@ -208,10 +208,10 @@ static dvi_status point_at_rows(maker *m)
   return DVI_OK;
 }
 
-static dvi_status make(maker *m, int root_count, const dvi__node *root)
+static dvi_status maker_compile(maker *m, int root_count, const dvi__node *root)
 {
   mark_varying(m);
-  collect(m, root_count, root);
+  maker_collect(m, root_count, root);
   dvi_status status = make_columns(m);
   if (status == DVI_OK) status = point_at_rows(m);
   if (status != DVI_OK) return status;
@@ -316,7 +316,7 @@ dvi_status dvi__sum_extend(dvi__function *function, dvi__function_sum *sum, int 
   if (status == DVI_OK) status = find_outputs(&m, root, &output_count);
   if (status == DVI_OK) {
     find_groups(part);
-    status = make(&m, output_count, root);
+    status = maker_compile(&m, output_count, root);
   }
   dvi__heap_free(m.mark);
   dvi__heap_free(m.given);

@@ -27,7 +27,7 @@ static int is_short(const dvi__kernel *kernel)
 }
 
 /* The input that reads this variable, found or made. */
-static dvi__node variable(merger *m, int block, int place)
+static dvi__node merger_variable(merger *m, int block, int place)
 {
   for (int i = 0; i < m->input_count; i++)
     if (m->input[i].block == block && m->input[i].base == place) return dvi__input(m->graph, i);
@@ -42,8 +42,8 @@ static dvi__node variable(merger *m, int block, int place)
   return dvi__input(m->graph, m->input_count++);
 }
 
-static dvi__node copy(merger *m, const dvi__kernel *kernel, int e, const dvi__graph_node *node,
-                      const dvi__node *copied)
+static dvi__node merger_copy(merger *m, const dvi__kernel *kernel, int e,
+                             const dvi__graph_node *node, const dvi__node *copied)
 {
   m->graph->here = node->span;
   if (node->op == DVI__OP_CONSTANT) return dvi__constant(m->graph, node->value);
@@ -53,7 +53,7 @@ static dvi__node copy(merger *m, const dvi__kernel *kernel, int e, const dvi__gr
                       dvi__operands(node->op) > 1 ? copied[node->b] : 0);
   const dvi__kernel_input *input = &kernel->input[node->a];
   return input->is_data ? dvi__constant(m->graph, input->data[e])
-                        : variable(m, input->block, dvi__input_number(input, e));
+                        : merger_variable(m, input->block, dvi__input_number(input, e));
 }
 
 /* Add element e of a short kernel. */
@@ -61,13 +61,13 @@ static void add_element(merger *m, const dvi__kernel *kernel, int e)
 {
   dvi__node copied[NODES_MAX];
   for (dvi__node n = 0; n <= kernel->root && m->graph->failed == DVI_OK; n++)
-    copied[n] = copy(m, kernel, e, &kernel->graph->node[n], copied);
+    copied[n] = merger_copy(m, kernel, e, &kernel->graph->node[n], copied);
   if (m->graph->failed == DVI_OK) m->root = dvi__add(m->graph, m->root, copied[kernel->root]);
 }
 
 /* Write out short kernels until there is enough; merged[k]: which. Returns how many elements these
  * have. */
-static int merge(merger *m, int kernel_count, const dvi__kernel *kernels, char *merged)
+static int merger_write_out(merger *m, int kernel_count, const dvi__kernel *kernels, char *merged)
 {
   int elements = 0;
   m->root = dvi__constant(m->graph, 0.0);
@@ -83,7 +83,8 @@ static int merge(merger *m, int kernel_count, const dvi__kernel *kernels, char *
 
 /* Put the merged kernel in the place of those that it is made of, whose graphs are not needed any
  * longer. */
-static void replace(const merger *m, const char *merged, int *kernel_count, dvi__kernel *kernels)
+static void merger_replace(const merger *m, const char *merged, int *kernel_count,
+                           dvi__kernel *kernels)
 {
   int left = 0;
   for (int k = 0; k < *kernel_count; k++)
@@ -100,10 +101,10 @@ dvi_status dvi__merge_kernels(dvi__arena *arena, int *kernel_count, dvi__kernel 
   merger m = {.arena = arena, .graph = dvi__arena_take(arena, 1, sizeof *m.graph)};
   char *merged = dvi__heap_take((size_t)*kernel_count, 1);
   dvi_status status = m.graph != NULL && merged != NULL ? DVI_OK : DVI_NO_MEMORY;
-  const int elements = status == DVI_OK ? merge(&m, *kernel_count, kernels, merged) : 0;
+  const int elements = status == DVI_OK ? merger_write_out(&m, *kernel_count, kernels, merged) : 0;
   if (status == DVI_OK) status = m.graph->failed;
   if (status == DVI_OK && elements > 1)
-    replace(&m, merged, kernel_count, kernels);
+    merger_replace(&m, merged, kernel_count, kernels);
   else if (m.graph != NULL)
     dvi__graph_free(m.graph);
   dvi__heap_free(merged);

@@ -120,7 +120,7 @@ DVI__EXPR_INLINE void gather_points(const int points, const dvi__part *part, con
   }
 }
 
-DVI__EXPR_INLINE void gather_body(const dvi__part *part, const tile *at, const double *const *x,
+DVI__EXPR_INLINE void tile_gather_body(const dvi__part *part, const tile *at, const double *const *x,
                                   const double **input, double *registers)
 {
   switch (at->points) {
@@ -132,7 +132,7 @@ DVI__EXPR_INLINE void gather_body(const dvi__part *part, const tile *at, const d
   }
 }
 
-DVI__EXPR_VERSIONS(gather,
+DVI__EXPR_VERSIONS(tile_gather,
                    (const dvi__part *part, const tile *at, const double *const *x,
                     const double **input, double *registers),
                    (part, at, x, input, registers))
@@ -198,7 +198,7 @@ DVI__EXPR_INLINE void add_unit(const int points, dvi__track track, int elements,
 }
 
 /* The sum of all elements' numbers, by halves; `sum` [DVI__LANES_MAX] has room for half of them. */
-DVI__EXPR_INLINE void fold(int elements, int points, const double *restrict row, double *sum)
+DVI__EXPR_INLINE void fold_row(int elements, int points, const double *restrict row, double *sum)
 {
   int left = (elements + 1) / 2, others = (elements - left) * points;
   for (int k = 0; k < left * points; k++)
@@ -260,9 +260,9 @@ DVI__EXPR_INLINE void scatter_unit(const int points, const dvi__entries *entries
   const dvi__track track = entry_track(entries, first, elements, list);
   if (track.list == NULL && track.stride == 0 && elements > 1) {
     if (elements == DVI__UNIT && points == 1)
-      fold(DVI__UNIT, 1, row, sum);
+      fold_row(DVI__UNIT, 1, row, sum);
     else
-      fold(elements, points, row, sum);
+      fold_row(elements, points, row, sum);
     elements = 1;
     row = sum;
   }
@@ -307,7 +307,7 @@ DVI__EXPR_INLINE void scatter_points(const int points, const dvi__part *part, co
   }
 }
 
-DVI__EXPR_INLINE void scatter_body(const dvi__part *part, const tile *at, const double *outputs,
+DVI__EXPR_INLINE void tile_scatter_body(const dvi__part *part, const tile *at, const double *outputs,
                                    double *const *result)
 {
   switch (at->points) {
@@ -319,7 +319,7 @@ DVI__EXPR_INLINE void scatter_body(const dvi__part *part, const tile *at, const 
   }
 }
 
-DVI__EXPR_VERSIONS(scatter,
+DVI__EXPR_VERSIONS(tile_scatter,
                    (const dvi__part *part, const tile *at, const double *outputs,
                     double *const *result),
                    (part, at, outputs, result))
@@ -352,12 +352,13 @@ static void run_tile(const dvi__part *part, const tile *at, const double *const 
   const int lanes = at->elements * at->points, width = dvi__row_width(lanes),
             outputs = part->program.output_count;
   double *registers = memory + (ptrdiff_t)part->program.input_count * width;
-  gather(part, at, x, input, registers);
+  tile_gather(part, at, x, input, registers);
   if (width == DVI__LANES)
     dvi__program_run_block(&part->program, lanes, registers);
   else
     dvi__program_run(&part->program, lanes, input, registers);
-  scatter(part, at, registers + (ptrdiff_t)(part->program.row_count - outputs) * width, result);
+  tile_scatter(part, at, registers + (ptrdiff_t)(part->program.row_count - outputs) * width,
+               result);
 }
 
 static void run_tiles(const dvi__part *part, const tile *shape, const double *const *x,
@@ -414,7 +415,7 @@ dvi_status dvi__part_plan(dvi__part *part)
 }
 
 /* Tiles are added: what is to be stored is added to zero. */
-static void clear(const dvi__part *part, int count, double *const *result)
+static void part_clear(const dvi__part *part, int count, double *const *result)
 {
   for (const dvi__destination *target = part->target; target < part->target + part->target_count;
        target++)
@@ -427,7 +428,7 @@ static void run_part(const dvi__part *part, int count, const double *const *x,
                      double *const *result)
 {
   const tile shape = shape_of(part, count);
-  if (part->kernel->elements == 1) clear(part, count, result);
+  if (part->kernel->elements == 1) part_clear(part, count, result);
   if (part->large)
     run_large(part, &shape, x, result);
   else

@@ -7,8 +7,8 @@ enum { NUMBERS = DVI__ROWS_MAX * DVI__LANES };
 
 /* Row i stands `i + 1` rows below the registers. What depends on no variable is a series of one
  * coefficient. */
-static void gather(const dvi__part *part, int e, int count, const int *width,
-                   const double *const *x, double *registers)
+static void series_gather(const dvi__part *part, int e, int count, const int *width,
+                          const double *const *x, double *registers)
 {
   double *row = registers;
   for (int i = 0; i < part->variable_count; i++) {
@@ -24,8 +24,8 @@ static void gather(const dvi__part *part, int e, int count, const int *width,
   }
 }
 
-static void scatter(const dvi__part *part, int e, int count, const int *size, const double *outputs,
-                    double *const *result)
+static void series_scatter(const dvi__part *part, int e, int count, const int *size,
+                           const double *outputs, double *const *result)
 {
   for (const dvi__destination *target = part->target; target < part->target + part->target_count;
        target++) {
@@ -50,9 +50,9 @@ dvi_status dvi__sum_add_series(const dvi__function_sum *sum, int count, const in
     const double *outputs = registers +
                             (ptrdiff_t)(program->row_count - program->output_count) * count;
     for (int e = 0; e < part->kernel->elements; e++) {
-      gather(part, e, count, width, x, registers);
+      series_gather(part, e, count, width, x, registers);
       dvi__program_run_series(program, count - 1, registers);
-      scatter(part, e, count, sum->size, outputs, result);
+      series_scatter(part, e, count, sum->size, outputs, result);
     }
   }
   return DVI_OK;

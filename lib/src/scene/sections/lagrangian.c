@@ -1,4 +1,5 @@
-/* The sections lagrangian and kinetic. What a Lagrangian is: a constant mass and potentials, a one-form and a Hamiltonian, or neither.
+/* The sections lagrangian and kinetic. What a Lagrangian is: a constant mass and potentials, a
+ * one-form and a Hamiltonian, or neither.
  *
  * Each kernel's degree in the velocities is found by one pass over its graph. If all are
  * polynomials of degree 2 whose velocities have constant coefficients, the mass is their second

@@ -1,4 +1,5 @@
-/* Scenes with manifold coordinates: the factors of the configuration space and the constant mass. */
+/* Scenes with manifold coordinates: the factors of the configuration space and the constant
+ * mass. */
 #ifndef DVI_SCENE_FACTORS_H
 #define DVI_SCENE_FACTORS_H
 #include "scene/elaborate/model.h"

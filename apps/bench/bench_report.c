@@ -1,0 +1,90 @@
+#include "bench/bench_report.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "bench/machine.h"
+#include "cli/command.h"
+
+enum { SUBJECT_SIZE = 96 };
+
+static bool has_sundials(const work *w)
+{
+  for (int i = 0; i < w->jobs; i++) {
+    const whole_job *job = w->job[i].subject->user;
+    if (job->peer >= 0 && dvi_reference_name((dvi_reference_code)job->peer) != NULL) return true;
+  }
+  return false;
+}
+
+static void print_head(FILE *stream, const bench_results *results)
+{
+  (void)fprintf(stream, "Speed against error on %s\n", results->motion->scene->name);
+  machine_print(stream);
+  machine_print_calibration(stream, &results->work->calibration);
+  if (results->one_point) (void)fprintf(stream, "callbacks: one point a call\n");
+}
+
+static void print_notes(FILE *stream, const bench_results *results)
+{
+  (void)fprintf(stream, "judge at t = %g: %s, error %.1e\n", results->motion->t_end,
+                results->motion->judge->words, results->motion->judge->error);
+  (void)fprintf(stream,
+                "cpu_seconds: process time of a whole job, median of %ld interleaved rounds; "
+                "cpu_lower, cpu_upper: quartiles\n",
+                results->work->rounds);
+  (void)fprintf(stream,
+                "create_seconds: its part that creates the integrator; of peers not known\n");
+  (void)fprintf(stream, "energy_error: methods: largest over the run; peers: largest of %d times\n",
+                (int)ENERGY_TIMES);
+  if (!has_sundials(results->work)) return;
+  (void)fprintf(stream,
+                "SUNDIALS %s. Caution: Debian's packages of SUNDIALS are built without "
+                "optimisation; its codes linked\n",
+                dvi_reference_version());
+  (void)fprintf(stream, "from them are several times slower than they can be. Say which build a "
+                        "ratio was measured against.\n");
+}
+
+static bool plot_jobs(const bench_results *results, const result_table *rows, const plot_axes *axes,
+                      const char *path)
+{
+  char subject[SUBJECT_SIZE];
+  (void)snprintf(subject, sizeof subject, "%s, to t = %g", results->motion->scene->name,
+                 results->motion->t_end);
+  return axes_plot(rows, axes, subject, 0, NULL, path);
+}
+
+static bool on_standard_output(const char *path)
+{
+  return path != NULL && strcmp(path, "-") == 0;
+}
+
+static bool report_asked(FILE *stream, const work *w, const bench_outputs *outputs)
+{
+  table_column columns[ASKED_COLUMNS_MAX];
+  if (outputs->asked.count == 0) return true;
+  asked_columns(&whole_job_words, columns);
+  result_table *rows = asked_table(w, columns);
+  bool good = table_good(rows);
+  if (good && !on_standard_output(outputs->at_csv)) asked_print(w, rows, stream);
+  if (good && outputs->at_csv != NULL) good = table_write(rows, outputs->at_csv);
+  table_destroy(&rows);
+  return good;
+}
+
+int bench_report(const bench_results *results, const bench_outputs *outputs)
+{
+  FILE *report = on_standard_output(outputs->csv) || on_standard_output(outputs->at_csv) ? stderr
+                                                                                         : stdout;
+  result_table *rows = work_table(results->work, outputs->columns);
+  bool good = table_good(rows);
+  print_head(report, results);
+  if (good && !on_standard_output(outputs->csv)) work_print(results->work, rows, report);
+  good = good && report_asked(report, results->work, outputs);
+  print_notes(report, results);
+  if (good && outputs->csv != NULL) good = table_write(rows, outputs->csv);
+  if (good && outputs->plot != NULL) good = plot_jobs(results, rows, &outputs->axes, outputs->plot);
+  table_destroy(&rows);
+  return good ? DONE : FAILED;
+}
