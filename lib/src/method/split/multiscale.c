@@ -44,7 +44,7 @@ static const dvi__key keys[] = {
     {0},
 };
 
-/* Where omega is not known, the memory holds the value from the first step. */
+/* The memory holds the omega of the first step where the user gives none. */
 enum { FOUND = DVI__CARRIED };
 
 typedef struct multiscale {
