@@ -45,8 +45,8 @@ typedef struct dvi_counters {
   long products;
 } dvi_counters;
 
-/** The energy of a run by a method whose discrete energy is conserved (sem). E+ of each step is E-
- *  of the next, but for jumps.
+/** The energy of a run by a method whose discrete energy is conserved (sem). But for jumps E+
+ *  of each step is E- of the next.
  *
  *      energy = first + work + jumps,   up to roundoff
  *

@@ -29,9 +29,9 @@ static const double doubted_defect = 0.1;
 
 /* Long steps may fail the test of the motion although they are right. After some steps that were
  * followed in vain, similar steps are tested less and less often, until a test finds a wrong step.
- * Steps are similar if their equations bend at most LIKE_THEM times as much. In a system of MANY
- * coordinates some coordinate always bends, and all steps count as similar. */
-enum { VAIN_ONES = 4, LONGEST_WAIT = 4096, LIKE_THEM = 2, MANY = 32 };
+ * Steps are similar if their equations bend at most SIMILAR_BEND times as much. In a system of
+ * MANY_COORDINATES coordinates some coordinate always bends, and all steps count as similar. */
+enum { VAIN_LIMIT = 4, LONGEST_WAIT = 4096, SIMILAR_BEND = 2, MANY_COORDINATES = 32 };
 
 /* Each step that was tested for its bend, in vain, raises the bend of similar steps by this
  * factor. */
@@ -89,7 +89,8 @@ void dvi__attempt_clear(dvi_integrator *I)
 static int is_spared(const dvi_integrator *I)
 {
   double *own = I->stepper.memory + I->learned;
-  const int is_other = I->system->n <= MANY && !(I->stepper.bend <= LIKE_THEM * own[BEND]);
+  const int is_other = I->system->n <= MANY_COORDINATES &&
+                       !(I->stepper.bend <= SIMILAR_BEND * own[BEND]);
   if (own[SPARED] == 0 || is_other) return 0;
   --own[SPARED];
   return 1;
@@ -171,11 +172,11 @@ static void learn_from_followed(const dvi_integrator *I, int right, double bend)
     own[BEND] *= more_bend;
     return;
   }
-  if (own[VAIN] < VAIN_ONES)
+  if (own[VAIN] < VAIN_LIMIT)
     own[BEND] = own[VAIN]++ == 0 ? bend : fmin(own[BEND], bend);
   else
     own[WAIT] = fmin(2 * own[WAIT], LONGEST_WAIT);
-  if (own[VAIN] == VAIN_ONES) own[SPARED] = own[WAIT] = fmax(own[WAIT], 1);
+  if (own[VAIN] == VAIN_LIMIT) own[SPARED] = own[WAIT] = fmax(own[WAIT], 1);
 }
 
 /* Take the step along its branch, in at least `parts` parts. Alarms count once, for the step that
