@@ -23,13 +23,17 @@ typedef struct dvi_counters {
   long newtons;        /**< the same by Newton's method */
   long kinsols;        /**< solves handed to KINSOL */
   long followed;       /**< solutions that were followed from those of shorter steps */
-  long allocations;    /**< blocks of memory that its creation and its steps took; a step takes none */
+  long allocations;    /**< blocks of memory that its creation and its steps took; see `preparations` */
   long simplified;     /**< solves by simplified Newton's method: the Jacobian of one point, decoupled into systems of n unknowns */
   long jump_alarms;    /**< steps that ended in a jump large against the motion (dg, dg-phase with alarm=warn) */
   long certified;      /**< solutions of other iterations that KINSOL's own test of the residual accepted (solver=certified) */
   long energy_fallbacks; /**< steps of sem whose energy equation has no solution: least-squares steps */
   long
-      products; /**< products of a sparse matrix with a vector, for functions of that matrix by polynomials (trig, mollified, respa) */
+      products; /**< products of a matrix with a vector: for functions of it by polynomials (trig, mollified, respa), and in GMRES */
+  /** Solvers that were made ready: a factor's analysis and memory, KINSOL, room to follow a branch.
+   *  Each is when it is first needed, and then never again. A step takes memory only if it prepares
+   *  a solver; DVI_NO_MEMORY then leaves the state as it was, and the next step tries again. */
+  long preparations;
 } dvi_counters;
 
 /** The energy of a run by a method whose discrete energy is conserved (sem): E+ of each step is E- of the next, but for jumps.

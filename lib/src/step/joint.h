@@ -11,7 +11,7 @@ typedef struct dvi__block {
 
 /* DVI_BAD_SIZE unless an int can count `most` numbers for each coordinate, and the entries of a
  * Jacobian with a block of size x size for each one of the Hessian's: to be called before memory
- * is taken. Completes the Hessian's pattern. */
+ * is taken. No pattern is made. */
 dvi_status dvi__joint_check(const dvi_system *system, int size, int most);
 
 /* The pattern, and a block [entries] for each of its entries, from the heap; what a failure leaves belongs to the caller, too. The system must be

@@ -1,4 +1,6 @@
 /* The Jacobian of the stationarity rows: one s x s block for each entry of the Hessian's joint pattern. */
+#include <string.h>
+
 #include "step/element/action_struct.h"
 #include "core/memory.h"
 #include "core/status.h"
@@ -9,7 +11,23 @@ const dvi__pattern *dvi__action_pattern(const dvi__action *action)
   return &action->pattern;
 }
 
-dvi_status dvi__action_prepare_hessians(dvi__action *a)
+const dvi__pattern *dvi__action_coupling(const dvi__action *a)
+{
+  return &a->joint;
+}
+
+void dvi__action_clear_hessians(dvi__action *a)
+{
+  dvi__pattern_clear(&a->joint);
+  dvi__release(a->block);
+  dvi__release(a->H_qq);
+  dvi__release(a->H_qv);
+  dvi__release(a->H_vv);
+  a->block = NULL;
+  a->H_qq = a->H_qv = a->H_vv = NULL;
+}
+
+static dvi_status allocate_hessians(dvi__action *a)
 {
   const dvi_system *system = a->system;
   const size_t r = (size_t)a->r;
@@ -21,8 +39,18 @@ dvi_status dvi__action_prepare_hessians(dvi__action *a)
   return dvi__fail(DVI_NO_MEMORY, "action: no memory for Hessians at %d nodes", a->r);
 }
 
+dvi_status dvi__action_prepare_hessians(dvi__action *a)
+{
+  if (a->block != NULL) return DVI_OK;
+  DVI_TRY(dvi__evaluator_prepare_hessians(a->evaluator));
+  const dvi_status status = allocate_hessians(a);
+  if (status != DVI_OK) dvi__action_clear_hessians(a);
+  return status;
+}
+
 dvi_status dvi__action_prepare_jacobian(dvi__action *a)
 {
+  if (a->pattern.start != NULL) return DVI_OK;
   DVI_TRY(dvi__action_prepare_hessians(a));
   return dvi__pattern_blocks(&a->joint, a->s, &a->pattern);
 }
@@ -92,4 +120,31 @@ void dvi__action_move_ends(dvi__action *a, const double *dY, double *dp)
       dvi__action_weigh_hessian(a, &a->block[e], a->Q + (size_t)k * r, a->V + (size_t)k * r, in_q, in_v);
       for (size_t j = 0; j < r; j++) dp[a->joint.row[e]] += in_q[j];
     }
+}
+
+dvi_status dvi__action_prepare_product(dvi__action *a)
+{
+  DVI_TRY(dvi__action_prepare_hessians(a));
+  if (a->moved == NULL) a->moved = DVI_NEW(double, 4 * (size_t)a->n * (size_t)a->r);
+  return a->moved != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "action: no memory for %d nodes in %d dimensions", a->r, a->n);
+}
+
+/* The rows are linear in the changes of L_q and L_v at the nodes, and these in those of the path. */
+void dvi__action_times_jacobian(dvi__action *a, const double *x, double *y)
+{
+  const size_t r = (size_t)a->r, batch = (size_t)a->n * r;
+  double *f = a->moved, *df = f + batch, *G_q = df + batch, *G_v = G_q + batch;
+  double *in_q = a->line, *in_v = a->line + r;
+  dvi__lanes_product(a->n, a->s, a->lanes, a->r, a->psi, x, f);
+  dvi__lanes_product(a->n, a->s, a->lanes, a->r, a->dpsi, x, df);
+  memset(G_q, 0, 2 * batch * sizeof(double));
+  for (size_t k = 0; k < (size_t)a->n; k++)
+    for (int e = a->joint.start[k]; e < a->joint.start[k + 1]; e++) {
+      const size_t to = (size_t)a->joint.row[e] * r;
+      dvi__action_weigh_hessian(a, &a->block[e], f + k * r, df + k * r, in_q, in_v);
+      for (size_t j = 0; j < r; j++) G_q[to + j] += in_q[j], G_v[to + j] += in_v[j];
+    }
+  dvi__lanes_product(a->n, a->r, a->path_lanes, a->s, a->bar_row, G_q, y);
+  dvi__lanes_product(a->n, a->r, a->path_lanes, a->s, a->slope_row, G_v, a->rows);
+  for (size_t i = 0; i < (size_t)a->n * (size_t)a->s; i++) y[i] += a->rows[i];
 }

@@ -20,6 +20,10 @@ dvi_status dvi__evaluator_create(const dvi_system *system, int capacity, dvi__de
                                  dvi__evaluator **evaluator);
 void dvi__evaluator_destroy(dvi__evaluator **evaluator);
 
+/* Let one that was created without them evaluate Hessians, too, from now on. On failure it is as it
+ * was: DVI_NO_MEMORY, DVI_BAD_SIZE. */
+dvi_status dvi__evaluator_prepare_hessians(dvi__evaluator *e);
+
 /* With a Hamiltonian all functions of the Lagrangian give H and its derivatives: p stands for v. */
 
 /* L [count] at t [count], q and v [n*count]. Every result is finite, or the status is DVI_NOT_FINITE. */

@@ -11,6 +11,7 @@ struct dvi__evaluator {
   dvi_counters own_counters; /* counts if nobody else wants them */
   dvi__scratch scratch;
   double *term;            /* one term's gradient or Hessian, before it is added to the others */
+  int has_hessians;        /* both have room for potentials' Hessians */
   double *point[3];        /* [n] for work at one point */
   dvi__linear *velocity;   /* factors the matrix by which the kind of dynamics finds velocities; NULL: there is none */
   double *unwanted;        /* general Lagrangians: takes the half of a gradient that nobody asked for */
