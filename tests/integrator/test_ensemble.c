@@ -158,7 +158,7 @@ static const struct {
 
 static const char *const methods[] = {
     "verlet",
-    "verlet:sweep=plain",
+    "verlet:blocking=none",
     "midpoint",
     "midpoint:solver=fixed-point",
     "trapezoidal",
@@ -410,7 +410,7 @@ START_TEST(explain_says_how_members_are_grouped)
   ck_assert_uint_eq(dvi_ensemble_explain(e, little, sizeof little), length);
   ck_assert_int_eq(strncmp(text, little, sizeof little - 1), 0);
   ck_assert_uint_eq(dvi_ensemble_explain(e, NULL, 0), length);
-  ck_assert_str_eq(dvi_ensemble_method(e), "verlet:sweep=auto,threads=1");
+  ck_assert_str_eq(dvi_ensemble_method(e), "verlet:blocking=auto,threads=1");
   dvi_ensemble_destroy(&e);
   e = made_ensemble(of->system, "galerkin:degree=16", (dvi_ensemble_options){.members = 64, .threads = 2});
   (void)dvi_ensemble_explain(e, text, sizeof text);
@@ -434,10 +434,10 @@ static void explained(const char *method, const char *setting, const char *words
 START_TEST(waves_are_not_given_up_for_members_as_lanes)
 {
   explained("verlet", "n=8", "side by side");
-  explained("verlet:sweep=wave", "n=8", "one after the other");
+  explained("verlet:blocking=temporal", "n=8", "one after the other");
   explained("verlet:threads=2", "n=8", "one after the other");
   explained("verlet", "n=40", "one after the other");
-  explained("verlet:sweep=plain", "n=40", "side by side");
+  explained("verlet:blocking=none", "n=40", "side by side");
   explained("composition", "n=40", "one after the other");
   explained("galerkin", "n=40", "side by side");
 }

@@ -2,7 +2,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "step/split/wave.h"
+#include "step/split/temporal_blocking.h"
 #include "support/heap.h"
 #include "support/runs.h"
 #include "support/suite.h"
@@ -232,7 +232,7 @@ SUITE(no_allocation)
     (void)puts("heap calls cannot be counted here: skipped");
     return;
   }
-  dvi__wave_choose_block(16); /* the chain of 500 is long enough for three threads then */
+  dvi__blocking_choose_block(16); /* the chain of 500 is long enough for three threads then */
   tcase_add_loop_test(tests, no_step_allocates_not_even_the_first, 0, PLACES * METHODS);
   tcase_add_loop_test(tests, steps_of_chosen_lengths_do_not_allocate, 0, (int)(sizeof chosen / sizeof *chosen));
   tcase_add_loop_test(tests, invariants_and_dense_output_do_not_allocate, 0, PLACES * METHODS);

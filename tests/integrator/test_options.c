@@ -63,12 +63,10 @@ START_TEST(options_that_do_not_go_together_are_refused)
 }
 END_TEST
 
-int main(void)
+SUITE(options)
 {
-  TCase *tests = tcase_create("options");
   tcase_add_checked_fixture(tests, make_kepler, destroy_kepler);
   tcase_add_test(tests, a_size_that_is_none_of_the_struct_is_refused);
   tcase_add_test(tests, a_struct_of_an_older_header_has_default_values_behind_its_end);
   tcase_add_test(tests, options_that_do_not_go_together_are_refused);
-  return run_tests("integrator/options", tests);
 }

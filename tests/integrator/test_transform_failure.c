@@ -35,11 +35,9 @@ START_TEST(a_system_that_may_depend_on_time_is_not_transformed)
   dvi_system *system;
   dvi_integrator *integrator;
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
-  refused(create_transformed(system, &distance, "midpoint", &integrator), DVI_UNSUPPORTED,
-          "not declared autonomous");
+  refused(create_transformed(system, &distance, "midpoint", &integrator), DVI_UNSUPPORTED, "not declared autonomous");
   ck_assert_ptr_null(integrator);
-  refused(create_controlled(system, &arclength, "midpoint", &integrator), DVI_UNSUPPORTED,
-          "not declared autonomous");
+  refused(create_controlled(system, &arclength, "midpoint", &integrator), DVI_UNSUPPORTED, "not declared autonomous");
   ck_assert_int_eq(create_controlled(system, &distance, "midpoint", &integrator), DVI_OK);
   dvi_integrator_destroy(&integrator);
   dvi_system_destroy(&system);
@@ -64,8 +62,8 @@ START_TEST(control_wants_a_symmetric_method)
   problem *kepler = made_problem("kepler", NULL);
   const dvi_monitor distance = monitor_of("distance");
   dvi_integrator *integrator;
-  refused(create_controlled(kepler->system, &distance, "galerkin:degree=2,quadrature=radau-left", &integrator),
-          DVI_UNSUPPORTED, "step control");
+  refused(create_controlled(kepler->system, &distance, "galerkin:degree=2,quadrature=radau-left", &integrator), DVI_UNSUPPORTED,
+          "step control");
   check_words("is not symmetric");
   ck_assert_ptr_null(integrator);
   problem_destroy(&kepler);
@@ -102,10 +100,8 @@ START_TEST(factors_have_no_monitor)
   const dvi_monitor given[] = {monitor_of("arclength"), monitor_of("acceleration"), monitor_of("distance")};
   dvi_integrator *integrator;
   for (int k = 0; k < 9; k++) {
-    refused(create_transformed(body->system, &given[k / 3], method[k % 3], &integrator), DVI_UNSUPPORTED,
-            "has factors");
-    refused(create_controlled(body->system, &given[k / 3], method[k % 3], &integrator), DVI_UNSUPPORTED,
-            "has factors");
+    refused(create_transformed(body->system, &given[k / 3], method[k % 3], &integrator), DVI_UNSUPPORTED, "has factors");
+    refused(create_controlled(body->system, &given[k / 3], method[k % 3], &integrator), DVI_UNSUPPORTED, "has factors");
   }
   problem_destroy(&body);
 }

@@ -74,8 +74,7 @@ START_TEST(a_transformed_run_needs_a_tenth_of_the_evaluations_of_fixed_steps)
   } at[] = {{"galerkin:degree=2", 0.05, 1e-4}, {"galerkin:degree=4", 0.3, 1e-3}, {"galerkin:degree=8", 0.8, 2e-3}};
   problem *kepler = made_problem("kepler", "e=0.99");
   long transformed, fixed;
-  const double error = error_of(kepler, paced(kepler, create_transformed, "distance", at[_i].method), at[_i].h,
-                                &transformed);
+  const double error = error_of(kepler, paced(kepler, create_transformed, "distance", at[_i].method), at[_i].h, &transformed);
   /* The fixed steps have the larger error and yet need ten times as much. */
   ck_assert_double_gt(error_of(kepler, started(kepler, at[_i].method), period / ceil(period / at[_i].fixed), &fixed), error);
   ck_assert_msg(fixed > 10 * transformed, "%s: %ld against %ld", at[_i].method, fixed, transformed);

@@ -128,31 +128,31 @@ END_TEST
 enum { LONGEST = 37 };
 
 typedef struct coordinates {
-  double q[LONGEST + 1], p[LONGEST + 1], q_carry[LONGEST + 1], p_carry[LONGEST + 1];
+  double q[LONGEST + 1], p[LONGEST + 1], q_compensation[LONGEST + 1], p_compensation[LONGEST + 1];
 } coordinates;
 
 static dvi__phase phase_of(coordinates *c)
 {
-  return (dvi__phase){c->q, c->p, c->q_carry, c->p_carry};
+  return (dvi__phase){c->q, c->p, c->q_compensation, c->p_compensation};
 }
 
 static coordinates made_coordinates(void)
 {
   coordinates c;
-  fill(LONGEST + 1, c.q, 1), fill(LONGEST + 1, c.p, 2), fill(LONGEST + 1, c.q_carry, 3), fill(LONGEST + 1, c.p_carry, 4);
-  for (int i = 0; i <= LONGEST; i++) c.q_carry[i] *= 1e-17, c.p_carry[i] *= 1e-17;
+  fill(LONGEST + 1, c.q, 1), fill(LONGEST + 1, c.p, 2), fill(LONGEST + 1, c.q_compensation, 3), fill(LONGEST + 1, c.p_compensation, 4);
+  for (int i = 0; i <= LONGEST; i++) c.q_compensation[i] *= 1e-17, c.p_compensation[i] *= 1e-17;
   return c;
 }
 
 /* What lanes.h says, one number after the other. */
-static void plain_leap(const dvi__leap *l)
+static void plain_leap(const dvi__moser_veselov *l)
 {
   for (size_t i = 0; i < l->count; i++) {
-    double p = l->from.p[i], q = l->from.q[i], p_carry = l->from.p_carry[i], q_carry = l->from.q_carry[i];
-    for (int k = 0; k < l->kicks; k++) dvi__add_compensated(&p, &p_carry, l->kick[k] * l->force[i]);
+    double p = l->from.p[i], q = l->from.q[i], p_compensation = l->from.p_compensation[i], q_compensation = l->from.q_compensation[i];
+    for (int k = 0; k < l->kicks; k++) dvi__add_compensated(&p, &p_compensation, l->kick[k] * l->force[i]);
     const double v = l->by == DVI__BY_ARRAY ? p / l->mass[i] : l->by == DVI__BY_SCALAR ? p / l->scalar : p * l->scalar;
-    dvi__add_compensated(&q, &q_carry, v * l->drift);
-    l->to.p[i] = p, l->to.q[i] = q, l->to.p_carry[i] = p_carry, l->to.q_carry[i] = q_carry;
+    dvi__add_compensated(&q, &q_compensation, v * l->drift);
+    l->to.p[i] = p, l->to.q[i] = q, l->to.p_compensation[i] = p_compensation, l->to.q_compensation[i] = q_compensation;
   }
 }
 
@@ -166,7 +166,7 @@ START_TEST(a_leap_has_the_bits_of_plain_loops)
   for (int variant = 0; variant < 12; variant++) {
     coordinates from = made_coordinates(), fast = from, plain = from;
     const int in_place = variant >= 6;
-    dvi__leap leap = {.count = (size_t)count,
+    dvi__moser_veselov leap = {.count = (size_t)count,
                       .kicks = 1 + variant % 2,
                       .kick = {-0.3, 0.7},
                       .drift = 0.1,
@@ -177,7 +177,7 @@ START_TEST(a_leap_has_the_bits_of_plain_loops)
                       .from = phase_of(in_place ? &fast : &from),
                       .to = phase_of(&fast),
                       .far = variant % 2};
-    dvi__lanes_leap(&leap);
+    dvi__lanes_kick_drift(&leap);
     leap.from = phase_of(in_place ? &plain : &from);
     leap.to = phase_of(&plain);
     plain_leap(&leap);
@@ -194,8 +194,8 @@ START_TEST(a_kick_has_the_bits_of_plain_loops)
   dvi__lanes_choose(_i / (LONGEST + 1));
   fill(LONGEST, forces, 5);
   coordinates fast = made_coordinates(), plain = fast;
-  dvi__lanes_add_scaled((size_t)count, -0.3, forces, fast.p, fast.p_carry);
-  for (int i = 0; i < count; i++) dvi__add_compensated(&plain.p[i], &plain.p_carry[i], -0.3 * forces[i]);
+  dvi__lanes_add_scaled((size_t)count, -0.3, forces, fast.p, fast.p_compensation);
+  for (int i = 0; i < count; i++) dvi__add_compensated(&plain.p[i], &plain.p_compensation[i], -0.3 * forces[i]);
   ck_assert_mem_eq(&fast, &plain, sizeof fast);
 }
 END_TEST

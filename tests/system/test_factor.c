@@ -36,11 +36,11 @@ START_TEST(numbers_stand_in_the_order_of_the_factors)
   ck_assert_int_eq(dvi_system_nv(made), 1 + 2 + 6 + 3 + 3);
   ck_assert_int_eq(made->nx, 1 + 2 + 6 + 2 + 3);
   const int q[] = {0, 2, 3, 4, 13, 14, 15, 16, 19}, v[] = {0, 1, 2, 3, 6, 7, 8, 9, 12}, x[] = {0, 1, 2, 3, 6, 7, 8, 9, 11};
-  ck_assert_int_eq(made->cell_count, 9);
+  ck_assert_int_eq(made->slot_count, 9);
   for (int c = 0; c < 9; c++) {
-    ck_assert_int_eq(made->cells[c].q, q[c]);
-    ck_assert_int_eq(made->cells[c].v, v[c]);
-    ck_assert_int_eq(made->cells[c].x, x[c]);
+    ck_assert_int_eq(made->slots[c].q, q[c]);
+    ck_assert_int_eq(made->slots[c].v, v[c]);
+    ck_assert_int_eq(made->slots[c].x, x[c]);
   }
 }
 END_TEST

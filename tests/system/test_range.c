@@ -112,7 +112,7 @@ END_TEST
 /* Implicit methods ask for batches of points, explicit ones for one. */
 START_TEST(a_range_alone_serves_every_method)
 {
-  static const char *const methods[] = {"galerkin:degree=3", "midpoint", "verlet:sweep=plain", "verlet", "composition:order=4"};
+  static const char *const methods[] = {"galerkin:degree=3", "midpoint", "verlet:blocking=none", "verlet", "composition:order=4"};
   line own = {0};
   double q[LENGTH], p[LENGTH], end[3][LENGTH];
   for (int i = 0; i < LENGTH; i++) q[i] = place(i), p[i] = place(i + 100);
@@ -154,7 +154,7 @@ START_TEST(where_waves_are_not_possible_auto_sweeps_plainly_and_says_why)
   dvi_integrator *integrator = made_integrator(system, "verlet"), *wave = integrator;
   (void)dvi_integrator_explain(integrator, text, sizeof text);
   ck_assert_msg(strstr(text, spec("sweep: plain; %s", words[_i])) != NULL, "%s", text);
-  ck_assert_int_eq(dvi_integrator_create(system, "verlet:sweep=wave", &wave), DVI_UNSUPPORTED);
+  ck_assert_int_eq(dvi_integrator_create(system, "verlet:blocking=temporal", &wave), DVI_UNSUPPORTED);
   ck_assert_ptr_null(wave);
   check_words(words[_i]);
   dvi_integrator_destroy(&integrator);

@@ -6,7 +6,8 @@
 /** Highest degree of a trial space. */
 #define DVI_DEGREE_MAX 40
 
-/** The bases. A nodal basis is Lagrange's on the named nodes; a modal one holds orthogonal polynomials. */
+/** The bases. A nodal basis is Lagrange's on the named nodes; a modal one holds orthogonal
+ * polynomials. */
 typedef enum dvi_basis {
   DVI_LAGRANGE_LOBATTO,    /**< nodal, both ends are nodes */
   DVI_LAGRANGE_GAUSS,      /**< nodal, no end is a node */
@@ -31,8 +32,10 @@ extern "C" {
  *  @retval DVI_BAD_SIZE      the degree is out of range; nothing is written
  *  @retval DVI_BAD_ARGUMENT  unknown basis, or tau not finite; nothing is written
  *
- *  Nodal bases by the barycentric form (Berrut and Trefethen 2004), modal ones by their three-term recurrence. */
-dvi_status dvi_basis_evaluate(dvi_basis basis, int degree, double tau, double *value, double *derivative);
+ *  Nodal bases by the barycentric form (Berrut and Trefethen 2004), modal ones by their three-term
+ *  recurrence. */
+dvi_status dvi_basis_evaluate(dvi_basis basis, int degree, double tau, double *value,
+                              double *derivative);
 
 /** The nodes of a nodal basis.
  *
@@ -42,7 +45,8 @@ dvi_status dvi_basis_evaluate(dvi_basis basis, int degree, double tau, double *v
  *  @retval DVI_BAD_ARGUMENT  the basis is modal, or unknown, or node is NULL */
 dvi_status dvi_basis_nodes(dvi_basis basis, int degree, double *node);
 
-/** The basis' name as method specifications spell it ("lobatto", "legendre", ...); NULL if out of range. */
+/** The basis' name as method specifications spell it ("lobatto", "legendre", ...); NULL if out of
+ * range. */
 const char *dvi_basis_name(dvi_basis basis);
 
 #ifdef __cplusplus

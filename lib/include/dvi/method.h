@@ -1,9 +1,12 @@
 /** The table of methods, and what each method's specification may say.
  *
- *  A specification is `name[:key=value,...]`, for example "galerkin:degree=4,quadrature=lobatto,nodes=5". Which keys a method takes is asked below. `solver`, how the
- *  equations of a step are solved, is a key of galerkin, midpoint, trapezoidal and imex (auto, certified, fixed-point, simplified, newton, kinsol), of lie-galerkin,
- *  euler-poincare and sphere-galerkin, which take the keys of galerkin, and of sem (newton, kinsol); all other implicit methods choose themselves. A composition hands the keys
- *  that are not its own to its base method: "composition:order=6,base=galerkin,degree=1". */
+ *  A specification is `name[:key=value,...]`, for example
+ *  "galerkin:degree=4,quadrature=lobatto,nodes=5". Which keys a method takes is asked below.
+ *  `solver`, how the equations of a step are solved, is a key of galerkin, midpoint, trapezoidal
+ *  and imex (auto, certified, fixed-point, simplified, newton, kinsol), of lie-galerkin,
+ *  euler-poincare and sphere-galerkin, which take the keys of galerkin, and of sem (newton,
+ *  kinsol); all other implicit methods choose themselves. A composition hands the keys that are not
+ *  its own to its base method: "composition:order=6,base=galerkin,degree=1". */
 #ifndef DVI_METHOD_H
 #define DVI_METHOD_H
 #include <dvi/status.h>
@@ -34,8 +37,8 @@ const char *dvi_method_key_name(int i, int k);
 /** The key's values, its default and its meaning, in one line; NULL if out of range. */
 const char *dvi_method_key_help(int i, int k);
 
-/** The path of the file that a specification names, such as the one of a tableau: where it begins in the
- *  specification. A program may look at it before an integrator opens the file.
+/** The path of the file that a specification names, such as the one of a tableau: where it begins
+ *  in the specification. A program may look at it before an integrator opens the file.
  *
  *  @param[out] length  of the path; 0 if there is none
  *  @return NULL if the specification names no file, or no method */

@@ -18,18 +18,24 @@ typedef struct dvi_event {
 
 /** Options of a run; zero means default. */
 typedef struct dvi_run_options {
-  double h; /**< the step, or the first one of methods that choose their steps; its sign must lead from the current time to t_end */
-  double t_end; /**< a last, shorter step ends the run here if h does not divide the way, or the method chooses its steps */
-  long every;   /**< call the observer after every so many steps; 0: 1 */
-  /** Called at the start, after every `every` steps, and at the end. Return 0 to go on, >0 to end the run, <0 to fail. It may ask the
-   *  integrator anything, but not step, start or restore it. */
+  /** the step, or the first one of methods that choose their steps; its sign must lead from the
+   * current time to t_end */
+  double h;
+  /** a last, shorter step ends the run here if h does not divide the way, or the method chooses its
+   * steps */
+  double t_end;
+  long every; /**< call the observer after every so many steps; 0: 1 */
+  /** Called at the start, after every `every` steps, and at the end. Return 0 to go on, >0 to end
+   *  the run, <0 to fail. It may ask the integrator anything, but not step, start or restore it. */
   int (*observe)(dvi_integrator *integrator, void *user);
   void *user;
   const dvi_event *events;
   int event_count;
-  const char *checkpoint;     /**< file that is written when the run ends, however it ends; NULL: none */
-  long checkpoint_every;      /**< and after every so many steps; 0: only at the end */
-  const volatile int *cancel; /**< a run ends after the step in which this becomes not 0; NULL: never */
+  /** file that is written when the run ends, however it ends; NULL: none */
+  const char *checkpoint;
+  long checkpoint_every; /**< and after every so many steps; 0: only at the end */
+  /** a run ends after the step in which this becomes not 0; NULL: never */
+  const volatile int *cancel;
 } dvi_run_options;
 
 /** Why a run ended. */
@@ -56,17 +62,21 @@ extern "C" {
 
 /** Advance the integrator from its current time to t_end.
  *
- *  An event is seen if g has different signs at two neighbouring points of the step (ends and quarters), or if g is zero at the later one
- *  of two and was not at the earlier one: a touch from above counts as falling, one from below as rising. A g that stays zero gives none.
- *  Events are reported in the order of the run, up to the first one that ends it.
- *  If an event's function fails in a step, the step is taken back before any event of it is reported.
+ *  An event is seen if g has different signs at two neighbouring points of the step (ends and
+ *  quarters), or if g is zero at the later one of two and was not at the earlier one: a touch from
+ *  above counts as falling, one from below as rising. A g that stays zero gives none. Events are
+ *  reported in the order of the run, up to the first one that ends it. If an event's function fails
+ *  in a step, the step is taken back before any event of it is reported.
  *  @param[out] report  filled on success and on failure; may be NULL
  *  @retval DVI_OK            the run ended as `report->end` says (not DVI_RUN_FAILED)
- *  @retval DVI_BAD_ARGUMENT  h is zero, not finite, leads away from t_end or is less than 2^-53 of the way; a count is negative; a direction is none;
- *                            checkpoint_every without a file
+ *  @retval DVI_BAD_ARGUMENT  h is zero, not finite, leads away from t_end or is less than 2^-53 of
+ *                            the way; a count is negative; a direction is none; checkpoint_every
+ *                            without a file
  *  @retval DVI_BAD_STATE     before dvi_integrator_start, or the observer has moved the integrator
- *  @retval (others)          as dvi_integrator_step, for the step that failed; the state is the last good one */
-dvi_status dvi_run(dvi_integrator *integrator, const dvi_run_options *options, dvi_run_report *report);
+ *  @retval (others)          as dvi_integrator_step, for the step that failed; the state is the
+ *                            last good one */
+dvi_status dvi_run(dvi_integrator *integrator, const dvi_run_options *options,
+                   dvi_run_report *report);
 
 #ifdef __cplusplus
 }

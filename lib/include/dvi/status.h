@@ -4,8 +4,8 @@
 
 /** Every status: name, number, meaning.
  *
- *  0 is success; a positive status says that this step failed and another one may succeed, for most a smaller one; a negative one
- *  says that the call cannot succeed as it stands. */
+ *  0 is success; a positive status says that this step failed and another one may succeed, for most
+ *  a smaller one; a negative one says that the call cannot succeed as it stands. */
 #define DVI_STATUS_LIST(X)                                                               \
   X(DVI_OK, 0, "success")                                                                \
   X(DVI_NOT_CONVERGED, 1, "the step's equations could not be solved")                    \
@@ -45,7 +45,8 @@ const char *dvi_status_meaning(dvi_status status);
 
 /** The last failure on this thread, in one sentence: what failed, where, what to try.
  *
- *  @return a string owned by the library, valid until the next failure on this thread; "" if nothing failed yet. */
+ *  @return a string owned by the library, valid until the next failure on this thread; "" if
+ *          nothing failed yet. */
 const char *dvi_last_error(void);
 
 #ifdef __cplusplus

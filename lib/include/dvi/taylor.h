@@ -1,9 +1,12 @@
-/** The arithmetic of truncated power series, with which the `taylor` callbacks of a system (dvi/system.h) are written.
+/** The arithmetic of truncated power series, with which the `taylor` callbacks of a system
+ * (dvi/system.h) are written.
  *
- *  A series of degree d is an array of d+1 coefficients: a(s) = a[0] + a[1] s + ... + a[d] s^d. Coefficients, not derivatives: a[k] is the
- *  k-th derivative over k!. Every function here computes the first d+1 coefficients of its result exactly, up to rounding, in at most
- *  d^2 multiplications or twice as many; the result may not be one of the arguments. Where a function has no series (a division by a series that
- *  begins with 0, the root of one that begins below 0) the result is not finite, which the library finds and names.
+ *  A series of degree d is an array of d+1 coefficients: a(s) = a[0] + a[1] s + ... + a[d] s^d.
+ *  Coefficients, not derivatives: a[k] is the k-th derivative over k!. Every function here computes
+ *  the first d+1 coefficients of its result exactly, up to rounding, in at most d^2 multiplications
+ *  or twice as many; the result may not be one of the arguments. Where a function has no series (a
+ *  division by a series that begins with 0, the root of one that begins below 0) the result is not
+ *  finite, which the library finds and names.
  *
  *  A potential V = -1/|q| in the plane, for example (without its Hessian):
  *
@@ -23,7 +26,8 @@
 #define DVI_TAYLOR_H
 #include <math.h>
 
-/** The highest degree that the library asks a `taylor` callback for: arrays of one more number hold every series. */
+/** The highest degree that the library asks a `taylor` callback for: arrays of one more number hold
+ * every series. */
 #define DVI_TAYLOR_MAX 40
 
 #ifdef __cplusplus
@@ -37,14 +41,17 @@ static inline void dvi_taylor_get(int degree, int n, const double *q, int i, dou
   for (int k = 1; k <= degree; k++) x[k] = q[k * n + i];
 }
 
-/** The other way, times a factor: q[k*n + i] = factor x[k]. Nothing happens if q is NULL: a callback need not ask what is wanted. */
-static inline void dvi_taylor_put(int degree, int n, const double *x, double factor, int i, double *q)
+/** The other way, times a factor: q[k*n + i] = factor x[k]. Nothing happens if q is NULL: a
+ * callback need not ask what is wanted. */
+static inline void dvi_taylor_put(int degree, int n, const double *x, double factor, int i,
+                                  double *q)
 {
   for (int k = 0; q && k <= degree; k++) q[k * n + i] = factor * x[k];
 }
 
 /** c = alpha a + beta b. */
-static inline void dvi_taylor_combine(int degree, double alpha, const double *a, double beta, const double *b, double *c)
+static inline void dvi_taylor_combine(int degree, double alpha, const double *a, double beta,
+                                      const double *b, double *c)
 {
   c[0] = alpha * a[0] + beta * b[0];
   for (int k = 1; k <= degree; k++) c[k] = alpha * a[k] + beta * b[k];
@@ -158,9 +165,11 @@ static inline void dvi_taylor_sinh_cosh(int degree, const double *a, double *sin
   }
 }
 
-/** The integral c of a/b that begins with c0, that is b c' = a; with it come atan, asin and all that have a simple slope:
- *  atan(x) is that of x' and 1 + x^2. a is of degree - 1, b[0] is not 0. */
-static inline void dvi_taylor_integrate_quotient(int degree, const double *a, const double *b, double c0, double *c)
+/** The integral c of a/b that begins with c0, that is b c' = a; with it come atan, asin and all
+ *  that have a simple slope: atan(x) is that of x' and 1 + x^2. a is of degree - 1, b[0] is not
+ * 0. */
+static inline void dvi_taylor_integrate_quotient(int degree, const double *a, const double *b,
+                                                 double c0, double *c)
 {
   c[0] = c0;
   for (int k = 1; k <= degree; k++) {

@@ -62,7 +62,8 @@ dvi_status dvi__path_energies(dvi_path *path, dvi_path_report *report)
   report->energy_jump = report->kinetic = 0;
   for (int k = 0; k < path->steps; k++) {
     const dvi_status status = measure_step(path, k, &r, report);
-    if (status != DVI_OK) return dvi__fail_in(status, "energy in step %d of %d", k + 1, path->steps);
+    if (status != DVI_OK)
+      return dvi__fail_in(status, "energy in step %d of %d", k + 1, path->steps);
   }
   const dvi__instant lowest = node(path, r.lowest, 0), highest = node(path, r.highest, 1);
   return dvi__energy_change(path->energies, &lowest, &highest, &report->energy_spread, &kinetic);
@@ -87,5 +88,6 @@ dvi_status dvi__path_check_resolved(const dvi_path *path, const dvi_path_report 
                    "t = %.6g to %.6g, the energy changes by %.2g of the kinetic energy there, and "
                    "over the path by %.2g of the largest, where at most %g is left by steps that "
                    "follow a motion; try about %.0f steps",
-                   path->steps, k, k + 1, from, to, report->energy_jump, spread, resolved_below, advised);
+                   path->steps, k, k + 1, from, to, report->energy_jump, spread, resolved_below,
+                   advised);
 }

@@ -16,7 +16,8 @@ void dvi__path_place(dvi_path *path, const double *x, int k)
 {
   const double h = dvi__path_span(path, x) / path->steps;
   dvi__action_place(path->action, path->start + k * h, h, dvi__path_at(path, x, k), path->rest);
-  dvi__action_between(path->action, dvi__path_at(path, x, k + 1), x + dvi__path_bubbles(path, k), path->Y);
+  dvi__action_two_point(path->action, dvi__path_at(path, x, k + 1), x + dvi__path_bubbles(path, k),
+                        path->Y);
 }
 
 /* Say in which step it failed. */
@@ -27,7 +28,8 @@ static dvi_status at_step(const dvi_path *path, const double *x, int k, dvi_stat
   return dvi__fail_in(status, "step %d of %d, from t = %.6g", k + 1, path->steps, t);
 }
 
-/* |L| that is so much larger between the quadrature's nodes than at any of them is a singularity, not a path. */
+/* |L| that is so much larger between the quadrature's nodes than at any of them is a singularity,
+ * not a path. */
 static const double overlooked = 1e3;
 
 /* ---- the gradient ---- */
@@ -39,15 +41,18 @@ static void add_rows(dvi_path *path, int k, double *rows)
   for (int a = 0; a < 2; a++)
     for (int i = 0; i < path->n; i++) {
       dvi__path_places(path, k, a, i, 1, &places);
-      for (int c = 0; c < places.count; c++) rows[places.at[c]] += places.factor[c] * path->in_ends[a][i];
+      for (int c = 0; c < places.count; c++)
+        rows[places.at[c]] += places.factor[c] * path->in_ends[a][i];
     }
-  for (int m = 0, first = dvi__path_bubbles(path, k); m < path->n * (path->s - 1); m++) rows[first + m] += path->in_Z[m];
+  for (int m = 0, first = dvi__path_bubbles(path, k); m < path->n * (path->s - 1); m++)
+    rows[first + m] += path->in_Z[m];
 }
 
 static dvi_status element_gradient(dvi_path *path, const double *x, int k)
 {
   dvi__path_place(path, x, k);
-  return dvi__action_between_gradient(path->action, path->Y, path->in_ends[0], path->in_ends[1], path->in_Z);
+  return dvi__action_two_point_gradient(path->action, path->Y, path->in_ends[0], path->in_ends[1],
+                                        path->in_Z);
 }
 
 /* -dS/dq0 of the first step is p_0. */
@@ -60,7 +65,8 @@ static void add_given_momentum(const dvi_path *path, double *rows)
   }
 }
 
-/* rows [core]; p [(steps+1)*n]; the mean energy, for autonomous systems. The last two may be NULL. */
+/* rows [core]; p [(steps+1)*n]; the mean energy, for autonomous systems. The last two may be
+ * NULL. */
 static dvi_status gradient(dvi_path *path, const double *x, double *rows, double *p, double *energy)
 {
   const size_t n = (size_t)path->n, bytes = n * sizeof(double);
@@ -106,14 +112,17 @@ dvi_status dvi__path_action(dvi_path *path, const double *x, double *action, dou
   }
   if (!(most_unseen > overlooked * most_seen)) return DVI_OK;
   return dvi__fail(DVI_NOT_CONVERGED,
-                   "the path that was found goes through a singularity that the quadrature does not see (|L| of %.1e between its "
-                   "nodes, %.1e at them); the path is unchanged; try a guess that passes it, more steps or a longer span",
+                   "the path that was found goes through a singularity that the quadrature does "
+                   "not see (|L| of %.1e between its "
+                   "nodes, %.1e at them); the path is unchanged; try a guess that passes it, more "
+                   "steps or a longer span",
                    most_unseen, most_seen);
 }
 
 /* ---- the border ---- */
 
-/* What the gauge is measured by: rows get the multipliers' part, multipliers' rows the distance from the origin. */
+/* What the gauge is measured by: rows get the multipliers' part, multipliers' rows the distance
+ * from the origin. */
 typedef struct measure {
   const dvi_path *path;
   const double *x;
@@ -125,7 +134,9 @@ static void add_gauge(void *of, int unknown, int multiplier, size_t from)
   const measure *m = of;
   const double factor = m->path->gauge[from];
   m->rows[unknown] += factor * m->x[multiplier];
-  m->rows[multiplier] += factor * (m->x[unknown] - m->path->origin[from % ((size_t)m->path->steps * (size_t)m->path->n)]);
+  m->rows[multiplier] += factor *
+                         (m->x[unknown] -
+                          m->path->origin[from % ((size_t)m->path->steps * (size_t)m->path->n)]);
 }
 
 static void border_rows(const dvi_path *path, const double *x, double *rows)
@@ -159,7 +170,8 @@ static int entry(assembly *to, int row, int column)
 {
   const dvi__pattern *pattern = &to->path->pattern;
   const int next = to->last + 1;
-  const int follows = next >= pattern->start[column] && next < pattern->start[column + 1] && pattern->row[next] == row;
+  const int follows = next >= pattern->start[column] && next < pattern->start[column + 1] &&
+                      pattern->row[next] == row;
   return to->last = follows ? next : dvi__pattern_find(pattern, row, column);
 }
 
@@ -181,18 +193,21 @@ static void add_gauge_entry(void *of, int unknown, int multiplier, size_t from)
   add_at(to, unknown, multiplier, to->path->gauge[from]);
 }
 
-/* What the rows of step k change by with the span's unknown, and the row of that unknown with them. */
+/* What the rows of step k change by with the span's unknown, and the row of that unknown with
+ * them. */
 static dvi_status add_span(assembly *to, dvi_path *path, int k)
 {
   const double part = -path->span / path->steps;
   dvi__energy_gradient gradient = {path->energy_Y, path->energy_q0, 0};
   dvi__places places;
   DVI_TRY(dvi__action_energy_gradients(path->action, &gradient, &gradient));
-  dvi__action_between_ends(path->action, gradient.Y, gradient.q0, path->in_ends[0], path->in_ends[1], path->in_Z);
+  dvi__action_two_point_ends(path->action, gradient.Y, gradient.q0, path->in_ends[0],
+                             path->in_ends[1], path->in_Z);
   for (int a = 0; a <= path->s; a++)
     for (int i = 0; i < path->n; i++) {
       dvi__path_places(path, k, a, i, 0, &places);
-      const double value = part * (a < 2 ? path->in_ends[a][i] : path->in_Z[i * (path->s - 1) + a - 2]);
+      const double value = part *
+                           (a < 2 ? path->in_ends[a][i] : path->in_Z[i * (path->s - 1) + a - 2]);
       for (int c = 0; c < places.count; c++) {
         add_at(to, path->core, places.at[c], places.factor[c] * value);
         add_at(to, places.at[c], path->core, places.factor[c] * value);
@@ -208,13 +223,14 @@ dvi_status dvi__path_jacobian(dvi_path *path, const double *x, double *values)
   memset(values, 0, (size_t)dvi__pattern_entries(&path->pattern) * sizeof(double));
   for (int k = 0; k < path->steps; k++) {
     dvi__path_place(path, x, k);
-    DVI_TRY(at_step(path, x, k, dvi__action_between_hessian(path->action, path->Y, path->block)));
+    DVI_TRY(at_step(path, x, k, dvi__action_two_point_hessian(path->action, path->Y, path->block)));
     dvi__path_each_entry(path, k, add_entry, &to);
     if (path->free_span) DVI_TRY(at_step(path, x, k, add_span(&to, path, k)));
   }
   dvi__path_each_gauge(path, add_gauge_entry, &to);
   /* Multipliers that are not in use are unknowns of their own. */
-  for (int c = path->unknowns - path->gauges + path->in_use; c < path->unknowns; c++) add_at(&to, c, c, 1);
+  for (int c = path->unknowns - path->gauges + path->in_use; c < path->unknowns; c++)
+    add_at(&to, c, c, 1);
   return DVI_OK;
 }
 

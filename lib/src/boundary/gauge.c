@@ -1,6 +1,8 @@
-/* Directions along which a periodic path may be moved at will: in time, and along the symmetries that its ends keep. The Hessian of the action is singular
- * along them. Each gets a multiplier, which holds the path where its guess was and vanishes with the gradient, for the action does not change there
- * (Marsden and West 2001, sec. 1.3.3; for time this holds as far as the discrete motion has a smooth continuation, up to roundoff for short steps). */
+/* Directions along which a periodic path may be moved at will: in time, and along the symmetries
+ * that its ends keep. The Hessian of the action is singular along them. Each gets a multiplier,
+ * which holds the path where its guess was and vanishes with the gradient, for the action does not
+ * change there (Marsden and West 2001, sec. 1.3.3; for time this holds as far as the discrete
+ * motion has a smooth continuation, up to roundoff for short steps). */
 #include <math.h>
 #include <string.h>
 
@@ -45,16 +47,18 @@ static dvi_status generate(const dvi_symmetry *symmetry, const double *q, double
 {
   const int returned = symmetry->generator(q, xi, symmetry->user);
   if (returned == 0) return DVI_OK;
-  return dvi__fail(returned < 0 ? DVI_CALLBACK_FAILED : DVI_CALLBACK_RETRY, "symmetry '%s': the callback returned %d",
-                   symmetry->name, returned);
+  return dvi__fail(returned < 0 ? DVI_CALLBACK_FAILED : DVI_CALLBACK_RETRY,
+                   "symmetry '%s': the callback returned %d", symmetry->name, returned);
 }
 
 /* xi at all nodes but the last, and by how much the ends break it: A xi(q_0) - xi(q_N). */
-static dvi_status symmetry_column(dvi_path *path, const dvi_symmetry *symmetry, const double *x, int g)
+static dvi_status symmetry_column(dvi_path *path, const dvi_symmetry *symmetry, const double *x,
+                                  int g)
 {
   const size_t n = (size_t)path->n;
   double *xi = column(path, g), *last = path->in_ends[0], *defect = path->defect + (size_t)g * n;
-  for (int k = 0; k < path->steps; k++) DVI_TRY(generate(symmetry, dvi__path_at(path, x, k), xi + (size_t)k * n));
+  for (int k = 0; k < path->steps; k++)
+    DVI_TRY(generate(symmetry, dvi__path_at(path, x, k), xi + (size_t)k * n));
   DVI_TRY(generate(symmetry, dvi__path_at(path, x, path->steps), last));
   dvi__path_turn(path, xi, defect);
   subtract(n, 1, last, defect);
@@ -99,7 +103,8 @@ static void use(dvi_path *path, int g, double least_own_part)
   double *own = column(path, g);
   const double whole = inner(path, own, own);
   for (int pass = 0; pass < 2; pass++)
-    for (int b = 0; b < path->in_use; b++) subtract(length, inner(path, own, column(path, b)), column(path, b), own);
+    for (int b = 0; b < path->in_use; b++)
+      subtract(length, inner(path, own, column(path, b)), column(path, b), own);
   const double rest = inner(path, own, own);
   if (!(rest > least_own_part * least_own_part * whole)) return;
   divide(length, sqrt(rest), own);
@@ -122,7 +127,8 @@ dvi_status dvi__path_fix_gauge(dvi_path *path, const double *x, double least_own
   const dvi_system *system = path->system;
   path->in_use = path->holds_time = 0;
   if (path->gauges == 0) return DVI_OK;
-  for (int g = 0; g < system->symmetry_count; g++) DVI_TRY(symmetry_column(path, &system->symmetries[g], x, g));
+  for (int g = 0; g < system->symmetry_count; g++)
+    DVI_TRY(symmetry_column(path, &system->symmetries[g], x, g));
   if (system->autonomous) time_column(path, x, system->symmetry_count);
   for (int g = 0; g < path->gauges; g++) mend(path, g);
   for (int g = 0; g < system->symmetry_count; g++)
@@ -132,7 +138,8 @@ dvi_status dvi__path_fix_gauge(dvi_path *path, const double *x, double least_own
   path->holds_time = path->in_use > others;
   weigh(path);
   for (int k = 0; k < path->steps; k++)
-    memcpy(path->origin + (size_t)k * (size_t)path->n, dvi__path_at(path, x, k), (size_t)path->n * sizeof(double));
+    memcpy(path->origin + (size_t)k * (size_t)path->n, dvi__path_at(path, x, k),
+           (size_t)path->n * sizeof(double));
   return DVI_OK;
 }
 

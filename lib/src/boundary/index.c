@@ -1,5 +1,7 @@
-/* The signs of the second variation, by spectrum slicing: H + lambda W, with the weight W of the kinetic energy, has as many negative eigenvalues as H v = mu W v
- * has mu < -lambda (Sylvester's law of inertia; Parlett 1998, sec. 3.3). Two slices beside 0 tell what is negative and what is zero. */
+/* The signs of the second variation, by spectrum slicing: H + lambda W, with the weight W of the
+ * kinetic energy, has as many negative eigenvalues as H v = mu W v has mu < -lambda (Sylvester's
+ * law of inertia; Parlett 1998, sec. 3.3). Two slices beside 0 tell what is negative and what is
+ * zero. */
 #include <float.h>
 #include <math.h>
 
@@ -8,7 +10,8 @@
 #include "num/inertia.h"
 #include "boundary/path_struct.h"
 
-/* Elimination works in blocks of one step's unknowns; larger ones would take far longer than the solve. */
+/* Elimination works in blocks of one step's unknowns; larger ones would take far longer than the
+ * solve. */
 enum { LARGEST_BLOCK = 512 };
 
 /* Eigenvalues below -lambda. */
@@ -36,7 +39,8 @@ static dvi_status slices(dvi_path *path, double *values, dvi_path_report *report
   DVI_TRY(slice(path, values, report->zero_below, &negative));
   DVI_TRY(slice(path, values, -2 * report->zero_below, &not_positive));
   report->zero = not_positive - negative;
-  /* Steps that move the eigenvalue of a symmetry away from 0 may move others to the wrong side of it. */
+  /* Steps that move the eigenvalue of a symmetry away from 0 may move others to the wrong side of
+   * it. */
   report->negative = report->zero < report->symmetries ? -1 : negative;
   return DVI_OK;
 }
@@ -48,7 +52,8 @@ dvi_status dvi__path_index(dvi_path *path, dvi_path_report *report)
   if (path->ends == DVI_ENDS_INITIAL || path->n * path->s > LARGEST_BLOCK) return DVI_OK;
   const int entries = dvi__pattern_entries(&path->pattern);
   double *values = DVI_NEW(double, entries);
-  if (values == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory for a Hessian of %d entries", entries);
+  if (values == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "no memory for a Hessian of %d entries", entries);
   const dvi_status status = slices(path, values, report);
   dvi__release(values);
   return status == DVI_SINGULAR ? DVI_OK : status;

@@ -26,12 +26,14 @@ int dvi__path_bubbles(const dvi_path *path, int k)
   return position(path, k) + path->n;
 }
 
-/* The last node of a periodic path is A times the first one: each of its numbers has as many places as A has entries in a row. */
+/* The last node of a periodic path is A times the first one: each of its numbers has as many places
+ * as A has entries in a row. */
 static void turned_places(const dvi_path *path, int i, dvi__places *places)
 {
   if (path->turn.start == NULL) return;
   const int first = path->turn.start[i];
-  *places = (dvi__places){path->turn.start[i + 1] - first, path->turn.row + first, path->turn_values + first, 0};
+  *places = (dvi__places){path->turn.start[i + 1] - first, path->turn.row + first,
+                          path->turn_values + first, 0};
 }
 
 void dvi__path_places(const dvi_path *path, int k, int a, int i, int row, dvi__places *places)
@@ -54,7 +56,8 @@ void dvi__path_turn(const dvi_path *path, const double *x, double *y)
   }
   for (int i = 0; i < path->n; i++) {
     y[i] = 0;
-    for (int e = path->turn.start[i]; e < path->turn.start[i + 1]; e++) y[i] += path->turn_values[e] * x[path->turn.row[e]];
+    for (int e = path->turn.start[i]; e < path->turn.start[i + 1]; e++)
+      y[i] += path->turn_values[e] * x[path->turn.row[e]];
   }
 }
 
@@ -66,7 +69,8 @@ void dvi__path_turn_back(const dvi_path *path, const double *y, double *x)
   }
   memset(x, 0, (size_t)path->n * sizeof(double));
   for (int i = 0; i < path->n; i++)
-    for (int e = path->turn.start[i]; e < path->turn.start[i + 1]; e++) x[path->turn.row[e]] += path->turn_values[e] * y[i];
+    for (int e = path->turn.start[i]; e < path->turn.start[i + 1]; e++)
+      x[path->turn.row[e]] += path->turn_values[e] * y[i];
 }
 
 const double *dvi__path_image(dvi_path *path, const double *q)
@@ -86,12 +90,14 @@ const double *dvi__path_at(dvi_path *path, const double *x, int k)
 
 /* ---- entries ---- */
 
-static void emit_block(const dvi_path *path, int k, const dvi__places *column, int a, int i, size_t from, dvi__emit *emit, void *of)
+static void emit_block(const dvi_path *path, int k, const dvi__places *column, int a, int i,
+                       size_t from, dvi__emit *emit, void *of)
 {
   dvi__places row;
   dvi__path_places(path, k, a, i, 1, &row);
   for (int c = 0; c < column->count; c++)
-    for (int r = 0; r < row.count; r++) emit(of, row.at[r], column->at[c], column->factor[c] * row.factor[r], from);
+    for (int r = 0; r < row.count; r++)
+      emit(of, row.at[r], column->at[c], column->factor[c] * row.factor[r], from);
 }
 
 void dvi__path_each_entry(const dvi_path *path, int k, dvi__emit *emit, void *of)
@@ -105,7 +111,8 @@ void dvi__path_each_entry(const dvi_path *path, int k, dvi__emit *emit, void *of
       if (column.count == 0) continue;
       for (size_t a = 0; a < size; a++)
         for (int e = coupling->start[j]; e < coupling->start[j + 1]; e++)
-          emit_block(path, k, &column, (int)a, coupling->row[e], ((size_t)e * size + b) * size + a, emit, of);
+          emit_block(path, k, &column, (int)a, coupling->row[e], ((size_t)e * size + b) * size + a,
+                     emit, of);
     }
 }
 
@@ -119,10 +126,12 @@ void dvi__path_each_gauge(const dvi_path *path, dvi__emit_gauge *emit, void *of)
              ((size_t)g * (size_t)path->steps + (size_t)k) * (size_t)path->n + (size_t)i);
 }
 
-/* The pattern in the making. First its columns are counted, then filled, in any order and with entries that come twice. */
+/* The pattern in the making. First its columns are counted, then filled, in any order and with
+ * entries that come twice. */
 typedef struct draft {
   dvi__pattern pattern;
-  int counts; /* 1: columns are counted into start[column + 1]; 0: start[column] moves on as it is filled */
+  /* 1: columns are counted into start[column + 1]; 0: start[column] moves on as it is filled */
+  int counts;
   size_t entries;
 } draft;
 
@@ -153,7 +162,8 @@ static void add_all(const dvi_path *path, draft *d)
 {
   for (int k = 0; k < path->steps; k++) dvi__path_each_entry(path, k, add_entry, d);
   dvi__path_each_gauge(path, add_gauge, d);
-  for (int c = 0; path->free_span && c < path->core; c++) add_gauge(d, c, path->core, 0); /* the span's row and column are full */
+  /* the span's row and column are full */
+  for (int c = 0; path->free_span && c < path->core; c++) add_gauge(d, c, path->core, 0);
   /* The span's own entry, and those of multipliers that are not in use. */
   for (int c = path->core; c < path->unknowns; c++) add(d, c, c);
 }
@@ -171,7 +181,8 @@ static dvi_status tidy(dvi__pattern *rough, dvi__pattern *tidied)
   for (int c = 0, from = 0; c < tidied->columns; c++) {
     const int first = kept, end = tidied->start[c + 1];
     for (; from < end; from++)
-      if (kept == first || tidied->row[kept - 1] != tidied->row[from]) tidied->row[kept++] = tidied->row[from];
+      if (kept == first || tidied->row[kept - 1] != tidied->row[from])
+        tidied->row[kept++] = tidied->row[from];
     tidied->start[c + 1] = kept;
   }
   return DVI_OK;
@@ -180,19 +191,27 @@ static dvi_status tidy(dvi__pattern *rough, dvi__pattern *tidied)
 static dvi_status too_many(const dvi_path *path, double count, const char *what)
 {
   return dvi__fail(DVI_BAD_SIZE,
-                   "path: %d steps of degree %d in %d coordinates have %.3g %s, more than an int can count; take fewer",
+                   "path: %d steps of degree %d in %d coordinates have %.3g %s, more than an int "
+                   "can count; take fewer",
                    path->steps, path->s, path->n, count, what);
 }
 
 static dvi_status draw(dvi_path *path)
 {
-  draft d = {.pattern = {path->unknowns, path->unknowns, DVI_NEW(int, (size_t)path->unknowns + 1), NULL}, .counts = 1};
-  if (d.pattern.start == NULL) return dvi__fail(DVI_NO_MEMORY, "path: no memory for %d unknowns", path->unknowns);
+  draft d = {
+      .pattern = {path->unknowns, path->unknowns, DVI_NEW(int, (size_t)path->unknowns + 1), NULL},
+      .counts = 1};
+  if (d.pattern.start == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "path: no memory for %d unknowns", path->unknowns);
   add_all(path, &d);
-  dvi_status status = d.entries < INT_MAX ? DVI_OK : too_many(path, (double)d.entries, "entries in the Jacobian");
-  for (int c = 0; c < path->unknowns && status == DVI_OK; c++) d.pattern.start[c + 1] += d.pattern.start[c];
+  dvi_status status = d.entries < INT_MAX
+                          ? DVI_OK
+                          : too_many(path, (double)d.entries, "entries in the Jacobian");
+  for (int c = 0; c < path->unknowns && status == DVI_OK; c++)
+    d.pattern.start[c + 1] += d.pattern.start[c];
   if (status == DVI_OK) d.pattern.row = DVI_NEW(int, d.entries);
-  if (status == DVI_OK && d.pattern.row == NULL) status = dvi__fail(DVI_NO_MEMORY, "path: no memory for %zu entries", d.entries);
+  if (status == DVI_OK && d.pattern.row == NULL)
+    status = dvi__fail(DVI_NO_MEMORY, "path: no memory for %zu entries", d.entries);
   if (status != DVI_OK) {
     dvi__pattern_clear(&d.pattern);
     return status;
@@ -206,13 +225,17 @@ static dvi_status draw(dvi_path *path)
 
 dvi_status dvi__path_lay_out(dvi_path *path)
 {
-  const double blocks = (path->s + 1.0) * (path->s + 1.0) * dvi__pattern_entries(dvi__action_coupling(path->action));
-  const double core = (double)path->steps * path->n * path->s - (path->ends == DVI_ENDS_FIXED ? path->n : 0);
+  const double blocks = (path->s + 1.0) * (path->s + 1.0) *
+                        dvi__pattern_entries(dvi__action_coupling(path->action));
+  const double core = (double)path->steps * path->n * path->s -
+                      (path->ends == DVI_ENDS_FIXED ? path->n : 0);
   /* The places of the last node, beyond the last unknown, are counted, too. */
   if (core + 2.0 * path->n * path->s > INT_MAX) return too_many(path, core, "unknowns");
-  if (path->steps * blocks > INT_MAX) return too_many(path, path->steps * blocks, "entries in the Jacobian");
+  if (path->steps * blocks > INT_MAX)
+    return too_many(path, path->steps * blocks, "entries in the Jacobian");
   if (core < 1)
-    return dvi__fail(DVI_BAD_SIZE, "path: 1 straight step between fixed ends leaves nothing to vary; at least 2 steps are needed");
+    return dvi__fail(DVI_BAD_SIZE, "path: 1 straight step between fixed ends leaves nothing to "
+                                   "vary; at least 2 steps are needed");
   path->core = (int)core;
   path->unknowns = path->core + (path->free_span != 0) + path->gauges;
   return draw(path);

@@ -1,9 +1,11 @@
-/* Where the entries of the whole Jacobian come from: one walk for its pattern and for its values. */
+/* Where the entries of the whole Jacobian come from: one walk for its pattern and for its
+ * values. */
 #ifndef DVI_PATH_LAYOUT_H
 #define DVI_PATH_LAYOUT_H
 #include "boundary/path_struct.h"
 
-/* Called for an entry (row, column) that gets `factor` times number `from` of an element's Hessian. */
+/* Called for an entry (row, column) that gets `factor` times number `from` of an element's
+ * Hessian. */
 typedef void dvi__emit(void *of, int row, int column, double factor, size_t from);
 
 /* All entries that step k contributes to. */

@@ -1,13 +1,15 @@
 /* The inside of a path, for the files of this room.
  *
- * Unknowns, in the order of time: (q_0, Z^0, q_1, Z^1, .. ), where Z^k are the bubbles of step k (step/element/between.h) and given nodes are left out; then the
- * span, if it is free; then a multiplier for each direction along which the path may be moved (gauge.c). Rows stand in the same order, so that the
- * Jacobian is the symmetric Hessian of the action; but for initial ends, where the row of node k stands with the unknown q_(k+1) that it gives. */
+ * Unknowns, in the order of time: (q_0, Z^0, q_1, Z^1, .. ), where Z^k are the bubbles of step k
+ * (step/element/two_point.h) and given nodes are left out; then the span, if it is free; then a
+ * multiplier for each direction along which the path may be moved (gauge.c). Rows stand in the same
+ * order, so that the Jacobian is the symmetric Hessian of the action; but for initial ends, where
+ * the row of node k stands with the unknown q_(k+1) that it gives. */
 #ifndef DVI_PATH_PATH_STRUCT_H
 #define DVI_PATH_PATH_STRUCT_H
 #include <dvi/path.h>
 
-#include "step/element/between.h"
+#include "step/element/two_point.h"
 #include "solve/nonlinear.h"
 
 enum { DVI__PATH_METHOD_SIZE = 256 };
@@ -22,7 +24,8 @@ struct dvi_path {
   double energy;      /* of a free span */
   int free_span;
   double *q0, *q1, *p0, *shift; /* [n]; NULL where they are not given */
-  dvi__pattern turn;            /* the symmetry's transpose: its column i is row i of A; empty: the identity */
+  /* the symmetry's transpose: its column i is row i of A; empty: the identity */
+  dvi__pattern turn;
   double *turn_values;
   dvi__action *action;
   dvi__evaluator *energies; /* at nodes; NULL: the system is not autonomous */
@@ -43,7 +46,8 @@ struct dvi_path {
   double *rows;                                   /* [core] a gradient */
   double *energy_Y, *energy_q0;                   /* [n*s], [n] what an energy changes by */
   double *probe;                                  /* [7*n] velocities and gradients at two points */
-  /* Gauge (gauge.c): the columns [gauges*steps*n] at the nodes but the last, the nodes that they are measured from, and how many are in use. */
+  /* Gauge (gauge.c): the columns [gauges*steps*n] at the nodes but the last, the nodes that they
+   * are measured from, and how many are in use. */
   double *gauge, *origin;
   double *defect; /* [gauges*n] */
   int *broken;    /* [gauges] */
@@ -51,7 +55,8 @@ struct dvi_path {
   int holds_time; /* the last one in use is that of time */
 };
 
-/* Where a number of an element stands among all unknowns (or rows): in `count` places, with factors. */
+/* Where a number of an element stands among all unknowns (or rows): in `count` places, with
+ * factors. */
 typedef struct dvi__places {
   int count;
   const int *at;
@@ -73,7 +78,8 @@ int dvi__path_node(const dvi_path *path, int k);
 /* First bubble of step k. */
 int dvi__path_bubbles(const dvi_path *path, int k);
 
-/* Node k as x has it; of a last node that the first one determines a copy, valid until the next call. */
+/* Node k as x has it; of a last node that the first one determines a copy, valid until the next
+ * call. */
 const double *dvi__path_at(dvi_path *path, const double *x, int k);
 
 /* y [n] = A x [n], without the shift. */
@@ -104,7 +110,8 @@ dvi_status dvi__path_gradient(dvi_path *path, const double *x, double *p, double
 /* The Hessian with its border, in the order of the pattern. */
 dvi_status dvi__path_jacobian(dvi_path *path, const double *x, double *values);
 
-/* The action; and the mean energy, NaN if the system is not autonomous. DVI_NOT_CONVERGED if the path leads through a singularity unseen. */
+/* The action; and the mean energy, NaN if the system is not autonomous. DVI_NOT_CONVERGED if the
+ * path leads through a singularity unseen. */
 dvi_status dvi__path_action(dvi_path *path, const double *x, double *action, double *energy);
 
 /* ---- energy.c ---- */
@@ -118,8 +125,9 @@ dvi_status dvi__path_check_resolved(const dvi_path *path, const dvi_path_report 
 
 /* ---- gauge.c ---- */
 
-/* Find the directions along which the periodic path x may be moved; the solution is to have no distance from x along them. One that differs from the others
- * by less than `least_own_part` of itself is none of its own. After dvi__path_scale. */
+/* Find the directions along which the periodic path x may be moved; the solution is to have no
+ * distance from x along them. One that differs from the others by less than `least_own_part` of
+ * itself is none of its own. After dvi__path_scale. */
 dvi_status dvi__path_fix_gauge(dvi_path *path, const double *x, double least_own_part);
 
 /* Let the path go in time again; 0 if it was not held. */
@@ -127,7 +135,8 @@ int dvi__path_release_time(dvi_path *path);
 
 /* ---- symmetry.c ---- */
 
-/* DVI_BAD_ARGUMENT if the ends are periodic and the Lagrangian at the first `nodes` nodes of x is another one where the symmetry takes them, a span later. */
+/* DVI_BAD_ARGUMENT if the ends are periodic and the Lagrangian at the first `nodes` nodes of x is
+ * another one where the symmetry takes them, a span later. */
 dvi_status dvi__path_check_symmetry(dvi_path *path, const double *x, int nodes);
 
 /* ---- index.c ---- */

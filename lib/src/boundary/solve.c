@@ -12,84 +12,105 @@ static const double stationary_below = 1e-9;
 /* Newton's method settles from there, unless the Hessian is singular. */
 static const double nearly_stationary = 1e-8;
 
-/* A gradient that is no larger where the path is held in place may vanish at another time; and a residual, on another path beside it. */
+/* A gradient that is no larger where the path is held in place may vanish at another time; and a
+ * residual, on another path beside it. */
 static const double nearly_in_time = 1e-4;
 
-/* Directions that move the guess alike are one. On a circle rotation moves a path as time does, but on a rough guess of it they differ: if it cannot be held
- * in place along both, they are taken for one. */
+/* Directions that move the guess alike are one. On a circle rotation moves a path as time does, but
+ * on a rough guess of it they differ: if it cannot be held in place along both, they are taken for
+ * one. */
 static const double equal = 1e-6, alike = 0.5;
 
 static dvi_status not_found(dvi_path *path, dvi_status status, const dvi__solve_report *solved)
 {
   const char *const advice[] = {
-      [DVI_ENDS_FIXED] = "a better guess, more steps or a longer span, or come by continuation; conjugate ends may have no path",
+      [DVI_ENDS_FIXED] = "a better guess, more steps or a longer span, or come by continuation; "
+                         "conjugate ends may have no path",
       [DVI_ENDS_INITIAL] = "a guess from steps with dvi_run, or a shorter span",
       [DVI_ENDS_PERIODIC] = "a better guess, more steps, another period, or come by continuation",
   };
   if (status < 0) return status;
-  if (status != DVI_NOT_CONVERGED) return dvi__fail_in(status, "no stationary path was found; the path is unchanged");
+  if (status != DVI_NOT_CONVERGED)
+    return dvi__fail_in(status, "no stationary path was found; the path is unchanged");
   if (solved->residual < nearly_stationary)
     return dvi__fail(DVI_SINGULAR,
-                     "Newton's method came to a residual of %.1e but does not settle: the path is not isolated, one of many with "
-                     "these ends; the path is unchanged; try another span, or declare the symmetries that move it",
+                     "Newton's method came to a residual of %.1e but does not settle: the path is "
+                     "not isolated, one of many with "
+                     "these ends; the path is unchanged; try another span, or declare the "
+                     "symmetries that move it",
                      solved->residual);
   if (path->ends == DVI_ENDS_PERIODIC && solved->residual < nearly_in_time)
-    return dvi__fail(
-        status,
-        "Newton's method comes near a stationary path (residual %.1e) but does not settle: no path has just this period, or "
-        "many have it, which %d steps tell apart by too little; the path is unchanged; try more steps, then another period",
-        solved->residual, path->steps);
+    return dvi__fail(status,
+                     "Newton's method comes near a stationary path (residual %.1e) but does not "
+                     "settle: no path has just this period, or "
+                     "many have it, which %d steps tell apart by too little; the path is "
+                     "unchanged; try more steps, then another period",
+                     solved->residual, path->steps);
   return dvi__fail(status,
-                   "no stationary path of %d steps over %g was found from this guess (%d iterations, residual %.1e); the path "
+                   "no stationary path of %d steps over %g was found from this guess (%d "
+                   "iterations, residual %.1e); the path "
                    "is unchanged; try %s",
-                   path->steps, path->span, solved->iterations, solved->residual, advice[path->ends]);
+                   path->steps, path->span, solved->iterations, solved->residual,
+                   advice[path->ends]);
 }
 
 static dvi_status held_in_place(double gradient)
 {
   return dvi__fail(DVI_NOT_CONVERGED,
-                   "the path that was found is stationary only while it is held in place (gradient %.1e of the momenta): no "
-                   "path of this period is near the guess, or the steps are too long; the path is unchanged; try another period or "
+                   "the path that was found is stationary only while it is held in place (gradient "
+                   "%.1e of the momenta): no "
+                   "path of this period is near the guess, or the steps are too long; the path is "
+                   "unchanged; try another period or "
                    "guess, a free period, or more steps",
                    gradient);
 }
 
-/* What is left of stationarity, relative to momenta; for a path at rest, to a momentum that would cross its own size. */
+/* What is left of stationarity, relative to momenta; for a path at rest, to a momentum that would
+ * cross its own size. */
 static dvi_status measure(dvi_path *path, double size, dvi_path_report *report)
 {
   const double *x = path->trial;
   report->span = dvi__path_span(path, x);
   if (!(report->span > 0))
-    return dvi__fail(DVI_NOT_CONVERGED, "the period shrank to %g; the path is unchanged; try a better guess", report->span);
+    return dvi__fail(DVI_NOT_CONVERGED,
+                     "the period shrank to %g; the path is unchanged; try a better guess",
+                     report->span);
   DVI_TRY(dvi__path_gradient(path, x, path->trial_p, &report->gradient));
   double momentum = dvi__largest((size_t)(path->steps + 1) * (size_t)path->n, path->trial_p);
-  momentum = fmax(momentum, dvi__largest((size_t)path->n, path->kinetic) * size / report->span * stationary_below);
+  momentum = fmax(momentum, dvi__largest((size_t)path->n, path->kinetic) * size / report->span *
+                                stationary_below);
   if (momentum > 0) report->gradient /= momentum;
   if (!(report->gradient <= stationary_below)) return held_in_place(report->gradient);
   return dvi__path_action(path, x, &report->action, &report->energy);
 }
 
-/* Zero eigenvalues that no symmetry explains: the path is one of many, or roundoff chose it. One may belong to a free span, which the energy fixes. */
+/* Zero eigenvalues that no symmetry explains: the path is one of many, or roundoff chose it. One
+ * may belong to a free span, which the energy fixes. */
 static dvi_status check_isolated(const dvi_path *path, const dvi_path_report *report)
 {
   if (report->zero <= report->symmetries + path->free_span) return DVI_OK;
   return dvi__fail(DVI_SINGULAR,
-                   "along %ld direction%s, of which %d are symmetries, the action does not change to second order (below %.0e): "
+                   "along %ld direction%s, of which %d are symmetries, the action does not change "
+                   "to second order (below %.0e): "
                    "%s; the path is unchanged; try another span",
-                   report->zero, report->zero == 1 ? "" : "s", report->symmetries, report->zero_below,
-                   path->ends == DVI_ENDS_FIXED ? "its ends are conjugate, so that there are many such paths or none"
-                                                : "it is not isolated");
+                   report->zero, report->zero == 1 ? "" : "s", report->symmetries,
+                   report->zero_below,
+                   path->ends == DVI_ENDS_FIXED
+                       ? "its ends are conjugate, so that there are many such paths or none"
+                       : "it is not isolated");
 }
 
-/* Newton's method finds nothing, or does not settle, where the Hessian is singular: at the guess, or where it ended, if that is nearly stationary. Else the
- * status stays. */
+/* Newton's method finds nothing, or does not settle, where the Hessian is singular: at the guess,
+ * or where it ended, if that is nearly stationary. Else the status stays. */
 static dvi_status check_singular(dvi_path *path, dvi_status status, const dvi__solve_report *solved)
 {
   dvi_path_report found = {.symmetries = path->in_use};
-  const int tells = dvi__first_not_finite((size_t)path->unknowns, path->trial) < 0 && solved->residual < nearly_stationary;
+  const int tells = dvi__first_not_finite((size_t)path->unknowns, path->trial) < 0 &&
+                    solved->residual < nearly_stationary;
   for (int at_guess = !tells; at_guess < 2 && status == DVI_NOT_CONVERGED; at_guess++) {
     if (at_guess) memcpy(path->trial, path->x, (size_t)path->unknowns * sizeof(double));
-    if (dvi__path_index(path, &found) == DVI_OK && check_isolated(path, &found) == DVI_SINGULAR) status = DVI_SINGULAR;
+    if (dvi__path_index(path, &found) == DVI_OK && check_isolated(path, &found) == DVI_SINGULAR)
+      status = DVI_SINGULAR;
   }
   return status;
 }
@@ -102,11 +123,13 @@ static void accept(dvi_path *path)
   path->trial = x;
   path->p = path->trial_p;
   path->trial_p = p;
-  for (int k = 0; k <= path->steps; k++) memcpy(path->q + (size_t)k * n, dvi__path_at(path, path->x, k), n * sizeof(double));
+  for (int k = 0; k <= path->steps; k++)
+    memcpy(path->q + (size_t)k * n, dvi__path_at(path, path->x, k), n * sizeof(double));
   path->solved = 1;
 }
 
-/* The steps are so long that the discrete motion has preferred times, by a little: Newton's method takes the path to one of them. */
+/* The steps are so long that the discrete motion has preferred times, by a little: Newton's method
+ * takes the path to one of them. */
 static dvi_status settle(dvi_path *path, double size, dvi_path_report *report)
 {
   dvi__solve_report solved;
@@ -128,12 +151,15 @@ static dvi_status attempt(dvi_path *path, double least_own_part, dvi_path_report
   DVI_TRY(dvi__path_fix_gauge(path, path->trial, least_own_part));
   const double size = dvi__largest((size_t)path->core, path->trial);
   const dvi_status status = dvi__solve(path->solver, DVI__KINSOL, size, 0, 0, path->trial, &solved);
-  if (status != DVI_OK && check_singular(path, status, &solved) == DVI_SINGULAR) return DVI_SINGULAR;
+  if (status != DVI_OK && check_singular(path, status, &solved) == DVI_SINGULAR)
+    return DVI_SINGULAR;
   if (status != DVI_OK) return not_found(path, status, &solved);
   report->iterations = solved.iterations;
   report->symmetries = path->in_use;
   const dvi_status measured = measure(path, size, report);
-  return measured == DVI_NOT_CONVERGED && report->gradient < nearly_in_time ? settle(path, size, report) : measured;
+  return measured == DVI_NOT_CONVERGED && report->gradient < nearly_in_time
+             ? settle(path, size, report)
+             : measured;
 }
 
 static dvi_status solve(dvi_path *path, dvi_path_report *report)

@@ -1,5 +1,6 @@
-/* Whether the Lagrangian has what periodic ends take it to have: L(t + T, A q + a, A v) = L(t, q, v), with both gradients. Where a path stands still its value
- * may be the same by chance: a force that pushes sideways does no work there. */
+/* Whether the Lagrangian has what periodic ends take it to have: L(t + T, A q + a, A v) = L(t, q,
+ * v), with both gradients. Where a path stands still its value may be the same by chance: a force
+ * that pushes sideways does no work there. */
 #include <math.h>
 #include <string.h>
 
@@ -16,16 +17,21 @@ typedef struct comparison {
   double difference[KINDS], t[KINDS], size[KINDS];
 } comparison;
 
-/* What roundoff leaves of them in a path at rest has the size of motions that would cross the path's own size in its span. */
+/* What roundoff leaves of them in a path at rest has the size of motions that would cross the
+ * path's own size in its span. */
 static void begin(dvi_path *path, const double *x, comparison *c)
 {
-  const double *last = dvi__path_at(path, x, path->steps), kinetic = dvi__largest((size_t)path->n, path->kinetic);
-  const double size = fmax(dvi__largest((size_t)path->core, x), dvi__largest((size_t)path->n, last));
+  const double *last = dvi__path_at(path, x, path->steps),
+               kinetic = dvi__largest((size_t)path->n, path->kinetic);
+  const double size = fmax(dvi__largest((size_t)path->core, x),
+                           dvi__largest((size_t)path->n, last));
   const double rate = size / dvi__path_span(path, x);
-  *c = (comparison){.size = {kinetic * rate * rate, kinetic * rate / dvi__path_span(path, x), kinetic * rate}};
+  *c = (comparison){
+      .size = {kinetic * rate * rate, kinetic * rate / dvi__path_span(path, x), kinetic * rate}};
 }
 
-static void add(comparison *c, int kind, double t, int count, const double *here, const double *there)
+static void add(comparison *c, int kind, double t, int count, const double *here,
+                const double *there)
 {
   for (int i = 0; i < count; i++) {
     const double difference = fabs(here[i] - there[i]);
@@ -35,7 +41,8 @@ static void add(comparison *c, int kind, double t, int count, const double *here
   }
 }
 
-/* Where the symmetry takes node k with its velocity, the gradient is to be that of the node, turned: A^T L_q' = L_q. */
+/* Where the symmetry takes node k with its velocity, the gradient is to be that of the node,
+ * turned: A^T L_q' = L_q. */
 static dvi_status compare(dvi_path *path, const double *x, int k, double t, comparison *c)
 {
   enum { V, TURNED_V, L_Q, L_V, TURNED_L_Q, TURNED_L_V, BACK, ARRAYS };
@@ -51,7 +58,8 @@ static dvi_status compare(dvi_path *path, const double *x, int k, double t, comp
   dvi__path_turn(path, at[V], at[TURNED_V]);
   const double *turned = dvi__path_image(path, q);
   DVI_TRY(dvi__lagrangian_value(e, 1, &later, turned, at[TURNED_V], &L[1]));
-  DVI_TRY(dvi__lagrangian_gradient(e, 1, &later, turned, at[TURNED_V], at[TURNED_L_Q], at[TURNED_L_V]));
+  DVI_TRY(
+      dvi__lagrangian_gradient(e, 1, &later, turned, at[TURNED_V], at[TURNED_L_Q], at[TURNED_L_V]));
   add(c, VALUE, t, 1, &L[0], &L[1]);
   dvi__path_turn_back(path, at[TURNED_L_Q], at[BACK]);
   add(c, FORCE, t, path->n, at[L_Q], at[BACK]);
@@ -66,9 +74,10 @@ static dvi_status judge(const dvi_path *path, const comparison *c)
   for (int kind = 0; kind < KINDS; kind++)
     if (!(c->difference[kind] <= symmetric_below * c->size[kind]))
       return dvi__fail(DVI_BAD_ARGUMENT,
-                       "the %s is none of the Lagrangian's: it changes %s by %.3g (of %.3g) at t = %.6g; the path is unchanged",
-                       path->turn.start != NULL || path->shift != NULL ? "symmetry" : "period", names[kind], c->difference[kind],
-                       c->size[kind], c->t[kind]);
+                       "the %s is none of the Lagrangian's: it changes %s by %.3g (of %.3g) at t = "
+                       "%.6g; the path is unchanged",
+                       path->turn.start != NULL || path->shift != NULL ? "symmetry" : "period",
+                       names[kind], c->difference[kind], c->size[kind], c->t[kind]);
   return DVI_OK;
 }
 

@@ -14,7 +14,8 @@ static int may_succeed(void)
   return 1;
 }
 
-/* Rows of eight numbers shall not straddle cache lines: a fixed point iteration takes a third longer if they do. */
+/* Rows of eight numbers shall not straddle cache lines: a fixed point iteration takes a third
+ * longer if they do. */
 enum { LINE = 64 };
 
 void *dvi__allocate(size_t count, size_t size)

@@ -1,11 +1,13 @@
 /* Drift: the trend of an error that oscillates.
  *
- * Samples of an oscillating error depend on each other, so a straight line through them all would look far more certain than it
- * is. Means over blocks depend on each other much less; what dependence is left between neighbouring residuals of the line is
- * estimated and widens the standard error as for a first-order autoregressive series, by sqrt((1 + r) / (1 - r)). The lag-one
- * correlation r of detrended residuals comes out too small by (2 + 4 r) / m for m blocks on average (Kendall 1954) and is
- * corrected for that, which matters for a random walk, the most correlated case: about one walk in seven still exceeds a
- * significance of 3, against four in five without the correction. */
+ * Samples of an oscillating error depend on each other, so a straight line through them all would
+ * look far more certain than it is. Means over blocks depend on each other much less; what
+ * dependence is left between neighbouring residuals of the line is estimated and widens the
+ * standard error as for a first-order autoregressive series, by sqrt((1 + r) / (1 - r)). The
+ * lag-one correlation r of detrended residuals comes out too small by (2 + 4 r) / m for m blocks on
+ * average (Kendall 1954) and is corrected for that, which matters for a random walk, the most
+ * correlated case: about one walk in seven still exceeds a significance of 3, against four in five
+ * without the correction. */
 #include <dvi/diagnostics.h>
 #include <math.h>
 #include <string.h>
@@ -69,7 +71,8 @@ static double mean(int count, const double *x)
   return count ? sum / count : 0;
 }
 
-/* Least squares; the residuals take the errors' place. Returns the slope, and the times' sum of squares. */
+/* Least squares; the residuals take the errors' place. Returns the slope, and the times' sum of
+ * squares. */
 static double fit_line(int count, const double *time, double *error, double *spread)
 {
   const double time_mean = mean(count, time), error_mean = mean(count, error);
@@ -84,7 +87,8 @@ static double fit_line(int count, const double *time, double *error, double *spr
   return slope;
 }
 
-/* By how much correlation of neighbours widens the standard error; the correlation is kept within what `count` blocks can show. */
+/* By how much correlation of neighbours widens the standard error; the correlation is kept within
+ * what `count` blocks can show. */
 static double widening(int count, const double *residual, double squares)
 {
   double product = 0;
@@ -112,5 +116,6 @@ void dvi_drift_result(const dvi_drift *drift, dvi_drift_fit *fit)
   fit->deviation = standard_error(blocks, error, spread);
   fit->change = fit->slope * (drift->end - drift->start);
   fit->significance = (double)NAN;
-  if (blocks >= FEWEST_BLOCKS) fit->significance = fit->slope == 0 ? 0 : fabs(fit->slope) / fit->deviation;
+  if (blocks >= FEWEST_BLOCKS)
+    fit->significance = fit->slope == 0 ? 0 : fabs(fit->slope) / fit->deviation;
 }

@@ -1,4 +1,5 @@
-/* Loop integrals: the trigonometric polynomial through the points is differentiated exactly, and the trapezoidal rule integrates it exactly. */
+/* Loop integrals: the trigonometric polynomial through the points is differentiated exactly, and
+ * the trapezoidal rule integrates it exactly. */
 #include <dvi/diagnostics.h>
 #include <math.h>
 
@@ -7,7 +8,8 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* Weight of the difference of the two neighbours at distance d in the derivative at equal distances 2 pi/count (Fornberg 1996). */
+/* Weight of the difference of the two neighbours at distance d in the derivative at equal distances
+ * 2 pi/count (Fornberg 1996). */
 static double weight(int count, int d)
 {
   const double angle = pi * d / count, sign = d % 2 == 1 ? 1 : -1;
@@ -18,7 +20,8 @@ static double weight(int count, int d)
 static double couple(int count, int d, const double *q, const double *p, double mean)
 {
   double sum = 0;
-  for (int k = 0; k < count; k++) sum += (p[k] - mean) * (q[(k + d) % count] - q[(k + count - d) % count]);
+  for (int k = 0; k < count; k++)
+    sum += (p[k] - mean) * (q[(k + d) % count] - q[(k + count - d) % count]);
   return sum;
 }
 
@@ -31,11 +34,14 @@ static double average(int count, const double *p)
 
 dvi_status dvi_loop_integral(int n, int count, const double *q, const double *p, double *integral)
 {
-  if (q == NULL || p == NULL || integral == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "loop integral: an argument is NULL");
+  if (q == NULL || p == NULL || integral == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "loop integral: an argument is NULL");
   if (n < 1 || count < DVI_LOOP_LEAST)
-    return dvi__fail(DVI_BAD_SIZE, "loop integral: %d coordinates at %d points; at least 1 and %d are needed", n, count,
-                     DVI_LOOP_LEAST);
-  if (dvi__first_not_finite((size_t)n * (size_t)count, q) >= 0 || dvi__first_not_finite((size_t)n * (size_t)count, p) >= 0)
+    return dvi__fail(DVI_BAD_SIZE,
+                     "loop integral: %d coordinates at %d points; at least 1 and %d are needed", n,
+                     count, DVI_LOOP_LEAST);
+  if (dvi__first_not_finite((size_t)n * (size_t)count, q) >= 0 ||
+      dvi__first_not_finite((size_t)n * (size_t)count, p) >= 0)
     return dvi__fail(DVI_NOT_FINITE, "loop integral: a point of the loop is not finite");
   double sum = 0;
   for (int i = 0; i < n; i++, q += count, p += count) {

@@ -6,10 +6,13 @@
 
 static dvi_status check(int count, const double *h, const double *error, const dvi_order_fit *fit)
 {
-  if (!h || !error || !fit) return dvi__fail(DVI_BAD_ARGUMENT, "order: the steps, the errors or the place for the fit are NULL");
+  if (!h || !error || !fit)
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "order: the steps, the errors or the place for the fit are NULL");
   for (int i = 0; i < count; i++)
     if (!(h[i] > 0 && isfinite(h[i])) || (i > 0 && !(h[i] < h[i - 1])))
-      return dvi__fail(DVI_BAD_ARGUMENT, "order: step %d is %g; steps must be positive and descend", i, h[i]);
+      return dvi__fail(DVI_BAD_ARGUMENT, "order: step %d is %g; steps must be positive and descend",
+                       i, h[i]);
   return DVI_OK;
 }
 
@@ -18,8 +21,10 @@ static int usable(double error, double floor, double ceiling)
   return isfinite(error) && error > 0 && error > floor && (ceiling == 0 || error < ceiling);
 }
 
-/* The longest window; of equally long ones the last, whose steps are smallest. first = -1 if no error is usable. */
-static void choose_window(int count, const double *error, double floor, double ceiling, dvi_order_fit *fit)
+/* The longest window; of equally long ones the last, whose steps are smallest. first = -1 if no
+ * error is usable. */
+static void choose_window(int count, const double *error, double floor, double ceiling,
+                          dvi_order_fit *fit)
 {
   int first = 0;
   fit->first = fit->last = -1;
@@ -48,15 +53,18 @@ static double log_slope(const dvi_order_fit *window, const double *h, const doub
   return product / spread;
 }
 
-dvi_status dvi_order(int count, const double *h, const double *error, double floor, double ceiling, dvi_order_fit *fit)
+dvi_status dvi_order(int count, const double *h, const double *error, double floor, double ceiling,
+                     dvi_order_fit *fit)
 {
   DVI_TRY(check(count, h, error, fit));
   choose_window(count, error, floor, ceiling, fit);
   if (fit->last <= fit->first) {
     fit->slope = (double)NAN;
     fit->first = fit->last = -1;
-    return dvi__fail(DVI_BAD_SIZE, "order: of %d errors no two neighbours lie above the floor %g%s; try larger steps", count, floor,
-                     ceiling > 0 ? " and below the ceiling" : "");
+    return dvi__fail(
+        DVI_BAD_SIZE,
+        "order: of %d errors no two neighbours lie above the floor %g%s; try larger steps", count,
+        floor, ceiling > 0 ? " and below the ceiling" : "");
   }
   fit->slope = log_slope(fit, h, error);
   return DVI_OK;

@@ -1,4 +1,5 @@
-/* SE(3), the rigid motions: rotations and translations by the semi-direct product (R, x)(S, y) = (R S, x + R y). */
+/* SE(3), the rigid motions: rotations and translations by the semi-direct product (R, x)(S, y) = (R
+ * S, x + R y). */
 #include <dvi/group.h>
 
 #include "core/status.h"
@@ -25,8 +26,9 @@ void dvi_se3_cayley(const double xi[6], double g[12])
   dvi__about(xi, 0.5 * shrink, 0.25 * shrink, xi + 3, g + 9);
 }
 
-/* What a turning rate a adds to the shift: with exp(w, u) = (exp w, x), x = dexp_w u, the velocity moved back to the identity is (r, x' - r x x), r = dexp_w a,
- * and x' has the part (d dexp_w u / dw) a. */
+/* What a turning rate a adds to the shift: with exp(w, u) = (exp w, x), x = dexp_w u, the velocity
+ * moved back to the identity is (r, x' - r x x), r = dexp_w a, and x' has the part (d dexp_w u /
+ * dw) a. */
 static void coupling(const double xi[6], const double a[3], const double r[3], double shift[3])
 {
   const double opposite[3] = {-xi[0], -xi[1], -xi[2]};

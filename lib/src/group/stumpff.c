@@ -1,9 +1,10 @@
 /* Three ranges of s = theta^2.
  *
- * Up to NEAR the two highest functions by their series, which do not cancel, and the others by c_k = 1/k! - s c_{k+2}, which damps errors
- * there. Beyond NEAR the first four are sines and cosines of the half angle, so that c_2 keeps its relative accuracy at its zeros. The rest
- * still comes from the top up to FAR, and by the same recurrence upward beyond. Up to NEAR only sums, products and quotients are used: the
- * digits are the same with every mathematical library. */
+ * Up to NEAR the two highest functions by their series, which do not cancel, and the others by c_k
+ * = 1/k! - s c_{k+2}, which damps errors there. Beyond NEAR the first four are sines and cosines of
+ * the half angle, so that c_2 keeps its relative accuracy at its zeros. The rest still comes from
+ * the top up to FAR, and by the same recurrence upward beyond. Up to NEAR only sums, products and
+ * quotients are used: the digits are the same with every mathematical library. */
 #include "group/stumpff.h"
 
 #include <math.h>
@@ -77,7 +78,8 @@ static inline void up(double s, int from, int to, double *c)
 /* c_0, .., c_3 by sine and cosine of theta/2. */
 static void circle(double s, double *c)
 {
-  const double theta = sqrt(s), sine = sin(theta / 2), cosine = cos(theta / 2), ratio = sine / theta;
+  const double theta = sqrt(s), sine = sin(theta / 2), cosine = cos(theta / 2),
+               ratio = sine / theta;
   c[0] = (cosine - sine) * (cosine + sine);
   c[1] = 2 * ratio * cosine;
   c[2] = 2 * ratio * ratio;

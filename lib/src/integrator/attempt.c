@@ -4,9 +4,9 @@
  *
  * Where the method does not know its solution to be that one, the new state is asked. Solutions of
  * other branches nearly always change the energy by more than a hundredth of the kinetic energy; in
- * small parts of a system, which the energy does not show, they lead away from where their rates do. A
- * doubted step is taken again along its branch. Most are found again: then the first solution stays,
- * to the last bit (docs/theory.md, docs/branches.md). */
+ * small parts of a system, which the energy does not show, they lead away from where their rates
+ * do. A doubted step is taken again along its branch. Most are found again: then the first solution
+ * stays, to the last bit (docs/theory.md, docs/branches.md). */
 #include "integrator/attempt.h"
 
 #include <float.h>
@@ -18,11 +18,12 @@
 #include "num/finite.h"
 #include "solve/branch.h"
 
-/* Changes of more than this part of the kinetic energy, or of what the step exchanges, are doubted. */
+/* Changes of more than this part of the kinetic energy, or of what the step exchanges, are
+ * doubted. */
 static const double doubted_change = 0.01;
 
-/* So are steps in which a coordinate, or its momentum, ends farther than this from where the mean of
- * its rates at both ends leads, as a part of the larger rate's way. */
+/* So are steps in which a coordinate, or its momentum, ends farther than this from where the mean
+ * of its rates at both ends leads, as a part of the larger rate's way. */
 static const double doubted_defect = 0.1;
 
 /* Right steps do so, too, where they are long. After some that were followed in vain the motion of
@@ -39,8 +40,8 @@ static const double more_bend = 1.25;
 static const double same = 1e-6;
 
 /* Behind the method's memory, so that checkpoints and members have it: steps in a row that were
- * followed for their motion in vain; steps that are not asked after one; those that are left of them;
- * how much the equations of those in vain bent. */
+ * followed for their motion in vain; steps that are not asked after one; those that are left of
+ * them; how much the equations of those in vain bent. */
 enum { VAIN, WAIT, SPARED, BEND, LEARNED };
 
 struct dvi__attempt {
@@ -87,17 +88,20 @@ static int is_spared(const dvi_integrator *I)
   return 1;
 }
 
-/* Whether energy or motion change by too much from `now` to `next`; also where it cannot be told. */
+/* Whether energy or motion change by too much from `now` to `next`; also where it cannot be
+ * told. */
 static int state_jumps(dvi_integrator *I)
 {
   double change, exchanged, defect;
-  const dvi__instant before = {I->now.t, I->now.q, I->now.p, I->last_v}, after = {I->next.t, I->next.q, I->next.p, I->v};
+  const dvi__instant before = {I->now.t, I->now.q, I->now.p, I->last_v},
+                     after = {I->next.t, I->next.q, I->next.p, I->v};
   dvi__guess_velocity(I->system->n, I->now.q, I->last.q, I->last.p, I->last_h, I->last_v);
   dvi__guess_velocity(I->system->n, I->next.q, I->now.q, I->last_v, I->next.t - I->now.t, I->v);
   if (dvi__energy_change(I->evaluator, &before, &after, &change, &exchanged) != DVI_OK) return 1;
   if (!(change <= doubted_change * exchanged)) return 1;
   if (I->stepper.doubt == DVI__LINEAR || is_spared(I)) return 0;
-  if (dvi__motion_defect(I->evaluator, &before, &after, I->first->forces, &defect) != DVI_OK) return 1;
+  if (dvi__motion_defect(I->evaluator, &before, &after, I->first->forces, &defect) != DVI_OK)
+    return 1;
   I->first->by_motion = defect > doubted_defect;
   return I->first->by_motion;
 }
@@ -131,8 +135,8 @@ static void restore_first(dvi_integrator *I)
   memcpy(I->stepper.memory, I->first->memory, I->stepper.memory_count * sizeof(double));
 }
 
-/* Whether each number of a vector [n] differs little beside what it moved in the step, or is a rounding
- * of what the others moved: no solver finds it better. */
+/* Whether each number of a vector [n] differs little beside what it moved in the step, or is a
+ * rounding of what the others moved: no solver finds it better. */
 static int is_same(size_t n, const double *one, const double *other, const double *start)
 {
   double largest = 0;
@@ -144,8 +148,8 @@ static int is_same(size_t n, const double *one, const double *other, const doubl
   return 1;
 }
 
-/* A step that was followed for its motion: in vain, it was right; asked in its turn, or for its bend
- * while others are spared. The memory is that of the step as it was taken. */
+/* A step that was followed for its motion: in vain, it was right; asked in its turn, or for its
+ * bend while others are spared. The memory is that of the step as it was taken. */
 static void learn(const dvi_integrator *I, int right, double bend)
 {
   double *own = I->stepper.memory + I->learned;
@@ -165,8 +169,10 @@ static void learn(const dvi_integrator *I, int right, double bend)
   if (own[VAIN] == VAIN_ONES) own[SPARED] = own[WAIT] = fmax(own[WAIT], 1);
 }
 
-/* The step along its branch, in at least so many parts; alarms are those of the step as it is taken. */
-static dvi_status follow(dvi_integrator *I, double length, double density, int parts, const dvi_counters *before)
+/* The step along its branch, in at least so many parts; alarms are those of the step as it is
+ * taken. */
+static dvi_status follow(dvi_integrator *I, double length, double density, int parts,
+                         const dvi_counters *before)
 {
   I->counters.jump_alarms = before->jump_alarms;
   I->counters.energy_fallbacks = before->energy_fallbacks;
@@ -187,13 +193,14 @@ dvi_status dvi__attempt(dvi_integrator *I, double length, double density)
   const double bend = I->stepper.bend;
   const int hasty = I->stepper.doubt != DVI__ASTRAY;
   dvi_status status = follow(I, length, density, hasty ? 1 : DVI__BRANCH_CAREFUL, &before);
-  if (hasty && status > 0 && I->stepper.doubt == DVI__ASTRAY) status = follow(I, length, density, DVI__BRANCH_CAREFUL, &before);
+  if (hasty && status > 0 && I->stepper.doubt == DVI__ASTRAY)
+    status = follow(I, length, density, DVI__BRANCH_CAREFUL, &before);
   const int is_lost = status > 0 && I->stepper.doubt != DVI__ASTRAY;
   if (status != DVI_OK && !(is_lost && I->first->by_motion)) return status;
   /* Motion alone is no reason to refuse a step if there is a solution beyond: at the front of a
    * wave, where numbers grow by high powers of h, a branch may be lost that goes on. */
-  const int right = is_lost ||
-                    (is_same(n, I->next.q, I->first->state.q, I->now.q) && is_same(n, I->next.p, I->first->state.p, I->now.p));
+  const int right = is_lost || (is_same(n, I->next.q, I->first->state.q, I->now.q) &&
+                                is_same(n, I->next.p, I->first->state.p, I->now.p));
   if (right) restore_first(I);
   learn(I, right, bend);
   return DVI_OK;

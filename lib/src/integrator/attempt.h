@@ -10,7 +10,8 @@ void dvi__attempt_extend(dvi_integrator *integrator);
 dvi_status dvi__attempt_allocate(dvi_integrator *integrator);
 void dvi__attempt_clear(dvi_integrator *integrator);
 
-/* A step of `length` with this density (dvi__state). On failure `next` and the memory are spoilt. */
+/* A step of `length` with this density (dvi__state). On failure `next` and the memory are
+ * spoilt. */
 dvi_status dvi__attempt(dvi_integrator *integrator, double length, double density);
 
 #endif

@@ -1,5 +1,6 @@
-/* The steps of an ensemble: a block at a time, its members side by side where the method can, else one after the other by the driver of a single
- * integrator, which also takes every member that the first way leaves. */
+/* The steps of an ensemble: a block at a time, its members side by side where the method can, else
+ * one after the other by the driver of a single integrator, which also takes every member that the
+ * first way leaves. */
 #include <math.h>
 #include <string.h>
 
@@ -7,8 +8,9 @@
 #include "integrator/ensemble_struct.h"
 #include "num/finite.h"
 
-/* A member that is left goes on alone for one step, and for twice as many each time that it is left at its return, up to this many: what a thread
- * keeps for one member (dvi__decoupled) then serves several steps. */
+/* A member that is left goes on alone for one step, and for twice as many each time that it is left
+ * at its return, up to this many: what a thread keeps for one member (dvi__decoupled) then serves
+ * several steps. */
 enum { LONGEST_ABSENCE = 32 };
 
 /* ---- side by side ---- */
@@ -18,22 +20,23 @@ static void lay_out(const dvi_ensemble *e, const dvi__block *block, dvi__members
   const size_t count = (size_t)block->count, n = (size_t)e->n;
   m->count = block->count;
   m->t = dvi__row(block, DVI__MEMBER_T);
-  m->t_carry = dvi__row(block, DVI__MEMBER_T_CARRY);
+  m->t_compensation = dvi__row(block, DVI__MEMBER_T_CARRY);
   m->q = dvi__row(block, DVI__MEMBER_Q);
   m->p = m->q + n * count;
-  m->q_carry = m->p + n * count;
-  m->p_carry = m->q_carry + n * count;
-  m->memory = m->p_carry + n * count;
+  m->q_compensation = m->p + n * count;
+  m->p_compensation = m->q_compensation + n * count;
+  m->memory = m->p_compensation + n * count;
 }
 
-/* For step number i: members that are ahead have taken it, members that have failed take no more, and what h does not move is for the driver to
- * refuse. Gives how many are chosen. */
+/* For step number i: members that are ahead have taken it, members that have failed take no more,
+ * and what h does not move is for the driver to refuse. Gives how many are chosen. */
 static int choose(const dvi_ensemble *e, dvi__worker *w, const dvi__block *block, long i)
 {
   dvi__members *m = &w->members;
   int chosen = 0;
   for (int k = 0; k < m->count; k++) {
-    m->left[k] = w->ahead[k] > i || e->status[block->first + k] != DVI_OK || m->t[k] + e->march.h == m->t[k];
+    m->left[k] = w->ahead[k] > i || e->status[block->first + k] != DVI_OK ||
+                 m->t[k] + e->march.h == m->t[k];
     chosen += !m->left[k];
   }
   return chosen;
@@ -43,7 +46,8 @@ static int choose(const dvi_ensemble *e, dvi__worker *w, const dvi__block *block
 static void leave_not_finite(const dvi_ensemble *e, dvi__members *m)
 {
   const size_t count = (size_t)m->count, rows = 2 * (size_t)e->n;
-  if (dvi__first_not_finite(count, m->t) < 0 && dvi__first_not_finite(rows * count, m->q) < 0) return;
+  if (dvi__first_not_finite(count, m->t) < 0 && dvi__first_not_finite(rows * count, m->q) < 0)
+    return;
   for (size_t k = 0; k < count; k++) {
     int finite = isfinite(m->t[k]) != 0;
     for (size_t i = 0; i < rows; i++) finite &= isfinite(m->q[i * count + k]) != 0;
@@ -51,16 +55,19 @@ static void leave_not_finite(const dvi_ensemble *e, dvi__members *m)
   }
 }
 
-static void take_back(const dvi_ensemble *e, const dvi__worker *w, const dvi__block *block, size_t k)
+static void take_back(const dvi_ensemble *e, const dvi__worker *w, const dvi__block *block,
+                      size_t k)
 {
   const size_t count = (size_t)block->count;
-  for (size_t i = 0; i < e->state_numbers; i++) block->numbers[i * count + k] = w->numbers[i * count + k];
+  for (size_t i = 0; i < e->state_numbers; i++)
+    block->numbers[i * count + k] = w->numbers[i * count + k];
 }
 
 static void accept(const dvi_ensemble *e, dvi__worker *w, const dvi__block *block)
 {
   const dvi__members *m = &w->members;
-  double *last_h = dvi__driver_row(e, block, DVI__MEMBER_LAST_H), *steps = dvi__driver_row(e, block, DVI__MEMBER_STEPS);
+  double *last_h = dvi__driver_row(e, block, DVI__MEMBER_LAST_H),
+         *steps = dvi__driver_row(e, block, DVI__MEMBER_STEPS);
   dvi_counters *counters = &w->integrator->counters;
   for (size_t k = 0; k < (size_t)block->count; k++) {
     if (m->left[k]) {
@@ -108,11 +115,14 @@ static void step_lanes(const dvi_ensemble *e, dvi__worker *w, const dvi__block *
 }
 
 /* Member k is left at step number i. */
-static void send_ahead(const dvi_ensemble *e, dvi__worker *w, const dvi__block *block, int k, long i)
+static void send_ahead(const dvi_ensemble *e, dvi__worker *w, const dvi__block *block, int k,
+                       long i)
 {
   const long remaining = e->march.steps - i;
   const int again = w->absence[k] > 0 && w->ahead[k] == i;
-  w->absence[k] = !again ? 1 : w->absence[k] < LONGEST_ABSENCE ? 2 * w->absence[k] : LONGEST_ABSENCE;
+  w->absence[k] = !again                            ? 1
+                  : w->absence[k] < LONGEST_ABSENCE ? 2 * w->absence[k]
+                                                    : LONGEST_ABSENCE;
   const long steps = w->absence[k] < remaining ? w->absence[k] : remaining;
   alone(e, w, block, k, steps);
   w->ahead[k] = i + steps;
@@ -131,7 +141,8 @@ static void march_lanes(const dvi_ensemble *e, dvi__worker *w, const dvi__block 
     if (memchr(w->members.left, 1, count) == NULL) continue;
     going = 0;
     for (int k = 0; k < block->count; k++) {
-      if (w->members.left[k] && w->ahead[k] <= i && status[k] == DVI_OK) send_ahead(e, w, block, k, i);
+      if (w->members.left[k] && w->ahead[k] <= i && status[k] == DVI_OK)
+        send_ahead(e, w, block, k, i);
       going += status[k] == DVI_OK;
     }
   }
@@ -153,8 +164,11 @@ static void march_block(void *of, int thread, int item)
 dvi_status dvi_ensemble_advance(dvi_ensemble *e, double h, long steps)
 {
   if (e == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "ensemble: it is NULL");
-  if (!e->started) return dvi__fail(DVI_BAD_STATE, "ensemble: its members have no state yet; call dvi_ensemble_start first");
-  if (steps < 0) return dvi__fail(DVI_BAD_ARGUMENT, "ensemble: %ld steps asked, 0 or more are possible", steps);
+  if (!e->started)
+    return dvi__fail(DVI_BAD_STATE,
+                     "ensemble: its members have no state yet; call dvi_ensemble_start first");
+  if (steps < 0)
+    return dvi__fail(DVI_BAD_ARGUMENT, "ensemble: %ld steps asked, 0 or more are possible", steps);
   DVI_TRY(dvi__check_step(0.0, h));
   e->march = (dvi__march){h, steps};
   dvi__ensemble_clear_failures(e);

@@ -1,8 +1,9 @@
 /* The inside of an ensemble, for ensemble.c, ensemble_create.c and ensemble_step.c.
  *
- * A member is what a checkpoint of its integrator would hold: numbers that an integrator can be put to. There is one for each thread, which takes the
- * terms of the block at hand; or one for each block, if systems differ and the method is bound to its own (dvi__stepper). A block holds the numbers of
- * neighbours side by side: number i of member k is [i*count + k]. */
+ * A member is what a checkpoint of its integrator would hold: numbers that an integrator can be put
+ * to. There is one for each thread, which takes the terms of the block at hand; or one for each
+ * block, if systems differ and the method is bound to its own (dvi__stepper). A block holds the
+ * numbers of neighbours side by side: number i of member k is [i*count + k]. */
 #ifndef DVI_METHOD_ENSEMBLE_STRUCT_H
 #define DVI_METHOD_ENSEMBLE_STRUCT_H
 #include <dvi/ensemble.h>
@@ -12,7 +13,8 @@
 
 enum { DVI__MISFORTUNE_SENTENCE = 900 };
 
-/* A member's numbers: t, its carry, q, p, their carries [n], the method's memory, which are what a step changes; then the driver's. */
+/* A member's numbers: t, its carry, q, p, their carries [n], the method's memory, which are what a
+ * step changes; then the driver's. */
 enum { DVI__MEMBER_T, DVI__MEMBER_T_CARRY, DVI__MEMBER_Q };
 
 typedef struct dvi__block {
@@ -23,24 +25,28 @@ typedef struct dvi__block {
 } dvi__block;
 
 /* The worst failure that a thread has met. */
-typedef struct dvi__misfortune {
+typedef struct dvi__worst_failure {
   dvi_status status;
   int member;
   char sentence[DVI__MISFORTUNE_SENTENCE];
-} dvi__misfortune;
+} dvi__worst_failure;
 
 /* What a thread works with. */
 typedef struct dvi__worker {
   dvi_integrator *integrator; /* the thread's, or that of the block at hand */
   dvi_system *
-      scene; /* the thread's integrator's system, if systems differ: it takes the terms of the block at hand. NULL: there is no such thing */
+      /* the thread's integrator's system, if systems differ: it takes the terms of the block at
+       * hand. NULL: there is no such thing */
+      scene;
   dvi__members members; /* a block's state */
   double *numbers;      /* what it was before a step */
-  long *ahead;          /* [capacity] steps of this march that a member has taken when it last went alone */
-  int *absence;         /* [capacity] for how many it did so */
-  double *point[2];     /* [n] a start's q and p or v */
-  long steps;           /* taken by members; the integrator's own count is that of the member at hand */
-  dvi__misfortune worst;
+  /* [capacity] steps of this march that a member has taken when it last went alone */
+  long *ahead;
+  int *absence;     /* [capacity] for how many it did so */
+  double *point[2]; /* [n] a start's q and p or v */
+  /* taken by members; the integrator's own count is that of the member at hand */
+  long steps;
+  dvi__worst_failure worst;
   long failures;
 } dvi__worker;
 
@@ -61,7 +67,9 @@ struct dvi_ensemble {
   int members, threads;
   int n;
   int system_is_general; /* it declares a general Lagrangian */
-  int bound;             /* systems differ, and the method's steppers are bound to them: blocks have integrators of their own */
+  /* systems differ, and the method's steppers are bound to them: blocks have integrators of their
+   * own */
+  int bound;
   size_t state_numbers;  /* of a member: those that a step changes */
   size_t member_numbers; /* all */
   int capacity;          /* members of a block at most */
@@ -79,8 +87,9 @@ struct dvi_ensemble {
   dvi__departure departure;
 };
 
-/* The driver's numbers of a member, which follow those that a step changes: the length of the last step (0: none), the steps taken, and for
- * general Lagrangians the last point [n], or before the first step the start's velocity. */
+/* The driver's numbers of a member, which follow those that a step changes: the length of the last
+ * step (0: none), the steps taken, and for general Lagrangians the last point [n], or before the
+ * first step the start's velocity. */
 enum { DVI__MEMBER_LAST_H, DVI__MEMBER_STEPS, DVI__MEMBER_LAST };
 
 /* One number of all members of a block; the second form counts the driver's numbers alone. */
@@ -101,7 +110,8 @@ void dvi__member_store(const dvi_ensemble *e, const dvi__worker *w, const dvi__b
 /* Let a worker have an integrator of this block's system. */
 void dvi__worker_bind(dvi__worker *w, const dvi__block *block);
 
-/* Forget earlier failures; note one, with the thread's error sentence; the worst of all workers as the status of the call. */
+/* Forget earlier failures; note one, with the thread's error sentence; the worst of all workers as
+ * the status of the call. */
 void dvi__ensemble_clear_failures(dvi_ensemble *e);
 void dvi__worker_note(dvi__worker *w, int member, dvi_status status);
 dvi_status dvi__ensemble_verdict(const dvi_ensemble *e);

@@ -22,7 +22,8 @@ static dvi__sum weighted(int count, const double *numbers)
   return sum;
 }
 
-static dvi_status constraint(const dvi_integrator *I, const double *q, const double *p, dvi__sum *distance)
+static dvi_status constraint(const dvi_integrator *I, const double *q, const double *p,
+                             dvi__sum *distance)
 {
   const dvi__state_constraint *of_states = I->system->dynamics->constraint;
   if (of_states == NULL) return DVI_OK;
@@ -32,11 +33,11 @@ static dvi_status constraint(const dvi_integrator *I, const double *q, const dou
 
 static dvi_status monitor(const dvi_integrator *I, const double *q, dvi__fingerprint *f)
 {
-  if (I->pace == NULL) return DVI_OK;
-  DVI_TRY(dvi__pace_monitor(I->pace, q, &f->monitor.value));
-  DVI_TRY(dvi__pace_slope(I->pace, q, I->pace->g_q));
+  if (I->monitored == NULL) return DVI_OK;
+  DVI_TRY(dvi__monitored_time_monitor(I->monitored, q, &f->monitor.value));
+  DVI_TRY(dvi__monitored_time_slope(I->monitored, q, I->monitored->g_q));
   f->monitor.size = f->monitor.value;
-  f->monitor_slope = weighted(I->system->n, I->pace->g_q);
+  f->monitor_slope = weighted(I->system->n, I->monitored->g_q);
   return DVI_OK;
 }
 
@@ -45,7 +46,8 @@ static dvi_status take(const dvi_integrator *I, const dvi__moment *at, dvi__fing
   const int n = I->system->n;
   double *v = I->v, *forces = I->last_v;
   const double *second = dvi__second(I->system, v, at->p);
-  if (I->system->dynamics->searches_velocity) dvi__guess_velocity(n, at->q, at->last_q, at->last_p, at->last_h, v);
+  if (I->system->dynamics->searches_velocity)
+    dvi__guess_velocity(n, at->q, at->last_q, at->last_p, at->last_h, v);
   DVI_TRY(dvi__legendre_inverse(I->evaluator, at->t, at->q, at->p, v));
   DVI_TRY(I->system->dynamics->value(I->evaluator, at->t, at->q, second, &f->lagrangian.value));
   DVI_TRY(I->system->dynamics->forces(I->evaluator, at->t, at->q, second, forces));
@@ -56,12 +58,14 @@ static dvi_status take(const dvi_integrator *I, const dvi__moment *at, dvi__fing
   return monitor(I, at->q, f);
 }
 
-dvi_status dvi__fingerprint_take(const dvi_integrator *I, const dvi__moment *at, dvi__fingerprint *fingerprint)
+dvi_status dvi__fingerprint_take(const dvi_integrator *I, const dvi__moment *at,
+                                 dvi__fingerprint *fingerprint)
 {
   const dvi__sum nothing = {(double)NAN, (double)NAN};
   *fingerprint = (dvi__fingerprint){0};
   const dvi_status status = take(I, at, fingerprint);
-  if (status != DVI_OK) *fingerprint = (dvi__fingerprint){nothing, nothing, nothing, nothing, nothing};
+  if (status != DVI_OK)
+    *fingerprint = (dvi__fingerprint){nothing, nothing, nothing, nothing, nothing};
   return status;
 }
 
@@ -71,22 +75,28 @@ static int differ(const dvi__sum *a, const dvi__sum *b)
   return fabs(a->value - b->value) > same_number * (a->size + b->size);
 }
 
-static dvi_status complain(const char *what, const char *number, const dvi__sum *saved, const dvi__sum *here)
+static dvi_status complain(const char *what, const char *number, const dvi__sum *saved,
+                           const dvi__sum *here)
 {
-  return dvi__fail(DVI_BAD_FILE, "%s; at its state %s was %.12g, here it is %.12g", what, number, saved->value, here->value);
+  return dvi__fail(DVI_BAD_FILE, "%s; at its state %s was %.12g, here it is %.12g", what, number,
+                   saved->value, here->value);
 }
 
 dvi_status dvi__fingerprint_compare(const dvi__fingerprint *saved, const dvi__fingerprint *here)
 {
-  const char *other = "of another system or other parameters", *slower = "of another monitor or other parameters";
+  const char *other = "of another system or other parameters",
+             *slower = "of another monitor or other parameters";
   if (differ(&saved->lagrangian, &here->lagrangian))
     return complain(other, "the Lagrangian", &saved->lagrangian, &here->lagrangian);
-  if (differ(&saved->forces, &here->forces)) return complain(other, "a weighted sum of the forces", &saved->forces, &here->forces);
+  if (differ(&saved->forces, &here->forces))
+    return complain(other, "a weighted sum of the forces", &saved->forces, &here->forces);
   if (differ(&saved->distance, &here->distance))
-    return complain("of a system with another constraint or other parameters", "the distance from it", &saved->distance,
-                    &here->distance);
-  if (differ(&saved->monitor, &here->monitor)) return complain(slower, "the monitor g", &saved->monitor, &here->monitor);
+    return complain("of a system with another constraint or other parameters",
+                    "the distance from it", &saved->distance, &here->distance);
+  if (differ(&saved->monitor, &here->monitor))
+    return complain(slower, "the monitor g", &saved->monitor, &here->monitor);
   if (differ(&saved->monitor_slope, &here->monitor_slope))
-    return complain(slower, "a weighted sum of the monitor's gradient", &saved->monitor_slope, &here->monitor_slope);
+    return complain(slower, "a weighted sum of the monitor's gradient", &saved->monitor_slope,
+                    &here->monitor_slope);
   return DVI_OK;
 }

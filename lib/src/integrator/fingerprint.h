@@ -26,7 +26,8 @@ typedef struct dvi__moment {
 } dvi__moment;
 
 /* All NaN, and the status of a callback, if one fails there. */
-dvi_status dvi__fingerprint_take(const dvi_integrator *integrator, const dvi__moment *moment, dvi__fingerprint *fingerprint);
+dvi_status dvi__fingerprint_take(const dvi_integrator *integrator, const dvi__moment *moment,
+                                 dvi__fingerprint *fingerprint);
 
 /* DVI_BAD_FILE with a sentence that says in which number `here` differs from `saved`, to nine
  * digits. */

@@ -22,7 +22,7 @@ static double time_of(const void *of)
 static double time_left(const void *of, double t_end)
 {
   const dvi_integrator *I = ((const mechanics *)of)->integrator;
-  return (t_end - I->now.t) + I->now.t_carry;
+  return (t_end - I->now.t) + I->now.t_compensation;
 }
 
 static long steps_of(const void *of)
@@ -36,7 +36,7 @@ static dvi_status advance(void *of, double h, double t_end, double tolerance)
 {
   dvi_integrator *I = ((const mechanics *)of)->integrator;
   const double forward = h > 0 ? 1 : -1, left = time_left(of, t_end);
-  if (I->pace != NULL) return dvi__pace_step(I, h, t_end, tolerance);
+  if (I->monitored != NULL) return dvi__monitored_time_step(I, h, t_end, tolerance);
   DVI_TRY(dvi_integrator_step(I, h));
   if (!dvi_integrator_chooses_steps(I)) return DVI_OK;
   if (forward * (I->now.t - t_end) <= tolerance) return DVI_OK;
@@ -82,9 +82,12 @@ static dvi_status ask(const dvi_event *event, double t, const double *q, const d
 {
   const int returned = event->value(t, q, v, g, event->user);
   if (returned != 0)
-    return dvi__fail(returned < 0 ? DVI_CALLBACK_FAILED : DVI_CALLBACK_RETRY, "event '%s': the callback returned %d at t = %.9g",
-                     name_of(event), returned, t);
-  return isfinite(*g) ? DVI_OK : dvi__fail(DVI_NOT_FINITE, "event '%s' is %g at t = %.9g", name_of(event), *g, t);
+    return dvi__fail(returned < 0 ? DVI_CALLBACK_FAILED : DVI_CALLBACK_RETRY,
+                     "event '%s': the callback returned %d at t = %.9g", name_of(event), returned,
+                     t);
+  return isfinite(*g)
+             ? DVI_OK
+             : dvi__fail(DVI_NOT_FINITE, "event '%s' is %g at t = %.9g", name_of(event), *g, t);
 }
 
 /* On the last step's path. */
@@ -114,21 +117,27 @@ static dvi_status occurred(void *of, int k, double t, int *returned)
   DVI_TRY(dvi_integrator_interpolate(m->integrator, t, m->q, m->v));
   *returned = event->occurred(t, m->q, m->v, event->user);
   if (*returned >= 0) return DVI_OK;
-  return dvi__fail(DVI_CALLBACK_FAILED, "event '%s': the callback at t = %.9g failed with %d", name_of(event), t, *returned);
+  return dvi__fail(DVI_CALLBACK_FAILED, "event '%s': the callback at t = %.9g failed with %d",
+                   name_of(event), t, *returned);
 }
 
 static dvi_status check_events(const dvi_run_options *options)
 {
-  if (options->event_count < 0) return dvi__fail(DVI_BAD_ARGUMENT, "run: %d events; 0 or more are possible", options->event_count);
+  if (options->event_count < 0)
+    return dvi__fail(DVI_BAD_ARGUMENT, "run: %d events; 0 or more are possible",
+                     options->event_count);
   if (options->event_count > 0 && options->events == NULL)
-    return dvi__fail(DVI_BAD_ARGUMENT, "run: %d events declared, but their list is NULL", options->event_count);
+    return dvi__fail(DVI_BAD_ARGUMENT, "run: %d events declared, but their list is NULL",
+                     options->event_count);
   if (options->event_count == 0 && options->events != NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "run: a list of events is given, but their count is 0");
   for (int k = 0; k < options->event_count; k++) {
     const dvi_event *event = &options->events[k];
-    if (event->value == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "run: event %d has no value callback", k);
+    if (event->value == NULL)
+      return dvi__fail(DVI_BAD_ARGUMENT, "run: event %d has no value callback", k);
     if (event->direction < -1 || event->direction > 1)
-      return dvi__fail(DVI_BAD_ARGUMENT, "run: event %d has direction %d; -1, 0 or 1 are possible", k, event->direction);
+      return dvi__fail(DVI_BAD_ARGUMENT, "run: event %d has direction %d; -1, 0 or 1 are possible",
+                       k, event->direction);
   }
   return DVI_OK;
 }
@@ -154,7 +163,7 @@ static dvi_status run(mechanics *m, dvi_run_report *report)
   const dvi__march_options options = {.h = given->h,
                                       .t_end = given->t_end,
                                       .chooses_steps = dvi_integrator_chooses_steps(I),
-                                      .counts_by_time = I->pace == NULL,
+                                      .counts_by_time = I->monitored == NULL,
                                       .every = given->every,
                                       .event_count = given->event_count,
                                       .checkpoint = given->checkpoint,
@@ -178,7 +187,9 @@ dvi_status dvi_run(dvi_integrator *I, const dvi_run_options *options, dvi_run_re
   mechanics m = {.integrator = I, .options = options};
   *out = (dvi_run_report){.end = DVI_RUN_FAILED, .event_time = (double)NAN, .event = -1};
   if (I == NULL || options == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "run: an argument is NULL");
-  if (!I->started) return dvi__fail(DVI_BAD_STATE, "run: the integrator has no state yet; call dvi_integrator_start first");
+  if (!I->started)
+    return dvi__fail(DVI_BAD_STATE,
+                     "run: the integrator has no state yet; call dvi_integrator_start first");
   DVI_TRY(check_events(options));
   dvi_status status = reserve(&m);
   if (status == DVI_OK) status = run(&m, out);

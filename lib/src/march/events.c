@@ -20,15 +20,18 @@ static dvi_status evaluate(const dvi__event_search *w, int k, double t, double *
   return w->marcher->value(w->of, k, t, g);
 }
 
-dvi_status dvi__event_search_create(void *of, const dvi__marcher *marcher, int count, dvi__event_search *w)
+dvi_status dvi__event_search_create(void *of, const dvi__marcher *marcher, int count,
+                                    dvi__event_search *w)
 {
   dvi_status status = DVI_OK;
   *w = (dvi__event_search){.of = of, .marcher = marcher, .count = count};
   if (count == 0) return DVI_OK;
   w->before = DVI_NEW(double, count);
   w->zero = DVI_NEW(double, (size_t)count *PARTS);
-  if (w->before == NULL || w->zero == NULL) status = dvi__fail(DVI_NO_MEMORY, "run: no memory for %d events", count);
-  for (int k = 0; k < count && status == DVI_OK; k++) status = marcher->value_at_start(of, k, &w->before[k]);
+  if (w->before == NULL || w->zero == NULL)
+    status = dvi__fail(DVI_NO_MEMORY, "run: no memory for %d events", count);
+  for (int k = 0; k < count && status == DVI_OK; k++)
+    status = marcher->value_at_start(of, k, &w->before[k]);
   if (status != DVI_OK) dvi__event_search_clear(w);
   return status;
 }
@@ -44,13 +47,14 @@ void dvi__event_search_clear(dvi__event_search *w)
 static int crosses(int direction, const bracket *at)
 {
   if (at->ga == 0) return 0;
-  if (at->gb != 0 && (at->gb > 0) == (at->ga > 0)) return 0; /* the product of two small values may vanish */
+  /* the product of two small values may vanish */
+  if (at->gb != 0 && (at->gb > 0) == (at->ga > 0)) return 0;
   const int rises = at->gb > at->ga;
   return direction == 0 || (direction > 0) == rises;
 }
 
-/* Illinois' variant of regula falsi, to the last digits of t (Dowell and Jarratt 1971). Where three of its iterations do not halve the
- * bracket, as at a multiple zero, one of bisection follows. */
+/* Illinois' variant of regula falsi, to the last digits of t (Dowell and Jarratt 1971). Where three
+ * of its iterations do not halve the bracket, as at a multiple zero, one of bisection follows. */
 static dvi_status locate(const dvi__event_search *w, int k, bracket at, double *zero)
 {
   int side = 0;
@@ -60,7 +64,8 @@ static dvi_status locate(const dvi__event_search *w, int k, bracket at, double *
     const double width = at.b - at.a;
     const int lingers = i % 3 == 0 && fabs(width) > 0.5 * looked_at;
     double g, middle = at.a + width * (at.ga / (at.ga - at.gb));
-    if (lingers || middle == at.a || middle == at.b) middle = at.a + 0.5 * width; /* g's values may be of very different size */
+    /* g's values may be of very different size */
+    if (lingers || middle == at.a || middle == at.b) middle = at.a + 0.5 * width;
     if (i % 3 == 0) looked_at = fabs(width);
     *zero = middle;
     if (fabs(width) <= at.tolerance) break;
@@ -79,7 +84,8 @@ static dvi_status locate(const dvi__event_search *w, int k, bracket at, double *
   return DVI_OK;
 }
 
-static dvi_status report_event(const dvi__event_search *w, int k, double zero, dvi_run_report *report, int *stop)
+static dvi_status report_event(const dvi__event_search *w, int k, double zero,
+                               dvi_run_report *report, int *stop)
 {
   int returned = 0;
   report->events++;
@@ -97,7 +103,8 @@ static dvi_status report_event(const dvi__event_search *w, int k, double zero, d
   return DVI_OK;
 }
 
-/* Whether g passes from one sign to the other through infinity: near a zero it is less than at the ends of the bracket. */
+/* Whether g passes from one sign to the other through infinity: near a zero it is less than at the
+ * ends of the bracket. */
 static dvi_status drop_pole(const dvi__event_search *w, int k, const bracket *at, double *zero)
 {
   double g;
@@ -129,18 +136,21 @@ dvi_status dvi__event_search_find(dvi__event_search *w, double from)
   return DVI_OK;
 }
 
-/* The zero that the run meets first, of two at one time the first of the list; -1 if there is none. */
+/* The zero that the run meets first, of two at one time the first of the list; -1 if there is
+ * none. */
 static int earliest(const dvi__event_search *w, int count, int forward)
 {
   int first = -1;
   for (int k = 0; k < count; k++) {
     if (isnan(w->zero[k])) continue;
-    if (first < 0 || (forward ? w->zero[k] < w->zero[first] : w->zero[k] > w->zero[first])) first = k;
+    if (first < 0 || (forward ? w->zero[k] < w->zero[first] : w->zero[k] > w->zero[first]))
+      first = k;
   }
   return first;
 }
 
-dvi_status dvi__event_search_report(dvi__event_search *w, int forward, dvi_run_report *report, int *stop)
+dvi_status dvi__event_search_report(dvi__event_search *w, int forward, dvi_run_report *report,
+                                    int *stop)
 {
   const int count = w->count * PARTS;
   for (int k = earliest(w, count, forward); k >= 0 && !*stop; k = earliest(w, count, forward)) {

@@ -12,15 +12,17 @@ typedef struct dvi__event_search {
   double *zero;   /* [count * parts] the step's zeros that are not reported yet; NaN: none */
 } dvi__event_search;
 
-dvi_status dvi__event_search_create(void *of, const dvi__marcher *marcher, int count, dvi__event_search *search);
+dvi_status dvi__event_search_create(void *of, const dvi__marcher *marcher, int count,
+                                    dvi__event_search *search);
 void dvi__event_search_clear(dvi__event_search *search);
 
-/* Find the zeros of the last step, which began at time `from`. Nothing is reported yet: on a failure the
- * step can be taken back. */
+/* Find the zeros of the last step, which began at time `from`. Nothing is reported yet: on a
+ * failure the step can be taken back. */
 dvi_status dvi__event_search_find(dvi__event_search *search, double from);
 
-/* Tell the events' callbacks, in the order of time, and note them in the report. *stop becomes 1 if one of
- * them ends the run; later ones are then left out. */
-dvi_status dvi__event_search_report(dvi__event_search *search, int forward, dvi_run_report *report, int *stop);
+/* Tell the events' callbacks, in the order of time, and note them in the report. *stop becomes 1 if
+ * one of them ends the run; later ones are then left out. */
+dvi_status dvi__event_search_report(dvi__event_search *search, int forward, dvi_run_report *report,
+                                    int *stop);
 
 #endif

@@ -1,5 +1,5 @@
-/* A run of anything that advances in time: mechanics now, fields that are stepped asynchronously, or
- * ensembles. The loop knows times, events, observers and checkpoints, but no coordinates. */
+/* A run of anything that advances in time: mechanics now, fields that are stepped asynchronously,
+ * or ensembles. The loop knows times, events, observers and checkpoints, but no coordinates. */
 #ifndef DVI_MARCH_MARCH_H
 #define DVI_MARCH_MARCH_H
 #include <dvi/run.h>
@@ -19,17 +19,18 @@ typedef struct dvi__marcher {
   /* Steps that were taken so far, by whom ever. */
   long (*steps)(const void *of);
 
-  /* Take one step of h, not past t_end. What chooses the lengths of its steps ends exactly at t_end,
-   * within `tolerance`, if its step would lead there or past it. On failure nothing changes. */
+  /* Take one step of h, not past t_end. What chooses the lengths of its steps ends exactly at
+   * t_end, within `tolerance`, if its step would lead there or past it. On failure nothing
+   * changes. */
   dvi_status (*advance)(void *of, double h, double t_end, double tolerance);
 
-  /* Take the last step back, once; the same for a step that succeeded while what followed did not: the
-   * status is passed on, and its sentence says so. */
+  /* Take the last step back, once; the same for a step that succeeded while what followed did not:
+   * the status is passed on, and its sentence says so. */
   void (*take_back)(void *of);
   dvi_status (*reject)(void *of, dvi_status status);
 
-  /* The event k, its function at a time within the last step, and at the start of the run before any
-   * step; NULL without events. */
+  /* The event k, its function at a time within the last step, and at the start of the run before
+   * any step; NULL without events. */
   dvi__watched (*event)(const void *of, int k);
   dvi_status (*value)(void *of, int k, double t, double *g);
   dvi_status (*value_at_start)(void *of, int k, double *g);
@@ -56,6 +57,7 @@ typedef struct dvi__march_options {
 } dvi__march_options;
 
 /* Check the options against the time, and run to t_end (dvi/run.h). */
-dvi_status dvi__march(void *of, const dvi__marcher *marcher, const dvi__march_options *options, dvi_run_report *report);
+dvi_status dvi__march(void *of, const dvi__marcher *marcher, const dvi__march_options *options,
+                      dvi_run_report *report);
 
 #endif

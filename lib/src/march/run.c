@@ -36,20 +36,26 @@ static dvi_status check_options(const march *m)
   const dvi__march_options *options = m->options;
   const double way = options->t_end - time_of(m);
   if (!isfinite(options->h) || options->h == 0)
-    return dvi__fail(DVI_BAD_ARGUMENT, "run: h = %g; a finite step other than 0 is needed", options->h);
-  if (!isfinite(options->t_end)) return dvi__fail(DVI_BAD_ARGUMENT, "run: t_end = %g is not finite", options->t_end);
+    return dvi__fail(DVI_BAD_ARGUMENT, "run: h = %g; a finite step other than 0 is needed",
+                     options->h);
+  if (!isfinite(options->t_end))
+    return dvi__fail(DVI_BAD_ARGUMENT, "run: t_end = %g is not finite", options->t_end);
   if (fabs(way) > clock_error(m, options->t_end) && (way > 0) != (options->h > 0))
-    return dvi__fail(DVI_BAD_ARGUMENT, "run: h = %g leads away from t_end = %g; the time is %g", options->h, options->t_end,
-                     time_of(m));
+    return dvi__fail(DVI_BAD_ARGUMENT, "run: h = %g leads away from t_end = %g; the time is %g",
+                     options->h, options->t_end, time_of(m));
   if (options->counts_by_time && !(fabs(way / options->h) <= steps_max))
     return dvi__fail(DVI_BAD_ARGUMENT,
-                     "run: h = %g makes %.3g steps to t_end = %g; at most 2^53 can be counted; take a longer step or a nearer end",
+                     "run: h = %g makes %.3g steps to t_end = %g; at most 2^53 can be counted; "
+                     "take a longer step or a nearer end",
                      options->h, way / options->h, options->t_end);
   if (options->every < 0 || options->checkpoint_every < 0)
-    return dvi__fail(DVI_BAD_ARGUMENT, "run: every = %ld, checkpoint_every = %ld; 0 or more are possible", options->every,
-                     options->checkpoint_every);
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "run: every = %ld, checkpoint_every = %ld; 0 or more are possible",
+                     options->every, options->checkpoint_every);
   if (options->checkpoint_every > 0 && options->checkpoint == NULL)
-    return dvi__fail(DVI_BAD_ARGUMENT, "run: checkpoint_every = %ld, but no checkpoint file is named", options->checkpoint_every);
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "run: checkpoint_every = %ld, but no checkpoint file is named",
+                     options->checkpoint_every);
   return DVI_OK;
 }
 
@@ -66,17 +72,22 @@ static dvi_status observe(march *m)
   const double t = time_of(m);
   const int returned = m->marcher->observe(m->of);
   if (m->marcher->steps(m->of) != steps || time_of(m) != t)
-    return dvi__fail(DVI_BAD_STATE, "run: the observer has moved the integrator from t = %.9g; it may only look at it", t);
-  if (returned < 0) return dvi__fail(DVI_CALLBACK_FAILED, "run: the observer failed with %d at t = %.9g", returned, t);
+    return dvi__fail(
+        DVI_BAD_STATE,
+        "run: the observer has moved the integrator from t = %.9g; it may only look at it", t);
+  if (returned < 0)
+    return dvi__fail(DVI_CALLBACK_FAILED, "run: the observer failed with %d at t = %.9g", returned,
+                     t);
   if (returned > 0) end_run(m, DVI_RUN_STOPPED);
   return DVI_OK;
 }
 
-/* The next step's length: h, or what is left of the way, or 0 at its end. An h that divides the way but
- * for the digits that it was given with is stretched in the last step. */
+/* The next step's length: h, or what is left of the way, or 0 at its end. An h that divides the way
+ * but for the digits that it was given with is stretched in the last step. */
 static double next_step(const march *m, double t_end)
 {
-  const double left = m->marcher->left(m->of, t_end), h = m->options->h, missed = clock_error(m, t_end);
+  const double left = m->marcher->left(m->of, t_end), h = m->options->h,
+               missed = clock_error(m, t_end);
   if (fabs(left) <= missed) return 0;
   if (m->options->chooses_steps) return h;
   if (fabs(left - h) <= missed) return h;
@@ -88,7 +99,8 @@ static dvi_status advance(march *m, double h, double t_end)
   return m->marcher->advance(m->of, h, t_end, clock_error(m, t_end));
 }
 
-/* A terminal event ends the run at its own time: the step that holds it is taken again, up to there. */
+/* A terminal event ends the run at its own time: the step that holds it is taken again, up to
+ * there. */
 static dvi_status end_at_event(march *m)
 {
   const double t_end = m->report->event_time;
@@ -118,8 +130,10 @@ static dvi_status one_step(march *m, double h)
   DVI_TRY(dvi__event_search_report(&m->search, options->h > 0, m->report, &m->stop));
   if (m->report->end == DVI_RUN_EVENT) DVI_TRY(end_at_event(m));
   if (options->cancel != NULL && *options->cancel && !m->stop) end_run(m, DVI_RUN_CANCELLED);
-  if (m->stop || m->report->steps % every == 0 || next_step(m, options->t_end) == 0) DVI_TRY(observe(m));
-  if (options->checkpoint != NULL && options->checkpoint_every > 0 && m->report->steps % options->checkpoint_every == 0)
+  if (m->stop || m->report->steps % every == 0 || next_step(m, options->t_end) == 0)
+    DVI_TRY(observe(m));
+  if (options->checkpoint != NULL && options->checkpoint_every > 0 &&
+      m->report->steps % options->checkpoint_every == 0)
     return m->marcher->save(m->of, options->checkpoint);
   return DVI_OK;
 }
@@ -128,7 +142,8 @@ static dvi_status run_steps(march *m)
 {
   const double t_end = m->options->t_end;
   DVI_TRY(observe(m));
-  for (double h = next_step(m, t_end); h != 0 && !m->stop; h = next_step(m, t_end)) DVI_TRY(one_step(m, h));
+  for (double h = next_step(m, t_end); h != 0 && !m->stop; h = next_step(m, t_end))
+    DVI_TRY(one_step(m, h));
   return DVI_OK;
 }
 
@@ -139,10 +154,12 @@ static dvi_status save_at_end(const march *m, dvi_status status)
   (void)snprintf(sentence, sizeof sentence, "%s", dvi_last_error());
   const dvi_status saved = m->marcher->save(m->of, m->options->checkpoint);
   if (status == DVI_OK) return saved;
-  return saved == DVI_OK ? dvi__fail(status, "%s", sentence) : dvi__fail_in(status, "%s; and then", sentence);
+  return saved == DVI_OK ? dvi__fail(status, "%s", sentence)
+                         : dvi__fail_in(status, "%s; and then", sentence);
 }
 
-dvi_status dvi__march(void *of, const dvi__marcher *marcher, const dvi__march_options *options, dvi_run_report *report)
+dvi_status dvi__march(void *of, const dvi__marcher *marcher, const dvi__march_options *options,
+                      dvi_run_report *report)
 {
   march m = {.of = of, .marcher = marcher, .options = options, .report = report};
   DVI_TRY(check_options(&m));

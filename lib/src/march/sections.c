@@ -103,7 +103,8 @@ dvi_status dvi__sections_finish(dvi__sections_writer *w)
   const size_t asked = w->capacity;
   dvi__section_open(w, end_name, 0);
   close_section(w);
-  return w->bytes != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "checkpoint: no memory for %zu bytes", asked);
+  return w->bytes != NULL ? DVI_OK
+                          : dvi__fail(DVI_NO_MEMORY, "checkpoint: no memory for %zu bytes", asked);
 }
 
 /* ---- check ---- */
@@ -125,21 +126,25 @@ static dvi_status check_file_header(const dvi__sections *s)
   if (s->size >= sizeof magic && memcmp(header.magic, magic, sizeof magic) != 0)
     return dvi__fail(DVI_BAD_FILE, "%s: no saved state of libdvi", s->name);
   if (s->size < sizeof header) return refuse_cut(s);
-  if (header.order_mark != ORDER_MARK) return dvi__fail(DVI_BAD_FILE, "%s: written on another kind of machine", s->name);
+  if (header.order_mark != ORDER_MARK)
+    return dvi__fail(DVI_BAD_FILE, "%s: written on another kind of machine", s->name);
   if (header.format == FORMAT) return DVI_OK;
   return dvi__fail(DVI_BAD_FILE,
-                   "%s: written in format %" PRIu32 " by another version of libdvi; this one reads format %d. Finish the run "
+                   "%s: written in format %" PRIu32
+                   " by another version of libdvi; this one reads format %d. Finish the run "
                    "with the version that wrote it, or run it again from its start",
                    s->name, header.format, FORMAT);
 }
 
 /* The section at a place, and where the next one begins; DVI_BAD_FILE if it is not whole. */
-static dvi_status check_section(const dvi__sections *s, size_t at, section_header *header, size_t *next)
+static dvi_status check_section(const dvi__sections *s, size_t at, section_header *header,
+                                size_t *next)
 {
   if (s->size - at < sizeof *header) return refuse_cut(s);
   memcpy(header, s->bytes + at, sizeof *header);
   const size_t content = at + sizeof *header;
-  if (header->size > s->size - content || padded(header->size) > s->size - content) return refuse_cut(s);
+  if (header->size > s->size - content || padded(header->size) > s->size - content)
+    return refuse_cut(s);
   *next = content + padded(header->size);
   return hash_section(header, s->bytes + content) == header->hash ? DVI_OK : refuse_damage(s);
 }
@@ -162,8 +167,8 @@ dvi_status dvi__sections_check(dvi__sections *s, const char *name, const void *b
 
 /* ---- read ---- */
 
-/* A stream tells no size that could be believed: the bytes are read until it ends, but no further than a
- * header that is none. */
+/* A stream tells no size that could be believed: the bytes are read until it ends, but no further
+ * than a header that is none. */
 static dvi_status read_stream(FILE *stream, dvi__sections *s)
 {
   size_t capacity = 4096;
@@ -171,7 +176,8 @@ static dvi_status read_stream(FILE *stream, dvi__sections *s)
   while (s->own != NULL) {
     s->bytes = s->own;
     s->size += fread(s->own + s->size, 1, capacity - s->size, stream);
-    if (ferror(stream)) return dvi__fail(DVI_IO_ERROR, "%s: cannot read it: %s", s->name, strerror(errno));
+    if (ferror(stream))
+      return dvi__fail(DVI_IO_ERROR, "%s: cannot read it: %s", s->name, strerror(errno));
     DVI_TRY(check_file_header(s));
     if (s->size < capacity) return DVI_OK;
     unsigned char *larger = DVI_NEW(unsigned char, 2 * capacity);
@@ -186,7 +192,8 @@ static dvi_status read_stream(FILE *stream, dvi__sections *s)
 dvi_status dvi__sections_read(const char *path, dvi__sections *s)
 {
   FILE *stream = fopen(path, "rb");
-  if (stream == NULL) return dvi__fail(DVI_IO_ERROR, "%s: cannot read it: %s", s->name, strerror(errno));
+  if (stream == NULL)
+    return dvi__fail(DVI_IO_ERROR, "%s: cannot read it: %s", s->name, strerror(errno));
   const dvi_status status = read_stream(stream, s);
   (void)fclose(stream);
   return status == DVI_OK ? dvi__sections_check(s, s->name, s->own, s->size) : status;
@@ -200,20 +207,25 @@ void dvi__sections_clear(dvi__sections *s)
 
 /* ---- find ---- */
 
-dvi_status dvi__section_find(const dvi__sections *s, const char *name, uint32_t version, size_t size, dvi__section *found)
+dvi_status dvi__section_find(const dvi__sections *s, const char *name, uint32_t version,
+                             size_t size, dvi__section *found)
 {
   section_header header;
   size_t at = sizeof(file_header), next;
   for (;; at = next) {
     DVI_TRY(check_section(s, at, &header, &next));
     if (is_named(&header, name)) break;
-    if (is_named(&header, end_name)) return dvi__fail(DVI_BAD_FILE, "%s: it has no section '%s'", s->name, name);
+    if (is_named(&header, end_name))
+      return dvi__fail(DVI_BAD_FILE, "%s: it has no section '%s'", s->name, name);
   }
   if (header.version != version)
-    return dvi__fail(DVI_BAD_FILE, "%s: section '%s' is of version %" PRIu32 "; this libdvi reads version %" PRIu32, s->name, name,
-                     header.version, version);
+    return dvi__fail(DVI_BAD_FILE,
+                     "%s: section '%s' is of version %" PRIu32
+                     "; this libdvi reads version %" PRIu32,
+                     s->name, name, header.version, version);
   if (size != DVI__ANY_SIZE && header.size != size)
-    return dvi__fail(DVI_BAD_FILE, "%s: section '%s' has %" PRIu64 " bytes instead of %zu", s->name, name, header.size, size);
+    return dvi__fail(DVI_BAD_FILE, "%s: section '%s' has %" PRIu64 " bytes instead of %zu", s->name,
+                     name, header.size, size);
   *found = (dvi__section){header.version, s->bytes + at + sizeof header, header.size};
   return DVI_OK;
 }

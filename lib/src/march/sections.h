@@ -1,9 +1,10 @@
 /* Saved states: tagged sections in one block of bytes, of a file or in memory.
  *
- * Layout, in the machine's own byte order, which a mark tells: a header of magic, mark and format; then
- * sections, each of a name, a version, the length of its content, a hash of both and the content,
- * with zeros to a multiple of 8 bytes; at last a section "end" without content. A reader of a
- * section refuses versions that it does not know. Sections that nobody asks for are no error. */
+ * Layout, in the machine's own byte order, which a mark tells: a header of magic, mark and format;
+ * then sections, each of a name, a version, the length of its content, a hash of both and the
+ * content, with zeros to a multiple of 8 bytes; at last a section "end" without content. A reader
+ * of a section refuses versions that it does not know. Sections that nobody asks for are no
+ * error. */
 #ifndef DVI_MARCH_SECTIONS_H
 #define DVI_MARCH_SECTIONS_H
 #include <dvi/status.h>
@@ -14,7 +15,8 @@ enum { DVI__SECTION_NAME = 16 };
 
 /* ---- write ---- */
 
-/* Bytes that are being written. After a failure of memory `bytes` is NULL, and all calls do nothing. */
+/* Bytes that are being written. After a failure of memory `bytes` is NULL, and all calls do
+ * nothing. */
 typedef struct dvi__sections_writer {
   unsigned char *bytes; /* owned: dvi__release */
   size_t size, capacity;
@@ -38,7 +40,8 @@ typedef struct dvi__sections {
   const char *name;
   const unsigned char *bytes; /* aligned as for any number */
   size_t size;
-  unsigned char *own; /* NULL: the bytes are the caller's; else they are released by dvi__sections_clear */
+  /* NULL: the bytes are the caller's; else they are released by dvi__sections_clear */
+  unsigned char *own;
 } dvi__sections;
 
 /* A section's content; the pointers lead into the bytes. */
@@ -51,15 +54,17 @@ typedef struct dvi__section {
 /* Read a whole file, and check it as below. DVI_IO_ERROR. */
 dvi_status dvi__sections_read(const char *path, dvi__sections *sections);
 
-/* Check bytes in memory: DVI_BAD_FILE, with a sentence, if they are no saved state, are cut short, go
- * on behind the end, are damaged, or are of another format or kind of machine. */
-dvi_status dvi__sections_check(dvi__sections *sections, const char *name, const void *bytes, size_t size);
+/* Check bytes in memory: DVI_BAD_FILE, with a sentence, if they are no saved state, are cut short,
+ * go on behind the end, are damaged, or are of another format or kind of machine. */
+dvi_status dvi__sections_check(dvi__sections *sections, const char *name, const void *bytes,
+                               size_t size);
 
 void dvi__sections_clear(dvi__sections *sections);
 
 /* Find a section. DVI_BAD_FILE if there is none, if its version is another one, or if its content
  * has another number of bytes than `size`. */
 #define DVI__ANY_SIZE SIZE_MAX
-dvi_status dvi__section_find(const dvi__sections *sections, const char *name, uint32_t version, size_t size, dvi__section *found);
+dvi_status dvi__section_find(const dvi__sections *sections, const char *name, uint32_t version,
+                             size_t size, dvi__section *found);
 
 #endif

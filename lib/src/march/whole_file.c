@@ -21,7 +21,8 @@ static int create_beside(const char *path, size_t size, char *beside)
   enum { MOST_NAMES = 1000 };
   static atomic_ulong count;
   for (int i = 0; i < MOST_NAMES; i++) {
-    const int length = snprintf(beside, size, "%s.part-%ld-%lu", path, (long)getpid(), atomic_fetch_add(&count, 1));
+    const int length = snprintf(beside, size, "%s.part-%ld-%lu", path, (long)getpid(),
+                                atomic_fetch_add(&count, 1));
     if (length < 0 || (size_t)length >= size) {
       errno = ENAMETOOLONG;
       return -1;
@@ -70,7 +71,8 @@ static int flush_folder(const char *path)
 {
   char folder[PATH_MAX + 2];
   const char *slash = strrchr(path, '/');
-  (void)snprintf(folder, sizeof folder, "%.*s", slash != NULL ? (int)(slash - path) + 1 : 1, slash != NULL ? path : ".");
+  (void)snprintf(folder, sizeof folder, "%.*s", slash != NULL ? (int)(slash - path) + 1 : 1,
+                 slash != NULL ? path : ".");
   const int descriptor = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return 0;
   const int reason = fsync(descriptor) != 0 && errno != EINVAL && errno != ENOTSUP ? errno : 0;
@@ -82,9 +84,11 @@ dvi_status dvi__write_whole(const char *link, const unsigned char *bytes, size_t
 {
   char beside[PATH_MAX + 64], real[PATH_MAX];
   const char *path = realpath(link, real) != NULL ? real : link;
-  if (is_no_file(path)) return dvi__fail(DVI_IO_ERROR, "cannot write %s: it is not a regular file", link);
+  if (is_no_file(path))
+    return dvi__fail(DVI_IO_ERROR, "cannot write %s: it is not a regular file", link);
   const int descriptor = create_beside(path, sizeof beside, beside);
-  if (descriptor < 0) return dvi__fail(DVI_IO_ERROR, "cannot write a file beside %.256s: %s", link, strerror(errno));
+  if (descriptor < 0)
+    return dvi__fail(DVI_IO_ERROR, "cannot write a file beside %.256s: %s", link, strerror(errno));
   take_rights(descriptor, path);
   int reason = write_and_close(descriptor, bytes, count);
   if (reason == 0 && rename(beside, path) != 0) reason = errno;
@@ -93,6 +97,8 @@ dvi_status dvi__write_whole(const char *link, const unsigned char *bytes, size_t
     return dvi__fail(DVI_IO_ERROR, "cannot write %s: %s", link, strerror(reason));
   }
   reason = flush_folder(path);
-  return reason == 0 ? DVI_OK
-                     : dvi__fail(DVI_IO_ERROR, "%s is written, but its folder cannot be flushed: %s", link, strerror(reason));
+  return reason == 0
+             ? DVI_OK
+             : dvi__fail(DVI_IO_ERROR, "%s is written, but its folder cannot be flushed: %s", link,
+                         strerror(reason));
 }

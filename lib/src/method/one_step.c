@@ -22,7 +22,8 @@ static int allocate(dvi__one_step *one, size_t n)
   return one->work && one->dq && one->dp && one->carried;
 }
 
-dvi_status dvi__one_step_create(dvi__stepper *self, size_t size, const dvi__step_kind *kind, void *of, size_t carried)
+dvi_status dvi__one_step_create(dvi__stepper *self, size_t size, const dvi__step_kind *kind,
+                                void *of, size_t carried)
 {
   dvi__one_step *one = self->own = dvi__allocate(1, size);
   if (one == NULL) {
@@ -33,21 +34,23 @@ dvi_status dvi__one_step_create(dvi__stepper *self, size_t size, const dvi__step
   one->of = of;
   one->last = DVI__CARRIED + carried;
   self->memory_count = one->last + unknowns(one);
-  if (!allocate(one, (size_t)self->system->n)) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
+  if (!allocate(one, (size_t)self->system->n))
+    return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
   /* Coefficients of several kinds of functions have no sizes of their own. */
-  dvi__equations equations = {.unknowns = (int)unknowns(one),
-                              .group = (int)(kind->renewed ? unknowns(one) : unknowns(one) / (size_t)self->system->n),
-                              .pattern = kind->pattern(of),
-                              .of = of,
-                              .residual = kind->residual,
-                              .jacobian = kind->jacobian,
-                              .row_scale = kind->row_scale,
-                              .renewed = kind->renewed,
-                              .ahead = kind->renewed};
+  dvi__equations equations = {
+      .unknowns = (int)unknowns(one),
+      .group = (int)(kind->renewed ? unknowns(one) : unknowns(one) / (size_t)self->system->n),
+      .pattern = kind->pattern(of),
+      .of = of,
+      .residual = kind->residual,
+      .jacobian = kind->jacobian,
+      .row_scale = kind->row_scale,
+      .renewed = kind->renewed,
+      .ahead = kind->renewed};
   DVI_TRY(dvi__stationary_create(self, &equations, &one->equations));
   one->x = one->equations.x;
-  /* Functions that change with h, and steps over many periods: what is measured of a branch, or of a
-   * motion, says nothing. */
+  /* Functions that change with h, and steps over many periods: what is measured of a branch, or of
+   * a motion, says nothing. */
   if (kind->renewed) self->follows = 0;
   return DVI_OK;
 }
@@ -91,7 +94,8 @@ dvi_status dvi__one_step_solve(dvi__stepper *self, const dvi__state *state, doub
   return dvi__stationary_solve(&one->equations, &step);
 }
 
-dvi_status dvi__one_step_momentum(dvi__stepper *self, const dvi__state *state, double part, const double **p)
+dvi_status dvi__one_step_momentum(dvi__stepper *self, const dvi__state *state, double part,
+                                  const double **p)
 {
   const dvi__one_step *one = self->own;
   const size_t n = (size_t)self->system->n;
@@ -110,8 +114,8 @@ dvi_status dvi__one_step_move(dvi__stepper *self, dvi__state *state, double h, c
   const dvi__one_step *one = self->own;
   double duration = h;
   if (one->kind->duration != NULL) DVI_TRY(one->kind->duration(one->of, one->x, &duration));
-  dvi__add_compensated_all(self->system->n, state->q, state->q_carry, one->dq);
-  dvi__add_compensated(&state->t, &state->t_carry, duration);
+  dvi__add_compensated_all(self->system->n, state->q, state->q_compensation, one->dq);
+  dvi__add_compensated(&state->t, &state->t_compensation, duration);
   self->memory[DVI__LENGTH] = h;
   memcpy(self->memory + one->last, last, unknowns(one) * sizeof(double));
   return DVI_OK;
@@ -128,8 +132,11 @@ void dvi__one_step_explain(const dvi__stepper *self, dvi__text *text)
 {
   const dvi__one_step *one = self->own;
   const dvi__pattern *pattern = one->kind->pattern(one->of);
-  dvi__text_add(text, "kernel: implicit; %d unknowns a step, Jacobian with %d entries (%.3g %% of a full one)\n", pattern->columns,
-                dvi__pattern_entries(pattern), 100.0 * dvi__pattern_entries(pattern) / pattern->columns / pattern->columns);
+  dvi__text_add(
+      text,
+      "kernel: implicit; %d unknowns a step, Jacobian with %d entries (%.3g %% of a full one)\n",
+      pattern->columns, dvi__pattern_entries(pattern),
+      100.0 * dvi__pattern_entries(pattern) / pattern->columns / pattern->columns);
   one->kind->explain(self, text);
   dvi__text_add(text, "solver: Newton's method, last a path followed from shorter steps\n");
 }

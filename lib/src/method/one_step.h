@@ -1,15 +1,18 @@
-/* A step by the stationarity conditions of a kind of step that is not one element of the action (element_step.h has those): the vectors, the guess, the
- * solution, the new state and what is remembered for the next guess.
+/* A step by the stationarity conditions of a kind of step that is not one element of the action
+ * (element_step.h has those): the vectors, the guess, the solution, the new state and what is
+ * remembered for the next guess.
  *
- * The kind (step/degenerate/partitioned.h and its neighbours) has the equations. To add one: `place`, DVI__STEP_KIND(foo, place, explain), a step of four lines
- * (darboux_step.c), and the operations below in the methods' initialiser. */
+ * The kind (step/degenerate/partitioned.h and its neighbours) has the equations. To add one:
+ * `place`, DVI__STEP_KIND(foo, place, explain), a step of four lines (darboux_step.c), and the
+ * operations below in the methods' initialiser. */
 #ifndef DVI_METHOD_ONE_STEP_H
 #define DVI_METHOD_ONE_STEP_H
 #include "core/status.h"
 #include "method/stationary.h"
 
-/* The memory: the length of the last step (0: none); what the method carries of its own; what the guess continues, as many numbers as unknowns (before
- * the first step, the start's velocity in their place). */
+/* The memory: the length of the last step (0: none); what the method carries of its own; what the
+ * guess continues, as many numbers as unknowns (before the first step, the start's velocity in
+ * their place). */
 enum { DVI__LENGTH, DVI__CARRIED };
 
 typedef struct dvi__step_kind {
@@ -24,9 +27,12 @@ typedef struct dvi__step_kind {
   void (*explain)(const dvi__stepper *self, dvi__text *text); /* what is its own */
   /* dvi__stationary_step's. */
   dvi_status (*place)(dvi__stepper *self, const dvi__state *state, double h, double part);
-  /* How much time passes in the step with the solution x, of kinds that time-transformed systems may have; NULL: h. */
+  /* How much time passes in the step with the solution x, of kinds that time-transformed systems
+   * may have; NULL: h. */
   dvi_status (*duration)(void *of, const double *x, double *duration);
-  int renewed; /* Newton's method factors each Jacobian: forces cost more than factors; and the step corrects what it takes from the last point */
+  /* Newton's method factors each Jacobian: forces cost more than factors; and the step corrects
+   * what it takes from the last point */
+  int renewed;
 } dvi__step_kind;
 
 /* A stepper's own struct begins with it. */
@@ -40,8 +46,10 @@ typedef struct dvi__one_step {
   double *carried;  /* [2 n] of the node, in a part of the step */
 } dvi__one_step;
 
-/* Make self->own, `size` bytes, and the memory with `carried` numbers of the method's own. The step is owned from here on, also on failure. */
-dvi_status dvi__one_step_create(dvi__stepper *self, size_t size, const dvi__step_kind *kind, void *of, size_t carried);
+/* Make self->own, `size` bytes, and the memory with `carried` numbers of the method's own. The step
+ * is owned from here on, also on failure. */
+dvi_status dvi__one_step_create(dvi__stepper *self, size_t size, const dvi__step_kind *kind,
+                                void *of, size_t carried);
 
 /* Solve a step of length h from the state: x, from the guess that is a straight line along the
  * velocity at the start, and later what was remembered, continued. */
@@ -49,9 +57,11 @@ dvi_status dvi__one_step_solve(dvi__stepper *self, const dvi__state *state, doub
 
 /* The momentum [n] from which a part of the step starts: where a method leaves p = alpha(q), what
  * keeps them apart belongs to the length of its steps, and without it there are no velocities. */
-dvi_status dvi__one_step_momentum(dvi__stepper *self, const dvi__state *state, double part, const double **p);
+dvi_status dvi__one_step_momentum(dvi__stepper *self, const dvi__state *state, double part,
+                                  const double **p);
 
-/* Move q by dq and t by the duration at x, and remember `last` [unknowns]. After the ends are taken. */
+/* Move q by dq and t by the duration at x, and remember `last` [unknowns]. After the ends are
+ * taken. */
 dvi_status dvi__one_step_move(dvi__stepper *self, dvi__state *state, double h, const double *last);
 
 /* p = alpha(q), to the last bit. */
@@ -62,10 +72,11 @@ void dvi__one_step_destroy(dvi__stepper *self);
 void dvi__one_step_start(dvi__stepper *self, const double *v);
 void dvi__one_step_explain(const dvi__stepper *self, dvi__text *text);
 
-#define DVI__ONE_STEP_OPERATIONS .destroy = dvi__one_step_destroy, .start = dvi__one_step_start, .explain = dvi__one_step_explain
+#define DVI__ONE_STEP_OPERATIONS \
+  .destroy = dvi__one_step_destroy, .start = dvi__one_step_start, .explain = dvi__one_step_explain
 
-/* The kind whose functions are dvi__foo_..., as `kind`; then its `place` and `explain`, and what else it wants to
- * set. */
+/* The kind whose functions are dvi__foo_..., as `kind`; then its `place` and `explain`, and what
+ * else it wants to set. */
 #define DVI__STEP_KIND(foo, placed, ...)                                          \
   static dvi_status residual_of(void *of, const double *x, double *R)             \
   {                                                                               \

@@ -15,7 +15,8 @@ void dvi__text_add(dvi__text *text, const char *format, ...)
   va_list arguments;
   va_start(arguments, format);
   const size_t room = text->length < text->size ? text->size - text->length : 0;
-  const int length = dvi_number_vprint(room > 0 ? text->text + text->length : NULL, room, format, arguments);
+  const int length = dvi_number_vprint(room > 0 ? text->text + text->length : NULL, room, format,
+                                       arguments);
   va_end(arguments);
   if (length > 0) text->length += (size_t)length;
 }
@@ -67,13 +68,15 @@ static dvi_status unknown_key(const dvi__method *method, piece name)
 {
   char known[DVI__SENTENCE_SIZE] = "";
   dvi__text text = {known, sizeof known, 0};
-  for (int k = 0; k < dvi__key_count(method); k++) dvi__text_add(&text, "%s%s", k > 0 ? ", " : "", method->keys[k].name);
+  for (int k = 0; k < dvi__key_count(method); k++)
+    dvi__text_add(&text, "%s%s", k > 0 ? ", " : "", method->keys[k].name);
   if (method->list != NULL) dvi__text_add(&text, ", %s", method->list);
-  return dvi__fail(DVI_BAD_OPTION, "%s: unknown key '%.*s'; %s%s", method->name, name.length, name.text,
-                   text.length > 0 ? "it takes " : "it takes none", known);
+  return dvi__fail(DVI_BAD_OPTION, "%s: unknown key '%.*s'; %s%s", method->name, name.length,
+                   name.text, text.length > 0 ? "it takes " : "it takes none", known);
 }
 
-/* One spelling of each number: no sign, no blank, no leading zero, all of which strtol would take. The length of the digits, 0 if there is none such. */
+/* One spelling of each number: no sign, no blank, no leading zero, all of which strtol would take.
+ * The length of the digits, 0 if there is none such. */
 static int plain_digits(const char *text)
 {
   const int digits = (int)strspn(text, "0123456789");
@@ -91,33 +94,36 @@ static int plain_decimal(const char *text)
   return decimals > 0 && text[whole + decimals] != '0' ? whole + 1 + decimals : 0;
 }
 
-static dvi_status parse_number(const dvi__method *method, const dvi__key *key, piece value, int *number)
+static dvi_status parse_number(const dvi__method *method, const dvi__key *key, piece value,
+                               int *number)
 {
   if (plain_digits(value.text) != value.length || value.length == 0)
-    return dvi__fail(DVI_BAD_OPTION, "%s: %s=%.*s is not a whole number in plain digits", method->name, key->name, value.length,
-                     value.text);
+    return dvi__fail(DVI_BAD_OPTION, "%s: %s=%.*s is not a whole number in plain digits",
+                     method->name, key->name, value.length, value.text);
   const long parsed = strtol(value.text, NULL, 10); /* LONG_MAX if it is beyond */
   if (parsed < key->least || parsed > key->most)
-    return dvi__fail(DVI_BAD_OPTION, "%s: %s=%.*s; %d to %d are possible", method->name, key->name, value.length, value.text,
-                     key->least, key->most);
+    return dvi__fail(DVI_BAD_OPTION, "%s: %s=%.*s; %d to %d are possible", method->name, key->name,
+                     value.length, value.text, key->least, key->most);
   *number = (int)parsed;
   return DVI_OK;
 }
 
 static dvi_status parse_list(const dvi__method *method, piece value, dvi__settings *settings)
 {
-  if (settings->listed > 0) return dvi__fail(DVI_BAD_OPTION, "%s: %s is given twice", method->name, method->list);
+  if (settings->listed > 0)
+    return dvi__fail(DVI_BAD_OPTION, "%s: %s is given twice", method->name, method->list);
   const char *end = value.text + value.length;
   for (const char *at = value.text;; at++) {
     const int length = plain_decimal(at);
     if (length == 0 || length > LONGEST_DECIMAL || (at + length != end && at[length] != ':'))
       return dvi__fail(DVI_BAD_OPTION,
-                       "%s: %s=%.*s is not a list of numbers in plain digits, such as 2 or 1:0.5; positive ones of at most %d "
+                       "%s: %s=%.*s is not a list of numbers in plain digits, such as 2 or 1:0.5; "
+                       "positive ones of at most %d "
                        "characters are possible, without sign, exponent, or zeros at the ends",
                        method->name, method->list, value.length, value.text, LONGEST_DECIMAL);
     if (settings->listed == DVI__LIST_MOST)
-      return dvi__fail(DVI_BAD_OPTION, "%s: %s has more than %d numbers; 1 to %d are possible", method->name, method->list,
-                       DVI__LIST_MOST, DVI__LIST_MOST);
+      return dvi__fail(DVI_BAD_OPTION, "%s: %s has more than %d numbers; 1 to %d are possible",
+                       method->name, method->list, DVI__LIST_MOST, DVI__LIST_MOST);
     (void)dvi_number_read(at, &settings->list[settings->listed++]);
     at += length;
     if (at == end) break;
@@ -126,7 +132,8 @@ static dvi_status parse_list(const dvi__method *method, piece value, dvi__settin
   return settings->list_text != NULL ? DVI_OK : no_memory(method);
 }
 
-static dvi_status parse_choice(const dvi__method *method, const dvi__key *key, piece value, int *choice)
+static dvi_status parse_choice(const dvi__method *method, const dvi__key *key, piece value,
+                               int *choice)
 {
   char known[DVI__SENTENCE_SIZE] = "";
   dvi__text text = {known, sizeof known, 0};
@@ -138,48 +145,58 @@ static dvi_status parse_choice(const dvi__method *method, const dvi__key *key, p
     dvi__text_add(&text, "%s%s", c > 0 ? ", " : "", key->choice(c));
   }
   if (key->most > 0) dvi__text_add(&text, " and %d to %d", key->least, key->most);
-  return dvi__fail(DVI_BAD_OPTION, "%s: %s=%.*s; possible are %s", method->name, key->name, value.length, value.text, known);
+  return dvi__fail(DVI_BAD_OPTION, "%s: %s=%.*s; possible are %s", method->name, key->name,
+                   value.length, value.text, known);
 }
 
 /* A key may take names beside numbers. */
 static int is_number(const dvi__key *key, piece value)
 {
-  return key->choice == NULL || (key->most > 0 && value.length > 0 && value.text[0] >= '0' && value.text[0] <= '9');
+  return key->choice == NULL ||
+         (key->most > 0 && value.length > 0 && value.text[0] >= '0' && value.text[0] <= '9');
 }
 
-static dvi_status parse_real(const dvi__method *method, const dvi__key *key, piece value, double *number)
+static dvi_status parse_real(const dvi__method *method, const dvi__key *key, piece value,
+                             double *number)
 {
   *number = 0;
   if (same(value, "auto")) return DVI_OK;
   const char *end = dvi_number_read(value.text, number);
-  if (value.length > 0 && end == value.text + value.length && isfinite(*number) && *number > 0) return DVI_OK;
-  return dvi__fail(DVI_BAD_OPTION, "%s: %s=%.*s; a positive number is possible, or auto", method->name, key->name, value.length,
-                   value.text);
+  if (value.length > 0 && end == value.text + value.length && isfinite(*number) && *number > 0)
+    return DVI_OK;
+  return dvi__fail(DVI_BAD_OPTION, "%s: %s=%.*s; a positive number is possible, or auto",
+                   method->name, key->name, value.length, value.text);
 }
 
-static dvi_status keep_file(const dvi__method *method, const dvi__key *key, piece value, dvi__settings *settings)
+static dvi_status keep_file(const dvi__method *method, const dvi__key *key, piece value,
+                            dvi__settings *settings)
 {
   if (value.length == 0)
-    return dvi__fail(DVI_BAD_OPTION, "%s: %s= is empty; give it a text, or leave it out", method->name, key->name);
+    return dvi__fail(DVI_BAD_OPTION, "%s: %s= is empty; give it a text, or leave it out",
+                     method->name, key->name);
   settings->file = dvi__written("%.*s", value.length, value.text);
   return settings->file != NULL ? DVI_OK : no_memory(method);
 }
 
-static dvi_status keep_for_others(const dvi__method *method, piece name, piece value, dvi__settings *settings)
+static dvi_status keep_for_others(const dvi__method *method, piece name, piece value,
+                                  dvi__settings *settings)
 {
   char *before = settings->rest;
-  settings->rest = dvi__written("%s%s%.*s=%.*s", before != NULL ? before : "", before != NULL ? "," : "", name.length, name.text,
-                                value.length, value.text);
+  settings->rest = dvi__written("%s%s%.*s=%.*s", before != NULL ? before : "",
+                                before != NULL ? "," : "", name.length, name.text, value.length,
+                                value.text);
   dvi__release(before);
   return settings->rest != NULL ? DVI_OK : no_memory(method);
 }
 
-static dvi_status assign(const dvi__method *method, piece name, piece value, dvi__settings *settings, unsigned *given)
+static dvi_status assign(const dvi__method *method, piece name, piece value,
+                         dvi__settings *settings, unsigned *given)
 {
   for (int k = 0; k < dvi__key_count(method); k++) {
     const dvi__key *key = &method->keys[k];
     if (!same(name, key->name)) continue;
-    if (*given & 1U << k) return dvi__fail(DVI_BAD_OPTION, "%s: %s is given twice", method->name, key->name);
+    if (*given & 1U << k)
+      return dvi__fail(DVI_BAD_OPTION, "%s: %s is given twice", method->name, key->name);
     *given |= 1U << k;
     if (key->least == DVI__POSITIVE) return parse_real(method, key, value, &settings->number[k]);
     if (key->least == DVI__FILE) return keep_file(method, key, value, settings);
@@ -187,7 +204,8 @@ static dvi_status assign(const dvi__method *method, piece name, piece value, dvi
                                  : parse_choice(method, key, value, &settings->value[k]);
   }
   if (method->list != NULL && same(name, method->list)) return parse_list(method, value, settings);
-  return method->takes_rest ? keep_for_others(method, name, value, settings) : unknown_key(method, name);
+  return method->takes_rest ? keep_for_others(method, name, value, settings)
+                            : unknown_key(method, name);
 }
 
 /* A text that is no name shall not push the names that there are out of the sentence. */
@@ -197,17 +215,20 @@ static dvi_status unknown_method(piece name)
 {
   char known[DVI__SENTENCE_SIZE] = "";
   dvi__text text = {known, sizeof known, 0};
-  for (int i = 0; i < dvi_method_count(); i++) dvi__text_add(&text, "%s%s", i > 0 ? ", " : "", dvi_method_name(i));
+  for (int i = 0; i < dvi_method_count(); i++)
+    dvi__text_add(&text, "%s%s", i > 0 ? ", " : "", dvi_method_name(i));
   const int shown = name.length < LONGEST_SHOWN ? name.length : LONGEST_SHOWN;
   return dvi__fail(DVI_BAD_OPTION, "unknown method '%.*s'; there are %s", shown, name.text, known);
 }
 
-/* The key and the value behind a colon or comma; a value without text if there is none. Returns where they end. */
+/* The key and the value behind a colon or comma; a value without text if there is none. Returns
+ * where they end. */
 static const char *take_pair(const char *at, piece *name, piece *value)
 {
   const char *start = at + 1, *equals = end_of(start, "=,"), *end = end_of(equals, ",");
   *name = (piece){start, (int)(equals - start)};
-  *value = *equals == '=' && equals > start ? (piece){equals + 1, (int)(end - equals - 1)} : (piece){0};
+  *value = *equals == '=' && equals > start ? (piece){equals + 1, (int)(end - equals - 1)}
+                                            : (piece){0};
   return end;
 }
 
@@ -230,7 +251,9 @@ static int may_name_file(const dvi__method *method, piece name)
 const char *dvi_method_file(const char *specification, size_t *length)
 {
   const char *at = specification != NULL ? end_of(specification, ":") : "";
-  const dvi__method *method = *at != 0 ? dvi__find_method(specification, (size_t)(at - specification)) : NULL;
+  const dvi__method *method = *at != 0
+                                  ? dvi__find_method(specification, (size_t)(at - specification))
+                                  : NULL;
   *length = 0;
   while (method != NULL && *at != 0) {
     piece name, value;
@@ -247,11 +270,13 @@ static dvi_status check_length(const char *specification)
 {
   const size_t length = strlen(specification);
   if (length <= DVI__SPECIFICATION_MOST) return DVI_OK;
-  return dvi__fail(DVI_BAD_OPTION, "the method '%.40s...' has %zu characters; at most %d are possible", specification, length,
-                   DVI__SPECIFICATION_MOST);
+  return dvi__fail(DVI_BAD_OPTION,
+                   "the method '%.40s...' has %zu characters; at most %d are possible",
+                   specification, length, DVI__SPECIFICATION_MOST);
 }
 
-dvi_status dvi__parse(const char *specification, const dvi__method **method, dvi__settings *settings)
+dvi_status dvi__parse(const char *specification, const dvi__method **method,
+                      dvi__settings *settings)
 {
   unsigned given = 0;
   *settings = (dvi__settings){0};
@@ -260,12 +285,14 @@ dvi_status dvi__parse(const char *specification, const dvi__method **method, dvi
   const piece method_name = {specification, (int)(at - specification)};
   *method = dvi__find_method(specification, (size_t)(at - specification));
   if (*method == NULL) return unknown_method(method_name);
-  for (int k = 0; k < dvi__key_count(*method); k++) settings->value[k] = (*method)->keys[k].left_out;
+  for (int k = 0; k < dvi__key_count(*method); k++)
+    settings->value[k] = (*method)->keys[k].left_out;
   while (*at != 0) {
     piece name, value;
     const char *end = take_pair(at, &name, &value);
     if (value.text == NULL)
-      return dvi__fail(DVI_BAD_OPTION, "%s: '%.*s' is not key=value", (*method)->name, (int)(end - name.text), name.text);
+      return dvi__fail(DVI_BAD_OPTION, "%s: '%.*s' is not key=value", (*method)->name,
+                       (int)(end - name.text), name.text);
     DVI_TRY(assign(*method, name, value, settings, &given));
     at = end;
   }
@@ -280,7 +307,8 @@ static void spell_real(double number, dvi__text *text)
 }
 
 /* The value of key k, in the words of a specification. */
-static void spell_value(const dvi__method *method, const dvi__settings *settings, int k, dvi__text *text)
+static void spell_value(const dvi__method *method, const dvi__settings *settings, int k,
+                        dvi__text *text)
 {
   const dvi__key *key = &method->keys[k];
   if (key->least == DVI__POSITIVE)
@@ -302,7 +330,8 @@ static void spell(const dvi__method *method, const dvi__settings *settings, dvi_
     spell_value(method, settings, k, text);
   }
   if (settings->list_text != NULL) dvi__text_add(text, ",%s=%s", method->list, settings->list_text);
-  if (settings->rest != NULL) dvi__text_add(text, "%c%s", dvi__key_count(method) == 0 ? ':' : ',', settings->rest);
+  if (settings->rest != NULL)
+    dvi__text_add(text, "%c%s", dvi__key_count(method) == 0 ? ':' : ',', settings->rest);
 }
 
 /* The first time only the length is found. */

@@ -15,7 +15,8 @@ static dvi_status no_chord(void *of, const double *x)
   return DVI_OK;
 }
 
-dvi_status dvi__stationary_create(dvi__stepper *self, dvi__equations *equations, dvi__stationary *stationary)
+dvi_status dvi__stationary_create(dvi__stepper *self, dvi__equations *equations,
+                                  dvi__stationary *stationary)
 {
   const size_t unknowns = (size_t)equations->unknowns;
   self->follows = 1;
@@ -24,7 +25,8 @@ dvi_status dvi__stationary_create(dvi__stepper *self, dvi__equations *equations,
   if (stationary->x == NULL || stationary->room == NULL)
     return dvi__fail(DVI_NO_MEMORY, "%s: no memory for %zu unknowns", self->method->name, unknowns);
   equations->linear = dvi__linear_for_exchanges(equations->pattern);
-  equations->prepare_chord = no_chord; /* KINSOL's rung asks for it; the chord itself belongs to fixed point iteration */
+  /* KINSOL's rung asks for it; the chord itself belongs to fixed point iteration */
+  equations->prepare_chord = no_chord;
   return dvi__solver_create(equations, self->counters, &stationary->solver);
 }
 
@@ -54,7 +56,8 @@ static double size_of(const dvi__stationary_step *step)
   return dvi__largest((size_t)step->stepper->system->n, step->state->q);
 }
 
-static dvi_status follow(const dvi__stationary *s, const dvi__stationary_step *step, dvi_status whole)
+static dvi_status follow(const dvi__stationary *s, const dvi__stationary_step *step,
+                         dvi_status whole)
 {
   dvi__stationary_step of = *step;
   const dvi__branch branch = {.of = &of,

@@ -1,17 +1,20 @@
 /* IDA on the implicit Euler-Lagrange equations.
  *
- * Unknowns y = (q, v, p), equations of index 1, or of index 2 if L_v = alpha(q) does not depend on v:
+ * Unknowns y = (q, v, p), equations of index 1, or of index 2 if L_v = alpha(q) does not depend on
+ * v:
  *     F(t, y, ydot) = ( qdot - v,  pdot - L_q(t,q,v),  p - L_v(t,q,v) ) = 0
  * with the Jacobian dF/dy + c dF/dydot, columns q, v, p:
  *     [  c I     -I      0  ]
  *     [ -L_qq   -L_qv   c I ]
  *     [ -L_vq   -L_vv    I  ]
- * For index 2 the multiplier v is left out of the error test. With a one-form the first choice are the reduced equations of motion, unknowns y = q,
+ * For index 2 the multiplier v is left out of the error test. With a one-form the first choice are
+ * the reduced equations of motion, unknowns y = q,
  *     F(t, y, ydot) = Omega(q) qdot - H_q(t,q) = 0,
  * whose Jacobian IDA differences: it has second derivatives of alpha that no callback gives.
  *
- * Nothing is discretised, inverted or assembled by the code that the methods use; only the callbacks are shared.
- * Source: Hindmarsh et al. 2005, ACM TOMS 31:363, sec. 2.3; Brenan, Campbell and Petzold 1996 (error tests at index 2). */
+ * Nothing is discretised, inverted or assembled by the code that the methods use; only the
+ * callbacks are shared. Source: Hindmarsh et al. 2005, ACM TOMS 31:363, sec. 2.3; Brenan, Campbell
+ * and Petzold 1996 (error tests at index 2). */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -49,7 +52,8 @@ static int residual(double t, N_Vector y, N_Vector ydot, N_Vector F, void *user)
   return dvi__reference_callback(run, status);
 }
 
-static void write_block(dvi__columns *columns, const dvi__pattern *pattern, int column, int first_row, const double *values)
+static void write_block(dvi__columns *columns, const dvi__pattern *pattern, int column,
+                        int first_row, const double *values)
 {
   for (int e = pattern->start[column]; e < pattern->start[column + 1]; e++)
     dvi__columns_put(columns, first_row + pattern->row[e], -values[e]);
@@ -82,20 +86,21 @@ static void write_jacobian(const judge *self, double c, SUNMatrix matrix)
   }
 }
 
-static int jacobian(double t, double c, N_Vector y, N_Vector ydot, N_Vector F, SUNMatrix matrix, void *user, N_Vector work1,
-                    N_Vector work2, N_Vector work3)
+static int jacobian(double t, double c, N_Vector y, N_Vector ydot, N_Vector F, SUNMatrix matrix,
+                    void *user, N_Vector work1, N_Vector work2, N_Vector work3)
 {
   (void)ydot, (void)F, (void)work1, (void)work2, (void)work3;
   const judge *self = user;
   dvi__reference_run *run = self->run;
   const double *q = N_VGetArrayPointer(y);
-  const dvi_status status = dvi__lagrangian_hessian(run->evaluator, 1, &t, q, q + run->n, run->L_qq, run->L_qv, run->L_vv);
+  const dvi_status status = dvi__lagrangian_hessian(run->evaluator, 1, &t, q, q + run->n, run->L_qq,
+                                                    run->L_qv, run->L_vv);
   if (status == DVI_OK) write_jacobian(self, c, matrix);
   return dvi__reference_callback(run, status);
 }
 
-/* vdot is in no equation, but IDA's first predictor and first error test use it: exact for a constant mass, and a difference along
- * the flow otherwise. */
+/* vdot is in no equation, but IDA's first predictor and first error test use it: exact for a
+ * constant mass, and a difference along the flow otherwise. */
 static dvi_status acceleration(dvi__reference_run *run, double *vdot)
 {
   const int n = run->n;
@@ -103,7 +108,8 @@ static dvi_status acceleration(dvi__reference_run *run, double *vdot)
     dvi__mass_solve(run->evaluator, 1, run->force, vdot);
     return DVI_OK;
   }
-  const double span = run->t_end - run->t, e = copysign(fmax(1e-8 * fabs(span), 16 * DBL_EPSILON * fabs(run->t)), span);
+  const double span = run->t_end - run->t,
+               e = copysign(fmax(1e-8 * fabs(span), 16 * DBL_EPSILON * fabs(run->t)), span);
   double *moved = DVI_NEW(double, 3 * (size_t)n);
   if (moved == NULL) return dvi__fail(DVI_NO_MEMORY, "ida: no memory for the start");
   double *q = moved, *p = q + n, *v = p + n;
@@ -123,8 +129,8 @@ static dvi_status acceleration(dvi__reference_run *run, double *vdot)
 static int reduced_residual(double t, N_Vector y, N_Vector ydot, N_Vector F, void *user)
 {
   dvi__reference_run *run = ((judge *)user)->run;
-  const dvi_status status = dvi__two_form_residual(run->evaluator, t, N_VGetArrayPointer(y), N_VGetArrayPointer(ydot),
-                                                   N_VGetArrayPointer(F));
+  const dvi_status status = dvi__two_form_residual(run->evaluator, t, N_VGetArrayPointer(y),
+                                                   N_VGetArrayPointer(ydot), N_VGetArrayPointer(F));
   return dvi__reference_callback(run, status);
 }
 
@@ -148,8 +154,10 @@ static int configure(judge *self)
 {
   const dvi__ida_run *ida = &self->ida;
   const int n = self->run->n;
-  if (dvi__ida_run_configure(ida, self->reduced ? reduced_residual : residual, self) != 0) return -1;
-  if (self->run->options.code == DVI_IDA_INDEX_2 && dvi__ida_run_leave_untested(ida, n, n) != 0) return -1;
+  if (dvi__ida_run_configure(ida, self->reduced ? reduced_residual : residual, self) != 0)
+    return -1;
+  if (self->run->options.code == DVI_IDA_INDEX_2 && dvi__ida_run_leave_untested(ida, n, n) != 0)
+    return -1;
   return self->reduced ? 0 : IDASetJacFn(ida->memory, jacobian);
 }
 
@@ -170,17 +178,21 @@ static dvi_status transpose(judge *self)
   const dvi__pattern *qv = &self->run->system->qv;
   DVI_TRY(dvi__pattern_transpose(qv, &self->vq));
   self->in_qv = DVI_NEW(int, dvi__pattern_entries(qv));
-  if (self->in_qv == NULL) return dvi__fail(DVI_NO_MEMORY, "ida: no memory for the Jacobian's pattern");
+  if (self->in_qv == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "ida: no memory for the Jacobian's pattern");
   for (int j = 0; j < qv->columns; j++)
-    for (int e = qv->start[j]; e < qv->start[j + 1]; e++) self->in_qv[dvi__pattern_find(&self->vq, j, qv->row[e])] = e;
+    for (int e = qv->start[j]; e < qv->start[j + 1]; e++)
+      self->in_qv[dvi__pattern_find(&self->vq, j, qv->row[e])] = e;
   return DVI_OK;
 }
 
 static dvi_status reserve(judge *self)
 {
   dvi__reference_run *run = self->run;
-  const int n = run->n, size = self->reduced ? n : 3 * n, qq = dvi__pattern_entries(&run->system->qq),
-            qv = dvi__pattern_entries(&run->system->qv), vv = dvi__pattern_entries(&run->system->vv);
+  const int n = run->n, size = self->reduced ? n : 3 * n,
+            qq = dvi__pattern_entries(&run->system->qq),
+            qv = dvi__pattern_entries(&run->system->qv),
+            vv = dvi__pattern_entries(&run->system->vv);
   DVI_TRY(transpose(self));
   SUNMatrix matrix = self->reduced ? SUNDenseMatrix(n, n, run->context)
                                    : dvi__reference_matrix(run, size, 4 * n + qq + 2 * qv + vv);
@@ -198,12 +210,12 @@ dvi_status dvi__reference_ida(dvi__reference_run *run)
 {
   const dvi__dynamics *dynamics = run->system->dynamics;
   if (dynamics->constraint == NULL && run->options.code == DVI_IDA_INDEX_2)
-    return dvi__fail(
-        DVI_UNSUPPORTED,
-        "ida-index-2: the system declares neither a one-form nor a Hamiltonian with constraints; its equations are of index 1");
+    return dvi__fail(DVI_UNSUPPORTED, "ida-index-2: the system declares neither a one-form nor a "
+                                      "Hamiltonian with constraints; its equations are of index 1");
   if (dynamics->equations == DVI__HAMILTON) return dvi__reference_hamilton(run);
   if (dynamics->equations == DVI__LIFTED) return dvi__reference_ida_lift(run);
-  judge self = {.run = run, .reduced = dynamics->equations == DVI__FIRST_ORDER && run->options.code == DVI_IDA};
+  judge self = {.run = run,
+                .reduced = dynamics->equations == DVI__FIRST_ORDER && run->options.code == DVI_IDA};
   dvi_status status = reserve(&self);
   if (status == DVI_OK) status = start(&self);
   if (status == DVI_OK && configure(&self) != 0) status = dvi__reference_no_setup(run);

@@ -4,9 +4,11 @@
  *     F = ydot - X(t, y) = 0,    X = (H_p + phi_p^T lambda, -H_q - phi_q^T lambda),   {phi, phi} lambda = -{phi, H};
  * without constraints X = (H_p, -H_q). DVI_IDA_INDEX_2: unknowns y = (q, p, lambda),
  *     F = ( (qdot, pdot) - X(t, q, p, lambda),  phi(q,p) ) = 0,
- * of index 2, with lambda in neither the error test nor that of the iteration's convergence. Its Jacobian dF/dy + c dF/dydot is written down, for IDA's
- * differences move lambda by what its tolerance says; that of the first has derivatives of lambda, and is differenced.
- * Source: Hindmarsh et al. 2005, ACM TOMS 31:363, sec. 2.3; Brenan, Campbell and Petzold 1996 (error tests at index 2). */
+ * of index 2, with lambda in neither the error test nor that of the iteration's convergence. Its
+ * Jacobian dF/dy + c dF/dydot is written down, for IDA's differences move lambda by what its
+ * tolerance says; that of the first has derivatives of lambda, and is differenced. Source:
+ * Hindmarsh et al. 2005, ACM TOMS 31:363, sec. 2.3; Brenan, Campbell and Petzold 1996 (error tests
+ * at index 2). */
 #include "system/dynamics/constrained_hamiltonian.h"
 
 #include <string.h>
@@ -50,16 +52,19 @@ static dvi_status whole(const judge *self, double t, const double *q, const doub
 static int whole_residual(double t, N_Vector y, N_Vector ydot, N_Vector F, void *user)
 {
   const judge *self = user;
-  return dvi__reference_callback(self->run, whole(self, t, N_VGetArrayPointer(y), N_VGetArrayPointer(ydot), N_VGetArrayPointer(F)));
+  return dvi__reference_callback(self->run, whole(self, t, N_VGetArrayPointer(y),
+                                                  N_VGetArrayPointer(ydot), N_VGetArrayPointer(F)));
 }
 
 /* The derivative of the field (F_p, -F_q), subtracted. */
-static void subtract_slope(SUNMatrix matrix, const dvi__lagrangian_term *f, int n, const double *qq, const double *qp,
-                           const double *pp)
+static void subtract_slope(SUNMatrix matrix, const dvi__lagrangian_term *f, int n, const double *qq,
+                           const double *qp, const double *pp)
 {
   for (int j = 0; j < n; j++) {
-    for (int e = f->qq.start[j]; e < f->qq.start[j + 1]; e++) SM_ELEMENT_D(matrix, n + f->qq.row[e], j) += qq[e];
-    for (int e = f->vv.start[j]; e < f->vv.start[j + 1]; e++) SM_ELEMENT_D(matrix, f->vv.row[e], n + j) -= pp[e];
+    for (int e = f->qq.start[j]; e < f->qq.start[j + 1]; e++)
+      SM_ELEMENT_D(matrix, n + f->qq.row[e], j) += qq[e];
+    for (int e = f->vv.start[j]; e < f->vv.start[j + 1]; e++)
+      SM_ELEMENT_D(matrix, f->vv.row[e], n + j) -= pp[e];
     for (int e = f->qv.start[j]; e < f->qv.start[j + 1]; e++) {
       SM_ELEMENT_D(matrix, n + f->qv.row[e], n + j) += qp[e];
       SM_ELEMENT_D(matrix, j, f->qv.row[e]) -= qp[e];
@@ -79,14 +84,17 @@ static void write_gradients(SUNMatrix matrix, const dvi__pattern *gradients, con
     }
 }
 
-static dvi_status write_jacobian(const judge *self, double t, double c, const double *q, SUNMatrix matrix)
+static dvi_status write_jacobian(const judge *self, double t, double c, const double *q,
+                                 SUNMatrix matrix)
 {
   const dvi__reference_run *run = self->run;
   const dvi__constraint_term *constraint = run->system->constraint;
   const int n = run->n;
-  DVI_TRY(dvi__lagrangian_hessian(run->evaluator, 1, &t, q, q + n, run->L_qq, run->L_qv, run->L_vv));
+  DVI_TRY(
+      dvi__lagrangian_hessian(run->evaluator, 1, &t, q, q + n, run->L_qq, run->L_qv, run->L_vv));
   DVI_TRY(dvi__constraint_gradients(run->evaluator, q, q + n, self->phi_z));
-  DVI_TRY(dvi__constraint_hessian(run->evaluator, q, q + n, q + 2 * n, self->phi_qq, self->phi_qp, self->phi_pp));
+  DVI_TRY(dvi__constraint_hessian(run->evaluator, q, q + n, q + 2 * n, self->phi_qq, self->phi_qp,
+                                  self->phi_pp));
   for (int i = 0; i < 2 * n; i++) SM_ELEMENT_D(matrix, i, i) = c;
   subtract_slope(matrix, run->system->lagrangian, n, run->L_qq, run->L_qv, run->L_vv);
   subtract_slope(matrix, &constraint->weighted, n, self->phi_qq, self->phi_qp, self->phi_pp);
@@ -95,12 +103,14 @@ static dvi_status write_jacobian(const judge *self, double t, double c, const do
 }
 
 /* IDA has set the matrix to 0. */
-static int whole_jacobian(double t, double c, N_Vector y, N_Vector ydot, N_Vector F, SUNMatrix matrix, void *user, N_Vector work1,
-                          N_Vector work2, N_Vector work3)
+static int whole_jacobian(double t, double c, N_Vector y, N_Vector ydot, N_Vector F,
+                          SUNMatrix matrix, void *user, N_Vector work1, N_Vector work2,
+                          N_Vector work3)
 {
   const judge *self = user;
   (void)ydot, (void)F, (void)work1, (void)work2, (void)work3;
-  return dvi__reference_callback(self->run, write_jacobian(self, t, c, N_VGetArrayPointer(y), matrix));
+  return dvi__reference_callback(self->run,
+                                 write_jacobian(self, t, c, N_VGetArrayPointer(y), matrix));
 }
 
 static void start(const judge *self)
@@ -120,8 +130,11 @@ static int configure(judge *self)
 {
   const dvi__ida_run *ida = &self->ida;
   const int states = 2 * self->run->n;
-  if (dvi__ida_run_configure(ida, self->whole ? whole_residual : reduced_residual, self) != 0) return -1;
-  return self->whole ? IDASetJacFn(ida->memory, whole_jacobian) || dvi__ida_run_leave_untested(ida, states, ida->size - states) : 0;
+  if (dvi__ida_run_configure(ida, self->whole ? whole_residual : reduced_residual, self) != 0)
+    return -1;
+  return self->whole ? IDASetJacFn(ida->memory, whole_jacobian) ||
+                           dvi__ida_run_leave_untested(ida, states, ida->size - states)
+                     : 0;
 }
 
 static dvi_status integrate(const judge *self)

@@ -1,6 +1,7 @@
 /* IDA on the equations of systems with factors (lift.h). Unknowns y = (kappa, v, p), of index 1:
  *     F(t, y, ydot) = ( kappa' - K(kappa, v),  p' - f(t, kappa, v),  p - T^t C(kappa, v) ) = 0
- * with K and f as there. IDA differences the Jacobian. Source: Hindmarsh et al. 2005, ACM TOMS 31:363, sec. 2.3. */
+ * with K and f as there. IDA differences the Jacobian. Source: Hindmarsh et al. 2005, ACM TOMS
+ * 31:363, sec. 2.3. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -24,8 +25,8 @@ static int residual(double t, N_Vector y, N_Vector ydot, N_Vector F, void *user)
 {
   judge *self = user;
   const int size = self->lift.size, nv = self->run->n;
-  const double *kappa = N_VGetArrayPointer(y), *v = kappa + size, *p = v + nv, *rate = N_VGetArrayPointer(ydot),
-               *p_rate = rate + size + nv;
+  const double *kappa = N_VGetArrayPointer(y), *v = kappa + size, *p = v + nv,
+               *rate = N_VGetArrayPointer(ydot), *p_rate = rate + size + nv;
   double *F_kappa = N_VGetArrayPointer(F), *F_p = F_kappa + size, *F_v = F_p + nv;
   const dvi_status status = dvi__lift_equations(&self->lift, t, kappa, v, F_kappa, F_p, F_v);
   for (int i = 0; i < size; i++) F_kappa[i] = rate[i] - F_kappa[i];
@@ -36,12 +37,14 @@ static int residual(double t, N_Vector y, N_Vector ydot, N_Vector F, void *user)
   return dvi__reference_callback(self->run, status);
 }
 
-/* vdot is in no equation, but IDA's first predictor and first error test use it: a difference along the flow. moved [size + 2 nv + nq]: room. */
+/* vdot is in no equation, but IDA's first predictor and first error test use it: a difference along
+ * the flow. moved [size + 2 nv + nq]: room. */
 static dvi_status acceleration(judge *self, const double *y, double *ydot, double *moved)
 {
   const dvi__reference_run *run = self->run;
   const int size = self->lift.size, nv = run->n;
-  const double span = run->t_end - run->t, e = copysign(fmax(1e-8 * fabs(span), 16 * DBL_EPSILON * fabs(run->t)), span);
+  const double span = run->t_end - run->t,
+               e = copysign(fmax(1e-8 * fabs(span), 16 * DBL_EPSILON * fabs(run->t)), span);
   double *v = moved + size, *p = v + nv, *q = p + nv;
   for (int i = 0; i < size; i++) moved[i] = y[i] + e * ydot[i];
   for (int i = 0; i < nv; i++) p[i] = y[size + nv + i] + e * ydot[size + nv + i];
@@ -62,7 +65,8 @@ static dvi_status start(judge *self)
   dvi__lift_up(&self->lift, run->q, y);
   memcpy(y + size, run->v, nv * sizeof *y);
   memcpy(y + size + nv, run->p, nv * sizeof *y);
-  dvi_status status = dvi__lift_equations(&self->lift, run->t, y, run->v, ydot, ydot + size + nv, room);
+  dvi_status status = dvi__lift_equations(&self->lift, run->t, y, run->v, ydot, ydot + size + nv,
+                                          room);
   if (status == DVI_OK) status = acceleration(self, y, ydot, room);
   dvi__release(room);
   return status;
@@ -85,8 +89,10 @@ static dvi_status reserve(judge *self)
   DVI_TRY(dvi__lift_create(run, &self->lift));
   const int size = self->lift.size + 2 * run->n;
   if (size > UNKNOWNS_MAX)
-    return dvi__fail(DVI_UNSUPPORTED, "ida: the system's factors give %d unknowns, and a dense Jacobian; %d are possible", size,
-                     UNKNOWNS_MAX);
+    return dvi__fail(
+        DVI_UNSUPPORTED,
+        "ida: the system's factors give %d unknowns, and a dense Jacobian; %d are possible", size,
+        UNKNOWNS_MAX);
   return dvi__ida_run_create(run, size, SUNDenseMatrix(size, size, run->context), &self->ida);
 }
 
@@ -101,7 +107,8 @@ dvi_status dvi__reference_ida_lift(dvi__reference_run *run)
   judge self = {.run = run};
   dvi_status status = reserve(&self);
   if (status == DVI_OK) status = start(&self);
-  if (status == DVI_OK && dvi__ida_run_configure(&self.ida, residual, &self) != 0) status = dvi__reference_no_setup(run);
+  if (status == DVI_OK && dvi__ida_run_configure(&self.ida, residual, &self) != 0)
+    status = dvi__reference_no_setup(run);
   if (status == DVI_OK) status = integrate(&self);
   clear(&self);
   return status;

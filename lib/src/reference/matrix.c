@@ -35,7 +35,8 @@ void dvi__columns_start(dvi__columns *columns, SUNMatrix matrix)
 void dvi__columns_next(dvi__columns *columns)
 {
   columns->column++;
-  if (SUNMatGetID(columns->matrix) == SUNMATRIX_SPARSE) SM_INDEXPTRS_S(columns->matrix)[columns->column + 1] = columns->entry;
+  if (SUNMatGetID(columns->matrix) == SUNMATRIX_SPARSE)
+    SM_INDEXPTRS_S(columns->matrix)[columns->column + 1] = columns->entry;
 }
 
 void dvi__columns_put(dvi__columns *columns, int row, double value)

@@ -1,8 +1,9 @@
 /* CVODE and ARKODE on Hamilton's equations, with the velocity from the inverse Legendre map:
  *     y = (q, p),   qdot = v(t,q,p),   pdot = L_q(t,q,v(t,q,p)),
- * with a one-form on the reduced ones alone: y = q, qdot = v(t,q); with a Hamiltonian on q' and p' with the multiplier eliminated; with factors on the lifted
- * ones, y = (kappa, p) (lift.h).
- * Sources: Hindmarsh et al. 2005, ACM TOMS 31:363, sec. 2.1 (CVODE); Reynolds et al. 2023, ACM TOMS 49:19 (ARKODE). */
+ * with a one-form on the reduced ones alone: y = q, qdot = v(t,q); with a Hamiltonian on q' and p'
+ * with the multiplier eliminated; with factors on the lifted ones, y = (kappa, p) (lift.h).
+ * Sources: Hindmarsh et al. 2005, ACM TOMS 31:363, sec. 2.1 (CVODE); Reynolds et al. 2023, ACM TOMS
+ * 49:19 (ARKODE). */
 #include <arkode/arkode_arkstep.h>
 #include <cvode/cvode.h>
 #include <string.h>
@@ -34,7 +35,8 @@ typedef struct flow {
   void *memory;                   /* CVODE's or ARKODE's */
 } flow;
 
-static dvi_status rate(dvi__reference_run *run, double t, const double *q, const double *p, double *qdot, double *pdot)
+static dvi_status rate(dvi__reference_run *run, double t, const double *q, const double *p,
+                       double *qdot, double *pdot)
 {
   const dvi__dynamics *dynamics = run->system->dynamics;
   DVI_TRY(dynamics->motion(run->evaluator, t, q, p, run->v, has_momenta(run) ? pdot : NULL, NULL));
@@ -58,7 +60,9 @@ static int lifted_right_side(double t, N_Vector y, N_Vector ydot, void *user)
   double *rate = N_VGetArrayPointer(ydot);
   dvi__lift_down(&self->lift, kappa, run->q);
   dvi_status status = dvi__legendre_inverse(run->evaluator, t, run->q, p, run->v);
-  if (status == DVI_OK) status = dvi__lift_equations(&self->lift, t, kappa, run->v, rate, rate + self->positions, run->force);
+  if (status == DVI_OK)
+    status = dvi__lift_equations(&self->lift, t, kappa, run->v, rate, rate + self->positions,
+                                 run->force);
   return dvi__reference_callback(run, status);
 }
 
@@ -73,15 +77,17 @@ static int mass_is_diagonal(const dvi_system *system)
   return system->mass_diagonal != NULL && !system->dynamics->on_manifold;
 }
 
-/* d(qdot, pdot)/d(q, p) = [ 0, M^-1; L_qq, 0 ], with its diagonal, to which CVODE adds the identity in place. */
-static int jacobian(double t, N_Vector y, N_Vector ydot, SUNMatrix matrix, void *user, N_Vector work1, N_Vector work2,
-                    N_Vector work3)
+/* d(qdot, pdot)/d(q, p) = [ 0, M^-1; L_qq, 0 ], with its diagonal, to which CVODE adds the identity
+ * in place. */
+static int jacobian(double t, N_Vector y, N_Vector ydot, SUNMatrix matrix, void *user,
+                    N_Vector work1, N_Vector work2, N_Vector work3)
 {
   (void)ydot, (void)work1, (void)work2, (void)work3;
   dvi__reference_run *run = ((flow *)user)->run;
   const dvi_system *system = run->system;
   const int n = run->n;
-  const dvi_status status = dvi__lagrangian_hessian(run->evaluator, 1, &t, N_VGetArrayPointer(y), run->v, run->L_qq, NULL, NULL);
+  const dvi_status status = dvi__lagrangian_hessian(run->evaluator, 1, &t, N_VGetArrayPointer(y),
+                                                    run->v, run->L_qq, NULL, NULL);
   if (status != DVI_OK) return dvi__reference_callback(run, status);
   dvi__columns columns;
   dvi__columns_start(&columns, matrix);
@@ -93,7 +99,9 @@ static int jacobian(double t, N_Vector y, N_Vector ydot, SUNMatrix matrix, void 
   }
   for (int j = 0; j < n; j++) {
     dvi__columns_next(&columns);
-    dvi__columns_put(&columns, j, 1.0 / (system->mass_diagonal != NULL ? system->mass_diagonal[j] : system->mass_scalar));
+    dvi__columns_put(
+        &columns, j,
+        1.0 / (system->mass_diagonal != NULL ? system->mass_diagonal[j] : system->mass_scalar));
     dvi__columns_put(&columns, n + j, 0.0);
   }
   return dvi__reference_callback(run, DVI_OK);
@@ -145,11 +153,13 @@ static void clear(flow *self)
   dvi__lift_clear(&self->lift);
 }
 
-/* Direct where the Jacobian is known or small enough to be differenced, else Krylov without a matrix. */
+/* Direct where the Jacobian is known or small enough to be differenced, else Krylov without a
+ * matrix. */
 static dvi_status make_linear(flow *self)
 {
   const dvi__reference_run *run = self->run;
-  const int n = run->n, entries = dvi__pattern_entries(&run->system->qq), known = mass_is_diagonal(run->system);
+  const int n = run->n, entries = dvi__pattern_entries(&run->system->qq),
+            known = mass_is_diagonal(run->system);
   const int size = size_of(self);
   if (known || dvi__reference_is_dense(size)) {
     self->matrix = dvi__reference_matrix(run, size, entries + 3 * n);
@@ -172,10 +182,11 @@ static int configure_cvode(flow *self)
 {
   const dvi__reference_run *run = self->run;
   void *cvode = self->memory;
-  if (DVI__SUNDIALS_SILENCE(CVodeSetErrHandlerFn, cvode) || CVodeInit(cvode, right_side_of(run), run->t, self->y) ||
-      CVodeSStolerances(cvode, run->options.relative_tolerance, run->options.absolute_tolerance) || CVodeSetUserData(cvode, self) ||
-      CVodeSetMaxNumSteps(cvode, run->options.max_steps) || CVodeSetStopTime(cvode, run->t_end) ||
-      CVodeSetMinStep(cvode, dvi__reference_least_step(run)))
+  if (DVI__SUNDIALS_SILENCE(CVodeSetErrHandlerFn, cvode) ||
+      CVodeInit(cvode, right_side_of(run), run->t, self->y) ||
+      CVodeSStolerances(cvode, run->options.relative_tolerance, run->options.absolute_tolerance) ||
+      CVodeSetUserData(cvode, self) || CVodeSetMaxNumSteps(cvode, run->options.max_steps) ||
+      CVodeSetStopTime(cvode, run->t_end) || CVodeSetMinStep(cvode, dvi__reference_least_step(run)))
     return -1;
   if (self->fixed_point != NULL) return CVodeSetNonlinearSolver(cvode, self->fixed_point);
   if (CVodeSetLinearSolver(cvode, self->linear, self->matrix)) return -1;
@@ -212,9 +223,12 @@ static int configure_arkode(flow *self)
   const dvi__reference_run *run = self->run;
   void *arkode = self->memory;
   return DVI__SUNDIALS_SILENCE(ARKStepSetErrHandlerFn, arkode) ||
-         ARKodeSStolerances(arkode, run->options.relative_tolerance, run->options.absolute_tolerance) ||
-         ARKodeSetUserData(arkode, self) || ARKStepSetTableNum(arkode, ARKODE_DIRK_NONE, ARKODE_FEHLBERG_13_7_8) ||
-         ARKodeSetMaxNumSteps(arkode, run->options.max_steps) || ARKodeSetStopTime(arkode, run->t_end) ||
+         ARKodeSStolerances(arkode, run->options.relative_tolerance,
+                            run->options.absolute_tolerance) ||
+         ARKodeSetUserData(arkode, self) ||
+         ARKStepSetTableNum(arkode, ARKODE_DIRK_NONE, ARKODE_FEHLBERG_13_7_8) ||
+         ARKodeSetMaxNumSteps(arkode, run->options.max_steps) ||
+         ARKodeSetStopTime(arkode, run->t_end) ||
          ARKodeSetMinStep(arkode, dvi__reference_least_step(run));
 }
 

@@ -15,8 +15,10 @@ typedef struct dvi__reference_run {
   double t, t_end;
   int n; /* numbers of v and p, and without factors of q */
   double *q, *v,
-      *p;        /* q [nq], v and p [n]: the start; the end after success. v is also the guess for the next inverse Legendre map */
-  double *force; /* [n] L_q at the start; with a Hamiltonian p'; not with factors */
+      /* q [nq], v and p [n]: the start; the end after success. v is also the guess for the next
+       * inverse Legendre map */
+      *p;
+  double *force;              /* [n] L_q at the start; with a Hamiltonian p'; not with factors */
   double *multiplier;         /* [m] with a Hamiltonian: its constraints', at the start */
   double *L_qq, *L_qv, *L_vv; /* in the order of the system's patterns */
   dvi__evaluator *evaluator;
@@ -28,7 +30,8 @@ typedef struct dvi__reference_run {
   long steps;
 } dvi__reference_run;
 
-/* The codes. They leave the end in run->q and run->p, and what they did in run->reached and run->steps. */
+/* The codes. They leave the end in run->q and run->p, and what they did in run->reached and
+ * run->steps. */
 dvi_status dvi__reference_ida(dvi__reference_run *run);
 dvi_status dvi__reference_hamilton(dvi__reference_run *run); /* IDA with a Hamiltonian */
 dvi_status dvi__reference_ida_lift(dvi__reference_run *run); /* of systems with factors */
@@ -39,21 +42,25 @@ dvi_status dvi__reference_arkode(dvi__reference_run *run);
 dvi_status dvi__reference_form_momentum(dvi__reference_run *run);
 
 /* Check the options (NULL: all defaults) and fill in what is left out. */
-dvi_status dvi__reference_complete(const dvi_system *system, const dvi_reference_options *given, dvi_reference_options *options);
+dvi_status dvi__reference_complete(const dvi_system *system, const dvi_reference_options *given,
+                                   dvi_reference_options *options);
 
 /* The codes would go on with steps that no longer move t; below this they give up. */
 double dvi__reference_least_step(const dvi__reference_run *run);
 
-/* Remember a callback's status and say it in SUNDIALS' way: 0 success, 1 try a smaller step, -1 stop. */
+/* Remember a callback's status and say it in SUNDIALS' way: 0 success, 1 try a smaller step, -1
+ * stop. */
 int dvi__reference_callback(dvi__reference_run *run, dvi_status status);
 
-/* Turn a code's negative flag, by its number and its name (from malloc, freed here), into a status and a sentence. */
+/* Turn a code's negative flag, by its number and its name (from malloc, freed here), into a status
+ * and a sentence. */
 dvi_status dvi__reference_stopped(const dvi__reference_run *run, int flag, char *flag_name);
 
 /* The status for a code that could not be set up. */
 dvi_status dvi__reference_no_setup(const dvi__reference_run *run);
 
-/* A square matrix: dense if it is small, compressed columns with room for `entries` if not; NULL if there is no memory. */
+/* A square matrix: dense if it is small, compressed columns with room for `entries` if not; NULL if
+ * there is no memory. */
 SUNMatrix dvi__reference_matrix(const dvi__reference_run *run, int size, int entries);
 
 /* The direct solver for such a matrix; NULL if there is no memory. */

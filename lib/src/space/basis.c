@@ -36,9 +36,13 @@ static void place_marks(dvi_basis basis, int degree, long double *mark)
 {
   long double weight[DVI__TRIAL_MAX];
   switch (basis) {
-  case DVI_LAGRANGE_LOBATTO: (void)dvi__quadrature_long(DVI_LOBATTO, degree + 1, mark, weight); break;
+  case DVI_LAGRANGE_LOBATTO:
+    (void)dvi__quadrature_long(DVI_LOBATTO, degree + 1, mark, weight);
+    break;
   case DVI_LAGRANGE_GAUSS: (void)dvi__quadrature_long(DVI_GAUSS, degree + 1, mark, weight); break;
-  case DVI_LAGRANGE_CHEBYSHEV: (void)dvi__quadrature_long(DVI_CLENSHAW_CURTIS, degree + 1, mark, weight); break;
+  case DVI_LAGRANGE_CHEBYSHEV:
+    (void)dvi__quadrature_long(DVI_CLENSHAW_CURTIS, degree + 1, mark, weight);
+    break;
   case DVI_LAGRANGE_EQUISPACED:
     for (int k = 0; k <= degree; k++) mark[k] = (long double)k;
     break;
@@ -61,11 +65,13 @@ void dvi__space_init(dvi__space *space, dvi_basis basis, int degree)
   }
 }
 
-/* Barycentric form of the first kind, phi_k = weight[k] prod_{j != k} (x - mark[j]), x = scale tau. The product that leaves out
- * one factor is that of the factors before it and that of the factors behind it, so nothing is divided by x - mark[k]: a tau at
- * a node, or one bit beside it, is a point like any other. The first kind also stays accurate outside of the interval, where
- * the second kind does not (Higham 2004). */
-static void lagrange(const dvi__space *space, long double tau, long double *value, long double *derivative)
+/* Barycentric form of the first kind, phi_k = weight[k] prod_{j != k} (x - mark[j]), x = scale tau.
+ * The product that leaves out one factor is that of the factors before it and that of the factors
+ * behind it, so nothing is divided by x - mark[k]: a tau at a node, or one bit beside it, is a
+ * point like any other. The first kind also stays accurate outside of the interval, where the
+ * second kind does not (Higham 2004). */
+static void lagrange(const dvi__space *space, long double tau, long double *value,
+                     long double *derivative)
 {
   const int last = space->degree;
   const long double x = space->scale * tau;
@@ -79,7 +85,9 @@ static void lagrange(const dvi__space *space, long double tau, long double *valu
   }
   for (int k = last; k >= 0; k--) {
     if (value) value[k] = space->weight[k] * (before[k] * behind);
-    if (derivative) derivative[k] = space->scale * space->weight[k] * (before_slope[k] * behind + before[k] * behind_slope);
+    if (derivative)
+      derivative[k] = space->scale * space->weight[k] *
+                      (before_slope[k] * behind + before[k] * behind_slope);
     behind_slope = behind_slope * (x - space->mark[k]) + behind;
     behind *= x - space->mark[k];
   }
@@ -90,11 +98,12 @@ static void legendre(int degree, long double y, long double *value, long double 
 {
   long double difference[DVI__TRIAL_MAX];
   dvi__legendre(degree, y, value, difference);
-  for (int k = 0; k <= degree; k++) slope[k] = k == 0 ? 0 : (k > 1 ? slope[k - 2] : 0) + (long double)(2 * k - 1) * value[k - 1];
+  for (int k = 0; k <= degree; k++)
+    slope[k] = k == 0 ? 0 : (k > 1 ? slope[k - 2] : 0) + (long double)(2 * k - 1) * value[k - 1];
 }
 
-/* T_k(1-2y) and its derivative k U_{k-1}: by differences as for Legendre, T_{k+1} - T_k = T_k - T_{k-1} - 4 y T_k, and
- * U_k = U_{k-2} + 2 T_k. */
+/* T_k(1-2y) and its derivative k U_{k-1}: by differences as for Legendre, T_{k+1} - T_k = T_k -
+ * T_{k-1} - 4 y T_k, and U_k = U_{k-2} + 2 T_k. */
 static void chebyshev(int degree, long double y, long double *value, long double *slope)
 {
   long double difference = -2 * y, U[DVI__TRIAL_MAX];
@@ -109,8 +118,10 @@ static void chebyshev(int degree, long double y, long double *value, long double
   }
 }
 
-/* Both families from the nearer end. Seen from the left one, x = -(1-2y), and odd functions change their sign. */
-static void modal(const dvi__space *space, long double tau, long double *value, long double *derivative)
+/* Both families from the nearer end. Seen from the left one, x = -(1-2y), and odd functions change
+ * their sign. */
+static void modal(const dvi__space *space, long double tau, long double *value,
+                  long double *derivative)
 {
   const int from_left = tau < 0.5L;
   const long double y = from_left ? tau : 1 - tau;
@@ -123,20 +134,24 @@ static void modal(const dvi__space *space, long double tau, long double *value, 
   }
 }
 
-void dvi__space_evaluate(const dvi__space *space, long double tau, long double *value, long double *derivative)
+void dvi__space_evaluate(const dvi__space *space, long double tau, long double *value,
+                         long double *derivative)
 {
   (dvi__basis_is_nodal(space->basis) ? lagrange : modal)(space, tau, value, derivative);
 }
 
 static dvi_status check(dvi_basis basis, int degree)
 {
-  if (!known(basis)) return dvi__fail(DVI_BAD_ARGUMENT, "basis: there is no basis with number %d", (int)basis);
+  if (!known(basis))
+    return dvi__fail(DVI_BAD_ARGUMENT, "basis: there is no basis with number %d", (int)basis);
   if (degree < 1 || degree > DVI_DEGREE_MAX)
-    return dvi__fail(DVI_BAD_SIZE, "basis: degree %d asked, 1 to %d possible", degree, DVI_DEGREE_MAX);
+    return dvi__fail(DVI_BAD_SIZE, "basis: degree %d asked, 1 to %d possible", degree,
+                     DVI_DEGREE_MAX);
   return DVI_OK;
 }
 
-dvi_status dvi_basis_evaluate(dvi_basis basis, int degree, double tau, double *value, double *derivative)
+dvi_status dvi_basis_evaluate(dvi_basis basis, int degree, double tau, double *value,
+                              double *derivative)
 {
   DVI_TRY(check(basis, degree));
   if (!isfinite(tau)) return dvi__fail(DVI_BAD_ARGUMENT, "basis: tau = %g is not finite", tau);
@@ -155,7 +170,8 @@ dvi_status dvi_basis_nodes(dvi_basis basis, int degree, double *node)
 {
   DVI_TRY(check(basis, degree));
   if (!dvi__basis_is_nodal(basis))
-    return dvi__fail(DVI_BAD_ARGUMENT, "basis: %s is a modal basis, it has no nodes", bases[basis].name);
+    return dvi__fail(DVI_BAD_ARGUMENT, "basis: %s is a modal basis, it has no nodes",
+                     bases[basis].name);
   if (!node) return dvi__fail(DVI_BAD_ARGUMENT, "basis: the array for the nodes is NULL");
   dvi__space space;
   dvi__space_init(&space, basis, degree);

@@ -6,10 +6,11 @@
 /* Trial functions on one interval have at most this count. */
 #define DVI__TRIAL_MAX (DVI_DEGREE_MAX + 1)
 
-/* A basis of one degree. A nodal basis has its nodes at mark[k] / scale; modal ones leave the rest alone.
+/* A basis of one degree. A nodal basis has its nodes at mark[k] / scale; modal ones leave the rest
+ * alone.
  *
- * Equispaced functions rise by 2^degree from one node to the next, so that a node's roundoff is felt: with scale = degree their
- * marks are whole numbers. */
+ * Equispaced functions rise by 2^degree from one node to the next, so that a node's roundoff is
+ * felt: with scale = degree their marks are whole numbers. */
 typedef struct dvi__space {
   dvi_basis basis;
   int degree;
@@ -24,6 +25,7 @@ void dvi__space_init(dvi__space *space, dvi_basis basis, int degree);
 int dvi__basis_is_nodal(dvi_basis basis);
 
 /* value[k] = phi_k(tau), derivative[k] = phi_k'(tau), k = 0..degree; either may be NULL. */
-void dvi__space_evaluate(const dvi__space *space, long double tau, long double *value, long double *derivative);
+void dvi__space_evaluate(const dvi__space *space, long double tau, long double *value,
+                         long double *derivative);
 
 #endif

@@ -9,7 +9,8 @@
 #include "space/legendre.h"
 #include "space/quadrature.h"
 
-/* An oscillation that the points resolve is a sum of so many Legendre polynomials, and the grid has all of their products. */
+/* An oscillation that the points resolve is a sum of so many Legendre polynomials, and the grid has
+ * all of their products. */
 enum { FUNCTIONS = DVI__OSCILLATING_FUNCTIONS, GRID = 64, TERMS = 48 };
 
 /* A Lagrangian that is quadratic in the oscillation has twice its harmonics. */
@@ -17,7 +18,8 @@ enum { POINTS = DVI__FILON_NODES_MOST * (2 * DVI__FILON_HARMONICS_MOST + 1) };
 
 static const long double least_part = 1e-8L;
 
-/* Beyond this h omega of the last harmonic the functions are far from dependent, and from what the grid resolves. */
+/* Beyond this h omega of the last harmonic the functions are far from dependent, and from what the
+ * grid resolves. */
 static const long double orthogonal_up_to = 30;
 
 struct dvi__oscillating {
@@ -29,11 +31,13 @@ struct dvi__oscillating {
   long double grid[GRID], grid_weight[GRID], on_grid[FUNCTIONS][GRID];
   long double matrix[FUNCTIONS][FUNCTIONS]; /* psi_k = sum_i matrix[k][i] (f_i - f_i(0)), i <= k */
   long double start[FUNCTIONS];             /* f_i(0) */
-  long double term[FUNCTIONS][TERMS];       /* on the path, where the points are: psi_k' = sum_i term[k][i] P_i */
+  /* on the path, where the points are: psi_k' = sum_i term[k][i] P_i */
+  long double term[FUNCTIONS][TERMS];
   double next[FUNCTIONS][FUNCTIONS];
 };
 
-/* The sines and cosines are P_i of a harmonic: wave w is P_w of the first one, up to the amplitudes' degree, and then P_0 of the second one. */
+/* The sines and cosines are P_i of a harmonic: wave w is P_w of the first one, up to the
+ * amplitudes' degree, and then P_0 of the second one. */
 static int harmonic_of(const dvi__oscillating *o, int wave)
 {
   return wave <= o->amplitude ? 1 : wave - o->amplitude + 1;
@@ -44,15 +48,18 @@ static int power_of(const dvi__oscillating *o, int wave)
   return wave <= o->amplitude ? wave : 0;
 }
 
-/* f_i and its derivative along the path, for the phase phi at tau: P_1 to P_degree, then P_0 sin, P_0 cos, P_1 sin ..., sin 2, cos 2. */
-static void evaluate(const dvi__oscillating *o, long double tau, long double phi, long double *value, long double *slope)
+/* f_i and its derivative along the path, for the phase phi at tau: P_1 to P_degree, then P_0 sin,
+ * P_0 cos, P_1 sin ..., sin 2, cos 2. */
+static void evaluate(const dvi__oscillating *o, long double tau, long double phi,
+                     long double *value, long double *slope)
 {
   long double P[DVI__TRIAL_MAX], dP[DVI__TRIAL_MAX];
   dvi__space_evaluate(&o->legendre, tau, P, dP);
   for (int k = 0; k < o->degree; k++) value[k] = P[k + 1], slope[k] = dP[k + 1];
   for (int k = o->degree; k < o->functions; k += 2) {
     const int wave = (k - o->degree) / 2, i = power_of(o, wave);
-    const long double times = harmonic_of(o, wave), sine = sinl(times * phi), cosine = cosl(times * phi);
+    const long double times = harmonic_of(o, wave), sine = sinl(times * phi),
+                      cosine = cosl(times * phi);
     value[k] = P[i] * sine;
     slope[k] = dP[i] * sine + times * o->nu * P[i] * cosine;
     value[k + 1] = P[i] * cosine;
@@ -109,7 +116,8 @@ static void make_functions(dvi__oscillating *o)
       o->matrix[k][k] = k < o->degree ? 0.5L : 1 / (harmonic_of(o, (k - o->degree) / 2) * o->nu);
 }
 
-/* Where sin and cos are nearly polynomials, psi_k from the f_i would be a small difference of large numbers. */
+/* Where sin and cos are nearly polynomials, psi_k from the f_i would be a small difference of large
+ * numbers. */
 static void expand(dvi__oscillating *o)
 {
   long double P[TERMS], difference[TERMS];
@@ -117,7 +125,8 @@ static void expand(dvi__oscillating *o)
   for (int g = 0; g < GRID; g++) {
     dvi__legendre(TERMS - 1, 1 - o->grid[g], P, difference);
     for (int k = 0; k < o->functions; k++)
-      for (int i = 0; i < TERMS; i++) o->term[k][i] += o->grid_weight[g] * (long double)(2 * i + 1) * P[i] * o->on_grid[k][g];
+      for (int i = 0; i < TERMS; i++)
+        o->term[k][i] += o->grid_weight[g] * (long double)(2 * i + 1) * P[i] * o->on_grid[k][g];
   }
 }
 
@@ -142,7 +151,8 @@ static int present(const void *of, int k)
   return o->matrix[k][k] != 0;
 }
 
-static void oscillating_at(const dvi__oscillating *o, long double tau, long double phi, double *psi, double *dpsi)
+static void oscillating_at(const dvi__oscillating *o, long double tau, long double phi, double *psi,
+                           double *dpsi)
 {
   long double value[FUNCTIONS] = {0}, slope[FUNCTIONS] = {0};
   evaluate(o, tau, phi, value, slope);
@@ -160,7 +170,8 @@ static void oscillating_at(const dvi__oscillating *o, long double tau, long doub
 /* ---- the last path, continued: amplitudes by their polynomials, phases by nu ---- */
 
 /* P_k(tau + 1) = sum_i shift[i][k] P_i(tau) */
-static void shift_polynomials(const dvi__oscillating *o, long double shift[DVI__TRIAL_MAX][DVI__TRIAL_MAX])
+static void shift_polynomials(const dvi__oscillating *o,
+                              long double shift[DVI__TRIAL_MAX][DVI__TRIAL_MAX])
 {
   long double here[DVI__TRIAL_MAX], beyond[DVI__TRIAL_MAX];
   memset(shift, 0, DVI__TRIAL_MAX * sizeof *shift);
@@ -168,13 +179,16 @@ static void shift_polynomials(const dvi__oscillating *o, long double shift[DVI__
     dvi__space_evaluate(&o->legendre, o->grid[g], here, NULL);
     dvi__space_evaluate(&o->legendre, o->grid[g] + 1, beyond, NULL);
     for (int k = 0; k <= o->degree; k++)
-      for (int i = 0; i <= k; i++) shift[i][k] += o->grid_weight[g] * (long double)(2 * i + 1) * here[i] * beyond[k];
+      for (int i = 0; i <= k; i++)
+        shift[i][k] += o->grid_weight[g] * (long double)(2 * i + 1) * here[i] * beyond[k];
   }
 }
 
-/* The f of the step before, at tau + 1, as a combination of the f at tau: [FUNCTIONS], without the constant. */
-static void shift_function(const dvi__oscillating *o, long double shift[DVI__TRIAL_MAX][DVI__TRIAL_MAX], int k, long double factor,
-                           long double *f)
+/* The f of the step before, at tau + 1, as a combination of the f at tau: [FUNCTIONS], without the
+ * constant. */
+static void shift_function(const dvi__oscillating *o,
+                           long double shift[DVI__TRIAL_MAX][DVI__TRIAL_MAX], int k,
+                           long double factor, long double *f)
 {
   if (k < o->degree) {
     for (int i = 1; i <= k + 1; i++) f[i - 1] += factor * shift[i][k + 1];
@@ -182,7 +196,8 @@ static void shift_function(const dvi__oscillating *o, long double shift[DVI__TRI
   }
   const int wave = (k - o->degree) / 2, is_cosine = (k - o->degree) % 2, p = power_of(o, wave);
   const long double turn = harmonic_of(o, wave) * o->nu;
-  const long double by_sine = is_cosine ? -sinl(turn) : cosl(turn), by_cosine = is_cosine ? cosl(turn) : sinl(turn);
+  const long double by_sine = is_cosine ? -sinl(turn) : cosl(turn),
+                    by_cosine = is_cosine ? cosl(turn) : sinl(turn);
   for (int i = 0; i <= p; i++) {
     const int sine = o->degree + 2 * (wave - p + i);
     f[sine] += factor * shift[i][p] * by_sine;
@@ -232,8 +247,9 @@ static int points(const dvi__oscillating *o)
   return o->nodes * samples(o);
 }
 
-/* Products of two oscillations are then exact but for rounding: of e^{iax} on [-1,1], a = nu for the first harmonic's square, Gauss's rule misses what is beyond Taylor's term
- * of degree k = 2 points - 2 degree, about (e a/2k)^k. */
+/* Products of two oscillations are then exact but for rounding: of e^{iax} on [-1,1], a = nu for
+ * the first harmonic's square, Gauss's rule misses what is beyond Taylor's term of degree k = 2
+ * points - 2 degree, about (e a/2k)^k. */
 double dvi__oscillating_resolved(const dvi__oscillating *space)
 {
   const double k = 2 * (points(space) - space->degree);
@@ -271,7 +287,8 @@ static void point(const void *of, int j, double *tau, double *weight, double *ps
   if (o->on_path)
     resolved_at(o, node, psi, dpsi);
   else
-    oscillating_at(o, node, o->nu * (node - 0.5L) + turn * (long double)sample / (long double)count, psi, dpsi);
+    oscillating_at(o, node, o->nu * (node - 0.5L) + turn * (long double)sample / (long double)count,
+                   psi, dpsi);
 }
 
 static void path(const void *of, double tau, double *psi, double *dpsi)

@@ -1,6 +1,7 @@
 #include "space/osculation.h"
 
-/* w_{2l-1} = B_{2l}/(2l) = (-1)^(l-1) T_l / (4^l (4^l - 1)) with the tangent numbers T_l = 1, 2, 16, 272, ... */
+/* w_{2l-1} = B_{2l}/(2l) = (-1)^(l-1) T_l / (4^l (4^l - 1)) with the tangent numbers T_l = 1, 2,
+ * 16, 272, ... */
 static void euler_maclaurin(int terms, double *weight)
 {
   long double T[DVI_TAYLOR_MAX / 2 + 1] = {0, 1}, power = 1;
@@ -51,8 +52,9 @@ static double binomial(int n, int k)
   return (double)product;
 }
 
-/* The function with a_j = 1 alone is tau^j (1-tau)^N sum_{i < N-j} binomial(N-1+i, i) tau^i: the series of (1-tau)^-N, cut off. Its next coefficient is what was
- * cut off; at the other end the sum itself. */
+/* The function with a_j = 1 alone is tau^j (1-tau)^N sum_{i < N-j} binomial(N-1+i, i) tau^i: the
+ * series of (1-tau)^-N, cut off. Its next coefficient is what was cut off; at the other end the sum
+ * itself. */
 void dvi__hermite_next(int N, double *from_a, double *from_b)
 {
   for (int j = 0; j < N; j++) {
@@ -72,7 +74,8 @@ void dvi__hermite_functions(int N, double tau, double *value, double *slope)
     sum_slope += term_slope;
     const double left = j > 0 ? pow(tau, j - 1) : 1, at = j > 0 ? left * tau : 1;
     value[j] = at * power * rest * sum;
-    slope[j] = (j > 0 ? j * left : 0) * power * rest * sum - N * at * power * sum + at * power * rest * sum_slope;
+    slope[j] = (j > 0 ? j * left : 0) * power * rest * sum - N * at * power * sum +
+               at * power * rest * sum_slope;
     const double next = (double)(N + i) / (i + 1);
     term_slope = next * (term_slope * tau + term);
     term *= next * tau;

@@ -1,7 +1,8 @@
 /* Quadrature rules on the unit interval.
  *
- * The Gaussian families differ only in which ends are nodes. Seen from one end, let `here` be 1 if that end is a node and
- * `there` 1 if the other one is; the nodes are the ends taken and the zeros, in the distance y from this end, of
+ * The Gaussian families differ only in which ends are nodes. Seen from one end, let `here` be 1 if
+ * that end is a node and `there` 1 if the other one is; the nodes are the ends taken and the zeros,
+ * in the distance y from this end, of
  *
  *     here there                                        weight
  *      0     0    Gauss    P_n                          4 y (1-y) / (n (P_n - P_{n-1}))^2
@@ -9,12 +10,13 @@
  *      0     1    Radau    P_n + P_{n-1}                y / (n P_{n-1})^2
  *      1     1    Lobatto  (1-x^2) P'_{n-1} / (n-1)     1 / (n (n-1) P_{n-1}^2)
  *
- * with P_k = P_k(x), x = 1 - 2y: the free zeros are those of the Jacobi polynomial P^(here,there). Every node is computed from
- * its nearer end, so that symmetric rules come out symmetric to the last bit and small nodes keep their relative accuracy.
- * Davis and Rabinowitz 1984, sec. 2.7.
+ * with P_k = P_k(x), x = 1 - 2y: the free zeros are those of the Jacobi polynomial P^(here,there).
+ * Every node is computed from its nearer end, so that symmetric rules come out symmetric to the
+ * last bit and small nodes keep their relative accuracy. Davis and Rabinowitz 1984, sec. 2.7.
  *
- * All in long double: where it has 64 bits of mantissa or more, the rounded results are right to 2 ulp; where long double is
- * the same as double, a few ulp are lost (most in the inner Clenshaw-Curtis weights, at large n). */
+ * All in long double: where it has 64 bits of mantissa or more, the rounded results are right to 2
+ * ulp; where long double is the same as double, a few ulp are lost (most in the inner
+ * Clenshaw-Curtis weights, at large n). */
 #include "space/quadrature.h"
 
 #include <math.h>
@@ -42,17 +44,20 @@ static long double newton_step(ends e, int n, long double y)
   long double value[DVI_QUADRATURE_MAX + 1], difference[DVI_QUADRATURE_MAX + 1];
   dvi__legendre(n, y, value, difference);
   const long double P = value[n], D = difference[n], S = 2 * P - D;
-  if (e.here && e.there) return (2 * y * value[n - 1] - difference[n - 1]) / (2 * REAL(n) * value[n - 1]);
+  if (e.here && e.there)
+    return (2 * y * value[n - 1] - difference[n - 1]) / (2 * REAL(n) * value[n - 1]);
   if (e.here) return -D * (1 - y) / (REAL(n) * S);
   if (e.there) return S * y / (REAL(n) * D);
   return -P * 2 * y * (1 - y) / (REAL(n) * (2 * y * P - D));
 }
 
-/* Distance of free node k = 1, 2, ... from the end. The first guess is the asymptotic one of the Jacobi polynomials; Newton's
- * method squares the error, so that the step after one below 1e-12 would be below roundoff. */
+/* Distance of free node k = 1, 2, ... from the end. The first guess is the asymptotic one of the
+ * Jacobi polynomials; Newton's method squares the error, so that the step after one below 1e-12
+ * would be below roundoff. */
 static long double free_node(ends e, int n, int k)
 {
-  const long double half_angle = pi() * (REAL(2 * k + e.here) - 0.5L) / (2 * REAL(2 * n + 1 - e.here - e.there));
+  const long double half_angle = pi() * (REAL(2 * k + e.here) - 0.5L) /
+                                 (2 * REAL(2 * n + 1 - e.here - e.there));
   const int most_steps = 10;
   long double y = sinl(half_angle) * sinl(half_angle);
   for (int i = 0; i < most_steps; i++) {
@@ -95,7 +100,8 @@ static void gaussian(ends left, int n, long double *node, long double *weight)
   }
 }
 
-/* The inner weights' cosine sum; the angle is reduced to [0, pi] by whole numbers, where it is exact. */
+/* The inner weights' cosine sum; the angle is reduced to [0, pi] by whole numbers, where it is
+ * exact. */
 static long double clenshaw_curtis_weight(int intervals, int j)
 {
   long double sum = 1;
@@ -142,11 +148,14 @@ static int known(dvi_rule rule)
 
 static dvi_status check(dvi_rule rule, int n, int outputs)
 {
-  if (!known(rule)) return dvi__fail(DVI_BAD_ARGUMENT, "quadrature: there is no rule with number %d", (int)rule);
-  if (!outputs) return dvi__fail(DVI_BAD_ARGUMENT, "quadrature: the array for the nodes or for the weights is NULL");
+  if (!known(rule))
+    return dvi__fail(DVI_BAD_ARGUMENT, "quadrature: there is no rule with number %d", (int)rule);
+  if (!outputs)
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "quadrature: the array for the nodes or for the weights is NULL");
   if (n < rules[rule].fewest || n > rules[rule].most)
-    return dvi__fail(DVI_BAD_SIZE, "quadrature: %d points asked of %s, %d to %d possible", n, rules[rule].name, rules[rule].fewest,
-                     rules[rule].most);
+    return dvi__fail(DVI_BAD_SIZE, "quadrature: %d points asked of %s, %d to %d possible", n,
+                     rules[rule].name, rules[rule].fewest, rules[rule].most);
   return DVI_OK;
 }
 

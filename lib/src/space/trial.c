@@ -24,7 +24,8 @@ void dvi__trial_in(const dvi__space *space, long double tau, double *psi, double
   difference(space->degree, value, at_end, bar);
 }
 
-void dvi__trial_at_long(dvi_basis basis, int degree, long double tau, double *psi, double *bar, double *dpsi)
+void dvi__trial_at_long(dvi_basis basis, int degree, long double tau, double *psi, double *bar,
+                        double *dpsi)
 {
   dvi__space space;
   dvi__space_init(&space, basis, degree);
@@ -36,10 +37,12 @@ void dvi__trial_at(dvi_basis basis, int degree, double tau, double *psi, double 
   dvi__trial_at_long(basis, degree, (long double)tau, psi, bar, dpsi);
 }
 
-/* How a basis reads its coefficients from a polynomial that vanishes at 0: Y_k = sum_j matrix[k-1][j] r(point[j]).
+/* How a basis reads its coefficients from a polynomial that vanishes at 0: Y_k = sum_j
+ * matrix[k-1][j] r(point[j]).
  *
- * Nodal: r(node_k) - r(node_0), for sum_k phi_k(0) r(node_k) = 0. Modal: the coefficients are those of the orthogonal expansion,
- * by the quadrature that is exact for it (Gauss; for Chebyshev, the zeros of T_{degree+1} with equal weights). */
+ * Nodal: r(node_k) - r(node_0), for sum_k phi_k(0) r(node_k) = 0. Modal: the coefficients are those
+ * of the orthogonal expansion, by the quadrature that is exact for it (Gauss; for Chebyshev, the
+ * zeros of T_{degree+1} with equal weights). */
 typedef struct reading {
   long double point[DVI__TRIAL_MAX];
   long double matrix[DVI_DEGREE_MAX][DVI__TRIAL_MAX];
@@ -67,8 +70,9 @@ static void read_modal(const dvi__space *space, reading *to)
     }
     dvi__space_evaluate(space, to->point[j], value, NULL);
     for (int k = 1; k < points; k++)
-      to->matrix[k - 1][j] = value[k] *
-                             (space->basis == DVI_CHEBYSHEV ? 2 / (long double)points : (long double)(2 * k + 1) * weight[j]);
+      to->matrix[k - 1][j] = value[k] * (space->basis == DVI_CHEBYSHEV
+                                             ? 2 / (long double)points
+                                             : (long double)(2 * k + 1) * weight[j]);
   }
 }
 
@@ -77,8 +81,8 @@ static void read_coefficients(const dvi__space *space, reading *to)
   (dvi__basis_is_nodal(space->basis) ? read_nodal : read_modal)(space, to);
 }
 
-/* primitive[m] = integral of P_m from `from` to `to`, m < count: the Legendre functions' own primitives are
- * (P_{m+1} - P_{m-1}) / (2 (2m+1)). */
+/* primitive[m] = integral of P_m from `from` to `to`, m < count: the Legendre functions' own
+ * primitives are (P_{m+1} - P_{m-1}) / (2 (2m+1)). */
 static void integrate_legendre(int count, long double from, long double to, long double *primitive)
 {
   dvi__space space;
@@ -88,15 +92,18 @@ static void integrate_legendre(int count, long double from, long double to, long
   dvi__space_evaluate(&space, to, upper, NULL);
   primitive[0] = to - from;
   for (int m = 1; m < count; m++)
-    primitive[m] = ((upper[m + 1] - lower[m + 1]) - (upper[m - 1] - lower[m - 1])) / (long double)(2 * (2 * m + 1));
+    primitive[m] = ((upper[m + 1] - lower[m + 1]) - (upper[m - 1] - lower[m - 1])) /
+                   (long double)(2 * (2 * m + 1));
 }
 
 /* expansion[m][l-1] = coefficient m of psi_l' in Legendre functions, m < count. */
-static void expand_derivatives(const dvi__space *space, int count, long double expansion[][DVI_DEGREE_MAX])
+static void expand_derivatives(const dvi__space *space, int count,
+                               long double expansion[][DVI_DEGREE_MAX])
 {
   const int degree = space->degree;
   dvi__space legendre;
-  long double node[DVI_DEGREE_MAX], weight[DVI_DEGREE_MAX], P[DVI__TRIAL_MAX], derivative[DVI__TRIAL_MAX];
+  long double node[DVI_DEGREE_MAX], weight[DVI_DEGREE_MAX], P[DVI__TRIAL_MAX],
+      derivative[DVI__TRIAL_MAX];
   dvi__space_init(&legendre, DVI_LEGENDRE, degree);
   (void)dvi__quadrature_long(DVI_GAUSS, degree, node, weight);
   for (int m = 0; m < count; m++) memset(expansion[m], 0, sizeof expansion[m]);
@@ -104,11 +111,13 @@ static void expand_derivatives(const dvi__space *space, int count, long double e
     dvi__space_evaluate(&legendre, node[i], P, NULL);
     dvi__space_evaluate(space, node[i], NULL, derivative);
     for (int m = 0; m < count; m++)
-      for (int l = 0; l < degree; l++) expansion[m][l] += (long double)(2 * m + 1) * weight[i] * P[m] * derivative[l + 1];
+      for (int l = 0; l < degree; l++)
+        expansion[m][l] += (long double)(2 * m + 1) * weight[i] * P[m] * derivative[l + 1];
   }
 }
 
-static void apply_reading(const reading *read, int degree, const long double *values, long double *coefficients)
+static void apply_reading(const reading *read, int degree, const long double *values,
+                          long double *coefficients)
 {
   for (int k = 0; k < degree; k++) {
     coefficients[k] = 0;
@@ -125,7 +134,8 @@ void dvi__trial_shift(dvi_basis basis, int degree, int keep, double ratio, doubl
   dvi__space_init(&space, basis, degree);
   read_coefficients(&space, &read);
   expand_derivatives(&space, keep, expansion);
-  for (int j = 0; j <= degree; j++) integrate_legendre(keep, 1, 1 + (long double)ratio * read.point[j], primitive[j]);
+  for (int j = 0; j <= degree; j++)
+    integrate_legendre(keep, 1, 1 + (long double)ratio * read.point[j], primitive[j]);
   for (int l = 0; l < degree; l++) {
     for (int j = 0; j <= degree; j++) {
       values[j] = 0;
@@ -136,7 +146,8 @@ void dvi__trial_shift(dvi_basis basis, int degree, int keep, double ratio, doubl
   }
 }
 
-/* A least-squares problem: columns[m][i] at point i, orthogonalised in place, so that old columns = new columns times R. */
+/* A least-squares problem: columns[m][i] at point i, orthogonalised in place, so that old columns =
+ * new columns times R. */
 typedef struct columns {
   int count, points;
   long double column[DVI_DEGREE_MAX][DVI_QUADRATURE_MAX];
@@ -168,15 +179,16 @@ static void orthogonalize(columns *c)
 }
 
 /* column[m][i] = integral of P_m from 0 to point i. */
-static void sample_primitive(int degree, int i, long double point, long double column[][DVI_QUADRATURE_MAX])
+static void sample_primitive(int degree, int i, long double point,
+                             long double column[][DVI_QUADRATURE_MAX])
 {
   long double primitive[DVI_DEGREE_MAX];
   integrate_legendre(degree, 0, point, primitive);
   for (int m = 0; m < degree; m++) column[m][i] = primitive[m];
 }
 
-/* C[m] = the basis' coefficients of the combination of primitives that column m of Q stands for: those of the primitives
- * themselves, times R^{-1}. */
+/* C[m] = the basis' coefficients of the combination of primitives that column m of Q stands for:
+ * those of the primitives themselves, times R^{-1}. */
 static void read_columns(const dvi__space *space, const columns *c, long double C[][DVI_DEGREE_MAX])
 {
   const int degree = space->degree;
@@ -193,8 +205,9 @@ static void read_columns(const dvi__space *space, const columns *c, long double 
   }
 }
 
-/* The polynomial is found as a combination of the Legendre functions' primitives, which vanish at 0 and are well conditioned
- * where the basis itself may not be, and then read in the basis: Y = C Q^T (values - q0). */
+/* The polynomial is found as a combination of the Legendre functions' primitives, which vanish at 0
+ * and are well conditioned where the basis itself may not be, and then read in the basis: Y = C Q^T
+ * (values - q0). */
 void dvi__trial_fit(dvi_basis basis, int degree, int points, const double *tau, double *matrix)
 {
   dvi__space space;

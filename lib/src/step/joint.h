@@ -1,5 +1,5 @@
-/* The joint pattern of a Lagrangian's Hessian: which coordinates meet in any of L_qq, L_qv, L_vq and L_vv; of a one-form, and of a Hamiltonian, with
- * the diagonal. */
+/* The joint pattern of a Lagrangian's Hessian: which coordinates meet in any of L_qq, L_qv, L_vq
+ * and L_vv; of a one-form, and of a Hamiltonian, with the diagonal. */
 #ifndef DVI_ACTION_JOINT_H
 #define DVI_ACTION_JOINT_H
 #include "system/system.h"
@@ -14,8 +14,10 @@ typedef struct dvi__block {
  * is taken. No pattern is made. */
 dvi_status dvi__joint_check(const dvi_system *system, int size, int most);
 
-/* The pattern, and a block [entries] for each of its entries, from the heap; what a failure leaves belongs to the caller, too. The system must be
- * prepared for Hessians. */
-dvi_status dvi__joint_create(const dvi_system *system, dvi__pattern *joint, dvi__block **block);
+/* The pattern, and a block [entries] for each of its entries, from the heap; what a failure leaves
+ * belongs to the caller, too. The system must be prepared for Hessians. `more`: entries [n x n]
+ * that are to be in the pattern, too; NULL: none. */
+dvi_status dvi__joint_create(const dvi_system *system, const dvi__pattern *more,
+                             dvi__pattern *joint, dvi__block **block);
 
 #endif

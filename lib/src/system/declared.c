@@ -20,15 +20,18 @@ static uint64_t terms_of(const dvi_system *s)
 {
   uint64_t hash = dvi__hash(DVI__HASH_START, sizeof s->n, &s->n);
   hash = dvi__hash(hash, sizeof s->terms, &s->terms);
-  for (int c = 0; c < s->cell_count; c++) hash = dvi__hash(hash, sizeof s->cells[c].kind, &s->cells[c].kind);
+  for (int c = 0; c < s->slot_count; c++)
+    hash = dvi__hash(hash, sizeof s->slots[c].kind, &s->slots[c].kind);
   return hash;
 }
 
 static uint64_t masses_of(const dvi_system *s)
 {
   uint64_t hash = DVI__HASH_START;
-  if (s->mass_diagonal != NULL) hash = dvi__hash(hash, (size_t)s->n * sizeof(double), s->mass_diagonal);
-  if (s->mass_values != NULL) hash = dvi__hash(hash, (size_t)dvi__pattern_entries(&s->vv) * sizeof(double), s->mass_values);
+  if (s->mass_diagonal != NULL)
+    hash = dvi__hash(hash, (size_t)s->n * sizeof(double), s->mass_diagonal);
+  if (s->mass_values != NULL)
+    hash = dvi__hash(hash, (size_t)dvi__pattern_entries(&s->vv) * sizeof(double), s->mass_values);
   return hash;
 }
 
@@ -55,20 +58,22 @@ static uint64_t potentials_of(const dvi_system *s)
 static uint64_t invariants_of(const dvi_system *s)
 {
   uint64_t hash = DVI__HASH_START;
-  for (int i = 0; i < dvi_system_invariant_count(s); i++) hash = add_text(hash, s->invariant_names[i]);
+  for (int i = 0; i < dvi_system_invariant_count(s); i++)
+    hash = add_text(hash, s->invariant_names[i]);
   return hash;
 }
 
 void dvi__system_declared(const dvi_system *system, dvi__declared *declared)
 {
-  *declared = (dvi__declared){
-      {terms_of(system), masses_of(system), patterns_of(system), potentials_of(system), invariants_of(system)}};
+  *declared = (dvi__declared){{terms_of(system), masses_of(system), patterns_of(system),
+                               potentials_of(system), invariants_of(system)}};
 }
 
 const char *dvi__declared_difference(const dvi__declared *one, const dvi__declared *other)
 {
-  static const char *const name[DVI__DECLARED_PARTS] = {"terms", "masses or inertias", "patterns of derivatives",
-                                                        "names or speeds of potentials", "names of invariants"};
+  static const char *const name[DVI__DECLARED_PARTS] = {
+      "terms", "masses or inertias", "patterns of derivatives", "names or speeds of potentials",
+      "names of invariants"};
   for (int part = 0; part < DVI__DECLARED_PARTS; part++)
     if (one->hash[part] != other->hash[part]) return name[part];
   return NULL;

@@ -5,12 +5,14 @@
 
 static dvi_mass mass_of(const dvi_system *whole)
 {
-  if (whole->mass_values != NULL) return (dvi_mass){.values = whole->mass_values, .pattern = {whole->vv.start, whole->vv.row}};
+  if (whole->mass_values != NULL)
+    return (dvi_mass){.values = whole->mass_values, .pattern = {whole->vv.start, whole->vv.row}};
   if (whole->mass_scalar != 0) return (dvi_mass){.scalar = whole->mass_scalar};
   return (dvi_mass){.diagonal = whole->mass_diagonal};
 }
 
-/* The user's own pattern may be gone; a left-out one may be completed by another thread at this time. */
+/* The user's own pattern may be gone; a left-out one may be completed by another thread at this
+ * time. */
 static dvi_potential declared(const dvi__potential_term *term)
 {
   dvi_potential potential = term->callbacks;
@@ -25,7 +27,8 @@ static dvi_status make(const dvi_system *whole, int fast, dvi_mass mass, dvi_sys
   *part = NULL;
   if (potentials == NULL) return dvi__fail(DVI_NO_MEMORY, "system: no memory for its parts");
   for (int k = 0; k < whole->potential_count; k++)
-    if ((whole->potentials[k].callbacks.fast != 0) == fast) potentials[terms.potential_count++] = declared(&whole->potentials[k]);
+    if ((whole->potentials[k].callbacks.fast != 0) == fast)
+      potentials[terms.potential_count++] = declared(&whole->potentials[k]);
   if (terms.potential_count > 0) terms.potentials = potentials;
   const dvi_status status = dvi_system_create(&terms, part);
   dvi__release(potentials);
@@ -45,7 +48,8 @@ dvi_status dvi__system_fast_part(const dvi_system *whole, dvi_system **part)
 const char *dvi__system_fast_not_quadratic(const dvi_system *whole)
 {
   for (int k = 0; k < whole->potential_count; k++)
-    if (whole->potentials[k].callbacks.fast && !whole->potentials[k].callbacks.quadratic) return whole->potentials[k].name;
+    if (whole->potentials[k].callbacks.fast && !whole->potentials[k].callbacks.quadratic)
+      return whole->potentials[k].name;
   return NULL;
 }
 

@@ -40,7 +40,8 @@ typedef struct dvi__potential_term {
   dvi__groups groups;
 } dvi__potential_term;
 
-/* The gradient of a function beside a one-form alpha, and where the entries of both stand in the sum's. */
+/* The gradient of a function beside a one-form alpha, and where the entries of both stand in the
+ * sum's. */
 typedef struct dvi__gauge_term {
   dvi_gauge callbacks;               /* without a gradient: there is none */
   dvi__pattern qq, form_qq, form_qv; /* of f; of alpha alone */
@@ -50,21 +51,25 @@ typedef struct dvi__gauge_term {
 /* A Lagrangian that a part of the library computes from another one. Shapes as in
  * system/evaluate/evaluator.h; `of` is the term's. */
 typedef struct dvi__computed {
-  dvi_status (*value)(void *of, int count, const double *t, const double *q, const double *v, double *L);
-  dvi_status (*gradient)(void *of, int count, const double *t, const double *q, const double *v, double *L_q, double *L_v);
-  dvi_status (*hessian)(void *of, int count, const double *t, const double *q, const double *v, double *L_qq, double *L_qv,
-                        double *L_vv);
+  dvi_status (*value)(void *of, int count, const double *t, const double *q, const double *v,
+                      double *L);
+  dvi_status (*gradient)(void *of, int count, const double *t, const double *q, const double *v,
+                         double *L_q, double *L_v);
+  dvi_status (*hessian)(void *of, int count, const double *t, const double *q, const double *v,
+                        double *L_qq, double *L_qv, double *L_vv);
   double (*noise)(const void *of);               /* as dvi__hessian_noise */
   dvi_status (*reserve)(void *of, int capacity); /* room for so many points in a batch */
 } dvi__computed;
 
-/* A general Lagrangian, or alpha(q).v; or a Hamiltonian, which is a function of p where these are functions of v. */
+/* A general Lagrangian, or alpha(q).v; or a Hamiltonian, which is a function of p where these are
+ * functions of v. */
 typedef struct dvi__lagrangian_term {
   const char *name; /* for messages: "Lagrangian", "Hamiltonian", "constraint" */
   dvi_lagrangian callbacks;
   const struct dvi__computed *computed; /* not NULL: it stands in the place of the callbacks, */
   void *of;                             /* with this first argument */
-  dvi_one_form one_form;                /* without a value: there is none, and the callbacks above count */
+  /* without a value: there is none, and the callbacks above count */
+  dvi_one_form one_form;
   dvi__gauge_term gauge;
   dvi__pattern qq, qv, vv;
   dvi__pattern omega;             /* of the one-form's two-form: qv and its transpose */
@@ -72,18 +77,20 @@ typedef struct dvi__lagrangian_term {
   dvi__groups q_groups, v_groups; /* q columns of qq; v columns of qv and vv together */
 } dvi__lagrangian_term;
 
-/* A factor, or a coordinate of R^n: which chart it has, and where its numbers begin. A factor of rigid motions is one of rotations and three coordinates. */
-typedef struct dvi__cell {
+/* A factor, or a coordinate of R^n: which chart it has, and where its numbers begin. A factor of
+ * rigid motions is one of rotations and three coordinates. */
+typedef struct dvi__factor_slot {
   dvi__chart_kind kind;
   int q, v, x; /* of the stored coordinates, of the stored velocities, of the chart's coordinates */
-} dvi__cell;
+} dvi__factor_slot;
 
 /* Constraints phi(q,p) = 0. */
 typedef struct dvi__constraint_term {
   dvi_constraint callbacks;
-  dvi__pattern gradients;        /* 2n rows, m columns */
-  dvi__pattern bracket;          /* full, m x m */
-  dvi__lagrangian_term weighted; /* patterns and groups of phi.w, a function of q and p; without callbacks */
+  dvi__pattern gradients; /* 2n rows, m columns */
+  dvi__pattern bracket;   /* full, m x m */
+  /* patterns and groups of phi.w, a function of q and p; without callbacks */
+  dvi__lagrangian_term weighted;
 } dvi__constraint_term;
 
 /* Ints count coordinates, and up to four numbers of each. */
@@ -104,8 +111,8 @@ struct dvi_system {
   int n;          /* stored coordinates */
   int nv;         /* numbers of a velocity: n without factors */
   int nx;         /* degrees of freedom */
-  int cell_count; /* 0: no factors */
-  dvi__cell *cells;
+  int slot_count; /* 0: no factors */
+  dvi__factor_slot *slots;
   int autonomous; /* declared so */
   dvi__declared declared;
   unsigned terms; /* dvi__term bits */
@@ -122,32 +129,39 @@ struct dvi_system {
   int invariant_count;
   char **invariant_names; /* energy, symmetries, invariants */
   dvi__pattern qv,
-      vv; /* of L's Hessian; vv is diagonal for scalar and diagonal masses, empty for a one-form. With a Hamiltonian: of its H_qp and H_pp */
+      /* of L's Hessian; vv is diagonal for scalar and diagonal masses, empty for a one-form. With a
+       * Hamiltonian: of its H_qp and H_pp */
+      vv;
   dvi__pattern qq; /* the union over the terms; empty until dvi__system_prepare_hessian */
 };
 
-/* Complete the patterns of L_qq, once: left-out ones are full, n^2 entries that only a method with Hessians should pay for. Integrators on
- * several threads may call it at one time. DVI_BAD_SIZE if an int cannot count the entries. */
+/* Complete the patterns of L_qq, once: left-out ones are full, n^2 entries that only a method with
+ * Hessians should pay for. Integrators on several threads may call it at one time. DVI_BAD_SIZE if
+ * an int cannot count the entries. */
 dvi_status dvi__system_prepare_hessian(const dvi_system *system);
 
 /* Whether all potentials give their gradient: nothing is differenced for forces. */
 int dvi__system_has_gradients(const dvi_system *system);
 
-/* The relative error of the second derivatives: 0 if all terms give theirs, else that of differences (system/term/difference.h). */
+/* The relative error of the second derivatives: 0 if all terms give theirs, else that of
+ * differences (system/term/difference.h). */
 double dvi__hessian_noise(const dvi_system *system);
 
-/* DVI_OK if L_t is known: the system is autonomous, or all terms give their rates. Else the sentence names the term without. */
+/* DVI_OK if L_t is known: the system is autonomous, or all terms give their rates. Else the
+ * sentence names the term without. */
 dvi_status dvi__system_has_rates(const dvi_system *system);
 
-/* DVI_OK if the Taylor coefficients of L are known: all terms give them. Else the sentence names the term without. */
+/* DVI_OK if the Taylor coefficients of L are known: all terms give them. Else the sentence names
+ * the term without. */
 dvi_status dvi__system_has_taylor(const dvi_system *system);
 
 /* The hashes; and in which part they differ first, in words. NULL: in none. */
 void dvi__system_declared(const dvi_system *system, dvi__declared *declared);
 const char *dvi__declared_difference(const dvi__declared *one, const dvi__declared *other);
 
-/* DVI_OK if one may stand in for the other in all that is made for it: they declare the same terms, masses, patterns, names, speeds, derivatives and reaches, and
- * differ in what their callbacks compute alone. */
+/* DVI_OK if one may stand in for the other in all that is made for it: they declare the same terms,
+ * masses, patterns, names, speeds, derivatives and reaches, and differ in what their callbacks
+ * compute alone. */
 dvi_status dvi__system_alike(const dvi_system *a, const dvi_system *b);
 
 #endif

@@ -104,7 +104,7 @@ until: 10
 E1
 expect 0 'a kink at rest' check rest.yaml
 says out "^kink: rest.yaml:2:41: abs(y'): the first derivative" 'check tells it'
-says out 'at 4 points near the start .*; left out: 1 at a kink' 'why a point is left out'
+says out 'at 4 points near the start .*; default: 1 at a kink' 'why a point is left out'
 cat >many.yaml <<'E1'
 coordinates: {"x[1000]": scalar}
 lagrangian: sum(i=1..1000, x[i]'^2/2 + 0.1*abs(x[i]')*x[i])

@@ -92,13 +92,13 @@ START_TEST(what_it_cannot_do_is_refused_by_name)
     const char *words;
   } cases[] = {
       {"verlet:degree=2", DVI_BAD_OPTION, "degree"},
-      {"verlet:sweep=tidal", DVI_BAD_OPTION, "auto, wave, plain"},
+      {"verlet:blocking=tidal", DVI_BAD_OPTION, "auto, temporal, none"},
       {"verlet:threads=0", DVI_BAD_OPTION, "1 to 64"},
       {"verlet:threads=65", DVI_BAD_OPTION, "1 to 64"},
       {"verlet:threads=-1", DVI_BAD_OPTION, "plain digits"},
-      {"verlet:sweep=wave", DVI_UNSUPPORTED, "no gradient_range"},
+      {"verlet:blocking=temporal", DVI_UNSUPPORTED, "no gradient_range"},
       {"verlet:threads=2", DVI_UNSUPPORTED, "no gradient_range"},
-      {"verlet:threads=2,sweep=plain", DVI_UNSUPPORTED, "sweep=plain"},
+      {"verlet:threads=2,blocking=none", DVI_UNSUPPORTED, "blocking=none"},
       {"composition:order=4,threads=2", DVI_UNSUPPORTED, "no gradient_range"},
   };
   problem *oscillator = made_problem("oscillator", NULL);

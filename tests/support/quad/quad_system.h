@@ -6,19 +6,19 @@
 
 #define QUAD_PARAMETERS_MAX 8
 #define QUAD_BODIES_MAX 6
-#define QUAD_CELLS_MAX 8
+#define QUAD_SLOTS_MAX 8
 #define QUAD_POINTS_MAX 48
 
 /* A point of a system of rotations, places and directions (quad_factors.c). */
 typedef struct quad_point {
   quad mass, weight[3], spring, pull;
-  quad arm[QUAD_CELLS_MAX][3]; /* of each cell: rho of a rotation; the factor, and 0, 0 */
+  quad arm[QUAD_SLOTS_MAX][3]; /* of each cell: rho of a rotation; the factor, and 0, 0 */
 } quad_point;
 
 typedef struct quad_system {
   int n;  /* of q */
   int nv; /* of v and p; 0 until quad_prepare: n */
-  char cells[QUAD_CELLS_MAX + 1];
+  char slots[QUAD_SLOTS_MAX + 1];
   int points;
   quad_point point[QUAD_POINTS_MAX];
   quad value[QUAD_PARAMETERS_MAX];

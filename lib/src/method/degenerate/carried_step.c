@@ -14,9 +14,12 @@ static void explain(const dvi__stepper *self, dvi__text *text)
 {
   const carried *own = self->own;
   static const char *const gauge[] = {
-      "the gauge must make the symmetric part of Dalpha definite, and not 0, which each step checks", "every gauge will do",
+      "the gauge must make the symmetric part of Dalpha definite, and not 0, which each step "
+      "checks",
+      "every gauge will do",
       "the gauge must make the symmetric part of Dalpha definite, or 0, which each step checks"};
-  dvi__text_add(text, "constraint: p = alpha(q), which the steps leave; %s\n", gauge[own->sign + 1]);
+  dvi__text_add(text, "constraint: p = alpha(q), which the steps leave; %s\n",
+                gauge[own->sign + 1]);
 }
 
 static dvi_status place(dvi__stepper *self, const dvi__state *state, double h, double part)
@@ -30,7 +33,8 @@ static dvi_status place(dvi__stepper *self, const dvi__state *state, double h, d
 
 DVI__STEP_KIND(action, place, explain);
 
-static dvi_status make_action(const dvi__stepper *self, const dvi__action_space *space, dvi__action **action)
+static dvi_status make_action(const dvi__stepper *self, const dvi__action_space *space,
+                              dvi__action **action)
 {
   DVI_TRY(dvi__action_create(self->system, space, self->counters, action));
   const dvi_status status = dvi__action_prepare_jacobian(*action);
@@ -63,16 +67,18 @@ dvi_status dvi__carried_step(dvi__stepper *self, dvi__state *state, double h)
   const carried *own = self->own;
   const dvi__one_step *one = &own->one;
   double *rows = one->work, *dq_low = one->work;
-  if (own->sign != 0) DVI_TRY(dvi__form_definite(dvi__action_evaluator(one->of), state->q, own->sign, own->room));
+  if (own->sign != 0)
+    DVI_TRY(dvi__form_definite(dvi__action_evaluator(one->of), state->q, own->sign, own->room));
   DVI_TRY(dvi__one_step_solve(self, state, h));
   DVI_TRY(dvi__action_residual(one->of, one->x, rows));
   dvi__action_ends(one->of, one->x, one->dq, dq_low, one->dp);
   DVI_TRY(dvi__one_step_move(self, state, h, one->x));
-  dvi__add_compensated_all(self->system->n, state->p, state->p_carry, one->dp);
+  dvi__add_compensated_all(self->system->n, state->p, state->p_compensation, one->dp);
   return DVI_OK;
 }
 
-void dvi__carried_step_path(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v)
+void dvi__carried_step_path(const dvi__stepper *self, const double *q0, double h, double tau,
+                            double *q, double *v)
 {
   const dvi__one_step *one = self->own;
   dvi__action_path(one->of, self->memory + one->last, h, tau, q, v);

@@ -30,7 +30,8 @@ dvi_status dvi__darboux_step_create(dvi__stepper *self, dvi__darboux_rule rule, 
   return dvi__one_step_create(self, sizeof(dvi__one_step), &kind, step, 0);
 }
 
-/* The last stage is solved for p1 = alpha(q1): alpha is evaluated again, so that the constraint holds to the last bit. */
+/* The last stage is solved for p1 = alpha(q1): alpha is evaluated again, so that the constraint
+ * holds to the last bit. */
 dvi_status dvi__darboux_step(dvi__stepper *self, dvi__state *state, double h)
 {
   const dvi__one_step *one = self->own;

@@ -10,7 +10,8 @@ const char *dvi__alarm_choice(int index)
   return index >= 0 && index < 2 ? name[index] : NULL;
 }
 
-/* Carried: the largest motion of a step so far; the jump [n]; {q} - q* [n]. What the guess continues are the last element's coefficients less q*. */
+/* Carried: the largest motion of a step so far; the jump [n]; {q} - q* [n]. What the guess
+ * continues are the last element's coefficients less q*. */
 enum { MOTION = DVI__CARRIED, JUMP };
 
 typedef struct dg_step {
@@ -55,12 +56,14 @@ static dvi_status place(dvi__stepper *self, const dvi__state *state, double h, d
 
 DVI__STEP_KIND(discontinuous, place, explain);
 
-dvi_status dvi__dg_create(dvi__stepper *self, const dvi__dg_space *space, int alarm, const char *remedy)
+dvi_status dvi__dg_create(dvi__stepper *self, const dvi__dg_space *space, int alarm,
+                          const char *remedy)
 {
   dvi__discontinuous *element;
   self->symmetric = space->flux == DVI__AVERAGE_FLUX || space->flux == DVI__PATH_FLUX;
   DVI_TRY(dvi__discontinuous_create(self->system, space, self->counters, &element));
-  DVI_TRY(dvi__one_step_create(self, sizeof(dg_step), &kind, element, 1 + 2 * (size_t)self->system->n));
+  DVI_TRY(
+      dvi__one_step_create(self, sizeof(dg_step), &kind, element, 1 + 2 * (size_t)self->system->n));
   dg_step *own = self->own;
   own->alarm = alarm;
   own->remedy = remedy;
@@ -76,14 +79,15 @@ static void turn(dvi__stepper *self)
   for (int i = 0; i < self->system->n; i++) jump(self)[i] = -jump(self)[i];
 }
 
-dvi_status dvi__ring_alarm(const dvi__stepper *self, int alarm, const char *what, double size, double motion, const char *remedy)
+dvi_status dvi__ring_alarm(const dvi__stepper *self, int alarm, const char *what, double size,
+                           double motion, const char *remedy)
 {
   if (alarm == DVI__ALARM_STOP)
-    return dvi__fail(
-        DVI_JUMP,
-        "%s, %.2e, is large against the largest motion of a step, %.2e: the parasite has grown, and smaller steps do not "
-        "remove it; %s, alarm=warn goes on",
-        what, size, motion, remedy);
+    return dvi__fail(DVI_JUMP,
+                     "%s, %.2e, is large against the largest motion of a step, %.2e: the parasite "
+                     "has grown, and smaller steps do not "
+                     "remove it; %s, alarm=warn goes on",
+                     what, size, motion, remedy);
   self->counters->jump_alarms++;
   return DVI_OK;
 }
@@ -100,7 +104,8 @@ static dvi_status watch(const dvi__stepper *self, const double *q, const double 
   return dvi__ring_alarm(self, own->alarm, "the jump", size, *motion, own->remedy);
 }
 
-/* Each time the parasite's part of the jump at the start falls by a factor of h; the second time to the order at which it no longer matters. */
+/* Each time the parasite's part of the jump at the start falls by a factor of h; the second time to
+ * the order at which it no longer matters. */
 static dvi_status settle(dvi__stepper *self, const dvi__state *state, double h)
 {
   const dvi__one_step *one = self->own;

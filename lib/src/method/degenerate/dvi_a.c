@@ -1,7 +1,9 @@
-/* Degenerate variational integrator A: symplectic Euler for alpha(q).v - H(q) with x = (coordinates of alpha's varying half), y = (the others).
+/* Degenerate variational integrator A: symplectic Euler for alpha(q).v - H(q) with x = (coordinates
+ * of alpha's varying half), y = (the others).
  *
  *     Ld(x0,Y,x1) = alpha(x0,Y).(x1-x0) - h H(t0,x0,Y),     stationary in Y;  p0 = -D Ld/D x0,  p1 = D Ld/D x1 = alpha(x0,Y) = alpha(x1,y1)
- * Order 1, symplectic; its adjoint is dvi-b.  Source: Ellison, Finn, Burby, Kraus, Qin and Tang 2018. */
+ * Order 1, symplectic; its adjoint is dvi-b. Source: Ellison, Finn, Burby, Kraus, Qin and Tang
+ * 2018. */
 #include "method/degenerate/darboux_step.h"
 
 static dvi_status create(dvi__stepper *self)
@@ -11,7 +13,8 @@ static dvi_status create(dvi__stepper *self)
 
 const dvi__method dvi__dvi_a = {
     .name = "dvi-a",
-    .summary = "symplectic Euler at the start; order 1; one-forms with half of their components constant",
+    .summary =
+        "symplectic Euler at the start; order 1; one-forms with half of their components constant",
     .cite = "Ellison2018",
     DVI__DARBOUX_OPERATIONS,
 };

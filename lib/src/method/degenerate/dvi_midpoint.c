@@ -1,7 +1,9 @@
-/* Degenerate variational integrator, midpoint: x = (coordinates of alpha's varying half), y = (the others), X = (x0+x1)/2.
+/* Degenerate variational integrator, midpoint: x = (coordinates of alpha's varying half), y = (the
+ * others), X = (x0+x1)/2.
  *
  *     Ld(x0,Y,x1) = alpha(X,Y).(x1-x0) - h H(t0+h/2,X,Y),     stationary in Y;  p0 = -D Ld/D x0,  p1 = D Ld/D x1 = alpha(x1,y1)
- * This is dvrk with one node. Order 2, symmetric, symplectic.  Source: Ellison, Finn, Burby, Kraus, Qin and Tang 2018; Kraus 2017. */
+ * This is dvrk with one node. Order 2, symmetric, symplectic. Source: Ellison, Finn, Burby, Kraus,
+ * Qin and Tang 2018; Kraus 2017. */
 #include "method/degenerate/darboux_step.h"
 
 static dvi_status create(dvi__stepper *self)

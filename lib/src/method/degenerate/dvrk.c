@@ -1,14 +1,16 @@
-/* Degenerate variational Runge-Kutta methods: Gauss, x = (coordinates of alpha's varying half), y = (the others).
+/* Degenerate variational Runge-Kutta methods: Gauss, x = (coordinates of alpha's varying half), y =
+ * (the others).
  *
  *     Ld = sum_i b_i [ alpha(X_i,Y_i).W_i - h H(X_i,Y_i) ],   X_i = x0 + sum_j a_ij W_j,     stationary in W and Y under x1 = x0 + sum_i b_i W_i
- * that is Gauss collocation in the canonical coordinates (x, alpha), y standing for alpha. Order 2s, symmetric, symplectic: no projection is needed.
- * Source: Kraus 2017, arXiv:1708.07356; Ellison, Finn, Burby, Kraus, Qin and Tang 2018. */
+ * that is Gauss collocation in the canonical coordinates (x, alpha), y standing for alpha. Order
+ * 2s, symmetric, symplectic: no projection is needed. Source: Kraus 2017, arXiv:1708.07356;
+ * Ellison, Finn, Burby, Kraus, Qin and Tang 2018. */
 #include "method/degenerate/darboux_step.h"
 
 enum { NODES };
 
 static const dvi__key keys[] = {
-    {"nodes", NULL, 1, 6, 2, "the stages, 1 to 6; left out: 2"},
+    {"nodes", NULL, 1, 6, 2, "the stages, 1 to 6; default: 2"},
     {0},
 };
 

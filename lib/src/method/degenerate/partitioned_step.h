@@ -5,13 +5,15 @@
 #include "method/one_step.h"
 
 /* Make memory and own; order and symmetric are the method's. */
-dvi_status dvi__partitioned_step_create(dvi__stepper *self, dvi__tableau tableau, int stages, dvi__projection projection);
+dvi_status dvi__partitioned_step_create(dvi__stepper *self, dvi__tableau tableau, int stages,
+                                        dvi__projection projection);
 
 /* The other operations of dvi__method, and what goes into its initialiser for them. */
 dvi_status dvi__partitioned_step(dvi__stepper *self, dvi__state *state, double h);
 const double *dvi__partitioned_step_multiplier(const dvi__stepper *self);
 
-#define DVI__PARTITIONED_OPERATIONS \
-  .step = dvi__partitioned_step, .multiplier = dvi__partitioned_step_multiplier, DVI__ONE_STEP_OPERATIONS
+#define DVI__PARTITIONED_OPERATIONS                                              \
+  .step = dvi__partitioned_step, .multiplier = dvi__partitioned_step_multiplier, \
+  DVI__ONE_STEP_OPERATIONS
 
 #endif

@@ -55,14 +55,15 @@ static dvi_status create_systems(dvi__element *own)
   return status == DVI_SINGULAR ? DVI_OK : status; /* none in this space */
 }
 
-/* In charts the Jacobian has a part of its own, and stays a matrix. */
+/* What terms of the rows add to the Jacobian has no products: it stays a matrix. */
 static dvi_status choose_form(dvi__element *own)
 {
   const double s = dvi__action_space_of(own->action).degree;
   double operations;
-  DVI_TRY(estimate_operations(own, HUGE_VAL, &operations));
   own->newton.is_operator = 0;
-  if (own->centred || s * s * s * operations <= most_whole) return DVI_OK;
+  if (dvi__action_has_terms(own->action)) return DVI_OK;
+  DVI_TRY(estimate_operations(own, HUGE_VAL, &operations));
+  if (s * s * s * operations <= most_whole) return DVI_OK;
   DVI_TRY(create_systems(own));
   DVI_TRY(estimate_operations(own, 0, &operations));
   if (s * s * s * operations <= most_whole) return DVI_OK;

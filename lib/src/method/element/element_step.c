@@ -15,7 +15,8 @@
 /* A kept factor may cost this many iterations more than a new one: about as much as making one. */
 enum { MORE_ITERATIONS = 2 };
 
-/* After an iteration failed, the next better one takes over: for one step, and for twice as many each time it fails again, up to this many. */
+/* After an iteration failed, the next better one takes over: for one step, and for twice as many
+ * each time it fails again, up to this many. */
 static const double longest_wait = 64;
 
 /* Whether the rungs follow one after the other. */
@@ -56,7 +57,8 @@ static void sweep_from_of(void *of, const double *Y)
 {
   const dvi__element *own = of;
   if (own->forces_of != NULL)
-    dvi__action_sweep_continue(own->action, own->forces_of->h / own->forces_of->last_h, own->forces_of->last_g);
+    dvi__action_sweep_continue(own->action, own->forces_of->h / own->forces_of->last_h,
+                               own->forces_of->last_g);
   else
     dvi__action_sweep_from(own->action, Y);
 }
@@ -74,8 +76,11 @@ static void sweep_to_of(void *of, double *Y)
 static void count_memory(dvi__stepper *self, const dvi__element *own)
 {
   self->memory_count = dvi__element_forces(self) + (size_t)dvi__action_forces_count(own->action);
-  if (own->decoupled != NULL) self->memory_count += DVI__FROZEN_POINT + (size_t)dvi__decoupled_point_size(own->decoupled);
-  if (own->keeps_whole) self->memory_count += DVI__FROZEN_POINT + (size_t)dvi__pattern_entries(dvi__action_pattern(own->action));
+  if (own->decoupled != NULL)
+    self->memory_count += DVI__FROZEN_POINT + (size_t)dvi__decoupled_point_size(own->decoupled);
+  if (own->keeps_whole)
+    self->memory_count += DVI__FROZEN_POINT +
+                          (size_t)dvi__pattern_entries(dvi__action_pattern(own->action));
 }
 
 static int allocate(dvi__stepper *self, dvi__element *own)
@@ -91,20 +96,23 @@ static int allocate(dvi__stepper *self, dvi__element *own)
   return 1;
 }
 
-/* Simplified Newton's method is for those who may use it; in a space without a full set of eigenvectors the ladder goes without it. */
+/* Simplified Newton's method is for those who may use it; in a space without a full set of
+ * eigenvectors the ladder goes without it. */
 static dvi_status make_decoupled(dvi__stepper *self, dvi__element *own)
 {
   if (!dvi__element_is_ladder(own) && own->choice != DVI__SOLVER_SIMPLIFIED) return DVI_OK;
   const dvi_status status = dvi__decoupled_create(own->action, self->counters, &own->decoupled);
   if (status != DVI_SINGULAR) return status;
-  return dvi__element_is_ladder(own) ? DVI_OK : dvi__fail_in(DVI_BAD_OPTION, "%s: solver=simplified", self->method->name);
+  return dvi__element_is_ladder(own)
+             ? DVI_OK
+             : dvi__fail_in(DVI_BAD_OPTION, "%s: solver=simplified", self->method->name);
 }
 
 static dvi_status make_solver(dvi__stepper *self, dvi__element *own)
 {
   const int sweeps = dvi__action_can_sweep(own->action);
   dvi__equations equations = {.unknowns = dvi__action_unknowns(own->action),
-                              .group = dvi__action_unknowns(own->action) / self->system->n,
+                              .group = dvi__action_space_of(own->action).degree,
                               .pattern = dvi__action_pattern(own->action),
                               .of = own,
                               .residual = residual_of,
@@ -114,7 +122,8 @@ static dvi_status make_solver(dvi__stepper *self, dvi__element *own)
                               .sweep_from = sweeps ? sweep_from_of : NULL,
                               .sweep = sweeps ? sweep_of : NULL,
                               .sweep_to = sweeps ? sweep_to_of : NULL,
-                              .magnitudes = own->centred ? magnitudes_of : NULL};
+                              .magnitudes = dvi__action_has_terms(own->action) ? magnitudes_of
+                                                                               : NULL};
   dvi__element_set_newton(&equations);
   return dvi__solver_create(&equations, self->counters, &own->solver);
 }
@@ -148,17 +157,38 @@ void dvi__element_destroy(dvi__stepper *self)
   dvi__release(own);
 }
 
+/* The ladder begins with the whole Jacobian, and ends with the rounding of rows: elsewhere that
+ * would err to one side. Unknowns of a term are for Newton's method. */
+static dvi_status take_terms(dvi__stepper *self)
+{
+  dvi__element *own = self->own;
+  const dvi__action_space space = dvi__action_space_of(own->action);
+  if (dvi__action_unknowns(own->action) > self->system->n * space.degree)
+    own->choice = DVI__SOLVER_NEWTON;
+  own->keeps_whole = dvi__element_is_ladder(own) || own->choice == DVI__SOLVER_SIMPLIFIED;
+  dvi__decoupled_destroy(&own->decoupled);
+  dvi__solver_destroy(&own->solver);
+  dvi__release(own->Y);
+  own->Y = NULL;
+  if (own->keeps_whole) DVI_TRY(dvi__action_prepare_jacobian(own->action)); /* for the memory */
+  if (!allocate(self, own)) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
+  return make_solver(self, own);
+}
+
 dvi_status dvi__element_centre(dvi__stepper *self, const dvi__centring *centring)
 {
   dvi__element *own = self->own;
   own->centred = 1;
-  own->keeps_whole = dvi__element_is_ladder(own) || own->choice == DVI__SOLVER_SIMPLIFIED;
-  dvi__decoupled_destroy(&own->decoupled);
-  if (own->keeps_whole) DVI_TRY(dvi__action_prepare_jacobian(own->action)); /* it is kept in the memory */
-  count_memory(self, own);
   DVI_TRY(dvi__action_centre(own->action, centring));
-  dvi__solver_destroy(&own->solver); /* to end with the rounding of rows: elsewhere that would err to one side */
-  return make_solver(self, own);
+  return take_terms(self);
+}
+
+dvi_status dvi__element_add_term(dvi__stepper *self, const dvi__row_term *term)
+{
+  dvi__element *own = self->own;
+  own->definite = 0;
+  DVI_TRY(dvi__action_add_term(own->action, term));
+  return take_terms(self);
 }
 
 dvi__action *dvi__element_action(const dvi__stepper *self)
@@ -199,14 +229,16 @@ static dvi_status guess(dvi__stepper *self, const dvi__element_place *at, double
 }
 
 /* One rung from the guess. Whether it counts is for its own counter. */
-static dvi_status solve_by(dvi__stepper *self, const dvi__element_place *at, dvi__rung rung, double *Y, dvi__solve_report *report)
+static dvi_status solve_by(dvi__stepper *self, const dvi__element_place *at, dvi__rung rung,
+                           double *Y, dvi__solve_report *report)
 {
   dvi__element *own = self->own;
   const double size = dvi__largest((size_t)self->system->n, at->q);
   const int patient = own->choice == DVI__SOLVER_FIXED_POINT;
   own->forces_of = rung == DVI__FIXED_POINT && at->last_g != NULL ? at : NULL;
   if (own->forces_of == NULL) DVI_TRY(guess(self, at, Y));
-  if (own->centred) memcpy(own->guess, Y, (size_t)dvi__action_unknowns(own->action) * sizeof(double));
+  if (own->centred)
+    memcpy(own->guess, Y, (size_t)dvi__action_unknowns(own->action) * sizeof(double));
   const dvi_status status = dvi__solve(own->solver, rung, size, 1, patient, Y, report);
   own->rung = rung;
   if (status == DVI_OK && rung == DVI__FIXED_POINT) self->counters->fixed_points++;
@@ -215,7 +247,8 @@ static dvi_status solve_by(dvi__stepper *self, const dvi__element_place *at, dvi
   return status;
 }
 
-/* Whether the user, or the steps before, want this iteration; a step that does without it is counted down. */
+/* Whether the user, or the steps before, want this iteration; a step that does without it is
+ * counted down. */
 static int is_due(const dvi__element *own, int choice, double *steps_without)
 {
   if (own->choice != choice && !dvi__element_is_ladder(own)) return 0;
@@ -232,26 +265,32 @@ static void learn(dvi__stepper *self, dvi_status status, int steps, int wait)
   self->memory[steps] = *last;
 }
 
-/* With the factor of earlier steps as long as that is as good as a new one. All that this depends on is in the memory: a restored run finds the same
- * digits. */
-static dvi_status solve_simplified(dvi__stepper *self, const dvi__element_place *at, double *Y, dvi__solve_report *report)
+/* With the factor of earlier steps as long as that is as good as a new one. All that this depends
+ * on is in the memory: a restored run finds the same digits. */
+static dvi_status solve_simplified(dvi__stepper *self, const dvi__element_place *at, double *Y,
+                                   dvi__solve_report *report)
 {
   dvi__element *own = self->own;
-  double *frozen = own->frozen = self->memory + dvi__element_forces(self) + dvi__action_forces_count(own->action);
+  double *frozen = own->frozen = self->memory + dvi__element_forces(self) +
+                                 dvi__action_forces_count(own->action);
   own->keeps = frozen[DVI__FROZEN_H] == at->h;
   dvi_status status = solve_by(self, at, DVI__SIMPLIFIED, Y, report);
   if (status > 0 && own->keeps) {
     own->keeps = 0;
     status = solve_by(self, at, DVI__SIMPLIFIED, Y, report);
   }
-  const int good = status == DVI_OK && (!own->keeps || report->iterations <= frozen[DVI__FROZEN_ITERATIONS] + MORE_ITERATIONS);
+  const int good = status == DVI_OK &&
+                   (!own->keeps ||
+                    report->iterations <= frozen[DVI__FROZEN_ITERATIONS] + MORE_ITERATIONS);
   frozen[DVI__FROZEN_H] = good ? at->h : 0;
   if (!own->keeps) frozen[DVI__FROZEN_ITERATIONS] = report->iterations;
   return status;
 }
 
-/* Solve the element at its place, from a first guess, by the rung that the user or the measured contraction chooses. */
-static dvi_status solve_at(dvi__stepper *self, const dvi__element_place *at, double *Y, dvi__solve_report *report)
+/* Solve the element at its place, from a first guess, by the rung that the user or the measured
+ * contraction chooses. */
+static dvi_status solve_at(dvi__stepper *self, const dvi__element_place *at, double *Y,
+                           dvi__solve_report *report)
 {
   dvi__element *own = self->own;
   dvi__element_put(own, at, at->h);
@@ -268,7 +307,8 @@ static dvi_status solve_at(dvi__stepper *self, const dvi__element_place *at, dou
     learn(self, status, DVI__FULL_STEPS, DVI__FULL_WAIT);
     if (status <= 0) return status;
   }
-  return solve_by(self, at, own->choice == DVI__SOLVER_KINSOL ? DVI__KINSOL : DVI__NEWTON, Y, report);
+  return solve_by(self, at, own->choice == DVI__SOLVER_KINSOL ? DVI__KINSOL : DVI__NEWTON, Y,
+                  report);
 }
 
 /* ---- the step ---- */
@@ -279,17 +319,20 @@ static dvi_status advance(dvi__stepper *self, dvi__state *state, double h)
   const int n = self->system->n;
   double duration;
   DVI_TRY(dvi__action_duration(own->action, own->Y, &duration));
-  dvi__add_compensated_all(n, state->q, state->q_carry, own->dq);
-  dvi__add_compensated_all(n, state->q, state->q_carry, own->dq_low);
-  dvi__add_compensated_all(n, state->p, state->p_carry, own->dp);
-  dvi__add_compensated(&state->t, &state->t_carry, duration);
+  dvi__add_compensated_all(n, state->q, state->q_compensation, own->dq);
+  dvi__add_compensated_all(n, state->q, state->q_compensation, own->dq_low);
+  dvi__add_compensated_all(n, state->p, state->p_compensation, own->dp);
+  dvi__add_compensated(&state->t, &state->t_compensation, duration);
   self->memory[DVI__LAST_H] = h;
-  memcpy(self->memory + DVI__LAST_Y, own->Y, (size_t)dvi__action_unknowns(own->action) * sizeof(double));
+  memcpy(self->memory + DVI__LAST_Y, own->Y,
+         (size_t)dvi__action_unknowns(own->action) * sizeof(double));
   return DVI_OK;
 }
 
-/* KINSOL judges, but what the step takes stays what the iteration found; what does not pass is solved by KINSOL itself. */
-static dvi_status certify(dvi__stepper *self, const dvi__element_place *at, double *Y, dvi__solve_report *report)
+/* KINSOL judges, but what the step takes stays what the iteration found; what does not pass is
+ * solved by KINSOL itself. */
+static dvi_status certify(dvi__stepper *self, const dvi__element_place *at, double *Y,
+                          dvi__solve_report *report)
 {
   dvi__element *own = self->own;
   const double size = dvi__largest((size_t)self->system->n, at->q);
@@ -302,7 +345,8 @@ static dvi_status certify(dvi__stepper *self, const dvi__element_place *at, doub
 
 static dvi__element_place place_of(const dvi__stepper *self, const dvi__state *state, double h)
 {
-  const int continues = self->memory[DVI__LAST_H] != 0 && dvi__action_can_sweep(dvi__element_action(self));
+  const int continues = self->memory[DVI__LAST_H] != 0 &&
+                        dvi__action_can_sweep(dvi__element_action(self));
   return (dvi__element_place){state->t,
                               h,
                               state->q,
@@ -313,7 +357,8 @@ static dvi__element_place place_of(const dvi__stepper *self, const dvi__state *s
 }
 
 /* By the ladder, and where that fails, or is not to be trusted, along the branch. */
-static dvi_status find_path(dvi__stepper *self, const dvi__element_place *at, dvi__solve_report *report)
+static dvi_status find_path(dvi__stepper *self, const dvi__element_place *at,
+                            dvi__solve_report *report)
 {
   dvi__element *own = self->own;
   const dvi_status status = self->follow ? DVI_OK : solve_at(self, at, own->Y, report);
@@ -337,7 +382,8 @@ dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h)
   return advance(self, state, h);
 }
 
-void dvi__element_path(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v)
+void dvi__element_path(const dvi__stepper *self, const double *q0, double h, double tau, double *q,
+                       double *v)
 {
   const dvi__element *own = self->own;
   dvi__action_path(own->action, self->memory + DVI__LAST_Y, h, tau, q, v);

@@ -1,18 +1,23 @@
-/* Discontinuous Galerkin variational integrators on the cotangent bundle, with constraints phi(q,p) = 0 at the averages of a node's two sides.
+/* Discontinuous Galerkin variational integrators on the cotangent bundle, with constraints phi(q,p)
+ * = 0 at the averages of a node's two sides.
  *
  *     S = sum over elements of h sum_i b_i (P_i.Q'_i/h - H(Q_i,P_i) - Lambda_i.phi(Q_i,P_i)) + sum over nodes of [q].{p} - h lambda.phi({q},{p})
  *
- * with polynomials q and p of degree d, and Lambda of degree k-1. Varying the coefficients of z = (q,p) gives, with X_F = (F_p, -F_q),
+ * with polynomials q and p of degree d, and Lambda of degree k-1. Varying the coefficients of z =
+ * (q,p) gives, with X_F = (F_p, -F_q),
  *     sum_i b_i phi_j (z' - h X_H - h X_phi Lambda)_i + phi_j(0) a + phi_j(1) a' = 0,   a = ([z] - h X_phi lambda)/2,
- * whose component along the Legendre polynomial of degree d, which vanishes at d Gauss points, says that a' = (-1)^(d+1) a. It is 0 at the start, and so
- * everywhere: [z] = h X_phi lambda, and lambda alone is carried. The rest is collocation between two half kicks of the multiplier: step/hamiltonian/phase.h.
- * Order min(2d, 2k+2), measured; symmetric; conserves dq dp + d[q] d[p]/4.
+ * whose component along the Legendre polynomial of degree d, which vanishes at d Gauss points, says
+ * that a' = (-1)^(d+1) a. It is 0 at the start, and so everywhere: [z] = h X_phi lambda, and lambda
+ * alone is carried. The rest is collocation between two half kicks of the multiplier:
+ * step/hamiltonian/phase.h. Order min(2d, 2k+2), measured; symmetric; conserves dq dp + d[q]
+ * d[p]/4.
  *
- * With a one-form, phi = p - alpha(q) and H(q): there the constraint has no moments inside. q is constant in the elements then, for all motion of q comes from
- * the multipliers, and every degree and quadrature gives
+ * With a one-form, phi = p - alpha(q) and H(q): there the constraint has no moments inside. q is
+ * constant in the elements then, for all motion of q comes from the multipliers, and every degree
+ * and quadrature gives
  *     alpha({q'}) = alpha({q}) - h H_q({q} + [q]/2) + (Dalpha({q}))^T [q]/2 + (Dalpha({q'}))^T [q']/2,    {q'} = {q} + [q]/2 + [q']/2:
- * the element of degree 0 of step/degenerate/discontinuous.h. Order 2, symmetric.
- * Source: Kraus, Yoshimura and Peng (talk), with the halves of the multipliers; the moments are ours. */
+ * the element of degree 0 of step/degenerate/discontinuous.h. Order 2, symmetric. Source: Kraus,
+ * Yoshimura and Peng (talk), with the halves of the multipliers; the moments are ours. */
 #include "core/status.h"
 #include "method/degenerate/dg_step.h"
 #include "method/hamiltonian/phase_step.h"
@@ -20,11 +25,14 @@
 enum { DEGREE, NODES, MOMENTS, ALARM };
 
 static const dvi__key keys[] = {
-    {"degree", NULL, 1, DVI__DG_POINTS_MOST, 1, "of the polynomials, 1 to 8; with a one-form all give the same steps; left out: 1"},
+    {"degree", NULL, 1, DVI__DG_POINTS_MOST, 1,
+     "of the polynomials, 1 to 8; with a one-form all give the same steps; default: 1"},
     {"nodes", NULL, 1, DVI__DG_POINTS_MOST, DVI__LEFT_OUT,
-     "Gauss points; with a one-form degree to 8, all give the same steps; with a Hamiltonian degree; left out: degree"},
+     "Gauss points; with a one-form degree to 8, all give the same steps; with a Hamiltonian "
+     "degree; default: degree"},
     {"moments", NULL, 0, DVI__DG_POINTS_MOST, DVI__LEFT_OUT,
-     "of the constraint inside an element, even, 0 to degree; with a one-form 0; left out: the most"},
+     "of the constraint inside an element, even, 0 to degree; with a one-form 0; default: the "
+     "most"},
     DVI__ALARM_KEY,
     {0},
 };
@@ -39,12 +47,13 @@ static dvi_status create_for_form(dvi__stepper *self)
   const int *value = self->settings.value;
   const dvi__dg_space space = {.degree = 0, .nodes = 1, .flux = DVI__AVERAGE_FLUX, .points = 1};
   if (value[MOMENTS] != 0)
-    return dvi__fail(
-        DVI_BAD_OPTION,
-        "dg-phase: moments=%d with a one-form; take 0, or vprk:projection=symplectic, whose stages fulfil the constraint",
-        value[MOMENTS]);
+    return dvi__fail(DVI_BAD_OPTION,
+                     "dg-phase: moments=%d with a one-form; take 0, or vprk:projection=symplectic, "
+                     "whose stages fulfil the constraint",
+                     value[MOMENTS]);
   self->order = 2;
-  return dvi__dg_create(self, &space, value[ALARM], "take another method, dg:degree=3,stiffness=c, from the start on");
+  return dvi__dg_create(self, &space, value[ALARM],
+                        "take another method, dg:degree=3,stiffness=c, from the start on");
 }
 
 /* Measured on circle-dirac and magnetic-pair (tests/method/hamiltonian/test_dg_phase.c). */
@@ -57,17 +66,17 @@ static dvi_status create_for_hamiltonian(dvi__stepper *self)
 {
   const int *value = self->settings.value, degree = value[DEGREE], moments = value[MOMENTS];
   if (value[NODES] != degree)
-    return dvi__fail(
-        DVI_BAD_OPTION,
-        "dg-phase: nodes=%d for degree %d; with a Hamiltonian more nodes than degrees leave jumps that no multiplier makes; "
-        "take nodes=%d",
-        value[NODES], degree, degree);
+    return dvi__fail(DVI_BAD_OPTION,
+                     "dg-phase: nodes=%d for degree %d; with a Hamiltonian more nodes than degrees "
+                     "leave jumps that no multiplier makes; "
+                     "take nodes=%d",
+                     value[NODES], degree, degree);
   if (moments % 2 != 0 || moments > degree)
-    return dvi__fail(
-        DVI_BAD_OPTION,
-        "dg-phase: moments=%d for degree %d; an even number up to the degree is possible, for odd ones let the multiplier "
-        "drift",
-        moments, degree);
+    return dvi__fail(DVI_BAD_OPTION,
+                     "dg-phase: moments=%d for degree %d; an even number up to the degree is "
+                     "possible, for odd ones let the multiplier "
+                     "drift",
+                     moments, degree);
   self->order = order_of(degree, moments);
   return dvi__phase_step_create(self, degree, moments, value[ALARM]);
 }
@@ -79,7 +88,9 @@ static dvi_status create(dvi__stepper *self)
   if (value[NODES] == DVI__LEFT_OUT) value[NODES] = degree;
   if (value[MOMENTS] == DVI__LEFT_OUT) value[MOMENTS] = has_form(self) ? 0 : degree - degree % 2;
   if (value[NODES] < degree)
-    return dvi__fail(DVI_BAD_OPTION, "dg-phase: nodes=%d are too few for degree %d; take %d or more", value[NODES], degree, degree);
+    return dvi__fail(DVI_BAD_OPTION,
+                     "dg-phase: nodes=%d are too few for degree %d; take %d or more", value[NODES],
+                     degree, degree);
   return has_form(self) ? create_for_form(self) : create_for_hamiltonian(self);
 }
 
@@ -100,7 +111,8 @@ static const double *jump(const dvi__stepper *self)
 
 const dvi__method dvi__dg_phase = {
     .name = "dg-phase",
-    .summary = "discontinuous Galerkin with constraints phi(q,p) = 0 at the averages; order 2 degree; degenerate systems only",
+    .summary = "discontinuous Galerkin with constraints phi(q,p) = 0 at the averages; order 2 "
+               "degree; degenerate systems only",
     .cite = "KrausYoshimuraPeng",
     .keys = keys,
     .uses = DVI__ONE_FORM | DVI__POTENTIAL | DVI__CONSTRAINED_HAMILTONIAN,

@@ -7,7 +7,8 @@
 #include "num/compensated.h"
 #include "num/finite.h"
 
-/* Carried: the largest motions of a step and the largest jumps so far, of q and of p each; the jumps of both [n]; the node's multiplier [m]. */
+/* Carried: the largest motions of a step and the largest jumps so far, of q and of p each; the
+ * jumps of both [n]; the node's multiplier [m]. */
 enum { MOTION = DVI__CARRIED, LARGEST_JUMP = MOTION + 2, JUMP = LARGEST_JUMP + 2 };
 
 typedef struct phase_step {
@@ -24,7 +25,8 @@ static double *multiplier(const dvi__stepper *self)
 static void explain(const dvi__stepper *self, dvi__text *text)
 {
   const phase_step *own = self->own;
-  dvi__text_add(text, "constraint: %d functions phi(q,p), 0 after every step\n", dvi_system_constraint_count(self->system));
+  dvi__text_add(text, "constraint: %d functions phi(q,p), 0 after every step\n",
+                dvi_system_constraint_count(self->system));
   dvi__explain_jumps(own->alarm, text);
 }
 
@@ -46,13 +48,15 @@ dvi_status dvi__phase_step_create(dvi__stepper *self, int degree, int moments, i
   DVI_TRY(dvi__one_step_create(self, sizeof(phase_step), &kind, step, 4 + 2 * n + m));
   phase_step *own = self->own;
   own->alarm = alarm;
-  own->remedy = moments < degree ? "from the start on, an even degree with all its moments keeps it small"
-                                 : "from the start on, smaller steps keep it small for longer";
+  own->remedy = moments < degree
+                    ? "from the start on, an even degree with all its moments keeps it small"
+                    : "from the start on, smaller steps keep it small for longer";
   return DVI_OK;
 }
 
-/* The parasite of the multiplier changes its sign from node to node. A step forth and one back tell the smooth branch from it, up to its second
- * difference: lambda <- (lambda(h) + 2 lambda + lambda(-h))/4. */
+/* The parasite of the multiplier changes its sign from node to node. A step forth and one back tell
+ * the smooth branch from it, up to its second difference: lambda <- (lambda(h) + 2 lambda +
+ * lambda(-h))/4. */
 static dvi_status settle(dvi__stepper *self, const dvi__state *state, double h)
 {
   const dvi__one_step *one = self->own;
@@ -63,20 +67,23 @@ static dvi_status settle(dvi__stepper *self, const dvi__state *state, double h)
     dvi__phase_end(one->of, one->x, one->dq, one->dp, self->memory + JUMP);
     DVI_TRY(dvi__one_step_solve(self, state, -h));
     dvi__phase_end(one->of, one->x, one->dq, one->dp, there);
-    for (int a = 0; a < m; a++) multiplier(self)[a] = 0.25 * (self->memory[JUMP + a] + 2 * multiplier(self)[a] + there[a]);
+    for (int a = 0; a < m; a++)
+      multiplier(self)[a] = 0.25 * (self->memory[JUMP + a] + 2 * multiplier(self)[a] + there[a]);
   }
   return DVI_OK;
 }
 
-/* A jump is the constraint's force, and may be large while nothing moves. The parasite changes its sign from node to node, by twice its size: by more
- * than the motion, and by more than 1.5 of the largest jump so far. Of q and of p, each by itself. */
+/* A jump is the constraint's force, and may be large while nothing moves. The parasite changes its
+ * sign from node to node, by twice its size: by more than the motion, and by more than 1.5 of the
+ * largest jump so far. Of q and of p, each by itself. */
 static dvi_status watch(dvi__stepper *self)
 {
   const phase_step *own = self->own;
   const dvi__one_step *one = &own->one;
   const size_t n = (size_t)self->system->n;
   const double *const moved[] = {one->dq, one->dp}, *change = one->work, rounding = 1e-10;
-  double *motion = self->memory + MOTION, *largest = self->memory + LARGEST_JUMP, *jump = self->memory + JUMP, size[2], changed[2];
+  double *motion = self->memory + MOTION, *largest = self->memory + LARGEST_JUMP,
+         *jump = self->memory + JUMP, size[2], changed[2];
   int rings = -1;
   DVI_TRY(dvi__phase_jump(one->of, one->x, jump, one->work));
   dvi__phase_sizes(one->of, one->x, size);
@@ -87,7 +94,8 @@ static dvi_status watch(dvi__stepper *self)
     if (changed[i] > fmax(motion[i], 1.5 * largest[i]) + rounding * size[i]) rings = i;
   }
   return rings < 0 ? DVI_OK
-                   : dvi__ring_alarm(self, own->alarm, "the change of the jump", changed[rings], motion[rings], own->remedy);
+                   : dvi__ring_alarm(self, own->alarm, "the change of the jump", changed[rings],
+                                     motion[rings], own->remedy);
 }
 
 dvi_status dvi__phase_step(dvi__stepper *self, dvi__state *state, double h)
@@ -98,7 +106,7 @@ dvi_status dvi__phase_step(dvi__stepper *self, dvi__state *state, double h)
   dvi__phase_end(one->of, one->x, one->dq, one->dp, multiplier(self));
   DVI_TRY(watch(self));
   DVI_TRY(dvi__one_step_move(self, state, h, one->x));
-  dvi__add_compensated_all(self->system->n, state->p, state->p_carry, one->dp);
+  dvi__add_compensated_all(self->system->n, state->p, state->p_compensation, one->dp);
   return DVI_OK;
 }
 

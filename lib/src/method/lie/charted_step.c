@@ -8,7 +8,8 @@
 #include "num/compensated.h"
 #include "system/chart/charted.h"
 
-/* The memory: that of galerkin, with the last path as the next step's chart sees it; then this path in its own chart. */
+/* The memory: that of galerkin, with the last path as the next step's chart sees it; then this path
+ * in its own chart. */
 typedef struct charted_step {
   dvi__charted *charted;
   dvi__stepper inner; /* galerkin in the charts */
@@ -27,7 +28,8 @@ static size_t unknowns_of(const charted_step *own)
 
 static dvi_status allocate(dvi__stepper *self, charted_step *own)
 {
-  const size_t nx = (size_t)self->system->nx, n = (size_t)self->system->n, unknowns = unknowns_of(own);
+  const size_t nx = (size_t)self->system->nx, n = (size_t)self->system->n,
+               unknowns = unknowns_of(own);
   const size_t seen = n * (unknowns / nx + 1);
   self->memory_count = own->inner.memory_count + unknowns;
   own->local = DVI_NEW(double, 6 * nx + seen + unknowns);
@@ -39,20 +41,21 @@ static dvi_status allocate(dvi__stepper *self, charted_step *own)
   return DVI_OK;
 }
 
-/* Whether a path of degree s in the charts at its start is one in those at its end: s = 1 makes one-parameter subgroups and great circles, and lines and
- * circles have one chart. */
+/* Whether a path of degree s in the charts at its start is one in those at its end: s = 1 makes
+ * one-parameter subgroups and great circles, and lines and circles have one chart. */
 static int has_two_ends(const dvi_system *system, const dvi__stepper *inner)
 {
   int turns = 0;
-  for (int c = 0; c < system->cell_count; c++)
-    turns |= system->cells[c].kind == DVI__ROTATION || system->cells[c].kind == DVI__SPHERE;
+  for (int c = 0; c < system->slot_count; c++)
+    turns |= system->slots[c].kind == DVI__ROTATION || system->slots[c].kind == DVI__SPHERE;
   return !turns || dvi__action_space_of(dvi__element_action(inner)).degree == 1;
 }
 
 static dvi_status centre_paths(charted_step *own)
 {
   dvi__centring centring;
-  DVI_TRY(dvi__charted_centring(own->charted, dvi__action_nodes(dvi__element_action(&own->inner)), &centring));
+  DVI_TRY(dvi__charted_centring(own->charted, dvi__action_nodes(dvi__element_action(&own->inner)),
+                                &centring));
   return dvi__element_centre(&own->inner, &centring);
 }
 
@@ -62,8 +65,10 @@ dvi_status dvi__charted_step_create(dvi__stepper *self, int reduced)
   if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
   const dvi_status made = dvi__charted_create(self->system, reduced, self->counters, &own->charted);
   if (made != DVI_OK) return dvi__fail_in(made, "%s", self->method->name);
-  const dvi_status status = dvi__stepper_create_inner(self, "galerkin", dvi__charted_system(own->charted), NULL, &own->inner);
-  if (status != DVI_OK) return dvi__fail_in(status, "%s, by the keys of galerkin", self->method->name);
+  const dvi_status status = dvi__stepper_create_inner(
+      self, "galerkin", dvi__charted_system(own->charted), NULL, &own->inner);
+  if (status != DVI_OK)
+    return dvi__fail_in(status, "%s, by the keys of galerkin", self->method->name);
   self->order = own->inner.order;
   self->symmetric = own->inner.symmetric && has_two_ends(self->system, &own->inner);
   DVI_TRY(centre_paths(own));
@@ -115,17 +120,18 @@ static dvi_status solve(dvi__stepper *self, const dvi__state *state, double h, d
   dvi__charted_centre(own->charted, state->q);
   memset(own->local, 0, 4 * nx * sizeof(double));
   *local = (dvi__state){.t = state->t,
-                        .t_carry = state->t_carry,
+                        .t_compensation = state->t_compensation,
                         .density = state->density,
                         .q = own->local,
                         .p = own->local + nx,
-                        .q_carry = own->local + 2 * nx,
-                        .p_carry = own->local + 3 * nx};
+                        .q_compensation = own->local + 2 * nx,
+                        .p_compensation = own->local + 3 * nx};
   dvi__charted_enter(own->charted, state->p, local->p);
-  dvi__charted_enter(own->charted, state->p_carry, local->p_carry);
+  dvi__charted_enter(own->charted, state->p_compensation, local->p_compensation);
   own->inner.memory = self->memory;
   const dvi_status status = own->inner.method->step(&own->inner, local, h);
-  return status == DVI_OK ? dvi__charted_check(own->charted, local->q) : dvi__charted_explain(own->charted, status);
+  return status == DVI_OK ? dvi__charted_check(own->charted, local->q)
+                          : dvi__charted_explain(own->charted, status);
 }
 
 dvi_status dvi__charted_step(dvi__stepper *self, dvi__state *state, double h)
@@ -138,27 +144,32 @@ dvi_status dvi__charted_step(dvi__stepper *self, dvi__state *state, double h)
   memcpy(own_path, path, unknowns * sizeof(double));
   memcpy(own->seen + n * (unknowns / (size_t)self->system->nx), state->q, n * sizeof(double));
   look_back(own, n, own_path);
-  dvi__charted_arrive(own->charted, &(dvi__phase){local.q, local.p, local.q_carry, local.p_carry},
-                      &(dvi__phase){state->q, state->p, state->q_carry, state->p_carry});
+  dvi__charted_arrive(
+      own->charted, &(dvi__phase){local.q, local.p, local.q_compensation, local.p_compensation},
+      &(dvi__phase){state->q, state->p, state->q_compensation, state->p_compensation});
   dvi__charted_centre(own->charted, state->q);
   turn_path(own, n, path);
   state->t = local.t;
-  state->t_carry = local.t_carry;
+  state->t_compensation = local.t_compensation;
   return DVI_OK;
 }
 
-void dvi__charted_step_path(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v)
+void dvi__charted_step_path(const dvi__stepper *self, const double *q0, double h, double tau,
+                            double *q, double *v)
 {
   const charted_step *own = self->own;
   dvi__charted_centre(own->charted, q0);
-  dvi__action_path(dvi__element_action(&own->inner), self->memory + own->inner.memory_count, h, tau, own->xi, own->rate);
+  dvi__action_path(dvi__element_action(&own->inner), self->memory + own->inner.memory_count, h, tau,
+                   own->xi, own->rate);
   dvi__charted_point(own->charted, own->xi, own->rate, q, v);
 }
 
 void dvi__charted_step_explain(const dvi__stepper *self, dvi__text *text)
 {
   const charted_step *own = self->own;
-  dvi__text_add(text, "charts: natural ones, centred at the start of each step; %d coordinates for %d stored numbers\n",
+  dvi__text_add(text,
+                "charts: natural ones, centred at the start of each step; %d coordinates for %d "
+                "stored numbers\n",
                 self->system->nx, self->system->n);
   own->inner.method->explain(&own->inner, text);
 }

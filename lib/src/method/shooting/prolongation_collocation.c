@@ -1,10 +1,13 @@
 /* Prolongation-collocation.
  *
- * Space: the polynomial of degree 2m-1 through both ends that has there the derivatives, up to the m-th, which the equations of motion and their prolongation give.
- * Quadrature: Euler and Maclaurin's with [m/2] terms,
+ * Space: the polynomial of degree 2m-1 through both ends that has there the derivatives, up to the
+ * m-th, which the equations of motion and their prolongation give. Quadrature: Euler and
+ * Maclaurin's with [m/2] terms,
  *     Ld(q0,q1) = h/2 (L(0) + L(h)) - sum_{l=1}^{[m/2]} B_{2l}/(2l)! h^{2l} (L^{(2l-1)}(h) - L^{(2l-1)}(0)),     L^{(k)} the k-th time derivative along it.
- * p0 = -D1 Ld, p1 = D2 Ld, exactly, by multipliers for the collocation (step/onestep/prolongation.h). m = 1: the straight line and the trapezoid.
- * Order 2 [m/2] + 2, that of the quadrature; symmetric, symplectic.  Source: Leok and Shingel 2012, IMA J. Numer. Anal. 32:1194. */
+ * p0 = -D1 Ld, p1 = D2 Ld, exactly, by multipliers for the collocation
+ * (step/onestep/prolongation.h). m = 1: the straight line and the trapezoid. Order 2 [m/2] + 2,
+ * that of the quadrature; symmetric, symplectic. Source: Leok and Shingel 2012, IMA J. Numer. Anal.
+ * 32:1194. */
 #include "step/onestep/prolongation.h"
 #include "method/one_step.h"
 #include "num/compensated.h"
@@ -15,19 +18,21 @@ enum { COORDINATES_MOST = 500 };
 
 static const dvi__key keys[] = {
     {"derivatives", NULL, 1, DVI__PROLONGATION_MOST, 2,
-     "m: the highest derivative of q that is matched at both ends, 1 to 10; left out: 2"},
+     "m: the highest derivative of q that is matched at both ends, 1 to 10; default: 2"},
     {0},
 };
 
 static void explain(const dvi__stepper *self, dvi__text *text)
 {
   const int m = self->settings.value[DERIVATIVES];
-  dvi__text_add(text, "path: polynomial of degree %d, by derivatives up to the %d%s at both ends\n", 2 * m - 1, m,
+  dvi__text_add(text, "path: polynomial of degree %d, by derivatives up to the %d%s at both ends\n",
+                2 * m - 1, m,
                 m == 1   ? "st"
                 : m == 2 ? "nd"
                 : m == 3 ? "rd"
                          : "th");
-  dvi__text_add(text, "quadrature: Euler-Maclaurin, the trapezoid and %d term%s\n", m / 2, m / 2 == 1 ? "" : "s");
+  dvi__text_add(text, "quadrature: Euler-Maclaurin, the trapezoid and %d term%s\n", m / 2,
+                m / 2 == 1 ? "" : "s");
 }
 
 static dvi_status place(dvi__stepper *self, const dvi__state *state, double h, double part)
@@ -45,13 +50,16 @@ static dvi_status create(dvi__stepper *self)
   const int m = self->settings.value[DERIVATIVES];
   dvi__prolongation *of;
   if (self->system->n > COORDINATES_MOST)
-    return dvi__fail(DVI_UNSUPPORTED, "%s: %d coordinates, and its matrices are full: at most %d are possible; take galerkin",
-                     self->method->name, self->system->n, COORDINATES_MOST);
+    return dvi__fail(
+        DVI_UNSUPPORTED,
+        "%s: %d coordinates, and its matrices are full: at most %d are possible; take galerkin",
+        self->method->name, self->system->n, COORDINATES_MOST);
   self->symmetric = 1;
   self->order = 2 * (m / 2) + 2;
   const dvi_status status = dvi__prolongation_create(self->system, m, self->counters, &of);
   if (status != DVI_OK) return dvi__fail_in(status, "%s", self->method->name);
-  return dvi__one_step_create(self, sizeof(dvi__one_step), &kind, of, (size_t)(2 * m - 1) * (size_t)self->system->n);
+  return dvi__one_step_create(self, sizeof(dvi__one_step), &kind, of,
+                              (size_t)(2 * m - 1) * (size_t)self->system->n);
 }
 
 static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
@@ -59,12 +67,13 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
   const dvi__one_step *one = self->own;
   DVI_TRY(dvi__one_step_solve(self, state, h));
   DVI_TRY(dvi__prolongation_end(one->of, one->x, one->dq, one->dp, self->memory + DVI__CARRIED));
-  dvi__add_compensated_all(self->system->n, state->p, state->p_carry, one->dp);
+  dvi__add_compensated_all(self->system->n, state->p, state->p_compensation, one->dp);
   DVI_TRY(dvi__one_step_move(self, state, h, one->x));
   return DVI_OK;
 }
 
-static void path(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v)
+static void path(const dvi__stepper *self, const double *q0, double h, double tau, double *q,
+                 double *v)
 {
   const dvi__one_step *one = self->own;
   dvi__prolongation_path(one->of, self->memory + DVI__CARRIED, h, tau, q, v);
@@ -73,7 +82,8 @@ static void path(const dvi__stepper *self, const double *q0, double h, double ta
 
 const dvi__method dvi__prolongation_collocation = {
     .name = "prolongation-collocation",
-    .summary = "equations of motion and their derivatives at both ends, Euler-Maclaurin; order 2 [m/2] + 2; any Lagrangian with "
+    .summary = "equations of motion and their derivatives at both ends, Euler-Maclaurin; order 2 "
+               "[m/2] + 2; any Lagrangian with "
                "Taylor coefficients",
     .cite = "LeokShingel2012b",
     .keys = keys,

@@ -1,12 +1,15 @@
 /* Shooting: the discrete Lagrangian, or Hamiltonian, of a one-step method and a quadrature.
  *
  *     Ld(q0,q1) = h sum_i b_i L(q^i, v^i),   (q^{i+1},v^{i+1}) = Psi_{(c_{i+1}-c_i)h}(q^i,v^i),   q^0 = q0, q^n = q1,
- * p0 = -D1 Ld, p1 = D2 Ld: the v^0 is sought for which the shot meets both (step/onestep/shot_step.h). The one-step method may be explicit: the step is symplectic
- * and has the symmetries that it is equivariant under. The quadrature has both ends among its nodes.
- * Of type 2 and 3 the discrete Hamiltonians H+(q0,p1) = p1.Q - S, of the shot that ends with the momentum p1, and H-(p0,q1) = -p0.k0 - S, of the one that
- * starts with p0, generate the step: for Hamiltonians, which may be degenerate, too.
- * Order min(p,q) of the one-step method's and the quadrature's; type 1 is symmetric if both are, types 2 and 3 are each other's adjoint then.
- * Source: Leok and Shingel 2012, sec. 3; Patrick and Cuell 2009; Leok and Zhang 2011 (types 2 and 3). */
+ * p0 = -D1 Ld, p1 = D2 Ld: the v^0 is sought for which the shot meets both
+ * (step/onestep/shot_step.h). The one-step method may be explicit: the step is symplectic and has
+ * the symmetries that it is equivariant under. The quadrature has both ends among its nodes. Of
+ * type 2 and 3 the discrete Hamiltonians H+(q0,p1) = p1.Q - S, of the shot that ends with the
+ * momentum p1, and H-(p0,q1) = -p0.k0 - S, of the one that starts with p0, generate the step: for
+ * Hamiltonians, which may be degenerate, too. Order min(p,q) of the one-step method's and the
+ * quadrature's; type 1 is symmetric if both are, types 2 and 3 are each other's adjoint then.
+ * Source: Leok and Shingel 2012, sec. 3; Patrick and Cuell 2009; Leok and Zhang 2011 (types 2 and
+ * 3). */
 #include <dvi/quadrature.h>
 #include <string.h>
 
@@ -22,7 +25,13 @@
 #include "system/rescale/transformed.h"
 
 enum { ONE_STEP, STAGES, TABLEAU, COMPOSITION, QUADRATURE, NODES, TERMS, SOLVE, TOLERANCE, TYPE };
-enum { NODES_MOST = 16, STAGES_MOST = 20, SHOT_MOST = 2000 /* 128 MB a matrix */, TAYLOR = DVI__RK_NAMED, FROM_FILE };
+enum {
+  NODES_MOST = 16,
+  STAGES_MOST = 20,
+  SHOT_MOST = 2000 /* 128 MB a matrix */,
+  TAYLOR = DVI__RK_NAMED,
+  FROM_FILE
+};
 
 /* Quadratures: those of the core; Euler-Maclaurin and Gauss-Hermite. */
 enum { EULER_MACLAURIN = DVI_SIMPSON + 1, GAUSS_HERMITE };
@@ -54,26 +63,34 @@ static const char *solve_name(int index)
 
 static const dvi__key keys[] = {
     {"onestep", one_step_name, 0, 0, DVI__LEFT_OUT,
-     "euler, explicit-midpoint, heun, kutta3, rk4, three-eighths, dormand-prince, butcher6, cooper-verner, backward-euler, "
-     "implicit-midpoint, gauss, radau-iia, lobatto-iiia, sdirk, taylor, or file; left out: rk4"},
+     "euler, explicit-midpoint, heun, kutta3, rk4, three-eighths, dormand-prince, butcher6, "
+     "cooper-verner, backward-euler, "
+     "implicit-midpoint, gauss, radau-iia, lobatto-iiia, sdirk, taylor, or file; default: rk4"},
     {"stages", NULL, 1, STAGES_MOST, DVI__LEFT_OUT,
-     "of gauss, radau-iia, lobatto-iiia (2 to 8) and sdirk (2 or 3); of taylor the degree, 1 to 20; left out: 2, of taylor 4"},
+     "of gauss, radau-iia, lobatto-iiia (2 to 8) and sdirk (2 or 3); of taylor the degree, 1 to "
+     "20; default: 2, of taylor 4"},
     {"tableau", NULL, DVI__FILE, 0, 0, "the file of the one-step method's tableau"},
     {"composition", composition_name, 0, 0, 0,
-     "none, 4, 6 or 8: the order to which a symmetric one-step method is composed; left out: none"},
+     "none, 4, 6 or 8: the order to which a symmetric one-step method is composed; default: none"},
     {"quadrature", rule_name, 0, 0, DVI_SIMPSON,
-     "trapezoid, simpson, lobatto, clenshaw-curtis, euler-maclaurin or gauss-hermite; left out: simpson"},
+     "trapezoid, simpson, lobatto, clenshaw-curtis, euler-maclaurin or gauss-hermite; default: "
+     "simpson"},
     {"nodes", NULL, 2, NODES_MOST, DVI__LEFT_OUT,
-     "of lobatto and clenshaw-curtis, 2 to 16; left out: the fewest whose order reaches that of the one-step method"},
+     "of lobatto and clenshaw-curtis, 2 to 16; default: the fewest whose order reaches that of the "
+     "one-step method"},
     {"terms", NULL, 0, STAGES_MOST, DVI__LEFT_OUT,
-     "of euler-maclaurin, beside the trapezoid, and of gauss-hermite, at each end, up to 20; left out: as nodes"},
+     "of euler-maclaurin, beside the trapezoid, and of gauss-hermite, at each end, up to 20; "
+     "default: as nodes"},
     {"solve", solve_name, 0, 0, AUTO,
-     "shot: for the start, by dense derivatives of the shot; stages: for all stages, as one sparse system; auto: the cheaper; left "
+     "shot: for the start, by dense derivatives of the shot; stages: for all stages, as one sparse "
+     "system; auto: the cheaper; left "
      "out: auto"},
     {"tolerance", NULL, DVI__POSITIVE, 0, 0,
-     "the residual, relative to the coordinates, at which the search for v ends: to see what a loose one does; left out: roundoff"},
+     "the residual, relative to the coordinates, at which the search for v ends: to see what a "
+     "loose one does; default: roundoff"},
     {"type", NULL, 1, 3, DVI__LEFT_OUT,
-     "of generating functions: 1 (q0,q1), 2 (q0,p1) or 3 (p0,q1); left out: 1, with a Hamiltonian 2"},
+     "of generating functions: 1 (q0,q1), 2 (q0,p1) or 3 (p0,q1); default: 1, with a Hamiltonian "
+     "2"},
     {0},
 };
 
@@ -99,15 +116,17 @@ static dvi_status choose_built_in(dvi__settings *settings, dvi__runge_kutta *met
   dvi__runge_kutta_range(choice, &fewest, &most);
   if (*stages == DVI__LEFT_OUT) *stages = fewest;
   if (*stages >= fewest && *stages <= most) return dvi__runge_kutta_named(choice, *stages, method);
-  return dvi__fail(DVI_BAD_OPTION, "shooting: onestep=%s has %d%s stage%s, not stages=%d", one_step_name(choice), fewest,
-                   most > fewest ? " or more" : "", most == 1 ? "" : "s", *stages);
+  return dvi__fail(DVI_BAD_OPTION, "shooting: onestep=%s has %d%s stage%s, not stages=%d",
+                   one_step_name(choice), fewest, most > fewest ? " or more" : "",
+                   most == 1 ? "" : "s", *stages);
 }
 
 /* Order 4 at its default degree, as rk4. */
 static dvi_status choose_taylor(const dvi__stepper *self, int *degree, dvi__runge_kutta *method)
 {
   if (*degree == DVI__LEFT_OUT) *degree = 4;
-  *method = (dvi__runge_kutta){.stages = 1, .order = *degree, .is_explicit = 1, .series = *degree, .b = {1}};
+  *method = (dvi__runge_kutta){
+      .stages = 1, .order = *degree, .is_explicit = 1, .series = *degree, .b = {1}};
   const dvi_status status = dvi__system_has_taylor(self->system);
   return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "shooting: onestep=taylor");
 }
@@ -119,10 +138,11 @@ static dvi_status choose_one_step(dvi__stepper *self, dvi__runge_kutta *method)
   const int has_file = settings->file != NULL;
   if (*choice == DVI__LEFT_OUT) *choice = has_file ? FROM_FILE : DVI__RK_4;
   if (has_file != (*choice == FROM_FILE))
-    return dvi__fail(DVI_BAD_OPTION,
-                     has_file ? "shooting: onestep=%s is built in; with tableau=%s only onestep=file is possible"
-                              : "shooting: onestep=%s needs the name of the file, tableau=%s",
-                     one_step_name(*choice), has_file ? settings->file : "...");
+    return dvi__fail(
+        DVI_BAD_OPTION,
+        has_file ? "shooting: onestep=%s is built in; with tableau=%s only onestep=file is possible"
+                 : "shooting: onestep=%s needs the name of the file, tableau=%s",
+        one_step_name(*choice), has_file ? settings->file : "...");
   if (*choice == TAYLOR) return choose_taylor(self, &settings->value[STAGES], method);
   if (!has_file) return choose_built_in(settings, method);
   const dvi_status status = dvi__runge_kutta_read(settings->file, method);
@@ -140,7 +160,8 @@ static dvi_status choose_composition(const dvi__settings *settings, dvi__runge_k
   if (choice == 0) return DVI_OK;
   if (!method->symmetric)
     return dvi__fail(DVI_BAD_OPTION,
-                     "shooting: composition=%s raises the order of symmetric one-step methods alone, and onestep=%s is none; "
+                     "shooting: composition=%s raises the order of symmetric one-step methods "
+                     "alone, and onestep=%s is none; "
                      "implicit-midpoint, gauss and lobatto-iiia are",
                      composition_name(choice), one_step_name(settings->value[ONE_STEP]));
   const int order = dvi__scheme_at(choice - 1)->order;
@@ -155,13 +176,18 @@ static dvi_status choose_rule(dvi__settings *settings, int order)
   const int fixed = rule == DVI_TRAPEZOID ? 2 : rule == DVI_SIMPSON ? 3 : 0;
   if (!fixed && rule != DVI_LOBATTO && rule != DVI_CLENSHAW_CURTIS)
     return dvi__fail(DVI_BAD_OPTION,
-                     "shooting: quadrature=%s does not have both ends of the step among its nodes, where the shot starts and meets "
-                     "q1; possible are trapezoid, simpson, lobatto, clenshaw-curtis, euler-maclaurin and gauss-hermite",
+                     "shooting: quadrature=%s does not have both ends of the step among its nodes, "
+                     "where the shot starts and meets "
+                     "q1; possible are trapezoid, simpson, lobatto, clenshaw-curtis, "
+                     "euler-maclaurin and gauss-hermite",
                      rule_name((int)rule));
   if (*nodes == DVI__LEFT_OUT)
-    for (*nodes = fixed ? fixed : 2; !fixed && dvi_quadrature_order(rule, *nodes) < order && *nodes < NODES_MOST;) ++*nodes;
+    for (*nodes = fixed ? fixed : 2;
+         !fixed && dvi_quadrature_order(rule, *nodes) < order && *nodes < NODES_MOST;)
+      ++*nodes;
   if (fixed && *nodes != fixed)
-    return dvi__fail(DVI_BAD_OPTION, "shooting: quadrature=%s has %d nodes, not nodes=%d", rule_name((int)rule), fixed, *nodes);
+    return dvi__fail(DVI_BAD_OPTION, "shooting: quadrature=%s has %d nodes, not nodes=%d",
+                     rule_name((int)rule), fixed, *nodes);
   return DVI_OK;
 }
 
@@ -180,14 +206,17 @@ static dvi_status choose_osculation(const dvi_system *system, dvi__settings *set
   int *terms = &settings->value[TERMS], *nodes = &settings->value[NODES];
   const char *name = rule_name(settings->value[QUADRATURE]);
   if (*nodes != DVI__LEFT_OUT && *nodes != 2)
-    return dvi__fail(DVI_BAD_OPTION, "shooting: quadrature=%s has its 2 nodes at the ends, not nodes=%d", name, *nodes);
+    return dvi__fail(DVI_BAD_OPTION,
+                     "shooting: quadrature=%s has its 2 nodes at the ends, not nodes=%d", name,
+                     *nodes);
   *nodes = 2;
   if (*terms == DVI__LEFT_OUT)
     for (*terms = 1; dvi__osculation_order(osculation_of(settings), *terms) < order;) ++*terms;
   if (*terms == 0)
     return dvi__fail(DVI_BAD_OPTION,
-                     "shooting: quadrature=%s without terms is the trapezoid, if anything; terms=1 to %d are possible", name,
-                     STAGES_MOST);
+                     "shooting: quadrature=%s without terms is the trapezoid, if anything; terms=1 "
+                     "to %d are possible",
+                     name, STAGES_MOST);
   const dvi_status status = dvi__system_has_taylor(system);
   return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "shooting: quadrature=%s", name);
 }
@@ -197,7 +226,8 @@ static dvi_status choose_quadrature(const dvi_system *system, dvi__settings *set
   int *terms = &settings->value[TERMS];
   if (is_osculation(settings)) return choose_osculation(system, settings, order);
   if (*terms > 0)
-    return dvi__fail(DVI_BAD_OPTION, "shooting: quadrature=%s has no terms; euler-maclaurin and gauss-hermite have",
+    return dvi__fail(DVI_BAD_OPTION,
+                     "shooting: quadrature=%s has no terms; euler-maclaurin and gauss-hermite have",
                      rule_name(settings->value[QUADRATURE]));
   *terms = 0;
   return choose_rule(settings, order);
@@ -205,12 +235,15 @@ static dvi_status choose_quadrature(const dvi_system *system, dvi__settings *set
 
 static int order_of_quadrature(const dvi__settings *settings)
 {
-  if (is_osculation(settings)) return dvi__osculation_order(osculation_of(settings), settings->value[TERMS]);
+  if (is_osculation(settings))
+    return dvi__osculation_order(osculation_of(settings), settings->value[TERMS]);
   return dvi_quadrature_order((dvi_rule)settings->value[QUADRATURE], settings->value[NODES]);
 }
 
-/* A piece from node to node, in the substeps of the composition; nothing is summed at the points between them. */
-static void add_piece(const dvi__settings *settings, double from, double to, double weight, dvi__course *course)
+/* A piece from node to node, in the substeps of the composition; nothing is summed at the points
+ * between them. */
+static void add_piece(const dvi__settings *settings, double from, double to, double weight,
+                      dvi__course *course)
 {
   const int choice = settings->value[COMPOSITION];
   const dvi__scheme *scheme = choice > 0 ? dvi__scheme_at(choice - 1) : NULL;
@@ -232,7 +265,8 @@ static dvi_status plot(const dvi__settings *settings, dvi__course *course)
     dvi__osculation_weights(osculation_of(settings), settings->value[TERMS], course->weight);
     course->count = dvi__osculation_count(osculation_of(settings), settings->value[TERMS]);
   }
-  DVI_TRY(dvi_quadrature(course->count > 0 ? DVI_TRAPEZOID : (dvi_rule)settings->value[QUADRATURE], nodes, c, b));
+  DVI_TRY(dvi_quadrature(course->count > 0 ? DVI_TRAPEZOID : (dvi_rule)settings->value[QUADRATURE],
+                         nodes, c, b));
   course->b[0] = b[0];
   for (int i = 1; i < nodes; i++) add_piece(settings, c[i - 1], c[i], b[i], course);
   return DVI_OK;
@@ -265,27 +299,32 @@ static dvi_status row_scale(void *of, double *scale, int *unchanged)
 static dvi_status residual(void *of, const double *x, double *R)
 {
   const shooter *own = of;
-  return own->stacked != NULL ? dvi__stacked_shot_residual(own->stacked, x, R) : dvi__shot_step_residual(own->shot, x, R);
+  return own->stacked != NULL ? dvi__stacked_shot_residual(own->stacked, x, R)
+                              : dvi__shot_step_residual(own->shot, x, R);
 }
 
 static dvi_status jacobian(void *of, const double *x, double *values)
 {
   const shooter *own = of;
-  return own->stacked != NULL ? dvi__stacked_shot_jacobian(own->stacked, x, values) : dvi__shot_step_jacobian(own->shot, x, values);
+  return own->stacked != NULL ? dvi__stacked_shot_jacobian(own->stacked, x, values)
+                              : dvi__shot_step_jacobian(own->shot, x, values);
 }
 
-/* Sparse, and of more coordinates than the system of all stages has blocks of 2n: six times as many of an explicit method, whose shot solves nothing (measured
- * with chains of masses). */
-static int stages_are_cheaper(const dvi_system *system, const dvi__runge_kutta *method, const dvi__course *course)
+/* Sparse, and of more coordinates than the system of all stages has blocks of 2n: six times as many
+ * of an explicit method, whose shot solves nothing (measured with chains of masses). */
+static int stages_are_cheaper(const dvi_system *system, const dvi__runge_kutta *method,
+                              const dvi__course *course)
 {
   enum { EXPLICIT_GAIN = 6, LEAST_EMPTY = 4 };
   const int blocks = 2 * (method->stages + 1) * course->pieces + 1;
   if (system->n > SHOT_MOST) return 1;
-  return system->mass_diagonal != NULL && system->n > (method->is_explicit ? EXPLICIT_GAIN : 1) * blocks &&
+  return system->mass_diagonal != NULL &&
+         system->n > (method->is_explicit ? EXPLICIT_GAIN : 1) * blocks &&
          (double)LEAST_EMPTY * dvi__pattern_entries(&system->qq) <= (double)system->n * system->n;
 }
 
-static dvi_status choose_solve(dvi__stepper *self, const dvi__runge_kutta *method, const dvi__course *course)
+static dvi_status choose_solve(dvi__stepper *self, const dvi__runge_kutta *method,
+                               const dvi__course *course)
 {
   int *choice = &self->settings.value[SOLVE];
   const int possible = self->settings.value[TYPE] == 1 && method->series == 0 && course->count == 0;
@@ -295,31 +334,36 @@ static dvi_status choose_solve(dvi__stepper *self, const dvi__runge_kutta *metho
   return DVI_OK;
 }
 
-static dvi_status make_step(dvi__stepper *self, const dvi__runge_kutta *method, const dvi__course *course)
+static dvi_status make_step(dvi__stepper *self, const dvi__runge_kutta *method,
+                            const dvi__course *course)
 {
   shooter *own = self->own;
   DVI_TRY(choose_solve(self, method, course));
   const int choice = self->settings.value[SOLVE];
   if (choice == SHOT) {
     if (self->system->n > SHOT_MOST)
-      return dvi__fail(
-          DVI_UNSUPPORTED,
-          "solve=shot has full matrices of 2n = %d unknowns, and is for up to %d coordinates; solve=stages, with type=1, a "
-          "tableau and a quadrature by values, is sparse",
-          2 * self->system->n, SHOT_MOST);
-    DVI_TRY(dvi__shot_step_create(self->system, self->settings.value[TYPE], method, course, self->counters, &own->shot));
+      return dvi__fail(DVI_UNSUPPORTED,
+                       "solve=shot has full matrices of 2n = %d unknowns, and is for up to %d "
+                       "coordinates; solve=stages, with type=1, a "
+                       "tableau and a quadrature by values, is sparse",
+                       2 * self->system->n, SHOT_MOST);
+    DVI_TRY(dvi__shot_step_create(self->system, self->settings.value[TYPE], method, course,
+                                  self->counters, &own->shot));
     own->pattern = dvi__shot_step_pattern(own->shot);
     return DVI_OK;
   }
-  if (self->settings.value[TYPE] != 1) return dvi__fail(DVI_BAD_OPTION, "solve=stages is for type=1; leave it out");
+  if (self->settings.value[TYPE] != 1)
+    return dvi__fail(DVI_BAD_OPTION, "solve=stages is for type=1; leave it out");
   if (method->series > 0 || course->count > 0)
-    return dvi__fail(DVI_BAD_OPTION, "solve=stages is for one-step methods with a tableau and quadratures by values; leave it out");
+    return dvi__fail(DVI_BAD_OPTION, "solve=stages is for one-step methods with a tableau and "
+                                     "quadratures by values; leave it out");
   DVI_TRY(dvi__stacked_shot_create(self->system, method, course, self->counters, &own->stacked));
   own->pattern = dvi__stacked_shot_pattern(own->stacked);
   return DVI_OK;
 }
 
-static dvi_status make(dvi__stepper *self, const dvi__runge_kutta *method, const dvi__course *course)
+static dvi_status make(dvi__stepper *self, const dvi__runge_kutta *method,
+                       const dvi__course *course)
 {
   shooter *own = self->own;
   DVI_TRY(make_step(self, method, course));
@@ -341,9 +385,9 @@ static dvi_status choose_type(const dvi_system *system, int *type)
   const int on_H = (system->terms & DVI__HAMILTONIAN) != 0;
   if (*type == DVI__LEFT_OUT) *type = on_H ? 2 : 1;
   if (*type != 1 || !on_H) return DVI_OK;
-  return dvi__fail(DVI_UNSUPPORTED,
-                   "shooting: type=1 shoots for a discrete Lagrangian, and the system declares a Hamiltonian, which may have none; "
-                   "type=2 and 3 can, and hamiltonian:type=1");
+  return dvi__fail(DVI_UNSUPPORTED, "shooting: type=1 shoots for a discrete Lagrangian, and the "
+                                    "system declares a Hamiltonian, which may have none; "
+                                    "type=2 and 3 can, and hamiltonian:type=1");
 }
 
 static dvi_status create(dvi__stepper *self)
@@ -403,7 +447,8 @@ static dvi_status solve_loosely(shooter *own, double size)
     for (int k = 0; k < own->unknowns; k++) x[k] -= own->R[k];
     correction = dvi__largest((size_t)own->unknowns, own->R);
   }
-  return dvi__fail(DVI_NOT_CONVERGED, "Newton's method does not reach the tolerance (change %.1e)", correction);
+  return dvi__fail(DVI_NOT_CONVERGED, "Newton's method does not reach the tolerance (change %.1e)",
+                   correction);
 }
 
 /* And the guess, which shots give. */
@@ -411,8 +456,10 @@ static dvi_status place(dvi__stepper *self, const dvi__state *state, double h, d
 {
   const shooter *own = self->own;
   if (own->stacked != NULL)
-    return dvi__stacked_shot_place(own->stacked, state->t, h, h / part, state->q, state->p, own->v, own->guess);
-  return dvi__shot_step_place(own->shot, state->t, h, h / part, state->q, state->p, own->v, own->guess);
+    return dvi__stacked_shot_place(own->stacked, state->t, h, h / part, state->q, state->p, own->v,
+                                   own->guess);
+  return dvi__shot_step_place(own->shot, state->t, h, h / part, state->q, state->p, own->v,
+                              own->guess);
 }
 
 static dvi_status guess(dvi__stepper *self, double h, double *x)
@@ -462,9 +509,9 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
   find_ends(own);
   DVI_TRY(find_duration(self, h, &duration));
   memcpy(self->memory, own->v, (size_t)self->system->n * sizeof *own->v);
-  dvi__add_compensated_all(self->system->n, state->q, state->q_carry, own->dq);
-  dvi__add_compensated_all(self->system->n, state->p, state->p_carry, own->dp);
-  dvi__add_compensated(&state->t, &state->t_carry, duration);
+  dvi__add_compensated_all(self->system->n, state->q, state->q_compensation, own->dq);
+  dvi__add_compensated_all(self->system->n, state->p, state->p_compensation, own->dp);
+  dvi__add_compensated(&state->t, &state->t_compensation, duration);
   return DVI_OK;
 }
 
@@ -472,23 +519,30 @@ static void explain(const dvi__stepper *self, dvi__text *text)
 {
   const shooter *own = self->own;
   const dvi__settings *set = &self->settings;
-  dvi__text_add(text, "one-step method: %s%s of order %d, %d stage%s\n", one_step_name(set->value[ONE_STEP]),
+  dvi__text_add(text, "one-step method: %s%s of order %d, %d stage%s\n",
+                one_step_name(set->value[ONE_STEP]),
                 set->value[COMPOSITION] > 0 ? ", composed," : "", own->order, set->value[STAGES],
                 set->value[STAGES] == 1 ? "" : "s");
-  dvi__text_add(text, "quadrature: %s of %d nodes\n", rule_name(set->value[QUADRATURE]), set->value[NODES]);
+  dvi__text_add(text, "quadrature: %s of %d nodes\n", rule_name(set->value[QUADRATURE]),
+                set->value[NODES]);
   if (own->stacked != NULL)
-    dvi__text_add(text, "kernel: stages and their costates; %d unknowns a step, Jacobian with %d entries (%.3g %% of a full one)\n",
+    dvi__text_add(text,
+                  "kernel: stages and their costates; %d unknowns a step, Jacobian with %d entries "
+                  "(%.3g %% of a full one)\n",
                   own->unknowns, dvi__pattern_entries(own->pattern),
                   100.0 * dvi__pattern_entries(own->pattern) / own->unknowns / own->unknowns);
   else
-    dvi__text_add(text, "kernel: shots from the start, their derivatives by costates; %d unknowns a step, full Jacobian\n",
+    dvi__text_add(text,
+                  "kernel: shots from the start, their derivatives by costates; %d unknowns a "
+                  "step, full Jacobian\n",
                   own->unknowns);
   dvi__text_add(text, "solver: Newton's method, last a path followed from shorter steps\n");
 }
 
 const dvi__method dvi__shooting = {
     .name = "shooting",
-    .summary = "any one-step method and a quadrature with both ends; order that of the lower of both",
+    .summary =
+        "any one-step method and a quadrature with both ends; order that of the lower of both",
     .cite = "LeokShingel2012",
     .keys = keys,
     .uses = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL | DVI__HAMILTONIAN,

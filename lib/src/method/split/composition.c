@@ -1,8 +1,8 @@
 /* Symmetric compositions of a symmetric method Phi.
  *
  *     Psi_h = Phi_{g_m h} o ... o Phi_{g_2 h} o Phi_{g_1 h},    g_i = g_{m+1-i},   sum g_i = 1
- * The discrete Lagrangian is the sum of those of the substeps, stationary in the points between them (Marsden and West 2001, sec. 2.5.1).
- * The g_i are those of method/scheme.h. */
+ * The discrete Lagrangian is the sum of those of the substeps, stationary in the points between
+ * them (Marsden and West 2001, sec. 2.5.1). The g_i are those of method/scheme.h. */
 #include <string.h>
 
 #include "core/memory.h"
@@ -18,15 +18,17 @@ enum { VERLET, MIDPOINT, TRAPEZOIDAL, GALERKIN, IMEX, LIE_VERLET, SHAPED_GALERKI
 
 static const char *base_name(int index)
 {
-  static const char *const name[] = {"verlet", "midpoint", "trapezoidal", "galerkin", "imex", "lie-verlet", "shaped-galerkin"};
+  static const char *const name[] = {"verlet", "midpoint",   "trapezoidal",    "galerkin",
+                                     "imex",   "lie-verlet", "shaped-galerkin"};
   return index >= 0 && index < BASES ? name[index] : NULL;
 }
 
 static const dvi__key keys[] = {
-    {"order", dvi__scheme_name, 0, 0, 0, "4, 6 or 8; left out: 4"},
+    {"order", dvi__scheme_name, 0, 0, 0, "4, 6 or 8; default: 4"},
     {"base", base_name, 0, 0, DVI__LEFT_OUT,
-     "the symmetric method that is composed: verlet, midpoint, trapezoidal, galerkin, imex, lie-verlet, or a program's "
-     "shaped-galerkin; all other keys are its own; left out: verlet, on groups lie-verlet"},
+     "the symmetric method that is composed: verlet, midpoint, trapezoidal, galerkin, imex, "
+     "lie-verlet, or a program's "
+     "shaped-galerkin; all other keys are its own; default: verlet, on groups lie-verlet"},
     {0},
 };
 
@@ -41,12 +43,17 @@ static dvi_status create(dvi__stepper *self)
   if (*chosen == DVI__LEFT_OUT) *chosen = self->system->terms & DVI__FACTORS ? LIE_VERLET : VERLET;
   dvi__stepper *base = self->own = DVI_NEW(dvi__stepper, 1);
   if (base == NULL) return dvi__fail(DVI_NO_MEMORY, "composition: no memory");
-  dvi_status status = dvi__stepper_create_inner(self, base_name(*chosen), self->system, self->shapes, base);
-  if (status == DVI_UNSUPPORTED) return dvi__fail_in(status, "composition: choose another base=, this one does not serve");
-  if (status == DVI_OK && base->method->keep_lengths != NULL) status = base->method->keep_lengths(base, scheme_of(self)->lengths);
+  dvi_status status = dvi__stepper_create_inner(self, base_name(*chosen), self->system,
+                                                self->shapes, base);
+  if (status == DVI_UNSUPPORTED)
+    return dvi__fail_in(status, "composition: choose another base=, this one does not serve");
+  if (status == DVI_OK && base->method->keep_lengths != NULL)
+    status = base->method->keep_lengths(base, scheme_of(self)->lengths);
   if (status != DVI_OK) return dvi__fail_in(status, "composition");
   if (!base->symmetric)
-    return dvi__fail(DVI_BAD_OPTION, "composition: %s is not symmetric; choose a symmetric quadrature", base->specification);
+    return dvi__fail(DVI_BAD_OPTION,
+                     "composition: %s is not symmetric; choose a symmetric quadrature",
+                     base->specification);
   self->order = scheme_of(self)->order;
   self->order = base->order > self->order ? base->order : self->order;
   self->symmetric = 1;
@@ -78,11 +85,13 @@ static void start(dvi__stepper *self, const double *v)
   dvi__stepper_start(base_of(self), v);
 }
 
-/* The rounded weights sum to 1 but for a rounding, which would add up over many steps: the clock moves by h. */
-static void move_clock(double t, double t_carry, double h, double *moved, double *moved_carry)
+/* The rounded weights sum to 1 but for a rounding, which would add up over many steps: the clock
+ * moves by h. */
+static void move_clock(double t, double t_compensation, double h, double *moved,
+                       double *moved_carry)
 {
   *moved = t;
-  *moved_carry = t_carry;
+  *moved_carry = t_compensation;
   dvi__add_compensated(moved, moved_carry, h);
 }
 
@@ -90,13 +99,16 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
 {
   dvi__stepper *base = base_of(self);
   const dvi__scheme *s = scheme_of(self);
-  const double t = state->t, t_carry = state->t_carry;
-  for (int i = 0; i < s->substeps; i++) DVI_TRY(dvi__inner_step(self, base, state, h * dvi__scheme_part(s, i)));
-  if (dvi__transformed_of(self->system) == NULL) move_clock(t, t_carry, h, &state->t, &state->t_carry);
+  const double t = state->t, t_compensation = state->t_compensation;
+  for (int i = 0; i < s->substeps; i++)
+    DVI_TRY(dvi__inner_step(self, base, state, h * dvi__scheme_part(s, i)));
+  if (dvi__transformed_of(self->system) == NULL)
+    move_clock(t, t_compensation, h, &state->t, &state->t_compensation);
   return DVI_OK;
 }
 
-static int pass(dvi__stepper *self, const dvi__state *now, const double *before, dvi__state *next, const double *h, int count)
+static int pass(dvi__stepper *self, const dvi__state *now, const double *before, dvi__state *next,
+                const double *h, int count)
 {
   dvi__stepper *base = base_of(self);
   const dvi__scheme *s = scheme_of(self);
@@ -104,14 +116,16 @@ static int pass(dvi__stepper *self, const dvi__state *now, const double *before,
   if (base->method->pass == NULL || count != 1) return 0;
   for (int i = 0; i < s->substeps; i++) substeps[i] = h[0] * dvi__scheme_part(s, i);
   if (!base->method->pass(base, now, before, next, substeps, s->substeps)) return 0;
-  move_clock(now->t, now->t_carry, h[0], &next->t, &next->t_carry);
+  move_clock(now->t, now->t_compensation, h[0], &next->t, &next->t_compensation);
   return 1;
 }
 
 static double traffic(const dvi__stepper *self, int count)
 {
   const dvi__stepper *base = self->own;
-  return base->method->traffic != NULL && count == 1 ? base->method->traffic(base, scheme_of(self)->substeps) : 0;
+  return base->method->traffic != NULL && count == 1
+             ? base->method->traffic(base, scheme_of(self)->substeps)
+             : 0;
 }
 
 /* ---- members side by side ---- */
@@ -136,11 +150,13 @@ static void step_lanes(dvi__stepper *self, dvi__members *m, double h)
   dvi__stepper *base = self->own;
   const dvi__scheme *s = scheme_of(self);
   const size_t bytes = (size_t)m->count * sizeof(double);
-  double *t = self->lanes, *t_carry = t + m->count;
+  double *t = self->lanes, *t_compensation = t + m->count;
   memcpy(t, m->t, bytes);
-  memcpy(t_carry, m->t_carry, bytes);
-  for (int i = 0; i < s->substeps; i++) base->method->step_lanes(base, m, h * dvi__scheme_part(s, i));
-  for (int k = 0; k < m->count; k++) move_clock(t[k], t_carry[k], h, m->t + k, m->t_carry + k);
+  memcpy(t_compensation, m->t_compensation, bytes);
+  for (int i = 0; i < s->substeps; i++)
+    base->method->step_lanes(base, m, h * dvi__scheme_part(s, i));
+  for (int k = 0; k < m->count; k++)
+    move_clock(t[k], t_compensation[k], h, m->t + k, m->t_compensation + k);
 }
 
 static int recognizes(const dvi__stepper *self, const double *memory)
@@ -152,7 +168,8 @@ static int recognizes(const dvi__stepper *self, const double *memory)
 static void explain(const dvi__stepper *self, dvi__text *text)
 {
   const dvi__stepper *base = self->own;
-  dvi__text_add(text, "composition: %d substeps a step, each by %s\n", scheme_of(self)->substeps, base->specification);
+  dvi__text_add(text, "composition: %d substeps a step, each by %s\n", scheme_of(self)->substeps,
+                base->specification);
   base->method->explain(base, text);
 }
 

@@ -22,10 +22,12 @@ static dvi_status find(const dvi_system *part, double *least, double *most)
 dvi_status dvi_fast_frequencies(const dvi_system *system, double *least, double *most)
 {
   dvi_system *part;
-  if (!system || !least || !most) return dvi__fail(DVI_BAD_ARGUMENT, "frequencies: an argument is NULL");
-  if (!(system->terms & DVI__FAST) || !(system->terms & DVI__CONSTANT_MASS) || !dvi__system_fast_is_quadratic(system))
-    return dvi__fail(DVI_UNSUPPORTED,
-                     "frequencies: they are known of potentials that are declared fast and quadratic, with a constant mass");
+  if (!system || !least || !most)
+    return dvi__fail(DVI_BAD_ARGUMENT, "frequencies: an argument is NULL");
+  if (!(system->terms & DVI__FAST) || !(system->terms & DVI__CONSTANT_MASS) ||
+      !dvi__system_fast_is_quadratic(system))
+    return dvi__fail(DVI_UNSUPPORTED, "frequencies: they are known of potentials that are declared "
+                                      "fast and quadratic, with a constant mass");
   DVI_TRY(dvi__system_fast_part(system, &part));
   const dvi_status status = find(part, least, most);
   dvi_system_destroy(&part);

@@ -1,7 +1,9 @@
-/* The mollified impulse method: kicks by the slow potentials at filtered places, and between them the exact motion of quadratic fast ones.
+/* The mollified impulse method: kicks by the slow potentials at filtered places, and between them
+ * the exact motion of quadratic fast ones.
  *
  *     Ld(q0,q1) = action of the exact fast motion from q0 to q1 - h/2 (U(t0,A(q0)) + U(t1,A(q1)))
- * U(A(q)) kicks by A'(q)^T U'(A(q)), which spares the modes that kicks would drive (method/split/oscillation.h). A by the modes' x = h omega:
+ * U(A(q)) kicks by A'(q)^T U'(A(q)), which spares the modes that kicks would drive
+ * (method/split/oscillation.h). A by the modes' x = h omega:
  *     average     the mean over a step of the fast motion that starts at rest:  phi = sin x/x;
  *     projection  modes that a step does not resolve rest at their equilibrium: phi = 0 for x > 1, else 1.
  * Order 2 as h goes to 0, symmetric, symplectic.
@@ -20,8 +22,9 @@ static const char *filter_name(int index)
 
 static const dvi__key keys[] = {
     {"filter", filter_name, 0, 0, AVERAGE,
-     "where the slow potentials are asked: average (over the fast motion), or projection (without the modes of h omega > 1); "
-     "left out: average"},
+     "where the slow potentials are asked: average (over the fast motion), or projection (without "
+     "the modes of h omega > 1); "
+     "default: average"},
     {0},
 };
 
@@ -50,7 +53,8 @@ static dvi_status create(dvi__stepper *self)
 
 const dvi__method dvi__mollified = {
     .name = "mollified",
-    .summary = "mollified impulse method, to compare with: filtered kicks, exact motion of quadratic fast potentials; order 2",
+    .summary = "mollified impulse method, to compare with: filtered kicks, exact motion of "
+               "quadratic fast potentials; order 2",
     .cite = "GarciaArchillaSanzSernaSkeel1999",
     .keys = keys,
     DVI__IMPULSE_OPERATIONS,

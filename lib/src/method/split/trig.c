@@ -2,23 +2,34 @@
  *
  *     q1 = cos(h Om) q0 + Om^-1 sin(h Om) p0 + h^2/2 Psi g0,      p1 = -Om sin(h Om) q0 + cos(h Om) p0 + h/2 (Psi_0 g0 + Psi_1 g1),
  *     g = -U'(Phi q),      Psi = sinc(h Om) Psi_1,      Psi_0 = cos(h Om) Psi_1:
- * a kick by Psi_1 g0, exact motion, a kick by Psi_1 g1 (method/split/oscillation.h), with M = 1 and W = q.Om^2 q/2; other masses and linear parts of W by the modes.
- * Where Psi_1 = Phi it is the variational method of
+ * a kick by Psi_1 g0, exact motion, a kick by Psi_1 g1 (method/split/oscillation.h), with M = 1 and
+ * W = q.Om^2 q/2; other masses and linear parts of W by the modes. Where Psi_1 = Phi it is the
+ * variational method of
  *     Ld(q0,q1) = action of the fast motion from q0 to q1 - h/2 (U(Phi q0) + U(Phi q1)).
- * Order 2 as h goes to 0, symmetric; symplectic where it is variational.
- * Source: Hairer, Lubich and Wanner 2006, sec. XIII.2.2 (A to E, G); Stern 2009, sec. 2.3 (exact). */
+ * Order 2 as h goes to 0, symmetric; symplectic where it is variational. Source: Hairer, Lubich and
+ * Wanner 2006, sec. XIII.2.2 (A to E, G); Stern 2009, sec. 2.3 (exact). */
 #include <math.h>
 
 #include "method/split/oscillation.h"
 
 enum { FILTER, MOTION };
 
-enum { EXACT, DEUFLHARD, GARCIA_ARCHILLA, GAUTSCHI, HOCHBRUCK_LUBICH, GRIMM_HOCHBRUCK, HAIRER_LUBICH, FILTERS };
+enum {
+  EXACT,
+  DEUFLHARD,
+  GARCIA_ARCHILLA,
+  GAUTSCHI,
+  HOCHBRUCK_LUBICH,
+  GRIMM_HOCHBRUCK,
+  HAIRER_LUBICH,
+  FILTERS
+};
 
 static const char *filter_name(int index)
 {
-  static const char *const name[] = {"exact",           "deuflhard",    "garcia-archilla", "gautschi", "hochbruck-lubich",
-                                     "grimm-hochbruck", "hairer-lubich"};
+  static const char *const name[] = {"exact",        "deuflhard",        "garcia-archilla",
+                                     "gautschi",     "hochbruck-lubich", "grimm-hochbruck",
+                                     "hairer-lubich"};
   return index >= 0 && index < FILTERS ? name[index] : NULL;
 }
 
@@ -30,20 +41,22 @@ static const char *motion_name(int index)
 
 static const dvi__key keys[] = {
     {"filter", filter_name, 0, 0, GARCIA_ARCHILLA,
-     "the filters of the slow forces: exact, deuflhard or garcia-archilla (variational); gautschi, hochbruck-lubich, "
-     "grimm-hochbruck or hairer-lubich (not symplectic); left out: garcia-archilla"},
+     "the filters of the slow forces: exact, deuflhard or garcia-archilla (variational); gautschi, "
+     "hochbruck-lubich, "
+     "grimm-hochbruck or hairer-lubich (not symplectic); default: garcia-archilla"},
     {"motion", motion_name, 0, 0, DVI__MOTION_AUTO,
-     "how the fast motion is found: by normal modes, in blocks of up to 2000 coupled coordinates, or by polynomials, for sparse "
+     "how the fast motion is found: by normal modes, in blocks of up to 2000 coupled coordinates, "
+     "or by polynomials, for sparse "
      "springs of any "
-     "size; left out: auto"},
+     "size; default: auto"},
     {0},
 };
 
 /* A sinc this small is one that rounding made. */
 static const double least_sinc = 1e-12;
 
-/* (1 - phi)/s of `exact`, phi = a/sqrt(b) with a = sinc(x/2), b = sinc x. Where that cancels it is (b - a^2)/s over b + a sqrt(b), and
- * (b - a^2)/s = -sum_j (-s)^j (2j + 2)/(2j + 4)!. */
+/* (1 - phi)/s of `exact`, phi = a/sqrt(b) with a = sinc(x/2), b = sinc x. Where that cancels it is
+ * (b - a^2)/s over b + a sqrt(b), and (b - a^2)/s = -sum_j (-s)^j (2j + 2)/(2j + 4)!. */
 static double exact_shift(double s, double a, double b)
 {
   double sum = 0;
@@ -68,7 +81,9 @@ static int pair(int number, double s, dvi__filter *filter)
     return 1;
   case GARCIA_ARCHILLA: *filter = (dvi__filter){c[1], c[3], c[1]}; return 1;
   case GAUTSCHI: filter->psi = 2 * c[2] / c[1]; return 1;
-  case HOCHBRUCK_LUBICH: *filter = (dvi__filter){c[1] * (1 + s * c[2] / 6), c[3] - c[1] * c[2] / 6, 2 * c[2] / c[1]}; return 1;
+  case HOCHBRUCK_LUBICH:
+    *filter = (dvi__filter){c[1] * (1 + s * c[2] / 6), c[3] - c[1] * c[2] / 6, 2 * c[2] / c[1]};
+    return 1;
   case GRIMM_HOCHBRUCK: *filter = (dvi__filter){c[1], c[3], c[1] * c[1]}; return 1;
   case HAIRER_LUBICH: filter->psi = c[1]; return 1;
   default: return 1;
@@ -89,12 +104,14 @@ static const dvi__filters filters[] = {
 static dvi_status create(dvi__stepper *self)
 {
   const int *value = self->settings.value;
-  return dvi__oscillation_create(self, &filters[value[FILTER]], (dvi__motion)value[MOTION], "imex and respa:substeps=k take any");
+  return dvi__oscillation_create(self, &filters[value[FILTER]], (dvi__motion)value[MOTION],
+                                 "imex and respa:substeps=k take any");
 }
 
 const dvi__method dvi__trig = {
     .name = "trig",
-    .summary = "trigonometric integrators: exact motion of quadratic fast potentials, filtered slow forces; order 2; constant mass",
+    .summary = "trigonometric integrators: exact motion of quadratic fast potentials, filtered "
+               "slow forces; order 2; constant mass",
     .cite = "HairerLubichWanner2006",
     .keys = keys,
     DVI__IMPULSE_OPERATIONS,

@@ -1,4 +1,5 @@
-/* Stoermer-Verlet for many members at once: the operations of verlet.c, one batch of gradients a step. */
+/* Stoermer-Verlet for many members at once: the operations of verlet.c, one batch of gradients a
+ * step. */
 #include "method/split/verlet_lanes.h"
 
 #include <string.h>
@@ -71,21 +72,22 @@ static void leap(const dvi__stepper *self, dvi__members *m, double h)
   const size_t count = (size_t)m->count;
   for (size_t i = 0; i < (size_t)self->system->n; i++) {
     const size_t at = i * count;
-    const dvi__phase row = {m->q + at, m->p + at, m->q_carry + at, m->p_carry + at};
-    dvi__lanes_leap(&(dvi__leap){.count = count,
-                                 .kicks = 1,
-                                 .kick = {-0.5 * h},
-                                 .drift = h,
-                                 .by = own->by[i],
-                                 .scalar = own->scalar[i],
-                                 .force = m->memory + at,
-                                 .from = row,
-                                 .to = row});
+    const dvi__phase row = {m->q + at, m->p + at, m->q_compensation + at, m->p_compensation + at};
+    dvi__lanes_kick_drift(&(dvi__moser_veselov){.count = count,
+                                                .kicks = 1,
+                                                .kick = {-0.5 * h},
+                                                .drift = h,
+                                                .by = own->by[i],
+                                                .scalar = own->scalar[i],
+                                                .force = m->memory + at,
+                                                .from = row,
+                                                .to = row});
   }
-  for (size_t k = 0; k < count; k++) dvi__add_compensated(m->t + k, m->t_carry + k, h);
+  for (size_t k = 0; k < count; k++) dvi__add_compensated(m->t + k, m->t_compensation + k, h);
 }
 
-/* One batch serves all or none: which member a callback failed for shows when each goes on alone. */
+/* One batch serves all or none: which member a callback failed for shows when each goes on
+ * alone. */
 void dvi__verlet_step_lanes(dvi__stepper *self, dvi__members *m, double h)
 {
   const size_t count = (size_t)m->count;
@@ -99,5 +101,6 @@ void dvi__verlet_step_lanes(dvi__stepper *self, dvi__members *m, double h)
   if (gradient(self, m) != DVI_OK)
     leave_all(m);
   else
-    dvi__lanes_add_scaled((size_t)self->system->n * count, -0.5 * h, m->memory, m->p, m->p_carry);
+    dvi__lanes_add_scaled((size_t)self->system->n * count, -0.5 * h, m->memory, m->p,
+                          m->p_compensation);
 }

@@ -141,7 +141,7 @@ INLINE double largest(size_t count, const double *x)
   return magnitude;
 }
 
-INLINE void leap_as(int widest, const dvi__leap *l, const int kicks, const dvi__division by)
+INLINE void leap_as(int widest, const dvi__moser_veselov *l, const int kicks, const dvi__division by)
 {
   size_t i = 0;
   if (widest == 8)
@@ -153,12 +153,12 @@ INLINE void leap_as(int widest, const dvi__leap *l, const int kicks, const dvi__
   (void)leap1(l, i, kicks, by);
 }
 
-INLINE void leap_by(int widest, const dvi__leap *l, const dvi__division by)
+INLINE void leap_by(int widest, const dvi__moser_veselov *l, const dvi__division by)
 {
   l->kicks == 2 ? leap_as(widest, l, 2, by) : leap_as(widest, l, 1, by);
 }
 
-INLINE void leap(int widest, const dvi__leap *l)
+INLINE void leap(int widest, const dvi__moser_veselov *l)
 {
   if (l->by == DVI__TIMES_SCALAR)
     leap_by(widest, l, DVI__TIMES_SCALAR);
@@ -192,7 +192,7 @@ typedef struct level {
   void (*product)(int n, int terms, int lanes, int width, const double *matrix, const double *x, double *out);
   int (*all_finite)(size_t count, const double *x);
   double (*largest)(size_t count, const double *x);
-  void (*leap)(const dvi__leap *l);
+  void (*leap)(const dvi__moser_veselov *l);
   void (*add_scaled)(size_t count, double factor, const double *x, double *sum, double *carry);
 } level;
 
@@ -229,7 +229,7 @@ typedef struct level {
   {                                                                                                                               \
     return largest(count, x);                                                                                                     \
   }                                                                                                                               \
-  target static void leap_##suffix(const dvi__leap *l)                                                                            \
+  target static void leap_##suffix(const dvi__moser_veselov *l)                                                                            \
   {                                                                                                                               \
     leap(widest, l);                                                                                                              \
   }                                                                                                                               \
@@ -331,7 +331,7 @@ double dvi__lanes_largest(size_t count, const double *x)
   return best()->largest(count, x);
 }
 
-void dvi__lanes_leap(const dvi__leap *leap)
+void dvi__lanes_kick_drift(const dvi__moser_veselov *leap)
 {
   best()->leap(leap);
 }

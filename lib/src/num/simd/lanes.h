@@ -65,7 +65,7 @@ double dvi__lanes_largest(size_t count, const double *x);
 
 /* Coordinates and momenta with what their compensated sums carry. */
 typedef struct dvi__phase {
-  double *q, *p, *q_carry, *p_carry;
+  double *q, *p, *q_compensation, *p_compensation;
 } dvi__phase;
 
 /* How p becomes v: times a scalar (the inverse of a mass that is a power of two, where the product has the quotient's bits), over a scalar, over
@@ -73,7 +73,7 @@ typedef struct dvi__phase {
 typedef enum dvi__division { DVI__TIMES_SCALAR, DVI__BY_SCALAR, DVI__BY_ARRAY } dvi__division;
 
 /* p <- p + kick_k force for one kick or two, then q <- q + drift v, all sums compensated (num/compensated.h). */
-typedef struct dvi__leap {
+typedef struct dvi__moser_veselov {
   size_t count;
   int kicks;
   double kick[2], drift;
@@ -83,9 +83,9 @@ typedef struct dvi__leap {
   const double *force; /* [count] */
   dvi__phase from, to; /* [count] each, the same or apart */
   int far;             /* whether all of these come from memory, not from a cache */
-} dvi__leap;
+} dvi__moser_veselov;
 
-void dvi__lanes_leap(const dvi__leap *leap);
+void dvi__lanes_kick_drift(const dvi__moser_veselov *leap);
 
 /* For one mass: the scalar and whether to divide by it. */
 dvi__division dvi__division_by(double mass, double *scalar);

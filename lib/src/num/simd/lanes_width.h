@@ -1,5 +1,5 @@
 /* The loops of lanes.c for vectors of WIDTH numbers, after vector_width.h; it includes this once for each width. */
-#include "num/simd/leap_width.h"
+#include "num/simd/kick_drift_width.h"
 
 INLINE double NAME(largest_of)(const NAME(vector) * x)
 {

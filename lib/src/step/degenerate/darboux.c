@@ -8,7 +8,7 @@
 #include "step/joint.h"
 #include "core/memory.h"
 #include "core/status.h"
-#include "system/term/half.h"
+#include "system/term/constant_components.h"
 #include "system/dynamics/one_form.h"
 
 enum { MOST = DVI__STAGES_MOST };
@@ -20,9 +20,10 @@ struct dvi__darboux {
   int *is_x;                              /* [n] */
   int collocates;                         /* at Gauss's nodes */
   double a[MOST][MOST], abar[MOST][MOST]; /* row m-1: the weights */
-  double time[MOST], middle[MOST];        /* of a stage in the step: for H; for guesses, the mean of x's time and of p's */
-  dvi__pattern joint, pattern;            /* joint: of one block; pattern: of the Jacobian */
-  dvi__block *block;                      /* [entries of joint] */
+  /* of a stage in the step: for H; for guesses, the mean of x's time and of p's */
+  double time[MOST], middle[MOST];
+  dvi__pattern joint, pattern; /* joint: of one block; pattern: of the Jacobian */
+  dvi__block *block;           /* [entries of joint] */
   /* The step. */
   double t0, h;
   const double *q0, *p0;
@@ -80,12 +81,14 @@ static double **owned(dvi__darboux *d, int i)
 
 static dvi_status allocate(dvi__darboux *d)
 {
-  const size_t n = (size_t)d->n, m = (size_t)d->m, qq = (size_t)dvi__pattern_entries(&d->system->qq),
+  const size_t n = (size_t)d->n, m = (size_t)d->m,
+               qq = (size_t)dvi__pattern_entries(&d->system->qq),
                qv = (size_t)dvi__pattern_entries(&d->system->qv);
   const size_t size[] = {m, n * m, n * m, n * m, n * m, qq * m + 1, qv * m + 1, 1};
   for (int i = 0; owned(d, i) != NULL; i++) {
     *owned(d, i) = DVI_NEW(double, size[i]);
-    if (*owned(d, i) == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory for %d stages in %d dimensions", d->m, d->n);
+    if (*owned(d, i) == NULL)
+      return dvi__fail(DVI_NO_MEMORY, "no memory for %d stages in %d dimensions", d->m, d->n);
   }
   return DVI_OK;
 }
@@ -95,16 +98,16 @@ static dvi_status fill(dvi__darboux *d, dvi__darboux_rule rule, dvi_counters *co
   DVI_TRY(dvi__joint_check(d->system, d->m, d->m));
   d->is_x = DVI_NEW(int, d->n);
   if (d->is_x == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory");
-  DVI_TRY(dvi__form_half(d->system, d->is_x));
+  DVI_TRY(dvi__form_constant_components(d->system, d->is_x));
   DVI_TRY(fill_tableau(d, rule));
   DVI_TRY(dvi__evaluator_create(d->system, d->m, DVI__HESSIANS, counters, &d->evaluator));
-  DVI_TRY(dvi__joint_create(d->system, &d->joint, &d->block));
+  DVI_TRY(dvi__joint_create(d->system, NULL, &d->joint, &d->block));
   DVI_TRY(dvi__pattern_blocks(&d->joint, d->m, &d->pattern));
   return allocate(d);
 }
 
-dvi_status dvi__darboux_create(const dvi_system *system, dvi__darboux_rule rule, int stages, dvi_counters *counters,
-                               dvi__darboux **darboux)
+dvi_status dvi__darboux_create(const dvi_system *system, dvi__darboux_rule rule, int stages,
+                               dvi_counters *counters, dvi__darboux **darboux)
 {
   *darboux = NULL;
   dvi__darboux *d = DVI_NEW(dvi__darboux, 1);
@@ -188,8 +191,9 @@ static dvi_status check_constants(const dvi__darboux *d)
     for (int k = 0; k < d->m && !d->is_x[i]; k++)
       if (fabs(d->L_v[i * d->m + k] - d->p0[i]) > constant_to * scale)
         return dvi__fail(DVI_UNSUPPORTED,
-                         "component %d of the one-form, which was constant at all points probed, changes here by %.3g", i,
-                         d->L_v[i * d->m + k] - d->p0[i]);
+                         "component %d of the one-form, which was constant at all points probed, "
+                         "changes here by %.3g",
+                         i, d->L_v[i * d->m + k] - d->p0[i]);
   return DVI_OK;
 }
 
@@ -201,19 +205,23 @@ dvi_status dvi__darboux_residual(dvi__darboux *d, const double *x, double *R)
   DVI_TRY(check_constants(d));
   for (int i = 0; i < d->n; i++) {
     const double *F = d->L_q + i * m, *theta = d->L_v + i * m;
-    for (int k = 0; k < m; k++) R[i * m + k] = d->is_x[i] ? (theta[k] - d->p0[i]) - d->h * dot(m, d->abar[k], F) : d->h * F[k];
+    for (int k = 0; k < m; k++)
+      R[i * m + k] = d->is_x[i] ? (theta[k] - d->p0[i]) - d->h * dot(m, d->abar[k], F)
+                                : d->h * F[k];
   }
   return DVI_OK;
 }
 
 void dvi__darboux_end(const dvi__darboux *d, const double *x, double *dq)
 {
-  for (int i = 0; i < d->n; i++, x += d->m) dq[i] = d->is_x[i] ? dot(d->m, d->a[d->m - 1], x) : x[d->m - 1];
+  for (int i = 0; i < d->n; i++, x += d->m)
+    dq[i] = d->is_x[i] ? dot(d->m, d->a[d->m - 1], x) : x[d->m - 1];
 }
 
 /* ---- Jacobian ---- */
 
-/* What one entry (i,j) of the joint pattern has at the stages: d alpha_i/dq_j (A), and of h F_i the derivative in Q_j (K) and in W_j (B). */
+/* What one entry (i,j) of the joint pattern has at the stages: d alpha_i/dq_j (A), and of h F_i the
+ * derivative in Q_j (K) and in W_j (B). */
 typedef struct entry {
   double A[MOST], B[MOST], K[MOST];
 } entry;
@@ -229,15 +237,18 @@ static entry gather_entry(const dvi__darboux *d, const dvi__block *where)
   return e;
 }
 
-/* Rows of a block in its column l. Of x the unknown is W_l, which moves all X_k by a_kl; of y it is Y_l alone. */
-static void fill_column(const dvi__darboux *d, const entry *e, int row_is_x, int column_is_x, int l, double *column)
+/* Rows of a block in its column l. Of x the unknown is W_l, which moves all X_k by a_kl; of y it is
+ * Y_l alone. */
+static void fill_column(const dvi__darboux *d, const entry *e, int row_is_x, int column_is_x, int l,
+                        double *column)
 {
   double moved[MOST], F[MOST];
   for (int k = 0; k < d->m; k++) {
     moved[k] = column_is_x ? d->a[k][l] : k == l;
     F[k] = e->K[k] * moved[k] + (column_is_x && k == l ? e->B[k] : 0);
   }
-  for (int k = 0; k < d->m; k++) column[k] = row_is_x ? e->A[k] * moved[k] - dot(d->m, d->abar[k], F) : F[k];
+  for (int k = 0; k < d->m; k++)
+    column[k] = row_is_x ? e->A[k] * moved[k] - dot(d->m, d->abar[k], F) : F[k];
 }
 
 dvi_status dvi__darboux_jacobian(dvi__darboux *d, const double *x, double *values)

@@ -1,16 +1,20 @@
-/* One step for a degenerate Lagrangian alpha(q).v - H(q) of which half of the one-form's components are constant.
+/* One step for a degenerate Lagrangian alpha(q).v - H(q) of which half of the one-form's components
+ * are constant.
  *
- * Let y be the coordinates of the constant components, x the others, theta(x,y) = alpha_x. Up to a total derivative L = theta(x,y).dx/dt - H(x,y): (x, p =
- * theta) are canonical (Darboux) coordinates, y stands for p, and what is varied is
+ * Let y be the coordinates of the constant components, x the others, theta(x,y) = alpha_x. Up to a
+ * total derivative L = theta(x,y).dx/dt - H(x,y): (x, p = theta) are canonical (Darboux)
+ * coordinates, y stands for p, and what is varied is
  *     sum_i b_i [ theta(X_i,Y_i).W_i - h H(X_i,Y_i) ],   X_i = x0 + sum_j a_ij W_j,   W_i = h V_i.
  * The stages' equations, with b_i abar_ij + b_j a_ji = b_i b_j, are
  *     theta(X_i,Y_i) = p0 + h sum_j abar_ij F_j,    F = (d theta/dx)^T V - H_x,      G_i = (d theta/dy)^T W_i - h H_y = 0.
- * The end is one more stage, with the weights for its row of both tableaux: its W is h times the velocity there.
+ * The end is one more stage, with the weights for its row of both tableaux: its W is h times the
+ * velocity there.
  *
- * Source: Ellison, Finn, Burby, Kraus, Qin and Tang 2018; Kraus 2017, arXiv:1708.07356. The end as a stage, and the increments, are ours.
+ * Source: Ellison, Finn, Burby, Kraus, Qin and Tang 2018; Kraus 2017, arXiv:1708.07356. The end as
+ * a stage, and the increments, are ours.
  *
- * Unknowns and rows are stored component by component: number k of component i is x[i*m + k], m stages with the end as the last: of x the W, of y the
- * increments Y_k - y0. */
+ * Unknowns and rows are stored component by component: number k of component i is x[i*m + k], m
+ * stages with the end as the last: of x the W, of y the increments Y_k - y0. */
 #ifndef DVI_ACTION_DARBOUX_H
 #define DVI_ACTION_DARBOUX_H
 #include "system/evaluate/evaluator.h"
@@ -18,11 +22,17 @@
 typedef struct dvi__darboux dvi__darboux;
 
 /* A: at (x0, p1). B: at (x1, p0). Trapezoidal: Lobatto IIIA for x, IIIB for p. */
-typedef enum dvi__darboux_rule { DVI__EULER_A, DVI__EULER_B, DVI__TRAPEZOIDAL_PAIR, DVI__GAUSS_STAGES } dvi__darboux_rule;
+typedef enum dvi__darboux_rule {
+  DVI__EULER_A,
+  DVI__EULER_B,
+  DVI__TRAPEZOIDAL_PAIR,
+  DVI__GAUSS_STAGES
+} dvi__darboux_rule;
 
-/* `stages` [1,6] matters for Gauss alone. DVI_UNSUPPORTED: the one-form has not that shape (dvi__form_half). */
-dvi_status dvi__darboux_create(const dvi_system *system, dvi__darboux_rule rule, int stages, dvi_counters *counters,
-                               dvi__darboux **darboux);
+/* `stages` [1,6] matters for Gauss alone. DVI_UNSUPPORTED: the one-form has not that shape
+ * (dvi__form_constant_components). */
+dvi_status dvi__darboux_create(const dvi_system *system, dvi__darboux_rule rule, int stages,
+                               dvi_counters *counters, dvi__darboux **darboux);
 void dvi__darboux_destroy(dvi__darboux **darboux);
 
 const dvi__pattern *dvi__darboux_pattern(const dvi__darboux *darboux);
@@ -32,7 +42,8 @@ dvi__evaluator *dvi__darboux_evaluator(const dvi__darboux *darboux);
 int dvi__darboux_is_x(const dvi__darboux *darboux, int i);
 
 /* Put the step at (t0, q0, p0). The arrays must stay as they are. */
-void dvi__darboux_place(dvi__darboux *darboux, double t0, double h, const double *q0, const double *p0);
+void dvi__darboux_place(dvi__darboux *darboux, double t0, double h, const double *q0,
+                        const double *p0);
 
 /* DVI_UNSUPPORTED if a component that is to be constant is not. */
 dvi_status dvi__darboux_residual(dvi__darboux *darboux, const double *x, double *R);
@@ -46,6 +57,7 @@ void dvi__darboux_end(const dvi__darboux *darboux, const double *x, double *dq);
 
 /* x for a straight line along v [n]; x by continuing the last step's, ratio = h_next / h_last. */
 void dvi__darboux_straight(const dvi__darboux *darboux, const double *v, double *x);
-void dvi__darboux_continue(const dvi__darboux *darboux, double ratio, const double *last, double *x);
+void dvi__darboux_continue(const dvi__darboux *darboux, double ratio, const double *last,
+                           double *x);
 
 #endif

@@ -16,7 +16,8 @@ struct dvi__discontinuous {
   const dvi_system *system;
   dvi__evaluator *evaluator;
   int n, S, r, points;
-  double node[MOST], phi[MOST][MOST], dphi[MOST][MOST]; /* nodes of the basis; phi_k and phi_k' at c_i: [k][i] */
+  /* nodes of the basis; phi_k and phi_k' at c_i: [k][i] */
+  double node[MOST], phi[MOST][MOST], dphi[MOST][MOST];
   double b[MOST], c[MOST];
   double side[MOST], weight[MOST]; /* of the path: 1/2 + s_g, w_g */
   double lean;                     /* sum_g w_g s_g */
@@ -27,12 +28,15 @@ struct dvi__discontinuous {
   /* The step. */
   double h;
   dvi__dg_node from;
-  double *left, *stiffness;                           /* [n] dN/dq+ at its start; c with the sign of h */
+  /* [n] dN/dq+ at its start; c with the sign of h */
+  double *left, *stiffness;
   double *t, *Q, *V, *L_q, *L_v, *H_qq, *H_qv, *H_vv; /* at c_i, component by component: [n*r] */
-  double *Y, *u;                                      /* [n*S] the coefficients less q*; [n] the jump at the end */
+  /* [n*S] the coefficients less q*; [n] the jump at the end */
+  double *Y, *u;
   /* At one point of a path: the point, alpha, (Dalpha)^T u, and dN/dq- of them all, [n] each. */
   double *y, *alpha, *gradient, *flux;
-  double *qq, *qv, *one_qq, *one_qv; /* Hessians at points of the path, entry by entry: [entries*points]; at one point */
+  /* Hessians at points of the path, entry by entry: [entries*points]; at one point */
+  double *qq, *qv, *one_qq, *one_qv;
 };
 
 /* ---- tables ---- */
@@ -53,7 +57,8 @@ static dvi_status fill_basis(dvi__discontinuous *e)
   for (int i = 0; i < e->r; i++) {
     value[0] = 1;
     derivative[0] = 0;
-    if (e->S > 1) DVI_TRY(dvi_basis_evaluate(DVI_LAGRANGE_LOBATTO, e->S - 1, e->c[i], value, derivative));
+    if (e->S > 1)
+      DVI_TRY(dvi_basis_evaluate(DVI_LAGRANGE_LOBATTO, e->S - 1, e->c[i], value, derivative));
     for (int k = 0; k < e->S; k++) {
       e->phi[k][i] = value[k];
       e->dphi[k][i] = derivative[k];
@@ -76,21 +81,44 @@ static dvi_status fill_path(dvi__discontinuous *e, const dvi__dg_space *space)
 
 static double **owned(dvi__discontinuous *e, int i)
 {
-  double **const all[] = {&e->given, &e->stiffness, &e->left, &e->u,  &e->y,   &e->alpha,  &e->gradient,
-                          &e->flux,  &e->t,         &e->Q,    &e->V,  &e->L_q, &e->L_v,    &e->H_qq,
-                          &e->H_qv,  &e->H_vv,      &e->Y,    &e->qq, &e->qv,  &e->one_qq, &e->one_qv};
+  double **const all[] = {&e->given,    &e->stiffness, &e->left,  &e->u,    &e->y, &e->alpha,
+                          &e->gradient, &e->flux,      &e->t,     &e->Q,    &e->V, &e->L_q,
+                          &e->L_v,      &e->H_qq,      &e->H_qv,  &e->H_vv, &e->Y, &e->qq,
+                          &e->qv,       &e->one_qq,    &e->one_qv};
   return i < (int)(sizeof all / sizeof *all) ? all[i] : NULL;
 }
 
 static dvi_status allocate(dvi__discontinuous *e)
 {
-  const size_t n = (size_t)e->n, r = (size_t)e->r, qq = (size_t)dvi__pattern_entries(&e->system->qq),
+  const size_t n = (size_t)e->n, r = (size_t)e->r,
+               qq = (size_t)dvi__pattern_entries(&e->system->qq),
                qv = (size_t)dvi__pattern_entries(&e->system->qv), points = (size_t)e->points;
-  const size_t size[] = {
-      n, n, n, n, n, n, n, n, r, n * r, n * r, n * r, n * r, qq * r, qv * r, 1, n * (size_t)e->S, qq * points, qv * points, qq, qv};
+  const size_t size[] = {n,
+                         n,
+                         n,
+                         n,
+                         n,
+                         n,
+                         n,
+                         n,
+                         r,
+                         n * r,
+                         n * r,
+                         n * r,
+                         n * r,
+                         qq * r,
+                         qv * r,
+                         1,
+                         n * (size_t)e->S,
+                         qq * points,
+                         qv * points,
+                         qq,
+                         qv};
   for (int i = 0; owned(e, i) != NULL; i++) {
     *owned(e, i) = DVI_NEW(double, size[i] > 0 ? size[i] : 1);
-    if (*owned(e, i) == NULL) return dvi__fail(DVI_NO_MEMORY, "dg: no memory for degree %d in %d dimensions", e->S - 1, e->n);
+    if (*owned(e, i) == NULL)
+      return dvi__fail(DVI_NO_MEMORY, "dg: no memory for degree %d in %d dimensions", e->S - 1,
+                       e->n);
   }
   return DVI_OK;
 }
@@ -101,16 +129,17 @@ static dvi_status fill(dvi__discontinuous *e, const dvi__dg_space *space, dvi_co
   DVI_TRY(fill_basis(e));
   DVI_TRY(fill_path(e, space));
   DVI_TRY(dvi__evaluator_create(e->system, e->r, DVI__HESSIANS, counters, &e->evaluator));
-  DVI_TRY(dvi__joint_create(e->system, &e->joint, &e->block));
+  DVI_TRY(dvi__joint_create(e->system, NULL, &e->joint, &e->block));
   DVI_TRY(dvi__pattern_blocks(&e->joint, e->S, &e->pattern));
   DVI_TRY(allocate(e));
   e->stiff = space->stiffness_count > 0;
-  for (int i = 0; e->stiff && i < e->n; i++) e->given[i] = space->stiffness[space->stiffness_count > 1 ? i : 0];
+  for (int i = 0; e->stiff && i < e->n; i++)
+    e->given[i] = space->stiffness[space->stiffness_count > 1 ? i : 0];
   return DVI_OK;
 }
 
-dvi_status dvi__discontinuous_create(const dvi_system *system, const dvi__dg_space *space, dvi_counters *counters,
-                                     dvi__discontinuous **element)
+dvi_status dvi__discontinuous_create(const dvi_system *system, const dvi__dg_space *space,
+                                     dvi_counters *counters, dvi__discontinuous **element)
 {
   *element = NULL;
   dvi__discontinuous *e = DVI_NEW(dvi__discontinuous, 1);
@@ -150,21 +179,26 @@ dvi__evaluator *dvi__discontinuous_evaluator(const dvi__discontinuous *e)
 
 /* ---- the nodes ---- */
 
-/* dN/dq+ (`plus`) or dN/dq- at q- = q* + below, with the jump u. p = alpha(q*) is taken off alpha here and in the element, for roundings' sake: what a
- * constant has in the rows adds up to nothing. */
-static dvi_status node_gradient(dvi__discontinuous *e, const double *below, int stride, const double *u, int plus, double *gradient)
+/* dN/dq+ (`plus`) or dN/dq- at q- = q* + below, with the jump u. p = alpha(q*) is taken off alpha
+ * here and in the element, for roundings' sake: what a constant has in the rows adds up to
+ * nothing. */
+static dvi_status node_gradient(dvi__discontinuous *e, const double *below, int stride,
+                                const double *u, int plus, double *gradient)
 {
   for (int i = 0; i < e->n; i++) gradient[i] = (plus ? e->stiffness[i] : -e->stiffness[i]) * u[i];
   for (int g = 0; g < e->points; g++) {
-    const double sign = plus ? e->weight[g] : -e->weight[g], turn = e->weight[g] * (plus ? e->side[g] : 1 - e->side[g]);
+    const double sign = plus ? e->weight[g] : -e->weight[g],
+                 turn = e->weight[g] * (plus ? e->side[g] : 1 - e->side[g]);
     for (int i = 0; i < e->n; i++) e->y[i] = e->from.q[i] + (below[i * stride] + e->side[g] * u[i]);
     DVI_TRY(dvi__form_gradient(e->evaluator, e->y, u, e->gradient, e->alpha));
-    for (int i = 0; i < e->n; i++) gradient[i] += sign * (e->alpha[i] - e->from.p[i]) + turn * e->gradient[i];
+    for (int i = 0; i < e->n; i++)
+      gradient[i] += sign * (e->alpha[i] - e->from.p[i]) + turn * e->gradient[i];
   }
   return DVI_OK;
 }
 
-dvi_status dvi__discontinuous_place(dvi__discontinuous *e, double t0, double h, const dvi__dg_node *node)
+dvi_status dvi__discontinuous_place(dvi__discontinuous *e, double t0, double h,
+                                    const dvi__dg_node *node)
 {
   e->h = h;
   e->from = *node;
@@ -216,7 +250,8 @@ dvi_status dvi__discontinuous_residual(dvi__discontinuous *e, const double *x, d
     for (size_t k = 0; k < S; k++) {
       row[k] = 0;
       for (size_t l = 0; l < r; l++)
-        row[k] += e->b[l] * (e->h * e->phi[k][l] * e->L_q[i * r + l] + e->dphi[k][l] * (e->L_v[i * r + l] - e->from.p[i]));
+        row[k] += e->b[l] * (e->h * e->phi[k][l] * e->L_q[i * r + l] +
+                             e->dphi[k][l] * (e->L_v[i * r + l] - e->from.p[i]));
     }
     row[0] += e->left[i];
     row[S - 1] += e->flux[i];
@@ -230,7 +265,8 @@ static dvi_status hessians_on_path(dvi__discontinuous *e)
 {
   const int qq = dvi__pattern_entries(&e->system->qq), qv = dvi__pattern_entries(&e->system->qv);
   for (int g = 0; g < e->points; g++) {
-    for (int i = 0; i < e->n; i++) e->y[i] = e->from.q[i] + (e->Y[(i + 1) * e->S - 1] + e->side[g] * e->u[i]);
+    for (int i = 0; i < e->n; i++)
+      e->y[i] = e->from.q[i] + (e->Y[(i + 1) * e->S - 1] + e->side[g] * e->u[i]);
     DVI_TRY(dvi__form_hessian(e->evaluator, e->y, e->u, e->one_qq, e->one_qv));
     for (int k = 0; k < qq; k++) e->qq[k * e->points + g] = e->one_qq[k];
     for (int k = 0; k < qv; k++) e->qv[k * e->points + g] = e->one_qv[k];
@@ -238,8 +274,8 @@ static dvi_status hessians_on_path(dvi__discontinuous *e)
   return DVI_OK;
 }
 
-/* What one entry (i,j) of the joint pattern has at c_i: d alpha_i/dq_j (A), d alpha_j/dq_i (B), h d2L/dq2 (K); and the derivatives of dN/dq- by q- and
- * by the jump. */
+/* What one entry (i,j) of the joint pattern has at c_i: d alpha_i/dq_j (A), d alpha_j/dq_i (B), h
+ * d2L/dq2 (K); and the derivatives of dN/dq- by q- and by the jump. */
 typedef struct entry {
   double A[MOST], B[MOST], K[MOST];
   double by_trace, by_jump;
@@ -250,7 +286,8 @@ static double at(const double *values, int where, int count, int point)
   return where >= 0 ? values[where * count + point] : 0;
 }
 
-static void gather(const dvi__discontinuous *e, const dvi__block *where, double stiffness, entry *out)
+static void gather(const dvi__discontinuous *e, const dvi__block *where, double stiffness,
+                   entry *out)
 {
   for (int k = 0; k < e->r; k++) {
     out->A[k] = at(e->H_qv, where->vq, e->r, k);
@@ -273,8 +310,8 @@ static void coefficient_column(const dvi__discontinuous *e, const entry *of, int
   for (int k = 0; k < e->S; k++) {
     column[k] = 0;
     for (int i = 0; i < e->r; i++)
-      column[k] += e->b[i] *
-                   (e->phi[k][i] * (e->phi[l][i] * of->K[i] + e->dphi[l][i] * of->B[i]) + e->dphi[k][i] * e->phi[l][i] * of->A[i]);
+      column[k] += e->b[i] * (e->phi[k][i] * (e->phi[l][i] * of->K[i] + e->dphi[l][i] * of->B[i]) +
+                              e->dphi[k][i] * e->phi[l][i] * of->A[i]);
   }
   if (l == e->S - 1) column[l] += of->by_trace;
 }
@@ -291,7 +328,8 @@ dvi_status dvi__discontinuous_jacobian(dvi__discontinuous *e, const double *x, d
       entry of;
       double *columns = values + S * S * first + k * S, *last = columns + (S - 1) * length * S;
       gather(e, &e->block[first + k], e->joint.row[first + k] == j ? e->stiffness[j] : 0, &of);
-      for (int l = 1; l < e->S; l++) coefficient_column(e, &of, l, columns + (size_t)(l - 1) * length * S);
+      for (int l = 1; l < e->S; l++)
+        coefficient_column(e, &of, l, columns + (size_t)(l - 1) * length * S);
       memset(last, 0, S * sizeof *last);
       last[S - 1] = of.by_jump;
     }
@@ -309,7 +347,8 @@ dvi_status dvi__discontinuous_scale(dvi__discontinuous *e, double *scale)
 
 /* ---- the end ---- */
 
-/* {q} - q* = Omega^-1 C u at {q} = e->y, C = c + lean (Dalpha + (Dalpha)^T) = c + lean (2 (Dalpha)^T - Omega). */
+/* {q} - q* = Omega^-1 C u at {q} = e->y, C = c + lean (Dalpha + (Dalpha)^T) = c + lean (2
+ * (Dalpha)^T - Omega). */
 static dvi_status offset_of(dvi__discontinuous *e, const double *u, double *offset)
 {
   memset(offset, 0, (size_t)e->n * sizeof *offset);
@@ -322,8 +361,8 @@ static dvi_status offset_of(dvi__discontinuous *e, const double *u, double *offs
   return DVI_OK;
 }
 
-dvi_status dvi__discontinuous_end(dvi__discontinuous *e, const double *x, double *dq, double *jump, double *offset,
-                                  double *coefficients)
+dvi_status dvi__discontinuous_end(dvi__discontinuous *e, const double *x, double *dq, double *jump,
+                                  double *offset, double *coefficients)
 {
   const int S = e->S;
   spread(e, x);
@@ -372,8 +411,10 @@ static dvi_status offset_at_start(dvi__discontinuous *e, const double *jump, dou
   return DVI_OK;
 }
 
-/* (1 - M)^-1 of what the jump changed by: 1/2 - Omega^-1 C for odd S, 1/2 - Omega/(4c) for even S. */
-dvi_status dvi__discontinuous_settle(dvi__discontinuous *e, const double *x, double *jump, double *offset)
+/* (1 - M)^-1 of what the jump changed by: 1/2 - Omega^-1 C for odd S, 1/2 - Omega/(4c) for even
+ * S. */
+dvi_status dvi__discontinuous_settle(dvi__discontinuous *e, const double *x, double *jump,
+                                     double *offset)
 {
   const int even = e->S % 2 == 0;
   spread(e, x);
@@ -385,7 +426,8 @@ dvi_status dvi__discontinuous_settle(dvi__discontinuous *e, const double *x, dou
     DVI_TRY(times_two_form(e, e->u, e->flux));
   else
     DVI_TRY(offset_of(e, e->u, e->flux));
-  for (int i = 0; i < e->n; i++) jump[i] += 0.5 * e->u[i] - (even ? e->flux[i] / (4 * e->stiffness[i]) : e->flux[i]);
+  for (int i = 0; i < e->n; i++)
+    jump[i] += 0.5 * e->u[i] - (even ? e->flux[i] / (4 * e->stiffness[i]) : e->flux[i]);
   return offset_at_start(e, jump, offset);
 }
 
@@ -399,12 +441,14 @@ void dvi__discontinuous_straight(const dvi__discontinuous *e, const double *v, d
   }
 }
 
-void dvi__discontinuous_continue(const dvi__discontinuous *e, double ratio, const double *coefficients, double *x)
+void dvi__discontinuous_continue(const dvi__discontinuous *e, double ratio,
+                                 const double *coefficients, double *x)
 {
   for (int k = 1; k < e->S; k++) {
     double weight[MOST];
     for (int l = 0; l < e->S; l++) weight[l] = lagrange(e, l, 1 + ratio * e->node[k]);
-    for (int i = 0; i < e->n; i++) x[i * e->S + k - 1] = e->from.jump[i] + dot(e->S, weight, coefficients + i * e->S);
+    for (int i = 0; i < e->n; i++)
+      x[i * e->S + k - 1] = e->from.jump[i] + dot(e->S, weight, coefficients + i * e->S);
   }
   for (int i = 0; i < e->n; i++) x[(i + 1) * e->S - 1] = e->from.jump[i];
 }

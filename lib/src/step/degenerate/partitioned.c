@@ -10,7 +10,8 @@
 #include "core/status.h"
 #include "system/dynamics/one_form.h"
 
-/* The kicks: k0 = before lambda + carried times the last lambda, k1 = after lambda; their directions at the mean of q0 and q1, or at the ends. */
+/* The kicks: k0 = before lambda + carried times the last lambda, k1 = after lambda; their
+ * directions at the mean of q0 and q1, or at the ends. */
 typedef struct kicks {
   double before, carried, after;
   int has_multiplier, at_mean;
@@ -20,7 +21,8 @@ struct dvi__partitioned {
   const dvi_system *system;
   dvi__evaluator *evaluator;
   int n, s, m; /* coordinates, stages, unknowns of a coordinate */
-  double a[DVI__STAGES_MOST][DVI__STAGES_MOST], abar[DVI__STAGES_MOST][DVI__STAGES_MOST], b[DVI__STAGES_MOST], c[DVI__STAGES_MOST];
+  double a[DVI__STAGES_MOST][DVI__STAGES_MOST], abar[DVI__STAGES_MOST][DVI__STAGES_MOST],
+      b[DVI__STAGES_MOST], c[DVI__STAGES_MOST];
   kicks kick;
   dvi__pattern joint, pattern; /* joint: of one block; pattern: of the Jacobian */
   dvi__block *block;           /* [entries of joint] */
@@ -29,7 +31,8 @@ struct dvi__partitioned {
   const double *q0, *p0, *carried;
   /* At the stages, component by component: [n*s]. */
   double *t, *Q, *V, *L_q, *L_v, *H_qq, *H_qv, *H_vv;
-  /* At the ends, [n] each: kicks, what they do to p, the increments of q before k1 and in all, points, alpha at q1. */
+  /* At the ends, [n] each: kicks, what they do to p, the increments of q before k1 and in all,
+   * points, alpha at q1. */
   double *k0, *k1, *K0, *K1, *dq, *q1, *mean, *alpha1, *dp, *unwanted;
   double *qq0, *qv0, *qq1, *qv1, *qv_end, *qq_end; /* Hessians at the ends */
 };
@@ -41,7 +44,8 @@ static void conjugate(const dvi__partitioned *p, int i, int j, double *abar)
   *abar = p->b[j] - p->b[j] * p->a[j][i] / p->b[i];
 }
 
-/* With collocation at Lobatto's nodes a is IIIA, and its conjugate IIIB. IIIE is the mean of both, and its own conjugate (Jay 2015). */
+/* With collocation at Lobatto's nodes a is IIIA, and its conjugate IIIB. IIIE is the mean of both,
+ * and its own conjugate (Jay 2015). */
 static void rearrange_lobatto(dvi__partitioned *p, dvi__tableau tableau)
 {
   for (int i = 0; i < p->s; i++)
@@ -62,8 +66,8 @@ static dvi_status fill_tableau(dvi__partitioned *p, dvi__tableau tableau)
   return DVI_OK;
 }
 
-/* A constraint violated at the start returns at the end multiplied by R(infinity), which is (-1)^s for both tableaux: the same multiplier at both ends
- * can only remove what does not cancel. */
+/* A constraint violated at the start returns at the end multiplied by R(infinity), which is (-1)^s
+ * for both tableaux: the same multiplier at both ends can only remove what does not cancel. */
 static kicks kicks_of(int s, dvi__projection projection)
 {
   const double R = s % 2 == 0 ? 1 : -1;
@@ -81,21 +85,25 @@ static kicks kicks_of(int s, dvi__projection projection)
 
 static double **owned(dvi__partitioned *p, int i)
 {
-  double **const all[] = {&p->t,  &p->Q,        &p->V,   &p->L_q, &p->L_v, &p->H_qq, &p->H_qv,   &p->H_vv,
-                          &p->k0, &p->k1,       &p->K0,  &p->K1,  &p->dq,  &p->q1,   &p->mean,   &p->alpha1,
-                          &p->dp, &p->unwanted, &p->qq0, &p->qv0, &p->qq1, &p->qv1,  &p->qv_end, &p->qq_end};
+  double **const all[] = {&p->t,    &p->Q,    &p->V,    &p->L_q,    &p->L_v,    &p->H_qq,
+                          &p->H_qv, &p->H_vv, &p->k0,   &p->k1,     &p->K0,     &p->K1,
+                          &p->dq,   &p->q1,   &p->mean, &p->alpha1, &p->dp,     &p->unwanted,
+                          &p->qq0,  &p->qv0,  &p->qq1,  &p->qv1,    &p->qv_end, &p->qq_end};
   return i < (int)(sizeof all / sizeof *all) ? all[i] : NULL;
 }
 
 static dvi_status allocate(dvi__partitioned *p)
 {
-  const size_t n = (size_t)p->n, s = (size_t)p->s, qq = (size_t)dvi__pattern_entries(&p->system->qq),
-               qv = (size_t)dvi__pattern_entries(&p->system->qv), vv = (size_t)dvi__pattern_entries(&p->system->vv);
+  const size_t n = (size_t)p->n, s = (size_t)p->s,
+               qq = (size_t)dvi__pattern_entries(&p->system->qq),
+               qv = (size_t)dvi__pattern_entries(&p->system->qv),
+               vv = (size_t)dvi__pattern_entries(&p->system->vv);
   const size_t size[] = {s, n * s, n * s, n * s, n * s, qq * s, qv * s, vv * s, n,  n,  n,  n,
                          n, n,     n,     n,     n,     n,      qq,     qv,     qq, qv, qv, qq};
   for (int i = 0; owned(p, i) != NULL; i++) {
     *owned(p, i) = DVI_NEW(double, size[i] > 0 ? size[i] : 1);
-    if (*owned(p, i) == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory for %d stages in %d dimensions", p->s, p->n);
+    if (*owned(p, i) == NULL)
+      return dvi__fail(DVI_NO_MEMORY, "no memory for %d stages in %d dimensions", p->s, p->n);
   }
   return DVI_OK;
 }
@@ -105,13 +113,14 @@ static dvi_status fill(dvi__partitioned *p, dvi__tableau tableau, dvi_counters *
   DVI_TRY(dvi__joint_check(p->system, p->m, p->s));
   DVI_TRY(fill_tableau(p, tableau));
   DVI_TRY(dvi__evaluator_create(p->system, p->s, DVI__HESSIANS, counters, &p->evaluator));
-  DVI_TRY(dvi__joint_create(p->system, &p->joint, &p->block));
+  DVI_TRY(dvi__joint_create(p->system, NULL, &p->joint, &p->block));
   DVI_TRY(dvi__pattern_blocks(&p->joint, p->m, &p->pattern));
   return allocate(p);
 }
 
-dvi_status dvi__partitioned_create(const dvi_system *system, dvi__tableau tableau, int stages, dvi__projection projection,
-                                   dvi_counters *counters, dvi__partitioned **partitioned)
+dvi_status dvi__partitioned_create(const dvi_system *system, dvi__tableau tableau, int stages,
+                                   dvi__projection projection, dvi_counters *counters,
+                                   dvi__partitioned **partitioned)
 {
   *partitioned = NULL;
   dvi__partitioned *p = DVI_NEW(dvi__partitioned, 1);
@@ -150,7 +159,8 @@ dvi__evaluator *dvi__partitioned_evaluator(const dvi__partitioned *p)
   return p->evaluator;
 }
 
-void dvi__partitioned_place(dvi__partitioned *p, double t0, double h, const double *q0, const double *p0, const double *carried)
+void dvi__partitioned_place(dvi__partitioned *p, double t0, double h, const double *q0,
+                            const double *p0, const double *carried)
 {
   p->t0 = t0;
   p->h = h;
@@ -204,9 +214,11 @@ static dvi_status ends(dvi__partitioned *p)
   memset(p->K0, 0, bytes);
   memset(p->K1, 0, bytes);
   if (!kick->has_multiplier) return DVI_OK;
-  if (kick->before != 0 || kick->carried != 0) DVI_TRY(dvi__form_gradient(p->evaluator, place_of_k0(p), p->k0, p->K0, p->unwanted));
+  if (kick->before != 0 || kick->carried != 0)
+    DVI_TRY(dvi__form_gradient(p->evaluator, place_of_k0(p), p->k0, p->K0, p->unwanted));
   DVI_TRY(dvi__form_gradient(p->evaluator, p->q1, p->k1, p->K1, p->alpha1));
-  return kick->at_mean ? dvi__form_gradient(p->evaluator, p->mean, p->k1, p->K1, p->unwanted) : DVI_OK;
+  return kick->at_mean ? dvi__form_gradient(p->evaluator, p->mean, p->k1, p->K1, p->unwanted)
+                       : DVI_OK;
 }
 
 dvi_status dvi__partitioned_residual(dvi__partitioned *p, const double *x, double *R)
@@ -217,7 +229,8 @@ dvi_status dvi__partitioned_residual(dvi__partitioned *p, const double *x, doubl
   DVI_TRY(ends(p));
   for (size_t i = 0; i < (size_t)p->n; i++) {
     const double *F = p->L_q + i * s, *alpha = p->L_v + i * s;
-    for (size_t k = 0; k < s; k++) R[i * m + k] = (alpha[k] - p->p0[i]) - p->K0[i] - p->h * dot(p->s, p->abar[k], F);
+    for (size_t k = 0; k < s; k++)
+      R[i * m + k] = (alpha[k] - p->p0[i]) - p->K0[i] - p->h * dot(p->s, p->abar[k], F);
     p->dp[i] = p->K0[i] + p->h * dot(p->s, p->b, F) + p->K1[i];
     if (p->kick.has_multiplier) R[i * m + s] = (p->p0[i] - p->alpha1[i]) + p->dp[i];
   }
@@ -247,8 +260,8 @@ static double at(const double *values, int entry)
   return entry >= 0 ? values[entry] : 0;
 }
 
-/* What one entry of the joint pattern has: d2L/dv_i dq_j (A; of a one-form d alpha_i/dq_j), d2L/dq_i dv_j (B), h d2L/dq2 (K) and d2L/dv2/h (M) at the
- * stages; the like at the ends. */
+/* What one entry of the joint pattern has: d2L/dv_i dq_j (A; of a one-form d alpha_i/dq_j),
+ * d2L/dq_i dv_j (B), h d2L/dq2 (K) and d2L/dv2/h (M) at the stages; the like at the ends. */
 typedef struct entry {
   double A[DVI__STAGES_MOST], B[DVI__STAGES_MOST], K[DVI__STAGES_MOST], M[DVI__STAGES_MOST];
   double B0, H0, B1, H1, A_end;
@@ -283,17 +296,24 @@ static double impulse(const dvi__partitioned *p, const entry *e, const double *w
 static void increment_column(const dvi__partitioned *p, const entry *e, int l, double *column)
 {
   const double start = p->b[l] * e->H0;
-  for (int k = 0; k < p->s; k++) column[k] = p->a[k][l] * e->A[k] - start - p->abar[k][l] * e->B[l] - impulse(p, e, p->abar[k], l);
+  for (int k = 0; k < p->s; k++)
+    column[k] = p->a[k][l] * e->A[k] - start - p->abar[k][l] * e->B[l] -
+                impulse(p, e, p->abar[k], l);
   column[l] += e->M[l];
-  if (p->kick.has_multiplier) column[p->s] = start + p->b[l] * e->B[l] + impulse(p, e, p->b, l) + p->b[l] * (e->H1 - e->A_end);
+  if (p->kick.has_multiplier)
+    column[p->s] = start + p->b[l] * e->B[l] + impulse(p, e, p->b, l) +
+                   p->b[l] * (e->H1 - e->A_end);
 }
 
 /* The same in the column of the multiplier. */
 static void multiplier_column(const dvi__partitioned *p, const entry *e, double *column)
 {
-  const double before = p->kick.before, both = before + p->kick.after, start = before * e->B0 + both * e->H0;
-  for (int k = 0; k < p->s; k++) column[k] = before * (e->A[k] - dot(p->s, p->abar[k], e->K)) - start;
-  column[p->s] = start + before * dot(p->s, p->b, e->K) + p->kick.after * e->B1 + both * (e->H1 - e->A_end);
+  const double before = p->kick.before, both = before + p->kick.after,
+               start = before * e->B0 + both * e->H0;
+  for (int k = 0; k < p->s; k++)
+    column[k] = before * (e->A[k] - dot(p->s, p->abar[k], e->K)) - start;
+  column[p->s] = start + before * dot(p->s, p->b, e->K) + p->kick.after * e->B1 +
+                 both * (e->H1 - e->A_end);
 }
 
 dvi_status dvi__partitioned_jacobian(dvi__partitioned *p, const double *x, double *values)
@@ -308,8 +328,10 @@ dvi_status dvi__partitioned_jacobian(dvi__partitioned *p, const double *x, doubl
       entry block = {0};
       double *columns = values + (size_t)m * (size_t)m * (size_t)first + (size_t)e * (size_t)m;
       gather_entry(p, &p->block[first + e], &block);
-      for (int l = 0; l < p->s; l++) increment_column(p, &block, l, columns + (size_t)l * (size_t)length * (size_t)m);
-      if (p->kick.has_multiplier) multiplier_column(p, &block, columns + (size_t)p->s * (size_t)length * (size_t)m);
+      for (int l = 0; l < p->s; l++)
+        increment_column(p, &block, l, columns + (size_t)l * (size_t)length * (size_t)m);
+      if (p->kick.has_multiplier)
+        multiplier_column(p, &block, columns + (size_t)p->s * (size_t)length * (size_t)m);
     }
   }
   return DVI_OK;
@@ -321,7 +343,8 @@ static void scale_by_masses(const dvi__partitioned *p, double *scale)
   const dvi__pattern *vv = &p->system->vv;
   for (int i = 0; i < p->n; i++) {
     double size = 0;
-    for (int e = vv->start[i]; e < vv->start[i + 1]; e++) size = fmax(size, fabs(p->H_vv[e * p->s]));
+    for (int e = vv->start[i]; e < vv->start[i + 1]; e++)
+      size = fmax(size, fabs(p->H_vv[e * p->s]));
     for (int k = 0; k < p->m; k++) scale[i * p->m + k] = (size > 0 ? size : 1) / fabs(p->h);
   }
 }
@@ -347,7 +370,8 @@ void dvi__partitioned_straight(const dvi__partitioned *p, const double *v, doubl
   }
 }
 
-void dvi__partitioned_continue(const dvi__partitioned *p, double ratio, const double *last, double *x)
+void dvi__partitioned_continue(const dvi__partitioned *p, double ratio, const double *last,
+                               double *x)
 {
   for (int k = 0; k < p->s; k++) {
     double weight[DVI__STAGES_MOST];

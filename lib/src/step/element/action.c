@@ -29,7 +29,8 @@ static dvi_status allocate_chord(dvi__action *a, dvi_counters *counters)
   a->middle[1] = DVI_NEW(double, a->n);
   a->middle_vv = DVI_NEW(double, dvi__pattern_entries(&system->vv));
   if (a->n <= DVI__CHORD_INVERSE) a->chord_inverse = DVI_NEW(double, (size_t)a->n *(size_t)a->n);
-  if (!a->middle[0] || !a->middle[1] || !a->middle_vv || (a->n <= DVI__CHORD_INVERSE && !a->chord_inverse))
+  if (!a->middle[0] || !a->middle[1] || !a->middle_vv ||
+      (a->n <= DVI__CHORD_INVERSE && !a->chord_inverse))
     return dvi__fail(DVI_NO_MEMORY, "action: no memory for the velocity Hessian");
   return dvi__linear_create(&system->vv, DVI__LINEAR_AUTO, counters, &a->chord);
 }
@@ -38,16 +39,18 @@ static dvi_status fill(dvi__action *a, dvi_counters *counters)
 {
   if (!a->shaped) DVI_TRY(dvi__joint_check(a->system, 1, a->r > a->s ? a->r : a->s));
   DVI_TRY(dvi__action_fill_tables(a));
-  const int capacity = a->r > a->s ? a->r : a->s; /* a batch of s is solved for at once in the chord */
+  /* a batch of s is solved for at once in the chord */
+  const int capacity = a->r > a->s ? a->r : a->s;
   DVI_TRY(dvi__evaluator_create(a->system, capacity, DVI__GRADIENTS, counters, &a->evaluator));
-  if (!allocate_batches(a)) return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d nodes in %d dimensions", a->r, a->n);
+  if (!allocate_batches(a))
+    return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d nodes in %d dimensions", a->r, a->n);
   if (a->shaped) return DVI_OK;
   DVI_TRY(dvi__action_prepare_sweep(a));
   return allocate_chord(a, counters);
 }
 
-static dvi_status create(const dvi_system *system, const dvi__action_space *space, int shaped, dvi_counters *counters,
-                         dvi__action **action)
+static dvi_status create(const dvi_system *system, const dvi__action_space *space, int shaped,
+                         dvi_counters *counters, dvi__action **action)
 {
   *action = NULL;
   dvi__action *a = DVI_NEW(dvi__action, 1);
@@ -64,25 +67,24 @@ static dvi_status create(const dvi_system *system, const dvi__action_space *spac
   return status;
 }
 
-dvi_status dvi__action_create(const dvi_system *system, const dvi__action_space *space, dvi_counters *counters,
-                              dvi__action **action)
+dvi_status dvi__action_create(const dvi_system *system, const dvi__action_space *space,
+                              dvi_counters *counters, dvi__action **action)
 {
   return create(system, space, 0, counters, action);
 }
 
-dvi_status dvi__action_create_shaped(const dvi_system *system, int functions, int points, dvi_counters *counters,
-                                     dvi__action **action)
+dvi_status dvi__action_create_by_user(const dvi_system *system, int functions, int points,
+                                      dvi_counters *counters, dvi__action **action)
 {
-  return create(system, &(dvi__action_space){.degree = functions, .nodes = points}, 1, counters, action);
+  return create(system, &(dvi__action_space){.degree = functions, .nodes = points}, 1, counters,
+                action);
 }
 
 void dvi__action_destroy(dvi__action **action)
 {
   dvi__action *a = *action;
   if (a == NULL) return;
-  double *const owned[] = {a->correction,
-                           a->end_q,
-                           a->end_dp,
+  double *const owned[] = {a->terms.numbers,
                            a->psi,
                            a->dpsi,
                            a->bar,
@@ -122,12 +124,12 @@ void dvi__action_destroy(dvi__action **action)
                            a->Z,
                            a->sweep_shift.table};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) dvi__release(owned[i]);
-  dvi__action_clear_between(a);
+  dvi__action_clear_two_point(a);
   dvi__action_clear_energy(a);
+  dvi__action_clear_charts(a);
   dvi__linear_destroy(&a->chord);
   dvi__evaluator_destroy(&a->evaluator);
-  dvi__action_clear_hessians(a);
-  dvi__pattern_clear(&a->pattern);
+  dvi__action_clear_jacobian(a);
   dvi__release(a);
   *action = NULL;
 }
@@ -139,7 +141,7 @@ dvi__action_space dvi__action_space_of(const dvi__action *action)
 
 int dvi__action_unknowns(const dvi__action *action)
 {
-  return action->n * action->s;
+  return action->n * action->s + action->terms.unknowns;
 }
 
 int dvi__action_nodes(const dvi__action *action)

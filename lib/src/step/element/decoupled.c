@@ -33,7 +33,8 @@ static void gram(const dvi__action *a, const double *left, const double *right, 
   for (int l = 0; l < a->s; l++)
     for (int k = 0; k < a->s; k++) {
       sum[l * a->s + k] = 0;
-      for (int j = 0; j < a->r; j++) sum[l * a->s + k] += a->weight[j] * left[k * a->lanes + j] * right[l * a->lanes + j];
+      for (int j = 0; j < a->r; j++)
+        sum[l * a->s + k] += a->weight[j] * left[k * a->lanes + j] * right[l * a->lanes + j];
     }
 }
 
@@ -56,7 +57,8 @@ static void pad(int s, const double *columns, double *padded)
 
 /* Of a pair's two columns the first and second coefficients alpha, beta stand for alpha - i beta: D
  * then multiplies it by a + ib. */
-static void list_modes(dvi__decoupled *d, int mixed, const double *real_part, const double *imaginary_part)
+static void list_modes(dvi__decoupled *d, int mixed, const double *real_part,
+                       const double *imaginary_part)
 {
   for (int k = 0; k < d->action->s; k += d->mode[d->modes - 1].parts) {
     mode *m = &d->mode[d->modes];
@@ -72,8 +74,9 @@ static void list_modes(dvi__decoupled *d, int mixed, const double *real_part, co
 
 /* What the tables are made from; s x s each. */
 typedef struct workspace {
-  double matrix[DVI_DEGREE_MAX * DVI_DEGREE_MAX], X[DVI_DEGREE_MAX * DVI_DEGREE_MAX], inverse[DVI_DEGREE_MAX * DVI_DEGREE_MAX],
-      product[DVI_DEGREE_MAX * DVI_DEGREE_MAX], real_part[DVI_DEGREE_MAX], imaginary_part[DVI_DEGREE_MAX];
+  double matrix[DVI_DEGREE_MAX * DVI_DEGREE_MAX], X[DVI_DEGREE_MAX * DVI_DEGREE_MAX],
+      inverse[DVI_DEGREE_MAX * DVI_DEGREE_MAX], product[DVI_DEGREE_MAX * DVI_DEGREE_MAX],
+      real_part[DVI_DEGREE_MAX], imaginary_part[DVI_DEGREE_MAX];
 } workspace;
 
 static dvi_status fill(dvi__decoupled *d, workspace *w)
@@ -98,15 +101,18 @@ static dvi_status allocate_tables(dvi__decoupled *d)
   d->out = DVI_NEW(double, s *lanes);
   d->point = DVI_NEW(double, dvi__decoupled_point_size(d));
   if (d->in && d->out && d->point) return DVI_OK;
-  return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d decoupled systems in %d dimensions", a->s, a->n);
+  return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d decoupled systems in %d dimensions",
+                   a->s, a->n);
 }
 
-dvi_status dvi__decoupled_create(dvi__action *action, dvi_counters *counters, dvi__decoupled **decoupled)
+dvi_status dvi__decoupled_create(dvi__action *action, dvi_counters *counters,
+                                 dvi__decoupled **decoupled)
 {
   *decoupled = NULL;
   dvi__decoupled *d = DVI_NEW(dvi__decoupled, 1);
   workspace *w = DVI_NEW(workspace, 1);
-  dvi_status status = d != NULL && w != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "action: no memory");
+  dvi_status status = d != NULL && w != NULL ? DVI_OK
+                                             : dvi__fail(DVI_NO_MEMORY, "action: no memory");
   if (status == DVI_OK) {
     d->action = action;
     d->counters = counters;
@@ -123,7 +129,8 @@ void dvi__decoupled_destroy(dvi__decoupled **decoupled)
 {
   dvi__decoupled *d = *decoupled;
   if (d == NULL) return;
-  for (int m = d->modes - 1; m >= 0; m--) dvi__linear_destroy(&d->mode[m].linear); /* the first one lends its analysis */
+  /* the first one lends its analysis */
+  for (int m = d->modes - 1; m >= 0; m--) dvi__linear_destroy(&d->mode[m].linear);
   dvi__release(d->in);
   dvi__release(d->out);
   dvi__release(d->values);
@@ -155,7 +162,8 @@ static dvi_status prepare_modes(dvi__decoupled *d)
   if (d->b == NULL) d->b = DVI_NEW(double, 2 * n);
   if (d->coefficient == NULL) d->coefficient = DVI_NEW(double, n *(size_t)a->s);
   if (d->values && d->b && d->coefficient) return DVI_OK;
-  return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d decoupled systems in %d dimensions", a->s, a->n);
+  return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d decoupled systems in %d dimensions",
+                   a->s, a->n);
 }
 
 dvi_status dvi__decoupled_analyse(dvi__decoupled *d, dvi__linear_cost *cost)
@@ -192,9 +200,11 @@ static void assemble(const dvi__action *a, const mode *m, double *values)
 {
   for (int e = 0, at = 0; e < dvi__pattern_entries(&a->joint); e++) {
     const dvi__block *block = &a->block[e];
-    const double qq = a->h * entry(a->H_qq, block->qq), mixed = entry(a->H_qv, block->vq) - entry(a->H_qv, block->qv);
+    const double qq = a->h * entry(a->H_qq, block->qq),
+                 mixed = entry(a->H_qv, block->vq) - entry(a->H_qv, block->qv);
     for (int part = 0; part < m->parts; part++, at++)
-      values[at] = m->U[part] * qq + m->T[part] * mixed + (part == 0 ? entry(a->H_vv, block->vv) / a->h : 0.0);
+      values[at] = m->U[part] * qq + m->T[part] * mixed +
+                   (part == 0 ? entry(a->H_vv, block->vv) / a->h : 0.0);
   }
 }
 
@@ -263,9 +273,11 @@ static void solve_mode(dvi__decoupled *d, const mode *m)
     for (size_t i = 0; i < n; i++) coefficient[i * s] = d->b[i];
     return;
   }
-  for (size_t i = 0; i < n; i++) d->b[2 * i] = coefficient[i * s], d->b[2 * i + 1] = -coefficient[i * s + 1];
+  for (size_t i = 0; i < n; i++)
+    d->b[2 * i] = coefficient[i * s], d->b[2 * i + 1] = -coefficient[i * s + 1];
   dvi__linear_solve(m->linear, d->b);
-  for (size_t i = 0; i < n; i++) coefficient[i * s] = d->b[2 * i], coefficient[i * s + 1] = -d->b[2 * i + 1];
+  for (size_t i = 0; i < n; i++)
+    coefficient[i * s] = d->b[2 * i], coefficient[i * s + 1] = -d->b[2 * i + 1];
 }
 
 void dvi__decoupled_solve(dvi__decoupled *d, double *R)

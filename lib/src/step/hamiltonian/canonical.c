@@ -15,11 +15,15 @@ struct dvi__canonical {
   dvi__evaluator *evaluator;
   int n, s, r, m; /* coordinates, degree, points, unknowns of a coordinate */
   dvi__space space;
-  double psi[POINTS][DEGREE], bar[POINTS][DEGREE], slope[POINTS][DEGREE]; /* psi_k, psi_k - psi_k(1) and psi_k' at the points */
-  double end[DEGREE], line[DEGREE];                                       /* psi_k(1); the coefficients of q(tau) = tau */
-  double tau[DEGREE], fit[DEGREE * DEGREE];                               /* coefficients from values at the points tau_k = k/s */
+  /* psi_k, psi_k - psi_k(1) and psi_k' at the points */
+  double psi[POINTS][DEGREE], bar[POINTS][DEGREE], slope[POINTS][DEGREE];
+  /* psi_k(1); the coefficients of q(tau) = tau */
+  double end[DEGREE], line[DEGREE];
+  /* coefficients from values at the points tau_k = k/s */
+  double tau[DEGREE], fit[DEGREE * DEGREE];
   double ratio, shift[DEGREE][DEGREE],
-      shift_p[POINTS][POINTS]; /* from a step's unknowns to those of the next, ratio times as long */
+      /* from a step's unknowns to those of the next, ratio times as long */
+      shift_p[POINTS][POINTS];
   double c[POINTS], b[POINTS];
   dvi__pattern joint, pattern; /* joint: of one block; pattern: of the Jacobian */
   dvi__block *block;           /* [entries of joint] */
@@ -41,7 +45,8 @@ static double dot(int count, const double *x, const double *y)
 
 static void fill_tables(dvi__canonical *c)
 {
-  for (int j = 0; j < c->r; j++) dvi__trial_in(&c->space, c->c[j], c->psi[j], c->bar[j], c->slope[j]);
+  for (int j = 0; j < c->r; j++)
+    dvi__trial_in(&c->space, c->c[j], c->psi[j], c->bar[j], c->slope[j]);
   dvi__trial_in(&c->space, 1, c->end, NULL, NULL);
   for (int k = 0; k < c->s; k++) c->tau[k] = (k + 1.0) / c->s;
   dvi__trial_fit(c->space.basis, c->s, c->s, c->tau, c->fit);
@@ -56,12 +61,15 @@ static double **owned(dvi__canonical *c, int i)
 
 static dvi_status allocate(dvi__canonical *c)
 {
-  const size_t r = (size_t)c->r, n = (size_t)c->n, qq = (size_t)dvi__pattern_entries(&c->system->qq),
-               qp = (size_t)dvi__pattern_entries(&c->system->qv), pp = (size_t)dvi__pattern_entries(&c->system->vv);
+  const size_t r = (size_t)c->r, n = (size_t)c->n,
+               qq = (size_t)dvi__pattern_entries(&c->system->qq),
+               qp = (size_t)dvi__pattern_entries(&c->system->qv),
+               pp = (size_t)dvi__pattern_entries(&c->system->vv);
   const size_t size[] = {1, n, n, n, n, qq, qp, pp};
   for (int i = 0; owned(c, i) != NULL; i++) {
     *owned(c, i) = DVI_NEW(double, r *size[i] + 1);
-    if (*owned(c, i) == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory for %d points in %d dimensions", c->r, c->n);
+    if (*owned(c, i) == NULL)
+      return dvi__fail(DVI_NO_MEMORY, "no memory for %d points in %d dimensions", c->r, c->n);
   }
   return DVI_OK;
 }
@@ -73,13 +81,13 @@ static dvi_status fill(dvi__canonical *c, const dvi__action_space *space, dvi_co
   DVI_TRY(dvi_quadrature(space->rule, c->r, c->c, c->b));
   fill_tables(c);
   DVI_TRY(dvi__evaluator_create(c->system, c->r, DVI__HESSIANS, counters, &c->evaluator));
-  DVI_TRY(dvi__joint_create(c->system, &c->joint, &c->block));
+  DVI_TRY(dvi__joint_create(c->system, NULL, &c->joint, &c->block));
   DVI_TRY(dvi__pattern_blocks(&c->joint, c->m, &c->pattern));
   return allocate(c);
 }
 
-dvi_status dvi__canonical_create(const dvi_system *system, const dvi__action_space *space, dvi_counters *counters,
-                                 dvi__canonical **canonical)
+dvi_status dvi__canonical_create(const dvi_system *system, const dvi__action_space *space,
+                                 dvi_counters *counters, dvi__canonical **canonical)
 {
   *canonical = NULL;
   dvi__canonical *c = DVI_NEW(dvi__canonical, 1);
@@ -118,7 +126,8 @@ dvi__evaluator *dvi__canonical_evaluator(const dvi__canonical *c)
   return c->evaluator;
 }
 
-void dvi__canonical_place(dvi__canonical *c, double t0, double h, const double *q0, const double *p0, const double *unit)
+void dvi__canonical_place(dvi__canonical *c, double t0, double h, const double *q0,
+                          const double *p0, const double *unit)
 {
   c->t0 = t0;
   c->h = h;
@@ -151,10 +160,12 @@ dvi_status dvi__canonical_residual(dvi__canonical *c, const double *x, double *R
   DVI_TRY(dvi__lagrangian_gradient(c->evaluator, c->r, c->t, c->Q, c->P, c->H_q, c->H_p));
   for (int i = 0; i < c->n; i++, x += c->m, R += c->m) {
     const double *H_q = c->H_q + i * c->r, *H_p = c->H_p + i * c->r, *Pi = x + c->s;
-    for (int j = 0; j < c->r; j++) R[velocity_row(c, j)] = dot(c->s, c->slope[j], x) - c->h * H_p[j];
+    for (int j = 0; j < c->r; j++)
+      R[velocity_row(c, j)] = dot(c->s, c->slope[j], x) - c->h * H_p[j];
     for (int k = 0; k < c->s; k++) {
       double sum = 0;
-      for (int j = 0; j < c->r; j++) sum += c->b[j] * (c->slope[j][k] * Pi[j] - c->h / c->unit[i] * c->bar[j][k] * H_q[j]);
+      for (int j = 0; j < c->r; j++)
+        sum += c->b[j] * (c->slope[j][k] * Pi[j] - c->h / c->unit[i] * c->bar[j][k] * H_q[j]);
       R[c->s + k] = sum;
     }
   }
@@ -178,7 +189,8 @@ void dvi__canonical_ends(const dvi__canonical *c, const double *x, double *dq, d
 
 /* ---- Jacobian ---- */
 
-/* What one entry (i,j) of the joint pattern has at the points, times h: d2H/dq_i dq_j, d2H/dq_i dp_j, d2H/dp_i dq_j, d2H/dp_i dp_j. */
+/* What one entry (i,j) of the joint pattern has at the points, times h: d2H/dq_i dq_j, d2H/dq_i
+ * dp_j, d2H/dp_i dq_j, d2H/dp_i dp_j. */
 typedef struct entry {
   double qq[POINTS], qp[POINTS], pq[POINTS], pp[POINTS];
 } entry;
@@ -199,9 +211,11 @@ static void gather_entry(const dvi__canonical *c, const dvi__block *where, entry
 }
 
 /* Rows of a block in its column of Y_l; `same`: of the diagonal. */
-static void path_column(const dvi__canonical *c, const entry *e, int same, double unit_i, int l, double *column)
+static void path_column(const dvi__canonical *c, const entry *e, int same, double unit_i, int l,
+                        double *column)
 {
-  for (int j = 0; j < c->r; j++) column[velocity_row(c, j)] = (same ? c->slope[j][l] : 0) - e->pq[j] * c->psi[j][l];
+  for (int j = 0; j < c->r; j++)
+    column[velocity_row(c, j)] = (same ? c->slope[j][l] : 0) - e->pq[j] * c->psi[j][l];
   for (int k = 0; k < c->s; k++) {
     double sum = 0;
     for (int j = 0; j < c->r; j++) sum -= c->b[j] * c->bar[j][k] * e->qq[j] * c->psi[j][l];
@@ -210,11 +224,13 @@ static void path_column(const dvi__canonical *c, const entry *e, int same, doubl
 }
 
 /* The same in its column of Pi_l. */
-static void momentum_column(const dvi__canonical *c, const entry *e, int same, double unit_i, double unit_j, int l, double *column)
+static void momentum_column(const dvi__canonical *c, const entry *e, int same, double unit_i,
+                            double unit_j, int l, double *column)
 {
   for (int j = 0; j < c->r; j++) column[velocity_row(c, j)] = j == l ? -e->pp[l] * unit_j : 0;
   for (int k = 0; k < c->s; k++)
-    column[c->s + k] = c->b[l] * ((same ? c->slope[l][k] : 0) - c->bar[l][k] * e->qp[l] * (unit_j / unit_i));
+    column[c->s + k] = c->b[l] *
+                       ((same ? c->slope[l][k] : 0) - c->bar[l][k] * e->qp[l] * (unit_j / unit_i));
 }
 
 dvi_status dvi__canonical_jacobian(dvi__canonical *c, const double *x, double *values)
@@ -241,7 +257,8 @@ dvi_status dvi__canonical_jacobian(dvi__canonical *c, const double *x, double *v
   return DVI_OK;
 }
 
-dvi_status dvi__canonical_curvature(dvi__canonical *c, double t, const double *q, const double *p, const double **H_pp)
+dvi_status dvi__canonical_curvature(dvi__canonical *c, double t, const double *q, const double *p,
+                                    const double **H_pp)
 {
   *H_pp = c->H_pp;
   return dvi__lagrangian_hessian(c->evaluator, 1, &t, q, p, c->H_qq, c->H_qp, c->H_pp);
@@ -261,12 +278,14 @@ void dvi__canonical_straight(const dvi__canonical *c, const double *v, double *x
     for (int k = 0; k < c->m; k++) *x++ = k < c->s ? c->h * v[i] * c->line[k] : 0;
 }
 
-/* q(1 + ratio tau) - q(1) by its values at the points tau_k, and the polynomial through the Pi_j less its end. */
+/* q(1 + ratio tau) - q(1) by its values at the points tau_k, and the polynomial through the Pi_j
+ * less its end. */
 static void fill_shifts(dvi__canonical *c, double ratio)
 {
   double bar[DEGREE][DEGREE], end[POINTS];
   c->ratio = ratio;
-  for (int k = 0; k < c->s; k++) dvi__trial_in(&c->space, 1 + ratio * c->tau[k], NULL, bar[k], NULL);
+  for (int k = 0; k < c->s; k++)
+    dvi__trial_in(&c->space, 1 + ratio * c->tau[k], NULL, bar[k], NULL);
   for (int k = 0; k < c->s; k++)
     for (int l = 0; l < c->s; l++) {
       c->shift[k][l] = 0;
@@ -288,7 +307,8 @@ void dvi__canonical_continue(dvi__canonical *c, double ratio, const double *last
   }
 }
 
-void dvi__canonical_path(const dvi__canonical *c, const double *kept, const double *q0, double h, double tau, double *q, double *v)
+void dvi__canonical_path(const dvi__canonical *c, const double *kept, const double *q0, double h,
+                         double tau, double *q, double *v)
 {
   double psi[DEGREE], slope[DEGREE];
   dvi__trial_in(&c->space, tau, psi, NULL, slope);

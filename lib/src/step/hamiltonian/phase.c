@@ -15,8 +15,9 @@ enum { MOST = DVI__STAGES_MOST };
 
 static double **owned(dvi__phase *f, int i)
 {
-  double **const all[] = {&f->kick,  &f->impulse, &f->t,      &f->Z,      &f->F,     &f->phi,   &f->H_qq, &f->H_qp,  &f->H_pp,
-                          &f->phi_z, &f->phi_qq,  &f->phi_qp, &f->phi_pp, &f->slope, &f->point, &f->end,  &f->field, &f->weight};
+  double **const all[] = {&f->kick,   &f->impulse, &f->t,     &f->Z,     &f->F,      &f->phi,
+                          &f->H_qq,   &f->H_qp,    &f->H_pp,  &f->phi_z, &f->phi_qq, &f->phi_qp,
+                          &f->phi_pp, &f->slope,   &f->point, &f->end,   &f->field,  &f->weight};
   return i < (int)(sizeof all / sizeof *all) ? all[i] : NULL;
 }
 
@@ -47,7 +48,9 @@ static dvi_status allocate(dvi__phase *f)
 #undef ENTRIES
   for (int i = 0; owned(f, i) != NULL; i++) {
     *owned(f, i) = DVI_NEW(double, size[i]);
-    if (*owned(f, i) == NULL) return dvi__fail(DVI_NO_MEMORY, "phase space: no memory for %d stages in %d dimensions", f->d, f->n);
+    if (*owned(f, i) == NULL)
+      return dvi__fail(DVI_NO_MEMORY, "phase space: no memory for %d stages in %d dimensions", f->d,
+                       f->n);
   }
   return DVI_OK;
 }
@@ -73,7 +76,8 @@ static dvi_status fill(dvi__phase *f, dvi_counters *counters)
   return allocate(f);
 }
 
-dvi_status dvi__phase_create(const dvi_system *system, int degree, int moments, dvi_counters *counters, dvi__phase **phase)
+dvi_status dvi__phase_create(const dvi_system *system, int degree, int moments,
+                             dvi_counters *counters, dvi__phase **phase)
 {
   *phase = NULL;
   dvi__phase *f = DVI_NEW(dvi__phase, 1);
@@ -128,7 +132,8 @@ static double *gradients_at(const dvi__phase *f, int stage)
   return f->phi_z + (size_t)stage * (size_t)dvi__pattern_entries(&f->system->constraint->gradients);
 }
 
-dvi_status dvi__phase_place(dvi__phase *f, double t0, double h, const double *q, const double *p, const double *multiplier)
+dvi_status dvi__phase_place(dvi__phase *f, double t0, double h, const double *q, const double *p,
+                            const double *multiplier)
 {
   f->t0 = t0;
   f->h = h;
@@ -177,7 +182,8 @@ static void take_end(const dvi__phase *f, const double *x)
   for (int a = 0; a < f->m; a++) f->weight[a] = multipliers(f, x, a)[0];
 }
 
-/* At the point that was taken: the constraint's gradients, kept for `stage`, and f->field, X_phi times the weights. */
+/* At the point that was taken: the constraint's gradients, kept for `stage`, and f->field, X_phi
+ * times the weights. */
 static dvi_status push(dvi__phase *f, int stage)
 {
   double *phi_z = gradients_at(f, stage);
@@ -239,12 +245,16 @@ dvi_status dvi__phase_residual(dvi__phase *f, const double *x, double *R)
 
 /* ---- Jacobian ---- */
 
-/* slope += factor times the derivative of the field (F_p, -F_q); entry e of F_qq is qq[e * stride]. */
-static void add_slope(const dvi__field_places *at, const dvi__lagrangian_term *of, const double *qq, const double *qp,
-                      const double *pp, int stride, double factor, double *slope)
+/* slope += factor times the derivative of the field (F_p, -F_q); entry e of F_qq is qq[e *
+ * stride]. */
+static void add_slope(const dvi__vector_field_places *at, const dvi__lagrangian_term *of,
+                      const double *qq, const double *qp, const double *pp, int stride,
+                      double factor, double *slope)
 {
-  for (int e = 0; e < dvi__pattern_entries(&of->qq); e++) slope[at->qq[e]] -= factor * qq[e * stride];
-  for (int e = 0; e < dvi__pattern_entries(&of->vv); e++) slope[at->pp[e]] += factor * pp[e * stride];
+  for (int e = 0; e < dvi__pattern_entries(&of->qq); e++)
+    slope[at->qq[e]] -= factor * qq[e * stride];
+  for (int e = 0; e < dvi__pattern_entries(&of->vv); e++)
+    slope[at->pp[e]] += factor * pp[e * stride];
   for (int e = 0; e < dvi__pattern_entries(&of->qv); e++) {
     slope[at->qp_in_p[e]] -= factor * qp[e * stride];
     slope[at->qp_in_q[e]] += factor * qp[e * stride];
@@ -254,8 +264,10 @@ static void add_slope(const dvi__field_places *at, const dvi__lagrangian_term *o
 /* What the constraints with the weights add at the point that was taken. */
 static dvi_status add_constraints(dvi__phase *f, double *slope)
 {
-  DVI_TRY(dvi__constraint_hessian(f->evaluator, f->point, f->point + f->n, f->weight, f->phi_qq, f->phi_qp, f->phi_pp));
-  add_slope(&f->of_phi, &f->system->constraint->weighted, f->phi_qq, f->phi_qp, f->phi_pp, 1, 1, slope);
+  DVI_TRY(dvi__constraint_hessian(f->evaluator, f->point, f->point + f->n, f->weight, f->phi_qq,
+                                  f->phi_qp, f->phi_pp));
+  add_slope(&f->of_phi, &f->system->constraint->weighted, f->phi_qq, f->phi_qp, f->phi_pp, 1, 1,
+            slope);
   return DVI_OK;
 }
 
@@ -264,10 +276,12 @@ static dvi_status slopes(dvi__phase *f, const double *x)
   const size_t entries = (size_t)dvi__pattern_entries(&f->joint);
   const int half = f->n * f->d;
   memset(f->slope, 0, entries * ((size_t)f->d + 1) * sizeof *f->slope);
-  DVI_TRY(dvi__lagrangian_hessian(f->evaluator, f->d, f->t, f->Z, f->Z + half, f->H_qq, f->H_qp, f->H_pp));
+  DVI_TRY(dvi__lagrangian_hessian(f->evaluator, f->d, f->t, f->Z, f->Z + half, f->H_qq, f->H_qp,
+                                  f->H_pp));
   for (int i = 0; i < f->d; i++) {
     double *slope = f->slope + (size_t)i * entries;
-    add_slope(&f->of_H, f->system->lagrangian, f->H_qq + i, f->H_qp + i, f->H_pp + i, f->d, f->h, slope);
+    add_slope(&f->of_H, f->system->lagrangian, f->H_qq + i, f->H_qp + i, f->H_pp + i, f->d, f->h,
+              slope);
     if (f->k == 0) continue;
     take_stage(f, x, i);
     DVI_TRY(push(f, i));
@@ -283,7 +297,9 @@ static void component_column(const dvi__phase *f, int e, int same, int l, double
 {
   const size_t entries = (size_t)dvi__pattern_entries(&f->joint);
   const int d = f->d;
-  for (int i = 0; i < d; i++) column[i] = l == d ? 0 : (same && i == l) - f->a[i][l] * f->slope[(size_t)i * entries + (size_t)e];
+  for (int i = 0; i < d; i++)
+    column[i] = l == d ? 0
+                       : (same && i == l) - f->a[i][l] * f->slope[(size_t)i * entries + (size_t)e];
   if (l == d)
     column[d] = same - 0.5 * f->slope[(size_t)d * entries + (size_t)e];
   else
@@ -301,10 +317,12 @@ static void constraint_rows(const dvi__phase *f, int gradient, int l, double *co
   }
 }
 
-/* Rows of a component in a constraint's column l: of h lambda', or of a coefficient of h Lambda. In q stand phi_p, in p -phi_q. */
+/* Rows of a component in a constraint's column l: of h lambda', or of a coefficient of h Lambda. In
+ * q stand phi_p, in p -phi_q. */
 static void constraint_column(const dvi__phase *f, int gradient, double sign, int l, double *column)
 {
-  for (int i = 0; i < f->d; i++) column[i] = l == 0 ? 0 : -sign * f->legendre[i][l - 1] * gradients_at(f, i)[gradient];
+  for (int i = 0; i < f->d; i++)
+    column[i] = l == 0 ? 0 : -sign * f->legendre[i][l - 1] * gradients_at(f, i)[gradient];
   column[f->d] = l == 0 ? -0.5 * sign * gradients_at(f, f->d)[gradient] : 0;
 }
 
@@ -336,7 +354,8 @@ dvi_status dvi__phase_scale(dvi__phase *f, double *scale)
   for (int c = 0; c < 2 * f->n * (f->d + 1); c++) *scale++ = 1;
   for (int a = 0; a < f->m; a++) {
     double largest = 0;
-    for (int e = gradients->start[a]; e < gradients->start[a + 1]; e++) largest = fmax(largest, fabs(f->phi_z[e]));
+    for (int e = gradients->start[a]; e < gradients->start[a + 1]; e++)
+      largest = fmax(largest, fabs(f->phi_z[e]));
     for (int l = 0; l <= f->k; l++) *scale++ = largest > 0 ? largest : 1;
   }
   return DVI_OK;
@@ -344,7 +363,8 @@ dvi_status dvi__phase_scale(dvi__phase *f, double *scale)
 
 /* ---- the end ---- */
 
-void dvi__phase_end(const dvi__phase *f, const double *x, double *dq, double *dp, double *multiplier)
+void dvi__phase_end(const dvi__phase *f, const double *x, double *dq, double *dp,
+                    double *multiplier)
 {
   for (int i = 0; i < f->n; i++) {
     dq[i] = row_of(f, x, i)[f->d];

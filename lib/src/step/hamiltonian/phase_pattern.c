@@ -1,4 +1,5 @@
-/* The pattern of a step's Jacobian: a block for each pair of a component of z or a constraint that meet. */
+/* The pattern of a step's Jacobian: a block for each pair of a component of z or a constraint that
+ * meet. */
 #include <stdint.h>
 #include <stdlib.h>
 
@@ -49,7 +50,8 @@ static dvi_status collect(pairs *p, dvi__pattern *pattern)
 
 /* ---- the derivative of a field (F_p, -F_q) ---- */
 
-static void add_field(pairs *p, int n, const dvi__pattern *qq, const dvi__pattern *qp, const dvi__pattern *pp)
+static void add_field(pairs *p, int n, const dvi__pattern *qq, const dvi__pattern *qp,
+                      const dvi__pattern *pp)
 {
   for (int j = 0; j < n; j++) {
     for (int e = qq->start[j]; e < qq->start[j + 1]; e++) add(p, n + qq->row[e], j);
@@ -61,15 +63,20 @@ static void add_field(pairs *p, int n, const dvi__pattern *qq, const dvi__patter
   }
 }
 
-static dvi_status place_field(const dvi__pattern *joint, int n, const dvi__pattern *qq, const dvi__pattern *qp,
-                              const dvi__pattern *pp, dvi__field_places *at)
+static dvi_status place_field(const dvi__pattern *joint, int n, const dvi__pattern *qq,
+                              const dvi__pattern *qp, const dvi__pattern *pp,
+                              dvi__vector_field_places *at)
 {
-  *at = (dvi__field_places){DVI_NEW(int, dvi__pattern_entries(qq)), DVI_NEW(int, dvi__pattern_entries(qp)),
-                            DVI_NEW(int, dvi__pattern_entries(qp)), DVI_NEW(int, dvi__pattern_entries(pp))};
-  if (at->qq == NULL || at->qp_in_p == NULL || at->qp_in_q == NULL || at->pp == NULL) return no_memory();
+  *at = (dvi__vector_field_places){
+      DVI_NEW(int, dvi__pattern_entries(qq)), DVI_NEW(int, dvi__pattern_entries(qp)),
+      DVI_NEW(int, dvi__pattern_entries(qp)), DVI_NEW(int, dvi__pattern_entries(pp))};
+  if (at->qq == NULL || at->qp_in_p == NULL || at->qp_in_q == NULL || at->pp == NULL)
+    return no_memory();
   for (int j = 0; j < n; j++) {
-    for (int e = qq->start[j]; e < qq->start[j + 1]; e++) at->qq[e] = dvi__pattern_find(joint, n + qq->row[e], j);
-    for (int e = pp->start[j]; e < pp->start[j + 1]; e++) at->pp[e] = dvi__pattern_find(joint, pp->row[e], n + j);
+    for (int e = qq->start[j]; e < qq->start[j + 1]; e++)
+      at->qq[e] = dvi__pattern_find(joint, n + qq->row[e], j);
+    for (int e = pp->start[j]; e < pp->start[j + 1]; e++)
+      at->pp[e] = dvi__pattern_find(joint, pp->row[e], n + j);
     for (int e = qp->start[j]; e < qp->start[j + 1]; e++) {
       at->qp_in_p[e] = dvi__pattern_find(joint, n + qp->row[e], n + j);
       at->qp_in_q[e] = dvi__pattern_find(joint, j, qp->row[e]);
@@ -78,7 +85,7 @@ static dvi_status place_field(const dvi__pattern *joint, int n, const dvi__patte
   return DVI_OK;
 }
 
-static void clear_field(dvi__field_places *at)
+static void clear_field(dvi__vector_field_places *at)
 {
   dvi__release(at->qq);
   dvi__release(at->qp_in_p);
@@ -125,9 +132,12 @@ static dvi_status join(const dvi__phase *f, dvi__pattern *joint)
   const dvi_system *s = f->system;
   const dvi__lagrangian_term *w = &s->constraint->weighted;
   size_t count = 2 * (size_t)f->n + 2 * (size_t)dvi__pattern_entries(&s->constraint->gradients);
-  const dvi__pattern *const once[] = {&s->qq, &s->qv, &s->qv, &s->vv, &w->qq, &w->qv, &w->qv, &w->vv};
+  const dvi__pattern *const once[] = {&s->qq, &s->qv, &s->qv, &s->vv,
+                                      &w->qq, &w->qv, &w->qv, &w->vv};
   for (int i = 0; i < 8; i++) count += (size_t)dvi__pattern_entries(once[i]);
-  if (count > INT32_MAX) return dvi__fail(DVI_BAD_SIZE, "phase space: %zu entries are too many; declare sparse patterns", count);
+  if (count > INT32_MAX)
+    return dvi__fail(DVI_BAD_SIZE, "phase space: %zu entries are too many; declare sparse patterns",
+                     count);
   pairs p = {.key = DVI_NEW(int64_t, count), .size = 2 * f->n + f->m};
   if (p.key == NULL) return no_memory();
   for (int c = 0; c < 2 * f->n; c++) add(&p, c, c);
@@ -160,14 +170,16 @@ static dvi_status expand(const dvi__phase *f, dvi__pattern *pattern)
     for (int e = joint->start[j]; e < joint->start[j + 1]; e++)
       entries += (size_t)length_of(f, j) * (size_t)length_of(f, joint->row[e]);
   if (entries > INT32_MAX)
-    return dvi__fail(DVI_BAD_SIZE, "phase space: %zu entries are too many; declare sparse patterns", entries);
+    return dvi__fail(DVI_BAD_SIZE, "phase space: %zu entries are too many; declare sparse patterns",
+                     entries);
   *pattern = (dvi__pattern){size, size, DVI_NEW(int, (size_t)size + 1), DVI_NEW(int, entries)};
   if (pattern->start == NULL || pattern->row == NULL) return no_memory();
   int at = 0, column = 0;
   for (int j = 0; j < joint->columns; j++)
     for (int l = 0; l < length_of(f, j); l++) {
       for (int e = joint->start[j]; e < joint->start[j + 1]; e++)
-        for (int i = 0; i < length_of(f, joint->row[e]); i++) pattern->row[at++] = begin_of(f, joint->row[e]) + i;
+        for (int i = 0; i < length_of(f, joint->row[e]); i++)
+          pattern->row[at++] = begin_of(f, joint->row[e]) + i;
       pattern->start[++column] = at;
     }
   return DVI_OK;

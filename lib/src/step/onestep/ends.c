@@ -14,7 +14,8 @@ struct dvi__ends {
   double *motion;          /* [2n] */
 };
 
-static dvi_status fill(dvi__ends *e, const dvi_system *system, const double *weight, dvi_counters *counters)
+static dvi_status fill(dvi__ends *e, const dvi_system *system, const double *weight,
+                       dvi_counters *counters)
 {
   const size_t n = (size_t)e->n, count = (size_t)e->count;
   e->weight = DVI_NEW(double, count);
@@ -22,12 +23,14 @@ static dvi_status fill(dvi__ends *e, const dvi_system *system, const double *wei
   e->L_q0 = DVI_NEW(double, count *n);
   e->L_v0 = DVI_NEW(double, count *n);
   e->motion = DVI_NEW(double, 2 * n);
-  if (!e->weight || !e->L || !e->L_q0 || !e->L_v0 || !e->motion) return dvi__fail(DVI_NO_MEMORY, "no memory");
+  if (!e->weight || !e->L || !e->L_q0 || !e->L_v0 || !e->motion)
+    return dvi__fail(DVI_NO_MEMORY, "no memory");
   memcpy(e->weight, weight, count * sizeof *weight);
   return dvi__flow_series_create(system, e->count, DVI__HESSIANS, counters, &e->series);
 }
 
-dvi_status dvi__ends_create(const dvi_system *system, int count, const double *weight, dvi_counters *counters, dvi__ends **ends)
+dvi_status dvi__ends_create(const dvi_system *system, int count, const double *weight,
+                            dvi_counters *counters, dvi__ends **ends)
 {
   *ends = NULL;
   dvi__ends *e = DVI_NEW(dvi__ends, 1);
@@ -58,21 +61,22 @@ void dvi__ends_destroy(dvi__ends **ends)
 static double sum_of(const dvi__ends *e, double h, int i, const double *coefficient)
 {
   double sum = 0;
-  for (int j = e->count - 1; j >= 1; j--) sum = h * (e->weight[j] * coefficient[j * e->n + i] + sum);
+  for (int j = e->count - 1; j >= 1; j--)
+    sum = h * (e->weight[j] * coefficient[j * e->n + i] + sum);
   return sum;
 }
 
 /* In z: what v depends on counts by the derivatives of v(q,p). */
-dvi_status dvi__ends_gradient(dvi__ends *e, dvi__field *field, double h, double *gradient)
+dvi_status dvi__ends_gradient(dvi__ends *e, dvi__vector_field *field, double h, double *gradient)
 {
   const int n = e->n;
-  const dvi__field_point at = dvi__field_selected(field);
+  const dvi__vector_field_point at = dvi__vector_field_selected(field);
   DVI_TRY(dvi__flow_series_expand(e->series, at.t, at.q, at.v));
   DVI_TRY(dvi__flow_series_vary(e->series));
   DVI_TRY(dvi__flow_series_lagrangian(e->series, e->L, e->L_q0, e->L_v0));
   memset(e->motion, 0, (size_t)n * sizeof *e->motion);
   for (int i = 0; i < n; i++) e->motion[n + i] = sum_of(e, h, i, e->L_v0);
-  dvi__field_product(field, e->motion, gradient);
+  dvi__vector_field_product(field, e->motion, gradient);
   for (int i = 0; i < n; i++) gradient[i] += sum_of(e, h, i, e->L_q0);
   return DVI_OK;
 }

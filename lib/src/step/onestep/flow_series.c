@@ -45,14 +45,16 @@ static dvi_status fill(dvi__flow_series *f, dvi__derivatives most, dvi_counters 
   const dvi_system *s = f->system;
   DVI_TRY(dvi__jet_create(s, f->degree - 1, most, counters, &f->jet));
   if (!allocate(f, most == DVI__HESSIANS))
-    return dvi__fail(DVI_NO_MEMORY, "series of the motion: no memory for degree %d in %d dimensions", f->degree, f->n);
+    return dvi__fail(DVI_NO_MEMORY,
+                     "series of the motion: no memory for degree %d in %d dimensions", f->degree,
+                     f->n);
   if (s->mass_diagonal != NULL) return DVI_OK;
   DVI_TRY(dvi__linear_create(&s->vv, DVI__LINEAR_AUTO, counters, &f->kinetic));
   return s->mass_values != NULL ? dvi__linear_factor(f->kinetic, s->mass_values) : DVI_OK;
 }
 
-dvi_status dvi__flow_series_create(const dvi_system *system, int degree, dvi__derivatives most, dvi_counters *counters,
-                                   dvi__flow_series **series)
+dvi_status dvi__flow_series_create(const dvi_system *system, int degree, dvi__derivatives most,
+                                   dvi_counters *counters, dvi__flow_series **series)
 {
   *series = NULL;
   dvi__flow_series *f = DVI_NEW(dvi__flow_series, 1);
@@ -70,7 +72,8 @@ void dvi__flow_series_destroy(dvi__flow_series **series)
 {
   dvi__flow_series *f = *series;
   if (f == NULL) return;
-  double *const owned[] = {f->t, f->q, f->v, f->L_q, f->L_v, f->L_vv, f->L_qq, f->L_qv, f->dq, f->dv};
+  double *const owned[] = {f->t,    f->q,    f->v,    f->L_q, f->L_v,
+                           f->L_vv, f->L_qq, f->L_qv, f->dq,  f->dv};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) dvi__release(owned[i]);
   dvi__jet_destroy(&f->jet);
   dvi__linear_destroy(&f->kinetic);
@@ -125,9 +128,10 @@ static dvi_status next_coefficient(dvi__flow_series *f, int k)
   const int general = f->system->lagrangian != NULL;
   double *v = f->v + (size_t)(k + 1) * n, *q = f->q + (size_t)(k + 2) * n;
   memset(v, 0, n * sizeof *v);
-  DVI_TRY(
-      dvi__jet_along(f->jet, general ? k + 1 : k, f->t, f->q, f->v, &(dvi__jets){.L_q = f->L_q, .L_v = general ? f->L_v : NULL}));
-  for (size_t i = 0; i < n; i++) v[i] = f->L_q[(size_t)k * n + i] / (k + 1) - (general ? f->L_v[(size_t)(k + 1) * n + i] : 0);
+  DVI_TRY(dvi__jet_along(f->jet, general ? k + 1 : k, f->t, f->q, f->v,
+                         &(dvi__jets){.L_q = f->L_q, .L_v = general ? f->L_v : NULL}));
+  for (size_t i = 0; i < n; i++)
+    v[i] = f->L_q[(size_t)k * n + i] / (k + 1) - (general ? f->L_v[(size_t)(k + 1) * n + i] : 0);
   solve_kinetic(f, v);
   for (size_t i = 0; i < n; i++) q[i] = v[i] / (k + 2);
   return DVI_OK;
@@ -144,13 +148,15 @@ dvi_status dvi__flow_series_expand(dvi__flow_series *f, double t, const double *
   DVI_TRY(factor_kinetic(f));
   for (int k = 0; k + 2 <= f->degree; k++) DVI_TRY(next_coefficient(f, k));
   if (dvi__first_not_finite((size_t)(f->degree + 1) * n, f->q) < 0) return DVI_OK;
-  return dvi__fail(DVI_NOT_FINITE, "the Taylor coefficients of the motion at t = %g are not finite", t);
+  return dvi__fail(DVI_NOT_FINITE, "the Taylor coefficients of the motion at t = %g are not finite",
+                   t);
 }
 
 /* ---- its derivative ---- */
 
 /* y += factor A x, or A^T x. */
-static void multiply_add(const dvi__pattern *pattern, const double *A, int transposed, double factor, const double *x, double *y)
+static void multiply_add(const dvi__pattern *pattern, const double *A, int transposed,
+                         double factor, const double *x, double *y)
 {
   for (int j = 0; j < pattern->columns; j++)
     for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++) {
@@ -162,13 +168,15 @@ static void multiply_add(const dvi__pattern *pattern, const double *A, int trans
     }
 }
 
-/* y += factor [A x]_k, the coefficient of a product of series of which A's stand in the pattern's order and x's at a distance of `stride`; A's from `first` on. */
-static void convolve(const dvi__pattern *pattern, const double *A, int transposed, int first, int k, double factor, const double *x,
-                     size_t stride, double *y)
+/* y += factor [A x]_k, the coefficient of a product of series of which A's stand in the pattern's
+ * order and x's at a distance of `stride`; A's from `first` on. */
+static void convolve(const dvi__pattern *pattern, const double *A, int transposed, int first, int k,
+                     double factor, const double *x, size_t stride, double *y)
 {
   const size_t entries = (size_t)dvi__pattern_entries(pattern);
   for (int j = first; j <= k; j++)
-    multiply_add(pattern, A + (size_t)j * entries, transposed, factor, x + (size_t)(k - j) * stride, y);
+    multiply_add(pattern, A + (size_t)j * entries, transposed, factor, x + (size_t)(k - j) * stride,
+                 y);
 }
 
 /* dv_{k+1} and dq_{k+2} of one column: dq_0 .. dq_{k+1} and dv_0 .. dv_k are known. */
@@ -189,14 +197,19 @@ static void next_variation(dvi__flow_series *f, int k, double *dq, double *dv)
 dvi_status dvi__flow_series_vary(dvi__flow_series *f)
 {
   const size_t n = (size_t)f->n, stride = 2 * n * n;
-  DVI_TRY(dvi__jet_along(f->jet, f->degree - 1, f->t, f->q, f->v, &(dvi__jets){.L_qq = f->L_qq, .L_qv = f->L_qv, .L_vv = f->L_vv}));
+  DVI_TRY(dvi__jet_along(f->jet, f->degree - 1, f->t, f->q, f->v,
+                         &(dvi__jets){.L_qq = f->L_qq, .L_qv = f->L_qv, .L_vv = f->L_vv}));
   memset(f->dq, 0, 2 * stride * sizeof(double));
   memset(f->dv, 0, stride * sizeof(double));
-  for (size_t i = 0; i < n; i++) f->dq[i * n + i] = f->dq[stride + (n + i) * n + i] = f->dv[(n + i) * n + i] = 1;
+  for (size_t i = 0; i < n; i++)
+    f->dq[i * n + i] = f->dq[stride + (n + i) * n + i] = f->dv[(n + i) * n + i] = 1;
   for (size_t column = 0; column < 2 * n; column++)
-    for (int k = 0; k + 2 <= f->degree; k++) next_variation(f, k, f->dq + column * n, f->dv + column * n);
+    for (int k = 0; k + 2 <= f->degree; k++)
+      next_variation(f, k, f->dq + column * n, f->dv + column * n);
   if (dvi__first_not_finite((size_t)(f->degree + 1) * stride, f->dq) < 0) return DVI_OK;
-  return dvi__fail(DVI_NOT_FINITE, "the derivatives of the motion's Taylor coefficients at t = %g are not finite", f->t[0]);
+  return dvi__fail(DVI_NOT_FINITE,
+                   "the derivatives of the motion's Taylor coefficients at t = %g are not finite",
+                   f->t[0]);
 }
 
 /* ---- L along it ---- */
@@ -208,7 +221,8 @@ static double variation_of_L(const dvi__flow_series *f, int k, const double *dq,
   double sum = 0;
   for (size_t j = 0; j <= (size_t)k; j++)
     for (size_t i = 0; i < n; i++)
-      sum += f->L_q[j * n + i] * dq[((size_t)k - j) * stride + i] + f->L_v[j * n + i] * dv[((size_t)k - j) * stride + i];
+      sum += f->L_q[j * n + i] * dq[((size_t)k - j) * stride + i] +
+             f->L_v[j * n + i] * dv[((size_t)k - j) * stride + i];
   return sum;
 }
 
@@ -216,8 +230,9 @@ dvi_status dvi__flow_series_lagrangian(dvi__flow_series *f, double *L, double *L
 {
   const size_t n = (size_t)f->n;
   const int wanted = L_q0 != NULL;
-  DVI_TRY(dvi__jet_along(f->jet, f->degree - 1, f->t, f->q, f->v,
-                         &(dvi__jets){.L = L, .L_q = wanted ? f->L_q : NULL, .L_v = wanted ? f->L_v : NULL}));
+  DVI_TRY(dvi__jet_along(
+      f->jet, f->degree - 1, f->t, f->q, f->v,
+      &(dvi__jets){.L = L, .L_q = wanted ? f->L_q : NULL, .L_v = wanted ? f->L_v : NULL}));
   for (int k = 0; wanted && k < f->degree; k++)
     for (size_t i = 0; i < n; i++) {
       L_q0[(size_t)k * n + i] = variation_of_L(f, k, f->dq + i * n, f->dv + i * n);

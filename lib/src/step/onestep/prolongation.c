@@ -14,12 +14,14 @@ struct dvi__prolongation {
   const dvi_system *system;
   dvi__evaluator *evaluator;
   dvi__flow_series *motion[ENDS];
-  int n, m, count;                        /* count: of coefficients of L that the quadrature takes */
+  /* count: of coefficients of L that the quadrature takes */
+  int n, m, count;
   double plain[ENDS][ENDS][COEFFICIENTS]; /* [row][end]: R_row = sum_j of these times A_j or B_j */
   double weight[COEFFICIENTS];            /* w_j */
   dvi__pattern full, transposed;          /* of the Jacobian; of dR/d(v0,v1)^T */
   dvi__linear *multipliers;               /* factors the latter */
-  double *at;                             /* [3 n] the unknowns to which all below belongs, if `known` */
+  /* [3 n] the unknowns to which all below belongs, if `known` */
+  double *at;
   int known;
   /* The step. */
   double t0, h;
@@ -27,13 +29,15 @@ struct dvi__prolongation {
   double row[ENDS][ENDS][COEFFICIENTS]; /* `plain` times h^j */
   double w[ENDS][COEFFICIENTS];         /* of G_0 and G_1 */
   double *q[ENDS], *v[ENDS];            /* [n] */
-  double *by_q[ENDS][ENDS];             /* [row][end]: dR_row/dq_end but for the identity's part, n x n column by column */
-  double *by_v[ENDS][ENDS];             /* dR_row/d(h v_end) */
-  double *R[ENDS];                      /* [n] */
-  double *L, *L_q, *L_v;                /* [m], [m*n]: the coefficients of L at one end, their derivatives in q and v there */
-  double *G_q[ENDS];                    /* [n] dG_end/dq_end */
-  double *lambda;                       /* [2 n] */
-  double *values;                       /* of the matrix of the multipliers */
+  /* [row][end]: dR_row/dq_end but for the identity's part, n x n column by column */
+  double *by_q[ENDS][ENDS];
+  double *by_v[ENDS][ENDS]; /* dR_row/d(h v_end) */
+  double *R[ENDS];          /* [n] */
+  /* [m], [m*n]: the coefficients of L at one end, their derivatives in q and v there */
+  double *L, *L_q, *L_v;
+  double *G_q[ENDS]; /* [n] dG_end/dq_end */
+  double *lambda;    /* [2 n] */
+  double *values;    /* of the matrix of the multipliers */
 };
 
 /* ---- making it ---- */
@@ -91,19 +95,22 @@ static void fill_weights(dvi__prolongation *d)
 static dvi_status fill(dvi__prolongation *d, dvi_counters *counters)
 {
   const int n = d->n;
-  for (int end = 0; end < ENDS; end++) DVI_TRY(dvi__flow_series_create(d->system, d->m, DVI__HESSIANS, counters, &d->motion[end]));
+  for (int end = 0; end < ENDS; end++)
+    DVI_TRY(dvi__flow_series_create(d->system, d->m, DVI__HESSIANS, counters, &d->motion[end]));
   DVI_TRY(dvi__evaluator_create(d->system, 1, DVI__GRADIENTS, counters, &d->evaluator));
   DVI_TRY(dvi__pattern_copy(&(dvi_pattern){0}, UNKNOWNS * n, "step", &d->full));
   DVI_TRY(dvi__pattern_copy(&(dvi_pattern){0}, 2 * n, "multipliers", &d->transposed));
   DVI_TRY(dvi__linear_create(&d->transposed, DVI__LINEAR_DENSE, counters, &d->multipliers));
   double *block = DVI_NEW(double, lay_out(d, NULL));
   (void)lay_out(d, block);
-  if (block == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory for %d derivatives in %d dimensions", d->m, n);
+  if (block == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "no memory for %d derivatives in %d dimensions", d->m, n);
   fill_weights(d);
   return DVI_OK;
 }
 
-dvi_status dvi__prolongation_create(const dvi_system *system, int m, dvi_counters *counters, dvi__prolongation **prolongation)
+dvi_status dvi__prolongation_create(const dvi_system *system, int m, dvi_counters *counters,
+                                    dvi__prolongation **prolongation)
 {
   *prolongation = NULL;
   dvi__prolongation *d = DVI_NEW(dvi__prolongation, 1);
@@ -141,7 +148,8 @@ dvi__evaluator *dvi__prolongation_evaluator(const dvi__prolongation *d)
   return d->evaluator;
 }
 
-void dvi__prolongation_place(dvi__prolongation *d, double t0, double h, const double *q0, const double *p0)
+void dvi__prolongation_place(dvi__prolongation *d, double t0, double h, const double *q0,
+                             const double *p0)
 {
   double power = 1; /* h^j */
   d->known = 0;
@@ -170,12 +178,14 @@ static dvi_status expand(dvi__prolongation *d, const double *x)
     d->v[END][i] = x[2] / d->h;
   }
   for (int end = 0; end < ENDS; end++)
-    DVI_TRY(dvi__flow_series_expand(d->motion[end], d->t0 + (end == END ? d->h : 0), d->q[end], d->v[end]));
+    DVI_TRY(dvi__flow_series_expand(d->motion[end], d->t0 + (end == END ? d->h : 0), d->q[end],
+                                    d->v[end]));
   return DVI_OK;
 }
 
 /* sum += sum_{j>=1} c_j X_j, with coefficients of `count` numbers at a distance of `stride`. */
-static void add_series(int m, const double *c, size_t count, size_t stride, const double *X, double *sum)
+static void add_series(int m, const double *c, size_t count, size_t stride, const double *X,
+                       double *sum)
 {
   for (int j = 1; j <= m; j++)
     for (size_t i = 0; i < count; i++) sum[i] += c[j] * X[(size_t)j * stride + i];
@@ -187,7 +197,8 @@ static void mismatches(dvi__prolongation *d, const double *x)
   const size_t n = (size_t)d->n;
   for (int row = 0; row < ENDS; row++) {
     for (size_t i = 0; i < n; i++) d->R[row][i] = d->plain[row][END][0] * x[UNKNOWNS * i];
-    for (int end = 0; end < ENDS; end++) add_series(d->m, d->row[row][end], n, n, dvi__flow_series_q(d->motion[end]), d->R[row]);
+    for (int end = 0; end < ENDS; end++)
+      add_series(d->m, d->row[row][end], n, n, dvi__flow_series_q(d->motion[end]), d->R[row]);
   }
 }
 
@@ -242,7 +253,8 @@ static dvi_status differentiate_quadrature(dvi__prolongation *d, int end)
   return DVI_OK;
 }
 
-/* dR/d(h v0, h v1)^T lambda = dG/d(h v0, h v1): column r of the matrix holds the derivatives of row r of R. */
+/* dR/d(h v0, h v1)^T lambda = dG/d(h v0, h v1): column r of the matrix holds the derivatives of row
+ * r of R. */
 static dvi_status solve_multipliers(dvi__prolongation *d)
 {
   const size_t n = (size_t)d->n;
@@ -250,11 +262,14 @@ static dvi_status solve_multipliers(dvi__prolongation *d)
   for (size_t row = 0; row < ENDS; row++)
     for (size_t end = 0; end < ENDS; end++)
       for (size_t j = 0; j < n; j++)
-        for (size_t i = 0; i < n; i++) d->values[(row * n + i) * 2 * n + end * n + j] = d->by_v[row][end][j * n + i];
+        for (size_t i = 0; i < n; i++)
+          d->values[(row * n + i) * 2 * n + end * n + j] = d->by_v[row][end][j * n + i];
   const dvi_status status = dvi__linear_factor(d->multipliers, d->values);
   if (status == DVI_SINGULAR)
     return dvi__fail(DVI_NOT_CONVERGED,
-                     "the points at the ends do not determine the velocities there (h = %g); take a smaller step", d->h);
+                     "the points at the ends do not determine the velocities there (h = %g); take "
+                     "a smaller step",
+                     d->h);
   if (status == DVI_OK) dvi__linear_solve(d->multipliers, d->lambda);
   return status;
 }
@@ -265,7 +280,8 @@ static double pulled(const dvi__prolongation *d, int end, size_t i)
   const size_t n = (size_t)d->n;
   double sum = 0;
   for (int row = 0; row < ENDS; row++)
-    for (size_t k = 0; k < n; k++) sum += d->by_q[row][end][i * n + k] * d->lambda[(size_t)row * n + k];
+    for (size_t k = 0; k < n; k++)
+      sum += d->by_q[row][end][i * n + k] * d->lambda[(size_t)row * n + k];
   return sum;
 }
 
@@ -275,7 +291,8 @@ dvi_status dvi__prolongation_residual(dvi__prolongation *d, const double *x, dou
   DVI_TRY(collocate(d, x));
   DVI_TRY(solve_multipliers(d));
   for (size_t i = 0; i < n; i++, R += UNKNOWNS) {
-    const double identity = d->plain[START][START][0] * d->lambda[i] + d->plain[END][START][0] * d->lambda[n + i];
+    const double identity = d->plain[START][START][0] * d->lambda[i] +
+                            d->plain[END][START][0] * d->lambda[n + i];
     R[0] = d->R[START][i];
     R[1] = d->R[END][i];
     R[2] = d->h * (d->p0[i] + d->G_q[START][i] - identity - pulled(d, START, i));
@@ -284,7 +301,8 @@ dvi_status dvi__prolongation_residual(dvi__prolongation *d, const double *x, dou
 }
 
 /* p1 - p0 = (D1 + D2) Ld, from which the identity's parts are gone. */
-dvi_status dvi__prolongation_end(dvi__prolongation *d, const double *x, double *dq, double *dp, double *path)
+dvi_status dvi__prolongation_end(dvi__prolongation *d, const double *x, double *dq, double *dp,
+                                 double *path)
 {
   const size_t n = (size_t)d->n;
   double *const A = path, *const B = path + (size_t)(d->m - 1) * n;
@@ -303,7 +321,8 @@ dvi_status dvi__prolongation_end(dvi__prolongation *d, const double *x, double *
   return DVI_OK;
 }
 
-void dvi__prolongation_path(const dvi__prolongation *d, const double *path, double h, double tau, double *offset, double *v)
+void dvi__prolongation_path(const dvi__prolongation *d, const double *path, double h, double tau,
+                            double *offset, double *v)
 {
   const size_t n = (size_t)d->n, m = (size_t)d->m;
   const double *const A = path, *const B = path + (m - 1) * n;

@@ -12,7 +12,8 @@
 #define ROOT_3 1.73205080756887729353
 #define ROOT_21 4.58257569495584000659
 
-/* An explicit method: the rows of a one after the other, of 1, 2, ... numbers; then b. c follows. */
+/* An explicit method: the rows of a one after the other, of 1, 2, ... numbers; then b. c
+ * follows. */
 typedef struct rows {
   int stages, order;
   double number[66];
@@ -29,8 +30,10 @@ static const rows heun = {2, 2, {1, /**/ 1.0 / 2, 1.0 / 2}};
 
 /* Kutta 1901. */
 static const rows kutta_3 = {3, 3, {1.0 / 2, -1, 2, /**/ 1.0 / 6, 2.0 / 3, 1.0 / 6}};
-static const rows rk_4 = {4, 4, {1.0 / 2, 0, 1.0 / 2, 0, 0, 1, /**/ 1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6}};
-static const rows three_eighths = {4, 4, {1.0 / 3, -1.0 / 3, 1, 1, -1, 1, /**/ 1.0 / 8, 3.0 / 8, 3.0 / 8, 1.0 / 8}};
+static const rows rk_4 = {
+    4, 4, {1.0 / 2, 0, 1.0 / 2, 0, 0, 1, /**/ 1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6}};
+static const rows three_eighths = {
+    4, 4, {1.0 / 3, -1.0 / 3, 1, 1, -1, 1, /**/ 1.0 / 8, 3.0 / 8, 3.0 / 8, 1.0 / 8}};
 
 /* Dormand and Prince 1980, table 2, without the stage of the error estimate. */
 static const rows dormand_prince = {6,
@@ -58,10 +61,11 @@ static const rows dormand_prince = {6,
                                      11.0 / 84}};
 
 /* Butcher 1964. */
-static const rows butcher_6 = {7, 6, {1.0 / 3,         0,         2.0 / 3,   1.0 / 12,  1.0 / 3,   -1.0 / 12, -1.0 / 16,
-                                      9.0 / 8,         -3.0 / 16, -3.0 / 8,  0,         9.0 / 8,   -3.0 / 8,  -3.0 / 4,
-                                      1.0 / 2,         9.0 / 44,  -9.0 / 11, 63.0 / 44, 18.0 / 11, 0,         -16.0 / 11,
-                                      /**/ 11.0 / 120, 0,         27.0 / 40, 27.0 / 40, -4.0 / 15, -4.0 / 15, 11.0 / 120}};
+static const rows butcher_6 = {
+    7, 6, {1.0 / 3,         0,         2.0 / 3,   1.0 / 12,  1.0 / 3,   -1.0 / 12, -1.0 / 16,
+           9.0 / 8,         -3.0 / 16, -3.0 / 8,  0,         9.0 / 8,   -3.0 / 8,  -3.0 / 4,
+           1.0 / 2,         9.0 / 44,  -9.0 / 11, 63.0 / 44, 18.0 / 11, 0,         -16.0 / 11,
+           /**/ 11.0 / 120, 0,         27.0 / 40, 27.0 / 40, -4.0 / 15, -4.0 / 15, 11.0 / 120}};
 
 /* Cooper and Verner 1972. */
 static const rows cooper_verner = {11,
@@ -142,7 +146,8 @@ static void fill_explicit(const rows *of, dvi__runge_kutta *m)
   memcpy(m->b, number, (size_t)of->stages * sizeof *number);
 }
 
-/* Collocation at the nodes of a rule: Gauss, Lobatto (IIIA), Radau with the right end (IIA); the order is the rule's. Hairer and Wanner 1996, sec. IV.5. */
+/* Collocation at the nodes of a rule: Gauss, Lobatto (IIIA), Radau with the right end (IIA); the
+ * order is the rule's. Hairer and Wanner 1996, sec. IV.5. */
 static dvi_status fill_collocation(dvi_rule rule, dvi__runge_kutta *m)
 {
   const int s = m->stages;
@@ -155,10 +160,12 @@ static dvi_status fill_collocation(dvi_rule rule, dvi__runge_kutta *m)
   return DVI_OK;
 }
 
-/* Diagonally implicit, with one number g on the diagonal: orders 3 (Norsett 1974) and 4 (Crouzeix 1975); Hairer and Wanner 1996, tables IV.6.4, IV.6.5. */
+/* Diagonally implicit, with one number g on the diagonal: orders 3 (Norsett 1974) and 4 (Crouzeix
+ * 1975); Hairer and Wanner 1996, tables IV.6.4, IV.6.5. */
 static void fill_sdirk(dvi__runge_kutta *m)
 {
-  const double g = m->stages == 2 ? (3 + ROOT_3) / 6 : cos(acos(-1.0) / 18) / ROOT_3 + 0.5, d = 1 / (6 * (2 * g - 1) * (2 * g - 1));
+  const double g = m->stages == 2 ? (3 + ROOT_3) / 6 : cos(acos(-1.0) / 18) / ROOT_3 + 0.5,
+               d = 1 / (6 * (2 * g - 1) * (2 * g - 1));
   m->order = m->stages + 1;
   for (int i = 0; i < m->stages; i++) m->a[i][i] = g;
   m->c[0] = g;
@@ -220,7 +227,8 @@ void dvi__runge_kutta_classify(dvi__runge_kutta *m)
   for (int i = 0; i < s; i++)
     for (int j = 0; j < s; j++) {
       m->is_explicit &= j < i || m->a[i][j] == 0;
-      m->symmetric &= fabs(m->a[i][j] + m->a[s - 1 - i][s - 1 - j] - m->b[j]) <= 1e-14 && fabs(m->b[j] - m->b[s - 1 - j]) <= 1e-14;
+      m->symmetric &= fabs(m->a[i][j] + m->a[s - 1 - i][s - 1 - j] - m->b[j]) <= 1e-14 &&
+                      fabs(m->b[j] - m->b[s - 1 - j]) <= 1e-14;
     }
 }
 

@@ -13,7 +13,7 @@ struct dvi__shot {
   const dvi_system *system;
   dvi__runge_kutta method;
   dvi__course course;
-  dvi__field *field;
+  dvi__vector_field *field;
   dvi__stages *coupled; /* NULL: the method is explicit */
   dvi__taylor *series;  /* NULL: it has a tableau */
   dvi__ends *ends;      /* NULL: the quadrature has values of L alone */
@@ -33,17 +33,22 @@ struct dvi__shot {
 
 static double **owned(dvi__shot *s, int i)
 {
-  double **const all[] = {&s->p0, &s->node, &s->W, &s->point, &s->turned, &s->lambda, &s->Gamma, &s->kappa};
+  double **const all[] = {&s->p0,     &s->node,   &s->W,     &s->point,
+                          &s->turned, &s->lambda, &s->Gamma, &s->kappa};
   return i < (int)(sizeof all / sizeof *all) ? all[i] : NULL;
 }
 
 static dvi_status allocate(dvi__shot *s)
 {
-  const size_t z = 2 * (size_t)s->n, stages = (size_t)s->method.stages, pieces = (size_t)s->course.pieces;
-  const size_t size[] = {z, z * (pieces + 1), z * stages * pieces, z, z, z, z * stages, z * stages * z};
+  const size_t z = 2 * (size_t)s->n, stages = (size_t)s->method.stages,
+               pieces = (size_t)s->course.pieces;
+  const size_t size[] = {z, z * (pieces + 1), z * stages * pieces, z, z,
+                         z, z * stages,       z * stages * z};
   for (int i = 0; owned(s, i) != NULL; i++) {
     *owned(s, i) = DVI_NEW(double, size[i]);
-    if (*owned(s, i) == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory for %d stages in %d dimensions", s->method.stages, s->n);
+    if (*owned(s, i) == NULL)
+      return dvi__fail(DVI_NO_MEMORY, "no memory for %d stages in %d dimensions", s->method.stages,
+                       s->n);
   }
   return DVI_OK;
 }
@@ -71,14 +76,20 @@ static int first_stage_is_node(const dvi__runge_kutta *m)
 static dvi_status fill(dvi__shot *s, const dvi_system *system, dvi_counters *counters)
 {
   DVI_TRY(allocate(s));
-  DVI_TRY(dvi__field_create(system, node_point(s, s->course.pieces) + 1, counters, &s->field));
-  if (s->method.series > 0) DVI_TRY(dvi__taylor_create(system, s->field, s->method.series, s->course.pieces, counters, &s->series));
-  if (s->course.count > 0) DVI_TRY(dvi__ends_create(system, s->course.count, s->course.weight, counters, &s->ends));
-  return s->method.is_explicit ? DVI_OK : dvi__stages_create(s->field, s->n, &s->method, counters, &s->coupled);
+  DVI_TRY(
+      dvi__vector_field_create(system, node_point(s, s->course.pieces) + 1, counters, &s->field));
+  if (s->method.series > 0)
+    DVI_TRY(dvi__taylor_create(system, s->field, s->method.series, s->course.pieces, counters,
+                               &s->series));
+  if (s->course.count > 0)
+    DVI_TRY(dvi__ends_create(system, s->course.count, s->course.weight, counters, &s->ends));
+  return s->method.is_explicit
+             ? DVI_OK
+             : dvi__stages_create(s->field, s->n, &s->method, counters, &s->coupled);
 }
 
-dvi_status dvi__shot_create(const dvi_system *system, const dvi__runge_kutta *method, const dvi__course *course,
-                            dvi_counters *counters, dvi__shot **shot)
+dvi_status dvi__shot_create(const dvi_system *system, const dvi__runge_kutta *method,
+                            const dvi__course *course, dvi_counters *counters, dvi__shot **shot)
 {
   *shot = NULL;
   dvi__shot *s = DVI_NEW(dvi__shot, 1);
@@ -102,12 +113,12 @@ void dvi__shot_destroy(dvi__shot **shot)
   dvi__stages_destroy(&s->coupled);
   dvi__taylor_destroy(&s->series);
   dvi__ends_destroy(&s->ends);
-  dvi__field_destroy(&s->field);
+  dvi__vector_field_destroy(&s->field);
   dvi__release(s);
   *shot = NULL;
 }
 
-dvi__field *dvi__shot_field(dvi__shot *s)
+dvi__vector_field *dvi__shot_vector_field(dvi__shot *s)
 {
   return s->field;
 }
@@ -146,7 +157,7 @@ static dvi_status place(dvi__shot *s, int point, double t, const double *moved, 
     s->point[i] = s->q0[i] + moved[i];
     s->point[s->n + i] = s->p0[i] + moved[s->n + i];
   }
-  return dvi__field_place(s->field, point, t, s->point, s->point + s->n, rate);
+  return dvi__vector_field_place(s->field, point, t, s->point, s->point + s->n, rate);
 }
 
 static dvi_status explicit_stages(dvi__shot *s, int piece, double t, double h)
@@ -156,8 +167,11 @@ static dvi_status explicit_stages(dvi__shot *s, int piece, double t, double h)
   for (int j = 0; j < m->stages; j++) {
     memcpy(moved, at(s, s->node, piece), 2 * (size_t)s->n * sizeof *moved);
     for (int k = 0; k < j; k++) add(s, m->a[j][k], at(s, W, k), moved);
-    const dvi_status status = place(s, stage_point(s, piece, j), t + m->c[j] * h, moved, at(s, W, j));
-    if (status != DVI_OK) return dvi__fail_in(status, "stage %d of the one-step method from node %d on", j + 1, piece + 1);
+    const dvi_status status = place(s, stage_point(s, piece, j), t + m->c[j] * h, moved,
+                                    at(s, W, j));
+    if (status != DVI_OK)
+      return dvi__fail_in(status, "stage %d of the one-step method from node %d on", j + 1,
+                          piece + 1);
     for (int i = 0; i < 2 * s->n; i++) at(s, W, j)[i] *= h;
   }
   return DVI_OK;
@@ -169,7 +183,9 @@ static dvi_status series_stage(dvi__shot *s, int piece, double t, double h)
   const int point = stage_point(s, piece, 0);
   dvi_status status = place(s, point, t, at(s, s->node, piece), s->turned);
   if (status == DVI_OK) status = dvi__taylor_advance(s->series, point, h, at(s, s->W, piece));
-  return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "the Taylor series of the motion at node %d", piece + 1);
+  return status == DVI_OK
+             ? DVI_OK
+             : dvi__fail_in(status, "the Taylor series of the motion at node %d", piece + 1);
 }
 
 static dvi_status coupled_stages(dvi__shot *s, int piece, double t, double h)
@@ -181,7 +197,9 @@ static dvi_status coupled_stages(dvi__shot *s, int piece, double t, double h)
   }
   const dvi_status status = dvi__stages_solve(s->coupled, stage_point(s, piece, 0), t, h, s->point,
                                               at(s, s->W, piece * s->method.stages));
-  return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "the stages of the one-step method from node %d on", piece + 1);
+  return status == DVI_OK
+             ? DVI_OK
+             : dvi__fail_in(status, "the stages of the one-step method from node %d on", piece + 1);
 }
 
 static dvi_status stages(dvi__shot *s, int piece)
@@ -200,7 +218,9 @@ static int stands_alone(const dvi__shot *s, int m)
 static dvi_status place_nodes(dvi__shot *s)
 {
   for (int m = 0; m <= s->course.pieces; m++)
-    if (stands_alone(s, m)) DVI_TRY(place(s, node_point(s, m), s->t0 + s->course.c[m] * s->h, at(s, s->node, m), s->turned));
+    if (stands_alone(s, m))
+      DVI_TRY(
+          place(s, node_point(s, m), s->t0 + s->course.c[m] * s->h, at(s, s->node, m), s->turned));
   return DVI_OK;
 }
 
@@ -238,9 +258,9 @@ dvi_status dvi__shot_duration(dvi__shot *s, double *duration)
 
 dvi_status dvi__shot_trace(dvi__shot *s)
 {
-  DVI_TRY(dvi__field_differentiate(s->field, 0, s->course.pieces * s->method.stages));
+  DVI_TRY(dvi__vector_field_differentiate(s->field, 0, s->course.pieces * s->method.stages));
   for (int m = 0; m <= s->course.pieces; m++)
-    if (stands_alone(s, m)) DVI_TRY(dvi__field_differentiate(s->field, node_point(s, m), 1));
+    if (stands_alone(s, m)) DVI_TRY(dvi__vector_field_differentiate(s->field, node_point(s, m), 1));
   for (int piece = 0; s->series != NULL && piece < s->course.pieces; piece++)
     DVI_TRY(dvi__taylor_trace(s->series, piece, length_of(s, piece)));
   return DVI_OK;
@@ -254,8 +274,8 @@ static dvi_status explicit_costates(dvi__shot *s, int piece, double h, const dou
     memset(Gamma, 0, 2 * (size_t)s->n * sizeof *Gamma);
     add(s, m->b[j], end, Gamma);
     for (int k = j + 1; k < m->stages; k++) add(s, m->a[k][j], at(s, s->kappa, k), Gamma);
-    DVI_TRY(dvi__field_select(s->field, stage_point(s, piece, j)));
-    dvi__field_pull(s->field, h, Gamma, at(s, s->kappa, j));
+    DVI_TRY(dvi__vector_field_select(s->field, stage_point(s, piece, j)));
+    dvi__vector_field_pull(s->field, h, Gamma, at(s, s->kappa, j));
   }
   return DVI_OK;
 }
@@ -268,8 +288,8 @@ static dvi_status coupled_costates(dvi__shot *s, int piece, double h, const doub
   }
   DVI_TRY(dvi__stages_solve_transposed(s->coupled, stage_point(s, piece, 0), h, s->Gamma));
   for (int j = 0; j < s->method.stages; j++) {
-    DVI_TRY(dvi__field_select(s->field, stage_point(s, piece, j)));
-    dvi__field_pull(s->field, h, at(s, s->Gamma, j), at(s, s->kappa, j));
+    DVI_TRY(dvi__vector_field_select(s->field, stage_point(s, piece, j)));
+    dvi__vector_field_pull(s->field, h, at(s, s->Gamma, j), at(s, s->kappa, j));
   }
   return DVI_OK;
 }
@@ -279,14 +299,15 @@ static dvi_status costates(dvi__shot *s, int piece, const double *end)
 {
   const double h = length_of(s, piece);
   if (s->series != NULL) return dvi__taylor_pull(s->series, piece, end, s->kappa);
-  return s->coupled != NULL ? coupled_costates(s, piece, h, end) : explicit_costates(s, piece, h, end);
+  return s->coupled != NULL ? coupled_costates(s, piece, h, end)
+                            : explicit_costates(s, piece, h, end);
 }
 
 static dvi_status add_lagrangian(dvi__shot *s, int m)
 {
   if (s->course.b[m] == 0) return DVI_OK;
-  DVI_TRY(dvi__field_select(s->field, node_point(s, m)));
-  dvi__field_lagrangian(s->field, s->point);
+  DVI_TRY(dvi__vector_field_select(s->field, node_point(s, m)));
+  dvi__vector_field_lagrangian(s->field, s->point);
   add(s, s->h * s->course.b[m], s->point, s->lambda);
   if (s->ends == NULL || (m > 0 && m < s->course.pieces)) return DVI_OK;
   DVI_TRY(dvi__ends_gradient(s->ends, s->field, m == 0 ? s->h : -s->h, s->point));
@@ -322,11 +343,12 @@ static dvi_status move_stages(dvi__shot *s, int piece, double h, int columns, do
 {
   const dvi__runge_kutta *m = &s->method;
   for (int j = 0; j < m->stages; j++) {
-    DVI_TRY(dvi__field_select(s->field, stage_point(s, piece, j)));
+    DVI_TRY(dvi__vector_field_select(s->field, stage_point(s, piece, j)));
     for (int i = 0; i < columns; i++) {
       memcpy(s->point, at(s, motion, i), 2 * (size_t)s->n * sizeof *s->point);
-      for (int k = 0; k < j && m->is_explicit; k++) add(s, m->a[j][k], at(s, column_of(s, i), k), s->point);
-      dvi__field_push(s->field, h, s->point, at(s, column_of(s, i), j));
+      for (int k = 0; k < j && m->is_explicit; k++)
+        add(s, m->a[j][k], at(s, column_of(s, i), k), s->point);
+      dvi__vector_field_push(s->field, h, s->point, at(s, column_of(s, i), j));
     }
   }
   return DVI_OK;
@@ -335,7 +357,8 @@ static dvi_status move_stages(dvi__shot *s, int piece, double h, int columns, do
 static dvi_status move_series(dvi__shot *s, int piece, int columns, const double *motion)
 {
   for (int i = 0; i < columns; i++)
-    DVI_TRY(dvi__taylor_push(s->series, piece, motion + (size_t)i * 2 * (size_t)s->n, column_of(s, i)));
+    DVI_TRY(
+        dvi__taylor_push(s->series, piece, motion + (size_t)i * 2 * (size_t)s->n, column_of(s, i)));
   return DVI_OK;
 }
 
@@ -352,10 +375,12 @@ dvi_status dvi__shot_move(dvi__shot *s, double *motion)
   const int columns = 2 * s->n;
   for (int piece = 0; piece < s->course.pieces; piece++) {
     const double h = length_of(s, piece);
-    DVI_TRY(s->series != NULL ? move_series(s, piece, columns, motion) : move_stages(s, piece, h, columns, motion));
+    DVI_TRY(s->series != NULL ? move_series(s, piece, columns, motion)
+                              : move_stages(s, piece, h, columns, motion));
     DVI_TRY(couple(s, piece, h, columns));
     for (int i = 0; i < columns; i++)
-      for (int j = 0; j < s->method.stages; j++) add(s, s->method.b[j], at(s, column_of(s, i), j), at(s, motion, i));
+      for (int j = 0; j < s->method.stages; j++)
+        add(s, s->method.b[j], at(s, column_of(s, i), j), at(s, motion, i));
   }
   return DVI_OK;
 }

@@ -29,13 +29,15 @@ enum { NOTHING, REACH, DERIVATIVES };
 
 static double **owned(dvi__shot_step *s, int i)
 {
-  double **const all[] = {&s->unit, &s->start, &s->shift, &s->end, &s->reach, &s->gain, &s->x, &s->motion, &s->values};
+  double **const all[] = {&s->unit, &s->start, &s->shift,  &s->end,   &s->reach,
+                          &s->gain, &s->x,     &s->motion, &s->values};
   return i < (int)(sizeof all / sizeof *all) ? all[i] : NULL;
 }
 
 static dvi_status allocate(dvi__shot_step *s)
 {
-  const size_t n = (size_t)s->n, size[] = {n, 2 * n, n, 2 * n, 2 * n, 2 * n, 2 * n, 4 * n * n, 4 * n * n};
+  const size_t n = (size_t)s->n,
+               size[] = {n, 2 * n, n, 2 * n, 2 * n, 2 * n, 2 * n, 4 * n * n, 4 * n * n};
   for (int i = 0; owned(s, i) != NULL; i++) {
     *owned(s, i) = DVI_NEW(double, size[i]);
     if (*owned(s, i) == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory for %d dimensions", s->n);
@@ -45,8 +47,8 @@ static dvi_status allocate(dvi__shot_step *s)
   return DVI_OK;
 }
 
-static dvi_status fill(dvi__shot_step *s, const dvi_system *system, const dvi__runge_kutta *method, const dvi__course *course,
-                       dvi_counters *counters)
+static dvi_status fill(dvi__shot_step *s, const dvi_system *system, const dvi__runge_kutta *method,
+                       const dvi__course *course, dvi_counters *counters)
 {
   DVI_TRY(allocate(s));
   DVI_TRY(dvi__pattern_copy(&(dvi_pattern){0}, 2 * s->n, "shooting", &s->pattern));
@@ -54,8 +56,9 @@ static dvi_status fill(dvi__shot_step *s, const dvi_system *system, const dvi__r
   return dvi__shot_create(system, method, course, counters, &s->shot);
 }
 
-dvi_status dvi__shot_step_create(const dvi_system *system, int type, const dvi__runge_kutta *method, const dvi__course *course,
-                                 dvi_counters *counters, dvi__shot_step **step)
+dvi_status dvi__shot_step_create(const dvi_system *system, int type, const dvi__runge_kutta *method,
+                                 const dvi__course *course, dvi_counters *counters,
+                                 dvi__shot_step **step)
 {
   *step = NULL;
   dvi__shot_step *s = DVI_NEW(dvi__shot_step, 1);
@@ -88,12 +91,13 @@ const dvi__pattern *dvi__shot_step_pattern(const dvi__shot_step *s)
 
 /* ---- the step ---- */
 
-/* The momentum by which a unit of q is moved in a step; of a Hamiltonian, whose momenta may move no q, their sizes beside those of q. */
+/* The momentum by which a unit of q is moved in a step; of a Hamiltonian, whose momenta may move no
+ * q, their sizes beside those of q. */
 static dvi_status choose_units(dvi__shot_step *s, double t0, double h, const double *v)
 {
   const size_t n = (size_t)s->n;
   if (!s->on_H) {
-    DVI_TRY(dvi__field_mass(dvi__shot_field(s->shot), t0, s->q0, v, s->unit));
+    DVI_TRY(dvi__vector_field_mass(dvi__shot_vector_field(s->shot), t0, s->q0, v, s->unit));
     for (size_t i = 0; i < n; i++) s->unit[i] /= fabs(h);
     return DVI_OK;
   }
@@ -107,11 +111,13 @@ static dvi_status choose_units(dvi__shot_step *s, double t0, double h, const dou
   return DVI_OK;
 }
 
-/* Where the shot of x starts; if that is where the last one did, all that is known of it stays so. */
+/* Where the shot of x starts; if that is where the last one did, all that is known of it stays
+ * so. */
 static void put(dvi__shot_step *s, const double *x)
 {
   for (int i = 0; i < s->n; i++) {
-    const double q = s->q0[i] + (s->type == 3 ? x[i] : 0), p = s->type == 3 ? s->p0[i] : s->unit[i] * x[i];
+    const double q = s->q0[i] + (s->type == 3 ? x[i] : 0),
+                 p = s->type == 3 ? s->p0[i] : s->unit[i] * x[i];
     if (q != s->q[i] || p != s->p[i]) s->known = NOTHING;
     s->shift[i] = s->type == 1 ? 0 : s->type == 2 ? x[s->n + i] : x[i];
     s->q[i] = q;
@@ -136,15 +142,15 @@ static dvi_status trace(dvi__shot_step *s)
   return DVI_OK;
 }
 
-dvi_status dvi__shot_step_place(dvi__shot_step *s, double t0, double h, double whole, const double *q0, const double *p0, double *v,
-                                double *x)
+dvi_status dvi__shot_step_place(dvi__shot_step *s, double t0, double h, double whole,
+                                const double *q0, const double *p0, double *v, double *x)
 {
   s->q0 = q0;
   s->p0 = p0;
   DVI_TRY(dvi__legendre_inverse(s->evaluator, t0, q0, p0, v));
   DVI_TRY(choose_units(s, t0, whole, v));
   dvi__shot_aim(s->shot, t0, h, s->q, s->unit);
-  dvi__field_guess(dvi__shot_field(s->shot), v);
+  dvi__vector_field_guess(dvi__shot_vector_field(s->shot), v);
   for (int i = 0; i < s->n; i++) {
     x[i] = s->type == 3 ? 0 : p0[i] / s->unit[i];
     x[s->n + i] = 0;
@@ -152,7 +158,8 @@ dvi_status dvi__shot_step_place(dvi__shot_step *s, double t0, double h, double w
   put(s, x);
   s->known = NOTHING;
   DVI_TRY(fire(s));
-  for (int i = 0; i < s->n && s->type != 2; i++) x[s->n + i] = (s->p[i] + s->reach[s->n + i]) / s->unit[i];
+  for (int i = 0; i < s->n && s->type != 2; i++)
+    x[s->n + i] = (s->p[i] + s->reach[s->n + i]) / s->unit[i];
   return DVI_OK;
 }
 
@@ -180,23 +187,27 @@ static dvi_status motions(dvi__shot_step *s)
 {
   const size_t z = 2 * (size_t)s->n;
   memset(s->motion, 0, z * z * sizeof *s->motion);
-  for (size_t k = 0; k < z; k++) s->motion[k * z + k] = k < (size_t)s->n ? 1 : s->unit[k - (size_t)s->n];
+  for (size_t k = 0; k < z; k++)
+    s->motion[k * z + k] = k < (size_t)s->n ? 1 : s->unit[k - (size_t)s->n];
   return dvi__shot_move(s->shot, s->motion);
 }
 
-/* The derivative of number l of the shot's end in direction i of its start: of q, or over unit_i of p. */
+/* The derivative of number l of the shot's end in direction i of its start: of q, or over unit_i of
+ * p. */
 static double moved(const dvi__shot_step *s, int l, int i)
 {
   const double *column = s->motion + (size_t)i * 2 * (size_t)s->n;
   return i < s->n ? column[l] : column[l] / s->unit[i - s->n];
 }
 
-/* What unknown k of those that move the start does to the row of direction `along`: Q^T Pi, and what stands beside G in the row. */
+/* What unknown k of those that move the start does to the row of direction `along`: Q^T Pi, and
+ * what stands beside G in the row. */
 static double of_start(const dvi__shot_step *s, int k, int along, int own)
 {
   const int n = s->n;
   double sum = s->type == 3 ? own : 0;
-  for (int l = 0; l < n && s->type != 2; l++) sum += moved(s, l, along) * s->motion[(s->type == 3 ? k : n + k) * 2 * n + n + l];
+  for (int l = 0; l < n && s->type != 2; l++)
+    sum += moved(s, l, along) * s->motion[(s->type == 3 ? k : n + k) * 2 * n + n + l];
   return sum;
 }
 
@@ -212,13 +223,15 @@ dvi_status dvi__shot_step_jacobian(void *step, const double *x, double *values)
       const int along = i < n ? n + i : i - n; /* the motion that row i is about */
       const double row = i < n ? 1 : 1 / s->unit[i - n];
       values[k * z + i] = row * of_start(s, k, along, i == k) - (s->type != 3 && i == n + k);
-      values[(n + k) * z + i] = row * (s->type == 2 ? moved(s, n + k, along) : -moved(s, k, along) * s->unit[k]);
+      values[(n + k) * z + i] = row * (s->type == 2 ? moved(s, n + k, along)
+                                                    : -moved(s, k, along) * s->unit[k]);
     }
   memcpy(s->values, values, (size_t)z * (size_t)z * sizeof *values);
   return DVI_OK;
 }
 
-/* Increments are small numbers: their changes come from those of x, not from the rows, whose p1 is rounded. */
+/* Increments are small numbers: their changes come from those of x, not from the rows, whose p1 is
+ * rounded. */
 void dvi__shot_step_ends(const dvi__shot_step *s, const double *x, double *dq, double *dp)
 {
   const int n = s->n, z = 2 * n;

@@ -9,15 +9,18 @@
 /* ---- blocks ---- */
 
 /* Write a block, or count it. */
-static void add(dvi__stacked_shot *s, int row, int column, dvi__stuff stuff, dvi__columns columns, int point, double factor)
+static void add(dvi__stacked_shot *s, int row, int column, dvi__stuff stuff, dvi__columns columns,
+                int point, double factor)
 {
   if (factor == 0) return;
-  if (s->block != NULL) s->block[s->block_count] = (dvi__stack_block){row, column, stuff, columns, point, factor};
+  if (s->block != NULL)
+    s->block[s->block_count] = (dvi__stack_block){row, column, stuff, columns, point, factor};
   s->block_count++;
 }
 
 /* The same in the columns on which z_m depends: those of its way, and of the start's momentum. */
-static void add_node(dvi__stacked_shot *s, int row, int m, dvi__stuff stuff, int point, double factor)
+static void add_node(dvi__stacked_shot *s, int row, int m, dvi__stuff stuff, int point,
+                     double factor)
 {
   add(s, row, dvi__stack_start(s), stuff, DVI__SECOND, point, factor);
   if (m > 0) add(s, row, dvi__stack_node(s, m), stuff, DVI__BOTH, point, factor);
@@ -44,7 +47,8 @@ static void add_piece(dvi__stacked_shot *s, int m)
   add_lambda(s, lambda, m + 1, -1);
   add_node(s, lambda, m, DVI__LAGRANGIAN_ZZ, dvi__stack_node_point(s, m), -s->course.b[m]);
   for (int j = 0; j < rk->stages; j++) {
-    const int W = dvi__stack_W(s, m, j), Gamma = dvi__stack_Gamma(s, m, j), point = dvi__stack_stage_point(s, m, j);
+    const int W = dvi__stack_W(s, m, j), Gamma = dvi__stack_Gamma(s, m, j),
+              point = dvi__stack_stage_point(s, m, j);
     add(s, W, W, DVI__ONE, DVI__BOTH, 0, 1);
     add_node(s, W, m, DVI__FLOW, point, -part);
     add(s, node, W, DVI__ONE, DVI__BOTH, 0, -rk->b[j]);
@@ -54,8 +58,8 @@ static void add_piece(dvi__stacked_shot *s, int m)
     add(s, lambda, Gamma, DVI__FLOW_TRANSPOSED, DVI__BOTH, point, -part);
     for (int k = 0; k < rk->stages; k++) {
       add(s, W, dvi__stack_W(s, m, k), DVI__FLOW, DVI__BOTH, point, -part * rk->a[j][k]);
-      add(s, Gamma, dvi__stack_Gamma(s, m, k), DVI__FLOW_TRANSPOSED, DVI__BOTH, dvi__stack_stage_point(s, m, k),
-          -part * rk->a[k][j]);
+      add(s, Gamma, dvi__stack_Gamma(s, m, k), DVI__FLOW_TRANSPOSED, DVI__BOTH,
+          dvi__stack_stage_point(s, m, k), -part * rk->a[k][j]);
     }
   }
 }
@@ -80,7 +84,8 @@ static dvi_status repeat(const dvi__pattern *quarter, dvi__pattern *whole)
   if (start == NULL || row == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory");
   for (int c = 0; c < 2 * n; c++) {
     for (int half = 0; half < 2; half++)
-      for (int k = quarter->start[c % n]; k < quarter->start[c % n + 1]; k++) row[e++] = quarter->row[k] + half * n;
+      for (int k = quarter->start[c % n]; k < quarter->start[c % n + 1]; k++)
+        row[e++] = quarter->row[k] + half * n;
     start[c + 1] = e;
   }
   return DVI_OK;
@@ -90,7 +95,8 @@ static dvi_status repeat(const dvi__pattern *quarter, dvi__pattern *whole)
 static dvi_status join(dvi__stacked_shot *s, const dvi_system *system)
 {
   dvi__pattern diagonal = {0}, quarter = {0};
-  if (system->mass_diagonal == NULL) return dvi__pattern_copy(&(dvi_pattern){0}, 2 * s->n, "stages", &s->joint);
+  if (system->mass_diagonal == NULL)
+    return dvi__pattern_copy(&(dvi_pattern){0}, 2 * s->n, "stages", &s->joint);
   dvi_status status = dvi__pattern_diagonal(s->n, &diagonal);
   if (status == DVI_OK) status = dvi__pattern_union(&system->qq, &diagonal, &quarter);
   if (status == DVI_OK) status = repeat(&quarter, &s->joint);
@@ -117,7 +123,8 @@ static dvi_status turn(dvi__stacked_shot *s)
   return DVI_OK;
 }
 
-/* The rows (lambda_0)_p = 0 and that of lambda_0 itself change places: then no entry of the diagonal is 0. */
+/* The rows (lambda_0)_p = 0 and that of lambda_0 itself change places: then no entry of the
+ * diagonal is 0. */
 static int row_of(const dvi__stacked_shot *s, int block, int i)
 {
   const int z = 2 * s->n, lambda = dvi__stack_lambda(s, 0), start = dvi__stack_start(s);
@@ -128,10 +135,12 @@ static int row_of(const dvi__stacked_shot *s, int block, int i)
 /* Entries of a block, column by column: how many, or the first row and column of each. */
 static int entries_of(const dvi__stacked_shot *s, const dvi__stack_block *b, int *row, int *column)
 {
-  const int z = 2 * s->n, from = b->columns == DVI__SECOND ? s->n : 0, to = b->columns == DVI__FIRST ? s->n : z;
+  const int z = 2 * s->n, from = b->columns == DVI__SECOND ? s->n : 0,
+            to = b->columns == DVI__FIRST ? s->n : z;
   int count = 0;
   for (int c = from; c < to; c++)
-    for (int e = b->stuff == DVI__ONE ? -1 : s->joint.start[c]; e < (b->stuff == DVI__ONE ? 0 : s->joint.start[c + 1]); e++) {
+    for (int e = b->stuff == DVI__ONE ? -1 : s->joint.start[c];
+         e < (b->stuff == DVI__ONE ? 0 : s->joint.start[c + 1]); e++) {
       if (row != NULL) {
         row[count] = row_of(s, b->row, b->stuff == DVI__ONE ? c : s->joint.row[e]);
         column[count] = b->column * z + c;
@@ -151,11 +160,13 @@ static void sort(int count, const int *key, int keys, int *begin, const int *ord
 }
 
 /* Entries at one place become one. order is by columns, and by rows in each. */
-static void merge(dvi__stacked_shot *s, int count, const int *row, const int *column, const int *order)
+static void merge(dvi__stacked_shot *s, int count, const int *row, const int *column,
+                  const int *order)
 {
   int last = -1;
   for (int t = 0; t < count; t++) {
-    const int e = order[t], fresh = t == 0 || row[e] != row[order[t - 1]] || column[e] != column[order[t - 1]];
+    const int e = order[t],
+              fresh = t == 0 || row[e] != row[order[t - 1]] || column[e] != column[order[t - 1]];
     last += fresh;
     s->where[e] = last;
     s->pattern.row[last] = row[e];
@@ -168,12 +179,14 @@ static dvi_status fill(dvi__stacked_shot *s, int count)
   const int unknowns = 2 * s->n * s->blocks;
   int *room = DVI_NEW(int, 4 * (size_t)count + (size_t)unknowns + 1);
   s->where = DVI_NEW(int, count);
-  s->pattern = (dvi__pattern){unknowns, unknowns, DVI_NEW(int, (size_t)unknowns + 1), DVI_NEW(int, count)};
+  s->pattern = (dvi__pattern){unknowns, unknowns, DVI_NEW(int, (size_t)unknowns + 1),
+                              DVI_NEW(int, count)};
   if (room == NULL || s->where == NULL || s->pattern.start == NULL || s->pattern.row == NULL) {
     dvi__release(room);
     return dvi__fail(DVI_NO_MEMORY, "no memory for %d unknowns", unknowns);
   }
-  int *row = room, *column = row + count, *first = column + count, *second = first + count, *begin = second + count, at = 0;
+  int *row = room, *column = row + count, *first = column + count, *second = first + count,
+      *begin = second + count, at = 0;
   for (int b = 0; b < s->block_count; b++) at += entries_of(s, &s->block[b], row + at, column + at);
   for (int t = 0; t < count; t++) second[t] = t;
   sort(count, row, unknowns, begin, second, first);
@@ -195,7 +208,9 @@ dvi_status dvi__stacked_shot_lay_out(dvi__stacked_shot *s, const dvi_system *sys
   for (int b = 0; b < s->block_count; b++) count += (size_t)entries_of(s, &s->block[b], NULL, NULL);
   if (count < INT_MAX) return fill(s, (int)count);
   return dvi__fail(DVI_BAD_SIZE,
-                   "the stages' Jacobian would have %zu entries, more than an int can count; take fewer stages or nodes", count);
+                   "the stages' Jacobian would have %zu entries, more than an int can count; take "
+                   "fewer stages or nodes",
+                   count);
 }
 
 void dvi__stacked_shot_clear_layout(dvi__stacked_shot *s)

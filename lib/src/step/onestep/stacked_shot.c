@@ -19,11 +19,14 @@ static double **owned(dvi__stacked_shot *s, int i)
 
 static dvi_status allocate(dvi__stacked_shot *s)
 {
-  const size_t z = 2 * (size_t)s->n, pieces = (size_t)s->course.pieces, stages = pieces * (size_t)s->method.stages;
+  const size_t z = 2 * (size_t)s->n, pieces = (size_t)s->course.pieces,
+               stages = pieces * (size_t)s->method.stages;
   const size_t size[] = {z, z * (size_t)s->blocks, z * stages, z * stages, z * (pieces + 1), z, z};
   for (int i = 0; owned(s, i) != NULL; i++) {
     *owned(s, i) = DVI_NEW(double, size[i]);
-    if (*owned(s, i) == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory for %d stages in %d dimensions", s->method.stages, s->n);
+    if (*owned(s, i) == NULL)
+      return dvi__fail(DVI_NO_MEMORY, "no memory for %d stages in %d dimensions", s->method.stages,
+                       s->n);
   }
   return DVI_OK;
 }
@@ -31,14 +34,16 @@ static dvi_status allocate(dvi__stacked_shot *s)
 static dvi_status fill(dvi__stacked_shot *s, const dvi_system *system, dvi_counters *counters)
 {
   DVI_TRY(dvi__joint_check(system, 2, 2 * s->blocks));
-  DVI_TRY(dvi__field_create(system, dvi__stack_node_point(s, s->course.pieces) + 1, counters, &s->field));
+  DVI_TRY(dvi__vector_field_create(system, dvi__stack_node_point(s, s->course.pieces) + 1, counters,
+                                   &s->field));
   DVI_TRY(dvi__evaluator_create(system, 1, DVI__GRADIENTS, counters, &s->evaluator));
   DVI_TRY(dvi__stacked_shot_lay_out(s, system));
   return allocate(s);
 }
 
-dvi_status dvi__stacked_shot_create(const dvi_system *system, const dvi__runge_kutta *method, const dvi__course *course,
-                                    dvi_counters *counters, dvi__stacked_shot **step)
+dvi_status dvi__stacked_shot_create(const dvi_system *system, const dvi__runge_kutta *method,
+                                    const dvi__course *course, dvi_counters *counters,
+                                    dvi__stacked_shot **step)
 {
   *step = NULL;
   dvi__stacked_shot *s = DVI_NEW(dvi__stacked_shot, 1);
@@ -60,7 +65,7 @@ void dvi__stacked_shot_destroy(dvi__stacked_shot **step)
   if (s == NULL) return;
   for (int i = 0; owned(s, i) != NULL; i++) dvi__release(*owned(s, i));
   dvi__stacked_shot_clear_layout(s);
-  dvi__field_destroy(&s->field);
+  dvi__vector_field_destroy(&s->field);
   dvi__evaluator_destroy(&s->evaluator);
   dvi__release(s);
   *step = NULL;
@@ -73,7 +78,8 @@ const dvi__pattern *dvi__stacked_shot_pattern(const dvi__stacked_shot *s)
 
 /* ---- units ---- */
 
-/* The size of component i of a block, in units of q: states (q,p), costates (p,q), the start (p,p). */
+/* The size of component i of a block, in units of q: states (q,p), costates (p,q), the start
+ * (p,p). */
 static double unit_of(const dvi__stacked_shot *s, int block, int i)
 {
   const int half = s->course.pieces * (s->method.stages + 1);
@@ -137,7 +143,7 @@ static dvi_status place(dvi__stacked_shot *s, int point, double t, double *rate)
     s->point[i] += s->q0[i];
     s->point[s->n + i] += p[i];
   }
-  return dvi__field_place(s->field, point, t, s->point, s->point + s->n, rate);
+  return dvi__vector_field_place(s->field, point, t, s->point, s->point + s->n, rate);
 }
 
 static dvi_status place_stage(dvi__stacked_shot *s, int m, int j)
@@ -147,9 +153,11 @@ static dvi_status place_stage(dvi__stacked_shot *s, int m, int j)
   const double h = length_of(s, m);
   double *rate = at(s, s->rate, point);
   go_to_node(s, m);
-  for (int k = 0; k < rk->stages; k++) add(s, rk->a[j][k], at(s, s->x, dvi__stack_W(s, m, k)), s->point);
+  for (int k = 0; k < rk->stages; k++)
+    add(s, rk->a[j][k], at(s, s->x, dvi__stack_W(s, m, k)), s->point);
   const dvi_status status = place(s, point, s->t0 + s->course.c[m] * s->h + rk->c[j] * h, rate);
-  if (status != DVI_OK) return dvi__fail_in(status, "stage %d of the one-step method from node %d on", j + 1, m + 1);
+  if (status != DVI_OK)
+    return dvi__fail_in(status, "stage %d of the one-step method from node %d on", j + 1, m + 1);
   for (int i = 0; i < 2 * s->n; i++) rate[i] *= h;
   return DVI_OK;
 }
@@ -160,12 +168,12 @@ static dvi_status place_all(dvi__stacked_shot *s)
   if (s->known) return DVI_OK;
   for (int m = 0; m < s->course.pieces; m++)
     for (int j = 0; j < s->method.stages; j++) DVI_TRY(place_stage(s, m, j));
-  DVI_TRY(dvi__field_differentiate(s->field, 0, s->course.pieces * s->method.stages));
+  DVI_TRY(dvi__vector_field_differentiate(s->field, 0, s->course.pieces * s->method.stages));
   for (int m = 0; m <= s->course.pieces; m++) {
     if (s->course.b[m] == 0) continue;
     go_to_node(s, m);
     DVI_TRY(place(s, dvi__stack_node_point(s, m), s->t0 + s->course.c[m] * s->h, s->turned));
-    DVI_TRY(dvi__field_differentiate(s->field, dvi__stack_node_point(s, m), 1));
+    DVI_TRY(dvi__vector_field_differentiate(s->field, dvi__stack_node_point(s, m), 1));
   }
   s->known = 1;
   return DVI_OK;
@@ -181,14 +189,14 @@ static dvi_status pull(dvi__stacked_shot *s)
     for (int j = 0; j < s->method.stages; j++) {
       const double *Gamma = at(s, s->x, dvi__stack_Gamma(s, m, j));
       const int point = dvi__stack_stage_point(s, m, j);
-      DVI_TRY(dvi__field_select(s->field, point));
-      dvi__field_pull(s->field, length_of(s, m), Gamma, at(s, s->kappa, point));
+      DVI_TRY(dvi__vector_field_select(s->field, point));
+      dvi__vector_field_pull(s->field, length_of(s, m), Gamma, at(s, s->kappa, point));
     }
   memset(s->slope, 0, 2 * (size_t)n * ((size_t)s->course.pieces + 1) * sizeof *s->slope);
   for (int m = 0; m <= s->course.pieces; m++) {
     if (s->course.b[m] == 0) continue;
-    DVI_TRY(dvi__field_select(s->field, dvi__stack_node_point(s, m)));
-    dvi__field_lagrangian(s->field, s->point);
+    DVI_TRY(dvi__vector_field_select(s->field, dvi__stack_node_point(s, m)));
+    dvi__vector_field_lagrangian(s->field, s->point);
     add(s, s->h * s->course.b[m], s->point, at(s, s->slope, m));
   }
   return DVI_OK;
@@ -220,14 +228,16 @@ static void piece_rows(dvi__stacked_shot *s, int m, double *R)
     add(s, 1, at(s, s->x, dvi__stack_Gamma(s, m, j)), Gamma);
     add(s, -rk->b[j], lambda(s, m + 1), Gamma);
     for (int i = 0; i < s->n; i++) Gamma[i] += rk->b[j] * p1[i];
-    for (int k = 0; k < rk->stages; k++) add(s, -rk->a[k][j], at(s, s->kappa, dvi__stack_stage_point(s, m, k)), Gamma);
+    for (int k = 0; k < rk->stages; k++)
+      add(s, -rk->a[k][j], at(s, s->kappa, dvi__stack_stage_point(s, m, k)), Gamma);
   }
 }
 
 /* As in stacked_pattern.c. */
 static void exchange(dvi__stacked_shot *s, double *R)
 {
-  double *lambda_row = at(s, R, dvi__stack_lambda(s, 0)), *start_row = at(s, R, dvi__stack_start(s));
+  double *lambda_row = at(s, R, dvi__stack_lambda(s, 0)),
+         *start_row = at(s, R, dvi__stack_start(s));
   for (int i = s->n; i < 2 * s->n; i++) {
     const double kept = lambda_row[i];
     lambda_row[i] = start_row[i];
@@ -293,9 +303,10 @@ static void hessian(dvi__stacked_shot *s)
   memset(s->point, 0, 2 * (size_t)s->n * sizeof *s->point);
   for (int c = 0; c < 2 * s->n; c++) {
     s->point[c] = 1;
-    dvi__field_product(s->field, s->point, s->turned);
+    dvi__vector_field_product(s->field, s->point, s->turned);
     s->point[c] = 0;
-    for (int e = s->joint.start[c]; e < s->joint.start[c + 1]; e++) s->H_zz[e] = s->turned[s->joint.row[e]];
+    for (int e = s->joint.start[c]; e < s->joint.start[c + 1]; e++)
+      s->H_zz[e] = s->turned[s->joint.row[e]];
   }
 }
 
@@ -305,16 +316,19 @@ static double value_of(const dvi__stacked_shot *s, dvi__stuff stuff, int row, in
   switch (stuff) {
   case DVI__FLOW: return (row < s->n ? 1 : -1) * s->H_zz[s->flow[e]];
   case DVI__FLOW_TRANSPOSED: return (column < s->n ? 1 : -1) * s->H_zz[s->transposed[e]];
-  case DVI__LAGRANGIAN_ZZ: return (row < s->n) != (column < s->n) ? 0 : (row < s->n ? -1 : 1) * s->H_zz[e];
+  case DVI__LAGRANGIAN_ZZ:
+    return (row < s->n) != (column < s->n) ? 0 : (row < s->n ? -1 : 1) * s->H_zz[e];
   case DVI__ONE: break;
   }
   return 0;
 }
 
 /* The entries of a block, behind `where`; returns how many. */
-static int fill_block(dvi__stacked_shot *s, const dvi__stack_block *b, const int *where, double *values)
+static int fill_block(dvi__stacked_shot *s, const dvi__stack_block *b, const int *where,
+                      double *values)
 {
-  const int z = 2 * s->n, from = b->columns == DVI__SECOND ? s->n : 0, to = b->columns == DVI__FIRST ? s->n : z;
+  const int z = 2 * s->n, from = b->columns == DVI__SECOND ? s->n : 0,
+            to = b->columns == DVI__FIRST ? s->n : z;
   int count = 0;
   for (int c = from; c < to; c++) {
     const double column = unit_of(s, b->column, c);
@@ -324,7 +338,8 @@ static int fill_block(dvi__stacked_shot *s, const dvi__stack_block *b, const int
     }
     for (int e = s->joint.start[c]; e < s->joint.start[c + 1]; e++) {
       const int i = s->joint.row[e];
-      values[where[count++]] += s->h * b->factor * value_of(s, b->stuff, i, c, e) * column / unit_of_row(s, b->row, i);
+      values[where[count++]] += s->h * b->factor * value_of(s, b->stuff, i, c, e) * column /
+                                unit_of_row(s, b->row, i);
     }
   }
   return count;
@@ -341,7 +356,7 @@ dvi_status dvi__stacked_shot_jacobian(void *step, const double *x, double *value
     const dvi__stack_block *block = &s->block[b];
     if (block->stuff != DVI__ONE && block->point != selected) {
       selected = block->point;
-      DVI_TRY(dvi__field_select(s->field, selected));
+      DVI_TRY(dvi__vector_field_select(s->field, selected));
       hessian(s);
     }
     at_entry += fill_block(s, block, s->where + at_entry, values);
@@ -351,7 +366,8 @@ dvi_status dvi__stacked_shot_jacobian(void *step, const double *x, double *value
 
 /* ---- the step ---- */
 
-/* Stages one after the other, from those that move as the start does: of an explicit method they are the shot. */
+/* Stages one after the other, from those that move as the start does: of an explicit method they
+ * are the shot. */
 static dvi_status sweep(dvi__stacked_shot *s)
 {
   const dvi__runge_kutta *rk = &s->method;
@@ -363,15 +379,16 @@ static dvi_status sweep(dvi__stacked_shot *s)
     for (int j = 0; j < rk->stages; j++) {
       DVI_TRY(place_stage(s, m, j));
       for (int k = j; k < (j == 0 ? rk->stages : j + 1); k++)
-        memcpy(at(s, s->x, dvi__stack_W(s, m, k)), at(s, s->rate, dvi__stack_stage_point(s, m, j)), bytes);
+        memcpy(at(s, s->x, dvi__stack_W(s, m, k)), at(s, s->rate, dvi__stack_stage_point(s, m, j)),
+               bytes);
     }
     for (int j = 0; j < rk->stages; j++) add(s, rk->b[j], at(s, s->x, dvi__stack_W(s, m, j)), next);
   }
   return DVI_OK;
 }
 
-dvi_status dvi__stacked_shot_place(dvi__stacked_shot *s, double t0, double h, double whole, const double *q0, const double *p0,
-                                   double *v, double *x)
+dvi_status dvi__stacked_shot_place(dvi__stacked_shot *s, double t0, double h, double whole,
+                                   const double *q0, const double *p0, double *v, double *x)
 {
   const int n = s->n;
   double *start = at(s, s->x, dvi__stack_start(s));
@@ -381,16 +398,18 @@ dvi_status dvi__stacked_shot_place(dvi__stacked_shot *s, double t0, double h, do
   s->p0 = p0;
   s->known = 0;
   DVI_TRY(dvi__legendre_inverse(s->evaluator, t0, q0, p0, v));
-  DVI_TRY(dvi__field_mass(s->field, t0, q0, v, s->unit));
+  DVI_TRY(dvi__vector_field_mass(s->field, t0, q0, v, s->unit));
   for (int i = 0; i < n; i++) s->unit[i] /= fabs(whole);
-  dvi__field_guess(s->field, v);
+  dvi__vector_field_guess(s->field, v);
   memset(s->x, 0, 2 * (size_t)n * (size_t)s->blocks * sizeof *s->x);
   memcpy(start + n, p0, (size_t)n * sizeof *p0);
   DVI_TRY(sweep(s));
-  for (int i = 0; i < n; i++) start[i] = p0[i] + at(s, s->x, dvi__stack_node(s, s->course.pieces))[n + i];
+  for (int i = 0; i < n; i++)
+    start[i] = p0[i] + at(s, s->x, dvi__stack_node(s, s->course.pieces))[n + i];
   for (int m = 0; m < s->course.pieces; m++)
     for (int j = 0; j < s->method.stages; j++)
-      for (int i = 0; i < n; i++) at(s, s->x, dvi__stack_Gamma(s, m, j))[i] = -s->method.b[j] * start[i];
+      for (int i = 0; i < n; i++)
+        at(s, s->x, dvi__stack_Gamma(s, m, j))[i] = -s->method.b[j] * start[i];
   give(s, x);
   return DVI_OK;
 }

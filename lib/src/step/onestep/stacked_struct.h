@@ -3,8 +3,14 @@
 #define DVI_ACTION_STACKED_STRUCT_H
 #include "step/onestep/stacked_shot.h"
 
-/* What a block of the Jacobian is made of: 1, or h times f_z, f_z^T or the second derivatives of L(t,q,v(q,p)) at a point; of which columns. */
-typedef enum dvi__stuff { DVI__ONE, DVI__FLOW, DVI__FLOW_TRANSPOSED, DVI__LAGRANGIAN_ZZ } dvi__stuff;
+/* What a block of the Jacobian is made of: 1, or h times f_z, f_z^T or the second derivatives of
+ * L(t,q,v(q,p)) at a point; of which columns. */
+typedef enum dvi__stuff {
+  DVI__ONE,
+  DVI__FLOW,
+  DVI__FLOW_TRANSPOSED,
+  DVI__LAGRANGIAN_ZZ
+} dvi__stuff;
 typedef enum dvi__columns { DVI__BOTH, DVI__FIRST, DVI__SECOND } dvi__columns;
 
 typedef struct dvi__stack_block {
@@ -19,10 +25,11 @@ struct dvi__stacked_shot {
   const dvi_system *system;
   dvi__runge_kutta method;
   dvi__course course;
-  dvi__field *field;
+  dvi__vector_field *field;
   dvi__evaluator *evaluator;
   int n, blocks; /* of unknowns */
-  /* The Jacobian. joint: of H's second derivatives in z; flow, transposed [entries of joint]: the entry of H_zz that f_z, f_z^T has there. */
+  /* The Jacobian. joint: of H's second derivatives in z; flow, transposed [entries of joint]: the
+   * entry of H_zz that f_z, f_z^T has there. */
   dvi__pattern joint, pattern;
   int *flow, *transposed;
   dvi__stack_block *block;

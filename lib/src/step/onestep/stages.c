@@ -9,7 +9,7 @@
 #include "num/finite.h"
 
 struct dvi__stages {
-  dvi__field *field;
+  dvi__vector_field *field;
   const dvi__runge_kutta *method;
   int n, unknowns;
   dvi__pattern pattern; /* full */
@@ -21,7 +21,8 @@ struct dvi__stages {
   double *slope;         /* [2n*2n*s] h f_z at the stages, column by column */
   double *values;        /* [unknowns^2] */
   double *point, *image; /* [2n] */
-  double *x, *R;         /* [unknowns] increments, those of momenta over `unit`; the residual, then the correction */
+  /* [unknowns] increments, those of momenta over `unit`; the residual, then the correction */
+  double *x, *R;
 };
 
 /* ---- equations ---- */
@@ -40,7 +41,8 @@ static double unit_of(const dvi__stages *s, int component)
 static void scale(const dvi__stages *s, int over, double *x)
 {
   for (int j = 0; j < s->method->stages; j++)
-    for (int i = s->n; i < 2 * s->n; i++) at(s, x, j)[i] *= over ? 1 / unit_of(s, i) : unit_of(s, i);
+    for (int i = s->n; i < 2 * s->n; i++)
+      at(s, x, j)[i] *= over ? 1 / unit_of(s, i) : unit_of(s, i);
 }
 
 static dvi_status residual(dvi__stages *s, const double *x, double *R)
@@ -53,9 +55,11 @@ static dvi_status residual(dvi__stages *s, const double *x, double *R)
       for (int k = 0; k < m->stages; k++) sum += m->a[j][k] * x[k * 2 * s->n + i];
       s->point[i] = s->z[i] + unit_of(s, i) * sum;
     }
-    const dvi_status status = dvi__field_place(s->field, s->first + j, s->t + m->c[j] * s->h, s->point, s->point + s->n, s->image);
+    const dvi_status status = dvi__vector_field_place(s->field, s->first + j, s->t + m->c[j] * s->h,
+                                                      s->point, s->point + s->n, s->image);
     if (status != DVI_OK) return dvi__fail_in(status, "stage %d", j + 1);
-    for (int i = 0; i < 2 * s->n; i++) R[row + (size_t)i] = x[row + (size_t)i] - s->h / unit_of(s, i) * s->image[i];
+    for (int i = 0; i < 2 * s->n; i++)
+      R[row + (size_t)i] = x[row + (size_t)i] - s->h / unit_of(s, i) * s->image[i];
   }
   return DVI_OK;
 }
@@ -66,11 +70,11 @@ static dvi_status slopes(dvi__stages *s, double h)
   const int z = 2 * s->n;
   memset(s->point, 0, (size_t)z * sizeof *s->point);
   for (int j = 0; j < s->method->stages; j++) {
-    DVI_TRY(dvi__field_select(s->field, s->first + j));
+    DVI_TRY(dvi__vector_field_select(s->field, s->first + j));
     for (int c = 0; c < z; c++) {
       double *column = s->slope + (size_t)(j * z + c) * (size_t)z;
       s->point[c] = unit_of(s, c);
-      dvi__field_product(s->field, s->point, s->image);
+      dvi__vector_field_product(s->field, s->point, s->image);
       s->point[c] = 0;
       for (int i = 0; i < s->n; i++) {
         column[i] = h * s->image[s->n + i];
@@ -111,7 +115,8 @@ static dvi_status allocate(dvi__stages *s)
   s->x = DVI_NEW(double, all);
   s->R = DVI_NEW(double, all);
   if (s->slope && s->values && s->point && s->image && s->x && s->R) return DVI_OK;
-  return dvi__fail(DVI_NO_MEMORY, "no memory for %d stages in %d dimensions", s->method->stages, s->n);
+  return dvi__fail(DVI_NO_MEMORY, "no memory for %d stages in %d dimensions", s->method->stages,
+                   s->n);
 }
 
 static dvi_status fill(dvi__stages *s, dvi_counters *counters)
@@ -122,8 +127,8 @@ static dvi_status fill(dvi__stages *s, dvi_counters *counters)
   return dvi__linear_create(&s->pattern, DVI__LINEAR_DENSE, counters, &s->linear);
 }
 
-dvi_status dvi__stages_create(dvi__field *field, int n, const dvi__runge_kutta *method, dvi_counters *counters,
-                              dvi__stages **stages)
+dvi_status dvi__stages_create(dvi__vector_field *field, int n, const dvi__runge_kutta *method,
+                              dvi_counters *counters, dvi__stages **stages)
 {
   *stages = NULL;
   dvi__stages *s = DVI_NEW(dvi__stages, 1);
@@ -172,12 +177,15 @@ dvi_status dvi__stages_factor(dvi__stages *s, int first, double h)
 /* At the points of the last residual. */
 static dvi_status renew(dvi__stages *s)
 {
-  DVI_TRY(dvi__field_differentiate(s->field, s->first, s->method->stages));
+  DVI_TRY(dvi__vector_field_differentiate(s->field, s->first, s->method->stages));
   const dvi_status status = dvi__stages_factor(s, s->first, s->h);
-  return status == DVI_SINGULAR ? dvi__fail_in(DVI_NOT_CONVERGED, "the stages' Jacobian cannot be factored") : status;
+  return status == DVI_SINGULAR
+             ? dvi__fail_in(DVI_NOT_CONVERGED, "the stages' Jacobian cannot be factored")
+             : status;
 }
 
-/* Newton's method to roundoff: to corrections of a few roundings, or to noise that shrinks no more. The Jacobian is kept while they shrink fast. */
+/* Newton's method to roundoff: to corrections of a few roundings, or to noise that shrinks no more.
+ * The Jacobian is kept while they shrink fast. */
 static dvi_status newton(dvi__stages *s)
 {
   enum { MOST = 40 };
@@ -191,7 +199,8 @@ static dvi_status newton(dvi__stages *s)
     dvi__linear_solve(s->linear, s->R);
     for (size_t i = 0; i < all; i++) s->x[i] -= s->R[i];
     const double correction = dvi__largest(all, s->R), whole = dvi__largest(all, s->x);
-    if (correction <= few * whole || (correction <= noise * whole && correction >= 0.5 * last)) return DVI_OK;
+    if (correction <= few * whole || (correction <= noise * whole && correction >= 0.5 * last))
+      return DVI_OK;
     if (!(correction <= 1e300)) break;
     fresh = correction <= fast * last;
     last = correction;
@@ -200,13 +209,14 @@ static dvi_status newton(dvi__stages *s)
 }
 
 /* From stages that all move as z does. */
-dvi_status dvi__stages_solve(dvi__stages *s, int first, double t, double h, const double *z, double *W)
+dvi_status dvi__stages_solve(dvi__stages *s, int first, double t, double h, const double *z,
+                             double *W)
 {
   s->first = first;
   s->t = t;
   s->h = h;
   s->z = z;
-  DVI_TRY(dvi__field_place(s->field, first, t, z, z + s->n, s->image));
+  DVI_TRY(dvi__vector_field_place(s->field, first, t, z, z + s->n, s->image));
   for (int j = 0; j < s->method->stages; j++)
     for (int i = 0; i < 2 * s->n; i++) at(s, s->x, j)[i] = h / unit_of(s, i) * s->image[i];
   DVI_TRY(newton(s));

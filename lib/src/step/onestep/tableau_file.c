@@ -8,7 +8,8 @@
  *     a 0 1/2
  *     a 0 0 1
  *     b 1/6 1/3 1/3 1/6
- * `order` and `b` stand once, `a` once for each stage, in their order; what a row of a leaves out is 0. Without `c` it is the sums of a's rows. */
+ * `order` and `b` stand once, `a` once for each stage, in their order; what a row of a leaves out
+ * is 0. Without `c` it is the sums of a's rows. */
 #define _POSIX_C_SOURCE 200809L /* S_ISREG */
 #include <dvi/number.h>
 #include <errno.h>
@@ -32,7 +33,8 @@ typedef struct reader {
 
 static dvi_status complain(const reader *r, const char *at, const char *sentence)
 {
-  return dvi__fail(DVI_BAD_OPTION, "%s:%d:%d: %s", r->path, r->line, (int)(at - r->text) + 1, sentence);
+  return dvi__fail(DVI_BAD_OPTION, "%s:%d:%d: %s", r->path, r->line, (int)(at - r->text) + 1,
+                   sentence);
 }
 
 static const char *skip_blanks(const char *at)
@@ -49,10 +51,12 @@ static dvi_status read_number(const reader *r, const char **at, double *number)
   if (*end == '/') {
     const char *below = end + 1;
     end = dvi_number_read(below, &denominator);
-    if (end == below || denominator == 0) return complain(r, below, "a number other than 0 is expected behind the stroke");
+    if (end == below || denominator == 0)
+      return complain(r, below, "a number other than 0 is expected behind the stroke");
   }
   *number /= denominator;
-  if (*end != 0 && strchr(" \t\r\n#", *end) == NULL) return complain(r, end, "a blank is expected behind the number");
+  if (*end != 0 && strchr(" \t\r\n#", *end) == NULL)
+    return complain(r, end, "a blank is expected behind the number");
   if (!isfinite(*number)) return complain(r, start, "the number is not finite");
   *at = end;
   return DVI_OK;
@@ -61,7 +65,8 @@ static dvi_status read_number(const reader *r, const char **at, double *number)
 static dvi_status read_row(const reader *r, const char *at, double *row, int *count)
 {
   for (*count = 0; *(at = skip_blanks(at)) != 0 && *at != '#'; ++*count) {
-    if (*count == DVI__RK_STAGES_MOST) return complain(r, at, "more than 16 numbers; methods of up to 16 stages are possible");
+    if (*count == DVI__RK_STAGES_MOST)
+      return complain(r, at, "more than 16 numbers; methods of up to 16 stages are possible");
     DVI_TRY(read_number(r, &at, &row[*count]));
   }
   return DVI_OK;
@@ -94,10 +99,13 @@ static dvi_status read_line(reader *r)
   if (length == 0) return DVI_OK;
   if (length == 5 && strncmp(word, "order", 5) == 0) return read_order(r, at);
   if (length == 1 && *word == 'a') return read_stage(r, at);
-  if (length == 1 && *word == 'b' && r->b_count == 0) return read_row(r, at, r->method->b, &r->b_count);
-  if (length == 1 && *word == 'c' && r->c_count == 0) return read_row(r, at, r->method->c, &r->c_count);
+  if (length == 1 && *word == 'b' && r->b_count == 0)
+    return read_row(r, at, r->method->b, &r->b_count);
+  if (length == 1 && *word == 'c' && r->c_count == 0)
+    return read_row(r, at, r->method->c, &r->c_count);
   return complain(r, word,
-                  length == 1 && (*word == 'b' || *word == 'c') ? "this row is given twice" : "order, a, b or c is expected");
+                  length == 1 && (*word == 'b' || *word == 'c') ? "this row is given twice"
+                                                                : "order, a, b or c is expected");
 }
 
 /* What the lines together say. */
@@ -107,12 +115,15 @@ static dvi_status finish(const reader *r)
   m->stages = r->rows;
   if (m->order == 0) return dvi__fail(DVI_BAD_OPTION, "%s: the order is missing", r->path);
   if (r->rows == 0 || r->b_count != r->rows || (r->c_count != 0 && r->c_count != r->rows))
-    return dvi__fail(DVI_BAD_OPTION, "%s: rows of a: %d, numbers of b: %d, of c: %d; as many of each are needed, or none of c",
-                     r->path, r->rows, r->b_count, r->c_count);
+    return dvi__fail(
+        DVI_BAD_OPTION,
+        "%s: rows of a: %d, numbers of b: %d, of c: %d; as many of each are needed, or none of c",
+        r->path, r->rows, r->b_count, r->c_count);
   for (int i = 0; i < m->stages; i++) {
     for (int j = m->stages; j < DVI__RK_STAGES_MOST; j++)
       if (m->a[i][j] != 0)
-        return dvi__fail(DVI_BAD_OPTION, "%s: row %d of a has more numbers than there are stages", r->path, i + 1);
+        return dvi__fail(DVI_BAD_OPTION, "%s: row %d of a has more numbers than there are stages",
+                         r->path, i + 1);
     for (int j = 0; j < m->stages && r->c_count == 0; j++) m->c[i] += m->a[i][j];
   }
   dvi__runge_kutta_classify(m);
@@ -127,14 +138,16 @@ static dvi_status read_lines(reader *r, size_t length)
     char *stop = memchr(r->text, '\n', (size_t)(end - r->text));
     if (stop == NULL) stop = end;
     *stop = 0;
-    if (strlen(r->text) < (size_t)(stop - r->text)) return complain(r, r->text + strlen(r->text), "a byte of 0; no text has it");
+    if (strlen(r->text) < (size_t)(stop - r->text))
+      return complain(r, r->text + strlen(r->text), "a byte of 0; no text has it");
     DVI_TRY(read_line(r));
     r->text = stop + 1;
   }
   return finish(r);
 }
 
-/* The whole file, at most one character more than it may have. What is no file, as a pipe, may never end, or never begin. */
+/* The whole file, at most one character more than it may have. What is no file, as a pipe, may
+ * never end, or never begin. */
 static dvi_status load(const char *path, char *text, size_t *length)
 {
   struct stat about;
@@ -147,7 +160,8 @@ static dvi_status load(const char *path, char *text, size_t *length)
   if (file != NULL) (void)fclose(file);
   if (broken) return dvi__fail(DVI_BAD_OPTION, "%s cannot be read: %s", path, strerror(reason));
   if (*length > FILE_MOST)
-    return dvi__fail(DVI_BAD_OPTION, "%s has more than %d characters; a tableau needs no more", path, FILE_MOST);
+    return dvi__fail(DVI_BAD_OPTION, "%s has more than %d characters; a tableau needs no more",
+                     path, FILE_MOST);
   return DVI_OK;
 }
 
@@ -157,7 +171,8 @@ dvi_status dvi__runge_kutta_read(const char *path, dvi__runge_kutta *method)
   char *text = DVI_NEW(char, FILE_MOST + 2);
   reader r = {.path = path, .method = method, .line = 1, .text = text};
   *method = (dvi__runge_kutta){0};
-  dvi_status status = text != NULL ? load(path, text, &length) : dvi__fail(DVI_NO_MEMORY, "no memory");
+  dvi_status status = text != NULL ? load(path, text, &length)
+                                   : dvi__fail(DVI_NO_MEMORY, "no memory");
   if (status == DVI_OK) status = read_lines(&r, length);
   dvi__release(text);
   return status;

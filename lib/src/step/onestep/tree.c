@@ -2,7 +2,8 @@
  *
  *     sum_i b_i g_i(root) = 1 / product over all vertices of the size of what stands on them,
  *     g_i(vertex) = product over its children of sum_j a_ij g_j(child).
- * Trees are listed by the levels of their vertices, from the tallest to the bush (Beyer and Hedetniemi 1980). */
+ * Trees are listed by the levels of their vertices, from the tallest to the bush (Beyer and
+ * Hedetniemi 1980). */
 #include <math.h>
 #include <stdio.h>
 
@@ -11,7 +12,8 @@
 
 enum { TEXT = 4 * DVI__TREES_MOST };
 
-/* levels[0] = 0 is the root; the children of a vertex are those of the next level that follow it. */
+/* levels[0] = 0 is the root; the children of a vertex are those of the next level that follow
+ * it. */
 typedef struct tree {
   int order;
   int level[DVI__TREES_MOST];
@@ -29,7 +31,8 @@ static int next(tree *t)
   return 1;
 }
 
-/* g of the vertex at `at`, and behind it the first vertex that does not stand on it. *density is multiplied by the sizes. */
+/* g of the vertex at `at`, and behind it the first vertex that does not stand on it. *density is
+ * multiplied by the sizes. */
 static int weigh(const dvi__runge_kutta *m, const tree *t, int at, double *g, double *density)
 {
   double of_child[DVI__RK_STAGES_MOST];
@@ -65,7 +68,9 @@ static const double rounding = 1e-12;
 /* What a sum that is off by this little hints at. */
 static const char *hint(double off)
 {
-  return fabs(off) < 1e-3 ? ", to 1e-12; are the decimals cut off? fractions and 15 digits are exact enough" : "";
+  return fabs(off) < 1e-3
+             ? ", to 1e-12; are the decimals cut off? fractions and 15 digits are exact enough"
+             : "";
 }
 
 static dvi_status check_tree(const dvi__runge_kutta *m, const tree *t)
@@ -79,7 +84,9 @@ static dvi_status check_tree(const dvi__runge_kutta *m, const tree *t)
   if (fabs(sum - 1 / density) <= rounding * (1 + size)) return DVI_OK;
   char text[TEXT];
   draw(t, text);
-  return dvi__fail(DVI_BAD_OPTION, "the tableau has not order %d: the sum of its condition for the tree %s is %.15g, not %s%.0f%s",
+  return dvi__fail(DVI_BAD_OPTION,
+                   "the tableau has not order %d: the sum of its condition for the tree %s is "
+                   "%.15g, not %s%.0f%s",
                    t->order, text, sum, density > 1 ? "1/" : "", density, hint(sum - 1 / density));
 }
 
@@ -89,8 +96,9 @@ dvi_status dvi__runge_kutta_check(const dvi__runge_kutta *method, int order)
     double sum = 0;
     for (int j = 0; j < method->stages; j++) sum += method->a[i][j];
     if (!(fabs(sum - method->c[i]) <= rounding * (1 + fabs(sum))))
-      return dvi__fail(DVI_BAD_OPTION, "the tableau's row %d of a has the sum %.15g, but c is %.15g there%s", i + 1, sum,
-                       method->c[i], hint(sum - method->c[i]));
+      return dvi__fail(DVI_BAD_OPTION,
+                       "the tableau's row %d of a has the sum %.15g, but c is %.15g there%s", i + 1,
+                       sum, method->c[i], hint(sum - method->c[i]));
   }
   for (int n = 1; n <= order && n <= DVI__TREES_MOST; n++) {
     tree t = {.order = n};

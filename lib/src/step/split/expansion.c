@@ -16,9 +16,10 @@ static double log_cosh(double x)
 
 /* log M of f on the ellipse of rho; HUGE_VAL where there is no bound.
  *
- * From the interval to the ellipse its ends move by `swell` = (high - low)/4 (rho - 2 + 1/rho). Its points have |s - low| - Re(s - low) <= 2 swell, as the
- * parabola with the focus `low` has that touches it on the left; so (Im x)^2 = (|s| - Re s)/2 <= swell - low. And c_1(s) is the product of 1 - s/(pi j)^2,
- * the factors of which are smallest at the right end. */
+ * From the interval to the ellipse its ends move by `swell` = (high - low)/4 (rho - 2 + 1/rho). Its
+ * points have |s - low| - Re(s - low) <= 2 swell, as the parabola with the focus `low` has that
+ * touches it on the left; so (Im x)^2 = (|s| - Re s)/2 <= swell - low. And c_1(s) is the product of
+ * 1 - s/(pi j)^2, the factors of which are smallest at the right end. */
 static double log_most(const dvi__growth *growth, double low, double high, double swell)
 {
   double c[4], most = log(growth->mass) + log_cosh(growth->type * sqrt(swell - low));
@@ -28,15 +29,19 @@ static double log_most(const dvi__growth *growth, double low, double high, doubl
   return c[1] > 0 ? most - growth->poles * log(c[1]) : HUGE_VAL;
 }
 
-/* log of what is left out behind degree 0, that of behind degree m being m log rho less. (1 - f)/s is largest at the rim, where |s| >= swell. */
-static double log_left_out(const dvi__growth *growth, int divided, double low, double high, double rho)
+/* log of what is left out behind degree 0, that of behind degree m being m log rho less. (1 - f)/s
+ * is largest at the rim, where |s| >= swell. */
+static double log_left_out(const dvi__growth *growth, int divided, double low, double high,
+                           double rho)
 {
   const double swell = (high - low) / 4 * (rho - 1) * (rho - 1) / rho;
   const double most = log_most(growth, low, high, swell);
-  return log(4 / (rho - 1)) + (divided ? fmax(most, 0) + log1p(exp(-fabs(most))) - log(swell) : most);
+  return log(4 / (rho - 1)) +
+         (divided ? fmax(most, 0) + log1p(exp(-fabs(most))) - log(swell) : most);
 }
 
-int dvi__expansion_degree(const dvi__growth *growth, int divided, double low, double high, double tolerance, double *bound)
+int dvi__expansion_degree(const dvi__growth *growth, int divided, double low, double high,
+                          double tolerance, double *bound)
 {
   const double wanted = log_most(growth, low, high, 0) + log(tolerance);
   double least = HUGE_VAL;
@@ -58,21 +63,25 @@ static double cosine_at(const double *cosine, long i, long points)
   return half > points ? -cosine[2 * points - half] : cosine[half];
 }
 
-/* At s_j = low + (high - low) cos^2(phi_j/2), phi_j = (2j+1) pi/(2m+2): the sums of f(s_j) cos(k phi_j). */
-void dvi__expansion_make(int degree, double low, double high, double (*f)(const void *user, double s), const void *user,
-                         double *room, double *c, int stride)
+/* At s_j = low + (high - low) cos^2(phi_j/2), phi_j = (2j+1) pi/(2m+2): the sums of f(s_j) cos(k
+ * phi_j). */
+void dvi__expansion_make(int degree, double low, double high,
+                         double (*f)(const void *user, double s), const void *user, double *room,
+                         double *c, int stride)
 {
   const int points = degree + 1;
   double *cosine = room, *value = room + points + 1;
   for (int i = 0; i <= points; i++) cosine[i] = cos(i * pi / (2 * points));
   for (int j = 0; j < points; j++) {
-    const double half = sin((2 * (points - j) - 1) * pi / (4 * points)); /* near `low` to all digits */
+    /* near `low` to all digits */
+    const double half = sin((2 * (points - j) - 1) * pi / (4 * points));
     value[j] = f(user, low + (high - low) * half * half);
   }
   for (int k = 0; k <= degree; k++) {
     double sum = 0, carry = 0;
     for (int j = 0; j < points; j++)
-      dvi__add_compensated(&sum, &carry, value[j] * cosine_at(cosine, (2 * (long)j + 1) * k, points));
+      dvi__add_compensated(&sum, &carry,
+                           value[j] * cosine_at(cosine, (2 * (long)j + 1) * k, points));
     c[(long)k * stride] = sum * (k > 0 ? 2.0 : 1.0) / points;
   }
 }

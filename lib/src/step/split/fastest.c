@@ -7,7 +7,8 @@
 #include "core/status.h"
 #include "num/cholesky.h"
 
-/* The power method with 2^SQUARINGS powers: eigenvalues closer than a thousandth of themselves are not told from each other. */
+/* The power method with 2^SQUARINGS powers: eigenvalues closer than a thousandth of themselves are
+ * not told from each other. */
 enum { MOST = DVI__FASTEST_MOST, SQUARINGS = 12 };
 
 struct dvi__fastest {
@@ -32,7 +33,8 @@ static dvi_status fill(dvi__fastest *f, const char *fast, dvi_counters *counters
   return DVI_OK;
 }
 
-dvi_status dvi__fastest_create(const dvi_system *system, const char *fast, dvi_counters *counters, dvi__fastest **fastest)
+dvi_status dvi__fastest_create(const dvi_system *system, const char *fast, dvi_counters *counters,
+                               dvi__fastest **fastest)
 {
   dvi__fastest *f = *fastest = DVI_NEW(dvi__fastest, 1);
   if (f == NULL) return dvi__fail(DVI_NO_MEMORY, "frequency: no memory");
@@ -57,7 +59,8 @@ void dvi__fastest_destroy(dvi__fastest **fastest)
 /* ---- the frequency ---- */
 
 /* The coordinates' part of a symmetric matrix, times a sign. */
-static void gather(const dvi__fastest *f, const dvi__pattern *pattern, const double *values, double sign, long double *part)
+static void gather(const dvi__fastest *f, const dvi__pattern *pattern, const double *values,
+                   double sign, long double *part)
 {
   for (int k = 0; k < f->count; k++)
     for (int l = 0; l < f->count; l++) {
@@ -106,7 +109,8 @@ static void square(int n, long double *A)
   memcpy(A, product, (size_t)(n * n) * sizeof *A);
 }
 
-/* The eigenvalue of the largest magnitude, from a high power of K: but for its scale that is the projection on the eigenvectors. */
+/* The eigenvalue of the largest magnitude, from a high power of K: but for its scale that is the
+ * projection on the eigenvectors. */
 static double largest_eigenvalue(int n, const long double *K)
 {
   long double power[MOST * MOST], trace = 0;
@@ -116,7 +120,8 @@ static double largest_eigenvalue(int n, const long double *K)
   return (double)(trace_of_product(n, K, power) / trace);
 }
 
-dvi_status dvi__fastest_frequency(dvi__fastest *f, double t, const double *q, const double *v, double *omega)
+dvi_status dvi__fastest_frequency(dvi__fastest *f, double t, const double *q, const double *v,
+                                  double *omega)
 {
   long double K[MOST * MOST] = {0}, M[MOST * MOST] = {0};
   DVI_TRY(dvi__lagrangian_hessian(f->evaluator, 1, &t, q, v, f->H_qq, f->H_qv, f->H_vv));
@@ -126,7 +131,8 @@ dvi_status dvi__fastest_frequency(dvi__fastest *f, double t, const double *q, co
   reduce(f->count, M, K);
   const double square_of_it = largest_eigenvalue(f->count, K);
   if (!(square_of_it > 0) || !isfinite(square_of_it))
-    return dvi__fail(DVI_BAD_STATE, "the fast coordinates do not oscillate about this state; give omega");
+    return dvi__fail(DVI_BAD_STATE,
+                     "the fast coordinates do not oscillate about this state; give omega");
   *omega = sqrt(square_of_it);
   return DVI_OK;
 }

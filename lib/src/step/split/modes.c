@@ -54,7 +54,8 @@ static void join(const dvi__pattern *pattern, int *parent)
   for (int i = 0; i < pattern->columns; i++) parent[i] = root_of(parent, i);
 }
 
-/* Blocks in the order of their first coordinates; `first` then says the number of a coordinate's block. */
+/* Blocks in the order of their first coordinates; `first` then says the number of a coordinate's
+ * block. */
 static void list_blocks(dvi__modes *m, int *first)
 {
   int *at = m->member;
@@ -87,7 +88,9 @@ static dvi_status find_blocks(dvi__modes *m, const dvi__pattern *pattern, int mo
   dvi__release(first);
   if (!complete) return no_memory();
   if (m->largest <= most) return DVI_OK;
-  return dvi__fail(DVI_BAD_SIZE, "normal modes: %d coordinates are coupled; %d at most are possible", m->largest, most);
+  return dvi__fail(DVI_BAD_SIZE,
+                   "normal modes: %d coordinates are coupled; %d at most are possible", m->largest,
+                   most);
 }
 
 /* ---- the modes of a block ---- */
@@ -132,7 +135,8 @@ static void multiply(const dvi__quadratic *q, const block *b)
         b->MX[k * size + i] += q->mass[e] * b->X[k * size + (size_t)j];
 }
 
-static dvi_status find_modes(const dvi__quadratic *q, const block *b, double *square, double *K, double *M)
+static dvi_status find_modes(const dvi__quadratic *q, const block *b, double *square, double *K,
+                             double *M)
 {
   gather(&q->pattern, q->stiffness, b, K);
   gather(&q->pattern, q->mass, b, M);
@@ -143,7 +147,8 @@ static dvi_status find_modes(const dvi__quadratic *q, const block *b, double *sq
     square[0] = K[0] / M[0];
     b->X[0] = 1 / sqrt(M[0]);
   } else {
-    return dvi__fail(DVI_SINGULAR, "normal modes: the mass of coordinate %d is not positive", b->member[0]);
+    return dvi__fail(DVI_SINGULAR, "normal modes: the mass of coordinate %d is not positive",
+                     b->member[0]);
   }
   multiply(q, b);
   return DVI_OK;
@@ -153,8 +158,10 @@ static dvi_status find_all_modes(dvi__modes *m, const dvi__quadratic *q)
 {
   const size_t most = (size_t)m->largest * (size_t)m->largest;
   size_t entries = 0;
-  for (int k = 0; k < m->block_count; k++) entries += (size_t)m->blocks[k].size * (size_t)m->blocks[k].size;
-  double *K = DVI_NEW(double, most), *M = DVI_NEW(double, most), *X = m->values = DVI_NEW(double, 2 * entries);
+  for (int k = 0; k < m->block_count; k++)
+    entries += (size_t)m->blocks[k].size * (size_t)m->blocks[k].size;
+  double *K = DVI_NEW(double, most), *M = DVI_NEW(double, most),
+         *X = m->values = DVI_NEW(double, 2 * entries);
   dvi_status status = K != NULL && M != NULL && X != NULL ? DVI_OK : no_memory();
   for (int k = 0; k < m->block_count && status == DVI_OK; k++) {
     block *b = &m->blocks[k];
@@ -170,7 +177,8 @@ static dvi_status find_all_modes(dvi__modes *m, const dvi__quadratic *q)
 
 /* ---- making them ---- */
 
-static dvi_status fill(dvi__modes *m, const dvi_system *system, int most, dvi__evaluator *evaluator, dvi__quadratic *q)
+static dvi_status fill(dvi__modes *m, const dvi_system *system, int most, dvi__evaluator *evaluator,
+                       dvi__quadratic *q)
 {
   const size_t n = (size_t)m->n;
   DVI_TRY(dvi__quadratic_fill(system, evaluator, q));
@@ -184,7 +192,8 @@ static dvi_status fill(dvi__modes *m, const dvi_system *system, int most, dvi__e
   return find_all_modes(m, q);
 }
 
-dvi_status dvi__modes_create(const dvi_system *system, int most, dvi_counters *counters, dvi__modes **modes)
+dvi_status dvi__modes_create(const dvi_system *system, int most, dvi_counters *counters,
+                             dvi__modes **modes)
 {
   dvi__evaluator *evaluator;
   dvi__quadratic quadratic = {.mass = NULL};
@@ -192,7 +201,8 @@ dvi_status dvi__modes_create(const dvi_system *system, int most, dvi_counters *c
   DVI_TRY(dvi__evaluator_create(system, 1, DVI__HESSIANS, counters, &evaluator));
   dvi__modes *made = *modes = DVI_NEW(dvi__modes, 1);
   if (made != NULL) made->n = system->n;
-  const dvi_status status = made != NULL ? fill(made, system, most, evaluator, &quadratic) : no_memory();
+  const dvi_status status = made != NULL ? fill(made, system, most, evaluator, &quadratic)
+                                         : no_memory();
   dvi__quadratic_clear(&quadratic);
   dvi__evaluator_destroy(&evaluator);
   if (status != DVI_OK) dvi__modes_destroy(modes);
@@ -256,19 +266,22 @@ void dvi__modes_of_forces(const dvi__modes *m, const double *f, double *y)
 static void add_columns(const block *b, const double *columns, const double *y, double *x)
 {
   for (int k = 0; k < b->size; k++)
-    for (int i = 0; i < b->size; i++) x[b->member[i]] += columns[(size_t)k * (size_t)b->size + (size_t)i] * y[k];
+    for (int i = 0; i < b->size; i++)
+      x[b->member[i]] += columns[(size_t)k * (size_t)b->size + (size_t)i] * y[k];
 }
 
 void dvi__modes_to_coordinates(const dvi__modes *m, const double *y, double *q)
 {
   memset(q, 0, (size_t)m->n * sizeof(double));
-  for (const block *b = m->blocks; b < m->blocks + m->block_count; y += b++->size) add_columns(b, b->X, y, q);
+  for (const block *b = m->blocks; b < m->blocks + m->block_count; y += b++->size)
+    add_columns(b, b->X, y, q);
 }
 
 void dvi__modes_to_forces(const dvi__modes *m, const double *y, double *f)
 {
   memset(f, 0, (size_t)m->n * sizeof(double));
-  for (const block *b = m->blocks; b < m->blocks + m->block_count; y += b++->size) add_columns(b, b->MX, y, f);
+  for (const block *b = m->blocks; b < m->blocks + m->block_count; y += b++->size)
+    add_columns(b, b->MX, y, f);
 }
 
 /* ---- motion ---- */
@@ -314,12 +327,13 @@ void dvi__modes_move(dvi__modes *m, double h, const double *V_q, const dvi__phas
   dvi__modes_of_forces(m, phase->p, w);
   dvi__modes_of_forces(m, V_q, force);
   for (int k = 0; k < m->n; k++) {
-    const double *factor = m->factor + 3 * (ptrdiff_t)k, y_change = factor[0] * w[k] - factor[1] * force[k];
+    const double *factor = m->factor + 3 * (ptrdiff_t)k,
+                 y_change = factor[0] * w[k] - factor[1] * force[k];
     w[k] = -factor[0] * force[k] - factor[2] * w[k];
     force[k] = y_change;
   }
   dvi__modes_to_coordinates(m, force, m->change);
-  dvi__add_compensated_all(m->n, phase->q, phase->q_carry, m->change);
+  dvi__add_compensated_all(m->n, phase->q, phase->q_compensation, m->change);
   dvi__modes_to_forces(m, w, m->change);
-  dvi__add_compensated_all(m->n, phase->p, phase->p_carry, m->change);
+  dvi__add_compensated_all(m->n, phase->p, phase->p_compensation, m->change);
 }

@@ -30,7 +30,8 @@ static int full_is_positive(const dvi__modified_mass *m, const double *values)
   const size_t n = (size_t)pattern->columns;
   memset(m->full, 0, n * n * sizeof *m->full);
   for (size_t j = 0; j < n; j++)
-    for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++) m->full[j * n + (size_t)pattern->row[e]] = values[e];
+    for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++)
+      m->full[j * n + (size_t)pattern->row[e]] = values[e];
   return dvi__is_positive_definite(pattern->columns, m->full);
 }
 
@@ -40,9 +41,11 @@ static dvi_status look_at_mass(dvi__modified_mass *m)
   const size_t n = (size_t)m->parts.pattern.columns;
   if (dvi__linear_kind_of(m->kept[0].linear) == DVI__LINEAR_DENSE) {
     m->full = DVI_NEW(double, n *n);
-    if (m->full == NULL) return dvi__fail(DVI_NO_MEMORY, "modified mass: no memory for %zu x %zu numbers", n, n);
+    if (m->full == NULL)
+      return dvi__fail(DVI_NO_MEMORY, "modified mass: no memory for %zu x %zu numbers", n, n);
   }
-  m->is_positive = m->full != NULL ? full_is_positive(m, m->parts.mass) : dvi__mass_is_positive(m->evaluator);
+  m->is_positive = m->full != NULL ? full_is_positive(m, m->parts.mass)
+                                   : dvi__mass_is_positive(m->evaluator);
   return DVI_OK;
 }
 
@@ -58,7 +61,8 @@ static dvi_status fill(dvi__modified_mass *m, const dvi_system *system, dvi_coun
   return look_at_mass(m);
 }
 
-dvi_status dvi__modified_mass_create(const dvi_system *system, dvi_counters *counters, dvi__modified_mass **mass)
+dvi_status dvi__modified_mass_create(const dvi_system *system, dvi_counters *counters,
+                                     dvi__modified_mass **mass)
 {
   dvi__modified_mass *made = *mass = DVI_NEW(dvi__modified_mass, 1);
   if (made == NULL) return dvi__fail(DVI_NO_MEMORY, "modified mass: no memory");
@@ -86,13 +90,15 @@ dvi_status dvi__modified_mass_keep(dvi__modified_mass *m, int count)
   const dvi__linear_kind kind = dvi__linear_kind_of(first);
   for (; m->count < count; m->count++) {
     dvi__linear **linear = &m->kept[m->count].linear;
-    DVI_TRY(kind == DVI__LINEAR_DENSE ? dvi__linear_create(&m->parts.pattern, kind, m->counters, linear)
-                                      : dvi__linear_create_like(first, kind, m->counters, linear));
+    DVI_TRY(kind == DVI__LINEAR_DENSE
+                ? dvi__linear_create(&m->parts.pattern, kind, m->counters, linear)
+                : dvi__linear_create_like(first, kind, m->counters, linear));
   }
   return DVI_OK;
 }
 
-/* From h = 0 on the matrix keeps what it is until it is singular; longer steps would jump through infinity. */
+/* From h = 0 on the matrix keeps what it is until it is singular; longer steps would jump through
+ * infinity. */
 static int is_as_the_mass(const dvi__modified_mass *m, const dvi__linear *linear)
 {
   if (!m->is_positive) return dvi__linear_sign(linear) == dvi__mass_sign(m->evaluator);
@@ -109,7 +115,8 @@ static dvi_status factor(dvi__modified_mass *m, double square, kept_factor *kept
   if (status == DVI_SINGULAR || !is_as_the_mass(m, kept->linear))
     return dvi__fail(
         DVI_NOT_CONVERGED, "M + h^2/4 K is singular at this length or at a shorter one: %s",
-        m->is_positive ? "the Hessian K of the fast potentials has negative directions, along which motion grows too much in a step"
+        m->is_positive ? "the Hessian K of the fast potentials has negative directions, along "
+                         "which motion grows too much in a step"
                        : "the mass M is indefinite, and K outweighs it along some direction");
   kept->square = square;
   return DVI_OK;

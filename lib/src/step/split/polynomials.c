@@ -36,7 +36,8 @@ static dvi_status no_memory(void)
 
 /* ---- the interval ---- */
 
-/* The discs of Gershgorin of column i, divided by its mass: those of M^-1 K, and of M^-1/2 K M^-1/2. */
+/* The discs of Gershgorin of column i, divided by its mass: those of M^-1 K, and of M^-1/2 K
+ * M^-1/2. */
 typedef struct discs {
   double centre, radius, even_radius;
 } discs;
@@ -54,7 +55,8 @@ static discs discs_of(const dvi__quadratic *q, const double *mass, int i)
   return d;
 }
 
-/* What rounding may have taken from an end moves it, but not off zero: T_k grows to 1 + k^2 delta so far out, delta of the interval's length. */
+/* What rounding may have taken from an end moves it, but not off zero: T_k grows to 1 + k^2 delta
+ * so far out, delta of the interval's length. */
 static void enclose(dvi__polynomials *p, const dvi__quadratic *q)
 {
   double low[2] = {0, 0}, high[2] = {0, 0};
@@ -65,7 +67,9 @@ static void enclose(dvi__polynomials *p, const dvi__quadratic *q)
     low[1] = fmin(low[1], d.centre - d.even_radius);
     high[0] = fmax(high[0], d.centre + d.radius);
     high[1] = fmax(high[1], d.centre + d.even_radius);
-    longest = q->pattern.start[i + 1] - q->pattern.start[i] > longest ? q->pattern.start[i + 1] - q->pattern.start[i] : longest;
+    longest = q->pattern.start[i + 1] - q->pattern.start[i] > longest
+                  ? q->pattern.start[i + 1] - q->pattern.start[i]
+                  : longest;
   }
   p->low = fmax(low[0], low[1]);
   p->high = fmin(high[0], high[1]);
@@ -81,13 +85,15 @@ static dvi_status check(const dvi_system *system)
 {
   const int row = dvi__pattern_entries(&system->qq) / system->n;
   if (system->mass_diagonal == NULL)
-    return dvi__fail(DVI_UNSUPPORTED, "polynomials: they need a mass with one number for each coordinate");
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "polynomials: they need a mass with one number for each coordinate");
   for (int i = 0; i < system->n; i++)
     if (!(system->mass_diagonal[i] > 0))
       return dvi__fail(DVI_SINGULAR, "polynomials: the mass of coordinate %d is not positive", i);
   if (row <= DVI__POLYNOMIALS_ROW) return DVI_OK;
   return dvi__fail(DVI_UNSUPPORTED,
-                   "polynomials: K has %d entries in a row on average, where %d are possible; give its pattern if it is sparse",
+                   "polynomials: K has %d entries in a row on average, where %d are possible; give "
+                   "its pattern if it is sparse",
                    row, (int)DVI__POLYNOMIALS_ROW);
 }
 
@@ -96,7 +102,8 @@ static dvi_status fill_matrix(dvi__polynomials *p, const dvi__quadratic *q)
   double *scale = DVI_NEW(double, p->n);
   if (scale == NULL) return no_memory();
   for (int i = 0; i < p->n; i++) scale[i] = 4 / (p->high - p->low) / p->mass[i];
-  const dvi_status status = dvi__stripes_fill(&q->pattern, q->stiffness, scale, 4 * p->low / (p->high - p->low), &p->G);
+  const dvi_status status = dvi__stripes_fill(&q->pattern, q->stiffness, scale,
+                                              4 * p->low / (p->high - p->low), &p->G);
   dvi__release(scale);
   return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "polynomials");
 }
@@ -108,11 +115,17 @@ static void hand_out(dvi__polynomials *p)
   p->room = p->motion + 4 * terms;
   for (int k = 0; k < DVI__POLYNOMIALS_SLOTS; k++) p->slot[k].c = p->room + (3 + (size_t)k) * terms;
   double *const x = p->vectors;
-  p->move = (dvi__clenshaw){
-      .G = &p->G, .lanes = 2, .c = p->motion, .x = x, .d = x + 2 * p->G.room, .b = x + 4 * p->G.room, .other = x + 6 * p->G.room};
+  p->move = (dvi__clenshaw){.G = &p->G,
+                            .lanes = 2,
+                            .c = p->motion,
+                            .x = x,
+                            .d = x + 2 * p->G.room,
+                            .b = x + 4 * p->G.room,
+                            .other = x + 6 * p->G.room};
 }
 
-static dvi_status fill(dvi__polynomials *p, const dvi_system *system, dvi__evaluator *evaluator, dvi__quadratic *q)
+static dvi_status fill(dvi__polynomials *p, const dvi_system *system, dvi__evaluator *evaluator,
+                       dvi__quadratic *q)
 {
   DVI_TRY(check(system));
   DVI_TRY(dvi__quadratic_fill(system, evaluator, q));
@@ -128,7 +141,8 @@ static dvi_status fill(dvi__polynomials *p, const dvi_system *system, dvi__evalu
   return DVI_OK;
 }
 
-dvi_status dvi__polynomials_create(const dvi_system *system, dvi_counters *counters, dvi__polynomials **polynomials)
+dvi_status dvi__polynomials_create(const dvi_system *system, dvi_counters *counters,
+                                   dvi__polynomials **polynomials)
 {
   dvi__evaluator *evaluator;
   dvi__quadratic quadratic = {.mass = NULL};
@@ -163,41 +177,48 @@ void dvi__polynomials_interval(const dvi__polynomials *p, double *low, double *h
 
 /* ---- coefficients ---- */
 
-/* A mode that grows takes digits from all others: the coefficients are as large as what it grows to. */
+/* A mode that grows takes digits from all others: the coefficients are as large as what it grows
+ * to. */
 static const double growth_most = 9;
 
-/* Of what is left out: half a rounding. */
+/* Of what is default: half a rounding. */
 static const double tolerance = DBL_EPSILON / 2;
 
-static dvi_status choose_degree(const dvi__polynomials *p, double h, const dvi__growth *growth, int divided, int *degree)
+static dvi_status choose_degree(const dvi__polynomials *p, double h, const dvi__growth *growth,
+                                int divided, int *degree)
 {
   const double x = fabs(h) * sqrt(p->high), growing = fabs(h) * sqrt(-p->low);
   double bound;
-  *degree = dvi__expansion_degree(growth, divided, h * h * p->low, h * h * p->high, tolerance, &bound);
+  *degree = dvi__expansion_degree(growth, divided, h * h * p->low, h * h * p->high, tolerance,
+                                  &bound);
   if (growing > growth_most)
     return dvi__fail(DVI_NOT_CONVERGED,
-                     "of omega^2 of fast modes it is only known that it is above %.6g, and exp(%.3g) is too much for polynomials; "
+                     "of omega^2 of fast modes it is only known that it is above %.6g, and "
+                     "exp(%.3g) is too much for polynomials; "
                      "h = %.3g is possible",
                      p->low, growing, h * growth_most / growing);
   if (*degree < 0)
     return dvi__fail(DVI_NOT_CONVERGED,
-                     "h omega = %.6g may be of a fast mode, where this filter does not exist: it divides by sinc(h omega), or by "
+                     "h omega = %.6g may be of a fast mode, where this filter does not exist: it "
+                     "divides by sinc(h omega), or by "
                      "its root; h = %.3g is possible",
                      x, 3 * h / x);
   if (*degree <= DVI__DEGREE_MOST) return DVI_OK;
-  return dvi__fail(
-      DVI_NOT_CONVERGED,
-      "h omega = %.6g may be of a fast mode, for which polynomials need the degree %d, of %d at most; h = %.3g is possible", x,
-      *degree, (int)DVI__DEGREE_MOST, 0.9 * h * DVI__DEGREE_MOST / *degree);
+  return dvi__fail(DVI_NOT_CONVERGED,
+                   "h omega = %.6g may be of a fast mode, for which polynomials need the degree "
+                   "%d, of %d at most; h = %.3g is possible",
+                   x, *degree, (int)DVI__DEGREE_MOST, 0.9 * h * DVI__DEGREE_MOST / *degree);
 }
 
-dvi_status dvi__polynomials_expand(dvi__polynomials *p, int slot, double h, const dvi__growth *growth, int divided,
+dvi_status dvi__polynomials_expand(dvi__polynomials *p, int slot, double h,
+                                   const dvi__growth *growth, int divided,
                                    double (*f)(const void *user, double s), const void *user)
 {
   int degree;
   DVI_TRY(choose_degree(p, h, growth, divided, &degree));
   p->slot[slot].degree = degree;
-  dvi__expansion_make(degree, h * h * p->low, h * h * p->high, f, user, p->room, p->slot[slot].c, 1);
+  dvi__expansion_make(degree, h * h * p->low, h * h * p->high, f, user, p->room, p->slot[slot].c,
+                      1);
   return DVI_OK;
 }
 
@@ -237,7 +258,8 @@ static dvi_status prepare(dvi__polynomials *p, double h)
   p->h = 0;
   DVI_TRY(choose_degree(p, h, &of_motion, 0, &p->move.degree));
   for (int k = 0; k < 4; k++)
-    dvi__expansion_make(p->move.degree, h * h * p->low, h * h * p->high, f[k], NULL, p->room, p->motion + k, 4);
+    dvi__expansion_make(p->move.degree, h * h * p->low, h * h * p->high, f[k], NULL, p->room,
+                        p->motion + k, 4);
   p->h = h;
   return DVI_OK;
 }
@@ -282,7 +304,8 @@ void dvi__polynomials_to_forces(dvi__polynomials *p, int slot, const double *for
   for (int i = 0; i < p->n; i++) Mx[i] *= p->mass[i];
 }
 
-dvi_status dvi__polynomials_move(dvi__polynomials *p, double h, const double *V_q, const dvi__phase *phase)
+dvi_status dvi__polynomials_move(dvi__polynomials *p, double h, const double *V_q,
+                                 const dvi__phase *phase)
 {
   if (p->h != h) DVI_TRY(prepare(p, h));
   double *const drift = elements(p->vectors), *const pull = drift + p->G.room;
@@ -293,8 +316,8 @@ dvi_status dvi__polynomials_move(dvi__polynomials *p, double h, const double *V_
   dvi__stripes_sum(&p->move);
   const double *const q_change = elements(p->move.d), *const v_change = q_change + p->G.room;
   for (int i = 0; i < p->n; i++) {
-    dvi__add_compensated(phase->q + i, phase->q_carry + i, q_change[i]);
-    dvi__add_compensated(phase->p + i, phase->p_carry + i, p->mass[i] * v_change[i] / h);
+    dvi__add_compensated(phase->q + i, phase->q_compensation + i, q_change[i]);
+    dvi__add_compensated(phase->p + i, phase->p_compensation + i, p->mass[i] * v_change[i] / h);
   }
   p->counters->products += 2 * p->move.degree;
   return DVI_OK;

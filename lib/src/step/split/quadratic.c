@@ -9,7 +9,8 @@ static dvi_status no_memory(void)
 }
 
 /* The values of a part at their places in the whole. */
-static dvi_status spread(const dvi__pattern *part, double sign, const double *values, const dvi__pattern *whole, double *to)
+static dvi_status spread(const dvi__pattern *part, double sign, const double *values,
+                         const dvi__pattern *whole, double *to)
 {
   int *where = DVI_NEW(int, dvi__pattern_entries(part));
   if (where == NULL) return no_memory();
@@ -41,7 +42,8 @@ dvi_status dvi__quadratic_fill(const dvi_system *s, dvi__evaluator *evaluator, d
   m->mass = DVI_NEW(double, dvi__pattern_entries(&m->pattern));
   m->stiffness = DVI_NEW(double, dvi__pattern_entries(&m->pattern));
   if (m->mass == NULL || m->stiffness == NULL) return no_memory();
-  DVI_TRY(spread(&s->vv, 1, s->mass_diagonal != NULL ? s->mass_diagonal : s->mass_values, &m->pattern, m->mass));
+  DVI_TRY(spread(&s->vv, 1, s->mass_diagonal != NULL ? s->mass_diagonal : s->mass_values,
+                 &m->pattern, m->mass));
   return find_stiffness(s, evaluator, m);
 }
 

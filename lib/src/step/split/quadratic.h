@@ -8,8 +8,10 @@ typedef struct dvi__quadratic {
   double *mass, *stiffness; /* in its order */
 } dvi__quadratic;
 
-/* K is asked for at t = 0 and q = 0, by an evaluator of the system with DVI__HESSIANS. What there is of it on failure is for dvi__quadratic_clear, too. */
-dvi_status dvi__quadratic_fill(const dvi_system *system, dvi__evaluator *evaluator, dvi__quadratic *quadratic);
+/* K is asked for at t = 0 and q = 0, by an evaluator of the system with DVI__HESSIANS. What there
+ * is of it on failure is for dvi__quadratic_clear, too. */
+dvi_status dvi__quadratic_fill(const dvi_system *system, dvi__evaluator *evaluator,
+                               dvi__quadratic *quadratic);
 void dvi__quadratic_clear(dvi__quadratic *quadratic);
 
 #endif

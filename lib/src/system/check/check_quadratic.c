@@ -2,7 +2,8 @@
  *
  * With g_s = V_q(t, q + s d) for a direction d in which no coordinate is left out, s from -2 to 2,
  *     g_1 - 2 g_0 + g_-1 = 0        and        (g_2 - g_-2) - 2 (g_1 - g_-1) = 0:
- * the first finds what is even in d, the second what is odd. Two other times t' must have g_1(t') - g_0(t') = g_1 - g_0. */
+ * the first finds what is even in d, the second what is odd. Two other times t' must have g_1(t') -
+ * g_0(t') = g_1 - g_0. */
 #include "system/check/check_quadratic.h"
 
 #include <float.h>
@@ -22,8 +23,8 @@ static double move(const double *q, int i)
 }
 
 /* V_q at q + s d, s = -2, .., 2 at t, and 0, 1 at each other time, [n] each; moved [n]. */
-static dvi_status ask(const dvi__potential_term *p, dvi__scratch *scratch, double t, const double *q, double *moved,
-                      double *gradient)
+static dvi_status ask(const dvi__potential_term *p, dvi__scratch *scratch, double t,
+                      const double *q, double *moved, double *gradient)
 {
   static const double apart[] = {0, 0.618033988749895, -3.302775637731995};
   const int n = scratch->n;
@@ -39,13 +40,16 @@ static dvi_status ask(const dvi__potential_term *p, dvi__scratch *scratch, doubl
 /* How far component i is from linear. */
 static double curvature(const double *g, int n, int i)
 {
-  const double *at = g + i, even = at[3 * n] - 2 * at[2 * n] + at[n], odd = (at[4 * n] - at[0]) - 2 * (at[3 * n] - at[n]);
+  const double *at = g + i, even = at[3 * n] - 2 * at[2 * n] + at[n],
+               odd = (at[4 * n] - at[0]) - 2 * (at[3 * n] - at[n]);
   double worst = fmax(fabs(even), fabs(odd));
-  for (int k = PLACES; k < LISTS; k += 2) worst = fmax(worst, fabs((at[(k + 1) * n] - at[k * n]) - (at[3 * n] - at[2 * n])));
+  for (int k = PLACES; k < LISTS; k += 2)
+    worst = fmax(worst, fabs((at[(k + 1) * n] - at[k * n]) - (at[3 * n] - at[2 * n])));
   return worst;
 }
 
-static dvi_status judge(const dvi__potential_term *p, int n, const double *gradient, double tolerance, dvi_derivative_check *result)
+static dvi_status judge(const dvi__potential_term *p, int n, const double *gradient,
+                        double tolerance, dvi_derivative_check *result)
 {
   /* Differences of a value resolve no more than this. */
   const double noise = dvi__potential_has_gradient(p) ? 0 : sqrt(DBL_EPSILON);
@@ -56,21 +60,23 @@ static dvi_status judge(const dvi__potential_term *p, int n, const double *gradi
     if (curvature(gradient, n, i) > worst) worst = curvature(gradient, n, i), row = i;
   if (!(worst > (tolerance + noise) * largest)) return DVI_OK;
   result->not_quadratic = 1;
-  (void)snprintf(result->where, sizeof result->where, "potential '%.24s': dV/dq (%d) is not linear in q", p->name, row);
-  return dvi__fail(
-      DVI_BAD_ARGUMENT,
-      "system check: potential '%.24s' is declared quadratic, but dV/dq (%d) is not linear in q with a constant slope: off "
-      "by %.3g, its largest entry %.3g",
-      p->name, row, worst, largest);
+  (void)snprintf(result->where, sizeof result->where,
+                 "potential '%.24s': dV/dq (%d) is not linear in q", p->name, row);
+  return dvi__fail(DVI_BAD_ARGUMENT,
+                   "system check: potential '%.24s' is declared quadratic, but dV/dq (%d) is not "
+                   "linear in q with a constant slope: off "
+                   "by %.3g, its largest entry %.3g",
+                   p->name, row, worst, largest);
 }
 
-dvi_status dvi__check_quadratic(const dvi_system *system, dvi__scratch *scratch, double t, const double *q, double tolerance,
-                                dvi_derivative_check *result)
+dvi_status dvi__check_quadratic(const dvi_system *system, dvi__scratch *scratch, double t,
+                                const double *q, double tolerance, dvi_derivative_check *result)
 {
   const size_t n = (size_t)system->n;
   double *numbers = DVI_NEW(double, (LISTS + 1) * n);
   dvi_status status = DVI_OK;
-  if (numbers == NULL) return dvi__fail(DVI_NO_MEMORY, "system check: no memory for %d dimensions", system->n);
+  if (numbers == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "system check: no memory for %d dimensions", system->n);
   for (int k = 0; k < system->potential_count && status == DVI_OK; k++) {
     const dvi__potential_term *p = &system->potentials[k];
     if (!p->callbacks.quadratic) continue;

@@ -46,7 +46,8 @@ static dvi_status prepare_constraints(dvi__evaluator *e, dvi__derivatives most)
   d->multiplier = DVI_NEW(double, m);
   d->field = DVI_NEW(double, 2 * n);
   d->pushed = DVI_NEW(double, 2 * n);
-  if (d->bracket == NULL || d->multiplier == NULL || d->field == NULL || d->pushed == NULL) return no_memory();
+  if (d->bracket == NULL || d->multiplier == NULL || d->field == NULL || d->pushed == NULL)
+    return no_memory();
   DVI_TRY(dvi__weighted_open(system, &d->weighted));
   return dvi__linear_create(bracket, dvi__linear_for_exchanges(bracket), e->counters, &e->velocity);
 }
@@ -70,26 +71,29 @@ dvi_status dvi__constraint_value(dvi__evaluator *e, const double *q, const doubl
   return dvi__verdict(c->value(q, p, phi, c->user), c->count, 1, phi, "constraint", "value", "");
 }
 
-dvi_status dvi__constraint_gradients(dvi__evaluator *e, const double *q, const double *p, double *phi_z)
+dvi_status dvi__constraint_gradients(dvi__evaluator *e, const double *q, const double *p,
+                                     double *phi_z)
 {
   const dvi__constraint_term *c = e->system->constraint;
   e->counters->gradients++;
-  return dvi__verdict(c->callbacks.gradient(q, p, phi_z, c->callbacks.user), dvi__pattern_entries(&c->gradients), 1, phi_z,
-                      "constraint", "gradient", "");
+  return dvi__verdict(c->callbacks.gradient(q, p, phi_z, c->callbacks.user),
+                      dvi__pattern_entries(&c->gradients), 1, phi_z, "constraint", "gradient", "");
 }
 
-dvi_status dvi__constraint_hessian(dvi__evaluator *e, const double *q, const double *p, const double *w, double *qq, double *qp,
-                                   double *pp)
+dvi_status dvi__constraint_hessian(dvi__evaluator *e, const double *q, const double *p,
+                                   const double *w, double *qq, double *qp, double *pp)
 {
   const double any_time = 0;
   memory_of(e)->weighted.w = w;
   e->counters->hessians++;
-  const dvi_status status = dvi__general_hessian(&memory_of(e)->weighted.term, &e->scratch, 1, &any_time, q, p, qq, qp, pp);
+  const dvi_status status = dvi__general_hessian(&memory_of(e)->weighted.term, &e->scratch, 1,
+                                                 &any_time, q, p, qq, qp, pp);
   dvi__count_differences(e);
   return status;
 }
 
-void dvi__constraint_push(const dvi__constraint_term *c, const double *phi_z, const double *w, double factor, double *z)
+void dvi__constraint_push(const dvi__constraint_term *c, const double *phi_z, const double *w,
+                          double factor, double *z)
 {
   const dvi__pattern *gradients = &c->gradients;
   const int n = gradients->rows / 2;
@@ -109,11 +113,13 @@ void dvi__constraint_push(const dvi__constraint_term *c, const double *phi_z, co
 static double along(const dvi__pattern *gradients, const double *phi_z, int a, const double *x)
 {
   double sum = 0;
-  for (int k = gradients->start[a]; k < gradients->start[a + 1]; k++) sum += phi_z[k] * x[gradients->row[k]];
+  for (int k = gradients->start[a]; k < gradients->start[a + 1]; k++)
+    sum += phi_z[k] * x[gradients->row[k]];
   return sum;
 }
 
-/* The bracket matrix into memory_of(e)->bracket, from the gradients that the weighted function holds. */
+/* The bracket matrix into memory_of(e)->bracket, from the gradients that the weighted function
+ * holds. */
 static dvi_status evaluate_bracket(dvi__evaluator *e, const double *q, const double *p)
 {
   const dvi__constraint_term *c = e->system->constraint;
@@ -136,9 +142,8 @@ static dvi_status factor_bracket(dvi__evaluator *e, const double *q, const doubl
   DVI_TRY(evaluate_bracket(e, q, p));
   const dvi_status status = dvi__linear_factor(e->velocity, memory_of(e)->bracket);
   if (status != DVI_SINGULAR) return status;
-  return dvi__fail(
-      status,
-      "the constraints' bracket matrix {phi_a, phi_b} is singular at this point: they are dependent, or not all of second class");
+  return dvi__fail(status, "the constraints' bracket matrix {phi_a, phi_b} is singular at this "
+                           "point: they are dependent, or not all of second class");
 }
 
 static dvi_status bracket_side(dvi__evaluator *e, const double *q, const double *p, int *side)
@@ -151,8 +156,8 @@ static dvi_status bracket_side(dvi__evaluator *e, const double *q, const double 
   return DVI_OK;
 }
 
-static dvi_status constrained_motion(dvi__evaluator *e, double t, const double *q, const double *p, double *v, double *pdot,
-                                     double *multiplier)
+static dvi_status constrained_motion(dvi__evaluator *e, double t, const double *q, const double *p,
+                                     double *v, double *pdot, double *multiplier)
 {
   const dvi__constraint_term *c = e->system->constraint;
   const constraint_memory *d = memory_of(e);
@@ -160,10 +165,12 @@ static dvi_status constrained_motion(dvi__evaluator *e, double t, const double *
   const int m = c->callbacks.count;
   DVI_TRY(dvi__hamiltonian_vector_field(e, t, q, p, d->field, d->field + n));
   DVI_TRY(factor_bracket(e, q, p));
-  for (int a = 0; a < m; a++) d->multiplier[a] = -along(&c->gradients, d->weighted.phi_z, a, d->field);
+  for (int a = 0; a < m; a++)
+    d->multiplier[a] = -along(&c->gradients, d->weighted.phi_z, a, d->field);
   dvi__linear_solve(e->velocity, d->multiplier);
   dvi__constraint_push(c, d->weighted.phi_z, d->multiplier, 1, d->field);
-  if (dvi__first_not_finite(2 * n, d->field) >= 0) return dvi__fail(DVI_NOT_FINITE, "the velocity at t = %.6g is not finite", t);
+  if (dvi__first_not_finite(2 * n, d->field) >= 0)
+    return dvi__fail(DVI_NOT_FINITE, "the velocity at t = %.6g is not finite", t);
   memcpy(v, d->field, n * sizeof *v);
   memcpy(pdot, d->field + n, n * sizeof *pdot);
   if (multiplier != NULL) memcpy(multiplier, d->multiplier, (size_t)m * sizeof *multiplier);
@@ -172,7 +179,8 @@ static dvi_status constrained_motion(dvi__evaluator *e, double t, const double *
 
 /* ---- the constraint ---- */
 
-static dvi_status constraint_distance(dvi__evaluator *e, const double *q, const double *p, double *distance)
+static dvi_status constraint_distance(dvi__evaluator *e, const double *q, const double *p,
+                                      double *distance)
 {
   double *phi = memory_of(e)->weighted.phi;
   DVI_TRY(dvi__constraint_value(e, q, p, phi));
@@ -180,11 +188,13 @@ static dvi_status constraint_distance(dvi__evaluator *e, const double *q, const 
   return DVI_OK;
 }
 
-/* A start computed in another way differs by its roundings; one that is off the constraint, by more. */
+/* A start computed in another way differs by its roundings; one that is off the constraint, by
+ * more. */
 static const double on_constraint = 1e-11;
 
 /* What the roundings of a point do to phi_a is measured by its gradient. */
-static double size_of(const dvi__constraint_term *c, const double *phi_z, int a, const double *q, const double *p)
+static double size_of(const dvi__constraint_term *c, const double *phi_z, int a, const double *q,
+                      const double *p)
 {
   const int n = c->gradients.rows / 2;
   double size = 0;
@@ -213,16 +223,16 @@ static dvi_status check_constraint(dvi__evaluator *e, const double *q, const dou
   DVI_TRY(dvi__constraint_gradients(e, q, p, at->phi_z));
   for (int a = 0; a < c->callbacks.count; a++) {
     if (!(fabs(at->phi[a]) <= on_constraint * size_of(c, at->phi_z, a, q, p)))
-      return dvi__fail(
-          DVI_BAD_ARGUMENT,
-          "constraint %d is %.17g at this point, not 0; start with phi(q,p) = 0, or let it be projected (dvi_start_options)", a,
-          at->phi[a]);
+      return dvi__fail(DVI_BAD_ARGUMENT,
+                       "constraint %d is %.17g at this point, not 0; start with phi(q,p) = 0, or "
+                       "let it be projected (dvi_start_options)",
+                       a, at->phi[a]);
   }
   return DVI_OK;
 }
 
-/* Newton's method along the vector fields (phi_p, -phi_q) of the constraints: the change X_phi mu makes
- * phi smaller by {phi, phi} mu. */
+/* Newton's method along the vector fields (phi_p, -phi_q) of the constraints: the change X_phi mu
+ * makes phi smaller by {phi, phi} mu. */
 static dvi_status project_on_constraint(dvi__evaluator *e, double t, double *q, double *p)
 {
   enum { MOST_ITERATIONS = 50 };
@@ -240,7 +250,8 @@ static dvi_status project_on_constraint(dvi__evaluator *e, double t, double *q, 
     memcpy(d->pushed, q, n * sizeof *q);
     memcpy(d->pushed + n, p, n * sizeof *p);
     dvi__constraint_push(c, d->weighted.phi_z, d->multiplier, 1, d->pushed);
-    if (dvi__first_not_finite(2 * n, d->pushed) >= 0) return dvi__fail(DVI_NOT_CONVERGED, "no point of the constraint was found");
+    if (dvi__first_not_finite(2 * n, d->pushed) >= 0)
+      return dvi__fail(DVI_NOT_CONVERGED, "no point of the constraint was found");
     DVI_TRY(constraint_distance(e, d->pushed, d->pushed + n, &next));
     if (next >= size) continue;
     memcpy(q, d->pushed, n * sizeof *q);
@@ -278,21 +289,28 @@ static double inverse_norm(dvi__evaluator *e, int m)
   return norm;
 }
 
-static dvi_status measure(dvi__evaluator *e, const double *q, const double *p, double *bracket, double *condition)
+static dvi_status measure(dvi__evaluator *e, const double *q, const double *p, double *bracket,
+                          double *condition)
 {
   const int m = e->system->constraint->callbacks.count;
   const dvi_status status = factor_bracket(e, q, p);
   if (status != DVI_OK && status != DVI_SINGULAR) return status;
-  if (condition != NULL) *condition = status == DVI_OK ? norm_of(m, memory_of(e)->bracket) * inverse_norm(e, m) : HUGE_VAL;
-  if (bracket != NULL) memcpy(bracket, memory_of(e)->bracket, (size_t)m * (size_t)m * sizeof *bracket);
+  if (condition != NULL)
+    *condition = status == DVI_OK ? norm_of(m, memory_of(e)->bracket) * inverse_norm(e, m)
+                                  : HUGE_VAL;
+  if (bracket != NULL)
+    memcpy(bracket, memory_of(e)->bracket, (size_t)m * (size_t)m * sizeof *bracket);
   return DVI_OK;
 }
 
-dvi_status dvi_system_bracket(const dvi_system *system, const double *q, const double *p, double *bracket, double *condition)
+dvi_status dvi_system_bracket(const dvi_system *system, const double *q, const double *p,
+                              double *bracket, double *condition)
 {
   dvi__evaluator *e;
-  if (system == NULL || q == NULL || p == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "bracket: an argument is NULL");
-  if (system->constraint == NULL) return dvi__fail(DVI_UNSUPPORTED, "bracket: the system declares no constraints phi(q,p)");
+  if (system == NULL || q == NULL || p == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "bracket: an argument is NULL");
+  if (system->constraint == NULL)
+    return dvi__fail(DVI_UNSUPPORTED, "bracket: the system declares no constraints phi(q,p)");
   const size_t n = (size_t)system->n;
   if (dvi__first_not_finite(n, q) >= 0 || dvi__first_not_finite(n, p) >= 0)
     return dvi__fail(DVI_NOT_FINITE, "bracket: the point is not finite");
@@ -320,7 +338,8 @@ static dvi_status declare_constrained(const dvi_system_terms *terms, dvi_system 
   return dvi__constraint_copy(terms->constraint, system->n, &system->constraint);
 }
 
-static dvi_status constrained_velocity(dvi__evaluator *e, double t, const double *q, const double *p, double *v)
+static dvi_status constrained_velocity(dvi__evaluator *e, double t, const double *q,
+                                       const double *p, double *v)
 {
   double *found = e->velocity_search;
   const size_t n = (size_t)e->system->n;

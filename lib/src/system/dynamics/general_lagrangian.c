@@ -1,9 +1,10 @@
 /* A general Lagrangian L(t,q,v): q' = v, p' = L_q, p = L_v.
  * Source: Marsden and West 2001, sec. 1.2.5 (the Legendre map p = L_v and its inverse).
  *
- * The inverse is Newton's method on p - L_v = 0, damped by the natural monotonicity test: a step d = L_vv^{-1} (p - L_v) is taken in full, or by
- * halves, so that the next simplified step, with the same L_vv, is shorter (Deuflhard 2004, sec. 3.3). Steps out of the domain of L, as beyond
- * the speed of light, are halved too. */
+ * The inverse is Newton's method on p - L_v = 0, damped by the natural monotonicity test: a step d
+ * = L_vv^{-1} (p - L_v) is taken in full, or by halves, so that the next simplified step, with the
+ * same L_vv, is shorter (Deuflhard 2004, sec. 3.3). Steps out of the domain of L, as beyond the
+ * speed of light, are halved too. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -21,8 +22,9 @@ typedef struct search {
   dvi__evaluator *e;
   double t;
   const double *q, *p;
-  double *v, *residual, *step;                 /* p - L_v at v, and the step from there */
-  double *trial, *trial_residual, *trial_step; /* the same at the next v; its step by the old L_vv */
+  double *v, *residual, *step; /* p - L_v at v, and the step from there */
+  /* the same at the next v; its step by the old L_vv */
+  double *trial, *trial_residual, *trial_step;
 } search;
 
 static double max_norm(int n, const double *x)
@@ -35,7 +37,8 @@ static double max_norm(int n, const double *x)
 static dvi_status find_residual(const search *s, const double *v, double *residual)
 {
   const size_t n = (size_t)s->e->system->n;
-  if (dvi__first_not_finite(n, v) >= 0) return dvi__fail(DVI_NOT_FINITE, "the velocity at t = %.6g is not finite", s->t);
+  if (dvi__first_not_finite(n, v) >= 0)
+    return dvi__fail(DVI_NOT_FINITE, "the velocity at t = %.6g is not finite", s->t);
   DVI_TRY(dvi__lagrangian_gradient(s->e, 1, &s->t, s->q, v, NULL, residual));
   for (size_t i = 0; i < n; i++) residual[i] = s->p[i] - residual[i];
   return DVI_OK;
@@ -49,8 +52,9 @@ static double solve(const search *s, const double *residual, double *step)
   return dvi__first_not_finite((size_t)n, step) < 0 ? max_norm(n, step) : HUGE_VAL;
 }
 
-/* Move along the step as far as the test allows; *size becomes that of the next simplified step. *settled: the step was rounding noise. A
- * velocity that vanishes (p = A(q), with a magnetic term A) has no size of its own to measure noise by; then the momentum has. */
+/* Move along the step as far as the test allows; *size becomes that of the next simplified step.
+ * *settled: the step was rounding noise. A velocity that vanishes (p = A(q), with a magnetic term
+ * A) has no size of its own to measure noise by; then the momentum has. */
 static dvi_status advance(search *s, double *size, int *settled)
 {
   const int n = s->e->system->n;
@@ -72,7 +76,9 @@ static dvi_status advance(search *s, double *size, int *settled)
     *size = next;
     return DVI_OK;
   }
-  return status != DVI_OK ? status : dvi__fail(DVI_NOT_CONVERGED, "Newton's method does not settle (change %.1e)", *size);
+  return status != DVI_OK
+             ? status
+             : dvi__fail(DVI_NOT_CONVERGED, "Newton's method does not settle (change %.1e)", *size);
 }
 
 /* From the guess in v to the roundoff floor. DVI_SINGULAR: L_vv is singular at the guess itself. */
@@ -95,8 +101,9 @@ static dvi_status newton(search *s)
   return dvi__fail(DVI_NOT_CONVERGED, "Newton's method does not settle (change %.1e)", size);
 }
 
-/* Newton's method from the guess in v, then from velocities along the momentum: a Lagrangian may be regular only away from v = 0, as v^4/4
- * is, or have its solution beyond a point where L_vv is singular. */
+/* Newton's method from the guess in v, then from velocities along the momentum: a Lagrangian may be
+ * regular only away from v = 0, as v^4/4 is, or have its solution beyond a point where L_vv is
+ * singular. */
 static dvi_status newton_from_guesses(search *s)
 {
   static const double along[] = {1, 0x1p4, 0x1p-4, 0x1p8, 0x1p-8, 0x1p16, 0x1p-16};
@@ -111,23 +118,27 @@ static dvi_status newton_from_guesses(search *s)
   if (singular == 1 + guesses) return dvi__lagrangian_is_degenerate(s->t);
   if (status == DVI_SINGULAR || status == DVI_NOT_CONVERGED)
     return dvi__fail(DVI_NOT_CONVERGED,
-                     "no velocity found for the momentum at t = %.6g: Newton's method did not settle from any of %d guesses", s->t,
-                     1 + guesses);
+                     "no velocity found for the momentum at t = %.6g: Newton's method did not "
+                     "settle from any of %d guesses",
+                     s->t, 1 + guesses);
   return status;
 }
 
-dvi_status dvi__search_velocity(dvi__evaluator *e, double t, const double *q, const double *p, double *v)
+dvi_status dvi__search_velocity(dvi__evaluator *e, double t, const double *q, const double *p,
+                                double *v)
 {
   const size_t n = (size_t)e->system->n;
   double *found = e->velocity_search;
-  search s = {e, t, q, p, found, found + n, found + 2 * n, found + 3 * n, found + 4 * n, found + 5 * n};
+  search s = {
+      e, t, q, p, found, found + n, found + 2 * n, found + 3 * n, found + 4 * n, found + 5 * n};
   memcpy(found, v, n * sizeof(double));
   DVI_TRY(newton_from_guesses(&s));
   memcpy(v, found, n * sizeof(double));
   return DVI_OK;
 }
 
-dvi_status dvi__velocity_hessian_is_regular(dvi__evaluator *e, double t, const double *q, const double *v)
+dvi_status dvi__velocity_hessian_is_regular(dvi__evaluator *e, double t, const double *q,
+                                            const double *v)
 {
   const double *L_vv;
   DVI_TRY(dvi__velocity_hessian(e, t, q, v, &L_vv));
@@ -148,12 +159,15 @@ static int lagrangian_is_declared(const dvi_system_terms *terms)
 
 static dvi_status declare_lagrangian(const dvi_system_terms *terms, dvi_system *s)
 {
-  static const char *const part[] = {"Lagrangian: d2L/dq2", "Lagrangian: d2L/dqdv", "Lagrangian: d2L/dv2"};
+  static const char *const part[] = {"Lagrangian: d2L/dq2", "Lagrangian: d2L/dqdv",
+                                     "Lagrangian: d2L/dv2"};
   const dvi_lagrangian *given = terms->lagrangian;
   if (given->value == NULL && given->value_batch == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "system: the Lagrangian has no value callback");
-  DVI_TRY(dvi__check_shapes("the Lagrangian", given->value && given->value_batch, given->gradient && given->gradient_batch,
-                            given->hessian && given->hessian_batch, given->rate && given->rate_batch));
+  DVI_TRY(dvi__check_shapes("the Lagrangian", given->value && given->value_batch,
+                            given->gradient && given->gradient_batch,
+                            given->hessian && given->hessian_batch,
+                            given->rate && given->rate_batch));
   DVI_TRY(dvi__check_rate(s, "the Lagrangian", given->rate || given->rate_batch));
   s->terms |= DVI__LAGRANGIAN;
   return dvi__declare_function(s, given, "Lagrangian", part);

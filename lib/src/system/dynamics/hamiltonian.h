@@ -7,12 +7,15 @@
 extern const char dvi__no_taylor_of_hamiltonian[];
 
 /* H stands where a general Lagrangian stands, and p where its v does. */
-dvi_status dvi__declare_hamiltonian(const dvi_system_terms *terms, dvi_system *system, dvi__term term);
+dvi_status dvi__declare_hamiltonian(const dvi_system_terms *terms, dvi_system *system,
+                                    dvi__term term);
 
 /* Hamilton's equations at a point: q' = H_p, p' = -H_q [n] each. */
-dvi_status dvi__hamiltonian_vector_field(dvi__evaluator *e, double t, const double *q, const double *p, double *qdot, double *pdot);
+dvi_status dvi__hamiltonian_vector_field(dvi__evaluator *e, double t, const double *q,
+                                         const double *p, double *qdot, double *pdot);
 
 /* E = H(t,q,p); v is not read. */
-dvi_status dvi__energy_of_hamiltonian(dvi__evaluator *e, double t, const double *q, const double *v, const double *p, double *E);
+dvi_status dvi__energy_of_hamiltonian(dvi__evaluator *e, double t, const double *q, const double *v,
+                                      const double *p, double *E);
 
 #endif

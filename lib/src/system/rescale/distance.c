@@ -1,13 +1,16 @@
-/* The monitor of distances, 1/g = S = sum of r^-p over all pairs of points; of one point, its distance r from the origin.
+/* The monitor of distances, 1/g = S = sum of r^-p over all pairs of points; of one point, its
+ * distance r from the origin.
  *
  *     g_q = -g^2 S_q,    g_qq = 2 g^3 S_q S_q^T - g^2 S_qq,
- *     r^-p: gradient -p r^-(p+2) d, Hessian p r^-(p+2) [ (p+2) d d^T/r^2 - I ] in the difference d of the two points. */
+ *     r^-p: gradient -p r^-(p+2) d, Hessian p r^-(p+2) [ (p+2) d d^T/r^2 - I ] in the difference d of the two
+ * points. */
 #include <math.h>
 #include <string.h>
 
 #include "system/rescale/monitor.h"
 
-/* A batch of points, coordinate i of point k at q[i*count + k], and two of the bodies; b < 0: the origin. */
+/* A batch of points, coordinate i of point k at q[i*count + k], and two of the bodies; b < 0: the
+ * origin. */
 typedef struct pair {
   const dvi__built_in *own;
   size_t count;
@@ -54,7 +57,8 @@ static void rates(const pair *p, double *square, double *rate)
 }
 
 /* g, and S_q [n*count] if it is wanted. */
-static void first_order(const dvi__built_in *own, int count, const double *q, double *g, double *S_q)
+static void first_order(const dvi__built_in *own, int count, const double *q, double *g,
+                        double *S_q)
 {
   pair p = first_pair(own, count, q);
   memset(g, 0, p.count * sizeof *g);
@@ -91,7 +95,8 @@ static int gradient(int count, const double *t, const double *q, double *g_q, vo
 }
 
 /* Entry (coordinate i of body x, coordinate j of body y) += change, by columns. */
-static void add_entry(const pair *p, int x, size_t i, int y, size_t j, size_t k, double change, double *S_qq)
+static void add_entry(const pair *p, int x, size_t i, int y, size_t j, size_t k, double change,
+                      double *S_qq)
 {
   S_qq[place(p, y, j) * (size_t)p->own->n + place(p, x, i) + k] += change;
 }
@@ -129,7 +134,8 @@ static int hessian(int count, const double *t, const double *q, double *g_qq, vo
     for (size_t i = 0; i < n; i++)
       for (size_t k = 0; k < points; k++) {
         double *entry = &g_qq[(j * n + i) * points + k];
-        *entry = own->g[k] * own->g[k] * (2 * own->g[k] * S_q[i * points + k] * S_q[j * points + k] - *entry);
+        *entry = own->g[k] * own->g[k] *
+                 (2 * own->g[k] * S_q[i * points + k] * S_q[j * points + k] - *entry);
       }
   return 0;
 }

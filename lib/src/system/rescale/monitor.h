@@ -1,4 +1,5 @@
-/* A monitor g(q) > 0, evaluated as the potential of a system of its own: with batches, differences and checks of what callbacks return. */
+/* A monitor g(q) > 0, evaluated as the potential of a system of its own: with batches, differences
+ * and checks of what callbacks return. */
 #ifndef DVI_SYSTEM_MONITOR_H
 #define DVI_SYSTEM_MONITOR_H
 #include <dvi/transform.h>
@@ -9,9 +10,11 @@ typedef struct dvi__monitor dvi__monitor;
 
 enum { DVI__MONITOR_NAME = 96 }; /* a longer name is cut */
 
-/* For batches of up to `capacity` points of the system. Counts what it asks the system for; counters must outlive it. */
-dvi_status dvi__monitor_create(const dvi_system *system, const dvi_monitor *given, int capacity, dvi__derivatives most,
-                               dvi_counters *counters, dvi__monitor **monitor);
+/* For batches of up to `capacity` points of the system. Counts what it asks the system for;
+ * counters must outlive it. */
+dvi_status dvi__monitor_create(const dvi_system *system, const dvi_monitor *given, int capacity,
+                               dvi__derivatives most, dvi_counters *counters,
+                               dvi__monitor **monitor);
 void dvi__monitor_destroy(dvi__monitor **monitor);
 
 const char *dvi__monitor_name(const dvi__monitor *monitor);
@@ -22,7 +25,8 @@ double dvi__monitor_noise(const dvi__monitor *monitor);
 /* E0, for the monitor of arc lengths. */
 void dvi__monitor_set_energy(dvi__monitor *monitor, double energy);
 
-/* g [count]; g_q [n*count]; g_qq [n*n*count], full, entry-major, only with DVI__HESSIANS. DVI_NOT_FINITE unless g is positive and finite. */
+/* g [count]; g_q [n*count]; g_qq [n*n*count], full, entry-major, only with DVI__HESSIANS.
+ * DVI_NOT_FINITE unless g is positive and finite. */
 dvi_status dvi__monitor_value(dvi__monitor *monitor, int count, const double *q, double *g);
 dvi_status dvi__monitor_gradient(dvi__monitor *monitor, int count, const double *q, double *g_q);
 dvi_status dvi__monitor_hessian(dvi__monitor *monitor, int count, const double *q, double *g_qq);

@@ -7,14 +7,16 @@
 #include "system/rescale/monitor.h"
 
 static const char *const names[] = {"distance", "arclength", "acceleration"};
-static const dvi_monitor_kind kinds[] = {DVI_MONITOR_DISTANCE, DVI_MONITOR_ARCLENGTH, DVI_MONITOR_ACCELERATION};
+static const dvi_monitor_kind kinds[] = {DVI_MONITOR_DISTANCE, DVI_MONITOR_ARCLENGTH,
+                                         DVI_MONITOR_ACCELERATION};
 enum { NAMES = sizeof names / sizeof *names };
 
 /* Whether the text begins with the word and ends there, or goes on after one of the stops. */
 static int begins(const char *text, const char *word, const char *stops)
 {
   const size_t length = strlen(word);
-  return strncmp(text, word, length) == 0 && (text[length] == 0 || strchr(stops, text[length]) != NULL);
+  return strncmp(text, word, length) == 0 &&
+         (text[length] == 0 || strchr(stops, text[length]) != NULL);
 }
 
 static dvi_status read_name(const char *specification, dvi_monitor *monitor)
@@ -24,7 +26,8 @@ static dvi_status read_name(const char *specification, dvi_monitor *monitor)
       monitor->kind = kinds[k];
       return DVI_OK;
     }
-  return dvi__fail(DVI_BAD_OPTION, "monitor: '%.*s' is unknown; there are distance, arclength and acceleration",
+  return dvi__fail(DVI_BAD_OPTION,
+                   "monitor: '%.*s' is unknown; there are distance, arclength and acceleration",
                    (int)strcspn(specification, ":"), specification);
 }
 
@@ -45,14 +48,17 @@ static dvi_status read_key(const char *name, const char *at, dvi_monitor *monito
                                                           : NULL;
   const int power = monitor->kind != DVI_MONITOR_ARCLENGTH && begins(at, "power", "=");
   if (whole == NULL && !power)
-    return dvi__fail(DVI_BAD_OPTION, "monitor %s: unknown key '%.*s'; it takes %s", name, (int)(equals - at), at,
+    return dvi__fail(DVI_BAD_OPTION, "monitor %s: unknown key '%.*s'; it takes %s", name,
+                     (int)(equals - at), at,
                      distance                                    ? "power, bodies, dimension"
                      : monitor->kind == DVI_MONITOR_ACCELERATION ? "power"
                                                                  : "none");
   if (*equals != '=' || !read_number(equals + 1, &number))
-    return dvi__fail(DVI_BAD_OPTION, "monitor %s: '%.*s' is not key=value with a positive number", name, length, at);
+    return dvi__fail(DVI_BAD_OPTION, "monitor %s: '%.*s' is not key=value with a positive number",
+                     name, length, at);
   if (whole != NULL ? *whole != 0 : monitor->power != 0)
-    return dvi__fail(DVI_BAD_OPTION, "monitor %s: key '%.*s' is given twice", name, (int)(equals - at), at);
+    return dvi__fail(DVI_BAD_OPTION, "monitor %s: key '%.*s' is given twice", name,
+                     (int)(equals - at), at);
   if (whole != NULL && (floor(number) != number || number > 1e9))
     return dvi__fail(DVI_BAD_OPTION, "monitor %s: '%.*s' is not a whole number", name, length, at);
   if (whole != NULL)
@@ -65,7 +71,8 @@ static dvi_status read_key(const char *name, const char *at, dvi_monitor *monito
 dvi_status dvi_monitor_read(const char *specification, dvi_monitor *monitor)
 {
   dvi_monitor read = {0};
-  if (specification == NULL || monitor == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "monitor: an argument is NULL");
+  if (specification == NULL || monitor == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "monitor: an argument is NULL");
   DVI_TRY(read_name(specification, &read));
   const char *name = names[(int)read.kind - 1], *at = specification + strlen(name);
   while (*at == ':' || *at == ',') {

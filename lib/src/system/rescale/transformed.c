@@ -41,13 +41,16 @@ struct dvi__transformed {
 static dvi_status allocate(const dvi_system *base, int capacity, work *w)
 {
   const size_t points = (size_t)capacity, n = (size_t)base->n * points;
-  const size_t qq = (size_t)dvi__pattern_entries(&base->qq) * points, qv = (size_t)dvi__pattern_entries(&base->qv) * points;
+  const size_t qq = (size_t)dvi__pattern_entries(&base->qq) * points,
+               qv = (size_t)dvi__pattern_entries(&base->qv) * points;
   const size_t vv = (size_t)dvi__pattern_entries(&base->vv) * points, full = (size_t)base->n * n;
   double **const part[] = {&w->v,   &w->g_q, &w->L_q,  &w->L_v,     &w->d,       &w->Mv,     &w->g,
                            &w->lag, &w->vMv, &w->g_qq, &w->base_qq, &w->base_qv, &w->base_vv};
   const size_t size[] = {n, n, n, n, n, n, points, points, points, full, qq, qv, vv};
   double *at = w->numbers = DVI_NEW(double, 6 * n + 3 * points + full + qq + qv + vv);
-  if (at == NULL) return dvi__fail(DVI_NO_MEMORY, "time transform: no memory for %d points in %d dimensions", capacity, base->n);
+  if (at == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "time transform: no memory for %d points in %d dimensions",
+                     capacity, base->n);
   for (size_t i = 0; i < sizeof part / sizeof *part; at += size[i++]) *part[i] = at;
   return DVI_OK;
 }
@@ -59,8 +62,11 @@ static dvi_status reserve(void *of, int capacity)
   dvi__monitor *monitor = NULL;
   dvi__evaluator *evaluator = NULL;
   if (capacity <= x->capacity) return DVI_OK;
-  dvi_status status = dvi__evaluator_create(x->base, capacity, DVI__HESSIANS, x->counters, &evaluator);
-  if (status == DVI_OK) status = dvi__monitor_create(x->base, &x->given, capacity, DVI__HESSIANS, x->counters, &monitor);
+  dvi_status status = dvi__evaluator_create(x->base, capacity, DVI__HESSIANS, x->counters,
+                                            &evaluator);
+  if (status == DVI_OK)
+    status = dvi__monitor_create(x->base, &x->given, capacity, DVI__HESSIANS, x->counters,
+                                 &monitor);
   if (status == DVI_OK) status = allocate(x->base, capacity, &room);
   if (status != DVI_OK) {
     dvi__evaluator_destroy(&evaluator);
@@ -86,12 +92,15 @@ static dvi_status velocities(dvi__transformed *x, int count, const double *q, co
   const size_t points = (size_t)count;
   DVI_TRY(dvi__monitor_value(x->monitor, count, q, x->work.g));
   for (size_t i = 0; i < (size_t)x->base->n; i++)
-    for (size_t k = 0; k < points; k++) x->work.v[i * points + k] = w[i * points + k] / x->work.g[k];
+    for (size_t k = 0; k < points; k++)
+      x->work.v[i * points + k] = w[i * points + k] / x->work.g[k];
   return DVI_OK;
 }
 
-/* The evaluator that asks counts the same points; the system's own evaluator counts what is really evaluated. */
-static dvi_status value(void *of, int count, const double *t, const double *q, const double *w, double *L)
+/* The evaluator that asks counts the same points; the system's own evaluator counts what is really
+ * evaluated. */
+static dvi_status value(void *of, int count, const double *t, const double *q, const double *w,
+                        double *L)
 {
   dvi__transformed *x = of;
   x->counters->values -= count;
@@ -107,12 +116,14 @@ static void find_lag(const dvi__transformed *x, int count)
   const work *at = &x->work;
   const size_t points = (size_t)count;
   for (size_t i = 0; i < (size_t)x->base->n; i++)
-    for (size_t k = 0; k < points; k++) at->lag[k] -= at->L_v[i * points + k] * at->v[i * points + k];
+    for (size_t k = 0; k < points; k++)
+      at->lag[k] -= at->L_v[i * points + k] * at->v[i * points + k];
   for (size_t k = 0; k < points; k++) at->lag[k] += x->energy;
 }
 
 /* Everything of first order: v, g, g_q, L_q, L_v and lag = E0 - E. */
-static dvi_status first_order(dvi__transformed *x, int count, const double *t, const double *q, const double *w)
+static dvi_status first_order(dvi__transformed *x, int count, const double *t, const double *q,
+                              const double *w)
 {
   const work *at = &x->work;
   DVI_TRY(velocities(x, count, q, w));
@@ -123,7 +134,8 @@ static dvi_status first_order(dvi__transformed *x, int count, const double *t, c
   return DVI_OK;
 }
 
-static dvi_status gradient(void *of, int count, const double *t, const double *q, const double *w, double *L_q, double *L_w)
+static dvi_status gradient(void *of, int count, const double *t, const double *q, const double *w,
+                           double *L_q, double *L_w)
 {
   dvi__transformed *x = of;
   const work *at = &x->work;
@@ -132,18 +144,22 @@ static dvi_status gradient(void *of, int count, const double *t, const double *q
   DVI_TRY(first_order(x, count, t, q, w));
   for (size_t i = 0; i < n; i++)
     for (size_t k = 0; k < points; k++)
-      L_q[i * points + k] = at->g[k] * at->L_q[i * points + k] + at->lag[k] * at->g_q[i * points + k];
+      L_q[i * points + k] = at->g[k] * at->L_q[i * points + k] +
+                            at->lag[k] * at->g_q[i * points + k];
   memcpy(L_w, at->L_v, n * points * sizeof *L_w);
-  if (dvi__first_not_finite(n * points, L_q) < 0 && dvi__first_not_finite(n * points, L_w) < 0) return DVI_OK;
+  if (dvi__first_not_finite(n * points, L_q) < 0 && dvi__first_not_finite(n * points, L_w) < 0)
+    return DVI_OK;
   return dvi__fail(DVI_NOT_FINITE, "time transform: the gradient is not finite");
 }
 
 /* y += A x (point by point), A of a pattern. */
-static void add_product(const dvi__pattern *pattern, size_t points, const double *A, const double *x, double *y)
+static void add_product(const dvi__pattern *pattern, size_t points, const double *A,
+                        const double *x, double *y)
 {
   for (size_t j = 0; j < (size_t)pattern->columns; j++)
     for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++)
-      for (size_t k = 0; k < points; k++) y[(size_t)pattern->row[e] * points + k] += A[(size_t)e * points + k] * x[j * points + k];
+      for (size_t k = 0; k < points; k++)
+        y[(size_t)pattern->row[e] * points + k] += A[(size_t)e * points + k] * x[j * points + k];
 }
 
 /* d, Mv and vMv. */
@@ -171,37 +187,44 @@ static void fill_full(const work *at, size_t n, size_t points, double *L_qq, dou
       for (size_t k = 0; k < points; k++) {
         const size_t e = (j * n + i) * points + k, row = i * points + k, column = j * points + k;
         const double g_i = at->g_q[row], g_j = at->g_q[column], g = at->g[k];
-        L_qq[e] = at->d[row] * g_j + g_i * at->d[column] + at->vMv[k] / g * g_i * g_j + at->lag[k] * at->g_qq[e];
+        L_qq[e] = at->d[row] * g_j + g_i * at->d[column] + at->vMv[k] / g * g_i * g_j +
+                  at->lag[k] * at->g_qq[e];
         L_qw[e] = -g_i * at->Mv[column] / g;
       }
 }
 
 /* Add the system's own blocks, `by` g or not, where their patterns have entries. */
-static void add_block(const dvi__pattern *pattern, size_t n, size_t points, const double *A, const double *by, double *full)
+static void add_block(const dvi__pattern *pattern, size_t n, size_t points, const double *A,
+                      const double *by, double *full)
 {
   for (size_t j = 0; j < n; j++)
     for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++)
       for (size_t k = 0; k < points; k++)
-        full[(j * n + (size_t)pattern->row[e]) * points + k] += (by != NULL ? by[k] : 1) * A[(size_t)e * points + k];
+        full[(j * n + (size_t)pattern->row[e]) * points + k] += (by != NULL ? by[k] : 1) *
+                                                                A[(size_t)e * points + k];
 }
 
-static dvi_status hessian(void *of, int count, const double *t, const double *q, const double *w, double *L_qq, double *L_qw,
-                          double *L_ww)
+static dvi_status hessian(void *of, int count, const double *t, const double *q, const double *w,
+                          double *L_qq, double *L_qw, double *L_ww)
 {
   dvi__transformed *x = of;
   const work *at = &x->work;
-  const size_t n = (size_t)x->base->n, points = (size_t)count, vv = (size_t)dvi__pattern_entries(&x->base->vv);
+  const size_t n = (size_t)x->base->n, points = (size_t)count,
+               vv = (size_t)dvi__pattern_entries(&x->base->vv);
   x->counters->hessians -= count;
   DVI_TRY(first_order(x, count, t, q, w));
   DVI_TRY(dvi__monitor_hessian(x->monitor, count, q, at->g_qq));
-  DVI_TRY(dvi__lagrangian_hessian(x->evaluator, count, t, q, at->v, at->base_qq, at->base_qv, at->base_vv));
+  DVI_TRY(dvi__lagrangian_hessian(x->evaluator, count, t, q, at->v, at->base_qq, at->base_qv,
+                                  at->base_vv));
   second_order(x, points);
   fill_full(at, n, points, L_qq, L_qw);
   add_block(&x->base->qq, n, points, at->base_qq, at->g, L_qq);
   add_block(&x->base->qv, n, points, at->base_qv, NULL, L_qw);
   for (size_t e = 0; e < vv; e++)
-    for (size_t k = 0; k < points; k++) L_ww[e * points + k] = at->base_vv[e * points + k] / at->g[k];
-  if (dvi__first_not_finite(n * n * points, L_qq) < 0 && dvi__first_not_finite(n * n * points, L_qw) < 0 &&
+    for (size_t k = 0; k < points; k++)
+      L_ww[e * points + k] = at->base_vv[e * points + k] / at->g[k];
+  if (dvi__first_not_finite(n * n * points, L_qq) < 0 &&
+      dvi__first_not_finite(n * n * points, L_qw) < 0 &&
       dvi__first_not_finite(vv * points, L_ww) < 0)
     return DVI_OK;
   return dvi__fail(DVI_NOT_FINITE, "time transform: the Hessian is not finite");
@@ -245,26 +268,29 @@ static dvi_status make_system(dvi__transformed *x)
   return make_patterns(s, x->base);
 }
 
-static dvi_status fill(dvi__transformed *x, const dvi_system *system, const dvi_monitor *monitor, dvi_counters *counters)
+static dvi_status fill(dvi__transformed *x, const dvi_system *system, const dvi_monitor *monitor,
+                       dvi_counters *counters)
 {
   x->base = system;
   x->given = *monitor;
   x->counters = counters;
   x->energy = (double)NAN;
   if (!system->autonomous)
-    return dvi__fail(DVI_UNSUPPORTED,
-                     "the system is not declared autonomous: its energy need not be conserved, and no function of q "
-                     "alone can stand for its time");
+    return dvi__fail(DVI_UNSUPPORTED, "the system is not declared autonomous: its energy need not "
+                                      "be conserved, and no function of q "
+                                      "alone can stand for its time");
   if (!system->dynamics->has_kinetic_energy)
-    return dvi__fail(DVI_UNSUPPORTED, "the system declares a %s: its Lagrangian has no mass that could be divided by the monitor",
-                     system->lagrangian->name);
+    return dvi__fail(
+        DVI_UNSUPPORTED,
+        "the system declares a %s: its Lagrangian has no mass that could be divided by the monitor",
+        system->lagrangian->name);
   DVI_TRY(dvi__system_prepare_hessian(system));
   DVI_TRY(reserve(x, 1));
   return make_system(x);
 }
 
-dvi_status dvi__transformed_create(const dvi_system *system, const dvi_monitor *monitor, dvi_counters *counters,
-                                   dvi__transformed **transformed)
+dvi_status dvi__transformed_create(const dvi_system *system, const dvi_monitor *monitor,
+                                   dvi_counters *counters, dvi__transformed **transformed)
 {
   *transformed = NULL;
   dvi__transformed *x = DVI_NEW(dvi__transformed, 1);

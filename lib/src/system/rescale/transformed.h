@@ -9,10 +9,11 @@
 
 typedef struct dvi__transformed dvi__transformed;
 
-/* `system` must be autonomous, and outlive it. Counters, which must outlive it, count the points at which `system` itself is evaluated; they must be
- * those of every evaluator of the transformed system. */
-dvi_status dvi__transformed_create(const dvi_system *system, const dvi_monitor *monitor, dvi_counters *counters,
-                                   dvi__transformed **transformed);
+/* `system` must be autonomous, and outlive it. Counters, which must outlive it, count the points at
+ * which `system` itself is evaluated; they must be those of every evaluator of the transformed
+ * system. */
+dvi_status dvi__transformed_create(const dvi_system *system, const dvi_monitor *monitor,
+                                   dvi_counters *counters, dvi__transformed **transformed);
 void dvi__transformed_destroy(dvi__transformed **transformed);
 
 /* The new system: a general Lagrangian that leads here (system/term/term.c). */

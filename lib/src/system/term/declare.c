@@ -30,7 +30,9 @@ dvi_status dvi__general_group(dvi__lagrangian_term *term)
 dvi_status dvi__check_shapes(const char *owner, int values, int gradients, int hessians, int rates)
 {
   if (!values && !gradients && !hessians && !rates) return DVI_OK;
-  return dvi__fail(DVI_BAD_ARGUMENT, "system: %s has its %s callback in two shapes, one-point and batch; declare one", owner,
+  return dvi__fail(DVI_BAD_ARGUMENT,
+                   "system: %s has its %s callback in two shapes, one-point and batch; declare one",
+                   owner,
                    values      ? "value"
                    : gradients ? "gradient"
                    : hessians  ? "Hessian"
@@ -40,10 +42,13 @@ dvi_status dvi__check_shapes(const char *owner, int values, int gradients, int h
 dvi_status dvi__check_rate(const dvi_system *s, const char *owner, int given)
 {
   if (!given || !s->autonomous) return DVI_OK;
-  return dvi__fail(DVI_BAD_ARGUMENT, "system: %s has a rate, but the system is declared autonomous; leave out one of them", owner);
+  return dvi__fail(
+      DVI_BAD_ARGUMENT,
+      "system: %s has a rate, but the system is declared autonomous; leave out one of them", owner);
 }
 
-dvi_status dvi__declare_function(dvi_system *s, const dvi_lagrangian *given, const char *name, const char *const part[3])
+dvi_status dvi__declare_function(dvi_system *s, const dvi_lagrangian *given, const char *name,
+                                 const char *const part[3])
 {
   dvi__lagrangian_term *term = s->lagrangian = DVI_NEW(dvi__lagrangian_term, 1);
   if (term == NULL) return no_memory();

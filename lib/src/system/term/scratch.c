@@ -10,7 +10,8 @@ static int larger(int a, int b)
 
 static int longest_of(const dvi__lagrangian_term *term)
 {
-  const int qq = dvi__pattern_entries(&term->qq), qv = dvi__pattern_entries(&term->qv), vv = dvi__pattern_entries(&term->vv);
+  const int qq = dvi__pattern_entries(&term->qq), qv = dvi__pattern_entries(&term->qv),
+            vv = dvi__pattern_entries(&term->vv);
   return larger(larger(qq, qv), vv);
 }
 
@@ -20,14 +21,16 @@ int dvi__longest_hessian(const dvi_system *system, int hessians)
   for (int k = 0; k < system->potential_count && hessians; k++)
     longest = larger(longest, dvi__pattern_entries(&system->potentials[k].qq));
   if (system->lagrangian == NULL) return longest;
-  if (system->constraint != NULL) longest = larger(longest, longest_of(&system->constraint->weighted));
+  if (system->constraint != NULL)
+    longest = larger(longest, longest_of(&system->constraint->weighted));
   return larger(longest, longest_of(system->lagrangian));
 }
 
 int dvi__lacks_gradient(const dvi_system *system)
 {
   int lacks = system->lagrangian != NULL && !dvi__general_has_gradient(system->lagrangian);
-  for (int k = 0; k < system->potential_count; k++) lacks |= !dvi__potential_has_gradient(&system->potentials[k]);
+  for (int k = 0; k < system->potential_count; k++)
+    lacks |= !dvi__potential_has_gradient(&system->potentials[k]);
   return lacks;
 }
 
@@ -36,7 +39,8 @@ static int lacks_hessian(const dvi_system *system, int hessians)
 {
   int lacks = system->lagrangian != NULL && !dvi__general_has_hessian(system->lagrangian);
   lacks |= system->constraint != NULL && system->constraint->callbacks.hessian == NULL;
-  for (int k = 0; k < system->potential_count && hessians; k++) lacks |= !dvi__potential_has_hessian(&system->potentials[k]);
+  for (int k = 0; k < system->potential_count && hessians; k++)
+    lacks |= !dvi__potential_has_hessian(&system->potentials[k]);
   return lacks;
 }
 
@@ -76,20 +80,23 @@ static int allocate(const dvi_system *system, int capacity, int hessians, dvi__s
   const size_t numbers = (size_t)system->n * (size_t)capacity;
   s->point_q = DVI_NEW(double, system->n);
   s->point_v = DVI_NEW(double, system->n);
-  for (int k = 0; k < 3; k++) s->result[k] = DVI_NEW(double, dvi__longest_hessian(system, hessians));
+  for (int k = 0; k < 3; k++)
+    s->result[k] = DVI_NEW(double, dvi__longest_hessian(system, hessians));
   if (!s->point_q || !s->point_v || !s->result[0] || !s->result[1] || !s->result[2]) return 0;
   if (dvi__lacks_gradient(system) && !dvi__differences_allocate(numbers, &s->of_value)) return 0;
   return !lacks_hessian(system, hessians) || dvi__differences_allocate(numbers, &s->of_gradient);
 }
 
-dvi_status dvi__scratch_create(const dvi_system *system, int capacity, int hessians, dvi__scratch *scratch)
+dvi_status dvi__scratch_create(const dvi_system *system, int capacity, int hessians,
+                               dvi__scratch *scratch)
 {
   *scratch = (dvi__scratch){.n = system->n, .capacity = capacity};
   const dvi__lagrangian_term *term = system->lagrangian;
   if (term != NULL && term->computed != NULL) DVI_TRY(term->computed->reserve(term->of, capacity));
   if (allocate(system, capacity, hessians, scratch)) return DVI_OK;
   dvi__scratch_clear(scratch);
-  return dvi__fail(DVI_NO_MEMORY, "evaluator: no memory for %d points in %d dimensions", capacity, system->n);
+  return dvi__fail(DVI_NO_MEMORY, "evaluator: no memory for %d points in %d dimensions", capacity,
+                   system->n);
 }
 
 void dvi__scratch_clear(dvi__scratch *scratch)
