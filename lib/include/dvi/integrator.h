@@ -28,7 +28,8 @@ typedef struct dvi_counters {
   long newtons;  /**< solves by Newton's method, counted as fixed_points */
   long kinsols;  /**< solves handed to KINSOL */
   long followed; /**< solutions that were followed from those of shorter steps */
-  /** blocks of memory that the creation and the steps took. A step takes none */
+  /** blocks of memory that the creation and the steps took. A step takes some only where it
+   *  prepares a solver */
   long allocations;
   /** solves by simplified Newton's method, with the Jacobian of one point, decoupled into systems
    *  of n unknowns */
@@ -40,9 +41,13 @@ typedef struct dvi_counters {
   long certified;
   /** least-squares steps of sem, taken where the energy equation has no solution */
   long energy_fallbacks;
-  /** products of a sparse matrix with a vector, for functions of that matrix by polynomials (trig,
-   *  mollified, respa) */
+  /** products of a matrix with a vector: for functions of the matrix by polynomials (trig, mollified,
+   *  respa), and of a large Jacobian in GMRES */
   long products;
+  /** solvers that were made ready: the memory of a factor, of KINSOL, of the room to follow a
+   *  branch. Each is made ready when it is first needed, and never again. If memory is lacking
+   *  then, the step fails with DVI_NO_MEMORY, the state stays, and the next step tries again */
+  long preparations;
 } dvi_counters;
 
 /** The energy of a run by a method whose discrete energy is conserved (sem). But for jumps E+

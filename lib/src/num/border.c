@@ -89,7 +89,7 @@ static void stretch(bordered *s, const dvi__pattern *pattern)
   start[0] = 0;
 }
 
-static void destroy(void *factor)
+static void bordered_destroy(void *factor)
 {
   bordered *s = factor;
   if (s == NULL) return;
@@ -101,9 +101,10 @@ static void destroy(void *factor)
   dvi__release(s);
 }
 
-static dvi_status fill(bordered *s, const dvi__pattern *pattern)
+static dvi_status bordered_fill(bordered *s, const dvi__pattern *pattern)
 {
-  const size_t extra = 2 * ((size_t)s->pieces - 1) * (size_t)s->border, all = (size_t)pattern->columns + extra;
+  const size_t extra = 2 * ((size_t)s->pieces - 1) * (size_t)s->border;
+  const size_t all = (size_t)pattern->columns + extra;
   const size_t entries = (size_t)dvi__pattern_entries(pattern) + 2 * extra;
   if (entries > INT_MAX)
     return dvi__fail(DVI_BAD_SIZE, "linear solver: a border of %d leads to %zu entries, more than an int can count", s->border,
@@ -113,36 +114,34 @@ static dvi_status fill(bordered *s, const dvi__pattern *pattern)
   s->where = DVI_NEW(int, dvi__pattern_entries(pattern));
   s->values = DVI_NEW(double, entries);
   s->b = DVI_NEW(double, size);
-  if (s->pattern.start == NULL || s->pattern.row == NULL || s->where == NULL || s->values == NULL || s->b == NULL)
+  if (!s->pattern.start || !s->pattern.row || !s->where || !s->values || !s->b)
     return dvi__fail(DVI_NO_MEMORY, "KLU: no memory for %d columns with a border of %d", pattern->columns, s->border);
   stretch(s, pattern);
-  return dvi__sparse_factor.create(&s->pattern, NULL, &s->factor);
+  return dvi__sparse_factor.create(&(dvi__factor_form){.pattern = &s->pattern}, &s->factor);
 }
 
-dvi_status dvi__bordered_factor_create(const dvi__pattern *pattern, int border, void **factor)
+static dvi_status bordered_create(const dvi__factor_form *form, void **factor)
 {
-  bordered *s = DVI_NEW(bordered, 1);
-  *factor = NULL;
+  bordered *s = *factor = DVI_NEW(bordered, 1);
   if (s == NULL) return dvi__fail(DVI_NO_MEMORY, "KLU: no memory");
-  s->core = pattern->columns - border;
-  s->border = border;
+  s->core = form->pattern->columns - form->border;
+  s->border = form->border;
   s->pieces = (s->core + LENGTH - 1) / LENGTH;
-  const dvi_status status = fill(s, pattern);
-  if (status != DVI_OK)
-    destroy(s);
-  else
-    *factor = s;
+  const dvi_status status = bordered_fill(s, form->pattern);
+  if (status == DVI_OK) return DVI_OK;
+  bordered_destroy(s);
+  *factor = NULL;
   return status;
 }
 
-static dvi_status refactor(void *factor, const dvi__pattern *pattern, const double *values)
+static dvi_status bordered_refactor(void *factor, const dvi__pattern *pattern, const double *values)
 {
   bordered *s = factor;
   for (int e = 0; e < dvi__pattern_entries(pattern); e++) s->values[s->where[e]] = values[e];
   return dvi__sparse_factor.refactor(s->factor, &s->pattern, s->values);
 }
 
-static void solve(void *factor, const dvi__pattern *pattern, double *b)
+static void bordered_solve(void *factor, const dvi__pattern *pattern, double *b)
 {
   bordered *s = factor;
   const size_t size = (size_t)pattern->columns, all = (size_t)s->pattern.columns;
@@ -152,4 +151,16 @@ static void solve(void *factor, const dvi__pattern *pattern, double *b)
   memcpy(b, s->b, size * sizeof *b);
 }
 
-const dvi__factor_operations dvi__bordered_factor = {NULL, refactor, solve, destroy, NULL, NULL};
+static dvi__linear_cost bordered_cost(const void *factor, const dvi__pattern *pattern)
+{
+  const bordered *s = factor;
+  (void)pattern;
+  return dvi__sparse_factor.cost(s->factor, &s->pattern);
+}
+
+const dvi__factor_kind dvi__bordered_factor = {.name = "sparse LU with a border (KLU)",
+                                               .create = bordered_create,
+                                               .destroy = bordered_destroy,
+                                               .refactor = bordered_refactor,
+                                               .solve = bordered_solve,
+                                               .cost = bordered_cost};

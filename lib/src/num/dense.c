@@ -19,7 +19,7 @@ typedef struct dense {
   int *pivot, *iwork;
 } dense;
 
-static void destroy(void *factor)
+static void dense_destroy(void *factor)
 {
   dense *d = factor;
   if (d == NULL) return;
@@ -30,15 +30,14 @@ static void destroy(void *factor)
   dvi__release(d);
 }
 
-static dvi_status create(const dvi__pattern *pattern, const void *like, void **factor)
+static dvi_status dense_create(const dvi__factor_form *form, void **factor)
 {
-  (void)like;
-  const size_t n = (size_t)pattern->columns;
+  const size_t n = (size_t)form->pattern->columns;
   dense *d = *factor = DVI_NEW(dense, 1);
   if (d == NULL) return dvi__fail(DVI_NO_MEMORY, "dense LU: no memory");
   *d = (dense){DVI_NEW(double, n *n), DVI_NEW(double, 4 * n), DVI_NEW(int, n), DVI_NEW(int, n)};
   if (d->lu != NULL && d->work != NULL && d->pivot != NULL && d->iwork != NULL) return DVI_OK;
-  destroy(d);
+  dense_destroy(d);
   *factor = NULL;
   return dvi__fail(DVI_NO_MEMORY, "dense LU: no memory for %zu x %zu numbers", n, n);
 }
@@ -60,7 +59,7 @@ static double scatter(dense *d, const dvi__pattern *pattern, const double *value
   return norm;
 }
 
-static dvi_status refactor(void *factor, const dvi__pattern *pattern, const double *values)
+static dvi_status dense_refactor(void *factor, const dvi__pattern *pattern, const double *values)
 {
   dense *d = factor;
   const int n = pattern->rows;
@@ -74,7 +73,7 @@ static dvi_status refactor(void *factor, const dvi__pattern *pattern, const doub
                    reciprocal_condition);
 }
 
-static void solve(void *factor, const dvi__pattern *pattern, double *b)
+static void dense_solve(void *factor, const dvi__pattern *pattern, double *b)
 {
   const dense *d = factor;
   const int n = pattern->rows, one = 1;
@@ -82,7 +81,7 @@ static void solve(void *factor, const dvi__pattern *pattern, double *b)
   dgetrs_("N", &n, &one, d->lu, &n, d->pivot, b, &n, &status, 1);
 }
 
-static int sign(const void *factor, const dvi__pattern *pattern)
+static int dense_sign(const void *factor, const dvi__pattern *pattern)
 {
   const dense *d = factor;
   const int n = pattern->rows;
@@ -91,4 +90,17 @@ static int sign(const void *factor, const dvi__pattern *pattern)
   return negative ? -1 : 1;
 }
 
-const dvi__factor_operations dvi__dense_factor = {create, refactor, solve, destroy, sign, NULL};
+static dvi__linear_cost dense_cost(const void *factor, const dvi__pattern *pattern)
+{
+  const double n = pattern->columns;
+  (void)factor;
+  return (dvi__linear_cost){n * n, 2 * n * n * n / 3};
+}
+
+const dvi__factor_kind dvi__dense_factor = {.name = "dense LU (LAPACK)",
+                                            .create = dense_create,
+                                            .destroy = dense_destroy,
+                                            .refactor = dense_refactor,
+                                            .solve = dense_solve,
+                                            .sign = dense_sign,
+                                            .cost = dense_cost};

@@ -191,6 +191,19 @@ int dvi__pattern_find(const dvi__pattern *pattern, int row, int column)
   return -1;
 }
 
+/* Fill-in stays between the first entry of a row or column and the diagonal. */
+double dvi__pattern_operations(const dvi__pattern *pattern)
+{
+  const double n = pattern->columns, full = 2 * n * n * n / 3;
+  double band = 0;
+  for (int j = 0; j < pattern->columns && band < full; j++) {
+    const int first = pattern->start[j] < pattern->start[j + 1] ? pattern->row[pattern->start[j]] : j;
+    const double width = first < j ? 1 + j - first : 1;
+    band += 2 * width * width;
+  }
+  return band < full ? band : full;
+}
+
 void dvi__pattern_embed(const dvi__pattern *part, const dvi__pattern *whole, int *where)
 {
   for (int j = 0; j < part->columns; j++)

@@ -50,6 +50,10 @@ void dvi__pattern_embed(const dvi__pattern *part, const dvi__pattern *whole, int
 /* Greedy column groups with no common row in a group (Curtis, Powell and Reid 1974): group[j] in 0..*groups-1. */
 dvi_status dvi__pattern_groups(const dvi__pattern *pattern, int *group, int *groups);
 
+/* Additions and multiplications of an LU factorisation of a square pattern, at most, by diagonal
+ * pivots in the given order: of a band, or of a full matrix. */
+double dvi__pattern_operations(const dvi__pattern *pattern);
+
 /* Free the arrays and zero the struct. */
 void dvi__pattern_clear(dvi__pattern *pattern);
 

@@ -17,25 +17,62 @@ dvi_status dvi__solver_residual(dvi__solver *solver, const double *x, double *r)
   return solver->equations.residual(solver->equations.of, x, r);
 }
 
+/* ---- what Newton's method needs ---- */
+
+static size_t entries_of(const dvi__solver *solver)
+{
+  return (size_t)dvi__pattern_entries(solver->equations.pattern);
+}
+
+static dvi_status create_linear(dvi__solver *s)
+{
+  const dvi__equations *e = &s->equations;
+  if (e->whole != NULL) return dvi__linear_create_iterative(e->whole, s->counters, &s->linear);
+  if (s->values == NULL) s->values = DVI_NEW(double, entries_of(s));
+  if (s->values == NULL) return dvi__fail(DVI_NO_MEMORY, "solver: no memory for a Jacobian of %zu entries", entries_of(s));
+  if (e->border > 0) return dvi__linear_create_bordered(e->pattern, e->border, s->counters, &s->linear);
+  return dvi__linear_create(e->pattern, e->linear, s->counters, &s->linear);
+}
+
+dvi_status dvi__solver_prepare(dvi__solver *solver)
+{
+  dvi__equations *equations = &solver->equations;
+  if (solver->linear != NULL) return DVI_OK;
+  if (equations->prepare != NULL) DVI_TRY(equations->prepare(equations->of, equations));
+  return create_linear(solver);
+}
+
 dvi_status dvi__solver_jacobian(dvi__solver *solver, const double *x, double *values)
 {
+  DVI_TRY(dvi__solver_prepare(solver));
   solver->counters->jacobians++;
   return solver->equations.jacobian(solver->equations.of, x, values);
+}
+
+/* A singular Jacobian at one point of one step: a smaller step may avoid it. Memory does not grow
+ * with smaller steps. */
+static dvi_status judge_factor(dvi_status factored)
+{
+  if (factored == DVI_OK) return DVI_OK;
+  if (factored != DVI_SINGULAR && factored < 0) return dvi__fail_in(factored, "the Jacobian of the step's equations");
+  return dvi__fail_in(DVI_NOT_CONVERGED, "the Jacobian of the step's equations cannot be factored");
 }
 
 dvi_status dvi__solver_factor(dvi__solver *solver, const double *x)
 {
   solver->factored = 0;
+  DVI_TRY(dvi__solver_prepare(solver));
   DVI_TRY(dvi__solver_jacobian(solver, x, solver->values));
-  solver->factored = dvi__linear_factor(solver->linear, solver->values) == DVI_OK;
+  const dvi_status factored = dvi__linear_factor(solver->linear, solver->values);
+  solver->factored = factored == DVI_OK;
   solver->in_use = 1;
-  /* A singular Jacobian at one point of one step: a smaller step may avoid it. */
-  return solver->factored ? DVI_OK : dvi__fail_in(DVI_NOT_CONVERGED, "the Jacobian of the step's equations cannot be factored");
+  return judge_factor(factored);
 }
 
 dvi_status dvi__solver_take_jacobian(dvi__solver *solver, const double *values)
 {
-  const size_t bytes = (size_t)dvi__pattern_entries(solver->equations.pattern) * sizeof *values;
+  DVI_TRY(dvi__solver_prepare(solver));
+  const size_t bytes = entries_of(solver) * sizeof *values;
   solver->in_use = 1;
   if (solver->factored && memcmp(solver->values, values, bytes) == 0) return DVI_OK;
   memcpy(solver->values, values, bytes);
@@ -97,33 +134,28 @@ dvi_status dvi__solver_at_floor(dvi__solver *solver, const double *x, int *at_fl
   return DVI_OK;
 }
 
-static dvi_status fill(dvi__solver *solver)
+/* ---- making it ---- */
+
+static dvi_status solver_allocate(dvi__solver *solver)
 {
-  const dvi__pattern *pattern = solver->equations.pattern;
   const size_t unknowns = (size_t)solver->equations.unknowns;
+  const int has_magnitudes = solver->equations.magnitudes != NULL;
   if (solver->equations.group == 0) solver->equations.group = 1;
   solver->residual = DVI_NEW(double, unknowns);
   solver->before = DVI_NEW(double, unknowns);
-  solver->values = DVI_NEW(double, dvi__pattern_entries(pattern));
-  if (solver->equations.magnitudes != NULL) solver->magnitude = DVI_NEW(double, unknowns);
-  if (!solver->residual || !solver->before || !solver->values || (solver->equations.magnitudes != NULL && !solver->magnitude))
-    return dvi__fail(DVI_NO_MEMORY, "solver: no memory for %zu unknowns", unknowns);
-  const int border = solver->equations.border;
-  DVI_TRY(border > 0 ? dvi__linear_create_bordered(pattern, border, solver->counters, &solver->linear)
-                     : dvi__linear_create(pattern, solver->equations.linear, solver->counters, &solver->linear));
-  return dvi__kinsol_create(solver, &solver->kinsol);
+  if (has_magnitudes) solver->magnitude = DVI_NEW(double, unknowns);
+  if (solver->residual && solver->before && (!has_magnitudes || solver->magnitude)) return DVI_OK;
+  return dvi__fail(DVI_NO_MEMORY, "solver: no memory for %zu unknowns", unknowns);
 }
 
 dvi_status dvi__solver_create(const dvi__equations *equations, dvi_counters *counters, dvi__solver **solver)
 {
-  *solver = NULL;
-  dvi__solver *made = DVI_NEW(dvi__solver, 1);
+  dvi__solver *made = *solver = DVI_NEW(dvi__solver, 1);
   if (made == NULL) return dvi__fail(DVI_NO_MEMORY, "solver: no memory");
   made->equations = *equations;
   made->counters = counters;
-  const dvi_status status = fill(made);
-  if (status != DVI_OK) dvi__solver_destroy(&made);
-  *solver = made;
+  const dvi_status status = solver_allocate(made);
+  if (status != DVI_OK) dvi__solver_destroy(solver);
   return status;
 }
 
@@ -148,18 +180,19 @@ void dvi__solver_apply_factor(dvi__solver *solver, double *b)
 
 int dvi__solver_sign(const dvi__solver *solver)
 {
-  return solver->factored ? dvi__linear_sign(solver->linear) : 1;
+  const int sign = solver->factored ? dvi__linear_sign(solver->linear) : 0;
+  return sign != 0 ? sign : 1;
 }
 
 int dvi__solver_is_definite(const dvi__solver *solver, int sign)
 {
-  if (!solver->factored || dvi__linear_kind_of(solver->linear) != DVI__LINEAR_SPARSE) return 1;
+  if (!solver->factored || !dvi__linear_tells_definite(solver->linear)) return 1;
   return dvi__linear_is_definite(solver->linear, sign);
 }
 
-dvi__linear_kind dvi__solver_linear_kind(const dvi__solver *solver)
+dvi__linear *dvi__solver_linear(const dvi__solver *solver)
 {
-  return dvi__linear_kind_of(solver->linear);
+  return solver->linear;
 }
 
 /* Fixed point iteration pays while each iteration gains a third of a digit: a step by simplified Newton's method costs about as much as 40 to 300 of
@@ -246,8 +279,17 @@ static dvi_status simplified(dvi__solver *s, double size, int wary, double *x, d
                    trail.before);
 }
 
+static dvi_status prepare_kinsol(dvi__solver *s)
+{
+  if (s->kinsol != NULL) return DVI_OK;
+  DVI_TRY(dvi__kinsol_create(s, &s->kinsol));
+  s->counters->preparations++;
+  return DVI_OK;
+}
+
 static dvi_status kinsol(dvi__solver *s, double size, double *x, dvi__solve_report *report)
 {
+  DVI_TRY(prepare_kinsol(s));
   s->counters->kinsols++;
   DVI_TRY(s->equations.prepare_chord(s->equations.of, x));
   /* KINSOL's verdict is not asked for: Newton's method from its last point is the stricter test. */
@@ -275,6 +317,7 @@ dvi_status dvi__solve(dvi__solver *solver, dvi__rung rung, double size, int wary
 dvi_status dvi__certify(dvi__solver *solver, double size, const double *x, dvi__solve_report *report)
 {
   int certified = 0;
+  DVI_TRY(prepare_kinsol(solver));
   DVI_TRY(solver->equations.prepare_chord(solver->equations.of, x));
   DVI_TRY(dvi__kinsol_certify(solver->kinsol, size, x, &certified, report));
   if (!certified)

@@ -10,13 +10,22 @@
 #define DVI_SOLVE_NONLINEAR_H
 #include "num/linear.h"
 
-typedef struct dvi__equations {
+typedef struct dvi__equations dvi__equations;
+
+struct dvi__equations {
   int unknowns;
-  int group;                   /* so many unknowns in a row have one unit, and are measured together; 0: 1 */
+  int group; /* so many unknowns in a row have one unit, and are measured together; 0: 1 */
+  void *of;  /* first argument of the callbacks */
+  /* Before the first Jacobian is asked for, once: make ready for it, and complete what follows up to
+   * `whole` in the solver's own copy of the equations. After a failure it is called again by the next
+   * solve. NULL: all is there. */
+  dvi_status (*prepare)(void *of, struct dvi__equations *own);
   const dvi__pattern *pattern; /* of the Jacobian; outlives the solver */
   dvi__linear_kind linear;     /* that factors it; default: AUTO, which takes the diagonal's entries for the largest ones */
   int border; /* so many of the last rows and columns may be full: sparse all the same; 0: none, `linear` says what is done */
-  void *of;   /* first argument of the callbacks */
+  /* The Jacobian as an operator, which has no pattern: `jacobian` puts it at x, and gets no values.
+   * NULL: it is a matrix. Outlives the solver. */
+  const dvi__operator *whole;
   dvi_status (*residual)(void *of, const double *x, double *r);
   dvi_status (*jacobian)(void *of, const double *x, double *values);
   dvi_status (*prepare_chord)(void *of, const double *x);
@@ -36,7 +45,7 @@ typedef struct dvi__equations {
   /* Simplified Newton's method; NULL: there is none. */
   dvi_status (*freeze)(void *of, const double *x);
   void (*frozen)(void *of, double *r); /* r <- correction */
-} dvi__equations;
+};
 
 typedef enum dvi__rung { DVI__FIXED_POINT, DVI__SIMPLIFIED, DVI__NEWTON, DVI__KINSOL } dvi__rung;
 
@@ -54,6 +63,7 @@ typedef struct dvi__solve_report {
 
 typedef struct dvi__solver dvi__solver;
 
+/* Memory for Newton's method and for KINSOL is taken when each is first needed. */
 dvi_status dvi__solver_create(const dvi__equations *equations, dvi_counters *counters, dvi__solver **solver);
 void dvi__solver_destroy(dvi__solver **solver);
 
@@ -77,14 +87,18 @@ dvi_status dvi__solver_take_jacobian(dvi__solver *solver, const double *values);
 /* Solve with the Jacobian that was factored last: b [unknowns] becomes J^{-1} b. */
 void dvi__solver_apply_factor(dvi__solver *solver, double *b);
 
-/* The sign of the determinant of the Jacobian that was factored last, and is near that of the solution if the iteration went by it; 1 if there is none. */
+/* The sign of the determinant of the Jacobian that was factored last, and is near that of the
+ * solution if the iteration went by it; 1 if there is none, or it is not known. */
 int dvi__solver_sign(const dvi__solver *solver);
 
 /* Whether that Jacobian, a symmetric one, is positive (sign 1) or negative (-1) definite; 1 if there is
  * none, or it is not known. */
 int dvi__solver_is_definite(const dvi__solver *solver, int sign);
 
-/* Which linear solver the Newton rungs use. */
-dvi__linear_kind dvi__solver_linear_kind(const dvi__solver *solver);
+/* Make ready for Newton's method, as its first use does. DVI_NO_MEMORY, and as `prepare` fails. */
+dvi_status dvi__solver_prepare(dvi__solver *solver);
+
+/* The linear solver of the Newton rungs, after that. */
+dvi__linear *dvi__solver_linear(const dvi__solver *solver);
 
 #endif

@@ -9,14 +9,14 @@ typedef struct dvi__kinsol dvi__kinsol;
 struct dvi__solver {
   dvi__equations equations;
   dvi_counters *counters;
-  double *residual;  /* [unknowns]; then the correction */
-  double *before;    /* [unknowns] the first correction */
-  double *magnitude; /* [unknowns] of what is summed in the rows; NULL: not known */
-  double *values;    /* of the Jacobian */
-  int factored;      /* these values are, */
-  int in_use;        /* and the iteration at hand goes by them */
-  dvi__linear *linear;
-  dvi__kinsol *kinsol;
+  double *residual;    /* [unknowns]; then the correction */
+  double *before;      /* [unknowns] the first correction */
+  double *magnitude;   /* [unknowns] of what is summed in the rows; NULL: not known */
+  double *values;      /* of the Jacobian; NULL: not prepared, or an operator */
+  int factored;        /* these values are, */
+  int in_use;          /* and the iteration at hand goes by them */
+  dvi__linear *linear; /* NULL: not prepared */
+  dvi__kinsol *kinsol; /* NULL: not prepared */
 };
 
 /* Evaluate, and count. */

@@ -28,23 +28,36 @@ static dvi_status joint_join(const dvi_system *system, const dvi__pattern *more,
   return status;
 }
 
+/* Entries that the Hessian has at least; a pattern that was left out is full, and is not made here. */
+static size_t least_entries(const dvi_system *system)
+{
+  const size_t n = (size_t)system->n;
+  size_t least = (size_t)dvi__pattern_entries(&system->vv);
+  for (int k = 0; k <= system->potential_count; k++) {
+    const int is_own = k == system->potential_count;
+    if (is_own && system->lagrangian == NULL) continue;
+    const dvi__pattern *qq = is_own ? &system->lagrangian->qq : &system->potentials[k].qq;
+    const size_t entries = qq->start != NULL ? (size_t)dvi__pattern_entries(qq) : n * n;
+    if (entries > least) least = entries;
+  }
+  return least;
+}
+
 dvi_status dvi__joint_check(const dvi_system *system, int size, int most)
 {
-  const size_t numbers = (size_t)system->n * (size_t)(most > size ? most : size),
-               block = (size_t)size * (size_t)size;
-  if (numbers >= INT_MAX)
+  const size_t n = (size_t)system->n, each = (size_t)(most > size ? most : size);
+  if (n * each >= INT_MAX)
     return dvi__fail(DVI_BAD_SIZE,
                      "action: %d coordinates with %zu numbers each make %zu, more than an int can "
                      "count; take a lower degree, or fewer nodes or stages",
-                     system->n, numbers / (size_t)system->n, numbers);
-  DVI_TRY(dvi__system_prepare_hessian(system));
-  const int qq = dvi__pattern_entries(&system->qq), vv = dvi__pattern_entries(&system->vv);
-  const size_t least = (size_t)(qq > vv ? qq : vv) * block;
+                     system->n, each, n * each);
+  const size_t least = least_entries(system) * (size_t)size * (size_t)size;
   if (least < INT_MAX) return DVI_OK;
-  return dvi__fail(DVI_BAD_SIZE,
-                   "action: the Jacobian would have %zu entries or more, which an int cannot "
-                   "count; declare sparse Hessians, or take a lower degree",
-                   least);
+  return dvi__fail(
+      DVI_BAD_SIZE,
+      "action: the Jacobian would have %zu entries or more, which an int cannot count; "
+      "declare a sparse pattern of each Hessian, or take a lower degree",
+      least);
 }
 
 dvi_status dvi__joint_create(const dvi_system *system, const dvi__pattern *more,

@@ -9,9 +9,9 @@ typedef struct dvi__block {
   int qq, qv, vq, vv;
 } dvi__block;
 
-/* Check sizes before memory is allocated, and complete the Hessian's pattern. DVI_BAD_SIZE unless
- * an int can count `most` numbers for each coordinate, and the entries of a Jacobian with a block
- * of size x size for each entry of the Hessian. */
+/* Check sizes before memory is allocated. DVI_BAD_SIZE unless an int can count `most` numbers for
+ * each coordinate, and the entries of a Jacobian with a block of size x size for each entry of the
+ * Hessian. No pattern is made. */
 dvi_status dvi__joint_check(const dvi_system *system, int size, int most);
 
 /* Make the pattern, and a block [entries] for each of its entries, on the heap. On failure the

@@ -69,7 +69,7 @@ static dvi_status jacobian_of(void *of, const double *x, double *values)
   return DVI_OK;
 }
 
-static dvi_status prepare_of(void *of, const double *x)
+static dvi_status prepare_chord_of(void *of, const double *x)
 {
   dvi__bordered *b = of;
   DVI_TRY(place(b, x));
@@ -95,8 +95,10 @@ static dvi_status border(const dvi__pattern *inner, dvi__pattern *pattern)
     return dvi__fail(DVI_BAD_SIZE,
                      "sem: the Jacobian would have %zu entries; declare sparse Hessians", entries);
   *pattern = (dvi__pattern){n + 1, n + 1, DVI_NEW(int, (size_t)n + 2), DVI_NEW(int, entries)};
-  if (pattern->start == NULL || pattern->row == NULL)
+  if (pattern->start == NULL || pattern->row == NULL) {
+    dvi__pattern_clear(pattern);
     return dvi__fail(DVI_NO_MEMORY, "sem: no memory for a Jacobian of %zu entries", entries);
+  }
   int at = 0;
   for (int j = 0; j < n; j++) {
     for (int e = inner->start[j]; e < inner->start[j + 1]; e++) pattern->row[at++] = inner->row[e];
@@ -108,7 +110,7 @@ static dvi_status border(const dvi__pattern *inner, dvi__pattern *pattern)
   return DVI_OK;
 }
 
-static dvi_status allocate(dvi__bordered *b, size_t n)
+static dvi_status allocate_unknowns(dvi__bordered *b, size_t n)
 {
   const size_t rows = (size_t)b->rows;
   b->x = DVI_NEW(double, rows + 1);
@@ -116,13 +118,32 @@ static dvi_status allocate(dvi__bordered *b, size_t n)
   b->Y = DVI_NEW(double, rows);
   b->tangent = DVI_NEW(double, rows);
   b->column = DVI_NEW(double, rows);
-  b->values = DVI_NEW(double, dvi__pattern_entries(dvi__action_pattern(b->action)));
   b->start = (dvi__energy_gradient){DVI_NEW(double, rows), DVI_NEW(double, n), 0};
   b->end = (dvi__energy_gradient){DVI_NEW(double, rows), DVI_NEW(double, n), 0};
-  if (b->x && b->direction && b->Y && b->tangent && b->column && b->values && b->start.Y &&
-      b->start.q0 && b->end.Y && b->end.q0)
+  if (b->x && b->direction && b->Y && b->tangent && b->column && b->start.Y && b->start.q0 &&
+      b->end.Y && b->end.q0)
     return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "sem: no memory for %zu unknowns", rows);
+}
+
+/* What derivatives of the rows need, when they are first asked for. */
+static dvi_status prepare_derivatives(dvi__bordered *b)
+{
+  const dvi__pattern *inner = dvi__action_pattern(b->action);
+  if (b->schur != NULL) return DVI_OK;
+  DVI_TRY(dvi__action_prepare_jacobian(b->action));
+  if (b->values == NULL) b->values = DVI_NEW(double, dvi__pattern_entries(inner));
+  if (b->values == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "sem: no memory for a Jacobian of %d rows", b->rows);
+  return dvi__linear_create(inner, DVI__LINEAR_AUTO, b->element.counters, &b->schur);
+}
+
+static dvi_status prepare_of(void *of, dvi__equations *equations)
+{
+  dvi__bordered *b = of;
+  DVI_TRY(prepare_derivatives(b));
+  equations->pattern = &b->pattern;
+  return b->pattern.start != NULL ? DVI_OK : border(dvi__action_pattern(b->action), &b->pattern);
 }
 
 dvi_status dvi__bordered_create(const dvi__stepper *self, const dvi__action_space *space,
@@ -134,16 +155,13 @@ dvi_status dvi__bordered_create(const dvi__stepper *self, const dvi__action_spac
   b->action = dvi__element_action(&b->element);
   b->rows = dvi__action_unknowns(b->action);
   DVI_TRY(dvi__action_prepare_energy(b->action));
-  DVI_TRY(border(dvi__action_pattern(b->action), &b->pattern));
-  DVI_TRY(allocate(b, (size_t)self->system->n));
-  DVI_TRY(dvi__linear_create(dvi__action_pattern(b->action), DVI__LINEAR_AUTO, self->counters,
-                             &b->schur));
+  DVI_TRY(allocate_unknowns(b, (size_t)self->system->n));
   const dvi__equations equations = {.unknowns = b->rows + 1,
-                                    .pattern = &b->pattern,
                                     .of = b,
+                                    .prepare = prepare_of,
                                     .residual = residual_of,
                                     .jacobian = jacobian_of,
-                                    .prepare_chord = prepare_of,
+                                    .prepare_chord = prepare_chord_of,
                                     .row_scale = row_scale_of,
                                     .renewed = 1};
   return dvi__solver_create(&equations, self->counters, &b->solver);
@@ -178,8 +196,11 @@ dvi_status dvi__bordered_energies(dvi__bordered *b, const dvi__state *state, dou
 
 dvi_status dvi__bordered_slope(dvi__bordered *b, const double *Y, double *slope)
 {
+  DVI_TRY(prepare_derivatives(b));
   DVI_TRY(derivatives(b, Y));
-  if (dvi__linear_factor(b->schur, b->values) != DVI_OK)
+  const dvi_status factored = dvi__linear_factor(b->schur, b->values);
+  if (factored == DVI_NO_MEMORY) return factored;
+  if (factored != DVI_OK)
     return dvi__fail_in(DVI_NOT_CONVERGED,
                         "the Jacobian of the step's equations cannot be factored");
   dvi__linear_solve(b->schur, b->column);

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/memory.h"
 #include "core/status.h"
 #include "method/element/element_struct.h"
 #include "num/finite.h"
@@ -38,7 +39,7 @@ static dvi_status place_part(void *of, double part)
 {
   const pursuit *own = of;
   const dvi__element_place *at = own->at;
-  dvi__action_place(((dvi__element *)own->self->own)->action, at->t, part * at->h, at->q, at->p);
+  dvi__element_put(own->self->own, at, part * at->h);
   return DVI_OK;
 }
 
@@ -97,6 +98,19 @@ static int parts_of(const dvi__stepper *self)
   return coarse ? 1 : DVI__BRANCH_CAREFUL;
 }
 
+/* Room to follow a branch, when one is followed first. */
+static dvi_status prepare_branch(dvi__element *own)
+{
+  const size_t unknowns = (size_t)dvi__action_unknowns(own->action);
+  if (own->branch != NULL) return DVI_OK;
+  own->branch = DVI_NEW(double, DVI__BRANCH_ROOM *unknowns);
+  if (own->branch == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "action: no memory to follow a branch of %zu unknowns",
+                     unknowns);
+  own->counters->preparations++;
+  return DVI_OK;
+}
+
 /* Where terms have unknowns of their own, no sign of the determinant is known. */
 static int has_signs(const dvi__stepper *self)
 {
@@ -108,8 +122,11 @@ static int has_signs(const dvi__stepper *self)
 dvi_status dvi__element_follow(dvi__stepper *self, const dvi__element_place *at, dvi_status whole,
                                double *Y)
 {
-  const dvi__element *own = self->own;
+  dvi__element *own = self->own;
   pursuit of = {self, at};
+  dvi__branch_failure failure;
+  dvi__branch_note(whole, &failure);
+  DVI_TRY(prepare_branch(own));
   const dvi__branch branch = {.of = &of,
                               .place = place_part,
                               .guess = guess_part,
@@ -122,9 +139,7 @@ dvi_status dvi__element_follow(dvi__stepper *self, const dvi__element_place *at,
                               .from_zero = 1,
                               .size = dvi__largest((size_t)self->system->n, at->q),
                               .room = own->branch};
-  dvi__branch_failure failure;
   dvi__branch_end end;
-  dvi__branch_note(whole, &failure);
   self->counters->followed++;
   self->counters->newtons += !self->follow;
   const dvi_status status = dvi__branch_follow(&branch, own->solver, Y, &end);
@@ -144,13 +159,14 @@ static int is_turned(const dvi__stepper *self, const dvi__element_place *at)
 {
   const dvi__element *own = self->own;
   dvi__evaluator *evaluator = dvi__action_evaluator(own->action);
-  const int apart = own->rung == DVI__SIMPLIFIED && own->decoupled != NULL;
+  const dvi__decoupled *apart = dvi__element_frozen(own);
   const int unknowns = dvi__action_unknowns(own->action),
             degree = dvi__action_space_of(own->action).degree;
   if (!has_signs(self)) return 0;
-  if (apart && own->definite) return !dvi__decoupled_is_definite(own->decoupled, direction(at));
-  if (!apart && is_symmetric(self)) return !dvi__solver_is_definite(own->solver, direction(at));
-  const int sign = (apart ? dvi__decoupled_sign(own->decoupled) : dvi__solver_sign(own->solver)) *
+  if (apart != NULL && own->definite) return !dvi__decoupled_is_definite(apart, direction(at));
+  if (apart == NULL && is_symmetric(self))
+    return !dvi__solver_is_definite(own->solver, direction(at));
+  const int sign = (apart != NULL ? dvi__decoupled_sign(apart) : dvi__solver_sign(own->solver)) *
                    (unknowns % 2 != 0 ? direction(at) : 1);
   if (sign > 0 || own->centred || degree % 2 == 0) return sign < 0;
   dvi__action_path(own->action, own->Y, at->h, 0.0, NULL, own->guess);

@@ -4,6 +4,7 @@
 #define DVI_METHOD_ELEMENT_STEP_H
 #include "step/element/action.h"
 #include "method/method.h"
+#include "solve/nonlinear.h"
 
 /* The `solver` key of methods that step so; its index in the method's own table goes to
  * dvi__element_create. */
@@ -72,6 +73,10 @@ int dvi__symmetric_rule(dvi_rule rule);
 /* What it was made of. */
 dvi__action *dvi__element_action(const dvi__stepper *self);
 int dvi__element_solver(const dvi__stepper *self);
+
+/* Lines of an explanation: how many entries a Jacobian has; by which linear solver. */
+void dvi__explain_entries(double unknowns, double entries, dvi__text *text);
+void dvi__explain_linear(dvi__solver *solver, dvi__text *text);
 
 /* The other operations of dvi__method, and what goes into its initialiser for them. */
 void dvi__element_destroy(dvi__stepper *self);

@@ -315,17 +315,17 @@ static void path(const dvi__stepper *self, const double *q0, double h, double ta
 static void explain(const dvi__stepper *self, dvi__text *text)
 {
   const sem *own = self->own;
-  const int entries = dvi__pattern_entries(&own->bordered.pattern),
-            unknowns = own->bordered.rows + 1;
+  const int unknowns = own->bordered.rows + 1;
   dvi__text_add(
       text,
       "steps: chosen by the method after the first one, whose length --h is; bounds %s to %s\n",
       self->settings.number[HMIN] > 0 ? "hmin" : "a tenth of it",
       self->settings.number[HMAX] > 0 ? "hmax" : "thirty times it");
-  dvi__text_add(text,
-                "kernel: implicit; %d unknowns a step, the last one its length; Jacobian with %d "
-                "entries (%.3g %% of a full one)\n",
-                unknowns, entries, 100.0 * entries / unknowns / unknowns);
+  dvi__text_add(text, "kernel: implicit; %d unknowns a step, the last one its length; ", unknowns);
+  if (dvi__solver_prepare(own->bordered.solver) == DVI_OK)
+    dvi__explain_entries(unknowns, dvi__pattern_entries(&own->bordered.pattern), text);
+  else
+    dvi__text_add(text, "no Jacobian: %s\n", dvi_last_error());
   dvi__text_add(text, "energy: %s\n",
                 self->system->autonomous ? "conserved; the system is declared autonomous"
                                          : "balanced with the work of the time dependence; rates "
@@ -335,10 +335,7 @@ static void explain(const dvi__stepper *self, dvi__text *text)
                 "tells whether there is one, and else "
                 "takes the least-squares step\n",
                 solver_name(self->settings.value[SOLVER]));
-  dvi__text_add(text, "linear solver: %s\n",
-                dvi__solver_linear_kind(own->bordered.solver) == DVI__LINEAR_DENSE
-                    ? "dense LU (LAPACK)"
-                    : "sparse LU (KLU), analysed once, refactored after");
+  dvi__explain_linear(own->bordered.solver, text);
 }
 
 const dvi__method dvi__sem = {

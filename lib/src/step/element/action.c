@@ -37,11 +37,11 @@ static dvi_status allocate_chord(dvi__action *a, dvi_counters *counters)
 
 static dvi_status fill(dvi__action *a, dvi_counters *counters)
 {
-  if (!a->shaped) DVI_TRY(dvi__joint_check(a->system, a->s, a->r));
+  if (!a->shaped) DVI_TRY(dvi__joint_check(a->system, 1, a->r > a->s ? a->r : a->s));
   DVI_TRY(dvi__action_fill_tables(a));
   /* a batch of s is solved for at once in the chord */
   const int capacity = a->r > a->s ? a->r : a->s;
-  DVI_TRY(dvi__evaluator_create(a->system, capacity, DVI__HESSIANS, counters, &a->evaluator));
+  DVI_TRY(dvi__evaluator_create(a->system, capacity, DVI__GRADIENTS, counters, &a->evaluator));
   if (!allocate_batches(a))
     return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d nodes in %d dimensions", a->r, a->n);
   if (a->shaped) return DVI_OK;
@@ -110,11 +110,9 @@ void dvi__action_destroy(dvi__action **action)
                            a->line,
                            a->middle_vv,
                            a->chord_inverse,
+                           a->moved,
                            a->middle[0],
                            a->middle[1],
-                           a->H_qq,
-                           a->H_qv,
-                           a->H_vv,
                            a->sweep_matrix,
                            a->sweep_node,
                            a->sweep_slant,
@@ -131,9 +129,7 @@ void dvi__action_destroy(dvi__action **action)
   dvi__action_clear_charts(a);
   dvi__linear_destroy(&a->chord);
   dvi__evaluator_destroy(&a->evaluator);
-  dvi__pattern_clear(&a->joint);
-  dvi__pattern_clear(&a->pattern);
-  dvi__release(a->block);
+  dvi__action_clear_jacobian(a);
   dvi__release(a);
   *action = NULL;
 }

@@ -37,8 +37,8 @@ dvi_status dvi__action_create(const dvi_system *system, const dvi__action_space 
                               dvi_counters *counters, dvi__action **action);
 void dvi__action_destroy(dvi__action **action);
 
-/* Prepare the Jacobian's pattern and memory; without it residuals and chords work, Jacobians do
- * not. Once. */
+/* Prepare the Jacobian's pattern and memory, if they are not there; without them residuals and chords
+ * work, Jacobians do not. After a failure it may be called again. */
 dvi_status dvi__action_prepare_jacobian(dvi__action *action);
 
 /* Add a term to its rows; the struct is copied, and what it points to must stay. An action with
@@ -77,6 +77,20 @@ double dvi__action_turned(const dvi__action *action, const double *xi);
 
 /* Whether the sign of its Jacobian's determinant tells of folds (system/chart/centring.h). */
 int dvi__action_signs(const dvi__action *action);
+
+/* Prepare the joint pattern of the Hessians and memory for them, if they are not there. */
+dvi_status dvi__action_prepare_hessians(dvi__action *action);
+
+/* Which coordinates L couples: the union of the patterns of L_qq, L_qv, L_vq and L_vv, [n x n]. */
+const dvi__pattern *dvi__action_coupling(const dvi__action *action);
+
+/* The Hessians at the nodes of the path Y, for what follows. */
+dvi_status dvi__action_hessians(dvi__action *action, const double *Y);
+
+/* y [n*s] = dR/dY x by these Hessians, without the Jacobian; after dvi__action_prepare_product, which
+ * prepares Hessians, too. Not with a centring. */
+dvi_status dvi__action_prepare_product(dvi__action *action);
+void dvi__action_times_jacobian(dvi__action *action, const double *x, double *y);
 
 /* dR/dY in the order of the pattern. */
 dvi_status dvi__action_jacobian(dvi__action *action, const double *Y, double *values);

@@ -68,6 +68,7 @@ struct dvi__action {
   dvi__pattern pattern;       /* ns x ns */
   dvi__block *block;          /* [entries of joint] */
   double *H_qq, *H_qv, *H_vv; /* [entries*r] */
+  double *moved;              /* [4 n*r] work of products; NULL until prepared */
   dvi__row_terms terms;
   struct dvi__centred_paths *centred; /* charts centred at the start; NULL: there are none */
   /* Between two ends (between.h); NULL until prepared. */
@@ -122,9 +123,8 @@ void dvi__action_scale_by(const dvi__action *action, const double *L_vv, double 
 /* What sweeps need that depends on h alone. */
 void dvi__action_set_step(dvi__action *action);
 
-/* The joint pattern, and memory for Hessians; the Hessians along the path Y, for what follows. */
-dvi_status dvi__action_prepare_hessians(dvi__action *action);
-dvi_status dvi__action_hessians(dvi__action *action, const double *Y);
+/* Free what was prepared for Hessians and the Jacobian, which may be prepared again. */
+void dvi__action_clear_jacobian(dvi__action *action);
 
 /* Column l of a block, its first `rows` rows: sum_j b_j [ (psi_k - psi_k(1)) (h L_qq psi_l + L_qv
  * psi_l') + psi_k' (L_vq psi_l + L_vv psi_l'/h) ]. */

@@ -10,9 +10,9 @@
 
 /* One real eigenvalue, or a pair of complex ones. */
 typedef struct mode {
-  int place, parts;  /* its first coefficient, and how many it has: 1 or 2 */
-  double U[2], T[2]; /* real and imaginary part */
-  dvi__linear *linear;
+  int place, parts;    /* its first coefficient, and how many it has: 1 or 2 */
+  double U[2], T[2];   /* real and imaginary part */
+  dvi__linear *linear; /* NULL: not prepared */
 } mode;
 
 struct dvi__decoupled {
@@ -21,7 +21,7 @@ struct dvi__decoupled {
   int modes;
   mode mode[DVI_DEGREE_MAX];
   double *in, *out;                 /* [s*lanes] by columns: X^{-1} K^{-1} and X */
-  double *values, *b, *coefficient; /* [2 entries], [2 n], [n*s] */
+  double *values, *b, *coefficient; /* [2 entries], [2 n], [n*s]; NULL: not prepared */
   double h, *point;                 /* what is frozen: the step (0: nothing), and t, q, v */
 };
 
@@ -57,11 +57,10 @@ static void pad(int s, const double *columns, double *padded)
 
 /* Of a pair's two columns the first and second coefficients alpha, beta stand for alpha - i beta: D
  * then multiplies it by a + ib. */
-static dvi_status make_modes(dvi__decoupled *d, int mixed, const double *real_part,
-                             const double *imaginary_part)
+static void list_modes(dvi__decoupled *d, int mixed, const double *real_part,
+                       const double *imaginary_part)
 {
-  dvi__action *a = d->action;
-  for (int k = 0; k < a->s; k += d->mode[d->modes - 1].parts) {
+  for (int k = 0; k < d->action->s; k += d->mode[d->modes - 1].parts) {
     mode *m = &d->mode[d->modes];
     const double x = real_part[k], y = imaginary_part[k];
     *m = (mode){.place = k, .parts = y != 0 ? 2 : 1};
@@ -70,11 +69,7 @@ static dvi_status make_modes(dvi__decoupled *d, int mixed, const double *real_pa
       m->T[0] = x, m->T[1] = y, m->U[0] = y * y - x * x, m->U[1] = -2 * x * y;
     else
       m->U[0] = x, m->U[1] = y;
-    const dvi__linear_kind kind = y != 0 ? DVI__LINEAR_COMPLEX : DVI__LINEAR_SPARSE;
-    DVI_TRY(k == 0 ? dvi__linear_create(&a->joint, kind, d->counters, &m->linear)
-                   : dvi__linear_create_like(d->mode[0].linear, kind, d->counters, &m->linear));
   }
-  return DVI_OK;
 }
 
 /* What the tables are made from; s x s each. */
@@ -94,20 +89,18 @@ static dvi_status fill(dvi__decoupled *d, workspace *w)
   multiply(a->s, w->inverse, a->stiffness_inverse, w->product);
   pad(a->s, w->product, d->in);
   pad(a->s, w->X, d->out);
-  return make_modes(d, mixed, w->real_part, w->imaginary_part);
+  list_modes(d, mixed, w->real_part, w->imaginary_part);
+  return DVI_OK;
 }
 
-static dvi_status allocate(dvi__decoupled *d)
+static dvi_status allocate_tables(dvi__decoupled *d)
 {
   const dvi__action *a = d->action;
-  const size_t n = (size_t)a->n, s = (size_t)a->s, lanes = (size_t)dvi__lanes_for(a->s);
+  const size_t s = (size_t)a->s, lanes = (size_t)dvi__lanes_for(a->s);
   d->in = DVI_NEW(double, s *lanes);
   d->out = DVI_NEW(double, s *lanes);
-  d->values = DVI_NEW(double, 2 * (size_t)dvi__pattern_entries(&a->joint));
-  d->b = DVI_NEW(double, 2 * n);
-  d->coefficient = DVI_NEW(double, n *s);
   d->point = DVI_NEW(double, dvi__decoupled_point_size(d));
-  if (d->in && d->out && d->values && d->b && d->coefficient && d->point) return DVI_OK;
+  if (d->in && d->out && d->point) return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d decoupled systems in %d dimensions",
                    a->s, a->n);
 }
@@ -123,7 +116,7 @@ dvi_status dvi__decoupled_create(dvi__action *action, dvi_counters *counters,
   if (status == DVI_OK) {
     d->action = action;
     d->counters = counters;
-    status = allocate(d);
+    status = allocate_tables(d);
   }
   if (status == DVI_OK) status = fill(d, w);
   dvi__release(w);
@@ -146,6 +139,53 @@ void dvi__decoupled_destroy(dvi__decoupled **decoupled)
   dvi__release(d->point);
   dvi__release(d);
   *decoupled = NULL;
+}
+
+/* ---- what a factor needs ---- */
+
+static dvi_status create_linear(dvi__decoupled *d, mode *m)
+{
+  const dvi__linear_kind kind = m->parts == 2 ? DVI__LINEAR_COMPLEX : DVI__LINEAR_SPARSE;
+  if (m->linear != NULL) return DVI_OK;
+  if (m == d->mode) return dvi__linear_create(&d->action->joint, kind, d->counters, &m->linear);
+  return dvi__linear_create_like(d->mode[0].linear, kind, d->counters, &m->linear);
+}
+
+/* What a failure leaves is taken up by the next call. */
+static dvi_status prepare_modes(dvi__decoupled *d)
+{
+  const dvi__action *a = d->action;
+  const size_t n = (size_t)a->n;
+  DVI_TRY(dvi__action_prepare_hessians(d->action));
+  for (int m = 0; m < d->modes; m++) DVI_TRY(create_linear(d, &d->mode[m]));
+  if (d->values == NULL) d->values = DVI_NEW(double, 2 * (size_t)dvi__pattern_entries(&a->joint));
+  if (d->b == NULL) d->b = DVI_NEW(double, 2 * n);
+  if (d->coefficient == NULL) d->coefficient = DVI_NEW(double, n *(size_t)a->s);
+  if (d->values && d->b && d->coefficient) return DVI_OK;
+  return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d decoupled systems in %d dimensions",
+                   a->s, a->n);
+}
+
+dvi_status dvi__decoupled_analyse(dvi__decoupled *d, dvi__linear_cost *cost)
+{
+  DVI_TRY(prepare_modes(d));
+  DVI_TRY(dvi__linear_analyse(d->mode[0].linear));
+  const dvi__linear_cost first = dvi__linear_cost_of(d->mode[0].linear);
+  const int is_complex = d->mode[0].parts == 2;
+  *cost = (dvi__linear_cost){0, 0};
+  for (int m = 0; m < d->modes; m++) {
+    const int parts = d->mode[m].parts;
+    cost->entries += first.entries * parts / (is_complex ? 2 : 1);
+    cost->operations += first.operations * parts * parts / (is_complex ? 4 : 1);
+  }
+  return DVI_OK;
+}
+
+double dvi__decoupled_weight(const dvi__decoupled *d)
+{
+  double weight = 0;
+  for (int m = 0; m < d->modes; m++) weight += d->mode[m].parts * d->mode[m].parts;
+  return weight;
 }
 
 /* ---- factors ---- */
@@ -186,6 +226,7 @@ static dvi_status factor(dvi__decoupled *d)
 {
   dvi__action *a = d->action;
   const double *q = d->point + 1, *v = q + a->n;
+  DVI_TRY(prepare_modes(d));
   d->counters->jacobians++;
   DVI_TRY(dvi__lagrangian_hessian(a->evaluator, 1, d->point, q, v, a->H_qq, a->H_qv, a->H_vv));
   for (int m = 0; m < d->modes; m++) {

@@ -14,10 +14,18 @@
 
 typedef struct dvi__decoupled dvi__decoupled;
 
-/* After dvi__action_prepare_jacobian. DVI_SINGULAR: this space has no full set of eigenvectors. */
+/* Memory for factors is taken when one is first needed. DVI_SINGULAR: this space has no full set of
+ * eigenvectors. */
 dvi_status dvi__decoupled_create(dvi__action *action, dvi_counters *counters,
                                  dvi__decoupled **decoupled);
 void dvi__decoupled_destroy(dvi__decoupled **decoupled);
+
+/* Analyse the systems now, if they are not; what all factors cost, in real numbers. DVI_NO_MEMORY,
+ * DVI_BAD_SIZE, DVI_SOLVER_FAILED. */
+dvi_status dvi__decoupled_analyse(dvi__decoupled *decoupled, dvi__linear_cost *cost);
+
+/* As many times as a real system of their pattern. */
+double dvi__decoupled_weight(const dvi__decoupled *decoupled);
 
 /* Where to freeze: t, q [n] and v [n] in the middle of the path Y. */
 int dvi__decoupled_point_size(const dvi__decoupled *decoupled);

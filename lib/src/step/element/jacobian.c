@@ -12,8 +12,12 @@ const dvi__pattern *dvi__action_pattern(const dvi__action *action)
   return &action->pattern;
 }
 
-/* What was prepared before a row term came. */
-static void clear_jacobian(dvi__action *a)
+const dvi__pattern *dvi__action_coupling(const dvi__action *a)
+{
+  return &a->joint;
+}
+
+void dvi__action_clear_jacobian(dvi__action *a)
 {
   dvi__pattern_clear(&a->joint);
   dvi__pattern_clear(&a->pattern);
@@ -25,12 +29,11 @@ static void clear_jacobian(dvi__action *a)
   a->H_qq = a->H_qv = a->H_vv = NULL;
 }
 
-dvi_status dvi__action_prepare_hessians(dvi__action *a)
+static dvi_status allocate_hessians(dvi__action *a)
 {
   const dvi_system *system = a->system;
   const size_t r = (size_t)a->r;
   dvi__pattern more = {0};
-  clear_jacobian(a);
   dvi_status status = dvi__action_join_terms(a, &more);
   if (status == DVI_OK)
     status = dvi__joint_create(system, more.start != NULL ? &more : NULL, &a->joint, &a->block);
@@ -43,8 +46,18 @@ dvi_status dvi__action_prepare_hessians(dvi__action *a)
   return dvi__fail(DVI_NO_MEMORY, "action: no memory for Hessians at %d nodes", a->r);
 }
 
+dvi_status dvi__action_prepare_hessians(dvi__action *a)
+{
+  if (a->block != NULL) return DVI_OK;
+  DVI_TRY(dvi__evaluator_prepare_hessians(a->evaluator));
+  const dvi_status status = allocate_hessians(a);
+  if (status != DVI_OK) dvi__action_clear_jacobian(a);
+  return status;
+}
+
 dvi_status dvi__action_prepare_jacobian(dvi__action *a)
 {
+  if (a->pattern.start != NULL) return DVI_OK;
   DVI_TRY(dvi__action_prepare_hessians(a));
   return dvi__action_wide_pattern(a, &a->pattern);
 }
@@ -120,4 +133,34 @@ void dvi__action_move_ends(dvi__action *a, const double *dY, double *dp)
                                 in_v);
       for (size_t j = 0; j < r; j++) dp[a->joint.row[e]] += in_q[j];
     }
+}
+
+dvi_status dvi__action_prepare_product(dvi__action *a)
+{
+  DVI_TRY(dvi__action_prepare_hessians(a));
+  if (a->moved == NULL) a->moved = DVI_NEW(double, 4 * (size_t)a->n * (size_t)a->r);
+  return a->moved != NULL
+             ? DVI_OK
+             : dvi__fail(DVI_NO_MEMORY, "action: no memory for %d nodes in %d dimensions", a->r,
+                         a->n);
+}
+
+/* The rows are linear in the changes of L_q and L_v at the nodes, and these in those of the path. */
+void dvi__action_times_jacobian(dvi__action *a, const double *x, double *y)
+{
+  const size_t r = (size_t)a->r, batch = (size_t)a->n * r;
+  double *f = a->moved, *df = f + batch, *G_q = df + batch, *G_v = G_q + batch;
+  double *in_q = a->line, *in_v = a->line + r;
+  dvi__lanes_product(a->n, a->s, a->lanes, a->r, a->psi, x, f);
+  dvi__lanes_product(a->n, a->s, a->lanes, a->r, a->dpsi, x, df);
+  memset(G_q, 0, 2 * batch * sizeof(double));
+  for (size_t k = 0; k < (size_t)a->n; k++)
+    for (int e = a->joint.start[k]; e < a->joint.start[k + 1]; e++) {
+      const size_t to = (size_t)a->joint.row[e] * r;
+      dvi__action_weigh_hessian(a, &a->block[e], f + k * r, df + k * r, in_q, in_v);
+      for (size_t j = 0; j < r; j++) G_q[to + j] += in_q[j], G_v[to + j] += in_v[j];
+    }
+  dvi__lanes_product(a->n, a->r, a->path_lanes, a->s, a->bar_row, G_q, y);
+  dvi__lanes_product(a->n, a->r, a->path_lanes, a->s, a->slope_row, G_v, a->rows);
+  for (size_t i = 0; i < (size_t)a->n * (size_t)a->s; i++) y[i] += a->rows[i];
 }

@@ -55,7 +55,9 @@ dvi_status dvi__action_add_term(dvi__action *a, const dvi__row_term *term)
   terms->count++;
   terms->unknowns += term->unknowns;
   if (term->pattern == NULL && term->unknowns == 0) return DVI_OK;
-  return a->block != NULL ? dvi__action_prepare_jacobian(a) : DVI_OK;
+  if (a->block == NULL) return DVI_OK;
+  dvi__action_clear_jacobian(a);
+  return dvi__action_prepare_jacobian(a);
 }
 
 int dvi__action_has_terms(const dvi__action *a)

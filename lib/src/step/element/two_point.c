@@ -112,11 +112,6 @@ dvi_status dvi__action_two_point_gradient(dvi__action *a, const double *Y, doubl
   return DVI_OK;
 }
 
-const dvi__pattern *dvi__action_coupling(const dvi__action *a)
-{
-  return &a->joint;
-}
-
 /* column[c] = sum_j b_j [ chi_c (h L_qq chi_b + L_qv chi_b') + chi_c' (L_vq chi_b + L_vv chi_b'/h)
  * ] */
 static void block_column(const dvi__action *a, const dvi__block *block, int b, double *column)

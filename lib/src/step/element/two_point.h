@@ -37,9 +37,6 @@ void dvi__action_two_point_ends(const dvi__action *action, const double *by_Y, c
  * a]. */
 dvi_status dvi__action_two_point_hessian(dvi__action *action, const double *Y, double *values);
 
-/* Which coordinates L couples: the union of the patterns of L_qq, L_qv, L_vq and L_vv, [n x n]. */
-const dvi__pattern *dvi__action_coupling(const dvi__action *action);
-
 /* The discrete action S itself; `seen`: the largest |L| at a node of the quadrature. */
 dvi_status dvi__action_value(dvi__action *action, const double *Y, double *S, double *seen);
 

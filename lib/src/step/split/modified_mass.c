@@ -87,7 +87,7 @@ void dvi__modified_mass_destroy(dvi__modified_mass **mass)
 
 dvi_status dvi__modified_mass_keep(dvi__modified_mass *m, int count)
 {
-  const dvi__linear *first = m->kept[0].linear;
+  dvi__linear *first = m->kept[0].linear;
   const dvi__linear_kind kind = dvi__linear_kind_of(first);
   for (; m->count < count; m->count++) {
     dvi__linear **linear = &m->kept[m->count].linear;

@@ -22,13 +22,42 @@ static int allocate_general(dvi__evaluator *e)
   return e->unwanted && e->velocity_search && e->hessian[0] && e->hessian[1] && e->hessian[2];
 }
 
+/* Allocate scratch memory and `term`, with room for potentials' Hessians or without, in place of
+ * what is there. */
+static dvi_status evaluator_allocate_scratch(dvi__evaluator *e, int hessians)
+{
+  const dvi_system *system = e->system;
+  const size_t longest = (size_t)dvi__longest_hessian(system, hessians);
+  dvi__scratch scratch;
+  DVI_TRY(dvi__scratch_create(system, e->capacity, hessians, &scratch));
+  double *term = DVI_NEW(double, longest *(size_t)e->capacity);
+  if (term == NULL) {
+    dvi__scratch_clear(&scratch);
+    return dvi__fail(DVI_NO_MEMORY, "evaluator: no memory for %d points in %d dimensions",
+                     e->capacity, system->n);
+  }
+  dvi__scratch_clear(&e->scratch);
+  dvi__release(e->term);
+  e->scratch = scratch;
+  e->term = term;
+  e->has_hessians = hessians;
+  return DVI_OK;
+}
+
+dvi_status dvi__evaluator_prepare_hessians(dvi__evaluator *e)
+{
+  if (e->has_hessians) return DVI_OK;
+  DVI_TRY(dvi__system_prepare_hessian(e->system));
+  return evaluator_allocate_scratch(e, 1);
+}
+
 static dvi_status evaluator_allocate(dvi__evaluator *e, int hessians)
 {
   const dvi_system *system = e->system;
-  DVI_TRY(dvi__scratch_create(system, e->capacity, hessians, &e->scratch));
-  e->term = DVI_NEW(double, (size_t)dvi__longest_hessian(system, hessians) * (size_t)e->capacity);
+  DVI_TRY(hessians ? dvi__evaluator_prepare_hessians(e)
+                   : evaluator_allocate_scratch(e, 0));
   for (int i = 0; i < 3; i++) e->point[i] = DVI_NEW(double, system->n);
-  if (e->term && e->point[0] && e->point[1] && e->point[2] &&
+  if (e->point[0] && e->point[1] && e->point[2] &&
       (system->lagrangian == NULL || allocate_general(e)))
     return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "evaluator: no memory for %d points in %d dimensions",
@@ -38,15 +67,13 @@ static dvi_status evaluator_allocate(dvi__evaluator *e, int hessians)
 dvi_status dvi__evaluator_create(const dvi_system *system, int capacity, dvi__derivatives most,
                                  dvi_counters *counters, dvi__evaluator **evaluator)
 {
-  const int hessians = most == DVI__HESSIANS;
   *evaluator = NULL;
-  if (hessians) DVI_TRY(dvi__system_prepare_hessian(system));
   dvi__evaluator *e = DVI_NEW(dvi__evaluator, 1);
   if (e == NULL) return dvi__fail(DVI_NO_MEMORY, "evaluator: no memory");
   e->system = system;
   e->capacity = capacity;
   e->counters = counters != NULL ? counters : &e->own_counters;
-  dvi_status status = evaluator_allocate(e, hessians);
+  dvi_status status = evaluator_allocate(e, most == DVI__HESSIANS);
   if (status == DVI_OK) status = system->dynamics->prepare(e, most);
   if (status != DVI_OK) dvi__evaluator_destroy(&e);
   *evaluator = e;

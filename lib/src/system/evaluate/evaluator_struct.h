@@ -11,6 +11,7 @@ struct dvi__evaluator {
   dvi_counters own_counters; /* used if the caller passes none */
   dvi__scratch scratch;
   double *term;     /* one term's gradient or Hessian, before addition to the others */
+  int has_hessians; /* scratch and term have room for potentials' Hessians */
   double *point[3]; /* work [n] at one point */
   /* Factors the matrix by which the kind of dynamics finds velocities, or NULL. */
   dvi__linear *velocity;
