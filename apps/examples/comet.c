@@ -60,7 +60,9 @@ int main(void)
   dvi_run_report report = {.end = DVI_RUN_FAILED};
   double energy = 0;
   dvi_status status = dvi_system_create(&terms, &system);
-  if (status == DVI_OK) status = dvi_integrator_create_transformed(system, &distance, "galerkin:degree=4", &integrator);
+  const dvi_integrator_options options = {
+      .size = sizeof options, .method = "galerkin:degree=4", .pacing = DVI_TIME_TRANSFORM, .monitor = &distance};
+  if (status == DVI_OK) status = dvi_integrator_create_with(system, &options, &integrator);
   if (status == DVI_OK) status = orbits(integrator, 5, &report);
   if (status == DVI_OK) status = dvi_integrator_invariants(integrator, &energy);
   if (status == DVI_OK)

@@ -71,7 +71,8 @@ static dvi_status study(const dvi_system *system, findings *found)
   dvi_integrator *judge = NULL, *polynomials = NULL, *own = NULL;
   dvi_status status = dvi_integrator_create(system, "galerkin:degree=10", &judge);
   if (status == DVI_OK) status = dvi_integrator_create(system, "galerkin:degree=5,nodes=16", &polynomials);
-  if (status == DVI_OK) status = dvi_integrator_create_shaped(system, &shapes, "shaped-galerkin:nodes=16", &own);
+  const dvi_integrator_options options = {.size = sizeof options, .method = "shaped-galerkin:nodes=16", .shapes = &shapes};
+  if (status == DVI_OK) status = dvi_integrator_create_with(system, &options, &own);
   if (status == DVI_OK) status = arrive(judge, 240, found->exact);
   if (status == DVI_OK) status = compare(polynomials, found->exact, &found->polynomials);
   if (status == DVI_OK) status = compare(own, found->exact, &found->waves);

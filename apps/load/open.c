@@ -227,9 +227,11 @@ int open_monitor(const problem *scene, const pacing *how, dvi_monitor *monitor)
 dvi_status create_paced(const problem *scene, const char *method, const pacing *how, const dvi_monitor *monitor,
                         dvi_integrator **integrator)
 {
-  if (how->transform != NULL) return dvi_integrator_create_transformed(scene->system, monitor, method, integrator);
-  if (how->control != NULL) return dvi_integrator_create_controlled(scene->system, monitor, method, integrator);
-  return dvi_integrator_create(scene->system, method, integrator);
+  dvi_integrator_options options = {.size = sizeof options, .method = method};
+  if (how->transform != NULL) options.pacing = DVI_TIME_TRANSFORM;
+  if (how->transform == NULL && how->control != NULL) options.pacing = DVI_STEP_CONTROL;
+  if (options.pacing != DVI_STEPS_OF_TIME) options.monitor = monitor;
+  return dvi_integrator_create_with(scene->system, &options, integrator);
 }
 
 int open_paced(const problem *scene, const char *method, const pacing *how, dvi_integrator **integrator)

@@ -11,6 +11,7 @@
 #include "support/files.h"
 #include "support/runs.h"
 #include "support/spaces.h"
+#include "support/paced.h"
 #include "support/suite.h"
 
 static void check_taken(const dvi_integrator *from, dvi_integrator *by)
@@ -156,8 +157,8 @@ START_TEST(a_monitor_is_known_by_its_values)
   const dvi_monitor one = {.function = {.name = "mine", .value = g_value, .user = &one_c}},
                     other = {.function = {.name = "mine", .value = g_value, .user = &other_c}};
   dvi_integrator *first = NULL, *same = NULL, *second = NULL;
-  dvi_status (*create)(const dvi_system *, const dvi_monitor *, const char *,
-                       dvi_integrator **) = _i == 0 ? dvi_integrator_create_transformed : dvi_integrator_create_controlled;
+  dvi_status (*create)(const dvi_system *, const dvi_monitor *, const char *, dvi_integrator **) = _i == 0 ? create_transformed
+                                                                                                           : create_controlled;
   ck_assert_int_eq(create(of->system, &one, "midpoint", &first), DVI_OK);
   ck_assert_int_eq(create(of->system, &one, "midpoint", &same), DVI_OK);
   ck_assert_int_eq(create(of->system, &other, "midpoint", &second), DVI_OK);

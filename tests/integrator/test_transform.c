@@ -14,21 +14,21 @@ static const struct {
   paced_create create;
   double h;
 } ways[] = {
-    {"kepler", "e=0.9", "distance", "midpoint", dvi_integrator_create_transformed, 0.1},
-    {"kepler", "e=0.9", "distance", "trapezoidal", dvi_integrator_create_transformed, 0.1},
-    {"kepler", "e=0.9", "distance", "galerkin:degree=4", dvi_integrator_create_transformed, 0.4},
-    {"kepler", "e=0.9", "distance", "galerkin:degree=4,solver=newton", dvi_integrator_create_transformed, 0.6},
-    {"kepler", "e=0.9", "distance", "composition:order=4,base=midpoint", dvi_integrator_create_transformed, 0.3},
-    {"kepler", "e=0.9", "distance", "shooting:onestep=gauss", dvi_integrator_create_transformed, 0.1},
-    {"kepler", "e=0.9", "distance", "shooting:onestep=gauss,solve=stages", dvi_integrator_create_transformed, 0.1},
-    {"kepler", "e=0.9", "distance", "multiscale:fast=0:1,omega=1", dvi_integrator_create_transformed, 0.2},
-    {"kepler", NULL, "arclength", "galerkin", dvi_integrator_create_transformed, 0.2},
-    {"kepler", NULL, "acceleration", "galerkin", dvi_integrator_create_transformed, 0.2},
-    {"pythagorean", NULL, "distance:bodies=3", "galerkin:degree=8", dvi_integrator_create_transformed, 0.2},
-    {"kepler", "e=0.9", "distance", "verlet", dvi_integrator_create_controlled, 0.05},
-    {"kepler", "e=0.9", "distance", "galerkin", dvi_integrator_create_controlled, 0.1},
-    {"kepler", NULL, "arclength", "composition:order=6", dvi_integrator_create_controlled, 0.2},
-    {"chain", "n=50", "acceleration:power=0.2", "verlet:sweep=wave", dvi_integrator_create_controlled, 0.1},
+    {"kepler", "e=0.9", "distance", "midpoint", create_transformed, 0.1},
+    {"kepler", "e=0.9", "distance", "trapezoidal", create_transformed, 0.1},
+    {"kepler", "e=0.9", "distance", "galerkin:degree=4", create_transformed, 0.4},
+    {"kepler", "e=0.9", "distance", "galerkin:degree=4,solver=newton", create_transformed, 0.6},
+    {"kepler", "e=0.9", "distance", "composition:order=4,base=midpoint", create_transformed, 0.3},
+    {"kepler", "e=0.9", "distance", "shooting:onestep=gauss", create_transformed, 0.1},
+    {"kepler", "e=0.9", "distance", "shooting:onestep=gauss,solve=stages", create_transformed, 0.1},
+    {"kepler", "e=0.9", "distance", "multiscale:fast=0:1,omega=1", create_transformed, 0.2},
+    {"kepler", NULL, "arclength", "galerkin", create_transformed, 0.2},
+    {"kepler", NULL, "acceleration", "galerkin", create_transformed, 0.2},
+    {"pythagorean", NULL, "distance:bodies=3", "galerkin:degree=8", create_transformed, 0.2},
+    {"kepler", "e=0.9", "distance", "verlet", create_controlled, 0.05},
+    {"kepler", "e=0.9", "distance", "galerkin", create_controlled, 0.1},
+    {"kepler", NULL, "arclength", "composition:order=6", create_controlled, 0.2},
+    {"chain", "n=50", "acceleration:power=0.2", "verlet:sweep=wave", create_controlled, 0.1},
 };
 enum { WAYS = sizeof ways / sizeof *ways, MOST = 64 };
 
@@ -59,7 +59,7 @@ START_TEST(a_step_in_tau_is_symplectic)
   static const char *const monitors[] = {"distance", "distance:power=1", "arclength", "acceleration"};
   problem *kepler = made_problem("kepler", "e=0.6");
   for (int m = 0; m < 4; m++) {
-    dvi_integrator *integrator = paced(kepler, dvi_integrator_create_transformed, monitors[m], methods[_i]);
+    dvi_integrator *integrator = paced(kepler, create_transformed, monitors[m], methods[_i]);
     double defect;
     advance(integrator, 0.3, 3);
     ck_assert_int_eq(dvi_symplecticity(integrator, 0, dvi_integrator_q(integrator), dvi_integrator_p(integrator), 0.3, &defect),
@@ -75,7 +75,7 @@ END_TEST
 START_TEST(a_controlled_step_is_not_symplectic)
 {
   problem *kepler = made_problem("kepler", "e=0.6");
-  dvi_integrator *integrator = paced(kepler, dvi_integrator_create_controlled, "distance", "midpoint");
+  dvi_integrator *integrator = paced(kepler, create_controlled, "distance", "midpoint");
   double defect;
   advance(integrator, 0.3, 3);
   ck_assert_int_eq(dvi_symplecticity(integrator, 0, dvi_integrator_q(integrator), dvi_integrator_p(integrator), 0.3, &defect),
@@ -104,7 +104,7 @@ END_TEST
 START_TEST(angular_momentum_is_conserved)
 {
   problem *kepler = made_problem("kepler", "e=0.9");
-  dvi_integrator *integrator = paced(kepler, dvi_integrator_create_transformed, "distance", "galerkin:degree=2");
+  dvi_integrator *integrator = paced(kepler, create_transformed, "distance", "galerkin:degree=2");
   double before[4], after[4];
   ck_assert_int_eq(dvi_integrator_invariants(integrator, before), DVI_OK);
   advance(integrator, 0.1, 2000);
@@ -198,7 +198,7 @@ END_TEST
 START_TEST(dense_output_is_in_physical_time)
 {
   problem *kepler = made_problem("kepler", "e=0.9");
-  dvi_integrator *integrator = paced(kepler, dvi_integrator_create_transformed, "distance", "galerkin:degree=8");
+  dvi_integrator *integrator = paced(kepler, create_transformed, "distance", "galerkin:degree=8");
   double q[2], v[2], exact_q[2], exact_p[2];
   for (int step = 0; step < 60; step++) {
     const double from = dvi_integrator_time(integrator);
@@ -256,9 +256,9 @@ END_TEST
 START_TEST(a_checkpoint_of_another_monitor_is_refused)
 {
   problem *kepler = made_problem("kepler", NULL);
-  dvi_integrator *others[] = {paced(kepler, dvi_integrator_create_transformed, "distance", "midpoint"),
-                              paced(kepler, dvi_integrator_create_transformed, "distance:power=1", "midpoint"),
-                              paced(kepler, dvi_integrator_create_controlled, "distance", "midpoint"), started(kepler, "midpoint")};
+  dvi_integrator *others[] = {paced(kepler, create_transformed, "distance", "midpoint"),
+                              paced(kepler, create_transformed, "distance:power=1", "midpoint"),
+                              paced(kepler, create_controlled, "distance", "midpoint"), started(kepler, "midpoint")};
   for (int i = 0; i < 4; i++) {
     ck_assert_int_eq(dvi_integrator_save(others[i], in_folder("checkpoint")), DVI_OK);
     for (int k = 0; k < 4; k++) {
@@ -305,7 +305,7 @@ static double energy_change(dvi_integrator *integrator, const double *q, const d
 START_TEST(one_like_another_keeps_its_E0)
 {
   problem *kepler = made_problem("kepler", "e=0.5");
-  dvi_integrator *integrator = paced(kepler, dvi_integrator_create_transformed, "distance", "galerkin:degree=8"), *like;
+  dvi_integrator *integrator = paced(kepler, create_transformed, "distance", "galerkin:degree=8"), *like;
   const double q[] = {1.2, 0}, p[] = {0, 1};
   ck_assert_int_eq(dvi_integrator_create_like(integrator, &like), DVI_OK);
   ck_assert_double_gt(energy_change(like, q, p), 1e-3);
@@ -319,7 +319,7 @@ END_TEST
 START_TEST(explain_says_what_a_step_is)
 {
   problem *kepler = made_problem("kepler", NULL);
-  dvi_integrator *integrator = paced(kepler, dvi_integrator_create_transformed, "distance", "midpoint");
+  dvi_integrator *integrator = paced(kepler, create_transformed, "distance", "midpoint");
   char text[2000];
   (void)dvi_integrator_explain(integrator, text, sizeof text);
   ck_assert_ptr_nonnull(strstr(text, "time: transformed, dt/dtau = g(q), distance:power=1.5"));

@@ -10,7 +10,7 @@
 #include "support/runs.h"
 #include "support/suite.h"
 
-static const paced_create both[] = {dvi_integrator_create_transformed, dvi_integrator_create_controlled};
+static const paced_create both[] = {create_transformed, create_controlled};
 
 static void refused(dvi_status found, dvi_status expected, const char *words)
 {
@@ -35,12 +35,10 @@ START_TEST(a_system_that_may_depend_on_time_is_not_transformed)
   dvi_system *system;
   dvi_integrator *integrator;
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
-  refused(dvi_integrator_create_transformed(system, &distance, "midpoint", &integrator), DVI_UNSUPPORTED,
-          "not declared autonomous");
+  refused(create_transformed(system, &distance, "midpoint", &integrator), DVI_UNSUPPORTED, "not declared autonomous");
   ck_assert_ptr_null(integrator);
-  refused(dvi_integrator_create_controlled(system, &arclength, "midpoint", &integrator), DVI_UNSUPPORTED,
-          "not declared autonomous");
-  ck_assert_int_eq(dvi_integrator_create_controlled(system, &distance, "midpoint", &integrator), DVI_OK);
+  refused(create_controlled(system, &arclength, "midpoint", &integrator), DVI_UNSUPPORTED, "not declared autonomous");
+  ck_assert_int_eq(create_controlled(system, &distance, "midpoint", &integrator), DVI_OK);
   dvi_integrator_destroy(&integrator);
   dvi_system_destroy(&system);
 }
@@ -51,9 +49,9 @@ START_TEST(explicit_methods_are_not_transformed)
   problem *kepler = made_problem("kepler", NULL);
   const dvi_monitor distance = monitor_of("distance");
   dvi_integrator *integrator;
-  refused(dvi_integrator_create_transformed(kepler->system, &distance, "verlet", &integrator), DVI_UNSUPPORTED, "time transform");
+  refused(create_transformed(kepler->system, &distance, "verlet", &integrator), DVI_UNSUPPORTED, "time transform");
   check_words("verlet: the system declares a general Lagrangian");
-  refused(dvi_integrator_create_transformed(kepler->system, &distance, "composition", &integrator), DVI_UNSUPPORTED, "verlet");
+  refused(create_transformed(kepler->system, &distance, "composition", &integrator), DVI_UNSUPPORTED, "verlet");
   ck_assert_ptr_null(integrator);
   problem_destroy(&kepler);
 }
@@ -64,8 +62,8 @@ START_TEST(control_wants_a_symmetric_method)
   problem *kepler = made_problem("kepler", NULL);
   const dvi_monitor distance = monitor_of("distance");
   dvi_integrator *integrator;
-  refused(dvi_integrator_create_controlled(kepler->system, &distance, "galerkin:degree=2,quadrature=radau-left", &integrator),
-          DVI_UNSUPPORTED, "step control");
+  refused(create_controlled(kepler->system, &distance, "galerkin:degree=2,quadrature=radau-left", &integrator), DVI_UNSUPPORTED,
+          "step control");
   check_words("is not symmetric");
   ck_assert_ptr_null(integrator);
   problem_destroy(&kepler);
@@ -80,11 +78,11 @@ START_TEST(a_one_form_takes_control_alone)
   const dvi_monitor distance_to_origin = monitor_of("distance");
   double error[2];
   dvi_integrator *integrator;
-  refused(dvi_integrator_create_transformed(prey->system, &distance_to_origin, "dg", &integrator), DVI_UNSUPPORTED, "has no mass");
-  refused(dvi_integrator_create_controlled(prey->system, &distance_to_origin, "vprk:projection=post", &integrator), DVI_UNSUPPORTED,
+  refused(create_transformed(prey->system, &distance_to_origin, "dg", &integrator), DVI_UNSUPPORTED, "has no mass");
+  refused(create_controlled(prey->system, &distance_to_origin, "vprk:projection=post", &integrator), DVI_UNSUPPORTED,
           "choose dg, dg-phase, dvrk, or vprk with its symmetric projection");
   for (int k = 0; k < 2; k++) {
-    integrator = paced(prey, dvi_integrator_create_controlled, "distance", "vprk:nodes=3");
+    integrator = paced(prey, create_controlled, "distance", "vprk:nodes=3");
     run_to(integrator, ldexp(h, -k), prey->order_t_end);
     error[k] = distance(2, dvi_integrator_q(integrator), prey->digits_q);
     dvi_integrator_destroy(&integrator);
@@ -102,10 +100,8 @@ START_TEST(factors_have_no_monitor)
   const dvi_monitor given[] = {monitor_of("arclength"), monitor_of("acceleration"), monitor_of("distance")};
   dvi_integrator *integrator;
   for (int k = 0; k < 9; k++) {
-    refused(dvi_integrator_create_transformed(body->system, &given[k / 3], method[k % 3], &integrator), DVI_UNSUPPORTED,
-            "has factors");
-    refused(dvi_integrator_create_controlled(body->system, &given[k / 3], method[k % 3], &integrator), DVI_UNSUPPORTED,
-            "has factors");
+    refused(create_transformed(body->system, &given[k / 3], method[k % 3], &integrator), DVI_UNSUPPORTED, "has factors");
+    refused(create_controlled(body->system, &given[k / 3], method[k % 3], &integrator), DVI_UNSUPPORTED, "has factors");
   }
   problem_destroy(&body);
 }
@@ -308,7 +304,7 @@ END_TEST
 START_TEST(a_control_step_too_large_for_the_monitor_is_refused)
 {
   problem *kepler = made_problem("kepler", "e=0.9");
-  dvi_integrator *integrator = paced(kepler, dvi_integrator_create_controlled, "distance:power=4", "verlet");
+  dvi_integrator *integrator = paced(kepler, create_controlled, "distance:power=4", "verlet");
   dvi_run_report report;
   const dvi_status status = dvi_run(integrator, &(dvi_run_options){.h = 500, .t_end = 6}, &report);
   refused(status, DVI_NOT_CONVERGED, "step control: the steps' density z went from");
@@ -374,9 +370,9 @@ static void survives(const problem *of, paced_create create, const char *monitor
 START_TEST(creation_survives_every_failure_of_memory)
 {
   problem *kepler = made_problem("kepler", NULL);
-  survives(kepler, dvi_integrator_create_transformed, "distance", "galerkin");
-  survives(kepler, dvi_integrator_create_transformed, "arclength", "composition:base=midpoint");
-  survives(kepler, dvi_integrator_create_controlled, "acceleration", "verlet");
+  survives(kepler, create_transformed, "distance", "galerkin");
+  survives(kepler, create_transformed, "arclength", "composition:base=midpoint");
+  survives(kepler, create_controlled, "acceleration", "verlet");
   problem_destroy(&kepler);
 }
 END_TEST

@@ -39,14 +39,14 @@ static void check_no_drift(paced_create create, const char *method, double h, do
 
 START_TEST(the_energy_of_a_transformed_run_does_not_drift)
 {
-  check_no_drift(dvi_integrator_create_transformed, "galerkin:degree=2", 0.2, 0.05);
-  check_no_drift(dvi_integrator_create_transformed, "galerkin:degree=4", 0.4, 1e-7);
+  check_no_drift(create_transformed, "galerkin:degree=2", 0.2, 0.05);
+  check_no_drift(create_transformed, "galerkin:degree=4", 0.4, 1e-7);
 }
 END_TEST
 
 START_TEST(nor_does_that_of_a_controlled_run)
 {
-  check_no_drift(dvi_integrator_create_controlled, "verlet", 0.02, 0.05);
+  check_no_drift(create_controlled, "verlet", 0.02, 0.05);
 }
 END_TEST
 
@@ -74,8 +74,7 @@ START_TEST(a_transformed_run_needs_a_tenth_of_the_evaluations_of_fixed_steps)
   } at[] = {{"galerkin:degree=2", 0.05, 1e-4}, {"galerkin:degree=4", 0.3, 1e-3}, {"galerkin:degree=8", 0.8, 2e-3}};
   problem *kepler = made_problem("kepler", "e=0.99");
   long transformed, fixed;
-  const double error = error_of(kepler, paced(kepler, dvi_integrator_create_transformed, "distance", at[_i].method), at[_i].h,
-                                &transformed);
+  const double error = error_of(kepler, paced(kepler, create_transformed, "distance", at[_i].method), at[_i].h, &transformed);
   /* The fixed steps have the larger error and yet need ten times as much. */
   ck_assert_double_gt(error_of(kepler, started(kepler, at[_i].method), period / ceil(period / at[_i].fixed), &fixed), error);
   ck_assert_msg(fixed > 10 * transformed, "%s: %ld against %ld", at[_i].method, fixed, transformed);
@@ -134,7 +133,7 @@ static double distance_by_the_judge(const problem *of, double t)
 START_TEST(burraus_three_bodies_meet_and_part_as_they_must)
 {
   problem *of = made_problem("pythagorean", NULL);
-  dvi_integrator *integrator = paced(of, dvi_integrator_create_transformed, "distance:bodies=3,dimension=2", "galerkin:degree=8");
+  dvi_integrator *integrator = paced(of, create_transformed, "distance:bodies=3,dimension=2", "galerkin:degree=8");
   double closest = HUGE_VAL, at = 0, before[8], after[8];
   encounter pairs[] = {{0, 1, &closest, &at}, {0, 2, &closest, &at}, {1, 2, &closest, &at}};
   dvi_event events[3];

@@ -8,6 +8,7 @@
 
 #include "support/quad/quad.h"
 #include "support/runs.h"
+#include "support/paced.h"
 #include "support/suite.h"
 
 enum { LEVELS = 5, MOST = 8 };
@@ -15,7 +16,7 @@ enum { LEVELS = 5, MOST = 8 };
 static dvi_integrator *transformed(const problem *of, const dvi_monitor *monitor, const char *method)
 {
   dvi_integrator *made = NULL;
-  ck_assert_msg(dvi_integrator_create_transformed(of->system, monitor, method, &made) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(create_transformed(of->system, monitor, method, &made) == DVI_OK, "%s", dvi_last_error());
   ck_assert_msg(dvi_integrator_start(made, 0, of->q, of->p) == DVI_OK, "%s", dvi_last_error());
   return made;
 }
@@ -129,7 +130,7 @@ START_TEST(every_method_is_measured_or_refuses)
   for (int i = 0; i < dvi_method_count(); i++) {
     dvi_integrator *none = NULL;
     if (is_measured(dvi_method_name(i))) continue;
-    const dvi_status status = dvi_integrator_create_transformed(kepler->system, &monitor, dvi_method_name(i), &none);
+    const dvi_status status = create_transformed(kepler->system, &monitor, dvi_method_name(i), &none);
     ck_assert_msg(status == DVI_UNSUPPORTED, "%s is not in the list above", dvi_method_name(i));
     ck_assert_ptr_null(none);
   }
@@ -144,7 +145,7 @@ START_TEST(a_method_of_higher_derivatives_says_why_not)
   problem *kepler = made_problem("kepler", NULL);
   for (int i = 0; i < 2; i++) {
     dvi_integrator *none = NULL;
-    ck_assert_int_eq(dvi_integrator_create_transformed(kepler->system, &monitor, of_derivatives[i], &none), DVI_UNSUPPORTED);
+    ck_assert_int_eq(create_transformed(kepler->system, &monitor, of_derivatives[i], &none), DVI_UNSUPPORTED);
     check_words("a time-transformed system has no Taylor coefficients");
   }
   problem_destroy(&kepler);

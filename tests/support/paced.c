@@ -2,6 +2,23 @@
 
 #include "support/suite.h"
 
+static dvi_status create_paced(const dvi_system *system, const dvi_monitor *monitor, const char *method, dvi_pacing pacing,
+                               dvi_integrator **integrator)
+{
+  const dvi_integrator_options options = {.size = sizeof options, .method = method, .pacing = pacing, .monitor = monitor};
+  return dvi_integrator_create_with(system, &options, integrator);
+}
+
+dvi_status create_transformed(const dvi_system *system, const dvi_monitor *monitor, const char *method, dvi_integrator **integrator)
+{
+  return create_paced(system, monitor, method, DVI_TIME_TRANSFORM, integrator);
+}
+
+dvi_status create_controlled(const dvi_system *system, const dvi_monitor *monitor, const char *method, dvi_integrator **integrator)
+{
+  return create_paced(system, monitor, method, DVI_STEP_CONTROL, integrator);
+}
+
 dvi_monitor monitor_of(const char *specification)
 {
   dvi_monitor monitor = {0};

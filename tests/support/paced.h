@@ -3,7 +3,12 @@
 #define SUPPORT_PACED_H
 #include "problem.h"
 
-/* dvi_integrator_create_transformed or _controlled. */
+/* An integrator of a transformed time, or of controlled steps. */
+dvi_status create_transformed(const dvi_system *system, const dvi_monitor *monitor, const char *method,
+                              dvi_integrator **integrator);
+dvi_status create_controlled(const dvi_system *system, const dvi_monitor *monitor, const char *method, dvi_integrator **integrator);
+
+/* One of these. */
 typedef dvi_status (*paced_create)(const dvi_system *system, const dvi_monitor *monitor, const char *method,
                                    dvi_integrator **integrator);
 

@@ -5,10 +5,16 @@
 
 #include "support/suite.h"
 
+dvi_status create_shaped(const dvi_system *system, const dvi_shapes *shapes, const char *method, dvi_integrator **integrator)
+{
+  const dvi_integrator_options options = {.size = sizeof options, .method = method, .shapes = shapes};
+  return dvi_integrator_create_with(system, &options, integrator);
+}
+
 dvi_integrator *shaped_integrator(const dvi_system *system, const dvi_shapes *shapes, const char *method)
 {
   dvi_integrator *made = NULL;
-  ck_assert_msg(dvi_integrator_create_shaped(system, shapes, method, &made) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(create_shaped(system, shapes, method, &made) == DVI_OK, "%s", dvi_last_error());
   return made;
 }
 

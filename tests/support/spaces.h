@@ -5,6 +5,9 @@
 
 #include "problem.h"
 
+/* An integrator of functions of a program's own. */
+dvi_status create_shaped(const dvi_system *system, const dvi_shapes *shapes, const char *method, dvi_integrator **integrator);
+
 /* An integrator that must be made; shaped_started() puts it at the problem's start. */
 dvi_integrator *shaped_integrator(const dvi_system *system, const dvi_shapes *shapes, const char *method);
 dvi_integrator *shaped_started(const problem *of, const dvi_shapes *shapes, const char *method);

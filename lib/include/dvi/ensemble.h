@@ -25,7 +25,7 @@ typedef struct dvi_ensemble_options {
    *  mollified, trig, multiscale that finds what is fast, compositions of imex) keep parts, modes or factors of a system: an integrator is made for each such
    *  group of neighbours then, so put members of one system next to each other. */
   const dvi_system *const *systems;
-  /** Functions of your own for `shaped-galerkin`, as dvi_integrator_create_shaped has them; copied. With more threads than one their callbacks run at the same time,
+  /** Functions of your own for `shaped-galerkin`, as dvi_integrator_options has them; copied. With more threads than one their callbacks run at the same time,
    *  too. NULL: none. */
   const dvi_shapes *shapes;
 } dvi_ensemble_options;

@@ -62,10 +62,29 @@ typedef struct dvi_start_options {
 extern "C" {
 #endif
 
+/** What the steps of an integrator are. */
+typedef enum dvi_pacing {
+  DVI_STEPS_OF_TIME,  /**< steps of time, of length h, or as long as the method chooses */
+  DVI_TIME_TRANSFORM, /**< equal steps in the fictitious time of a monitor (dvi/transform.h) */
+  DVI_STEP_CONTROL    /**< steps of time that follow a monitor by reversible control */
+} dvi_pacing;
+
+/** How an integrator is made; zero means default. */
+typedef struct dvi_integrator_options {
+  size_t size;        /**< sizeof(dvi_integrator_options), so that programs of older headers go on */
+  const char *method; /**< a specification, see dvi/method.h; needed */
+  /** Functions of your own, for the method `shaped-galerkin` (dvi/shapes.h); copied, but for what `user`
+   *  points to. Default: none */
+  const struct dvi_shapes *shapes;
+  dvi_pacing pacing; /**< default: steps of time */
+  /** The monitor of another pacing (dvi/transform.h); copied, but for what `user` points to */
+  const struct dvi_monitor *monitor;
+} dvi_integrator_options;
+
 /** Make an integrator.
  *
  *  @param      system      must outlive the integrator
- *  @param      method      a specification, see dvi/method.h
+ *  @param      options     read during the call only
  *  @param[out] integrator  owned by the caller; NULL on failure
  *  @retval DVI_BAD_OPTION   unknown method, key or value, or values that do not go together (nodes < degree, say); the error
  *                           sentence gives the reason
@@ -76,7 +95,14 @@ extern "C" {
  *  @retval DVI_SINGULAR     a method with normal modes (trig, mollified, respa:substeps=exact, multiscale that finds omega) wants a positive definite mass
  *  @retval DVI_NOT_FINITE, DVI_CALLBACK_RETRY, DVI_CALLBACK_FAILED  the same methods and imex ask for the Hessian of quadratic fast potentials at
  *                           t = 0 and q = 0, and that is not finite, or the callback failed
- *  @retval DVI_NO_MEMORY */
+ *  @retval DVI_BAD_ARGUMENT a pointer or the method is NULL, the size is none of this struct, a monitor is given without
+ *                           its pacing or a pacing without a monitor, or the shapes or the monitor are not well declared
+ *  @retval DVI_NO_MEMORY
+ *
+ *  dvi/shapes.h and dvi/transform.h say what else these options ask of the system and the method. */
+dvi_status dvi_integrator_create_with(const dvi_system *system, const dvi_integrator_options *options, dvi_integrator **integrator);
+
+/** Make an integrator of a method, all other options being default. */
 dvi_status dvi_integrator_create(const dvi_system *system, const char *method, dvi_integrator **integrator);
 
 /** Make another one of the same system, method and monitor (dvi/transform.h), without a state.
@@ -84,7 +110,7 @@ dvi_status dvi_integrator_create(const dvi_system *system, const char *method, d
  *  If the given one is started, and its steps are in a fictitious time, the new one keeps its E0 in all its starts: those near each other belong to
  *  one map, whose derivatives can be differenced. Time-transformed, only a start of the energy E0 follows the motion then; one of another energy E
  *  succeeds and follows that of g (E - E0), which is another. For starts of their own energies make an integrator by
- *  dvi_integrator_create_transformed.
+ *  dvi_integrator_create_with.
  *  @param[out] integrator  owned by the caller; NULL on failure
  *  @retval DVI_BAD_ARGUMENT  a pointer is NULL
  *  @retval (others)          as when the given one was made */

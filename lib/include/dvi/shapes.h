@@ -7,7 +7,30 @@
  *  start q0 is any point, and straight motion is exact. The quadrature is one of the library's, or yours.
  *
  *  What follows from the action holds in every such space and with every such quadrature: steps are symplectic, and keep the momenta of linear symmetries if all
- *  coordinates that the symmetry turns into each other have the same functions. How accurate they are is up to the functions. docs/shapes.md has a complete program. */
+ *  coordinates that the symmetry turns into each other have the same functions. How accurate they are is up to the functions. docs/shapes.md has a complete program.
+ *
+ *  They are the `shapes` of dvi_integrator_options. Its method is then `shaped-galerkin`, with keys `degree` (of the
+ *  polynomials; default 1), `quadrature` and `nodes` as of galerkin (default: gauss, as many as there are functions and
+ *  degrees; more of them pay, for functions that are no polynomials), or a composition of it:
+ *  "composition:order=6,base=shaped-galerkin,nodes=4". The system is as for galerkin, without factors, one-form or
+ *  constraints.
+ *
+ *  Creation checks the functions: each number is written and finite; derivatives agree with differences of values; no
+ *  function is a combination of those before it, of polynomials and a constant, as the quadrature sees it, nor changes
+ *  by 100 times what the derivatives that it sees allow; nodes lie in [0,1], weights sum to 1. Whether the step is
+ *  symmetric is found out. At another length of the step numbers, nodes and weights are checked again; a function of
+ *  which less than 1e-8 of itself is left, as of sin(omega h tau) at a tiny omega h, is left out there. It fails by
+ *
+ *  - DVI_BAD_ARGUMENT: the functions, the points or the coordinates are not as described; the sentence names function
+ *    and place;
+ *  - DVI_BAD_SIZE: a count is out of range;
+ *  - DVI_BAD_OPTION: another method; a key or a value that it cannot take; fewer points than functions;
+ *  - DVI_NOT_FINITE: a callback gave NaN or Inf, or left a number out;
+ *  - DVI_CALLBACK_RETRY, DVI_CALLBACK_FAILED: a callback failed.
+ *
+ *  Steps fail by the last three statuses, too, where a new length of the step does. dvi_integrator_create_like, the
+ *  diagnostics, checkpoints and dense output know the functions; a checkpoint of a space of another name, or with other
+ *  values, is refused. Source: Marsden and West 2001, sec. 2.2.6; Hall and Leok 2015. */
 #ifndef DVI_SHAPES_H
 #define DVI_SHAPES_H
 #include <dvi/integrator.h>
@@ -46,37 +69,4 @@ typedef struct dvi_shapes {
   void *user;
 } dvi_shapes;
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
-/** Make an integrator whose paths are polynomials and functions of your own.
- *
- *  Its method is `shaped-galerkin` with keys `degree` (of the polynomials; left out: 1), `quadrature` and `nodes` as of galerkin (left out: gauss, as many as there are
- *  functions and degrees; more of them pay, for functions that are no polynomials), or a composition: "composition:order=6,base=shaped-galerkin,nodes=4".
- *
- *  Creation checks the functions: each number is written and finite; derivatives agree with differences of values; no function is a combination of those before it, of
- *  polynomials and a constant, as the quadrature sees it, nor changes by 100 times what the derivatives that it sees allow; nodes lie in [0,1], weights sum to 1. Whether the
- *  step is symmetric is found out. At another length of the step numbers, nodes and weights are checked again; a function of which less than 1e-8 of itself is left, as of
- *  sin(omega h tau) at a tiny omega h, is left out there.
- *
- *  @param      system   as for galerkin, without factors, one-form or constraints; must outlive the integrator
- *  @param      shapes   copied, but for what `user` points to
- *  @param      method   "shaped-galerkin", or a composition of it
- *  @param[out] integrator  owned by the caller; NULL on failure
- *  @retval DVI_BAD_ARGUMENT     a pointer is NULL; or the functions, the points or the coordinates are not as described: the error sentence names function and place
- *  @retval DVI_BAD_SIZE         a count is out of range
- *  @retval DVI_BAD_OPTION       another method; a key or a value that it cannot take; fewer points than functions
- *  @retval DVI_NOT_FINITE       a callback gave NaN or Inf, or left a number out
- *  @retval DVI_CALLBACK_RETRY, DVI_CALLBACK_FAILED  a callback failed
- *  @retval (others)             as dvi_integrator_create
- *
- *  Steps fail by the last three statuses, too, where a new length of the step does. dvi_integrator_create_like, the diagnostics, checkpoints and dense output know the
- *  functions; a checkpoint of a space of another name, or with other values, is refused. Source: Marsden and West 2001, sec. 2.2.6; Hall and Leok 2015. */
-dvi_status dvi_integrator_create_shaped(const dvi_system *system, const dvi_shapes *shapes, const char *method,
-                                        dvi_integrator **integrator);
-
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -18,7 +18,19 @@
  *  Cheaper: explicit methods stay explicit. A symmetric method stays symmetric, which keeps the energy of reversible systems from drifting, but the map is
  *  not symplectic.
  *
- *  An integrator made here takes h in units of tau: dvi_integrator_step, dvi_run_options.h, and the functions of dvi/diagnostics.h. All else is
+ *  Either is a `pacing` of dvi_integrator_options, with its `monitor`. What it asks for, else creation fails:
+ *
+ *  - DVI_TIME_TRANSFORM: an autonomous system, and a method that takes a general Lagrangian: galerkin, midpoint,
+ *    trapezoidal, or a composition of one of them (DVI_UNSUPPORTED). The start chooses E0. Lg_qq is full, whatever the
+ *    system's patterns are. The Hessian of an arclength or acceleration monitor is differenced.
+ *  - DVI_STEP_CONTROL: a symmetric method; for an arclength monitor an autonomous system (DVI_UNSUPPORTED). The
+ *    monitor's Hessian is not used. A step also fails, with DVI_NOT_CONVERGED, if z would not be positive: h is too large
+ *    for how fast the monitor changes.
+ *  - Both: coordinates of R^n, and a constant mass where the monitor needs it (DVI_UNSUPPORTED); a monitor that is well
+ *    declared: a value, a positive power, bodies that are the coordinates (DVI_BAD_ARGUMENT). Where the monitor is not
+ *    a positive finite number, dvi_integrator_start and dvi_integrator_step fail with DVI_NOT_FINITE.
+ *
+ *  Such an integrator takes h in units of tau: dvi_integrator_step, dvi_run_options.h, and the functions of dvi/diagnostics.h. All else is
  *  in physical time: dvi_integrator_time, observers, events, dense output, t_end. dvi_run ends at t_end: a step that would
  *  pass it is taken back, and the shorter one that ends there to roundoff is sought. Choosing steps by estimates of their errors is not offered: a step that
  *  depends on where it is taken in such a way makes any of the methods neither symplectic nor symmetric, and their energies drift. */
@@ -73,33 +85,6 @@ dvi_status dvi_monitor_read(const char *specification, dvi_monitor *monitor);
  *  @retval DVI_NOT_FINITE    the monitor is not finite at q, or not positive */
 dvi_status dvi_monitor_check(const dvi_system *system, const dvi_monitor *monitor, const double *q, double tolerance,
                              dvi_derivative_check *check);
-
-/** Make an integrator of the time-transformed system.
- *
- *  The start chooses E0. Lg_qq is full, whatever the system's patterns are. The Hessian of an arclength or acceleration monitor is differenced.
- *  @param      system   autonomous; must outlive the integrator
- *  @param      monitor  copied (but what `user` points to)
- *  @param      method   takes a general Lagrangian: galerkin, midpoint, trapezoidal, or a composition of one of them
- *  @param[out] integrator  as dvi_integrator_create, whose other statuses apply
- *  @retval DVI_UNSUPPORTED   the system is not declared autonomous; the method cannot take a general Lagrangian; the monitor needs a constant
- *                            mass
- *  @retval DVI_BAD_ARGUMENT  the monitor is not well declared: no value, a power that is not positive, bodies that are not the coordinates
- *
- *  Where the monitor is not a positive finite number, dvi_integrator_start and dvi_integrator_step fail with DVI_NOT_FINITE. */
-dvi_status dvi_integrator_create_transformed(const dvi_system *system, const dvi_monitor *monitor, const char *method,
-                                             dvi_integrator **integrator);
-
-/** Make an integrator whose steps follow the monitor by reversible control.
- *
- *  @param monitor  as above; its Hessian is not used
- *  @param method   symmetric
- *  @retval DVI_UNSUPPORTED   the method is not symmetric; the monitor is arclength, and the system is not declared autonomous; or, as
- *                            above, has no constant mass
- *  @retval (others)          as dvi_integrator_create_transformed
- *
- *  A step also fails, with DVI_NOT_CONVERGED, if z would not be positive: h is too large for how fast the monitor changes. */
-dvi_status dvi_integrator_create_controlled(const dvi_system *system, const dvi_monitor *monitor, const char *method,
-                                            dvi_integrator **integrator);
 
 /** The monitor's name, "distance:power=1.5" or that of the user's function; owned by the integrator. NULL if its steps are steps of time. */
 const char *dvi_integrator_monitor(const dvi_integrator *integrator);

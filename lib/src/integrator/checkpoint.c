@@ -25,7 +25,7 @@
 #include "march/whole_file.h"
 #include "num/finite.h"
 
-enum { SECTION_VERSION = 1, STEPS_OF_TIME = 0 };
+enum { SECTION_VERSION = 1 };
 
 typedef struct method_section {
   uint64_t steps, fingerprint; /* the stepper's */
@@ -62,7 +62,7 @@ typedef struct checkpoint {
 
 static int64_t pacing_of(const dvi_integrator *I)
 {
-  return I->pace != NULL ? 1 + (int64_t)I->pace->pacing : STEPS_OF_TIME;
+  return I->pace != NULL ? I->pace->pacing : DVI_STEPS_OF_TIME;
 }
 
 static size_t state_size(const dvi_integrator *I)
@@ -199,7 +199,7 @@ static dvi_status check_method(const dvi_integrator *I, const checkpoint *c)
 
 static const char *name_of(int64_t pacing)
 {
-  return pacing == STEPS_OF_TIME ? "of time" : pacing == 1 + DVI__TRANSFORM ? "in another time, by " : "controlled by ";
+  return pacing == DVI_STEPS_OF_TIME ? "of time" : pacing == DVI_TIME_TRANSFORM ? "in another time, by " : "controlled by ";
 }
 
 static dvi_status check_time(const dvi_integrator *I, const checkpoint *c)

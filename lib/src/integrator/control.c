@@ -39,7 +39,7 @@ dvi_status dvi__control_begin(dvi_integrator *I, double h, double *length)
 {
   *length = h;
   I->next.density = I->now.density;
-  if (I->pace == NULL || I->pace->pacing != DVI__CONTROL) return DVI_OK;
+  if (I->pace == NULL || I->pace->pacing != DVI_STEP_CONTROL) return DVI_OK;
   DVI_TRY(follow(I, &I->now, h, I->now.density, &I->next.density));
   *length = h / I->next.density;
   return dvi__check_step(I->now.t, *length);
@@ -47,6 +47,6 @@ dvi_status dvi__control_begin(dvi_integrator *I, double h, double *length)
 
 dvi_status dvi__control_end(dvi_integrator *I, double h)
 {
-  if (I->pace == NULL || I->pace->pacing != DVI__CONTROL) return DVI_OK;
+  if (I->pace == NULL || I->pace->pacing != DVI_STEP_CONTROL) return DVI_OK;
   return follow(I, &I->next, h, I->next.density, &I->next.density);
 }

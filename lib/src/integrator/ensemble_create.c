@@ -60,7 +60,8 @@ void dvi__worker_bind(dvi__worker *w, const dvi__block *block)
 static dvi_status add_integrator(dvi_ensemble *e, const dvi_system *system, const char *method, const dvi_shapes *shapes)
 {
   dvi_integrator **place = &e->integrators[e->integrator_count];
-  DVI_TRY(dvi__integrator_make(system, method, shapes, NULL, DVI__TRANSFORM, place));
+  const dvi_integrator_options options = {.size = sizeof options, .method = method, .shapes = shapes};
+  DVI_TRY(dvi_integrator_create_with(system, &options, place));
   e->integrator_count++;
   if (dvi_integrator_chooses_steps(*place))
     return dvi__fail(DVI_UNSUPPORTED, "ensemble: %s chooses its steps, so that members would part in time; use single integrators",

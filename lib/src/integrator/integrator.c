@@ -10,87 +10,10 @@
 #include "space/given.h"
 #include "system/evaluate/dynamics.h"
 
-/* ---- create, destroy ---- */
-
 void dvi__state_lay_out(dvi__state *state, double **at, size_t n)
 {
   double **const part[] = {&state->q, &state->p, &state->q_carry, &state->p_carry};
   for (int i = 0; i < 4; i++, *at += n) *part[i] = *at;
-}
-
-static dvi_status allocate(dvi_integrator *I)
-{
-  const size_t n = (size_t)I->system->n;
-  dvi__attempt_extend(I);
-  double *at = I->numbers = DVI_NEW(double, 14 * n);
-  I->stepper.memory = DVI_NEW(double, I->stepper.memory_count);
-  I->memory_before = DVI_NEW(double, I->stepper.memory_count);
-  if (I->numbers == NULL || I->stepper.memory == NULL || I->memory_before == NULL)
-    return dvi__fail(DVI_NO_MEMORY, "integrator: no memory for %zu coordinates", n);
-  dvi__state_lay_out(&I->now, &at, n);
-  dvi__state_lay_out(&I->last, &at, n);
-  dvi__state_lay_out(&I->next, &at, n);
-  I->v = at;
-  I->last_v = at + n;
-  DVI_TRY(dvi__attempt_allocate(I));
-  return dvi__evaluator_create(I->system, 1, DVI__STATES, &I->counters, &I->evaluator);
-}
-
-static dvi_status fill(dvi_integrator *I, const char *method, const dvi_shapes *shapes, const dvi_monitor *monitor,
-                       dvi__pacing pacing)
-{
-  if (shapes != NULL) I->shapes = dvi__shapes_copy(shapes);
-  if (shapes != NULL && I->shapes == NULL) return dvi__fail(DVI_NO_MEMORY, "integrator: no memory for the shapes %s", shapes->name);
-  if (monitor != NULL) DVI_TRY(dvi__pace_create(I->system, monitor, pacing, &I->counters, &I->pace));
-  DVI_TRY(dvi__stepper_create(dvi__pace_system(I->pace, I->system), method, I->shapes, &I->counters, &I->stepper));
-  return allocate(I);
-}
-
-dvi_status dvi__integrator_make(const dvi_system *system, const char *method, const dvi_shapes *shapes, const dvi_monitor *monitor,
-                                dvi__pacing pacing, dvi_integrator **integrator)
-{
-  if (integrator == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "integrator: no place for the result");
-  *integrator = NULL;
-  if (system == NULL || method == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "integrator: the system or the method is NULL");
-  const long before = dvi__allocation_count();
-  dvi_integrator *I = DVI_NEW(dvi_integrator, 1);
-  if (I == NULL) return dvi__fail(DVI_NO_MEMORY, "integrator: no memory");
-  I->system = system;
-  const dvi_status status = fill(I, method, shapes, monitor, pacing);
-  I->counters.allocations = dvi__allocation_count() - before;
-  if (status != DVI_OK) dvi_integrator_destroy(&I);
-  *integrator = I;
-  return status;
-}
-
-dvi_status dvi_integrator_create(const dvi_system *system, const char *method, dvi_integrator **integrator)
-{
-  return dvi__integrator_make(system, method, NULL, NULL, DVI__TRANSFORM, integrator);
-}
-
-dvi_status dvi_integrator_create_shaped(const dvi_system *system, const dvi_shapes *shapes, const char *method,
-                                        dvi_integrator **integrator)
-{
-  if (integrator == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "integrator: no place for the result");
-  *integrator = NULL;
-  DVI_TRY(dvi__shapes_check(shapes));
-  return dvi__integrator_make(system, method, shapes, NULL, DVI__TRANSFORM, integrator);
-}
-
-void dvi_integrator_destroy(dvi_integrator **integrator)
-{
-  if (integrator == NULL || *integrator == NULL) return;
-  dvi_integrator *I = *integrator;
-  dvi__release(I->stepper.memory);
-  dvi__stepper_destroy(&I->stepper);
-  dvi__pace_destroy(&I->pace);
-  dvi__evaluator_destroy(&I->evaluator);
-  dvi__release(I->numbers);
-  dvi__release(I->memory_before);
-  dvi__attempt_clear(I);
-  dvi__release(I->shapes);
-  dvi__release(I);
-  *integrator = NULL;
 }
 
 /* ---- start ---- */
@@ -486,7 +409,7 @@ dvi_status dvi_integrator_interpolate(dvi_integrator *I, double t, double *q, do
                      "lie-verlet and lie-galerkin have one",
                      I->stepper.method->name);
   if (I->stepper.method->path == NULL) return hermite(I, tau, q, v);
-  if (I->pace != NULL && I->pace->pacing == DVI__TRANSFORM) return dvi__pace_path(I, tau, q, v);
+  if (I->pace != NULL && I->pace->pacing == DVI_TIME_TRANSFORM) return dvi__pace_path(I, tau, q, v);
   I->stepper.method->path(&I->stepper, I->last.q, I->last_h, tau, q, v);
   const size_t n = (size_t)I->system->n, nv = (size_t)I->system->nv;
   if ((q == NULL || dvi__first_not_finite(n, q) < 0) && (v == NULL || dvi__first_not_finite(nv, v) < 0)) return DVI_OK;

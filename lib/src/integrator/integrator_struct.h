@@ -35,10 +35,6 @@ void dvi__guess_velocity(int n, const double *q, const double *last_q, const dou
 /* DVI_BAD_ARGUMENT unless h is a step that moves the time from t. */
 dvi_status dvi__check_step(double t, double h);
 
-/* Make an integrator; `shapes` NULL: of a space that the method knows; `monitor` NULL: steps of time. */
-dvi_status dvi__integrator_make(const dvi_system *system, const char *method, const dvi_shapes *shapes, const dvi_monitor *monitor,
-                                dvi__pacing pacing, dvi_integrator **integrator);
-
 /* A step of exactly h, from methods that choose their steps, too: what is left of a run. */
 dvi_status dvi__integrator_step_exactly(dvi_integrator *integrator, double h);
 

@@ -21,7 +21,7 @@ static dvi_status fill(dvi__pace *p, const dvi_system *system, const dvi_monitor
   p->v = DVI_NEW(double, system->n);
   p->g_q = DVI_NEW(double, system->n);
   if (!p->q || !p->v || !p->g_q) return dvi__fail(DVI_NO_MEMORY, "monitor: no memory for %d coordinates", system->n);
-  if (p->pacing == DVI__TRANSFORM)
+  if (p->pacing == DVI_TIME_TRANSFORM)
     DVI_TRY(dvi__transformed_create(system, monitor, counters, &p->transformed));
   else
     DVI_TRY(dvi__monitor_create(system, monitor, 1, DVI__GRADIENTS, counters, &p->monitor));
@@ -31,7 +31,7 @@ static dvi_status fill(dvi__pace *p, const dvi_system *system, const dvi_monitor
   return dvi_quadrature(DVI_GAUSS, DVI__PACE_POINTS, p->node, p->weight);
 }
 
-dvi_status dvi__pace_create(const dvi_system *system, const dvi_monitor *monitor, dvi__pacing pacing, dvi_counters *counters,
+dvi_status dvi__pace_create(const dvi_system *system, const dvi_monitor *monitor, dvi_pacing pacing, dvi_counters *counters,
                             dvi__pace **pace)
 {
   *pace = NULL;
@@ -77,60 +77,6 @@ dvi_status dvi__pace_slope(dvi__pace *pace, const double *q, double *g_q)
   return dvi__monitor_gradient(monitor_of(pace), 1, q, g_q);
 }
 
-static dvi_status check_method(const dvi_integrator *I)
-{
-  const char *symmetric = I->system->dynamics->symmetric;
-  if (I->stepper.method->chooses_steps)
-    return dvi__fail(DVI_UNSUPPORTED, "%s chooses the lengths of its steps itself", I->stepper.method->name);
-  if (I->pace->pacing == DVI__TRANSFORM || I->stepper.symmetric) return DVI_OK;
-  return dvi__fail(DVI_UNSUPPORTED,
-                   "%s is not symmetric, and only that keeps energies from drifting when steps change; "
-                   "choose %s",
-                   I->stepper.specification,
-                   symmetric != NULL ? symmetric : "a symmetric quadrature, one-step method or type, or the time transform");
-}
-
-static dvi_status create(const dvi_system *system, const dvi_monitor *monitor, dvi__pacing pacing, const char *method,
-                         dvi_integrator **integrator)
-{
-  const char *what = pacing == DVI__TRANSFORM ? "time transform, a general Lagrangian with the mass M/g" : "step control";
-  if (integrator == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "integrator: no place for the result");
-  *integrator = NULL;
-  if (monitor == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "integrator: the monitor is NULL");
-  if (system != NULL && system->dynamics->on_manifold)
-    return dvi__fail(DVI_UNSUPPORTED,
-                     "%s: the system has factors, and monitors are functions of coordinates of R^n; take steps of equal length",
-                     what);
-  dvi_status status = dvi__integrator_make(system, method, NULL, monitor, pacing, integrator);
-  if (status == DVI_OK) status = check_method(*integrator);
-  if (status == DVI_UNSUPPORTED) (void)dvi__fail_in(status, "%s", what);
-  if (status != DVI_OK) dvi_integrator_destroy(integrator);
-  return status;
-}
-
-dvi_status dvi_integrator_create_transformed(const dvi_system *system, const dvi_monitor *monitor, const char *method,
-                                             dvi_integrator **integrator)
-{
-  return create(system, monitor, DVI__TRANSFORM, method, integrator);
-}
-
-dvi_status dvi_integrator_create_controlled(const dvi_system *system, const dvi_monitor *monitor, const char *method,
-                                            dvi_integrator **integrator)
-{
-  return create(system, monitor, DVI__CONTROL, method, integrator);
-}
-
-dvi_status dvi_integrator_create_like(const dvi_integrator *I, dvi_integrator **integrator)
-{
-  if (I == NULL || integrator == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "integrator: an argument is NULL");
-  if (I->pace == NULL)
-    return dvi__integrator_make(I->system, I->stepper.specification, I->shapes, NULL, DVI__TRANSFORM, integrator);
-  DVI_TRY(create(I->system, &I->pace->given, I->pace->pacing, I->stepper.specification, integrator));
-  (*integrator)->pace->holds = I->pace->holds || I->started;
-  dvi__pace_set_energy((*integrator)->pace, I->pace->energy);
-  return DVI_OK;
-}
-
 const char *dvi_integrator_monitor(const dvi_integrator *integrator)
 {
   return integrator != NULL && integrator->pace != NULL ? integrator->pace->name : NULL;
@@ -138,7 +84,7 @@ const char *dvi_integrator_monitor(const dvi_integrator *integrator)
 
 void dvi__pace_explain(const dvi__pace *pace, dvi__text *text)
 {
-  if (pace->pacing == DVI__TRANSFORM)
+  if (pace->pacing == DVI_TIME_TRANSFORM)
     dvi__text_add(text, "time: transformed, dt/dtau = g(q), %s; steps are steps of tau, of a general Lagrangian with mass M/g\n",
                   pace->name);
   else
@@ -182,7 +128,7 @@ dvi_status dvi__pace_start(dvi_integrator *I, double t, const double *q, const d
     dvi__pace_set_energy(pace, before);
     return status;
   }
-  for (int i = 0; i < I->system->n; i++) w[i] = pace->pacing == DVI__TRANSFORM ? g * v[i] : v[i];
+  for (int i = 0; i < I->system->n; i++) w[i] = pace->pacing == DVI_TIME_TRANSFORM ? g * v[i] : v[i];
   *density = 1 / g;
   return DVI_OK;
 }

@@ -8,10 +8,8 @@
 
 enum { DVI__PACE_POINTS = 16 };
 
-typedef enum dvi__pacing { DVI__TRANSFORM, DVI__CONTROL } dvi__pacing;
-
 typedef struct dvi__pace {
-  dvi__pacing pacing;
+  dvi_pacing pacing;
   dvi_monitor given;             /* to make another one alike */
   char name[DVI__MONITOR_NAME];  /* the monitor's */
   dvi__transformed *transformed; /* the new system, of a transform */
@@ -24,7 +22,7 @@ typedef struct dvi__pace {
   int expanded;
 } dvi__pace;
 
-dvi_status dvi__pace_create(const dvi_system *system, const dvi_monitor *monitor, dvi__pacing pacing, dvi_counters *counters,
+dvi_status dvi__pace_create(const dvi_system *system, const dvi_monitor *monitor, dvi_pacing pacing, dvi_counters *counters,
                             dvi__pace **pace);
 void dvi__pace_destroy(dvi__pace **pace);
 

@@ -5,22 +5,24 @@
 #include "core/memory.h"
 #include "core/status.h"
 
-static dvi_status join(const dvi_system *system, dvi__pattern *joint)
+static dvi_status join(const dvi_system *system, const dvi__pattern *more, dvi__pattern *joint)
 {
-  dvi__pattern vq = {0}, mixed = {0}, own = {0}, second = {0}, diagonal = {0};
+  dvi__pattern vq = {0}, mixed = {0}, own = {0}, second = {0}, diagonal = {0}, whole = {0};
   dvi_status status = dvi__pattern_transpose(&system->qv, &vq);
   if (status == DVI_OK) status = dvi__pattern_union(&system->qv, &vq, &mixed);
   if (status == DVI_OK)
     status = (system->terms & (DVI__ONE_FORM | DVI__HAMILTONIAN)) != 0 ? dvi__pattern_diagonal(system->n, &own)
-                                                                     : dvi__pattern_empty(system->n, &own);
+                                                                       : dvi__pattern_empty(system->n, &own);
   if (status == DVI_OK) status = dvi__pattern_union(&system->vv, &own, &second);
   if (status == DVI_OK) status = dvi__pattern_union(&system->qq, &second, &diagonal);
-  if (status == DVI_OK) status = dvi__pattern_union(&mixed, &diagonal, joint);
+  if (status == DVI_OK) status = dvi__pattern_union(&mixed, &diagonal, &whole);
+  if (status == DVI_OK) status = dvi__pattern_union(&whole, more != NULL ? more : &whole, joint);
   dvi__pattern_clear(&vq);
   dvi__pattern_clear(&mixed);
   dvi__pattern_clear(&own);
   dvi__pattern_clear(&second);
   dvi__pattern_clear(&diagonal);
+  dvi__pattern_clear(&whole);
   return status;
 }
 
@@ -42,9 +44,9 @@ dvi_status dvi__joint_check(const dvi_system *system, int size, int most)
                    least);
 }
 
-dvi_status dvi__joint_create(const dvi_system *system, dvi__pattern *joint, dvi__block **block)
+dvi_status dvi__joint_create(const dvi_system *system, const dvi__pattern *more, dvi__pattern *joint, dvi__block **block)
 {
-  DVI_TRY(join(system, joint));
+  DVI_TRY(join(system, more, joint));
   *block = DVI_NEW(dvi__block, dvi__pattern_entries(joint));
   if (*block == NULL) return dvi__fail(DVI_NO_MEMORY, "action: no memory for the Jacobian");
   for (int j = 0; j < joint->columns; j++)

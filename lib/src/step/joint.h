@@ -15,7 +15,7 @@ typedef struct dvi__block {
 dvi_status dvi__joint_check(const dvi_system *system, int size, int most);
 
 /* The pattern, and a block [entries] for each of its entries, from the heap; what a failure leaves belongs to the caller, too. The system must be
- * prepared for Hessians. */
-dvi_status dvi__joint_create(const dvi_system *system, dvi__pattern *joint, dvi__block **block);
+ * prepared for Hessians. `more`: entries [n x n] that are to be in the pattern, too; NULL: none. */
+dvi_status dvi__joint_create(const dvi_system *system, const dvi__pattern *more, dvi__pattern *joint, dvi__block **block);
 
 #endif

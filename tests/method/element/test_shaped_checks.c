@@ -9,6 +9,7 @@
 #include "support/heap.h"
 #include "support/runs.h"
 #include "support/spaces.h"
+#include "support/paced.h"
 #include "support/suite.h"
 
 /* ---- what is refused ---- */
@@ -49,7 +50,7 @@ static void check_refused(const dvi_shapes *shapes, const char *method, dvi_stat
 {
   problem *of = made_problem("kepler", NULL);
   dvi_integrator *integrator = (dvi_integrator *)of;
-  ck_assert_int_eq(dvi_integrator_create_shaped(of->system, shapes, method, &integrator), status);
+  ck_assert_int_eq(create_shaped(of->system, shapes, method, &integrator), status);
   check_words(words);
   ck_assert_ptr_null(integrator);
   problem_destroy(&of);
@@ -99,9 +100,9 @@ START_TEST(what_is_missing_or_out_of_range_is_named)
   };
   for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++)
     check_refused(&wrong[k].shapes, "shaped-galerkin", wrong[k].status, wrong[k].words);
-  check_refused(NULL, "shaped-galerkin", DVI_BAD_ARGUMENT, "the shapes are NULL");
-  check_refused(&good, NULL, DVI_BAD_ARGUMENT, "the system or the method is NULL");
-  ck_assert_int_eq(dvi_integrator_create_shaped(NULL, &good, "shaped-galerkin", NULL), DVI_BAD_ARGUMENT);
+  check_refused(NULL, "shaped-galerkin", DVI_BAD_OPTION, "there are no shapes");
+  check_refused(&good, NULL, DVI_BAD_ARGUMENT, "the method is NULL");
+  ck_assert_int_eq(create_shaped(NULL, &good, "shaped-galerkin", NULL), DVI_BAD_ARGUMENT);
 }
 END_TEST
 
@@ -219,8 +220,8 @@ START_TEST(without_shapes_there_is_no_such_method)
   dvi_path *path;
   const dvi_monitor monitor = {.kind = DVI_MONITOR_DISTANCE};
   ck_assert_int_eq(dvi_integrator_create(of->system, "shaped-galerkin", &integrator), DVI_BAD_OPTION);
-  check_words("there are no shapes: a program gives them to dvi_integrator_create_shaped");
-  ck_assert_int_eq(dvi_integrator_create_transformed(of->system, &monitor, "shaped-galerkin", &integrator), DVI_BAD_OPTION);
+  check_words("there are no shapes: a program gives them to dvi_integrator_options");
+  ck_assert_int_eq(create_transformed(of->system, &monitor, "shaped-galerkin", &integrator), DVI_BAD_OPTION);
   ck_assert_int_eq(dvi_ensemble_create(of->system, "shaped-galerkin", &(dvi_ensemble_options){.members = 2}, &ensemble),
                    DVI_BAD_OPTION);
   const dvi_path_options options = {.ends = DVI_ENDS_FIXED, .dimension = 2, .steps = 4, .span = 1, .q0 = of->q, .q1 = of->q};
@@ -234,7 +235,7 @@ START_TEST(terms_that_it_cannot_use_are_refused)
 {
   problem *of = made_problem("vortices", NULL);
   dvi_integrator *integrator;
-  ck_assert_int_eq(dvi_integrator_create_shaped(of->system, &decay, "shaped-galerkin", &integrator), DVI_UNSUPPORTED);
+  ck_assert_int_eq(create_shaped(of->system, &decay, "shaped-galerkin", &integrator), DVI_UNSUPPORTED);
   check_words("the system declares a one-form");
   problem_destroy(&of);
 }
@@ -359,7 +360,7 @@ START_TEST(creation_survives_every_failure_of_memory)
   long successes = 0;
   for (dvi_status status = DVI_NO_MEMORY; status != DVI_OK && successes < MOST; successes++) {
     dvi__fail_allocations_after(successes);
-    status = dvi_integrator_create_shaped(of->system, &shapes, "shaped-galerkin", &integrator);
+    status = create_shaped(of->system, &shapes, "shaped-galerkin", &integrator);
     dvi__fail_allocations_after(-1);
     ck_assert(status == DVI_OK || status == DVI_NO_MEMORY);
     ck_assert_int_eq(status == DVI_OK, integrator != NULL);

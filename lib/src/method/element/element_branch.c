@@ -92,6 +92,13 @@ static int parts_of(const dvi__stepper *self)
   return coarse ? 1 : DVI__BRANCH_CAREFUL;
 }
 
+/* Where terms have unknowns of their own, no sign of the determinant is known. */
+static int has_signs(const dvi__stepper *self)
+{
+  const dvi__element *own = self->own;
+  return dvi__action_unknowns(own->action) == self->system->n * dvi__action_space_of(own->action).degree;
+}
+
 dvi_status dvi__element_follow(dvi__stepper *self, const dvi__element_place *at, dvi_status whole, double *Y)
 {
   const dvi__element *own = self->own;
@@ -102,7 +109,7 @@ dvi_status dvi__element_follow(dvi__stepper *self, const dvi__element_place *at,
                               .distance = own->centred ? turn_between : NULL,
                               .near = own->centred ? follows_in_charts : DVI__BRANCH_NEAR,
                               .parts = parts_of(self),
-                              .signs = !own->centred || dvi__action_signs(own->action),
+                              .signs = has_signs(self) && (!own->centred || dvi__action_signs(own->action)),
                               .definite = is_symmetric(self) ? direction(at) : 0,
                               .from_zero = 1,
                               .size = dvi__largest((size_t)self->system->n, at->q),
@@ -130,7 +137,8 @@ static int is_turned(const dvi__stepper *self, const dvi__element_place *at)
   const dvi__element *own = self->own;
   dvi__evaluator *evaluator = dvi__action_evaluator(own->action);
   const int apart = own->rung == DVI__SIMPLIFIED && own->decoupled != NULL;
-  const int unknowns = dvi__action_unknowns(own->action), degree = unknowns / self->system->n;
+  const int unknowns = dvi__action_unknowns(own->action), degree = dvi__action_space_of(own->action).degree;
+  if (!has_signs(self)) return 0;
   if (apart && own->definite) return !dvi__decoupled_is_definite(own->decoupled, direction(at));
   if (!apart && is_symmetric(self)) return !dvi__solver_is_definite(own->solver, direction(at));
   const int sign = (apart ? dvi__decoupled_sign(own->decoupled) : dvi__solver_sign(own->solver)) *

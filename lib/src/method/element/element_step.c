@@ -134,7 +134,7 @@ static dvi_status make_solver(dvi__stepper *self, dvi__element *own)
 {
   const int sweeps = dvi__action_can_sweep(own->action);
   const dvi__equations equations = {.unknowns = dvi__action_unknowns(own->action),
-                                    .group = dvi__action_unknowns(own->action) / self->system->n,
+                                    .group = dvi__action_space_of(own->action).degree,
                                     .pattern = dvi__action_pattern(own->action),
                                     .of = own,
                                     .residual = residual_of,
@@ -145,7 +145,7 @@ static dvi_status make_solver(dvi__stepper *self, dvi__element *own)
                                     .sweep_from = sweeps ? sweep_from_of : NULL,
                                     .sweep = sweeps ? sweep_of : NULL,
                                     .sweep_to = sweeps ? sweep_to_of : NULL,
-                                    .magnitudes = own->centred ? magnitudes_of : NULL,
+                                    .magnitudes = dvi__action_has_terms(own->action) ? magnitudes_of : NULL,
                                     .freeze = freeze_of,
                                     .frozen = frozen_of};
   return dvi__solver_create(&equations, self->counters, &own->solver);
@@ -178,16 +178,35 @@ void dvi__element_destroy(dvi__stepper *self)
   dvi__release(own);
 }
 
+/* The ladder begins with the whole Jacobian, and ends with the rounding of rows: elsewhere that would err to
+ * one side. Unknowns of a term are for Newton's method. */
+static dvi_status take_terms(dvi__stepper *self)
+{
+  dvi__element *own = self->own;
+  const dvi__action_space space = dvi__action_space_of(own->action);
+  if (dvi__action_unknowns(own->action) > self->system->n * space.degree) own->choice = DVI__SOLVER_NEWTON;
+  own->keeps_whole = is_ladder(own) || own->choice == DVI__SOLVER_SIMPLIFIED;
+  dvi__decoupled_destroy(&own->decoupled);
+  dvi__solver_destroy(&own->solver);
+  dvi__release(own->Y);
+  if (!allocate(self, own)) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
+  return make_solver(self, own);
+}
+
 dvi_status dvi__element_centre(dvi__stepper *self, const dvi__centring *centring)
 {
   dvi__element *own = self->own;
   own->centred = 1;
-  own->keeps_whole = is_ladder(own) || own->choice == DVI__SOLVER_SIMPLIFIED;
-  dvi__decoupled_destroy(&own->decoupled);
-  count_memory(self, own);
   DVI_TRY(dvi__action_centre(own->action, centring));
-  dvi__solver_destroy(&own->solver); /* to end with the rounding of rows: elsewhere that would err to one side */
-  return make_solver(self, own);
+  return take_terms(self);
+}
+
+dvi_status dvi__element_add_term(dvi__stepper *self, const dvi__row_term *term)
+{
+  dvi__element *own = self->own;
+  own->definite = 0;
+  DVI_TRY(dvi__action_add_term(own->action, term));
+  return take_terms(self);
 }
 
 dvi__action *dvi__element_action(const dvi__stepper *self)

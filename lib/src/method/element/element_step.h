@@ -28,6 +28,9 @@ dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *spac
  * large there as the turn of a step: the ladder begins with the whole one, kept over steps. */
 dvi_status dvi__element_centre(dvi__stepper *self, const dvi__centring *centring);
 
+/* Add a term to its rows (step/element/row_term.h), after create, before the driver takes the memory's count. */
+dvi_status dvi__element_add_term(dvi__stepper *self, const dvi__row_term *term);
+
 /* The memory: length of the last step (0: none); steps for which fixed point iteration and simplified Newton's method are not tried again, and how
  * many they were when the iteration last failed (0: it has not since it last succeeded); the last step's unknowns (before the first step, the
  * start's velocity in their place) and its forces; what simplified Newton's method keeps frozen. */

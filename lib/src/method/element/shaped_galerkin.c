@@ -187,7 +187,7 @@ static dvi_status create(dvi__stepper *self)
 {
   if (self->shapes == NULL)
     return dvi__fail(DVI_BAD_OPTION,
-                     "shaped-galerkin: there are no shapes: a program gives them to dvi_integrator_create_shaped (dvi/shapes.h)");
+                     "shaped-galerkin: there are no shapes: a program gives them to dvi_integrator_options (dvi/shapes.h)");
   DVI_TRY(settle(self));
   char *has = DVI_NEW(char, self->system->n);
   if (has == NULL) return dvi__fail(DVI_NO_MEMORY, "shaped-galerkin: no memory");

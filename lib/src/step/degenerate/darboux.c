@@ -98,7 +98,7 @@ static dvi_status fill(dvi__darboux *d, dvi__darboux_rule rule, dvi_counters *co
   DVI_TRY(dvi__form_half(d->system, d->is_x));
   DVI_TRY(fill_tableau(d, rule));
   DVI_TRY(dvi__evaluator_create(d->system, d->m, DVI__HESSIANS, counters, &d->evaluator));
-  DVI_TRY(dvi__joint_create(d->system, &d->joint, &d->block));
+  DVI_TRY(dvi__joint_create(d->system, NULL, &d->joint, &d->block));
   DVI_TRY(dvi__pattern_blocks(&d->joint, d->m, &d->pattern));
   return allocate(d);
 }

@@ -101,7 +101,7 @@ static dvi_status fill(dvi__discontinuous *e, const dvi__dg_space *space, dvi_co
   DVI_TRY(fill_basis(e));
   DVI_TRY(fill_path(e, space));
   DVI_TRY(dvi__evaluator_create(e->system, e->r, DVI__HESSIANS, counters, &e->evaluator));
-  DVI_TRY(dvi__joint_create(e->system, &e->joint, &e->block));
+  DVI_TRY(dvi__joint_create(e->system, NULL, &e->joint, &e->block));
   DVI_TRY(dvi__pattern_blocks(&e->joint, e->S, &e->pattern));
   DVI_TRY(allocate(e));
   e->stiff = space->stiffness_count > 0;

@@ -105,7 +105,7 @@ static dvi_status fill(dvi__partitioned *p, dvi__tableau tableau, dvi_counters *
   DVI_TRY(dvi__joint_check(p->system, p->m, p->s));
   DVI_TRY(fill_tableau(p, tableau));
   DVI_TRY(dvi__evaluator_create(p->system, p->s, DVI__HESSIANS, counters, &p->evaluator));
-  DVI_TRY(dvi__joint_create(p->system, &p->joint, &p->block));
+  DVI_TRY(dvi__joint_create(p->system, NULL, &p->joint, &p->block));
   DVI_TRY(dvi__pattern_blocks(&p->joint, p->m, &p->pattern));
   return allocate(p);
 }

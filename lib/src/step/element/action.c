@@ -80,9 +80,7 @@ void dvi__action_destroy(dvi__action **action)
 {
   dvi__action *a = *action;
   if (a == NULL) return;
-  double *const owned[] = {a->correction,
-                           a->end_q,
-                           a->end_dp,
+  double *const owned[] = {a->terms.numbers,
                            a->psi,
                            a->dpsi,
                            a->bar,
@@ -126,6 +124,7 @@ void dvi__action_destroy(dvi__action **action)
   for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) dvi__release(owned[i]);
   dvi__action_clear_between(a);
   dvi__action_clear_energy(a);
+  dvi__action_clear_charts(a);
   dvi__linear_destroy(&a->chord);
   dvi__evaluator_destroy(&a->evaluator);
   dvi__pattern_clear(&a->joint);
@@ -142,7 +141,7 @@ dvi__action_space dvi__action_space_of(const dvi__action *action)
 
 int dvi__action_unknowns(const dvi__action *action)
 {
-  return action->n * action->s;
+  return action->n * action->s + action->terms.unknowns;
 }
 
 int dvi__action_nodes(const dvi__action *action)

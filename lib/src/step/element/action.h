@@ -17,6 +17,7 @@
 #include <dvi/basis.h>
 #include <dvi/quadrature.h>
 
+#include "step/element/row_term.h"
 #include "system/chart/centring.h"
 #include "system/evaluate/evaluator.h"
 
@@ -37,13 +38,18 @@ void dvi__action_destroy(dvi__action **action);
 /* Prepare the Jacobian's pattern and memory; without it residuals and chords work, Jacobians do not. Once. */
 dvi_status dvi__action_prepare_jacobian(dvi__action *action);
 
+/* Add a term to its rows; the struct is copied, and what it points to must stay. An action with terms takes no
+ * fixed-point iteration over forces (sweep.h), and has no energies. */
+dvi_status dvi__action_add_term(dvi__action *action, const dvi__row_term *term);
+int dvi__action_has_terms(const dvi__action *action);
+
 /* Let its paths be those of a chart centred at their start; the struct is copied. Once. */
 dvi_status dvi__action_centre(dvi__action *action, const dvi__centring *centring);
 
 /* What it was made with. */
 dvi__action_space dvi__action_space_of(const dvi__action *action);
 
-/* Number of unknowns; of quadrature nodes; the Jacobian's pattern (after prepare). */
+/* Number of unknowns, those of row terms included; of quadrature nodes; the Jacobian's pattern (after prepare). */
 int dvi__action_unknowns(const dvi__action *action);
 int dvi__action_nodes(const dvi__action *action);
 const dvi__pattern *dvi__action_pattern(const dvi__action *action);
@@ -58,7 +64,7 @@ dvi_status dvi__action_residual(dvi__action *action, const double *Y, double *R)
 /* Sums of the magnitudes of what was summed in each row of the last residual. */
 void dvi__action_magnitudes(const dvi__action *action, double *magnitude);
 
-/* The largest turn from the coefficients of one path in a chart to those of another, in radians, and that to a point [n] of it; of actions with a centring. */
+/* The largest turn from the coefficients of one path in a chart to those of another, in radians, and that to a point [n] of it; of actions with charts. */
 double dvi__action_turn(const dvi__action *action, const double *from, const double *Y);
 double dvi__action_turned(const dvi__action *action, const double *xi);
 

@@ -2,6 +2,7 @@
 #ifndef DVI_ACTION_ACTION_STRUCT_H
 #define DVI_ACTION_ACTION_STRUCT_H
 #include "step/element/action.h"
+#include "step/element/row_terms.h"
 #include "step/joint.h"
 #include "space/basis.h"
 
@@ -62,9 +63,8 @@ struct dvi__action {
   dvi__pattern pattern;       /* ns x ns */
   dvi__block *block;          /* [entries of joint] */
   double *H_qq, *H_qv, *H_vv; /* [entries*r] */
-  /* Charts centred at the start; without `place`: there are none. */
-  dvi__centring centring;
-  double *correction, *end_q, *end_dp; /* [n] C, and work */
+  dvi__row_terms terms;
+  struct dvi__centred_paths *centred; /* charts centred at the start; NULL: there are none */
   /* Between two ends (between.h); NULL until prepared. */
   double *bubble;                    /* [(s-1)*s] beta_m in the functions psi_k */
   double *chi, *dchi;                /* [(s+1)*lanes] tables over the nodes */
@@ -83,15 +83,21 @@ enum { DVI__CHORD_INVERSE = 8 };
 /* The table from the last step's forces to the sums of forces in a step `ratio` times as long: [r*lanes], by columns. */
 const double *dvi__action_sweep_shift(dvi__action *action, double ratio);
 
-/* Announce the path to the centring, if there is one; and R -= psi(1) C. */
-void dvi__action_centre_path(dvi__action *action, const double *Y);
-void dvi__action_centre_rows(dvi__action *action, double *R);
+typedef struct dvi__centred_paths dvi__centred_paths;
 
-/* Add those of the centring to the rows' magnitudes. */
-void dvi__action_centre_magnitudes(const dvi__action *action, double *magnitude);
+/* The row terms' parts: of the joint pattern, and the Jacobian's with their own unknowns; of a path, which
+ * is announced before L's derivatives are asked for; of the rows, their magnitudes, the derivatives and
+ * the scales. */
+dvi_status dvi__action_join_terms(const dvi__action *action, dvi__pattern *joint);
+dvi_status dvi__action_wide_pattern(const dvi__action *action, dvi__pattern *pattern);
+void dvi__action_place_terms(dvi__action *action, const double *Y);
+dvi_status dvi__action_add_term_rows(dvi__action *action, const double *Y, double *R);
+void dvi__action_add_term_magnitudes(const dvi__action *action, double *magnitude);
+dvi_status dvi__action_add_term_derivatives(dvi__action *action, const double *Y, double *values);
+void dvi__action_scale_terms(const dvi__action *action, double *scale);
 
-/* Subtract psi(1) dC from the Jacobian; after dvi__action_centre_path and the Hessians. */
-void dvi__action_centre_jacobian(dvi__action *action, double *values);
+/* Free what dvi__action_centre made. */
+void dvi__action_clear_charts(dvi__action *action);
 
 /* Free what dvi__action_prepare_energy has made. */
 void dvi__action_clear_energy(dvi__action *action);

@@ -1,90 +1,108 @@
-/* Rows and Jacobian of paths in a chart that is centred at their start: with p1 = p0 + dp + C the rows are
+/* The first row term: paths in a chart that is centred at their start (system/chart/centring.h). With
+ * p1 = p0 + dp + C the rows are
  *
  *     R_k = sum_j b_j ( h (psi_k - psi_k(1)) L_q + psi_k' L_v )_j - psi_k(1) (p0 + C) */
 #include <math.h>
 
-#include "step/element/action_struct.h"
 #include "core/memory.h"
 #include "core/status.h"
+#include "step/element/action_struct.h"
+
+struct dvi__centred_paths {
+  dvi__centring centring;
+  dvi__action *action;
+  double *correction; /* [n] C */
+};
+
+static void place_chart(void *of, const dvi__row_path *path)
+{
+  const dvi__centring *centring = &((const dvi__centred_paths *)of)->centring;
+  centring->place(centring->of, path->q0, path->q1);
+}
+
+static dvi_status add_correction(void *of, const dvi__row_path *p, const double *own, double *R, double *dp, double *own_R)
+{
+  const dvi__centred_paths *x = of;
+  (void)own, (void)own_R;
+  x->centring.correct(x->centring.of, p->r, p->h, p->weight, p->p0, p->dp, x->correction);
+  for (int i = 0; i < p->n; i++) {
+    for (int k = 0; k < p->s; k++) R[i * p->s + k] -= p->end[k] * x->correction[i];
+    dp[i] += x->correction[i];
+  }
+  return DVI_OK;
+}
+
+static void mix_magnitudes(const void *of, const dvi__row_path *p, double *magnitude, double *own_magnitude)
+{
+  const dvi__centred_paths *x = of;
+  (void)own_magnitude;
+  for (int i = 0; i < p->n; i++)
+    for (int k = 0; k < p->s; k++) magnitude[i * p->s + k] += fabs(p->end[k] * x->correction[i]);
+  x->centring.mix(x->centring.of, p->s, magnitude);
+}
+
+/* dC/dY_l for one entry of the joint pattern. */
+static double change_of_correction(const dvi__row_path *p, const dvi__block *block, int l, const double *C_q1, const double *C_qq,
+                                   const double *C_qv)
+{
+  double sum = block->qq >= 0 ? C_q1[block->qq] * p->end[l] : 0;
+  const double *psi = p->psi + l * p->lanes, *dpsi = p->dpsi + l * p->lanes;
+  for (int j = 0; j < p->r && block->qq >= 0; j++) sum += p->weight[j] * p->h * C_qq[block->qq * p->r + j] * psi[j];
+  for (int j = 0; j < p->r && block->qv >= 0; j++) sum += p->weight[j] * C_qv[block->qv * p->r + j] * dpsi[j];
+  return sum;
+}
+
+/* Subtract psi_k(1) dC. */
+static dvi_status add_derivatives(void *of, const dvi__row_path *p, const double *own, const dvi__row_jacobian *J)
+{
+  const dvi__centred_paths *x = of;
+  const dvi__pattern *joint = dvi__row_joint(J);
+  const double *C_q1, *C_qq, *C_qv;
+  (void)own;
+  x->centring.derive(x->centring.of, p->r, p->h, p->weight, p->p0, &C_q1, &C_qq, &C_qv);
+  for (int j = 0; j < p->n; j++)
+    for (int l = 0; l < p->s; l++)
+      for (int e = joint->start[j]; e < joint->start[j + 1]; e++) {
+        const double by = change_of_correction(p, &x->action->block[e], l, C_q1, C_qq, C_qv);
+        double *rows = dvi__row_entry(J, e, j, l);
+        for (int k = 0; k < p->s; k++) rows[k] -= p->end[k] * by;
+      }
+  return DVI_OK;
+}
 
 dvi_status dvi__action_centre(dvi__action *a, const dvi__centring *centring)
 {
-  a->centring = *centring;
-  a->correction = DVI_NEW(double, a->n);
-  a->end_q = DVI_NEW(double, a->n);
-  a->end_dp = DVI_NEW(double, a->n);
-  return a->correction && a->end_q && a->end_dp ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "action: no memory for charts");
+  dvi__centred_paths *x = a->centred = DVI_NEW(dvi__centred_paths, 1);
+  if (x == NULL) return dvi__fail(DVI_NO_MEMORY, "action: no memory for charts");
+  *x = (dvi__centred_paths){*centring, a, DVI_NEW(double, a->n)};
+  if (x->correction == NULL) return dvi__fail(DVI_NO_MEMORY, "action: no memory for charts");
+  return dvi__action_add_term(a, &(dvi__row_term){.name = "charts",
+                                                  .of = x,
+                                                  .place = place_chart,
+                                                  .rows = add_correction,
+                                                  .magnitudes = mix_magnitudes,
+                                                  .derivatives = add_derivatives});
 }
 
-void dvi__action_centre_path(dvi__action *a, const double *Y)
+void dvi__action_clear_charts(dvi__action *a)
 {
-  if (a->correction == NULL) return;
-  for (int i = 0; i < a->n; i++) {
-    a->end_q[i] = a->q0[i];
-    for (int k = 0; k < a->s; k++) a->end_q[i] += a->end[k] * Y[i * a->s + k];
-  }
-  a->centring.place(a->centring.of, a->q0, a->end_q);
-}
-
-/* L_q holds the weights here. */
-void dvi__action_centre_rows(dvi__action *a, double *R)
-{
-  if (a->correction == NULL) return;
-  for (int i = 0; i < a->n; i++) {
-    a->end_dp[i] = 0;
-    for (int j = 0; j < a->r; j++) a->end_dp[i] += a->h * a->L_q[i * a->r + j];
-  }
-  a->centring.correct(a->centring.of, a->r, a->h, a->weight, a->p0, a->end_dp, a->correction);
-  for (int i = 0; i < a->n; i++)
-    for (int k = 0; k < a->s; k++) R[i * a->s + k] -= a->end[k] * a->correction[i];
-}
-
-void dvi__action_centre_magnitudes(const dvi__action *a, double *magnitude)
-{
-  if (a->correction == NULL) return;
-  for (int i = 0; i < a->n; i++)
-    for (int k = 0; k < a->s; k++) magnitude[i * a->s + k] += fabs(a->end[k] * a->correction[i]);
-  a->centring.mix(a->centring.of, a->s, magnitude);
+  if (a->centred != NULL) dvi__release(a->centred->correction);
+  dvi__release(a->centred);
 }
 
 double dvi__action_turn(const dvi__action *a, const double *from, const double *Y)
 {
-  return a->centring.turn(a->centring.of, a->s, Y, from);
+  const dvi__centring *centring = &a->centred->centring;
+  return centring->turn(centring->of, a->s, Y, from);
 }
 
 int dvi__action_signs(const dvi__action *a)
 {
-  return a->centring.signs;
+  return a->centred->centring.signs;
 }
 
 double dvi__action_turned(const dvi__action *a, const double *xi)
 {
-  return a->centring.turn(a->centring.of, 1, xi, NULL);
-}
-
-/* dC/dY_l for one entry of the joint pattern. */
-static double change(const dvi__action *a, const dvi__block *block, int l, const double *C_q1, const double *C_qq,
-                     const double *C_qv)
-{
-  double sum = block->qq >= 0 ? C_q1[block->qq] * a->end[l] : 0;
-  const double *psi = a->psi + l * a->lanes, *dpsi = a->dpsi + l * a->lanes;
-  for (int j = 0; j < a->r && block->qq >= 0; j++) sum += a->weight[j] * a->h * C_qq[block->qq * a->r + j] * psi[j];
-  for (int j = 0; j < a->r && block->qv >= 0; j++) sum += a->weight[j] * C_qv[block->qv * a->r + j] * dpsi[j];
-  return sum;
-}
-
-void dvi__action_centre_jacobian(dvi__action *a, double *values)
-{
-  const double *C_q1, *C_qq, *C_qv;
-  const size_t s = (size_t)a->s;
-  if (a->correction == NULL) return;
-  a->centring.derive(a->centring.of, a->r, a->h, a->weight, a->p0, &C_q1, &C_qq, &C_qv);
-  for (int j = 0; j < a->n; j++) {
-    double *column = values + s * s * (size_t)a->joint.start[j];
-    for (int l = 0; l < a->s; l++)
-      for (int e = a->joint.start[j]; e < a->joint.start[j + 1]; e++, column += s) {
-        const double by = change(a, &a->block[e], l, C_q1, C_qq, C_qv);
-        for (size_t k = 0; k < s; k++) column[k] -= a->end[k] * by;
-      }
-  }
+  const dvi__centring *centring = &a->centred->centring;
+  return centring->turn(centring->of, 1, xi, NULL);
 }

@@ -40,7 +40,9 @@ void dvi__action_continue(dvi__action *a, double ratio, const double *last, doub
   int known;
   double *shift = table_for(&a->shift, (size_t)a->s * (size_t)a->path_lanes, ratio, &known);
   if (!known) fill_path(a, ratio, shift);
+  const size_t of_path = (size_t)a->n * (size_t)a->s;
   dvi__lanes_product(a->n, a->s, a->path_lanes, a->s, shift, last, Y);
+  for (size_t k = 0; k < (size_t)a->terms.unknowns; k++) Y[of_path + k] = last[of_path + k];
 }
 
 /* ---- forces ---- */

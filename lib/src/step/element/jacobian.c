@@ -1,4 +1,6 @@
 /* The Jacobian of the stationarity rows: one s x s block for each entry of the Hessian's joint pattern. */
+#include <string.h>
+
 #include "step/element/action_struct.h"
 #include "core/memory.h"
 #include "core/status.h"
@@ -9,11 +11,29 @@ const dvi__pattern *dvi__action_pattern(const dvi__action *action)
   return &action->pattern;
 }
 
+/* What was prepared before a row term came. */
+static void clear_jacobian(dvi__action *a)
+{
+  dvi__pattern_clear(&a->joint);
+  dvi__pattern_clear(&a->pattern);
+  dvi__release(a->block);
+  dvi__release(a->H_qq);
+  dvi__release(a->H_qv);
+  dvi__release(a->H_vv);
+  a->block = NULL;
+  a->H_qq = a->H_qv = a->H_vv = NULL;
+}
+
 dvi_status dvi__action_prepare_hessians(dvi__action *a)
 {
   const dvi_system *system = a->system;
   const size_t r = (size_t)a->r;
-  DVI_TRY(dvi__joint_create(system, &a->joint, &a->block));
+  dvi__pattern more = {0};
+  clear_jacobian(a);
+  dvi_status status = dvi__action_join_terms(a, &more);
+  if (status == DVI_OK) status = dvi__joint_create(system, more.start != NULL ? &more : NULL, &a->joint, &a->block);
+  dvi__pattern_clear(&more);
+  DVI_TRY(status);
   a->H_qq = DVI_NEW(double, (size_t)dvi__pattern_entries(&system->qq) * r);
   a->H_qv = DVI_NEW(double, (size_t)dvi__pattern_entries(&system->qv) * r);
   a->H_vv = DVI_NEW(double, (size_t)dvi__pattern_entries(&system->vv) * r);
@@ -24,7 +44,7 @@ dvi_status dvi__action_prepare_hessians(dvi__action *a)
 dvi_status dvi__action_prepare_jacobian(dvi__action *a)
 {
   DVI_TRY(dvi__action_prepare_hessians(a));
-  return dvi__pattern_blocks(&a->joint, a->s, &a->pattern);
+  return dvi__action_wide_pattern(a, &a->pattern);
 }
 
 /* x[j] += factor * H[j] * table[j], where the Hessian has this entry. */
@@ -63,7 +83,7 @@ void dvi__action_block_column(const dvi__action *a, const dvi__block *block, int
 dvi_status dvi__action_hessians(dvi__action *a, const double *Y)
 {
   dvi__action_stages(a, Y);
-  dvi__action_centre_path(a, Y);
+  dvi__action_place_terms(a, Y);
   return dvi__lagrangian_hessian(a->evaluator, a->r, a->t, a->Q, a->V, a->H_qq, a->H_qv, a->H_vv);
 }
 
@@ -71,14 +91,15 @@ dvi_status dvi__action_jacobian(dvi__action *a, const double *Y, double *values)
 {
   const size_t s = (size_t)a->s;
   DVI_TRY(dvi__action_hessians(a, Y));
+  if (a->terms.unknowns > 0) memset(values, 0, (size_t)dvi__pattern_entries(&a->pattern) * sizeof *values);
   for (int j = 0; j < a->n; j++) {
     const int first = a->joint.start[j], length = a->joint.start[j + 1] - first;
-    double *column = values + s * s * (size_t)first;
-    for (int l = 0; l < a->s; l++)
+    for (int l = 0; l < a->s; l++) {
+      double *column = values + a->pattern.start[j * a->s + l];
       for (int e = first; e < first + length; e++, column += s) dvi__action_block_column(a, &a->block[e], l, a->s, column);
+    }
   }
-  dvi__action_centre_jacobian(a, values);
-  return DVI_OK;
+  return dvi__action_add_term_derivatives(a, Y, values);
 }
 
 void dvi__action_move_ends(dvi__action *a, const double *dY, double *dp)

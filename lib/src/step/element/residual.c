@@ -32,7 +32,7 @@ dvi_status dvi__action_residual(dvi__action *a, const double *Y, double *R)
 {
   a->swept = 0;
   dvi__action_stages(a, Y);
-  dvi__action_centre_path(a, Y);
+  dvi__action_place_terms(a, Y);
   DVI_TRY(dvi__lagrangian_gradient(a->evaluator, a->r, a->t, a->Q, a->V, a->L_q, a->L_v));
   /* The forces enter every row, and p1, with the same rounded product b_j L_q: that keeps the rows consistent to the last bit. */
   dvi__lanes_weigh(a->n, a->r, a->weight, a->L_q);
@@ -41,8 +41,7 @@ dvi_status dvi__action_residual(dvi__action *a, const double *Y, double *R)
   dvi__lanes_product(a->n, a->r, a->path_lanes, a->s, a->slope_row, a->L_v, a->rows);
   for (size_t i = 0, s = (size_t)a->s; i < (size_t)a->n; i++)
     for (size_t k = 0; k < s; k++) R[i * s + k] = a->h * R[i * s + k] + (a->rows[i * s + k] - a->end[k] * a->p0[i]);
-  dvi__action_centre_rows(a, R);
-  return DVI_OK;
+  return dvi__action_add_term_rows(a, Y, R);
 }
 
 /* L_q and L_v hold the weights. */
@@ -55,7 +54,7 @@ void dvi__action_magnitudes(const dvi__action *a, double *magnitude)
       for (int j = 0; j < a->r; j++) total += fabs(a->h * bar[j] * a->L_q[i * a->r + j]) + fabs(slope[j] * a->L_v[i * a->r + j]);
       magnitude[i * a->s + k] = total;
     }
-  dvi__action_centre_magnitudes(a, magnitude);
+  dvi__action_add_term_magnitudes(a, magnitude);
 }
 
 static double sum(int count, const double *x)
@@ -70,7 +69,7 @@ static void ends_by_rows(const dvi__action *a, const double *Y, double *dq, doub
   for (size_t i = 0; i < (size_t)a->n; i++) {
     dq[i] = dot(a->s, a->end, Y + i * (size_t)a->s);
     dq_low[i] = 0;
-    dp[i] = a->h * sum(a->r, a->L_q + i * (size_t)a->r) + (a->correction != NULL ? a->correction[i] : 0);
+    dp[i] = a->h * sum(a->r, a->L_q + i * (size_t)a->r) + (a->terms.count > 0 ? a->terms.dp[i] : 0);
   }
 }
 
@@ -161,6 +160,7 @@ void dvi__action_scale_by(const dvi__action *a, const double *L_vv, double *scal
     const double row = (size > 0 ? size : 1.0) / fabs(a->h);
     for (int k = 0; k < a->s; k++) scale[i * a->s + k] = row;
   }
+  dvi__action_scale_terms(a, scale);
 }
 
 dvi_status dvi__action_scale(dvi__action *a, double *scale)
@@ -186,6 +186,7 @@ void dvi__action_straight(const dvi__action *a, const double *v, double *Y)
 {
   for (size_t i = 0, s = (size_t)a->s; i < (size_t)a->n; i++)
     for (size_t k = 0; k < s; k++) Y[i * s + k] = a->straight[k] * (a->h * v[i]);
+  for (int k = 0; k < a->terms.unknowns; k++) Y[a->n * a->s + k] = 0;
 }
 
 const double *dvi__action_fit_points(const dvi__action *a)

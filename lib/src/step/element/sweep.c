@@ -95,7 +95,7 @@ static dvi_status allocate(dvi__action *a)
 
 int dvi__action_can_sweep(const dvi__action *a)
 {
-  return a->system->mass_diagonal != NULL;
+  return a->system->mass_diagonal != NULL && a->terms.count == 0;
 }
 
 dvi_status dvi__action_prepare_sweep(dvi__action *a)

@@ -73,7 +73,7 @@ static dvi_status fill(dvi__canonical *c, const dvi__action_space *space, dvi_co
   DVI_TRY(dvi_quadrature(space->rule, c->r, c->c, c->b));
   fill_tables(c);
   DVI_TRY(dvi__evaluator_create(c->system, c->r, DVI__HESSIANS, counters, &c->evaluator));
-  DVI_TRY(dvi__joint_create(c->system, &c->joint, &c->block));
+  DVI_TRY(dvi__joint_create(c->system, NULL, &c->joint, &c->block));
   DVI_TRY(dvi__pattern_blocks(&c->joint, c->m, &c->pattern));
   return allocate(c);
 }
