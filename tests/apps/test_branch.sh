@@ -25,12 +25,12 @@ right() {
 expect 0 'degree 12' run double-pendulum --method galerkin:degree=12 --h 0.078 --t-end 26.52 --final --columns energy
 near -40.2181791758673 1e-9 'degree 12'
 
-for h in 0.063 0.078 0.0934 0.11 0.127 0.14 0.155 0.17 0.183 0.199; do
+for h in $(some 0.063 0.078 0.0934 0.11 0.127 0.14 0.155 0.17 0.183 0.199); do
   for method in galerkin:degree=8 hamiltonian:degree=8 sem:degree=4,hmax=0.2; do
     right -40.2181791758673 0.4 double-pendulum --method $method --h $h --t-end 40
   done
 done
-for h in 0.1 0.12 0.14 0.16 0.18 0.2; do
+for h in $(some 0.1 0.12 0.14 0.16 0.18 0.2); do
   for solver in kinsol certified; do
     right -40.2181791758673 0.02 double-pendulum --method galerkin:degree=8,solver=$solver --h $h --t-end 30
   done

@@ -65,7 +65,7 @@ says err 'N=3: with these values the problem has other coordinates' 'the reason'
 # Interrupted sweeps: rows that are there are taken, whatever became of the last one.
 # Long enough to be interrupted; sanitized the shorter one takes as long.
 end=400
-[ -z "${DVI_TEST_FEWER:-}" ] || end=100
+[ -z "${DVI_TEST_FEWER:-}" ] || end=40
 long="sweep cart.yaml --set l=0.5 --set m=0.2 --set g=9:10:30 --t-end $end"
 expect 0 'all at once' $long --out whole.csv
 for signal in 15 9; do

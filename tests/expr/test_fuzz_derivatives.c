@@ -112,11 +112,11 @@ static void mark_unusual(void)
     const quad size = fabsq(value[n]);
     const int usual = (size == 0 && error[n] == 0) ||
                       (size > (quad)1e-290 && size < (quad)1e290 && error[n] < (quad)1e-4 * size);
-    if (!usual) error[n] = HUGE_VALQ;
-    if (operands > 0 && !finiteq(error[node->a])) error[n] = HUGE_VALQ;
+    if (!usual) error[n] = (quad)HUGE_VAL;
+    if (operands > 0 && !finiteq(error[node->a])) error[n] = (quad)HUGE_VAL;
     const int off = node->op == DVI__OP_WHERE &&
                     value[node->a] <= 0; /* then the other operand need not exist */
-    if (operands > 1 && !off && !finiteq(error[node->b])) error[n] = HUGE_VALQ;
+    if (operands > 1 && !off && !finiteq(error[node->b])) error[n] = (quad)HUGE_VAL;
     if (off && finiteq(error[node->a])) error[n] = 0;
   }
 }
@@ -162,7 +162,7 @@ static void judge(const quad *x, verdict *v)
     (void)differences(x, i, step, v->difference[i]);
     const int jumps = differences(x, i, 3 * step, longer);
     for (int r = 0; r < HESSIAN; r++)
-      v->doubt[i][r] = jumps ? HUGE_VALQ
+      v->doubt[i][r] = jumps ? (quad)HUGE_VAL
                              : 10 * fabsq(longer[r] - v->difference[i][r]) +
                                    10 * v->finer[r] / step + v->error[r] * step;
   }
@@ -309,6 +309,7 @@ SUITE(fuzz_derivatives)
   tcase_set_timeout(tests, fuzz_timeout());
   tcase_add_test(tests, derivatives_are_those_of_differences);
 #else
+  (void)tests;
   puts("no libquadmath: nothing to compare with");
 #endif
 }

@@ -384,11 +384,13 @@ END_TEST
 
 /* Numbers that no checksum defends: a step from them may fail, but it ends, and no status but
  * DVI_OK goes with finite numbers alone. */
-static void check_survives(dvi_integrator *integrator, double h)
+static dvi_status status_of_forged(dvi_integrator *integrator, double h)
 {
-  if (dvi_integrator_restore(integrator, in_folder("forged")) != DVI_OK) return;
-  if (dvi_integrator_step(integrator, h) != DVI_OK) return;
-  for (int i = 0; i < dvi_system_nq(dvi_integrator_system(integrator)); i++) ck_assert(isfinite(dvi_integrator_q(integrator)[i]));
+  dvi_status status = dvi_integrator_restore(integrator, in_folder("forged"));
+  if (status == DVI_OK) status = dvi_integrator_step(integrator, h);
+  for (int i = 0; status == DVI_OK && i < dvi_system_nq(dvi_integrator_system(integrator)); i++)
+    ck_assert(isfinite(dvi_integrator_q(integrator)[i]));
+  return status;
 }
 
 /* Where a section of a file begins; its header has 40 bytes, of which the last 8 are its hash and the 8
@@ -418,6 +420,7 @@ START_TEST(forged_numbers_do_no_harm)
 {
   problem *of = made_problem(families[_i].problem, NULL);
   unsigned long long draw = 88172645463325252ULL;
+  int gone_on = 0, refused = 0;
   for (int k = 0; k < 20 && families[_i].methods[k] != NULL; k++) {
     dvi_integrator *saved = started(of, families[_i].methods[k]), *taker = started(of, families[_i].methods[k]);
     advance(saved, families[_i].h, 3);
@@ -429,13 +432,18 @@ START_TEST(forged_numbers_do_no_harm)
       draw ^= draw << 13, draw ^= draw >> 7, draw ^= draw << 17;
       forge(&bad, draw);
       write_bytes(in_folder("forged"), bad.at, bad.count);
-      check_survives(taker, families[_i].h);
+      if (status_of_forged(taker, families[_i].h) == DVI_OK)
+        gone_on++;
+      else
+        refused++;
       free(bad.at);
     }
     free(good.at);
     dvi_integrator_destroy(&saved);
     dvi_integrator_destroy(&taker);
   }
+  ck_assert_int_gt(gone_on, 0);
+  ck_assert_int_gt(refused, 0);
   problem_destroy(&of);
 }
 END_TEST

@@ -61,8 +61,7 @@ static void run(int i, outcome *seen)
   problem *of = made_problem(runs[i].problem, runs[i].setting);
   memset(seen, 0, sizeof *seen);
   take_steps(of,
-             runs[i].monitor != NULL ? paced(of, create_transformed, runs[i].monitor, runs[i].method)
-                                     : started(of, runs[i].method),
+             runs[i].monitor != NULL ? paced(of, create_transformed, runs[i].monitor, runs[i].method) : started(of, runs[i].method),
              seen);
   problem_destroy(&of);
 }

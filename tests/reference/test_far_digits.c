@@ -1,5 +1,6 @@
-/* labels: reference slow */
-/* The digits of long spans are those of the quadruple-precision judge, and the roundings of the start move them no farther than is said. */
+/* labels: judge slow long */
+/* The digits of long spans are those of the quadruple-precision judge, and the roundings of the start move them no farther than is
+ * said. A short run takes one of the three problems. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -59,7 +60,7 @@ END_TEST
 SUITE(far_digits)
 {
   tcase_set_timeout(tests, 600);
-  tcase_add_loop_test(tests, far_digits_are_those_of_the_judge, 0, NAMES);
-  tcase_add_loop_test(tests, the_rounded_start_ends_where_is_said, 0, NAMES);
+  tcase_add_loop_test(tests, far_digits_are_those_of_the_judge, 0, sampled_count(NAMES));
+  tcase_add_loop_test(tests, the_rounded_start_ends_where_is_said, 0, sampled_count(NAMES));
   tcase_add_test(tests, other_parameters_and_problems_have_no_far_digits);
 }

@@ -359,6 +359,7 @@ END_TEST
 START_TEST(tolerances_down_to_1e_14_work_or_are_refused_in_words)
 {
   const char *const names[] = {"oscillator", "kepler", "double-pendulum", "stiff-pendulum"};
+  int worked = 0;
   for (int k = 0; k < 4; k++) {
     problem *of = make(names[k], NULL);
     double q[2], p[2];
@@ -366,8 +367,10 @@ START_TEST(tolerances_down_to_1e_14_work_or_are_refused_in_words)
     const dvi_reference_options options = option(_i, 1e-14);
     const dvi_status status = dvi_reference_judge(of->system, 0, 1, q, p, &options, NULL);
     ck_assert(status == DVI_OK || (status == DVI_REFERENCE_FAILED && strstr(dvi_last_error(), "stopped at t = ") != NULL));
+    worked += status == DVI_OK;
     problem_destroy(&of);
   }
+  ck_assert_int_ge(worked, 3); /* IDA refuses the double pendulum */
 }
 END_TEST
 

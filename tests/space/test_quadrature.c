@@ -55,7 +55,6 @@ static double ulps(double computed, quad exact)
 
 START_TEST(nodes_and_weights_are_right_to_2_ulp_against_quadruple_precision)
 {
-  if (!long_double_is_long()) return; /* promised only there */
   double node[DVI_QUADRATURE_MAX], weight[DVI_QUADRATURE_MAX], worst_node = 0, worst_weight = 0;
   quad exact_node[DVI_QUADRATURE_MAX], exact_weight[DVI_QUADRATURE_MAX];
   const dvi_rule rule = (dvi_rule)_i;
@@ -104,11 +103,14 @@ START_TEST(nodes_ascend_in_the_unit_interval_and_weights_are_positive)
 }
 END_TEST
 
+/* All but the Radau rules. */
+static const dvi_rule symmetric_rules[] = {DVI_GAUSS, DVI_LOBATTO, DVI_CLENSHAW_CURTIS, DVI_MIDPOINT, DVI_TRAPEZOID, DVI_SIMPSON};
+enum { SYMMETRIC_RULES = RULES - 2 };
+
 START_TEST(symmetric_rules_are_symmetric_to_the_last_bit)
 {
   long double node[DVI_QUADRATURE_MAX], weight[DVI_QUADRATURE_MAX];
-  const dvi_rule rule = (dvi_rule)_i;
-  if (rule == DVI_RADAU_LEFT || rule == DVI_RADAU_RIGHT) return;
+  const dvi_rule rule = symmetric_rules[_i];
   for (int n = fewest(rule); n <= most(rule); n++) {
     ck_assert_int_eq(dvi__quadrature_long(rule, n, node, weight), DVI_OK);
     for (int i = 0; i <= (n - 1) / 2; i++) {
@@ -201,13 +203,14 @@ END_TEST
 SUITE(quadrature)
 {
 #ifdef DVI_HAVE_QUADMATH
-  tcase_add_loop_test(tests, nodes_and_weights_are_right_to_2_ulp_against_quadruple_precision, 0, RULES);
+  if (long_double_is_long()) /* promised only there */
+    tcase_add_loop_test(tests, nodes_and_weights_are_right_to_2_ulp_against_quadruple_precision, 0, RULES);
 #else
   puts("no libquadmath: the comparison with quadruple precision is left out");
 #endif
   tcase_add_loop_test(tests, a_rule_of_order_p_is_exact_below_degree_p_and_not_at_p, 0, RULES);
   tcase_add_loop_test(tests, nodes_ascend_in_the_unit_interval_and_weights_are_positive, 0, RULES);
-  tcase_add_loop_test(tests, symmetric_rules_are_symmetric_to_the_last_bit, 0, RULES);
+  tcase_add_loop_test(tests, symmetric_rules_are_symmetric_to_the_last_bit, 0, SYMMETRIC_RULES);
   tcase_add_test(tests, the_radau_rules_mirror_each_other);
   tcase_add_test(tests, the_one_size_rules_have_their_textbook_numbers);
   tcase_add_test(tests, bad_sizes_are_refused_and_nothing_is_written);

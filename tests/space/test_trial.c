@@ -85,7 +85,6 @@ END_TEST
 
 START_TEST(psi_keeps_its_digits_near_0)
 {
-  if (!long_double_is_long()) return; /* the differences lose as many digits as tau is small */
   double psi[MOST], dpsi[MOST];
   const double tau = 1e-3 * DBL_EPSILON; /* so small that 1 + tau rounds to 1 in double; the next term is degree^4 tau^2 */
   dvi__trial_at((dvi_basis)_i, 5, tau, psi, NULL, NULL);
@@ -212,7 +211,8 @@ SUITE(trial)
 {
   tcase_add_loop_test(tests, psi_vanishes_at_0_and_bar_at_1, 0, BASES);
   tcase_add_loop_test(tests, psi_and_bar_are_the_basis_less_its_ends, 0, BASES);
-  tcase_add_loop_test(tests, psi_keeps_its_digits_near_0, 0, BASES);
+  if (long_double_is_long()) /* else the differences lose as many digits as tau is small */
+    tcase_add_loop_test(tests, psi_keeps_its_digits_near_0, 0, BASES);
   tcase_add_loop_test(tests, the_tables_are_the_same_from_a_space_made_once, 0, BASES);
   tcase_add_loop_test(tests, fit_gives_back_a_polynomial_from_its_values, 0, BASES);
   tcase_add_loop_test(tests, fit_at_its_own_nodes_reads_nodal_values, DVI_LAGRANGE_LOBATTO, DVI_LAGRANGE_LOBATTO + 1);

@@ -13,10 +13,18 @@
   void suite_of_##thing(TCase *tests); \
   void suite_of_##thing(TCase *tests)
 
-/* How often to do what is done `often` times for the sake of its numbers. Where memory is watched, by sanitizers or
- * valgrind, a tenth of it: there each time takes up to fifty times as long, and numbers are judged in the other builds
- * (DVI_TEST_FEWER). */
+/* How often to do what is done `often` times for the sake of its numbers: a tenth of it where DVI_TEST_FEWER is set. That is
+ * where sanitizers or valgrind watch memory, and each time takes up to fifty times as long, and in suites with the label `long`
+ * whenever they are not run in full. */
 int repeats(int often);
+
+/* 1 where DVI_TEST_FEWER is set. */
+int is_short_run(void);
+
+/* A loop over very many cases, of which a short run takes every third: how many it takes of `cases`, and the number of the i-th of
+ * them. */
+int sampled_count(int cases);
+int sampled_case(int i);
 
 /* dvi_last_error() must hold these words. */
 void check_words(const char *words);

@@ -9,7 +9,11 @@ fail() { echo "$1"; rc=1; }
 value_of() { sed -n "s/^$1: *//p" "$2"; }
 
 count=0
+# Where memory is watched every third scene is enough.
+[ -z "${DVI_TEST_FEWER:-}" ] || stride=3
 for scene in "$here"/../../../apps/scenes/*.yaml "$here"/../../../apps/scenes/*/*.yaml; do
+  count=$((count + 1))
+  [ $((count % ${stride:-1})) -eq 0 ] || continue
   name=$(basename "$scene" .yaml)
   method=$(value_of method "$scene") h=$(value_of step "$scene")
   "$dvi" check "$scene" >/dev/null || fail "dvi check $name: exit code $?"
@@ -27,7 +31,6 @@ for scene in "$here"/../../../apps/scenes/*.yaml "$here"/../../../apps/scenes/*/
         if (!(difference <= 3e-13 * size)) { print name ": column " i ": " mine[i] " is not " $i; exit 1 }
       }
     }' || rc=1
-  count=$((count + 1))
 done
 [ $count -ge 31 ] || fail "only $count scenes"
 exit $rc

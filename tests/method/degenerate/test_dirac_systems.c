@@ -244,8 +244,7 @@ START_TEST(controlled_steps_back_undo_steps)
   problem *of = made_problem("circle-dirac", NULL);
   const dvi_monitor monitor = {.kind = DVI_MONITOR_FUNCTION, .function = {.name = "height", .value = height}};
   dvi_integrator *integrator = NULL;
-  ck_assert_msg(create_controlled(of->system, &monitor, "dg-phase:degree=2", &integrator) == DVI_OK, "%s",
-                dvi_last_error());
+  ck_assert_msg(create_controlled(of->system, &monitor, "dg-phase:degree=2", &integrator) == DVI_OK, "%s", dvi_last_error());
   ck_assert_msg(dvi_integrator_start(integrator, 0, of->q, of->p) == DVI_OK, "%s", dvi_last_error());
   advance(integrator, 0.05, 40);
   ck_assert_double_gt(distance(2, dvi_integrator_q(integrator), of->q), 0.5);

@@ -1,4 +1,4 @@
-/* labels: order slow */
+/* labels: order slow long */
 /* The orders of quadratures with few nodes: Lobatto with as many as degrees, two less than with one node more; Clenshaw-Curtis, whose order
  * u is as low as its number of nodes, min(2s, u, 2(u-s+1)). Measured as in support/order.c. */
 #include <check.h>
@@ -11,8 +11,8 @@ enum { MOST_DEGREE = 8 };
 
 START_TEST(lobatto_with_as_many_nodes_as_degrees_has_order_2s_minus_2)
 {
-  const int s = 2 + _i % (MOST_DEGREE - 1);
-  check_order(_i / (MOST_DEGREE - 1), spec("galerkin:degree=%d,quadrature=lobatto,nodes=%d", s, s), 2 * s - 2);
+  const int which = sampled_case(_i), s = 2 + which % (MOST_DEGREE - 1);
+  check_order(which / (MOST_DEGREE - 1), spec("galerkin:degree=%d,quadrature=lobatto,nodes=%d", s, s), 2 * s - 2);
 }
 END_TEST
 
@@ -25,7 +25,8 @@ enum { FEW = sizeof few / sizeof *few };
 START_TEST(clenshaw_curtis_with_few_nodes_has_the_order_that_its_own_allows)
 {
   static const int places[] = {1, 2, 4}; /* pendulum, henon-heiles, toda: elsewhere the last term is small beside the next ones */
-  const int place = places[_i / FEW], s = few[_i % FEW].s, r = few[_i % FEW].r, order = few[_i % FEW].order;
+  const int which = sampled_case(_i), place = places[which / FEW];
+  const int s = few[which % FEW].s, r = few[which % FEW].r, order = few[which % FEW].order;
   const char *method = spec("galerkin:degree=%d,quadrature=clenshaw-curtis,nodes=%d", s, r);
   problem *of = made_problem("oscillator", NULL);
   dvi_integrator *integrator = made_integrator(of->system, method);
@@ -39,6 +40,7 @@ END_TEST
 SUITE(order_lobatto_short)
 {
   tcase_set_timeout(tests, 0);
-  tcase_add_loop_test(tests, lobatto_with_as_many_nodes_as_degrees_has_order_2s_minus_2, 0, ORDER_PLACES * (MOST_DEGREE - 1));
-  tcase_add_loop_test(tests, clenshaw_curtis_with_few_nodes_has_the_order_that_its_own_allows, 0, 3 * FEW);
+  tcase_add_loop_test(tests, lobatto_with_as_many_nodes_as_degrees_has_order_2s_minus_2, 0,
+                      sampled_count(ORDER_PLACES * (MOST_DEGREE - 1)));
+  tcase_add_loop_test(tests, clenshaw_curtis_with_few_nodes_has_the_order_that_its_own_allows, 0, sampled_count(3 * FEW));
 }

@@ -95,8 +95,7 @@ START_TEST(functions_that_become_polynomials_are_left_out)
   ck_assert_double_eq_tol(*dvi_integrator_q(integrator), *dvi_integrator_q(galerkin), 1e-13);
   dvi_integrator_destroy(&integrator);
   dvi_integrator_destroy(&galerkin);
-  ck_assert_int_eq(create_shaped(of->system, &shapes, "shaped-galerkin:degree=3,nodes=8", &integrator),
-                   DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(create_shaped(of->system, &shapes, "shaped-galerkin:degree=3,nodes=8", &integrator), DVI_BAD_ARGUMENT);
   check_words("function 0 is a combination of a constant, polynomials up to degree 3");
   problem_destroy(&of);
 }
@@ -199,8 +198,8 @@ START_TEST(symmetry_is_found_out)
   ck_assert_int_eq(strstr(text, ", symmetric\n") != NULL, structures[_i].symmetric);
   ck_assert_int_eq(dvi_reversibility(integrator, 0, of->q, of->p, 0.1, 10, &defect), DVI_OK);
   ck_assert_int_eq(defect < 1e-11, structures[_i].symmetric);
-  const dvi_status status = create_shaped(
-      of->system, &shapes, spec("composition:order=4,base=shaped-galerkin,%s", structures[_i].keys), &composed);
+  const dvi_status status = create_shaped(of->system, &shapes,
+                                          spec("composition:order=4,base=shaped-galerkin,%s", structures[_i].keys), &composed);
   ck_assert_int_eq(status, structures[_i].symmetric ? DVI_OK : DVI_BAD_OPTION);
   if (status != DVI_OK) check_words("is not symmetric");
   dvi_integrator_destroy(&composed);

@@ -102,9 +102,8 @@ START_TEST(steps_with_forces_find_the_motion)
   for (int k = 1; k <= 100; k++) {
     ck_assert_int_eq(dvi_integrator_start_velocity(made, 0, of.q, of.v), DVI_OK);
     advance(fine, 1e-5, 100);
-    const dvi_status status = dvi_integrator_step(made, 1e-3 * k);
-    ck_assert(status == DVI_OK || status == DVI_STEP_TOO_LARGE);
-    if (status == DVI_OK) worst = fmax(worst, distance(of.nq, dvi_integrator_q(made), dvi_integrator_q(fine)));
+    advance(made, 1e-3 * k, 1);
+    worst = fmax(worst, distance(of.nq, dvi_integrator_q(made), dvi_integrator_q(fine)));
   }
   ck_assert_msg(worst < .3, "%.2g", worst);
   dvi_integrator_destroy(&made);

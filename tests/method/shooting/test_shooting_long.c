@@ -1,4 +1,4 @@
-/* labels: invariant slow */
+/* labels: invariant slow long */
 /* Shooting over a million steps: explicit one-step methods keep the energy, if the search for the velocity is tight. */
 #include <math.h>
 
