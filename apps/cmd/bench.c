@@ -118,8 +118,10 @@ static int report(bench *b)
 static int judge_and_measure(bench *b)
 {
   const double asked = work_smallest_asked(&b->request->outputs.asked);
-  const judge_request judge = {
-      .kind = b->request->judge, .wanted = isfinite(asked) ? asked / STUDY_FLOOR_MARGIN : error_of_judge, .progress = &b->progress};
+  const judge_request judge = {.kind = b->request->judge,
+                               .wanted = isfinite(asked) ? asked / STUDY_FLOOR_MARGIN
+                                                         : error_of_judge,
+                               .progress = &b->progress};
   progress_start(&b->progress, true);
   int code = judge_init(&b->judge, b->scene, b->request->t_end, &judge);
   b->motion = (judged_motion){b->scene, &b->judge, b->request->t_end};
@@ -159,19 +161,22 @@ static void keep_entry(bench *b, const char *method, const pacing *how)
   paced_name(method, how, e->name, sizeof e->name);
 }
 
-/* Add a method, unless its structure forbids it: of the selection it is left out then; one that is asked for is refused, or, if there are other
- * times to take it in, left out with a word. */
+/* Add a method, unless its structure forbids it: of the selection it is left out then; one that is
+ * asked for is refused, or, if there are other times to take it in, left out with a word. */
 static int add_entry(bench *b, const char *method, const pacing *how, const dvi_monitor *monitor)
 {
   dvi_integrator *integrator = NULL;
   const bool asked = b->request->methods.count > 0, several = b->request->transforms.count > 1;
-  if (b->entries == WORDS_MAX) return usage_error("bench: more than %d methods and time transforms", (int)WORDS_MAX);
+  if (b->entries == WORDS_MAX)
+    return usage_error("bench: more than %d methods and time transforms", (int)WORDS_MAX);
   const dvi_status status = create_paced(b->scene, method, how, monitor, &integrator);
   dvi_integrator_destroy(&integrator);
   if (status == DVI_OK) keep_entry(b, method, how);
   if (status == DVI_OK || (!asked && status == DVI_UNSUPPORTED)) return DONE;
-  if (!several || status != DVI_UNSUPPORTED) return open_paced(b->scene, method, how, &integrator); /* which says why it fails */
-  complain("bench: left out %s @ %s: %s", method, how->transform != NULL ? how->transform : "none", dvi_last_error());
+  /* which says why it fails */
+  if (!several || status != DVI_UNSUPPORTED) return open_paced(b->scene, method, how, &integrator);
+  complain("bench: left out %s @ %s: %s", method, how->transform != NULL ? how->transform : "none",
+           dvi_last_error());
   return DONE;
 }
 
@@ -180,7 +185,8 @@ static int choose_methods(bench *b)
 {
   const words *methods = &b->request->methods, *transforms = &b->request->transforms;
   const char *const *method = methods->count > 0 ? methods->word : selection;
-  const int count = methods->count > 0 ? methods->count : (int)(sizeof selection / sizeof *selection) - 1;
+  const int count = methods->count > 0 ? methods->count
+                                       : (int)(sizeof selection / sizeof *selection) - 1;
   int code = DONE;
   for (int k = 0; (k < transforms->count || k == 0) && code == DONE; k++) {
     const bool plain = transforms->count == 0 || strcmp(transforms->word[k], "none") == 0;
@@ -195,7 +201,8 @@ static int choose_methods(bench *b)
 static int bench_problem(bench_request *request, const problem *scene)
 {
   if (isnan(request->t_end)) request->t_end = scene->order_t_end;
-  if (request->methods.count == 0 && scene->method != NULL) request->methods.word[request->methods.count++] = scene->method;
+  if (request->methods.count == 0 && scene->method != NULL)
+    request->methods.word[request->methods.count++] = scene->method;
   bench b = {.request = request, .scene = scene};
   const int code = choose_methods(&b);
   if (code == DONE) events_passed("bench", scene);

@@ -21,7 +21,8 @@
 #include "csv/table.h"
 #include "study/window.h"
 
-/* A high order is asymptotic only near the floor, if at all: more levels there let the window begin where it is. */
+/* A high order is asymptotic only near the floor, if at all: more levels there let the window begin
+ * where it is. */
 enum { LEVELS_DEFAULT = 6, LEVELS_HIGH_ORDER = 12, HIGH_ORDER = 8, LENGTHENINGS = 3 };
 static const double lengthening = 4.0;
 
@@ -111,12 +112,14 @@ static int study_single_steps(hearing *ask, const char *method, order_result *re
 {
   const order_request *request = ask->request;
   const bool few = request->levels > 0 && request->levels < WINDOW_LEVELS;
-  if (order_holds(result) || few || request->how.transform != NULL || request->how.control != NULL) return DONE;
+  if (order_holds(result) || few || request->how.transform != NULL || request->how.control != NULL)
+    return DONE;
   const words *settings = &request->settings;
   const double t_end = result->extent;
   progress_line *progress = &ask->progress;
   closer_look *look = &result->closer;
-  const dvi_status status = single_steps_measure(ask->scene, settings, method, t_end, progress, look);
+  const dvi_status status = single_steps_measure(ask->scene, settings, method, t_end, progress,
+                                                 look);
   return status == DVI_OK ? DONE : library_error(status);
 }
 
@@ -126,12 +129,14 @@ static double study_end(const order_request *request, const problem *scene)
   return isnan(request->t_end) ? scene->order_t_end : request->t_end;
 }
 
-/* One method. If the problem's own span is so short that a few steps meet the floor, it is lengthened; unless that would exchange
- * the stored result, which is for this span, for IDA, whose error would leave less room than the longer span gains. */
+/* One method. If the problem's own span is so short that a few steps meet the floor, it is
+ * lengthened; unless that would exchange the stored result, which is for this span, for IDA, whose
+ * error would leave less room than the longer span gains. */
 static int study_method(hearing *ask, const char *method, order_result *result)
 {
   const order_request *request = ask->request;
-  const bool fixed = !isnan(request->t_end) || !isnan(request->h) || request->judge == JUDGE_STORED ||
+  const bool fixed = !isnan(request->t_end) || !isnan(request->h) ||
+                     request->judge == JUDGE_STORED ||
                      (ask->scene->exact == NULL && ask->scene->digits_q != NULL);
   double t_end = study_end(request, ask->scene);
   for (int i = 0;; i++) {
@@ -149,8 +154,9 @@ static int check_step(const order_request *request, const problem *scene)
 {
   const double t_end = study_end(request, scene);
   if (!(fabs(t_end) / request->h > FIRST_PARTS_MAX)) return DONE;
-  return usage_error("order: --h %g is too small: %g steps to t = %g, %d are possible at the first level", request->h,
-                     fabs(t_end) / request->h, t_end, (int)FIRST_PARTS_MAX);
+  return usage_error(
+      "order: --h %g is too small: %g steps to t = %g, %d are possible at the first level",
+      request->h, fabs(t_end) / request->h, t_end, (int)FIRST_PARTS_MAX);
 }
 
 static bool write_csv(const result_table *rows, const char *path)
@@ -174,7 +180,8 @@ static int report(const hearing *ask, order_result *result)
     all_hold = all_hold && order_holds(&result[i]);
   }
   if (request->csv != NULL && !write_csv(ask->rows, request->csv)) return FAILED;
-  if (request->plot != NULL && !order_plot(ask->scene->name, ask->rows, &request->axes, results, result, request->plot))
+  if (request->plot != NULL &&
+      !order_plot(ask->scene->name, ask->rows, &request->axes, results, result, request->plot))
     return FAILED;
   return all_hold ? DONE : CHECK_FAILED;
 }
@@ -186,7 +193,8 @@ static int study_all(const order_request *request, const problem *scene)
   order_result *result = calloc((size_t)request->methods.count, sizeof *result);
   int code = result != NULL && table_good(ask.rows) ? DONE : FAILED;
   progress_start(&ask.progress, true);
-  for (int i = 0; i < request->methods.count && code == DONE; i++) code = study_method(&ask, request->methods.word[i], &result[i]);
+  for (int i = 0; i < request->methods.count && code == DONE; i++)
+    code = study_method(&ask, request->methods.word[i], &result[i]);
   progress_end(&ask.progress);
   if (code == DONE) code = table_good(ask.rows) ? report(&ask, result) : FAILED;
   free(result);
@@ -220,15 +228,22 @@ static int check_methods(const order_request *request, const problem *scene)
 static int check_request(order_request *request, const char *name)
 {
   const int most = STUDY_LEVELS_MAX;
-  if (request->levels > most) return usage_error("order: --levels %ld is too many, %d are possible", request->levels, most);
+  if (request->levels > most)
+    return usage_error("order: --levels %ld is too many, %d are possible", request->levels, most);
   if (request->t_end == 0.0) return usage_error("order: --t-end 0 leaves nothing to do");
   if (!isnan(request->h) && !(request->h > 0.0))
-    return usage_error("order: --h %g is not positive; for a study backward in time set --t-end below 0", request->h);
+    return usage_error(
+        "order: --h %g is not positive; for a study backward in time set --t-end below 0",
+        request->h);
   if (!isnan(request->ratio) && !(request->ratio >= 1.01 && request->ratio <= 10.0))
     return usage_error("order: --ratio %g is not between 1.01 and 10", request->ratio);
-  if (pacing_check("order", &request->how) != DONE || words_distinct("order", "method", &request->methods) != DONE) return USAGE;
+  if (pacing_check("order", &request->how) != DONE ||
+      words_distinct("order", "method", &request->methods) != DONE)
+    return USAGE;
   const named_file files[] = {{"csv", request->csv}, {"plot", request->plot}};
-  int code = request->judged_by != NULL ? judge_read("order: --judge", request->judged_by, &request->judge) : DONE;
+  int code = request->judged_by != NULL
+                 ? judge_read("order: --judge", request->judged_by, &request->judge)
+                 : DONE;
   if (code == DONE) code = outputs_plot("order", "plot", request->plot);
   if (code == DONE) code = scene_spared("order", name, 2, files);
   if (code == DONE) code = outputs_distinct("order", 2, files);
@@ -238,37 +253,60 @@ static int check_request(order_request *request, const char *name)
 }
 
 static const char *const details[] = {
-    "Columns: method,problem,h,steps,error,slope,energy_error,cpu_seconds,residuals,jacobians,factorizations.\n"
+    "Columns: "
+    "method,problem,h,steps,error,slope,energy_error,cpu_seconds,residuals,jacobians,"
+    "factorizations.\n"
     "  error         largest error of a coordinate at the end, against the judge\n"
-    "  slope         log(error ratio) / log(step ratio) from the level before; empty at the first level\n"
-    "  energy_error  largest |energy - energy at the start| over the run (an untimed run of its own)\n"
+    "  slope         log(error ratio) / log(step ratio) from the level before; empty at the first "
+    "level\n"
+    "  energy_error  largest |energy - energy at the start| over the run (an untimed run of its "
+    "own)\n"
     "  cpu_seconds   process time of one run (short ones are repeated until 0.02 s have passed)\n"
-    "  the rest      counted by the library in one run; of problems with rotations and directions there is one more,\n"
+    "  the rest      counted by the library in one run; of problems with rotations and directions "
+    "there is one more,\n"
     "  distance      largest distance over the run of R from the nearest rotation, or ||q| - 1|\n",
-    "The judge is the problem's exact solution; or its stored quadruple-precision result, if parameters and end are\n"
-    "the problem's own; or whoever states the smaller error: IDA of SUNDIALS, which shares no code with the methods, run\n"
-    "at two tolerances, or two runs of high degree, of which IDA remains the witness. --judge chooses: exact, stored,\n"
-    "ida or runs (see dvi bench --help). An error counts if it is above the floor: ten times the judge's own error, and\n"
-    "ten times what a change of the start in its last digit does to the end. It must also be below 1 % of the solution.\n"
-    "The order is fitted to the longest run of 4 or more such levels over which the slope is settled: the same within\n"
-    "0.1 in the coarser and the finer half, with a standard error of 0.05 at most. The claimed order has no part in that\n"
-    "choice. Exit code 0: the fitted order is the claimed one within 0.2. Exit code 3: it is not (MISSED), or there is\n"
+    "The judge is the problem's exact solution; or its stored quadruple-precision result, if "
+    "parameters and end are\n"
+    "the problem's own; or whoever states the smaller error: IDA of SUNDIALS, which shares no code "
+    "with the methods, run\n"
+    "at two tolerances, or two runs of high degree, of which IDA remains the witness. --judge "
+    "chooses: exact, stored,\n"
+    "ida or runs (see dvi bench --help). An error counts if it is above the floor: ten times the "
+    "judge's own error, and\n"
+    "ten times what a change of the start in its last digit does to the end. It must also be below "
+    "1 % of the solution.\n"
+    "The order is fitted to the longest run of 4 or more such levels over which the slope is "
+    "settled: the same within\n"
+    "0.1 in the coarser and the finer half, with a standard error of 0.05 at most. The claimed "
+    "order has no part in that\n"
+    "choice. Exit code 0: the fitted order is the claimed one within 0.2. Exit code 3: it is not "
+    "(MISSED), or there is\n"
     "no such run (not decided); the cause is said, and what to try.\n",
-    "Where the span does not show the claimed order, as it mostly is from order 10 or 12 on, galerkin on Lagrangians of\n"
-    "R^n is judged by single steps in quadruple precision, from 5 points of the motion, by the same rule: expressions (a\n"
-    "scene's, or those of the catalogue's scenes) are evaluated with 113 bits, and the library's own steps must be these\n"
-    "to 1 % of an error that doubles show. A table of its own has them; the CSV has the span alone.\n",
-    "The first step is searched up to 2^17 steps to the end, the last level has up to 2^22; --h goes beyond. A span\n"
-    "too short for the levels of a high order is lengthened, unless a stored result would be lost by that.\n",
-    "With --time-transform or --step-control h is a step of the other time, whose span is measured by a run of its own; the\n"
+    "Where the span does not show the claimed order, as it mostly is from order 10 or 12 on, "
+    "galerkin on Lagrangians of\n"
+    "R^n is judged by single steps in quadruple precision, from 5 points of the motion, by the "
+    "same rule: expressions (a\n"
+    "scene's, or those of the catalogue's scenes) are evaluated with 113 bits, and the library's "
+    "own steps must be these\n"
+    "to 1 % of an error that doubles show. A table of its own has them; the CSV has the span "
+    "alone.\n",
+    "The first step is searched up to 2^17 steps to the end, the last level has up to 2^22; --h "
+    "goes beyond. A span\n"
+    "too short for the levels of a high order is lengthened, unless a stored result would be lost "
+    "by that.\n",
+    "With --time-transform or --step-control h is a step of the other time, whose span is measured "
+    "by a run of its own; the\n"
     "number of steps is what that span gives, and the last one is shortened to end at t_end.\n",
     "Examples:\n"
     "  dvi order kepler --method galerkin:degree=2\n"
     "  dvi order cart.yaml --plot order.svg\n"
-    "  dvi order pendulum --method verlet --method composition:order=6,base=verlet --plot order.svg\n"
+    "  dvi order pendulum --method verlet --method composition:order=6,base=verlet --plot "
+    "order.svg\n"
     "  dvi order kepler --set e=0.9 --method galerkin:degree=2 --time-transform distance\n"
-    "  dvi order pendulum-3d --method lie-verlet --method lie-rk --plot lie.svg --axes h:energy_error --axes h:distance\n"
-    "  dvi order toda --method galerkin:degree=3,quadrature=lobatto,nodes=3 --h 0.5 --levels 8 --csv order.csv\n",
+    "  dvi order pendulum-3d --method lie-verlet --method lie-rk --plot lie.svg --axes "
+    "h:energy_error --axes h:distance\n"
+    "  dvi order toda --method galerkin:degree=3,quadrature=lobatto,nodes=3 --h 0.5 --levels 8 "
+    "--csv order.csv\n",
     NULL,
 };
 
@@ -279,31 +317,60 @@ int order_command(int argc, char **argv)
       {.name = "method",
        .words = &r.methods,
        .value = "SPEC",
-       .help = "a method: name[:key=value,...]; may be repeated; left out: the scene's"},
-      {.name = "h", .number = &r.h, .value = "H", .help = "first step (T/H is rounded to whole steps); left out: searched"},
-      {.name = "levels", .count = &r.levels, .value = "N", .help = "how many step sizes; left out: 6, or 12 from order 8"},
-      {.name = "ratio", .number = &r.ratio, .value = "R", .help = "of neighbouring steps; left out: 2, or less for high orders"},
-      {.name = "t-end", .number = &r.t_end, .value = "T", .help = "the end; left out: the problem's for order studies"},
+       .help = "a method: name[:key=value,...]; may be repeated; default: the scene's"},
+      {.name = "h",
+       .number = &r.h,
+       .value = "H",
+       .help = "first step (T/H is rounded to whole steps); default: searched"},
+      {.name = "levels",
+       .count = &r.levels,
+       .value = "N",
+       .help = "how many step sizes; default: 6, or 12 from order 8"},
+      {.name = "ratio",
+       .number = &r.ratio,
+       .value = "R",
+       .help = "of neighbouring steps; default: 2, or less for high orders"},
+      {.name = "t-end",
+       .number = &r.t_end,
+       .value = "T",
+       .help = "the end; default: the problem's for order studies"},
       {.name = "time-transform",
        .word = &r.how.transform,
        .value = "MONITOR",
-       .help = "steps of equal length in another time: distance[:power=P], arclength or acceleration[:power=P]"},
+       .help = "steps of equal length in another time: distance[:power=P], arclength or "
+               "acceleration[:power=P]"},
       {.name = "step-control",
        .word = &r.how.control,
        .value = "MONITOR",
        .help = "steps that follow a monitor reversibly: cheaper, symmetric, not symplectic"},
-      {.name = "judge", .word = &r.judged_by, .value = "WHO", .help = "auto, exact, stored, ida or runs; left out: auto"},
-      {.name = "set", .words = &r.settings, .value = "NAME=VALUE", .help = "set a parameter of the problem; may be repeated"},
-      {.name = "csv", .word = &r.csv, .value = "-|FILE", .help = "write the table as CSV; -: to standard output, words to stderr"},
-      {.name = "plot", .word = &r.plot, .value = "FILE.svg", .help = "draw error against step, with the claimed slopes"},
-      {.name = "axes", .words = &r.asked, .value = "X:Y", .help = "draw these columns of the table instead; may be repeated"},
+      {.name = "judge",
+       .word = &r.judged_by,
+       .value = "WHO",
+       .help = "auto, exact, stored, ida or runs; default: auto"},
+      {.name = "set",
+       .words = &r.settings,
+       .value = "NAME=VALUE",
+       .help = "set a parameter of the problem; may be repeated"},
+      {.name = "csv",
+       .word = &r.csv,
+       .value = "-|FILE",
+       .help = "write the table as CSV; -: to standard output, words to stderr"},
+      {.name = "plot",
+       .word = &r.plot,
+       .value = "FILE.svg",
+       .help = "draw error against step, with the claimed slopes"},
+      {.name = "axes",
+       .words = &r.asked,
+       .value = "X:Y",
+       .help = "draw these columns of the table instead; may be repeated"},
       {.name = NULL},
   };
   const command_line command = {
       .name = "order",
       .synopsis = "PROBLEM|SCENE.yaml [--method SPEC ...] [OPTIONS]",
       .operand = "PROBLEM",
-      .summary = "Measure the order of methods: the error at the end for a sequence of steps, and the slope fitted to it.\n",
+      .summary = "Measure the order of methods: the error at the end for a sequence of steps, and "
+                 "the slope fitted to it.\n",
       .options = options,
       .details = details,
   };

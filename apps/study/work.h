@@ -25,7 +25,7 @@ typedef struct work_job {
 
 /** All jobs, in the order of the table: all levels of one subject, then of the next. */
 typedef struct work {
-  const char *command;  /**< that complains of what is left out: "bench" */
+  const char *command;  /**< that complains of what is default: "bench" */
   const char *shown;    /**< beside the progress: "dvi bench" */
   double judge_error;   /**< of what is taken for the solution */
   const numbers *asked; /**< errors whose cost is asked for */

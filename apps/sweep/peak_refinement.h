@@ -11,13 +11,13 @@
 /** A difference between neighbours that calls for a point between them. */
 #define PEAK_STEEP 1.0
 
-/** Find the tops, and mark the gaps to be halved: those beside a top, and steep ones, that are wider
- *  than `width`.
+/** Find the tops, and mark the gaps to be halved: those beside a top, and steep ones, that are
+ *  wider than `width`.
  *
  *  @param      x      [count] ascending
  *  @param      y      [count] finite
- *  @param[out] top    [count] the tops of peaks; of equal points the first. An end of the range may be
- *                     one
+ *  @param[out] top    [count] the tops of peaks; of equal points the first. An end of the range may
+ *                     be one
  *  @param[out] halve  [count - 1] gap i lies between points i and i + 1
  *  @return how many gaps */
 int peak_gaps(int count, const double *x, const double *y, double width, bool *top, bool *halve);

@@ -26,7 +26,8 @@ typedef struct round_of_runs {
 
 double peaks_height(const resonance_point *point)
 {
-  return log10(fmin(fmax(point->error, floor_of_errors), RESONANCE_LIMIT)); /* fmax takes a NaN for the floor */
+  /* fmax takes a NaN for the floor */
+  return log10(fmin(fmax(point->error, floor_of_errors), RESONANCE_LIMIT));
 }
 
 /* ---- runs ---- */
@@ -36,7 +37,8 @@ static int take_point(round_of_runs *r)
   char line[LINE_SIZE];
   (void)pthread_mutex_lock(&r->lock);
   const int k = r->next < r->found->count ? r->next++ : -1;
-  (void)snprintf(line, sizeof line, "dvi resonance: %d of %d points so far", r->next, r->found->count);
+  (void)snprintf(line, sizeof line, "dvi resonance: %d of %d points so far", r->next,
+                 r->found->count);
   progress_show(&r->progress, -1.0, line);
   (void)pthread_mutex_unlock(&r->lock);
   return k;
@@ -45,13 +47,15 @@ static int take_point(round_of_runs *r)
 static void *work(void *user)
 {
   round_of_runs *r = user;
-  for (int k = take_point(r); k >= 0; k = take_point(r)) resonance_run(r->task, &r->found->point[k]);
+  for (int k = take_point(r); k >= 0; k = take_point(r))
+    resonance_run(r->task, &r->found->point[k]);
   return NULL;
 }
 
 static int by_value(const void *left, const void *right)
 {
-  const double a = ((const resonance_point *)left)->value, b = ((const resonance_point *)right)->value;
+  const double a = ((const resonance_point *)left)->value,
+               b = ((const resonance_point *)right)->value;
   return (a > b) - (a < b);
 }
 
@@ -72,7 +76,8 @@ static void add_point(peaks_found *found, double value)
 static void add_grid(const peaks_search *search, peaks_found *found)
 {
   for (long k = 0; k < search->grid; k++)
-    add_point(found, search->from + (search->to - search->from) * (double)k / (double)(search->grid - 1));
+    add_point(found,
+              search->from + (search->to - search->from) * (double)k / (double)(search->grid - 1));
   found->point[found->count - 1].value = search->to;
 }
 
@@ -105,7 +110,8 @@ static void run_rounds(round_of_runs *r, const peaks_search *search, double *x, 
 bool peaks_find(const resonance_task *task, const peaks_search *search, peaks_found *found)
 {
   const size_t most = (size_t)search->most;
-  *found = (peaks_found){.point = calloc(most, sizeof *found->point), .top = calloc(most, sizeof *found->top)};
+  *found = (peaks_found){.point = calloc(most, sizeof *found->point),
+                         .top = calloc(most, sizeof *found->top)};
   round_of_runs r = {.task = task, .found = found};
   double *x = calloc(2 * most, sizeof *x);
   bool *halve = calloc(most, sizeof *halve);

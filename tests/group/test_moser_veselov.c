@@ -19,7 +19,8 @@ static double next_number(unsigned *seed)
 static void some_moments(unsigned *seed, int thin, double Jd[9])
 {
   double B[9];
-  for (int i = 0; i < 9; i++) B[i] = next_number(seed) * (thin ? (i < 3 ? 1 : i < 6 ? 1e-3 : 1e-6) : 1);
+  for (int i = 0; i < 9; i++)
+    B[i] = next_number(seed) * (thin ? (i < 3 ? 1 : i < 6 ? 1e-3 : 1e-6) : 1);
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) Jd[3 * i + j] = dvi__dot(B + 3 * i, B + 3 * j);
 }
@@ -38,7 +39,8 @@ static double residual(const double Jd[9], const double w[3], const double g[3])
 
 enum { CASES = 4000, PARTS = 100 };
 
-/* Every h Pi that has a leap has one for all its parts, and it goes on continuously from 0: no other branch is ever taken. */
+/* Every h Pi that has a leap has one for all its parts, and it goes on continuously from 0: no
+ * other branch is ever taken. */
 static void check_branch(const dvi__body *body, dvi__moser_veselov_map by, const double g[3])
 {
   double last[3] = {0};
@@ -96,15 +98,17 @@ START_TEST(a_sphere_can_be_solved_up_to_a_quarter_turn)
   ck_assert_int_eq(dvi__body_of(Jd, &body), 1);
   for (int k = 0; k < 150; k++) {
     const double size = 1 - pow(.9, k + 1);
-    ck_assert_int_gt(dvi__body_moser_veselov(&body, by, (const double[]){0, .6 * size, .8 * size}, w), 0);
+    ck_assert_int_gt(
+        dvi__body_moser_veselov(&body, by, (const double[]){0, .6 * size, .8 * size}, w), 0);
     ck_assert_double_eq_tol(2 * atan(sqrt(dvi__dot(w, w))), asin(size), 1e-15 / sqrt(1 - size));
   }
   ck_assert_int_eq(dvi__body_moser_veselov(&body, by, (const double[]){0, .6001, .8001}, w), 0);
 }
 END_TEST
 
-/* |R^T R - I| of a million turns by w, up to an eighth and a sixth of a full one, is that of the last rounding. With s rounded to one double the same defect in all of
- * them is 1e-11 and more; with w of simple fractions, as .025, one-sided rounding of plain products is 1e-13. */
+/* |R^T R - I| of a million turns by w, up to an eighth and a sixth of a full one, is that of the
+ * last rounding. With s rounded to one double the same defect in all of them is 1e-11 and more;
+ * with w of simple fractions, as .025, one-sided rounding of plain products is 1e-13. */
 START_TEST(a_million_equal_turns_keep_to_the_group)
 {
   static const double turns[][3] = {{.025, -.03, .035}, {0, .3, 0}, {.3, .4, .1}, {0, 0, .05}};
@@ -113,7 +117,9 @@ START_TEST(a_million_equal_turns_keep_to_the_group)
   const int count = repeats(1000000);
   for (int i = 0; i < count; i++) dvi__turn_rows(&turn, 9, R, carry);
   for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) ck_assert_double_eq_tol(R[i] * R[j] + R[3 + i] * R[3 + j] + R[6 + i] * R[6 + j], i == j, 4e-16);
+    for (int j = 0; j < 3; j++)
+      ck_assert_double_eq_tol(R[i] * R[j] + R[3 + i] * R[3 + j] + R[6 + i] * R[6 + j], i == j,
+                              4e-16);
 }
 END_TEST
 

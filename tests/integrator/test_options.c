@@ -1,5 +1,6 @@
 /* labels: unit */
-/* Options of an integrator: what is left out is default, and what does not go together is refused. */
+/* Options of an integrator: what is left out is default, and what does not go together is
+ * refused. */
 #include <stddef.h>
 
 #include "support/paced.h"

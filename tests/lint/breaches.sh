@@ -93,7 +93,7 @@ sees text lib/src/core/one.c 'int a; '
 sees text lib/src/core/one.c '/* TO''DO: finish */'
 sees text lib/src/core/one.c '/* caf\0303\0251 */'
 sees text lib/src/core/long.c "int f(void)\n{\n$(awk 'BEGIN { for (i = 0; i < 60; i++) printf "  g();\\n" }')}"
-sees text lib/src/core/long.c "$(awk 'BEGIN { for (i = 0; i < 501; i++) printf "int a%d;\\n", i }')"
+sees text lib/src/core/long.c "$(awk 'BEGIN { for (i = 0; i < 601; i++) printf "int a%d;\\n", i }')"
 sees documented lib/include/dvi/one.h '\nint dvi_two(int a);'
 sees documented lib/include/dvi/one.h '\ntypedef struct dvi_two { int a; } dvi_two;'
 sees methods docs/methods/other.md 'a page without a method'

@@ -12,16 +12,20 @@ static dvi_scene *made(const char *text)
 {
   char message[1024] = "";
   dvi_scene *scene = NULL;
-  ck_assert_msg(dvi_scene_parse("a", text, strlen(text), 0, NULL, &scene, message, sizeof message) == DVI_OK, "%s", message);
+  ck_assert_msg(
+      dvi_scene_parse("a", text, strlen(text), 0, NULL, &scene, message, sizeof message) == DVI_OK,
+      "%s", message);
   return scene;
 }
 
-static const char chain[] = "parameters: {k: [1, 2, 3]}\ncoordinates: {\"x[3]\": scalar}\nkinetic: sum(i, k[i]*x[i]'^2)/2\n"
-                            "potentials: {bonds: \"sum(i=1..2, k[i]*(x[i+1] - x[i])^4/4)\", push: \"x[1]*sin(2*t)\"}\n"
-                            "initial: {\"x[i]\": 0.1*i^2, \"x[i]'\": 0.2*i}\nmethod: galerkin\nstep: 0.1\nuntil: 1\n";
-static const char general[] = "coordinates: {a: scalar, b: scalar}\nlagrangian: a'^2/2 + a'*b'*cos(a - b) + b'^2 + exp(a*b) "
-                              "- hypot(a, b)\n"
-                              "initial: {a: 0.4, b: 1.3, a': 0.7, b': -0.2}\nmethod: galerkin\nstep: 0.1\nuntil: 1\n";
+static const char chain[] =
+    "parameters: {k: [1, 2, 3]}\ncoordinates: {\"x[3]\": scalar}\nkinetic: sum(i, k[i]*x[i]'^2)/2\n"
+    "potentials: {bonds: \"sum(i=1..2, k[i]*(x[i+1] - x[i])^4/4)\", push: \"x[1]*sin(2*t)\"}\n"
+    "initial: {\"x[i]\": 0.1*i^2, \"x[i]'\": 0.2*i}\nmethod: galerkin\nstep: 0.1\nuntil: 1\n";
+static const char general[] =
+    "coordinates: {a: scalar, b: scalar}\nlagrangian: a'^2/2 + a'*b'*cos(a - b) + b'^2 + exp(a*b) "
+    "- hypot(a, b)\n"
+    "initial: {a: 0.4, b: 1.3, a': 0.7, b': -0.2}\nmethod: galerkin\nstep: 0.1\nuntil: 1\n";
 
 #ifdef DVI__QUAD
 enum { N_MAX = 3 };
@@ -37,11 +41,14 @@ START_TEST(the_gradient_is_that_of_the_callbacks)
   dvi_scene_start(scene, &q, &v, &p);
   const int n = dvi_system_nq(dvi_scene_system(scene));
   for (int i = 0; i < n; i++) at[0][i] = (dvi_pair){q[i], 0}, at[1][i] = (dvi_pair){v[i], 0};
-  ck_assert_int_eq(dvi_scene_quad_gradient(scene, (dvi_pair){t, 0}, at[0], at[1], found[0], found[1]), DVI_OK);
+  ck_assert_int_eq(
+      dvi_scene_quad_gradient(scene, (dvi_pair){t, 0}, at[0], at[1], found[0], found[1]), DVI_OK);
   if (terms->lagrangian != NULL)
-    ck_assert_int_eq(terms->lagrangian->gradient_batch(1, &t, q, v, L_q, L_v, terms->lagrangian->user), 0);
+    ck_assert_int_eq(
+        terms->lagrangian->gradient_batch(1, &t, q, v, L_q, L_v, terms->lagrangian->user), 0);
   for (int k = 0; k < terms->potential_count; k++) {
-    ck_assert_int_eq(terms->potentials[k].gradient_batch(1, &t, q, V_q, terms->potentials[k].user), 0);
+    ck_assert_int_eq(terms->potentials[k].gradient_batch(1, &t, q, V_q, terms->potentials[k].user),
+                     0);
     for (int i = 0; i < n; i++) L_q[i] -= V_q[i];
   }
   for (int i = 0; i < n; i++) {
@@ -83,12 +90,13 @@ END_TEST
 
 START_TEST(what_is_no_lagrangian_of_numbers_is_refused)
 {
-  static const char *const others[] = {"coordinates: {x: scalar, y: scalar}\none_form: {x: y}\nhamiltonian: x^2 + y^2\n"
-                                       "initial: {x: 1, y: 0}\nmethod: vprk\nstep: 0.1\nuntil: 1\n",
-                                       "coordinates: {x: scalar}\nhamiltonian: x^2 + p(x)^2\ninitial: {x: 1, p(x): 0}\n"
-                                       "method: hamiltonian\nstep: 0.1\nuntil: 1\n",
-                                       "coordinates: {R: rotation}\nlagrangian: dot(omega(R), omega(R))/2\n"
-                                       "initial: {R: 'turn([0, 0, 1], 0)'}\nmethod: lie-verlet\nstep: 0.1\nuntil: 1\n"};
+  static const char *const others[] = {
+      "coordinates: {x: scalar, y: scalar}\none_form: {x: y}\nhamiltonian: x^2 + y^2\n"
+      "initial: {x: 1, y: 0}\nmethod: vprk\nstep: 0.1\nuntil: 1\n",
+      "coordinates: {x: scalar}\nhamiltonian: x^2 + p(x)^2\ninitial: {x: 1, p(x): 0}\n"
+      "method: hamiltonian\nstep: 0.1\nuntil: 1\n",
+      "coordinates: {R: rotation}\nlagrangian: dot(omega(R), omega(R))/2\n"
+      "initial: {R: 'turn([0, 0, 1], 0)'}\nmethod: lie-verlet\nstep: 0.1\nuntil: 1\n"};
   dvi_scene *scene = made(others[_i]);
   dvi_pair x[18] = {{0, 0}}, L_q[18], L_v[18];
   ck_assert_int_eq(dvi_scene_quad_gradient(scene, x[0], x, x, L_q, L_v), DVI_UNSUPPORTED);

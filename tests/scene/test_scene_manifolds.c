@@ -1,5 +1,6 @@
-/* Scenes with rotations, rigid motions, directions and angles: the Lagrangian that is written is the one that there is, and what makes no sense is told with its
- * place. apps/scenes has those of the catalogue, which move as the hand-written ones (tests/apps/scene/test_scenes.sh). */
+/* Scenes with rotations, rigid motions, directions and angles: the Lagrangian that is written is
+ * the one that there is, and what makes no sense is told with its place. apps/scenes has those of
+ * the catalogue, which move as the hand-written ones (tests/apps/scene/test_scenes.sh). */
 #include <dvi/dvi.h>
 #include <dvi/scene.h>
 #include <math.h>
@@ -32,7 +33,8 @@ static const dvi_system *open_scene(const char *text)
 
 static void near(double found, double wanted)
 {
-  ck_assert_msg(fabs(found - wanted) <= 1e-14 * fmax(1, fabs(wanted)), "%.17g instead of %.17g", found, wanted);
+  ck_assert_msg(fabs(found - wanted) <= 1e-14 * fmax(1, fabs(wanted)), "%.17g instead of %.17g",
+                found, wanted);
 }
 
 #define RUN "step: 0.1\nuntil: 1\n"
@@ -49,7 +51,8 @@ static void rotate(const double *b, double *a)
 
 static void cross(const double *a, const double *b, double *c)
 {
-  for (int i = 0; i < 3; i++) c[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+  for (int i = 0; i < 3; i++)
+    c[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
 }
 
 static double dot(const double *a, const double *b)
@@ -102,7 +105,8 @@ START_TEST(a_point_of_a_body_moves_as_its_velocity_says)
   dvi_scene_start(scene, &q, &v, &p);
   ck_assert_int_eq(dvi_system_lagrangian(system, 0, q, v, &L), DVI_OK);
   near(L, 2 * dot(speed, speed) + 0.5 * dot(w, Jw) - R[6]);
-  for (int j = 0; j < 3; j++) body[j] = 4 * (R[j] * speed[0] + R[3 + j] * speed[1] + R[6 + j] * speed[2]);
+  for (int j = 0; j < 3; j++)
+    body[j] = 4 * (R[j] * speed[0] + R[3 + j] * speed[1] + R[6 + j] * speed[2]);
   cross(c, body, pull);
   for (int i = 0; i < 3; i++) near(p[i], Jw[i] + pull[i]);
   for (int i = 0; i < 3; i++) near(p[3 + i], 4 * speed[i]);
@@ -162,7 +166,8 @@ START_TEST(events_see_the_velocities_of_the_state)
   near(event_of("rate(u) + 10*x' + 100*rate(w[2])"), 0.3 + 7 + 60);
   near(event_of("u[1]' + 3*u[2]'"), -0.3 * sin(0.5) + 0.9 * cos(0.5));
   near(event_of("sum(i, w[i][1]')"), -0.4 * sin(0.1) - 0.6 * sin(0.2));
-  near(event_of("dot(d', [1, 10, 100])"), held_v[V_D] + 10 * held_v[V_D + 1] + 100 * held_v[V_D + 2]);
+  near(event_of("dot(d', [1, 10, 100])"),
+       held_v[V_D] + 10 * held_v[V_D + 1] + 100 * held_v[V_D + 2]);
   near(event_of("B[2].x[3]' + omega(B[2])[1]"), 0.6 + 0.3);
   cross(held_v + V_B_2, c, turned);
   near(event_of("(B[2].R*[1, 2, 3])[2]'"), dot(held_q + B_2 + 3, turned));
@@ -174,12 +179,12 @@ END_TEST
 
 START_TEST(symmetries_and_invariants_go_by_the_velocities_of_the_state)
 {
-  const dvi_system *system = open_scene(ZOO
-                                        "symmetries:\n  a: {rate(u): 2, omega(R): \"transpose(R)*[0, 0, 1]\", d: \"cross([0, 0, "
-                                        "1], d)\", \"B[i].x\": \"i*B[i].x\"}\n"
-                                        "  b: {\"omega(B[i])\": \"[0, i, 0]\", \"rate(w[i])\": i}\n"
-                                        "invariants:\n  c: p(u) + 10*p(w[2]) + p(d)[1] + p(d[2]) + p(x) + dot(p(R), [1, 2, 3]) + "
-                                        "p(B[2].R)[1] + p(B[2].x)[3]\n");
+  const dvi_system *system = open_scene(
+      ZOO "symmetries:\n  a: {rate(u): 2, omega(R): \"transpose(R)*[0, 0, 1]\", d: \"cross([0, 0, "
+          "1], d)\", \"B[i].x\": \"i*B[i].x\"}\n"
+          "  b: {\"omega(B[i])\": \"[0, i, 0]\", \"rate(w[i])\": i}\n"
+          "invariants:\n  c: p(u) + 10*p(w[2]) + p(d)[1] + p(d[2]) + p(x) + dot(p(R), [1, 2, 3]) + "
+          "p(B[2].R)[1] + p(B[2].x)[3]\n");
   const double *q, *v, *p;
   double I[4];
   dvi_scene_start(scene, &q, &v, &p);
@@ -188,8 +193,8 @@ START_TEST(symmetries_and_invariants_go_by_the_velocities_of_the_state)
   a += dot(q + B_2 - 3, p + V_B_2 - 3) + 2 * dot(q + B_2 + 9, p + V_B_2 + 3);
   near(I[1], a);
   near(I[2], p[V_B_2 - 5] + 2 * p[V_B_2 + 1] + p[V_W_2 - 1] + 2 * p[V_W_2]);
-  near(I[3], p[V_U] + 10 * p[V_W_2] + p[V_D] + p[V_D + 1] + p[V_X] + p[V_TURN] + 2 * p[V_TURN + 1] + 3 * p[V_TURN + 2] + p[V_B_2] +
-                 p[V_B_2 + 5]);
+  near(I[3], p[V_U] + 10 * p[V_W_2] + p[V_D] + p[V_D + 1] + p[V_X] + p[V_TURN] + 2 * p[V_TURN + 1] +
+                 3 * p[V_TURN + 2] + p[V_B_2] + p[V_B_2 + 5]);
 }
 END_TEST
 
@@ -218,10 +223,11 @@ END_TEST
 START_TEST(momenta_give_the_start_as_velocities_do)
 {
   const double *q, *v, *p;
-  (void)open_scene("coordinates: {R: rotation, d: direction, u: angle}\n"
-                   "lagrangian: omega(R)[1]^2 + omega(R)[2]^2 + 0.5*omega(R)[3]^2 + dot(d', d') + 2*rate(u)^2\n"
-                   "initial: {R: \"turn([0, 0, 1], 1)\", d: [0, 0, 1], u: 0, p(R): [1, 2, 3], p(d): [4, 6, 0], "
-                   "p(u): 8}\n" RUN);
+  (void)open_scene(
+      "coordinates: {R: rotation, d: direction, u: angle}\n"
+      "lagrangian: omega(R)[1]^2 + omega(R)[2]^2 + 0.5*omega(R)[3]^2 + dot(d', d') + 2*rate(u)^2\n"
+      "initial: {R: \"turn([0, 0, 1], 1)\", d: [0, 0, 1], u: 0, p(R): [1, 2, 3], p(d): [4, 6, 0], "
+      "p(u): 8}\n" RUN);
   dvi_scene_start(scene, &q, &v, &p);
   static const double wanted[] = {0.5, 1, 3, 2, 3, 0, 2};
   for (int i = 0; i < 7; i++) near(v[i], wanted[i]);
@@ -234,8 +240,9 @@ static void refused(const char *text, const char *place, const char *words)
 {
   const dvi_status found = parse(text);
   ck_assert_msg(found == DVI_BAD_FILE, "status %d for\n%s\n%s", found, text, message);
-  ck_assert_msg(strncmp(message, "test.yaml", 9) == 0 && strncmp(message + 9, place, strlen(place)) == 0, "not at %s: %s", place,
-                message);
+  ck_assert_msg(strncmp(message, "test.yaml", 9) == 0 &&
+                    strncmp(message + 9, place, strlen(place)) == 0,
+                "not at %s: %s", place, message);
   ck_assert_msg(strstr(message, words) != NULL, "\"%s\" is not in \"%s\"", words, message);
 }
 
@@ -261,26 +268,31 @@ START_TEST(lagrangians_without_a_constant_mass_are_refused)
   lagrangian_refused("x'^2 + rate(u)^2 - 3*rate(u) - x", ":2:32:", form);
   lagrangian_refused("x'^2 + rate(u)^2 - rate(u) - x", ":2:13:", form);
   lagrangian_refused("(x' + 1)^2", ":2:13:", "no velocity stands alone");
-  lagrangian_refused("omega(R)[1]*x' + x'^2", ":1:15:", "omega(R) is multiplied by the velocity of x");
-  lagrangian_refused("dot(omega(R), omega(B))", ":1:15:", "omega(R) is multiplied by the velocity of B");
+  lagrangian_refused("omega(R)[1]*x' + x'^2",
+                     ":1:15:", "omega(R) is multiplied by the velocity of x");
+  lagrangian_refused("dot(omega(R), omega(B))",
+                     ":1:15:", "omega(R) is multiplied by the velocity of B");
   lagrangian_refused("rate(u)*x' + x'^2", ":1:53:", "rate(u) is multiplied by the velocity of x");
 }
 END_TEST
 
 START_TEST(what_has_no_mass_and_no_body_is_told)
 {
-  lagrangian_refused("x'^2 + dot(omega(R), omega(R)) + dot(omega(B), omega(B)) + dot(d', d') + rate(u)^2",
-                     ":1:28:", "the velocity of B.x has no mass");
+  lagrangian_refused(
+      "x'^2 + dot(omega(R), omega(R)) + dot(omega(B), omega(B)) + dot(d', d') + rate(u)^2",
+      ":1:28:", "the velocity of B.x has no mass");
   lagrangian_refused("x'^2", ":1:15:", "the velocity of R has no mass");
-  lagrangian_refused("x'^2 - rate(u)^2", ":1:53:", "the moment of inertia of u is -2, and must be positive");
+  lagrangian_refused("x'^2 - rate(u)^2",
+                     ":1:53:", "the moment of inertia of u is -2, and must be positive");
   refused("coordinates: {x: scalar, R: rotation}\nlagrangian: x'^2 + omega(R)[1]^2 + omega(R)[2]^2 "
           "- omega(R)[3]^2\n"
           "initial: {x: 1, R: \"turn([0, 0, 1], 0)\"}\n" RUN,
           ":1:26:", "the inertia of R is that of no body");
-  refused("coordinates: {x: scalar, y: scalar, B: motion}\nlagrangian: x'^2 + y'^2 + dot(B.x', B.x') + "
-          "omega(B)[1]^2 + omega(B)[2]^2 + "
-          "3*omega(B)[3]^2\ninitial: {x: 1, y: 1, B.x: [0, 0, 0], B.R: \"turn([0, 0, 1], 0)\"}\n" RUN,
-          ":1:37:", "the inertia of B is that of no body");
+  refused(
+      "coordinates: {x: scalar, y: scalar, B: motion}\nlagrangian: x'^2 + y'^2 + dot(B.x', B.x') + "
+      "omega(B)[1]^2 + omega(B)[2]^2 + "
+      "3*omega(B)[3]^2\ninitial: {x: 1, y: 1, B.x: [0, 0, 0], B.R: \"turn([0, 0, 1], 0)\"}\n" RUN,
+      ":1:37:", "the inertia of B is that of no body");
 }
 END_TEST
 
@@ -293,11 +305,13 @@ START_TEST(velocities_are_asked_of_the_right_kind)
   lagrangian_refused("omega(R)'", ":2:13:", "there are no accelerations");
   lagrangian_refused("x'^2 - cos(u)", ":2:24:", "the cosine of an angle u is u[1]");
   lagrangian_refused("x'^2 - B", ":2:20:", "take its rotation, B.R, or its place, B.x");
-  lagrangian_refused("x'^2 - B.y[1]", ":2:20:", "the parts of B are B.R, its rotation, and B.x, its place");
+  lagrangian_refused("x'^2 - B.y[1]",
+                     ":2:20:", "the parts of B are B.R, its rotation, and B.x, its place");
   lagrangian_refused("x'^2 - R.x[1]", ":2:20:", "only rigid motions have parts");
   lagrangian_refused("x'^2 - R", ":2:13:", "a number minus a 3 x 3 matrix");
-  refused("coordinates:\n  R[2]: rotation\nlagrangian: dot(omega(R), omega(R))\ninitial: {R: 1}\n" RUN,
-          ":3:23:", "omega is taken of a rotation");
+  refused(
+      "coordinates:\n  R[2]: rotation\nlagrangian: dot(omega(R), omega(R))\ninitial: {R: 1}\n" RUN,
+      ":3:23:", "omega is taken of a rotation");
   refused("coordinates: {R: rotation}\nlagrangian: dot(omega(R), omega(R))\ninvariants: {a: "
           "\"omega(R)[1]\"}\n"
           "initial: {R: \"turn([1, 0, 0], 0)\"}\n" RUN,
@@ -319,7 +333,8 @@ static void start_refused(const char *entry, const char *words)
 
 START_TEST(starts_are_rotations_directions_and_across_them)
 {
-  start_refused("R: [[1, 0, 0], [0, 1, 0], [0, 0.001, 1]]", "this is no rotation for R: off by 0.0007");
+  start_refused("R: [[1, 0, 0], [0, 1, 0], [0, 0.001, 1]]",
+                "this is no rotation for R: off by 0.0007");
   start_refused("R: [[1, 0, 0], [0, 1, 0], [0, 0, -1]]", "this is no rotation for R: off by 2");
   start_refused("R: turn([0, 0, 0], 1)", "not a finite number");
   start_refused("R: 1", "a number for R, which is a 3 x 3 matrix");
@@ -334,7 +349,8 @@ START_TEST(starts_are_rotations_directions_and_across_them)
   start_refused("omega(x): 1", "the velocity of x is its rate, x'");
   start_refused("rate(R): 1", "the velocity of R is omega(R)");
   start_refused("omega(R): 1", "a number for R, which is a vector of 3");
-  start_refused("R: turn([1, 0, 0], 1)\n  B.R: turn([1, 0, 0], 1)", "the start of B.x is not given");
+  start_refused("R: turn([1, 0, 0], 1)\n  B.R: turn([1, 0, 0], 1)",
+                "the start of B.x is not given");
   start_refused("R: turn([1, 0, 0], 1)\n  B.R: turn([1, 0, 0], 1)\n  B.x: [0, 0, 0]\n  u: 0\n  d: "
                 "[1, 0, 0]\n  d': [0.1, 1, 0]",
                 "the velocity or momentum of the direction d is not orthogonal to it");
@@ -349,13 +365,18 @@ END_TEST
 
 START_TEST(declarations_that_do_not_go_together_are_told)
 {
-  refused("coordinates: {R: rotatoin}\nlagrangian: 1\ninitial: {x: 1}\n" RUN, ":1:18:", "did you mean rotation?");
-  refused("coordinates: {R: rotation(3)}\nlagrangian: 1\ninitial: {x: 1}\n" RUN, ":1:18:", "a kind is scalar, vector(d), rotation");
-  refused(KINDS "one_form: {x: 1}\nhamiltonian: x\ninitial: {x: 1}\n" RUN, ":2:11:", "beside one_form there are no rotations");
+  refused("coordinates: {R: rotatoin}\nlagrangian: 1\ninitial: {x: 1}\n" RUN,
+          ":1:18:", "did you mean rotation?");
+  refused("coordinates: {R: rotation(3)}\nlagrangian: 1\ninitial: {x: 1}\n" RUN,
+          ":1:18:", "a kind is scalar, vector(d), rotation");
+  refused(KINDS "one_form: {x: 1}\nhamiltonian: x\ninitial: {x: 1}\n" RUN,
+          ":2:11:", "beside one_form there are no rotations");
   refused(KINDS "hamiltonian: x\nconstraints: {a: x, b: p(x)}\ninitial: {x: 1}\n" RUN,
           ":3:14:", "beside constraints there are no rotations");
-  refused(KINDS "hamiltonian: x\ninitial: {x: 1}\n" RUN, ":2:14:", "beside hamiltonian there are no rotations");
-  refused("inertia: {R: 1}\n" KINDS "lagrangian: 1\ninitial: {x: 1}\n" RUN, ":1:1:", "a scene has no 'inertia'");
+  refused(KINDS "hamiltonian: x\ninitial: {x: 1}\n" RUN,
+          ":2:14:", "beside hamiltonian there are no rotations");
+  refused("inertia: {R: 1}\n" KINDS "lagrangian: 1\ninitial: {x: 1}\n" RUN,
+          ":1:1:", "a scene has no 'inertia'");
   refused("coordinates: {R: rotation}\nlagrangian: dot(omega(R), omega(R))\nsymmetries: {a: {R: "
           "[1, 0, 0]}}\ninitial: {R: 1}\n" RUN,
           ":3:18:", "a symmetry of a rotation or an angle is given by its velocity, omega(R)");

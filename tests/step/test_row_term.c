@@ -1,6 +1,6 @@
 /* labels: order */
-/* Row terms: a force of Rayleigh's kind and a multiplier, each added to the step of galerkin from outside of the
- * library's files, as CONTRIBUTING's recipe "a new term" says. */
+/* Row terms: a force of Rayleigh's kind and a multiplier, each added to the step of galerkin from
+ * outside of the library's files, as CONTRIBUTING's recipe "a new term" says. */
 #include "step/element/row_term.h"
 
 #include <math.h>
@@ -156,7 +156,8 @@ START_TEST(a_damped_oscillator_has_the_order_of_the_method)
 }
 END_TEST
 
-/* ---- a rod of length 1: phi = |q|^2 - 1 = 0 at the end of each step, by a multiplier at its start ---- */
+/* ---- a rod of length 1: phi = |q|^2 - 1 = 0 at the end of each step, by a multiplier at its start
+ * ---- */
 
 static int weight_value(double t, const double *q, double *V, void *user)
 {
@@ -179,7 +180,8 @@ static int weight_hessian(double t, const double *q, double *V_qq, void *user)
   return 0;
 }
 
-/* The start's momentum is p0 + lambda G(q0), G = 2 q: R_k -= psi_k(1) lambda G (Leimkuhler and Skeel 1994). */
+/* The start's momentum is p0 + lambda G(q0), G = 2 q: R_k -= psi_k(1) lambda G (Leimkuhler and
+ * Skeel 1994). */
 static dvi_status add_rod(void *of, const dvi__row_path *p, const double *own, double *R,
                           double *dp, double *own_R)
 {
@@ -211,7 +213,8 @@ static void scale_rod(const void *of, double h, double *scale)
   scale[0] = 1;
 }
 
-/* The angle after the time 2 of a pendulum that starts at rest, at 1 radian from below; and the largest |phi|. */
+/* The angle after the time 2 of a pendulum that starts at rest, at 1 radian from below; and the
+ * largest |phi|. */
 static double rod_angle(int degree, int steps, double *off)
 {
   const dvi_potential weight = {
@@ -238,7 +241,8 @@ static double rod_angle(int degree, int steps, double *off)
   return angle;
 }
 
-/* A multiplier at the ends has order 2 whatever the degree is: the path between them knows nothing of the rod. */
+/* A multiplier at the ends has order 2 whatever the degree is: the path between them knows nothing
+ * of the rod. */
 START_TEST(a_multiplier_holds_its_constraint_and_has_order_2)
 {
   for (int degree = 1; degree <= 2; degree++) {

@@ -1,5 +1,6 @@
 /* labels: unit */
-/* Waves have the bits of plain sweeps: for any length, reach, block, cut and instruction set, and when something fails. */
+/* Waves have the bits of plain sweeps: for any length, reach, block, cut and instruction set, and
+ * when something fails. */
 #include <math.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -15,8 +16,9 @@
 
 enum { POTENTIALS = 2, MASSES = 5, THREADS_MOST = 4 };
 
-/* Springs between each site and its next `reach` ones, and a well for each site that a drive moves. What the springs' callback shall do
- * wrong at one site, from some time on, is a number to return or a number to give. */
+/* Springs between each site and its next `reach` ones, and a well for each site that a drive moves.
+ * What the springs' callback shall do wrong at one site, from some time on, is a number to return
+ * or a number to give. */
 typedef struct lattice {
   int n, reach;
   int bad_site; /* -1: none */
@@ -114,16 +116,23 @@ static void start_alike(pair *p)
 }
 
 /* `method` has a place for the keys of verlet. */
-static void make_pair(pair *p, int n, int reach, int potentials, int mass, const char *method, int threads, int block)
+static void make_pair(pair *p, int n, int reach, int potentials, int mass, const char *method,
+                      int threads, int block)
 {
   const dvi_potential both[] = {
-      {.name = "springs", .value = springs_value, .gradient_range = springs_range, .reach = reach, .user = &p->lattice},
+      {.name = "springs",
+       .value = springs_value,
+       .gradient_range = springs_range,
+       .reach = reach,
+       .user = &p->lattice},
       {.name = "wells", .value = wells_value, .gradient_range = wells_range, .user = &p->lattice}};
   double *diagonal = calloc((size_t)n, sizeof *diagonal);
   ck_assert_ptr_nonnull(diagonal);
   p->lattice = (lattice){.n = n, .reach = reach, .bad_site = -1};
-  const dvi_system_terms terms = {
-      .dimension = n, .mass = mass_of(mass, n, diagonal), .potentials = both, .potential_count = potentials};
+  const dvi_system_terms terms = {.dimension = n,
+                                  .mass = mass_of(mass, n, diagonal),
+                                  .potentials = both,
+                                  .potential_count = potentials};
   ck_assert_msg(dvi_system_create(&terms, &p->system) == DVI_OK, "%s", dvi_last_error());
   free(diagonal);
   dvi__blocking_choose_block(block);
@@ -143,10 +152,12 @@ static void destroy_pair(pair *p)
 /* All that the next step depends on. */
 static void check_same(const dvi_integrator *a, const dvi_integrator *b, const char *when)
 {
-  const size_t n = (size_t)a->system->n, state = 4 * n * sizeof(double), memory = a->stepper.memory_count * sizeof(double);
-  ck_assert_msg(memcmp(a->now.q, b->now.q, state) == 0, "%s: the state, n = %zu, %s", when, n, a->stepper.specification);
-  ck_assert_msg(memcmp(a->stepper.memory, b->stepper.memory, memory) == 0, "%s: the memory, n = %zu, %s", when, n,
+  const size_t n = (size_t)a->system->n, state = 4 * n * sizeof(double),
+               memory = a->stepper.memory_count * sizeof(double);
+  ck_assert_msg(memcmp(a->now.q, b->now.q, state) == 0, "%s: the state, n = %zu, %s", when, n,
                 a->stepper.specification);
+  ck_assert_msg(memcmp(a->stepper.memory, b->stepper.memory, memory) == 0,
+                "%s: the memory, n = %zu, %s", when, n, a->stepper.specification);
   ck_assert_mem_eq(&a->now.t, &b->now.t, 2 * sizeof(double));
 }
 
@@ -156,7 +167,8 @@ static void step_both(pair *p, double h)
   advance(p->plain, h, 1);
 }
 
-static const char *const methods[] = {"verlet:", "composition:order=4,", "composition:order=6,", "composition:order=8,"};
+static const char *const methods[] = {"verlet:", "composition:order=4,", "composition:order=6,",
+                                      "composition:order=8,"};
 static const int substeps[] = {1, 5, 9, 17};
 enum { METHODS = 4 };
 
@@ -170,13 +182,14 @@ static void best_again(void)
 
 START_TEST(any_length_reach_and_block_has_the_bits_of_the_plain_sweep)
 {
-  static const int lengths[] = {1, 2, 3, 5, 8, 13, 31, 64, 65, 130, 333, 1000, 2777}, blocks[] = {1, 7, 0, 16, 64, 3};
+  static const int lengths[] = {1, 2, 3, 5, 8, 13, 31, 64, 65, 130, 333, 1000, 2777},
+                   blocks[] = {1, 7, 0, 16, 64, 3};
   int turn = 0;
   for (int reach = 0; reach <= 5; reach++)
     for (size_t k = 0; k < sizeof lengths / sizeof *lengths; k++, turn++) {
       pair p;
-      make_pair(&p, lengths[k], reach, 1 + turn % POTENTIALS, turn % MASSES, methods[_i], 1 + turn % THREADS_MOST,
-                blocks[turn % 6]);
+      make_pair(&p, lengths[k], reach, 1 + turn % POTENTIALS, turn % MASSES, methods[_i],
+                1 + turn % THREADS_MOST, blocks[turn % 6]);
       step_both(&p, 0.05);
       check_same(p.wave, p.plain, "after the first step");
       step_both(&p, 0.05);
@@ -198,7 +211,8 @@ START_TEST(every_instruction_set_and_thread_count_has_the_same_bits)
         char text[2048];
         make_pair(&p, LENGTH, 2, 2, threads, methods[method], threads, 0);
         dvi_integrator_explain(p.wave, text, sizeof text);
-        ck_assert_msg(strstr(text, spec("threads: %d of %d\n", threads, threads)) != NULL, "%s", text);
+        ck_assert_msg(strstr(text, spec("threads: %d of %d\n", threads, threads)) != NULL, "%s",
+                      text);
         dvi__lanes_choose(level);
         for (int i = 0; i < 3; i++) advance(p.wave, 0.04, 1);
         dvi__lanes_choose(0);
@@ -209,7 +223,8 @@ START_TEST(every_instruction_set_and_thread_count_has_the_same_bits)
 }
 END_TEST
 
-/* A reach of rows of a mesh: the window of all substeps would not stay in the cache, so a step takes several passes. */
+/* A reach of rows of a mesh: the window of all substeps would not stay in the cache, so a step
+ * takes several passes. */
 START_TEST(a_long_reach_takes_several_passes_with_the_same_bits)
 {
   static const int reaches[] = {900, 5000, 30000};
@@ -218,8 +233,12 @@ START_TEST(a_long_reach_takes_several_passes_with_the_same_bits)
   make_pair(&p, 40000, 0, 1, 0, methods[2], 2, 0);
   destroy_pair(&p);
   for (int k = 0; k < 3; k++) {
-    const dvi_potential wells = {.value = wells_value, .gradient_range = wells_range, .reach = reaches[k], .user = &p.lattice};
-    const dvi_system_terms terms = {.dimension = 40000, .mass.scalar = 1, .potentials = &wells, .potential_count = 1};
+    const dvi_potential wells = {.value = wells_value,
+                                 .gradient_range = wells_range,
+                                 .reach = reaches[k],
+                                 .user = &p.lattice};
+    const dvi_system_terms terms = {
+        .dimension = 40000, .mass.scalar = 1, .potentials = &wells, .potential_count = 1};
     ck_assert_int_eq(dvi_system_create(&terms, &p.system), DVI_OK);
     p.wave = made_integrator(p.system, "composition:order=6,blocking=temporal,threads=2");
     p.plain = made_integrator(p.system, "composition:order=6,blocking=none");
@@ -244,7 +263,8 @@ START_TEST(the_catalogues_chain_has_the_same_bits_by_both_sweeps)
   dvi_integrator *plain = started(chain, "composition:order=8,blocking=none");
   advance(plain, 0.1, 20);
   for (int threads = 1; threads <= 2; threads++) {
-    dvi_integrator *wave = started(chain, spec("composition:order=8,blocking=temporal,threads=%d", threads));
+    dvi_integrator *wave = started(
+        chain, spec("composition:order=8,blocking=temporal,threads=%d", threads));
     advance(wave, 0.1, 20);
     check_same(wave, plain, "chain");
     dvi_integrator_destroy(&wave);
@@ -268,7 +288,8 @@ START_TEST(each_gradient_is_evaluated_once_and_nothing_is_allocated)
     p.lattice.entries = p.lattice.ranges = 0;
     advance(p.wave, 0.05, 10);
     dvi_integrator_counters(p.wave, &after);
-    ck_assert_int_eq(p.lattice.entries, 10L * LENGTH * substeps[_i]); /* none twice, on any thread */
+    /* none twice, on any thread */
+    ck_assert_int_eq(p.lattice.entries, 10L * LENGTH * substeps[_i]);
     ck_assert_int_eq(after.gradients - before.gradients, 10 * substeps[_i]);
     ck_assert_int_eq(after.allocations - before.allocations, 0);
     /* whole blocks, but for the ends of the chain and of each thread's part */
@@ -297,7 +318,8 @@ typedef struct trouble {
   double number;
 } trouble;
 
-static const trouble troubles[] = {{0, 1, 0}, {700, -3, 0}, {1499, 2, 0}, {733, 0, -1}, {1200, 0, HUGE_VAL}, {5, 0, 1e308 * 10}};
+static const trouble troubles[] = {{0, 1, 0},    {700, -3, 0},        {1499, 2, 0},
+                                   {733, 0, -1}, {1200, 0, HUGE_VAL}, {5, 0, 1e308 * 10}};
 enum { TROUBLES = 6 };
 
 static void make_trouble(pair *p, const trouble *what)
@@ -305,7 +327,8 @@ static void make_trouble(pair *p, const trouble *what)
   p->lattice.bad_site = what->site;
   p->lattice.bad_return = what->returned;
   p->lattice.bad_number = what->number < 0 ? (double)NAN : what->number;
-  p->lattice.bad_time = 0.25 + 0.2 + 0.05; /* in the midst of the third step, for compositions of order 8 too */
+  /* in the midst of the third step, for compositions of order 8 too */
+  p->lattice.bad_time = 0.25 + 0.2 + 0.05;
 }
 
 /* The same status, the same sentence, and both go on as if nothing had been. */
@@ -324,7 +347,8 @@ START_TEST(a_failure_in_mid_wave_is_that_of_the_plain_sweep_and_leaves_no_trace)
     check_same(p.wave, p.plain, "before the failure");
     ck_assert_int_eq(dvi_integrator_step(p.wave, 0.1), plain);
     ck_assert_str_eq(dvi_last_error(), words);
-    ck_assert_int_eq(p.lattice.blind, 0); /* what a callback gave is looked at before the next is asked */
+    /* what a callback gave is looked at before the next is asked */
+    ck_assert_int_eq(p.lattice.blind, 0);
     check_same(p.wave, p.plain, "after the failure");
     dvi_integrator_counters(p.wave, &counters);
     ck_assert_int_eq(counters.failed_steps, 1);
@@ -421,9 +445,11 @@ START_TEST(a_checkpoint_continues_bit_for_bit)
   pair p;
   make_pair(&p, 777, 3, 2, 4, methods[_i], 2, 16);
   for (int i = 0; i < 3; i++) step_both(&p, 0.1);
-  ck_assert_msg(dvi_integrator_save(p.wave, in_folder("checkpoint")) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi_integrator_save(p.wave, in_folder("checkpoint")) == DVI_OK, "%s",
+                dvi_last_error());
   dvi_integrator *restored = made_integrator(p.system, dvi_integrator_method(p.wave));
-  ck_assert_msg(dvi_integrator_restore(restored, in_folder("checkpoint")) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi_integrator_restore(restored, in_folder("checkpoint")) == DVI_OK, "%s",
+                dvi_last_error());
   for (int i = 0; i < 3; i++) step_both(&p, 0.1);
   advance(restored, 0.1, 3);
   check_same(restored, p.wave, "restored");
@@ -463,13 +489,15 @@ SUITE(temporal_blocking)
   tcase_add_checked_fixture(tests, make_folder, remove_folder);
   tcase_add_checked_fixture(tests, NULL, best_again);
   tcase_set_timeout(tests, 120);
-  tcase_add_loop_test(tests, any_length_reach_and_block_has_the_bits_of_the_plain_sweep, 0, METHODS);
+  tcase_add_loop_test(tests, any_length_reach_and_block_has_the_bits_of_the_plain_sweep, 0,
+                      METHODS);
   tcase_add_test(tests, every_instruction_set_and_thread_count_has_the_same_bits);
   tcase_add_test(tests, a_long_reach_takes_several_passes_with_the_same_bits);
   tcase_add_loop_test(tests, the_catalogues_chain_has_the_same_bits_by_both_sweeps, 0, 4);
   tcase_add_loop_test(tests, each_gradient_is_evaluated_once_and_nothing_is_allocated, 0, METHODS);
   tcase_add_loop_test(tests, traffic_is_known_of_waves_alone, 0, METHODS);
-  tcase_add_loop_test(tests, a_failure_in_mid_wave_is_that_of_the_plain_sweep_and_leaves_no_trace, 0, METHODS * TROUBLES);
+  tcase_add_loop_test(tests, a_failure_in_mid_wave_is_that_of_the_plain_sweep_and_leaves_no_trace,
+                      0, METHODS * TROUBLES);
   tcase_add_loop_test(tests, a_state_that_is_not_finite_is_refused_by_both, 0, METHODS);
   tcase_add_loop_test(tests, a_last_kick_that_overflows_is_refused_by_both, 0, METHODS);
   tcase_add_loop_test(tests, a_step_can_be_taken_back, 0, METHODS);

@@ -1,5 +1,6 @@
 /* labels: jacobian */
-/* An element between two ends: its path, and its first and second derivatives against differences. */
+/* An element between two ends: its path, and its first and second derivatives against
+ * differences. */
 #include <math.h>
 #include <string.h>
 
@@ -13,9 +14,12 @@ static const double t0 = 0.4, h = 0.3;
 static behaviour quiet;
 
 static const dvi__action_space spaces[] = {
-    {DVI_LAGRANGE_LOBATTO, 1, DVI_MIDPOINT, 1}, {DVI_LEGENDRE, 1, DVI_TRAPEZOID, 2},
-    {DVI_LAGRANGE_LOBATTO, 2, DVI_GAUSS, 2},    {DVI_CHEBYSHEV, 3, DVI_RADAU_LEFT, 4},
-    {DVI_LAGRANGE_GAUSS, 4, DVI_LOBATTO, 5},    {DVI_LAGRANGE_EQUISPACED, 5, DVI_CLENSHAW_CURTIS, 7},
+    {DVI_LAGRANGE_LOBATTO, 1, DVI_MIDPOINT, 1},
+    {DVI_LEGENDRE, 1, DVI_TRAPEZOID, 2},
+    {DVI_LAGRANGE_LOBATTO, 2, DVI_GAUSS, 2},
+    {DVI_CHEBYSHEV, 3, DVI_RADAU_LEFT, 4},
+    {DVI_LAGRANGE_GAUSS, 4, DVI_LOBATTO, 5},
+    {DVI_LAGRANGE_EQUISPACED, 5, DVI_CLENSHAW_CURTIS, 7},
 };
 enum { SPACES = sizeof spaces / sizeof *spaces };
 
@@ -77,7 +81,8 @@ static double value(element *e)
 static void gradient(element *e, double *G)
 {
   place(e);
-  ck_assert_int_eq(dvi__action_two_point_gradient(e->action, e->Y, G, G + SITES, G + 2 * SITES), DVI_OK);
+  ck_assert_int_eq(dvi__action_two_point_gradient(e->action, e->Y, G, G + SITES, G + 2 * SITES),
+                   DVI_OK);
 }
 
 static const double moved[3] = {0.01, 0.02, 0.03}, share[3] = {1.5, -0.6, 0.1};
@@ -91,12 +96,14 @@ START_TEST(the_path_leads_from_one_end_to_the_other)
   dvi__action_path(e.action, e.Y, h, 0, offset, NULL);
   for (int i = 0; i < SITES; i++) ck_assert_double_eq_tol(offset[i], 0, 1e-15);
   dvi__action_path(e.action, e.Y, h, 1, offset, NULL);
-  for (int i = 0; i < SITES; i++) ck_assert_double_eq_tol(e.X[i] + offset[i], e.X[SITES + i], 1e-14);
+  for (int i = 0; i < SITES; i++)
+    ck_assert_double_eq_tol(e.X[i] + offset[i], e.X[SITES + i], 1e-14);
   free_element(&e);
 }
 END_TEST
 
-/* Differences of order 6 with d = 0.01 err by 1e-11 of the derivative, and by an epsilon of S over d. */
+/* Differences of order 6 with d = 0.01 err by 1e-11 of the derivative, and by an epsilon of S over
+ * d. */
 START_TEST(the_gradient_is_that_of_the_action)
 {
   element e;
@@ -144,7 +151,8 @@ START_TEST(the_hessian_is_that_of_the_action)
       gradient(&e, plus);
       e.X[y] = at - moved[m];
       gradient(&e, minus);
-      for (int x = 0; x < SITES * size; x++) column[x] += share[m] * (plus[x] - minus[x]) / (2 * moved[m]);
+      for (int x = 0; x < SITES * size; x++)
+        column[x] += share[m] * (plus[x] - minus[x]) / (2 * moved[m]);
     }
     e.X[y] = at;
     for (int x = 0; x < SITES * size; x++) {

@@ -1,7 +1,8 @@
 /* labels: unit */
-/* A kind of dynamics that no file of the library knows, as CONTRIBUTING's recipe says: the driver, invariants,
- * checkpoints and judges call its functions. A particle near the speed of light, L = -sqrt(1 - v^2) - q^2/2, has the
- * velocity p/sqrt(1 + p^2), which a general Lagrangian finds by Newton's method. */
+/* A kind of dynamics that no file of the library knows, as CONTRIBUTING's recipe says: the driver,
+ * invariants, checkpoints and judges call its functions. A particle near the speed of light, L =
+ * -sqrt(1 - v^2) - q^2/2, has the velocity p/sqrt(1 + p^2), which a general Lagrangian finds by
+ * Newton's method. */
 #include "system/evaluate/dynamics.h"
 
 #include <math.h>

@@ -41,8 +41,8 @@ typedef struct dvi_counters {
   long certified;
   /** least-squares steps of sem, taken where the energy equation has no solution */
   long energy_fallbacks;
-  /** products of a matrix with a vector: for functions of the matrix by polynomials (trig, mollified,
-   *  respa), and of a large Jacobian in GMRES */
+  /** products of a matrix with a vector: for functions of the matrix by polynomials (trig,
+   *  mollified, respa), and of a large Jacobian in GMRES */
   long products;
   /** solvers that were made ready: the memory of a factor, of KINSOL, of the room to follow a
    *  branch. Each is made ready when it is first needed, and never again. If memory is lacking

@@ -1,6 +1,8 @@
-/* Sparse LU of a matrix whose last rows and columns, its border, are full. KLU may take a full row for an early pivot, and all that comes later fills in. So the
- * border is stretched (Grcar 1990): row r is cut into pieces that hand on a sum, r_p x + y_(p-1) - y_p = 0, and column c into copies of its unknown, c_p = c_(p+1),
- * each for LENGTH unknowns of the core. What is factored then is sparse all over, and work and memory are in proportion to its size. */
+/* Sparse LU of a matrix whose last rows and columns, its border, are full. KLU may take a full row
+ * for an early pivot, and all that comes later fills in. So the border is stretched (Grcar 1990):
+ * row r is cut into pieces that hand on a sum, r_p x + y_(p-1) - y_p = 0, and column c into copies
+ * of its unknown, c_p = c_(p+1), each for LENGTH unknowns of the core. What is factored then is
+ * sparse all over, and work and memory are in proportion to its size. */
 #include <limits.h>
 #include <string.h>
 
@@ -12,8 +14,10 @@ enum { LENGTH = 64 };
 
 typedef struct bordered {
   int core, border, pieces;
-  dvi__pattern pattern; /* stretched: core, last pieces, and for each earlier piece of each row and column its sum and its copy */
-  int *where;           /* of each entry of the matrix */
+  /* stretched: core, last pieces, and for each earlier piece of each row and column its sum and its
+   * copy */
+  dvi__pattern pattern;
+  int *where; /* of each entry of the matrix */
   double *values, *b;
   void *factor;
 } bordered;
@@ -107,15 +111,18 @@ static dvi_status bordered_fill(bordered *s, const dvi__pattern *pattern)
   const size_t all = (size_t)pattern->columns + extra;
   const size_t entries = (size_t)dvi__pattern_entries(pattern) + 2 * extra;
   if (entries > INT_MAX)
-    return dvi__fail(DVI_BAD_SIZE, "linear solver: a border of %d leads to %zu entries, more than an int can count", s->border,
-                     entries);
+    return dvi__fail(
+        DVI_BAD_SIZE,
+        "linear solver: a border of %d leads to %zu entries, more than an int can count", s->border,
+        entries);
   const int size = (int)all;
   s->pattern = (dvi__pattern){size, size, DVI_NEW(int, (size_t)size + 1), DVI_NEW(int, entries)};
   s->where = DVI_NEW(int, dvi__pattern_entries(pattern));
   s->values = DVI_NEW(double, entries);
   s->b = DVI_NEW(double, size);
   if (!s->pattern.start || !s->pattern.row || !s->where || !s->values || !s->b)
-    return dvi__fail(DVI_NO_MEMORY, "KLU: no memory for %d columns with a border of %d", pattern->columns, s->border);
+    return dvi__fail(DVI_NO_MEMORY, "KLU: no memory for %d columns with a border of %d",
+                     pattern->columns, s->border);
   stretch(s, pattern);
   return dvi__sparse_factor.create(&(dvi__factor_form){.pattern = &s->pattern}, &s->factor);
 }

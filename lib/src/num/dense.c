@@ -6,12 +6,15 @@
 #include "core/status.h"
 #include "num/factor.h"
 
-/* LAPACK's Fortran interface; character arguments carry a hidden length that gfortran passes last. */
+/* LAPACK's Fortran interface; character arguments carry a hidden length that gfortran passes
+ * last. */
 extern void dgetrf_(const int *m, const int *n, double *a, const int *lda, int *ipiv, int *info);
-extern void dgetrs_(const char *trans, const int *n, const int *nrhs, const double *a, const int *lda, const int *ipiv, double *b,
-                    const int *ldb, int *info, size_t trans_length);
-extern void dgecon_(const char *norm, const int *n, const double *a, const int *lda, const double *anorm, double *rcond,
-                    double *work, int *iwork, int *info, size_t norm_length);
+extern void dgetrs_(const char *trans, const int *n, const int *nrhs, const double *a,
+                    const int *lda, const int *ipiv, double *b, const int *ldb, int *info,
+                    size_t trans_length);
+extern void dgecon_(const char *norm, const int *n, const double *a, const int *lda,
+                    const double *anorm, double *rcond, double *work, int *iwork, int *info,
+                    size_t norm_length);
 
 typedef struct dense {
   double *lu;   /* [n*n], columns */
@@ -67,10 +70,13 @@ static dvi_status dense_refactor(void *factor, const dvi__pattern *pattern, cons
   double reciprocal_condition = 0;
   const double norm = scatter(d, pattern, values);
   dgetrf_(&n, &n, d->lu, &n, d->pivot, &status);
-  if (status == 0) dgecon_("1", &n, d->lu, &n, &norm, &reciprocal_condition, d->work, d->iwork, &status, 1);
+  if (status == 0)
+    dgecon_("1", &n, d->lu, &n, &norm, &reciprocal_condition, d->work, d->iwork, &status, 1);
   if (status == 0 && reciprocal_condition >= DVI__LEAST_RCOND) return DVI_OK;
-  return dvi__fail(DVI_SINGULAR, "dense LU: the %d x %d matrix is singular to working precision (reciprocal condition %.1e)", n, n,
-                   reciprocal_condition);
+  return dvi__fail(
+      DVI_SINGULAR,
+      "dense LU: the %d x %d matrix is singular to working precision (reciprocal condition %.1e)",
+      n, n, reciprocal_condition);
 }
 
 static void dense_solve(void *factor, const dvi__pattern *pattern, double *b)
@@ -86,7 +92,8 @@ static int dense_sign(const void *factor, const dvi__pattern *pattern)
   const dense *d = factor;
   const int n = pattern->rows;
   int negative = 0;
-  for (int i = 0; i < n; i++) negative ^= (d->pivot[i] != i + 1) ^ (d->lu[(size_t)i * (size_t)n + (size_t)i] < 0);
+  for (int i = 0; i < n; i++)
+    negative ^= (d->pivot[i] != i + 1) ^ (d->lu[(size_t)i * (size_t)n + (size_t)i] < 0);
   return negative ? -1 : 1;
 }
 

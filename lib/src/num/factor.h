@@ -6,8 +6,8 @@
 
 #include "num/linear.h"
 
-/* Smallest reciprocal condition of an equilibrated matrix that is not called singular: its solutions
- * have no right digit left. */
+/* Smallest reciprocal condition of an equilibrated matrix that is not called singular: its
+ * solutions have no right digit left. */
 #define DVI__LEAST_RCOND (16 * DBL_EPSILON)
 
 /* What a factor is made for. */

@@ -10,7 +10,8 @@
 /* Directions that are kept, and how often the search begins anew from the best solution. */
 enum { DIRECTIONS = 40, RESTARTS = 5 };
 
-/* What may be left of P^-1 b. Newton's method, which asks for the solution, corrects what is left. */
+/* What may be left of P^-1 b. Newton's method, which asks for the solution, corrects what is
+ * left. */
 static const double enough = 1e-5;
 
 typedef struct iterative {
@@ -44,7 +45,8 @@ static dvi_status iterative_create(const dvi__factor_form *form, void **factor)
   if (s->basis != NULL && s->x != NULL && s->r != NULL) return DVI_OK;
   iterative_destroy(s);
   *factor = NULL;
-  return dvi__fail(DVI_NO_MEMORY, "GMRES: no memory for %d directions of %d unknowns", DIRECTIONS + 1, form->A->size);
+  return dvi__fail(DVI_NO_MEMORY, "GMRES: no memory for %d directions of %d unknowns",
+                   DIRECTIONS + 1, form->A->size);
 }
 
 static dvi_status iterative_renew(void *factor, const dvi__pattern *pattern, const double *values)
@@ -84,7 +86,8 @@ static void precondition(const iterative *s, double *r)
 
 /* ---- one search ---- */
 
-/* The next direction, orthogonal to all before (Gram and Schmidt, one after the other); column k of H. */
+/* The next direction, orthogonal to all before (Gram and Schmidt, one after the other); column k of
+ * H. */
 static void extend_basis(iterative *s, int k)
 {
   double *next = direction(s, k + 1);

@@ -1,6 +1,7 @@
 /* Sparse LU by KLU: one symbolic analysis, then numeric refactorisations with one order of the
- * pivots, chosen once. A matrix for which that order is bad gets a full factorisation of its own. So
- * a factor depends on its matrix alone, not on earlier ones: a restarted run gives the same bits.
+ * pivots, chosen once. A matrix for which that order is bad gets a full factorisation of its own.
+ * So a factor depends on its matrix alone, not on earlier ones: a restarted run gives the same
+ * bits.
  *
  * Columns are ordered by approximate minimum degree (KLU's own call of AMD). Other orders and other
  * solvers were measured on nets of springs, user seconds of a complex factor, with Debian 12's
@@ -11,10 +12,10 @@
  *     223 x 223, n =  99 458        2.0          2.0
  *     20^3,      n =  24 000         22           10            8.7              4.1
  *
- * and of real ones 0.13 s by KLU beside 0.08 s by CHOLMOD's supernodes on the first net, 9.5 s beside
- * 1.0 s on the last. UMFPACK and CHOLMOD take memory from the heap in every factorisation, which a
- * step may not; both are under the GPL (CHOLMOD in its supernodal part), which the library is not.
- * Where KLU takes long, large systems go without a factor (step/element/newton_form.h). */
+ * and of real ones 0.13 s by KLU beside 0.08 s by CHOLMOD's supernodes on the first net, 9.5 s
+ * beside 1.0 s on the last. UMFPACK and CHOLMOD take memory from the heap in every factorisation,
+ * which a step may not; both are under the GPL (CHOLMOD in its supernodal part), which the library
+ * is not. Where KLU takes long, large systems go without a factor (step/element/newton_form.h). */
 #include <klu.h>
 #include <stdint.h>
 #include <string.h>
@@ -23,7 +24,8 @@
 #include "core/status.h"
 #include "num/factor.h"
 
-/* Smallest reciprocal pivot growth with which kept pivots are trusted: six digits lost, which Newton's iteration mends. */
+/* Smallest reciprocal pivot growth with which kept pivots are trusted: six digits lost, which
+ * Newton's iteration mends. */
 #define LEAST_GROWTH 1e-6
 
 /* Small enough beside ones for the diagonal to be preferred as pivots. */
@@ -32,16 +34,22 @@
 /* KLU's functions for real numbers, and for complex ones as pairs of real ones. */
 typedef struct arithmetic {
   int parts; /* numbers in an entry */
-  klu_numeric *(*factor)(int *start, int *row, double *values, klu_symbolic *symbolic, klu_common *common);
-  int (*refactor)(int *start, int *row, double *values, klu_symbolic *symbolic, klu_numeric *numeric, klu_common *common);
-  int (*growth)(int *start, int *row, double *values, klu_symbolic *symbolic, klu_numeric *numeric, klu_common *common);
+  klu_numeric *(*factor)(int *start, int *row, double *values, klu_symbolic *symbolic,
+                         klu_common *common);
+  int (*refactor)(int *start, int *row, double *values, klu_symbolic *symbolic,
+                  klu_numeric *numeric, klu_common *common);
+  int (*growth)(int *start, int *row, double *values, klu_symbolic *symbolic, klu_numeric *numeric,
+                klu_common *common);
   int (*condition)(klu_symbolic *symbolic, klu_numeric *numeric, klu_common *common);
-  int (*solve)(klu_symbolic *symbolic, klu_numeric *numeric, int rows, int sides, double *b, klu_common *common);
+  int (*solve)(klu_symbolic *symbolic, klu_numeric *numeric, int rows, int sides, double *b,
+               klu_common *common);
   int (*forget)(klu_numeric **numeric, klu_common *common);
 } arithmetic;
 
-static const arithmetic real = {1, klu_factor, klu_refactor, klu_rgrowth, klu_rcond, klu_solve, klu_free_numeric};
-static const arithmetic complex = {2, klu_z_factor, klu_z_refactor, klu_z_rgrowth, klu_z_rcond, klu_z_solve, klu_z_free_numeric};
+static const arithmetic real = {1,         klu_factor, klu_refactor,    klu_rgrowth,
+                                klu_rcond, klu_solve,  klu_free_numeric};
+static const arithmetic complex = {2,           klu_z_factor, klu_z_refactor,    klu_z_rgrowth,
+                                   klu_z_rcond, klu_z_solve,  klu_z_free_numeric};
 
 typedef struct sparse {
   const arithmetic *of;
@@ -73,13 +81,14 @@ static int lacks_memory(int status)
 }
 
 /* A factor of a made-up matrix, so that later ones find their memory and no step allocates. It puts
- * the pivots on the diagonal, where they are good for the Jacobians of short steps. A pattern without
- * one may leave no factor; each real matrix then makes its own. */
+ * the pivots on the diagonal, where they are good for the Jacobians of short steps. A pattern
+ * without one may leave no factor; each real matrix then makes its own. */
 static dvi_status make_room(sparse *s, const dvi__pattern *pattern)
 {
   const int parts = s->of->parts;
   double *entries = DVI_NEW(double, (size_t)parts *(size_t)dvi__pattern_entries(pattern));
-  if (entries == NULL) return dvi__fail(DVI_NO_MEMORY, "KLU: no memory for %d entries", dvi__pattern_entries(pattern));
+  if (entries == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "KLU: no memory for %d entries", dvi__pattern_entries(pattern));
   for (int j = 0; j < pattern->columns; j++)
     for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++)
       entries[(ptrdiff_t)parts * e] = pattern->row[e] == j ? 1.0 : OFF_DIAGONAL;
@@ -95,10 +104,14 @@ static dvi_status analyse(sparse *s, const dvi__pattern *pattern, const sparse *
   klu_defaults(&s->common);
   s->common.scale = 0; /* the values come equilibrated */
   s->owns_symbolic = like == NULL;
-  s->symbolic = like != NULL ? like->symbolic : klu_analyze(pattern->columns, pattern->start, pattern->row, &s->common);
+  s->symbolic = like != NULL
+                    ? like->symbolic
+                    : klu_analyze(pattern->columns, pattern->start, pattern->row, &s->common);
   if (s->symbolic != NULL) return DVI_OK;
-  if (lacks_memory(s->common.status)) return dvi__fail(DVI_NO_MEMORY, "KLU: no memory to analyse %d columns", pattern->columns);
-  return dvi__fail(DVI_SOLVER_FAILED, "KLU: the analysis of %d columns failed (status %d)", pattern->columns, s->common.status);
+  if (lacks_memory(s->common.status))
+    return dvi__fail(DVI_NO_MEMORY, "KLU: no memory to analyse %d columns", pattern->columns);
+  return dvi__fail(DVI_SOLVER_FAILED, "KLU: the analysis of %d columns failed (status %d)",
+                   pattern->columns, s->common.status);
 }
 
 static dvi_status klu_create(const dvi__factor_form *form, const arithmetic *of, void **factor)
@@ -108,8 +121,9 @@ static dvi_status klu_create(const dvi__factor_form *form, const arithmetic *of,
   const int n = form->pattern->columns;
   s->of = of;
   s->seen = DVI_NEW(char, (size_t)n);
-  const dvi_status status = s->seen != NULL ? analyse(s, form->pattern, form->like)
-                                            : dvi__fail(DVI_NO_MEMORY, "KLU: no memory for %d columns", n);
+  const dvi_status status = s->seen != NULL
+                                ? analyse(s, form->pattern, form->like)
+                                : dvi__fail(DVI_NO_MEMORY, "KLU: no memory for %d columns", n);
   if (status == DVI_OK) return DVI_OK;
   klu_destroy(s);
   *factor = NULL;
@@ -129,13 +143,15 @@ static dvi_status create_complex(const dvi__factor_form *form, void **factor)
 /* By the smallest and largest pivot: coarser than LAPACK's estimate, but nearly free. */
 static int well_conditioned(sparse *s)
 {
-  return s->of->condition(s->symbolic, s->current, &s->common) && s->common.rcond >= DVI__LEAST_RCOND;
+  return s->of->condition(s->symbolic, s->current, &s->common) &&
+         s->common.rcond >= DVI__LEAST_RCOND;
 }
 
 /* Whether the factor at hand, with these entries, can be trusted. */
 static int is_good(sparse *s, const dvi__pattern *pattern, double *entries)
 {
-  return s->of->growth(pattern->start, pattern->row, entries, s->symbolic, s->current, &s->common) &&
+  return s->of->growth(pattern->start, pattern->row, entries, s->symbolic, s->current,
+                       &s->common) &&
          s->common.rgrowth >= LEAST_GROWTH && well_conditioned(s);
 }
 
@@ -147,12 +163,14 @@ static int is_on_diagonal(const sparse *s, const klu_numeric *numeric, int n)
 }
 
 /* The first matrix, if its pivots are good on the diagonal, makes the room itself: the order of its
- * pivots is that of a made-up matrix, and its numbers are those of a refactorisation, to the last bit
- * (tests/num/test_linear.c). */
+ * pivots is that of a made-up matrix, and its numbers are those of a refactorisation, to the last
+ * bit (tests/num/test_linear.c). */
 static int factor_first(sparse *s, const dvi__pattern *pattern, double *entries)
 {
-  s->current = s->standing = s->of->factor(pattern->start, pattern->row, entries, s->symbolic, &s->common);
-  s->has_room = s->standing != NULL && is_on_diagonal(s, s->standing, pattern->columns) && is_good(s, pattern, entries);
+  s->current = s->standing = s->of->factor(pattern->start, pattern->row, entries, s->symbolic,
+                                           &s->common);
+  s->has_room = s->standing != NULL && is_on_diagonal(s, s->standing, pattern->columns) &&
+                is_good(s, pattern, entries);
   if (!s->has_room) s->of->forget(&s->standing, &s->common);
   return s->has_room;
 }
@@ -162,7 +180,9 @@ static int factor_first(sparse *s, const dvi__pattern *pattern, double *entries)
 static int refactor_in_order(sparse *s, const dvi__pattern *pattern, double *entries)
 {
   s->current = s->standing;
-  return s->standing != NULL && s->of->refactor(pattern->start, pattern->row, entries, s->symbolic, s->standing, &s->common) &&
+  return s->standing != NULL &&
+         s->of->refactor(pattern->start, pattern->row, entries, s->symbolic, s->standing,
+                         &s->common) &&
          is_good(s, pattern, entries);
 }
 
@@ -175,11 +195,13 @@ static dvi_status klu_factor_again(void *factor, const dvi__pattern *pattern, co
   if (!s->has_room && factor_first(s, pattern, entries)) return DVI_OK;
   if (!s->has_room) DVI_TRY(make_room(s, pattern));
   if (refactor_in_order(s, pattern, entries)) return DVI_OK;
-  s->current = s->own = s->of->factor(pattern->start, pattern->row, entries, s->symbolic, &s->common);
+  s->current = s->own = s->of->factor(pattern->start, pattern->row, entries, s->symbolic,
+                                      &s->common);
   if (s->own != NULL && well_conditioned(s)) return DVI_OK;
   if (s->own == NULL && lacks_memory(s->common.status))
     return dvi__fail(DVI_NO_MEMORY, "KLU: no memory to factor %d columns", pattern->columns);
-  return dvi__fail(DVI_SINGULAR, "KLU: the %d x %d matrix is singular to working precision", pattern->rows, pattern->columns);
+  return dvi__fail(DVI_SINGULAR, "KLU: the %d x %d matrix is singular to working precision",
+                   pattern->rows, pattern->columns);
 }
 
 static void klu_solve_one(void *factor, const dvi__pattern *pattern, double *b)
@@ -188,7 +210,8 @@ static void klu_solve_one(void *factor, const dvi__pattern *pattern, double *b)
   s->of->solve(s->symbolic, s->current, pattern->rows, 1, b, &s->common);
 }
 
-/* Whether the permutation takes an odd number of exchanges: a cycle takes one less than it has members. */
+/* Whether the permutation takes an odd number of exchanges: a cycle takes one less than it has
+ * members. */
 static int is_odd(int n, const int *permutation, char *seen)
 {
   int odd = 0;
@@ -205,13 +228,14 @@ static int klu_sign(const void *factor, const dvi__pattern *pattern)
 {
   const sparse *s = factor;
   const double *pivot = s->current->Udiag;
-  int negative = is_odd(pattern->columns, s->current->Pnum, s->seen) ^ is_odd(pattern->columns, s->symbolic->Q, s->seen);
+  int negative = is_odd(pattern->columns, s->current->Pnum, s->seen) ^
+                 is_odd(pattern->columns, s->symbolic->Q, s->seen);
   for (int i = 0; i < pattern->columns; i++) negative ^= pivot[i] < 0;
   return negative ? -1 : 1;
 }
 
-/* Pivots on the diagonal are those of A = L D L^T. A definite matrix keeps them there: none of them is
- * small beside its column. */
+/* Pivots on the diagonal are those of A = L D L^T. A definite matrix keeps them there: none of them
+ * is small beside its column. */
 static int klu_is_definite(const void *factor, const dvi__pattern *pattern, int sign)
 {
   const sparse *s = factor;
@@ -225,7 +249,8 @@ static int klu_is_definite(const void *factor, const dvi__pattern *pattern, int 
 static dvi__linear_cost klu_cost(const void *factor, const dvi__pattern *pattern)
 {
   const sparse *s = factor;
-  const double entries = s->standing != NULL ? (double)s->standing->lnz + s->standing->unz : s->symbolic->lnz + s->symbolic->unz;
+  const double entries = s->standing != NULL ? (double)s->standing->lnz + s->standing->unz
+                                             : s->symbolic->lnz + s->symbolic->unz;
   return (dvi__linear_cost){entries - pattern->columns, s->symbolic->est_flops};
 }
 

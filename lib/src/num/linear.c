@@ -11,12 +11,12 @@
 /* Where the kinds meet, measured with Debian's reference LAPACK and KLU 5.12 on one x86-64 core,
  * medians, one factorisation with one or five solves.
  *
- * Chains of dense blocks of 1 to 8 unknowns are faster in KLU at every size (1.5 to 6 times below 48
- * unknowns, 30 to 180 times at 400), full matrices up to 32 unknowns too (LAPACK's condition estimate
- * alone costs a microsecond). Full matrices meet at 48 and are 1.25 to 1.65 times faster in LAPACK
- * from 64; half full ones meet between 64 and 96. Scattered entries would gain up to 1.35 times at
- * densities of 0.2 to 0.5 beyond 100 unknowns, but a band of that density, which KLU exploits, would
- * lose more. */
+ * Chains of dense blocks of 1 to 8 unknowns are faster in KLU at every size (1.5 to 6 times below
+ * 48 unknowns, 30 to 180 times at 400), full matrices up to 32 unknowns too (LAPACK's condition
+ * estimate alone costs a microsecond). Full matrices meet at 48 and are 1.25 to 1.65 times faster
+ * in LAPACK from 64; half full ones meet between 64 and 96. Scattered entries would gain up to 1.35
+ * times at densities of 0.2 to 0.5 beyond 100 unknowns, but a band of that density, which KLU
+ * exploits, would lose more. */
 enum { LEAST_DENSE = 64 };
 #define LEAST_DENSITY 0.6
 
@@ -51,7 +51,8 @@ static int dense_is_better(const dvi__pattern *pattern)
 static const dvi__factor_kind *factor_kind_for(const dvi__pattern *pattern, dvi__linear_kind kind)
 {
   if (kind == DVI__LINEAR_COMPLEX) return &dvi__complex_factor;
-  const int dense = kind == DVI__LINEAR_DENSE || (kind == DVI__LINEAR_AUTO && dense_is_better(pattern));
+  const int dense = kind == DVI__LINEAR_DENSE ||
+                    (kind == DVI__LINEAR_AUTO && dense_is_better(pattern));
   return dense ? &dvi__dense_factor : &dvi__sparse_factor;
 }
 
@@ -67,10 +68,12 @@ static dvi_status linear_create(const dvi__linear *given, dvi__linear **linear)
 static dvi_status check_square(const dvi__pattern *pattern)
 {
   if (pattern->columns >= 1 && pattern->rows == pattern->columns) return DVI_OK;
-  return dvi__fail(DVI_BAD_SIZE, "linear solver: the matrix is %d x %d; a square one is needed", pattern->rows, pattern->columns);
+  return dvi__fail(DVI_BAD_SIZE, "linear solver: the matrix is %d x %d; a square one is needed",
+                   pattern->rows, pattern->columns);
 }
 
-dvi_status dvi__linear_create(const dvi__pattern *pattern, dvi__linear_kind kind, dvi_counters *counters, dvi__linear **linear)
+dvi_status dvi__linear_create(const dvi__pattern *pattern, dvi__linear_kind kind,
+                              dvi_counters *counters, dvi__linear **linear)
 {
   *linear = NULL;
   DVI_TRY(check_square(pattern));
@@ -81,27 +84,33 @@ dvi_status dvi__linear_create(const dvi__pattern *pattern, dvi__linear_kind kind
                        linear);
 }
 
-dvi_status dvi__linear_create_bordered(const dvi__pattern *pattern, int border, dvi_counters *counters, dvi__linear **linear)
+dvi_status dvi__linear_create_bordered(const dvi__pattern *pattern, int border,
+                                       dvi_counters *counters, dvi__linear **linear)
 {
   *linear = NULL;
   DVI_TRY(check_square(pattern));
-  return linear_create(
-      &(dvi__linear){
-          .kind = &dvi__bordered_factor, .form = {.pattern = pattern, .border = border}, .parts = 1, .counters = counters},
-      linear);
+  return linear_create(&(dvi__linear){.kind = &dvi__bordered_factor,
+                                      .form = {.pattern = pattern, .border = border},
+                                      .parts = 1,
+                                      .counters = counters},
+                       linear);
 }
 
-dvi_status dvi__linear_create_like(dvi__linear *like, dvi__linear_kind kind, dvi_counters *counters, dvi__linear **linear)
+dvi_status dvi__linear_create_like(dvi__linear *like, dvi__linear_kind kind, dvi_counters *counters,
+                                   dvi__linear **linear)
 {
   DVI_TRY(dvi__linear_create(like->form.pattern, kind, counters, linear));
   (*linear)->like = like;
   return DVI_OK;
 }
 
-dvi_status dvi__linear_create_iterative(const dvi__operator *A, dvi_counters *counters, dvi__linear **linear)
+dvi_status dvi__linear_create_iterative(const dvi__operator *A, dvi_counters *counters,
+                                        dvi__linear **linear)
 {
-  return linear_create(&(dvi__linear){.kind = &dvi__iterative_factor, .form.A = A, .A = *A, .parts = 1, .counters = counters},
-                       linear);
+  return linear_create(
+      &(dvi__linear){
+          .kind = &dvi__iterative_factor, .form.A = A, .A = *A, .parts = 1, .counters = counters},
+      linear);
 }
 
 void dvi__linear_destroy(dvi__linear **linear)
@@ -158,7 +167,8 @@ static dvi_status allocate_scales(dvi__linear *linear)
   if (linear->row_scale == NULL) linear->row_scale = DVI_NEW(double, pattern->rows);
   if (linear->column_scale == NULL) linear->column_scale = DVI_NEW(double, pattern->columns);
   linear->scaled = DVI_NEW(double, entries);
-  if (linear->row_scale != NULL && linear->column_scale != NULL && linear->scaled != NULL) return DVI_OK;
+  if (linear->row_scale != NULL && linear->column_scale != NULL && linear->scaled != NULL)
+    return DVI_OK;
   dvi__release(linear->scaled);
   linear->scaled = NULL;
   return dvi__fail(DVI_NO_MEMORY, "linear solver: no memory for %zu entries", entries);
@@ -179,7 +189,8 @@ static dvi_status prepare(dvi__linear *linear)
 /* The power of two that brings each largest magnitude into [1,2); 1 where there is none. */
 static void invert_scales(int n, double *scale)
 {
-  for (int i = 0; i < n; i++) scale[i] = scale[i] > 0 ? ldexp(1.0, ilogb(scale[i]) < -1023 ? 1023 : -ilogb(scale[i])) : 1.0;
+  for (int i = 0; i < n; i++)
+    scale[i] = scale[i] > 0 ? ldexp(1.0, ilogb(scale[i]) < -1023 ? 1023 : -ilogb(scale[i])) : 1.0;
 }
 
 static double larger(double a, double b)
@@ -206,7 +217,8 @@ static void equilibrate(dvi__linear *linear, const double *values)
   const int n = pattern->columns, parts = linear->parts, *row = pattern->row;
   double *rows = linear->row_scale, *columns = linear->column_scale, *scaled = linear->scaled;
   memset(rows, 0, (size_t)n * sizeof(double));
-  for (ptrdiff_t e = 0; e < pattern->start[n]; e++) rows[row[e]] = larger(rows[row[e]], magnitude(parts, values + parts * e));
+  for (ptrdiff_t e = 0; e < pattern->start[n]; e++)
+    rows[row[e]] = larger(rows[row[e]], magnitude(parts, values + parts * e));
   invert_scales(n, rows);
   memcpy(scaled, values, (size_t)parts * (size_t)pattern->start[n] * sizeof(double));
   for (int j = 0; j < n; j++) {
@@ -218,7 +230,8 @@ static void equilibrate(dvi__linear *linear, const double *values)
   }
   invert_scales(n, columns);
   for (int j = 0; j < n; j++)
-    for (ptrdiff_t e = pattern->start[j]; e < pattern->start[j + 1]; e++) scale_entry(parts, columns[j], scaled + parts * e);
+    for (ptrdiff_t e = pattern->start[j]; e < pattern->start[j + 1]; e++)
+      scale_entry(parts, columns[j], scaled + parts * e);
 }
 
 static dvi_status check_finite(const dvi__linear *linear, const double *values)
@@ -226,7 +239,8 @@ static dvi_status check_finite(const dvi__linear *linear, const double *values)
   const size_t entries = (size_t)dvi__pattern_entries(linear->form.pattern);
   const ptrdiff_t bad = dvi__first_not_finite((size_t)linear->parts * entries, values);
   if (bad < 0) return DVI_OK;
-  return dvi__fail(DVI_NOT_FINITE, "linear solver: the matrix holds %g (entry %td)", values[bad], bad);
+  return dvi__fail(DVI_NOT_FINITE, "linear solver: the matrix holds %g (entry %td)", values[bad],
+                   bad);
 }
 
 dvi_status dvi__linear_factor(dvi__linear *linear, const double *values)
@@ -248,7 +262,8 @@ int dvi__linear_sign(const dvi__linear *linear)
 
 int dvi__linear_is_definite(const dvi__linear *linear, int sign)
 {
-  return linear->kind->is_definite != NULL && linear->kind->is_definite(linear->factor, linear->form.pattern, sign);
+  return linear->kind->is_definite != NULL &&
+         linear->kind->is_definite(linear->factor, linear->form.pattern, sign);
 }
 
 int dvi__linear_tells_definite(const dvi__linear *linear)

@@ -2,7 +2,8 @@
  * an operator that is known by its products.
  *
  * A solver takes memory when it is first needed: at create it only notes what it is for. The first
- * factorisation analyses the pattern and makes room for the factor, once; all later ones find it. */
+ * factorisation analyses the pattern and makes room for the factor, once; all later ones find
+ * it. */
 #ifndef DVI_NUM_LINEAR_H
 #define DVI_NUM_LINEAR_H
 #include <dvi/integrator.h>
@@ -34,20 +35,24 @@ typedef struct dvi__operator {
   int (*is_definite)(void *of, int sign);
 } dvi__operator;
 
-/* The pattern must outlive the solver. counters (symbolic, factorizations, solves, preparations) may
- * be NULL. AUTO is dense for nearly full matrices that are not small. */
-dvi_status dvi__linear_create(const dvi__pattern *pattern, dvi__linear_kind kind, dvi_counters *counters, dvi__linear **linear);
+/* The pattern must outlive the solver. counters (symbolic, factorizations, solves, preparations)
+ * may be NULL. AUTO is dense for nearly full matrices that are not small. */
+dvi_status dvi__linear_create(const dvi__pattern *pattern, dvi__linear_kind kind,
+                              dvi_counters *counters, dvi__linear **linear);
 
 /* Sparse, but for the last `border` rows and columns, which may be full; work and memory in
  * proportion to the size all the same. */
-dvi_status dvi__linear_create_bordered(const dvi__pattern *pattern, int border, dvi_counters *counters, dvi__linear **linear);
+dvi_status dvi__linear_create_bordered(const dvi__pattern *pattern, int border,
+                                       dvi_counters *counters, dvi__linear **linear);
 
 /* For the pattern of another solver, SPARSE or COMPLEX, which must outlive this one: its analysis
  * serves both. `kind` is one of these two. */
-dvi_status dvi__linear_create_like(dvi__linear *like, dvi__linear_kind kind, dvi_counters *counters, dvi__linear **linear);
+dvi_status dvi__linear_create_like(dvi__linear *like, dvi__linear_kind kind, dvi_counters *counters,
+                                   dvi__linear **linear);
 
 /* The operator is copied. Values for dvi__linear_factor are not asked for. */
-dvi_status dvi__linear_create_iterative(const dvi__operator *A, dvi_counters *counters, dvi__linear **linear);
+dvi_status dvi__linear_create_iterative(const dvi__operator *A, dvi_counters *counters,
+                                        dvi__linear **linear);
 
 /* The kind for a matrix that may have zeros on its diagonal: the order of the pivots, on which KLU
  * settles once, would fail it, and each factorisation would search for another one, on the heap.
@@ -78,8 +83,8 @@ dvi__linear_cost dvi__linear_cost_of(const dvi__linear *linear);
  * DVI_NO_MEMORY (the first time; later KLU's own), DVI_BAD_SIZE; the old factor is lost then. */
 dvi_status dvi__linear_factor(dvi__linear *linear, const double *values);
 
-/* The sign of the determinant of the matrix that was factored last, 1 or -1; it must be real. 0: not
- * known, of a matrix with a border, and of operators that do not say it. */
+/* The sign of the determinant of the matrix that was factored last, 1 or -1; it must be real. 0:
+ * not known, of a matrix with a border, and of operators that do not say it. */
 int dvi__linear_sign(const dvi__linear *linear);
 
 /* Whether the matrix that was factored last, a symmetric one, is positive (sign 1) or negative (-1)
@@ -88,8 +93,8 @@ int dvi__linear_sign(const dvi__linear *linear);
 int dvi__linear_is_definite(const dvi__linear *linear, int sign);
 int dvi__linear_tells_definite(const dvi__linear *linear);
 
-/* Overwrite b [rows, or pairs of them] by the solution. Needs a factor. An iterative solver may stop
- * short of it where P is far from A: b is the best one found then. */
+/* Overwrite b [rows, or pairs of them] by the solution. Needs a factor. An iterative solver may
+ * stop short of it where P is far from A: b is the best one found then. */
 void dvi__linear_solve(dvi__linear *linear, double *b);
 
 #endif

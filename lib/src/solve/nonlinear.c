@@ -29,8 +29,11 @@ static dvi_status create_linear(dvi__solver *s)
   const dvi__equations *e = &s->equations;
   if (e->whole != NULL) return dvi__linear_create_iterative(e->whole, s->counters, &s->linear);
   if (s->values == NULL) s->values = DVI_NEW(double, entries_of(s));
-  if (s->values == NULL) return dvi__fail(DVI_NO_MEMORY, "solver: no memory for a Jacobian of %zu entries", entries_of(s));
-  if (e->border > 0) return dvi__linear_create_bordered(e->pattern, e->border, s->counters, &s->linear);
+  if (s->values == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "solver: no memory for a Jacobian of %zu entries",
+                     entries_of(s));
+  if (e->border > 0)
+    return dvi__linear_create_bordered(e->pattern, e->border, s->counters, &s->linear);
   return dvi__linear_create(e->pattern, e->linear, s->counters, &s->linear);
 }
 
@@ -54,7 +57,8 @@ dvi_status dvi__solver_jacobian(dvi__solver *solver, const double *x, double *va
 static dvi_status judge_factor(dvi_status factored)
 {
   if (factored == DVI_OK) return DVI_OK;
-  if (factored != DVI_SINGULAR && factored < 0) return dvi__fail_in(factored, "the Jacobian of the step's equations");
+  if (factored != DVI_SINGULAR && factored < 0)
+    return dvi__fail_in(factored, "the Jacobian of the step's equations");
   return dvi__fail_in(DVI_NOT_CONVERGED, "the Jacobian of the step's equations cannot be factored");
 }
 
@@ -90,13 +94,15 @@ double dvi__solver_least_part(const dvi__solver *solver)
 }
 
 /* The worst ratio of two vectors, group by group; of groups of `to` no less than `least` counts. */
-static double worst_ratio(const dvi__solver *solver, double least, const double *of, const double *to)
+static double worst_ratio(const dvi__solver *solver, double least, const double *of,
+                          const double *to)
 {
   const int unknowns = solver->equations.unknowns, group = solver->equations.group;
   double worst = 0;
   for (int first = 0; first < unknowns; first += group) {
     const size_t count = (size_t)(first + group < unknowns ? group : unknowns - first);
-    const double one = dvi__largest(count, of + first), other = fmax(dvi__largest(count, to + first), least);
+    const double one = dvi__largest(count, of + first),
+                 other = fmax(dvi__largest(count, to + first), least);
     if (one > worst * other) worst = other > 0 ? one / other : HUGE_VAL;
   }
   return worst;
@@ -109,7 +115,8 @@ void dvi__solver_note(const dvi__solver *solver, const double *x, dvi__solve_rep
     memcpy(solver->before, solver->residual, (size_t)solver->equations.unknowns * sizeof(double));
   }
   if (report->iterations != 2) return;
-  const double least = dvi__solver_least_part(solver) * dvi__largest((size_t)solver->equations.unknowns, x);
+  const double least = dvi__solver_least_part(solver) *
+                       dvi__largest((size_t)solver->equations.unknowns, x);
   report->contraction = report->correction / report->largest_first;
   report->first = worst_ratio(solver, least, solver->before, x);
   report->bend = worst_ratio(solver, least, solver->residual, solver->before);
@@ -148,7 +155,8 @@ static dvi_status solver_allocate(dvi__solver *solver)
   return dvi__fail(DVI_NO_MEMORY, "solver: no memory for %zu unknowns", unknowns);
 }
 
-dvi_status dvi__solver_create(const dvi__equations *equations, dvi_counters *counters, dvi__solver **solver)
+dvi_status dvi__solver_create(const dvi__equations *equations, dvi_counters *counters,
+                              dvi__solver **solver)
 {
   dvi__solver *made = *solver = DVI_NEW(dvi__solver, 1);
   if (made == NULL) return dvi__fail(DVI_NO_MEMORY, "solver: no memory");
@@ -195,9 +203,10 @@ dvi__linear *dvi__solver_linear(const dvi__solver *solver)
   return solver->linear;
 }
 
-/* Fixed point iteration pays while each iteration gains a third of a digit: a step by simplified Newton's method costs about as much as 40 to 300 of
- * them. A patient user takes any gain. */
-static const dvi__pace paying = {0.35, 32 * DBL_EPSILON, 0.45, 1, 0}, any_gain = {1.0, 1e4 * DBL_EPSILON, 1.0, 1, 0};
+/* Fixed point iteration pays while each iteration gains a third of a digit: a step by simplified
+ * Newton's method costs about as much as 40 to 300 of them. A patient user takes any gain. */
+static const dvi__pace paying = {0.35, 32 * DBL_EPSILON, 0.45, 1, 0},
+                       any_gain = {1.0, 1e4 * DBL_EPSILON, 1.0, 1, 0};
 
 dvi__pace dvi__fixed_point_pace(int patient, int sweeps)
 {
@@ -232,7 +241,8 @@ static dvi_status prepare(dvi__solver *s, const double *x)
   return DVI_OK;
 }
 
-static dvi_status fixed_point(dvi__solver *s, double size, int patient, double *x, dvi__solve_report *report)
+static dvi_status fixed_point(dvi__solver *s, double size, int patient, double *x,
+                              dvi__solve_report *report)
 {
   const int most = dvi__fixed_point_most(patient);
   const dvi__pace pace = dvi__fixed_point_pace(patient, s->equations.sweep != NULL);
@@ -248,23 +258,28 @@ static dvi_status fixed_point(dvi__solver *s, double size, int patient, double *
     }
     if (progress == DVI__STALLED) break;
   }
-  return dvi__fail(DVI_NOT_CONVERGED, "fixed point iteration contracts too slowly (change %.1e after %.1e)", trail.last,
-                   trail.before);
+  return dvi__fail(DVI_NOT_CONVERGED,
+                   "fixed point iteration contracts too slowly (change %.1e after %.1e)",
+                   trail.last, trail.before);
 }
 
-/* Half a digit an iteration is worth it: n x n systems cost a small part of the one that Newton's method factors. */
+/* Half a digit an iteration is worth it: n x n systems cost a small part of the one that Newton's
+ * method factors. */
 static const dvi__pace frozen = {0.35, 1e4 * DBL_EPSILON, 0.3, 1, 0};
 
-static dvi_status simplified(dvi__solver *s, double size, int wary, double *x, dvi__solve_report *report)
+static dvi_status simplified(dvi__solver *s, double size, int wary, double *x,
+                             dvi__solve_report *report)
 {
   const dvi__equations *equations = &s->equations;
   dvi__trail trail = {0};
   double whole;
   s->in_use = 0;
   const dvi_status frozen_at = equations->freeze(equations->of, x);
-  if (frozen_at == DVI_SINGULAR) return dvi__fail_in(DVI_NOT_CONVERGED, "the frozen Jacobian cannot be factored");
+  if (frozen_at == DVI_SINGULAR)
+    return dvi__fail_in(DVI_NOT_CONVERGED, "the frozen Jacobian cannot be factored");
   if (frozen_at != DVI_OK) return frozen_at;
-  for (report->iterations = 1; report->iterations <= MOST_FIXED_POINT_ITERATIONS; report->iterations++) {
+  for (report->iterations = 1; report->iterations <= MOST_FIXED_POINT_ITERATIONS;
+       report->iterations++) {
     DVI_TRY(dvi__solver_residual(s, x, s->residual));
     equations->frozen(equations->of, s->residual);
     dvi__correct(equations->unknowns, s->residual, x, &report->correction, &whole);
@@ -273,10 +288,13 @@ static dvi_status simplified(dvi__solver *s, double size, int wary, double *x, d
     int converged = progress == DVI__CONVERGED;
     if (progress == DVI__STALLED) DVI_TRY(dvi__solver_at_floor(s, x, &converged));
     if (converged) return DVI_OK;
-    if (progress == DVI__STALLED || (wary && report->iterations == 2 && dvi__misleading(&trail, whole))) break;
+    if (progress == DVI__STALLED ||
+        (wary && report->iterations == 2 && dvi__misleading(&trail, whole)))
+      break;
   }
-  return dvi__fail(DVI_NOT_CONVERGED, "simplified Newton's method contracts too slowly (change %.1e after %.1e)", trail.last,
-                   trail.before);
+  return dvi__fail(DVI_NOT_CONVERGED,
+                   "simplified Newton's method contracts too slowly (change %.1e after %.1e)",
+                   trail.last, trail.before);
 }
 
 static dvi_status prepare_kinsol(dvi__solver *s)
@@ -302,7 +320,8 @@ static dvi_status kinsol(dvi__solver *s, double size, double *x, dvi__solve_repo
   return polished;
 }
 
-dvi_status dvi__solve(dvi__solver *solver, dvi__rung rung, double size, int wary, int patient, double *x, dvi__solve_report *report)
+dvi_status dvi__solve(dvi__solver *solver, dvi__rung rung, double size, int wary, int patient,
+                      double *x, dvi__solve_report *report)
 {
   *report = (dvi__solve_report){0};
   switch (rung) {
@@ -314,14 +333,17 @@ dvi_status dvi__solve(dvi__solver *solver, dvi__rung rung, double size, int wary
   return dvi__fail(DVI_BAD_ARGUMENT, "solver: unknown rung %d", (int)rung);
 }
 
-dvi_status dvi__certify(dvi__solver *solver, double size, const double *x, dvi__solve_report *report)
+dvi_status dvi__certify(dvi__solver *solver, double size, const double *x,
+                        dvi__solve_report *report)
 {
   int certified = 0;
   DVI_TRY(prepare_kinsol(solver));
   DVI_TRY(solver->equations.prepare_chord(solver->equations.of, x));
   DVI_TRY(dvi__kinsol_certify(solver->kinsol, size, x, &certified, report));
   if (!certified)
-    return dvi__fail(DVI_NOT_CONVERGED, "KINSOL does not certify the solution (scaled residual %.1e)", report->residual);
+    return dvi__fail(DVI_NOT_CONVERGED,
+                     "KINSOL does not certify the solution (scaled residual %.1e)",
+                     report->residual);
   solver->counters->certified++;
   return DVI_OK;
 }

@@ -28,7 +28,8 @@ static dvi_status joint_join(const dvi_system *system, const dvi__pattern *more,
   return status;
 }
 
-/* Entries that the Hessian has at least; a pattern that was left out is full, and is not made here. */
+/* Entries that the Hessian has at least; a pattern that was left out is full, and is not made
+ * here. */
 static size_t least_entries(const dvi_system *system)
 {
   const size_t n = (size_t)system->n;

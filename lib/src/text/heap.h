@@ -1,5 +1,5 @@
-/* The heap of what reads scenes: libdvi's own (core/memory.h), charged to a ledger that bounds what one
- * scene may take. */
+/* The heap of what reads scenes: libdvi's own (core/memory.h), charged to a ledger that bounds what
+ * one scene may take. */
 #ifndef DVI_TEXT_HEAP_H
 #define DVI_TEXT_HEAP_H
 #include <dvi/status.h>

@@ -48,7 +48,8 @@ START_TEST(steep_gaps_are_halved_down_to_the_width)
 }
 END_TEST
 
-/* Two resonances of width 1e-6 with tails of the inverse distance, from 9 points: each is found to 1e-6, with some hundred points. */
+/* Two resonances of width 1e-6 with tails of the inverse distance, from 9 points: each is found to
+ * 1e-6, with some hundred points. */
 static double tails(double at)
 {
   return log10(1.0 / (fabs(at - 0.3123456) + 1e-6) + 1.0 / (fabs(at - 0.7654321) + 1e-6));

@@ -1,4 +1,5 @@
-/* What small errors cost of things that are no motions, and how many of their digits can be trusted. */
+/* What small errors cost of things that are no motions, and how many of their digits can be
+ * trusted. */
 #include <check.h>
 #include <math.h>
 #include <stdio.h>

@@ -1,8 +1,11 @@
-/* The catalogue's problems with rotations, places and directions in quadruple precision, by d'Alembert's principle for points.
+/* The catalogue's problems with rotations, places and directions in quadruple precision, by
+ * d'Alembert's principle for points.
  *
- * Everything is points r that are linear in the slots: R rho of a rotation, f x of a place, f q of a direction. A point has a mass, and its share of the potential
- * V = weight.r + spring |r|^2/2 - pull/|r|; a body's inertia is that of three points on its axes, of masses tr(J)/2 - J_kk. With velocities v (Omega in the
- * body's frame; x'; of a direction the angular velocity omega in space, q' = omega x q) and r' = B v, r'' = B v' + b:
+ * Everything is points r that are linear in the slots: R rho of a rotation, f x of a place, f q of
+ * a direction. A point has a mass, and its share of the potential V = weight.r + spring |r|^2/2 -
+ * pull/|r|; a body's inertia is that of three points on its axes, of masses tr(J)/2 - J_kk. With
+ * velocities v (Omega in the body's frame; x'; of a direction the angular velocity omega in space,
+ * q' = omega x q) and r' = B v, r'' = B v' + b:
  *     sum over points of B^t ( m (B v' + b) + V_r ) = 0,      and omega'.q = 0 for directions. */
 #include <string.h>
 
@@ -14,7 +17,8 @@ enum { CELLS = QUAD_SLOTS_MAX, NV = 3 * CELLS };
 
 static void cross(const quad *a, const quad *b, quad *c)
 {
-  for (int i = 0; i < 3; i++) c[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+  for (int i = 0; i < 3; i++)
+    c[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
 }
 
 static quad dot(const quad *a, const quad *b)
@@ -77,7 +81,8 @@ static void add_potential(const quad_point *point, const quad *r, quad *force)
   for (int i = 0; i < 3; i++) force[i] += point->weight[i] + (point->spring + pull) * r[i];
 }
 
-static void add_point(const quad_system *system, const quad_point *point, const quad *q, const quad *v, mechanics *m)
+static void add_point(const quad_system *system, const quad_point *point, const quad *q,
+                      const quad *v, mechanics *m)
 {
   quad r[3] = {0}, force[3] = {0}, B[NV][3];
   int used[CELLS];
@@ -248,7 +253,8 @@ static void kovalevskaya_prepare(quad_system *system)
 
 static void spherical_double_pendulum_prepare(quad_system *system)
 {
-  const quad tenth = quad_number("0.1"), length = quad_sqrt(quad_number("0.866") * quad_number("0.866") + quad_number("0.25"));
+  const quad tenth = quad_number("0.1"),
+             length = quad_sqrt(quad_number("0.866") * quad_number("0.866") + quad_number("0.25"));
   lay_out(system, "SS");
   system->q[0] = quad_number("0.866") / length;
   system->q[2] = quad_number("0.5") / length;
@@ -289,7 +295,8 @@ static void two_body_prepare(quad_system *system)
   lay_out(system, "RPRP");
   for (int body = 0; body < 2; body++) {
     new_point(system, mass[body])->arm[2 * body + 1][0] = 1;
-    for (int k = 0; k < 3; k++) new_point(system, mass[body] / 3)->arm[2 * body][k] = quad_number(semiaxis[body][k]);
+    for (int k = 0; k < 3; k++)
+      new_point(system, mass[body] / 3)->arm[2 * body][k] = quad_number(semiaxis[body][k]);
   }
   for (int a = 0; a < 6; a++)
     for (int b = 0; b < 6; b++) {
@@ -310,7 +317,8 @@ static void two_body_prepare(quad_system *system)
 
 static void satellite_prepare(quad_system *system)
 {
-  const quad rate = quad_sqrt(quad_number("10/125")), length = quad_sqrt(quad_number("1.13")), half = quad_number("0.5");
+  const quad rate = quad_sqrt(quad_number("10/125")), length = quad_sqrt(quad_number("1.13")),
+             half = quad_number("0.5");
   lay_out(system, "RPSSSS");
   add_inertia(system, 0, quad_number("0.8"), quad_number("1.2"), quad_number("1.5"));
   quad_point *body = new_point(system, 10);
@@ -333,7 +341,8 @@ static void satellite_prepare(quad_system *system)
   system->v[4] = 5 * rate;
 }
 
-#define FACTORS(problem) .prepare = problem##_prepare, .flow = flow, .momentum = momentum, .velocity = velocity
+#define FACTORS(problem) \
+  .prepare = problem##_prepare, .flow = flow, .momentum = momentum, .velocity = velocity
 
 const quad_problem quad_factors[] = {
     {.name = "free-body",

@@ -10,7 +10,8 @@
 void open_text(scene_text *scene, const char *text, size_t size)
 {
   *scene = (scene_text){.source = {.name = "s.yaml", .text = text, .size = size}};
-  scene->complaint = (dvi__complaint){.source = &scene->source, .message = scene->message, .size = sizeof scene->message};
+  scene->complaint = (dvi__complaint){
+      .source = &scene->source, .message = scene->message, .size = sizeof scene->message};
 }
 
 void close_text(scene_text *scene)

@@ -25,9 +25,11 @@ static int has_neighbour(const net *of, int m, int axis, int step)
 
 /* ---- one spring ---- */
 
-/* From a mass at displacement a, to its neighbour at b, or the wall (NULL), one step along an axis: the
- * difference of their places, and its length. b and a are entries of batches of `count` points. */
-static double stretch(const net *of, size_t count, const double *a, const double *b, int axis, int step, double *d)
+/* From a mass at displacement a, to its neighbour at b, or the wall (NULL), one step along an axis:
+ * the difference of their places, and its length. b and a are entries of batches of `count`
+ * points. */
+static double stretch(const net *of, size_t count, const double *a, const double *b, int axis,
+                      int step, double *d)
 {
   double square = 0;
   for (int c = 0; c < of->dimension; c++) {
@@ -38,9 +40,11 @@ static double stretch(const net *of, size_t count, const double *a, const double
 }
 
 /* Calls `visit` for every spring of the net at point k: each between two masses once, forward. */
-typedef void visitor(const net *of, size_t count, size_t k, int m, int other, const double *d, double length, double *to);
+typedef void visitor(const net *of, size_t count, size_t k, int m, int other, const double *d,
+                     double length, double *to);
 
-static void visit_springs(const net *of, size_t count, size_t k, const double *q, visitor *visit, double *to)
+static void visit_springs(const net *of, size_t count, size_t k, const double *q, visitor *visit,
+                          double *to)
 {
   double d[MOST_DIMENSIONS];
   for (int m = 0; m < of->masses; m++)
@@ -55,18 +59,21 @@ static void visit_springs(const net *of, size_t count, size_t k, const double *q
       }
 }
 
-static void add_energy(const net *of, size_t count, size_t k, int m, int other, const double *d, double length, double *V)
+static void add_energy(const net *of, size_t count, size_t k, int m, int other, const double *d,
+                       double length, double *V)
 {
   (void)count, (void)m, (void)other, (void)d;
   V[k] += 0.5 * of->k * (length - rest) * (length - rest);
 }
 
-static void add_force(const net *of, size_t count, size_t k, int m, int other, const double *d, double length, double *V_q)
+static void add_force(const net *of, size_t count, size_t k, int m, int other, const double *d,
+                      double length, double *V_q)
 {
   const double factor = of->k * (1 - rest / length);
   for (int c = 0; c < of->dimension; c++) {
     V_q[((size_t)m * (size_t)of->dimension + (size_t)c) * count + k] -= factor * d[c];
-    if (other >= 0) V_q[((size_t)other * (size_t)of->dimension + (size_t)c) * count + k] += factor * d[c];
+    if (other >= 0)
+      V_q[((size_t)other * (size_t)of->dimension + (size_t)c) * count + k] += factor * d[c];
   }
 }
 
@@ -79,20 +86,24 @@ static int block_of(const net *of, int m, int other)
   return at - first;
 }
 
-static void add_block(const net *of, size_t count, size_t k, int m, int other, const double *H, double sign, double *V_qq)
+static void add_block(const net *of, size_t count, size_t k, int m, int other, const double *H,
+                      double sign, double *V_qq)
 {
   const int D = of->dimension, block = block_of(of, m, other);
   for (int j = 0; j < D; j++)
-    for (int i = 0; i < D; i++) V_qq[(size_t)(of->start[other * D + j] + block + i) * count + k] += sign * H[j * D + i];
+    for (int i = 0; i < D; i++)
+      V_qq[(size_t)(of->start[other * D + j] + block + i) * count + k] += sign * H[j * D + i];
 }
 
-static void add_curvature(const net *of, size_t count, size_t k, int m, int other, const double *d, double length, double *V_qq)
+static void add_curvature(const net *of, size_t count, size_t k, int m, int other, const double *d,
+                          double length, double *V_qq)
 {
   double H[MOST_DIMENSIONS * MOST_DIMENSIONS];
   const int D = of->dimension;
   for (int j = 0; j < D; j++)
     for (int i = 0; i < D; i++)
-      H[j * D + i] = of->k * ((i == j ? 1 - rest / length : 0) + rest / (length * length * length) * d[i] * d[j]);
+      H[j * D + i] = of->k * ((i == j ? 1 - rest / length : 0) +
+                              rest / (length * length * length) * d[i] * d[j]);
   add_block(of, count, k, m, m, H, 1, V_qq);
   if (other < 0) return;
   add_block(of, count, k, other, other, H, 1, V_qq);
@@ -102,7 +113,8 @@ static void add_curvature(const net *of, size_t count, size_t k, int m, int othe
 
 /* ---- callbacks ---- */
 
-static int visit_points(const net *of, int count, size_t entries, const double *q, visitor *visit, double *to)
+static int visit_points(const net *of, int count, size_t entries, const double *q, visitor *visit,
+                        double *to)
 {
   memset(to, 0, entries * (size_t)count * sizeof *to);
   for (size_t k = 0; k < (size_t)count; k++) visit_springs(of, (size_t)count, k, q, visit, to);
@@ -153,7 +165,8 @@ static void list_start(net *made)
     for (int c = 0; c < made->dimension; c++) {
       double bulge = 0.1;
       for (int axis = 0; axis < made->dimension; axis++)
-        bulge *= sin(3.14159265358979 * (1 + m / stride(made, axis) % made->side) / (made->side + 1.0));
+        bulge *= sin(3.14159265358979 * (1 + m / stride(made, axis) % made->side) /
+                     (made->side + 1.0));
       made->q[m * made->dimension + c] = c == 0 ? bulge : 0.5 * bulge;
     }
 }
@@ -163,7 +176,8 @@ void make_net(int dimension, int side, double k, int declared, net *made)
   *made = (net){.dimension = dimension, .side = side, .k = k, .masses = 1};
   for (int axis = 0; axis < dimension; axis++) made->masses *= side;
   made->coordinates = made->masses * dimension;
-  const size_t n = (size_t)made->coordinates, block = (size_t)dimension * (2 * (size_t)dimension + 1);
+  const size_t n = (size_t)made->coordinates,
+               block = (size_t)dimension * (2 * (size_t)dimension + 1);
   made->start = calloc(n + 1, sizeof(int));
   made->row = calloc(n * block, sizeof(int));
   made->q = calloc(2 * n, sizeof(double));
@@ -171,13 +185,17 @@ void make_net(int dimension, int side, double k, int declared, net *made)
   made->p = made->q + n;
   list_pattern(made);
   list_start(made);
-  dvi_potential springs = {.name = "springs", .value_batch = net_value, .gradient_batch = net_gradient, .user = made};
+  dvi_potential springs = {
+      .name = "springs", .value_batch = net_value, .gradient_batch = net_gradient, .user = made};
   if (declared) {
     springs.hessian_batch = net_hessian;
     springs.qq = (dvi_pattern){made->start, made->row};
   }
-  const dvi_system_terms terms = {
-      .dimension = made->coordinates, .mass.scalar = 1, .potentials = &springs, .potential_count = 1, .autonomous = 1};
+  const dvi_system_terms terms = {.dimension = made->coordinates,
+                                  .mass.scalar = 1,
+                                  .potentials = &springs,
+                                  .potential_count = 1,
+                                  .autonomous = 1};
   ck_assert_msg(dvi_system_create(&terms, &made->system) == DVI_OK, "%s", dvi_last_error());
 }
 

@@ -6,7 +6,8 @@
 
 #include "num/simd/lanes.h"
 
-/* Define the function `name` by versions of the function name_body, one for each instruction set. */
+/* Define the function `name` by versions of the function name_body, one for each instruction
+ * set. */
 #ifdef __x86_64__
 #define DVI__EXPR_VERSIONS(name, parameters, arguments)                                         \
   static void name##_baseline parameters                                                        \

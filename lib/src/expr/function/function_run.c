@@ -120,8 +120,9 @@ DVI__EXPR_INLINE void gather_points(const int points, const dvi__part *part, con
   }
 }
 
-DVI__EXPR_INLINE void tile_gather_body(const dvi__part *part, const tile *at, const double *const *x,
-                                  const double **input, double *registers)
+DVI__EXPR_INLINE void tile_gather_body(const dvi__part *part, const tile *at,
+                                       const double *const *x, const double **input,
+                                       double *registers)
 {
   switch (at->points) {
 #define GATHER(points) \
@@ -307,8 +308,8 @@ DVI__EXPR_INLINE void scatter_points(const int points, const dvi__part *part, co
   }
 }
 
-DVI__EXPR_INLINE void tile_scatter_body(const dvi__part *part, const tile *at, const double *outputs,
-                                   double *const *result)
+DVI__EXPR_INLINE void tile_scatter_body(const dvi__part *part, const tile *at,
+                                        const double *outputs, double *const *result)
 {
   switch (at->points) {
 #define SCATTER(points) \

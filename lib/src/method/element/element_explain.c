@@ -1,4 +1,5 @@
-/* What is said of a step's solvers. To say it patterns are made and analysed, but nothing is factored. */
+/* What is said of a step's solvers. To say it patterns are made and analysed, but nothing is
+ * factored. */
 #include "core/status.h"
 #include "method/element/element_struct.h"
 #include "step/element/sweep.h"
@@ -7,7 +8,8 @@
 
 void dvi__explain_entries(double unknowns, double entries, dvi__text *text)
 {
-  dvi__text_add(text, "Jacobian with %.0f entries (%.3g %% of a full one)\n", entries, 100.0 * entries / unknowns / unknowns);
+  dvi__text_add(text, "Jacobian with %.0f entries (%.3g %% of a full one)\n", entries,
+                100.0 * entries / unknowns / unknowns);
 }
 
 void dvi__explain_linear(dvi__solver *solver, dvi__text *text)
@@ -20,7 +22,8 @@ void dvi__explain_linear(dvi__solver *solver, dvi__text *text)
   const int is_sparse = dvi__linear_kind_of(linear) == DVI__LINEAR_SPARSE;
   dvi__text_add(text, "linear solver: %s", dvi__linear_name(linear));
   if (is_sparse && dvi__linear_analyse(linear) == DVI_OK)
-    dvi__text_add(text, " in the order of AMD, %.3g numbers in L and U", dvi__linear_cost_of(linear).entries);
+    dvi__text_add(text, " in the order of AMD, %.3g numbers in L and U",
+                  dvi__linear_cost_of(linear).entries);
   dvi__text_add(text, "; made when it is first needed\n");
 }
 
@@ -30,7 +33,8 @@ static void explain_systems(dvi__decoupled *systems, dvi__text *text)
 {
   dvi__linear_cost cost;
   dvi__text_add(text, "decoupled systems of n unknowns");
-  if (dvi__decoupled_analyse(systems, &cost) == DVI_OK) dvi__text_add(text, ", %.3g numbers in their L and U", cost.entries);
+  if (dvi__decoupled_analyse(systems, &cost) == DVI_OK)
+    dvi__text_add(text, ", %.3g numbers in their L and U", cost.entries);
 }
 
 static void explain_simplified(dvi__element *own, dvi__text *text)
@@ -54,7 +58,8 @@ static void explain_ladder(dvi__element *own, dvi__text *text)
     dvi__text_add(text, "solver: %s, as asked; what it cannot solve goes on to %s\n", name, last);
     return;
   }
-  dvi__text_add(text, "solver: %s: %s", name, own->keeps_whole ? "" : "fixed point while it contracts by 0.45 or better, else ");
+  dvi__text_add(text, "solver: %s: %s", name,
+                own->keeps_whole ? "" : "fixed point while it contracts by 0.45 or better, else ");
   explain_simplified(own, text);
   dvi__text_add(text, "Newton's method, last %s%s\n", last,
                 own->choice == DVI__SOLVER_CERTIFIED ? "; KINSOL certifies each solution" : "");
@@ -82,14 +87,16 @@ void dvi__element_explain(const dvi__stepper *self, dvi__text *text)
   const double s = dvi__action_space_of(own->action).degree;
   dvi__text_add(text, "kernel: implicit; %d unknowns a step, ", dvi__action_unknowns(own->action));
   if (dvi__action_prepare_hessians(own->action) == DVI_OK)
-    dvi__explain_entries(dvi__action_unknowns(own->action), s * s * dvi__pattern_entries(dvi__action_coupling(own->action)), text);
+    dvi__explain_entries(dvi__action_unknowns(own->action),
+                         s * s * dvi__pattern_entries(dvi__action_coupling(own->action)), text);
   else
     dvi__text_add(text, "no Jacobian: %s\n", dvi_last_error());
-  dvi__text_add(text, "kinetic part: %s\n",
-                general ? "general Lagrangian; its velocity Hessian is evaluated once a step"
-                : dvi__action_can_sweep(own->action)
-                    ? "constant mass without coupling: fixed point iteration on the positions at the nodes"
-                    : "constant mass");
+  dvi__text_add(
+      text, "kinetic part: %s\n",
+      general ? "general Lagrangian; its velocity Hessian is evaluated once a step"
+      : dvi__action_can_sweep(own->action)
+          ? "constant mass without coupling: fixed point iteration on the positions at the nodes"
+          : "constant mass");
   explain_ladder(own, text);
   explain_newton(own, text);
 }

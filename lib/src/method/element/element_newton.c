@@ -1,12 +1,13 @@
 /* What Newton's methods need of an element: the Jacobian as a matrix or as an operator, and what is
  * frozen of it.
  *
- * The rule. The Jacobian of s n unknowns is a matrix if its factorisation takes at most `most_whole`
- * operations: s^3 times those of one n x n system with the Hessians' pattern, whose graph it has with
- * blocks of s x s. Beyond that GMRES solves by its products (step/element/action.h), preconditioned
- * by the decoupled systems of n unknowns, frozen in the middle of the path, if their factors take at
- * most `most_frozen` operations together; beyond that by the kinetic part, M/h: then nothing is
- * factored, and simplified Newton's method, which needs those factors, is left out. */
+ * The rule. The Jacobian of s n unknowns is a matrix if its factorisation takes at most
+ * `most_whole` operations: s^3 times those of one n x n system with the Hessians' pattern, whose
+ * graph it has with blocks of s x s. Beyond that GMRES solves by its products
+ * (step/element/action.h), preconditioned by the decoupled systems of n unknowns, frozen in the
+ * middle of the path, if their factors take at most `most_frozen` operations together; beyond that
+ * by the kinetic part, M/h: then nothing is factored, and simplified Newton's method, which needs
+ * those factors, is left out. */
 #include <math.h>
 
 #include "core/memory.h"
@@ -125,7 +126,8 @@ static dvi_status freeze_preconditioner(dvi__element *own, const double *Y)
   if (systems != NULL) dvi__decoupled_point(systems, Y, own->newton.point);
   const dvi_status status = systems != NULL ? dvi__decoupled_freeze(systems, own->newton.point)
                                             : dvi__action_prepare_chord(own->action, Y);
-  if (status == DVI_SINGULAR) return dvi__fail_in(DVI_NOT_CONVERGED, "the preconditioner of the Jacobian cannot be factored");
+  if (status == DVI_SINGULAR)
+    return dvi__fail_in(DVI_NOT_CONVERGED, "the preconditioner of the Jacobian cannot be factored");
   own->newton.is_frozen = status == DVI_OK;
   return status;
 }

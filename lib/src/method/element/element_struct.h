@@ -14,7 +14,8 @@ typedef struct dvi__element_place {
   const double *last_g; /* its forces; NULL: not known */
 } dvi__element_place;
 
-/* How Newton's method has the Jacobian, which is chosen when it is first needed (element_newton.c). */
+/* How Newton's method has the Jacobian, which is chosen when it is first needed
+ * (element_newton.c). */
 typedef struct dvi__newton_form {
   int is_operator;         /* 0: it is a matrix */
   dvi__operator A;         /* its products, and what preconditions them: */
@@ -65,8 +66,8 @@ int dvi__element_is_ladder(const dvi__element *own);
 void dvi__element_set_newton(dvi__equations *equations);
 void dvi__element_clear_newton(dvi__element *own);
 
-/* Find out whether the factors of simplified Newton's method are too dear for the ladder. DVI_NO_MEMORY,
- * DVI_BAD_SIZE, DVI_SOLVER_FAILED. */
+/* Find out whether the factors of simplified Newton's method are too dear for the ladder.
+ * DVI_NO_MEMORY, DVI_BAD_SIZE, DVI_SOLVER_FAILED. */
 dvi_status dvi__element_weigh(dvi__element *own);
 
 /* The systems that the last rung went by; NULL: it went by the whole Jacobian, or by none. */

@@ -1,7 +1,8 @@
 /* Galerkin variational integrators.
  *
  * Space: polynomials of degree s.  Quadrature: any rule with r >= s points c_j, weights b_j.
- *     Ld(q0,q1) = ext over paths q of degree s from q0 to q1 of  h sum_j b_j L(t0 + c_j h, q(c_j h), q'(c_j h))
+ *     Ld(q0,q1) = ext over paths q of degree s from q0 to q1 of  h sum_j b_j L(t0 + c_j h,
+ *       q(c_j h), q'(c_j h))
  * and p0 = -D1 Ld, p1 = D2 Ld. The rows are those of step/element/action.h. Order min(2s, u,
  * 2(u-s+1)) for a quadrature of order u: Gauss r = s is Gauss collocation, order 2s; Lobatto r =
  * s+1 has 2s, r = s has 2s-2. r < s leaves velocities that no node sees: refused. Source: Marsden

@@ -2,7 +2,8 @@
  *
  * Space: polynomials of degree s. Quadrature: Gauss with s points or Lobatto with s+1.
  * Ld(q0,t0,q1,t1) as galerkin's, stationary in q_k and t_k:
- *     D2 Ld(k-1) + D1 Ld(k) = 0,        E+_{k-1} = E-_k,   E+ = -dLd/dt1, E- = dLd/dt0  (step/element/energy.h)
+ *     D2 Ld(k-1) + D1 Ld(k) = 0,        E+_{k-1} = E-_k,
+ *     E+ = -dLd/dt1, E- = dLd/dt0  (step/element/energy.h)
  * The first step has the given length h0 and fixes the first E+. Where the energy equation has no
  * solution (energy_search.h) the step is the one with the least (E+ - E-)^2 within hmin <= |h| <=
  * hmax, all other rows exact. Order 2s in (t,q,p), symplectic in (t,E,q,p), conserves E of

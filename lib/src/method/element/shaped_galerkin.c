@@ -3,7 +3,8 @@
  * Space: polynomials of degree d, and in the coordinates that have them the user's functions.
  * Quadrature: a rule of galerkin's with r points, at least as many as there are functions, or the
  * user's.
- *     Ld(q0,q1) = ext over such paths q from q0 to q1 of  h sum_j b_j L(t0 + c_j h, q_j, q'_j/h),      p0 = -D1 Ld, p1 = D2 Ld.
+ *     Ld(q0,q1) = ext over such paths q from q0 to q1 of  h sum_j b_j L(t0 + c_j h, q_j, q'_j/h),
+ *     p0 = -D1 Ld, p1 = D2 Ld.
  * The rows are those of step/element/action.h in another space (step/element/user_element.h).
  * Symplectic; symmetric where space and quadrature are. Order min(2d, u, 2(u-d+1)) for a quadrature
  * of order u is what the polynomials claim; the functions may do better, and the user may say so.

@@ -37,8 +37,8 @@ dvi_status dvi__action_create(const dvi_system *system, const dvi__action_space 
                               dvi_counters *counters, dvi__action **action);
 void dvi__action_destroy(dvi__action **action);
 
-/* Prepare the Jacobian's pattern and memory, if they are not there; without them residuals and chords
- * work, Jacobians do not. After a failure it may be called again. */
+/* Prepare the Jacobian's pattern and memory, if they are not there; without them residuals and
+ * chords work, Jacobians do not. After a failure it may be called again. */
 dvi_status dvi__action_prepare_jacobian(dvi__action *action);
 
 /* Add a term to its rows; the struct is copied, and what it points to must stay. An action with
@@ -87,8 +87,8 @@ const dvi__pattern *dvi__action_coupling(const dvi__action *action);
 /* The Hessians at the nodes of the path Y, for what follows. */
 dvi_status dvi__action_hessians(dvi__action *action, const double *Y);
 
-/* y [n*s] = dR/dY x by these Hessians, without the Jacobian; after dvi__action_prepare_product, which
- * prepares Hessians, too. Not with a centring. */
+/* y [n*s] = dR/dY x by these Hessians, without the Jacobian; after dvi__action_prepare_product,
+ * which prepares Hessians, too. Not with a centring. */
 dvi_status dvi__action_prepare_product(dvi__action *action);
 void dvi__action_times_jacobian(dvi__action *action, const double *x, double *y);
 

@@ -1,7 +1,8 @@
 /* The energies of an element: what its action says when its ends move in time.
  *
  *     S(t0, h, q0, Y) = h sum_j b_j L_j,   L_j at t0 + c_j h
- *     E+ = -dS/dh = sum_j b_j ( L_v V - L - c_j h L_t )_j                       at the element's end,
+ *     E+ = -dS/dh = sum_j b_j ( L_v V - L - c_j h L_t )_j
+ *     at the element's end,
  *     E- = dS/dt0 - dS/dh = sum_j b_j ( L_v V - L + (1 - c_j) h L_t )_j         at its start.
  *
  * With the times of the nodes as further unknowns the action is stationary if E+ of an element is

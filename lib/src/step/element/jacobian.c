@@ -145,7 +145,8 @@ dvi_status dvi__action_prepare_product(dvi__action *a)
                          a->n);
 }
 
-/* The rows are linear in the changes of L_q and L_v at the nodes, and these in those of the path. */
+/* The rows are linear in the changes of L_q and L_v at the nodes, and these in those of the
+ * path. */
 void dvi__action_times_jacobian(dvi__action *a, const double *x, double *y)
 {
   const size_t r = (size_t)a->r, batch = (size_t)a->n * r;

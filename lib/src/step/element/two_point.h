@@ -1,11 +1,13 @@
 /* One element of the discrete action as a function of both its ends, for paths of many elements.
  *
- *     q(tau) = (1-tau) q0 + tau q1 + sum_m beta_m(tau) Z_m,   m = 1..s-1,   beta_m(tau) = integral of P_m(2x-1) from 0 to tau,
+ *     q(tau) = (1-tau) q0 + tau q1 + sum_m beta_m(tau) Z_m,   m = 1..s-1,
+ *     beta_m(tau) = integral of P_m(2x-1) from 0 to tau,
  *
  * where the bubbles beta_m vanish at both ends and their derivatives are orthogonal to each other
  * and to 1. With chi_0 = 1 - tau, chi_1 = tau and chi_(m+1) = beta_m, and with X = (q0, q1, Z),
  *
- *     dS/dX_a = sum_j b_j ( h chi_a L_q + chi_a' L_v )_j,      so that dS/dq0 = -p0 and dS/dq1 = p1.
+ *     dS/dX_a = sum_j b_j ( h chi_a L_q + chi_a' L_v )_j,
+ *     so that dS/dq0 = -p0 and dS/dq1 = p1.
  *
  * Source: Marsden and West 2001, sec. 1.3 and 2.2.6. The bubbles are the integrated Legendre
  * functions of the finite element method.

@@ -235,8 +235,7 @@ static void coupled_drift_begin(dvi__coupled_drift *l, double h, const double *q
 static void coupled_drift_find_residual(dvi__coupled_drift *l)
 {
   for (int u = 0; u < l->count; u++)
-    dvi__chart_displacement(&l->unit[u].chart, l->xi + l->unit[u].x,
-                             l->moved + l->unit[u].slot->q);
+    dvi__chart_displacement(&l->unit[u].chart, l->xi + l->unit[u].x, l->moved + l->unit[u].slot->q);
   coupled_drift_multiply(l);
   memcpy(l->change, l->impulse, (size_t)l->unknowns * sizeof *l->change);
   for (int u = 0; u < l->count; u++) {

@@ -54,8 +54,7 @@ dvi_status dvi__evaluator_prepare_hessians(dvi__evaluator *e)
 static dvi_status evaluator_allocate(dvi__evaluator *e, int hessians)
 {
   const dvi_system *system = e->system;
-  DVI_TRY(hessians ? dvi__evaluator_prepare_hessians(e)
-                   : evaluator_allocate_scratch(e, 0));
+  DVI_TRY(hessians ? dvi__evaluator_prepare_hessians(e) : evaluator_allocate_scratch(e, 0));
   for (int i = 0; i < 3; i++) e->point[i] = DVI_NEW(double, system->n);
   if (e->point[0] && e->point[1] && e->point[2] &&
       (system->lagrangian == NULL || allocate_general(e)))

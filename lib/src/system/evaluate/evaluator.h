@@ -22,8 +22,8 @@ dvi_status dvi__evaluator_create(const dvi_system *system, int capacity, dvi__de
                                  dvi_counters *counters, dvi__evaluator **evaluator);
 void dvi__evaluator_destroy(dvi__evaluator **evaluator);
 
-/* Let an evaluator that was created without Hessians evaluate them, too, from now on. On failure it is
- * as it was: DVI_NO_MEMORY, DVI_BAD_SIZE. */
+/* Let an evaluator that was created without Hessians evaluate them, too, from now on. On failure it
+ * is as it was: DVI_NO_MEMORY, DVI_BAD_SIZE. */
 dvi_status dvi__evaluator_prepare_hessians(dvi__evaluator *e);
 
 /* With a Hamiltonian all functions of the Lagrangian give H and its derivatives. p takes the place
