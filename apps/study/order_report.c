@@ -125,16 +125,17 @@ static void slopes_between(const order_result *result, double *least, double *mo
 static void print_remedy(FILE *stream, const order_result *result)
 {
   const closer_look *c = &result->closer;
-  char whole[PHRASE_SIZE];
   if (c->asked && c->missing != NULL)
     (void)fprintf(stream, "  no %s %s: %s\n", c->of, c->digits, c->missing);
-  if (order_closer_settled(result))
+  if (order_closer_settled(result)) {
+    char whole[PHRASE_SIZE];
     (void)fprintf(stream, "  %s have the order %.2f, but over %s errors fall far slower: %s\n",
                   c->of, c->fit.slope, say(result, STUDY_WHOLE, whole), c->unlike);
-  else if (result->chooses)
+  } else if (result->chooses) {
     print_line(stream, result, STUDY_EQUAL);
-  else
+  } else {
     print_line(stream, result, result->claimed < HIDDEN_ORDER ? STUDY_NEARER : STUDY_LOWER);
+  }
 }
 
 static void print_unsettled(FILE *stream, const order_result *result)

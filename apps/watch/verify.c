@@ -167,8 +167,8 @@ static dvi_status witness_run(void *user, double refinement, study_level *level)
                                           &report);
   if (status != DVI_OK) return status;
   if (!(v->witness_tolerance > 0.0)) v->witness_tolerance = report.relative_tolerance;
-  const dvi_start_options project = {.project = 1};
-  status = dvi_integrator_start_with(v->integrator, v->request->t_end, q, p, &project);
+  status = dvi_integrator_start_with(v->integrator, v->request->t_end, q, p,
+                                     &(dvi_start_options){.project = 1});
   if (status != DVI_OK) return status;
   return read_numbers(v, level->number) ? DVI_OK : DVI_CALLBACK_FAILED;
 }
