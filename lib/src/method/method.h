@@ -107,6 +107,7 @@ typedef struct dvi__stepper {
    * driver sets `exact`, which is not 0 if the next step must have the given length. */
   double taken;
   int exact;
+  int late_hessians; /* the step may ask for Hessians that create has not asked for */
   int follows; /* the step solves equations and can follow their branch from h = 0 */
   /* set by the driver: follow the branch in at least this many parts (default 0, no following) */
   int follow;
