@@ -160,13 +160,15 @@ START_TEST(the_derivative_is_symplectic_order_by_order)
 }
 END_TEST
 
-START_TEST(nothing_is_allocated_after_create)
+/* But by the first factor. */
+START_TEST(nothing_is_allocated_after_the_first_use)
 {
   problem *of = made_problem("double-pendulum", NULL);
   dvi__flow_series *series = made_series(of, 8);
   double L[8], L_q0[16], L_v0[16];
-  const long before = dvi__allocation_count();
+  long before = 0;
   for (int i = 0; i < 3; i++) {
+    if (i == 1) before = dvi__allocation_count();
     ck_assert_int_eq(dvi__flow_series_expand(series, 0, of->q, of->v), DVI_OK);
     ck_assert_int_eq(dvi__flow_series_vary(series), DVI_OK);
     ck_assert_int_eq(dvi__flow_series_lagrangian(series, L, L_q0, L_v0), DVI_OK);
@@ -203,6 +205,6 @@ SUITE(flow_series)
   tcase_add_loop_test(tests, the_sum_is_where_an_integrator_arrives, 0, PLACES);
   tcase_add_loop_test(tests, derivatives_agree_with_differences, 0, PLACES);
   tcase_add_test(tests, the_derivative_is_symplectic_order_by_order);
-  tcase_add_test(tests, nothing_is_allocated_after_create);
+  tcase_add_test(tests, nothing_is_allocated_after_the_first_use);
   tcase_add_test(tests, failures_are_said);
 }

@@ -292,6 +292,7 @@ START_TEST(a_missing_gradient_costs_6n_values_a_term_or_12n_for_a_lagrangian)
 }
 END_TEST
 
+/* But by the first factor of L_vv. */
 START_TEST(points_are_counted_and_nothing_is_allocated_after_create)
 {
   static evaluation x;
@@ -313,9 +314,14 @@ START_TEST(points_are_counted_and_nothing_is_allocated_after_create)
   ck_assert_int_eq(counters.gradients, of_p.gradients);
   ck_assert_int_gt(counters.gradients, POINTS);
   ck_assert_int_eq(counters.hessians, POINTS);
+  ck_assert_int_eq(dvi__allocation_count(), before);
   ck_assert_int_eq(dvi__legendre_inverse(e, 0, generic_q, momentum, v), DVI_OK);
   ck_assert_int_ge(counters.factorizations, 1);
-  ck_assert_int_eq(dvi__allocation_count(), before);
+  ck_assert_int_eq(counters.preparations, 1);
+  const long prepared = dvi__allocation_count();
+  ck_assert_int_eq(dvi__legendre_inverse(e, 0, generic_v, momentum, v), DVI_OK);
+  ck_assert_int_eq(dvi__allocation_count(), prepared);
+  ck_assert_int_eq(counters.preparations, 1);
   dvi__evaluator_destroy(&e);
   dvi_system_destroy(&s);
 }

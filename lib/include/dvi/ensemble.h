@@ -128,8 +128,9 @@ const char *dvi_ensemble_method(const dvi_ensemble *ensemble);
 /** The sum of what the members' own integrators would count, however they are grouped: members side
  *  by side are counted as if each were alone. Only of `jacobians`, `hessians` and `factorizations`
  *  there may be more: an integrator keeps the Jacobian that simplified Newton's method has frozen,
- *  a thread of an ensemble that of one member at a time. `allocations` are those of this ensemble;
- *  a step takes none. All 0 for NULL. */
+ *  a thread of an ensemble that of one member at a time. `allocations`, `preparations` and
+ *  `symbolic` are those of this ensemble, whose threads prepare a solver once for all members; a
+ *  step allocates only then. All 0 for NULL. */
 void dvi_ensemble_counters(const dvi_ensemble *ensemble, dvi_counters *counters);
 
 /** Say in words how the members are grouped, and what dvi_integrator_explain says of the method.

@@ -266,6 +266,7 @@ static void add_counters(const dvi_counters *some, dvi_counters *sum)
   sum->certified += some->certified;
   sum->energy_fallbacks += some->energy_fallbacks;
   sum->products += some->products;
+  sum->preparations += some->preparations;
 }
 
 void dvi_ensemble_counters(const dvi_ensemble *e, dvi_counters *counters)

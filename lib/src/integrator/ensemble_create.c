@@ -95,10 +95,11 @@ static dvi_status look_at_systems(dvi_ensemble *e, const char *method,
                                   const dvi_ensemble_options *o)
 {
   DVI_TRY(add_integrator(e, o->systems[0], method, o->shapes));
+  const int late = e->integrators[0]->stepper.late_hessians;
   e->bound = e->integrators[0]->stepper.bound;
   if (e->bound) return DVI_OK;
   dvi_integrator_destroy(&e->integrators[--e->integrator_count]);
-  for (int k = 0; k < o->members && o->systems[0]->qq.start != NULL; k++)
+  for (int k = 0; k < o->members && (late || o->systems[0]->qq.start != NULL); k++)
     DVI_TRY(dvi__system_prepare_hessian(o->systems[k]));
   for (int i = 0; i < e->threads; i++) {
     e->workers[i].scene = dvi__duplicate(o->systems[0], 1, sizeof *o->systems[0]);

@@ -105,6 +105,7 @@ typedef struct dvi__stepper {
    * driver sets, not 0: the next one is as long as it says. */
   double taken;
   int exact;
+  int late_hessians; /* it may ask for Hessians that it has not asked for at create */
   int follows; /* it solves equations, and can follow their branch from h = 0 */
   /* set by the driver: the step does so, in at least so many parts; 0: it does not */
   int follow;

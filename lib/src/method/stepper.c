@@ -137,6 +137,7 @@ dvi_status dvi__stepper_create_inner(dvi__stepper *self, const char *method,
                                                 inner);
   dvi__release(specification);
   if (status != DVI_OK) return status;
+  self->late_hessians |= inner->late_hessians;
   const char *keys = strchr(inner->specification, ':');
   dvi__release(*rest);
   *rest = keys != NULL ? dvi__written("%s", keys + 1) : NULL;

@@ -135,6 +135,7 @@ dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *spac
   self->order = dvi__element_order(space);
   self->symmetric = dvi__symmetric_rule(space->rule);
   self->follows = 1;
+  self->late_hessians = 1;
   own->choice = solver;
   own->counters = self->counters;
   DVI_TRY(dvi__action_create(self->system, space, self->counters, &own->action));

@@ -1,8 +1,8 @@
 /* Evaluates a system's Lagrangian and its derivatives at batches of points.
  *
  * A system is shared and constant; an evaluator belongs to one user, owns the scratch memory and
- * counts. Nothing here allocates after create. Batches are component-major: coordinate i of point k
- * is q[i*count + k]. */
+ * counts. Nothing here allocates after create, but for the first factor of a velocity Hessian
+ * (num/linear.h). Batches are component-major: coordinate i of point k is q[i*count + k]. */
 #ifndef DVI_SYSTEM_EVALUATOR_H
 #define DVI_SYSTEM_EVALUATOR_H
 #include <dvi/integrator.h>
