@@ -41,7 +41,8 @@ messages() { sh "$lint/messages.sh" "$work"; }
 sections() { sh "$lint/sections.sh" "$work"; }
 headers() { sh "$lint/headers.sh" "$work/lib/include" c "$compiler" -std=c11; }
 symbols() {
-  "$compiler" -shared -fPIC -I lib/include lib/src/core/*.c -o libone.so && "$compiler" -c -I lib/include lib/src/core/one.c -o one.o &&
+  echo 'DVI_1 { global: dvi_*; stray; local: *; };' >one.map
+  "$compiler" -shared -fPIC -I lib/include lib/src/core/*.c -Wl,--version-script=one.map -o libone.so && "$compiler" -c -I lib/include lib/src/core/one.c -o one.o &&
     rm -f libone.a && ar rc libone.a one.o && sh "$lint/symbols.sh" libone.so libone.a lib/include/dvi/*.h
 }
 

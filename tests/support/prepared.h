@@ -1,5 +1,5 @@
-/* Heap calls of steps, but for those that prepare a solver when it is first needed. A test that uses
- * them includes support/heap.h, too. */
+/* Heap calls of steps, but for those that prepare a solver when it is first needed. A test that
+ * uses them includes support/heap.h, too. */
 #ifndef SUPPORT_PREPARED_H
 #define SUPPORT_PREPARED_H
 #include <dvi/dvi.h>

@@ -134,8 +134,8 @@ const char *dvi_ensemble_method(const dvi_ensemble *ensemble);
  *  Members side by side are counted as if each were alone. Only `jacobians`, `hessians` and
  *  `factorizations` may be larger. An integrator keeps the frozen Jacobian of simplified Newton's
  *  method, while a thread of an ensemble keeps that of one member at a time. `allocations`,
- *  `preparations` and `symbolic` are those of this ensemble, whose threads prepare a solver once for
- *  all members. A step allocates only then. All counters are 0 for NULL. */
+ *  `preparations` and `symbolic` are those of this ensemble, whose threads prepare a solver once
+ *  for all members. A step allocates only then. All counters are 0 for NULL. */
 void dvi_ensemble_counters(const dvi_ensemble *ensemble, dvi_counters *counters);
 
 /** Say in words how the members are grouped, and append the text of dvi_integrator_explain.

@@ -108,7 +108,7 @@ typedef struct dvi__stepper {
   double taken;
   int exact;
   int late_hessians; /* the step may ask for Hessians that create has not asked for */
-  int follows; /* the step solves equations and can follow their branch from h = 0 */
+  int follows;       /* the step solves equations and can follow their branch from h = 0 */
   /* set by the driver: follow the branch in at least this many parts (default 0, no following) */
   int follow;
   dvi__doubt doubt; /* set by `step`, reset by the driver */

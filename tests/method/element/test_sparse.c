@@ -62,8 +62,8 @@ static void take_steps(dvi_integrator *integrator, measured *m)
   ck_assert_msg(!failed, "%s", dvi_last_error());
   if (heap_is_counted()) ck_assert_int_eq(calls, 0);
   dvi_integrator_counters(integrator, &after);
-  /* Nothing is analysed before a step needs it, and each pattern once: of the whole Jacobian, and of
-   * the decoupled systems. */
+  /* Nothing is analysed before a step needs it, and each pattern once: of the whole Jacobian, and
+   * of the decoupled systems. */
   ck_assert_int_eq(before.symbolic, 0);
   ck_assert_int_ge(after.symbolic, 1);
   ck_assert_int_le(after.symbolic, 2);
